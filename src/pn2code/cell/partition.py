@@ -1,0 +1,86 @@
+"""`Partition`: who runs which transition, and which places are channels between owners.
+
+Made from a `FlatNet` and a cell's owners; see docs/architecture.md.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from enum import Enum
+
+from pn2code.net.flat import FlatNet
+
+
+class OwnerKind(Enum):
+    """What runs an owner's transitions."""
+
+    SUPERVISOR = "supervisor"
+    ROBOT = "robot"
+
+
+@dataclass(frozen=True, slots=True)
+class Owner:
+    """A party: `name` is "supervisor" or the robot's name in cell.toml; `instance` the path of its page instance ("Top/Robot1");
+    `index` is 0 for the supervisor, then the robots in order."""
+
+    index: int
+    name: str
+    kind: OwnerKind
+    instance: str
+
+
+class ChannelKind(Enum):
+    """Data are written before the flags that announce them."""
+
+    DATA = "data"
+    FLAG = "flag"
+
+
+@dataclass(frozen=True, slots=True)
+class Channel:
+    """A place shared by two owners.
+
+    Args:
+        name: stem of its file, e.g. "flag1_interno".
+        file: file name in the shared directory, e.g. "flag1_interno.robcad".
+        place: index of the flat place.
+        writer, reader: owner indices.
+        kind: data or flag.
+    """
+
+    name: str
+    file: str
+    place: int
+    writer: int
+    reader: int
+    kind: ChannelKind
+
+
+@dataclass(frozen=True, slots=True)
+class Input:
+    """A place of the supervisor whose initial marking is read from a file when the program starts."""
+
+    name: str
+    file: str
+    place: int
+
+
+@dataclass(frozen=True, slots=True)
+class Partition:
+    """The net with its owners.
+
+    Args:
+        owners: supervisor first.
+        transition_owner: owner index per transition.
+        place_owner: owner index per place, None for channels (and for places that nobody touches: the supervisor's).
+        channels: data before flags, each in the order of cell.toml.
+        final_places: a token in any of them means that the supervisor has finished.
+    """
+
+    net: FlatNet
+    owners: tuple[Owner, ...]
+    transition_owner: tuple[int, ...]
+    place_owner: tuple[int | None, ...]
+    channels: tuple[Channel, ...]
+    inputs: tuple[Input, ...]
+    final_places: tuple[int, ...]

@@ -1,0 +1,15 @@
+"""Origins, diagnostics, the registry of their codes, and the ways they are printed."""
+
+from pn2code.diagnostics.diagnostic import Diagnostic, Diagnostics, Note, Severity
+from pn2code.diagnostics.origin import NOWHERE, Origin, SourceText, Span
+
+__all__ = [
+    "NOWHERE",
+    "Diagnostic",
+    "Diagnostics",
+    "Note",
+    "Origin",
+    "Severity",
+    "SourceText",
+    "Span",
+]

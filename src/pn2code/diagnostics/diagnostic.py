@@ -1,0 +1,130 @@
+"""One message to the user, and the collection that stages fill.
+
+Three kinds are never mixed: *user error* (a diagnostic), *unsupported* (a diagnostic whose code
+begins with `unsupported-`, naming feature and element), *internal error* (a Python exception: a
+bug in pn2code).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass, field
+from enum import Enum
+
+from pn2code.diagnostics.codes import require_code
+from pn2code.diagnostics.origin import Origin, Span
+
+
+class Severity(Enum):
+    """How bad: an error stops the pipeline after its stage, the others do not."""
+
+    ERROR = "error"
+    WARNING = "warning"
+    NOTE = "note"
+
+
+@dataclass(frozen=True, slots=True)
+class Note:
+    """A further sentence, perhaps about another place."""
+
+    message: str
+    origin: Origin | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class Diagnostic:
+    """A message with its place.
+
+    Args:
+        code: stable kebab-case code, declared in `codes.py`.
+        message: lower case, no final full stop, names in back-ticks, what is wrong first.
+        origin: where.
+        span: the characters to underline, when the place is inside an inscription.
+        label: text beside the caret.
+        notes: further facts.
+        hint: what to do ("help:").
+    """
+
+    severity: Severity
+    code: str
+    message: str
+    origin: Origin
+    span: Span | None = None
+    label: str = ""
+    notes: tuple[Note, ...] = ()
+    hint: str = ""
+
+
+@dataclass(slots=True)
+class Diagnostics:
+    """What the stages of one run have to say; the only mutable value handed from stage to stage."""
+
+    items: list[Diagnostic] = field(default_factory=list)
+
+    def error(
+        self,
+        code: str,
+        message: str,
+        at: Origin | Span,
+        *,
+        label: str = "",
+        notes: Iterable[Note | str] = (),
+        hint: str = "",
+    ) -> None:
+        """Report an error at an origin or span."""
+        self._add(Severity.ERROR, code, message, at, label, notes, hint)
+
+    def warning(
+        self,
+        code: str,
+        message: str,
+        at: Origin | Span,
+        *,
+        label: str = "",
+        notes: Iterable[Note | str] = (),
+        hint: str = "",
+    ) -> None:
+        """Report a warning at an origin or span."""
+        self._add(Severity.WARNING, code, message, at, label, notes, hint)
+
+    def _add(
+        self,
+        severity: Severity,
+        code: str,
+        message: str,
+        at: Origin | Span,
+        label: str,
+        notes: Iterable[Note | str],
+        hint: str,
+    ) -> None:
+        require_code(code)
+        span = at if isinstance(at, Span) else None
+        origin = at.origin if isinstance(at, Span) else at
+        fixed = tuple(Note(n) if isinstance(n, str) else n for n in notes)
+        item = Diagnostic(severity, code, message, origin, span, label, fixed, hint)
+        if item not in self.items:
+            self.items.append(item)
+
+    @property
+    def has_errors(self) -> bool:
+        """Whether any error was reported."""
+        return any(d.severity is Severity.ERROR for d in self.items)
+
+    @property
+    def errors(self) -> list[Diagnostic]:
+        """The errors, in order of report."""
+        return [d for d in self.items if d.severity is Severity.ERROR]
+
+    def sorted(self) -> list[Diagnostic]:
+        """By position in the file."""
+        return sorted(
+            self.items, key=lambda d: (d.origin.file, d.origin.line, d.origin.column, d.code)
+        )
+
+    def __iter__(self) -> Iterator[Diagnostic]:
+        """Iterate in order of report."""
+        return iter(self.items)
+
+    def __len__(self) -> int:
+        """Return the number of diagnostics."""
+        return len(self.items)

@@ -1,0 +1,1 @@
+"""Emission: IR -> files in memory. Pure text: same input, same bytes."""

@@ -1,0 +1,1 @@
+"""Lowering: partition -> NetIR (for C) and RobotIR (for robot scripts)."""

@@ -1,0 +1,1 @@
+"""Nets: link (names to things), check (types and binding), flatten (one instance of everything)."""

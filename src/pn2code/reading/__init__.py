@@ -1,0 +1,1 @@
+"""Reading files into a `Document`. Knows XML, nothing of CPN ML."""

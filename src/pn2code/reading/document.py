@@ -1,0 +1,253 @@
+"""`Document`: what a `.cpn` file says, before anything is resolved.
+
+Texts keep their positions (`SourceText`), layout is kept for drawing, nothing is interpreted.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+from pn2code.diagnostics import Origin, SourceText
+
+
+@dataclass(frozen=True, slots=True)
+class Layout:
+    """Where a thing stands on its page, in CPN Tools units (y grows upwards).
+
+    Args:
+        x, y: centre (of labels: centre of the text).
+        width, height: size; 0 when unknown.
+        bends: bend points of an arc, from the transition end to the place end.
+        colour: line colour name, e.g. "Black".
+        fill: fill colour name, empty when not filled.
+        text_colour: text colour name.
+        shape: "ellipse", "box", "label", "".
+        thickness: line thickness.
+    """
+
+    x: float = 0.0
+    y: float = 0.0
+    width: float = 0.0
+    height: float = 0.0
+    bends: tuple[tuple[float, float], ...] = ()
+    colour: str = ""
+    fill: str = ""
+    text_colour: str = ""
+    shape: str = ""
+    thickness: float = 1.0
+
+
+@dataclass(frozen=True, slots=True)
+class Inscription:
+    """A text of the net with its XML id and position; whitespace-only texts are absent (None), not empty."""
+
+    text: SourceText
+    layout: Layout = Layout()
+
+
+@dataclass(frozen=True, slots=True)
+class RawPlace:
+    """`place`."""
+
+    id: str
+    name: str
+    type: Inscription | None
+    initial: Inscription | None
+    port: str
+    fusion: str
+    origin: Origin
+    layout: Layout = Layout()
+
+
+@dataclass(frozen=True, slots=True)
+class RawSubstitution:
+    """`subst`: the page it stands for and the (port id, socket id) pairs."""
+
+    subpage: str
+    portsock: tuple[tuple[str, str], ...]
+    origin: Origin
+
+
+@dataclass(frozen=True, slots=True)
+class RawTransition:
+    """`trans`."""
+
+    id: str
+    name: str
+    guard: Inscription | None
+    delay: Inscription | None
+    code: Inscription | None
+    priority: Inscription | None
+    channel: Inscription | None
+    substitution: RawSubstitution | None
+    origin: Origin
+    layout: Layout = Layout()
+
+
+@dataclass(frozen=True, slots=True)
+class RawArc:
+    """`arc`; orientation as in the file, lower case."""
+
+    id: str
+    orientation: str
+    transition: str
+    place: str
+    inscription: Inscription | None
+    origin: Origin
+    layout: Layout = Layout()
+
+
+@dataclass(frozen=True, slots=True)
+class RawAux:
+    """`Aux`: a free text or shape of the page, for drawing."""
+
+    id: str
+    text: str
+    layout: Layout = Layout()
+
+
+@dataclass(frozen=True, slots=True)
+class RawPage:
+    """`page`."""
+
+    id: str
+    name: str
+    places: tuple[RawPlace, ...]
+    transitions: tuple[RawTransition, ...]
+    arcs: tuple[RawArc, ...]
+    auxiliaries: tuple[RawAux, ...]
+    origin: Origin
+
+
+@dataclass(frozen=True, slots=True)
+class RawColset:
+    """`color`: the structure that the file gives, texts not yet parsed.
+
+    Args:
+        kind: tag of the definition: "unit", "int", "enum", "product", "record", "list", "alias", ... or "" if none is known.
+        ids: the ids of the definition in order: enum values, product components, list base, alias base, unit/bool names, index stem.
+        fields: record fields and union fields as (label, type or "").
+        texts: the `ml` texts in order: ranges, subset predicate or list.
+        timed: `<timed/>`.
+        declare: `<declare>` ids.
+        layout_text: what CPN Tools shows (`colset INT = int;`), for messages and carets; may be absent.
+    """
+
+    id: str
+    name: str
+    kind: str
+    ids: tuple[str, ...]
+    fields: tuple[tuple[str, str], ...]
+    texts: tuple[SourceText, ...]
+    timed: bool
+    declare: tuple[str, ...]
+    by_predicate: bool
+    layout_text: str
+    origin: Origin
+
+
+@dataclass(frozen=True, slots=True)
+class RawVar:
+    """`var x, y : TYPE`."""
+
+    id: str
+    names: tuple[str, ...]
+    type: str
+    origin: Origin
+
+
+@dataclass(frozen=True, slots=True)
+class RawMl:
+    """`ml`: a CPN ML declaration as text."""
+
+    id: str
+    text: SourceText
+    origin: Origin
+
+
+@dataclass(frozen=True, slots=True)
+class RawGlobref:
+    """`globref x = exp`."""
+
+    id: str
+    name: str
+    text: SourceText
+    origin: Origin
+
+
+@dataclass(frozen=True, slots=True)
+class RawUse:
+    """`use "file"`."""
+
+    id: str
+    text: SourceText
+    origin: Origin
+
+
+@dataclass(frozen=True, slots=True)
+class RawOther:
+    """A declaration of a kind that is not known (an old raw `errordecl`, a channel)."""
+
+    id: str
+    tag: str
+    text: SourceText
+    origin: Origin
+
+
+RawDeclaration = RawColset | RawVar | RawMl | RawGlobref | RawUse | RawOther
+
+
+@dataclass(frozen=True, slots=True)
+class RawBlock:
+    """A named block of declarations; blocks nest, order matters."""
+
+    name: str
+    items: tuple[RawBlock | RawDeclaration, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class RawFusion:
+    """`fusion`: a fusion set and the ids of its places."""
+
+    id: str
+    name: str
+    members: tuple[str, ...]
+    origin: Origin
+
+
+@dataclass(frozen=True, slots=True)
+class RawMonitor:
+    """`monitor`: kept as it is."""
+
+    id: str
+    name: str
+    type: str
+    disabled: bool
+    nodes: tuple[tuple[str, str], ...]
+    declarations: tuple[tuple[str, SourceText], ...]
+    options: tuple[tuple[str, str], ...]
+    origin: Origin
+
+
+@dataclass(frozen=True, slots=True)
+class Document:
+    """A whole file.
+
+    Args:
+        file: path as given.
+        sha256: of the bytes.
+        tool, version, format: the generator.
+        blocks: top-level declarations (the globbox as one block).
+        options: name to text.
+    """
+
+    file: str
+    sha256: str
+    tool: str
+    version: str
+    format: str
+    globbox: RawBlock
+    pages: tuple[RawPage, ...]
+    fusions: tuple[RawFusion, ...]
+    monitors: tuple[RawMonitor, ...] = ()
+    options: dict[str, str] = field(default_factory=dict)

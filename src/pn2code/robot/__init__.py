@@ -1,0 +1,1 @@
+"""Robots: poses, commands, kinematics, motion, scene, monitoring, backends."""

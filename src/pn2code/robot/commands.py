@@ -1,0 +1,75 @@
+"""What a robot can be told to do: small frozen values. The script interpreter makes them, an executor runs them.
+
+All in SI units (m, rad, s); scripts and files use mm and degrees, converted once, in `pn2code.tdl`.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Literal
+
+Frame = Literal["world", "tool"]
+
+
+@dataclass(frozen=True, slots=True)
+class Pose:
+    """Position (m) and orientation (rad) of one frame in another: fixed-axis XYZ angles, R = Rz(rz) Ry(ry) Rx(rx)."""
+
+    x: float
+    y: float
+    z: float
+    rx: float
+    ry: float
+    rz: float
+
+
+@dataclass(frozen=True, slots=True)
+class MoveJoint:
+    """PTP to a TCP pose in the world frame; `speed` is the fraction (0..1] of the configured joint speed."""
+
+    target: Pose
+    speed: float = 1.0
+
+
+@dataclass(frozen=True, slots=True)
+class MoveHome:
+    """PTP to the robot's HOME joint position."""
+
+    speed: float = 1.0
+
+
+@dataclass(frozen=True, slots=True)
+class MoveLinear:
+    """LIN: absolute in the world frame, or incremental in the tool frame as it stands at the beginning.
+
+    `speed` in m/s; None: the configured linear speed.
+    """
+
+    target: Pose
+    frame: Frame = "world"
+    speed: float | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class ToolAction:
+    """An action of the end effector (drill, insert, ...) that takes `duration` seconds."""
+
+    action: str
+    duration: float
+
+
+@dataclass(frozen=True, slots=True)
+class Measure:
+    """Look at a reference; the result is its measured Pose in the world frame."""
+
+    nominal: Pose
+
+
+@dataclass(frozen=True, slots=True)
+class Wait:
+    """Stand still for `duration` seconds."""
+
+    duration: float
+
+
+Command = MoveJoint | MoveHome | MoveLinear | ToolAction | Measure | Wait

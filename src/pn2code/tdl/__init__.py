@@ -1,0 +1,1 @@
+"""The robot script language: grammar, static checks, interpreter."""

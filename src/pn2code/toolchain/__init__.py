@@ -1,0 +1,1 @@
+"""Finding and running the C compiler and make; mapping their errors back to net elements."""
