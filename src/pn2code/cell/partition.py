@@ -20,7 +20,8 @@ class OwnerKind(Enum):
 
 @dataclass(frozen=True, slots=True)
 class Owner:
-    """A party: `name` is "supervisor" or the robot's name in cell.toml; `instance` the path of its page instance ("Top/Robot1");
+    """A party: `name` is "supervisor" or the robot's name in cell.toml; `instance` the path of its
+    page instance ("Top/Robot1");
     `index` is 0 for the supervisor, then the robots in order."""
 
     index: int

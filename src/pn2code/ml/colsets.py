@@ -1,6 +1,7 @@
 """Colour sets: what a place may hold.
 
-A colour set is more than its ML type: it has a declared order of components, ranges, names to print, and may be timed. Two
+A colour set is more than its ML type: it has a declared order of components, ranges, names to
+print, and may be timed. Two
 colour sets may share one ML type (`colset COORD = real; colset WEIGHT = real;`).
 """
 
@@ -46,11 +47,13 @@ class Colset:
         kind: ALIAS keeps its own name; use `resolved` to look through it.
         type: the ML type of its values.
         timed: whether its tokens carry time stamps.
-        names: UNIT the one name; BOOL (false name, true name); ENUM the constructors; INDEX (stem,); UNION constructors.
+        names: UNIT the one name; BOOL (false name, true name); ENUM the constructors; INDEX
+        (stem,); UNION constructors.
         components: PRODUCT, RECORD, UNION: per component in *declared* order (UNION: None for a constant constructor);
             LIST, SUBSET, ALIAS: the base as the single component.
         labels: RECORD: the field names in declared order.
-        low, high: INT, INDEX: the range; LIST: the length range; REAL: the range; STRING: the character range (as strings).
+        low, high: INT, INDEX: the range; LIST: the length range; REAL: the range; STRING: the
+        character range (as strings).
             None: unbounded.
         length: STRING `with .. and l1..l2`: the length range.
         members: SUBSET `with [..]`: the members as a core expression of type list.

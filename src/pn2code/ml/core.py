@@ -2,14 +2,16 @@
 
 Every name is resolved to a `Symbol` or a built-in, every node has its type and span, derived forms are gone:
 `fun` with clauses is a lambda with rules, `andalso`/`orelse` are `If`, infix operators are applications, overloaded
-operators are resolved (`+` on int is the built-in "Int.+", on real "Real.+"), `#f r` is `Select`, open record patterns are complete,
+operators are resolved (`+` on int is the built-in "Int.+", on real "Real.+"), `#f r` is `Select`,
+open record patterns are complete,
 list patterns and expressions use `nil` and `::` constructors only in patterns (`PCon`), expressions have `ListExp`.
 
 The reference evaluator (`semantics`) and the compiler (`lowering`) both start here and share nothing further on.
 
 Example: `fun f 0 = 1 | f n = n * f (n - 1)` becomes
 
-    RecBind(((f : int -> int), (), Lambda([Rule(PLit 0, Lit 1), Rule(PVar n, Apply(Builtin "Int.*", Record{1: n, 2: Apply(f, ...)}))])))
+    RecBind(((f : int -> int), (), Lambda([Rule(PLit 0, Lit 1), Rule(PVar n, Apply(Builtin "Int.*",
+    Record{1: n, 2: Apply(f, ...)}))])))
 """
 
 from __future__ import annotations
@@ -89,9 +91,12 @@ class Var:
 class Builtin:
     """A function or value of the built-in environment by its full resolved name.
 
-    Names are those of the structures: "Int.+", "Real.<", "List.map", "Math.sin", "String.^", "Ms.++", "Ms.`" (coefficient),
-    "Time.@+", polymorphic equality is "=" and "<>" (`type` says at which type). Functions of a colour set's structure are
-    "Colset.all", "Colset.mkstr", ... with `colset` set. `pn2code.ml.builtins` is the table with all types and one-line meanings.
+    Names are those of the structures: "Int.+", "Real.<", "List.map", "Math.sin", "String.^",
+    "Ms.++", "Ms.`" (coefficient),
+    "Time.@+", polymorphic equality is "=" and "<>" (`type` says at which type). Functions of a
+    colour set's structure are
+    "Colset.all", "Colset.mkstr", ... with `colset` set. `pn2code.ml.builtins` is the table with all
+    types and one-line meanings.
     """
 
     name: str
@@ -254,7 +259,8 @@ class PWild:
 
 @dataclass(frozen=True, slots=True)
 class PVar:
-    """A variable. In a pattern of a net inscription the symbol is a net variable: the first occurrence met binds it, each
+    """A variable. In a pattern of a net inscription the symbol is a net variable: the first
+    occurrence met binds it, each
     further one is an equality test."""
 
     symbol: Symbol
@@ -334,7 +340,8 @@ class ExceptionDec:
 
 @dataclass(frozen=True, slots=True)
 class DatatypeDec:
-    """A declared data type, also of enumeration and union colour sets: constructors with argument types (generic in TVars)."""
+    """A declared data type, also of enumeration and union colour sets: constructors with argument
+    types (generic in TVars)."""
 
     name: str
     generics: int

@@ -1,7 +1,8 @@
 """Types of CPN ML, as the checker infers them and the later stages read them.
 
 `int`, `real`, `string`, `char`, `bool`, `exn`, `'a list`, `'a ref`, `'a option`, `order`, `IntInf.int`, enumeration and
-union colour sets, user datatypes are `TCon`; records, tuples and `unit` are `TRecord`; `'a ms` *is* `'a list` in CPN Tools,
+union colour sets, user datatypes are `TCon`; records, tuples and `unit` are `TRecord`; `'a ms` *is*
+`'a list` in CPN Tools,
 and `'a tms` is a list of timed values (`TCon("timed", ('a,))`).
 """
 

@@ -1,6 +1,7 @@
 """`FlatNet`: the net with its hierarchy expanded and fused places merged; typed throughout.
 
-Both the reference token game (`semantics`) and the compiler (`lowering`) start from it. Typed inscriptions are shared by
+Both the reference token game (`semantics`) and the compiler (`lowering`) start from it. Typed
+inscriptions are shared by
 all instances of a page; what differs between instances are the places that the arcs lead to.
 
 Example: in the riveting cell the page `Robot` is used twice, so its transition `Accept` appears as two
@@ -49,7 +50,8 @@ class Term:
         pattern: the value as a pattern when it binds; None when it is evaluated and tested.
         value: the value as an expression; always there. If `whole` it is the multi-set itself.
         delay: preemptive delay (`@+k`) or None.
-        whole: `value` is of type `colour list`: a part that is not of the form c`v (a function call, an if, `empty`): all its
+        whole: `value` is of type `colour list`: a part that is not of the form c`v (a function
+        call, an if, `empty`): all its
             tokens are demanded; `pattern` is None and the coefficient 1.
         origin: the text of the summand.
     """
@@ -174,7 +176,8 @@ class FlatTransition:
         name: unique readable path, e.g. "Top.Robot1.Accept".
         variables: the net variables it uses, sorted by name, code-segment outputs last.
         guards: the conjuncts.
-        plan: an order of steps that binds every variable but the code segment's outputs; after the last step all guards,
+        plan: an order of steps that binds every variable but the code segment's outputs; after the
+        last step all guards,
             terms and coefficients can be evaluated.
         delay: int (or time) expression, None: 0.
         priority: smaller is more urgent; 1000 where none is given.

@@ -124,8 +124,10 @@ class RawColset:
     """`color`: the structure that the file gives, texts not yet parsed.
 
     Args:
-        kind: tag of the definition: "unit", "int", "enum", "product", "record", "list", "alias", ... or "" if none is known.
-        ids: the ids of the definition in order: enum values, product components, list base, alias base, unit/bool names, index stem.
+        kind: tag of the definition: "unit", "int", "enum", "product", "record", "list", "alias",
+        ... or "" if none is known.
+        ids: the ids of the definition in order: enum values, product components, list base, alias
+        base, unit/bool names, index stem.
         fields: record fields and union fields as (label, type or "").
         texts: the `ml` texts in order: ranges, subset predicate or list.
         timed: `<timed/>`.

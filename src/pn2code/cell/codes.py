@@ -1,0 +1,70 @@
+"""Diagnostic codes of `cell.toml`, the partition and its channels."""
+
+from pn2code.diagnostics.codes import register
+
+CELL_FILE = register(
+    "cell-file",
+    "cell.toml cannot be read",
+    "The cell description is missing, is not readable, or is not TOML. The message gives the line and column "
+    "of the first mistake as the TOML parser reports it.",
+)
+CELL_KEY = register(
+    "cell-key",
+    "a key of cell.toml is missing or not known",
+    "Each section of cell.toml has a fixed set of keys, see docs/cell.md. A key that is not known is an error rather than "
+    "silently ignored, because a misspelt `reply_timeout_s` would otherwise leave the cell without its timeout.",
+)
+CELL_VALUE = register(
+    "cell-value",
+    "a value of cell.toml has the wrong type or range",
+    "The message says which value was found and what is expected, e.g. a number of seconds above zero.",
+)
+CELL_UNKNOWN_PAGE = register(
+    "cell-unknown-page",
+    "cell.toml names a page instance that the net does not have",
+    "`instance` is the name of a substitution transition of the top page (or a path such as `Line/Robot1`). "
+    "Owners own all transitions of the page instance below it.",
+)
+CELL_UNKNOWN_PLACE = register(
+    "cell-unknown-place",
+    "cell.toml names a place that the net does not have",
+    "A place is given by its name, or by as much of its path (`Top.Supervisor.Finished`) as makes it unique.",
+)
+CELL_UNKNOWN_LAYOUT = register(
+    "cell-unknown-layout",
+    "there is no such layout in cell.toml",
+    "Layouts are the sections `[layouts.NAME]`; each replaces some values of the file for one run.",
+)
+CELL_OWNER = register(
+    "cell-owner",
+    "a transition has no owner, or two",
+    "Every transition of the net must lie on the page instance of exactly one owner: the supervisor or one robot.",
+)
+CHANNEL_DIRECTION = register(
+    "channel-direction",
+    "a channel needs exactly one writer and one reader",
+    "A place that two owners share becomes a file: one owner puts tokens (output arcs only), the other takes them "
+    "(input arcs only). Test arcs (both directions), inhibitor and reset arcs, or a third owner would need a lock that "
+    "shared files do not have.",
+)
+CHANNEL_UNDECLARED = register(
+    "channel-undeclared",
+    "a shared place has no channel in cell.toml",
+    "Each place shared by two owners needs a `[[channel]]` entry that gives its file and kind (data or flag).",
+)
+CHANNEL_NOT_SHARED = register(
+    "channel-not-shared",
+    "a channel's place is not shared by two owners",
+    "The place of a `[[channel]]` entry must be touched by exactly two owners.",
+)
+CHANNEL_INITIAL = register(
+    "channel-initial",
+    "a channel must be empty initially",
+    "Channel files hold `0` when the cell starts, so the place must have no initial marking.",
+)
+UNSUPPORTED_CHANNEL_COLSET = register(
+    "unsupported-channel-colset",
+    "the colour set of a channel or input has no fixed number of scalars",
+    "Messages are lines of scalars: unit, bool, int, real, string, enumerations, indexes, and products and records of "
+    "these. Lists and unions have no fixed length.",
+)

@@ -1,0 +1,362 @@
+"""Partition: each transition gets its owner, each place that two owners share becomes a channel.
+
+In: a `FlatNet` and a `CellConfig` (or None: the supervisor owns the whole net). Out: a `Partition` or diagnostics.
+
+    places        Top.Robot1.Waiting -> robot1     Top.flag1_interno -> channel supervisor -> robot1
+    transitions   Top.Robot1.Accept  -> robot1     Top.Supervisor.Approach.Send -> supervisor
+"""
+
+from __future__ import annotations
+
+import difflib
+from collections.abc import Callable, Iterable
+from pathlib import PurePath
+
+from pn2code.cell import codes
+from pn2code.cell.config import CellConfig, ChannelConfig
+from pn2code.cell.partition import Channel, Input, Owner, OwnerKind, Partition
+from pn2code.diagnostics import Diagnostics, Note, Origin
+from pn2code.ml.colsets import Colset, Kind
+from pn2code.net.flat import ArcKind, FlatNet, FlatPlace
+
+
+def divide(net: FlatNet, config: CellConfig | None, d: Diagnostics) -> Partition | None:
+    """Divides the net among the owners of a cell; None when an error was reported."""
+    if config is None:
+        owner = Owner(0, "supervisor", OwnerKind.SUPERVISOR, "")
+        return Partition(
+            net, (owner,), (0,) * len(net.transitions), (0,) * len(net.places), (), (), ()
+        )
+    before = len(d.errors)
+    owners = _owners(net, config, d)
+    if len(d.errors) != before:
+        return None
+    transition_owner = _transition_owners(net, owners, d)
+    if len(d.errors) != before:
+        return None
+    writers, readers = _touching(net, transition_owner)
+    find = _PlaceFinder(net, d)
+    channels = tuple(_channels(net, config, owners, writers, readers, find, d))
+    _undeclared(net, channels, owners, writers, readers, config, d)
+    inputs = tuple(_inputs(net, config, writers, readers, find, d))
+    final = tuple(
+        place.index
+        for name in config.supervisor.final
+        if (place := find(name, config.supervisor.origin, "final")) is not None
+    )
+    if len(d.errors) != before:
+        return None
+    shared = {c.place for c in channels}
+    place_owner = tuple(
+        None if i in shared else next(iter(sorted(writers[i] | readers[i])), 0)
+        for i in range(len(net.places))
+    )
+    return Partition(net, owners, transition_owner, place_owner, channels, inputs, final)
+
+
+def _owners(net: FlatNet, config: CellConfig, d: Diagnostics) -> tuple[Owner, ...]:
+    paths = _instance_paths(net)
+    wanted = [
+        ("supervisor", OwnerKind.SUPERVISOR, config.supervisor.instance, config.supervisor.origin)
+    ]
+    wanted += [(r.name, OwnerKind.ROBOT, r.instance, r.origin) for r in config.robots]
+    owners: list[Owner] = []
+    for name, kind, instance, origin in wanted:
+        found = [p for p in paths if p == instance or p.endswith("/" + instance)]
+        if len(found) == 1:
+            clash = next((o for o in owners if _overlap(o.instance, found[0])), None)
+            if clash:
+                d.error(
+                    codes.CELL_OWNER,
+                    f"`{name}` and `{clash.name}` would both own page instance `{found[0]}`",
+                    origin,
+                    hint="give each owner a substitution transition of its own",
+                )
+            owners.append(Owner(len(owners), name, kind, found[0]))
+        elif not found:
+            last = [p.rsplit("/", 1)[-1] for p in paths]
+            near = difflib.get_close_matches(instance, [*paths, *last], n=1)
+            d.error(
+                codes.CELL_UNKNOWN_PAGE,
+                f"the net has no page instance `{instance}` for `{name}`",
+                origin,
+                hint=f"did you mean `{near[0]}`?"
+                if near
+                else f"page instances of the net: {', '.join(f'`{p}`' for p in paths[:12])}",
+            )
+        else:
+            d.error(
+                codes.CELL_UNKNOWN_PAGE,
+                f"`{instance}` is the name of {len(found)} page instances",
+                origin,
+                hint="write the path: " + " or ".join(f"`{p}`" for p in found[:4]),
+            )
+    return tuple(owners)
+
+
+def _overlap(a: str, b: str) -> bool:
+    return a == b or a.startswith(b + "/") or b.startswith(a + "/")
+
+
+def _instance_paths(net: FlatNet) -> list[str]:
+    """All page instances that hold something, and the paths above them, in order."""
+    paths: dict[str, None] = {}
+    for instance in [*(t.instance for t in net.transitions), *(p.instance for p in net.places)]:
+        parts = instance.split("/")
+        for i in range(1, len(parts) + 1):
+            paths.setdefault("/".join(parts[:i]))
+    return sorted(paths)
+
+
+def _transition_owners(net: FlatNet, owners: tuple[Owner, ...], d: Diagnostics) -> tuple[int, ...]:
+    out = []
+    for t in net.transitions:
+        owner = next(
+            (
+                o.index
+                for o in owners
+                if t.instance == o.instance or t.instance.startswith(o.instance + "/")
+            ),
+            None,
+        )
+        if owner is None:
+            d.error(
+                codes.CELL_OWNER,
+                f"transition `{t.name}` belongs to no owner",
+                t.origin,
+                notes=[f"it lies on page instance `{t.instance}`"],
+                hint="move it to the page of the supervisor or of a robot, or name its page instance in cell.toml",
+            )
+        out.append(0 if owner is None else owner)
+    return tuple(out)
+
+
+def _touching(
+    net: FlatNet, transition_owner: tuple[int, ...]
+) -> tuple[list[set[int]], list[set[int]]]:
+    """Per place: the owners that put tokens and those that take, test, inhibit or reset."""
+    writers: list[set[int]] = [set() for _ in net.places]
+    readers: list[set[int]] = [set() for _ in net.places]
+    for t, owner in zip(net.transitions, transition_owner, strict=True):
+        for arc in t.arcs:
+            if arc.kind in (ArcKind.OUTPUT, ArcKind.BOTH):
+                writers[arc.place].add(owner)
+            if arc.kind is not ArcKind.OUTPUT:
+                readers[arc.place].add(owner)
+    return writers, readers
+
+
+class _PlaceFinder:
+    """Resolves names of places in cell.toml: the name, or as much of the path as makes it unique."""
+
+    def __init__(self, net: FlatNet, d: Diagnostics) -> None:
+        self._net = net
+        self._d = d
+
+    def __call__(self, name: str, at: Origin, what: str) -> FlatPlace | None:
+        found = [p for p in self._net.places if p.name == name or p.name.endswith("." + name)]
+        if len(found) > 1:
+            depth = min(p.name.count(".") for p in found)
+            found = [p for p in found if p.name.count(".") == depth]
+        if len(found) == 1:
+            return found[0]
+        if found:
+            self._d.error(
+                codes.CELL_UNKNOWN_PLACE,
+                f"{what}: `{name}` is the name of {len(found)} places",
+                at,
+                hint="write the path: " + " or ".join(f"`{p.name}`" for p in found[:4]),
+            )
+        else:
+            near = difflib.get_close_matches(
+                name, [p.short for p in self._net.places] + [p.name for p in self._net.places], n=1
+            )
+            self._d.error(
+                codes.CELL_UNKNOWN_PLACE,
+                f"{what}: the net has no place `{name}`",
+                at,
+                hint=f"did you mean `{near[0]}`?" if near else "",
+            )
+        return None
+
+
+def _channels(
+    net: FlatNet,
+    config: CellConfig,
+    owners: tuple[Owner, ...],
+    writers: list[set[int]],
+    readers: list[set[int]],
+    find: Callable[[str, Origin, str], FlatPlace | None],
+    d: Diagnostics,
+) -> Iterable[Channel]:
+    ordered = sorted(config.channels, key=lambda c: c.kind.value != "data")
+    seen: dict[int, ChannelConfig] = {}
+    for entry in ordered:
+        place = find(entry.place, entry.origin, "channel")
+        if place is None:
+            continue
+        if place.index in seen:
+            d.error(
+                codes.CELL_VALUE,
+                f"place `{place.name}` has two channels",
+                entry.origin,
+                hint="remove one of them",
+            )
+            continue
+        seen[place.index] = entry
+        w, r = writers[place.index], readers[place.index]
+        if len(w | r) < 2:
+            owner = owners[next(iter(w | r))].name if w | r else "nobody"
+            d.error(
+                codes.CHANNEL_NOT_SHARED,
+                f"place `{place.name}` is used by {owner} only",
+                entry.origin,
+                hint="a place inside one program needs no file: remove the entry, or connect the place",
+            )
+            continue
+        if not _directed(net, place, owners, w, r, entry.origin, d):
+            continue
+        if place.initial is not None:
+            d.error(
+                codes.CHANNEL_INITIAL,
+                f"channel `{place.name}` has an initial marking",
+                place.origins[0],
+                notes=[Note("it is a channel here", entry.origin)],
+                hint="let the writer's first transition put the token",
+            )
+        if not _fixed(place.colset):
+            d.error(
+                codes.UNSUPPORTED_CHANNEL_COLSET,
+                f"channel `{place.name}` has colour set `{place.colset.name}`, which has no fixed number of scalars",
+                place.origins[0],
+                notes=[Note("it is a channel here", entry.origin)],
+                hint="send products and records of scalars; for a list, send its elements one by one",
+            )
+        yield Channel(
+            PurePath(entry.file).stem,
+            entry.file,
+            place.index,
+            next(iter(w)),
+            next(iter(r)),
+            entry.kind,
+        )
+
+
+def _directed(
+    net: FlatNet,
+    place: FlatPlace,
+    owners: tuple[Owner, ...],
+    writers: set[int],
+    readers: set[int],
+    at: Origin,
+    d: Diagnostics,
+) -> bool:
+    """Whether exactly one owner puts and exactly one other takes, with plain arcs only."""
+
+    def names(which: set[int]) -> str:
+        return ", ".join(f"`{owners[i].name}`" for i in sorted(which)) or "nobody"
+
+    if len(writers) == 1 and len(readers) == 1 and writers != readers:
+        odd = [
+            (t, a)
+            for t in net.transitions
+            for a in t.arcs
+            if a.place == place.index and a.kind not in (ArcKind.INPUT, ArcKind.OUTPUT)
+        ]
+        for t, a in odd:
+            d.error(
+                codes.CHANNEL_DIRECTION,
+                f"{a.kind.value} arc at channel `{place.name}`: only plain input and output arcs work across files",
+                a.origin,
+                notes=[f"transition `{t.name}`", Note("it is a channel here", at)],
+            )
+        return not odd
+    d.error(
+        codes.CHANNEL_DIRECTION,
+        f"channel `{place.name}` is written by {names(writers)} and read by {names(readers)}",
+        place.origins[0],
+        notes=[Note("it is a channel here", at)],
+        hint="exactly one owner must have output arcs to it, exactly one other owner input arcs from it",
+    )
+    return False
+
+
+def _undeclared(
+    net: FlatNet,
+    channels: tuple[Channel, ...],
+    owners: tuple[Owner, ...],
+    writers: list[set[int]],
+    readers: list[set[int]],
+    config: CellConfig,
+    d: Diagnostics,
+) -> None:
+    declared = {c.place for c in channels} | {
+        p.index
+        for p in net.places
+        for c in config.channels
+        if p.name == c.place or p.name.endswith("." + c.place)
+    }
+    for place in net.places:
+        both = writers[place.index] | readers[place.index]
+        if len(both) > 1 and place.index not in declared:
+            who = ", ".join(f"`{owners[i].name}`" for i in sorted(both))
+            d.error(
+                codes.CHANNEL_UNDECLARED,
+                f"place `{place.name}` is shared by {who}, but is not a channel",
+                place.origins[0],
+                hint=f'add to {config.path.name}: [[channel]] place = "{place.short}", '
+                f'file = "{place.short}.robcad", kind = "flag"',
+            )
+
+
+def _inputs(
+    net: FlatNet,
+    config: CellConfig,
+    writers: list[set[int]],
+    readers: list[set[int]],
+    find: Callable[[str, Origin, str], FlatPlace | None],
+    d: Diagnostics,
+) -> Iterable[Input]:
+    for entry in config.inputs:
+        place = find(entry.place, entry.origin, "input")
+        if place is None:
+            continue
+        if (writers[place.index] | readers[place.index]) - {0}:
+            d.error(
+                codes.CELL_OWNER,
+                f"input place `{place.name}` is used by a robot",
+                entry.origin,
+                hint="files are read by the supervisor: give the data to the robot through a channel",
+            )
+        elif not _fixed(place.colset):
+            d.error(
+                codes.UNSUPPORTED_CHANNEL_COLSET,
+                f"input place `{place.name}` has colour set `{place.colset.name}`, which has no fixed number of scalars",
+                place.origins[0],
+                notes=[Note("its marking is read from a file here", entry.origin)],
+            )
+        else:
+            yield Input(PurePath(entry.file).stem, entry.file, place.index)
+
+
+_SCALARS = {
+    Kind.UNIT,
+    Kind.BOOL,
+    Kind.INT,
+    Kind.INTINF,
+    Kind.REAL,
+    Kind.STRING,
+    Kind.ENUM,
+    Kind.INDEX,
+}
+
+
+def _fixed(colset: Colset) -> bool:
+    """Whether a token is a fixed number of scalars."""
+    c = colset.resolved
+    if c.kind in (Kind.PRODUCT, Kind.RECORD):
+        return all(part is not None and _fixed(part) for part in c.components)
+    if c.kind is Kind.SUBSET:
+        base = c.components[0]
+        return base is not None and _fixed(base)
+    return c.kind in _SCALARS and not colset.timed
