@@ -11,8 +11,8 @@ CELL_FILE = register(
 CELL_KEY = register(
     "cell-key",
     "a key of cell.toml is missing or not known",
-    "Each section of cell.toml has a fixed set of keys, see docs/cell.md. A key that is not known is an error rather than "
-    "silently ignored, because a misspelt `reply_timeout_s` would otherwise leave the cell without its timeout.",
+    "Each section of cell.toml has a fixed set of keys, see docs/cell.md. A key that is not known is an error rather "
+    "than silently ignored, because a misspelt `reply_timeout_s` would otherwise leave the cell without its timeout.",
 )
 CELL_VALUE = register(
     "cell-value",

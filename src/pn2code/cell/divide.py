@@ -331,7 +331,8 @@ def _inputs(
         elif not _fixed(place.colset):
             d.error(
                 codes.UNSUPPORTED_CHANNEL_COLSET,
-                f"input place `{place.name}` has colour set `{place.colset.name}`, which has no fixed number of scalars",
+                f"input place `{place.name}` has colour set `{place.colset.name}`, "
+                "which has no fixed number of scalars",
                 place.origins[0],
                 notes=[Note("its marking is read from a file here", entry.origin)],
             )

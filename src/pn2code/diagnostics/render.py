@@ -1,0 +1,120 @@
+"""Printing diagnostics: for people (with source line and caret), one line each, or JSON.
+
+error[type-mismatch]: arc inscription has type `INT * INT`, but place `Buffer` holds `PART`
+   --> cell.cpn:412:31
+    |  page `Robot1`, arc `Buffer` -> `Pick` (ID1412), inscription
+412 |  1`(n, 2)
+    |    ^^^^^^ this is `INT * INT`
+    = help: bind a variable of colour set `PART`, e.g. 1`p
+"""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable, Iterable
+
+from pn2code.diagnostics.diagnostic import Diagnostic, Severity
+from pn2code.diagnostics.origin import Span
+
+Style = Callable[[str, str], str]
+"""Colours a text: (what, text) -> text; `what` is "error", "warning", "note", "rule" or "bold"."""
+
+
+def plain(what: str, text: str) -> str:
+    """The style without colours."""
+    return text
+
+
+_ANSI = {
+    "error": "\x1b[1;31m",
+    "warning": "\x1b[1;33m",
+    "note": "\x1b[1;36m",
+    "rule": "\x1b[1;34m",
+    "bold": "\x1b[1m",
+}
+
+
+def coloured(what: str, text: str) -> str:
+    """ANSI colours, for terminals."""
+    return f"{_ANSI[what]}{text}\x1b[0m"
+
+
+def full(item: Diagnostic, style: Style = plain) -> str:
+    """Several lines: message, place, element, source line with caret, notes, help."""
+    severity = item.severity.value
+    out = [f"{style(severity, f'{severity}[{item.code}]')}: {style('bold', item.message)}"]
+    excerpt = _excerpt(item.span) if item.span else None
+    number = str(item.origin.line) if item.origin.line else ""
+    margin = " " * max(3, len(number))
+    rule = style("rule", "|")
+    where = item.origin.location()
+    out.append(f"{margin}{style('rule', '-->')} {where}")
+    described = item.origin.describe()
+    if described:
+        out.append(f"{margin} {rule}  {described}")
+    if excerpt:
+        line, start, width = excerpt
+        out.append(f"{style('rule', number.rjust(len(margin)))} {rule}  {line}")
+        caret = style(severity, "^" * width + (f" {item.label}" if item.label else ""))
+        out.append(f"{margin} {rule}  {' ' * start}{caret}")
+    for note in item.notes:
+        at = f": {note.origin.location()}" if note.origin else ""
+        element = f" ({note.origin.describe()})" if note.origin and note.origin.describe() else ""
+        out.append(f"{margin} {style('rule', '=')} note: {note.message}{at}{element}")
+    if item.hint:
+        out.append(f"{margin} {style('rule', '=')} help: {item.hint}")
+    return "\n".join(out)
+
+
+def _excerpt(span: Span) -> tuple[str, int, int]:
+    """The line of the text in which a span begins, the column of the span in it, its width."""
+    text = span.source.text
+    start = min(span.start, len(text))
+    begin = text.rfind("\n", 0, start) + 1
+    end = text.find("\n", start)
+    end = len(text) if end < 0 else end
+    line = text[begin:end]
+    before = line[: start - begin].expandtabs(4)
+    inside = line[start - begin : max(start, min(span.end, end)) - begin].expandtabs(4)
+    return line.expandtabs(4), len(before), max(1, len(inside))
+
+
+def concise(item: Diagnostic) -> str:
+    """One line in the manner of compilers, for editors."""
+    return f"{item.origin.location()}: {item.severity.value}: {item.message} [{item.code}]"
+
+
+def as_json(item: Diagnostic) -> dict[str, object]:
+    """The stable form for programs."""
+    return {
+        "severity": item.severity.value,
+        "code": item.code,
+        "message": item.message,
+        "file": item.origin.file,
+        "page": item.origin.page,
+        "element": item.origin.element,
+        "id": item.origin.element_id,
+        "line": item.origin.line,
+        "column": item.origin.column,
+        "hint": item.hint,
+    }
+
+
+def report(items: Iterable[Diagnostic], form: str = "full", style: Style = plain) -> str:
+    """All of them: "full", "concise", or "json" (one object a line)."""
+    if form == "json":
+        return "\n".join(json.dumps(as_json(i), ensure_ascii=False) for i in items)
+    if form == "concise":
+        return "\n".join(concise(i) for i in items)
+    return "\n\n".join(full(i, style) for i in items)
+
+
+def count(items: Iterable[Diagnostic]) -> str:
+    """`2 errors, 1 warning`, or `no errors`."""
+    found = list(items)
+    errors = sum(i.severity is Severity.ERROR for i in found)
+    warnings = sum(i.severity is Severity.WARNING for i in found)
+    words = [f"{errors} error{'s' * (errors != 1)}" if errors else "no errors"]
+    if warnings:
+        words.append(f"{warnings} warning{'s' * (warnings != 1)}")
+    return ", ".join(words)
