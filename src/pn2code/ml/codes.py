@@ -1,0 +1,168 @@
+"""Diagnostic codes of the CPN ML front end."""
+
+from pn2code.diagnostics.codes import register
+
+SYNTAX_ERROR = register(
+    "syntax-error",
+    "a text is not CPN ML",
+    "The text cannot be parsed; the message says what was found and what could stand there, e.g. "
+    "`1`x ++` ends where an expression is expected.",
+)
+LEXICAL_ERROR = register(
+    "lexical-error",
+    "a character or literal is not CPN ML",
+    "A character that CPN ML does not know, a string or comment that is not closed, a wrong escape. "
+    "Negative numbers are written with a tilde: `~5`.",
+)
+TOO_DEEP = register(
+    "too-deep",
+    "a text is nested too deeply",
+    "Parentheses, lists or operators are nested beyond what pn2code follows (some hundred levels). "
+    "Give parts of the expression a name with `val` or `let`.",
+)
+FIXITY_ERROR = register(
+    "fixity-error",
+    "operators are combined in a way that has no meaning",
+    "An infix operator lacks an operand, or two operators of the same precedence but of different "
+    "associativity stand side by side: `x :: y ^^ z`. Use parentheses, or `op` to name the operator.",
+)
+TYPE_MISMATCH = register(
+    "type-mismatch",
+    "an expression has another type than its place needs",
+    "The message says what was expected and what was found, the caret where. For an inscription: the "
+    "place holds a colour set, and the expression gives neither one token of it nor a multi-set of it.",
+)
+CIRCULAR_TYPE = register(
+    "circular-type",
+    "a type would contain itself",
+    "An expression such as `fn x => x x` needs a type that is a part of itself.",
+)
+NOT_A_FUNCTION = register(
+    "not-a-function",
+    "something that is not a function is applied",
+    "In CPN ML `f x` applies `f` to `x`. Two values side by side, such as `1 x`, often are a missing "
+    "backquote or operator: `1`x`, `1 * x`.",
+)
+NOT_EQUALITY = register(
+    "not-an-equality-type",
+    "values of this type cannot be compared with `=`",
+    "Functions and some abstract types have no equality. Compare a result of the function instead.",
+)
+OVERLOAD = register(
+    "no-such-operator",
+    "an operator is not defined for the type of its operands",
+    "`+`, `-`, `*` and the comparisons work on numbers of one type (comparisons also on strings); `div` "
+    "and `mod` on integers, `/` on reals. Convert with `real`, `floor`, `round`.",
+)
+UNBOUND = register(
+    "unbound-identifier",
+    "a name is not declared",
+    "The name is neither a variable, value or function declared before this point nor built in. "
+    "Declarations count from top to bottom.",
+)
+UNKNOWN_COLOUR_SET = register(
+    "unknown-colour-set",
+    "a colour set or type is not declared",
+    "Colour sets must be declared before they are used in other colour sets, variables and places.",
+)
+UNKNOWN_CONSTRUCTOR = register(
+    "unknown-constructor",
+    "a name applied in a pattern is not a constructor",
+    "In a pattern only constructors (of unions, datatypes, lists, options) may be applied.",
+)
+CONSTRUCTOR_ARITY = register(
+    "constructor-argument",
+    "a constructor has an argument too many or too few",
+    "A constructor of a union or datatype takes exactly one value, or none.",
+)
+UNKNOWN_FIELD = register(
+    "unknown-field",
+    "a record has no such field",
+    "`#label` and record patterns must name a field of the record's type.",
+)
+UNRESOLVED_RECORD = register(
+    "unresolved-record",
+    "the record type of a selector or open pattern is not known",
+    "`#label` and `{.., ...}` need to know the whole record type. Give the argument a type: `(r : PART)`.",
+)
+DUPLICATE_NAME = register(
+    "duplicate-name",
+    "a name is bound twice in one pattern, record or declaration",
+    "Each variable of a pattern, each label of a record, each constructor of a type has its own name.",
+)
+CLAUSES = register(
+    "function-clauses",
+    "the clauses of a function do not fit together",
+    "All clauses of a `fun` declaration define the same name with the same number of arguments.",
+)
+VAL_REC = register(
+    "val-rec",
+    "`val rec` binds something that is not a function",
+    "`val rec f = fn ..` may only bind functions.",
+)
+EXCEPTION_TYPE = register(
+    "not-an-exception",
+    "`raise` is given something that is not an exception",
+    "`raise` needs a value of type `exn`.",
+)
+COLSET_RANGE = register(
+    "colour-set-range",
+    "the bounds of a colour set are wrong",
+    "Bounds are constants of the base type, the lower one not above the upper one.",
+)
+COLSET_DEFINITION = register(
+    "colour-set-definition",
+    "a colour set is not defined completely",
+    "A definition lacks a part that its kind needs, or has one too many: an enumeration needs values, a product components.",
+)
+VARIABLE_CLASH = register(
+    "variable-of-other-colour-set",
+    "a net variable is declared twice with different colour sets",
+    "A later declaration replaces the earlier one, so that inscriptions written for the earlier one change their meaning.",
+)
+GUARD_TYPE = register(
+    "guard-not-boolean",
+    "a guard is not a boolean expression",
+    "A guard is a boolean expression or a list of them: `[n > 0, m = 2]`.",
+)
+CODE_SEGMENT = register(
+    "code-segment",
+    "a code segment is not of the form `input (..); output (..); action ..;`",
+    "`input` and `output` are optional and list net variables; `action` gives a value for each output variable, "
+    "as a tuple in that order, or unit if there is none.",
+)
+PRIORITY = register(
+    "priority-not-constant",
+    "a priority is not a constant integer",
+    "A priority is an integer or a `val` that is one, such as `P_HIGH`; it is not below zero.",
+)
+DELAY = register(
+    "delay-form",
+    "a time inscription does not have the form `@+ delay`",
+    "A transition's delay is written `@+ e` with an integer e, or `@++ t` with a time t.",
+)
+UNKNOWN_VALUE = register(
+    "unknown-value",
+    "a value to be replaced is not declared by the net",
+    "`[values]` of cell.toml and `--set` replace `val NAME = ...` declarations of the net.",
+)
+UNSUPPORTED_ML = register(
+    "unsupported-ml",
+    "a construct of CPN ML is not supported",
+    "pn2code does not translate this construct; the message names it.",
+)
+UNSUPPORTED_BUILTIN = register(
+    "unsupported-function",
+    "a function of the standard library is not supported",
+    "The name belongs to a structure of the SML library that pn2code knows only in part.",
+)
+UNSUPPORTED_COLSET = register(
+    "unsupported-colour-set",
+    "a kind of colour set is not supported",
+    "The message names the kind, or the way it is written.",
+)
+UNSUPPORTED_INSCRIPTION = register(
+    "unsupported-inscription",
+    "a form of inscription is not supported",
+    "The message names the form.",
+)
