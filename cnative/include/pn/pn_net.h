@@ -88,8 +88,9 @@ typedef struct pn_transition {
     /* Calls the sink for every binding enabled at the marking's time, in a fixed order; priorities are the host's business.
      * Returns false when the sink stopped it. */
     bool (*enumerate)(pn_ctx_t *cx, const void *marking, uint32_t self, pn_binding_sink_t sink, void *user);
-    /* Fires an enabled binding. On error (context error set, false) the marking is unchanged. */
-    bool (*fire)(pn_ctx_t *cx, void *marking, const void *binding);
+    /* Fires an enabled binding and stores the code segment's outputs in it. On error (context error set, false) the marking
+     * is unchanged. `binding` is the host's copy (binding_size bytes) of what the sink was given. */
+    bool (*fire)(pn_ctx_t *cx, void *marking, void *binding);
     /* The binding as a JSON object, values in the form of the traces. Code-segment outputs included after a fire. */
     void (*binding_json)(const void *binding, pn_text_t *out);
     size_t binding_size;

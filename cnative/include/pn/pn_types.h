@@ -42,6 +42,8 @@ typedef struct pn_ctx {
     const char *error_origin; /* net element being evaluated when it was raised */
     const char *origin;       /* net element being evaluated now */
     uint32_t depth;           /* of recursion */
+    pn_time_t now;            /* model time of the marking being looked at; set by enumerate, fire and init */
+    uint64_t step;            /* number of occurrences so far, for step(); the host counts */
     uint64_t random;          /* state of the generator for CS.ran() and the distributions */
 } pn_ctx_t;
 
