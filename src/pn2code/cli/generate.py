@@ -1,0 +1,81 @@
+"""`pn2code generate`: a net, or a cell, to C and robot scripts."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from pn2code import pipeline
+from pn2code.cli.options import Exit, Format, FormatOption, print_diagnostics, stop
+from pn2code.diagnostics import Diagnostics
+from pn2code.emission.write import OutputFolderError, write
+
+EPILOG = """Examples:
+
+  pn2code generate examples/riveting/cell.cpn -o generated/riveting
+
+  pn2code generate mynet.cpn && make -C generated/mynet && generated/mynet/supervisor
+"""
+
+
+def parse_values(settings: list[str]) -> dict[str, str]:
+    """`NAME=VALUE` options as CPN ML texts; a value is CPN ML (`true`, `~3`, `"text"`)."""
+    values = {}
+    for setting in settings:
+        name, equals, text = setting.partition("=")
+        if (
+            not equals
+            or not re.fullmatch(r"[A-Za-z][A-Za-z0-9_']*", name.strip())
+            or not text.strip()
+        ):
+            raise typer.BadParameter(f"`{setting}`: NAME=VALUE is expected, e.g. limit=3")
+        values[name.strip()] = text.strip()
+    return values
+
+
+SetOption = Annotated[
+    list[str],
+    typer.Option(
+        "--set", metavar="NAME=VALUE", help="Replace a `val` of the net (may be repeated)."
+    ),
+]
+
+
+def generate(
+    net: Annotated[Path, typer.Argument(help="A .cpn file, a cell.toml, or a folder with one.")],
+    output: Annotated[
+        Path | None,
+        typer.Option("-o", "--output", help="Output folder (default: generated/<net>)."),
+    ] = None,
+    check: Annotated[
+        bool, typer.Option("--check", help="Write nothing; exit 1 if anything would change.")
+    ] = False,
+    settings: SetOption = [],  # noqa: B006 - typer reads the default only
+    form: FormatOption = Format.FULL,
+) -> None:
+    """Generate a C supervisor (and a script per robot, if there is a cell.toml) from a net.
+
+    Then `make && ./supervisor` in the output folder builds and runs it.
+    """
+    d = Diagnostics()
+    result = pipeline.generate(net, d, values=parse_values(settings))
+    if result is None:
+        stop(d, form)
+    print_diagnostics(d.sorted(), form)
+    folder = output or Path("generated") / result.partition.net.name
+    try:
+        written = write(folder, result.files, check=check)
+    except OutputFolderError as problem:
+        typer.echo(f"pn2code: {problem}", err=True)
+        raise typer.Exit(Exit.USAGE) from None
+    changed = len(written.changed) + len(written.removed)
+    total = len(result.files)
+    word = "would change" if check else "changed"
+    typer.echo(f"{folder}: {total} files, {changed} {word}, digest {result.digest[:8]}")
+    if check and changed:
+        for path in (*written.changed, *written.removed):
+            typer.echo(f"  {path}")
+        raise typer.Exit(Exit.MODEL)

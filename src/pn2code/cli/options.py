@@ -1,0 +1,57 @@
+"""What the verbs share: options, printing diagnostics, exit codes."""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Iterable
+from enum import StrEnum
+from typing import Annotated, NoReturn
+
+import typer
+
+from pn2code.diagnostics import Diagnostic, Diagnostics, render
+
+
+class Exit:
+    """Exit codes of every verb (docs/cli.md)."""
+
+    OK = 0
+    MODEL = 1
+    """the net, the cell or a property is wrong"""
+    USAGE = 2
+    """wrong usage, or a file that is missing"""
+    INCONCLUSIVE = 3
+    """a limit was hit"""
+    INTERNAL = 70
+    """a bug in pn2code"""
+
+
+class Format(StrEnum):
+    """How diagnostics are printed."""
+
+    FULL = "full"
+    CONCISE = "concise"
+    JSON = "json"
+
+
+FormatOption = Annotated[
+    Format, typer.Option("--format", help="How diagnostics are printed.", show_default=True)
+]
+
+
+def print_diagnostics(items: Iterable[Diagnostic], form: Format = Format.FULL) -> None:
+    """Print them to stderr, in colour on a terminal."""
+    text = render.report(
+        items, form.value, render.coloured if sys.stderr.isatty() else render.plain
+    )
+    if text:
+        print(text, file=sys.stderr)
+
+
+def stop(d: Diagnostics, form: Format = Format.FULL) -> NoReturn:
+    """Print what was found and leave with the exit code for a wrong model (or a missing file)."""
+    print_diagnostics(d.sorted(), form)
+    if form is Format.FULL:
+        print(f"\n{render.count(d)}", file=sys.stderr)
+    missing = any(e.code in ("file-missing", "file-unreadable") for e in d.errors)
+    raise typer.Exit(Exit.USAGE if missing else Exit.MODEL)

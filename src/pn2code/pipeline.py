@@ -1,0 +1,136 @@
+"""The compiler as a recipe: from a `.cpn` file (and the `cell.toml` beside it) to files in memory.
+
+    read -> link -> check -> flatten -> divide -> lower -> emit
+
+Each stage is a function from one immutable value to the next; it reports into `Diagnostics`, and
+the driver stops between
+stages when there are errors. `generate` is the whole of it; `front` is what every verb starts with.
+"""
+
+from __future__ import annotations
+
+import hashlib
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+
+import pn2code
+from pn2code.cell.config import CellConfig
+from pn2code.cell.config import load as load_cell
+from pn2code.cell.divide import divide
+from pn2code.cell.partition import Partition
+from pn2code.diagnostics import Diagnostics, Origin
+from pn2code.diagnostics.codes import register
+from pn2code.emission import c as emit_c
+from pn2code.emission import manifest, runtime
+from pn2code.emission import supervisor as emit_supervisor
+from pn2code.emission import tdl as emit_tdl
+from pn2code.emission.output import OutputFile
+from pn2code.lowering import net as lower_net
+from pn2code.lowering import robot as lower_robot
+from pn2code.net import front as net_front
+from pn2code.net.flat import FlatNet
+
+CELL_MISSING = register(
+    "file-missing",
+    "a file is missing",
+    "The file or folder given on the command line does not exist.",
+)
+
+
+@dataclass(frozen=True, slots=True)
+class Generated:
+    """What the generator gives.
+
+    Args:
+        files: everything that belongs into the output folder, sorted by path.
+        partition: the net and its owners.
+        config: the cell, None for a net without one.
+        digest: SHA-256 of the net and of what the cell contributes to the programs.
+    """
+
+    files: tuple[OutputFile, ...]
+    partition: Partition
+    config: CellConfig | None
+    digest: str
+
+
+def locate(
+    path: Path, d: Diagnostics, *, layout: str | None = None
+) -> tuple[Path, CellConfig | None] | None:
+    """The net and the cell that a path means: a `.cpn` file (with a `cell.toml` beside it, or not),
+    a `cell.toml`, a folder with one."""
+    if not path.exists():
+        d.error(CELL_MISSING, f"there is no file or folder `{path}`", Origin(str(path)))
+        return None
+    if path.is_dir() or path.suffix == ".toml":
+        config = load_cell(path, d, layout=layout)
+        return (config.net_path, config) if config else None
+    beside = path.parent / "cell.toml"
+    if not beside.is_file():
+        return path, None
+    config = load_cell(beside, d, layout=layout)
+    if config is None:
+        return None
+    # A cell.toml describes one net; others in the same folder stand for themselves.
+    return (path, config) if config.net_path.resolve() == path.resolve() else (path, None)
+
+
+def front(path: Path, d: Diagnostics, values: Mapping[str, str] | None = None) -> FlatNet | None:
+    """Read, link, check, flatten."""
+    return net_front.load(path, d, values or {})
+
+
+def generate(
+    path: Path,
+    d: Diagnostics,
+    *,
+    layout: str | None = None,
+    values: Mapping[str, str] | None = None,
+) -> Generated | None:
+    """Everything from files to files in memory; None when an error was reported.
+
+    `values` replaces `val`s of the net (over those of cell.toml).
+    """
+    found = locate(path, d, layout=layout)
+    if found is None:
+        return None
+    net_path, config = found
+    replaced = {**(config.values if config else {}), **(values or {})}
+
+    net = front(net_path, d, replaced)
+    if net is None or d.has_errors:
+        return None
+    partition = divide(net, config, d)
+    if partition is None or d.has_errors:
+        return None
+
+    storage = config.storage if config else {}
+    capacity = config.capacity if config else {}
+    digest = _digest(net, config, replaced)
+    ir = lower_net.lower(partition, storage, d, capacity=capacity, digest=digest)
+    robots = lower_robot.lower_robots(partition, config, d) if config else ()
+    if ir is None or robots is None or d.has_errors:
+        return None
+
+    version = pn2code.__version__
+    files = [
+        *emit_c.emit(ir, version),
+        *emit_supervisor.emit(
+            partition,
+            name=net.name,
+            reply_timeout_s=config.supervisor.reply_timeout_s if config else 0.0,
+            digest=digest,
+            version=version,
+        ),
+        *emit_tdl.emit(robots, source=Path(net.file).name, digest=digest, version=version),
+        *runtime.emit(),
+    ]
+    files.append(manifest.emit(partition, files, digest=digest, version=version))
+    return Generated(tuple(sorted(files, key=lambda f: f.path)), partition, config, digest)
+
+
+def _digest(net: FlatNet, config: CellConfig | None, values: Mapping[str, str]) -> str:
+    """What the programs depend on: the net's bytes, the logic of the cell, replaced values."""
+    parts = [net.sha256, config.logic_digest() if config else "", repr(sorted(values.items()))]
+    return hashlib.sha256("\n".join(parts).encode()).hexdigest()
