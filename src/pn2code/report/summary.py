@@ -1,0 +1,173 @@
+"""The summary of a run: `summary.json` for programs, a page of text for people."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from rich import box
+from rich.console import Group, RenderableType
+from rich.table import Table
+from rich.text import Text
+
+from pn2code.cell.config import ReportConfig
+from pn2code.run.record import RunRecord, merged_rows, summary_counts
+
+KINDS = ("joint", "home", "linear", "tool", "measure", "wait")
+
+
+def summarise(record: RunRecord, report: ReportConfig, robots: tuple[str, ...]) -> dict[str, Any]:
+    """All the figures, as JSON-able data. Lengths in m, times in s, angles in degrees."""
+    activities = []
+    for activity in record.activities:
+        busy = {
+            robot: round(
+                sum(
+                    max(0.0, min(a.end, activity.end) - max(a.start, activity.start))
+                    for a in record.actions
+                    if a.robot == robot
+                ),
+                6,
+            )
+            for robot in robots
+        }
+        activities.append(
+            {
+                "name": activity.name,
+                "start": round(activity.start, 6),
+                "end": round(activity.end, 6),
+                "seconds": round(activity.end - activity.start, 6),
+                "busy": busy,
+            }
+        )
+    per_robot = {
+        robot: {
+            **{
+                kind: round(
+                    sum(
+                        a.end - a.start
+                        for a in record.actions
+                        if (a.robot, a.kind) == (robot, kind)
+                    ),
+                    6,
+                )
+                for kind in KINDS
+            },
+            "commands": sum(a.robot == robot for a in record.actions),
+        }
+        for robot in robots
+    }
+    return {
+        "cell": record.cell,
+        "layout": record.layout,
+        "backend": record.backend,
+        "verdict": record.verdict,
+        "reason": record.reason,
+        "cycle_seconds": round(record.time, 6),
+        "rows": len(merged_rows(record.messages, report.rows)) if report.rows else 0,
+        **summary_counts(record, dict(report.count)),
+        "activities": activities,
+        "robots": per_robot,
+        "clearances": _minima(record),
+        "conditioning": _conditioning(record, robots, dict(report.count)),
+        "accuracy": record.accuracy,
+        "warnings": [
+            {"t": round(w.t, 6), "robot": w.robot, "text": w.text} for w in record.warnings
+        ],
+    }
+
+
+def _minima(record: RunRecord) -> dict[str, Any]:
+    out: dict[str, Any] = {}
+    for name in sorted(record.series):
+        if not name.startswith("clearance."):
+            continue
+        values = record.array(name)
+        if values.size and np.isfinite(values).any():
+            i = int(np.nanargmin(values))
+            out[name.removeprefix("clearance.")] = {
+                "m": round(float(values[i]), 9),
+                "t": round(record.sample_t[i], 6),
+            }
+    return {**out, **record.minima}
+
+
+def _conditioning(
+    record: RunRecord, robots: tuple[str, ...], count: dict[str, str]
+) -> dict[str, Any]:
+    """Per robot: the worst condition number of the run, and at each counted action."""
+    out: dict[str, Any] = {}
+    times = np.asarray(record.sample_t)
+    for robot in robots:
+        values = record.array(f"condition.{robot}")
+        if not values.size:
+            continue
+        i = int(np.argmax(values))
+        entry: dict[str, Any] = {
+            "worst": round(float(values[i]), 4),
+            "t": round(record.sample_t[i], 6),
+        }
+        for label, action in count.items():
+            at = [a.start for a in record.actions if a.kind == "tool" and a.label == action]
+            entry[f"at_{label}"] = [
+                round(float(values[int(np.argmin(np.abs(times - t)))]), 4) for t in at
+            ]
+        out[robot] = entry
+    return out
+
+
+def page(summary: dict[str, Any]) -> RenderableType:
+    """The summary for a terminal."""
+    good = summary["verdict"] == "finished"
+    head = Text()
+    head.append(
+        " finished " if good else f" {summary['verdict']} ",
+        "bold reverse green" if good else "bold reverse red",
+    )
+    head.append(f"  {summary['cell']}")
+    if summary["layout"]:
+        head.append(f", layout {summary['layout']}")
+    head.append(f", backend {summary['backend']}")
+    if summary["reason"]:
+        head.append(f"\n{summary['reason']}", "red")
+
+    facts = Table(box=None, show_header=False, pad_edge=False)
+    facts.add_column(style="bold")
+    facts.add_column()
+    facts.add_row("cycle time", f"{summary['cycle_seconds']:.2f} s (simulated)")
+    facts.add_row("rows sent", str(summary["rows"]))
+    known = {"cell", "layout", "backend", "verdict", "reason", "cycle_seconds", "rows"}
+    for key, value in summary.items():
+        if key not in known and isinstance(value, int):
+            facts.add_row(key, str(value))
+    for name, entry in summary["clearances"].items():
+        facts.add_row(
+            f"least clearance, {name}", f"{entry['m'] * 1000:.1f} mm at {entry['t']:.2f} s"
+        )
+    for robot, entry in summary["conditioning"].items():
+        at = [v for k, v in entry.items() if k.startswith("at_") for v in v]
+        each = "; at each: " + " ".join(f"{v:.1f}" for v in at[:12]) if at else ""
+        facts.add_row(
+            f"conditioning, {robot}", f"worst {entry['worst']:.1f} at {entry['t']:.2f} s{each}"
+        )
+    for name, value in summary["accuracy"].items():
+        facts.add_row(name, f"{value:.2e} mm")
+
+    times = Table(box=box.SIMPLE_HEAD, pad_edge=False)
+    times.add_column("activity")
+    times.add_column("seconds", justify="right")
+    robots = list(summary["robots"])
+    for robot in robots:
+        times.add_column(f"{robot} busy", justify="right")
+    for entry in summary["activities"]:
+        times.add_row(
+            entry["name"],
+            f"{entry['seconds']:.2f}",
+            *(f"{entry['busy'][robot]:.2f}" for robot in robots),
+        )
+    parts: list[RenderableType] = [head, "", facts, times]
+    parts += [
+        Text(f"warning: {w['text']} ({w['robot']}, {w['t']:.2f} s)", "yellow")
+        for w in summary["warnings"]
+    ]
+    return Group(*parts)

@@ -1,0 +1,132 @@
+"""What happened in a run, as plain data: the engine fills it, the reports read it."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+FloatArray = npt.NDArray[np.float64]
+
+
+@dataclass(frozen=True, slots=True)
+class ActionRecord:
+    """One command of a robot, done or cut short.
+
+    Args:
+        robot: its name.
+        kind: "joint", "home", "linear", "tool", "measure", "wait".
+        label: what a chart writes: the tool action, or the kind.
+        start, end: seconds.
+        line: line of the script.
+        transition: name of the net transition that the line implements, "" if none.
+        activity: the supervisor's activity at `start`, "" if none.
+    """
+
+    robot: str
+    kind: str
+    label: str
+    start: float
+    end: float
+    line: int
+    transition: str
+    activity: str
+
+
+@dataclass(frozen=True, slots=True)
+class MessageRecord:
+    """A message consumed by its reader: time, channel name, scalars."""
+
+    t: float
+    channel: str
+    values: tuple[float | int | str | bool, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class ActivityRecord:
+    """One activity of the supervisor: from its first to its last firing before the next activity begins."""
+
+    name: str
+    start: float
+    end: float
+
+
+@dataclass(frozen=True, slots=True)
+class RunWarning:
+    """Something that a person should look at, though the run went on."""
+
+    t: float
+    robot: str
+    text: str
+
+
+@dataclass(slots=True)
+class RunRecord:
+    """A whole run.
+
+    Args:
+        verdict: "finished", "stopped" (somebody stopped the cell safely) or "failed" (a collision,
+        an unreachable pose, ...).
+        reason: why, when not finished.
+        time: simulated seconds.
+        events: lines of the merged trace after the header.
+        header: the header line of the merged trace.
+        series: sampled quantities: name -> array of the length of `sample_t`; names are e.g. "clearance.robots",
+            "clearance.scene.robot1" (m), "condition.robot2", "margin.robot1" (rad).
+    """
+
+    cell: str
+    layout: str
+    backend: str
+    verdict: str = "failed"
+    reason: str = ""
+    time: float = 0.0
+    wall: float = 0.0
+    header: dict[str, Any] = field(default_factory=dict)
+    events: list[dict[str, Any]] = field(default_factory=list)
+    actions: list[ActionRecord] = field(default_factory=list)
+    messages: list[MessageRecord] = field(default_factory=list)
+    activities: list[ActivityRecord] = field(default_factory=list)
+    warnings: list[RunWarning] = field(default_factory=list)
+    sample_t: list[float] = field(default_factory=list)
+    series: dict[str, list[float]] = field(default_factory=dict)
+    accuracy: dict[str, float] = field(default_factory=dict)
+    minima: dict[str, Any] = field(default_factory=dict)
+
+    def array(self, name: str) -> FloatArray:
+        """A series as an array; empty if it was not sampled."""
+        return np.asarray(self.series.get(name, []), dtype=np.float64)
+
+
+def row_values(messages: list[MessageRecord], channel: str) -> list[tuple[float, ...]]:
+    """The messages of one channel as rows of numbers, in order."""
+    return [
+        tuple(float(v) for v in m.values if not isinstance(v, str))
+        for m in messages
+        if m.channel == channel
+    ]
+
+
+def merged_rows(
+    messages: list[MessageRecord], channels: tuple[str, ...]
+) -> list[tuple[float, ...]]:
+    """Row k: the k-th message of each channel, side by side; as many rows as the shortest channel has."""
+    columns = [row_values(messages, c) for c in channels]
+    return [tuple(v for part in row for v in part) for row in zip(*columns, strict=False)]
+
+
+def fixed4(value: float) -> str:
+    """Four decimals, never a negative zero."""
+    text = f"{value:.4f}"
+    return "0.0000" if text == "-0.0000" else text
+
+
+def summary_counts(record: RunRecord, count: Mapping[str, str]) -> dict[str, int]:
+    """How often each counted tool action was completed."""
+    return {
+        label: sum(a.kind == "tool" and a.label == action for a in record.actions)
+        for label, action in count.items()
+    }
