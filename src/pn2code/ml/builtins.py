@@ -1,0 +1,356 @@
+"""The built-in environment of CPN ML: what exists, at which type, and what it means.
+
+`BUILTINS` maps each full name (`List.map`, `Int.+`, `Ms.++`) to its type scheme and a one-line meaning; the evaluator and the
+compiler implement exactly these names. `TOP_LEVEL` says which short names stand for them at top level (`map`, `^^`, `time`),
+`OVERLOADED` which short names stand for one of several, chosen by type (`+` is `Int.+`, `Real.+` or `IntInf.+`).
+`COLSET_MEMBERS` are the functions of a colour set's own structure (`INT.all()` is `Colset.all` at `INT`).
+
+Not in the tables: the constructors (`true`, `nil`, `::`, `SOME`, ... are `core.Con`, see `DATATYPES`), `empty` and `nil`
+(both the empty `core.ListExp`), and exceptions (`EXCEPTIONS`).
+
+In types, `time` stands for the type of model time: `IntInf.int`, or `real` in a net with a real clock.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cache
+
+from pn2code.ml.builtin_table import COLSET_TABLE, TABLE
+from pn2code.ml.core import Constructor, DatatypeDec
+from pn2code.ml.types import INT, INTINF, REAL, STRING, TCon, TFun, TRecord, TVar, Type, tuple_of
+
+_LIST_A = TCon("list", (TVar(0),))
+
+
+@dataclass(frozen=True, slots=True)
+class BuiltinInfo:
+    """One entry.
+
+    Args:
+        name: full name.
+        text: the type as written in the table.
+        meaning: one line.
+    """
+
+    name: str
+    text: str
+    meaning: str
+
+    @property
+    def generics(self) -> int:
+        """Number of type variables."""
+        return scheme(self.text)[1]
+
+    def type(self, real_time: bool = False) -> Type:
+        """The type, its variables numbered in order of appearance."""
+        return scheme(self.text, real_time)[0]
+
+
+@cache
+def scheme(text: str, real_time: bool = False, own: Type | None = None) -> tuple[Type, int]:
+    """A type from its text, and the number of its variables; `own` replaces the name `cs`."""
+    return _SchemeParser(text, real_time, own).parse()
+
+
+class _SchemeParser:
+    """Types as written in the table: `('a -> 'b) * 'a list -> 'b list`. The text is ours, so a mistake is a bug."""
+
+    def __init__(self, text: str, real_time: bool, own: Type | None) -> None:
+        self._tokens = text.replace("(", " ( ").replace(")", " ) ").replace(",", " , ").split() + [
+            ""
+        ]
+        self._at = 0
+        self._variables: dict[str, TVar] = {}
+        self._time = REAL if real_time else INTINF
+        self._own = own
+
+    def parse(self) -> tuple[Type, int]:
+        t = self._function()
+        if self._tokens[self._at]:
+            raise ValueError(f"in a built-in type: unexpected {self._tokens[self._at]!r}")
+        return t, len(self._variables)
+
+    def _next(self) -> str:
+        self._at += 1
+        return self._tokens[self._at - 1]
+
+    def _accept(self, token: str) -> bool:
+        if self._tokens[self._at] == token:
+            self._at += 1
+            return True
+        return False
+
+    def _function(self) -> Type:
+        t = self._product()
+        return TFun(t, self._function()) if self._accept("->") else t
+
+    def _product(self) -> Type:
+        parts = [self._applied()]
+        while self._accept("*"):
+            parts.append(self._applied())
+        return tuple_of(*parts)
+
+    def _applied(self) -> Type:
+        t = self._atom()
+        while (word := self._tokens[self._at]) and (word[0].isalpha()):
+            self._at += 1
+            if word == "tms":
+                t = TCon("list", (TCon("timed", (t,)),))
+            else:
+                t = TCon("list" if word == "ms" else word, (t,))
+        return t
+
+    def _atom(self) -> Type:
+        word = self._next()
+        if word == "(":
+            t = self._function()
+            if not self._accept(")"):
+                raise ValueError("in a built-in type: `)` expected")
+            return t
+        if word.startswith("'"):
+            if word not in self._variables:
+                self._variables[word] = TVar(len(self._variables), word.startswith("''"))
+            return self._variables[word]
+        if word == "unit":
+            return TRecord()
+        if word == "time":
+            return self._time
+        if word == "cs" and self._own is not None:
+            return self._own
+        return TCon(word)
+
+
+def _read(table: str) -> dict[str, BuiltinInfo]:
+    out: dict[str, BuiltinInfo] = {}
+    for line in table.strip().splitlines():
+        if not line.strip() or line.startswith("--"):
+            continue
+        name, rest = line.split(" : ", 1)
+        text, meaning = rest.split(" ; ", 1)
+        out[name.strip()] = BuiltinInfo(name.strip(), text.strip(), meaning.strip())
+    return out
+
+
+BUILTINS: dict[str, BuiltinInfo] = _read(TABLE)
+COLSET_MEMBERS: dict[str, BuiltinInfo] = _read(COLSET_TABLE)
+
+_NUMBERS = ("Int", "Real", "IntInf")
+_ORDERED = ("Int", "Real", "IntInf", "String", "Char")
+
+OVERLOADED: dict[str, tuple[str, ...]] = {
+    **{op: tuple(f"{s}.{op}" for s in _NUMBERS) for op in ("+", "-", "*", "~")},
+    "abs": ("Int.abs", "Real.abs", "IntInf.abs"),
+    **{op: tuple(f"{s}.{op}" for s in ("Int", "IntInf")) for op in ("div", "mod")},
+    **{op: tuple(f"{s}.{op}" for s in _ORDERED) for op in ("<", "<=", ">", ">=")},
+}
+"""Short names that stand for one of several; the first (at int) is taken when nothing decides."""
+
+TOP_LEVEL: dict[str, str] = {
+    "/": "Real./",
+    "^": "String.^",
+    "^^": "List.@",
+    "=": "=",
+    "<>": "<>",
+    "!": "Ref.!",
+    ":=": "Ref.:=",
+    "ref": "Ref.ref",
+    "+=": "Ref.+=",
+    "-=": "Ref.-=",
+    "*=": "Ref.*=",
+    "::=": "Ref.::=",
+    "inc": "Ref.inc",
+    "dec": "Ref.dec",
+    "o": "General.o",
+    "before": "General.before",
+    "ignore": "General.ignore",
+    "exnName": "General.exnName",
+    "print": "TextIO.print",
+    "not": "Bool.not",
+    "real": "Real.fromInt",
+    "floor": "Real.floor",
+    "ceil": "Real.ceil",
+    "round": "Real.round",
+    "trunc": "Real.trunc",
+    "ord": "Char.ord",
+    "chr": "Char.chr",
+    "str": "String.str",
+    "concat": "String.concat",
+    "explode": "String.explode",
+    "implode": "String.implode",
+    "substring": "String.substring",
+    "hd": "List.hd",
+    "tl": "List.tl",
+    "null": "List.null",
+    "length": "List.length",
+    "rev": "List.rev",
+    "map": "List.map",
+    "app": "List.app",
+    "foldl": "List.foldl",
+    "foldr": "List.foldr",
+    "valOf": "Option.valOf",
+    "isSome": "Option.isSome",
+    "getOpt": "Option.getOpt",
+    "mem": "List.mem",
+    "remdupl": "List.remdupl",
+    "rm": "List.rm",
+    "rmall": "List.rmall",
+    "pos": "List.pos",
+    "contains": "List.contains",
+    "contains_all": "List.contains_all",
+    "intersect": "List.intersect",
+    "union": "List.union",
+    "listsub": "List.listsub",
+    "ins": "List.ins",
+    "ins_new": "List.ins_new",
+    "sort": "List.sort",
+    "unique_sort": "List.unique_sort",
+    "fmap": "List.fmap",
+    "`": "Ms.`",
+    "++": "Ms.++",
+    "--": "Ms.--",
+    "**": "Ms.**",
+    "%": "Ms.%",
+    "//": "Ms.//",
+    "==": "Ms.==",
+    "!=": "Ms.!=",
+    "<><>": "Ms.!=",
+    "<<": "Ms.<<",
+    "<<=": "Ms.<<=",
+    "<<==": "Ms.<<=",
+    ">>": "Ms.>>",
+    ">>=": "Ms.>>=",
+    ">>==": "Ms.>>=",
+    "cf": "Ms.cf",
+    "size": "Ms.size",
+    "random": "Ms.random",
+    "ext_col": "Ms.ext_col",
+    "ext_ms": "Ms.ext_ms",
+    "filter": "Ms.filter",
+    "ms_to_col": "Ms.ms_to_col",
+    "ms_to_list": "Ms.ms_to_list",
+    "list_to_ms": "Ms.list_to_ms",
+    "sort_ms": "Ms.sort_ms",
+    "@": "Time.@",
+    "@+": "Time.@+",
+    "@++": "Time.@++",
+    "+++": "Time.+++",
+    "ms": "Time.ms",
+    "time": "Time.time",
+    "step": "Time.step",
+    **{
+        name: f"Random.{name}"
+        for name in (
+            "bernoulli", "binomial", "uniform", "discrete", "normal", "exponential", "poisson", "erlang", "chisq",
+            "student", "gamma", "beta", "weibull", "rayleigh",
+        )
+    },
+}  # fmt: skip
+"""Short name -> full name."""
+
+QUALIFIED: dict[str, str] = {
+    "Bool.not": "Bool.not",
+    "General.!": "Ref.!",
+    "General.:=": "Ref.:=",
+    "String.size": "String.size",
+    "Int.toInt": "Int.toInt",
+    "List.^^": "List.@",
+    "LargeInt.toInt": "IntInf.toInt",
+    "LargeInt.fromInt": "IntInf.fromInt",
+    "LargeInt.toString": "IntInf.toString",
+    "Real.real": "Real.fromInt",
+    "Char.str": "String.str",
+    "ModelTime.time": "Time.time",
+}
+"""Qualified names that stand for another full name; all other qualified names stand for themselves."""
+
+STRUCTURES: frozenset[str] = frozenset(
+    {"Array", "Array2", "BinIO", "Byte", "CharVector", "CommandLine", "Date", "IEEEReal", "IO", "LargeInt", "LargeReal", "LargeWord",
+     "OS", "Position", "SMLofNJ", "StringCvt", "Substring", "TextIO", "Timer", "Unix", "Vector", "Word", "Word8", "Word32",
+     "Random", "Time", "CPN'Time", "CPN'Replications", "Replications", "ModelTime", "Queue", "Mark", "Bind", "TextIO.StreamIO"}
+    | {name.split(".")[0] for name in BUILTINS if name[0].isalpha()}
+)  # fmt: skip
+"""Structures of the library: an unknown member of one is "not supported", not "not declared"."""
+
+INFIX: dict[str, tuple[int, str]] = {
+    **dict.fromkeys(("@",), (9, "left")),
+    **dict.fromkeys(("`",), (8, "left")),
+    **dict.fromkeys(("*", "/", "div", "mod", "**", "//", "%", "@+", "@++"), (7, "left")),
+    **dict.fromkeys(("+", "-", "^", "++", "--", "+++"), (6, "left")),
+    **dict.fromkeys(("::",), (5, "right")),
+    **dict.fromkeys(("^^",), (5, "left")),
+    **dict.fromkeys(("=", "<>", "<", ">", "<=", ">="), (4, "left")),
+    **dict.fromkeys((":=", "o"), (3, "left")),
+    **dict.fromkeys(
+        ("==", "!=", "<><>", "<<", "<<=", "<<==", ">>", ">>=", ">>=="), (3, "left")
+    ),
+    **dict.fromkeys(("before", "::=", "+=", "-=", "*="), (0, "left")),
+}  # fmt: skip
+"""Operators that are infix at the start: precedence (9 binds tightest) and associativity."""
+
+
+def _datatype(name: str, generics: int, *constructors: tuple[str, Type | None]) -> DatatypeDec:
+    made = tuple(
+        (Constructor(c, name, tag, argument is not None, len(constructors)), argument)
+        for tag, (c, argument) in enumerate(constructors)
+    )
+    return DatatypeDec(name, generics, made, None)
+
+
+DATATYPES: dict[str, DatatypeDec] = {
+    "bool": _datatype("bool", 0, ("false", None), ("true", None)),
+    "list": _datatype("list", 1, ("nil", None), ("::", tuple_of(TVar(0), _LIST_A))),
+    "option": _datatype("option", 1, ("NONE", None), ("SOME", TVar(0))),
+    "order": _datatype("order", 0, ("LESS", None), ("EQUAL", None), ("GREATER", None)),
+}
+"""The built-in data types by name."""
+
+FALSE, TRUE = (c for c, _ in DATATYPES["bool"].constructors)
+NIL, CONS = (c for c, _ in DATATYPES["list"].constructors)
+
+_EXCEPTIONS: tuple[tuple[str, Type | None], ...] = (
+    ("Match", None),
+    ("Bind", None),
+    ("Div", None),
+    ("Overflow", None),
+    ("Subscript", None),
+    ("Empty", None),
+    ("Size", None),
+    ("Chr", None),
+    ("Domain", None),
+    ("Option", None),
+    ("Span", None),
+    ("Fail", STRING),
+    ("Subtract", None),
+    ("no_singleton", None),
+    ("CPN'Error", STRING),
+    ("UnequalLengths", None),
+)
+
+EXCEPTIONS: dict[str, tuple[Constructor, Type | None]] = {
+    name: (Constructor(name, "exn", tag, argument is not None, 0), argument)
+    for tag, (name, argument) in enumerate(_EXCEPTIONS)
+}
+"""The built-in exceptions: constructor and argument type. Tags of a net's own exceptions start at `FIRST_EXCEPTION_TAG`."""
+
+FIRST_EXCEPTION_TAG = 100
+
+TYPE_ARITY: dict[str, int] = {
+    "int": 0, "real": 0, "string": 0, "char": 0, "bool": 0, "exn": 0, "order": 0, "IntInf.int": 0,
+    "list": 1, "option": 1, "ref": 1, "timed": 1,
+}  # fmt: skip
+"""Type constructors that are there at the start and their number of arguments."""
+
+TYPE_ABBREVIATIONS: dict[str, str] = {
+    "unit": "unit", "ms": "'a ms", "tms": "'a tms", "time": "time",
+    "Int.int": "int", "Real.real": "real", "String.string": "string", "Char.char": "char", "Bool.bool": "bool",
+    "LargeInt.int": "IntInf.int", "General.unit": "unit", "General.exn": "exn", "General.order": "order",
+    "List.list": "'a list", "Option.option": "'a option", "ModelTime.time": "time",
+}  # fmt: skip
+"""Names for other types; with at most one argument, `'a`."""
+
+NO_EQUALITY: frozenset[str] = frozenset({"exn"})
+"""Type constructors whose values have no equality (functions have none either). `real` has: CPN Tools patched it in."""
+
+LITERAL_TYPES: tuple[TCon, ...] = (INT, INTINF)
+"""What an integer literal may be; int when nothing decides."""
