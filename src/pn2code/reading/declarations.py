@@ -1,0 +1,179 @@
+"""Declarations of a `.cpn` file: the `globbox` with its nested blocks, in order."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+from pn2code.diagnostics import Diagnostics, Origin
+from pn2code.reading.codes import CPN_ELEMENT
+from pn2code.reading.document import (
+    RawBlock,
+    RawColset,
+    RawDeclaration,
+    RawGlobref,
+    RawMl,
+    RawOther,
+    RawUse,
+    RawVar,
+)
+from pn2code.reading.xml import Node
+
+COLSET_KINDS = (
+    "unit", "bool", "int", "intinf", "time", "real", "string", "enum", "index", "product", "record", "list", "union",
+    "subset", "alias",
+)  # fmt: skip
+
+Warn = Callable[[Node, Node], None]
+"""Reports an unknown child of an element, once per kind."""
+
+
+class DeclarationReader:
+    """Reads the `globbox`.
+
+    Args:
+        base: origin of the file.
+        unknown: called for elements that are not known.
+    """
+
+    def __init__(self, base: Origin, d: Diagnostics, unknown: Warn) -> None:
+        self.base = base
+        self.d = d
+        self.unknown = unknown
+
+    def block(self, node: Node) -> RawBlock:
+        """A `globbox` or `block`, whose name is its `id` child."""
+        items: list[RawBlock | RawDeclaration] = []
+        for child in node.children:
+            match child.tag:
+                case "id":
+                    continue
+                case "block":
+                    items.append(self.block(child))
+                case "color":
+                    items.append(self.colset(child))
+                case "var":
+                    items.append(self.variable(child))
+                case "ml":
+                    source = child.source(self.origin(child, "", "declaration"))
+                    if source.text:
+                        items.append(RawMl(child.get("id"), source, source.origin))
+                case "globref":
+                    items.append(self.globref(child))
+                case "use":
+                    ml = child.child("ml") or child
+                    source = ml.source(self.origin(child, "use", "declaration"))
+                    items.append(RawUse(child.get("id"), source, source.origin))
+                case "pageref" | "instref" | "channel" | "errordecl":
+                    items.append(self.other(child))
+                case _:
+                    self.unknown(node, child)
+        name = node.child("id")
+        return RawBlock(name.text.strip() if name else "", tuple(items))
+
+    def origin(self, node: Node, element: str, part: str = "") -> Origin:
+        """Origin of a declaration."""
+        return Origin(self.base.file, node.line, node.column, "", element, node.get("id"), part)
+
+    def colset(self, node: Node) -> RawColset:
+        """A `color`."""
+        name_node = node.child("id")
+        name = name_node.text.strip() if name_node else ""
+        base = self.origin(node, f"colour set `{name}`", "declaration")
+        origin = name_node.source(base).origin if name_node else base
+        kind: Node | None = None
+        for child in node.children:
+            if child.tag in COLSET_KINDS:
+                if kind is not None:
+                    self.d.error(
+                        CPN_ELEMENT,
+                        f"colour set `{name}` has two definitions, `{kind.tag}` and `{child.tag}`",
+                        child.at(base),
+                    )
+                kind = child
+            elif child.tag not in ("id", "timed", "declare", "layout"):
+                self.unknown(node, child)
+        if not name or kind is None:
+            what = "a name" if not name else "a known definition"
+            self.d.error(
+                CPN_ELEMENT,
+                f"colour set `{name}` lacks {what}",
+                origin,
+                hint="open the net in CPN Tools and enter the declaration again",
+            )
+        ids, fields, texts = _details(kind, base) if kind is not None else ((), (), ())
+        declare = node.child("declare")
+        display = node.child("layout")
+        return RawColset(
+            id=node.get("id"),
+            name=name,
+            kind=kind.tag if kind is not None else "",
+            ids=ids,
+            fields=fields,
+            texts=tuple(t.source(base) for t in texts),
+            timed=node.child("timed") is not None,
+            declare=tuple(i.text.strip() for i in declare.all("id")) if declare else (),
+            by_predicate=kind is not None and kind.child("by") is not None,
+            layout_text=display.text.strip() if display else "",
+            origin=origin,
+        )
+
+    def variable(self, node: Node) -> RawVar:
+        """A `var`."""
+        names = tuple(i.text.strip() for i in node.all("id"))
+        base = self.origin(node, "variable " + ", ".join(f"`{n}`" for n in names), "declaration")
+        type_node = node.child("type")
+        type_id = (type_node.child("id") or type_node) if type_node else None
+        type_name = type_id.text.strip() if type_id else ""
+        first = node.child("id")
+        origin = first.source(base).origin if first else base
+        if not names or not type_name:
+            what = "names" if not names else "a colour set"
+            self.d.error(CPN_ELEMENT, f"a variable declaration lacks {what}", origin)
+        return RawVar(node.get("id"), names, type_name, origin)
+
+    def globref(self, node: Node) -> RawGlobref | RawOther:
+        """A `globref`; one without its value (seen in real files) is kept as `RawOther`."""
+        name_node, ml = node.child("id"), node.child("ml")
+        name = name_node.text.strip() if name_node else ""
+        base = self.origin(node, f"reference `{name}`", "declaration")
+        if ml is None or not name:
+            return self.other(node)
+        return RawGlobref(node.get("id"), name, ml.source(base), base)
+
+    def other(self, node: Node) -> RawOther:
+        """Anything else, with its text for the message."""
+        base = self.origin(node, f"declaration `{node.tag}`", "declaration")
+        text = node.child("layout") or node.child("ml") or node.child("id") or node
+        return RawOther(node.get("id"), node.tag, text.source(base), base)
+
+
+def _details(
+    kind: Node, base: Origin
+) -> tuple[tuple[str, ...], tuple[tuple[str, str], ...], tuple[Node, ...]]:
+    """Ids, fields and `ml` texts of a colour-set definition, in order, looking into `with`, `and`, `by`."""
+    ids: list[str] = []
+    fields: list[tuple[str, str]] = []
+    texts: list[Node] = []
+    for child in kind.children:
+        match child.tag:
+            case "id":
+                ids.append(child.text.strip())
+            case "ml":
+                texts.append(child)
+            case "with" | "and" | "by":
+                ids += [i.text.strip() for i in child.all("id")]
+                texts += child.all("ml")
+                for inner in child.all("and"):
+                    texts += inner.all("ml")
+            case "recordfield":
+                parts = [i.text.strip() for i in child.all("id")]
+                fields.append((parts[0] if parts else "", parts[1] if len(parts) > 1 else ""))
+            case "unionfield":
+                label, of = child.child("id"), child.child("type")
+                inner_id = (of.child("id") or of) if of else None
+                fields.append(
+                    (label.text.strip() if label else "", inner_id.text.strip() if inner_id else "")
+                )
+            case _:
+                pass  # layout of the definition
+    return tuple(ids), tuple(fields), tuple(texts)

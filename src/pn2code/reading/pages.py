@@ -1,0 +1,251 @@
+"""Pages of a `.cpn` file: places, transitions, arcs and auxiliaries with texts, layout and origins."""
+
+from __future__ import annotations
+
+import re
+
+from pn2code.diagnostics import Diagnostics, Note, Origin
+from pn2code.reading.codes import (
+    ARC_DANGLING,
+    ARC_ORIENTATION,
+    CPN_ELEMENT,
+    DUPLICATE_ID,
+    UNSUPPORTED_CONSTRAINT,
+)
+from pn2code.reading.declarations import Warn
+from pn2code.reading.document import (
+    Inscription,
+    RawArc,
+    RawAux,
+    RawPage,
+    RawPlace,
+    RawSubstitution,
+    RawTransition,
+)
+from pn2code.reading.layout import Point, bends, layout, point
+from pn2code.reading.xml import Node
+
+_DRAWING = {"posattr", "fillattr", "lineattr", "textattr", "text"}
+_KNOWN = {
+    "page": {
+        "pageattr", "place", "trans", "arc", "Aux", "group", "vguideline", "hguideline", "constraints",
+        "ssnode", "ssarc", "label", "aux-conn",
+    },
+    "place": _DRAWING | {"ellipse", "box", "token", "marking", "type", "initmark", "port", "fusioninfo"},
+    "trans": _DRAWING | {
+        "box", "ellipse", "binding", "cond", "time", "code", "priority", "channel", "subst",
+    },
+    "arc": _DRAWING | {"arrowattr", "transend", "placeend", "annot", "bendpoint"},
+}  # fmt: skip
+_ORIENTATIONS = {"ptot", "ttop", "bothdir", "inhibitor", "reset"}
+_PAIR = re.compile(r"\(\s*([^(),\s]*)\s*,\s*([^(),\s]*)\s*\)")
+
+
+def readable(text: str) -> str:
+    """A name on one line: line breaks in names are layout."""
+    return " ".join(text.split())
+
+
+class PageReader:
+    """Reads pages; remembers ids over all pages of a file."""
+
+    def __init__(self, file: str, d: Diagnostics, unknown: Warn) -> None:
+        self.file = file
+        self.d = d
+        self.unknown = unknown
+        self.seen: dict[str, Origin] = {}
+
+    def page(self, node: Node) -> RawPage:
+        """A `page` with everything on it."""
+        attributes = node.child("pageattr")
+        name = readable(attributes.get("name")) if attributes else ""
+        name = name or node.get("id") or "page"
+        origin = Origin(self.file, node.line, node.column, name, "", node.get("id"), "")
+        self.claim(node, origin, f"page `{name}`")
+        self.check_children(node)
+        constraints = node.child("constraints")
+        if constraints is not None and constraints.children:
+            self.d.error(
+                UNSUPPORTED_CONSTRAINT,
+                f"page `{name}` has declarative constraints, which are not supported",
+                constraints.at(origin),
+                hint="express the constraints by places",
+            )
+        places = tuple(self.place(n, name) for n in node.all("place"))
+        transitions = tuple(self.transition(n, name) for n in node.all("trans"))
+        names = {p.id: p.name for p in places} | {t.id: t.name for t in transitions}
+        points = {n.get("id"): point(n) for n in node.all("place") + node.all("trans")}
+        arcs = [
+            self.arc(n, name, {p.id for p in places}, {t.id for t in transitions}, names, points)
+            for n in node.all("arc")
+        ]
+        auxiliaries = tuple(
+            RawAux(n.get("id"), _text(n.child("text")), layout(n)) for n in node.all("Aux")
+        )
+        return RawPage(
+            id=node.get("id"),
+            name=name,
+            places=places,
+            transitions=transitions,
+            arcs=tuple(a for a in arcs if a is not None),
+            auxiliaries=auxiliaries,
+            origin=origin,
+        )
+
+    def claim(self, node: Node, origin: Origin, what: str) -> None:
+        """Note an id; missing and repeated ones are errors."""
+        identity = node.get("id")
+        if not identity:
+            self.d.error(
+                CPN_ELEMENT, f"{what} has no id", origin, hint="add an id attribute that is unique"
+            )
+        elif identity in self.seen:
+            first = self.seen[identity]
+            self.d.error(
+                DUPLICATE_ID,
+                f"{what} has the id `{identity}`, which is already used",
+                origin,
+                notes=[Note(f"`{identity}` is first used here", first)],
+                hint="give one of them another id",
+            )
+        else:
+            self.seen[identity] = origin
+
+    def check_children(self, node: Node) -> None:
+        """Warn of unknown elements."""
+        known = _KNOWN[node.tag]
+        for child in node.children:
+            if child.tag not in known:
+                self.unknown(node, child)
+
+    def place(self, node: Node, page: str) -> RawPlace:
+        """A `place`."""
+        name = readable(_text(node.child("text"))) or node.get("id")
+        origin = self.element(node, page, f"place `{name}`")
+        port, fusion = node.child("port"), node.child("fusioninfo")
+        return RawPlace(
+            id=node.get("id"),
+            name=name,
+            type=inscription(node.child("type"), origin, "colour set"),
+            initial=inscription(node.child("initmark"), origin, "initial marking"),
+            port=port.get("type") if port else "",
+            fusion=fusion.get("name") if fusion else "",
+            origin=origin,
+            layout=layout(node),
+        )
+
+    def transition(self, node: Node, page: str) -> RawTransition:
+        """A `trans`."""
+        name = readable(_text(node.child("text"))) or node.get("id")
+        origin = self.element(node, page, f"transition `{name}`")
+        subst = node.child("subst")
+        return RawTransition(
+            id=node.get("id"),
+            name=name,
+            guard=inscription(node.child("cond"), origin, "guard"),
+            delay=inscription(node.child("time"), origin, "delay"),
+            code=inscription(node.child("code"), origin, "code segment"),
+            priority=inscription(node.child("priority"), origin, "priority"),
+            channel=inscription(node.child("channel"), origin, "channel"),
+            substitution=self.substitution(subst, origin) if subst else None,
+            origin=origin,
+            layout=layout(node),
+        )
+
+    def element(self, node: Node, page: str, what: str) -> Origin:
+        """Origin of a place or transition, its id claimed, its children checked."""
+        origin = Origin(self.file, node.line, node.column, page, what, node.get("id"), "")
+        self.claim(node, origin, what)
+        self.check_children(node)
+        return origin
+
+    def substitution(self, node: Node, base: Origin) -> RawSubstitution:
+        """A `subst` with its pairs."""
+        origin = node.at(base)
+        text = node.get("portsock")
+        if _PAIR.sub("", text).strip(" ,;\t\n"):
+            self.d.error(
+                CPN_ELEMENT,
+                f"{base.element} has port assignments that cannot be read: `{text}`",
+                origin,
+                hint="assignments are written (port id, socket id)(port id, socket id)",
+            )
+        return RawSubstitution(node.get("subpage"), tuple(_PAIR.findall(text)), origin)
+
+    def arc(
+        self,
+        node: Node,
+        page: str,
+        places: set[str],
+        transitions: set[str],
+        names: dict[str, str],
+        points: dict[str, Point],
+    ) -> RawArc | None:
+        """An `arc`; None, after an error, when an end is missing."""
+        ends = node.child("placeend"), node.child("transend")
+        place, transition = (e.get("idref") if e else "" for e in ends)
+        orientation = node.get("orientation").lower()
+        source, target = names.get(place, place) or "?", names.get(transition, transition) or "?"
+        if orientation == "ttop":
+            source, target = target, source
+        what = f"arc `{source}` -> `{target}`"
+        origin = Origin(self.file, node.line, node.column, page, what, node.get("id"), "")
+        self.claim(node, origin, what)
+        self.check_children(node)
+        if orientation == "nodir":
+            # Design/CPN's arcs without direction, as at substitution transitions, move no tokens.
+            return None
+        if orientation not in _ORIENTATIONS:
+            self.d.error(
+                ARC_ORIENTATION,
+                f"{what} has the unknown orientation `{node.get('orientation')}`",
+                origin,
+                hint="orientations are PtoT, TtoP, BOTHDIR, Inhibitor, Reset",
+            )
+            return None
+        dangling = False
+        for end, identity, known, other, kind in (
+            ("placeend", place, places, transitions, "place"),
+            ("transend", transition, transitions, places, "transition"),
+        ):
+            if identity in known:
+                continue
+            dangling = True
+            arc = f"arc `{node.get('id')}`"
+            if not identity:
+                message = f"{arc} has no {kind} end"
+            elif identity in other:
+                wrong = "transition" if kind == "place" else "place"
+                message = f"{arc} needs a {kind} at `{end}`, but `{identity}` is a {wrong}"
+            else:
+                message = f"{arc} leads to the {kind} `{identity}`, which is not on page `{page}`"
+            self.d.error(
+                ARC_DANGLING, message, origin, hint="draw the arc again, or remove it from the file"
+            )
+        if dangling:
+            return None
+        shape = layout(node, bends(node, points[transition], points[place]))
+        return RawArc(
+            id=node.get("id"),
+            orientation=orientation,
+            transition=transition,
+            place=place,
+            inscription=inscription(node.child("annot"), origin, "inscription"),
+            origin=origin,
+            layout=shape,
+        )
+
+
+def inscription(node: Node | None, base: Origin, part: str) -> Inscription | None:
+    """The text of an inscription; None when it has none, or only white space."""
+    text = node.child("text") if node else None
+    if node is None or text is None or not text.text.strip():
+        return None
+    origin = Origin(
+        base.file, text.line, text.column, base.page, base.element, base.element_id, part
+    )
+    return Inscription(text.source(origin), layout(node))
+
+
+def _text(node: Node | None) -> str:
+    return node.text.strip() if node else ""

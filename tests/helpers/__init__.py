@@ -1,0 +1,1 @@
+"""Helpers for tests: nets in a short text form."""
