@@ -378,6 +378,19 @@ def _apply_layout(
 ) -> tuple[str, dict[str, Any]]:
     if layout is None:
         layout = next(iter(layouts), "")
+    for name, table in layouts.items():
+        if not isinstance(table, dict):
+            r.d.error(codes.CELL_VALUE, f"layout `{name}` must be a table", r.at("layouts", name))
+            return "", data
+        r.keys(table, ("layouts", name), {"description", "robots", "motion", "scene"})
+        for robot in table.get("robots", {}):
+            if robot not in data.get("robots", {}):
+                r.d.error(
+                    codes.CELL_KEY,
+                    f"layout `{name}` places an unknown robot `{robot}`",
+                    r.at("layouts", name, "robots", robot),
+                    hint=_suggest(robot, data.get("robots", {})),
+                )
     if not layout:
         return "", data
     if layout not in layouts:
@@ -389,15 +402,6 @@ def _apply_layout(
         )
         return "", data
     table = {k: v for k, v in layouts[layout].items() if k != "description"}
-    r.keys(table, ("layouts", layout), {"robots", "motion", "scene"})
-    for name in table.get("robots", {}):
-        if name not in data.get("robots", {}):
-            r.d.error(
-                codes.CELL_KEY,
-                f"layout `{layout}` places an unknown robot `{name}`",
-                r.at("layouts", layout, "robots", name),
-                hint=_suggest(name, data.get("robots", {})),
-            )
     return layout, _merge(data, table)
 
 

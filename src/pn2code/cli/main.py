@@ -60,7 +60,7 @@ def main() -> NoReturn:
     except BrokenPipeError:
         sys.stdout = None
         sys.exit(Exit.OK)
-    except Exception as problem:  # noqa: BLE001 - the last border: everything else is a bug of ours
+    except Exception as problem:
         if os.environ.get("PN2CODE_DEBUG"):
             raise
         typer.echo(
