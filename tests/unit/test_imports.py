@@ -1,0 +1,91 @@
+"""Imports run one way, along the pipeline. Walks the syntax trees of all modules."""
+
+from __future__ import annotations
+
+import ast
+from collections.abc import Iterator
+from pathlib import Path
+
+# package -> the packages of ours that it may import
+ALLOWED: dict[str, set[str]] = {
+    "diagnostics": set(),
+    "resources": set(),
+    "ml": {"diagnostics"},
+    "reading": {"diagnostics"},
+    "net": {"diagnostics", "ml", "reading"},
+    "semantics": {"diagnostics", "ml", "net"},
+    "cell": {"diagnostics", "ml", "net"},
+    "lowering": {"diagnostics", "ml", "net", "cell"},
+    "robot": {"diagnostics"},
+    "tdl": {"diagnostics", "robot"},
+    "emission": {"diagnostics", "ml", "net", "cell", "lowering", "resources", "tdl"},
+    "channels": {"diagnostics"},
+    "toolchain": {"diagnostics", "emission"},
+    "run": {"diagnostics", "cell", "channels", "emission", "net", "robot", "semantics", "tdl", "toolchain", "report",
+            "pipeline"},
+    "report": {"cell", "run", "robot", "diagnostics"},
+    "pipeline": {"diagnostics", "cell", "emission", "lowering", "net", "reading", "tdl"},
+    "cli": {"diagnostics", "cell", "emission", "net", "pipeline", "run", "report", "semantics", "toolchain", "robot",
+            "tdl", "ml", "lowering", "reading"},
+}  # fmt: skip
+
+# Of `robot`, the script language may know the commands (plain values) only; of the reports, running only the data.
+ONLY = {("tdl", "robot"): {"pn2code.robot.commands"}}
+
+
+def modules(root: Path) -> Iterator[tuple[Path, str]]:
+    base = root / "src" / "pn2code"
+    for path in sorted(base.rglob("*.py")):
+        relative = path.relative_to(base)
+        yield path, relative.parts[0] if len(relative.parts) > 1 else relative.stem
+
+
+def imported(path: Path) -> Iterator[str]:
+    for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+        if isinstance(node, ast.Import):
+            yield from (alias.name for alias in node.names)
+        elif isinstance(node, ast.ImportFrom) and node.module:
+            yield node.module
+            if node.module == "pn2code":
+                yield from (f"pn2code.{alias.name}" for alias in node.names)
+
+
+def test_imports_run_one_way(root: Path) -> None:
+    wrong = []
+    seen = 0
+    for path, package in modules(root):
+        for name in imported(path):
+            parts = name.split(".")
+            if parts[0] != "pn2code" or len(parts) < 2:
+                continue
+            target = parts[1]
+            seen += 1
+            if target in (package, "__version__"):
+                continue
+            only = ONLY.get((package, target))
+            if target not in ALLOWED.get(package, set()) or (only and name not in only):
+                wrong.append(f"{path.relative_to(root)} imports {name}")
+    assert seen > 50
+    assert not wrong, "\n".join(wrong)
+
+
+def test_the_token_game_shares_nothing_with_the_compiler(root: Path) -> None:
+    """Reachability, not only direct imports: semantics must never load lowering or emission, nor they it."""
+    edges: dict[str, set[str]] = {}
+    for path, package in modules(root):
+        edges.setdefault(package, set()).update(
+            parts[1]
+            for name in imported(path)
+            if (parts := name.split("."))[0] == "pn2code" and len(parts) > 1
+        )
+
+    def reach(start: str) -> set[str]:
+        found, todo = set(), [start]
+        while todo:
+            for target in edges.get(todo.pop(), set()) - found:
+                found.add(target)
+                todo.append(target)
+        return found
+
+    assert not reach("semantics") & {"lowering", "emission"}
+    assert "semantics" not in reach("lowering") | reach("emission")
