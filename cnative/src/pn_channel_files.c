@@ -36,11 +36,11 @@ static struct {
     char buffer[PN_CHANNEL_TEXT];
     pn_transport_fault_t fault;
     file_channel_t channel[CHANNELS_MAX];
-} s;
+} s_files;
 
 const char *pn_files_session(void)
 {
-    return s.session;
+    return s_files.session;
 }
 
 __attribute__((format(printf, 2, 3)))
@@ -48,8 +48,8 @@ static bool fail(bool io, const char *format, ...)
 {
     va_list arguments;
     va_start(arguments, format);
-    s.fault.io = io;
-    (void)vsnprintf(s.fault.text, sizeof s.fault.text, format, arguments);
+    s_files.fault.io = io;
+    (void)vsnprintf(s_files.fault.text, sizeof s_files.fault.text, format, arguments);
     va_end(arguments);
     return false;
 }
@@ -57,8 +57,8 @@ static bool fail(bool io, const char *format, ...)
 /* A failed call on a file of the directory: says whether it is the whole directory. */
 static bool fail_errno(const char *doing, const char *name, int error)
 {
-    if ((error == ENOENT) && !pn_port_dir_exists(s.directory)) {
-        return fail(true, "the shared directory %s has been removed", s.options.directory);
+    if ((error == ENOENT) && !pn_port_dir_exists(s_files.directory)) {
+        return fail(true, "the shared directory %s has been removed", s_files.options.directory);
     }
     const char *advice = "";
     if ((error == ENOSPC) || (error == EFBIG) || (error == EDQUOT)) {
@@ -68,7 +68,7 @@ static bool fail_errno(const char *doing, const char *name, int error)
     } else {
         /* the system's words say it */
     }
-    return fail(true, "cannot %s %s/%s: %s%s", doing, s.options.directory, name, strerror(error), advice);
+    return fail(true, "cannot %s %s/%s: %s%s", doing, s_files.options.directory, name, strerror(error), advice);
 }
 
 /* --- channels --------------------------------------------------------------------------------------------------------- */
@@ -76,16 +76,16 @@ static bool fail_errno(const char *doing, const char *name, int error)
 static pn_channel_state_t files_read(void *self, uint32_t index, pn_message_t *out)
 {
     (void)self;
-    file_channel_t *const state = &s.channel[index];
-    const pn_cell_channel_t *const channel = &s.cell->channel[index];
-    if ((s.watch >= 0) && !state->dirty) {
+    file_channel_t *const state = &s_files.channel[index];
+    const pn_cell_channel_t *const channel = &s_files.cell->channel[index];
+    if ((s_files.watch >= 0) && !state->dirty) {
         return PN_CHANNEL_UNCHANGED;
     }
     state->dirty = false;
     size_t length = 0U;
-    const int error = pn_port_read(s.directory, channel->file, s.buffer, sizeof s.buffer, &length);
+    const int error = pn_port_read(s_files.directory, channel->file, s_files.buffer, sizeof s_files.buffer, &length);
     if (error == ENOENT) {
-        if (!pn_port_dir_exists(s.directory)) {
+        if (!pn_port_dir_exists(s_files.directory)) {
             (void)fail_errno("read", channel->file, error);
             return PN_CHANNEL_BROKEN;
         }
@@ -99,7 +99,7 @@ static pn_channel_state_t files_read(void *self, uint32_t index, pn_message_t *o
         (void)fail_errno("read", channel->file, error);
         return PN_CHANNEL_BROKEN;
     }
-    const uint32_t content = pn_crc32(0U, s.buffer, length);
+    const uint32_t content = pn_crc32(0U, s_files.buffer, length);
     if (state->accepted) {
         if (content == state->content) {
             return PN_CHANNEL_UNCHANGED; /* still waiting to be consumed */
@@ -108,11 +108,11 @@ static pn_channel_state_t files_read(void *self, uint32_t index, pn_message_t *o
         out->refusal = PN_REFUSAL_OVERWRITTEN;
         out->column = 0U;
         (void)snprintf(out->report, sizeof out->report, "changed to %s before the message in it was consumed (channel-overrun)",
-                       pn_quote(s.buffer, length, shown, sizeof shown));
+                       pn_quote(s_files.buffer, length, shown, sizeof shown));
         return PN_CHANNEL_REFUSED;
     }
     state->content = content;
-    const pn_channel_state_t found = pn_channel_parse(channel, s.buffer, length, s.session, state->seq, out);
+    const pn_channel_state_t found = pn_channel_parse(channel, s_files.buffer, length, s_files.session, state->seq, out);
     state->sealed = out->sealed;
     state->last_seq = out->seq;
     return found;
@@ -121,20 +121,20 @@ static pn_channel_state_t files_read(void *self, uint32_t index, pn_message_t *o
 static void files_accept(void *self, uint32_t index)
 {
     (void)self;
-    s.channel[index].accepted = true;
+    s_files.channel[index].accepted = true;
 }
 
 static bool empty_file(uint32_t index)
 {
-    const char *const file = s.cell->channel[index].file;
-    const int error = pn_port_publish(s.directory, file, s.channel[index].temporary, "0\n", 2U);
+    const char *const file = s_files.cell->channel[index].file;
+    const int error = pn_port_publish(s_files.directory, file, s_files.channel[index].temporary, "0\n", 2U);
     return (error == 0) || fail_errno("write", file, error);
 }
 
 static bool files_clear(void *self, uint32_t index) /* I4 */
 {
     (void)self;
-    file_channel_t *const state = &s.channel[index];
+    file_channel_t *const state = &s_files.channel[index];
     if (!empty_file(index)) {
         return false;
     }
@@ -148,19 +148,19 @@ static bool files_clear(void *self, uint32_t index) /* I4 */
 /* Whether the file holds `0`; on an I/O error or a missing file false with the fault set. */
 static bool holds_nothing(uint32_t index, bool *empty)
 {
-    const pn_cell_channel_t *const channel = &s.cell->channel[index];
+    const pn_cell_channel_t *const channel = &s_files.cell->channel[index];
     size_t length = 0U;
     *empty = false;
-    const int error = pn_port_read(s.directory, channel->file, s.buffer, sizeof s.buffer, &length);
+    const int error = pn_port_read(s_files.directory, channel->file, s_files.buffer, sizeof s_files.buffer, &length);
     if (error != 0) {
         return fail_errno("read", channel->file, error);
     }
     size_t end = length;
-    while ((end > 1U) && ((s.buffer[end - 1U] == '\n') || (s.buffer[end - 1U] == '\r') || (s.buffer[end - 1U] == ' '))) {
+    while ((end > 1U) && ((s_files.buffer[end - 1U] == '\n') || (s_files.buffer[end - 1U] == '\r') || (s_files.buffer[end - 1U] == ' '))) {
         end--;
     }
-    *empty = (end == 1U) && (s.buffer[0] == '0');
-    s.buffer[(length < sizeof s.buffer) ? length : sizeof s.buffer - 1U] = '\0';
+    *empty = (end == 1U) && (s_files.buffer[0] == '0');
+    s_files.buffer[(length < sizeof s_files.buffer) ? length : sizeof s_files.buffer - 1U] = '\0';
     return true;
 }
 
@@ -175,8 +175,8 @@ static bool files_write(void *self, uint32_t index, const pn_leaf_t *leaf)
 {
     (void)self;
     static char text[PN_CHANNEL_TEXT];
-    file_channel_t *const state = &s.channel[index];
-    const pn_cell_channel_t *const channel = &s.cell->channel[index];
+    file_channel_t *const state = &s_files.channel[index];
+    const pn_cell_channel_t *const channel = &s_files.cell->channel[index];
     bool empty = false;
     if (!holds_nothing(index, &empty)) {
         return false;
@@ -184,10 +184,10 @@ static bool files_write(void *self, uint32_t index, const pn_leaf_t *leaf)
     if (!empty) { /* I3 */
         char shown[160];
         return fail(false, "channel-overrun: %s still holds %s, which %s has not taken; the next message cannot be written",
-                    channel->file, pn_quote(s.buffer, strlen(s.buffer), shown, sizeof shown),
-                    s.cell->peer[channel->peer].name);
+                    channel->file, pn_quote(s_files.buffer, strlen(s_files.buffer), shown, sizeof shown),
+                    s_files.cell->peer[channel->peer].name);
     }
-    const size_t length = pn_channel_compose(channel, leaf, state->seq + 1U, s.session, text, sizeof text);
+    const size_t length = pn_channel_compose(channel, leaf, state->seq + 1U, s_files.session, text, sizeof text);
     if (length == 0U) {
         return fail(false, "the token of place `%s` cannot be written to %s: a value is not finite, or it is too long",
                     channel->place_name, channel->file);
@@ -196,7 +196,7 @@ static bool files_write(void *self, uint32_t index, const pn_leaf_t *leaf)
         return fail(false, "the token 0 of place `%s` cannot be told from the empty file %s", channel->place_name,
                     channel->file);
     }
-    const int error = pn_port_publish(s.directory, channel->file, state->temporary, text, length); /* I2 */
+    const int error = pn_port_publish(s_files.directory, channel->file, state->temporary, text, length); /* I2 */
     if (error != 0) {
         return fail_errno("write", channel->file, error);
     }
@@ -244,7 +244,7 @@ static void status_read(const char *side, status_t *out)
     size_t length = 0U;
     (void)memset(out, 0, sizeof *out);
     status_name(side, name, sizeof name);
-    if (pn_port_read(s.directory, name, text, sizeof text - 1U, &length) != 0) {
+    if (pn_port_read(s_files.directory, name, text, sizeof text - 1U, &length) != 0) {
         return;
     }
     text[length] = '\0';
@@ -263,17 +263,17 @@ static void status_read(const char *side, status_t *out)
 static void files_party(void *self, uint32_t peer, pn_party_t *out)
 {
     (void)self;
-    const char *const side = s.cell->peer[peer].name;
+    const char *const side = s_files.cell->peer[peer].name;
     char name[NAME_SIZE];
     status_t status;
     bool exists = false;
     bool locked = false;
     status_name(side, name, sizeof name);
     /* The lock first: who gives it up has said why before, so a status read after that is the last word. */
-    const int error = pn_port_probe(s.directory, name, &exists, &locked);
+    const int error = pn_port_probe(s_files.directory, name, &exists, &locked);
     status_read(side, &status);
     const bool announced = exists && (error == 0) && (status.state != PN_PARTY_ABSENT) &&
-                           (strcmp(status.session, s.session) == 0);
+                           (strcmp(status.session, s_files.session) == 0);
     out->state = announced ? status.state : PN_PARTY_ABSENT;
     out->pid = status.pid;
     if (announced && !locked && (status.state == PN_PARTY_RUNNING)) {
@@ -288,12 +288,12 @@ static bool files_announce(void *self, pn_party_state_t state, const char *reaso
     char text[512];
     char line[256];
     (void)take_line((reason != NULL) ? reason : "", line, sizeof line); /* one line, whatever it was */
-    const int length = snprintf(text, sizeof text, "%s\n%s %" PRIu64 "\n%s\n", STATE_NAME[state], s.session, pn_port_pid(),
+    const int length = snprintf(text, sizeof text, "%s\n%s %" PRIu64 "\n%s\n", STATE_NAME[state], s_files.session, pn_port_pid(),
                                 line);
-    const int error = pn_port_rewrite(s.status, text, (length > 0) ? (size_t)length : 0U);
+    const int error = pn_port_rewrite(s_files.status, text, (length > 0) ? (size_t)length : 0U);
     if (error != 0) {
         char name[NAME_SIZE];
-        status_name(s.cell->side, name, sizeof name);
+        status_name(s_files.cell->side, name, sizeof name);
         return fail_errno("write", name, error);
     }
     return true;
@@ -311,10 +311,10 @@ static void on_change(void *user, const char *name)
     if ((name != NULL) && (name[0] == '.')) {
         return; /* a temporary file on its way */
     }
-    for (uint32_t i = 0U; i < s.cell->channel_count; i++) {
-        if ((name == NULL) || (strcmp(name, s.cell->channel[i].file) == 0)) {
-            s.channel[i].dirty = true;
-            change->incoming = change->incoming || (s.cell->channel[i].direction == PN_CHANNEL_IN);
+    for (uint32_t i = 0U; i < s_files.cell->channel_count; i++) {
+        if ((name == NULL) || (strcmp(name, s_files.cell->channel[i].file) == 0)) {
+            s_files.channel[i].dirty = true;
+            change->incoming = change->incoming || (s_files.cell->channel[i].direction == PN_CHANNEL_IN);
         }
     }
 }
@@ -326,15 +326,15 @@ static pn_wait_t files_wait(void *self, uint64_t timeout_ns)
     change_t change = {false};
     uint64_t spent = 0U;
     bool over = false;
-    if (s.watch < 0) {
-        const uint64_t look = (timeout_ns < s.options.poll_ns) ? timeout_ns : s.options.poll_ns;
+    if (s_files.watch < 0) {
+        const uint64_t look = (timeout_ns < s_files.options.poll_ns) ? timeout_ns : s_files.options.poll_ns;
         (void)pn_port_wait(-1, look);
         return (pn_port_stop_signal() != 0) ? PN_WAIT_SIGNAL : PN_WAIT_CHANGED;
     }
     /* Only what another party wrote into an incoming channel is worth a cycle; own publications are passed over. */
     while (!change.incoming && !over && (pn_port_stop_signal() == 0)) {
         const uint64_t left = (timeout_ns == UINT64_MAX) ? UINT64_MAX : timeout_ns - spent;
-        if (pn_port_wait(s.watch, left) && !pn_port_changes(s.watch, on_change, &change)) {
+        if (pn_port_wait(s_files.watch, left) && !pn_port_changes(s_files.watch, on_change, &change)) {
             on_change(&change, NULL); /* the directory is gone: let the next read say so */
         }
         if (timeout_ns != UINT64_MAX) {
@@ -355,20 +355,20 @@ static pn_wait_t files_wait(void *self, uint64_t timeout_ns)
 static void files_close(void *self)
 {
     (void)self;
-    pn_port_close(s.watch);
-    pn_port_close(s.status); /* and with it the lock */
-    pn_port_close(s.directory);
-    s.watch = -1;
-    s.status = -1;
-    s.directory = -1;
+    pn_port_close(s_files.watch);
+    pn_port_close(s_files.status); /* and with it the lock */
+    pn_port_close(s_files.directory);
+    s_files.watch = -1;
+    s_files.status = -1;
+    s_files.directory = -1;
 }
 
 /* --- opening (I7) ----------------------------------------------------------------------------------------------------- */
 
 static void notice(const char *text)
 {
-    if (s.options.notice != NULL) {
-        s.options.notice(s.options.user, text);
+    if (s_files.options.notice != NULL) {
+        s_files.options.notice(s_files.options.user, text);
     }
 }
 
@@ -376,21 +376,21 @@ static bool take_lock(void)
 {
     char name[NAME_SIZE];
     status_t other;
-    status_name(s.cell->side, name, sizeof name);
-    int error = pn_port_lock(s.directory, name, &s.status);
+    status_name(s_files.cell->side, name, sizeof name);
+    int error = pn_port_lock(s_files.directory, name, &s_files.status);
     for (uint32_t i = 0U; (i < 20U) && (error == EWOULDBLOCK); i++) { /* somebody may just be probing it */
         (void)pn_port_wait(-1, 5U * NS_PER_MS);
-        error = pn_port_lock(s.directory, name, &s.status);
+        error = pn_port_lock(s_files.directory, name, &s_files.status);
     }
     if (error == EWOULDBLOCK) {
-        status_read(s.cell->side, &other);
+        status_read(s_files.cell->side, &other);
         return fail(true, "another %s (pid %" PRIu64 ") is running in %s; stop it, or choose another directory with --dir",
-                    s.cell->side, other.pid, s.options.directory);
+                    s_files.cell->side, other.pid, s_files.options.directory);
     }
     if (error != 0) {
         return fail_errno("write", name, error);
     }
-    error = pn_port_rewrite(s.status, "", 0U); /* at once: an old `running` must not be taken for ours */
+    error = pn_port_rewrite(s_files.status, "", 0U); /* at once: an old `running` must not be taken for ours */
     return (error == 0) || fail_errno("write", name, error);
 }
 
@@ -398,51 +398,51 @@ static bool take_lock(void)
 static bool await_stale_peers(void)
 {
     const uint64_t begin = pn_port_now();
-    for (uint32_t i = 0U; i < s.cell->peer_count; i++) {
+    for (uint32_t i = 0U; i < s_files.cell->peer_count; i++) {
         char name[NAME_SIZE];
         bool exists = false;
         bool locked = false;
-        status_name(s.cell->peer[i].name, name, sizeof name);
-        int error = pn_port_probe(s.directory, name, &exists, &locked);
+        status_name(s_files.cell->peer[i].name, name, sizeof name);
+        int error = pn_port_probe(s_files.directory, name, &exists, &locked);
         while (locked && (pn_port_now() - begin < STALE_PEER_WAIT_MS * NS_PER_MS) && (pn_port_stop_signal() == 0)) {
             (void)pn_port_wait(-1, 10U * NS_PER_MS);
-            error = pn_port_probe(s.directory, name, &exists, &locked);
+            error = pn_port_probe(s_files.directory, name, &exists, &locked);
         }
         if (error != 0) {
             return fail_errno("read", name, error);
         }
         if (locked) {
             status_t status;
-            status_read(s.cell->peer[i].name, &status);
+            status_read(s_files.cell->peer[i].name, &status);
             return fail(true, "%s (pid %" PRIu64 ") of an earlier run is still alive in %s; stop it first",
-                        s.cell->peer[i].name, status.pid, s.options.directory);
+                        s_files.cell->peer[i].name, status.pid, s_files.options.directory);
         }
-        pn_port_remove(s.directory, name);
+        pn_port_remove(s_files.directory, name);
     }
     return true;
 }
 
 static bool clean_channels(void)
 {
-    for (uint32_t i = 0U; i < s.cell->channel_count; i++) {
-        const pn_cell_channel_t *const channel = &s.cell->channel[i];
+    for (uint32_t i = 0U; i < s_files.cell->channel_count; i++) {
+        const pn_cell_channel_t *const channel = &s_files.cell->channel[i];
         char text[PN_CHANNEL_REPORT];
         char name[NAME_SIZE];
         char shown[160];
         size_t length = 0U;
-        const int error = pn_port_read(s.directory, channel->file, s.buffer, sizeof s.buffer, &length);
-        const bool empty = (error == ENOENT) || ((length >= 1U) && (s.buffer[0] == '0') &&
-                                                 ((length == 1U) || (s.buffer[1] == '\n')));
+        const int error = pn_port_read(s_files.directory, channel->file, s_files.buffer, sizeof s_files.buffer, &length);
+        const bool empty = (error == ENOENT) || ((length >= 1U) && (s_files.buffer[0] == '0') &&
+                                                 ((length == 1U) || (s_files.buffer[1] == '\n')));
         if ((error != 0) && (error != ENOENT)) {
             return fail_errno("read", channel->file, error);
         }
         if (!empty) {
             (void)snprintf(text, sizeof text, "%s held %s, left by an earlier run: discarded", channel->file,
-                           pn_quote(s.buffer, length, shown, sizeof shown));
+                           pn_quote(s_files.buffer, length, shown, sizeof shown));
             notice(text);
         }
-        (void)snprintf(name, sizeof name, ".%s.%s.tmp", channel->file, s.cell->peer[channel->peer].name);
-        pn_port_remove(s.directory, name);
+        (void)snprintf(name, sizeof name, ".%s.%s.tmp", channel->file, s_files.cell->peer[channel->peer].name);
+        pn_port_remove(s_files.directory, name);
         if (!empty_file(i)) {
             return false;
         }
@@ -452,23 +452,23 @@ static bool clean_channels(void)
 
 static bool open_all(void)
 {
-    int error = pn_port_dir_open(s.options.directory, s.options.create, &s.directory);
+    int error = pn_port_dir_open(s_files.options.directory, s_files.options.create, &s_files.directory);
     if (error == ENOENT) {
         return fail(true, "the shared directory %s does not exist; make it (mkdir -p), or leave --dir out",
-                    s.options.directory);
+                    s_files.options.directory);
     }
     if (error != 0) {
-        return fail(true, "cannot open the shared directory %s: %s", s.options.directory, strerror(error));
+        return fail(true, "cannot open the shared directory %s: %s", s_files.options.directory, strerror(error));
     }
     if (!take_lock() || !await_stale_peers()) {
         return false;
     }
-    if (s.options.watch) {
-        error = pn_port_watch(s.options.directory, &s.watch);
+    if (s_files.options.watch) {
+        error = pn_port_watch(s_files.options.directory, &s_files.watch);
         if (error != 0) {
-            (void)snprintf(s.buffer, sizeof s.buffer, "no notices of changes in %s (%s): polling every %" PRIu64 " ms",
-                           s.options.directory, strerror(error), s.options.poll_ns / NS_PER_MS);
-            notice(s.buffer);
+            (void)snprintf(s_files.buffer, sizeof s_files.buffer, "no notices of changes in %s (%s): polling every %" PRIu64 " ms",
+                           s_files.options.directory, strerror(error), s_files.options.poll_ns / NS_PER_MS);
+            notice(s_files.buffer);
         }
     }
     return clean_channels() && files_announce(NULL, PN_PARTY_RUNNING, "");
@@ -477,14 +477,14 @@ static bool open_all(void)
 bool pn_files_open(const pn_cell_t *cell, const pn_files_options_t *options, pn_transport_t *out)
 {
     (void)memset(&s, 0, sizeof s);
-    s.cell = cell;
-    s.options = *options;
-    s.directory = -1;
-    s.status = -1;
-    s.watch = -1;
+    s_files.cell = cell;
+    s_files.options = *options;
+    s_files.directory = -1;
+    s_files.status = -1;
+    s_files.watch = -1;
     out->name = "files";
     out->self = NULL;
-    out->fault = &s.fault;
+    out->fault = &s_files.fault;
     out->read = files_read;
     out->accept = files_accept;
     out->clear = files_clear;
@@ -494,17 +494,17 @@ bool pn_files_open(const pn_cell_t *cell, const pn_files_options_t *options, pn_
     out->announce = files_announce;
     out->wait = files_wait;
     out->close = files_close;
-    (void)snprintf(s.session, sizeof s.session, "%08" PRIx32, pn_port_unique());
+    (void)snprintf(s_files.session, sizeof s_files.session, "%08" PRIx32, pn_port_unique());
     if (cell->channel_count > CHANNELS_MAX) {
         return fail(true, "%" PRIu32 " channels, more than the %u that this transport can carry", cell->channel_count,
                     CHANNELS_MAX);
     }
     for (uint32_t i = 0U; i < cell->channel_count; i++) {
-        const int length = snprintf(s.channel[i].temporary, NAME_SIZE, ".%s.%s.tmp", cell->channel[i].file, cell->side);
+        const int length = snprintf(s_files.channel[i].temporary, NAME_SIZE, ".%s.%s.tmp", cell->channel[i].file, cell->side);
         if ((length < 0) || ((size_t)length >= NAME_SIZE) || (strchr(cell->channel[i].file, '/') != NULL)) {
             return fail(true, "`%s` is no name for a channel's file", cell->channel[i].file);
         }
-        s.channel[i].dirty = true;
+        s_files.channel[i].dirty = true;
     }
     if (!open_all()) {
         files_close(NULL);
