@@ -476,7 +476,7 @@ static bool open_all(void)
 
 bool pn_files_open(const pn_cell_t *cell, const pn_files_options_t *options, pn_transport_t *out)
 {
-    (void)memset(&s, 0, sizeof s);
+    (void)memset(&s_files, 0, sizeof s_files);
     s_files.cell = cell;
     s_files.options = *options;
     s_files.directory = -1;

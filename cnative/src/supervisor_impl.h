@@ -30,7 +30,8 @@ typedef enum sup_exit {
 } sup_exit_t;
 
 typedef struct sup_options {
-    const char *directory;    /* NULL: the default */
+    const char *directory;
+    bool own_directory;       /* the default one: made when it is missing */
     const char *input;
     const char *trace;        /* NULL: none */
     bool dry_run;

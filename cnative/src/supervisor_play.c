@@ -108,6 +108,7 @@ int sup_fire_one(sup_t *sup, int32_t owner, uint32_t *transition)
         }
     }
     sup->fired++;
+    sup->cx.step = sup->fired;
     sup->fired_of[index]++;
     *transition = index;
     return 1;
