@@ -1,0 +1,249 @@
+"""The binding plan of a transition: an order of steps after which every variable has a value.
+
+Rule (SEMANTICS section 4): variables are bound by patterns on input arcs; then by guard equations
+with a pattern on one side and known variables on the other; the rest is enumerated where the
+colour set is small. Variables that occur on output arcs only are drawn at random (and enumerated
+in a state space). What is then left is an error.
+
+Example: `in P : (n, p)`, `in Q : k`, guard `[n < k, m = f p]`, output `(m, b)` with b of BOOL
+gives
+
+    BindTerm(arc 0, term 0), BindTerm(arc 1, term 0), BindEquation(guard 1, m, f p), BindRandom(b)
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from pn2code.diagnostics import Diagnostics, Note, Span
+from pn2code.ml.core import Apply, Builtin, Exp, Pat, RecordExp, Symbol
+from pn2code.net.codes import CODE_OUTPUT_BOUND, UNBOUND_VARIABLE
+from pn2code.net.enumerable import DECLARED, SMALL, size
+from pn2code.net.flat import (
+    ArcInscription,
+    ArcKind,
+    BindAll,
+    BindEquation,
+    BindRandom,
+    BindStep,
+    BindTerm,
+    CodeSegment,
+)
+from pn2code.net.terms import TermReader
+from pn2code.net.uses import NetVariables, Uses, merge, pattern_variables
+
+
+@dataclass(frozen=True, slots=True)
+class _Binder:
+    """A summand that can bind: its pattern's variables, and those that its delay needs besides."""
+
+    arc: int
+    term: int
+    variables: tuple[Symbol, ...]
+    needs: frozenset[Symbol]
+
+
+@dataclass(frozen=True, slots=True)
+class _Equation:
+    """A guard `pattern = value`, in one of its two directions."""
+
+    guard: int
+    pattern: Pat
+    variables: tuple[Symbol, ...]
+    value: Exp
+    needs: frozenset[Symbol]
+
+
+@dataclass(frozen=True, slots=True)
+class Parts:
+    """What of a transition matters for binding; arcs are (kind, inscription or None)."""
+
+    name: str
+    arcs: Sequence[tuple[ArcKind, ArcInscription | None]]
+    guards: tuple[Exp, ...]
+    delay: Exp | None
+    code: CodeSegment | None
+    code_span: Span | None
+
+
+class Planner:
+    """Makes plans.
+
+    Args:
+        declared: names of colour sets with `declare all`, enumerated at any size.
+    """
+
+    def __init__(
+        self,
+        variables: NetVariables,
+        terms: TermReader,
+        declared: frozenset[str],
+        d: Diagnostics,
+    ) -> None:
+        self.variables = variables
+        self.terms = terms
+        self.declared = declared
+        self.d = d
+
+    def plan(self, parts: Parts) -> tuple[tuple[Symbol, ...], tuple[BindStep, ...]] | None:
+        """The variables (sorted by name, code outputs last) and the steps; None after errors."""
+        inputs: list[Uses] = []
+        outputs: list[Uses] = []
+        for kind, inscription in parts.arcs:
+            if inscription is None:
+                continue
+            used = self.variables.of(inscription.value)
+            (outputs if kind is ArcKind.OUTPUT else inputs).append(used)
+        guards = [self.variables.of(g) for g in parts.guards]
+        code = parts.code
+        results = dict.fromkeys(code.outputs if code else ())
+        needed = merge([*inputs, *guards])
+        if not self.check_outputs(parts, results, needed):
+            return None
+        if code is not None and parts.code_span is not None:
+            needed = merge([needed, dict.fromkeys(code.inputs, parts.code_span)])
+        everything = merge([needed, *outputs, self.variables.of(parts.delay)])
+        free = {s: at for s, at in everything.items() if s not in results}
+        steps = self.steps(parts, needed, free)
+        if steps is None:
+            return None
+        ordered = sorted(free, key=lambda s: (s.name, s.uid))
+        return (*ordered, *results), steps
+
+    def check_outputs(self, parts: Parts, results: dict[Symbol, None], needed: Uses) -> bool:
+        """Outputs of a code segment may not be bound otherwise."""
+        clashes = [s for s in results if s in needed]
+        for s in clashes:
+            self.d.error(
+                CODE_OUTPUT_BOUND,
+                f"variable `{s.name}` is an output of the code segment of `{parts.name}`, "
+                "but it is also used on an input arc or in the guard",
+                needed[s],
+                hint="give the code segment's result another variable",
+            )
+        return not clashes
+
+    def steps(self, parts: Parts, needed: Uses, free: Uses) -> tuple[BindStep, ...] | None:
+        """The steps that bind `free`; those of `needed` must have values before the transition is enabled."""
+        binders = self.binders(parts)
+        equations = self.equations(parts)
+        bound: set[Symbol] = set()
+        steps: list[BindStep] = []
+        random = [s for s in free if s not in needed]
+        while True:
+            binder = _best(binders, bound)
+            if binder is not None:
+                steps.append(BindTerm(binder.arc, binder.term))
+                bound.update(binder.variables)
+                continue
+            equation = next(
+                (q for q in equations if q.needs <= bound and not bound.issuperset(q.variables)),
+                None,
+            )
+            if equation is not None:
+                steps.append(BindEquation(equation.guard, equation.pattern, equation.value))
+                bound.update(equation.variables)
+                continue
+            open_ = [s for s in needed if s in free and s not in bound]
+            choice = self.choose([s for s in open_ if self.is_small(s)], binders, equations, bound)
+            if choice is None:
+                break
+            steps.append(BindAll(choice))
+            bound.add(choice)
+        missing = [s for s in open_ if s not in bound]
+        for s in sorted(random, key=lambda s: (s.name, s.uid)):
+            if self.is_small(s):
+                steps.append(BindRandom(s))
+            else:
+                missing.append(s)
+        for s in missing:
+            self.report(parts, s, free[s])
+        return None if missing else tuple(steps)
+
+    def binders(self, parts: Parts) -> list[_Binder]:
+        """Summands of input inscriptions that are patterns with variables."""
+        found = []
+        for i, (_, inscription) in enumerate(parts.arcs):
+            for j, term in enumerate(inscription.terms if inscription else ()):
+                names = pattern_variables(term.pattern)
+                if names:
+                    needs = frozenset(self.variables.of(term.delay)) - frozenset(names)
+                    found.append(_Binder(i, j, names, needs))
+        return found
+
+    def equations(self, parts: Parts) -> list[_Equation]:
+        """Guards `a = b`, in each direction in which one side is a pattern."""
+        found = []
+        for i, guard in enumerate(parts.guards):
+            match guard:
+                case Apply(Builtin("="), RecordExp((("1", left), ("2", right)))):
+                    sides = ((left, right), (right, left))
+                case _:
+                    continue
+            for side, value in sides:
+                pattern = self.terms.pattern(side)
+                names = pattern_variables(pattern)
+                if pattern is not None and names:
+                    needs = frozenset(self.variables.of(value))
+                    if not needs & set(names):
+                        found.append(_Equation(i, pattern, names, value, needs))
+        return found
+
+    def choose(
+        self,
+        small: list[Symbol],
+        binders: list[_Binder],
+        equations: list[_Equation],
+        bound: set[Symbol],
+    ) -> Symbol | None:
+        """The variable to enumerate: rather one that lets something else bind."""
+        blocking: set[Symbol] = set()
+        for b in binders:
+            if not bound.issuperset(b.variables):
+                blocking |= b.needs - bound
+        for q in equations:
+            if not bound.issuperset(q.variables):
+                blocking |= q.needs - bound
+        order = sorted(small, key=lambda s: (s not in blocking, s.name, s.uid))
+        return order[0] if order else None
+
+    def is_small(self, s: Symbol) -> bool:
+        """Whether CPN Tools enumerates a variable of this colour set."""
+        if s.colset is None:
+            return False
+        limit = DECLARED if s.colset.name in self.declared else SMALL
+        return size(s.colset, limit) is not None
+
+    def report(self, parts: Parts, s: Symbol, at: Span) -> None:
+        """`unbound-variable`, with the summands that mention it but only test."""
+        notes: list[Note | str] = []
+        for kind, inscription in parts.arcs:
+            if kind is ArcKind.OUTPUT or inscription is None:
+                continue
+            for term in inscription.terms:
+                if term.pattern is not None or s not in self.variables.of(term.value):
+                    continue
+                reason = "it is not a pattern, so it only tests"
+                if self.variables.of(term.coefficient):
+                    reason = "its coefficient has a variable, so it only tests"
+                notes.append(Note(f"this summand does not bind `{s.name}`: {reason}", term.origin))
+        colset = s.colset.name if s.colset else "its colour set"
+        self.d.error(
+            UNBOUND_VARIABLE,
+            f"variable `{s.name}` of transition `{parts.name}` gets no value: no input arc or guard "
+            f"equation binds it, and `{colset}` is not a small colour set",
+            at,
+            label="needs a value",
+            notes=notes,
+            hint=f"put `{s.name}` on an input arc as a pattern, or add a guard `{s.name} = ...`, or give it a "
+            f"colour set with at most {SMALL} values",
+        )
+
+
+def _best(binders: list[_Binder], bound: set[Symbol]) -> _Binder | None:
+    """The next summand: rather one that shares a variable with those before, so that tokens are filtered early."""
+    ready = [b for b in binders if b.needs <= bound and not bound.issuperset(b.variables)]
+    sharing = [b for b in ready if not bound.isdisjoint(b.variables)]
+    candidates = sharing or ready
+    return candidates[0] if candidates else None

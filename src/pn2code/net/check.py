@@ -1,0 +1,312 @@
+"""Checking: `Net` -> `TypedNet`. Declarations and inscriptions are typed, binding plans are made.
+
+All independent errors are reported; elements that depend on something broken are passed over in silence.
+"""
+
+from __future__ import annotations
+
+import difflib
+import re
+from collections.abc import Mapping
+from dataclasses import replace
+
+from pn2code.diagnostics import Diagnostics, Note, SourceText
+from pn2code.ml.colsets import Colset, Kind
+from pn2code.ml.core import Exp
+from pn2code.ml.elaborate import ColsetSpec, Elaborator
+from pn2code.ml.types import Type, list_of, timed_of
+from pn2code.net.binding import Parts, Planner
+from pn2code.net.codes import (
+    ARC_EMPTY,
+    ARC_IGNORED,
+    PLACE_COLSET,
+    UNSUPPORTED_DECLARATION,
+    UNSUPPORTED_USE,
+)
+from pn2code.net.flat import ArcInscription, ArcKind, CodeSegment, Form
+from pn2code.net.linked import Arc, Net, Page, Place, Transition
+from pn2code.net.terms import TermReader
+from pn2code.net.typed import TypedArc, TypedNet, TypedPage, TypedPlace, TypedTransition
+from pn2code.net.uses import NetVariables
+from pn2code.reading.document import (
+    RawColset,
+    RawDeclaration,
+    RawGlobref,
+    RawMl,
+    RawOther,
+    RawUse,
+    RawVar,
+)
+
+NORMAL_PRIORITY = 1000
+"""Priority of a transition without one."""
+_NUMBER = re.compile(r" *[0-9]+ *")
+_UNTIMED = (Form.TOKEN, Form.MULTISET)
+_INITIAL_TIMED = (Form.TOKEN, Form.MULTISET, Form.TIMED_MULTISET, Form.TIMED_TOKEN)
+_ARC_TIMED = (Form.TOKEN, Form.MULTISET, Form.TIMED_TOKEN, Form.TIMED_MULTISET)
+
+
+def check(net: Net, d: Diagnostics, values: Mapping[str, str] | None = None) -> TypedNet | None:
+    """Type a net.
+
+    Args:
+        net: the linked net.
+        d: gets the errors.
+        values: replacements for `val` declarations: name -> CPN ML text.
+
+    Returns:
+        The typed net, or None if there were errors.
+    """
+    before = len(d.errors)
+    typed = _Checker(net, d, values or {}).typed()
+    return None if len(d.errors) > before else typed
+
+
+class _Checker:
+    def __init__(self, net: Net, d: Diagnostics, values: Mapping[str, str]) -> None:
+        self.net = net
+        self.d = d
+        self.elaborator = Elaborator(d, values=values, real_time=net.real_time)
+        self.broken: set[str] = set()
+        declared = {
+            c.name
+            for c in net.declarations
+            if isinstance(c, RawColset) and {"all", "'all"} & set(c.declare)
+        }
+        for declaration in net.declarations:
+            self.declare(declaration)
+        self.program = self.elaborator.program()
+        self.variables = NetVariables(self.program.variables)
+        self.terms = TermReader(self.program, self.variables, d)
+        self.planner = Planner(self.variables, self.terms, frozenset(declared), d)
+
+    def declare(self, declaration: RawDeclaration) -> None:
+        """Hand one declaration to the elaborator."""
+        e = self.elaborator
+        match declaration:
+            case RawColset():
+                spec = ColsetSpec(
+                    name=declaration.name,
+                    kind=declaration.kind,
+                    ids=declaration.ids,
+                    fields=declaration.fields,
+                    texts=declaration.texts,
+                    timed=declaration.timed,
+                    by_predicate=declaration.by_predicate,
+                    declare=declaration.declare,
+                    origin=declaration.origin,
+                )
+                if e.colset(spec) is None:
+                    self.broken.add(declaration.name)
+                else:
+                    self.broken.discard(declaration.name)
+            case RawVar():
+                e.variables(declaration.names, declaration.type, declaration.origin)
+            case RawMl():
+                e.declarations(declaration.text)
+            case RawGlobref():
+                e.globref(declaration.name, declaration.text, declaration.origin)
+            case RawUse():
+                self.d.error(
+                    UNSUPPORTED_USE,
+                    f"`use {declaration.text.text}` is not supported",
+                    declaration.text.span(),
+                    hint="copy the declarations of that file into the net",
+                )
+            case RawOther():
+                shown = " ".join(declaration.text.text.split())[:60]
+                self.d.error(
+                    UNSUPPORTED_DECLARATION,
+                    f"a declaration of kind `{declaration.tag}` is not supported: `{shown}`",
+                    declaration.origin,
+                    hint="write it as a colour set, variable, reference or CPN ML declaration",
+                )
+
+    def typed(self) -> TypedNet:
+        pages = tuple(self.page(p) for p in self.net.pages)
+        return TypedNet(
+            net=self.net,
+            program=self.program,
+            pages=pages,
+            prime_pages=self.net.prime_pages,
+            fusions=self.net.fusions,
+            real_time=self.net.real_time,
+        )
+
+    def page(self, page: Page) -> TypedPage:
+        colsets = {p.id: self.colset(p) for p in page.places}
+        places = []
+        for place in page.places:
+            colset = colsets[place.id]
+            if colset is not None:
+                places.append(self.place(place, colset))
+        names = {p.id: p for p in page.places}
+        transitions = [self.transition(t, colsets, names) for t in page.transitions]
+        return TypedPage(
+            id=page.id,
+            name=page.name,
+            places=tuple(places),
+            transitions=tuple(t for t in transitions if t is not None),
+            substitutions=page.substitutions,
+            origin=page.origin,
+        )
+
+    def colset(self, place: Place) -> Colset | None:
+        """Colour set of a place; UNIT where none is written."""
+        name = place.colset.text.text if place.colset else "UNIT"
+        colset = self.program.colsets.get(name)
+        if colset is not None or name in self.broken:
+            return colset
+        near = difflib.get_close_matches(name, self.program.colsets, n=1)
+        hint = f"did you mean `{near[0]}`?" if near else f"declare `colset {name} = ...;`"
+        if place.colset is None:
+            self.d.error(
+                PLACE_COLSET,
+                f"place `{place.name}` has no colour set, and `UNIT` is not declared",
+                place.origin,
+                hint="write a colour set at the place, or declare `colset UNIT = unit;`",
+            )
+        else:
+            self.d.error(
+                PLACE_COLSET,
+                f"place `{place.name}` has the unknown colour set `{name}`",
+                place.colset.text.span(),
+                label="not declared",
+                hint=hint,
+            )
+        return None
+
+    def place(self, place: Place, colset: Colset) -> TypedPlace:
+        text = place.initial_marking.text if place.initial_marking else None
+        initial: tuple[Exp, Form] | None = None
+        if text is not None:
+            forms = _INITIAL_TIMED if colset.timed else _UNTIMED
+            initial = self.inscription(_unit_number(text, colset), colset, forms, False)
+        return TypedPlace(
+            id=place.id,
+            name=place.name,
+            colset=colset,
+            initial=initial,
+            initial_text=text.text if text else "",
+            port=place.port,
+            fusion=place.fusion,
+            origin=place.origin,
+        )
+
+    def inscription(
+        self, text: SourceText, colset: Colset, forms: tuple[Form, ...], output: bool
+    ) -> tuple[Exp, Form] | None:
+        """The expression and the first form that fits it; None after an error."""
+        types = [_form_type(f, colset.type) for f in forms]
+        found = self.elaborator.expression(text, types, expected_name=colset.name, output=output)
+        return None if found is None else (found[1], forms[found[0]])
+
+    def transition(
+        self, t: Transition, colsets: dict[str, Colset | None], places: dict[str, Place]
+    ) -> TypedTransition | None:
+        before = len(self.d.errors)
+        arcs: list[TypedArc] = []
+        complete = True
+        for arc in t.arcs:
+            colset = colsets[arc.place]
+            if colset is None:
+                complete = False
+                continue
+            typed = self.arc(arc, places[arc.place], colset)
+            if typed is None:
+                complete = False
+            else:
+                arcs.append(typed)
+        guards = self.elaborator.guard(t.guard.text) if t.guard else ()
+        delay = self.elaborator.delay(t.delay.text, self.net.real_time) if t.delay else None
+        priority = self.elaborator.priority(t.priority.text) if t.priority else NORMAL_PRIORITY
+        code = None
+        if t.code is not None:
+            segment = self.elaborator.code_segment(t.code.text)
+            if segment is not None:
+                origin = t.code.text.origin
+                code = CodeSegment(segment.inputs, segment.outputs, segment.action, origin)
+        if not complete or guards is None or priority is None or len(self.d.errors) > before:
+            return None
+        parts = Parts(
+            name=t.name,
+            arcs=[(a.kind, a.inscription) for a in arcs],
+            guards=guards,
+            delay=delay,
+            code=code,
+            code_span=t.code.text.span() if t.code else None,
+        )
+        planned = self.planner.plan(parts)
+        if planned is None:
+            return None
+        variables, plan = planned
+        return TypedTransition(
+            id=t.id,
+            name=t.name,
+            variables=variables,
+            guards=guards,
+            plan=plan,
+            arcs=tuple(arcs),
+            delay=delay,
+            code=code,
+            priority=priority,
+            origin=t.origin,
+        )
+
+    def arc(self, arc: Arc, place: Place, colset: Colset) -> TypedArc | None:
+        if arc.kind in (ArcKind.INHIBITOR, ArcKind.RESET):
+            if arc.inscription is not None:
+                self.d.warning(
+                    ARC_IGNORED,
+                    f"the inscription of {arc.kind.value} {arc.origin.element} has no effect",
+                    arc.inscription.text.span(),
+                    hint="remove the inscription",
+                )
+            return TypedArc(arc.id, arc.kind, arc.place, None, arc.origin)
+        if arc.inscription is not None:
+            text = _unit_number(arc.inscription.text, colset)
+        elif _is_unit(colset):
+            text = SourceText("1`()", replace(arc.origin, part="inscription"))
+        else:
+            self.d.error(
+                ARC_EMPTY,
+                f"{arc.origin.element} has no inscription",
+                arc.origin,
+                notes=[Note(f"place `{place.name}` has colour set `{colset.name}`", place.origin)],
+                hint=f"write which tokens of `{colset.name}` it moves",
+            )
+            return None
+        forms = _ARC_TIMED if colset.timed else _UNTIMED
+        found = self.inscription(text, colset, forms, arc.kind is ArcKind.OUTPUT)
+        if found is None:
+            return None
+        value, form = found
+        terms = () if arc.kind is ArcKind.OUTPUT else self.terms.terms(value, form)
+        if terms is None:
+            return None
+        inscription = ArcInscription(value, form, terms, text.origin)
+        return TypedArc(arc.id, arc.kind, arc.place, inscription, arc.origin)
+
+
+def _form_type(form: Form, t: Type) -> Type:
+    match form:
+        case Form.TOKEN:
+            return t
+        case Form.MULTISET:
+            return list_of(t)
+        case Form.TIMED_TOKEN:
+            return timed_of(t)
+        case Form.TIMED_MULTISET:
+            return list_of(timed_of(t))
+
+
+def _is_unit(colset: Colset) -> bool:
+    """Whether `()` is its one value."""
+    return colset.resolved.kind is Kind.UNIT and not colset.resolved.names
+
+
+def _unit_number(text: SourceText, colset: Colset) -> SourceText:
+    """CPN Tools' editor shows 3`() as 3 on places of colour set UNIT."""
+    if _is_unit(colset) and _NUMBER.fullmatch(text.text):
+        return SourceText(text.text.strip() + "`()", text.origin, text.marks)
+    return text

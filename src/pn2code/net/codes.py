@@ -1,0 +1,120 @@
+"""Diagnostic codes of linking, checking and flattening."""
+
+from pn2code.diagnostics.codes import register
+
+SUBPAGE_UNKNOWN = register(
+    "subpage-unknown",
+    "a substitution transition stands for a page that does not exist",
+    "The substitution transition names its page by id, and the file has no page of that id.",
+)
+PAGE_RECURSION = register(
+    "page-recursion",
+    "a page contains itself",
+    "A page's substitution transitions may not lead, directly or over other pages, back to the "
+    "page: the net would be infinite.",
+)
+PORT_UNASSIGNED = register(
+    "port-unassigned",
+    "a port has no socket",
+    "A port place of a page is not assigned to a place next to the substitution transition. As in "
+    "CPN Tools it is then an ordinary place of its own, which is rarely what was meant.",
+)
+PORT_ASSIGNMENT = register(
+    "port-assignment",
+    "a port assignment cannot be used",
+    "An assignment pairs a port place of the subpage with a place beside the substitution "
+    "transition. One that names something else is ignored; where a port is assigned twice, the "
+    "last assignment counts, as in CPN Tools.",
+)
+PORT_COLSET = register(
+    "port-colset",
+    "port and socket have different colour sets",
+    "A port and its socket are one place, so they need the same colour set.",
+)
+PORT_INITIAL = register(
+    "port-initial",
+    "the initial marking of a port is not used",
+    "A port and its socket are one place with one initial marking: the socket's, as in CPN Tools.",
+)
+FUSION_MISMATCH = register(
+    "fusion-mismatch",
+    "places of a fusion set differ",
+    "All places of a fusion set are one place, so they need the same colour set and the same "
+    "initial marking.",
+)
+FUSION_MEMBER = register(
+    "fusion-member",
+    "a fusion set and its places do not agree",
+    "A fusion set lists a place that does not exist, or a place names a fusion set that does not "
+    "list it.",
+)
+SUBSTITUTION_INSCRIPTION = register(
+    "substitution-inscription",
+    "an inscription of a substitution transition has no effect",
+    "A substitution transition stands for a page and never fires itself, so its guard, delay, "
+    "priority and code segment and its arcs' inscriptions mean nothing.",
+)
+UNSUPPORTED_CHANNEL = register(
+    "unsupported-channel",
+    "synchronous channels of CPN Tools are not supported",
+    "CPN Tools 4 can synchronise transitions over channels (`ch.!x`, `ch.?y`), an experimental "
+    "feature. Merge the transitions, or use a place between them.",
+)
+UNSUPPORTED_USE = register(
+    "unsupported-use",
+    "`use` of further files is not supported",
+    '`use "file.sml"` reads declarations from another file. Copy the declarations into the net.',
+)
+UNSUPPORTED_DECLARATION = register(
+    "unsupported-declaration",
+    "a kind of declaration is not supported",
+    "The declaration block has an element that is not a colour set, variable, reference or CPN ML "
+    "text: a channel, or a declaration that CPN Tools itself could not read and kept as raw text.",
+)
+UNSUPPORTED_TIMED_INPUT = register(
+    "unsupported-timed-input",
+    "this form of timed input inscription is not supported",
+    "On input arcs pn2code understands sums of `coefficient`value` with `@+` or `@++` delays. "
+    "Timed multi-sets computed in another way, or with absolute time stamps `@`, are not "
+    "supported there.",
+)
+PLACE_COLSET = register(
+    "place-colset",
+    "the colour set of a place is not declared",
+    "The type inscription of a place must be the name of a declared colour set. A place without "
+    "one has UNIT, which must then be declared too.",
+)
+ARC_EMPTY = register(
+    "arc-empty",
+    "an arc has no inscription",
+    "Arcs need an inscription that says which tokens they move; only at places of colour set UNIT "
+    "does an empty one mean 1`().",
+)
+ARC_IGNORED = register(
+    "arc-inscription-ignored",
+    "the inscription of an inhibitor or reset arc has no effect",
+    "Inhibitor arcs test that a place has no tokens and reset arcs empty it; an inscription means "
+    "nothing there.",
+)
+UNBOUND_VARIABLE = register(
+    "unbound-variable",
+    "a variable of a transition gets no value",
+    "Each variable of a transition is bound by an input arc whose inscription (or a summand of "
+    "it) is a pattern with the variable, by a guard equation `variable = expression`, by "
+    "enumeration if its colour set has at most 100 values, or by the output of the code segment. "
+    "Function calls, arithmetic and `if` on an input arc only test, and so do summands whose "
+    "coefficient contains a variable.",
+)
+CODE_OUTPUT_BOUND = register(
+    "code-output-bound",
+    "an output of a code segment is bound already",
+    "Variables in `output (..)` of a code segment get their values from its action, so they may "
+    "not occur in the guard or on input arcs.",
+)
+NET_TOO_LARGE = register(
+    "net-too-large",
+    "the net has too many page instances",
+    "Each substitution transition makes an instance of its page, and pages nest, so a small file "
+    "can describe an enormous net. pn2code refuses nets with more elements than it could ever "
+    "run.",
+)

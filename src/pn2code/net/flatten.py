@@ -1,0 +1,255 @@
+"""Flattening: `TypedNet` -> `FlatNet`.
+
+Pages become instances; ports merge with their sockets, the places of a fusion set with each other.
+
+Example: page `Robot` used by the substitution transitions `Robot1` and `Robot2` of page `Top`
+gives transitions "Top.Robot1.Accept" and "Top.Robot2.Accept"; port `Flag` of the first is the
+place "Top.flag1" if that is its socket.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Sequence
+from dataclasses import replace
+from pathlib import Path
+
+from pn2code.diagnostics import Diagnostics, Note, Origin
+from pn2code.net.codes import FUSION_MISMATCH, NET_TOO_LARGE, PORT_COLSET, PORT_INITIAL
+from pn2code.net.flat import FlatArc, FlatNet, FlatPlace, FlatTransition
+from pn2code.net.instances import PageInstance, count_elements, expand, unique_names
+from pn2code.net.typed import TypedNet, TypedPlace
+
+MAX_ELEMENTS = 500_000
+"""Places and transitions of a flat net."""
+
+Key = tuple[int, str]
+"""A place instance: index of the page instance, place id."""
+
+
+def flatten(net: TypedNet, d: Diagnostics) -> FlatNet | None:
+    """Expand the hierarchy; None after errors."""
+    total = count_elements(net)
+    if total > MAX_ELEMENTS:
+        d.error(
+            NET_TOO_LARGE,
+            f"the hierarchy expands to {total:,} elements, more than the {MAX_ELEMENTS:,} allowed",
+            Origin(net.net.document.file),
+            hint="use fewer substitution transitions",
+        )
+        return None
+    before = len(d.errors)
+    flat = _Flattener(net, expand(net), d).flat()
+    return None if len(d.errors) > before else flat
+
+
+class _Flattener:
+    def __init__(self, net: TypedNet, instances: Sequence[PageInstance], d: Diagnostics) -> None:
+        self.net = net
+        self.instances = instances
+        self.d = d
+        self.typed: dict[Key, TypedPlace] = {
+            (i.index, p.id): p for i in instances for p in i.page.places
+        }
+        self.order = {key: n for n, key in enumerate(self.typed)}
+        self.fusion_order = {f.name: n for n, f in enumerate(net.fusions)}
+
+    def flat(self) -> FlatNet:
+        groups, group_of = self.merge()
+        places = tuple(self.places(groups))
+        transitions = tuple(self.transitions(group_of))
+        document = self.net.net.document
+        arcs = sum(len(t.arcs) for t in transitions)
+        return FlatNet(
+            name=c_stem(document.file),
+            file=document.file,
+            sha256=document.sha256,
+            program=self.net.program,
+            places=places,
+            transitions=transitions,
+            timed=any(p.colset.timed for p in places),
+            real_time=self.net.real_time,
+            statistics={
+                "pages": len(self.net.pages),
+                "page_instances": len(self.instances),
+                "places": len(places),
+                "place_instances": len(self.typed),
+                "transitions": len(transitions),
+                "arcs": arcs,
+                "fusion_sets": len(self.net.fusions),
+                "colour_sets": len(self.net.program.colsets),
+                "variables": len(self.net.program.variables),
+            },
+        )
+
+    def merge(self) -> tuple[list[list[Key]], dict[Key, int]]:
+        """Groups of place instances that are one place, topmost member first, and the group of each instance."""
+        top: dict[Key, Key] = {}
+        for instance in self.instances:
+            for place in instance.page.places:
+                key = (instance.index, place.id)
+                socket = instance.sockets.get(place.id)
+                if socket is None:
+                    top[key] = key
+                else:
+                    # Parents come before their children, so the socket's own top is known.
+                    above = (instance.parent, socket)
+                    top[key] = top[above]
+                    self.check_port(place, self.typed[above], instance)
+        first_of_fusion: dict[str, Key] = {}
+        parent = {key: key for key in top}
+
+        def root(key: Key) -> Key:
+            while parent[key] != key:
+                parent[key] = parent[parent[key]]
+                key = parent[key]
+            return key
+
+        for key, above in top.items():
+            parent[root(key)] = root(above)
+        for key, place in self.typed.items():
+            if place.fusion:
+                first = first_of_fusion.setdefault(place.fusion, key)
+                a, b = root(first), root(key)
+                if a != b:
+                    low, high = sorted((a, b), key=self.order.__getitem__)
+                    parent[high] = low
+                    self.check_fusion(place.fusion, self.typed[top[first]], self.typed[top[key]])
+        members: dict[Key, list[Key]] = {}
+        for key in self.typed:
+            members.setdefault(root(key), []).append(key)
+        groups = [self.topmost_first(g, top) for g in members.values()]
+        return groups, {key: n for n, group in enumerate(groups) for key in group}
+
+    def topmost_first(self, group: list[Key], top: dict[Key, Key]) -> list[Key]:
+        return sorted(group, key=lambda k: (top[k] != k, self.order[k]))
+
+    def check_port(self, port: TypedPlace, socket: TypedPlace, instance: PageInstance) -> None:
+        if (
+            port.colset.resolved != socket.colset.resolved
+            or port.colset.timed != socket.colset.timed
+        ):
+            self.d.error(
+                PORT_COLSET,
+                f"port `{port.name}` has colour set `{port.colset.name}`, but its socket "
+                f"`{socket.name}` has `{socket.colset.name}`",
+                replace(port.origin, instance=instance.path),
+                notes=[Note("the socket is declared here", socket.origin)],
+                hint="give both the same colour set",
+            )
+        elif port.initial_text and _squeeze(port.initial_text) != _squeeze(socket.initial_text):
+            # no instance: said once, however often the page is used
+            self.d.warning(
+                PORT_INITIAL,
+                f"the initial marking of port `{port.name}` is not used: that of its socket "
+                f"`{socket.name}` counts",
+                port.origin,
+                notes=[Note("the socket is declared here", socket.origin)],
+                hint="remove the port's initial marking, or write the same at both",
+            )
+
+    def check_fusion(self, name: str, first: TypedPlace, other: TypedPlace) -> None:
+        colsets = first.colset.name, other.colset.name
+        what = ""
+        if colsets[0] != colsets[1] and first.colset.resolved != other.colset.resolved:
+            what = f"colour sets, `{colsets[0]}` and `{colsets[1]}`"
+        elif _squeeze(first.initial_text) != _squeeze(other.initial_text):
+            texts = [f"`{t}`" if t else "none" for t in (first.initial_text, other.initial_text)]
+            what = f"initial markings, {texts[0]} and {texts[1]}"
+        if what:
+            self.d.error(
+                FUSION_MISMATCH,
+                f"places `{first.name}` and `{other.name}` of fusion set `{name}` have different {what}",
+                other.origin,
+                notes=[Note(f"`{first.name}` is declared here", first.origin)],
+                hint="make them equal",
+            )
+
+    def places(self, groups: list[list[Key]]) -> list[FlatPlace]:
+        short = {p.id: unique_names((x.id, x.name) for x in p.places) for p in self.net.pages}
+        proposals: list[tuple[str, str]] = []
+        for n, group in enumerate(groups):
+            instance = self.instances[group[0][0]]
+            fusions = {self.typed[k].fusion for k in group} - {""}
+            name = instance.name(short[instance.page.id][group[0][1]])
+            if fusions:
+                name = "Fusion." + min(fusions, key=lambda f: self.fusion_order[f])
+            proposals.append((str(n), name))
+        names = unique_names(proposals)
+        found = []
+        for n, group in enumerate(groups):
+            instance = self.instances[group[0][0]]
+            first = self.typed[group[0]]
+            found.append(
+                FlatPlace(
+                    index=n,
+                    name=names[str(n)],
+                    short=first.name,
+                    page=instance.page.name,
+                    instance=instance.path,
+                    instance_number=instance.number,
+                    id=first.id,
+                    colset=first.colset,
+                    initial=first.initial,
+                    origins=tuple(
+                        replace(self.typed[k].origin, instance=self.instances[k[0]].path)
+                        for k in group
+                    ),
+                    member_ids=tuple((k[1], self.instances[k[0]].path) for k in group),
+                )
+            )
+        return found
+
+    def transitions(self, group_of: dict[Key, int]) -> list[FlatTransition]:
+        found: list[FlatTransition] = []
+        short = {p.id: unique_names((x.id, x.name) for x in p.transitions) for p in self.net.pages}
+        proposals = [
+            (f"{i.index}/{t.id}", i.name(short[i.page.id][t.id]))
+            for i in self.instances
+            for t in i.page.transitions
+        ]
+        names = unique_names(proposals)
+        for instance in self.instances:
+            for t in instance.page.transitions:
+                arcs = tuple(
+                    FlatArc(
+                        id=a.id,
+                        kind=a.kind,
+                        place=group_of[(instance.index, a.place)],
+                        inscription=a.inscription,
+                        origin=replace(a.origin, instance=instance.path),
+                    )
+                    for a in t.arcs
+                )
+                found.append(
+                    FlatTransition(
+                        index=len(found),
+                        name=names[f"{instance.index}/{t.id}"],
+                        short=t.name,
+                        page=instance.page.name,
+                        instance=instance.path,
+                        instance_number=instance.number,
+                        id=t.id,
+                        variables=t.variables,
+                        guards=t.guards,
+                        plan=t.plan,
+                        arcs=arcs,
+                        delay=t.delay,
+                        code=t.code,
+                        priority=t.priority,
+                        origin=replace(t.origin, instance=instance.path),
+                    )
+                )
+        return found
+
+
+def c_stem(file: str) -> str:
+    """The file name's stem as a C identifier; "net" when nothing of it remains."""
+    stem = re.sub(r"[^A-Za-z0-9_]+", "_", Path(file).stem).strip("_").lower()
+    if not stem:
+        return "net"
+    return f"net_{stem}" if stem[0].isdigit() else stem
+
+
+def _squeeze(text: str) -> str:
+    return "".join(text.split())

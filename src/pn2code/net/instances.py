@@ -1,0 +1,97 @@
+"""Page instances: the tree that substitution transitions span, with names and numbers.
+
+Order: depth first from each prime page in order of the file; an instance comes before those below
+it, and these in the order of their substitution transitions. Instances of one page are numbered
+from 1 in that order, as CPN Tools does.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
+
+from pn2code.net.typed import TypedNet, TypedPage
+
+
+@dataclass(frozen=True, slots=True)
+class PageInstance:
+    """One instance of a page.
+
+    Args:
+        index: position in the order.
+        page: the page.
+        path: names from the prime page down, joined with "/": "Top/Robot1".
+        number: CPN Tools' number among the instances of the page.
+        parent: index of the instance with the substitution transition; -1 for prime pages.
+        sockets: port id -> socket id on the parent's page.
+    """
+
+    index: int
+    page: TypedPage
+    path: str
+    number: int
+    parent: int
+    sockets: Mapping[str, str]
+
+    def name(self, element: str) -> str:
+        """Unique readable name of an element: "Top.Robot1.Accept"."""
+        return f"{self.path.replace('/', '.')}.{element}"
+
+
+def count_elements(net: TypedNet) -> int:
+    """How many places and transitions the flat net would have, before merging; cheap however many that are."""
+    pages = {p.id: p for p in net.pages}
+    totals: dict[str, int] = {}
+    for start in net.pages:
+        # Post-order with an explicit stack; recursion of pages has been refused by the linker.
+        stack = [(start.id, False)]
+        while stack:
+            identity, expanded = stack.pop()
+            if identity in totals:
+                continue
+            page = pages[identity]
+            below = [s.subpage for s in page.substitutions]
+            if expanded or not below:
+                own = len(page.places) + len(page.transitions) + 1
+                totals[identity] = own + sum(totals[b] for b in below)
+            else:
+                stack.append((identity, True))
+                stack.extend((b, False) for b in below)
+    return sum(totals[p] for p in net.prime_pages)
+
+
+def expand(net: TypedNet) -> list[PageInstance]:
+    """All page instances, in order."""
+    pages = {p.id: p for p in net.pages}
+    numbers: dict[str, int] = {}
+    found: list[PageInstance] = []
+    prime = [pages[i] for i in net.prime_pages]
+    names = unique_names((p.id, p.name) for p in prime)
+    stack = [(p.id, names[p.id], -1, dict[str, str]()) for p in reversed(prime)]
+    segments = {p.id: unique_names((s.id, s.name) for s in p.substitutions) for p in net.pages}
+    while stack:
+        identity, path, parent, sockets = stack.pop()
+        page = pages[identity]
+        numbers[identity] = numbers.get(identity, 0) + 1
+        index = len(found)
+        found.append(PageInstance(index, page, path, numbers[identity], parent, sockets))
+        for s in reversed(page.substitutions):
+            below = f"{path}/{segments[identity][s.id]}"
+            stack.append((s.subpage, below, index, {q.port: q.socket for q in s.ports}))
+    return found
+
+
+def unique_names(items: Iterable[tuple[str, str]]) -> dict[str, str]:
+    """Names by id, made unique: of equal names the later ones get `_2`, `_3`, ... (skipping names that are taken)."""
+    listed = list(items)
+    taken = {name for _, name in listed}
+    used: set[str] = set()
+    result: dict[str, str] = {}
+    for identity, name in listed:
+        chosen, n = name, 1
+        while chosen in used or (n > 1 and chosen in taken):
+            n += 1
+            chosen = f"{name}_{n}"
+        used.add(chosen)
+        result[identity] = chosen
+    return result

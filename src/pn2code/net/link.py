@@ -1,0 +1,305 @@
+"""Linking: `Document` -> `Net`. References by id become checked references; nothing is typed yet.
+
+Example: `subst subpage="ID7" portsock="(ID8,ID3)"` becomes a `SubstitutionTransition` whose
+`ports` say that place ID8 of page ID7 is place ID3 of this page; page ID7 is then no longer a
+prime page.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from pn2code.diagnostics import Diagnostics, Note
+from pn2code.net.codes import (
+    FUSION_MEMBER,
+    PAGE_RECURSION,
+    PORT_ASSIGNMENT,
+    PORT_UNASSIGNED,
+    SUBPAGE_UNKNOWN,
+    SUBSTITUTION_INSCRIPTION,
+    UNSUPPORTED_CHANNEL,
+)
+from pn2code.net.flat import ArcKind
+from pn2code.net.linked import (
+    Arc,
+    FusionSet,
+    Net,
+    Page,
+    Place,
+    PortSocket,
+    SubstitutionTransition,
+    Transition,
+)
+from pn2code.reading.document import (
+    Document,
+    Inscription,
+    RawArc,
+    RawBlock,
+    RawDeclaration,
+    RawPage,
+    RawPlace,
+    RawTransition,
+)
+
+_KINDS = {
+    "ptot": ArcKind.INPUT,
+    "ttop": ArcKind.OUTPUT,
+    "bothdir": ArcKind.BOTH,
+    "inhibitor": ArcKind.INHIBITOR,
+    "reset": ArcKind.RESET,
+}
+_PORTS = {"in": "in", "out": "out", "i/o": "io", "io": "io", "inout": "io", "in/out": "io"}
+_EMPTY_GUARD = {"[]"}
+_EMPTY_DELAY = {"@+", "@++"}
+_EMPTY_CODE = {"input();output();action();", "input();output();action()"}
+
+
+def link(document: Document, d: Diagnostics) -> Net | None:
+    """Resolve the references of a document; None after errors."""
+    before = len(d.errors)
+    linker = _Linker(document, d)
+    net = linker.net()
+    return None if len(d.errors) > before else net
+
+
+class _Linker:
+    def __init__(self, document: Document, d: Diagnostics) -> None:
+        self.document = document
+        self.d = d
+        self.pages = {p.id: p for p in document.pages}
+        self.places = {place.id: place for page in document.pages for place in page.places}
+
+    def net(self) -> Net:
+        fusions, fusion_of = self.fusions()
+        pages = tuple(self.page(p, fusion_of) for p in self.document.pages)
+        self.check_recursion(pages)
+        used = {s.subpage for p in pages for s in p.substitutions}
+        options = {k.lower(): v for k, v in self.document.options.items()}
+        return Net(
+            document=self.document,
+            declarations=tuple(_flatten(self.document.globbox)),
+            pages=pages,
+            prime_pages=tuple(p.id for p in pages if p.id not in used),
+            fusions=fusions,
+            real_time=options.get("realtimestamp", "").lower() == "true",
+        )
+
+    def page(self, page: RawPage, fusion_of: dict[str, str]) -> Page:
+        arcs: dict[str, list[RawArc]] = {}
+        for arc in page.arcs:
+            arcs.setdefault(arc.transition, []).append(arc)
+        transitions, substitutions = [], []
+        for t in page.transitions:
+            if t.substitution is not None:
+                found = self.substitution(page, t, arcs.get(t.id, []))
+                if found is not None:
+                    substitutions.append(found)
+            else:
+                transitions.append(self.transition(t, arcs.get(t.id, [])))
+        return Page(
+            id=page.id,
+            name=page.name,
+            places=tuple(self.place(p, fusion_of) for p in page.places),
+            transitions=tuple(transitions),
+            substitutions=tuple(substitutions),
+            origin=page.origin,
+        )
+
+    def place(self, place: RawPlace, fusion_of: dict[str, str]) -> Place:
+        port = _PORTS.get(place.port.lower(), "")
+        if place.port and not port:
+            self.d.warning(
+                PORT_ASSIGNMENT,
+                f"place `{place.name}` has the unknown port type `{place.port}`, taken for I/O",
+                place.origin,
+                hint="port types are In, Out and I/O",
+            )
+            port = "io"
+        return Place(
+            id=place.id,
+            name=place.name,
+            colset=place.type,
+            initial_marking=place.initial,
+            port=port,
+            fusion=fusion_of.get(place.id, ""),
+            origin=place.origin,
+            layout=place.layout,
+        )
+
+    def transition(self, t: RawTransition, arcs: list[RawArc]) -> Transition:
+        if t.channel is not None:
+            self.d.error(
+                UNSUPPORTED_CHANNEL,
+                f"transition `{t.name}` uses a synchronous channel, which is not supported",
+                t.channel.text.span(),
+                hint="use a place between the transitions, or merge them",
+            )
+        return Transition(
+            id=t.id,
+            name=t.name,
+            guard=_unless(t.guard, _EMPTY_GUARD),
+            delay=_unless(t.delay, _EMPTY_DELAY),
+            code=_unless(t.code, _EMPTY_CODE),
+            priority=t.priority,
+            arcs=tuple(
+                Arc(a.id, _KINDS[a.orientation], a.place, a.inscription, a.origin, a.layout)
+                for a in arcs
+            ),
+            origin=t.origin,
+            layout=t.layout,
+        )
+
+    def substitution(
+        self, page: RawPage, t: RawTransition, arcs: list[RawArc]
+    ) -> SubstitutionTransition | None:
+        raw = t.substitution
+        assert raw is not None
+        for text in (
+            _unless(t.guard, _EMPTY_GUARD),
+            _unless(t.delay, _EMPTY_DELAY),
+            _unless(t.code, _EMPTY_CODE),
+        ):
+            if text is not None:
+                self.d.warning(
+                    SUBSTITUTION_INSCRIPTION,
+                    f"the {text.text.origin.part} of substitution transition `{t.name}` has no effect",
+                    text.text.span(),
+                    hint="write it at a transition of the subpage",
+                )
+        target = self.pages.get(raw.subpage)
+        if target is None:
+            self.d.error(
+                SUBPAGE_UNKNOWN,
+                f"substitution transition `{t.name}` stands for page `{raw.subpage}`, "
+                "which does not exist",
+                raw.origin,
+                hint="assign a subpage again",
+            )
+            return None
+        ports = {p.id: p for p in target.places if p.port}
+        own = {p.id: p for p in page.places}
+        pairs: dict[str, str] = {}
+        for port, socket in raw.portsock:
+            wrong = ""
+            if port not in ports:
+                wrong = f"`{port}` is not a port of page `{target.name}`"
+            elif socket not in own:
+                wrong = f"`{socket}` is not a place of page `{page.name}`"
+            if wrong:
+                self.d.warning(
+                    PORT_ASSIGNMENT,
+                    f"a port assignment of `{t.name}` is ignored: {wrong}",
+                    raw.origin,
+                    hint="assign the ports of this substitution transition again",
+                )
+                continue
+            if pairs.get(port, socket) != socket:
+                self.d.warning(
+                    PORT_ASSIGNMENT,
+                    f"port `{ports[port].name}` of `{t.name}` is assigned to `{own[pairs[port]].name}` and "
+                    f"to `{own[socket].name}`; the last counts",
+                    raw.origin,
+                    hint="remove one of the assignments",
+                )
+            pairs[port] = socket
+        for port, place in ports.items():
+            if port not in pairs:
+                self.d.warning(
+                    PORT_UNASSIGNED,
+                    f"port `{place.name}` of page `{target.name}` has no socket at `{t.name}`",
+                    raw.origin,
+                    notes=[Note("the port is declared here", place.origin)],
+                    hint="assign the port to a place beside the substitution transition",
+                )
+        return SubstitutionTransition(
+            id=t.id,
+            name=t.name,
+            subpage=raw.subpage,
+            ports=tuple(PortSocket(p, s) for p, s in pairs.items()),
+            origin=t.origin,
+            layout=t.layout,
+        )
+
+    def fusions(self) -> tuple[tuple[FusionSet, ...], dict[str, str]]:
+        """The fusion sets, and the set's name for each place id. Sets of one name are one set."""
+        members: dict[str, list[str]] = {}
+        fusion_of: dict[str, str] = {}
+        for fusion in self.document.fusions:
+            known = members.setdefault(fusion.name, [])
+            for member in fusion.members:
+                if member not in self.places:
+                    self.d.warning(
+                        FUSION_MEMBER,
+                        f"fusion set `{fusion.name}` lists place `{member}`, which does not exist",
+                        fusion.origin,
+                    )
+                elif member in fusion_of and fusion_of[member] != fusion.name:
+                    self.d.error(
+                        FUSION_MEMBER,
+                        f"place `{self.places[member].name}` is in two fusion sets, "
+                        f"`{fusion_of[member]}` and `{fusion.name}`",
+                        self.places[member].origin,
+                        hint="a place can be in one fusion set only",
+                    )
+                elif member not in known:
+                    known.append(member)
+                    fusion_of[member] = fusion.name
+        for place in self.places.values():
+            if place.fusion and place.id not in fusion_of:
+                self.d.warning(
+                    FUSION_MEMBER,
+                    f"place `{place.name}` names fusion set `{place.fusion}`, which does not list it",
+                    place.origin,
+                    hint="it is taken as a member",
+                )
+                members.setdefault(place.fusion, []).append(place.id)
+                fusion_of[place.id] = place.fusion
+        raw = {f.name: f for f in reversed(self.document.fusions)}
+        sets = []
+        for name, ids in members.items():
+            origin = raw[name].origin if name in raw else self.places[ids[0]].origin
+            sets.append(FusionSet(raw[name].id if name in raw else "", name, tuple(ids), origin))
+        return tuple(sets), fusion_of
+
+    def check_recursion(self, pages: tuple[Page, ...]) -> None:
+        """Refuse pages that contain themselves, naming the way around."""
+        by_id = {p.id: p for p in pages}
+        finished: set[str] = set()
+        for start in pages:
+            # Depth first with explicit iterators: a chain of pages may be long.
+            path: list[str] = []
+            stack: list[Iterator[SubstitutionTransition]] = []
+            if start.id not in finished:
+                path, stack = [start.id], [iter(start.substitutions)]
+            while stack:
+                step = next(stack[-1], None)
+                if step is None:
+                    finished.add(path.pop())
+                    stack.pop()
+                elif step.subpage in path:
+                    around = path[path.index(step.subpage) :] + [step.subpage]
+                    names = " -> ".join(f"`{by_id[i].name}`" for i in around)
+                    self.d.error(
+                        PAGE_RECURSION,
+                        f"page `{by_id[step.subpage].name}` contains itself: {names}",
+                        step.origin,
+                        hint=f"substitution transition `{step.name}` must stand for another page",
+                    )
+                elif step.subpage not in finished:
+                    path.append(step.subpage)
+                    stack.append(iter(by_id[step.subpage].substitutions))
+
+
+def _flatten(block: RawBlock) -> Iterator[RawDeclaration]:
+    for item in block.items:
+        if isinstance(item, RawBlock):
+            yield from _flatten(item)
+        else:
+            yield item
+
+
+def _unless(inscription: Inscription | None, defaults: set[str]) -> Inscription | None:
+    """None for the texts that CPN Tools shows where nothing has been written."""
+    if inscription is None or "".join(inscription.text.text.split()) in defaults:
+        return None
+    return inscription

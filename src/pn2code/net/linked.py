@@ -1,0 +1,120 @@
+"""`Net`: a document whose references are resolved: pages, ports and sockets, fusion sets, declarations in order.
+
+Texts are still texts. Ids remain the keys, since instances of pages are made only when the net is flattened.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from pn2code.diagnostics import Origin
+from pn2code.net.flat import ArcKind
+from pn2code.reading.document import Document, Inscription, Layout, RawDeclaration
+
+
+@dataclass(frozen=True, slots=True)
+class Place:
+    """A place; `port` is "in", "out", "io" or "", `fusion` the name of its fusion set or ""."""
+
+    id: str
+    name: str
+    colset: Inscription | None
+    initial_marking: Inscription | None
+    port: str
+    fusion: str
+    origin: Origin
+    layout: Layout = Layout()
+
+
+@dataclass(frozen=True, slots=True)
+class Arc:
+    """An arc between a place (by id) of its page and the transition that has it."""
+
+    id: str
+    kind: ArcKind
+    place: str
+    inscription: Inscription | None
+    origin: Origin
+    layout: Layout = Layout()
+
+
+@dataclass(frozen=True, slots=True)
+class Transition:
+    """An ordinary transition with its arcs in the order of the file; default texts (`[]`, `@+`) count as absent."""
+
+    id: str
+    name: str
+    guard: Inscription | None
+    delay: Inscription | None
+    code: Inscription | None
+    priority: Inscription | None
+    arcs: tuple[Arc, ...]
+    origin: Origin
+    layout: Layout = Layout()
+
+
+@dataclass(frozen=True, slots=True)
+class PortSocket:
+    """A port place of the subpage is the same place as the socket beside the substitution transition (ids)."""
+
+    port: str
+    socket: str
+
+
+@dataclass(frozen=True, slots=True)
+class SubstitutionTransition:
+    """Stands for the page with id `subpage`."""
+
+    id: str
+    name: str
+    subpage: str
+    ports: tuple[PortSocket, ...]
+    origin: Origin
+    layout: Layout = Layout()
+
+
+@dataclass(frozen=True, slots=True)
+class Page:
+    """A page."""
+
+    id: str
+    name: str
+    places: tuple[Place, ...]
+    transitions: tuple[Transition, ...]
+    substitutions: tuple[SubstitutionTransition, ...]
+    origin: Origin
+
+
+@dataclass(frozen=True, slots=True)
+class FusionSet:
+    """All members (place ids) are one place, in all instances of their pages."""
+
+    id: str
+    name: str
+    members: tuple[str, ...]
+    origin: Origin
+
+
+@dataclass(frozen=True, slots=True)
+class Net:
+    """A linked net.
+
+    Args:
+        document: where it came from (layout, monitors and options are there).
+        declarations: in order of evaluation, blocks opened.
+        pages: in order of the file.
+        prime_pages: ids of the pages that are nobody's subpage.
+        fusions: in order of the file.
+        real_time: the clock is real.
+    """
+
+    document: Document
+    declarations: tuple[RawDeclaration, ...]
+    pages: tuple[Page, ...]
+    prime_pages: tuple[str, ...]
+    fusions: tuple[FusionSet, ...]
+    real_time: bool
+
+    def page(self, identity: str) -> Page:
+        """A page by id."""
+        return next(p for p in self.pages if p.id == identity)

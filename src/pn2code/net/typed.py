@@ -1,0 +1,79 @@
+"""`TypedNet`: every inscription typed, and for every transition the way its variables are bound.
+
+Pages are not yet instantiated: `flatten` does that, sharing these typed inscriptions among the instances.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from pn2code.diagnostics import Origin
+from pn2code.ml.colsets import Colset
+from pn2code.ml.core import Exp, Program, Symbol
+from pn2code.net.flat import ArcInscription, ArcKind, BindStep, CodeSegment, Form
+from pn2code.net.linked import FusionSet, Net, SubstitutionTransition
+
+
+@dataclass(frozen=True, slots=True)
+class TypedPlace:
+    """A place with its colour set and initial marking; `initial_text` is what the user wrote, for comparisons."""
+
+    id: str
+    name: str
+    colset: Colset
+    initial: tuple[Exp, Form] | None
+    initial_text: str
+    port: str
+    fusion: str
+    origin: Origin
+
+
+@dataclass(frozen=True, slots=True)
+class TypedArc:
+    """An arc to a place (by id); `inscription` is None for inhibitor and reset arcs."""
+
+    id: str
+    kind: ArcKind
+    place: str
+    inscription: ArcInscription | None
+    origin: Origin
+
+
+@dataclass(frozen=True, slots=True)
+class TypedTransition:
+    """A transition; the fields mean what they mean in `FlatTransition`."""
+
+    id: str
+    name: str
+    variables: tuple[Symbol, ...]
+    guards: tuple[Exp, ...]
+    plan: tuple[BindStep, ...]
+    arcs: tuple[TypedArc, ...]
+    delay: Exp | None
+    code: CodeSegment | None
+    priority: int
+    origin: Origin
+
+
+@dataclass(frozen=True, slots=True)
+class TypedPage:
+    """A page."""
+
+    id: str
+    name: str
+    places: tuple[TypedPlace, ...]
+    transitions: tuple[TypedTransition, ...]
+    substitutions: tuple[SubstitutionTransition, ...]
+    origin: Origin
+
+
+@dataclass(frozen=True, slots=True)
+class TypedNet:
+    """A checked net."""
+
+    net: Net
+    program: Program
+    pages: tuple[TypedPage, ...]
+    prime_pages: tuple[str, ...]
+    fusions: tuple[FusionSet, ...]
+    real_time: bool

@@ -1,0 +1,135 @@
+"""Which net variables an expression uses, and where first."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Mapping
+
+from pn2code.diagnostics import Span
+from pn2code.ml.core import (
+    Apply,
+    Case,
+    Exp,
+    Handle,
+    If,
+    Lambda,
+    Let,
+    ListExp,
+    PAs,
+    Pat,
+    PCon,
+    PRecord,
+    PVar,
+    Raise,
+    RecBind,
+    RecordExp,
+    Select,
+    Sequence,
+    Symbol,
+    ValBind,
+    Var,
+    While,
+)
+
+Uses = dict[Symbol, Span]
+"""Variables in order of first use, with the place of that use."""
+
+
+def children(e: Exp) -> Iterator[Exp]:
+    """The expressions directly inside, left to right."""
+    match e:
+        case Apply(function, argument):
+            yield function
+            yield argument
+        case Lambda(rules):
+            yield from (r.body for r in rules)
+        case RecordExp(fields):
+            yield from (x for _, x in fields)
+        case Select():
+            yield e.record
+        case ListExp(items) | Sequence(items):
+            yield from items
+        case If(condition, then, otherwise):
+            yield condition
+            yield then
+            yield otherwise
+        case Case(scrutinee, rules):
+            yield scrutinee
+            yield from (r.body for r in rules)
+        case Let(declarations, body):
+            for declaration in declarations:
+                if isinstance(declaration, ValBind):
+                    yield declaration.value
+                elif isinstance(declaration, RecBind):
+                    yield from (f for _, f in declaration.bindings)
+            yield body
+        case While(condition, body):
+            yield condition
+            yield body
+        case Raise(exception):
+            yield exception
+        case Handle(body, rules):
+            yield body
+            yield from (r.body for r in rules)
+        case _:
+            return
+
+
+def walk(e: Exp) -> Iterator[Exp]:
+    """The expression and all inside it, in order of the text; without recursion, since texts may be long."""
+    stack = [e]
+    while stack:
+        x = stack.pop()
+        yield x
+        stack.extend(reversed(list(children(x))))
+
+
+class NetVariables:
+    """Finds uses of net variables."""
+
+    def __init__(self, variables: Mapping[str, Symbol]) -> None:
+        self.uids = {s.uid for s in variables.values()}
+
+    def of(self, *expressions: Exp | None) -> Uses:
+        """Net variables of the expressions (None is skipped)."""
+        found: Uses = {}
+        for e in expressions:
+            if e is None:
+                continue
+            for x in walk(e):
+                if isinstance(x, Var) and x.symbol.uid in self.uids:
+                    found.setdefault(x.symbol, x.span)
+        return found
+
+    def is_net_variable(self, symbol: Symbol) -> bool:
+        """Whether the symbol is a net variable (and not a local or global of that name)."""
+        return symbol.uid in self.uids
+
+
+def pattern_variables(pattern: Pat | None) -> tuple[Symbol, ...]:
+    """Variables of a pattern, left to right, repeated ones once."""
+    found: dict[Symbol, None] = {}
+    stack: list[Pat] = [] if pattern is None else [pattern]
+    while stack:
+        p = stack.pop()
+        match p:
+            case PVar(symbol):
+                found.setdefault(symbol)
+            case PAs(symbol, inner):
+                found.setdefault(symbol)
+                stack.append(inner)
+            case PRecord(fields):
+                stack.extend(x for _, x in reversed(fields))
+            case PCon(_, argument) if argument is not None:
+                stack.append(argument)
+            case _:
+                pass
+    return tuple(found)
+
+
+def merge(parts: Iterable[Uses]) -> Uses:
+    """All uses, first ones kept."""
+    found: Uses = {}
+    for part in parts:
+        for symbol, span in part.items():
+            found.setdefault(symbol, span)
+    return found
