@@ -1,1 +1,34 @@
 """The Python side of the shared-file protocol (docs/protocol.md)."""
+
+from pn2code.channels.directory import (
+    GRACE_S,
+    LOOK_S,
+    NotWritten,
+    Peer,
+    PeerState,
+    SharedDirectory,
+    Status,
+    Written,
+)
+from pn2code.channels.message import ChannelSpec, Message, Reason, Refused, specs_of
+from pn2code.channels.scalars import Scalar, ScalarKind, ScalarValue, scalars_of
+
+__all__ = [
+    "GRACE_S",
+    "LOOK_S",
+    "ChannelSpec",
+    "Message",
+    "NotWritten",
+    "Peer",
+    "PeerState",
+    "Reason",
+    "Refused",
+    "Scalar",
+    "ScalarKind",
+    "ScalarValue",
+    "SharedDirectory",
+    "Status",
+    "Written",
+    "scalars_of",
+    "specs_of",
+]

@@ -1,0 +1,358 @@
+"""`SharedDirectory`: one party's view of the shared files (docs/protocol.md; the invariants I1..I10 are cited).
+
+    with SharedDirectory(path, "robot1", specs) as shared:
+        if not shared.await_supervisor(10.0):
+            ...                                   # nobody there
+        command = shared.read("flag1_interno")    # Message, None (empty) or Refused
+        shared.clear("flag1_interno")             # consumed
+        shared.write("flag1_externo", (1,))       # the answer
+        shared.set_status(Status.FINISHED)
+
+Content that cannot be taken is a result (`Refused`), never an exception. `OSError` is raised when the directory itself
+fails (removed, full, read-only); nothing is left half-written then.
+"""
+
+from __future__ import annotations
+
+import fcntl
+import os
+import secrets
+import time
+from collections.abc import Iterable, Sequence
+from contextlib import suppress
+from dataclasses import dataclass, replace
+from enum import Enum
+from pathlib import Path
+from types import TracebackType
+from typing import Self
+
+from pn2code.channels.message import (
+    EMPTY,
+    ChannelSpec,
+    Message,
+    Reason,
+    Refused,
+    compose,
+    parse,
+)
+from pn2code.channels.scalars import ScalarValue, quote
+
+GRACE_S = 0.5
+"""I6: how long (wall time) a refused file may stay as it is before the side stops."""
+
+LOOK_S = 0.1
+"""I8: how often the other side's lock and status are looked at."""
+
+_AWAIT_S = 0.005
+
+
+class Status(Enum):
+    """What a side says of itself (I9)."""
+
+    RUNNING = "running"
+    FINISHED = "finished"
+    STOPPED = "stopped"
+
+
+class PeerState(Enum):
+    """What is known of the other side."""
+
+    ABSENT = "absent"
+    """has not announced itself"""
+    RUNNING = "running"
+    FINISHED = "finished"
+    STOPPED = "stopped"
+    DEAD = "dead"
+    """it said `running`, but nobody holds the lock: the process has died"""
+    REPLACED = "replaced"
+    """a new session has begun: the supervisor that this side knew is gone"""
+
+
+@dataclass(frozen=True, slots=True)
+class Peer:
+    """State of the other side; `reason` in words for STOPPED."""
+
+    state: PeerState
+    reason: str = ""
+    pid: int | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class Written:
+    """The message was published with this seq."""
+
+    seq: int
+
+
+@dataclass(frozen=True, slots=True)
+class NotWritten:
+    """The message was not published: `channel-overrun` (I3) or `channel-value` (it does not fit the channel)."""
+
+    channel: str
+    file: str
+    code: str
+    text: str
+
+
+@dataclass(slots=True)
+class _ChannelState:
+    """What this side remembers of one channel."""
+
+    consumed: int = 0
+    sent: int = 0
+    content: str | None = None
+    """the file's content while its message is taken and not cleared"""
+    message: Message | None = None
+    reported: str | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class _StatusFile:
+    state: str
+    session: str
+    pid: int | None
+    reason: str
+
+
+class SharedDirectory:
+    """One party's side of all its channels. Not for use by several threads at once."""
+
+    def __init__(
+        self,
+        path: Path,
+        side: str,
+        specs: Iterable[ChannelSpec],
+        *,
+        supervisor: str = "supervisor",
+    ) -> None:
+        """Touches nothing yet: a robot waits for the supervisor first (I7).
+
+        Args:
+            path: the shared directory.
+            side: this party's name, "robot1".
+            specs: the cell's channels; those of other parties are ignored.
+            supervisor: name of the party that begins the session.
+        """
+        self.path = path
+        self.side = side
+        self.session: str | None = None
+        self._supervisor = supervisor
+        self._specs: dict[str, ChannelSpec] = {}
+        self._state: dict[str, _ChannelState] = {}
+        self._lock: int | None = None
+        for spec in specs:
+            if side in (spec.writer, spec.reader):
+                self._specs[spec.name] = spec
+                self._specs[spec.file] = spec
+                self._state[spec.name] = _ChannelState()
+
+    # --- session and liveness (I7, I8, I9) ---
+
+    def announce(self) -> str:
+        """Begins a session, as the supervisor's side: takes the lock, empties this side's channels, says `running`.
+
+        Returns the session. BlockingIOError: another process holds the lock.
+        """
+        self._take_lock()
+        self.session = secrets.token_hex(4)
+        for spec in set(self._specs.values()):
+            self._publish(spec.file, EMPTY)
+        self.set_status(Status.RUNNING)
+        return self.session
+
+    def await_supervisor(self, timeout: float) -> bool:
+        """Waits until the supervisor runs, then joins its session: takes this side's lock and says `running`.
+
+        False when none has appeared after `timeout` seconds.
+        """
+        end = time.monotonic() + timeout
+        while True:
+            before = self._read_status(self._supervisor)
+            alive = self._is_locked(self._supervisor)
+            after = self._read_status(self._supervisor)
+            if alive and before == after and after is not None and after.state == "running":
+                self.session = after.session
+                for state in self._state.values():
+                    state.consumed = state.sent = 0
+                self._take_lock()
+                self.set_status(Status.RUNNING)
+                return True
+            if time.monotonic() >= end:
+                return False
+            time.sleep(_AWAIT_S)
+
+    def peer(self, name: str | None = None) -> Peer:
+        """What is known of another party (by default the supervisor)."""
+        name = name if name is not None else self._supervisor
+        locked = self._is_locked(name)  # the lock first: who gives it up has said why before
+        status = self._read_status(name)
+        if status is None or self.session is None:
+            return Peer(PeerState.ABSENT)
+        if status.session != self.session:
+            state = PeerState.REPLACED if name == self._supervisor else PeerState.ABSENT
+            return Peer(state, status.reason, status.pid)
+        if status.state == "running" and not locked:
+            return Peer(PeerState.DEAD, "", status.pid)
+        try:
+            return Peer(PeerState(status.state), status.reason, status.pid)
+        except ValueError:
+            return Peer(PeerState.ABSENT)
+
+    def peer_alive(self) -> bool:
+        """Whether the supervisor runs, in the session that this side joined."""
+        return self.peer().state is PeerState.RUNNING
+
+    def set_status(self, state: Status, reason: str = "") -> None:
+        """Says what has become of this side (I9): written in place, under the lock."""
+        if self._lock is None or self.session is None:
+            return  # never joined: there is nobody who could be waiting for this
+        line = " ".join(reason.split())
+        text = f"{state.value}\n{self.session} {os.getpid()}\n{line}\n".encode()
+        os.pwrite(self._lock, text, 0)
+        os.ftruncate(self._lock, len(text))
+
+    def close(self) -> None:
+        """Gives up the lock. Say `finished` or `stopped` before, or the other side takes this one for dead."""
+        if self._lock is not None:
+            os.close(self._lock)
+            self._lock = None
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(
+        self,
+        kind: type[BaseException] | None,
+        value: BaseException | None,
+        trace: TracebackType | None,
+    ) -> None:
+        self.close()
+
+    # --- channels (I1..I6) ---
+
+    def read(self, channel: str) -> Message | None | Refused:
+        """What the channel (name or file name) holds; the same message until `clear`."""
+        spec, state = self._channel(channel)
+        content = self._content(spec)
+        if isinstance(content, Refused):
+            return self._once(state, content)
+        if state.message is not None:
+            if content == state.content:
+                return state.message
+            text = f"changed to {quote(content)} before its message was consumed (channel-overrun)"
+            refusal = Refused(spec.name, spec.file, Reason.OVERWRITTEN, content, text)
+            return self._once(state, refusal)
+        found = parse(spec, content, session=self.session or "-", consumed=state.consumed)
+        if isinstance(found, Message):
+            state.content, state.message = content, found
+        if isinstance(found, Refused):
+            return self._once(state, found)
+        state.reported = None
+        return found
+
+    def clear(self, channel: str) -> None:
+        """The message that `read` gave has been consumed: empties the file (I4)."""
+        spec, state = self._channel(channel)
+        self._publish(spec.file, EMPTY)
+        if state.message is not None and state.message.seq is not None:
+            state.consumed = state.message.seq
+        state.message = state.content = None
+
+    def write(self, channel: str, scalars: Sequence[ScalarValue]) -> Written | NotWritten:
+        """Publishes a message (I2); not over one that has not been taken (I3)."""
+        spec, state = self._channel(channel)
+        content = self._content(spec)
+        held = content.found if isinstance(content, Refused) else content
+        if held.rstrip() != "0":
+            text = f"{spec.file} still holds {quote(held)}, which {spec.reader} has not taken"
+            return NotWritten(spec.name, spec.file, "channel-overrun", text)
+        message = compose(spec, scalars, seq=state.sent + 1, session=self.session or "-")
+        if message is None:
+            text = f"{scalars!r} cannot be written to {spec.file}: not a token, not finite, or `0`"
+            return NotWritten(spec.name, spec.file, "channel-value", text)
+        self._publish(spec.file, message)
+        state.sent += 1
+        return Written(state.sent)
+
+    def is_taken(self, channel: str) -> bool:
+        """Whether the reader has emptied the channel."""
+        spec, _ = self._channel(channel)
+        content = self._content(spec)
+        return not isinstance(content, Refused) and content.rstrip() == "0"
+
+    # --- files ---
+
+    def _channel(self, name: str) -> tuple[ChannelSpec, _ChannelState]:
+        spec = self._specs[name]
+        return spec, self._state[spec.name]
+
+    def _content(self, spec: ChannelSpec) -> str | Refused:
+        try:
+            data = (self.path / spec.file).read_bytes()
+        except FileNotFoundError:
+            if not self.path.is_dir():
+                raise
+            text = "the file is missing; an empty channel is a file that holds `0`"
+            return Refused(spec.name, spec.file, Reason.MISSING, "", text)
+        return data.decode("latin-1")
+
+    @staticmethod
+    def _once(state: _ChannelState, refusal: Refused) -> Refused:
+        first = state.reported != refusal.text
+        state.reported = refusal.text
+        return replace(refusal, first=first)
+
+    def _publish(self, file: str, text: str) -> None:
+        temporary = self.path / f".{file}.{self.side}.tmp"
+        try:
+            temporary.write_bytes(text.encode("latin-1"))
+            temporary.replace(self.path / file)
+        except OSError:
+            with suppress(OSError):
+                temporary.unlink()
+            raise
+
+    def _take_lock(self) -> None:
+        if self._lock is not None:
+            return
+        fd = os.open(self._status_path(self.side), os.O_RDWR | os.O_CREAT | os.O_CLOEXEC, 0o644)
+        for attempt in range(20):  # somebody may just be probing it
+            try:
+                fcntl.flock(fd, fcntl.LOCK_EX | fcntl.LOCK_NB)
+            except BlockingIOError:
+                if attempt == 19:
+                    os.close(fd)
+                    raise
+                time.sleep(_AWAIT_S)
+            else:
+                break
+        os.ftruncate(fd, 0)
+        self._lock = fd
+
+    def _status_path(self, side: str) -> Path:
+        return self.path / f"{side}.status"
+
+    def _is_locked(self, side: str) -> bool:
+        try:
+            fd = os.open(self._status_path(side), os.O_RDONLY | os.O_CLOEXEC)
+        except FileNotFoundError:
+            return False
+        try:
+            fcntl.flock(fd, fcntl.LOCK_SH | fcntl.LOCK_NB)
+        except BlockingIOError:
+            return True
+        finally:
+            os.close(fd)
+        return False
+
+    def _read_status(self, side: str) -> _StatusFile | None:
+        try:
+            text = self._status_path(side).read_text(encoding="utf-8", errors="replace")
+        except FileNotFoundError:
+            return None
+        lines = [*text.splitlines(), "", "", ""]
+        words = lines[1].split()
+        if len(words) != 2:
+            return None  # being written, or not ours
+        pid = int(words[1]) if words[1].isdigit() else None
+        return _StatusFile(lines[0], words[0], pid, lines[2])

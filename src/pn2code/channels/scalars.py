@@ -1,0 +1,246 @@
+"""Scalars: the numbers and names that a token is made of, and how they are written in a file.
+
+A colour set with a fixed number of scalars (`colset POSE = record x : real * y : real`) is flattened
+into a tuple of `Scalar`s, in declared order. `format_scalars` and `parse_scalars` write and read the
+text that `cnative/src/pn_channel.c` reads and writes (docs/protocol.md, "Format").
+
+    scalars = scalars_of(pose)                      # (Scalar(REAL, "x", "COORD"), Scalar(REAL, "y", "COORD"))
+    format_scalars(scalars, (5750.0, 166.66666))    # "5750.0000 166.66666"
+    parse_scalars(scalars, "5750 166.66666")        # (5750.0, 166.66666)
+"""
+
+from __future__ import annotations
+
+import math
+import re
+from collections.abc import Sequence
+from dataclasses import dataclass
+from enum import Enum
+
+from pn2code.ml.colsets import Colset, Kind
+
+ScalarValue = bool | int | float | str
+"""BOOL: bool. INT, INDEX: int. REAL: float. STRING: str. ENUM: the constructor's name. UNIT: 1."""
+
+
+class ScalarKind(Enum):
+    """How a scalar is written."""
+
+    UNIT = "unit"
+    BOOL = "bool"
+    INT = "int"
+    REAL = "real"
+    STRING = "string"
+    ENUM = "enum"
+    INDEX = "index"
+
+
+@dataclass(frozen=True, slots=True)
+class Scalar:
+    """One scalar.
+
+    Args:
+        label: path of its component, "p.x"; for messages.
+        colset: name of its colour set; for messages.
+        names: ENUM: the constructors. UNIT: its one name.
+        low, high: INT, INDEX, REAL: inclusive bounds, None: unbounded.
+    """
+
+    kind: ScalarKind
+    label: str
+    colset: str
+    names: tuple[str, ...] = ()
+    low: float | int | None = None
+    high: float | int | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class Malformed:
+    """Text that is no token of the colour set: what was found, what was expected, and where (1-based column)."""
+
+    text: str
+    column: int
+    wrong_count: bool = False
+
+
+_SIMPLE = {
+    Kind.UNIT: ScalarKind.UNIT,
+    Kind.BOOL: ScalarKind.BOOL,
+    Kind.INT: ScalarKind.INT,
+    Kind.INTINF: ScalarKind.INT,
+    Kind.TIME: ScalarKind.INT,
+    Kind.REAL: ScalarKind.REAL,
+    Kind.STRING: ScalarKind.STRING,
+    Kind.ENUM: ScalarKind.ENUM,
+    Kind.INDEX: ScalarKind.INDEX,
+}
+
+
+def scalars_of(colset: Colset, label: str = "") -> tuple[Scalar, ...] | None:
+    """The scalars of a colour set in declared order; None where their number is not fixed (lists, unions)."""
+    c = colset.resolved
+    if c.kind is Kind.SUBSET:
+        base = c.components[0]
+        return None if base is None else scalars_of(base, label)
+    if c.kind in (Kind.PRODUCT, Kind.RECORD):
+        found: list[Scalar] = []
+        labels = c.labels or tuple(str(i + 1) for i in range(len(c.components)))
+        for component, own in zip(c.components, labels, strict=True):
+            inner = None
+            if component is not None:
+                inner = scalars_of(component, f"{label}.{own}" if label else own)
+            if inner is None:
+                return None
+            found.extend(inner)
+        return tuple(found)
+    kind = _SIMPLE.get(c.kind)
+    if kind is None:
+        return None
+    bounded = kind in (ScalarKind.INT, ScalarKind.REAL, ScalarKind.INDEX)
+    return (
+        Scalar(
+            kind=kind,
+            label=label or colset.name,
+            colset=colset.name,
+            names=c.names if kind in (ScalarKind.ENUM, ScalarKind.UNIT) else (),
+            low=c.low if bounded and not isinstance(c.low, str) else None,
+            high=c.high if bounded and not isinstance(c.high, str) else None,
+        ),
+    )
+
+
+def format_real(value: float) -> str:
+    """Four decimals where that reads back to the same number, otherwise the fewest digits that do; never -0.0000."""
+    v = value + 0.0 if value else 0.0
+    text = f"{v:.4f}"
+    digits = 0
+    while float(text) != v and digits < 17:
+        digits += 1
+        text = f"{v:.{digits}g}"
+    return text
+
+
+def _format_string(value: str) -> str:
+    out = []
+    for byte in value.encode("latin-1", errors="replace"):
+        if byte in b'"\\':
+            out.append("\\" + chr(byte))
+        elif 0x20 <= byte < 0x7F:
+            out.append(chr(byte))
+        else:
+            out.append(f"\\x{byte:02x}")
+    return '"' + "".join(out) + '"'
+
+
+def _format_scalar(scalar: Scalar, value: ScalarValue) -> str | None:
+    match scalar.kind:
+        case ScalarKind.UNIT:
+            return "1"
+        case ScalarKind.BOOL:
+            return "1" if value else "0"
+        case ScalarKind.INT | ScalarKind.INDEX:
+            return None if isinstance(value, (str, float)) else str(int(value))
+        case ScalarKind.REAL:
+            if isinstance(value, str) or not math.isfinite(value):
+                return None
+            return format_real(float(value))
+        case ScalarKind.STRING:
+            return _format_string(value) if isinstance(value, str) else None
+        case ScalarKind.ENUM:
+            return value if isinstance(value, str) and value in scalar.names else None
+
+
+def format_scalars(scalars: Sequence[Scalar], values: Sequence[ScalarValue]) -> str | None:
+    """One line without its end; None when the values do not fit (their number, their kinds, not finite)."""
+    if len(scalars) != len(values):
+        return None
+    words = [_format_scalar(s, v) for s, v in zip(scalars, values, strict=True)]
+    return None if any(w is None for w in words) else " ".join(w for w in words if w is not None)
+
+
+_WORD = re.compile(r'(?:"(?:\\.|[^"\\])*"?|[^ \t\r"])+')
+_INTEGER = re.compile(r"[-+]?[0-9]+")
+_NUMBER = re.compile(r"[-+]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][-+]?[0-9]+)?")
+_ESCAPE = re.compile(r'\\(?:(["\\])|x([0-9a-f]{2}))')
+_STRING = re.compile(r'"(?:[^"\\]|\\["\\]|\\x[0-9a-f]{2})*"')
+
+
+def quote(text: str) -> str:
+    """Foreign text for a message: printable, between back-ticks, not longer than some 60 characters."""
+    shown = "".join(
+        "\\n" if c == "\n" else c if " " <= c < "\x7f" and c != "`" else f"\\x{ord(c) & 0xFF:02x}"
+        for c in text[:60]
+    )
+    return f"`{shown}`" + ("..." if len(text) > 60 else "")
+
+
+def _parse_scalar(scalar: Scalar, word: str) -> ScalarValue | str:
+    """The value, or (as `_Wrong`) what is wrong with the word."""
+    where = f"`{scalar.label}` of colour set `{scalar.colset}`"
+    value: ScalarValue
+    match scalar.kind:
+        case ScalarKind.UNIT:
+            return 1 if word == "1" else _Wrong(f"{quote(word)} where {where} is `1`")
+        case ScalarKind.BOOL:
+            if word not in ("0", "1"):
+                return _Wrong(f"{quote(word)} is neither `0` nor `1` ({where})")
+            return word == "1"
+        case ScalarKind.ENUM:
+            return (
+                word if word in scalar.names else _Wrong(f"{quote(word)} is not a value of {where}")
+            )
+        case ScalarKind.STRING:
+            if _STRING.fullmatch(word) is None:
+                return _Wrong(f"{quote(word)} is not a string in double quotes ({where})")
+            return _Text(_ESCAPE.sub(lambda m: m[1] or chr(int(m[2], 16)), word[1:-1]))
+        case ScalarKind.INT | ScalarKind.INDEX:
+            if _INTEGER.fullmatch(word) is None:
+                return _Wrong(f"{quote(word)} is not an integer ({where})")
+            value = int(word)
+            if not -(2**63) <= value < 2**63:
+                return _Wrong(f"{quote(word)} is too large for an integer ({where})")
+        case ScalarKind.REAL:
+            if _NUMBER.fullmatch(word) is None:
+                return _Wrong(f"{quote(word)} is not a number ({where})")
+            value = float(word)
+            if not math.isfinite(value):
+                return _Wrong(f"{quote(word)} is too large for a real number ({where})")
+    low, high = scalar.low, scalar.high
+    if (low is not None and value < low) or (high is not None and value > high):
+        return _Wrong(f"{quote(word)} is out of {where}, which goes from {low} to {high}")
+    return value
+
+
+class _Wrong(str):
+    """What is wrong with a word."""
+
+    __slots__ = ()
+
+
+class _Text(str):
+    """A decoded string; its own class only so that it is not taken for `_Wrong`."""
+
+    __slots__ = ()
+
+
+def parse_scalars(scalars: Sequence[Scalar], line: str) -> tuple[ScalarValue, ...] | Malformed:
+    """Reads one line strictly: exactly these scalars, separated by blanks."""
+    values: list[ScalarValue] = []
+    for i, match in enumerate(_WORD.finditer(line)):
+        if i == len(scalars):
+            found = quote(match[0])
+            return Malformed(
+                f"found {found} after the {len(scalars)} values", match.start() + 1, True
+            )
+        value = _parse_scalar(scalars[i], match[0])
+        if isinstance(value, _Wrong):
+            return Malformed(str(value), match.start() + 1)
+        values.append(str(value) if isinstance(value, _Text) else value)
+    if len(values) < len(scalars):
+        missing = scalars[len(values)]
+        text = (
+            f"found {len(values)} values where {len(scalars)} are expected; "
+            f"the next would be `{missing.label}` of colour set `{missing.colset}`"
+        )
+        return Malformed(text, len(line) + 1, True)
+    return tuple(values)
