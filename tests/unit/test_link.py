@@ -1,0 +1,185 @@
+"""Linking: ports, fusion sets, substitution pages, defaults."""
+
+from __future__ import annotations
+
+from helpers.netbuilder import cpn
+from pn2code.diagnostics import Diagnostics
+from pn2code.net.flat import ArcKind
+from pn2code.net.link import link
+from pn2code.net.linked import Net
+from pn2code.reading.cpn import read_data
+
+HIERARCHY = """
+    net N
+      standard
+      page Top
+        place A : INT = 1`1
+        place B : INT
+        subst S1 = Sub (I -> A, O -> B)
+        subst S2 = Sub (I -> B, O -> A)
+      page Sub
+        place I port in : INT
+        place O port out : INT
+        place M : INT
+        trans T
+          in I : n
+          out O : n
+"""
+
+
+def run(data: bytes | str) -> tuple[Net | None, Diagnostics]:
+    d = Diagnostics()
+    raw = cpn(data) if isinstance(data, str) else data
+    document = read_data(raw, "n.cpn", d)
+    assert document is not None, list(d)
+    return link(document, d), d
+
+
+def test_ports_and_prime_pages() -> None:
+    net, d = run(HIERARCHY)
+    assert net is not None and not list(d)
+    top, sub = net.pages
+    assert net.prime_pages == (top.id,)
+    ids = {p.name: p.id for p in top.places + sub.places}
+    first, second = top.substitutions
+    assert [(q.port, q.socket) for q in first.ports] == [(ids["I"], ids["A"]), (ids["O"], ids["B"])]
+    assert [(q.port, q.socket) for q in second.ports] == [
+        (ids["I"], ids["B"]),
+        (ids["O"], ids["A"]),
+    ]
+    assert [a.kind for a in sub.transitions[0].arcs] == [ArcKind.INPUT, ArcKind.OUTPUT]
+    assert [p.port for p in sub.places] == ["in", "out", ""]
+    assert len(net.declarations) == 7
+
+
+def test_unassigned_port() -> None:
+    net, d = run(HIERARCHY.replace("(I -> B, O -> A)", "(I -> B)"))
+    assert net is not None
+    assert [x.code for x in d] == ["port-unassigned"]
+    assert d.items[0].message == "port `O` of page `Sub` has no socket at `S2`"
+
+
+def test_bad_and_double_assignments() -> None:
+    net, d = run(
+        HIERARCHY.replace("(I -> B, O -> A)", "(I -> B, O -> A, M -> B, O -> B, I -> Nowhere)")
+    )
+    assert net is not None
+    messages = [x.message for x in d]
+    assert [x.code for x in d] == ["port-assignment"] * 3
+    assert "is not a port of page `Sub`" in messages[0]
+    assert messages[1] == "port `O` of `S2` is assigned to `A` and to `B`; the last counts"
+    assert "`Nowhere` is not a place of page `Top`" in messages[2]
+    names = {p.id: p.name for p in net.pages[0].places + net.pages[1].places}
+    second = net.pages[0].substitutions[1]
+    assert {names[q.port]: names[q.socket] for q in second.ports} == {"I": "B", "O": "B"}
+
+
+def test_unknown_subpage() -> None:
+    net, d = run("net N\n  page Top\n    subst S = Nowhere")
+    assert net is None
+    assert [x.code for x in d] == ["subpage-unknown"]
+
+
+def test_recursion() -> None:
+    net, d = run(
+        """
+        net N
+          page Top
+            subst S = A
+          page A
+            subst U = B
+          page B
+            subst V = A
+            subst W = B
+        """
+    )
+    assert net is None
+    assert [x.code for x in d] == ["page-recursion"] * 2
+    assert d.items[0].message == "page `A` contains itself: `A` -> `B` -> `A`"
+    assert d.items[1].message == "page `B` contains itself: `B` -> `B`"
+
+
+def test_long_chain_of_pages() -> None:
+    pages = "".join(f"\n  page P{i}\n    subst S = P{i + 1}" for i in range(3000))
+    net, d = run(f"net N{pages}\n  page P3000")
+    assert net is not None and not list(d)
+
+
+def test_fusion_sets() -> None:
+    net, d = run(
+        """
+        net N
+          place A fusion F : INT
+          place B fusion F : INT
+          place C fusion G : INT
+          place D : INT
+        """
+    )
+    assert net is not None and not list(d)
+    assert [(f.name, len(f.members)) for f in net.fusions] == [("F", 2), ("G", 1)]
+    assert [p.fusion for p in net.pages[0].places] == ["F", "F", "G", ""]
+
+
+def test_fusion_set_and_places_disagree() -> None:
+    data = cpn(
+        """
+        net N
+          place A id=ID61 fusion F : INT
+          place B id=ID62 fusion F : INT
+        """
+    )
+    net, d = run(data.replace(b'<fusion_elm idref="ID61"/>', b'<fusion_elm idref="ID99"/>'))
+    assert net is not None
+    assert [x.code for x in d] == ["fusion-member"] * 2
+    assert sorted(net.fusions[0].members) == ["ID61", "ID62"]
+
+
+def test_place_in_two_fusion_sets() -> None:
+    data = cpn(
+        """
+        net N
+          place A id=ID61 fusion F : INT
+          place B id=ID62 fusion G : INT
+        """
+    )
+    net, d = run(data.replace(b'<fusion_elm idref="ID62"/>', b'<fusion_elm idref="ID61"/>'))
+    assert net is None
+    assert "fusion-member" in [x.code for x in d.errors]
+
+
+def test_default_texts_are_absent() -> None:
+    net, _ = run(
+        """
+        net N
+          place A : INT
+          trans T
+            guard [ ]
+            delay @+
+            code input (); output (); action ();
+            in A : n
+        """
+    )
+    assert net is not None
+    t = net.pages[0].transitions[0]
+    assert (t.guard, t.delay, t.code, t.priority) == (None, None, None, None)
+
+
+def test_channels_are_not_supported() -> None:
+    data = cpn("net N\n  place A : INT\n  trans T\n    in A : n")
+    text = b'<channel id="ch"><text>ch.!x</text></channel><cond '
+    net, d = run(data.replace(b"<cond ", text))
+    assert net is None
+    assert [x.code for x in d] == ["unsupported-channel"]
+
+
+def test_inscriptions_of_substitution_transitions_have_no_effect() -> None:
+    data = cpn(HIERARCHY)
+    at = data.index(b"<subst ")
+    net, d = run(data[:at] + b"<cond id='g'><text>[n > 1]</text></cond>" + data[at:])
+    assert net is not None
+    assert [x.code for x in d] == ["substitution-inscription"]
+
+
+def test_real_time_option() -> None:
+    net, _ = run("net N\n  option realtimestamp true\n  place A : INT")
+    assert net is not None and net.real_time

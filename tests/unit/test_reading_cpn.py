@@ -1,0 +1,304 @@
+"""Reading `.cpn` files: what each element becomes, and diagnostics for damaged nets."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from helpers.netbuilder import cpn
+from pn2code.diagnostics import Diagnostics
+from pn2code.reading.cpn import read, read_data
+from pn2code.reading.document import Document, RawGlobref, RawMl, RawOther, RawUse
+
+NET = """
+    net Cell
+      colset INT = int;
+      var n: INT;
+      place Buffer id=ID90 : INT = 1`1
+      place Done : INT
+      trans Pick id=ID80 guard [n < 3]
+        in Buffer : n
+        out Done : n
+"""
+
+
+def parse(data: bytes | str) -> tuple[Document | None, Diagnostics]:
+    d = Diagnostics()
+    raw = data.encode("iso-8859-1") if isinstance(data, str) else data
+    return read_data(raw, "cell.cpn", d), d
+
+
+def good(data: bytes | str) -> Document:
+    document, d = parse(data)
+    assert not list(d), list(d)
+    assert document is not None
+    return document
+
+
+def change(old: str, new: str) -> str:
+    text = cpn(NET).decode("iso-8859-1")
+    assert old in text
+    return text.replace(old, new)
+
+
+def wrap(inside: str, box: str = "") -> str:
+    return (
+        '<workspaceElements><generator tool="CPN Tools" version="4.0.1" format="6"/><cpnet>'
+        f"<globbox>{box}</globbox><page id='P1'><pageattr name='Top'/>{inside}</page>"
+        "</cpnet></workspaceElements>"
+    )
+
+
+def test_file_facts(tmp_path: Path) -> None:
+    path = tmp_path / "cell.cpn"
+    path.write_bytes(cpn(NET))
+    d = Diagnostics()
+    document = read(path, d)
+    assert document is not None
+    assert document.file == str(path)
+    assert len(document.sha256) == 64
+    assert (document.tool, document.version, document.format) == ("CPN Tools", "4.0.1", "6")
+
+
+def test_origins_name_the_element() -> None:
+    document = good(cpn(NET))
+    page = document.pages[0]
+    origin = page.places[0].origin
+    assert origin.describe() == "page `Top`, place `Buffer` (ID90)"
+    arc = page.arcs[0]
+    assert arc.origin.element == "arc `Buffer` -> `Pick`"
+    assert page.arcs[1].origin.element == "arc `Pick` -> `Done`"
+    guard = page.transitions[0].guard
+    assert guard is not None
+    assert guard.text.origin.part == "guard"
+    line = cpn(NET).decode().split("\n")[guard.text.origin.line - 1]
+    assert line[guard.text.origin.column - 1 :].startswith("[n &lt; 3]")
+    at = guard.text.origin_at(guard.text.text.index("3"))
+    assert line[at.column - 1] == "3"
+
+
+def test_not_a_net() -> None:
+    _, d = parse("<pnml><net/></pnml>")
+    assert [x.code for x in d] == ["not-cpn"]
+    assert d.items[0].message == "not a CPN Tools net: the root element is `pnml`"
+    _, d = parse("<workspaceElements/>")
+    assert d.items[0].message == "not a CPN Tools net: `workspaceElements` has no `cpnet`"
+
+
+def test_net_without_pages() -> None:
+    document, d = parse("<workspaceElements><cpnet><globbox/></cpnet></workspaceElements>")
+    assert document is None
+    assert d.items[0].message == "the net has no page"
+
+
+def test_dangling_arc() -> None:
+    document, d = parse(change('<placeend idref="ID90"/>', '<placeend idref="ID77"/>'))
+    assert document is None
+    (item,) = d
+    assert item.code == "arc-dangling"
+    assert "`ID77`, which is not on page `Top`" in item.message
+    assert item.message.startswith("arc `ID")
+    assert item.origin.line > 0
+    assert item.hint
+
+
+def test_arc_without_end() -> None:
+    _, d = parse(change('<transend idref="ID80"/>', ""))
+    assert {x.code for x in d} == {"arc-dangling"}
+    assert "has no transition end" in d.items[0].message
+
+
+def test_arc_between_two_transitions() -> None:
+    _, d = parse(change('<placeend idref="ID90"/>', '<placeend idref="ID80"/>'))
+    assert "but `ID80` is a transition" in d.items[0].message
+
+
+def test_arc_to_another_page() -> None:
+    text = """
+        net N
+          page A
+            place P id=ID50 : INT
+            trans T
+              in ID51 : n
+          page B
+            place Q id=ID51 : INT
+    """
+    _, d = parse(cpn(text))
+    assert [x.code for x in d] == ["arc-dangling"]
+    assert "`ID51`, which is not on page `A`" in d.items[0].message
+
+
+def test_duplicate_id() -> None:
+    _, d = parse(change('id="ID80"', 'id="ID90"').replace('idref="ID80"', 'idref="ID90"'))
+    codes = [x.code for x in d]
+    assert codes[0] == "duplicate-id"
+    assert "`ID90`, which is already used" in d.items[0].message
+    assert d.items[0].notes[0].origin is not None
+
+
+def test_missing_id() -> None:
+    _, d = parse(wrap("<place><text>P</text></place>"))
+    assert [x.code for x in d] == ["cpn-element"]
+
+
+@pytest.mark.parametrize(
+    ("written", "kind"),
+    [("PtoT", "ptot"), ("ptot", "ptot"), ("PTOT", "ptot"), ("TtoP", "ttop"), ("BOTHDIR", "bothdir"),
+     ("bothdir", "bothdir"), ("Inhibitor", "inhibitor"), ("inhibitor", "inhibitor"), ("Reset", "reset")],
+)  # fmt: skip
+def test_orientations(written: str, kind: str) -> None:
+    document = good(change('orientation="PtoT"', f'orientation="{written}"'))
+    assert document.pages[0].arcs[0].orientation == kind
+
+
+def test_unknown_orientation() -> None:
+    _, d = parse(change('orientation="PtoT"', 'orientation="sideways"'))
+    assert [x.code for x in d] == ["arc-orientation"]
+    assert "`sideways`" in d.items[0].message
+
+
+def test_decimal_comma_and_nonsense_in_layout() -> None:
+    document = good(change('x="0.000000" y="-100.000000"', 'x="-76,500000" y="wide"'))
+    place = document.pages[0].places[0]
+    assert (place.layout.x, place.layout.y) == (-76.5, 0.0)
+    assert (place.layout.width, place.layout.shape) == (60.0, "ellipse")
+
+
+def test_pretty_printed_single_quotes() -> None:
+    # as CPN IDE writes
+    document = good(
+        wrap("""
+            <place id='p1'>
+                <text>
+                    My
+                    Place
+                </text>
+                <type id='t1'><text tool='CPN Tools'>
+                    INT
+                </text></type>
+                <initmark id='i1'>
+                    <text>
+                    </text>
+                </initmark>
+            </place>
+        """, """
+            <color id='c1'><id>
+                INT
+              </id><int>
+            </int></color>
+            <ml id='m1'>
+              val x = 1;
+              <layout>
+                val x = 1;
+              </layout>
+            </ml>
+        """)
+    )  # fmt: skip
+    place = document.pages[0].places[0]
+    assert place.name == "My Place"
+    assert place.type is not None and place.type.text.text == "INT"
+    assert place.initial is None
+    ml = document.globbox.items[1]
+    assert isinstance(ml, RawMl)
+    assert ml.text.text == "val x = 1;"
+
+
+def test_name_from_id_when_there_is_none() -> None:
+    document = good(wrap("<place id='p1'/><trans id='t1'><text/></trans>"))
+    assert document.pages[0].places[0].name == "p1"
+    assert document.pages[0].transitions[0].name == "t1"
+
+
+def test_other_declarations() -> None:
+    document = good(
+        wrap(
+            "",
+            """<block id='b'><id>Mine</id><block id='b2'><id>Inner</id>
+            <use id='u'><ml>"a.sml"</ml></use></block>
+            <globref id='g'><id>r</id><ml>5</ml></globref>
+            <globref id='h'><id>broken</id></globref>
+            <errordecl>color X = </errordecl></block>""",
+        )
+    )
+    block = document.globbox.items[0]
+    assert block.name == "Mine"  # type: ignore[union-attr]
+    inner, reference, broken, error = block.items  # type: ignore[union-attr]
+    assert isinstance(inner.items[0], RawUse)
+    assert isinstance(reference, RawGlobref)
+    assert isinstance(broken, RawOther)
+    assert isinstance(error, RawOther)
+    assert error.text.text == "color X ="
+
+
+def test_unknown_elements_are_reported_once() -> None:
+    inside = "<place id='a'><sparkle/></place><place id='b'><sparkle/><sparkle/></place>"
+    document, d = parse(wrap(inside, "<mystery/>"))
+    assert document is not None
+    assert [x.code for x in d] == ["cpn-unknown-element"] * 2
+    assert [x.message for x in d] == [
+        "element `mystery` inside `globbox` is not known and is ignored",
+        "element `sparkle` inside `place` is not known and is ignored",
+    ]
+
+
+def test_unknown_format() -> None:
+    document, d = parse(change('format="6"', 'format="99"'))
+    assert document is not None
+    assert [x.code for x in d] == ["cpn-format"]
+
+
+def test_colour_set_without_definition() -> None:
+    document, d = parse(wrap("", "<color id='c'><id>X</id></color>"))
+    assert document is None
+    assert d.items[0].message == "colour set `X` lacks a known definition"
+
+
+def test_bend_points_run_from_the_transition() -> None:
+    bends = "".join(
+        f'<bendpoint id="b{i}" serial="{i}"><posattr x="{x}" y="-100"/></bendpoint>'
+        for i, x in ((1, 150), (2, 50))
+    )
+    text = cpn(NET).decode()
+    at = text.index("<annot ")
+    document = good(text[:at] + bends + text[at:])
+    assert document.pages[0].arcs[0].layout.bends == ((150.0, -100.0), (50.0, -100.0))
+    swapped = bends.replace('serial="1"', 'serial="9"')
+    document = good(text[:at] + swapped + text[at:])
+    assert document.pages[0].arcs[0].layout.bends == ((150.0, -100.0), (50.0, -100.0))
+
+
+def test_constraints_are_not_supported() -> None:
+    document = good(wrap("<constraints/>"))
+    assert document.pages[0].name == "Top"
+    _, d = parse(wrap("<constraints><constraint/></constraints>"))
+    assert [x.code for x in d] == ["unsupported-constraint"]
+
+
+def test_monitors_are_kept() -> None:
+    text = change(
+        '<monitorblock name="Monitors"/>',
+        '<monitorblock name="M"><monitorblock name="N"><monitor id="m" name="Stop" type="1" '
+        'typedescription="Breakpoint" disabled="true"><node idref="ID80" pageinstanceidref="x"/>'
+        '<declaration name="Predicate"><ml id="q">fun pred x = true<layout>z</layout></ml></declaration>'
+        '<option name="Logging" value="true"/></monitor></monitorblock></monitorblock>',
+    )
+    (monitor,) = good(text).monitors
+    assert (monitor.name, monitor.type, monitor.disabled) == ("Stop", "Breakpoint", True)
+    assert monitor.nodes == (("ID80", "x"),)
+    assert monitor.declarations[0][1].text == "fun pred x = true"
+
+
+def test_broken_port_assignment() -> None:
+    text = """
+        net N
+          page Top
+            place P : INT
+            subst S = Sub (Q -> P)
+          page Sub
+            place Q port in : INT
+    """
+    data = cpn(text).decode()
+    _, d = parse(data.replace('portsock="(', 'portsock="junk('))
+    assert [x.code for x in d] == ["cpn-element"]
+    assert "junk" in d.items[0].message
