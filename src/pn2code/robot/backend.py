@@ -1,0 +1,92 @@
+"""What shows and measures the robots: the protocol, and how to open one.
+
+A backend holds no motion of its own: it puts robots at joint positions and answers questions about
+them. So every backend gives the same trajectories.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Literal, Protocol
+
+from pn2code.robot.scene import RobotCell
+from pn2code.robot.transforms import Array
+
+ClearanceKind = Literal["robots", "scene", "self"]
+BackendName = Literal["fake", "bullet"]
+
+
+@dataclass(frozen=True, slots=True)
+class Clearance:
+    """The least distance of one group of parts.
+
+    Args:
+        kind: between robots, from a robot to the scene, or of a robot to itself.
+        robot: the (first) robot.
+        a: name of the part, "robot1/link_4"; b: of the other, "panel/skin".
+        distance: m; negative when they overlap.
+        allowed: overlap that is permitted between these two, m; None: they must keep apart.
+        point: where, on `a`, in the world.
+    """
+
+    kind: ClearanceKind
+    robot: str
+    a: str
+    b: str
+    distance: float
+    allowed: float | None = None
+    point: tuple[float, float, float] = (0.0, 0.0, 0.0)
+
+
+@dataclass(frozen=True, slots=True)
+class Camera:
+    """Where a picture is taken from.
+
+    Args:
+        eye: position of the camera in the world, m; target: what it looks at.
+        field_of_view: vertical, degrees.
+    """
+
+    name: str
+    eye: tuple[float, float, float]
+    target: tuple[float, float, float]
+    field_of_view: float = 45.0
+
+
+class Backend(Protocol):
+    """Robots at joint positions, distances, pictures."""
+
+    @property
+    def name(self) -> BackendName:
+        """Which one."""
+
+    def set_joints(self, robot: str, q: Sequence[float] | Array) -> None:
+        """Puts a robot at a joint position, rad."""
+
+    def tcp(self, robot: str) -> Array:
+        """`T_world_tcp` as the backend has it."""
+
+    def clearances(self, limit: float) -> tuple[Clearance, ...] | None:
+        """The closest pair of each kind and robot that is nearer than `limit` (m).
+
+        Pairs that may touch are listed apart (`allowed`), only when they overlap. None: this backend
+        does not measure distances.
+        """
+
+    def render(self, camera: Camera, width: int, height: int) -> Array | None:
+        """A picture (height, width, 3), 0..255; None: this backend has no eyes."""
+
+    def close(self) -> None:
+        """Releases what it holds; afterwards it must not be used."""
+
+
+def open_backend(name: BackendName, cell: RobotCell, *, gui: bool = False) -> Backend:
+    """A backend for a cell. PyBullet is imported only when it is asked for."""
+    if name == "fake":
+        from pn2code.robot.fake import FakeBackend
+
+        return FakeBackend(cell)
+    from pn2code.robot.bullet import BulletBackend
+
+    return BulletBackend(cell, gui=gui)

@@ -1,0 +1,39 @@
+"""Diagnostic codes of robot models, tools and the scene."""
+
+from pn2code.diagnostics.codes import register
+
+ROBOT_MODEL = register(
+    "robot-model",
+    "there is no such robot model",
+    "`model` names a robot that comes with pn2code, or a URDF file by its path relative to the folder of cell.toml: "
+    '`model = "arms/my_arm.urdf"`. The message lists the names that are known.',
+)
+ROBOT_TOOL = register(
+    "robot-tool",
+    "there is no such end effector",
+    "`tool` names an end effector that comes with pn2code, or a URDF file by its path relative to the folder of "
+    "cell.toml. Its root link is fixed to the flange and it has a link `tcp`, the tool centre point.",
+)
+ROBOT_URDF = register(
+    "robot-urdf",
+    "a URDF file cannot be used",
+    "The file is missing, not XML, or its links and joints are not one tree with six revolute joints with limits from "
+    "the base to the flange. The flange is the link named `flange` or `tool0`, or the end of the chain.",
+)
+UNSUPPORTED_KINEMATICS = register(
+    "unsupported-robot-kinematics",
+    "there is no closed-form inverse kinematics for this arm",
+    "Supported are six-axis arms with parallel axes 2 and 3, an axis 1 that is the base's z axis, and a spherical "
+    "wrist: nearly every large industrial robot. The parameters are derived from the URDF's axes and then checked "
+    "against its forward kinematics.",
+)
+ROBOT_KEY = register(
+    "robot-key",
+    "a key of `[robots]`, `[motion]` or `[scene]` is not known or is missing",
+    "The keys of these sections are fixed, see docs/cell.md. A misspelt key is an error, not silently ignored.",
+)
+ROBOT_VALUE = register(
+    "robot-value",
+    "a value in `[robots]`, `[motion]` or `[scene]` has the wrong type or range",
+    "Lengths are in metres, angles in degrees, speeds are above zero; the message says what was found.",
+)

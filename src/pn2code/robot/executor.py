@@ -1,0 +1,222 @@
+"""Carrying out commands: one executor per robot, no clock of its own.
+
+    executor = RobotExecutor(cell.robot("robot1"), cell.motion)
+    motion = executor.begin(MoveJoint(pose), now)       # plans everything; MotionFault if it cannot be done
+    motion.q(now + 0.5)                                 # at any time
+    executor.finish()                                   # the robot is where the motion ends
+
+The same commands give the same motions, whatever shows them: backends only replay joint positions.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import Literal, assert_never
+
+import numpy as np
+
+from pn2code.robot.commands import (
+    Command,
+    Measure,
+    MoveHome,
+    MoveJoint,
+    MoveLinear,
+    Pose,
+    ToolAction,
+    Wait,
+)
+from pn2code.robot.motion import MotionFault, Still, Trajectory, plan_lin, plan_ptp
+from pn2code.robot.scene import CellRobot, MotionConfig
+from pn2code.robot.transforms import Array, describe, inverse, matrix_of, pose_of
+
+MotionKind = Literal["ptp", "lin", "tool", "measure", "wait"]
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Motion:
+    """A command under way.
+
+    Args:
+        robot: its name.
+        command: what was asked for.
+        began: time of the beginning, s; it ends at `began + duration`.
+        trajectory: joint positions, time from 0.
+        start: TCP pose in the world at the beginning; target: at the end.
+        result: of a measurement.
+    """
+
+    robot: str
+    command: Command
+    kind: MotionKind
+    began: float
+    trajectory: Trajectory
+    start: Pose
+    target: Pose
+    result: Pose | None = None
+
+    @property
+    def duration(self) -> float:
+        """Seconds."""
+        return self.trajectory.duration
+
+    @property
+    def ends(self) -> float:
+        """Time of the end."""
+        return self.began + self.duration
+
+    def q(self, now: float) -> Array:
+        """Joint position (rad) at a time on the clock of `began`."""
+        return self.trajectory.q(now - self.began)
+
+    def sample(self, times: Array) -> Array:
+        """Joint positions (n, 6) at many times: much faster than one by one."""
+        return self.trajectory.sample(np.clip(times - self.began, 0.0, self.duration))
+
+
+class RobotExecutor:
+    """One robot's state between commands: its joint position; begins at HOME."""
+
+    def __init__(self, robot: CellRobot, config: MotionConfig) -> None:
+        self.robot = robot
+        self._config = config
+        self._limits = robot.limits(config)
+        self._T_world_base = robot.T_world_base
+        self._T_base_world = inverse(self._T_world_base)
+        self.q: Array = np.array(robot.home)
+        # The pose commanded last, which is where the TCP is to 1e-9 m: increments add to it, so that
+        # rounding of the inverse does not add up over a program.
+        self._T_base_tcp = robot.kinematics.forward(self.q)
+        self._next: tuple[Array, Array] | None = None
+        self.motion: Motion | None = None
+
+    @property
+    def pose(self) -> Pose:
+        """TCP pose in the world, between motions."""
+        return pose_of(self._T_world_base @ self._T_base_tcp)
+
+    def begin(self, command: Command, now: float) -> Motion:
+        """Plans a command from the current position.
+
+        Raises MotionFault, with robot and pose in the message, when it cannot be carried out; the
+        robot then stands where it stood.
+        """
+        if self.motion is not None:
+            raise RuntimeError(f"{self.robot.name} is still moving")
+        try:
+            self.motion = self._plan(command, now)
+        except MotionFault as fault:
+            raise self._named(fault, command) from None
+        return self.motion
+
+    def finish(self) -> None:
+        """The motion has reached its end."""
+        if self.motion is None or self._next is None:
+            raise RuntimeError(f"{self.robot.name} is not moving")
+        self.q, self._T_base_tcp = self._next
+        self.motion = self._next = None
+
+    def stop(self, now: float) -> None:
+        """The motion is broken off: the robot stands where it is at that time."""
+        if self.motion is not None:
+            self.q = self.motion.q(now)
+            self._T_base_tcp = self.robot.kinematics.forward(self.q)
+            self.motion = self._next = None
+
+    def _plan(self, command: Command, now: float) -> Motion:
+        match command:
+            case MoveJoint():
+                return self._to_pose(command, now)
+            case MoveHome():
+                home = np.array(self.robot.home)
+                k = self.robot.kinematics
+                path = plan_ptp(k, self.q, home, self._limits, command.speed)
+                return self._moving(command, "ptp", now, path, home, k.forward(home))
+            case MoveLinear():
+                return self._linear(command, now)
+            case ToolAction():
+                return self._standing(command, "tool", now, command.duration)
+            case Wait():
+                return self._standing(command, "wait", now, command.duration)
+            case Measure():
+                seconds = self._config.measure_duration
+                return self._standing(command, "measure", now, seconds, command.nominal)
+            case _:
+                assert_never(command)
+
+    def _to_pose(self, command: MoveJoint, now: float) -> Motion:
+        target = self._T_base_world @ self._checked(command.target)
+        k = self.robot.kinematics
+        found = k.nearest(target, self.q, self.robot.branch)
+        if found is None:
+            raise self._unreachable(target)
+        path = plan_ptp(k, self.q, found.q, self._limits, command.speed)
+        return self._moving(command, "ptp", now, path, found.q, target)
+
+    def _linear(self, command: MoveLinear, now: float) -> Motion:
+        goal = self._checked(command.target)
+        start = self._T_base_tcp
+        target = start @ goal if command.frame == "tool" else self._T_base_world @ goal
+        path = plan_lin(self.robot.kinematics, self.q, start, target, self._limits, command.speed)
+        return self._moving(command, "lin", now, path, path.q(path.duration), target)
+
+    def _checked(self, pose: Pose) -> Array:
+        values = (pose.x, pose.y, pose.z, pose.rx, pose.ry, pose.rz)
+        if not all(map(math.isfinite, values)):
+            raise MotionFault("bad-command", f"the pose has a number that is not finite: {values}")
+        return matrix_of(pose)
+
+    def _unreachable(self, target: Array) -> MotionFault:
+        rows = self.robot.kinematics.all_branches(target[None])[0]
+        there = rows[~np.isnan(rows[:, 0])]
+        if not len(there):
+            centre = float(np.linalg.norm(target[:3, 3]))
+            return MotionFault(
+                "unreachable", f"the pose is out of reach: {1000 * centre:.0f} mm from the base"
+            )
+        if self.robot.branch is not None:
+            return MotionFault(
+                "unreachable",
+                f"branch {self.robot.branch} does not reach the pose inside the limits",
+            )
+        margins = [self.robot.kinematics.limit_margin(q) for q in there]
+        margin, axis = max(margins)
+        return MotionFault(
+            "joint-limit",
+            "every branch that reaches the pose leaves the joint limits; the nearest puts axis "
+            f"{axis + 1} {math.degrees(-margin):.2f} deg outside",
+        )
+
+    def _named(self, fault: MotionFault, command: Command) -> MotionFault:
+        """The fault with the robot's name and the pose in the world."""
+        if fault.pose is not None:
+            pose = pose_of(self._T_world_base @ matrix_of(fault.pose))
+        elif isinstance(command, MoveJoint):
+            pose = command.target
+        else:
+            pose = self.pose
+        message = f"robot `{self.robot.name}`: {fault.message}, at TCP pose {describe(pose)}"
+        return MotionFault(
+            fault.kind, message, robot=self.robot.name, pose=pose, q=fault.q, time=fault.time
+        )
+
+    def _standing(
+        self,
+        command: Command,
+        kind: MotionKind,
+        now: float,
+        seconds: float,
+        result: Pose | None = None,
+    ) -> Motion:
+        if not (seconds >= 0.0 and math.isfinite(seconds)):
+            raise MotionFault("bad-command", f"a duration of {seconds:g} s makes no sense")
+        path = Still(self.q, seconds)
+        return self._moving(command, kind, now, path, self.q, self._T_base_tcp, result)
+
+    def _moving(
+        self, command: Command, kind: MotionKind, now: float, path: Trajectory,
+        q_end: Array, T_end: Array, result: Pose | None = None,
+    ) -> Motion:  # fmt: skip
+        self._next = (q_end, T_end)
+        target = pose_of(self._T_world_base @ T_end)
+        return Motion(self.robot.name, command, kind, now, path, self.pose, target, result)

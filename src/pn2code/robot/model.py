@@ -1,0 +1,168 @@
+"""Robot models and end effectors: found by name or by path, read from URDF, checked.
+
+    arm = find_arm("kr210_r2700", folder, origin, d)
+    tool = find_tool("drill_riveter", folder, origin, d)
+
+A name means a file in `models/` of this package; anything that ends in `.urdf` is a path relative to
+the cell's folder. The URDF is the only description: axes, limits and speeds are read from its joints.
+"""
+
+from __future__ import annotations
+
+import difflib
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from pn2code.diagnostics import Diagnostics, Origin
+from pn2code.robot import codes, urdf
+from pn2code.robot.transforms import Array
+from pn2code.robot.urdf import Joint, Urdf
+
+MODELS = Path(__file__).parent / "models"
+AXES = 6
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Arm:
+    """A six-axis arm.
+
+    Args:
+        name: as in cell.toml.
+        urdf: its tree.
+        flange: the link that carries the tool.
+        chain: all joints from the base to the flange; six of them move.
+        lower: limits, rad; upper likewise.
+        velocity: greatest axis speeds, rad/s.
+    """
+
+    name: str
+    urdf: Urdf
+    flange: str
+    chain: tuple[Joint, ...]
+    lower: Array
+    upper: Array
+    velocity: Array
+
+    @property
+    def axes(self) -> tuple[str, ...]:
+        """Names of the six moving joints, from the base."""
+        return tuple(j.name for j in self.chain if j.type != "fixed")
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Tool:
+    """An end effector: its tree, `T_flange_tcp`, and the links that may touch the work piece."""
+
+    name: str
+    urdf: Urdf
+    T_flange_tcp: Array
+    contact_links: tuple[str, ...]
+
+
+def known_arms() -> tuple[str, ...]:
+    """Names of the arms that come with pn2code."""
+    return tuple(sorted(p.stem for p in MODELS.glob("*.urdf")))
+
+
+def known_tools() -> tuple[str, ...]:
+    """Names of the end effectors that come with pn2code."""
+    return tuple(sorted(p.stem for p in (MODELS / "tools").glob("*.urdf")))
+
+
+def _find(
+    name: str, folder: Path, library: Path, known: tuple[str, ...], code: str, what: str,
+    at: Origin, d: Diagnostics,
+) -> Path | None:  # fmt: skip
+    if name.endswith(".urdf"):
+        path = folder / name
+        if path.is_file():
+            return path
+        d.error(code, f"there is no file `{path}`", at, hint="paths are relative to cell.toml")
+        return None
+    if name in known:
+        return library / f"{name}.urdf"
+    near = difflib.get_close_matches(name, known, n=1)
+    d.error(
+        code,
+        f"unknown {what} `{name}`",
+        at,
+        hint=(f"did you mean `{near[0]}`? " if near else "")
+        + f"known: {', '.join(known)}; or give the path of a .urdf file",
+    )
+    return None
+
+
+def find_arm(name: str, folder: Path, at: Origin, d: Diagnostics) -> Arm | None:
+    """The arm of that name or path; None when something was reported."""
+    path = _find(name, folder, MODELS, known_arms(), codes.ROBOT_MODEL, "robot model", at, d)
+    tree = urdf.read(path, d) if path else None
+    if tree is None:
+        return None
+    flange = next((f for f in ("flange", "tool0") if f in tree.links), None) or _end(tree)
+    if flange is None:
+        d.error(
+            codes.ROBOT_URDF,
+            f"`{tree.path}` branches, and no link is named `flange` or `tool0`",
+            Origin(str(tree.path)),
+            hint="name the link that carries the tool `flange`",
+        )
+        return None
+    chain = tree.chain(flange)
+    moving = [j for j in chain if j.type != "fixed"]
+    if len(moving) != AXES or any(j.type == "prismatic" for j in moving):
+        d.error(
+            codes.ROBOT_URDF,
+            f"`{tree.path}` has {len(moving)} moving joints between `{tree.root}` and `{flange}`, "
+            "but six revolute ones are expected",
+            Origin(str(tree.path)),
+        )
+        return None
+    return Arm(
+        name=name,
+        urdf=tree,
+        flange=flange,
+        chain=chain,
+        lower=np.array([j.lower for j in moving]),
+        upper=np.array([j.upper for j in moving]),
+        velocity=np.array([j.velocity for j in moving]),
+    )
+
+
+def _end(tree: Urdf) -> str | None:
+    parents = {j.parent for j in tree.joints}
+    ends = [link for link in tree.links if link not in parents]
+    return ends[0] if len(ends) == 1 else None
+
+
+def find_tool(name: str, folder: Path, at: Origin, d: Diagnostics) -> Tool | None:
+    """The end effector of that name or path; None when something was reported."""
+    tools = MODELS / "tools"
+    path = _find(name, folder, tools, known_tools(), codes.ROBOT_TOOL, "end effector", at, d)
+    tree = urdf.read(path, d) if path else None
+    if tree is None:
+        return None
+    where = Origin(str(tree.path))
+    if "tcp" not in tree.links:
+        d.error(
+            codes.ROBOT_URDF,
+            f"end effector `{tree.path}` has no link `tcp`",
+            where,
+            hint="add an empty link `tcp` fixed at the tool centre point, z out of the tool",
+        )
+        return None
+    chain = tree.chain("tcp")
+    if any(j.type != "fixed" for j in chain):
+        d.error(
+            codes.ROBOT_URDF, f"the tcp of `{tree.path}` is behind a joint that is not fixed", where
+        )
+        return None
+    frame = np.eye(4)
+    for joint in chain:
+        frame = frame @ joint.T_parent_joint
+    unknown = [link for link in tree.contact_links if link not in tree.links]
+    if unknown:
+        d.error(codes.ROBOT_URDF, f"`contact` names an unknown link `{unknown[0]}`", where)
+        return None
+    return Tool(name, tree, frame, tree.contact_links)

@@ -1,0 +1,1 @@
+"""Arms (`*.urdf`), end effectors (`tools/*.urdf`) and their meshes; `build` makes them all."""

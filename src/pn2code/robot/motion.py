@@ -1,0 +1,394 @@
+"""Trajectories: joint moves (PTP), linear moves (LIN), standing still.
+
+    limits = MotionLimits.of(arm, config)
+    ptp = plan_ptp(kinematics, q_start, q_target, limits)         # jerk-limited, all axes in step
+    lin = plan_lin(kinematics, q_start, T_start, T_target, ...)   # exactly on the line
+    lin.q(0.25 * lin.duration)
+
+Time laws are `ruckig`'s. A linear move is a one-axis law along the arc, and the closed-form inverse
+at every instant asked for, on the branch of the start: no interpolation between solutions, so the TCP
+is on the line to 1e-9 mm at any time. What cannot be done is a `MotionFault`, raised while planning.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import Literal, Protocol
+
+import numpy as np
+from ruckig import InputParameter, Result, Ruckig, Synchronization
+from ruckig import Trajectory as RuckigTrajectory
+
+from pn2code.robot.commands import Pose
+from pn2code.robot.kinematics import BRANCHES, Branch, Kinematics
+from pn2code.robot.model import AXES
+from pn2code.robot.transforms import (
+    Array,
+    pose_of,
+    rotation_about,
+    rotation_vector,
+)
+
+FaultKind = Literal[
+    "unreachable", "joint-limit", "axis-speed", "singularity", "collision", "bad-command"
+]
+
+# Conditioning (1 m) above this: an axis that is too fast is so because of a singularity.
+SINGULAR_CONDITION = 50.0
+# Steps in which a linear move is checked when it is planned, s and m, whichever are more.
+_CHECK_TIME = 0.01
+_CHECK_LENGTH = 0.002
+_CHECK_ANGLE = math.radians(0.5)
+_SAME = 1e-12
+
+
+class MotionFault(Exception):  # noqa: N818
+    """A command that cannot be carried out, or a motion that must not go on.
+
+    Args:
+        kind: the class of fault.
+        message: lower case, no full stop; names robot, axis, pose.
+        robot: name in the cell; filled in by the executor.
+        pose: the TCP pose (world) it happens at, if any.
+        q: the joint position, rad, if any.
+        time: seconds from the beginning of the motion, if it was planned that far.
+    """
+
+    def __init__(
+        self,
+        kind: FaultKind,
+        message: str,
+        *,
+        robot: str = "",
+        pose: Pose | None = None,
+        q: tuple[float, ...] = (),
+        time: float | None = None,
+    ) -> None:
+        super().__init__(message)
+        self.kind: FaultKind = kind
+        self.message = message
+        self.robot = robot
+        self.pose = pose
+        self.q = q
+        self.time = time
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class MotionLimits:
+    """What a robot may do, in SI units; arrays are per axis.
+
+    Args:
+        velocity: rad/s, already scaled by the configured fraction.
+        acceleration: rad/s2; jerk rad/s3.
+        axis_velocity: the axes' own limit, rad/s: what a linear move is checked against.
+        linear_*: of the TCP along a line, m/s, m/s2, m/s3.
+        angular_velocity: of the TCP's turning on a linear move, rad/s.
+    """
+
+    velocity: Array
+    acceleration: Array
+    jerk: Array
+    axis_velocity: Array
+    linear_velocity: float
+    linear_acceleration: float
+    linear_jerk: float
+    angular_velocity: float
+
+
+class Trajectory(Protocol):
+    """Joint positions over time, from 0 to `duration` (s); before and after, the ends."""
+
+    @property
+    def duration(self) -> float:
+        """Seconds."""
+
+    def q(self, t: float) -> Array:
+        """Joint position, rad, (6,)."""
+
+    def qd(self, t: float) -> Array:
+        """Joint speed, rad/s, (6,)."""
+
+    def sample(self, times: Array) -> Array:
+        """Joint positions at many times, (n, 6)."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Still:
+    """Standing at a position."""
+
+    position: Array
+    duration: float
+
+    def q(self, t: float) -> Array:
+        """The position."""
+        return self.position
+
+    def qd(self, t: float) -> Array:
+        """Zero."""
+        return np.zeros(AXES)
+
+    def sample(self, times: Array) -> Array:
+        """The position, repeated."""
+        return np.repeat(self.position[None], len(times), axis=0)
+
+
+class _Law:
+    """A ruckig time law from rest to rest; `duration` s."""
+
+    def __init__(
+        self, start: Array, target: Array, velocity: Array, acceleration: Array, jerk: Array
+    ) -> None:
+        n = len(start)
+        request = InputParameter(n)
+        request.current_position = start.tolist()
+        request.target_position = target.tolist()
+        request.max_velocity = velocity.tolist()
+        request.max_acceleration = acceleration.tolist()
+        request.max_jerk = jerk.tolist()
+        # Axes in proportion where possible (from rest to rest it is), so the path in joint space is a
+        # straight line and does not depend on the speed.
+        request.synchronization = Synchronization.Phase
+        self._law = RuckigTrajectory(n)
+        result = Ruckig(n).calculate(request, self._law)
+        # `Working` is what an offline calculation answers when all is well.
+        if result not in (Result.Working, Result.Finished):
+            raise MotionFault("bad-command", f"no time law was found ({result.name})")
+        self.duration = float(self._law.duration)
+
+    def at(self, t: float) -> tuple[Array, Array]:
+        """Position and speed."""
+        position, speed, _ = self._law.at_time(min(max(t, 0.0), self.duration))
+        return np.array(position), np.array(speed)
+
+
+class JointTrajectory:
+    """PTP: all axes start and arrive together."""
+
+    def __init__(self, start: Array, target: Array, law: _Law) -> None:
+        self._start, self._target, self._law = start, target, law
+        self.duration = law.duration
+
+    def q(self, t: float) -> Array:
+        """Joint position, rad; exactly the target at the end."""
+        if t <= 0.0:
+            return self._start
+        return self._target if t >= self.duration else np.asarray(self._law.at(t)[0])
+
+    def qd(self, t: float) -> Array:
+        """Joint speed, rad/s."""
+        inside = 0.0 < t < self.duration
+        return self._law.at(t)[1] if inside else np.zeros(AXES)
+
+    def sample(self, times: Array) -> Array:
+        """Joint positions at many times."""
+        return np.stack([self.q(float(t)) for t in times])
+
+
+class Line:
+    """Straight from one pose to another, turning about one axis at constant ratio (slerp)."""
+
+    def __init__(self, start: Array, target: Array) -> None:
+        self.start, self.target = start, target
+        self.shift = target[:3, 3] - start[:3, 3]
+        self.length = float(np.linalg.norm(self.shift))
+        # In the start's frame, so that R(s) = R_start * Rot(axis, s * angle).
+        turn = rotation_vector(start[:3, :3].T @ target[:3, :3])
+        self.angle = float(np.linalg.norm(turn))
+        self.axis = turn / self.angle if self.angle > _SAME else np.array([0.0, 0.0, 1.0])
+
+    def at(self, s: Array) -> Array:
+        """Poses (n, 4, 4) at fractions s of the way."""
+        out = np.repeat(self.start[None], len(s), axis=0)
+        out[:, :3, 3] += s[:, None] * self.shift
+        if self.angle > _SAME:
+            out[:, :3, :3] = self.start[:3, :3] @ rotation_about(self.axis, s * self.angle)
+        out[s >= 1.0] = self.target
+        return out
+
+    def twist(self, rotation: Array) -> Array:
+        """Velocity of the TCP (m, rad; base frame) for one unit of s, at an orientation on the way."""
+        return np.concatenate([self.shift, rotation @ (self.axis * self.angle)])
+
+
+class LinearTrajectory:
+    """LIN: the TCP on a line, joints by the closed-form inverse on one branch."""
+
+    def __init__(
+        self, kinematics: Kinematics, line: Line, branch: Branch, law: _Law, start: Array
+    ) -> None:
+        self._k, self.line, self.branch, self._law = kinematics, line, branch, law
+        self.duration = law.duration
+        count = max(
+            2,
+            math.ceil(law.duration / _CHECK_TIME),
+            math.ceil(line.length / _CHECK_LENGTH),
+            math.ceil(line.angle / _CHECK_ANGLE),
+        )
+        # Unwrapped positions close enough that the turns of any instant between are those nearby.
+        self.times = np.linspace(0.0, law.duration, count + 1)
+        self.grid = self._k.follow(self.line.at(self.way(self.times)), branch, start)
+
+    def way(self, times: Array) -> Array:
+        """Fraction of the way at each time, 0 to 1."""
+        out = np.array([self._law.at(float(t))[0][0] for t in times])
+        out[times >= self.duration] = 1.0
+        return np.asarray(np.clip(out, 0.0, 1.0))
+
+    def q(self, t: float) -> Array:
+        """Joint position, rad."""
+        return np.asarray(self.sample(np.array([t]))[0])
+
+    def qd(self, t: float) -> Array:
+        """Joint speed, rad/s."""
+        if not 0.0 < t < self.duration:
+            return np.zeros(AXES)
+        rate = float(self._law.at(t)[1][0])
+        q = self.q(t)
+        return np.asarray(self.rates(q[None], np.array([rate]))[0])
+
+    def rates(self, q: Array, rate: Array) -> Array:
+        """Joint speeds (n, 6) at joint positions (n, 6) for speeds along the way (1/s)."""
+        now = self._k.forward_many(q)
+        twist = np.stack([self.line.twist(r) for r in now[:, :3, :3]]) * rate[:, None]
+        return np.asarray((np.linalg.pinv(self._k.jacobian_many(q)) @ twist[..., None])[..., 0])
+
+    def sample(self, times: Array) -> Array:
+        """Joint positions at many times."""
+        times = np.clip(times, 0.0, self.duration)
+        rows = self._k.all_branches(self.line.at(self.way(times)))[:, self.branch.index]
+        near = self.grid[np.searchsorted(self.times, times).clip(0, len(self.times) - 1)]
+        turn = 2.0 * math.pi
+        return np.asarray(rows + turn * np.round((near - rows) / turn))
+
+
+def plan_ptp(
+    kinematics: Kinematics, start: Array, target: Array, limits: MotionLimits, speed: float = 1.0
+) -> JointTrajectory:
+    """A joint move. `speed`: fraction (0..1] of the configured joint speed. Raises MotionFault."""
+    _check_speed(speed, 1.0, "speed must be a fraction above 0 and at most 1")
+    _check_limits(kinematics, target[None])
+    law = _Law(start, target, limits.velocity * speed, limits.acceleration, limits.jerk)
+    return JointTrajectory(start, target, law)
+
+
+def plan_lin(
+    kinematics: Kinematics,
+    start: Array,
+    T_start: Array,
+    T_target: Array,
+    limits: MotionLimits,
+    speed: float | None = None,
+) -> LinearTrajectory | Still:
+    """A linear move from `T_start` (the TCP in the base frame, where `start` puts it) to `T_target`.
+
+    Args:
+        speed: m/s; None: the configured one.
+
+    Raises MotionFault: a pose on the way is out of reach or of the limits, or an axis would have to
+    turn faster than it can (a singularity, where the conditioning says so).
+    """
+    wanted = limits.linear_velocity if speed is None else speed
+    _check_speed(wanted, math.inf, "linear speed must be above 0")
+    line = Line(T_start, T_target)
+    if line.length < _SAME and line.angle < _SAME:
+        return Still(start, 0.0)
+    # One unit of the law is the whole way; pure turns are limited by the angular speed alone.
+    fast = min(
+        wanted / line.length if line.length > _SAME else math.inf,
+        limits.angular_velocity / line.angle if line.angle > _SAME else math.inf,
+    )
+    size = max(line.length, line.angle)
+    law = _Law(
+        np.zeros(1),
+        np.ones(1),
+        np.array([fast]),
+        np.array([limits.linear_acceleration / size]),
+        np.array([limits.linear_jerk / size]),
+    )
+    branch = kinematics.branch_of(start)
+    out = LinearTrajectory(kinematics, line, branch, law, start)
+    _check_line(kinematics, out, limits)
+    return out
+
+
+def _check_speed(value: float, most: float, message: str) -> None:
+    if not (0.0 < value <= most and math.isfinite(value)):
+        raise MotionFault("bad-command", f"{message}, but it is {value:g}")
+
+
+def _check_limits(kinematics: Kinematics, path: Array, times: Array | None = None) -> None:
+    margins = np.minimum(path - kinematics.arm.lower, kinematics.arm.upper - path)
+    low = margins.min(axis=1)
+    if (low >= -1e-9).all():
+        return
+    first = int(np.argmax(low < -1e-9))
+    axis = int(np.argmin(margins[first]))
+    name = kinematics.arm.axes[axis]
+    value, lower, upper = (
+        math.degrees(v)
+        for v in (path[first, axis], kinematics.arm.lower[axis], kinematics.arm.upper[axis])
+    )
+    raise MotionFault(
+        "joint-limit",
+        f"axis {axis + 1} (`{name}`) would be at {value:.2f} deg, outside {lower:.2f} .. {upper:.2f}",
+        pose=pose_of(kinematics.forward(path[first])),
+        q=tuple(path[first].tolist()),
+        time=None if times is None else float(times[first]),
+    )
+
+
+def _check_line(kinematics: Kinematics, lin: LinearTrajectory, limits: MotionLimits) -> None:
+    path, times = lin.grid, lin.times
+    missing = np.isnan(path[:, 0])
+    if missing.any():
+        first = int(np.argmax(missing))
+        where = pose_of(lin.line.at(lin.way(times[first : first + 1]))[0])
+        others = _other_branches(kinematics, lin, first)
+        raise MotionFault(
+            "unreachable",
+            f"the line leaves the reach of branch {lin.branch} "
+            f"{1000 * lin.line.length * float(lin.way(times[first : first + 1])[0]):.1f} mm after its start"
+            + others,
+            pose=where,
+            time=float(times[first]),
+        )
+    _check_limits(kinematics, path, times)
+    # Exact joint speeds, and the real steps: the one sees a singularity nearby, the other a leap over it.
+    rate = np.array([float(lin._law.at(float(t))[1][0]) for t in times])
+    exact = np.abs(lin.rates(path, rate)) / limits.axis_velocity
+    step = np.zeros_like(exact)
+    step[1:] = np.abs(np.diff(path, axis=0)) / np.diff(times)[:, None] / limits.axis_velocity
+    load = np.maximum(exact, step)
+    if (load <= 1.0).all():
+        return
+    first = int(np.argmax((load > 1.0).any(axis=1)))
+    axis = int(np.argmax(load[first]))
+    condition = kinematics.conditioning(path[first])
+    name = kinematics.arm.axes[axis]
+    # Steps far above the exact speeds: the branch leaps, as over a straight wrist.
+    leap = step[first, axis] > 2.0 * exact[first, axis] + 0.5
+    singular = leap or condition.condition > SINGULAR_CONDITION
+    what = (
+        f"the line passes a singularity (condition number {condition.condition:.0f}, elbow "
+        f"{math.degrees(condition.elbow):.1f} deg from straight, wrist "
+        f"{math.degrees(condition.wrist):.1f} deg): "
+        if singular
+        else ""
+    )
+    needed = math.degrees(load[first, axis] * limits.axis_velocity[axis])
+    raise MotionFault(
+        "singularity" if singular else "axis-speed",
+        f"{what}axis {axis + 1} (`{name}`) would have to turn at {needed:.0f} deg/s, but can do "
+        f"{math.degrees(limits.axis_velocity[axis]):.0f}",
+        pose=pose_of(kinematics.forward(path[first])),
+        q=tuple(path[first].tolist()),
+        time=float(times[first]),
+    )
+
+
+def _other_branches(kinematics: Kinematics, lin: LinearTrajectory, index: int) -> str:
+    pose = lin.line.at(lin.way(lin.times[index : index + 1]))
+    rows = kinematics.all_branches(pose)[0]
+    there = [str(b) for b in BRANCHES if not np.isnan(rows[b.index, 0])]
+    return f"; other branches reach it: {', '.join(there)}" if there else ""

@@ -1,0 +1,230 @@
+"""Reading URDF: links, joints, meshes; and joining an arm with its end effector into one file.
+
+Only what kinematics needs is kept (names, tree, joint frames, axes, limits); shapes stay in the XML
+for PyBullet. Any robot's URDF in the usual form can be read, so that users bring their own.
+"""
+
+from __future__ import annotations
+
+import copy
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any, Literal
+
+import numpy as np
+from lxml import etree
+
+from pn2code.diagnostics import Diagnostics, Origin
+from pn2code.robot import codes
+from pn2code.robot.transforms import Array, rotation_xyz
+
+JointType = Literal["revolute", "continuous", "prismatic", "fixed"]
+_MAX_BYTES = 8_000_000
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Joint:
+    """A joint: `T_parent_joint` at zero, its axis in the joint frame, limits in rad and rad/s."""
+
+    name: str
+    type: JointType
+    parent: str
+    child: str
+    T_parent_joint: Array
+    axis: tuple[float, float, float]
+    lower: float
+    upper: float
+    velocity: float
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Urdf:
+    """The tree of a URDF file.
+
+    Args:
+        path: the file; mesh names are relative to its folder.
+        name: of the robot element.
+        links: names, in order of the file.
+        joints: in order of the file.
+        contact_links: links that may touch what the tool works on (`<pn2code contact="nose"/>`).
+        self_ignore: pairs of links never checked against each other.
+        root: the link that is no joint's child.
+        xml: the parsed file.
+    """
+
+    path: Path
+    name: str
+    links: tuple[str, ...]
+    joints: tuple[Joint, ...]
+    contact_links: tuple[str, ...]
+    self_ignore: frozenset[frozenset[str]]
+    root: str
+    xml: Any
+
+    def chain(self, tip: str) -> tuple[Joint, ...]:
+        """The joints from the root to a link."""
+        by_child = {j.child: j for j in self.joints}
+        out: list[Joint] = []
+        while tip != self.root:
+            out.append(by_child[tip])
+            tip = by_child[tip].parent
+        return tuple(reversed(out))
+
+
+class _BadError(Exception):
+    """A mistake in the file, with its line; caught in `read`."""
+
+    def __init__(self, message: str, line: int = 0) -> None:
+        super().__init__(message)
+        self.line = line
+
+
+def read(path: Path, d: Diagnostics) -> Urdf | None:
+    """Reads a URDF file; None when something was reported."""
+    at = Origin(str(path))
+    try:
+        data = path.read_bytes()
+    except OSError as problem:
+        d.error(codes.ROBOT_URDF, f"cannot read `{path}`: {problem.strerror}", at)
+        return None
+    if len(data) > _MAX_BYTES:
+        d.error(codes.ROBOT_URDF, f"`{path}` has more than {_MAX_BYTES} bytes", at)
+        return None
+    parser = etree.XMLParser(resolve_entities=False, no_network=True, load_dtd=False)
+    try:
+        root = etree.fromstring(data, parser)
+    except etree.XMLSyntaxError as problem:
+        line, column = problem.position
+        d.error(codes.ROBOT_URDF, f"not XML: {problem.msg}", Origin(str(path), line, column))
+        return None
+    try:
+        return _tree(path, root)
+    except _BadError as problem:
+        d.error(codes.ROBOT_URDF, str(problem), Origin(str(path), problem.line))
+        return None
+
+
+def _tree(path: Path, root: Any) -> Urdf:
+    if root.tag != "robot":
+        raise _BadError(
+            f"the root element is `{root.tag}`, but `robot` is expected", root.sourceline
+        )
+    links = tuple(_attribute(e, "name") for e in root.findall("link"))
+    if not links:
+        raise _BadError("there are no links", root.sourceline)
+    for name in links:
+        if links.count(name) > 1:
+            raise _BadError(f"link `{name}` is defined twice", root.sourceline)
+    joints = tuple(_joint(e, links) for e in root.findall("joint"))
+    children = [j.child for j in joints]
+    for child in children:
+        if children.count(child) > 1:
+            raise _BadError(f"link `{child}` is the child of two joints", root.sourceline)
+    roots = [name for name in links if name not in children]
+    if len(roots) != 1:
+        raise _BadError(f"the links are not one tree: {len(roots)} of them have no parent")
+    return Urdf(
+        path=path,
+        name=root.get("name", path.stem),
+        links=links,
+        joints=joints,
+        contact_links=tuple(
+            link for e in root.findall("pn2code") for link in e.get("contact", "").split()
+        ),
+        self_ignore=frozenset(
+            frozenset(pair.split("+"))
+            for e in root.findall("pn2code")
+            for pair in e.get("ignore", "").split()
+        ),
+        root=roots[0],
+        xml=root,
+    )
+
+
+def _attribute(element: Any, name: str) -> str:
+    value = element.get(name)
+    if not value:
+        raise _BadError(f"`{element.tag}` has no `{name}`", element.sourceline)
+    return str(value)
+
+
+def _numbers(element: Any, name: str, count: int, default: str) -> tuple[float, ...]:
+    text = default if element is None else element.get(name, default)
+    try:
+        values = tuple(float(word) for word in text.split())
+    except ValueError:
+        values = ()
+    if len(values) != count or not all(np.isfinite(values)):
+        line = 0 if element is None else element.sourceline
+        raise _BadError(f"`{name}` is `{text}`, but {count} numbers are expected", line)
+    return values
+
+
+def _joint(element: Any, links: tuple[str, ...]) -> Joint:
+    name = _attribute(element, "name")
+    kind = element.get("type", "")
+    line = element.sourceline
+    if kind not in ("revolute", "continuous", "prismatic", "fixed"):
+        raise _BadError(f"joint `{name}` has type `{kind}`, which is not supported", line)
+    ends = []
+    for tag in ("parent", "child"):
+        end = element.find(tag)
+        if end is None:
+            raise _BadError(f"joint `{name}` has no `{tag}`", line)
+        ends.append(_attribute(end, "link"))
+        if ends[-1] not in links:
+            raise _BadError(f"joint `{name}` names an unknown link `{ends[-1]}`", line)
+    origin = element.find("origin")
+    frame = np.eye(4)
+    frame[:3, 3] = _numbers(origin, "xyz", 3, "0 0 0")
+    roll, pitch, yaw = _numbers(origin, "rpy", 3, "0 0 0")
+    frame[:3, :3] = rotation_xyz(roll, pitch, yaw)
+    axis = np.array(_numbers(element.find("axis"), "xyz", 3, "1 0 0"))
+    length = float(np.linalg.norm(axis))
+    if length == 0.0:
+        raise _BadError(f"the axis of joint `{name}` has length zero", line)
+    limit = element.find("limit")
+    if kind == "revolute" and limit is None:
+        raise _BadError(f"joint `{name}` has no `limit`", line)
+    turn = 2.0 * np.pi
+    lower = _numbers(limit, "lower", 1, "0")[0] if kind != "continuous" else -turn
+    upper = _numbers(limit, "upper", 1, "0")[0] if kind != "continuous" else turn
+    velocity = _numbers(limit, "velocity", 1, "0")[0]
+    if kind != "fixed" and not (lower < upper and velocity > 0.0):
+        raise _BadError(
+            f"joint `{name}` needs `lower` below `upper` and a `velocity` above zero", line
+        )
+    x, y, z = (axis / length).tolist()
+    return Joint(name, kind, ends[0], ends[1], frame, (x, y, z), lower, upper, velocity)
+
+
+def joined(arm: Urdf, flange: str, tool: Urdf, prefix: str = "tool_") -> str:
+    """One URDF text: the arm with the tool fixed to its flange.
+
+    Tool links and joints get a prefix; mesh names become absolute, because the text is written elsewhere.
+    """
+    out = copy.deepcopy(arm.xml)
+    _absolute(out, arm.path.parent)
+    added = copy.deepcopy(tool.xml)
+    _absolute(added, tool.path.parent)
+    known = {m.get("name") for m in out.findall("material")}
+    for element in added:
+        if element.tag == "link":
+            element.set("name", prefix + element.get("name"))
+        elif element.tag == "joint":
+            element.set("name", prefix + element.get("name"))
+            for tag in ("parent", "child"):
+                element.find(tag).set("link", prefix + element.find(tag).get("link"))
+        elif element.tag != "material" or element.get("name") in known:
+            continue
+        out.append(element)
+    mount = etree.SubElement(out, "joint", name=f"{prefix}mount", type="fixed")
+    etree.SubElement(mount, "parent", link=flange)
+    etree.SubElement(mount, "child", link=prefix + tool.root)
+    return str(etree.tostring(out, encoding="unicode", pretty_print=True))
+
+
+def _absolute(root: Any, folder: Path) -> None:
+    for mesh in root.iter("mesh"):
+        name = mesh.get("filename", "").removeprefix("package://").removeprefix("file://")
+        mesh.set("filename", str((folder / name).resolve()))
