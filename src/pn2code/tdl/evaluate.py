@@ -1,0 +1,202 @@
+"""Values of scripts and the meaning of expressions.
+
+A value is an `int`, `float`, `bool`, `str` or `ScriptPose`; a quantity is a `float` in the base unit of
+its dimension (mm, deg, s, mm/s). The program has been checked, so types are right; what can still go
+wrong (division by zero, a number that is too large) raises `ScriptError`.
+"""
+
+from __future__ import annotations
+
+import math
+import struct
+from collections.abc import Callable
+from dataclasses import astuple, dataclass
+from typing import Protocol, assert_never, cast
+
+from pn2code.tdl import tree as t
+from pn2code.tdl.types import MAX_INT, MIN_INT, UNITS
+
+
+@dataclass(frozen=True, slots=True)
+class ScriptPose:
+    """A pose as scripts and files have it: mm and degrees, fixed-axis XYZ angles."""
+
+    x: float
+    y: float
+    z: float
+    rx: float
+    ry: float
+    rz: float
+
+
+ScriptValue = int | float | bool | str | ScriptPose
+
+
+class ScriptError(Exception):
+    """The script cannot go on; the message follows the rules of diagnostics."""
+
+
+class Environment(Protocol):
+    """What names mean."""
+
+    def value(self, name: str) -> ScriptValue:
+        """The value of a variable or constant; ScriptError if it has none yet."""
+
+    def filled(self, name: str) -> bool:
+        """Whether a file holds a message."""
+
+
+def evaluate(e: t.Expression, env: Environment) -> ScriptValue:
+    """The value of an expression."""
+    match e:
+        case t.Value(value):
+            return value
+        case t.Quantity(number, unit):
+            return number * UNITS[unit].factor
+        case t.Name(name):
+            return env.value(name)
+        case t.Field(record, label):
+            return cast(float, getattr(evaluate(record, env), label))
+        case t.Unary("not", operand):
+            return not evaluate(operand, env)
+        case t.Unary(_, operand):
+            return _checked(-cast(float, evaluate(operand, env)))
+        case t.Binary("and", left, right):
+            return bool(evaluate(left, env)) and bool(evaluate(right, env))
+        case t.Binary("or", left, right):
+            return bool(evaluate(left, env)) or bool(evaluate(right, env))
+        case t.Binary(operator, left, right):
+            return _binary(operator, evaluate(left, env), evaluate(right, env))
+        case t.CallExpression("filled", (t.Name(name),)):
+            return env.filled(name)
+        case t.CallExpression(function, arguments):
+            return _call(function, [evaluate(a, env) for a in arguments])
+        case t.Conditional(condition, then, otherwise):
+            return evaluate(then if evaluate(condition, env) else otherwise, env)
+        case _:
+            assert_never(e)
+
+
+def _checked(value: ScriptValue) -> ScriptValue:
+    if isinstance(value, bool) or isinstance(value, str | ScriptPose):
+        return value
+    if isinstance(value, int):
+        if not MIN_INT <= value <= MAX_INT:
+            raise ScriptError(f"the integer {value} is out of range (31 bits)")
+    elif not math.isfinite(value):
+        raise ScriptError("the result is not a finite number")
+    return value
+
+
+def _binary(operator: str, a: ScriptValue, b: ScriptValue) -> ScriptValue:
+    if operator == "=":
+        return a == b
+    if operator == "<>":
+        return a != b
+    if operator == "&":
+        return cast(str, a) + cast(str, b)
+    if operator in ("<", "<=", ">", ">="):
+        return _ordered(operator, a, b)
+    x, y = cast(float, a), cast(float, b)
+    if operator in ("/", "div", "mod") and y == 0:
+        raise ScriptError("division by zero")
+    try:
+        match operator:
+            case "+":
+                return _checked(x + y)
+            case "-":
+                return _checked(x - y)
+            case "*":
+                return _checked(x * y)
+            case "/":
+                return _checked(x / y)
+            case "div":
+                return _checked(x // y)
+            case "mod":
+                return _checked(x % y)
+    except OverflowError:
+        raise ScriptError("the result is not a finite number") from None
+    raise ValueError(operator)
+
+
+def _ordered(operator: str, a: ScriptValue, b: ScriptValue) -> bool:
+    x, y = cast(float, a), cast(float, b)  # or two strings: Python compares both alike
+    match operator:
+        case "<":
+            return x < y
+        case "<=":
+            return x <= y
+        case ">":
+            return x > y
+        case _:
+            return x >= y
+
+
+def single(value: ScriptValue) -> ScriptValue:
+    """Rounded to single precision, component by component; ScriptError if that is not finite."""
+    if isinstance(value, ScriptPose):
+        return ScriptPose(*(cast(float, single(v)) for v in astuple(value)))
+    if isinstance(value, float):
+        try:
+            return cast(float, struct.unpack("<f", struct.pack("<f", value))[0])
+        except OverflowError:
+            raise ScriptError(f"{value!r} is too large for single precision") from None
+    return value
+
+
+def _half_even(value: float) -> int:
+    return round(value)
+
+
+_TO_INT: dict[str, Callable[[float], int]] = {
+    "floor": math.floor,
+    "ceil": math.ceil,
+    "round": _half_even,
+    "trunc": math.trunc,
+}
+
+
+def _call(function: str, arguments: list[ScriptValue]) -> ScriptValue:
+    if function == "pose":
+        return ScriptPose(*(float(cast(float, a)) for a in arguments))
+    first = arguments[0]
+    if function == "text":
+        return show(first)
+    if function == "single":
+        return single(first)
+    numbers = [cast(float, a) for a in arguments]
+    x = numbers[0]
+    match function:
+        case "abs":
+            return _checked(abs(x))
+        case "min":
+            return min(numbers)
+        case "max":
+            return max(numbers)
+        case "real":
+            return float(x)
+        case "sqrt":
+            if x < 0:
+                raise ScriptError("square root of a negative number")
+            return math.sqrt(x)
+        case "sin":
+            return math.sin(math.radians(x))
+        case "cos":
+            return math.cos(math.radians(x))
+        case "tan":
+            return math.tan(math.radians(x))
+        case _:
+            return _checked(_TO_INT[function](x))
+
+
+def show(value: ScriptValue) -> str:
+    """A value as messages print it."""
+    match value:
+        case bool():
+            return "true" if value else "false"
+        case float():
+            return f"{value:.10g}"
+        case ScriptPose():
+            return f"pose({', '.join(f'{v:.10g}' for v in astuple(value))})"
+        case _:
+            return str(value)

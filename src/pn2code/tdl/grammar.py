@@ -1,0 +1,123 @@
+"""The grammar of scripts, for lark (LALR). docs/tdl.md explains it; a test compares the key words.
+
+White space and line ends only separate. Key words are reserved everywhere.
+"""
+
+from __future__ import annotations
+
+from typing import Final
+
+KEYWORDS: Final = (
+    "program", "input", "output", "const", "var", "procedure", "begin", "end", "single",
+    "move", "home", "in", "at", "speed", "default", "wait", "until", "read", "into", "clear", "write", "signal",
+    "tool", "for", "measure", "mark", "with", "null", "stop", "call", "return", "goto", "exit", "when",
+    "if", "then", "elsif", "else", "while", "loop",
+    "and", "or", "not", "div", "mod", "true", "false",
+)  # fmt: skip
+
+GRAMMAR: Final = (
+    r"""
+start: "program" NAME declaration* procedure* "begin" block "end" "program"
+
+?declaration: file | const | var
+file: (INPUT | OUTPUT) NAME STRING ":" type ("," type)*
+const: "const" NAME "=" expression
+var: "var" NAME ("," NAME)* ":" type (":=" expression)?
+type: (NAME | SPEED | SIGNAL) SINGLE?
+
+procedure: "procedure" NAME block "end" "procedure"
+
+block: statement*
+?statement: move | speed | wait_time | wait_until | read | clear | write | assign | tool | measure
+          | mark | stop | call | return | label | goto | exit | if | while | loop
+
+move: "move" MOTION target ("in" frame)? ("at" expression)?
+?target: HOME | expression
+frame: NAME | TOOL
+speed: SPEED MOTION (DEFAULT | expression)
+wait_time: "wait" expression
+wait_until: "wait" "until" expression
+read: "read" NAME "into" NAME ("," NAME)*
+clear: "clear" NAME
+write: "write" NAME (SIGNAL | expression ("," expression)*)
+assign: NAME ":=" expression
+tool: TOOL (NAME | STRING) "for" expression
+measure: "measure" expression "into" NAME
+mark: "mark" (NAME ("." NAME)* | STRING) ("with" binding ("," binding)*)?
+binding: (NAME | STRING) "=" datum
+?datum: expression | record | tuple | null
+record: "{" binding ("," binding)* "}"
+tuple: "[" datum ("," datum)* "]"
+null: "null"
+stop: "stop" expression ("," expression)*
+call: "call" NAME
+return: "return"
+label: NAME ":"
+goto: "goto" NAME
+exit: "exit" ("when" expression)?
+if: "if" expression "then" block elsif* else? "end" "if"
+elsif: "elsif" expression "then" block
+else: "else" block
+while: "while" expression "loop" block "end" "loop"
+loop: "loop" block "end" "loop"
+
+?expression: disjunction
+           | "if" expression "then" expression "else" expression -> conditional
+?disjunction: conjunction | disjunction OR conjunction -> binary
+?conjunction: negation | conjunction AND negation -> binary
+?negation: comparison | NOT negation -> unary
+?comparison: sum | sum (EQUAL | NOT_EQUAL | LESS | LESS_EQUAL | GREATER | GREATER_EQUAL) sum -> binary
+?sum: term | sum (PLUS | MINUS | AMPERSAND) term -> binary
+?term: factor | term (TIMES | DIVIDE | DIV | MOD) factor -> binary
+?factor: postfix | MINUS factor -> unary
+?postfix: atom | postfix "." NAME -> field
+?atom: QUANTITY -> quantity
+     | REAL -> real
+     | INT -> integer
+     | STRING -> string
+     | TRUE -> true
+     | FALSE -> false
+     | NAME -> name
+     | NAME "(" expression ("," expression)* ")" -> function
+     | "(" expression ")" -> parenthesised
+
+OR: "or"
+AND: "and"
+NOT: "not"
+DIV: "div"
+MOD: "mod"
+TRUE: "true"
+FALSE: "false"
+HOME: "home"
+TOOL: "tool"
+SPEED: "speed"
+SIGNAL: "signal"
+SINGLE: "single"
+DEFAULT: "default"
+INPUT: "input"
+OUTPUT: "output"
+EQUAL: "="
+NOT_EQUAL: "<>"
+LESS_EQUAL: "<="
+LESS: "<"
+GREATER_EQUAL: ">="
+GREATER: ">"
+PLUS: "+"
+MINUS: "-"
+AMPERSAND: "&"
+TIMES: "*"
+DIVIDE: "/"
+
+MOTION: /\$[A-Za-z_]*/
+QUANTITY.3: /[0-9]+(\.[0-9]+)?([eE][+-]?[0-9]+)?(?![eE][+-]?[0-9])[ \t]*(mm\/s(?![A-Za-z0-9_])|m\/s(?![A-Za-z0-9_])|%|(?!(?:KEYWORD)(?![A-Za-z0-9_]))[A-Za-z_][A-Za-z0-9_]*)/
+REAL.2: /[0-9]+(\.[0-9]+([eE][+-]?[0-9]+)?|[eE][+-]?[0-9]+)/
+INT.1: /[0-9]+/
+STRING: /"([^"\\\n]|\\["\\nt])*"/
+NAME: /(?!(?:KEYWORD)(?![A-Za-z0-9_]))[A-Za-z_][A-Za-z0-9_]*/
+
+COMMENT: /--[^\n]*/
+WHITE: /[ \t\r\n]+/
+%ignore COMMENT
+%ignore WHITE
+"""
+).replace("KEYWORD", "|".join(KEYWORDS))

@@ -1,0 +1,464 @@
+"""Running a script: a coroutine by hand that never sleeps and never reads the wall clock.
+
+    interpreter = Interpreter(checked, files, on_event)
+    request = interpreter.resume()
+    Execute(command, line)  -> the driver runs the command, then resume(result of Measure, else None)
+    AwaitFile(names, line)  -> resume() when one of the files holds a message
+    Finished(), Fault(...)  -> that was all
+
+Scripts have mm and degrees; commands leave in SI, measurements come back in SI.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import astuple, dataclass
+from typing import Any, Final, Protocol, assert_never, cast
+
+from pn2code.robot import commands
+from pn2code.tdl import flow, paths
+from pn2code.tdl import tree as t
+from pn2code.tdl.check import CheckedProgram
+from pn2code.tdl.evaluate import (
+    ScriptError,
+    ScriptPose,
+    ScriptValue,
+    evaluate,
+    show,
+    single,
+)
+from pn2code.tdl.types import POSE_FIELDS, Type
+
+DEFAULT_STEP_LIMIT: Final = 100_000
+MAX_CALL_DEPTH: Final = 100
+
+Scalar = int | float | bool | str
+
+
+class FileError(Exception):
+    """A shared file cannot be read, emptied or written; the message says which and why."""
+
+
+class Files(Protocol):
+    """The shared files as the interpreter sees them, by channel name ("flag1_interno").
+
+    A signal (the one value of a unit colour set) is the scalar 1. Each method may raise `FileError`,
+    which stops the script.
+    """
+
+    def read(self, name: str) -> tuple[Scalar, ...] | None:
+        """The scalars of the message, which stays; None when the file is empty."""
+
+    def clear(self, name: str) -> None:
+        """Consume the message."""
+
+    def write(self, name: str, values: tuple[Scalar, ...]) -> None:
+        """Publish a message."""
+
+
+# --- what the interpreter asks of its driver ---------------------------------------------------
+
+
+@dataclass(frozen=True, slots=True)
+class Execute:
+    """Run a command; resume when it is done."""
+
+    command: commands.Command
+    line: int
+
+
+@dataclass(frozen=True, slots=True)
+class AwaitFile:
+    """Nothing to do until one of these files, all empty now, holds a message."""
+
+    names: tuple[str, ...]
+    line: int
+
+
+@dataclass(frozen=True, slots=True)
+class Finished:
+    """The script has ended."""
+
+
+@dataclass(frozen=True, slots=True)
+class Fault:
+    """The script cannot go on (or said `stop`)."""
+
+    message: str
+    line: int
+
+
+Request = Execute | AwaitFile | Finished | Fault
+
+
+# --- what it tells -----------------------------------------------------------------------------
+
+
+@dataclass(frozen=True, slots=True)
+class Marked:
+    """A net transition has occurred; `binding` is in the form of docs/trace.md."""
+
+    transition: str
+    binding: dict[str, Any]
+    line: int
+
+
+@dataclass(frozen=True, slots=True)
+class MessageRead:
+    """A message was copied."""
+
+    file: str
+    values: tuple[Scalar, ...]
+    line: int
+
+
+@dataclass(frozen=True, slots=True)
+class MessageConsumed:
+    """A message was taken: its file is empty now."""
+
+    file: str
+    values: tuple[Scalar, ...]
+    line: int
+
+
+@dataclass(frozen=True, slots=True)
+class MessageWritten:
+    """A message was published."""
+
+    file: str
+    values: tuple[Scalar, ...]
+    line: int
+
+
+Event = Marked | MessageRead | MessageConsumed | MessageWritten
+
+
+def _ignore(event: Event) -> None:
+    return None
+
+
+class Interpreter:
+    """One run of a script.
+
+    Args:
+        program: checked.
+        files: the shared files.
+        on_event: hears of marks and messages, in order.
+        step_limit: most instructions between two requests; more is an endless loop.
+    """
+
+    def __init__(
+        self,
+        program: CheckedProgram,
+        files: Files,
+        on_event: Callable[[Event], None] = _ignore,
+        *,
+        step_limit: int = DEFAULT_STEP_LIMIT,
+    ) -> None:
+        self._program = program
+        self._files = files
+        self._tell = on_event
+        self._limit = step_limit
+        self._values: dict[str, ScriptValue] = {}
+        self._at: list[tuple[str, int]] = [("", 0)]
+        self._speed: dict[t.Motion, float | None] = {t.Motion.JOINT: None, t.Motion.LINEAR: None}
+        self._measuring: tuple[t.Measure, ScriptPose, commands.Pose] | None = None
+        self._end: Finished | Fault | None = None
+        self._line = 0
+        self._started = False
+
+    @property
+    def line(self) -> int:
+        """The line of the statement that runs now, or ran last."""
+        return self._line
+
+    @property
+    def variables(self) -> dict[str, ScriptValue]:
+        """A copy of the variables that have a value (for reports and tests)."""
+        return dict(self._values)
+
+    def resume(self, result: commands.Pose | None = None) -> Request:
+        """Run until something is needed. `result` answers a `Measure`: the pose seen, in SI."""
+        if self._end is not None:
+            return self._end
+        try:
+            if not self._started:
+                self._started = True
+                self._initialise()
+            if self._measuring is not None:
+                self._finish_measure(result)
+            for _ in range(self._limit):
+                request = self._step()
+                if request is not None:
+                    if isinstance(request, Finished):
+                        self._end = request
+                    return request
+            raise ScriptError(
+                f"endless loop: {self._limit} statements without a command or a wait"
+            )
+        except (ScriptError, FileError) as problem:
+            self._end = Fault(str(problem), self._line)
+            return self._end
+
+    # Environment of expressions
+
+    def value(self, name: str) -> ScriptValue:
+        """The value of a variable or constant."""
+        if name in self._program.constants:
+            return self._program.constants[name]
+        if name not in self._values:
+            raise ScriptError(f"variable `{name}` has no value yet")
+        return self._values[name]
+
+    def filled(self, name: str) -> bool:
+        """Whether a file holds a message."""
+        return self._files.read(name) is not None
+
+    # Running
+
+    def _initialise(self) -> None:
+        for v in self._program.variables.values():
+            if v.initial is not None:
+                self._line = v.span.origin.line
+                self._assign(v.name, evaluate(v.initial, self))
+
+    def _step(self) -> Request | None:
+        body, at = self._at[-1]
+        instruction = self._program.bodies[body].instructions[at]
+        self._line = instruction.span.origin.line or self._line
+        following = at + 1
+        match instruction:
+            case flow.Jump(target):
+                following = target
+            case flow.BranchUnless(condition, target):
+                if not evaluate(condition, self):
+                    following = target
+            case flow.BranchIf(condition, target):
+                if evaluate(condition, self):
+                    following = target
+            case flow.CallProcedure(name):
+                self._at[-1] = (body, following)
+                self._at.append((name, 0))
+                return None
+            case flow.End():
+                self._at.pop()
+                return None if self._at else Finished()
+            case flow.Do(statement):
+                request = self._do(statement)
+                if isinstance(request, AwaitFile):
+                    return request  # the condition is looked at again
+                self._at[-1] = (body, following)
+                return request
+            case _:
+                assert_never(instruction)
+        self._at[-1] = (body, following)
+        return None
+
+    def _do(self, s: t.Simple) -> Request | None:
+        match s:
+            case t.Assign(target, value):
+                self._assign(target.name, evaluate(value, self))
+            case t.Read():
+                self._read(s)
+            case t.Clear(file):
+                message = self._files.read(file.name)
+                if message is None:
+                    raise ScriptError(f"file `{file.name}` is empty, there is nothing to consume")
+                self._files.clear(file.name)
+                self._tell(MessageConsumed(file.name, message, self._line))
+            case t.Write(file, values):
+                kinds = self._program.files[file.name].types
+                scalars = tuple(
+                    x
+                    for kind, v in zip(kinds, values, strict=False)
+                    for x in _scalars(_stored(evaluate(v, self), kind))
+                ) or (1,)  # a signal
+                self._files.write(file.name, scalars)
+                self._tell(MessageWritten(file.name, scalars, self._line))
+            case t.WaitUntil(condition):
+                return self._wait_until(condition)
+            case t.Mark(transition, binding):
+                data = {name: self._datum(x) for name, x in binding}
+                self._tell(Marked(transition, data, self._line))
+            case t.Stop(message_parts):
+                raise ScriptError(" ".join(show(evaluate(m, self)) for m in message_parts))
+            case t.Speed(motion, speed):
+                self._speed[motion] = None if speed is None else self._number(speed)
+            case t.Move() | t.WaitTime() | t.Tool() | t.Measure():
+                return Execute(self._command(s), self._line)
+            case t.Call() | t.Return() | t.Label() | t.Goto() | t.Exit():
+                raise AssertionError("control flow is in the instructions")
+            case _:
+                assert_never(s)
+        return None
+
+    def _wait_until(self, condition: t.Expression) -> AwaitFile | None:
+        if evaluate(condition, self):
+            return None
+        empty = tuple(name for name in paths.files_in(condition) if not self.filled(name))
+        if not empty:
+            raise ScriptError("this wait can never end: all its files hold messages")
+        return AwaitFile(empty, self._line)
+
+    def _read(self, s: t.Read) -> None:
+        name = s.file.name
+        message = self._files.read(name)
+        if message is None:
+            raise ScriptError(f"file `{name}` is empty, there is nothing to read")
+        kinds = self._program.files[name].types
+        values = _typed(name, message, kinds)
+        for target, kind, value in zip(s.targets, kinds, values, strict=True):
+            self._assign(target.name, _stored(value, kind))
+        self._tell(MessageRead(name, message, self._line))
+
+    def _assign(self, name: str, value: ScriptValue) -> None:
+        self._values[name] = _stored(value, self._program.variables[name].type)
+
+    def _datum(self, x: t.Datum) -> Any:
+        match x:
+            case t.RecordDatum(fields):
+                return {name: self._datum(inner) for name, inner in fields}
+            case t.TupleDatum(items):
+                return [self._datum(inner) for inner in items]
+            case t.NullDatum():
+                return None
+            case _:
+                value = evaluate(x, self)
+                if isinstance(value, ScriptPose):
+                    return dict(zip(POSE_FIELDS, astuple(value), strict=True))
+                return value
+
+    # Commands
+
+    def _command(self, s: t.Move | t.WaitTime | t.Tool | t.Measure) -> commands.Command:
+        match s:
+            case t.Move(t.Motion.JOINT, target):
+                speed = self._move_speed(s)
+                joint = 1.0 if speed is None else speed
+                if not 0 < joint <= 1:
+                    raise ScriptError(f"joint speed {joint * 100:g} % is not above zero and at most 100 %")
+                if target is None:
+                    return commands.MoveHome(joint)
+                return commands.MoveJoint(self._pose(target), joint)
+            case t.Move(_, target):
+                speed = self._move_speed(s)
+                if speed is not None and speed <= 0:
+                    raise ScriptError(f"linear speed {speed:g} mm/s is not above zero")
+                assert target is not None
+                return commands.MoveLinear(
+                    self._pose(target),
+                    "tool" if s.frame == "tool" else "world",
+                    None if speed is None else speed / 1000.0,
+                )
+            case t.WaitTime(duration):
+                return commands.Wait(self._duration(duration))
+            case t.Tool(action, duration):
+                return commands.ToolAction(action, self._duration(duration))
+            case t.Measure(nominal):
+                pose = cast(ScriptPose, evaluate(nominal, self))
+                self._measuring = (s, pose, to_si(pose))
+                return commands.Measure(self._measuring[2])
+
+    def _move_speed(self, s: t.Move) -> float | None:
+        return self._speed[s.motion] if s.speed is None else self._number(s.speed)
+
+    def _number(self, e: t.Expression) -> float:
+        return float(cast(float, evaluate(e, self)))
+
+    def _duration(self, e: t.Expression) -> float:
+        seconds = self._number(e)
+        if seconds < 0:
+            raise ScriptError(f"the duration {seconds:g} s is negative")
+        return seconds
+
+    def _pose(self, e: t.Expression) -> commands.Pose:
+        return to_si(cast(ScriptPose, evaluate(e, self)))
+
+    def _finish_measure(self, result: commands.Pose | None) -> None:
+        assert self._measuring is not None
+        statement, nominal, asked = self._measuring
+        self._measuring = None
+        if result is None:
+            raise ScriptError("the measurement gave no pose")
+        self._assign(statement.target.name, _from_si(result, asked, nominal))
+
+
+def to_si(pose: ScriptPose) -> commands.Pose:
+    """Millimetres and degrees to metres and radians."""
+    return commands.Pose(
+        pose.x / 1000.0,
+        pose.y / 1000.0,
+        pose.z / 1000.0,
+        math.radians(pose.rx),
+        math.radians(pose.ry),
+        math.radians(pose.rz),
+    )
+
+
+def _from_si(pose: commands.Pose, asked: commands.Pose, nominal: ScriptPose) -> ScriptPose:
+    """Metres and radians to millimetres and degrees.
+
+    A component that came back as it went out keeps its value in mm or degrees, to the last bit: a
+    conversion there and back would not.
+    """
+    return ScriptPose(
+        *(
+            was if si == sent else (si * 1000.0 if i < 3 else math.degrees(si))
+            for i, (si, sent, was) in enumerate(
+                zip(astuple(pose), astuple(asked), astuple(nominal), strict=True)
+            )
+        )
+    )
+
+
+def _stored(value: ScriptValue, kind: t.TypeName) -> ScriptValue:
+    """The value as a variable or file of this type holds it."""
+    if kind.type is not Type.INT and isinstance(value, int) and not isinstance(value, bool):
+        value = float(value)
+    return single(value) if kind.single else value
+
+
+def _scalars(value: ScriptValue) -> tuple[Scalar, ...]:
+    return astuple(value) if isinstance(value, ScriptPose) else (value,)
+
+
+def _typed(
+    name: str, message: tuple[Scalar, ...], kinds: tuple[t.TypeName, ...]
+) -> list[ScriptValue]:
+    """The values of a message; ScriptError if it is not what the script declares."""
+    values: list[ScriptValue] = []
+    rest = list(message)
+    try:
+        for kind in kinds:
+            if kind.type is Type.SIGNAL:
+                rest.pop(0)
+                continue
+            if kind.type is Type.POSE:
+                values.append(ScriptPose(*(_scalar(rest.pop(0), Type.REAL) for _ in range(6))))
+            else:
+                values.append(_scalar(rest.pop(0), kind.type))
+        if rest:
+            raise ValueError
+    except (IndexError, ValueError):
+        words = " ".join(map(str, message))
+        wanted = ", ".join(str(k.type) for k in kinds)
+        raise ScriptError(
+            f"file `{name}` holds `{words}`, but the script expects {wanted}"
+        ) from None
+    return values
+
+
+def _scalar(x: Scalar, kind: Type) -> Any:
+    """One scalar as its type wants it; ValueError if it cannot be."""
+    if kind is Type.STRING:
+        if isinstance(x, str):
+            return x
+    elif kind is Type.BOOL:
+        if isinstance(x, bool) or (isinstance(x, int) and x in (0, 1)):
+            return bool(x)
+    elif isinstance(x, int) and not isinstance(x, bool):
+        return x if kind is Type.INT else float(x)
+    elif isinstance(x, float) and kind is not Type.INT and math.isfinite(x):
+        return x
+    raise ValueError

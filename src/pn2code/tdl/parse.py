@@ -1,0 +1,487 @@
+"""Text of a script -> syntax tree, or diagnostics with line and caret.
+
+    parse(SourceText("program p begin wait 2.5 s end program", Origin("p.tdl", 1, 1)), d)
+    -> Program("p", (), (), (WaitTime(Quantity(2.5, "s")),))
+"""
+
+from __future__ import annotations
+
+import math
+from functools import cache
+from pathlib import Path
+from typing import Any, cast
+
+from lark import Lark, Token, Transformer, v_args
+from lark.exceptions import UnexpectedCharacters, UnexpectedToken, VisitError
+from lark.tree import Meta
+
+from pn2code.diagnostics import Diagnostics, Origin, SourceText, Span
+from pn2code.tdl import codes
+from pn2code.tdl import tree as t
+from pn2code.tdl.grammar import GRAMMAR, KEYWORDS
+from pn2code.tdl.types import MAX_INT, TYPES_BY_NAME, UNITS, Type
+
+MAX_EXPRESSION_DEPTH = 100
+MAX_BLOCK_DEPTH = 40
+
+
+def parse_file(path: Path, d: Diagnostics) -> t.Program | None:
+    """Parse a script file (UTF-8); reading errors are the caller's business."""
+    return parse(SourceText(path.read_text(encoding="utf-8"), Origin(str(path), 1, 1)), d)
+
+
+def parse(source: SourceText, d: Diagnostics) -> t.Program | None:
+    """Parse a script; None when something was reported."""
+    before = len(d.errors)
+    builder = _Builder(source, d)
+    try:
+        tree = _parser().parse(source.text)
+        program = builder.transform(tree) if not _too_deep(tree, source, d) else None
+    except UnexpectedCharacters as problem:
+        _unexpected_characters(problem, source, d)
+        return None
+    except UnexpectedToken as problem:
+        _unexpected_token(problem, source, d)
+        return None
+    except VisitError as problem:  # lark wraps what the builder raises; that is a bug of ours
+        raise problem.orig_exc from None
+    return program if len(d.errors) == before else None
+
+
+@cache
+def _parser() -> Lark:
+    return Lark(
+        GRAMMAR, parser="lalr", lexer="contextual", propagate_positions=True, maybe_placeholders=False
+    )
+
+
+# --- messages ----------------------------------------------------------------------------------
+
+_WORDS = {
+    "NAME": "a name", "STRING": "a text in quotes", "INT": "a number", "REAL": "a number",
+    "QUANTITY": "a number", "MOTION": "`$joint` or `$linear`", "$END": "the end of the script",
+    "COLON": "`:`", "COMMA": "`,`", "LPAR": "`(`", "RPAR": "`)`", "LBRACE": "`{`", "RBRACE": "`}`",
+    "LSQB": "`[`", "RSQB": "`]`", "DOT": "`.`", "EQUAL": "`=`", "__COLON_EQUAL": "`:=`",
+    "NOT_EQUAL": "`<>`", "LESS": "`<`", "LESS_EQUAL": "`<=`", "GREATER": "`>`",
+    "GREATER_EQUAL": "`>=`", "PLUS": "`+`", "MINUS": "`-`", "AMPERSAND": "`&`", "TIMES": "`*`",
+    "DIVIDE": "`/`",
+}  # fmt: skip
+_STATEMENTS = {"MOVE", "WAIT", "READ", "CLEAR", "WRITE", "MEASURE", "MARK", "STOP", "CALL", "GOTO"}
+_OPERATORS = {
+    "OR", "AND", "EQUAL", "NOT_EQUAL", "LESS", "LESS_EQUAL", "GREATER", "GREATER_EQUAL", "PLUS",
+    "MINUS", "AMPERSAND", "TIMES", "DIVIDE", "DIV", "MOD", "DOT", "LPAR",
+}  # fmt: skip
+_VALUES = {"INT", "REAL", "QUANTITY", "STRING", "TRUE", "FALSE", "LPAR", "MINUS", "NOT", "IF", "NAME"}
+
+
+def _expected(terminals: set[str]) -> str:
+    """What could stand here, in a few words."""
+    left = set(terminals)
+    words = []
+    if left >= _STATEMENTS:
+        # Between statements: what continues the one before is of no help.
+        left -= {*_STATEMENTS, *_OPERATORS, "NAME", "SPEED", "TOOL", "RETURN", "EXIT", "IF", "WHILE", "LOOP",
+                 "COMMA", "IN", "AT", "WITH", "WHEN"}  # fmt: skip
+        words.append("a statement")
+    elif left >= _VALUES - {"IF", "NOT"}:
+        left -= _VALUES
+        words.append("a value")
+    elif left >= {"PLUS", "TIMES"}:
+        left -= _OPERATORS
+        words.append("an operator")
+    for name in sorted(left):
+        text = _WORDS.get(name) or _literal(name)
+        if text not in words:
+            words.append(text)
+    if len(words) > 6:
+        words = [*words[:6], "..."]
+    return words[0] if len(words) == 1 else ", ".join(words[:-1]) + " or " + words[-1]
+
+
+def _literal(terminal: str) -> str:
+    for definition in _parser().terminals:
+        if definition.name == terminal:
+            return f"`{definition.pattern.value}`"
+    return terminal.lower()
+
+
+def _unexpected_token(problem: UnexpectedToken, source: SourceText, d: Diagnostics) -> None:
+    token = problem.token
+    expected = set(problem.accepts or problem.expected)
+    if token.type == "$END":
+        d.error(
+            codes.SYNTAX,
+            f"the script ends here, but {_expected(expected)} is expected",
+            source.span(len(source.text.rstrip()), len(source.text.rstrip()) + 1),
+            hint="close every block: `end if`, `end loop`, `end procedure`, `end program`",
+        )
+        return
+    start = cast(int, token.start_pos)
+    hint = ""
+    if token.type == "EQUAL" and "__COLON_EQUAL" in {_plain(e) for e in expected}:
+        hint = "assignment is written `:=`"
+    elif str(token) in KEYWORDS and "NAME" in expected:
+        hint = f"`{token}` is a word of the language and cannot be a name"
+    d.error(
+        codes.SYNTAX,
+        f"`{token}` cannot stand here: {_expected({_plain(e) for e in expected})} is expected",
+        source.span(start, start + len(token)),
+        hint=hint,
+    )
+
+
+def _plain(terminal: str) -> str:
+    """Lark numbers the terminals it has no name for; `:=` is the only one of ours."""
+    return "__COLON_EQUAL" if terminal.startswith("__ANON") else terminal
+
+
+def _unexpected_characters(
+    problem: UnexpectedCharacters, source: SourceText, d: Diagnostics
+) -> None:
+    at = cast(int, problem.pos_in_stream)
+    rest = source.text[at:]
+    allowed = {_plain(a) for a in (problem.allowed or set())} - {"COMMENT", "WHITE"}
+    if rest.startswith('"'):
+        end = rest.find("\n")
+        d.error(
+            codes.SYNTAX,
+            "the text in quotes does not end on its line, or holds an unknown `\\` sequence",
+            source.span(at, len(source.text) if end < 0 else at + end),
+            hint='write `\\"`, `\\\\`, `\\n` or `\\t` inside quotes',
+        )
+        return
+    word = rest[0]
+    if rest[0].isalpha() or rest[0] == "_":
+        word = _leading_word(rest)
+    hint = ""
+    if word in KEYWORDS and "NAME" in allowed:
+        hint = f"`{word}` is a word of the language and cannot be a name"
+    shown = word if word.isprintable() else f"character {ord(word[0])}"
+    d.error(
+        codes.SYNTAX,
+        f"`{shown}` cannot stand here: {_expected(allowed)} is expected"
+        if allowed
+        else f"`{shown}` cannot stand here",
+        source.span(at, at + len(word)),
+        hint=hint,
+    )
+
+
+def _leading_word(text: str) -> str:
+    end = 0
+    while end < len(text) and (text[end].isalnum() or text[end] == "_"):
+        end += 1
+    return text[:end]
+
+
+def _too_deep(tree: Any, source: SourceText, d: Diagnostics) -> bool:
+    """Whether blocks or expressions are nested beyond the limits (walks without recursion).
+
+    The stages behind walk the tree recursively; the limit keeps them far from Python's own.
+    """
+    stack: list[tuple[Any, int, int]] = [(tree, 0, 0)]
+    while stack:
+        node, blocks, expressions = stack.pop()
+        if isinstance(node, Token):
+            continue
+        if node.data == "block":
+            blocks, expressions = blocks + 1, 0
+        elif node.data in ("binary", "unary", "conditional", "parenthesised", "function", "field",
+                           "record", "tuple"):  # fmt: skip
+            expressions += 1
+        if blocks > MAX_BLOCK_DEPTH or expressions > MAX_EXPRESSION_DEPTH:
+            what = "blocks are" if blocks > MAX_BLOCK_DEPTH else "the expression is"
+            start = node.meta.start_pos
+            d.error(
+                codes.NESTING,
+                f"{what} nested too deeply",
+                source.span(start, start + 1),
+                hint="use a procedure" if blocks > MAX_BLOCK_DEPTH else "use a variable",
+            )
+            return True
+        stack.extend((c, blocks, expressions) for c in node.children)
+    return False
+
+
+# --- building the tree -------------------------------------------------------------------------
+
+
+@v_args(meta=True)
+class _Builder(Transformer[Token, Any]):
+    """Lark's tree -> ours; mistakes that the grammar cannot see are reported here."""
+
+    def __init__(self, source: SourceText, d: Diagnostics) -> None:
+        super().__init__()
+        self._source = source
+        self._d = d
+
+    def _span(self, meta: Meta) -> Span:
+        if meta.empty:
+            return self._source.span(0, 0)
+        return self._source.span(meta.start_pos, meta.end_pos)
+
+    def _at(self, token: Token) -> Span:
+        return self._source.span(cast(int, token.start_pos), cast(int, token.end_pos))
+
+    def _target(self, token: Token) -> t.Target:
+        return t.Target(str(token), self._at(token))
+
+    # declarations
+
+    def start(self, meta: Meta, c: list[Any]) -> t.Program:
+        name, *rest, body = c
+        declarations: list[t.Declaration] = []
+        procedures = []
+        for item in rest:
+            if isinstance(item, t.Procedure):
+                procedures.append(item)
+            elif isinstance(item, tuple):
+                declarations.extend(item)
+            else:
+                declarations.append(item)
+        return t.Program(
+            str(name), tuple(declarations), tuple(procedures), body, self._span(meta)
+        )
+
+    def file(self, meta: Meta, c: list[Any]) -> t.File:
+        direction, name, path, *types = c
+        return t.File(
+            t.Direction(str(direction)), str(name), _unquote(path), tuple(types), self._at(name)
+        )
+
+    def const(self, meta: Meta, c: list[Any]) -> t.Const:
+        return t.Const(str(c[0]), c[1], self._at(c[0]))
+
+    def var(self, meta: Meta, c: list[Any]) -> tuple[t.Variable, ...]:
+        names = [x for x in c if isinstance(x, Token)]
+        type_name = c[len(names)]
+        initial = c[len(names) + 1] if len(c) > len(names) + 1 else None
+        return tuple(t.Variable(str(n), type_name, initial, self._at(n)) for n in names)
+
+    def type(self, meta: Meta, c: list[Token]) -> t.TypeName:
+        name = str(c[0])
+        found = TYPES_BY_NAME.get(name)
+        if found is None:
+            self._d.error(
+                codes.UNKNOWN_TYPE,
+                f"there is no type `{name}`",
+                self._at(c[0]),
+                hint=f"types are {', '.join(t for t in TYPES_BY_NAME)}",
+            )
+        return t.TypeName(found or Type.INT, len(c) > 1, self._span(meta))
+
+    def procedure(self, meta: Meta, c: list[Any]) -> t.Procedure:
+        return t.Procedure(str(c[0]), c[1], self._at(c[0]))
+
+    # statements
+
+    def block(self, meta: Meta, c: list[t.Statement]) -> tuple[t.Statement, ...]:
+        return tuple(c)
+
+    def _motion(self, token: Token) -> t.Motion:
+        known = {m.value: m for m in t.Motion}
+        if str(token) not in known:
+            self._d.error(
+                codes.UNKNOWN_MOTION,
+                f"there is no motion `{token}`",
+                self._at(token),
+                hint=f"motions are {' and '.join(f'`{k}`' for k in known)}",
+            )
+        return known.get(str(token), t.Motion.JOINT)
+
+    def move(self, meta: Meta, c: list[Any]) -> t.Move:
+        motion, target, *rest = c
+        frame = rest.pop(0) if rest and isinstance(rest[0], t.Target) else None
+        return t.Move(
+            self._motion(motion),
+            None if isinstance(target, Token) else target,
+            frame.name if frame else None,
+            rest[0] if rest else None,
+            frame.span if frame else None,
+            self._span(meta),
+        )
+
+    def frame(self, meta: Meta, c: list[Token]) -> t.Target:
+        return self._target(c[0])
+
+    def speed(self, meta: Meta, c: list[Any]) -> t.Speed:
+        value = None if isinstance(c[2], Token) else c[2]
+        return t.Speed(self._motion(c[1]), value, self._span(meta))
+
+    def wait_time(self, meta: Meta, c: list[Any]) -> t.WaitTime:
+        return t.WaitTime(c[0], self._span(meta))
+
+    def wait_until(self, meta: Meta, c: list[Any]) -> t.WaitUntil:
+        return t.WaitUntil(c[0], self._span(meta))
+
+    def read(self, meta: Meta, c: list[Token]) -> t.Read:
+        return t.Read(
+            self._target(c[0]), tuple(self._target(x) for x in c[1:]), self._span(meta)
+        )
+
+    def clear(self, meta: Meta, c: list[Token]) -> t.Clear:
+        return t.Clear(self._target(c[0]), self._span(meta))
+
+    def write(self, meta: Meta, c: list[Any]) -> t.Write:
+        values = tuple(x for x in c[1:] if not isinstance(x, Token))
+        return t.Write(self._target(c[0]), values, self._span(meta))
+
+    def assign(self, meta: Meta, c: list[Any]) -> t.Assign:
+        return t.Assign(self._target(c[0]), c[1], self._span(meta))
+
+    def tool(self, meta: Meta, c: list[Any]) -> t.Tool:
+        return t.Tool(_word(c[1]), c[2], self._span(meta))
+
+    def measure(self, meta: Meta, c: list[Any]) -> t.Measure:
+        return t.Measure(c[0], self._target(c[1]), self._span(meta))
+
+    def mark(self, meta: Meta, c: list[Any]) -> t.Mark:
+        names = [x for x in c if isinstance(x, Token)]
+        return t.Mark(
+            ".".join(_word(n) for n in names), tuple(c[len(names) :]), self._span(meta)
+        )
+
+    def binding(self, meta: Meta, c: list[Any]) -> tuple[str, t.Datum]:
+        return _word(c[0]), c[1]
+
+    def record(self, meta: Meta, c: list[Any]) -> t.RecordDatum:
+        return t.RecordDatum(tuple(c), self._span(meta))
+
+    def tuple(self, meta: Meta, c: list[Any]) -> t.TupleDatum:
+        return t.TupleDatum(tuple(c), self._span(meta))
+
+    def null(self, meta: Meta, c: list[Any]) -> t.NullDatum:
+        return t.NullDatum(self._span(meta))
+
+    def stop(self, meta: Meta, c: list[Any]) -> t.Stop:
+        return t.Stop(tuple(c), self._span(meta))
+
+    def call(self, meta: Meta, c: list[Token]) -> t.Call:
+        return t.Call(self._target(c[0]), self._span(meta))
+
+    def label(self, meta: Meta, c: list[Token]) -> t.Label:
+        return t.Label(str(c[0]), self._span(meta))
+
+    def goto(self, meta: Meta, c: list[Token]) -> t.Goto:
+        return t.Goto(self._target(c[0]), self._span(meta))
+
+    def exit(self, meta: Meta, c: list[Any]) -> t.Exit:
+        return t.Exit(c[0] if c else None, self._span(meta))
+
+    def elsif(self, meta: Meta, c: list[Any]) -> t.Branch:
+        return t.Branch(c[0], c[1], self._span(meta))
+
+    def loop(self, meta: Meta, c: list[Any]) -> t.Loop:
+        return t.Loop(c[0], self._span(meta))
+
+    # expressions
+
+    def conditional(self, meta: Meta, c: list[Any]) -> t.Conditional:
+        return t.Conditional(c[0], c[1], c[2], self._span(meta))
+
+    def binary(self, meta: Meta, c: list[Any]) -> t.Binary:
+        return t.Binary(cast(t.Operator, str(c[1])), c[0], c[2], self._span(meta))
+
+    def unary(self, meta: Meta, c: list[Any]) -> t.Unary:
+        return t.Unary("not" if str(c[0]) == "not" else "-", c[1], self._span(meta))
+
+    def field(self, meta: Meta, c: list[Any]) -> t.Field:
+        return t.Field(c[0], str(c[1]), self._span(meta))
+
+    def parenthesised(self, meta: Meta, c: list[Any]) -> t.Expression:
+        return cast(t.Expression, c[0])
+
+    def function(self, meta: Meta, c: list[Any]) -> t.CallExpression:
+        return t.CallExpression(str(c[0]), tuple(c[1:]), self._span(meta))
+
+    def name(self, meta: Meta, c: list[Token]) -> t.Name:
+        return t.Name(str(c[0]), self._span(meta))
+
+    def integer(self, meta: Meta, c: list[Token]) -> t.Value:
+        # Not converted when it is far too long: Python refuses numerals of thousands of digits.
+        digits = str(c[0]).lstrip("0") or "0"
+        value = int(digits) if len(digits) <= 10 else MAX_INT + 2
+        if value > MAX_INT:
+            self._d.error(
+                codes.TYPE,
+                "the integer is out of range",
+                self._span(meta),
+                hint=f"integers have 31 bits, as in CPN Tools: at most {MAX_INT}",
+            )
+        return t.Value(value, self._span(meta))
+
+    def real(self, meta: Meta, c: list[Token]) -> t.Value:
+        return t.Value(self._number(str(c[0]), meta), self._span(meta))
+
+    def quantity(self, meta: Meta, c: list[Token]) -> t.Quantity:
+        text = str(c[0])
+        unit = text.lstrip("0123456789.")
+        if unit[:1] in ("e", "E") and unit[1:].lstrip("+-")[:1].isdigit():
+            unit = unit[1:].lstrip("+-").lstrip("0123456789")
+        number = text[: len(text) - len(unit)].rstrip(" \t")
+        unit = unit.strip(" \t")
+        if unit not in UNITS:
+            start = cast(int, c[0].end_pos) - len(unit)
+            self._d.error(
+                codes.UNKNOWN_UNIT,
+                f"there is no unit `{unit}`",
+                self._source.span(start, start + len(unit)),
+                hint=f"units are {', '.join(UNITS)}",
+            )
+            unit = "mm"
+        return t.Quantity(self._number(number, meta), unit, self._span(meta))
+
+    def _number(self, text: str, meta: Meta) -> float:
+        value = float(text)
+        if math.isinf(value):
+            self._d.error(codes.TYPE, "the number is too large", self._span(meta))
+        return value
+
+    def string(self, meta: Meta, c: list[Token]) -> t.Value:
+        return t.Value(_unquote(c[0]), self._span(meta))
+
+    def true(self, meta: Meta, c: list[Token]) -> t.Value:
+        return t.Value(True, self._span(meta))
+
+    def false(self, meta: Meta, c: list[Token]) -> t.Value:
+        return t.Value(False, self._span(meta))
+
+
+def _if(self: _Builder, meta: Meta, c: list[Any]) -> t.If:
+    condition, body, *rest = c
+    otherwise = rest.pop() if rest and isinstance(rest[-1], tuple) else None
+    first = t.Branch(condition, body, self._span(meta))
+    return t.If((first, *rest), otherwise, self._span(meta))
+
+
+def _while(self: _Builder, meta: Meta, c: list[Any]) -> t.While:
+    return t.While(c[0], c[1], self._span(meta))
+
+
+def _return(self: _Builder, meta: Meta, c: list[Any]) -> t.Return:
+    return t.Return(self._span(meta))
+
+
+def _else(self: _Builder, meta: Meta, c: list[Any]) -> tuple[t.Statement, ...]:
+    return cast("tuple[t.Statement, ...]", c[0])
+
+
+# Rules named by Python's key words cannot be written as methods.
+for _name, _method in (("if", _if), ("while", _while), ("return", _return), ("else", _else)):
+    setattr(_Builder, _name, v_args(meta=True)(_method))
+
+
+def _word(token: Token) -> str:
+    return _unquote(token) if token.type == "STRING" else str(token)
+
+
+def _unquote(token: Token) -> str:
+    out = []
+    characters = iter(str(token)[1:-1])
+    for c in characters:
+        if c == "\\":
+            following = next(characters)
+            out.append({"n": "\n", "t": "\t"}.get(following, following))
+        else:
+            out.append(c)
+    return "".join(out)

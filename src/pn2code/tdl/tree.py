@@ -1,0 +1,413 @@
+"""The syntax tree of a script. Every node has its span; equality ignores it.
+
+`move $linear p in tool at 50 mm/s` is
+
+    Move(LINEAR, Name("p"), "tool", Quantity(50.0, "mm/s"))
+
+The translator from nets builds the same trees (with the span `GENERATED`) and `pretty` prints them.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from enum import Enum
+from typing import Final, Literal
+
+from pn2code.diagnostics import NOWHERE, SourceText, Span
+from pn2code.tdl.types import Type
+
+GENERATED: Final = Span(SourceText("", NOWHERE), 0, 0)
+"""The span of nodes that were not read from a file."""
+
+
+# --- expressions -------------------------------------------------------------------------------
+
+
+@dataclass(frozen=True, slots=True)
+class Value:
+    """`12`, `1.5`, `true`, `"text"`; the Python type tells which."""
+
+    value: int | float | bool | str
+    span: Span = field(default=GENERATED, compare=False, repr=False)
+
+
+@dataclass(frozen=True, slots=True)
+class Quantity:
+    """`100 mm`: the number as written, and the unit."""
+
+    number: float
+    unit: str
+    span: Span = field(default=GENERATED, compare=False, repr=False)
+
+
+@dataclass(frozen=True, slots=True)
+class Name:
+    """A variable or constant (or, as the argument of `filled`, a file)."""
+
+    name: str
+    span: Span = field(default=GENERATED, compare=False, repr=False)
+
+
+@dataclass(frozen=True, slots=True)
+class Field:
+    """`p.x`."""
+
+    record: Expression
+    label: str
+    span: Span = field(default=GENERATED, compare=False, repr=False)
+
+
+@dataclass(frozen=True, slots=True)
+class Unary:
+    """`-a` or `not a`."""
+
+    operator: Literal["-", "not"]
+    operand: Expression
+    span: Span = field(default=GENERATED, compare=False, repr=False)
+
+
+Operator = Literal[
+    "or", "and", "=", "<>", "<", "<=", ">", ">=", "+", "-", "&", "*", "/", "div", "mod"
+]
+
+
+@dataclass(frozen=True, slots=True)
+class Binary:
+    """`a + b`."""
+
+    operator: Operator
+    left: Expression
+    right: Expression
+    span: Span = field(default=GENERATED, compare=False, repr=False)
+
+
+@dataclass(frozen=True, slots=True)
+class CallExpression:
+    """`f(a, b)`: a built-in function; `pose(x, y, z, rx, ry, rz)` makes a pose."""
+
+    function: str
+    arguments: tuple[Expression, ...]
+    span: Span = field(default=GENERATED, compare=False, repr=False)
+
+
+@dataclass(frozen=True, slots=True)
+class Conditional:
+    """`if c then a else b` as an expression; only the chosen side is evaluated."""
+
+    condition: Expression
+    then: Expression
+    otherwise: Expression
+    span: Span = field(default=GENERATED, compare=False, repr=False)
+
+
+Expression = Value | Quantity | Name | Field | Unary | Binary | CallExpression | Conditional
+
+
+# --- data of `mark` ----------------------------------------------------------------------------
+
+
+@dataclass(frozen=True, slots=True)
+class RecordDatum:
+    """`{a = 1, b = 2}`."""
+
+    fields: tuple[tuple[str, Datum], ...]
+    span: Span = field(default=GENERATED, compare=False, repr=False)
+
+
+@dataclass(frozen=True, slots=True)
+class TupleDatum:
+    """`[1, 2]`."""
+
+    items: tuple[Datum, ...]
+    span: Span = field(default=GENERATED, compare=False, repr=False)
+
+
+@dataclass(frozen=True, slots=True)
+class NullDatum:
+    """`null`: the one value of a unit colour set."""
+
+    span: Span = field(default=GENERATED, compare=False, repr=False)
+
+
+Datum = Expression | RecordDatum | TupleDatum | NullDatum
+
+
+# --- statements --------------------------------------------------------------------------------
+
+
+class Motion(Enum):
+    """How a robot moves."""
+
+    JOINT = "$joint"
+    LINEAR = "$linear"
+
+
+@dataclass(frozen=True, slots=True)
+class Move:
+    """`move $joint p`, `move $joint home`, `move $linear p in tool at 50 mm/s`.
+
+    `target` None is home; `frame` None: none was written, which means `world`.
+    """
+
+    motion: Motion
+    target: Expression | None
+    frame: str | None = None
+    speed: Expression | None = None
+    frame_span: Span | None = field(default=None, compare=False, repr=False)
+    span: Span = field(default=GENERATED, compare=False, repr=False)
+
+
+@dataclass(frozen=True, slots=True)
+class Speed:
+    """`speed $joint 50 %`, `speed $linear 250 mm/s`, `speed $joint default` (value None)."""
+
+    motion: Motion
+    value: Expression | None
+    span: Span = field(default=GENERATED, compare=False, repr=False)
+
+
+@dataclass(frozen=True, slots=True)
+class WaitTime:
+    """`wait 2.5 s`."""
+
+    duration: Expression
+    span: Span = field(default=GENERATED, compare=False, repr=False)
+
+
+@dataclass(frozen=True, slots=True)
+class WaitUntil:
+    """`wait until filled(F)`."""
+
+    condition: Expression
+    span: Span = field(default=GENERATED, compare=False, repr=False)
+
+
+@dataclass(frozen=True, slots=True)
+class Target:
+    """A name with its own span: a variable that is assigned, a file, a label."""
+
+    name: str
+    span: Span = field(default=GENERATED, compare=False, repr=False)
+
+
+@dataclass(frozen=True, slots=True)
+class Read:
+    """`read F into a, b`: copies the message, which stays."""
+
+    file: Target
+    targets: tuple[Target, ...]
+    span: Span = field(default=GENERATED, compare=False, repr=False)
+
+
+@dataclass(frozen=True, slots=True)
+class Clear:
+    """`clear F`: consumes the message."""
+
+    file: Target
+    span: Span = field(default=GENERATED, compare=False, repr=False)
+
+
+@dataclass(frozen=True, slots=True)
+class Write:
+    """`write F a, b`; no values: `write F signal`."""
+
+    file: Target
+    values: tuple[Expression, ...]
+    span: Span = field(default=GENERATED, compare=False, repr=False)
+
+
+@dataclass(frozen=True, slots=True)
+class Assign:
+    """`x := e`."""
+
+    target: Target
+    value: Expression
+    span: Span = field(default=GENERATED, compare=False, repr=False)
+
+
+@dataclass(frozen=True, slots=True)
+class Tool:
+    """`tool drill for 3 s`."""
+
+    action: str
+    duration: Expression
+    span: Span = field(default=GENERATED, compare=False, repr=False)
+
+
+@dataclass(frozen=True, slots=True)
+class Measure:
+    """`measure p into q`."""
+
+    nominal: Expression
+    target: Target
+    span: Span = field(default=GENERATED, compare=False, repr=False)
+
+
+@dataclass(frozen=True, slots=True)
+class Mark:
+    """`mark Top.Robot1.Accept with k = k`: the net transition has occurred with this binding."""
+
+    transition: str
+    binding: tuple[tuple[str, Datum], ...]
+    span: Span = field(default=GENERATED, compare=False, repr=False)
+
+
+@dataclass(frozen=True, slots=True)
+class Stop:
+    """`stop "unknown command", k`: ends the script with a fault; the values are joined by blanks."""
+
+    message: tuple[Expression, ...]
+    span: Span = field(default=GENERATED, compare=False, repr=False)
+
+
+@dataclass(frozen=True, slots=True)
+class Call:
+    """`call p`."""
+
+    procedure: Target
+    span: Span = field(default=GENERATED, compare=False, repr=False)
+
+
+@dataclass(frozen=True, slots=True)
+class Return:
+    """`return`: leaves the procedure, or ends the program."""
+
+    span: Span = field(default=GENERATED, compare=False, repr=False)
+
+
+@dataclass(frozen=True, slots=True)
+class Label:
+    """`again:`."""
+
+    name: str
+    span: Span = field(default=GENERATED, compare=False, repr=False)
+
+
+@dataclass(frozen=True, slots=True)
+class Goto:
+    """`goto again`."""
+
+    label: Target
+    span: Span = field(default=GENERATED, compare=False, repr=False)
+
+
+@dataclass(frozen=True, slots=True)
+class Exit:
+    """`exit` or `exit when c`: leaves the innermost loop."""
+
+    condition: Expression | None = None
+    span: Span = field(default=GENERATED, compare=False, repr=False)
+
+
+@dataclass(frozen=True, slots=True)
+class Branch:
+    """`if c then ...` or `elsif c then ...`."""
+
+    condition: Expression
+    body: tuple[Statement, ...]
+    span: Span = field(default=GENERATED, compare=False, repr=False)
+
+
+@dataclass(frozen=True, slots=True)
+class If:
+    """`if ... elsif ... else ... end if`; `otherwise` None: there is no `else`."""
+
+    branches: tuple[Branch, ...]
+    otherwise: tuple[Statement, ...] | None
+    span: Span = field(default=GENERATED, compare=False, repr=False)
+
+
+@dataclass(frozen=True, slots=True)
+class While:
+    """`while c loop ... end loop`."""
+
+    condition: Expression
+    body: tuple[Statement, ...]
+    span: Span = field(default=GENERATED, compare=False, repr=False)
+
+
+@dataclass(frozen=True, slots=True)
+class Loop:
+    """`loop ... end loop`: until an `exit`."""
+
+    body: tuple[Statement, ...]
+    span: Span = field(default=GENERATED, compare=False, repr=False)
+
+
+Simple = (
+    Move | Speed | WaitTime | WaitUntil | Read | Clear | Write | Assign | Tool | Measure | Mark
+    | Stop | Call | Return | Label | Goto | Exit
+)  # fmt: skip
+Statement = Simple | If | While | Loop
+
+
+# --- declarations ------------------------------------------------------------------------------
+
+
+@dataclass(frozen=True, slots=True)
+class TypeName:
+    """A type, and whether its reals are rounded to single precision whenever a value is stored."""
+
+    type: Type
+    single: bool = False
+    span: Span = field(default=GENERATED, compare=False, repr=False)
+
+
+class Direction(Enum):
+    """Who writes a file."""
+
+    INPUT = "input"
+    OUTPUT = "output"
+
+
+@dataclass(frozen=True, slots=True)
+class File:
+    """`input flag1_interno "flag1_interno.robcad" : int`."""
+
+    direction: Direction
+    name: str
+    path: str
+    types: tuple[TypeName, ...]
+    span: Span = field(default=GENERATED, compare=False, repr=False)
+
+
+@dataclass(frozen=True, slots=True)
+class Const:
+    """`const JOINT = 1`."""
+
+    name: str
+    value: Expression
+    span: Span = field(default=GENERATED, compare=False, repr=False)
+
+
+@dataclass(frozen=True, slots=True)
+class Variable:
+    """`var n : int := 0`; one node a name."""
+
+    name: str
+    type: TypeName
+    initial: Expression | None = None
+    span: Span = field(default=GENERATED, compare=False, repr=False)
+
+
+Declaration = File | Const | Variable
+
+
+@dataclass(frozen=True, slots=True)
+class Procedure:
+    """`procedure p ... end procedure`: no parameters, all variables are the program's."""
+
+    name: str
+    body: tuple[Statement, ...]
+    span: Span = field(default=GENERATED, compare=False, repr=False)
+
+
+@dataclass(frozen=True, slots=True)
+class Program:
+    """A script."""
+
+    name: str
+    declarations: tuple[Declaration, ...]
+    procedures: tuple[Procedure, ...]
+    body: tuple[Statement, ...]
+    span: Span = field(default=GENERATED, compare=False, repr=False)
