@@ -19,7 +19,7 @@ ALLOWED: dict[str, set[str]] = {
     "robot": {"diagnostics"},
     "tdl": {"diagnostics", "robot"},
     "emission": {"diagnostics", "ml", "net", "cell", "lowering", "resources", "tdl"},
-    "channels": {"diagnostics"},
+    "channels": {"diagnostics", "cell"},
     "toolchain": {"diagnostics", "emission"},
     "run": {"diagnostics", "cell", "channels", "emission", "net", "robot", "semantics", "tdl", "toolchain", "report",
             "pipeline"},

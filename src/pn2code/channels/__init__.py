@@ -1,5 +1,6 @@
 """The Python side of the shared-file protocol (docs/protocol.md)."""
 
+from pn2code.cell.scalars import Scalar, ScalarKind, scalars_of
 from pn2code.channels.directory import (
     GRACE_S,
     LOOK_S,
@@ -11,7 +12,7 @@ from pn2code.channels.directory import (
     Written,
 )
 from pn2code.channels.message import ChannelSpec, Message, Reason, Refused, specs_of
-from pn2code.channels.scalars import Scalar, ScalarKind, ScalarValue, scalars_of
+from pn2code.channels.scalars import ScalarValue
 
 __all__ = [
     "GRACE_S",

@@ -13,14 +13,13 @@ from dataclasses import dataclass
 from enum import Enum
 
 from pn2code.cell.partition import ChannelKind, Partition
+from pn2code.cell.scalars import Scalar, scalars_of
 from pn2code.channels.scalars import (
     Malformed,
-    Scalar,
     ScalarValue,
     format_scalars,
     parse_scalars,
     quote,
-    scalars_of,
 )
 
 EMPTY = "0\n"

@@ -1,8 +1,6 @@
-"""Scalars: the numbers and names that a token is made of, and how they are written in a file.
+"""The scalars of a token as one line of text (docs/protocol.md, "Format").
 
-A colour set with a fixed number of scalars (`colset POSE = record x : real * y : real`) is flattened
-into a tuple of `Scalar`s, in declared order. `format_scalars` and `parse_scalars` write and read the
-text that `cnative/src/pn_channel.c` reads and writes (docs/protocol.md, "Format").
+`format_scalars` and `parse_scalars` write and read what `cnative/src/pn_channel.c` reads and writes, to the last digit.
 
     scalars = scalars_of(pose)                      # (Scalar(REAL, "x", "COORD"), Scalar(REAL, "y", "COORD"))
     format_scalars(scalars, (5750.0, 166.66666))    # "5750.0000 166.66666"
@@ -15,43 +13,11 @@ import math
 import re
 from collections.abc import Sequence
 from dataclasses import dataclass
-from enum import Enum
 
-from pn2code.ml.colsets import Colset, Kind
+from pn2code.cell.scalars import Scalar, ScalarKind
 
 ScalarValue = bool | int | float | str
 """BOOL: bool. INT, INDEX: int. REAL: float. STRING: str. ENUM: the constructor's name. UNIT: 1."""
-
-
-class ScalarKind(Enum):
-    """How a scalar is written."""
-
-    UNIT = "unit"
-    BOOL = "bool"
-    INT = "int"
-    REAL = "real"
-    STRING = "string"
-    ENUM = "enum"
-    INDEX = "index"
-
-
-@dataclass(frozen=True, slots=True)
-class Scalar:
-    """One scalar.
-
-    Args:
-        label: path of its component, "p.x"; for messages.
-        colset: name of its colour set; for messages.
-        names: ENUM: the constructors. UNIT: its one name.
-        low, high: INT, INDEX, REAL: inclusive bounds, None: unbounded.
-    """
-
-    kind: ScalarKind
-    label: str
-    colset: str
-    names: tuple[str, ...] = ()
-    low: float | int | None = None
-    high: float | int | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -61,52 +27,6 @@ class Malformed:
     text: str
     column: int
     wrong_count: bool = False
-
-
-_SIMPLE = {
-    Kind.UNIT: ScalarKind.UNIT,
-    Kind.BOOL: ScalarKind.BOOL,
-    Kind.INT: ScalarKind.INT,
-    Kind.INTINF: ScalarKind.INT,
-    Kind.TIME: ScalarKind.INT,
-    Kind.REAL: ScalarKind.REAL,
-    Kind.STRING: ScalarKind.STRING,
-    Kind.ENUM: ScalarKind.ENUM,
-    Kind.INDEX: ScalarKind.INDEX,
-}
-
-
-def scalars_of(colset: Colset, label: str = "") -> tuple[Scalar, ...] | None:
-    """The scalars of a colour set in declared order; None where their number is not fixed (lists, unions)."""
-    c = colset.resolved
-    if c.kind is Kind.SUBSET:
-        base = c.components[0]
-        return None if base is None else scalars_of(base, label)
-    if c.kind in (Kind.PRODUCT, Kind.RECORD):
-        found: list[Scalar] = []
-        labels = c.labels or tuple(str(i + 1) for i in range(len(c.components)))
-        for component, own in zip(c.components, labels, strict=True):
-            inner = None
-            if component is not None:
-                inner = scalars_of(component, f"{label}.{own}" if label else own)
-            if inner is None:
-                return None
-            found.extend(inner)
-        return tuple(found)
-    kind = _SIMPLE.get(c.kind)
-    if kind is None:
-        return None
-    bounded = kind in (ScalarKind.INT, ScalarKind.REAL, ScalarKind.INDEX)
-    return (
-        Scalar(
-            kind=kind,
-            label=label or colset.name,
-            colset=colset.name,
-            names=c.names if kind in (ScalarKind.ENUM, ScalarKind.UNIT) else (),
-            low=c.low if bounded and not isinstance(c.low, str) else None,
-            high=c.high if bounded and not isinstance(c.high, str) else None,
-        ),
-    )
 
 
 def format_real(value: float) -> str:
