@@ -30,7 +30,7 @@ from pn2code.ml.core import (
     Sequence,
     Var,
 )
-from pn2code.ml.types import INT, TCon, TRecord
+from pn2code.ml.types import INT, TRecord
 from pn2code.net.codes import UNSUPPORTED_TIMED_INPUT
 from pn2code.net.flat import Form, Term
 from pn2code.net.uses import NetVariables, pattern_variables
@@ -71,7 +71,8 @@ class TermReader:
         """Terms of `ms @+ d +++ ...`, each with its delay."""
         found: list[Term] = []
         for part in split(e, ("Time.+++",)):
-            pair = binary(part, ("Time.@+", "Time.@++"))
+            token = binary(part, ("Time.token@+", "Time.token@++"))
+            pair = token or binary(part, ("Time.@+", "Time.@++"))
             if pair is None:
                 self.d.error(
                     UNSUPPORTED_TIMED_INPUT,
@@ -82,7 +83,7 @@ class TermReader:
                 )
                 return None
             value, delay = pair
-            if _is_list_of_tokens(value, part):
+            if token is None:
                 found += self.summands(value, delay)
             else:
                 found.append(self.term(_one(value), value, delay, False, part))
@@ -187,8 +188,3 @@ def split(e: Exp, names: tuple[str, ...]) -> list[Exp]:
 def _one(e: Exp) -> Lit:
     """The coefficient where none is written; it stands where the expression begins."""
     return Lit(1, INT, replace(e.span, end=e.span.start))
-
-
-def _is_list_of_tokens(value: Exp, part: Exp) -> bool:
-    """Whether the left side of `@+` is a multi-set (the result is then a list of timed values)."""
-    return isinstance(part.type, TCon) and part.type.name == "list" and value.type != part.type
