@@ -4,8 +4,8 @@ from pn2code.diagnostics.codes import register
 
 FILE_MISSING = register(
     "file-missing",
-    "the file does not exist",
-    "There is no file of that name. Paths are relative to the directory where pn2code was started.",
+    "a file is missing",
+    "The file or folder given on the command line does not exist.",
 )
 FILE_UNREADABLE = register(
     "file-unreadable",
