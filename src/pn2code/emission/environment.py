@@ -1,0 +1,79 @@
+"""The one Jinja environment of all emitters. Raw model text enters a template only through one of its filters.
+
+"a*/b"  | c_comment   ->  a* /b
+"a\"b"  | c_string    ->  "a\"b"
+0.1     | c_float     ->  0.1
+"""
+
+from __future__ import annotations
+
+import math
+from functools import cache
+
+from jinja2 import Environment, FileSystemLoader, StrictUndefined
+
+from pn2code.resources import templates_folder
+
+
+def c_comment(text: str) -> str:
+    """Text for inside `/* ... */`: neither begins nor ends a comment, one line, no trigraph, no backslash."""
+    line = " ".join(text.replace("\\", "/").split())
+    for pair in ("*/", "/*", "??"):
+        while pair in line:
+            line = line.replace(pair, f"{pair[0]} {pair[1]}")
+    return line
+
+
+def c_string(text: str) -> str:
+    """A C string literal of the text's UTF-8 bytes."""
+    out = []
+    for byte in text.encode("utf-8"):
+        if byte in b'"\\':
+            out.append("\\" + chr(byte))
+        elif 0x20 <= byte < 0x7F and byte != ord("?"):
+            out.append(chr(byte))
+        elif byte == ord("?"):
+            out.append("\\?")  # no trigraphs
+        else:
+            out.append(f"\\{byte:03o}")  # three digits: cannot swallow a digit that follows
+    return '"' + "".join(out) + '"'
+
+
+def c_float(value: float) -> str:
+    """A C constant that is exactly this double."""
+    if not math.isfinite(value):
+        raise ValueError(f"{value} has no C constant")
+    return repr(float(value))
+
+
+def c_int(value: int) -> str:
+    """A C constant of type int64_t; the smallest number has no literal of its own."""
+    if not -(2**63) <= value < 2**63:
+        raise ValueError(f"{value} does not fit 64 bits")
+    return "INT64_MIN" if value == -(2**63) else f"INT64_C({value})"
+
+
+def c_bool(value: bool) -> str:
+    """`true` or `false`."""
+    return "true" if value else "false"
+
+
+@cache
+def environment() -> Environment:
+    """Strict: an unknown name in a template is an error, not an empty string."""
+    env = Environment(
+        loader=FileSystemLoader(templates_folder()),
+        undefined=StrictUndefined,
+        trim_blocks=True,
+        lstrip_blocks=True,
+        keep_trailing_newline=True,
+        autoescape=False,
+    )
+    for function in (c_comment, c_string, c_float, c_int, c_bool):
+        env.filters[function.__name__] = function
+    return env
+
+
+def render(template: str, **values: object) -> str:
+    """The text of `templates/<template>` with these values."""
+    return environment().get_template(template).render(**values)

@@ -1,0 +1,212 @@
+"""Emits what the supervisor host needs besides net.c: `cell_config.c` and the `Makefile`.
+
+    Partition (channels, inputs, final places)  ->  const pn_cell_t pn_cell = { ... };
+
+All decisions are made here; the templates only print. Without channels, inputs and final places (no cell.toml) the
+supervisor owns every transition of the net.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+from pn2code.cell.partition import Channel, ChannelKind, OwnerKind, Partition
+from pn2code.cell.scalars import Scalar, ScalarKind, scalars_of
+from pn2code.diagnostics import Origin
+from pn2code.emission.environment import c_float, c_int, render
+from pn2code.emission.output import Block, OutputFile
+from pn2code.net.flat import FlatPlace
+
+SIDE = "supervisor"
+"""The supervisor's name in the shared directory."""
+
+_INT_MIN, _INT_MAX = -(2**63), 2**63 - 1
+_REAL_MAX = 1.7976931348623157e308
+
+
+@dataclass(frozen=True, slots=True)
+class _Names:
+    """A table of constructors."""
+
+    ident: str
+    values: tuple[str, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class _Scalar:
+    """A row of a scalar table, ready to print."""
+
+    kind: str
+    label: str
+    colset: str
+    range: str
+    names: str
+    name_count: int
+
+
+@dataclass(frozen=True, slots=True)
+class _Table:
+    """The scalars of one place."""
+
+    ident: str
+    comment: str
+    names: tuple[_Names, ...]
+    scalars: tuple[_Scalar, ...]
+
+
+def _range(scalar: Scalar) -> str:
+    """The range members, with the open side as far as the type goes; "" when there is no range."""
+    if scalar.low is None and scalar.high is None:
+        return ""
+    if scalar.kind is ScalarKind.REAL:
+        low = c_float(float(-_REAL_MAX if scalar.low is None else scalar.low))
+        high = c_float(float(_REAL_MAX if scalar.high is None else scalar.high))
+        return f".real_low = {low}, .real_high = {high}"
+    low = c_int(int(_INT_MIN if scalar.low is None else scalar.low))
+    high = c_int(int(_INT_MAX if scalar.high is None else scalar.high))
+    return f".low = {low}, .high = {high}"
+
+
+def _table(ident: str, comment: str, scalars: Sequence[Scalar]) -> _Table:
+    names: dict[tuple[str, ...], _Names] = {}
+    rows = []
+    for scalar in scalars:
+        table = None
+        if scalar.names:
+            table = names.setdefault(
+                scalar.names, _Names(f"{ident}_names{len(names) + 1}", scalar.names)
+            )
+        rows.append(
+            _Scalar(
+                kind=f"PN_SCALAR_{scalar.kind.name}",
+                label=scalar.label,
+                colset=scalar.colset,
+                range=_range(scalar),
+                names=table.ident if table else "",
+                name_count=len(scalar.names),
+            )
+        )
+    return _Table(ident, comment, tuple(names.values()), tuple(rows))
+
+
+def _scalars(place: FlatPlace) -> tuple[Scalar, ...]:
+    """Of a channel or input; that they have a fixed number was checked when the net was divided."""
+    found = scalars_of(place.colset)
+    if found is None:
+        raise ValueError(f"place {place.name} ({place.colset.name}) has no fixed number of scalars")
+    return found
+
+
+def _blocks(text: str, elements: Sequence[tuple[str, Origin, str]]) -> tuple[Block, ...]:
+    """The lines of each channel's entry: from the `{` before its `marker` to the `},` after it."""
+    lines = text.splitlines()
+    blocks = []
+    for element, origin, marker in elements:
+        at = next(i for i, line in enumerate(lines) if marker in line)
+        first = max(i for i in range(at + 1) if lines[i] == "    {")
+        last = next(i for i in range(at, len(lines)) if lines[i] == "    },")
+        blocks.append(Block(element, "channel", origin, first + 1, last + 1))
+    return tuple(blocks)
+
+
+def emit(
+    partition: Partition, *, name: str, reply_timeout_s: float, digest: str, version: str
+) -> tuple[OutputFile, ...]:
+    """`cell_config.c` and `Makefile`.
+
+    Args:
+        name: of the net, as in net.c.
+        reply_timeout_s: a robot silent for longer than this stops the cell; 0: never.
+        digest: of net and cell, the same as in net.c.
+        version: of pn2code.
+    """
+    net = partition.net
+    peers = [o for o in partition.owners if o.kind is OwnerKind.ROBOT]
+    peer_index = {owner.index: i for i, owner in enumerate(peers)}
+    supervisor = next((o.index for o in partition.owners if o.kind is OwnerKind.SUPERVISOR), -1)
+    # Channels between two robots are none of the supervisor's business.
+    channels = [c for c in partition.channels if supervisor in (c.writer, c.reader)]
+    tables = []
+    channel_rows = []
+    for number, channel in enumerate(channels):
+        place = net.places[channel.place]
+        scalars = _scalars(place)
+        table = _table(
+            f"s_channel{number}",
+            f"channel {channel.name}: {place.name} : {place.colset.name}",
+            scalars,
+        )
+        tables.append(table)
+        channel_rows.append(_channel_row(channel, partition, supervisor, peer_index, table, place))
+    input_rows = []
+    for number, source in enumerate(partition.inputs):
+        place = net.places[source.place]
+        scalars = _scalars(place)
+        table = _table(
+            f"s_input{number}", f"input {source.file}: {place.name} : {place.colset.name}", scalars
+        )
+        tables.append(table)
+        input_rows.append(
+            {
+                "name": source.name,
+                "file": source.file,
+                "place": source.place,
+                "place_name": place.name,
+                "scalar_count": len(scalars),
+                "scalars": table.ident,
+            }
+        )
+    is_cell = bool(peers or channels)
+    source_name = Path(net.file).name
+    config = render(
+        "c/cell_config.c.j2",
+        version=version,
+        source=source_name,
+        digest=digest,
+        name=name,
+        side=SIDE,
+        owner=supervisor if is_cell else -1,
+        reply_timeout_s=float(reply_timeout_s),
+        tables=tables,
+        channels=channel_rows,
+        inputs=input_rows,
+        peers=[{"name": p.name, "owner": p.index} for p in peers],
+        finals=[{"place": p, "name": net.places[p].name} for p in partition.final_places],
+    )
+    makefile = render(
+        "c/Makefile.j2", version=version, source=" ".join(source_name.split()), has_simulate=True
+    )
+    elements = [
+        (net.places[c.place].name, net.places[c.place].origins[0], f".place = {c.place}U,")
+        for c in channels
+    ]
+    return (
+        OutputFile("cell_config.c", config, _blocks(config, elements)),
+        OutputFile("Makefile", makefile),
+    )
+
+
+def _channel_row(
+    channel: Channel,
+    partition: Partition,
+    supervisor: int,
+    peer_index: dict[int, int],
+    table: _Table,
+    place: FlatPlace,
+) -> dict[str, object]:
+    outgoing = channel.writer == supervisor
+    return {
+        "name": channel.name,
+        "file": channel.file,
+        "place": channel.place,
+        "place_name": place.name,
+        "direction": "PN_CHANNEL_OUT" if outgoing else "PN_CHANNEL_IN",
+        "kind": "PN_CHANNEL_DATA" if channel.kind is ChannelKind.DATA else "PN_CHANNEL_FLAG",
+        "writer": partition.owners[channel.writer].name,
+        "reader": partition.owners[channel.reader].name,
+        "peer": peer_index[channel.reader if outgoing else channel.writer],
+        "scalar_count": len(table.scalars),
+        "scalars": table.ident,
+    }
