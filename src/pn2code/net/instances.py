@@ -66,9 +66,11 @@ def expand(net: TypedNet) -> list[PageInstance]:
     numbers: dict[str, int] = {}
     found: list[PageInstance] = []
     prime = [pages[i] for i in net.prime_pages]
-    names = unique_names((p.id, p.name) for p in prime)
+    names = unique_names((p.id, _segment(p.name)) for p in prime)
     stack = [(p.id, names[p.id], -1, dict[str, str]()) for p in reversed(prime)]
-    segments = {p.id: unique_names((s.id, s.name) for s in p.substitutions) for p in net.pages}
+    segments = {
+        p.id: unique_names((s.id, _segment(s.name)) for s in p.substitutions) for p in net.pages
+    }
     while stack:
         identity, path, parent, sockets = stack.pop()
         page = pages[identity]
@@ -79,6 +81,11 @@ def expand(net: TypedNet) -> list[PageInstance]:
             below = f"{path}/{segments[identity][s.id]}"
             stack.append((s.subpage, below, index, {q.port: q.socket for q in s.ports}))
     return found
+
+
+def _segment(name: str) -> str:
+    """A name as a part of a path, which is split at "/"."""
+    return name.replace("/", "_")
 
 
 def unique_names(items: Iterable[tuple[str, str]]) -> dict[str, str]:
