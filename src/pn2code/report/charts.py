@@ -25,6 +25,12 @@ COLOURS = {
 }
 
 
+def draw(record: RunRecord, robots: tuple[str, ...], out: Path) -> None:
+    """All charts into a folder."""
+    gantt(record, robots, out / "gantt.png")
+    clearances(record, robots, out / "clearances.png")
+
+
 def gantt(record: RunRecord, robots: tuple[str, ...], path: Path) -> None:
     """Bars per robot and the supervisor's activities above them."""
     figure, axes = plt.subplots(figsize=(12, 1.6 + 0.7 * len(robots)), layout="constrained")

@@ -1,0 +1,91 @@
+"""`pn2code run`: a whole cell, the compiled supervisor and its robots, in 3D."""
+
+from __future__ import annotations
+
+from enum import StrEnum
+from pathlib import Path
+from typing import Annotated
+
+import typer
+from rich.console import Console
+
+from pn2code.cli.generate import SetOption, parse_values
+from pn2code.cli.options import Exit, Format, FormatOption, print_diagnostics, stop
+from pn2code.diagnostics import Diagnostics
+from pn2code.emission.write import OutputFolderError
+from pn2code.report import summary as summaries
+from pn2code.report.album import Album
+from pn2code.run.cell import RunOptions, run_cell
+from pn2code.run.engine import Observer
+from pn2code.run.progress import Progress
+
+EPILOG = """Examples:
+
+  pn2code run examples/riveting
+
+  pn2code run examples/riveting --layout paper --backend fake --out /tmp/run
+"""
+
+
+class BackendChoice(StrEnum):
+    """What carries the arms."""
+
+    BULLET = "bullet"
+    FAKE = "fake"
+
+
+def run(
+    cell: Annotated[Path, typer.Argument(help="The folder of a cell (with cell.toml).")],
+    layout: Annotated[
+        str | None, typer.Option(help="A layout of cell.toml (default: the first).")
+    ] = None,
+    input_file: Annotated[
+        Path | None, typer.Option("--input", help="Another input file, or a folder of them.")
+    ] = None,
+    backend: Annotated[
+        BackendChoice,
+        typer.Option(help="bullet: PyBullet, with clearances; fake: kinematics only."),
+    ] = BackendChoice.BULLET,
+    out: Annotated[Path, typer.Option(help="Where the results go.")] = Path("run"),
+    pictures: Annotated[
+        bool, typer.Option("--pictures/--no-pictures", help="Pictures and charts.")
+    ] = True,
+    video: Annotated[bool, typer.Option("--video", help="Also record cell.mp4.")] = False,
+    gui: Annotated[bool, typer.Option("--gui", help="Show PyBullet's window.")] = False,
+    settings: SetOption = [],  # noqa: B006 - typer reads the default only
+    form: FormatOption = Format.FULL,
+) -> None:
+    """Run a cell: build the supervisor, start it and the robots' interpreters, watch both, report.
+
+    Simulated time runs as fast as it can, in lock-step: two runs give the same trace.
+    """
+    d = Diagnostics()
+    console = Console(highlight=False)
+    options = RunOptions(out, layout, input_file, backend.value, parse_values(settings), gui)
+    album = (
+        Album(out, video=video) if backend is BackendChoice.BULLET and (pictures or video) else None
+    )
+    with Progress(console) as progress:
+        progress.say("generating and building")
+        observers: list[Observer] = [progress]
+        if album is not None:
+            observers.append(album)
+        try:
+            result = run_cell(cell, options, d, observers)
+        except OutputFolderError as problem:
+            typer.echo(f"pn2code: {problem}", err=True)
+            raise typer.Exit(Exit.USAGE) from None
+        if result is not None and pictures:
+            progress.say("drawing charts")
+            from pn2code.report import charts  # matplotlib takes half a second to load
+
+            charts.draw(result.record, tuple(r.name for r in result.prepared.config.robots), out)
+        if album is not None:
+            album.close()
+    if result is None:
+        stop(d, form)
+    print_diagnostics(d.sorted(), form)
+    console.print(summaries.page(result.summary))
+    console.print(f"results in {out}/", style="dim")
+    if result.record.verdict != "finished":
+        raise typer.Exit(Exit.MODEL)

@@ -1,0 +1,312 @@
+"""Running a whole cell: generate, build, start, supervise, stop, report.
+
+    run_cell(Path("examples/riveting"), RunOptions(out=Path("run")), d, watch)  ->  RunResult
+
+The recipe of `pn2code run`; everything that takes decisions lives in the modules it calls.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+import shutil
+import tempfile
+import time
+from collections.abc import Iterator
+from contextlib import ExitStack, contextmanager
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+from pn2code import pipeline
+from pn2code.cell.config import CellConfig
+from pn2code.channels import SharedDirectory, specs_of
+from pn2code.diagnostics import Diagnostics, Origin, SourceText
+from pn2code.diagnostics.codes import register
+from pn2code.emission.output import OutputFile
+from pn2code.emission.write import write
+from pn2code.report.rows import rows_tsv
+from pn2code.report.summary import summarise
+from pn2code.robot import scene
+from pn2code.robot.backend import BackendName, open_backend
+from pn2code.robot.executor import RobotExecutor
+from pn2code.robot.monitor import Monitor
+from pn2code.run.engine import Engine, Observer, RobotRunner
+from pn2code.run.files import RobotFiles
+from pn2code.run.record import RunRecord, RunWarning
+from pn2code.run.supervisor import SupervisorProcess
+from pn2code.run.trace import GrowingTrace, trace_text
+from pn2code.tdl.check import CheckedProgram, check
+from pn2code.tdl.interpret import Interpreter
+from pn2code.tdl.parse import parse
+from pn2code.toolchain import build
+
+RUN_NO_CELL = register(
+    "run-no-cell",
+    "there is no cell to run",
+    "`pn2code run` needs a folder with a cell.toml: it says which robots stand where. A net alone can be generated, built "
+    "and played: `pn2code generate net.cpn`, then `make && ./supervisor` in the output folder.",
+)
+RUN_INPUT = register(
+    "run-input",
+    "the input file given to `run` does not fit",
+    "`--input FILE` replaces the cell's input file for one run. A cell with several inputs takes a folder that holds them.",
+)
+RUN_START = register(
+    "run-start",
+    "the supervisor did not start",
+    "The compiled supervisor ended before the first step; its own message follows. A wrong input file is the usual reason.",
+)
+
+ROBOT_START_S = 10.0
+"""How long a robot waits for the supervisor to announce itself."""
+
+
+@dataclass(frozen=True, slots=True)
+class RunOptions:
+    """What `pn2code run` was asked for.
+
+    Args:
+        out: where the results go.
+        layout: of cell.toml; None: its first.
+        input: a file instead of the cell's input file, or a folder of them.
+        backend: "bullet" or "fake".
+        values: `val`s to replace.
+        gui: PyBullet's window.
+    """
+
+    out: Path
+    layout: str | None = None
+    input: Path | None = None
+    backend: BackendName = "bullet"
+    values: dict[str, str] = field(default_factory=dict)
+    gui: bool = False
+
+
+@dataclass(frozen=True, slots=True)
+class Prepared:
+    """A cell that is generated and built, ready to run."""
+
+    generated: pipeline.Generated
+    config: CellConfig
+    robot_cell: scene.RobotCell
+    scripts: dict[str, tuple[OutputFile, CheckedProgram]]
+    program: Path
+
+
+@dataclass(frozen=True, slots=True)
+class RunResult:
+    """What a run gave; the files are in the output folder."""
+
+    record: RunRecord
+    summary: dict[str, Any]
+    prepared: Prepared
+
+
+def prepare(path: Path, options: RunOptions, d: Diagnostics) -> Prepared | None:
+    """Generates and builds the programs of a cell, reads its geometry. None when there are errors."""
+    generated = pipeline.generate(path, d, layout=options.layout, values=options.values)
+    if generated is None:
+        return None
+    config = generated.config
+    if config is None:
+        d.error(
+            RUN_NO_CELL,
+            f"`{path}` has no cell.toml beside it",
+            Origin(str(path)),
+            hint="give the folder of a cell, e.g. examples/riveting; docs/cell.md describes cell.toml",
+        )
+        return None
+    assert config.locator is not None
+    robot_cell = scene.load(config.geometry, config.folder, config.locator.origin, d)
+    scripts = _scripts(generated, config, d)
+    if robot_cell is None or scripts is None or d.has_errors:
+        return None
+    folder = options.out / "program"
+    write(folder, generated.files)
+    program = build.build(folder, generated.files, d)
+    if program is None:
+        return None
+    return Prepared(generated, config, robot_cell, scripts, program)
+
+
+def _scripts(
+    generated: pipeline.Generated, config: CellConfig, d: Diagnostics
+) -> dict[str, tuple[OutputFile, CheckedProgram]] | None:
+    """The robots' scripts, parsed and checked as any script would be: what was generated is not trusted."""
+    files = {f.path: f for f in generated.files}
+    out = {}
+    for robot in config.robots:
+        file = files[f"{robot.name}.tdl"]
+        tree = parse(SourceText(file.text, Origin(file.path, 1, 1)), d)
+        checked = check(tree, d) if tree is not None else None
+        if checked is None:
+            return None
+        out[robot.name] = (file, checked)
+    return out
+
+
+def run_cell(
+    path: Path, options: RunOptions, d: Diagnostics, observers: list[Observer] | None = None
+) -> RunResult | None:
+    """Runs a cell in lock-step and writes trace, rows and summary; None when it could not start."""
+    started = time.perf_counter()
+    options.out.mkdir(parents=True, exist_ok=True)
+    prepared = prepare(path, options, d)
+    if prepared is None:
+        return None
+    with ExitStack() as stack:
+        inputs = stack.enter_context(_inputs(prepared.config, options, d))
+        if inputs is None:
+            return None
+        engine = _start(prepared, options, inputs, stack, d, observers or [])
+        if engine is None:
+            return None
+        record = engine.run()
+        for robot in engine.robots:
+            if record.verdict == "finished":
+                robot.files.finished()
+        record.header = _header(engine.supervisor_trace.header)
+    record.wall = time.perf_counter() - started
+    _warn(record, prepared.config)
+    summary = summarise(record, prepared.config.report, _names(prepared))
+    _write_results(record, summary, prepared, options.out)
+    return RunResult(record, summary, prepared)
+
+
+def _start(
+    prepared: Prepared,
+    options: RunOptions,
+    inputs: Path,
+    stack: ExitStack,
+    d: Diagnostics,
+    observers: list[Observer],
+) -> Engine | None:
+    partition = prepared.generated.partition
+    shared = stack.enter_context(shared_directory(partition.net.name))
+    trace_path = options.out / "supervisor.trace.jsonl"
+    supervisor = stack.enter_context(
+        SupervisorProcess(prepared.program, shared, inputs, trace_path, lockstep=True)
+    )
+    cell = prepared.robot_cell
+    backend = open_backend(options.backend, cell, gui=options.gui)
+    stack.callback(backend.close)
+    record = RunRecord(partition.net.name, prepared.config.layout, options.backend)
+    robots: list[RobotRunner] = []
+    for config in prepared.config.robots:
+        side = stack.enter_context(SharedDirectory(shared, config.name, specs_of(partition)))
+        if not side.await_supervisor(ROBOT_START_S if supervisor.running else 0.0):
+            ended = supervisor.close()
+            d.error(
+                RUN_START,
+                f"the supervisor did not start: {ended.reason}",
+                Origin(str(inputs)),
+                notes=[line for line in ended.stderr.splitlines() if line][:8],
+            )
+            return None
+        files = RobotFiles(side)
+        script, program = prepared.scripts[config.name]
+        runner = RobotRunner(
+            config.name,
+            script.path,
+            Interpreter(program, files),
+            files,
+            RobotExecutor(cell.robot(config.name), cell.motion),
+            script.blocks,
+        )
+        robots.append(runner)
+    instance = partition.owners[0].instance
+    engine = Engine(
+        record,
+        supervisor,
+        GrowingTrace(trace_path),
+        instance.count("/") + 1,
+        robots,
+        {t.name: t.id for t in partition.net.transitions},
+        Monitor(cell, backend),
+        cell.motion.sample,
+        observers,
+    )
+    stack.callback(engine.supervisor_trace.close)
+    return engine
+
+
+@contextmanager
+def shared_directory(name: str) -> Iterator[Path]:
+    """A fresh directory for the channel files: on tmpfs where there is one, which makes files as fast as sockets."""
+    memory = Path("/dev/shm")  # noqa: S108
+    parent = memory if memory.is_dir() and os.access(memory, os.W_OK) else None
+    folder = Path(tempfile.mkdtemp(prefix=f"pn2code-{name}-", dir=parent))
+    try:
+        yield folder
+    finally:
+        shutil.rmtree(folder, ignore_errors=True)
+
+
+@contextmanager
+def _inputs(config: CellConfig, options: RunOptions, d: Diagnostics) -> Iterator[Path | None]:
+    """The folder with the input files: the cell's own, one given, or one made around a single file."""
+    given = options.input
+    if given is None or given.is_dir():
+        yield config.folder if given is None else given
+        return
+    if not given.is_file():
+        d.error(pipeline.CELL_MISSING, f"there is no file `{given}`", Origin(str(given)))
+        yield None
+        return
+    if len(config.inputs) != 1:
+        d.error(
+            RUN_INPUT,
+            f"the cell has {len(config.inputs)} input files, but one file is given",
+            Origin(str(given)),
+            hint="give a folder that holds " + ", ".join(f"`{i.file}`" for i in config.inputs)
+            if config.inputs
+            else "the cell reads no input: leave out --input",
+        )
+        yield None
+        return
+    with tempfile.TemporaryDirectory(prefix="pn2code-input-") as folder:
+        shutil.copyfile(given, Path(folder) / config.inputs[0].file)
+        yield Path(folder)
+
+
+def _names(prepared: Prepared) -> tuple[str, ...]:
+    return tuple(r.name for r in prepared.config.robots)
+
+
+def _header(supervisor: dict[str, Any]) -> dict[str, Any]:
+    return {**supervisor, "by": "run"}
+
+
+def _warn(record: RunRecord, config: CellConfig) -> None:
+    """Conditioning above the configured bound, in one warning a robot: where it begins and how bad it gets."""
+    limit = config.report.warn_condition
+    for robot in config.robots:
+        values = record.series.get(f"condition.{robot.name}", [])
+        above = [i for i, v in enumerate(values) if v > limit]
+        if above:
+            worst = max(above, key=values.__getitem__)
+            record.warnings.append(
+                RunWarning(
+                    record.sample_t[above[0]],
+                    robot.name,
+                    f"comes close to a singularity: condition number {values[worst]:.0f} at "
+                    f"{record.sample_t[worst]:.2f} s (above {limit:g} for "
+                    f"{len(above) * 100 / len(values):.1f} % of the samples)",
+                )
+            )
+
+
+def _write_results(
+    record: RunRecord, summary: dict[str, Any], prepared: Prepared, out: Path
+) -> None:
+    name = prepared.generated.partition.net.name
+    texts = {
+        f"{name}.trace.jsonl": trace_text(record.header, record.events),
+        "rows.tsv": rows_tsv(record.messages, prepared.config.report.rows),
+        "summary.json": json.dumps(summary, indent=1, ensure_ascii=False) + "\n",
+    }
+    for file, text in texts.items():
+        partial = out / f".{file}.tmp"
+        partial.write_text(text, encoding="utf-8")
+        partial.replace(out / file)

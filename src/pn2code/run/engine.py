@@ -1,0 +1,398 @@
+"""Lock-step co-simulation: the compiled supervisor, the robots' script interpreters and the arms on
+one simulated clock.
+
+Time moves from event to event (a motion ends, a wait ends, the supervisor's net wants to be woken).
+At each event everybody who
+can go on does so, in a fixed order, until nobody can: the supervisor runs one cycle of its
+execution scheme, then each robot's
+interpreter runs until it waits for a file or starts a command. All messages go through the files of
+the shared directory, written
+and read by the code that would do so on a real cell. Between events the arms are sampled for
+clearance, limits and singularity.
+
+Nothing here reads the wall clock, so two runs give the same trace, byte for byte.
+"""
+
+from __future__ import annotations
+
+import itertools
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, field
+from typing import Any, Protocol
+
+import numpy as np
+
+from pn2code.emission.output import Block
+from pn2code.robot.commands import (
+    Command,
+    Measure,
+    MoveHome,
+    MoveJoint,
+    MoveLinear,
+    Pose,
+    ToolAction,
+    Wait,
+)
+from pn2code.robot.executor import Motion, RobotExecutor
+from pn2code.robot.monitor import Monitor
+from pn2code.robot.motion import MotionFault
+from pn2code.robot.transforms import Array
+from pn2code.run.files import RobotFiles
+from pn2code.run.record import ActionRecord, ActivityRecord, MessageRecord, RunRecord
+from pn2code.run.supervisor import SupervisorProcess
+from pn2code.run.trace import GrowingTrace
+from pn2code.tdl.interpret import (
+    AwaitFile,
+    Event,
+    Execute,
+    Fault,
+    FileError,
+    Finished,
+    Interpreter,
+    Marked,
+    MessageConsumed,
+)
+
+MAX_ROUNDS = 10_000
+"""Exchanges between supervisor and robots at one instant; more means that they chatter without end."""
+
+
+class Observer(Protocol):
+    """Who watches a run: the progress line, the camera."""
+
+    def advanced(self, engine: Engine) -> None:
+        """Time has moved to `engine.now`; the commands that end now are finished."""
+
+    def sampled(self, engine: Engine, t: float, joints: Mapping[str, Array]) -> None:
+        """The arms stood like this (rad) at time t."""
+
+
+@dataclass(slots=True)
+class RobotRunner:
+    """One robot: its script's interpreter, its arm, and what it is doing.
+
+    Args:
+        script: file name, for messages.
+        blocks: which lines of the script implement which net element.
+    """
+
+    name: str
+    script: str
+    interpreter: Interpreter
+    files: RobotFiles
+    executor: RobotExecutor
+    blocks: tuple[Block, ...] = ()
+    motion: Motion | None = None
+    line: int = 0
+    waiting: AwaitFile | None = None
+    finished: bool = False
+
+    def element_at(self, line: int) -> str:
+        """The net transition that a script line implements, "" if none."""
+        inside = [b for b in self.blocks if b.kind == "transition" and b.first <= line <= b.last]
+        return min(inside, key=lambda b: b.last - b.first).element if inside else ""
+
+    def joints(self, t: float) -> Array:
+        """Joint position (rad) at a time not before the last event."""
+        return self.executor.q if self.motion is None else self.motion.q(t)
+
+
+class CellStoppedError(Exception):
+    """The cell must stop; the message says why, in full."""
+
+
+@dataclass(slots=True)
+class Engine:
+    """Runs a cell to its end.
+
+    Args:
+        record: filled on the way.
+        supervisor: started in lock-step mode; supervisor_trace: the trace it writes.
+        supervisor_depth: how many parts of a transition's name stand before the activity: 2 for
+        "Cell.Supervisor.Approach.Send".
+        robots: in the order of cell.toml.
+        transition_ids: XML id of each transition by name.
+        monitor: what is checked at each sample.
+        sample_s: spacing of the samples.
+    """
+
+    record: RunRecord
+    supervisor: SupervisorProcess
+    supervisor_trace: GrowingTrace
+    supervisor_depth: int
+    robots: list[RobotRunner]
+    transition_ids: Mapping[str, str]
+    monitor: Monitor
+    sample_s: float
+    observers: list[Observer] = field(default_factory=list)
+    now: float = 0.0
+    activity: str = ""
+    _next_model_time: float | None = None
+    _steps: Iterator[int] = field(default_factory=lambda: itertools.count(1))
+    _finished: bool = False
+    _activity_start: float = 0.0
+    _samples: int = 0
+
+    def run(self) -> RunRecord:
+        """Until the supervisor has finished and the robots rest; or until something stops the cell."""
+        try:
+            self._sample(0.0)
+            while True:
+                self._settle()
+                if self._finished and all(r.motion is None for r in self.robots):
+                    self.record.verdict = "finished"
+                    break
+                self._advance(self._next_event())
+        except CellStoppedError as why:
+            self._stop(str(why))
+        self.record.time = self.now
+        end: dict[str, Any] = {"t": self.now, "event": "end", "why": self.record.verdict}
+        if self.record.reason:
+            end["reason"] = self.record.reason
+        self.record.events.append(end)
+        self._close_activity()
+        return self.record
+
+    # --- one instant -------------------------------------------------------------------------
+
+    def _settle(self) -> None:
+        """Supervisor and robots exchange messages at this instant until nobody can go on."""
+        for _ in range(MAX_ROUNDS):
+            moved = self._supervisor_cycle()
+            for robot in self.robots:
+                moved |= self._robot_turn(robot)
+            if not moved:
+                return
+        raise CellStoppedError(
+            f"supervisor and robots exchanged {MAX_ROUNDS} messages at {self.now:.3f} s without time "
+            "passing; one of them answers itself"
+        )
+
+    def _supervisor_cycle(self) -> bool:
+        if self._finished:
+            return False
+        result = self.supervisor.step(self.now)
+        for _ in range(result.fired):
+            self._supervisor_fired()
+        if result.stopped is not None:
+            raise CellStoppedError(f"the supervisor stopped: {result.stopped}")
+        self._next_model_time = result.next_time
+        self._finished = result.finished
+        return result.fired > 0
+
+    def _supervisor_fired(self) -> None:
+        event = self.supervisor_trace.next_occurrence()
+        self._occurrence(event)
+        path = event["transition"].split(".")
+        root = self.supervisor_depth
+        activity = path[root] if len(path) > root + 1 else ""
+        if activity and activity != self.activity:
+            self._close_activity()
+            self.activity = activity
+            self._activity_start = self.now
+
+    def _close_activity(self) -> None:
+        if self.activity:
+            self.record.activities.append(
+                ActivityRecord(self.activity, self._activity_start, self.now)
+            )
+            self.activity = ""
+
+    def _occurrence(self, event: dict[str, Any]) -> None:
+        self.record.events.append({"step": next(self._steps), **event})
+
+    def _robot_turn(self, robot: RobotRunner) -> bool:
+        """Runs a robot's script as far as it goes; whether it did anything."""
+        if robot.motion is not None or robot.finished:
+            return False
+        if robot.waiting is not None:
+            try:
+                if not robot.files.any_holds(robot.waiting.names):
+                    return False
+            except FileError as problem:
+                raise CellStoppedError(
+                    f"{robot.script}:{robot.waiting.line}: {robot.name}: {problem}"
+                ) from None
+        self._follow(robot, None)
+        return True
+
+    def _follow(self, robot: RobotRunner, result: Pose | None) -> None:
+        """Resumes the interpreter and acts on what it asks for."""
+        robot.waiting = None
+        request = robot.interpreter.resume(result)
+        match request:
+            case AwaitFile():
+                robot.waiting = request
+            case Execute(command=command, line=line):
+                self._begin(robot, command, line)
+            case Finished():
+                robot.finished = True
+            case Fault(message=message, line=line):
+                raise CellStoppedError(f"{robot.script}:{line}: {robot.name}: {message}")
+
+    def _begin(self, robot: RobotRunner, command: Command, line: int) -> None:
+        try:
+            motion = robot.executor.begin(command, self.now)
+        except MotionFault as fault:
+            where = robot.element_at(line)
+            at = f", net transition {where}" if where else ""
+            raise CellStoppedError(f"{robot.script}:{line}{at}: {robot.name}: {fault}") from None
+        robot.motion, robot.line = motion, line
+        if isinstance(command, ToolAction):
+            self.record.events.append(
+                {
+                    "t": self.now,
+                    "event": "tool",
+                    "robot": robot.name,
+                    "action": command.action,
+                    "duration": command.duration,
+                }
+            )
+
+    # --- from instant to instant ---------------------------------------------------------------
+
+    def _next_event(self) -> float:
+        """When something happens next."""
+        times = [r.motion.ends for r in self.robots if r.motion is not None]
+        if self._next_model_time is not None and not self._finished:
+            times.append(self._next_model_time)
+        if not times:
+            raise CellStoppedError(self._stuck())
+        return max(self.now, min(times))
+
+    def _stuck(self) -> str:
+        waits = [
+            f"{r.name} waits for {' or '.join(r.waiting.names)} ({r.script}:{r.waiting.line})"
+            if r.waiting
+            else f"{r.name} has ended"
+            for r in self.robots
+        ]
+        return (
+            f"the cell is stuck at {self.now:.3f} s: the supervisor has nothing to do and waits for the robots, "
+            + ", ".join(waits)
+        )
+
+    def _advance(self, target: float) -> None:
+        """Moves time to `target`, sampling the arms on the way, and ends the commands that end then."""
+        while (t := (self._samples + 1) * self.sample_s) < target - 1e-12:
+            self._samples += 1
+            if t > self.now + 1e-12:
+                self._sample(t)
+        self._sample(target)
+        self.now = target
+        for robot in self.robots:
+            if robot.motion is not None and robot.motion.ends <= target + 1e-12:
+                self._finish(robot)
+        for observer in self.observers:
+            observer.advanced(self)
+
+    def _finish(self, robot: RobotRunner) -> None:
+        """The command is done: the script goes on."""
+        motion = robot.motion
+        assert motion is not None
+        self._note_action(robot, self.now)
+        robot.executor.finish()
+        robot.motion = None
+        self._follow(robot, motion.result)
+
+    def heard(self, robot: str, event: Event) -> None:
+        """Events of an interpreter: occurrences of net transitions, messages consumed."""
+        match event:
+            case Marked(transition=name, binding=binding):
+                self._occurrence(
+                    {
+                        "t": self.now,
+                        "transition": name,
+                        "binding": binding,
+                        "origin": self.transition_ids.get(name, ""),
+                    }
+                )
+            case MessageConsumed(file=channel, values=values):
+                self.record.messages.append(MessageRecord(self.now, channel, values))
+            case _:
+                pass
+
+    def _note_action(self, robot: RobotRunner, end: float) -> None:
+        motion = robot.motion
+        assert motion is not None
+        kind, label = _kind(motion.command)
+        self.record.actions.append(
+            ActionRecord(
+                robot.name,
+                kind,
+                label,
+                motion.began,
+                end,
+                robot.line,
+                robot.element_at(robot.line),
+                self.activity,
+            )
+        )
+
+    def _sample(self, t: float) -> None:
+        """Looks at the arms at time t; a collision, a violated limit or a singularity stops the cell."""
+        joints = {r.name: r.joints(t) for r in self.robots}
+        finding = self.monitor.sample(t, joints)
+        self.record.sample_t.append(t)
+        for name, value in finding.values.items():
+            self.record.series.setdefault(name, []).append(value)
+        for observer in self.observers:
+            observer.sampled(self, t, joints)
+        if finding.fault is not None:
+            self.now = t
+            raise CellStoppedError(f"{finding.fault} {self._doing()}")
+
+    def _doing(self) -> str:
+        """What everybody was doing, for messages: script line, net transition, command."""
+        parts = []
+        for r in self.robots:
+            if r.motion is None:
+                parts.append(f"{r.name} at rest")
+                continue
+            where = r.element_at(r.line)
+            at = f" (net transition {where})" if where else ""
+            parts.append(f"{r.name} at {r.script}:{r.line}{at}, {_words(r.motion.command)}")
+        return "[" + "; ".join(parts) + "]"
+
+    def _stop(self, why: str) -> None:
+        """Everybody comes to rest; what was under way is recorded as cut short."""
+        self.record.verdict = "failed"
+        self.record.reason = why
+        for robot in self.robots:
+            if robot.motion is not None:
+                self._note_action(robot, self.now)
+                robot.executor.stop(self.now)
+                robot.motion = None
+            robot.files.stopped(why)
+        self.supervisor.stop(why)
+
+
+def _kind(command: Command) -> tuple[str, str]:
+    match command:
+        case MoveJoint():
+            return "joint", "joint"
+        case MoveHome():
+            return "home", "home"
+        case MoveLinear():
+            return "linear", "linear"
+        case ToolAction(action=action):
+            return "tool", action
+        case Measure():
+            return "measure", "measure"
+        case Wait():
+            return "wait", "wait"
+
+
+def _words(command: Command) -> str:
+    """A command in the units of the scripts."""
+    match command:
+        case MoveJoint(target=p) | MoveLinear(target=p) | Measure(nominal=p):
+            mm = " ".join(f"{v * 1000:.4f}" for v in (p.x, p.y, p.z))
+            deg = " ".join(f"{np.degrees(v):.4f}" for v in (p.rx, p.ry, p.rz))
+            return f"{_kind(command)[0]} {mm} mm, {deg} deg"
+        case MoveHome():
+            return "home"
+        case ToolAction(action=action):
+            return f"tool action {action}"
+        case Wait(duration=duration):
+            return f"wait {duration} s"
