@@ -8,12 +8,16 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Literal, Protocol
+from typing import Literal, Protocol, TypeAlias
+
+import numpy as np
+from numpy.typing import NDArray
 
 from pn2code.robot.scene import RobotCell
 from pn2code.robot.transforms import Array
 
 ClearanceKind = Literal["robots", "scene", "self"]
+Picture: TypeAlias = NDArray[np.uint8]
 BackendName = Literal["fake", "bullet"]
 
 
@@ -74,7 +78,7 @@ class Backend(Protocol):
         does not measure distances.
         """
 
-    def render(self, camera: Camera, width: int, height: int) -> Array | None:
+    def render(self, camera: Camera, width: int, height: int) -> Picture | None:
         """A picture (height, width, 3), 0..255; None: this backend has no eyes."""
 
     def close(self) -> None:

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from pn2code.robot.backend import BackendName, Camera, Clearance
+from pn2code.robot.backend import BackendName, Camera, Clearance, Picture
 from pn2code.robot.scene import RobotCell
 from pn2code.robot.transforms import Array
 
@@ -33,7 +33,7 @@ class FakeBackend:
         """None: distances are not known here."""
         return None
 
-    def render(self, camera: Camera, width: int, height: int) -> Array | None:
+    def render(self, camera: Camera, width: int, height: int) -> Picture | None:
         """None: no pictures."""
         return None
 

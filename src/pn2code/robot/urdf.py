@@ -198,13 +198,15 @@ def _joint(element: Any, links: tuple[str, ...]) -> Joint:
     return Joint(name, kind, ends[0], ends[1], frame, (x, y, z), lower, upper, velocity)
 
 
-def joined(arm: Urdf, flange: str, tool: Urdf, prefix: str = "tool_") -> str:
-    """One URDF text: the arm with the tool fixed to its flange.
+def with_tool(arm: Urdf, flange: str, tool: Urdf | None, prefix: str = "tool_") -> str:
+    """One URDF text: the arm, with the tool (if any) fixed to its flange.
 
     Tool links and joints get a prefix; mesh names become absolute, because the text is written elsewhere.
     """
     out = copy.deepcopy(arm.xml)
     _absolute(out, arm.path.parent)
+    if tool is None:
+        return str(etree.tostring(out, encoding="unicode", pretty_print=True))
     added = copy.deepcopy(tool.xml)
     _absolute(added, tool.path.parent)
     known = {m.get("name") for m in out.findall("material")}

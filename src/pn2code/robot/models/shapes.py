@@ -38,34 +38,45 @@ class Mesh:
         corners = np.array(self.triangles)
         flat = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
         area = np.linalg.norm(flat, axis=1)
-        corners, flat, area = corners[area > 1e-12], flat[area > 1e-12], area[area > 1e-12]
-        unit = flat / area[:, None]
-        at: dict[tuple[int, ...], list[int]] = {}
-        keys = [[tuple(np.round(p * 1e5).astype(int).tolist()) for p in t] for t in corners]
-        for i, triple in enumerate(keys):
-            for key in triple:
-                at.setdefault(key, []).append(i)
-        points: dict[str, int] = {}
-        normals: dict[str, int] = {}
-        faces = []
-        for i, triple in enumerate(keys):
-            face = []
-            for corner, key in zip(corners[i], triple, strict=True):
-                near = [j for j in at[key] if float(unit[j] @ unit[i]) > _SHARP]
-                n = flat[near].sum(axis=0)
-                n = n / np.linalg.norm(n)
-                p_text = " ".join(_number(v, 5) for v in corner)
-                n_text = " ".join(_number(v, 3) for v in n)
-                p = points.setdefault(p_text, len(points) + 1)
-                face.append(f"{p}//{normals.setdefault(n_text, len(normals) + 1)}")
-            faces.append("f " + " ".join(face))
-        lines = [f"v {p}" for p in points] + [f"vn {n}" for n in normals] + faces
+        keep = area > 1e-12
+        corners, flat, unit = corners[keep], flat[keep], flat[keep] / area[keep, None]
+        points, at = _unique(corners.reshape(-1, 3), 5)
+        normals, toward = _unique(_smooth(at, flat, unit), 3)
+        lines = [f"v {_numbers(p, 5)}" for p in points.tolist()]
+        lines += [f"vn {_numbers(n, 3)}" for n in normals.tolist()]
+        pairs = [f"{p}//{n}" for p, n in zip((at + 1).tolist(), (toward + 1).tolist(), strict=True)]
+        lines += [
+            f"f {a} {b} {c}" for a, b, c in zip(pairs[::3], pairs[1::3], pairs[2::3], strict=True)
+        ]
         return "\n".join(lines) + "\n"
 
 
-def _number(value: float, digits: int) -> str:
-    text = f"{value:.{digits}f}".rstrip("0").rstrip(".")
-    return "0" if text in ("-0", "") else text
+def _unique(values: Array, digits: int) -> tuple[Array, NDArray[np.int64]]:
+    """The different rows after rounding, and for each row which one it is."""
+    whole = np.round(values * 10**digits).astype(np.int64)
+    rows, which = np.unique(whole, axis=0, return_inverse=True)
+    return rows / 10.0**digits, which.reshape(-1)
+
+
+def _smooth(at: NDArray[np.int64], flat: Array, unit: Array) -> Array:
+    """A normal for each corner: over the faces at the same point that are not across a sharp edge."""
+    face = np.repeat(np.arange(len(flat)), 3)
+    order = np.argsort(at, kind="stable")
+    start = np.searchsorted(at[order], np.arange(at.max() + 1))
+    size = np.diff(np.append(start, len(at)))
+    # All pairs (corner, corner at the same point).
+    mine = np.repeat(np.arange(len(at)), size[at])
+    first = np.cumsum(size[at]) - size[at]
+    theirs = order[start[at[mine]] + np.arange(len(mine)) - first[mine]]
+    near = (unit[face[mine]] * unit[face[theirs]]).sum(1) > _SHARP
+    out = np.zeros((len(at), 3))
+    np.add.at(out, mine[near], flat[face[theirs[near]]])
+    return np.asarray(out / np.linalg.norm(out, axis=1, keepdims=True))
+
+
+def _numbers(values: Sequence[float], digits: int) -> str:
+    texts = (f"{v:.{digits}f}".rstrip("0").rstrip(".") for v in values)
+    return " ".join("0" if t in ("-0", "") else t for t in texts)
 
 
 def skin(rings: Sequence[Array], *, caps: bool = True) -> Mesh:

@@ -1,0 +1,387 @@
+"""PyBullet as eyes and measuring tape: kinematic replay, distances, pictures.
+
+Nothing is simulated by forces: joint positions are set (`resetJointStatesMultiDof`), so that both
+backends show the same motion to the last bit, and PyBullet answers how close things are.
+"""
+
+from __future__ import annotations
+
+import ctypes
+import fnmatch
+import importlib.util
+import os
+import sys
+import tempfile
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+from xml.sax.saxutils import quoteattr
+
+import numpy as np
+from lxml import etree
+from scipy.spatial.transform import Rotation
+
+from pn2code.robot import urdf
+from pn2code.robot.backend import BackendName, Camera, Clearance, ClearanceKind, Picture
+from pn2code.robot.geometry import Body, Look, Solid, bodies
+from pn2code.robot.scene import CellRobot, RobotCell
+from pn2code.robot.transforms import Array, matrix_of
+
+_FIRST_GUESS = 0.05  # m: searched first; most queries find their answer this near to the last one
+
+
+@contextmanager
+def _silent() -> Iterator[None]:
+    """PyBullet prints to file descriptors 1 and 2 from C: a build line, notes on masses we do not give."""
+    sys.stdout.flush()
+    sys.stderr.flush()
+    saved = os.dup(1), os.dup(2)
+    null = os.open(os.devnull, os.O_WRONLY)
+    try:
+        os.dup2(null, 1)
+        os.dup2(null, 2)
+        yield
+    finally:
+        # C's own buffer must be emptied into the void, or it appears when the program ends.
+        ctypes.CDLL(None).fflush(None)
+        for number, copy in enumerate(saved, 1):
+            os.dup2(copy, number)
+            os.close(copy)
+        os.close(null)
+
+
+@dataclass(slots=True)
+class _Loaded:
+    """A robot in PyBullet: body, its links by index, which joints move, which pairs are tested."""
+
+    robot: CellRobot
+    body: int
+    links: dict[int, str]
+    index: dict[str, int]
+    joints: list[int]
+    pairs: list[tuple[int, int]]
+
+
+@dataclass(slots=True)
+class _Standing:
+    """A scene body in PyBullet."""
+
+    body: Body
+    id: int
+
+
+class BulletBackend:
+    """PyBullet without a window, or with one (`gui`)."""
+
+    name: BackendName = "bullet"
+
+    def __init__(self, cell: RobotCell, *, gui: bool = False, looks: bool = True) -> None:
+        """Builds the cell.
+
+        Args:
+            gui: open PyBullet's window (needs a display).
+            looks: load the visual shapes; without them only distances can be asked for.
+        """
+        with _silent():
+            import pybullet
+
+            self._p: Any = pybullet
+            self._client: int = pybullet.connect(pybullet.GUI if gui else pybullet.DIRECT)
+        if self._client < 0:
+            raise RuntimeError("PyBullet cannot open its window; is there a display?")
+        self._cell = cell
+        self._gui = gui
+        self._egl: int | None = None
+        self._folder = tempfile.TemporaryDirectory(prefix="pn2code-")
+        self._names: dict[str, tuple[str, str | None]] = {}
+        if looks and not gui:
+            self._load_egl()
+        with _silent():
+            if gui:
+                self._p.configureDebugVisualizer(
+                    self._p.COV_ENABLE_GUI, 0, physicsClientId=self._client
+                )
+            self._robots = {r.name: self._load_robot(r, looks) for r in cell.robots}
+            self._scene = [self._load_body(b, looks) for b in bodies(cell)]
+        self._guess: dict[tuple[str, ...], float] = {}
+        self._rules: dict[tuple[str, str], float | None] = {}
+        for robot in cell.robots:
+            self.set_joints(robot.name, robot.home)
+
+    # Loading
+
+    def _load_egl(self) -> None:
+        """The GPU renderer, where there is one; it must be there before any body. Asked for by name,
+        because on a machine without a GPU it is slower and less portable than TinyRenderer."""
+        if os.environ.get("PN2CODE_EGL") != "1":
+            return
+        spec = importlib.util.find_spec("eglRenderer")
+        if spec is not None and spec.origin is not None:
+            with _silent():
+                plugin = self._p.loadPlugin(
+                    spec.origin, "_eglRendererPlugin", physicsClientId=self._client
+                )
+            self._egl = plugin if plugin >= 0 else None
+
+    def _load_urdf(self, name: str, text: str, fixed: bool = True) -> int:
+        path = Path(self._folder.name) / f"{name.replace('/', '_')}.urdf"
+        path.write_text(text, encoding="utf-8")
+        # Implicit cylinders: as hulls of 32 sides they would be up to 1 mm too thin.
+        return int(
+            self._p.loadURDF(
+                str(path),
+                useFixedBase=fixed,
+                flags=self._p.URDF_USE_IMPLICIT_CYLINDER,
+                physicsClientId=self._client,
+            )
+        )
+
+    def _load_robot(self, robot: CellRobot, looks: bool) -> _Loaded:
+        tree = robot.arm.urdf
+        text = urdf.with_tool(tree, robot.arm.flange, robot.tool.urdf if robot.tool else None)
+        if not looks:
+            text = _without_looks(text)
+        body = self._load_urdf(robot.name, text)
+        base = robot.T_world_base
+        self._p.resetBasePositionAndOrientation(
+            body, base[:3, 3].tolist(), _quaternion(base[:3, :3]), physicsClientId=self._client
+        )
+        root, links, joints, parents = tree.root, {-1: tree.root}, {}, {}
+        for i in range(self._p.getNumJoints(body, physicsClientId=self._client)):
+            info = self._p.getJointInfo(body, i, physicsClientId=self._client)
+            links[i] = info[12].decode()
+            joints[info[1].decode()] = i
+            parents[i] = (info[16], info[2] == self._p.JOINT_FIXED)
+        index = {name: i for i, name in links.items()}
+        assert index[root] == -1
+        return _Loaded(
+            robot,
+            body,
+            links,
+            index,
+            [joints[a] for a in robot.arm.axes],
+            _self_pairs(links, parents, tree.self_ignore),
+        )
+
+    def _load_body(self, body: Body, looks: bool) -> _Standing:
+        lines = [f'<robot name={quoteattr(body.name)}><link name="base">']
+        lines += [f"<collision>{_solid(s)}</collision>" for s in body.solids]
+        if body.hull is not None and body.hull.file is not None:
+            lines.append(f"<collision>{_mesh(body.hull.file, body.hull)}</collision>")
+        for i, look in enumerate(body.looks if looks else ()):
+            path = look.file
+            if look.mesh is not None:
+                path = Path(self._folder.name) / f"{body.name.replace('/', '_')}_{i}.obj"
+                path.write_text(look.mesh.obj(), encoding="utf-8")
+            if path is not None:
+                colour = " ".join(f"{c:g}" for c in look.colour)
+                lines.append(
+                    f'<visual>{_mesh(path, look)}<material name="m{i}"><color rgba="{colour}"/>'
+                    "</material></visual>"
+                )
+        lines.append("</link></robot>")
+        # One element a line: PyBullet's reader cuts lines of more than a few kilobytes.
+        return _Standing(body, self._load_urdf(body.name, "\n".join(lines)))
+
+    # Backend
+
+    def set_joints(self, robot: str, q: Sequence[float] | Array) -> None:
+        """Puts a robot at a joint position, rad."""
+        loaded = self._robots[robot]
+        self._p.resetJointStatesMultiDof(
+            loaded.body, loaded.joints, [[float(v)] for v in q], physicsClientId=self._client
+        )
+
+    def tcp(self, robot: str) -> Array:
+        """`T_world_tcp` as PyBullet has it."""
+        loaded = self._robots[robot]
+        tip = "tool_tcp" if loaded.robot.tool is not None else loaded.robot.arm.flange
+        state = self._p.getLinkState(
+            loaded.body,
+            loaded.index[tip],
+            computeForwardKinematics=True,
+            physicsClientId=self._client,
+        )
+        out = np.eye(4)
+        out[:3, 3] = state[4]
+        out[:3, :3] = np.array(self._p.getMatrixFromQuaternion(state[5])).reshape(3, 3)
+        return out
+
+    def clearances(self, limit: float) -> tuple[Clearance, ...] | None:
+        """The closest pair of each kind and robot, and permitted contacts that overlap."""
+        out: list[Clearance] = []
+        robots = list(self._robots.values())
+        for i, a in enumerate(robots):
+            for b in robots[i + 1 :]:
+                out += self._between(
+                    "robots", a, f"{b.robot.name}/", b.body, b.links, limit, skip_base=False
+                )
+            for s in self._scene:
+                skip = a.robot.name in s.body.ignored_by
+                out += self._between("scene", a, s.body.name, s.id, None, limit, skip_base=skip)
+            out += self._self(a, limit)
+        return tuple(_closest(out))
+
+    def _between(
+        self, kind: ClearanceKind, a: _Loaded, other: str, body: int,
+        links: dict[int, str] | None, limit: float, *, skip_base: bool,
+    ) -> list[Clearance]:  # fmt: skip
+        key = (kind, a.robot.name, other)
+        reach = min(limit, self._guess.get(key, _FIRST_GUESS))
+        while True:
+            found = self._p.getClosestPoints(a.body, body, reach, physicsClientId=self._client)
+            best: Clearance | None = None
+            touching: list[Clearance] = []
+            for c in found:
+                if skip_base and c[3] == -1:
+                    continue
+                if best is not None and c[8] >= best.distance and c[8] >= 0.0:
+                    continue
+                name_a = f"{a.robot.name}/{a.links[c[3]]}"
+                name_b = other if links is None else other + links[c[4]]
+                allowed = self._allowed(name_a, name_b)
+                item = Clearance(kind, a.robot.name, name_a, name_b, c[8], allowed, c[5])
+                if allowed is not None:
+                    if c[8] < 0.0:
+                        touching.append(item)
+                elif best is None or c[8] < best.distance:
+                    best = item
+            if best is not None or reach >= limit:
+                break
+            reach = min(limit, reach * 3.0)
+        # The next question is about a moment later: search a little further than the last answer.
+        near = limit if best is None else max(best.distance, 0.0)
+        self._guess[key] = near + _FIRST_GUESS
+        return [*touching, best] if best is not None else list(touching)
+
+    def _self(self, a: _Loaded, limit: float) -> list[Clearance]:
+        best: Clearance | None = None
+        reach = limit
+        for i, j in a.pairs:
+            found = self._p.getClosestPoints(
+                a.body, a.body, reach, linkIndexA=i, linkIndexB=j, physicsClientId=self._client
+            )
+            for c in found:
+                if best is None or c[8] < best.distance:
+                    name_a, name_b = (f"{a.robot.name}/{a.links[k]}" for k in (i, j))
+                    best = Clearance("self", a.robot.name, name_a, name_b, c[8], None, c[5])
+                    reach = max(min(reach, c[8]), 1e-3)
+        return [] if best is None else [best]
+
+    def _allowed(self, a: str, b: str) -> float | None:
+        """How deep two parts may overlap; None: they must keep apart."""
+        if (a, b) not in self._rules:
+            depths = [
+                rule.depth
+                for rule in self._cell.scene.contacts
+                if (fnmatch.fnmatchcase(a, rule.a) and fnmatch.fnmatchcase(b, rule.b))
+                or (fnmatch.fnmatchcase(b, rule.a) and fnmatch.fnmatchcase(a, rule.b))
+            ]
+            self._rules[a, b] = max(depths, default=None)
+        return self._rules[a, b]
+
+    def render(self, camera: Camera, width: int, height: int) -> Picture | None:
+        """A picture (height, width, 3), 0..255."""
+        p = self._p
+        view = p.computeViewMatrix(camera.eye, camera.target, (0.0, 0.0, 1.0))
+        lens = p.computeProjectionMatrixFOV(camera.field_of_view, width / height, 0.05, 30.0)
+        renderer = (
+            p.ER_BULLET_HARDWARE_OPENGL
+            if self._gui or self._egl is not None
+            else p.ER_TINY_RENDERER
+        )
+        picture = p.getCameraImage(
+            width,
+            height,
+            view,
+            lens,
+            lightDirection=(0.55, -0.75, 1.2),
+            lightColor=(1.0, 1.0, 1.0),
+            lightDistance=12.0,
+            shadow=1,
+            lightAmbientCoeff=0.52,
+            lightDiffuseCoeff=0.52,
+            lightSpecularCoeff=0.10,
+            renderer=renderer,
+            flags=p.ER_NO_SEGMENTATION_MASK,
+            physicsClientId=self._client,
+        )
+        return np.asarray(picture[2], np.uint8).reshape(height, width, 4)[:, :, :3]
+
+    def close(self) -> None:
+        """Disconnects and removes the temporary files."""
+        if self._client >= 0:
+            self._p.disconnect(self._client)
+            self._client = -1
+            self._folder.cleanup()
+
+
+def _closest(items: Sequence[Clearance]) -> Iterator[Clearance]:
+    """Of each kind and robot the nearest pair that must keep apart; and all permitted contacts."""
+    best: dict[tuple[str, str], Clearance] = {}
+    for c in items:
+        if c.allowed is not None:
+            yield c
+            continue
+        key = (c.kind, c.robot)
+        if key not in best or c.distance < best[key].distance:
+            best[key] = c
+    yield from best.values()
+
+
+def _self_pairs(
+    links: dict[int, str], parents: dict[int, tuple[int, bool]], ignore: frozenset[frozenset[str]]
+) -> list[tuple[int, int]]:
+    """Pairs of links that could meet: not in one rigid piece, and their pieces not joined by a joint."""
+    piece = {-1: -1}
+    above: dict[int, int] = {}
+    for i, (parent, fixed) in sorted(parents.items()):
+        piece[i] = piece[parent] if fixed else i
+        if not fixed:
+            above[i] = piece[parent]
+    out = []
+    for i in sorted(links):
+        for j in sorted(links):
+            a, b = piece[i], piece[j]
+            joined = above.get(a) == b or above.get(b) == a
+            if i < j and a != b and not joined and frozenset((links[i], links[j])) not in ignore:
+                out.append((i, j))
+    # Far ends first: they are the likeliest to be near something, and the first answer cuts the rest.
+    return sorted(out, key=lambda pair: (-pair[1], -pair[0]))
+
+
+def _quaternion(rotation: Array) -> list[float]:
+    return [float(v) for v in Rotation.from_matrix(rotation).as_quat()]
+
+
+def _origin(t: Array) -> str:
+    rpy = Rotation.from_matrix(t[:3, :3]).as_euler("xyz")
+    xyz = " ".join(repr(float(v)) for v in t[:3, 3])
+    return f'<origin xyz="{xyz}" rpy="{" ".join(repr(float(v)) for v in rpy)}"/>'
+
+
+def _solid(solid: Solid) -> str:
+    a, b, c = (repr(float(v)) for v in solid.size)
+    shape = (
+        f'<box size="{a} {b} {c}"/>'
+        if solid.kind == "box"
+        else f'<cylinder radius="{a}" length="{c}"/>'
+    )
+    return f"{_origin(matrix_of(solid.pose))}<geometry>{shape}</geometry>"
+
+
+def _mesh(path: Path, look: Look) -> str:
+    scale = " ".join([repr(look.scale)] * 3)
+    name = quoteattr(str(path.resolve()))
+    return f"{_origin(matrix_of(look.pose))}<geometry><mesh filename={name} scale={quoteattr(scale)}/></geometry>"
+
+
+def _without_looks(text: str) -> str:
+    root = etree.fromstring(text.encode())
+    for visual in list(root.iter("visual")):
+        above = visual.getparent()
+        if above is not None:
+            above.remove(visual)
+    return str(etree.tostring(root, encoding="unicode"))

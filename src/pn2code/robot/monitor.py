@@ -1,0 +1,221 @@
+"""Watching the robots while they move: clearances, joint limits, singularities.
+
+    monitor = Monitor(cell, backend)
+    verdict = monitor.check(t, {"robot1": q1, "robot2": q2}, phase="approach")
+    if verdict.fault is not None: stop the cell
+    monitor.minima("approach")               # the closest everything came, when, and where
+
+`check` puts the robots in place and measures. A fault is a collision (names both parts), a joint
+limit or a singularity; everything else is remembered as running minima, in total and per phase.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Collection, Mapping
+from dataclasses import dataclass, replace
+from typing import Literal
+
+import numpy as np
+
+from pn2code.robot.backend import Backend, Clearance
+from pn2code.robot.commands import Pose
+from pn2code.robot.kinematics import Conditioning
+from pn2code.robot.motion import FaultKind
+from pn2code.robot.scene import CellRobot, RobotCell
+from pn2code.robot.transforms import Array, describe, pose_of
+
+MeasureName = Literal[
+    "robots", "scene", "self", "contact", "limit", "condition", "sigma_min", "elbow", "wrist"
+]
+# Of these the greatest value is the worst, of the others the least.
+_GREATEST: frozenset[MeasureName] = frozenset({"condition"})
+SEARCHED = 0.5  # m: clearances above this are not measured, only known to be larger
+SINGULAR_SIGMA = 1e-3  # smaller, on a linear move: a direction in which the TCP cannot go
+
+
+@dataclass(frozen=True, slots=True)
+class Extreme:
+    """The worst value of one measure so far.
+
+    Args:
+        measure: "robots", "scene", "self": clearance, m (inf: above `SEARCHED`); "contact": overlap of
+            parts that may touch, m, negative; "limit": distance to a joint limit, rad; "condition";
+            "sigma_min"; "elbow" and "wrist": angle from straight, rad.
+        robot: which robot, or "a+b" for clearance between robots.
+        value: see above.
+        t: when, s.
+        phase: the phase it happened in.
+        pose: TCP pose of the robot in the world then.
+        parts: for clearances, the two parts; for limits, the axis.
+    """
+
+    measure: MeasureName
+    robot: str
+    value: float
+    t: float
+    phase: str
+    pose: Pose
+    parts: tuple[str, ...] = ()
+
+
+@dataclass(frozen=True, slots=True)
+class Fault:
+    """Why the cell must stop: kind, message (robot, parts, pose), time."""
+
+    kind: FaultKind
+    robot: str
+    message: str
+    t: float
+    pose: Pose
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Sample:
+    """One robot at one instant."""
+
+    robot: str
+    q: Array
+    pose: Pose
+    conditioning: Conditioning
+    limit_margin: float
+    limit_axis: int
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Verdict:
+    """What one check found.
+
+    Args:
+        t: time, s.
+        samples: of each robot.
+        clearances: nearest pairs, or None when the backend does not measure.
+        fault: the first reason to stop, or None.
+        warnings: clearances below the scene's `warning_clearance`.
+    """
+
+    t: float
+    samples: tuple[Sample, ...]
+    clearances: tuple[Clearance, ...] | None
+    fault: Fault | None
+    warnings: tuple[Clearance, ...]
+
+
+class Monitor:
+    """Checks instants one after the other and keeps the extremes."""
+
+    def __init__(self, cell: RobotCell, backend: Backend, *, searched: float = SEARCHED) -> None:
+        self._cell, self._backend, self._searched = cell, backend, searched
+        self._worst: dict[tuple[str, MeasureName, str], Extreme] = {}
+        self._bases = {r.name: r.T_world_base for r in cell.robots}
+
+    def check(
+        self,
+        t: float,
+        joints: Mapping[str, Array],
+        phase: str = "",
+        cartesian: Collection[str] = (),
+    ) -> Verdict:
+        """Puts the robots where they are at time `t` (s; joint positions in rad) and looks.
+
+        Args:
+            cartesian: robots on a linear move: for them a singularity is a fault. A joint move may
+                pass through one (the wrist does so often), and does not notice.
+        """
+        samples = tuple(
+            self._sample(r, joints[r.name]) for r in self._cell.robots if r.name in joints
+        )
+        for s in samples:
+            self._backend.set_joints(s.robot, s.q)
+        clearances = self._backend.clearances(self._searched)
+        poses = {s.robot: s.pose for s in samples}
+        fault: Fault | None = None
+        for s in samples:
+            fault = fault or self._own_fault(s, t, s.robot in cartesian)
+            c = s.conditioning
+            axis = (self._cell.robot(s.robot).arm.axes[s.limit_axis],)
+            self._note("limit", s, s.limit_margin, t, phase, axis)
+            self._note("condition", s, c.condition, t, phase)
+            self._note("sigma_min", s, c.sigma_min, t, phase)
+            self._note("elbow", s, c.elbow, t, phase)
+            self._note("wrist", s, c.wrist, t, phase)
+        warnings = []
+        for gap in clearances or ():
+            fault = fault or self._collision(gap, t, poses[gap.robot])
+            measure: MeasureName = gap.kind if gap.allowed is None else "contact"
+            who = gap.robot
+            if gap.kind == "robots":
+                who = f"{gap.robot}+{gap.b.split('/')[0]}"
+            self._keep(
+                Extreme(measure, who, gap.distance, t, phase, poses[gap.robot], (gap.a, gap.b))
+            )
+            if gap.allowed is None and gap.distance < self._cell.scene.warning_clearance:
+                warnings.append(gap)
+        return Verdict(t, samples, clearances, fault, tuple(warnings))
+
+    def minima(self, phase: str | None = None) -> tuple[Extreme, ...]:
+        """The extremes of a phase (None: of the whole run), sorted by measure and robot."""
+        wanted = "\0all" if phase is None else phase
+        found = [e for (p, _, _), e in self._worst.items() if p == wanted]
+        return tuple(sorted(found, key=lambda e: (e.measure, e.robot)))
+
+    def phases(self) -> tuple[str, ...]:
+        """The phases seen, in order."""
+        seen = dict.fromkeys(p for p, _, _ in self._worst if p != "\0all")
+        return tuple(seen)
+
+    def _sample(self, robot: CellRobot, q: Array) -> Sample:
+        k = robot.kinematics
+        margin, axis = k.limit_margin(q)
+        pose = pose_of(self._bases[robot.name] @ k.forward(q))
+        return Sample(robot.name, np.asarray(q, float), pose, k.conditioning(q), margin, axis)
+
+    def _note(
+        self, measure: MeasureName, s: Sample, value: float, t: float, phase: str,
+        parts: tuple[str, ...] = (),
+    ) -> None:  # fmt: skip
+        self._keep(Extreme(measure, s.robot, value, t, phase, s.pose, parts))
+
+    def _keep(self, e: Extreme) -> None:
+        for phase in ("\0all", e.phase):
+            key = (phase, e.measure, e.robot)
+            old = self._worst.get(key)
+            worse = old is None or (
+                e.value > old.value if e.measure in _GREATEST else e.value < old.value
+            )
+            if worse:
+                self._worst[key] = replace(e)
+
+    def _own_fault(self, s: Sample, t: float, moving: bool) -> Fault | None:
+        at = f"at TCP pose {describe(s.pose)}"
+        if s.limit_margin < -1e-9:
+            name = self._cell.robot(s.robot).arm.axes[s.limit_axis]
+            degrees = math.degrees(s.q[s.limit_axis])
+            message = (
+                f"robot `{s.robot}`: axis {s.limit_axis + 1} (`{name}`) is at {degrees:.2f} deg, "
+                f"{math.degrees(-s.limit_margin):.2f} deg outside its limits, {at}"
+            )
+            return Fault("joint-limit", s.robot, message, t, s.pose)
+        if moving and s.conditioning.sigma_min < SINGULAR_SIGMA:
+            message = (
+                f"robot `{s.robot}` is at a singularity (smallest singular value "
+                f"{s.conditioning.sigma_min:.1e}, elbow {math.degrees(s.conditioning.elbow):.1f} deg "
+                f"from straight, wrist {math.degrees(s.conditioning.wrist):.1f} deg), {at}"
+            )
+            return Fault("singularity", s.robot, message, t, s.pose)
+        return None
+
+    def _collision(self, gap: Clearance, t: float, pose: Pose) -> Fault | None:
+        depth = 1000.0 * -gap.distance
+        where = ", ".join(f"{1000 * v:.0f}" for v in gap.point)
+        if gap.allowed is None and gap.distance <= 0.0:
+            what = f"`{gap.a}` and `{gap.b}` collide ({depth:.1f} mm deep at {where} mm)"
+        elif gap.allowed is not None and -gap.distance > gap.allowed:
+            what = (
+                f"`{gap.a}` is {depth:.1f} mm deep in `{gap.b}` at {where} mm, "
+                f"but only {1000.0 * gap.allowed:.1f} mm are allowed"
+            )
+        else:
+            return None
+        message = f"robot `{gap.robot}`: {what}, at TCP pose {describe(pose)}"
+        return Fault("collision", gap.robot, message, t, pose)
