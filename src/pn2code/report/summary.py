@@ -89,7 +89,7 @@ def _minima(record: RunRecord) -> dict[str, Any]:
                 "m": round(float(values[i]), 9),
                 "t": round(record.sample_t[i], 6),
             }
-    return {**out, **record.minima}
+    return out
 
 
 def _conditioning(

@@ -31,31 +31,32 @@ from pn2code.robot import scene
 from pn2code.robot.backend import BackendName, open_backend
 from pn2code.robot.executor import RobotExecutor
 from pn2code.robot.monitor import Monitor
-from pn2code.run.engine import Engine, Observer, RobotRunner
+from pn2code.run.engine import Engine, Observer
 from pn2code.run.files import RobotFiles
 from pn2code.run.record import RunRecord, RunWarning
 from pn2code.run.supervisor import SupervisorProcess
 from pn2code.run.trace import GrowingTrace, trace_text
 from pn2code.tdl.check import CheckedProgram, check
-from pn2code.tdl.interpret import Interpreter
 from pn2code.tdl.parse import parse
 from pn2code.toolchain import build
 
 RUN_NO_CELL = register(
     "run-no-cell",
     "there is no cell to run",
-    "`pn2code run` needs a folder with a cell.toml: it says which robots stand where. A net alone can be generated, built "
-    "and played: `pn2code generate net.cpn`, then `make && ./supervisor` in the output folder.",
+    "`pn2code run` needs a folder with a cell.toml: it says which robots stand where. A net alone can be generated, "
+    "built and played: `pn2code generate net.cpn`, then `make && ./supervisor` in the output folder.",
 )
 RUN_INPUT = register(
     "run-input",
     "the input file given to `run` does not fit",
-    "`--input FILE` replaces the cell's input file for one run. A cell with several inputs takes a folder that holds them.",
+    "`--input FILE` replaces the cell's input file for one run. A cell with several "
+    "inputs takes a folder that holds them.",
 )
 RUN_START = register(
     "run-start",
     "the supervisor did not start",
-    "The compiled supervisor ended before the first step; its own message follows. A wrong input file is the usual reason.",
+    "The compiled supervisor ended before the first step; its own message follows. A wrong input file is "
+    "the usual reason.",
 )
 
 ROBOT_START_S = 10.0
@@ -191,10 +192,12 @@ def _start(
     cell = prepared.robot_cell
     backend = open_backend(options.backend, cell, gui=options.gui)
     stack.callback(backend.close)
-    record = RunRecord(partition.net.name, prepared.config.layout, options.backend)
-    robots: list[RobotRunner] = []
-    for config in prepared.config.robots:
-        side = stack.enter_context(SharedDirectory(shared, config.name, specs_of(partition)))
+    specs = specs_of(partition)
+    sides = {
+        robot.name: stack.enter_context(SharedDirectory(shared, robot.name, specs))
+        for robot in prepared.config.robots
+    }
+    for side in sides.values():
         if not side.await_supervisor(ROBOT_START_S if supervisor.running else 0.0):
             ended = supervisor.close()
             d.error(
@@ -204,37 +207,29 @@ def _start(
                 notes=[line for line in ended.stderr.splitlines() if line][:8],
             )
             return None
-        files = RobotFiles(side)
-        script, program = prepared.scripts[config.name]
-        runner = RobotRunner(
-            config.name,
-            script.path,
-            Interpreter(program, files),
-            files,
-            RobotExecutor(cell.robot(config.name), cell.motion),
-            script.blocks,
-        )
-        robots.append(runner)
-    instance = partition.owners[0].instance
+    trace = GrowingTrace(trace_path)
+    stack.callback(trace.close)
     engine = Engine(
-        record,
-        supervisor,
-        GrowingTrace(trace_path),
-        instance.count("/") + 1,
-        robots,
-        {t.name: t.id for t in partition.net.transitions},
-        Monitor(cell, backend),
-        cell.motion.sample,
-        observers,
+        record=RunRecord(partition.net.name, prepared.config.layout, options.backend),
+        supervisor=supervisor,
+        supervisor_trace=trace,
+        supervisor_depth=partition.owners[0].instance.count("/") + 1,
+        transition_ids={t.name: t.id for t in partition.net.transitions},
+        monitor=Monitor(cell, backend),
+        sample_s=cell.motion.sample,
+        observers=observers,
     )
-    stack.callback(engine.supervisor_trace.close)
+    for name, side in sides.items():
+        script, program = prepared.scripts[name]
+        executor = RobotExecutor(cell.robot(name), cell.motion)
+        engine.add_robot(name, script, program, RobotFiles(side), executor)
     return engine
 
 
 @contextmanager
 def shared_directory(name: str) -> Iterator[Path]:
     """A fresh directory for the channel files: on tmpfs where there is one, which makes files as fast as sockets."""
-    memory = Path("/dev/shm")  # noqa: S108
+    memory = Path("/dev/shm")
     parent = memory if memory.is_dir() and os.access(memory, os.W_OK) else None
     folder = Path(tempfile.mkdtemp(prefix=f"pn2code-{name}-", dir=parent))
     try:
@@ -295,6 +290,11 @@ def _warn(record: RunRecord, config: CellConfig) -> None:
                     f"{len(above) * 100 / len(values):.1f} % of the samples)",
                 )
             )
+
+    for (a, b), (gap, t) in sorted(record.near.items()):
+        record.warnings.append(
+            RunWarning(t, a.split("/")[0], f"`{a}` comes within {gap * 1000:.1f} mm of `{b}`")
+        )
 
 
 def _write_results(

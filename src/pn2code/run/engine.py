@@ -22,7 +22,7 @@ from typing import Any, Protocol
 
 import numpy as np
 
-from pn2code.emission.output import Block
+from pn2code.emission.output import Block, OutputFile
 from pn2code.robot.commands import (
     Command,
     Measure,
@@ -36,11 +36,13 @@ from pn2code.robot.commands import (
 from pn2code.robot.executor import Motion, RobotExecutor
 from pn2code.robot.monitor import Monitor
 from pn2code.robot.motion import MotionFault
-from pn2code.robot.transforms import Array
+from pn2code.robot.transforms import Array, pose_of
+from pn2code.run.accuracy import distance, distance_to_line
 from pn2code.run.files import RobotFiles
 from pn2code.run.record import ActionRecord, ActivityRecord, MessageRecord, RunRecord
 from pn2code.run.supervisor import SupervisorProcess
 from pn2code.run.trace import GrowingTrace
+from pn2code.tdl.check import CheckedProgram
 from pn2code.tdl.interpret import (
     AwaitFile,
     Event,
@@ -120,10 +122,10 @@ class Engine:
     supervisor: SupervisorProcess
     supervisor_trace: GrowingTrace
     supervisor_depth: int
-    robots: list[RobotRunner]
     transition_ids: Mapping[str, str]
     monitor: Monitor
     sample_s: float
+    robots: list[RobotRunner] = field(default_factory=list)
     observers: list[Observer] = field(default_factory=list)
     now: float = 0.0
     activity: str = ""
@@ -132,6 +134,20 @@ class Engine:
     _finished: bool = False
     _activity_start: float = 0.0
     _samples: int = 0
+
+    def add_robot(
+        self,
+        name: str,
+        script: OutputFile,
+        program: CheckedProgram,
+        files: RobotFiles,
+        executor: RobotExecutor,
+    ) -> None:
+        """Adds a robot; its script begins when the engine runs."""
+        interpreter = Interpreter(program, files, self._heard)
+        self.robots.append(
+            RobotRunner(name, script.path, interpreter, files, executor, script.blocks)
+        )
 
     def run(self) -> RunRecord:
         """Until the supervisor has finished and the robots rest; or until something stops the cell."""
@@ -293,9 +309,13 @@ class Engine:
         self._note_action(robot, self.now)
         robot.executor.finish()
         robot.motion = None
+        if isinstance(motion.command, MoveJoint | MoveLinear):
+            arm = robot.executor.robot
+            reached = pose_of(arm.T_world_base @ arm.kinematics.forward(robot.executor.q))
+            self.record.note_error("TCP off the commanded pose", distance(reached, motion.target))
         self._follow(robot, motion.result)
 
-    def heard(self, robot: str, event: Event) -> None:
+    def _heard(self, event: Event) -> None:
         """Events of an interpreter: occurrences of net transitions, messages consumed."""
         match event:
             case Marked(transition=name, binding=binding):
@@ -332,15 +352,18 @@ class Engine:
     def _sample(self, t: float) -> None:
         """Looks at the arms at time t; a collision, a violated limit or a singularity stops the cell."""
         joints = {r.name: r.joints(t) for r in self.robots}
-        finding = self.monitor.sample(t, joints)
-        self.record.sample_t.append(t)
-        for name, value in finding.values.items():
-            self.record.series.setdefault(name, []).append(value)
+        linear = {r.name for r in self.robots if r.motion is not None and r.motion.kind == "lin"}
+        verdict = self.monitor.check(t, joints, self.activity, linear)
+        self.record.sample(verdict)
+        for robot, seen in zip(self.robots, verdict.samples, strict=True):
+            if robot.name in linear and robot.motion is not None:
+                off = distance_to_line(seen.pose, robot.motion.start, robot.motion.target)
+                self.record.note_error("off the line on linear moves", off)
         for observer in self.observers:
             observer.sampled(self, t, joints)
-        if finding.fault is not None:
+        if verdict.fault is not None:
             self.now = t
-            raise CellStoppedError(f"{finding.fault} {self._doing()}")
+            raise CellStoppedError(f"{verdict.fault.message} {self._doing()}")
 
     def _doing(self) -> str:
         """What everybody was doing, for messages: script line, net transition, command."""

@@ -9,6 +9,8 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
+from pn2code.robot.monitor import Verdict
+
 FloatArray = npt.NDArray[np.float64]
 
 
@@ -76,6 +78,7 @@ class RunRecord:
         header: the header line of the merged trace.
         series: sampled quantities: name -> array of the length of `sample_t`; names are e.g. "clearance.robots",
             "clearance.scene.robot1" (m), "condition.robot2", "margin.robot1" (rad).
+        near: see below; accuracy: deviation -> greatest value in mm.
     """
 
     cell: str
@@ -94,7 +97,38 @@ class RunRecord:
     sample_t: list[float] = field(default_factory=list)
     series: dict[str, list[float]] = field(default_factory=dict)
     accuracy: dict[str, float] = field(default_factory=dict)
-    minima: dict[str, Any] = field(default_factory=dict)
+    near: dict[tuple[str, str], tuple[float, float]] = field(default_factory=dict)
+    """pairs of parts that came closer than the scene's warning distance: least distance (m) and when"""
+
+    def sample(self, verdict: Verdict) -> None:
+        """Adds one instant to the series."""
+        self.sample_t.append(verdict.t)
+        nearest: dict[str, float] = {}
+        for gap in verdict.clearances or ():
+            if gap.allowed is None:
+                name = f"clearance.{gap.kind}" + ("" if gap.kind == "robots" else f".{gap.robot}")
+                nearest[name] = min(nearest.get(name, np.inf), gap.distance)
+        if verdict.clearances is not None:
+            names = ["clearance.robots"]
+            names += [
+                f"clearance.{k}.{s.robot}" for s in verdict.samples for k in ("scene", "self")
+            ]
+            for name in names:
+                # Not measured beyond the monitor's search distance: a gap in the curve.
+                self.series.setdefault(name, []).append(nearest.get(name, np.nan))
+        for seen in verdict.samples:
+            self.series.setdefault(f"condition.{seen.robot}", []).append(
+                seen.conditioning.condition
+            )
+            self.series.setdefault(f"margin.{seen.robot}", []).append(seen.limit_margin)
+        for gap in verdict.warnings:
+            key = (gap.a, gap.b)
+            if gap.distance < self.near.get(key, (np.inf, 0.0))[0]:
+                self.near[key] = (gap.distance, verdict.t)
+
+    def note_error(self, what: str, metres: float) -> None:
+        """Keeps the greatest deviation of a kind, in mm."""
+        self.accuracy[what] = max(self.accuracy.get(what, 0.0), metres * 1000.0)
 
     def array(self, name: str) -> FloatArray:
         """A series as an array; empty if it was not sampled."""
