@@ -161,6 +161,10 @@ class Engine:
                 self._advance(self._next_event())
         except CellStoppedError as why:
             self._stop(str(why))
+        return self._close()
+
+    def _close(self) -> RunRecord:
+        """The last lines of the record."""
         self.record.time = self.now
         end: dict[str, Any] = {"t": self.now, "event": "end", "why": self.record.verdict}
         if self.record.reason:

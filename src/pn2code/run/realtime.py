@@ -1,0 +1,86 @@
+"""The same cell on the wall clock: the supervisor runs by itself, woken by the files, as on a real cell.
+
+Messages, scripts, arms and checks are those of the lock-step engine; only time is real. A file that cannot be taken is given
+the grace of the protocol (I6), a dead or stopped supervisor stops the robots (I8, I9).
+"""
+
+from __future__ import annotations
+
+import time
+from dataclasses import dataclass, field
+
+from pn2code.channels import GRACE_S, LOOK_S, PeerState, Refused
+from pn2code.run.engine import CellStoppedError, Engine
+from pn2code.run.record import RunRecord
+from pn2code.tdl.interpret import FileError
+
+PAUSE_S = 0.001
+"""Between two looks at the files: the cycle time of a robot controller's background task."""
+
+
+@dataclass(slots=True)
+class Patience:
+    """Refused content may still be replaced by something valid for the grace of I6; then it is a fault."""
+
+    grace_s: float = GRACE_S
+    _since: dict[tuple[str, str], float] = field(default_factory=dict)
+
+    def __call__(self, refusal: Refused) -> None:
+        """Hears of a refusal; raises `FileError` when the grace is over."""
+        now = time.monotonic()
+        first = self._since.setdefault((refusal.file, refusal.found), now)
+        if now - first > self.grace_s:
+            raise FileError(f"{refusal.file}: {refusal.text}")
+
+
+@dataclass(slots=True)
+class RealtimeEngine(Engine):
+    """Runs a cell in real time. `supervisor` was started without lock-step."""
+
+    _looked: float = 0.0
+    _sampled: float = 0.0
+
+    def run(self) -> RunRecord:
+        """Until the supervisor has finished and the robots rest; or until something stops the cell."""
+        start = time.perf_counter()
+        try:
+            self._sample(0.0)
+            while True:
+                self.now = time.perf_counter() - start
+                self._end_commands()
+                moved = [self._robot_turn(robot) for robot in self.robots]
+                if self._look_at_supervisor() and all(r.motion is None for r in self.robots):
+                    self.record.verdict = "finished"
+                    break
+                if self.now - self._sampled >= self.sample_s:
+                    self._sampled = self.now
+                    self._sample(self.now)
+                    for observer in self.observers:
+                        observer.advanced(self)
+                if not any(moved):
+                    time.sleep(PAUSE_S)
+        except CellStoppedError as why:
+            self._stop(str(why))
+        return self._close()
+
+    def _end_commands(self) -> None:
+        for robot in self.robots:
+            if robot.motion is not None and robot.motion.ends <= self.now:
+                self._finish(robot)
+
+    def _look_at_supervisor(self) -> bool:
+        """Whether it has finished; a stop or its death stops the robots."""
+        if self._finished:
+            return True
+        if self.now - self._looked < LOOK_S:
+            return False
+        self._looked = self.now
+        peer = self.robots[0].files.shared.peer()
+        if peer.state is PeerState.FINISHED:
+            self._finished = True
+        elif peer.state is not PeerState.RUNNING:
+            ended = self.supervisor.close()
+            words = {PeerState.STOPPED: "has stopped", PeerState.DEAD: "has died"}
+            why = peer.reason or ended.reason
+            raise CellStoppedError(f"the supervisor {words.get(peer.state, 'has gone')}: {why}")
+        return self._finished
