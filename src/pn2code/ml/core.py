@@ -33,7 +33,9 @@ class Symbol:
         uid: unique number.
         name: as written.
         type: its type; for polymorphic let/top-level symbols the generic type with `TVar`s.
-        generics: how many type variables are quantified (TVar indices 0..generics-1).
+        generics: how many type variables are quantified (TVar indices first_generic..first_generic+generics-1).
+        first_generic: 0 at top level; a polymorphic local numbers its variables after those of the functions around it,
+            whose variables its type may mention as well.
         colset: the colour set, for net variables.
         is_global: declared at top level of the declarations (or of a structure).
     """
@@ -44,6 +46,7 @@ class Symbol:
     generics: int = field(compare=False, default=0)
     colset: Colset | None = field(compare=False, default=None)
     is_global: bool = field(compare=False, default=False)
+    first_generic: int = field(compare=False, default=0)
 
 
 @dataclass(frozen=True, slots=True)

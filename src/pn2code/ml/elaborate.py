@@ -11,51 +11,38 @@ Typical use (the `link` and `check` stages of `pn2code.net`):
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+import sys
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import replace
+from typing import TypeVar
 
-from pn2code.diagnostics import NOWHERE, Diagnostics, Origin, SourceText
-from pn2code.ml import core
+from pn2code.diagnostics import Diagnostics, Origin, SourceText, Span
+from pn2code.ml import codes, core
+from pn2code.ml import syntax as s
+from pn2code.ml.annotations import Annotations
+from pn2code.ml.builtins import INFIX
+from pn2code.ml.colset_specs import Colsets, ColsetSpec
 from pn2code.ml.colsets import Colset
+from pn2code.ml.constants import Constant, fold
+from pn2code.ml.context import Context, suggestion
 from pn2code.ml.core import Program, Symbol
+from pn2code.ml.declarations import Declarations, declared_by, types_declared_by
+from pn2code.ml.environment import Binding, BrokenEntry, BrokenType, Scope
+from pn2code.ml.expressions import Expressions
+from pn2code.ml.fixity import Fixities, resolve_declaration, resolve_expression
+from pn2code.ml.inference import ICon, from_type
+from pn2code.ml.inscriptions import Inscriptions, TypedCode
+from pn2code.ml.names import Names
+from pn2code.ml.parser import declared_names, parse_expression, parse_program
+from pn2code.ml.patterns import Patterns
 from pn2code.ml.types import Type
 
+__all__ = ["ColsetSpec", "Elaborator", "TypedCode"]
 
-@dataclass(frozen=True, slots=True)
-class ColsetSpec:
-    """A colour set as written, names not yet resolved.
+T = TypeVar("T")
 
-    Args:
-        name: declared name.
-        kind: the XML tag: "unit", "bool", "int", "intinf", "time", "real", "string", "enum", "index", "product", "record",
-            "list", "union", "subset", "alias".
-        ids: enum values, product components, list base, alias base, subset base, unit/bool names, index stem.
-        fields: record fields and union constructors as (label, type or "").
-        texts: the texts in order: ranges, subset predicate or list.
-        timed: whether tokens carry time stamps.
-        by_predicate: SUBSET: the text is a predicate (`by`), not a list (`with`).
-        declare: extra functions asked for; all are always there, so this is accepted and not needed.
-        origin: declaration.
-    """
-
-    name: str
-    kind: str
-    ids: tuple[str, ...] = ()
-    fields: tuple[tuple[str, str], ...] = ()
-    texts: tuple[SourceText, ...] = ()
-    timed: bool = False
-    by_predicate: bool = False
-    declare: tuple[str, ...] = ()
-    origin: Origin = field(default=NOWHERE)
-
-
-@dataclass(frozen=True, slots=True)
-class TypedCode:
-    """A code segment: the variables it reads, those it binds, and the action giving a value (tuple) for the latter."""
-
-    inputs: tuple[Symbol, ...]
-    outputs: tuple[Symbol, ...]
-    action: core.Exp
+_RECURSION_LIMIT = 20_000
+"""Python frames for one text: nesting is limited by `fixity.MAX_DEPTH`, chains of operators are not."""
 
 
 class Elaborator:
@@ -74,27 +61,178 @@ class Elaborator:
         values: Mapping[str, str] | None = None,
         real_time: bool = False,
     ) -> None:
-        raise NotImplementedError
+        self._d = d
+        self._values = dict(values or {})
+        self._replaced: set[str] = set()
+        self._ctx = Context(d, real_time)
+        annotations = Annotations(self._ctx)
+        patterns = Patterns(self._ctx, annotations)
+        self._expressions = Expressions(self._ctx, annotations, patterns, Names(self._ctx))
+        self._declare = Declarations(self._ctx, annotations, patterns, self._expressions)
+        self._fixities: Fixities = dict(INFIX)
+        self._made: list[core.Dec] = []
+        self._variables: dict[str, Symbol] = {}
+        self._variable_scope = Scope(self._ctx.top)
+        self._constants: dict[int, Constant] = {}
+        self._inscriptions = Inscriptions(
+            self._ctx, self._expressions, self._variable_scope, self._constants
+        )
+        self._colsets = Colsets(self._ctx, self._declare, self._plain, self._fold)
+
+    # --- declarations
 
     def colset(self, spec: ColsetSpec) -> Colset | None:
         """Declares a colour set; None when it was reported to be wrong."""
-        raise NotImplementedError
+        self._ctx.tainted = False
+        colset, datatypes = self._colsets.declare(spec)
+        self._made += datatypes
+        return colset
 
     def variables(self, names: Sequence[str], colset_name: str, origin: Origin) -> None:
         """`var names : colset_name`."""
-        raise NotImplementedError
+        colset = self._ctx.colsets.get(colset_name)
+        if colset_name not in self._ctx.colsets:
+            self._ctx.errors += 1
+            self._d.error(
+                codes.UNKNOWN_COLOUR_SET,
+                f"there is no colour set `{colset_name}`",
+                origin,
+                hint=suggestion(colset_name, self._ctx.colsets),
+            )
+        for name in names:
+            if colset is None:
+                self._variable_scope.values[name] = BrokenEntry()
+                self._variables.pop(name, None)
+                continue
+            old = self._variables.get(name)
+            if old is not None and old.colset is not None and old.colset != colset:
+                self._d.warning(
+                    codes.VARIABLE_CLASH,
+                    f"variable `{name}` of colour set `{old.colset.name}` is declared again, "
+                    f"now of `{colset.name}`",
+                    origin,
+                )
+            symbol = self._ctx.fresh_symbol(name, colset.type, colset)
+            self._variables[name] = symbol
+            self._variable_scope.values[name] = Binding(
+                name, from_type(colset.type, []), symbol=symbol, colset=colset
+            )
 
     def declarations(self, text: SourceText) -> None:
         """An `ml` element: any number of CPN ML declarations."""
-        raise NotImplementedError
+        program = parse_program(text, self._d)
+        if program is None:
+            self._break(declared_names(text), ())
+            return
+        for dec in program:
+            self._border(text, lambda dec=dec: self._declaration(text, dec))  # type: ignore[misc]
+
+    def _declaration(self, text: SourceText, dec: s.Dec) -> None:
+        resolved = resolve_declaration(dec, self._fixities, self._d)
+        if resolved is None:
+            self._break(declared_names(text, dec.span.start, dec.span.end), types_declared_by(dec))
+            return
+        changed, self._fixities = resolved
+        if isinstance(changed, s.ValDec) and self._values:
+            changed = self._replace_values(changed)
+        before = self._ctx.errors
+        self._ctx.tainted = False
+        build = self._declare.declare(changed)
+        if self._ctx.errors == before:
+            self._ctx.settle()
+        self._ctx.open_records.clear()
+        if self._ctx.errors > before or self._ctx.tainted:
+            self._break(declared_by(changed), types_declared_by(changed))
+            return
+        made = build()
+        self._made += made
+        for binding in self._ctx.top.values.values():
+            if isinstance(binding, Binding) and not binding.quants:
+                self._ctx.unifier.close(binding.type)
+        for one in made:
+            if isinstance(one, core.ValBind) and isinstance(one.pattern, core.PVar):
+                value = self._fold(one.value)
+                if value is not None:
+                    self._constants[one.pattern.symbol.uid] = value
+
+    def _break(self, values: Sequence[str] | set[str], types: Sequence[str] | set[str]) -> None:
+        """Names of a declaration with an error are known, but nothing is said about their uses."""
+        for name in values:
+            self._ctx.top.values[name] = BrokenEntry()
+        for name in types:
+            self._ctx.top.types[name] = BrokenType()
+
+    def _replace_values(self, dec: s.ValDec) -> s.ValDec:
+        """`val NAME = ..` with the value that the caller has given for NAME; its type must stay."""
+        bindings = []
+        for b in dec.bindings:
+            pattern = b.pattern.pattern if isinstance(b.pattern, s.TypedPat) else b.pattern
+            if isinstance(pattern, s.NamePat) and pattern.name in self._values:
+                name = pattern.name
+                self._replaced.add(name)
+                origin = Origin("command line", 1, 1, element=f"value `{name}`", part="declaration")
+                given = self._parse(SourceText(self._values[name], origin))
+                if given is not None and self._same_type(b.value, given, name):
+                    b = replace(b, value=given)
+            bindings.append(b)
+        return replace(dec, bindings=tuple(bindings))
+
+    def _same_type(self, old: s.Exp, new: s.Exp, name: str) -> bool:
+        quiet, self._ctx.d = self._ctx.d, Diagnostics()
+        errors = self._ctx.errors
+        try:
+            t = self._expressions.infer(old).type
+            failed = self._ctx.d.has_errors
+        finally:
+            self._ctx.d = quiet
+            self._ctx.errors = errors
+        self._ctx.open_records.clear()
+        if failed:
+            return False  # the net's own value is wrong, which is reported when it is declared
+        self._expressions.check(new, t, f"value given for `{name}`")
+        return self._ctx.errors == errors
 
     def globref(self, name: str, text: SourceText, origin: Origin) -> None:
         """`globref name = text`."""
-        raise NotImplementedError
+        self._border(text, lambda: self._globref(name, text))
+
+    def _globref(self, name: str, text: SourceText) -> None:
+        exp = self._parse(text)
+        if exp is None:
+            self._break([name], ())
+            return
+        span = text.span()
+        value = s.ApplyExp(s.NameExp("ref", True, span), exp, span)
+        with_reference = self._ctx.top.values.pop("ref", None)
+        pattern = s.NamePat(name, True, span)
+        dec = s.ValDec((s.ValBinding(pattern, value, False, span),), span)
+        self._declaration(text, dec)
+        if with_reference is not None and name != "ref":
+            self._ctx.top.values["ref"] = with_reference
 
     def program(self) -> Program:
         """All declarations so far. Meaningful when no error was reported."""
-        raise NotImplementedError
+        for name in sorted(self._values.keys() - self._replaced):
+            known = [n for n, e in self._ctx.top.values.items() if isinstance(e, Binding)]
+            self._d.error(
+                codes.UNKNOWN_VALUE,
+                f"the net declares no value `{name}` that could be replaced",
+                Origin("command line", element=f"value `{name}`"),
+                hint=suggestion(name, known),
+            )
+        return Program(
+            declarations=tuple(self._made),
+            colsets={n: c for n, c in self._ctx.colsets.items() if c is not None},
+            variables=dict(self._variables),
+            datatypes=dict(self._ctx.datatypes),
+            globals={
+                n: e.symbol
+                for n, e in self._ctx.top.values.items()
+                if isinstance(e, Binding) and e.symbol is not None
+            },
+        )
+
+    # --- inscriptions
 
     def expression(
         self,
@@ -115,22 +253,77 @@ class Elaborator:
             output: an OUTPUT arc: everything before the first `@+` is one operand (the real tool's rule).
 
         Returns:
-            The index of the first type that fits and the expression; None when an error was reported (one diagnostic).
+            The index of the first type that fits and the expression; None when an error was reported (one
+            diagnostic), or when the text uses something whose declaration has an error.
         """
-        raise NotImplementedError
+
+        def work() -> tuple[int, core.Exp] | None:
+            exp = self._parse(text, output=output)
+            if exp is None:
+                return None
+            return self._inscriptions.expression(text, exp, types, expected_name, declared or {})
+
+        return self._border(text, work)
 
     def guard(self, text: SourceText) -> tuple[core.Exp, ...] | None:
         """`[g1, g2]`, `g1, g2` or one expression -> conjuncts of type bool; empty or `[]` -> ()."""
-        raise NotImplementedError
+        return self._border(text, lambda: self._inscriptions.guard(text, self._fixities))
 
     def code_segment(self, text: SourceText) -> TypedCode | None:
         """`input (..); output (..); action exp;`."""
-        raise NotImplementedError
+        return self._border(text, lambda: self._inscriptions.code_segment(text, self._fixities))
 
     def delay(self, text: SourceText, real_time: bool = False) -> core.Exp | None:
         """`@+ e` (int; the type is int) or `@++ t` (the type is IntInf.int or real): the delay expression."""
-        raise NotImplementedError
+        del real_time  # the clock is known from the beginning
+        return self._border(text, lambda: self._inscriptions.delay(text, self._fixities))
 
     def priority(self, text: SourceText) -> int | None:
         """The constant value of a priority inscription."""
-        raise NotImplementedError
+        return self._border(text, lambda: self._inscriptions.priority(text, self._fixities))
+
+    # --- helpers
+
+    def _parse(self, text: SourceText, *, output: bool = False) -> s.Exp | None:
+        exp = parse_expression(text, self._d, output=output)
+        return None if exp is None else resolve_expression(exp, self._fixities, self._d)
+
+    def _plain(
+        self, text: SourceText, types: Sequence[Type], what: str
+    ) -> tuple[int, core.Exp] | None:
+        """A text outside the net's inscriptions, e.g. a bound: net variables are not in scope."""
+
+        def work() -> tuple[int, core.Exp] | None:
+            exp = self._parse(text)
+            return None if exp is None else self._inscriptions.plain(exp, types, what)
+
+        return self._border(text, work)
+
+    def _fold(self, exp: core.Exp) -> Constant | None:
+        return fold(exp, self._constants)
+
+    def _border(self, text: SourceText, work: Callable[[], T]) -> T | None:
+        """Runs one text's elaboration; leaves a clean state behind, and reports texts beyond Python's stack."""
+        limit = sys.getrecursionlimit()
+        sys.setrecursionlimit(max(limit, _RECURSION_LIMIT))
+        try:
+            return work()
+        except RecursionError:
+            end = min(len(text.text), 40)
+            self._d.error(
+                codes.TOO_DEEP,
+                "this is nested too deeply",
+                Span(text, 0, end),
+                hint="give parts of it a name with `val` or `let`",
+            )
+            return None
+        finally:
+            sys.setrecursionlimit(limit)
+            self._ctx.scope = self._ctx.top
+            self._ctx.unifier.level = 0
+            self._ctx.tyvars.clear()
+            self._ctx.open_records.clear()
+            for meta in self._ctx.unifier.pending:
+                if meta.ref is None and meta.among:
+                    meta.ref = ICon(meta.among[0])
+            self._ctx.unifier.pending.clear()

@@ -1,0 +1,79 @@
+"""Values of constant expressions: bounds of colour sets, priorities.
+
+A folder over core, not an evaluator: literals, other constants, arithmetic. What is beyond it is "not a constant".
+"""
+
+from __future__ import annotations
+
+import operator
+from collections.abc import Callable, Mapping
+
+from pn2code.ml import core
+
+Constant = int | float | str | bool
+
+_INT: dict[str, Callable[[int, int], int]] = {
+    "Int.+": operator.add,
+    "Int.-": operator.sub,
+    "Int.*": operator.mul,
+    "Int.div": operator.floordiv,
+    "Int.mod": operator.mod,
+    "Int.min": min,
+    "Int.max": max,
+}
+_REAL: dict[str, Callable[[float, float], float]] = {
+    "Real.+": operator.add,
+    "Real.-": operator.sub,
+    "Real.*": operator.mul,
+}
+
+
+def fold(e: core.Exp, known: Mapping[int, Constant]) -> Constant | None:
+    """The value, or None if it is not a constant; `known` has the values of symbols by uid."""
+    match e:
+        case core.Lit():
+            return e.value
+        case core.Var():
+            return known.get(e.symbol.uid)
+        case core.Con() if e.constructor.data_type == "bool":
+            return e.constructor.name == "true"
+        case core.If():
+            condition = fold(e.condition, known)
+            if isinstance(condition, bool):
+                return fold(e.then if condition else e.otherwise, known)
+            return None
+        case core.Apply(function=core.Builtin() as function):
+            return _apply(function.name, e.argument, known)
+        case _:
+            return None
+
+
+def _apply(name: str, argument: core.Exp, known: Mapping[int, Constant]) -> Constant | None:
+    if isinstance(argument, core.RecordExp) and len(argument.fields) == 2:
+        left, right = (fold(x, known) for _, x in argument.fields)
+        if name == "String.^" and isinstance(left, str) and isinstance(right, str):
+            return left + right
+        if name in _INT and _is_int(left) and _is_int(right):
+            assert isinstance(left, int) and isinstance(right, int)
+            if name in ("Int.div", "Int.mod") and right == 0:
+                return None
+            return _INT[name](left, right)
+        if name in _REAL and isinstance(left, float) and isinstance(right, float):
+            return _REAL[name](left, right)
+        if name == "Real./" and isinstance(left, float) and isinstance(right, float) and right:
+            return left / right
+        return None
+    value = fold(argument, known)
+    if name in ("Int.~", "IntInf.~", "Real.~") and isinstance(value, int | float):
+        return -value
+    if name == "Int.abs" and _is_int(value):
+        assert isinstance(value, int)
+        return abs(value)
+    if name == "Real.fromInt" and _is_int(value):
+        assert isinstance(value, int)
+        return float(value)
+    return None
+
+
+def _is_int(value: Constant | None) -> bool:
+    return isinstance(value, int) and not isinstance(value, bool)

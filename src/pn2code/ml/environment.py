@@ -1,0 +1,284 @@
+"""Scopes: what each name means at a point of the program."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+
+from pn2code.ml.builtins import (
+    BUILTINS,
+    DATATYPES,
+    EXCEPTIONS,
+    OVERLOADED,
+    QUALIFIED,
+    STRUCTURES,
+    TOP_LEVEL,
+    TYPE_ABBREVIATIONS,
+    TYPE_ARITY,
+)
+from pn2code.ml.colsets import Colset
+from pn2code.ml.core import Constructor, DatatypeDec, Symbol
+from pn2code.ml.inference import Quant, Ty
+from pn2code.ml.types import EXN, TCon, TFun, TVar, Type
+
+
+@dataclass(slots=True, eq=False)
+class Binding:
+    """A variable of the program; its symbol is made when its declaration is translated and its type known.
+
+    Args:
+        name: as written.
+        type: its type; with `quants` quantified.
+        is_global: declared at top level.
+        quants: quantified variables; filled when generalised.
+        generalised: whether that has happened; uses before (recursive ones) have the one unknown type.
+        symbol: the core symbol.
+        colset: of a net variable.
+    """
+
+    name: str
+    type: Ty
+    is_global: bool = False
+    quants: list[Quant] = field(default_factory=list)
+    generalised: bool = False
+    symbol: Symbol | None = None
+    colset: Colset | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class BuiltinEntry:
+    """A built-in function by its full name."""
+
+    name: str
+
+
+@dataclass(frozen=True, slots=True)
+class OverloadedEntry:
+    """One of several built-in functions, by type."""
+
+    name: str
+    choices: tuple[str, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class ConEntry:
+    """A constructor with its type scheme."""
+
+    constructor: Constructor
+    type: Type
+    generics: int
+
+
+@dataclass(frozen=True, slots=True)
+class EmptyEntry:
+    """The empty list or multi-set."""
+
+
+@dataclass(frozen=True, slots=True)
+class UnitEntry:
+    """The value of a unit colour set with a name of its own."""
+
+
+@dataclass(frozen=True, slots=True)
+class ColsetEntry:
+    """A function of a colour set's structure."""
+
+    colset: Colset
+    member: str
+
+
+@dataclass(frozen=True, slots=True)
+class BrokenEntry:
+    """Something whose declaration has an error that was reported."""
+
+
+@dataclass(frozen=True, slots=True)
+class UnsupportedEntry:
+    """Something of the library that is not supported."""
+
+    name: str
+
+
+Entry = (
+    Binding | BuiltinEntry | OverloadedEntry | ConEntry | EmptyEntry | UnitEntry | ColsetEntry | BrokenEntry
+    | UnsupportedEntry
+)  # fmt: skip
+
+
+@dataclass(frozen=True, slots=True)
+class TypeCon:
+    """A type constructor."""
+
+    name: str
+    arity: int
+
+
+@dataclass(frozen=True, slots=True)
+class TypeAbbreviation:
+    """A name for another type."""
+
+    parameters: tuple[Quant, ...]
+    body: Ty
+
+
+@dataclass(frozen=True, slots=True)
+class BuiltinAbbreviation:
+    """A built-in name for a type, as text of the table."""
+
+    text: str
+    arity: int
+
+
+@dataclass(frozen=True, slots=True)
+class BrokenType:
+    """A type whose declaration has an error that was reported."""
+
+
+TypeEntry = TypeCon | TypeAbbreviation | BuiltinAbbreviation | BrokenType
+
+
+@dataclass(frozen=True, slots=True)
+class BuiltinStructure:
+    """A structure of the library."""
+
+    name: str
+
+
+class Scope:
+    """Names of one block; unknown ones are looked up in the block around it."""
+
+    def __init__(self, parent: Scope | None = None) -> None:
+        self.parent = parent
+        self.values: dict[str, Entry] = {}
+        self.types: dict[str, TypeEntry] = {}
+        self.structures: dict[str, Scope | BuiltinStructure] = {}
+
+    def _chain(self) -> Iterator[Scope]:
+        scope: Scope | None = self
+        while scope is not None:
+            yield scope
+            scope = scope.parent
+
+    def structure(self, name: str) -> Scope | BuiltinStructure | None:
+        """A structure by its name, `A` or `A.B`."""
+        head, *rest = name.split(".")
+        found = next((s.structures[head] for s in self._chain() if head in s.structures), None)
+        for part in rest:
+            if isinstance(found, BuiltinStructure):
+                found = BuiltinStructure(f"{found.name}.{part}")
+            elif found is not None:
+                found = found.structures.get(part)
+        return found
+
+    def value(self, name: str) -> Entry | None:
+        """What a name means as a value."""
+        *path, last = split_name(name)
+        if not path:
+            return next((s.values[last] for s in self._chain() if last in s.values), None)
+        structure = self.structure(".".join(path))
+        if isinstance(structure, Scope):
+            return structure.values.get(last)
+        return library_value(structure.name, last) if structure is not None else None
+
+    def type(self, name: str) -> TypeEntry | None:
+        """What a name means as a type."""
+        found = next((s.types[name] for s in self._chain() if name in s.types), None)
+        if found is None and "." in name:
+            *path, last = split_name(name)
+            structure = self.structure(".".join(path))
+            if isinstance(structure, Scope):
+                return structure.types.get(last)
+        return found
+
+    def names(self) -> set[str]:
+        """All value names in scope, for suggestions."""
+        return {name for s in self._chain() for name in s.values}
+
+    def type_names(self) -> set[str]:
+        """All type names in scope, for suggestions."""
+        return {name for s in self._chain() for name in s.types}
+
+    def absorb(self, other: Scope) -> None:
+        """Takes over all names of another block (`open`, `local`)."""
+        self.values.update(other.values)
+        self.types.update(other.types)
+        self.structures.update(other.structures)
+
+
+def split_name(name: str) -> list[str]:
+    """`A.B.c` -> [A, B, c]; symbolic names may follow the last point."""
+    parts: list[str] = []
+    while name and (name[0].isalpha()) and "." in name:
+        head, name = name.split(".", 1)
+        parts.append(head)
+    return [*parts, name]
+
+
+def library_value(structure: str, member: str) -> Entry | None:
+    """A member of a structure of the library."""
+    name = f"{structure}.{member}"
+    name = QUALIFIED.get(name, name)
+    if name in BUILTINS:
+        return BuiltinEntry(name)
+    base = _library().values.get(member)
+    if isinstance(base, ConEntry | EmptyEntry) and structure in _CONSTRUCTOR_STRUCTURES:
+        return base
+    if structure == "General" and isinstance(base, BuiltinEntry):
+        return base
+    return UnsupportedEntry(name) if structure in STRUCTURES else None
+
+
+_CONSTRUCTOR_STRUCTURES = frozenset({"General", "List", "Option", "Bool"})
+
+
+def library_members(structure: str) -> dict[str, Entry]:
+    """All members of a structure of the library, for `open`."""
+    prefix = structure + "."
+    return {
+        name.removeprefix(prefix): BuiltinEntry(name)
+        for name in BUILTINS
+        if name.startswith(prefix)
+    }
+
+
+def constructor_entries(declaration: DatatypeDec) -> dict[str, ConEntry]:
+    """The constructors of a datatype with their type schemes."""
+    own = TCon(declaration.name, tuple(TVar(i) for i in range(declaration.generics)))
+    return {
+        c.name: ConEntry(c, own if argument is None else TFun(argument, own), declaration.generics)
+        for c, argument in declaration.constructors
+    }
+
+
+def library_scope() -> Scope:
+    """A scope around all others: the built-in names. Never changed, so all nets share it."""
+    return _library()
+
+
+_LIBRARY: list[Scope] = []
+
+
+def _library() -> Scope:
+    if _LIBRARY:
+        return _LIBRARY[0]
+    scope = Scope()
+    _LIBRARY.append(scope)
+    for short, full in TOP_LEVEL.items():
+        scope.values[short] = BuiltinEntry(full)
+    for short, choices in OVERLOADED.items():
+        scope.values[short] = OverloadedEntry(short, choices)
+    for declaration in DATATYPES.values():
+        scope.values.update(constructor_entries(declaration))
+    for name, (constructor, argument) in EXCEPTIONS.items():
+        scope.values[name] = ConEntry(
+            constructor, EXN if argument is None else TFun(argument, EXN), 0
+        )
+    scope.values["empty"] = EmptyEntry()
+    for name, arity in TYPE_ARITY.items():
+        scope.types[name] = TypeCon(name, arity)
+    for name, text in TYPE_ABBREVIATIONS.items():
+        scope.types[name] = BuiltinAbbreviation(text, 1 if "'a" in text else 0)
+    for name in STRUCTURES:
+        if "." not in name:
+            scope.structures[name] = BuiltinStructure(name)
+    return scope

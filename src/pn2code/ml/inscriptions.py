@@ -1,0 +1,447 @@
+"""Inscriptions of a net: arc expressions, initial markings, guards, delays, priorities, code segments."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import contextmanager
+from dataclasses import dataclass, replace
+from typing import TypeVar
+
+from pn2code.diagnostics import Diagnostics, Note, SourceText
+from pn2code.ml import codes, core
+from pn2code.ml import syntax as s
+from pn2code.ml.builtins import BUILTINS
+from pn2code.ml.constants import Constant, fold
+from pn2code.ml.context import Context, Draft
+from pn2code.ml.core import Symbol
+from pn2code.ml.environment import Binding, BrokenEntry, BuiltinEntry, Scope
+from pn2code.ml.expressions import Expressions
+from pn2code.ml.fixity import Fixities, resolve_expression, resolve_pattern
+from pn2code.ml.inference import (
+    I_BOOL,
+    I_INT,
+    I_UNIT,
+    ICon,
+    IRec,
+    Ty,
+    from_type,
+    i_list,
+    prune,
+    to_type,
+)
+from pn2code.ml.lexer import tokenize
+from pn2code.ml.parser import parse_code, parse_expression, parse_expressions
+from pn2code.ml.types import INTINF, REAL, TCon, TFun, Type, list_of, timed_of, tuple_of
+
+T = TypeVar("T")
+
+_DELAYS = {"Time.@+": "Time.token@+", "Time.@++": "Time.token@++"}
+"""How a delay is added to a multi-set, and to one token."""
+
+
+@dataclass(frozen=True, slots=True)
+class TypedCode:
+    """A code segment: the variables it reads, those it binds, and the action giving a value (tuple) for the latter."""
+
+    inputs: tuple[Symbol, ...]
+    outputs: tuple[Symbol, ...]
+    action: core.Exp
+
+
+class Inscriptions:
+    """Types inscriptions; their texts may use the net variables of `variables`."""
+
+    def __init__(
+        self,
+        ctx: Context,
+        expressions: Expressions,
+        variables: Scope,
+        constants: Mapping[int, Constant],
+    ) -> None:
+        self._ctx = ctx
+        self._expressions = expressions
+        self._variables = variables
+        self._constants = constants
+
+    @contextmanager
+    def _scope(self, scope: Scope) -> Iterator[None]:
+        """One inscription: what is declared in it is local."""
+        self._ctx.scope = Scope(scope)
+        self._ctx.tainted = False
+        self._ctx.unifier.level = 1
+        self._ctx.tyvars.append({})
+        try:
+            yield
+        finally:
+            self._ctx.scope = self._ctx.top
+            self._ctx.unifier.level = 0
+            self._ctx.tyvars.clear()
+
+    def _finish(self, before: int, build: Callable[[], T]) -> T | None:
+        """What `build` gives, unless something was reported since `before` or uses something broken."""
+        if self._ctx.errors == before:
+            self._ctx.settle()
+        self._ctx.open_records.clear()
+        if self._ctx.errors > before or self._ctx.tainted:
+            return None
+        return build()
+
+    # --- arc expressions and initial markings
+
+    def expression(
+        self,
+        text: SourceText,
+        exp: s.Exp,
+        types: Sequence[Type],
+        expected_name: str,
+        declared: Mapping[str, Symbol],
+    ) -> tuple[int, core.Exp] | None:
+        """The first type that fits."""
+        scope = Scope(self._variables)
+        for name, symbol in declared.items():
+            scope.values[name] = Binding(
+                name, from_type(symbol.type, []), symbol=symbol, colset=symbol.colset
+            )
+        what = text.origin.part or "expression"
+        with self._scope(scope):
+            before = self._ctx.errors
+            found = self._first(exp, types)
+            if isinstance(found, tuple):
+                return self._finish(before, lambda: (found[0], found[1].build()))
+            if self._ctx.errors == before and not self._ctx.tainted:
+                self._explain(exp, found, types, what, expected_name)
+            return None
+
+    def plain(self, exp: s.Exp, types: Sequence[Type], what: str) -> tuple[int, core.Exp] | None:
+        """An expression without net variables."""
+        with self._scope(self._ctx.top):
+            before = self._ctx.errors
+            if len(types) == 1:
+                draft = self._expressions.check(exp, from_type(types[0], []), what)
+                return self._finish(before, lambda: (0, draft.build()))
+            found = self._first(exp, types)
+            if isinstance(found, tuple):
+                return self._finish(before, lambda: (found[0], found[1].build()))
+            if self._ctx.errors == before and not self._ctx.tainted:
+                self._expressions.check(exp, from_type(types[0], []), what)
+            return None
+
+    def _first(self, exp: s.Exp, types: Sequence[Type]) -> tuple[int, Draft] | Draft:
+        """Index and draft for the first type that fits; only the draft if none does."""
+        delayed = self._delayed(exp)
+        if delayed is not None:
+            return self._first_delayed(*delayed, types)
+        draft = self._expressions.infer(exp)
+        for i, t in enumerate(types):
+            if self._ctx.unifier.attempt(draft.type, from_type(t, [])):
+                return i, draft
+        return draft
+
+    def _delayed(self, exp: s.Exp) -> tuple[s.InfixExp, str] | None:
+        """`e @+ d` at the top."""
+        if isinstance(exp, s.InfixExp):
+            entry = self._ctx.scope.value(exp.operator.name)
+            if isinstance(entry, BuiltinEntry) and entry.name in _DELAYS:
+                return exp, entry.name
+        return None
+
+    def _first_delayed(
+        self, exp: s.InfixExp, operator: str, types: Sequence[Type]
+    ) -> tuple[int, Draft] | Draft:
+        """The left side of `e @+ d` may be a token or a multi-set: the place's colour set decides."""
+        left = self._expressions.infer(exp.left)
+        time = REAL if self._ctx.real_time else INTINF
+        delay_type: Type = time if operator.endswith("++") else TCon("int")
+        delay = self._expressions.check(exp.right, from_type(delay_type, []), "delay")
+        for i, t in enumerate(types):
+            if not isinstance(t, TCon):
+                continue
+            inner = t.args[0] if t.args else None
+            if t.name == "timed" and inner is not None:
+                wanted, name, base = inner, _DELAYS[operator], inner
+            elif t.name == "list" and isinstance(inner, TCon) and inner.name == "timed":
+                wanted, name, base = list_of(inner.args[0]), operator, inner.args[0]
+            else:
+                continue
+            if self._ctx.unifier.attempt(left.type, from_type(wanted, [])):
+                full = TFun(tuple_of(wanted, delay_type), t)
+
+                def build(
+                    name: str = name,
+                    full: TFun = full,
+                    base: Type = base,
+                ) -> core.Exp:
+                    function = core.Builtin(name, full, exp.operator.span, (base,))
+                    pair = core.RecordExp(
+                        (("1", left.build()), ("2", delay.build())), full.argument, exp.span
+                    )
+                    return core.Apply(function, pair, full.result, exp.span)
+
+                return i, Draft(from_type(t, []), build)
+        assert BUILTINS[operator]
+        element = prune(left.type)
+        if isinstance(element, ICon) and element.name == "list":
+            return Draft(i_list(ICon("timed", element.args)), left.build)
+        return Draft(ICon("timed", (left.type,)), left.build)
+
+    def _explain(
+        self,
+        exp: s.Exp,
+        draft: Draft,
+        types: Sequence[Type],
+        what: str,
+        expected_name: str,
+    ) -> None:
+        """One diagnostic: where and how the expression differs from what the place holds."""
+        found = prune(draft.type)
+        base = types[0]
+        wanted = next(
+            (
+                t
+                for t in types
+                if isinstance(found, ICon)
+                and isinstance(t, TCon)
+                and t.name == found.name == "list"
+                and _is_timed_list(to_type(found)) == _is_timed_list(t)
+            ),
+            base,
+        )
+        holds = f"the colour set is `{expected_name}`"
+        structure = self._structure(base)
+        if structure != expected_name:
+            holds += f", which is `{structure}`"
+        quiet, self._ctx.d = self._ctx.d, Diagnostics()
+        try:
+            self._expressions.check(exp, from_type(wanted, []), what)
+            details = self._ctx.d.errors
+        finally:
+            self._ctx.d = quiet
+            self._ctx.open_records.clear()
+        if details and details[0].span is not None and details[0].span != exp.span:
+            first = details[0]
+            notes = (*first.notes, Note(holds))
+            self._ctx.d.items.append(replace(first, notes=notes))
+            self._ctx.errors += 1
+            return
+        timed = any(_is_timed_list(t) for t in types)
+        forms = f"a token or multi-set of `{expected_name}`"
+        if not timed and _is_timed(found):
+            hint = (
+                f"the colour set `{expected_name}` is not timed, so its tokens carry no time stamp"
+            )
+        elif isinstance(found, ICon) and found.name == "list":
+            hint = ""
+        else:
+            hint = f"write one token of `{expected_name}`, or a multi-set such as 1`v"
+        shown = self._ctx.show(found)
+        self._ctx.error(
+            codes.TYPE_MISMATCH,
+            f"{what} is `{shown}`, but {forms} is expected",
+            exp.span,
+            label=f"this is `{shown}`",
+            notes=(holds, *self._differences(found, from_type(base, []))),
+            hint=hint,
+        )
+
+    def _structure(self, t: Type) -> str:
+        """A type spelled out one level."""
+        own = from_type(t, [])
+        if isinstance(own, IRec) and own.fields:
+            if t == tuple_of(*(f for _, f in getattr(t, "fields", ()))):
+                return " * ".join(self._ctx.show(f) for _, f in own.fields)
+            return "{" + ", ".join(f"{n}: {self._ctx.show(f)}" for n, f in own.fields) + "}"
+        return self._ctx.show(own)
+
+    def _differences(self, found: Ty, expected: Ty) -> list[str]:
+        """Components of two records of the same form that differ."""
+        if not isinstance(found, IRec) or not isinstance(expected, IRec):
+            return []
+        if len(found.fields) != len(expected.fields):
+            return [f"{len(expected.fields)} components are expected, here are {len(found.fields)}"]
+        out = []
+        for (n, f), (m, g) in zip(found.fields, expected.fields, strict=True):
+            if n == m and not self._ctx.unifier.attempt(f, g):
+                word = "component" if n.isdigit() else "field"
+                out.append(f"{word} {n} is `{self._ctx.show(f)}`, not `{self._ctx.show(g)}`")
+        return out
+
+    # --- guards
+
+    def guard(self, text: SourceText, fixities: Fixities) -> tuple[core.Exp, ...] | None:
+        """The conjuncts."""
+        tokens = tokenize(text, self._ctx.d)
+        if tokens is None:
+            return None
+        if not tokens:
+            return ()
+        parsed = parse_expressions(text, self._ctx.d)
+        if parsed is None:
+            return None
+        resolved = [resolve_expression(e, fixities, self._ctx.d) for e in parsed]
+        if len(resolved) == 1 and isinstance(resolved[0], s.ListExp):
+            resolved = list(resolved[0].items)
+        with self._scope(self._variables):
+            before = self._ctx.errors
+            drafts = [self._conjunct(e) for e in resolved if e is not None]
+            if len(drafts) != len(resolved):
+                return None
+            return self._finish(before, lambda: tuple(x.build() for x in drafts))
+
+    def _conjunct(self, e: s.Exp) -> Draft:
+        draft = self._expressions.infer(e)
+        if self._ctx.unifier.attempt(draft.type, I_BOOL):
+            return draft
+        shown = self._ctx.show(draft.type)
+        if self._ctx.unifier.attempt(draft.type, i_list(I_BOOL)):
+            self._ctx.error(
+                codes.UNSUPPORTED_INSCRIPTION,
+                "a guard that computes a list of conditions is not supported",
+                e.span,
+                hint="write `List.all (fn b => b) (..)`",
+            )
+        else:
+            self._ctx.error(
+                codes.GUARD_TYPE,
+                f"guard is `{shown}`, but a condition (`bool`) is expected",
+                e.span,
+                label=f"this is `{shown}`",
+            )
+        return draft
+
+    # --- delays and priorities
+
+    def delay(self, text: SourceText, fixities: Fixities) -> core.Exp | None:
+        """The expression after `@+` or `@++`."""
+        tokens = tokenize(text, self._ctx.d)
+        if tokens is None:
+            return None
+        if not tokens or tokens[0].text not in ("@+", "@++"):
+            merged = bool(tokens) and tokens[0].text.startswith("@+")
+            span = text.span(tokens[0].start, tokens[0].end) if tokens else text.span()
+            self._ctx.error(
+                codes.DELAY,
+                "time inscription does not begin with `@+`",
+                span,
+                hint="adjacent symbols are read as one name: put a blank after `@+`"
+                if merged
+                else "write `@+ delay`, e.g. `@+ 5`",
+            )
+            return None
+        time = REAL if self._ctx.real_time else INTINF
+        wanted: Type = time if tokens[0].text == "@++" else TCon("int")
+        parsed = parse_expression(text, self._ctx.d, skip=1)
+        exp = None if parsed is None else resolve_expression(parsed, fixities, self._ctx.d)
+        if exp is None:
+            return None
+        with self._scope(self._variables):
+            before = self._ctx.errors
+            draft = self._expressions.check(exp, from_type(wanted, []), "delay")
+            return self._finish(before, draft.build)
+
+    def priority(self, text: SourceText, fixities: Fixities) -> int | None:
+        """The value."""
+        parsed = parse_expression(text, self._ctx.d)
+        exp = None if parsed is None else resolve_expression(parsed, fixities, self._ctx.d)
+        if exp is None:
+            return None
+        with self._scope(self._ctx.top):
+            before = self._ctx.errors
+            draft = self._expressions.check(exp, I_INT, "priority")
+            built = self._finish(before, draft.build)
+        if built is None:
+            return None
+        value = fold(built, self._constants)
+        if not isinstance(value, int) or value < 0:
+            self._ctx.error(
+                codes.PRIORITY,
+                "priority is below zero"
+                if isinstance(value, int)
+                else "priority is not a constant that can be computed here",
+                exp.span,
+                hint="use a number, or a `val` such as `P_HIGH`; smaller numbers go first",
+            )
+            return None
+        return value
+
+    # --- code segments
+
+    def code_segment(self, text: SourceText, fixities: Fixities) -> TypedCode | None:
+        """Inputs, outputs and action."""
+        parsed = parse_code(text, self._ctx.d)
+        if parsed is None:
+            return None
+        before = self._ctx.errors
+        inputs = self._code_variables(parsed.inputs, "input", fixities)
+        outputs = self._code_variables(parsed.outputs, "output", fixities)
+        if inputs is None or outputs is None:
+            return None
+        if parsed.action is None:
+            exp: s.Exp | None = s.RecordExp((), text.span())
+        else:
+            exp = resolve_expression(parsed.action, fixities, self._ctx.d)
+        if exp is None:
+            return None
+        scope = Scope(self._ctx.top)
+        for symbol in inputs:
+            scope.values[symbol.name] = Binding(
+                symbol.name, from_type(symbol.type, []), symbol=symbol, colset=symbol.colset
+            )
+        with self._scope(scope):
+            wanted = from_type(tuple_of(*(x.type for x in outputs)), []) if outputs else I_UNIT
+            action = self._expressions.check(exp, wanted, "action")
+            return self._finish(before, lambda: TypedCode(inputs, outputs, action.build()))
+
+    def _code_variables(
+        self, pattern: s.Pat | None, word: str, fixities: Fixities
+    ) -> tuple[Symbol, ...] | None:
+        if pattern is None:
+            return ()
+        resolved = resolve_pattern(pattern, fixities, self._ctx.d)
+        if resolved is None:
+            return None
+        parts = [p for _, p in resolved.fields] if isinstance(resolved, s.RecordPat) else [resolved]
+        out: list[Symbol] = []
+        for part in parts:
+            if not isinstance(part, s.NamePat):
+                self._ctx.error(
+                    codes.CODE_SEGMENT,
+                    f"`{word}` lists something that is not a variable",
+                    part.span,
+                )
+                return None
+            entry = self._variables.values.get(part.name)
+            if isinstance(entry, BrokenEntry):
+                self._ctx.tainted = True
+                return None
+            if not isinstance(entry, Binding) or entry.symbol is None:
+                self._ctx.error(
+                    codes.UNBOUND,
+                    f"`{part.name}` is not a variable of the net",
+                    part.span,
+                    hint=f"`{word}` lists variables declared with `var`",
+                )
+                return None
+            if entry.symbol in out:
+                self._ctx.error(codes.DUPLICATE_NAME, f"`{part.name}` is listed twice", part.span)
+                return None
+            out.append(entry.symbol)
+        return tuple(out)
+
+
+def _is_timed_list(t: Type) -> bool:
+    return (
+        isinstance(t, TCon)
+        and t.name == "list"
+        and isinstance(t.args[0], TCon)
+        and t.args[0].name == "timed"
+    )
+
+
+def _is_timed(t: Ty) -> bool:
+    t = prune(t)
+    if isinstance(t, ICon) and t.name == "list":
+        t = prune(t.args[0])
+    return isinstance(t, ICon) and t.name == "timed"
+
+
+__all__ = ["Inscriptions", "TypedCode", "timed_of"]

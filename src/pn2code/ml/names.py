@@ -1,0 +1,181 @@
+"""Uses of names: what the name stands for, at a fresh instance of its type."""
+
+from __future__ import annotations
+
+from pn2code.diagnostics import Span
+from pn2code.ml import codes, core
+from pn2code.ml.builtins import BUILTINS, NIL, OVERLOADED
+from pn2code.ml.colset_members import member_type, members_of
+from pn2code.ml.context import BROKEN, Context, Draft, suggestion
+from pn2code.ml.environment import (
+    Binding,
+    BrokenEntry,
+    BuiltinEntry,
+    ColsetEntry,
+    ConEntry,
+    EmptyEntry,
+    Entry,
+    OverloadedEntry,
+    UnitEntry,
+    UnsupportedEntry,
+    split_name,
+)
+from pn2code.ml.inference import I_UNIT, ICon, IFun, IRec, Ty, from_type, i_list, prune, to_type
+from pn2code.ml.types import UNIT
+
+_STRUCTURE_TYPES = {
+    "Int": "int",
+    "Real": "real",
+    "IntInf": "IntInf.int",
+    "String": "string",
+    "Char": "char",
+}
+
+
+class Names:
+    """Infers uses of names."""
+
+    def __init__(self, ctx: Context) -> None:
+        self._ctx = ctx
+
+    def lookup(self, name: str) -> Entry | None:
+        """What a name means: a value in scope, or a function of a colour set's structure."""
+        *path, last = split_name(name)
+        if path:
+            structure = ".".join(path)
+            if self._ctx.scope.structure(structure) is None or structure in self._ctx.colsets:
+                return self._colset_member(structure, last)
+        return self._ctx.scope.value(name)
+
+    def _colset_member(self, structure: str, member: str) -> Entry | None:
+        if structure not in self._ctx.colsets:
+            if structure.startswith("CS'") or structure.endswith("'timed"):
+                return UnsupportedEntry(f"{structure}.{member}")
+            return None
+        colset = self._ctx.colsets[structure]
+        if colset is None:
+            return BrokenEntry()
+        if member in ("input", "output", "input_ms", "output_ms"):
+            return UnsupportedEntry(f"{structure}.{member}")
+        return ColsetEntry(colset, member) if member in members_of(colset) else None
+
+    def infer(self, name: str, span: Span) -> Draft:
+        """A use of a name."""
+        entry = self.lookup(name)
+        match entry:
+            case None:
+                return self._unbound(name, span)
+            case Binding():
+                return self._variable(entry, span)
+            case BuiltinEntry():
+                info = BUILTINS[entry.name]
+                t, generics = self._ctx.library_type(info.text)
+                own, inst = self._ctx.unifier.instantiate_type(t, generics)
+                return Draft(
+                    own,
+                    lambda: core.Builtin(entry.name, to_type(own), span, tuple(map(to_type, inst))),
+                )
+            case OverloadedEntry():
+                return self._overloaded(entry, span)
+            case ConEntry():
+                return self._constructor(entry, span)
+            case EmptyEntry():
+                t_list = i_list(self._ctx.unifier.fresh())
+                return Draft(t_list, lambda: core.ListExp((), to_type(t_list), span))
+            case UnitEntry():
+                return Draft(I_UNIT, lambda: core.RecordExp((), UNIT, span))
+            case ColsetEntry():
+                member = member_type(entry.colset, entry.member)
+                return Draft(
+                    from_type(member, []),
+                    lambda: core.Builtin(f"Colset.{entry.member}", member, span, (), entry.colset),
+                )
+            case BrokenEntry():
+                self._ctx.tainted = True
+                return BROKEN
+            case UnsupportedEntry():
+                self._ctx.error(
+                    codes.UNSUPPORTED_BUILTIN, f"function `{name}` is not supported", span
+                )
+                return BROKEN
+
+    def _variable(self, binding: Binding, span: Span) -> Draft:
+        if not binding.generalised:
+            # A use inside its own declaration, or of something not polymorphic.
+            def build_same() -> core.Exp:
+                symbol = self._ctx.symbol_of(binding)
+                inst = tuple(to_type(q) for q in binding.quants)
+                return core.Var(symbol, to_type(binding.type), span, inst)
+
+            return Draft(binding.type, build_same)
+        own, inst = self._ctx.unifier.instantiate(binding.type, binding.quants)
+
+        def build() -> core.Exp:
+            symbol = self._ctx.symbol_of(binding)
+            return core.Var(symbol, to_type(own), span, tuple(map(to_type, inst)))
+
+        return Draft(own, build)
+
+    def _overloaded(self, entry: OverloadedEntry, span: Span) -> Draft:
+        by_type = {_STRUCTURE_TYPES[c.split(".")[0]]: c for c in OVERLOADED[entry.name]}
+        operand = self._ctx.unifier.fresh(among=by_type)
+        first, _ = self._ctx.library_type(BUILTINS[entry.choices[0]].text)
+        own = _replace_int(from_type(first, []), operand)
+
+        def build() -> core.Exp:
+            known = prune(operand)
+            chosen = by_type[known.name] if isinstance(known, ICon) else entry.choices[0]
+            return core.Builtin(chosen, to_type(own), span)
+
+        return Draft(own, build)
+
+    def _constructor(self, entry: ConEntry, span: Span) -> Draft:
+        own, _ = self._ctx.unifier.instantiate_type(entry.type, entry.generics)
+        if entry.constructor == NIL:
+            return Draft(own, lambda: core.ListExp((), to_type(own), span))
+        return Draft(own, lambda: core.Con(entry.constructor, to_type(own), span))
+
+    def _unbound(self, name: str, span: Span) -> Draft:
+        hint = ""
+        *path, last = split_name(name)
+        if path:
+            structure = ".".join(path)
+            colset = self._ctx.colsets.get(structure)
+            if colset is not None:
+                hint = suggestion(last, members_of(colset))
+                self._ctx.error(
+                    codes.UNBOUND,
+                    f"colour set `{structure}` has no function `{last}`",
+                    span,
+                    hint=hint or f"it has: {', '.join(sorted(members_of(colset)))}",
+                )
+                return BROKEN
+            hint = suggestion(structure, self._ctx.colsets)
+        elif not name[0].isalpha():
+            hint = _operator_hint(name, self._ctx.scope.names())
+        else:
+            hint = suggestion(name, self._ctx.scope.names())
+            if name in ("nth", "exists", "find", "last", "take", "drop", "tabulate", "partition"):
+                hint = f"it is called `List.{name}`"
+        self._ctx.error(codes.UNBOUND, f"`{name}` is not declared", span, hint=hint)
+        return BROKEN
+
+
+def _replace_int(t: Ty, by: Ty) -> Ty:
+    if isinstance(t, ICon):
+        return by if t.name == "int" else t
+    if isinstance(t, IRec):
+        return IRec(tuple((n, _replace_int(f, by)) for n, f in t.fields))
+    if isinstance(t, IFun):
+        return IFun(_replace_int(t.argument, by), _replace_int(t.result, by))
+    return t
+
+
+def _operator_hint(name: str, known: set[str]) -> str:
+    """For two operators written without a blank between."""
+    known = known | {"=", "*"}
+    for cut in range(len(name) - 1, 0, -1):
+        if name[:cut] in known and name[cut:] in known | {"#", "~"}:
+            tail = "(~..)" if name[cut:] == "~" else f" {name[cut:]}"
+            return f"adjacent symbols are read as one name: write `{name[:cut]}{tail}`"
+    return {"&&": "write `andalso`", "||": "write `orelse`"}.get(name, "")

@@ -1,0 +1,275 @@
+"""Tokens to syntax tree, with lark's LALR parser and the grammar in `grammar.lark`.
+
+`parse_program("val x = 1")` gives a tuple of declarations whose infix operators are still flat (see `fixity`).
+Syntax errors are reported with what was found and, in words, what could stand there.
+"""
+
+from __future__ import annotations
+
+import os
+import tempfile
+from collections.abc import Iterator, Sequence
+from functools import cache
+from importlib.resources import files
+from pathlib import Path
+from typing import Any, cast
+
+from lark import Lark, Token
+from lark.exceptions import UnexpectedToken
+from lark.lexer import Lexer
+
+from pn2code.diagnostics import Diagnostics, SourceText, Span
+from pn2code.ml import codes, syntax
+from pn2code.ml.lexer import Lexeme, insert_delay_parentheses, tokenize
+from pn2code.ml.tree import Group, MlToken, TreeBuilder
+
+_STARTS = ["program", "expression", "expressions", "code"]
+_UNSUPPORTED_WORDS = frozenset(
+    {"ABSTYPE", "FUNCTOR", "SIGNATURE", "SIG", "SHARING", "INCLUDE", "EQTYPE", "WHERE", "SEAL"}
+)
+_OLD_DECLARATIONS = frozenset({"colset", "color", "var", "globref", "pageref", "instref", "use"})
+
+
+class _Feed(Lexer):
+    """Hands tokens that are already there to the parser."""
+
+    def __init__(self, lexer_conf: object) -> None:
+        pass
+
+    def lex(self, data: Any) -> Iterator[Token]:  # type: ignore[override]
+        """The tokens."""
+        yield from data
+
+
+_BUILDER = TreeBuilder()
+
+
+@cache
+def _lark() -> Lark:
+    """The parser. Its tables take some tenths of a second to compute, so they are kept in the user's own cache folder."""
+    grammar = files("pn2code.ml").joinpath("grammar.lark").read_text(encoding="utf-8")
+    folder = _private_cache_folder()
+    if folder is None:
+        return _build(grammar, None)
+    import hashlib
+
+    digest = hashlib.sha256(grammar.encode()).hexdigest()[:16]
+    kept = folder / f"cpnml-{digest}.lark"
+    if kept.exists():
+        return _build(grammar, kept)
+    # Written beside and renamed, so that no other process reads half a file.
+    handle, name = tempfile.mkstemp(dir=folder, prefix="cpnml-", suffix=".tmp")
+    os.close(handle)
+    temporary = Path(name)
+    temporary.unlink()
+    parser = _build(grammar, temporary)
+    if temporary.exists():
+        temporary.replace(kept)
+    return parser
+
+
+def _build(grammar: str, kept: Path | None) -> Lark:
+    return Lark(
+        grammar,
+        parser="lalr",
+        lexer=_Feed,
+        start=_STARTS,
+        keep_all_tokens=True,
+        maybe_placeholders=False,
+        transformer=_BUILDER,
+        cache=str(kept) if kept is not None else False,
+    )
+
+
+def _private_cache_folder() -> Path | None:
+    """A folder that only this user can write to (the cache is a pickle, which must not come from anyone else), or None."""
+    try:
+        base = Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache")
+        folder = base / "pn2code"
+        folder.mkdir(mode=0o700, parents=True, exist_ok=True)
+        status = folder.stat()
+    except (OSError, RuntimeError):
+        return None
+    if not hasattr(os, "getuid") or status.st_uid != os.getuid() or status.st_mode & 0o022:
+        return None
+    return folder if os.access(folder, os.W_OK) else None
+
+
+def parse_program(source: SourceText, d: Diagnostics) -> tuple[syntax.Dec, ...] | None:
+    """Declarations; None when an error was reported."""
+    tokens = tokenize(source, d)
+    if tokens is None or _old_declaration(source, tokens, d):
+        return None
+    tree = _parse(source, tokens, "program", d)
+    return cast(tuple[syntax.Dec, ...], tree.items) if isinstance(tree, Group) else None
+
+
+def parse_expression(
+    source: SourceText, d: Diagnostics, *, output: bool = False, skip: int = 0
+) -> syntax.Exp | None:
+    """One expression.
+
+    Args:
+        source: the text.
+        d: where errors go.
+        output: put everything before the first `@+` in parentheses (rule for output arcs).
+        skip: leave out so many tokens at the beginning.
+    """
+    tokens = tokenize(source, d)
+    if tokens is None:
+        return None
+    hint = ""
+    if output:
+        changed = insert_delay_parentheses(tokens)
+        if len(changed) != len(tokens):
+            hint = "on an output arc CPN Tools puts everything before the first `@+` in parentheses"
+        tokens = changed
+    return cast("syntax.Exp | None", _parse(source, tokens[skip:], "expression", d, hint))
+
+
+def parse_expressions(source: SourceText, d: Diagnostics) -> tuple[syntax.Exp, ...] | None:
+    """One expression or several with commas between."""
+    tokens = tokenize(source, d)
+    if tokens is None:
+        return None
+    tree = _parse(source, tokens, "expressions", d)
+    return cast(tuple[syntax.Exp, ...], tree.items) if isinstance(tree, Group) else None
+
+
+def parse_code(source: SourceText, d: Diagnostics) -> syntax.CodeSegment | None:
+    """A code segment."""
+    tokens = tokenize(source, d, code_segment=True)
+    if tokens is None:
+        return None
+    return cast("syntax.CodeSegment | None", _parse(source, tokens, "code", d))
+
+
+def declared_names(source: SourceText, start: int = 0, end: int | None = None) -> tuple[str, ...]:
+    """Names that a text with syntax errors seems to declare, so that their uses are not reported as well."""
+    tokens = tokenize(source, Diagnostics()) or []
+    out = []
+    for before, token in zip(tokens, tokens[1:], strict=False):
+        inside = token.start >= start and (end is None or token.end <= end)
+        if (
+            inside
+            and before.kind in ("VAL", "FUN", "AND", "EXCEPTION", "REC")
+            and token.kind == "ID"
+        ):
+            out.append(token.text)
+    return tuple(out)
+
+
+def _parse(
+    source: SourceText, tokens: Sequence[Lexeme], start: str, d: Diagnostics, hint: str = ""
+) -> Any:
+    feed = []
+    for t in tokens:
+        token = MlToken(t.kind, t.text, t.start, 0, 0, 0, 0, t.end)
+        token.data = t.value
+        feed.append(token)
+    _BUILDER.source = source
+    try:
+        return _lark().parse(feed, start=start)
+    except UnexpectedToken as problem:
+        _report(source, tokens, problem, d, hint)
+        return None
+
+
+def _old_declaration(source: SourceText, tokens: Sequence[Lexeme], d: Diagnostics) -> bool:
+    for i, token in enumerate(tokens[:-1]):
+        first = i == 0 or tokens[i - 1].kind == "SEMI"
+        if first and token.kind == "ID" and token.text in _OLD_DECLARATIONS:
+            following = tokens[i + 1].kind
+            if following == "ID" or (token.text == "use" and following == "STRING"):
+                d.error(
+                    codes.UNSUPPORTED_ML,
+                    f"a `{token.text}` declaration as plain text is not supported",
+                    source.span(token.start, token.end),
+                    hint="declare it in CPN Tools as a declaration of its own, not inside an ML declaration",
+                )
+                return True
+    return False
+
+
+# --- syntax errors in words --------------------------------------------------------------------
+
+_WORDS = {
+    "ID": "a name", "INT": "a number", "TYVAR": "a type variable", "$END": "the end of the text",
+    "LPAREN": "`(`", "RPAREN": "`)`", "LBRACK": "`[`", "RBRACK": "`]`", "LBRACE": "`{`", "RBRACE": "`}`",
+    "COMMA": "`,`", "SEMI": "`;`", "WILD": "`_`", "DOTS": "`...`", "COLON": "`:`", "BAR": "`|`", "EQ": "`=`",
+    "DARROW": "`=>`", "ARROW": "`->`", "HASH": "`#`", "STAR": "`*`",
+}  # fmt: skip
+_EXP_START = frozenset(
+    "ID INT REAL STRING CHAR LPAREN LBRACK LBRACE HASH OP EQ STAR LET RAISE IF WHILE CASE FN ANDALSO ORELSE COLON"
+    " HANDLE".split()
+)
+_PAT_START = frozenset("ID INT REAL STRING CHAR LPAREN LBRACK LBRACE OP STAR WILD AS COLON".split())
+_TYPE_START = frozenset("ID TYVAR LPAREN LBRACE".split())
+_DEC_START = frozenset(
+    "VAL FUN TYPE DATATYPE EXCEPTION LOCAL OPEN INFIX INFIXR NONFIX STRUCTURE SEMI".split()
+)
+_OPERAND_END = frozenset("ID INT REAL STRING CHAR RPAREN RBRACK RBRACE END WILD TYVAR".split())
+
+
+def _report(
+    source: SourceText,
+    tokens: Sequence[Lexeme],
+    problem: UnexpectedToken,
+    d: Diagnostics,
+    hint: str,
+) -> None:
+    token = problem.token
+    at_end = token.type == "$END"
+    if at_end:
+        end = tokens[-1].end if tokens else 0
+        span = Span(source, end, end)
+        found = "text ends too early" if tokens else "text is empty"
+        previous = tokens[-1] if tokens else None
+    else:
+        span = Span(source, token.start_pos or 0, token.end_pos or 0)
+        if token.type in _UNSUPPORTED_WORDS:
+            d.error(codes.UNSUPPORTED_ML, f"`{token}` is not supported", span)
+            return
+        found = f"unexpected `{token}`" if str(token) else "unexpected `)`"
+        before = [t for t in tokens if t.end <= span.start and t.text]
+        previous = before[-1] if before else None
+    expected = _expected(problem, previous)
+    message = f"{found}, {expected} expected" if expected else found
+    d.error(codes.SYNTAX_ERROR, message, span, hint=hint or _advice(token.type, previous))
+
+
+def _expected(problem: UnexpectedToken, previous: Lexeme | None) -> str:
+    accepts = set(problem.accepts or ())
+    after_operand = (
+        previous is not None
+        and previous.kind in _OPERAND_END
+        and (previous.kind != "ID" or previous.text[0].isalpha())
+    )
+    words: list[str] = []
+    groups = (
+        ("FN", "an expression", _EXP_START),
+        ("WILD", "a pattern", _PAT_START),
+        ("VAL", "a declaration", _DEC_START),
+        ("TYVAR", "a type", _TYPE_START),
+    )
+    for key, word, members in groups:
+        if key in accepts:
+            accepts -= members
+            if not (after_operand and key in ("FN", "WILD")):
+                words.append(word)
+    words += sorted(_WORDS.get(a, f"`{a.lower()}`") for a in accepts)
+    if len(words) > 5:
+        words = [*words[:4], "..."]
+    return " or ".join([", ".join(words[:-1]), words[-1]] if len(words) > 1 else words)
+
+
+def _advice(kind: str, previous: Lexeme | None) -> str:
+    if kind == "WILD":
+        return "`_` stands only in patterns of functions, `case` and `val`; here use a variable"
+    if kind == "EQ" and previous is not None and previous.kind == "FUN":
+        return "a function needs a name and an argument: `fun f x = ..`"
+    if kind == "ELSE":
+        return "`else` belongs to an `if .. then ..` before it"
+    if kind == "$END" and previous is not None and previous.kind == "THEN":
+        return "`if` needs both branches: `if .. then .. else ..`"
+    return ""

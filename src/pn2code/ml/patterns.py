@@ -1,0 +1,236 @@
+"""Patterns: checked against a type, they give variables and a core pattern."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from pn2code.diagnostics import Span
+from pn2code.ml import codes, core
+from pn2code.ml import syntax as s
+from pn2code.ml.annotations import Annotations
+from pn2code.ml.builtins import CONS, LITERAL_TYPES, NIL
+from pn2code.ml.context import Context, PatternBuild, suggestion
+from pn2code.ml.environment import Binding, BrokenEntry, BuiltinEntry, ConEntry, UnitEntry
+from pn2code.ml.inference import (
+    I_CHAR,
+    I_REAL,
+    I_STRING,
+    I_UNIT,
+    IFun,
+    IRec,
+    Ty,
+    i_list,
+    i_record,
+    i_tuple,
+    prune,
+    to_type,
+)
+from pn2code.ml.types import UNIT, TRecord
+
+Bindings = dict[str, Binding]
+
+
+class Patterns:
+    """Checks patterns."""
+
+    def __init__(self, ctx: Context, annotations: Annotations) -> None:
+        self._ctx = ctx
+        self._annotations = annotations
+
+    def check(self, p: s.Pat, t: Ty, bindings: Bindings) -> PatternBuild:
+        """A pattern for values of a type; its variables are added to `bindings`."""
+        match p:
+            case s.WildPat():
+                return lambda: core.PWild(to_type(t), p.span)
+            case s.LitPat():
+                return self._literal(p, t)
+            case s.NamePat():
+                return self._name(p, t, bindings)
+            case s.RecordPat():
+                return self._record(p, t, bindings)
+            case s.ListPat():
+                return self._list(p, t, bindings)
+            case s.ConPat():
+                return self._constructor(p, t, bindings)
+            case s.TypedPat():
+                self._unify(self._annotations.type(p.type), t, p.span)
+                return self.check(p.pattern, t, bindings)
+            case s.AsPat():
+                if p.type is not None:
+                    self._unify(self._annotations.type(p.type), t, p.span)
+                binding = self._bind(p.name.name, p.name.span, t, bindings)
+                inner = self.check(p.pattern, t, bindings)
+                return lambda: core.PAs(self._ctx.symbol_of(binding), inner(), to_type(t), p.span)
+            case s.FlatPat():
+                raise AssertionError("flat pattern after the fixity pass")
+
+    def _unify(self, found: Ty, expected: Ty, span: Span) -> None:
+        self._ctx.unify(found, expected, span, "pattern")
+
+    def _bind(self, name: str, span: Span, t: Ty, bindings: Bindings) -> Binding:
+        if name in bindings:
+            self._ctx.error(
+                codes.DUPLICATE_NAME,
+                f"`{name}` stands twice in one pattern",
+                span,
+                hint="use two names and compare them",
+            )
+        binding = Binding(name, t)
+        bindings[name] = binding
+        return binding
+
+    def _literal(self, p: s.LitPat, t: Ty) -> PatternBuild:
+        kinds: dict[s.LitKind, Ty] = {
+            s.LitKind.REAL: I_REAL,
+            s.LitKind.STRING: I_STRING,
+            s.LitKind.CHAR: I_CHAR,
+        }
+        own = kinds.get(p.kind)
+        if own is None:
+            own = self._ctx.unifier.fresh(among=[c.name for c in LITERAL_TYPES])
+        self._unify(own, t, p.span)
+        return lambda: core.PLit(p.value, to_type(t), p.span)
+
+    def _name(self, p: s.NamePat, t: Ty, bindings: Bindings) -> PatternBuild:
+        entry = self._ctx.scope.value(p.name)
+        if isinstance(entry, ConEntry):
+            return self._constant(p, entry, t)
+        if isinstance(entry, UnitEntry):
+            self._unify(I_UNIT, t, p.span)
+            return lambda: core.PRecord((), UNIT, p.span)
+        if "." in p.name and p.name[0].isalpha():
+            self._unknown(p)
+            return lambda: core.PWild(to_type(t), p.span)
+        binding = self._bind(p.name, p.span, t, bindings)
+        return lambda: core.PVar(self._ctx.symbol_of(binding), to_type(t), p.span)
+
+    def _unknown(self, p: s.NamePat) -> None:
+        entry = self._ctx.scope.value(p.name)
+        if isinstance(entry, BrokenEntry):
+            self._ctx.tainted = True
+            return
+        if isinstance(entry, BuiltinEntry) and entry.name == "Ref.ref":
+            self._ctx.error(codes.UNSUPPORTED_ML, "`ref` in a pattern is not supported", p.span,
+                            hint="use a variable, and `!` to read it")  # fmt: skip
+            return
+        constructors = [
+            n for n in self._ctx.scope.names() if isinstance(self._ctx.scope.value(n), ConEntry)
+        ]
+        self._ctx.error(
+            codes.UNKNOWN_CONSTRUCTOR,
+            f"`{p.name}` is not a constructor",
+            p.span,
+            hint=suggestion(p.name, constructors),
+        )
+
+    def _constant(self, p: s.NamePat, entry: ConEntry, t: Ty) -> PatternBuild:
+        if entry.constructor.has_argument:
+            self._ctx.error(
+                codes.CONSTRUCTOR_ARITY,
+                f"constructor `{p.name}` needs an argument",
+                p.span,
+                hint=f"write `{p.name} _` for any argument",
+            )
+            return lambda: core.PWild(to_type(t), p.span)
+        own, _ = self._ctx.unifier.instantiate_type(entry.type, entry.generics)
+        self._unify(own, t, p.span)
+        return lambda: core.PCon(entry.constructor, None, to_type(t), p.span)
+
+    def _constructor(self, p: s.ConPat, t: Ty, bindings: Bindings) -> PatternBuild:
+        name = p.constructor
+        entry = self._ctx.scope.value(name.name)
+        if not isinstance(entry, ConEntry):
+            self._unknown(name)
+            self.check(p.argument, self._ctx.unifier.fresh(), bindings)
+            return lambda: core.PWild(to_type(t), p.span)
+        own, _ = self._ctx.unifier.instantiate_type(entry.type, entry.generics)
+        if not isinstance(own, IFun):
+            self._ctx.error(
+                codes.CONSTRUCTOR_ARITY, f"constructor `{name.name}` takes no argument", name.span
+            )
+            self.check(p.argument, self._ctx.unifier.fresh(), bindings)
+            return lambda: core.PWild(to_type(t), p.span)
+        self._unify(own.result, t, p.span)
+        argument = self.check(p.argument, own.argument, bindings)
+        return lambda: core.PCon(entry.constructor, argument(), to_type(t), p.span)
+
+    def _record(self, p: s.RecordPat, t: Ty, bindings: Bindings) -> PatternBuild:
+        fields: dict[str, Ty] = {}
+        for label, part in p.fields:
+            if label in fields:
+                self._ctx.error(codes.DUPLICATE_NAME, f"field `{label}` is given twice", part.span)
+            fields[label] = self._ctx.unifier.fresh()
+        if p.open:
+            row = self._ctx.unifier.fresh_record(fields)
+            self._ctx.open_records.append((row, p.span))
+            self._unify(row, t, p.span)
+        else:
+            known = prune(t)
+            if not isinstance(known, IRec) or {n for n, _ in known.fields} != set(fields):
+                self._unify(i_record(fields), t, p.span)
+            else:
+                fields = dict(known.fields)
+        inner = {label: self.check(part, fields[label], bindings) for label, part in p.fields}
+
+        def build() -> core.Pat:
+            full = to_type(t)
+            assert isinstance(full, TRecord)
+            parts = tuple(
+                (n, inner[n]() if n in inner else core.PWild(f, p.span)) for n, f in full.fields
+            )
+            return core.PRecord(parts, full, p.span)
+
+        return build
+
+    def _list(self, p: s.ListPat, t: Ty, bindings: Bindings) -> PatternBuild:
+        item = self._ctx.unifier.fresh()
+        self._unify(i_list(item), t, p.span)
+        items = [self.check(x, item, bindings) for x in p.items]
+
+        def build() -> core.Pat:
+            full = to_type(t)
+            pair = to_type(i_tuple(item, t))
+            out: core.Pat = core.PCon(NIL, None, full, p.span)
+            for part in reversed(items):
+                cell = core.PRecord((("1", part()), ("2", out)), pair, p.span)
+                out = core.PCon(CONS, cell, full, p.span)
+            return out
+
+        return build
+
+
+def is_irrefutable(p: s.Pat, ctx: Context) -> bool:
+    """Whether a pattern matches every value of its type (by its form: variables and records of them)."""
+    match p:
+        case s.WildPat():
+            return True
+        case s.NamePat():
+            return not isinstance(ctx.scope.value(p.name), ConEntry)
+        case s.RecordPat():
+            return all(is_irrefutable(x, ctx) for _, x in p.fields)
+        case s.TypedPat() | s.AsPat():
+            return is_irrefutable(p.pattern, ctx)
+        case _:
+            return False
+
+
+def pattern_names(patterns: Sequence[s.Pat]) -> set[str]:
+    """All names that patterns may bind, for the case that the declaration has an error."""
+    out: set[str] = set()
+    for p in patterns:
+        match p:
+            case s.NamePat():
+                out.add(p.name)
+            case s.RecordPat():
+                out |= pattern_names([x for _, x in p.fields])
+            case s.ListPat():
+                out |= pattern_names(p.items)
+            case s.ConPat():
+                out |= pattern_names([p.argument])
+            case s.TypedPat():
+                out |= pattern_names([p.pattern])
+            case s.AsPat():
+                out |= {p.name.name} | pattern_names([p.pattern])
+            case _:
+                pass
+    return out

@@ -1,0 +1,547 @@
+"""Syntax tree of CPN ML, as parsed; every node has the `Span` of its text.
+
+The parser leaves infix operators in flat sequences (`FlatExp`, `FlatPat`, `FlatClause`), because users may declare new ones; the
+fixity pass (`fixity`) turns these into applications. After that pass no `Flat...` node is left. Example: `1`x ++ y` is parsed as
+`FlatExp(IntExp 1, NameExp "`", NameExp x, NameExp ++, NameExp y)` and resolved to
+`InfixExp(++, InfixExp(`, 1, x), y)`.
+
+Tuples are records with the labels 1, 2, ...; `()` is the record without fields.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from enum import Enum
+
+from pn2code.diagnostics import Span
+
+# --- types -------------------------------------------------------------------------------------
+
+
+@dataclass(frozen=True, slots=True)
+class VarTy:
+    """`'a`; the name includes the quotes."""
+
+    name: str
+    span: Span
+
+
+@dataclass(frozen=True, slots=True)
+class NameTy:
+    """`int`, `INT`, `'a list`, `(int, string) pair`."""
+
+    name: str
+    args: tuple[Ty, ...]
+    span: Span
+
+
+@dataclass(frozen=True, slots=True)
+class RecordTy:
+    """`{a: int}`, `int * string`."""
+
+    fields: tuple[tuple[str, Ty], ...]
+    span: Span
+
+
+@dataclass(frozen=True, slots=True)
+class FunTy:
+    """`a -> b`."""
+
+    argument: Ty
+    result: Ty
+    span: Span
+
+
+Ty = VarTy | NameTy | RecordTy | FunTy
+
+# --- expressions -------------------------------------------------------------------------------
+
+
+class LitKind(Enum):
+    """Kinds of literals."""
+
+    INT = "int"
+    REAL = "real"
+    STRING = "string"
+    CHAR = "char"
+
+
+@dataclass(frozen=True, slots=True)
+class LitExp:
+    """A literal."""
+
+    kind: LitKind
+    value: int | float | str
+    span: Span
+
+
+@dataclass(frozen=True, slots=True)
+class NameExp:
+    """An identifier, perhaps qualified (`List.map`); `op` if written with it."""
+
+    name: str
+    op: bool
+    span: Span
+
+
+@dataclass(frozen=True, slots=True)
+class RecordExp:
+    """`{a = e, ...}`, `(e1, e2)`, `()`."""
+
+    fields: tuple[tuple[str, Exp], ...]
+    span: Span
+
+
+@dataclass(frozen=True, slots=True)
+class SelectorExp:
+    """`#label`."""
+
+    label: str
+    span: Span
+
+
+@dataclass(frozen=True, slots=True)
+class ListExp:
+    """`[e1, ..., en]`."""
+
+    items: tuple[Exp, ...]
+    span: Span
+
+
+@dataclass(frozen=True, slots=True)
+class SequenceExp:
+    """`(e1; ...; en)`, n >= 2."""
+
+    items: tuple[Exp, ...]
+    span: Span
+
+
+@dataclass(frozen=True, slots=True)
+class LetExp:
+    """`let decs in e end`."""
+
+    declarations: tuple[Dec, ...]
+    body: Exp
+    span: Span
+
+
+@dataclass(frozen=True, slots=True)
+class ApplyExp:
+    """`f x`."""
+
+    function: Exp
+    argument: Exp
+    span: Span
+
+
+@dataclass(frozen=True, slots=True)
+class InfixExp:
+    """`a op b`."""
+
+    operator: NameExp
+    left: Exp
+    right: Exp
+    span: Span
+
+
+@dataclass(frozen=True, slots=True)
+class LogicExp:
+    """`a andalso b` (conjunction) or `a orelse b`."""
+
+    conjunction: bool
+    left: Exp
+    right: Exp
+    span: Span
+
+
+@dataclass(frozen=True, slots=True)
+class TypedExp:
+    """`e : ty`."""
+
+    exp: Exp
+    type: Ty
+    span: Span
+
+
+@dataclass(frozen=True, slots=True)
+class HandleExp:
+    """`e handle rules`."""
+
+    exp: Exp
+    rules: tuple[Rule, ...]
+    span: Span
+
+
+@dataclass(frozen=True, slots=True)
+class RaiseExp:
+    """`raise e`."""
+
+    exp: Exp
+    span: Span
+
+
+@dataclass(frozen=True, slots=True)
+class IfExp:
+    """`if c then a else b`."""
+
+    condition: Exp
+    then: Exp
+    otherwise: Exp
+    span: Span
+
+
+@dataclass(frozen=True, slots=True)
+class WhileExp:
+    """`while c do e`."""
+
+    condition: Exp
+    body: Exp
+    span: Span
+
+
+@dataclass(frozen=True, slots=True)
+class CaseExp:
+    """`case e of rules`."""
+
+    exp: Exp
+    rules: tuple[Rule, ...]
+    span: Span
+
+
+@dataclass(frozen=True, slots=True)
+class FnExp:
+    """`fn rules`."""
+
+    rules: tuple[Rule, ...]
+    span: Span
+
+
+@dataclass(frozen=True, slots=True)
+class Rule:
+    """`pat => exp`."""
+
+    pattern: Pat
+    body: Exp
+    span: Span
+
+
+@dataclass(frozen=True, slots=True)
+class Keyword:
+    """`andalso`, `orelse` or `as` inside a flat sequence."""
+
+    word: str
+    span: Span
+
+
+@dataclass(frozen=True, slots=True)
+class Constraint:
+    """`: ty` inside a flat sequence."""
+
+    type: Ty
+    span: Span
+
+
+@dataclass(frozen=True, slots=True)
+class Handler:
+    """`handle rules` inside a flat sequence."""
+
+    rules: tuple[Rule, ...]
+    span: Span
+
+
+@dataclass(frozen=True, slots=True)
+class FlatExp:
+    """Operands, operators and suffixes in the order written; gone after the fixity pass."""
+
+    items: tuple[Exp | Keyword | Constraint | Handler, ...]
+    span: Span
+
+
+Exp = (
+    LitExp | NameExp | RecordExp | SelectorExp | ListExp | SequenceExp | LetExp | ApplyExp | InfixExp | LogicExp
+    | TypedExp | HandleExp | RaiseExp | IfExp | WhileExp | CaseExp | FnExp | FlatExp
+)  # fmt: skip
+
+# --- patterns ----------------------------------------------------------------------------------
+
+
+@dataclass(frozen=True, slots=True)
+class WildPat:
+    """`_`."""
+
+    span: Span
+
+
+@dataclass(frozen=True, slots=True)
+class LitPat:
+    """A literal."""
+
+    kind: LitKind
+    value: int | float | str
+    span: Span
+
+
+@dataclass(frozen=True, slots=True)
+class NamePat:
+    """A variable or a constant constructor."""
+
+    name: str
+    op: bool
+    span: Span
+
+
+@dataclass(frozen=True, slots=True)
+class RecordPat:
+    """`{a = p, b, ...}`, `(p, q)`, `()`; `open` if written with dots."""
+
+    fields: tuple[tuple[str, Pat], ...]
+    open: bool
+    span: Span
+
+
+@dataclass(frozen=True, slots=True)
+class ListPat:
+    """`[p1, ..., pn]`."""
+
+    items: tuple[Pat, ...]
+    span: Span
+
+
+@dataclass(frozen=True, slots=True)
+class ConPat:
+    """A constructor applied to a pattern (`SOME p`, `p :: q`)."""
+
+    constructor: NamePat
+    argument: Pat
+    span: Span
+
+
+@dataclass(frozen=True, slots=True)
+class TypedPat:
+    """`p : ty`."""
+
+    pattern: Pat
+    type: Ty
+    span: Span
+
+
+@dataclass(frozen=True, slots=True)
+class AsPat:
+    """`x as p`."""
+
+    name: NamePat
+    type: Ty | None
+    pattern: Pat
+    span: Span
+
+
+@dataclass(frozen=True, slots=True)
+class FlatPat:
+    """As `FlatExp`."""
+
+    items: tuple[Pat | Keyword | Constraint, ...]
+    span: Span
+
+
+Pat = (
+    WildPat | LitPat | NamePat | RecordPat | ListPat | ConPat | TypedPat | AsPat | FlatPat
+)  # fmt: skip
+
+# --- declarations ------------------------------------------------------------------------------
+
+
+@dataclass(frozen=True, slots=True)
+class ValBinding:
+    """`p = e` of a `val`."""
+
+    pattern: Pat
+    value: Exp
+    recursive: bool
+    span: Span
+
+
+@dataclass(frozen=True, slots=True)
+class ValDec:
+    """`val p = e and ...`."""
+
+    bindings: tuple[ValBinding, ...]
+    span: Span
+
+
+@dataclass(frozen=True, slots=True)
+class FlatClause:
+    """`f p1 .. pn : ty = e` with the left side as a flat pattern; gone after the fixity pass."""
+
+    left: Pat
+    body: Exp
+    span: Span
+
+
+@dataclass(frozen=True, slots=True)
+class Clause:
+    """One clause of a function."""
+
+    patterns: tuple[Pat, ...]
+    result: Ty | None
+    body: Exp
+    span: Span
+
+
+@dataclass(frozen=True, slots=True)
+class FunBinding:
+    """All clauses of one function."""
+
+    name: str
+    clauses: tuple[Clause, ...]
+    name_span: Span
+    span: Span
+
+
+@dataclass(frozen=True, slots=True)
+class FlatFunBinding:
+    """As `FunBinding`, before the fixity pass."""
+
+    clauses: tuple[FlatClause, ...]
+    span: Span
+
+
+@dataclass(frozen=True, slots=True)
+class FunDec:
+    """`fun ... and ...`."""
+
+    bindings: tuple[FunBinding | FlatFunBinding, ...]
+    span: Span
+
+
+@dataclass(frozen=True, slots=True)
+class TypeBinding:
+    """`('a, 'b) name = ty`."""
+
+    parameters: tuple[str, ...]
+    name: str
+    type: Ty
+    span: Span
+
+
+@dataclass(frozen=True, slots=True)
+class TypeDec:
+    """`type ... and ...`."""
+
+    bindings: tuple[TypeBinding, ...]
+    span: Span
+
+
+@dataclass(frozen=True, slots=True)
+class ConBinding:
+    """`Name of ty`."""
+
+    name: str
+    argument: Ty | None
+    span: Span
+
+
+@dataclass(frozen=True, slots=True)
+class DatatypeBinding:
+    """`'a name = A | B of ty`."""
+
+    parameters: tuple[str, ...]
+    name: str
+    constructors: tuple[ConBinding, ...]
+    span: Span
+
+
+@dataclass(frozen=True, slots=True)
+class DatatypeDec:
+    """`datatype ... and ... withtype ...`."""
+
+    bindings: tuple[DatatypeBinding, ...]
+    withtypes: tuple[TypeBinding, ...]
+    span: Span
+
+
+@dataclass(frozen=True, slots=True)
+class DatatypeCopyDec:
+    """`datatype t = datatype u`."""
+
+    name: str
+    original: str
+    span: Span
+
+
+@dataclass(frozen=True, slots=True)
+class ExceptionBinding:
+    """`E`, `E of ty` or `E = F`."""
+
+    name: str
+    argument: Ty | None
+    original: str | None
+    span: Span
+
+
+@dataclass(frozen=True, slots=True)
+class ExceptionDec:
+    """`exception ... and ...`."""
+
+    bindings: tuple[ExceptionBinding, ...]
+    span: Span
+
+
+@dataclass(frozen=True, slots=True)
+class LocalDec:
+    """`local decs in decs end`."""
+
+    hidden: tuple[Dec, ...]
+    visible: tuple[Dec, ...]
+    span: Span
+
+
+@dataclass(frozen=True, slots=True)
+class OpenDec:
+    """`open S T`."""
+
+    names: tuple[str, ...]
+    span: Span
+
+
+@dataclass(frozen=True, slots=True)
+class InfixDec:
+    """`infix 5 ++ --`, `infixr`, `nonfix` (kind "left", "right", "nonfix")."""
+
+    kind: str
+    precedence: int
+    names: tuple[str, ...]
+    span: Span
+
+
+@dataclass(frozen=True, slots=True)
+class StructureDec:
+    """`structure S = struct decs end`, or `structure S = T` (`alias`)."""
+
+    name: str
+    declarations: tuple[Dec, ...]
+    alias: str | None
+    span: Span
+
+
+@dataclass(frozen=True, slots=True)
+class ExpDec:
+    """An expression at top level: `val it = e`."""
+
+    exp: Exp
+    span: Span
+
+
+Dec = (
+    ValDec | FunDec | TypeDec | DatatypeDec | DatatypeCopyDec | ExceptionDec | LocalDec | OpenDec | InfixDec
+    | StructureDec | ExpDec
+)  # fmt: skip
+
+
+@dataclass(frozen=True, slots=True)
+class CodeSegment:
+    """`input pat; output pat; action exp;`."""
+
+    inputs: Pat | None
+    outputs: Pat | None
+    action: Exp | None
+    span: Span

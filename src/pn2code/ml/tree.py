@@ -1,0 +1,366 @@
+"""Builds the syntax tree from the parser's reductions (one method a grammar rule)."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+from lark import Token, Transformer
+
+from pn2code.diagnostics import NOWHERE, SourceText, Span
+from pn2code.ml import syntax as s
+
+
+class MlToken(Token):
+    """A lark token with the value of a literal."""
+
+    __slots__ = ("data",)
+    data: int | float | str | None
+
+
+@dataclass(frozen=True, slots=True)
+class Group:
+    """Several nodes and the text they cover."""
+
+    items: tuple[Any, ...]
+    span: Span
+
+
+@dataclass(frozen=True, slots=True)
+class Dots:
+    """`...` in a record pattern."""
+
+    span: Span
+
+
+_LITERALS = {
+    "INT": s.LitKind.INT,
+    "REAL": s.LitKind.REAL,
+    "STRING": s.LitKind.STRING,
+    "CHAR": s.LitKind.CHAR,
+}
+
+Children = list[Any]
+
+
+class TreeBuilder(Transformer[Any, Any]):
+    """Embedded in the parser; `source` is set before each parse."""
+
+    source: SourceText = SourceText("", NOWHERE)
+
+    # --- helpers
+
+    def _of(self, child: Any) -> Span:
+        if isinstance(child, Token):
+            return Span(self.source, child.start_pos or 0, child.end_pos or 0)
+        span: Span = child.span
+        return span
+
+    def _span(self, children: Children) -> Span:
+        if not children:
+            return Span(self.source, 0, 0)
+        return self._of(children[0]).to(self._of(children[-1]))
+
+    @staticmethod
+    def _nodes(children: Iterable[Any]) -> tuple[Any, ...]:
+        return tuple(c for c in children if not isinstance(c, Token))
+
+    @staticmethod
+    def _texts(children: Iterable[Any], *kinds: str) -> tuple[str, ...]:
+        return tuple(str(c) for c in children if isinstance(c, Token) and c.type in kinds)
+
+    def _group(self, children: Children) -> Group:
+        return Group(self._nodes(children), self._span(children))
+
+    program = decs = match = _group
+
+    # --- starts
+
+    def expression(self, children: Children) -> s.Exp:
+        exp: s.Exp = children[0]
+        return exp
+
+    def expressions(self, children: Children) -> Group:
+        return self._group(children)
+
+    def code(self, children: Children) -> s.CodeSegment:
+        parts: dict[str, Any] = dict(children)
+        return s.CodeSegment(
+            parts.get("input"), parts.get("output"), parts.get("action"), self.source.span()
+        )
+
+    def code_input(self, children: Children) -> tuple[str, Any]:
+        return "input", children[1]
+
+    def code_output(self, children: Children) -> tuple[str, Any]:
+        return "output", children[1]
+
+    def code_action(self, children: Children) -> tuple[str, Any]:
+        nodes = self._nodes(children)
+        return "action", nodes[0] if nodes else None
+
+    # --- expressions
+
+    def exp(self, children: Children) -> s.Exp:
+        if len(children) == 1 and not isinstance(
+            children[0], s.Keyword | s.Constraint | s.Handler | s.NameExp
+        ):
+            exp: s.Exp = children[0]
+            return exp
+        return s.FlatExp(tuple(children), self._span(children))
+
+    def name_exp(self, children: Children) -> s.NameExp:
+        return s.NameExp(str(children[-1]), len(children) > 1, self._span(children))
+
+    def literal(self, children: Children) -> s.LitExp:
+        token: MlToken = children[0]
+        assert token.data is not None
+        return s.LitExp(_LITERALS[token.type], token.data, self._of(token))
+
+    def unit_exp(self, children: Children) -> s.RecordExp:
+        return s.RecordExp((), self._span(children))
+
+    def paren(self, children: Children) -> Any:
+        return children[1]
+
+    def paren_exp(self, children: Children) -> s.FlatExp:
+        """Kept as a sequence of one, which tells `(fn ..) x` from `fn .. x`; the fixity pass unpacks it."""
+        return s.FlatExp((children[1],), self._span(children))
+
+    def tuple_exp(self, children: Children) -> s.RecordExp:
+        return s.RecordExp(_number(self._nodes(children)), self._span(children))
+
+    def sequence_exp(self, children: Children) -> s.SequenceExp:
+        return s.SequenceExp(self._nodes(children), self._span(children))
+
+    def list_exp(self, children: Children) -> s.ListExp:
+        return s.ListExp(self._nodes(children), self._span(children))
+
+    def record_exp(self, children: Children) -> s.RecordExp:
+        fields = tuple((g.items[0], g.items[1]) for g in self._nodes(children))
+        return s.RecordExp(fields, self._span(children))
+
+    def field(self, children: Children) -> Group:
+        return Group((children[0].items[0], children[2]), self._span(children))
+
+    def label(self, children: Children) -> Group:
+        return Group((str(children[0]),), self._span(children))
+
+    def selector(self, children: Children) -> s.SelectorExp:
+        return s.SelectorExp(children[1].items[0], self._span(children))
+
+    def let_exp(self, children: Children) -> s.LetExp:
+        declarations, *bodies = self._nodes(children)
+        body = (
+            bodies[0]
+            if len(bodies) == 1
+            else s.SequenceExp(tuple(bodies), bodies[0].span.to(bodies[-1].span))
+        )
+        return s.LetExp(declarations.items, body, self._span(children))
+
+    def keyword(self, children: Children) -> s.Keyword:
+        return s.Keyword(str(children[0]), self._span(children))
+
+    def constraint(self, children: Children) -> s.Constraint:
+        return s.Constraint(children[1], self._span(children))
+
+    def handler(self, children: Children) -> s.Handler:
+        return s.Handler(children[1].items, self._span(children))
+
+    def raise_exp(self, children: Children) -> s.RaiseExp:
+        return s.RaiseExp(children[1], self._span(children))
+
+    def if_exp(self, children: Children) -> s.IfExp:
+        return s.IfExp(children[1], children[3], children[5], self._span(children))
+
+    def while_exp(self, children: Children) -> s.WhileExp:
+        return s.WhileExp(children[1], children[3], self._span(children))
+
+    def case_exp(self, children: Children) -> s.CaseExp:
+        return s.CaseExp(children[1], children[3].items, self._span(children))
+
+    def fn_exp(self, children: Children) -> s.FnExp:
+        return s.FnExp(children[1].items, self._span(children))
+
+    def rule(self, children: Children) -> s.Rule:
+        return s.Rule(children[0], children[2], self._span(children))
+
+    # --- patterns
+
+    def pat(self, children: Children) -> s.Pat:
+        if len(children) == 1 and not isinstance(children[0], s.Keyword | s.Constraint | s.NamePat):
+            pattern: s.Pat = children[0]
+            return pattern
+        return s.FlatPat(tuple(children), self._span(children))
+
+    def name_pat(self, children: Children) -> s.NamePat:
+        return s.NamePat(str(children[-1]), len(children) > 1, self._span(children))
+
+    def literal_pat(self, children: Children) -> s.LitPat:
+        token: MlToken = children[0]
+        assert token.data is not None
+        return s.LitPat(_LITERALS[token.type], token.data, self._of(token))
+
+    def wild_pat(self, children: Children) -> s.WildPat:
+        return s.WildPat(self._span(children))
+
+    def unit_pat(self, children: Children) -> s.RecordPat:
+        return s.RecordPat((), False, self._span(children))
+
+    def tuple_pat(self, children: Children) -> s.RecordPat:
+        return s.RecordPat(_number(self._nodes(children)), False, self._span(children))
+
+    def list_pat(self, children: Children) -> s.ListPat:
+        return s.ListPat(self._nodes(children), self._span(children))
+
+    def record_pat(self, children: Children) -> s.RecordPat:
+        parts = self._nodes(children)
+        fields = tuple((p.items[0], p.items[1]) for p in parts if isinstance(p, Group))
+        return s.RecordPat(fields, any(isinstance(p, Dots) for p in parts), self._span(children))
+
+    def pfield(self, children: Children) -> Group:
+        return Group((children[0].items[0], children[2]), self._span(children))
+
+    def pfield_pun(self, children: Children) -> Group:
+        """`a`, `a : ty`, `a as p`: the variable is the label."""
+        pattern: s.Pat = children[0]
+        first = pattern.items[0] if isinstance(pattern, s.FlatPat) else pattern
+        label = first.name if isinstance(first, s.NamePat) else ""
+        return Group((label, pattern), self._span(children))
+
+    def pfield_dots(self, children: Children) -> Dots:
+        return Dots(self._span(children))
+
+    # --- types
+
+    def fun_ty(self, children: Children) -> s.FunTy:
+        return s.FunTy(children[0], children[2], self._span(children))
+
+    def product_ty(self, children: Children) -> s.RecordTy:
+        return s.RecordTy(_number(self._nodes(children)), self._span(children))
+
+    def var_ty(self, children: Children) -> s.VarTy:
+        return s.VarTy(str(children[0]), self._span(children))
+
+    def name_ty(self, children: Children) -> s.NameTy:
+        return s.NameTy(str(children[-1]), self._nodes(children), self._span(children))
+
+    def record_ty(self, children: Children) -> s.RecordTy:
+        fields = tuple((g.items[0], g.items[1]) for g in self._nodes(children))
+        return s.RecordTy(fields, self._span(children))
+
+    def tyfield(self, children: Children) -> Group:
+        return Group((children[0].items[0], children[2]), self._span(children))
+
+    def tyvars(self, children: Children) -> Group:
+        return Group(self._texts(children, "TYVAR"), self._span(children))
+
+    # --- declarations
+
+    def exp_dec(self, children: Children) -> s.ExpDec:
+        return s.ExpDec(children[0], self._span(children))
+
+    def _only(self, children: Children, kind: type) -> tuple[Any, ...]:
+        return tuple(c for c in children if isinstance(c, kind))
+
+    def val_dec(self, children: Children) -> s.ValDec:
+        bindings = []
+        recursive = False
+        for binding in self._only(children, s.ValBinding):
+            recursive = recursive or binding.recursive  # `rec` counts for all that follow
+            bindings.append(s.ValBinding(binding.pattern, binding.value, recursive, binding.span))
+        return s.ValDec(tuple(bindings), self._span(children))
+
+    def valbind(self, children: Children) -> s.ValBinding:
+        pattern, value = self._nodes(children)
+        return s.ValBinding(
+            pattern, value, bool(self._texts(children, "REC")), self._span(children)
+        )
+
+    def fun_dec(self, children: Children) -> s.FunDec:
+        return s.FunDec(self._only(children, s.FlatFunBinding), self._span(children))
+
+    def funbind(self, children: Children) -> s.FlatFunBinding:
+        return s.FlatFunBinding(self._nodes(children), self._span(children))
+
+    def clause(self, children: Children) -> s.FlatClause:
+        return s.FlatClause(children[0], children[2], self._span(children))
+
+    def type_dec(self, children: Children) -> s.TypeDec:
+        return s.TypeDec(self._nodes(children), self._span(children))
+
+    def tybind(self, children: Children) -> s.TypeBinding:
+        parameters = children[0].items if isinstance(children[0], Group) else ()
+        (name,) = self._texts(children, "ID")
+        return s.TypeBinding(parameters, name, children[-1], self._span(children))
+
+    def datatype_dec(self, children: Children) -> s.DatatypeDec:
+        withtypes = self._only(children, Group)
+        return s.DatatypeDec(
+            self._only(children, s.DatatypeBinding),
+            withtypes[0].items if withtypes else (),
+            self._span(children),
+        )
+
+    def withtypes(self, children: Children) -> Group:
+        return self._group(children)
+
+    def datbind(self, children: Children) -> s.DatatypeBinding:
+        parameters = children[0].items if isinstance(children[0], Group) else ()
+        (name,) = self._texts(children, "ID")
+        constructors = self._only(children, s.ConBinding)
+        return s.DatatypeBinding(parameters, name, constructors, self._span(children))
+
+    def conbind(self, children: Children) -> s.ConBinding:
+        types = self._nodes(children)
+        (name,) = self._texts(children, "ID")
+        return s.ConBinding(name, types[0] if types else None, self._span(children))
+
+    def datatype_copy(self, children: Children) -> s.DatatypeCopyDec:
+        name, original = self._texts(children, "ID")
+        return s.DatatypeCopyDec(name, original, self._span(children))
+
+    def exception_dec(self, children: Children) -> s.ExceptionDec:
+        return s.ExceptionDec(self._nodes(children), self._span(children))
+
+    def exbind(self, children: Children) -> s.ExceptionBinding:
+        types = self._nodes(children)
+        (name,) = self._texts(children, "ID")
+        return s.ExceptionBinding(name, types[0] if types else None, None, self._span(children))
+
+    def exbind_copy(self, children: Children) -> s.ExceptionBinding:
+        name, original = self._texts(children, "ID")
+        return s.ExceptionBinding(name, None, original, self._span(children))
+
+    def local_dec(self, children: Children) -> s.LocalDec:
+        hidden, visible = self._nodes(children)
+        return s.LocalDec(hidden.items, visible.items, self._span(children))
+
+    def open_dec(self, children: Children) -> s.OpenDec:
+        return s.OpenDec(self._texts(children, "ID"), self._span(children))
+
+    def infix_dec(self, children: Children) -> s.InfixDec:
+        kind = {"INFIX": "left", "INFIXR": "right", "NONFIX": "nonfix"}[children[0].type]
+        digits = self._texts(children, "INT")
+        names = tuple(str(g.items[0]) for g in self._only(children, Group))
+        return s.InfixDec(kind, int(digits[0]) if digits else 0, names, self._span(children))
+
+    def opname(self, children: Children) -> Group:
+        return Group((str(children[0]),), self._span(children))
+
+    def structure_dec(self, children: Children) -> s.StructureDec:
+        (name,) = self._texts(children, "ID")
+        (declarations,) = self._only(children, Group)
+        return s.StructureDec(name, declarations.items, None, self._span(children))
+
+    def structure_alias(self, children: Children) -> s.StructureDec:
+        name, alias = self._texts(children, "ID")
+        return s.StructureDec(name, (), alias, self._span(children))
+
+
+def _number(items: Sequence[Any]) -> tuple[tuple[str, Any], ...]:
+    return tuple((str(i), item) for i, item in enumerate(items, 1))
+
+
+Builder = Callable[[Children], Any]
