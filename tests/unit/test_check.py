@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from textwrap import dedent, indent
 
 import pytest
 
@@ -50,8 +51,7 @@ BASE = """
 
 
 def net(body: str) -> str:
-    lines = "\n".join("      " + line for line in body.strip("\n").split("\n"))
-    return "net N" + BASE + lines
+    return "net N" + BASE + indent(dedent(body).strip("\n"), " " * 6)
 
 
 def run(body: str, values: Mapping[str, str] | None = None) -> tuple[TypedNet | None, Diagnostics]:

@@ -157,7 +157,7 @@ class Planner:
                 steps.append(BindRandom(s))
             else:
                 missing.append(s)
-        for s in missing:
+        for s in _roots(missing, binders, equations, bound):
             self.report(parts, s, free[s])
         return None if missing else tuple(steps)
 
@@ -239,6 +239,24 @@ class Planner:
             hint=f"put `{s.name}` on an input arc as a pattern, or add a guard `{s.name} = ...`, or give it a "
             f"colour set with at most {SMALL} values",
         )
+
+
+def _roots(
+    missing: list[Symbol],
+    binders: list[_Binder],
+    equations: list[_Equation],
+    bound: set[Symbol],
+) -> list[Symbol]:
+    """Missing variables without those that would be bound if other missing ones were."""
+    waiting: list[tuple[tuple[Symbol, ...], frozenset[Symbol]]] = [
+        *((b.variables, b.needs) for b in binders),
+        *((q.variables, q.needs) for q in equations),
+    ]
+    consequences: set[Symbol] = set()
+    for variables, needs in waiting:
+        if needs - bound and not needs & consequences:
+            consequences.update(s for s in variables if s not in bound)
+    return [s for s in missing if s not in consequences] or missing
 
 
 def _best(binders: list[_Binder], bound: set[Symbol]) -> _Binder | None:

@@ -220,10 +220,14 @@ class _Checker:
         guards = self.elaborator.guard(t.guard.text) if t.guard else ()
         delay = self.elaborator.delay(t.delay.text, self.net.real_time) if t.delay else None
         priority = self.elaborator.priority(t.priority.text) if t.priority else NORMAL_PRIORITY
+        if t.delay is not None and delay is None:
+            complete = False
         code = None
         if t.code is not None:
             segment = self.elaborator.code_segment(t.code.text)
-            if segment is not None:
+            if segment is None:
+                complete = False
+            else:
                 origin = t.code.text.origin
                 code = CodeSegment(segment.inputs, segment.outputs, segment.action, origin)
         if not complete or guards is None or priority is None or len(self.d.errors) > before:

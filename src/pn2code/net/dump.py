@@ -54,8 +54,23 @@ def dump_flat(net: FlatNet, only: str = "") -> str:
 
 
 def text_of(e: Exp) -> str:
-    """The user's text of an expression, on one line."""
-    return " ".join(e.span.text.split())
+    """The user's text of an expression, on one line.
+
+    Spans of operators reach from the first operand to the last, without parentheses around these,
+    so a span may lack parentheses that its own text opens or closes; they are added.
+    """
+    span = e.span
+    text, start, end = span.source.text, span.start, span.end
+    while _open(text[start:end]) > 0 and end < len(text):
+        end += 1
+    while _open(text[start:end]) < 0 and start > 0:
+        start -= 1
+    return " ".join(text[start:end].split())
+
+
+def _open(text: str) -> int:
+    """Parentheses opened and not closed (or, below zero, the other way round)."""
+    return text.count("(") - text.count(")")
 
 
 def _inline(inscription: Inscription | None) -> str:
