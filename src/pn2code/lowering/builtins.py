@@ -1,0 +1,445 @@
+"""Built-in functions applied: most become an `Op` of the same name, some a few lines of IR.
+
+What an `Op` looks like in C is the business of `emission.c_ops`; a built-in function is supported exactly if it is in `DIRECT` or
+has a method here or in `higher_order`.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import TYPE_CHECKING
+
+from pn2code.diagnostics import Span
+from pn2code.lowering import higher_order, ir
+from pn2code.lowering.codes import (
+    UNSUPPORTED_BUILTIN,
+    UNSUPPORTED_COLSET,
+    UNSUPPORTED_EXPRESSION,
+    UnsupportedError,
+)
+from pn2code.lowering.functions import is_impure_builtin
+from pn2code.lowering.ir import Ir, IrType, Rep
+from pn2code.lowering.matching import negation
+from pn2code.lowering.values import BuiltinFunction, RecordVal, Reference, Val
+from pn2code.ml.builtins import BUILTINS
+from pn2code.ml.types import TCon, TFun, TRecord, TVar, Type
+
+if TYPE_CHECKING:
+    from pn2code.lowering.expressions import Body
+
+_INT = "+ - * ~ abs div mod quot rem < <= > >= min max sign compare toString toInt fromInt toLarge fromLarge"
+_INTINF = "+ - * ~ abs div mod quot rem < <= > >= min max sign compare toString toInt fromInt toLarge fromLarge"
+_REAL = (
+    "+ - * / ~ abs < <= > >= == != min max sign compare rem fromInt fromLargeInt floor ceil round trunc realFloor realCeil "
+    "realRound realTrunc isNan isFinite posInf negInf toString"
+)
+_MATH = "pi e sqrt sin cos tan asin acos atan atan2 exp pow ln log10 sinh cosh tanh"
+_STRING = "^ size sub substring str isPrefix isSuffix isSubstring compare < <= > >="
+_CHAR = "ord chr compare < <= > >= isDigit isAlpha isAlphaNum isSpace isUpper isLower toUpper toLower"
+_LIST = "@ null length rev revAppend take drop mem rm rmall contains contains_all union listsub concat"
+_MS = "++ -- ** == != << <<= >> >>= cf size"
+_RANDOM = "bernoulli binomial uniform discrete normal exponential poisson erlang chisq"
+
+DIRECT = frozenset(
+    f"{structure}.{name}"
+    for structure, names in (
+        ("Int", _INT), ("IntInf", _INTINF), ("Real", _REAL), ("Math", _MATH), ("String", _STRING), ("Char", _CHAR),
+        ("List", _LIST), ("Ms", _MS), ("Random", _RANDOM), ("Bool", "not toString"), ("TextIO", "print"),
+        ("Time", "step"), ("ModelTime", "fromInt fromIntInf toString toReal add sub mult lt leq cmp"),
+    )
+    for name in names.split()
+)  # fmt: skip
+"""Built-in functions that are one operation of the runtime or of C, on their operands side by side."""
+
+SAME = frozenset({"Ms.ms_to_list", "Ms.list_to_ms", "Int.toInt", "Int.fromInt", "IntInf.toLarge", "IntInf.fromLarge", "IntInf.fromInt", "Int.toLarge", "ModelTime.fromIntInf"})  # fmt: skip
+"""Built-in functions that give back their argument, as it is represented."""
+
+_COMPARISONS = {"cmp": "compare", "lt": "<", "leq": "<=", "add": "+", "sub": "-", "mult": "*", "toString": "toString"}
+
+
+class Builtins:
+    """The built-in functions of one net. `real_time`: model time is a real."""
+
+    def __init__(self, real_time: bool) -> None:
+        self._real_time = real_time
+
+    @staticmethod
+    def arity(function: BuiltinFunction) -> int:
+        """The number of curried arguments it takes before it does anything."""
+        info = BUILTINS.get(function.node.name)
+        t: Type = info.type() if info is not None else function.node.type
+        n = 0
+        while isinstance(t, TFun):
+            n, t = n + 1, t.result
+        return n
+
+    def apply(
+        self, body: Body, function: BuiltinFunction, arguments: tuple[Val, ...], result: Type, at: Span
+    ) -> Val:
+        """The value of a built-in function for all its arguments."""
+        name = function.node.name
+        if name.startswith("Colset."):
+            return self._colset(body, function, arguments, result, at)
+        if name in SAME:
+            return arguments[0]
+        special = _SPECIAL.get(name) or higher_order.FUNCTIONS.get(name)
+        if special is not None:
+            return special(body, arguments, result, at)
+        if name not in DIRECT:
+            raise UnsupportedError(
+                UNSUPPORTED_BUILTIN, f"the built-in function `{name}` is not supported in compiled code", at
+            )
+        if name.startswith("ModelTime."):
+            name = self._model_time(name)
+        scheme = BUILTINS[function.node.name].type(self._real_time)
+        operands = self._operands(body, scheme, arguments)
+        t = body.program.types.lower(result, at)
+        table = ""
+        lists = [o.type for o in operands if o.type.rep is Rep.LIST]
+        if lists and name.split(".")[0] in ("List", "Ms"):
+            table = body.program.types.plain(lists[0] if name != "List.concat" else t)
+        op = ir.Op(name, tuple(operands), t, table)
+        if is_impure_builtin(name) or t.rep is Rep.UNIT:
+            return body.spill(op, name.split(".")[-1])
+        return op
+
+    def _model_time(self, name: str) -> str:
+        """Model time is an IntInf.int or a real."""
+        op = name.split(".")[1]
+        structure = "Real" if self._real_time else "IntInf"
+        if op == "fromInt":
+            return "Real.fromInt" if self._real_time else "IntInf.fromInt"
+        if op == "toReal":
+            return "time.same" if self._real_time else "Real.fromLargeInt"
+        return f"{structure}.{_COMPARISONS[op]}"
+
+    @staticmethod
+    def _operands(body: Body, scheme: Type, arguments: tuple[Val, ...]) -> list[Ir]:
+        """The arguments as C operands: tuples of the scheme side by side, units left out."""
+        operands: list[Ir] = []
+        for argument in arguments:
+            assert isinstance(scheme, TFun)
+            t, scheme = scheme.argument, scheme.result
+            if isinstance(t, TRecord):
+                operands.extend(body.code(v) for v in components(body, argument, len(t.fields)))
+            else:
+                operands.append(body.code(argument))
+        return operands
+
+    # --- functions of colour sets --------------------------------------------------------------
+
+    def _colset(
+        self, body: Body, function: BuiltinFunction, arguments: tuple[Val, ...], result: Type, at: Span
+    ) -> Val:
+        colset = function.node.colset
+        assert colset is not None
+        name = function.node.name.removeprefix("Colset.")
+        types = body.program.types
+        table = types.colset(colset)
+        t = types.lower(result, at)
+        if name in ("size", "ord", "all", "col", "ran", "base") and types.descriptors[table].member:
+            raise UnsupportedError(
+                UNSUPPORTED_COLSET, f"`{colset.name}.{name}` of a subset is not supported in compiled code", at
+            )
+        if name in ("lt", "cmp"):
+            a, b = (body.code(v) for v in components(body, arguments[0], 2))
+            return ir.Op(f"Colset.{name}", (a, b), t, table)
+        if name in ("mkstr", "legal", "ord"):
+            return ir.Op(f"Colset.{name}", (body.code(arguments[0]),), t, table)
+        if name == "size":
+            return ir.Op("Colset.size", (), t, table)
+        if name == "all":
+            types.plain(t)
+            return ir.Op("Colset.all", (), t, table)
+        if name in ("col", "ran", "base"):
+            local = body.local(name, t)
+            operands = (body.code(arguments[0]),) if name == "col" else ()
+            body.emit(ir.Declare(local))
+            body.emit(ir.Fill(local, name, table, operands))
+            return ir.Use(local)
+        if name.startswith("of_"):
+            value = body.atomic(body.code(arguments[0]), "value")
+            return ir.IsTag(value, colset.names.index(name.removeprefix("of_")))
+        raise UnsupportedError(
+            UNSUPPORTED_BUILTIN, f"`{colset.name}.{name}` is not supported in compiled code", at
+        )
+
+
+def components(body: Body, value: Val, n: int) -> list[Val]:
+    """The components of a tuple of n, which C code is taken apart for."""
+    if isinstance(value, RecordVal):
+        return [value.fields[str(i)] for i in range(1, n + 1)]
+    if n == 0:
+        return []
+    code = body.atomic(body.code(value), "pair")
+    definition = body.program.types.definition(code.type)
+    assert isinstance(definition, ir.StructDef)
+    types = dict(definition.fields)
+    return [ir.Member(code, str(i), types[str(i)]) for i in range(1, n + 1)]
+
+
+# --- functions with a few lines of their own ---------------------------------------------------
+
+
+def _table(body: Body, t: IrType) -> str:
+    return body.program.types.plain(t) if t.name and t.rep is not Rep.ENUM else ""
+
+
+def equal(body: Body, a: Ir, b: Ir) -> Ir:
+    """Structural equality."""
+    return ir.Op("=", (a, b), ir.BOOL, _table(body, a.type))
+
+
+def _equality(body: Body, arguments: tuple[Val, ...], result: Type, at: Span) -> Val:
+    a, b = (body.code(v, at) for v in components(body, arguments[0], 2))
+    return equal(body, a, b)
+
+
+def _inequality(body: Body, arguments: tuple[Val, ...], result: Type, at: Span) -> Val:
+    return negation(body.code(_equality(body, arguments, result, at)))
+
+
+def _now(body: Body, arguments: tuple[Val, ...], result: Type, at: Span) -> Val:
+    return ir.Now(body.program.types.lower(result))
+
+
+def _compose(body: Body, arguments: tuple[Val, ...], result: Type, at: Span) -> Val:
+    f, g = components(body, arguments[0], 2)
+    middle = TVar(0)  # only the representation of results that are C code matters, and `apply` knows it
+    return body.apply(f, body.apply(g, arguments[1], _result_of(body, g, middle), at), result, at)
+
+
+def _result_of(body: Body, function: Val, default: Type) -> Type:
+    """The result type of a function value, where a built-in or constructor needs to be told."""
+    from pn2code.lowering.values import ConstructorFunction, Partial
+
+    match function:
+        case BuiltinFunction(type=TFun(result=r)) | ConstructorFunction(type=TFun(result=r)):
+            return r
+        case Partial(function=BuiltinFunction(type=t), arguments=arguments):
+            for _ in range(len(arguments) + 1):
+                assert isinstance(t, TFun)
+                t = t.result
+            return t
+    return default
+
+
+def _before(body: Body, arguments: tuple[Val, ...], result: Type, at: Span) -> Val:
+    return components(body, arguments[0], 2)[0]
+
+
+def _ignore(body: Body, arguments: tuple[Val, ...], result: Type, at: Span) -> Val:
+    return ir.Const(None, ir.UNIT)
+
+
+def _reference(value: Val, at: Span) -> Reference:
+    if not isinstance(value, Reference):
+        raise UnsupportedError(
+            UNSUPPORTED_EXPRESSION, "only references declared at top level are supported", at
+        )
+    return value
+
+
+def _read(body: Body, arguments: tuple[Val, ...], result: Type, at: Span) -> Val:
+    reference = _reference(arguments[0], at)
+    return body.spill(ir.GlobalUse(reference.name, reference.type), reference.name)
+
+
+def _assigning(op: str) -> Callable[[Body, tuple[Val, ...], Type, Span], Val]:
+    def assign(body: Body, arguments: tuple[Val, ...], result: Type, at: Span) -> Val:
+        if op in ("inc", "dec"):
+            target, value = arguments[0], ir.Const(1, ir.INT)
+        else:
+            target, operand = components(body, arguments[0], 2)
+            value = body.code(operand, at)  # type: ignore[assignment]
+        reference = _reference(target, at)
+        old = ir.GlobalUse(reference.name, reference.type)
+        new: Ir = value
+        if op in ("+=", "inc"):
+            new = ir.Op("Int.+", (old, value), ir.INT)
+        elif op in ("-=", "dec"):
+            new = ir.Op("Int.-", (old, value), ir.INT)
+        elif op == "*=":
+            new = ir.Op("Int.*", (old, value), ir.INT)
+        elif op == "::=":
+            table = body.program.types.plain(reference.type)
+            new = ir.Op("list.cons", (value, old), reference.type, table)
+        body.emit(ir.SetGlobal(reference.name, new, True))
+        return ir.Const(None, ir.UNIT)
+
+    return assign
+
+
+def head_or(body: Body, cell: Ir) -> Ir:
+    """The head of a list; a harmless value if it is empty (an exception was raised then)."""
+    cell = body.atomic(cell, "cell")
+    element = body.element(cell.type)
+    return ir.Select(negation(ir.IsNil(cell)), ir.Head(cell, element), body.zero(element), element)
+
+
+def _cell(op: str, *, tupled: bool = False, rest: bool = False) -> Callable[[Body, tuple[Val, ...], Type, Span], Val]:
+    """Functions that find a cell of a list and give its head."""
+
+    def find(body: Body, arguments: tuple[Val, ...], result: Type, at: Span) -> Val:
+        values = components(body, arguments[0], 2) if tupled else list(arguments)
+        operands = tuple(body.code(v, at) for v in values)
+        found = ir.Op(op, operands, operands[0].type)
+        return found if rest else head_or(body, found)
+
+    return find
+
+
+def _copies(body: Body, arguments: tuple[Val, ...], result: Type, at: Span) -> Val:
+    n, value = (body.code(v, at) for v in components(body, arguments[0], 2))
+    t = body.program.types.lower(result)
+    if isinstance(n, ir.Const) and n.value == 1:
+        empty = ir.Op("list.nil", (), t)
+        return ir.Op("list.cons", (value, empty), t, body.program.types.plain(t))
+    return ir.Op("Ms.`", (n, value), t, body.program.types.plain(t))
+
+
+def _if_all(body: Body, arguments: tuple[Val, ...], result: Type, at: Span) -> Val:
+    """`[b1, ...] % x` and `[b1, ...] // ms`."""
+    conditions, value = components(body, arguments[0], 2)
+    operand = body.code(value, at)
+    t = body.program.types.lower(result)
+    flags = body.code(conditions, at)
+    if operand.type != t:
+        empty = ir.Op("list.nil", (), t)
+        operand = ir.Op("list.cons", (operand, empty), t, body.program.types.plain(t))
+    return ir.Select(ir.Op("list.all_true", (flags,), ir.BOOL), operand, ir.Op("list.nil", (), t), t)
+
+
+def _only(body: Body, arguments: tuple[Val, ...], result: Type, at: Span) -> Val:
+    operand = body.code(arguments[0], at)
+    return head_or(body, ir.Op("Ms.ms_to_col", (operand,), operand.type))
+
+
+def _pick(body: Body, arguments: tuple[Val, ...], result: Type, at: Span) -> Val:
+    operand = body.code(arguments[0], at)
+    return head_or(body, body.spill(ir.Op("Ms.random", (operand,), operand.type), "picked"))
+
+
+def _insert(body: Body, arguments: tuple[Val, ...], result: Type, at: Span) -> Val:
+    values, value = (body.code(v, at) for v in arguments)
+    t, table = values.type, body.program.types.plain(values.type)
+    last = ir.Op("list.cons", (value, ir.Op("list.nil", (), t)), t, table)
+    return ir.Op("List.@", (values, last), t, table)
+
+
+def _insert_new(body: Body, arguments: tuple[Val, ...], result: Type, at: Span) -> Val:
+    values = body.atomic(body.code(arguments[0], at), "values")
+    value = body.atomic(body.code(arguments[1], at), "value")
+    is_there = ir.Op("List.mem", (values, value), ir.BOOL, body.program.types.plain(values.type))
+    longer = body.code(_insert(body, (values, value), result, at))
+    return ir.Select(is_there, values, longer, values.type)
+
+
+def _value_of(body: Body, arguments: tuple[Val, ...], result: Type, at: Span) -> Val:
+    option = body.atomic(body.code(arguments[0], at), "option")
+    t = body.program.types.lower(result)
+    is_some = ir.IsTag(option, 1)
+    body.emit(ir.If(negation(is_some), (ir.Raise("Option"),), ()))
+    return ir.Select(is_some, ir.Argument(option, 1, t), body.zero(t), t)
+
+
+def _is_some(body: Body, arguments: tuple[Val, ...], result: Type, at: Span) -> Val:
+    return ir.IsTag(body.atomic(body.code(arguments[0], at), "option"), 1)
+
+
+def _value_or(body: Body, arguments: tuple[Val, ...], result: Type, at: Span) -> Val:
+    option, default = (body.code(v, at) for v in components(body, arguments[0], 2))
+    option = body.atomic(option, "option")
+    return ir.Select(ir.IsTag(option, 1), ir.Argument(option, 1, default.type), default, default.type)
+
+
+def _stamped(*, delayed: bool) -> Callable[[Body, tuple[Val, ...], Type, Span], Val]:
+    """`v @ t` and one token `v @+ d`: the stamp itself, or now plus the delay."""
+
+    def make(body: Body, arguments: tuple[Val, ...], result: Type, at: Span) -> Val:
+        value, time = (body.code(v, at) for v in components(body, arguments[0], 2))
+        t = body.program.types.lower(result)
+        stamp = after_now(body, time) if delayed else time
+        return ir.MakeStruct(t, (("value", value), ("stamp", stamp)))
+
+    return make
+
+
+def after_now(body: Body, delay: Ir) -> Ir:
+    """Model time plus a delay, in the type of model time."""
+    if body.program.real_time:
+        if delay.type == ir.INT:
+            delay = ir.Op("Real.fromInt", (delay,), ir.REAL)
+        return ir.Op("Real.+", (ir.Now(ir.REAL), delay), ir.REAL)
+    return ir.Op("IntInf.+", (ir.Now(ir.INT), delay), ir.INT)
+
+
+def _with_stamps(body: Body, arguments: tuple[Val, ...], result: Type, at: Span) -> Val:
+    """`ms @+ d`."""
+    multiset, delay = (body.code(v, at) for v in components(body, arguments[0], 2))
+    t = body.program.types.lower(result)
+    stamp = body.atomic(after_now(body, delay), "stamp")
+    timed = body.element(t)
+
+    def stamped(value: Ir) -> Val:
+        return ir.MakeStruct(timed, (("value", value), ("stamp", stamp)))
+
+    return higher_order.map_list(body, multiset, t, stamped)
+
+
+def _without_stamps(body: Body, arguments: tuple[Val, ...], result: Type, at: Span) -> Val:
+    tokens = body.code(arguments[0], at)
+    t = body.program.types.lower(result)
+    element = body.element(t)
+    return higher_order.map_list(body, tokens, t, lambda v: ir.Member(v, "value", element))
+
+
+def _sum_timed(body: Body, arguments: tuple[Val, ...], result: Type, at: Span) -> Val:
+    a, b = (body.code(v, at) for v in components(body, arguments[0], 2))
+    return ir.Op("List.@", (a, b), a.type, body.program.types.plain(a.type))
+
+
+def _bound(value: int) -> Callable[[Body, tuple[Val, ...], Type, Span], Val]:
+    """`Int.maxInt` and its like: SOME of a constant."""
+
+    def make(body: Body, arguments: tuple[Val, ...], result: Type, at: Span) -> Val:
+        assert isinstance(result, TCon)
+        return ir.MakeUnion(1, ir.Const(value, ir.INT), body.program.types.lower(result))
+
+    return make
+
+
+_SPECIAL: dict[str, Callable[[Body, tuple[Val, ...], Type, Span], Val]] = {
+    "=": _equality,
+    "<>": _inequality,
+    "General.o": _compose,
+    "General.before": _before,
+    "General.ignore": _ignore,
+    "Ref.!": _read,
+    **{f"Ref.{op}": _assigning(op) for op in (":=", "+=", "-=", "*=", "::=", "inc", "dec")},
+    "List.hd": _cell("List.hd"),
+    "List.tl": _cell("List.tl", rest=True),
+    "List.last": _cell("List.last"),
+    "List.nth": _cell("List.nth", tupled=True),
+    "List.ins": _insert,
+    "List.ins_new": _insert_new,
+    "Ms.`": _copies,
+    "Ms.%": _if_all,
+    "Ms.//": _if_all,
+    "Ms.ms_to_col": _only,
+    "Ms.random": _pick,
+    "Option.valOf": _value_of,
+    "Option.isSome": _is_some,
+    "Option.getOpt": _value_or,
+    "Time.time": _now,
+    "Time.@": _stamped(delayed=False),
+    "Time.token@+": _stamped(delayed=True),
+    "Time.token@++": _stamped(delayed=True),
+    "Time.@+": _with_stamps,
+    "Time.@++": _with_stamps,
+    "Time.+++": _sum_timed,
+    "Time.ms": _without_stamps,
+    "Int.maxInt": _bound(2**30 - 1),
+    "Int.minInt": _bound(-(2**30)),
+    "Int.precision": _bound(31),
+}

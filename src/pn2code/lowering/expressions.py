@@ -1,0 +1,766 @@
+"""Core expressions -> IR: the body of one function, guard, inscription or action.
+
+`Body.exp` gives the value of an expression and appends to the present block the statements that must run before it. Reading and
+changing references, drawing random numbers and the like happen in these statements, so their order is that of CPN ML; what is pure
+stays an expression, so that simple ML becomes simple C.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass
+
+from pn2code.diagnostics import Span
+from pn2code.lowering import ir
+from pn2code.lowering.codes import (
+    LITERAL_RANGE,
+    UNSUPPORTED_EXCEPTION,
+    UNSUPPORTED_FUNCTION_VALUE,
+    UnsupportedError,
+)
+from pn2code.lowering.functions import Program, split_parameters
+from pn2code.lowering.ir import Ir, IrType, Local, Rep, Stmt
+from pn2code.lowering.matching import Match, Matcher, TypeSource, conjunction, is_irrefutable, negation
+from pn2code.lowering.types import has_function as type_has_function
+from pn2code.lowering.types import substitute
+from pn2code.lowering.values import (
+    FUNCTIONS,
+    Binding,
+    BuiltinFunction,
+    Closure,
+    ConstructorFunction,
+    Env,
+    NamedFunction,
+    Partial,
+    Polymorphic,
+    RecordVal,
+    Reference,
+    TypeEnv,
+    Val,
+    has_function,
+    is_atomic,
+    children,
+    is_static,
+)
+from pn2code.ml import core
+from pn2code.ml.core import Symbol
+from pn2code.ml.types import INT, TFun, Type
+
+_INT_RANGE = (-(2**30), 2**30 - 1)
+_INTINF_RANGE = (-(2**63) + 1, 2**63 - 1)
+_MAX_INLINE = 60
+_UNIT = ir.Const(None, ir.UNIT)
+
+
+@dataclass(frozen=True, slots=True)
+class Ways:
+    """What becomes of rules: `finish` of the body of the one that fits; `give_up` after an exception where none does."""
+
+    finish: Callable[[core.Exp, Env], None]
+    give_up: Callable[[], None]
+
+
+class Body(TypeSource):
+    """Lowers expressions into a growing list of statements."""
+
+    def __init__(self, program: Program, types: TypeEnv | None = None, key: str = "") -> None:
+        self.program = program
+        self.types: TypeEnv = types or {}
+        self.key = key
+        self.statements: list[Stmt] = []
+        self._locals = 0
+        self._inlined: list[int] = []
+        self._matcher = Matcher(self)
+        self.has_self_call = False
+
+    # --- small services ------------------------------------------------------------------------
+
+    def local(self, hint: str, t: IrType) -> Local:
+        """A fresh local."""
+        self._locals += 1
+        return Local(self._locals, hint, t)
+
+    def emit(self, statement: Stmt) -> None:
+        """Append to the present block."""
+        self.statements.append(statement)
+
+    @contextmanager
+    def block(self) -> Iterator[list[Stmt]]:
+        """A fresh block of statements; the present one comes back afterwards."""
+        outer, self.statements = self.statements, []
+        try:
+            yield self.statements
+        finally:
+            self.statements = outer
+
+    def type_of(self, t: Type) -> Type:
+        """The type with the variables of the surrounding schemes replaced."""
+        return substitute(t, self.types)
+
+    def representation(self, t: Type) -> IrType:
+        """See `TypeSource`."""
+        return self.program.types.lower(self.type_of(t))
+
+    def element(self, t: IrType) -> IrType:
+        """See `TypeSource`."""
+        definition = self.program.types.definition(t)
+        assert isinstance(definition, ir.ListDef)
+        return definition.element
+
+    def zero(self, t: IrType) -> Ir:
+        """A harmless value, after an error."""
+        return ir.Op("zero", (), t)
+
+    def literal(self, value: int | float | str, t: Type, span: Span) -> ir.Const:
+        """See `TypeSource`."""
+        rep = self.representation(t)
+        if rep.rep is Rep.CHAR:
+            return ir.Const(ord(str(value)), rep)
+        if rep.rep is Rep.INT:
+            low, high = _INT_RANGE if self.type_of(t) == INT else _INTINF_RANGE
+            if not low <= int(value) <= high:
+                raise UnsupportedError(
+                    LITERAL_RANGE, f"the literal {value} is out of the range of `{t}`", span
+                )
+        return ir.Const(value, rep)
+
+    def code(self, value: Val, at: Span | None = None) -> Ir:
+        """A value as C code; records are put together."""
+        if isinstance(value, RecordVal):
+            if has_function(value):
+                self._refuse_function(at)
+            t = self.representation(value.type)
+            if t.rep is Rep.UNIT:
+                return _UNIT
+            definition = self.program.types.definition(t)
+            assert isinstance(definition, ir.StructDef)
+            parts = {label: self.code(v, at) for label, v in value.fields.items()}
+            return ir.MakeStruct(t, tuple((label, parts[label]) for label, _ in definition.fields))
+        if is_static(value):
+            self._refuse_function(at)
+        assert not isinstance(value, (*FUNCTIONS, Reference))
+        return value
+
+    def _refuse_function(self, at: Span | None) -> None:
+        raise UnsupportedError(
+            UNSUPPORTED_FUNCTION_VALUE,
+            "a function or reference is used as a value here",
+            at or self.program.position,
+            hint="pass it directly to the function that uses it",
+        )
+
+    def atomic(self, value: Ir, hint: str) -> Ir:
+        """The value in a form that may be used several times."""
+        if is_atomic(value):
+            return value
+        local = self.local(hint, value.type)
+        self.emit(ir.Let(local, value))
+        return ir.Use(local)
+
+    def settle(self, value: Val, hint: str) -> Val:
+        """The same for a value of any kind; records stay apart."""
+        if isinstance(value, RecordVal):
+            fields = {
+                k: self.settle(v, f"{hint}_{k}" if k.isdigit() else k)
+                for k, v in value.fields.items()
+            }
+            return RecordVal(fields, value.type)
+        if is_static(value):
+            return value
+        return self.atomic(self.code(value), hint)
+
+    def select(self, value: Val, label: str, t: Type) -> Val:
+        """See `TypeSource`."""
+        if isinstance(value, RecordVal):
+            return value.fields[label]
+        code = self.code(value)
+        return ir.Member(code, label, self.representation(t))
+
+    def spill(self, value: Ir, hint: str) -> Ir:
+        """The value computed now."""
+        if value.type == ir.UNIT:
+            self.emit(ir.Do(value))
+            return _UNIT
+        local = self.local(hint, value.type)
+        self.emit(ir.Let(local, value))
+        return ir.Use(local)
+
+    def bind(self, symbol: Symbol, value: Val) -> Val:
+        """The value of a variable that may be used any number of times, under its name."""
+        if isinstance(value, RecordVal) and not has_function(value):
+            value = self.code(value)
+        return self.settle(value, symbol.name)
+
+    # --- expressions ---------------------------------------------------------------------------
+
+    def ir(self, e: core.Exp, env: Env) -> Ir:
+        """The expression as C code."""
+        return self.code(self.exp(e, env), e.span)
+
+    def exp(self, e: core.Exp, env: Env) -> Val:
+        """The value of an expression."""
+        match e:
+            case core.Lit():
+                return self.literal(e.value, e.type, e.span)
+            case core.Var():
+                return self._variable(e, env)
+            case core.Builtin():
+                return self._builtin(e)
+            case core.Con():
+                return self._constructor(e)
+            case core.Apply():
+                function = self.exp(e.function, env)
+                argument = self.exp(e.argument, env)
+                return self.apply(function, argument, self.type_of(e.type), e.span)
+            case core.Lambda():
+                return Closure(e, env, self.types)
+            case core.RecordExp(fields=()):
+                return _UNIT
+            case core.RecordExp():
+                fields = {label: self.exp(part, env) for label, part in e.fields}
+                return RecordVal(fields, self.type_of(e.type))
+            case core.Select():
+                return self._select(e, env)
+            case core.ListExp():
+                return self._list(e, env)
+            case core.If() | core.Case() | core.Handle():
+                return self._branching(e, env)
+            case core.Let():
+                return self.exp(e.body, self.declare(e.declarations, env))
+            case core.Sequence():
+                for item in e.items[:-1]:
+                    self.effect(item, env)
+                return self.exp(e.items[-1], env)
+            case core.While():
+                return self._while(e, env)
+            case core.Raise():
+                self._raise(e.exception)
+                return self.zero(self.representation(e.type))
+
+    def effect(self, e: core.Exp, env: Env) -> None:
+        """Evaluate only for what it does."""
+        value = self.exp(e, env)
+        if not is_static(value):
+            code = self.code(value)
+            if not is_atomic(code):
+                self.emit(ir.Do(code))
+
+    def _variable(self, e: core.Var, env: Env) -> Val:
+        inst = {i: self.type_of(t) for i, t in enumerate(e.inst)}
+        value: Binding | None = env.get(e.symbol.uid)
+        if value is None:
+            value = self.program.global_value(self, e.symbol, inst, e.span)
+        if isinstance(value, NamedFunction) and inst and value.symbol == e.symbol:
+            return NamedFunction(
+                value.symbol, value.group, value.env, {**value.types, **inst}
+            )
+        if isinstance(value, Polymorphic):
+            outer, self.types = self.types, {**value.types, **inst}
+            try:
+                return self.exp(value.value, value.env)
+            finally:
+                self.types = outer
+        return value
+
+    def _builtin(self, e: core.Builtin) -> Val:
+        t = self.type_of(e.type)
+        value = BuiltinFunction(e, t)
+        if isinstance(t, TFun):
+            return value
+        return self.program.builtins.apply(self, value, (), t, e.span)
+
+    def _constructor(self, e: core.Con) -> Val:
+        t = self.type_of(e.type)
+        if e.constructor.data_type == "exn":
+            raise UnsupportedError(
+                UNSUPPORTED_EXCEPTION, "an exception as a value is not supported", e.span
+            )
+        if e.constructor.has_argument:
+            return ConstructorFunction(e.constructor, t)
+        return self.constant(e.constructor, self.representation(t))
+
+    def constant(self, constructor: core.Constructor, t: IrType) -> Ir:
+        """A constructor without argument."""
+        if t.rep is Rep.BOOL:
+            return ir.Const(constructor.tag == 1, t)
+        if t.rep is Rep.LIST:
+            return ir.Op("list.nil", (), t)
+        if t.rep is Rep.ENUM:
+            return ir.EnumValue(constructor.tag, t)
+        return ir.MakeUnion(constructor.tag, None, t)
+
+    def _select(self, e: core.Select, env: Env) -> Val:
+        record = self.exp(e.record, env)
+        return self.select(record, e.label, e.type)
+
+    def _list(self, e: core.ListExp, env: Env) -> Ir:
+        t = self.representation(e.type)
+        items = [self.ir(item, env) for item in e.items]
+        result: Ir = ir.Op("list.nil", (), t)
+        for item in reversed(items):
+            result = ir.Op("list.cons", (item, result), t, self.program.types.plain(t))
+        return result
+
+    # --- application ---------------------------------------------------------------------------
+
+    def apply(self, function: Val, argument: Val, result: Type, at: Span) -> Val:
+        """Apply a function that is known at compile time."""
+        match function:
+            case Closure():
+                return self._inline(function, argument, at)
+            case ConstructorFunction():
+                return self._construct(function, argument, result)
+            case NamedFunction() | BuiltinFunction():
+                return self._saturate(function, (argument,), result, at)
+            case Partial():
+                arguments = (*function.arguments, argument)
+                return self._saturate(function.function, arguments, result, at)
+        raise UnsupportedError(
+            UNSUPPORTED_FUNCTION_VALUE,
+            "which function is called here is not known at compile time",
+            at,
+            hint="call the function directly, or pass it as an argument",
+        )
+
+    def _construct(self, function: ConstructorFunction, argument: Val, result: Type) -> Ir:
+        t = self.representation(result)
+        code = self.code(argument)
+        if t.rep is Rep.LIST:
+            pair = argument
+            head = self.code(self.select(pair, "1", INT)) if isinstance(pair, RecordVal) else None
+            if head is None:
+                pair = self.atomic(code, "pair")
+                head = ir.Member(pair, "1", self.element(t))
+                rest: Ir = ir.Member(pair, "2", t)
+            else:
+                assert isinstance(pair, RecordVal)
+                rest = self.code(pair.fields["2"])
+            return ir.Op("list.cons", (head, rest), t, self.program.types.plain(t))
+        if t.rep is not Rep.UNION:
+            return code  # an index is its number
+        return ir.MakeUnion(function.constructor.tag, code, t)
+
+    def _inline(self, function: Closure, argument: Val, at: Span) -> Val:
+        if len(self._inlined) > _MAX_INLINE:
+            raise UnsupportedError(
+                UNSUPPORTED_FUNCTION_VALUE, "functions are nested too deeply to be followed", at
+            )
+        self._inlined.append(id(function.function))
+        outer, self.types = self.types, function.types
+        try:
+            return self._rules(function.function, argument, function.env)
+        finally:
+            self.types = outer
+            self._inlined.pop()
+
+    def _rules(self, function: core.Lambda, argument: Val, env: Env) -> Val:
+        rule = function.rules[0]
+        if len(function.rules) == 1 and is_irrefutable(rule.pattern):
+            inner = self._bind_all(self._match(rule.pattern, argument), env)
+            return self.exp(rule.body, inner)
+        result = rule.body.type
+        return self._choose(function.rules, argument, env, self.type_of(result), "Match")
+
+    def _saturate(
+        self,
+        function: NamedFunction | BuiltinFunction,
+        arguments: tuple[Val, ...],
+        result: Type,
+        at: Span,
+    ) -> Val:
+        if isinstance(function, BuiltinFunction):
+            if len(arguments) < self.program.builtins.arity(function):
+                return Partial(function, arguments)
+            return self.program.builtins.apply(self, function, arguments, result, at)
+        parameters, body = split_parameters(function.function)
+        if len(arguments) < len(parameters):
+            return Partial(function, arguments)
+        if type_has_function(substitute(body, function.types)):
+            return self._unfold(function, arguments, at)
+        return self.program.call(self, function, arguments, at)
+
+    def _unfold(self, function: NamedFunction, arguments: tuple[Val, ...], at: Span) -> Val:
+        """A function whose result is or contains a function is put in place."""
+        if id(function.group) in self._inlined:
+            raise UnsupportedError(
+                UNSUPPORTED_FUNCTION_VALUE,
+                f"`{function.symbol.name}` is recursive and returns a function",
+                at,
+            )
+        self._inlined.append(id(function.group))
+        try:
+            value: Val = Closure(function.function, self.program.group_env(function), function.types)
+            for argument in arguments:
+                assert isinstance(value, Closure)
+                value = self._inline(value, argument, at)
+            return value
+        finally:
+            self._inlined.pop()
+
+    # --- declarations --------------------------------------------------------------------------
+
+    def declare(self, declarations: tuple[core.Dec, ...], env: Env) -> Env:
+        """The environment after local declarations."""
+        for dec in declarations:
+            match dec:
+                case core.ValBind(pattern=core.PVar(symbol=symbol)) if symbol.generics:
+                    env = {**env, symbol.uid: Polymorphic(dec.value, env, self.types)}
+                case core.ValBind():
+                    value = self.exp(dec.value, env)
+                    env = self._bind_all(self._match(dec.pattern, value), env, "Bind")
+                case core.RecBind():
+                    env = {
+                        **env,
+                        **{
+                            s.uid: NamedFunction(s, dec, env, self.types) for s, _ in dec.bindings
+                        },
+                    }
+                case core.ExceptionDec() | core.DatatypeDec():
+                    pass
+        return env
+
+    def _match(self, pattern: core.Pat, value: Val) -> Match:
+        if not isinstance(pattern, core.PVar | core.PWild):
+            value = self.settle(value, "value")
+        return self._matcher.match(pattern, value)
+
+    def bind_pattern(self, pattern: core.Pat, value: Val, env: Env | None = None) -> Env:
+        """The environment with the variables of a pattern; Bind is raised where it does not fit."""
+        return self._bind_all(self._match(pattern, value), env or {}, "Bind")
+
+    def match(self, pattern: core.Pat, value: Val) -> Match:
+        """Match a value whose C parts are atomic."""
+        return self._matcher.match(pattern, value)
+
+    def _bind_all(self, match: Match, env: Env, exception: str = "") -> Env:
+        """Bind the variables of a match; where it may fail, raise `exception` and bind harmless values."""
+        condition = conjunction(match.conditions)
+        bound: dict[int, Binding] = {}
+        if condition is not None:
+            condition = self.atomic(condition, "fits")
+            with self.block() as otherwise:
+                self.emit(ir.Raise(exception))
+            self.emit(ir.If(negation(condition), tuple(otherwise), ()))
+        for symbol, value in match.bindings:
+            if condition is not None:
+                code = self.code(value)
+                value = ir.Select(condition, code, self.zero(code.type), code.type)
+            bound[symbol.uid] = self.bind(symbol, value)
+        return {**env, **bound}
+
+    # --- branching -----------------------------------------------------------------------------
+
+    def _branching(self, e: core.If | core.Case | core.Handle, env: Env) -> Val:
+        if type_has_function(self.type_of(e.type)):
+            return self._static_branch(e, env)
+        if isinstance(e, core.If):
+            simple = self._simple_if(e, env)
+            if simple is not None:
+                return simple
+        rule = e.rules[0] if isinstance(e, core.Case) else None
+        if isinstance(e, core.Case) and rule and len(e.rules) == 1 and is_irrefutable(rule.pattern):
+            value = self.exp(e.scrutinee, env)
+            return self.exp(rule.body, self._bind_all(self._match(rule.pattern, value), env))
+        return self._into_temporary(e, env)
+
+    def _into_temporary(self, e: core.Exp, env: Env) -> Ir:
+        t = self.representation(e.type)
+        if t.rep is Rep.UNIT:
+            self.into(e, env, None)
+            return _UNIT
+        result = self.local("result", t)
+        self.emit(ir.Declare(result))
+        self.into(e, env, result)
+        return ir.Use(result)
+
+    def _static_branch(self, e: core.If | core.Case | core.Handle, env: Env) -> Val:
+        """A choice among functions: only where the choice is known, or there is none."""
+        if isinstance(e, core.If):
+            condition = self.ir(e.condition, env)
+            if isinstance(condition, ir.Const):
+                return self.exp(e.then if condition.value else e.otherwise, env)
+        if isinstance(e, core.Case) and len(e.rules) == 1:
+            value = self.exp(e.scrutinee, env)
+            rule = e.rules[0]
+            return self.exp(
+                rule.body, self._bind_all(self._match(rule.pattern, value), env, "Match")
+            )
+        raise UnsupportedError(
+            UNSUPPORTED_FUNCTION_VALUE,
+            "which function this is depends on a value",
+            e.span,
+            hint="choose between the results instead of between the functions",
+        )
+
+    def _simple_if(self, e: core.If, env: Env) -> Ir | None:
+        """As a C expression, if both ways are simple."""
+        if not (is_simple(e.then) and is_simple(e.otherwise)):
+            return None
+        condition = self.ir(e.condition, env)
+        if isinstance(condition, ir.Const):
+            return self.ir(e.then if condition.value else e.otherwise, env)
+        with self.block() as first:
+            then = self.ir(e.then, env)
+        with self.block() as second:
+            otherwise = self.ir(e.otherwise, env)
+        if not first and not second:
+            return self.choice(condition, then, otherwise)
+        if then.type == ir.UNIT:
+            self.emit(ir.If(condition, tuple(first), tuple(second)))
+            return _UNIT
+        result = self.local("result", then.type)
+        self.emit(ir.Declare(result))
+        first.append(ir.Assign(result, then))
+        second.append(ir.Assign(result, otherwise))
+        self.emit(ir.If(condition, tuple(first), tuple(second)))
+        return ir.Use(result)
+
+    @staticmethod
+    def choice(condition: Ir, then: Ir, otherwise: Ir) -> Ir:
+        """`if` as an expression."""
+        if then.type == ir.UNIT:
+            return _UNIT
+        if isinstance(otherwise, ir.Const) and otherwise.value is False:
+            return ir.Op("andalso", (condition, then), ir.BOOL)
+        if isinstance(then, ir.Const) and then.value is True:
+            return ir.Op("orelse", (condition, otherwise), ir.BOOL)
+        return ir.Select(condition, then, otherwise, then.type)
+
+    def into(self, e: core.Exp, env: Env, target: Local | None) -> None:
+        """Evaluate into a local (None: a unit, nothing to keep)."""
+        match e:
+            case core.If() if not (is_simple(e.then) and is_simple(e.otherwise)):
+                condition = self.ir(e.condition, env)
+                with self.block() as then:
+                    self.into(e.then, env, target)
+                with self.block() as otherwise:
+                    self.into(e.otherwise, env, target)
+                self.emit(ir.If(condition, tuple(then), tuple(otherwise)))
+            case core.Case():
+                value = self.exp(e.scrutinee, env)
+                self._chain(e.rules, value, env, "Match", self._filling(target))
+            case core.Let():
+                self.into(e.body, self.declare(e.declarations, env), target)
+            case core.Sequence():
+                for item in e.items[:-1]:
+                    self.effect(item, env)
+                self.into(e.items[-1], env, target)
+            case core.Handle():
+                self._handle(e, env, target)
+            case _:
+                self._store(self.exp(e, env), target)
+
+    def _store(self, value: Val, target: Local | None) -> None:
+        code = self.code(value)
+        if target is not None:
+            self.emit(ir.Assign(target, code))
+        elif not is_atomic(code):
+            self.emit(ir.Do(code))
+
+    def _choose(
+        self, rules: tuple[core.Rule, ...], value: Val, env: Env, result: Type, exception: str
+    ) -> Ir:
+        t = self.program.types.lower(result)
+        target = None if t.rep is Rep.UNIT else self.local("result", t)
+        if target is not None:
+            self.emit(ir.Declare(target))
+        self._chain(rules, value, env, exception, self._filling(target))
+        return _UNIT if target is None else ir.Use(target)
+
+    def _filling(self, target: Local | None) -> Ways:
+        """Each rule's value goes into a local."""
+
+        def give_up() -> None:
+            if target is not None:
+                self.emit(ir.Assign(target, self.zero(target.type)))
+
+        return Ways(lambda body, env: self.into(body, env, target), give_up)
+
+    def _chain(
+        self, rules: tuple[core.Rule, ...], value: Val, env: Env, exception: str, ways: Ways
+    ) -> None:
+        """Rules tried one after the other."""
+        value = self.settle(value, "value")
+        self._rule(0, rules, value, env, exception, ways)
+
+    def _rule(
+        self, index: int, rules: tuple[core.Rule, ...], value: Val, env: Env, exception: str, ways: Ways
+    ) -> None:
+        if index == len(rules):
+            self.emit(ir.Raise(exception))
+            ways.give_up()
+            return
+        rule = rules[index]
+        match = self._matcher.match(rule.pattern, value)
+        condition = conjunction(match.conditions)
+        # The data type's constructors are all there: the last of them needs no test.
+        is_last = index + 1 == len(rules) and covers(rules)
+        if condition is None or is_last:
+            ways.finish(rule.body, self._bind_all(Match([], match.bindings), env))
+            return
+        with self.block() as then:
+            ways.finish(rule.body, self._bind_all(Match([], match.bindings), env))
+        with self.block() as otherwise:
+            self._rule(index + 1, rules, value, env, exception, ways)
+        self.emit(ir.If(condition, tuple(then), tuple(otherwise)))
+
+    # --- the rest ------------------------------------------------------------------------------
+
+    def _while(self, e: core.While, env: Env) -> Ir:
+        with self.block() as setup:
+            condition = self.ir(e.condition, env)
+        with self.block() as body:
+            self.effect(e.body, env)
+        self.emit(ir.While(tuple(setup), condition, tuple(body)))
+        return _UNIT
+
+    def _raise(self, exception: core.Exp) -> None:
+        while isinstance(exception, core.Apply):
+            exception = exception.function
+        if not isinstance(exception, core.Con):
+            raise UnsupportedError(
+                UNSUPPORTED_EXCEPTION,
+                "raising a computed exception is not supported",
+                exception.span,
+            )
+        self.emit(ir.Raise(exception.constructor.name))
+
+    def _handle(self, e: core.Handle, env: Env, target: Local | None) -> None:
+        was_ok = self.local("was_ok", ir.BOOL)
+        self.emit(ir.Let(was_ok, ir.Ok()))
+        self.into(e.body, env, target)
+        with self.block() as handler:
+            self._handlers(e.rules, env, target)
+        failed = ir.Op("andalso", (ir.Use(was_ok), negation(ir.Ok())), ir.BOOL)
+        self.emit(ir.If(failed, tuple(handler), ()))
+
+    def _handlers(self, rules: tuple[core.Rule, ...], env: Env, target: Local | None) -> None:
+        if not rules:
+            return
+        rule, rest = rules[0], rules[1:]
+        name = handled_name(rule.pattern)
+        if name is None:
+            raise UnsupportedError(
+                UNSUPPORTED_EXCEPTION,
+                "a handler that looks at the exception's value is not supported",
+                rule.span,
+                hint="use the exception's name, or `_`",
+            )
+        with self.block() as then:
+            self.emit(ir.ClearError())
+            self.into(rule.body, env, target)
+        with self.block() as otherwise:
+            self._handlers(rest, env, target)
+        self.emit(ir.If(ir.HasError(name), tuple(then), tuple(otherwise)))
+
+    # --- bodies of functions -------------------------------------------------------------------
+
+    def tail(self, e: core.Exp, env: Env) -> None:
+        """Evaluate and return."""
+        match e:
+            case core.If() if not self._is_short(e):
+                condition = self.ir(e.condition, env)
+                with self.block() as then:
+                    self.tail(e.then, env)
+                with self.block() as otherwise:
+                    self.tail(e.otherwise, env)
+                self.emit(ir.If(condition, tuple(then), tuple(otherwise)))
+            case core.Case():
+                value = self.exp(e.scrutinee, env)
+                self.tail_rules(e.rules, value, env)
+            case core.Let():
+                self.tail(e.body, self.declare(e.declarations, env))
+            case core.Sequence():
+                for item in e.items[:-1]:
+                    self.effect(item, env)
+                self.tail(e.items[-1], env)
+            case core.Apply():
+                self._tail_call(e, env)
+            case _:
+                self._return(self.ir(e, env))
+
+    def tail_rules(self, rules: tuple[core.Rule, ...], value: Val, env: Env) -> None:
+        """Return what the rule that fits gives."""
+        result = self.representation(rules[0].body.type)
+        ways = Ways(self.tail, lambda: self._return(self.zero(result)))
+        self._chain(rules, value, env, "Match", ways)
+
+    def _is_short(self, e: core.If) -> bool:
+        return size(e) <= 14 and is_simple(e) and not self._may_call_itself(e)
+
+    def _may_call_itself(self, e: core.Exp) -> bool:
+        return bool(self.key) and any(
+            isinstance(n, core.Var) and n.symbol.name == self.key.split("/")[0] for n in nodes(e)
+        )
+
+    def _tail_call(self, e: core.Apply, env: Env) -> None:
+        function = self.exp(e.function, env)
+        argument = self.exp(e.argument, env)
+        named: Val = function
+        arguments: tuple[Val, ...] = (argument,)
+        if isinstance(function, Partial):
+            named, arguments = function.function, (*function.arguments, argument)
+        if isinstance(named, NamedFunction) and self.key:
+            parameters, _ = split_parameters(named.function)
+            if len(parameters) == len(arguments) and not type_has_function(self.type_of(e.type)):
+                key, code = self.program.prepare_call(self, named, arguments)
+                if key == self.key:
+                    self.has_self_call = True
+                    self.emit(ir.SelfCall(code))
+                    return
+        self._return(self.code(self.apply(function, argument, self.type_of(e.type), e.span), e.span))
+
+    def _return(self, value: Ir) -> None:
+        if value.type == ir.UNIT:
+            if not is_atomic(value):
+                self.emit(ir.Do(value))
+            self.emit(ir.Return(None))
+        else:
+            self.emit(ir.Return(value))
+
+
+# --- shapes of expressions ---------------------------------------------------------------------
+
+
+def nodes(e: core.Exp) -> Iterator[core.Exp]:
+    """All subexpressions, the expression first."""
+    yield e
+    for child in children(e):
+        yield from nodes(child)
+
+
+def size(e: core.Exp) -> int:
+    """The number of nodes."""
+    return sum(1 for _ in nodes(e))
+
+
+def is_simple(e: core.Exp) -> bool:
+    """Whether it will most likely become a C expression without statements before it."""
+    simple = core.Lit | core.Var | core.Builtin | core.Con | core.Apply | core.RecordExp | core.Select | core.ListExp | core.If
+    return all(isinstance(n, simple) for n in nodes(e))
+
+
+def handled_name(pattern: core.Pat) -> str | None:
+    """The exception that a handler's pattern names, "" for any; None if it looks at a value."""
+    match pattern:
+        case core.PWild() | core.PVar():
+            return ""
+        case core.PCon(constructor=c, argument=None | core.PWild()):
+            return c.name
+    return None
+
+
+def covers(rules: tuple[core.Rule, ...]) -> bool:
+    """Whether the rules are one for each constructor of a data type, with irrefutable arguments, so that the last needs no test."""
+    tags: set[int] = set()
+    for rule in rules:
+        p = rule.pattern
+        if not isinstance(p, core.PCon) or p.constructor.siblings == 0:
+            return False
+        if p.argument is not None and not is_irrefutable(p.argument):
+            return False
+        tags.add(p.constructor.tag)
+    first = rules[0].pattern
+    assert isinstance(first, core.PCon)
+    return len(tags) == first.constructor.siblings == len(rules)

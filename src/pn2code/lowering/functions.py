@@ -1,0 +1,500 @@
+"""The functions and values of a net's declarations, made into C functions and constants as inscriptions ask for them.
+
+A function is compiled once for each choice of its types and of the functions that are passed to it. The ML text
+
+    fun twice f x = f (f x);   twice (fn y => y + k) 3
+
+gives `twice/1 (cx, k, x)`: what the passed function captures (`k`) is a parameter.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Hashable, Iterator, Mapping
+from typing import TYPE_CHECKING
+
+from pn2code.diagnostics import Origin, Span
+from pn2code.lowering import ir
+from pn2code.lowering.codes import (
+    UNSUPPORTED_EXPRESSION,
+    UNSUPPORTED_FUNCTION_VALUE,
+    UnsupportedError,
+)
+from pn2code.lowering.ir import Ir, Local, Rep, Stmt
+from pn2code.lowering.types import Types, substitute
+from pn2code.lowering.types import has_function as type_has_function
+from pn2code.lowering.values import (
+    Binding,
+    NamedFunction,
+    RecordVal,
+    Reference,
+    Val,
+    capture,
+    children,
+    is_static,
+    pattern_symbols,
+    type_key,
+)
+from pn2code.ml import core
+from pn2code.ml.core import Symbol
+from pn2code.ml.types import TCon, TFun, TRecord, Type
+
+if TYPE_CHECKING:
+    from pn2code.lowering.builtins import Builtins
+    from pn2code.lowering.expressions import Body
+
+_MAX_FUNCTIONS = 2000
+
+IMPURE = frozenset({"Ref.!", "Ref.:=", "Ref.+=", "Ref.-=", "Ref.*=", "Ref.::=", "Ref.inc", "Ref.dec", "TextIO.print", "Ms.random", "Colset.ran"})  # fmt: skip
+"""Built-in functions whose order of evaluation matters; all of `Random` too."""
+
+
+def is_impure_builtin(name: str) -> bool:
+    """Whether the built-in function reads or changes something."""
+    return name in IMPURE or name.startswith("Random.")
+
+
+def split_parameters(function: core.Lambda) -> tuple[tuple[Type, ...], Type]:
+    """The types of the curried parameters that a definition takes one after the other, and that of the body."""
+    parameters = []
+    body: core.Exp = function
+    while isinstance(body, core.Lambda):
+        assert isinstance(body.type, TFun)
+        parameters.append(body.type.argument)
+        if len(body.rules) != 1:
+            return tuple(parameters), body.type.result
+        body = body.rules[0].body
+    return tuple(parameters), body.type
+
+
+def is_split(rules: tuple[core.Rule, ...], t: Type) -> bool:
+    """Whether a tuple parameter is passed component by component: no rule needs it as a whole."""
+    takes_apart = all(isinstance(r.pattern, core.PRecord | core.PWild) for r in rules)
+    is_used = any(isinstance(r.pattern, core.PRecord) for r in rules)
+    return isinstance(t, TRecord) and t.is_tuple and takes_apart and is_used
+
+
+class Program:
+    """All that is asked for of the declarations. One per net."""
+
+    def __init__(self, program: core.Program, types: Types, builtins: Builtins, real_time: bool) -> None:
+        self.core = program
+        self.types = types
+        self.builtins = builtins
+        self.real_time = real_time
+        self.position = Origin("")
+        self._functions: dict[Hashable, str] = {}
+        self._made: dict[str, ir.Function] = {}
+        self._pending: list[tuple[str, NamedFunction, tuple[Binding, ...], list[Local]]] = []
+        self._counters: dict[str, int] = {}
+        self._groups: dict[int, core.RecBind] = {}
+        self._values: dict[int, tuple[int, core.ValBind]] = {}
+        self._globals: dict[Hashable, Reference | ir.GlobalUse] = {}
+        self._setups: dict[tuple[int, Hashable], tuple[ir.Global, ...]] = {}
+        self._global_names: set[str] = set()
+        self._impure: dict[int, bool] = {}
+        for position, dec in enumerate(program.declarations):
+            if isinstance(dec, core.RecBind):
+                for symbol, _ in dec.bindings:
+                    self._groups[symbol.uid] = dec
+            elif isinstance(dec, core.ValBind):
+                for symbol in pattern_symbols(dec.pattern):
+                    self._values[symbol.uid] = (position, dec)
+
+    # --- top-level names -----------------------------------------------------------------------
+
+    def global_value(
+        self, body: Body, symbol: Symbol, inst: Mapping[int, Type], at: Span
+    ) -> Binding:
+        """What a top-level name stands for."""
+        if symbol.uid in self._groups:
+            return NamedFunction(symbol, self._groups[symbol.uid], {}, dict(inst))
+        if symbol.uid not in self._values:
+            raise UnsupportedError(
+                UNSUPPORTED_EXPRESSION, f"`{symbol.name}` has no value that the compiler knows", at
+            )
+        position, dec = self._values[symbol.uid]
+        t = substitute(symbol.type, inst)
+        if type_has_function(t):
+            return self._static_global(body, dec, inst)
+        key: Hashable = (symbol.uid, type_key(inst))
+        if key not in self._globals:
+            self._make_globals(position, dec, inst)
+        return self._globals[key]
+
+    @staticmethod
+    def _static_global(body: Body, dec: core.ValBind, inst: Mapping[int, Type]) -> Binding:
+        """`val f = fn x => ...`: looked at anew for each use."""
+        outer, body.types = body.types, inst
+        try:
+            return body.exp(dec.value, {})
+        finally:
+            body.types = outer
+
+    def _make_globals(self, position: int, dec: core.ValBind, inst: Mapping[int, Type]) -> None:
+        from pn2code.lowering.expressions import Body
+
+        value = dec.value
+        is_reference = False
+        if isinstance(dec.pattern, core.PVar) and _is_reference(dec.pattern.symbol.type):
+            if not (isinstance(value, core.Apply) and _is_builtin(value.function, "Ref.ref")):
+                raise UnsupportedError(
+                    UNSUPPORTED_EXPRESSION, "only `ref` of a value makes a reference here", dec.span
+                )
+            value, is_reference = value.argument, True
+        body = Body(self, inst)
+        made: list[ir.Global] = []
+        names: dict[int, str] = {}
+        for symbol in pattern_symbols(dec.pattern):
+            t = substitute(symbol.type, inst)
+            if is_reference:
+                assert isinstance(t, TCon)
+                t = t.args[0]
+            lowered = self.types.lower(t, dec.span)
+            name = self._fresh_global(symbol.name)
+            names[symbol.uid] = name
+            table = self.types.plain(lowered)
+            key: Hashable = (symbol.uid, type_key(inst))
+            if is_reference:
+                self._globals[key] = Reference(name, lowered, table)
+            else:
+                self._globals[key] = ir.GlobalUse(name, lowered)
+            source = dec.span.text
+            made.append(
+                ir.Global(
+                    name, symbol.name, lowered, table, is_reference, (), source, dec.span.origin
+                )
+            )
+        code = body.exp(value, {})
+        if isinstance(dec.pattern, core.PVar):
+            body.emit(ir.SetGlobal(names[dec.pattern.symbol.uid], body.code(code)))
+        else:
+            env = body.bind_pattern(dec.pattern, code)
+            for symbol in pattern_symbols(dec.pattern):
+                stored = env[symbol.uid]
+                assert not is_static(stored)
+                body.emit(ir.SetGlobal(names[symbol.uid], body.code(stored)))  # type: ignore[arg-type]
+        if made:
+            first = made[0]
+            made[0] = ir.Global(
+                first.name, first.hint, first.type, first.table, is_reference,
+                tuple(body.statements), first.source, first.origin,
+            )  # fmt: skip
+        self._setups[(position, type_key(inst))] = tuple(made)
+
+    def _fresh_global(self, name: str) -> str:
+        fresh, n = name, 2
+        while fresh in self._global_names:
+            fresh, n = f"{name} {n}", n + 1
+        self._global_names.add(fresh)
+        return fresh
+
+    def globals(self) -> tuple[ir.Global, ...]:
+        """The values asked for, in order of declaration."""
+        ordered = sorted(self._setups.items(), key=lambda item: (item[0][0], str(item[0][1])))
+        return tuple(g for _, group in ordered for g in group)
+
+    # --- functions -----------------------------------------------------------------------------
+
+    @staticmethod
+    def group_env(function: NamedFunction) -> Mapping[int, Binding]:
+        """What the body of a function sees outside its parameters: its surroundings and its group."""
+        siblings = {
+            s.uid: NamedFunction(s, function.group, function.env, function.types)
+            for s, _ in function.group.bindings
+        }
+        return {**function.env, **siblings}
+
+    def call(
+        self, body: Body, function: NamedFunction, arguments: tuple[Val, ...], at: Span
+    ) -> Val:
+        """A call of the C function for these arguments."""
+        key, code = self.prepare_call(body, function, arguments)
+        _, result = split_parameters(function.function)
+        t = self.types.lower(substitute(result, function.types), at)
+        call = ir.FunCall(key, code, t)
+        impure = self.is_impure(function.function) or any(map(self._is_impure_value, arguments))
+        if impure or t.rep is Rep.UNIT:
+            return body.spill(call, function.symbol.name)
+        return call
+
+    def prepare_call(
+        self, body: Body, function: NamedFunction, arguments: tuple[Val, ...]
+    ) -> tuple[str, tuple[Ir, ...]]:
+        """The key of the C function and the C arguments."""
+        slots = self._slots(body, function, arguments)
+        parts = [capture(function), *(capture(slot) for slot in slots)]
+        identity: Hashable = tuple(part.key for part in parts)
+        code = tuple(c for part in parts for c in part.code)
+        if identity not in self._functions:
+            if len(self._functions) >= _MAX_FUNCTIONS:
+                raise UnsupportedError(
+                    UNSUPPORTED_FUNCTION_VALUE,
+                    f"`{function.symbol.name}` is passed a new function each time it calls itself",
+                    self.position,
+                )
+            number = self._counters.get(function.symbol.name, 0) + 1
+            self._counters[function.symbol.name] = number
+            key = f"{function.symbol.name}/{number}"
+            self._functions[identity] = key
+            self._enter(key, function, parts, slots)
+        return self._functions[identity], code
+
+    def _slots(
+        self, body: Body, function: NamedFunction, arguments: tuple[Val, ...]
+    ) -> list[Val]:
+        """The arguments as they are passed: tuples that are taken apart by the patterns, component by component."""
+        slots: list[Val] = []
+        for (rules, t), argument in zip(_parameters(function), arguments, strict=True):
+            if isinstance(argument, RecordVal):
+                if is_split(rules, t):
+                    assert isinstance(t, TRecord)
+                    slots.extend(self._slot(body, argument.fields[x]) for x, _ in t.fields)
+                    continue
+            elif is_split(rules, t) and not is_static(argument):
+                assert isinstance(t, TRecord)
+                whole = body.settle(argument, function.symbol.name)
+                t = substitute(t, function.types)
+                assert isinstance(t, TRecord)
+                slots.extend(body.select(whole, label, part) for label, part in t.fields)
+                continue
+            slots.append(self._slot(body, argument))
+        return slots
+
+    @staticmethod
+    def _slot(body: Body, value: Val) -> Val:
+        from pn2code.lowering.values import has_function
+
+        return body.code(value) if isinstance(value, RecordVal) and not has_function(value) else value
+
+    def _enter(
+        self, key: str, function: NamedFunction, parts: list, slots: list[Val]  # type: ignore[type-arg]
+    ) -> None:
+        """Note a function to be made: with parameters in the place of what was captured."""
+        parameters: list[Local] = []
+        rebuilt: list[Binding] = []
+        names = _names(function)
+        counter = 0
+        for i, part in enumerate(parts):
+            hint = names[i - 1] if 0 < i <= len(names) else "captured"
+            fresh = []
+            for c in part.code:
+                counter += 1
+                hint_of = _hint_of(c) if i == 0 or len(part.code) > 1 else hint
+                fresh.append(Local(-counter, hint_of or hint, c.type))
+            parameters.extend(fresh)
+            rebuilt.append(part.rebuild([ir.Use(p) for p in fresh]))
+        self._pending.append((key, function, tuple(rebuilt), parameters))
+
+    def finish(self) -> tuple[ir.Function, ...]:
+        """Make all functions that are asked for, and those that they ask for."""
+        while self._pending:
+            key, function, rebuilt, parameters = self._pending.pop()
+            self._made[key] = self._make(key, function, rebuilt, parameters)
+        return order_functions(self._made)
+
+    def _make(
+        self,
+        key: str,
+        function: NamedFunction,
+        rebuilt: tuple[Binding, ...],
+        parameters: list[Local],
+    ) -> ir.Function:
+        from pn2code.lowering.expressions import Body
+
+        head, *slots = rebuilt
+        assert isinstance(head, NamedFunction)
+        self.position = function.function.span.origin
+        body = Body(self, head.types, key)
+        env = dict(self.group_env(head))
+        at = 0
+        remaining: core.Exp = function.function
+        for rules, t in _parameters(function):
+            if is_split(rules, t):
+                assert isinstance(t, TRecord)
+                n = len(t.fields)
+                fields = dict(zip((label for label, _ in t.fields), slots[at : at + n], strict=True))
+                argument: Val = RecordVal(fields, substitute(t, head.types))  # type: ignore[arg-type]
+                at += n
+            else:
+                argument = slots[at]  # type: ignore[assignment]
+                at += 1
+            assert isinstance(remaining, core.Lambda)
+            if len(remaining.rules) > 1:
+                body.tail_rules(remaining.rules, argument, env)
+                break
+            env = dict(body.bind_pattern(remaining.rules[0].pattern, argument, env))
+            remaining = remaining.rules[0].body
+        else:
+            body.tail(remaining, env)
+        _, result = split_parameters(function.function)
+        span = function.group.span if len(function.group.bindings) == 1 else function.function.span
+        return ir.Function(
+            key, function.symbol.name, tuple(parameters),
+            self.types.lower(substitute(result, head.types)), tuple(body.statements),
+            body.has_self_call, False, span.text, span.origin,
+        )  # fmt: skip
+
+    # --- purity --------------------------------------------------------------------------------
+
+    def is_impure(self, e: core.Exp) -> bool:
+        """Whether the order of evaluation matters for it."""
+        known = self._impure.get(id(e))
+        if known is not None:
+            return known
+        self._impure[id(e)] = False  # while we look: recursion adds nothing
+        result = any(self._is_impure_node(n) for n in _nodes(e))
+        self._impure[id(e)] = result
+        return result
+
+    def _is_impure_node(self, e: core.Exp) -> bool:
+        if isinstance(e, core.Builtin):
+            return is_impure_builtin(e.name if not e.colset else e.name)
+        if isinstance(e, core.Var):
+            group = self._groups.get(e.symbol.uid)
+            if group is not None:
+                return any(self.is_impure(f) for _, f in group.bindings)
+        return False
+
+    def _is_impure_value(self, value: Binding) -> bool:
+        from pn2code.lowering.values import BuiltinFunction, Closure, Partial
+
+        match value:
+            case Closure(function=f):
+                return self.is_impure(f)
+            case NamedFunction():
+                return self.is_impure(value.function)
+            case BuiltinFunction(node=node):
+                return is_impure_builtin(node.name)
+            case Partial(function=f, arguments=arguments):
+                return self._is_impure_value(f) or any(map(self._is_impure_value, arguments))
+            case RecordVal(fields=fields):
+                return any(map(self._is_impure_value, fields.values()))
+        return False
+
+
+def _is_reference(t: Type) -> bool:
+    return isinstance(t, TCon) and t.name == "ref"
+
+
+def _is_builtin(e: core.Exp, name: str) -> bool:
+    return isinstance(e, core.Builtin) and e.name == name
+
+
+def _nodes(e: core.Exp) -> Iterator[core.Exp]:
+    yield e
+    for child in children(e):
+        yield from _nodes(child)
+
+
+def _parameters(function: NamedFunction) -> list[tuple[tuple[core.Rule, ...], Type]]:
+    """Per curried parameter: the rules that look at it, and its type in the scheme."""
+    types, _ = split_parameters(function.function)
+    out = []
+    body: core.Exp = function.function
+    for t in types:
+        assert isinstance(body, core.Lambda)
+        out.append((body.rules, t))
+        body = body.rules[0].body
+    return out
+
+
+def _names(function: NamedFunction) -> list[str]:
+    """Names for the C parameters, one per slot."""
+    names = []
+    for rules, t in _parameters(function):
+        if is_split(rules, t):
+            assert isinstance(t, TRecord)
+            for i, (label, _) in enumerate(t.fields):
+                inner = [
+                    r.pattern.fields[i][1] for r in rules if isinstance(r.pattern, core.PRecord)
+                ]
+                names.append(_pattern_name(inner) or f"a{label}")
+        else:
+            names.append(_pattern_name([r.pattern for r in rules]) or "a")
+    return names
+
+
+def _pattern_name(patterns: list[core.Pat]) -> str:
+    for pattern in patterns:
+        if isinstance(pattern, core.PVar | core.PAs):
+            return pattern.symbol.name
+    return ""
+
+
+def _hint_of(code: Ir) -> str:
+    match code:
+        case ir.Use(local=local):
+            return local.hint
+        case ir.Member(label=label) if not label.isdigit():
+            return label
+    return ""
+
+
+# --- order and recursion -----------------------------------------------------------------------
+
+
+def called(statements: tuple[Stmt, ...]) -> list[str]:
+    """The keys of the functions that statements call, in order of first use."""
+    found: dict[str, None] = {}
+    for node in ir_nodes(statements):
+        if isinstance(node, ir.FunCall):
+            found.setdefault(node.function)
+    return list(found)
+
+
+def ir_nodes(item: object) -> Iterator[object]:
+    """All IR nodes in a statement, expression or tuple of them."""
+    if isinstance(item, tuple):
+        for part in item:
+            yield from ir_nodes(part)
+    elif hasattr(item, "__dataclass_fields__"):
+        yield item
+        for name in item.__dataclass_fields__:
+            yield from ir_nodes(getattr(item, name))
+
+
+def order_functions(made: dict[str, ir.Function]) -> tuple[ir.Function, ...]:
+    """Callees first; functions that call themselves are marked."""
+    graph = {key: called(f.body) for key, f in made.items()}
+    order: list[str] = []
+    components: dict[str, int] = {}
+    index: dict[str, int] = {}
+    low: dict[str, int] = {}
+    stack: list[str] = []
+    recursive: set[str] = set()
+
+    def visit(key: str) -> None:
+        index[key] = low[key] = len(index)
+        stack.append(key)
+        for callee in graph[key]:
+            if callee not in index:
+                visit(callee)
+                low[key] = min(low[key], low[callee])
+            elif callee not in components:
+                low[key] = min(low[key], index[callee])
+        if low[key] == index[key]:
+            members = []
+            while True:
+                member = stack.pop()
+                components[member] = index[key]
+                members.append(member)
+                if member == key:
+                    break
+            order.extend(reversed(members))
+            if len(members) > 1 or key in graph[key]:
+                recursive.update(members)
+
+    for key in sorted(made):
+        if key not in index:
+            visit(key)
+    result = []
+    for key in order:
+        f = made[key]
+        is_recursive = key in recursive
+        result.append(
+            ir.Function(
+                f.key, f.hint, f.parameters, f.result, f.body, f.loops and not is_recursive,
+                is_recursive, f.source, f.origin,
+            )  # fmt: skip
+        )
+    return tuple(result)

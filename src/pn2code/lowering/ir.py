@@ -1,0 +1,710 @@
+"""`NetIR`: the net as small imperative programs over C-like types; what `emission.c` prints.
+
+Names here are still those of the net; C identifiers are made by `emission.names`. Every value has an `IrType`, every type that
+needs a C declaration a definition, every colour set a `Descriptor` (a constant table of the runtime, `pn_type_t`).
+
+One transition with guard `[n > 0]`, input arc ``1`n`` and output arc ``1`(n - 1)`` becomes
+
+    enumerate   for token i of Buffer: bind n = token i; unless n > 0: next; yield
+    fire        take Buffer 1 n; put Buffer 1 (n - 1); commit
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from enum import Enum
+
+from pn2code.diagnostics import NOWHERE, Origin
+
+# --- types -------------------------------------------------------------------------------------
+
+
+class Rep(Enum):
+    """How a value is represented in C; see cnative/include/pn/pn_type.h."""
+
+    UNIT = "unit"
+    BOOL = "bool"
+    INT = "int"
+    REAL = "real"
+    STRING = "string"
+    CHAR = "char"
+    TIME = "time"
+    ENUM = "enum"
+    STRUCT = "struct"
+    LIST = "list"
+    UNION = "union"
+
+
+@dataclass(frozen=True, slots=True)
+class IrType:
+    """A type; `name` is the key of its definition (ENUM, STRUCT, LIST, UNION), "" otherwise."""
+
+    rep: Rep
+    name: str = ""
+
+    def __str__(self) -> str:
+        """Short form for dumps."""
+        return self.name or self.rep.value
+
+
+UNIT = IrType(Rep.UNIT)
+BOOL = IrType(Rep.BOOL)
+INT = IrType(Rep.INT)
+REAL = IrType(Rep.REAL)
+STRING = IrType(Rep.STRING)
+CHAR = IrType(Rep.CHAR)
+TIME = IrType(Rep.TIME)
+"""A time stamp in a token (`pn_time_t`); expressions compute with INT or REAL."""
+
+
+@dataclass(frozen=True, slots=True)
+class EnumDef:
+    """An enumeration: its constructors in order."""
+
+    name: str
+    constructors: tuple[str, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class StructDef:
+    """A record or tuple: fields in the order of the first colour set that has this type."""
+
+    name: str
+    fields: tuple[tuple[str, IrType], ...]
+
+
+@dataclass(frozen=True, slots=True)
+class ListDef:
+    """A list: cells of this element."""
+
+    name: str
+    element: IrType
+
+
+@dataclass(frozen=True, slots=True)
+class UnionDef:
+    """A data type with arguments: (constructor, argument type or None, whether the argument is behind a pointer)."""
+
+    name: str
+    constructors: tuple[tuple[str, IrType | None, bool], ...]
+
+
+Definition = EnumDef | StructDef | ListDef | UnionDef
+
+
+@dataclass(frozen=True, slots=True)
+class Descriptor:
+    """A colour set, or a type without one, as the runtime's table.
+
+    Args:
+        name: key; that of the colour set, or of the type.
+        type: its representation.
+        names: ENUM: constructors; UNIT, BOOL with own names; index: the stem.
+        fields: STRUCT: (label, key of the component's descriptor) in declared order; UNION: (constructor, key or "").
+        element: LIST: key of the element's descriptor.
+        low, high: bounds, None: unbounded. LIST and STRING: of the length.
+        chars: STRING: range of the characters as codes.
+        is_index, is_float32, is_narrow, is_tuple: as in pn_type.h.
+        member: key of the function that decides membership of a subset, "" for none.
+        comment: what is declared, for the generated code.
+    """
+
+    name: str
+    type: IrType
+    names: tuple[str, ...] = ()
+    fields: tuple[tuple[str, str], ...] = ()
+    element: str = ""
+    low: int | float | None = None
+    high: int | float | None = None
+    chars: tuple[int, int] | None = None
+    is_index: bool = False
+    is_float32: bool = False
+    is_narrow: bool = False
+    is_tuple: bool = False
+    member: str = ""
+    comment: str = ""
+
+
+# --- expressions -------------------------------------------------------------------------------
+
+
+@dataclass(frozen=True, slots=True)
+class Local:
+    """A local variable or parameter of one function; `uid` is unique in it, `hint` the ML name."""
+
+    uid: int
+    hint: str
+    type: IrType
+
+
+@dataclass(frozen=True, slots=True)
+class Const:
+    """A scalar constant: bool, int, float, str (STRING; CHAR: its code), None (UNIT)."""
+
+    value: bool | int | float | str | None
+    type: IrType
+
+
+@dataclass(frozen=True, slots=True)
+class Use:
+    """The value of a local."""
+
+    local: Local
+
+    @property
+    def type(self) -> IrType:
+        """The local's type."""
+        return self.local.type
+
+
+@dataclass(frozen=True, slots=True)
+class GlobalUse:
+    """The value of a `val` of the declarations, or the contents of a reference."""
+
+    name: str
+    type: IrType
+
+
+@dataclass(frozen=True, slots=True)
+class Bound:
+    """The value of net variable `index` in the transition's binding."""
+
+    index: int
+    type: IrType
+
+
+@dataclass(frozen=True, slots=True)
+class TokenValue:
+    """The value of the token at `index` in the array of a place."""
+
+    place: int
+    index: Local
+    type: IrType
+
+
+@dataclass(frozen=True, slots=True)
+class Now:
+    """Model time as INT or REAL."""
+
+    type: IrType
+
+
+@dataclass(frozen=True, slots=True)
+class FunCall:
+    """Call of a function of the net by key."""
+
+    function: str
+    arguments: tuple[Ir, ...]
+    type: IrType
+
+
+@dataclass(frozen=True, slots=True)
+class Op:
+    """A built-in function by its name in `ml.builtins` (or "list.cons" and the like); `table` is the descriptor it works on."""
+
+    name: str
+    arguments: tuple[Ir, ...]
+    type: IrType
+    table: str = ""
+
+
+@dataclass(frozen=True, slots=True)
+class Member:
+    """A field of a struct."""
+
+    record: Ir
+    label: str
+    type: IrType
+
+
+@dataclass(frozen=True, slots=True)
+class MakeStruct:
+    """A struct; fields in the order of the definition."""
+
+    type: IrType
+    fields: tuple[tuple[str, Ir], ...]
+
+
+@dataclass(frozen=True, slots=True)
+class EnumValue:
+    """Constructor number `tag` of an enumeration."""
+
+    tag: int
+    type: IrType
+
+
+@dataclass(frozen=True, slots=True)
+class MakeUnion:
+    """A value of a data type. A boxed argument is copied into the arena."""
+
+    tag: int
+    argument: Ir | None
+    type: IrType
+
+
+@dataclass(frozen=True, slots=True)
+class IsTag:
+    """Whether an enumeration or union value has this constructor."""
+
+    value: Ir
+    tag: int
+
+    @property
+    def type(self) -> IrType:
+        """A truth value."""
+        return BOOL
+
+
+@dataclass(frozen=True, slots=True)
+class Argument:
+    """The argument of a union value whose constructor is known to be `tag`."""
+
+    value: Ir
+    tag: int
+    type: IrType
+
+
+@dataclass(frozen=True, slots=True)
+class Select:
+    """`condition ? then : otherwise`."""
+
+    condition: Ir
+    then: Ir
+    otherwise: Ir
+    type: IrType
+
+
+@dataclass(frozen=True, slots=True)
+class Head:
+    """The first element of a list known not to be empty."""
+
+    list: Ir
+    type: IrType
+
+
+@dataclass(frozen=True, slots=True)
+class Tail:
+    """All but the first element of a list known not to be empty."""
+
+    list: Ir
+
+    @property
+    def type(self) -> IrType:
+        """The list's type."""
+        return self.list.type
+
+
+@dataclass(frozen=True, slots=True)
+class IsNil:
+    """Whether a list is empty."""
+
+    list: Ir
+
+    @property
+    def type(self) -> IrType:
+        """A truth value."""
+        return BOOL
+
+
+@dataclass(frozen=True, slots=True)
+class Ok:
+    """Whether no error has been raised."""
+
+    @property
+    def type(self) -> IrType:
+        """A truth value."""
+        return BOOL
+
+
+@dataclass(frozen=True, slots=True)
+class HasError:
+    """Whether the error is the exception of this name; "" stands for any."""
+
+    name: str
+
+    @property
+    def type(self) -> IrType:
+        """A truth value."""
+        return BOOL
+
+
+Ir = (
+    Const | Use | GlobalUse | Bound | TokenValue | Now | FunCall | Op | Member | MakeStruct | EnumValue | MakeUnion | IsTag
+    | Argument | Select | Head | Tail | IsNil | Ok | HasError
+)  # fmt: skip
+
+# --- statements --------------------------------------------------------------------------------
+
+
+@dataclass(frozen=True, slots=True)
+class Let:
+    """Declares a local with its value; `mutable` if it is assigned again."""
+
+    local: Local
+    value: Ir
+    mutable: bool = False
+
+
+@dataclass(frozen=True, slots=True)
+class Declare:
+    """Declares a local that each way on assigns."""
+
+    local: Local
+
+
+@dataclass(frozen=True, slots=True)
+class Assign:
+    """Assigns a local."""
+
+    local: Local
+    value: Ir
+
+
+@dataclass(frozen=True, slots=True)
+class Fill:
+    """Lets a function of the runtime put a value of colour set `table` into a declared local."""
+
+    local: Local
+    name: str
+    table: str
+    arguments: tuple[Ir, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class SetGlobal:
+    """Assigns a `val` when the net starts, or a reference (`is_reference`: not after an error)."""
+
+    name: str
+    value: Ir
+    is_reference: bool = False
+
+
+@dataclass(frozen=True, slots=True)
+class Do:
+    """Evaluates for the effect."""
+
+    value: Ir
+
+
+@dataclass(frozen=True, slots=True)
+class If:
+    """Two ways."""
+
+    condition: Ir
+    then: tuple[Stmt, ...]
+    otherwise: tuple[Stmt, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class While:
+    """`while` of ML: `setup` computes the condition anew each time. Stops after an error."""
+
+    setup: tuple[Stmt, ...]
+    condition: Ir
+    body: tuple[Stmt, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class ForList:
+    """Runs over the cells of a list; `cell` is the current one, a non-empty list. Stops after an error, or once `until` is true."""
+
+    cell: Local
+    list: Ir
+    body: tuple[Stmt, ...]
+    until: Local | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class ForCount:
+    """`local` runs from 0 to `count` - 1. Stops after an error."""
+
+    local: Local
+    count: Ir
+    body: tuple[Stmt, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class Return:
+    """Ends the function; always the last statement on its way. None for a function of type unit."""
+
+    value: Ir | None
+
+
+@dataclass(frozen=True, slots=True)
+class SelfCall:
+    """The function calls itself as the last thing it does."""
+
+    arguments: tuple[Ir, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class Raise:
+    """Raises an exception by name."""
+
+    name: str
+
+
+@dataclass(frozen=True, slots=True)
+class ClearError:
+    """The exception has been handled."""
+
+
+@dataclass(frozen=True, slots=True)
+class Note:
+    """A comment."""
+
+    text: str
+
+
+# Statements of transitions
+
+
+@dataclass(frozen=True, slots=True)
+class ForTokens:
+    """Runs over the distinct values in a place. Timed: only values of which a token is there at `limit` (None: decided later)."""
+
+    place: int
+    index: Local
+    body: tuple[Stmt, ...]
+    note: str
+
+
+@dataclass(frozen=True, slots=True)
+class ForValues:
+    """Runs over all values of a small colour set (`table`), bound to variable `variable`."""
+
+    variable: int
+    table: str
+    body: tuple[Stmt, ...]
+    note: str
+
+
+@dataclass(frozen=True, slots=True)
+class Bind:
+    """Gives a net variable its value."""
+
+    variable: int
+    value: Ir
+
+
+@dataclass(frozen=True, slots=True)
+class Unless:
+    """Goes on with the next candidate unless the condition holds."""
+
+    condition: Ir
+    note: str
+
+
+@dataclass(frozen=True, slots=True)
+class UnlessLegal:
+    """Goes on with the next candidate unless the variable's value is in its colour set `table`."""
+
+    variable: int
+    table: str
+
+
+@dataclass(frozen=True, slots=True)
+class UnlessAvailable:
+    """Goes on unless the value at `index` has a token with a stamp not after `limit` (untimed: None), `count` of them."""
+
+    place: int
+    index: Local
+    limit: Ir | None
+    count: int
+
+
+@dataclass(frozen=True, slots=True)
+class UnlessEmpty:
+    """Goes on unless the place of an inhibitor arc has no token that is available now."""
+
+    place: int
+    note: str
+
+
+@dataclass(frozen=True, slots=True)
+class Wanted:
+    """Goes on unless the marking holds all that `takes` want, together."""
+
+    takes: tuple[Stmt, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class Yield:
+    """Gives the binding to the host."""
+
+
+@dataclass(frozen=True, slots=True)
+class Take:
+    """Takes `count` tokens `value`; `limit`: latest stamp (INT or REAL) in a timed place."""
+
+    place: int
+    count: Ir
+    value: Ir
+    limit: Ir | None
+    note: str = ""
+
+
+@dataclass(frozen=True, slots=True)
+class TakeAll:
+    """Takes each element of a multi-set (`table`: descriptor of its list type)."""
+
+    place: int
+    multiset: Ir
+    table: str
+    limit: Ir | None
+    note: str = ""
+
+
+@dataclass(frozen=True, slots=True)
+class Put:
+    """Puts `count` tokens `value`, stamped `stamp` (INT or REAL) in a timed place."""
+
+    place: int
+    count: Ir
+    value: Ir
+    stamp: Ir | None
+    note: str = ""
+
+
+@dataclass(frozen=True, slots=True)
+class PutAll:
+    """Puts each element of a multi-set; if `timed`, a timed multi-set with `stamp` as the delay to add."""
+
+    place: int
+    multiset: Ir
+    table: str
+    stamp: Ir | None
+    timed: bool = False
+    note: str = ""
+
+
+@dataclass(frozen=True, slots=True)
+class Reset:
+    """Empties a place at the end."""
+
+    place: int
+    note: str = ""
+
+
+Stmt = (
+    Let | Declare | Assign | Fill | SetGlobal | Do | If | While | ForList | ForCount | Return | SelfCall | Raise | ClearError | Note
+    | ForTokens | ForValues | Bind | Unless | UnlessLegal | UnlessAvailable | UnlessEmpty | Wanted | Yield
+    | Take | TakeAll | Put | PutAll | Reset
+)  # fmt: skip
+
+# --- the net -----------------------------------------------------------------------------------
+
+
+@dataclass(frozen=True, slots=True)
+class Function:
+    """A function of the net at one choice of types and of function arguments.
+
+    Args:
+        key: unique.
+        hint: its ML name.
+        parameters: those of type unit are left out.
+        result: UNIT: `void`.
+        loops: its calls of itself are all `SelfCall`s: they become a loop.
+        recursive: calls itself, perhaps through others: its depth is counted.
+        source: the ML text.
+    """
+
+    key: str
+    hint: str
+    parameters: tuple[Local, ...]
+    result: IrType
+    body: tuple[Stmt, ...]
+    loops: bool
+    recursive: bool
+    source: str
+    origin: Origin
+
+
+@dataclass(frozen=True, slots=True)
+class Global:
+    """A `val` (`is_reference`: the contents of a `globref`) and how it is computed when the net starts."""
+
+    name: str
+    hint: str
+    type: IrType
+    table: str
+    is_reference: bool
+    setup: tuple[Stmt, ...]
+    source: str
+    origin: Origin
+
+
+@dataclass(frozen=True, slots=True)
+class Place:
+    """A place: its array and its initial marking (`Put`s)."""
+
+    index: int
+    name: str
+    colset: str
+    origin: Origin
+    owner: int
+    type: IrType
+    table: str
+    timed: bool
+    capacity: int
+    initial: tuple[Stmt, ...]
+    initial_text: str
+
+
+@dataclass(frozen=True, slots=True)
+class Variable:
+    """A net variable of a transition; `is_output`: bound by the code segment."""
+
+    name: str
+    type: IrType
+    table: str
+    is_output: bool
+
+
+@dataclass(frozen=True, slots=True)
+class Transition:
+    """A transition as two programs."""
+
+    index: int
+    name: str
+    id: str
+    origin: Origin
+    owner: int
+    priority: int
+    variables: tuple[Variable, ...]
+    enumerate: tuple[Stmt, ...]
+    fire: tuple[Stmt, ...]
+    guard_text: str
+
+
+@dataclass(frozen=True, slots=True)
+class NetIR:
+    """The whole net.
+
+    Args:
+        digest: SHA-256 over the source's and what the cell adds.
+        definitions: in order of dependence.
+        descriptors: by key, in order of dependence.
+        functions: in an order in which each is preceded by what it calls, except in recursion.
+        order: transition indices by priority, then position.
+    """
+
+    name: str
+    source: str
+    sha256: str
+    digest: str
+    timed: bool
+    real_time: bool
+    definitions: tuple[Definition, ...]
+    descriptors: tuple[Descriptor, ...]
+    globals: tuple[Global, ...]
+    functions: tuple[Function, ...]
+    places: tuple[Place, ...]
+    transitions: tuple[Transition, ...]
+    owners: tuple[str, ...]
+    order: tuple[int, ...]
+    origin: Origin = field(default=NOWHERE)
+
+    def definition(self, name: str) -> Definition:
+        """A type's definition by key."""
+        return next(x for x in self.definitions if x.name == name)

@@ -1,0 +1,144 @@
+"""Patterns -> a condition and the values of the variables.
+
+Example: matching `(x, 3)` against the struct `p` gives the condition `p.2 = 3` and x = `p.1`. The conditions are in an order in
+which each is safe once those before it hold, and so are the values once all hold.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+from pn2code.diagnostics import Span
+from pn2code.lowering import ir
+from pn2code.lowering.ir import Ir, IrType, Rep
+from pn2code.lowering.values import RecordVal, Val
+from pn2code.ml import core
+from pn2code.ml.core import Symbol
+from pn2code.ml.types import Type
+
+NIL_TAG = 0
+
+
+@dataclass(slots=True)
+class Match:
+    """The result: `conditions` in order, `bindings` from left to right (a variable may occur more than once)."""
+
+    conditions: list[Ir] = field(default_factory=list)
+    bindings: list[tuple[Symbol, Val]] = field(default_factory=list)
+
+
+def conjunction(conditions: list[Ir]) -> Ir | None:
+    """All of them, None for none."""
+    result: Ir | None = None
+    for c in conditions:
+        result = c if result is None else ir.Op("andalso", (result, c), ir.BOOL)
+    return result
+
+
+def negation(condition: Ir) -> Ir:
+    """Not."""
+    match condition:
+        case ir.Op(name="Bool.not", arguments=(inner,)):
+            return inner
+        case ir.Const(value=bool(value)):
+            return ir.Const(not value, ir.BOOL)
+    return ir.Op("Bool.not", (condition,), ir.BOOL)
+
+
+class Matcher:
+    """Matches with the types of one function instance; `lower` gives the representation of an ML type."""
+
+    def __init__(self, owner: TypeSource) -> None:
+        self._owner = owner
+
+    def match(self, pattern: core.Pat, value: Val) -> Match:
+        """Match a value, whose C parts are atomic, against a pattern."""
+        result = Match()
+        self._match(pattern, value, result)
+        return result
+
+    def _match(self, pattern: core.Pat, value: Val, out: Match) -> None:
+        match pattern:
+            case core.PWild():
+                return
+            case core.PVar(symbol=symbol):
+                out.bindings.append((symbol, value))
+            case core.PAs(symbol=symbol, pattern=inner):
+                out.bindings.append((symbol, value))
+                self._match(inner, value, out)
+            case core.PLit():
+                code = self._owner.code(value)
+                literal = self._owner.literal(pattern.value, pattern.type, pattern.span)
+                out.conditions.append(ir.Op("=", (code, literal), ir.BOOL))
+            case core.PRecord(fields=fields):
+                for label, inner in fields:
+                    self._match(inner, self._owner.select(value, label, inner.type), out)
+            case core.PCon():
+                self._constructor(pattern, self._owner.code(value), out)
+
+    def _constructor(self, pattern: core.PCon, value: Ir, out: Match) -> None:
+        constructor = pattern.constructor
+        t: IrType = value.type
+        if t.rep is Rep.BOOL:
+            out.conditions.append(value if constructor.tag == 1 else negation(value))
+        elif t.rep is Rep.LIST:
+            self._list(pattern, value, out)
+        elif t.rep in (Rep.ENUM, Rep.UNION):
+            if constructor.siblings != 1:
+                out.conditions.append(ir.IsTag(value, constructor.tag))
+            if pattern.argument is not None:
+                argument = self._owner.representation(pattern.argument.type)
+                self._match(pattern.argument, ir.Argument(value, constructor.tag, argument), out)
+        elif pattern.argument is not None:
+            # An index: its number is its representation.
+            self._match(pattern.argument, value, out)
+
+    def _list(self, pattern: core.PCon, value: Ir, out: Match) -> None:
+        if pattern.argument is None:
+            out.conditions.append(ir.IsNil(value))
+            return
+        out.conditions.append(negation(ir.IsNil(value)))
+        head = ir.Head(value, self._owner.element(value.type))
+        pair = RecordVal({"1": head, "2": ir.Tail(value)}, pattern.argument.type)
+        self._match(pattern.argument, pair, out)
+
+
+class TypeSource:
+    """What a matcher asks of the function body that it works for."""
+
+    def representation(self, t: Type) -> IrType:
+        """The representation of an ML type of this body."""
+        raise NotImplementedError
+
+    def element(self, t: IrType) -> IrType:
+        """The element type of a list type."""
+        raise NotImplementedError
+
+    def code(self, value: Val) -> Ir:
+        """The value as C code."""
+        raise NotImplementedError
+
+    def literal(self, value: int | float | str, t: Type, span: Span) -> ir.Const:
+        """A literal as a constant."""
+        raise NotImplementedError
+
+    def select(self, value: Val, label: str, t: Type) -> Val:
+        """A field of a record."""
+        raise NotImplementedError
+
+
+def is_irrefutable(pattern: core.Pat) -> bool:
+    """Whether every value of the type fits."""
+    match pattern:
+        case core.PWild() | core.PVar():
+            return True
+        case core.PAs(pattern=inner):
+            return is_irrefutable(inner)
+        case core.PRecord(fields=fields):
+            return all(is_irrefutable(p) for _, p in fields)
+        case core.PCon(constructor=c, argument=argument):
+            return c.siblings == 1 and (argument is None or is_irrefutable(argument))
+    return False
+
+
+__all__ = ["Match", "Matcher", "TypeSource", "conjunction", "is_irrefutable", "negation"]

@@ -1,0 +1,181 @@
+"""`Partition` -> `NetIR`: places, initial marking, and for each transition how to enumerate its bindings and how to fire.
+
+`lower(partition, storage, d)`; what cannot be compiled is one diagnostic `unsupported-...` per net element, and then there is
+no `NetIR`.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from typing import TypeVar
+
+from pn2code.cell.partition import Partition
+from pn2code.diagnostics import Diagnostics, Origin
+from pn2code.lowering import ir
+from pn2code.lowering.builtins import Builtins
+from pn2code.lowering.codes import STORAGE_COLSET, UnsupportedError
+from pn2code.lowering.expressions import Body
+from pn2code.lowering.functions import Program
+from pn2code.lowering.inscriptions import Putter
+from pn2code.lowering.transitions import lower_transition
+from pn2code.lowering.types import Types
+from pn2code.ml.colsets import Colset, Kind
+from pn2code.ml.types import BOOL
+from pn2code.net.flat import FlatNet, FlatPlace
+
+T = TypeVar("T")
+
+DEFAULT_CAPACITY = 64
+
+
+def lower(
+    partition: Partition,
+    storage: Mapping[str, str],
+    d: Diagnostics,
+    *,
+    capacity: Mapping[str, int] | None = None,
+    digest: str = "",
+) -> ir.NetIR | None:
+    """Lower the whole net.
+
+    Args:
+        partition: the typed net and its owners.
+        storage: colour set -> "float32", from cell.toml.
+        capacity: by place name (full or short), how many entries (distinct colours; timed: with distinct stamps) it has room
+            for; `DEFAULT_CAPACITY` for all others.
+        digest: SHA-256 of the net and of what the cell contributes; the net's own by default.
+    """
+    return _Lowering(partition, storage, d, capacity or {}, digest).run()
+
+
+class _Lowering:
+    def __init__(
+        self,
+        partition: Partition,
+        storage: Mapping[str, str],
+        d: Diagnostics,
+        capacity: Mapping[str, int],
+        digest: str,
+    ) -> None:
+        self._partition = partition
+        self._net: FlatNet = partition.net
+        self._storage = storage
+        self._d = d
+        self._capacity = capacity
+        self._digest = digest or self._net.sha256
+        self._types = Types(self._net.program, storage)
+        builtins = Builtins(self._net.real_time)
+        self._program = Program(self._net.program, self._types, builtins, self._net.real_time)
+        self._failed = False
+
+    def run(self) -> ir.NetIR | None:
+        self._check_storage()
+        places = [self._guarded(p.origins[0], lambda p=p: self._place(p)) for p in self._net.places]  # type: ignore[misc]
+        transitions = []
+        if not self._failed:
+            transitions = [
+                self._guarded(t.origin, lambda t=t: lower_transition(self._program, self._net, t, self._partition.transition_owner[t.index]))  # type: ignore[misc]
+                for t in self._net.transitions
+            ]
+        members = self._members()
+        functions = self._guarded(Origin(self._net.file), self._program.finish) or ()
+        if self._failed:
+            return None
+        order = sorted(
+            range(len(transitions)), key=lambda i: (self._net.transitions[i].priority, i)
+        )
+        return ir.NetIR(
+            name=self._net.name,
+            source=self._net.file.replace("\\", "/").rsplit("/", 1)[-1],
+            sha256=self._net.sha256,
+            digest=self._digest,
+            timed=self._net.timed,
+            real_time=self._net.real_time,
+            definitions=self._types.definitions(),
+            descriptors=tuple(self._types.descriptors.values()),
+            globals=self._program.globals(),
+            functions=(*functions, *members),
+            places=tuple(p for p in places if p is not None),
+            transitions=tuple(t for t in transitions if t is not None),
+            owners=tuple(o.name for o in self._partition.owners),
+            order=tuple(order),
+        )
+
+    def _guarded(self, origin: Origin, make: Callable[[], T]) -> T | None:
+        self._program.position = origin
+        try:
+            return make()
+        except UnsupportedError as e:
+            at = e.at if e.at != Origin("") else origin
+            self._d.error(e.code, e.message, at, hint=e.hint)
+            self._failed = True
+            return None
+
+    def _check_storage(self) -> None:
+        for name, form in self._storage.items():
+            colset = self._net.program.colsets.get(name)
+            if colset is None or colset.resolved.kind is not Kind.REAL or form != "float32":
+                self._d.error(
+                    STORAGE_COLSET,
+                    f"`[storage]` says `{name} = \"{form}\"`, but "
+                    + ("there is no such colour set" if colset is None else "that is not a real colour set stored as float32"),
+                    colset.origin if colset is not None else Origin(self._net.file),
+                    hint="name a colour set of kind real, and `float32`",
+                )
+                self._failed = True
+
+    def _place(self, place: FlatPlace) -> ir.Place:
+        self._types.lower(place.colset.type, place.colset.origin)
+        table = self._types.colset(place.colset)
+        body = Body(self._program)
+        text = ""
+        if place.initial is not None:
+            exp, form = place.initial
+            zero = ir.Const(0.0, ir.REAL) if self._net.real_time else ir.Const(0, ir.INT)
+            stamp = zero if place.colset.timed else None
+            Putter(body, place.index, {}, stamp, None, "").put(exp, form)
+            text = exp.span.source.text
+        owner = self._partition.place_owner[place.index]
+        return ir.Place(
+            index=place.index,
+            name=place.name,
+            colset=place.colset.name,
+            origin=place.origins[0],
+            owner=-1 if owner is None else owner,
+            type=self._types.lower(place.colset.type),
+            table=table,
+            timed=place.colset.timed,
+            capacity=self._capacity.get(place.name, self._capacity.get(place.short, DEFAULT_CAPACITY)),
+            initial=tuple(body.statements),
+            initial_text=text,
+        )
+
+    def _members(self) -> tuple[ir.Function, ...]:
+        """The functions that decide membership of subsets."""
+        made: list[ir.Function] = []
+        for key, colset in self._types.subsets:
+            function = self._guarded(colset.origin, lambda k=key, c=colset: self._member(k, c))  # type: ignore[misc]
+            if function is not None:
+                made.append(function)
+        return tuple(made)
+
+    def _member(self, key: str, colset: Colset) -> ir.Function:
+        t = self._types.lower(colset.type)
+        value = ir.Local(-1, "value", t)
+        body = Body(self._program)
+        if colset.predicate is not None:
+            predicate = body.exp(colset.predicate, {})
+            result = body.code(
+                body.apply(predicate, ir.Use(value), BOOL, colset.predicate.span)
+            )
+        else:
+            assert colset.members is not None
+            members = body.ir(colset.members, {})
+            result = ir.Op("List.mem", (members, ir.Use(value)), ir.BOOL, self._types.plain(members.type))
+        body.emit(ir.Return(result))
+        source = colset.predicate or colset.members
+        assert source is not None
+        return ir.Function(
+            f"member {key}", f"member_{colset.name}", (value,), ir.BOOL, tuple(body.statements), False, False,
+            source.span.text, colset.origin,
+        )  # fmt: skip

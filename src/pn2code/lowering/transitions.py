@@ -1,0 +1,355 @@
+"""One transition as two programs: enumerate its enabled bindings, fire one of them.
+
+Enumeration follows the binding plan of the front end; each guard and each demand on a place is tested as soon as the variables
+it needs are bound. A place with a single summand of coefficient 1 needs no test beyond the loop that found the token; all
+others are tested together (`Wanted`).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from pn2code.lowering import ir
+from pn2code.lowering.builtins import components, equal
+from pn2code.lowering.expressions import Body
+from pn2code.lowering.functions import Program
+from pn2code.lowering.inscriptions import Putter, plus
+from pn2code.lowering.ir import Ir, Stmt
+from pn2code.lowering.matching import conjunction
+from pn2code.lowering.values import Binding, Env, free_variables
+from pn2code.ml import core
+from pn2code.ml.core import Symbol
+from pn2code.net.flat import (
+    ArcKind,
+    BindAll,
+    BindEquation,
+    BindRandom,
+    BindTerm,
+    FlatArc,
+    FlatNet,
+    FlatTransition,
+    Term,
+)
+
+_TAKING = (ArcKind.INPUT, ArcKind.BOTH)
+_PUTTING = (ArcKind.OUTPUT, ArcKind.BOTH)
+
+
+def lower_transition(program: Program, net: FlatNet, t: FlatTransition, owner: int) -> ir.Transition:
+    """Lower one transition instance."""
+    outputs = set(t.code.outputs) if t.code else set()
+    variables = tuple(
+        ir.Variable(
+            s.name, program.types.lower(s.type), _table(program, s), s in outputs
+        )
+        for s in t.variables
+    )
+    return ir.Transition(
+        index=t.index,
+        name=t.name,
+        id=t.id,
+        origin=t.origin,
+        owner=owner,
+        priority=t.priority,
+        variables=variables,
+        enumerate=_Enumeration(program, net, t, variables).run(),
+        fire=_firing(program, net, t, variables),
+        guard_text=", ".join(g.span.text for g in t.guards),
+    )
+
+
+def _table(program: Program, symbol: Symbol) -> str:
+    if symbol.colset is not None:
+        return program.types.colset(symbol.colset)
+    return program.types.plain(program.types.lower(symbol.type))
+
+
+def clock(program: Program) -> ir.IrType:
+    """The type of model time."""
+    return ir.REAL if program.real_time else ir.INT
+
+
+def _limit(program: Program, body: Body, delay: core.Exp | None, env: Env, timed: bool) -> Ir | None:
+    """The latest stamp that a term of an input arc accepts."""
+    if not timed:
+        return None
+    now = ir.Now(clock(program))
+    return now if delay is None else plus(now, as_time(program, body.ir(delay, env)))
+
+
+def as_time(program: Program, code: Ir) -> Ir:
+    """A delay in the type of model time."""
+    if program.real_time and code.type == ir.INT:
+        return ir.Op("Real.fromInt", (code,), ir.REAL)
+    return code
+
+
+def take_terms(
+    program: Program, net: FlatNet, body: Body, arc: FlatArc, env: Env, terms: list[Term] | None = None
+) -> None:
+    """Emit what an arc takes (all its terms, or some)."""
+    assert arc.inscription is not None
+    timed = net.places[arc.place].colset.timed
+    note = arc_note(net, arc)
+    for term in arc.inscription.terms if terms is None else terms:
+        limit = _limit(program, body, term.delay, env, timed)
+        if term.whole:
+            multiset = body.ir(term.value, env)
+            table = program.types.plain(multiset.type)
+            body.emit(ir.TakeAll(arc.place, multiset, table, limit, note))
+        else:
+            count = body.ir(term.coefficient, env)
+            body.emit(ir.Take(arc.place, count, body.ir(term.value, env), limit, note))
+        note = ""
+
+
+def arc_note(net: FlatNet, arc: FlatArc) -> str:
+    """`Buffer: 1`n (ID1414)`."""
+    place = net.places[arc.place].name.rsplit(".", 1)[-1]
+    text = arc.inscription.value.span.source.text if arc.inscription is not None else arc.kind.value
+    return f"{place}: {text.strip()} ({arc.id})"
+
+
+@dataclass(slots=True)
+class _Demand:
+    """A term that is tested with others of its place."""
+
+    arc: FlatArc
+    term: Term
+
+
+class _Enumeration:
+    def __init__(
+        self, program: Program, net: FlatNet, t: FlatTransition, variables: tuple[ir.Variable, ...]
+    ) -> None:
+        self._program = program
+        self._net = net
+        self._t = t
+        self._variables = variables
+        self._index = {s.uid: i for i, s in enumerate(t.variables)}
+        self._bound: set[int] = set()
+        self._body = Body(program)
+        self._tested: set[int] = {s.guard for s in t.plan if isinstance(s, BindEquation)}
+        self._demands: list[_Demand] = []
+        self._found: set[tuple[int, int]] = set()
+        self._done = False
+
+    def run(self) -> tuple[Stmt, ...]:
+        self._plan_demands()
+        for arc in self._t.arcs:
+            if arc.kind is ArcKind.INHIBITOR:
+                self._body.emit(ir.UnlessEmpty(arc.place, arc_note(self._net, arc)))
+        self._ready()
+        self._step(0)
+        return tuple(self._body.statements)
+
+    @property
+    def _env(self) -> Env:
+        env: dict[int, Binding] = {}
+        for uid in self._bound:
+            index = self._index[uid]
+            env[uid] = ir.Bound(index, self._variables[index].type)
+        return env
+
+    def _terms_of_place(self, place: int) -> int:
+        return sum(
+            len(a.inscription.terms)
+            for a in self._t.arcs
+            if a.kind in _TAKING and a.place == place and a.inscription is not None
+        )
+
+    def _plan_demands(self) -> None:
+        """Which terms need a test of their own: all but single ones found by a loop, with a constant coefficient."""
+        bound = {(s.arc, s.term) for s in self._t.plan if isinstance(s, BindTerm)}
+        for i, arc in enumerate(self._t.arcs):
+            if arc.kind not in _TAKING or arc.inscription is None:
+                continue
+            for j, term in enumerate(arc.inscription.terms):
+                is_single = self._terms_of_place(arc.place) == 1 and (i, j) in bound
+                if is_single and _constant(term.coefficient) is not None:
+                    self._found.add((i, j))
+                else:
+                    self._demands.append(_Demand(arc, term))
+
+    # --- steps of the plan ---------------------------------------------------------------------
+
+    def _step(self, position: int) -> None:
+        if position == len(self._t.plan):
+            self._body.emit(ir.Yield())
+            return
+        step = self._t.plan[position]
+        match step:
+            case BindTerm():
+                self._bind_term(step, position)
+            case BindEquation():
+                value = self._body.atomic(self._body.ir(step.value, self._env), "value")
+                self._match(step.pattern, value, guard_note(self._t, step.guard))
+                self._ready()
+                self._step(position + 1)
+            case BindAll(symbol=symbol) | BindRandom(symbol=symbol):
+                index = self._index[symbol.uid]
+                note = f"{symbol.name} over all of {symbol.colset.name if symbol.colset else symbol.type}"
+                with self._body.block() as statements:
+                    self._bound.add(symbol.uid)
+                    self._restrict(symbol)
+                    self._ready()
+                    self._step(position + 1)
+                table = self._variables[index].table
+                self._body.emit(ir.ForValues(index, table, tuple(statements), note))
+
+    def _bind_term(self, step: BindTerm, position: int) -> None:
+        arc = self._t.arcs[step.arc]
+        assert arc.inscription is not None
+        term = arc.inscription.terms[step.term]
+        place = self._net.places[arc.place]
+        token = self._program.types.lower(place.colset.type)
+        index = self._body.local("i", ir.INT)
+        with self._body.block() as statements:
+            assert term.pattern is not None
+            self._match(term.pattern, ir.TokenValue(arc.place, index, token), "")
+            if (step.arc, step.term) in self._found:
+                self._available(arc, term, index)
+            self._ready()
+            self._step(position + 1)
+        note = arc_note(self._net, arc)
+        self._body.emit(ir.ForTokens(arc.place, index, tuple(statements), note))
+
+    def _available(self, arc: FlatArc, term: Term, index: ir.Local) -> None:
+        """The token that was found is enough: of the count and, timed, of the age that is needed."""
+        timed = self._net.places[arc.place].colset.timed
+        count = _constant(term.coefficient)
+        assert count is not None
+        if count <= 0 or (count == 1 and not timed):
+            return
+        if timed and count > 1:
+            with self._body.block() as takes:
+                take_terms(self._program, self._net, self._body, arc, self._env, [term])
+            self._body.emit(ir.Wanted(tuple(takes)))
+            return
+        limit = _limit(self._program, self._body, term.delay, self._env, timed)
+        self._body.emit(ir.UnlessAvailable(arc.place, index, limit, count))
+
+    def _match(self, pattern: core.Pat, value: Ir, note: str) -> None:
+        """Match a value; the variables that are bound already must be equal."""
+        match = self._body.match(pattern, value)
+        conditions = list(match.conditions)
+        first: dict[int, Ir] = {}
+        fresh: list[tuple[Symbol, Ir]] = []
+        for symbol, part in match.bindings:
+            code = self._body.code(part)
+            if symbol.uid in self._bound:
+                conditions.append(equal(self._body, code, self._env[symbol.uid]))  # type: ignore[arg-type]
+            elif symbol.uid in first:
+                conditions.append(equal(self._body, code, first[symbol.uid]))
+            else:
+                first[symbol.uid] = code
+                fresh.append((symbol, code))
+        condition = conjunction(conditions)
+        if condition is not None:
+            self._body.emit(ir.Unless(condition, note))
+        for symbol, code in fresh:
+            self._body.emit(ir.Bind(self._index[symbol.uid], code))
+            self._bound.add(symbol.uid)
+        for symbol, _ in fresh:
+            self._restrict(symbol)
+
+    def _restrict(self, symbol: Symbol) -> None:
+        """A variable of a restricted colour set takes only its colours."""
+        index = self._index[symbol.uid]
+        table = self._variables[index].table
+        if self._program.types.is_restricted(table):
+            self._body.emit(ir.UnlessLegal(index, table))
+
+    # --- tests ---------------------------------------------------------------------------------
+
+    def _ready(self) -> None:
+        """Test what can be tested with the variables bound so far."""
+        for i, guard in enumerate(self._t.guards):
+            if i not in self._tested and self._can(guard):
+                self._tested.add(i)
+                condition = self._body.ir(guard, self._env)
+                self._body.emit(ir.Unless(condition, guard_note(self._t, i)))
+        places = list(dict.fromkeys(d.arc.place for d in self._demands))
+        for place in places:
+            mine = [d for d in self._demands if d.arc.place == place]
+            if not all(self._can_term(d.term) for d in mine):
+                continue
+            self._demands = [d for d in self._demands if d.arc.place != place]
+            with self._body.block() as takes:
+                for demand in mine:
+                    take_terms(
+                        self._program, self._net, self._body, demand.arc, self._env, [demand.term]
+                    )
+            self._body.emit(ir.Wanted(tuple(takes)))
+
+    def _can(self, e: core.Exp) -> bool:
+        free = {uid for uid in free_variables(e) if uid in self._index}
+        return free <= self._bound
+
+    def _can_term(self, term: Term) -> bool:
+        parts = [term.coefficient, term.value] + ([term.delay] if term.delay is not None else [])
+        return all(self._can(p) for p in parts)
+
+
+def _constant(e: core.Exp) -> int | None:
+    return e.value if isinstance(e, core.Lit) and isinstance(e.value, int) else None
+
+
+def guard_note(t: FlatTransition, guard: int) -> str:
+    """`guard [n > 0]`."""
+    return f"guard [{' '.join(t.guards[guard].span.text.split())}]"
+
+
+# --- firing ------------------------------------------------------------------------------------
+
+
+def _firing(
+    program: Program, net: FlatNet, t: FlatTransition, variables: tuple[ir.Variable, ...]
+) -> tuple[Stmt, ...]:
+    """Code segment, takes, delay, puts, resets: the order in which CPN Tools works things out."""
+    body = Body(program)
+    env: dict[int, Binding] = {
+        s.uid: ir.Bound(i, variables[i].type) for i, s in enumerate(t.variables)
+    }
+    if t.code is not None:
+        _code_segment(body, t, env, variables)
+    for arc in t.arcs:
+        if arc.kind in _TAKING:
+            take_terms(program, net, body, arc, env)
+    delay: Ir | None = None
+    is_timed = any(net.places[a.place].colset.timed for a in t.arcs if a.kind in _PUTTING)
+    if t.delay is not None and is_timed:
+        body.emit(ir.Note(f"delay @+{t.delay.span.text}"))
+        delay = body.atomic(as_time(program, body.ir(t.delay, env)), "delay")
+    for arc in t.arcs:
+        if arc.kind in _PUTTING:
+            assert arc.inscription is not None
+            timed = net.places[arc.place].colset.timed
+            stamp: Ir | None = None
+            if timed:
+                now = ir.Now(clock(program))
+                stamp = now if delay is None else plus(now, delay)
+            note = arc_note(net, arc)
+            form = arc.inscription.form
+            Putter(body, arc.place, env, stamp, delay, note).put(arc.inscription.value, form)
+    for arc in t.arcs:
+        if arc.kind is ArcKind.RESET:
+            body.emit(ir.Reset(arc.place, arc_note(net, arc)))
+    return tuple(body.statements)
+
+
+def _code_segment(
+    body: Body, t: FlatTransition, env: dict[int, Binding], variables: tuple[ir.Variable, ...]
+) -> None:
+    code = t.code
+    assert code is not None
+    index = {s.uid: i for i, s in enumerate(t.variables)}
+    text = " ".join(code.action.span.text.split())
+    body.emit(ir.Note(f"code segment: action {text}"))
+    if not code.outputs:
+        body.effect(code.action, env)
+        return
+    value = body.exp(code.action, env)
+    parts = [value] if len(code.outputs) == 1 else components(body, value, len(code.outputs))
+    for symbol, part in zip(code.outputs, parts, strict=True):
+        body.emit(ir.Bind(index[symbol.uid], body.code(part)))

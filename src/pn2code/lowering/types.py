@@ -1,0 +1,322 @@
+"""ML types and colour sets -> C representations (`IrType`, definitions) and runtime tables (`Descriptor`).
+
+Two colour sets with the same ML type share one C type, named after the first of them, and have a table each: their order of
+components, their ranges and their storage may differ.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import replace
+
+from pn2code.diagnostics import NOWHERE, Origin, Span
+from pn2code.lowering import ir
+from pn2code.lowering.codes import UNSUPPORTED_TYPE, UnsupportedError
+from pn2code.lowering.ir import Definition, Descriptor, IrType, Rep
+from pn2code.ml.colsets import Colset, Kind
+from pn2code.ml.core import Program
+from pn2code.ml.types import TCon, TFun, TRecord, TVar, Type
+
+_SCALARS = {
+    "int": ir.INT,
+    "IntInf.int": ir.INT,
+    "real": ir.REAL,
+    "string": ir.STRING,
+    "char": ir.CHAR,
+    "bool": ir.BOOL,
+}
+
+
+def substitute(t: Type, values: Mapping[int, Type]) -> Type:
+    """Replace the type variables of a scheme."""
+    if not values:
+        return t
+    match t:
+        case TVar(index=i):
+            return values.get(i, t)
+        case TCon(name=name, args=args):
+            return TCon(name, tuple(substitute(a, values) for a in args)) if args else t
+        case TFun(argument=a, result=r):
+            return TFun(substitute(a, values), substitute(r, values))
+        case TRecord(fields=fields):
+            return TRecord(tuple((label, substitute(f, values)) for label, f in fields))
+
+
+def has_function(t: Type) -> bool:
+    """Whether a value of the type is or contains a function."""
+    match t:
+        case TFun():
+            return True
+        case TCon(args=args):
+            return any(has_function(a) for a in args)
+        case TRecord(fields=fields):
+            return any(has_function(f) for _, f in fields)
+        case TVar():
+            return False
+
+
+class Types:
+    """Makes and remembers the types of one net."""
+
+    def __init__(self, program: Program, storage: Mapping[str, str]) -> None:
+        self._program = program
+        self._storage = storage
+        self._definitions: dict[str, Definition] = {}
+        self._known: dict[Type, IrType] = {}
+        self._active: list[Type] = []
+        self._hits: set[Type] = set()
+        self.descriptors: dict[str, Descriptor] = {}
+        self._colset_keys: dict[tuple[str, str, str], str] = {}
+        self.subsets: list[tuple[str, Colset]] = []
+        self._colset_of_type: dict[Type, Colset] = {}
+        for colset in program.colsets.values():
+            if colset.kind in (Kind.PRODUCT, Kind.RECORD, Kind.LIST, Kind.ENUM, Kind.UNION):
+                self._colset_of_type.setdefault(colset.type, colset)
+        self._index_types = {c.type for c in program.colsets.values() if c.kind is Kind.INDEX}
+
+    # --- types ---------------------------------------------------------------------------------
+
+    def is_index(self, t: Type) -> bool:
+        """Whether it is the type of an index colour set, represented by its number."""
+        return t in self._index_types
+
+    def lower(self, t: Type, at: Origin | Span = NOWHERE) -> IrType:
+        """The representation of a closed type."""
+        if t in self._known:
+            if t in self._active:
+                self._hits.add(t)
+            return self._known[t]
+        made = self._make(t, at)
+        self._known[t] = made
+        return made
+
+    def _make(self, t: Type, at: Origin | Span) -> IrType:
+        match t:
+            case TRecord(fields=()):
+                return ir.UNIT
+            case TRecord():
+                return self._struct(t, at)
+            case TCon() if self.is_index(t):
+                return ir.INT
+            case TCon(name=name) if name in _SCALARS:
+                return _SCALARS[name]
+            case TCon(name="list", args=(element,)):
+                hits, self._hits = self._hits, set()
+                inner = self.lower(element, at)
+                self._hits = hits
+                name = self._fresh(self._named(t) or f"{inner}_list")
+                self._definitions[name] = ir.ListDef(name, inner)
+                return IrType(Rep.LIST, name)
+            case TCon(name="timed", args=(value,)):
+                inner = self.lower(value, at)
+                name = self._fresh(f"timed_{inner}")
+                self._definitions[name] = ir.StructDef(
+                    name, (("value", inner), ("stamp", ir.TIME))
+                )
+                return IrType(Rep.STRUCT, name)
+            case TCon(name=name) if name in self._program.datatypes:
+                return self._datatype(t, at)
+            case TVar():
+                # Nothing in the program decides the type (`length []`): any will do.
+                return ir.UNIT
+            case TFun():
+                raise UnsupportedError(UNSUPPORTED_TYPE, f"a value of type `{t}` cannot be stored", at)
+            case TCon():
+                raise UnsupportedError(UNSUPPORTED_TYPE, f"values of type `{t}` are not supported", at)
+
+    def _named(self, t: Type) -> str:
+        colset = self._colset_of_type.get(t)
+        return colset.name if colset else ""
+
+    def _fresh(self, hint: str) -> str:
+        name, n = hint, 2
+        while name in self._definitions:
+            name, n = f"{hint}_{n}", n + 1
+        return name
+
+    def _struct(self, t: TRecord, at: Origin | Span) -> IrType:
+        colset = self._colset_of_type.get(t)
+        labels = [label for label, _ in t.fields]
+        if colset is not None and colset.kind is Kind.RECORD:
+            labels = list(colset.labels)
+        fields = []
+        for label in labels:
+            field_type = t.field(label)
+            assert field_type is not None
+            fields.append((label, self.lower(field_type, at)))
+        hint = self._named(t) or "_".join(
+            (["tuple"] if t.is_tuple else ["record"]) + [str(f) for _, f in fields]
+        )
+        name = self._fresh(hint)
+        self._definitions[name] = ir.StructDef(name, tuple(fields))
+        return IrType(Rep.STRUCT, name)
+
+    def _datatype(self, t: TCon, at: Origin | Span) -> IrType:
+        dec = self._program.datatypes[t.name]
+        values = dict(enumerate(t.args))
+        hint = self._named(t) or "_".join([t.name, *(str(self.lower(a, at)) for a in t.args)])
+        name = self._fresh(hint)
+        if all(argument is None for _, argument in dec.constructors):
+            self._definitions[name] = ir.EnumDef(name, tuple(c.name for c, _ in dec.constructors))
+            return IrType(Rep.ENUM, name)
+        made = IrType(Rep.UNION, name)
+        self._definitions[name] = ir.UnionDef(name, ())  # reserves the name
+        self._known[t] = made
+        self._active.append(t)
+        constructors: list[tuple[str, IrType | None, bool]] = []
+        for constructor, argument in dec.constructors:
+            if argument is None:
+                constructors.append((constructor.name, None, False))
+                continue
+            hits, self._hits = self._hits, set()
+            lowered = self.lower(substitute(argument, values), at)
+            constructors.append((constructor.name, lowered, bool(self._hits)))
+            self._hits = hits
+        self._active.pop()
+        self._definitions[name] = ir.UnionDef(name, tuple(constructors))
+        return made
+
+    def definition(self, t: IrType) -> Definition:
+        """The definition of a type that has one."""
+        return self._definitions[t.name]
+
+    def definitions(self) -> tuple[Definition, ...]:
+        """All definitions, each after those that it contains by value."""
+        order: list[Definition] = []
+        seen: set[str] = set()
+
+        def visit(name: str) -> None:
+            if name in seen:
+                return
+            seen.add(name)
+            definition = self._definitions[name]
+            parts: list[IrType] = []
+            match definition:
+                case ir.StructDef(fields=fields):
+                    parts = [f for _, f in fields]
+                case ir.ListDef(element=element):
+                    parts = [element]
+                case ir.UnionDef(constructors=constructors):
+                    parts = [a for _, a, boxed in constructors if a is not None and not boxed]
+                case ir.EnumDef():
+                    pass
+            for part in parts:
+                if part.name and part.rep is not Rep.LIST:
+                    visit(part.name)
+            order.append(definition)
+
+        for name in self._definitions:
+            visit(name)
+        return tuple(order)
+
+    # --- descriptors ---------------------------------------------------------------------------
+
+    def plain(self, t: IrType) -> str:
+        """The key of the table of a type, without ranges."""
+        key = f"type {t}"
+        if key in self.descriptors:
+            return key
+        self.descriptors[key] = Descriptor(key, t)  # stops recursion
+        made = Descriptor(key, t)
+        if t.name:
+            match self.definition(t):
+                case ir.EnumDef(constructors=names):
+                    made = replace(made, names=names)
+                case ir.StructDef(fields=fields):
+                    parts = tuple((label, self.plain(f)) for label, f in fields)
+                    is_tuple = all(label.isdigit() for label, _ in fields)
+                    made = replace(made, fields=parts, is_tuple=is_tuple)
+                case ir.ListDef(element=element):
+                    made = replace(made, element=self.plain(element))
+                case ir.UnionDef(constructors=constructors):
+                    made = replace(
+                        made,
+                        fields=tuple((c, self.plain(a) if a else "") for c, a, _ in constructors),
+                    )
+        return self._store(key, made)
+
+    def colset(self, colset: Colset) -> str:
+        """The key of the table of a colour set."""
+        identity = (colset.name, colset.origin.location(), str(colset.type))
+        if identity in self._colset_keys:
+            return self._colset_keys[identity]
+        key = colset.name
+        n = 2
+        while key in self.descriptors:
+            key, n = f"{colset.name} {n}", n + 1
+        self._colset_keys[identity] = key
+        self.descriptors[key] = Descriptor(key, self.lower(colset.type, colset.origin))
+        return self._store(key, self._describe(key, colset))
+
+    def _store(self, key: str, made: Descriptor) -> str:
+        """Remember a finished table after those of its parts."""
+        parts = [part for _, part in made.fields if part] + ([made.element] if made.element else [])
+        narrow = made.is_float32 or any(self.descriptors[part].is_narrow for part in parts)
+        self.descriptors.pop(key, None)
+        self.descriptors[key] = replace(made, is_narrow=narrow)
+        return key
+
+    def _part(self, colset: Colset | None) -> str:
+        return self.colset(colset) if colset is not None else ""
+
+    def _describe(self, key: str, colset: Colset) -> Descriptor:
+        t = self.lower(colset.type, colset.origin)
+        made = Descriptor(key, t, comment=f"colset {colset.name}")
+        if self._storage.get(colset.name) == "float32":
+            made = replace(made, is_float32=True)
+        low, high = colset.low, colset.high
+        match colset.kind:
+            case Kind.ALIAS | Kind.SUBSET:
+                base = colset.components[0]
+                assert base is not None
+                inner = self.descriptors[self.colset(base)]
+                made = replace(
+                    inner,
+                    name=key,
+                    comment=made.comment,
+                    is_float32=inner.is_float32 or made.is_float32,
+                )
+                if colset.kind is Kind.SUBSET:
+                    made = replace(made, member=f"member {key}")
+                    self.subsets.append((key, colset))
+            case Kind.ENUM | Kind.UNIT | Kind.BOOL:
+                made = replace(made, names=colset.names)
+            case Kind.INT | Kind.INTINF | Kind.TIME | Kind.REAL:
+                assert not isinstance(low, str)
+                assert not isinstance(high, str)
+                made = replace(made, low=low, high=high)
+            case Kind.INDEX:
+                assert not isinstance(low, str)
+                assert not isinstance(high, str)
+                made = replace(made, low=low, high=high, is_index=True, names=colset.names)
+            case Kind.STRING:
+                chars = None
+                if isinstance(low, str) and isinstance(high, str):
+                    chars = (ord(low[0]), ord(high[0]))
+                length = colset.length or (None, None)
+                made = replace(made, chars=chars, low=length[0], high=length[1])
+            case Kind.PRODUCT:
+                parts = tuple((str(i), self._part(c)) for i, c in enumerate(colset.components, 1))
+                made = replace(made, fields=parts, is_tuple=True)
+            case Kind.RECORD:
+                parts = tuple(
+                    (label, self._part(c))
+                    for label, c in zip(colset.labels, colset.components, strict=True)
+                )
+                made = replace(made, fields=parts)
+            case Kind.LIST:
+                assert not isinstance(low, str)
+                assert not isinstance(high, str)
+                made = replace(made, element=self._part(colset.components[0]), low=low, high=high)
+            case Kind.UNION:
+                pairs = zip(colset.names, colset.components, strict=True)
+                made = replace(made, fields=tuple((c, self._part(a)) for c, a in pairs))
+        return made
+
+    def is_restricted(self, key: str) -> bool:
+        """Whether the table excludes values of its type."""
+        d = self.descriptors[key]
+        if d.low is not None or d.high is not None or d.chars or d.member or d.is_float32:
+            return True
+        parts = [part for _, part in d.fields if part] + ([d.element] if d.element else [])
+        return any(part != key and self.is_restricted(part) for part in parts)
