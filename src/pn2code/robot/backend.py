@@ -74,8 +74,8 @@ class Backend(Protocol):
     def clearances(self, limit: float) -> tuple[Clearance, ...] | None:
         """The closest pair of each kind and robot that is nearer than `limit` (m).
 
-        Pairs that may touch are listed apart (`allowed`), only when they overlap. None: this backend
-        does not measure distances.
+        Pairs that may touch (`allowed`) are listed as well, each on its own, when they are near. None:
+        this backend does not measure distances.
         """
 
     def render(self, camera: Camera, width: int, height: int) -> Picture | None:

@@ -106,6 +106,10 @@ class BulletBackend:
             self._robots = {r.name: self._load_robot(r, looks) for r in cell.robots}
             self._scene = [self._load_body(b, looks) for b in bodies(cell)]
         self._guess: dict[tuple[str, ...], float] = {}
+        # What was measured since the robots concerned moved last: (kind, robots...) -> answer.
+        self._known: dict[tuple[str, ...], list[Clearance]] = {}
+        self._searched = 0.0
+        self._q: dict[str, tuple[float, ...]] = {}
         self._rules: dict[tuple[str, str], float | None] = {}
         for robot in cell.robots:
             self.set_joints(robot.name, robot.home)
@@ -190,6 +194,10 @@ class BulletBackend:
     def set_joints(self, robot: str, q: Sequence[float] | Array) -> None:
         """Puts a robot at a joint position, rad."""
         loaded = self._robots[robot]
+        if self._q.get(robot) == tuple(q):
+            return
+        self._q[robot] = tuple(q)
+        self._known = {k: v for k, v in self._known.items() if robot not in k}
         self._p.resetJointStatesMultiDof(
             loaded.body, loaded.joints, [[float(v)] for v in q], physicsClientId=self._client
         )
@@ -211,17 +219,35 @@ class BulletBackend:
 
     def clearances(self, limit: float) -> tuple[Clearance, ...] | None:
         """The closest pair of each kind and robot, and permitted contacts that overlap."""
+        if limit != self._searched:
+            self._known, self._searched = {}, limit
         out: list[Clearance] = []
         robots = list(self._robots.values())
         for i, a in enumerate(robots):
+            me = a.robot.name
             for b in robots[i + 1 :]:
-                out += self._between(
-                    "robots", a, f"{b.robot.name}/", b.body, b.links, limit, skip_base=False
-                )
-            for s in self._scene:
-                skip = a.robot.name in s.body.ignored_by
-                out += self._between("scene", a, s.body.name, s.id, None, limit, skip_base=skip)
-            out += self._self(a, limit)
+                key = ("robots", me, b.robot.name)
+                if key not in self._known:
+                    self._known[key] = self._between(
+                        "robots", a, f"{b.robot.name}/", b.body, b.links, limit, skip_base=False
+                    )
+                out += self._known[key]
+            if ("scene", me) not in self._known:
+                self._known["scene", me] = [
+                    gap
+                    for s in self._scene
+                    for gap in self._between(
+                        "scene",
+                        a,
+                        s.body.name,
+                        s.id,
+                        None,
+                        limit,
+                        skip_base=me in s.body.ignored_by,
+                    )
+                ]
+                self._known["self", me] = self._self(a, limit)
+            out += self._known["scene", me] + self._known["self", me]
         return tuple(_closest(out))
 
     def _between(
@@ -233,41 +259,50 @@ class BulletBackend:
         while True:
             found = self._p.getClosestPoints(a.body, body, reach, physicsClientId=self._client)
             best: Clearance | None = None
-            touching: list[Clearance] = []
+            touching: dict[tuple[str, str], Clearance] = {}
             for c in found:
                 if skip_base and c[3] == -1:
-                    continue
-                if best is not None and c[8] >= best.distance and c[8] >= 0.0:
                     continue
                 name_a = f"{a.robot.name}/{a.links[c[3]]}"
                 name_b = other if links is None else other + links[c[4]]
                 allowed = self._allowed(name_a, name_b)
-                item = Clearance(kind, a.robot.name, name_a, name_b, c[8], allowed, c[5])
                 if allowed is not None:
-                    if c[8] < 0.0:
-                        touching.append(item)
+                    old = touching.get((name_a, name_b))
                 elif best is None or c[8] < best.distance:
-                    best = item
+                    best = Clearance(kind, a.robot.name, name_a, name_b, c[8], None, c[5])
+                    continue
+                else:
+                    continue
+                if old is None or c[8] < old.distance:
+                    item = Clearance(kind, a.robot.name, name_a, name_b, c[8], allowed, c[5])
+                    touching[name_a, name_b] = item
             if best is not None or reach >= limit:
                 break
             reach = min(limit, reach * 3.0)
         # The next question is about a moment later: search a little further than the last answer.
         near = limit if best is None else max(best.distance, 0.0)
         self._guess[key] = near + _FIRST_GUESS
-        return [*touching, best] if best is not None else list(touching)
+        return [*touching.values(), best] if best is not None else list(touching.values())
 
     def _self(self, a: _Loaded, limit: float) -> list[Clearance]:
+        key = ("self", a.robot.name)
+        reach = min(limit, self._guess.get(key, _FIRST_GUESS))
         best: Clearance | None = None
-        reach = limit
-        for i, j in a.pairs:
-            found = self._p.getClosestPoints(
-                a.body, a.body, reach, linkIndexA=i, linkIndexB=j, physicsClientId=self._client
-            )
-            for c in found:
-                if best is None or c[8] < best.distance:
-                    name_a, name_b = (f"{a.robot.name}/{a.links[k]}" for k in (i, j))
-                    best = Clearance("self", a.robot.name, name_a, name_b, c[8], None, c[5])
-                    reach = max(min(reach, c[8]), 1e-3)
+        while True:
+            # Pair by pair: asked about the whole body, Bullet measures all neighbours' overlaps too.
+            for i, j in a.pairs:
+                found = self._p.getClosestPoints(
+                    a.body, a.body, reach, i, j, physicsClientId=self._client
+                )
+                for c in found:
+                    if best is None or c[8] < best.distance:
+                        one, two = (f"{a.robot.name}/{a.links[k]}" for k in (i, j))
+                        best = Clearance("self", a.robot.name, one, two, c[8], None, c[5])
+                        reach = min(reach, max(c[8], 1e-3))
+            if best is not None or reach >= limit:
+                break
+            reach = min(limit, reach * 3.0)
+        self._guess[key] = limit if best is None else max(best.distance, 0.0) + _FIRST_GUESS
         return [] if best is None else [best]
 
     def _allowed(self, a: str, b: str) -> float | None:

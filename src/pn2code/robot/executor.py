@@ -30,6 +30,7 @@ from pn2code.robot.motion import MotionFault, Still, Trajectory, plan_lin, plan_
 from pn2code.robot.scene import CellRobot, MotionConfig
 from pn2code.robot.transforms import Array, describe, inverse, matrix_of, pose_of
 
+CHECK_LENGTH = 0.005  # m: on a line, samples are no further apart than this on average
 MotionKind = Literal["ptp", "lin", "tool", "measure", "wait"]
 
 
@@ -44,6 +45,7 @@ class Motion:
         trajectory: joint positions, time from 0.
         start: TCP pose in the world at the beginning; target: at the end.
         result: of a measurement.
+        step: s, how often to look while it lasts: on a line the TCP goes 5 mm meanwhile.
     """
 
     robot: str
@@ -54,6 +56,7 @@ class Motion:
     start: Pose
     target: Pose
     result: Pose | None = None
+    step: float = 0.02
 
     @property
     def duration(self) -> float:
@@ -219,4 +222,15 @@ class RobotExecutor:
     ) -> Motion:  # fmt: skip
         self._next = (q_end, T_end)
         target = pose_of(self._T_world_base @ T_end)
-        return Motion(self.robot.name, command, kind, now, path, self.pose, target, result)
+        step = self._config.sample
+        if kind == "lin":
+            step = max(
+                step, path.duration / max(1.0, math.ceil(_length(self.pose, target) / CHECK_LENGTH))
+            )
+        elif kind != "ptp":
+            step = max(step, path.duration)
+        return Motion(self.robot.name, command, kind, now, path, self.pose, target, result, step)
+
+
+def _length(a: Pose, b: Pose) -> float:
+    return math.dist((a.x, a.y, a.z), (b.x, b.y, b.z))

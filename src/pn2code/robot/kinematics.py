@@ -161,7 +161,14 @@ class Kinematics:
 
     def conditioning_many(self, q: Array) -> list[Conditioning]:
         """The same for n joint positions (n, 6)."""
-        frames = self._chain.frames(q)
+        return self._conditioning(self._chain.frames(q))
+
+    def state(self, q: ArrayLike) -> tuple[Array, Conditioning]:
+        """`T_base_tcp` and the conditioning, for little more than the price of one of them."""
+        frames = self._chain.frames(np.asarray(q, float)[None])
+        return np.asarray(frames[-1][0] @ self.T_flange_tcp), self._conditioning(frames)[0]
+
+    def _conditioning(self, frames: Sequence[Array]) -> list[Conditioning]:
         scaled = self._jacobian(frames)
         scaled[:, :3] /= CHARACTERISTIC_LENGTH
         sigma = np.linalg.svd(scaled, compute_uv=False)

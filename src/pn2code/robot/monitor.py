@@ -12,7 +12,7 @@ limit or a singularity; everything else is remembered as running minima, in tota
 from __future__ import annotations
 
 import math
-from collections.abc import Collection, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from typing import Literal
 
@@ -20,6 +20,7 @@ import numpy as np
 
 from pn2code.robot.backend import Backend, Clearance
 from pn2code.robot.commands import Pose
+from pn2code.robot.executor import MotionKind
 from pn2code.robot.kinematics import Conditioning
 from pn2code.robot.motion import FaultKind
 from pn2code.robot.scene import CellRobot, RobotCell
@@ -107,6 +108,7 @@ class Monitor:
     def __init__(self, cell: RobotCell, backend: Backend, *, searched: float = SEARCHED) -> None:
         self._cell, self._backend, self._searched = cell, backend, searched
         self._worst: dict[tuple[str, MeasureName, str], Extreme] = {}
+        self._last: dict[str, Sample] = {}
         self._bases = {r.name: r.T_world_base for r in cell.robots}
 
     def check(
@@ -114,14 +116,18 @@ class Monitor:
         t: float,
         joints: Mapping[str, Array],
         phase: str = "",
-        cartesian: Collection[str] = (),
+        kinds: Mapping[str, MotionKind] | None = None,
     ) -> Verdict:
         """Puts the robots where they are at time `t` (s; joint positions in rad) and looks.
 
         Args:
-            cartesian: robots on a linear move: for them a singularity is a fault. A joint move may
-                pass through one (the wrist does so often), and does not notice.
+            kinds: what each robot is doing (absent: standing). On a linear move a singularity is a
+                fault; a joint move passes through one without noticing (the wrist does so often).
+                On a joint move nothing may touch anything: parts that may come together do so only
+                on linear moves and while the tool works.
         """
+        kinds = kinds or {}
+        t = float(t)
         samples = tuple(
             self._sample(r, joints[r.name]) for r in self._cell.robots if r.name in joints
         )
@@ -131,7 +137,7 @@ class Monitor:
         poses = {s.robot: s.pose for s in samples}
         fault: Fault | None = None
         for s in samples:
-            fault = fault or self._own_fault(s, t, s.robot in cartesian)
+            fault = fault or self._own_fault(s, t, kinds.get(s.robot) == "lin")
             c = s.conditioning
             axis = (self._cell.robot(s.robot).arm.axes[s.limit_axis],)
             self._note("limit", s, s.limit_margin, t, phase, axis)
@@ -140,15 +146,17 @@ class Monitor:
             self._note("elbow", s, c.elbow, t, phase)
             self._note("wrist", s, c.wrist, t, phase)
         warnings = []
-        for gap in clearances or ():
+        for found in clearances or ():
+            others = (found.robot, found.b.split("/")[0])
+            free = any(kinds.get(name) == "ptp" for name in others)
+            gap = replace(found, allowed=None) if free else found
             fault = fault or self._collision(gap, t, poses[gap.robot])
+            if gap.allowed is not None and gap.distance >= 0.0:
+                continue
             measure: MeasureName = gap.kind if gap.allowed is None else "contact"
-            who = gap.robot
-            if gap.kind == "robots":
-                who = f"{gap.robot}+{gap.b.split('/')[0]}"
-            self._keep(
-                Extreme(measure, who, gap.distance, t, phase, poses[gap.robot], (gap.a, gap.b))
-            )
+            who = "+".join(others) if gap.kind == "robots" else gap.robot
+            parts = (gap.a, gap.b)
+            self._keep(Extreme(measure, who, gap.distance, t, phase, poses[gap.robot], parts))
             if gap.allowed is None and gap.distance < self._cell.scene.warning_clearance:
                 warnings.append(gap)
         return Verdict(t, samples, clearances, fault, tuple(warnings))
@@ -166,9 +174,15 @@ class Monitor:
 
     def _sample(self, robot: CellRobot, q: Array) -> Sample:
         k = robot.kinematics
+        q = np.asarray(q, float)
+        last = self._last.get(robot.name)
+        if last is not None and np.array_equal(last.q, q):
+            return last
         margin, axis = k.limit_margin(q)
-        pose = pose_of(self._bases[robot.name] @ k.forward(q))
-        return Sample(robot.name, np.asarray(q, float), pose, k.conditioning(q), margin, axis)
+        frame, conditioning = k.state(q)
+        pose = pose_of(self._bases[robot.name] @ frame)
+        self._last[robot.name] = Sample(robot.name, q, pose, conditioning, margin, axis)
+        return self._last[robot.name]
 
     def _note(
         self, measure: MeasureName, s: Sample, value: float, t: float, phase: str,

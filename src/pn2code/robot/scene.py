@@ -399,17 +399,17 @@ def _scene(t: _Table, robots: tuple[CellRobot, ...], folder: Path) -> SceneConfi
 
 def _default_contacts(robots: tuple[CellRobot, ...], depth: float) -> list[ContactRule]:
     """The tools' contact links may touch the skin of the panel, and each other."""
-    noses = [
+    tips = [
         f"{r.name}/tool_{link}"
         for r in robots
         if r.tool is not None
         for link in r.tool.contact_links
     ]
-    touching = [ContactRule(nose, "panel/skin", depth) for nose in noses]
+    touching = [ContactRule(tip, "panel/skin", depth) for tip in tips]
     meeting = [
         ContactRule(a, b, 1e-3)
-        for i, a in enumerate(noses)
-        for b in noses[i + 1 :]
+        for i, a in enumerate(tips)
+        for b in tips[i + 1 :]
         if a.split("/")[0] != b.split("/")[0]
     ]
     return touching + meeting

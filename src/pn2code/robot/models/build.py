@@ -285,8 +285,9 @@ def _drill() -> dict[str, tuple[Shapes, Parts]]:
     }
     nose = lathe(
         "z",
-        [(0.315, 0.05), (0.36, 0.046), (0.375, 0.036), (0.45, 0.026), (0.485, 0.017), (0.5, 0.013)],
+        [(0.315, 0.05), (0.36, 0.046), (0.375, 0.036), (0.45, 0.026)],
     )
+    tip = lathe("z", [(0.45, 0.026), (0.485, 0.017), (0.5, 0.013)])
     ring = lathe("z", [(0.375, 0.040), (0.385, 0.040)])
     return {
         "body": (
@@ -304,9 +305,9 @@ def _drill() -> dict[str, tuple[Shapes, Parts]]:
             [
                 _cylinder("z", 0.315, 0.385, 0.05, (0, 0, 0)),
                 _cylinder("z", 0.385, 0.45, 0.036, (0, 0, 0)),
-                _cylinder("z", 0.45, 0.50, 0.026, (0, 0, 0)),
             ],
         ),
+        "tip": ({"steel": tip}, [_cylinder("z", 0.45, 0.50, 0.026, (0, 0, 0))]),
     }
 
 
@@ -328,7 +329,7 @@ def _counterpoint() -> dict[str, tuple[Shapes, Parts]]:
     }
     nose = lathe(
         "z",
-        [(0.305, 0.040), (0.40, 0.034), (0.42, 0.024), (0.47, 0.022), (0.492, 0.018), (0.5, 0.013)],
+        [(0.305, 0.040), (0.40, 0.034), (0.42, 0.024), (0.45, 0.022)],
     )
     return {
         "body": (
@@ -343,8 +344,12 @@ def _counterpoint() -> dict[str, tuple[Shapes, Parts]]:
             {"steel": nose, "brass": lathe("z", [(0.405, 0.036), (0.415, 0.036)])},
             [
                 _cylinder("z", 0.305, 0.42, 0.040, (0, 0, 0)),
-                _cylinder("z", 0.42, 0.50, 0.024, (0, 0, 0)),
+                _cylinder("z", 0.42, 0.45, 0.024, (0, 0, 0)),
             ],
+        ),
+        "tip": (
+            {"steel": lathe("z", [(0.45, 0.022), (0.492, 0.018), (0.5, 0.013)])},
+            [_cylinder("z", 0.45, 0.50, 0.022, (0, 0, 0))],
         ),
     }
 
@@ -427,11 +432,13 @@ def _tool(
 ) -> None:
     text = [_link(part, f"{name}_{part}", "../", content, out) for part, content in links.items()]
     text += ['  <link name="tcp"/>\n', _fixed("nose_mount", "body", "nose")]
-    text += [_fixed("tcp_mount", "nose", "tcp", _origin((0, 0, tcp), "0 0 0"))]
+    text += [_fixed("tip_mount", "nose", "tip")]
+    text += [_fixed("tcp_mount", "tip", "tcp", _origin((0, 0, tcp), "0 0 0"))]
     used = sorted({c for shapes, _ in links.values() for c in shapes})
     out[f"tools/{name}.urdf"] = (
         f'{_HEAD}<robot name="{name}">\n{_materials(used)}{"".join(text)}'
-        '  <pn2code contact="nose"/>\n</robot>\n'
+        "  <!-- Only the last 50 mm may touch the work piece. -->\n"
+        '  <pn2code contact="tip"/>\n</robot>\n'
     )
 
 
