@@ -1,0 +1,288 @@
+"""Built-in functions on lists and options; lists are tuples."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable
+from typing import TYPE_CHECKING, Any
+
+from pn2code.semantics.values import NONE, UNIT, Data, MlException, Value, equal, exception, some
+
+if TYPE_CHECKING:
+    from pn2code.semantics.evaluate import Evaluator, Task
+
+Function = Callable[..., Any]
+Items = tuple[Any, ...]
+
+
+def contains(items: Iterable[Value], item: Value) -> bool:
+    """Whether CPN ML's `=` finds the item among the items."""
+    return any(equal(item, other) for other in items)
+
+
+def without_first(items: Items, item: Value) -> Items:
+    """Without the first occurrence of the item, if there is one."""
+    for i, other in enumerate(items):
+        if equal(item, other):
+            return items[:i] + items[i + 1 :]
+    return items
+
+
+def without_all(items: Items, removed: Items) -> Items | None:
+    """Without one occurrence of each of `removed`; None if one is not there."""
+    for item in removed:
+        rest = without_first(items, item)
+        if len(rest) == len(items):
+            return None
+        items = rest
+    return items
+
+
+def _nonempty(items: Items) -> Items:
+    if not items:
+        raise MlException(exception("Empty"))
+    return items
+
+
+def _position(items: Items, i: int, limit: int) -> int:
+    if not 0 <= i < limit:
+        raise MlException(exception("Subscript"))
+    return i
+
+
+# --- with functions of the net -------------------------------------------------------------------
+
+
+def _map(e: Evaluator, function: Value, items: Items) -> Task:
+    found: list[Value] = []
+    for item in items:
+        found.append((yield e.call(function, item)))
+    return tuple(found)
+
+
+def _map_partial(e: Evaluator, function: Value, items: Items) -> Task:
+    options = yield _map(e, function, items)
+    return tuple(option.argument for option in options if option.name == "SOME")
+
+
+def _app(e: Evaluator, function: Value, items: Items) -> Task:
+    yield _map(e, function, items)
+    return UNIT
+
+
+def _concat_map(e: Evaluator, function: Value, items: Items) -> Task:
+    lists = yield _map(e, function, items)
+    return tuple(item for inner in lists for item in inner)
+
+
+def _partition(e: Evaluator, predicate: Value, items: Items) -> Task:
+    inside: list[Value] = []
+    outside: list[Value] = []
+    for item in items:
+        (inside if (yield e.call(predicate, item)) else outside).append(item)
+    return tuple(inside), tuple(outside)
+
+
+def keep(e: Evaluator, predicate: Value, items: Items) -> Task:
+    """`List.filter`."""
+    return (yield _partition(e, predicate, items))[0]
+
+
+def _find(e: Evaluator, predicate: Value, items: Items) -> Task:
+    for item in items:
+        if (yield e.call(predicate, item)):
+            return some(item)
+    return NONE
+
+
+def _exists(e: Evaluator, predicate: Value, items: Items) -> Task:
+    return (yield _find(e, predicate, items)).name == "SOME"
+
+
+def _all(e: Evaluator, predicate: Value, items: Items) -> Task:
+    for item in items:
+        if not (yield e.call(predicate, item)):
+            return False
+    return True
+
+
+def _fold(e: Evaluator, function: Value, start: Value, items: Iterable[Value]) -> Task:
+    total = start
+    for item in items:
+        total = yield e.call(function, (item, total))
+    return total
+
+
+def _fold_right(e: Evaluator, function: Value, start: Value, items: Items) -> Task:
+    return _fold(e, function, start, reversed(items))
+
+
+def _fold_pairs(e: Evaluator, function: Value, start: Value, pairs: Iterable[Items]) -> Task:
+    total = start
+    for a, b in pairs:
+        total = yield e.call(function, (a, b, total))
+    return total
+
+
+def _tabulate(e: Evaluator, p: tuple[int, Value]) -> Task:
+    if p[0] < 0:
+        raise MlException(exception("Size"))
+    return (yield _map(e, p[1], tuple(range(p[0]))))
+
+
+def _collate(e: Evaluator, compare: Value, p: tuple[Items, Items]) -> Task:
+    for a, b in zip(p[0], p[1], strict=False):
+        found = yield e.call(compare, (a, b))
+        if found.name != "EQUAL":
+            return found
+    n, m = len(p[0]), len(p[1])
+    return Data("LESS", 0) if n < m else Data("GREATER", 2) if m < n else Data("EQUAL", 1)
+
+
+def sort(e: Evaluator, less: Value, items: Items) -> Task:
+    """Merge sort; stable. (CPN Tools' own may exchange elements that are equal to `less`.)"""
+    if len(items) < 2:
+        return items
+    middle = len(items) // 2
+    left = list((yield sort(e, less, items[:middle])))
+    right = list((yield sort(e, less, items[middle:])))
+    left.reverse()
+    right.reverse()
+    merged: list[Value] = []
+    while left and right:
+        take_right = yield e.call(less, (right[-1], left[-1]))
+        merged.append(right.pop() if take_right else left.pop())
+    return (*merged, *reversed(left), *reversed(right))
+
+
+def _unique_sort(e: Evaluator, less: Value, items: Items) -> Task:
+    found: list[Value] = []
+    for item in (yield sort(e, less, items)):
+        if not found or (yield e.call(less, (found[-1], item))):
+            found.append(item)
+    return tuple(found)
+
+
+# --- of CPN Tools --------------------------------------------------------------------------------
+
+
+def _pos(e: Evaluator, item: Value, items: Items) -> int:
+    for i, other in enumerate(items):
+        if equal(item, other):
+            return i
+    raise MlException(exception("Match"))
+
+
+def _without_duplicates(items: Items) -> Items:
+    return tuple(item for i, item in enumerate(items) if not contains(items[i + 1 :], item))
+
+
+def _intersection(a: Items, b: Items) -> Items:
+    found: list[Value] = []
+    for item in a:
+        if contains(b, item):
+            found.append(item)
+            b = without_first(b, item)
+    return tuple(found)
+
+
+def _difference(e: Evaluator, items: Items, removed: Items) -> Items:
+    rest = without_all(items, removed)
+    if rest is None:
+        raise MlException(exception("Subtract"))
+    return rest
+
+
+# --- options -------------------------------------------------------------------------------------
+
+
+def _value_of(e: Evaluator, option: Data) -> Value:
+    if option.argument is None:
+        raise MlException(exception("Option"))
+    return option.argument
+
+
+def _option_map(e: Evaluator, function: Value, option: Data) -> Task:
+    if option.argument is None:
+        return NONE
+    return some((yield e.call(function, option.argument)))
+
+
+def _option_map_partial(e: Evaluator, function: Value, option: Data) -> Task:
+    return NONE if option.argument is None else (yield e.call(function, option.argument))
+
+
+def _option_filter(e: Evaluator, predicate: Value, item: Value) -> Task:
+    return some(item) if (yield e.call(predicate, item)) else NONE
+
+
+def _option_app(e: Evaluator, function: Value, option: Data) -> Task:
+    if option.argument is not None:
+        yield e.call(function, option.argument)
+    return UNIT
+
+
+def _pairs(p: tuple[Items, Items]) -> Items:
+    return tuple(zip(p[0], p[1], strict=False))
+
+
+FUNCTIONS: dict[str, tuple[int, Function]] = {
+    "Option.valOf": (1, _value_of),
+    "Option.isSome": (1, lambda e, option: option.argument is not None),
+    "Option.getOpt": (1, lambda e, p: p[1] if p[0].argument is None else p[0].argument),
+    "Option.map": (2, _option_map),
+    "Option.mapPartial": (2, _option_map_partial),
+    "Option.filter": (2, _option_filter),
+    "Option.join": (1, lambda e, option: NONE if option.argument is None else option.argument),
+    "Option.app": (2, _option_app),
+    "List.@": (1, lambda e, p: p[0] + p[1]),
+    "List.hd": (1, lambda e, items: _nonempty(items)[0]),
+    "List.tl": (1, lambda e, items: _nonempty(items)[1:]),
+    "List.last": (1, lambda e, items: _nonempty(items)[-1]),
+    "List.null": (1, lambda e, items: not items),
+    "List.length": (1, lambda e, items: len(items)),
+    "List.rev": (1, lambda e, items: items[::-1]),
+    "List.revAppend": (1, lambda e, p: p[0][::-1] + p[1]),
+    "List.nth": (1, lambda e, p: p[0][_position(p[0], p[1], len(p[0]))]),
+    "List.take": (1, lambda e, p: p[0][: _position(p[0], p[1], len(p[0]) + 1)]),
+    "List.drop": (1, lambda e, p: p[0][_position(p[0], p[1], len(p[0]) + 1) :]),
+    "List.concat": (1, lambda e, lists: tuple(item for inner in lists for item in inner)),
+    "List.map": (2, _map),
+    "List.mapPartial": (2, _map_partial),
+    "List.app": (2, _app),
+    "List.filter": (2, keep),
+    "List.partition": (2, _partition),
+    "List.find": (2, _find),
+    "List.exists": (2, _exists),
+    "List.all": (2, _all),
+    "List.foldl": (3, _fold),
+    "List.foldr": (3, _fold_right),
+    "List.tabulate": (1, _tabulate),
+    "List.getItem": (1, lambda e, items: some((items[0], items[1:])) if items else NONE),
+    "List.collate": (2, _collate),
+    "List.mem": (2, lambda e, items, item: contains(items, item)),
+    "List.remdupl": (1, lambda e, items: _without_duplicates(items)),
+    "List.rm": (2, lambda e, item, items: without_first(items, item)),
+    "List.rmall": (2, lambda e, item, items: tuple(i for i in items if not equal(i, item))),
+    "List.pos": (2, _pos),
+    "List.contains": (2, lambda e, items, part: all(contains(items, item) for item in part)),
+    "List.contains_all": (2, lambda e, items, part: without_all(items, part) is not None),
+    "List.intersect": (2, lambda e, a, b: _intersection(a, b)),
+    "List.union": (2, lambda e, a, b: a + b),
+    "List.listsub": (2, _difference),
+    "List.ins": (2, lambda e, items, item: (*items, item)),
+    "List.ins_new": (2, lambda e, items, item: items if contains(items, item) else (*items, item)),
+    "List.sort": (2, sort),
+    "List.unique_sort": (2, _unique_sort),
+    "List.fmap": (2, _concat_map),
+    "ListPair.zip": (1, lambda e, p: _pairs(p)),
+    "ListPair.unzip": (
+        1,
+        lambda e, pairs: (tuple(a for a, _ in pairs), tuple(b for _, b in pairs)),
+    ),
+    "ListPair.map": (2, lambda e, f, p: _map(e, f, _pairs(p))),
+    "ListPair.app": (2, lambda e, f, p: _app(e, f, _pairs(p))),
+    "ListPair.all": (2, lambda e, f, p: _all(e, f, _pairs(p))),
+    "ListPair.exists": (2, lambda e, f, p: _exists(e, f, _pairs(p))),
+    "ListPair.foldl": (3, lambda e, f, start, p: _fold_pairs(e, f, start, _pairs(p))),
+    "ListPair.foldr": (3, lambda e, f, start, p: _fold_pairs(e, f, start, _pairs(p)[::-1])),
+}

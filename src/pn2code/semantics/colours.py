@@ -1,0 +1,412 @@
+"""Operations of the colour sets: order, enumeration, legality, texts, storage.
+
+A colour set knows more than the type of its values: components in *declared* order (the fields of a record value
+are in SML's order of labels), bounds, names to print.
+"""
+
+from __future__ import annotations
+
+import itertools
+import math
+from collections.abc import Iterable, Sequence
+from typing import TYPE_CHECKING, Any
+
+from pn2code.ml.colsets import Colset, Kind
+from pn2code.ml.types import label_key
+from pn2code.semantics.values import (
+    UNIT,
+    Data,
+    MlException,
+    Timed,
+    Value,
+    equal,
+    exception,
+    float32,
+    int_text,
+    real_text,
+)
+
+if TYPE_CHECKING:
+    from pn2code.semantics.evaluate import Evaluator
+
+
+class NotFinite(ValueError):  # noqa: N818
+    """A real that has to be finite is not."""
+
+
+def component(c: Colset) -> Colset:
+    """The base of a list, subset or alias."""
+    base = c.components[0]
+    assert base is not None
+    return base
+
+
+def parts_of(c: Colset, value: Any) -> list[tuple[str, Colset, Value]]:
+    """Label, colour set and value of each component of a product or record, in declared order."""
+    if c.kind is Kind.PRODUCT:
+        named = enumerate(c.components, 1)
+        return [(str(i), p, x) for (i, p), x in zip(named, value, strict=True) if p is not None]
+    stored = dict(zip(sorted(c.labels, key=label_key), value, strict=True))
+    named_parts = zip(c.labels, c.components, strict=True)
+    return [(label, part, stored[label]) for label, part in named_parts if part is not None]
+
+
+def assemble(c: Colset, values: Sequence[Value]) -> tuple[Value, ...]:
+    """The value of a product or record from its components in declared order."""
+    if c.kind is Kind.PRODUCT:
+        return tuple(values)
+    by_label = dict(zip(c.labels, values, strict=True))
+    return tuple(by_label[label] for label in sorted(by_label, key=label_key))
+
+
+class Colours:
+    """The operations; `evaluator` evaluates the predicates of subsets."""
+
+    def __init__(self, evaluator: Evaluator) -> None:
+        self.evaluator = evaluator
+        self._all: dict[Colset, tuple[Value, ...]] = {}
+
+    # --- order -----------------------------------------------------------------------------------
+
+    def key(self, c: Colset, value: Any) -> Any:
+        """A Python value that compares as the colour set orders its values."""
+        match c.kind:
+            case Kind.ALIAS | Kind.SUBSET:
+                return self.key(component(c), value)
+            case Kind.ENUM:
+                return value.tag
+            case Kind.INDEX:
+                return value.argument
+            case Kind.PRODUCT | Kind.RECORD:
+                return tuple(self.key(part, item) for _, part, item in parts_of(c, value))
+            case Kind.LIST:
+                return tuple(self.key(component(c), item) for item in value)
+            case Kind.UNION:
+                part = c.components[value.tag]
+                return value.tag, () if part is None else self.key(part, value.argument)
+            case _:
+                return value
+
+    def sorted(self, c: Colset, values: Iterable[Value]) -> list[Value]:
+        """In the colour set's order."""
+        return sorted(values, key=lambda value: self.key(c, value))
+
+    # --- enumeration -----------------------------------------------------------------------------
+
+    def all(self, c: Colset) -> tuple[Value, ...]:
+        """Every value, in order.
+
+        Raises:
+            MlException: CPN'Error for a colour set without bounds.
+        """
+        if c not in self._all:
+            self._all[c] = tuple(self._enumerate(c))
+        return self._all[c]
+
+    def _enumerate(self, c: Colset) -> Iterable[Value]:
+        match c.kind:
+            case Kind.UNIT:
+                return [UNIT]
+            case Kind.BOOL:
+                return [False, True]
+            case Kind.ENUM:
+                return [Data(name, tag) for tag, name in enumerate(c.names)]
+            case Kind.ALIAS:
+                return self.all(component(c))
+            case Kind.SUBSET:
+                return [value for value in self._candidates(c) if self.legal(c, value)]
+            case Kind.PRODUCT | Kind.RECORD:
+                ranges = [self.all(part) for part in c.components if part is not None]
+                return [assemble(c, values) for values in itertools.product(*ranges)]
+            case Kind.UNION:
+                return self._enumerate_union(c)
+            case Kind.INT | Kind.INTINF | Kind.INDEX:
+                if not isinstance(c.low, int) or not isinstance(c.high, int):
+                    raise _unbounded(c)
+                numbers = range(c.low, c.high + 1)
+                return (
+                    [Data(c.names[0], 0, i) for i in numbers] if c.kind is Kind.INDEX else numbers
+                )
+            case Kind.LIST:
+                if not isinstance(c.low, int) or not isinstance(c.high, int):
+                    raise _unbounded(c)
+                return self._sequences(self.all(component(c)), c.low, c.high)
+            case Kind.STRING:
+                if c.length is None or not isinstance(c.low, str) or not isinstance(c.high, str):
+                    raise _unbounded(c)
+                letters = [chr(code) for code in range(ord(c.low), ord(c.high) + 1)]
+                texts = self._sequences(letters, *c.length)
+                return ["".join(map(str, text)) for text in texts]
+            case _:
+                raise _unbounded(c)
+
+    def _candidates(self, c: Colset) -> tuple[Value, ...]:
+        """Values among which a subset's are."""
+        if c.members is None:
+            return self.all(component(c))
+        members: Any = self.evaluator.value(c.members)
+        distinct: list[Value] = []
+        for value in self.sorted(component(c), members):
+            if not distinct or not equal(distinct[-1], value):
+                distinct.append(value)
+        return tuple(distinct)
+
+    def _enumerate_union(self, c: Colset) -> Iterable[Value]:
+        for tag, (name, part) in enumerate(zip(c.names, c.components, strict=True)):
+            if part is None:
+                yield Data(name, tag)
+            else:
+                yield from (Data(name, tag, value) for value in self.all(part))
+
+    def _sequences(self, items: Sequence[Value], low: int, high: int) -> list[tuple[Value, ...]]:
+        """All sequences with `low` to `high` items in lexicographic order, prefixes first."""
+        found: list[tuple[Value, ...]] = []
+
+        def extend(prefix: tuple[Value, ...]) -> None:
+            if len(prefix) >= low:
+                found.append(prefix)
+            if len(prefix) < high:
+                for item in items:
+                    extend((*prefix, item))
+
+        extend(())
+        return found
+
+    def size(self, c: Colset) -> int:
+        """Number of values; raises CPN'Error for a colour set without bounds."""
+        match c.kind:
+            case Kind.PRODUCT | Kind.RECORD:
+                return math.prod(self.size(part) for part in c.components if part is not None)
+            case Kind.UNION:
+                return sum(1 if part is None else self.size(part) for part in c.components)
+            case _:
+                return len(self.all(c))
+
+    def ord(self, c: Colset, value: Any) -> int:
+        """Position of a value in the order, from 0; raises CPN'Error when it is not legal."""
+        match c.kind:
+            case Kind.ALIAS:
+                return self.ord(component(c), value)
+            case Kind.PRODUCT | Kind.RECORD:
+                position = 0
+                for _, part, item in parts_of(c, value):
+                    position = position * self.size(part) + self.ord(part, item)
+                return position
+            case _:
+                everything = self.all(c)
+                if value not in everything:
+                    raise _out_of_range()
+                return everything.index(value)
+
+    def col(self, c: Colset, position: int) -> Value:
+        """The value at a position; raises CPN'Error when there is none."""
+        everything = self.all(c)
+        if not 0 <= position < len(everything):
+            raise _out_of_range()
+        return everything[position]
+
+    def ran(self, c: Colset) -> Value:
+        """A value at random; raises CPN'Error for a colour set without bounds."""
+        everything = self.all(c)
+        if not everything:
+            raise _out_of_range()
+        return self.evaluator.random.choice(everything)
+
+    def base(self, c: Colset) -> Value:
+        """Some value of the colour set: the first one, or the simplest of an unbounded one."""
+        match c.kind:
+            case Kind.INT | Kind.INTINF | Kind.TIME:
+                return c.low if isinstance(c.low, int) else 0
+            case Kind.REAL:
+                return float(c.low) if isinstance(c.low, int | float) else 0.0
+            case Kind.STRING:
+                return str(c.low or "a") * (c.length[0] if c.length else 0)
+            case Kind.LIST:
+                return (self.base(component(c)),) * (c.low if isinstance(c.low, int) else 0)
+            case Kind.INDEX:
+                return Data(c.names[0], 0, c.low if isinstance(c.low, int) else 0)
+            case Kind.PRODUCT | Kind.RECORD:
+                return assemble(c, [self.base(part) for part in c.components if part is not None])
+            case Kind.UNION:
+                part = c.components[0]
+                return Data(c.names[0], 0, None if part is None else self.base(part))
+            case Kind.ALIAS:
+                return self.base(component(c))
+            case _:
+                return self.all(c)[0]
+
+    # --- legality --------------------------------------------------------------------------------
+
+    def legal(self, c: Colset, value: Any) -> bool:
+        """Whether a value of the colour set's type is within all its bounds."""
+        match c.kind:
+            case Kind.INT | Kind.INTINF | Kind.TIME | Kind.REAL:
+                return _within(c, value)
+            case Kind.INDEX:
+                return _within(c, value.argument)
+            case Kind.STRING:
+                low, high = c.low, c.high
+                if isinstance(low, str) and not all(low <= x for x in value):
+                    return False
+                if isinstance(high, str) and not all(x <= high for x in value):
+                    return False
+                return c.length is None or c.length[0] <= len(value) <= c.length[1]
+            case Kind.LIST:
+                return _within(c, len(value)) and all(self.legal(component(c), x) for x in value)
+            case Kind.PRODUCT | Kind.RECORD:
+                return all(self.legal(part, item) for _, part, item in parts_of(c, value))
+            case Kind.UNION:
+                part = c.components[value.tag]
+                return part is None or self.legal(part, value.argument)
+            case Kind.ALIAS:
+                return self.legal(component(c), value)
+            case Kind.SUBSET:
+                return self.legal(component(c), value) and self._in_subset(c, value)
+            case _:
+                return True
+
+    def _in_subset(self, c: Colset, value: Value) -> bool:
+        if c.members is not None:
+            members: Any = self.evaluator.value(c.members)
+            return any(equal(value, member) for member in members)
+        assert c.predicate is not None
+        return bool(self.evaluator.apply(self.evaluator.value(c.predicate), value))
+
+    def illegal_message(self, c: Colset, value: Value) -> str:
+        """What is wrong with a value; "" if it is legal."""
+        if self.legal(c, value):
+            return ""
+        return f"{self.text(c, value)} is not in the colour set {c.name}"
+
+    # --- texts -----------------------------------------------------------------------------------
+
+    def text(self, c: Colset, value: Any) -> str:
+        """As CPN Tools prints it: `(~2)`, `"a"` (not escaped), `{b=1,a=red}`."""
+        match c.kind:
+            case Kind.UNIT:
+                return c.names[0] if c.names else "()"
+            case Kind.BOOL:
+                if c.names:
+                    return c.names[int(value)]
+                return "true" if value else "false"
+            case Kind.STRING:
+                return f'"{value}"'
+            case Kind.ENUM:
+                return str(value.name)
+            case Kind.INDEX:
+                return f"{c.names[0]}({int_text(value.argument)})"
+            case Kind.PRODUCT:
+                items = [self.text(part, item) for _, part, item in parts_of(c, value)]
+                return f"({','.join(items)})"
+            case Kind.RECORD:
+                fields = [
+                    f"{name}={self.text(part, item)}" for name, part, item in parts_of(c, value)
+                ]
+                return "{" + ",".join(fields) + "}"
+            case Kind.LIST:
+                return f"[{','.join(self.text(component(c), item) for item in value)}]"
+            case Kind.UNION:
+                part = c.components[value.tag]
+                if part is None:
+                    return str(value.name)
+                return f"{value.name}({self.text(part, value.argument)})"
+            case Kind.ALIAS | Kind.SUBSET:
+                return self.text(component(c), value)
+            case Kind.TIME if isinstance(value, float):
+                return real_text(value)
+            case Kind.REAL:
+                return f"({real_text(value)})" if value < 0 else real_text(value)
+            case _:
+                return f"({int_text(value)})" if value < 0 else int_text(value)
+
+    def multiset_text(
+        self, c: Colset, items: Iterable[Value], *, earlier_first: bool = False
+    ) -> str:
+        """As CPN Tools prints a multi-set: sorted, `n` + backquote + `v` and a `++` at the ends of lines.
+
+        Timed tokens have their stamps behind `@`; of one colour the later stamps come first (in the nodes of a state
+        space the earlier ones).
+        """
+        counted: dict[Value, int] = {}
+        for item in items:
+            counted[item] = counted.get(item, 0) + 1
+
+        def position(item: Value) -> Any:
+            if isinstance(item, Timed):
+                return self.key(c, item.value), item.stamp if earlier_first else -item.stamp
+            return self.key(c, item)
+
+        lines = []
+        joint = "++\n"
+        for item in sorted(counted, key=position):
+            if isinstance(item, Timed):
+                joint = "+++\n"
+                stamp = real_text(item.stamp) if isinstance(item.stamp, float) else item.stamp
+                lines.append(f"{counted[item]}`{self.text(c, item.value)}@{stamp}")
+            else:
+                lines.append(f"{counted[item]}`{self.text(c, item)}")
+        return joint.join(lines) or "empty"
+
+    # --- components ------------------------------------------------------------------------------
+
+    def mult(self, c: Colset, multisets: tuple[Any, ...]) -> tuple[Value, ...]:
+        """All combinations of the elements of multi-sets, one for each component."""
+        c = c.resolved
+        ranges: list[Any] = [items for _, _, items in parts_of(c, multisets)]
+        return tuple(assemble(c, values) for values in itertools.product(*ranges))
+
+    def with_component(self, c: Colset, label: str, value: Any, new: Value) -> tuple[Value, ...]:
+        """A copy of a product or record with another value of one component."""
+        c = c.resolved
+        return assemble(c, [new if name == label else item for name, _, item in parts_of(c, value)])
+
+    # --- storage ---------------------------------------------------------------------------------
+
+    def stored(self, c: Colset, value: Any, float32_names: frozenset[str]) -> Value:
+        """The value as a place keeps it: reals of the named colour sets are rounded to `float32`.
+
+        Raises:
+            NotFinite: a rounded real is infinite or not a number.
+        """
+        if not float32_names:
+            return value  # type: ignore[no-any-return]
+        match c.kind:
+            case Kind.REAL:
+                if c.name not in float32_names:
+                    return value  # type: ignore[no-any-return]
+                rounded = float32(value)
+                if not math.isfinite(rounded):
+                    raise NotFinite(f"{real_text(value)} is not finite as a float32")
+                return rounded
+            case Kind.ALIAS | Kind.SUBSET:
+                base = component(c)
+                if c.name in float32_names:
+                    float32_names = float32_names | {base.name}
+                return self.stored(base, value, float32_names)
+            case Kind.PRODUCT | Kind.RECORD:
+                parts = parts_of(c, value)
+                return assemble(c, [self.stored(p, item, float32_names) for _, p, item in parts])
+            case Kind.LIST:
+                return tuple(self.stored(component(c), item, float32_names) for item in value)
+            case Kind.UNION:
+                part = c.components[value.tag]
+                if part is None:
+                    return value  # type: ignore[no-any-return]
+                inner = self.stored(part, value.argument, float32_names)
+                return Data(value.name, value.tag, inner)
+            case _:
+                return value  # type: ignore[no-any-return]
+
+
+def _within(c: Colset, number: Any) -> bool:
+    low: Any = c.low
+    high: Any = c.high
+    return (low is None or low <= number) and (high is None or number <= high)
+
+
+def _unbounded(c: Colset) -> MlException:
+    return MlException(exception("CPN'Error", f"the colour set {c.name} has no bounds"))
+
+
+def _out_of_range() -> MlException:
+    return MlException(exception("CPN'Error", "Out of range!"))

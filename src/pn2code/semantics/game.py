@@ -1,0 +1,299 @@
+"""The token game: what a net does, step by step.
+
+    game = Game(net)
+    while elements := game.enabled():
+        game.fire(elements[0])
+
+`Game` keeps the current marking, and gives the same as functions from markings to markings (`enabled_in`, `occur`,
+`settle`), from which state spaces are made. References of the net and its random source are not part of a marking.
+
+Documented order of `enabled()`: transitions of the best priority in the order of `FlatNet.transitions`, the bindings of
+each in the order of `enabling`.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import replace
+from typing import Any
+
+from pn2code.diagnostics import NOWHERE, Origin
+from pn2code.ml.colsets import Colset
+from pn2code.ml.core import Symbol
+from pn2code.net.flat import ArcKind, FlatArc, FlatNet, FlatPlace, FlatTransition, Form
+from pn2code.semantics.colours import NotFinite
+from pn2code.semantics.enabling import Demand, Enabling, GameError, running
+from pn2code.semantics.evaluate import Evaluator, Limits
+from pn2code.semantics.marking import (
+    Binding,
+    BindingElement,
+    Marking,
+    PlaceMarking,
+    element_text,
+    place_of,
+    place_text,
+)
+from pn2code.semantics.multiset import MultiSet, TimedMultiSet
+from pn2code.semantics.values import Timed, Value
+
+__all__ = ["Binding", "BindingElement", "Game", "GameError", "Marking", "NotEnabled"]
+
+
+class NotEnabled(ValueError):  # noqa: N818
+    """A binding element was to occur that is not enabled; the message says why."""
+
+
+class Game:
+    """A net in play.
+
+    Args:
+        net: the net.
+        storage: colour sets of reals that are stored in another way: name -> "float32".
+        initial: markings that replace the initial markings of the places of these names.
+        seed: of the random functions.
+        limits: of each evaluation.
+        output: is given what the net prints.
+
+    Attributes:
+        marking: the current marking.
+        steps: number of occurrences so far; what `step()` gives.
+
+    Raises:
+        GameError: a declaration or an initial marking raises an exception, or is not legal.
+    """
+
+    def __init__(
+        self,
+        net: FlatNet,
+        storage: Mapping[str, str] | None = None,
+        initial: Mapping[str, PlaceMarking] | None = None,
+        *,
+        seed: int = 0,
+        limits: Limits | None = None,
+        output: Callable[[str], None] = lambda text: None,
+    ) -> None:
+        self.net = net
+        self._float32 = frozenset(n for n, how in (storage or {}).items() if how == "float32")
+        with running(replace(NOWHERE, file=net.file, part="declarations"), "a declaration"):
+            self.evaluator = Evaluator(
+                net.program, real_time=net.real_time, seed=seed, limits=limits, output=output
+            )
+        self.colours = self.evaluator.colours
+        self.enabling = Enabling(net, self.evaluator)
+        self.start: int | float = 0.0 if net.real_time else 0
+        self.own_initial_marking = Marking(self.start, tuple(map(self._initial, net.places)))
+        self.marking = self._with_overrides(self.own_initial_marking, initial or {})
+        self.steps = 0
+
+    # --- the current marking ---------------------------------------------------------------------
+
+    def enabled(self) -> list[BindingElement]:
+        """What is enabled at the current time, priorities respected, in the documented order."""
+        return self.enabled_in(self.marking)
+
+    def fire(self, element: BindingElement) -> BindingElement:
+        """Lets an enabled element occur; gives it with the outputs of the code segment.
+
+        Raises:
+            NotEnabled: it is not enabled.
+            GameError: an inscription raises an exception, or gives a token that is not legal.
+        """
+        obstacle = self.obstacle(self.marking, element)
+        if obstacle is not None:
+            raise NotEnabled(f"{element_text(self.colours, self.net, element)}: {obstacle}")
+        self.evaluator.steps = self.steps + 1
+        self.marking, occurred = self.occur(self.marking, element)
+        self.steps += 1
+        return occurred
+
+    def advance(self) -> bool:
+        """If nothing is enabled now, moves the time to where something is; whether anything is enabled then."""
+        self.marking = self.settle(self.marking)
+        return bool(self.enabled())
+
+    def set_time(self, time: float) -> None:
+        """Moves the clock forward, for replays of runs against another clock."""
+        if time < self.marking.time:
+            raise ValueError("model time does not go back")
+        self.marking = replace(self.marking, time=time if self.net.real_time else int(time))
+
+    def run(
+        self,
+        choose: Callable[[list[BindingElement]], BindingElement] = lambda elements: elements[0],
+        steps: int | None = None,
+    ) -> Iterator[BindingElement]:
+        """Plays on, advancing time where needed, until nothing is enabled or so many steps are done."""
+        done = 0
+        while (steps is None or done < steps) and self.advance():
+            yield self.fire(choose(self.enabled()))
+            done += 1
+
+    def marking_text(self, place: str) -> str:
+        """What a place of that unique name holds, as CPN Tools prints it."""
+        found = next(p for p in self.net.places if p.name == place)
+        return place_text(self.colours, found.colset, self.marking.places[found.index])
+
+    # --- functions of markings -------------------------------------------------------------------
+
+    def enabled_in(self, marking: Marking) -> list[BindingElement]:
+        """What is enabled at the marking's time, priorities respected, in the documented order."""
+        elements: list[BindingElement] = []
+        best: int | None = None
+        for t in sorted(self.net.transitions, key=lambda t: t.priority):
+            if best is not None and t.priority > best:
+                break
+            for binding in self.enabling.enabled(t, marking):
+                best = t.priority
+                elements.append(BindingElement.make(t, binding))
+        return elements
+
+    def obstacle(
+        self, marking: Marking, element: BindingElement, *, priorities: bool = True
+    ) -> str | None:
+        """Why an element is not enabled in a marking at its time; None if it is."""
+        t = self.net.transitions[element.transition]
+        reason = self.enabling.obstacle(t, marking, element.binding)
+        if reason is not None or not priorities:
+            return reason
+        for other in self.net.transitions:
+            if other.priority < t.priority:
+                binding = next(self.enabling.enabled(other, marking), None)
+                if binding is not None:
+                    text = element_text(self.colours, self.net, BindingElement.make(other, binding))
+                    return f"{text} has a higher priority and is enabled"
+        return None
+
+    def settle(self, marking: Marking) -> Marking:
+        """The marking at the earliest time, from its own on, at which something is enabled.
+
+        The marking as it is when nothing will ever be enabled.
+        """
+        if not self.net.timed or self.enabled_in(marking):
+            return marking
+        times: set[int | float] = set()
+        for t in self.net.transitions:
+            times |= self.enabling.thresholds(t, marking)
+        for time in sorted(times):
+            later = replace(marking, time=time)
+            if self.enabled_in(later):
+                return later
+        return marking
+
+    def occur(self, marking: Marking, element: BindingElement) -> tuple[Marking, BindingElement]:
+        """The marking after an enabled element has occurred, and the element with its code segment's outputs.
+
+        The order is that of the real engine: action, tokens taken, delay, tokens put, reset arcs.
+
+        Raises:
+            GameError: an inscription raises an exception, or gives a token that is not legal; or the tokens are
+                not there (an inscription has another value the second time).
+        """
+        t = self.net.transitions[element.transition]
+        self.evaluator.now = marking.time
+        binding = {**element.binding, **self._action(t, element.binding)}
+        left = self.enabling.take(marking, self.enabling.demands(t, element.binding))
+        if isinstance(left, Demand):
+            name = self.net.places[left.place].name
+            raise GameError(f"place `{name}` lacks tokens when the transition occurs", t.origin)
+        delay: Any = 0
+        if t.delay is not None:
+            with running(replace(t.origin, part="delay"), f"the delay of `{t.name}`"):
+                delay = self.evaluator.value(t.delay, binding)
+        places = list(left.places)
+        for arc in t.arcs:
+            if arc.kind in (ArcKind.OUTPUT, ArcKind.BOTH):
+                places[arc.place] = self._put(places[arc.place], arc, binding, delay, marking.time)
+        for arc in t.arcs:
+            if arc.kind is ArcKind.RESET:
+                places[arc.place] = _reset(places[arc.place], marking.time)
+        return replace(left, places=tuple(places)), BindingElement.make(t, binding)
+
+    # --- details ---------------------------------------------------------------------------------
+
+    def _action(self, t: FlatTransition, binding: Binding) -> dict[Symbol, Value]:
+        """Runs the code segment, gives its outputs."""
+        if t.code is None:
+            return {}
+        with running(t.code.origin, f"the code segment of `{t.name}`"):
+            result: Any = self.evaluator.value(t.code.action, binding)
+        outputs = t.code.outputs
+        if len(outputs) == 1:
+            return {outputs[0]: result}
+        return dict(zip(outputs, result, strict=True)) if outputs else {}
+
+    def _put(
+        self,
+        tokens: PlaceMarking,
+        arc: FlatArc,
+        binding: Binding,
+        delay: float,
+        now: float,
+    ) -> PlaceMarking:
+        assert arc.inscription is not None
+        with running(arc.inscription.origin, "the inscription"):
+            value = self.evaluator.value(arc.inscription.value, binding)
+        colset = self.net.places[arc.place].colset
+        put = self._tokens(value, arc.inscription.form, colset, arc.inscription.origin)
+        if isinstance(tokens, MultiSet):
+            return tokens + MultiSet.of(put)
+        return tokens + [
+            Timed(x.value, x.stamp + delay) if isinstance(x, Timed) else Timed(x, now + delay)
+            for x in put
+        ]
+
+    def _tokens(self, value: Any, form: Form, colset: Colset, origin: Origin) -> list[Value]:
+        """The tokens that an inscription's value stands for, legal and as they are stored."""
+        single = form in (Form.TOKEN, Form.TIMED_TOKEN)
+        return [self._checked(x, colset, origin) for x in ((value,) if single else value)]
+
+    def _checked(self, token: Value, c: Colset, origin: Origin) -> Value:
+        value = token.value if isinstance(token, Timed) else token
+        with running(origin, f"the test of colour set `{c.name}`"):
+            legal = self.colours.legal(c, value)
+        if not legal:
+            text = self.colours.text(c, value)
+            raise GameError(
+                f"illegal colour {text}: it is not in the colour set `{c.name}`", origin
+            )
+        try:
+            stored = self.colours.stored(c, value, self._float32)
+        except NotFinite as infinite:
+            raise GameError(f"illegal colour: {infinite}", origin) from None
+        return Timed(stored, token.stamp) if isinstance(token, Timed) else stored
+
+    def _initial(self, place: FlatPlace) -> PlaceMarking:
+        if place.initial is None:
+            return place_of(place.colset, ())
+        exp, form = place.initial
+        origin = replace(place.origins[0] if place.origins else NOWHERE, part="initial marking")
+        with running(origin, f"the initial marking of `{place.name}`"):
+            value = self.evaluator.value(exp)
+        return self._stamped(place.colset, self._tokens(value, form, place.colset, origin))
+
+    def _stamped(self, c: Colset, tokens: list[Value]) -> PlaceMarking:
+        """The marking of a place; tokens without stamp get the start time if the place is timed."""
+        if not c.timed:
+            return place_of(c, tokens)
+        return place_of(c, [x if isinstance(x, Timed) else Timed(x, self.start) for x in tokens])
+
+    def _with_overrides(self, own: Marking, initial: Mapping[str, PlaceMarking]) -> Marking:
+        places = list(own.places)
+        index = {p.name: p.index for p in self.net.places}
+        for name, tokens in initial.items():
+            if name not in index:
+                raise GameError(
+                    f"there is no place `{name}` to give an initial marking",
+                    replace(NOWHERE, file=self.net.file),
+                )
+            place = self.net.places[index[name]]
+            origin = place.origins[0] if place.origins else NOWHERE
+            checked = [self._checked(token, place.colset, origin) for token in tokens]
+            places[place.index] = self._stamped(place.colset, checked)
+        return replace(own, places=tuple(places))
+
+
+def _reset(tokens: PlaceMarking, now: float) -> PlaceMarking:
+    """Empties a place; a timed one keeps what is not available yet."""
+    if isinstance(tokens, MultiSet):
+        return MultiSet()
+    return TimedMultiSet.of(token for token in tokens if token.stamp > now)

@@ -1,0 +1,261 @@
+"""Replaying a trace: is it an occurrence sequence of the net?
+
+    result = replay(Path("run.trace.jsonl"), net)
+    result.ok, result.why
+
+Each line that names a transition must be enabled with that binding when its turn comes; all values, reals included,
+are compared exactly. Lines with an `event` are passed over.
+
+Time: the simulators (`by` is `simulate` or `reference`) write model times, and the clock must do exactly what the
+rules say. All others write seconds of the run; there the clock follows the trace (`t` divided by `time_unit`), tokens
+must be available by then, and priorities are not enforced: they order what one controller does, and a run has several.
+"""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from pn2code.ml.core import Symbol
+from pn2code.net.flat import FlatNet, FlatTransition
+from pn2code.semantics.colour_json import JsonError, from_json, to_json
+from pn2code.semantics.evaluate import Limits
+from pn2code.semantics.game import Game, GameError
+from pn2code.semantics.marking import (
+    BindingElement,
+    Marking,
+    PlaceMarking,
+    place_from_json,
+)
+from pn2code.semantics.values import Value
+
+SIMULATORS = frozenset({"simulate", "reference"})
+
+
+@dataclass(frozen=True, slots=True)
+class ReplayResult:
+    """What became of a trace.
+
+    Args:
+        ok: whether every step could be repeated.
+        steps: how many were.
+        why: if not ok: what is wrong with the next one.
+        line: its line number in the file, from 1; 0 if ok.
+        transition: its transition, "" if the line names none.
+        ended: the trace's own last word (`why` of its `end` line), None when it just stops.
+        game: the game after the last step that was repeated; None when the net itself could not be started.
+    """
+
+    ok: bool
+    steps: int
+    why: str
+    line: int
+    transition: str
+    ended: str | None
+    game: Game | None
+
+    @property
+    def marking(self) -> Marking | None:
+        """The marking after the last step that was repeated."""
+        return self.game.marking if self.game else None
+
+    def message(self) -> str:
+        """One line for people."""
+        if self.ok:
+            end = f", ended: {self.ended}" if self.ended else ", without an end"
+            return f"{self.steps} steps, each enabled when its turn came{end}"
+        what = f" `{self.transition}`" if self.transition else ""
+        return f"line {self.line}: after {self.steps} steps{what}: {self.why}"
+
+
+class _Wrong(Exception):  # noqa: N818
+    """A line cannot be repeated; the message says why."""
+
+
+@dataclass(frozen=True, slots=True)
+class Rules:
+    """How strictly a trace is read.
+
+    Args:
+        own_clock: the clock follows the rules of the net and `t` must agree; else it follows `t`.
+        priorities: whether no transition of higher priority may be enabled.
+        time_unit: seconds in a unit of model time, where the clock follows `t`.
+    """
+
+    own_clock: bool
+    priorities: bool
+    time_unit: float = 1.0
+
+
+def replay(
+    path: Path,
+    net: FlatNet,
+    storage: Mapping[str, str] | None = None,
+    *,
+    rules: Rules | None = None,
+    time_unit: float = 1.0,
+    check_digest: bool = False,
+    limits: Limits | None = None,
+) -> ReplayResult:
+    """Replays a trace file.
+
+    Args:
+        path: the file.
+        net: the net that it is said to come from.
+        storage: as for `Game`.
+        rules: overrides what the header's `by` decides.
+        time_unit: seconds in a unit of model time.
+        check_digest: whether the header's digest must be the SHA-256 of the net's file. (Compilers hash the
+            configuration of the cell with it.)
+        limits: of each evaluation.
+    """
+    with path.open(encoding="utf-8") as lines:
+        return replay_lines(
+            lines,
+            net,
+            storage,
+            rules=rules,
+            time_unit=time_unit,
+            check_digest=check_digest,
+            limits=limits,
+        )
+
+
+def replay_lines(
+    lines: Iterable[str],
+    net: FlatNet,
+    storage: Mapping[str, str] | None = None,
+    *,
+    rules: Rules | None = None,
+    time_unit: float = 1.0,
+    check_digest: bool = False,
+    limits: Limits | None = None,
+) -> ReplayResult:
+    """Replays the lines of a trace; see `replay`."""
+    game: Game | None = None
+    steps, number, ended, transition = 0, 0, None, ""
+    try:
+        for number, text in enumerate(lines, 1):
+            if not text.strip():
+                continue
+            line = _object(text)
+            transition = str(line.get("transition", ""))
+            if game is None:
+                if check_digest and line.get("digest") != net.sha256:
+                    raise _Wrong("the trace is of another net: its digest differs")
+                game = Game(net, storage, _initial(net, line), limits=limits)
+                rules = rules or _rules_for(str(line.get("by", "")), time_unit)
+            elif line.get("event") == "end":
+                ended = str(line.get("why", ""))
+            elif "event" not in line:
+                assert rules is not None
+                _step(game, line, rules)
+                steps += 1
+        if game is None:
+            raise _Wrong("the trace is empty")
+    except (_Wrong, GameError) as wrong:
+        return ReplayResult(False, steps, str(wrong), number, transition, ended, game)
+    return ReplayResult(True, steps, "", 0, "", ended, game)
+
+
+def _rules_for(by: str, time_unit: float) -> Rules:
+    simulator = by in SIMULATORS
+    return Rules(own_clock=simulator, priorities=simulator, time_unit=time_unit)
+
+
+def _object(text: str) -> dict[str, Any]:
+    try:
+        data = json.loads(text)
+    except json.JSONDecodeError as error:
+        raise _Wrong(f"not JSON: {error}") from None
+    if not isinstance(data, dict):
+        raise _Wrong("not a JSON object")
+    return data
+
+
+def _initial(net: FlatNet, header: dict[str, Any]) -> dict[str, PlaceMarking]:
+    """The overrides of initial markings that the header lists."""
+    if header.get("trace") != 1:
+        raise _Wrong('the first line is not the header of a trace: `"trace": 1` is missing')
+    places = {p.name: p for p in net.places}
+    found: dict[str, PlaceMarking] = {}
+    for name, data in header.get("initial", {}).items():
+        if name not in places:
+            raise _Wrong(f"the header names the place `{name}`, which the net does not have")
+        try:
+            found[name] = place_from_json(places[name].colset, data)
+        except JsonError as error:
+            raise _Wrong(f"initial marking of `{name}`: {error}") from None
+    return found
+
+
+def _step(game: Game, line: dict[str, Any], rules: Rules) -> None:
+    """Repeats one occurrence; raises _Wrong when that is not possible."""
+    t = next((t for t in game.net.transitions if t.name == line.get("transition")), None)
+    if t is None:
+        raise _Wrong("the net has no such transition")
+    given = _binding(t, line.get("binding", {}))
+    element = BindingElement.make(t, {s: x for s, x in given.items() if s not in _outputs(t)})
+    _set_clock(game, line, rules)
+    obstacle = game.obstacle(game.marking, element, priorities=rules.priorities)
+    if obstacle is not None:
+        raise _Wrong(f"not enabled: {obstacle}")
+    game.evaluator.steps = game.steps + 1
+    marking, occurred = game.occur(game.marking, element)
+    for symbol in _outputs(t):
+        _compare(symbol, occurred.binding[symbol], given[symbol])
+    game.marking = marking
+    game.steps += 1
+
+
+def _outputs(t: FlatTransition) -> tuple[Symbol, ...]:
+    return t.code.outputs if t.code else ()
+
+
+def _binding(t: FlatTransition, data: Any) -> dict[Symbol, Value]:
+    if not isinstance(data, dict):
+        raise _Wrong("its binding is not a JSON object")
+    names = {s.name for s in t.variables}
+    unknown = sorted(set(data) - names)
+    if unknown:
+        raise _Wrong(f"its binding has `{unknown[0]}`, which is no variable of the transition")
+    found: dict[Symbol, Value] = {}
+    for s in t.variables:
+        if s.name not in data:
+            raise _Wrong(f"its binding lacks variable `{s.name}`")
+        assert s.colset is not None, "a net variable has a colour set"
+        try:
+            found[s] = from_json(s.colset, data[s.name])
+        except JsonError as error:
+            raise _Wrong(f"variable `{s.name}`: {error}") from None
+    return found
+
+
+def _set_clock(game: Game, line: dict[str, Any], rules: Rules) -> None:
+    if not game.net.timed:
+        return
+    t = line.get("t")
+    if isinstance(t, bool) or not isinstance(t, int | float):
+        raise _Wrong("it has no time `t`")
+    if rules.own_clock:
+        game.advance()
+        if t != game.marking.time:
+            raise _Wrong(f"it says time {t}, but the clock shows {game.marking.time}")
+        return
+    time = t / rules.time_unit
+    if time < game.marking.time - (0 if game.net.real_time else 1):
+        raise _Wrong(f"time goes back: {time} after {game.marking.time}")
+    game.set_time(max(game.marking.time, time))
+
+
+def _compare(symbol: Symbol, ours: Value, theirs: Value) -> None:
+    """The output of a code segment must be what the trace says."""
+    assert symbol.colset is not None
+    if to_json(symbol.colset, ours) != to_json(symbol.colset, theirs):
+        raise _Wrong(
+            f"the code segment gives `{symbol.name}` = {json.dumps(to_json(symbol.colset, ours))}, "
+            f"the trace says {json.dumps(to_json(symbol.colset, theirs))}"
+        )

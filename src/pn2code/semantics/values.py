@@ -1,0 +1,211 @@
+"""Values of CPN ML in Python: immutable, hashable, without a trace of their types.
+
+| CPN ML | Python |
+|---|---|
+| `int`, `IntInf.int` | `int` (the operations on `int` check the 31 bits) |
+| `real` | `float` |
+| `string`, `char` | `str` |
+| `bool` | `bool` |
+| record, tuple, `unit` | `tuple` of the fields, in SML's order of the labels |
+| list, multi-set | `tuple` of the elements |
+| other data types, exceptions | `Data` |
+| `v@s` | `Timed` |
+| `ref` | `Ref`, equal only to itself |
+| function | `Closure` or `Native` |
+
+A value alone does not tell a list from a tuple: its type does, and every user of a value knows the type.
+"""
+
+from __future__ import annotations
+
+import math
+import struct
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Any
+
+from pn2code.ml.builtins import EXCEPTIONS
+
+if TYPE_CHECKING:
+    from pn2code.diagnostics import Span
+    from pn2code.ml.core import Rule
+
+MAX_INT = 2**30 - 1
+"""Largest `int`: CPN Tools runs on a 31-bit SML."""
+MIN_INT = -(2**30)
+
+
+@dataclass(frozen=True, slots=True)
+class Data:
+    """A value made by a constructor: enumerations, unions, `SOME x`, user data types, exceptions.
+
+    Args:
+        name: the constructor.
+        tag: its position among the constructors of its type.
+        argument: its argument; None when it takes none (`()` when it takes the unit value).
+    """
+
+    name: str
+    tag: int
+    argument: Value | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class Timed:
+    """A token with its absolute time stamp."""
+
+    value: Value
+    stamp: int | float
+
+
+@dataclass(slots=True, eq=False)
+class Ref:
+    """A reference; the only value that changes."""
+
+    contents: Value
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Closure:
+    """A function of the net: rules, and the values of the local variables around them."""
+
+    rules: tuple[Rule, ...]
+    environment: dict[int, Value] = field(repr=False)
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Native:
+    """A built-in function, perhaps with some of its curried arguments already there.
+
+    Args:
+        name: for messages.
+        arity: number of curried arguments it wants in all.
+        function: called with the evaluator and all the arguments. Gives the value, or a task
+            (a generator, see `evaluate`) when it has to call functions of the net.
+        arguments: those that are there.
+    """
+
+    name: str
+    arity: int
+    function: Callable[..., Any] = field(repr=False)
+    arguments: tuple[Value, ...] = ()
+
+
+Value = int | float | str | tuple[Any, ...] | Data | Timed | Ref | Closure | Native
+"""Any value. Tuples hold values; the `Any` only avoids a recursive alias."""
+
+UNIT: tuple[Value, ...] = ()
+NONE = Data("NONE", 0)
+ORDER = (Data("LESS", 0), Data("EQUAL", 1), Data("GREATER", 2))
+
+
+def some(value: Value) -> Data:
+    """`SOME value`."""
+    return Data("SOME", 1, value)
+
+
+def order(a: Any, b: Any) -> Data:
+    """`LESS`, `EQUAL` or `GREATER` of two Python values that can be compared."""
+    return ORDER[0] if a < b else ORDER[2] if b < a else ORDER[1]
+
+
+class MlException(Exception):  # noqa: N818 - the field's word; it is not an error of pn2code
+    """An exception that CPN ML raised.
+
+    Args:
+        name: its constructor.
+        value: the whole exception value.
+        span: where it was raised, if that is known.
+    """
+
+    def __init__(self, value: Data, span: Span | None = None) -> None:
+        super().__init__(value)
+        self.name = value.name
+        self.value = value
+        self.span = span
+
+    def __str__(self) -> str:
+        """The name, with the argument when it is a text or a number."""
+        argument = self.value.argument
+        if isinstance(argument, str | int | float):
+            return f"{self.name} ({argument})"
+        return self.name
+
+
+class MlLimit(Exception):  # noqa: N818
+    """Evaluation went on for too long or too deep; CPN ML cannot handle it."""
+
+
+def exception(name: str, argument: Value | None = None) -> Data:
+    """The value of a built-in exception; of one that CPN ML has no name for when it is not in the table."""
+    known = EXCEPTIONS.get(name)
+    return Data(name, known[0].tag if known else -1, argument)
+
+
+def equal(a: Value, b: Value) -> bool:
+    """CPN ML's `=`: structural; reals by value (NaN differs from itself), references by identity.
+
+    Works without recursion, so that deep values do no harm.
+    """
+    if isinstance(a, int | float | str):
+        return a == b
+    todo: list[tuple[Any, Any]] = [(a, b)]
+    while todo:
+        x, y = todo.pop()
+        if isinstance(x, tuple):
+            if len(x) != len(y):
+                return False
+            todo.extend(zip(x, y, strict=True))
+        elif isinstance(x, Data):
+            if x.tag != y.tag:
+                return False
+            if x.argument is not None:
+                todo.append((x.argument, y.argument))
+        elif isinstance(x, Timed):
+            todo.extend(((x.value, y.value), (x.stamp, y.stamp)))
+        elif isinstance(x, Closure | Native):
+            raise TypeError("functions have no equality")
+        elif isinstance(x, Ref):
+            if x is not y:
+                return False
+        elif x != y:
+            return False
+    return True
+
+
+def float32(x: float) -> float:
+    """The nearest value that a C `float` can hold; infinite when it is too large for one."""
+    try:
+        return float(struct.unpack("<f", struct.pack("<f", x))[0])
+    except OverflowError:
+        return math.copysign(math.inf, x)
+
+
+def int_text(i: int) -> str:
+    """SML's `Int.toString`: `~` for minus."""
+    return f"~{-i}" if i < 0 else str(i)
+
+
+def real_text(x: float) -> str:
+    """SML's `Real.toString`: at most 12 significant digits, `0.333333333333`, `1E~05`, `~1.5`, `2.0`."""
+    if math.isnan(x):
+        return "nan"
+    if math.isinf(x):
+        return "inf" if x > 0 else "~inf"
+    sign = "~" if math.copysign(1.0, x) < 0 else ""
+    if x == 0:
+        return sign + "0.0"
+    mantissa, exponent_text = f"{abs(x):.11e}".split("e")
+    digits, exponent = mantissa.replace(".", "").rstrip("0"), int(exponent_text)
+    if exponent < -4 or exponent >= 12:
+        # SML/NJ writes a two-digit exponent at least only for small numbers: 1E~05, but 1E20.
+        fraction = "." + digits[1:] if len(digits) > 1 else ""
+        return f"{sign}{digits[0]}{fraction}E{_exponent(exponent)}"
+    if exponent < 0:
+        return f"{sign}0.{'0' * (-exponent - 1)}{digits}"
+    whole, fraction = digits[: exponent + 1].ljust(exponent + 1, "0"), digits[exponent + 1 :]
+    return f"{sign}{whole}.{fraction or '0'}"
+
+
+def _exponent(exponent: int) -> str:
+    return f"~{-exponent:02d}" if exponent < 0 else f"{exponent:02d}"
