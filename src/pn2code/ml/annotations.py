@@ -6,6 +6,7 @@ from collections.abc import Sequence
 
 from pn2code.ml import codes
 from pn2code.ml import syntax as s
+from pn2code.ml.builtins import STRUCTURES
 from pn2code.ml.context import Context, suggestion
 from pn2code.ml.environment import (
     BrokenType,
@@ -54,6 +55,9 @@ class Annotations:
     def _name(self, t: s.NameTy) -> Ty:
         args = [self.type(a) for a in t.args]
         entry = self._ctx.scope.type(t.name)
+        if entry is None and t.name.split(".")[0] in STRUCTURES:
+            self._ctx.error(codes.UNSUPPORTED_BUILTIN, f"type `{t.name}` is not supported", t.span)
+            return ERROR
         if entry is None:
             self._ctx.error(
                 codes.UNKNOWN_COLOUR_SET,

@@ -1,12 +1,13 @@
 """The built-in environment of CPN ML: what exists, at which type, and what it means.
 
-`BUILTINS` maps each full name (`List.map`, `Int.+`, `Ms.++`) to its type scheme and a one-line meaning; the evaluator and the
-compiler implement exactly these names. `TOP_LEVEL` says which short names stand for them at top level (`map`, `^^`, `time`),
+`BUILTINS` maps each full name (`List.map`, `Int.+`, `Ms.++`) to its type scheme and a one-line meaning; the
+evaluator and the compiler implement exactly these names. `TOP_LEVEL` says which short names stand for them
+at top level (`map`, `^^`, `time`),
 `OVERLOADED` which short names stand for one of several, chosen by type (`+` is `Int.+`, `Real.+` or `IntInf.+`).
 `COLSET_MEMBERS` are the functions of a colour set's own structure (`INT.all()` is `Colset.all` at `INT`).
 
-Not in the tables: the constructors (`true`, `nil`, `::`, `SOME`, ... are `core.Con`, see `DATATYPES`), `empty` and `nil`
-(both the empty `core.ListExp`), and exceptions (`EXCEPTIONS`).
+Not in the tables: the constructors (`true`, `nil`, `::`, `SOME`, ... are `core.Con`, see `DATATYPES`),
+`empty` and `nil` (both the empty `core.ListExp`), and exceptions (`EXCEPTIONS`).
 
 In types, `time` stands for the type of model time: `IntInf.int`, or `real` in a net with a real clock.
 """
@@ -96,9 +97,8 @@ class _SchemeParser:
         while (word := self._tokens[self._at]) and (word[0].isalpha()):
             self._at += 1
             if word == "tms":
-                t = TCon("list", (TCon("timed", (t,)),))
-            else:
-                t = TCon("list" if word == "ms" else word, (t,))
+                word, t = "list", TCon("timed", (t,))
+            t = TCon("list" if word == "ms" else word, (t,))
         return t
 
     def _atom(self) -> Type:
@@ -264,13 +264,23 @@ QUALIFIED: dict[str, str] = {
 }
 """Qualified names that stand for another full name; all other qualified names stand for themselves."""
 
+_OTHER_STRUCTURES = """
+Array Array2 BinIO Byte CharVector CommandLine Date IEEEReal IO LargeInt LargeReal LargeWord OS Position SMLofNJ
+StringCvt Substring TextIO Timer Unix Vector Word Word8 Word32 Random Time CPN'Time CPN'Replications Replications ModelTime Queue
+Mark Bind ConnManagementLayer Output MSC Comms CPN'Sim CPN'NetCapture CPN'Monitors CPN'Env CPN'Settings
+"""
+
 STRUCTURES: frozenset[str] = frozenset(
-    {"Array", "Array2", "BinIO", "Byte", "CharVector", "CommandLine", "Date", "IEEEReal", "IO", "LargeInt", "LargeReal", "LargeWord",
-     "OS", "Position", "SMLofNJ", "StringCvt", "Substring", "TextIO", "Timer", "Unix", "Vector", "Word", "Word8", "Word32",
-     "Random", "Time", "CPN'Time", "CPN'Replications", "Replications", "ModelTime", "Queue", "Mark", "Bind", "TextIO.StreamIO"}
-    | {name.split(".")[0] for name in BUILTINS if name[0].isalpha()}
-)  # fmt: skip
+    {*_OTHER_STRUCTURES.split(), *(name.split(".")[0] for name in BUILTINS if name[0].isalpha())}
+)
 """Structures of the library: an unknown member of one is "not supported", not "not declared"."""
+
+UNSUPPORTED_NAMES: frozenset[str] = frozenset(
+    {"acceptConnection", "openConnection", "closeConnection", "send", "receive", "stringEncode", "stringDecode",
+     "integerEncode", "integerDecode", "canReceive", "inst", "legal_ms", "mkstr_ms", "mkst_ms", "mapfilter", "predlist",
+     "vector", "use", "exnMessage"}
+)  # fmt: skip
+"""Top-level names of CPN Tools that are not supported; a net may declare its own."""
 
 INFIX: dict[str, tuple[int, str]] = {
     **dict.fromkeys(("@",), (9, "left")),
@@ -331,7 +341,9 @@ EXCEPTIONS: dict[str, tuple[Constructor, Type | None]] = {
     name: (Constructor(name, "exn", tag, argument is not None, 0), argument)
     for tag, (name, argument) in enumerate(_EXCEPTIONS)
 }
-"""The built-in exceptions: constructor and argument type. Tags of a net's own exceptions start at `FIRST_EXCEPTION_TAG`."""
+"""The built-in exceptions: constructor and argument type. Tags of a net's own exceptions start at
+`FIRST_EXCEPTION_TAG`.
+"""
 
 FIRST_EXCEPTION_TAG = 100
 

@@ -113,12 +113,14 @@ COLSET_RANGE = register(
 COLSET_DEFINITION = register(
     "colour-set-definition",
     "a colour set is not defined completely",
-    "A definition lacks a part that its kind needs, or has one too many: an enumeration needs values, a product components.",
+    "A definition lacks a part that its kind needs, or has one too many: an enumeration needs values, a "
+    "product components.",
 )
 VARIABLE_CLASH = register(
     "variable-of-other-colour-set",
     "a net variable is declared twice with different colour sets",
-    "A later declaration replaces the earlier one, so that inscriptions written for the earlier one change their meaning.",
+    "A later declaration replaces the earlier one, so that inscriptions written for the earlier one change "
+    "their meaning.",
 )
 GUARD_TYPE = register(
     "guard-not-boolean",

@@ -1,7 +1,7 @@
 """Declarations: `val`, `fun`, `type`, `datatype`, `exception`, `local`, `open`, `structure`.
 
-`declare(dec)` enters the names into the present scope and gives a function that builds the core declarations once all types
-are known. It serves the top level and `let` alike.
+`declare(dec)` enters the names into the present scope and gives a function that builds the core declarations
+once all types are known. It serves the top level and `let` alike.
 """
 
 from __future__ import annotations

@@ -15,6 +15,7 @@ from pn2code.ml.builtins import (
     TOP_LEVEL,
     TYPE_ABBREVIATIONS,
     TYPE_ARITY,
+    UNSUPPORTED_NAMES,
 )
 from pn2code.ml.colsets import Colset
 from pn2code.ml.core import Constructor, DatatypeDec, Symbol
@@ -225,7 +226,7 @@ def library_value(structure: str, member: str) -> Entry | None:
         return base
     if structure == "General" and isinstance(base, BuiltinEntry):
         return base
-    return UnsupportedEntry(name) if structure in STRUCTURES else None
+    return UnsupportedEntry(name) if structure.split(".")[0] in STRUCTURES else None
 
 
 _CONSTRUCTOR_STRUCTURES = frozenset({"General", "List", "Option", "Bool"})
@@ -274,6 +275,8 @@ def _library() -> Scope:
             constructor, EXN if argument is None else TFun(argument, EXN), 0
         )
     scope.values["empty"] = EmptyEntry()
+    for name in UNSUPPORTED_NAMES - scope.values.keys():
+        scope.values[name] = UnsupportedEntry(name)
     for name, arity in TYPE_ARITY.items():
         scope.types[name] = TypeCon(name, arity)
     for name, text in TYPE_ABBREVIATIONS.items():

@@ -1,7 +1,8 @@
 """Expressions: type inference and translation to core in one walk.
 
-`infer(e)` gives a `Draft`: the type so far, and a function that builds the core expression when all types are known. `check(e, t, what)`
-also makes the type equal to `t`, going into branches and components first so that an error is shown where it is.
+`infer(e)` gives a `Draft`: the type so far, and a function that builds the core expression when all types
+are known. `check(e, t, what)` also makes the type equal to `t`, going into branches and components first so
+that an error is shown where it is.
 """
 
 from __future__ import annotations

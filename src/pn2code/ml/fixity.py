@@ -1,7 +1,8 @@
 """The fixity pass: flat sequences of operands and operators become applications.
 
-`1`x ++ y` parsed as a flat sequence becomes `InfixExp(++, InfixExp(`, 1, x), y)`, since the backquote binds tighter. Which names
-are infix is decided by the `infix` declarations in force, so a `Fixities` goes along and declarations change it.
+`1`x ++ y` parsed as a flat sequence becomes `InfixExp(++, InfixExp(`, 1, x), y)`, since the backquote binds
+tighter. Which names are infix is decided by the `infix` declarations in force, so a `Fixities` goes along
+and declarations change it.
 """
 
 from __future__ import annotations

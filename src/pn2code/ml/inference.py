@@ -1,11 +1,11 @@
 """Types during inference: `types.Type` with holes, unification, generalisation.
 
-A `Meta` is an unknown type. It may carry a restriction: only equality types, only one of some base types (an overloaded operator or
-literal), or any record with at least some fields. `Quant` is a type variable that a scheme quantifies. `ERROR` is the type of what
-was reported already; it unifies with everything.
+A `Meta` is an unknown type. It may carry a restriction: only equality types, only one of some base types (an
+overloaded operator or literal), or any record with at least some fields. `Quant` is a type variable that a
+scheme quantifies. `ERROR` is the type of what was reported already; it unifies with everything.
 
-Example: for `fn x => x + 1` the operator has type `m * m -> m` with `m` restricted to numbers; the literal unifies with m; nothing
-else is known of m at the end of the declaration, so it becomes int.
+Example: for `fn x => x + 1` the operator has type `m * m -> m` with `m` restricted to numbers; the literal
+unifies with m; nothing else is known of m at the end of the declaration, so it becomes int.
 """
 
 from __future__ import annotations
@@ -398,7 +398,9 @@ def from_type(t: Type, variables: list[Ty]) -> Ty:
 
 
 def to_type(t: Ty) -> Type:
-    """The finished type. What is still unknown is used nowhere and becomes unit; overloaded ones take the first choice."""
+    """The finished type. What is still unknown is used nowhere and becomes unit; overloaded ones take the
+    first choice.
+    """
     t = prune(t)
     if isinstance(t, Meta):
         return TCon(t.among[0]) if t.among else UNIT

@@ -13,11 +13,11 @@ from dataclasses import dataclass
 from pn2code.diagnostics import Diagnostics, SourceText
 from pn2code.ml import codes
 
-KEYWORDS: frozenset[str] = frozenset(
-    "abstype and andalso as case datatype do else end exception fn fun functor handle if in include infix infixr let local"
-    " nonfix of op open orelse raise rec sharing sig signature struct structure then type val where while with withtype"
-    " eqtype".split()
-)
+_KEYWORDS = """
+abstype and andalso as case datatype do else end eqtype exception fn fun functor handle if in include infix infixr let
+local nonfix of op open orelse raise rec sharing sig signature struct structure then type val where while with withtype
+"""
+KEYWORDS: frozenset[str] = frozenset(_KEYWORDS.split())
 CODE_WORDS: frozenset[str] = frozenset({"input", "output", "action"})
 """Keywords in code segments only."""
 
@@ -133,7 +133,7 @@ class _Lexer:
         hint = ""
         if text[at] in "‘’“”„":
             hint = 'strings are written with straight quotes: "text"'
-        elif text[at] in "–—−":  # noqa: RUF001
+        elif text[at] in "–—−":
             hint = "minus is `-`, and `~` in front of a negative number"
         elif text[at] == ".":
             hint = "a decimal number needs a digit before and after the point: `0.5`"
@@ -141,11 +141,6 @@ class _Lexer:
 
     def _number(self, m: re.Match[str]) -> bool:
         word, end = m.group(), m.end()
-        if m := re.compile(r"[A-Za-z_']+").match(self._text, end):  # type: ignore[assignment]
-            return self._error(
-                self._at, m.end(), f"`{word}{m.group()}` is neither a number nor a name",
-                "a name begins with a letter",
-            )  # fmt: skip
         digits = word.replace("~", "-")
         if "w" in word:
             self._d.error(

@@ -46,7 +46,9 @@ _BUILDER = TreeBuilder()
 
 @cache
 def _lark() -> Lark:
-    """The parser. Its tables take some tenths of a second to compute, so they are kept in the user's own cache folder."""
+    """The parser. Its tables take some tenths of a second to compute, so they are kept in the user's own
+    cache folder.
+    """
     grammar = files("pn2code.ml").joinpath("grammar.lark").read_text(encoding="utf-8")
     folder = _private_cache_folder()
     if folder is None:
@@ -82,7 +84,9 @@ def _build(grammar: str, kept: Path | None) -> Lark:
 
 
 def _private_cache_folder() -> Path | None:
-    """A folder that only this user can write to (the cache is a pickle, which must not come from anyone else), or None."""
+    """A folder that only this user can write to (the cache is a pickle, which must not come from anyone
+    else), or None.
+    """
     try:
         base = Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache")
         folder = base / "pn2code"
@@ -199,16 +203,17 @@ _WORDS = {
     "COMMA": "`,`", "SEMI": "`;`", "WILD": "`_`", "DOTS": "`...`", "COLON": "`:`", "BAR": "`|`", "EQ": "`=`",
     "DARROW": "`=>`", "ARROW": "`->`", "HASH": "`#`", "STAR": "`*`",
 }  # fmt: skip
-_EXP_START = frozenset(
-    "ID INT REAL STRING CHAR LPAREN LBRACK LBRACE HASH OP EQ STAR LET RAISE IF WHILE CASE FN ANDALSO ORELSE COLON"
-    " HANDLE".split()
+_STARTS_OF = {
+    "expression": "ID INT REAL STRING CHAR LPAREN LBRACK LBRACE HASH OP EQ STAR LET RAISE IF WHILE CASE FN ANDALSO"
+    " ORELSE COLON HANDLE",
+    "pattern": "ID INT REAL STRING CHAR LPAREN LBRACK LBRACE OP STAR WILD AS COLON",
+    "type": "ID TYVAR LPAREN LBRACE",
+    "declaration": "VAL FUN TYPE DATATYPE EXCEPTION LOCAL OPEN INFIX INFIXR NONFIX STRUCTURE SEMI",
+    "operand end": "ID INT REAL STRING CHAR RPAREN RBRACK RBRACE END WILD TYVAR",
+}
+_EXP_START, _PAT_START, _TYPE_START, _DEC_START, _OPERAND_END = (
+    frozenset(terminals.split()) for terminals in _STARTS_OF.values()
 )
-_PAT_START = frozenset("ID INT REAL STRING CHAR LPAREN LBRACK LBRACE OP STAR WILD AS COLON".split())
-_TYPE_START = frozenset("ID TYVAR LPAREN LBRACE".split())
-_DEC_START = frozenset(
-    "VAL FUN TYPE DATATYPE EXCEPTION LOCAL OPEN INFIX INFIXR NONFIX STRUCTURE SEMI".split()
-)
-_OPERAND_END = frozenset("ID INT REAL STRING CHAR RPAREN RBRACK RBRACE END WILD TYVAR".split())
 
 
 def _report(

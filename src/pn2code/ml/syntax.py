@@ -1,7 +1,8 @@
 """Syntax tree of CPN ML, as parsed; every node has the `Span` of its text.
 
-The parser leaves infix operators in flat sequences (`FlatExp`, `FlatPat`, `FlatClause`), because users may declare new ones; the
-fixity pass (`fixity`) turns these into applications. After that pass no `Flat...` node is left. Example: `1`x ++ y` is parsed as
+The parser leaves infix operators in flat sequences (`FlatExp`, `FlatPat`, `FlatClause`), because users may
+declare new ones; the fixity pass (`fixity`) turns these into applications. After that pass no `Flat...` node
+is left. Example: `1`x ++ y` is parsed as
 `FlatExp(IntExp 1, NameExp "`", NameExp x, NameExp ++, NameExp y)` and resolved to
 `InfixExp(++, InfixExp(`, 1, x), y)`.
 

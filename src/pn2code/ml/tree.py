@@ -1,3 +1,4 @@
+# ruff: noqa: D102  (each method is named after a rule of the grammar, which says what it is)
 """Builds the syntax tree from the parser's reductions (one method a grammar rule)."""
 
 from __future__ import annotations
@@ -98,7 +99,9 @@ class TreeBuilder(Transformer[Any, Any]):
 
     def code_action(self, children: Children) -> tuple[str, Any]:
         nodes = self._nodes(children)
-        return "action", nodes[0] if nodes else None
+        if len(nodes) < 2:
+            return "action", nodes[0] if nodes else None
+        return "action", s.SequenceExp(nodes, nodes[0].span.to(nodes[-1].span))
 
     # --- expressions
 
