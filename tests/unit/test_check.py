@@ -240,6 +240,32 @@ def test_use_and_unknown_declarations() -> None:
     assert [x.code for x in d.errors][0] == "unsupported-use"
 
 
+def test_reference_without_value() -> None:
+    data = cpn("net N\n  standard\n  globref r = 1;\n  place A")
+    d = Diagnostics()
+    document = read_data(data.replace(b"<ml>1</ml>", b""), "n.cpn", d)
+    assert document is not None
+    linked = link(document, d)
+    assert linked is not None
+    assert check(linked, d) is not None
+    assert [x.code for x in d] == ["declaration-empty"]
+    assert d.items[0].message == "reference `r` has no value and is not declared"
+
+
+def test_unknown_declaration() -> None:
+    data = cpn("net N\n  standard\n  place A")
+    d = Diagnostics()
+    document = read_data(
+        data.replace(b"</globbox>", b"<errordecl>color X =</errordecl></globbox>"), "n", d
+    )
+    assert document is not None
+    linked = link(document, d)
+    assert linked is not None
+    assert check(linked, d) is None
+    assert [x.code for x in d] == ["unsupported-declaration"]
+    assert "`errordecl` is not supported: `color X =`" in d.items[0].message
+
+
 # --- terms ---
 
 

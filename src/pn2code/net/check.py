@@ -19,6 +19,7 @@ from pn2code.net.binding import Parts, Planner
 from pn2code.net.codes import (
     ARC_EMPTY,
     ARC_IGNORED,
+    DECLARATION_EMPTY,
     PLACE_COLSET,
     UNSUPPORTED_DECLARATION,
     UNSUPPORTED_USE,
@@ -112,6 +113,13 @@ class _Checker:
                     f"`use {declaration.text.text}` is not supported",
                     declaration.text.span(),
                     hint="copy the declarations of that file into the net",
+                )
+            case RawOther() if declaration.tag == "globref":
+                self.d.warning(
+                    DECLARATION_EMPTY,
+                    f"reference `{declaration.text.text}` has no value and is not declared",
+                    declaration.origin,
+                    hint="give it a value, or remove the declaration",
                 )
             case RawOther():
                 shown = " ".join(declaration.text.text.split())[:60]

@@ -65,6 +65,12 @@ UNSUPPORTED_USE = register(
     "`use` of further files is not supported",
     '`use "file.sml"` reads declarations from another file. Copy the declarations into the net.',
 )
+DECLARATION_EMPTY = register(
+    "declaration-empty",
+    "a reference declaration has no value",
+    "`globref` declares a reference with a first value. One without value declares nothing, and "
+    "CPN Tools passes over it, too.",
+)
 UNSUPPORTED_DECLARATION = register(
     "unsupported-declaration",
     "a kind of declaration is not supported",
