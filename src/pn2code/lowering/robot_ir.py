@@ -1,0 +1,145 @@
+"""`RobotIR`: a robot's program as structured statements that know the net elements they implement.
+
+Expressions and simple statements are those of the script language (`pn2code.tdl.tree`); blocks are
+here, because they carry comments and origins. `statements` strips those off again.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+
+from pn2code.diagnostics import Origin
+from pn2code.tdl import tree as t
+
+
+@dataclass(frozen=True, slots=True)
+class Comment:
+    """A line of comment, without the dashes."""
+
+    text: str
+
+
+@dataclass(frozen=True, slots=True)
+class Line:
+    """A statement without a body."""
+
+    statement: t.Simple
+
+
+@dataclass(frozen=True, slots=True)
+class Chain:
+    """`if ... elsif ... else ... end if`."""
+
+    branches: tuple[tuple[t.Expression, tuple[Node, ...]], ...]
+    otherwise: tuple[Node, ...] | None
+
+
+@dataclass(frozen=True, slots=True)
+class Repeat:
+    """`loop`, or `while` with a condition."""
+
+    condition: t.Expression | None
+    body: tuple[Node, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class Region:
+    """What implements one net element.
+
+    Args:
+        element: unique name of the transition or place.
+        kind: "transition" or "place".
+    """
+
+    element: str
+    kind: str
+    origin: Origin
+    body: tuple[Node, ...]
+
+
+Node = Comment | Line | Chain | Repeat | Region
+
+
+@dataclass(frozen=True, slots=True)
+class Element:
+    """A net element behind a declaration: its name, kind, and a phrase for people."""
+
+    name: str
+    kind: str
+    origin: Origin
+    phrase: str
+
+
+@dataclass(frozen=True, slots=True)
+class Declared:
+    """A declaration of the script and where it comes from."""
+
+    declaration: t.Declaration
+    element: Element
+
+
+@dataclass(frozen=True, slots=True)
+class LeftOut:
+    """A transition that can never occur, and why."""
+
+    element: Element
+    reason: str
+
+
+@dataclass(frozen=True, slots=True)
+class RobotIR:
+    """One robot's program.
+
+    Args:
+        name: the robot's name in cell.toml; the script is `<name>.tdl`.
+        instance: path of its page instance.
+        page: name of its page.
+        files, constants, variables: declarations in order.
+        states: the places that tell where the program is.
+        left_out: transitions that can never occur.
+    """
+
+    name: str
+    instance: str
+    page: str
+    origin: Origin
+    files: tuple[Declared, ...]
+    constants: tuple[Declared, ...]
+    variables: tuple[Declared, ...]
+    states: tuple[Element, ...]
+    left_out: tuple[LeftOut, ...]
+    procedures: tuple[tuple[str, tuple[Node, ...]], ...]
+    body: tuple[Node, ...]
+
+
+def statements(nodes: Iterable[Node]) -> tuple[t.Statement, ...]:
+    """The statements as the script language has them."""
+    out: list[t.Statement] = []
+    for node in nodes:
+        match node:
+            case Line(statement):
+                out.append(statement)
+            case Chain(branches, otherwise):
+                out.append(
+                    t.If(
+                        tuple(t.Branch(c, statements(body)) for c, body in branches),
+                        None if otherwise is None else statements(otherwise),
+                    )
+                )
+            case Repeat(None, body):
+                out.append(t.Loop(statements(body)))
+            case Repeat(condition, body) if condition is not None:
+                out.append(t.While(condition, statements(body)))
+            case Region(body=body):
+                out.extend(statements(body))
+            case _:
+                pass
+    return tuple(out)
+
+
+def program(ir: RobotIR) -> t.Program:
+    """The whole script as a tree, for checks before it is printed."""
+    declarations = tuple(d.declaration for d in (*ir.files, *ir.constants, *ir.variables))
+    procedures = tuple(t.Procedure(name, statements(body)) for name, body in ir.procedures)
+    return t.Program(ir.name, declarations, procedures, statements(ir.body))
