@@ -78,6 +78,13 @@ const char *pn_quote(const char *data, size_t length, char *out, size_t capacity
 
 /* --- writing ---------------------------------------------------------------------------------------------------------- */
 
+/* With `digits` significant digits; whether that reads back to the same number. */
+static bool real_digits(double value, int digits, char *text, size_t capacity)
+{
+    (void)snprintf(text, capacity, "%.*g", digits, value);
+    return strtod(text, NULL) == value;
+}
+
 size_t pn_real_format(double value, char *out, size_t capacity)
 {
     const double v = (value == 0.0) ? 0.0 : value; /* no -0.0000 */
@@ -85,17 +92,30 @@ size_t pn_real_format(double value, char *out, size_t capacity)
     if (!isfinite(v)) {
         return 0U;
     }
-    int length = snprintf(text, sizeof text, "%.4f", v);
-    bool same = (strtod(text, NULL) == v);
-    for (int digits = 1; (digits <= 17) && !same; digits++) {
-        length = snprintf(text, sizeof text, "%.*g", digits, v);
-        same = (strtod(text, NULL) == v);
+    (void)snprintf(text, sizeof text, "%.4f", v);
+    if (strtod(text, NULL) != v) {
+        /* Most numbers that are not round need 15 to 17 digits; 17 always do. channels/scalars.py goes the same way. */
+        int most = 15;
+        while ((most < 17) && !real_digits(v, most, text, sizeof text)) {
+            most++;
+        }
+        int least = (most == 15) ? 1 : most;
+        while (least < most) {
+            const int middle = (least + most) / 2;
+            if (real_digits(v, middle, text, sizeof text)) {
+                most = middle;
+            } else {
+                least = middle + 1;
+            }
+        }
+        (void)snprintf(text, sizeof text, "%.*g", most, v);
     }
-    if ((length <= 0) || ((size_t)length >= capacity)) {
+    const size_t length = strlen(text);
+    if (length >= capacity) {
         return 0U;
     }
-    (void)memcpy(out, text, (size_t)length + 1U);
-    return (size_t)length;
+    (void)memcpy(out, text, length + 1U);
+    return length;
 }
 
 static size_t string_format(const char *text, char *out, size_t capacity)

@@ -151,19 +151,12 @@ int pn_port_read(int directory, const char *name, char *buffer, size_t capacity,
     if (fd < 0) {
         return errno;
     }
-    size_t have = 0U;
-    ssize_t got = 1;
-    while ((got > 0) && (have < capacity)) {
-        got = read(fd, buffer + have, capacity - have);
-        if (got > 0) {
-            have += (size_t)got;
-        } else if ((got < 0) && (errno == EINTR)) {
-            got = 1;
-        } else {
-            /* end of the file, or an error */
-        }
+    /* One read: files this small come whole, and a file is never written in place by a party that keeps I2. */
+    ssize_t got = read(fd, buffer, capacity);
+    while ((got < 0) && (errno == EINTR)) {
+        got = read(fd, buffer, capacity);
     }
-    *length = have;
+    *length = (got > 0) ? (size_t)got : 0U;
     return close_with(fd, (got < 0) ? errno : 0);
 }
 
@@ -187,17 +180,26 @@ static int write_all(int fd, const char *data, size_t length)
     return error;
 }
 
-int pn_port_publish(int directory, const char *name, const char *temporary, const char *data, size_t length)
+int pn_port_prepare(int directory, const char *temporary, const char *data, size_t length, int *file)
 {
     const int fd = openat(directory, temporary, O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC | O_NOFOLLOW,
                           S_IRUSR | S_IWUSR | S_IRGRP | S_IROTH);
     if (fd < 0) {
         return errno;
     }
-    int error = write_all(fd, data, length);
-    if ((close(fd) != 0) && (error == 0)) {
-        error = errno; /* some file systems say "full" only here */
+    const int error = write_all(fd, data, length);
+    if (error != 0) {
+        (void)unlinkat(directory, temporary, 0);
+        return close_with(fd, error);
     }
+    *file = fd;
+    return 0;
+}
+
+int pn_port_publish_prepared(int directory, const char *name, const char *temporary, int file, const char *data,
+                             size_t length)
+{
+    int error = write_all(file, data, length);
     if ((error == 0) && (renameat(directory, temporary, directory, name) != 0)) {
         error = errno;
     }
@@ -205,6 +207,21 @@ int pn_port_publish(int directory, const char *name, const char *temporary, cons
         (void)unlinkat(directory, temporary, 0);
     }
     return error;
+}
+
+int pn_port_publish(int directory, const char *name, const char *temporary, const char *data, size_t length)
+{
+    int fd = -1;
+    int error = pn_port_prepare(directory, temporary, data, length, &fd);
+    if (error != 0) {
+        return error;
+    }
+    if (close(fd) != 0) {
+        error = errno; /* some file systems say "full" only here */
+        (void)unlinkat(directory, temporary, 0);
+        return error;
+    }
+    return pn_port_publish_prepared(directory, name, temporary, -1, NULL, 0U);
 }
 
 void pn_port_remove(int directory, const char *name)

@@ -57,6 +57,13 @@ PN_PORT_CHECK int pn_port_read(int directory, const char *name, char *buffer, si
 /* Writes a file beside its place and renames it over it. On an error the temporary file is removed and the old file stands. */
 PN_PORT_CHECK int pn_port_publish(int directory, const char *name, const char *temporary, const char *data, size_t length);
 
+/* The same in two halves, so that the slow one can be done while there is nothing to do: makes and opens the temporary file,
+ * with the beginning of its content (`length` may be 0) ... */
+PN_PORT_CHECK int pn_port_prepare(int directory, const char *temporary, const char *data, size_t length, int *file);
+/* ... and writes (what `pn_port_prepare` has not written already) and renames it. Closing the descriptor can wait, too. */
+PN_PORT_CHECK int pn_port_publish_prepared(int directory, const char *name, const char *temporary, int file, const char *data,
+                                           size_t length);
+
 void pn_port_remove(int directory, const char *name);
 
 /* --- status files (locked by the party that they are about, written in place) ----------------------------------------- */

@@ -31,13 +31,24 @@ class Malformed:
 
 def format_real(value: float) -> str:
     """Four decimals where that reads back to the same number, otherwise the fewest digits that do; never -0.0000."""
-    v = value + 0.0 if value else 0.0
+    v = value if value else 0.0
     text = f"{v:.4f}"
-    digits = 0
-    while float(text) != v and digits < 17:
-        digits += 1
-        text = f"{v:.{digits}g}"
-    return text
+    if float(text) == v:
+        return text
+
+    def suffices(digits: int) -> bool:
+        return float(f"{v:.{digits}g}") == v
+
+    # the same search as pn_real_format in pn_channel.c, so that both give the same text
+    most = next(digits for digits in (15, 16, 17) if digits == 17 or suffices(digits))
+    least = 1 if most == 15 else most
+    while least < most:
+        middle = (least + most) // 2
+        if suffices(middle):
+            most = middle
+        else:
+            least = middle + 1
+    return f"{v:.{most}g}"
 
 
 def _format_string(value: str) -> str:

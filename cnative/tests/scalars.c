@@ -1,0 +1,56 @@
+/* SPDX-License-Identifier: MIT
+ * scalars.c - the text form of messages, to be compared with the Python side. Reads commands, one a line:
+ *
+ *   format HEXFLOAT          prints pn_real_format of it
+ *   crc TEXT                 prints pn_crc32 of it
+ *   real TEXT                parses one real: its hex float, or `refused COLUMN REPORT`
+ *   string TEXT              parses one string: itself in hexadecimal, formatted again
+ */
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "pn/pn_channel.h"
+
+static pn_message_t s_message;
+
+static void parse(pn_scalar_kind_t kind, const char *text)
+{
+    const pn_scalar_t scalar = {.kind = kind, .label = "v", .colset = "C"};
+    char again[PN_CHANNEL_TEXT];
+    s_message.count = 0U;
+    s_message.text_length = 0U;
+    if (!pn_scalars_parse(&scalar, 1U, text, strlen(text), &s_message)) {
+        (void)printf("refused %u %s\n", (unsigned)s_message.column, s_message.report);
+    } else if (kind == PN_SCALAR_REAL) {
+        (void)printf("%a\n", s_message.leaf[0].real);
+    } else {
+        const size_t length = pn_scalars_format(&scalar, 1U, s_message.leaf, again, sizeof again);
+        for (const char *c = s_message.leaf[0].text; *c != '\0'; c++) {
+            (void)printf("%02x", (unsigned)(unsigned char)*c);
+        }
+        (void)printf(" %.*s\n", (int)length, again);
+    }
+}
+
+int main(void)
+{
+    static char line[8192];
+    while (fgets(line, (int)sizeof line, stdin) != NULL) {
+        line[strcspn(line, "\n")] = '\0';
+        char text[512] = "";
+        if (strncmp(line, "format ", 7U) == 0) {
+            (void)pn_real_format(strtod(line + 7, NULL), text, sizeof text);
+            (void)puts(text);
+        } else if (strncmp(line, "crc ", 4U) == 0) {
+            (void)printf("%08x\n", (unsigned)pn_crc32(0U, line + 4, strlen(line + 4)));
+        } else if (strncmp(line, "real ", 5U) == 0) {
+            parse(PN_SCALAR_REAL, line + 5);
+        } else if (strncmp(line, "string ", 7U) == 0) {
+            parse(PN_SCALAR_STRING, line + 7);
+        } else {
+            return 2;
+        }
+    }
+    return 0;
+}
