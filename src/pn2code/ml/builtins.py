@@ -165,6 +165,7 @@ TOP_LEVEL: dict[str, str] = {
     "before": "General.before",
     "ignore": "General.ignore",
     "exnName": "General.exnName",
+    "exnMessage": "General.exnMessage",
     "print": "TextIO.print",
     "not": "Bool.not",
     "real": "Real.fromInt",
@@ -266,8 +267,8 @@ QUALIFIED: dict[str, str] = {
 
 _OTHER_STRUCTURES = """
 Array Array2 BinIO Byte CharVector CommandLine Date IEEEReal IO LargeInt LargeReal LargeWord OS Position SMLofNJ
-StringCvt Substring TextIO Timer Unix Vector Word Word8 Word32 Random Time CPN'Time CPN'Replications Replications ModelTime Queue
-Mark Bind ConnManagementLayer Output MSC Comms CPN'Sim CPN'NetCapture CPN'Monitors CPN'Env CPN'Settings
+StringCvt Substring TextIO Timer Unix Vector Word Word8 Word32 Random Time CPN'Time CPN'Replications Replications
+ModelTime Queue Mark Bind ConnManagementLayer Output MSC Comms CPN'Sim CPN'NetCapture CPN'Monitors CPN'Env CPN'Settings
 """
 
 STRUCTURES: frozenset[str] = frozenset(
@@ -278,7 +279,7 @@ STRUCTURES: frozenset[str] = frozenset(
 UNSUPPORTED_NAMES: frozenset[str] = frozenset(
     {"acceptConnection", "openConnection", "closeConnection", "send", "receive", "stringEncode", "stringDecode",
      "integerEncode", "integerDecode", "canReceive", "inst", "legal_ms", "mkstr_ms", "mkst_ms", "mapfilter", "predlist",
-     "vector", "use", "exnMessage"}
+     "vector", "use"}
 )  # fmt: skip
 """Top-level names of CPN Tools that are not supported; a net may declare its own."""
 

@@ -9,7 +9,7 @@ from difflib import get_close_matches
 
 from pn2code.diagnostics import Diagnostics, Note, Span
 from pn2code.ml import codes, core
-from pn2code.ml.builtins import DATATYPES, FIRST_EXCEPTION_TAG, scheme
+from pn2code.ml.builtins import DATATYPES, FIRST_EXCEPTION_TAG, LITERAL_TYPES, scheme
 from pn2code.ml.colsets import Colset
 from pn2code.ml.environment import Binding, Scope, library_scope
 from pn2code.ml.inference import (
@@ -29,6 +29,13 @@ from pn2code.ml.inference import (
     to_type,
 )
 from pn2code.ml.types import Type
+
+MAX_DEPTH = 250
+"""Nesting of operators and calls that is followed; the later stages recurse over what is built from it."""
+
+
+class TooDeepError(Exception):
+    """Reported already; unwinds to the border."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -61,6 +68,9 @@ class Context:
         scope: present scope.
         top: scope of the top-level declarations.
         errors: number of errors reported here (`d` keeps equal ones once).
+        depth: nesting of the expression being looked at.
+        unknown: names reported as not declared in this text; each is reported once.
+        net_variables: names of the net's variables, for advice where they are not in scope.
         tainted: set when something is used whose declaration had an error.
         open_records: selectors and open patterns whose record type must be known in the end.
         tyvars: explicit type variables in force, innermost last.
@@ -77,6 +87,9 @@ class Context:
     top: Scope = field(init=False)
     tainted: bool = False
     errors: int = 0
+    depth: int = 0
+    unknown: set[str] = field(default_factory=set)
+    net_variables: set[str] = field(default_factory=set)
     open_records: list[tuple[Meta, Span]] = field(default_factory=list)
     tyvars: list[dict[str, Meta]] = field(default_factory=list)
     generic_base: int = 0
@@ -93,6 +106,22 @@ class Context:
         self.top = Scope(library_scope())
         self.scope = self.top
         self.datatypes = dict(DATATYPES)
+
+    def enter(self, span: Span) -> None:
+        """One level deeper; `depth` goes back by the caller.
+
+        Raises:
+            TooDeepError: the limit is passed, which was reported.
+        """
+        self.depth += 1
+        if self.depth > MAX_DEPTH:
+            self.error(
+                codes.TOO_DEEP,
+                f"this is nested more than {MAX_DEPTH} levels deep",
+                Span(span.source, span.start, min(span.end, span.start + 40)),
+                hint="give parts of it a name with `val` or `let`",
+            )
+            raise TooDeepError
 
     # --- scopes and symbols
 
@@ -213,7 +242,10 @@ class Context:
         """Says in what way two types differ."""
         show = Shower(self)
         shown = show(found)
-        match problem.reason:
+        reason = problem.reason
+        if reason == "among" and prune(expected) is not problem.right:
+            reason = "mismatch"  # the overloaded one is a literal in what was found
+        match reason:
             case "circular":
                 self.error(
                     codes.CIRCULAR_TYPE,
@@ -240,6 +272,8 @@ class Context:
                 )
             case "among":
                 names = problem.right.among if isinstance(problem.right, Meta) else ()
+                if names == tuple(t.name for t in LITERAL_TYPES):
+                    names = names[:1]
                 allowed = " or ".join(f"`{n}`" for n in names)
                 self.error(
                     codes.OVERLOAD,
@@ -248,9 +282,9 @@ class Context:
                     hint=_conversion(problem.left, names),
                 )
             case _:
-                notes = []
+                notes = label_notes(found, expected)
                 left, right = prune(problem.left), prune(problem.right)
-                if {id(left), id(right)} != {id(prune(found)), id(prune(expected))}:
+                if not notes and {id(left), id(right)} != {id(prune(found)), id(prune(expected))}:
                     notes.append(f"`{show(left)}` and `{show(right)}` differ inside")
                 self.error(
                     codes.TYPE_MISMATCH,
@@ -258,7 +292,7 @@ class Context:
                     span,
                     label=f"this is `{shown}`",
                     notes=notes,
-                    hint=_conversion(found, (_name(expected),)),
+                    hint=_conversion(found, (_name(expected),)) or _multiset(expected, what),
                 )
 
     def show(self, t: Ty) -> str:
@@ -285,6 +319,35 @@ def suggestion(name: str, known: Iterable[str]) -> str:
 def _name(t: Ty) -> str:
     t = prune(t)
     return t.name if isinstance(t, ICon) else ""
+
+
+def label_notes(found: Ty, expected: Ty) -> list[str]:
+    """Components or fields that are missing or too many."""
+    f, e = prune(found), prune(expected)
+    if not isinstance(f, IRec) or not isinstance(e, IRec):
+        return []
+    here, wanted = [n for n, _ in f.fields], [n for n, _ in e.fields]
+    if here == wanted:
+        return []
+    if all(n.isdigit() for n in (*here, *wanted)):
+        return [f"{len(wanted)} components are expected, here are {len(here)}"]
+    notes = [f"field `{n}` is missing" for n in wanted if n not in here]
+    return notes + [f"field `{n}` is too many" for n in here if n not in wanted]
+
+
+def quoted(name: str) -> str:
+    """A name in back-ticks, unless it has one itself."""
+    if name == "`":
+        return "the backquote"
+    return f'"{name}"' if "`" in name else f"`{name}`"
+
+
+def _multiset(expected: Ty, what: str) -> str:
+    """For a token where a multi-set is needed."""
+    of_multisets = any(f"operand of `{op}`" in what for op in ("++", "--", "+++", "@+", "@++"))
+    if of_multisets and _name(expected) == "list":
+        return "one token `v` as a multi-set is written 1`v"
+    return ""
 
 
 def _conversion(found: Ty, wanted: Iterable[str]) -> str:

@@ -110,7 +110,10 @@ def dump_exp(e: core.Exp) -> str:
         case core.ListExp():
             return "[" + ", ".join(dump_exp(x) for x in e.items) + "]"
         case core.If():
-            parts = (dump_exp(e.condition), dump_exp(e.then), dump_exp(e.otherwise))
+            condition = dump_exp(e.condition)
+            if isinstance(e.condition, core.If):
+                condition = f"({condition})"
+            parts = (condition, dump_exp(e.then), dump_exp(e.otherwise))
             return "if {} then {} else {}".format(*parts)
         case core.Case():
             return f"case {dump_exp(e.scrutinee)} of {_rules(e.rules)}"

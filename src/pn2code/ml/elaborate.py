@@ -14,6 +14,7 @@ from __future__ import annotations
 import sys
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
+from functools import partial
 from typing import TypeVar
 
 from pn2code.diagnostics import Diagnostics, Origin, SourceText, Span
@@ -24,7 +25,7 @@ from pn2code.ml.builtins import INFIX
 from pn2code.ml.colset_specs import Colsets, ColsetSpec
 from pn2code.ml.colsets import Colset
 from pn2code.ml.constants import Constant, fold
-from pn2code.ml.context import Context, suggestion
+from pn2code.ml.context import Context, TooDeepError, suggestion
 from pn2code.ml.core import Program, Symbol
 from pn2code.ml.declarations import Declarations, declared_by, types_declared_by
 from pn2code.ml.environment import Binding, BrokenEntry, BrokenType, Scope
@@ -99,6 +100,7 @@ class Elaborator:
                 origin,
                 hint=suggestion(colset_name, self._ctx.colsets),
             )
+        self._ctx.net_variables.update(names)
         for name in names:
             if colset is None:
                 self._variable_scope.values[name] = BrokenEntry()
@@ -125,7 +127,10 @@ class Elaborator:
             self._break(declared_names(text), ())
             return
         for dec in program:
-            self._border(text, lambda dec=dec: self._declaration(text, dec))  # type: ignore[misc]
+            before = self._d.errors
+            self._border(text, partial(self._declaration, text, dec))
+            if len(self._d.errors) > len(before):
+                self._break(declared_names(text, dec.span.start, dec.span.end), ())
 
     def _declaration(self, text: SourceText, dec: s.Dec) -> None:
         resolved = resolve_declaration(dec, self._fixities, self._d)
@@ -308,6 +313,8 @@ class Elaborator:
         sys.setrecursionlimit(max(limit, _RECURSION_LIMIT))
         try:
             return work()
+        except TooDeepError:
+            return None
         except RecursionError:
             end = min(len(text.text), 40)
             self._d.error(
@@ -321,6 +328,8 @@ class Elaborator:
             sys.setrecursionlimit(limit)
             self._ctx.scope = self._ctx.top
             self._ctx.unifier.level = 0
+            self._ctx.depth = 0
+            self._ctx.unknown.clear()
             self._ctx.tyvars.clear()
             self._ctx.open_records.clear()
             for meta in self._ctx.unifier.pending:

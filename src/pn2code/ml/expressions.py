@@ -15,7 +15,7 @@ from pn2code.ml import codes, core
 from pn2code.ml import syntax as s
 from pn2code.ml.annotations import Annotations
 from pn2code.ml.builtins import FALSE, LITERAL_TYPES, TRUE
-from pn2code.ml.context import BROKEN, Context, Draft, no_expression
+from pn2code.ml.context import BROKEN, Context, Draft, no_expression, quoted
 from pn2code.ml.environment import BuiltinEntry, ConEntry, Entry
 from pn2code.ml.inference import (
     ERROR,
@@ -64,6 +64,12 @@ class Expressions:
 
     def check(self, e: s.Exp, t: Ty, what: str) -> Draft:
         """An expression that must have type `t`; `what` names it in messages (`argument of `f``)."""
+        self._ctx.enter(e.span)
+        draft = self._check(e, t, what)
+        self._ctx.depth -= 1
+        return draft
+
+    def _check(self, e: s.Exp, t: Ty, what: str) -> Draft:
         expected = prune(t)
         match e:
             case s.IfExp():
@@ -102,6 +108,12 @@ class Expressions:
 
     def infer(self, e: s.Exp) -> Draft:
         """An expression of any type."""
+        self._ctx.enter(e.span)
+        draft = self._infer(e)
+        self._ctx.depth -= 1
+        return draft
+
+    def _infer(self, e: s.Exp) -> Draft:
         match e:
             case s.LitExp():
                 return self._literal(e)
@@ -185,7 +197,10 @@ class Expressions:
                     return BROKEN
                 t = arrow
         if not isinstance(t, IFun):
+            before = self._ctx.errors
             argument(ERROR)
+            if self._ctx.errors > before:
+                return BROKEN
             self._ctx.error(
                 codes.NOT_A_FUNCTION,
                 f"{_called(written)} is `{self._ctx.show(t)}`, not a function",
@@ -218,9 +233,13 @@ class Expressions:
             if set(both) != {"1", "2"}:
                 fresh = self._ctx.unifier.fresh
                 both = {"1": fresh(), "2": fresh()}
-                self._ctx.unify(i_record(both), t, e.operator.span, f"operand pair of `{name}`")
-            left = self.check(e.left, both["1"], f"left operand of `{name}`")
-            right = self.check(e.right, both["2"], f"right operand of `{name}`")
+                self._ctx.unify(
+                    i_record(both), t, e.operator.span, f"operand pair of {quoted(name)}"
+                )
+            before = self._ctx.errors
+            left = self.check(e.left, both["1"], f"left operand of {quoted(name)}")
+            wanted = both["2"] if self._ctx.errors == before else ERROR
+            right = self.check(e.right, wanted, f"right operand of {quoted(name)}")
             return _pair(left, right, e.span)
 
         return self.application(operator, e.operator, pair, e.span, expected)
@@ -473,7 +492,7 @@ def _pair(left: Draft, right: Draft, span: Span) -> Draft:
 
 def _called(e: s.Exp) -> str:
     if isinstance(e, s.NameExp):
-        return f"`{e.name}`"
+        return quoted(e.name)
     if isinstance(e, s.LitExp):
         return f"`{e.span.text}`"
     if isinstance(e, s.ApplyExp):

@@ -12,7 +12,7 @@ from pn2code.ml import codes, core
 from pn2code.ml import syntax as s
 from pn2code.ml.builtins import BUILTINS
 from pn2code.ml.constants import Constant, fold
-from pn2code.ml.context import Context, Draft
+from pn2code.ml.context import Context, Draft, label_notes
 from pn2code.ml.core import Symbol
 from pn2code.ml.environment import Binding, BrokenEntry, BuiltinEntry, Scope
 from pn2code.ml.expressions import Expressions
@@ -256,11 +256,11 @@ class Inscriptions:
         """Components of two records of the same form that differ."""
         if not isinstance(found, IRec) or not isinstance(expected, IRec):
             return []
-        if len(found.fields) != len(expected.fields):
-            return [f"{len(expected.fields)} components are expected, here are {len(found.fields)}"]
+        if [n for n, _ in found.fields] != [n for n, _ in expected.fields]:
+            return label_notes(found, expected)
         out = []
-        for (n, f), (m, g) in zip(found.fields, expected.fields, strict=True):
-            if n == m and not self._ctx.unifier.attempt(f, g):
+        for (n, f), (_, g) in zip(found.fields, expected.fields, strict=True):
+            if not self._ctx.unifier.attempt(f, g):
                 word = "component" if n.isdigit() else "field"
                 out.append(f"{word} {n} is `{self._ctx.show(f)}`, not `{self._ctx.show(g)}`")
         return out

@@ -6,7 +6,7 @@ from pn2code.diagnostics import Span
 from pn2code.ml import codes, core
 from pn2code.ml.builtins import BUILTINS, NIL, OVERLOADED
 from pn2code.ml.colset_members import member_type, members_of
-from pn2code.ml.context import BROKEN, Context, Draft, suggestion
+from pn2code.ml.context import BROKEN, Context, Draft, quoted, suggestion
 from pn2code.ml.environment import (
     Binding,
     BrokenEntry,
@@ -136,6 +136,10 @@ class Names:
         return Draft(own, lambda: core.Con(entry.constructor, to_type(own), span))
 
     def _unbound(self, name: str, span: Span) -> Draft:
+        self._ctx.tainted = True
+        if name in self._ctx.unknown:
+            return BROKEN
+        self._ctx.unknown.add(name)
         hint = ""
         *path, last = split_name(name)
         if path:
@@ -155,9 +159,14 @@ class Names:
             hint = _operator_hint(name, self._ctx.scope.names())
         else:
             hint = suggestion(name, self._ctx.scope.names())
-            if name in ("nth", "exists", "find", "last", "take", "drop", "tabulate", "partition"):
+            if name in self._ctx.net_variables:
+                hint = (
+                    "it is a variable of the net: list it in `input (..)` of a code segment, "
+                    "give it to a function as an argument"
+                )
+            elif name in ("nth", "exists", "find", "last", "take", "drop", "tabulate", "partition"):
                 hint = f"it is called `List.{name}`"
-        self._ctx.error(codes.UNBOUND, f"`{name}` is not declared", span, hint=hint)
+        self._ctx.error(codes.UNBOUND, f"{quoted(name)} is not declared", span, hint=hint)
         return BROKEN
 
 
@@ -177,5 +186,5 @@ def _operator_hint(name: str, known: set[str]) -> str:
     for cut in range(len(name) - 1, 0, -1):
         if name[:cut] in known and name[cut:] in known | {"#", "~"}:
             tail = "(~..)" if name[cut:] == "~" else f" {name[cut:]}"
-            return f"adjacent symbols are read as one name: write `{name[:cut]}{tail}`"
+            return f"adjacent symbols are read as one name: write {name[:cut]}{tail}"
     return {"&&": "write `andalso`", "||": "write `orelse`"}.get(name, "")

@@ -175,7 +175,7 @@ def _parse(
     try:
         return _lark().parse(feed, start=start)
     except UnexpectedToken as problem:
-        _report(source, tokens, problem, d, hint)
+        _report(source, tokens, problem, d, hint, start)
         return None
 
 
@@ -222,6 +222,7 @@ def _report(
     problem: UnexpectedToken,
     d: Diagnostics,
     hint: str,
+    start: str,
 ) -> None:
     token = problem.token
     at_end = token.type == "$END"
@@ -234,6 +235,14 @@ def _report(
         span = Span(source, token.start_pos or 0, token.end_pos or 0)
         if token.type in _UNSUPPORTED_WORDS:
             d.error(codes.UNSUPPORTED_ML, f"`{token}` is not supported", span)
+            return
+        if token.type == "AS" and start != "program":
+            d.error(
+                codes.UNSUPPORTED_INSCRIPTION,
+                "`as` in an inscription is not supported",
+                span,
+                hint="bind the parts, and build the whole from them where it is needed",
+            )
             return
         found = f"unexpected `{token}`" if str(token) else "unexpected `)`"
         before = [t for t in tokens if t.end <= span.start and t.text]
