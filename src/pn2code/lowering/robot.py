@@ -271,7 +271,8 @@ class _Translator:
                 stems = robot_names.of_pattern(term.pattern, shape)
                 if stems is None or _names(term.pattern) & bound:
                     stems = robot_names.of_stem(identifier(self.machine.channels[p].name), shape)
-                names = self.names.shared(stems, shape, _place_element(flat, "channel"), avoid)
+                element = Element(flat.name, "channel", flat.origins[0], f"message {flat.short} ({flat.id})")
+                names = self.names.shared(stems, shape, element, avoid)
                 avoid |= set(names)
                 self.message_names[p] = names
                 found[p] = make(shape, iter(names))

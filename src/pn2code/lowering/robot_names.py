@@ -131,7 +131,7 @@ class Names:
         if not self._constant(value.exp):
             return value.exp
         final = self.unique(identifier(name))
-        element = Element(name, "declaration", span.origin, f"val {name}")
+        element = Element(name, "declaration", span.origin, "" if final == name else f"val {name}")
         self.constants[final] = Declared(t.Const(final, value.exp), element)
         if isinstance(value.exp, t.Value):
             self.constant_values[final] = value.exp.value

@@ -210,7 +210,7 @@ class StepTranslator:
                 )
             if command == "measure":
                 transition = s.step.transition
-                element = Element(transition.name, "transition", transition.origin, f"{transition.short}")
+                element = Element(transition.name, "transition", transition.origin, f"transition {transition.short} ({transition.id})")
                 (target,) = self.names.shared([output], Leaf(tdl.Type.POSE), element, avoid)
                 self._nodes.append(Line(t.Measure(argument.exp, t.Target(target))))
                 return Scalar(t.Name(target), tdl.Type.POSE)
@@ -315,7 +315,7 @@ class StepTranslator:
                 name = pending[0][0]
                 kind = self.names.variables[name].type
                 transition = situation.step.transition
-                element = Element(transition.name, "transition", transition.origin, transition.short)
+                element = Element(transition.name, "transition", transition.origin, f"transition {transition.short} ({transition.id})")
                 (aside,) = self.names.shared(
                     [f"{name}_before"], Leaf(kind.type, kind.single), element
                 )
