@@ -29,6 +29,8 @@ from pn2code.robot.geometry import Body, Look, Solid, bodies
 from pn2code.robot.scene import CellRobot, RobotCell
 from pn2code.robot.transforms import Array, matrix_of
 
+_SKY = (148.0, 166.0, 186.0)
+_HORIZON = (236.0, 239.0, 242.0)
 _FIRST_GUESS = 0.05  # m: searched first; most queries find their answer this near to the last one
 
 
@@ -343,12 +345,19 @@ class BulletBackend:
             flags=p.ER_NO_SEGMENTATION_MASK,
             physicsClientId=self._client,
         )
-        return np.asarray(picture[2], np.uint8).reshape(height, width, 4)[:, :, :3]
+        colours = np.array(picture[2], np.uint8).reshape(height, width, 4)[:, :, :3]
+        nothing = np.asarray(picture[3], float).reshape(height, width) > 0.99999
+        # A quiet backdrop instead of white paper, lighter towards the floor.
+        up = np.linspace(0.0, 1.0, height)[:, None]
+        backdrop = (np.array(_SKY) * (1.0 - up) + np.array(_HORIZON) * up).astype(np.uint8)
+        colours[nothing] = np.repeat(backdrop[:, None], width, axis=1)[nothing]
+        return colours
 
     def close(self) -> None:
         """Disconnects and removes the temporary files."""
         if self._client >= 0:
-            self._p.disconnect(self._client)
+            with _silent():
+                self._p.disconnect(self._client)
             self._client = -1
             self._folder.cleanup()
 

@@ -23,6 +23,7 @@ from pn2code.robot.transforms import Array, matrix_of, pose_of
 _SEGMENT = math.radians(2.5)  # arc of one flat piece of the skin
 _PRIMER = (0.62, 0.68, 0.52, 1.0)  # the green of zinc chromate primer
 _SKIN = (0.78, 0.80, 0.82, 1.0)
+_RIVET = (0.50, 0.52, 0.55, 1.0)
 _STEEL = (0.32, 0.35, 0.40, 1.0)
 _FLOOR = (0.70, 0.71, 0.72, 1.0)
 _PEDESTAL = (0.24, 0.26, 0.30, 1.0)
@@ -137,18 +138,13 @@ def _pedestal(robot: str, base: Pose) -> Body:
 def panel_bodies(p: PanelConfig) -> list[Body]:
     """Skin, ribs with stringers, and stands of a panel: "panel/skin", "panel/ribs", "panel/stand"."""
     arcs = _cut(p.arc_from, p.arc_to)
-    out = [
-        Body(
-            "panel/skin",
-            tuple(_shell(p, a, b, p.x_from, p.x_to, p.radius, p.skin) for a, b in arcs),
-            (
-                Look(
-                    _SKIN,
-                    _shell_mesh(p, p.x_from, p.x_to, p.radius + p.skin / 2, p.radius - p.skin / 2),
-                ),
-            ),
-        )
-    ]
+    outside, inside = p.radius + p.skin / 2, p.radius - p.skin / 2
+    looks = [Look(_SKIN, _shell_mesh(p, p.x_from, p.x_to, outside, inside))]
+    fasteners = _fasteners(p, outside)
+    if fasteners.triangles:
+        looks.append(Look(_RIVET, fasteners))
+    flat = tuple(_shell(p, a, b, p.x_from, p.x_to, p.radius, p.skin) for a, b in arcs)
+    out = [Body("panel/skin", flat, tuple(looks))]
     inner = p.radius - p.skin / 2.0
     frames: list[Solid] = []
     mesh = Mesh()
@@ -242,6 +238,41 @@ def _shell_mesh(p: PanelConfig, x0: float, x1: float, outer: float, inner: float
         y1, z1 = point_at(p, angle, inner)
         rings.append(np.array([[x0, y0, z0], [x0, y1, z1], [x1, y1, z1], [x1, y0, z0]]))
     return skin(rings)
+
+
+def _fasteners(p: PanelConfig, radius: float) -> Mesh:
+    """To look at only: rivet heads along ribs and stringers, and the joint line at arc angle 0."""
+    out = Mesh()
+    head = skin([_ring(0.0075, 0.0), _ring(0.005, 0.002)], caps=False)
+    head = head + skin([_ring(0.005, 0.002), _ring(0.0, 0.002)], caps=False)
+    places = [
+        (x, angle)
+        for x in p.ribs
+        for angle in np.arange(p.arc_from + 0.02, p.arc_to - 0.02, 0.06 / p.radius).tolist()
+    ]
+    places += [
+        (float(x), angle)
+        for angle in _stringers(p)
+        for x in np.arange(p.x_from + 0.05, p.x_to - 0.05, 0.1)
+    ]
+    for x, angle in places:
+        if p.joint and abs(angle) * p.radius < 0.05:
+            continue
+        frame = _frame(p, angle, x, radius)
+        out = out + head.moved(frame[:3, 3], frame[:3, :3])
+    if p.joint:
+        length = p.x_to - p.x_from
+        for offset in (-0.03, 0.0, 0.03):
+            wide = 0.002 if offset == 0.0 else 0.0006
+            frame = _frame(p, offset / p.radius, (p.x_from + p.x_to) / 2, radius)
+            strip = block((-length / 2, -wide, -0.0005), (length / 2, wide, 0.001), 0.0003, 0.0002)
+            out = out + strip.moved(frame[:3, 3], frame[:3, :3])
+    return out
+
+
+def _ring(radius: float, z: float, count: int = 6) -> Array:
+    a = np.arange(count) * (2.0 * math.pi / count)
+    return np.stack([radius * np.cos(a), radius * np.sin(a), np.full(count, z)], axis=1)
 
 
 def _stands(p: PanelConfig) -> Body:

@@ -65,6 +65,7 @@ class PanelConfig:
         ribs: x of the ribs; rib_height: how far they stand inwards.
         stringer_pitch: arc angle between stringers (0: none); none lies at arc angle 0.
         stands: whether it rests on stands.
+        joint: whether two skins meet at arc angle 0 (drawn as a line).
     """
 
     radius: float
@@ -82,6 +83,7 @@ class PanelConfig:
     stringer_pitch: float = 0.0
     stringer_height: float = 0.025
     stands: bool = True
+    joint: bool = False
 
 
 Colour = tuple[float, float, float, float]
@@ -432,6 +434,7 @@ def _panel(t: _Table) -> PanelConfig:
         stringer_pitch=math.radians(t.number("stringer_pitch", 0.0, low=0.0, high=90.0)),
         stringer_height=t.positive("stringer_height", 0.025),
         stands=t.flag("stands", True),
+        joint=t.flag("joint", False),
     )
     t.done()
     for low, high in (("x_from", "x_to"), ("arc_from", "arc_to")):

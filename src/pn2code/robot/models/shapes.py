@@ -14,7 +14,8 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 Array = NDArray[np.float64]
-AROUND = 40
+# Points around a circle, by its radius in m: fine where it shows, coarse on screws.
+_FINENESS = ((0.02, 10), (0.05, 18), (0.11, 26), (math.inf, 36))
 _SHARP = math.cos(math.radians(35.0))
 
 
@@ -99,7 +100,11 @@ def skin(rings: Sequence[Array], *, caps: bool = True) -> Mesh:
     return Mesh(out)
 
 
-def _circle(radius: float, count: int = AROUND) -> Array:
+def _around(radius: float) -> int:
+    return next(count for limit, count in _FINENESS if radius <= limit)
+
+
+def _circle(radius: float, count: int) -> Array:
     a = np.arange(count) * (2.0 * math.pi / count)
     return np.stack([np.cos(a), np.sin(a)], axis=1) * radius
 
@@ -113,7 +118,9 @@ _AXES = {
 
 def lathe(axis: str, profile: Iterable[tuple[float, float]], at: ArrayLike = (0, 0, 0)) -> Mesh:
     """A turned part: (position along the axis, radius) pairs, positions rising."""
-    rings = [np.column_stack([_circle(max(r, 1e-4)), np.full(AROUND, s)]) for s, r in profile]
+    steps = list(profile)
+    n = _around(max(r for _, r in steps))
+    rings = [np.column_stack([_circle(max(r, 1e-4), n), np.full(n, s)]) for s, r in steps]
     return skin(rings).moved(at, _AXES[axis])
 
 
@@ -132,8 +139,9 @@ def rod(
 
 
 def hull_outline(circles: Sequence[tuple[float, float, float]], shrink: float = 0.0) -> Array:
-    """Outline (AROUND * 2 points) of the convex hull of circles (x, y, radius), as support points."""
-    a = np.arange(AROUND * 2) * (math.pi / AROUND)
+    """Outline of the convex hull of circles (x, y, radius), as support points."""
+    n = 4 * max(3, _around(max(r for _, _, r in circles)) // 2)
+    a = (np.arange(n) + 0.5) * (2.0 * math.pi / n)
     direction = np.stack([np.cos(a), np.sin(a)], axis=1)
     centres = np.array([[x, y] for x, y, _ in circles])
     radii = np.array([max(r - shrink, 1e-3) for _, _, r in circles])

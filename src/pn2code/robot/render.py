@@ -1,0 +1,129 @@
+"""Pictures and films of the cell.
+
+    for camera in cameras(cell, backend):
+        save(picture(backend, camera), folder / f"{camera.name}.png")
+    with Film(folder / "run.mp4", backend, camera) as film: film.frame()
+
+Cameras are placed from where the robots, their tools and the panel are, so they suit any cell.
+"""
+
+from __future__ import annotations
+
+import math
+from pathlib import Path
+from types import TracebackType
+from typing import Any
+
+import imageio.v2 as imageio
+import numpy as np
+
+from pn2code.robot.backend import Backend, Camera, Picture
+from pn2code.robot.scene import RobotCell
+from pn2code.robot.transforms import Array
+
+WIDTH, HEIGHT = 1280, 720
+
+
+def cameras(cell: RobotCell, backend: Backend) -> tuple[Camera, ...]:
+    """`overview`, `behind` (from the other side), `tools` (where the TCPs are now), `seam`."""
+    low, high = _extent(cell)
+    centre = (low + high) / 2.0
+    size = float(np.linalg.norm((high - low)[:2]))
+    overview = _camera(
+        "overview", centre, azimuth=-40.0, elevation=24.0, distance=0.98 * size + 1.5
+    )
+    behind = _camera("behind", centre, azimuth=50.0, elevation=20.0, distance=1.15 * size + 1.5)
+    tips = np.array([backend.tcp(r.name)[:3, 3] for r in cell.robots])
+    middle = tips.mean(axis=0)
+    spread = float(np.abs(tips - middle).max())
+    # Close-ups: past the edge of the panel, along x, slightly from above.
+    tools = _camera("tools", middle, azimuth=-28.0, elevation=16.0, distance=1.5 + 1.6 * spread)
+    seam = _camera("seam", middle, azimuth=-6.0, elevation=12.0, distance=3.0 + 1.2 * spread)
+    return (overview, behind, tools, seam)
+
+
+def _extent(cell: RobotCell) -> tuple[Array, Array]:
+    points = []
+    for r in cell.robots:
+        base = r.T_world_base[:3, 3]
+        points += [base - [0.5, 0.5, base[2]], base + [0.5, 0.5, 1.8]]
+    if cell.scene.panel is not None:
+        p = cell.scene.panel
+        points += [
+            np.array([p.x_from, p.axis_y - p.radius * 0.9, 0.0]),
+            np.array([p.x_to, p.axis_y, p.axis_z + p.radius * 0.9]),
+        ]
+    for o in cell.scene.objects:
+        points.append(np.array([o.pose.x, o.pose.y, o.pose.z]))
+    return np.min(points, axis=0), np.max(points, axis=0)
+
+
+def _camera(
+    name: str, target: Array, *, azimuth: float, elevation: float, distance: float
+) -> Camera:
+    """From `distance` away in a direction: azimuth from +x towards +y, degrees."""
+    a, e = math.radians(azimuth), math.radians(elevation)
+    way = np.array([math.cos(e) * math.cos(a), math.cos(e) * math.sin(a), math.sin(e)])
+    x, y, z = (target + distance * way).tolist()
+    tx, ty, tz = target.tolist()
+    return Camera(name, (x, y, max(z, 0.2)), (tx, ty, tz), 42.0)
+
+
+def picture(
+    backend: Backend, camera: Camera, width: int = WIDTH, height: int = HEIGHT, *, smooth: int = 2
+) -> Picture | None:
+    """A picture; None when the backend has no eyes.
+
+    Args:
+        smooth: rendered this many times larger and averaged, for clean edges.
+    """
+    large = backend.render(camera, width * smooth, height * smooth)
+    if large is None or smooth == 1:
+        return large
+    blocks = large.reshape(height, smooth, width, smooth, 3).astype(np.uint16)
+    return np.asarray(blocks.sum(axis=(1, 3)) // (smooth * smooth), np.uint8)
+
+
+def save(image: Picture | None, path: Path) -> bool:
+    """Writes a PNG; False when there is no picture."""
+    if image is None:
+        return False
+    imageio.imwrite(path, image)
+    return True
+
+
+class Film:
+    """An mp4 (or gif, by the file's suffix) made frame by frame."""
+
+    def __init__(
+        self, path: Path, backend: Backend, camera: Camera, *, fps: int = 12, width: int = 960,
+        height: int = 540,
+    ) -> None:  # fmt: skip
+        self._backend, self._camera, self._size = backend, camera, (width, height)
+        options: dict[str, Any] = {"fps": fps}
+        if path.suffix == ".mp4":
+            options |= {"quality": 7, "macro_block_size": 2, "ffmpeg_log_level": "error"}
+        else:
+            options = {"duration": 1000.0 / fps, "loop": 0}
+        self._writer: Any = imageio.get_writer(path, **options)
+
+    def frame(self) -> None:
+        """Adds a picture of the robots where they are now."""
+        image = self._backend.render(self._camera, *self._size)
+        if image is not None:
+            self._writer.append_data(image)
+
+    def close(self) -> None:
+        """Finishes the file."""
+        self._writer.close()
+
+    def __enter__(self) -> Film:
+        return self
+
+    def __exit__(
+        self,
+        kind: type[BaseException] | None,
+        error: BaseException | None,
+        trace: TracebackType | None,
+    ) -> None:
+        self.close()
