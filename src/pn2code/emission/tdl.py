@@ -86,7 +86,9 @@ def _notes(ir: RobotIR) -> list[str]:
     states = ", ".join(comment(s.phrase.removeprefix("place ")) for s in ir.states)
     notes = _wrapped("The program always stands at one of the places", f"{states}.")
     for x in ir.left_out:
-        notes += _wrapped("Left out: ", f"{comment(x.element.phrase)}, because {comment(x.reason)}.")
+        notes += _wrapped(
+            "Left out: ", f"{comment(x.element.phrase)}, because {comment(x.reason)}."
+        )
     return notes
 
 
@@ -182,8 +184,14 @@ class _Printer:
                 case Region(body=body):
                     before = len(self.lines)
                     self.nodes(body, indent)
-                    first = before + (self.lines[before] == "") if before < len(self.lines) else before
-                    if first > 0 and first == before and self.lines[first - 1].lstrip().startswith(("if ", "elsif ")):
+                    first = (
+                        before + (self.lines[before] == "") if before < len(self.lines) else before
+                    )
+                    if (
+                        first > 0
+                        and first == before
+                        and self.lines[first - 1].lstrip().startswith(("if ", "elsif "))
+                    ):
                         first -= 1  # the condition is the transition's guard
                     if first < len(self.lines):
                         self.regions.append((node, first, len(self.lines) - 1))
@@ -199,7 +207,9 @@ class _Printer:
                     self.lines.append(f"{indent}end if")
                 case Repeat(condition, body):
                     self.gap()
-                    head = f"while {expression(condition)} loop" if condition is not None else "loop"
+                    head = (
+                        f"while {expression(condition)} loop" if condition is not None else "loop"
+                    )
                     self.lines.append(indent + head)
                     self.nodes(body, indent + INDENT)
                     self.lines.append(f"{indent}end loop")
@@ -209,7 +219,9 @@ class _Printer:
         if not self.lines or self.lines[-1] == "":
             return
         last = self.lines[-1].strip()
-        opened = last.endswith((" then", " loop")) or last in ("loop", "else") or last.startswith("--")
+        opened = (
+            last.endswith((" then", " loop")) or last in ("loop", "else") or last.startswith("--")
+        )
         closed = last in ("end loop", "end if")
         if not opened or closed:
             self.lines.append("")

@@ -23,7 +23,7 @@ from pn2code.cell.partition import Owner, OwnerKind, Partition
 from pn2code.diagnostics import Diagnostics, Note, Origin
 from pn2code.lowering import robot_codes as codes
 from pn2code.lowering import robot_names
-from pn2code.lowering.robot_guards import Constant, covering, exclusive
+from pn2code.lowering.robot_guards import covering, exclusive
 from pn2code.lowering.robot_ir import (
     Comment,
     Element,
@@ -53,15 +53,11 @@ from pn2code.lowering.robot_values import (
     shape_of_colset,
 )
 from pn2code.ml import core
-from pn2code.ml.colsets import Colset, Kind
 from pn2code.net.flat import FlatPlace, FlatTransition
 from pn2code.tdl import flow
 from pn2code.tdl import tree as t
 from pn2code.tdl.paths import all_names, expressions_of, files_in
 from pn2code.tdl.pretty import expression
-
-MAX_DOMAIN = 64
-"""Integer ranges up to this size are looked at value by value when guards are compared."""
 
 
 def lower_robots(
@@ -107,7 +103,6 @@ class _Translator:
     file_names: dict[int, str] = field(default_factory=dict)
     message_names: dict[int, list[str]] = field(default_factory=dict)
     """the variables that the state at hand reads messages into"""
-    domains: dict[str, frozenset[Constant]] = field(default_factory=dict)
     never: list[LeftOut] = field(default_factory=list)
     pure: Evaluator = field(init=False)
     step: StepTranslator = field(init=False)
@@ -139,10 +134,12 @@ class _Translator:
             if shape is None:
                 self.d.error(
                     codes.UNSUPPORTED_COLSET,
-                    f"place `{places[p].short}` has colour set `{places[p].colset.name}`, which robot scripts do not have",
+                    f"place `{places[p].short}` has colour set `{places[p].colset.name}`, "
+                    "which robot scripts do not have",
                     places[p].origins[0],
                     notes=[f"robot `{self.machine.owner.name}` uses the place"],
-                    hint="use units, booleans, integers, reals, strings, enumerations, and records and products of these",
+                    hint="use units, booleans, integers, reals, strings, enumerations, "
+                    "and records and products of these",
                 )
                 return False
             self.shapes[p] = shape
@@ -151,38 +148,32 @@ class _Translator:
                 reads = channel.reader == self.machine.owner.index
                 direction = t.Direction.INPUT if reads else t.Direction.OUTPUT
                 self.file_names[p] = self.names.file(
-                    channel.name, channel.file, direction, self.shapes[p], _place_element(places[p], "channel")
+                    channel.name,
+                    channel.file,
+                    direction,
+                    self.shapes[p],
+                    _place_element(places[p], "channel"),
                 )
         # Variables first: their names are theirs alone.
         for p in self.machine.variables:
-            names = self.names.own(self.variable_stems(p), self.shapes[p], _place_element(places[p]))
+            names = self.names.own(
+                self.variable_stems(p), self.shapes[p], _place_element(places[p])
+            )
             self.hold(p, names)
         for p in self.machine.control:
-            names = self.names.shared(self.control_stems(p), self.shapes[p], _place_element(places[p]))
+            names = self.names.shared(
+                self.control_stems(p), self.shapes[p], _place_element(places[p])
+            )
             self.hold(p, names)
-        return all(
-            self.initial(p) for p in (*self.machine.variables, self.machine.start)
-        )
+        return all(self.initial(p) for p in (*self.machine.variables, self.machine.start))
 
     def hold(self, place: int, names: list[str]) -> None:
         self.place_names[place] = names
         self.place_values[place] = make(self.shapes[place], iter(names))
-        self.domain(self.place_values[place], self.partition.net.places[place].colset)
-
-    def domain(self, value: Value, colset: Colset) -> None:
-        """Remember the few values that a variable can have."""
-        for leaf in leaves(value):
-            found = _domain(colset)
-            if found and isinstance(leaf.exp, t.Name):
-                known = self.domains.get(leaf.exp.name)
-                self.domains[leaf.exp.name] = found if known is None else known | found
 
     def taking_patterns(self, place: int) -> list[tuple[Step, core.Pat | None]]:
         return [
-            (s, term.pattern)
-            for s in self.machine.steps
-            for p, term, _, _ in s.takes
-            if p == place
+            (s, term.pattern) for s in self.machine.steps for p, term, _, _ in s.takes if p == place
         ]
 
     def control_stems(self, place: int) -> list[str]:
@@ -199,7 +190,9 @@ class _Translator:
         symbols = {p.symbol for _, p in taking if isinstance(p, core.PVar)}
         if len(symbols) == 1 and all(isinstance(p, core.PVar) for _, p in taking):
             (symbol,) = symbols
-            users = {s.transition.index for s in self.machine.steps if symbol in s.transition.variables}
+            users = {
+                s.transition.index for s in self.machine.steps if symbol in s.transition.variables
+            }
             if users == {s.transition.index for s, _ in taking}:
                 return self.control_stems(place)
         return self.place_stems(place)
@@ -245,7 +238,9 @@ class _Translator:
         try:
             messages = self.messages(place, steps)
         except UnsupportedError as problem:
-            self.report(problem, f"transition `{steps[0].transition.short}`", steps[0].transition.origin)
+            self.report(
+                problem, f"transition `{steps[0].transition.short}`", steps[0].transition.origin
+            )
             return Halt()
         situations: list[Situation] = []
         for s in steps:
@@ -263,7 +258,12 @@ class _Translator:
         avoid = set(self.place_names[place])
         found: dict[int, Value] = {}
         for s in steps:
-            bound = {v for p, term, _, _ in s.takes if p not in self.machine.channels for v in _names(term.pattern)}
+            bound = {
+                v
+                for p, term, _, _ in s.takes
+                if p not in self.machine.channels
+                for v in _names(term.pattern)
+            }
             for p, term, _, _ in s.takes:
                 if p not in self.machine.channels or p in found:
                     continue
@@ -271,12 +271,13 @@ class _Translator:
                 stems = robot_names.of_pattern(term.pattern, shape)
                 if stems is None or _names(term.pattern) & bound:
                     stems = robot_names.of_stem(identifier(self.machine.channels[p].name), shape)
-                element = Element(flat.name, "channel", flat.origins[0], f"message {flat.short} ({flat.id})")
+                element = Element(
+                    flat.name, "channel", flat.origins[0], f"message {flat.short} ({flat.id})"
+                )
                 names = self.names.shared(stems, shape, element, avoid)
                 avoid |= set(names)
                 self.message_names[p] = names
                 found[p] = make(shape, iter(names))
-                self.domain(found[p], flat.colset)
         return found
 
     def warn_of_choices(self, situations: list[Situation]) -> None:
@@ -289,16 +290,19 @@ class _Translator:
                         f"transitions `{first.short}` and `{second.short}` may be enabled together: "
                         f"the script of robot `{self.machine.owner.name}` prefers `{first.short}`",
                         second.origin,
-                        notes=[Note(f"`{first.short}` comes first (priority, then order in the file)", first.origin)],
+                        notes=[
+                            Note(
+                                f"`{first.short}` comes first (priority, then order in the file)",
+                                first.origin,
+                            )
+                        ],
                         hint="add guards that exclude each other if that is not what is meant",
                     )
 
     def exclude(self, a: t.Expression, b: t.Expression) -> bool:
         return exclusive(a, b, self.names.constant_values)
 
-    def decide(
-        self, place: int, situations: list[Situation], messages: dict[int, Value]
-    ) -> Tree:
+    def decide(self, place: int, situations: list[Situation], messages: dict[int, Value]) -> Tree:
         """The tree of a state, by what its transitions wait for (docs/tdl.md, "Translation")."""
         if len(situations) == 1 or len({frozenset(s.channels) for s in situations}) == 1:
             return self.together(place, situations, messages)
@@ -325,7 +329,10 @@ class _Translator:
             codes.UNSUPPORTED_PROGRAM,
             f"the transitions of place `{self.places[place].short}` wait for different messages and look into them",
             self.places[place].origins[0],
-            notes=[Note(f"transition `{s.step.transition.short}`", s.step.transition.origin) for s in situations],
+            notes=[
+                Note(f"transition `{s.step.transition.short}`", s.step.transition.origin)
+                for s in situations
+            ],
             hint="take the message first, then decide in a further place",
         )
         return Halt()
@@ -353,9 +360,7 @@ class _Translator:
                 home.append(s)
         return units
 
-    def together(
-        self, place: int, situations: list[Situation], messages: dict[int, Value]
-    ) -> Tree:
+    def together(self, place: int, situations: list[Situation], messages: dict[int, Value]) -> Tree:
         """Transitions that wait for the same messages: wait, read, decide."""
         front = self.receive(situations[0].channels)
         if len(situations) == 1:
@@ -364,10 +369,16 @@ class _Translator:
             if only.condition == TRUE:
                 return self.occur(only, [*own, *front])
             tree = self.chain(
-                place, [(only.condition, self.occur(only, []))], [only.step], list(only.channels), messages
+                place,
+                [(only.condition, self.occur(only, []))],
+                [only.step],
+                list(only.channels),
+                messages,
             )
             return Then((self.region(only, [*own, *front]),), tree) if front else tree
-        branches = [(s.condition, self.occur(s, [header(s.step, self.machine)])) for s in situations]
+        branches = [
+            (s.condition, self.occur(s, [header(s.step, self.machine)])) for s in situations
+        ]
         tree = self.chain(
             place, branches, [s.step for s in situations], list(situations[0].channels), messages
         )
@@ -380,9 +391,7 @@ class _Translator:
     def race(self, place: int, situations: list[Situation]) -> Tree:
         """Transitions that wait for different messages: whichever comes first, in documented order."""
         ready = [
-            conjunction(
-                [s.own_condition, *(_filled(self.file_names[c]) for c in s.channels)]
-            )
+            conjunction([s.own_condition, *(_filled(self.file_names[c]) for c in s.channels)])
             for s in situations
         ]
         branches = [
@@ -402,7 +411,7 @@ class _Translator:
                 Line(t.WaitUntil(condition)),
             )
             tree = Then((Region(flat.name, "place", flat.origins[0], front),), tree)
-            if TRUE not in own and not covering(own, self.names.constant_values, self.domains):
+            if TRUE not in own and not covering(own, self.names.constant_values):
                 return Branches(((disjunction(own), tree),), self.stuck(place, []))
         return tree
 
@@ -440,7 +449,7 @@ class _Translator:
                 kept.append((condition, tree))
         if otherwise is None and len(kept) > 1:
             conditions = [c for c, _ in kept]
-            if covering(conditions, self.names.constant_values, self.domains):
+            if covering(conditions, self.names.constant_values):
                 otherwise = kept.pop()[1]
         if otherwise is None:
             values = [self.place_values[place], *((messages or {})[c] for c in read)]
@@ -476,7 +485,9 @@ class _Translator:
                 for o in outcomes
             ]
         except UnsupportedError as problem:
-            self.report(problem, f"transition `{s.step.transition.short}`", s.step.transition.origin)
+            self.report(
+                problem, f"transition `{s.step.transition.short}`", s.step.transition.origin
+            )
             return Halt()
         live = [e for e in ends if e[0] != FALSE]
         *others, last = live
@@ -507,7 +518,8 @@ class _Translator:
     def assemble(self, trees: dict[int, Tree]) -> RobotIR:
         """The program."""
         labels = {
-            p: self.names.unique(identifier(self.places[p].short).lower()) for p in self.machine.control
+            p: self.names.unique(identifier(self.places[p].short).lower())
+            for p in self.machine.control
         }
         clash = {x for x in labels.values() if list(labels.values()).count(x) > 1}
         unique = {p: f"{x}_{i}" if x in clash else x for i, (p, x) in enumerate(labels.items())}
@@ -527,9 +539,7 @@ class _Translator:
             states=tuple(_place_element(net.places[p]) for p in self.machine.control),
             left_out=(
                 *(
-                    LeftOut(
-                        _transition_element(x), f"place `{p.short}` can never hold a token"
-                    )
+                    LeftOut(_transition_element(x), f"place `{p.short}` can never hold a token")
                     for x, p in self.machine.dead
                 ),
                 *self.never,
@@ -577,17 +587,6 @@ def _place_element(p: FlatPlace, kind: str = "place") -> Element:
 
 def _transition_element(x: FlatTransition) -> Element:
     return Element(x.name, "transition", x.origin, f"{x.short} ({x.id})")
-
-
-def _domain(colset: Colset) -> frozenset[Constant]:
-    """The values of a colour set of few values; empty for others."""
-    c = colset.resolved
-    if c.kind is Kind.ENUM:
-        return frozenset(c.names)
-    if c.kind is Kind.INT and isinstance(c.low, int) and isinstance(c.high, int):
-        if c.high - c.low < MAX_DOMAIN:
-            return frozenset(range(c.low, c.high + 1))
-    return frozenset()
 
 
 def _used(body: Sequence[Node]) -> tuple[set[str], set[str]]:

@@ -5,51 +5,56 @@ from pn2code.diagnostics.codes import register
 NOT_SEQUENTIAL = register(
     "robot-not-sequential",
     "a robot's part of the net is not a sequential program",
-    "A robot script is one thread of control. The places of a robot must be: places that together always hold exactly one "
-    "token, which every transition of the robot moves (where the program is); places that always hold exactly one token, which "
-    "is only exchanged (variables); and channels (files). The message names the element that does not fit, e.g. a transition "
-    "that puts two tokens, or a place whose tokens pile up.",
+    "A robot script is one thread of control. The places of a robot must be: places that "
+    "together always hold exactly one token, which every transition of the robot moves (where"
+    " the program is); places that always hold exactly one token, which is only exchanged "
+    "(variables); and channels (files). The message names the element that does not fit, e.g."
+    " a transition that puts two tokens, or a place whose tokens pile up.",
 )
 UNSUPPORTED_PROGRAM = register(
     "unsupported-robot-program",
     "a robot page uses something that scripts cannot do",
-    "For example an inhibitor or reset arc, a multi-set inscription with a coefficient other than 1, a variable that is bound "
-    "by nothing (a free choice), or guards on several messages of which only some have come.",
+    "For example an inhibitor or reset arc, a multi-set inscription with a coefficient other "
+    "than 1, a variable that is bound by nothing (a free choice), or guards on several "
+    "messages of which only some have come.",
 )
 UNSUPPORTED_TIME = register(
     "unsupported-robot-time",
     "a robot page uses model time",
-    "In a robot script time passes while commands are carried out. Time stamps and delays in a robot's part of the net have "
-    "no meaning there: use a `wait` primitive.",
+    "In a robot script time passes while commands are carried out. Time stamps and delays in "
+    "a robot's part of the net have no meaning there: use a `wait` primitive.",
 )
 UNSUPPORTED_EXPRESSION = register(
     "unsupported-robot-expression",
     "an expression cannot be translated to the script language",
-    "Scripts have integers, reals, booleans, texts, poses, arithmetic, comparisons, conditionals and field selection. Functions "
-    "of the net are inlined. Lists, references, exceptions, recursion, trigonometry and random numbers belong on the "
-    "supervisor's pages.",
+    "Scripts have integers, reals, booleans, texts, poses, arithmetic, comparisons, "
+    "conditionals and field selection. Functions of the net are inlined. Lists, references, "
+    "exceptions, recursion, trigonometry and random numbers belong on the supervisor's pages.",
 )
 UNSUPPORTED_COLSET = register(
     "unsupported-robot-colset",
     "a robot page uses a colour set that scripts do not have",
-    "Places of a robot may hold units, booleans, integers, reals, strings, enumerations, and records and products of these. "
-    "A record of six reals named x y z rx ry rz is a pose.",
+    "Places of a robot may hold units, booleans, integers, reals, strings, enumerations, and "
+    "records and products of these. A record of six reals named x y z rx ry rz is a pose.",
 )
 CHOICE = register(
     "robot-choice",
     "two transitions of a robot may be enabled together",
-    "A net chooses freely, a script follows the documented order: priority first, then the order in the file. If that is not "
-    "what is meant, add guards that exclude each other, e.g. `k = 1` and `k = 2`.",
+    "A net chooses freely, a script follows the documented order: priority first, then the "
+    "order in the file. If that is not what is meant, add guards that exclude each other, "
+    "e.g. `k = 1` and `k = 2`.",
 )
 PRIMITIVE = register(
     "robot-primitive",
     "a robot primitive is used in a way that is not a command",
-    "Primitives are the functions named in `[primitives]` of cell.toml. Moves and measurements take a pose, `tool` and "
-    "`move_home` take unit, `wait` takes a number of seconds. They are called in code segments only.",
+    "Primitives are the functions named in `[primitives]` of cell.toml. Moves and "
+    "measurements take a pose, `tool` and `move_home` take unit, `wait` takes a number of "
+    "seconds. They are called in code segments only.",
 )
 DEAD = register(
     "robot-dead",
     "a transition of a robot can never occur",
-    "An input place of the transition can never hold a token: nothing marks it initially and no transition that can occur "
-    "puts a token there, e.g. an unassigned port. The transition is left out of the script.",
+    "An input place of the transition can never hold a token: nothing marks it initially and "
+    "no transition that can occur puts a token there, e.g. an unassigned port. The transition"
+    " is left out of the script.",
 )

@@ -1,8 +1,7 @@
 """What can be proved about conditions: that two exclude each other, that several cover everything.
 
-    k = 1        and  k = 2        exclude each other
-    n < 3        and  n >= 3       exclude each other and cover everything
-    colour red   and  colour green cover the colour set `with red | green`
+k = 1        and  k = 2        exclude each other
+n < 3        and  n >= 3       exclude each other and cover everything
 """
 
 from __future__ import annotations
@@ -90,14 +89,17 @@ def _contradict(x: Fact, y: Fact) -> bool:
         return _no_common_value(x, y)
     if x.value != y.value:
         return False
-    return y.operator in {
-        "=": ("<>", "<", ">"),
-        "<>": ("=",),
-        "<": ("=", ">", ">="),
-        "<=": (">",),
-        ">": ("=", "<", "<="),
-        ">=": ("<",),
-    }[x.operator]
+    return (
+        y.operator
+        in {
+            "=": ("<>", "<", ">"),
+            "<>": ("=",),
+            "<": ("=", ">", ">="),
+            "<=": (">",),
+            ">": ("=", "<", "<="),
+            ">=": ("<",),
+        }[x.operator]
+    )
 
 
 def _no_common_value(x: Fact, y: Fact) -> bool:
@@ -131,14 +133,11 @@ def _holds(a: float, operator: str, b: float) -> bool:
     }[operator]  # fmt: skip
 
 
-def covering(
-    conditions: Iterable[t.Expression],
-    constants: Mapping[str, Constant],
-    domains: Mapping[str, frozenset[Constant]],
-) -> bool:
+def covering(conditions: Iterable[t.Expression], constants: Mapping[str, Constant]) -> bool:
     """Whether it is certain that one of the conditions holds.
 
-    `domains`: the values that a subject of few values can have.
+    Only complements count (`n < 3` and `n >= 3`). That a colour set has no other value is not used: what comes
+    from a file is worth a last `else` that stops.
     """
     alone = []
     for c in conditions:
@@ -155,8 +154,4 @@ def covering(
                 and (x.operator == y.operator) == (x.value != y.value)
             ):  # fmt: skip
                 return True
-    for subject, domain in domains.items():
-        values = {f.value for f in alone if f.subject == subject and f.operator == "="}
-        if domain and domain <= {v for v in values if isinstance(v, Constant)}:
-            return True
     return False

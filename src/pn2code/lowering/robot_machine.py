@@ -85,15 +85,17 @@ def analyse(partition: Partition, owner: Owner, d: Diagnostics) -> Machine | Non
     return machine if len(d.errors) == before else None
 
 
-def dead_transitions(
-    partition: Partition, owner: Owner
-) -> list[tuple[FlatTransition, FlatPlace]]:
+def dead_transitions(partition: Partition, owner: Owner) -> list[tuple[FlatTransition, FlatPlace]]:
     """The owner's transitions that can never occur: an input place can never hold a token.
 
     Channels count as filled by their writers.
     """
     net = partition.net
-    own = [t for t, o in zip(net.transitions, partition.transition_owner, strict=True) if o == owner.index]
+    own = [
+        t
+        for t, o in zip(net.transitions, partition.transition_owner, strict=True)
+        if o == owner.index
+    ]
     marked = {c.place for c in partition.channels}
     marked |= {p.index for p in net.places if p.initial is not None and not _is_empty(p.initial[0])}
     changed = True
@@ -115,7 +117,11 @@ def dead_transitions(
 
 def _missing(t: FlatTransition, marked: set[int]) -> int | None:
     return next(
-        (a.place for a in t.arcs if a.kind in (ArcKind.INPUT, ArcKind.BOTH) and a.place not in marked),
+        (
+            a.place
+            for a in t.arcs
+            if a.kind in (ArcKind.INPUT, ArcKind.BOTH) and a.place not in marked
+        ),
         None,
     )
 
@@ -124,7 +130,9 @@ def _is_empty(e: core.Exp) -> bool:
     return isinstance(e, core.ListExp) and not e.items
 
 
-def tokens(e: core.Exp, form: Form) -> Iterator[tuple[tuple[tuple[core.Exp, bool], ...], list[core.Exp] | None]]:
+def tokens(
+    e: core.Exp, form: Form
+) -> Iterator[tuple[tuple[tuple[core.Exp, bool], ...], list[core.Exp] | None]]:
     """The outcomes of an output inscription: conditions, and the value of each token (None: not known)."""
     if form is Form.TOKEN:
         yield (), [e]
@@ -230,7 +238,9 @@ class _Analyser:
                 self.d.error(
                     codes.UNSUPPORTED_TIME, f"transition `{t.name}` uses time stamps", term.origin
                 )
-            elif term.whole or not (isinstance(term.coefficient, core.Lit) and term.coefficient.value == 1):
+            elif term.whole or not (
+                isinstance(term.coefficient, core.Lit) and term.coefficient.value == 1
+            ):
                 self.d.error(
                     codes.UNSUPPORTED_PROGRAM,
                     "a robot takes one token at a time, but this inscription is a multi-set",
@@ -281,7 +291,8 @@ class _Analyser:
     def roles(self, steps: list[Step]) -> tuple[list[int], list[int], list[int]] | None:
         net = self.partition.net
         local = sorted(
-            {p for s in steps for p, *_ in s.takes} | {p for s in steps for o in s.outcomes for p, _ in o.puts}
+            {p for s in steps for p, *_ in s.takes}
+            | {p for s in steps for o in s.outcomes for p, _ in o.puts}
         )
         local = [p for p in local if p not in self.channels]
         for p in local:
@@ -352,23 +363,36 @@ class _Analyser:
             t = s.transition
             sources = [p for p in fixed for _ in range(_taken(s, p))]
             if len(sources) > 1:
-                self.error(t, f"transition `{t.short}` takes tokens from {len(sources)} places: {names(sources)}")
+                self.error(
+                    t,
+                    f"transition `{t.short}` takes tokens from {len(sources)} places: {names(sources)}",
+                )
                 return
             for o in s.outcomes:
                 targets = [p for p in fixed for _ in range(_put(o, p))]
                 if len(targets) > 1:
-                    self.error(t, f"transition `{t.short}` puts tokens on {len(targets)} places: {names(targets)}")
+                    self.error(
+                        t,
+                        f"transition `{t.short}` puts tokens on {len(targets)} places: {names(targets)}",
+                    )
                     return
         for s in steps:
             t = s.transition
             if not any(_taken(s, p) for p in fixed):
-                self.error(t, f"transition `{t.short}` takes no token that tells where the program is")
+                self.error(
+                    t, f"transition `{t.short}` takes no token that tells where the program is"
+                )
                 return
             if any(not any(_put(o, p) for p in fixed) for o in s.outcomes):
-                self.error(t, f"transition `{t.short}` does not put the token on that tells where the program is")
+                self.error(
+                    t,
+                    f"transition `{t.short}` does not put the token on that tells where the program is",
+                )
                 return
         t = steps[0].transition
-        self.error(t, f"the places of robot `{self.owner.name}` are not those of a sequential program")
+        self.error(
+            t, f"the places of robot `{self.owner.name}` are not those of a sequential program"
+        )
 
     def error(self, t: FlatTransition, message: str) -> None:
         self.d.error(
@@ -411,7 +435,5 @@ def _put(o: Outcome, place: int) -> int:
     return sum(p == place for p, _ in o.puts)
 
 
-def _contradict(
-    a: tuple[tuple[core.Exp, bool], ...], b: tuple[tuple[core.Exp, bool], ...]
-) -> bool:
+def _contradict(a: tuple[tuple[core.Exp, bool], ...], b: tuple[tuple[core.Exp, bool], ...]) -> bool:
     return any(x == y and holds != other for x, holds in a for y, other in b)

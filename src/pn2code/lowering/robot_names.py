@@ -80,7 +80,9 @@ class Names:
             candidate = f"{name}_{n}"
         return candidate
 
-    def file(self, stem: str, path: str, direction: t.Direction, shape: Shape, element: Element) -> str:
+    def file(
+        self, stem: str, path: str, direction: t.Direction, shape: Shape, element: Element
+    ) -> str:
         """Declare a file."""
         name = self.unique(identifier(stem))
         leaves = [leaf for _, leaf in leaf_shapes(shape)]
@@ -117,7 +119,12 @@ class Names:
             if known is None and not self._taken(candidate) and candidate not in forbidden:
                 self.variables[candidate] = _Variable(kind, element, True)
                 return candidate
-            if known is not None and known.shared and known.type == kind and candidate not in forbidden:
+            if (
+                known is not None
+                and known.shared
+                and known.type == kind
+                and candidate not in forbidden
+            ):
                 return candidate
             n += 1
             candidate = f"{name}_{n}"

@@ -43,7 +43,6 @@ from pn2code.lowering.robot_values import (
     select,
 )
 from pn2code.lowering.robot_values import Primitive as PrimitiveValue
-from pn2code.ml import core
 from pn2code.ml.colsets import Colset, Kind
 from pn2code.net.flat import BindAll, BindEquation, BindRandom
 from pn2code.tdl import tree as t
@@ -206,11 +205,18 @@ class StepTranslator:
         if command in ("move_joint", "move_linear", "measure"):
             if not (isinstance(argument, Scalar) and argument.type is tdl.Type.POSE):
                 raise UnsupportedError(
-                    f"`{name}` takes a pose: a record of six reals x y z rx ry rz", span, codes.PRIMITIVE
+                    f"`{name}` takes a pose: a record of six reals x y z rx ry rz",
+                    span,
+                    codes.PRIMITIVE,
                 )
             if command == "measure":
                 transition = s.step.transition
-                element = Element(transition.name, "transition", transition.origin, f"transition {transition.short} ({transition.id})")
+                element = Element(
+                    transition.name,
+                    "transition",
+                    transition.origin,
+                    f"transition {transition.short} ({transition.id})",
+                )
                 (target,) = self.names.shared([output], Leaf(tdl.Type.POSE), element, avoid)
                 self._nodes.append(Line(t.Measure(argument.exp, t.Target(target))))
                 return Scalar(t.Name(target), tdl.Type.POSE)
@@ -265,7 +271,11 @@ class StepTranslator:
                     return t.RecordDatum(
                         tuple((x, self.datum(value.get(x), parts[x], span)) for x in parts)
                     )
-                components = c.components if c is not None and c.kind is Kind.PRODUCT else (None,) * len(fields)
+                components = (
+                    c.components
+                    if c is not None and c.kind is Kind.PRODUCT
+                    else (None,) * len(fields)
+                )
                 return t.TupleDatum(
                     tuple(
                         self.datum(v, part, span)
@@ -315,13 +325,19 @@ class StepTranslator:
                 name = pending[0][0]
                 kind = self.names.variables[name].type
                 transition = situation.step.transition
-                element = Element(transition.name, "transition", transition.origin, f"transition {transition.short} ({transition.id})")
+                element = Element(
+                    transition.name,
+                    "transition",
+                    transition.origin,
+                    f"transition {transition.short} ({transition.id})",
+                )
                 (aside,) = self.names.shared(
                     [f"{name}_before"], Leaf(kind.type, kind.single), element
                 )
                 out.append(Line(t.Assign(t.Target(aside), t.Name(name))))
                 pending = [
-                    (n, e if i == 0 else _replaced(e, name, aside)) for i, (n, e) in enumerate(pending)
+                    (n, e if i == 0 else _replaced(e, name, aside))
+                    for i, (n, e) in enumerate(pending)
                 ]
                 free = 0
             name, exp = pending.pop(free)

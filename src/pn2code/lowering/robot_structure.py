@@ -284,9 +284,7 @@ def simplify(nodes: Iterable[Node]) -> tuple[Node, ...]:
     for node in nodes:
         match node:
             case Region():
-                out.append(
-                    Region(node.element, node.kind, node.origin, simplify(node.body))
-                )
+                out.append(Region(node.element, node.kind, node.origin, simplify(node.body)))
             case Chain():
                 out.extend(_chain(node))
             case Repeat(condition, body):

@@ -58,8 +58,10 @@ Shape = Leaf | Fields
 
 def is_pose(labels: tuple[str, ...], types: tuple[Type, ...]) -> bool:
     """Whether a record is a pose: six reals named x y z rx ry rz, in upper or lower case."""
-    return {x.lower() for x in labels} == set(POSE_LABELS) and len(labels) == 6 and all(
-        x == REAL for x in types
+    return (
+        {x.lower() for x in labels} == set(POSE_LABELS)
+        and len(labels) == 6
+        and all(x == REAL for x in types)
     )
 
 
@@ -67,7 +69,12 @@ def shape_of_type(ml: Type, program: core.Program) -> Shape | None:
     """The shape of an ML type; None where scripts have nothing for it."""
     match ml:
         case TCon():
-            simple = {INT: tdl.Type.INT, REAL: tdl.Type.REAL, BOOL: tdl.Type.BOOL, STRING: tdl.Type.STRING}
+            simple = {
+                INT: tdl.Type.INT,
+                REAL: tdl.Type.REAL,
+                BOOL: tdl.Type.BOOL,
+                STRING: tdl.Type.STRING,
+            }
             if ml in simple:
                 return Leaf(simple[ml])
             return Leaf(tdl.Type.STRING) if is_enumeration(ml, program) else None
@@ -517,7 +524,9 @@ class Evaluator:
             case core.Lit(value, type_):
                 shape = shape_of_type(type_, self.program)
                 if not isinstance(shape, Leaf):
-                    raise UnsupportedError(f"values of type `{type_}` cannot be used in a robot script", e.span)
+                    raise UnsupportedError(
+                        f"values of type `{type_}` cannot be used in a robot script", e.span
+                    )
                 return Scalar(t.Value(value), shape.type)
             case core.Var(symbol):
                 return self._variable(symbol, env, e.span)
@@ -615,7 +624,9 @@ class Evaluator:
             case core.ValBind(pattern, value):
                 found = self.match(pattern, self.evaluate(value, env), env)
                 if conjunction(found) != TRUE:
-                    raise UnsupportedError("this binding may fail, which a robot script cannot handle", dec.span)
+                    raise UnsupportedError(
+                        "this binding may fail, which a robot script cannot handle", dec.span
+                    )
             case core.RecBind(bindings):
                 for symbol, function in bindings:
                     env[symbol.uid] = Closure(function.rules, env, symbol.name)
@@ -627,7 +638,8 @@ class Evaluator:
             case Primitive(name):
                 if self.perform is None:
                     raise UnsupportedError(
-                        f"`{name}` is a robot command, which is possible in code segments only", span
+                        f"`{name}` is a robot command, which is possible in code segments only",
+                        span,
                     )
                 return self.perform(name, argument, span)
             case Closure(rules, env, name):
@@ -635,7 +647,8 @@ class Evaluator:
                 try:
                     if self._depth > 20 * MAX_DEPTH:
                         raise UnsupportedError(
-                            f"`{name or 'the function'}` is recursive, which robot scripts cannot do", span
+                            f"`{name or 'the function'}` is recursive, which robot scripts cannot do",
+                            span,
                         )
                     return self._rules(rules, argument, env, span)
                 finally:
@@ -691,7 +704,9 @@ class Evaluator:
             case core.PLit(literal, type_):
                 shape = shape_of_type(type_, self.program)
                 if not isinstance(shape, Leaf):
-                    raise UnsupportedError(f"values of type `{type_}` cannot be used in a robot script", pattern.span)
+                    raise UnsupportedError(
+                        f"values of type `{type_}` cannot be used in a robot script", pattern.span
+                    )
                 return [equal(value, Scalar(t.Value(literal), shape.type), pattern.span)]
             case core.PRecord(fields):
                 out = []
@@ -705,9 +720,13 @@ class Evaluator:
                 if is_enumeration(type_, self.program):
                     name = Scalar(t.Value(constructor.name), tdl.Type.STRING)
                     return [equal(value, name, pattern.span)]
-                raise UnsupportedError("this pattern cannot be used in a robot script", pattern.span)
+                raise UnsupportedError(
+                    "this pattern cannot be used in a robot script", pattern.span
+                )
             case core.PAs(symbol, inner):
                 env[symbol.uid] = value
                 return self.match(inner, value, env)
             case _:
-                raise UnsupportedError("this pattern cannot be used in a robot script", pattern.span)
+                raise UnsupportedError(
+                    "this pattern cannot be used in a robot script", pattern.span
+                )

@@ -1,4 +1,4 @@
 """The robot script language: grammar, syntax tree, checks, interpreter (docs/tdl.md).
 
-    text --parse--> tree.Program --check--> CheckedProgram --Interpreter--> requests of a driver
+text --parse--> tree.Program --check--> CheckedProgram --Interpreter--> requests of a driver
 """

@@ -151,7 +151,9 @@ class _Checker:
             self.constants[x.name] = evaluate(x.value, _ConstantsOnly(self.constants))
         except ScriptError as problem:
             self.d.error(
-                codes.CONSTANT, f"the value of constant `{x.name}` is not known: {problem}", x.value.span
+                codes.CONSTANT,
+                f"the value of constant `{x.name}` is not known: {problem}",
+                x.value.span,
             )
 
     def variable(self, x: t.Variable) -> None:
@@ -354,9 +356,7 @@ class _Checker:
                 self.expect(duration, Type.TIME, "the duration")
                 known = self.known(duration)
                 if known is not None and known < 0:
-                    self.d.error(
-                        codes.SPEED, "the duration is negative", duration.span
-                    )
+                    self.d.error(codes.SPEED, "the duration is negative", duration.span)
             case t.Measure(nominal, target):
                 self.expect(nominal, Type.POSE, "the nominal pose")
                 wanted = self.target(target)
@@ -375,7 +375,10 @@ class _Checker:
         if s.frame is None:
             if s.motion is t.Motion.LINEAR and s.target is None:
                 self.d.error(
-                    codes.FRAME, "`home` is a joint position", s.span, hint="write `move $joint home`"
+                    codes.FRAME,
+                    "`home` is a joint position",
+                    s.span,
+                    hint="write `move $joint home`",
                 )
             return
         span = s.frame_span or s.span
@@ -505,7 +508,9 @@ def _values(file: t.File) -> tuple[t.TypeName, ...]:
 def _code(found: Type, wanted: Type) -> str:
     """Whether the mistake is one of units or of types."""
     physical = QUANTITIES | NUMBERS
-    return codes.UNIT if {found, wanted} <= physical and {found, wanted} & QUANTITIES else codes.TYPE
+    return (
+        codes.UNIT if {found, wanted} <= physical and {found, wanted} & QUANTITIES else codes.TYPE
+    )
 
 
 def _unit_hint(e: t.Expression, found: Type, wanted: Type) -> str:
@@ -520,5 +525,3 @@ def _unit_hint(e: t.Expression, found: Type, wanted: Type) -> str:
 def _near(word: str, known: Iterable[str]) -> str:
     near = difflib.get_close_matches(word, list(known), n=1)
     return f"did you mean `{near[0]}`?" if near else ""
-
-

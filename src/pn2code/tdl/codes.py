@@ -5,23 +5,27 @@ from pn2code.diagnostics.codes import register
 SYNTAX = register(
     "tdl-syntax",
     "the script does not follow the grammar",
-    "The message says what was found and what could stand there. docs/tdl.md has the grammar. Frequent causes: `=` "
-    "instead of `:=` in an assignment, a missing `then` or `loop`, a block without its `end if` or `end loop`.",
+    "The message says what was found and what could stand there. docs/tdl.md has the grammar."
+    " Frequent causes: `=` instead of `:=` in an assignment, a missing `then` or `loop`, a "
+    "block without its `end if` or `end loop`.",
 )
 NESTING = register(
     "tdl-nesting",
     "the script is nested too deeply",
-    "Expressions may be nested 100 levels deep and blocks 40 levels. Use a variable or a procedure.",
+    "Expressions may be nested 100 levels deep and blocks 40 levels. Use a variable or a "
+    "procedure.",
 )
 DUPLICATE = register(
     "tdl-duplicate",
     "a name is declared twice",
-    "Files, constants, variables and procedures share one set of names; labels have a set of their own in each body.",
+    "Files, constants, variables and procedures share one set of names; labels have a set of "
+    "their own in each body.",
 )
 RESERVED = register(
     "tdl-reserved",
     "a name of the language is declared anew",
-    "The names of the built-in functions and of the types cannot be used for other things: `var abs : int` is an error.",
+    "The names of the built-in functions and of the types cannot be used for other things: "
+    "`var abs : int` is an error.",
 )
 UNKNOWN_NAME = register(
     "tdl-unknown-name",
@@ -31,23 +35,26 @@ UNKNOWN_NAME = register(
 UNKNOWN_FILE = register(
     "tdl-unknown-file",
     "a file is not declared",
-    'Every shared file is declared at the top with its direction and type: `input flag "flag.robcad" : int`.',
+    "Every shared file is declared at the top with its direction and type: `input flag "
+    '"flag.robcad" : int`.',
 )
 FILE_DIRECTION = register(
     "tdl-file-direction",
     "a file is used against its direction",
-    "A file has exactly one writer. A script reads, clears and waits for its `input` files and writes its `output` files, "
-    "never the other way round.",
+    "A file has exactly one writer. A script reads, clears and waits for its `input` files "
+    "and writes its `output` files, never the other way round.",
 )
 FILE_VALUES = register(
     "tdl-file-values",
     "a message has another number of values",
-    "`read F into a, b` and `write F a, b` name one variable or value for each type in the declaration of `F`.",
+    "`read F into a, b` and `write F a, b` name one variable or value for each type in the "
+    "declaration of `F`.",
 )
 NOT_A_VARIABLE = register(
     "tdl-not-a-variable",
     "a name cannot be used like this",
-    "For example a constant cannot be assigned, a procedure has no value, and a file's message must be read into a variable first.",
+    "For example a constant cannot be assigned, a procedure has no value, and a file's "
+    "message must be read into a variable first.",
 )
 TYPE = register(
     "tdl-type",
@@ -57,8 +64,9 @@ TYPE = register(
 UNIT = register(
     "tdl-unit",
     "units do not fit",
-    "Lengths, angles, times and speeds cannot be mixed, and a plain number is none of them: `p.x + 100` is a mistake, "
-    "`p.x + 100 mm` is right. Multiplying by a plain number keeps the unit, dividing like by like removes it: `p.x / 1 mm`.",
+    "Lengths, angles, times and speeds cannot be mixed, and a plain number is none of them: "
+    "`p.x + 100` is a mistake, `p.x + 100 mm` is right. Multiplying by a plain number keeps "
+    "the unit, dividing like by like removes it: `p.x / 1 mm`.",
 )
 UNKNOWN_UNIT = register(
     "tdl-unknown-unit",
@@ -68,17 +76,20 @@ UNKNOWN_UNIT = register(
 UNKNOWN_TYPE = register(
     "tdl-unknown-type",
     "there is no such type",
-    "Types are int, real, bool, string, pose, length, angle, time, speed; files also have the type signal.",
+    "Types are int, real, bool, string, pose, length, angle, time, speed; files also have the"
+    " type signal.",
 )
 UNKNOWN_FUNCTION = register(
     "tdl-unknown-function",
     "there is no such function",
-    "Expressions can call the built-in functions of docs/tdl.md; procedures are called with `call`.",
+    "Expressions can call the built-in functions of docs/tdl.md; procedures are called with "
+    "`call`.",
 )
 ARGUMENTS = register(
     "tdl-arguments",
     "a function has another number of arguments",
-    "`pose` takes six: x, y, z (lengths), rx, ry, rz (angles). The others are listed in docs/tdl.md.",
+    "`pose` takes six: x, y, z (lengths), rx, ry, rz (angles). The others are listed in "
+    "docs/tdl.md.",
 )
 UNKNOWN_FIELD = register(
     "tdl-unknown-field",
@@ -88,7 +99,8 @@ UNKNOWN_FIELD = register(
 UNKNOWN_FRAME = register(
     "tdl-unknown-frame",
     "there is no such frame",
-    "Frames are `world` (absolute) and `tool` (an increment in the tool frame as it stands when the move begins).",
+    "Frames are `world` (absolute) and `tool` (an increment in the tool frame as it stands "
+    "when the move begins).",
 )
 FRAME = register(
     "tdl-frame",
@@ -98,13 +110,14 @@ FRAME = register(
 UNKNOWN_MOTION = register(
     "tdl-unknown-motion",
     "there is no such motion",
-    "Motions are `$joint` (point to point, all axes together) and `$linear` (the TCP on a straight line).",
+    "Motions are `$joint` (point to point, all axes together) and `$linear` (the TCP on a "
+    "straight line).",
 )
 SPEED = register(
     "tdl-speed",
     "a speed is out of range",
-    "Joint speed is a fraction of the configured speed, above 0 % and at most 100 %; linear speed and durations are above zero "
-    "(a duration may be zero).",
+    "Joint speed is a fraction of the configured speed, above 0 % and at most 100 %; linear "
+    "speed and durations are above zero (a duration may be zero).",
 )
 UNKNOWN_LABEL = register(
     "tdl-unknown-label",
@@ -112,12 +125,15 @@ UNKNOWN_LABEL = register(
     "`goto L` needs a label `L:` in the same body (program or procedure).",
 )
 UNUSED_LABEL = register(
-    "tdl-unused-label", "a label is never used", "No `goto` leads to the label; remove it."
+    "tdl-unused-label",
+    "a label is never used",
+    "No `goto` leads to the label; remove it.",
 )
 UNREACHABLE = register(
     "tdl-unreachable",
     "a statement can never be reached",
-    "It stands behind an `exit`, `goto`, `stop` or `return`, or behind a `loop` without `exit`, and no label leads to it.",
+    "It stands behind an `exit`, `goto`, `stop` or `return`, or behind a `loop` without "
+    "`exit`, and no label leads to it.",
 )
 EXIT = register(
     "tdl-exit",
@@ -127,22 +143,26 @@ EXIT = register(
 RECURSION = register(
     "tdl-recursion",
     "procedures call each other in a circle",
-    "Procedures share the program's variables and have none of their own, so recursion has no use; it is refused.",
+    "Procedures share the program's variables and have none of their own, so recursion has no"
+    " use; it is refused.",
 )
 WAIT_NOTHING = register(
     "tdl-wait-nothing",
     "a wait can never end",
-    "While a script waits only files change, so the condition of `wait until` must ask for one: `wait until filled(F)`.",
+    "While a script waits only files change, so the condition of `wait until` must ask for "
+    "one: `wait until filled(F)`.",
 )
 UNASSIGNED = register(
     "tdl-unassigned",
     "a variable may be read before it has a value",
-    "On some path from the beginning no statement assigns it. Give it a value where it is declared: `var n : int := 0`.",
+    "On some path from the beginning no statement assigns it. Give it a value where it is "
+    "declared: `var n : int := 0`.",
 )
 UNUSED = register(
     "tdl-unused",
     "something declared is never used",
-    "A variable that is assigned but never read, a constant, a file or a procedure that nothing uses.",
+    "A variable that is assigned but never read, a constant, a file or a procedure that "
+    "nothing uses.",
 )
 CONSTANT = register(
     "tdl-constant",

@@ -78,7 +78,7 @@ def evaluate(e: t.Expression, env: Environment) -> ScriptValue:
 
 
 def _checked(value: ScriptValue) -> ScriptValue:
-    if isinstance(value, bool) or isinstance(value, str | ScriptPose):
+    if isinstance(value, bool | str | ScriptPose):
         return value
     if isinstance(value, int):
         if not MIN_INT <= value <= MAX_INT:

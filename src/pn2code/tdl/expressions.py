@@ -156,7 +156,9 @@ def _field(e: t.Field, scope: Scope) -> Type | None:
         codes.UNKNOWN_FIELD,
         f"`{found}` has no field `{e.label}`",
         e.span,
-        hint=f"a pose has {', '.join(POSE_FIELDS)}" if found is Type.POSE else "only poses have fields",
+        hint=f"a pose has {', '.join(POSE_FIELDS)}"
+        if found is Type.POSE
+        else "only poses have fields",
     )
     return None
 
@@ -225,9 +227,7 @@ def _call(e: t.CallExpression, scope: Scope) -> Type | None:
     if name == "filled":
         argument = e.arguments[0]
         if not isinstance(argument, t.Name):
-            scope.d.error(
-                codes.UNKNOWN_FILE, "`filled` takes the name of a file", argument.span
-            )
+            scope.d.error(codes.UNKNOWN_FILE, "`filled` takes the name of a file", argument.span)
             return None
         file = scope.file(argument.name, argument.span, t.Direction.INPUT, "waited for")
         return None if file is None else Type.BOOL

@@ -1,4 +1,6 @@
-"""Syntax tree -> a flat list of instructions: jumps instead of blocks. The checker follows paths in it, the interpreter runs it.
+"""Syntax tree -> a flat list of instructions: jumps instead of blocks.
+
+The checker follows paths in it, the interpreter runs it.
 
 `while c loop wait 1 s end loop` is
 
@@ -85,9 +87,7 @@ class Body:
                 return (target,)
             case BranchUnless(condition, target) | BranchIf(condition, target):
                 if isinstance(condition, t.Value):
-                    taken = (condition.value is True) == isinstance(
-                        self.instructions[at], BranchIf
-                    )
+                    taken = (condition.value is True) == isinstance(self.instructions[at], BranchIf)
                     return (target,) if taken else (at + 1,)
                 return (at + 1, target)
             case End():

@@ -109,15 +109,19 @@ TIMES: "*"
 DIVIDE: "/"
 
 MOTION: /\$[A-Za-z_]*/
-QUANTITY.3: /[0-9]+(\.[0-9]+)?([eE][+-]?[0-9]+)?(?![eE][+-]?[0-9])[ \t]*(mm\/s(?![A-Za-z0-9_])|m\/s(?![A-Za-z0-9_])|%|(?!(?:KEYWORD)(?![A-Za-z0-9_]))[A-Za-z_][A-Za-z0-9_]*)/
+QUANTITY.3: /[0-9]+(\.[0-9]+)?([eE][+-]?[0-9]+)?(?![eE][+-]?[0-9])[ \t]*(mm\/s(?!WORD)|m\/s(?!WORD)|%|NAME_PATTERN)/
 REAL.2: /[0-9]+(\.[0-9]+([eE][+-]?[0-9]+)?|[eE][+-]?[0-9]+)/
 INT.1: /[0-9]+/
 STRING: /"([^"\\\n]|\\["\\nt])*"/
-NAME: /(?!(?:KEYWORD)(?![A-Za-z0-9_]))[A-Za-z_][A-Za-z0-9_]*/
+NAME: /NAME_PATTERN/
 
 COMMENT: /--[^\n]*/
 WHITE: /[ \t\r\n]+/
 %ignore COMMENT
 %ignore WHITE
 """
-).replace("KEYWORD", "|".join(KEYWORDS))
+)
+    .replace("NAME_PATTERN", "(?!(?:KEYWORD)(?!WORD))[A-Za-z_]WORD*")
+    .replace("KEYWORD", "|".join(KEYWORDS))
+    .replace("WORD", "[A-Za-z0-9_]")
+)

@@ -194,9 +194,7 @@ class Interpreter:
                     if isinstance(request, Finished):
                         self._end = request
                     return request
-            raise ScriptError(
-                f"endless loop: {self._limit} statements without a command or a wait"
-            )
+            raise ScriptError(f"endless loop: {self._limit} statements without a command or a wait")
         except (ScriptError, FileError) as problem:
             self._end = Fault(str(problem), self._line)
             return self._end
@@ -337,7 +335,9 @@ class Interpreter:
                 speed = self._move_speed(s)
                 joint = 1.0 if speed is None else speed
                 if not 0 < joint <= 1:
-                    raise ScriptError(f"joint speed {joint * 100:g} % is not above zero and at most 100 %")
+                    raise ScriptError(
+                        f"joint speed {joint * 100:g} % is not above zero and at most 100 %"
+                    )
                 if target is None:
                     return commands.MoveHome(joint)
                 return commands.MoveJoint(self._pose(target), joint)

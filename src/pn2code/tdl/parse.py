@@ -1,7 +1,7 @@
 """Text of a script -> syntax tree, or diagnostics with line and caret.
 
-    parse(SourceText("program p begin wait 2.5 s end program", Origin("p.tdl", 1, 1)), d)
-    -> Program("p", (), (), (WaitTime(Quantity(2.5, "s")),))
+parse(SourceText("program p begin wait 2.5 s end program", Origin("p.tdl", 1, 1)), d)
+-> Program("p", (), (), (WaitTime(Quantity(2.5, "s")),))
 """
 
 from __future__ import annotations
@@ -51,7 +51,11 @@ def parse(source: SourceText, d: Diagnostics) -> t.Program | None:
 @cache
 def _parser() -> Lark:
     return Lark(
-        GRAMMAR, parser="lalr", lexer="contextual", propagate_positions=True, maybe_placeholders=False
+        GRAMMAR,
+        parser="lalr",
+        lexer="contextual",
+        propagate_positions=True,
+        maybe_placeholders=False,
     )
 
 
@@ -71,7 +75,19 @@ _OPERATORS = {
     "OR", "AND", "EQUAL", "NOT_EQUAL", "LESS", "LESS_EQUAL", "GREATER", "GREATER_EQUAL", "PLUS",
     "MINUS", "AMPERSAND", "TIMES", "DIVIDE", "DIV", "MOD", "DOT", "LPAR",
 }  # fmt: skip
-_VALUES = {"INT", "REAL", "QUANTITY", "STRING", "TRUE", "FALSE", "LPAR", "MINUS", "NOT", "IF", "NAME"}
+_VALUES = {
+    "INT",
+    "REAL",
+    "QUANTITY",
+    "STRING",
+    "TRUE",
+    "FALSE",
+    "LPAR",
+    "MINUS",
+    "NOT",
+    "IF",
+    "NAME",
+}
 
 
 def _expected(terminals: set[str]) -> str:
@@ -239,9 +255,7 @@ class _Builder(Transformer[Token, Any]):
                 declarations.extend(item)
             else:
                 declarations.append(item)
-        return t.Program(
-            str(name), tuple(declarations), tuple(procedures), body, self._span(meta)
-        )
+        return t.Program(str(name), tuple(declarations), tuple(procedures), body, self._span(meta))
 
     def file(self, meta: Meta, c: list[Any]) -> t.File:
         direction, name, path, *types = c
@@ -315,9 +329,7 @@ class _Builder(Transformer[Token, Any]):
         return t.WaitUntil(c[0], self._span(meta))
 
     def read(self, meta: Meta, c: list[Token]) -> t.Read:
-        return t.Read(
-            self._target(c[0]), tuple(self._target(x) for x in c[1:]), self._span(meta)
-        )
+        return t.Read(self._target(c[0]), tuple(self._target(x) for x in c[1:]), self._span(meta))
 
     def clear(self, meta: Meta, c: list[Token]) -> t.Clear:
         return t.Clear(self._target(c[0]), self._span(meta))
@@ -337,9 +349,7 @@ class _Builder(Transformer[Token, Any]):
 
     def mark(self, meta: Meta, c: list[Any]) -> t.Mark:
         names = [x for x in c if isinstance(x, Token)]
-        return t.Mark(
-            ".".join(_word(n) for n in names), tuple(c[len(names) :]), self._span(meta)
-        )
+        return t.Mark(".".join(_word(n) for n in names), tuple(c[len(names) :]), self._span(meta))
 
     def binding(self, meta: Meta, c: list[Any]) -> tuple[str, t.Datum]:
         return _word(c[0]), c[1]

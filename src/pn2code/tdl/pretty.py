@@ -31,7 +31,9 @@ def quoted(text: str) -> str:
     """A text in quotes; characters that cannot stand in one become `?`."""
     out = []
     for c in text:
-        out.append({"\\": "\\\\", '"': '\\"', "\n": "\\n", "\t": "\\t"}.get(c) or (c if c != "\r" else "?"))
+        out.append(
+            {"\\": "\\\\", '"': '\\"', "\n": "\\n", "\t": "\\t"}.get(c) or (c if c != "\r" else "?")
+        )
     return f'"{"".join(out)}"'
 
 
@@ -216,6 +218,11 @@ def program(p: t.Program) -> str:
     """The whole script."""
     lines = [f"program {p.name}", *(declaration(x) for x in p.declarations)]
     for procedure in p.procedures:
-        lines += ["", f"procedure {procedure.name}", *statements(procedure.body, INDENT), "end procedure"]
+        lines += [
+            "",
+            f"procedure {procedure.name}",
+            *statements(procedure.body, INDENT),
+            "end procedure",
+        ]
     lines += ["", "begin", *statements(p.body, INDENT), "end program", ""]
     return "\n".join(lines)
