@@ -95,9 +95,8 @@ def diagnose(text: str, values: Mapping[str, str] | None = None) -> Diagnostics:
 
 def load(text: str, values: Mapping[str, str] | None = None) -> tuple[FlatNet | None, Diagnostics]:
     """Flat net or None, and the diagnostics. The file is `<net name>.cpn` in a temporary folder."""
-    from pn2code.net.front import load as load_file
-
     from pn2code.diagnostics import Diagnostics
+    from pn2code.net.front import load as load_file
 
     d = Diagnostics()
     with tempfile.TemporaryDirectory() as folder:

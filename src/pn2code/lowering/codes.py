@@ -33,7 +33,7 @@ UNSUPPORTED_EXPRESSION = register(
     "The expression has a meaning in CPN ML, but there is no C code for it yet; the message says which.",
 )
 UNSUPPORTED_COLSET = register(
-    "unsupported-colour-set",
+    "unsupported-colour-set-role",
     "a colour set that the compiler cannot handle in this role",
     "For example the number of the values of a subset, which is not known at compile time.",
 )
