@@ -23,6 +23,7 @@ from pn2code.cell.partition import Owner, OwnerKind, Partition
 from pn2code.diagnostics import Diagnostics, Note, Origin
 from pn2code.lowering import robot_codes as codes
 from pn2code.lowering import robot_names
+from pn2code.lowering.robot_evaluate import Evaluator
 from pn2code.lowering.robot_guards import covering, exclusive
 from pn2code.lowering.robot_ir import (
     Comment,
@@ -41,7 +42,6 @@ from pn2code.lowering.robot_structure import Branches, Halt, Then, To, Tree, str
 from pn2code.lowering.robot_values import (
     FALSE,
     TRUE,
-    Evaluator,
     Shape,
     UnsupportedError,
     Value,

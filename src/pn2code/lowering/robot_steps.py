@@ -19,6 +19,7 @@ from dataclasses import dataclass, field
 from pn2code.cell.config import Primitive
 from pn2code.diagnostics import Span
 from pn2code.lowering import robot_codes as codes
+from pn2code.lowering.robot_evaluate import Evaluator
 from pn2code.lowering.robot_ir import Chain, Comment, Element, Line, Node
 from pn2code.lowering.robot_machine import Machine, Outcome, Step
 from pn2code.lowering.robot_names import Names
@@ -27,7 +28,6 @@ from pn2code.lowering.robot_values import (
     TRUE,
     Closure,
     Env,
-    Evaluator,
     Fields,
     Leaf,
     Rec,

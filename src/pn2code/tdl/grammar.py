@@ -119,9 +119,7 @@ COMMENT: /--[^\n]*/
 WHITE: /[ \t\r\n]+/
 %ignore COMMENT
 %ignore WHITE
-"""
-)
-    .replace("NAME_PATTERN", "(?!(?:KEYWORD)(?!WORD))[A-Za-z_]WORD*")
+""".replace("NAME_PATTERN", "(?!(?:KEYWORD)(?!WORD))[A-Za-z_]WORD*")
     .replace("KEYWORD", "|".join(KEYWORDS))
     .replace("WORD", "[A-Za-z0-9_]")
 )
