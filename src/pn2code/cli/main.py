@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 import os
+import signal
 import sys
+from types import FrameType
 from typing import Annotated, NoReturn
 
-import click
 import typer
 
 import pn2code
@@ -47,26 +48,34 @@ def options(
         os.environ["PN2CODE_DEBUG"] = "1"
 
 
+class Interrupted(BaseException):  # noqa: N818
+    """SIGINT; not KeyboardInterrupt, which the command-line library turns into exit code 1."""
+
+
+def _interrupt(_signal: int, _frame: FrameType | None) -> NoReturn:
+    raise Interrupted
+
+
 def main() -> NoReturn:
     """Entry point: runs a verb, turns bugs into a readable message and exit code 70."""
+    signal.signal(signal.SIGINT, _interrupt)
     try:
-        status = app(standalone_mode=False)
-    except click.ClickException as problem:
-        problem.show()
-        sys.exit(Exit.USAGE)
-    except (click.Abort, KeyboardInterrupt):
+        app()
+    except Interrupted:
         typer.echo("pn2code: interrupted", err=True)
         sys.exit(130)
     except BrokenPipeError:
-        sys.stdout = None
+        # The reader of our output has gone (`pn2code ... | head`): nothing more can be said.
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
         sys.exit(Exit.OK)
     except Exception as problem:
         if os.environ.get("PN2CODE_DEBUG"):
             raise
         typer.echo(
             f"pn2code: internal error: {type(problem).__name__}: {problem}\n"
-            "This is a bug in pn2code, not in your net. `pn2code --debug ...` shows where it happened.",
+            "This is a bug in pn2code, not in your net. "
+            "`pn2code --debug ...` shows where it happened.",
             err=True,
         )
         sys.exit(Exit.INTERNAL)
-    sys.exit(status if isinstance(status, int) else Exit.OK)
+    sys.exit(Exit.OK)

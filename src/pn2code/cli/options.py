@@ -9,7 +9,7 @@ from typing import Annotated, NoReturn
 
 import typer
 
-from pn2code.diagnostics import Diagnostic, Diagnostics, render
+from pn2code.diagnostics import Diagnostic, Diagnostics, Severity, render
 
 
 class Exit:
@@ -40,7 +40,10 @@ FormatOption = Annotated[
 
 
 def print_diagnostics(items: Iterable[Diagnostic], form: Format = Format.FULL) -> None:
-    """Print them to stderr, in colour on a terminal."""
+    """Print them to stderr, in colour on a terminal. Notes are for programs and for when something is wrong."""
+    items = list(items)
+    if form is Format.FULL and not any(i.severity is Severity.ERROR for i in items):
+        items = [i for i in items if i.severity is not Severity.NOTE]
     text = render.report(
         items, form.value, render.coloured if sys.stderr.isatty() else render.plain
     )

@@ -87,6 +87,18 @@ class Diagnostics:
         """Report a warning at an origin or span."""
         self._add(Severity.WARNING, code, message, at, label, notes, hint)
 
+    def note(
+        self,
+        code: str,
+        message: str,
+        at: Origin | Span,
+        *,
+        notes: Iterable[Note | str] = (),
+        hint: str = "",
+    ) -> None:
+        """Mention something that is right, but worth knowing when looking for a mistake."""
+        self._add(Severity.NOTE, code, message, at, "", notes, hint)
+
     def _add(
         self,
         severity: Severity,

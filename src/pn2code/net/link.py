@@ -204,7 +204,7 @@ class _Linker:
             pairs[port] = socket
         for port, place in ports.items():
             if port not in pairs:
-                self.d.warning(
+                self.d.note(
                     PORT_UNASSIGNED,
                     f"port `{place.name}` of page `{target.name}` has no socket at `{t.name}`",
                     raw.origin,
