@@ -15,7 +15,7 @@ ALLOWED: dict[str, set[str]] = {
     "net": {"diagnostics", "ml", "reading"},
     "semantics": {"diagnostics", "ml", "net"},
     "cell": {"diagnostics", "ml", "net"},
-    "lowering": {"diagnostics", "ml", "net", "cell"},
+    "lowering": {"diagnostics", "ml", "net", "cell", "tdl"},
     "robot": {"diagnostics"},
     "tdl": {"diagnostics", "robot"},
     "emission": {"diagnostics", "ml", "net", "cell", "lowering", "resources", "tdl"},

@@ -16,7 +16,7 @@ from collections.abc import Callable
 from dataclasses import astuple, dataclass
 from typing import Any, Final, Protocol, assert_never, cast
 
-from pn2code.robot import commands
+import pn2code.robot.commands as commands
 from pn2code.tdl import flow, paths
 from pn2code.tdl import tree as t
 from pn2code.tdl.check import CheckedProgram
