@@ -48,7 +48,7 @@ def options(
         os.environ["PN2CODE_DEBUG"] = "1"
 
 
-class Interrupted(BaseException):  # noqa: N818
+class Interrupted(BaseException):
     """SIGINT; not KeyboardInterrupt, which the command-line library turns into exit code 1."""
 
 

@@ -62,13 +62,11 @@ def run(
     d = Diagnostics()
     console = Console(highlight=False)
     options = RunOptions(out, layout, input_file, backend.value, parse_values(settings), gui)
-    album = (
-        Album(out, video=video) if backend is BackendChoice.BULLET and (pictures or video) else None
-    )
+    album = Album(out, pictures=pictures, video=video)
     with Progress(console) as progress:
         progress.say("generating and building")
         observers: list[Observer] = [progress]
-        if album is not None:
+        if backend is BackendChoice.BULLET:
             observers.append(album)
         try:
             result = run_cell(cell, options, d, observers)
@@ -80,8 +78,6 @@ def run(
             from pn2code.report import charts  # matplotlib takes half a second to load
 
             charts.draw(result.record, tuple(r.name for r in result.prepared.config.robots), out)
-        if album is not None:
-            album.close()
     if result is None:
         stop(d, form)
     print_diagnostics(d.sorted(), form)

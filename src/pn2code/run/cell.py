@@ -215,8 +215,9 @@ def _start(
         supervisor_trace=trace,
         supervisor_depth=partition.owners[0].instance.count("/") + 1,
         transition_ids={t.name: t.id for t in partition.net.transitions},
+        cell=cell,
+        backend=backend,
         monitor=Monitor(cell, backend),
-        sample_s=cell.motion.sample,
         observers=observers,
     )
     for name, side in sides.items():

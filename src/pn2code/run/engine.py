@@ -23,6 +23,7 @@ from typing import Any, Protocol
 import numpy as np
 
 from pn2code.emission.output import Block, OutputFile
+from pn2code.robot.backend import Backend
 from pn2code.robot.commands import (
     Command,
     Measure,
@@ -36,6 +37,7 @@ from pn2code.robot.commands import (
 from pn2code.robot.executor import Motion, RobotExecutor
 from pn2code.robot.monitor import Monitor
 from pn2code.robot.motion import MotionFault
+from pn2code.robot.scene import RobotCell
 from pn2code.robot.transforms import Array, pose_of
 from pn2code.run.accuracy import distance, distance_to_line
 from pn2code.run.files import RobotFiles
@@ -62,11 +64,17 @@ MAX_ROUNDS = 10_000
 class Observer(Protocol):
     """Who watches a run: the progress line, the camera."""
 
+    def begun(self, engine: Engine) -> None:
+        """The arms stand at HOME, nothing has happened yet."""
+
     def advanced(self, engine: Engine) -> None:
         """Time has moved to `engine.now`; the commands that end now are finished."""
 
     def sampled(self, engine: Engine, t: float, joints: Mapping[str, Array]) -> None:
         """The arms stood like this (rad) at time t."""
+
+    def ended(self, engine: Engine) -> None:
+        """The run is over; `engine.record` has the verdict."""
 
 
 @dataclass(slots=True)
@@ -94,6 +102,11 @@ class RobotRunner:
         inside = [b for b in self.blocks if b.kind == "transition" and b.first <= line <= b.last]
         return min(inside, key=lambda b: b.last - b.first).element if inside else ""
 
+    def tool_action(self) -> str:
+        """The tool action under way, "" if none."""
+        command = self.motion.command if self.motion else None
+        return command.action if isinstance(command, ToolAction) else ""
+
     def joints(self, t: float) -> Array:
         """Joint position (rad) at a time not before the last event."""
         return self.executor.q if self.motion is None else self.motion.q(t)
@@ -114,8 +127,8 @@ class Engine:
         "Cell.Supervisor.Approach.Send".
         robots: in the order of cell.toml.
         transition_ids: XML id of each transition by name.
+        cell, backend: the arms and what shows them.
         monitor: what is checked at each sample.
-        sample_s: spacing of the samples.
     """
 
     record: RunRecord
@@ -123,8 +136,9 @@ class Engine:
     supervisor_trace: GrowingTrace
     supervisor_depth: int
     transition_ids: Mapping[str, str]
+    cell: RobotCell
+    backend: Backend
     monitor: Monitor
-    sample_s: float
     robots: list[RobotRunner] = field(default_factory=list)
     observers: list[Observer] = field(default_factory=list)
     now: float = 0.0
@@ -152,7 +166,7 @@ class Engine:
     def run(self) -> RunRecord:
         """Until the supervisor has finished and the robots rest; or until something stops the cell."""
         try:
-            self._sample(0.0)
+            self._begin_run()
             while True:
                 self._settle()
                 if self._finished and all(r.motion is None for r in self.robots):
@@ -163,6 +177,11 @@ class Engine:
             self._stop(str(why))
         return self._close()
 
+    def _begin_run(self) -> None:
+        self._sample(0.0)
+        for observer in self.observers:
+            observer.begun(self)
+
     def _close(self) -> RunRecord:
         """The last lines of the record."""
         self.record.time = self.now
@@ -171,6 +190,8 @@ class Engine:
             end["reason"] = self.record.reason
         self.record.events.append(end)
         self._close_activity()
+        for observer in self.observers:
+            observer.ended(self)
         return self.record
 
     # --- one instant -------------------------------------------------------------------------
@@ -244,13 +265,13 @@ class Engine:
             case AwaitFile():
                 robot.waiting = request
             case Execute(command=command, line=line):
-                self._begin(robot, command, line)
+                self._begin_command(robot, command, line)
             case Finished():
                 robot.finished = True
             case Fault(message=message, line=line):
                 raise CellStoppedError(f"{robot.script}:{line}: {robot.name}: {message}")
 
-    def _begin(self, robot: RobotRunner, command: Command, line: int) -> None:
+    def _begin_command(self, robot: RobotRunner, command: Command, line: int) -> None:
         try:
             motion = robot.executor.begin(command, self.now)
         except MotionFault as fault:
@@ -294,7 +315,7 @@ class Engine:
 
     def _advance(self, target: float) -> None:
         """Moves time to `target`, sampling the arms on the way, and ends the commands that end then."""
-        while (t := (self._samples + 1) * self.sample_s) < target - 1e-12:
+        while (t := (self._samples + 1) * self.cell.motion.sample) < target - 1e-12:
             self._samples += 1
             if t > self.now + 1e-12:
                 self._sample(t)
@@ -356,11 +377,11 @@ class Engine:
     def _sample(self, t: float) -> None:
         """Looks at the arms at time t; a collision, a violated limit or a singularity stops the cell."""
         joints = {r.name: r.joints(t) for r in self.robots}
-        linear = {r.name for r in self.robots if r.motion is not None and r.motion.kind == "lin"}
-        verdict = self.monitor.check(t, joints, self.activity, linear)
+        kinds = {r.name: r.motion.kind for r in self.robots if r.motion is not None}
+        verdict = self.monitor.check(t, joints, self.activity, kinds)
         self.record.sample(verdict)
         for robot, seen in zip(self.robots, verdict.samples, strict=True):
-            if robot.name in linear and robot.motion is not None:
+            if robot.motion is not None and robot.motion.kind == "lin":
                 off = distance_to_line(seen.pose, robot.motion.start, robot.motion.target)
                 self.record.note_error("off the line on linear moves", off)
         for observer in self.observers:

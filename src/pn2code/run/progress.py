@@ -41,6 +41,10 @@ class Progress:
         if self._status is not None:
             self._status.update(text)
 
+    def begun(self, engine: Engine) -> None:
+        """The run begins."""
+        self.say("running")
+
     def advanced(self, engine: Engine) -> None:
         """Shows where the cell is."""
         if engine.activity != self._activity:
@@ -55,3 +59,6 @@ class Progress:
 
     def sampled(self, engine: Engine, t: float, joints: Mapping[str, Array]) -> None:
         """Nothing: samples are too many for a terminal."""
+
+    def ended(self, engine: Engine) -> None:
+        """Nothing: the summary says it."""

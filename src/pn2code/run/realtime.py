@@ -1,6 +1,7 @@
 """The same cell on the wall clock: the supervisor runs by itself, woken by the files, as on a real cell.
 
-Messages, scripts, arms and checks are those of the lock-step engine; only time is real. A file that cannot be taken is given
+Messages, scripts, arms and checks are those of the lock-step engine; only time is real. A file that
+cannot be taken is given
 the grace of the protocol (I6), a dead or stopped supervisor stops the robots (I8, I9).
 """
 
@@ -44,7 +45,7 @@ class RealtimeEngine(Engine):
         """Until the supervisor has finished and the robots rest; or until something stops the cell."""
         start = time.perf_counter()
         try:
-            self._sample(0.0)
+            self._begin_run()
             while True:
                 self.now = time.perf_counter() - start
                 self._end_commands()
@@ -52,7 +53,7 @@ class RealtimeEngine(Engine):
                 if self._look_at_supervisor() and all(r.motion is None for r in self.robots):
                     self.record.verdict = "finished"
                     break
-                if self.now - self._sampled >= self.sample_s:
+                if self.now - self._sampled >= self.cell.motion.sample:
                     self._sampled = self.now
                     self._sample(self.now)
                     for observer in self.observers:
