@@ -1,0 +1,124 @@
+"""Building a generated folder with `make`, and telling of a C compiler's error where it belongs: at the net element.
+
+program = build(folder, files, d)       # folder/supervisor, or None and diagnostics
+"""
+
+from __future__ import annotations
+
+import os
+import re
+import shutil
+import subprocess
+from collections.abc import Iterable
+from pathlib import Path
+
+from pn2code.diagnostics import Diagnostics, Origin
+from pn2code.diagnostics.codes import register
+from pn2code.emission.output import Block, OutputFile
+
+TOOL_MISSING = register(
+    "tool-missing",
+    "a C compiler or make is missing",
+    "Generated C is built by `make` and a C11 compiler (gcc or clang). On Debian: apt-get install gcc libc6-dev make. "
+    "Another compiler is chosen by the environment variable CC.",
+)
+C_ERROR = register(
+    "c-error",
+    "the C compiler refused generated code",
+    "This is a bug in pn2code, not in the net: generated code compiles without a warning. The message names the net element "
+    "whose code is refused; the file build.log in the output folder has everything the compiler said.",
+)
+BUILD_FAILED = register(
+    "build-failed",
+    "`make` failed",
+    "The file build.log in the output folder has everything that make and the compiler said. A full disk is a usual reason.",
+)
+
+LOG = "build.log"
+_COMPLAINT = re.compile(r"^([\w./-]+):(\d+):(\d+): (?:fatal )?error: (.*)$", re.MULTILINE)
+_MOST = 10
+
+
+def find_compiler() -> str | None:
+    """The C compiler: `CC`, or the first of cc, gcc, clang that there is."""
+    for name in (os.environ.get("CC", ""), "cc", "gcc", "clang"):
+        if name and shutil.which(name.split()[0]):
+            return name
+    return None
+
+
+def build(
+    folder: Path, files: Iterable[OutputFile], d: Diagnostics, *, target: str = "supervisor"
+) -> Path | None:
+    """Builds a target of the folder's Makefile.
+
+    Args:
+        folder: where the files were written.
+        files: the generated files, for their blocks.
+        target: "supervisor" or "simulate".
+
+    Returns:
+        The program, or None after a diagnostic.
+    """
+    compiler, make = find_compiler(), shutil.which("make")
+    if compiler is None or make is None:
+        missing = "a C compiler" if compiler is None else "make"
+        d.error(
+            TOOL_MISSING,
+            f"{missing} is not installed",
+            Origin(str(folder)),
+            hint="on Debian or Ubuntu type: sudo apt-get install gcc libc6-dev make",
+        )
+        return None
+    done = subprocess.run(
+        [make, "-s", "-C", str(folder), f"-j{os.cpu_count() or 1}", f"CC={compiler}", target],
+        capture_output=True,
+        text=True,
+        errors="replace",
+        check=False,
+        env={**os.environ, "LC_ALL": "C"},
+    )
+    output = done.stdout + done.stderr
+    if done.returncode == 0:
+        (folder / LOG).unlink(missing_ok=True)
+        return folder / target
+    log = folder / LOG
+    try:
+        log.write_text(output, encoding="utf-8")
+        where = f"everything it said is in {log}"
+    except OSError as problem:
+        where = f"the log could not be written: {problem.strerror}"
+    _report(folder, output, tuple(files), where, d)
+    return None
+
+
+def _report(
+    folder: Path, output: str, files: tuple[OutputFile, ...], where: str, d: Diagnostics
+) -> None:
+    """One diagnostic for each complaint about generated code; one for the build if there is none."""
+    blocks = {f.path: f.blocks for f in files}
+    complaints = _COMPLAINT.findall(output)[:_MOST]
+    for file, line, column, message in complaints:
+        path = file.removeprefix("./")
+        block = _block(blocks.get(path, ()), int(line))
+        note = f"{folder / path}:{line}:{column}"
+        if block is None:
+            d.error(
+                C_ERROR, f"{path}: {message}", Origin(str(folder / path), int(line)), notes=[where]
+            )
+        else:
+            d.error(
+                C_ERROR,
+                f"the C code of {block.kind} `{block.element}` is refused: {message}",
+                block.origin,
+                notes=[note, where],
+                hint="this is a bug in pn2code; please report it with the net",
+            )
+    if not complaints:
+        last = [line for line in output.splitlines() if line.strip()][-3:]
+        d.error(BUILD_FAILED, "`make` failed", Origin(str(folder)), notes=[*last, where])
+
+
+def _block(blocks: Iterable[Block], line: int) -> Block | None:
+    inside = [b for b in blocks if b.first <= line <= b.last]
+    return min(inside, key=lambda b: b.last - b.first, default=None)
