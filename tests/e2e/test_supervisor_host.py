@@ -362,6 +362,24 @@ def test_i4_the_answer_is_emptied_before_the_next_command_is_there(
         assert (shared / "answer.robcad").read_text() == "0\n"
 
 
+def test_i4_i5_order_of_publication(
+    start: Callable[..., SupervisorProcess], robot: SharedDirectory, shared: Path
+) -> None:
+    """The last data were not taken, so the next cannot be written: the answer is emptied by then, no flag is there."""
+    supervisor = start(lockstep=True)
+    assert robot.await_supervisor(DEADLINE_S)
+    supervisor.step(0.0)
+    robot.read("command")
+    robot.clear("command")
+    robot.write("answer", (1,))
+    stopped = supervisor.step(1.0).stopped
+    assert stopped is not None
+    assert "pose1.robcad still holds" in stopped
+    assert (shared / "answer.robcad").read_text() == "0\n"
+    assert (shared / "command.robcad").read_text() == "0\n"
+    ended(supervisor, 4)
+
+
 # --- I6 ---
 
 BAD = {
@@ -480,6 +498,7 @@ def test_i7_what_an_earlier_run_left_is_reported_and_discarded(
     supervisor = start()
     assert robot.await_supervisor(DEADLINE_S)
     assert robot.session != "99999999"
+    assert not (shared / ".answer.robcad.robot1.tmp").exists()
     assert [obey(robot) for _ in range(3)][0] == (0.5, 7.0)
     end = ended(supervisor, 0, "answer.robcad held", "discarded")
     assert end.stderr.count("discarded") == 1
