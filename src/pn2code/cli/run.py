@@ -52,6 +52,10 @@ def run(
     ] = True,
     video: Annotated[bool, typer.Option("--video", help="Also record cell.mp4.")] = False,
     gui: Annotated[bool, typer.Option("--gui", help="Show PyBullet's window.")] = False,
+    realtime: Annotated[
+        bool,
+        typer.Option("--realtime", help="On the wall clock, the supervisor woken by its files."),
+    ] = False,
     settings: SetOption = [],  # noqa: B006 - typer reads the default only
     form: FormatOption = Format.FULL,
 ) -> None:
@@ -61,7 +65,9 @@ def run(
     """
     d = Diagnostics()
     console = Console(highlight=False)
-    options = RunOptions(out, layout, input_file, backend.value, parse_values(settings), gui)
+    options = RunOptions(
+        out, layout, input_file, backend.value, parse_values(settings), gui, realtime
+    )
     album = Album(out, pictures=pictures, video=video)
     with Progress(console) as progress:
         progress.say("generating and building")

@@ -33,6 +33,7 @@ from pn2code.robot.executor import RobotExecutor
 from pn2code.robot.monitor import Monitor
 from pn2code.run.engine import Engine, Observer
 from pn2code.run.files import RobotFiles
+from pn2code.run.realtime import Patience, RealtimeEngine
 from pn2code.run.record import RunRecord, RunWarning
 from pn2code.run.supervisor import SupervisorProcess
 from pn2code.run.trace import GrowingTrace, trace_text
@@ -74,6 +75,7 @@ class RunOptions:
         backend: "bullet" or "fake".
         values: `val`s to replace.
         gui: PyBullet's window.
+        realtime: on the wall clock instead of in lock-step.
     """
 
     out: Path
@@ -82,6 +84,7 @@ class RunOptions:
     backend: BackendName = "bullet"
     values: dict[str, str] = field(default_factory=dict)
     gui: bool = False
+    realtime: bool = False
 
 
 @dataclass(frozen=True, slots=True)
@@ -187,7 +190,9 @@ def _start(
     shared = stack.enter_context(shared_directory(partition.net.name))
     trace_path = options.out / "supervisor.trace.jsonl"
     supervisor = stack.enter_context(
-        SupervisorProcess(prepared.program, shared, inputs, trace_path, lockstep=True)
+        SupervisorProcess(
+            prepared.program, shared, inputs, trace_path, lockstep=not options.realtime
+        )
     )
     cell = prepared.robot_cell
     backend = open_backend(options.backend, cell, gui=options.gui)
@@ -209,21 +214,23 @@ def _start(
             return None
     trace = GrowingTrace(trace_path)
     stack.callback(trace.close)
-    engine = Engine(
+    kind = RealtimeEngine if options.realtime else Engine
+    engine = kind(
         record=RunRecord(partition.net.name, prepared.config.layout, options.backend),
         supervisor=supervisor,
         supervisor_trace=trace,
         supervisor_depth=partition.owners[0].instance.count("/") + 1,
-        transition_ids={t.name: t.id for t in partition.net.transitions},
         cell=cell,
         backend=backend,
         monitor=Monitor(cell, backend),
         observers=observers,
+        partition=partition,
     )
     for name, side in sides.items():
         script, program = prepared.scripts[name]
         executor = RobotExecutor(cell.robot(name), cell.motion)
-        engine.add_robot(name, script, program, RobotFiles(side), executor)
+        files = RobotFiles(side, Patience() if options.realtime else None)
+        engine.add_robot(name, script, program, files, executor)
     return engine
 
 

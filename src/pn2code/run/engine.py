@@ -22,6 +22,7 @@ from typing import Any, Protocol
 
 import numpy as np
 
+from pn2code.cell.partition import Partition
 from pn2code.emission.output import Block, OutputFile
 from pn2code.robot.backend import Backend
 from pn2code.robot.commands import (
@@ -126,7 +127,7 @@ class Engine:
         supervisor_depth: how many parts of a transition's name stand before the activity: 2 for
         "Cell.Supervisor.Approach.Send".
         robots: in the order of cell.toml.
-        transition_ids: XML id of each transition by name.
+        partition: the net and its owners.
         cell, backend: the arms and what shows them.
         monitor: what is checked at each sample.
     """
@@ -135,7 +136,7 @@ class Engine:
     supervisor: SupervisorProcess
     supervisor_trace: GrowingTrace
     supervisor_depth: int
-    transition_ids: Mapping[str, str]
+    partition: Partition
     cell: RobotCell
     backend: Backend
     monitor: Monitor
@@ -148,6 +149,11 @@ class Engine:
     _finished: bool = False
     _activity_start: float = 0.0
     _samples: int = 0
+    _ids: dict[str, str] = field(init=False)
+
+    def __post_init__(self) -> None:
+        """The XML id of each transition by name."""
+        self._ids = {t.name: t.id for t in self.partition.net.transitions}
 
     def add_robot(
         self,
@@ -189,7 +195,7 @@ class Engine:
         if self.record.reason:
             end["reason"] = self.record.reason
         self.record.events.append(end)
-        self._close_activity()
+        self._close_activity(self.now)
         for observer in self.observers:
             observer.ended(self)
         return self.record
@@ -224,23 +230,25 @@ class Engine:
     def _supervisor_fired(self) -> None:
         event = self.supervisor_trace.next_occurrence()
         self._occurrence(event)
-        path = event["transition"].split(".")
-        root = self.supervisor_depth
-        activity = path[root] if len(path) > root + 1 else ""
-        if activity and activity != self.activity:
-            self._close_activity()
-            self.activity = activity
-            self._activity_start = self.now
+        self._enter_activity(event, self.now)
 
-    def _close_activity(self) -> None:
+    def _enter_activity(self, event: Mapping[str, Any], t: float) -> None:
+        """The supervisor's pages are its activities: the first firing on another page begins another one."""
+        path = event["transition"].split(".")
+        depth = self.supervisor_depth
+        activity = path[depth] if len(path) > depth + 1 else ""
+        if activity and activity != self.activity:
+            self._close_activity(t)
+            self.activity = activity
+            self._activity_start = t
+
+    def _close_activity(self, t: float) -> None:
         if self.activity:
-            self.record.activities.append(
-                ActivityRecord(self.activity, self._activity_start, self.now)
-            )
+            self.record.activities.append(ActivityRecord(self.activity, self._activity_start, t))
             self.activity = ""
 
     def _occurrence(self, event: dict[str, Any]) -> None:
-        self.record.events.append({"step": next(self._steps), **event})
+        self.record.events.append({**event, "step": next(self._steps)})
 
     def _robot_turn(self, robot: RobotRunner) -> bool:
         """Runs a robot's script as far as it goes; whether it did anything."""
@@ -349,7 +357,7 @@ class Engine:
                         "t": self.now,
                         "transition": name,
                         "binding": binding,
-                        "origin": self.transition_ids.get(name, ""),
+                        "origin": self._ids.get(name, ""),
                     }
                 )
             case MessageConsumed(file=channel, values=values):

@@ -7,11 +7,14 @@ the grace of the protocol (I6), a dead or stopped supervisor stops the robots (I
 
 from __future__ import annotations
 
+import itertools
 import time
 from dataclasses import dataclass, field
+from typing import Any
 
 from pn2code.channels import GRACE_S, LOOK_S, PeerState, Refused
 from pn2code.run.engine import CellStoppedError, Engine
+from pn2code.run.merge import merge
 from pn2code.run.record import RunRecord
 from pn2code.tdl.interpret import FileError
 
@@ -40,6 +43,7 @@ class RealtimeEngine(Engine):
 
     _looked: float = 0.0
     _sampled: float = 0.0
+    _fired: list[dict[str, Any]] = field(default_factory=list)
 
     def run(self) -> RunRecord:
         """Until the supervisor has finished and the robots rest; or until something stops the cell."""
@@ -64,6 +68,23 @@ class RealtimeEngine(Engine):
             self._stop(str(why))
         return self._close()
 
+    def _close(self) -> RunRecord:
+        """Waits for the supervisor's last words, then puts both traces into one order."""
+        self.supervisor.close()
+        self._read_trace()
+        merged = merge(self.partition, (self._fired, self.record.events))
+        occurrences = itertools.count(1)
+        self.record.events = [
+            {**line, "step": next(occurrences)} if "transition" in line else line for line in merged
+        ]
+        return Engine._close(self)
+
+    def _read_trace(self) -> None:
+        for line in self.supervisor_trace.complete_lines():
+            if "transition" in line:
+                self._fired.append(line)
+                self._enter_activity(line, float(line["t"]))
+
     def _end_commands(self) -> None:
         for robot in self.robots:
             if robot.motion is not None and robot.motion.ends <= self.now:
@@ -76,6 +97,7 @@ class RealtimeEngine(Engine):
         if self.now - self._looked < LOOK_S:
             return False
         self._looked = self.now
+        self._read_trace()
         peer = self.robots[0].files.shared.peer()
         if peer.state is PeerState.FINISHED:
             self._finished = True

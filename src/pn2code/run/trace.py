@@ -17,7 +17,6 @@ class GrowingTrace:
     def __init__(self, path: Path) -> None:
         self._path = path
         self._stream = path.open(encoding="utf-8")
-        self._partial = ""
         self.header = self._line()
 
     def next_occurrence(self) -> dict[str, Any]:
@@ -30,6 +29,17 @@ class GrowingTrace:
             line = self._line()
             if "transition" in line:
                 return line
+
+    def complete_lines(self) -> list[dict[str, Any]]:
+        """What has been written since the last call; a line that is not whole yet comes next time."""
+        out: list[dict[str, Any]] = []
+        while True:
+            at = self._stream.tell()
+            if not self._stream.readline().endswith("\n"):
+                self._stream.seek(at)
+                return out
+            self._stream.seek(at)
+            out.append(self._line())
 
     def _line(self) -> dict[str, Any]:
         text = self._stream.readline()

@@ -25,13 +25,14 @@ TOOL_MISSING = register(
 C_ERROR = register(
     "c-error",
     "the C compiler refused generated code",
-    "This is a bug in pn2code, not in the net: generated code compiles without a warning. The message names the net element "
-    "whose code is refused; the file build.log in the output folder has everything the compiler said.",
+    "This is a bug in pn2code, not in the net: generated code compiles without a warning. The message names the net "
+    "element whose code is refused; the file build.log in the output folder has everything the compiler said.",
 )
 BUILD_FAILED = register(
     "build-failed",
     "`make` failed",
-    "The file build.log in the output folder has everything that make and the compiler said. A full disk is a usual reason.",
+    "The file build.log in the output folder has everything that make and the compiler said. A full disk "
+    "is a usual reason.",
 )
 
 LOG = "build.log"
