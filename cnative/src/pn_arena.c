@@ -16,6 +16,11 @@ void pn_arena_init(pn_arena_t *arena, void *memory, size_t size)
 {
     arena->memory = memory;
     arena->size = size / PN_ALIGNMENT * PN_ALIGNMENT;
+    pn_arena_reset(arena);
+}
+
+void pn_arena_reset(pn_arena_t *arena)
+{
     arena->permanent = 0U;
     arena->half = 0U;
     arena->active = 0U;
@@ -51,6 +56,15 @@ void *pn_arena_alloc(pn_ctx_t *cx, size_t size)
         arena->peak = arena->used;
     }
     return at;
+}
+
+const void *pn_arena_copy(pn_ctx_t *cx, const void *value, size_t size)
+{
+    void *copy = pn_arena_alloc(cx, size);
+    if (copy != NULL) {
+        (void)memcpy(copy, value, size);
+    }
+    return copy;
 }
 
 void pn_arena_seal(pn_arena_t *arena)

@@ -185,6 +185,15 @@ void pn_bag_clear(const pn_bag_t *bag, void *marking)
 
 /* --- seen from outside --------------------------------------------------------------------------------------------- */
 
+static void consider(const pn_bag_t *bag, pn_time_t time, pn_time_t now, bool *found, pn_time_t *next)
+{
+    const bool is_later = pn_time_order(bag->is_real_time, time, now) > 0;
+    if (is_later && (!*found || (pn_time_order(bag->is_real_time, time, *next) < 0))) {
+        *found = true;
+        *next = time;
+    }
+}
+
 void pn_bag_next_time(const pn_bag_t *bag, const void *marking, pn_time_t now, bool *found, pn_time_t *next)
 {
     if (!bag->is_timed) {
@@ -192,10 +201,15 @@ void pn_bag_next_time(const pn_bag_t *bag, const void *marking, pn_time_t now, b
     }
     for (uint32_t i = 0U; i < pn_bag_used(bag, marking); i++) {
         const pn_time_t stamp = pn_bag_stamp_of(bag, pn_bag_entry(bag, marking, i));
-        const bool is_later = pn_time_order(bag->is_real_time, stamp, now) > 0;
-        if (is_later && (!*found || (pn_time_order(bag->is_real_time, stamp, *next) < 0))) {
-            *found = true;
-            *next = stamp;
+        consider(bag, stamp, now, found, next);
+        for (uint32_t k = 0U; k < bag->early_count; k++) {
+            pn_time_t earlier = stamp;
+            if (bag->is_real_time) {
+                earlier.real -= bag->early[k].real;
+            } else {
+                earlier.integer -= bag->early[k].integer;
+            }
+            consider(bag, earlier, now, found, next);
         }
     }
 }

@@ -484,6 +484,7 @@ bool pn_scalars_parse(const pn_scalar_t *scalar, uint32_t count, const char *lin
         if (!scalar_parse(&scalar[i], &word, &out->leaf[out->count], out)) {
             return false;
         }
+        out->column_of[out->count] = (uint32_t)word.column;
         out->count++;
         i++;
     }

@@ -3,6 +3,7 @@
  */
 #include "pn/pn_arena.h"
 #include "pn/pn_num.h"
+#include "pn/pn_random.h"
 #include "pn/pn_type.h"
 #include "pn_type_impl.h"
 
@@ -103,7 +104,7 @@ const void *pn_list_reverse(pn_ctx_t *cx, const pn_type_t *type, const void *lis
     return pn_list_reverse_onto(cx, type, list, NULL);
 }
 
-const void *pn_list_nth(pn_ctx_t *cx, const pn_type_t *type, const void *list, int64_t i)
+const void *pn_list_nth_cell(pn_ctx_t *cx, const void *list, int64_t i)
 {
     const void *rest = list;
     for (int64_t k = 0; (k < i) && (rest != NULL); k++) {
@@ -113,25 +114,24 @@ const void *pn_list_nth(pn_ctx_t *cx, const pn_type_t *type, const void *list, i
         pn_raise(cx, PN_ERR_SUBSCRIPT, NULL);
         return NULL;
     }
-    return pn_list_head(type, rest);
+    return rest;
 }
 
-const void *pn_list_first(pn_ctx_t *cx, const pn_type_t *type, const void *list)
+const void *pn_list_first_cell(pn_ctx_t *cx, const void *list)
 {
     if (list == NULL) {
         pn_raise(cx, PN_ERR_EMPTY, NULL);
-        return NULL;
     }
-    return pn_list_head(type, list);
+    return list;
 }
 
-const void *pn_list_last(pn_ctx_t *cx, const pn_type_t *type, const void *list)
+const void *pn_list_last_cell(pn_ctx_t *cx, const void *list)
 {
     const void *last = list;
     for (const void *rest = list; rest != NULL; rest = pn_list_tail(rest)) {
         last = rest;
     }
-    return pn_list_first(cx, type, last);
+    return pn_list_first_cell(cx, last);
 }
 
 const void *pn_list_rest(pn_ctx_t *cx, const void *list)
@@ -174,13 +174,51 @@ const void *pn_list_drop(pn_ctx_t *cx, const void *list, int64_t n)
     return rest;
 }
 
-const void *pn_list_repeat(pn_ctx_t *cx, const pn_type_t *type, int64_t n, const void *value, const void *tail)
+const void *pn_list_copies(pn_ctx_t *cx, const pn_type_t *type, int64_t n, const void *value)
 {
-    const void *result = tail;
+    const void *result = NULL;
     for (int64_t k = 0; (k < n) && pn_ok(cx); k++) {
         result = pn_list_cons(cx, type, value, result);
     }
     return result;
+}
+
+const void *pn_list_concat(pn_ctx_t *cx, const pn_type_t *type, const void *lists)
+{
+    builder_t b = { cx, type, NULL, NULL };
+    for (const void *outer = lists; outer != NULL; outer = pn_list_tail(outer)) {
+        /* A cell is { tail; head; } and the head of the outer one is a pointer: it comes right after the tail. */
+        const void *inner = load_pointer(part(outer, sizeof(void *)));
+        for (const void *rest = inner; (rest != NULL) && pn_ok(cx); rest = pn_list_tail(rest)) {
+            push(&b, pn_list_head(type, rest));
+        }
+    }
+    return finish(&b, NULL);
+}
+
+bool pn_list_has(const pn_type_t *type, const void *list, const void *value)
+{
+    return pn_list_count(type, list, value) > 0;
+}
+
+bool pn_list_contains(const pn_type_t *type, const void *larger, const void *smaller)
+{
+    for (const void *rest = smaller; rest != NULL; rest = pn_list_tail(rest)) {
+        if (!pn_list_has(type, larger, pn_list_head(type, rest))) {
+            return false;
+        }
+    }
+    return true;
+}
+
+bool pn_list_all_true(const void *list)
+{
+    for (const void *rest = list; rest != NULL; rest = pn_list_tail(rest)) {
+        if (!load_bool(part(rest, sizeof(void *)))) {
+            return false;
+        }
+    }
+    return true;
 }
 
 int64_t pn_list_count(const pn_type_t *type, const void *list, const void *value)
@@ -227,6 +265,11 @@ bool pn_ms_contains(const pn_type_t *type, const void *larger, const void *small
     return true;
 }
 
+bool pn_ms_contains_strictly(const pn_type_t *type, const void *larger, const void *smaller)
+{
+    return pn_ms_contains(type, larger, smaller) && (pn_list_length(larger) > pn_list_length(smaller));
+}
+
 bool pn_ms_equal(const pn_type_t *type, const void *a, const void *b)
 {
     return (pn_list_length(a) == pn_list_length(b)) && pn_ms_contains(type, a, b);
@@ -245,13 +288,88 @@ const void *pn_ms_subtract(pn_ctx_t *cx, const pn_type_t *type, const void *a, c
     return result;
 }
 
-const void *pn_list_all(pn_ctx_t *cx, const pn_type_t *type)
+const void *pn_ms_times(pn_ctx_t *cx, const pn_type_t *type, int64_t n, const void *multiset)
 {
     const void *result = NULL;
-    for (uint64_t i = pn_type_size(type->element); (i > 0U) && pn_ok(cx); i--) {
-        void *cell = pn_list_new(cx, type, result);
+    for (int64_t k = 0; (k < n) && pn_ok(cx); k++) {
+        result = pn_list_append(cx, type, multiset, result);
+    }
+    return result;
+}
+
+const void *pn_ms_only_cell(pn_ctx_t *cx, const void *multiset)
+{
+    if ((multiset == NULL) || (pn_list_tail(multiset) != NULL)) {
+        pn_raise(cx, PN_ERR_DOMAIN, "no_singleton");
+        return NULL;
+    }
+    return multiset;
+}
+
+const void *pn_ms_random_cell(pn_ctx_t *cx, const void *multiset)
+{
+    const int64_t length = pn_list_length(multiset);
+    if (length == 0) {
+        pn_raise(cx, PN_ERR_EMPTY, NULL);
+        return NULL;
+    }
+    return pn_list_nth_cell(cx, multiset, pn_random_below(cx, length));
+}
+
+/* --- functions of a colour set ------------------------------------------------------------------------------------- */
+
+static bool is_small(pn_ctx_t *cx, const pn_type_t *type)
+{
+    const uint64_t size = pn_type_size(type);
+    if ((size == 0U) || (size > (uint64_t)PN_INT_MAX)) {
+        pn_raise(cx, PN_ERR_DOMAIN, "CPN'Error");
+        return false;
+    }
+    return true;
+}
+
+int64_t pn_colset_size(pn_ctx_t *cx, const pn_type_t *type)
+{
+    return is_small(cx, type) ? (int64_t)pn_type_size(type) : 0;
+}
+
+int64_t pn_colset_ord(pn_ctx_t *cx, const pn_type_t *type, const void *value)
+{
+    return is_small(cx, type) ? (int64_t)pn_type_position(type, value) : 0;
+}
+
+void pn_colset_col(pn_ctx_t *cx, const pn_type_t *type, void *value, int64_t position)
+{
+    (void)memset(value, 0, type->size);
+    if (is_small(cx, type)) {
+        if ((position < 0) || (position >= (int64_t)pn_type_size(type))) {
+            pn_raise(cx, PN_ERR_DOMAIN, "CPN'Error");
+        } else {
+            pn_type_value(type, (uint64_t)position, value);
+        }
+    }
+}
+
+void pn_colset_ran(pn_ctx_t *cx, const pn_type_t *type, void *value)
+{
+    pn_colset_col(cx, type, value, pn_random_below(cx, pn_colset_size(cx, type)));
+}
+
+void pn_colset_base(pn_ctx_t *cx, const pn_type_t *type, void *value)
+{
+    (void)memset(value, 0, type->size);
+    if (pn_type_size(type) > 0U) {
+        pn_colset_col(cx, type, value, 0);
+    }
+}
+
+const void *pn_colset_all(pn_ctx_t *cx, const pn_type_t *type, const pn_type_t *list)
+{
+    const void *result = NULL;
+    for (int64_t i = pn_colset_size(cx, type); (i > 0) && pn_ok(cx); i--) {
+        void *cell = pn_list_new(cx, list, result);
         if (cell != NULL) {
-            pn_type_value(type->element, i - 1U, pn_list_slot(type, cell));
+            pn_type_value(type, (uint64_t)(i - 1), pn_list_slot(list, cell));
             result = cell;
         }
     }

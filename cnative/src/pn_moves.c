@@ -44,13 +44,24 @@ static uint32_t tokens(pn_ctx_t *cx, int64_t count)
     return (count > 0) ? (uint32_t)count : 0U;
 }
 
+/* The caller's value may live in a block that ends before the moves are done. */
+static void *copy_of(pn_ctx_t *cx, const pn_bag_t *bag, const void *value)
+{
+    void *copy = pn_arena_alloc(cx, bag->type->size);
+    if (copy != NULL) {
+        (void)memcpy(copy, value, bag->type->size);
+    }
+    return copy;
+}
+
 void pn_moves_take(pn_moves_t *moves, const pn_bag_t *bag, const void *value, int64_t count, pn_time_t limit)
 {
     const uint32_t n = tokens(moves->cx, count);
+    const void *wanted = (n > 0U) ? copy_of(moves->cx, bag, value) : NULL;
     /* Timed tokens are taken one by one, since they may have different stamps. */
     const uint32_t step = bag->is_timed ? 1U : n;
     for (uint32_t done = 0U; (done < n) && pn_ok(moves->cx); done += step) {
-        add(moves, PN_MOVE_TAKE, bag, value, step, limit);
+        add(moves, PN_MOVE_TAKE, bag, wanted, step, limit);
     }
 }
 
@@ -68,20 +79,16 @@ void pn_moves_put(pn_moves_t *moves, const pn_bag_t *bag, const void *value, int
     if ((n == 0U) || !pn_ok(cx)) {
         return;
     }
-    const void *stored = value;
+    void *stored = copy_of(cx, bag, value);
+    if (stored == NULL) {
+        return;
+    }
     const char *origin = cx->origin;
     cx->origin = bag->origin;
-    if (bag->type->is_narrow) {
-        void *copy = pn_arena_alloc(cx, bag->type->size);
-        if (copy != NULL) {
-            (void)memcpy(copy, value, bag->type->size);
-            pn_narrow(cx, bag->type, copy);
-            stored = copy;
-        }
-    }
     if (!pn_is_legal(cx, bag->type, stored)) {
         pn_raise(cx, PN_ERR_COLOUR, NULL);
     }
+    pn_narrow(cx, bag->type, stored);
     cx->origin = origin;
     add(moves, PN_MOVE_PUT, bag, stored, n, stamp);
 }

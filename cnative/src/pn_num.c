@@ -39,6 +39,42 @@ void pn_raise(pn_ctx_t *cx, pn_error_t error, const char *name)
     }
 }
 
+bool pn_is_exception(const pn_ctx_t *cx)
+{
+    switch (cx->error) {
+    case PN_ERR_OVERFLOW:
+    case PN_ERR_DIV:
+    case PN_ERR_MATCH:
+    case PN_ERR_BIND:
+    case PN_ERR_SUBSCRIPT:
+    case PN_ERR_EMPTY:
+    case PN_ERR_DOMAIN:
+    case PN_ERR_SUBTRACT:
+    case PN_ERR_RAISED:
+        return true;
+    case PN_OK:
+    case PN_ERR_COLOUR:
+    case PN_ERR_CAPACITY:
+    case PN_ERR_MEMORY:
+    case PN_ERR_DEPTH:
+    case PN_ERR_INTERNAL:
+    default:
+        return false;
+    }
+}
+
+bool pn_is_raised(const pn_ctx_t *cx, const char *name)
+{
+    return pn_is_exception(cx) && (strcmp(cx->error_name, name) == 0);
+}
+
+void pn_clear_error(pn_ctx_t *cx)
+{
+    cx->error = PN_OK;
+    cx->error_name = "";
+    cx->error_origin = "";
+}
+
 /* --- integers ------------------------------------------------------------------------------------------------------ */
 
 int64_t pn_int_checked(pn_ctx_t *cx, int64_t value)
@@ -229,6 +265,16 @@ int64_t pn_real_sign(pn_ctx_t *cx, double x)
         pn_raise(cx, PN_ERR_DOMAIN, NULL);
     }
     return (x > 0.0) ? 1 : ((x < 0.0) ? -1 : 0);
+}
+
+bool pn_real_is_nan(double x)
+{
+    return isnan(x) != 0;
+}
+
+bool pn_real_is_finite(double x)
+{
+    return isfinite(x) != 0;
 }
 
 int pn_real_order(double a, double b)

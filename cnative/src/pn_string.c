@@ -93,16 +93,21 @@ pn_string_t pn_string_of_char(pn_ctx_t *cx, uint8_t c)
 
 bool pn_string_is_prefix(pn_string_t part, pn_string_t s)
 {
-    return (part.length <= s.length) && (memcmp(part.bytes, s.bytes, part.length) == 0);
+    return (part.length == 0U)
+           || ((part.length <= s.length) && (memcmp(part.bytes, s.bytes, part.length) == 0));
 }
 
 bool pn_string_is_suffix(pn_string_t part, pn_string_t s)
 {
-    return (part.length <= s.length) && (memcmp(part.bytes, &s.bytes[s.length - part.length], part.length) == 0);
+    return (part.length == 0U)
+           || ((part.length <= s.length) && (memcmp(part.bytes, &s.bytes[s.length - part.length], part.length) == 0));
 }
 
 bool pn_string_is_substring(pn_string_t part, pn_string_t s)
 {
+    if (part.length == 0U) {
+        return true;
+    }
     for (uint32_t at = 0U; (at + part.length) <= s.length; at++) {
         if (memcmp(part.bytes, &s.bytes[at], part.length) == 0) {
             return true;
@@ -118,6 +123,53 @@ uint8_t pn_char_of_int(pn_ctx_t *cx, int64_t code)
         return 0U;
     }
     return (uint8_t)code;
+}
+
+bool pn_char_is_digit(uint8_t c)
+{
+    return (c >= (uint8_t)'0') && (c <= (uint8_t)'9');
+}
+
+bool pn_char_is_upper(uint8_t c)
+{
+    return (c >= (uint8_t)'A') && (c <= (uint8_t)'Z');
+}
+
+bool pn_char_is_lower(uint8_t c)
+{
+    return (c >= (uint8_t)'a') && (c <= (uint8_t)'z');
+}
+
+bool pn_char_is_alpha(uint8_t c)
+{
+    return pn_char_is_upper(c) || pn_char_is_lower(c);
+}
+
+bool pn_char_is_alphanum(uint8_t c)
+{
+    return pn_char_is_alpha(c) || pn_char_is_digit(c);
+}
+
+bool pn_char_is_space(uint8_t c)
+{
+    return (c == (uint8_t)' ') || ((c >= 9U) && (c <= 13U));
+}
+
+uint8_t pn_char_to_upper(uint8_t c)
+{
+    return pn_char_is_lower(c) ? (uint8_t)(c - 32U) : c;
+}
+
+uint8_t pn_char_to_lower(uint8_t c)
+{
+    return pn_char_is_upper(c) ? (uint8_t)(c + 32U) : c;
+}
+
+void pn_print(pn_ctx_t *cx, pn_string_t s)
+{
+    if (pn_ok(cx)) {
+        (void)fwrite(s.bytes, 1U, s.length, stderr);
+    }
 }
 
 size_t pn_int_sml(char *out, size_t capacity, int64_t value)

@@ -32,11 +32,17 @@ typedef struct pn_arena {
 /* `memory` is aligned as max_align_t and lives as long as the arena. */
 void pn_arena_init(pn_arena_t *arena, void *memory, size_t size);
 
+/* Forgets everything, also what is permanent. */
+void pn_arena_reset(pn_arena_t *arena);
+
 /* A fresh evaluation context: no error, depth 0, model time 0. Any seed will do. */
 void pn_ctx_init(pn_ctx_t *cx, pn_arena_t *arena, uint64_t seed);
 
 /* `size` bytes, aligned as max_align_t, or NULL with PN_ERR_MEMORY set. */
 void *pn_arena_alloc(pn_ctx_t *cx, size_t size);
+
+/* A copy of a value in the arena; NULL with PN_ERR_MEMORY set. */
+const void *pn_arena_copy(pn_ctx_t *cx, const void *value, size_t size);
 
 /* Makes what has been allocated permanent and divides the rest into halves. Once, by pn_net_t.init. */
 void pn_arena_seal(pn_arena_t *arena);

@@ -25,7 +25,18 @@ typedef struct pn_bag {
     size_t value;            /* offsets in a token */
     size_t count;
     size_t stamp;
+    uint32_t early_count;      /* of the delays of input arcs (`x@+3`), by which tokens may be taken before their stamps */
+    const pn_time_t *early;
 } pn_bag_t;
+
+/* The offsets of a place `member` of a marking, for the initialiser of a pn_bag_t; PN_BAG_STAMPS as well if it is timed. */
+#define PN_BAG_TOKENS(marking_type, member)                                                                        \
+    .used = offsetof(marking_type, member.used), .first = offsetof(marking_type, member.token),                    \
+    .stride = sizeof(((const marking_type *)0)->member.token[0]),                                                  \
+    .value = offsetof(marking_type, member.token[0].value) - offsetof(marking_type, member.token),                 \
+    .count = offsetof(marking_type, member.token[0].count) - offsetof(marking_type, member.token)
+#define PN_BAG_STAMPS(marking_type, member)                                                                        \
+    .stamp = offsetof(marking_type, member.token[0].stamp) - offsetof(marking_type, member.token)
 
 /* Number of tokens. */
 uint64_t pn_bag_total(const pn_bag_t *bag, const void *marking);
@@ -36,7 +47,7 @@ uint64_t pn_bag_count(const pn_bag_t *bag, const void *marking, const void *valu
 /* Adds tokens. False (PN_ERR_CAPACITY, nothing changed) when there is no room. */
 bool pn_bag_add(pn_ctx_t *cx, const pn_bag_t *bag, void *marking, const void *value, uint32_t count, pn_time_t stamp);
 void pn_bag_clear(const pn_bag_t *bag, void *marking);
-/* The earliest stamp after `now` that is earlier than *next, or any if *found is false. */
+/* The earliest time after `now` at which a token becomes available, if it is before *next or *found is false. */
 void pn_bag_next_time(const pn_bag_t *bag, const void *marking, pn_time_t now, bool *found, pn_time_t *next);
 void pn_bag_json(const pn_bag_t *bag, const void *marking, pn_text_t *out);
 uint32_t pn_bag_token(const pn_bag_t *bag, const void *marking, uint32_t i, pn_leaf_t *leaf, uint32_t capacity);
@@ -46,6 +57,16 @@ size_t pn_bag_encode(const pn_bag_t *bag, const void *marking, uint8_t *out, siz
 size_t pn_bag_decode(pn_ctx_t *cx, const pn_bag_t *bag, void *marking, const uint8_t *in, size_t length);
 void pn_bag_relocate(pn_ctx_t *cx, const pn_bag_t *bag, void *marking);
 
+/* Times as the context and the tokens hold them. */
+#define PN_NO_TIME ((pn_time_t){ .integer = 0 })
+static inline pn_time_t pn_time_int(int64_t time)
+{
+    return (pn_time_t){ .integer = time };
+}
+static inline pn_time_t pn_time_real(double time)
+{
+    return (pn_time_t){ .real = time };
+}
 /* Order of two times. */
 int pn_time_order(bool is_real_time, pn_time_t a, pn_time_t b);
 
@@ -76,7 +97,7 @@ typedef struct pn_moves {
 } pn_moves_t;
 
 void pn_moves_init(pn_moves_t *moves, pn_ctx_t *cx);
-/* Wants `count` tokens (none if count <= 0) of a value with stamps not after `limit`. The value stays where it is. */
+/* Wants `count` tokens (none if count <= 0) of a value with stamps not after `limit`. The value is copied. */
 void pn_moves_take(pn_moves_t *moves, const pn_bag_t *bag, const void *value, int64_t count, pn_time_t limit);
 /* Wants every element of a multi-set, a list with cells of `list`. */
 void pn_moves_take_list(pn_moves_t *moves, const pn_bag_t *bag, const pn_type_t *list, const void *multiset, pn_time_t limit);

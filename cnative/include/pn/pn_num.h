@@ -22,8 +22,43 @@ static inline bool pn_ok(const pn_ctx_t *cx)
     return cx->error == PN_OK;
 }
 
+/* Begins a call of a recursive function: false when an error is set or the recursion is too deep (PN_ERR_DEPTH). */
+#ifndef PN_DEPTH_MAX
+#define PN_DEPTH_MAX 10000U
+#endif
+static inline bool pn_enter(pn_ctx_t *cx)
+{
+    if (cx->depth >= PN_DEPTH_MAX) {
+        pn_raise(cx, PN_ERR_DEPTH, NULL);
+    }
+    if (cx->error != PN_OK) {
+        return false;
+    }
+    cx->depth++;
+    return true;
+}
+/* Ends it; only after pn_enter was true. */
+static inline void pn_leave(pn_ctx_t *cx)
+{
+    cx->depth--;
+}
+
+/* Whether the error is an exception of CPN ML that a handler may catch, and whether it has this name. */
+bool pn_is_exception(const pn_ctx_t *cx);
+bool pn_is_raised(const pn_ctx_t *cx, const char *name);
+/* The exception has been handled. */
+void pn_clear_error(pn_ctx_t *cx);
+
+#define PN_PI 3.141592653589793
+#define PN_E 2.718281828459045
+
 /* The value if it is in the 31-bit range; else Overflow. */
 int64_t pn_int_checked(pn_ctx_t *cx, int64_t value);
+
+static inline int64_t pn_step(const pn_ctx_t *cx)
+{
+    return (int64_t)cx->step;
+}
 
 static inline int64_t pn_int_add(pn_ctx_t *cx, int64_t a, int64_t b)
 {
@@ -108,6 +143,9 @@ static inline bool pn_real_equal(double a, double b)
 {
     return (a <= b) && (a >= b);
 }
+
+bool pn_real_is_nan(double x);
+bool pn_real_is_finite(double x);
 
 /* Shortest decimal that reads back to the same double, as Python's repr writes it; `out` has PN_REAL_TEXT_SIZE bytes. Returns
  * the length. */

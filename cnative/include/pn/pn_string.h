@@ -37,6 +37,23 @@ bool pn_string_is_substring(pn_string_t part, pn_string_t s);
 /* chr: PN_ERR_DOMAIN named Chr outside 0..255. */
 uint8_t pn_char_of_int(pn_ctx_t *cx, int64_t code);
 
+static inline int64_t pn_char_code(uint8_t c)
+{
+    return (int64_t)c;
+}
+/* Classes of ASCII characters. */
+bool pn_char_is_digit(uint8_t c);
+bool pn_char_is_alpha(uint8_t c);
+bool pn_char_is_alphanum(uint8_t c);
+bool pn_char_is_space(uint8_t c);
+bool pn_char_is_upper(uint8_t c);
+bool pn_char_is_lower(uint8_t c);
+uint8_t pn_char_to_upper(uint8_t c);
+uint8_t pn_char_to_lower(uint8_t c);
+
+/* Writes to the standard error output: the standard output belongs to the host. */
+void pn_print(pn_ctx_t *cx, pn_string_t s);
+
 /* As CPN ML writes them: ~5, 1.5, 1E~05 (12 significant digits), true. */
 pn_string_t pn_string_of_int(pn_ctx_t *cx, int64_t value);
 pn_string_t pn_string_of_real(pn_ctx_t *cx, double value);

@@ -123,27 +123,49 @@ const void *pn_list_append(pn_ctx_t *cx, const pn_type_t *type, const void *firs
 const void *pn_list_reverse(pn_ctx_t *cx, const pn_type_t *type, const void *list);
 /* reverse first @ second */
 const void *pn_list_reverse_onto(pn_ctx_t *cx, const pn_type_t *type, const void *first, const void *second);
-/* Element i, from 0; NULL with Subscript when there is none. */
-const void *pn_list_nth(pn_ctx_t *cx, const pn_type_t *type, const void *list, int64_t i);
-/* First element, all but the first; NULL with Empty. */
-const void *pn_list_first(pn_ctx_t *cx, const pn_type_t *type, const void *list);
-const void *pn_list_last(pn_ctx_t *cx, const pn_type_t *type, const void *list);
+/* The cell of element i, from 0 (NULL with Subscript when there is none), of the first, of the last (NULL with Empty). */
+const void *pn_list_nth_cell(pn_ctx_t *cx, const void *list, int64_t i);
+const void *pn_list_first_cell(pn_ctx_t *cx, const void *list);
+const void *pn_list_last_cell(pn_ctx_t *cx, const void *list);
+/* All but the first; NULL with Empty. */
 const void *pn_list_rest(pn_ctx_t *cx, const void *list);
 /* The first n elements, and what is left after them; Subscript when there are fewer. */
 const void *pn_list_take(pn_ctx_t *cx, const pn_type_t *type, const void *list, int64_t n);
 const void *pn_list_drop(pn_ctx_t *cx, const void *list, int64_t n);
-/* n copies of a value (none if n <= 0), in front of a tail. */
-const void *pn_list_repeat(pn_ctx_t *cx, const pn_type_t *type, int64_t n, const void *value, const void *tail);
-/* Number of elements equal to a value. */
+/* n copies of a value; none if n <= 0. */
+const void *pn_list_copies(pn_ctx_t *cx, const pn_type_t *type, int64_t n, const void *value);
+/* The elements of the elements; `type` is that of the inner lists. */
+const void *pn_list_concat(pn_ctx_t *cx, const pn_type_t *type, const void *lists);
+/* Number of elements equal to a value; whether there is one. */
 int64_t pn_list_count(const pn_type_t *type, const void *list, const void *value);
+bool pn_list_has(const pn_type_t *type, const void *list, const void *value);
+/* Whether every element of the second is in the first. */
+bool pn_list_contains(const pn_type_t *type, const void *larger, const void *smaller);
+/* Whether all of a list of truth values are true. */
+bool pn_list_all_true(const void *list);
 /* Without the first, without every element that is equal to a value. */
 const void *pn_list_remove(pn_ctx_t *cx, const pn_type_t *type, const void *list, const void *value);
 const void *pn_list_remove_all(pn_ctx_t *cx, const pn_type_t *type, const void *list, const void *value);
 /* Multi-sets are lists: equality, containment, difference (Subtract if not contained). */
 bool pn_ms_equal(const pn_type_t *type, const void *a, const void *b);
 bool pn_ms_contains(const pn_type_t *type, const void *larger, const void *smaller);
+bool pn_ms_contains_strictly(const pn_type_t *type, const void *larger, const void *smaller);
 const void *pn_ms_subtract(pn_ctx_t *cx, const pn_type_t *type, const void *a, const void *b);
-/* All values of a small element type, in order. */
-const void *pn_list_all(pn_ctx_t *cx, const pn_type_t *type);
+/* n times the multi-set; empty if n <= 0. */
+const void *pn_ms_times(pn_ctx_t *cx, const pn_type_t *type, int64_t n, const void *multiset);
+/* The cell of the only element (NULL with no_singleton), of one at random (NULL with Empty). */
+const void *pn_ms_only_cell(pn_ctx_t *cx, const void *multiset);
+const void *pn_ms_random_cell(pn_ctx_t *cx, const void *multiset);
+
+/* --- functions of a colour set ------------------------------------------------------------------------------------- */
+
+/* CPN'Error when the colour set is not small, or there is no such value. `value` is filled in any case. */
+int64_t pn_colset_size(pn_ctx_t *cx, const pn_type_t *type);
+int64_t pn_colset_ord(pn_ctx_t *cx, const pn_type_t *type, const void *value);
+void pn_colset_col(pn_ctx_t *cx, const pn_type_t *type, void *value, int64_t position);
+void pn_colset_ran(pn_ctx_t *cx, const pn_type_t *type, void *value);
+void pn_colset_base(pn_ctx_t *cx, const pn_type_t *type, void *value);
+/* All values, in order, as a list with cells of `list`. */
+const void *pn_colset_all(pn_ctx_t *cx, const pn_type_t *type, const pn_type_t *list);
 
 #endif /* PN_TYPE_H */

@@ -20,7 +20,7 @@ RESERVED = frozenset(
     static_assert thread_local true false asm typeof constexpr nullptr
     and and_eq bitand bitor compl not not_eq or or_eq xor xor_eq class new delete this template namespace operator private public
     NULL EOF errno stdin stdout stderr assert offsetof unix linux i386 INFINITY NAN HUGE_VAL main
-    b m cx marking binding self sink user moves result i
+    b m cx marking binding self sink user moves before mark is_kept is_done
     """.split()
 )
 """Keywords of C and C++, macros of the headers in use, and the names that generated functions use themselves."""

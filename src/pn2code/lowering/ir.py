@@ -649,6 +649,8 @@ class Place:
     capacity: int
     initial: tuple[Stmt, ...]
     initial_text: str
+    early: tuple[int | float, ...] = ()
+    """delays of input arcs: tokens may be taken so much before their stamps"""
 
 
 @dataclass(frozen=True, slots=True)

@@ -13,12 +13,13 @@ from pn2code.cell.partition import Partition
 from pn2code.diagnostics import Diagnostics, Origin
 from pn2code.lowering import ir
 from pn2code.lowering.builtins import Builtins
-from pn2code.lowering.codes import STORAGE_COLSET, UnsupportedError
+from pn2code.lowering.codes import STORAGE_COLSET, UNSUPPORTED_EXPRESSION, UnsupportedError
 from pn2code.lowering.expressions import Body
 from pn2code.lowering.functions import Program
 from pn2code.lowering.inscriptions import Putter
 from pn2code.lowering.transitions import lower_transition
 from pn2code.lowering.types import Types
+from pn2code.ml import core
 from pn2code.ml.colsets import Colset, Kind
 from pn2code.ml.types import BOOL
 from pn2code.net.flat import FlatNet, FlatPlace
@@ -148,7 +149,28 @@ class _Lowering:
             capacity=self._capacity.get(place.name, self._capacity.get(place.short, DEFAULT_CAPACITY)),
             initial=tuple(body.statements),
             initial_text=text,
+            early=self._early(place),
         )
+
+    def _early(self, place: FlatPlace) -> tuple[int | float, ...]:
+        """The delays of input arcs from a place; they must be constants, since they decide when time goes on."""
+        found: set[int | float] = set()
+        for t in self._net.transitions:
+            for arc in t.arcs:
+                if arc.place != place.index or arc.inscription is None:
+                    continue
+                for term in arc.inscription.terms:
+                    if term.delay is None:
+                        continue
+                    value = constant(term.delay)
+                    if value is None:
+                        raise UnsupportedError(
+                            UNSUPPORTED_EXPRESSION,
+                            "the delay of an input arc must be a number in compiled code",
+                            term.delay.span,
+                        )
+                    found.add(value)
+        return tuple(sorted(found - {0}))
 
     def _members(self) -> tuple[ir.Function, ...]:
         """The functions that decide membership of subsets."""
@@ -179,3 +201,14 @@ class _Lowering:
             f"member {key}", f"member_{colset.name}", (value,), ir.BOOL, tuple(body.statements), False, False,
             source.span.text, colset.origin,
         )  # fmt: skip
+
+
+def constant(e: core.Exp) -> int | float | None:
+    """The number that an expression is, if it is a literal or its negation."""
+    match e:
+        case core.Lit(value=int() | float() as value):
+            return value
+        case core.Apply(function=core.Builtin(name=name), argument=argument) if name.endswith(".~"):
+            inner = constant(argument)
+            return None if inner is None else -inner
+    return None

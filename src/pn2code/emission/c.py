@@ -1,0 +1,389 @@
+"""`NetIR` -> `net.c` and `net.h`: the whole net as one C translation unit behind `pn_net`.
+
+All decisions are made before the templates run; they only print. Each transition, place and function of the net is a `Block`
+of the file, so that a compiler message or a reader finds the way back to the net.
+"""
+
+from __future__ import annotations
+
+
+import re
+from collections.abc import Iterable
+
+from pn2code.diagnostics import Origin
+from pn2code.emission import c_tables
+from pn2code.emission.c_expressions import Expressions, Types, c_integer
+from pn2code.emission.c_statements import Statements, uses_context, wrap
+from pn2code.emission.environment import c_comment, c_float, render
+from pn2code.emission.names import Names, Scope, stem
+from pn2code.emission.output import Block, OutputFile
+from pn2code.lowering import ir
+from pn2code.lowering.functions import called, ir_nodes
+from pn2code.lowering.ir import NetIR, Rep
+
+_MARK = "\x01"
+_LEAVES = {
+    Rep.BOOL: "PN_LEAF_BOOL",
+    Rep.INT: "PN_LEAF_INT",
+    Rep.REAL: "PN_LEAF_REAL",
+    Rep.STRING: "PN_LEAF_STRING",
+    Rep.ENUM: "PN_LEAF_ENUM",
+    Rep.UNIT: "PN_LEAF_ENUM",
+}
+
+
+def emit(net: NetIR, version: str) -> tuple[OutputFile, ...]:
+    """`net.c` and `net.h`."""
+    return _Emitter(net, version).run()
+
+
+class _Emitter:
+    def __init__(self, net: NetIR, version: str) -> None:
+        self._net = net
+        self._version = version
+        self._names = Names()
+        self._definitions = {d.name: d for d in net.definitions}
+        self._types = Types(self._names, self._definitions)
+        self._descriptors = {d.name: d for d in net.descriptors}
+        self._functions = {f.key: f for f in net.functions}
+        self._blocks: dict[str, tuple[str, str, Origin]] = {}
+        for p in net.places:
+            self._names.place(p.index, p.name)
+        for t in net.transitions:
+            self._names.transition(t.index, t.name)
+        for definition in net.definitions:
+            self._names.type(definition.name)
+        self._needs_context = self._context_users()
+        self._has_arena_values = any(
+            d.type.rep in (Rep.STRING, Rep.LIST, Rep.UNION)
+            for key in self._closure({p.table for p in net.places})
+            for d in [self._descriptors[key]]
+        )
+
+    def _closure(self, roots: set[str]) -> set[str]:
+        return c_tables.Tables(self._types, self._descriptors, {}).needed(roots)
+
+    def _context_users(self) -> frozenset[str]:
+        """The functions that take the context: those that may raise, directly or through what they call."""
+        users = {f.key for f in self._net.functions if f.loops or f.recursive}
+        while True:
+            more = {
+                f.key
+                for f in self._net.functions
+                if f.key not in users and uses_context(f.body, frozenset(users), self._definitions)
+            }
+            if not more:
+                return frozenset(users)
+            users |= more
+
+    # --- pieces --------------------------------------------------------------------------------
+
+    def _printer(self, binding: str = "", scope: Scope | None = None) -> tuple[Statements, Expressions, Scope]:
+        scope = scope or Scope()
+        x = Expressions(self._types, self._net.real_time, scope, binding)
+        x.functions = self._functions
+        x.needs_context = self._needs_context
+        x.place_names = tuple(self._names.place(p.index, p.name) for p in self._net.places)
+        x.global_hints = {g.name: g.hint for g in self._net.globals}
+        s = Statements(self._types, x, scope, self._net.real_time)
+        s.bags = tuple(self._names.bag(p.index, p.name) for p in self._net.places)
+        s.timed = tuple(p.timed for p in self._net.places)
+        s.tables_of_places = tuple(self._names.table(p.table) for p in self._net.places)
+        return s, x, scope
+
+    def _function(self, f: ir.Function) -> dict[str, object]:
+        s, x, scope = self._printer()
+        name = self._names.function(f.key, f.hint)
+        has_context = f.key in self._needs_context
+        parameters = [
+            f"{self._types.name(p.type)} {x.local(p)}" for p in f.parameters
+        ]
+        if has_context:
+            parameters.insert(0, "pn_ctx_t *cx")
+        is_void = f.result.rep is Rep.UNIT
+        result = "void" if is_void else self._types.name(f.result)
+        s.self_parameters, s.self_call, s.is_void = f.parameters, name, is_void
+        s.is_looping = f.loops
+        zero = "" if is_void else self._types.zero(f.result)
+        if f.recursive:
+            s.result = "" if is_void else scope.name("result", "result")
+            if not is_void:
+                s.line(f"{result} {s.result} = {zero};")
+            s.line("if (pn_enter(cx)) {")
+            s.block(f.body)
+            s.line("    pn_leave(cx);")
+            s.line("}")
+            if not is_void:
+                s.line(f"return {s.result};")
+        elif f.loops:
+            s.line("while (pn_ok(cx)) {")
+            s.block(f.body)
+            s.line("}")
+            if not is_void:
+                s.line(f"return {zero};")
+        else:
+            body = f.body[:-1] if is_void and f.body and f.body[-1] == ir.Return(None) else f.body
+            s.body(body)
+        head = wrap(f"static {result} {name}({', '.join(parameters) or 'void'})")
+        return {
+            "mark": self._block(f"function {f.key}", f.hint, "declaration", f.origin),
+            "title": _where(f.origin),
+            "source": _comment_lines(f.source),
+            "head": head,
+            "prototype": "\n".join(head) + ";",
+            "is_recursive": f.recursive,
+            "lines": s.lines,
+        }
+
+    def _block(self, key: str, element: str, kind: str, origin: Origin) -> str:
+        number = str(len(self._blocks))
+        self._blocks[number] = (element, kind, origin)
+        return number
+
+    def _global(self, g: ir.Global) -> dict[str, object]:
+        s, _, _ = self._printer()
+        s.body(g.setup)
+        name = self._names.value(g.name, g.hint)
+        constant = ""
+        if len(g.setup) == 1 and isinstance(g.setup[0], ir.SetGlobal) and not g.is_reference:
+            value = g.setup[0].value
+            if isinstance(value, ir.Const) and value.type.rep in (Rep.INT, Rep.REAL, Rep.BOOL):
+                _, x, _ = self._printer()
+                constant = x.text(value)
+        return {
+            "mark": self._block(f"val {g.name}", g.hint, "declaration", g.origin),
+            "title": _where(g.origin),
+            "source": _comment_lines(g.source),
+            "type": self._types.name(g.type),
+            "name": name,
+            "constant": constant,
+            "zero": self._types.zero(g.type) if g.type.rep not in (Rep.STRUCT, Rep.UNION, Rep.STRING) else
+            ('{ "", 0U }' if g.type.rep is Rep.STRING else "{ 0 }"),
+            "setup": [] if constant else s.lines,
+            "table": self._names.table(g.table),
+            "is_reference": g.is_reference,
+        }
+
+    def _place(self, p: ir.Place) -> dict[str, object]:
+        s, _, _ = self._printer()
+        s.body(p.initial)
+        leaves = self._leaves(p.table)
+        return {
+            "mark": self._block(f"place {p.name}", p.name, "place", p.origin),
+            "name": p.name,
+            "member": self._names.place(p.index, p.name),
+            "bag": self._names.bag(p.index, p.name),
+            "colset": p.colset,
+            "origin": p.origin.describe(),
+            "owner": p.owner,
+            "type": self._types.name(p.type),
+            "table": self._names.table(p.table),
+            "timed": p.timed,
+            "early": [
+                f".real = {c_float(float(e))}" if self._net.real_time else f".integer = {c_integer(int(e))}"
+                for e in p.early
+            ],
+            "capacity": p.capacity,
+            "initial": s.lines,
+            "initial_text": _comment_lines(p.initial_text),
+            "leaf_kinds": [kind for _, kind in leaves] if leaves else [],
+            "leaf_names": [name for name, _ in leaves] if leaves else [],
+            "line_leaves": self._lines_of(p.table) if leaves else [],
+        }
+
+    def _leaves(self, key: str) -> list[tuple[str, str]] | None:
+        """Name and kind of each scalar; None: no fixed number."""
+        d = self._descriptors[key]
+        if d.type.rep in _LEAVES:
+            return [("", "PN_LEAF_ENUM" if d.is_index else _LEAVES[d.type.rep])]
+        if d.type.rep is not Rep.STRUCT:
+            return None
+        leaves = []
+        for text, part in d.fields:
+            inner = self._leaves(part)
+            if inner is None:
+                return None
+            leaves += [(f"{text}.{name}" if name else text, kind) for name, kind in inner]
+        return leaves
+
+    def _lines_of(self, key: str) -> list[int]:
+        """Leaves per line of an input file: a line for each component that is itself composed; scalars alone on one line each, unless
+        all are scalars: then they share one line."""
+        d = self._descriptors[key]
+        if d.type.rep is not Rep.STRUCT:
+            return [1]
+        counts = [len(self._leaves(part) or []) for _, part in d.fields]
+        return [sum(counts)] if all(n == 1 for n in counts) else counts
+
+    def _transition(self, t: ir.Transition) -> dict[str, object]:
+        name = self._names.transition(t.index, t.name)
+        members = Scope()
+        variables = tuple(members.name(i, v.name) for i, v in enumerate(t.variables))
+        search, x, _ = self._printer("b.")
+        x.variables = variables
+        search.variable_types = tuple(v.type for v in t.variables)
+        search.keeps = uses_context(_without_wanted(t.enumerate), self._needs_context, self._definitions)
+        search.body(t.enumerate)
+        search.finish_search()
+        fire, x, _ = self._printer("b->")
+        x.variables = variables
+        fire.variable_types = search.variable_types
+        fire.body(t.fire)
+        text = "\n".join(fire.lines)
+        return {
+            "mark": self._block(f"transition {t.name}", t.name, "transition", t.origin),
+            "name": t.name,
+            "stem": name,
+            "id": t.id,
+            "title": c_comment(f"transition {t.name}: {t.origin.describe()}, {_where(t.origin)}"),
+            "guard": c_comment(f"guard [{t.guard_text}]") if t.guard_text else "",
+            "origin": t.origin.describe(),
+            "owner": t.owner,
+            "priority": t.priority,
+            "variables": [
+                {
+                    "type": self._types.name(v.type),
+                    "member": m,
+                    "name": v.name,
+                    "table": self._names.table(v.table),
+                    "note": "output of the code segment" if v.is_output else "",
+                }
+                for v, m in zip(t.variables, variables, strict=True)
+            ],
+            "keeps": search.keeps,
+            "search": search.lines,
+            "searches_marking": bool(re.search(r"\bm\b", "\n".join(search.lines))),
+            "fire": fire.lines,
+            "uses_binding": "b->" in text,
+        }
+
+    # --- the whole -----------------------------------------------------------------------------
+
+    def _used_functions(self) -> list[ir.Function]:
+        roots: list[str] = []
+        for t in self._net.transitions:
+            roots += called(t.enumerate) + called(t.fire)
+        for p in self._net.places:
+            roots += called(p.initial)
+        for g in self._net.globals:
+            roots += called(g.setup)
+        roots += [f.key for f in self._net.functions if f.key.startswith("member ")]
+        found: set[str] = set()
+        while roots:
+            key = roots.pop()
+            if key not in found:
+                found.add(key)
+                roots += called(self._functions[key].body)
+        return [f for f in self._net.functions if f.key in found]
+
+    def _used_tables(self, functions: Iterable[ir.Function]) -> list[str]:
+        """Keys in order of dependence."""
+        roots = {p.table for p in self._net.places}
+        bodies: list[object] = [f.body for f in functions]
+        for t in self._net.transitions:
+            roots |= {v.table for v in t.variables}
+            bodies += [t.enumerate, t.fire]
+        bodies += [p.initial for p in self._net.places] + [g.setup for g in self._net.globals]
+        roots |= {g.table for g in self._net.globals if g.is_reference}
+        for b in bodies:
+            for node in ir_nodes(b):
+                table = getattr(node, "table", "")
+                if isinstance(table, str) and table:
+                    roots.add(table)
+                if isinstance(node, ir.Op) and node.name == "Colset.all":
+                    roots.add(f"type {node.type}")
+        needed = self._closure(roots)
+        return [key for key in self._descriptors if key in needed]
+
+    def run(self) -> tuple[OutputFile, ...]:
+        net = self._net
+        functions = self._used_functions()
+        keys = self._used_tables(functions)
+        wrappers = {
+            f.key: f"is_{stem(f.hint)}" for f in functions if f.key.startswith("member ")
+        }
+        tables = c_tables.Tables(self._types, self._descriptors, wrappers)
+        recursive = [k for k in keys if tables.is_recursive(k)]
+        values = {
+            "version": self._version,
+            "net": net,
+            "stem": stem(net.name),
+            "functions": [self._function(f) for f in functions if f.key not in wrappers],
+            "members": [
+                {
+                    **self._function(f),
+                    "wrapper": wrappers[f.key],
+                    "call": self._names.function(f.key, f.hint),
+                    "has_context": f.key in self._needs_context,
+                    "type": self._types.name(f.parameters[0].type),
+                    "table": self._names.table(f.key.removeprefix("member ")),
+                }
+                for f in functions
+                if f.key in wrappers
+            ],
+            "globals": [self._global(g) for g in net.globals],
+            "forwards": [x for d in net.definitions if (x := c_tables.forward(d, self._types))],
+            "bodies": [
+                {"name": d.name, "lines": c_tables.body(d, self._types)} for d in net.definitions
+            ],
+            "recursive_tables": [self._names.table(k) for k in recursive],
+            "tables": [tables.print(k) for k in keys],
+            "places": [self._place(p) for p in net.places],
+            "transitions": [self._transition(t) for t in net.transitions],
+            "has_arena_values": self._has_arena_values
+            or any(g.is_reference for g in net.globals),
+        }
+        source, blocks = self._extract(render("c/net.c.j2", **values))
+        header, _ = self._extract(render("c/net.h.j2", **values))
+        return (OutputFile("net.c", source, blocks), OutputFile("net.h", header))
+
+    def _extract(self, text: str) -> tuple[str, tuple[Block, ...]]:
+        """Take the marks of blocks out of the text and note the lines between them."""
+        lines: list[str] = []
+        blocks: list[Block] = []
+        start: dict[str, int] = {}
+        for line in text.splitlines():
+            if line.startswith(_MARK):
+                verb, number = line[1:].split()
+                if verb == "begin":
+                    start[number] = len(lines) + 1
+                else:
+                    element, kind, origin = self._blocks[number]
+                    blocks.append(Block(element, kind, origin, start[number], len(lines)))
+            elif line.strip() or (lines and lines[-1].strip()):
+                lines.append(line.rstrip())
+        return "\n".join(lines) + "\n", tuple(blocks)
+
+
+def _without_wanted(statements: tuple[ir.Stmt, ...]) -> tuple[ir.Stmt, ...]:
+    """The statements that may leave something in the arena: the demands clean up after themselves."""
+    out: list[ir.Stmt] = []
+    for s in statements:
+        if isinstance(s, ir.Wanted):
+            out.extend(x for x in s.takes if not isinstance(x, (ir.Take, ir.TakeAll)))
+        elif isinstance(s, ir.ForTokens):
+            out.append(ir.ForTokens(s.place, s.index, _without_wanted(s.body), s.note))
+        elif isinstance(s, ir.ForValues):
+            out.append(ir.ForValues(s.variable, s.table, _without_wanted(s.body), s.note))
+        else:
+            out.append(s)
+    return tuple(out)
+
+
+def _where(origin: Origin) -> str:
+    """File, without its folder, and line."""
+    name = origin.file.replace("\\", "/").rsplit("/", 1)[-1]
+    return c_comment(f"{name}:{origin.line}" if origin.line else name)
+
+
+def _comment_lines(source: str) -> list[str]:
+    """The ML text as comment lines, blank lines left out."""
+    return [c_comment(line) if not line.startswith(" ") else _indented(line) for line in source.expandtabs(4).splitlines() if line.strip()]
+
+
+def _indented(line: str) -> str:
+    text = line.lstrip()
+    return " " * (len(line) - len(text)) + c_comment(text)
+
+
+__all__ = ["emit"]

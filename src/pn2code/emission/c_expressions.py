@@ -1,0 +1,388 @@
+"""IR expressions -> C text, with parentheses where precedence (or a reader of mixed operators) needs them."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from pn2code.emission import c_ops
+from pn2code.emission.c_ops import OPS, Call, Compared, Infix, Literal, Prefix
+from pn2code.emission.environment import c_float
+from pn2code.emission.names import Names, Scope, label
+from pn2code.lowering import ir
+from pn2code.lowering.ir import Ir, IrType, Rep
+
+_PRIMARY, _POSTFIX, _UNARY, _CONDITIONAL = 17, 16, 14, 3
+
+_SCALARS = {
+    Rep.UNIT: "pn_unit_t",
+    Rep.BOOL: "bool",
+    Rep.INT: "int64_t",
+    Rep.REAL: "double",
+    Rep.STRING: "pn_string_t",
+    Rep.CHAR: "uint8_t",
+    Rep.TIME: "pn_time_t",
+}
+
+
+def c_bytes(text: str) -> str:
+    """A string of CPN ML, whose characters are bytes, as a C string literal."""
+    out = []
+    for c in text:
+        for byte in c.encode("latin-1") if ord(c) < 256 else c.encode():
+            if chr(byte) in '"\\?':
+                out.append(f"\\{chr(byte)}")
+            elif chr(byte) == "\n":
+                out.append("\\n")
+            elif 32 <= byte < 127:
+                out.append(chr(byte))
+            else:
+                out.append(f"\\{byte:03o}")
+    return '"' + "".join(out) + '"'
+
+
+def c_integer(value: int) -> str:
+    """An int64_t constant, plain where it is small."""
+    if -(2**31) < value < 2**31:
+        return str(value)
+    if value == -(2**63):
+        return "INT64_MIN"
+    return f"INT64_C({value})" if value >= 0 else f"-INT64_C({-value})"
+
+
+@dataclass(frozen=True, slots=True)
+class Types:
+    """C types by name: declarations live in net.h."""
+
+    names: Names
+    definitions: dict[str, ir.Definition]
+
+    def name(self, t: IrType) -> str:
+        """The C type."""
+        return _SCALARS.get(t.rep) or self.names.type(t.name)
+
+    def zero(self, t: IrType) -> str:
+        """The harmless value."""
+        match t.rep:
+            case Rep.UNIT:
+                return "PN_UNIT"
+            case Rep.BOOL:
+                return "false"
+            case Rep.INT:
+                return "0"
+            case Rep.REAL:
+                return "0.0"
+            case Rep.STRING:
+                return 'PN_STRING("")'
+            case Rep.CHAR:
+                return "0U"
+            case Rep.LIST:
+                return "NULL"
+            case Rep.TIME:
+                return "PN_NO_TIME"
+            case Rep.ENUM:
+                definition = self.definitions[t.name]
+                assert isinstance(definition, ir.EnumDef)
+                return self.names.constructor(t.name, definition.constructors[0])
+            case Rep.STRUCT | Rep.UNION:
+                return f"({self.name(t)}){{ 0 }}"
+
+
+class Expressions:
+    """Prints the expressions of one C function.
+
+    Args:
+        binding: how the transition's binding is reached ("b->" or "b."), if there is one.
+    """
+
+    def __init__(self, types: Types, real_time: bool, scope: Scope, binding: str = "") -> None:
+        self._types = types
+        self._names = types.names
+        self._real_time = real_time
+        self._scope = scope
+        self._binding = binding
+        self.variables: tuple[str, ...] = ()
+        self.place_names: tuple[str, ...] = ()
+        self.functions: dict[str, ir.Function] = {}
+        self.needs_context: frozenset[str] = frozenset()
+        self.global_hints: dict[str, str] = {}
+
+    def local(self, local: ir.Local) -> str:
+        """The C name of a local."""
+        return self._scope.name(local.uid, local.hint)
+
+    def text(self, e: Ir) -> str:
+        """The expression as a C expression that can stand on its own."""
+        return self._print(e)[0]
+
+    def inside(self, e: Ir, precedence: int) -> str:
+        """The expression as an operand of an operator of this precedence."""
+        text, own = self._print(e)
+        return text if own > precedence else f"({text})"
+
+    def condition(self, e: Ir) -> str:
+        """As an operand of `&&`, `||` or `?:`: anything with an operator gets parentheses."""
+        return self.inside(e, _UNARY - 1)
+
+    def address(self, e: Ir) -> str:
+        """A pointer to the value: of the object that holds it, or of a temporary."""
+        if self._is_object(e):
+            return f"&{self.inside(e, _UNARY)}"
+        return f"({self._types.name(e.type)}[]){{ {self.text(e)} }}"
+
+    def _is_object(self, e: Ir) -> bool:
+        match e:
+            case ir.Use() | ir.GlobalUse() | ir.Bound() | ir.TokenValue():
+                return True
+            case ir.Member(record=inner):
+                return self._is_object(inner)
+            case ir.Argument(value=inner):
+                return self._is_boxed(e) or self._is_object(inner)
+            case ir.Head():
+                return True
+        return False
+
+    def _is_boxed(self, e: ir.Argument) -> bool:
+        definition = self._types.definitions[e.value.type.name]
+        assert isinstance(definition, ir.UnionDef)
+        return definition.constructors[e.tag][2]
+
+    def _constructor(self, t: IrType, tag: int) -> tuple[str, str]:
+        """The enumerator of a constructor, and the member of the union that holds its argument."""
+        definition = self._types.definitions[t.name]
+        if isinstance(definition, ir.EnumDef):
+            return self._names.constructor(t.name, definition.constructors[tag]), ""
+        assert isinstance(definition, ir.UnionDef)
+        name = definition.constructors[tag][0]
+        return self._names.constructor(t.name, name), label(name)
+
+    # --- one method per shape ------------------------------------------------------------------
+
+    def _print(self, e: Ir) -> tuple[str, int]:
+        match e:
+            case ir.Const():
+                return self._constant(e)
+            case ir.Use(local=local):
+                return self.local(local), _PRIMARY
+            case ir.GlobalUse(name=name):
+                return self._names.value(name, self.global_hints.get(name, name)), _PRIMARY
+            case ir.Bound(index=index):
+                return f"{self._binding}{self.variables[index]}", _POSTFIX
+            case ir.TokenValue(place=place, index=index):
+                return f"m->{self.place_names[place]}.token[{self.local(index)}].value", _POSTFIX
+            case ir.Now(type=t):
+                return ("cx->now.real" if t.rep is Rep.REAL else "cx->now.integer"), _POSTFIX
+            case ir.FunCall():
+                return self._call(e), _POSTFIX
+            case ir.Op():
+                return self._op(e)
+            case ir.Member():
+                return self._member(e), _POSTFIX
+            case ir.MakeStruct():
+                return self._struct(e), _POSTFIX
+            case ir.EnumValue(tag=tag, type=t):
+                return self._constructor(t, tag)[0], _PRIMARY
+            case ir.MakeUnion():
+                return self._union(e), _POSTFIX
+            case ir.IsTag():
+                return self._is_tag(e)
+            case ir.Argument():
+                _, member = self._constructor(e.value.type, e.tag)
+                text = f"{self.inside(e.value, _UNARY)}.as.{member}"
+                return (f"(*{text})" if self._is_boxed(e) else text), _POSTFIX
+            case ir.Select():
+                then, otherwise = (self.inside(x, _CONDITIONAL) for x in (e.then, e.otherwise))
+                return f"{self.condition(e.condition)} ? {then} : {otherwise}", _CONDITIONAL
+            case ir.Head(list=inner):
+                return f"{self.inside(inner, _UNARY)}->head", _POSTFIX
+            case ir.Tail(list=inner):
+                return f"{self.inside(inner, _UNARY)}->tail", _POSTFIX
+            case ir.IsNil(list=inner):
+                return f"{self.inside(inner, c_ops.EQUALITY)} == NULL", c_ops.EQUALITY
+            case ir.Ok():
+                return "pn_ok(cx)", _POSTFIX
+            case ir.HasError(name=""):
+                return "pn_is_exception(cx)", _POSTFIX
+            case ir.HasError(name=name):
+                return f"pn_is_raised(cx, {c_bytes(name)})", _POSTFIX
+
+    def _constant(self, e: ir.Const) -> tuple[str, int]:
+        match e.type.rep:
+            case Rep.UNIT:
+                return "PN_UNIT", _PRIMARY
+            case Rep.BOOL:
+                return ("true" if e.value else "false"), _PRIMARY
+            case Rep.REAL:
+                assert isinstance(e.value, (int, float))
+                text = c_float(float(e.value))
+            case Rep.STRING:
+                return f"PN_STRING({c_bytes(str(e.value))})", _POSTFIX
+            case Rep.CHAR:
+                return f"{e.value}U", _PRIMARY
+            case _:
+                assert isinstance(e.value, int)
+                text = c_integer(e.value)
+        return text, _UNARY if text.startswith("-") else _PRIMARY
+
+    def _call(self, e: ir.FunCall) -> str:
+        function = self.functions[e.function]
+        arguments = [self.text(a) for a in e.arguments]
+        if e.function in self.needs_context:
+            arguments.insert(0, "cx")
+        return f"{self._names.function(e.function, function.hint)}({', '.join(arguments)})"
+
+    def _member(self, e: ir.Member) -> str:
+        record = self.inside(e.record, _UNARY)
+        definition = self._types.definitions[e.record.type.name]
+        assert isinstance(definition, ir.StructDef)
+        is_time = dict(definition.fields).get(e.label) == ir.TIME
+        suffix = (".real" if e.type.rep is Rep.REAL else ".integer") if is_time else ""
+        return f"{record}.{label(e.label)}{suffix}"
+
+    def time(self, e: Ir | None) -> str:
+        """A time as `pn_time_t`."""
+        if e is None:
+            return "PN_NO_TIME"
+        if isinstance(e, ir.Now):
+            return "cx->now"
+        return f"{'pn_time_real' if e.type.rep is Rep.REAL else 'pn_time_int'}({self.text(e)})"
+
+    def _struct(self, e: ir.MakeStruct) -> str:
+        definition = self._types.definitions[e.type.name]
+        assert isinstance(definition, ir.StructDef)
+        types = dict(definition.fields)
+        parts = []
+        for name, value in e.fields:
+            text = self.time(value) if types[name] == ir.TIME else self.text(value)
+            parts.append(f".{label(name)} = {text}")
+        return f"({self._types.name(e.type)}){{ {', '.join(parts)} }}"
+
+    def _union(self, e: ir.MakeUnion) -> str:
+        tag, member = self._constructor(e.type, e.tag)
+        parts = [f".tag = {tag}"]
+        if e.argument is not None:
+            definition = self._types.definitions[e.type.name]
+            assert isinstance(definition, ir.UnionDef)
+            value = self.text(e.argument)
+            if definition.constructors[e.tag][2]:
+                size = self._types.name(e.argument.type)
+                value = f"pn_arena_copy(cx, {self.address(e.argument)}, sizeof({size}))"
+            parts.append(f".as.{member} = {value}")
+        return f"({self._types.name(e.type)}){{ {', '.join(parts)} }}"
+
+    def _is_tag(self, e: ir.IsTag) -> tuple[str, int]:
+        t = e.value.type
+        tag, member = self._constructor(t, e.tag)
+        if t.rep is Rep.ENUM:
+            return f"{self.inside(e.value, c_ops.EQUALITY)} == {tag}", c_ops.EQUALITY
+        value = self.inside(e.value, _UNARY)
+        definition = self._types.definitions[t.name]
+        assert isinstance(definition, ir.UnionDef)
+        test = f"{value}.tag == {tag}"
+        if definition.constructors[e.tag][2]:
+            return f"({test}) && ({value}.as.{member} != NULL)", c_ops.AND
+        return test, c_ops.EQUALITY
+
+    # --- operations ----------------------------------------------------------------------------
+
+    def _op(self, e: ir.Op) -> tuple[str, int]:
+        if e.name == "zero":
+            return self._types.zero(e.type), _POSTFIX
+        if e.name == "list.nil":
+            return "NULL", _PRIMARY
+        if e.name == "=":
+            return self._equality(e, "==")
+        if e.name == "Colset.all":
+            own, layout = (self._names.table(k) for k in (e.table, f"type {e.type}"))
+            return f"pn_colset_all(cx, &{own}, &{layout})", _POSTFIX
+        if e.name == "Bool.not":
+            return self._negation(e.arguments[0])
+        if e.name in c_ops.CONTAINED:
+            a, b = e.arguments
+            return self._op(ir.Op(c_ops.CONTAINED[e.name], (b, a), e.type, e.table))
+        arguments = e.arguments[::-1] if e.name in c_ops.SWAPPED else e.arguments
+        match OPS[e.name]:
+            case Literal(text=text):
+                return text, _PRIMARY
+            case Infix(operator=operator, precedence=precedence):
+                return self._infix(operator, precedence, arguments), precedence
+            case Prefix(operator="IS_NIL"):
+                return self._print(ir.IsNil(arguments[0]))
+            case Prefix(operator=operator):
+                return f"{operator}{self.inside(arguments[0], _UNARY)}", _UNARY
+            case Compared(function=function, operator=operator):
+                parts = [f"&{self._names.table(e.table)}"] if e.table else []
+                parts += [self.address(a) if e.table else self.text(a) for a in arguments]
+                return f"{function}({', '.join(parts)}) {operator} 0", c_ops.RELATION
+            case Call() as call:
+                return self._function(call, e, arguments)
+
+    def _function(self, call: Call, e: ir.Op, arguments: tuple[Ir, ...]) -> tuple[str, int]:
+        parts = ["cx"] if call.context else []
+        if call.table:
+            parts.append(f"&{self._names.table(e.table)}")
+        for i, a in enumerate(arguments):
+            parts.append(self.address(a) if i in call.pointers else self.text(a))
+        if not call.function:
+            return self._print(arguments[0])
+        text = f"{call.function}({', '.join(parts)})"
+        if call.order:
+            # `order` is LESS, EQUAL, GREATER: 0, 1, 2.
+            return f"({self._types.name(e.type)})(1 + {text})", _UNARY
+        return text, _UNARY if text.startswith("!") else _POSTFIX
+
+    def _infix(self, operator: str, precedence: int, arguments: tuple[Ir, ...]) -> str:
+        left, right = arguments
+        if precedence in (c_ops.AND, c_ops.OR):
+            first = self.inside(left, precedence - 1) if self._is_same(left, operator) else self.condition(left)
+            return f"{first} {operator} {self.condition(right)}"
+        # The left operand needs parentheses only if it binds less tightly; the right one also if as tightly.
+        return f"{self.inside(left, precedence - 1)} {operator} {self.inside(right, precedence)}"
+
+    @staticmethod
+    def _is_same(e: Ir, operator: str) -> bool:
+        form = OPS.get(e.name) if isinstance(e, ir.Op) else None
+        return isinstance(form, Infix) and form.operator == operator
+
+    def _negation(self, e: Ir) -> tuple[str, int]:
+        """Not, put into the comparison where that is exact."""
+        match e:
+            case ir.IsNil(list=inner):
+                return f"{self.inside(inner, c_ops.EQUALITY)} != NULL", c_ops.EQUALITY
+            case ir.Op(name="="):
+                return self._equality(e, "!=")
+            case ir.IsTag() if e.value.type.rep is Rep.ENUM:
+                text, precedence = self._is_tag(e)
+                return text.replace(" == ", " != "), precedence
+            case ir.Op(name="Bool.not", arguments=(inner,)):
+                return self._print(inner)
+        return f"!{self.inside(e, _UNARY)}", _UNARY
+
+    def _equality(self, e: ir.Op, operator: str) -> tuple[str, int]:
+        a, b = e.arguments
+        negation = "!" if operator == "!=" else ""
+        precedence = _UNARY if negation else _POSTFIX
+        match a.type.rep:
+            case Rep.INT | Rep.BOOL | Rep.CHAR | Rep.ENUM:
+                if isinstance(b, ir.Const) and isinstance(b.value, bool):
+                    wanted = b.value == (operator == "==")
+                    return self._print(a) if wanted else self._negation(a)
+                x, y = (self.inside(v, c_ops.EQUALITY) for v in (a, b))
+                return f"{x} {operator} {y}", c_ops.EQUALITY
+            case Rep.REAL:
+                return f"{negation}pn_real_equal({self.text(a)}, {self.text(b)})", precedence
+            case Rep.STRING:
+                return f"{negation}pn_string_equal({self.text(a)}, {self.text(b)})", precedence
+            case Rep.UNIT:
+                return ("false" if negation else "true"), _PRIMARY
+            case _:
+                table = self._names.table(e.table)
+                text = f"{negation}pn_equal(&{table}, {self.address(a)}, {self.address(b)})"
+                return text, precedence
+
+
+def op_needs_context(e: ir.Op) -> bool:
+    """Whether the operation takes the context in C."""
+    if e.name == "Colset.all":
+        return True
+    form = OPS.get(c_ops.CONTAINED.get(e.name, e.name))
+    return isinstance(form, Call) and form.context

@@ -1,0 +1,178 @@
+"""How built-in functions look in C: the table from names of `ml.builtins` (and of lowering's own operations) to C.
+
+Three forms: an infix operator, a function, a function that takes the context (because it may raise or needs the arena).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+
+@dataclass(frozen=True, slots=True)
+class Infix:
+    """A binary operator of C."""
+
+    operator: str
+    precedence: int
+
+
+@dataclass(frozen=True, slots=True)
+class Prefix:
+    """A unary operator of C."""
+
+    operator: str
+
+
+@dataclass(frozen=True, slots=True)
+class Call:
+    """A C function. `context`: its first argument is the context; `table`: the next is the type's table; `pointers`: which
+    operands are passed by address; `order`: it gives -1, 0, 1, of which an `order` is made."""
+
+    function: str
+    context: bool = False
+    table: bool = False
+    pointers: tuple[int, ...] = ()
+    order: bool = False
+
+
+@dataclass(frozen=True, slots=True)
+class Compared:
+    """A comparison by way of a function that gives -1, 0, 1."""
+
+    function: str
+    operator: str
+
+
+@dataclass(frozen=True, slots=True)
+class Literal:
+    """A constant."""
+
+    text: str
+
+
+Form = Infix | Prefix | Call | Compared | Literal
+
+MULTIPLY, ADD, RELATION, EQUALITY, AND, OR = 13, 12, 10, 9, 5, 4
+
+OPS: dict[str, Form] = {
+    "andalso": Infix("&&", AND),
+    "orelse": Infix("||", OR),
+    "Bool.not": Prefix("!"),
+    "Bool.toString": Call("pn_string_of_bool"),
+    "Real.+": Infix("+", ADD),
+    "Real.-": Infix("-", ADD),
+    "Real.*": Infix("*", MULTIPLY),
+    "Real./": Infix("/", MULTIPLY),
+    "Real.~": Prefix("-"),
+    "Real.abs": Call("fabs"),
+    "Real.min": Call("pn_real_min"),
+    "Real.max": Call("pn_real_max"),
+    "Real.sign": Call("pn_real_sign", context=True),
+    "Real.compare": Call("pn_real_order", order=True),
+    "Real.==": Call("pn_real_equal"),
+    "Real.!=": Call("!pn_real_equal"),
+    "Real.rem": Call("fmod"),
+    "Real.fromInt": Call("pn_int_to_real"),
+    "Real.fromLargeInt": Call("pn_int_to_real"),
+    "Real.realFloor": Call("floor"),
+    "Real.realCeil": Call("ceil"),
+    "Real.realRound": Call("pn_real_round_even"),
+    "Real.realTrunc": Call("trunc"),
+    "Real.isNan": Call("pn_real_is_nan"),
+    "Real.isFinite": Call("pn_real_is_finite"),
+    "Real.posInf": Literal("(double)INFINITY"),
+    "Real.negInf": Literal("-(double)INFINITY"),
+    "Real.toString": Call("pn_string_of_real", context=True),
+    "Math.pi": Literal("PN_PI"),
+    "Math.e": Literal("PN_E"),
+    "Math.ln": Call("log"),
+    "String.^": Call("pn_string_concat", context=True),
+    "String.size": Call("pn_string_size"),
+    "String.sub": Call("pn_string_at", context=True),
+    "String.substring": Call("pn_string_sub", context=True),
+    "String.str": Call("pn_string_of_char", context=True),
+    "String.isPrefix": Call("pn_string_is_prefix"),
+    "String.isSuffix": Call("pn_string_is_suffix"),
+    "String.isSubstring": Call("pn_string_is_substring"),
+    "String.compare": Call("pn_string_order", order=True),
+    "Char.ord": Call("pn_char_code"),
+    "Char.chr": Call("pn_char_of_int", context=True),
+    "Char.compare": Call("pn_int_order", order=True),
+    "Int.toString": Call("pn_string_of_int", context=True),
+    "IntInf.toString": Call("pn_string_of_int", context=True),
+    "Int.fromLarge": Call("pn_int_checked", context=True),
+    "IntInf.toInt": Call("pn_int_checked", context=True),
+    "TextIO.print": Call("pn_print", context=True),
+    "Time.step": Call("pn_step", context=True),
+    "time.same": Call(""),
+    "List.null": Prefix("IS_NIL"),
+    "List.length": Call("pn_list_length"),
+    "Ms.size": Call("pn_list_length"),
+    "List.@": Call("pn_list_append", context=True, table=True),
+    "List.union": Call("pn_list_append", context=True, table=True),
+    "Ms.++": Call("pn_list_append", context=True, table=True),
+    "List.rev": Call("pn_list_reverse", context=True, table=True),
+    "List.revAppend": Call("pn_list_reverse_onto", context=True, table=True),
+    "List.take": Call("pn_list_take", context=True, table=True),
+    "List.drop": Call("pn_list_drop", context=True),
+    "List.hd": Call("pn_list_first_cell", context=True),
+    "List.last": Call("pn_list_last_cell", context=True),
+    "List.tl": Call("pn_list_rest", context=True),
+    "List.nth": Call("pn_list_nth_cell", context=True),
+    "List.concat": Call("pn_list_concat", context=True, table=True),
+    "List.mem": Call("pn_list_has", table=True, pointers=(1,)),
+    "List.rm": Call("pn_list_remove", context=True, table=True, pointers=(1,)),
+    "List.rmall": Call("pn_list_remove_all", context=True, table=True, pointers=(1,)),
+    "List.contains": Call("pn_list_contains", table=True),
+    "List.contains_all": Call("pn_ms_contains", table=True),
+    "List.listsub": Call("pn_ms_subtract", context=True, table=True),
+    "Ms.--": Call("pn_ms_subtract", context=True, table=True),
+    "Ms.**": Call("pn_ms_times", context=True, table=True),
+    "Ms.==": Call("pn_ms_equal", table=True),
+    "Ms.!=": Call("!pn_ms_equal", table=True),
+    "Ms.>>=": Call("pn_ms_contains", table=True),
+    "Ms.>>": Call("pn_ms_contains_strictly", table=True),
+    "Ms.cf": Call("pn_list_count", table=True, pointers=(1,)),
+    "Ms.`": Call("pn_list_copies", context=True, table=True, pointers=(1,)),
+    "Ms.ms_to_col": Call("pn_ms_only_cell", context=True),
+    "Ms.random": Call("pn_ms_random_cell", context=True),
+    "list.cons": Call("pn_list_cons", context=True, table=True, pointers=(0,)),
+    "list.all_true": Call("pn_list_all_true"),
+    "Colset.lt": Compared("pn_compare", "<"),
+    "Colset.cmp": Call("pn_compare", table=True, pointers=(0, 1), order=True),
+    "Colset.mkstr": Call("pn_mkstr_string", context=True, table=True, pointers=(0,)),
+    "Colset.legal": Call("pn_is_legal", context=True, table=True, pointers=(0,)),
+    "Colset.ord": Call("pn_colset_ord", context=True, table=True, pointers=(0,)),
+    "Colset.size": Call("pn_colset_size", context=True, table=True),
+}
+"""Name -> form, for what the loops below do not add."""
+
+for _structure, _prefix in (("Int", "pn_int"), ("IntInf", "pn_inf")):
+    for _name, _function in (
+        ("+", "add"), ("-", "sub"), ("*", "mul"), ("~", "neg"), ("abs", "abs"), ("div", "div"), ("mod", "mod"),
+        ("quot", "quot"), ("rem", "rem"),
+    ):  # fmt: skip
+        OPS[f"{_structure}.{_name}"] = Call(f"{_prefix}_{_function}", context=True)
+    for _name in ("min", "max", "sign"):
+        OPS[f"{_structure}.{_name}"] = Call(f"pn_int_{_name}")
+    OPS[f"{_structure}.compare"] = Call("pn_int_order", order=True)
+for _structure in ("Int", "IntInf", "Real", "Char"):
+    for _name in ("<", "<=", ">", ">="):
+        OPS[f"{_structure}.{_name}"] = Infix(_name, RELATION)
+for _name in ("<", "<=", ">", ">="):
+    OPS[f"String.{_name}"] = Compared("pn_string_order", _name)
+for _name in ("sqrt", "sin", "cos", "tan", "asin", "acos", "atan", "atan2", "exp", "pow", "log10", "sinh", "cosh", "tanh"):
+    OPS[f"Math.{_name}"] = Call(_name)
+for _name in ("floor", "ceil", "round", "trunc"):
+    OPS[f"Real.{_name}"] = Call(f"pn_real_{_name}", context=True)
+for _name in ("isDigit", "isAlpha", "isAlphaNum", "isSpace", "isUpper", "isLower"):
+    OPS[f"Char.{_name}"] = Call(f"pn_char_is_{_name[2:].lower()}")
+OPS["Char.toUpper"] = Call("pn_char_to_upper")
+OPS["Char.toLower"] = Call("pn_char_to_lower")
+for _name in ("bernoulli", "binomial", "uniform", "discrete", "normal", "exponential", "poisson", "erlang", "chisq"):
+    OPS[f"Random.{_name}"] = Call(f"pn_random_{_name}", context=True)
+
+SWAPPED = {"List.rm": "List.rm", "List.rmall": "List.rmall", "Ms.cf": "Ms.cf"}
+"""Operations whose ML operands are (value, list) and whose C operands are (list, value)."""
+CONTAINED = {"Ms.<<=": "Ms.>>=", "Ms.<<": "Ms.>>"}
+"""Operations that are another one with its operands exchanged."""

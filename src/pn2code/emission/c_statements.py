@@ -1,0 +1,417 @@
+"""IR statements -> lines of C."""
+
+from __future__ import annotations
+
+from pn2code.emission.c_expressions import Expressions, Types, c_bytes, op_needs_context
+from pn2code.emission.environment import c_comment
+from pn2code.emission.names import Names, Scope
+from pn2code.lowering import ir
+from pn2code.lowering.functions import ir_nodes
+from pn2code.lowering.ir import Ir, Rep, Stmt
+
+_WIDTH = 100
+_INDENT = "    "
+
+
+def wrap(line: str, width: int = _WIDTH) -> list[str]:
+    """Break a long line of C at its outermost commas, operators or `=`; literals and comments stay whole."""
+    if len(line) <= width or line.lstrip().startswith(("/*", "#")):
+        return [line]
+    indent = len(line) - len(line.lstrip())
+    best: tuple[int, int, int] | None = None  # (depth, -position, position)
+    depth, i, in_string = 0, indent, False
+    while i < len(line) and (i <= width or best is None):
+        c = line[i]
+        if in_string:
+            if c == "\\":
+                i += 1
+            elif c == '"':
+                in_string = False
+        elif c == '"':
+            in_string = True
+        elif c in "([{":
+            depth += 1
+        elif c in ")]}":
+            depth -= 1
+        elif c == " " and i > indent + 20:
+            before, after = line[i - 1], line[i + 1 : i + 3]
+            if before == "," or after in ("&&", "||", "? ", ": ", "+ ", "- ", "= "):
+                score = (depth + (0 if before == "," or after in ("&&", "||", "? ", ": ") else 1), -i, i)
+                if after == "= ":
+                    score = (depth + 3, -i, i)
+                if i <= width and (best is None or score < best):
+                    best = score
+                elif best is None:
+                    best = score
+        i += 1
+    if best is None:
+        return [line]
+    position = best[2]
+    rest = " " * (indent + 8) + line[position + 1 :]
+    return [line[:position], *wrap(rest, width)]
+
+
+class Statements:
+    """Prints the statements of one C function."""
+
+    def __init__(self, types: Types, expressions: Expressions, scope: Scope, real_time: bool) -> None:
+        self._types = types
+        self._names: Names = types.names
+        self._x = expressions
+        self._scope = scope
+        self._real_time = real_time
+        self.lines: list[str] = []
+        self._depth = 1
+        self.self_parameters: tuple[ir.Local, ...] = ()
+        self.self_call = ""
+        self.result: str | None = None
+        self.is_looping = False
+        self.is_void = False
+        self.tables_of_places: tuple[str, ...] = ()
+        self.bags: tuple[str, ...] = ()
+        self.timed: tuple[bool, ...] = ()
+        self.moves = "moves"
+        self.variable_types: tuple[ir.IrType, ...] = ()
+        self.has_arena_values = True
+        self.keeps = False
+        self._loops = 0
+
+    def line(self, text: str) -> None:
+        """One line at the present depth, broken if it is long."""
+        self.lines.extend(wrap(_INDENT * self._depth + text))
+
+    def note(self, text: str) -> None:
+        """A comment line, shortened if it is very long."""
+        clean = c_comment(text)
+        if clean:
+            room = _WIDTH - 4 * self._depth - 6
+            self.line(f"/* {clean if len(clean) <= room else clean[: room - 4] + ' ...'} */")
+
+    def block(self, statements: tuple[Stmt, ...]) -> None:
+        """Statements one level deeper."""
+        self._depth += 1
+        for s in statements:
+            self.statement(s)
+        self._depth -= 1
+
+    def body(self, statements: tuple[Stmt, ...]) -> None:
+        """Statements at the present depth."""
+        for s in statements:
+            self.statement(s)
+
+    def _next(self) -> None:
+        """Goes on with the next candidate."""
+        if self._loops:
+            self.line(_INDENT + "continue;")
+        else:
+            self._depth += 1
+            self.finish_search()
+            self._depth -= 1
+        self.line("}")
+
+    def finish_search(self) -> None:
+        """The end of an enumeration that was not stopped."""
+        if self.keeps:
+            self.line("if (!is_kept) {")
+            self.line(_INDENT + "pn_arena_release(cx->arena, mark);")
+            self.line("}")
+        self.line("return true;")
+
+    def _declaration(self, local: ir.Local) -> str:
+        return f"{self._types.name(local.type)} {self._x.local(local)}"
+
+    # --- statements ----------------------------------------------------------------------------
+
+    def statement(self, s: Stmt) -> None:
+        """Print one statement."""
+        match s:
+            case ir.Let(local=local, value=value, mutable=mutable):
+                text = self._x.text(value)
+                self.line(f"{'' if mutable else 'const '}{self._declaration(local)} = {text};")
+            case ir.Declare(local=local):
+                self.line(f"{self._declaration(local)} = {self._types.zero(local.type)};")
+            case ir.Assign(local=local, value=value):
+                self.line(f"{self._x.local(local)} = {self._x.text(value)};")
+            case ir.Fill():
+                parts = ["cx", f"&{self._names.table(s.table)}", f"&{self._x.local(s.local)}"]
+                parts += [self._x.text(a) for a in s.arguments]
+                self.line(f"pn_colset_{s.name}({', '.join(parts)});")
+            case ir.SetGlobal():
+                self._set_global(s)
+            case ir.Do(value=value):
+                text = self._x.text(value)
+                is_void = value.type.rep is Rep.UNIT
+                self.line(f"{text};" if is_void else f"(void){self._x.inside(value, 14)};")
+            case ir.If():
+                self._if(s)
+            case ir.While():
+                self.line("while (pn_ok(cx)) {")
+                self.block(s.setup)
+                self.line(f"{_INDENT}if (!({self._x.text(s.condition)})) {{")
+                self.line(f"{_INDENT * 2}break;")
+                self.line(f"{_INDENT}}}")
+                self.block(s.body)
+                self.line("}")
+            case ir.ForList():
+                self._for_list(s)
+            case ir.ForCount(local=local, count=count):
+                i = self._x.local(local)
+                self.line(f"for (int64_t {i} = 0; ({i} < {self._x.condition(count)}) && pn_ok(cx); {i}++) {{")
+                self.block(s.body)
+                self.line("}")
+            case ir.Return(value=value):
+                self._return(value)
+            case ir.SelfCall():
+                self._self_call(s)
+            case ir.Raise(name=name):
+                self.line(f"pn_raise(cx, {_error(name)}, {c_bytes(name)});")
+            case ir.ClearError():
+                self.line("pn_clear_error(cx);")
+            case ir.Note(text=text):
+                self.note(text)
+            case _:
+                self._net_statement(s)
+
+    def _set_global(self, s: ir.SetGlobal) -> None:
+        name = self._names.value(s.name, self._x.global_hints.get(s.name, s.name))
+        if not s.is_reference:
+            self.line(f"{name} = {self._x.text(s.value)};")
+            return
+        value = self._x.text(s.value)
+        t = self._types.name(s.value.type)
+        fresh = self._scope.name(("new value", id(s)), "new_value")
+        self.line(f"const {t} {fresh} = {value};")
+        self.line("if (pn_ok(cx)) {")
+        self.line(f"{_INDENT}{name} = {fresh};")
+        self.line("}")
+
+    def _if(self, s: ir.If, prefix: str = "") -> None:
+        condition, then, otherwise = s.condition, s.then, s.otherwise
+        if not then and not otherwise:
+            return
+        if not then:
+            condition, then, otherwise = ir.Op("Bool.not", (condition,), ir.BOOL), otherwise, ()
+        self.line(f"{prefix}if ({self._x.text(condition)}) {{")
+        self.block(then)
+        if len(otherwise) == 1 and isinstance(otherwise[0], ir.If):
+            inner = otherwise[0]
+            if inner.then:
+                self._if(inner, "} else ")
+                return
+        if otherwise:
+            self.line("} else {")
+            self.block(otherwise)
+        self.line("}")
+
+    def _for_list(self, s: ir.ForList) -> None:
+        cell = self._x.local(s.cell)
+        t = self._types.name(s.cell.type)
+        until = f" && !{self._x.local(s.until)}" if s.until is not None else ""
+        start = self._x.text(s.list)
+        head = f"for ({t} {cell} = {start}; ({cell} != NULL){until} && pn_ok(cx); {cell} = {cell}->tail) {{"
+        self.line(head)
+        self._loops += 1
+        self.block(s.body)
+        self._loops -= 1
+        self.line("}")
+
+    def _return(self, value: Ir | None) -> None:
+        if self.result is not None:
+            if value is not None:
+                self.line(f"{self.result} = {self._x.text(value)};")
+        elif value is None:
+            self.line("return;")
+        else:
+            self.line(f"return {self._x.text(value)};")
+
+    def _self_call(self, s: ir.SelfCall) -> None:
+        if not self.is_looping:
+            parts = ["cx", *(self._x.text(a) for a in s.arguments)]
+            text = f"{self.self_call}({', '.join(parts)});"
+            way = f"{self.result} = " if self.result else "return "
+            target = "" if self.is_void else way
+            self.line(target + text)
+            return
+        changed = [
+            (p, a)
+            for p, a in zip(self.self_parameters, s.arguments, strict=True)
+            if not (isinstance(a, ir.Use) and a.local == p)
+        ]
+        if len(changed) == 1:
+            p, a = changed[0]
+            self.line(f"{self._x.local(p)} = {self._x.text(a)};")
+            return
+        fresh: list[tuple[ir.Local, str]] = []
+        for p, a in changed:
+            name = self._scope.name(("next", id(s), p.uid), f"next_{p.hint}")
+            fresh.append((p, name))
+            self.line(f"const {self._types.name(p.type)} {name} = {self._x.text(a)};")
+        for p, name in fresh:
+            self.line(f"{self._x.local(p)} = {name};")
+
+    # --- statements of transitions -------------------------------------------------------------
+
+    def _net_statement(self, s: Stmt) -> None:
+        match s:
+            case ir.ForTokens():
+                self._for_tokens(s)
+            case ir.ForValues():
+                self._for_values(s)
+            case ir.Bind(variable=variable, value=value):
+                target = self._x.text(ir.Bound(variable, self.variable_types[variable]))
+                self.line(f"{target} = {self._x.text(value)};")
+            case ir.Unless(condition=condition, note=note):
+                if note:
+                    self.note(note)
+                self.line(f"if ({self._x.text(ir.Op('Bool.not', (condition,), ir.BOOL))}) {{")
+                self._next()
+            case ir.UnlessLegal(variable=variable, table=table):
+                value = self._x.address(ir.Bound(variable, self.variable_types[variable]))
+                self.line(f"if (!pn_is_legal(cx, &{self._names.table(table)}, {value})) {{")
+                self._next()
+            case ir.UnlessAvailable():
+                self._unless_available(s)
+            case ir.UnlessEmpty(place=place, note=note):
+                self.note(note)
+                self.line(f"if (pn_bag_available(&{self.bags[place]}, m, cx->now) > 0U) {{")
+                self._next()
+            case ir.Wanted(takes=takes):
+                self._wanted(takes)
+            case ir.Yield():
+                self._yield()
+            case ir.Take() | ir.Put():
+                self._move(s)
+            case ir.TakeAll() | ir.PutAll():
+                self._moves(s)
+            case ir.Reset(place=place, note=note):
+                self.note(note)
+                self.line(f"pn_moves_reset(&{self.moves}, &{self.bags[place]}, cx->now);")
+
+    def _for_tokens(self, s: ir.ForTokens) -> None:
+        i = self._x.local(s.index)
+        place = self._x.place_names[s.place]
+        self.note(s.note)
+        self.line(f"for (uint32_t {i} = 0U; {i} < m->{place}.used; {i}++) {{")
+        self._loops += 1
+        if self.timed[s.place]:
+            self._depth += 1
+            self.note("tokens of one value lie together, the earliest first: look at each value once")
+            table = self.tables_of_places[s.place]
+            token = f"m->{place}.token"
+            self.line(f"if (({i} > 0U) && pn_equal(&{table}, &{token}[{i}].value, &{token}[{i} - 1U].value)) {{")
+            self._next()
+            self._depth -= 1
+        self.block(s.body)
+        self._loops -= 1
+        self.line("}")
+
+    def _for_values(self, s: ir.ForValues) -> None:
+        table = self._names.table(s.table)
+        i = self._scope.name(("values", s.variable), "number")
+        value = self._x.address(ir.Bound(s.variable, self.variable_types[s.variable]))
+        self.note(s.note)
+        self.line(f"for (uint64_t {i} = 0U; {i} < pn_type_size(&{table}); {i}++) {{")
+        self._loops += 1
+        self.line(f"{_INDENT}pn_type_value(&{table}, {i}, {value});")
+        self.block(s.body)
+        self._loops -= 1
+        self.line("}")
+
+    def _unless_available(self, s: ir.UnlessAvailable) -> None:
+        token = f"m->{self._x.place_names[s.place]}.token[{self._x.local(s.index)}]"
+        if s.limit is None:
+            self.line(f"if ({token}.count < {s.count}U) {{")
+        else:
+            member = "real" if self._real_time else "integer"
+            self.line(f"if ({token}.stamp.{member} > {self._x.inside(s.limit, 10)}) {{")
+        self._next()
+
+    def _wanted(self, takes: tuple[Stmt, ...]) -> None:
+        name = self._scope.name(("wanted", id(takes)), "wanted")
+        holds = self._scope.name(("holds", id(takes)), "holds")
+        before, self.moves = self.moves, name
+        mark = self._scope.name(("mark", id(takes)), "before")
+        self.line(f"const size_t {mark} = pn_arena_mark(cx->arena);")
+        self.line(f"pn_moves_t {name};")
+        self.line(f"pn_moves_init(&{name}, cx);")
+        self.body(takes)
+        self.line(f"const bool {holds} = pn_moves_are_possible(&{name}, m);")
+        self.line(f"pn_arena_release(cx->arena, {mark});")
+        self.line(f"if (!{holds}) {{")
+        self._next()
+        self.moves = before
+
+    def _yield(self) -> None:
+        self.line("if (!pn_ok(cx)) {")
+        self.line(f"{_INDENT}return true;")
+        self.line("}")
+        if self.keeps:
+            self.line("is_kept = true;")
+        self.line("if (!sink(user, self, &b)) {")
+        self.line(f"{_INDENT}return false;")
+        self.line("}")
+
+    def _move(self, s: ir.Take | ir.Put) -> None:
+        if s.note:
+            self.note(s.note)
+        verb, time = ("take", s.limit) if isinstance(s, ir.Take) else ("put", s.stamp)
+        parts = [
+            f"&{self.moves}", f"&{self.bags[s.place]}", self._x.address(s.value), self._x.text(s.count),
+            self._x.time(time),
+        ]  # fmt: skip
+        self.line(f"pn_moves_{verb}({', '.join(parts)});")
+
+    def _moves(self, s: ir.TakeAll | ir.PutAll) -> None:
+        if s.note:
+            self.note(s.note)
+        if isinstance(s, ir.TakeAll):
+            verb, time = "take_list", s.limit
+        else:
+            verb, time = ("put_timed" if s.timed else "put_list"), s.stamp
+        parts = [
+            f"&{self.moves}", f"&{self.bags[s.place]}", f"&{self._names.table(s.table)}",
+            self._x.text(s.multiset), self._x.time(time),
+        ]  # fmt: skip
+        self.line(f"pn_moves_{verb}({', '.join(parts)});")
+
+
+_ERRORS = {
+    "Match": "PN_ERR_MATCH",
+    "Bind": "PN_ERR_BIND",
+    "Div": "PN_ERR_DIV",
+    "Overflow": "PN_ERR_OVERFLOW",
+    "Subscript": "PN_ERR_SUBSCRIPT",
+    "Empty": "PN_ERR_EMPTY",
+    "Domain": "PN_ERR_DOMAIN",
+    "Size": "PN_ERR_DOMAIN",
+    "Chr": "PN_ERR_DOMAIN",
+    "Subtract": "PN_ERR_SUBTRACT",
+}
+
+
+def _error(name: str) -> str:
+    return _ERRORS.get(name, "PN_ERR_RAISED")
+
+
+def uses_context(
+    statements: tuple[Stmt, ...], callees: frozenset[str], definitions: dict[str, ir.Definition]
+) -> bool:
+    """Whether statements need the context: something may raise, allocate, or look at the time."""
+    for node in ir_nodes(statements):
+        match node:
+            case ir.Op() if op_needs_context(node):
+                return True
+            case ir.FunCall(function=f) if f in callees:
+                return True
+            case ir.Raise() | ir.ClearError() | ir.Ok() | ir.HasError() | ir.Now() | ir.Fill() | ir.While():
+                return True
+            case ir.ForList() | ir.ForCount():
+                return True
+            case ir.SetGlobal(is_reference=True):
+                return True
+            case ir.MakeUnion(tag=tag, type=t) if node.argument is not None:
+                definition = definitions[t.name]
+                assert isinstance(definition, ir.UnionDef)
+                if definition.constructors[tag][2]:
+                    return True
+    return False

@@ -1,0 +1,183 @@
+"""C declarations of the net's types, and the constant tables (`pn_type_t`) that describe its colour sets."""
+
+from __future__ import annotations
+
+from pn2code.emission.c_expressions import Types, c_integer
+from pn2code.emission.environment import c_comment, c_float, c_string
+from pn2code.emission.names import label
+from pn2code.lowering import ir
+from pn2code.lowering.ir import Definition, Descriptor, Rep
+
+_KINDS = {
+    Rep.UNIT: "PN_KIND_UNIT",
+    Rep.BOOL: "PN_KIND_BOOL",
+    Rep.INT: "PN_KIND_INT",
+    Rep.TIME: "PN_KIND_INT",
+    Rep.REAL: "PN_KIND_REAL",
+    Rep.STRING: "PN_KIND_STRING",
+    Rep.CHAR: "PN_KIND_CHAR",
+    Rep.ENUM: "PN_KIND_ENUM",
+    Rep.STRUCT: "PN_KIND_RECORD",
+    Rep.LIST: "PN_KIND_LIST",
+    Rep.UNION: "PN_KIND_UNION",
+}
+
+
+def forward(definition: Definition, types: Types) -> str:
+    """The typedef that comes before all bodies, "" for enumerations."""
+    names = types.names
+    match definition:
+        case ir.EnumDef():
+            return ""
+        case ir.StructDef(name=name) | ir.UnionDef(name=name):
+            return f"typedef struct {names.tag(name)} {names.type(name)};"
+        case ir.ListDef(name=name):
+            cell = names.cell(name)
+            tag = cell.removesuffix("_t")
+            return f"typedef struct {tag} {cell};\ntypedef const {cell} *{names.type(name)};"
+
+
+def body(definition: Definition, types: Types) -> list[str]:
+    """The declaration itself."""
+    names = types.names
+    match definition:
+        case ir.EnumDef(name=name, constructors=constructors):
+            return [*_enum(name, constructors, types, f"enum {names.tag(name)}", names.type(name))]
+        case ir.StructDef(name=name, fields=fields):
+            lines = [f"struct {names.tag(name)} {{"]
+            lines += [f"    {types.name(t)} {label(x)};" for x, t in fields]
+            return [*lines, "};"]
+        case ir.ListDef(name=name, element=element):
+            tag = names.cell(name).removesuffix("_t")
+            return [
+                f"struct {tag} {{",
+                f"    {names.type(name)} tail;",
+                f"    {types.name(element)} head;",
+                "};",
+            ]
+        case ir.UnionDef(name=name, constructors=union):
+            tag = f"{names.tag(name)}_tag"
+            lines = _enum(name, tuple(c for c, _, _ in union), types, f"enum {tag}", f"{tag}_t")
+            lines += ["", f"struct {names.tag(name)} {{", f"    {tag}_t tag;", "    union {"]
+            for constructor, argument, boxed in union:
+                if argument is not None:
+                    pointer = "const " if boxed else ""
+                    star = "*" if boxed else ""
+                    lines.append(f"        {pointer}{types.name(argument)} {star}{label(constructor)};")
+            return [*lines, "    } as;", "};"]
+
+
+def _enum(
+    name: str, constructors: tuple[str, ...], types: Types, head: str, typedef: str
+) -> list[str]:
+    lines = [f"typedef {head} {{"]
+    last = len(constructors) - 1
+    for i, c in enumerate(constructors):
+        comma = "," if i < last else ""
+        lines.append(f"    {types.names.constructor(name, c)} = {i}{comma}")
+    return [*lines, f"}} {typedef};"]
+
+
+class Tables:
+    """Prints descriptors."""
+
+    def __init__(self, types: Types, descriptors: dict[str, Descriptor], names_of_members: dict[str, str]) -> None:
+        self._types = types
+        self._names = types.names
+        self._descriptors = descriptors
+        self._members = names_of_members
+
+    def needed(self, roots: set[str]) -> set[str]:
+        """The tables that some tables refer to, with these."""
+        found: set[str] = set()
+        pending = list(roots)
+        while pending:
+            key = pending.pop()
+            if key in found or not key:
+                continue
+            found.add(key)
+            d = self._descriptors[key]
+            pending += [part for _, part in d.fields if part]
+            if d.element:
+                pending.append(d.element)
+        return found
+
+    def is_recursive(self, key: str) -> bool:
+        """Whether the table refers to itself, perhaps through others."""
+        d = self._descriptors[key]
+        parts = {part for _, part in d.fields if part} | ({d.element} if d.element else set())
+        return key in self.needed(parts)
+
+    def print(self, key: str) -> list[str]:
+        """The constants that make the table."""
+        d = self._descriptors[key]
+        name = self._names.table(key)
+        c_type = self._types.name(d.type)
+        lines: list[str] = []
+        if d.comment:
+            lines.append(f"/* {c_comment(d.comment)} */")
+        members = [
+            f".kind = {_KINDS[d.type.rep]}",
+            f".name = {c_string(key.removeprefix('type '))}",
+            f".size = sizeof({c_type})",
+        ]
+        members += self._flags(d)
+        if d.names:
+            strings = ", ".join(c_string(n) for n in d.names)
+            lines.append(f"static const char *const {name}_names[] = {{ {strings} }};")
+            members.append(f".name_of_value = {name}_names")
+        if d.type.rep is Rep.ENUM:
+            members.append(f".count = {len(d.names)}U")
+        if d.fields:
+            lines += self._fields(d, name, c_type)
+            members += [f".count = {len(d.fields)}U", f".field = {name}_fields"]
+        if d.element:
+            cell = self._names.cell(d.type.name)
+            members += [
+                f".element = &{self._names.table(d.element)}",
+                f".head = offsetof({cell}, head)",
+                f".cell = sizeof({cell})",
+            ]
+        if d.member:
+            members.append(f".member = {self._members[d.member]}")
+        lines.append(f"static const pn_type_t {name} = {{")
+        lines += [f"    {m}," for m in members]
+        return [*lines, "};"]
+
+    @staticmethod
+    def _flags(d: Descriptor) -> list[str]:
+        members = []
+        if d.low is not None or d.high is not None:
+            members.append(".has_range = true")
+            if d.type.rep is Rep.REAL:
+                low = c_float(float(d.low)) if d.low is not None else "-(double)INFINITY"
+                high = c_float(float(d.high)) if d.high is not None else "(double)INFINITY"
+                members += [f".real_low = {low}", f".real_high = {high}"]
+            else:
+                low = c_integer(int(d.low)) if d.low is not None else "INT64_MIN"
+                high = c_integer(int(d.high)) if d.high is not None else "INT64_MAX"
+                members += [f".low = {low}", f".high = {high}"]
+        for flag in ("is_index", "is_float32", "is_narrow", "is_tuple"):
+            if getattr(d, flag):
+                members.append(f".{flag} = true")
+        if d.chars:
+            members += [
+                ".has_chars = true", f".char_low = {d.chars[0]}U", f".char_high = {d.chars[1]}U",
+            ]  # fmt: skip
+        return members
+
+    def _fields(self, d: Descriptor, name: str, c_type: str) -> list[str]:
+        lines = [f"static const pn_field_t {name}_fields[] = {{"]
+        definition = self._types.definitions[d.type.name]
+        boxed: dict[str, bool] = {}
+        if isinstance(definition, ir.UnionDef):
+            boxed = {c: b for c, _, b in definition.constructors}
+        for text, part in d.fields:
+            if not part:
+                lines.append(f"    {{ {c_string(text)}, NULL, 0U, false }},")
+                continue
+            member = label(text) if isinstance(definition, ir.StructDef) else f"as.{label(text)}"
+            flag = "true" if boxed.get(text) else "false"
+            table = self._names.table(part)
+            lines.append(f"    {{ {c_string(text)}, &{table}, offsetof({c_type}, {member}), {flag} }},")
+        return [*lines, "};"]
