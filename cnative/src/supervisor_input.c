@@ -7,7 +7,9 @@
 #include "supervisor_impl.h"
 
 #include <errno.h>
+#include <float.h>
 #include <inttypes.h>
+#include <math.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -20,6 +22,7 @@ typedef struct input_text {
     size_t at;      /* of the next line */
     uint32_t line;  /* number of the last line taken */
     char columns[256]; /* "x y z rx ry rz": what a line should hold */
+    uint32_t line_of[PN_CHANNEL_SCALARS]; /* of each value */
 } input_text_t;
 
 static bool read_file(sup_t *sup, const pn_cell_input_t *input, input_text_t *text)
@@ -115,7 +118,10 @@ static bool parse(sup_t *sup, const pn_cell_input_t *input, input_text_t *text, 
                             text->path, text->line, token->column, token->report, wanted, (wanted == 1U) ? "" : "s",
                             text->columns);
         }
-        done += wanted;
+        for (uint32_t k = 0U; (k < wanted) && (done < PN_CHANNEL_SCALARS); k++) {
+            text->line_of[done] = text->line;
+            done++;
+        }
     }
     if (take_line(text, &line, &length)) {
         char shown[160];
@@ -125,6 +131,23 @@ static bool parse(sup_t *sup, const pn_cell_input_t *input, input_text_t *text, 
                         place->line_count);
     }
     return true;
+}
+
+/* The values are right one by one, but the place does not take the token: says which of them may be the reason. */
+static bool stop_for_colour(sup_t *sup, const pn_cell_input_t *input, const input_text_t *text, const pn_message_t *token)
+{
+    const pn_place_t *const place = &sup->net->place[input->place];
+    for (uint32_t i = 0U; i < token->count; i++) {
+        if ((token->leaf[i].kind == PN_LEAF_REAL) && (fabs(token->leaf[i].real) > (double)FLT_MAX)) {
+            return sup_stop(sup, SUP_EXIT_USAGE,
+                            "%s:%" PRIu32 ":%" PRIu32 ": %g is too large for `%s` of colour set `%s`, which is stored in single "
+                            "precision", text->path, text->line_of[i], token->column_of[i], token->leaf[i].real,
+                            input->scalar[i].label, input->scalar[i].colset);
+        }
+    }
+    return sup_stop(sup, SUP_EXIT_USAGE, "%s:%" PRIu32 ":%" PRIu32 ": the token that begins here is not in the colour set `%s` of "
+                    "place `%s`", text->path, (token->count > 0U) ? text->line_of[0] : 1U,
+                    (token->count > 0U) ? token->column_of[0] : 1U, place->colset, place->name);
 }
 
 bool sup_read_inputs(sup_t *sup, pn_text_t *json)
@@ -140,12 +163,12 @@ bool sup_read_inputs(sup_t *sup, pn_text_t *json)
         }
         place->clear(sup->marking);
         if (!place->put(&sup->cx, sup->marking, token.leaf, token.count)) {
-            const pn_error_t error = sup->cx.error;
+            const bool colour = (sup->cx.error == PN_ERR_COLOUR);
+            if (!colour) {
+                return sup_stop_error(sup, "putting the token of an input file");
+            }
             sup->cx.error = PN_OK;
-            return sup_stop(sup, SUP_EXIT_USAGE, "%s:1:1: %s `%s` of place `%s`", text.path,
-                            (error == PN_ERR_COLOUR) ? "the values are numbers, but together they are not in the colour set"
-                                                     : "the token cannot be put: colour set",
-                            place->colset, place->name);
+            return stop_for_colour(sup, input, &text, &token);
         }
         if (i > 0U) {
             pn_text_str(json, ", ");

@@ -108,9 +108,9 @@ def test_scalars_of_a_colour_set() -> None:
     found = scalars_of(alias)
     assert found is not None
     assert [(s.label, s.colset) for s in found] == [
-        ("1", "COUNT"),
-        ("2.x", "COORD"),
-        ("2.y", "COORD"),
+        ("#1", "COUNT"),
+        ("#2.x", "COORD"),
+        ("#2.y", "COORD"),
     ]
     assert (found[0].low, found[0].high) == (0, 9)
     assert scalars_of(Colset("LIST", Kind.LIST, INT, components=(count,))) is None

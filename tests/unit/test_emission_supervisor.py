@@ -54,7 +54,7 @@ def test_channels_inputs_and_final_places() -> None:
     assert text.count("PN_CHANNEL_OUT") == 1
     assert text.count("PN_CHANNEL_IN,") == 1
     assert '"joint", "linear"' in text
-    assert '.label = "2.how", .colset = "MODE"' in text
+    assert '.label = "#2.how", .colset = "MODE"' in text
     assert ".low = INT64_C(0), .high = INT64_C(9)" in text
     assert ".reply_timeout_s = 120.0," in text
     assert re.search(r"s_final\[\] = \{\s+3U,", text)

@@ -48,6 +48,7 @@ typedef enum pn_channel_state {
 typedef struct pn_message {
     uint32_t count;
     pn_leaf_t leaf[PN_CHANNEL_SCALARS];
+    uint32_t column_of[PN_CHANNEL_SCALARS]; /* where in its line each of them begins, 1-based */
     bool sealed;          /* it has the line `# seq session crc` */
     uint64_t seq;
     pn_refusal_t refusal;

@@ -32,7 +32,7 @@ class Scalar:
     """One scalar.
 
     Args:
-        label: path of its component, "p.x"; for messages.
+        label: path of its component, "#2.x", with labels of records and ML's selectors of products; for messages.
         colset: name of its colour set; for messages.
         names: ENUM: the constructors. UNIT: its one name.
         low, high: INT, INDEX, REAL: inclusive bounds, None: unbounded.
@@ -67,7 +67,7 @@ def scalars_of(colset: Colset, label: str = "") -> tuple[Scalar, ...] | None:
         return None if base is None else scalars_of(base, label)
     if c.kind in (Kind.PRODUCT, Kind.RECORD):
         found: list[Scalar] = []
-        labels = c.labels or tuple(str(i + 1) for i in range(len(c.components)))
+        labels = c.labels or tuple(f"#{i + 1}" for i in range(len(c.components)))
         for component, own in zip(c.components, labels, strict=True):
             inner = None
             if component is not None:
