@@ -78,7 +78,7 @@ loop: "loop" block "end" "loop"
      | TRUE -> true
      | FALSE -> false
      | NAME -> name
-     | NAME "(" expression ("," expression)* ")" -> function
+     | (NAME | SINGLE) "(" expression ("," expression)* ")" -> function
      | "(" expression ")" -> parenthesised
 
 OR: "or"

@@ -14,6 +14,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from dataclasses import astuple, dataclass
+from pathlib import PurePath
 from typing import Any, Final, Protocol, assert_never, cast
 
 import pn2code.robot.commands as commands
@@ -41,7 +42,7 @@ class FileError(Exception):
 
 
 class Files(Protocol):
-    """The shared files as the interpreter sees them, by channel name ("flag1_interno").
+    """The shared files as the interpreter sees them, by channel name: "flag1_interno" for `flag1_interno.robcad`.
 
     A signal (the one value of a unit colour set) is the scalar 1. Each method may raise `FileError`,
     which stops the script.
@@ -158,6 +159,7 @@ class Interpreter:
     ) -> None:
         self._program = program
         self._files = files
+        self._channel = {f.name: PurePath(f.path).stem for f in program.files.values()}
         self._tell = on_event
         self._limit = step_limit
         self._values: dict[str, ScriptValue] = {}
@@ -211,7 +213,7 @@ class Interpreter:
 
     def filled(self, name: str) -> bool:
         """Whether a file holds a message."""
-        return self._files.read(name) is not None
+        return self._files.read(self._channel[name]) is not None
 
     # Running
 
@@ -260,11 +262,12 @@ class Interpreter:
             case t.Read():
                 self._read(s)
             case t.Clear(file):
-                message = self._files.read(file.name)
+                channel = self._channel[file.name]
+                message = self._files.read(channel)
                 if message is None:
                     raise ScriptError(f"file `{file.name}` is empty, there is nothing to consume")
-                self._files.clear(file.name)
-                self._tell(MessageConsumed(file.name, message, self._line))
+                self._files.clear(channel)
+                self._tell(MessageConsumed(channel, message, self._line))
             case t.Write(file, values):
                 kinds = self._program.files[file.name].types
                 scalars = tuple(
@@ -272,8 +275,9 @@ class Interpreter:
                     for kind, v in zip(kinds, values, strict=False)
                     for x in _scalars(_stored(evaluate(v, self), kind))
                 ) or (1,)  # a signal
-                self._files.write(file.name, scalars)
-                self._tell(MessageWritten(file.name, scalars, self._line))
+                channel = self._channel[file.name]
+                self._files.write(channel, scalars)
+                self._tell(MessageWritten(channel, scalars, self._line))
             case t.WaitUntil(condition):
                 return self._wait_until(condition)
             case t.Mark(transition, binding):
@@ -294,21 +298,24 @@ class Interpreter:
     def _wait_until(self, condition: t.Expression) -> AwaitFile | None:
         if evaluate(condition, self):
             return None
-        empty = tuple(name for name in paths.files_in(condition) if not self.filled(name))
+        empty = tuple(
+            self._channel[name] for name in paths.files_in(condition) if not self.filled(name)
+        )
         if not empty:
             raise ScriptError("this wait can never end: all its files hold messages")
         return AwaitFile(empty, self._line)
 
     def _read(self, s: t.Read) -> None:
         name = s.file.name
-        message = self._files.read(name)
+        channel = self._channel[name]
+        message = self._files.read(channel)
         if message is None:
             raise ScriptError(f"file `{name}` is empty, there is nothing to read")
         kinds = self._program.files[name].types
         values = _typed(name, message, kinds)
         for target, kind, value in zip(s.targets, kinds, values, strict=True):
             self._assign(target.name, _stored(value, kind))
-        self._tell(MessageRead(name, message, self._line))
+        self._tell(MessageRead(channel, message, self._line))
 
     def _assign(self, name: str, value: ScriptValue) -> None:
         self._values[name] = _stored(value, self._program.variables[name].type)
