@@ -13,7 +13,7 @@ from collections.abc import Iterable
 from pn2code.diagnostics import Origin
 from pn2code.emission import c_tables
 from pn2code.emission.c_expressions import Expressions, Types, c_integer
-from pn2code.emission.c_statements import Statements, uses_context, wrap
+from pn2code.emission.c_statements import Statements, used_locals, uses_context, wrap
 from pn2code.emission.environment import c_comment, c_float, render
 from pn2code.emission.names import Names, Scope, stem
 from pn2code.emission.output import Block, OutputFile
@@ -78,21 +78,24 @@ class _Emitter:
 
     # --- pieces --------------------------------------------------------------------------------
 
-    def _printer(self, binding: str = "", scope: Scope | None = None) -> tuple[Statements, Expressions, Scope]:
-        scope = scope or Scope()
+    def _printer(
+        self, statements: tuple[ir.Stmt, ...], binding: str = ""
+    ) -> tuple[Statements, Expressions, Scope]:
+        scope = Scope()
         x = Expressions(self._types, self._net.real_time, scope, binding)
         x.functions = self._functions
         x.needs_context = self._needs_context
         x.place_names = tuple(self._names.place(p.index, p.name) for p in self._net.places)
         x.global_hints = {g.name: g.hint for g in self._net.globals}
         s = Statements(self._types, x, scope, self._net.real_time)
+        s.used = used_locals(statements)
         s.bags = tuple(self._names.bag(p.index, p.name) for p in self._net.places)
         s.timed = tuple(p.timed for p in self._net.places)
         s.tables_of_places = tuple(self._names.table(p.table) for p in self._net.places)
         return s, x, scope
 
     def _function(self, f: ir.Function) -> dict[str, object]:
-        s, x, scope = self._printer()
+        s, x, scope = self._printer(f.body)
         name = self._names.function(f.key, f.hint)
         has_context = f.key in self._needs_context
         parameters = [
@@ -105,6 +108,9 @@ class _Emitter:
         s.self_parameters, s.self_call, s.is_void = f.parameters, name, is_void
         s.is_looping = f.loops
         zero = "" if is_void else self._types.zero(f.result)
+        for p in f.parameters:
+            if p.uid not in s.used:
+                s.line(f"(void){x.local(p)};")
         if f.recursive:
             s.result = "" if is_void else scope.name("result", "result")
             if not is_void:
@@ -141,14 +147,13 @@ class _Emitter:
         return number
 
     def _global(self, g: ir.Global) -> dict[str, object]:
-        s, _, _ = self._printer()
+        s, x, _ = self._printer(g.setup)
         s.body(g.setup)
         name = self._names.value(g.name, g.hint)
         constant = ""
         if len(g.setup) == 1 and isinstance(g.setup[0], ir.SetGlobal) and not g.is_reference:
             value = g.setup[0].value
             if isinstance(value, ir.Const) and value.type.rep in (Rep.INT, Rep.REAL, Rep.BOOL):
-                _, x, _ = self._printer()
                 constant = x.text(value)
         return {
             "mark": self._block(f"val {g.name}", g.hint, "declaration", g.origin),
@@ -165,7 +170,7 @@ class _Emitter:
         }
 
     def _place(self, p: ir.Place) -> dict[str, object]:
-        s, _, _ = self._printer()
+        s, _, _ = self._printer(p.initial)
         s.body(p.initial)
         leaves = self._leaves(p.table)
         return {
@@ -219,13 +224,13 @@ class _Emitter:
         name = self._names.transition(t.index, t.name)
         members = Scope()
         variables = tuple(members.name(i, v.name) for i, v in enumerate(t.variables))
-        search, x, _ = self._printer("b.")
+        search, x, _ = self._printer(t.enumerate, "b.")
         x.variables = variables
         search.variable_types = tuple(v.type for v in t.variables)
         search.keeps = uses_context(_without_wanted(t.enumerate), self._needs_context, self._definitions)
         search.body(t.enumerate)
         search.finish_search()
-        fire, x, _ = self._printer("b->")
+        fire, x, _ = self._printer(t.fire, "b->")
         x.variables = variables
         fire.variable_types = search.variable_types
         fire.body(t.fire)

@@ -62,6 +62,7 @@ class Statements:
         self._real_time = real_time
         self.lines: list[str] = []
         self._depth = 1
+        self.used: frozenset[int] = frozenset()
         self.self_parameters: tuple[ir.Local, ...] = ()
         self.self_call = ""
         self.result: str | None = None
@@ -125,6 +126,12 @@ class Statements:
     def statement(self, s: Stmt) -> None:
         """Print one statement."""
         match s:
+            case (ir.Let(local=local, value=value) | ir.Assign(local=local, value=value)) if (
+                local.uid not in self.used
+            ):
+                self._discard(value)
+            case ir.Declare(local=local) if local.uid not in self.used:
+                pass
             case ir.Let(local=local, value=value, mutable=mutable):
                 text = self._x.text(value)
                 self.line(f"{'' if mutable else 'const '}{self._declaration(local)} = {text};")
@@ -139,9 +146,7 @@ class Statements:
             case ir.SetGlobal():
                 self._set_global(s)
             case ir.Do(value=value):
-                text = self._x.text(value)
-                is_void = value.type.rep is Rep.UNIT
-                self.line(f"{text};" if is_void else f"(void){self._x.inside(value, 14)};")
+                self._discard(value)
             case ir.If():
                 self._if(s)
             case ir.While():
@@ -171,6 +176,15 @@ class Statements:
                 self.note(text)
             case _:
                 self._net_statement(s)
+
+    def _discard(self, value: Ir) -> None:
+        """Evaluate for what it does, if it can do anything."""
+        if not any(isinstance(n, (ir.FunCall, ir.Op)) for n in ir_nodes(value)):
+            return
+        if value.type.rep is Rep.UNIT:
+            self.line(f"{self._x.text(value)};")
+        else:
+            self.line(f"(void){self._x.inside(value, 14)};")
 
     def _set_global(self, s: ir.SetGlobal) -> None:
         name = self._names.value(s.name, self._x.global_hints.get(s.name, s.name))
@@ -391,6 +405,18 @@ _ERRORS = {
 
 def _error(name: str) -> str:
     return _ERRORS.get(name, "PN_ERR_RAISED")
+
+
+def used_locals(statements: tuple[Stmt, ...]) -> frozenset[int]:
+    """The locals whose values are looked at."""
+    used: set[int] = set()
+    for node in ir_nodes(statements):
+        match node:
+            case ir.Use(local=local) | ir.Fill(local=local):
+                used.add(local.uid)
+            case ir.ForList(until=until) if until is not None:
+                used.add(until.uid)
+    return frozenset(used)
 
 
 def uses_context(
