@@ -7,17 +7,11 @@ from pathlib import Path
 from typing import Annotated
 
 import typer
-from rich.console import Console
 
 from pn2code.cli.generate import SetOption, parse_values
 from pn2code.cli.options import Exit, Format, FormatOption, print_diagnostics, stop
 from pn2code.diagnostics import Diagnostics
 from pn2code.emission.write import OutputFolderError
-from pn2code.report import summary as summaries
-from pn2code.report.album import Album
-from pn2code.run.cell import RunOptions, run_cell
-from pn2code.run.engine import Observer
-from pn2code.run.progress import Progress
 
 EPILOG = """Examples:
 
@@ -63,6 +57,15 @@ def run(
 
     Simulated time runs as fast as it can, in lock-step: two runs give the same trace.
     """
+    # PyBullet, SciPy and the like take half a second to load: only this verb needs them.
+    from rich.console import Console
+
+    from pn2code.report import summary as summaries
+    from pn2code.report.album import Album
+    from pn2code.run.cell import RunOptions, run_cell
+    from pn2code.run.engine import Observer
+    from pn2code.run.progress import Progress
+
     d = Diagnostics()
     console = Console(highlight=False)
     options = RunOptions(
@@ -81,7 +84,7 @@ def run(
             raise typer.Exit(Exit.USAGE) from None
         if result is not None and pictures:
             progress.say("drawing charts")
-            from pn2code.report import charts  # matplotlib takes half a second to load
+            from pn2code.report import charts
 
             charts.draw(result.record, tuple(r.name for r in result.prepared.config.robots), out)
     if result is None:
