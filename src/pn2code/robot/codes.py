@@ -30,7 +30,7 @@ UNSUPPORTED_KINEMATICS = register(
 ROBOT_KEY = register(
     "robot-key",
     "a key of `[robots]`, `[motion]` or `[scene]` is not known or is missing",
-    "The keys of these sections are fixed, see docs/cell.md. A misspelt key is an error, not silently ignored.",
+    "The keys of these sections are fixed, see docs/robots.md. A misspelt key is an error, not silently ignored.",
 )
 ROBOT_VALUE = register(
     "robot-value",

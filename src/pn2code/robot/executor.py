@@ -28,9 +28,10 @@ from pn2code.robot.commands import (
 )
 from pn2code.robot.motion import MotionFault, Still, Trajectory, plan_lin, plan_ptp
 from pn2code.robot.scene import CellRobot, MotionConfig
-from pn2code.robot.transforms import Array, describe, inverse, matrix_of, pose_of
+from pn2code.robot.transforms import Array, describe, difference, inverse, matrix_of, pose_of
 
-CHECK_LENGTH = 0.005  # m: on a line, samples are no further apart than this on average
+CHECK_LENGTH = 0.005  # m: on a line, samples are no further apart than this on average,
+CHECK_ANGLE = math.radians(2.0)  # nor than this
 MotionKind = Literal["ptp", "lin", "tool", "measure", "wait"]
 
 
@@ -224,13 +225,9 @@ class RobotExecutor:
         target = pose_of(self._T_world_base @ T_end)
         step = self._config.sample
         if kind == "lin":
-            step = max(
-                step, path.duration / max(1.0, math.ceil(_length(self.pose, target) / CHECK_LENGTH))
-            )
+            way, turn = difference(matrix_of(self.pose), matrix_of(target))
+            parts = math.ceil(max(way / CHECK_LENGTH, turn / CHECK_ANGLE, 1.0) - 1e-6)
+            step = max(step, path.duration / parts)
         elif kind != "ptp":
             step = max(step, path.duration)
         return Motion(self.robot.name, command, kind, now, path, self.pose, target, result, step)
-
-
-def _length(a: Pose, b: Pose) -> float:
-    return math.dist((a.x, a.y, a.z), (b.x, b.y, b.z))

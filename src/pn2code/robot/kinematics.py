@@ -5,7 +5,7 @@
     for solution in k.inverse(T_base_tcp): solution.branch, solution.q
     k.conditioning(q).condition          # of the TCP Jacobian, lengths in m
 
-The inverse is `py-opw-kinematics` (docs/adr/002): all eight branches of an arm with parallel axes 2
+The inverse is `py-opw-kinematics` (docs/adr/006): all eight branches of an arm with parallel axes 2
 and 3 and a spherical wrist. Its parameters are derived from the URDF's axes and compared with the
 URDF's forward kinematics, which is the truth here; answers are verified against it as well.
 """

@@ -17,7 +17,7 @@ from dataclasses import dataclass
 from typing import Literal, Protocol
 
 import numpy as np
-from ruckig import InputParameter, Result, Ruckig, Synchronization
+from ruckig import InputParameter, Result, Ruckig
 from ruckig import Trajectory as RuckigTrajectory
 
 from pn2code.robot.commands import Pose
@@ -134,51 +134,54 @@ class Still:
 
 
 class _Law:
-    """A ruckig time law from rest to rest; `duration` s."""
+    """A jerk-limited law of one parameter from 0 to 1, from rest to rest; `duration` s."""
 
-    def __init__(
-        self, start: Array, target: Array, velocity: Array, acceleration: Array, jerk: Array
-    ) -> None:
-        n = len(start)
-        request = InputParameter(n)
-        request.current_position = start.tolist()
-        request.target_position = target.tolist()
-        request.max_velocity = velocity.tolist()
-        request.max_acceleration = acceleration.tolist()
-        request.max_jerk = jerk.tolist()
-        # Axes in proportion where possible (from rest to rest it is), so the path in joint space is a
-        # straight line and does not depend on the speed.
-        request.synchronization = Synchronization.Phase
-        self._law = RuckigTrajectory(n)
-        result = Ruckig(n).calculate(request, self._law)
+    def __init__(self, velocity: float, acceleration: float, jerk: float) -> None:
+        request = InputParameter(1)
+        request.current_position = [0.0]
+        request.target_position = [1.0]
+        request.max_velocity = [velocity]
+        request.max_acceleration = [acceleration]
+        request.max_jerk = [jerk]
+        self._law = RuckigTrajectory(1)
+        result = Ruckig(1).calculate(request, self._law)
         # `Working` is what an offline calculation answers when all is well.
         if result not in (Result.Working, Result.Finished):
             raise MotionFault("bad-command", f"no time law was found ({result.name})")
         self.duration = float(self._law.duration)
 
-    def at(self, t: float) -> tuple[Array, Array]:
-        """Position and speed."""
+    def at(self, t: float) -> tuple[float, float]:
+        """Parameter and its speed."""
         position, speed, _ = self._law.at_time(min(max(t, 0.0), self.duration))
-        return np.array(position), np.array(speed)
+        return float(position[0]), float(speed[0])
 
 
 class JointTrajectory:
-    """PTP: all axes start and arrive together."""
+    """PTP: all axes start and arrive together and are in proportion all the way.
 
-    def __init__(self, start: Array, target: Array, law: _Law) -> None:
+    One law drives all axes (phase synchronisation), as fast as the axis allows that has the most to
+    do. So the path in joint space is a straight line: it does not depend on the speed, and it stays
+    between the axis positions of its ends, hence inside the limits. (ruckig's own phase
+    synchronisation falls back to another path when the slowest axis by speed is not the slowest by
+    acceleration or jerk.)
+    """
+
+    def __init__(self, start: Array, target: Array, law: _Law | None) -> None:
         self._start, self._target, self._law = start, target, law
-        self.duration = law.duration
+        self._way = target - start
+        self.duration = 0.0 if law is None else law.duration
 
     def q(self, t: float) -> Array:
         """Joint position, rad; exactly the target at the end."""
-        if t <= 0.0:
-            return self._start
-        return self._target if t >= self.duration else np.asarray(self._law.at(t)[0])
+        if t >= self.duration or self._law is None:
+            return self._target
+        return np.asarray(self._start + self._law.at(t)[0] * self._way)
 
     def qd(self, t: float) -> Array:
         """Joint speed, rad/s."""
-        inside = 0.0 < t < self.duration
-        return self._law.at(t)[1] if inside else np.zeros(AXES)
+        if self._law is None or not 0.0 < t < self.duration:
+            return np.zeros(AXES)
+        return np.asarray(self._law.at(t)[1] * self._way)
 
     def sample(self, times: Array) -> Array:
         """Joint positions at many times."""
@@ -231,7 +234,7 @@ class LinearTrajectory:
 
     def way(self, times: Array) -> Array:
         """Fraction of the way at each time, 0 to 1."""
-        out = np.array([self._law.at(float(t))[0][0] for t in times])
+        out = np.array([self._law.at(float(t))[0] for t in times])
         out[times >= self.duration] = 1.0
         return np.asarray(np.clip(out, 0.0, 1.0))
 
@@ -243,9 +246,11 @@ class LinearTrajectory:
         """Joint speed, rad/s."""
         if not 0.0 < t < self.duration:
             return np.zeros(AXES)
-        rate = float(self._law.at(t)[1][0])
-        q = self.q(t)
-        return np.asarray(self.rates(q[None], np.array([rate]))[0])
+        return np.asarray(self.rates(self.q(t)[None], np.array([self.rate(t)]))[0])
+
+    def rate(self, t: float) -> float:
+        """Speed along the way, 1/s."""
+        return self._law.at(t)[1]
 
     def rates(self, q: Array, rate: Array) -> Array:
         """Joint speeds (n, 6) at joint positions (n, 6) for speeds along the way (1/s)."""
@@ -268,7 +273,15 @@ def plan_ptp(
     """A joint move. `speed`: fraction (0..1] of the configured joint speed. Raises MotionFault."""
     _check_speed(speed, 1.0, "speed must be a fraction above 0 and at most 1")
     _check_limits(kinematics, target[None])
-    law = _Law(start, target, limits.velocity * speed, limits.acceleration, limits.jerk)
+    way = np.abs(target - start)
+    if way.max() < _SAME:
+        return JointTrajectory(start, target, None)
+    far = way > _SAME
+    law = _Law(
+        float((limits.velocity[far] * speed / way[far]).min()),
+        float((limits.acceleration[far] / way[far]).min()),
+        float((limits.jerk[far] / way[far]).min()),
+    )
     return JointTrajectory(start, target, law)
 
 
@@ -299,13 +312,7 @@ def plan_lin(
         limits.angular_velocity / line.angle if line.angle > _SAME else math.inf,
     )
     size = max(line.length, line.angle)
-    law = _Law(
-        np.zeros(1),
-        np.ones(1),
-        np.array([fast]),
-        np.array([limits.linear_acceleration / size]),
-        np.array([limits.linear_jerk / size]),
-    )
+    law = _Law(fast, limits.linear_acceleration / size, limits.linear_jerk / size)
     branch = kinematics.branch_of(start)
     out = LinearTrajectory(kinematics, line, branch, law, start)
     _check_line(kinematics, out, limits)
@@ -355,7 +362,7 @@ def _check_line(kinematics: Kinematics, lin: LinearTrajectory, limits: MotionLim
         )
     _check_limits(kinematics, path, times)
     # Exact joint speeds, and the real steps: the one sees a singularity nearby, the other a leap over it.
-    rate = np.array([float(lin._law.at(float(t))[1][0]) for t in times])
+    rate = np.array([lin.rate(float(t)) for t in times])
     exact = np.abs(lin.rates(path, rate)) / limits.axis_velocity
     step = np.zeros_like(exact)
     step[1:] = np.abs(np.diff(path, axis=0)) / np.diff(times)[:, None] / limits.axis_velocity

@@ -1,0 +1,149 @@
+"""What the monitor makes of joint positions and of what a backend measures."""
+
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from helpers.robot_cells import pose_mm, riveting_cell
+from pn2code.robot.backend import Clearance
+from pn2code.robot.commands import MoveJoint, MoveLinear
+from pn2code.robot.executor import RobotExecutor
+from pn2code.robot.fake import FakeBackend
+from pn2code.robot.monitor import Monitor
+
+
+class Scripted(FakeBackend):
+    """The fake backend with distances given by the test."""
+
+    def __init__(self, cell):
+        super().__init__(cell)
+        self.gaps = ()
+
+    def clearances(self, limit):
+        return tuple(self.gaps)
+
+
+@pytest.fixture
+def cell():
+    return riveting_cell("good")
+
+
+@pytest.fixture
+def backend(cell):
+    return Scripted(cell)
+
+
+@pytest.fixture
+def monitor(cell, backend):
+    return Monitor(cell, backend)
+
+
+@pytest.fixture
+def home(cell):
+    return {r.name: np.array(r.home) for r in cell.robots}
+
+
+def gap(distance, allowed=None, kind="scene", a="robot1/tool_tip", b="panel/skin"):
+    return Clearance(kind, "robot1", a, b, distance, allowed, (5.75, 5.9, 2.1))
+
+
+def test_nothing_to_report(monitor, home):
+    verdict = monitor.check(0.0, home)
+    assert verdict.fault is None
+    assert verdict.warnings == ()
+    assert [s.robot for s in verdict.samples] == ["robot1", "robot2"]
+
+
+def test_collision_names_both_parts_and_the_pose(monitor, backend, home):
+    backend.gaps = [gap(-0.002, a="robot1/link_4", b="panel/ribs")]
+    fault = monitor.check(1.5, home, "approach").fault
+    assert (fault.kind, fault.robot, fault.t) == ("collision", "robot1", 1.5)
+    assert "robot `robot1`: `robot1/link_4` and `panel/ribs` collide (2.0 mm deep" in fault.message
+    assert "at TCP pose (" in fault.message
+
+
+def test_permitted_contact_up_to_its_depth(monitor, backend, home):
+    lin = {"robot1": "lin"}
+    backend.gaps = [gap(-0.004, allowed=0.005)]
+    assert monitor.check(0.0, home, kinds=lin).fault is None
+    backend.gaps = [gap(-0.006, allowed=0.005)]
+    fault = monitor.check(0.1, home, kinds=lin).fault
+    assert "6.0 mm deep in `panel/skin`" in fault.message
+    assert "only 5.0 mm are allowed" in fault.message
+
+
+def test_on_a_joint_move_nothing_may_touch(monitor, backend, home):
+    backend.gaps = [gap(-0.001, allowed=0.005)]
+    assert monitor.check(0.0, home, kinds={"robot1": "tool"}).fault is None
+    assert monitor.check(0.1, home, kinds={"robot1": "ptp"}).fault.kind == "collision"
+    meeting = gap(0.0, allowed=0.001, kind="robots", b="robot2/tool_tip")
+    backend.gaps = [meeting]
+    assert monitor.check(0.2, home, kinds={"robot1": "lin", "robot2": "lin"}).fault is None
+    assert monitor.check(0.3, home, kinds={"robot1": "lin", "robot2": "ptp"}).fault is not None
+
+
+def test_close_is_a_warning(monitor, backend, home):
+    backend.gaps = [gap(0.015, b="panel/ribs"), gap(0.021, b="floor", kind="self")]
+    verdict = monitor.check(0.0, home)
+    assert verdict.fault is None
+    assert [w.b for w in verdict.warnings] == ["panel/ribs"]
+
+
+def test_minima_with_time_phase_and_parts(monitor, backend, home):
+    for t, phase, distance in ((0.0, "in", 0.3), (1.0, "in", 0.1), (2.0, "out", 0.2)):
+        backend.gaps = [gap(distance, b="panel/ribs")]
+        monitor.check(t, home, phase)
+    [total] = [e for e in monitor.minima() if e.measure == "scene"]
+    assert (total.value, total.t, total.phase) == (0.1, 1.0, "in")
+    assert total.parts == ("robot1/tool_tip", "panel/ribs")
+    [out] = [e for e in monitor.minima("out") if e.measure == "scene"]
+    assert (out.value, out.t) == (0.2, 2.0)
+    assert monitor.phases() == ("in", "out")
+
+
+def test_conditioning_keeps_the_greatest_and_margins_the_least(monitor, home):
+    straight = dict(home, robot2=np.radians([0, -60, 5, 0, 45, 0]))
+    monitor.check(0.0, home)
+    monitor.check(1.0, straight)
+    monitor.check(2.0, home)
+    extremes = {(e.measure, e.robot): e for e in monitor.minima()}
+    assert extremes["condition", "robot2"].t == 1.0
+    assert extremes["elbow", "robot2"].t == 1.0
+    assert extremes["elbow", "robot2"].value < math.radians(10)
+    assert extremes["sigma_min", "robot2"].t == 1.0
+    assert extremes["limit", "robot1"].parts == ("joint_2",)
+    assert extremes["limit", "robot1"].value == pytest.approx(math.radians(20))
+
+
+def test_outside_a_joint_limit(monitor, home):
+    q = dict(home, robot1=np.radians([0, -141, 110, 0, 45, 90]))
+    fault = monitor.check(0.0, q).fault
+    assert fault.kind == "joint-limit"
+    assert "axis 2 (`joint_2`) is at -141.00 deg, 1.00 deg outside its limits" in fault.message
+
+
+def test_singularity_is_a_fault_on_a_line_only(monitor, home):
+    q = dict(home, robot1=np.radians([0, -100, 100, 20, 0, 30]))
+    assert monitor.check(0.0, q, kinds={"robot1": "ptp"}).fault is None
+    fault = monitor.check(1.0, q, kinds={"robot1": "lin"}).fault
+    assert fault.kind == "singularity"
+    assert "wrist 0.0 deg" in fault.message
+
+
+def test_works_without_distances(cell, home):
+    verdict = Monitor(cell, FakeBackend(cell)).check(0.0, home)
+    assert verdict.clearances is None
+    assert verdict.fault is None
+
+
+def test_positions_given_are_the_ones_measured(cell, backend, monitor):
+    robot = cell.robot("robot1")
+    e = RobotExecutor(replace(robot), cell.motion)
+    e.begin(MoveJoint(pose_mm(5750, 5802.2, 2160.9, -105)), 0.0)
+    e.finish()
+    motion = e.begin(MoveLinear(pose_mm(0, 0, 100), "tool"), 0.0)
+    sample = monitor.check(motion.ends, {"robot1": motion.q(motion.ends)}).samples[0]
+    assert sample.pose.y == pytest.approx(motion.target.y, abs=1e-9)
+    assert backend.tcp("robot1")[1, 3] == pytest.approx(sample.pose.y, abs=1e-12)
