@@ -55,7 +55,7 @@ class Annotations:
     def _name(self, t: s.NameTy) -> Ty:
         args = [self.type(a) for a in t.args]
         entry = self._ctx.scope.type(t.name)
-        if entry is None and t.name.split(".")[0] in STRUCTURES:
+        if entry is None and "." in t.name and t.name.split(".")[0] in STRUCTURES:
             self._ctx.error(codes.UNSUPPORTED_BUILTIN, f"type `{t.name}` is not supported", t.span)
             return ERROR
         if entry is None:

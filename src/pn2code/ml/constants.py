@@ -21,6 +21,14 @@ _INT: dict[str, Callable[[int, int], int]] = {
     "Int.min": min,
     "Int.max": max,
 }
+_COMPARE: dict[str, Callable[[int, int], bool]] = {
+    "Int.<": operator.lt,
+    "Int.<=": operator.le,
+    "Int.>": operator.gt,
+    "Int.>=": operator.ge,
+    "=": operator.eq,
+    "<>": operator.ne,
+}
 _REAL: dict[str, Callable[[float, float], float]] = {
     "Real.+": operator.add,
     "Real.-": operator.sub,
@@ -58,6 +66,9 @@ def _apply(name: str, argument: core.Exp, known: Mapping[int, Constant]) -> Cons
             if name in ("Int.div", "Int.mod") and right == 0:
                 return None
             return _INT[name](left, right)
+        if name in _COMPARE and _is_int(left) and _is_int(right):
+            assert isinstance(left, int) and isinstance(right, int)
+            return _COMPARE[name](left, right)
         if name in _REAL and isinstance(left, float) and isinstance(right, float):
             return _REAL[name](left, right)
         if name == "Real./" and isinstance(left, float) and isinstance(right, float) and right:

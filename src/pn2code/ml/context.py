@@ -272,13 +272,15 @@ class Context:
                 )
             case "among":
                 names = problem.right.among if isinstance(problem.right, Meta) else ()
-                if names == tuple(t.name for t in LITERAL_TYPES):
+                literal = names == tuple(t.name for t in LITERAL_TYPES)
+                if literal:
                     names = names[:1]
                 allowed = " or ".join(f"`{n}`" for n in names)
                 self.error(
-                    codes.OVERLOAD,
+                    codes.TYPE_MISMATCH if literal else codes.OVERLOAD,
                     f"{what} is `{show(problem.left)}`, but {allowed} is expected",
                     span,
+                    label=f"this is `{show(problem.left)}`",
                     hint=_conversion(problem.left, names),
                 )
             case _:

@@ -1,0 +1,64 @@
+# ruff: noqa: E501  (tables: one case a line)
+"""The table of built-in names is consistent."""
+
+from __future__ import annotations
+
+import pytest
+
+from helpers.ml import Ml
+from pn2code.ml import builtins as b
+from pn2code.ml.types import INTINF, REAL, TFun
+
+
+def test_every_type_of_the_table_can_be_read() -> None:
+    assert len(b.BUILTINS) > 250
+    for info in (*b.BUILTINS.values(), *b.COLSET_MEMBERS.values()):
+        assert info.type() is not None
+        assert info.meaning
+
+
+def test_short_names_stand_for_entries() -> None:
+    for full in (*b.TOP_LEVEL.values(), *b.QUALIFIED.values()):
+        assert full in b.BUILTINS
+    for choices in b.OVERLOADED.values():
+        assert all(full in b.BUILTINS for full in choices)
+    assert not b.OVERLOADED.keys() & b.TOP_LEVEL.keys()
+    assert not b.UNSUPPORTED_NAMES & b.TOP_LEVEL.keys()
+
+
+def test_overloads_have_the_same_shape() -> None:
+    for choices in b.OVERLOADED.values():
+        shapes = set()
+        for full in choices:
+            t = b.BUILTINS[full].type()
+            assert isinstance(t, TFun)
+            own = t.argument if not hasattr(t.argument, "fields") else t.argument.fields[0][1]
+            shapes.add(str(t).replace(str(own), "x"))
+        assert len(shapes) == 1
+
+
+def test_time_follows_the_clock() -> None:
+    t = b.BUILTINS["Time.time"].type()
+    assert isinstance(t, TFun) and t.result == INTINF
+    r = b.BUILTINS["Time.time"].type(real_time=True)
+    assert isinstance(r, TFun) and r.result == REAL
+
+
+def test_every_infix_operator_means_something() -> None:
+    known = {*b.TOP_LEVEL, *b.OVERLOADED, "::", "=", "<>"}
+    assert set(b.INFIX) <= known
+
+
+@pytest.mark.parametrize(
+    ("name", "expected"),
+    [("++", (6, "left")), ("@", (9, "left")), ("`", (8, "left")), ("^^", (5, "left")), ("::", (5, "right")), (":=", (3, "left"))],
+)  # fmt: skip
+def test_fixities_of_cpn_tools(name: str, expected: tuple[int, str]) -> None:
+    assert b.INFIX[name] == expected
+
+
+@pytest.mark.parametrize("name", sorted({*b.TOP_LEVEL, *b.OVERLOADED} | {n for n in b.BUILTINS if n[0].isalpha() and not n.startswith(("Time.", "Ms.", "Ref.", "Random."))}))  # fmt: skip
+def test_every_name_can_be_used(name: str) -> None:
+    m = Ml()
+    m.ml(f"val f = op {name}")
+    assert not m.messages()
