@@ -342,10 +342,10 @@ def match(pattern: core.Pat, value: Any, bound: dict[int, Value]) -> bool:
                 case "bool", name:
                     return bool(value == (name == "true"))
                 case "list", "nil":
-                    return value == ()
+                    return len(value) == 0
                 case "list", _:
                     assert argument is not None
-                    return value != () and match(argument, (value[0], value[1:]), bound)
+                    return len(value) > 0 and match(argument, (value[0], value[1:]), bound)
                 case _:
                     same = bool(value.tag == constructor.tag)
                     return same and (argument is None or match(argument, value.argument, bound))

@@ -136,11 +136,12 @@ def replay_lines(
 ) -> ReplayResult:
     """Replays the lines of a trace; see `replay`."""
     game: Game | None = None
-    steps, number, ended, transition = 0, 0, None, ""
+    steps, at, ended, transition = 0, 0, None, ""
     try:
         for number, text in enumerate(lines, 1):
             if not text.strip():
                 continue
+            at = number
             line = _object(text)
             transition = str(line.get("transition", ""))
             if game is None:
@@ -157,7 +158,7 @@ def replay_lines(
         if game is None:
             raise _Wrong("the trace is empty")
     except (_Wrong, GameError) as wrong:
-        return ReplayResult(False, steps, str(wrong), number, transition, ended, game)
+        return ReplayResult(False, steps, str(wrong), at, transition, ended, game)
     return ReplayResult(True, steps, "", 0, "", ended, game)
 
 
