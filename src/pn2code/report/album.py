@@ -60,7 +60,8 @@ class Album:
 
     def sampled(self, engine: Engine, t: float, joints: Mapping[str, Array]) -> None:
         """Exposes the film."""
-        if self._film is not None and t >= self._next_frame:
+        # While nothing moves there are no samples: the film then shows the last one for as long as it takes.
+        while self._film is not None and t >= self._next_frame:
             self._next_frame += FILM_SPEED / FRAMES_PER_SECOND
             self._film.frame()
 

@@ -16,6 +16,7 @@ Nothing here reads the wall clock, so two runs give the same trace, byte for byt
 from __future__ import annotations
 
 import itertools
+import math
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from typing import Any, Protocol
@@ -112,6 +113,12 @@ class RobotRunner:
         """Joint position (rad) at a time not before the last event."""
         return self.executor.q if self.motion is None else self.motion.q(t)
 
+    def path(self, times: Array) -> Array:
+        """Joint positions (n, 6) at many times, none before the last event."""
+        if self.motion is None:
+            return np.tile(self.executor.q, (len(times), 1))
+        return self.motion.sample(times)
+
 
 class CellStoppedError(Exception):
     """The cell must stop; the message says why, in full."""
@@ -148,7 +155,6 @@ class Engine:
     _steps: Iterator[int] = field(default_factory=lambda: itertools.count(1))
     _finished: bool = False
     _activity_start: float = 0.0
-    _samples: int = 0
     _ids: dict[str, str] = field(init=False)
 
     def __post_init__(self) -> None:
@@ -184,7 +190,7 @@ class Engine:
         return self._close()
 
     def _begin_run(self) -> None:
-        self._sample(0.0)
+        self._sample(0.0, {r.name: r.joints(0.0) for r in self.robots})
         for observer in self.observers:
             observer.begun(self)
 
@@ -323,17 +329,25 @@ class Engine:
 
     def _advance(self, target: float) -> None:
         """Moves time to `target`, sampling the arms on the way, and ends the commands that end then."""
-        while (t := (self._samples + 1) * self.cell.motion.sample) < target - 1e-12:
-            self._samples += 1
-            if t > self.now + 1e-12:
-                self._sample(t)
-        self._sample(target)
+        times = self._instants(target)
+        paths = {r.name: r.path(times) for r in self.robots}
+        for i, t in enumerate(times):
+            self._sample(float(t), {name: path[i] for name, path in paths.items()})
         self.now = target
         for robot in self.robots:
             if robot.motion is not None and robot.motion.ends <= target + 1e-12:
                 self._finish(robot)
         for observer in self.observers:
             observer.advanced(self)
+
+    def _instants(self, target: float) -> Array:
+        """When to look between now and `target`, which is the last: as often as the most delicate motion wants."""
+        steps = [r.motion.step for r in self.robots if r.motion is not None]
+        span = target - self.now
+        count = max(1, math.ceil(span / min(steps) - 1e-9)) if steps else 1
+        times = self.now + span * np.arange(1, count + 1) / count
+        times[-1] = target
+        return times
 
     def _finish(self, robot: RobotRunner) -> None:
         """The command is done: the script goes on."""
@@ -382,9 +396,8 @@ class Engine:
             )
         )
 
-    def _sample(self, t: float) -> None:
+    def _sample(self, t: float, joints: Mapping[str, Array]) -> None:
         """Looks at the arms at time t; a collision, a violated limit or a singularity stops the cell."""
-        joints = {r.name: r.joints(t) for r in self.robots}
         kinds = {r.name: r.motion.kind for r in self.robots if r.motion is not None}
         verdict = self.monitor.check(t, joints, self.activity, kinds)
         self.record.sample(verdict)

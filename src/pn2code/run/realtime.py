@@ -59,7 +59,7 @@ class RealtimeEngine(Engine):
                     break
                 if self.now - self._sampled >= self.cell.motion.sample:
                     self._sampled = self.now
-                    self._sample(self.now)
+                    self._sample(self.now, {r.name: r.joints(self.now) for r in self.robots})
                     for observer in self.observers:
                         observer.advanced(self)
                 if not any(moved):
