@@ -106,7 +106,8 @@ ERRORS = [
     ),
     (
         "clear done",
-        "17:7 error[tdl-file-direction] file `done` cannot be cleared: it is an `output` file, which this script writes",
+        "17:7 error[tdl-file-direction] file `done` cannot be cleared: "
+        "it is an `output` file, which this script writes",
     ),
     (
         "write flag 1",
@@ -114,7 +115,8 @@ ERRORS = [
     ),
     (
         "wait until filled(done)",
-        "17:19 error[tdl-file-direction] file `done` cannot be waited for: it is an `output` file, which this script writes",
+        "17:19 error[tdl-file-direction] file `done` cannot be waited for: "
+        "it is an `output` file, which this script writes",
     ),
     (
         "read flag into k, r",
@@ -188,7 +190,8 @@ DECLARATIONS = [
     ),
     ("const c = 1 / 0", ["1:21 error[tdl-constant] the value of constant `c` is not known: division by zero"]),
     ("var n : int := 1 mm", ["1:26 error[tdl-unit] the value of `n` must be of type `int`, but this is `length`"]),
-    ("procedure q call q end procedure", ["1:28 error[tdl-recursion] procedure `q` calls itself, directly or through others"]),
+    ("procedure q call q end procedure",
+     ["1:28 error[tdl-recursion] procedure `q` calls itself, directly or through others"]),
     ("var n : int", ["1:15 warning[tdl-unused] variable `n` is never used"]),
     ("const c = 1", ["1:17 warning[tdl-unused] constant `c` is never used"]),
     ('input f "f" : int', ["1:17 warning[tdl-unused] file `f` is never used"]),
@@ -204,7 +207,8 @@ def test_declarations(text: str, expected: list[str]) -> None:
 WARNINGS = [
     ("var n : int begin n := 1", ["1:15 warning[tdl-unused] variable `n` is assigned but never read"]),
     ("begin return wait 1 s", ["1:24 warning[tdl-unreachable] this statement can never be reached"]),
-    ("begin loop wait 1 s end loop wait 2 s wait 3 s", ["1:40 warning[tdl-unreachable] this statement can never be reached"]),
+    ("begin loop wait 1 s end loop wait 2 s wait 3 s",
+     ["1:40 warning[tdl-unreachable] this statement can never be reached"]),
     ("begin stop \"x\" wait 2 s", ["1:26 warning[tdl-unreachable] this statement can never be reached"]),
     ("begin loop exit wait 2 s end loop", ["1:27 warning[tdl-unreachable] this statement can never be reached"]),
     ("begin goto l wait 2 s l: wait 1 s", ["1:24 warning[tdl-unreachable] this statement can never be reached"]),

@@ -297,8 +297,11 @@ def simplify(nodes: Iterable[Node]) -> tuple[Node, ...]:
 def _chain(node: Chain) -> list[Node]:
     branches = tuple((c, simplify(b)) for c, b in node.branches)
     otherwise = simplify(node.otherwise or ()) or None
-    if otherwise is None and len(branches) == 1 and branches[0][1] == (Line(t.Exit()),):
-        return [Line(t.Exit(branches[0][0]))]
+    if branches[0][1] == (Line(t.Exit()),):
+        leave = Line(t.Exit(branches[0][0]))
+        if len(branches) > 1:
+            return [leave, Chain(branches[1:], otherwise)]
+        return [leave, *(otherwise or ())]
     if otherwise == (Line(t.Exit()),) and len(branches) == 1:
         condition, body = branches[0]
         return [Line(t.Exit(negated(condition))), *body]

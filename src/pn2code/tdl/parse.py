@@ -76,6 +76,7 @@ _OPERATORS = {
     "MINUS", "AMPERSAND", "TIMES", "DIVIDE", "DIV", "MOD", "DOT", "LPAR",
 }  # fmt: skip
 _VALUES = {
+    "SINGLE",
     "INT",
     "REAL",
     "QUANTITY",
@@ -99,7 +100,7 @@ def _expected(terminals: set[str]) -> str:
         left -= {*_STATEMENTS, *_OPERATORS, "NAME", "SPEED", "TOOL", "RETURN", "EXIT", "IF", "WHILE", "LOOP",
                  "COMMA", "IN", "AT", "WITH", "WHEN"}  # fmt: skip
         words.append("a statement")
-    elif left >= _VALUES - {"IF", "NOT"}:
+    elif left >= _VALUES - {"IF", "NOT", "SINGLE"}:
         left -= _VALUES
         words.append("a value")
     elif left >= {"PLUS", "TIMES"}:
