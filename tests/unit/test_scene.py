@@ -7,7 +7,7 @@ import pytest
 
 from helpers.robot_cells import EXAMPLE, geometry, nowhere, riveting_cell
 from pn2code.diagnostics import Diagnostics
-from pn2code.robot.backend import open_backend
+from pn2code.robot.backend import BackendUnavailableError, open_backend
 from pn2code.robot.geometry import bodies, panel_bodies, point_at
 from pn2code.robot.scene import load
 
@@ -203,3 +203,10 @@ def test_fake_backend_knows_where_the_tool_is():
     assert (backend.tcp("robot1") == expected).all()
     assert backend.clearances(1.0) is None
     backend.close()
+
+
+def test_a_window_needs_a_display(monkeypatch):
+    monkeypatch.delenv("DISPLAY", raising=False)
+    monkeypatch.setattr("sys.platform", "linux")
+    with pytest.raises(BackendUnavailableError, match="there is no display"):
+        open_backend("bullet", riveting_cell("good"), gui=True)

@@ -6,6 +6,9 @@ them. So every backend gives the same trajectories.
 
 from __future__ import annotations
 
+import importlib.util
+import os
+import sys
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Literal, Protocol, TypeAlias
@@ -85,12 +88,28 @@ class Backend(Protocol):
         """Releases what it holds; afterwards it must not be used."""
 
 
+class BackendUnavailableError(Exception):
+    """A backend that cannot be had here; the message says why and what to do (a user's matter)."""
+
+
 def open_backend(name: BackendName, cell: RobotCell, *, gui: bool = False) -> Backend:
-    """A backend for a cell. PyBullet is imported only when it is asked for."""
+    """A backend for a cell. PyBullet is imported only when it is asked for.
+
+    Raises BackendUnavailableError when there is no display for its window, or PyBullet is not installed.
+    """
     if name == "fake":
         from pn2code.robot.fake import FakeBackend
 
         return FakeBackend(cell)
+    if gui and sys.platform.startswith("linux") and not os.environ.get("DISPLAY"):
+        # PyBullet would end the whole process here.
+        raise BackendUnavailableError(
+            "there is no display for PyBullet's window: leave out `--gui`, or set DISPLAY"
+        )
+    if importlib.util.find_spec("pybullet") is None:
+        raise BackendUnavailableError(
+            "PyBullet is not installed: `pip install pybullet` (Python 3.9 to 3.11), or use the backend `fake`"
+        )
     from pn2code.robot.bullet import BulletBackend
 
     return BulletBackend(cell, gui=gui)

@@ -188,10 +188,21 @@ class Kinematics:
         Where a branch does not exist the row is NaN. Limits are not looked at. Rows are exact: each
         was compared with the forward kinematics (and refined by Newton steps near singularities).
         """
-        flange = np.ascontiguousarray(T_base_tcp @ self._T_tcp_library)
-        found = np.array(self._robot.reach(RigidTransform.from_matrix(flange)).joints)
+        found = self._closed_form(T_base_tcp)
         self._refine(found.reshape(-1, AXES), np.repeat(T_base_tcp, len(BRANCHES), axis=0))
         return found
+
+    def on_branch(self, T_base_tcp: Array, branch: Branch) -> Array:
+        """The same on one branch only: (n, 6)."""
+        found = np.ascontiguousarray(self._closed_form(T_base_tcp)[:, branch.index])
+        self._refine(found, T_base_tcp)
+        return found
+
+    def _closed_form(self, T_base_tcp: Array) -> Array:
+        flange = np.ascontiguousarray(T_base_tcp @ self._T_tcp_library)
+        # Not normalised: products of rotations are rotations, and checking them costs more than solving.
+        poses = RigidTransform(flange, normalize=False, copy=False)
+        return np.array(self._robot.reach(poses).joints)
 
     def _refine(self, rows: Array, targets: Array) -> None:
         there = np.flatnonzero(~np.isnan(rows[:, 0]))
@@ -273,7 +284,7 @@ class Kinematics:
 
         Rows are NaN where the branch does not exist. Limits are not looked at.
         """
-        rows = self.all_branches(T_base_tcp)[:, branch.index]
+        rows = self.on_branch(T_base_tcp, branch)
         path = np.vstack([np.asarray(start, float), rows])
         known = np.flatnonzero(~np.isnan(path[:, 0]))
         path[known] = np.unwrap(path[known], axis=0)

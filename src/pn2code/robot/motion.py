@@ -261,7 +261,7 @@ class LinearTrajectory:
     def sample(self, times: Array) -> Array:
         """Joint positions at many times."""
         times = np.clip(times, 0.0, self.duration)
-        rows = self._k.all_branches(self.line.at(self.way(times)))[:, self.branch.index]
+        rows = self._k.on_branch(self.line.at(self.way(times)), self.branch)
         near = self.grid[np.searchsorted(self.times, times).clip(0, len(self.times) - 1)]
         turn = 2.0 * math.pi
         return np.asarray(rows + turn * np.round((near - rows) / turn))
