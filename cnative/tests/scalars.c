@@ -5,6 +5,8 @@
  *   crc TEXT                 prints pn_crc32 of it
  *   real TEXT                parses one real: its hex float, or `refused COLUMN REPORT`
  *   string TEXT              parses one string: itself in hexadecimal, formatted again
+ *   file CONSUMED HEX        reads a channel's file (two reals, session 0123abcd) given in hexadecimal:
+ *                            `empty`, `message X Y SEQ`, or `refused WHY`
  */
 #include <stdio.h>
 #include <stdlib.h>
@@ -33,9 +35,50 @@ static void parse(pn_scalar_kind_t kind, const char *text)
     }
 }
 
+static void parse_file(const char *argument)
+{
+    static const pn_scalar_t scalar[2] = {
+        {.kind = PN_SCALAR_REAL, .label = "x", .colset = "C"},
+        {.kind = PN_SCALAR_REAL, .label = "y", .colset = "C"},
+    };
+    static const pn_cell_channel_t channel = {.name = "pose1", .file = "pose1.robcad", .scalar_count = 2U, .scalar = scalar};
+    static const char *const why[] = {"none",    "missing",  "shape",   "count",    "scalar", "colour",
+                                      "trailer", "checksum", "session", "repeated", "lost",   "overwritten"};
+    static char text[PN_CHANNEL_TEXT];
+    char *hex = NULL;
+    const unsigned long consumed = strtoul(argument, &hex, 10);
+    size_t length = 0U;
+    while ((*hex == ' ') || (*hex == '\t')) {
+        hex++;
+    }
+    unsigned int byte = 0U;
+    while ((length < sizeof text) && (sscanf(hex, "%2x", &byte) == 1)) {
+        text[length] = (char)byte;
+        length++;
+        hex += 2;
+    }
+    switch (pn_channel_parse(&channel, text, length, "0123abcd", consumed, &s_message)) {
+    case PN_CHANNEL_EMPTY:
+        (void)puts("empty");
+        break;
+    case PN_CHANNEL_MESSAGE:
+        (void)printf("message %a %a %ld\n", s_message.leaf[0].real, s_message.leaf[1].real,
+                     s_message.sealed ? (long)s_message.seq : -1L);
+        break;
+    case PN_CHANNEL_REFUSED:
+        (void)printf("refused %s\n", why[s_message.refusal]);
+        break;
+    case PN_CHANNEL_UNCHANGED:
+    case PN_CHANNEL_BROKEN:
+    default:
+        (void)puts("?");
+        break;
+    }
+}
+
 int main(void)
 {
-    static char line[8192];
+    static char line[16384];
     while (fgets(line, (int)sizeof line, stdin) != NULL) {
         line[strcspn(line, "\n")] = '\0';
         char text[512] = "";
@@ -48,6 +91,8 @@ int main(void)
             parse(PN_SCALAR_REAL, line + 5);
         } else if (strncmp(line, "string ", 7U) == 0) {
             parse(PN_SCALAR_STRING, line + 7);
+        } else if (strncmp(line, "file ", 5U) == 0) {
+            parse_file(line + 5);
         } else {
             return 2;
         }

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import json
 import os
+import random
 import resource
 import shutil
 import signal
@@ -21,8 +22,16 @@ import pytest
 
 from pn2code.cell.partition import ChannelKind
 from pn2code.cell.scalars import Scalar, ScalarKind
-from pn2code.channels import ChannelSpec, Message, PeerState, SharedDirectory, Status, Written
-from pn2code.channels.message import compose
+from pn2code.channels import (
+    ChannelSpec,
+    Message,
+    PeerState,
+    Refused,
+    SharedDirectory,
+    Status,
+    Written,
+)
+from pn2code.channels.message import compose, parse
 from pn2code.channels.scalars import format_real
 from pn2code.run.supervisor import Exit, SupervisorProcess
 
@@ -243,6 +252,54 @@ def test_both_sides_read_alike(built: Path) -> None:
     )
     assert all("is not a string" in line for line in lines[8:10])
     assert "\\xff\\x01" in lines[10]
+
+
+def test_both_sides_judge_files_alike(built: Path) -> None:
+    """Thousands of files, damaged in small ways: both sides take the same, and refuse the rest for the same reason."""
+    chance = random.Random(7)
+    files = [b"", b"0", b"0\n", b"0 \r\n", b"1 2", b"\n\n", b"1 2\n\n", b" 1\t2 \r\n", b"9" * 4096]
+    while len(files) < 4000:
+        values = (chance.choice([0.0, 1.5, -2.25, 1 / 3]), chance.uniform(-1e4, 1e4))
+        session = chance.choice(["0123abcd"] * 5 + ["99999999"])
+        text = compose(SPECS[0], values, seq=chance.choice([6, 7, 7, 7, 8]), session=session)
+        assert text is not None
+        data = bytearray(text.encode())
+        for _ in range(chance.choice([0, 0, 1, 1, 2])):
+            at = chance.randrange(len(data)) if data else 0
+            match chance.randrange(4):
+                case 0:
+                    del data[at:]
+                case 1:
+                    data[at : at + 1] = bytes([chance.choice(b"0 1\n#.-e\x00\xff\t\rx")])
+                case 2:
+                    data[at:at] = bytes([chance.choice(b"0 1\n#.-e+")])
+                case _:
+                    del data[at : at + 1]
+        files.append(bytes(data))
+    lines = "".join(f"file 6 {data.hex()}\n" for data in files)
+    done = subprocess.run(
+        [built / "scalars"], input=lines, capture_output=True, text=True, check=True
+    )
+    kinds = set()
+    for data, line in zip(files, done.stdout.splitlines(), strict=True):
+        found = parse(SPECS[0], data.decode("latin-1"), session="0123abcd", consumed=6)
+        if found is None:
+            expected = "empty"
+        elif isinstance(found, Refused):
+            expected = f"refused {found.reason.value}"
+        else:
+            expected = "message"
+            x, y, seq = line.split()[1:]
+            assert (float.fromhex(x), float.fromhex(y)) == found.scalars, data
+            assert int(seq) == (-1 if found.seq is None else found.seq), data
+        assert line.split(" 0x")[0].split(" -0x")[0] == expected, data
+        kinds.add(expected)
+    assert kinds >= {
+        "empty",
+        "message",
+        *(f"refused {w}" for w in ("shape", "count", "scalar", "trailer", "checksum")),
+    }
+    assert kinds >= {"refused session", "refused repeated", "refused lost"}
 
 
 # --- a whole run ---

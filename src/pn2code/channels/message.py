@@ -120,7 +120,7 @@ def compose(
     return text if len(text) < MAX_BYTES else None
 
 
-_TRAILER = re.compile(r"#[ \t]+([0-9]{1,18})[ \t]+([^ \t]{1,15})[ \t]+([0-9a-f]{8})")
+_TRAILER = re.compile(r"#[ \t\r]+([0-9]{1,18})[ \t\r]+([^ \t\r]{1,15})[ \t\r]+([0-9a-f]{8})")
 _BLANK = " \t\r"
 
 
