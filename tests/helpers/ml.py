@@ -44,8 +44,8 @@ class Ml:
         self.colset("L", "list", "INT")
         self.colset("R", "record", fields=(("b", "INT"), ("a", "STRING")), timed=True)
         self.colset("U", "union", fields=(("Ack", "INT"), ("Nil", "")))
-        for names, colset in (("n m", "INT"), ("s t", "STRING"), ("b", "BOOL"), ("x y", "REAL"), ("c", "E"),
-                              ("p", "P"), ("l", "L"), ("r", "R"), ("u", "U")):  # fmt: skip
+        for names, colset in (("n m", "INT"), ("s", "STRING"), ("b", "BOOL"), ("v w", "REAL"), ("c", "E"),
+                              ("p", "P"), ("l", "L"), ("r", "R"), ("un", "U")):  # fmt: skip
             self.e.variables(names.split(), colset, Origin("net.cpn"))
         assert not self.d.items
 

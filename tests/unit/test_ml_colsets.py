@@ -181,3 +181,15 @@ def test_members_list_of_a_subset_is_core() -> None:
     colset = m.colset("X", "subset", "INT", texts=("[1, 2 + 3]",))
     assert colset is not None and colset.members is not None
     assert dump_exp(colset.members) == "[1, Int.+(2, 3)]"
+
+
+def test_a_variable_and_a_value_of_one_name_are_an_error() -> None:
+    m = Ml()
+    m.ml("fun ok x = x val n = 3")
+    m.e.variables(["ok"], "INT", Origin("net.cpn"))
+    assert m.messages() == [
+        "variable-named-as-value | `n` is both a variable of the net and a value or function | val n = 3",
+        "variable-named-as-value | `ok` is both a variable of the net and a value or function | ",
+    ]
+    assert m.inscription("1`n ++ 1`ok", "INT") is None  # without further diagnostics
+    assert len(m.d.items) == 2

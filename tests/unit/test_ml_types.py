@@ -210,10 +210,10 @@ def variables(node: object) -> list[Var]:
 
 def test_value_restriction() -> None:
     m = Ml()
-    m.ml("val r = ref nil val ok = fn x => x val pair = (ok, [])")
+    m.ml("val cell = ref nil val ok = fn x => x val pair = (ok, [])")
     assert m.type_of("pair") == "('a -> 'a) * 'b list"
-    assert m.type_of("r") == "unit list ref"  # decided by nothing, so fixed
-    m.ml("val x = 1 :: !r")
+    assert m.type_of("cell") == "unit list ref"  # decided by nothing, so fixed
+    m.ml("val x = 1 :: !cell")
     assert [x.code for x in m.d] == ["type-mismatch"]
 
 
@@ -363,5 +363,5 @@ def test_references_of_the_net() -> None:
 
 def test_real_clock() -> None:
     m = Ml(real_time=True)
-    m.ml("val t = time () + 1.5 val s = ModelTime.toString t val u = 1`1 @++ 2.5")
+    m.ml("val t = time () + 1.5 val text = ModelTime.toString t val u = 1`1 @++ 2.5")
     assert (m.type_of("t"), m.type_of("u")) == ("real", "int timed list")

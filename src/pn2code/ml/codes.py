@@ -122,6 +122,12 @@ VARIABLE_CLASH = register(
     "A later declaration replaces the earlier one, so that inscriptions written for the earlier one change "
     "their meaning.",
 )
+VALUE_CLASH = register(
+    "variable-named-as-value",
+    "a net variable has the name of a value or function",
+    "CPN Tools takes the value where a net variable and a `val` or `fun` have one name, which is hardly what was "
+    "meant. Rename one of them.",
+)
 GUARD_TYPE = register(
     "guard-not-boolean",
     "a guard is not a boolean expression",

@@ -106,6 +106,9 @@ class Elaborator:
                 self._variable_scope.values[name] = BrokenEntry()
                 self._variables.pop(name, None)
                 continue
+            if isinstance(self._ctx.top.values.get(name), Binding):
+                self._clash(name, origin)
+                continue
             old = self._variables.get(name)
             if old is not None and old.colset is not None and old.colset != colset:
                 self._d.warning(
@@ -119,6 +122,17 @@ class Elaborator:
             self._variable_scope.values[name] = Binding(
                 name, from_type(colset.type, []), symbol=symbol, colset=colset
             )
+
+    def _clash(self, name: str, at: Origin | Span) -> None:
+        self._ctx.errors += 1
+        self._d.error(
+            codes.VALUE_CLASH,
+            f"`{name}` is both a variable of the net and a value or function",
+            at,
+            hint="rename one of them",
+        )
+        self._variable_scope.values[name] = BrokenEntry()
+        self._variables.pop(name, None)
 
     def declarations(self, text: SourceText) -> None:
         """An `ml` element: any number of CPN ML declarations."""
@@ -149,6 +163,9 @@ class Elaborator:
         if self._ctx.errors > before or self._ctx.tainted:
             self._break(declared_by(changed), types_declared_by(changed))
             return
+        for name in sorted(declared_by(changed) & self._variables.keys()):
+            if isinstance(self._ctx.top.values.get(name), Binding):
+                self._clash(name, dec.span)
         made = build()
         self._made += made
         for binding in self._ctx.top.values.values():
