@@ -57,6 +57,30 @@ size_t pn_bag_encode(const pn_bag_t *bag, const void *marking, uint8_t *out, siz
 size_t pn_bag_decode(pn_ctx_t *cx, const pn_bag_t *bag, void *marking, const uint8_t *in, size_t length);
 void pn_bag_relocate(pn_ctx_t *cx, const pn_bag_t *bag, void *marking);
 
+/* The functions of one place for the table of the net: `stem`_count, _token, _put, _clear, _json over its bag. */
+#define PN_PLACE_FUNCTIONS(stem, bag)                                                                               \
+    static uint64_t stem##_count(const void *marking)                                                               \
+    {                                                                                                               \
+        return pn_bag_total(&(bag), marking);                                                                       \
+    }                                                                                                               \
+    static uint32_t stem##_token(const void *marking, uint32_t i, pn_leaf_t *leaf, uint32_t capacity)               \
+    {                                                                                                               \
+        return pn_bag_token(&(bag), marking, i, leaf, capacity);                                                    \
+    }                                                                                                               \
+    static bool stem##_put(pn_ctx_t *cx, void *marking, const pn_leaf_t *leaf, uint32_t leaves)                     \
+    {                                                                                                               \
+        cx->now = pn_net.now(marking);                                                                              \
+        return pn_bag_put(cx, &(bag), marking, leaf, leaves);                                                       \
+    }                                                                                                               \
+    static void stem##_clear(void *marking)                                                                         \
+    {                                                                                                               \
+        pn_bag_clear(&(bag), marking);                                                                              \
+    }                                                                                                               \
+    static void stem##_json(const void *marking, pn_text_t *out)                                                    \
+    {                                                                                                               \
+        pn_bag_json(&(bag), marking, out);                                                                          \
+    }
+
 /* Times as the context and the tokens hold them. */
 #define PN_NO_TIME ((pn_time_t){ .integer = 0 })
 static inline pn_time_t pn_time_int(int64_t time)

@@ -14,7 +14,7 @@ from pn2code.diagnostics import Origin
 from pn2code.emission import c_tables
 from pn2code.emission.c_expressions import Expressions, Types, c_integer
 from pn2code.emission.c_statements import Statements, used_locals, uses_context, wrap
-from pn2code.emission.environment import c_comment, c_float, render
+from pn2code.emission.environment import c_comment, c_float, c_string, render
 from pn2code.emission.names import Names, Scope, stem
 from pn2code.emission.output import Block, OutputFile
 from pn2code.lowering import ir
@@ -211,6 +211,28 @@ class _Emitter:
             leaves += [(f"{text}.{name}" if name else text, kind) for name, kind in inner]
         return leaves
 
+    def _leaf_tables(self) -> list[dict[str, list[str]]]:
+        """The arrays for each colour set of a place with a fixed number of scalars."""
+        tables = []
+        for key in dict.fromkeys(p.table for p in self._net.places):
+            leaves = self._leaves(key)
+            if not leaves:
+                continue
+            name = self._names.table(key)
+            kinds = ", ".join(kind for _, kind in leaves)
+            labels = ", ".join(c_string(x) for x, _ in leaves)
+            lines = ", ".join(f"{n}U" for n in self._lines_of(key))
+            tables.append(
+                {
+                    "lines": [
+                        *wrap(f"static const pn_leaf_kind_t {name}_kinds[] = {{ {kinds} }};"),
+                        *wrap(f"static const char *const {name}_leaves[] = {{ {labels} }};"),
+                        *wrap(f"static const uint32_t {name}_lines[] = {{ {lines} }};"),
+                    ]
+                }
+            )
+        return tables
+
     def _lines_of(self, key: str) -> list[int]:
         """Leaves per line of an input file: a line for each component that is itself composed; scalars alone on one line each, unless
         all are scalars: then they share one line."""
@@ -333,6 +355,7 @@ class _Emitter:
             ],
             "recursive_tables": [self._names.table(k) for k in recursive],
             "tables": [tables.print(k) for k in keys],
+            "leaves": self._leaf_tables(),
             "places": [self._place(p) for p in net.places],
             "transitions": [self._transition(t) for t in net.transitions],
             "has_arena_values": self._has_arena_values

@@ -127,6 +127,8 @@ class Expressions:
         """A pointer to the value: of the object that holds it, or of a temporary."""
         if self._is_object(e):
             return f"&{self.inside(e, _UNARY)}"
+        if isinstance(e, ir.MakeStruct | ir.MakeUnion):
+            return f"&{self.text(e)}"  # a compound literal is an object
         return f"({self._types.name(e.type)}[]){{ {self.text(e)} }}"
 
     def _is_object(self, e: Ir) -> bool:

@@ -190,6 +190,9 @@ class Body(TypeSource):
         """The value of a variable that may be used any number of times, under its name."""
         if isinstance(value, RecordVal) and not has_function(value):
             value = self.code(value)
+        if isinstance(value, ir.Member | ir.Head | ir.Tail | ir.Argument):
+            # A part of something gets the name it has in the pattern.
+            return self.spill(value, symbol.name)
         return self.settle(value, symbol.name)
 
     # --- expressions ---------------------------------------------------------------------------

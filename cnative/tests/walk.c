@@ -1,0 +1,164 @@
+/* SPDX-License-Identifier: MIT
+ * walk.c - a random walk through a net for comparison with the token game: after each step everything is printed.
+ *
+ *     walk SEED STEPS
+ *
+ * prints JSON lines {"t": now, "enabled": [[transition, binding], ...], "marking": {...}, "chosen": i}, `chosen` being -1 at the
+ * end, or {"error": name}. Every marking is encoded, decoded and encoded again, and collected, on the way.
+ */
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "pn/pn_arena.h"
+#include "pn/pn_net.h"
+#include "pn/pn_num.h"
+#include "pn/pn_random.h"
+#include "pn/pn_text.h"
+
+#define MOST 4096U
+
+static max_align_t s_memory[PN_ARENA_DEFAULT_SIZE / sizeof(max_align_t)];
+static char s_text[1U << 24U];
+static uint8_t s_bytes[2][1U << 22U];
+
+typedef struct list {
+    pn_text_t *text;
+    uint64_t count;
+    uint64_t wanted;
+    void *binding;
+    uint32_t transition;
+} list_t;
+
+static bool list_one(void *user, uint32_t transition, const void *binding)
+{
+    list_t *list = user;
+    if (list->text != NULL) {
+        pn_text_str(list->text, (list->count > 0U) ? ", [" : "[");
+        pn_text_json_str(list->text, pn_net.transition[transition].name);
+        pn_text_str(list->text, ", ");
+        pn_net.transition[transition].binding_json(binding, list->text);
+        pn_text_char(list->text, ']');
+    } else if (list->count == list->wanted) {
+        (void)memcpy(list->binding, binding, pn_net.transition[transition].binding_size);
+        list->transition = transition;
+        return false;
+    }
+    list->count++;
+    return true;
+}
+
+/* All enabled binding elements of the best priority. */
+static void enumerate(pn_ctx_t *cx, const void *marking, list_t *list)
+{
+    int32_t best = 0;
+    for (uint32_t k = 0U; k < pn_net.order_count; k++) {
+        const uint32_t i = pn_net.order[k];
+        if ((list->count > 0U) && (pn_net.transition[i].priority > best)) {
+            return;
+        }
+        best = pn_net.transition[i].priority;
+        if (!pn_net.transition[i].enumerate(cx, marking, i, list_one, list)) {
+            return;
+        }
+    }
+}
+
+static void check_codec(pn_ctx_t *cx, void *marking, void *copy)
+{
+    const size_t length = pn_net.encode(marking, s_bytes[0], sizeof s_bytes[0]);
+    if ((length == 0U) || !pn_net.decode(cx, copy, s_bytes[0], length)
+        || (pn_net.encode(copy, s_bytes[1], sizeof s_bytes[1]) != length)
+        || (memcmp(s_bytes[0], s_bytes[1], length) != 0)) {
+        pn_raise(cx, PN_ERR_INTERNAL, "encode and decode disagree");
+    }
+    pn_net.collect(cx, marking);
+    if ((pn_net.encode(marking, s_bytes[1], sizeof s_bytes[1]) != length) || (memcmp(s_bytes[0], s_bytes[1], length) != 0)) {
+        pn_raise(cx, PN_ERR_INTERNAL, "collect changed the marking");
+    }
+}
+
+static void print_step(const void *marking, pn_text_t *text, int64_t chosen)
+{
+    pn_text_str(text, "], \"t\": ");
+    if (pn_net.real_time) {
+        pn_text_json_real(text, pn_net.now(marking).real);
+    } else {
+        pn_text_int(text, pn_net.now(marking).integer);
+    }
+    pn_text_str(text, ", \"marking\": {");
+    for (uint32_t i = 0U; i < pn_net.place_count; i++) {
+        pn_text_str(text, (i > 0U) ? ", " : "");
+        pn_text_json_str(text, pn_net.place[i].name);
+        pn_text_str(text, ": ");
+        pn_net.place[i].json(marking, text);
+    }
+    pn_text_str(text, "}, \"chosen\": ");
+    pn_text_int(text, chosen);
+    pn_text_char(text, '}');
+    (void)puts(text->truncated ? "{\"error\": \"output too long\"}" : text->buffer);
+}
+
+static bool step(pn_ctx_t *cx, void *marking, void *copy, void *binding)
+{
+    const pn_time_t start = pn_net.now(marking);
+    pn_time_t next = start;
+    pn_text_t text;
+    list_t all = { &text, 0U, 0U, NULL, 0U };
+    for (bool more = true; more;) {
+        pn_text_init(&text, s_text, sizeof s_text);
+        pn_text_str(&text, "{\"enabled\": [");
+        enumerate(cx, marking, &all);
+        more = (all.count == 0U) && pn_ok(cx) && pn_net.timed && pn_net.next_time(marking, &next);
+        if (more) {
+            pn_net.set_now(marking, next);
+        }
+    }
+    if (all.count == 0U) {
+        pn_net.set_now(marking, start);
+    }
+    if (!pn_ok(cx)) {
+        return false;
+    }
+    const int64_t chosen = (all.count == 0U) ? -1 : pn_random_below(cx, (int64_t)all.count);
+    print_step(marking, &text, chosen);
+    if (chosen < 0) {
+        return false;
+    }
+    check_codec(cx, marking, copy);
+    list_t one = { NULL, 0U, (uint64_t)chosen, binding, 0U };
+    enumerate(cx, marking, &one);
+    cx->step++;
+    return pn_ok(cx) && pn_net.transition[one.transition].fire(cx, marking, binding);
+}
+
+int main(int argc, char **argv)
+{
+    if (argc != 3) {
+        return 2;
+    }
+    const uint64_t seed = strtoull(argv[1], NULL, 10);
+    const uint64_t steps = strtoull(argv[2], NULL, 10);
+    void *marking = calloc(1U, pn_net.marking_size);
+    void *copy = calloc(1U, pn_net.marking_size);
+    void *binding = calloc(1U, pn_net.binding_size);
+    if ((marking == NULL) || (copy == NULL) || (binding == NULL)) {
+        return 2;
+    }
+    pn_arena_t arena;
+    pn_ctx_t cx;
+    pn_arena_init(&arena, s_memory, sizeof s_memory);
+    pn_ctx_init(&cx, &arena, seed);
+    if (pn_net.init(&cx, marking)) {
+        for (uint64_t i = 0U; (i <= steps) && step(&cx, marking, copy, binding); i++) {
+            /* everything is done by step */
+        }
+    }
+    if (!pn_ok(&cx)) {
+        (void)printf("{\"error\": \"%s\", \"where\": \"%s\"}\n", cx.error_name, cx.error_origin);
+    }
+    free(marking);
+    free(copy);
+    free(binding);
+    return 0;
+}
