@@ -52,14 +52,14 @@ class Album:
             if self._activity:
                 self._take(engine, self._activity, "overview")
             self._activity = engine.activity
+
+    def sampled(self, engine: Engine, t: float, joints: Mapping[str, Array]) -> None:
+        """A close-up of each tool action that is new; exposes the film."""
         for robot in engine.robots:
             action = robot.tool_action()
             if action and action not in self._actions:
                 self._actions.add(action)
                 self._take(engine, action, "tools")
-
-    def sampled(self, engine: Engine, t: float, joints: Mapping[str, Array]) -> None:
-        """Exposes the film."""
         # While nothing moves there are no samples: the film then shows the last one for as long as it takes.
         while self._film is not None and t >= self._next_frame:
             self._next_frame += FILM_SPEED / FRAMES_PER_SECOND

@@ -8,6 +8,7 @@ The recipe of `pn2code run`; everything that takes decisions lives in the module
 from __future__ import annotations
 
 import json
+import math
 import os
 import shutil
 import tempfile
@@ -289,13 +290,14 @@ def _warn(record: RunRecord, config: CellConfig) -> None:
         above = [i for i, v in enumerate(values) if v > limit]
         if above:
             worst = max(above, key=values.__getitem__)
+            elbow = math.degrees(record.series[f"elbow.{robot.name}"][worst])
             record.warnings.append(
                 RunWarning(
                     record.sample_t[above[0]],
                     robot.name,
                     f"comes close to a singularity: condition number {values[worst]:.0f} at "
-                    f"{record.sample_t[worst]:.2f} s (above {limit:g} for "
-                    f"{len(above) * 100 / len(values):.1f} % of the samples)",
+                    f"{record.sample_t[worst]:.2f} s, elbow {elbow:.1f} deg from straight "
+                    f"(warning above {limit:g})",
                 )
             )
 

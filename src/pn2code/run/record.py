@@ -120,6 +120,7 @@ class RunRecord:
             self.series.setdefault(f"condition.{seen.robot}", []).append(
                 seen.conditioning.condition
             )
+            self.series.setdefault(f"elbow.{seen.robot}", []).append(seen.conditioning.elbow)
             self.series.setdefault(f"margin.{seen.robot}", []).append(seen.limit_margin)
         for gap in verdict.warnings:
             key = (gap.a, gap.b)
