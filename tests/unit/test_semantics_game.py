@@ -9,6 +9,7 @@ from typing import Any
 import pytest
 
 from helpers.netbuilder import flat
+from pn2code.diagnostics import Diagnostics
 from pn2code.semantics.evaluate import Limits
 from pn2code.semantics.game import Game, GameError, NotEnabled
 from pn2code.semantics.graph import state_space
@@ -457,6 +458,25 @@ def test_errors_name_the_element(part: str) -> None:
     assert g.marking == before
     assert info.value.origin.part == part.removesuffix(" of an output arc")
     assert info.value.origin.page == "Top"
+
+
+def test_errors_are_diagnostics() -> None:
+    g = game(
+        """
+        fun f x = 10 div x;
+        place P : INT = 1`0
+        trans T guard [f n > 1]
+          in P : n
+        """
+    )
+    d = Diagnostics()
+    with pytest.raises(GameError) as info:
+        g.enabled()
+    info.value.report(d)
+    (error,) = d.errors
+    assert error.code == "runtime-error"
+    assert error.origin.element == "transition `T`"
+    assert error.notes[0].message == "raised by `10 div x`"
 
 
 def test_errors_of_initial_markings_and_declarations() -> None:

@@ -9,6 +9,7 @@ from typing import Any
 import pytest
 
 from helpers.netbuilder import flat
+from pn2code.diagnostics import Diagnostics
 from pn2code.net.flat import FlatNet
 from pn2code.semantics.game import Game
 from pn2code.semantics.multiset import MultiSet
@@ -203,6 +204,28 @@ def test_replay_of_a_file(net: FlatNet, tmp_path: Path) -> None:
     path = tmp_path / "a.trace.jsonl"
     path.write_text("\n".join(lines(net)) + "\n", encoding="utf-8")
     assert replay(path, net).ok
+
+
+def test_the_end_must_be_the_end(net: FlatNet, timed: FlatNet) -> None:
+    written = lines(net)
+    assert "but Top.Move (n=1, p=" in refused(net, [*written[:2], written[-1]]).why
+    stopped = changed(written[-1], why="steps")
+    assert replay_lines([*written[:2], stopped], net).ended == "steps"
+    later = lines(timed)
+    assert "but Top.Slow (t=1) is" in refused(timed, [later[0], later[-1]]).why
+
+
+def test_refusals_are_diagnostics(net: FlatNet) -> None:
+    written = lines(net)
+    d = Diagnostics()
+    path = Path("a.trace.jsonl")
+    replay_lines(written, net).report(d, path)
+    assert not d.has_errors
+    refused(net, [written[0], written[2]]).report(d, path)
+    (error,) = d.errors
+    assert error.code == "trace-refused"
+    assert error.origin.location() == "a.trace.jsonl:2"
+    assert "`Top.Move`: not enabled: place `Top.Count` lacks 1`1: it holds 1`0" in error.message
 
 
 def test_an_error_of_the_net_is_the_reason(net: FlatNet) -> None:

@@ -11,7 +11,7 @@ from contextlib import contextmanager
 from dataclasses import dataclass, replace
 from typing import Any
 
-from pn2code.diagnostics import Origin, Span
+from pn2code.diagnostics import Diagnostics, Note, Origin, Span
 from pn2code.ml.core import Pat, Symbol
 from pn2code.net.flat import (
     ArcKind,
@@ -24,6 +24,7 @@ from pn2code.net.flat import (
     FlatTransition,
     Term,
 )
+from pn2code.semantics.codes import RUNTIME_ERROR
 from pn2code.semantics.evaluate import Evaluator, match, variables
 from pn2code.semantics.marking import (
     Binding,
@@ -55,6 +56,15 @@ class GameError(Exception):
     def __str__(self) -> str:
         """The message with its place."""
         return f"{self.origin.location()}: {self.origin.describe()}: {self.message}"
+
+    def report(self, d: Diagnostics) -> None:
+        """As a diagnostic."""
+        notes = (
+            [Note(f"raised by `{_one_line(self.span.text)}`", self.span.origin)]
+            if self.span
+            else []
+        )
+        d.error(RUNTIME_ERROR, self.message, self.origin, notes=notes)
 
 
 @contextmanager

@@ -19,8 +19,10 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+from pn2code.diagnostics import Diagnostics, Origin
 from pn2code.ml.core import Symbol
 from pn2code.net.flat import FlatNet, FlatTransition
+from pn2code.semantics.codes import TRACE_REFUSED
 from pn2code.semantics.colour_json import JsonError, from_json, to_json
 from pn2code.semantics.evaluate import Limits
 from pn2code.semantics.game import Game, GameError
@@ -28,6 +30,7 @@ from pn2code.semantics.marking import (
     BindingElement,
     Marking,
     PlaceMarking,
+    element_text,
     place_from_json,
 )
 from pn2code.semantics.values import Value
@@ -69,6 +72,13 @@ class ReplayResult:
             return f"{self.steps} steps, each enabled when its turn came{end}"
         what = f" `{self.transition}`" if self.transition else ""
         return f"line {self.line}: after {self.steps} steps{what}: {self.why}"
+
+    def report(self, d: Diagnostics, path: Path) -> None:
+        """What is wrong, if anything is, as a diagnostic at the line of the trace file."""
+        if not self.ok:
+            at = Origin(str(path), line=self.line, element=f"step {self.steps + 1}")
+            name = f"`{self.transition}`: " if self.transition else ""
+            d.error(TRACE_REFUSED, name + self.why, at)
 
 
 class _Wrong(Exception):  # noqa: N818
@@ -150,7 +160,9 @@ def replay_lines(
                 game = Game(net, storage, _initial(net, line), limits=limits)
                 rules = rules or _rules_for(str(line.get("by", "")), time_unit)
             elif line.get("event") == "end":
+                assert rules is not None
                 ended = str(line.get("why", ""))
+                _check_end(game, ended, rules)
             elif "event" not in line:
                 assert rules is not None
                 _step(game, line, rules)
@@ -210,6 +222,13 @@ def _step(game: Game, line: dict[str, Any], rules: Rules) -> None:
         _compare(symbol, occurred.binding[symbol], given[symbol])
     game.marking = marking
     game.steps += 1
+
+
+def _check_end(game: Game, ended: str, rules: Rules) -> None:
+    """A simulator is finished when nothing is enabled any more."""
+    if rules.own_clock and ended == "finished" and game.advance():
+        text = element_text(game.colours, game.net, game.enabled()[0])
+        raise _Wrong(f"it says that nothing is enabled any more, but {text} is")
 
 
 def _outputs(t: FlatTransition) -> tuple[Symbol, ...]:
