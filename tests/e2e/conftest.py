@@ -1,0 +1,38 @@
+"""Fixtures of the tests that run whole programs."""
+
+from __future__ import annotations
+
+import fcntl
+import os
+from pathlib import Path
+
+import pytest
+
+from pn2code import pipeline
+from pn2code.diagnostics import Diagnostics, render
+from pn2code.emission.write import write
+from pn2code.toolchain import build
+
+
+@pytest.fixture(scope="session")
+def riveting_program(root: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """The folder of the riveting cell, generated and built once a session, also when several workers share it.
+
+    It holds `supervisor`, the robots' scripts and everything else that `pn2code generate` writes. Only read it.
+    """
+    if build.find_compiler() is None:
+        pytest.skip("no C compiler")
+    base = tmp_path_factory.getbasetemp()
+    if "PYTEST_XDIST_WORKER" in os.environ:
+        base = base.parent
+    folder, done = base / "riveting-program", base / "riveting-program.done"
+    with (base / "riveting-program.lock").open("w") as lock:
+        fcntl.flock(lock, fcntl.LOCK_EX)
+        if not done.exists():
+            d = Diagnostics()
+            generated = pipeline.generate(root / "examples" / "riveting", d)
+            assert generated is not None, render.report(d)
+            write(folder, generated.files)
+            assert build.build(folder, generated.files, d) is not None, render.report(d)
+            done.touch()
+    return folder
