@@ -56,7 +56,7 @@ from pn2code.ml import core
 from pn2code.net.flat import FlatPlace, FlatTransition
 from pn2code.tdl import flow
 from pn2code.tdl import tree as t
-from pn2code.tdl.paths import all_names, expressions_of, files_in
+from pn2code.tdl.paths import all_names, expressions_of, files_in, names_in
 from pn2code.tdl.pretty import expression
 
 
@@ -251,7 +251,7 @@ class _Translator:
         if len(situations) != len(steps):
             return Halt()
         self.warn_of_choices(situations)
-        return self.decide(place, situations, messages)
+        return self.decide(place, situations)
 
     def messages(self, place: int, steps: Sequence[Step]) -> dict[int, Value]:
         """Script variables for the messages that the transitions of a state take."""
@@ -302,10 +302,10 @@ class _Translator:
     def exclude(self, a: t.Expression, b: t.Expression) -> bool:
         return exclusive(a, b, self.names.constant_values)
 
-    def decide(self, place: int, situations: list[Situation], messages: dict[int, Value]) -> Tree:
+    def decide(self, place: int, situations: list[Situation]) -> Tree:
         """The tree of a state, by what its transitions wait for (docs/tdl.md, "Translation")."""
         if len(situations) == 1 or len({frozenset(s.channels) for s in situations}) == 1:
-            return self.together(place, situations, messages)
+            return self.together(place, situations)
         units = self.units(situations)
         apart = all(
             self.exclude(a.own_condition, b.own_condition)
@@ -318,11 +318,11 @@ class _Translator:
             branches = [
                 (
                     disjunction([s.own_condition for s in u]),
-                    self.together(place, [_without_own(u[0])] if len(u) == 1 else u, messages),
+                    self.together(place, [_without_own(u[0])] if len(u) == 1 else u),
                 )
                 for u in units
             ]
-            return self.chain(place, branches, [u[0].step for u in units], [])
+            return self.chain(place, branches, [u[0].step for u in units])
         if all(not s.remote for s in situations):
             return self.race(place, situations)
         self.d.error(
@@ -360,28 +360,21 @@ class _Translator:
                 home.append(s)
         return units
 
-    def together(self, place: int, situations: list[Situation], messages: dict[int, Value]) -> Tree:
+    def together(self, place: int, situations: list[Situation]) -> Tree:
         """Transitions that wait for the same messages: wait, read, decide."""
         front = self.receive(situations[0].channels)
         if len(situations) == 1:
             only = situations[0]
-            own = [header(only.step, self.machine)]
+            own: list[Node] = [header(only.step, self.machine)]
             if only.condition == TRUE:
                 return self.occur(only, [*own, *front])
-            tree = self.chain(
-                place,
-                [(only.condition, self.occur(only, []))],
-                [only.step],
-                list(only.channels),
-                messages,
-            )
+            inside = self.occur(only, [] if front else own)
+            tree = self.chain(place, [(only.condition, inside)], [only.step])
             return Then((self.region(only, [*own, *front]),), tree) if front else tree
         branches = [
             (s.condition, self.occur(s, [header(s.step, self.machine)])) for s in situations
         ]
-        tree = self.chain(
-            place, branches, [s.step for s in situations], list(situations[0].channels), messages
-        )
+        tree = self.chain(place, branches, [s.step for s in situations])
         if not front:
             return tree
         flat = self.places[place]
@@ -398,7 +391,7 @@ class _Translator:
             (c, self.occur(s, [header(s.step, self.machine), *self.receive(s.channels, wait=False)]))
             for c, s in zip(ready, situations, strict=True)
         ]  # fmt: skip
-        tree = self.chain(place, branches, [s.step for s in situations], [])
+        tree = self.chain(place, branches, [s.step for s in situations])
         flat = self.places[place]
         if not any(c == TRUE for c in ready):
             own = [s.own_condition for s in situations]
@@ -412,7 +405,7 @@ class _Translator:
             )
             tree = Then((Region(flat.name, "place", flat.origins[0], front),), tree)
             if TRUE not in own and not covering(own, self.names.constant_values):
-                return Branches(((disjunction(own), tree),), self.stuck(place, []))
+                return Branches(((disjunction(own), tree),), self.stuck(place, own))
         return tree
 
     def receive(self, channels: Sequence[int], *, wait: bool = True) -> list[Node]:
@@ -432,8 +425,6 @@ class _Translator:
         place: int,
         branches: list[tuple[t.Expression, Tree]],
         steps: list[Step],
-        read: list[int],
-        messages: dict[int, Value] | None = None,
     ) -> Tree:
         """`if ... elsif ...`; what no condition covers is a `stop` that names state and values."""
         kept: list[tuple[t.Expression, Tree]] = []
@@ -452,21 +443,20 @@ class _Translator:
             if covering(conditions, self.names.constant_values):
                 otherwise = kept.pop()[1]
         if otherwise is None:
-            values = [self.place_values[place], *((messages or {})[c] for c in read)]
-            otherwise = self.stuck(place, values)
+            otherwise = self.stuck(place, [c for c, _ in branches])
         return Branches(tuple(kept), otherwise) if kept else otherwise
 
     def leave_out(self, transition: FlatTransition, reason: str) -> None:
         self.never.append(LeftOut(_transition_element(transition), reason))
 
-    def stuck(self, place: int, values: list[Value]) -> Tree:
-        """`stop`, saying where the program is and which values nothing accepts."""
+    def stuck(self, place: int, conditions: list[t.Expression]) -> Tree:
+        """`stop`, saying where the program is and the values for which no condition holds."""
         flat = self.places[place]
-        shown = values or [self.place_values[place]]
+        own = [x.exp for x in leaves(self.place_values[place])]
+        asked = [e for c in conditions for e in names_in(c) if e.name in self.names.variables]
         parts: list[t.Expression] = []
-        names = [x.exp for v in shown for x in leaves(v)]
         text = f"{flat.short}: nothing can happen"
-        for i, e in enumerate(names):
+        for i, e in enumerate(dict.fromkeys([*own, *asked])):
             label = expression(e)
             parts += [t.Value(f"{text} with {label} =" if i == 0 else f"and {label} ="), e]
         stop = Line(t.Stop(tuple(parts) or (t.Value(text),)))

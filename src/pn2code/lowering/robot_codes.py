@@ -51,10 +51,3 @@ PRIMITIVE = register(
     "measurements take a pose, `tool` and `move_home` take unit, `wait` takes a number of "
     "seconds. They are called in code segments only.",
 )
-DEAD = register(
-    "robot-dead",
-    "a transition of a robot can never occur",
-    "An input place of the transition can never hold a token: nothing marks it initially and "
-    "no transition that can occur puts a token there, e.g. an unassigned port. The transition"
-    " is left out of the script.",
-)

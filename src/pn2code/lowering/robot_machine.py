@@ -19,6 +19,9 @@ from pn2code.lowering import robot_codes as codes
 from pn2code.ml import core
 from pn2code.net.flat import ArcKind, FlatArc, FlatNet, FlatPlace, FlatTransition, Form, Term
 
+MAX_COEFFICIENT = 100
+"""Multi-sets with more copies of a token are not counted out one by one (and are no robot program anyway)."""
+
 
 @dataclass(frozen=True, slots=True)
 class Outcome:
@@ -144,10 +147,10 @@ def tokens(
                     yield ((condition, holds), *conditions), found
         case core.ListExp(items):
             yield (), list(items)
-        case core.Apply(core.Builtin("Ms.`"), core.RecordExp(((_, core.Lit(1)), (_, value)))):
-            yield (), [value]
-        case core.Apply(core.Builtin("Ms.`"), core.RecordExp(((_, core.Lit(0)), _))):
-            yield (), []
+        case core.Apply(
+            core.Builtin("Ms.`"), core.RecordExp(((_, core.Lit(int() as n)), (_, value)))
+        ) if n <= MAX_COEFFICIENT:
+            yield (), [value] * n
         case core.Apply(core.Builtin("Ms.++"), core.RecordExp(((_, left), (_, right)))):
             for c1, a in tokens(left, form):
                 for c2, b in tokens(right, form):
@@ -205,7 +208,7 @@ class _Analyser:
         if t.delay is not None:
             self.d.error(
                 codes.UNSUPPORTED_TIME,
-                f"transition `{t.name}` has a delay",
+                f"transition `{t.short}` has a delay",
                 t.origin,
                 hint="in a robot script time passes while commands are carried out: use a `wait` primitive",
             )
@@ -217,7 +220,7 @@ class _Analyser:
                     codes.UNSUPPORTED_PROGRAM,
                     f"{arc.kind.value} arc in a robot's part of the net",
                     arc.origin,
-                    notes=[Note(f"transition `{t.name}`", t.origin)],
+                    notes=[Note(f"transition `{t.short}`", t.origin)],
                     hint="give the place a value that says what is the case, and test it in a guard",
                 )
                 continue
@@ -236,7 +239,7 @@ class _Analyser:
         for i, term in enumerate(arc.inscription.terms):
             if term.delay is not None:
                 self.d.error(
-                    codes.UNSUPPORTED_TIME, f"transition `{t.name}` uses time stamps", term.origin
+                    codes.UNSUPPORTED_TIME, f"transition `{t.short}` uses time stamps", term.origin
                 )
             elif term.whole or not (
                 isinstance(term.coefficient, core.Lit) and term.coefficient.value == 1
@@ -245,7 +248,7 @@ class _Analyser:
                     codes.UNSUPPORTED_PROGRAM,
                     "a robot takes one token at a time, but this inscription is a multi-set",
                     term.origin,
-                    notes=[Note(f"transition `{t.name}`", t.origin)],
+                    notes=[Note(f"transition `{t.short}`", t.origin)],
                     hint="write one token, e.g. `k`",
                 )
             else:
@@ -255,7 +258,7 @@ class _Analyser:
         assert arc.inscription is not None
         if arc.inscription.form in (Form.TIMED_TOKEN, Form.TIMED_MULTISET):
             self.d.error(
-                codes.UNSUPPORTED_TIME, f"transition `{t.name}` uses time stamps", arc.origin
+                codes.UNSUPPORTED_TIME, f"transition `{t.short}` uses time stamps", arc.origin
             )
             return so_far
         out = []
@@ -265,7 +268,7 @@ class _Analyser:
                     codes.UNSUPPORTED_PROGRAM,
                     "the number of tokens that this inscription puts is not known before it is evaluated",
                     arc.origin,
-                    notes=[Note(f"transition `{t.name}`", t.origin)],
+                    notes=[Note(f"transition `{t.short}`", t.origin)],
                     hint="write one token, or `if c then 1`x else empty`",
                 )
                 return so_far
@@ -299,7 +302,7 @@ class _Analyser:
             if net.places[p].colset.timed:
                 self.d.error(
                     codes.UNSUPPORTED_TIME,
-                    f"place `{net.places[p].name}` has a timed colour set",
+                    f"place `{net.places[p].short}` has a timed colour set",
                     net.places[p].origins[0],
                     hint="in a robot script time passes while commands are carried out: use a `wait` primitive",
                 )
@@ -310,7 +313,7 @@ class _Analyser:
         fixed = [p for p in local if p not in sinks and p not in exchanged]
         chosen = self.cover(steps, set(fixed), [*sinks, *exchanged])
         if chosen is None:
-            self.explain(steps, fixed)
+            self.explain(steps, self.nearly(steps, fixed, exchanged))
             return None
         control = sorted(chosen)
         if not self.initial_control(control):
@@ -351,6 +354,14 @@ class _Analyser:
                         return found
             return None
         return chosen
+
+    def nearly(self, steps: list[Step], fixed: list[int], exchanged: list[int]) -> list[int]:
+        """The control places as far as they can be guessed, so that the message names the odd one out."""
+        guess = list(fixed)
+        for p in sorted(exchanged, key=lambda p: -sum(_taken(s, p) for s in steps)):
+            if all(_taken(s, p) + sum(_taken(s, q) for q in guess) <= 1 for s in steps):
+                guess.append(p)
+        return guess
 
     def explain(self, steps: list[Step], fixed: list[int]) -> None:
         """Say which element keeps the net from being a sequential program."""

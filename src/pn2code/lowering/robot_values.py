@@ -265,11 +265,11 @@ def choose(condition: t.Expression, a: Value, b: Value, span: Span) -> Value:
     if condition == FALSE:
         return b
     if isinstance(a, Scalar) and isinstance(b, Scalar):
-        if a.type is not b.type:
-            a, b = as_real(a), as_real(b)
-        if b.exp == FALSE:
+        a, b = common(a, b)
+        # The types first: in Python `1 == True`.
+        if a.type is tdl.Type.BOOL and b.exp == FALSE:
             return Scalar(conjunction([condition, a.exp]), a.type)
-        if a.exp == TRUE:
+        if a.type is tdl.Type.BOOL and a.exp == TRUE:
             return Scalar(disjunction([condition, b.exp]), a.type)
         return Scalar(t.Conditional(condition, a.exp, b.exp), a.type)
     if isinstance(a, Rec) and isinstance(b, Rec):
