@@ -32,6 +32,7 @@ typedef struct file_channel {
     bool empty;         /* out: seen empty, and nothing has been written there since */
     int prepared;       /* the temporary file, made and opened beforehand; -1: none */
     int spent;          /* the descriptor of the last publication, to be closed at leisure; -1: none */
+    int held;           /* of the file that the next publication replaces; -1: none */
     uint32_t own;       /* in: notices of our own clearing that are still to come */
     char temporary[NAME_SIZE];
 } file_channel_t;
@@ -93,7 +94,9 @@ static pn_channel_state_t files_read(void *self, uint32_t index, pn_message_t *o
     }
     state->dirty = false;
     size_t length = 0U;
-    const int error = pn_port_read(s_files.directory, channel->file, s_files.buffer, sizeof s_files.buffer, &length);
+    pn_port_close(state->held);
+    const int error =
+        pn_port_read(s_files.directory, channel->file, s_files.buffer, sizeof s_files.buffer, &length, &state->held);
     if (error == ENOENT) {
         if (!pn_port_dir_exists(s_files.directory)) {
             (void)fail_errno("read", channel->file, error);
@@ -156,9 +159,11 @@ static void prepare(void)
 {
     for (uint32_t i = 0U; i < s_files.cell->channel_count; i++) {
         file_channel_t *const state = &s_files.channel[i];
-        if (state->spent >= 0) {
+        if (state->spent >= 0) { /* something was published: what it replaced can go now */
             pn_port_close(state->spent);
+            pn_port_close(state->held);
             state->spent = -1;
+            state->held = -1;
         }
         const size_t length = (s_files.cell->channel[i].direction == PN_CHANNEL_IN) ? sizeof EMPTY - 1U : 0U;
         if ((state->prepared < 0) &&
@@ -173,7 +178,9 @@ static void unprepare(void)
     for (uint32_t i = 0U; (s_files.directory >= 0) && (i < s_files.cell->channel_count); i++) {
         file_channel_t *const state = &s_files.channel[i];
         pn_port_close(state->spent);
+        pn_port_close(state->held);
         state->spent = -1;
+        state->held = -1;
         if (state->prepared >= 0) {
             pn_port_close(state->prepared);
             state->prepared = -1;
@@ -203,7 +210,9 @@ static bool holds_nothing(uint32_t index, bool *empty)
     const pn_cell_channel_t *const channel = &s_files.cell->channel[index];
     size_t length = 0U;
     *empty = false;
-    const int error = pn_port_read(s_files.directory, channel->file, s_files.buffer, sizeof s_files.buffer, &length);
+    pn_port_close(s_files.channel[index].held);
+    const int error = pn_port_read(s_files.directory, channel->file, s_files.buffer, sizeof s_files.buffer, &length,
+                                   &s_files.channel[index].held);
     if (error != 0) {
         return fail_errno("read", channel->file, error);
     }
@@ -296,7 +305,7 @@ static void status_read(const char *side, status_t *out)
     size_t length = 0U;
     (void)memset(out, 0, sizeof *out);
     status_name(side, name, sizeof name);
-    if (pn_port_read(s_files.directory, name, text, sizeof text - 1U, &length) != 0) {
+    if (pn_port_read(s_files.directory, name, text, sizeof text - 1U, &length, NULL) != 0) {
         return;
     }
     text[length] = '\0';
@@ -511,7 +520,8 @@ static bool clean_channels(void)
         char name[NAME_SIZE];
         char shown[160];
         size_t length = 0U;
-        const int error = pn_port_read(s_files.directory, channel->file, s_files.buffer, sizeof s_files.buffer, &length);
+        const int error =
+            pn_port_read(s_files.directory, channel->file, s_files.buffer, sizeof s_files.buffer, &length, NULL);
         const bool empty = (error == ENOENT) || ((length >= 1U) && (s_files.buffer[0] == '0') &&
                                                  ((length == 1U) || (s_files.buffer[1] == '\n')));
         if ((error != 0) && (error != ENOENT)) {
@@ -589,6 +599,7 @@ bool pn_files_open(const pn_cell_t *cell, const pn_files_options_t *options, pn_
         s_files.channel[i].dirty = true;
         s_files.channel[i].prepared = -1;
         s_files.channel[i].spent = -1;
+        s_files.channel[i].held = -1;
     }
     if (!open_all()) {
         files_close(NULL);

@@ -144,9 +144,12 @@ static int close_with(int fd, int error)
     return error;
 }
 
-int pn_port_read(int directory, const char *name, char *buffer, size_t capacity, size_t *length)
+int pn_port_read(int directory, const char *name, char *buffer, size_t capacity, size_t *length, int *held)
 {
     *length = 0U;
+    if (held != NULL) {
+        *held = -1;
+    }
     const int fd = openat(directory, name, O_RDONLY | O_CLOEXEC | O_NONBLOCK | O_NOFOLLOW); /* a FIFO must not hold us up */
     if (fd < 0) {
         return errno;
@@ -157,6 +160,10 @@ int pn_port_read(int directory, const char *name, char *buffer, size_t capacity,
         got = read(fd, buffer, capacity);
     }
     *length = (got > 0) ? (size_t)got : 0U;
+    if ((got >= 0) && (held != NULL)) {
+        *held = fd;
+        return 0;
+    }
     return close_with(fd, (got < 0) ? errno : 0);
 }
 
