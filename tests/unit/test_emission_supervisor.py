@@ -23,11 +23,18 @@ ORDER = Colset("ORDER", Kind.PRODUCT, STRING, components=(COUNT, POSE))
 
 
 def place(index: int, name: str, colset: Colset) -> FlatPlace:
-    return FlatPlace(index, f"Top.{name}", name, "Top", "Top", 1, f"ID{index}", colset, None, (NOWHERE,))
+    return FlatPlace(
+        index, f"Top.{name}", name, "Top", "Top", 1, f"ID{index}", colset, None, (NOWHERE,)
+    )
 
 
 def partition() -> Partition:
-    places = (place(0, "orders", ORDER), place(1, "pose*/1", POSE), place(2, "done", COUNT), place(3, "end", COUNT))
+    places = (
+        place(0, "orders", ORDER),
+        place(1, "pose*/1", POSE),
+        place(2, "done", COUNT),
+        place(3, "end", COUNT),
+    )
     program = Program.__new__(Program)  # the emitter does not look at declarations
     net = FlatNet("cell", "somewhere/cell.cpn", "ab" * 32, program, places, (), False, False)
     owners = (
@@ -38,7 +45,9 @@ def partition() -> Partition:
         Channel("pose1", "pose1.robcad", 1, 0, 1, ChannelKind.DATA),
         Channel("done", "done.robcad", 2, 1, 0, ChannelKind.FLAG),
     )
-    return Partition(net, owners, (), (0, None, None, 0), channels, (Input("orders", "orders.txt", 0),), (3,))
+    return Partition(
+        net, owners, (), (0, None, None, 0), channels, (Input("orders", "orders.txt", 0),), (3,)
+    )
 
 
 def config(p: Partition) -> str:
