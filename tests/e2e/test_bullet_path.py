@@ -9,7 +9,7 @@ from helpers.robot_cells import RIVETS, riveting_cell, riveting_path
 from pn2code.robot.backend import Camera, open_backend
 from pn2code.robot.executor import RobotExecutor
 from pn2code.robot.monitor import Monitor
-from pn2code.robot.render import Film, cameras, picture, save
+from pn2code.robot.render import Film, cameras, picture, save, soften
 from pn2code.robot.transforms import difference, matrix_of
 
 EXACT = 1e-9  # m: 1e-6 mm
@@ -193,6 +193,7 @@ def test_pictures_show_something(bullet, tmp_path):
     red, green, blue = (image[:, :, i].astype(int) for i in range(3))
     orange = (red > 120) & (red > green + 50) & (green > blue)
     assert orange.mean() > 0.01
+    assert picture(bullet, views[0], 80, 45, smooth=2).shape == (45, 80, 3)
     assert save(image, tmp_path / "a.png")
     assert (tmp_path / "a.png").read_bytes()[:4] == b"\x89PNG"
     for name in ("film.mp4", "film.gif"):
@@ -217,3 +218,12 @@ def test_nothing_is_printed(capfd):
     backend.close()
     out, err = capfd.readouterr()
     assert (out, err) == ("", "")
+
+
+def test_softening_touches_edges_only():
+    image = np.zeros((8, 8, 3), np.uint8)
+    image[:, 4:] = 200
+    out = soften(image)
+    assert out[4, 0, 0] == 0
+    assert out[4, 7, 0] == 200
+    assert 20 < out[4, 3, 0] < out[4, 4, 0] < 180

@@ -106,11 +106,11 @@ def _floor(cell: RobotCell) -> Body:
     m = 0.35
     for y in (low[1] + m, high[1] - m):
         lines = lines + block(
-            (low[0] + m, y - 0.05, 0.0), (high[0] - m, y + 0.05, 0.003), 0.01, 0.001
+            (low[0] + m, y - 0.05, 0.001), (high[0] - m, y + 0.05, 0.005), 0.01, 0.001
         )
     for x in (low[0] + m, high[0] - m):
         lines = lines + block(
-            (x - 0.05, low[1] + m, 0.0), (x + 0.05, high[1] - m, 0.003), 0.01, 0.001
+            (x - 0.05, low[1] + m, 0.001), (x + 0.05, high[1] - m, 0.005), 0.01, 0.001
         )
     names = tuple(r.name for r in cell.robots)
     return Body("floor", (solid,), (Look(_FLOOR, plate), Look(_STRIPE, lines)), None, names)
