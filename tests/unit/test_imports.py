@@ -10,6 +10,7 @@ from pathlib import Path
 ALLOWED: dict[str, set[str]] = {
     "diagnostics": set(),
     "resources": set(),
+    "parser_cache": set(),
     "ml": {"diagnostics"},
     "reading": {"diagnostics"},
     "net": {"diagnostics", "ml", "reading"},
@@ -17,7 +18,7 @@ ALLOWED: dict[str, set[str]] = {
     "cell": {"diagnostics", "ml", "net"},
     "lowering": {"diagnostics", "ml", "net", "cell", "tdl"},
     "robot": {"diagnostics"},
-    "tdl": {"diagnostics", "robot"},
+    "tdl": {"diagnostics", "robot", "parser_cache"},
     "emission": {"diagnostics", "ml", "net", "cell", "lowering", "resources", "tdl"},
     "channels": {"diagnostics", "cell"},
     "toolchain": {"diagnostics", "emission"},

@@ -16,6 +16,7 @@ from lark.exceptions import UnexpectedCharacters, UnexpectedToken, VisitError
 from lark.tree import Meta
 
 from pn2code.diagnostics import Diagnostics, Origin, SourceText, Span
+from pn2code.parser_cache import kept_lark
 from pn2code.tdl import codes
 from pn2code.tdl import tree as t
 from pn2code.tdl.grammar import GRAMMAR, KEYWORDS
@@ -50,12 +51,8 @@ def parse(source: SourceText, d: Diagnostics) -> t.Program | None:
 
 @cache
 def _parser() -> Lark:
-    return Lark(
-        GRAMMAR,
-        parser="lalr",
-        lexer="contextual",
-        propagate_positions=True,
-        maybe_placeholders=False,
+    return kept_lark(
+        "tdl", GRAMMAR, lexer="contextual", propagate_positions=True, maybe_placeholders=False
     )
 
 
