@@ -323,7 +323,8 @@ class BulletBackend:
         """A picture (height, width, 3), 0..255."""
         p = self._p
         view = p.computeViewMatrix(camera.eye, camera.target, (0.0, 0.0, 1.0))
-        lens = p.computeProjectionMatrixFOV(camera.field_of_view, width / height, 0.2, 30.0)
+        # TinyRenderer's shadows depend on the near plane: at 0.2 m all would lie in shadow.
+        lens = p.computeProjectionMatrixFOV(camera.field_of_view, width / height, 0.05, 30.0)
         renderer = (
             p.ER_BULLET_HARDWARE_OPENGL
             if self._gui or self._egl is not None
