@@ -367,3 +367,27 @@ def test_negative_speeds_and_durations_that_only_show_when_running() -> None:
     assert fault("move $joint home at r", "var r : real := 1.5").message == (
         "joint speed 150 % is not above zero and at most 100 %"
     )
+
+
+def test_a_file_filled_between_two_looks_ends_the_wait() -> None:
+    """In real time the writer does not wait for our look at the files to end."""
+
+    class LateFiles:
+        """Empty at the first look, filled at all later ones."""
+
+        looks = 0
+
+        def read(self, name: str) -> tuple[int, ...] | None:
+            self.looks += 1
+            return None if self.looks == 1 else (7,)
+
+        def clear(self, name: str) -> None: ...
+
+        def write(self, name: str, values: tuple[object, ...]) -> None: ...
+
+    program = checked(
+        script("wait until filled(f) read f into k stop k", 'input f "f.txt" : int var k : int')
+    )
+    request = Interpreter(program, LateFiles()).resume()
+    assert isinstance(request, Fault)
+    assert request.message == "7"

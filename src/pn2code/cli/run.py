@@ -50,6 +50,9 @@ def run(
         bool,
         typer.Option("--realtime", help="On the wall clock, the supervisor woken by its files."),
     ] = False,
+    speed: Annotated[
+        float, typer.Option(min=0.01, max=1000.0, help="With --realtime: so many times faster.")
+    ] = 1.0,
     settings: SetOption = [],  # noqa: B006 - typer reads the default only
     form: FormatOption = Format.FULL,
 ) -> None:

@@ -29,7 +29,7 @@ from pn2code.emission.write import write
 from pn2code.report.rows import rows_tsv
 from pn2code.report.summary import summarise
 from pn2code.robot import scene
-from pn2code.robot.backend import BackendName, open_backend
+from pn2code.robot.backend import Backend, BackendName, open_backend
 from pn2code.robot.executor import RobotExecutor
 from pn2code.robot.monitor import Monitor
 from pn2code.run.engine import Engine, Observer
@@ -76,7 +76,7 @@ class RunOptions:
         backend: "bullet" or "fake".
         values: `val`s to replace.
         gui: PyBullet's window.
-        realtime: on the wall clock instead of in lock-step.
+        realtime: on the wall clock instead of in lock-step; speed: how many times faster than that.
     """
 
     out: Path
@@ -86,6 +86,7 @@ class RunOptions:
     values: dict[str, str] = field(default_factory=dict)
     gui: bool = False
     realtime: bool = False
+    speed: float = 1.0
 
 
 @dataclass(frozen=True, slots=True)
@@ -215,24 +216,38 @@ def _start(
             return None
     trace = GrowingTrace(trace_path)
     stack.callback(trace.close)
-    kind = RealtimeEngine if options.realtime else Engine
-    engine = kind(
-        record=RunRecord(partition.net.name, prepared.config.layout, options.backend),
-        supervisor=supervisor,
-        supervisor_trace=trace,
-        supervisor_depth=partition.owners[0].instance.count("/") + 1,
-        cell=cell,
-        backend=backend,
-        monitor=Monitor(cell, backend),
-        observers=observers,
-        partition=partition,
-    )
+    engine = _engine(prepared, options, supervisor, trace, backend, observers)
     for name, side in sides.items():
         script, program = prepared.scripts[name]
         executor = RobotExecutor(cell.robot(name), cell.motion)
         files = RobotFiles(side, Patience() if options.realtime else None)
         engine.add_robot(name, script, program, files, executor)
     return engine
+
+
+def _engine(
+    prepared: Prepared,
+    options: RunOptions,
+    supervisor: SupervisorProcess,
+    trace: GrowingTrace,
+    backend: Backend,
+    observers: list[Observer],
+) -> Engine:
+    partition = prepared.generated.partition
+    common: dict[str, Any] = {
+        "record": RunRecord(partition.net.name, prepared.config.layout, options.backend),
+        "supervisor": supervisor,
+        "supervisor_trace": trace,
+        "supervisor_depth": partition.owners[0].instance.count("/") + 1,
+        "partition": partition,
+        "cell": prepared.robot_cell,
+        "backend": backend,
+        "monitor": Monitor(prepared.robot_cell, backend),
+        "observers": observers,
+    }
+    if options.realtime:
+        return RealtimeEngine(**common, speed=options.speed)
+    return Engine(**common)
 
 
 @contextmanager

@@ -39,8 +39,13 @@ class Patience:
 
 @dataclass(slots=True)
 class RealtimeEngine(Engine):
-    """Runs a cell in real time. `supervisor` was started without lock-step."""
+    """Runs a cell in real time. `supervisor` was started without lock-step.
 
+    Args:
+        speed: seconds of the arms per second of the wall clock; the supervisor knows nothing of it.
+    """
+
+    speed: float = 1.0
     _looked: float = 0.0
     _sampled: float = 0.0
     _fired: list[dict[str, Any]] = field(default_factory=list)
@@ -51,7 +56,7 @@ class RealtimeEngine(Engine):
         try:
             self._begin_run()
             while True:
-                self.now = time.perf_counter() - start
+                self.now = (time.perf_counter() - start) * self.speed
                 self._end_commands()
                 moved = [self._robot_turn(robot) for robot in self.robots]
                 if self._look_at_supervisor() and all(r.motion is None for r in self.robots):
@@ -82,8 +87,9 @@ class RealtimeEngine(Engine):
     def _read_trace(self) -> None:
         for line in self.supervisor_trace.complete_lines():
             if "transition" in line:
-                self._fired.append(line)
-                self._enter_activity(line, float(line["t"]))
+                t = float(line["t"]) * self.speed
+                self._fired.append({**line, "t": t})
+                self._enter_activity(line, t)
 
     def _end_commands(self) -> None:
         for robot in self.robots:
@@ -94,10 +100,13 @@ class RealtimeEngine(Engine):
         """Whether it has finished; a stop or its death stops the robots."""
         if self._finished:
             return True
-        if self.now - self._looked < LOOK_S:
+        if (now := time.monotonic()) - self._looked < LOOK_S:
             return False
-        self._looked = self.now
+        self._looked = now
         self._read_trace()
+        if not self.robots:
+            self._finished = not self.supervisor.running
+            return self._finished
         peer = self.robots[0].files.shared.peer()
         if peer.state is PeerState.FINISHED:
             self._finished = True

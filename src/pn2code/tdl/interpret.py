@@ -302,6 +302,8 @@ class Interpreter:
             self._channel[name] for name in paths.files_in(condition) if not self.filled(name)
         )
         if not empty:
+            if evaluate(condition, self):
+                return None  # the last file was filled between the two looks (real time)
             raise ScriptError("this wait can never end: all its files hold messages")
         return AwaitFile(empty, self._line)
 
