@@ -13,7 +13,7 @@ from pn2code.robot.render import Film, cameras, picture, save, soften
 from pn2code.robot.transforms import difference, matrix_of
 
 EXACT = 1e-9  # m: 1e-6 mm
-BULLET = 1e-6  # m: PyBullet keeps some link frames in single precision
+BULLET = 1e-6  # m: PyBullet's TCP is about 1e-7 m from ours; poses are judged by our kinematics
 STEP = 0.1  # s between samples: coarse, to be quick
 
 BACKENDS = ["fake", pytest.param("bullet", marks=pytest.mark.bullet)]

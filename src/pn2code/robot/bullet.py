@@ -188,7 +188,7 @@ class BulletBackend:
                     "</material></visual>"
                 )
         lines.append("</link></robot>")
-        # One element a line: PyBullet's reader cuts lines of more than a few kilobytes.
+        # One element a line: all in one long line, PyBullet's reader reported broken attributes.
         return _Standing(body, self._load_urdf(body.name, "\n".join(lines)))
 
     # Backend
@@ -323,7 +323,7 @@ class BulletBackend:
         """A picture (height, width, 3), 0..255."""
         p = self._p
         view = p.computeViewMatrix(camera.eye, camera.target, (0.0, 0.0, 1.0))
-        # TinyRenderer's shadows depend on the near plane: at 0.2 m all would lie in shadow.
+        # The near plane matters to TinyRenderer's shadows: with 0.2 m everything lay in shadow.
         lens = p.computeProjectionMatrixFOV(camera.field_of_view, width / height, 0.05, 30.0)
         renderer = (
             p.ER_BULLET_HARDWARE_OPENGL
