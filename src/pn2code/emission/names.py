@@ -112,7 +112,7 @@ class Names:
 
     def transition(self, index: int, name: str) -> str:
         """`Robot1_Accept`: the instance path without the prime page."""
-        return self._scope.name(("transition", index), _path(name), "t_{}").removeprefix("t_")
+        return self._scope.name(("transition", index), _path(name))
 
     def bag(self, index: int, name: str) -> str:
         """`s_at_Robot1_Waiting`."""
@@ -120,7 +120,7 @@ class Names:
 
     def place(self, index: int, name: str) -> str:
         """The place's member of the marking, also the stem of its functions: `Robot1_Waiting`."""
-        return self._scope.name(("place", index), _path(name), "p_{}").removeprefix("p_")
+        return self._scope.name(("place", index), _path(name))
 
 
 def _path(name: str) -> str:

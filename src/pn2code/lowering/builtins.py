@@ -98,6 +98,8 @@ class Builtins:
         lists = [o.type for o in operands if o.type.rep is Rep.LIST]
         if lists and name.split(".")[0] in ("List", "Ms"):
             table = body.program.types.plain(lists[0] if name != "List.concat" else t)
+        if table:
+            operands = [body.addressable(o, "operand") for o in operands]
         op = ir.Op(name, tuple(operands), t, table)
         if is_impure_builtin(name) or t.rep is Rep.UNIT:
             return body.spill(op, name.split(".")[-1])
@@ -142,10 +144,11 @@ class Builtins:
                 UNSUPPORTED_COLSET, f"`{colset.name}.{name}` of a subset is not supported in compiled code", at
             )
         if name in ("lt", "cmp"):
-            a, b = (body.code(v) for v in components(body, arguments[0], 2))
+            a, b = (body.addressable(body.code(v), "side") for v in components(body, arguments[0], 2))
             return ir.Op(f"Colset.{name}", (a, b), t, table)
         if name in ("mkstr", "legal", "ord"):
-            return ir.Op(f"Colset.{name}", (body.code(arguments[0]),), t, table)
+            operand = body.addressable(body.code(arguments[0]), "value")
+            return ir.Op(f"Colset.{name}", (operand,), t, table)
         if name == "size":
             return ir.Op("Colset.size", (), t, table)
         if name == "all":
@@ -187,6 +190,7 @@ def _table(body: Body, t: IrType) -> str:
 
 def equal(body: Body, a: Ir, b: Ir) -> Ir:
     """Structural equality."""
+    a, b = body.addressable(a, "left"), body.addressable(b, "right")
     return ir.Op("=", (a, b), ir.BOOL, _table(body, a.type))
 
 
@@ -251,7 +255,7 @@ def _assigning(op: str) -> Callable[[Body, tuple[Val, ...], Type, Span], Val]:
             target, value = arguments[0], ir.Const(1, ir.INT)
         else:
             target, operand = components(body, arguments[0], 2)
-            value = body.code(operand, at)  # type: ignore[assignment]
+            value = body.addressable(body.code(operand, at), "value")  # type: ignore[assignment]
         reference = _reference(target, at)
         old = ir.GlobalUse(reference.name, reference.type)
         new: Ir = value
@@ -291,6 +295,7 @@ def _cell(op: str, *, tupled: bool = False, rest: bool = False) -> Callable[[Bod
 
 def _copies(body: Body, arguments: tuple[Val, ...], result: Type, at: Span) -> Val:
     n, value = (body.code(v, at) for v in components(body, arguments[0], 2))
+    value = body.addressable(value, "value")
     t = body.program.types.lower(result)
     if isinstance(n, ir.Const) and n.value == 1:
         empty = ir.Op("list.nil", (), t)
@@ -305,6 +310,7 @@ def _if_all(body: Body, arguments: tuple[Val, ...], result: Type, at: Span) -> V
     t = body.program.types.lower(result)
     flags = body.code(conditions, at)
     if operand.type != t:
+        operand = body.addressable(operand, "value")
         empty = ir.Op("list.nil", (), t)
         operand = ir.Op("list.cons", (operand, empty), t, body.program.types.plain(t))
     return ir.Select(ir.Op("list.all_true", (flags,), ir.BOOL), operand, ir.Op("list.nil", (), t), t)
@@ -322,6 +328,7 @@ def _pick(body: Body, arguments: tuple[Val, ...], result: Type, at: Span) -> Val
 
 def _insert(body: Body, arguments: tuple[Val, ...], result: Type, at: Span) -> Val:
     values, value = (body.code(v, at) for v in arguments)
+    value = body.addressable(value, "value")
     t, table = values.type, body.program.types.plain(values.type)
     last = ir.Op("list.cons", (value, ir.Op("list.nil", (), t)), t, table)
     return ir.Op("List.@", (values, last), t, table)

@@ -158,6 +158,13 @@ class Body(TypeSource):
         self.emit(ir.Let(local, value))
         return ir.Use(local)
 
+    def addressable(self, value: Ir, hint: str) -> Ir:
+        """The value in a form whose address can be taken in C: a struct that a function returns gets a name."""
+        is_struct = value.type.rep in (Rep.STRUCT, Rep.UNION)
+        if is_struct and not isinstance(value, ir.MakeStruct | ir.MakeUnion):
+            return self.atomic(value, hint)
+        return value
+
     def settle(self, value: Val, hint: str) -> Val:
         """The same for a value of any kind; records stay apart."""
         if isinstance(value, RecordVal):
@@ -299,7 +306,7 @@ class Body(TypeSource):
 
     def _list(self, e: core.ListExp, env: Env) -> Ir:
         t = self.representation(e.type)
-        items = [self.ir(item, env) for item in e.items]
+        items = [self.addressable(self.ir(item, env), "item") for item in e.items]
         result: Ir = ir.Op("list.nil", (), t)
         for item in reversed(items):
             result = ir.Op("list.cons", (item, result), t, self.program.types.plain(t))
@@ -339,6 +346,7 @@ class Body(TypeSource):
             else:
                 assert isinstance(pair, RecordVal)
                 rest = self.code(pair.fields["2"])
+            head = self.addressable(head, "item")
             return ir.Op("list.cons", (head, rest), t, self.program.types.plain(t))
         if t.rep is not Rep.UNION:
             return code  # an index is its number

@@ -38,6 +38,7 @@ def _accumulator(body: Body, t: IrType, hint: str = "reversed") -> Local:
 
 def _push(body: Body, target: Local, value: Ir) -> None:
     table = body.program.types.plain(target.type)
+    value = body.addressable(value, "item")
     body.emit(ir.Assign(target, ir.Op("list.cons", (value, ir.Use(target)), target.type, table)))
 
 

@@ -52,6 +52,7 @@ class Putter:
         return note
 
     def _token(self, count: Ir, value: Ir, stamp: Ir | None) -> None:
+        value = self._body.addressable(value, "token")
         self._body.emit(ir.Put(self._place, count, value, stamp, self._note_once()))
 
     def _multiset(self, exp: core.Exp, stamp: Ir | None) -> None:

@@ -99,7 +99,8 @@ def take_terms(
             body.emit(ir.TakeAll(arc.place, multiset, table, limit, note))
         else:
             count = body.ir(term.coefficient, env)
-            body.emit(ir.Take(arc.place, count, body.ir(term.value, env), limit, note))
+            value = body.addressable(body.ir(term.value, env), "token")
+            body.emit(ir.Take(arc.place, count, value, limit, note))
         note = ""
 
 
