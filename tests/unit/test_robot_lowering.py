@@ -387,6 +387,76 @@ def test_names_that_scripts_cannot_have(tmp_path: Path) -> None:
     assert replayed(cell, [("x", (1,)), ("x", (3,))]).ok
 
 
+def test_long_branches_become_procedures(tmp_path: Path) -> None:
+    steps = "drill (); moveHome (); " * 10
+    robot = f"""
+    place Idle = 1
+    place Half : INT
+    trans Short guard [n <= 1] code action drill ()
+      both Idle
+      in x : n
+    trans Long guard [n > 1] code action ({steps} ())
+      in Idle
+      in x : n
+      out Half : n
+    trans Rest code action moveHome ()
+      in Half : n
+      out Idle
+    """
+    cell = Cell(tmp_path, robot, ("x in INT",))
+    assert cell.messages == []
+    assert "  else\n    call long\n  end if" in cell.body
+    assert "\nprocedure long\n  -- Long (ID" in cell.text
+    assert replayed(cell, [("x", (1,)), ("x", (2,)), ("x", (0,))]).ok
+
+
+def test_messages_of_branches_that_exclude_each_other_share_a_variable(tmp_path: Path) -> None:
+    robot = """
+    place Idle : INT = 1`1
+    trans Left guard [k = 1] code input (p); action moveJoint p
+      in Idle : k
+      in a : p
+      out Idle : 2
+    trans Right guard [k = 2] code input (p); action moveLinear p
+      in Idle : k
+      in b : p
+      out Idle : 1
+    """
+    cell = Cell(tmp_path, robot, ("a in POSE", "b in POSE"))
+    assert cell.messages == []
+    assert "read a into p" in cell.body and "read b into p" in cell.body
+    assert replayed(cell, [("a", pose(1.0)), ("b", pose(2.0)), ("a", pose(3.0))]).ok
+
+
+def test_the_riveting_cell(root: Path) -> None:
+    """One loop with a chain for each robot; robot 2 has nothing to measure with."""
+    from pn2code.cell.config import load as load_cell
+    from pn2code.cell.divide import divide
+    from pn2code.diagnostics import Diagnostics
+    from pn2code.lowering.robot import lower_robots
+    from pn2code.lowering.robot_ir import program
+    from pn2code.net.front import load
+    from pn2code.tdl.pretty import statements
+
+    d = Diagnostics()
+    config = load_cell(root / "examples" / "riveting", d)
+    assert config is not None
+    net = load(config.net_path, d, config.values)
+    assert net is not None
+    partition = divide(net, config, d)
+    assert partition is not None
+    irs = lower_robots(partition, config, d)
+    assert irs is not None and [ir.name for ir in irs] == ["robot1", "robot2"]
+    assert not [x for x in d if x.code.startswith(("robot-", "unsupported-robot"))]
+    for ir in irs:
+        text = "\n".join(statements(program(ir).body))
+        assert text.startswith("loop\n") and text.endswith("\nend loop")
+        assert text.count("loop") == 2 and "goto" not in text and "while" not in text
+        assert text.count("  if ") == 1 and "move $linear p in tool" in text
+    assert [len(ir.left_out) for ir in irs] == [0, 1]
+    assert irs[1].left_out[0].reason == "place `referencia` can never hold a token"
+
+
 # --- the script does what the net does ---------------------------------------------------------
 
 NETS = {

@@ -37,6 +37,7 @@ from pn2code.lowering.robot_ir import (
 )
 from pn2code.lowering.robot_machine import Machine, Outcome, Step, analyse, tokens
 from pn2code.lowering.robot_names import Names, identifier
+from pn2code.lowering.robot_procedures import extract
 from pn2code.lowering.robot_steps import Situation, StepTranslator, header
 from pn2code.lowering.robot_structure import Branches, Halt, Then, To, Tree, structure
 from pn2code.lowering.robot_values import (
@@ -255,9 +256,11 @@ class _Translator:
 
     def messages(self, place: int, steps: Sequence[Step]) -> dict[int, Value]:
         """Script variables for the messages that the transitions of a state take."""
-        avoid = set(self.place_names[place])
         found: dict[int, Value] = {}
         for s in steps:
+            # Only what one transition needs at a time must be kept apart.
+            known = [self.message_names[p] for p, *_ in s.takes if p in found]
+            avoid = {*self.place_names[place], *(name for names in known for name in names)}
             bound = {
                 v
                 for p, term, _, _ in s.takes
@@ -283,7 +286,11 @@ class _Translator:
     def warn_of_choices(self, situations: list[Situation]) -> None:
         for i, a in enumerate(situations):
             for b in situations[i + 1 :]:
-                if not self.exclude(a.condition, b.condition):
+                # Conditions on different messages say nothing about each other.
+                same = set(a.channels) == set(b.channels)
+                first_if = a.condition if same else a.own_condition
+                second_if = b.condition if same else b.own_condition
+                if not self.exclude(first_if, second_if):
                     first, second = a.step.transition, b.step.transition
                     self.d.warning(
                         codes.CHOICE,
@@ -513,8 +520,20 @@ class _Translator:
         }
         clash = {x for x in labels.values() if list(labels.values()).count(x) > 1}
         unique = {p: f"{x}_{i}" if x in clash else x for i, (p, x) in enumerate(labels.items())}
-        body = structure(self.machine.start, trees, lambda p: unique[p])
-        used, files = _used(body)
+        whole = structure(self.machine.start, trees, lambda p: unique[p])
+        used, files = _used(whole)
+        taken: set[str] = set()
+
+        def procedure(first: Region) -> str:
+            stem = identifier(first.element.rpartition(".")[2]).lower()
+            name, n = self.names.unique(stem), 1
+            while name in taken:
+                n += 1
+                name = self.names.unique(f"{stem}_{n}")
+            taken.add(name)
+            return name
+
+        body, procedures = extract(whole, procedure)
         constants = self.names.declared_constants(used | self._needed_constants())
         owner, net = self.machine.owner, self.partition.net
         first = self.machine.steps[0].transition
@@ -534,7 +553,7 @@ class _Translator:
                 ),
                 *self.never,
             ),
-            procedures=(),
+            procedures=procedures,
             body=body,
         )
 
