@@ -11,7 +11,7 @@ from typing import Annotated, NoReturn
 import typer
 
 import pn2code
-from pn2code.cli import check, explain, generate, run
+from pn2code.cli import check, explain, generate, robot, run
 from pn2code.cli.options import Exit
 
 app = typer.Typer(
@@ -25,6 +25,7 @@ app = typer.Typer(
 app.command(epilog=check.EPILOG)(check.check)
 app.command(epilog=generate.EPILOG)(generate.generate)
 app.command(epilog=run.EPILOG)(run.run)
+app.command(epilog=robot.EPILOG)(robot.robot)
 app.command(epilog=explain.EPILOG)(explain.explain)
 
 

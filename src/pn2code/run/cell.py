@@ -21,7 +21,7 @@ from typing import Any
 
 from pn2code import pipeline
 from pn2code.cell.config import CellConfig
-from pn2code.channels import SharedDirectory, specs_of
+from pn2code.channels import GRACE_S, SharedDirectory, specs_of
 from pn2code.diagnostics import Diagnostics, Origin, SourceText
 from pn2code.diagnostics.codes import register
 from pn2code.emission.output import OutputFile
@@ -34,7 +34,7 @@ from pn2code.robot.executor import RobotExecutor
 from pn2code.robot.monitor import Monitor
 from pn2code.run.engine import Engine, Observer
 from pn2code.run.files import RobotFiles
-from pn2code.run.realtime import Patience, RealtimeEngine
+from pn2code.run.realtime import RealtimeEngine
 from pn2code.run.record import RunRecord, RunWarning
 from pn2code.run.supervisor import SupervisorProcess
 from pn2code.run.trace import GrowingTrace, trace_text
@@ -220,7 +220,7 @@ def _start(
     for name, side in sides.items():
         script, program = prepared.scripts[name]
         executor = RobotExecutor(cell.robot(name), cell.motion)
-        files = RobotFiles(side, Patience() if options.realtime else None)
+        files = RobotFiles(side, GRACE_S if options.realtime else 0.0)
         engine.add_robot(name, script, program, files, executor)
     return engine
 

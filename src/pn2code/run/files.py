@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
+import time
 from collections.abc import Callable, Iterable
 from contextlib import suppress
-from typing import TypeVar
+from pathlib import Path
+from typing import NoReturn, TypeVar
 
 from pn2code.channels import (
     Message,
     NotWritten,
+    Reason,
     Refused,
     ScalarValue,
     SharedDirectory,
@@ -16,38 +19,53 @@ from pn2code.channels import (
 )
 from pn2code.tdl.interpret import FileError
 
+T = TypeVar("T")
+
+
+class DirectoryError(FileError):
+    """The shared directory itself fails: removed, full, read-only."""
+
 
 class RobotFiles:
     """Implements `pn2code.tdl.interpret.Files` for one robot.
 
     Args:
-        on_refusal: hears of content that is not taken, once for each content. It decides whether that is
-            fatal at once (lock-step: nobody else can still be writing) by raising `FileError`.
+        grace_s: wall time for which content that is not taken may wait to be replaced by something valid (I6). 0: it is
+            a fault at once, as in lock-step, where nobody else can still be writing.
     """
 
-    def __init__(
-        self, shared: SharedDirectory, on_refusal: Callable[[Refused], None] | None = None
-    ) -> None:
+    def __init__(self, shared: SharedDirectory, grace_s: float = 0.0) -> None:
         self.shared = shared
-        self._on_refusal = on_refusal or _fatal
+        self.fault: FileError | None = None
+        """The first error, which stopped the script."""
+        self._grace = grace_s
+        self._refused: dict[str, float] = {}
 
     def read(self, name: str) -> tuple[ScalarValue, ...] | None:
         """The scalars of the message, which stays; None when the file is empty."""
-        found = _guarded(lambda: self.shared.read(name))
+        found = self._guarded(lambda: self.shared.read(name))
         if isinstance(found, Refused):
-            self._on_refusal(found)
+            self._refuse(found)
             return None
+        self._refused.pop(name, None)
         return found.scalars if isinstance(found, Message) else None
+
+    def _refuse(self, refusal: Refused) -> None:
+        now = time.monotonic()
+        lasted = now - self._refused.setdefault(refusal.channel, now)
+        hopeless = refusal.reason is Reason.OVERWRITTEN  # what was there cannot come back
+        if hopeless or lasted >= self._grace:
+            self._failed(FileError(f"{refusal.file}: message refused: {refusal.text}"))
 
     def clear(self, name: str) -> None:
         """Consume the message."""
-        _guarded(lambda: self.shared.clear(name))
+        self._guarded(lambda: self.shared.clear(name))
 
     def write(self, name: str, values: tuple[ScalarValue, ...]) -> None:
         """Publish a message."""
-        result = _guarded(lambda: self.shared.write(name, values))
+        result = self._guarded(lambda: self.shared.write(name, values))
         if isinstance(result, NotWritten):
-            raise FileError(f"{result.code}: {result.text}")
+            self._failed(FileError(f"{result.code}: {result.text}"))
 
     def any_holds(self, names: Iterable[str]) -> bool:
         """Whether one of the files holds a message."""
@@ -60,20 +78,28 @@ class RobotFiles:
 
     def finished(self) -> None:
         """Says that this robot is done."""
-        self.shared.set_status(Status.FINISHED)
+        self._guarded(lambda: self.shared.set_status(Status.FINISHED))
+
+    def _guarded(self, action: Callable[[], T]) -> T:
+        """An operating-system failure becomes an error of the script, which stops it."""
+        try:
+            return action()
+        except OSError as problem:
+            self._failed(directory_error(self.shared.path, problem))
+
+    def _failed(self, problem: FileError) -> NoReturn:
+        self.fault = self.fault or problem
+        raise problem
+
+
+def directory_error(path: Path, problem: OSError) -> DirectoryError:
+    """What the operating system said, in words."""
+    if not path.is_dir():
+        return DirectoryError(f"the shared directory `{path}` is gone")
+    where = f" at `{problem.filename}`" if problem.filename else ""
+    reason = problem.strerror or str(problem)
+    return DirectoryError(f"the shared directory fails{where}: {reason[:1].lower()}{reason[1:]}")
 
 
 def _fatal(refusal: Refused) -> None:
     raise FileError(f"{refusal.file}: {refusal.text}")
-
-
-T = TypeVar("T")
-
-
-def _guarded(action: Callable[[], T]) -> T:
-    """An operating-system failure becomes an error of the script, which stops it."""
-    try:
-        return action()
-    except OSError as problem:
-        where = f" `{problem.filename}`" if problem.filename else ""
-        raise FileError(f"the shared directory fails:{where} {problem.strerror}") from problem

@@ -12,29 +12,13 @@ import time
 from dataclasses import dataclass, field
 from typing import Any
 
-from pn2code.channels import GRACE_S, LOOK_S, PeerState, Refused
+from pn2code.channels import LOOK_S, PeerState
 from pn2code.run.engine import CellStoppedError, Engine
 from pn2code.run.merge import merge
 from pn2code.run.record import RunRecord
-from pn2code.tdl.interpret import FileError
 
 PAUSE_S = 0.001
 """Between two looks at the files: the cycle time of a robot controller's background task."""
-
-
-@dataclass(slots=True)
-class Patience:
-    """Refused content may still be replaced by something valid for the grace of I6; then it is a fault."""
-
-    grace_s: float = GRACE_S
-    _since: dict[tuple[str, str], float] = field(default_factory=dict)
-
-    def __call__(self, refusal: Refused) -> None:
-        """Hears of a refusal; raises `FileError` when the grace is over."""
-        now = time.monotonic()
-        first = self._since.setdefault((refusal.file, refusal.found), now)
-        if now - first > self.grace_s:
-            raise FileError(f"{refusal.file}: {refusal.text}")
 
 
 @dataclass(slots=True)

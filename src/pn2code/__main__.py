@@ -1,0 +1,5 @@
+"""`python -m pn2code` is the command `pn2code`."""
+
+from pn2code.cli.main import main
+
+main()

@@ -1,0 +1,192 @@
+"""`pn2code robot`: one robot's script by itself, against a supervisor that runs on its own."""
+
+from __future__ import annotations
+
+import signal
+from pathlib import Path
+from types import FrameType
+from typing import TYPE_CHECKING, Annotated, NoReturn
+
+import typer
+
+from pn2code import pipeline
+from pn2code.cell.divide import divide
+from pn2code.channels import ChannelSpec, SharedDirectory, specs_of
+from pn2code.cli.options import Exit, Format, FormatOption, print_diagnostics, stop
+from pn2code.diagnostics import Diagnostics, Origin, SourceText
+from pn2code.diagnostics.codes import register
+from pn2code.robot.commands import Command
+from pn2code.run.robot import Arm, InstantArm, RobotPlayer, script_specs
+from pn2code.tdl import tree as t
+from pn2code.tdl.check import CheckedProgram, check
+from pn2code.tdl.parse import parse
+
+if TYPE_CHECKING:
+    from pn2code.robot.executor import RobotExecutor
+
+EPILOG = """Examples:
+
+  ./supervisor --dir /dev/shm/cell --input examples/riveting
+
+  pn2code robot robot1.tdl --dir /dev/shm/cell
+
+  pn2code robot robot2.tdl --dir /dev/shm/cell --cell examples/riveting
+"""
+
+ROBOT_FILE = register(
+    "robot-file",
+    "the script's files are not the cell's channels",
+    "With `--cell`, each `input` of a script must be a channel to this robot, and each `output` one from it. The "
+    "script was probably generated from another state of the cell: generate it again.",
+)
+
+
+def robot(
+    script: Annotated[Path, typer.Argument(help="The robot's script (.tdl).")],
+    directory: Annotated[
+        Path, typer.Option("--dir", help="The shared directory of the supervisor.")
+    ],
+    name: Annotated[
+        str | None, typer.Option(help="The robot's name (default: the script's program).")
+    ] = None,
+    cell: Annotated[
+        Path | None,
+        typer.Option(
+            help="The cell: moves take their time and are checked. Else all is done at once."
+        ),
+    ] = None,
+    layout: Annotated[
+        str | None, typer.Option(help="A layout of cell.toml (default: the first).")
+    ] = None,
+    speed: Annotated[
+        float, typer.Option(min=0.01, max=1000.0, help="With --cell: so many times faster.")
+    ] = 1.0,
+    wait: Annotated[
+        float, typer.Option(min=0.0, help="Seconds to wait for the supervisor.")
+    ] = 10.0,
+    verbose: Annotated[bool, typer.Option("-v", "--verbose", help="Print each command.")] = False,
+    form: FormatOption = Format.FULL,
+) -> None:
+    """Run one robot's script in real time, as a process of its own.
+
+    Messages that are enumerations need --cell; numbers, poses and texts are known from the script. Exit codes are those
+    of the supervisor: 0 finished, 1 the script failed, 3 the supervisor stopped or died, 4 fault of a channel, 5
+    input/output.
+    """
+    d = Diagnostics()
+    program = _load(script, d)
+    if program is None:
+        stop(d, form)
+    name = name or program.tree.name
+    arm: Arm = InstantArm()
+    specs = script_specs(program, name)
+    if cell is not None:
+        found = _in_cell(cell, layout, name, d)
+        if found is None:
+            stop(d, form)
+        specs, executor = found
+        from pn2code.run.arm import MovingArm  # loads NumPy and the like
+
+        arm = MovingArm(executor, speed)
+        _check_files(program, specs, name, d)
+    if d.has_errors:
+        stop(d, form)
+    print_diagnostics(d.sorted(), form)
+
+    def show(command: Command, line: int) -> None:
+        if verbose:
+            typer.echo(f"{script.name}:{line}: {command}")
+
+    stopping = _signals()
+    with SharedDirectory(directory, name, specs) as shared:
+        player = RobotPlayer(
+            program,
+            shared,
+            script.name,
+            arm,
+            on_command=show,
+            interrupted=lambda: bool(stopping),
+            wait_s=wait,
+        )
+        ended = player.run()
+    if ended.code:
+        typer.echo(f"pn2code: {name} stopped: {ended.reason}", err=True)
+        raise typer.Exit(int(ended.code))
+    typer.echo(f"{name}: finished")
+
+
+def _in_cell(
+    cell: Path, layout: str | None, name: str, d: Diagnostics
+) -> tuple[tuple[ChannelSpec, ...], RobotExecutor] | None:
+    """The channels of a cell, and what carries out the commands of one of its robots."""
+    from pn2code.robot import scene
+    from pn2code.robot.executor import RobotExecutor
+
+    found = pipeline.locate(cell, d, layout=layout)
+    if found is None:
+        return None
+    path, config = found
+    if config is None or config.locator is None:
+        _usage(f"`{cell}` has no cell.toml beside it; give the folder of a cell")
+    if name not in {r.name for r in config.robots}:
+        known = ", ".join(f"`{r.name}`" for r in config.robots)
+        _usage(f"the cell has no robot `{name}`; choose one of {known} with --name")
+    flat = pipeline.front(path, d, config.values)
+    partition = divide(flat, config, d) if flat is not None else None
+    loaded = scene.load(config.geometry, config.folder, config.locator.origin, d)
+    if partition is None or loaded is None or d.has_errors:
+        return None
+    return specs_of(partition), RobotExecutor(loaded.robot(name), loaded.motion)
+
+
+def _check_files(
+    program: CheckedProgram, specs: tuple[ChannelSpec, ...], name: str, d: Diagnostics
+) -> None:
+    """The script's files must be channels of this robot, in the same direction."""
+    channels = {(s.file, s.writer == name) for s in specs if name in (s.writer, s.reader)}
+    for file in program.files.values():
+        output = file.direction is t.Direction.OUTPUT
+        if (file.path, output) not in channels:
+            d.error(
+                ROBOT_FILE,
+                f"{file.direction.value} `{file.path}` of the script is not a channel "
+                f"{'from' if output else 'to'} robot `{name}`",
+                file.span,
+                hint="generate the script from this cell again, or choose the robot with --name",
+            )
+
+
+def _usage(text: str) -> NoReturn:
+    typer.echo(f"pn2code: {text}", err=True)
+    raise typer.Exit(Exit.USAGE)
+
+
+def _load(script: Path, d: Diagnostics) -> CheckedProgram | None:
+    try:
+        text = script.read_text(encoding="utf-8")
+    except OSError as problem:
+        reason = problem.strerror or str(problem)
+        d.error(
+            pipeline.CELL_MISSING,
+            f"cannot read `{script}`: {reason[:1].lower()}{reason[1:]}",
+            Origin(str(script)),
+            hint="check the path",
+        )
+        return None
+    except UnicodeDecodeError:
+        d.error(pipeline.CELL_MISSING, f"`{script}` is not UTF-8 text", Origin(str(script)))
+        return None
+    tree = parse(SourceText(text, Origin(str(script), 1, 1)), d)
+    return check(tree, d) if tree is not None else None
+
+
+def _signals() -> list[int]:
+    """SIGINT and SIGTERM stop the robot safely; the list fills when one comes."""
+    seen: list[int] = []
+
+    def note(number: int, _frame: FrameType | None) -> None:
+        seen.append(number)
+
+    signal.signal(signal.SIGINT, note)
+    signal.signal(signal.SIGTERM, note)
+    return seen
