@@ -10,7 +10,8 @@ stages when there are errors. `generate` is the whole of it; `front` is what eve
 from __future__ import annotations
 
 import hashlib
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
+from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -125,9 +126,21 @@ def generate(
         ),
         *emit_tdl.emit(robots, source=Path(net.file).name, digest=digest, version=version),
         *runtime.emit(),
+        *_inputs(config),
     ]
     files.append(manifest.emit(partition, files, digest=digest, version=version))
     return Generated(tuple(sorted(files, key=lambda f: f.path)), partition, config, digest)
+
+
+def _inputs(config: CellConfig | None) -> Iterator[OutputFile]:
+    """Copies of the cell's own input files, so that `make && ./supervisor` works where it stands.
+
+    A file that is missing or is no text is left out: the supervisor says so when it starts, where it can be mended.
+    """
+    for entry in config.inputs if config else ():
+        with suppress(OSError, UnicodeDecodeError):
+            assert config is not None
+            yield OutputFile(entry.file, (config.folder / entry.file).read_text(encoding="utf-8"))
 
 
 def _digest(net: FlatNet, config: CellConfig | None, values: Mapping[str, str]) -> str:

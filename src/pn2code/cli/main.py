@@ -11,7 +11,7 @@ from typing import Annotated, NoReturn
 import typer
 
 import pn2code
-from pn2code.cli import check, explain, generate, robot, run
+from pn2code.cli import check, dump, explain, generate, robot, run
 from pn2code.cli.options import Exit
 
 app = typer.Typer(
@@ -26,6 +26,7 @@ app.command(epilog=check.EPILOG)(check.check)
 app.command(epilog=generate.EPILOG)(generate.generate)
 app.command(epilog=run.EPILOG)(run.run)
 app.command(epilog=robot.EPILOG)(robot.robot)
+app.command(epilog=dump.EPILOG)(dump.dump)
 app.command(epilog=explain.EPILOG)(explain.explain)
 
 
@@ -60,6 +61,8 @@ def _interrupt(_signal: int, _frame: FrameType | None) -> NoReturn:
 def main() -> NoReturn:
     """Entry point: runs a verb, turns bugs into a readable message and exit code 70."""
     signal.signal(signal.SIGINT, _interrupt)
+    # Accepted expressions nest up to some 250 levels, each worth several Python frames.
+    sys.setrecursionlimit(max(20_000, sys.getrecursionlimit()))
     try:
         app()
     except Interrupted:

@@ -1,0 +1,90 @@
+"""`pn2code dump`: what a net is after each stage, as tests and people read it."""
+
+from __future__ import annotations
+
+from enum import StrEnum
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+import pn2code
+from pn2code.cli.generate import SetOption, parse_values
+from pn2code.cli.options import Format, FormatOption, stop
+from pn2code.diagnostics import Diagnostics
+
+EPILOG = """Examples:
+
+  pn2code dump net.cpn --stage flat
+
+  pn2code dump examples/riveting --stage partition
+"""
+
+
+class Stage(StrEnum):
+    """The stages of the pipeline."""
+
+    DOCUMENT = "doc"
+    NET = "net"
+    DECLARATIONS = "ml"
+    FLAT = "flat"
+    PARTITION = "partition"
+    ROBOTS = "robots"
+
+
+def dump(
+    net: Annotated[Path, typer.Argument(help="A .cpn file, a cell.toml, or a folder with one.")],
+    stage: Annotated[Stage, typer.Option(help="After which stage.")] = Stage.FLAT,
+    only: Annotated[str, typer.Option(help="Only elements whose name contains this.")] = "",
+    settings: SetOption = [],  # noqa: B006 - typer reads the default only
+    form: FormatOption = Format.FULL,
+) -> None:
+    """Print what a net is after a stage of the pipeline."""
+    d = Diagnostics()
+    text = stage_text(net, stage, only, parse_values(settings), d)
+    if text is None:
+        stop(d, form)
+    typer.echo(text.rstrip("\n"))
+
+
+def stage_text(
+    path: Path, stage: Stage, only: str, values: dict[str, str], d: Diagnostics
+) -> str | None:
+    """The dump; None after diagnostics."""
+    from pn2code import pipeline
+    from pn2code.cell.divide import divide
+    from pn2code.cell.dump import dump_partition
+    from pn2code.emission.tdl import emit
+    from pn2code.lowering.robot import lower_robots
+    from pn2code.ml.dump import dump_program
+    from pn2code.net.dump import dump_document, dump_flat, dump_net
+    from pn2code.net.link import link
+    from pn2code.reading.cpn import read
+
+    found = pipeline.locate(path, d)
+    if found is None:
+        return None
+    net_path, config = found
+    if stage in (Stage.DOCUMENT, Stage.NET):
+        document = read(net_path, d)
+        if document is None or stage is Stage.DOCUMENT:
+            return None if document is None else dump_document(document)
+        linked = link(document, d)
+        return None if linked is None else dump_net(linked)
+    flat = pipeline.front(net_path, d, {**(config.values if config else {}), **values})
+    if flat is None:
+        return None
+    if stage is Stage.DECLARATIONS:
+        return dump_program(flat.program)
+    if stage is Stage.FLAT:
+        return dump_flat(flat, only)
+    partition = divide(flat, config, d)
+    if partition is None:
+        return None
+    if stage is Stage.PARTITION:
+        return dump_partition(partition)
+    robots = lower_robots(partition, config, d) if config else ()
+    if robots is None:
+        return None
+    files = emit(robots, source=net_path.name, digest="", version=pn2code.__version__)
+    return "\n".join(f.text for f in files if only in f.path)
