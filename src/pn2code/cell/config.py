@@ -13,13 +13,14 @@ import json
 import re
 import tomllib
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass, field, replace
+from dataclasses import field, replace
 from pathlib import Path
 from typing import Any, Literal, cast
 
 from pn2code.cell import codes
 from pn2code.cell.partition import ChannelKind
 from pn2code.diagnostics import Diagnostics, Origin
+from pn2code.frozen import frozen
 
 CommandName = Literal["move_joint", "move_linear", "move_home", "measure", "tool", "wait"]
 COMMANDS: tuple[CommandName, ...] = (
@@ -32,7 +33,7 @@ COMMANDS: tuple[CommandName, ...] = (
 )
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Primitive:
     """A function of the net that is a command of the robots.
 
@@ -51,7 +52,7 @@ class Primitive:
     duration_s: float = 0.0
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class ChannelConfig:
     """A `[[channel]]` entry."""
 
@@ -61,7 +62,7 @@ class ChannelConfig:
     origin: Origin
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class InputConfig:
     """An `[[input]]` entry."""
 
@@ -70,7 +71,7 @@ class InputConfig:
     origin: Origin
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class RobotConfig:
     """A robot: which page instance is its program; its geometry stays in `CellConfig.geometry`."""
 
@@ -79,7 +80,7 @@ class RobotConfig:
     origin: Origin
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class SupervisorConfig:
     """The supervisor: its page instance, the places that end the run, and its patience."""
 
@@ -89,7 +90,7 @@ class SupervisorConfig:
     origin: Origin
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class ReportConfig:
     """What the summary of a run contains.
 
@@ -104,7 +105,7 @@ class ReportConfig:
     warn_condition: float = 50.0
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class CellConfig:
     """A whole `cell.toml`, one layout applied.
 

@@ -5,9 +5,9 @@ Made from a `FlatNet` and a cell's owners; see docs/architecture.md.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from enum import Enum
 
+from pn2code.frozen import frozen
 from pn2code.net.flat import FlatNet
 
 
@@ -18,7 +18,7 @@ class OwnerKind(Enum):
     ROBOT = "robot"
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Owner:
     """A party: `name` is "supervisor" or the robot's name in cell.toml; `instance` the path of its
     page instance ("Top/Robot1");
@@ -37,7 +37,7 @@ class ChannelKind(Enum):
     FLAG = "flag"
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Channel:
     """A place shared by two owners.
 
@@ -57,7 +57,7 @@ class Channel:
     kind: ChannelKind
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Input:
     """A place of the supervisor whose initial marking is read from a file when the program starts."""
 
@@ -66,7 +66,7 @@ class Input:
     place: int
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Partition:
     """The net with its owners.
 

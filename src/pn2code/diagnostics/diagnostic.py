@@ -13,6 +13,7 @@ from enum import Enum
 
 from pn2code.diagnostics.codes import require_code
 from pn2code.diagnostics.origin import Origin, Span
+from pn2code.frozen import frozen
 
 
 class Severity(Enum):
@@ -23,7 +24,7 @@ class Severity(Enum):
     NOTE = "note"
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Note:
     """A further sentence, perhaps about another place."""
 
@@ -31,7 +32,7 @@ class Note:
     origin: Origin | None = None
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Diagnostic:
     """A message with its place.
 

@@ -8,10 +8,12 @@ name the net element it came from.
 from __future__ import annotations
 
 from bisect import bisect_right
-from dataclasses import dataclass, field, replace
+from dataclasses import field, replace
+
+from pn2code.frozen import frozen
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Origin:
     """A place in the user's files.
 
@@ -63,7 +65,7 @@ NOWHERE = Origin("<pn2code>")
 """Origin of things that pn2code itself defines: built-in functions, the standard colour sets."""
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class SourceText:
     """A piece of text of the user's (an inscription, a declaration, a script) with its origin.
 
@@ -105,7 +107,7 @@ class SourceText:
         return Span(self, start, len(self.text) if end is None else end)
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Span:
     """A stretch `[start, end)` of a `SourceText`. Syntax trees carry spans."""
 

@@ -7,27 +7,27 @@ here, because they carry comments and origins. `statements` strips those off aga
 from __future__ import annotations
 
 from collections.abc import Iterable
-from dataclasses import dataclass
 
 from pn2code.diagnostics import Origin
+from pn2code.frozen import frozen
 from pn2code.tdl import tree as t
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Comment:
     """A line of comment, without the dashes."""
 
     text: str
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Line:
     """A statement without a body."""
 
     statement: t.Simple
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Chain:
     """`if ... elsif ... else ... end if`."""
 
@@ -35,7 +35,7 @@ class Chain:
     otherwise: tuple[Node, ...] | None
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Repeat:
     """`loop`, or `while` with a condition."""
 
@@ -43,7 +43,7 @@ class Repeat:
     body: tuple[Node, ...]
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Region:
     """What implements one net element.
 
@@ -61,7 +61,7 @@ class Region:
 Node = Comment | Line | Chain | Repeat | Region
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Element:
     """A net element behind a declaration: its name, kind, and a phrase for people."""
 
@@ -71,7 +71,7 @@ class Element:
     phrase: str
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Declared:
     """A declaration of the script and where it comes from."""
 
@@ -79,7 +79,7 @@ class Declared:
     element: Element
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class LeftOut:
     """A transition that can never occur, and why."""
 
@@ -87,7 +87,7 @@ class LeftOut:
     reason: str
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class RobotIR:
     """One robot's program.
 

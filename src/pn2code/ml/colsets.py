@@ -7,11 +7,12 @@ colour sets may share one ML type (`colset COORD = real; colset WEIGHT = real;`)
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import field
 from enum import Enum
 from typing import TYPE_CHECKING
 
 from pn2code.diagnostics import NOWHERE, Origin
+from pn2code.frozen import frozen
 from pn2code.ml.types import Type
 
 if TYPE_CHECKING:
@@ -38,7 +39,7 @@ class Kind(Enum):
     ALIAS = "alias"
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Colset:
     """One colour set, resolved.
 

@@ -16,14 +16,15 @@ Example: `fun f 0 = 1 | f n = n * f (n - 1)` becomes
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import field
 
 from pn2code.diagnostics import Span
+from pn2code.frozen import frozen
 from pn2code.ml.colsets import Colset
 from pn2code.ml.types import Type
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Symbol:
     """A variable: a net variable, a local of a function, or a top-level value or function.
 
@@ -49,7 +50,7 @@ class Symbol:
     first_generic: int = field(compare=False, default=0)
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Constructor:
     """A data or exception constructor.
 
@@ -71,7 +72,7 @@ class Constructor:
 # --- expressions -------------------------------------------------------------------------------
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Lit:
     """A literal: int (also IntInf), real, str for string and char; the type tells which."""
 
@@ -80,7 +81,7 @@ class Lit:
     span: Span = field(compare=False, repr=False)
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Var:
     """A use of a symbol; `inst` are the types for its generics, in index order."""
 
@@ -90,7 +91,7 @@ class Var:
     inst: tuple[Type, ...] = ()
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Builtin:
     """A function or value of the built-in environment by its full resolved name.
 
@@ -109,7 +110,7 @@ class Builtin:
     colset: Colset | None = None
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Con:
     """A constructor as a value (a function if it takes an argument). `bool` and `nil` are constructors too."""
 
@@ -118,7 +119,7 @@ class Con:
     span: Span = field(compare=False, repr=False)
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Apply:
     """Application."""
 
@@ -128,7 +129,7 @@ class Apply:
     span: Span = field(compare=False, repr=False)
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Lambda:
     """`fn p1 => e1 | p2 => e2`; no rule matching raises Match."""
 
@@ -137,7 +138,7 @@ class Lambda:
     span: Span = field(compare=False, repr=False)
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class RecordExp:
     """Record, tuple, unit. Fields are evaluated in *this* order (as written); the type has them sorted."""
 
@@ -146,7 +147,7 @@ class RecordExp:
     span: Span = field(compare=False, repr=False)
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Select:
     """`#label e`."""
 
@@ -156,7 +157,7 @@ class Select:
     span: Span = field(compare=False, repr=False)
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class ListExp:
     """`[e1, ..., en]`."""
 
@@ -165,7 +166,7 @@ class ListExp:
     span: Span = field(compare=False, repr=False)
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class If:
     """Conditional (also `andalso`, `orelse`)."""
 
@@ -176,7 +177,7 @@ class If:
     span: Span = field(compare=False, repr=False)
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Case:
     """`case e of rules`; no rule matching raises Match (or Bind, from a `val`)."""
 
@@ -186,7 +187,7 @@ class Case:
     span: Span = field(compare=False, repr=False)
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Let:
     """`let decs in e end`."""
 
@@ -196,7 +197,7 @@ class Let:
     span: Span = field(compare=False, repr=False)
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Sequence:
     """`(e1; ...; en)`: all evaluated, the last is the value."""
 
@@ -205,7 +206,7 @@ class Sequence:
     span: Span = field(compare=False, repr=False)
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class While:
     """`while c do e`, of type unit."""
 
@@ -215,7 +216,7 @@ class While:
     span: Span = field(compare=False, repr=False)
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Raise:
     """`raise e`."""
 
@@ -224,7 +225,7 @@ class Raise:
     span: Span = field(compare=False, repr=False)
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Handle:
     """`e handle rules`; no rule matching raises the exception again."""
 
@@ -240,7 +241,7 @@ Exp = (
 )  # fmt: skip
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Rule:
     """`pattern => body`."""
 
@@ -252,7 +253,7 @@ class Rule:
 # --- patterns ----------------------------------------------------------------------------------
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class PWild:
     """`_`."""
 
@@ -260,7 +261,7 @@ class PWild:
     span: Span = field(compare=False, repr=False)
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class PVar:
     """A variable. In a pattern of a net inscription the symbol is a net variable: the first
     occurrence met binds it, each
@@ -271,7 +272,7 @@ class PVar:
     span: Span = field(compare=False, repr=False)
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class PLit:
     """A literal; in inscriptions of a net also reals (equality types in CPN ML)."""
 
@@ -280,7 +281,7 @@ class PLit:
     span: Span = field(compare=False, repr=False)
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class PRecord:
     """Record, tuple, unit; complete, fields sorted as in the type."""
 
@@ -289,7 +290,7 @@ class PRecord:
     span: Span = field(compare=False, repr=False)
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class PCon:
     """A constructor with its argument pattern, if any; lists are `nil` and `::` of a pair."""
 
@@ -299,7 +300,7 @@ class PCon:
     span: Span = field(compare=False, repr=False)
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class PAs:
     """`x as p`."""
 
@@ -315,7 +316,7 @@ Pat = PWild | PVar | PLit | PRecord | PCon | PAs
 # --- declarations ------------------------------------------------------------------------------
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class ValBind:
     """`val p = e`. For a generalised binding the pattern's symbols have `generics` > 0."""
 
@@ -324,7 +325,7 @@ class ValBind:
     span: Span = field(compare=False, repr=False)
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class RecBind:
     """A group of mutually recursive functions (`fun f .. and g ..`, `val rec`)."""
 
@@ -332,7 +333,7 @@ class RecBind:
     span: Span = field(compare=False, repr=False)
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class ExceptionDec:
     """A declared exception; evaluation does nothing (constructors are static)."""
 
@@ -341,7 +342,7 @@ class ExceptionDec:
     span: Span = field(compare=False, repr=False)
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class DatatypeDec:
     """A declared data type, also of enumeration and union colour sets: constructors with argument
     types (generic in TVars)."""
@@ -355,7 +356,7 @@ class DatatypeDec:
 Dec = ValBind | RecBind | ExceptionDec | DatatypeDec
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Program:
     """All declarations of a net, checked, in order: colour sets, values, functions, references.
 

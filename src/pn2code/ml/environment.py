@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass, field
 
+from pn2code.frozen import frozen
 from pn2code.ml.builtins import (
     BUILTINS,
     DATATYPES,
@@ -46,14 +47,14 @@ class Binding:
     colset: Colset | None = None
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class BuiltinEntry:
     """A built-in function by its full name."""
 
     name: str
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class OverloadedEntry:
     """One of several built-in functions, by type."""
 
@@ -61,7 +62,7 @@ class OverloadedEntry:
     choices: tuple[str, ...]
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class ConEntry:
     """A constructor with its type scheme."""
 
@@ -70,17 +71,17 @@ class ConEntry:
     generics: int
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class EmptyEntry:
     """The empty list or multi-set."""
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class UnitEntry:
     """The value of a unit colour set with a name of its own."""
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class ColsetEntry:
     """A function of a colour set's structure."""
 
@@ -88,12 +89,12 @@ class ColsetEntry:
     member: str
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class BrokenEntry:
     """Something whose declaration has an error that was reported."""
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class UnsupportedEntry:
     """Something of the library that is not supported."""
 
@@ -106,7 +107,7 @@ Entry = (
 )  # fmt: skip
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class TypeCon:
     """A type constructor."""
 
@@ -114,7 +115,7 @@ class TypeCon:
     arity: int
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class TypeAbbreviation:
     """A name for another type."""
 
@@ -122,7 +123,7 @@ class TypeAbbreviation:
     body: Ty
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class BuiltinAbbreviation:
     """A built-in name for a type, as text of the table."""
 
@@ -130,7 +131,7 @@ class BuiltinAbbreviation:
     arity: int
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class BrokenType:
     """A type whose declaration has an error that was reported."""
 
@@ -138,7 +139,7 @@ class BrokenType:
 TypeEntry = TypeCon | TypeAbbreviation | BuiltinAbbreviation | BrokenType
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class BuiltinStructure:
     """A structure of the library."""
 

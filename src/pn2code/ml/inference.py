@@ -13,11 +13,12 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
 
+from pn2code.frozen import frozen
 from pn2code.ml.builtins import NO_EQUALITY
 from pn2code.ml.types import UNIT, TCon, TFun, TRecord, TVar, Type, label_key
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class ICon:
     """As `TCon`."""
 
@@ -25,14 +26,14 @@ class ICon:
     args: tuple[Ty, ...] = ()
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class IRec:
     """As `TRecord`; fields sorted."""
 
     fields: tuple[tuple[str, Ty], ...] = ()
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class IFun:
     """As `TFun`."""
 
@@ -40,7 +41,7 @@ class IFun:
     result: Ty
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class IError:
     """The type of what was reported already."""
 

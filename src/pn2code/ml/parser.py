@@ -6,12 +6,9 @@ Syntax errors are reported with what was found and, in words, what could stand t
 
 from __future__ import annotations
 
-import os
-import tempfile
 from collections.abc import Iterator, Sequence
 from functools import cache
 from importlib.resources import files
-from pathlib import Path
 from typing import Any, cast
 
 from lark import Lark, Token
@@ -22,6 +19,7 @@ from pn2code.diagnostics import Diagnostics, SourceText, Span
 from pn2code.ml import codes, syntax
 from pn2code.ml.lexer import Lexeme, insert_delay_parentheses, tokenize
 from pn2code.ml.tree import Group, MlToken, TreeBuilder
+from pn2code.parser_cache import kept_lark
 
 _STARTS = ["program", "expression", "expressions", "code"]
 _UNSUPPORTED_WORDS = frozenset(
@@ -46,57 +44,16 @@ _BUILDER = TreeBuilder()
 
 @cache
 def _lark() -> Lark:
-    """The parser. Its tables take some tenths of a second to compute, so they are kept in the user's own
-    cache folder.
-    """
     grammar = files("pn2code.ml").joinpath("grammar.lark").read_text(encoding="utf-8")
-    folder = _private_cache_folder()
-    if folder is None:
-        return _build(grammar, None)
-    import hashlib
-
-    digest = hashlib.sha256(grammar.encode()).hexdigest()[:16]
-    kept = folder / f"cpnml-{digest}.lark"
-    if kept.exists():
-        return _build(grammar, kept)
-    # Written beside and renamed, so that no other process reads half a file.
-    handle, name = tempfile.mkstemp(dir=folder, prefix="cpnml-", suffix=".tmp")
-    os.close(handle)
-    temporary = Path(name)
-    temporary.unlink()
-    parser = _build(grammar, temporary)
-    if temporary.exists():
-        temporary.replace(kept)
-    return parser
-
-
-def _build(grammar: str, kept: Path | None) -> Lark:
-    return Lark(
+    return kept_lark(
+        "cpnml",
         grammar,
-        parser="lalr",
         lexer=_Feed,
         start=_STARTS,
         keep_all_tokens=True,
         maybe_placeholders=False,
         transformer=_BUILDER,
-        cache=str(kept) if kept is not None else False,
     )
-
-
-def _private_cache_folder() -> Path | None:
-    """A folder that only this user can write to (the cache is a pickle, which must not come from anyone
-    else), or None.
-    """
-    try:
-        base = Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache")
-        folder = base / "pn2code"
-        folder.mkdir(mode=0o700, parents=True, exist_ok=True)
-        status = folder.stat()
-    except (OSError, RuntimeError):
-        return None
-    if not hasattr(os, "getuid") or status.st_uid != os.getuid() or status.st_mode & 0o022:
-        return None
-    return folder if os.access(folder, os.W_OK) else None
 
 
 def parse_program(source: SourceText, d: Diagnostics) -> tuple[syntax.Dec, ...] | None:

@@ -11,15 +11,15 @@ Tuples are records with the labels 1, 2, ...; `()` is the record without fields.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from enum import Enum
 
 from pn2code.diagnostics import Span
+from pn2code.frozen import frozen
 
 # --- types -------------------------------------------------------------------------------------
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class VarTy:
     """`'a`; the name includes the quotes."""
 
@@ -27,7 +27,7 @@ class VarTy:
     span: Span
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class NameTy:
     """`int`, `INT`, `'a list`, `(int, string) pair`."""
 
@@ -36,7 +36,7 @@ class NameTy:
     span: Span
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class RecordTy:
     """`{a: int}`, `int * string`."""
 
@@ -44,7 +44,7 @@ class RecordTy:
     span: Span
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class FunTy:
     """`a -> b`."""
 
@@ -67,7 +67,7 @@ class LitKind(Enum):
     CHAR = "char"
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class LitExp:
     """A literal."""
 
@@ -76,7 +76,7 @@ class LitExp:
     span: Span
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class NameExp:
     """An identifier, perhaps qualified (`List.map`); `op` if written with it."""
 
@@ -85,7 +85,7 @@ class NameExp:
     span: Span
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class RecordExp:
     """`{a = e, ...}`, `(e1, e2)`, `()`."""
 
@@ -93,7 +93,7 @@ class RecordExp:
     span: Span
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class SelectorExp:
     """`#label`."""
 
@@ -101,7 +101,7 @@ class SelectorExp:
     span: Span
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class ListExp:
     """`[e1, ..., en]`."""
 
@@ -109,7 +109,7 @@ class ListExp:
     span: Span
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class SequenceExp:
     """`(e1; ...; en)`, n >= 2."""
 
@@ -117,7 +117,7 @@ class SequenceExp:
     span: Span
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class LetExp:
     """`let decs in e end`."""
 
@@ -126,7 +126,7 @@ class LetExp:
     span: Span
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class ApplyExp:
     """`f x`."""
 
@@ -135,7 +135,7 @@ class ApplyExp:
     span: Span
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class InfixExp:
     """`a op b`."""
 
@@ -145,7 +145,7 @@ class InfixExp:
     span: Span
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class LogicExp:
     """`a andalso b` (conjunction) or `a orelse b`."""
 
@@ -155,7 +155,7 @@ class LogicExp:
     span: Span
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class TypedExp:
     """`e : ty`."""
 
@@ -164,7 +164,7 @@ class TypedExp:
     span: Span
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class HandleExp:
     """`e handle rules`."""
 
@@ -173,7 +173,7 @@ class HandleExp:
     span: Span
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class RaiseExp:
     """`raise e`."""
 
@@ -181,7 +181,7 @@ class RaiseExp:
     span: Span
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class IfExp:
     """`if c then a else b`."""
 
@@ -191,7 +191,7 @@ class IfExp:
     span: Span
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class WhileExp:
     """`while c do e`."""
 
@@ -200,7 +200,7 @@ class WhileExp:
     span: Span
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class CaseExp:
     """`case e of rules`."""
 
@@ -209,7 +209,7 @@ class CaseExp:
     span: Span
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class FnExp:
     """`fn rules`."""
 
@@ -217,7 +217,7 @@ class FnExp:
     span: Span
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Rule:
     """`pat => exp`."""
 
@@ -226,7 +226,7 @@ class Rule:
     span: Span
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Keyword:
     """`andalso`, `orelse` or `as` inside a flat sequence."""
 
@@ -234,7 +234,7 @@ class Keyword:
     span: Span
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Constraint:
     """`: ty` inside a flat sequence."""
 
@@ -242,7 +242,7 @@ class Constraint:
     span: Span
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Handler:
     """`handle rules` inside a flat sequence."""
 
@@ -250,7 +250,7 @@ class Handler:
     span: Span
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class FlatExp:
     """Operands, operators and suffixes in the order written; gone after the fixity pass."""
 
@@ -266,14 +266,14 @@ Exp = (
 # --- patterns ----------------------------------------------------------------------------------
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class WildPat:
     """`_`."""
 
     span: Span
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class LitPat:
     """A literal."""
 
@@ -282,7 +282,7 @@ class LitPat:
     span: Span
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class NamePat:
     """A variable or a constant constructor."""
 
@@ -291,7 +291,7 @@ class NamePat:
     span: Span
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class RecordPat:
     """`{a = p, b, ...}`, `(p, q)`, `()`; `open` if written with dots."""
 
@@ -300,7 +300,7 @@ class RecordPat:
     span: Span
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class ListPat:
     """`[p1, ..., pn]`."""
 
@@ -308,7 +308,7 @@ class ListPat:
     span: Span
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class ConPat:
     """A constructor applied to a pattern (`SOME p`, `p :: q`)."""
 
@@ -317,7 +317,7 @@ class ConPat:
     span: Span
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class TypedPat:
     """`p : ty`."""
 
@@ -326,7 +326,7 @@ class TypedPat:
     span: Span
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class AsPat:
     """`x as p`."""
 
@@ -336,7 +336,7 @@ class AsPat:
     span: Span
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class FlatPat:
     """As `FlatExp`."""
 
@@ -351,7 +351,7 @@ Pat = (
 # --- declarations ------------------------------------------------------------------------------
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class ValBinding:
     """`p = e` of a `val`."""
 
@@ -361,7 +361,7 @@ class ValBinding:
     span: Span
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class ValDec:
     """`val p = e and ...`."""
 
@@ -369,7 +369,7 @@ class ValDec:
     span: Span
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class FlatClause:
     """`f p1 .. pn : ty = e` with the left side as a flat pattern; gone after the fixity pass."""
 
@@ -378,7 +378,7 @@ class FlatClause:
     span: Span
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Clause:
     """One clause of a function."""
 
@@ -388,7 +388,7 @@ class Clause:
     span: Span
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class FunBinding:
     """All clauses of one function."""
 
@@ -398,7 +398,7 @@ class FunBinding:
     span: Span
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class FlatFunBinding:
     """As `FunBinding`, before the fixity pass."""
 
@@ -406,7 +406,7 @@ class FlatFunBinding:
     span: Span
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class FunDec:
     """`fun ... and ...`."""
 
@@ -414,7 +414,7 @@ class FunDec:
     span: Span
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class TypeBinding:
     """`('a, 'b) name = ty`."""
 
@@ -424,7 +424,7 @@ class TypeBinding:
     span: Span
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class TypeDec:
     """`type ... and ...`."""
 
@@ -432,7 +432,7 @@ class TypeDec:
     span: Span
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class ConBinding:
     """`Name of ty`."""
 
@@ -441,7 +441,7 @@ class ConBinding:
     span: Span
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class DatatypeBinding:
     """`'a name = A | B of ty`."""
 
@@ -451,7 +451,7 @@ class DatatypeBinding:
     span: Span
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class DatatypeDec:
     """`datatype ... and ... withtype ...`."""
 
@@ -460,7 +460,7 @@ class DatatypeDec:
     span: Span
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class DatatypeCopyDec:
     """`datatype t = datatype u`."""
 
@@ -469,7 +469,7 @@ class DatatypeCopyDec:
     span: Span
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class ExceptionBinding:
     """`E`, `E of ty` or `E = F`."""
 
@@ -479,7 +479,7 @@ class ExceptionBinding:
     span: Span
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class ExceptionDec:
     """`exception ... and ...`."""
 
@@ -487,7 +487,7 @@ class ExceptionDec:
     span: Span
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class LocalDec:
     """`local decs in decs end`."""
 
@@ -496,7 +496,7 @@ class LocalDec:
     span: Span
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class OpenDec:
     """`open S T`."""
 
@@ -504,7 +504,7 @@ class OpenDec:
     span: Span
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class InfixDec:
     """`infix 5 ++ --`, `infixr`, `nonfix` (kind "left", "right", "nonfix")."""
 
@@ -514,7 +514,7 @@ class InfixDec:
     span: Span
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class StructureDec:
     """`structure S = struct decs end`, or `structure S = T` (`alias`)."""
 
@@ -524,7 +524,7 @@ class StructureDec:
     span: Span
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class ExpDec:
     """An expression at top level: `val it = e`."""
 
@@ -538,7 +538,7 @@ Dec = (
 )  # fmt: skip
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class CodeSegment:
     """`input pat; output pat; action exp;`."""
 

@@ -8,10 +8,10 @@ and `'a tms` is a list of timed values (`TCon("timed", ('a,))`).
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from pn2code.frozen import frozen
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class TCon:
     """A type constructor applied to arguments; `name` is unique in the program (stamped if shadowed)."""
 
@@ -29,7 +29,7 @@ class TCon:
         return f"({', '.join(map(str, self.args))}) {self.name}"
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class TRecord:
     """A record type; fields sorted in SML's label order (numeric labels by value, before words).
 
@@ -58,7 +58,7 @@ class TRecord:
         return "{" + ", ".join(f"{name}: {t}" for name, t in self.fields) + "}"
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class TFun:
     """A function type."""
 
@@ -71,7 +71,7 @@ class TFun:
         return f"{arg} -> {self.result}"
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class TVar:
     """A quantified type variable of a scheme (never an unresolved one: those do not leave the checker).
 

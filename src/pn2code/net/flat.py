@@ -10,10 +10,11 @@ Example: in the riveting cell the page `Robot` is used twice, so its transition 
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import field
 from enum import Enum
 
 from pn2code.diagnostics import Origin
+from pn2code.frozen import frozen
 from pn2code.ml.colsets import Colset
 from pn2code.ml.core import Exp, Pat, Program, Symbol
 
@@ -41,7 +42,7 @@ class Form(Enum):
     """expression of type `colour timed list`"""
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Term:
     """One summand `coefficient ` + backquote + ` value @+ delay` of an input inscription.
 
@@ -64,7 +65,7 @@ class Term:
     origin: Origin
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class ArcInscription:
     """The typed inscription of an arc.
 
@@ -80,7 +81,7 @@ class ArcInscription:
     origin: Origin
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class FlatArc:
     """An arc instance; `place` is an index into `FlatNet.places`. `inscription` is None for INHIBITOR and RESET."""
 
@@ -91,7 +92,7 @@ class FlatArc:
     origin: Origin
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class BindTerm:
     """Take a token of the arc's place that matches term `term`'s pattern (all variables of coefficient and delay are
     bound by then, or by the pattern itself)."""
@@ -100,7 +101,7 @@ class BindTerm:
     term: int
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class BindEquation:
     """A guard `pattern = value` (index `guard` in `guards`): match the value against the pattern."""
 
@@ -109,14 +110,14 @@ class BindEquation:
     value: Exp
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class BindAll:
     """Enumerate the variable over all values of its small colour set."""
 
     symbol: Symbol
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class BindRandom:
     """An output-only variable of a small colour set: the simulator draws `CS.ran()`, the state space enumerates."""
 
@@ -126,7 +127,7 @@ class BindRandom:
 BindStep = BindTerm | BindEquation | BindAll | BindRandom
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class CodeSegment:
     """`input (..); output (..); action exp;`: outputs are bound by the tuple that the action gives."""
 
@@ -136,7 +137,7 @@ class CodeSegment:
     origin: Origin
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class FlatPlace:
     """A place instance, or the merger of several.
 
@@ -167,7 +168,7 @@ class FlatPlace:
     """(element id, instance path) of every merged place instance"""
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class FlatTransition:
     """A transition instance.
 
@@ -200,7 +201,7 @@ class FlatTransition:
     origin: Origin
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class FlatNet:
     """The closed net.
 

@@ -5,14 +5,13 @@ Texts are still texts. Ids remain the keys, since instances of pages are made on
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 from pn2code.diagnostics import Origin
+from pn2code.frozen import frozen
 from pn2code.net.flat import ArcKind
 from pn2code.reading.document import Document, Inscription, Layout, RawDeclaration
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Place:
     """A place; `port` is "in", "out", "io" or "", `fusion` the name of its fusion set or ""."""
 
@@ -26,7 +25,7 @@ class Place:
     layout: Layout = Layout()
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Arc:
     """An arc between a place (by id) of its page and the transition that has it."""
 
@@ -38,7 +37,7 @@ class Arc:
     layout: Layout = Layout()
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Transition:
     """An ordinary transition with its arcs in the order of the file; default texts (`[]`, `@+`) count as absent."""
 
@@ -53,7 +52,7 @@ class Transition:
     layout: Layout = Layout()
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class PortSocket:
     """A port place of the subpage is the same place as the socket beside the substitution transition (ids)."""
 
@@ -61,7 +60,7 @@ class PortSocket:
     socket: str
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class SubstitutionTransition:
     """Stands for the page with id `subpage`."""
 
@@ -73,7 +72,7 @@ class SubstitutionTransition:
     layout: Layout = Layout()
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Page:
     """A page."""
 
@@ -85,7 +84,7 @@ class Page:
     origin: Origin
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class FusionSet:
     """All members (place ids) are one place, in all instances of their pages."""
 
@@ -95,7 +94,7 @@ class FusionSet:
     origin: Origin
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Net:
     """A linked net.
 

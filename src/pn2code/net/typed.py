@@ -5,16 +5,15 @@ Pages are not yet instantiated: `flatten` does that, sharing these typed inscrip
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 from pn2code.diagnostics import Origin
+from pn2code.frozen import frozen
 from pn2code.ml.colsets import Colset
 from pn2code.ml.core import Exp, Program, Symbol
 from pn2code.net.flat import ArcInscription, ArcKind, BindStep, CodeSegment, Form
 from pn2code.net.linked import FusionSet, Net, SubstitutionTransition
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class TypedPlace:
     """A place with its colour set and initial marking; `initial_text` is what the user wrote, for comparisons."""
 
@@ -28,7 +27,7 @@ class TypedPlace:
     origin: Origin
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class TypedArc:
     """An arc to a place (by id); `inscription` is None for inhibitor and reset arcs."""
 
@@ -39,7 +38,7 @@ class TypedArc:
     origin: Origin
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class TypedTransition:
     """A transition; the fields mean what they mean in `FlatTransition`."""
 
@@ -55,7 +54,7 @@ class TypedTransition:
     origin: Origin
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class TypedPage:
     """A page."""
 
@@ -67,7 +66,7 @@ class TypedPage:
     origin: Origin
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class TypedNet:
     """A checked net."""
 

@@ -5,12 +5,13 @@ Texts keep their positions (`SourceText`), layout is kept for drawing, nothing i
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import field
 
 from pn2code.diagnostics import Origin, SourceText
+from pn2code.frozen import frozen
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Layout:
     """Where a thing stands on its page, in CPN Tools units (y grows upwards).
 
@@ -37,7 +38,7 @@ class Layout:
     thickness: float = 1.0
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Inscription:
     """A text of the net with its XML id and position; whitespace-only texts are absent (None), not empty."""
 
@@ -45,7 +46,7 @@ class Inscription:
     layout: Layout = Layout()
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class RawPlace:
     """`place`."""
 
@@ -59,7 +60,7 @@ class RawPlace:
     layout: Layout = Layout()
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class RawSubstitution:
     """`subst`: the page it stands for and the (port id, socket id) pairs."""
 
@@ -68,7 +69,7 @@ class RawSubstitution:
     origin: Origin
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class RawTransition:
     """`trans`."""
 
@@ -84,7 +85,7 @@ class RawTransition:
     layout: Layout = Layout()
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class RawArc:
     """`arc`; orientation as in the file, lower case."""
 
@@ -97,7 +98,7 @@ class RawArc:
     layout: Layout = Layout()
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class RawAux:
     """`Aux`: a free text or shape of the page, for drawing."""
 
@@ -106,7 +107,7 @@ class RawAux:
     layout: Layout = Layout()
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class RawPage:
     """`page`."""
 
@@ -119,7 +120,7 @@ class RawPage:
     origin: Origin
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class RawColset:
     """`color`: the structure that the file gives, texts not yet parsed.
 
@@ -148,7 +149,7 @@ class RawColset:
     origin: Origin
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class RawVar:
     """`var x, y : TYPE`."""
 
@@ -158,7 +159,7 @@ class RawVar:
     origin: Origin
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class RawMl:
     """`ml`: a CPN ML declaration as text."""
 
@@ -167,7 +168,7 @@ class RawMl:
     origin: Origin
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class RawGlobref:
     """`globref x = exp`."""
 
@@ -177,7 +178,7 @@ class RawGlobref:
     origin: Origin
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class RawUse:
     """`use "file"`."""
 
@@ -186,7 +187,7 @@ class RawUse:
     origin: Origin
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class RawOther:
     """A declaration of a kind that is not known (an old raw `errordecl`, a channel)."""
 
@@ -199,7 +200,7 @@ class RawOther:
 RawDeclaration = RawColset | RawVar | RawMl | RawGlobref | RawUse | RawOther
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class RawBlock:
     """A named block of declarations; blocks nest, order matters."""
 
@@ -207,7 +208,7 @@ class RawBlock:
     items: tuple[RawBlock | RawDeclaration, ...]
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class RawFusion:
     """`fusion`: a fusion set and the ids of its places."""
 
@@ -217,7 +218,7 @@ class RawFusion:
     origin: Origin
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class RawMonitor:
     """`monitor`: kept as it is."""
 
@@ -231,7 +232,7 @@ class RawMonitor:
     origin: Origin
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Document:
     """A whole file.
 

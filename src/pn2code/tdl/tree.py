@@ -9,11 +9,12 @@ The translator from nets builds the same trees (with the span `GENERATED`) and `
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import field
 from enum import Enum
 from typing import Final, Literal
 
 from pn2code.diagnostics import NOWHERE, SourceText, Span
+from pn2code.frozen import frozen
 from pn2code.tdl.types import Type
 
 GENERATED: Final = Span(SourceText("", NOWHERE), 0, 0)
@@ -23,7 +24,7 @@ GENERATED: Final = Span(SourceText("", NOWHERE), 0, 0)
 # --- expressions -------------------------------------------------------------------------------
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Value:
     """`12`, `1.5`, `true`, `"text"`; the Python type tells which."""
 
@@ -31,7 +32,7 @@ class Value:
     span: Span = field(default=GENERATED, compare=False, repr=False)
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Quantity:
     """`100 mm`: the number as written, and the unit."""
 
@@ -40,7 +41,7 @@ class Quantity:
     span: Span = field(default=GENERATED, compare=False, repr=False)
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Name:
     """A variable or constant (or, as the argument of `filled`, a file)."""
 
@@ -48,7 +49,7 @@ class Name:
     span: Span = field(default=GENERATED, compare=False, repr=False)
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Field:
     """`p.x`."""
 
@@ -57,7 +58,7 @@ class Field:
     span: Span = field(default=GENERATED, compare=False, repr=False)
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Unary:
     """`-a` or `not a`."""
 
@@ -71,7 +72,7 @@ Operator = Literal[
 ]
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Binary:
     """`a + b`."""
 
@@ -81,7 +82,7 @@ class Binary:
     span: Span = field(default=GENERATED, compare=False, repr=False)
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class CallExpression:
     """`f(a, b)`: a built-in function; `pose(x, y, z, rx, ry, rz)` makes a pose."""
 
@@ -90,7 +91,7 @@ class CallExpression:
     span: Span = field(default=GENERATED, compare=False, repr=False)
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Conditional:
     """`if c then a else b` as an expression; only the chosen side is evaluated."""
 
@@ -106,7 +107,7 @@ Expression = Value | Quantity | Name | Field | Unary | Binary | CallExpression |
 # --- data of `mark` ----------------------------------------------------------------------------
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class RecordDatum:
     """`{a = 1, b = 2}`."""
 
@@ -114,7 +115,7 @@ class RecordDatum:
     span: Span = field(default=GENERATED, compare=False, repr=False)
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class TupleDatum:
     """`[1, 2]`."""
 
@@ -122,7 +123,7 @@ class TupleDatum:
     span: Span = field(default=GENERATED, compare=False, repr=False)
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class NullDatum:
     """`null`: the one value of a unit colour set."""
 
@@ -142,7 +143,7 @@ class Motion(Enum):
     LINEAR = "$linear"
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Move:
     """`move $joint p`, `move $joint home`, `move $linear p in tool at 50 mm/s`.
 
@@ -157,7 +158,7 @@ class Move:
     span: Span = field(default=GENERATED, compare=False, repr=False)
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Speed:
     """`speed $joint 50 %`, `speed $linear 250 mm/s`, `speed $joint default` (value None)."""
 
@@ -166,7 +167,7 @@ class Speed:
     span: Span = field(default=GENERATED, compare=False, repr=False)
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class WaitTime:
     """`wait 2.5 s`."""
 
@@ -174,7 +175,7 @@ class WaitTime:
     span: Span = field(default=GENERATED, compare=False, repr=False)
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class WaitUntil:
     """`wait until filled(F)`."""
 
@@ -182,7 +183,7 @@ class WaitUntil:
     span: Span = field(default=GENERATED, compare=False, repr=False)
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Target:
     """A name with its own span: a variable that is assigned, a file, a label."""
 
@@ -190,7 +191,7 @@ class Target:
     span: Span = field(default=GENERATED, compare=False, repr=False)
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Read:
     """`read F into a, b`: copies the message, which stays."""
 
@@ -199,7 +200,7 @@ class Read:
     span: Span = field(default=GENERATED, compare=False, repr=False)
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Clear:
     """`clear F`: consumes the message."""
 
@@ -207,7 +208,7 @@ class Clear:
     span: Span = field(default=GENERATED, compare=False, repr=False)
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Write:
     """`write F a, b`; no values: `write F signal`."""
 
@@ -216,7 +217,7 @@ class Write:
     span: Span = field(default=GENERATED, compare=False, repr=False)
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Assign:
     """`x := e`."""
 
@@ -225,7 +226,7 @@ class Assign:
     span: Span = field(default=GENERATED, compare=False, repr=False)
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Tool:
     """`tool drill for 3 s`."""
 
@@ -234,7 +235,7 @@ class Tool:
     span: Span = field(default=GENERATED, compare=False, repr=False)
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Measure:
     """`measure p into q`."""
 
@@ -243,7 +244,7 @@ class Measure:
     span: Span = field(default=GENERATED, compare=False, repr=False)
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Mark:
     """`mark Top.Robot1.Accept with k = k`: the net transition has occurred with this binding."""
 
@@ -252,7 +253,7 @@ class Mark:
     span: Span = field(default=GENERATED, compare=False, repr=False)
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Stop:
     """`stop "unknown command", k`: ends the script with a fault; the values are joined by blanks."""
 
@@ -260,7 +261,7 @@ class Stop:
     span: Span = field(default=GENERATED, compare=False, repr=False)
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Call:
     """`call p`."""
 
@@ -268,14 +269,14 @@ class Call:
     span: Span = field(default=GENERATED, compare=False, repr=False)
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Return:
     """`return`: leaves the procedure, or ends the program."""
 
     span: Span = field(default=GENERATED, compare=False, repr=False)
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Label:
     """`again:`."""
 
@@ -283,7 +284,7 @@ class Label:
     span: Span = field(default=GENERATED, compare=False, repr=False)
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Goto:
     """`goto again`."""
 
@@ -291,7 +292,7 @@ class Goto:
     span: Span = field(default=GENERATED, compare=False, repr=False)
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Exit:
     """`exit` or `exit when c`: leaves the innermost loop."""
 
@@ -299,7 +300,7 @@ class Exit:
     span: Span = field(default=GENERATED, compare=False, repr=False)
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Branch:
     """`if c then ...` or `elsif c then ...`."""
 
@@ -308,7 +309,7 @@ class Branch:
     span: Span = field(default=GENERATED, compare=False, repr=False)
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class If:
     """`if ... elsif ... else ... end if`; `otherwise` None: there is no `else`."""
 
@@ -317,7 +318,7 @@ class If:
     span: Span = field(default=GENERATED, compare=False, repr=False)
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class While:
     """`while c loop ... end loop`."""
 
@@ -326,7 +327,7 @@ class While:
     span: Span = field(default=GENERATED, compare=False, repr=False)
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Loop:
     """`loop ... end loop`: until an `exit`."""
 
@@ -344,7 +345,7 @@ Statement = Simple | If | While | Loop
 # --- declarations ------------------------------------------------------------------------------
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class TypeName:
     """A type, and whether its reals are rounded to single precision whenever a value is stored."""
 
@@ -360,7 +361,7 @@ class Direction(Enum):
     OUTPUT = "output"
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class File:
     """`input flag1_interno "flag1_interno.robcad" : int`."""
 
@@ -371,7 +372,7 @@ class File:
     span: Span = field(default=GENERATED, compare=False, repr=False)
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Const:
     """`const JOINT = 1`."""
 
@@ -380,7 +381,7 @@ class Const:
     span: Span = field(default=GENERATED, compare=False, repr=False)
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Variable:
     """`var n : int := 0`; one node a name."""
 
@@ -393,7 +394,7 @@ class Variable:
 Declaration = File | Const | Variable
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Procedure:
     """`procedure p ... end procedure`: no parameters, all variables are the program's."""
 
@@ -402,7 +403,7 @@ class Procedure:
     span: Span = field(default=GENERATED, compare=False, repr=False)
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Program:
     """A script."""
 
