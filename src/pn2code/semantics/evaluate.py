@@ -53,7 +53,7 @@ class Limits:
     """
 
     steps: int | None = 20_000_000
-    depth: int = 400_000
+    depth: int = 200_000
 
 
 class Evaluator:
