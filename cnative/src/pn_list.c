@@ -254,6 +254,85 @@ const void *pn_list_remove_all(pn_ctx_t *cx, const pn_type_t *type, const void *
     return finish(&b, NULL);
 }
 
+const void *pn_list_remdupl(pn_ctx_t *cx, const pn_type_t *type, const void *list)
+{
+    builder_t b = { cx, type, NULL, NULL };
+    for (const void *rest = list; (rest != NULL) && pn_ok(cx); rest = pn_list_tail(rest)) {
+        if (!pn_list_has(type, pn_list_tail(rest), pn_list_head(type, rest))) {
+            push(&b, pn_list_head(type, rest));
+        }
+    }
+    return finish(&b, NULL);
+}
+
+int64_t pn_list_position(pn_ctx_t *cx, const pn_type_t *type, const void *list, const void *value)
+{
+    int64_t position = 0;
+    for (const void *rest = list; rest != NULL; rest = pn_list_tail(rest)) {
+        if (pn_equal(type->element, pn_list_head(type, rest), value)) {
+            return position;
+        }
+        position++;
+    }
+    pn_raise(cx, PN_ERR_MATCH, NULL);
+    return 0;
+}
+
+/* The head of a cell of strings or characters, which comes right after the tail. */
+static const void *plain_head(const void *cell)
+{
+    return part(cell, sizeof(void *));
+}
+
+pn_string_t pn_string_join(pn_ctx_t *cx, const void *strings)
+{
+    pn_string_t result = { "", 0U };
+    for (const void *rest = strings; (rest != NULL) && pn_ok(cx); rest = pn_list_tail(rest)) {
+        result = pn_string_concat(cx, result, load_string(plain_head(rest)));
+    }
+    return result;
+}
+
+pn_string_t pn_string_implode(pn_ctx_t *cx, const void *chars)
+{
+    const size_t length = (size_t)pn_list_length(chars);
+    char *bytes = pn_arena_alloc(cx, length + 1U);
+    if (bytes == NULL) {
+        return (pn_string_t){ "", 0U };
+    }
+    size_t at = 0U;
+    for (const void *rest = chars; rest != NULL; rest = pn_list_tail(rest)) {
+        bytes[at] = (char)load_byte(plain_head(rest));
+        at++;
+    }
+    bytes[at] = '\0';
+    return (pn_string_t){ bytes, (uint32_t)length };
+}
+
+const void *pn_string_explode(pn_ctx_t *cx, const pn_type_t *type, pn_string_t s)
+{
+    const void *result = NULL;
+    for (uint32_t i = s.length; (i > 0U) && pn_ok(cx); i--) {
+        const uint8_t c = (uint8_t)s.bytes[i - 1U];
+        result = pn_list_cons(cx, type, &c, result);
+    }
+    return result;
+}
+
+const void *pn_ms_intersect(pn_ctx_t *cx, const pn_type_t *type, const void *a, const void *b)
+{
+    builder_t out = { cx, type, NULL, NULL };
+    const void *left = b;
+    for (const void *rest = a; (rest != NULL) && pn_ok(cx); rest = pn_list_tail(rest)) {
+        const void *value = pn_list_head(type, rest);
+        if (pn_list_has(type, left, value)) {
+            push(&out, value);
+            left = pn_list_remove(cx, type, left, value);
+        }
+    }
+    return finish(&out, NULL);
+}
+
 bool pn_ms_contains(const pn_type_t *type, const void *larger, const void *smaller)
 {
     for (const void *rest = smaller; rest != NULL; rest = pn_list_tail(rest)) {

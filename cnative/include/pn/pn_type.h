@@ -146,11 +146,20 @@ bool pn_list_all_true(const void *list);
 /* Without the first, without every element that is equal to a value. */
 const void *pn_list_remove(pn_ctx_t *cx, const pn_type_t *type, const void *list, const void *value);
 const void *pn_list_remove_all(pn_ctx_t *cx, const pn_type_t *type, const void *list, const void *value);
+/* Without duplicates: of each value the last occurrence stays. */
+const void *pn_list_remdupl(pn_ctx_t *cx, const pn_type_t *type, const void *list);
+/* Position of the first element equal to a value, from 0; Match. */
+int64_t pn_list_position(pn_ctx_t *cx, const pn_type_t *type, const void *list, const void *value);
+/* Strings and lists: concatenation of a string list, characters to string, string to characters. */
+pn_string_t pn_string_join(pn_ctx_t *cx, const void *strings);
+pn_string_t pn_string_implode(pn_ctx_t *cx, const void *chars);
+const void *pn_string_explode(pn_ctx_t *cx, const pn_type_t *type, pn_string_t s);
 /* Multi-sets are lists: equality, containment, difference (Subtract if not contained). */
 bool pn_ms_equal(const pn_type_t *type, const void *a, const void *b);
 bool pn_ms_contains(const pn_type_t *type, const void *larger, const void *smaller);
 bool pn_ms_contains_strictly(const pn_type_t *type, const void *larger, const void *smaller);
 const void *pn_ms_subtract(pn_ctx_t *cx, const pn_type_t *type, const void *a, const void *b);
+const void *pn_ms_intersect(pn_ctx_t *cx, const pn_type_t *type, const void *a, const void *b);
 /* n times the multi-set; empty if n <= 0. */
 const void *pn_ms_times(pn_ctx_t *cx, const pn_type_t *type, int64_t n, const void *multiset);
 /* The cell of the only element (NULL with no_singleton), of one at random (NULL with Empty). */

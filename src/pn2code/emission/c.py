@@ -1,11 +1,10 @@
 """`NetIR` -> `net.c` and `net.h`: the whole net as one C translation unit behind `pn_net`.
 
-All decisions are made before the templates run; they only print. Each transition, place and function of the net is a `Block`
-of the file, so that a compiler message or a reader finds the way back to the net.
+All decisions are made before the templates run; they only print. Each transition, place and function of the
+net is a `Block` of the file, so that a compiler message or a reader finds the way back to the net.
 """
 
 from __future__ import annotations
-
 
 import re
 from collections.abc import Iterable
@@ -98,9 +97,7 @@ class _Emitter:
         s, x, scope = self._printer(f.body)
         name = self._names.function(f.key, f.hint)
         has_context = f.key in self._needs_context
-        parameters = [
-            f"{self._types.name(p.type)} {x.local(p)}" for p in f.parameters
-        ]
+        parameters = [f"{self._types.name(p.type)} {x.local(p)}" for p in f.parameters]
         if has_context:
             parameters.insert(0, "pn_ctx_t *cx")
         is_void = f.result.rep is Rep.UNIT
@@ -162,8 +159,9 @@ class _Emitter:
             "type": self._types.name(g.type),
             "name": name,
             "constant": constant,
-            "zero": self._types.zero(g.type) if g.type.rep not in (Rep.STRUCT, Rep.UNION, Rep.STRING) else
-            ('{ "", 0U }' if g.type.rep is Rep.STRING else "{ 0 }"),
+            "zero": self._types.zero(g.type)
+            if g.type.rep not in (Rep.STRUCT, Rep.UNION, Rep.STRING)
+            else ('{ "", 0U }' if g.type.rep is Rep.STRING else "{ 0 }"),
             "setup": [] if constant else s.lines,
             "table": self._names.table(g.table),
             "is_reference": g.is_reference,
@@ -185,7 +183,9 @@ class _Emitter:
             "table": self._names.table(p.table),
             "timed": p.timed,
             "early": [
-                f".real = {c_float(float(e))}" if self._net.real_time else f".integer = {c_integer(int(e))}"
+                f".real = {c_float(float(e))}"
+                if self._net.real_time
+                else f".integer = {c_integer(int(e))}"
                 for e in p.early
             ],
             "capacity": p.capacity,
@@ -234,8 +234,8 @@ class _Emitter:
         return tables
 
     def _lines_of(self, key: str) -> list[int]:
-        """Leaves per line of an input file: a line for each component that is itself composed; scalars alone on one line each, unless
-        all are scalars: then they share one line."""
+        """Leaves per line of an input file: a line for each component that is itself composed; scalars alone
+        on one line each, unless all are scalars: then they share one line."""
         d = self._descriptors[key]
         if d.type.rep is not Rep.STRUCT:
             return [1]
@@ -249,7 +249,9 @@ class _Emitter:
         search, x, _ = self._printer(t.enumerate, "b.")
         x.variables = variables
         search.variable_types = tuple(v.type for v in t.variables)
-        search.keeps = uses_context(_without_wanted(t.enumerate), self._needs_context, self._definitions)
+        search.keeps = uses_context(
+            _without_wanted(t.enumerate), self._needs_context, self._definitions
+        )
         search.body(t.enumerate)
         search.finish_search()
         fire, x, _ = self._printer(t.fire, "b->")
@@ -326,9 +328,7 @@ class _Emitter:
         net = self._net
         functions = self._used_functions()
         keys = self._used_tables(functions)
-        wrappers = {
-            f.key: f"is_{stem(f.hint)}" for f in functions if f.key.startswith("member ")
-        }
+        wrappers = {f.key: f"is_{stem(f.hint)}" for f in functions if f.key.startswith("member ")}
         tables = c_tables.Tables(self._types, self._descriptors, wrappers)
         recursive = [k for k in keys if tables.is_recursive(k)]
         values = {
@@ -358,8 +358,7 @@ class _Emitter:
             "leaves": self._leaf_tables(),
             "places": [self._place(p) for p in net.places],
             "transitions": [self._transition(t) for t in net.transitions],
-            "has_arena_values": self._has_arena_values
-            or any(g.is_reference for g in net.globals),
+            "has_arena_values": self._has_arena_values or any(g.is_reference for g in net.globals),
         }
         source, blocks = self._extract(render("c/net.c.j2", **values))
         header, _ = self._extract(render("c/net.h.j2", **values))
@@ -406,7 +405,11 @@ def _where(origin: Origin) -> str:
 
 def _comment_lines(source: str) -> list[str]:
     """The ML text as comment lines, blank lines left out."""
-    return [c_comment(line) if not line.startswith(" ") else _indented(line) for line in source.expandtabs(4).splitlines() if line.strip()]
+    return [
+        c_comment(line) if not line.startswith(" ") else _indented(line)
+        for line in source.expandtabs(4).splitlines()
+        if line.strip()
+    ]
 
 
 def _indented(line: str) -> str:

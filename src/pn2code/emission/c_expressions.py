@@ -335,7 +335,11 @@ class Expressions:
     def _infix(self, operator: str, precedence: int, arguments: tuple[Ir, ...]) -> str:
         left, right = arguments
         if precedence in (c_ops.AND, c_ops.OR):
-            first = self.inside(left, precedence - 1) if self._is_same(left, operator) else self.condition(left)
+            first = (
+                self.inside(left, precedence - 1)
+                if self._is_same(left, operator)
+                else self.condition(left)
+            )
             return f"{first} {operator} {self.condition(right)}"
         # The left operand needs parentheses only if it binds less tightly; the right one also if as tightly.
         return f"{self.inside(left, precedence - 1)} {operator} {self.inside(right, precedence)}"

@@ -1,6 +1,7 @@
 """How built-in functions look in C: the table from names of `ml.builtins` (and of lowering's own operations) to C.
 
-Three forms: an infix operator, a function, a function that takes the context (because it may raise or needs the arena).
+Three forms: an infix operator, a function, a function that takes the context (because it may raise or needs
+the arena).
 """
 
 from __future__ import annotations
@@ -25,8 +26,8 @@ class Prefix:
 
 @dataclass(frozen=True, slots=True)
 class Call:
-    """A C function. `context`: its first argument is the context; `table`: the next is the type's table; `pointers`: which
-    operands are passed by address; `order`: it gives -1, 0, 1, of which an `order` is made."""
+    """A C function. `context`: its first argument is the context; `table`: the next is the type's table;
+    `pointers`: which operands are passed by address; `order`: it gives -1, 0, 1, of which an `order` is made."""
 
     function: str
     context: bool = False
@@ -113,6 +114,12 @@ OPS: dict[str, Form] = {
     "Ms.++": Call("pn_list_append", context=True, table=True),
     "List.rev": Call("pn_list_reverse", context=True, table=True),
     "List.revAppend": Call("pn_list_reverse_onto", context=True, table=True),
+    "List.remdupl": Call("pn_list_remdupl", context=True, table=True),
+    "List.intersect": Call("pn_ms_intersect", context=True, table=True),
+    "List.pos": Call("pn_list_position", context=True, table=True, pointers=(1,)),
+    "String.concat": Call("pn_string_join", context=True),
+    "String.implode": Call("pn_string_implode", context=True),
+    "String.explode": Call("pn_string_explode", context=True, table=True),
     "List.take": Call("pn_list_take", context=True, table=True),
     "List.drop": Call("pn_list_drop", context=True),
     "List.hd": Call("pn_list_first_cell", context=True),
@@ -161,7 +168,22 @@ for _structure in ("Int", "IntInf", "Real", "Char"):
         OPS[f"{_structure}.{_name}"] = Infix(_name, RELATION)
 for _name in ("<", "<=", ">", ">="):
     OPS[f"String.{_name}"] = Compared("pn_string_order", _name)
-for _name in ("sqrt", "sin", "cos", "tan", "asin", "acos", "atan", "atan2", "exp", "pow", "log10", "sinh", "cosh", "tanh"):
+for _name in (
+    "sqrt",
+    "sin",
+    "cos",
+    "tan",
+    "asin",
+    "acos",
+    "atan",
+    "atan2",
+    "exp",
+    "pow",
+    "log10",
+    "sinh",
+    "cosh",
+    "tanh",
+):
     OPS[f"Math.{_name}"] = Call(_name)
 for _name in ("floor", "ceil", "round", "trunc"):
     OPS[f"Real.{_name}"] = Call(f"pn_real_{_name}", context=True)
@@ -169,10 +191,20 @@ for _name in ("isDigit", "isAlpha", "isAlphaNum", "isSpace", "isUpper", "isLower
     OPS[f"Char.{_name}"] = Call(f"pn_char_is_{_name[2:].lower()}")
 OPS["Char.toUpper"] = Call("pn_char_to_upper")
 OPS["Char.toLower"] = Call("pn_char_to_lower")
-for _name in ("bernoulli", "binomial", "uniform", "discrete", "normal", "exponential", "poisson", "erlang", "chisq"):
+for _name in (
+    "bernoulli",
+    "binomial",
+    "uniform",
+    "discrete",
+    "normal",
+    "exponential",
+    "poisson",
+    "erlang",
+    "chisq",
+):
     OPS[f"Random.{_name}"] = Call(f"pn_random_{_name}", context=True)
 
-SWAPPED = {"List.rm": "List.rm", "List.rmall": "List.rmall", "Ms.cf": "Ms.cf"}
+SWAPPED = frozenset({"List.rm", "List.rmall", "List.pos", "Ms.cf"})
 """Operations whose ML operands are (value, list) and whose C operands are (list, value)."""
 CONTAINED = {"Ms.<<=": "Ms.>>=", "Ms.<<": "Ms.>>"}
 """Operations that are another one with its operands exchanged."""

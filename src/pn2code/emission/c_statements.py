@@ -64,7 +64,9 @@ def _cost(before: str, after: str) -> int | None:
 class Statements:
     """Prints the statements of one C function."""
 
-    def __init__(self, types: Types, expressions: Expressions, scope: Scope, real_time: bool) -> None:
+    def __init__(
+        self, types: Types, expressions: Expressions, scope: Scope, real_time: bool
+    ) -> None:
         self._types = types
         self._names: Names = types.names
         self._x = expressions
@@ -136,7 +138,7 @@ class Statements:
     def statement(self, s: Stmt) -> None:
         """Print one statement."""
         match s:
-            case (ir.Let(local=local, value=value) | ir.Assign(local=local, value=value)) if (
+            case ir.Let(local=local, value=value) | ir.Assign(local=local, value=value) if (
                 local.uid not in self.used
             ):
                 self._discard(value)
@@ -171,7 +173,9 @@ class Statements:
                 self._for_list(s)
             case ir.ForCount(local=local, count=count):
                 i = self._x.local(local)
-                self.line(f"for (int64_t {i} = 0; ({i} < {self._x.condition(count)}) && pn_ok(cx); {i}++) {{")
+                self.line(
+                    f"for (int64_t {i} = 0; ({i} < {self._x.condition(count)}) && pn_ok(cx); {i}++) {{"
+                )
                 self.block(s.body)
                 self.line("}")
             case ir.Return(value=value):
@@ -290,8 +294,8 @@ class Statements:
                 self.line(f"if ({self._x.text(ir.Op('Bool.not', (condition,), ir.BOOL))}) {{")
                 self._next()
             case ir.UnlessLegal(variable=variable, table=table):
-                value = self._x.address(ir.Bound(variable, self.variable_types[variable]))
-                self.line(f"if (!pn_is_legal(cx, &{self._names.table(table)}, {value})) {{")
+                pointer = self._x.address(ir.Bound(variable, self.variable_types[variable]))
+                self.line(f"if (!pn_is_legal(cx, &{self._names.table(table)}, {pointer})) {{")
                 self._next()
             case ir.UnlessAvailable():
                 self._unless_available(s)
@@ -319,10 +323,14 @@ class Statements:
         self._loops += 1
         if self.timed[s.place]:
             self._depth += 1
-            self.note("tokens of one value lie together, the earliest first: look at each value once")
+            self.note(
+                "tokens of one value lie together, the earliest first: look at each value once"
+            )
             table = self.tables_of_places[s.place]
             token = f"m->{place}.token"
-            self.line(f"if (({i} > 0U) && pn_equal(&{table}, &{token}[{i}].value, &{token}[{i} - 1U].value)) {{")
+            self.line(
+                f"if (({i} > 0U) && pn_equal(&{table}, &{token}[{i}].value, &{token}[{i} - 1U].value)) {{"
+            )
             self._next()
             self._depth -= 1
         self.block(s.body)
@@ -439,7 +447,15 @@ def uses_context(
                 return True
             case ir.FunCall(function=f) if f in callees:
                 return True
-            case ir.Raise() | ir.ClearError() | ir.Ok() | ir.HasError() | ir.Now() | ir.Fill() | ir.While():
+            case (
+                ir.Raise()
+                | ir.ClearError()
+                | ir.Ok()
+                | ir.HasError()
+                | ir.Now()
+                | ir.Fill()
+                | ir.While()
+            ):
                 return True
             case ir.ForList() | ir.ForCount():
                 return True

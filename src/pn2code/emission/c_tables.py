@@ -63,7 +63,9 @@ def body(definition: Definition, types: Types) -> list[str]:
                 if argument is not None:
                     pointer = "const " if boxed else ""
                     star = "*" if boxed else ""
-                    lines.append(f"        {pointer}{types.name(argument)} {star}{label(constructor)};")
+                    lines.append(
+                        f"        {pointer}{types.name(argument)} {star}{label(constructor)};"
+                    )
             return [*lines, "    } as;", "};"]
 
 
@@ -81,7 +83,9 @@ def _enum(
 class Tables:
     """Prints descriptors."""
 
-    def __init__(self, types: Types, descriptors: dict[str, Descriptor], names_of_members: dict[str, str]) -> None:
+    def __init__(
+        self, types: Types, descriptors: dict[str, Descriptor], names_of_members: dict[str, str]
+    ) -> None:
         self._types = types
         self._names = types.names
         self._descriptors = descriptors
@@ -179,5 +183,7 @@ class Tables:
             member = label(text) if isinstance(definition, ir.StructDef) else f"as.{label(text)}"
             flag = "true" if boxed.get(text) else "false"
             table = self._names.table(part)
-            lines.append(f"    {{ {c_string(text)}, &{table}, offsetof({c_type}, {member}), {flag} }},")
+            lines.append(
+                f"    {{ {c_string(text)}, &{table}, offsetof({c_type}, {member}), {flag} }},"
+            )
         return [*lines, "};"]

@@ -1,8 +1,8 @@
 """C identifiers for things of the net. Nothing else makes identifiers.
 
-A name is a readable stem plus a prefix or suffix that says what it is (`POSE_t`, `ml_rotate`, `Robot1_Accept_fire`), so that names of
-the net never meet those of C, of the runtime, or of each other; what is left of clashes gets a number. Characters that C does not
-know become `_`; accented letters lose their accent.
+A name is a readable stem plus a prefix or suffix that says what it is (`POSE_t`, `ml_rotate`,
+`Robot1_Accept_fire`), so that names of the net never meet those of C, of the runtime, or of each other; what
+is left of clashes gets a number. Characters that C does not know become `_`; accented letters lose their accent.
 
 Example: the places `Buffer A` and `Buffer-A` of page `Top` become `Buffer_A` and `Buffer_A_2`.
 """
@@ -13,15 +13,114 @@ import unicodedata
 from collections.abc import Hashable
 
 RESERVED = frozenset(
-    """
-    auto break case char const continue default do double else enum extern float for goto if inline int long register restrict
-    return short signed sizeof static struct switch typedef union unsigned void volatile while _Alignas _Alignof _Atomic _Bool
-    _Complex _Generic _Imaginary _Noreturn _Static_assert _Thread_local alignas alignof bool complex imaginary noreturn
-    static_assert thread_local true false asm typeof constexpr nullptr
-    and and_eq bitand bitor compl not not_eq or or_eq xor xor_eq class new delete this template namespace operator private public
-    NULL EOF errno stdin stdout stderr assert offsetof unix linux i386 INFINITY NAN HUGE_VAL main
-    b m cx marking binding self sink user moves before mark is_kept is_done
-    """.split()
+    [
+        "auto",
+        "break",
+        "case",
+        "char",
+        "const",
+        "continue",
+        "default",
+        "do",
+        "double",
+        "else",
+        "enum",
+        "extern",
+        "float",
+        "for",
+        "goto",
+        "if",
+        "inline",
+        "int",
+        "long",
+        "register",
+        "restrict",
+        "return",
+        "short",
+        "signed",
+        "sizeof",
+        "static",
+        "struct",
+        "switch",
+        "typedef",
+        "union",
+        "unsigned",
+        "void",
+        "volatile",
+        "while",
+        "_Alignas",
+        "_Alignof",
+        "_Atomic",
+        "_Bool",
+        "_Complex",
+        "_Generic",
+        "_Imaginary",
+        "_Noreturn",
+        "_Static_assert",
+        "_Thread_local",
+        "alignas",
+        "alignof",
+        "bool",
+        "complex",
+        "imaginary",
+        "noreturn",
+        "static_assert",
+        "thread_local",
+        "true",
+        "false",
+        "asm",
+        "typeof",
+        "constexpr",
+        "nullptr",
+        "and",
+        "and_eq",
+        "bitand",
+        "bitor",
+        "compl",
+        "not",
+        "not_eq",
+        "or",
+        "or_eq",
+        "xor",
+        "xor_eq",
+        "class",
+        "new",
+        "delete",
+        "this",
+        "template",
+        "namespace",
+        "operator",
+        "private",
+        "public",
+        "NULL",
+        "EOF",
+        "errno",
+        "stdin",
+        "stdout",
+        "stderr",
+        "assert",
+        "offsetof",
+        "unix",
+        "linux",
+        "i386",
+        "INFINITY",
+        "NAN",
+        "HUGE_VAL",
+        "main",
+        "b",
+        "m",
+        "cx",
+        "marking",
+        "binding",
+        "self",
+        "sink",
+        "user",
+        "moves",
+        "before",
+        "mark",
+        "is_kept",
+        "is_done",
+    ]
 )
 """Keywords of C and C++, macros of the headers in use, and the names that generated functions use themselves."""
 

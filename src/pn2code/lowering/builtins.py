@@ -1,7 +1,7 @@
 """Built-in functions applied: most become an `Op` of the same name, some a few lines of IR.
 
-What an `Op` looks like in C is the business of `emission.c_ops`; a built-in function is supported exactly if it is in `DIRECT` or
-has a method here or in `higher_order`.
+What an `Op` looks like in C is the business of `emission.c_ops`; a built-in function is supported exactly if
+it is in `DIRECT` or has a method here or in `higher_order`.
 """
 
 from __future__ import annotations
@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import TYPE_CHECKING
 
-from pn2code.diagnostics import Span
+from pn2code.diagnostics import Origin, Span
 from pn2code.lowering import higher_order, ir
 from pn2code.lowering.codes import (
     UNSUPPORTED_BUILTIN,
@@ -22,28 +22,35 @@ from pn2code.lowering.ir import Ir, IrType, Rep
 from pn2code.lowering.matching import negation
 from pn2code.lowering.values import BuiltinFunction, RecordVal, Reference, Val
 from pn2code.ml.builtins import BUILTINS
+from pn2code.ml.colsets import Colset
 from pn2code.ml.types import TCon, TFun, TRecord, TVar, Type
 
 if TYPE_CHECKING:
     from pn2code.lowering.expressions import Body
 
 _INT = "+ - * ~ abs div mod quot rem < <= > >= min max sign compare toString toInt fromInt toLarge fromLarge"
-_INTINF = "+ - * ~ abs div mod quot rem < <= > >= min max sign compare toString toInt fromInt toLarge fromLarge"
+_INTINF = _INT
 _REAL = (
-    "+ - * / ~ abs < <= > >= == != min max sign compare rem fromInt fromLargeInt floor ceil round trunc realFloor realCeil "
-    "realRound realTrunc isNan isFinite posInf negInf toString"
+    "+ - * / ~ abs < <= > >= == != min max sign compare rem fromInt fromLargeInt floor ceil round trunc "
+    "realFloor realCeil realRound realTrunc isNan isFinite posInf negInf toString"
 )
 _MATH = "pi e sqrt sin cos tan asin acos atan atan2 exp pow ln log10 sinh cosh tanh"
-_STRING = "^ size sub substring str isPrefix isSuffix isSubstring compare < <= > >="
-_CHAR = "ord chr compare < <= > >= isDigit isAlpha isAlphaNum isSpace isUpper isLower toUpper toLower"
-_LIST = "@ null length rev revAppend take drop mem rm rmall contains contains_all union listsub concat"
+_STRING = "^ size sub substring concat explode implode str isPrefix isSuffix isSubstring compare < <= > >="
+_CHAR = (
+    "ord chr compare < <= > >= isDigit isAlpha isAlphaNum isSpace isUpper isLower toUpper toLower"
+)
+_LIST = (
+    "@ null length rev revAppend take drop mem rm rmall contains contains_all union listsub concat "
+    "remdupl intersect pos"
+)
 _MS = "++ -- ** == != << <<= >> >>= cf size"
 _RANDOM = "bernoulli binomial uniform discrete normal exponential poisson erlang chisq"
 
 DIRECT = frozenset(
     f"{structure}.{name}"
     for structure, names in (
-        ("Int", _INT), ("IntInf", _INTINF), ("Real", _REAL), ("Math", _MATH), ("String", _STRING), ("Char", _CHAR),
+        ("Int", _INT), ("IntInf", _INTINF), ("Real", _REAL), ("Math", _MATH), ("String", _STRING),
+        ("Char", _CHAR),
         ("List", _LIST), ("Ms", _MS), ("Random", _RANDOM), ("Bool", "not toString"), ("TextIO", "print"),
         ("Time", "step"), ("ModelTime", "fromInt fromIntInf toString toReal add sub mult lt leq cmp"),
     )
@@ -51,10 +58,30 @@ DIRECT = frozenset(
 )  # fmt: skip
 """Built-in functions that are one operation of the runtime or of C, on their operands side by side."""
 
-SAME = frozenset({"Ms.ms_to_list", "Ms.list_to_ms", "Int.toInt", "Int.fromInt", "IntInf.toLarge", "IntInf.fromLarge", "IntInf.fromInt", "Int.toLarge", "ModelTime.fromIntInf"})  # fmt: skip
+SAME = frozenset(
+    [
+        "Ms.ms_to_list",
+        "Ms.list_to_ms",
+        "Int.toInt",
+        "Int.fromInt",
+        "IntInf.toLarge",
+        "IntInf.fromLarge",
+        "IntInf.fromInt",
+        "Int.toLarge",
+        "ModelTime.fromIntInf",
+    ]
+)
 """Built-in functions that give back their argument, as it is represented."""
 
-_COMPARISONS = {"cmp": "compare", "lt": "<", "leq": "<=", "add": "+", "sub": "-", "mult": "*", "toString": "toString"}
+_COMPARISONS = {
+    "cmp": "compare",
+    "lt": "<",
+    "leq": "<=",
+    "add": "+",
+    "sub": "-",
+    "mult": "*",
+    "toString": "toString",
+}
 
 
 class Builtins:
@@ -74,7 +101,12 @@ class Builtins:
         return n
 
     def apply(
-        self, body: Body, function: BuiltinFunction, arguments: tuple[Val, ...], result: Type, at: Span
+        self,
+        body: Body,
+        function: BuiltinFunction,
+        arguments: tuple[Val, ...],
+        result: Type,
+        at: Span,
     ) -> Val:
         """The value of a built-in function for all its arguments."""
         name = function.node.name
@@ -87,7 +119,9 @@ class Builtins:
             return special(body, arguments, result, at)
         if name not in DIRECT:
             raise UnsupportedError(
-                UNSUPPORTED_BUILTIN, f"the built-in function `{name}` is not supported in compiled code", at
+                UNSUPPORTED_BUILTIN,
+                f"the built-in function `{name}` is not supported in compiled code",
+                at,
             )
         if name.startswith("ModelTime."):
             name = self._model_time(name)
@@ -96,8 +130,10 @@ class Builtins:
         t = body.program.types.lower(result, at)
         table = ""
         lists = [o.type for o in operands if o.type.rep is Rep.LIST]
-        if lists and name.split(".")[0] in ("List", "Ms"):
-            table = body.program.types.plain(lists[0] if name != "List.concat" else t)
+        if name in ("String.explode", "List.concat"):
+            table = body.program.types.plain(t)
+        elif lists and name.split(".")[0] in ("List", "Ms"):
+            table = body.program.types.plain(lists[0])
         if table:
             operands = [body.addressable(o, "operand") for o in operands]
         op = ir.Op(name, tuple(operands), t, table)
@@ -131,7 +167,12 @@ class Builtins:
     # --- functions of colour sets --------------------------------------------------------------
 
     def _colset(
-        self, body: Body, function: BuiltinFunction, arguments: tuple[Val, ...], result: Type, at: Span
+        self,
+        body: Body,
+        function: BuiltinFunction,
+        arguments: tuple[Val, ...],
+        result: Type,
+        at: Span,
     ) -> Val:
         colset = function.node.colset
         assert colset is not None
@@ -139,12 +180,18 @@ class Builtins:
         types = body.program.types
         table = types.colset(colset)
         t = types.lower(result, at)
-        if name in ("size", "ord", "all", "col", "ran", "base") and types.descriptors[table].member:
+        if name == "all" and types.descriptors[table].member:
+            return subset_values(body, colset, t, at)
+        if name in ("size", "ord", "all", "col", "ran", "base") and types.has_subset(table):
             raise UnsupportedError(
-                UNSUPPORTED_COLSET, f"`{colset.name}.{name}` of a subset is not supported in compiled code", at
+                UNSUPPORTED_COLSET,
+                f"`{colset.name}.{name}` of a subset is not supported in compiled code",
+                at,
             )
         if name in ("lt", "cmp"):
-            a, b = (body.addressable(body.code(v), "side") for v in components(body, arguments[0], 2))
+            a, b = (
+                body.addressable(body.code(v), "side") for v in components(body, arguments[0], 2)
+            )
             return ir.Op(f"Colset.{name}", (a, b), t, table)
         if name in ("mkstr", "legal", "ord"):
             operand = body.addressable(body.code(arguments[0]), "value")
@@ -160,12 +207,76 @@ class Builtins:
             body.emit(ir.Declare(local))
             body.emit(ir.Fill(local, name, table, operands))
             return ir.Use(local)
+        if name == "mult":
+            return _combinations(body, arguments[0], t)
+        if name.startswith("set_"):
+            record, value = (body.code(v) for v in arguments)
+            definition = types.definition(t)
+            assert isinstance(definition, ir.StructDef)
+            record = body.atomic(record, "record")
+            label = name.removeprefix("set_")
+            fields = tuple(
+                (x, value if x == label else ir.Member(record, x, part))
+                for x, part in definition.fields
+            )
+            return ir.MakeStruct(t, fields)
+        if name == "illegal_msg":
+            return ir.Const("illegal color", ir.STRING)
         if name.startswith("of_"):
             value = body.atomic(body.code(arguments[0]), "value")
             return ir.IsTag(value, colset.names.index(name.removeprefix("of_")))
         raise UnsupportedError(
             UNSUPPORTED_BUILTIN, f"`{colset.name}.{name}` is not supported in compiled code", at
         )
+
+
+def _combinations(body: Body, multisets: Val, t: IrType) -> Ir:
+    """All combinations of the elements of multi-sets, one per component, the last component fastest."""
+    element = body.element(t)
+    definition = body.program.types.definition(element)
+    assert isinstance(definition, ir.StructDef)
+    lists: dict[str, Ir] = {}
+    for label, part in definition.fields:
+        if isinstance(multisets, RecordVal):
+            lists[label] = body.code(multisets.fields[label])
+        else:
+            whole = body.atomic(body.code(multisets), "multisets")
+            lists[label] = ir.Member(whole, label, body.list_type(part))
+
+    def combine(labels: list[str], chosen: dict[str, Ir], keep: Callable[[Ir], None]) -> None:
+        if not labels:
+            fields = tuple((label, chosen[label]) for label, _ in definition.fields)
+            keep(ir.MakeStruct(element, fields))
+            return
+        label, *rest = labels
+        higher_order.for_each(
+            body, lists[label], lambda x: combine(rest, {**chosen, label: x}, keep)
+        )
+
+    return higher_order.collect(
+        body, t, lambda keep: combine([label for label, _ in definition.fields], {}, keep)
+    )
+
+
+def subset_values(body: Body, colset: Colset, t: IrType, at: Span | Origin) -> Ir:
+    """All values of a subset: those of its base that belong to it, or those it lists, in order."""
+    types = body.program.types
+    base = colset.resolved.components[0]
+    assert base is not None
+    key, table = types.colset(base), types.colset(colset)
+    types.plain(t)
+    if types.is_small(key):
+        candidates: Ir = ir.Op("Colset.all", (), t, key)
+    elif colset.resolved.members is not None:
+        listed = body.ir(colset.resolved.members, {})
+        candidates = higher_order.sort_values(body, listed, key)
+    else:
+        raise UnsupportedError(
+            UNSUPPORTED_COLSET, f"the values of subset `{colset.name}` cannot be counted", at
+        )
+    return higher_order.filter_values(
+        body, candidates, lambda v: ir.Op("Colset.legal", (v,), ir.BOOL, table)
+    )
 
 
 def components(body: Body, value: Val, n: int) -> list[Val]:
@@ -209,7 +320,9 @@ def _now(body: Body, arguments: tuple[Val, ...], result: Type, at: Span) -> Val:
 
 def _compose(body: Body, arguments: tuple[Val, ...], result: Type, at: Span) -> Val:
     f, g = components(body, arguments[0], 2)
-    middle = TVar(0)  # only the representation of results that are C code matters, and `apply` knows it
+    middle = TVar(
+        0
+    )  # only the representation of results that are C code matters, and `apply` knows it
     return body.apply(f, body.apply(g, arguments[1], _result_of(body, g, middle), at), result, at)
 
 
@@ -281,7 +394,9 @@ def head_or(body: Body, cell: Ir) -> Ir:
     return ir.Select(negation(ir.IsNil(cell)), ir.Head(cell, element), body.zero(element), element)
 
 
-def _cell(op: str, *, tupled: bool = False, rest: bool = False) -> Callable[[Body, tuple[Val, ...], Type, Span], Val]:
+def _cell(
+    op: str, *, tupled: bool = False, rest: bool = False
+) -> Callable[[Body, tuple[Val, ...], Type, Span], Val]:
     """Functions that find a cell of a list and give its head."""
 
     def find(body: Body, arguments: tuple[Val, ...], result: Type, at: Span) -> Val:
@@ -313,7 +428,9 @@ def _if_all(body: Body, arguments: tuple[Val, ...], result: Type, at: Span) -> V
         operand = body.addressable(operand, "value")
         empty = ir.Op("list.nil", (), t)
         operand = ir.Op("list.cons", (operand, empty), t, body.program.types.plain(t))
-    return ir.Select(ir.Op("list.all_true", (flags,), ir.BOOL), operand, ir.Op("list.nil", (), t), t)
+    return ir.Select(
+        ir.Op("list.all_true", (flags,), ir.BOOL), operand, ir.Op("list.nil", (), t), t
+    )
 
 
 def _only(body: Body, arguments: tuple[Val, ...], result: Type, at: Span) -> Val:
@@ -357,7 +474,9 @@ def _is_some(body: Body, arguments: tuple[Val, ...], result: Type, at: Span) -> 
 def _value_or(body: Body, arguments: tuple[Val, ...], result: Type, at: Span) -> Val:
     option, default = (body.code(v, at) for v in components(body, arguments[0], 2))
     option = body.atomic(option, "option")
-    return ir.Select(ir.IsTag(option, 1), ir.Argument(option, 1, default.type), default, default.type)
+    return ir.Select(
+        ir.IsTag(option, 1), ir.Argument(option, 1, default.type), default, default.type
+    )
 
 
 def _stamped(*, delayed: bool) -> Callable[[Body, tuple[Val, ...], Type, Span], Val]:

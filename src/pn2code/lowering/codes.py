@@ -8,14 +8,17 @@ from pn2code.diagnostics.codes import register
 UNSUPPORTED_FUNCTION_VALUE = register(
     "unsupported-function-value",
     "a function is stored or returned in a way the compiler cannot follow",
-    "Functions may be passed to other functions and to `List.map`, `foldl` and their like, when it is known at compile time which "
-    "function it is. A function in a list, in a reference, chosen by `if`, or returned by a recursive function is not.",
+    "Functions may be passed to other functions and to `List.map`, `foldl` and their like, when it is known at "
+    "compile "
+    "time which function it is. A function in a list, in a reference, chosen by `if`, or returned by a "
+    "recursive function is not.",
 )
 UNSUPPORTED_TYPE = register(
     "unsupported-type",
     "a value of a type that the compiler has no representation for",
-    "References as values (other than `globref`s), exceptions as values, and types that stay unknown (`[]` that is never used at "
-    "a type) have no C representation.",
+    "References as values (other than `globref`s), exceptions as values, and types that stay unknown (`[]` that "
+    "is never "
+    "used at a type) have no C representation.",
 )
 UNSUPPORTED_BUILTIN = register(
     "unsupported-builtin",
@@ -25,7 +28,7 @@ UNSUPPORTED_BUILTIN = register(
 UNSUPPORTED_EXCEPTION = register(
     "unsupported-exception",
     "an exception that carries a value, or is used as a value",
-    "Exceptions without argument can be raised and handled. The argument of an exception cannot be looked at in a handler.",
+    "Exceptions can be raised and handled by name. The argument of an exception cannot be looked at in a handler.",
 )
 UNSUPPORTED_EXPRESSION = register(
     "unsupported-expression",
@@ -40,7 +43,7 @@ UNSUPPORTED_COLSET = register(
 STORAGE_COLSET = register(
     "storage-colour-set",
     "the storage table names something that is not a real colour set",
-    "`[storage]` of cell.toml may say `NAME = \"float32\"` for a colour set of kind real.",
+    '`[storage]` of cell.toml may say `NAME = "float32"` for a colour set of kind real.',
 )
 LITERAL_RANGE = register(
     "literal-out-of-range",

@@ -1,31 +1,35 @@
 """Core expressions -> IR: the body of one function, guard, inscription or action.
 
-`Body.exp` gives the value of an expression and appends to the present block the statements that must run before it. Reading and
-changing references, drawing random numbers and the like happen in these statements, so their order is that of CPN ML; what is pure
-stays an expression, so that simple ML becomes simple C.
+`Body.exp` gives the value of an expression and appends to the present block the statements that must run
+before it. Reading and changing references, drawing random numbers and the like happen in these statements, so
+their order is that of CPN ML; what is pure stays an expression, so that simple ML becomes simple C.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from collections.abc import Callable
 from dataclasses import dataclass
 
 from pn2code.diagnostics import Span
 from pn2code.lowering import ir
+from pn2code.lowering.block import UNIT_VALUE, Block
 from pn2code.lowering.codes import (
-    LITERAL_RANGE,
     UNSUPPORTED_EXCEPTION,
     UNSUPPORTED_FUNCTION_VALUE,
     UnsupportedError,
 )
-from pn2code.lowering.functions import Program, split_parameters
-from pn2code.lowering.ir import Ir, IrType, Local, Rep, Stmt
-from pn2code.lowering.matching import Match, Matcher, TypeSource, conjunction, is_irrefutable, negation
+from pn2code.lowering.functions import split_parameters
+from pn2code.lowering.ir import Ir, IrType, Local, Rep
+from pn2code.lowering.matching import (
+    Match,
+    conjunction,
+    is_irrefutable,
+    negation,
+)
+from pn2code.lowering.shapes import covers, handled_name, is_simple, nodes, size
 from pn2code.lowering.types import has_function as type_has_function
 from pn2code.lowering.types import substitute
 from pn2code.lowering.values import (
-    FUNCTIONS,
     Binding,
     BuiltinFunction,
     Closure,
@@ -35,172 +39,28 @@ from pn2code.lowering.values import (
     Partial,
     Polymorphic,
     RecordVal,
-    Reference,
-    TypeEnv,
     Val,
-    has_function,
     is_atomic,
-    children,
     is_static,
 )
 from pn2code.ml import core
-from pn2code.ml.core import Symbol
 from pn2code.ml.types import INT, TFun, Type
 
-_INT_RANGE = (-(2**30), 2**30 - 1)
-_INTINF_RANGE = (-(2**63) + 1, 2**63 - 1)
 _MAX_INLINE = 60
-_UNIT = ir.Const(None, ir.UNIT)
+_UNIT = UNIT_VALUE
 
 
 @dataclass(frozen=True, slots=True)
 class Ways:
-    """What becomes of rules: `finish` of the body of the one that fits; `give_up` after an exception where none does."""
+    """What becomes of rules: `finish` of the body of the one that fits; `give_up` after an exception where
+    none does."""
 
     finish: Callable[[core.Exp, Env], None]
     give_up: Callable[[], None]
 
 
-class Body(TypeSource):
+class Body(Block):
     """Lowers expressions into a growing list of statements."""
-
-    def __init__(self, program: Program, types: TypeEnv | None = None, key: str = "") -> None:
-        self.program = program
-        self.types: TypeEnv = types or {}
-        self.key = key
-        self.statements: list[Stmt] = []
-        self._locals = 0
-        self._inlined: list[int] = []
-        self._matcher = Matcher(self)
-        self.has_self_call = False
-
-    # --- small services ------------------------------------------------------------------------
-
-    def local(self, hint: str, t: IrType) -> Local:
-        """A fresh local."""
-        self._locals += 1
-        return Local(self._locals, hint, t)
-
-    def emit(self, statement: Stmt) -> None:
-        """Append to the present block."""
-        self.statements.append(statement)
-
-    @contextmanager
-    def block(self) -> Iterator[list[Stmt]]:
-        """A fresh block of statements; the present one comes back afterwards."""
-        outer, self.statements = self.statements, []
-        try:
-            yield self.statements
-        finally:
-            self.statements = outer
-
-    def type_of(self, t: Type) -> Type:
-        """The type with the variables of the surrounding schemes replaced."""
-        return substitute(t, self.types)
-
-    def representation(self, t: Type) -> IrType:
-        """See `TypeSource`."""
-        return self.program.types.lower(self.type_of(t))
-
-    def element(self, t: IrType) -> IrType:
-        """See `TypeSource`."""
-        definition = self.program.types.definition(t)
-        assert isinstance(definition, ir.ListDef)
-        return definition.element
-
-    def zero(self, t: IrType) -> Ir:
-        """A harmless value, after an error."""
-        return ir.Op("zero", (), t)
-
-    def literal(self, value: int | float | str, t: Type, span: Span) -> ir.Const:
-        """See `TypeSource`."""
-        rep = self.representation(t)
-        if rep.rep is Rep.CHAR:
-            return ir.Const(ord(str(value)), rep)
-        if rep.rep is Rep.INT:
-            low, high = _INT_RANGE if self.type_of(t) == INT else _INTINF_RANGE
-            if not low <= int(value) <= high:
-                raise UnsupportedError(
-                    LITERAL_RANGE, f"the literal {value} is out of the range of `{t}`", span
-                )
-        return ir.Const(value, rep)
-
-    def code(self, value: Val, at: Span | None = None) -> Ir:
-        """A value as C code; records are put together."""
-        if isinstance(value, RecordVal):
-            if has_function(value):
-                self._refuse_function(at)
-            t = self.representation(value.type)
-            if t.rep is Rep.UNIT:
-                return _UNIT
-            definition = self.program.types.definition(t)
-            assert isinstance(definition, ir.StructDef)
-            parts = {label: self.code(v, at) for label, v in value.fields.items()}
-            return ir.MakeStruct(t, tuple((label, parts[label]) for label, _ in definition.fields))
-        if is_static(value):
-            self._refuse_function(at)
-        assert not isinstance(value, (*FUNCTIONS, Reference))
-        return value
-
-    def _refuse_function(self, at: Span | None) -> None:
-        raise UnsupportedError(
-            UNSUPPORTED_FUNCTION_VALUE,
-            "a function or reference is used as a value here",
-            at or self.program.position,
-            hint="pass it directly to the function that uses it",
-        )
-
-    def atomic(self, value: Ir, hint: str) -> Ir:
-        """The value in a form that may be used several times."""
-        if is_atomic(value):
-            return value
-        local = self.local(hint, value.type)
-        self.emit(ir.Let(local, value))
-        return ir.Use(local)
-
-    def addressable(self, value: Ir, hint: str) -> Ir:
-        """The value in a form whose address can be taken in C: a struct that a function returns gets a name."""
-        is_struct = value.type.rep in (Rep.STRUCT, Rep.UNION)
-        if is_struct and not isinstance(value, ir.MakeStruct | ir.MakeUnion):
-            return self.atomic(value, hint)
-        return value
-
-    def settle(self, value: Val, hint: str) -> Val:
-        """The same for a value of any kind; records stay apart."""
-        if isinstance(value, RecordVal):
-            fields = {
-                k: self.settle(v, f"{hint}_{k}" if k.isdigit() else k)
-                for k, v in value.fields.items()
-            }
-            return RecordVal(fields, value.type)
-        if is_static(value):
-            return value
-        return self.atomic(self.code(value), hint)
-
-    def select(self, value: Val, label: str, t: Type) -> Val:
-        """See `TypeSource`."""
-        if isinstance(value, RecordVal):
-            return value.fields[label]
-        code = self.code(value)
-        return ir.Member(code, label, self.representation(t))
-
-    def spill(self, value: Ir, hint: str) -> Ir:
-        """The value computed now."""
-        if value.type == ir.UNIT:
-            self.emit(ir.Do(value))
-            return _UNIT
-        local = self.local(hint, value.type)
-        self.emit(ir.Let(local, value))
-        return ir.Use(local)
-
-    def bind(self, symbol: Symbol, value: Val) -> Val:
-        """The value of a variable that may be used any number of times, under its name."""
-        if isinstance(value, RecordVal) and not has_function(value):
-            value = self.code(value)
-        if isinstance(value, ir.Member | ir.Head | ir.Tail | ir.Argument):
-            # A part of something gets the name it has in the pattern.
-            return self.spill(value, symbol.name)
-        return self.settle(value, symbol.name)
 
     # --- expressions ---------------------------------------------------------------------------
 
@@ -262,9 +122,7 @@ class Body(TypeSource):
         if value is None:
             value = self.program.global_value(self, e.symbol, inst, e.span)
         if isinstance(value, NamedFunction) and inst and value.symbol == e.symbol:
-            return NamedFunction(
-                value.symbol, value.group, value.env, {**value.types, **inst}
-            )
+            return NamedFunction(value.symbol, value.group, value.env, {**value.types, **inst})
         if isinstance(value, Polymorphic):
             outer, self.types = self.types, {**value.types, **inst}
             try:
@@ -401,7 +259,9 @@ class Body(TypeSource):
             )
         self._inlined.append(id(function.group))
         try:
-            value: Val = Closure(function.function, self.program.group_env(function), function.types)
+            value: Val = Closure(
+                function.function, self.program.group_env(function), function.types
+            )
             for argument in arguments:
                 assert isinstance(value, Closure)
                 value = self._inline(value, argument, at)
@@ -423,9 +283,7 @@ class Body(TypeSource):
                 case core.RecBind():
                     env = {
                         **env,
-                        **{
-                            s.uid: NamedFunction(s, dec, env, self.types) for s, _ in dec.bindings
-                        },
+                        **{s.uid: NamedFunction(s, dec, env, self.types) for s, _ in dec.bindings},
                     }
                 case core.ExceptionDec() | core.DatatypeDec():
                     pass
@@ -596,7 +454,13 @@ class Body(TypeSource):
         self._rule(0, rules, value, env, exception, ways)
 
     def _rule(
-        self, index: int, rules: tuple[core.Rule, ...], value: Val, env: Env, exception: str, ways: Ways
+        self,
+        index: int,
+        rules: tuple[core.Rule, ...],
+        value: Val,
+        env: Env,
+        exception: str,
+        ways: Ways,
     ) -> None:
         if index == len(rules):
             self.emit(ir.Raise(exception))
@@ -720,7 +584,9 @@ class Body(TypeSource):
                     self.has_self_call = True
                     self.emit(ir.SelfCall(code))
                     return
-        self._return(self.code(self.apply(function, argument, self.type_of(e.type), e.span), e.span))
+        self._return(
+            self.code(self.apply(function, argument, self.type_of(e.type), e.span), e.span)
+        )
 
     def _return(self, value: Ir) -> None:
         if value.type == ir.UNIT:
@@ -729,49 +595,3 @@ class Body(TypeSource):
             self.emit(ir.Return(None))
         else:
             self.emit(ir.Return(value))
-
-
-# --- shapes of expressions ---------------------------------------------------------------------
-
-
-def nodes(e: core.Exp) -> Iterator[core.Exp]:
-    """All subexpressions, the expression first."""
-    yield e
-    for child in children(e):
-        yield from nodes(child)
-
-
-def size(e: core.Exp) -> int:
-    """The number of nodes."""
-    return sum(1 for _ in nodes(e))
-
-
-def is_simple(e: core.Exp) -> bool:
-    """Whether it will most likely become a C expression without statements before it."""
-    simple = core.Lit | core.Var | core.Builtin | core.Con | core.Apply | core.RecordExp | core.Select | core.ListExp | core.If
-    return all(isinstance(n, simple) for n in nodes(e))
-
-
-def handled_name(pattern: core.Pat) -> str | None:
-    """The exception that a handler's pattern names, "" for any; None if it looks at a value."""
-    match pattern:
-        case core.PWild() | core.PVar():
-            return ""
-        case core.PCon(constructor=c, argument=None | core.PWild()):
-            return c.name
-    return None
-
-
-def covers(rules: tuple[core.Rule, ...]) -> bool:
-    """Whether the rules are one for each constructor of a data type, with irrefutable arguments, so that the last needs no test."""
-    tags: set[int] = set()
-    for rule in rules:
-        p = rule.pattern
-        if not isinstance(p, core.PCon) or p.constructor.siblings == 0:
-            return False
-        if p.argument is not None and not is_irrefutable(p.argument):
-            return False
-        tags.add(p.constructor.tag)
-    first = rules[0].pattern
-    assert isinstance(first, core.PCon)
-    return len(tags) == first.constructor.siblings == len(rules)

@@ -24,6 +24,7 @@ from pn2code.lowering.types import Types, substitute
 from pn2code.lowering.types import has_function as type_has_function
 from pn2code.lowering.values import (
     Binding,
+    Captured,
     NamedFunction,
     RecordVal,
     Reference,
@@ -44,7 +45,10 @@ if TYPE_CHECKING:
 
 _MAX_FUNCTIONS = 2000
 
-IMPURE = frozenset({"Ref.!", "Ref.:=", "Ref.+=", "Ref.-=", "Ref.*=", "Ref.::=", "Ref.inc", "Ref.dec", "TextIO.print", "Ms.random", "Colset.ran"})  # fmt: skip
+IMPURE = frozenset(
+    [f"Ref.{op}" for op in ("!", ":=", "+=", "-=", "*=", "::=", "inc", "dec")]
+    + ["TextIO.print", "Ms.random", "Colset.ran"]
+)
 """Built-in functions whose order of evaluation matters; all of `Random` too."""
 
 
@@ -76,7 +80,9 @@ def is_split(rules: tuple[core.Rule, ...], t: Type) -> bool:
 class Program:
     """All that is asked for of the declarations. One per net."""
 
-    def __init__(self, program: core.Program, types: Types, builtins: Builtins, real_time: bool) -> None:
+    def __init__(
+        self, program: core.Program, types: Types, builtins: Builtins, real_time: bool
+    ) -> None:
         self.core = program
         self.types = types
         self.builtins = builtins
@@ -236,12 +242,10 @@ class Program:
             self._counters[function.symbol.name] = number
             key = f"{function.symbol.name}/{number}"
             self._functions[identity] = key
-            self._enter(key, function, parts, slots)
+            self._enter(key, function, parts)
         return self._functions[identity], code
 
-    def _slots(
-        self, body: Body, function: NamedFunction, arguments: tuple[Val, ...]
-    ) -> list[Val]:
+    def _slots(self, body: Body, function: NamedFunction, arguments: tuple[Val, ...]) -> list[Val]:
         """The arguments as they are passed: tuples that are taken apart by the patterns, component by component."""
         slots: list[Val] = []
         for (rules, t), argument in zip(_parameters(function), arguments, strict=True):
@@ -264,11 +268,11 @@ class Program:
     def _slot(body: Body, value: Val) -> Val:
         from pn2code.lowering.values import has_function
 
-        return body.code(value) if isinstance(value, RecordVal) and not has_function(value) else value
+        return (
+            body.code(value) if isinstance(value, RecordVal) and not has_function(value) else value
+        )
 
-    def _enter(
-        self, key: str, function: NamedFunction, parts: list, slots: list[Val]  # type: ignore[type-arg]
-    ) -> None:
+    def _enter(self, key: str, function: NamedFunction, parts: list[Captured]) -> None:
         """Note a function to be made: with parameters in the place of what was captured."""
         parameters: list[Local] = []
         rebuilt: list[Binding] = []
@@ -312,7 +316,9 @@ class Program:
             if is_split(rules, t):
                 assert isinstance(t, TRecord)
                 n = len(t.fields)
-                fields = dict(zip((label for label, _ in t.fields), slots[at : at + n], strict=True))
+                fields = dict(
+                    zip((label for label, _ in t.fields), slots[at : at + n], strict=True)
+                )
                 argument: Val = RecordVal(fields, substitute(t, head.types))  # type: ignore[arg-type]
                 at += n
             else:
@@ -493,8 +499,15 @@ def order_functions(made: dict[str, ir.Function]) -> tuple[ir.Function, ...]:
         is_recursive = key in recursive
         result.append(
             ir.Function(
-                f.key, f.hint, f.parameters, f.result, f.body, f.loops and not is_recursive,
-                is_recursive, f.source, f.origin,
+                f.key,
+                f.hint,
+                f.parameters,
+                f.result,
+                f.body,
+                f.loops and not is_recursive,
+                is_recursive,
+                f.source,
+                f.origin,
             )  # fmt: skip
         )
     return tuple(result)

@@ -1,6 +1,7 @@
 """Built-in functions that take functions: loops with the function's body inside.
 
-`List.map f l` becomes a loop over the cells of `l` that builds the result back to front, and turns it round at the end.
+`List.map f l` becomes a loop over the cells of `l` that builds the result back to front, and turns it round at
+the end.
 """
 
 from __future__ import annotations
@@ -46,6 +47,16 @@ def _reversed(body: Body, local: Local) -> Ir:
     return ir.Op("List.rev", (ir.Use(local),), local.type, body.program.types.plain(local.type))
 
 
+for_each = _loop
+
+
+def collect(body: Body, t: IrType, fill: Callable[[Callable[[Ir], None]], None]) -> Ir:
+    """The list of what `fill` hands over, in order."""
+    out = _accumulator(body, t)
+    fill(lambda value: _push(body, out, value))
+    return _reversed(body, out)
+
+
 def map_list(body: Body, values: Ir, result: IrType, f: Callable[[Ir], Val]) -> Ir:
     """Each element through a function."""
     out = _accumulator(body, result)
@@ -79,6 +90,26 @@ def _app(body: Body, arguments: tuple[Val, ...], result: Type, at: Span) -> Val:
 
 def _test(body: Body, f: Val, x: Ir, at: Span) -> Ir:
     return body.code(body.apply(f, x, BOOL, at))
+
+
+def filter_values(body: Body, values: Ir, test: Callable[[Ir], Ir]) -> Ir:
+    """The elements with a property."""
+    out = _accumulator(body, values.type)
+
+    def step(x: Ir) -> None:
+        with body.block() as then:
+            _push(body, out, x)
+        body.emit(ir.If(test(x), tuple(then), ()))
+
+    _loop(body, values, step)
+    return _reversed(body, out)
+
+
+def sort_values(body: Body, values: Ir, table: str) -> Ir:
+    """The elements in the order of a colour set, one of each."""
+    return _insertion_sort(
+        body, values, lambda a, b: ir.Op("Colset.lt", (a, b), ir.BOOL, table), unique=True
+    )
 
 
 def _filter(body: Body, arguments: tuple[Val, ...], result: Type, at: Span) -> Val:
@@ -216,45 +247,53 @@ def _flat_map(body: Body, arguments: tuple[Val, ...], result: Type, at: Span) ->
     return _reversed(body, out)
 
 
-def _sorting(*, unique: bool) -> Special:
-    """Insertion: each element goes in front of the first that is greater."""
+def _insertion_sort(body: Body, values: Ir, less: Callable[[Ir, Ir], Ir], *, unique: bool) -> Ir:
+    """Each element goes in front of the first that is greater; equal ones keep their order, or are left out."""
+    in_order = _accumulator(body, values.type, "in_order")
 
-    def sort(body: Body, arguments: tuple[Val, ...], result: Type, at: Span) -> Val:
-        less, values = arguments
-        code = body.code(values, at)
-        sorted_so_far = _accumulator(body, code.type, "sorted")
+    def insert(x: Ir) -> None:
+        out = _accumulator(body, values.type)
+        placed = body.local("placed", ir.BOOL)
+        body.emit(ir.Let(placed, ir.Const(False, ir.BOOL), mutable=True))
+        is_open = negation(ir.Use(placed))
 
-        def test(a: Ir, b: Ir) -> Ir:
-            pair = RecordVal({"1": a, "2": b}, tuple_of(result, result))
-            return body.code(body.apply(less, pair, BOOL, at))
-
-        def insert(x: Ir) -> None:
-            out = _accumulator(body, code.type)
-            placed = body.local("placed", ir.BOOL)
-            body.emit(ir.Let(placed, ir.Const(False, ir.BOOL), mutable=True))
-
-            def pass_by(y: Ir) -> None:
-                before = ir.Op("andalso", (negation(ir.Use(placed)), body.atomic(test(x, y), "is_less")), ir.BOOL)
-                with body.block() as then:
-                    _push(body, out, x)
-                    body.emit(ir.Assign(placed, ir.Const(True, ir.BOOL)))
-                body.emit(ir.If(before, tuple(then), ()))
-                if unique:
-                    same = ir.Op("andalso", (negation(ir.Use(placed)), negation(test(y, x))), ir.BOOL)
-                    skip = (ir.Assign(placed, ir.Const(True, ir.BOOL)),)
-                    body.emit(ir.If(same, skip, ()))
-                _push(body, out, y)
-
-            _loop(body, ir.Use(sorted_so_far), pass_by)
+        def pass_by(y: Ir) -> None:
+            comes_first = ir.Op("andalso", (is_open, body.atomic(less(x, y), "is_less")), ir.BOOL)
             with body.block() as then:
                 _push(body, out, x)
-            body.emit(ir.If(negation(ir.Use(placed)), tuple(then), ()))
-            body.emit(ir.Assign(sorted_so_far, _reversed(body, out)))
+                body.emit(ir.Assign(placed, ir.Const(True, ir.BOOL)))
+            body.emit(ir.If(comes_first, tuple(then), ()))
+            if unique:
+                is_same = ir.Op("andalso", (is_open, negation(less(y, x))), ir.BOOL)
+                leave_out = (ir.Assign(placed, ir.Const(True, ir.BOOL)),)
+                body.emit(ir.If(is_same, leave_out, ()))
+            _push(body, out, y)
 
-        _loop(body, code, insert)
-        return ir.Use(sorted_so_far)
+        _loop(body, ir.Use(in_order), pass_by)
+        with body.block() as then:
+            _push(body, out, x)
+        body.emit(ir.If(is_open, tuple(then), ()))
+        body.emit(ir.Assign(in_order, _reversed(body, out)))
+
+    _loop(body, values, insert)
+    return ir.Use(in_order)
+
+
+def _sorting(*, unique: bool) -> Special:
+    def sort(body: Body, arguments: tuple[Val, ...], result: Type, at: Span) -> Val:
+        function, values = arguments
+
+        def less(a: Ir, b: Ir) -> Ir:
+            pair = RecordVal({"1": a, "2": b}, tuple_of(result, result))
+            return _test_pair(body, function, pair, at)
+
+        return _insertion_sort(body, body.code(values, at), less, unique=unique)
 
     return sort
+
+
+def _test_pair(body: Body, function: Val, pair: RecordVal, at: Span) -> Ir:
+    return body.code(body.apply(function, pair, BOOL, at))
 
 
 def _option_map(body: Body, arguments: tuple[Val, ...], result: Type, at: Span) -> Val:

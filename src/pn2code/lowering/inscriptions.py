@@ -1,7 +1,8 @@
 """What arcs and initial markings put: multi-set expressions taken apart into single moves where that is possible.
 
-``1`x ++ n`y`` becomes two `Put`s, `if c then 1`x else empty` an `If` around one; only what is left (a function that returns a multi-set)
-is computed as a list and put element by element.
+``1`x ++ n`y`` becomes two `Put`s, `if c then 1`x else empty` an
+`If` around one; only what is left (a function that returns a multi-set) is computed as a list and put element
+by element.
 """
 
 from __future__ import annotations
@@ -59,7 +60,8 @@ class Putter:
         body, env = self._body, self._env
         match exp:
             case core.Apply(
-                function=core.Builtin(name="Ms.++" | "List.@"), argument=core.RecordExp(fields=((_, a), (_, b)))
+                function=core.Builtin(name="Ms.++" | "List.@"),
+                argument=core.RecordExp(fields=((_, a), (_, b))),
             ):
                 self._multiset(a, stamp)
                 self._multiset(b, stamp)
@@ -95,7 +97,9 @@ class Putter:
             ):
                 value = body.ir(v, env)
                 time = body.ir(d, env)
-                self._token(ONE, value, self._shifted(time if name == "Time.@" else after_now(body, time)))
+                self._token(
+                    ONE, value, self._shifted(time if name == "Time.@" else after_now(body, time))
+                )
             case _:
                 token = body.atomic(body.ir(exp, env), "token")
                 definition = body.program.types.definition(token.type)
@@ -109,7 +113,8 @@ class Putter:
         body, env = self._body, self._env
         match exp:
             case core.Apply(
-                function=core.Builtin(name="Time.+++"), argument=core.RecordExp(fields=((_, a), (_, b)))
+                function=core.Builtin(name="Time.+++"),
+                argument=core.RecordExp(fields=((_, a), (_, b))),
             ):
                 self._timed_multiset(a)
                 self._timed_multiset(b)
@@ -120,7 +125,11 @@ class Putter:
                 self._multiset(ms, self._shifted(after_now(body, body.ir(d, env))))
             case core.Apply(
                 function=core.Builtin(name="Ms.`"), argument=core.RecordExp(fields=((_, n), (_, v)))
-            ) if isinstance(v, core.Apply) and isinstance(v.function, core.Builtin) and v.function.name == "Time.@":
+            ) if (
+                isinstance(v, core.Apply)
+                and isinstance(v.function, core.Builtin)
+                and v.function.name == "Time.@"
+            ):
                 value, time = components(body, body.exp(v.argument, env), 2)
                 count = body.ir(n, env)
                 self._token(count, body.code(value), self._shifted(body.code(time)))
@@ -136,7 +145,9 @@ class Putter:
             case _:
                 value = body.ir(exp, env)
                 table = body.program.types.plain(value.type)
-                body.emit(ir.PutAll(self._place, value, table, self._delay, True, self._note_once()))
+                body.emit(
+                    ir.PutAll(self._place, value, table, self._delay, True, self._note_once())
+                )
 
     def _shifted(self, stamp: Ir) -> Ir:
         return stamp if self._delay is None else plus(stamp, self._delay)

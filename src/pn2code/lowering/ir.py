@@ -1,7 +1,8 @@
 """`NetIR`: the net as small imperative programs over C-like types; what `emission.c` prints.
 
-Names here are still those of the net; C identifiers are made by `emission.names`. Every value has an `IrType`, every type that
-needs a C declaration a definition, every colour set a `Descriptor` (a constant table of the runtime, `pn_type_t`).
+Names here are still those of the net; C identifiers are made by `emission.names`. Every value has an `IrType`,
+every type that needs a C declaration a definition, every colour set a `Descriptor` (a constant table of the
+runtime, `pn_type_t`).
 
 One transition with guard `[n > 0]`, input arc ``1`n`` and output arc ``1`(n - 1)`` becomes
 
@@ -200,7 +201,8 @@ class FunCall:
 
 @dataclass(frozen=True, slots=True)
 class Op:
-    """A built-in function by its name in `ml.builtins` (or "list.cons" and the like); `table` is the descriptor it works on."""
+    """A built-in function by its name in `ml.builtins` (or "list.cons" and the like); `table` is the
+    descriptor it works on."""
 
     name: str
     arguments: tuple[Ir, ...]
@@ -329,8 +331,8 @@ class HasError:
 
 
 Ir = (
-    Const | Use | GlobalUse | Bound | TokenValue | Now | FunCall | Op | Member | MakeStruct | EnumValue | MakeUnion | IsTag
-    | Argument | Select | Head | Tail | IsNil | Ok | HasError
+    Const | Use | GlobalUse | Bound | TokenValue | Now | FunCall | Op | Member | MakeStruct | EnumValue |
+    MakeUnion | IsTag | Argument | Select | Head | Tail | IsNil | Ok | HasError
 )  # fmt: skip
 
 # --- statements --------------------------------------------------------------------------------
@@ -406,7 +408,8 @@ class While:
 
 @dataclass(frozen=True, slots=True)
 class ForList:
-    """Runs over the cells of a list; `cell` is the current one, a non-empty list. Stops after an error, or once `until` is true."""
+    """Runs over the cells of a list; `cell` is the current one, a non-empty list. Stops after an error, or
+    once `until` is true."""
 
     cell: Local
     list: Ir
@@ -461,7 +464,8 @@ class Note:
 
 @dataclass(frozen=True, slots=True)
 class ForTokens:
-    """Runs over the distinct values in a place. Timed: only values of which a token is there at `limit` (None: decided later)."""
+    """Runs over the distinct values in a place. Timed: only values of which a token is there at `limit` (None:
+    decided later)."""
 
     place: int
     index: Local
@@ -505,7 +509,8 @@ class UnlessLegal:
 
 @dataclass(frozen=True, slots=True)
 class UnlessAvailable:
-    """Goes on unless the value at `index` has a token with a stamp not after `limit` (untimed: None), `count` of them."""
+    """Goes on unless the value at `index` has a token with a stamp not after `limit` (untimed: None), `count`
+    of them."""
 
     place: int
     index: Local
@@ -587,9 +592,9 @@ class Reset:
 
 
 Stmt = (
-    Let | Declare | Assign | Fill | SetGlobal | Do | If | While | ForList | ForCount | Return | SelfCall | Raise | ClearError | Note
-    | ForTokens | ForValues | Bind | Unless | UnlessLegal | UnlessAvailable | UnlessEmpty | Wanted | Yield
-    | Take | TakeAll | Put | PutAll | Reset
+    Let | Declare | Assign | Fill | SetGlobal | Do | If | While | ForList | ForCount | Return | SelfCall |
+    Raise | ClearError | Note | ForTokens | ForValues | Bind | Unless | UnlessLegal | UnlessAvailable |
+    UnlessEmpty | Wanted | Yield | Take | TakeAll | Put | PutAll | Reset
 )  # fmt: skip
 
 # --- the net -----------------------------------------------------------------------------------

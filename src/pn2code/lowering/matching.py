@@ -1,7 +1,7 @@
 """Patterns -> a condition and the values of the variables.
 
-Example: matching `(x, 3)` against the struct `p` gives the condition `p.2 = 3` and x = `p.1`. The conditions are in an order in
-which each is safe once those before it hold, and so are the values once all hold.
+Example: matching `(x, 3)` against the struct `p` gives the condition `p.2 = 3` and x = `p.1`. The conditions
+are in an order in which each is safe once those before it hold, and so are the values once all hold.
 """
 
 from __future__ import annotations

@@ -1,12 +1,15 @@
-"""`Partition` -> `NetIR`: places, initial marking, and for each transition how to enumerate its bindings and how to fire.
+"""`Partition` -> `NetIR`: places, initial marking, and for each transition how to enumerate its bindings and
+how to fire.
 
-`lower(partition, storage, d)`; what cannot be compiled is one diagnostic `unsupported-...` per net element, and then there is
-no `NetIR`.
+`lower(partition, storage, d)`; what cannot be compiled is one diagnostic `unsupported-...` per net element,
+and then there is no `NetIR`.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
+from dataclasses import replace
+from functools import partial
 from typing import TypeVar
 
 from pn2code.cell.partition import Partition
@@ -15,18 +18,20 @@ from pn2code.lowering import ir
 from pn2code.lowering.builtins import Builtins
 from pn2code.lowering.codes import STORAGE_COLSET, UNSUPPORTED_EXPRESSION, UnsupportedError
 from pn2code.lowering.expressions import Body
-from pn2code.lowering.functions import Program
+from pn2code.lowering.functions import Program, ir_nodes
 from pn2code.lowering.inscriptions import Putter
 from pn2code.lowering.transitions import lower_transition
 from pn2code.lowering.types import Types
 from pn2code.ml import core
 from pn2code.ml.colsets import Colset, Kind
 from pn2code.ml.types import BOOL
-from pn2code.net.flat import FlatNet, FlatPlace
+from pn2code.net.flat import FlatNet, FlatPlace, FlatTransition
 
 T = TypeVar("T")
 
 DEFAULT_CAPACITY = 64
+MOST_CAPACITY = 4096
+UNKNOWN_ENTRIES = 128
 
 
 def lower(
@@ -42,8 +47,9 @@ def lower(
     Args:
         partition: the typed net and its owners.
         storage: colour set -> "float32", from cell.toml.
-        capacity: by place name (full or short), how many entries (distinct colours; timed: with distinct stamps) it has room
-            for; `DEFAULT_CAPACITY` for all others.
+        capacity: by place name (full or short), how many entries (distinct colours; timed: with distinct
+        stamps) it has room
+            for; all others see `_Lowering._room`.
         digest: SHA-256 of the net and of what the cell contributes; the net's own by default.
     """
     return _Lowering(partition, storage, d, capacity or {}, digest).run()
@@ -71,17 +77,17 @@ class _Lowering:
 
     def run(self) -> ir.NetIR | None:
         self._check_storage()
-        places = [self._guarded(p.origins[0], lambda p=p: self._place(p)) for p in self._net.places]  # type: ignore[misc]
-        transitions = []
+        places = [self._guarded(p.origins[0], partial(self._place, p)) for p in self._net.places]
+        transitions: list[ir.Transition | None] = []
         if not self._failed:
             transitions = [
-                self._guarded(t.origin, lambda t=t: lower_transition(self._program, self._net, t, self._partition.transition_owner[t.index]))  # type: ignore[misc]
-                for t in self._net.transitions
+                self._guarded(t.origin, partial(self._transition, t)) for t in self._net.transitions
             ]
         members = self._members()
         functions = self._guarded(Origin(self._net.file), self._program.finish) or ()
         if self._failed:
             return None
+        room = self._room([p for p in places if p is not None])
         order = sorted(
             range(len(transitions)), key=lambda i: (self._net.transitions[i].priority, i)
         )
@@ -96,7 +102,7 @@ class _Lowering:
             descriptors=tuple(self._types.descriptors.values()),
             globals=self._program.globals(),
             functions=(*functions, *members),
-            places=tuple(p for p in places if p is not None),
+            places=tuple(replace(p, capacity=p.capacity or room) for p in places if p is not None),
             transitions=tuple(t for t in transitions if t is not None),
             owners=tuple(o.name for o in self._partition.owners),
             order=tuple(order),
@@ -118,12 +124,21 @@ class _Lowering:
             if colset is None or colset.resolved.kind is not Kind.REAL or form != "float32":
                 self._d.error(
                     STORAGE_COLSET,
-                    f"`[storage]` says `{name} = \"{form}\"`, but "
-                    + ("there is no such colour set" if colset is None else "that is not a real colour set stored as float32"),
+                    f'`[storage]` says `{name} = "{form}"`, but '
+                    + (
+                        "there is no such colour set"
+                        if colset is None
+                        else "that is not a real colour set stored as float32"
+                    ),
                     colset.origin if colset is not None else Origin(self._net.file),
                     hint="name a colour set of kind real, and `float32`",
                 )
                 self._failed = True
+
+    def _transition(self, t: FlatTransition) -> ir.Transition:
+        return lower_transition(
+            self._program, self._net, t, self._partition.transition_owner[t.index]
+        )
 
     def _place(self, place: FlatPlace) -> ir.Place:
         self._types.lower(place.colset.type, place.colset.origin)
@@ -146,11 +161,28 @@ class _Lowering:
             type=self._types.lower(place.colset.type),
             table=table,
             timed=place.colset.timed,
-            capacity=self._capacity.get(place.name, self._capacity.get(place.short, DEFAULT_CAPACITY)),
+            capacity=self._capacity.get(place.name, self._capacity.get(place.short, 0)),
             initial=tuple(body.statements),
             initial_text=text,
             early=self._early(place),
         )
+
+    def _room(self, places: list[ir.Place]) -> int:
+        """Entries for each place that nothing is declared for: twice what the initial markings hold together,
+        since tokens gather where they like, but at least `DEFAULT_CAPACITY` and at most `MOST_CAPACITY`."""
+        entries = 0
+        for place in places:
+            for node in ir_nodes(place.initial):
+                if isinstance(node, ir.Put):
+                    entries += 1
+                elif isinstance(node, ir.PutAll):
+                    entries += self._entries(node.multiset)
+        return min(max(2 * entries, DEFAULT_CAPACITY), MOST_CAPACITY)
+
+    def _entries(self, multiset: ir.Ir) -> int:
+        if isinstance(multiset, ir.Op) and multiset.name == "Colset.all":
+            return self._types.count(multiset.table)
+        return UNKNOWN_ENTRIES
 
     def _early(self, place: FlatPlace) -> tuple[int | float, ...]:
         """The delays of input arcs from a place; they must be constants, since they decide when time goes on."""
@@ -176,7 +208,7 @@ class _Lowering:
         """The functions that decide membership of subsets."""
         made: list[ir.Function] = []
         for key, colset in self._types.subsets:
-            function = self._guarded(colset.origin, lambda k=key, c=colset: self._member(k, c))  # type: ignore[misc]
+            function = self._guarded(colset.origin, partial(self._member, key, colset))
             if function is not None:
                 made.append(function)
         return tuple(made)
@@ -187,13 +219,13 @@ class _Lowering:
         body = Body(self._program)
         if colset.predicate is not None:
             predicate = body.exp(colset.predicate, {})
-            result = body.code(
-                body.apply(predicate, ir.Use(value), BOOL, colset.predicate.span)
-            )
+            result = body.code(body.apply(predicate, ir.Use(value), BOOL, colset.predicate.span))
         else:
             assert colset.members is not None
             members = body.ir(colset.members, {})
-            result = ir.Op("List.mem", (members, ir.Use(value)), ir.BOOL, self._types.plain(members.type))
+            result = ir.Op(
+                "List.mem", (members, ir.Use(value)), ir.BOOL, self._types.plain(members.type)
+            )
         body.emit(ir.Return(result))
         source = colset.predicate or colset.members
         assert source is not None

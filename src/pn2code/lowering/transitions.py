@@ -1,8 +1,8 @@
 """One transition as two programs: enumerate its enabled bindings, fire one of them.
 
-Enumeration follows the binding plan of the front end; each guard and each demand on a place is tested as soon as the variables
-it needs are bound. A place with a single summand of coefficient 1 needs no test beyond the loop that found the token; all
-others are tested together (`Wanted`).
+Enumeration follows the binding plan of the front end; each guard and each demand on a place is tested as soon
+as the variables it needs are bound. A place with a single summand of coefficient 1 needs no test beyond the
+loop that found the token; all others are tested together (`Wanted`).
 """
 
 from __future__ import annotations
@@ -10,7 +10,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from pn2code.lowering import ir
-from pn2code.lowering.builtins import components, equal
+from pn2code.lowering.builtins import components, equal, subset_values
+from pn2code.lowering.codes import UNSUPPORTED_COLSET, UnsupportedError
 from pn2code.lowering.expressions import Body
 from pn2code.lowering.functions import Program
 from pn2code.lowering.inscriptions import Putter, plus
@@ -19,6 +20,7 @@ from pn2code.lowering.matching import conjunction
 from pn2code.lowering.values import Binding, Env, free_variables
 from pn2code.ml import core
 from pn2code.ml.core import Symbol
+from pn2code.ml.types import list_of
 from pn2code.net.flat import (
     ArcKind,
     BindAll,
@@ -35,13 +37,13 @@ _TAKING = (ArcKind.INPUT, ArcKind.BOTH)
 _PUTTING = (ArcKind.OUTPUT, ArcKind.BOTH)
 
 
-def lower_transition(program: Program, net: FlatNet, t: FlatTransition, owner: int) -> ir.Transition:
+def lower_transition(
+    program: Program, net: FlatNet, t: FlatTransition, owner: int
+) -> ir.Transition:
     """Lower one transition instance."""
     outputs = set(t.code.outputs) if t.code else set()
     variables = tuple(
-        ir.Variable(
-            s.name, program.types.lower(s.type), _table(program, s), s in outputs
-        )
+        ir.Variable(s.name, program.types.lower(s.type), _table(program, s), s in outputs)
         for s in t.variables
     )
     return ir.Transition(
@@ -69,7 +71,9 @@ def clock(program: Program) -> ir.IrType:
     return ir.REAL if program.real_time else ir.INT
 
 
-def _limit(program: Program, body: Body, delay: core.Exp | None, env: Env, timed: bool) -> Ir | None:
+def _limit(
+    program: Program, body: Body, delay: core.Exp | None, env: Env, timed: bool
+) -> Ir | None:
     """The latest stamp that a term of an input arc accepts."""
     if not timed:
         return None
@@ -85,7 +89,12 @@ def as_time(program: Program, code: Ir) -> Ir:
 
 
 def take_terms(
-    program: Program, net: FlatNet, body: Body, arc: FlatArc, env: Env, terms: list[Term] | None = None
+    program: Program,
+    net: FlatNet,
+    body: Body,
+    arc: FlatArc,
+    env: Env,
+    terms: list[Term] | None = None,
 ) -> None:
     """Emit what an arc takes (all its terms, or some)."""
     assert arc.inscription is not None
@@ -190,13 +199,33 @@ class _Enumeration:
             case BindAll(symbol=symbol) | BindRandom(symbol=symbol):
                 index = self._index[symbol.uid]
                 note = f"{symbol.name} over all of {symbol.colset.name if symbol.colset else symbol.type}"
-                with self._body.block() as statements:
-                    self._bound.add(symbol.uid)
-                    self._restrict(symbol)
-                    self._ready()
-                    self._step(position + 1)
-                table = self._variables[index].table
-                self._body.emit(ir.ForValues(index, table, tuple(statements), note))
+                self._bind_all(symbol, index, note, position)
+
+    def _bind_all(self, symbol: Symbol, index: int, note: str, position: int) -> None:
+        """Loop over a small colour set; a subset is filtered from its base, or made into a list first."""
+        table = self._variables[index].table
+        types = self._program.types
+        d = types.descriptors[table]
+        with self._body.block() as statements:
+            self._bound.add(symbol.uid)
+            self._restrict(symbol)
+            self._ready()
+            self._step(position + 1)
+        if types.is_small(table):
+            self._body.emit(ir.ForValues(index, table, tuple(statements), note))
+            return
+        if not d.member or symbol.colset is None:
+            raise UnsupportedError(
+                UNSUPPORTED_COLSET,
+                f"the values of `{symbol.name}` cannot be counted",
+                self._t.origin,
+            )
+        self._body.emit(ir.Note(note))
+        values_type = types.lower(list_of(symbol.type))
+        values = subset_values(self._body, symbol.colset, values_type, self._t.origin)
+        cell = self._body.local("cell", values_type)
+        head = ir.Bind(index, ir.Head(ir.Use(cell), d.type))
+        self._body.emit(ir.ForList(cell, values, (head, *statements)))
 
     def _bind_term(self, step: BindTerm, position: int) -> None:
         arc = self._t.arcs[step.arc]

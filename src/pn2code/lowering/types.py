@@ -1,11 +1,12 @@
 """ML types and colour sets -> C representations (`IrType`, definitions) and runtime tables (`Descriptor`).
 
-Two colour sets with the same ML type share one C type, named after the first of them, and have a table each: their order of
-components, their ranges and their storage may differ.
+Two colour sets with the same ML type share one C type, named after the first of them, and have a table each:
+their order of components, their ranges and their storage may differ.
 """
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from dataclasses import replace
 
@@ -110,9 +111,7 @@ class Types:
             case TCon(name="timed", args=(value,)):
                 inner = self.lower(value, at)
                 name = self._fresh(f"timed_{inner}")
-                self._definitions[name] = ir.StructDef(
-                    name, (("value", inner), ("stamp", ir.TIME))
-                )
+                self._definitions[name] = ir.StructDef(name, (("value", inner), ("stamp", ir.TIME)))
                 return IrType(Rep.STRUCT, name)
             case TCon(name=name) if name in self._program.datatypes:
                 return self._datatype(t, at)
@@ -120,9 +119,13 @@ class Types:
                 # Nothing in the program decides the type (`length []`): any will do.
                 return ir.UNIT
             case TFun():
-                raise UnsupportedError(UNSUPPORTED_TYPE, f"a value of type `{t}` cannot be stored", at)
+                raise UnsupportedError(
+                    UNSUPPORTED_TYPE, f"a value of type `{t}` cannot be stored", at
+                )
             case TCon():
-                raise UnsupportedError(UNSUPPORTED_TYPE, f"values of type `{t}` are not supported", at)
+                raise UnsupportedError(
+                    UNSUPPORTED_TYPE, f"values of type `{t}` are not supported", at
+                )
 
     def _named(self, t: Type) -> str:
         colset = self._colset_of_type.get(t)
@@ -175,6 +178,13 @@ class Types:
         self._active.pop()
         self._definitions[name] = ir.UnionDef(name, tuple(constructors))
         return made
+
+    def list_of(self, element: IrType) -> IrType:
+        """The list type with elements of this representation, which some ML type must have."""
+        for definition in self._definitions.values():
+            if isinstance(definition, ir.ListDef) and definition.element == element:
+                return IrType(Rep.LIST, definition.name)
+        raise KeyError(f"no list of {element}")
 
     def definition(self, t: IrType) -> Definition:
         """The definition of a type that has one."""
@@ -312,6 +322,38 @@ class Types:
                 pairs = zip(colset.names, colset.components, strict=True)
                 made = replace(made, fields=tuple((c, self._part(a)) for c, a in pairs))
         return made
+
+    def has_subset(self, key: str) -> bool:
+        """Whether the values cannot be counted from the table alone."""
+        d = self.descriptors[key]
+        parts = [part for _, part in d.fields if part]
+        return bool(d.member) or any(part != key and self.has_subset(part) for part in parts)
+
+    def is_small(self, key: str) -> bool:
+        """Whether the runtime can count the values: bounded, without subsets."""
+        d = self.descriptors[key]
+        if d.member or d.type.rep in (Rep.REAL, Rep.STRING, Rep.LIST):
+            return False
+        if d.type.rep is Rep.INT:
+            return d.low is not None and d.high is not None
+        return all(self.is_small(part) for _, part in d.fields if part)
+
+    def count(self, key: str) -> int:
+        """The number of values of a small table."""
+        d = self.descriptors[key]
+        match d.type.rep:
+            case Rep.INT:
+                return int(d.high or 0) - int(d.low or 0) + 1
+            case Rep.BOOL:
+                return 2
+            case Rep.ENUM:
+                return len(d.names)
+            case Rep.STRUCT:
+                return math.prod(self.count(part) for _, part in d.fields)
+            case Rep.UNION:
+                return sum(self.count(part) if part else 1 for _, part in d.fields)
+            case _:
+                return 1
 
     def is_restricted(self, key: str) -> bool:
         """Whether the table excludes values of its type."""

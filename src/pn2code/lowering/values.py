@@ -1,8 +1,8 @@
 """What an expression is at compile time: C code, or something that is known before there is any C.
 
-Functions are never values of the C program: they are followed at compile time to the place where they are applied. A function
-that is passed to another makes a specialised copy of that other; what it captures becomes further parameters of the copy
-(`capture`). Tuples and records stay apart (`RecordVal`) until one C value is needed.
+Functions are never values of the C program: they are followed at compile time to the place where they are
+applied. A function that is passed to another makes a specialised copy of that other; what it captures becomes
+further parameters of the copy (`capture`). Tuples and records stay apart (`RecordVal`) until one C value is needed.
 """
 
 from __future__ import annotations
@@ -33,7 +33,8 @@ class Closure:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class NamedFunction:
-    """A function of a `fun` group; applied, it becomes a call of a C function. `env`: what the group sees outside itself."""
+    """A function of a `fun` group; applied, it becomes a call of a C function. `env`: what the group sees
+    outside itself."""
 
     symbol: Symbol
     group: core.RecBind
@@ -235,14 +236,17 @@ Rebuild = Callable[[list[Ir]], Binding]
 
 @dataclass(frozen=True, slots=True)
 class Captured:
-    """A compile-time value taken apart: `key` says what it is, `code` what C values are in it, `rebuild` undoes it."""
+    """A compile-time value taken apart: `key` says what it is, `code` what C values are in it, `rebuild`
+    undoes it."""
 
     key: Hashable
     code: tuple[Ir, ...]
     rebuild: Rebuild
 
 
-def _all(parts: list[Captured], key: Hashable, make: Callable[[list[Binding]], Binding]) -> Captured:
+def _all(
+    parts: list[Captured], key: Hashable, make: Callable[[list[Binding]], Binding]
+) -> Captured:
     def rebuild(code: list[Ir]) -> Binding:
         values, at = [], 0
         for part in parts:

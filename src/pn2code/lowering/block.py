@@ -1,0 +1,176 @@
+"""A block of IR statements in the making: locals, temporaries, and the forms in which values are used."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from contextlib import contextmanager
+
+from pn2code.diagnostics import Span
+from pn2code.lowering import ir
+from pn2code.lowering.codes import LITERAL_RANGE, UNSUPPORTED_FUNCTION_VALUE, UnsupportedError
+from pn2code.lowering.functions import Program
+from pn2code.lowering.ir import Ir, IrType, Local, Rep, Stmt
+from pn2code.lowering.matching import Matcher, TypeSource
+from pn2code.lowering.types import substitute
+from pn2code.lowering.values import (
+    FUNCTIONS,
+    RecordVal,
+    Reference,
+    TypeEnv,
+    Val,
+    has_function,
+    is_atomic,
+    is_static,
+)
+from pn2code.ml.core import Symbol
+from pn2code.ml.types import INT, Type
+
+_INT_RANGE = (-(2**30), 2**30 - 1)
+_INTINF_RANGE = (-(2**63) + 1, 2**63 - 1)
+UNIT_VALUE = ir.Const(None, ir.UNIT)
+
+
+class Block(TypeSource):
+    """Statements in the making, and the locals they declare."""
+
+    def __init__(self, program: Program, types: TypeEnv | None = None, key: str = "") -> None:
+        self.program = program
+        self.types: TypeEnv = types or {}
+        self.key = key
+        self.statements: list[Stmt] = []
+        self._locals = 0
+        self._inlined: list[int] = []
+        self._matcher = Matcher(self)
+        self.has_self_call = False
+
+    # --- small services ------------------------------------------------------------------------
+
+    def local(self, hint: str, t: IrType) -> Local:
+        """A fresh local."""
+        self._locals += 1
+        return Local(self._locals, hint, t)
+
+    def emit(self, statement: Stmt) -> None:
+        """Append to the present block."""
+        self.statements.append(statement)
+
+    @contextmanager
+    def block(self) -> Iterator[list[Stmt]]:
+        """A fresh block of statements; the present one comes back afterwards."""
+        outer, self.statements = self.statements, []
+        try:
+            yield self.statements
+        finally:
+            self.statements = outer
+
+    def type_of(self, t: Type) -> Type:
+        """The type with the variables of the surrounding schemes replaced."""
+        return substitute(t, self.types)
+
+    def representation(self, t: Type) -> IrType:
+        """See `TypeSource`."""
+        return self.program.types.lower(self.type_of(t))
+
+    def list_type(self, element: IrType) -> IrType:
+        """The list type with these elements."""
+        return self.program.types.list_of(element)
+
+    def element(self, t: IrType) -> IrType:
+        """See `TypeSource`."""
+        definition = self.program.types.definition(t)
+        assert isinstance(definition, ir.ListDef)
+        return definition.element
+
+    def zero(self, t: IrType) -> Ir:
+        """A harmless value, after an error."""
+        return ir.Op("zero", (), t)
+
+    def literal(self, value: int | float | str, t: Type, span: Span) -> ir.Const:
+        """See `TypeSource`."""
+        rep = self.representation(t)
+        if rep.rep is Rep.CHAR:
+            return ir.Const(ord(str(value)), rep)
+        if rep.rep is Rep.INT:
+            low, high = _INT_RANGE if self.type_of(t) == INT else _INTINF_RANGE
+            if not low <= int(value) <= high:
+                raise UnsupportedError(
+                    LITERAL_RANGE, f"the literal {value} is out of the range of `{t}`", span
+                )
+        return ir.Const(value, rep)
+
+    def code(self, value: Val, at: Span | None = None) -> Ir:
+        """A value as C code; records are put together."""
+        if isinstance(value, RecordVal):
+            if has_function(value):
+                self._refuse_function(at)
+            t = self.representation(value.type)
+            if t.rep is Rep.UNIT:
+                return UNIT_VALUE
+            definition = self.program.types.definition(t)
+            assert isinstance(definition, ir.StructDef)
+            parts = {label: self.code(v, at) for label, v in value.fields.items()}
+            return ir.MakeStruct(t, tuple((label, parts[label]) for label, _ in definition.fields))
+        if is_static(value):
+            self._refuse_function(at)
+        assert not isinstance(value, (*FUNCTIONS, Reference))
+        return value
+
+    def _refuse_function(self, at: Span | None) -> None:
+        raise UnsupportedError(
+            UNSUPPORTED_FUNCTION_VALUE,
+            "a function or reference is used as a value here",
+            at or self.program.position,
+            hint="pass it directly to the function that uses it",
+        )
+
+    def atomic(self, value: Ir, hint: str) -> Ir:
+        """The value in a form that may be used several times."""
+        if is_atomic(value):
+            return value
+        local = self.local(hint, value.type)
+        self.emit(ir.Let(local, value))
+        return ir.Use(local)
+
+    def addressable(self, value: Ir, hint: str) -> Ir:
+        """The value in a form whose address can be taken in C: a struct that a function returns gets a name."""
+        is_struct = value.type.rep in (Rep.STRUCT, Rep.UNION)
+        if is_struct and not isinstance(value, ir.MakeStruct | ir.MakeUnion):
+            return self.atomic(value, hint)
+        return value
+
+    def settle(self, value: Val, hint: str) -> Val:
+        """The same for a value of any kind; records stay apart."""
+        if isinstance(value, RecordVal):
+            fields = {
+                k: self.settle(v, f"{hint}_{k}" if k.isdigit() else k)
+                for k, v in value.fields.items()
+            }
+            return RecordVal(fields, value.type)
+        if is_static(value):
+            return value
+        return self.atomic(self.code(value), hint)
+
+    def select(self, value: Val, label: str, t: Type) -> Val:
+        """See `TypeSource`."""
+        if isinstance(value, RecordVal):
+            return value.fields[label]
+        code = self.code(value)
+        return ir.Member(code, label, self.representation(t))
+
+    def spill(self, value: Ir, hint: str) -> Ir:
+        """The value computed now."""
+        if value.type == ir.UNIT:
+            self.emit(ir.Do(value))
+            return UNIT_VALUE
+        local = self.local(hint, value.type)
+        self.emit(ir.Let(local, value))
+        return ir.Use(local)
+
+    def bind(self, symbol: Symbol, value: Val) -> Val:
+        """The value of a variable that may be used any number of times, under its name."""
+        if isinstance(value, RecordVal) and not has_function(value):
+            value = self.code(value)
+        if isinstance(value, ir.Member | ir.Head | ir.Tail | ir.Argument):
+            # A part of something gets the name it has in the pattern.
+            return self.spill(value, symbol.name)
+        return self.settle(value, symbol.name)
