@@ -1,9 +1,8 @@
 """XML, read without trust: bytes in, a tree of `Node`s with exact positions out.
 
-Two parsers see the same bytes. First `xml.parsers.expat` walks through: it refuses entities,
-excessive depth and excessive numbers of elements before anything is built, and notes line and
-column of every element and of every run of characters (lxml knows only an element's line). Then
-lxml builds the tree, with DTD loading, network access and entity resolution switched off.
+`xml.parsers.expat` walks through once: entities are refused where they are declared, before any can be used, as are
+excessive depth and excessive numbers of elements; nothing outside the bytes is ever opened. Line and column of every
+element and of every run of characters are kept.
 
 Example: `<text>1`x &lt; 2</text>` at line 3, column 1 gives a node with text ``1`x < 2`` whose
 `source` knows that `<` stands at column 11 and ` 2` at column 15.
@@ -15,8 +14,6 @@ import stat
 from dataclasses import dataclass, field
 from pathlib import Path
 from xml.parsers import expat
-
-from lxml import etree
 
 from pn2code.diagnostics import Diagnostics, Origin, SourceText
 from pn2code.reading.codes import (
@@ -30,10 +27,8 @@ from pn2code.reading.codes import (
 )
 
 MAX_BYTES = 100 * 1024 * 1024
-MAX_DEPTH = 200  # below libxml2's own limit of 256
+MAX_DEPTH = 200
 MAX_ELEMENTS = 2_000_000
-
-Marks = tuple[tuple[int, int, int], ...]
 
 
 @dataclass(slots=True)
@@ -44,7 +39,7 @@ class Node:
         tag: its name.
         attributes: as written.
         children: elements in order.
-        text: all characters directly inside, those around children joined.
+        text: all characters directly inside, those around children joined; not white space at the beginning.
         line, column: of its `<`.
         marks: positions of `text`, as in `SourceText`.
     """
@@ -54,7 +49,7 @@ class Node:
     line: int
     column: int
     text: str = ""
-    marks: Marks = ()
+    marks: list[tuple[int, int, int]] = field(default_factory=list)
     children: list[Node] = field(default_factory=list)
 
     def child(self, tag: str) -> Node | None:
@@ -79,7 +74,7 @@ class Node:
         """The text without surrounding white space, its origin being `base` moved to the first character."""
         text = self.text
         start = len(text) - len(text.lstrip())
-        whole = SourceText(text, self.at(base), self.marks)
+        whole = SourceText(text, self.at(base), tuple(self.marks))
         line, column = whole.position(start)
         origin = Origin(
             base.file, line, column, base.page, base.element, base.element_id, base.part
@@ -123,89 +118,34 @@ def parse(data: bytes, file: str, d: Diagnostics) -> Node | None:
     if not data.strip():
         d.error(XML_TRUNCATED, "the file is empty", Origin(file), hint="save the net again")
         return None
-    places = _Surveyor(file, d).survey(data)
-    if places is None:
-        return None
-    parser = etree.XMLParser(
-        resolve_entities=False,
-        no_network=True,
-        load_dtd=False,
-        dtd_validation=False,
-        attribute_defaults=False,
-        huge_tree=False,
-        remove_comments=True,
-        remove_pis=True,
-        recover=False,
-    )
-    try:
-        root = etree.fromstring(data, parser)
-    except etree.XMLSyntaxError as e:
-        line, column = e.position
-        d.error(XML_SYNTAX, f"not well-formed XML: {_lower(e.msg)}", Origin(file, line, column))
-        return None
-    return _build(root, places)
+    return _Reader(file, d).read(data)
 
 
-def _lower(message: str | None) -> str:
-    text = (message or "syntax error").strip().rstrip(".")
+def _lower(message: str) -> str:
+    text = message.strip().rstrip(".")
     return text[:1].lower() + text[1:]
 
 
-def _build(root: etree._Element, places: list[_Place]) -> Node:
-    """The `Node` tree of an lxml tree; `places` is in document order, as is `root.iter()`."""
-    nodes: list[Node] = []
-    top = _node(root, places[0])
-    stack = [(root, top)]
-    nodes.append(top)
-    index = 1
-    # Depth first with an explicit stack of iterators keeps document order without recursion.
-    iterators = [iter(root)]
-    while stack:
-        element = next(iterators[-1], None)
-        if element is None:
-            stack.pop()
-            iterators.pop()
-            continue
-        node = _node(element, places[index])
-        index += 1
-        stack[-1][1].children.append(node)
-        stack.append((element, node))
-        iterators.append(iter(element))
-    return top
-
-
-def _node(element: etree._Element, place: _Place) -> Node:
-    text = (element.text or "") + "".join(child.tail or "" for child in element)
-    tag = element.tag
-    attributes = {str(k): str(v) for k, v in element.attrib.items()}
-    return Node(str(tag), attributes, place.line, place.column, text, tuple(place.marks))
-
-
-@dataclass(slots=True)
-class _Place:
-    """Where an element stands, and marks of its direct text; the rest is the state of the survey."""
-
-    line: int
-    column: int
-    marks: list[tuple[int, int, int]] = field(default_factory=list)
-    length: int = 0
-    expected: tuple[int, int] = (0, 0)
-
-
 class _RefusedError(Exception):
-    """Ends a survey; the diagnostic has been reported."""
+    """Ends the reading; the diagnostic has been reported."""
 
 
-class _Surveyor:
-    """The first pass: positions, and refusal of what is hostile."""
+class _Reader:
+    """Builds the tree while expat walks through, and refuses what is hostile."""
 
     def __init__(self, file: str, d: Diagnostics) -> None:
         self.file = file
         self.d = d
-        self.places: list[_Place] = []
-        self.open: list[_Place] = []
-        self.tags: list[str] = []
-        self.parser = expat.ParserCreate()
+        self.top: Node | None = None
+        self.open: list[Node] = []
+        self.number = 0
+        self.expected = (
+            0,
+            0,
+            0,
+        )  # where the text of the innermost element would go on: offset, line, column
+        self.parser = expat.ParserCreate(namespace_separator="}")
+        self.parser.specified_attributes = True
         self.parser.SetParamEntityParsing(expat.XML_PARAM_ENTITY_PARSING_NEVER)
         self.parser.StartElementHandler = self._start
         self.parser.EndElementHandler = self._end
@@ -214,7 +154,7 @@ class _Surveyor:
         self.parser.SkippedEntityHandler = self._skipped_entity
         self.parser.ExternalEntityRefHandler = self._external_entity
 
-    def survey(self, data: bytes) -> list[_Place] | None:
+    def read(self, data: bytes) -> Node | None:
         try:
             self.parser.Parse(data, True)
         except _RefusedError:
@@ -226,7 +166,7 @@ class _Surveyor:
             # pyexpat asks Python for encodings that expat does not know.
             self.d.error(XML_SYNTAX, f"unknown character encoding: {_lower(str(e))}", self._here())
             return None
-        return self.places
+        return self.top
 
     def _here(self) -> Origin:
         return Origin(self.file, self.parser.CurrentLineNumber, self.parser.CurrentColumnNumber + 1)
@@ -239,15 +179,13 @@ class _Surveyor:
             expat.errors.codes[expat.errors.XML_ERROR_PARTIAL_CHAR],
             expat.errors.codes[expat.errors.XML_ERROR_UNCLOSED_CDATA_SECTION],
         }
-        if code in ends and self.places:
-            inside = f" inside element `{self.tags[-1]}`" if self.tags else ""
+        if code in ends and self.top is not None:
+            inside = f" inside element `{self.open[-1].tag}`" if self.open else ""
             self.d.error(
                 XML_TRUNCATED,
                 f"the file ends too early,{inside or ' in the middle of an element'}",
                 origin,
-                notes=[f"element `{self.tags[-1]}` begins on line {self.open[-1].line}"]
-                if self.tags
-                else [],
+                notes=[f"element `{e.tag}` begins on line {e.line}" for e in self.open[-1:]],
                 hint="the file was cut off: save or copy the net again",
             )
             return
@@ -262,28 +200,38 @@ class _Surveyor:
             hint="a .cpn file is XML: is this a net saved by CPN Tools?",
         )
 
-    def _start(self, tag: str, _attributes: dict[str, str]) -> None:
+    def _start(self, tag: str, attributes: dict[str, str]) -> None:
         if len(self.open) >= MAX_DEPTH:
             self._refuse(XML_LIMIT, f"elements are nested more than {MAX_DEPTH} levels deep")
-        if len(self.places) >= MAX_ELEMENTS:
+        self.number += 1
+        if self.number > MAX_ELEMENTS:
             self._refuse(XML_LIMIT, f"there are more than {MAX_ELEMENTS:,} elements")
-        place = _Place(self.parser.CurrentLineNumber, self.parser.CurrentColumnNumber + 1)
-        self.places.append(place)
-        self.open.append(place)
-        self.tags.append(tag)
+        parser = self.parser
+        node = Node(tag, attributes, parser.CurrentLineNumber, parser.CurrentColumnNumber + 1)
+        if self.open:
+            self.open[-1].children.append(node)
+        else:
+            self.top = node
+        self.open.append(node)
 
     def _end(self, _tag: str) -> None:
         self.open.pop()
-        self.tags.pop()
+        self.expected = (0, 0, 0)
 
     def _characters(self, text: str) -> None:
-        place = self.open[-1]
+        node = self.open[-1]
+        if not node.text and text.isspace():
+            return  # most elements hold other elements only, with line ends and indentation between
         line, column = self.parser.CurrentLineNumber, self.parser.CurrentColumnNumber + 1
-        if (line, column) != place.expected:
-            place.marks.append((place.length, line, column))
-        place.length += len(text)
+        offset = len(node.text)
+        if (offset, line, column) != self.expected:
+            node.marks.append((offset, line, column))
+        node.text += text
+        offset += len(text)
         # expat gives each line end as a chunk of its own
-        place.expected = (line + 1, 1) if text == "\n" else (line, column + len(text))
+        self.expected = (
+            (offset, line + 1, 1) if text == "\n" else (offset, line, column + len(text))
+        )
 
     def _entity_declaration(
         self,
