@@ -12,10 +12,11 @@ One transition with guard `[n > 0]`, input arc ``1`n`` and output arc ``1`(n - 1
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import field
 from enum import Enum
 
 from pn2code.diagnostics import NOWHERE, Origin
+from pn2code.frozen import frozen
 
 # --- types -------------------------------------------------------------------------------------
 
@@ -36,7 +37,7 @@ class Rep(Enum):
     UNION = "union"
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class IrType:
     """A type; `name` is the key of its definition (ENUM, STRUCT, LIST, UNION), "" otherwise."""
 
@@ -58,7 +59,7 @@ TIME = IrType(Rep.TIME)
 """A time stamp in a token (`pn_time_t`); expressions compute with INT or REAL."""
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class EnumDef:
     """An enumeration: its constructors in order."""
 
@@ -66,7 +67,7 @@ class EnumDef:
     constructors: tuple[str, ...]
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class StructDef:
     """A record or tuple: fields in the order of the first colour set that has this type."""
 
@@ -74,7 +75,7 @@ class StructDef:
     fields: tuple[tuple[str, IrType], ...]
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class ListDef:
     """A list: cells of this element."""
 
@@ -82,7 +83,7 @@ class ListDef:
     element: IrType
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class UnionDef:
     """A data type with arguments: (constructor, argument type or None, whether the argument is behind a pointer)."""
 
@@ -93,7 +94,7 @@ class UnionDef:
 Definition = EnumDef | StructDef | ListDef | UnionDef
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Descriptor:
     """A colour set, or a type without one, as the runtime's table.
 
@@ -129,7 +130,7 @@ class Descriptor:
 # --- expressions -------------------------------------------------------------------------------
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Local:
     """A local variable or parameter of one function; `uid` is unique in it, `hint` the ML name."""
 
@@ -138,7 +139,7 @@ class Local:
     type: IrType
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Const:
     """A scalar constant: bool, int, float, str (STRING; CHAR: its code), None (UNIT)."""
 
@@ -146,7 +147,7 @@ class Const:
     type: IrType
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Use:
     """The value of a local."""
 
@@ -158,7 +159,7 @@ class Use:
         return self.local.type
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class GlobalUse:
     """The value of a `val` of the declarations, or the contents of a reference."""
 
@@ -166,7 +167,7 @@ class GlobalUse:
     type: IrType
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Bound:
     """The value of net variable `index` in the transition's binding."""
 
@@ -174,7 +175,7 @@ class Bound:
     type: IrType
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class TokenValue:
     """The value of the token at `index` in the array of a place."""
 
@@ -183,14 +184,14 @@ class TokenValue:
     type: IrType
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Now:
     """Model time as INT or REAL."""
 
     type: IrType
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class FunCall:
     """Call of a function of the net by key."""
 
@@ -199,7 +200,7 @@ class FunCall:
     type: IrType
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Op:
     """A built-in function by its name in `ml.builtins` (or "list.cons" and the like); `table` is the
     descriptor it works on."""
@@ -210,7 +211,7 @@ class Op:
     table: str = ""
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Member:
     """A field of a struct."""
 
@@ -219,7 +220,7 @@ class Member:
     type: IrType
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class MakeStruct:
     """A struct; fields in the order of the definition."""
 
@@ -227,7 +228,7 @@ class MakeStruct:
     fields: tuple[tuple[str, Ir], ...]
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class EnumValue:
     """Constructor number `tag` of an enumeration."""
 
@@ -235,7 +236,7 @@ class EnumValue:
     type: IrType
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class MakeUnion:
     """A value of a data type. A boxed argument is copied into the arena."""
 
@@ -244,7 +245,7 @@ class MakeUnion:
     type: IrType
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class IsTag:
     """Whether an enumeration or union value has this constructor."""
 
@@ -257,7 +258,7 @@ class IsTag:
         return BOOL
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Argument:
     """The argument of a union value whose constructor is known to be `tag`."""
 
@@ -266,7 +267,7 @@ class Argument:
     type: IrType
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Select:
     """`condition ? then : otherwise`."""
 
@@ -276,7 +277,7 @@ class Select:
     type: IrType
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Head:
     """The first element of a list known not to be empty."""
 
@@ -284,7 +285,7 @@ class Head:
     type: IrType
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Tail:
     """All but the first element of a list known not to be empty."""
 
@@ -296,7 +297,7 @@ class Tail:
         return self.list.type
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class IsNil:
     """Whether a list is empty."""
 
@@ -308,7 +309,7 @@ class IsNil:
         return BOOL
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Ok:
     """Whether no error has been raised."""
 
@@ -318,7 +319,7 @@ class Ok:
         return BOOL
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class HasError:
     """Whether the error is the exception of this name; "" stands for any."""
 
@@ -338,7 +339,7 @@ Ir = (
 # --- statements --------------------------------------------------------------------------------
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Let:
     """Declares a local with its value; `mutable` if it is assigned again."""
 
@@ -347,14 +348,14 @@ class Let:
     mutable: bool = False
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Declare:
     """Declares a local that each way on assigns."""
 
     local: Local
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Assign:
     """Assigns a local."""
 
@@ -362,7 +363,7 @@ class Assign:
     value: Ir
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Fill:
     """Lets a function of the runtime put a value of colour set `table` into a declared local."""
 
@@ -372,7 +373,7 @@ class Fill:
     arguments: tuple[Ir, ...]
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class SetGlobal:
     """Assigns a `val` when the net starts, or a reference (`is_reference`: not after an error)."""
 
@@ -381,14 +382,14 @@ class SetGlobal:
     is_reference: bool = False
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Do:
     """Evaluates for the effect."""
 
     value: Ir
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class If:
     """Two ways."""
 
@@ -397,7 +398,7 @@ class If:
     otherwise: tuple[Stmt, ...]
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class While:
     """`while` of ML: `setup` computes the condition anew each time. Stops after an error."""
 
@@ -406,7 +407,7 @@ class While:
     body: tuple[Stmt, ...]
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class ForList:
     """Runs over the cells of a list; `cell` is the current one, a non-empty list. Stops after an error, or
     once `until` is true."""
@@ -417,7 +418,7 @@ class ForList:
     until: Local | None = None
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class ForCount:
     """`local` runs from 0 to `count` - 1. Stops after an error."""
 
@@ -426,33 +427,33 @@ class ForCount:
     body: tuple[Stmt, ...]
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Return:
     """Ends the function; always the last statement on its way. None for a function of type unit."""
 
     value: Ir | None
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class SelfCall:
     """The function calls itself as the last thing it does."""
 
     arguments: tuple[Ir, ...]
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Raise:
     """Raises an exception by name."""
 
     name: str
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class ClearError:
     """The exception has been handled."""
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Note:
     """A comment."""
 
@@ -462,7 +463,7 @@ class Note:
 # Statements of transitions
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class ForTokens:
     """Runs over the distinct values in a place. Timed: only values of which a token is there at `limit` (None:
     decided later)."""
@@ -473,7 +474,7 @@ class ForTokens:
     note: str
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class ForValues:
     """Runs over all values of a small colour set (`table`), bound to variable `variable`."""
 
@@ -483,7 +484,7 @@ class ForValues:
     note: str
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Bind:
     """Gives a net variable its value."""
 
@@ -491,7 +492,7 @@ class Bind:
     value: Ir
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Unless:
     """Goes on with the next candidate unless the condition holds."""
 
@@ -499,7 +500,7 @@ class Unless:
     note: str
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class UnlessLegal:
     """Goes on with the next candidate unless the variable's value is in its colour set `table`."""
 
@@ -507,7 +508,7 @@ class UnlessLegal:
     table: str
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class UnlessAvailable:
     """Goes on unless the value at `index` has a token with a stamp not after `limit` (untimed: None), `count`
     of them."""
@@ -518,7 +519,7 @@ class UnlessAvailable:
     count: int
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class UnlessEmpty:
     """Goes on unless the place of an inhibitor arc has no token that is available now."""
 
@@ -526,19 +527,19 @@ class UnlessEmpty:
     note: str
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Wanted:
     """Goes on unless the marking holds all that `takes` want, together."""
 
     takes: tuple[Stmt, ...]
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Yield:
     """Gives the binding to the host."""
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Take:
     """Takes `count` tokens `value`; `limit`: latest stamp (INT or REAL) in a timed place."""
 
@@ -549,7 +550,7 @@ class Take:
     note: str = ""
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class TakeAll:
     """Takes each element of a multi-set (`table`: descriptor of its list type)."""
 
@@ -560,7 +561,7 @@ class TakeAll:
     note: str = ""
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Put:
     """Puts `count` tokens `value`, stamped `stamp` (INT or REAL) in a timed place."""
 
@@ -571,7 +572,7 @@ class Put:
     note: str = ""
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class PutAll:
     """Puts each element of a multi-set; if `timed`, a timed multi-set with `stamp` as the delay to add."""
 
@@ -583,7 +584,7 @@ class PutAll:
     note: str = ""
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Reset:
     """Empties a place at the end."""
 
@@ -600,7 +601,7 @@ Stmt = (
 # --- the net -----------------------------------------------------------------------------------
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Function:
     """A function of the net at one choice of types and of function arguments.
 
@@ -625,7 +626,7 @@ class Function:
     origin: Origin
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Global:
     """A `val` (`is_reference`: the contents of a `globref`) and how it is computed when the net starts."""
 
@@ -639,7 +640,7 @@ class Global:
     origin: Origin
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Place:
     """A place: its array and its initial marking (`Put`s)."""
 
@@ -658,7 +659,7 @@ class Place:
     """delays of input arcs: tokens may be taken so much before their stamps"""
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Variable:
     """A net variable of a transition; `is_output`: bound by the code segment."""
 
@@ -668,7 +669,7 @@ class Variable:
     is_output: bool
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Transition:
     """A transition as two programs."""
 
@@ -684,7 +685,7 @@ class Transition:
     guard_text: str
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class NetIR:
     """The whole net.
 
