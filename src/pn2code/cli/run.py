@@ -65,6 +65,7 @@ def run(
 
     from pn2code.report import summary as summaries
     from pn2code.report.album import Album
+    from pn2code.robot.backend import BackendUnavailableError
     from pn2code.run.cell import RunOptions, run_cell
     from pn2code.run.engine import Observer
     from pn2code.run.progress import Progress
@@ -72,7 +73,14 @@ def run(
     d = Diagnostics()
     console = Console(highlight=False)
     options = RunOptions(
-        out, layout, input_file, backend.value, parse_values(settings), gui, realtime
+        out=out,
+        layout=layout,
+        input=input_file,
+        backend=backend.value,
+        values=parse_values(settings),
+        gui=gui,
+        realtime=realtime,
+        speed=speed,
     )
     album = Album(out, pictures=pictures, video=video)
     with Progress(console) as progress:
@@ -82,8 +90,13 @@ def run(
             observers.append(album)
         try:
             result = run_cell(cell, options, d, observers)
-        except OutputFolderError as problem:
+        except (OutputFolderError, BackendUnavailableError) as problem:
             typer.echo(f"pn2code: {problem}", err=True)
+            raise typer.Exit(Exit.USAGE) from None
+        except OSError as problem:
+            reason = (problem.strerror or str(problem)).lower()
+            where = f" `{problem.filename}`" if problem.filename else f" `{out}`"
+            typer.echo(f"pn2code: cannot work with{where}: {reason}", err=True)
             raise typer.Exit(Exit.USAGE) from None
         if result is not None and pictures:
             progress.say("drawing charts")
