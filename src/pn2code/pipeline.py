@@ -3,8 +3,8 @@
     read -> link -> check -> flatten -> divide -> lower -> emit
 
 Each stage is a function from one immutable value to the next; it reports into `Diagnostics`, and
-the driver stops between
-stages when there are errors. `generate` is the whole of it; `front` is what every verb starts with.
+the driver stops between stages when there are errors. Every verb starts with `cell.locate` and `net.front`; `generate`
+is the whole of it.
 """
 
 from __future__ import annotations
@@ -17,11 +17,10 @@ from pathlib import Path
 
 import pn2code
 from pn2code.cell.config import CellConfig
-from pn2code.cell.config import load as load_cell
 from pn2code.cell.divide import divide
+from pn2code.cell.locate import locate
 from pn2code.cell.partition import Partition
-from pn2code.diagnostics import Diagnostics, Origin
-from pn2code.diagnostics.codes import register
+from pn2code.diagnostics import Diagnostics
 from pn2code.emission import c as emit_c
 from pn2code.emission import manifest, runtime
 from pn2code.emission import supervisor as emit_supervisor
@@ -29,14 +28,8 @@ from pn2code.emission import tdl as emit_tdl
 from pn2code.emission.output import OutputFile
 from pn2code.lowering import net as lower_net
 from pn2code.lowering import robot as lower_robot
-from pn2code.net import front as net_front
+from pn2code.net import front
 from pn2code.net.flat import FlatNet
-
-CELL_MISSING = register(
-    "file-missing",
-    "a file is missing",
-    "The file or folder given on the command line does not exist.",
-)
 
 
 @dataclass(frozen=True, slots=True)
@@ -56,32 +49,6 @@ class Generated:
     digest: str
 
 
-def locate(
-    path: Path, d: Diagnostics, *, layout: str | None = None
-) -> tuple[Path, CellConfig | None] | None:
-    """The net and the cell that a path means: a `.cpn` file (with a `cell.toml` beside it, or not),
-    a `cell.toml`, a folder with one."""
-    if not path.exists():
-        d.error(CELL_MISSING, f"there is no file or folder `{path}`", Origin(str(path)))
-        return None
-    if path.is_dir() or path.suffix == ".toml":
-        config = load_cell(path, d, layout=layout)
-        return (config.net_path, config) if config else None
-    beside = path.parent / "cell.toml"
-    if not beside.is_file():
-        return path, None
-    config = load_cell(beside, d, layout=layout)
-    if config is None:
-        return None
-    # A cell.toml describes one net; others in the same folder stand for themselves.
-    return (path, config) if config.net_path.resolve() == path.resolve() else (path, None)
-
-
-def front(path: Path, d: Diagnostics, values: Mapping[str, str] | None = None) -> FlatNet | None:
-    """Read, link, check, flatten."""
-    return net_front.load(path, d, values or {})
-
-
 def generate(
     path: Path,
     d: Diagnostics,
@@ -99,7 +66,7 @@ def generate(
     net_path, config = found
     replaced = {**(config.values if config else {}), **(values or {})}
 
-    net = front(net_path, d, replaced)
+    net = front.load(net_path, d, replaced)
     if net is None or d.has_errors:
         return None
     partition = divide(net, config, d)

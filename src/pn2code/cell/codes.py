@@ -68,3 +68,9 @@ UNSUPPORTED_CHANNEL_COLSET = register(
     "Messages are lines of scalars: unit, bool, int, real, string, enumerations, indexes, and products and records of "
     "these. Lists and unions have no fixed length.",
 )
+
+CELL_MISSING = register(
+    "file-missing",
+    "a file is missing",
+    "The file or folder given on the command line does not exist.",
+)

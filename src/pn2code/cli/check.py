@@ -8,11 +8,18 @@ from typing import Annotated
 
 import typer
 
-from pn2code import pipeline
 from pn2code.cell.divide import divide
-from pn2code.cli.generate import SetOption, parse_values
-from pn2code.cli.options import Exit, Format, FormatOption, print_diagnostics
+from pn2code.cell.locate import locate
+from pn2code.cli.options import (
+    Exit,
+    Format,
+    FormatOption,
+    SetOption,
+    parse_values,
+    print_diagnostics,
+)
 from pn2code.diagnostics import Diagnostics, render
+from pn2code.net import front
 from pn2code.net.flat import FlatNet
 
 EPILOG = """Examples:
@@ -35,12 +42,10 @@ def check(
     d = Diagnostics()
     flat: FlatNet | None = None
     where = net
-    found = pipeline.locate(net, d)
+    found = locate(net, d)
     if found is not None:
         where, config = found
-        flat = pipeline.front(
-            where, d, {**(config.values if config else {}), **parse_values(settings)}
-        )
+        flat = front.load(where, d, {**(config.values if config else {}), **parse_values(settings)})
         if flat is not None and config is not None and not d.has_errors:
             divide(flat, config, d)
     ok = flat is not None and not d.has_errors

@@ -9,8 +9,7 @@ from typing import Annotated
 import typer
 
 import pn2code
-from pn2code.cli.generate import SetOption, parse_values
-from pn2code.cli.options import Format, FormatOption, stop
+from pn2code.cli.options import Format, FormatOption, SetOption, parse_values, stop
 from pn2code.diagnostics import Diagnostics
 
 EPILOG = """Examples:
@@ -51,17 +50,18 @@ def stage_text(
     path: Path, stage: Stage, only: str, values: dict[str, str], d: Diagnostics
 ) -> str | None:
     """The dump; None after diagnostics."""
-    from pn2code import pipeline
     from pn2code.cell.divide import divide
     from pn2code.cell.dump import dump_partition
+    from pn2code.cell.locate import locate
     from pn2code.emission.tdl import emit
     from pn2code.lowering.robot import lower_robots
     from pn2code.ml.dump import dump_program
+    from pn2code.net import front
     from pn2code.net.dump import dump_document, dump_flat, dump_net
     from pn2code.net.link import link
     from pn2code.reading.cpn import read
 
-    found = pipeline.locate(path, d)
+    found = locate(path, d)
     if found is None:
         return None
     net_path, config = found
@@ -71,7 +71,7 @@ def stage_text(
             return None if document is None else dump_document(document)
         linked = link(document, d)
         return None if linked is None else dump_net(linked)
-    flat = pipeline.front(net_path, d, {**(config.values if config else {}), **values})
+    flat = front.load(net_path, d, {**(config.values if config else {}), **values})
     if flat is None:
         return None
     if stage is Stage.DECLARATIONS:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import difflib
+import importlib
 import textwrap
 from typing import Annotated
 
@@ -19,10 +20,29 @@ EPILOG = """Examples:
 """
 
 
+REGISTERING = (
+    "pn2code.cell.codes",
+    "pn2code.cli.robot",
+    "pn2code.lowering.codes",
+    "pn2code.lowering.robot_codes",
+    "pn2code.ml.codes",
+    "pn2code.net.codes",
+    "pn2code.reading.codes",
+    "pn2code.robot.codes",
+    "pn2code.run.cell",
+    "pn2code.semantics.codes",
+    "pn2code.tdl.codes",
+    "pn2code.toolchain.build",
+)
+"""The modules that declare codes; a verb loads some of them only."""
+
+
 def explain(
     code: Annotated[str, typer.Argument(help="A diagnostic code; none: list them all.")] = "",
 ) -> None:
     """Explain a diagnostic code."""
+    for module in REGISTERING:
+        importlib.import_module(module)
     known = {c.code: c for c in all_codes()}
     if not code:
         for entry in known.values():

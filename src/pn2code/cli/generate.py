@@ -2,14 +2,21 @@
 
 from __future__ import annotations
 
-import re
 from pathlib import Path
 from typing import Annotated
 
 import typer
 
 from pn2code import pipeline
-from pn2code.cli.options import Exit, Format, FormatOption, print_diagnostics, stop
+from pn2code.cli.options import (
+    Exit,
+    Format,
+    FormatOption,
+    SetOption,
+    parse_values,
+    print_diagnostics,
+    stop,
+)
 from pn2code.diagnostics import Diagnostics
 from pn2code.emission.write import OutputFolderError, write
 
@@ -19,29 +26,6 @@ EPILOG = """Examples:
 
   pn2code generate mynet.cpn && make -C generated/mynet && generated/mynet/supervisor
 """
-
-
-def parse_values(settings: list[str]) -> dict[str, str]:
-    """`NAME=VALUE` options as CPN ML texts; a value is CPN ML (`true`, `~3`, `"text"`)."""
-    values = {}
-    for setting in settings:
-        name, equals, text = setting.partition("=")
-        if (
-            not equals
-            or not re.fullmatch(r"[A-Za-z][A-Za-z0-9_']*", name.strip())
-            or not text.strip()
-        ):
-            raise typer.BadParameter(f"`{setting}`: NAME=VALUE is expected, e.g. limit=3")
-        values[name.strip()] = text.strip()
-    return values
-
-
-SetOption = Annotated[
-    list[str],
-    typer.Option(
-        "--set", metavar="NAME=VALUE", help="Replace a `val` of the net (may be repeated)."
-    ),
-]
 
 
 def generate(

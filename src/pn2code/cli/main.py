@@ -2,32 +2,50 @@
 
 from __future__ import annotations
 
+import importlib
 import os
 import signal
 import sys
 from types import FrameType
-from typing import Annotated, NoReturn
+from typing import Annotated, Any, NoReturn
 
 import typer
+from typer.core import TyperGroup
 
 import pn2code
-from pn2code.cli import check, dump, explain, generate, robot, run
 from pn2code.cli.options import Exit
+
+VERBS = ("check", "generate", "run", "robot", "dump", "explain")
+
+
+class _Verbs(TyperGroup):
+    """Loads a verb's module when it is asked for: `check` need not wait for what only `run` needs."""
+
+    def list_commands(self, ctx: Any) -> list[str]:
+        return list(VERBS)
+
+    def get_command(self, ctx: Any, cmd_name: str) -> Any:
+        if cmd_name in VERBS:
+            return _command(cmd_name)
+        self.commands.update({verb: _command(verb) for verb in VERBS})  # for "did you mean"
+        return None
+
+
+def _command(verb: str) -> Any:
+    module = importlib.import_module(f"pn2code.cli.{verb}")
+    single = typer.Typer(add_completion=False)
+    single.command(verb, epilog=module.EPILOG)(getattr(module, verb))
+    return typer.main.get_command(single)
+
 
 app = typer.Typer(
     name="pn2code",
+    cls=_Verbs,
     no_args_is_help=True,
     add_completion=False,
     pretty_exceptions_enable=False,
     context_settings={"help_option_names": ["-h", "--help"]},
 )
-
-app.command(epilog=check.EPILOG)(check.check)
-app.command(epilog=generate.EPILOG)(generate.generate)
-app.command(epilog=run.EPILOG)(run.run)
-app.command(epilog=robot.EPILOG)(robot.robot)
-app.command(epilog=dump.EPILOG)(dump.dump)
-app.command(epilog=explain.EPILOG)(explain.explain)
 
 
 def _version(wanted: bool) -> None:

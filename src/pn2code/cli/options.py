@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import sys
 from collections.abc import Iterable
 from enum import StrEnum
@@ -36,6 +37,29 @@ class Format(StrEnum):
 
 FormatOption = Annotated[
     Format, typer.Option("--format", help="How diagnostics are printed.", show_default=True)
+]
+
+
+def parse_values(settings: list[str]) -> dict[str, str]:
+    """`NAME=VALUE` options as CPN ML texts; a value is CPN ML (`true`, `~3`, `"text"`)."""
+    values = {}
+    for setting in settings:
+        name, equals, text = setting.partition("=")
+        if (
+            not equals
+            or not re.fullmatch(r"[A-Za-z][A-Za-z0-9_']*", name.strip())
+            or not text.strip()
+        ):
+            raise typer.BadParameter(f"`{setting}`: NAME=VALUE is expected, e.g. limit=3")
+        values[name.strip()] = text.strip()
+    return values
+
+
+SetOption = Annotated[
+    list[str],
+    typer.Option(
+        "--set", metavar="NAME=VALUE", help="Replace a `val` of the net (may be repeated)."
+    ),
 ]
 
 

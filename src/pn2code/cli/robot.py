@@ -9,12 +9,14 @@ from typing import TYPE_CHECKING, Annotated, NoReturn
 
 import typer
 
-from pn2code import pipeline
+from pn2code.cell.codes import CELL_MISSING
 from pn2code.cell.divide import divide
+from pn2code.cell.locate import locate
 from pn2code.channels import ChannelSpec, SharedDirectory, specs_of
 from pn2code.cli.options import Exit, Format, FormatOption, print_diagnostics, stop
 from pn2code.diagnostics import Diagnostics, Origin, SourceText
 from pn2code.diagnostics.codes import register
+from pn2code.net import front
 from pn2code.robot.commands import Command
 from pn2code.run.robot import Arm, InstantArm, RobotPlayer, script_specs
 from pn2code.tdl import tree as t
@@ -122,7 +124,7 @@ def _in_cell(
     from pn2code.robot import scene
     from pn2code.robot.executor import RobotExecutor
 
-    found = pipeline.locate(cell, d, layout=layout)
+    found = locate(cell, d, layout=layout)
     if found is None:
         return None
     path, config = found
@@ -131,7 +133,7 @@ def _in_cell(
     if name not in {r.name for r in config.robots}:
         known = ", ".join(f"`{r.name}`" for r in config.robots)
         _usage(f"the cell has no robot `{name}`; choose one of {known} with --name")
-    flat = pipeline.front(path, d, config.values)
+    flat = front.load(path, d, config.values)
     partition = divide(flat, config, d) if flat is not None else None
     loaded = scene.load(config.geometry, config.folder, config.locator.origin, d)
     if partition is None or loaded is None or d.has_errors:
@@ -167,14 +169,14 @@ def _load(script: Path, d: Diagnostics) -> CheckedProgram | None:
     except OSError as problem:
         reason = problem.strerror or str(problem)
         d.error(
-            pipeline.CELL_MISSING,
+            CELL_MISSING,
             f"cannot read `{script}`: {reason[:1].lower()}{reason[1:]}",
             Origin(str(script)),
             hint="check the path",
         )
         return None
     except UnicodeDecodeError:
-        d.error(pipeline.CELL_MISSING, f"`{script}` is not UTF-8 text", Origin(str(script)))
+        d.error(CELL_MISSING, f"`{script}` is not UTF-8 text", Origin(str(script)))
         return None
     tree = parse(SourceText(text, Origin(str(script), 1, 1)), d)
     return check(tree, d) if tree is not None else None

@@ -8,8 +8,15 @@ from typing import Annotated
 
 import typer
 
-from pn2code.cli.generate import SetOption, parse_values
-from pn2code.cli.options import Exit, Format, FormatOption, print_diagnostics, stop
+from pn2code.cli.options import (
+    Exit,
+    Format,
+    FormatOption,
+    SetOption,
+    parse_values,
+    print_diagnostics,
+    stop,
+)
 from pn2code.diagnostics import Diagnostics
 from pn2code.emission.write import OutputFolderError
 

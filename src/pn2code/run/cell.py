@@ -20,6 +20,7 @@ from pathlib import Path
 from typing import Any
 
 from pn2code import pipeline
+from pn2code.cell.codes import CELL_MISSING
 from pn2code.cell.config import CellConfig
 from pn2code.channels import GRACE_S, SharedDirectory, specs_of
 from pn2code.diagnostics import Diagnostics, Origin, SourceText
@@ -270,7 +271,7 @@ def _inputs(config: CellConfig, options: RunOptions, d: Diagnostics) -> Iterator
         yield config.folder if given is None else given
         return
     if not given.is_file():
-        d.error(pipeline.CELL_MISSING, f"there is no file `{given}`", Origin(str(given)))
+        d.error(CELL_MISSING, f"there is no file `{given}`", Origin(str(given)))
         yield None
         return
     if len(config.inputs) != 1:

@@ -1,0 +1,30 @@
+"""What a path on the command line means: which net, which cell."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from pn2code.cell import codes
+from pn2code.cell.config import CellConfig, load
+from pn2code.diagnostics import Diagnostics, Origin
+
+
+def locate(
+    path: Path, d: Diagnostics, *, layout: str | None = None
+) -> tuple[Path, CellConfig | None] | None:
+    """The net and the cell that a path means: a `.cpn` file (with a `cell.toml` beside it, or not),
+    a `cell.toml`, a folder with one."""
+    if not path.exists():
+        d.error(codes.CELL_MISSING, f"there is no file or folder `{path}`", Origin(str(path)))
+        return None
+    if path.is_dir() or path.suffix == ".toml":
+        config = load(path, d, layout=layout)
+        return (config.net_path, config) if config else None
+    beside = path.parent / "cell.toml"
+    if not beside.is_file():
+        return path, None
+    config = load(beside, d, layout=layout)
+    if config is None:
+        return None
+    # A cell.toml describes one net; others in the same folder stand for themselves.
+    return (path, config) if config.net_path.resolve() == path.resolve() else (path, None)

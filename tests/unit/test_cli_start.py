@@ -1,0 +1,68 @@
+"""Verbs are loaded one at a time; `explain` knows the codes of all."""
+
+from __future__ import annotations
+
+import ast
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from pn2code.cli import main
+from pn2code.cli.explain import REGISTERING
+
+
+def loaded_by(*arguments: str) -> set[str]:
+    """The modules in memory after a command."""
+    program = (
+        "import sys\nfrom pn2code.cli.main import app\n"
+        "try: app(sys.argv[1:])\n"
+        "except SystemExit: pass\n"
+        "print(*sys.modules, file=sys.stderr)"
+    )
+    done = subprocess.run(
+        [sys.executable, "-c", program, *arguments], capture_output=True, text=True, check=True
+    )
+    return set(done.stderr.split())
+
+
+def test_check_loads_no_generator_and_no_simulator(root: Path) -> None:
+    modules = loaded_by("check", str(root / "examples" / "riveting"))
+    assert "pn2code.net.flatten" in modules
+    heavy = {"numpy", "scipy", "pybullet", "jinja2", "lxml", "rich", "pydantic"}
+    assert not heavy & modules
+    assert not [m for m in modules if m.startswith(("pn2code.lowering", "pn2code.emission"))]
+
+
+def test_version_loads_nothing() -> None:
+    assert not [m for m in loaded_by("--version") if m.startswith("pn2code.ml")]
+
+
+@pytest.mark.parametrize("verb", main.VERBS)
+def test_every_verb_has_help(verb: str, capsys: pytest.CaptureFixture[str]) -> None:
+    with pytest.raises(SystemExit) as left:
+        main.app([verb, "-h"])
+    assert left.value.code == 0
+    assert verb in capsys.readouterr().out
+
+
+def test_a_misspelt_verb_gets_a_suggestion(capsys: pytest.CaptureFixture[str]) -> None:
+    with pytest.raises(SystemExit) as left:
+        main.app(["generat"])
+    assert left.value.code == 2
+    assert "generate" in capsys.readouterr().err
+
+
+def test_explain_knows_all_modules_that_declare_codes(root: Path) -> None:
+    base = root / "src"
+    found = set()
+    for path in base.rglob("*.py"):
+        for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+            if (
+                isinstance(node, ast.Call)
+                and isinstance(node.func, ast.Name)
+                and node.func.id == "register"
+            ):
+                found.add(".".join(path.relative_to(base).with_suffix("").parts))
+    assert found == set(REGISTERING)
