@@ -64,6 +64,10 @@ def when(condition: str, then: Tree, otherwise: Tree) -> Tree:
     return Branches(((t.Name(condition), then),), otherwise)
 
 
+def when_bit(i: int, then: Tree, otherwise: Tree) -> Tree:
+    return Branches(((ask(i), then),), otherwise)
+
+
 # --- shapes ------------------------------------------------------------------------------------
 
 
@@ -167,6 +171,23 @@ def test_a_jump_over_a_merge_uses_a_label() -> None:
         3: to("g", 1),
     }
     assert gotos(1, trees) >= 1
+
+
+def test_an_exit_leads_to_what_stands_behind_its_loop() -> None:
+    """The inner loop 2 is left for 1 (the outer loop begins anew) and for 3, which stands behind it."""
+    trees = {
+        1: to("a", 2),
+        2: Branches(((ask(0), to("b", 1)), (ask(1), to("c", 3)), (ask(2), to("d", 3))), to("e", 2)),
+        3: when_bit(3, to("f", 1), Then((mark("g"),), Halt(over=True))),
+    }
+    for value in range(16):
+        expected = []
+        for name in walk_graph(1, trees, value):
+            expected.append(name)
+            if len(expected) == STEPS:
+                break
+        if len(expected) < STEPS:  # nothing turns the input here: the others go round for ever
+            assert run_script(script(1, trees, value)) == expected
 
 
 def test_the_program_may_end_inside_a_loop() -> None:
@@ -274,7 +295,7 @@ def graphs(draw: st.DrawFn) -> dict[int, Tree]:
     return {s: tree(f"t{s}") for s in range(1, size + 1)}
 
 
-@settings(max_examples=300, deadline=None)
+@settings(max_examples=150, deadline=None, derandomize=True)
 @given(graphs(), st.integers(0, 2**20 - 1))
 def test_the_structured_program_has_the_traces_of_the_graph(
     trees: dict[int, Tree], value: int
@@ -290,7 +311,7 @@ def test_the_structured_program_has_the_traces_of_the_graph(
         assert run_script(text) == expected
 
 
-@settings(max_examples=100, deadline=None)
+@settings(max_examples=60, deadline=None, derandomize=True)
 @given(graphs())
 def test_every_state_that_can_be_reached_is_there_once(trees: dict[int, Tree]) -> None:
     """Nothing is duplicated: as many marks in the script as in the trees that can be reached."""
@@ -321,7 +342,7 @@ def test_every_state_that_can_be_reached_is_there_once(trees: dict[int, Tree]) -
     assert found == sorted(m for s in reached for m in marks(trees[s]))
 
 
-@settings(max_examples=100, deadline=None)
+@settings(max_examples=60, deadline=None, derandomize=True)
 @given(graphs())
 def test_structured_programs_have_no_unreachable_statements(trees: dict[int, Tree]) -> None:
     text = script(1, trees, 0)

@@ -198,17 +198,15 @@ class _Structurer:
         inside = self.graph.loops.get(s)
         if inside is None:
             return out + self.sequence(s, self.merges(s, None), after, loop)
+        # `exit` leads to what stands behind the loop: the states placed there, else `after`.
         exits = self.exit_targets(inside)
-        follow: list[State] = []
-        if after in exits:
-            target: State | None = after
-        else:
+        follow = [m for m in self.merges(s, None) if m not in inside]
+        if not follow and after not in exits:
             own = [e for e in exits if e not in self.placed and self.graph.dominates(s, e)]
-            target = own[0] if own else None
             follow = own[:1]
-        self.placed.update(follow)
-        outside = [m for m in self.merges(s, None) if m not in inside]
-        follow += outside
+            self.placed.update(follow)
+        behind = follow[0] if follow else after
+        target = behind if behind in exits else None
         context = _LoopContext(s, target)
         body = self.sequence(s, self.merges(s, inside), s, context)
         out.append(Repeat(None, tuple(body)))
