@@ -19,7 +19,7 @@ from lark import Lark
 def kept_lark(name: str, grammar: str, **options: Any) -> Lark:
     """An LALR parser; `name` is the stem of its file in the cache."""
     options = {"parser": "lalr", **options}
-    folder = _private_folder()
+    folder = private_folder()
     if folder is None:
         return Lark(grammar, **options)
     shown = repr(
@@ -40,7 +40,7 @@ def kept_lark(name: str, grammar: str, **options: Any) -> Lark:
     return parser
 
 
-def _private_folder() -> Path | None:
+def private_folder() -> Path | None:
     """A folder that only this user can write to, or None: a pickle must not come from anyone else."""
     try:
         base = Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache")

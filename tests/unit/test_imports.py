@@ -20,7 +20,7 @@ ALLOWED: dict[str, set[str]] = {
     "lowering": {"diagnostics", "ml", "net", "cell", "tdl"},
     "robot": {"diagnostics"},
     "tdl": {"diagnostics", "robot", "parser_cache"},
-    "emission": {"diagnostics", "ml", "net", "cell", "lowering", "resources", "tdl"},
+    "emission": {"diagnostics", "ml", "net", "cell", "lowering", "resources", "tdl", "parser_cache"},
     "channels": {"diagnostics", "cell"},
     "toolchain": {"diagnostics", "emission"},
     "run": {"diagnostics", "cell", "channels", "emission", "net", "robot", "semantics", "tdl", "toolchain", "report",

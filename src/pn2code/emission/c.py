@@ -46,12 +46,14 @@ class _Emitter:
         self._descriptors = {d.name: d for d in net.descriptors}
         self._functions = {f.key: f for f in net.functions}
         self._blocks: dict[str, tuple[str, str, Origin]] = {}
-        for p in net.places:
-            self._names.place(p.index, p.name)
+        self._place_names = tuple(self._names.place(p.index, p.name) for p in net.places)
         for t in net.transitions:
             self._names.transition(t.index, t.name)
         for definition in net.definitions:
             self._names.type(definition.name)
+        self._bags = tuple(self._names.bag(p.index, p.name) for p in net.places)
+        self._tables = tuple(self._names.table(p.table) for p in net.places)
+        self._timed = tuple(p.timed for p in net.places)
         self._needs_context = self._context_users()
         self._has_arena_values = any(
             d.type.rep in (Rep.STRING, Rep.LIST, Rep.UNION)
@@ -84,13 +86,13 @@ class _Emitter:
         x = Expressions(self._types, self._net.real_time, scope, binding)
         x.functions = self._functions
         x.needs_context = self._needs_context
-        x.place_names = tuple(self._names.place(p.index, p.name) for p in self._net.places)
+        x.place_names = self._place_names
         x.global_hints = {g.name: g.hint for g in self._net.globals}
         s = Statements(self._types, x, scope, self._net.real_time)
         s.used = used_locals(statements)
-        s.bags = tuple(self._names.bag(p.index, p.name) for p in self._net.places)
-        s.timed = tuple(p.timed for p in self._net.places)
-        s.tables_of_places = tuple(self._names.table(p.table) for p in self._net.places)
+        s.bags = self._bags
+        s.timed = self._timed
+        s.tables_of_places = self._tables
         return s, x, scope
 
     def _function(self, f: ir.Function) -> dict[str, object]:

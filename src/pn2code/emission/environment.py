@@ -10,8 +10,9 @@ from __future__ import annotations
 import math
 from functools import cache
 
-from jinja2 import Environment, FileSystemLoader, StrictUndefined
+from jinja2 import Environment, FileSystemBytecodeCache, FileSystemLoader, StrictUndefined
 
+from pn2code.parser_cache import private_folder
 from pn2code.resources import templates_folder
 
 
@@ -61,6 +62,7 @@ def c_bool(value: bool) -> str:
 @cache
 def environment() -> Environment:
     """Strict: an unknown name in a template is an error, not an empty string."""
+    folder = private_folder()
     env = Environment(
         loader=FileSystemLoader(templates_folder()),
         undefined=StrictUndefined,
@@ -68,6 +70,7 @@ def environment() -> Environment:
         lstrip_blocks=True,
         keep_trailing_newline=True,
         autoescape=False,
+        bytecode_cache=FileSystemBytecodeCache(str(folder), "%s.template") if folder else None,
     )
     for function in (c_comment, c_string, c_float, c_int, c_bool):
         env.filters[function.__name__] = function

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-import os
 import shutil
 import tempfile
 from collections.abc import Iterable
@@ -83,10 +82,7 @@ def _replace(folder: Path, changed: dict[str, bytes], removed: list[str]) -> Non
         for path, data in changed.items():
             target = staging / path
             target.parent.mkdir(parents=True, exist_ok=True)
-            with target.open("wb") as stream:
-                stream.write(data)
-                stream.flush()
-                os.fsync(stream.fileno())
+            target.write_bytes(data)
         for path in changed:
             (folder / path).parent.mkdir(parents=True, exist_ok=True)
             (staging / path).replace(folder / path)

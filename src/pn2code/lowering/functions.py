@@ -283,8 +283,10 @@ class Program:
             fresh = []
             for c in part.code:
                 counter += 1
-                hint_of = _hint_of(c) if i == 0 or len(part.code) > 1 else hint
-                fresh.append(Local(-counter, hint_of or hint, c.type))
+                # An argument has the parameter's name, what a function captured the name it has where it is captured.
+                is_argument = i > 0 and isinstance(part.key, tuple) and part.key[0] == "code"
+                name = hint if is_argument else _hint_of(c) or "captured"
+                fresh.append(Local(-counter, name, c.type))
             parameters.extend(fresh)
             rebuilt.append(part.rebuild([ir.Use(p) for p in fresh]))
         self._pending.append((key, function, tuple(rebuilt), parameters))
@@ -431,6 +433,8 @@ def _hint_of(code: Ir) -> str:
     match code:
         case ir.Use(local=local):
             return local.hint
+        case ir.Bound(name=name) | ir.GlobalUse(name=name):
+            return name
         case ir.Member(label=label) if not label.isdigit():
             return label
     return ""
@@ -450,13 +454,14 @@ def called(statements: tuple[Stmt, ...]) -> list[str]:
 
 def ir_nodes(item: object) -> Iterator[object]:
     """All IR nodes in a statement, expression or tuple of them."""
-    if isinstance(item, tuple):
-        for part in item:
-            yield from ir_nodes(part)
-    elif hasattr(item, "__dataclass_fields__"):
-        yield item
-        for name in item.__dataclass_fields__:
-            yield from ir_nodes(getattr(item, name))
+    waiting = [item]
+    while waiting:
+        item = waiting.pop()
+        if isinstance(item, tuple):
+            waiting.extend(reversed(item))
+        elif fields := getattr(item, "__dataclass_fields__", None):
+            yield item
+            waiting.extend(getattr(item, name) for name in reversed(fields))
 
 
 def order_functions(made: dict[str, ir.Function]) -> tuple[ir.Function, ...]:

@@ -11,7 +11,7 @@ from functools import cache
 from pathlib import Path
 from typing import Any, cast
 
-from lark import Lark, Token, Transformer, v_args
+from lark import Lark, Token, Transformer, Tree, v_args
 from lark.exceptions import UnexpectedCharacters, UnexpectedToken, VisitError
 from lark.tree import Meta
 
@@ -36,7 +36,7 @@ def parse(source: SourceText, d: Diagnostics) -> t.Program | None:
     before = len(d.errors)
     builder = _Builder(source, d)
     try:
-        tree = _parser().parse(source.text)
+        tree = _parse(source.text)
         program = builder.transform(tree) if not _too_deep(tree, source, d) else None
     except UnexpectedCharacters as problem:
         _unexpected_characters(problem, source, d)
@@ -49,10 +49,18 @@ def parse(source: SourceText, d: Diagnostics) -> t.Program | None:
     return program if len(d.errors) == before else None
 
 
+def _parse(text: str) -> Tree[Token]:
+    try:
+        return _parser("basic").parse(text)
+    except UnexpectedCharacters:
+        # The same language; this lexer knows what could stand there, but takes much longer to make.
+        return _parser("contextual").parse(text)
+
+
 @cache
-def _parser() -> Lark:
+def _parser(lexer: str) -> Lark:
     return kept_lark(
-        "tdl", GRAMMAR, lexer="contextual", propagate_positions=True, maybe_placeholders=False
+        "tdl", GRAMMAR, lexer=lexer, propagate_positions=True, maybe_placeholders=False
     )
 
 
@@ -113,7 +121,7 @@ def _expected(terminals: set[str]) -> str:
 
 
 def _literal(terminal: str) -> str:
-    for definition in _parser().terminals:
+    for definition in _parser("basic").terminals:
         if definition.name == terminal:
             return f"`{definition.pattern.value}`"
     return terminal.lower()
