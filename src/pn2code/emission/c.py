@@ -14,7 +14,7 @@ from pn2code.emission import c_tables
 from pn2code.emission.c_expressions import Expressions, Types, c_integer
 from pn2code.emission.c_statements import Statements, used_locals, uses_context, wrap
 from pn2code.emission.environment import c_comment, c_float, c_string, render
-from pn2code.emission.names import Names, Scope, stem
+from pn2code.emission.names import Members, Names, Scope, stem
 from pn2code.emission.output import Block, OutputFile
 from pn2code.lowering import ir
 from pn2code.lowering.functions import called, ir_nodes
@@ -246,13 +246,16 @@ class _Emitter:
 
     def _transition(self, t: ir.Transition) -> dict[str, object]:
         name = self._names.transition(t.index, t.name)
-        members = Scope()
+        members = Members()
         variables = tuple(members.name(i, v.name) for i, v in enumerate(t.variables))
         search, x, _ = self._printer(t.enumerate, "b.")
         x.variables = variables
         search.variable_types = tuple(v.type for v in t.variables)
         search.keeps = uses_context(
             _without_wanted(t.enumerate), self._needs_context, self._definitions
+        )
+        search.may_fail = search.keeps or any(
+            isinstance(n, ir.Wanted | ir.UnlessLegal) for n in ir_nodes(t.enumerate)
         )
         search.body(t.enumerate)
         search.finish_search()

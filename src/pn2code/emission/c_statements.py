@@ -87,6 +87,7 @@ class Statements:
         self.variable_types: tuple[ir.IrType, ...] = ()
         self.has_arena_values = True
         self.keeps = False
+        self.may_fail = False
         self._loops = 0
 
     def line(self, text: str) -> None:
@@ -221,6 +222,11 @@ class Statements:
             condition, then, otherwise = ir.Op("Bool.not", (condition,), ir.BOOL), otherwise, ()
         self.line(f"{prefix}if ({self._x.text(condition)}) {{")
         self.block(then)
+        if self.result is None and isinstance(then[-1], ir.Return) and otherwise and not prefix:
+            # What follows a return needs no else.
+            self.line("}")
+            self.body(otherwise)
+            return
         if len(otherwise) == 1 and isinstance(otherwise[0], ir.If):
             inner = otherwise[0]
             if inner.then:
@@ -374,9 +380,10 @@ class Statements:
         self.moves = before
 
     def _yield(self) -> None:
-        self.line("if (!pn_ok(cx)) {")
-        self.line(f"{_INDENT}return true;")
-        self.line("}")
+        if self.may_fail:
+            self.line("if (!pn_ok(cx)) {")
+            self.line(f"{_INDENT}return true;")
+            self.line("}")
         if self.keeps:
             self.line("is_kept = true;")
         self.line("if (!sink(user, self, &b)) {")

@@ -12,122 +12,27 @@ from __future__ import annotations
 import unicodedata
 from collections.abc import Hashable
 
-RESERVED = frozenset(
-    [
-        "auto",
-        "break",
-        "case",
-        "char",
-        "const",
-        "continue",
-        "default",
-        "do",
-        "double",
-        "else",
-        "enum",
-        "extern",
-        "float",
-        "for",
-        "goto",
-        "if",
-        "inline",
-        "int",
-        "long",
-        "register",
-        "restrict",
-        "return",
-        "short",
-        "signed",
-        "sizeof",
-        "static",
-        "struct",
-        "switch",
-        "typedef",
-        "union",
-        "unsigned",
-        "void",
-        "volatile",
-        "while",
-        "_Alignas",
-        "_Alignof",
-        "_Atomic",
-        "_Bool",
-        "_Complex",
-        "_Generic",
-        "_Imaginary",
-        "_Noreturn",
-        "_Static_assert",
-        "_Thread_local",
-        "alignas",
-        "alignof",
-        "bool",
-        "complex",
-        "imaginary",
-        "noreturn",
-        "static_assert",
-        "thread_local",
-        "true",
-        "false",
-        "asm",
-        "typeof",
-        "constexpr",
-        "nullptr",
-        "and",
-        "and_eq",
-        "bitand",
-        "bitor",
-        "compl",
-        "not",
-        "not_eq",
-        "or",
-        "or_eq",
-        "xor",
-        "xor_eq",
-        "class",
-        "new",
-        "delete",
-        "this",
-        "template",
-        "namespace",
-        "operator",
-        "private",
-        "public",
-        "NULL",
-        "EOF",
-        "errno",
-        "stdin",
-        "stdout",
-        "stderr",
-        "assert",
-        "offsetof",
-        "unix",
-        "linux",
-        "i386",
-        "INFINITY",
-        "NAN",
-        "HUGE_VAL",
-        "main",
-        "b",
-        "m",
-        "cx",
-        "marking",
-        "binding",
-        "self",
-        "sink",
-        "user",
-        "moves",
-        "before",
-        "mark",
-        "is_kept",
-        "is_done",
-    ]
-)
-"""Keywords of C and C++, macros of the headers in use, and the names that generated functions use themselves."""
+_KEYWORDS = """
+    auto break case char const continue default do double else enum extern float for goto if inline int long
+    register restrict return short signed sizeof static struct switch typedef union unsigned void volatile while
+    _Alignas _Alignof _Atomic _Bool _Complex _Generic _Imaginary _Noreturn _Static_assert _Thread_local alignas
+    alignof bool complex imaginary noreturn static_assert thread_local true false asm typeof constexpr nullptr
+    and and_eq bitand bitor compl not not_eq or or_eq xor xor_eq class new delete this template namespace
+    operator private public
+    NULL EOF errno stdin stdout stderr assert offsetof unix linux i386 INFINITY NAN HUGE_VAL
+"""
+_OWN = "main b m cx marking binding self sink user moves before mark is_kept is_done"
+
+KEYWORDS = frozenset(_KEYWORDS.split())
+"""Keywords of C and C++, and macros of the headers in use."""
+
+RESERVED = KEYWORDS | frozenset(_OWN.split())
+"""These, and the names that generated functions use themselves."""
 
 _MAX_STEM = 48
 
 
-def stem(text: str) -> str:
+def stem(text: str, reserved: frozenset[str] = RESERVED) -> str:
     """A readable C identifier for a name of the net: never empty, never reserved, at most 48 characters.
 
     `x'` gives `x_prime`, `É` gives `E`, `1a` gives `n1a`, `int` gives `int_`.
@@ -142,7 +47,7 @@ def stem(text: str) -> str:
     name = "_".join(words)[:_MAX_STEM].rstrip("_") or "unnamed"
     if name[0].isdigit():
         name = f"n{name}"
-    return f"{name}_" if name in RESERVED or name.startswith(("pn_", "PN_")) else name
+    return f"{name}_" if name in reserved or name.startswith(("pn_", "PN_")) else name
 
 
 class Scope:
@@ -171,6 +76,19 @@ class Scope:
     def reserve(self, *names: str) -> None:
         """Names that are not to be given."""
         self._used.update(names)
+
+
+class Members(Scope):
+    """Distinct names for the members of one struct: only keywords are in the way."""
+
+    def name(self, key: Hashable, text: str, pattern: str = "{}") -> str:
+        """As in every scope."""
+        plain = stem(text, KEYWORDS)
+        if key not in self._names and not self._is_used(plain):
+            self._names[key] = plain
+            self._used.add(plain)
+            return plain
+        return super().name(key, text, pattern)
 
 
 class Names:
@@ -228,4 +146,4 @@ def _path(name: str) -> str:
 
 def label(text: str) -> str:
     """A struct member for a record label; components of tuples become `c1`, `c2`, ..."""
-    return f"c{text}" if text.isdigit() else stem(text)
+    return f"c{text}" if text.isdigit() else stem(text, KEYWORDS)

@@ -228,8 +228,15 @@ class Body(Block):
         if len(function.rules) == 1 and is_irrefutable(rule.pattern):
             inner = self._bind_all(self._match(rule.pattern, argument), env)
             return self.exp(rule.body, inner)
-        result = rule.body.type
-        return self._choose(function.rules, argument, env, self.type_of(result), "Match")
+        result = self.type_of(rule.body.type)
+        if type_has_function(result):
+            raise UnsupportedError(
+                UNSUPPORTED_FUNCTION_VALUE,
+                "which function is returned here depends on the argument",
+                function.span,
+                hint="take all arguments at once: `fun f 0 x = ... | f n x = ...`",
+            )
+        return self._choose(function.rules, argument, env, result, "Match")
 
     def _saturate(
         self,

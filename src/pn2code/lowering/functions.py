@@ -164,7 +164,8 @@ class Program:
                 self._globals[key] = Reference(name, lowered, table)
             else:
                 self._globals[key] = ir.GlobalUse(name, lowered)
-            source = dec.span.text
+            text = dec.span.text
+            source = text if text.startswith("val ") or is_reference else f"val {text}"
             made.append(
                 ir.Global(
                     name, symbol.name, lowered, table, is_reference, (), source, dec.span.origin

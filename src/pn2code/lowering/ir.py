@@ -169,10 +169,11 @@ class GlobalUse:
 
 @frozen
 class Bound:
-    """The value of net variable `index` in the transition's binding."""
+    """The value of net variable `index` in the transition's binding; `name` is its ML name."""
 
     index: int
     type: IrType
+    name: str = ""
 
 
 @frozen

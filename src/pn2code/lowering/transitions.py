@@ -158,7 +158,8 @@ class _Enumeration:
         env: dict[int, Binding] = {}
         for uid in self._bound:
             index = self._index[uid]
-            env[uid] = ir.Bound(index, self._variables[index].type)
+            variable = self._variables[index]
+            env[uid] = ir.Bound(index, variable.type, variable.name)
         return env
 
     def _terms_of_place(self, place: int) -> int:
@@ -339,7 +340,7 @@ def _firing(
     """Code segment, takes, delay, puts, resets: the order in which CPN Tools works things out."""
     body = Body(program)
     env: dict[int, Binding] = {
-        s.uid: ir.Bound(i, variables[i].type) for i, s in enumerate(t.variables)
+        s.uid: ir.Bound(i, variables[i].type, s.name) for i, s in enumerate(t.variables)
     }
     if t.code is not None:
         _code_segment(body, t, env, variables)

@@ -1,0 +1,179 @@
+"""Compiled nets in tests: from a flat net to a program with sanitizers, and its comparison with the token game.
+
+`Workshop` compiles the C runtime once a session; `agrees` walks through a net at random in the compiled program
+and follows it in the reference token game: after each step the enabled binding elements, in order, and the
+markings must be the same.
+"""
+
+from __future__ import annotations
+
+import json
+import shutil
+import subprocess
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from pn2code.cell.config import CellConfig
+from pn2code.cell.divide import divide
+from pn2code.diagnostics import Diagnostics
+from pn2code.emission.c import emit
+from pn2code.lowering.ir import NetIR
+from pn2code.lowering.net import lower
+from pn2code.net.flat import FlatNet
+from pn2code.resources import cnative_folder
+from pn2code.semantics.game import Game, GameError
+from pn2code.semantics.marking import binding_to_json, place_to_json
+
+WARNINGS = (
+    "-std=c11", "-Wall", "-Wextra", "-Wpedantic", "-Werror", "-Wconversion", "-Wsign-conversion",
+    "-Wshadow", "-Wstrict-prototypes", "-Wmissing-prototypes", "-Wundef", "-Wcast-qual",
+    "-Wswitch-enum", "-Wvla",
+)  # fmt: skip
+SANITIZERS = ("-g", "-O0", "-fsanitize=address,undefined", "-fno-sanitize-recover=all")
+RUNTIME = (
+    "arena", "bag", "codec", "list", "moves", "num", "random", "string", "text", "trace", "type",
+)  # fmt: skip
+
+
+def lowered(
+    flat: FlatNet,
+    *,
+    storage: Mapping[str, str] | None = None,
+    capacity: Mapping[str, int] | None = None,
+    config: CellConfig | None = None,
+) -> tuple[NetIR | None, Diagnostics]:
+    """The intermediate form of a net, and what lowering has to say."""
+    d = Diagnostics()
+    partition = divide(flat, config, d)
+    assert partition is not None
+    return lower(partition, storage or {}, d, capacity=capacity), d
+
+
+@dataclass(frozen=True)
+class Workshop:
+    """A folder with the runtime's object files, and the compiler."""
+
+    folder: Path
+    compiler: str
+
+    @staticmethod
+    def open(folder: Path) -> Workshop:
+        """Compile the runtime, with sanitizers."""
+        compiler = shutil.which("gcc") or shutil.which("cc")
+        assert compiler is not None
+        workshop = Workshop(folder, compiler)
+        source = cnative_folder() / "src"
+        for name in RUNTIME:
+            workshop.compile(source / f"pn_{name}.c", folder / f"pn_{name}.o", folder)
+        workshop.compile(source / "simulate.c", folder / "simulate.o", folder)
+        walk = cnative_folder() / "tests" / "walk.c"
+        workshop.compile(walk, folder / "walk.o", folder)
+        return workshop
+
+    def compile(self, source: Path, target: Path, include: Path, *flags: str) -> None:
+        """One object file; the test fails with the compiler's words."""
+        command = [self.compiler, *WARNINGS, *SANITIZERS, *flags]
+        command += [
+            f"-I{cnative_folder() / 'include'}",
+            f"-I{include}",
+            "-c",
+            str(source),
+            "-o",
+            str(target),
+        ]
+        done = subprocess.run(command, capture_output=True, text=True, check=False)
+        assert done.returncode == 0, f"{source}:\n{done.stderr}"
+
+    def link(self, program: Path, *objects: Path) -> Path:
+        """A program of these object files and the runtime."""
+        runtime = [str(self.folder / f"pn_{name}.o") for name in RUNTIME]
+        command = [
+            self.compiler,
+            *SANITIZERS,
+            "-o",
+            str(program),
+            *map(str, objects),
+            *runtime,
+            "-lm",
+        ]
+        done = subprocess.run(command, capture_output=True, text=True, check=False)
+        assert done.returncode == 0, done.stderr
+        return program
+
+    def build(self, net: NetIR, folder: Path, host: str = "walk", *flags: str) -> Path:
+        """The host over a net; generated files stay in the folder."""
+        folder.mkdir(parents=True, exist_ok=True)
+        for file in emit(net, "test"):
+            (folder / file.path).write_text(file.text)
+        self.compile(folder / "net.c", folder / "net.o", folder, *flags)
+        return self.link(folder / host, folder / "net.o", self.folder / f"{host}.o")
+
+
+def run(program: Path, *arguments: object) -> list[dict[str, Any]]:
+    """The JSON lines that a program prints; the test fails when it crashes."""
+    done = subprocess.run(
+        [str(program), *map(str, arguments)],
+        capture_output=True,
+        text=True,
+        check=False,
+        timeout=300,
+    )
+    assert done.returncode == 0, f"{program}: {done.stderr[-3000:]}"
+    return [json.loads(line) for line in done.stdout.splitlines()]
+
+
+def agrees(
+    flat: FlatNet, program: Path, *, seed: int, steps: int, storage: Mapping[str, str] | None = None
+) -> int:
+    """Walk in the program and follow in the token game; gives the number of steps that were the same.
+
+    An exception of the net must be raised in both at the same step.
+    """
+    lines = run(program, seed, steps)
+    try:
+        game = Game(flat, dict(storage or {}))
+    except GameError as error:
+        assert "error" in lines[0], f"only the token game fails at the start: {error}"
+        return 0
+    for step, line in enumerate(lines):
+        try:
+            game.advance()
+            enabled = game.enabled()
+        except GameError as error:
+            assert "error" in line, f"step {step}: only the token game fails: {error}\n{line}"
+            return step
+        assert "error" not in line, f"step {step}: only the compiled net fails: {line}"
+        _compare(game, enabled, line, step)
+        if line["chosen"] < 0:
+            return step
+        try:
+            game.fire(enabled[line["chosen"]])
+        except GameError as error:
+            following = lines[step + 1] if step + 1 < len(lines) else {}
+            assert "error" in following, f"step {step}: only the token game fails: {error}\n{line}"
+            return step
+    return len(lines)
+
+
+def _compare(game: Game, enabled: list[Any], line: dict[str, Any], step: int) -> None:
+    net = game.net
+    outputs = {
+        t.name: {s.name for s in t.code.outputs} if t.code else set() for t in net.transitions
+    }
+    mine = [[net.transitions[e.transition].name, _json(binding_to_json(e))] for e in enabled]
+    theirs = [
+        [name, {k: v for k, v in binding.items() if k not in outputs[name]}]
+        for name, binding in line["enabled"]
+    ]
+    assert theirs == mine, f"step {step}: enabled in C, enabled in the token game"
+    for place in net.places:
+        expected = place_to_json(game.colours, place.colset, game.marking.places[place.index])
+        assert line["marking"][place.name] == _json(expected), f"step {step}: place {place.name}"
+    if enabled:
+        assert line["t"] == game.marking.time, f"step {step}: model time"
+
+
+def _json(value: object) -> Any:
+    return json.loads(json.dumps(value))
