@@ -122,8 +122,9 @@ def test_unknown_layout_suggests(tmp_path: Path) -> None:
 def test_missing_file(tmp_path: Path) -> None:
     d = Diagnostics()
     assert load(tmp_path / "nowhere" / "cell.toml", d) is None
-    assert d.errors[0].code == "cell-file"
-    assert "no such file" in d.errors[0].message.lower()
+    assert d.errors[0].code == "file-missing"
+    assert "there is no file" in d.errors[0].message
+    assert "cell.toml" in d.errors[0].hint
 
 
 @pytest.mark.parametrize(

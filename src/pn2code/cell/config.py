@@ -13,6 +13,7 @@ import json
 import re
 import tomllib
 from collections.abc import Iterable, Mapping
+from copy import copy
 from dataclasses import field, replace
 from pathlib import Path
 from typing import Any, Literal, cast
@@ -168,6 +169,7 @@ class Locator:
 
     def __init__(self, file: str, text: str) -> None:
         self._file = file
+        self._layout = ""
         self._lines: dict[tuple[str, ...], int] = {}
         table: tuple[str, ...] = ()
         counts: dict[tuple[str, ...], int] = {}
@@ -185,17 +187,30 @@ class Locator:
                 continue
             else:
                 continue
-            self._lines.setdefault(table, number)
+            for depth in range(1, len(table) + 1):  # `[robots.robot1]` also begins `robots`
+                self._lines.setdefault(table[:depth], number)
+
+    def in_layout(self, layout: str) -> Locator:
+        """The same file, where a layout replaces some keys."""
+        other = copy(self)
+        other._layout = layout
+        return other
 
     def origin(self, *path: str | int) -> Origin:
-        """Origin of a key, or of the nearest table around it."""
+        """Origin of a key, or of the nearest table around it; of a layout's key where that replaces it."""
         key = tuple(map(str, path))
-        full = key
+        over = self._nearest(("layouts", self._layout, *key)) if self._layout else ()
+        found = self._nearest(key)
+        if len(over) > 2 and len(over) - 2 >= len(found):
+            found, key = over, ("layouts", self._layout, *key)
+        return Origin(
+            self._file, self._lines.get(found, 0), part=f"key `{'.'.join(key)}`" if key else ""
+        )
+
+    def _nearest(self, key: tuple[str, ...]) -> tuple[str, ...]:
         while key and key not in self._lines:
             key = key[:-1]
-        return Origin(
-            self._file, self._lines.get(key, 0), part=f"key `{'.'.join(full)}`" if full else ""
-        )
+        return key
 
 
 def _key_parts(text: str) -> Iterable[str]:
@@ -307,9 +322,22 @@ def load(path: Path, d: Diagnostics, *, layout: str | None = None) -> CellConfig
     file = str(path)
     try:
         text = path.read_text(encoding="utf-8")
+    except FileNotFoundError:
+        d.error(
+            codes.CELL_MISSING,
+            f"there is no file `{file}`",
+            Origin(file),
+            hint="give a folder with a cell.toml, or a .cpn file; docs/cell.md describes cell.toml",
+        )
+        return None
     except (OSError, UnicodeDecodeError) as problem:
         reason = getattr(problem, "strerror", None) or "not UTF-8 text"
-        d.error(codes.CELL_FILE, f"cannot read `{file}`: {reason}", Origin(file))
+        d.error(
+            codes.CELL_FILE,
+            f"cannot read `{file}`: {reason[:1].lower()}{reason[1:]}",
+            Origin(file),
+            hint="save it as a text file in UTF-8 that may be read",
+        )
         return None
     try:
         data = tomllib.loads(text)
@@ -321,6 +349,7 @@ def load(path: Path, d: Diagnostics, *, layout: str | None = None) -> CellConfig
             codes.CELL_FILE,
             f"not a TOML file: {message[:1].lower()}{message[1:]}",
             Origin(file, line, column),
+            hint="docs/cell.md shows how the sections and keys of a cell are written",
         )
         return None
     before = len(d.errors)
@@ -369,7 +398,7 @@ def _read(
         },
         layout=chosen,
         raw=data,
-        locator=locator,
+        locator=locator.in_layout(chosen),
     )
     return replace(config, report=_report(r, data, config))
 

@@ -15,6 +15,7 @@ from pathlib import PurePath
 from pn2code.cell import codes
 from pn2code.cell.config import CellConfig, ChannelConfig
 from pn2code.cell.partition import Channel, Input, Owner, OwnerKind, Partition
+from pn2code.cell.scalars import scalars_of
 from pn2code.diagnostics import Diagnostics, Note, Origin
 from pn2code.ml.colsets import Colset, Kind
 from pn2code.net.flat import ArcKind, FlatNet, FlatPlace
@@ -300,12 +301,13 @@ def _undeclared(
         both = writers[place.index] | readers[place.index]
         if len(both) > 1 and place.index not in declared:
             who = ", ".join(f"`{owners[i].name}`" for i in sorted(both))
+            kind = "flag" if len(scalars_of(place.colset) or ()) == 1 else "data"
             d.error(
                 codes.CHANNEL_UNDECLARED,
                 f"place `{place.name}` is shared by {who}, but is not a channel",
                 place.origins[0],
                 hint=f'add to {config.path.name}: [[channel]] place = "{place.short}", '
-                f'file = "{place.short}.robcad", kind = "flag"',
+                f'file = "{place.short}.robcad", kind = "{kind}"',
             )
 
 

@@ -15,11 +15,16 @@ def locate(
     """The net and the cell that a path means: a `.cpn` file (with a `cell.toml` beside it, or not),
     a `cell.toml`, a folder with one."""
     if not path.exists():
-        d.error(codes.CELL_MISSING, f"there is no file or folder `{path}`", Origin(str(path)))
+        d.error(
+            codes.CELL_MISSING,
+            f"there is no file or folder `{path}`",
+            Origin(str(path)),
+            hint="check the path",
+        )
         return None
     if path.is_dir() or path.suffix == ".toml":
         config = load(path, d, layout=layout)
-        return (config.net_path, config) if config else None
+        return (config.net_path, config) if config and _has_net(config, d) else None
     beside = path.parent / "cell.toml"
     if not beside.is_file():
         return path, None
@@ -28,3 +33,18 @@ def locate(
         return None
     # A cell.toml describes one net; others in the same folder stand for themselves.
     return (path, config) if config.net_path.resolve() == path.resolve() else (path, None)
+
+
+def _has_net(config: CellConfig, d: Diagnostics) -> bool:
+    """Whether the file that `[net] file` names is there."""
+    if config.net_path.exists():
+        return True
+    assert config.locator is not None
+    near = ", ".join(f"`{p.name}`" for p in sorted(config.folder.glob("*.cpn"))[:5])
+    d.error(
+        codes.CELL_MISSING,
+        f"there is no net `{config.net_path}`",
+        config.locator.origin("net", "file"),
+        hint=f"`file` of section [net] names a file in the folder of cell.toml, which has {near or 'no .cpn file'}",
+    )
+    return False

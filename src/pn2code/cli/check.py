@@ -8,6 +8,8 @@ from typing import Annotated
 
 import typer
 
+from pn2code.cell.config import CellConfig
+from pn2code.cell.config import load as load_cell
 from pn2code.cell.divide import divide
 from pn2code.cell.locate import locate
 from pn2code.cli.options import (
@@ -32,6 +34,16 @@ EPILOG = """Examples:
 COUNTED = ("pages", "places", "transitions", "arcs")
 
 
+def _geometry(config: CellConfig, d: Diagnostics) -> None:
+    """The robots and the scene, in all layouts."""
+    from pn2code.robot import scene  # loads NumPy and the like
+
+    for layout in config.layouts or {"": ""}:
+        cell = config if layout == config.layout else load_cell(config.path, d, layout=layout)
+        if cell is not None and cell.locator is not None:
+            scene.load(cell.geometry, cell.folder, cell.locator.origin, d)
+
+
 def check(
     net: Annotated[Path, typer.Argument(help="A .cpn file, a cell.toml, or a folder with one.")],
     as_json: Annotated[bool, typer.Option("--json", help="For programs.")] = False,
@@ -48,6 +60,8 @@ def check(
         flat = front.load(where, d, {**(config.values if config else {}), **parse_values(settings)})
         if flat is not None and config is not None and not d.has_errors:
             divide(flat, config, d)
+        if config is not None:
+            _geometry(config, d)
     ok = flat is not None and not d.has_errors
     numbers = {key: (flat.statistics.get(key, 0) if flat else 0) for key in COUNTED}
     if as_json:

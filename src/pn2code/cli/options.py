@@ -64,10 +64,14 @@ SetOption = Annotated[
 
 
 def print_diagnostics(items: Iterable[Diagnostic], form: Format = Format.FULL) -> None:
-    """Print them to stderr, in colour on a terminal. Notes are for programs and for when something is wrong."""
+    """Print them to stderr, in colour on a terminal.
+
+    Notes are for programs, and for people when something is wrong on the same page.
+    """
     items = list(items)
-    if form is Format.FULL and not any(i.severity is Severity.ERROR for i in items):
-        items = [i for i in items if i.severity is not Severity.NOTE]
+    if form is Format.FULL:
+        wrong = {i.origin.page for i in items if i.severity is Severity.ERROR} - {""}
+        items = [i for i in items if i.severity is not Severity.NOTE or i.origin.page in wrong]
     text = render.report(
         items, form.value, render.coloured if sys.stderr.isatty() else render.plain
     )

@@ -61,8 +61,11 @@ def full(item: Diagnostic, style: Style = plain) -> str:
         at = f": {note.origin.location()}" if note.origin else ""
         element = f" ({note.origin.describe()})" if note.origin and note.origin.describe() else ""
         out.append(f"{margin} {style('rule', '=')} note: {note.message}{at}{element}")
-    if item.hint:
-        out.append(f"{margin} {style('rule', '=')} help: {item.hint}")
+    hint = item.hint
+    if not hint and item.severity is Severity.ERROR:
+        hint = f"`pn2code explain {item.code}` says more"
+    if hint:
+        out.append(f"{margin} {style('rule', '=')} help: {hint}")
     return "\n".join(out)
 
 

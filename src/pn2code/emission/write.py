@@ -6,6 +6,7 @@ import json
 import shutil
 import tempfile
 from collections.abc import Iterable
+from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -40,6 +41,11 @@ def write(folder: Path, files: Iterable[OutputFile], *, check: bool = False) -> 
     new = {f.path: f.text.encode("utf-8") for f in files}
     if folder.exists() and not folder.is_dir():
         raise OutputFolderError(f"`{folder}` is not a folder; give another one with -o")
+    for path in new:
+        if (folder / path).is_dir():
+            raise OutputFolderError(
+                f"`{folder / path}` is a folder, but a file belongs there; nothing was changed"
+            )
     try:
         changed = [path for path, data in new.items() if _differs(folder / path, data)]
         removed = [p for p in _previous(folder) if p not in new and (folder / p).is_file()]
@@ -76,17 +82,26 @@ def _previous(folder: Path) -> list[str]:
 def _replace(folder: Path, changed: dict[str, bytes], removed: list[str]) -> None:
     if not changed and not removed:
         return
-    folder.mkdir(parents=True, exist_ok=True)
-    staging = Path(tempfile.mkdtemp(prefix=".pn2code-", dir=folder))
+    created = [p for p in (folder, *folder.parents) if not p.exists()]
+    staging: Path | None = None
     try:
+        folder.mkdir(parents=True, exist_ok=True)
+        staging = Path(tempfile.mkdtemp(prefix=".pn2code-", dir=folder))
         for path, data in changed.items():
             target = staging / path
             target.parent.mkdir(parents=True, exist_ok=True)
             target.write_bytes(data)
         for path in changed:
             (folder / path).parent.mkdir(parents=True, exist_ok=True)
+        for path in changed:
             (staging / path).replace(folder / path)
         for path in removed:
             (folder / path).unlink()
-    finally:
-        shutil.rmtree(staging, ignore_errors=True)
+    except BaseException:  # also when interrupted
+        if staging is not None:
+            shutil.rmtree(staging, ignore_errors=True)
+        with suppress(OSError):  # not there, or not empty: somebody else's
+            for made in created:
+                made.rmdir()
+        raise
+    shutil.rmtree(staging, ignore_errors=True)

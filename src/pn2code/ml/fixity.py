@@ -273,7 +273,7 @@ class _Resolver:
         return output[0]
 
     def _missing(self, name: str, side: str, item: object) -> FixityError:
-        hint = f"to name the operator itself write `op {name}`"
+        hint = f"write what is missing; to name the operator itself write `op {name}`"
         if side == "left" and name in ("-", "+"):
             hint = "negative numbers are written with a tilde: `~5`"
         return self._error(f"operator `{name}` has no {side} operand", _span(item), hint)

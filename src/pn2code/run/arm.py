@@ -43,7 +43,7 @@ class MovingArm:
         self._executor.stop(now)
         part = (now - motion.began) / motion.duration if motion.duration else 1.0
         return (
-            f"the {motion.kind} motion was broken off after {part:.0%}, "
+            f"`{motion.kind}` was broken off after {100 * part:.0f} %, "
             f"at TCP pose {describe(self._executor.pose)}"
         )
 

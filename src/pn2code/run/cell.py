@@ -10,11 +10,12 @@ from __future__ import annotations
 import json
 import math
 import os
+import re
 import shutil
 import tempfile
 import time
 from collections.abc import Iterator
-from contextlib import ExitStack, contextmanager
+from contextlib import ExitStack, contextmanager, suppress
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
@@ -26,7 +27,7 @@ from pn2code.channels import GRACE_S, SharedDirectory, specs_of
 from pn2code.diagnostics import Diagnostics, Origin, SourceText
 from pn2code.diagnostics.codes import register
 from pn2code.emission.output import OutputFile
-from pn2code.emission.write import write
+from pn2code.emission.write import OutputFolderError, write
 from pn2code.report.rows import rows_tsv
 from pn2code.report.summary import summarise
 from pn2code.robot import scene
@@ -37,7 +38,7 @@ from pn2code.run.engine import Engine, Observer
 from pn2code.run.files import RobotFiles
 from pn2code.run.realtime import RealtimeEngine
 from pn2code.run.record import RunRecord, RunWarning
-from pn2code.run.supervisor import SupervisorProcess
+from pn2code.run.supervisor import EXIT_USAGE, Exit, SupervisorProcess
 from pn2code.run.trace import GrowingTrace, trace_text
 from pn2code.tdl.check import CheckedProgram, check
 from pn2code.tdl.parse import parse
@@ -51,16 +52,18 @@ RUN_NO_CELL = register(
 )
 RUN_INPUT = register(
     "run-input",
-    "the input file given to `run` does not fit",
-    "`--input FILE` replaces the cell's input file for one run. A cell with several "
-    "inputs takes a folder that holds them.",
+    "the input file does not fit",
+    "An input file is missing, or its text is not a token of its place: the message gives line and column. `--input "
+    "FILE` replaces the cell's input file for one run. A cell with several inputs takes a folder that holds them.",
 )
 RUN_START = register(
     "run-start",
     "the supervisor did not start",
-    "The compiled supervisor ended before the first step; its own message follows. A wrong input file is "
-    "the usual reason.",
+    "The compiled supervisor ended before the first step; its own message follows. A shared directory or a trace that "
+    "cannot be written is the usual reason.",
 )
+
+_POSITION = re.compile(r"(?P<file>[^\n:]+)(?::(?P<line>\d+):(?P<column>\d+))?: (?P<what>.*)")
 
 ROBOT_START_S = 10.0
 """How long a robot waits for the supervisor to announce itself."""
@@ -158,7 +161,15 @@ def run_cell(
 ) -> RunResult | None:
     """Runs a cell in lock-step and writes trace, rows and summary; None when it could not start."""
     started = time.perf_counter()
-    options.out.mkdir(parents=True, exist_ok=True)
+    if options.input is not None and not options.input.exists():
+        at = Origin(str(options.input))
+        d.error(
+            CELL_MISSING,
+            f"there is no file or folder `{options.input}`",
+            at,
+            hint="correct what follows --input",
+        )
+        return None
     prepared = prepare(path, options, d)
     if prepared is None:
         return None
@@ -207,13 +218,7 @@ def _start(
     }
     for side in sides.values():
         if not side.await_supervisor(ROBOT_START_S if supervisor.running else 0.0):
-            ended = supervisor.close()
-            d.error(
-                RUN_START,
-                f"the supervisor did not start: {ended.reason}",
-                Origin(str(inputs)),
-                notes=[line for line in ended.stderr.splitlines() if line][:8],
-            )
+            _report_start(supervisor.close(), inputs, options, d)
             return None
     trace = GrowingTrace(trace_path)
     stack.callback(trace.close)
@@ -224,6 +229,28 @@ def _start(
         files = RobotFiles(side, GRACE_S if options.realtime else 0.0)
         engine.add_robot(name, script, program, files, executor)
     return engine
+
+
+def _report_start(ended: Exit, inputs: Path, options: RunOptions, d: Diagnostics) -> None:
+    """What the supervisor said when it did not start; mistakes of an input file at their place in the user's file."""
+    reason, at = ended.reason, Origin(str(inputs))
+    if found := _POSITION.fullmatch(reason):
+        file = Path(found["file"])
+        if options.input is not None and options.input.is_file() and file.parent == inputs:
+            file = options.input  # the supervisor read a copy
+        at = Origin(str(file), int(found["line"] or 0), int(found["column"] or 0))
+        reason = found["what"]
+    others = (line for line in ended.stderr.splitlines() if line and ended.reason not in line)
+    usage = ended.code == EXIT_USAGE
+    d.error(
+        RUN_INPUT if usage else RUN_START,
+        f"the supervisor did not start: {reason}",
+        at,
+        notes=list(others)[:8],
+        hint="correct the input file, or give another one with --input"
+        if usage
+        else "`./supervisor --help` in the folder of the program says what it needs",
+    )
 
 
 def _engine(
@@ -269,10 +296,6 @@ def _inputs(config: CellConfig, options: RunOptions, d: Diagnostics) -> Iterator
     given = options.input
     if given is None or given.is_dir():
         yield config.folder if given is None else given
-        return
-    if not given.is_file():
-        d.error(CELL_MISSING, f"there is no file `{given}`", Origin(str(given)))
-        yield None
         return
     if len(config.inputs) != 1:
         d.error(
@@ -332,7 +355,18 @@ def _write_results(
         "rows.tsv": rows_tsv(record.messages, prepared.config.report.rows),
         "summary.json": json.dumps(summary, indent=1, ensure_ascii=False) + "\n",
     }
-    for file, text in texts.items():
-        partial = out / f".{file}.tmp"
-        partial.write_text(text, encoding="utf-8")
-        partial.replace(out / file)
+    partial = {file: out / f".{file}.tmp" for file in texts}
+    try:
+        for file, text in texts.items():
+            partial[file].write_text(text, encoding="utf-8")
+        for file, path in partial.items():
+            path.replace(out / file)
+    except OSError as problem:
+        reason = problem.strerror or str(problem)
+        raise OutputFolderError(
+            f"cannot write the results in `{out}`: {reason[:1].lower()}{reason[1:]}"
+        ) from problem
+    finally:
+        for path in partial.values():
+            with suppress(OSError):
+                path.unlink(missing_ok=True)

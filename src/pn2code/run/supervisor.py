@@ -34,6 +34,9 @@ EXIT_MEANING: Final[dict[int, str]] = {
 }
 """The supervisor's exit codes (docs/protocol.md)."""
 
+EXIT_USAGE: Final = 2
+"""Wrong usage, or a mistake in an input file."""
+
 _KEPT_LINES = 400
 
 

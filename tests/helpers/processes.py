@@ -1,0 +1,126 @@
+"""The command `pn2code` as a process of its own, without loading Python and the package again: a fork of the tests'.
+
+It has its own arguments, exit code, signals and standard streams; killing it kills nothing else.
+
+    done = pn2code("check", folder)         # subprocess.CompletedProcess
+    child = Child(lambda: 3); child.wait()  # 3
+"""
+
+from __future__ import annotations
+
+import os
+import signal
+import subprocess
+import sys
+import tempfile
+import time
+import traceback
+from collections.abc import Callable
+from contextlib import suppress
+from pathlib import Path
+
+from pn2code.cli.main import main
+
+DEADLINE_S = 60.0
+
+
+class Child:
+    """A forked process that runs a function; its result is the exit code. Negative codes: the signal that ended it."""
+
+    def __init__(
+        self, body: Callable[[], int], stdout: int | None = None, stderr: int | None = None
+    ) -> None:
+        sys.stdout.flush()
+        sys.stderr.flush()
+        self._code: int | None = None
+        self.pid = os.fork()
+        if self.pid == 0:
+            self._become(body, stdout, stderr)
+
+    @staticmethod
+    def _become(body: Callable[[], int], stdout: int | None, stderr: int | None) -> None:
+        code = 70
+        try:
+            for number in (signal.SIGINT, signal.SIGTERM):
+                signal.signal(number, signal.SIG_DFL)
+            for source, target in ((stdout, 1), (stderr, 2)):
+                if source is not None:
+                    os.dup2(source, target)
+            sys.stdin = open(os.devnull)  # noqa: SIM115, PTH123 - for as long as the process lives
+            sys.stdout = os.fdopen(os.dup(1), "w", encoding="utf-8")
+            sys.stderr = os.fdopen(os.dup(2), "w", encoding="utf-8")
+            code = body()
+        except SystemExit as leaving:
+            code = leaving.code if isinstance(leaving.code, int) else int(leaving.code is not None)
+        except BaseException:
+            traceback.print_exc()
+        finally:
+            with suppress(OSError, ValueError):
+                sys.stdout.flush()
+                sys.stderr.flush()
+            os._exit(code)
+
+    def poll(self) -> int | None:
+        """The exit code, None while it runs."""
+        if self._code is None:
+            pid, status = os.waitpid(self.pid, os.WNOHANG)
+            if pid:
+                self._code = os.waitstatus_to_exitcode(status)
+        return self._code
+
+    def wait(self, timeout: float = DEADLINE_S) -> int:
+        """The exit code; kills the process when it runs for too long."""
+        end = time.monotonic() + timeout
+        while (code := self.poll()) is None:
+            if time.monotonic() > end:
+                self.kill()
+                raise TimeoutError(f"process {self.pid} runs on")
+            time.sleep(0.002)
+        return code
+
+    def signal(self, number: int) -> None:
+        """Sends a signal, if it still runs."""
+        if self.poll() is None:
+            os.kill(self.pid, number)
+
+    def kill(self) -> None:
+        """SIGKILL, and waits for the end."""
+        if self.poll() is None:
+            os.kill(self.pid, signal.SIGKILL)
+            _, status = os.waitpid(self.pid, 0)
+            self._code = os.waitstatus_to_exitcode(status)
+
+
+class Command(Child):
+    """`pn2code ARGUMENTS` under way."""
+
+    def __init__(self, *arguments: str | Path, prepare: Callable[[], None] = lambda: None) -> None:
+        self.arguments = ["pn2code", *map(str, arguments)]
+        self._out = tempfile.TemporaryFile()  # noqa: SIM115 - read after the end
+        self._err = tempfile.TemporaryFile()  # noqa: SIM115
+
+        def body() -> int:
+            prepare()
+            sys.argv = self.arguments
+            main()
+
+        super().__init__(body, self._out.fileno(), self._err.fileno())
+
+    def done(self, timeout: float = DEADLINE_S) -> subprocess.CompletedProcess[str]:
+        """Waits; what it printed must not be about a bug."""
+        code = self.wait(timeout)
+        texts = []
+        for stream in (self._out, self._err):
+            stream.seek(0)
+            texts.append(stream.read().decode())
+            stream.close()
+        assert "Traceback" not in texts[1], texts[1]
+        assert "internal error" not in texts[1], texts[1]
+        return subprocess.CompletedProcess(self.arguments, code, *texts)
+
+
+def pn2code(
+    *arguments: str | Path, prepare: Callable[[], None] = lambda: None
+) -> subprocess.CompletedProcess[str]:
+    """Runs the command to its end. `prepare` runs in the process before."""
+    return Command(*arguments, prepare=prepare).done()
