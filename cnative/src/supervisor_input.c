@@ -125,10 +125,9 @@ static bool parse(sup_t *sup, const pn_cell_input_t *input, input_text_t *text, 
     }
     if (take_line(text, &line, &length)) {
         char shown[160];
-        return sup_stop(sup, SUP_EXIT_USAGE, "%s:%" PRIu32 ":1: found %s after the last line that is expected (line %" PRIu32
-                        " of %" PRIu32 ")",
-                        text->path, text->line, pn_quote(line, length, shown, sizeof shown), place->line_count + 1U,
-                        place->line_count);
+        return sup_stop(sup, SUP_EXIT_USAGE, "%s:%" PRIu32 ":1: found %s after the %" PRIu32 " line%s that belong%s here",
+                        text->path, text->line, pn_quote(line, length, shown, sizeof shown), place->line_count,
+                        (place->line_count == 1U) ? "" : "s", (place->line_count == 1U) ? "s" : "");
     }
     return true;
 }

@@ -732,7 +732,7 @@ INPUT_ERRORS = [
         "orders.txt:1:1: -1 is out of the colour set `COUNT` of `n`, which goes from 0 to 1000000000",
     ),
     ("13\n0.5 7\n", "not in the colour set"),
-    ("3\n0.5 7\n1 2\n", "orders.txt:3:1: found `1 2` after the last line that is expected"),
+    ("3\n0.5 7\n1 2\n", "orders.txt:3:1: found `1 2` after the 2 lines that belong here"),
     ("\x00\x01\n", "is not a number"),
 ]
 

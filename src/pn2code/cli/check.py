@@ -13,10 +13,10 @@ from pn2code.cell.config import load as load_cell
 from pn2code.cell.divide import divide
 from pn2code.cell.locate import locate
 from pn2code.cli.options import (
-    Exit,
     Format,
     FormatOption,
     SetOption,
+    code_of,
     parse_values,
     print_diagnostics,
 )
@@ -76,5 +76,4 @@ def check(
         counted = ", ".join(f"{n} {key}" for key, n in numbers.items()) + ": " if flat else ""
         typer.echo(f"{where}: {counted}{render.count(d)}")
     if not ok:
-        missing = any(e.code in ("file-missing", "file-unreadable") for e in d.errors)
-        raise typer.Exit(Exit.USAGE if missing else Exit.MODEL)
+        raise typer.Exit(code_of(d))

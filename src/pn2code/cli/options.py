@@ -84,5 +84,13 @@ def stop(d: Diagnostics, form: Format = Format.FULL) -> NoReturn:
     print_diagnostics(d.sorted(), form)
     if form is Format.FULL:
         print(f"\n{render.count(d)}", file=sys.stderr)
-    missing = any(e.code in ("file-missing", "file-unreadable") for e in d.errors)
-    raise typer.Exit(Exit.USAGE if missing else Exit.MODEL)
+    raise typer.Exit(code_of(d))
+
+
+_FILES = frozenset({"file-missing", "file-unreadable", "run-input"})
+"""Codes about files that were given rather than about the model in them."""
+
+
+def code_of(d: Diagnostics) -> int:
+    """The exit code for these errors: a file is missing or wrong, or the model is."""
+    return Exit.USAGE if any(e.code in _FILES for e in d.errors) else Exit.MODEL
