@@ -1,0 +1,140 @@
+/* SPDX-License-Identifier: MIT
+ * pn_bag.h - the multi-set of a place inside a marking, and the moves of a firing.
+ *
+ * The generated marking holds, for each place, a number of used entries and a fixed array of tokens
+ *
+ *     struct { uint32_t used; struct { pose_t value; uint32_t count; } token[64]; } Waiting;           untimed
+ *     struct { uint32_t used; struct { pose_t value; uint32_t count; pn_time_t stamp; } token[64]; }   timed
+ *
+ * sorted by value, then stamp, without equal neighbours. A pn_bag_t tells where they are.
+ */
+#ifndef PN_BAG_H
+#define PN_BAG_H
+
+#include "pn/pn_type.h"
+
+typedef struct pn_bag {
+    const char *origin;      /* "page `Robot`, place `Waiting` (ID1407)" */
+    const pn_type_t *type;   /* colour set */
+    uint32_t capacity;       /* entries */
+    bool is_timed;
+    bool is_real_time;       /* stamps are reals */
+    size_t used;             /* offset of `used` in the marking */
+    size_t first;            /* offset of token[0] in the marking */
+    size_t stride;           /* size of a token */
+    size_t value;            /* offsets in a token */
+    size_t count;
+    size_t stamp;
+    uint32_t early_count;      /* of the delays of input arcs (`x@+3`), by which tokens may be taken before their stamps */
+    const pn_time_t *early;
+} pn_bag_t;
+
+/* The offsets of a place `member` of a marking, for the initialiser of a pn_bag_t; PN_BAG_STAMPS as well if it is timed. */
+#define PN_BAG_TOKENS(marking_type, member)                                                                        \
+    .used = offsetof(marking_type, member.used), .first = offsetof(marking_type, member.token),                    \
+    .stride = sizeof(((const marking_type *)0)->member.token[0]),                                                  \
+    .value = offsetof(marking_type, member.token[0].value) - offsetof(marking_type, member.token),                 \
+    .count = offsetof(marking_type, member.token[0].count) - offsetof(marking_type, member.token)
+#define PN_BAG_STAMPS(marking_type, member)                                                                        \
+    .stamp = offsetof(marking_type, member.token[0].stamp) - offsetof(marking_type, member.token)
+
+/* Number of tokens. */
+uint64_t pn_bag_total(const pn_bag_t *bag, const void *marking);
+/* Number of tokens with a stamp not after `now`; all of them in an untimed place. */
+uint64_t pn_bag_available(const pn_bag_t *bag, const void *marking, pn_time_t now);
+/* Number of tokens of one value with a stamp not after `limit`. */
+uint64_t pn_bag_count(const pn_bag_t *bag, const void *marking, const void *value, pn_time_t limit);
+/* Adds tokens. False (PN_ERR_CAPACITY, nothing changed) when there is no room. */
+bool pn_bag_add(pn_ctx_t *cx, const pn_bag_t *bag, void *marking, const void *value, uint32_t count, pn_time_t stamp);
+void pn_bag_clear(const pn_bag_t *bag, void *marking);
+/* The earliest time after `now` at which a token becomes available, if it is before *next or *found is false. */
+void pn_bag_next_time(const pn_bag_t *bag, const void *marking, pn_time_t now, bool *found, pn_time_t *next);
+void pn_bag_json(const pn_bag_t *bag, const void *marking, pn_text_t *out);
+uint32_t pn_bag_token(const pn_bag_t *bag, const void *marking, uint32_t i, pn_leaf_t *leaf, uint32_t capacity);
+/* Adds one token made of leaves, stamped with the context's time. */
+bool pn_bag_put(pn_ctx_t *cx, const pn_bag_t *bag, void *marking, const pn_leaf_t *leaf, uint32_t leaves);
+size_t pn_bag_encode(const pn_bag_t *bag, const void *marking, uint8_t *out, size_t room);
+size_t pn_bag_decode(pn_ctx_t *cx, const pn_bag_t *bag, void *marking, const uint8_t *in, size_t length);
+void pn_bag_relocate(pn_ctx_t *cx, const pn_bag_t *bag, void *marking);
+
+/* The functions of one place for the table of the net: `stem`_count, _token, _put, _clear, _json over its bag. */
+#define PN_PLACE_FUNCTIONS(stem, bag)                                                                               \
+    static uint64_t stem##_count(const void *marking)                                                               \
+    {                                                                                                               \
+        return pn_bag_total(&(bag), marking);                                                                       \
+    }                                                                                                               \
+    static uint32_t stem##_token(const void *marking, uint32_t i, pn_leaf_t *leaf, uint32_t capacity)               \
+    {                                                                                                               \
+        return pn_bag_token(&(bag), marking, i, leaf, capacity);                                                    \
+    }                                                                                                               \
+    static bool stem##_put(pn_ctx_t *cx, void *marking, const pn_leaf_t *leaf, uint32_t leaves)                     \
+    {                                                                                                               \
+        cx->now = pn_net.now(marking);                                                                              \
+        return pn_bag_put(cx, &(bag), marking, leaf, leaves);                                                       \
+    }                                                                                                               \
+    static void stem##_clear(void *marking)                                                                         \
+    {                                                                                                               \
+        pn_bag_clear(&(bag), marking);                                                                              \
+    }                                                                                                               \
+    static void stem##_json(const void *marking, pn_text_t *out)                                                    \
+    {                                                                                                               \
+        pn_bag_json(&(bag), marking, out);                                                                          \
+    }
+
+/* Times as the context and the tokens hold them. */
+#define PN_NO_TIME ((pn_time_t){ .integer = 0 })
+static inline pn_time_t pn_time_int(int64_t time)
+{
+    return (pn_time_t){ .integer = time };
+}
+static inline pn_time_t pn_time_real(double time)
+{
+    return (pn_time_t){ .real = time };
+}
+/* Order of two times. */
+int pn_time_order(bool is_real_time, pn_time_t a, pn_time_t b);
+
+/* --- moves: what a firing takes and puts --------------------------------------------------------------------------- */
+
+typedef enum pn_move_kind {
+    PN_MOVE_TAKE,
+    PN_MOVE_PUT,
+    PN_MOVE_RESET
+} pn_move_kind_t;
+
+typedef struct pn_move {
+    struct pn_move *next;
+    pn_move_kind_t kind;
+    const pn_bag_t *bag;
+    const void *value;
+    uint32_t count;
+    pn_time_t time;      /* TAKE: latest stamp; PUT: the stamp */
+    pn_time_t taken;     /* TAKE, once done: the stamp of the token that was taken */
+    bool is_done;
+} pn_move_t;
+
+/* The moves of one firing, collected in the arena: first everything is worked out, then pn_moves_commit does it. */
+typedef struct pn_moves {
+    pn_ctx_t *cx;
+    pn_move_t *first;
+    pn_move_t *last;
+} pn_moves_t;
+
+void pn_moves_init(pn_moves_t *moves, pn_ctx_t *cx);
+/* Wants `count` tokens (none if count <= 0) of a value with stamps not after `limit`. The value is copied. */
+void pn_moves_take(pn_moves_t *moves, const pn_bag_t *bag, const void *value, int64_t count, pn_time_t limit);
+/* Wants every element of a multi-set, a list with cells of `list`. */
+void pn_moves_take_list(pn_moves_t *moves, const pn_bag_t *bag, const pn_type_t *list, const void *multiset, pn_time_t limit);
+/* Puts tokens: narrowed, then checked against the colour set (PN_ERR_COLOUR). */
+void pn_moves_put(pn_moves_t *moves, const pn_bag_t *bag, const void *value, int64_t count, pn_time_t stamp);
+void pn_moves_put_list(pn_moves_t *moves, const pn_bag_t *bag, const pn_type_t *list, const void *multiset, pn_time_t stamp);
+/* Puts a timed multi-set: a list of { value; stamp } whose element type is the record `timed`; `delay` is added to each stamp. */
+void pn_moves_put_timed(pn_moves_t *moves, const pn_bag_t *bag, const pn_type_t *list, const void *multiset, pn_time_t delay);
+/* Empties a place at the end; a timed one keeps what is stamped after `now`. */
+void pn_moves_reset(pn_moves_t *moves, const pn_bag_t *bag, pn_time_t now);
+/* Whether the marking holds all that is wanted, together. Changes nothing. */
+bool pn_moves_are_possible(const pn_moves_t *moves, const void *marking);
+/* Takes, then puts, then resets. On error (also one that is there already) the marking is as before, and the answer false. */
+bool pn_moves_commit(pn_moves_t *moves, void *marking);
+
+#endif /* PN_BAG_H */

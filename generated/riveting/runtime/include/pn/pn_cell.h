@@ -1,0 +1,102 @@
+/* SPDX-License-Identifier: MIT
+ * pn_cell.h - the generated configuration of a supervisor (cell_config.c): what it exchanges with whom, through which files.
+ *
+ * net.c says what the net does; pn_cell says which part of it this program plays. A net without a cell has the constant too,
+ * with no channels: its supervisor owns every transition.
+ */
+#ifndef PN_CELL_H
+#define PN_CELL_H
+
+#include "pn/pn_types.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+#define PN_CELL_ABI 1U
+
+/* One scalar of a token, as it is written in a file. The place's leaves (pn_place_t.leaf_kind) are the same scalars seen
+ * from the net; here is what a reader needs besides: names of constructors and ranges. */
+typedef enum pn_scalar_kind {
+    PN_SCALAR_UNIT,   /* written 1 */
+    PN_SCALAR_BOOL,   /* 0, 1 */
+    PN_SCALAR_INT,    /* decimal; `low`..`high` when `bounded` */
+    PN_SCALAR_REAL,   /* decimal; `real_low`..`real_high` when `bounded` */
+    PN_SCALAR_STRING, /* "in double quotes" */
+    PN_SCALAR_ENUM,   /* one of `name` */
+    PN_SCALAR_INDEX   /* decimal, `low`..`high` */
+} pn_scalar_kind_t;
+
+typedef struct pn_scalar {
+    pn_scalar_kind_t kind;
+    const char *label;        /* "p.x"; for messages */
+    const char *colset;       /* "COORD"; for messages */
+    bool bounded;
+    int64_t low, high;
+    double real_low, real_high;
+    uint32_t name_count;
+    const char *const *name;
+} pn_scalar_t;
+
+typedef enum pn_channel_direction {
+    PN_CHANNEL_IN, /* a peer writes, the supervisor reads */
+    PN_CHANNEL_OUT /* the supervisor writes, a peer reads */
+} pn_channel_direction_t;
+
+typedef enum pn_channel_kind {
+    PN_CHANNEL_DATA, /* published before ... */
+    PN_CHANNEL_FLAG  /* ... the flags that announce them (I5) */
+} pn_channel_kind_t;
+
+typedef struct pn_cell_channel {
+    const char *name;    /* "flag1_interno" */
+    const char *file;    /* "flag1_interno.robcad" */
+    uint32_t place;      /* index in pn_net.place */
+    const char *place_name; /* must be that place's name: the two generated files belong together */
+    pn_channel_direction_t direction;
+    pn_channel_kind_t kind;
+    uint32_t peer;       /* index in pn_cell_t.peer */
+    uint32_t scalar_count;
+    const pn_scalar_t *scalar;
+} pn_cell_channel_t;
+
+typedef struct pn_cell_input {
+    const char *name;
+    const char *file;    /* in the input directory */
+    uint32_t place;
+    const char *place_name;
+    uint32_t scalar_count;
+    const pn_scalar_t *scalar;
+} pn_cell_input_t;
+
+/* The other side of channels: a robot. */
+typedef struct pn_cell_peer {
+    const char *name;    /* "robot1" */
+    int32_t owner;       /* index in pn_net.owner */
+} pn_cell_peer_t;
+
+typedef struct pn_cell {
+    uint32_t abi;              /* PN_CELL_ABI */
+    const char *name;          /* of the net, "cell" */
+    const char *version;       /* of pn2code that generated this */
+    const char *digest;        /* equals pn_net.digest */
+    const char *side;          /* this party's name in files: "supervisor" */
+    int32_t owner;             /* whose transitions this program plays; -1: all of them (no cell) */
+    double reply_timeout_s;    /* 0: none */
+    uint32_t channel_count;    /* data before flags, each in the order of cell.toml */
+    const pn_cell_channel_t *channel;
+    uint32_t input_count;
+    const pn_cell_input_t *input;
+    uint32_t peer_count;
+    const pn_cell_peer_t *peer;
+    uint32_t final_count;
+    const uint32_t *final_place;
+} pn_cell_t;
+
+extern const pn_cell_t pn_cell;
+
+#ifdef __cplusplus
+}
+#endif
+
+#endif /* PN_CELL_H */

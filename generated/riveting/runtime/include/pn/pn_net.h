@@ -1,0 +1,141 @@
+/* SPDX-License-Identifier: MIT
+ * pn_net.h - the contract between a generated net (net.c) and the hosts that run it.
+ *
+ * A generated net is one constant table, `const pn_net_t pn_net`, and a marking type whose size the table
+ * gives. Hosts (supervisor, simulate, explore) know nets only through this table: the same object file net.o is verified,
+ * simulated and deployed.
+ *
+ * Errors: a net's expressions may raise (integer overflow, division by zero, no matching rule, a colour out of range, an
+ * array that is full). The first error of a context is kept in it (pn_ctx_t.error) and is sticky: from then on every operation
+ * gives a harmless value. Hosts look at it after each call; nothing of a firing that failed becomes visible: fire
+ * works out every output before it takes the first token.
+ */
+#ifndef PN_NET_H
+#define PN_NET_H
+
+#include "pn/pn_types.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+#define PN_NET_ABI 1U
+
+#if defined(__GNUC__)
+#define PN_NODISCARD __attribute__((warn_unused_result))
+#else
+#define PN_NODISCARD
+#endif
+
+/* One scalar of a token, in the declared order of the colour set's components; how tokens cross the border of the net. */
+typedef enum pn_leaf_kind {
+    PN_LEAF_BOOL,
+    PN_LEAF_INT,
+    PN_LEAF_REAL,
+    PN_LEAF_STRING,
+    PN_LEAF_ENUM /* value: position of the constructor; also unit (0) and index (its number) */
+} pn_leaf_kind_t;
+
+typedef struct pn_leaf {
+    pn_leaf_kind_t kind;
+    int64_t integer;   /* BOOL, INT, ENUM */
+    double real;       /* REAL */
+    const char *text;  /* STRING, and the constructor's name for ENUM; valid until the next firing */
+} pn_leaf_t;
+
+/* Called for each enabled binding element; returns false to stop the enumeration. The binding lives until the call returns. */
+typedef bool (*pn_binding_sink_t)(void *user, uint32_t transition, const void *binding);
+
+/* Sink for text: bytes are appended to a host's buffer or file. */
+typedef struct pn_text {
+    char *buffer;     /* zero-terminated after each append */
+    size_t capacity;  /* bytes, terminator included */
+    size_t length;    /* bytes used; > capacity - 1 never; `truncated` says that something was cut */
+    bool truncated;
+} pn_text_t;
+
+typedef struct pn_place {
+    const char *name;       /* "Top.Robot1.Waiting" */
+    const char *colset;     /* "POSE" */
+    const char *origin;     /* "page `Robot`, place `Waiting` (ID1407)" */
+    int32_t owner;          /* index in pn_net_t.owner; -1: a channel */
+    uint32_t capacity;      /* most tokens (or distinct colours) that fit */
+    bool timed;
+    /* Number of tokens. */
+    uint64_t (*count)(const void *marking);
+    /* Token i (0 <= i < distinct) as leaves, at most `capacity` of them; returns their number, 0 if there is no token i or
+     * the colour set has no fixed leaves. */
+    uint32_t (*token)(const void *marking, uint32_t i, pn_leaf_t *leaf, uint32_t capacity);
+    /* Puts one token. Fails (false, context error set) when the leaves do not fit the colour set or the place is full. */
+    bool (*put)(pn_ctx_t *cx, void *marking, const pn_leaf_t *leaf, uint32_t leaves);
+    /* Takes all tokens away. */
+    void (*clear)(void *marking);
+    /* The marking of the place as JSON, the form of the traces: [[count, value], ...] or [[count, value, stamp], ...]. */
+    void (*json)(const void *marking, pn_text_t *out);
+    uint32_t leaf_count;             /* 0: no fixed number of leaves (lists, unions) */
+    const pn_leaf_kind_t *leaf_kind; /* leaf_count of them */
+    const char *const *leaf_name;    /* "x", "y", ... or "1", "2" for components; for messages */
+    uint32_t line_count;             /* how an input file is laid out: leaves per line, by top-level component */
+    const uint32_t *line_leaves;
+} pn_place_t;
+
+typedef struct pn_transition {
+    const char *name;    /* "Top.Robot1.Accept" */
+    const char *id;      /* XML id */
+    const char *origin;  /* "page `Robot`, transition `Accept` (ID1412)" */
+    int32_t owner;
+    int32_t priority;    /* smaller is more urgent */
+    /* Calls the sink for every binding enabled at the marking's time, in a fixed order; priorities are the host's business.
+     * Returns false when the sink stopped it. */
+    bool (*enumerate)(pn_ctx_t *cx, const void *marking, uint32_t self, pn_binding_sink_t sink, void *user);
+    /* Fires an enabled binding and stores the code segment's outputs in it. On error (context error set, false) the marking
+     * is unchanged. `binding` is the host's copy (binding_size bytes) of what the sink was given. */
+    bool (*fire)(pn_ctx_t *cx, void *marking, void *binding);
+    /* The binding as a JSON object, values in the form of the traces. Code-segment outputs included after a fire. */
+    void (*binding_json)(const void *binding, pn_text_t *out);
+    size_t binding_size;
+} pn_transition_t;
+
+typedef struct pn_owner {
+    const char *name;   /* "supervisor", "robot1" */
+} pn_owner_t;
+
+typedef struct pn_net {
+    uint32_t abi;             /* PN_NET_ABI */
+    const char *name;         /* "cell" */
+    const char *source;       /* "cell.cpn" */
+    const char *digest;       /* SHA-256 of the .cpn file and of what cell.toml contributes, hex */
+    bool timed;
+    bool real_time;           /* the clock is real: times are double; else int64_t */
+    size_t marking_size;      /* bytes of a marking; may hold pointers into the context's arena */
+    size_t binding_size;      /* bytes of the largest binding */
+    uint32_t place_count;
+    const pn_place_t *place;
+    uint32_t transition_count;
+    const pn_transition_t *transition;
+    uint32_t owner_count;     /* 0: no cell, everything belongs to nobody */
+    const pn_owner_t *owner;
+    uint32_t order_count;     /* transition indices by priority, then page and name: the documented order of trying */
+    const uint32_t *order;
+    /* The initial marking. False on error. */
+    bool (*init)(pn_ctx_t *cx, void *marking);
+    /* Model time. Times are int64_t; in a real-time net microseconds-free doubles, bit-copied (pn_time_t in pn_types.h). */
+    pn_time_t (*now)(const void *marking);
+    void (*set_now)(void *marking, pn_time_t now);
+    /* The earliest time after `now` at which a token stamp ends; false if there is none. */
+    bool (*next_time)(const void *marking, pn_time_t *next);
+    /* Canonical bytes of a marking: equal markings, equal bytes. Returns the length, 0 when `capacity` is too small. */
+    size_t (*encode)(const void *marking, uint8_t *out, size_t capacity);
+    bool (*decode)(pn_ctx_t *cx, void *marking, const uint8_t *in, size_t length);
+    /* Between firings: moves what the marking refers to into the other half of the arena (see pn_arena.h). No-op for nets
+     * whose values need no arena. */
+    void (*collect)(pn_ctx_t *cx, void *marking);
+} pn_net_t;
+
+extern const pn_net_t pn_net;
+
+#ifdef __cplusplus
+}
+#endif
+
+#endif /* PN_NET_H */

@@ -1,0 +1,161 @@
+/* SPDX-License-Identifier: MIT
+ * pn_num.h - numbers of CPN ML: checked integers, real functions.
+ *
+ * `int` is the 31-bit integer of the real tool, kept in an int64_t; `IntInf.int` and model times are 64-bit here, and what does not
+ * fit is reported, not wrapped. `div` and `mod` round down, `quot` and `rem` toward zero. On error the value is 0.
+ */
+#ifndef PN_NUM_H
+#define PN_NUM_H
+
+#include "pn/pn_types.h"
+
+#define PN_INT_MIN (-INT64_C(1073741824))
+#define PN_INT_MAX INT64_C(1073741823)
+
+/* Notes an error unless there already is one. `name` is the exception's name; NULL: that of the error. */
+void pn_raise(pn_ctx_t *cx, pn_error_t error, const char *name);
+/* The name CPN ML gives an error ("Overflow", "Div", ...). */
+const char *pn_error_name(pn_error_t error);
+
+static inline bool pn_ok(const pn_ctx_t *cx)
+{
+    return cx->error == PN_OK;
+}
+
+/* Begins a call of a recursive function: false when an error is set or the recursion is too deep (PN_ERR_DEPTH). */
+#ifndef PN_DEPTH_MAX
+#define PN_DEPTH_MAX 10000U
+#endif
+static inline bool pn_enter(pn_ctx_t *cx)
+{
+    if (cx->depth >= PN_DEPTH_MAX) {
+        pn_raise(cx, PN_ERR_DEPTH, NULL);
+    }
+    if (cx->error != PN_OK) {
+        return false;
+    }
+    cx->depth++;
+    return true;
+}
+/* Ends it; only after pn_enter was true. */
+static inline void pn_leave(pn_ctx_t *cx)
+{
+    cx->depth--;
+}
+
+/* Whether the error is an exception of CPN ML that a handler may catch, and whether it has this name. */
+bool pn_is_exception(const pn_ctx_t *cx);
+bool pn_is_raised(const pn_ctx_t *cx, const char *name);
+/* The exception has been handled. */
+void pn_clear_error(pn_ctx_t *cx);
+
+#define PN_PI 3.141592653589793
+#define PN_E 2.718281828459045
+
+/* The value if it is in the 31-bit range; else Overflow. */
+int64_t pn_int_checked(pn_ctx_t *cx, int64_t value);
+
+static inline int64_t pn_step(const pn_ctx_t *cx)
+{
+    return (int64_t)cx->step;
+}
+
+static inline int64_t pn_int_add(pn_ctx_t *cx, int64_t a, int64_t b)
+{
+    return pn_int_checked(cx, a + b);
+}
+
+static inline int64_t pn_int_sub(pn_ctx_t *cx, int64_t a, int64_t b)
+{
+    return pn_int_checked(cx, a - b);
+}
+
+static inline int64_t pn_int_mul(pn_ctx_t *cx, int64_t a, int64_t b)
+{
+    return pn_int_checked(cx, a * b);
+}
+
+static inline int64_t pn_int_neg(pn_ctx_t *cx, int64_t a)
+{
+    return pn_int_checked(cx, -a);
+}
+
+static inline int64_t pn_int_abs(pn_ctx_t *cx, int64_t a)
+{
+    return pn_int_checked(cx, (a < 0) ? -a : a);
+}
+
+static inline int64_t pn_int_min(int64_t a, int64_t b)
+{
+    return (a < b) ? a : b;
+}
+
+static inline int64_t pn_int_max(int64_t a, int64_t b)
+{
+    return (a > b) ? a : b;
+}
+
+static inline int64_t pn_int_sign(int64_t a)
+{
+    return (a > 0) ? 1 : ((a < 0) ? -1 : 0);
+}
+
+int64_t pn_int_div(pn_ctx_t *cx, int64_t a, int64_t b);
+int64_t pn_int_mod(pn_ctx_t *cx, int64_t a, int64_t b);
+int64_t pn_int_quot(pn_ctx_t *cx, int64_t a, int64_t b);
+int64_t pn_int_rem(pn_ctx_t *cx, int64_t a, int64_t b);
+
+int64_t pn_inf_add(pn_ctx_t *cx, int64_t a, int64_t b);
+int64_t pn_inf_sub(pn_ctx_t *cx, int64_t a, int64_t b);
+int64_t pn_inf_mul(pn_ctx_t *cx, int64_t a, int64_t b);
+int64_t pn_inf_neg(pn_ctx_t *cx, int64_t a);
+int64_t pn_inf_abs(pn_ctx_t *cx, int64_t a);
+int64_t pn_inf_div(pn_ctx_t *cx, int64_t a, int64_t b);
+int64_t pn_inf_mod(pn_ctx_t *cx, int64_t a, int64_t b);
+int64_t pn_inf_quot(pn_ctx_t *cx, int64_t a, int64_t b);
+int64_t pn_inf_rem(pn_ctx_t *cx, int64_t a, int64_t b);
+
+static inline double pn_int_to_real(int64_t a)
+{
+    return (double)a;
+}
+
+/* Rounding to `int`: Overflow outside the 31-bit range, Domain for nan. `round` goes to the even neighbour at a half. */
+int64_t pn_real_floor(pn_ctx_t *cx, double x);
+int64_t pn_real_ceil(pn_ctx_t *cx, double x);
+int64_t pn_real_round(pn_ctx_t *cx, double x);
+int64_t pn_real_trunc(pn_ctx_t *cx, double x);
+/* Rounds a half to even, as a real. */
+double pn_real_round_even(double x);
+/* The same to 64-bit integers (IntInf.int, model time). */
+int64_t pn_inf_floor(pn_ctx_t *cx, double x);
+int64_t pn_inf_ceil(pn_ctx_t *cx, double x);
+int64_t pn_inf_round(pn_ctx_t *cx, double x);
+int64_t pn_inf_trunc(pn_ctx_t *cx, double x);
+
+/* Real.min and Real.max: the other argument if one is nan. */
+double pn_real_min(double a, double b);
+double pn_real_max(double a, double b);
+/* -1, 0, 1; Domain for nan. */
+int64_t pn_real_sign(pn_ctx_t *cx, double x);
+/* IEEE comparisons; functions because -Wfloat-equal is on in some projects that take this code over. */
+static inline bool pn_real_equal(double a, double b)
+{
+    return (a <= b) && (a >= b);
+}
+
+bool pn_real_is_nan(double x);
+bool pn_real_is_finite(double x);
+
+/* Shortest decimal that reads back to the same double, as Python's repr writes it; `out` has PN_REAL_TEXT_SIZE bytes. Returns
+ * the length. */
+size_t pn_real_repr(char *out, double x);
+
+/* -1, 0, 1 in the order of colour sets: nan before every number, 0.0 and -0.0 equal. */
+int pn_real_order(double a, double b);
+static inline int pn_int_order(int64_t a, int64_t b)
+{
+    return (a > b) - (a < b);
+}
+
+#endif /* PN_NUM_H */

@@ -1,0 +1,50 @@
+/* SPDX-License-Identifier: MIT
+ * pn_types.h - basic types of the runtime: the evaluation context and its errors.
+ */
+#ifndef PN_TYPES_H
+#define PN_TYPES_H
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+/* Model time: an integer, or a real (option `realtimestamp` of the net). pn_net_t.real_time says which member counts. */
+typedef union pn_time {
+    int64_t integer;
+    double real;
+} pn_time_t;
+
+typedef enum pn_error {
+    PN_OK = 0,
+    PN_ERR_OVERFLOW,   /* CPN ML exception Overflow */
+    PN_ERR_DIV,        /* Div */
+    PN_ERR_MATCH,      /* Match: no rule fits */
+    PN_ERR_BIND,       /* Bind: a val pattern does not fit */
+    PN_ERR_SUBSCRIPT,  /* Subscript */
+    PN_ERR_EMPTY,      /* Empty: hd, tl of an empty list */
+    PN_ERR_DOMAIN,     /* Domain, Size, Chr and the like */
+    PN_ERR_COLOUR,     /* a value that is not in the colour set */
+    PN_ERR_CAPACITY,   /* a place or array is full */
+    PN_ERR_MEMORY,     /* the arena is full */
+    PN_ERR_DEPTH,      /* recursion too deep */
+    PN_ERR_SUBTRACT,   /* multi-set difference of what is not contained */
+    PN_ERR_RAISED,     /* an exception of the net itself */
+    PN_ERR_INTERNAL    /* a contract of the runtime was broken */
+} pn_error_t;
+
+struct pn_arena;
+
+/* What an evaluation needs: where values are allocated, and the first error. */
+typedef struct pn_ctx {
+    struct pn_arena *arena;
+    pn_error_t error;
+    const char *error_name;   /* "Overflow", or the exception's name */
+    const char *error_origin; /* net element being evaluated when it was raised */
+    const char *origin;       /* net element being evaluated now */
+    uint32_t depth;           /* of recursion */
+    pn_time_t now;            /* model time of the marking being looked at; set by enumerate, fire and init */
+    uint64_t step;            /* number of occurrences so far, for step(); the host counts */
+    uint64_t random;          /* state of the generator for CS.ran() and the distributions */
+} pn_ctx_t;
+
+#endif /* PN_TYPES_H */

@@ -1,0 +1,333 @@
+/* SPDX-License-Identifier: MIT */
+#include "pn/pn_bag.h"
+
+#include <string.h>
+
+#include "pn/pn_arena.h"
+#include "pn/pn_num.h"
+#include "pn/pn_text.h"
+#include "pn_bag_impl.h"
+#include "pn_type_impl.h"
+
+int pn_time_order(bool is_real_time, pn_time_t a, pn_time_t b)
+{
+    return is_real_time ? pn_real_order(a.real, b.real) : pn_int_order(a.integer, b.integer);
+}
+
+/* --- entries ------------------------------------------------------------------------------------------------------- */
+
+uint32_t pn_bag_used(const pn_bag_t *bag, const void *marking)
+{
+    return load_tag(part(marking, bag->used));
+}
+
+static void set_used(const pn_bag_t *bag, void *marking, uint32_t used)
+{
+    (void)memcpy(part_of(marking, bag->used), &used, sizeof used);
+}
+
+const void *pn_bag_entry(const pn_bag_t *bag, const void *marking, uint32_t i)
+{
+    return part(marking, bag->first + (bag->stride * i));
+}
+
+static void *entry_of(const pn_bag_t *bag, void *marking, uint32_t i)
+{
+    return part_of(marking, bag->first + (bag->stride * i));
+}
+
+uint32_t pn_bag_count_of(const pn_bag_t *bag, const void *entry)
+{
+    return load_tag(part(entry, bag->count));
+}
+
+static void set_count(const pn_bag_t *bag, void *entry, uint32_t count)
+{
+    (void)memcpy(part_of(entry, bag->count), &count, sizeof count);
+}
+
+pn_time_t pn_bag_stamp_of(const pn_bag_t *bag, const void *entry)
+{
+    pn_time_t stamp = { 0 };
+    if (bag->is_timed) {
+        (void)memcpy(&stamp, part(entry, bag->stamp), sizeof stamp);
+    }
+    return stamp;
+}
+
+uint32_t pn_bag_lower_bound(const pn_bag_t *bag, const void *marking, const void *value)
+{
+    uint32_t low = 0U;
+    uint32_t high = pn_bag_used(bag, marking);
+    while (low < high) {
+        const uint32_t middle = low + ((high - low) / 2U);
+        const void *entry = pn_bag_entry(bag, marking, middle);
+        if (pn_compare(bag->type, part(entry, bag->value), value) < 0) {
+            low = middle + 1U;
+        } else {
+            high = middle;
+        }
+    }
+    return low;
+}
+
+bool pn_bag_is_at(const pn_bag_t *bag, const void *marking, uint32_t i, const void *value)
+{
+    return (i < pn_bag_used(bag, marking)) && pn_equal(bag->type, part(pn_bag_entry(bag, marking, i), bag->value), value);
+}
+
+static bool is_after(const pn_bag_t *bag, const void *entry, pn_time_t limit)
+{
+    return bag->is_timed && (pn_time_order(bag->is_real_time, pn_bag_stamp_of(bag, entry), limit) > 0);
+}
+
+/* --- counting ------------------------------------------------------------------------------------------------------ */
+
+uint64_t pn_bag_total(const pn_bag_t *bag, const void *marking)
+{
+    uint64_t total = 0U;
+    for (uint32_t i = 0U; i < pn_bag_used(bag, marking); i++) {
+        total += pn_bag_count_of(bag, pn_bag_entry(bag, marking, i));
+    }
+    return total;
+}
+
+uint64_t pn_bag_available(const pn_bag_t *bag, const void *marking, pn_time_t now)
+{
+    uint64_t total = 0U;
+    for (uint32_t i = 0U; i < pn_bag_used(bag, marking); i++) {
+        const void *entry = pn_bag_entry(bag, marking, i);
+        total += is_after(bag, entry, now) ? 0U : pn_bag_count_of(bag, entry);
+    }
+    return total;
+}
+
+uint64_t pn_bag_count(const pn_bag_t *bag, const void *marking, const void *value, pn_time_t limit)
+{
+    uint64_t total = 0U;
+    for (uint32_t i = pn_bag_lower_bound(bag, marking, value); pn_bag_is_at(bag, marking, i, value); i++) {
+        const void *entry = pn_bag_entry(bag, marking, i);
+        total += is_after(bag, entry, limit) ? 0U : pn_bag_count_of(bag, entry);
+    }
+    return total;
+}
+
+/* --- change -------------------------------------------------------------------------------------------------------- */
+
+static bool fail_full(pn_ctx_t *cx, const pn_bag_t *bag)
+{
+    const char *origin = cx->origin;
+    cx->origin = bag->origin;
+    pn_raise(cx, PN_ERR_CAPACITY, NULL);
+    cx->origin = origin;
+    return false;
+}
+
+bool pn_bag_add(pn_ctx_t *cx, const pn_bag_t *bag, void *marking, const void *value, uint32_t count, pn_time_t stamp)
+{
+    uint32_t i = pn_bag_lower_bound(bag, marking, value);
+    bool is_there = pn_bag_is_at(bag, marking, i, value);
+    while (bag->is_timed && is_there) {
+        const int order = pn_time_order(bag->is_real_time, pn_bag_stamp_of(bag, pn_bag_entry(bag, marking, i)), stamp);
+        if (order == 0) {
+            break;
+        }
+        is_there = false;
+        if (order < 0) {
+            i++;
+            is_there = pn_bag_is_at(bag, marking, i, value);
+        }
+    }
+    if (is_there) {
+        void *entry = entry_of(bag, marking, i);
+        const uint32_t before = pn_bag_count_of(bag, entry);
+        if (count > (UINT32_MAX - before)) {
+            return fail_full(cx, bag);
+        }
+        set_count(bag, entry, before + count);
+        return true;
+    }
+    const uint32_t used = pn_bag_used(bag, marking);
+    if (used >= bag->capacity) {
+        return fail_full(cx, bag);
+    }
+    void *entry = entry_of(bag, marking, i);
+    (void)memmove(part_of(entry, bag->stride), entry, (used - i) * bag->stride);
+    (void)memset(entry, 0, bag->stride);
+    (void)memcpy(part_of(entry, bag->value), value, bag->type->size);
+    set_count(bag, entry, count);
+    if (bag->is_timed) {
+        (void)memcpy(part_of(entry, bag->stamp), &stamp, sizeof stamp);
+    }
+    set_used(bag, marking, used + 1U);
+    return true;
+}
+
+void pn_bag_remove_at(const pn_bag_t *bag, void *marking, uint32_t i, uint32_t count)
+{
+    void *entry = entry_of(bag, marking, i);
+    const uint32_t before = pn_bag_count_of(bag, entry);
+    if (count < before) {
+        set_count(bag, entry, before - count);
+        return;
+    }
+    const uint32_t used = pn_bag_used(bag, marking);
+    (void)memmove(entry, part(entry, bag->stride), (used - i - 1U) * bag->stride);
+    (void)memset(entry_of(bag, marking, used - 1U), 0, bag->stride);
+    set_used(bag, marking, used - 1U);
+}
+
+void pn_bag_clear(const pn_bag_t *bag, void *marking)
+{
+    (void)memset(entry_of(bag, marking, 0U), 0, bag->stride * pn_bag_used(bag, marking));
+    set_used(bag, marking, 0U);
+}
+
+/* --- seen from outside --------------------------------------------------------------------------------------------- */
+
+static void consider(const pn_bag_t *bag, pn_time_t time, pn_time_t now, bool *found, pn_time_t *next)
+{
+    const bool is_later = pn_time_order(bag->is_real_time, time, now) > 0;
+    if (is_later && (!*found || (pn_time_order(bag->is_real_time, time, *next) < 0))) {
+        *found = true;
+        *next = time;
+    }
+}
+
+void pn_bag_next_time(const pn_bag_t *bag, const void *marking, pn_time_t now, bool *found, pn_time_t *next)
+{
+    if (!bag->is_timed) {
+        return;
+    }
+    for (uint32_t i = 0U; i < pn_bag_used(bag, marking); i++) {
+        const pn_time_t stamp = pn_bag_stamp_of(bag, pn_bag_entry(bag, marking, i));
+        consider(bag, stamp, now, found, next);
+        for (uint32_t k = 0U; k < bag->early_count; k++) {
+            pn_time_t earlier = stamp;
+            if (bag->is_real_time) {
+                earlier.real -= bag->early[k].real;
+            } else {
+                earlier.integer -= bag->early[k].integer;
+            }
+            consider(bag, earlier, now, found, next);
+        }
+    }
+}
+
+void pn_bag_json(const pn_bag_t *bag, const void *marking, pn_text_t *out)
+{
+    pn_text_char(out, '[');
+    for (uint32_t i = 0U; i < pn_bag_used(bag, marking); i++) {
+        const void *entry = pn_bag_entry(bag, marking, i);
+        pn_text_str(out, (i > 0U) ? ", [" : "[");
+        pn_text_uint(out, pn_bag_count_of(bag, entry));
+        pn_text_str(out, ", ");
+        pn_json(bag->type, part(entry, bag->value), out);
+        if (bag->is_timed) {
+            const pn_time_t stamp = pn_bag_stamp_of(bag, entry);
+            pn_text_str(out, ", ");
+            if (bag->is_real_time) {
+                pn_text_json_real(out, stamp.real);
+            } else {
+                pn_text_int(out, stamp.integer);
+            }
+        }
+        pn_text_char(out, ']');
+    }
+    pn_text_char(out, ']');
+}
+
+uint32_t pn_bag_token(const pn_bag_t *bag, const void *marking, uint32_t i, pn_leaf_t *leaf, uint32_t capacity)
+{
+    if (i >= pn_bag_used(bag, marking)) {
+        return 0U;
+    }
+    return pn_to_leaves(bag->type, part(pn_bag_entry(bag, marking, i), bag->value), leaf, capacity);
+}
+
+bool pn_bag_put(pn_ctx_t *cx, const pn_bag_t *bag, void *marking, const pn_leaf_t *leaf, uint32_t leaves)
+{
+    const char *origin = cx->origin;
+    cx->origin = bag->origin;
+    void *value = pn_arena_alloc(cx, bag->type->size);
+    if ((value != NULL) && pn_from_leaves(cx, bag->type, value, leaf, leaves)) {
+        pn_narrow(cx, bag->type, value);
+        if (!pn_is_legal(cx, bag->type, value)) {
+            pn_raise(cx, PN_ERR_COLOUR, NULL);
+        }
+    }
+    const bool is_put = pn_ok(cx) && (value != NULL) && pn_bag_add(cx, bag, marking, value, 1U, cx->now);
+    cx->origin = origin;
+    return is_put;
+}
+
+/* --- bytes and arena ----------------------------------------------------------------------------------------------- */
+
+static size_t put_bytes(uint8_t *out, size_t room, size_t at, const void *bytes, size_t length)
+{
+    if ((at <= room) && (length <= (room - at))) {
+        (void)memcpy(&out[at], bytes, length);
+    }
+    return at + length;
+}
+
+size_t pn_bag_encode(const pn_bag_t *bag, const void *marking, uint8_t *out, size_t room)
+{
+    const uint32_t used = pn_bag_used(bag, marking);
+    size_t at = put_bytes(out, room, 0U, &used, sizeof used);
+    for (uint32_t i = 0U; i < used; i++) {
+        const void *entry = pn_bag_entry(bag, marking, i);
+        const uint32_t count = pn_bag_count_of(bag, entry);
+        at = put_bytes(out, room, at, &count, sizeof count);
+        if (bag->is_timed) {
+            const pn_time_t stamp = pn_bag_stamp_of(bag, entry);
+            at = put_bytes(out, room, at, &stamp, sizeof stamp);
+        }
+        const size_t left = (at < room) ? (room - at) : 0U;
+        at += pn_encode(bag->type, part(entry, bag->value), &out[(at < room) ? at : 0U], left);
+    }
+    return at;
+}
+
+size_t pn_bag_decode(pn_ctx_t *cx, const pn_bag_t *bag, void *marking, const uint8_t *in, size_t length)
+{
+    const size_t stamp_size = bag->is_timed ? sizeof(pn_time_t) : 0U;
+    uint32_t used = 0U;
+    size_t at = sizeof used;
+    if (length < at) {
+        return SIZE_MAX;
+    }
+    (void)memcpy(&used, in, sizeof used);
+    pn_bag_clear(bag, marking);
+    if (used > bag->capacity) {
+        (void)fail_full(cx, bag);
+        return SIZE_MAX;
+    }
+    for (uint32_t i = 0U; i < used; i++) {
+        void *entry = entry_of(bag, marking, i);
+        if ((length - at) < (sizeof(uint32_t) + stamp_size)) {
+            return SIZE_MAX;
+        }
+        (void)memset(entry, 0, bag->stride);
+        (void)memcpy(part_of(entry, bag->count), &in[at], sizeof(uint32_t));
+        at += sizeof(uint32_t);
+        if (bag->is_timed) {
+            (void)memcpy(part_of(entry, bag->stamp), &in[at], stamp_size);
+            at += stamp_size;
+        }
+        const size_t size = pn_decode(cx, bag->type, part_of(entry, bag->value), &in[at], length - at);
+        if (size == SIZE_MAX) {
+            return SIZE_MAX;
+        }
+        at += size;
+        set_used(bag, marking, i + 1U);
+    }
+    return at;
+}
+
+void pn_bag_relocate(pn_ctx_t *cx, const pn_bag_t *bag, void *marking)
+{
+    for (uint32_t i = 0U; i < pn_bag_used(bag, marking); i++) {
+        pn_relocate(cx, bag->type, part_of(entry_of(bag, marking, i), bag->value));
+    }
+}

@@ -1,0 +1,394 @@
+/* SPDX-License-Identifier: MIT
+ * Values as canonical bytes, as leaves, and moved between the halves of the arena.
+ */
+#include "pn/pn_arena.h"
+#include "pn/pn_num.h"
+#include "pn/pn_type.h"
+#include "pn_type_impl.h"
+
+/* --- bytes --------------------------------------------------------------------------------------------------------- */
+
+static size_t put_bytes(uint8_t *out, size_t room, size_t at, const void *bytes, size_t length)
+{
+    if ((length > 0U) && (at <= room) && (length <= (room - at))) {
+        (void)memcpy(&out[at], bytes, length);
+    }
+    return at + length;
+}
+
+static size_t encode_at(const pn_type_t *type, const void *value, uint8_t *out, size_t room, size_t at)
+{
+    size_t end = at;
+    switch (type->kind) {
+    case PN_KIND_BOOL: {
+        const uint8_t flag = load_bool(value) ? 1U : 0U;
+        return put_bytes(out, room, at, &flag, 1U);
+    }
+    case PN_KIND_INT:
+    case PN_KIND_REAL:
+    case PN_KIND_CHAR:
+    case PN_KIND_ENUM:
+        return put_bytes(out, room, at, value, type->size);
+    case PN_KIND_STRING: {
+        const pn_string_t text = load_string(value);
+        end = put_bytes(out, room, at, &text.length, sizeof text.length);
+        return put_bytes(out, room, end, text.bytes, text.length);
+    }
+    case PN_KIND_RECORD:
+        for (uint32_t i = 0U; i < type->count; i++) {
+            end = encode_at(type->field[i].type, part(value, type->field[i].offset), out, room, end);
+        }
+        return end;
+    case PN_KIND_LIST: {
+        const void *list = load_pointer(value);
+        const uint32_t length = (uint32_t)pn_list_length(list);
+        end = put_bytes(out, room, at, &length, sizeof length);
+        for (const void *rest = list; rest != NULL; rest = pn_list_tail(rest)) {
+            end = encode_at(type->element, pn_list_head(type, rest), out, room, end);
+        }
+        return end;
+    }
+    case PN_KIND_UNION: {
+        const void *argument = NULL;
+        const pn_field_t *constructor = constructor_of(type, value, &argument);
+        const uint32_t tag = load_tag(value);
+        end = put_bytes(out, room, at, &tag, sizeof tag);
+        return (argument == NULL) ? end : encode_at(constructor->type, argument, out, room, end);
+    }
+    case PN_KIND_UNIT:
+    default:
+        return end;
+    }
+}
+
+size_t pn_encode(const pn_type_t *type, const void *value, uint8_t *out, size_t room)
+{
+    return encode_at(type, value, out, room, 0U);
+}
+
+/* A reader that stays failed once something is missing. */
+typedef struct reader {
+    pn_ctx_t *cx;
+    const uint8_t *in;
+    size_t length;
+    size_t at;
+    bool failed;
+} reader_t;
+
+static void get_bytes(reader_t *r, void *out, size_t length)
+{
+    if (r->failed || (length > (r->length - r->at))) {
+        r->failed = true;
+        (void)memset(out, 0, length);
+    } else {
+        (void)memcpy(out, &r->in[r->at], length);
+        r->at += length;
+    }
+}
+
+static uint32_t get_count(reader_t *r)
+{
+    uint32_t count = 0U;
+    get_bytes(r, &count, sizeof count);
+    return count;
+}
+
+static void decode_value(reader_t *r, const pn_type_t *type, void *value);
+
+static void decode_string(reader_t *r, void *value)
+{
+    const uint32_t length = get_count(r);
+    pn_string_t text = { "", 0U };
+    if (r->failed || (length > (r->length - r->at))) {
+        r->failed = true;
+    } else {
+        text = pn_string_make(r->cx, (const char *)&r->in[r->at], length);
+        r->at += length;
+    }
+    (void)memcpy(value, &text, sizeof text);
+}
+
+static void decode_list(reader_t *r, const pn_type_t *type, void *value)
+{
+    const uint32_t length = get_count(r);
+    const void *first = NULL;
+    void *last = NULL;
+    for (uint32_t i = 0U; (i < length) && !r->failed; i++) {
+        void *cell = pn_list_new(r->cx, type, NULL);
+        if (cell == NULL) {
+            r->failed = true;
+            break;
+        }
+        decode_value(r, type->element, pn_list_slot(type, cell));
+        if (last == NULL) {
+            first = cell;
+        } else {
+            store_pointer(last, cell);
+        }
+        last = cell;
+    }
+    store_pointer(value, first);
+}
+
+static void decode_union(reader_t *r, const pn_type_t *type, void *value)
+{
+    uint32_t tag = get_count(r);
+    if (tag >= type->count) {
+        r->failed = true;
+        tag = 0U;
+    }
+    (void)memset(value, 0, type->size);
+    (void)memcpy(value, &tag, sizeof tag);
+    const pn_field_t *constructor = &type->field[tag];
+    if ((constructor->type == NULL) || r->failed) {
+        return;
+    }
+    if (constructor->is_boxed) {
+        void *box = pn_arena_alloc(r->cx, constructor->type->size);
+        if (box == NULL) {
+            r->failed = true;
+            return;
+        }
+        decode_value(r, constructor->type, box);
+        store_pointer(part_of(value, constructor->offset), box);
+    } else {
+        decode_value(r, constructor->type, part_of(value, constructor->offset));
+    }
+}
+
+static void decode_value(reader_t *r, const pn_type_t *type, void *value)
+{
+    switch (type->kind) {
+    case PN_KIND_BOOL: {
+        uint8_t byte = 0U;
+        get_bytes(r, &byte, 1U);
+        const bool flag = byte == 1U;
+        r->failed = r->failed || (byte > 1U);
+        (void)memcpy(value, &flag, sizeof flag);
+        break;
+    }
+    case PN_KIND_INT:
+    case PN_KIND_REAL:
+    case PN_KIND_CHAR:
+        get_bytes(r, value, type->size);
+        break;
+    case PN_KIND_ENUM:
+        get_bytes(r, value, type->size);
+        r->failed = r->failed || (load_tag(value) >= type->count);
+        break;
+    case PN_KIND_STRING:
+        decode_string(r, value);
+        break;
+    case PN_KIND_RECORD:
+        (void)memset(value, 0, type->size);
+        for (uint32_t i = 0U; i < type->count; i++) {
+            decode_value(r, type->field[i].type, part_of(value, type->field[i].offset));
+        }
+        break;
+    case PN_KIND_LIST:
+        decode_list(r, type, value);
+        break;
+    case PN_KIND_UNION:
+        decode_union(r, type, value);
+        break;
+    case PN_KIND_UNIT:
+    default:
+        (void)memset(value, 0, type->size);
+        break;
+    }
+}
+
+size_t pn_decode(pn_ctx_t *cx, const pn_type_t *type, void *value, const uint8_t *in, size_t length)
+{
+    reader_t r = { cx, in, length, 0U, false };
+    decode_value(&r, type, value);
+    /* A unit has no bytes: its callers ask for nothing and must not take 0 for a failure. */
+    return (r.failed || !pn_ok(cx)) ? SIZE_MAX : r.at;
+}
+
+/* --- moving between halves ----------------------------------------------------------------------------------------- */
+
+static void relocate_list(pn_ctx_t *cx, const pn_type_t *type, void *value)
+{
+    const void *first = NULL;
+    void *last = NULL;
+    for (const void *rest = load_pointer(value); rest != NULL; rest = pn_list_tail(rest)) {
+        void *cell = pn_list_new(cx, type, NULL);
+        if (cell == NULL) {
+            break;
+        }
+        void *head = pn_list_slot(type, cell);
+        (void)memcpy(head, pn_list_head(type, rest), type->element->size);
+        pn_relocate(cx, type->element, head);
+        if (last == NULL) {
+            first = cell;
+        } else {
+            store_pointer(last, cell);
+        }
+        last = cell;
+    }
+    store_pointer(value, first);
+}
+
+void pn_relocate(pn_ctx_t *cx, const pn_type_t *type, void *value)
+{
+    if (type->kind == PN_KIND_STRING) {
+        const pn_string_t text = load_string(value);
+        const pn_string_t copy = pn_string_make(cx, text.bytes, text.length);
+        (void)memcpy(value, &copy, sizeof copy);
+    } else if (type->kind == PN_KIND_RECORD) {
+        for (uint32_t i = 0U; i < type->count; i++) {
+            pn_relocate(cx, type->field[i].type, part_of(value, type->field[i].offset));
+        }
+    } else if (type->kind == PN_KIND_LIST) {
+        relocate_list(cx, type, value);
+    } else if (type->kind == PN_KIND_UNION) {
+        const pn_field_t *constructor = &type->field[load_tag(value)];
+        if ((constructor->type != NULL) && constructor->is_boxed) {
+            void *box = pn_arena_alloc(cx, constructor->type->size);
+            if (box != NULL) {
+                (void)memcpy(box, load_pointer(part(value, constructor->offset)), constructor->type->size);
+                pn_relocate(cx, constructor->type, box);
+                store_pointer(part_of(value, constructor->offset), box);
+            }
+        } else if (constructor->type != NULL) {
+            pn_relocate(cx, constructor->type, part_of(value, constructor->offset));
+        }
+    }
+}
+
+/* --- leaves -------------------------------------------------------------------------------------------------------- */
+
+static bool push_leaf(pn_leaf_t *leaf, uint32_t capacity, uint32_t *used, pn_leaf_t value)
+{
+    if (*used >= capacity) {
+        return false;
+    }
+    leaf[*used] = value;
+    (*used)++;
+    return true;
+}
+
+static bool leaves_of(const pn_type_t *type, const void *value, pn_leaf_t *leaf, uint32_t capacity, uint32_t *used)
+{
+    pn_leaf_t one = { PN_LEAF_ENUM, 0, 0.0, NULL };
+    switch (type->kind) {
+    case PN_KIND_BOOL:
+        one.kind = PN_LEAF_BOOL;
+        one.integer = load_bool(value) ? 1 : 0;
+        return push_leaf(leaf, capacity, used, one);
+    case PN_KIND_INT:
+        one.kind = type->is_index ? PN_LEAF_ENUM : PN_LEAF_INT;
+        one.integer = load_int(value);
+        return push_leaf(leaf, capacity, used, one);
+    case PN_KIND_REAL:
+        one.kind = PN_LEAF_REAL;
+        one.real = load_real(value);
+        return push_leaf(leaf, capacity, used, one);
+    case PN_KIND_STRING:
+        one.kind = PN_LEAF_STRING;
+        one.text = load_string(value).bytes;
+        return push_leaf(leaf, capacity, used, one);
+    case PN_KIND_ENUM:
+        one.integer = (int64_t)load_tag(value);
+        one.text = type->name_of_value[load_tag(value)];
+        return push_leaf(leaf, capacity, used, one);
+    case PN_KIND_UNIT:
+        return push_leaf(leaf, capacity, used, one);
+    case PN_KIND_RECORD:
+        for (uint32_t i = 0U; i < type->count; i++) {
+            if (!leaves_of(type->field[i].type, part(value, type->field[i].offset), leaf, capacity, used)) {
+                return false;
+            }
+        }
+        return true;
+    case PN_KIND_CHAR:
+    case PN_KIND_LIST:
+    case PN_KIND_UNION:
+    default:
+        return false;
+    }
+}
+
+uint32_t pn_to_leaves(const pn_type_t *type, const void *value, pn_leaf_t *leaf, uint32_t capacity)
+{
+    uint32_t used = 0U;
+    return leaves_of(type, value, leaf, capacity, &used) ? used : 0U;
+}
+
+static bool enum_from_leaf(const pn_type_t *type, const pn_leaf_t *leaf, void *value)
+{
+    uint32_t tag = 0U;
+    if (leaf->text != NULL) {
+        while ((tag < type->count) && (strcmp(leaf->text, type->name_of_value[tag]) != 0)) {
+            tag++;
+        }
+    } else {
+        tag = ((leaf->integer >= 0) && (leaf->integer < (int64_t)type->count)) ? (uint32_t)leaf->integer : type->count;
+    }
+    (void)memcpy(value, &tag, sizeof tag);
+    return tag < type->count;
+}
+
+static bool value_from(pn_ctx_t *cx, const pn_type_t *type, void *value, const pn_leaf_t *leaf, uint32_t leaves, uint32_t *used)
+{
+    if (type->kind == PN_KIND_RECORD) {
+        (void)memset(value, 0, type->size);
+        for (uint32_t i = 0U; i < type->count; i++) {
+            void *member = part_of(value, type->field[i].offset);
+            if (!value_from(cx, type->field[i].type, member, leaf, leaves, used)) {
+                return false;
+            }
+        }
+        return true;
+    }
+    if (*used >= leaves) {
+        return false;
+    }
+    const pn_leaf_t *one = &leaf[*used];
+    const bool is_integer = one->kind == (type->is_index ? PN_LEAF_ENUM : PN_LEAF_INT);
+    (*used)++;
+    switch (type->kind) {
+    case PN_KIND_BOOL: {
+        const bool flag = one->integer != 0;
+        (void)memcpy(value, &flag, sizeof flag);
+        return one->kind == PN_LEAF_BOOL;
+    }
+    case PN_KIND_INT:
+        (void)memcpy(value, &one->integer, sizeof one->integer);
+        return is_integer;
+    case PN_KIND_REAL: {
+        const double number = (one->kind == PN_LEAF_INT) ? (double)one->integer : one->real;
+        (void)memcpy(value, &number, sizeof number);
+        return (one->kind == PN_LEAF_REAL) || (one->kind == PN_LEAF_INT);
+    }
+    case PN_KIND_STRING: {
+        if ((one->kind != PN_LEAF_STRING) || (one->text == NULL)) {
+            return false;
+        }
+        const pn_string_t text = pn_string_make(cx, one->text, strlen(one->text));
+        (void)memcpy(value, &text, sizeof text);
+        return true;
+    }
+    case PN_KIND_ENUM:
+        return (one->kind == PN_LEAF_ENUM) && enum_from_leaf(type, one, value);
+    case PN_KIND_UNIT:
+        (void)memset(value, 0, type->size);
+        return one->kind == PN_LEAF_ENUM;
+    case PN_KIND_CHAR:
+    case PN_KIND_RECORD:
+    case PN_KIND_LIST:
+    case PN_KIND_UNION:
+    default:
+        return false;
+    }
+}
+
+bool pn_from_leaves(pn_ctx_t *cx, const pn_type_t *type, void *value, const pn_leaf_t *leaf, uint32_t leaves)
+{
+    uint32_t used = 0U;
+    if (!value_from(cx, type, value, leaf, leaves, &used) || (used != leaves)) {
+        pn_raise(cx, PN_ERR_COLOUR, NULL);
+    }
+    return pn_ok(cx);
+}

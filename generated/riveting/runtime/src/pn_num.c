@@ -1,0 +1,360 @@
+/* SPDX-License-Identifier: MIT */
+#include "pn/pn_num.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "pn/pn_text.h"
+
+const char *pn_error_name(pn_error_t error)
+{
+    switch (error) {
+    case PN_OK: return "no error";
+    case PN_ERR_OVERFLOW: return "Overflow";
+    case PN_ERR_DIV: return "Div";
+    case PN_ERR_MATCH: return "Match";
+    case PN_ERR_BIND: return "Bind";
+    case PN_ERR_SUBSCRIPT: return "Subscript";
+    case PN_ERR_EMPTY: return "Empty";
+    case PN_ERR_DOMAIN: return "Domain";
+    case PN_ERR_COLOUR: return "colour outside its colour set";
+    case PN_ERR_CAPACITY: return "place is full";
+    case PN_ERR_MEMORY: return "memory for lists and strings is full";
+    case PN_ERR_DEPTH: return "recursion too deep";
+    case PN_ERR_SUBTRACT: return "Subtract";
+    case PN_ERR_RAISED: return "exception of the net";
+    case PN_ERR_INTERNAL: return "internal error";
+    default: return "unknown error";
+    }
+}
+
+void pn_raise(pn_ctx_t *cx, pn_error_t error, const char *name)
+{
+    if (cx->error == PN_OK) {
+        cx->error = error;
+        cx->error_name = (name != NULL) ? name : pn_error_name(error);
+        cx->error_origin = cx->origin;
+    }
+}
+
+bool pn_is_exception(const pn_ctx_t *cx)
+{
+    switch (cx->error) {
+    case PN_ERR_OVERFLOW:
+    case PN_ERR_DIV:
+    case PN_ERR_MATCH:
+    case PN_ERR_BIND:
+    case PN_ERR_SUBSCRIPT:
+    case PN_ERR_EMPTY:
+    case PN_ERR_DOMAIN:
+    case PN_ERR_SUBTRACT:
+    case PN_ERR_RAISED:
+        return true;
+    case PN_OK:
+    case PN_ERR_COLOUR:
+    case PN_ERR_CAPACITY:
+    case PN_ERR_MEMORY:
+    case PN_ERR_DEPTH:
+    case PN_ERR_INTERNAL:
+    default:
+        return false;
+    }
+}
+
+bool pn_is_raised(const pn_ctx_t *cx, const char *name)
+{
+    return pn_is_exception(cx) && (strcmp(cx->error_name, name) == 0);
+}
+
+void pn_clear_error(pn_ctx_t *cx)
+{
+    cx->error = PN_OK;
+    cx->error_name = "";
+    cx->error_origin = "";
+}
+
+/* --- integers ------------------------------------------------------------------------------------------------------ */
+
+int64_t pn_int_checked(pn_ctx_t *cx, int64_t value)
+{
+    if ((value < PN_INT_MIN) || (value > PN_INT_MAX)) {
+        pn_raise(cx, PN_ERR_OVERFLOW, NULL);
+        return 0;
+    }
+    return value;
+}
+
+int64_t pn_int_quot(pn_ctx_t *cx, int64_t a, int64_t b)
+{
+    return pn_int_checked(cx, pn_inf_quot(cx, a, b));
+}
+
+int64_t pn_int_rem(pn_ctx_t *cx, int64_t a, int64_t b)
+{
+    return pn_inf_rem(cx, a, b);
+}
+
+int64_t pn_int_div(pn_ctx_t *cx, int64_t a, int64_t b)
+{
+    return pn_int_checked(cx, pn_inf_div(cx, a, b));
+}
+
+int64_t pn_int_mod(pn_ctx_t *cx, int64_t a, int64_t b)
+{
+    return pn_inf_mod(cx, a, b);
+}
+
+static int64_t overflow(pn_ctx_t *cx)
+{
+    pn_raise(cx, PN_ERR_OVERFLOW, NULL);
+    return 0;
+}
+
+int64_t pn_inf_add(pn_ctx_t *cx, int64_t a, int64_t b)
+{
+    if ((b > 0) ? (a > (INT64_MAX - b)) : (a < (INT64_MIN - b))) {
+        return overflow(cx);
+    }
+    return a + b;
+}
+
+int64_t pn_inf_sub(pn_ctx_t *cx, int64_t a, int64_t b)
+{
+    if ((b > 0) ? (a < (INT64_MIN + b)) : (a > (INT64_MAX + b))) {
+        return overflow(cx);
+    }
+    return a - b;
+}
+
+int64_t pn_inf_mul(pn_ctx_t *cx, int64_t a, int64_t b)
+{
+    bool fits = true;
+    if ((a > 0) && (b > 0)) {
+        fits = a <= (INT64_MAX / b);
+    } else if ((a > 0) && (b < 0)) {
+        fits = b >= (INT64_MIN / a);
+    } else if ((a < 0) && (b > 0)) {
+        fits = a >= (INT64_MIN / b);
+    } else if ((a < 0) && (b < 0)) {
+        fits = b >= (INT64_MAX / a);
+    }
+    return fits ? (a * b) : overflow(cx);
+}
+
+int64_t pn_inf_neg(pn_ctx_t *cx, int64_t a)
+{
+    return pn_inf_sub(cx, 0, a);
+}
+
+int64_t pn_inf_abs(pn_ctx_t *cx, int64_t a)
+{
+    return (a < 0) ? pn_inf_neg(cx, a) : a;
+}
+
+int64_t pn_inf_quot(pn_ctx_t *cx, int64_t a, int64_t b)
+{
+    if (b == 0) {
+        pn_raise(cx, PN_ERR_DIV, NULL);
+        return 0;
+    }
+    if ((b == -1) && (a == INT64_MIN)) {
+        return overflow(cx);
+    }
+    return a / b;
+}
+
+int64_t pn_inf_rem(pn_ctx_t *cx, int64_t a, int64_t b)
+{
+    if (b == 0) {
+        pn_raise(cx, PN_ERR_DIV, NULL);
+        return 0;
+    }
+    return (b == -1) ? 0 : (a % b);
+}
+
+int64_t pn_inf_div(pn_ctx_t *cx, int64_t a, int64_t b)
+{
+    const int64_t quotient = pn_inf_quot(cx, a, b);
+    const bool is_inexact = (b != 0) && (b != -1) && ((a % b) != 0);
+    return (is_inexact && ((a < 0) != (b < 0))) ? (quotient - 1) : quotient;
+}
+
+int64_t pn_inf_mod(pn_ctx_t *cx, int64_t a, int64_t b)
+{
+    const int64_t remainder = pn_inf_rem(cx, a, b);
+    return ((remainder != 0) && ((remainder < 0) != (b < 0))) ? (remainder + b) : remainder;
+}
+
+/* --- reals --------------------------------------------------------------------------------------------------------- */
+
+double pn_real_round_even(double x)
+{
+    const double below = floor(x);
+    const double rest = x - below;
+    const bool is_up = (rest > 0.5) || ((rest >= 0.5) && (fabs(fmod(below, 2.0)) >= 1.0));
+    return is_up ? (below + 1.0) : below;
+}
+
+static int64_t to_integer(pn_ctx_t *cx, double x)
+{
+    if (isnan(x)) {
+        pn_raise(cx, PN_ERR_DOMAIN, NULL);
+        return 0;
+    }
+    if ((x < -9223372036854775808.0) || (x >= 9223372036854775808.0)) {
+        return overflow(cx);
+    }
+    return (int64_t)x;
+}
+
+int64_t pn_inf_floor(pn_ctx_t *cx, double x)
+{
+    return to_integer(cx, floor(x));
+}
+
+int64_t pn_inf_ceil(pn_ctx_t *cx, double x)
+{
+    return to_integer(cx, ceil(x));
+}
+
+int64_t pn_inf_round(pn_ctx_t *cx, double x)
+{
+    return to_integer(cx, pn_real_round_even(x));
+}
+
+int64_t pn_inf_trunc(pn_ctx_t *cx, double x)
+{
+    return to_integer(cx, trunc(x));
+}
+
+int64_t pn_real_floor(pn_ctx_t *cx, double x)
+{
+    return pn_int_checked(cx, pn_inf_floor(cx, x));
+}
+
+int64_t pn_real_ceil(pn_ctx_t *cx, double x)
+{
+    return pn_int_checked(cx, pn_inf_ceil(cx, x));
+}
+
+int64_t pn_real_round(pn_ctx_t *cx, double x)
+{
+    return pn_int_checked(cx, pn_inf_round(cx, x));
+}
+
+int64_t pn_real_trunc(pn_ctx_t *cx, double x)
+{
+    return pn_int_checked(cx, pn_inf_trunc(cx, x));
+}
+
+double pn_real_min(double a, double b)
+{
+    return fmin(a, b);
+}
+
+double pn_real_max(double a, double b)
+{
+    return fmax(a, b);
+}
+
+int64_t pn_real_sign(pn_ctx_t *cx, double x)
+{
+    if (isnan(x)) {
+        pn_raise(cx, PN_ERR_DOMAIN, NULL);
+    }
+    return (x > 0.0) ? 1 : ((x < 0.0) ? -1 : 0);
+}
+
+bool pn_real_is_nan(double x)
+{
+    return isnan(x) != 0;
+}
+
+bool pn_real_is_finite(double x)
+{
+    return isfinite(x) != 0;
+}
+
+int pn_real_order(double a, double b)
+{
+    if (isnan(a) || isnan(b)) {
+        return (isnan(b) ? 1 : 0) - (isnan(a) ? 1 : 0);
+    }
+    return (a > b) - (a < b);
+}
+
+/* The shortest digits that read back to x > 0: 15 digits always come back from decimal, 17 from binary; below the normal
+ * range fewer than 15 may do. Gives d.ddd...e[+-]xx as printf writes it. */
+static void shortest_digits(char *out, double x)
+{
+    const int least = (x < 2.2250738585072014e-308) ? 0 : 14;
+    for (int digits = least; digits <= 16; digits++) {
+        (void)snprintf(out, PN_REAL_TEXT_SIZE, "%.*e", digits, x);
+        if (pn_real_equal(strtod(out, NULL), x)) {
+            return;
+        }
+    }
+}
+
+size_t pn_real_repr(char *out, double x)
+{
+    if (isnan(x) || isinf(x)) {
+        (void)strcpy(out, isnan(x) ? "nan" : ((x < 0.0) ? "-inf" : "inf"));
+        return strlen(out);
+    }
+    size_t n = 0U;
+    if (signbit(x)) {
+        out[n++] = '-';
+    }
+    char scientific[PN_REAL_TEXT_SIZE] = "0e+00";
+    if (pn_real_order(x, 0.0) != 0) {
+        shortest_digits(scientific, fabs(x));
+    }
+    /* Split "d.ddde-xx" into its digits, without trailing zeros, and its exponent. */
+    char digit[PN_REAL_TEXT_SIZE];
+    int count = 0;
+    const char *at = scientific;
+    for (; *at != 'e'; at++) {
+        if (*at != '.') {
+            digit[count++] = *at;
+        }
+    }
+    while ((count > 1) && (digit[count - 1] == '0')) {
+        count--;
+    }
+    const int exponent = (int)strtol(at + 1, NULL, 10);
+
+    if ((exponent < -4) || (exponent >= 16)) {
+        out[n++] = digit[0];
+        if (count > 1) {
+            out[n++] = '.';
+            (void)memcpy(&out[n], &digit[1], (size_t)count - 1U);
+            n += (size_t)count - 1U;
+        }
+        n += (size_t)snprintf(&out[n], PN_REAL_TEXT_SIZE - n, "e%c%02d", (exponent < 0) ? '-' : '+', abs(exponent));
+        return n;
+    }
+    if (exponent < 0) {
+        out[n++] = '0';
+        out[n++] = '.';
+        for (int i = -1; i > exponent; i--) {
+            out[n++] = '0';
+        }
+        (void)memcpy(&out[n], digit, (size_t)count);
+        n += (size_t)count;
+    } else {
+        for (int i = 0; (i < count) || (i <= exponent); i++) {
+            out[n++] = (i < count) ? digit[i] : '0';
+            if (i == exponent) {
+                out[n++] = '.';
+            }
+        }
+        if (count <= (exponent + 1)) {
+            out[n++] = '0';
+        }
+    }
+    out[n] = '\0';
+    return n;
+}

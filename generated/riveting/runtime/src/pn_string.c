@@ -1,0 +1,234 @@
+/* SPDX-License-Identifier: MIT */
+#include "pn/pn_string.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "pn/pn_arena.h"
+#include "pn/pn_num.h"
+
+static const pn_string_t s_empty = { "", 0U };
+
+/* Room for a string in the arena, NULL when it is full. */
+static char *new_bytes(pn_ctx_t *cx, size_t length)
+{
+    if (length >= UINT32_MAX) {
+        pn_raise(cx, PN_ERR_DOMAIN, "Size");
+        return NULL;
+    }
+    char *bytes = pn_arena_alloc(cx, length + 1U);
+    if (bytes != NULL) {
+        bytes[length] = '\0';
+    }
+    return bytes;
+}
+
+pn_string_t pn_string_make(pn_ctx_t *cx, const char *bytes, size_t length)
+{
+    if (length == 0U) {
+        return s_empty;
+    }
+    char *copy = new_bytes(cx, length);
+    if (copy == NULL) {
+        return s_empty;
+    }
+    (void)memcpy(copy, bytes, length);
+    return (pn_string_t){ copy, (uint32_t)length };
+}
+
+int pn_string_order(pn_string_t a, pn_string_t b)
+{
+    const uint32_t common = (a.length < b.length) ? a.length : b.length;
+    const int order = (common > 0U) ? memcmp(a.bytes, b.bytes, common) : 0;
+    if (order != 0) {
+        return (order > 0) ? 1 : -1;
+    }
+    return (a.length > b.length) - (a.length < b.length);
+}
+
+pn_string_t pn_string_concat(pn_ctx_t *cx, pn_string_t a, pn_string_t b)
+{
+    if (b.length == 0U) {
+        return a;
+    }
+    if (a.length == 0U) {
+        return b;
+    }
+    const size_t length = (size_t)a.length + b.length;
+    char *bytes = new_bytes(cx, length);
+    if (bytes == NULL) {
+        return s_empty;
+    }
+    (void)memcpy(bytes, a.bytes, a.length);
+    (void)memcpy(&bytes[a.length], b.bytes, b.length);
+    return (pn_string_t){ bytes, (uint32_t)length };
+}
+
+pn_string_t pn_string_sub(pn_ctx_t *cx, pn_string_t s, int64_t start, int64_t length)
+{
+    const int64_t size = (int64_t)s.length;
+    if ((start < 0) || (length < 0) || (start > size) || (length > (size - start))) {
+        pn_raise(cx, PN_ERR_SUBSCRIPT, NULL);
+        return s_empty;
+    }
+    return pn_string_make(cx, &s.bytes[start], (size_t)length);
+}
+
+uint8_t pn_string_at(pn_ctx_t *cx, pn_string_t s, int64_t i)
+{
+    if ((i < 0) || (i >= (int64_t)s.length)) {
+        pn_raise(cx, PN_ERR_SUBSCRIPT, NULL);
+        return 0U;
+    }
+    return (uint8_t)s.bytes[i];
+}
+
+pn_string_t pn_string_of_char(pn_ctx_t *cx, uint8_t c)
+{
+    const char byte = (char)c;
+    return pn_string_make(cx, &byte, 1U);
+}
+
+bool pn_string_is_prefix(pn_string_t part, pn_string_t s)
+{
+    return (part.length == 0U)
+           || ((part.length <= s.length) && (memcmp(part.bytes, s.bytes, part.length) == 0));
+}
+
+bool pn_string_is_suffix(pn_string_t part, pn_string_t s)
+{
+    return (part.length == 0U)
+           || ((part.length <= s.length) && (memcmp(part.bytes, &s.bytes[s.length - part.length], part.length) == 0));
+}
+
+bool pn_string_is_substring(pn_string_t part, pn_string_t s)
+{
+    if (part.length == 0U) {
+        return true;
+    }
+    for (uint32_t at = 0U; (at + part.length) <= s.length; at++) {
+        if (memcmp(part.bytes, &s.bytes[at], part.length) == 0) {
+            return true;
+        }
+    }
+    return false;
+}
+
+uint8_t pn_char_of_int(pn_ctx_t *cx, int64_t code)
+{
+    if ((code < 0) || (code > 255)) {
+        pn_raise(cx, PN_ERR_DOMAIN, "Chr");
+        return 0U;
+    }
+    return (uint8_t)code;
+}
+
+bool pn_char_is_digit(uint8_t c)
+{
+    return (c >= (uint8_t)'0') && (c <= (uint8_t)'9');
+}
+
+bool pn_char_is_upper(uint8_t c)
+{
+    return (c >= (uint8_t)'A') && (c <= (uint8_t)'Z');
+}
+
+bool pn_char_is_lower(uint8_t c)
+{
+    return (c >= (uint8_t)'a') && (c <= (uint8_t)'z');
+}
+
+bool pn_char_is_alpha(uint8_t c)
+{
+    return pn_char_is_upper(c) || pn_char_is_lower(c);
+}
+
+bool pn_char_is_alphanum(uint8_t c)
+{
+    return pn_char_is_alpha(c) || pn_char_is_digit(c);
+}
+
+bool pn_char_is_space(uint8_t c)
+{
+    return (c == (uint8_t)' ') || ((c >= 9U) && (c <= 13U));
+}
+
+uint8_t pn_char_to_upper(uint8_t c)
+{
+    return pn_char_is_lower(c) ? (uint8_t)(c - 32U) : c;
+}
+
+uint8_t pn_char_to_lower(uint8_t c)
+{
+    return pn_char_is_upper(c) ? (uint8_t)(c + 32U) : c;
+}
+
+void pn_print(pn_ctx_t *cx, pn_string_t s)
+{
+    if (pn_ok(cx)) {
+        (void)fwrite(s.bytes, 1U, s.length, stderr);
+    }
+}
+
+size_t pn_int_sml(char *out, size_t capacity, int64_t value)
+{
+    const uint64_t magnitude = (value < 0) ? (0U - (uint64_t)value) : (uint64_t)value;
+    return (size_t)snprintf(out, capacity, "%s%llu", (value < 0) ? "~" : "", (unsigned long long)magnitude);
+}
+
+/* SML/NJ's Real.toString: 12 significant digits, at least one decimal, E notation outside 1E~04 .. 1E12. */
+size_t pn_real_sml(char *out, size_t capacity, double value)
+{
+    const char *sign = signbit(value) ? "~" : "";
+    if (isnan(value)) {
+        return (size_t)snprintf(out, capacity, "nan");
+    }
+    if (isinf(value)) {
+        return (size_t)snprintf(out, capacity, "%sinf", sign);
+    }
+    char scientific[32];
+    (void)snprintf(scientific, sizeof scientific, "%.11e", fabs(value));
+    char digit[16];
+    int count = 0;
+    const char *at = scientific;
+    for (; *at != 'e'; at++) {
+        if (*at != '.') {
+            digit[count++] = *at;
+        }
+    }
+    while ((count > 1) && (digit[count - 1] == '0')) {
+        count--;
+    }
+    digit[count] = '\0';
+    const int exponent = (int)strtol(at + 1, NULL, 10);
+    if ((exponent < -5) || (exponent >= 12)) {
+        return (size_t)snprintf(out, capacity, "%s%c%s%sE%s%02d", sign, digit[0], (count > 1) ? "." : "", &digit[1],
+                                (exponent < 0) ? "~" : "", abs(exponent));
+    }
+    if (exponent < 0) {
+        return (size_t)snprintf(out, capacity, "%s0.%.*s%s", sign, -exponent - 1, "0000", digit);
+    }
+    if (count <= (exponent + 1)) {
+        return (size_t)snprintf(out, capacity, "%s%s%.*s.0", sign, digit, exponent + 1 - count, "000000000000");
+    }
+    return (size_t)snprintf(out, capacity, "%s%.*s.%s", sign, exponent + 1, digit, &digit[exponent + 1]);
+}
+
+pn_string_t pn_string_of_int(pn_ctx_t *cx, int64_t value)
+{
+    char digits[24];
+    return pn_string_make(cx, digits, pn_int_sml(digits, sizeof digits, value));
+}
+
+pn_string_t pn_string_of_real(pn_ctx_t *cx, double value)
+{
+    char digits[40];
+    return pn_string_make(cx, digits, pn_real_sml(digits, sizeof digits, value));
+}
+
+pn_string_t pn_string_of_bool(bool value)
+{
+    return value ? PN_STRING("true") : PN_STRING("false");
+}

@@ -1,0 +1,123 @@
+/* SPDX-License-Identifier: MIT */
+#include "pn/pn_trace.h"
+
+#include <string.h>
+
+#include "pn/pn_text.h"
+
+bool pn_trace_open(pn_trace_t *trace, const char *path, char *buffer, size_t capacity)
+{
+    pn_text_init(&trace->line, buffer, capacity);
+    trace->file = NULL;
+    trace->step = 0U;
+    trace->failed = false;
+    if (path == NULL) {
+        return true;
+    }
+    trace->file = (strcmp(path, "-") == 0) ? stdout : fopen(path, "w");
+    return trace->file != NULL;
+}
+
+/* Writes the line that was made, or notes that it cannot be. */
+static void write_line(pn_trace_t *trace)
+{
+    pn_text_char(&trace->line, '\n');
+    if (trace->line.truncated) {
+        trace->failed = true;
+    }
+    if (!trace->failed) {
+        const size_t written = fwrite(trace->line.buffer, 1U, trace->line.length, trace->file);
+        if ((written != trace->line.length) || (fflush(trace->file) != 0)) {
+            trace->failed = true;
+        }
+    }
+    pn_text_clear(&trace->line);
+}
+
+static bool is_writing(const pn_trace_t *trace)
+{
+    return (trace->file != NULL) && !trace->failed;
+}
+
+void pn_trace_header(pn_trace_t *trace, const pn_net_t *net, const char *by, const char *initial_json)
+{
+    if (!is_writing(trace)) {
+        return;
+    }
+    pn_text_t *line = &trace->line;
+    pn_text_str(line, "{\"trace\": 1, \"net\": ");
+    pn_text_json_str(line, net->name);
+    pn_text_str(line, ", \"source\": ");
+    pn_text_json_str(line, net->source);
+    pn_text_str(line, ", \"digest\": ");
+    pn_text_json_str(line, net->digest);
+    pn_text_str(line, ", \"by\": ");
+    pn_text_json_str(line, by);
+    pn_text_str(line, ", \"initial\": ");
+    pn_text_str(line, (initial_json != NULL) ? initial_json : "{}");
+    pn_text_char(line, '}');
+    write_line(trace);
+}
+
+void pn_trace_occurrence(pn_trace_t *trace, double t, const pn_transition_t *transition, const void *binding)
+{
+    trace->step++;
+    if (!is_writing(trace)) {
+        return;
+    }
+    pn_text_t *line = &trace->line;
+    pn_text_str(line, "{\"step\": ");
+    pn_text_uint(line, trace->step);
+    pn_text_str(line, ", \"t\": ");
+    pn_text_json_real(line, t);
+    pn_text_str(line, ", \"transition\": ");
+    pn_text_json_str(line, transition->name);
+    pn_text_str(line, ", \"binding\": ");
+    transition->binding_json(binding, line);
+    pn_text_str(line, ", \"origin\": ");
+    pn_text_json_str(line, transition->id);
+    pn_text_char(line, '}');
+    write_line(trace);
+}
+
+void pn_trace_note(pn_trace_t *trace, double t, const char *event, const char *members_json)
+{
+    if (!is_writing(trace)) {
+        return;
+    }
+    pn_text_t *line = &trace->line;
+    pn_text_str(line, "{\"t\": ");
+    pn_text_json_real(line, t);
+    pn_text_str(line, ", \"event\": ");
+    pn_text_json_str(line, event);
+    if (members_json != NULL) {
+        pn_text_str(line, ", ");
+        pn_text_str(line, members_json);
+    }
+    pn_text_char(line, '}');
+    write_line(trace);
+}
+
+void pn_trace_end(pn_trace_t *trace, double t, const char *why)
+{
+    if (!is_writing(trace)) {
+        return;
+    }
+    pn_text_t *line = &trace->line;
+    pn_text_str(line, "{\"t\": ");
+    pn_text_json_real(line, t);
+    pn_text_str(line, ", \"event\": \"end\", \"why\": ");
+    pn_text_json_str(line, why);
+    pn_text_char(line, '}');
+    write_line(trace);
+}
+
+bool pn_trace_close(pn_trace_t *trace)
+{
+    if (trace->file != NULL) {
+        const bool is_flushed = (trace->file == stdout) ? (fflush(trace->file) == 0) : (fclose(trace->file) == 0);
+        trace->failed = trace->failed || !is_flushed;
+        trace->file = NULL;
+    }
+    return !trace->failed;
+}

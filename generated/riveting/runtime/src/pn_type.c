@@ -1,0 +1,511 @@
+/* SPDX-License-Identifier: MIT */
+#include "pn/pn_type.h"
+
+#include <math.h>
+
+#include "pn/pn_arena.h"
+#include "pn/pn_num.h"
+#include "pn/pn_text.h"
+#include "pn_type_impl.h"
+
+/* --- order --------------------------------------------------------------------------------------------------------- */
+
+static int compare_lists(const pn_type_t *type, const void *a, const void *b)
+{
+    const void *rest_a = load_pointer(a);
+    const void *rest_b = load_pointer(b);
+    while ((rest_a != NULL) && (rest_b != NULL)) {
+        const int order = pn_compare(type->element, part(rest_a, type->head), part(rest_b, type->head));
+        if (order != 0) {
+            return order;
+        }
+        rest_a = pn_list_tail(rest_a);
+        rest_b = pn_list_tail(rest_b);
+    }
+    return (rest_a != NULL) - (rest_b != NULL);
+}
+
+static int compare_unions(const pn_type_t *type, const void *a, const void *b)
+{
+    const void *argument_a = NULL;
+    const void *argument_b = NULL;
+    const pn_field_t *constructor_a = constructor_of(type, a, &argument_a);
+    const pn_field_t *constructor_b = constructor_of(type, b, &argument_b);
+    if (constructor_a != constructor_b) {
+        return (constructor_a > constructor_b) ? 1 : -1;
+    }
+    return (argument_a == NULL) ? 0 : pn_compare(constructor_a->type, argument_a, argument_b);
+}
+
+int pn_compare(const pn_type_t *type, const void *a, const void *b)
+{
+    switch (type->kind) {
+    case PN_KIND_BOOL:
+        return (int)load_bool(a) - (int)load_bool(b);
+    case PN_KIND_INT:
+        return pn_int_order(load_int(a), load_int(b));
+    case PN_KIND_REAL:
+        return pn_real_order(load_real(a), load_real(b));
+    case PN_KIND_STRING:
+        return pn_string_order(load_string(a), load_string(b));
+    case PN_KIND_CHAR:
+        return (int)load_byte(a) - (int)load_byte(b);
+    case PN_KIND_ENUM:
+        return pn_int_order((int64_t)load_tag(a), (int64_t)load_tag(b));
+    case PN_KIND_RECORD:
+        for (uint32_t i = 0U; i < type->count; i++) {
+            const pn_field_t *field = &type->field[i];
+            const int order = pn_compare(field->type, part(a, field->offset), part(b, field->offset));
+            if (order != 0) {
+                return order;
+            }
+        }
+        return 0;
+    case PN_KIND_LIST:
+        return compare_lists(type, a, b);
+    case PN_KIND_UNION:
+        return compare_unions(type, a, b);
+    case PN_KIND_UNIT:
+    default:
+        return 0;
+    }
+}
+
+bool pn_equal(const pn_type_t *type, const void *a, const void *b)
+{
+    return pn_compare(type, a, b) == 0;
+}
+
+/* --- text ---------------------------------------------------------------------------------------------------------- */
+
+static void json_record(const pn_type_t *type, const void *value, pn_text_t *out)
+{
+    pn_text_char(out, type->is_tuple ? '[' : '{');
+    for (uint32_t i = 0U; i < type->count; i++) {
+        const pn_field_t *field = &type->field[i];
+        pn_text_str(out, (i > 0U) ? ", " : "");
+        if (!type->is_tuple) {
+            pn_text_json_str(out, field->label);
+            pn_text_str(out, ": ");
+        }
+        pn_json(field->type, part(value, field->offset), out);
+    }
+    pn_text_char(out, type->is_tuple ? ']' : '}');
+}
+
+static void json_list(const pn_type_t *type, const void *value, pn_text_t *out)
+{
+    pn_text_char(out, '[');
+    const char *separator = "";
+    for (const void *rest = load_pointer(value); rest != NULL; rest = pn_list_tail(rest)) {
+        pn_text_str(out, separator);
+        pn_json(type->element, part(rest, type->head), out);
+        separator = ", ";
+    }
+    pn_text_char(out, ']');
+}
+
+static void json_union(const pn_type_t *type, const void *value, pn_text_t *out)
+{
+    const void *argument = NULL;
+    const pn_field_t *constructor = constructor_of(type, value, &argument);
+    pn_text_char(out, '[');
+    pn_text_json_str(out, constructor->label);
+    if (argument != NULL) {
+        pn_text_str(out, ", ");
+        pn_json(constructor->type, argument, out);
+    }
+    pn_text_char(out, ']');
+}
+
+void pn_json(const pn_type_t *type, const void *value, pn_text_t *out)
+{
+    switch (type->kind) {
+    case PN_KIND_BOOL:
+        pn_text_str(out, load_bool(value) ? "true" : "false");
+        break;
+    case PN_KIND_INT:
+        pn_text_int(out, load_int(value));
+        break;
+    case PN_KIND_REAL:
+        pn_text_json_real(out, load_real(value));
+        break;
+    case PN_KIND_STRING: {
+        const pn_string_t text = load_string(value);
+        pn_text_json_bytes(out, text.bytes, text.length);
+        break;
+    }
+    case PN_KIND_CHAR: {
+        const char c = (char)load_byte(value);
+        pn_text_json_bytes(out, &c, 1U);
+        break;
+    }
+    case PN_KIND_ENUM:
+        pn_text_json_str(out, type->name_of_value[load_tag(value)]);
+        break;
+    case PN_KIND_RECORD:
+        json_record(type, value, out);
+        break;
+    case PN_KIND_LIST:
+        json_list(type, value, out);
+        break;
+    case PN_KIND_UNION:
+        json_union(type, value, out);
+        break;
+    case PN_KIND_UNIT:
+    default:
+        pn_text_str(out, "null");
+        break;
+    }
+}
+
+static void mkstr_int(const pn_type_t *type, int64_t value, pn_text_t *out)
+{
+    char digits[24];
+    (void)pn_int_sml(digits, sizeof digits, value);
+    const bool has_parentheses = type->is_index || (value < 0);
+    pn_text_str(out, type->is_index ? type->name_of_value[0] : "");
+    pn_text_str(out, has_parentheses ? "(" : "");
+    pn_text_str(out, digits);
+    pn_text_str(out, has_parentheses ? ")" : "");
+}
+
+static void mkstr_record(const pn_type_t *type, const void *value, pn_text_t *out)
+{
+    pn_text_char(out, type->is_tuple ? '(' : '{');
+    for (uint32_t i = 0U; i < type->count; i++) {
+        const pn_field_t *field = &type->field[i];
+        pn_text_str(out, (i > 0U) ? "," : "");
+        if (!type->is_tuple) {
+            pn_text_str(out, field->label);
+            pn_text_char(out, '=');
+        }
+        pn_mkstr(field->type, part(value, field->offset), out);
+    }
+    pn_text_char(out, type->is_tuple ? ')' : '}');
+}
+
+static void mkstr_list(const pn_type_t *type, const void *value, pn_text_t *out)
+{
+    pn_text_char(out, '[');
+    const char *separator = "";
+    for (const void *rest = load_pointer(value); rest != NULL; rest = pn_list_tail(rest)) {
+        pn_text_str(out, separator);
+        pn_mkstr(type->element, part(rest, type->head), out);
+        separator = ",";
+    }
+    pn_text_char(out, ']');
+}
+
+static void mkstr_union(const pn_type_t *type, const void *value, pn_text_t *out)
+{
+    const void *argument = NULL;
+    const pn_field_t *constructor = constructor_of(type, value, &argument);
+    pn_text_str(out, constructor->label);
+    if (argument != NULL) {
+        const pn_kind_t kind = constructor->type->kind;
+        const bool is_enclosed = (kind == PN_KIND_RECORD) && constructor->type->is_tuple;
+        pn_text_str(out, is_enclosed ? "" : "(");
+        pn_mkstr(constructor->type, argument, out);
+        pn_text_str(out, is_enclosed ? "" : ")");
+    }
+}
+
+void pn_mkstr(const pn_type_t *type, const void *value, pn_text_t *out)
+{
+    switch (type->kind) {
+    case PN_KIND_BOOL:
+        if (type->name_of_value != NULL) {
+            pn_text_str(out, type->name_of_value[load_bool(value) ? 1 : 0]);
+        } else {
+            pn_text_str(out, load_bool(value) ? "true" : "false");
+        }
+        break;
+    case PN_KIND_INT:
+        mkstr_int(type, load_int(value), out);
+        break;
+    case PN_KIND_REAL: {
+        char digits[40];
+        (void)pn_real_sml(digits, sizeof digits, load_real(value));
+        const bool is_negative = digits[0] == '~';
+        pn_text_str(out, is_negative ? "(" : "");
+        pn_text_str(out, digits);
+        pn_text_str(out, is_negative ? ")" : "");
+        break;
+    }
+    case PN_KIND_STRING: {
+        const pn_string_t text = load_string(value);
+        pn_text_char(out, '"');
+        pn_text_bytes(out, text.bytes, text.length);
+        pn_text_char(out, '"');
+        break;
+    }
+    case PN_KIND_CHAR:
+        pn_text_str(out, "#\"");
+        pn_text_char(out, (char)load_byte(value));
+        pn_text_char(out, '"');
+        break;
+    case PN_KIND_ENUM:
+        pn_text_str(out, type->name_of_value[load_tag(value)]);
+        break;
+    case PN_KIND_RECORD:
+        mkstr_record(type, value, out);
+        break;
+    case PN_KIND_LIST:
+        mkstr_list(type, value, out);
+        break;
+    case PN_KIND_UNION:
+        mkstr_union(type, value, out);
+        break;
+    case PN_KIND_UNIT:
+    default:
+        pn_text_str(out, (type->name_of_value != NULL) ? type->name_of_value[0] : "()");
+        break;
+    }
+}
+
+pn_string_t pn_mkstr_string(pn_ctx_t *cx, const pn_type_t *type, const void *value)
+{
+    char buffer[4096];
+    pn_text_t text;
+    pn_text_init(&text, buffer, sizeof buffer);
+    pn_mkstr(type, value, &text);
+    if (text.truncated) {
+        pn_raise(cx, PN_ERR_MEMORY, NULL);
+    }
+    return pn_string_make(cx, buffer, text.length);
+}
+
+/* --- legality ------------------------------------------------------------------------------------------------------ */
+
+static bool is_legal_string(const pn_type_t *type, pn_string_t text)
+{
+    if (type->has_range && (((int64_t)text.length < type->low) || ((int64_t)text.length > type->high))) {
+        return false;
+    }
+    for (uint32_t i = 0U; type->has_chars && (i < text.length); i++) {
+        const uint8_t c = (uint8_t)text.bytes[i];
+        if ((c < type->char_low) || (c > type->char_high)) {
+            return false;
+        }
+    }
+    return true;
+}
+
+static bool is_legal_list(pn_ctx_t *cx, const pn_type_t *type, const void *list)
+{
+    int64_t length = 0;
+    for (const void *rest = list; rest != NULL; rest = pn_list_tail(rest)) {
+        if (!pn_is_legal(cx, type->element, part(rest, type->head))) {
+            return false;
+        }
+        length++;
+    }
+    return !type->has_range || ((length >= type->low) && (length <= type->high));
+}
+
+static bool has_legal_parts(pn_ctx_t *cx, const pn_type_t *type, const void *value)
+{
+    switch (type->kind) {
+    case PN_KIND_INT: {
+        const int64_t number = load_int(value);
+        return !type->has_range || ((number >= type->low) && (number <= type->high));
+    }
+    case PN_KIND_REAL: {
+        const double number = load_real(value);
+        const bool is_in_range = !type->has_range || ((number >= type->real_low) && (number <= type->real_high));
+        return is_in_range && (!type->is_float32 || isfinite(number));
+    }
+    case PN_KIND_STRING:
+        return is_legal_string(type, load_string(value));
+    case PN_KIND_ENUM:
+        return load_tag(value) < type->count;
+    case PN_KIND_RECORD:
+        for (uint32_t i = 0U; i < type->count; i++) {
+            if (!pn_is_legal(cx, type->field[i].type, part(value, type->field[i].offset))) {
+                return false;
+            }
+        }
+        return true;
+    case PN_KIND_LIST:
+        return is_legal_list(cx, type, load_pointer(value));
+    case PN_KIND_UNION: {
+        const void *argument = NULL;
+        const pn_field_t *constructor = constructor_of(type, value, &argument);
+        return (argument == NULL) || pn_is_legal(cx, constructor->type, argument);
+    }
+    case PN_KIND_UNIT:
+    case PN_KIND_BOOL:
+    case PN_KIND_CHAR:
+    default:
+        return true;
+    }
+}
+
+bool pn_is_legal(pn_ctx_t *cx, const pn_type_t *type, const void *value)
+{
+    return has_legal_parts(cx, type, value) && ((type->member == NULL) || type->member(cx, value));
+}
+
+static void narrow_list(pn_ctx_t *cx, const pn_type_t *type, void *value)
+{
+    const void *list = pn_list_append(cx, type, load_pointer(value), NULL);
+    store_pointer(value, list);
+    /* The cells are fresh copies: nobody else sees the change. */
+    for (const void *rest = list; rest != NULL; rest = pn_list_tail(rest)) {
+        const size_t offset = (size_t)((const unsigned char *)rest - cx->arena->memory);
+        pn_narrow(cx, type->element, &cx->arena->memory[offset + type->head]);
+    }
+}
+
+void pn_narrow(pn_ctx_t *cx, const pn_type_t *type, void *value)
+{
+    if (!type->is_narrow) {
+        return;
+    }
+    if (type->kind == PN_KIND_REAL) {
+        const double rounded = (double)(float)load_real(value);
+        if (!isfinite(rounded)) {
+            pn_raise(cx, PN_ERR_COLOUR, NULL);
+        }
+        (void)memcpy(value, &rounded, sizeof rounded);
+    } else if (type->kind == PN_KIND_RECORD) {
+        for (uint32_t i = 0U; i < type->count; i++) {
+            pn_narrow(cx, type->field[i].type, part_of(value, type->field[i].offset));
+        }
+    } else if (type->kind == PN_KIND_LIST) {
+        narrow_list(cx, type, value);
+    } else if (type->kind == PN_KIND_UNION) {
+        const pn_field_t *constructor = &type->field[load_tag(value)];
+        if ((constructor->type != NULL) && !constructor->is_boxed) {
+            pn_narrow(cx, constructor->type, part_of(value, constructor->offset));
+        }
+    }
+}
+
+/* --- small colour sets --------------------------------------------------------------------------------------------- */
+
+static uint64_t limited(uint64_t size)
+{
+    return (size > (UINT64_C(1) << 32U)) ? 0U : size;
+}
+
+uint64_t pn_type_size(const pn_type_t *type)
+{
+    switch (type->kind) {
+    case PN_KIND_UNIT:
+        return 1U;
+    case PN_KIND_BOOL:
+        return 2U;
+    case PN_KIND_CHAR:
+        return 256U;
+    case PN_KIND_INT:
+        return (type->has_range && (type->high >= type->low)) ? limited((uint64_t)(type->high - type->low) + 1U) : 0U;
+    case PN_KIND_ENUM:
+        return type->count;
+    case PN_KIND_RECORD: {
+        uint64_t size = 1U;
+        for (uint32_t i = 0U; (i < type->count) && (size > 0U); i++) {
+            size = limited(size * pn_type_size(type->field[i].type));
+        }
+        return size;
+    }
+    case PN_KIND_UNION: {
+        uint64_t size = 0U;
+        for (uint32_t i = 0U; i < type->count; i++) {
+            const pn_type_t *argument = type->field[i].type;
+            if (type->field[i].is_boxed) {
+                return 0U;
+            }
+            const uint64_t values = (argument == NULL) ? 1U : pn_type_size(argument);
+            if (values == 0U) {
+                return 0U;
+            }
+            size += values;
+        }
+        return limited(size);
+    }
+    case PN_KIND_REAL:
+    case PN_KIND_STRING:
+    case PN_KIND_LIST:
+    default:
+        return 0U;
+    }
+}
+
+void pn_type_value(const pn_type_t *type, uint64_t i, void *value)
+{
+    (void)memset(value, 0, type->size);
+    if (type->kind == PN_KIND_BOOL) {
+        const bool flag = i != 0U;
+        (void)memcpy(value, &flag, sizeof flag);
+    } else if (type->kind == PN_KIND_CHAR) {
+        const uint8_t c = (uint8_t)i;
+        (void)memcpy(value, &c, sizeof c);
+    } else if (type->kind == PN_KIND_INT) {
+        const int64_t number = type->low + (int64_t)i;
+        (void)memcpy(value, &number, sizeof number);
+    } else if (type->kind == PN_KIND_ENUM) {
+        const uint32_t tag = (uint32_t)i;
+        (void)memcpy(value, &tag, sizeof tag);
+    } else if (type->kind == PN_KIND_RECORD) {
+        uint64_t rest = i;
+        for (uint32_t k = type->count; k > 0U; k--) {
+            const pn_field_t *field = &type->field[k - 1U];
+            const uint64_t size = pn_type_size(field->type);
+            pn_type_value(field->type, rest % size, part_of(value, field->offset));
+            rest /= size;
+        }
+    } else if (type->kind == PN_KIND_UNION) {
+        uint64_t rest = i;
+        for (uint32_t tag = 0U; tag < type->count; tag++) {
+            const pn_type_t *argument = type->field[tag].type;
+            const uint64_t size = (argument == NULL) ? 1U : pn_type_size(argument);
+            if (rest < size) {
+                (void)memcpy(value, &tag, sizeof tag);
+                if (argument != NULL) {
+                    pn_type_value(argument, rest, part_of(value, type->field[tag].offset));
+                }
+                return;
+            }
+            rest -= size;
+        }
+    }
+}
+
+uint64_t pn_type_position(const pn_type_t *type, const void *value)
+{
+    switch (type->kind) {
+    case PN_KIND_BOOL:
+        return load_bool(value) ? 1U : 0U;
+    case PN_KIND_CHAR:
+        return load_byte(value);
+    case PN_KIND_INT:
+        return (uint64_t)(load_int(value) - type->low);
+    case PN_KIND_ENUM:
+        return load_tag(value);
+    case PN_KIND_RECORD: {
+        uint64_t position = 0U;
+        for (uint32_t k = 0U; k < type->count; k++) {
+            const pn_field_t *field = &type->field[k];
+            position = (position * pn_type_size(field->type)) + pn_type_position(field->type, part(value, field->offset));
+        }
+        return position;
+    }
+    case PN_KIND_UNION: {
+        const void *argument = NULL;
+        const pn_field_t *constructor = constructor_of(type, value, &argument);
+        uint64_t position = (argument == NULL) ? 0U : pn_type_position(constructor->type, argument);
+        for (const pn_field_t *before = type->field; before < constructor; before++) {
+            position += (before->type == NULL) ? 1U : pn_type_size(before->type);
+        }
+        return position;
+    }
+    case PN_KIND_UNIT:
+    case PN_KIND_REAL:
+    case PN_KIND_STRING:
+    case PN_KIND_LIST:
+    default:
+        return 0U;
+    }
+}

@@ -1,0 +1,93 @@
+/* SPDX-License-Identifier: MIT
+ * pn_type_impl.h - how the runtime reads values through their tables. Package-private.
+ *
+ * Pointers and enumerations of generated types are read with memcpy, which no aliasing rule forbids.
+ */
+#ifndef PN_TYPE_IMPL_H
+#define PN_TYPE_IMPL_H
+
+#include <string.h>
+
+#include "pn/pn_type.h"
+
+static inline const void *load_pointer(const void *at)
+{
+    const void *pointer = NULL;
+    (void)memcpy(&pointer, at, sizeof pointer);
+    return pointer;
+}
+
+static inline void store_pointer(void *at, const void *pointer)
+{
+    (void)memcpy(at, &pointer, sizeof pointer);
+}
+
+static inline int64_t load_int(const void *at)
+{
+    int64_t value = 0;
+    (void)memcpy(&value, at, sizeof value);
+    return value;
+}
+
+static inline double load_real(const void *at)
+{
+    double value = 0.0;
+    (void)memcpy(&value, at, sizeof value);
+    return value;
+}
+
+static inline bool load_bool(const void *at)
+{
+    bool value = false;
+    (void)memcpy(&value, at, sizeof value);
+    return value;
+}
+
+static inline uint8_t load_byte(const void *at)
+{
+    uint8_t value = 0U;
+    (void)memcpy(&value, at, sizeof value);
+    return value;
+}
+
+/* An enumeration, or the tag of a union. */
+static inline uint32_t load_tag(const void *at)
+{
+    uint32_t value = 0U;
+    (void)memcpy(&value, at, sizeof value);
+    return value;
+}
+
+static inline pn_string_t load_string(const void *at)
+{
+    pn_string_t value = { "", 0U };
+    (void)memcpy(&value, at, sizeof value);
+    return value;
+}
+
+static inline const void *part(const void *value, size_t offset)
+{
+    return (const unsigned char *)value + offset;
+}
+
+static inline void *part_of(void *value, size_t offset)
+{
+    return (unsigned char *)value + offset;
+}
+
+/* The constructor's entry and the address of its argument, NULL for a constant constructor. */
+static inline const pn_field_t *constructor_of(const pn_type_t *type, const void *value, const void **argument)
+{
+    const pn_field_t *field = &type->field[load_tag(value)];
+    *argument = NULL;
+    if (field->type != NULL) {
+        const void *at = part(value, field->offset);
+        *argument = field->is_boxed ? load_pointer(at) : at;
+    }
+    return field;
+}
+
+/* Enumerations and union tags are C enums, which gcc and clang store as unsigned int. */
+_Static_assert(sizeof(enum pn_kind_probe { PN_KIND_PROBE = 0 }) == sizeof(uint32_t), "enums must have 32 bits");
+
+#endif /* PN_TYPE_IMPL_H */
