@@ -221,7 +221,7 @@ NETS: dict[str, str] = {
           place Q : INT
           trans T guard [even n orelse odd n]
             in P : n
-            out Q : 1`(count (n * 20000, 0)) ++ 1`(fact n)
+            out Q : 1`(count (n * 300, 0)) ++ 1`(fact n)
     """,
     "exceptions end both": """
         net Cell

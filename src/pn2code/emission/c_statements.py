@@ -305,6 +305,14 @@ class Statements:
                 self._next()
             case ir.UnlessAvailable():
                 self._unless_available(s)
+            case ir.UnlessHeld():
+                if s.note:
+                    self.note(s.note)
+                parts = [
+                    f"&{self.bags[s.place]}", "m", self._x.address(s.value), self._x.time(s.limit),
+                ]  # fmt: skip
+                self.line(f"if (pn_bag_count({', '.join(parts)}) < {s.count}U) {{")
+                self._next()
             case ir.UnlessEmpty(place=place, note=note):
                 self.note(note)
                 self.line(f"if (pn_bag_available(&{self.bags[place]}, m, cx->now) > 0U) {{")
@@ -368,7 +376,7 @@ class Statements:
         name = self._scope.name(("wanted", id(takes)), "wanted")
         holds = self._scope.name(("holds", id(takes)), "holds")
         before, self.moves = self.moves, name
-        mark = self._scope.name(("mark", id(takes)), "before")
+        mark = self._scope.name(("mark", id(takes)), "start")
         self.line(f"const size_t {mark} = pn_arena_mark(cx->arena);")
         self.line(f"pn_moves_t {name};")
         self.line(f"pn_moves_init(&{name}, cx);")

@@ -521,6 +521,17 @@ class UnlessAvailable:
 
 
 @frozen
+class UnlessHeld:
+    """Goes on unless the place holds `count` tokens of a value, with stamps not after `limit` in a timed place."""
+
+    place: int
+    value: Ir
+    count: int
+    limit: Ir | None
+    note: str = ""
+
+
+@frozen
 class UnlessEmpty:
     """Goes on unless the place of an inhibitor arc has no token that is available now."""
 
@@ -596,7 +607,7 @@ class Reset:
 Stmt = (
     Let | Declare | Assign | Fill | SetGlobal | Do | If | While | ForList | ForCount | Return | SelfCall |
     Raise | ClearError | Note | ForTokens | ForValues | Bind | Unless | UnlessLegal | UnlessAvailable |
-    UnlessEmpty | Wanted | Yield | Take | TakeAll | Put | PutAll | Reset
+    UnlessHeld | UnlessEmpty | Wanted | Yield | Take | TakeAll | Put | PutAll | Reset
 )  # fmt: skip
 
 # --- the net -----------------------------------------------------------------------------------

@@ -17,8 +17,10 @@ from pn2code.lowering.functions import Program
 from pn2code.lowering.inscriptions import Putter, plus
 from pn2code.lowering.ir import Ir, Stmt
 from pn2code.lowering.matching import conjunction
+from pn2code.lowering.types import Types
 from pn2code.lowering.values import Binding, Env, free_variables
 from pn2code.ml import core
+from pn2code.ml.colsets import Colset, Kind
 from pn2code.ml.core import Symbol
 from pn2code.ml.types import list_of
 from pn2code.net.flat import (
@@ -237,7 +239,7 @@ class _Enumeration:
         index = self._body.local("i", ir.INT)
         with self._body.block() as statements:
             assert term.pattern is not None
-            self._match(term.pattern, ir.TokenValue(arc.place, index, token), "")
+            self._match(term.pattern, ir.TokenValue(arc.place, index, token), "", place.colset)
             if (step.arc, step.term) in self._found:
                 self._available(arc, term, index)
             self._ready()
@@ -260,8 +262,8 @@ class _Enumeration:
         limit = _limit(self._program, self._body, term.delay, self._env, timed)
         self._body.emit(ir.UnlessAvailable(arc.place, index, limit, count))
 
-    def _match(self, pattern: core.Pat, value: Ir, note: str) -> None:
-        """Match a value; the variables that are bound already must be equal."""
+    def _match(self, pattern: core.Pat, value: Ir, note: str, colset: Colset | None = None) -> None:
+        """Match a value, of the colour set that is given; the variables that are bound already must be equal."""
         match = self._body.match(pattern, value)
         conditions = list(match.conditions)
         first: dict[int, Ir] = {}
@@ -281,8 +283,10 @@ class _Enumeration:
         for symbol, code in fresh:
             self._body.emit(ir.Bind(self._index[symbol.uid], code))
             self._bound.add(symbol.uid)
+        known = _colsets(self._program.types, pattern, colset)
         for symbol, _ in fresh:
-            self._restrict(symbol)
+            if known.get(symbol.uid) != self._variables[self._index[symbol.uid]].table:
+                self._restrict(symbol)
 
     def _restrict(self, symbol: Symbol) -> None:
         """A variable of a restricted colour set takes only its colours."""
@@ -306,12 +310,28 @@ class _Enumeration:
             if not all(self._can_term(d.term) for d in mine):
                 continue
             self._demands = [d for d in self._demands if d.arc.place != place]
+            if len(mine) == 1 and self._holds(mine[0]):
+                continue
             with self._body.block() as takes:
                 for demand in mine:
                     take_terms(
                         self._program, self._net, self._body, demand.arc, self._env, [demand.term]
                     )
             self._body.emit(ir.Wanted(tuple(takes)))
+
+    def _holds(self, demand: _Demand) -> bool:
+        """Test for a single value with a constant coefficient; False if the demand is not of this kind."""
+        term, arc = demand.term, demand.arc
+        count = _constant(term.coefficient)
+        if term.whole or count is None:
+            return False
+        if count > 0:
+            timed = self._net.places[arc.place].colset.timed
+            limit = _limit(self._program, self._body, term.delay, self._env, timed)
+            value = self._body.addressable(self._body.ir(term.value, self._env), "token")
+            note = arc_note(self._net, arc)
+            self._body.emit(ir.UnlessHeld(arc.place, value, count, limit, note))
+        return True
 
     def _can(self, e: core.Exp) -> bool:
         free = {uid for uid in free_variables(e) if uid in self._index}
@@ -320,6 +340,25 @@ class _Enumeration:
     def _can_term(self, term: Term) -> bool:
         parts = [term.coefficient, term.value] + ([term.delay] if term.delay is not None else [])
         return all(self._can(p) for p in parts)
+
+
+def _colsets(types: Types, pattern: core.Pat, colset: Colset | None) -> dict[int, str]:
+    """The colour sets, by key, that the variables of a pattern are known to have values of."""
+    if colset is None:
+        return {}
+    match pattern:
+        case core.PVar(symbol=symbol):
+            return {symbol.uid: types.colset(colset)}
+        case core.PAs(symbol=symbol, pattern=inner):
+            return {symbol.uid: types.colset(colset), **_colsets(types, inner, colset)}
+        case core.PRecord(fields=fields):
+            own = colset.resolved
+            if own.kind not in (Kind.PRODUCT, Kind.RECORD):
+                return {}
+            labels = own.labels or tuple(str(i) for i in range(1, len(own.components) + 1))
+            parts = dict(zip(labels, own.components, strict=True))
+            return {u: n for x, p in fields for u, n in _colsets(types, p, parts.get(x)).items()}
+    return {}
 
 
 def _constant(e: core.Exp) -> int | None:

@@ -195,7 +195,8 @@ static const pn_type_t s_binding_Pick = {
     .field = s_variables_Pick,
 };
 
-static bool Pick_enumerate(pn_ctx_t *cx, const void *marking, uint32_t self, pn_binding_sink_t sink, void *user)
+static bool Pick_enumerate(pn_ctx_t *cx, const void *marking,
+    uint32_t self, pn_binding_sink_t sink, void *user)
 {
     const net_marking_t *const m = marking;
     Pick_binding_t b = { 0 };
@@ -298,7 +299,8 @@ static size_t encode(const void *marking, uint8_t *out, size_t capacity)
     }
     (void)memcpy(out, &m->now, at);
     for (size_t i = 0U; i < (sizeof s_bags / sizeof s_bags[0]); i++) {
-        at += pn_bag_encode(s_bags[i], marking, &out[(at < capacity) ? at : 0U], (at < capacity) ? (capacity - at) : 0U);
+        const size_t room = (at < capacity) ? (capacity - at) : 0U;
+        at += pn_bag_encode(s_bags[i], marking, &out[(room > 0U) ? at : 0U], room);
     }
     return (at <= capacity) ? at : 0U;
 }

@@ -1,0 +1,283 @@
+/* SPDX-License-Identifier: MIT
+ * runtime.c - tests of the runtime: texts, arena, places, moves. Exit code 0 and "ok" when all hold.
+ *
+ *     runtime           all tests
+ *     runtime --repr    reads bit patterns of doubles in hex, one a line, and writes the shortest decimal of each
+ */
+#include <inttypes.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "pn/pn_arena.h"
+#include "pn/pn_bag.h"
+#include "pn/pn_num.h"
+#include "pn/pn_text.h"
+#include "pn/pn_trace.h"
+
+static int s_failures = 0;
+
+static void check(bool holds, const char *what, int line)
+{
+    if (!holds) {
+        s_failures++;
+        (void)fprintf(stderr, "runtime.c:%d: %s\n", line, what);
+    }
+}
+
+#define CHECK(condition) check((condition), #condition, __LINE__)
+
+static max_align_t s_memory[4096];
+
+/* A net of two places of integers: one plain, one timed with room for three. */
+typedef struct marking {
+    struct {
+        uint32_t used;
+        struct {
+            int64_t value;
+            uint32_t count;
+        } token[4];
+    } Plain;
+    struct {
+        uint32_t used;
+        struct {
+            int64_t value;
+            uint32_t count;
+            pn_time_t stamp;
+        } token[3];
+    } Timed;
+} marking_t;
+
+static const pn_type_t s_int = { .kind = PN_KIND_INT, .name = "INT", .size = sizeof(int64_t) };
+static const pn_type_t s_small = {
+    .kind = PN_KIND_INT, .name = "SMALL", .size = sizeof(int64_t), .has_range = true, .low = 1, .high = 3
+};
+static const pn_bag_t s_plain = {
+    .origin = "place `Plain`", .type = &s_int, .capacity = 4U, PN_BAG_TOKENS(marking_t, Plain)
+};
+static const pn_bag_t s_timed = {
+    .origin = "place `Timed`", .type = &s_int, .capacity = 3U, .is_timed = true, PN_BAG_TOKENS(marking_t, Timed),
+    PN_BAG_STAMPS(marking_t, Timed)
+};
+
+/* The text of a place's marking. */
+static const char *json(const pn_bag_t *bag, const marking_t *m)
+{
+    static char buffer[512];
+    pn_text_t text;
+    pn_text_init(&text, buffer, sizeof buffer);
+    pn_bag_json(bag, m, &text);
+    return buffer;
+}
+
+static bool is_text(const char *a, const char *b)
+{
+    return strcmp(a, b) == 0;
+}
+
+static void test_text(void)
+{
+    char buffer[8];
+    pn_text_t text;
+    pn_text_init(&text, buffer, sizeof buffer);
+    pn_text_str(&text, "abcdef");
+    CHECK(!text.truncated);
+    pn_text_str(&text, "xyz");
+    CHECK(text.truncated);
+    CHECK(is_text(buffer, "abcdefx"));
+    pn_text_clear(&text);
+    CHECK(!text.truncated && is_text(buffer, ""));
+    pn_text_int(&text, INT64_MIN);
+    CHECK(text.truncated && is_text(buffer, "-922337"));
+
+    char wide[64];
+    pn_text_init(&text, wide, sizeof wide);
+    pn_text_json_bytes(&text, "a\"\\\n\x01\xC3\xA9\xE9", 8U);
+    CHECK(is_text(wide, "\"a\\\"\\\\\\n\\u0001\xC3\xA9\xC3\xA9\""));
+    pn_text_clear(&text);
+    pn_text_fixed(&text, -0.00001, 4);
+    pn_text_char(&text, ' ');
+    pn_text_fixed(&text, -1.00006, 4);
+    CHECK(is_text(wide, "0.0000 -1.0001"));
+}
+
+static void test_numbers(void)
+{
+    pn_arena_t arena;
+    pn_ctx_t cx;
+    pn_arena_init(&arena, s_memory, sizeof s_memory);
+    pn_ctx_init(&cx, &arena, 1U);
+    CHECK(pn_int_div(&cx, -7, 2) == -4);
+    CHECK(pn_int_mod(&cx, -7, 2) == 1);
+    CHECK(pn_int_quot(&cx, -7, 2) == -3);
+    CHECK(pn_int_rem(&cx, -7, 2) == -1);
+    CHECK(pn_int_mod(&cx, 7, -2) == -1);
+    CHECK(pn_real_round(&cx, 2.5) == 2);
+    CHECK(pn_real_round(&cx, 3.5) == 4);
+    CHECK(pn_real_round(&cx, -2.5) == -2);
+    CHECK(pn_real_floor(&cx, -0.5) == -1);
+    CHECK(pn_ok(&cx));
+    CHECK(pn_int_add(&cx, PN_INT_MAX, 1) == 0);
+    CHECK(cx.error == PN_ERR_OVERFLOW);
+    CHECK(pn_int_div(&cx, 1, 0) == 0);
+    CHECK(cx.error == PN_ERR_OVERFLOW); /* the first error stays */
+    pn_clear_error(&cx);
+    CHECK(pn_inf_mul(&cx, INT64_MIN, -1) == 0);
+    CHECK(cx.error == PN_ERR_OVERFLOW);
+    pn_clear_error(&cx);
+    CHECK(pn_inf_mul(&cx, INT64_C(3037000499), INT64_C(3037000499)) == INT64_C(9223372030926249001));
+    CHECK(pn_ok(&cx));
+    CHECK(pn_real_floor(&cx, 1e300) == 0);
+    CHECK(cx.error == PN_ERR_OVERFLOW);
+
+    char text[40];
+    static const struct {
+        double value;
+        const char *sml;
+    } reals[] = {
+        { 1.0 / 3.0, "0.333333333333" }, { 1e-5, "1E~05" }, { -1.5, "~1.5" }, { 2.0, "2.0" },
+        { 123456789012.0, "123456789012.0" }, { 1e12, "1E12" }, { 0.0, "0.0" }, { 0.001, "0.001" },
+    };
+    for (size_t i = 0U; i < (sizeof reals / sizeof reals[0]); i++) {
+        (void)pn_real_sml(text, sizeof text, reals[i].value);
+        if (strcmp(text, reals[i].sml) != 0) {
+            (void)fprintf(stderr, "%s is written %s\n", reals[i].sml, text);
+            s_failures++;
+        }
+    }
+}
+
+static void test_arena(void)
+{
+    pn_arena_t arena;
+    pn_ctx_t cx;
+    pn_arena_init(&arena, s_memory, 1024U);
+    pn_ctx_init(&cx, &arena, 1U);
+    const pn_string_t kept = pn_string_make(&cx, "kept", 4U);
+    pn_arena_seal(&arena);
+    const size_t mark = pn_arena_mark(&arena);
+    CHECK(pn_arena_alloc(&cx, 100U) != NULL);
+    pn_arena_release(&arena, mark);
+    CHECK(pn_arena_mark(&arena) == mark);
+    CHECK(pn_arena_alloc(&cx, arena.half) != NULL);
+    CHECK(pn_arena_is_crowded(&arena));
+    CHECK(pn_arena_alloc(&cx, 1U) == NULL);
+    CHECK(cx.error == PN_ERR_MEMORY);
+    pn_arena_flip(&arena);
+    pn_clear_error(&cx);
+    CHECK(pn_string_make(&cx, "", 0U).length == 0U);
+    const pn_string_t more = pn_string_concat(&cx, kept, pn_string_make(&cx, "!", 1U));
+    CHECK((more.length == 5U) && is_text(more.bytes, "kept!"));
+    CHECK(pn_ok(&cx));
+}
+
+static void test_moves(void)
+{
+    pn_arena_t arena;
+    pn_ctx_t cx;
+    marking_t m;
+    (void)memset(&m, 0, sizeof m);
+    pn_arena_init(&arena, s_memory, sizeof s_memory);
+    pn_ctx_init(&cx, &arena, 1U);
+    const int64_t one = 1;
+    const int64_t two = 2;
+    const int64_t three = 3;
+    CHECK(pn_bag_add(&cx, &s_plain, &m, &two, 1U, PN_NO_TIME));
+    CHECK(pn_bag_add(&cx, &s_plain, &m, &one, 2U, PN_NO_TIME));
+    CHECK(is_text(json(&s_plain, &m), "[[2, 1], [1, 2]]"));
+
+    /* Demands on one place sum up. */
+    pn_moves_t moves;
+    pn_moves_init(&moves, &cx);
+    pn_moves_take(&moves, &s_plain, &one, 1, PN_NO_TIME);
+    pn_moves_take(&moves, &s_plain, &one, 1, PN_NO_TIME);
+    CHECK(pn_moves_are_possible(&moves, &m));
+    pn_moves_take(&moves, &s_plain, &one, 1, PN_NO_TIME);
+    CHECK(!pn_moves_are_possible(&moves, &m));
+
+    /* Timed: stamps 1, 4, 9 of value 1. A demand up to 2 and one up to 5 can be met, two up to 2 cannot. */
+    CHECK(pn_bag_add(&cx, &s_timed, &m, &one, 1U, pn_time_int(9)));
+    CHECK(pn_bag_add(&cx, &s_timed, &m, &one, 1U, pn_time_int(1)));
+    CHECK(pn_bag_add(&cx, &s_timed, &m, &one, 1U, pn_time_int(4)));
+    CHECK(is_text(json(&s_timed, &m), "[[1, 1, 1], [1, 1, 4], [1, 1, 9]]"));
+    CHECK(pn_bag_available(&s_timed, &m, pn_time_int(4)) == 2U);
+    pn_moves_init(&moves, &cx);
+    pn_moves_take(&moves, &s_timed, &one, 1, pn_time_int(5));
+    pn_moves_take(&moves, &s_timed, &one, 1, pn_time_int(2));
+    CHECK(pn_moves_are_possible(&moves, &m));
+    pn_moves_t more = moves;
+    pn_moves_take(&more, &s_timed, &one, 1, pn_time_int(2));
+    CHECK(!pn_moves_are_possible(&more, &m));
+
+    /* A firing that finds no room changes nothing: the timed place has three entries, two are taken, four are put. */
+    const marking_t before = m;
+    pn_moves_init(&moves, &cx);
+    pn_moves_take(&moves, &s_timed, &one, 2, pn_time_int(9));
+    pn_moves_take(&moves, &s_plain, &two, 1, PN_NO_TIME);
+    for (int64_t i = 0; i < 4; i++) {
+        pn_moves_put(&moves, &s_timed, &three, 1, pn_time_int(20 + i));
+    }
+    CHECK(!pn_moves_commit(&moves, &m));
+    CHECK(cx.error == PN_ERR_CAPACITY);
+    CHECK(is_text(cx.error_origin, "place `Timed`"));
+    CHECK(memcmp(&before, &m, sizeof m) == 0);
+    pn_clear_error(&cx);
+
+    /* The latest admissible token is taken; a reset leaves what is not available yet. */
+    pn_moves_init(&moves, &cx);
+    pn_moves_take(&moves, &s_timed, &one, 1, pn_time_int(5));
+    pn_moves_put(&moves, &s_timed, &two, 1, pn_time_int(7));
+    pn_moves_reset(&moves, &s_timed, pn_time_int(7));
+    CHECK(pn_moves_commit(&moves, &m));
+    CHECK(is_text(json(&s_timed, &m), "[[1, 1, 9]]"));
+
+    /* A colour outside its colour set. */
+    pn_bag_t small = s_plain;
+    small.type = &s_small;
+    const int64_t four = 4;
+    pn_moves_init(&moves, &cx);
+    pn_moves_put(&moves, &small, &four, 1, PN_NO_TIME);
+    CHECK(!pn_moves_commit(&moves, &m));
+    CHECK(cx.error == PN_ERR_COLOUR);
+}
+
+static void test_trace(void)
+{
+    char line[64];
+    pn_trace_t trace;
+    CHECK(pn_trace_open(&trace, NULL, line, sizeof line));
+    pn_trace_note(&trace, 1.0, "tool", NULL);
+    CHECK(pn_trace_close(&trace));
+    CHECK(!pn_trace_open(&trace, "/nonexistent/folder/x", line, sizeof line));
+    CHECK(pn_trace_open(&trace, "/dev/null", line, sizeof line));
+    pn_trace_note(&trace, 1.0, "a name that is too long for a buffer of sixty-four characters", NULL);
+    CHECK(!pn_trace_close(&trace)); /* a line that was cut is a failure, not half a line */
+}
+
+static int write_reprs(void)
+{
+    char line[64];
+    char text[PN_REAL_TEXT_SIZE];
+    while (fgets(line, sizeof line, stdin) != NULL) {
+        const uint64_t bits = strtoull(line, NULL, 16);
+        double value = 0.0;
+        (void)memcpy(&value, &bits, sizeof value);
+        (void)pn_real_repr(text, value);
+        (void)puts(text);
+    }
+    return 0;
+}
+
+int main(int argc, char **argv)
+{
+    if ((argc == 2) && (strcmp(argv[1], "--repr") == 0)) {
+        return write_reprs();
+    }
+    test_text();
+    test_numbers();
+    test_arena();
+    test_moves();
+    test_trace();
+    (void)puts((s_failures == 0) ? "ok" : "failed");
+    return (s_failures == 0) ? 0 : 1;
+}
