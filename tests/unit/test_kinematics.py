@@ -134,11 +134,11 @@ def test_jacobian_is_the_derivative(k):
             assert spin == pytest.approx(jacobian[3:, axis], abs=1e-5)
 
 
-def test_state_agrees_with_its_parts(k):
-    q = random_positions(k, 1)[0]
-    t, c = k.state(q)
-    assert np.array_equal(t, k.forward(q))
-    assert c == k.conditioning(q)
+def test_states_agree_with_their_parts(k):
+    positions = random_positions(k, 3)
+    for q, t, c in zip(positions, *k.states(positions), strict=True):
+        assert t == pytest.approx(k.forward(q), abs=1e-12)
+        assert c.condition == pytest.approx(k.conditioning(q).condition, rel=1e-9)
 
 
 PUBLISHED = {

@@ -132,6 +132,22 @@ def test_singularity_is_a_fault_on_a_line_only(monitor, home):
     assert "wrist 0.0 deg" in fault.message
 
 
+def test_expecting_positions_changes_no_answer(cell, backend, home):
+    rng = np.random.default_rng(7)
+    path = {name: q + rng.uniform(-0.1, 0.1, (5, 6)) for name, q in home.items()}
+    plain, expecting = Monitor(cell, backend), Monitor(cell, backend)
+    expecting.expect(path)
+    expecting.expect({next(iter(home)): next(iter(path.values()))[:0]})  # nothing comes next
+    for i in range(5):
+        joints = {name: p[i] for name, p in path.items()}
+        one, other = plain.check(i, joints), expecting.check(i, joints)
+        for a, b in zip(one.samples, other.samples, strict=True):
+            assert np.array_equal(a.q, b.q)
+            assert a.limit_axis == b.limit_axis
+            assert a.conditioning.condition == pytest.approx(b.conditioning.condition)
+            assert a.pose.x == pytest.approx(b.pose.x, abs=1e-12)
+
+
 def test_works_without_distances(cell, home):
     verdict = Monitor(cell, FakeBackend(cell)).check(0.0, home)
     assert verdict.clearances is None

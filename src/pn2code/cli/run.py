@@ -88,6 +88,7 @@ def run(
         gui=gui,
         realtime=realtime,
         speed=speed,
+        looks=pictures or video,
     )
     album = Album(out, pictures=pictures, video=video)
     with Progress(console) as progress:

@@ -10,6 +10,9 @@ from pn2code.robot.render import Film, cameras, picture, save
 from pn2code.robot.transforms import Array
 from pn2code.run.engine import Engine
 
+SIZE = (960, 540)
+"""Of a picture. PyBullet renders without a GPU here: a close-up takes a second in this size, and two in twice as many
+pixels."""
 FRAMES_PER_SECOND = 25
 FILM_SPEED = 4.0
 """Simulated seconds per second of film."""
@@ -81,4 +84,5 @@ class Album:
         camera = next(c for c in cameras(engine.cell, engine.backend) if c.name == view)
         self._number += 1
         name = re.sub(r"[^a-z0-9]+", "-", moment.lower()).strip("-") or "moment"
-        save(picture(engine.backend, camera), self._out / f"picture-{self._number:02}-{name}.png")
+        image = picture(engine.backend, camera, *SIZE)
+        save(image, self._out / f"picture-{self._number:02}-{name}.png")

@@ -92,8 +92,14 @@ class BackendUnavailableError(Exception):
     """A backend that cannot be had here; the message says why and what to do (a user's matter)."""
 
 
-def open_backend(name: BackendName, cell: RobotCell, *, gui: bool = False) -> Backend:
+def open_backend(
+    name: BackendName, cell: RobotCell, *, gui: bool = False, looks: bool = True
+) -> Backend:
     """A backend for a cell. PyBullet is imported only when it is asked for.
+
+    Args:
+        gui: open its window.
+        looks: load what only pictures need (a second or so).
 
     Raises BackendUnavailableError when there is no display for its window, or PyBullet is not installed.
     """
@@ -112,4 +118,4 @@ def open_backend(name: BackendName, cell: RobotCell, *, gui: bool = False) -> Ba
         )
     from pn2code.robot.bullet import BulletBackend
 
-    return BulletBackend(cell, gui=gui)
+    return BulletBackend(cell, gui=gui, looks=looks or gui)

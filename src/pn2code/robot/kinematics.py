@@ -163,10 +163,10 @@ class Kinematics:
         """The same for n joint positions (n, 6)."""
         return self._conditioning(self._chain.frames(q))
 
-    def state(self, q: ArrayLike) -> tuple[Array, Conditioning]:
-        """`T_base_tcp` and the conditioning, for little more than the price of one of them."""
-        frames = self._chain.frames(np.asarray(q, float)[None])
-        return np.asarray(frames[-1][0] @ self.T_flange_tcp), self._conditioning(frames)[0]
+    def states(self, q: Array) -> tuple[Array, list[Conditioning]]:
+        """`T_base_tcp` (n, 4, 4) and the conditioning of n joint positions (n, 6); both come from the same frames."""
+        frames = self._chain.frames(q)
+        return np.asarray(frames[-1] @ self.T_flange_tcp), self._conditioning(frames)
 
     def _conditioning(self, frames: Sequence[Array]) -> list[Conditioning]:
         scaled = self._jacobian(frames)

@@ -12,7 +12,7 @@ limit or a singularity; everything else is remembered as running minima, in tota
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
 from typing import Literal
 
@@ -109,6 +109,7 @@ class Monitor:
         self._cell, self._backend, self._searched = cell, backend, searched
         self._worst: dict[tuple[str, MeasureName, str], Extreme] = {}
         self._last: dict[str, Sample] = {}
+        self._expected: dict[str, dict[bytes, Sample]] = {}
         self._bases = {r.name: r.T_world_base for r in cell.robots}
 
     def check(
@@ -172,17 +173,27 @@ class Monitor:
         seen = dict.fromkeys(p for p, _, _ in self._worst if p != "\0all")
         return tuple(seen)
 
+    def expect(self, paths: Mapping[str, Array]) -> None:
+        """Says which joint positions (n, 6) come next. Not needed; but many at once take less time than one by one."""
+        for name, path in paths.items():
+            self._expected[name] = {s.q.tobytes(): s for s in self._samples(name, path)}
+
     def _sample(self, robot: CellRobot, q: Array) -> Sample:
-        k = robot.kinematics
         q = np.asarray(q, float)
         last = self._last.get(robot.name)
-        if last is not None and np.array_equal(last.q, q):
-            return last
-        margin, axis = k.limit_margin(q)
-        frame, conditioning = k.state(q)
-        pose = pose_of(self._bases[robot.name] @ frame)
-        self._last[robot.name] = Sample(robot.name, q, pose, conditioning, margin, axis)
-        return self._last[robot.name]
+        if last is None or not np.array_equal(last.q, q):
+            last = self._expected.get(robot.name, {}).get(q.tobytes())
+            last = last or next(self._samples(robot.name, q[None]))
+            self._last[robot.name] = last
+        return last
+
+    def _samples(self, name: str, path: Array) -> Iterator[Sample]:
+        robot = self._cell.robot(name)
+        path = np.unique(np.asarray(path, float), axis=0)
+        for q, frame, conditioning in zip(path, *robot.kinematics.states(path), strict=True):
+            margin, axis = robot.kinematics.limit_margin(q)
+            pose = pose_of(self._bases[name] @ frame)
+            yield Sample(name, q, pose, conditioning, margin, axis)
 
     def _note(
         self, measure: MeasureName, s: Sample, value: float, t: float, phase: str,

@@ -80,6 +80,7 @@ class RunOptions:
         backend: "bullet" or "fake".
         values: `val`s to replace.
         gui: PyBullet's window.
+        looks: pictures are wanted, of the run or later.
         realtime: on the wall clock instead of in lock-step; speed: how many times faster than that.
     """
 
@@ -91,6 +92,7 @@ class RunOptions:
     gui: bool = False
     realtime: bool = False
     speed: float = 1.0
+    looks: bool = True
 
 
 @dataclass(frozen=True, slots=True)
@@ -209,7 +211,7 @@ def _start(
         )
     )
     cell = prepared.robot_cell
-    backend = open_backend(options.backend, cell, gui=options.gui)
+    backend = open_backend(options.backend, cell, gui=options.gui, looks=options.looks)
     stack.callback(backend.close)
     specs = specs_of(partition)
     sides = {

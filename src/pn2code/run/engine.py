@@ -331,6 +331,7 @@ class Engine:
         """Moves time to `target`, sampling the arms on the way, and ends the commands that end then."""
         times = self._instants(target)
         paths = {r.name: r.path(times) for r in self.robots}
+        self.monitor.expect(paths)
         for i, t in enumerate(times):
             self._sample(float(t), {name: path[i] for name, path in paths.items()})
         self.now = target
