@@ -187,6 +187,23 @@ NETS: dict[str, str] = {
             in P : n
             out Q : (a, b)
     """,
+    "Bind in a guard is no match": """
+        net Cell
+          standard
+          colset LIST = list INT;
+          fun second l = let val (_ :: x :: _) = l in x end
+          var l: LIST;
+          var n: INT;
+          place P : LIST = 1`[3, 1, 2] ++ 1`[] ++ 1`[5]
+          place R : LIST = 1`[1] ++ 1`[7, 8]
+          place Q : INT
+          trans T guard [second l > 0]
+            in P : l
+            out Q : second l
+          trans U guard [n = second l]
+            in R : l
+            out Q : n
+    """,
     "lists and closures": """
         net Cell
           standard

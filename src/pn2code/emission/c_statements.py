@@ -305,6 +305,10 @@ class Statements:
                 self._next()
             case ir.UnlessAvailable():
                 self._unless_available(s)
+            case ir.UnlessBind():
+                self.line('if (pn_is_raised(cx, "Bind")) {')
+                self.line(f"{_INDENT}pn_clear_error(cx);")
+                self._next()
             case ir.UnlessHeld():
                 if s.note:
                     self.note(s.note)
@@ -463,7 +467,8 @@ def uses_context(
             case ir.FunCall(function=f) if f in callees:
                 return True
             case (
-                ir.Raise()
+                ir.UnlessBind()
+                | ir.Raise()
                 | ir.ClearError()
                 | ir.Ok()
                 | ir.HasError()

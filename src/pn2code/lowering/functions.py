@@ -9,7 +9,7 @@ gives `twice/1 (cx, k, x)`: what the passed function captures (`k`) is a paramet
 
 from __future__ import annotations
 
-from collections.abc import Hashable, Iterator, Mapping
+from collections.abc import Callable, Hashable, Iterator, Mapping
 from typing import TYPE_CHECKING
 
 from pn2code.diagnostics import Origin, Span
@@ -20,6 +20,7 @@ from pn2code.lowering.codes import (
     UnsupportedError,
 )
 from pn2code.lowering.ir import Ir, Local, Rep, Stmt
+from pn2code.lowering.matching import is_irrefutable
 from pn2code.lowering.types import Types, substitute
 from pn2code.lowering.types import has_function as type_has_function
 from pn2code.lowering.values import (
@@ -98,6 +99,7 @@ class Program:
         self._setups: dict[tuple[int, Hashable], tuple[ir.Global, ...]] = {}
         self._global_names: set[str] = set()
         self._impure: dict[int, bool] = {}
+        self._binding: dict[int, bool] = {}
         for position, dec in enumerate(program.declarations):
             if isinstance(dec, core.RecBind):
                 for symbol, _ in dec.bindings:
@@ -343,26 +345,31 @@ class Program:
             body.has_self_call, False, span.text, span.origin,
         )  # fmt: skip
 
+    def may_raise_bind(self, e: core.Exp) -> bool:
+        """Whether a `val` pattern that may not fit is evaluated in an expression, directly or in a function."""
+        return self._reaches(e, has_refutable_binding, self._binding)
+
     # --- purity --------------------------------------------------------------------------------
 
     def is_impure(self, e: core.Exp) -> bool:
         """Whether the order of evaluation matters for it."""
-        known = self._impure.get(id(e))
-        if known is not None:
-            return known
-        self._impure[id(e)] = False  # while we look: recursion adds nothing
-        result = any(self._is_impure_node(n) for n in _nodes(e))
-        self._impure[id(e)] = result
-        return result
+        return self._reaches(e, _is_impure_node, self._impure)
 
-    def _is_impure_node(self, e: core.Exp) -> bool:
-        if isinstance(e, core.Builtin):
-            return is_impure_builtin(e.name if not e.colset else e.name)
-        if isinstance(e, core.Var):
-            group = self._groups.get(e.symbol.uid)
-            if group is not None:
-                return any(self.is_impure(f) for _, f in group.bindings)
-        return False
+    def _reaches(
+        self, e: core.Exp, has: Callable[[core.Exp], bool], known: dict[int, bool]
+    ) -> bool:
+        """Whether a property holds for a part of an expression, or of a top-level function that it uses."""
+        if id(e) in known:
+            return known[id(e)]
+        known[id(e)] = False  # while we look: recursion adds nothing
+        known[id(e)] = any(has(n) or self._callee_reaches(n, has, known) for n in _nodes(e))
+        return known[id(e)]
+
+    def _callee_reaches(
+        self, e: core.Exp, has: Callable[[core.Exp], bool], known: dict[int, bool]
+    ) -> bool:
+        group = self._groups.get(e.symbol.uid) if isinstance(e, core.Var) else None
+        return group is not None and any(self._reaches(f, has, known) for _, f in group.bindings)
 
     def _is_impure_value(self, value: Binding) -> bool:
         from pn2code.lowering.values import BuiltinFunction, Closure, Partial
@@ -379,6 +386,17 @@ class Program:
             case RecordVal(fields=fields):
                 return any(map(self._is_impure_value, fields.values()))
         return False
+
+
+def _is_impure_node(e: core.Exp) -> bool:
+    return isinstance(e, core.Builtin) and is_impure_builtin(e.name)
+
+
+def has_refutable_binding(e: core.Exp) -> bool:
+    """Whether it is a `let` with a pattern that may not fit."""
+    return isinstance(e, core.Let) and any(
+        isinstance(d, core.ValBind) and not is_irrefutable(d.pattern) for d in e.declarations
+    )
 
 
 def _is_reference(t: Type) -> bool:

@@ -521,6 +521,11 @@ class UnlessAvailable:
 
 
 @frozen
+class UnlessBind:
+    """Goes on if the exception Bind was raised: to the real engine that is a pattern that does not fit."""
+
+
+@frozen
 class UnlessHeld:
     """Goes on unless the place holds `count` tokens of a value, with stamps not after `limit` in a timed place."""
 
@@ -607,7 +612,7 @@ class Reset:
 Stmt = (
     Let | Declare | Assign | Fill | SetGlobal | Do | If | While | ForList | ForCount | Return | SelfCall |
     Raise | ClearError | Note | ForTokens | ForValues | Bind | Unless | UnlessLegal | UnlessAvailable |
-    UnlessHeld | UnlessEmpty | Wanted | Yield | Take | TakeAll | Put | PutAll | Reset
+    UnlessBind | UnlessHeld | UnlessEmpty | Wanted | Yield | Take | TakeAll | Put | PutAll | Reset
 )  # fmt: skip
 
 # --- the net -----------------------------------------------------------------------------------

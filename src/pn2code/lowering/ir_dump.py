@@ -161,6 +161,8 @@ class _Dump:
                 limit = f" by {x(s.limit)}" if s.limit is not None else ""
                 token = f"{self._place_name(s.place)}[{_local(s.index)}]"
                 return f"unless {s.count} of {token}{limit}: next"
+            case ir.UnlessBind():
+                return "unless no Bind: next"
             case ir.UnlessHeld():
                 move = self._move(s.place, ir.Const(s.count, ir.INT), s.value, s.limit)
                 return f"unless {move}: next{_note(s.note)}"

@@ -196,6 +196,8 @@ class _Enumeration:
                 self._bind_term(step, position)
             case BindEquation():
                 value = self._body.atomic(self._body.ir(step.value, self._env), "value")
+                if self._program.may_raise_bind(step.value):
+                    self._body.emit(ir.UnlessBind())
                 self._match(step.pattern, value, guard_note(self._t, step.guard))
                 self._ready()
                 self._step(position + 1)
@@ -303,6 +305,9 @@ class _Enumeration:
             if i not in self._tested and self._can(guard):
                 self._tested.add(i)
                 condition = self._body.ir(guard, self._env)
+                if self._program.may_raise_bind(guard):
+                    condition = self._body.spill(condition, "guard")
+                    self._body.emit(ir.UnlessBind())
                 self._body.emit(ir.Unless(condition, guard_note(self._t, i)))
         places = list(dict.fromkeys(d.arc.place for d in self._demands))
         for place in places:
