@@ -203,7 +203,7 @@ size_t pn_real_sml(char *out, size_t capacity, double value)
     }
     digit[count] = '\0';
     const int exponent = (int)strtol(at + 1, NULL, 10);
-    if ((exponent < -5) || (exponent >= 12)) {
+    if ((exponent < -4) || (exponent >= 12)) {
         return (size_t)snprintf(out, capacity, "%s%c%s%sE%s%02d", sign, digit[0], (count > 1) ? "." : "", &digit[1],
                                 (exponent < 0) ? "~" : "", abs(exponent));
     }
