@@ -290,8 +290,8 @@ class Engine:
             motion = robot.executor.begin(command, self.now)
         except MotionFault as fault:
             where = robot.element_at(line)
-            at = f", net transition {where}" if where else ""
-            raise CellStoppedError(f"{robot.script}:{line}{at}: {robot.name}: {fault}") from None
+            at = f" (net transition {where})" if where else ""
+            raise CellStoppedError(f"{robot.script}:{line}{at}: {fault}") from None
         robot.motion, robot.line = motion, line
         if isinstance(command, ToolAction):
             self.record.events.append(
@@ -410,7 +410,7 @@ class Engine:
             observer.sampled(self, t, joints)
         if verdict.fault is not None:
             self.now = t
-            raise CellStoppedError(f"{verdict.fault.message} {self._doing()}")
+            raise CellStoppedError(f"{verdict.fault.message}; {self._doing()}")
 
     def _doing(self) -> str:
         """What everybody was doing, for messages: script line, net transition, command."""
@@ -421,8 +421,8 @@ class Engine:
                 continue
             where = r.element_at(r.line)
             at = f" (net transition {where})" if where else ""
-            parts.append(f"{r.name} at {r.script}:{r.line}{at}, {_words(r.motion.command)}")
-        return "[" + "; ".join(parts) + "]"
+            parts.append(f"{r.script}:{r.line}{at}: {r.name}: {_words(r.motion.command)}")
+        return "under way: " + "; ".join(parts)
 
     def _stop(self, why: str) -> None:
         """Everybody comes to rest; what was under way is recorded as cut short."""
