@@ -1,4 +1,4 @@
-"""What stops a cell: a pose out of reach, a line that leaves it, a collision. Each names script line, net transition, robot, pose."""
+"""What stops a cell: a pose out of reach, a line that leaves it, a collision: script line, transition, robot, pose."""
 
 from __future__ import annotations
 
