@@ -1,0 +1,1 @@
+"""Measurements: `./dev bench`. Not part of the tests."""

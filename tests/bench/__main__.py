@@ -1,0 +1,120 @@
+"""`./dev bench`: measures, prints the table of docs/benchmarks.md, exits 1 when a limit is missed by more than noise.
+
+A figure is the median of its repetitions, with the smallest and the largest beside it. A limit is missed when even the
+best repetition is beyond it: other programs on the machine make a figure worse, never better.
+"""
+
+from __future__ import annotations
+
+import argparse
+import os
+import sys
+import tempfile
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from statistics import median
+
+sys.path.insert(0, str(Path(__file__).parents[1]))  # as pytest does: the tests' helpers
+
+from tests.bench import measures as m
+
+
+@dataclass(frozen=True, slots=True)
+class Row:
+    """A line of the table.
+
+    Args:
+        what: in words.
+        unit: "s", "us" or "/s".
+        samples: one a repetition.
+        limit: what must not be exceeded.
+        peer: what does the same in another way, measured in the same run, and its name.
+    """
+
+    what: str
+    unit: str
+    samples: Sequence[float]
+    limit: float | None = None
+    peer: tuple[str, Sequence[float]] | None = None
+
+    @property
+    def missed(self) -> bool:
+        """Beyond the limit, and not by noise."""
+        return self.limit is not None and min(self.samples) > self.limit
+
+    def cells(self) -> list[str]:
+        """What stands in the columns."""
+        middle = median(self.samples)
+        spread = f"{self._number(min(self.samples))} .. {self._number(max(self.samples))}"
+        limit = "" if self.limit is None else f"{self._number(self.limit)}"
+        beside = ""
+        if self.peer is not None:
+            name, samples = self.peer
+            other = median(samples)
+            beside = f"{name}: {self._number(other)} ({middle / other:.3g} times)"
+        missed = " **missed**" if self.missed else ""
+        return [self.what, self._number(middle), spread, self.unit, limit + missed, beside]
+
+    def _number(self, value: float) -> str:
+        return {"s": f"{value:.2f}", "us": f"{value:.0f}"}.get(self.unit, f"{value:,.0f}")
+
+
+def rows(bench: m.Bench) -> list[Row]:
+    """All measures."""
+    say("command")
+    python = ("Python that does nothing", m.python_alone(bench))
+    out = [
+        Row("start-up (`pn2code --version`)", "s", m.start_up(bench), peer=python),
+        Row("`check` of the riveting net", "s", m.check_net(bench), 0.5),
+        Row("`check` of the riveting cell with its geometry", "s", m.check_cell(bench)),
+        Row("`generate` of the riveting cell", "s", m.generate(bench), 1.0),
+    ]
+    say("C build")
+    one = ("1 job", m.build(bench, 1))
+    out.append(Row("C build, 2 jobs", "s", m.build(bench, 2), 5.0, one))
+    say("runs")
+    bullet = m.run_cell(bench, "--no-pictures")
+    fake = m.run_cell(bench, "--no-pictures", "--backend", "fake")
+    out.append(Row("full run, PyBullet, no pictures", "s", bullet, 15.0, ("kinematics only", fake)))
+    out.append(Row("full run, PyBullet, pictures and charts", "s", m.run_cell(bench)))
+    say("latency")
+    found = m.latency(bench)
+    for kind, words in (("published", "answer published"), ("woken", "robot woken by the answer")):
+        for share, limit in (("p50", 70.0), ("p99", 250.0)):
+            peer = ("bare C ping-pong", found[f"bare {share}"])
+            bound = limit if kind == "published" else None
+            out.append(Row(f"{words}, {share}", "us", found[f"{kind} {share}"], bound, peer))
+    say("firings")
+    for name, text, steps, slow in (
+        ("a ring of four transitions", m.RING, 2_000_000, 2_000),
+        ("ten philosophers", m.TABLE, 200_000, 500),
+    ):
+        compiled, game = m.firings(bench, text, steps, slow)
+        out.append(Row(f"compiled firings, {name}", "/s", compiled, None, ("token game", game)))
+    return out
+
+
+def say(what: str) -> None:
+    """Progress, beside the table."""
+    print(f"bench: {what}", file=sys.stderr)
+
+
+def main() -> int:
+    """Measure and print; 1 when a limit is missed."""
+    parser = argparse.ArgumentParser(prog="python -m tests.bench", description=__doc__)
+    parser.add_argument("--repeat", type=int, default=9, help="of short measures (default 9)")
+    options = parser.parse_args()
+    load = os.getloadavg()[0]
+    with tempfile.TemporaryDirectory(prefix="pn2code-bench-") as name:
+        table = rows(m.Bench(Path(name), options.repeat))
+    print(f"{os.cpu_count()} cores; load at the start {load:.1f}\n")
+    print("| what | median | spread | unit | at most | beside it, in the same run |")
+    print("|---|---|---|---|---|---|")
+    for row in table:
+        print("| " + " | ".join(row.cells()) + " |")
+    return int(any(row.missed for row in table))
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,242 @@
+"""What is measured. Each function gives samples, one a repetition, warm caches, in seconds unless it says otherwise."""
+
+from __future__ import annotations
+
+import os
+import re
+import shutil
+import subprocess
+import sys
+import tempfile
+import time
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from pathlib import Path
+
+from tests.helpers.netbuilder import cpn
+
+from pn2code import pipeline
+from pn2code.diagnostics import Diagnostics, render
+from pn2code.emission.write import write
+from pn2code.net import front
+from pn2code.semantics.game import Game
+
+ROOT = Path(__file__).parents[2]
+CELL = ROOT / "examples" / "riveting"
+CNATIVE = ROOT / "cnative"
+LATENCY_ROUNDS = 900
+
+RING = """
+    net Ring
+      colset INT = int;
+      var n: INT;
+      place A : INT = 1`0
+      place B : INT
+      place C : INT
+      place D : INT
+      trans One
+        in A : n
+        out B : n + 1
+      trans Two
+        in B : n
+        out C : n
+      trans Three
+        in C : n
+        out D : n
+      trans Four
+        in D : n
+        out A : n mod 1000
+"""
+TABLE = """
+    net Table
+      colset SEAT = index seat with 0..9;
+      var i: SEAT;
+      fun next (seat k) = seat ((k + 1) mod 10)
+      place Thinking : SEAT = SEAT.all()
+      place Eating : SEAT
+      place Forks : SEAT = SEAT.all()
+      trans Take
+        in Thinking : i
+        in Forks : 1`i ++ 1`(next i)
+        out Eating : i
+      trans Put
+        in Eating : i
+        out Thinking : i
+        out Forks : 1`i ++ 1`(next i)
+"""
+
+
+class Bench:
+    """A temporary folder, the compiled-Python cache in it, and the environment of all commands.
+
+    Args:
+        folder: everything is written below it.
+        repeat: repetitions of short measures; long ones have a third of that, at least three.
+    """
+
+    def __init__(self, folder: Path, repeat: int) -> None:
+        self.folder = folder
+        self.few = max(3, repeat // 3)
+        self.many = repeat
+        self._number = 0
+        self._env = {**os.environ, "PYTHONPYCACHEPREFIX": str(folder / "pycache")}
+        # As for any user: compiled Python files are kept.
+        self._env.pop("PYTHONDONTWRITEBYTECODE", None)
+
+    def fresh(self) -> Path:
+        """A path where nothing is yet."""
+        self._number += 1
+        return self.folder / f"out{self._number}"
+
+    def timed(self, *command: object, cwd: Path | None = None) -> float:
+        """Wall time of a command, s."""
+        start = time.perf_counter()
+        done = subprocess.run(
+            [str(c) for c in command],
+            cwd=cwd or ROOT,
+            env=self._env,
+            capture_output=True,
+            text=True,
+            check=False,
+        )
+        wall = time.perf_counter() - start
+        if done.returncode != 0:
+            raise SystemExit(f"bench: {command} failed:\n{done.stdout}{done.stderr}")
+        return wall
+
+    def pn2code(self, *arguments: object) -> float:
+        """Wall time of `pn2code`, s."""
+        return self.timed(sys.executable, "-m", "pn2code", *arguments)
+
+    def repeated(self, number: int, measure: Callable[[], float]) -> list[float]:
+        """Once to warm up, then so many samples."""
+        measure()
+        return [measure() for _ in range(number)]
+
+
+# --- the command -------------------------------------------------------------------------------
+
+
+def python_alone(bench: Bench) -> list[float]:
+    """The interpreter that does nothing: what start-up stands beside."""
+    return bench.repeated(bench.many, lambda: bench.timed(sys.executable, "-c", "pass"))
+
+
+def start_up(bench: Bench) -> list[float]:
+    """`pn2code --version`."""
+    return bench.repeated(bench.many, lambda: bench.pn2code("--version"))
+
+
+def check_net(bench: Bench) -> list[float]:
+    """`pn2code check` of the riveting net alone."""
+    net = bench.folder / "net" / "cell.cpn"
+    net.parent.mkdir(exist_ok=True)
+    shutil.copy(CELL / "cell.cpn", net)
+    return bench.repeated(bench.many, lambda: bench.pn2code("check", net))
+
+
+def check_cell(bench: Bench) -> list[float]:
+    """`pn2code check` of the riveting cell, with its robots' geometry in all layouts."""
+    return bench.repeated(bench.many, lambda: bench.pn2code("check", CELL))
+
+
+def generate(bench: Bench) -> list[float]:
+    """`pn2code generate` of the riveting cell into a new folder."""
+    return bench.repeated(
+        bench.many, lambda: bench.pn2code("generate", CELL / "cell.cpn", "-o", bench.fresh())
+    )
+
+
+def build(bench: Bench, jobs: int) -> list[float]:
+    """`make` of the generated riveting cell, supervisor and simulate, from nothing."""
+    folder = bench.fresh()
+    bench.pn2code("generate", CELL / "cell.cpn", "-o", folder)
+
+    def once() -> float:
+        bench.timed("make", "-s", "clean", cwd=folder)
+        return bench.timed("make", "-s", f"-j{jobs}", cwd=folder)
+
+    return bench.repeated(bench.few, once)
+
+
+def run_cell(bench: Bench, *options: str) -> list[float]:
+    """`pn2code run` of the riveting cell from nothing: generate, build, run, report."""
+    return bench.repeated(
+        bench.few, lambda: bench.pn2code("run", CELL, "--out", bench.fresh(), *options)
+    )
+
+
+# --- the supervisor ----------------------------------------------------------------------------
+
+
+@contextmanager
+def _memory_folder() -> Iterator[Path]:
+    """A folder on tmpfs where there is one."""
+    base = "/dev/shm" if Path("/dev/shm").is_dir() else None
+    with tempfile.TemporaryDirectory(prefix="pn2code-bench-", dir=base) as name:
+        yield Path(name)
+
+
+def latency(bench: Bench) -> dict[str, list[float]]:
+    """Microseconds: `bare p50`, `published p50`, `woken p50` and the same with p99; see cnative/tests/latency.c."""
+    program, supervisor = bench.folder / "latency", bench.folder / "quick"
+    sources = [f"pn_{name}.c" for name in ("arena", "num", "string", "text", "trace")]
+    sources += ["supervisor*.c", "pn_channel*.c", "port_*.c"]
+    host = [f for pattern in sources for f in sorted((CNATIVE / "src").glob(pattern))]
+    tests = CNATIVE / "tests"
+    compiler = ("cc", "-std=c11", "-O2", "-I", CNATIVE / "include")
+    bench.timed(*compiler, tests / "latency.c", "-o", program)
+    hand = (tests / "hand_net.c", tests / "hand_cell.c")
+    bench.timed(*compiler, "-DHAND_DELAY=0", *host, *hand, "-lm", "-o", supervisor)
+    inputs = bench.folder / "orders"
+    inputs.mkdir()
+    (inputs / "orders.txt").write_text(f"{LATENCY_ROUNDS + 100}\n0.5 7\n")
+    found: dict[str, list[float]] = {}
+    for _ in range(bench.many):
+        with _memory_folder() as shared:
+            done = subprocess.run(
+                [program, shared, supervisor, str(LATENCY_ROUNDS), inputs],
+                capture_output=True,
+                text=True,
+                check=True,
+            )
+        for line in done.stdout.splitlines():
+            kind = re.search(r"^(bare)|(published)|(woken)", line)
+            for name, value in re.findall(r"(p50|p99) +([0-9.]+)", line):
+                assert kind is not None
+                found.setdefault(f"{kind[0]} {name}", []).append(float(value))
+    return found
+
+
+# --- firings -----------------------------------------------------------------------------------
+
+
+def firings(
+    bench: Bench, text: str, steps: int, slow_steps: int
+) -> tuple[list[float], list[float]]:
+    """Firings per second of a net with random choices: compiled `simulate`, reference token game."""
+    folder = bench.fresh()
+    folder.mkdir()
+    net = folder / "net.cpn"
+    net.write_bytes(cpn(text))
+    d = Diagnostics()
+    generated = pipeline.generate(net, d)
+    flat = front.load(net, d)
+    if generated is None or flat is None:
+        raise SystemExit(f"bench: {render.report(d.sorted())}")
+    write(folder / "c", generated.files)
+    bench.timed("make", "-s", "simulate", cwd=folder / "c")
+    simulate = folder / "c" / "simulate"
+    # The start of the process does not count.
+    empty = min(bench.repeated(bench.few, lambda: bench.timed(simulate, "--steps", 0)))
+    walls = bench.repeated(bench.few, lambda: bench.timed(simulate, "--steps", steps))
+    compiled = [steps / (wall - empty) for wall in walls]
+
+    def play() -> float:
+        game = Game(flat)
+        start = time.perf_counter()
+        for _ in game.run(lambda elements: elements[-1], slow_steps):
+            pass
+        return slow_steps / (time.perf_counter() - start)
+
+    return compiled, bench.repeated(bench.few, play)
