@@ -106,6 +106,12 @@ class Command(Child):
 
         super().__init__(body, self._out.fileno(), self._err.fileno())
 
+    def kill(self) -> None:
+        """SIGKILL; what it printed is lost."""
+        super().kill()
+        self._out.close()
+        self._err.close()
+
     def done(self, timeout: float = DEADLINE_S) -> subprocess.CompletedProcess[str]:
         """Waits; what it printed must not be about a bug."""
         code = self.wait(timeout)

@@ -69,7 +69,7 @@ def options(
 
 
 class Interrupted(BaseException):
-    """SIGINT; not KeyboardInterrupt, which the command-line library turns into exit code 1."""
+    """SIGINT or SIGTERM; not KeyboardInterrupt, which the command-line library turns into exit code 1."""
 
 
 def _interrupt(_signal: int, _frame: FrameType | None) -> NoReturn:
@@ -78,7 +78,8 @@ def _interrupt(_signal: int, _frame: FrameType | None) -> NoReturn:
 
 def main() -> NoReturn:
     """Entry point: runs a verb, turns bugs into a readable message and exit code 70."""
-    signal.signal(signal.SIGINT, _interrupt)
+    for number in (signal.SIGINT, signal.SIGTERM):
+        signal.signal(number, _interrupt)
     # Accepted expressions nest up to some 250 levels, each worth several Python frames.
     sys.setrecursionlimit(max(20_000, sys.getrecursionlimit()))
     try:

@@ -95,9 +95,11 @@ def robot(
         stop(d, form)
     print_diagnostics(d.sorted(), form)
 
-    def show(command: Command, line: int) -> None:
+    lines = script.read_text(encoding="utf-8").splitlines()
+
+    def show(_command: Command, line: int) -> None:
         if verbose:
-            typer.echo(f"{script.name}:{line}: {command}")
+            typer.echo(f"{script.name}:{line}: {lines[line - 1].strip()}")
 
     stopping = _signals()
     with SharedDirectory(directory, name, specs) as shared:
