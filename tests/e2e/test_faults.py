@@ -649,6 +649,26 @@ def test_run_supervisor_killed(
     assert "the supervisor has ended: killed by SIGKILL" in str(summary["reason"])
 
 
+def test_run_results_that_cannot_be_written(
+    cell: Cell, children: list[Child], tmp_path: Path
+) -> None:
+    def kill(_number: int, _progress: Progress, engine: object) -> None:
+        os.kill(engine.supervisor.pid, signal.SIGKILL)  # type: ignore[attr-defined]
+
+    out = tmp_path / "out"
+    (out / "cell.trace.jsonl").mkdir(parents=True)
+    command = run_command(cell, out, kill)
+    children.append(command)
+    done = command.done()
+    assert done.returncode == 2, done.stderr
+    assert done.stderr.endswith(f"pn2code: cannot write the results in `{out}`: is a directory\n")
+    assert sorted(p.name for p in out.iterdir()) == [
+        "cell.trace.jsonl",
+        "program",
+        "supervisor.trace.jsonl",
+    ]
+
+
 def test_run_garbage_in_a_file(cell: Cell, children: list[Child], tmp_path: Path) -> None:
     """In lock-step nobody else can still be writing: the fault is at once."""
 
