@@ -13,8 +13,8 @@ from pn2code.run.engine import Engine
 SIZE = (960, 540)
 """Of a picture. PyBullet renders without a GPU here: a close-up takes a second in this size, and two in twice as many
 pixels."""
-FRAMES_PER_SECOND = 25
-FILM_SPEED = 4.0
+FRAMES_PER_SECOND = 12
+FILM_SPEED = 8.0
 """Simulated seconds per second of film."""
 
 
