@@ -248,7 +248,8 @@ class Inscriptions:
         own = from_type(t, [])
         if isinstance(own, IRec) and own.fields:
             if t == tuple_of(*(f for _, f in getattr(t, "fields", ()))):
-                return " * ".join(self._ctx.show(f) for _, f in own.fields)
+                shown = [self._ctx.show(f) for _, f in own.fields]
+                return " * ".join(f"({x})" if " * " in x else x for x in shown)
             return "{" + ", ".join(f"{n}: {self._ctx.show(f)}" for n, f in own.fields) + "}"
         return self._ctx.show(own)
 
