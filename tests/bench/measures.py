@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 import re
+import resource
 import shutil
 import subprocess
 import sys
@@ -12,6 +13,7 @@ import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
+from typing import NamedTuple
 
 from tests.helpers.netbuilder import cpn
 
@@ -66,6 +68,13 @@ TABLE = """
 """
 
 
+class Times(NamedTuple):
+    """Of commands, s: what the clock on the wall says, and what the cores worked, all child processes together."""
+
+    wall: list[float]
+    work: list[float]
+
+
 class Bench:
     """A temporary folder, the compiled-Python cache in it, and the environment of all commands.
 
@@ -113,41 +122,56 @@ class Bench:
         measure()
         return [measure() for _ in range(number)]
 
+    def times(self, number: int, measure: Callable[[], float]) -> Times:
+        """The same of a command, with its work."""
+        measure()
+        out = Times([], [])
+        for _ in range(number):
+            before = _work()
+            out.wall.append(measure())
+            out.work.append(_work() - before)
+        return out
+
+
+def _work() -> float:
+    used = resource.getrusage(resource.RUSAGE_CHILDREN)
+    return used.ru_utime + used.ru_stime
+
 
 # --- the command -------------------------------------------------------------------------------
 
 
-def python_alone(bench: Bench) -> list[float]:
+def python_alone(bench: Bench) -> Times:
     """The interpreter that does nothing: what start-up stands beside."""
-    return bench.repeated(bench.many, lambda: bench.timed(sys.executable, "-c", "pass"))
+    return bench.times(bench.many, lambda: bench.timed(sys.executable, "-c", "pass"))
 
 
-def start_up(bench: Bench) -> list[float]:
+def start_up(bench: Bench) -> Times:
     """`pn2code --version`."""
-    return bench.repeated(bench.many, lambda: bench.pn2code("--version"))
+    return bench.times(bench.many, lambda: bench.pn2code("--version"))
 
 
-def check_net(bench: Bench) -> list[float]:
+def check_net(bench: Bench) -> Times:
     """`pn2code check` of the riveting net alone."""
     net = bench.folder / "net" / "cell.cpn"
     net.parent.mkdir(exist_ok=True)
     shutil.copy(CELL / "cell.cpn", net)
-    return bench.repeated(bench.many, lambda: bench.pn2code("check", net))
+    return bench.times(bench.many, lambda: bench.pn2code("check", net))
 
 
-def check_cell(bench: Bench) -> list[float]:
+def check_cell(bench: Bench) -> Times:
     """`pn2code check` of the riveting cell, with its robots' geometry in all layouts."""
-    return bench.repeated(bench.many, lambda: bench.pn2code("check", CELL))
+    return bench.times(bench.many, lambda: bench.pn2code("check", CELL))
 
 
-def generate(bench: Bench) -> list[float]:
+def generate(bench: Bench) -> Times:
     """`pn2code generate` of the riveting cell into a new folder."""
-    return bench.repeated(
+    return bench.times(
         bench.many, lambda: bench.pn2code("generate", CELL / "cell.cpn", "-o", bench.fresh())
     )
 
 
-def build(bench: Bench, jobs: int) -> list[float]:
+def build(bench: Bench, jobs: int) -> Times:
     """`make` of the generated riveting cell, supervisor and simulate, from nothing."""
     folder = bench.fresh()
     bench.pn2code("generate", CELL / "cell.cpn", "-o", folder)
@@ -156,12 +180,12 @@ def build(bench: Bench, jobs: int) -> list[float]:
         bench.timed("make", "-s", "clean", cwd=folder)
         return bench.timed("make", "-s", f"-j{jobs}", cwd=folder)
 
-    return bench.repeated(bench.few, once)
+    return bench.times(bench.few, once)
 
 
-def run_cell(bench: Bench, *options: str) -> list[float]:
+def run_cell(bench: Bench, *options: str) -> Times:
     """`pn2code run` of the riveting cell from nothing: generate, build, run, report."""
-    return bench.repeated(
+    return bench.times(
         bench.few, lambda: bench.pn2code("run", CELL, "--out", bench.fresh(), *options)
     )
 
