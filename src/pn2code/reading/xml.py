@@ -1,8 +1,9 @@
 """XML, read without trust: bytes in, a tree of `Node`s with exact positions out.
 
-`xml.parsers.expat` walks through once: entities are refused where they are declared, before any can be used, as are
-excessive depth and excessive numbers of elements; nothing outside the bytes is ever opened. Line and column of every
-element and of every run of characters are kept.
+Two parsers see the same bytes. First `xml.parsers.expat` walks through: it refuses entities,
+excessive depth and excessive numbers of elements before anything is built, and notes line and
+column of every element and of every run of characters (lxml knows only an element's line). Then
+lxml builds the tree, with DTD loading, network access and entity resolution switched off.
 
 Example: `<text>1`x &lt; 2</text>` at line 3, column 1 gives a node with text ``1`x < 2`` whose
 `source` knows that `<` stands at column 11 and ` 2` at column 15.
@@ -14,6 +15,8 @@ import stat
 from dataclasses import dataclass, field
 from pathlib import Path
 from xml.parsers import expat
+
+from lxml import etree
 
 from pn2code.diagnostics import Diagnostics, Origin, SourceText
 from pn2code.reading.codes import (
@@ -27,8 +30,10 @@ from pn2code.reading.codes import (
 )
 
 MAX_BYTES = 100 * 1024 * 1024
-MAX_DEPTH = 200
+MAX_DEPTH = 200  # below libxml2's own limit of 256
 MAX_ELEMENTS = 2_000_000
+
+Marks = tuple[tuple[int, int, int], ...]
 
 
 @dataclass(slots=True)
@@ -49,7 +54,7 @@ class Node:
     line: int
     column: int
     text: str = ""
-    marks: list[tuple[int, int, int]] = field(default_factory=list)
+    marks: Marks = ()
     children: list[Node] = field(default_factory=list)
 
     def child(self, tag: str) -> Node | None:
@@ -74,7 +79,7 @@ class Node:
         """The text without surrounding white space, its origin being `base` moved to the first character."""
         text = self.text
         start = len(text) - len(text.lstrip())
-        whole = SourceText(text, self.at(base), tuple(self.marks))
+        whole = SourceText(text, self.at(base), self.marks)
         line, column = whole.position(start)
         origin = Origin(
             base.file, line, column, base.page, base.element, base.element_id, base.part
@@ -118,34 +123,88 @@ def parse(data: bytes, file: str, d: Diagnostics) -> Node | None:
     if not data.strip():
         d.error(XML_TRUNCATED, "the file is empty", Origin(file), hint="save the net again")
         return None
-    return _Reader(file, d).read(data)
+    places = _Surveyor(file, d).survey(data)
+    if places is None:
+        return None
+    parser = etree.XMLParser(
+        resolve_entities=False,
+        no_network=True,
+        load_dtd=False,
+        dtd_validation=False,
+        attribute_defaults=False,
+        huge_tree=False,
+        remove_comments=True,
+        remove_pis=True,
+        recover=False,
+    )
+    try:
+        root = etree.fromstring(data, parser)
+    except etree.XMLSyntaxError as e:
+        line, column = e.position
+        d.error(XML_SYNTAX, f"not well-formed XML: {_lower(e.msg)}", Origin(file, line, column))
+        return None
+    return _build(root, places)
 
 
-def _lower(message: str) -> str:
-    text = message.strip().rstrip(".")
+def _lower(message: str | None) -> str:
+    text = (message or "syntax error").strip().rstrip(".")
     return text[:1].lower() + text[1:]
 
 
+def _build(root: etree._Element, places: list[_Place]) -> Node:
+    """The `Node` tree of an lxml tree; `places` is in document order, as is `root.iter()`."""
+    nodes: list[Node] = []
+    for element, place in zip(root.iter(), places, strict=True):
+        text = ""
+        if place.length:  # most elements hold other elements only, with white space between
+            text = (element.text or "") + "".join(child.tail or "" for child in element)
+        node = Node(
+            str(element.tag),
+            dict(element.attrib),  # type: ignore[arg-type]
+            place.line,
+            place.column,
+            text[place.skipped :],
+            tuple(place.marks),
+        )
+        nodes.append(node)
+        if place.parent >= 0:
+            nodes[place.parent].children.append(node)
+    return nodes[0]
+
+
+@dataclass(slots=True)
+class _Place:
+    """Where an element stands, and marks of its direct text; the rest is the state of the survey.
+
+    Args:
+        number: of the element, in document order; parent: that of the element around it, -1 for the root.
+        skipped: characters of white space before the text; length: of the text without them.
+    """
+
+    number: int
+    parent: int
+    line: int
+    column: int
+    marks: list[tuple[int, int, int]] = field(default_factory=list)
+    skipped: int = 0
+    length: int = 0
+    expected: tuple[int, int] = (0, 0)
+
+
 class _RefusedError(Exception):
-    """Ends the reading; the diagnostic has been reported."""
+    """Ends a survey; the diagnostic has been reported."""
 
 
-class _Reader:
-    """Builds the tree while expat walks through, and refuses what is hostile."""
+class _Surveyor:
+    """The first pass: positions, and refusal of what is hostile."""
 
     def __init__(self, file: str, d: Diagnostics) -> None:
         self.file = file
         self.d = d
-        self.top: Node | None = None
-        self.open: list[Node] = []
-        self.number = 0
-        self.expected = (
-            0,
-            0,
-            0,
-        )  # where the text of the innermost element would go on: offset, line, column
-        self.parser = expat.ParserCreate(namespace_separator="}")
-        self.parser.specified_attributes = True
+        self.places: list[_Place] = []
+        self.open: list[_Place] = []
+        self.tags: list[str] = []
+        self.parser = expat.ParserCreate()
         self.parser.SetParamEntityParsing(expat.XML_PARAM_ENTITY_PARSING_NEVER)
         self.parser.StartElementHandler = self._start
         self.parser.EndElementHandler = self._end
@@ -154,7 +213,7 @@ class _Reader:
         self.parser.SkippedEntityHandler = self._skipped_entity
         self.parser.ExternalEntityRefHandler = self._external_entity
 
-    def read(self, data: bytes) -> Node | None:
+    def survey(self, data: bytes) -> list[_Place] | None:
         try:
             self.parser.Parse(data, True)
         except _RefusedError:
@@ -166,7 +225,7 @@ class _Reader:
             # pyexpat asks Python for encodings that expat does not know.
             self.d.error(XML_SYNTAX, f"unknown character encoding: {_lower(str(e))}", self._here())
             return None
-        return self.top
+        return self.places
 
     def _here(self) -> Origin:
         return Origin(self.file, self.parser.CurrentLineNumber, self.parser.CurrentColumnNumber + 1)
@@ -179,13 +238,15 @@ class _Reader:
             expat.errors.codes[expat.errors.XML_ERROR_PARTIAL_CHAR],
             expat.errors.codes[expat.errors.XML_ERROR_UNCLOSED_CDATA_SECTION],
         }
-        if code in ends and self.top is not None:
-            inside = f" inside element `{self.open[-1].tag}`" if self.open else ""
+        if code in ends and self.places:
+            inside = f" inside element `{self.tags[-1]}`" if self.tags else ""
             self.d.error(
                 XML_TRUNCATED,
                 f"the file ends too early,{inside or ' in the middle of an element'}",
                 origin,
-                notes=[f"element `{e.tag}` begins on line {e.line}" for e in self.open[-1:]],
+                notes=[f"element `{self.tags[-1]}` begins on line {self.open[-1].line}"]
+                if self.tags
+                else [],
                 hint="the file was cut off: save or copy the net again",
             )
             return
@@ -200,38 +261,34 @@ class _Reader:
             hint="a .cpn file is XML: is this a net saved by CPN Tools?",
         )
 
-    def _start(self, tag: str, attributes: dict[str, str]) -> None:
+    def _start(self, tag: str, _attributes: dict[str, str]) -> None:
         if len(self.open) >= MAX_DEPTH:
             self._refuse(XML_LIMIT, f"elements are nested more than {MAX_DEPTH} levels deep")
-        self.number += 1
-        if self.number > MAX_ELEMENTS:
+        if len(self.places) >= MAX_ELEMENTS:
             self._refuse(XML_LIMIT, f"there are more than {MAX_ELEMENTS:,} elements")
+        parent = self.open[-1].number if self.open else -1
         parser = self.parser
-        node = Node(tag, attributes, parser.CurrentLineNumber, parser.CurrentColumnNumber + 1)
-        if self.open:
-            self.open[-1].children.append(node)
-        else:
-            self.top = node
-        self.open.append(node)
+        line, column = parser.CurrentLineNumber, parser.CurrentColumnNumber + 1
+        place = _Place(len(self.places), parent, line, column)
+        self.places.append(place)
+        self.open.append(place)
+        self.tags.append(tag)
 
     def _end(self, _tag: str) -> None:
         self.open.pop()
-        self.expected = (0, 0, 0)
+        self.tags.pop()
 
     def _characters(self, text: str) -> None:
-        node = self.open[-1]
-        if not node.text and text.isspace():
-            return  # most elements hold other elements only, with line ends and indentation between
+        place = self.open[-1]
+        if not place.length and text.isspace():
+            place.skipped += len(text)
+            return
         line, column = self.parser.CurrentLineNumber, self.parser.CurrentColumnNumber + 1
-        offset = len(node.text)
-        if (offset, line, column) != self.expected:
-            node.marks.append((offset, line, column))
-        node.text += text
-        offset += len(text)
+        if (line, column) != place.expected:
+            place.marks.append((place.length, line, column))
+        place.length += len(text)
         # expat gives each line end as a chunk of its own
-        self.expected = (
-            (offset, line + 1, 1) if text == "\n" else (offset, line, column + len(text))
-        )
+        place.expected = (line + 1, 1) if text == "\n" else (line, column + len(text))
 
     def _entity_declaration(
         self,

@@ -106,6 +106,7 @@ static pn_channel_state_t files_read(void *self, uint32_t index, pn_message_t *o
         out->column = 0U;
         (void)snprintf(out->report, sizeof out->report, "the file is missing; an empty channel is a file that holds `0`");
         state->content = 0U;
+        state->dirty = true; /* look again: the directory itself may be going */
         return PN_CHANNEL_REFUSED;
     }
     if (error != 0) {
