@@ -32,7 +32,7 @@ def test_check_of_a_net_loads_no_generator_and_no_simulator(root: Path, tmp_path
     net.write_bytes((root / "examples" / "riveting" / "cell.cpn").read_bytes())
     modules = loaded_by("check", str(net))
     assert "pn2code.net.flatten" in modules
-    heavy = {"numpy", "scipy", "pybullet", "jinja2", "lxml", "rich", "pydantic"}
+    heavy = {"numpy", "scipy", "pybullet", "jinja2", "rich", "pydantic"}
     assert not heavy & modules
     assert not [m for m in modules if m.startswith(("pn2code.lowering", "pn2code.emission"))]
 
