@@ -604,7 +604,7 @@ def test_read_only_directory(cell: Cell) -> None:
                 5,
                 "the shared directory fails",
                 "ermission denied",
-                prepare=become_user,
+                prepare=obey_modes,
             )
         assert [p.name for p in shared.iterdir()] == ["supervisor.status"]
         shared.chmod(0o755)
