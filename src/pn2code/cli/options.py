@@ -6,6 +6,7 @@ import re
 import sys
 from collections.abc import Iterable
 from enum import StrEnum
+from pathlib import Path
 from typing import Annotated, NoReturn
 
 import typer
@@ -61,6 +62,59 @@ SetOption = Annotated[
         "--set", metavar="NAME=VALUE", help="Replace a `val` of the net (may be repeated)."
     ),
 ]
+
+FilesOption = Annotated[
+    Path | None,
+    typer.Option(
+        "--files",
+        metavar="DIR",
+        exists=True,
+        file_okay=False,
+        help="The net may read and write files below this folder (without it: none at all).",
+    ),
+]
+
+
+INT_BITS = (31, 64)
+
+
+def _int_bits(text: str | int) -> int:
+    if str(text) not in map(str, INT_BITS):
+        raise typer.BadParameter(f"`{text}`: integers have 31 bits, as in CPN Tools, or 64")
+    return int(text)
+
+
+IntBitsOption = Annotated[
+    int,
+    typer.Option(
+        "--int-bits",
+        metavar="31|64",
+        parser=_int_bits,
+        help="How wide integers are; beyond, they overflow. [default: 31, as in CPN Tools]",
+        show_default=False,
+    ),
+]
+SeedOption = Annotated[
+    int, typer.Option("--seed", metavar="K", help="Start of all random numbers.", min=0)
+]
+DEFAULT_SEED = 1
+"""What verbs with random numbers start from."""
+
+
+class Engine(StrEnum):
+    """Which of the two implementations of the semantics plays a net."""
+
+    COMPILED = "compiled"
+    REFERENCE = "reference"
+
+
+EngineOption = Annotated[
+    Engine,
+    typer.Option(
+        "--engine", help="The compiled net, or the reference token game.", show_default=True
+    ),
+]
+JsonOption = Annotated[bool, typer.Option("--json", help="For programs.")]
 
 
 def print_diagnostics(items: Iterable[Diagnostic], form: Format = Format.FULL) -> None:

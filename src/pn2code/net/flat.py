@@ -169,6 +169,37 @@ class FlatPlace:
 
 
 @frozen
+class PlaceInstance:
+    """A place on an instance of its page, as the author sees it: ports, sockets and members of fusion sets each
+    have their own, which share a `FlatPlace`.
+
+    Args:
+        id: XML id of the place.
+        name: as on the page.
+        page: name of the page.
+        instance: path of the page instance.
+        number: CPN Tools' number of that page instance, from 1.
+        place: index in `FlatNet.places`.
+    """
+
+    id: str
+    name: str
+    page: str
+    instance: str
+    number: int
+    place: int
+
+
+@frozen
+class FlatFusion:
+    """A fusion set: XML id, name, and the index of the place that its members are (-1: it has none)."""
+
+    id: str
+    name: str
+    place: int
+
+
+@frozen
 class FlatTransition:
     """A transition instance.
 
@@ -222,3 +253,6 @@ class FlatNet:
     timed: bool
     real_time: bool
     statistics: dict[str, int] = field(default_factory=dict)
+    place_instances: tuple[PlaceInstance, ...] = ()
+    """all of them, by page instance in order of the hierarchy, then in order of the file"""
+    fusions: tuple[FlatFusion, ...] = ()

@@ -10,13 +10,20 @@ place "Top.flag1" if that is its socket.
 from __future__ import annotations
 
 import re
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from pathlib import Path
 
 from pn2code.diagnostics import Diagnostics, Note, Origin
 from pn2code.net.codes import FUSION_MISMATCH, NET_TOO_LARGE, PORT_COLSET, PORT_INITIAL
-from pn2code.net.flat import FlatArc, FlatNet, FlatPlace, FlatTransition
+from pn2code.net.flat import (
+    FlatArc,
+    FlatFusion,
+    FlatNet,
+    FlatPlace,
+    FlatTransition,
+    PlaceInstance,
+)
 from pn2code.net.instances import PageInstance, count_elements, expand, unique_names
 from pn2code.net.typed import TypedNet, TypedPlace
 
@@ -69,6 +76,19 @@ class _Flattener:
             transitions=transitions,
             timed=any(p.colset.timed for p in places),
             real_time=self.net.real_time,
+            place_instances=tuple(
+                PlaceInstance(
+                    id=place.id,
+                    name=place.name,
+                    page=instance.page.name,
+                    instance=instance.path,
+                    number=instance.number,
+                    place=group_of[(instance.index, place.id)],
+                )
+                for instance in self.instances
+                for place in instance.page.places
+            ),
+            fusions=tuple(self.fusions(group_of)),
             statistics={
                 "pages": len(self.net.pages),
                 "page_instances": len(self.instances),
@@ -81,6 +101,11 @@ class _Flattener:
                 "variables": len(self.net.program.variables),
             },
         )
+
+    def fusions(self, group_of: dict[Key, int]) -> Iterator[FlatFusion]:
+        at = {self.typed[key].fusion: index for key, index in group_of.items()}
+        for fusion in self.net.fusions:
+            yield FlatFusion(fusion.id, fusion.name, at.get(fusion.name, -1))
 
     def merge(self) -> tuple[list[list[Key]], dict[Key, int]]:
         """Groups of place instances that are one place, topmost member first, and the group of each instance."""
