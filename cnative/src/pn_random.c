@@ -5,27 +5,43 @@
 
 #include "pn/pn_num.h"
 
-uint64_t pn_random_next(pn_ctx_t *cx)
+static uint64_t mix(uint64_t state)
 {
-    cx->random += UINT64_C(0x9E3779B97F4A7C15);
-    uint64_t z = cx->random;
+    uint64_t z = state + UINT64_C(0x9E3779B97F4A7C15);
     z = (z ^ (z >> 30U)) * UINT64_C(0xBF58476D1CE4E5B9);
     z = (z ^ (z >> 27U)) * UINT64_C(0x94D049BB133111EB);
     return z ^ (z >> 31U);
 }
 
+void pn_random_start(pn_ctx_t *cx, uint64_t purpose)
+{
+    cx->random = mix(mix(mix(cx->seed) ^ cx->step) ^ purpose);
+}
+
+uint64_t pn_random_next(pn_ctx_t *cx)
+{
+    const uint64_t bits = mix(cx->random);
+    cx->random += UINT64_C(0x9E3779B97F4A7C15);
+    return bits;
+}
+
+/* 0 <= x < range; any 64 bits for 0. */
+static uint64_t below(pn_ctx_t *cx, uint64_t range)
+{
+    uint64_t x = pn_random_next(cx);
+    if (range != 0U) {
+        const uint64_t limit = UINT64_MAX - (UINT64_MAX % range);
+        while (x >= limit) { /* less than one more draw on average */
+            x = pn_random_next(cx);
+        }
+        x %= range;
+    }
+    return x;
+}
+
 int64_t pn_random_below(pn_ctx_t *cx, int64_t n)
 {
-    if (n <= 1) {
-        return 0;
-    }
-    const uint64_t range = (uint64_t)n;
-    const uint64_t limit = UINT64_MAX - (UINT64_MAX % range);
-    uint64_t x = pn_random_next(cx);
-    while (x >= limit) { /* less than one more draw on average */
-        x = pn_random_next(cx);
-    }
-    return (int64_t)(x % range);
+    return (n <= 1) ? 0 : (int64_t)below(cx, (uint64_t)n);
 }
 
 double pn_random_unit(pn_ctx_t *cx)
@@ -65,16 +81,22 @@ double pn_random_uniform(pn_ctx_t *cx, double a, double b)
 
 int64_t pn_random_discrete(pn_ctx_t *cx, int64_t a, int64_t b)
 {
-    return require(cx, a <= b, "Discrete") ? (a + pn_random_below(cx, (b - a) + 1)) : 0;
+    if (!require(cx, a <= b, "Discrete")) {
+        return 0;
+    }
+    const uint64_t range = ((uint64_t)b - (uint64_t)a) + 1U;
+    return (range == 1U) ? a : (int64_t)((uint64_t)a + below(cx, range));
+}
+
+static double normal01(pn_ctx_t *cx)
+{
+    const double radius = sqrt(-2.0 * log(pn_random_unit(cx)));
+    return radius * cos((2.0 * PN_PI) * pn_random_unit(cx));
 }
 
 double pn_random_normal(pn_ctx_t *cx, double mean, double variance)
 {
-    if (!require(cx, variance >= 0.0, "Normal")) {
-        return 0.0;
-    }
-    const double radius = sqrt(-2.0 * log(pn_random_unit(cx)));
-    return mean + (sqrt(variance) * radius * cos(2.0 * PN_PI * pn_random_unit(cx)));
+    return require(cx, variance >= 0.0, "Normal") ? (mean + (sqrt(variance) * normal01(cx))) : 0.0;
 }
 
 double pn_random_exponential(pn_ctx_t *cx, double rate)
@@ -105,14 +127,71 @@ double pn_random_erlang(pn_ctx_t *cx, int64_t n, double rate)
     return sum;
 }
 
-double pn_random_chisq(pn_ctx_t *cx, int64_t n)
+static double sum_of_squares(pn_ctx_t *cx, int64_t n)
 {
     double sum = 0.0;
-    if (require(cx, n >= 1, "Chisq")) {
-        for (int64_t i = 0; i < n; i++) {
-            const double x = pn_random_normal(cx, 0.0, 1.0);
-            sum += x * x;
-        }
+    for (int64_t i = 0; i < n; i++) {
+        const double x = normal01(cx);
+        sum += x * x;
     }
     return sum;
+}
+
+double pn_random_chisq(pn_ctx_t *cx, int64_t n)
+{
+    return require(cx, n >= 1, "Chisq") ? sum_of_squares(cx, n) : 0.0;
+}
+
+double pn_random_student(pn_ctx_t *cx, int64_t n)
+{
+    if (!require(cx, n >= 1, "Student")) {
+        return 0.0;
+    }
+    const double x = normal01(cx);
+    return x / sqrt(sum_of_squares(cx, n) / (double)n);
+}
+
+/* Gamma with rate 1 (Marsaglia and Tsang). */
+static double gamma1(pn_ctx_t *cx, double shape)
+{
+    const bool is_small = shape < 1.0;
+    const double d = (is_small ? (shape + 1.0) : shape) - (1.0 / 3.0);
+    const double c = 1.0 / sqrt(9.0 * d);
+    double v = 0.0;
+    for (bool is_found = false; !is_found;) {
+        double x = 0.0;
+        do {
+            x = normal01(cx);
+            v = 1.0 + (c * x);
+        } while (v <= 0.0);
+        v = v * v * v;
+        const double u = pn_random_unit(cx);
+        is_found = log(u) < ((((0.5 * x * x) + d) - (d * v)) + (d * log(v)));
+    }
+    return is_small ? ((d * v) * pow(pn_random_unit(cx), 1.0 / shape)) : (d * v);
+}
+
+double pn_random_gamma(pn_ctx_t *cx, double shape, double rate)
+{
+    return require(cx, (shape > 0.0) && (rate > 0.0), "Gamma") ? (gamma1(cx, shape) / rate) : 0.0;
+}
+
+double pn_random_beta(pn_ctx_t *cx, double a, double b)
+{
+    if (!require(cx, (a > 0.0) && (b > 0.0), "Beta")) {
+        return 0.0;
+    }
+    const double x = gamma1(cx, a);
+    const double y = gamma1(cx, b);
+    return x / (x + y);
+}
+
+double pn_random_weibull(pn_ctx_t *cx, double shape, double scale)
+{
+    return require(cx, (shape > 0.0) && (scale > 0.0), "Weibull") ? (scale * pow(-log(pn_random_unit(cx)), 1.0 / shape)) : 0.0;
+}
+
+double pn_random_rayleigh(pn_ctx_t *cx, double scale)
+{
+    return require(cx, scale >= 0.0, "Rayleigh") ? (scale * sqrt(-2.0 * log(pn_random_unit(cx)))) : 0.0;
 }

@@ -120,6 +120,7 @@ static bool step(pn_ctx_t *cx, void *marking, void *copy, void *binding)
     if (!pn_ok(cx)) {
         return false;
     }
+    pn_random_start(cx, PN_RANDOM_CHOICE);
     const int64_t chosen = (all.count == 0U) ? -1 : pn_random_below(cx, (int64_t)all.count);
     print_step(marking, &text, chosen);
     if (chosen < 0) {

@@ -266,6 +266,9 @@ class _Emitter:
         text = "\n".join(fire.lines)
         return {
             "mark": self._block(f"transition {t.name}", t.name, "transition", t.origin),
+            "index": t.index,
+            "search_draws": self._draws(t.enumerate),
+            "fire_draws": self._draws(t.fire),
             "name": t.name,
             "stem": name,
             "id": t.id,
@@ -290,6 +293,19 @@ class _Emitter:
             "fire": fire.lines,
             "uses_binding": "b->" in text,
         }
+
+    def _draws(self, statements: tuple[ir.Stmt, ...]) -> bool:
+        """Whether random numbers are drawn, directly or in a function that is called."""
+        waiting: list[tuple[ir.Stmt, ...]] = [statements]
+        seen: set[str] = set()
+        while waiting:
+            body = waiting.pop()
+            if any(map(_is_draw, ir_nodes(body))):
+                return True
+            calls = [key for key in called(body) if key not in seen]
+            seen.update(calls)
+            waiting += [self._functions[key].body for key in calls]
+        return False
 
     # --- the whole -----------------------------------------------------------------------------
 
@@ -400,6 +416,12 @@ def _without_wanted(statements: tuple[ir.Stmt, ...]) -> tuple[ir.Stmt, ...]:
         else:
             out.append(s)
     return tuple(out)
+
+
+def _is_draw(node: object) -> bool:
+    if isinstance(node, ir.Op):
+        return node.name.startswith("Random.") or node.name == "Ms.random"
+    return isinstance(node, ir.Fill) and node.name == "ran"
 
 
 def _where(origin: Origin) -> str:

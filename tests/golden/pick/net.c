@@ -256,6 +256,8 @@ static bool init(pn_ctx_t *cx, void *marking)
     (void)memset(m, 0, sizeof *m);
     pn_arena_reset(cx->arena);
     cx->now = m->now;
+    cx->step = 0U;
+    pn_random_start(cx, PN_RANDOM_START);
     pn_arena_seal(cx->arena);
     if (!pn_ok(cx)) {
         return false;

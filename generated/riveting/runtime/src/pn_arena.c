@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "pn/pn_num.h"
+#include "pn/pn_random.h"
 
 #define PN_ALIGNMENT sizeof(max_align_t)
 
@@ -36,7 +37,8 @@ void pn_ctx_init(pn_ctx_t *cx, pn_arena_t *arena, uint64_t seed)
     cx->error_name = "";
     cx->error_origin = "";
     cx->origin = "";
-    cx->random = seed;
+    cx->seed = seed;
+    pn_random_start(cx, PN_RANDOM_START);
 }
 
 void *pn_arena_alloc(pn_ctx_t *cx, size_t size)

@@ -158,13 +158,13 @@ static bool print_enabled(pn_ctx_t *cx, const void *marking)
     return pn_ok(cx);
 }
 
-/* Draws a transition among those enabled at the best priority, and the number of one of its bindings. */
-static bool draw(pn_ctx_t *cx, const void *marking, uint32_t *transition, uint64_t *number)
+/* Goes through the transitions of the best priority that are enabled: number `wanted` of them, with its number of bindings. Gives
+ * how many there are, or `wanted` + 1 when it stops there. */
+static uint32_t go_through(pn_ctx_t *cx, const void *marking, uint32_t wanted, uint32_t *transition, uint64_t *bindings)
 {
     uint32_t enabled = 0U;
     int32_t best = 0;
-    uint64_t bindings = 0U;
-    for (uint32_t k = 0U; (k < pn_net.order_count) && pn_ok(cx); k++) {
+    for (uint32_t k = 0U; (k < pn_net.order_count) && (enabled <= wanted) && pn_ok(cx); k++) {
         const uint32_t i = pn_net.order[k];
         if ((enabled > 0U) && (pn_net.transition[i].priority > best)) {
             break;
@@ -173,15 +173,26 @@ static bool draw(pn_ctx_t *cx, const void *marking, uint32_t *transition, uint64
         if (count > 0U) {
             enabled++;
             best = pn_net.transition[i].priority;
-            if (pn_random_below(cx, (int64_t)enabled) == 0) { /* reservoir: each is kept with the same probability */
-                *transition = i;
-                bindings = count;
-            }
+            *transition = i;
+            *bindings = count;
         }
     }
-    if ((enabled == 0U) || !pn_ok(cx)) {
+    return pn_ok(cx) ? enabled : 0U;
+}
+
+/* Draws a transition among those enabled at the best priority, and the number of one of its bindings (pn_random.h). */
+static bool draw(pn_ctx_t *cx, const void *marking, uint32_t *transition, uint64_t *number)
+{
+    uint64_t bindings = 0U;
+    const uint32_t enabled = go_through(cx, marking, UINT32_MAX, transition, &bindings);
+    if (enabled == 0U) {
         return false;
     }
+    pn_random_start(cx, PN_RANDOM_CHOICE);
+    const uint32_t wanted = (uint32_t)pn_random_below(cx, (int64_t)enabled);
+    const uint64_t state = cx->random; /* enumerating starts streams of its own */
+    (void)go_through(cx, marking, wanted, transition, &bindings);
+    cx->random = state;
     *number = (uint64_t)pn_random_below(cx, (int64_t)bindings);
     return true;
 }

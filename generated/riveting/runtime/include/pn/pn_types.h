@@ -44,7 +44,8 @@ typedef struct pn_ctx {
     uint32_t depth;           /* of recursion */
     pn_time_t now;            /* model time of the marking being looked at; set by enumerate, fire and init */
     uint64_t step;            /* number of occurrences so far, for step(); the host counts */
-    uint64_t random;          /* state of the generator for CS.ran() and the distributions */
+    uint64_t seed;            /* of all random numbers of the run */
+    uint64_t random;          /* state of the generator for CS.ran() and the distributions; see pn_random.h */
 } pn_ctx_t;
 
 #endif /* PN_TYPES_H */
