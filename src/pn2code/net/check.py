@@ -47,20 +47,23 @@ _INITIAL_TIMED = (Form.TOKEN, Form.MULTISET, Form.TIMED_MULTISET, Form.TIMED_TOK
 _ARC_TIMED = (Form.TOKEN, Form.MULTISET, Form.TIMED_TOKEN, Form.TIMED_MULTISET)
 
 
-def check(net: Net, d: Diagnostics, values: Mapping[str, str] | None = None) -> TypedNet | None:
+def check(
+    net: Net, d: Diagnostics, values: Mapping[str, str] | None = None, *, partial: bool = False
+) -> TypedNet | None:
     """Type a net.
 
     Args:
         net: the linked net.
         d: gets the errors.
         values: replacements for `val` declarations: name -> CPN ML text.
+        partial: give the typed net even after errors, without the elements that are wrong.
 
     Returns:
         The typed net, or None if there were errors.
     """
     before = len(d.errors)
     typed = _Checker(net, d, values or {}).typed()
-    return None if len(d.errors) > before else typed
+    return None if len(d.errors) > before and not partial else typed
 
 
 class _Checker:

@@ -50,6 +50,12 @@ def flatten(net: TypedNet, d: Diagnostics) -> FlatNet | None:
     return None if len(d.errors) > before else flat
 
 
+def check_hierarchy(net: TypedNet, d: Diagnostics) -> None:
+    """Report ports and fusion sets that do not fit, of a net in which other things are wrong and may be missing."""
+    if count_elements(net) <= MAX_ELEMENTS:
+        _Flattener(net, expand(net), d).merge()
+
+
 class _Flattener:
     def __init__(self, net: TypedNet, instances: Sequence[PageInstance], d: Diagnostics) -> None:
         self.net = net
@@ -113,12 +119,11 @@ class _Flattener:
         for instance in self.instances:
             for place in instance.page.places:
                 key = (instance.index, place.id)
-                socket = instance.sockets.get(place.id)
-                if socket is None:
+                above = (instance.parent, instance.sockets.get(place.id, ""))
+                if above not in self.typed:
                     top[key] = key
                 else:
                     # Parents come before their children, so the socket's own top is known.
-                    above = (instance.parent, socket)
                     top[key] = top[above]
                     self.check_port(place, self.typed[above], instance)
         first_of_fusion: dict[str, Key] = {}

@@ -3,32 +3,56 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import dataclass
 from pathlib import Path
 
 from pn2code.diagnostics import Diagnostics
 from pn2code.net.check import check
 from pn2code.net.flat import FlatNet
-from pn2code.net.flatten import flatten
+from pn2code.net.flatten import check_hierarchy, flatten
 from pn2code.net.link import link
 from pn2code.reading.cpn import read
+from pn2code.reading.document import Document
 
 
-def load(path: Path, d: Diagnostics, values: Mapping[str, str] | None = None) -> FlatNet | None:
-    """Read, link, check and flatten a `.cpn` file; stops after the first stage with errors.
+@dataclass(frozen=True, slots=True)
+class Examined:
+    """What the front end made of a file.
+
+    Args:
+        document: what the file says; None if it is no net.
+        flat: the flat net; None if there were errors.
+    """
+
+    document: Document | None
+    flat: FlatNet | None
+
+
+def examine(path: Path, d: Diagnostics, values: Mapping[str, str] | None = None) -> Examined:
+    """Read, link, check and flatten a `.cpn` file, going on after errors.
+
+    What cannot be resolved is passed over, so that all that is wrong independently is reported in one run.
 
     Args:
         path: the file.
         d: gets errors and warnings of all stages.
         values: replacements for `val` declarations of the net: name -> CPN ML text.
-
-    Returns:
-        The flat net, or None if there were errors.
     """
-    document = read(path, d)
-    if document is None:
-        return None
-    net = link(document, d)
+    before = len(d.errors)
+    document = read(path, d, partial=True)
+    net = link(document, d, partial=True) if document is not None else None
     if net is None:
-        return None
-    typed = check(net, d, values)
-    return None if typed is None else flatten(typed, d)
+        return Examined(document, None)
+    linked = len(d.errors) == before
+    typed = check(net, d, values, partial=True)
+    if typed is None or not linked:
+        return Examined(document, None)
+    if len(d.errors) > before:
+        check_hierarchy(typed, d)
+        return Examined(document, None)
+    return Examined(document, flatten(typed, d))
+
+
+def load(path: Path, d: Diagnostics, values: Mapping[str, str] | None = None) -> FlatNet | None:
+    """The flat net of a `.cpn` file; None if there were errors. See `examine`."""
+    return examine(path, d, values).flat

@@ -54,12 +54,16 @@ _EMPTY_DELAY = {"@+", "@++"}
 _EMPTY_CODE = {"input();output();action();", "input();output();action()"}
 
 
-def link(document: Document, d: Diagnostics) -> Net | None:
-    """Resolve the references of a document; None after errors."""
+def link(document: Document, d: Diagnostics, *, partial: bool = False) -> Net | None:
+    """Resolve the references of a document; None after errors.
+
+    With `partial` the net is given even after errors, without what could not be resolved: its declarations and
+    inscriptions can be checked, but it must not be flattened (pages may contain themselves).
+    """
     before = len(d.errors)
     linker = _Linker(document, d)
     net = linker.net()
-    return None if len(d.errors) > before else net
+    return None if len(d.errors) > before and not partial else net
 
 
 class _Linker:

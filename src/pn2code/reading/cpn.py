@@ -28,30 +28,31 @@ _CPNET = {
 }  # fmt: skip
 
 
-def read(path: Path, d: Diagnostics) -> Document | None:
+def read(path: Path, d: Diagnostics, *, partial: bool = False) -> Document | None:
     """Read a `.cpn` file.
 
     Args:
         path: the file; messages and origins carry it as given.
         d: gets the errors and warnings.
+        partial: give what could be read even after errors, for a look at the rest of the net.
 
     Returns:
-        The document, or None if there were errors.
+        The document, or None if there were errors (if `partial`: only if this is no net at all).
     """
     data = read_bytes(path, d)
     if data is None:
         return None
-    return read_data(data, str(path), d)
+    return read_data(data, str(path), d, partial=partial)
 
 
-def read_data(data: bytes, file: str, d: Diagnostics) -> Document | None:
+def read_data(data: bytes, file: str, d: Diagnostics, *, partial: bool = False) -> Document | None:
     """Read the bytes of a `.cpn` file; `file` is the name used in messages."""
     before = len(d.errors)
     root = parse(data, file, d)
     if root is None:
         return None
     document = _Reader(file, d).document(root, hashlib.sha256(data).hexdigest())
-    return None if len(d.errors) > before else document
+    return None if len(d.errors) > before and not partial else document
 
 
 class _Reader:
@@ -129,6 +130,7 @@ class _Reader:
             fusions=tuple(fusions),
             monitors=tuple(monitors),
             options=options,
+            elements=_count(net),
         )
 
     def format(self, generator: Node | None) -> str:
@@ -196,6 +198,14 @@ def _options(node: Node) -> dict[str, str]:
             inner = value.children[0] if value.children else value
             found[option.get("name")] = inner.text.strip()
     return found
+
+
+def _count(net: Node) -> dict[str, int]:
+    """How many pages, places, transitions and arcs the file has, broken ones included."""
+    pages = net.all("page")
+    inside = {"places": "place", "transitions": "trans", "arcs": "arc"}
+    counts = {what: sum(len(p.all(tag)) for p in pages) for what, tag in inside.items()}
+    return {"pages": len(pages), **counts}
 
 
 def _local(tag: str) -> str:

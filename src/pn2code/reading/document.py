@@ -24,6 +24,11 @@ class Layout:
         text_colour: text colour name.
         shape: "ellipse", "box", "label", "".
         thickness: line thickness.
+        line: how the line is drawn: "solid", "dashed", "dotted" or "" as the file says, lower case.
+        bold: whether the text is bold.
+        head: size of an arc's arrow heads, 1.0 is normal.
+        hidden: whether CPN Tools hides it (the marking of a place).
+        known: whether the file says where it stands.
     """
 
     x: float = 0.0
@@ -36,6 +41,11 @@ class Layout:
     text_colour: str = ""
     shape: str = ""
     thickness: float = 1.0
+    line: str = ""
+    bold: bool = False
+    head: float = 1.0
+    hidden: bool = False
+    known: bool = False
 
 
 @frozen
@@ -48,7 +58,13 @@ class Inscription:
 
 @frozen
 class RawPlace:
-    """`place`."""
+    """`place`.
+
+    Args:
+        caption: the name with its line breaks, as drawn.
+        port_layout, fusion_layout: of the tags.
+        token, marking: of the number of tokens and of the marking, relative to where CPN Tools puts them.
+    """
 
     id: str
     name: str
@@ -58,6 +74,11 @@ class RawPlace:
     fusion: str
     origin: Origin
     layout: Layout = Layout()
+    caption: str = ""
+    port_layout: Layout = Layout()
+    fusion_layout: Layout = Layout()
+    token: Layout = Layout()
+    marking: Layout = Layout()
 
 
 @frozen
@@ -67,11 +88,12 @@ class RawSubstitution:
     subpage: str
     portsock: tuple[tuple[str, str], ...]
     origin: Origin
+    layout: Layout = Layout()
 
 
 @frozen
 class RawTransition:
-    """`trans`."""
+    """`trans`; `caption` is the name with its line breaks, as drawn."""
 
     id: str
     name: str
@@ -83,11 +105,12 @@ class RawTransition:
     substitution: RawSubstitution | None
     origin: Origin
     layout: Layout = Layout()
+    caption: str = ""
 
 
 @frozen
 class RawArc:
-    """`arc`; orientation as in the file, lower case."""
+    """`arc`; orientation as in the file, lower case. `order` sorts arcs drawn side by side."""
 
     id: str
     orientation: str
@@ -96,6 +119,7 @@ class RawArc:
     inscription: Inscription | None
     origin: Origin
     layout: Layout = Layout()
+    order: int = 0
 
 
 @frozen
@@ -109,7 +133,7 @@ class RawAux:
 
 @frozen
 class RawPage:
-    """`page`."""
+    """`page`; `undirected` are Design/CPN's arcs without direction, which are only drawn."""
 
     id: str
     name: str
@@ -118,6 +142,7 @@ class RawPage:
     arcs: tuple[RawArc, ...]
     auxiliaries: tuple[RawAux, ...]
     origin: Origin
+    undirected: tuple[RawArc, ...] = ()
 
 
 @frozen
@@ -242,6 +267,8 @@ class Document:
         tool, version, format: the generator.
         blocks: top-level declarations (the globbox as one block).
         options: name to text.
+        elements: how many `pages`, `places`, `transitions` (substitution transitions are counted) and `arcs` the file
+            has.
     """
 
     file: str
@@ -254,3 +281,4 @@ class Document:
     fusions: tuple[RawFusion, ...]
     monitors: tuple[RawMonitor, ...] = ()
     options: dict[str, str] = field(default_factory=dict)
+    elements: dict[str, int] = field(default_factory=dict)
