@@ -27,8 +27,22 @@ def point(node: Node) -> Point:
     )
 
 
-def layout(node: Node, bends: tuple[Point, ...] = ()) -> Layout:
-    """Layout of a place, transition, inscription, arc or auxiliary."""
+def offset(node: Node | None) -> Layout:
+    """Layout of a `token` or `marking`, which has its position in attributes."""
+    if node is None:
+        return Layout()
+    return Layout(
+        x=number(node.get("x")),
+        y=number(node.get("y")),
+        hidden=node.get("hidden").lower() == "true",
+        known=bool(node.get("x") and node.get("y")),
+    )
+
+
+def layout(node: Node | None, bends: tuple[Point, ...] = ()) -> Layout:
+    """Layout of a place, transition, inscription, tag, arc or auxiliary."""
+    if node is None:
+        return Layout()
     x, y = point(node)
     fill, line, words = node.child("fillattr"), node.child("lineattr"), node.child("textattr")
     shape, width, height = "", 0.0, 0.0
@@ -37,6 +51,7 @@ def layout(node: Node, bends: tuple[Point, ...] = ()) -> Layout:
         if found is not None:
             shape, width, height = tag, number(found.get("w")), number(found.get("h"))
             break
+    heads = node.child("arrowattr")
     filled = fill is not None and fill.get("filled").lower() == "true"
     return Layout(
         x=x,
@@ -49,6 +64,10 @@ def layout(node: Node, bends: tuple[Point, ...] = ()) -> Layout:
         text_colour=words.get("colour") if words else "",
         shape=shape,
         thickness=number(line.get("thick", "1")) if line else 1.0,
+        line=line.get("type").lower() if line else "",
+        bold=words is not None and words.get("bold").lower() == "true",
+        head=number(heads.get("headsize", "1")) if heads else 1.0,
+        known=node.child("posattr") is not None,
     )
 
 

@@ -22,7 +22,7 @@ from pn2code.reading.document import (
     RawSubstitution,
     RawTransition,
 )
-from pn2code.reading.layout import Point, bends, layout, point
+from pn2code.reading.layout import Point, bends, layout, number, offset, point
 from pn2code.reading.xml import Node
 
 _DRAWING = {"posattr", "fillattr", "lineattr", "textattr", "text"}
@@ -87,9 +87,10 @@ class PageReader:
             name=name,
             places=places,
             transitions=transitions,
-            arcs=tuple(a for a in arcs if a is not None),
+            arcs=tuple(a for a in arcs if a is not None and a.orientation != "nodir"),
             auxiliaries=auxiliaries,
             origin=origin,
+            undirected=tuple(a for a in arcs if a is not None and a.orientation == "nodir"),
         )
 
     def claim(self, node: Node, origin: Origin, what: str) -> None:
@@ -120,7 +121,8 @@ class PageReader:
 
     def place(self, node: Node, page: str) -> RawPlace:
         """A `place`."""
-        name = readable(_text(node.child("text"))) or node.get("id")
+        caption = _text(node.child("text"))
+        name = readable(caption) or node.get("id")
         origin = self.element(node, page, f"place `{name}`")
         port, fusion = node.child("port"), node.child("fusioninfo")
         return RawPlace(
@@ -132,11 +134,17 @@ class PageReader:
             fusion=fusion.get("name") if fusion else "",
             origin=origin,
             layout=layout(node),
+            caption=caption,
+            port_layout=layout(port),
+            fusion_layout=layout(fusion),
+            token=offset(node.child("token")),
+            marking=offset(node.child("marking")),
         )
 
     def transition(self, node: Node, page: str) -> RawTransition:
         """A `trans`."""
-        name = readable(_text(node.child("text"))) or node.get("id")
+        caption = _text(node.child("text"))
+        name = readable(caption) or node.get("id")
         origin = self.element(node, page, f"transition `{name}`")
         subst = node.child("subst")
         return RawTransition(
@@ -150,6 +158,7 @@ class PageReader:
             substitution=self.substitution(subst, origin) if subst else None,
             origin=origin,
             layout=layout(node),
+            caption=caption,
         )
 
     def element(self, node: Node, page: str, what: str) -> Origin:
@@ -170,7 +179,8 @@ class PageReader:
                 origin,
                 hint="assignments are written (port id, socket id)(port id, socket id)",
             )
-        return RawSubstitution(node.get("subpage"), tuple(_PAIR.findall(text)), origin)
+        tag = layout(node.child("subpageinfo"))
+        return RawSubstitution(node.get("subpage"), tuple(_PAIR.findall(text)), origin, tag)
 
     def arc(
         self,
@@ -192,10 +202,11 @@ class PageReader:
         origin = Origin(self.file, node.line, node.column, page, what, node.get("id"), "")
         self.claim(node, origin, what)
         self.check_children(node)
-        if orientation == "nodir":
-            # Design/CPN's arcs without direction, as at substitution transitions, move no tokens.
+        # Design/CPN's arcs without direction, as at substitution transitions, move no tokens.
+        undirected = orientation == "nodir"
+        if undirected and (place not in places or transition not in transitions):
             return None
-        if orientation not in _ORIENTATIONS:
+        if not undirected and orientation not in _ORIENTATIONS:
             self.d.error(
                 ARC_ORIENTATION,
                 f"{what} has the unknown orientation `{node.get('orientation')}`",
@@ -233,6 +244,7 @@ class PageReader:
             inscription=inscription(node.child("annot"), origin, "inscription"),
             origin=origin,
             layout=shape,
+            order=int(number(node.get("order"))),
         )
 
 
