@@ -32,6 +32,7 @@ WARNINGS = (
     "-Wswitch-enum", "-Wvla",
 )  # fmt: skip
 SANITIZERS = ("-g", "-O0", "-fsanitize=address,undefined", "-fno-sanitize-recover=all")
+FAST = ("-O1",)
 RUNTIME = (
     "arena", "bag", "codec", "list", "moves", "num", "random", "string", "text", "trace", "type",
 )  # fmt: skip
@@ -53,17 +54,18 @@ def lowered(
 
 @dataclass(frozen=True)
 class Workshop:
-    """A folder with the runtime's object files, and the compiler."""
+    """A folder with the runtime's object files, and the compiler with the flags for all it compiles."""
 
     folder: Path
     compiler: str
+    flags: tuple[str, ...] = SANITIZERS
 
     @staticmethod
-    def open(folder: Path) -> Workshop:
-        """Compile the runtime, with sanitizers."""
+    def open(folder: Path, flags: tuple[str, ...] = SANITIZERS) -> Workshop:
+        """Compile the runtime, with sanitizers unless other flags are given."""
         compiler = shutil.which("gcc") or shutil.which("cc")
         assert compiler is not None
-        workshop = Workshop(folder, compiler)
+        workshop = Workshop(folder, compiler, flags)
         source = cnative_folder() / "src"
         for name in RUNTIME:
             workshop.compile(source / f"pn_{name}.c", folder / f"pn_{name}.o", folder)
@@ -74,7 +76,7 @@ class Workshop:
 
     def compile(self, source: Path, target: Path, include: Path, *flags: str) -> None:
         """One object file; the test fails with the compiler's words."""
-        command = [self.compiler, *WARNINGS, *SANITIZERS, *flags]
+        command = [self.compiler, *WARNINGS, *self.flags, *flags]
         command += [
             f"-I{cnative_folder() / 'include'}",
             f"-I{include}",
@@ -91,7 +93,7 @@ class Workshop:
         runtime = [str(self.folder / f"pn_{name}.o") for name in RUNTIME]
         command = [
             self.compiler,
-            *SANITIZERS,
+            *self.flags,
             "-o",
             str(program),
             *map(str, objects),
@@ -145,7 +147,7 @@ def agrees(
             assert "error" in line, f"step {step}: only the token game fails: {error}\n{line}"
             return step
         assert "error" not in line, f"step {step}: only the compiled net fails: {line}"
-        _compare(game, enabled, line, step)
+        compare_step(game, enabled, line, step)
         if line["chosen"] < 0:
             return step
         try:
@@ -157,7 +159,8 @@ def agrees(
     return len(lines)
 
 
-def _compare(game: Game, enabled: list[Any], line: dict[str, Any], step: int) -> None:
+def compare_step(game: Game, enabled: list[Any], line: dict[str, Any], step: int) -> None:
+    """A line of a walking program, and where the token game is: the same."""
     net = game.net
     outputs = {
         t.name: {s.name for s in t.code.outputs} if t.code else set() for t in net.transitions

@@ -1,0 +1,150 @@
+"""Random walks: a net compiled to C and the token game side by side, as many steps as asked for or as time allows.
+
+The compiled `walk` (cnative/tests/walk.c) chooses; before each step its enabled binding elements, in order, its model
+time and its marking must be those of the token game, and an error of the net must come up in both.
+"""
+
+from __future__ import annotations
+
+import json
+import subprocess
+import time
+from collections.abc import Iterator
+from contextlib import contextmanager
+from dataclasses import asdict, dataclass
+from pathlib import Path
+from typing import Any
+
+from helpers.compiled import Workshop, compare_step, lowered
+from pn2code.diagnostics import Diagnostics
+from pn2code.net.flat import FlatNet
+from pn2code.net.front import load
+from pn2code.semantics.game import Game, GameError
+
+
+@dataclass(frozen=True, slots=True)
+class Walk:
+    """What became of a net.
+
+    Args:
+        net: its path below the collection.
+        verdict: "agrees", "differs", "rejected" (by the front end), "unsupported" (by the compiler).
+        steps: occurrences that were equal.
+        end: why it ended: "steps", "dead", "time", "error" (of the net, in both).
+        detail: what differs, or the error.
+    """
+
+    net: str
+    verdict: str
+    steps: int = 0
+    end: str = ""
+    detail: str = ""
+
+    def as_json(self) -> dict[str, Any]:
+        """For a file of results."""
+        return asdict(self)
+
+
+def nets(shared: Path) -> list[Path]:
+    """All nets of the collections."""
+    found = [*(shared / "corpus" / "nets").rglob("*.cpn")]
+    found += (shared / "semantics-suite").rglob("*.cpn")
+    return sorted(found)
+
+
+def walk(
+    path: Path,
+    name: str,
+    workshop: Workshop,
+    *,
+    steps: int,
+    seed: int = 1,
+    seconds: float = 60.0,
+) -> Walk:
+    """Compile a net and walk through it."""
+    d = Diagnostics()
+    flat = load(path, d)
+    if flat is None:
+        codes = ", ".join(sorted({e.code for e in d.errors}))
+        return Walk(name, "rejected", detail=codes)
+    net, d = lowered(flat)
+    if net is None:
+        first = d.errors[0]
+        return Walk(
+            name, "unsupported", detail=f"{first.code}: {first.message} ({first.origin.describe()})"
+        )
+    program = workshop.build(net, workshop.folder / name.replace("/", "_"))
+    with _lines(program, seed, steps) as lines:
+        return _follow(flat, name, lines, steps=steps, seed=seed, until=time.monotonic() + seconds)
+
+
+@contextmanager
+def _lines(program: Path, seed: int, steps: int) -> Iterator[Iterator[dict[str, Any]]]:
+    """The lines of a walking program, read while it runs."""
+    process = subprocess.Popen(
+        [str(program), str(seed), str(steps)],
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        text=True,
+        encoding="latin-1",
+    )
+    assert process.stdout is not None and process.stderr is not None
+    try:
+        yield map(json.loads, process.stdout)
+    finally:
+        process.kill()
+        process.communicate()
+
+
+def _follow(
+    flat: FlatNet,
+    name: str,
+    lines: Iterator[dict[str, Any]],
+    *,
+    steps: int,
+    seed: int,
+    until: float,
+) -> Walk:
+    done = 0
+    line: dict[str, Any] = {}
+    failure = ""
+    game: Game | None = None
+    try:
+        game = Game(flat, seed=seed)
+    except GameError as error:
+        failure = str(error)
+    for line in lines:
+        if game is None or failure:
+            break
+        try:
+            game.advance()
+            enabled = game.enabled()
+        except GameError as error:
+            failure = str(error)
+            break
+        if "error" in line:
+            break
+        try:
+            compare_step(game, enabled, line, done)
+        except AssertionError as different:
+            return Walk(name, "differs", done, detail=str(different)[:2000])
+        if line["chosen"] < 0:
+            return Walk(name, "agrees", done, "dead")
+        if done == steps:
+            return Walk(name, "agrees", done, "steps")
+        if time.monotonic() > until:
+            return Walk(name, "agrees", done, "time")
+        try:
+            game.fire(enabled[line["chosen"]])
+        except GameError as error:
+            failure = str(error)
+            line = next(lines, {})
+            break
+        done += 1
+    else:
+        return Walk(name, "differs", done, detail="the program ended too early")
+    if failure and "error" in line:
+        return Walk(name, "agrees", done, "error", failure)
+    if failure:
+        return Walk(name, "differs", done, detail=f"only the token game fails: {failure}")
+    return Walk(name, "differs", done, detail=f"only the compiled net fails: {line}")
