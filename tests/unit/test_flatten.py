@@ -56,6 +56,29 @@ def test_instances_and_names() -> None:
     assert net.transitions[3].origin.instance == "Top/S2"
 
 
+def test_instances_below_a_page_that_is_not_prime_count_backwards() -> None:
+    """CPN Tools numbers them so, found by experiment; the order of the flat net stays that of the file."""
+    net = flat(
+        """
+        net N
+          standard
+          page Top
+            subst A = Sub ()
+            subst B = Sub ()
+          page Sub
+            subst C = Leaf ()
+            subst D = Leaf ()
+            place P : UNIT = 1
+          page Leaf
+            place L : UNIT = 1
+        """
+    )
+    numbers = [(p.instance, p.instance_number) for p in net.places]
+    assert numbers == [
+        ("Top/A", 1), ("Top/A/C", 2), ("Top/A/D", 1), ("Top/B", 2), ("Top/B/C", 4), ("Top/B/D", 3),
+    ]  # fmt: skip
+
+
 def test_ports_are_their_sockets() -> None:
     net = flat(HIERARCHY)
     assert [p.name for p in net.places] == ["Top.A", "Top.B", "Top.S1.M", "Top.S2.M"]

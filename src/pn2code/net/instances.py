@@ -1,14 +1,18 @@
 """Page instances: the tree that substitution transitions span, with names and numbers.
 
 Order: depth first from each prime page in order of the file; an instance comes before those below
-it, and these in the order of their substitution transitions. Instances of one page are numbered
-from 1 in that order, as CPN Tools does.
+it, and these in the order of their substitution transitions.
+
+CPN Tools' numbers of the instances of one page (from 1) follow another order, found by experiment:
+depth first too, but below a page that is not a prime page the substitution transitions count from
+the last to the first. Example: Top has A = Sub and B = Sub; Sub has C = Leaf and D = Leaf. The
+instances of Sub are A: 1, B: 2; those of Leaf are A/C: 2, A/D: 1, B/C: 4, B/D: 3.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
-from dataclasses import dataclass
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, replace
 
 from pn2code.net.typed import TypedNet, TypedPage
 
@@ -63,7 +67,6 @@ def count_elements(net: TypedNet) -> int:
 def expand(net: TypedNet) -> list[PageInstance]:
     """All page instances, in order."""
     pages = {p.id: p for p in net.pages}
-    numbers: dict[str, int] = {}
     found: list[PageInstance] = []
     prime = [pages[i] for i in net.prime_pages]
     names = unique_names((p.id, _segment(p.name)) for p in prime)
@@ -74,13 +77,31 @@ def expand(net: TypedNet) -> list[PageInstance]:
     while stack:
         identity, path, parent, sockets = stack.pop()
         page = pages[identity]
-        numbers[identity] = numbers.get(identity, 0) + 1
         index = len(found)
-        found.append(PageInstance(index, page, path, numbers[identity], parent, sockets))
+        found.append(PageInstance(index, page, path, 0, parent, sockets))
         for s in reversed(page.substitutions):
             below = f"{path}/{segments[identity][s.id]}"
             stack.append((s.subpage, below, index, {q.port: q.socket for q in s.ports}))
-    return found
+    return [replace(i, number=n) for i, n in zip(found, _numbers(found), strict=True)]
+
+
+def _numbers(instances: Sequence[PageInstance]) -> list[int]:
+    """CPN Tools' number of each instance, in the order of `instances`."""
+    below: list[list[int]] = [[] for _ in instances]
+    for i in instances:
+        if i.parent >= 0:
+            below[i.parent].append(i.index)
+    counts: dict[str, int] = {}
+    numbers = [0] * len(instances)
+    stack = [i.index for i in reversed(instances) if i.parent < 0]
+    while stack:
+        index = stack.pop()
+        page = instances[index].page.id
+        counts[page] = numbers[index] = counts.get(page, 0) + 1
+        # The last one on the stack comes first.
+        prime = instances[index].parent < 0
+        stack.extend(reversed(below[index]) if prime else below[index])
+    return numbers
 
 
 def _segment(name: str) -> str:
