@@ -12,7 +12,7 @@ from __future__ import annotations
 import hashlib
 from collections.abc import Iterator, Mapping
 from contextlib import suppress
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import pn2code
@@ -20,7 +20,7 @@ from pn2code.cell.config import CellConfig
 from pn2code.cell.divide import divide
 from pn2code.cell.locate import locate
 from pn2code.cell.partition import Partition
-from pn2code.diagnostics import Diagnostics
+from pn2code.diagnostics import Diagnostics, Severity
 from pn2code.emission import c as emit_c
 from pn2code.emission import manifest, runtime
 from pn2code.emission import supervisor as emit_supervisor
@@ -55,10 +55,13 @@ def generate(
     *,
     layout: str | None = None,
     values: Mapping[str, str] | None = None,
+    int_bits: int = 31,
 ) -> Generated | None:
     """Everything from files to files in memory; None when an error was reported.
 
     `values` replaces `val`s of the net (over those of cell.toml).
+
+    What a net may have but cannot do here (sockets, processes) is an error: a supervisor must not stop there.
     """
     found = locate(path, d, layout=layout)
     if found is None:
@@ -66,7 +69,8 @@ def generate(
     net_path, config = found
     replaced = {**(config.values if config else {}), **(values or {})}
 
-    net = front.load(net_path, d, replaced)
+    net = front.load(net_path, d, replaced, int_bits=int_bits)
+    _refuse_unsupported(d)
     if net is None or d.has_errors:
         return None
     partition = divide(net, config, d)
@@ -75,7 +79,7 @@ def generate(
 
     storage = config.storage if config else {}
     capacity = config.capacity if config else {}
-    digest = _digest(net, config, replaced)
+    digest = _digest(net, config, replaced, int_bits)
     ir = lower_net.lower(partition, storage, d, capacity=capacity, digest=digest)
     robots = lower_robot.lower_robots(partition, config, d) if config else ()
     if ir is None or robots is None or d.has_errors:
@@ -99,6 +103,16 @@ def generate(
     return Generated(tuple(sorted(files, key=lambda f: f.path)), partition, config, digest)
 
 
+def _refuse_unsupported(d: Diagnostics) -> None:
+    """Make the warnings of unsupported things errors."""
+    d.items = [
+        replace(i, severity=Severity.ERROR)
+        if i.severity is Severity.WARNING and i.code.startswith("unsupported-")
+        else i
+        for i in d.items
+    ]
+
+
 def _inputs(config: CellConfig | None) -> Iterator[OutputFile]:
     """Copies of the cell's own input files, so that `make && ./supervisor` works where it stands.
 
@@ -110,7 +124,11 @@ def _inputs(config: CellConfig | None) -> Iterator[OutputFile]:
             yield OutputFile(entry.file, (config.folder / entry.file).read_text(encoding="utf-8"))
 
 
-def _digest(net: FlatNet, config: CellConfig | None, values: Mapping[str, str]) -> str:
-    """What the programs depend on: the net's bytes, the logic of the cell, replaced values."""
+def _digest(
+    net: FlatNet, config: CellConfig | None, values: Mapping[str, str], int_bits: int
+) -> str:
+    """What the programs depend on: the net's bytes, the logic of the cell, replaced values, other integers."""
     parts = [net.sha256, config.logic_digest() if config else "", repr(sorted(values.items()))]
+    if int_bits != 31:
+        parts.append(f"int {int_bits}")
     return hashlib.sha256("\n".join(parts).encode()).hexdigest()

@@ -13,16 +13,19 @@ from pn2code.cell.config import load as load_cell
 from pn2code.cell.divide import divide
 from pn2code.cell.locate import locate
 from pn2code.cli.options import (
+    DEFAULT_INT_BITS,
     Format,
     FormatOption,
+    IntBitsOption,
+    JsonOption,
     SetOption,
     code_of,
     parse_values,
     print_diagnostics,
 )
-from pn2code.diagnostics import Diagnostics, render
+from pn2code.diagnostics import Diagnostic, Diagnostics, render
 from pn2code.net import front
-from pn2code.net.flat import FlatNet
+from pn2code.net.front import Examined
 
 EPILOG = """Examples:
 
@@ -32,6 +35,7 @@ EPILOG = """Examples:
 """
 
 COUNTED = ("pages", "places", "transitions", "arcs")
+"""What is counted, as the file has it: substitution transitions are transitions, a page counts once."""
 
 
 def _geometry(config: CellConfig, d: Diagnostics) -> None:
@@ -46,34 +50,39 @@ def _geometry(config: CellConfig, d: Diagnostics) -> None:
 
 def check(
     net: Annotated[Path, typer.Argument(help="A .cpn file, a cell.toml, or a folder with one.")],
-    as_json: Annotated[bool, typer.Option("--json", help="For programs.")] = False,
+    as_json: JsonOption = False,
     settings: SetOption = [],  # noqa: B006 - typer reads the default only
+    int_bits: IntBitsOption = DEFAULT_INT_BITS,
     form: FormatOption = Format.FULL,
 ) -> None:
     """Check a net: syntax, types, whether every variable gets a value, hierarchy; and its cell."""
     d = Diagnostics()
-    flat: FlatNet | None = None
+    result = Examined(None, None)
     where = net
     found = locate(net, d)
     if found is not None:
         where, config = found
-        flat = front.load(where, d, {**(config.values if config else {}), **parse_values(settings)})
-        if flat is not None and config is not None and not d.has_errors:
-            divide(flat, config, d)
+        values = {**(config.values if config else {}), **parse_values(settings)}
+        result = front.examine(where, d, values, int_bits=int_bits)
+        if result.flat is not None and config is not None and not d.has_errors:
+            divide(result.flat, config, d)
         if config is not None:
             _geometry(config, d)
-    ok = flat is not None and not d.has_errors
-    numbers = {key: (flat.statistics.get(key, 0) if flat else 0) for key in COUNTED}
+    ok = result.flat is not None and not d.has_errors
+    elements = result.document.elements if result.document else {}
+    numbers = {key: elements.get(key, 0) for key in COUNTED}
     if as_json:
-        found_all = [render.as_json(i) for i in d.sorted()]
-        typer.echo(
-            json.dumps(
-                {"file": str(where), "ok": ok, **numbers, "diagnostics": found_all}, indent=1
-            )
-        )
+        items = [_as_json(item, str(where)) for item in d.sorted()]
+        shape = {"file": str(where), "ok": ok, **numbers, "diagnostics": items}
+        typer.echo(json.dumps(shape, indent=1))
     else:
         print_diagnostics(d.sorted(), form)
-        counted = ", ".join(f"{n} {key}" for key, n in numbers.items()) + ": " if flat else ""
-        typer.echo(f"{where}: {counted}{render.count(d)}")
+        counted = ", ".join(f"{n} {key}" for key, n in numbers.items()) + ": "
+        typer.echo(f"{where}: {counted if elements else ''}{render.count(d)}")
     if not ok:
         raise typer.Exit(code_of(d))
+
+
+def _as_json(item: Diagnostic, net: str) -> dict[str, object]:
+    """One diagnostic; its `file` is left out when that is the net."""
+    return {k: v for k, v in render.as_json(item).items() if (k, v) != ("file", net)}

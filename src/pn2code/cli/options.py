@@ -76,6 +76,7 @@ FilesOption = Annotated[
 
 
 INT_BITS = (31, 64)
+DEFAULT_INT_BITS = 31
 
 
 def _int_bits(text: str | int) -> int:
@@ -117,20 +118,38 @@ EngineOption = Annotated[
 JsonOption = Annotated[bool, typer.Option("--json", help="For programs.")]
 
 
+MOST_SHOWN = 60
+"""More diagnostics than that are not for people."""
+
+
 def print_diagnostics(items: Iterable[Diagnostic], form: Format = Format.FULL) -> None:
     """Print them to stderr, in colour on a terminal.
 
-    Notes are for programs, and for people when something is wrong on the same page.
+    Notes are for programs, and for people when something is wrong on the same page. Of very many, people get the
+    first, errors before warnings.
     """
     items = list(items)
+    omitted = ""
     if form is Format.FULL:
         wrong = {i.origin.page for i in items if i.severity is Severity.ERROR} - {""}
         items = [i for i in items if i.severity is not Severity.NOTE or i.origin.page in wrong]
+        items, omitted = _first(items)
     text = render.report(
         items, form.value, render.coloured if sys.stderr.isatty() else render.plain
     )
     if text:
-        print(text, file=sys.stderr)
+        print(text + omitted, file=sys.stderr)
+
+
+def _first(items: list[Diagnostic]) -> tuple[list[Diagnostic], str]:
+    """As many as people want to see, in their order, and what is said of the others."""
+    if len(items) <= MOST_SHOWN:
+        return items, ""
+    order = list(Severity)
+    urgent = sorted(range(len(items)), key=lambda n: (order.index(items[n].severity), n))
+    shown = [items[n] for n in sorted(urgent[:MOST_SHOWN])]
+    left = len(items) - MOST_SHOWN
+    return shown, f"\n\nand {left} more: `--format concise` shows all, one line each"
 
 
 def stop(d: Diagnostics, form: Format = Format.FULL) -> NoReturn:

@@ -28,7 +28,13 @@ class Examined:
     flat: FlatNet | None
 
 
-def examine(path: Path, d: Diagnostics, values: Mapping[str, str] | None = None) -> Examined:
+def examine(
+    path: Path,
+    d: Diagnostics,
+    values: Mapping[str, str] | None = None,
+    *,
+    int_bits: int = 31,
+) -> Examined:
     """Read, link, check and flatten a `.cpn` file, going on after errors.
 
     What cannot be resolved is passed over, so that all that is wrong independently is reported in one run.
@@ -37,6 +43,7 @@ def examine(path: Path, d: Diagnostics, values: Mapping[str, str] | None = None)
         path: the file.
         d: gets errors and warnings of all stages.
         values: replacements for `val` declarations of the net: name -> CPN ML text.
+        int_bits: width of `int`: 31, as in CPN Tools, or 64.
     """
     before = len(d.errors)
     document = read(path, d, partial=True)
@@ -53,6 +60,12 @@ def examine(path: Path, d: Diagnostics, values: Mapping[str, str] | None = None)
     return Examined(document, flatten(typed, d))
 
 
-def load(path: Path, d: Diagnostics, values: Mapping[str, str] | None = None) -> FlatNet | None:
+def load(
+    path: Path,
+    d: Diagnostics,
+    values: Mapping[str, str] | None = None,
+    *,
+    int_bits: int = 31,
+) -> FlatNet | None:
     """The flat net of a `.cpn` file; None if there were errors. See `examine`."""
-    return examine(path, d, values).flat
+    return examine(path, d, values, int_bits=int_bits).flat

@@ -64,6 +64,51 @@ def element(net: FlatNet, e: BindingElement) -> dict[str, Any]:
     }
 
 
+def marking_text(net: FlatNet, marking: Marking, *, empty: bool = False) -> str:
+    """For people: by page instance, one place below the other; empty places only if wanted."""
+    lines = [f"time {time_text(marking.time)}"] if net.timed else []
+    rows = [row for row in places(net, marking) if row["page"]]
+    shown = [row for row in rows if empty or row["marking"] != "empty"]
+    width = max((len(_name(row)) for row in shown), default=0)
+    heading = None
+    for row in shown:
+        if heading != (row["page"], row["instance"]):
+            heading = (row["page"], row["instance"])
+            many = any(r["page"] == row["page"] and r["instance"] != 1 for r in rows)
+            number = f" {row['instance']}" if many else ""
+            lines += [*([""] if lines else []), f"{row['page']}{number}"]
+        first, *others = str(row["marking"]).split("\n")
+        lines.append(f"  {_name(row).ljust(width)}  {first}")
+        lines += [f"  {' ' * width}  {other}" for other in others]
+    left = len(rows) - len(shown)
+    if left:
+        lines += [
+            *([""] if lines else []),
+            f"{left} places are empty" if left > 1 else "1 place is empty",
+        ]
+    return "\n".join(lines)
+
+
+def _name(row: PlaceRow) -> str:
+    return str(row["name"] or row["id"])
+
+
+def enabled_text(net: FlatNet, time: int | float, elements: Iterable[BindingElement]) -> str:
+    """For people: the enabled transitions, and below each its bindings."""
+    lines = [f"time {time_text(time)}"] if net.timed else []
+    at = -1
+    for e in elements:
+        if e.transition != at:
+            at = e.transition
+            t = net.transitions[at]
+            where = t.page + (f" {t.instance_number}" if t.instance_number > 1 else "")
+            lines += [*([""] if lines else []), f"{t.short} ({where})"]
+        values = element(net, e)["binding"]
+        shown = ", ".join(f"{name} = {' '.join(text.split())}" for name, text in values.items())
+        lines.append(f"  {shown or 'no variables'}")
+    return "\n".join(lines if at >= 0 else [*lines, "nothing is enabled"])
+
+
 def time_text(time: int | float) -> str:
     """A model time as the real tool prints it."""
     return real_text(time) if isinstance(time, float) else str(time)

@@ -1,0 +1,57 @@
+"""`pn2code enabled`: the binding elements that are enabled in the initial marking."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from pn2code.cli.nets import open_net, playing
+from pn2code.cli.options import (
+    DEFAULT_INT_BITS,
+    DEFAULT_SEED,
+    FilesOption,
+    Format,
+    FormatOption,
+    IntBitsOption,
+    JsonOption,
+    SeedOption,
+    SetOption,
+    parse_values,
+)
+from pn2code.semantics import report
+
+EPILOG = """Examples:
+
+  pn2code enabled net.cpn
+
+  pn2code enabled net.cpn --json
+"""
+
+
+def enabled(
+    net: Annotated[Path, typer.Argument(help="A .cpn file, a cell.toml, or a folder with one.")],
+    as_json: JsonOption = False,
+    settings: SetOption = [],  # noqa: B006 - typer reads the default only
+    seed: SeedOption = DEFAULT_SEED,
+    files: FilesOption = None,
+    int_bits: IntBitsOption = DEFAULT_INT_BITS,
+    form: FormatOption = Format.FULL,
+) -> None:
+    """Print the binding elements that are enabled in the initial marking.
+
+    If all tokens are still in the future, the clock is moved to the first time at which something is enabled.
+    """
+    opened = open_net(net, parse_values(settings), form, int_bits=int_bits)
+    with playing(form):
+        game = opened.game(seed=seed, files=files)
+        game.advance()
+        elements = game.enabled()
+    time = game.marking.time
+    if as_json:
+        rows = report.enabled(opened.flat, elements)
+        typer.echo(json.dumps({"time": time, "enabled": rows}, indent=1))
+    else:
+        typer.echo(report.enabled_text(opened.flat, time, elements))

@@ -1,0 +1,54 @@
+"""`pn2code marking`: the initial marking of a net."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from pn2code.cli.nets import open_net, playing
+from pn2code.cli.options import (
+    DEFAULT_INT_BITS,
+    DEFAULT_SEED,
+    FilesOption,
+    Format,
+    FormatOption,
+    IntBitsOption,
+    JsonOption,
+    SeedOption,
+    SetOption,
+    parse_values,
+)
+from pn2code.semantics import report
+
+EPILOG = """Examples:
+
+  pn2code marking net.cpn
+
+  pn2code marking net.cpn --json
+"""
+
+EmptyOption = Annotated[bool, typer.Option("--empty", help="Show empty places, too.")]
+
+
+def marking(
+    net: Annotated[Path, typer.Argument(help="A .cpn file, a cell.toml, or a folder with one.")],
+    as_json: JsonOption = False,
+    empty: EmptyOption = False,
+    settings: SetOption = [],  # noqa: B006 - typer reads the default only
+    seed: SeedOption = DEFAULT_SEED,
+    files: FilesOption = None,
+    int_bits: IntBitsOption = DEFAULT_INT_BITS,
+    form: FormatOption = Format.FULL,
+) -> None:
+    """Print the initial marking of each place, as CPN Tools does."""
+    opened = open_net(net, parse_values(settings), form, int_bits=int_bits)
+    with playing(form):
+        game = opened.game(seed=seed, files=files)
+    if as_json:
+        rows = report.places(opened.flat, game.marking)
+        typer.echo(json.dumps({"time": game.marking.time, "places": rows}, indent=1))
+    else:
+        typer.echo(report.marking_text(opened.flat, game.marking, empty=empty))

@@ -1,0 +1,68 @@
+"""What verbs about a net and its behaviour begin with: the net that a path means, ready to be played."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
+from dataclasses import dataclass
+from pathlib import Path
+
+from pn2code.cell.config import CellConfig
+from pn2code.cell.locate import locate
+from pn2code.cli.options import Format, print_diagnostics, stop
+from pn2code.diagnostics import Diagnostics, Severity
+from pn2code.net import front
+from pn2code.net.flat import FlatNet
+from pn2code.semantics.game import Game, GameError
+
+
+@dataclass(frozen=True, slots=True)
+class OpenNet:
+    """A net and the cell beside it, if there is one."""
+
+    flat: FlatNet
+    config: CellConfig | None
+
+    @property
+    def storage(self) -> Mapping[str, str]:
+        """How colour sets of reals are stored: name -> "float32"."""
+        return self.config.storage if self.config else {}
+
+    def game(self, *, seed: int, files: Path | None) -> Game:
+        """The net at its start.
+
+        Raises:
+            GameError: a declaration or an initial marking raises an exception.
+        """
+        return Game(self.flat, self.storage, seed=seed)
+
+
+def open_net(
+    path: Path, values: Mapping[str, str], form: Format = Format.FULL, *, int_bits: int = 31
+) -> OpenNet:
+    """The net that a path means, with `val`s replaced; leaves with a report when it is wrong.
+
+    What is `unsupported-...` is said before the net is played: applying it will stop the run.
+    """
+    d = Diagnostics()
+    found = locate(path, d)
+    if found is None:
+        stop(d, form)
+    net_path, config = found
+    flat = front.load(net_path, d, {**(config.values if config else {}), **values})
+    if flat is None or d.has_errors:
+        stop(d, form)
+    unsupported = [i for i in d.sorted() if i.code.startswith("unsupported-")]
+    print_diagnostics((i for i in unsupported if i.severity is Severity.WARNING), form)
+    return OpenNet(flat, config)
+
+
+@contextmanager
+def playing(form: Format = Format.FULL) -> Iterator[None]:
+    """An error of the net while it is played is reported like one found in checking it."""
+    try:
+        yield
+    except GameError as error:
+        d = Diagnostics()
+        error.report(d)
+        stop(d, form)
