@@ -69,7 +69,8 @@ class Workshop:
         source = cnative_folder() / "src"
         for name in RUNTIME:
             workshop.compile(source / f"pn_{name}.c", folder / f"pn_{name}.o", folder)
-        workshop.compile(source / "simulate.c", folder / "simulate.o", folder)
+        for part in sorted(source.glob("simulate*.c")):
+            workshop.compile(part, folder / f"{part.stem}.o", folder)
         walk = cnative_folder() / "tests" / "walk.c"
         workshop.compile(walk, folder / "walk.o", folder)
         return workshop
@@ -110,7 +111,7 @@ class Workshop:
         for file in emit(net, "test"):
             (folder / file.path).write_text(file.text)
         self.compile(folder / "net.c", folder / "net.o", folder, *flags)
-        return self.link(folder / host, folder / "net.o", self.folder / f"{host}.o")
+        return self.link(folder / host, folder / "net.o", *sorted(self.folder.glob(f"{host}*.o")))
 
 
 def run(program: Path, *arguments: object) -> list[dict[str, Any]]:
