@@ -190,28 +190,25 @@ class Game:
         """
         t = self.net.transitions[element.transition]
         self.evaluator.now = marking.time
-        binding = {**element.binding, **self._action(t, element.binding)}
+        binding = {**element.binding, **self.action(t, element.binding)}
         left = self.enabling.take(marking, self.enabling.demands(t, element.binding))
         if isinstance(left, Demand):
             name = self.net.places[left.place].name
             raise GameError(f"place `{name}` lacks tokens when the transition occurs", t.origin)
-        delay: Any = 0
-        if t.delay is not None:
-            with running(replace(t.origin, part="delay"), f"the delay of `{t.name}`"):
-                delay = self.evaluator.value(t.delay, binding)
+        delay = self.delay(t, binding)
         places = list(left.places)
         for arc in t.arcs:
             if arc.kind in (ArcKind.OUTPUT, ArcKind.BOTH):
-                places[arc.place] = self._put(places[arc.place], arc, binding, delay, marking.time)
+                places[arc.place] = self.put(places[arc.place], arc, binding, delay, marking.time)
         for arc in t.arcs:
             if arc.kind is ArcKind.RESET:
-                places[arc.place] = _reset(places[arc.place], marking.time)
+                places[arc.place] = reset(places[arc.place], marking.time)
         return replace(left, places=tuple(places)), BindingElement.make(t, binding)
 
-    # --- details ---------------------------------------------------------------------------------
+    # --- the parts of an occurrence ----------------------------------------------------------------
 
-    def _action(self, t: FlatTransition, binding: Binding) -> dict[Symbol, Value]:
-        """Runs the code segment, gives its outputs."""
+    def action(self, t: FlatTransition, binding: Binding) -> dict[Symbol, Value]:
+        """Runs the code segment, gives its outputs; `self.evaluator.now` must be set."""
         if t.code is None:
             return {}
         with running(t.code.origin, f"the code segment of `{t.name}`"):
@@ -221,7 +218,14 @@ class Game:
             return {outputs[0]: result}
         return dict(zip(outputs, result, strict=True)) if outputs else {}
 
-    def _put(
+    def delay(self, t: FlatTransition, binding: Binding) -> Any:
+        """The delay of the transition."""
+        if t.delay is None:
+            return 0
+        with running(replace(t.origin, part="delay"), f"the delay of `{t.name}`"):
+            return self.evaluator.value(t.delay, binding)
+
+    def put(
         self,
         tokens: PlaceMarking,
         arc: FlatArc,
@@ -229,6 +233,7 @@ class Game:
         delay: float,
         now: float,
     ) -> PlaceMarking:
+        """What a place holds after an output arc has put its tokens."""
         assert arc.inscription is not None
         with running(arc.inscription.origin, "the inscription"):
             value = self.evaluator.value(arc.inscription.value, binding)
@@ -240,6 +245,8 @@ class Game:
             Timed(x.value, x.stamp + delay) if isinstance(x, Timed) else Timed(x, now + delay)
             for x in put
         ]
+
+    # --- details ---------------------------------------------------------------------------------
 
     def _tokens(self, value: Any, form: Form, colset: Colset, origin: Origin) -> list[Value]:
         """The tokens that an inscription's value stands for, legal and as they are stored."""
@@ -292,7 +299,7 @@ class Game:
         return replace(own, places=tuple(places))
 
 
-def _reset(tokens: PlaceMarking, now: float) -> PlaceMarking:
+def reset(tokens: PlaceMarking, now: float) -> PlaceMarking:
     """Empties a place; a timed one keeps what is not available yet."""
     if isinstance(tokens, MultiSet):
         return MultiSet()
