@@ -23,6 +23,7 @@ def test_short_names_stand_for_entries() -> None:
     for choices in b.OVERLOADED.values():
         assert all(full in b.BUILTINS for full in choices)
     assert not b.OVERLOADED.keys() & b.TOP_LEVEL.keys()
+    assert b.HIDDEN <= b.BUILTINS.keys()
     assert not b.UNSUPPORTED_NAMES & b.TOP_LEVEL.keys()
 
 
@@ -57,8 +58,48 @@ def test_fixities_of_cpn_tools(name: str, expected: tuple[int, str]) -> None:
     assert b.INFIX[name] == expected
 
 
-@pytest.mark.parametrize("name", sorted({*b.TOP_LEVEL, *b.OVERLOADED} | {n for n in b.BUILTINS if n[0].isalpha() and not n.startswith(("Time.", "Ms.", "Ref.", "Random."))}))  # fmt: skip
+@pytest.mark.parametrize("name", sorted({*b.TOP_LEVEL, *b.OVERLOADED, *b.QUALIFIED} | {n for n in b.BUILTINS if n[0].isalpha()} - b.HIDDEN))  # fmt: skip
 def test_every_name_can_be_used(name: str) -> None:
     m = Ml()
     m.ml(f"val f = op {name}")
-    assert not m.messages()
+    full = b.TOP_LEVEL.get(name, name)
+    unsupported = full in b.BUILTINS and b.BUILTINS[full].unsupported
+    messages = m.messages()
+    if unsupported:
+        assert messages.pop().startswith(f"unsupported-function | `{name}` is not available here: {unsupported}")
+    assert not messages
+    assert not m.d.has_errors
+
+
+@pytest.mark.parametrize("name", sorted(b.HIDDEN))
+def test_internal_names_cannot_be_written(name: str) -> None:
+    m = Ml()
+    m.ml(f"val f = op {name}")
+    assert m.d.has_errors
+
+
+def test_warnings_come_once_for_each_element_and_function() -> None:
+    m = Ml()
+    m.ml("fun f s = (ConnManagementLayer.send (\"a\", s, stringEncode); ConnManagementLayer.send (\"b\", s, stringEncode))")
+    assert len(m.messages()) == 1
+
+
+@pytest.mark.parametrize(
+    ("text", "ok"),
+    [
+        ("val x : TextIO.outstream option ref = ref NONE", True),
+        ("val x = Int.fmt StringCvt.HEX 10", True),
+        ("val x = Real.fmt (StringCvt.FIX (SOME 2)) 1.5", True),
+        ("val x = HEX", False),
+        ("fun f s = TextIO.openIn s handle IO.Io {name, function, cause} => raise cause", True),
+        ("fun f s = TextIO.openIn s handle Io _ => TextIO.stdIn", False),
+        ("val {dir, file} = OS.Path.splitDirFile \"a/b\"", True),
+        ("val x = LargeInt.fromInt 3 + LargeInt.toLarge 4", True),
+        ("val x = TextIO.stdIn = TextIO.stdIn", False),
+        ("val x : Time.time = Time.now ()", True),
+    ],
+)
+def test_types_and_constructors_of_structures(text: str, ok: bool) -> None:
+    m = Ml()
+    m.ml(text)
+    assert m.d.has_errors != ok, m.messages()

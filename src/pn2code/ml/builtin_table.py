@@ -230,6 +230,8 @@ List.ins_new : ''a list -> ''a -> ''a list ; appended at the end unless it is th
 List.sort : ('a * 'a -> bool) -> 'a list -> 'a list ; sorted by `less`
 List.unique_sort : ('a * 'a -> bool) -> 'a list -> 'a list ; sorted by `less`, one of each
 List.fmap : ('a -> 'b list) -> 'a list -> 'b list ; mapped and appended
+List.mapfilter : ('a -> bool * 'b) ref * 'a list -> 'b list ; the second where the first is true
+List.predlist : ('a -> bool) -> 'a list -> bool ; whether one has the property
 ListPair.zip : 'a list * 'b list -> ('a * 'b) list ; pairs, as long as the shorter
 ListPair.unzip : ('a * 'b) list -> 'a list * 'b list ; the two lists
 ListPair.map : ('a * 'b -> 'c) -> 'a list * 'b list -> 'c list ; each pair, as long as the shorter
@@ -262,6 +264,8 @@ Ms.ms_to_col : 'a ms -> 'a ; the only element; raises no_singleton
 Ms.ms_to_list : 'a ms -> 'a list ; the elements
 Ms.list_to_ms : 'a list -> 'a ms ; the elements
 Ms.sort_ms : ('a * 'a -> bool) -> 'a ms -> 'a ms ; sorted by `less`
+Ms.legal_ms : ('a -> bool) -> 'a ms -> bool ; whether all are legal
+Ms.mkstr_ms : ('a -> string) * ('a * 'a -> bool) -> 'a ms -> string ; the text of a multi-set, given those of its elements
 
 -- time
 Time.@ : 'a * time -> 'a timed ; a token with an absolute time stamp
@@ -317,6 +321,10 @@ legal : cs -> bool ; whether it is within the colour set's bounds
 illegal_msg : cs -> string ; what is wrong with it
 mkstr : cs -> string ; as CPN Tools prints it
 mkstr_ms : cs ms -> string ; as CPN Tools prints a multi-set
+input : TextIO.instream -> cs ; reads a value as `output` writes it; raises CPN'Error
+output : TextIO.outstream * cs -> unit ; writes a value, one a line
+input_ms : TextIO.instream -> cs ms ; reads a multi-set as `output_ms` writes it; raises CPN'Error
+output_ms : TextIO.outstream * cs ms -> unit ; writes a multi-set
 mult : cs ; PRODUCT, RECORD: all combinations of the elements of multi-sets
 set : cs ; set_<field>: PRODUCT, RECORD: a copy with another value of a component: `name` is "Colset.set_<label>"
 of : cs ; of_<constructor>: UNION: whether the value is made by it: `name` is "Colset.of_<name>"

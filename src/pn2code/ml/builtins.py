@@ -18,8 +18,22 @@ from dataclasses import dataclass
 from functools import cache
 
 from pn2code.ml.builtin_table import COLSET_TABLE, TABLE
+from pn2code.ml.builtin_table_library import LIBRARY_TABLE
 from pn2code.ml.core import Constructor, DatatypeDec
-from pn2code.ml.types import INT, INTINF, REAL, STRING, TCon, TFun, TRecord, TVar, Type, tuple_of
+from pn2code.ml.types import (
+    EXN,
+    INT,
+    INTINF,
+    REAL,
+    STRING,
+    TCon,
+    TFun,
+    TRecord,
+    TVar,
+    Type,
+    record,
+    tuple_of,
+)
 
 _LIST_A = TCon("list", (TVar(0),))
 
@@ -32,11 +46,14 @@ class BuiltinInfo:
         name: full name.
         text: the type as written in the table.
         meaning: one line.
+        unsupported: why it cannot run here; "" when it can. Uses are reported as warnings, and a run stops where it is
+            applied.
     """
 
     name: str
     text: str
     meaning: str
+    unsupported: str = ""
 
     @property
     def generics(self) -> int:
@@ -58,9 +75,9 @@ class _SchemeParser:
     """Types as written in the table: `('a -> 'b) * 'a list -> 'b list`. The text is ours, so a mistake is a bug."""
 
     def __init__(self, text: str, real_time: bool, own: Type | None) -> None:
-        self._tokens = text.replace("(", " ( ").replace(")", " ) ").replace(",", " , ").split() + [
-            ""
-        ]
+        for sign in "(){},":
+            text = text.replace(sign, f" {sign} ")
+        self._tokens = [*text.split(), ""]
         self._at = 0
         self._variables: dict[str, TVar] = {}
         self._time = REAL if real_time else INTINF
@@ -103,6 +120,8 @@ class _SchemeParser:
 
     def _atom(self) -> Type:
         word = self._next()
+        if word == "{":
+            return self._record()
         if word == "(":
             t = self._function()
             if not self._accept(")"):
@@ -120,19 +139,35 @@ class _SchemeParser:
             return self._own
         return TCon(word)
 
+    def _record(self) -> Type:
+        fields: dict[str, Type] = {}
+        while True:
+            label = self._next()
+            if not self._accept(":"):
+                raise ValueError("in a built-in type: `:` expected")
+            fields[label] = self._function()
+            if self._accept("}"):
+                return record(fields)
+            if not self._accept(","):
+                raise ValueError("in a built-in type: `,` expected")
+
 
 def _read(table: str) -> dict[str, BuiltinInfo]:
     out: dict[str, BuiltinInfo] = {}
+    unsupported = ""
     for line in table.strip().splitlines():
+        if line.startswith("=="):
+            unsupported = line[2:].strip()
+            continue
         if not line.strip() or line.startswith("--"):
             continue
         name, rest = line.split(" : ", 1)
         text, meaning = rest.split(" ; ", 1)
-        out[name.strip()] = BuiltinInfo(name.strip(), text.strip(), meaning.strip())
+        out[name.strip()] = BuiltinInfo(name.strip(), text.strip(), meaning.strip(), unsupported)
     return out
 
 
-BUILTINS: dict[str, BuiltinInfo] = _read(TABLE)
+BUILTINS: dict[str, BuiltinInfo] = {**_read(TABLE), **_read(LIBRARY_TABLE)}
 COLSET_MEMBERS: dict[str, BuiltinInfo] = _read(COLSET_TABLE)
 
 _NUMBERS = ("Int", "Real", "IntInf")
@@ -232,6 +267,21 @@ TOP_LEVEL: dict[str, str] = {
     "ms_to_list": "Ms.ms_to_list",
     "list_to_ms": "Ms.list_to_ms",
     "sort_ms": "Ms.sort_ms",
+    "legal_ms": "Ms.legal_ms",
+    "mkstr_ms": "Ms.mkstr_ms",
+    "mapfilter": "List.mapfilter",
+    "predlist": "List.predlist",
+    "vector": "Vector.fromList",
+    "openConnection": "ConnManagementLayer.openConnection",
+    "acceptConnection": "ConnManagementLayer.acceptConnection",
+    "closeConnection": "ConnManagementLayer.closeConnection",
+    "send": "ConnManagementLayer.send",
+    "receive": "ConnManagementLayer.receive",
+    "canReceive": "ConnManagementLayer.canReceive",
+    "stringEncode": "ConnManagementLayer.stringEncode",
+    "stringDecode": "ConnManagementLayer.stringDecode",
+    "integerEncode": "ConnManagementLayer.integerEncode",
+    "integerDecode": "ConnManagementLayer.integerDecode",
     "@": "Time.@",
     "@+": "Time.@+",
     "@++": "Time.@++",
@@ -250,37 +300,58 @@ TOP_LEVEL: dict[str, str] = {
 """Short name -> full name."""
 
 QUALIFIED: dict[str, str] = {
-    "Bool.not": "Bool.not",
     "General.!": "Ref.!",
     "General.:=": "Ref.:=",
-    "String.size": "String.size",
-    "Int.toInt": "Int.toInt",
     "List.^^": "List.@",
-    "LargeInt.toInt": "IntInf.toInt",
-    "LargeInt.fromInt": "IntInf.fromInt",
-    "LargeInt.toString": "IntInf.toString",
     "Real.real": "Real.fromInt",
     "Char.str": "String.str",
     "ModelTime.time": "Time.time",
 }
 """Qualified names that stand for another full name; all other qualified names stand for themselves."""
 
+STRUCTURE_ALIASES: dict[str, str] = {
+    "LargeInt": "IntInf",
+    "Int31": "Int",
+    "Position": "Int",
+    "LargeReal": "Real",
+    "Real64": "Real",
+    "Word31": "Word",
+    "SMLTime": "Time",
+}
+"""Other names of structures."""
+
+HIDDEN: frozenset[str] = frozenset(
+    {
+        *(full for full in TOP_LEVEL.values() if full.split(".")[0] in ("Ms", "Ref", "Time", "Random")),
+        "Time.token@+", "Time.token@++",
+        *(f"List.{name}" for name in (
+            "mem", "remdupl", "rm", "rmall", "pos", "contains", "contains_all", "intersect", "union", "listsub", "ins",
+            "ins_new", "sort", "unique_sort", "fmap", "mapfilter", "predlist",
+        )),
+    }
+)  # fmt: skip
+"""Full names that no net can write; it has the short ones."""
+
 _OTHER_STRUCTURES = """
-Array Array2 BinIO Byte CharVector CommandLine Date IEEEReal IO LargeInt LargeReal LargeWord OS Position SMLofNJ
-StringCvt Substring TextIO Timer Unix Vector Word Word8 Word32 Random Time CPN'Time CPN'Replications Replications
-ModelTime Queue Mark Bind ConnManagementLayer Output MSC Comms CPN'Sim CPN'NetCapture CPN'Monitors CPN'Env CPN'Settings
+Array2 BinIO CharVector CharArray ArraySlice VectorSlice CharVectorSlice CharArraySlice IEEEReal IO Int32 Int64 LargeWord
+SMLofNJ StringCvt Unix Posix Socket Word32 Word64 Word8Array Word8VectorSlice CPN'Time CPN'Replications Replications
+Queue Comms CPN'Sim CPN'NetCapture CPN'Monitors CPN'Env CPN'Settings CPN'StreamIO Cpn
 """
 
 STRUCTURES: frozenset[str] = frozenset(
-    {*_OTHER_STRUCTURES.split(), *(name.split(".")[0] for name in BUILTINS if name[0].isalpha())}
+    {
+        *_OTHER_STRUCTURES.split(),
+        *STRUCTURE_ALIASES,
+        *(name.split(".")[0] for name in BUILTINS if "." in name and name not in HIDDEN),
+        "General",
+    }
 )
-"""Structures of the library: an unknown member of one is "not supported", not "not declared"."""
+"""Structures of the library."""
 
-UNSUPPORTED_NAMES: frozenset[str] = frozenset(
-    {"acceptConnection", "openConnection", "closeConnection", "send", "receive", "stringEncode", "stringDecode",
-     "integerEncode", "integerDecode", "canReceive", "inst", "legal_ms", "mkstr_ms", "mkst_ms", "mapfilter", "predlist",
-     "vector", "use"}
-)  # fmt: skip
+INCOMPLETE: frozenset[str] = frozenset({*_OTHER_STRUCTURES.split(), "Word8", "Word8Vector", "Random", "OS", "Output"})
+"""Those of which pn2code knows only a part: an unknown member is "not supported", not "not declared"."""
+
+UNSUPPORTED_NAMES: frozenset[str] = frozenset({"inst", "use"})
 """Top-level names of CPN Tools that are not supported; a net may declare its own."""
 
 INFIX: dict[str, tuple[int, str]] = {
@@ -313,8 +384,36 @@ DATATYPES: dict[str, DatatypeDec] = {
     "list": _datatype("list", 1, ("nil", None), ("::", tuple_of(TVar(0), _LIST_A))),
     "option": _datatype("option", 1, ("NONE", None), ("SOME", TVar(0))),
     "order": _datatype("order", 0, ("LESS", None), ("EQUAL", None), ("GREATER", None)),
+    "StringCvt.radix": _datatype(
+        "StringCvt.radix", 0, ("BIN", None), ("OCT", None), ("DEC", None), ("HEX", None)
+    ),
+    "StringCvt.realfmt": _datatype(
+        "StringCvt.realfmt",
+        0,
+        ("SCI", TCon("option", (INT,))),
+        ("FIX", TCon("option", (INT,))),
+        ("GEN", TCon("option", (INT,))),
+        ("EXACT", None),
+    ),
+    "IEEEReal.rounding_mode": _datatype(
+        "IEEEReal.rounding_mode",
+        0,
+        ("TO_NEAREST", None),
+        ("TO_NEGINF", None),
+        ("TO_POSINF", None),
+        ("TO_ZERO", None),
+    ),
+    "OS.FileSys.access_mode": _datatype(
+        "OS.FileSys.access_mode", 0, ("A_READ", None), ("A_WRITE", None), ("A_EXEC", None)
+    ),
+    "Date.month": _datatype(
+        "Date.month", 0, *((m, None) for m in "Jan Feb Mar Apr May Jun Jul Aug Sep Oct Nov Dec".split())
+    ),
+    "Date.weekday": _datatype(
+        "Date.weekday", 0, *((d, None) for d in "Mon Tue Wed Thu Fri Sat Sun".split())
+    ),
 }
-"""The built-in data types by name."""
+"""The built-in data types by name; constructors of those with a qualified name are in that structure only."""
 
 FALSE, TRUE = (c for c, _ in DATATYPES["bool"].constructors)
 NIL, CONS = (c for c, _ in DATATYPES["list"].constructors)
@@ -336,7 +435,24 @@ _EXCEPTIONS: tuple[tuple[str, Type | None], ...] = (
     ("no_singleton", None),
     ("CPN'Error", STRING),
     ("UnequalLengths", None),
-)
+    ("Io", record({"name": STRING, "function": STRING, "cause": EXN})),
+    ("SysErr", tuple_of(STRING, TCon("option", (TCon("OS.syserror"),)))),
+    ("Path", None),
+    ("InvalidArc", None),
+    ("Time", None),
+    ("Date", None),
+    ("Unordered", None),
+    *(
+        (name, None)
+        for name in (
+            "Bernoulli", "Binomial", "Uniform", "Discrete", "Normal", "Exponential", "Poisson", "Erlang", "Chisq",
+            "Student", "Gamma", "Beta", "Weibull", "Rayleigh",
+        )
+    ),
+    ("ClosedStream", None),
+    ("IOError", STRING),
+    ("InternalError", STRING),
+)  # fmt: skip
 
 EXCEPTIONS: dict[str, tuple[Constructor, Type | None]] = {
     name: (Constructor(name, "exn", tag, argument is not None, 0), argument)
@@ -346,11 +462,49 @@ EXCEPTIONS: dict[str, tuple[Constructor, Type | None]] = {
 `FIRST_EXCEPTION_TAG`.
 """
 
+QUALIFIED_EXCEPTIONS: dict[str, str] = {
+    "IO.Io": "Io",
+    "IO.ClosedStream": "ClosedStream",
+    "CPN'StreamIO.IOError": "IOError",
+    "OS.SysErr": "SysErr",
+    "OS.Path.Path": "Path",
+    "OS.Path.InvalidArc": "InvalidArc",
+    "Time.Time": "Time",
+    "Date.Date": "Date",
+    "IEEEReal.Unordered": "Unordered",
+    "ListPair.UnequalLengths": "UnequalLengths",
+    "Option.Option": "Option",
+    "List.Empty": "Empty",
+    **{
+        f"General.{name}": name
+        for name in (
+            "Match", "Bind", "Div", "Overflow", "Subscript", "Size", "Chr", "Domain", "Span", "Fail",
+        )
+    },
+}  # fmt: skip
+"""Exceptions that have a qualified name."""
+
+TOP_LEVEL_EXCEPTIONS: frozenset[str] = frozenset(
+    {
+        "Match", "Bind", "Div", "Overflow", "Subscript", "Empty", "Size", "Chr", "Domain", "Option", "Span", "Fail",
+        "Subtract", "no_singleton", "CPN'Error", "InternalError",
+    }
+)  # fmt: skip
+"""Exceptions that have a short name."""
+
 FIRST_EXCEPTION_TAG = 100
 
 TYPE_ARITY: dict[str, int] = {
     "int": 0, "real": 0, "string": 0, "char": 0, "bool": 0, "exn": 0, "order": 0, "IntInf.int": 0,
-    "list": 1, "option": 1, "ref": 1, "timed": 1,
+    "list": 1, "option": 1, "ref": 1, "timed": 1, "vector": 1, "array": 1, "word": 0, "substring": 0,
+    **{
+        name: 0
+        for name in (
+            "TextIO.instream", "TextIO.outstream", "OS.FileSys.dirstream", "OS.Process.status", "OS.syserror",
+            "Time.time", "Timer.real_timer", "Timer.cpu_timer", "Date.date", "Random.rand", "Word8.word",
+            "Word8Vector.vector", *(name for name in DATATYPES if "." in name),
+        )
+    },
 }  # fmt: skip
 """Type constructors that are there at the start and their number of arguments."""
 
@@ -358,11 +512,17 @@ TYPE_ABBREVIATIONS: dict[str, str] = {
     "unit": "unit", "ms": "'a ms", "tms": "'a tms", "time": "time",
     "Int.int": "int", "Real.real": "real", "String.string": "string", "Char.char": "char", "Bool.bool": "bool",
     "LargeInt.int": "IntInf.int", "General.unit": "unit", "General.exn": "exn", "General.order": "order",
-    "List.list": "'a list", "Option.option": "'a option", "ModelTime.time": "time",
+    "List.list": "'a list", "Option.option": "'a option", "ModelTime.time": "time", "Vector.vector": "'a vector",
+    "Array.array": "'a array", "Word.word": "word", "Substring.substring": "substring", "String.char": "char",
+    "Char.string": "string", "TextIO.vector": "string", "TextIO.elem": "char", "SMLTime.time": "Time.time",
+       "Int31.int": "int", "Position.int": "int", "LargeReal.real": "real", "Math.real": "real",
 }  # fmt: skip
-"""Names for other types; with at most one argument, `'a`."""
+"""Names for other types; their arguments are `'a`, `'b`."""
 
-NO_EQUALITY: frozenset[str] = frozenset({"exn"})
+NO_EQUALITY: frozenset[str] = frozenset(
+    {"exn", "substring", "TextIO.instream", "TextIO.outstream", "OS.FileSys.dirstream", "Random.rand", "Timer.real_timer",
+     "Timer.cpu_timer", "Date.date"}
+)  # fmt: skip
 """Type constructors whose values have no equality (functions have none either). `real` has: CPN Tools patched it in."""
 
 LITERAL_TYPES: tuple[TCon, ...] = (INT, INTINF)

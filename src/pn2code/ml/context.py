@@ -78,6 +78,7 @@ class Context:
         datatypes: all datatypes by name.
         colsets: by name; None for those with errors.
         equality: whether a datatype (of equality arguments) has equality.
+        warned: element, part and function of each warning about a function that cannot run here.
     """
 
     d: Diagnostics
@@ -96,6 +97,7 @@ class Context:
     datatypes: dict[str, core.DatatypeDec] = field(default_factory=dict)
     colsets: dict[str, Colset | None] = field(default_factory=dict)
     equality: dict[str, bool] = field(default_factory=dict)
+    warned: set[tuple[str, str, str]] = field(default_factory=set)
     next_uid: int = 0
     next_exception: int = FIRST_EXCEPTION_TAG
     _names: dict[Type, str | None] = field(default_factory=dict)
@@ -122,6 +124,19 @@ class Context:
                 hint="give parts of it a name with `val` or `let`",
             )
             raise TooDeepError
+
+    def warn_unsupported(self, name: str, reason: str, span: Span) -> None:
+        """Says once per element that a function exists in CPN Tools but cannot run here."""
+        origin = span.source.origin
+        key = (origin.element_id or str(origin), origin.part, name)
+        if key not in self.warned:
+            self.warned.add(key)
+            self.d.warning(
+                codes.UNSUPPORTED_BUILTIN,
+                f"`{name}` is not available here: {reason}",
+                span,
+                hint="the net is accepted, but a run stops where this is applied",
+            )
 
     # --- scopes and symbols
 

@@ -366,6 +366,7 @@ class Program:
         variables: net variables by name.
         datatypes: every data type of the program by TCon name, built-in ones included (bool, list, option, order).
         globals: top-level symbols by name (the last declaration of a name), for `--set` and reports.
+        int_bits: width of `int`: 31 as in CPN Tools, or 64; beyond it `Overflow` is raised.
     """
 
     declarations: tuple[Dec, ...]
@@ -373,3 +374,4 @@ class Program:
     variables: dict[str, Symbol]
     datatypes: dict[str, DatatypeDec]
     globals: dict[str, Symbol]
+    int_bits: int = 31

@@ -12,8 +12,9 @@ Typical use (the `link` and `check` stages of `pn2code.net`):
 from __future__ import annotations
 
 import sys
-from collections.abc import Callable, Mapping, Sequence
-from dataclasses import replace
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import contextmanager
+from dataclasses import dataclass, field, replace
 from functools import partial
 from typing import TypeVar
 
@@ -46,6 +47,19 @@ _RECURSION_LIMIT = 20_000
 """Python frames for one text: nesting is limited by `fixity.MAX_DEPTH`, chains of operators are not."""
 
 
+@dataclass(slots=True)
+class Aside:
+    """What was declared beside a net; complete when its block has ended.
+
+    Args:
+        declarations: in order of evaluation, after those of the net.
+        globals: the symbols of all names in scope at the end, those of the net included.
+    """
+
+    declarations: tuple[core.Dec, ...] = ()
+    globals: dict[str, Symbol] = field(default_factory=dict)
+
+
 class Elaborator:
     """Checks the declarations of one net in order, then its inscriptions.
 
@@ -53,6 +67,7 @@ class Elaborator:
         d: where errors go.
         values: replaces `val NAME = ...` of the net: name -> CPN ML text.
         real_time: whether the clock is real (option `realtimestamp`); decides the type `time`.
+        int_bits: width of `int`, 31 or 64.
     """
 
     def __init__(
@@ -61,8 +76,10 @@ class Elaborator:
         *,
         values: Mapping[str, str] | None = None,
         real_time: bool = False,
+        int_bits: int = 31,
     ) -> None:
         self._d = d
+        self._int_bits = int_bits
         self._values = dict(values or {})
         self._replaced: set[str] = set()
         self._ctx = Context(d, real_time)
@@ -252,7 +269,33 @@ class Elaborator:
                 for n, e in self._ctx.top.values.items()
                 if isinstance(e, Binding) and e.symbol is not None
             },
+            int_bits=self._int_bits,
         )
+
+    @contextmanager
+    def aside(self, d: Diagnostics) -> Iterator[Aside]:
+        """In its block declarations are made that do not belong to the net, e.g. for a monitor; blocks nest.
+
+        Errors go to `d`. Afterwards all names mean again what they meant before.
+        """
+        top, made, fixities = self._ctx.top, len(self._made), dict(self._fixities)
+        names = dict(top.values), dict(top.types), dict(top.structures)
+        before = self._d, self._ctx.d, self._ctx.errors
+        result = Aside()
+        self._d = self._ctx.d = d
+        try:
+            yield result
+        finally:
+            result.declarations = tuple(self._made[made:])
+            result.globals = {
+                n: e.symbol
+                for n, e in top.values.items()
+                if isinstance(e, Binding) and e.symbol is not None
+            }
+            del self._made[made:]
+            top.values, top.types, top.structures = names
+            self._d, self._ctx.d, self._ctx.errors = before
+            self._fixities = fixities
 
     # --- inscriptions
 

@@ -4,16 +4,22 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass, field
+from functools import cache
 
 from pn2code.frozen import frozen
 from pn2code.ml.builtins import (
     BUILTINS,
     DATATYPES,
     EXCEPTIONS,
+    HIDDEN,
+    INCOMPLETE,
     OVERLOADED,
     QUALIFIED,
+    QUALIFIED_EXCEPTIONS,
+    STRUCTURE_ALIASES,
     STRUCTURES,
     TOP_LEVEL,
+    TOP_LEVEL_EXCEPTIONS,
     TYPE_ABBREVIATIONS,
     TYPE_ARITY,
     UNSUPPORTED_NAMES,
@@ -218,29 +224,56 @@ def split_name(name: str) -> list[str]:
 
 def library_value(structure: str, member: str) -> Entry | None:
     """A member of a structure of the library."""
+    structure = STRUCTURE_ALIASES.get(structure, structure)
     name = f"{structure}.{member}"
-    name = QUALIFIED.get(name, name)
-    if name in BUILTINS:
+    if name in QUALIFIED:
+        return BuiltinEntry(QUALIFIED[name])
+    if name in BUILTINS and name not in HIDDEN:
         return BuiltinEntry(name)
+    if name in _qualified_constructors():
+        return _qualified_constructors()[name]
     base = _library().values.get(member)
-    if isinstance(base, ConEntry | EmptyEntry) and structure in _CONSTRUCTOR_STRUCTURES:
+    if isinstance(base, ConEntry | EmptyEntry) and member in _CONSTRUCTORS_OF.get(structure, ()):
         return base
-    if structure == "General" and isinstance(base, BuiltinEntry):
-        return base
-    return UnsupportedEntry(name) if structure.split(".")[0] in STRUCTURES else None
+    return UnsupportedEntry(name) if structure.split(".")[0] in INCOMPLETE else None
 
 
-_CONSTRUCTOR_STRUCTURES = frozenset({"General", "List", "Option", "Bool"})
+_CONSTRUCTORS_OF = {
+    "General": ("LESS", "EQUAL", "GREATER"),
+    "List": ("nil", "::"),
+    "Option": ("NONE", "SOME"),
+    "Bool": ("true", "false"),
+}
+
+
+@cache
+def _qualified_constructors() -> dict[str, ConEntry]:
+    """Constructors and exceptions that are members of structures, by qualified name."""
+    found = {
+        f"{declaration.name.rpartition('.')[0]}.{name}": entry
+        for declaration in DATATYPES.values()
+        if "." in declaration.name
+        for name, entry in constructor_entries(declaration).items()
+    }
+    for qualified, name in QUALIFIED_EXCEPTIONS.items():
+        found[qualified] = _exception_entry(name)
+    return found
+
+
+def _exception_entry(name: str) -> ConEntry:
+    constructor, argument = EXCEPTIONS[name]
+    return ConEntry(constructor, EXN if argument is None else TFun(argument, EXN), 0)
 
 
 def library_members(structure: str) -> dict[str, Entry]:
     """All members of a structure of the library, for `open`."""
+    structure = STRUCTURE_ALIASES.get(structure, structure)
     prefix = structure + "."
-    return {
-        name.removeprefix(prefix): BuiltinEntry(name)
-        for name in BUILTINS
-        if name.startswith(prefix)
-    }
+    names = {*BUILTINS, *QUALIFIED, *_qualified_constructors()}
+    members = {n.removeprefix(prefix) for n in names if n.startswith(prefix)}
+    members |= {*_CONSTRUCTORS_OF.get(structure, ())}
+    found = {m: library_value(structure, m) for m in sorted(members) if "." not in m}
+    return {m: e for m, e in found.items() if e is not None}
 
 
 def constructor_entries(declaration: DatatypeDec) -> dict[str, ConEntry]:
@@ -270,18 +303,17 @@ def _library() -> Scope:
     for short, choices in OVERLOADED.items():
         scope.values[short] = OverloadedEntry(short, choices)
     for declaration in DATATYPES.values():
-        scope.values.update(constructor_entries(declaration))
-    for name, (constructor, argument) in EXCEPTIONS.items():
-        scope.values[name] = ConEntry(
-            constructor, EXN if argument is None else TFun(argument, EXN), 0
-        )
+        if "." not in declaration.name:
+            scope.values.update(constructor_entries(declaration))
+    for name in sorted(TOP_LEVEL_EXCEPTIONS):
+        scope.values[name] = _exception_entry(name)
     scope.values["empty"] = EmptyEntry()
     for name in UNSUPPORTED_NAMES - scope.values.keys():
         scope.values[name] = UnsupportedEntry(name)
     for name, arity in TYPE_ARITY.items():
         scope.types[name] = TypeCon(name, arity)
     for name, text in TYPE_ABBREVIATIONS.items():
-        scope.types[name] = BuiltinAbbreviation(text, 1 if "'a" in text else 0)
+        scope.types[name] = BuiltinAbbreviation(text, ("'a" in text) + ("'b" in text))
     for name in STRUCTURES:
         if "." not in name:
             scope.structures[name] = BuiltinStructure(name)

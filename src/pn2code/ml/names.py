@@ -55,8 +55,6 @@ class Names:
         colset = self._ctx.colsets[structure]
         if colset is None:
             return BrokenEntry()
-        if member in ("input", "output", "input_ms", "output_ms"):
-            return UnsupportedEntry(f"{structure}.{member}")
         return ColsetEntry(colset, member) if member in members_of(colset) else None
 
     def infer(self, name: str, span: Span) -> Draft:
@@ -71,10 +69,13 @@ class Names:
                 info = BUILTINS[entry.name]
                 t, generics = self._ctx.library_type(info.text)
                 own, inst = self._ctx.unifier.instantiate_type(t, generics)
-                return Draft(
-                    own,
-                    lambda: core.Builtin(entry.name, to_type(own), span, tuple(map(to_type, inst))),
-                )
+
+                def build_builtin() -> core.Exp:
+                    if info.unsupported:
+                        self._ctx.warn_unsupported(name, info.unsupported, span)
+                    return core.Builtin(entry.name, to_type(own), span, tuple(map(to_type, inst)))
+
+                return Draft(own, build_builtin)
             case OverloadedEntry():
                 return self._overloaded(entry, span)
             case ConEntry():

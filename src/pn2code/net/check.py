@@ -48,7 +48,12 @@ _ARC_TIMED = (Form.TOKEN, Form.MULTISET, Form.TIMED_TOKEN, Form.TIMED_MULTISET)
 
 
 def check(
-    net: Net, d: Diagnostics, values: Mapping[str, str] | None = None, *, partial: bool = False
+    net: Net,
+    d: Diagnostics,
+    values: Mapping[str, str] | None = None,
+    *,
+    partial: bool = False,
+    int_bits: int = 31,
 ) -> TypedNet | None:
     """Type a net.
 
@@ -57,20 +62,23 @@ def check(
         d: gets the errors.
         values: replacements for `val` declarations: name -> CPN ML text.
         partial: give the typed net even after errors, without the elements that are wrong.
+        int_bits: width of `int`, 31 or 64.
 
     Returns:
         The typed net, or None if there were errors.
     """
     before = len(d.errors)
-    typed = _Checker(net, d, values or {}).typed()
+    typed = _Checker(net, d, values or {}, int_bits).typed()
     return None if len(d.errors) > before and not partial else typed
 
 
 class _Checker:
-    def __init__(self, net: Net, d: Diagnostics, values: Mapping[str, str]) -> None:
+    def __init__(
+        self, net: Net, d: Diagnostics, values: Mapping[str, str], int_bits: int = 31
+    ) -> None:
         self.net = net
         self.d = d
-        self.elaborator = Elaborator(d, values=values, real_time=net.real_time)
+        self.elaborator = Elaborator(d, values=values, real_time=net.real_time, int_bits=int_bits)
         self.broken: set[str] = set()
         declared = {
             c.name

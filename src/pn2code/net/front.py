@@ -51,7 +51,7 @@ def examine(
     if net is None:
         return Examined(document, None)
     linked = len(d.errors) == before
-    typed = check(net, d, values, partial=True)
+    typed = check(net, d, values, partial=True, int_bits=int_bits)
     if typed is None or not linked:
         return Examined(document, None)
     if len(d.errors) > before:
