@@ -150,6 +150,7 @@ class _Checker:
             prime_pages=self.net.prime_pages,
             fusions=self.net.fusions,
             real_time=self.net.real_time,
+            elaborator=self.elaborator,
         )
 
     def page(self, page: Page) -> TypedPage:

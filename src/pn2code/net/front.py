@@ -11,6 +11,7 @@ from pn2code.net.check import check
 from pn2code.net.flat import FlatNet
 from pn2code.net.flatten import check_hierarchy, flatten
 from pn2code.net.link import link
+from pn2code.net.typed import TypedNet
 from pn2code.reading.cpn import read
 from pn2code.reading.document import Document
 
@@ -22,10 +23,12 @@ class Examined:
     Args:
         document: what the file says; None if it is no net.
         flat: the flat net; None if there were errors.
+        typed: the net before it was flattened; None without a flat net.
     """
 
     document: Document | None
     flat: FlatNet | None
+    typed: TypedNet | None = None
 
 
 def examine(
@@ -57,7 +60,7 @@ def examine(
     if len(d.errors) > before:
         check_hierarchy(typed, d)
         return Examined(document, None)
-    return Examined(document, flatten(typed, d))
+    return Examined(document, flatten(typed, d), typed)
 
 
 def load(

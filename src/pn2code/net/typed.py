@@ -5,10 +5,13 @@ Pages are not yet instantiated: `flatten` does that, sharing these typed inscrip
 
 from __future__ import annotations
 
+from dataclasses import field
+
 from pn2code.diagnostics import Origin
 from pn2code.frozen import frozen
 from pn2code.ml.colsets import Colset
 from pn2code.ml.core import Exp, Program, Symbol
+from pn2code.ml.elaborate import Elaborator
 from pn2code.net.flat import ArcInscription, ArcKind, BindStep, CodeSegment, Form
 from pn2code.net.linked import FusionSet, Net, SubstitutionTransition
 
@@ -68,7 +71,11 @@ class TypedPage:
 
 @frozen
 class TypedNet:
-    """A checked net."""
+    """A checked net.
+
+    Args:
+        elaborator: knows the net's declarations, for texts beside the net (functions of monitors).
+    """
 
     net: Net
     program: Program
@@ -76,3 +83,4 @@ class TypedNet:
     prime_pages: tuple[str, ...]
     fusions: tuple[FusionSet, ...]
     real_time: bool
+    elaborator: Elaborator | None = field(default=None, compare=False, repr=False)
