@@ -6,7 +6,7 @@ the order of the place's colour set (`BindAll` and `BindRandom`: the values in o
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass, replace
 from typing import Any
@@ -96,6 +96,9 @@ class Demand:
     early: int | float
 
 
+Accept = Callable[[Symbol, Value], bool]
+"""Whether a variable may have a value: narrows a search."""
+
 Found = dict[int, Value]
 """A binding while it is searched for: `uid` of the symbol -> value."""
 
@@ -112,7 +115,12 @@ class Enabling:
     # --- search for bindings ---------------------------------------------------------------------
 
     def bindings(
-        self, t: FlatTransition, marking: Marking, *, ignore_stamps: bool = False
+        self,
+        t: FlatTransition,
+        marking: Marking,
+        *,
+        ignore_stamps: bool = False,
+        accept: Accept | None = None,
     ) -> Iterator[Binding]:
         """The bindings with which the guard is true and each pattern has an available token, without repetition.
 
@@ -122,13 +130,14 @@ class Enabling:
             t: the transition.
             marking: tokens and time.
             ignore_stamps: as if all tokens were available.
+            accept: only bindings all of whose values it accepts.
 
         Raises:
             GameError: an inscription raised an exception.
         """
         self.evaluator.now = marking.time
         seen: set[BindingElement] = set()
-        for found in self._search(t, marking, 0, {}, ignore_stamps):
+        for found in self._search(t, marking, 0, {}, ignore_stamps, accept):
             binding = {s: found[s.uid] for s in t.variables if s.uid in found}
             element = BindingElement.make(t, binding)
             if element not in seen:
@@ -136,7 +145,13 @@ class Enabling:
                 yield binding
 
     def _search(
-        self, t: FlatTransition, marking: Marking, position: int, found: Found, free: bool
+        self,
+        t: FlatTransition,
+        marking: Marking,
+        position: int,
+        found: Found,
+        free: bool,
+        accept: Accept | None,
     ) -> Iterator[Found]:
         """Takes the steps of the plan from `position` on."""
         if not self._guards_hold(t, position, found):
@@ -152,8 +167,11 @@ class Enabling:
             case BindAll(symbol) | BindRandom(symbol):
                 choices = self._match_all(t, symbol, found)
         for choice in choices:
-            if self._variables_are_legal(t, choice, found):
-                yield from self._search(t, marking, position + 1, choice, free)
+            new = [s for s in t.variables if s.uid in choice and s.uid not in found]
+            if accept is not None and not all(accept(s, choice[s.uid]) for s in new):
+                continue
+            if self._are_legal(new, choice):
+                yield from self._search(t, marking, position + 1, choice, free, accept)
 
     def _match_tokens(
         self, arc: FlatArc, index: int, marking: Marking, found: Found, free: bool
@@ -199,13 +217,9 @@ class Enabling:
         for value in everything:
             yield {**found, symbol.uid: value}
 
-    def _variables_are_legal(self, t: FlatTransition, choice: Found, before: Found) -> bool:
+    def _are_legal(self, new: list[Symbol], choice: Found) -> bool:
         """A variable takes no value outside its colour set (the type of which may be larger)."""
-        return all(
-            s.colset is None or self.colours.legal(s.colset, choice[s.uid])
-            for s in t.variables
-            if s.uid in choice and s.uid not in before
-        )
+        return all(s.colset is None or self.colours.legal(s.colset, choice[s.uid]) for s in new)
 
     def _guards_hold(self, t: FlatTransition, position: int, found: Found) -> bool:
         """The guards that have just got their last variable: tested as early as possible."""
@@ -259,11 +273,13 @@ class Enabling:
 
     # --- demands ---------------------------------------------------------------------------------
 
-    def demands(self, t: FlatTransition, binding: Binding) -> list[Demand]:
-        """What the input arcs want with a binding."""
+    def demands(
+        self, t: FlatTransition, binding: Binding, *, only: int | None = None
+    ) -> list[Demand]:
+        """What the input arcs want with a binding; `only`: the arc with that index."""
         found = {s.uid: value for s, value in binding.items()}
         demands: list[Demand] = []
-        for arc in t.arcs:
+        for arc in t.arcs if only is None else (t.arcs[only],):
             if arc.kind in (ArcKind.INPUT, ArcKind.BOTH) and arc.inscription is not None:
                 for term in arc.inscription.terms:
                     demands.extend(self._term_demands(arc, term, found))
@@ -305,25 +321,53 @@ class Enabling:
 
     # --- enabled or not --------------------------------------------------------------------------
 
-    def enabled(self, t: FlatTransition, marking: Marking) -> Iterator[Binding]:
-        """The bindings with which the transition is enabled at the marking's time; priorities do not count here."""
+    def enabled(
+        self, t: FlatTransition, marking: Marking, *, accept: Accept | None = None
+    ) -> Iterator[Binding]:
+        """The bindings with which the transition is enabled at the marking's time; priorities do not count here.
+
+        With `accept` only those all of whose values it accepts.
+        """
         if self._inhibitors(t, marking):
             return
-        for binding in self.bindings(t, marking):
+        for binding in self.bindings(t, marking, accept=accept):
             if isinstance(self.take(marking, self.demands(t, binding)), Marking):
                 yield binding
 
     def _inhibitors(self, t: FlatTransition, marking: Marking) -> list[FlatArc]:
         """The inhibitor arcs whose place has an available token."""
-        return [
-            arc
-            for arc in t.arcs
-            if arc.kind is ArcKind.INHIBITOR and available(marking.places[arc.place], marking.time)
-        ]
+        return [a for a in t.arcs if a.kind is ArcKind.INHIBITOR and self.inhibited(a, marking)]
+
+    def inhibited(self, arc: FlatArc, marking: Marking) -> bool:
+        """Whether the place of an inhibitor arc has an available token."""
+        return bool(available(marking.places[arc.place], marking.time))
 
     def obstacle(self, t: FlatTransition, marking: Marking, binding: Binding) -> str | None:
         """Why a binding is not enabled at the marking's time (priorities apart); None if it is."""
         self.evaluator.now = marking.time
+        reason = self.guard_obstacle(t, binding)
+        if reason is not None:
+            return reason
+        outputs = t.code.outputs if t.code else ()
+        found: Found = {s.uid: binding[s] for s in t.variables if s not in outputs}
+        own = {s: value for s, value in binding.items() if s not in outputs}
+        demands = self.demands(t, own)
+        missing = self.take(marking, demands)
+        if isinstance(missing, Demand):
+            return self.shortage(marking, missing, demands)
+        for step in t.plan:
+            if isinstance(step, BindTerm):
+                arc = t.arcs[step.arc]
+                if next(self._match_tokens(arc, step.term, marking, found, False), None) is None:
+                    return f"no token in place `{self.net.places[arc.place].name}` matches"
+        for arc in self._inhibitors(t, marking):
+            place = self.net.places[arc.place]
+            tokens = place_text(self.colours, place.colset, marking.places[arc.place])
+            return f"place `{place.name}` inhibits it: it holds {_one_line(tokens)}"
+        return None
+
+    def guard_obstacle(self, t: FlatTransition, binding: Binding) -> str | None:
+        """Why a binding is not possible whatever tokens there are: a value is missing or illegal, a guard is false."""
         outputs = t.code.outputs if t.code else ()
         found: Found = {}
         for s in t.variables:
@@ -338,23 +382,10 @@ class Enabling:
         for i, guard in enumerate(t.guards):
             if not self._guard(t, i, found):
                 return f"the guard `{_one_line(guard.span.text)}` is false"
-        own = {s: value for s, value in binding.items() if s not in outputs}
-        demands = self.demands(t, own)
-        missing = self.take(marking, demands)
-        if isinstance(missing, Demand):
-            return self._shortage(marking, missing, demands)
-        for step in t.plan:
-            if isinstance(step, BindTerm):
-                arc = t.arcs[step.arc]
-                if next(self._match_tokens(arc, step.term, marking, found, False), None) is None:
-                    return f"no token in place `{self.net.places[arc.place].name}` matches"
-        for arc in self._inhibitors(t, marking):
-            place = self.net.places[arc.place]
-            tokens = place_text(self.colours, place.colset, marking.places[arc.place])
-            return f"place `{place.name}` inhibits it: it holds {_one_line(tokens)}"
         return None
 
-    def _shortage(self, marking: Marking, missing: Demand, demands: list[Demand]) -> str:
+    def shortage(self, marking: Marking, missing: Demand, demands: list[Demand]) -> str:
+        """In words: the tokens that are missing."""
         place = self.net.places[missing.place]
         c = place.colset
         wanted = sum(

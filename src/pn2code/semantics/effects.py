@@ -1,0 +1,95 @@
+"""What evaluating an expression may do besides giving a value: draw random numbers, read or write references.
+
+    effects = Effects(net.program)
+    Effect.DRAW in effects.of(arc.inscription.value)
+
+A safe guess from the text: a function that is mentioned counts as applied, both branches of an `if` as taken.
+"""
+
+from __future__ import annotations
+
+from enum import Enum
+from typing import Any
+
+from pn2code.ml import core
+
+Found = frozenset["Effect"]
+
+
+class Effect(Enum):
+    """What an evaluation may do."""
+
+    DRAW = "draws random numbers"
+    LOOK = "looks at the surroundings (files, clocks)"
+    READ = "reads a reference"
+    WRITE = "changes a reference"
+
+
+NONE: Found = frozenset()
+_DRAW = ("Random.",)
+_DRAWING = frozenset({"Colset.ran", "Ms.random"})
+_LOOK = ("TextIO.", "BinIO.", "OS.", "Posix.", "Timer.", "Time.now", "Date.", "CommandLine.", "ConnManagementLayer.",
+         "Colset.input")  # fmt: skip
+_WRITTEN_ONLY = frozenset(
+    {"TextIO.print", "TextIO.output", "TextIO.flushOut", "TextIO.stdOut", "TextIO.closeOut"}
+)
+_LEAVES = frozenset({"type", "span", "inst", "colset", "constructor"})
+
+
+def _builtin(name: str) -> Found:
+    """The effects of a function of the built-in environment."""
+    if name in _DRAWING or name.startswith(_DRAW):
+        return frozenset({Effect.DRAW})
+    if name.startswith(_LOOK) and name not in _WRITTEN_ONLY:
+        return frozenset({Effect.LOOK})
+    if name.startswith(("Ref.", "Array.")) and name != "Ref.ref":
+        return frozenset({Effect.READ} if name == "Ref.!" else {Effect.READ, Effect.WRITE})
+    return NONE
+
+
+class Effects:
+    """The effects of all expressions of a net."""
+
+    def __init__(self, program: core.Program) -> None:
+        self._of_symbol: dict[int, Found] = {}
+        for declaration in program.declarations:
+            found = self.of(declaration)
+            match declaration:
+                case core.ValBind(pattern):
+                    for symbol in _symbols(pattern):
+                        self._of_symbol[symbol.uid] = found
+                case core.RecBind(bindings):
+                    # The functions of a group may call each other: what one does, all may do.
+                    for symbol, _ in bindings:
+                        self._of_symbol[symbol.uid] = found
+
+    def of(self, *nodes: Any) -> Found:
+        """The effects of pieces of the core language; None counts as nothing."""
+        found: set[Effect] = set()
+        todo: list[Any] = [node for node in nodes if node is not None]
+        while todo:
+            item = todo.pop()
+            if isinstance(item, core.Builtin):
+                found |= _builtin(item.name)
+            elif isinstance(item, core.Symbol):
+                found |= self._of_symbol.get(item.uid, NONE)
+            elif isinstance(item, tuple):
+                todo.extend(item)
+            elif type(item).__module__ == core.__name__:
+                todo.extend(getattr(item, name) for name in item.__slots__ if name not in _LEAVES)
+        return frozenset(found)
+
+
+def _symbols(pattern: core.Pat) -> list[core.Symbol]:
+    """The symbols that a pattern binds."""
+    found: list[core.Symbol] = []
+    todo: list[Any] = [pattern]
+    while todo:
+        item = todo.pop()
+        if isinstance(item, core.Symbol):
+            found.append(item)
+        elif isinstance(item, tuple):
+            todo.extend(item)
+        elif type(item).__module__ == core.__name__:
+            todo.extend(getattr(item, name) for name in item.__slots__ if name not in _LEAVES)
+    return found
