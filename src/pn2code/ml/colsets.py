@@ -85,3 +85,35 @@ class Colset:
             assert base is not None
             c = base
         return c
+
+
+def definition(c: Colset) -> str:
+    """What a colour set is, in the words of its declaration, shortened: `INT * STRING`, `{name: STRING}`."""
+    parts = [p.name if p is not None else "" for p in c.components]
+    match c.kind:
+        case Kind.PRODUCT:
+            return " * ".join(parts)
+        case Kind.RECORD:
+            return "{" + ", ".join(f"{n}: {p}" for n, p in zip(c.labels, parts, strict=True)) + "}"
+        case Kind.UNION:
+            shown = [f"{n}: {p}" if p else n for n, p in zip(c.names, parts, strict=True)]
+            return _some(" + ", shown)
+        case Kind.ENUM:
+            return _some(" | ", list(c.names))
+        case Kind.LIST:
+            return f"list {parts[0]}"
+        case Kind.ALIAS | Kind.SUBSET:
+            return parts[0] if c.kind is Kind.ALIAS else f"subset {parts[0]}"
+        case Kind.INDEX:
+            return f"{c.names[0]}({c.low}), .., {c.names[0]}({c.high})"
+        case Kind.UNIT | Kind.BOOL if c.names:
+            return " | ".join(reversed(c.names)) if c.kind is Kind.BOOL else c.names[0]
+        case Kind.INT | Kind.INTINF | Kind.REAL if c.low is not None:
+            return f"{c.kind.value} with {c.low}..{c.high}"
+        case _:
+            return c.kind.value
+
+
+def _some(separator: str, words: list[str]) -> str:
+    """The words, the first ones if there are many."""
+    return separator.join(words if len(words) <= 6 else [*words[:5], ".."])
