@@ -144,6 +144,11 @@ class RawPage:
     origin: Origin
     undirected: tuple[RawArc, ...] = ()
 
+    @property
+    def nodes(self) -> tuple[RawPlace | RawTransition, ...]:
+        """Places and transitions."""
+        return (*self.places, *self.transitions)
+
 
 @frozen
 class RawColset:
@@ -258,6 +263,16 @@ class RawMonitor:
 
 
 @frozen
+class RawInstance:
+    """`instance` of a page: of a prime page (`page`), or below another instance by a substitution `transition`."""
+
+    id: str
+    page: str
+    transition: str
+    below: tuple[RawInstance, ...]
+
+
+@frozen
 class Document:
     """A whole file.
 
@@ -269,6 +284,7 @@ class Document:
         options: name to text.
         elements: how many `pages`, `places`, `transitions` (substitution transitions are counted) and `arcs` the file
             has.
+        instances: the page instances that the file lists, for what refers to them (monitors).
     """
 
     file: str
@@ -282,3 +298,4 @@ class Document:
     monitors: tuple[RawMonitor, ...] = ()
     options: dict[str, str] = field(default_factory=dict)
     elements: dict[str, int] = field(default_factory=dict)
+    instances: tuple[RawInstance, ...] = ()

@@ -1,0 +1,286 @@
+"""`pn2code draw`: the pages of a net as their author laid them out, as SVG or HTML."""
+
+from __future__ import annotations
+
+import difflib
+import sys
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, NoReturn
+
+import typer
+
+from pn2code.cell.locate import locate
+from pn2code.cli.options import (
+    DEFAULT_SEED,
+    Exit,
+    Format,
+    FormatOption,
+    SeedOption,
+    SetOption,
+    parse_values,
+    print_diagnostics,
+    stop,
+)
+from pn2code.diagnostics import Diagnostics, Origin, Severity
+from pn2code.drawing.codes import DRAW_ARRANGED, DRAW_OUTPUT, DRAW_PAGE
+from pn2code.net import front
+from pn2code.reading.document import Document, RawPage
+
+if TYPE_CHECKING:
+    from pn2code.drawing.state import State
+    from pn2code.drawing.svg import Overlay
+    from pn2code.net.flat import FlatNet
+
+EPILOG = """Examples:
+
+  pn2code draw net.cpn -o net.html
+
+  pn2code draw net.cpn -o net.svg --page Sender --marking
+
+  pn2code draw net.cpn -o pages/
+"""
+
+_HTML = (".html", ".htm")
+_PICTURES = (".png", ".pdf", ".jpg", ".jpeg", ".eps", ".ps")
+
+
+def draw(
+    net: Annotated[Path, typer.Argument(help="A .cpn file, a cell.toml, or a folder with one.")],
+    output: Annotated[
+        str,
+        typer.Option(
+            "-o",
+            "--output",
+            metavar="FILE|DIR|-",
+            help="FILE.svg, FILE.html (all pages, linked), DIR/ (one SVG a page), - for stdout.",
+        ),
+    ],
+    page: Annotated[
+        str | None, typer.Option("--page", metavar="P", help="Only this page (name or id).")
+    ] = None,
+    marking: Annotated[
+        bool,
+        typer.Option("--marking", help="With the initial marking and what is enabled in it."),
+    ] = False,
+    instance: Annotated[
+        int | None,
+        typer.Option("--instance", metavar="N", min=1, help="Which instance's marking is shown."),
+    ] = None,
+    settings: SetOption = [],  # noqa: B006 - typer reads the default only
+    seed: SeedOption = DEFAULT_SEED,
+    form: FormatOption = Format.FULL,
+) -> None:
+    """Draw the pages of a net; elements with errors are red."""
+    d = Diagnostics()
+    kind = _kind(output, form)
+    found = locate(net, d)
+    if found is None:
+        stop(d, form)
+    path, config = found
+    values = {**(config.values if config else {}), **parse_values(settings)}
+    examined = front.examine(path, d, values)
+    document = examined.document
+    if document is None or not document.pages:
+        stop(d, form)
+    pages = _chosen(document, page, form)
+    state: State | None = None
+    if marking and examined.flat is not None and not d.has_errors:
+        state = _state(examined.flat, config.storage if config else {}, seed, form)
+    if instance is not None:
+        _check_instance(state, pages, instance, form)
+    drawing = _Drawing(document, pages, _problems(d), state, instance)
+    if kind == "html":
+        _write({Path(output): drawing.html(path)}, form)
+    elif kind == "folder":
+        _write({Path(output) / name: text for name, text in drawing.files().items()}, form)
+    elif kind == "-":
+        sys.stdout.write(drawing.svg())
+    else:
+        _write({Path(output): drawing.svg()}, form)
+    drawing.note_arranged(d)
+    _report(d, kind, marking, form)
+
+
+def _kind(output: str, form: Format) -> str:
+    """What `-o` asks for: "html", "svg", "folder" or "-"."""
+    path = Path(output)
+    if output == "-":
+        return "-"
+    if output.endswith(("/", "\\")) or path.is_dir():
+        return "folder"
+    suffix = path.suffix.lower()
+    if suffix not in (*_HTML, ".svg"):
+        wrong = f"`{suffix}` is no format of drawings" if suffix else f"`{output}` has no extension"
+        hint = "use .svg or .html, or a folder with `/` at the end"
+        if suffix in _PICTURES:
+            hint = "draw an .svg and convert it: rsvg-convert, inkscape, a browser's print dialogue"
+        _refuse(DRAW_OUTPUT, wrong, hint, form)
+    return "svg" if suffix == ".svg" else "html"
+
+
+def _refuse(code: str, message: str, hint: str, form: Format) -> NoReturn:
+    """Leave with a message about the command line."""
+    d = Diagnostics()
+    d.error(code, message, Origin("command line"), hint=hint)
+    print_diagnostics(d.sorted(), form)
+    raise typer.Exit(Exit.USAGE)
+
+
+def _chosen(document: Document, wanted: str | None, form: Format) -> list[RawPage]:
+    """The pages to draw."""
+    if wanted is None:
+        return list(document.pages)
+    name = " ".join(wanted.split())
+    found = [p for p in document.pages if p.name == name]
+    found = found or [p for p in document.pages if p.id == name]
+    found = found or [p for p in document.pages if p.name.lower() == name.lower()]
+    if found:
+        return found
+    names = [p.name for p in document.pages]
+    close = difflib.get_close_matches(name, names, n=1, cutoff=0.5)
+    listed = ", ".join(f"`{n}`" for n in names[:12]) + (", ..." if len(names) > 12 else "")
+    hint = f"did you mean `{close[0]}`?" if close else f"the pages are {listed}"
+    _refuse(DRAW_PAGE, f"there is no page `{wanted}`", hint, form)
+
+
+def _check_instance(
+    state: State | None, pages: Sequence[RawPage], instance: int, form: Format
+) -> None:
+    """`--instance` needs a marking, and a page that has so many instances."""
+    if state is None:
+        _refuse(DRAW_PAGE, "`--instance` needs `--marking`", "add --marking", form)
+    if len(pages) > 1:
+        _refuse(DRAW_PAGE, "`--instance` needs `--page`", "say which page is meant", form)
+    numbers = state.instances(pages[0])
+    if instance not in numbers:
+        most = max(numbers, default=0)
+        hint = f"its instances are numbered 1 to {most}" if most else "it has no instance"
+        _refuse(DRAW_PAGE, f"page `{pages[0].name}` has no instance {instance}", hint, form)
+
+
+def _state(flat: FlatNet, storage: Mapping[str, str], seed: int, form: Format) -> State:
+    """The initial marking, at the first time at which something is enabled."""
+    from pn2code.cli.nets import playing  # the token game is needed for this only
+    from pn2code.drawing.state import State
+    from pn2code.semantics.game import Game
+
+    with playing(form):
+        game = Game(flat, storage, seed=seed)
+        marking = game.settle(game.marking)
+        return State(flat, marking, game.enabled_transitions(marking))
+
+
+def _problems(d: Diagnostics) -> dict[str, list[str]]:
+    """Errors by the element they are about."""
+    found: dict[str, list[str]] = {}
+    for error in d.errors:
+        if error.origin.element_id:
+            found.setdefault(error.origin.element_id, []).append(error.message)
+    return found
+
+
+class _Drawing:
+    """What is drawn, in the different forms."""
+
+    def __init__(
+        self,
+        document: Document,
+        pages: list[RawPage],
+        problems: dict[str, list[str]],
+        state: State | None,
+        instance: int | None,
+    ) -> None:
+        from pn2code.drawing.svg import Overlay
+
+        self.document = document
+        self.pages = pages
+        self.base = Overlay(problems=problems)
+        self.state = state
+        self.instance = instance
+
+    def overlay(self, page: RawPage) -> Overlay:
+        """What is drawn over the first (or chosen) instance of a page."""
+        if self.state is None:
+            return self.base
+        numbers = self.state.instances(page)
+        number = self.instance or (numbers[0] if numbers else 1)
+        return self.state.overlay(page, number, self.base)
+
+    def svg(self) -> str:
+        """One SVG with everything."""
+        from pn2code.drawing.svg import draw_pages, page_svg
+
+        if len(self.pages) == 1:
+            return page_svg(self.document, self.pages[0], self.overlay(self.pages[0]))
+        return draw_pages(self.document, [(p, self.overlay(p)) for p in self.pages])
+
+    def files(self) -> dict[str, str]:
+        """One SVG a page, by file name; they link to each other."""
+        from pn2code.drawing.files import file_stems
+        from pn2code.drawing.svg import Links, page_svg
+
+        stems = file_stems(p.name for p in self.pages)
+        names = {p.id: f"{stem}.svg" for p, stem in zip(self.pages, stems, strict=True)}
+        links = Links(lambda identity: names.get(identity, ""))
+        return {names[p.id]: page_svg(self.document, p, self.overlay(p), links) for p in self.pages}
+
+    def html(self, path: Path) -> str:
+        """One HTML file."""
+        from dataclasses import replace
+
+        from pn2code.drawing.html import Facts, draw_net
+
+        counted = (
+            f"{len(self.pages)} pages, {sum(len(p.places) for p in self.pages)} places, "
+            f"{sum(len(p.transitions) for p in self.pages)} transitions"
+        )
+        figures = {p.id: [("", self.overlay(p))] for p in self.pages}
+        if self.state is not None and self.instance is None:
+            figures = {p.id: self.state.figures(p, self.base) for p in self.pages}
+        shown = replace(self.document, pages=tuple(self.pages))
+        return draw_net(shown, Facts(path.name, counted), figures)
+
+    def note_arranged(self, d: Diagnostics) -> None:
+        """A note for each page whose positions are ours."""
+        from pn2code.drawing.scene import needs_arranging
+
+        for page in self.pages:
+            if needs_arranging(page):
+                d.note(
+                    DRAW_ARRANGED,
+                    f"page `{page.name}` has no usable positions and is arranged automatically",
+                    page.origin,
+                )
+
+
+def _write(files: dict[Path, str], form: Format) -> None:
+    """Write the files; folders that are missing are made."""
+    for path, text in files.items():
+        try:
+            path.parent.mkdir(parents=True, exist_ok=True)
+            path.write_bytes(text.encode("utf-8"))
+        except OSError as problem:
+            reason = (problem.strerror or str(problem)).lower()
+            hint = "give another file or folder with -o"
+            _refuse(DRAW_OUTPUT, f"cannot write `{path}`: {reason}", hint, form)
+
+
+def _report(d: Diagnostics, kind: str, marking: bool, form: Format) -> None:
+    """What is said at the end; the marking of a net with errors is not known, which is an error then."""
+    if marking and d.has_errors:
+        print_diagnostics(d.sorted(), form)
+        print("drawn without the marking: the net has errors", file=sys.stderr)
+        raise typer.Exit(Exit.MODEL)
+    if form is not Format.FULL:
+        print_diagnostics(d.sorted(), form)
+        return
+    for item in d.sorted():
+        if item.severity is Severity.NOTE and item.code == DRAW_ARRANGED:
+            print(f"note: {item.message}", file=sys.stderr)
+    if d.has_errors:
+        n = len(d.errors)
+        print(
+            f"the net has {n} error{'s' * (n != 1)}, shown in red; `pn2code check` explains",
+            file=sys.stderr,
+        )

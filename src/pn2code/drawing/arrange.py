@@ -1,0 +1,248 @@
+"""An automatic layout in layers, for pages whose file says nothing useful about positions.
+
+In: nodes with sizes, edges in the direction of the flow. Out: a centre for each node, and bend points for edges that
+pass over layers. The usual way (Sugiyama): each connected part is made free of cycles by turning edges around, nodes
+get layers by their longest way from a start, long edges get a dummy in each layer between, the order inside layers is
+improved by barycentres, and then nodes move towards their neighbours as far as the others let them. Deterministic.
+
+Example:
+
+    arrange({"p": (60, 40), "t": (60, 40)}, {"a": ("p", "t")})
+    # positions {"p": (0, 0), "t": (0, 120)}, bends {}
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, field
+
+from pn2code.drawing.geometry import Point
+from pn2code.frozen import frozen
+
+GAP_X, GAP_Y = 90.0, 80.0
+"""Between the nodes of a layer, and between layers: room for inscriptions."""
+_DUMMY = 10.0
+_SWEEPS = 12
+_ROW = 2400.0
+_MOST_DUMMIES = 20_000
+
+
+@frozen
+class Arrangement:
+    """Centres of nodes by id, bend points of edges by id (from the edge's start to its end)."""
+
+    centres: dict[str, Point]
+    bends: dict[str, tuple[Point, ...]]
+
+
+@dataclass(slots=True)
+class _Part:
+    """A connected part; nodes are numbered, dummies come after the real ones."""
+
+    names: list[str]
+    widths: list[float]
+    heights: list[float]
+    layer: list[int] = field(default_factory=list)
+    down: list[list[int]] = field(default_factory=list)
+    up: list[list[int]] = field(default_factory=list)
+    layers: list[list[int]] = field(default_factory=list)
+    x: list[float] = field(default_factory=list)
+    chains: dict[str, list[int]] = field(default_factory=dict)
+
+
+def arrange(
+    nodes: Mapping[str, tuple[float, float]], edges: Mapping[str, tuple[str, str]]
+) -> Arrangement:
+    """Positions for nodes (id -> width, height) and bends for edges (id -> start, end)."""
+    centres: dict[str, Point] = {}
+    bends: dict[str, tuple[Point, ...]] = {}
+    left = top = row = 0.0
+    for members in _connected(nodes, edges):
+        own = {e: ends for e, ends in edges.items() if ends[0] in members}
+        part = _Part(
+            [n for n in nodes if n in members],
+            [nodes[n][0] for n in nodes if n in members],
+            [nodes[n][1] for n in nodes if n in members],
+        )
+        _layer(part, own)
+        _order(part)
+        _place(part)
+        at, below, right = _coordinates(part)
+        if left > 0 and left + right > _ROW:
+            left, top, row = 0.0, top + row + GAP_Y, 0.0
+        for i, name in enumerate(part.names):
+            centres[name] = (left + at[i][0], top + at[i][1])
+        for edge, chain in part.chains.items():
+            bends[edge] = tuple((left + at[i][0], top + at[i][1]) for i in chain)
+        left, row = left + right + GAP_X, max(row, below)
+    return Arrangement(centres, bends)
+
+
+def _connected(nodes: Iterable[str], edges: Mapping[str, tuple[str, str]]) -> list[set[str]]:
+    """The connected parts, the larger ones first, else in order of the nodes."""
+    neighbours: dict[str, list[str]] = {n: [] for n in nodes}
+    for a, b in edges.values():
+        neighbours[a].append(b)
+        neighbours[b].append(a)
+    parts: list[set[str]] = []
+    seen: set[str] = set()
+    for start in neighbours:
+        if start in seen:
+            continue
+        part, todo = {start}, [start]
+        while todo:
+            for n in neighbours[todo.pop()]:
+                if n not in part:
+                    part.add(n)
+                    todo.append(n)
+        seen |= part
+        parts.append(part)
+    return sorted(parts, key=len, reverse=True)
+
+
+def _layer(part: _Part, edges: Mapping[str, tuple[str, str]]) -> None:
+    """Layers by longest ways, in the graph whose backward edges are turned; then the dummies."""
+    number = {n: i for i, n in enumerate(part.names)}
+    size = len(part.names)
+    ends = {e: (number[a], number[b]) for e, (a, b) in edges.items()}
+    following: list[list[int]] = [[] for _ in range(size)]
+    coming = [0] * size
+    for a, b in ends.values():
+        following[a].append(b)
+        coming[b] += 1
+    # Depth first from sources: an edge to a node that is still open closes a cycle.
+    position = [0] * size
+    state = [0] * size
+    clock = size
+    for start in sorted(range(size), key=lambda i: (coming[i] > 0, i)):
+        if state[start]:
+            continue
+        state[start] = 1
+        stack = [(start, iter(following[start]))]
+        while stack:
+            node, rest = stack[-1]
+            for b in rest:
+                if not state[b]:
+                    state[b] = 1
+                    stack.append((b, iter(following[b])))
+                    break
+            else:
+                clock -= 1
+                position[node] = clock
+                stack.pop()
+    # `position` is a topological order of the graph without the edges that lead back in it.
+    part.layer = [0] * size
+    forward = {e: (a, b) if position[a] <= position[b] else (b, a) for e, (a, b) in ends.items()}
+    leaving: list[list[int]] = [[] for _ in range(size)]
+    for a, b in forward.values():
+        leaving[a].append(b)
+    for a in sorted(range(size), key=lambda i: position[i]):
+        for b in leaving[a]:
+            part.layer[b] = max(part.layer[b], part.layer[a] + 1)
+    _add_dummies(part, ends, forward)
+
+
+def _add_dummies(
+    part: _Part, ends: dict[str, tuple[int, int]], forward: dict[str, tuple[int, int]]
+) -> None:
+    size = len(part.names)
+    part.down = [[] for _ in range(size)]
+    part.up = [[] for _ in range(size)]
+    chains: dict[tuple[int, int], list[int]] = {}
+    spare = _MOST_DUMMIES
+    for edge, (a, b) in forward.items():
+        if a == b:
+            continue
+        if (a, b) not in chains:
+            chain = []
+            before = a
+            between = range(part.layer[a] + 1, part.layer[b])
+            if len(between) <= spare:
+                spare -= len(between)
+                for layer in between:
+                    dummy = len(part.layer)
+                    part.layer.append(layer)
+                    part.widths.append(_DUMMY)
+                    part.heights.append(_DUMMY)
+                    part.down.append([])
+                    part.up.append([before])
+                    part.down[before].append(dummy)
+                    chain.append(dummy)
+                    before = dummy
+            part.down[before].append(b)
+            part.up[b].append(before)
+            chains[a, b] = chain
+        chain = chains[a, b]
+        if chain:
+            part.chains[edge] = chain if ends[edge] == (a, b) else chain[::-1]
+
+
+def _order(part: _Part) -> None:
+    """The order inside each layer, by barycentres of the neighbours, downwards and upwards in turn."""
+    depth = max(part.layer) + 1
+    part.layers = [[] for _ in range(depth)]
+    for i, layer in enumerate(part.layer):
+        part.layers[layer].append(i)
+    rank = [0.0] * len(part.layer)
+    for members in part.layers:
+        for k, i in enumerate(members):
+            rank[i] = float(k)
+    for sweep in range(_SWEEPS):
+        downwards = sweep % 2 == 0
+        sides = part.up if downwards else part.down
+        for members in part.layers if downwards else reversed(part.layers):
+            weight = {
+                i: sum(rank[n] for n in sides[i]) / len(sides[i]) if sides[i] else rank[i]
+                for i in members
+            }
+            members.sort(key=lambda i, w=weight: (w[i], rank[i]))  # type: ignore[misc]
+            for k, i in enumerate(members):
+                rank[i] = float(k)
+
+
+def _place(part: _Part) -> None:
+    """x coordinates: first packed, then drawn towards the neighbours without changing the order."""
+    part.x = [0.0] * len(part.layer)
+
+    def space(a: int, b: int) -> float:
+        gap = GAP_X if part.widths[a] > _DUMMY and part.widths[b] > _DUMMY else GAP_X / 3
+        return (part.widths[a] + part.widths[b]) / 2 + gap
+
+    for members in part.layers:
+        at = 0.0
+        for k, i in enumerate(members):
+            at += space(members[k - 1], i) if k else 0.0
+            part.x[i] = at
+        for i in members:
+            part.x[i] -= at / 2
+    for sweep in range(_SWEEPS):
+        downwards = sweep % 2 == 0
+        sides = part.up if downwards else part.down
+        for members in part.layers if downwards else reversed(part.layers):
+            wish = [
+                sum(part.x[n] for n in sides[i]) / len(sides[i]) if sides[i] else part.x[i]
+                for i in members
+            ]
+            # Pushed to the right only, to the left only: the mean of both keeps the order and the gaps.
+            right, left = list(wish), list(wish)
+            for k in range(1, len(members)):
+                right[k] = max(right[k], right[k - 1] + space(members[k - 1], members[k]))
+            for k in range(len(members) - 2, -1, -1):
+                left[k] = min(left[k], left[k + 1] - space(members[k], members[k + 1]))
+            for k, i in enumerate(members):
+                part.x[i] = (left[k] + right[k]) / 2
+
+
+def _coordinates(part: _Part) -> tuple[list[Point], float, float]:
+    """Points (the part's corner at 0, 0), and its height and width."""
+    y, tops = 0.0, []
+    for members in part.layers:
+        height = max((part.heights[i] for i in members), default=0.0)
+        tops.append(y + height / 2)
+        y += height + GAP_Y
+    shift = min(x - w / 2 for x, w in zip(part.x, part.widths, strict=True))
+    right = max(x + w / 2 for x, w in zip(part.x, part.widths, strict=True))
+    points = [
+        (round(x - shift), round(tops[layer])) for x, layer in zip(part.x, part.layer, strict=True)
+    ]
+    return [(float(a), float(b)) for a, b in points], y - GAP_Y, right - shift

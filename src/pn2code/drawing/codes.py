@@ -1,0 +1,23 @@
+"""Diagnostic codes of drawing."""
+
+from pn2code.diagnostics.codes import register
+
+DRAW_PAGE = register(
+    "draw-page",
+    "there is no such page to draw",
+    "`--page` takes the name of a page as CPN Tools shows it, or its id in the file. `--instance` takes the number of "
+    "an instance of that page, from 1; a page that is nobody's subpage has one instance.",
+)
+DRAW_OUTPUT = register(
+    "draw-output",
+    "the drawing cannot be written",
+    "`-o` names what to write: a file that ends in `.svg` (with `--page` one page, else all pages below each other), "
+    "a file that ends in `.html` (all pages, linked), a folder (one SVG for each page), or `-` for an SVG on standard "
+    "output. Other formats are made from an SVG by other programs, for example `rsvg-convert page.svg -o page.png`.",
+)
+DRAW_ARRANGED = register(
+    "draw-arranged",
+    "a page was arranged automatically",
+    "The file has no usable positions for the nodes of the page: they are missing, or many nodes stand on one another, "
+    "as in files of converters. The page is drawn in layers instead. CPN Tools would show the nodes as the file says.",
+)

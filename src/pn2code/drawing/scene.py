@@ -1,0 +1,527 @@
+"""A page as shapes and texts with positions: what there is to draw, before it is SVG. y grows downwards.
+
+How CPN Tools places things, as found in its source and in many files: positions are centres, of inscriptions and
+tags too, but the upper left corner of free texts; y grows upwards; arcs end where they meet the shape's edge, arcs
+between the same two nodes run side by side in the order of their `order`; an arc whose bend lies beside a node meets
+it at a right angle; texts in their default state (`[]`, `@+`) are not shown.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass, field, replace
+
+from pn2code.drawing import text
+from pn2code.drawing.arrange import Arrangement, arrange
+from pn2code.drawing.geometry import Box, Point, along, around, enter, of_points, union
+from pn2code.frozen import frozen
+from pn2code.reading.document import (
+    Document,
+    Inscription,
+    Layout,
+    RawArc,
+    RawAux,
+    RawPage,
+    RawPlace,
+    RawTransition,
+)
+
+PLACE_SIZE, TRANSITION_SIZE = (60.0, 40.0), (60.0, 40.0)
+"""CPN Tools' own, for nodes without a size."""
+SIBLING_DISTANCE = 10.0
+"""Between arcs that run side by side."""
+_HIDDEN = frozenset(
+    {
+        "[]",
+        "@+",
+        "@++",
+        "P_NORMAL",
+        "PLACETYPE",
+        "INITMARK",
+        "expr",
+        "input();output();action();",
+        "",
+    }
+)
+_PORTS = {"in": "In", "out": "Out", "i/o": "I/O", "io": "I/O", "inout": "I/O", "in/out": "I/O"}
+_FAR = 10.0
+_STEP = 14.0
+_ARRANGED_SHARE = 0.3
+
+
+@frozen
+class Shape:
+    """A place, a transition, or a shape of an auxiliary.
+
+    Args:
+        kind: "place", "transition", "substitution" or "aux".
+        round: an ellipse, else a box.
+        caption: lines of the name.
+        title: what a tool tip says.
+        link: id of the page that a substitution transition stands for.
+    """
+
+    id: str
+    kind: str
+    box: Box
+    round: bool
+    layout: Layout
+    caption: tuple[str, ...]
+    title: str
+    link: str = ""
+
+    @property
+    def centre(self) -> Point:
+        """The centre."""
+        return (self.box.left + self.box.right) / 2, (self.box.top + self.box.bottom) / 2
+
+
+@frozen
+class Line:
+    """An arc; points from the transition's edge to the place's edge.
+
+    Args:
+        kind: the orientation: "ptot", "ttop", "bothdir", "inhibitor", "reset" or "nodir".
+    """
+
+    id: str
+    kind: str
+    points: tuple[Point, ...]
+    layout: Layout
+    title: str
+
+
+@frozen
+class Label:
+    """A text with its centre; `kind` says what of which element (id)."""
+
+    owner: str
+    kind: str
+    lines: tuple[str, ...]
+    box: Box
+    layout: Layout
+    title: str
+
+
+@frozen
+class Tag:
+    """The framed word at a port ("In"), a fusion place (its set) or a substitution transition (its page)."""
+
+    owner: str
+    kind: str
+    word: str
+    box: Box
+    title: str
+    link: str = ""
+
+
+@frozen
+class Scene:
+    """All of a page.
+
+    Args:
+        arranged: the positions are not the author's.
+    """
+
+    page: str
+    name: str
+    shapes: tuple[Shape, ...]
+    lines: tuple[Line, ...]
+    labels: tuple[Label, ...]
+    tags: tuple[Tag, ...]
+    arranged: bool
+    tokens: dict[str, Point] = field(default_factory=dict)
+    markings: dict[str, Point] = field(default_factory=dict)
+    hidden: frozenset[str] = frozenset()
+
+    def bounds(self) -> Box:
+        """The box around everything."""
+        boxes = [s.box for s in self.shapes]
+        boxes += [text_box(s) for s in self.shapes if s.caption]
+        boxes += [of_points(line.points) for line in self.lines]
+        boxes += [label.box for label in self.labels]
+        boxes += [tag.box for tag in self.tags]
+        return union(boxes)
+
+
+def text_box(shape: Shape) -> Box:
+    """The box of a node's name."""
+    return around(*shape.centre, *text.extent(shape.caption, shape.layout.bold))
+
+
+def build(document: Document, page: RawPage) -> Scene:
+    """The scene of a page."""
+    return _Builder(document, page).scene()
+
+
+@dataclass(slots=True)
+class _Builder:
+    document: Document
+    page: RawPage
+    arranged: Arrangement | None = None
+    nodes: dict[str, Shape] = field(default_factory=dict)
+    labels: list[Label] = field(default_factory=list)
+    tags: list[Tag] = field(default_factory=list)
+    nowhere: bool = False
+
+    def scene(self) -> Scene:
+        """Everything, in the order of the file."""
+        page = self.page
+        if needs_arranging(page):
+            self.arranged = _arrangement(page)
+        self.nowhere = self.labels_lack_positions()
+        for place in page.places:
+            self.nodes[place.id] = self.node(place, "place", PLACE_SIZE, place_title(place))
+        for t in page.transitions:
+            kind = "substitution" if t.substitution else "transition"
+            link = t.substitution.subpage if t.substitution else ""
+            self.nodes[t.id] = self.node(
+                t, kind, TRANSITION_SIZE, transition_title(t, self.page_name(link)), link
+            )
+        for place in page.places:
+            self.place(place)
+        for t in page.transitions:
+            self.transition(t)
+        lines = [self.line(arc, ends) for arc, ends in self.incidences()]
+        extra = [] if self.arranged else [self.auxiliary(aux) for aux in page.auxiliaries]
+        if self.arranged and page.auxiliaries:
+            self.notes(page.auxiliaries, lines)
+        tokens, markings = {}, {}
+        for place in page.places:
+            tokens[place.id], markings[place.id] = self.token(place)
+        return Scene(
+            page=page.id,
+            name=page.name,
+            shapes=(*(s for s in extra if s is not None), *self.nodes.values()),
+            lines=tuple(lines),
+            labels=tuple(self.labels),
+            tags=tuple(self.tags),
+            arranged=self.arranged is not None,
+            tokens=tokens,
+            markings=markings,
+            hidden=frozenset(p.id for p in page.places if p.marking.hidden),
+        )
+
+    def page_name(self, identity: str) -> str:
+        """The name of a page; its id when there is no such page."""
+        return next((p.name for p in self.document.pages if p.id == identity), identity)
+
+    def labels_lack_positions(self) -> bool:
+        """Whether a program wrote 0, 0 for the texts: nobody puts two texts there."""
+        found = [i.layout for i in _inscriptions(self.page)]
+        return sum(1 for at in found if at.x == 0 == at.y) > 1
+
+    def node(
+        self,
+        raw: RawPlace | RawTransition,
+        kind: str,
+        size: tuple[float, float],
+        title: str,
+        link: str = "",
+    ) -> Shape:
+        """A place or transition."""
+        centre = (round(raw.layout.x), -round(raw.layout.y))
+        if self.arranged:
+            centre = self.arranged.centres[raw.id]  # type: ignore[assignment]
+        w, h = node_size(raw.layout, size)
+        is_round = raw.layout.shape == "ellipse" or (raw.layout.shape == "" and kind == "place")
+        caption = tuple(s.strip() for s in text.lines(raw.caption)) if raw.caption else ()
+        return Shape(
+            raw.id, kind, around(*centre, w, h), is_round, raw.layout, caption, title, link
+        )
+
+    def place(self, place: RawPlace) -> None:
+        """Texts and tags of a place."""
+        box, owner = self.nodes[place.id].box, place.id
+        self.label(owner, "colset", place.type, Corner(box.right - 6, box.bottom + 1, 1, 1))
+        self.label(owner, "initial", place.initial, Corner(box.right - 6, box.top - 1, 1, -1))
+        if place.port:
+            word = _PORTS.get(place.port.lower(), place.port)
+            corner = Corner(box.left + 8, box.bottom - 2, -1, 1)
+            self.tag(owner, "port", word, place.port_layout, corner, f"port: {word}")
+        if place.fusion:
+            corner = Corner(box.left + 8, box.top + 2, -1, -1)
+            title = f"fusion set: {place.fusion}"
+            self.tag(owner, "fusion", place.fusion, place.fusion_layout, corner, title)
+
+    def transition(self, t: RawTransition) -> None:
+        """Texts and the tag of a transition."""
+        box, owner = self.nodes[t.id].box, t.id
+        self.label(owner, "guard", t.guard, Corner(box.left, box.top - 1, -1, -1))
+        self.label(owner, "delay", t.delay, Corner(box.right, box.top - 1, 1, -1))
+        self.label(owner, "code", t.code, Corner(box.right, box.bottom + 1, 1, 1))
+        self.label(owner, "priority", t.priority, Corner(box.left, box.bottom + 1, -1, 1))
+        self.label(
+            owner, "channel", t.channel, Corner(box.right + 2, (box.top + box.bottom) / 2, 1, 0)
+        )
+        if t.substitution:
+            word = self.page_name(t.substitution.subpage)
+            corner = Corner((box.left + box.right) / 2, box.bottom + 3, 0, 1)
+            title = f"stands for page {word}"
+            link = t.substitution.subpage
+            self.tag(owner, "subpage", word, t.substitution.layout, corner, title, link)
+
+    def label(self, owner: str, kind: str, i: Inscription | None, corner: Corner) -> None:
+        """An inscription, at its own position, or else at the corner."""
+        if i is None or "".join(i.text.text.split()) in _HIDDEN:
+            return
+        block = text.lines(i.text.text)
+        w, h = text.extent(block, i.layout.bold)
+        if self.without_position(i.layout):
+            box = corner.box(w, h)
+        else:
+            box = around(round(i.layout.x), -round(i.layout.y), w, h)
+        title = f"{i.text.origin.part}: {i.text.text}"
+        self.labels.append(Label(owner, kind, block, box, i.layout, title))
+
+    def without_position(self, layout: Layout) -> bool:
+        """Whether a text needs a position of ours."""
+        if self.arranged or not layout.known:
+            return True
+        return self.nowhere and layout.x == 0 == layout.y
+
+    def tag(
+        self,
+        owner: str,
+        kind: str,
+        word: str,
+        layout: Layout,
+        corner: Corner,
+        title: str,
+        link: str = "",
+    ) -> None:
+        """A tag, as wide as its word."""
+        word = text.clean(word)
+        w, h = text.width(word) + 6, text.LINE
+        lost = layout.x == 0 == layout.y and not around(0, 0, _FAR, _FAR).holds(
+            self.nodes[owner].centre
+        )
+        if self.arranged or not layout.known or lost:
+            box = corner.box(w, h)
+        else:
+            box = around(round(layout.x), -round(layout.y), w, h)
+        box = _off(box, self.nodes[owner])
+        self.tags.append(Tag(owner, kind, word, box, title, link))
+
+    def incidences(self) -> list[tuple[RawArc, tuple[Point, Point]]]:
+        """The arcs, each with the points inside transition and place that it heads for."""
+        arcs = [
+            a
+            for a in (*self.page.arcs, *self.page.undirected)
+            if a.transition in self.nodes and a.place in self.nodes
+        ]
+        straight: dict[tuple[str, str], list[RawArc]] = {}
+        for arc in arcs:
+            if not self.bends(arc):
+                straight.setdefault((arc.transition, arc.place), []).append(arc)
+        found = []
+        for arc in arcs:
+            t, p = self.nodes[arc.transition], self.nodes[arc.place]
+            siblings = sorted(straight.get((t.id, p.id), ()), key=lambda a: -a.order)
+            bends = self.bends(arc)
+            if bends:
+                found.append((arc, (_beside(t, bends[0]), _beside(p, bends[-1]))))
+            else:
+                shift = (siblings.index(arc) - (len(siblings) - 1) / 2) * SIBLING_DISTANCE
+                found.append((arc, _shifted(t.centre, p.centre, shift)))
+        return found
+
+    def bends(self, arc: RawArc) -> tuple[Point, ...]:
+        """Bend points from the transition to the place."""
+        if self.arranged:
+            return self.arranged.bends.get(arc.id, ())
+        points = [(float(round(x)), float(-round(y))) for x, y in arc.layout.bends]
+        # A bend inside the node at its end would put the arrow head there, too.
+        while points and self.nodes[arc.transition].box.grown(-1).holds(points[0]):
+            del points[0]
+        while points and self.nodes[arc.place].box.grown(-1).holds(points[-1]):
+            del points[-1]
+        return tuple(points)
+
+    def line(self, arc: RawArc, ends: tuple[Point, Point]) -> Line:
+        """An arc and its inscription."""
+        t, p = self.nodes[arc.transition], self.nodes[arc.place]
+        bends = self.bends(arc)
+        start = enter(bends[0] if bends else ends[1], ends[0], t.box, t.round)
+        end = enter(bends[-1] if bends else ends[0], ends[1], p.box, p.round)
+        points = (start, *bends, end)
+        middle = along(points, 0.5)
+        self.label(arc.id, "inscription", arc.inscription, Corner(middle[0] + 4, middle[1], 1, -1))
+        written = f": {arc.inscription.text.text}" if arc.inscription else ""
+        return Line(arc.id, arc.orientation, points, arc.layout, f"{_arrow(arc, t, p)}{written}")
+
+    def auxiliary(self, aux: RawAux) -> Shape | None:
+        """A free text becomes a label; a shape is given back."""
+        at = (round(aux.layout.x), -round(aux.layout.y))
+        block = text.lines(aux.text) if aux.text else ()
+        if aux.layout.shape not in ("box", "ellipse"):
+            if block:
+                w, h = text.extent(block, aux.layout.bold)
+                box = Box(at[0], at[1], at[0] + w, at[1] + h)
+                self.labels.append(Label(aux.id, "aux", block, box, aux.layout, ""))
+            return None
+        box = around(*at, aux.layout.width, aux.layout.height)
+        is_round = aux.layout.shape == "ellipse"
+        return Shape(aux.id, "aux", box, is_round, aux.layout, block, "")
+
+    def notes(self, auxiliaries: Iterable[RawAux], lines: list[Line]) -> None:
+        """Free texts below a page that is arranged anew."""
+        boxes = [s.box for s in self.nodes.values()] + [of_points(line.points) for line in lines]
+        whole = union([*boxes, *(label.box for label in self.labels)])
+        y = whole.bottom + 3 * text.LINE
+        for aux in auxiliaries:
+            if aux.text:
+                block = text.lines(aux.text)
+                w, h = text.extent(block, aux.layout.bold)
+                box = Box(whole.left, y, whole.left + w, y + h)
+                self.labels.append(Label(aux.id, "aux", block, box, aux.layout, ""))
+                y += h + text.LINE
+
+    def token(self, place: RawPlace) -> tuple[Point, Point]:
+        """Centre of the bubble with the number of tokens; where the marking is, as seen from the bubble."""
+        box = self.nodes[place.id].box
+        x, y = box.right, (box.top + box.bottom) / 2
+        if self.arranged or not place.token.known:
+            return (x, y), (0.0, 0.0)
+        at = (x + place.token.x, y - place.token.y)
+        return at, (place.marking.x, -place.marking.y)
+
+
+@frozen
+class Corner:
+    """Where a text goes that has no position: it touches (x, y) and lies right (`dx` 1), left (-1) or around it (0)."""
+
+    x: float
+    y: float
+    dx: int
+    dy: int
+
+    def box(self, width: float, height: float) -> Box:
+        """The box of a text of this size."""
+        return around(self.x + self.dx * width / 2, self.y + self.dy * height / 2, width, height)
+
+
+def node_size(layout: Layout, default: tuple[float, float]) -> tuple[float, float]:
+    """A node's size; the default where the file has none."""
+    return (
+        layout.width if layout.width > 0 else default[0],
+        layout.height if layout.height > 0 else default[1],
+    )
+
+
+def place_title(place: RawPlace) -> str:
+    """The tool tip of a place."""
+    rows = [f"place {place.name}" + (f" : {place.type.text.text}" if place.type else "")]
+    if place.initial:
+        rows.append(f"initial marking: {text.shorten(place.initial.text.text, 20, 200)}")
+    if place.port:
+        rows.append(f"port: {_PORTS.get(place.port.lower(), place.port)}")
+    if place.fusion:
+        rows.append(f"fusion set: {place.fusion}")
+    return "\n".join(rows)
+
+
+def transition_title(t: RawTransition, subpage: str) -> str:
+    """The tool tip of a transition."""
+    if t.substitution:
+        return f"substitution transition {t.name}\nstands for page {subpage}"
+    rows = [f"transition {t.name}"]
+    for i in (t.guard, t.delay, t.priority, t.channel, t.code):
+        if i is not None and "".join(i.text.text.split()) not in _HIDDEN:
+            rows.append(f"{i.text.origin.part}: {text.shorten(i.text.text, 20, 200)}")
+    return "\n".join(rows)
+
+
+def _arrow(arc: RawArc, transition: Shape, place: Shape) -> str:
+    t = " ".join(transition.caption) or transition.id
+    p = " ".join(place.caption) or place.id
+    match arc.orientation:
+        case "ttop":
+            return f"arc {t} → {p}"
+        case "bothdir":
+            return f"arc {p} ↔ {t}"
+        case "inhibitor":
+            return f"inhibitor arc {p} ⊸ {t}"
+        case "reset":
+            return f"reset arc {p} ↠ {t}"
+        case "nodir":
+            return f"{p} — {t}"
+        case _:
+            return f"arc {p} → {t}"
+
+
+def _inscriptions(page: RawPage) -> Iterable[Inscription]:
+    for place in page.places:
+        yield from (i for i in (place.type, place.initial) if i)
+    for t in page.transitions:
+        yield from (i for i in (t.guard, t.delay, t.code, t.priority) if i)
+    yield from (a.inscription for a in page.arcs if a.inscription)
+
+
+def needs_arranging(page: RawPage) -> bool:
+    """Whether the positions are missing or useless: many nodes stand on one another."""
+    layouts = [n.layout for n in page.nodes]
+    if len(layouts) < 2:
+        return False
+    if not any(at.known for at in layouts):
+        return True
+    points = {(round(at.x), round(at.y)) for at in layouts}
+    return len(layouts) - len(points) > _ARRANGED_SHARE * len(layouts)
+
+
+def _arrangement(page: RawPage) -> Arrangement:
+    nodes = {p.id: node_size(p.layout, PLACE_SIZE) for p in page.places}
+    nodes |= {t.id: node_size(t.layout, TRANSITION_SIZE) for t in page.transitions}
+    for n in page.nodes:
+        w = text.extent(text.lines(n.caption))[0] if n.caption else 0.0
+        nodes[n.id] = (max(nodes[n.id][0], w), nodes[n.id][1])
+    edges = {}
+    for arc in page.arcs:
+        if arc.transition in nodes and arc.place in nodes:
+            outwards = arc.orientation == "ttop"
+            ends = (arc.transition, arc.place) if outwards else (arc.place, arc.transition)
+            edges[arc.id] = ends
+    found = arrange(nodes, edges)
+    # Bends run with the edge; ours from the transition to the place.
+    bends = {
+        e: b if edges[e][0] in {t.id for t in page.transitions} else b[::-1]
+        for e, b in found.bends.items()
+    }
+    return replace(found, bends=bends)
+
+
+def _off(tag: Box, node: Shape) -> Box:
+    """A tag moved the least so that it does not hide the node's name, if a small step will do."""
+    name = text_box(node)
+    if not (node.caption and name.overlaps(tag)):
+        return tag
+    steps = [
+        (name.right - tag.left, 0.0),
+        (name.left - tag.right, 0.0),
+        (0.0, name.bottom - tag.top),
+        (0.0, name.top - tag.bottom),
+    ]
+    dx, dy = min(steps, key=lambda step: abs(step[0]) + abs(step[1]))
+    if abs(dx) + abs(dy) > _STEP:
+        return tag
+    return Box(tag.left + dx, tag.top + dy, tag.right + dx, tag.bottom + dy)
+
+
+def _beside(node: Shape, bend: Point) -> Point:
+    """Where an arc from a bend heads for: straight on when the bend is beside, above or below the node."""
+    x, y = node.centre
+    if not node.box.left <= bend[0] <= node.box.right and node.box.top < bend[1] < node.box.bottom:
+        return x, bend[1]
+    if not node.box.top <= bend[1] <= node.box.bottom and node.box.left < bend[0] < node.box.right:
+        return bend[0], y
+    return x, y
+
+
+def _shifted(t: Point, p: Point, shift: float) -> tuple[Point, Point]:
+    """Both ends moved to the side of the line between them."""
+    dx, dy = p[0] - t[0], p[1] - t[1]
+    length = (dx * dx + dy * dy) ** 0.5
+    if shift == 0 or length == 0:
+        return t, p
+    x, y = -dy / length * shift, dx / length * shift
+    return (t[0] + x, t[1] + y), (p[0] + x, p[1] + y)

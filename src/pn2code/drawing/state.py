@@ -1,0 +1,73 @@
+"""A state of the net as overlays of its pages: tokens in places, borders around enabled transitions."""
+
+from __future__ import annotations
+
+from collections.abc import Collection
+
+from pn2code.drawing.svg import Overlay, Tokens
+from pn2code.net.flat import FlatNet, FlatTransition
+from pn2code.reading.document import RawPage
+from pn2code.semantics import report
+from pn2code.semantics.marking import Marking
+
+
+class State:
+    """A marking of a net, page by page.
+
+    Args:
+        net: the net.
+        marking: its marking.
+        enabled: the transitions to be shown as enabled.
+    """
+
+    def __init__(self, net: FlatNet, marking: Marking, enabled: Collection[FlatTransition]) -> None:
+        self._tokens: dict[str, dict[int, Tokens]] = {}
+        self._enabled: dict[str, set[int]] = {}
+        # `places` has a row for each place instance, in this order, and then some for fusion sets.
+        for place, row in zip(net.place_instances, report.places(net, marking), strict=False):
+            held = Tokens(len(marking.places[place.place]), str(row["marking"]))
+            self._tokens.setdefault(place.id, {})[place.number] = held
+        for t in enabled:
+            self._enabled.setdefault(t.id, set()).add(t.instance_number)
+        self._numbers: dict[str, set[int]] = {i: set(by) for i, by in self._tokens.items()}
+        for transition in net.transitions:
+            self._numbers.setdefault(transition.id, set()).add(transition.instance_number)
+
+    def instances(self, page: RawPage) -> list[int]:
+        """The numbers of a page's instances; none for a page without places and transitions."""
+        found: set[int] = set()
+        for node in page.nodes:
+            found |= self._numbers.get(node.id, set())
+        return sorted(found)
+
+    def overlay(self, page: RawPage, instance: int, base: Overlay) -> Overlay:
+        """What is drawn over an instance of a page; problems and highlights are those of `base`."""
+        tokens = {
+            p.id: self._tokens[p.id][instance]
+            for p in page.places
+            if instance in self._tokens.get(p.id, {})
+        }
+        enabled = frozenset(
+            t.id for t in page.transitions if instance in self._enabled.get(t.id, ())
+        )
+        return Overlay(tokens, enabled, base.highlight, base.problems)
+
+    def figures(self, page: RawPage, base: Overlay) -> list[tuple[str, Overlay]]:
+        """The different looks of a page's instances, each with a caption when there are several."""
+        looks: list[tuple[list[int], Overlay]] = []
+        for number in self.instances(page):
+            overlay = self.overlay(page, number, base)
+            for numbers, known in looks:
+                if known == overlay:
+                    numbers.append(number)
+                    break
+            else:
+                looks.append(([number], overlay))
+        if len(looks) < 2:
+            return [("", looks[0][1] if looks else base)]
+        return [(_caption(numbers), overlay) for numbers, overlay in looks]
+
+
+def _caption(numbers: list[int]) -> str:
+    listed = ", ".join(map(str, numbers))
+    return f"instance {listed}" if len(numbers) == 1 else f"instances {listed}"
