@@ -123,6 +123,10 @@ static void test_numbers(void)
     CHECK(cx.error == PN_ERR_OVERFLOW); /* the first error stays */
     pn_clear_error(&cx);
     CHECK(pn_inf_mul(&cx, INT64_MIN, -1) == 0);
+    CHECK(cx.error == PN_ERR_LARGE);
+    CHECK(!pn_is_exception(&cx));
+    pn_clear_error(&cx);
+    CHECK(pn_wide_mul(&cx, INT64_MIN, -1) == 0);
     CHECK(cx.error == PN_ERR_OVERFLOW);
     pn_clear_error(&cx);
     CHECK(pn_inf_mul(&cx, INT64_C(3037000499), INT64_C(3037000499)) == INT64_C(9223372030926249001));

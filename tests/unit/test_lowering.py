@@ -149,7 +149,6 @@ def test_capacity() -> None:
         ("val r = [ref 1]", "!(hd r) + n", "unsupported-type"),
         ("", "(if n > 1 then (fn x => x + 1) else (fn x => x)) n", "unsupported-function-value"),
         ("exception E of int", "(raise E 3) handle E k => k", "unsupported-exception"),
-        ("", 'Option.getOpt (Int.fromString "3", n)', "unsupported-builtin"),
         ("", "n + 1073741824", "literal-out-of-range"),
     ],
 )

@@ -201,8 +201,34 @@ for _name in (
     "poisson",
     "erlang",
     "chisq",
+    "student",
+    "gamma",
+    "beta",
+    "weibull",
+    "rayleigh",
 ):
     OPS[f"Random.{_name}"] = Call(f"pn_random_{_name}", context=True)
+
+OPS |= {
+    "prim.stop": Call("pn_stop", context=True),
+    "prim.and": Call("pn_bits_and"),
+    "prim.or": Call("pn_bits_or"),
+    "prim.xor": Call("pn_bits_xor"),
+    "prim.not": Call("pn_bits_not"),
+    "prim.shift_left": Call("pn_shift_left", context=True),
+    "prim.shift_right": Call("pn_shift_right"),
+    "prim.real_exponent": Call("pn_real_exponent"),
+    "prim.real_scale": Call("pn_real_scale"),
+    "prim.real_next": Call("pn_real_next"),
+    "prim.real_fused": Call("pn_real_fused"),
+    "prim.real_sign_bit": Call("pn_real_sign_bit"),
+    "prim.real_copy_sign": Call("pn_real_copy_sign"),
+    "prim.real_is_normal": Call("pn_real_is_normal"),
+    "prim.real_to_large": Call("pn_inf_trunc", context=True),
+    "prim.real_format": Call("pn_real_format", context=True),
+    "prim.real_read": Call("pn_real_read"),
+}
+"""Operations of the functions of the prelude."""
 
 SWAPPED = frozenset({"List.rm", "List.rmall", "List.pos", "Ms.cf"})
 """Operations whose ML operands are (value, list) and whose C operands are (list, value)."""

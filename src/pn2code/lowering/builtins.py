@@ -10,7 +10,7 @@ from collections.abc import Callable
 from typing import TYPE_CHECKING
 
 from pn2code.diagnostics import Origin, Span
-from pn2code.lowering import higher_order, ir
+from pn2code.lowering import higher_order, ir, prelude
 from pn2code.lowering.codes import (
     UNSUPPORTED_BUILTIN,
     UNSUPPORTED_COLSET,
@@ -20,7 +20,8 @@ from pn2code.lowering.codes import (
 from pn2code.lowering.functions import is_impure_builtin
 from pn2code.lowering.ir import Ir, IrType, Rep
 from pn2code.lowering.matching import negation
-from pn2code.lowering.values import BuiltinFunction, RecordVal, Reference, Val
+from pn2code.lowering.prelude import representation
+from pn2code.lowering.values import BuiltinFunction, Polymorphic, RecordVal, Reference, Val
 from pn2code.ml.builtins import BUILTINS
 from pn2code.ml.colsets import Colset
 from pn2code.ml.types import TCon, TFun, TRecord, TVar, Type
@@ -44,7 +45,10 @@ _LIST = (
     "remdupl intersect pos"
 )
 _MS = "++ -- ** == != << <<= >> >>= cf size"
-_RANDOM = "bernoulli binomial uniform discrete normal exponential poisson erlang chisq"
+_RANDOM = (
+    "bernoulli binomial uniform discrete normal exponential poisson erlang chisq student gamma beta "
+    "weibull rayleigh"
+)
 
 DIRECT = frozenset(
     f"{structure}.{name}"
@@ -91,6 +95,17 @@ class Builtins:
         self._real_time = real_time
 
     @staticmethod
+    def is_primitive(name: str) -> bool:
+        """Whether it has a form of its own in IR, so that the prelude need not be asked."""
+        return (
+            name in DIRECT
+            or name in SAME
+            or name in _SPECIAL
+            or name in higher_order.FUNCTIONS
+            or name.startswith(("Colset.", "prim."))
+        )
+
+    @staticmethod
     def arity(function: BuiltinFunction) -> int:
         """The number of curried arguments it takes before it does anything."""
         info = BUILTINS.get(function.node.name)
@@ -117,15 +132,12 @@ class Builtins:
         special = _SPECIAL.get(name) or higher_order.FUNCTIONS.get(name)
         if special is not None:
             return special(body, arguments, result, at)
-        if name not in DIRECT:
-            raise UnsupportedError(
-                UNSUPPORTED_BUILTIN,
-                f"the built-in function `{name}` is not supported in compiled code",
-                at,
-            )
+        if name not in DIRECT and not name.startswith("prim."):
+            return self._of_prelude(body, function, arguments, result, at)
+        is_library = not name.startswith("prim.")
+        scheme = BUILTINS[name].type(self._real_time) if is_library else function.type
         if name.startswith("ModelTime."):
             name = self._model_time(name)
-        scheme = BUILTINS[function.node.name].type(self._real_time)
         operands = self._operands(body, scheme, arguments)
         t = body.program.types.lower(result, at)
         table = ""
@@ -140,6 +152,41 @@ class Builtins:
         if is_impure_builtin(name) or t.rep is Rep.UNIT:
             return body.spill(op, name.split(".")[-1])
         return op
+
+    def _of_prelude(
+        self,
+        body: Body,
+        function: BuiltinFunction,
+        arguments: tuple[Val, ...],
+        result: Type,
+        at: Span,
+    ) -> Val:
+        """A function written in CPN ML, or one that stops the run."""
+        name = function.node.name
+        info = BUILTINS.get(name)
+        if info is not None and info.unsupported:
+            text = f"`{name}` is not available here: {info.unsupported}"
+            body.emit(ir.Do(ir.Op("prim.stop", (ir.Const(text, ir.STRING),), ir.UNIT)))
+            return body.zero(body.program.types.lower(result, at))
+        found = body.program.prelude_function(name)
+        if found is None:
+            raise UnsupportedError(
+                UNSUPPORTED_BUILTIN,
+                f"the built-in function `{name}` is not supported in compiled code",
+                at,
+            )
+        file, symbol = found
+        if symbol.name in file.values:
+            return body.exp(file.values[symbol.name], {})
+        inst = prelude.instance(symbol, function.type)
+        value = body.program.global_value(body, symbol, inst, at)
+        assert not isinstance(value, Polymorphic)
+        t: Type = representation(function.type)
+        for argument in arguments:
+            assert isinstance(t, TFun)
+            t = t.result
+            value = body.apply(value, argument, t, at)
+        return value
 
     def _model_time(self, name: str) -> str:
         """Model time is an IntInf.int or a real."""

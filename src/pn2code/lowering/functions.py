@@ -13,7 +13,7 @@ from collections.abc import Callable, Hashable, Iterator, Mapping
 from typing import TYPE_CHECKING
 
 from pn2code.diagnostics import Origin, Span
-from pn2code.lowering import ir
+from pn2code.lowering import ir, prelude
 from pn2code.lowering.codes import (
     UNSUPPORTED_EXPRESSION,
     UNSUPPORTED_FUNCTION_VALUE,
@@ -25,6 +25,7 @@ from pn2code.lowering.types import Types, substitute
 from pn2code.lowering.types import has_function as type_has_function
 from pn2code.lowering.values import (
     Binding,
+    BuiltinFunction,
     Captured,
     NamedFunction,
     RecordVal,
@@ -50,12 +51,15 @@ IMPURE = frozenset(
     [f"Ref.{op}" for op in ("!", ":=", "+=", "-=", "*=", "::=", "inc", "dec")]
     + ["TextIO.print", "Ms.random", "Colset.ran"]
 )
-"""Built-in functions whose order of evaluation matters; all of `Random` too."""
+"""Built-in functions whose order of evaluation matters."""
+
+IMPURE_PREFIXES = ("Random.", "TextIO.", "prim.do_")
+"""And whole families of them."""
 
 
 def is_impure_builtin(name: str) -> bool:
     """Whether the built-in function reads or changes something."""
-    return name in IMPURE or name.startswith("Random.")
+    return name in IMPURE or name.startswith(IMPURE_PREFIXES)
 
 
 def split_parameters(function: core.Lambda) -> tuple[tuple[Type, ...], Type]:
@@ -94,6 +98,7 @@ class Program:
         self._pending: list[tuple[str, NamedFunction, tuple[Binding, ...], list[Local]]] = []
         self._counters: dict[str, int] = {}
         self._groups: dict[int, core.RecBind] = {}
+        self._primitives: dict[int, core.Builtin] = {}
         self._values: dict[int, tuple[int, core.ValBind]] = {}
         self._globals: dict[Hashable, Reference | ir.GlobalUse] = {}
         self._setups: dict[tuple[int, Hashable], tuple[ir.Global, ...]] = {}
@@ -110,10 +115,24 @@ class Program:
 
     # --- top-level names -----------------------------------------------------------------------
 
+    def adopt(self, file: prelude.File) -> None:
+        """Makes the functions of a file of the prelude known."""
+        self._primitives.update(file.primitives)
+        for dec in file.declarations:
+            if isinstance(dec, core.RecBind):
+                for symbol, _ in dec.bindings:
+                    self._groups[symbol.uid] = dec
+            elif isinstance(dec, core.ValBind):
+                for symbol in pattern_symbols(dec.pattern):
+                    self._values[symbol.uid] = (symbol.uid - prelude.LAST_UID, dec)
+
     def global_value(
         self, body: Body, symbol: Symbol, inst: Mapping[int, Type], at: Span
     ) -> Binding:
         """What a top-level name stands for."""
+        if symbol.uid in self._primitives:
+            primitive = self._primitives[symbol.uid]
+            return BuiltinFunction(primitive, primitive.type)
         if symbol.uid in self._groups:
             return NamedFunction(symbol, self._groups[symbol.uid], {}, dict(inst))
         if symbol.uid not in self._values:
@@ -365,10 +384,28 @@ class Program:
         known[id(e)] = any(has(n) or self._callee_reaches(n, has, known) for n in _nodes(e))
         return known[id(e)]
 
+    def prelude_function(self, builtin: str) -> tuple[prelude.File, Symbol] | None:
+        """The function of the prelude that a built-in function is; its file is adopted."""
+        if self.builtins.is_primitive(builtin):
+            return None
+        found = prelude.find(builtin, self.real_time)
+        if found is not None and found[1].uid not in self._groups:
+            self.adopt(found[0])
+        return found
+
     def _callee_reaches(
         self, e: core.Exp, has: Callable[[core.Exp], bool], known: dict[int, bool]
     ) -> bool:
-        group = self._groups.get(e.symbol.uid) if isinstance(e, core.Var) else None
+        if isinstance(e, core.Builtin):
+            found = self.prelude_function(e.name)
+            group = self._groups.get(found[1].uid) if found is not None else None
+        elif isinstance(e, core.Var):
+            primitive = self._primitives.get(e.symbol.uid)
+            if primitive is not None:
+                return has(primitive)
+            group = self._groups.get(e.symbol.uid)
+        else:
+            group = None
         return group is not None and any(self._reaches(f, has, known) for _, f in group.bindings)
 
     def _is_impure_value(self, value: Binding) -> bool:

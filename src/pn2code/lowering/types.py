@@ -14,6 +14,7 @@ from pn2code.diagnostics import NOWHERE, Origin, Span
 from pn2code.lowering import ir
 from pn2code.lowering.codes import UNSUPPORTED_TYPE, UnsupportedError
 from pn2code.lowering.ir import Definition, Descriptor, IrType, Rep
+from pn2code.lowering.prelude import representation
 from pn2code.ml.colsets import Colset, Kind
 from pn2code.ml.core import Program
 from pn2code.ml.types import TCon, TFun, TRecord, TVar, Type
@@ -87,7 +88,8 @@ class Types:
             if t in self._active:
                 self._hits.add(t)
             return self._known[t]
-        made = self._make(t, at)
+        plain = representation(t)
+        made = self._make(t, at) if plain == t else self.lower(plain, at)
         self._known[t] = made
         return made
 

@@ -25,6 +25,8 @@ const char *pn_error_name(pn_error_t error)
     case PN_ERR_DEPTH: return "recursion too deep";
     case PN_ERR_SUBTRACT: return "Subtract";
     case PN_ERR_RAISED: return "exception of the net";
+    case PN_ERR_LARGE: return "an IntInf.int beyond 64 bits";
+    case PN_ERR_UNSUPPORTED: return "a function that is not available here";
     case PN_ERR_INTERNAL: return "internal error";
     default: return "unknown error";
     }
@@ -57,6 +59,8 @@ bool pn_is_exception(const pn_ctx_t *cx)
     case PN_ERR_CAPACITY:
     case PN_ERR_MEMORY:
     case PN_ERR_DEPTH:
+    case PN_ERR_LARGE:
+    case PN_ERR_UNSUPPORTED:
     case PN_ERR_INTERNAL:
     default:
         return false;
@@ -77,18 +81,15 @@ void pn_clear_error(pn_ctx_t *cx)
 
 /* --- integers ------------------------------------------------------------------------------------------------------ */
 
-int64_t pn_int_checked(pn_ctx_t *cx, int64_t value)
+int64_t pn_int_overflow(pn_ctx_t *cx)
 {
-    if ((value < PN_INT_MIN) || (value > PN_INT_MAX)) {
-        pn_raise(cx, PN_ERR_OVERFLOW, NULL);
-        return 0;
-    }
-    return value;
+    pn_raise(cx, PN_ERR_OVERFLOW, NULL);
+    return 0;
 }
 
 int64_t pn_int_quot(pn_ctx_t *cx, int64_t a, int64_t b)
 {
-    return pn_int_checked(cx, pn_inf_quot(cx, a, b));
+    return pn_int_checked(cx, pn_wide_quot(cx, a, b));
 }
 
 int64_t pn_int_rem(pn_ctx_t *cx, int64_t a, int64_t b)
@@ -98,7 +99,7 @@ int64_t pn_int_rem(pn_ctx_t *cx, int64_t a, int64_t b)
 
 int64_t pn_int_div(pn_ctx_t *cx, int64_t a, int64_t b)
 {
-    return pn_int_checked(cx, pn_inf_div(cx, a, b));
+    return pn_int_checked(cx, pn_wide_div(cx, a, b));
 }
 
 int64_t pn_int_mod(pn_ctx_t *cx, int64_t a, int64_t b)
@@ -106,29 +107,31 @@ int64_t pn_int_mod(pn_ctx_t *cx, int64_t a, int64_t b)
     return pn_inf_mod(cx, a, b);
 }
 
-static int64_t overflow(pn_ctx_t *cx)
+/* 64-bit arithmetic; `error` is raised for what has more bits. */
+
+static int64_t beyond(pn_ctx_t *cx, pn_error_t error)
 {
-    pn_raise(cx, PN_ERR_OVERFLOW, NULL);
+    pn_raise(cx, error, NULL);
     return 0;
 }
 
-int64_t pn_inf_add(pn_ctx_t *cx, int64_t a, int64_t b)
+static int64_t add(pn_ctx_t *cx, int64_t a, int64_t b, pn_error_t error)
 {
     if ((b > 0) ? (a > (INT64_MAX - b)) : (a < (INT64_MIN - b))) {
-        return overflow(cx);
+        return beyond(cx, error);
     }
     return a + b;
 }
 
-int64_t pn_inf_sub(pn_ctx_t *cx, int64_t a, int64_t b)
+static int64_t subtract(pn_ctx_t *cx, int64_t a, int64_t b, pn_error_t error)
 {
     if ((b > 0) ? (a < (INT64_MIN + b)) : (a > (INT64_MAX + b))) {
-        return overflow(cx);
+        return beyond(cx, error);
     }
     return a - b;
 }
 
-int64_t pn_inf_mul(pn_ctx_t *cx, int64_t a, int64_t b)
+static int64_t multiply(pn_ctx_t *cx, int64_t a, int64_t b, pn_error_t error)
 {
     bool fits = true;
     if ((a > 0) && (b > 0)) {
@@ -137,15 +140,104 @@ int64_t pn_inf_mul(pn_ctx_t *cx, int64_t a, int64_t b)
         fits = b >= (INT64_MIN / a);
     } else if ((a < 0) && (b > 0)) {
         fits = a >= (INT64_MIN / b);
-    } else if ((a < 0) && (b < 0)) {
+    } else if (a < 0) {
         fits = b >= (INT64_MAX / a);
     }
-    return fits ? (a * b) : overflow(cx);
+    return fits ? (a * b) : beyond(cx, error);
+}
+
+static int64_t negate(pn_ctx_t *cx, int64_t a, pn_error_t error)
+{
+    return (a == INT64_MIN) ? beyond(cx, error) : -a;
+}
+
+static int64_t quotient(pn_ctx_t *cx, int64_t a, int64_t b, pn_error_t error)
+{
+    if (b == 0) {
+        return beyond(cx, PN_ERR_DIV);
+    }
+    return (b == -1) ? negate(cx, a, error) : (a / b);
+}
+
+static int64_t divide(pn_ctx_t *cx, int64_t a, int64_t b, pn_error_t error)
+{
+    const int64_t towards_zero = quotient(cx, a, b, error);
+    const bool is_inexact = (b != 0) && (b != -1) && ((a % b) != 0);
+    return (is_inexact && ((a < 0) != (b < 0))) ? (towards_zero - 1) : towards_zero;
+}
+
+int64_t pn_inf_rem(pn_ctx_t *cx, int64_t a, int64_t b)
+{
+    if (b == 0) {
+        return beyond(cx, PN_ERR_DIV);
+    }
+    return (b == -1) ? 0 : (a % b);
+}
+
+int64_t pn_inf_mod(pn_ctx_t *cx, int64_t a, int64_t b)
+{
+    const int64_t remainder = pn_inf_rem(cx, a, b);
+    return ((remainder != 0) && ((remainder < 0) != (b < 0))) ? (remainder + b) : remainder;
+}
+
+int64_t pn_inf_add(pn_ctx_t *cx, int64_t a, int64_t b)
+{
+    return add(cx, a, b, PN_ERR_LARGE);
+}
+
+int64_t pn_wide_add(pn_ctx_t *cx, int64_t a, int64_t b)
+{
+    return add(cx, a, b, PN_ERR_OVERFLOW);
+}
+
+int64_t pn_inf_sub(pn_ctx_t *cx, int64_t a, int64_t b)
+{
+    return subtract(cx, a, b, PN_ERR_LARGE);
+}
+
+int64_t pn_wide_sub(pn_ctx_t *cx, int64_t a, int64_t b)
+{
+    return subtract(cx, a, b, PN_ERR_OVERFLOW);
+}
+
+int64_t pn_inf_mul(pn_ctx_t *cx, int64_t a, int64_t b)
+{
+    return multiply(cx, a, b, PN_ERR_LARGE);
+}
+
+int64_t pn_wide_mul(pn_ctx_t *cx, int64_t a, int64_t b)
+{
+    return multiply(cx, a, b, PN_ERR_OVERFLOW);
+}
+
+int64_t pn_inf_quot(pn_ctx_t *cx, int64_t a, int64_t b)
+{
+    return quotient(cx, a, b, PN_ERR_LARGE);
+}
+
+int64_t pn_wide_quot(pn_ctx_t *cx, int64_t a, int64_t b)
+{
+    return quotient(cx, a, b, PN_ERR_OVERFLOW);
+}
+
+int64_t pn_inf_div(pn_ctx_t *cx, int64_t a, int64_t b)
+{
+    return divide(cx, a, b, PN_ERR_LARGE);
+}
+
+int64_t pn_wide_div(pn_ctx_t *cx, int64_t a, int64_t b)
+{
+    return divide(cx, a, b, PN_ERR_OVERFLOW);
 }
 
 int64_t pn_inf_neg(pn_ctx_t *cx, int64_t a)
 {
-    return pn_inf_sub(cx, 0, a);
+    return negate(cx, a, PN_ERR_LARGE);
+}
+
+int64_t pn_wide_neg(pn_ctx_t *cx, int64_t a)
+{
+    return negate(cx, a, PN_ERR_OVERFLOW);
 }
 
 int64_t pn_inf_abs(pn_ctx_t *cx, int64_t a)
@@ -153,38 +245,9 @@ int64_t pn_inf_abs(pn_ctx_t *cx, int64_t a)
     return (a < 0) ? pn_inf_neg(cx, a) : a;
 }
 
-int64_t pn_inf_quot(pn_ctx_t *cx, int64_t a, int64_t b)
+int64_t pn_wide_abs(pn_ctx_t *cx, int64_t a)
 {
-    if (b == 0) {
-        pn_raise(cx, PN_ERR_DIV, NULL);
-        return 0;
-    }
-    if ((b == -1) && (a == INT64_MIN)) {
-        return overflow(cx);
-    }
-    return a / b;
-}
-
-int64_t pn_inf_rem(pn_ctx_t *cx, int64_t a, int64_t b)
-{
-    if (b == 0) {
-        pn_raise(cx, PN_ERR_DIV, NULL);
-        return 0;
-    }
-    return (b == -1) ? 0 : (a % b);
-}
-
-int64_t pn_inf_div(pn_ctx_t *cx, int64_t a, int64_t b)
-{
-    const int64_t quotient = pn_inf_quot(cx, a, b);
-    const bool is_inexact = (b != 0) && (b != -1) && ((a % b) != 0);
-    return (is_inexact && ((a < 0) != (b < 0))) ? (quotient - 1) : quotient;
-}
-
-int64_t pn_inf_mod(pn_ctx_t *cx, int64_t a, int64_t b)
-{
-    const int64_t remainder = pn_inf_rem(cx, a, b);
-    return ((remainder != 0) && ((remainder < 0) != (b < 0))) ? (remainder + b) : remainder;
+    return (a < 0) ? pn_wide_neg(cx, a) : a;
 }
 
 /* --- reals --------------------------------------------------------------------------------------------------------- */
@@ -197,56 +260,78 @@ double pn_real_round_even(double x)
     return is_up ? (below + 1.0) : below;
 }
 
-static int64_t to_integer(pn_ctx_t *cx, double x)
+static int64_t to_integer(pn_ctx_t *cx, double x, pn_error_t error)
 {
     if (isnan(x)) {
-        pn_raise(cx, PN_ERR_DOMAIN, NULL);
-        return 0;
+        return beyond(cx, PN_ERR_DOMAIN);
+    }
+    if (isinf(x)) {
+        return beyond(cx, PN_ERR_OVERFLOW);
     }
     if ((x < -9223372036854775808.0) || (x >= 9223372036854775808.0)) {
-        return overflow(cx);
+        return beyond(cx, error);
     }
     return (int64_t)x;
 }
 
 int64_t pn_inf_floor(pn_ctx_t *cx, double x)
 {
-    return to_integer(cx, floor(x));
+    return to_integer(cx, floor(x), PN_ERR_LARGE);
 }
 
-int64_t pn_inf_ceil(pn_ctx_t *cx, double x)
+int64_t pn_wide_floor(pn_ctx_t *cx, double x)
 {
-    return to_integer(cx, ceil(x));
-}
-
-int64_t pn_inf_round(pn_ctx_t *cx, double x)
-{
-    return to_integer(cx, pn_real_round_even(x));
-}
-
-int64_t pn_inf_trunc(pn_ctx_t *cx, double x)
-{
-    return to_integer(cx, trunc(x));
+    return to_integer(cx, floor(x), PN_ERR_OVERFLOW);
 }
 
 int64_t pn_real_floor(pn_ctx_t *cx, double x)
 {
-    return pn_int_checked(cx, pn_inf_floor(cx, x));
+    return pn_int_checked(cx, pn_wide_floor(cx, x));
+}
+
+int64_t pn_inf_ceil(pn_ctx_t *cx, double x)
+{
+    return to_integer(cx, ceil(x), PN_ERR_LARGE);
+}
+
+int64_t pn_wide_ceil(pn_ctx_t *cx, double x)
+{
+    return to_integer(cx, ceil(x), PN_ERR_OVERFLOW);
 }
 
 int64_t pn_real_ceil(pn_ctx_t *cx, double x)
 {
-    return pn_int_checked(cx, pn_inf_ceil(cx, x));
+    return pn_int_checked(cx, pn_wide_ceil(cx, x));
+}
+
+int64_t pn_inf_round(pn_ctx_t *cx, double x)
+{
+    return to_integer(cx, pn_real_round_even(x), PN_ERR_LARGE);
+}
+
+int64_t pn_wide_round(pn_ctx_t *cx, double x)
+{
+    return to_integer(cx, pn_real_round_even(x), PN_ERR_OVERFLOW);
 }
 
 int64_t pn_real_round(pn_ctx_t *cx, double x)
 {
-    return pn_int_checked(cx, pn_inf_round(cx, x));
+    return pn_int_checked(cx, pn_wide_round(cx, x));
+}
+
+int64_t pn_inf_trunc(pn_ctx_t *cx, double x)
+{
+    return to_integer(cx, trunc(x), PN_ERR_LARGE);
+}
+
+int64_t pn_wide_trunc(pn_ctx_t *cx, double x)
+{
+    return to_integer(cx, trunc(x), PN_ERR_OVERFLOW);
 }
 
 int64_t pn_real_trunc(pn_ctx_t *cx, double x)
 {
-    return pn_int_checked(cx, pn_inf_trunc(cx, x));
+    return pn_int_checked(cx, pn_wide_trunc(cx, x));
 }
 
 double pn_real_min(double a, double b)

@@ -1,7 +1,11 @@
 /* SPDX-License-Identifier: MIT */
+#define _POSIX_C_SOURCE 200809L /* truncate */
+
 #include "pn/pn_trace.h"
 
 #include <string.h>
+#include <sys/types.h>
+#include <unistd.h>
 
 #include "pn/pn_text.h"
 
@@ -11,6 +15,8 @@ bool pn_trace_open(pn_trace_t *trace, const char *path, char *buffer, size_t cap
     trace->file = NULL;
     trace->step = 0U;
     trace->failed = false;
+    trace->path = path;
+    trace->good = 0U;
     if (path == NULL) {
         return true;
     }
@@ -29,6 +35,8 @@ static void write_line(pn_trace_t *trace)
         const size_t written = fwrite(trace->line.buffer, 1U, trace->line.length, trace->file);
         if ((written != trace->line.length) || (fflush(trace->file) != 0)) {
             trace->failed = true;
+        } else {
+            trace->good += written;
         }
     }
     pn_text_clear(&trace->line);
@@ -40,6 +48,12 @@ static bool is_writing(const pn_trace_t *trace)
 }
 
 void pn_trace_header(pn_trace_t *trace, const pn_net_t *net, const char *by, const char *initial_json)
+{
+    pn_trace_header_with(trace, net, by, initial_json, NULL);
+}
+
+void pn_trace_header_with(pn_trace_t *trace, const pn_net_t *net, const char *by, const char *initial_json,
+                          const char *members_json)
 {
     if (!is_writing(trace)) {
         return;
@@ -55,11 +69,30 @@ void pn_trace_header(pn_trace_t *trace, const pn_net_t *net, const char *by, con
     pn_text_json_str(line, by);
     pn_text_str(line, ", \"initial\": ");
     pn_text_str(line, (initial_json != NULL) ? initial_json : "{}");
+    if (members_json != NULL) {
+        pn_text_str(line, ", ");
+        pn_text_str(line, members_json);
+    }
     pn_text_char(line, '}');
     write_line(trace);
 }
 
+static void text_time(pn_text_t *line, pn_time_t now, bool is_real)
+{
+    if (is_real) {
+        pn_text_json_real(line, now.real);
+    } else {
+        pn_text_int(line, now.integer);
+    }
+}
+
 void pn_trace_occurrence(pn_trace_t *trace, double t, const pn_transition_t *transition, const void *binding)
+{
+    pn_trace_model_occurrence(trace, (pn_time_t){ .real = t }, true, transition, binding);
+}
+
+void pn_trace_model_occurrence(pn_trace_t *trace, pn_time_t now, bool is_real, const pn_transition_t *transition,
+                               const void *binding)
 {
     trace->step++;
     if (!is_writing(trace)) {
@@ -69,7 +102,7 @@ void pn_trace_occurrence(pn_trace_t *trace, double t, const pn_transition_t *tra
     pn_text_str(line, "{\"step\": ");
     pn_text_uint(line, trace->step);
     pn_text_str(line, ", \"t\": ");
-    pn_text_json_real(line, t);
+    text_time(line, now, is_real);
     pn_text_str(line, ", \"transition\": ");
     pn_text_json_str(line, transition->name);
     pn_text_str(line, ", \"binding\": ");
@@ -100,12 +133,17 @@ void pn_trace_note(pn_trace_t *trace, double t, const char *event, const char *m
 
 void pn_trace_end(pn_trace_t *trace, double t, const char *why)
 {
+    pn_trace_model_end(trace, (pn_time_t){ .real = t }, true, why);
+}
+
+void pn_trace_model_end(pn_trace_t *trace, pn_time_t now, bool is_real, const char *why)
+{
     if (!is_writing(trace)) {
         return;
     }
     pn_text_t *line = &trace->line;
     pn_text_str(line, "{\"t\": ");
-    pn_text_json_real(line, t);
+    text_time(line, now, is_real);
     pn_text_str(line, ", \"event\": \"end\", \"why\": ");
     pn_text_json_str(line, why);
     pn_text_char(line, '}');
@@ -117,6 +155,11 @@ bool pn_trace_close(pn_trace_t *trace)
     if (trace->file != NULL) {
         const bool is_flushed = (trace->file == stdout) ? (fflush(trace->file) == 0) : (fclose(trace->file) == 0);
         trace->failed = trace->failed || !is_flushed;
+        if (trace->failed && (trace->file != stdout)) {
+            /* Without effect on what is no ordinary file; the failure is reported in any case. */
+            const int ignored = truncate(trace->path, (off_t)trace->good);
+            (void)ignored;
+        }
         trace->file = NULL;
     }
     return !trace->failed;

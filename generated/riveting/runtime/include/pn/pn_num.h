@@ -52,8 +52,18 @@ void pn_clear_error(pn_ctx_t *cx);
 #define PN_PI 3.141592653589793
 #define PN_E 2.718281828459045
 
+/* Integers: `int` has 31 bits (pn_int_*), or 64 (pn_wide_*) in nets generated so; beyond them Overflow is raised. IntInf.int
+ * (pn_inf_*) is unbounded in CPN ML and has 64 bits here: beyond them is PN_ERR_LARGE, which no handler catches. */
+#define PN_INT_MAX INT64_C(1073741823)
+#define PN_INT_MIN (-INT64_C(1073741824))
+
+/* Raises Overflow. */
+int64_t pn_int_overflow(pn_ctx_t *cx);
 /* The value if it is in the 31-bit range; else Overflow. */
-int64_t pn_int_checked(pn_ctx_t *cx, int64_t value);
+static inline int64_t pn_int_checked(pn_ctx_t *cx, int64_t value)
+{
+    return ((value <= PN_INT_MAX) && (value >= PN_INT_MIN)) ? value : pn_int_overflow(cx);
+}
 
 static inline int64_t pn_step(const pn_ctx_t *cx)
 {
@@ -115,6 +125,14 @@ int64_t pn_inf_mod(pn_ctx_t *cx, int64_t a, int64_t b);
 int64_t pn_inf_quot(pn_ctx_t *cx, int64_t a, int64_t b);
 int64_t pn_inf_rem(pn_ctx_t *cx, int64_t a, int64_t b);
 
+int64_t pn_wide_add(pn_ctx_t *cx, int64_t a, int64_t b);
+int64_t pn_wide_sub(pn_ctx_t *cx, int64_t a, int64_t b);
+int64_t pn_wide_mul(pn_ctx_t *cx, int64_t a, int64_t b);
+int64_t pn_wide_neg(pn_ctx_t *cx, int64_t a);
+int64_t pn_wide_abs(pn_ctx_t *cx, int64_t a);
+int64_t pn_wide_div(pn_ctx_t *cx, int64_t a, int64_t b);
+int64_t pn_wide_quot(pn_ctx_t *cx, int64_t a, int64_t b);
+
 static inline double pn_int_to_real(int64_t a)
 {
     return (double)a;
@@ -127,11 +145,15 @@ int64_t pn_real_round(pn_ctx_t *cx, double x);
 int64_t pn_real_trunc(pn_ctx_t *cx, double x);
 /* Rounds a half to even, as a real. */
 double pn_real_round_even(double x);
-/* The same to 64-bit integers (IntInf.int, model time). */
+/* The same to 64-bit integers: IntInf.int and model time; int. */
 int64_t pn_inf_floor(pn_ctx_t *cx, double x);
 int64_t pn_inf_ceil(pn_ctx_t *cx, double x);
 int64_t pn_inf_round(pn_ctx_t *cx, double x);
 int64_t pn_inf_trunc(pn_ctx_t *cx, double x);
+int64_t pn_wide_floor(pn_ctx_t *cx, double x);
+int64_t pn_wide_ceil(pn_ctx_t *cx, double x);
+int64_t pn_wide_round(pn_ctx_t *cx, double x);
+int64_t pn_wide_trunc(pn_ctx_t *cx, double x);
 
 /* Real.min and Real.max: the other argument if one is nan. */
 double pn_real_min(double a, double b);

@@ -2,7 +2,8 @@
  * pn_trace.h - writes `*.trace.jsonl` files (docs/trace.md).
  *
  * A trace that is not open (path NULL) swallows everything, so that hosts need not ask. Each line is written whole and
- * flushed. A write error or a line that is longer than the buffer sets `failed`; nothing is written after that.
+ * flushed. A write error or a line that is longer than the buffer sets `failed`; nothing is written after that, and what was written
+ * of a line that is not whole is cut off when the trace is closed.
  */
 #ifndef PN_TRACE_H
 #define PN_TRACE_H
@@ -16,6 +17,8 @@ typedef struct pn_trace {
     pn_text_t line;  /* the line being made */
     uint64_t step;   /* of the last occurrence written */
     bool failed;
+    const char *path;
+    uint64_t good;   /* bytes of the lines that were written whole */
 } pn_trace_t;
 
 /* Opens `path` for writing ("-": standard output; NULL: no trace). `buffer` holds one line at a time and must live as long
@@ -26,8 +29,16 @@ PN_NODISCARD bool pn_trace_open(pn_trace_t *trace, const char *path, char *buffe
  * net's own initial marking, or NULL for none. */
 void pn_trace_header(pn_trace_t *trace, const pn_net_t *net, const char *by, const char *initial_json);
 
+/* The same with further members, without the outer braces, such as "\"seed\": 7". */
+void pn_trace_header_with(pn_trace_t *trace, const pn_net_t *net, const char *by, const char *initial_json,
+                          const char *members_json);
+
 /* One occurrence at `t` seconds; `binding` as it is after the fire, code-segment outputs included. Numbers the steps. */
 void pn_trace_occurrence(pn_trace_t *trace, double t, const pn_transition_t *transition, const void *binding);
+
+/* The same at a model time. */
+void pn_trace_model_occurrence(pn_trace_t *trace, pn_time_t now, bool is_real, const pn_transition_t *transition,
+                               const void *binding);
 
 /* A note: {"t": t, "event": event, MEMBERS}; `members_json` is NULL or further members without the outer braces,
  * such as "\"robot\": \"robot1\"". */
@@ -35,6 +46,7 @@ void pn_trace_note(pn_trace_t *trace, double t, const char *event, const char *m
 
 /* The last line of a complete trace: {"t": t, "event": "end", "why": why}. */
 void pn_trace_end(pn_trace_t *trace, double t, const char *why);
+void pn_trace_model_end(pn_trace_t *trace, pn_time_t now, bool is_real, const char *why);
 
 /* Closes the file. False when anything could not be written. */
 bool pn_trace_close(pn_trace_t *trace);

@@ -1,0 +1,86 @@
+/* SPDX-License-Identifier: MIT
+ * simulate_impl.h - what the parts of the simulator share: options, the state of a run, its report.
+ */
+#ifndef SIMULATE_IMPL_H
+#define SIMULATE_IMPL_H
+
+#include <stdio.h>
+
+#include "pn/pn_net.h"
+#include "pn/pn_trace.h"
+
+typedef struct sim_options {
+    uint64_t steps;
+    uint64_t seed;
+    const char *trace;   /* NULL: none */
+    const char *report;  /* NULL: none */
+    const char *replay;  /* NULL: none; "-": the standard input */
+    double progress_s;   /* seconds between two progress lines of the report; 0: none */
+    pn_time_t until;
+    bool has_until;
+    bool shows_enabled;
+    bool shows_marking;
+    bool shows_help;
+} sim_options_t;
+
+/* What became of an attempt to go on. */
+typedef enum sim_next {
+    SIM_FOUND,    /* something is enabled, at the marking's time */
+    SIM_FINISHED, /* nothing is enabled, and nothing ever will be */
+    SIM_BEYOND,   /* something will be, but only after the time of --until, which it is now */
+    SIM_FAILED    /* an inscription raised an exception */
+} sim_next_t;
+
+typedef struct sim {
+    sim_options_t options;
+    pn_ctx_t cx;
+    void *marking;
+    void *binding;       /* of the occurrence that is being worked on */
+    uint32_t *enabled;   /* room for the indices of all transitions */
+    uint32_t enabled_count;
+    pn_trace_t trace;
+    FILE *report;
+    uint64_t steps;      /* occurrences, replayed ones included */
+    uint64_t replayed;
+    const char *why;     /* see print_help in simulate.c */
+    const char *doing;   /* "" or what went wrong while ... */
+    char message[512];   /* of a replay that is refused */
+    int64_t transition;  /* that went wrong; -1: none */
+    bool has_binding;    /* `binding` is of that transition */
+} sim_t;
+
+/* --- simulate_play.c: the search and the steps --- */
+
+/* Moves time on to where something is enabled, if nothing is now; fills `enabled` with the transitions of the best priority. */
+sim_next_t sim_settle(sim_t *sim);
+/* One occurrence at random; false when the run ends here (`why` says why). */
+bool sim_step(sim_t *sim);
+/* Lets `binding` of a transition occur and writes it to the trace; false after an error. */
+bool sim_fire(sim_t *sim, uint32_t transition);
+/* Notes that the evaluation has failed: `why` is "error". */
+void sim_fail(sim_t *sim, const char *doing, int64_t transition, bool has_binding);
+bool sim_is_interrupted(void);
+void sim_catch_signals(void);
+
+/* --- simulate_replay.c: steps that are given --- */
+
+/* Repeats the steps of a script (see there); false when the run ends here. */
+bool sim_replay(sim_t *sim);
+
+/* --- simulate_report.c: for the program that has started this one --- */
+
+/* A JSON object on a line of its own: {"steps": 100, "t": 12}, at most one in `progress_s` seconds. */
+void sim_report_progress(sim_t *sim);
+/* The last line: how the run has ended, and the marking. False when it could not be written. */
+bool sim_report_end(sim_t *sim);
+/* The marking as JSON: {"Top.P": [[1, 5]], ...}; false when it could not be written. */
+bool sim_print_marking(const void *marking, FILE *out);
+
+/* Model time as a JSON number. */
+void sim_text_time(pn_text_t *text, pn_time_t time);
+
+/* Room for one long text at a time: a binding, the marking of a place. */
+#define SIM_TEXT_SIZE ((size_t)1U << 26U)
+extern char sim_text_buffer[SIM_TEXT_SIZE];
+
+#endif /* SIMULATE_IMPL_H */

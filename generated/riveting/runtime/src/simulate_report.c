@@ -1,0 +1,136 @@
+/* SPDX-License-Identifier: MIT
+ * simulate_report.c - JSON lines for the program that has started the simulator.
+ *
+ *     {"steps": 1000, "t": 12}                                                                          progress
+ *     {"why": "finished", "steps": 1200, "replayed": 0, "t": 14, "marking": {"Top.P": [[1, 5]]}}        the end
+ *
+ * After an error the end also has "error", "origin", "doing", and where they are known "transition" (its index) and "binding";
+ * after a replay that was refused "message".
+ */
+#include <inttypes.h>
+#include <string.h>
+#include <time.h>
+
+#include "pn/pn_text.h"
+#include "simulate_impl.h"
+
+char sim_text_buffer[SIM_TEXT_SIZE];
+
+void sim_text_time(pn_text_t *text, pn_time_t time)
+{
+    if (pn_net.real_time) {
+        pn_text_json_real(text, time.real);
+    } else {
+        pn_text_int(text, time.integer);
+    }
+}
+
+/* Writes the text and empties it. */
+static bool put(pn_text_t *text, FILE *out)
+{
+    const bool is_whole = !text->truncated && (fwrite(text->buffer, 1U, text->length, out) == text->length);
+    pn_text_clear(text);
+    return is_whole;
+}
+
+static void text_start(pn_text_t *text)
+{
+    pn_text_init(text, sim_text_buffer, sizeof sim_text_buffer);
+}
+
+static double wall_clock(void)
+{
+    struct timespec now = { 0, 0 };
+    (void)timespec_get(&now, TIME_UTC);
+    return (double)now.tv_sec + ((double)now.tv_nsec / 1e9);
+}
+
+void sim_report_progress(sim_t *sim)
+{
+    static double s_last;
+    if ((sim->report == NULL) || !(sim->options.progress_s > 0.0)) {
+        return;
+    }
+    const double now = wall_clock();
+    if ((now >= s_last) && (now < (s_last + sim->options.progress_s))) {
+        return;
+    }
+    s_last = now;
+    pn_text_t text;
+    text_start(&text);
+    pn_text_str(&text, "{\"steps\": ");
+    pn_text_uint(&text, sim->steps);
+    pn_text_str(&text, ", \"t\": ");
+    sim_text_time(&text, pn_net.now(sim->marking));
+    pn_text_str(&text, "}\n");
+    (void)put(&text, sim->report);
+    (void)fflush(sim->report);
+}
+
+bool sim_print_marking(const void *marking, FILE *out)
+{
+    pn_text_t text;
+    text_start(&text);
+    bool is_fine = true;
+    pn_text_char(&text, '{');
+    for (uint32_t i = 0U; i < pn_net.place_count; i++) {
+        pn_text_str(&text, (i > 0U) ? ", " : "");
+        pn_text_json_str(&text, pn_net.place[i].name);
+        pn_text_str(&text, ": ");
+        pn_net.place[i].json(marking, &text);
+        is_fine = put(&text, out) && is_fine;
+    }
+    pn_text_char(&text, '}');
+    return put(&text, out) && is_fine;
+}
+
+static void text_member(pn_text_t *text, const char *name, const char *value)
+{
+    pn_text_str(text, ", \"");
+    pn_text_str(text, name);
+    pn_text_str(text, "\": ");
+    pn_text_json_str(text, value);
+}
+
+static void text_error(pn_text_t *text, const sim_t *sim)
+{
+    text_member(text, "error", sim->cx.error_name);
+    text_member(text, "origin", sim->cx.error_origin);
+    text_member(text, "doing", sim->doing);
+    if (sim->transition >= 0) {
+        pn_text_str(text, ", \"transition\": ");
+        pn_text_int(text, sim->transition);
+        if (sim->has_binding) {
+            pn_text_str(text, ", \"binding\": ");
+            pn_net.transition[sim->transition].binding_json(sim->binding, text);
+        }
+    }
+}
+
+bool sim_report_end(sim_t *sim)
+{
+    if (sim->report == NULL) {
+        return true;
+    }
+    pn_text_t text;
+    text_start(&text);
+    pn_text_str(&text, "{\"why\": ");
+    pn_text_json_str(&text, sim->why);
+    pn_text_str(&text, ", \"steps\": ");
+    pn_text_uint(&text, sim->steps);
+    pn_text_str(&text, ", \"replayed\": ");
+    pn_text_uint(&text, sim->replayed);
+    pn_text_str(&text, ", \"t\": ");
+    sim_text_time(&text, pn_net.now(sim->marking));
+    if (strcmp(sim->why, "error") == 0) {
+        text_error(&text, sim);
+    }
+    if (sim->message[0] != '\0') {
+        text_member(&text, "message", sim->message);
+    }
+    pn_text_str(&text, ", \"marking\": ");
+    bool is_fine = put(&text, sim->report);
+    is_fine = sim_print_marking(sim->marking, sim->report) && is_fine;
+    is_fine = (fputs("}\n", sim->report) >= 0) && is_fine;
+    return (fclose(sim->report) == 0) && is_fine;
+}

@@ -1,0 +1,2 @@
+fun CommandLine_name () = "cpn"
+fun CommandLine_arguments () : string list = nil

@@ -1,0 +1,10 @@
+fun Int_sameSign (a, b) = Int.sign a = Int.sign b
+
+fun Int_fmt radix n = IntInf.fmt radix (Int.toLarge n)
+
+fun Int_scan radix getc stream =
+    case IntInf.scan radix getc stream of
+        SOME (n, rest) => SOME (Int.fromLarge n, rest)
+      | NONE => NONE
+
+fun Int_fromString s = StringCvt.scanString (Int_scan StringCvt.DEC) s

@@ -1,0 +1,2 @@
+fun ModelTime_fromString s = Real.fromString s
+fun ModelTime_maketime s = valOf (Real.fromString s)

@@ -1,0 +1,2 @@
+fun ModelTime_fromString s = IntInf.fromString s
+fun ModelTime_maketime s = valOf (IntInf.fromString s)
