@@ -36,6 +36,8 @@ from pn2code.semantics.marking import (
 from pn2code.semantics.values import Value
 
 SIMULATORS = frozenset({"simulate", "reference"})
+DEFAULT_SEED = 1
+"""Of the random numbers of a run whose header does not name another."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -122,7 +124,7 @@ def replay(
             configuration of the cell with it.)
         limits: of each evaluation.
     """
-    with path.open(encoding="utf-8") as lines:
+    with path.open(encoding="utf-8", errors="replace") as lines:
         return replay_lines(
             lines,
             net,
@@ -146,7 +148,8 @@ def replay_lines(
 ) -> ReplayResult:
     """Replays the lines of a trace; see `replay`."""
     game: Game | None = None
-    steps, at, ended, transition = 0, 0, None, ""
+    steps, at, ended, transition, source = 0, 0, None, "", net.name
+    names = {t.name: t for t in net.transitions}
     try:
         for number, text in enumerate(lines, 1):
             if not text.strip():
@@ -157,7 +160,8 @@ def replay_lines(
             if game is None:
                 if check_digest and line.get("digest") != net.sha256:
                     raise _Wrong("the trace is of another net: its digest differs")
-                game = Game(net, storage, _initial(net, line), limits=limits)
+                source = str(line.get("net", source))
+                game = Game(net, storage, _initial(net, line), seed=_seed(line), limits=limits)
                 rules = rules or _rules_for(str(line.get("by", "")), time_unit)
             elif line.get("event") == "end":
                 assert rules is not None
@@ -165,12 +169,13 @@ def replay_lines(
                 _check_end(game, ended, rules)
             elif "event" not in line:
                 assert rules is not None
-                _step(game, line, rules)
+                _step(game, line, rules, names)
                 steps += 1
         if game is None:
             raise _Wrong("the trace is empty")
     except (_Wrong, GameError) as wrong:
-        return ReplayResult(False, steps, str(wrong), at, transition, ended, game)
+        why = str(wrong) if source == net.name else f"{wrong}; the trace is of net `{source}`"
+        return ReplayResult(False, steps, why, at, transition, ended, game)
     return ReplayResult(True, steps, "", 0, "", ended, game)
 
 
@@ -205,9 +210,19 @@ def _initial(net: FlatNet, header: dict[str, Any]) -> dict[str, PlaceMarking]:
     return found
 
 
-def _step(game: Game, line: dict[str, Any], rules: Rules) -> None:
+def _seed(header: dict[str, Any]) -> int:
+    """The seed of the random numbers of the run."""
+    seed = header.get("seed", DEFAULT_SEED)
+    if isinstance(seed, bool) or not isinstance(seed, int):
+        raise _Wrong("the `seed` of the header is not a number")
+    return seed
+
+
+def _step(
+    game: Game, line: dict[str, Any], rules: Rules, names: Mapping[str, FlatTransition]
+) -> None:
     """Repeats one occurrence; raises _Wrong when that is not possible."""
-    t = next((t for t in game.net.transitions if t.name == line.get("transition")), None)
+    t = names.get(str(line.get("transition")))
     if t is None:
         raise _Wrong("the net has no such transition")
     given = _binding(t, line.get("binding", {}))
@@ -261,7 +276,8 @@ def _set_clock(game: Game, line: dict[str, Any], rules: Rules) -> None:
     if isinstance(t, bool) or not isinstance(t, int | float):
         raise _Wrong("it has no time `t`")
     if rules.own_clock:
-        game.advance()
+        if t != game.marking.time:  # else what is enabled at this time keeps the clock
+            game.marking = game.settle(game.marking)
         if t != game.marking.time:
             raise _Wrong(f"it says time {t}, but the clock shows {game.marking.time}")
         return

@@ -1,0 +1,157 @@
+"""`pn2code replay`: is a recorded run an occurrence sequence of the net?"""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import Annotated, Any, NoReturn
+
+import typer
+
+from pn2code.cli.nets import OpenNet, open_net, playing
+from pn2code.cli.options import (
+    DEFAULT_INT_BITS,
+    Engine,
+    EngineOption,
+    Exit,
+    FilesOption,
+    Format,
+    FormatOption,
+    IntBitsOption,
+    JsonOption,
+    SetOption,
+    parse_values,
+)
+from pn2code.semantics import replay as own
+from pn2code.semantics.recording import NotARecording, Recording, recording
+from pn2code.semantics.replay_recording import follow
+from pn2code.semantics.report import places, time_text
+
+EPILOG = """Examples:
+
+  pn2code simulate net.cpn --trace run.trace.jsonl && pn2code replay run.trace.jsonl net.cpn
+
+  pn2code replay recorded.json net.cpn --json
+"""
+
+LARGEST = 500_000_000
+"""Bytes of a recording, which is read as a whole."""
+
+
+def replay(
+    trace: Annotated[Path, typer.Argument(help="A *.trace.jsonl, or a recording by CPN Tools.")],
+    net: Annotated[Path, typer.Argument(help="A .cpn file, a cell.toml, or a folder with one.")],
+    as_json: JsonOption = False,
+    engine: EngineOption = Engine.REFERENCE,
+    settings: SetOption = [],  # noqa: B006 - typer reads the default only
+    files: FilesOption = None,
+    int_bits: IntBitsOption = DEFAULT_INT_BITS,
+    form: FormatOption = Format.FULL,
+) -> None:
+    """Repeat a recorded run step by step: is each step enabled when its turn comes?
+
+    What the net draws at random is not in a recording of CPN Tools; such a run is followed as far as it is determined,
+    and that is said.
+    """
+    what = kind(trace)
+    opened = open_net(net, parse_values(settings), form, int_bits=int_bits)
+    if isinstance(what, Recording):
+        if engine is Engine.COMPILED:
+            _refuse("--engine compiled repeats a *.trace.jsonl only; this is a recording")
+        with playing(form):
+            result = _recording(what, opened, files)
+    elif engine is Engine.COMPILED:
+        _refuse("--engine compiled is not there yet")
+    else:
+        result = _own(trace, opened, files)
+    if as_json:
+        typer.echo(json.dumps(result, indent=1))
+    else:
+        typer.echo(_sentence(trace, result))
+    if not result["ok"]:
+        raise typer.Exit(Exit.MODEL)
+
+
+def kind(trace: Path) -> Recording | None:
+    """The recording that a file is; None for a trace of our own; leaves when it is neither."""
+    try:
+        with trace.open(encoding="utf-8") as lines:
+            first = next((line for line in lines if line.strip()), "")
+            if _is_header(first):
+                return None
+            if trace.stat().st_size > LARGEST:
+                _refuse(f"`{trace}` is too large for a recording")
+            lines.seek(0)
+            return recording(json.load(lines))
+    except OSError as problem:
+        _refuse(f"cannot read `{trace}`: {problem.strerror or problem}")
+    except UnicodeDecodeError:
+        _refuse(f"`{trace}` is not a trace: it is no UTF-8 text")
+    except json.JSONDecodeError as problem:
+        _refuse(f"`{trace}` is not a trace: {problem}")
+    except RecursionError:
+        _refuse(f"`{trace}` is not a trace: it is nested too deeply")
+    except NotARecording as problem:
+        _refuse(f"`{trace}`: {problem}")
+
+
+def _is_header(line: str) -> bool:
+    """Whether a line by itself is the header of a trace, or another line of one."""
+    try:
+        data = json.loads(line)
+    except (json.JSONDecodeError, RecursionError):
+        return False
+    return isinstance(data, dict) and not {"trace", "transition", "event"}.isdisjoint(data)
+
+
+def _refuse(message: str) -> NoReturn:
+    typer.echo(f"pn2code: {message}", err=True)
+    raise typer.Exit(Exit.USAGE)
+
+
+def _recording(run: Recording, opened: OpenNet, files: Path | None) -> dict[str, Any]:
+    """A recording, by the token game."""
+    followed = follow(run, opened.game(seed=0, files=files))
+    return {
+        "ok": followed.ok,
+        "steps": followed.steps,
+        "failed_step": None if followed.ok else followed.steps + 1,
+        "why": followed.why,
+        "time": followed.time,
+        "random": followed.random,
+        "drawn": list(followed.drawn),
+        "places": followed.rows,
+    }
+
+
+def _own(trace: Path, opened: OpenNet, files: Path | None) -> dict[str, Any]:
+    """A trace of our own, by the token game."""
+    result = own.replay(trace, opened.flat, opened.storage)
+    game = result.game
+    return {
+        "ok": result.ok,
+        "steps": result.steps,
+        "failed_step": None if result.ok else result.steps + 1,
+        "why": result.why,
+        "line": result.line,
+        "transition": result.transition,
+        "ended": result.ended,
+        "time": game.marking.time if game else None,
+        "places": places(opened.flat, game.marking) if game else [],
+    }
+
+
+def _sentence(trace: Path, result: dict[str, Any]) -> str:
+    """The result for people."""
+    steps = f"{result['steps']} step{'s' * (result['steps'] != 1)}"
+    if not result["ok"]:
+        line = f"{trace}:{result['line']}" if result.get("line") else str(trace)
+        transition = f"`{result['transition']}`: " if result.get("transition") else ""
+        return (
+            f"{line}: step {result['failed_step']} cannot be repeated: {transition}{result['why']}"
+        )
+    ended = f", ended: {result['ended']}" if result.get("ended") else ""
+    text = f"{trace}: {steps}, each enabled when its turn came{ended}"
+    if result["time"]:
+        text += f", until time {time_text(result['time'])}"
+    return text + (f"\n{result['why']}" if result["why"] else "")
