@@ -5,7 +5,17 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable
 from typing import TYPE_CHECKING, Any
 
-from pn2code.semantics.values import NONE, UNIT, Data, MlException, Value, equal, exception, some
+from pn2code.semantics.values import (
+    NONE,
+    UNIT,
+    Data,
+    MlException,
+    Ref,
+    Value,
+    equal,
+    exception,
+    some,
+)
 
 if TYPE_CHECKING:
     from pn2code.semantics.evaluate import Evaluator, Task
@@ -129,7 +139,8 @@ def _tabulate(e: Evaluator, p: tuple[int, Value]) -> Task:
     return (yield _map(e, p[1], tuple(range(p[0]))))
 
 
-def _collate(e: Evaluator, compare: Value, p: tuple[Items, Items]) -> Task:
+def collate(e: Evaluator, compare: Value, p: tuple[Items, Items]) -> Task:
+    """`List.collate`: lexicographic order by an order of the elements."""
     for a, b in zip(p[0], p[1], strict=False):
         found = yield e.call(compare, (a, b))
         if found.name != "EQUAL":
@@ -225,7 +236,46 @@ def _pairs(p: tuple[Items, Items]) -> Items:
     return tuple(zip(p[0], p[1], strict=False))
 
 
+def _equal_pairs(p: tuple[Items, Items]) -> Items:
+    if len(p[0]) != len(p[1]):
+        raise MlException(exception("UnequalLengths"))
+    return _pairs(p)
+
+
+def _before_unequal(p: tuple[Items, Items], work: Task) -> Task:
+    """`mapEq` and `appEq` see the difference of the lengths when they arrive there."""
+    found = yield work
+    _equal_pairs(p)
+    return found
+
+
+def _all_pairs(e: Evaluator, predicate: Value, p: tuple[Items, Items]) -> Task:
+    return (yield _all(e, predicate, _pairs(p))) and len(p[0]) == len(p[1])
+
+
+def _compose_options(e: Evaluator, functions: tuple[Value, Value], argument: Value) -> Task:
+    inner = yield e.call(functions[1], argument)
+    return (yield _option_map(e, functions[0], inner))
+
+
+def _compose_partial(e: Evaluator, functions: tuple[Value, Value], argument: Value) -> Task:
+    inner = yield e.call(functions[1], argument)
+    return NONE if inner.argument is None else (yield e.call(functions[0], inner.argument))
+
+
+def _map_filter(e: Evaluator, p: tuple[Ref, Items]) -> Task:
+    """`mapfilter`: the function is looked up anew for each element."""
+    found: list[Value] = []
+    for item in p[1]:
+        wanted, value = yield e.call(p[0].contents, item)
+        if wanted:
+            found.append(value)
+    return tuple(found)
+
+
 FUNCTIONS: dict[str, tuple[int, Function]] = {
+    "Option.compose": (2, _compose_options),
+    "Option.composePartial": (2, _compose_partial),
     "Option.valOf": (1, _value_of),
     "Option.isSome": (1, lambda e, option: option.argument is not None),
     "Option.getOpt": (1, lambda e, p: p[1] if p[0].argument is None else p[0].argument),
@@ -258,7 +308,7 @@ FUNCTIONS: dict[str, tuple[int, Function]] = {
     "List.foldr": (3, _fold_right),
     "List.tabulate": (1, _tabulate),
     "List.getItem": (1, lambda e, items: some((items[0], items[1:])) if items else NONE),
-    "List.collate": (2, _collate),
+    "List.collate": (2, collate),
     "List.mem": (2, lambda e, items, item: contains(items, item)),
     "List.remdupl": (1, lambda e, items: _without_duplicates(items)),
     "List.rm": (2, lambda e, item, items: without_first(items, item)),
@@ -274,6 +324,20 @@ FUNCTIONS: dict[str, tuple[int, Function]] = {
     "List.sort": (2, sort),
     "List.unique_sort": (2, _unique_sort),
     "List.fmap": (2, _concat_map),
+    "List.mapfilter": (1, _map_filter),
+    "List.predlist": (2, _exists),
+    "ListPair.zipEq": (1, lambda e, p: _equal_pairs(p)),
+    "ListPair.mapEq": (2, lambda e, f, p: _before_unequal(p, _map(e, f, _pairs(p)))),
+    "ListPair.appEq": (2, lambda e, f, p: _before_unequal(p, _app(e, f, _pairs(p)))),
+    "ListPair.allEq": (2, _all_pairs),
+    "ListPair.foldlEq": (
+        3,
+        lambda e, f, start, p: _before_unequal(p, _fold_pairs(e, f, start, _pairs(p))),
+    ),
+    "ListPair.foldrEq": (
+        3,
+        lambda e, f, start, p: _fold_pairs(e, f, start, _equal_pairs(p)[::-1]),
+    ),
     "ListPair.zip": (1, lambda e, p: _pairs(p)),
     "ListPair.unzip": (
         1,

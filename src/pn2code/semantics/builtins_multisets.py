@@ -32,7 +32,28 @@ def _contained(part: Items, whole: Items) -> bool:
 def _random(e: Evaluator, items: Items) -> Value:
     if not items:
         raise MlException(exception("Empty"))
-    return e.random.choice(items)  # type: ignore[no-any-return]
+    return items[e.random.below(len(items))]  # type: ignore[no-any-return]
+
+
+def _all_legal(e: Evaluator, legal: Value, items: Items) -> Task:
+    for item in reversed(items):
+        if not (yield e.call(legal, item)):
+            return False
+    return True
+
+
+def _text(e: Evaluator, p: tuple[Value, Value], items: Items) -> Task:
+    """`mkstr_ms`: neighbours in the sorted list count as equal unless the first is less."""
+    to_text, less = p
+    ordered = yield sort(e, less, items)
+    lines: list[str] = []
+    count = 0
+    for i, item in enumerate(ordered):
+        count += 1
+        if i + 1 == len(ordered) or (yield e.call(less, (item, ordered[i + 1]))):
+            lines.append(f"{count}`{(yield e.call(to_text, item))}")
+            count = 0
+    return "++\n".join(lines) or "empty"
 
 
 def _extend(e: Evaluator, function: Value, items: Items) -> Task:
@@ -77,4 +98,6 @@ FUNCTIONS: dict[str, tuple[int, Function]] = {
     "Ms.ms_to_list": (1, lambda e, items: items),
     "Ms.list_to_ms": (1, lambda e, items: items),
     "Ms.sort_ms": (2, sort),
+    "Ms.legal_ms": (2, _all_legal),
+    "Ms.mkstr_ms": (2, _text),
 }

@@ -210,7 +210,7 @@ class Colours:
         everything = self.all(c)
         if not everything:
             raise _out_of_range()
-        return self.evaluator.random.choice(everything)
+        return everything[self.evaluator.random.below(len(everything))]
 
     def base(self, c: Colset) -> Value:
         """Some value of the colour set: the first one, or the simplest of an unbounded one."""

@@ -35,7 +35,7 @@ from pn2code.semantics.marking import (
     variable_text,
 )
 from pn2code.semantics.multiset import MultiSet, TimedMultiSet
-from pn2code.semantics.values import MlException, MlLimit, Timed, Value
+from pn2code.semantics.values import MlException, MlLimit, MlUnavailable, Timed, Value
 
 
 class GameError(Exception):
@@ -75,6 +75,8 @@ def running(origin: Origin, doing: str) -> Iterator[None]:
     except MlException as raised:
         message = f"{doing} raised the exception `{raised}`"
         raise GameError(message, origin, raised.span) from None
+    except MlUnavailable as unavailable:
+        raise GameError(f"{doing} cannot go on: {unavailable}", origin) from None
     except (MlLimit, RecursionError) as limit:
         raise GameError(f"{doing} was given up: {limit}", origin) from None
 

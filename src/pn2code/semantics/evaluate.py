@@ -15,7 +15,6 @@ expression has seen it.
 
 from __future__ import annotations
 
-import random
 from collections.abc import Callable, Generator, Iterable, Mapping
 from dataclasses import dataclass
 from types import GeneratorType
@@ -28,6 +27,8 @@ from pn2code.ml.types import TRecord
 from pn2code.semantics import values as v
 from pn2code.semantics.builtins import builtin, colset_builtin
 from pn2code.semantics.colours import Colours
+from pn2code.semantics.files import Files
+from pn2code.semantics.random import RandomStream
 from pn2code.semantics.values import Closure, Data, MlException, MlLimit, Native, Value, exception
 
 Environment = Mapping[int, Value]
@@ -65,6 +66,7 @@ class Evaluator:
         seed: of the random functions.
         limits: against endless functions.
         output: is given every text that the net prints.
+        files: what the net can do with files; nothing by default.
 
     Attributes:
         now: the model time that `time()` gives; set by the token game.
@@ -83,15 +85,18 @@ class Evaluator:
         program: core.Program,
         *,
         real_time: bool = False,
-        seed: int = 0,
+        seed: int = 1,
         limits: Limits | None = None,
         output: Callable[[str], None] = lambda text: None,
+        files: Files | None = None,
     ) -> None:
-        self.program = program
+        self.program: core.Program = program
         self.limits = limits or Limits()
-        self.output = output
-        self.random = random.Random(seed)
+        self.files: Files = files or Files(output=output)
+        self.random = RandomStream(seed)
         self.real_time = real_time
+        self.max_int: int = 2 ** (program.int_bits - 1) - 1
+        self.min_int: int = -(2 ** (program.int_bits - 1))
         self.now: int | float = 0.0 if real_time else 0
         self.steps = 0
         # Both know each other: a subset colour set has a predicate, an expression colour-set functions.
@@ -165,7 +170,7 @@ class Evaluator:
             case core.Apply():
                 return self._apply(exp, env)
             case core.Builtin(name, colset=colset):
-                return builtin(name) if colset is None else colset_builtin(self, name, colset)
+                return builtin(self, name) if colset is None else colset_builtin(self, name, colset)
             case core.RecordExp():
                 return self._record(exp, env)
             case core.Con(constructor):

@@ -7,10 +7,13 @@
 | `string`, `char` | `str` |
 | `bool` | `bool` |
 | record, tuple, `unit` | `tuple` of the fields, in SML's order of the labels |
-| list, multi-set | `tuple` of the elements |
+| list, multi-set, vector | `tuple` of the elements |
+| `word`, `Time.time` (nanoseconds) | `int` |
 | other data types, exceptions | `Data` |
 | `v@s` | `Timed` |
-| `ref` | `Ref`, equal only to itself |
+| `ref`, `array` | `Ref`, `Array`, equal only to themselves |
+| `substring` | `Slice` |
+| `instream`, `outstream` | `Stream`, see `files` |
 | function | `Closure` or `Native` |
 
 A value alone does not tell a list from a tuple: its type does, and every user of a value knows the type.
@@ -31,7 +34,7 @@ if TYPE_CHECKING:
     from pn2code.ml.core import Rule
 
 MAX_INT = 2**30 - 1
-"""Largest `int`: CPN Tools runs on a 31-bit SML."""
+"""Largest `int`: CPN Tools runs on a 31-bit SML (`Program.int_bits` may say 64)."""
 MIN_INT = -(2**30)
 
 
@@ -65,6 +68,32 @@ class Ref:
     contents: Value
 
 
+@dataclass(slots=True, eq=False)
+class Array:
+    """An array; like a reference it changes, and is equal only to itself."""
+
+    items: list[Value]
+
+
+class Stream:
+    """A stream of TextIO, or of the names in a folder; see `files`."""
+
+    __slots__ = ()
+
+
+@dataclass(frozen=True, slots=True)
+class Slice:
+    """A substring: a part of a text."""
+
+    text: str
+    start: int
+    length: int
+
+    def __str__(self) -> str:
+        """Return its characters."""
+        return self.text[self.start : self.start + self.length]
+
+
 @dataclass(frozen=True, slots=True, eq=False)
 class Closure:
     """A function of the net: rules, and the values of the local variables around them."""
@@ -91,7 +120,9 @@ class Native:
     arguments: tuple[Value, ...] = ()
 
 
-Value = int | float | str | tuple[Any, ...] | Data | Timed | Ref | Closure | Native
+Value = (
+    int | float | str | tuple[Any, ...] | Data | Timed | Ref | Array | Slice | Stream | Closure | Native
+)  # fmt: skip
 """Any value. Tuples hold values; the `Any` only avoids a recursive alias."""
 
 UNIT: tuple[Value, ...] = ()
@@ -132,6 +163,10 @@ class MlException(Exception):  # noqa: N818 - the field's word; it is not an err
         return self.name
 
 
+class MlUnavailable(Exception):  # noqa: N818
+    """A function was applied that exists in CPN Tools but cannot run here; CPN ML cannot handle it."""
+
+
 class MlLimit(Exception):  # noqa: N818
     """Evaluation went on for too long or too deep; CPN ML cannot handle it."""
 
@@ -165,7 +200,7 @@ def equal(a: Value, b: Value) -> bool:
             todo.extend(((x.value, y.value), (x.stamp, y.stamp)))
         elif isinstance(x, Closure | Native):
             raise TypeError("functions have no equality")
-        elif isinstance(x, Ref):
+        elif isinstance(x, Ref | Array):
             if x is not y:
                 return False
         elif x != y:
@@ -186,8 +221,11 @@ def int_text(i: int) -> str:
     return f"~{-i}" if i < 0 else str(i)
 
 
-def real_text(x: float) -> str:
-    """SML's `Real.toString`: at most 12 significant digits, `0.333333333333`, `1E~05`, `~1.5`, `2.0`."""
+def real_text(x: float, precision: int = 12) -> str:
+    """SML's `Real.toString`: at most 12 significant digits, `0.333333333333`, `1E~05`, `~1.5`, `2.0`.
+
+    `precision`: another number of digits, as `Real.fmt (StringCvt.GEN (SOME precision))` has them.
+    """
     if math.isnan(x):
         return "nan"
     if math.isinf(x):
@@ -195,9 +233,9 @@ def real_text(x: float) -> str:
     sign = "~" if math.copysign(1.0, x) < 0 else ""
     if x == 0:
         return sign + "0.0"
-    mantissa, exponent_text = f"{abs(x):.11e}".split("e")
+    mantissa, exponent_text = f"{abs(x):.{precision - 1}e}".split("e")
     digits, exponent = mantissa.replace(".", "").rstrip("0"), int(exponent_text)
-    if exponent < -4 or exponent >= 12:
+    if exponent < -4 or exponent >= precision:
         # SML/NJ writes a two-digit exponent at least only for small numbers: 1E~05, but 1E20.
         fraction = "." + digits[1:] if len(digits) > 1 else ""
         return f"{sign}{digits[0]}{fraction}E{_exponent(exponent)}"

@@ -1,0 +1,60 @@
+"""Built-in functions on bytes: `Word8` (a Python int), `Word8Vector` (a tuple of them), and CPN Tools' encodings."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import TYPE_CHECKING, Any
+
+from pn2code.semantics.builtins_numbers import checked, fail
+from pn2code.semantics.values import Value
+
+if TYPE_CHECKING:
+    from pn2code.semantics.evaluate import Evaluator
+
+Function = Callable[..., Any]
+Bytes = tuple[int, ...]
+
+
+def _text(data: Bytes) -> str:
+    return "".join(map(chr, data))
+
+
+def _bytes(text: str) -> Bytes:
+    return tuple(map(ord, text))
+
+
+def _sub(p: tuple[Bytes, int]) -> int:
+    if not 0 <= p[1] < len(p[0]):
+        raise fail("Subscript")
+    return p[0][p[1]]
+
+
+def _integer_bytes(number: int) -> Bytes:
+    return tuple((number >> shift) & 255 for shift in (24, 16, 8, 0))
+
+
+def _integer(e: Evaluator, data: Bytes) -> Value:
+    if len(data) < 4:
+        raise fail("Subscript")
+    number = int.from_bytes(bytes(data[:4]), "big", signed=True)
+    return checked(e, number)
+
+
+FUNCTIONS: dict[str, tuple[int, Function]] = {
+    "Byte.byteToChar": (1, lambda e, byte: chr(byte)),
+    "Byte.charToByte": (1, lambda e, c: ord(c)),
+    "Byte.bytesToString": (1, lambda e, data: _text(data)),
+    "Byte.stringToBytes": (1, lambda e, text: _bytes(text)),
+    "Word8.fromInt": (1, lambda e, a: a & 255),
+    "Word8.toInt": (1, lambda e, byte: byte),
+    "Word8.toString": (1, lambda e, byte: format(byte, "X")),
+    "Word8Vector.length": (1, lambda e, data: len(data)),
+    "Word8Vector.sub": (1, lambda e, p: _sub(p)),
+    "Word8Vector.fromList": (1, lambda e, items: items),
+    "Word8Vector.concat": (1, lambda e, parts: tuple(byte for part in parts for byte in part)),
+    "ConnManagementLayer.stringEncode": (1, lambda e, text: _bytes(text)),
+    "ConnManagementLayer.stringDecode": (1, lambda e, data: _text(data)),
+    "ConnManagementLayer.integerEncode": (1, lambda e, number: _integer_bytes(number)),
+    "ConnManagementLayer.integerDecode": (1, _integer),
+}
+"""Full name -> number of curried arguments, function."""
