@@ -91,14 +91,18 @@ class Game:
         """What is enabled at the current time, priorities respected, in the documented order."""
         return self.enabled_in(self.marking)
 
-    def fire(self, element: BindingElement) -> BindingElement:
+    def fire(self, element: BindingElement, *, checked: bool = True) -> BindingElement:
         """Lets an enabled element occur; gives it with the outputs of the code segment.
+
+        Args:
+            element: the element.
+            checked: look once more whether it is enabled; without, the caller knows.
 
         Raises:
             NotEnabled: it is not enabled.
             GameError: an inscription raises an exception, or gives a token that is not legal.
         """
-        obstacle = self.obstacle(self.marking, element)
+        obstacle = self.obstacle(self.marking, element) if checked else None
         if obstacle is not None:
             raise NotEnabled(f"{element_text(self.colours, self.net, element)}: {obstacle}")
         self.evaluator.steps = self.steps + 1
@@ -147,6 +151,16 @@ class Game:
                 elements.append(BindingElement.make(t, binding))
         return elements
 
+    def enabled_transitions(self, marking: Marking) -> list[FlatTransition]:
+        """The transitions of which `enabled_in` lists elements; no more than one binding of each is looked for."""
+        found: list[FlatTransition] = []
+        for t in sorted(self.net.transitions, key=lambda t: t.priority):
+            if found and t.priority > found[0].priority:
+                break
+            if next(self.enabling.enabled(t, marking), None) is not None:
+                found.append(t)
+        return found
+
     def obstacle(
         self, marking: Marking, element: BindingElement, *, priorities: bool = True
     ) -> str | None:
@@ -168,14 +182,14 @@ class Game:
 
         The marking as it is when nothing will ever be enabled.
         """
-        if not self.net.timed or self.enabled_in(marking):
+        if not self.net.timed or self.enabled_transitions(marking):
             return marking
         times: set[int | float] = set()
         for t in self.net.transitions:
             times |= self.enabling.thresholds(t, marking)
         for time in sorted(times):
             later = replace(marking, time=time)
-            if self.enabled_in(later):
+            if self.enabled_transitions(later):
                 return later
         return marking
 
