@@ -19,7 +19,7 @@ from pathlib import Path
 from pn2code.diagnostics import Diagnostics, Origin
 from pn2code.reading.codes import CPN_ELEMENT, CPN_FORMAT, CPN_UNKNOWN_ELEMENT, NOT_CPN
 from pn2code.reading.declarations import DeclarationReader
-from pn2code.reading.document import Document, RawBlock, RawFusion, RawMonitor
+from pn2code.reading.document import Document, RawBlock, RawFusion, RawInstance, RawMonitor
 from pn2code.reading.pages import PageReader, readable
 from pn2code.reading.xml import Node, parse, read_bytes
 
@@ -96,6 +96,7 @@ class _Reader:
         fusions = []
         monitors: list[RawMonitor] = []
         options: dict[str, str] = {}
+        instances: list[RawInstance] = []
         for child in net.children:
             match child.tag:
                 case "globbox":
@@ -108,6 +109,8 @@ class _Reader:
                     options.update(_options(child))
                 case "monitorblock":
                     self.monitors(child, monitors)
+                case "instances":
+                    instances.extend(_instances(child, 0))
                 case _:
                     if child.tag not in _CPNET:
                         self.unknown(net, child)
@@ -131,6 +134,7 @@ class _Reader:
             monitors=tuple(monitors),
             options=options,
             elements=_count(net),
+            instances=tuple(instances),
         )
 
     def format(self, generator: Node | None) -> str:
@@ -187,6 +191,20 @@ class _Reader:
             options=tuple((o.get("name"), o.get("value")) for o in node.all("option")),
             origin=origin,
         )
+
+
+_DEEPEST = 200
+"""Page instances below one another; hierarchies of real nets have less than ten levels."""
+
+
+def _instances(node: Node, depth: int) -> tuple[RawInstance, ...]:
+    """The `instance`s in a node; they nest."""
+    if depth > _DEEPEST:
+        return ()
+    return tuple(
+        RawInstance(i.get("id"), i.get("page"), i.get("trans"), _instances(i, depth + 1))
+        for i in node.all("instance")
+    )
 
 
 def _options(node: Node) -> dict[str, str]:

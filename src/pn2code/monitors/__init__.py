@@ -1,0 +1,1 @@
+"""Monitors of CPN Tools: what watches a simulation, collects numbers, writes files, stops it."""

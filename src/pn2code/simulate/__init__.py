@@ -1,0 +1,1 @@
+"""Automatic simulation: one run, two engines (the compiled net, the reference token game), monitors, traces."""

@@ -1,0 +1,32 @@
+"""Diagnostic codes of simulation."""
+
+from __future__ import annotations
+
+from pn2code.diagnostics.codes import register
+
+TRACE_UNWRITABLE = register(
+    "trace-unwritable",
+    "a trace cannot be written",
+    "The file that `--trace` names cannot be opened or written: the folder is missing, there is no permission, or the "
+    "disk is full. The run stops there. What was written ends with a whole line, and without the `end` event that a "
+    "complete trace has.",
+)
+SIMULATOR_FAILED = register(
+    "simulator-failed",
+    "the compiled simulator came to a bad end",
+    "The compiled net was killed, or did not say how its run ended. When the system ended it (not enough memory), try a "
+    "shorter run; else this is a bug in pn2code. `--engine reference` simulates the same run without C.",
+)
+ENGINE_CHANGED = register(
+    "engine-reference",
+    "the reference engine is used instead of the compiled one",
+    "The net cannot be compiled here: there is no C compiler, it uses something that compiled code does not support, or "
+    "its monitors change references that the net uses. The reference token game makes the same run, more slowly. With "
+    "`--engine compiled` this is an error.",
+)
+CACHE_UNUSABLE = register(
+    "simulator-cache",
+    "compiled simulators cannot be kept",
+    "Compiled nets are kept in `$XDG_CACHE_HOME/pn2code` or `~/.cache/pn2code`, so that a second run starts at once. "
+    "There is no room, or the folder is not yours alone: the net is compiled for this run only.",
+)

@@ -1,0 +1,170 @@
+"""What a run is asked for, and what became of it; the same for both engines."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+from pn2code.diagnostics import Diagnostics, Note, Origin, Span
+from pn2code.monitors.functions import MonitorProgram
+from pn2code.net.flat import FlatNet, FlatTransition
+from pn2code.semantics.codes import RUNTIME_ERROR
+from pn2code.semantics.enabling import GameError
+from pn2code.semantics.marking import Marking
+
+Progress = Callable[[int, int | float], None]
+"""Is told the number of steps and the model time, now and then."""
+
+MOST_OUTPUT = 1 << 24
+"""Characters of the net's output that are kept."""
+
+
+class TraceUnwritableError(Exception):
+    """The trace cannot be written.
+
+    Args:
+        path: its file.
+        reason: in the system's words, lower case.
+    """
+
+    def __init__(self, path: Path, reason: str) -> None:
+        super().__init__(f"cannot write the trace `{path}`: {reason}")
+        self.path = path
+        self.reason = reason
+
+
+@dataclass(frozen=True, slots=True)
+class Request:
+    """A run.
+
+    Args:
+        net: the net.
+        storage: as for `Game`.
+        steps: most steps; None: no limit.
+        seed: of all random choices.
+        until: no step after this model time; None: no limit.
+        trace: where the run is written; None: nowhere.
+        replay: lines of a trace to begin with; they do not count for `steps`.
+        monitors: the monitors at work; None: none.
+        breakpoints: whether breakpoints stop the run.
+        files: the folder that the net may use.
+        progress: is told how the run goes on.
+        interrupted: asked between steps: shall the run end?
+    """
+
+    net: FlatNet
+    storage: Mapping[str, str] = field(default_factory=dict)
+    steps: int | None = 1000
+    seed: int = 1
+    until: int | float | None = None
+    trace: Path | None = None
+    replay: Path | None = None
+    monitors: MonitorProgram | None = None
+    breakpoints: bool = True
+    files: Path | None = None
+    progress: Progress = lambda steps, time: None
+    interrupted: Callable[[], bool] = lambda: False
+
+
+@dataclass(frozen=True, slots=True)
+class Failure:
+    """An error of the net.
+
+    Args:
+        message: as in diagnostics.
+        origin: the net element; span: the text in it, when that is known.
+        transition: what was searched or occurred; None at the start.
+        binding: texts by variable; None while bindings were looked for.
+    """
+
+    message: str
+    origin: Origin
+    span: Span | None = None
+    transition: FlatTransition | None = None
+    binding: Mapping[str, str] | None = None
+
+    @staticmethod
+    def of(
+        error: GameError,
+        transition: FlatTransition | None = None,
+        binding: Mapping[str, str] | None = None,
+    ) -> Failure:
+        """From what the token game raises."""
+        return Failure(error.message, error.origin, error.span, transition, binding)
+
+    def report(self, d: Diagnostics, steps: int) -> None:
+        """As a diagnostic."""
+        notes: list[Note | str] = []
+        if self.span is not None:
+            notes.append(Note(f"raised by `{' '.join(self.span.text.split())}`", self.span.origin))
+        if self.transition is not None:
+            values = ", ".join(f"{k} = {v}" for k, v in (self.binding or {}).items())
+            with_binding = f" with {values}" if values else ""
+            notes.append(f"transition `{self.transition.name}`{with_binding}, after {steps} steps")
+        d.error(RUNTIME_ERROR, self.message, self.origin, notes=notes)
+
+    def row(self) -> dict[str, Any]:
+        """For programs."""
+        t = self.transition
+        return {
+            "message": self.message,
+            "page": t.page if t else self.origin.page,
+            "instance": t.instance_number if t else 1,
+            "transition": t.short if t else "",
+            "id": t.id if t else self.origin.element_id,
+            "binding": None if self.binding is None else dict(self.binding),
+        }
+
+
+@dataclass(frozen=True, slots=True)
+class Outcome:
+    """What became of a run.
+
+    Args:
+        engine: "compiled" or "reference".
+        seed: the seed that was used (a replayed trace may bring its own).
+        why: "finished", "steps", "until", "breakpoint", "error", "interrupted", or "replay" (the trace was refused).
+        steps: occurrences, the `replayed` ones included.
+        initial, final: the markings; `initial` is None when the net could not be started.
+        failure: of "error".
+        refusal: of "replay".
+        breakpoint: of "breakpoint": `id`, `name`, `kind` of the monitor.
+        monitors: see `Watch.results`.
+        output: what the net printed.
+        seconds: of the run alone.
+    """
+
+    engine: str
+    seed: int
+    why: str
+    steps: int
+    replayed: int
+    initial: Marking | None
+    final: Marking | None
+    failure: Failure | None = None
+    refusal: str = ""
+    breakpoint: Mapping[str, str] | None = None
+    monitors: tuple[Mapping[str, Any], ...] = ()
+    output: str = ""
+    seconds: float = 0.0
+
+
+class Output:
+    """What the net prints, up to a limit."""
+
+    def __init__(self) -> None:
+        self._parts: list[str] = []
+        self._length = 0
+
+    def write(self, text: str) -> None:
+        """A further text."""
+        room = MOST_OUTPUT - self._length
+        if room > 0:
+            self._parts.append(text[:room])
+            self._length += len(text)
+
+    def text(self) -> str:
+        """Everything so far."""
+        return "".join(self._parts)
