@@ -29,7 +29,7 @@ from pn2code.reading.document import Document, RawPage
 
 if TYPE_CHECKING:
     from pn2code.drawing.state import State
-    from pn2code.drawing.svg import Overlay
+    from pn2code.drawing.svg import Overlay, Problem
     from pn2code.net.flat import FlatNet
 
 EPILOG = """Examples:
@@ -162,21 +162,24 @@ def _check_instance(
 def _state(flat: FlatNet, storage: Mapping[str, str], seed: int, form: Format) -> State:
     """The initial marking, at the first time at which something is enabled."""
     from pn2code.cli.nets import playing  # the token game is needed for this only
-    from pn2code.drawing.state import State
+    from pn2code.drawing.state import State, enabled_in
     from pn2code.semantics.game import Game
 
     with playing(form):
         game = Game(flat, storage, seed=seed)
         marking = game.settle(game.marking)
-        return State(flat, marking, game.enabled_transitions(marking))
+        return State(flat, marking, enabled_in(game, marking))
 
 
-def _problems(d: Diagnostics) -> dict[str, list[str]]:
+def _problems(d: Diagnostics) -> dict[str, list[Problem]]:
     """Errors by the element they are about."""
-    found: dict[str, list[str]] = {}
+    from pn2code.drawing.svg import Problem
+
+    found: dict[str, list[Problem]] = {}
     for error in d.errors:
         if error.origin.element_id:
-            found.setdefault(error.origin.element_id, []).append(error.message)
+            problem = Problem(error.message, error.origin.part)
+            found.setdefault(error.origin.element_id, []).append(problem)
     return found
 
 
@@ -187,7 +190,7 @@ class _Drawing:
         self,
         document: Document,
         pages: list[RawPage],
-        problems: dict[str, list[str]],
+        problems: dict[str, list[Problem]],
         state: State | None,
         instance: int | None,
     ) -> None:
@@ -229,17 +232,21 @@ class _Drawing:
         """One HTML file."""
         from dataclasses import replace
 
-        from pn2code.drawing.html import Facts, draw_net
+        from pn2code.drawing.html import Facts, counted, draw_net
 
-        counted = (
-            f"{len(self.pages)} pages, {sum(len(p.places) for p in self.pages)} places, "
-            f"{sum(len(p.transitions) for p in self.pages)} transitions"
+        remark = ", ".join(
+            counted(n, thing)
+            for n, thing in (
+                (len(self.pages), "page"),
+                (sum(len(p.places) for p in self.pages), "place"),
+                (sum(len(p.transitions) for p in self.pages), "transition"),
+            )
         )
         figures = {p.id: [("", self.overlay(p))] for p in self.pages}
         if self.state is not None and self.instance is None:
             figures = {p.id: self.state.figures(p, self.base) for p in self.pages}
         shown = replace(self.document, pages=tuple(self.pages))
-        return draw_net(shown, Facts(path.name, counted), figures)
+        return draw_net(shown, Facts(path.name, remark), figures)
 
     def note_arranged(self, d: Diagnostics) -> None:
         """A note for each page whose positions are ours."""

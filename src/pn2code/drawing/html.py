@@ -232,10 +232,16 @@ class _Writer:
         return [*rows, *body, "</svg></div>", "</figure>"]
 
     def problems(self, scene: Scene, overlay: Overlay) -> list[str]:
-        """The messages about elements of the page, as a list."""
-        own = [s.id for s in scene.shapes] + [line.id for line in scene.lines]
-        rows = [f"<li>{escape(m)}</li>" for i in own for m in overlay.problems.get(i, ())]
-        return ['<ul class="errors">', *rows, "</ul>"] if rows else []
+        """The messages about elements of the page, as a list to unfold."""
+        owner = {line.id: line.title.split(":")[0] for line in scene.lines}
+        rows = []
+        for i in [s.id for s in scene.shapes] + list(owner):
+            where = self.element(i) if i in self.page_of else escape(owner.get(i, i))
+            rows += [f"<li>{where}: {escape(m.message)}</li>" for m in overlay.problems.get(i, ())]
+        if not rows:
+            return []
+        head = f"<summary>{counted(len(rows), 'error')} on this page, in red</summary>"
+        return [f'<details class="errors">{head}<ul>', *rows, "</ul></details>"]
 
     def behind_tag(self, kind: str, identity: str) -> str:
         """Where the tag of a port or of a fusion place leads."""
@@ -254,6 +260,11 @@ class _Writer:
             listed = ", ".join(self.element(i) for i in self.members[name])
             rows.append(f'<dt id="fusion-{number}">{escape(name)}</dt><dd>{listed}</dd>')
         return [*rows, "</dl>", "</section>"]
+
+
+def counted(n: int, thing: str) -> str:
+    """A number with its noun."""
+    return f"{n} {thing}" if n == 1 else f"{n} {thing}s"
 
 
 def _pixels(box: Box) -> int:

@@ -44,6 +44,8 @@ _HIDDEN = frozenset(
     }
 )
 _PORTS = {"in": "In", "out": "Out", "i/o": "I/O", "io": "I/O", "inout": "I/O", "in/out": "I/O"}
+DEFAULT_TOKEN = -10.0
+"""CPN Tools' usual distance of the number of tokens from its place beside the place."""
 _FAR = 10.0
 _STEP = 14.0
 _ARRANGED_SHARE = 0.3
@@ -93,7 +95,12 @@ class Line:
 
 @frozen
 class Label:
-    """A text with its centre; `kind` says what of which element (id)."""
+    """A text in its box.
+
+    Args:
+        owner, kind: what of which element (id), e.g. "guard".
+        part: the part of the inscription's origin, as in diagnostics.
+    """
 
     owner: str
     kind: str
@@ -101,6 +108,7 @@ class Label:
     box: Box
     layout: Layout
     title: str
+    part: str = ""
 
 
 @frozen
@@ -121,6 +129,8 @@ class Scene:
 
     Args:
         arranged: the positions are not the author's.
+        tokens, markings: by place id; see `_Builder.token`.
+        hidden: ids of places whose marking CPN Tools does not show, only the number.
     """
 
     page: str
@@ -182,7 +192,7 @@ class _Builder:
             self.place(place)
         for t in page.transitions:
             self.transition(t)
-        lines = [self.line(arc, ends) for arc, ends in self.incidences()]
+        lines = [self.line(*incidence) for incidence in self.incidences()]
         extra = [] if self.arranged else [self.auxiliary(aux) for aux in page.auxiliaries]
         if self.arranged and page.auxiliaries:
             self.notes(page.auxiliaries, lines)
@@ -272,7 +282,7 @@ class _Builder:
         else:
             box = around(round(i.layout.x), -round(i.layout.y), w, h)
         title = f"{i.text.origin.part}: {i.text.text}"
-        self.labels.append(Label(owner, kind, block, box, i.layout, title))
+        self.labels.append(Label(owner, kind, block, box, i.layout, title, i.text.origin.part))
 
     def without_position(self, layout: Layout) -> bool:
         """Whether a text needs a position of ours."""
@@ -303,8 +313,11 @@ class _Builder:
         box = _off(box, self.nodes[owner])
         self.tags.append(Tag(owner, kind, word, box, title, link))
 
-    def incidences(self) -> list[tuple[RawArc, tuple[Point, Point]]]:
-        """The arcs, each with the points inside transition and place that it heads for."""
+    def incidences(self) -> list[tuple[RawArc, tuple[Point, Point], float]]:
+        """The arcs, each with the points inside transition and place that it heads for.
+
+        The number says how far it is from the middle of those that run side by side: 0, or -0.5 and 0.5, ...
+        """
         arcs = [
             a
             for a in (*self.page.arcs, *self.page.undirected)
@@ -320,10 +333,11 @@ class _Builder:
             siblings = sorted(straight.get((t.id, p.id), ()), key=lambda a: -a.order)
             bends = self.bends(arc)
             if bends:
-                found.append((arc, (_beside(t, bends[0]), _beside(p, bends[-1]))))
+                found.append((arc, (_beside(t, bends[0]), _beside(p, bends[-1])), 0.0))
             else:
-                shift = (siblings.index(arc) - (len(siblings) - 1) / 2) * SIBLING_DISTANCE
-                found.append((arc, _shifted(t.centre, p.centre, shift)))
+                side = siblings.index(arc) - (len(siblings) - 1) / 2
+                ends = _shifted(t.centre, p.centre, side * SIBLING_DISTANCE)
+                found.append((arc, ends, side))
         return found
 
     def bends(self, arc: RawArc) -> tuple[Point, ...]:
@@ -338,14 +352,14 @@ class _Builder:
             del points[-1]
         return tuple(points)
 
-    def line(self, arc: RawArc, ends: tuple[Point, Point]) -> Line:
+    def line(self, arc: RawArc, ends: tuple[Point, Point], side: float) -> Line:
         """An arc and its inscription."""
         t, p = self.nodes[arc.transition], self.nodes[arc.place]
         bends = self.bends(arc)
         start = enter(bends[0] if bends else ends[1], ends[0], t.box, t.round)
         end = enter(bends[-1] if bends else ends[0], ends[1], p.box, p.round)
         points = (start, *bends, end)
-        middle = along(points, 0.5)
+        middle = along(points, min(max(0.5 + 0.15 * side, 0.1), 0.9))
         self.label(arc.id, "inscription", arc.inscription, Corner(middle[0] + 4, middle[1], 1, -1))
         written = f": {arc.inscription.text.text}" if arc.inscription else ""
         return Line(arc.id, arc.orientation, points, arc.layout, f"{_arrow(arc, t, p)}{written}")
@@ -378,13 +392,17 @@ class _Builder:
                 y += h + text.LINE
 
     def token(self, place: RawPlace) -> tuple[Point, Point]:
-        """Centre of the bubble with the number of tokens; where the marking is, as seen from the bubble."""
+        """Where the bubble with the number of tokens begins, and how far from the bubble its marking does.
+
+        Both are points at half height on the left. The file has the distance from CPN Tools' place for each: 5 beside
+        the place, and 5 beside the bubble.
+        """
         box = self.nodes[place.id].box
-        x, y = box.right, (box.top + box.bottom) / 2
+        x, y = box.right + 5, (box.top + box.bottom) / 2
         if self.arranged or not place.token.known:
-            return (x, y), (0.0, 0.0)
+            return (x + DEFAULT_TOKEN, y), (5.0, 0.0)
         at = (x + place.token.x, y - place.token.y)
-        return at, (place.marking.x, -place.marking.y)
+        return at, (5 + place.marking.x, -place.marking.y)
 
 
 @frozen

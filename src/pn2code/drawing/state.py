@@ -8,6 +8,7 @@ from pn2code.drawing.svg import Overlay, Tokens
 from pn2code.net.flat import FlatNet, FlatTransition
 from pn2code.reading.document import RawPage
 from pn2code.semantics import report
+from pn2code.semantics.game import Game
 from pn2code.semantics.marking import Marking
 
 
@@ -17,7 +18,7 @@ class State:
     Args:
         net: the net.
         marking: its marking.
-        enabled: the transitions to be shown as enabled.
+        enabled: the transitions to be shown as enabled; see `enabled_in`.
     """
 
     def __init__(self, net: FlatNet, marking: Marking, enabled: Collection[FlatTransition]) -> None:
@@ -66,6 +67,17 @@ class State:
         if len(looks) < 2:
             return [("", looks[0][1] if looks else base)]
         return [(_caption(numbers), overlay) for numbers, overlay in looks]
+
+
+def enabled_in(game: Game, marking: Marking) -> list[FlatTransition]:
+    """The transitions that are enabled in a marking, priorities respected; one binding of each is enough."""
+    found: list[FlatTransition] = []
+    for t in sorted(game.net.transitions, key=lambda t: t.priority):
+        if found and t.priority > found[0].priority:
+            break
+        if next(iter(game.enabling.enabled(t, marking)), None) is not None:
+            found.append(t)
+    return found
 
 
 def _caption(numbers: list[int]) -> str:

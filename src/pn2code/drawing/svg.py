@@ -2,7 +2,7 @@
 
     draw_page(document, page)                                   # as the author laid it out
     draw_page(document, page, marking={"ID7": Tokens(3, "3`1")}, enabled={"ID9"})
-    draw_page(document, page, highlight={"ID9": "#ff8800"}, problems={"ID12": ["no such colour set"]})
+    draw_page(document, page, highlight={"ID9": "#ff8800"}, problems={"ID12": [Problem("too big")]})
 
 Every place is a `<g class="place">`, every transition a `<g class="transition">` (or `substitution`), every arc a
 `<g class="arc">`, each once and with its id of the file in `data-id`; tool tips are `<title>`. Nothing outside the file
@@ -37,7 +37,7 @@ CURVE = 15.0
 _HEAD, _HALF_HEAD = 9.0, 3.5
 _CIRCLE = 4.0
 _BUBBLE = 8.0
-_MARKING_LINES, _MARKING_WIDTH = 12, 60
+_MARKING_LINES, _MARKING_WIDTH = 20, 60
 _HEADING = 26.0
 
 
@@ -65,6 +65,14 @@ class Tokens:
 
 
 @frozen
+class Problem:
+    """What is wrong with an element; `part` is the part of an inscription's origin ("guard"), or ""."""
+
+    message: str
+    part: str = ""
+
+
+@frozen
 class Overlay:
     """What is drawn over a page.
 
@@ -72,13 +80,13 @@ class Overlay:
         marking: by place id.
         enabled: ids of transitions with a green border.
         highlight: colour by element id.
-        problems: messages by element id; shown in red.
+        problems: by element id; shown in red, the message as a tool tip.
     """
 
     marking: Mapping[str, Tokens] = field(default_factory=dict)
     enabled: Collection[str] = frozenset()
     highlight: Mapping[str, str] = field(default_factory=dict)
-    problems: Mapping[str, Sequence[str]] = field(default_factory=dict)
+    problems: Mapping[str, Sequence[Problem]] = field(default_factory=dict)
 
 
 def draw_page(
@@ -88,7 +96,7 @@ def draw_page(
     marking: Mapping[str, Tokens] | None = None,
     enabled: Collection[str] = (),
     highlight: Mapping[str, str] | None = None,
-    problems: Mapping[str, Sequence[str]] | None = None,
+    problems: Mapping[str, Sequence[Problem]] | None = None,
     links: Links = Links(),  # noqa: B008 - frozen
 ) -> str:
     """One page as an SVG document; the arguments are those of `Overlay` and `Links`."""
@@ -197,7 +205,7 @@ class _Painter:
 
     def title(self, words: str, identity: str) -> str:
         """A tool tip, the messages about the element first."""
-        messages = [f"error: {m}" for m in self.overlay.problems.get(identity, ())]
+        messages = [f"error: {p.message}" for p in self.overlay.problems.get(identity, ())]
         words = "\n".join([*messages, words]) if words else "\n".join(messages)
         return f"<title>{text.escape(words)}</title>" if words else ""
 
@@ -307,9 +315,11 @@ class _Painter:
         """An inscription or a free text."""
         at = label.layout
         centre = ((label.box.left + label.box.right) / 2, (label.box.top + label.box.bottom) / 2)
-        problems = label.owner in self.overlay.problems and label.kind != "aux"
-        ink = PROBLEM if problems else colour(at.text_colour)
-        rows = [self.title(label.title, label.owner if problems else "")]
+        wrong = label.part and any(
+            p.part == label.part for p in self.overlay.problems.get(label.owner, ())
+        )
+        ink = PROBLEM if wrong else colour(at.text_colour)
+        rows = [self.title(label.title, label.owner if wrong else "")]
         rows.append(_text(label.lines, centre, ink, at.bold, centred=False, box=label.box))
         self.group(f"label {label.kind}", label.owner, rows)
 
@@ -329,12 +339,13 @@ class _Painter:
         """The green bubble with the number of tokens, and beside it the marking unless it is hidden."""
         number = str(tokens.count)
         radius = max(_BUBBLE, text.width(number) / 2 + 2)
+        at = (at[0] + radius, at[1])
         rows = [self.title(text.shorten(tokens.marking, 60, 300), "")]
         if not hidden:
             shown = text.shorten(tokens.marking, _MARKING_LINES, _MARKING_WIDTH)
             block = text.lines(shown)
             w, h = text.extent(block)
-            left = at[0] + radius + 1 + offset[0]
+            left = at[0] + radius + offset[0]
             y = at[1] + offset[1]
             box = Box(left, y - h / 2 - 1, left + w + 6, y + h / 2 + 1)
             rows.append(_outline(False, box, TOKEN_LINE, 0.75, TOKEN_FILL, "", opacity=0.85))
