@@ -273,7 +273,7 @@ def test_every_built_in_of_the_table_is_there_with_its_number_of_arguments() -> 
 
 
 def test_every_member_of_a_colour_set_is_there() -> None:
-    for name in set(COLSET_MEMBERS) - {"base", "set", "of"}:
+    for name in set(COLSET_MEMBERS) - {"base", "timed.base", "set", "of"}:
         assert name in builtins._COLSET_FUNCTIONS, name
 
 
@@ -282,3 +282,36 @@ def test_a_tuple_type_is_a_record_in_the_order_of_labels() -> None:
     t = TRecord((("1", TRecord()), ("2", TRecord())))
     assert t.is_tuple
     assert value('{10 = "c", 2 = "b", 1 = "a"}') == ("a", "b", "c")
+
+
+def timed(expression: str) -> Any:
+    """The value of an expression with the timed colour sets TI and TP, and a product P."""
+    d = Diagnostics()
+    e = Elaborator(d)
+    e.colset(ColsetSpec("INT", "int"))
+    e.colset(ColsetSpec("STRING", "string"))
+    e.colset(ColsetSpec("TI", "int", timed=True))
+    e.colset(ColsetSpec("P", "product", ids=("INT", "STRING")))
+    e.declarations(SourceText(f"val it = {expression}", NOWHERE))
+    assert not d.has_errors, report(d)
+    program = e.program()
+    return Evaluator(program).globals[program.globals["it"].uid]
+
+
+@pytest.mark.parametrize(
+    ("expression", "expected"),
+    [
+        ("TI'timed.mkstr_ms(1`3@+4+++1`3@+2)", "1`3@4+++\n1`3@2"),
+        ("TI'timed.mkstr(3@7)", "3@7"),
+        ("TI'timed.lt(3@7, 3@8)", True),
+        ("TI'timed.cmp(4@7, 3@8)", Data("GREATER", 2)),
+        ("(TI'timed.size() handle CPN'Error _ => ~1)", -1),
+        ("P.input (TextIO.openString \" ( (~2) ,\\\"a, b\\\") rest\")", (-2, "a, b")),
+        ("P.mkstr_ms (P.input_ms (TextIO.openString \"2`(1,\\\"x\\\") ++\\n1`(2,\\\"y\\\")\\n\"))", "2`(1,\"x\")++\n1`(2,\"y\")"),
+        ("INT.input_ms (TextIO.openString \"empty\")", ()),
+        ("(INT.input (TextIO.openString \"red\") handle CPN'StreamIO.IOError s => 0)", 0),
+        ("TI'timed.mkstr_ms (TI'timed.input_ms (TextIO.openString \"2`3@7 +++ 1`4@8\"))", "2`3@7+++\n1`4@8"),
+    ],
+)  # fmt: skip
+def test_timed_structures_and_reading_colours(expression: str, expected: Any) -> None:
+    assert timed(expression) == expected

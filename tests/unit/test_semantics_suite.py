@@ -68,7 +68,7 @@ def compare(path: Path, recorded: dict[str, Any]) -> tuple[bool, str]:
     return arcs == their_arcs, f"only ours: {arcs - their_arcs}\nonly theirs: {their_arcs - arcs}"
 
 
-UNSUPPORTED = ("SUB.", "INTT'timed.", "Time.now")
+UNSUPPORTED = ("SUB.", "Time.now")
 """A colour set that only we accept (above); functions that the front end says it does not support."""
 
 

@@ -325,6 +325,22 @@ input : TextIO.instream -> cs ; reads a value as `output` writes it; raises CPN'
 output : TextIO.outstream * cs -> unit ; writes a value, one a line
 input_ms : TextIO.instream -> cs ms ; reads a multi-set as `output_ms` writes it; raises CPN'Error
 output_ms : TextIO.outstream * cs ms -> unit ; writes a multi-set
+timed.base : cs timed ; in CS'timed, of a timed colour set: some token
+timed.all : unit -> cs tms ; raises CPN'Error, as the next ones: stamps have no bounds
+timed.size : unit -> int ; raises CPN'Error
+timed.ord : cs timed -> int ; raises CPN'Error
+timed.col : int -> cs timed ; raises CPN'Error
+timed.ran : unit -> cs timed ; raises CPN'Error
+timed.lt : cs timed * cs timed -> bool ; by colour, then by stamp
+timed.cmp : cs timed * cs timed -> order ; by colour, then by stamp
+timed.legal : cs timed -> bool ; whether the colour is legal
+timed.illegal_msg : cs timed -> string ; what is wrong with the colour
+timed.mkstr : cs timed -> string ; as CPN Tools prints a token, `v@7`
+timed.mkstr_ms : cs tms -> string ; as CPN Tools prints a timed multi-set
+timed.input : TextIO.instream -> cs timed ; reads a token
+timed.output : TextIO.outstream * cs timed -> unit ; writes a token
+timed.input_ms : TextIO.instream -> cs tms ; reads a timed multi-set
+timed.output_ms : TextIO.outstream * cs tms -> unit ; writes a timed multi-set
 mult : cs ; PRODUCT, RECORD: all combinations of the elements of multi-sets
 set : cs ; set_<field>: PRODUCT, RECORD: a copy with another value of a component: `name` is "Colset.set_<label>"
 of : cs ; of_<constructor>: UNION: whether the value is made by it: `name` is "Colset.of_<name>"

@@ -12,13 +12,19 @@ _MADE = ("mult", "set", "of")
 def members_of(colset: Colset) -> frozenset[str]:
     """The names of the functions that a colour set has."""
     own = colset.resolved
-    out = {name for name in COLSET_MEMBERS if name not in _MADE}
+    out = {name for name in COLSET_MEMBERS if name not in _MADE and "." not in name}
     if own.kind in (Kind.PRODUCT, Kind.RECORD):
         out.add("mult")
         out |= {f"set_{label}" for label in _labels(own)}
     if own.kind is Kind.UNION:
         out |= {f"of_{name}" for name in own.names}
     return frozenset(out)
+
+
+def timed_member(member: str) -> str | None:
+    """What a function of `CS'timed` is called among the members of `CS`; None if there is no such function."""
+    name = f"timed.{member}"
+    return name if name in COLSET_MEMBERS else None
 
 
 def member_type(colset: Colset, member: str) -> Type:

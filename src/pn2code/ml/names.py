@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from pn2code.diagnostics import Span
-from pn2code.ml import codes, core
+from pn2code.ml import advice, codes, core
 from pn2code.ml.builtins import BUILTINS, NIL, OVERLOADED
-from pn2code.ml.colset_members import member_type, members_of
+from pn2code.ml.colset_members import member_type, members_of, timed_member
 from pn2code.ml.context import BROKEN, Context, Draft, quoted, suggestion
 from pn2code.ml.environment import (
     Binding,
@@ -49,13 +49,20 @@ class Names:
 
     def _colset_member(self, structure: str, member: str) -> Entry | None:
         if structure not in self._ctx.colsets:
-            if structure.startswith("CS'") or structure.endswith("'timed"):
-                return UnsupportedEntry(f"{structure}.{member}")
-            return None
+            return self._timed_member(structure.removesuffix("'timed"), structure, member)
         colset = self._ctx.colsets[structure]
         if colset is None:
             return BrokenEntry()
         return ColsetEntry(colset, member) if member in members_of(colset) else None
+
+    def _timed_member(self, base: str, structure: str, member: str) -> Entry | None:
+        if base == structure or base not in self._ctx.colsets:
+            return None
+        colset = self._ctx.colsets[base]
+        if colset is None:
+            return BrokenEntry()
+        known = timed_member(member)
+        return ColsetEntry(colset, known) if colset.timed and known is not None else None
 
     def infer(self, name: str, span: Span) -> Draft:
         """A use of a name."""

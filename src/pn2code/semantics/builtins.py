@@ -33,17 +33,21 @@ from pn2code.semantics.colour_files import (
     output_ms_text,
     output_text,
     read_multiset,
+    read_token,
     read_value,
 )
 from pn2code.semantics.values import (
     UNIT,
     Data,
+    MlException,
     MlUnavailable,
     Native,
     Ref,
     Value,
     equal,
     order,
+    Timed,
+    exception,
     some,
 )
 
@@ -196,6 +200,8 @@ def colset_builtin(e: Evaluator, name: str, c: Colset) -> Value:
     member = name.removeprefix("Colset.")
     if member == "base":
         return e.colours.base(c)
+    if member == "timed.base":
+        return Timed(e.colours.base(c), e.now)
     function = _COLSET_FUNCTIONS.get(member)
     if function is None:
         stem, _, rest = member.partition("_")
@@ -222,9 +228,32 @@ _COLSET_FUNCTIONS: dict[str, Function] = {
     "mult": lambda e, c, multisets: e.colours.mult(c, multisets),
     "output": lambda e, c, p: write(e, p[0], output_text(e.colours, c, p[1])),
     "output_ms": lambda e, c, p: write(e, p[0], output_ms_text(e.colours, c, p[1])),
-    "input": lambda e, c, stream: read_value(e.colours, c, stream),
-    "input_ms": lambda e, c, stream: read_multiset(e.colours, c, stream),
+    "input": lambda e, c, stream: read_value(c, stream),
+    "input_ms": lambda e, c, stream: read_multiset(c, stream, timed=False),
+    "timed.all": lambda e, c, unit: _no_bounds(c),
+    "timed.size": lambda e, c, unit: _no_bounds(c),
+    "timed.ord": lambda e, c, token: _no_bounds(c),
+    "timed.col": lambda e, c, position: _no_bounds(c),
+    "timed.ran": lambda e, c, unit: _no_bounds(c),
+    "timed.lt": lambda e, c, p: _timed_key(e, c, p[0]) < _timed_key(e, c, p[1]),
+    "timed.cmp": lambda e, c, p: order(_timed_key(e, c, p[0]), _timed_key(e, c, p[1])),
+    "timed.legal": lambda e, c, token: e.colours.legal(c, token.value),
+    "timed.illegal_msg": lambda e, c, token: e.colours.illegal_message(c, token.value),
+    "timed.mkstr": lambda e, c, token: e.colours.token_text(c, token),
+    "timed.mkstr_ms": lambda e, c, tokens: e.colours.multiset_text(c, tokens),
+    "timed.output": lambda e, c, p: write(e, p[0], e.colours.token_text(c, p[1]) + " "),
+    "timed.output_ms": lambda e, c, p: write(e, p[0], output_ms_text(e.colours, c, p[1])),
+    "timed.input": lambda e, c, stream: read_token(c, stream, real_time=e.real_time),
+    "timed.input_ms": lambda e, c, stream: read_multiset(c, stream, timed=True, real_time=e.real_time),
 }
+
+
+def _no_bounds(c: Colset) -> Value:
+    raise MlException(exception("CPN'Error", f"the colour set {c.name}'timed has no bounds"))
+
+
+def _timed_key(e: Evaluator, c: Colset, token: Timed) -> Any:
+    return e.colours.key(c, token.value), token.stamp
 
 
 def _setter(label: str) -> Function:

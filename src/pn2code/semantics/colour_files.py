@@ -29,7 +29,7 @@ def output_ms_text(colours: Colours, c: Colset, items: Iterable[Value]) -> str:
     return re.sub(r"(\++)\n(?=\d+`)", r" \1 ", text) + " "
 
 
-def read_value(colours: Colours, c: Colset, stream: InStream) -> Value:
+def read_value(c: Colset, stream: InStream) -> Value:
     """What `input` reads.
 
     Raises:
@@ -41,8 +41,22 @@ def read_value(colours: Colours, c: Colset, stream: InStream) -> Value:
     return value
 
 
-def read_multiset(colours: Colours, c: Colset, stream: InStream) -> tuple[Value, ...]:
-    """What `input_ms` reads, up to the end of the stream or to what is no `++`.
+def read_token(c: Colset, stream: InStream, *, real_time: bool) -> Timed:
+    """What `input` of a timed colour set reads.
+
+    Raises:
+        MlException: IOError, there is something else.
+    """
+    reader = _Reader(stream)
+    token = reader.token(c, real_time=real_time)
+    reader.done()
+    return token
+
+
+def read_multiset(
+    c: Colset, stream: InStream, *, timed: bool, real_time: bool = False
+) -> tuple[Value, ...]:
+    """What `input_ms` reads, up to the end of the stream.
 
     Raises:
         MlException: IOError, there is something else.
@@ -53,12 +67,11 @@ def read_multiset(colours: Colours, c: Colset, stream: InStream) -> tuple[Value,
         while True:
             count = reader.number()
             reader.expect("`")
-            value = reader.value(c)
-            if reader.accept("@"):
-                value = Timed(value, reader.number())
+            value = reader.token(c, real_time=real_time) if timed else reader.value(c)
             found += [value] * count
-            if not reader.accept("+++") and not reader.accept("++"):
+            if reader.at_end():
                 break
+            reader.expect("+++" if timed else "++")
     reader.done()
     return tuple(found)
 
@@ -100,6 +113,17 @@ class _Reader:
     def _problem(self, wanted: str) -> MlException:
         found = self._text[self._at : self._at + 20] or "the end"
         return MlException(exception("IOError", f"IOError: Expecting {wanted}, found: {found}"))
+
+    def at_end(self) -> bool:
+        """Whether only blanks are left."""
+        self._skip()
+        return self._at >= len(self._text)
+
+    def token(self, c: Colset, *, real_time: bool) -> Timed:
+        """Reads a colour with its stamp."""
+        value = self.value(c)
+        self.expect("@")
+        return Timed(value, self._real() if real_time else self.number())
 
     def number(self) -> int:
         """Reads an integer, perhaps in parentheses."""

@@ -319,6 +319,11 @@ class Colours:
             case _:
                 return f"({int_text(value)})" if value < 0 else int_text(value)
 
+    def token_text(self, c: Colset, token: Timed) -> str:
+        """As CPN Tools prints a token: `v@7`."""
+        stamp = real_text(token.stamp) if isinstance(token.stamp, float) else int_text(token.stamp)
+        return f"{self.text(c, token.value)}@{stamp}"
+
     def multiset_text(
         self, c: Colset, items: Iterable[Value], *, earlier_first: bool = False
     ) -> str:
@@ -341,8 +346,7 @@ class Colours:
         for item in sorted(counted, key=position):
             if isinstance(item, Timed):
                 joint = "+++\n"
-                stamp = real_text(item.stamp) if isinstance(item.stamp, float) else item.stamp
-                lines.append(f"{counted[item]}`{self.text(c, item.value)}@{stamp}")
+                lines.append(f"{counted[item]}`{self.token_text(c, item)}")
             else:
                 lines.append(f"{counted[item]}`{self.text(c, item)}")
         return joint.join(lines) or "empty"
