@@ -13,6 +13,7 @@ from pn2code.cli.options import Format, print_diagnostics, stop
 from pn2code.diagnostics import Diagnostics, Severity
 from pn2code.net import front
 from pn2code.net.flat import FlatNet
+from pn2code.semantics.files import Files
 from pn2code.semantics.game import Game, GameError
 
 
@@ -34,7 +35,7 @@ class OpenNet:
         Raises:
             GameError: a declaration or an initial marking raises an exception.
         """
-        return Game(self.flat, self.storage, seed=seed)
+        return Game(self.flat, self.storage, seed=seed, files=Files(files))
 
 
 def open_net(

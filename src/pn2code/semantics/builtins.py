@@ -43,11 +43,11 @@ from pn2code.semantics.values import (
     MlUnavailable,
     Native,
     Ref,
+    Timed,
     Value,
     equal,
-    order,
-    Timed,
     exception,
+    order,
     some,
 )
 

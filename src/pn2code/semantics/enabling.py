@@ -35,6 +35,7 @@ from pn2code.semantics.marking import (
     variable_text,
 )
 from pn2code.semantics.multiset import MultiSet, TimedMultiSet
+from pn2code.semantics.random import bindings_of
 from pn2code.semantics.values import MlException, MlLimit, MlUnavailable, Timed, Value
 
 
@@ -138,6 +139,7 @@ class Enabling:
             GameError: an inscription raised an exception.
         """
         self.evaluator.now = marking.time
+        self.evaluator.random.start(self.evaluator.steps, bindings_of(t.index))
         seen: set[BindingElement] = set()
         for found in self._search(t, marking, 0, {}, ignore_stamps, accept):
             binding = {s: found[s.uid] for s in t.variables if s.uid in found}
@@ -347,6 +349,7 @@ class Enabling:
     def obstacle(self, t: FlatTransition, marking: Marking, binding: Binding) -> str | None:
         """Why a binding is not enabled at the marking's time (priorities apart); None if it is."""
         self.evaluator.now = marking.time
+        self.evaluator.random.start(self.evaluator.steps, bindings_of(t.index))
         reason = self.guard_obstacle(t, binding)
         if reason is not None:
             return reason

@@ -24,6 +24,7 @@ from pn2code.net.flat import ArcKind, FlatArc, FlatNet, FlatPlace, FlatTransitio
 from pn2code.semantics.colours import NotFinite
 from pn2code.semantics.enabling import Demand, Enabling, GameError, running
 from pn2code.semantics.evaluate import Evaluator, Limits
+from pn2code.semantics.files import Files
 from pn2code.semantics.marking import (
     Binding,
     BindingElement,
@@ -34,6 +35,7 @@ from pn2code.semantics.marking import (
     place_text,
 )
 from pn2code.semantics.multiset import MultiSet, TimedMultiSet
+from pn2code.semantics.random import occurrence_of
 from pn2code.semantics.values import Timed, Value
 
 __all__ = ["Binding", "BindingElement", "Game", "GameError", "Marking", "NotEnabled"]
@@ -53,6 +55,7 @@ class Game:
         seed: of the random functions.
         limits: of each evaluation.
         output: is given what the net prints.
+        files: what the net can do with files; nothing by default.
 
     Attributes:
         marking: the current marking.
@@ -68,15 +71,21 @@ class Game:
         storage: Mapping[str, str] | None = None,
         initial: Mapping[str, PlaceMarking] | None = None,
         *,
-        seed: int = 0,
+        seed: int = 1,
         limits: Limits | None = None,
         output: Callable[[str], None] = lambda text: None,
+        files: Files | None = None,
     ) -> None:
         self.net = net
         self._float32 = frozenset(n for n, how in (storage or {}).items() if how == "float32")
         with running(replace(NOWHERE, file=net.file, part="declarations"), "a declaration"):
             self.evaluator = Evaluator(
-                net.program, real_time=net.real_time, seed=seed, limits=limits, output=output
+                net.program,
+                real_time=net.real_time,
+                seed=seed,
+                limits=limits,
+                output=output,
+                files=files,
             )
         self.colours = self.evaluator.colours
         self.enabling = Enabling(net, self.evaluator)
@@ -204,6 +213,7 @@ class Game:
         """
         t = self.net.transitions[element.transition]
         self.evaluator.now = marking.time
+        self.evaluator.random.start(self.evaluator.steps, occurrence_of(t.index))
         binding = {**element.binding, **self.action(t, element.binding)}
         left = self.enabling.take(marking, self.enabling.demands(t, element.binding))
         if isinstance(left, Demand):

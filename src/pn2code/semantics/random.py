@@ -7,7 +7,6 @@ computed, so that even the last bits of reals agree. The distributions are those
 from __future__ import annotations
 
 import math
-from typing import Any
 
 from pn2code.semantics.values import MlException, exception
 
@@ -200,9 +199,3 @@ def _power(a: float, b: float) -> float:
         return math.pow(a, b)
     except OverflowError:
         return math.inf
-
-
-def choose(stream: RandomStream, groups: list[list[Any]]) -> Any:
-    """The simulator's choice: one of the groups, then one of its elements; both are drawn, also from one."""
-    group = groups[stream.below(len(groups))]
-    return group[stream.below(len(group))]
