@@ -9,13 +9,14 @@ from pn2code.ml import syntax as s
 from pn2code.ml.builtins import STRUCTURES
 from pn2code.ml.context import Context, suggestion
 from pn2code.ml.environment import (
+    AbstractType,
     BrokenType,
     BuiltinAbbreviation,
     TypeAbbreviation,
     TypeCon,
     TypeEntry,
 )
-from pn2code.ml.inference import ERROR, ICon, IFun, Ty, from_type, i_record, substitute
+from pn2code.ml.inference import ERROR, IAbstract, ICon, IFun, Ty, from_type, i_record
 
 
 class Annotations:
@@ -83,8 +84,14 @@ class Annotations:
             case TypeCon():
                 return ICon(entry.name, tuple(args))
             case TypeAbbreviation():
+                if not args:
+                    return entry.body
                 by = {id(q): a for q, a in zip(entry.parameters, args, strict=True)}
-                return substitute(entry.body, by)
+                return self._ctx.unifier.substitute(entry.body, by)
+            case AbstractType():
+                by = {id(q): a for q, a in zip(entry.parameters, args, strict=True)}
+                hidden = self._ctx.unifier.substitute(entry.hidden, by)
+                return IAbstract(entry.name, tuple(args), hidden, entry.equality)
             case BuiltinAbbreviation():
                 t, _ = self._ctx.library_type(entry.text)
                 return from_type(t, list(args))
@@ -94,6 +101,6 @@ class Annotations:
 
 def arity(entry: TypeEntry) -> int:
     """Number of arguments that a type takes."""
-    if isinstance(entry, TypeAbbreviation):
+    if isinstance(entry, TypeAbbreviation | AbstractType):
         return len(entry.parameters)
     return 0 if isinstance(entry, BrokenType) else entry.arity

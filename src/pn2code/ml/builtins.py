@@ -174,10 +174,11 @@ _NUMBERS = ("Int", "Real", "IntInf")
 _ORDERED = ("Int", "Real", "IntInf", "String", "Char")
 
 OVERLOADED: dict[str, tuple[str, ...]] = {
-    **{op: tuple(f"{s}.{op}" for s in _NUMBERS) for op in ("+", "-", "*", "~")},
+    **{op: tuple(f"{s}.{op}" for s in (*_NUMBERS, "Word")) for op in ("+", "-", "*")},
+    "~": tuple(f"{s}.~" for s in _NUMBERS),
     "abs": ("Int.abs", "Real.abs", "IntInf.abs"),
-    **{op: tuple(f"{s}.{op}" for s in ("Int", "IntInf")) for op in ("div", "mod")},
-    **{op: tuple(f"{s}.{op}" for s in _ORDERED) for op in ("<", "<=", ">", ">=")},
+    **{op: tuple(f"{s}.{op}" for s in ("Int", "IntInf", "Word")) for op in ("div", "mod")},
+    **{op: tuple(f"{s}.{op}" for s in (*_ORDERED, "Word")) for op in ("<", "<=", ">", ">=")},
 }
 """Short names that stand for one of several; the first (at int) is taken when nothing decides."""
 

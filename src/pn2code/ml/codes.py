@@ -32,6 +32,19 @@ TYPE_MISMATCH = register(
     "The message says what was expected and what was found, the caret where. For an inscription: the "
     "place holds a colour set, and the expression gives neither one token of it nor a multi-set of it.",
 )
+NOT_TIMED = register(
+    "colour-set-not-timed",
+    "tokens of a colour set that is not timed are given time stamps",
+    "`@+ delay` gives tokens a time stamp, which only tokens of timed colour sets carry: "
+    "`colset JOB = string timed;`. A transition's own delay (`@+5` beside it) is added to all its timed output "
+    "tokens and does nothing to the others.",
+)
+LITERAL_TOO_LARGE = register(
+    "literal-too-large",
+    "a number is too large for its type",
+    "`int` of CPN Tools has 31 bits: from ~1073741824 to 1073741823. Larger numbers need the type `IntInf.int` "
+    "(colour set `intinf`), or the option `--int-bits 64` of pn2code.",
+)
 CIRCULAR_TYPE = register(
     "circular-type",
     "a type would contain itself",
@@ -176,4 +189,27 @@ UNSUPPORTED_INSCRIPTION = register(
     "unsupported-inscription",
     "a form of inscription is not supported",
     "The message names the form.",
+)
+MATCH_NOT_EXHAUSTIVE = register(
+    "match-not-exhaustive",
+    "a function, `case` or `val` does not cover all values",
+    "Where the case that the message names occurs, the exception `Match` (in a `val`: `Bind`) is raised, and a "
+    "simulation stops. Often that is meant; else add a rule, e.g. `| f _ = ..`.",
+)
+MATCH_REDUNDANT = register(
+    "redundant-rule",
+    "a rule is never reached",
+    "The rules before it cover all its cases. Often a constructor is misspelt, so that it reads as a variable, "
+    "which matches everything; or the rules stand in the wrong order.",
+)
+TYPE_TOO_LARGE = register(
+    "ml-type-too-large",
+    "a type is too large",
+    "The type of an expression has more than a hundred thousand parts, which happens where functions that double "
+    "their argument are composed many times. Give the argument a type, or split the declaration.",
+)
+SIGNATURE = register(
+    "signature-mismatch",
+    "a structure does not fit its signature",
+    "`structure S : SIG = ..` needs in S everything that SIG lists, at the types that it gives.",
 )

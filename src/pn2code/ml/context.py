@@ -5,15 +5,16 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass, field
-from difflib import get_close_matches
 
 from pn2code.diagnostics import Diagnostics, Note, Span
-from pn2code.ml import codes, core
+from pn2code.ml import codes, core, type_advice
+from pn2code.ml.advice import near
 from pn2code.ml.builtins import DATATYPES, FIRST_EXCEPTION_TAG, LITERAL_TYPES, scheme
 from pn2code.ml.colsets import Colset
-from pn2code.ml.environment import Binding, Scope, library_scope
+from pn2code.ml.environment import Binding, ConEntry, Scope, library_scope
 from pn2code.ml.inference import (
     ERROR,
+    IAbstract,
     ICon,
     IError,
     IFun,
@@ -28,7 +29,7 @@ from pn2code.ml.inference import (
     prune,
     to_type,
 )
-from pn2code.ml.types import Type
+from pn2code.ml.types import INT, Type
 
 MAX_DEPTH = 250
 """Nesting of operators and calls that is followed; the later stages recurse over what is built from it."""
@@ -78,6 +79,7 @@ class Context:
         datatypes: all datatypes by name.
         colsets: by name; None for those with errors.
         equality: whether a datatype (of equality arguments) has equality.
+        int_bits: width of `int`.
         warned: element, part and function of each warning about a function that cannot run here.
     """
 
@@ -97,6 +99,7 @@ class Context:
     datatypes: dict[str, core.DatatypeDec] = field(default_factory=dict)
     colsets: dict[str, Colset | None] = field(default_factory=dict)
     equality: dict[str, bool] = field(default_factory=dict)
+    int_bits: int = 31
     warned: set[tuple[str, str, str]] = field(default_factory=set)
     next_uid: int = 0
     next_exception: int = FIRST_EXCEPTION_TAG
@@ -191,6 +194,13 @@ class Context:
         """A type of the built-in table."""
         return scheme(text, self.real_time)
 
+    def constructor_type(self, entry: ConEntry) -> Ty:
+        """A constructor's type, at fresh unknowns."""
+        if entry.scheme is not None:
+            body, quants = entry.scheme
+            return self.unifier.instantiate(body, list(quants))[0]
+        return self.unifier.instantiate_type(entry.type, entry.generics)[0]
+
     def unique_type_name(self, name: str) -> str:
         """The name, stamped if a datatype or built-in type has it already."""
         candidate, n = name, 1
@@ -244,6 +254,19 @@ class Context:
         self.errors += 1
         self.d.error(code, message, at, label=label, notes=notes, hint=hint)
 
+    def check_literal(self, value: object, t: Type, span: Span) -> None:
+        """Refuses an `int` literal beyond the width of `int`, as CPN Tools does."""
+        limit = 1 << (self.int_bits - 1)
+        if t == INT and isinstance(value, int) and not -limit <= value < limit:
+            self.error(
+                codes.LITERAL_TOO_LARGE,
+                f"`{span.text}` is too large for `int`, which ends at {limit - 1}",
+                span,
+                hint="use IntInf (`IntInf.fromString`, colour set `intinf`), or the option `--int-bits 64`"
+                if self.int_bits < 64
+                else "use IntInf (colour set `intinf`)",
+            )
+
     def unify(self, found: Ty, expected: Ty, span: Span, what: str) -> bool:
         """Makes the types equal or says that `what`, at `span`, has the wrong type."""
         try:
@@ -283,34 +306,55 @@ class Context:
                     codes.UNKNOWN_FIELD,
                     f"`{record}` has no field `{problem.detail}`",
                     span,
-                    hint=suggestion(problem.detail, known) or f"its fields: {', '.join(known)}",
+                    hint=suggestion(problem.detail, known)
+                    or f"it has {', '.join(f'`#{n}`' for n in known)}",
                 )
             case "among":
                 names = problem.right.among if isinstance(problem.right, Meta) else ()
+                names = tuple(n for n in names if n != "word")  # hardly what anyone meant
                 literal = names == tuple(t.name for t in LITERAL_TYPES)
                 if literal:
                     names = names[:1]
-                allowed = " or ".join(f"`{n}`" for n in names)
                 self.error(
                     codes.TYPE_MISMATCH if literal else codes.OVERLOAD,
-                    f"{what} is `{show(problem.left)}`, but {allowed} is expected",
+                    f"{what} is `{show(problem.left)}`, but {type_advice.among(names)} is expected",
                     span,
                     label=f"this is `{show(problem.left)}`",
-                    hint=_conversion(problem.left, names),
+                    hint=type_advice.wrong_operand(what, problem.left, span.text)
+                    or conversion(problem.left, names),
                 )
             case _:
                 notes = label_notes(found, expected)
                 left, right = prune(problem.left), prune(problem.right)
                 if not notes and {id(left), id(right)} != {id(prune(found)), id(prune(expected))}:
                     notes.append(f"`{show(left)}` and `{show(right)}` differ inside")
+                if "`" in span.text and type_advice.is_list(found):
+                    shown = shown.removesuffix(" list") + " ms"
                 self.error(
                     codes.TYPE_MISMATCH,
-                    f"{what} is `{shown}`, but `{show(expected)}` is expected",
+                    f"{what} is `{shown}`, but {self._wanted(what, found, expected, show)} is expected",
                     span,
                     label=f"this is `{shown}`",
                     notes=notes,
-                    hint=_conversion(found, (_name(expected),)) or _multiset(expected, what),
+                    hint=type_advice.wrong_operand(what, found, span.text)
+                    or conversion(found, (_name(expected),))
+                    or type_advice.wrong_value(found, expected, span.text, what),
                 )
+
+    def _wanted(self, what: str, found: Ty, expected: Ty, show: Shower) -> str:
+        """The expected type in words where it is a multi-set, a reference or a function of any type."""
+        operator = type_advice.operand(what)
+        of_multisets = operator in type_advice.MULTISET_OPERATORS
+        if of_multisets and type_advice.is_list(expected) and not type_advice.is_list(found):
+            return "a multi-set"
+        if of_multisets and "timed" in show(found):
+            return "an untimed multi-set"
+        t = prune(expected)
+        if isinstance(t, ICon) and t.name == "ref" and operator in ("", ":="):
+            return "a reference"
+        if isinstance(t, IFun):
+            return f"a function `{show(expected)}`"
+        return f"`{show(expected)}`"
 
     def show(self, t: Ty) -> str:
         """A type in the user's words."""
@@ -327,10 +371,8 @@ class Context:
 
 def suggestion(name: str, known: Iterable[str]) -> str:
     """`did you mean ..?`, or nothing."""
-    close = get_close_matches(name, sorted(known), n=1, cutoff=0.7)
-    if not close:
-        close = [k for k in sorted(known) if k.lower() == name.lower()][:1]
-    return f"did you mean `{close[0]}`?" if close else ""
+    close = near(name, known)
+    return f"did you mean `{close}`?" if close else ""
 
 
 def _name(t: Ty) -> str:
@@ -348,6 +390,8 @@ def label_notes(found: Ty, expected: Ty) -> list[str]:
         return []
     if all(n.isdigit() for n in (*here, *wanted)):
         return [f"{len(wanted)} components are expected, here are {len(here)}"]
+    if any(n.isdigit() for n in (*here, *wanted)):
+        return []
     notes = [f"field `{n}` is missing" for n in wanted if n not in here]
     return notes + [f"field `{n}` is too many" for n in here if n not in wanted]
 
@@ -359,15 +403,7 @@ def quoted(name: str) -> str:
     return f'"{name}"' if "`" in name else f"`{name}`"
 
 
-def _multiset(expected: Ty, what: str) -> str:
-    """For a token where a multi-set is needed."""
-    of_multisets = any(f"operand of `{op}`" in what for op in ("++", "--", "+++", "@+", "@++"))
-    if of_multisets and _name(expected) == "list":
-        return "one token `v` as a multi-set is written 1`v"
-    return ""
-
-
-def _conversion(found: Ty, wanted: Iterable[str]) -> str:
+def conversion(found: Ty, wanted: Iterable[str]) -> str:
     """How to convert between the number types."""
     t = prune(found)
     name = t.name if isinstance(t, ICon) else ""
@@ -380,6 +416,9 @@ def _conversion(found: Ty, wanted: Iterable[str]) -> str:
         ("real", "string"): "convert with `Real.toString`",
         ("IntInf.int", "int"): "convert with `IntInf.toInt`",
         ("int", "IntInf.int"): "convert with `IntInf.fromInt`",
+        ("string", "int"): "convert with `Option.valOf (Int.fromString ..)`",
+        ("char", "string"): "convert with `str`",
+        ("bool", "string"): "convert with `Bool.toString`",
     }
     return next((pairs[name, w] for w in wanted if (name, w) in pairs), "")
 
@@ -408,6 +447,8 @@ class Shower:
             if isinstance(prune(t.argument), IFun):
                 argument = f"({argument})"
             return f"{argument} -> {self(t.result)}"
+        if isinstance(t, IAbstract):
+            t = ICon(t.name, t.args)
         if isinstance(t, ICon):
             return self._con(t)
         if _is_closed(t) and (name := self._ctx.type_name(to_type(t))):

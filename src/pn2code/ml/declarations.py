@@ -7,29 +7,40 @@ once all types are known. It serves the top level and `let` alike.
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from dataclasses import replace
 from functools import partial
 
-from pn2code.diagnostics import Span
-from pn2code.ml import codes, core
+from pn2code.diagnostics import NOWHERE, SourceText, Span
+from pn2code.ml import codes, core, matches
 from pn2code.ml import syntax as s
 from pn2code.ml.annotations import Annotations
 from pn2code.ml.context import Context, Draft, suggestion
 from pn2code.ml.environment import (
     Binding,
-    BuiltinStructure,
+    BrokenStructure,
     ConEntry,
     Scope,
     TypeAbbreviation,
     TypeCon,
     constructor_entries,
-    library_members,
 )
 from pn2code.ml.expressions import Expressions
-from pn2code.ml.inference import IFun, Meta, Quant, Ty, to_type
-from pn2code.ml.patterns import Bindings, Patterns, is_irrefutable, pattern_names
-from pn2code.ml.types import EXN, TFun, Type, tuple_of
+from pn2code.ml.inference import I_EXN, ICon, IFun, Meta, Quant, Ty, parts, prune, to_type
+from pn2code.ml.matches import BuiltRule
+from pn2code.ml.modules import Modules
+from pn2code.ml.names import Names
+from pn2code.ml.patterns import (
+    Bindings,
+    Deref,
+    Patterns,
+    expand,
+    is_irrefutable,
+    pattern_names,
+)
+from pn2code.ml.types import EXN, UNIT, TFun, Type, tuple_of
 
 Build = Callable[[], Sequence[core.Dec]]
+_NO_BODY = core.RecordExp((), UNIT, Span(SourceText("", NOWHERE), 0, 0))
 
 
 def _nothing() -> Sequence[core.Dec]:
@@ -45,11 +56,13 @@ class Declarations:
         annotations: Annotations,
         patterns: Patterns,
         expressions: Expressions,
+        names: Names,
     ) -> None:
         self._ctx = ctx
         self._annotations = annotations
         self._patterns = patterns
         self._expressions = expressions
+        self._modules = Modules(ctx, annotations, names, self.declare)
         expressions.declare = self.declare
 
     def declare(self, dec: s.Dec) -> Build:
@@ -74,11 +87,19 @@ class Declarations:
                 return self._exception(dec)
             case s.LocalDec():
                 return self._local(dec)
+            case s.AbstypeDec():
+                return self._abstype(dec)
             case s.OpenDec():
-                self._open(dec)
+                self._modules.open(dec)
                 return _nothing
             case s.StructureDec():
-                return self._structure(dec)
+                return partial(_all, self._modules.structures(dec))
+            case s.SignatureDec():
+                self._modules.signatures(dec)
+                return _nothing
+            case s.FunctorDec():
+                self._modules.functors(dec)
+                return _nothing
             case s.InfixDec():
                 return _nothing
 
@@ -87,30 +108,36 @@ class Declarations:
     def _val(self, dec: s.ValDec) -> Build:
         at_top = self._ctx.at_top
         self._enter()
-        bindings: Bindings = {}
-        made: list[tuple[Callable[[], core.Pat], Draft, s.ValBinding]] = []
+        bindings = Bindings()
+        made: list[tuple[Callable[[], core.Pat], Draft, s.ValBinding, list[Deref], bool]] = []
         plain = [b for b in dec.bindings if not b.recursive]
         recursive = [b for b in dec.bindings if b.recursive]
         for b in plain:
             t = self._ctx.unifier.fresh()
-            own: Bindings = {}
+            own = Bindings()
             pattern = self._patterns.check(b.pattern, t, own)
             value = self._expressions.check(b.value, t, _value_of(own))
-            made.append((pattern, value, b))
+            always = is_irrefutable(b.pattern, self._ctx)
+            made.append((pattern, value, b, own.derefs, always))
             self._merge(bindings, own, b.span)
         rec_build = self._recursive_values(recursive, bindings)
         self._leave()
         self._generalise(bindings, all(self._expressions.is_value(b.value) for b in dec.bindings))
-        for binding in bindings.values():
+        for binding in (*bindings.values(), *(x.cell for _, _, _, xs, _ in made for x in xs)):
             binding.is_global = at_top
         self._ctx.scope.values.update(bindings)
         quants = next((b.quants for b in bindings.values()), [])
 
         def build() -> Sequence[core.Dec]:
             with self._ctx.generics(quants):
-                out: list[core.Dec] = [
-                    core.ValBind(pattern(), value.build(), b.span) for pattern, value, b in made
-                ]
+                out: list[core.Dec] = []
+                for pattern, value, b, derefs, always in made:
+                    bound = pattern()
+                    if not always:
+                        rule = BuiltRule(core.Rule(bound, _NO_BODY, b.span), tuple(derefs))
+                        matches.warn(self._ctx, [rule], "`val`", b.pattern.span, raises="Bind")
+                    out.append(core.ValBind(bound, value.build(), b.span))
+                    out += matches.contents(self._ctx, derefs)
                 return [*out, *rec_build()]
 
         return build
@@ -130,8 +157,10 @@ class Declarations:
                     continue
                 binding = Binding(name, self._ctx.unifier.fresh())
                 scope.values[name] = binding
-                self._patterns.check(b.pattern, binding.type, {})
-                self._merge(bindings, {name: binding}, b.span)
+                self._patterns.check(b.pattern, binding.type, Bindings())
+                named = Bindings()
+                named[name] = binding
+                self._merge(bindings, named, b.span)
                 own.append((binding, b))
             drafts = [
                 (
@@ -197,7 +226,7 @@ class Declarations:
     def _fun(self, dec: s.FunDec) -> Build:
         at_top = self._ctx.at_top
         self._enter()
-        bindings: Bindings = {}
+        bindings = Bindings()
         functions: list[s.FunBinding] = []
         for f in dec.bindings:
             assert isinstance(f, s.FunBinding)
@@ -237,12 +266,11 @@ class Declarations:
         for argument in reversed(arguments):
             t = IFun(argument, t)
         self._ctx.unify(binding.type, t, f.name_span, f"function `{f.name}`")
-        rules: list[Callable[[], tuple[list[core.Pat], core.Exp, Span]]] = []
-        for clause in f.clauses:
-            own: Bindings = {}
+        rules: list[Callable[[], tuple[list[core.Pat], core.Exp, Span, tuple[Deref, ...]]]] = []
+        for clause, written in self._choices(f):
+            own = Bindings()
             patterns = [
-                self._patterns.check(p, a, own)
-                for p, a in zip(clause.patterns, arguments, strict=True)
+                self._patterns.check(p, a, own) for p, a in zip(written, arguments, strict=True)
             ]
             if clause.result is not None:
                 annotated = self._annotations.type(clause.result)
@@ -250,46 +278,76 @@ class Declarations:
             with self._ctx.block() as scope:
                 scope.values.update(own)
                 body = self._expressions.check(clause.body, result, f"result of `{f.name}`")
-            rules.append(partial(_clause, patterns, body, clause.span))
-        direct = len(f.clauses) == 1 and all(
+            rules.append(partial(_clause, patterns, body, clause.span, tuple(own.derefs)))
+        direct = len(rules) == 1 and all(
             is_irrefutable(p, self._ctx) for p in f.clauses[0].patterns
         )
 
         def build() -> core.Lambda:
             made = [rule() for rule in rules]
             types = [to_type(a) for a in arguments]
-            return self._curried(made, types, to_type(result), direct, f.span)
+            return self._curried(made, types, to_type(result), direct, f)
 
         return build
 
+    def _choices(self, f: s.FunBinding) -> list[tuple[s.Clause, tuple[s.Pat, ...]]]:
+        """Each clause with its patterns, once for each choice of alternatives."""
+        out: list[tuple[s.Clause, tuple[s.Pat, ...]]] = []
+        for clause in f.clauses:
+            choices = expand(clause.patterns)
+            if choices is None:
+                self._ctx.error(
+                    codes.UNSUPPORTED_ML,
+                    "a pattern with so many alternatives is not supported",
+                    clause.patterns[0].span,
+                )
+            else:
+                out += [(clause, patterns) for patterns in choices]
+        return out
+
     def _curried(
         self,
-        clauses: Sequence[tuple[list[core.Pat], core.Exp, Span]],
+        clauses: Sequence[tuple[list[core.Pat], core.Exp, Span, tuple[Deref, ...]]],
         arguments: Sequence[Type],
         result: Type,
         direct: bool,
-        span: Span,
+        f: s.FunBinding,
     ) -> core.Lambda:
         """`fn p => e | ...`, or for several arguments `fn a => fn b => case (a, b) of ...`."""
-        t = result
-        if len(arguments) == 1:
-            rules = tuple(core.Rule(patterns[0], body, at) for patterns, body, at in clauses)
+        span = f.span
+        pair = tuple_of(*arguments)
+        labels = [str(i) for i in range(1, len(arguments) + 1)]
+        several = len(arguments) > 1
+        built = [
+            BuiltRule(
+                core.Rule(
+                    core.PRecord(tuple(zip(labels, patterns, strict=True)), pair, at)
+                    if several
+                    else patterns[0],
+                    body,
+                    at,
+                ),
+                derefs,
+            )
+            for patterns, body, at, derefs in clauses
+        ]
+        matches.warn(
+            self._ctx, built, f"function `{f.name}`", f.name_span, arguments=len(arguments)
+        )
+        if not several:
+            rules = matches.assemble(self._ctx, built, arguments[0], result, span)
             return core.Lambda(rules, TFun(arguments[0], result), span)
         out: core.Exp
         if direct:
-            ((patterns, out, _),) = clauses
+            ((patterns, out, _, _),) = clauses
         else:
             symbols = [self._ctx.fresh_symbol(f"a{i}", a) for i, a in enumerate(arguments, 1)]
             patterns = [core.PVar(x, x.type, span) for x in symbols]
-            pair = tuple_of(*arguments)
-            labels = [str(i) for i in range(1, len(arguments) + 1)]
             values = [core.Var(x, x.type, span) for x in symbols]
             scrutinee = core.RecordExp(tuple(zip(labels, values, strict=True)), pair, span)
-            rules = tuple(
-                core.Rule(core.PRecord(tuple(zip(labels, ps, strict=True)), pair, at), body, at)
-                for ps, body, at in clauses
-            )
+            rules = matches.assemble(self._ctx, built, pair, result, span)
             out = core.Case(scrutinee, rules, result, span)
+        t = result
         for pattern, argument in zip(reversed(patterns), reversed(arguments), strict=True):
             t = TFun(argument, t)
             out = core.Lambda((core.Rule(pattern, out, span),), t, span)
@@ -335,8 +393,10 @@ class Declarations:
         for w in dec.withtypes:
             self._type(w)
         made: list[core.DatatypeDec] = []
+        schemes: dict[tuple[str, str], tuple[Ty, tuple[Quant, ...]]] = {}
         for b, name in zip(dec.bindings, names, strict=True):
-            _, tyvars = self._parameters(b.parameters)
+            quants, tyvars = self._parameters(b.parameters)
+            own = ICon(name, tuple(quants))
             constructors: list[tuple[core.Constructor, Type | None]] = []
             for tag, c in enumerate(b.constructors):
                 if any(c.name == other.name for other, _ in constructors):
@@ -350,9 +410,14 @@ class Declarations:
                 has_argument = argument is not None
                 constructor = core.Constructor(c.name, name, tag, has_argument, len(b.constructors))
                 constructors.append((constructor, None if argument is None else to_type(argument)))
+                t = own if argument is None else IFun(argument, own)
+                schemes[name, c.name] = (t, tuple(quants))
             made.append(core.DatatypeDec(name, len(b.parameters), tuple(constructors), b.span))
         for declaration in made:
             self.enter_datatype(declaration)
+            for con_name, entry in constructor_entries(declaration).items():
+                scheme = schemes[declaration.name, con_name]
+                self._ctx.scope.values[con_name] = replace(entry, scheme=scheme)
         for declaration in reversed(made):  # equality of one may depend on a later one
             self._ctx.add_datatype(declaration)
         return lambda: made
@@ -372,8 +437,13 @@ class Declarations:
                 hint=suggestion(dec.original, self._ctx.datatypes),
             )
             return
+        declaration = self._ctx.datatypes[entry.name]
+        path = dec.original.rpartition(".")[0]
+        for con_name, made in constructor_entries(declaration).items():
+            own = self._ctx.scope.value(f"{path}.{con_name}" if path else con_name)
+            same = isinstance(own, ConEntry) and own.constructor == made.constructor
+            self._ctx.scope.values[con_name] = own if same and own is not None else made
         self._ctx.scope.types[dec.name] = entry
-        self._ctx.scope.values.update(constructor_entries(self._ctx.datatypes[entry.name]))
 
     def _exception(self, dec: s.ExceptionDec) -> Build:
         made: list[core.Dec] = []
@@ -389,16 +459,32 @@ class Declarations:
             argument = None if b.argument is None else self._annotations.type(b.argument)
             if self._ctx.errors > before or self._ctx.tainted:
                 return _nothing
+            if argument is not None and self._free(argument, b):
+                return _nothing
             full = None if argument is None else to_type(argument)
+            scheme = None if argument is None else (IFun(argument, I_EXN), ())
             constructor = core.Constructor(
                 b.name, "exn", self._ctx.next_exception, full is not None, 0
             )
             self._ctx.next_exception += 1
             self._ctx.scope.values[b.name] = ConEntry(
-                constructor, EXN if full is None else TFun(full, EXN), 0
+                constructor, EXN if full is None else TFun(full, EXN), 0, scheme
             )
             made.append(core.ExceptionDec(constructor, full, b.span))
         return lambda: made
+
+    def _free(self, t: Ty, b: s.ExceptionBinding) -> bool:
+        """Reports type variables that no surrounding function quantifies."""
+        t = prune(t)
+        if isinstance(t, Meta) and t.level >= self._ctx.unifier.level:
+            self._ctx.error(
+                codes.UNKNOWN_COLOUR_SET,
+                f"exception `{b.name}` carries a type variable",
+                b.span,
+                hint="give it a type",
+            )
+            return True
+        return any(self._free(part, b) for part in parts(t))
 
     # --- blocks
 
@@ -410,30 +496,17 @@ class Declarations:
         self._ctx.scope.absorb(visible_scope)
         return partial(_all, [*hidden, *visible])
 
-    def _structure(self, dec: s.StructureDec) -> Build:
-        if dec.alias is not None:
-            target = self._structure_named(dec.alias, dec.span)
-            if target is not None:
-                self._ctx.scope.structures[dec.name] = target
-            return _nothing
-        with self._ctx.block() as scope:
-            inside = [self.declare(x) for x in dec.declarations]
-        self._ctx.scope.structures[dec.name] = scope
-        return partial(_all, inside)
-
-    def _structure_named(self, name: str, span: Span) -> Scope | BuiltinStructure | None:
-        structure = self._ctx.scope.structure(name)
-        if structure is None:
-            self._ctx.error(codes.UNBOUND, f"there is no structure `{name}`", span)
-        return structure
-
-    def _open(self, dec: s.OpenDec) -> None:
-        for name in dec.names:
-            structure = self._structure_named(name, dec.span)
-            if isinstance(structure, BuiltinStructure):
-                self._ctx.scope.values.update(library_members(structure.name))
-            elif structure is not None:
-                self._ctx.scope.absorb(structure)
+    def _abstype(self, dec: s.AbstypeDec) -> Build:
+        with self._ctx.block() as types:
+            builds = [self._datatype(dec.datatypes)]
+            with self._ctx.block() as visible:
+                builds += [self.declare(x) for x in dec.declarations]
+        for entry in types.types.values():
+            if isinstance(entry, TypeCon):
+                self._ctx.equality[entry.name] = False
+        self._ctx.scope.types.update(types.types)
+        self._ctx.scope.absorb(visible)
+        return partial(_all, builds)
 
 
 def _all(builds: Sequence[Build]) -> Sequence[core.Dec]:
@@ -441,9 +514,12 @@ def _all(builds: Sequence[Build]) -> Sequence[core.Dec]:
 
 
 def _clause(
-    patterns: Sequence[Callable[[], core.Pat]], body: Draft, span: Span
-) -> tuple[list[core.Pat], core.Exp, Span]:
-    return [p() for p in patterns], body.build(), span
+    patterns: Sequence[Callable[[], core.Pat]],
+    body: Draft,
+    span: Span,
+    derefs: tuple[Deref, ...],
+) -> tuple[list[core.Pat], core.Exp, Span, tuple[Deref, ...]]:
+    return [p() for p in patterns], body.build(), span, derefs
 
 
 def _variable(p: s.Pat) -> str | None:
@@ -469,6 +545,8 @@ def declared_by(dec: s.Dec) -> set[str]:
             return {b.name for b in dec.bindings}
         case s.LocalDec():
             return {n for x in dec.visible for n in declared_by(x)}
+        case s.AbstypeDec():
+            return {n for x in dec.declarations for n in declared_by(x)}
         case _:
             return set()
 
@@ -484,5 +562,24 @@ def types_declared_by(dec: s.Dec) -> set[str]:
             return {dec.name}
         case s.LocalDec():
             return {n for x in dec.visible for n in types_declared_by(x)}
+        case s.AbstypeDec():
+            inside = {n for x in dec.declarations for n in types_declared_by(x)}
+            return types_declared_by(dec.datatypes) | inside
         case _:
             return set()
+
+
+def break_modules(dec: s.Dec, scope: Scope) -> None:
+    """Structures, signatures and functors of a declaration with an error are known as broken."""
+    match dec:
+        case s.StructureDec():
+            scope.structures.update({b.name: BrokenStructure() for b in dec.bindings})
+        case s.SignatureDec():
+            scope.signatures.update({name: BrokenStructure() for name, _ in dec.bindings})
+        case s.FunctorDec():
+            scope.functors.update({b.name: BrokenStructure() for b in dec.bindings})
+        case s.LocalDec():
+            for x in dec.visible:
+                break_modules(x, scope)
+        case _:
+            pass

@@ -28,11 +28,11 @@ from pn2code.ml.colsets import Colset
 from pn2code.ml.constants import Constant, fold
 from pn2code.ml.context import Context, TooDeepError, suggestion
 from pn2code.ml.core import Program, Symbol
-from pn2code.ml.declarations import Declarations, declared_by, types_declared_by
+from pn2code.ml.declarations import Declarations, break_modules, declared_by, types_declared_by
 from pn2code.ml.environment import Binding, BrokenEntry, BrokenType, Scope
 from pn2code.ml.expressions import Expressions
 from pn2code.ml.fixity import Fixities, resolve_declaration, resolve_expression
-from pn2code.ml.inference import ICon, from_type
+from pn2code.ml.inference import ICon, TypeTooLargeError, from_type
 from pn2code.ml.inscriptions import Inscriptions, TypedCode
 from pn2code.ml.names import Names
 from pn2code.ml.parser import declared_names, parse_expression, parse_program
@@ -79,14 +79,14 @@ class Elaborator:
         int_bits: int = 31,
     ) -> None:
         self._d = d
-        self._int_bits = int_bits
         self._values = dict(values or {})
         self._replaced: set[str] = set()
-        self._ctx = Context(d, real_time)
+        self._ctx = Context(d, real_time, int_bits=int_bits)
         annotations = Annotations(self._ctx)
         patterns = Patterns(self._ctx, annotations)
-        self._expressions = Expressions(self._ctx, annotations, patterns, Names(self._ctx))
-        self._declare = Declarations(self._ctx, annotations, patterns, self._expressions)
+        names = Names(self._ctx)
+        self._expressions = Expressions(self._ctx, annotations, patterns, names)
+        self._declare = Declarations(self._ctx, annotations, patterns, self._expressions, names)
         self._fixities: Fixities = dict(INFIX)
         self._made: list[core.Dec] = []
         self._variables: dict[str, Symbol] = {}
@@ -141,14 +141,14 @@ class Elaborator:
             )
 
     def _clash(self, name: str, at: Origin | Span) -> None:
-        self._ctx.errors += 1
-        self._d.error(
+        """A value hides the variable of its name, whichever is declared first, as in CPN Tools."""
+        self._d.warning(
             codes.VALUE_CLASH,
-            f"`{name}` is both a variable of the net and a value or function",
+            f"`{name}` is both a variable of the net and a value or function: inscriptions mean the value",
             at,
             hint="rename one of them",
         )
-        self._variable_scope.values[name] = BrokenEntry()
+        self._variable_scope.values.pop(name, None)
         self._variables.pop(name, None)
 
     def declarations(self, text: SourceText) -> None:
@@ -167,6 +167,7 @@ class Elaborator:
         resolved = resolve_declaration(dec, self._fixities, self._d)
         if resolved is None:
             self._break(declared_names(text, dec.span.start, dec.span.end), types_declared_by(dec))
+            break_modules(dec, self._ctx.top)
             return
         changed, self._fixities = resolved
         if isinstance(changed, s.ValDec) and self._values:
@@ -179,6 +180,7 @@ class Elaborator:
         self._ctx.open_records.clear()
         if self._ctx.errors > before or self._ctx.tainted:
             self._break(declared_by(changed), types_declared_by(changed))
+            break_modules(changed, self._ctx.top)
             return
         for name in sorted(declared_by(changed) & self._variables.keys()):
             if isinstance(self._ctx.top.values.get(name), Binding):
@@ -193,6 +195,12 @@ class Elaborator:
                 value = self._fold(one.value)
                 if value is not None:
                     self._constants[one.pattern.symbol.uid] = value
+
+    def unreadable(self, values: Sequence[str], types: Sequence[str]) -> None:
+        """Names that declarations declare about which all has been said; nothing is said about their uses."""
+        self._break(values, types)
+        for name in types:
+            self._ctx.colsets[name] = None
 
     def _break(self, values: Sequence[str] | set[str], types: Sequence[str] | set[str]) -> None:
         """Names of a declaration with an error are known, but nothing is said about their uses."""
@@ -269,7 +277,7 @@ class Elaborator:
                 for n, e in self._ctx.top.values.items()
                 if isinstance(e, Binding) and e.symbol is not None
             },
-            int_bits=self._int_bits,
+            int_bits=self._ctx.int_bits,
         )
 
     @contextmanager
@@ -279,7 +287,7 @@ class Elaborator:
         Errors go to `d`. Afterwards all names mean again what they meant before.
         """
         top, made, fixities = self._ctx.top, len(self._made), dict(self._fixities)
-        names = dict(top.values), dict(top.types), dict(top.structures)
+        kept = top.kept()
         before = self._d, self._ctx.d, self._ctx.errors
         result = Aside()
         self._d = self._ctx.d = d
@@ -293,7 +301,8 @@ class Elaborator:
                 if isinstance(e, Binding) and e.symbol is not None
             }
             del self._made[made:]
-            top.values, top.types, top.structures = names
+            top.values, top.types, top.structures = kept.values, kept.types, kept.structures
+            top.signatures, top.functors = kept.signatures, kept.functors
             self._d, self._ctx.d, self._ctx.errors = before
             self._fixities = fixities
 
@@ -371,9 +380,19 @@ class Elaborator:
         """Runs one text's elaboration; leaves a clean state behind, and reports texts beyond Python's stack."""
         limit = sys.getrecursionlimit()
         sys.setrecursionlimit(max(limit, _RECURSION_LIMIT))
+        self._ctx.unifier.start()
         try:
             return work()
         except TooDeepError:
+            return None
+        except TypeTooLargeError:
+            end = min(len(text.text), 40)
+            self._d.error(
+                codes.TYPE_TOO_LARGE,
+                "the types in this text become too large",
+                Span(text, 0, end),
+                hint="give arguments a type: `fun f (x : INT) = ..`",
+            )
             return None
         except RecursionError:
             end = min(len(text.text), 40)

@@ -27,6 +27,7 @@ from pn2code.ml.builtins import (
 from pn2code.ml.colsets import Colset
 from pn2code.ml.core import Constructor, DatatypeDec, Symbol
 from pn2code.ml.inference import Quant, Ty
+from pn2code.ml.syntax import FunctorBinding, Sig
 from pn2code.ml.types import EXN, TCon, TFun, TVar, Type
 
 
@@ -70,11 +71,28 @@ class OverloadedEntry:
 
 @frozen
 class ConEntry:
-    """A constructor with its type scheme."""
+    """A constructor with its type scheme.
+
+    Args:
+        constructor: the constructor.
+        type: its type as the later stages see it, with `TVar`s.
+        generics: number of these.
+        scheme: its type as declared where abstract types stand in it, with the quantified variables.
+    """
 
     constructor: Constructor
     type: Type
     generics: int
+    scheme: tuple[Ty, tuple[Quant, ...]] | None = None
+
+
+@frozen
+class SealedEntry:
+    """A member of a structure at the type that its signature gives it; `quants` are quantified."""
+
+    inner: Entry
+    type: Ty
+    quants: tuple[Quant, ...]
 
 
 @frozen
@@ -109,7 +127,7 @@ class UnsupportedEntry:
 
 Entry = (
     Binding | BuiltinEntry | OverloadedEntry | ConEntry | EmptyEntry | UnitEntry | ColsetEntry | BrokenEntry
-    | UnsupportedEntry
+    | UnsupportedEntry | SealedEntry
 )  # fmt: skip
 
 
@@ -142,7 +160,17 @@ class BrokenType:
     """A type whose declaration has an error that was reported."""
 
 
-TypeEntry = TypeCon | TypeAbbreviation | BuiltinAbbreviation | BrokenType
+@frozen
+class AbstractType:
+    """A type of a structure whose signature hides what it is."""
+
+    name: str
+    parameters: tuple[Quant, ...]
+    hidden: Ty
+    equality: bool
+
+
+TypeEntry = TypeCon | TypeAbbreviation | AbstractType | BuiltinAbbreviation | BrokenType
 
 
 @frozen
@@ -152,14 +180,21 @@ class BuiltinStructure:
     name: str
 
 
+@frozen
+class BrokenStructure:
+    """A structure, signature or functor whose declaration has an error that was reported."""
+
+
 class Scope:
-    """Names of one block; unknown ones are looked up in the block around it."""
+    """Names of one block; unknown ones are looked up in the block around it. A structure is one, too."""
 
     def __init__(self, parent: Scope | None = None) -> None:
         self.parent = parent
         self.values: dict[str, Entry] = {}
         self.types: dict[str, TypeEntry] = {}
-        self.structures: dict[str, Scope | BuiltinStructure] = {}
+        self.structures: dict[str, Scope | BuiltinStructure | BrokenStructure] = {}
+        self.signatures: dict[str, SignatureEntry | BrokenStructure] = {}
+        self.functors: dict[str, FunctorEntry | BrokenStructure] = {}
 
     def _chain(self) -> Iterator[Scope]:
         scope: Scope | None = self
@@ -167,16 +202,24 @@ class Scope:
             yield scope
             scope = scope.parent
 
-    def structure(self, name: str) -> Scope | BuiltinStructure | None:
+    def structure(self, name: str) -> Scope | BuiltinStructure | BrokenStructure | None:
         """A structure by its name, `A` or `A.B`."""
         head, *rest = name.split(".")
         found = next((s.structures[head] for s in self._chain() if head in s.structures), None)
         for part in rest:
             if isinstance(found, BuiltinStructure):
                 found = BuiltinStructure(f"{found.name}.{part}")
-            elif found is not None:
+            elif isinstance(found, Scope):
                 found = found.structures.get(part)
         return found
+
+    def signature(self, name: str) -> SignatureEntry | BrokenStructure | None:
+        """A signature by its name."""
+        return next((s.signatures[name] for s in self._chain() if name in s.signatures), None)
+
+    def functor(self, name: str) -> FunctorEntry | BrokenStructure | None:
+        """A functor by its name."""
+        return next((s.functors[name] for s in self._chain() if name in s.functors), None)
 
     def value(self, name: str) -> Entry | None:
         """What a name means as a value."""
@@ -186,6 +229,8 @@ class Scope:
         structure = self.structure(".".join(path))
         if isinstance(structure, Scope):
             return structure.values.get(last)
+        if isinstance(structure, BrokenStructure):
+            return BrokenEntry()
         return library_value(structure.name, last) if structure is not None else None
 
     def type(self, name: str) -> TypeEntry | None:
@@ -196,6 +241,8 @@ class Scope:
             structure = self.structure(".".join(path))
             if isinstance(structure, Scope):
                 return structure.types.get(last)
+            if isinstance(structure, BrokenStructure):
+                return BrokenType()
         return found
 
     def names(self) -> set[str]:
@@ -211,6 +258,32 @@ class Scope:
         self.values.update(other.values)
         self.types.update(other.types)
         self.structures.update(other.structures)
+        self.signatures.update(other.signatures)
+        self.functors.update(other.functors)
+
+    def kept(self) -> Scope:
+        """A copy that later declarations do not change."""
+        if self.parent is None:
+            return self  # the library
+        copy = Scope(self.parent.kept())
+        copy.absorb(self)
+        return copy
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class SignatureEntry:
+    """A signature, and the names in force where it was declared."""
+
+    signature: Sig
+    scope: Scope
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class FunctorEntry:
+    """A functor, and the names in force where it was declared."""
+
+    binding: FunctorBinding
+    scope: Scope
 
 
 def split_name(name: str) -> list[str]:

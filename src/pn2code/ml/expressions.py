@@ -11,12 +11,12 @@ from collections.abc import Callable, Sequence
 from functools import partial
 
 from pn2code.diagnostics import Span
-from pn2code.ml import codes, core
+from pn2code.ml import codes, core, matches, type_advice
 from pn2code.ml import syntax as s
 from pn2code.ml.annotations import Annotations
 from pn2code.ml.builtins import FALSE, LITERAL_TYPES, TRUE
 from pn2code.ml.context import BROKEN, Context, Draft, no_expression, quoted
-from pn2code.ml.environment import BuiltinEntry, ConEntry, Entry
+from pn2code.ml.environment import Binding, BuiltinEntry, ConEntry, Entry
 from pn2code.ml.inference import (
     ERROR,
     I_BOOL,
@@ -25,6 +25,7 @@ from pn2code.ml.inference import (
     I_REAL,
     I_STRING,
     I_UNIT,
+    I_WORD,
     ICon,
     IError,
     IFun,
@@ -37,9 +38,10 @@ from pn2code.ml.inference import (
     prune,
     to_type,
 )
+from pn2code.ml.matches import BuiltRule
 from pn2code.ml.names import Names
-from pn2code.ml.patterns import Bindings, Patterns
-from pn2code.ml.types import BOOL, UNIT, TFun
+from pn2code.ml.patterns import Bindings, Deref, Patterns, expand
+from pn2code.ml.types import BOOL, EXN, UNIT, TFun
 
 _ASSOCIATIVE = frozenset({"Ms.++", "Time.+++", "String.^", "List.@"})
 """Long chains of these become balanced trees: a sum of 1000 terms is then 10 levels deep."""
@@ -127,6 +129,9 @@ class Expressions:
                 return self._record(e, {}, "field")
             case s.ListExp():
                 return self._list(e, self._ctx.unifier.fresh(), "list")
+            case s.VectorExp():
+                function = s.NameExp("Vector.fromList", True, e.span)
+                return self._apply(s.ApplyExp(function, s.ListExp(e.items, e.span), e.span))
             case s.SelectorExp():
                 return self._selector(e)
             case s.LogicExp():
@@ -159,7 +164,15 @@ class Expressions:
                 t = I_STRING
             case s.LitKind.CHAR:
                 t = I_CHAR
-        return Draft(t, lambda: core.Lit(e.value, to_type(t), e.span))
+            case s.LitKind.WORD:
+                t = I_WORD
+
+        def build() -> core.Exp:
+            known = to_type(t)
+            self._ctx.check_literal(e.value, known, e.span)
+            return core.Lit(e.value, known, e.span)
+
+        return Draft(t, build)
 
     # --- application
 
@@ -206,9 +219,7 @@ class Expressions:
                 f"{_called(written)} is `{self._ctx.show(t)}`, not a function",
                 written.span,
                 label="this is applied to what follows",
-                hint="is an operator missing between the two, such as a backquote: 1`x ?"
-                if isinstance(written, s.LitExp)
-                else "is an operator or a comma missing between the two?",
+                hint=self._application_hint(written, span),
             )
             return BROKEN
         result = t.result
@@ -219,6 +230,28 @@ class Expressions:
             result,
             lambda: core.Apply(function.build(), given.build(), to_type(result), span),
         )
+
+    def _application_hint(self, written: s.Exp, span: Span) -> str:
+        """What may be meant where something that is no function is applied."""
+        if isinstance(written, s.LitExp):
+            return "is an operator missing between the two, such as a backquote: 1`x ?"
+        arguments = [span.source.text[written.span.end : span.end].strip()]
+        head: s.Exp = written
+        while isinstance(head, s.ApplyExp):
+            arguments.insert(0, head.argument.span.text)
+            head = head.function
+        if isinstance(head, s.NameExp):
+            entry = self._names.lookup(head.name)
+            components = 0
+            if isinstance(entry, Binding) and isinstance(function := prune(entry.type), IFun):
+                domain = prune(function.argument)
+                components = len(domain.fields) if isinstance(domain, IRec) else 1
+            hint = type_advice.not_a_function(
+                head.name, arguments, components, constructor=isinstance(entry, ConEntry)
+            )
+            if hint:
+                return hint
+        return "is an operator or a comma missing between the two?"
 
     def _infix(self, e: s.InfixExp, expected: Ty | None = None) -> Draft:
         entry = self._ctx.scope.value(e.operator.name)
@@ -265,7 +298,11 @@ class Expressions:
             self._ctx.unifier.unify(function.type, operator_type)
         if expected is not None:
             self._ctx.unifier.attempt(t, expected)
-        drafts = [self.check(x, t, f"operand of `{name}`") for x in terms]
+        drafts = []
+        before = self._ctx.errors
+        for x in terms:  # after one error the others are only looked at for errors inside
+            wanted = t if self._ctx.errors == before else ERROR
+            drafts.append(self.check(x, wanted, f"operand of `{name}`"))
 
         def join(left: core.Exp, right: core.Exp, at: int, span: Span) -> core.Exp:
             full = to_type(t)
@@ -380,27 +417,53 @@ class Expressions:
     def _case(self, e: s.CaseExp, t: Ty, what: str) -> Draft:
         scrutinee = self.infer(e.exp)
         rules = self.rules(e.rules, scrutinee.type, t, what)
-        return Draft(t, lambda: core.Case(scrutinee.build(), rules(), to_type(t), e.span))
+
+        def build() -> core.Exp:
+            made, result = rules(), to_type(t)
+            matches.warn(self._ctx, made, "`case`", e.exp.span)
+            argument = to_type(scrutinee.type)
+            assembled = matches.assemble(self._ctx, made, argument, result, e.span)
+            return core.Case(scrutinee.build(), assembled, result, e.span)
+
+        return Draft(t, build)
 
     def rules(
         self, rules: Sequence[s.Rule], argument: Ty, result: Ty, what: str
-    ) -> Callable[[], tuple[core.Rule, ...]]:
+    ) -> Callable[[], list[BuiltRule]]:
         """The rules of a `case`, `fn` or `handle`."""
         known = not isinstance(prune(result), Meta)
-        out: list[Callable[[], core.Rule]] = []
+        out: list[Callable[[], BuiltRule]] = []
         for i, rule in enumerate(rules, 1):
-            bindings: Bindings = {}
-            pattern = self._patterns.check(rule.pattern, argument, bindings)
-            with self._ctx.block() as scope:
-                scope.values.update(bindings)
-                name = what if known or len(rules) == 1 else f"result of rule {i}"
-                body = self.check(rule.body, result, name)
-            out.append(partial(_rule, pattern, body, rule.span))
-        return lambda: tuple(build() for build in out)
+            choices = expand([rule.pattern])
+            if choices is None:
+                self._ctx.error(
+                    codes.UNSUPPORTED_ML,
+                    "a pattern with so many alternatives is not supported",
+                    rule.pattern.span,
+                )
+                continue
+            for (written,) in choices:
+                bindings = Bindings()
+                pattern = self._patterns.check(written, argument, bindings)
+                with self._ctx.block() as scope:
+                    scope.values.update(bindings)
+                    name = what if known or len(rules) == 1 else f"result of rule {i}"
+                    body = self.check(rule.body, result, name)
+                out.append(partial(_rule, pattern, body, rule.span, bindings.derefs))
+        return lambda: [build() for build in out]
 
     def _fn(self, e: s.FnExp, t: IFun) -> Draft:
         rules = self.rules(e.rules, t.argument, t.result, "result of the function")
-        return Draft(t, lambda: core.Lambda(rules(), to_type(t), e.span))
+
+        def build() -> core.Exp:
+            made, full = rules(), to_type(t)
+            assert isinstance(full, TFun)
+            at = Span(e.span.source, e.span.start, e.span.start + 2)
+            matches.warn(self._ctx, made, "`fn`", at)
+            assembled = matches.assemble(self._ctx, made, full.argument, full.result, e.span)
+            return core.Lambda(assembled, full, e.span)
+
+        return Draft(t, build)
 
     def _let(self, e: s.LetExp, t: Ty, what: str) -> Draft:
         with self._ctx.block():
@@ -443,10 +506,18 @@ class Expressions:
     def _handle(self, e: s.HandleExp) -> Draft:
         body = self.infer(e.exp)
         rules = self.rules(e.rules, I_EXN, body.type, "result of the handler")
-        return Draft(
-            body.type,
-            lambda: core.Handle(body.build(), rules(), to_type(body.type), e.span),
-        )
+
+        def build() -> core.Exp:
+            made, result = rules(), to_type(body.type)
+            matches.warn(self._ctx, made, "`handle`", e.span, raises="")
+
+            def again(exception: core.Symbol) -> core.Exp:
+                return core.Raise(core.Var(exception, EXN, e.span), result, e.span)
+
+            assembled = matches.assemble(self._ctx, made, EXN, result, e.span, otherwise=again)
+            return core.Handle(body.build(), assembled, result, e.span)
+
+        return Draft(body.type, build)
 
     # --- value restriction
 
@@ -477,8 +548,10 @@ class Expressions:
         return isinstance(entry, ConEntry)
 
 
-def _rule(pattern: Callable[[], core.Pat], body: Draft, span: Span) -> core.Rule:
-    return core.Rule(pattern(), body.build(), span)
+def _rule(
+    pattern: Callable[[], core.Pat], body: Draft, span: Span, derefs: Sequence[Deref]
+) -> BuiltRule:
+    return BuiltRule(core.Rule(pattern(), body.build(), span), tuple(derefs))
 
 
 def _pair(left: Draft, right: Draft, span: Span) -> Draft:

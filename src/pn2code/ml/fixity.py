@@ -12,7 +12,7 @@ from dataclasses import replace
 from typing import TypeGuard, TypeVar
 
 from pn2code.diagnostics import Diagnostics, Span
-from pn2code.ml import codes
+from pn2code.ml import advice, codes
 from pn2code.ml import syntax as s
 
 MAX_DEPTH = 200
@@ -100,7 +100,7 @@ class _Resolver:
                 return _Sequence(self, e).resolve()
             case s.RecordExp():
                 return replace(e, fields=tuple((n, self.exp(x)) for n, x in e.fields))
-            case s.ListExp() | s.SequenceExp():
+            case s.ListExp() | s.SequenceExp() | s.VectorExp():
                 return replace(e, items=tuple(self.exp(x) for x in e.items))
             case s.LetExp():
                 saved = dict(self.fixities)
@@ -153,6 +153,8 @@ class _Resolver:
                 return replace(p, fields=tuple((n, self.pat(x)) for n, x in p.fields))
             case s.ListPat():
                 return replace(p, items=tuple(self.pat(x) for x in p.items))
+            case s.OrPat():
+                return replace(p, alternatives=tuple(self.pat(x) for x in p.alternatives))
             case _:
                 return p
 
@@ -272,11 +274,15 @@ class _Resolver:
             reduce()
         return output[0]
 
+    def foreign(self, operator: s.NameExp) -> FixityError:
+        """Reports an operator of another language between its operands."""
+        hint = advice.FOREIGN_OPERATORS[operator.name]
+        return self._error(f"`{operator.name}` is not an operator of CPN ML", operator.span, hint)
+
     def _missing(self, name: str, side: str, item: object) -> FixityError:
-        hint = f"write what is missing; to name the operator itself write `op {name}`"
-        if side == "left" and name in ("-", "+"):
-            hint = "negative numbers are written with a tilde: `~5`"
-        return self._error(f"operator `{name}` has no {side} operand", _span(item), hint)
+        shown = "the backquote" if name == "`" else f"operator `{name}`"
+        hint = advice.missing_operand(name, side)
+        return self._error(f"{shown} has no {side} operand", _span(item), hint)
 
     # --- declarations
 
@@ -298,11 +304,14 @@ class _Resolver:
                 exported = {k: v for k, v in self.fixities.items() if inner.get(k) != v}
                 self.fixities = saved | exported
                 return replace(dec, hidden=hidden, visible=visible)
+            case s.AbstypeDec():
+                return replace(dec, declarations=tuple(self.dec(x) for x in dec.declarations))
             case s.StructureDec():
-                saved = dict(self.fixities)
-                declarations = tuple(self.dec(x) for x in dec.declarations)
-                self.fixities = saved
-                return replace(dec, declarations=declarations)
+                bodies = tuple(replace(b, body=self.structure(b.body)) for b in dec.bindings)
+                return replace(dec, bindings=bodies)
+            case s.FunctorDec():
+                functors = tuple(replace(b, body=self.structure(b.body)) for b in dec.bindings)
+                return replace(dec, bindings=functors)
             case s.InfixDec():
                 for name in dec.names:
                     if dec.kind == "nonfix":
@@ -314,6 +323,31 @@ class _Resolver:
                 return replace(dec, exp=self.exp(dec.exp))
             case _:
                 return dec
+
+    def structure(self, e: s.Str) -> s.Str:
+        """A structure; what it says of fixity ends with it."""
+        self._enter(e.span)
+        resolved = self._structure(e)
+        self._depth -= 1
+        return resolved
+
+    def _structure(self, e: s.Str) -> s.Str:
+        saved = dict(self.fixities)
+        try:
+            match e:
+                case s.StructStr():
+                    return replace(e, declarations=tuple(self.dec(x) for x in e.declarations))
+                case s.LetStr():
+                    declarations = tuple(self.dec(x) for x in e.declarations)
+                    return replace(e, declarations=declarations, body=self.structure(e.body))
+                case s.ApplyStr():
+                    return replace(e, argument=self.structure(e.argument))
+                case s.SealedStr():
+                    return replace(e, structure=self.structure(e.structure))
+                case s.NameStr():
+                    return e
+        finally:
+            self.fixities = saved
 
     def _function(self, b: s.FunBinding | s.FlatFunBinding) -> s.FunBinding:
         if isinstance(b, s.FunBinding):
@@ -459,6 +493,13 @@ class _Sequence:
         return None
 
     def _operand(self, atoms: Sequence[s.Exp]) -> s.Exp:
+        for atom in atoms[1:-1]:
+            if (
+                isinstance(atom, s.NameExp)
+                and not atom.op
+                and atom.name in advice.FOREIGN_OPERATORS
+            ):
+                raise self._r.foreign(atom)
         exp = self._r.exp(atoms[0])
         for atom in atoms[1:]:
             exp = s.ApplyExp(exp, self._r.exp(atom), exp.span.to(atom.span))

@@ -42,6 +42,23 @@ class IFun:
 
 
 @frozen
+class IAbstract:
+    """A type whose implementation a signature hides (`S :> SIG`); later stages see the implementation.
+
+    Args:
+        name: unique in the program.
+        args: its arguments.
+        hidden: the implementation, at these arguments.
+        equality: whether the signature says `eqtype`.
+    """
+
+    name: str
+    args: tuple[Ty, ...]
+    hidden: Ty
+    equality: bool
+
+
+@frozen
 class IError:
     """The type of what was reported already."""
 
@@ -73,7 +90,7 @@ class Meta:
     ref: Ty | None = None
 
 
-Ty = ICon | IRec | IFun | IError | Quant | Meta
+Ty = ICon | IRec | IFun | IAbstract | IError | Quant | Meta
 
 ERROR = IError()
 I_UNIT = IRec()
@@ -84,6 +101,7 @@ I_BOOL = ICon("bool")
 I_STRING = ICon("string")
 I_CHAR = ICon("char")
 I_EXN = ICon("exn")
+I_WORD = ICon("word")
 
 
 def i_list(t: Ty) -> ICon:
@@ -124,8 +142,23 @@ class UnifyError(Exception):
         self.detail = detail
 
 
+MAX_TYPE_NODES = 100_000
+"""Parts of one type that are looked at in one step: exponential types end here."""
+MAX_WORK = 5_000_000
+"""Parts of types that are looked at for one text."""
+
+
+class TypeTooLargeError(Exception):
+    """A type passes the limits; reported at the border of the text."""
+
+
 class Unifier:
-    """Unification with a trail, so that an attempt can be taken back."""
+    """Unification with a trail, so that an attempt can be taken back.
+
+    Attributes:
+        see_through: whether abstract types count as their implementations, while a structure is matched.
+        work: parts of types looked at since the text began.
+    """
 
     def __init__(self, equality_of: Callable[[str], bool]) -> None:
         self._equality_of = equality_of
@@ -134,6 +167,30 @@ class Unifier:
         self.level = 0
         self.pending: list[Meta] = []
         """metas with `among` or `fields`, to be looked at when the declaration ends"""
+        self.see_through = False
+        self.work = 0
+        self._limit = MAX_TYPE_NODES
+
+    def start(self) -> None:
+        """A new text begins."""
+        self.work = 0
+        self._limit = MAX_TYPE_NODES
+        self._trail.clear()
+        self.pending.clear()
+
+    def _step(self) -> None:
+        """One part of a type is looked at.
+
+        Raises:
+            TypeTooLargeError: that is too many.
+        """
+        self.work += 1
+        if self.work > self._limit:
+            raise TypeTooLargeError
+
+    def _begin(self) -> None:
+        """A step over one type begins."""
+        self._limit = min(self.work + MAX_TYPE_NODES, MAX_WORK)
 
     def fresh(self, *, equality: bool = False, among: Iterable[str] = ()) -> Meta:
         """A new unknown."""
@@ -178,32 +235,52 @@ class Unifier:
         Raises:
             UnifyError: they cannot be; some metas may have been solved.
         """
+        self._begin()
+        self._unify(left, right)
+
+    def _unify(self, left: Ty, right: Ty) -> None:
         a, b = prune(left), prune(right)
-        if a is b or isinstance(a, IError) or isinstance(b, IError):
+        if a is b:
             return
+        self._step()
         if isinstance(a, Meta):
-            self._bind(a, b)
+            if not isinstance(b, IError):
+                self._bind(a, b)
         elif isinstance(b, Meta):
-            self._bind(b, a)
+            if not isinstance(a, IError):
+                self._bind(b, a)
         elif isinstance(a, ICon) and isinstance(b, ICon):
             if a.name != b.name or len(a.args) != len(b.args):
                 raise UnifyError("mismatch", a, b)
             for x, y in zip(a.args, b.args, strict=True):
-                self.unify(x, y)
+                self._unify(x, y)
         elif isinstance(a, IFun) and isinstance(b, IFun):
-            self.unify(a.argument, b.argument)
-            self.unify(a.result, b.result)
+            self._unify(a.argument, b.argument)
+            self._unify(a.result, b.result)
         elif isinstance(a, IRec) and isinstance(b, IRec):
             if [n for n, _ in a.fields] != [n for n, _ in b.fields]:
                 raise UnifyError("mismatch", a, b)
             for (_, x), (_, y) in zip(a.fields, b.fields, strict=True):
-                self.unify(x, y)
+                self._unify(x, y)
+        elif isinstance(a, IError) or isinstance(b, IError):
+            return
+        elif isinstance(a, IAbstract) and isinstance(b, IAbstract) and a.name == b.name:
+            for x, y in zip(a.args, b.args, strict=True):
+                self._unify(x, y)
+        elif self.see_through and (isinstance(a, IAbstract) or isinstance(b, IAbstract)):
+            self._unify(
+                a.hidden if isinstance(a, IAbstract) else a,
+                b.hidden if isinstance(b, IAbstract) else b,
+            )
         else:
             raise UnifyError("mismatch", a, b)
 
     def _bind(self, meta: Meta, t: Ty) -> None:
         if isinstance(t, Meta):
             self._merge(meta, t)
+            return
+        if self.see_through and isinstance(t, IAbstract) and (meta.among or meta.fields):
+            self._unify(meta, t.hidden)
             return
         self._occurs(meta, t)
         if meta.among and not (isinstance(t, ICon) and t.name in meta.among):
@@ -215,7 +292,7 @@ class Unifier:
             for name, field in meta.fields.items():
                 if name not in have:
                     raise UnifyError("field", t, meta, name)
-                self.unify(field, have[name])
+                self._unify(field, have[name])
         if meta.equality:
             self.require_equality(t)
         self._save(meta)
@@ -245,12 +322,15 @@ class Unifier:
             else:
                 b.fields = {**mine, **theirs}
                 for name in mine.keys() & theirs.keys():
-                    self.unify(mine[name], theirs[name])
+                    self._unify(mine[name], theirs[name])
         a.ref = b
 
     def _occurs(self, meta: Meta, t: Ty) -> None:
         """Refuses a type that contains the meta; lowers the levels of the metas inside."""
         t = prune(t)
+        if isinstance(t, ICon) and not t.args:
+            return
+        self._step()
         if t is meta:
             raise UnifyError("circular", meta, t)
         if isinstance(t, Meta):
@@ -282,6 +362,11 @@ class Unifier:
             )
         elif isinstance(t, IFun):
             raise UnifyError("equality", t, t)
+        elif isinstance(t, IAbstract):
+            if not t.equality:
+                raise UnifyError("equality", t, t)
+            for arg in t.args:
+                self.require_equality(arg)
         elif isinstance(t, IRec):
             for _, field in t.fields:
                 self.require_equality(field)
@@ -298,6 +383,7 @@ class Unifier:
     def generalise(self, types: Iterable[Ty]) -> list[Quant]:
         """Quantifies the unknowns that belong to levels deeper than the present one."""
         roots = list(types)
+        self._begin()
         for t in roots:
             self._pin(t)
         quants: list[Quant] = []
@@ -307,28 +393,35 @@ class Unifier:
 
     def _pin(self, t: Ty) -> None:
         """Overloaded and open-record unknowns are decided by the surroundings, not generalised."""
+        self._step()
         t = prune(t)
         if isinstance(t, Meta):
             if t.level > self.level and (t.among or t.fields is not None):
-                self.lower(t)
+                self._lower(t)
         else:
             for part in parts(t):
                 self._pin(part)
 
     def lower(self, t: Ty) -> None:
         """Makes all unknowns of a type belong to the present level: they are not generalised."""
+        self._begin()
+        self._lower(t)
+
+    def _lower(self, t: Ty) -> None:
+        self._step()
         t = prune(t)
         if isinstance(t, Meta):
             if t.level > self.level:
                 t.level = self.level
                 for field in (t.fields or {}).values():
-                    self.lower(field)
+                    self._lower(field)
         else:
             for part in parts(t):
-                self.lower(part)
+                self._lower(part)
 
     def close(self, t: Ty) -> None:
         """Settles what nothing has decided and nothing may decide later."""
+        self._step()
         t = prune(t)
         if isinstance(t, Meta):
             t.ref = ICon(t.among[0]) if t.among else I_UNIT
@@ -337,6 +430,7 @@ class Unifier:
                 self.close(part)
 
     def _quantify(self, t: Ty, quants: list[Quant]) -> None:
+        self._step()
         t = prune(t)
         if isinstance(t, Meta):
             if t.level > self.level:
@@ -352,7 +446,28 @@ class Unifier:
         if not quants:
             return t, []
         fresh: dict[int, Ty] = {id(q): self.fresh(equality=q.equality) for q in quants}
-        return substitute(t, fresh), [fresh[id(q)] for q in quants]
+        return self.substitute(t, fresh), [fresh[id(q)] for q in quants]
+
+    def substitute(self, t: Ty, by: Mapping[int, Ty]) -> Ty:
+        """Replaces quantified variables, given by identity."""
+        self._begin()
+        return self._substitute(t, by)
+
+    def _substitute(self, t: Ty, by: Mapping[int, Ty]) -> Ty:
+        self._step()
+        t = prune(t)
+        if isinstance(t, Quant):
+            return by.get(id(t), t)
+        if isinstance(t, ICon):
+            return ICon(t.name, tuple(self._substitute(a, by) for a in t.args)) if t.args else t
+        if isinstance(t, IRec):
+            return IRec(tuple((n, self._substitute(f, by)) for n, f in t.fields))
+        if isinstance(t, IFun):
+            return IFun(self._substitute(t.argument, by), self._substitute(t.result, by))
+        if isinstance(t, IAbstract):
+            args = tuple(self._substitute(a, by) for a in t.args)
+            return IAbstract(t.name, args, self._substitute(t.hidden, by), t.equality)
+        return t
 
     def instantiate_type(self, t: Type, generics: int) -> tuple[Ty, list[Ty]]:
         """The same for a finished type with `TVar`s."""
@@ -370,21 +485,9 @@ def parts(t: Ty) -> tuple[Ty, ...]:
         return tuple(f for _, f in t.fields)
     if isinstance(t, IFun):
         return (t.argument, t.result)
+    if isinstance(t, IAbstract):
+        return (*t.args, t.hidden)
     return ()
-
-
-def substitute(t: Ty, by: Mapping[int, Ty]) -> Ty:
-    """Replaces quantified variables, given by identity."""
-    t = prune(t)
-    if isinstance(t, Quant):
-        return by.get(id(t), t)
-    if isinstance(t, ICon):
-        return ICon(t.name, tuple(substitute(a, by) for a in t.args)) if t.args else t
-    if isinstance(t, IRec):
-        return IRec(tuple((n, substitute(f, by)) for n, f in t.fields))
-    if isinstance(t, IFun):
-        return IFun(substitute(t.argument, by), substitute(t.result, by))
-    return t
 
 
 def from_type(t: Type, variables: list[Ty]) -> Ty:
@@ -413,6 +516,8 @@ def to_type(t: Ty) -> Type:
         return TRecord(tuple((n, to_type(f)) for n, f in t.fields))
     if isinstance(t, IFun):
         return TFun(to_type(t.argument), to_type(t.result))
+    if isinstance(t, IAbstract):
+        return to_type(t.hidden)
     raise AssertionError("the error type left the checker")
 
 

@@ -8,11 +8,12 @@ from dataclasses import dataclass, replace
 from typing import TypeVar
 
 from pn2code.diagnostics import Diagnostics, Note, SourceText
-from pn2code.ml import codes, core
+from pn2code.ml import codes, core, type_advice
 from pn2code.ml import syntax as s
 from pn2code.ml.builtins import BUILTINS
+from pn2code.ml.colsets import definition
 from pn2code.ml.constants import Constant, fold
-from pn2code.ml.context import Context, Draft, label_notes
+from pn2code.ml.context import Context, Draft, conversion, label_notes
 from pn2code.ml.core import Symbol
 from pn2code.ml.environment import Binding, BrokenEntry, BuiltinEntry, Scope
 from pn2code.ml.expressions import Expressions
@@ -103,7 +104,7 @@ class Inscriptions:
                 name, from_type(symbol.type, []), symbol=symbol, colset=symbol.colset
             )
         what = text.origin.part or "expression"
-        with self._scope(scope):
+        with self._scope(scope), self._one_mistake():
             before = self._ctx.errors
             found = self._first(exp, types)
             if isinstance(found, tuple):
@@ -111,6 +112,23 @@ class Inscriptions:
             if self._ctx.errors == before and not self._ctx.tainted:
                 self._explain(exp, found, types, what, expected_name)
             return None
+
+    @contextmanager
+    def _one_mistake(self) -> Iterator[None]:
+        """Of several errors in a short text says all unknown names, or else the first one only.
+
+        The others are mostly consequences: `n ++ m` has two operands that are no multi-sets.
+        """
+        outer, self._ctx.d = self._ctx.d, Diagnostics()
+        try:
+            yield
+        finally:
+            found, self._ctx.d = self._ctx.d, outer
+            errors = found.errors
+            unknown = [e for e in errors if e.code == codes.UNBOUND]
+            errors.sort(key=lambda e: (e.origin.line, e.origin.column))
+            kept = unknown or errors[:1]
+            outer.items += [x for x in found.items if x not in errors or x in kept]
 
     def plain(self, exp: s.Exp, types: Sequence[Type], what: str) -> tuple[int, core.Exp] | None:
         """An expression without net variables."""
@@ -207,9 +225,21 @@ class Inscriptions:
             base,
         )
         holds = f"the colour set is `{expected_name}`"
-        structure = self._structure(base)
-        if structure != expected_name:
+        colset = self._ctx.colsets.get(expected_name)
+        structure = definition(colset) if colset is not None else ""
+        if structure:
             holds += f", which is `{structure}`"
+        timed = any(_is_timed_list(t) for t in types)
+        delayed = self._delayed(exp)
+        if not timed and (delayed is not None or _is_timed(found)):
+            self._ctx.error(
+                codes.NOT_TIMED,
+                f"{what} has a time stamp, but the colour set `{expected_name}` is not timed",
+                delayed[0].operator.span if delayed else exp.span,
+                label="delay" if delayed else f"this is `{self._ctx.show(found)}`",
+                hint=f"declare it so, `colset {expected_name} = .. timed;`, or leave the time out",
+            )
+            return
         quiet, self._ctx.d = self._ctx.d, Diagnostics()
         try:
             self._expressions.check(exp, from_type(wanted, []), what)
@@ -223,17 +253,19 @@ class Inscriptions:
             self._ctx.d.items.append(replace(first, notes=notes))
             self._ctx.errors += 1
             return
-        timed = any(_is_timed_list(t) for t in types)
         forms = f"a token or multi-set of `{expected_name}`"
-        if not timed and _is_timed(found):
-            hint = (
-                f"the colour set `{expected_name}` is not timed, so its tokens carry no time stamp"
-            )
-        elif isinstance(found, ICon) and found.name == "list":
-            hint = ""
-        else:
+        wanted_type = from_type(base, [])
+        wanted_name = base.name if isinstance(base, TCon) else ""
+        hint = (
+            conversion(found, (wanted_name,))
+            or self._constructor_hint(found, wanted_name, exp.span.text)
+            or type_advice.wrong_value(found, wanted_type, exp.span.text)
+        )
+        if not hint and not type_advice.is_list(found):
             hint = f"write one token of `{expected_name}`, or a multi-set such as 1`v"
         shown = self._ctx.show(found)
+        if "`" in exp.span.text and type_advice.is_list(found):
+            shown = shown.removesuffix(" list") + " ms"
         self._ctx.error(
             codes.TYPE_MISMATCH,
             f"{what} is `{shown}`, but {forms} is expected",
@@ -243,15 +275,16 @@ class Inscriptions:
             hint=hint,
         )
 
-    def _structure(self, t: Type) -> str:
-        """A type spelled out one level."""
-        own = from_type(t, [])
-        if isinstance(own, IRec) and own.fields:
-            if t == tuple_of(*(f for _, f in getattr(t, "fields", ()))):
-                shown = [self._ctx.show(f) for _, f in own.fields]
-                return " * ".join(f"({x})" if " * " in x else x for x in shown)
-            return "{" + ", ".join(f"{n}: {self._ctx.show(f)}" for n, f in own.fields) + "}"
-        return self._ctx.show(own)
+    def _constructor_hint(self, found: Ty, wanted: str, text: str) -> str:
+        """For the argument of a constructor without the constructor."""
+        datatype = self._ctx.datatypes.get(wanted)
+        if datatype is None or datatype.generics:
+            return ""
+        for constructor, argument in datatype.constructors:
+            if argument is not None and self._ctx.unifier.attempt(found, from_type(argument, [])):
+                inner = text if text.startswith("(") or text.isidentifier() else f"({text})"
+                return f"put the constructor before it: `{constructor.name} {inner}`"
+        return ""
 
     def _differences(self, found: Ty, expected: Ty) -> list[str]:
         """Components of two records of the same form that differ."""
@@ -283,7 +316,11 @@ class Inscriptions:
             resolved = list(resolved[0].items)
         with self._scope(self._variables):
             before = self._ctx.errors
-            drafts = [self._conjunct(e) for e in resolved if e is not None]
+            drafts = []
+            for e in resolved:
+                if e is not None:
+                    with self._one_mistake():
+                        drafts.append(self._conjunct(e))
             if len(drafts) != len(resolved):
                 return None
             return self._finish(before, lambda: tuple(x.build() for x in drafts))

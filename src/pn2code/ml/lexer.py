@@ -11,7 +11,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from pn2code.diagnostics import Diagnostics, SourceText
-from pn2code.ml import codes
+from pn2code.ml import advice, codes
 
 _KEYWORDS = """
 abstype and andalso as case datatype do else end eqtype exception fn fun functor handle if in include infix infixr let
@@ -130,25 +130,16 @@ class _Lexer:
             return self._add(PUNCTUATION[text[at]], at + 1)
         if m := _SYMBOLIC.match(text, at):
             return self._add(RESERVED_SYMBOLS.get(m.group(), "ID"), m.end())
-        hint = ""
-        if text[at] in "‘’“”„":
-            hint = 'strings are written with straight quotes: "text"'
-        elif text[at] in "–—−":
-            hint = "minus is `-`, and `~` in front of a negative number"
-        elif text[at] == ".":
-            hint = "a decimal number needs a digit before and after the point: `0.5`"
-        return self._error(at, at + 1, f"character `{text[at]}` is not known in CPN ML", hint)
+        return self._error(at, at + 1, *advice.unknown_character(text[at], text[:at]))
 
     def _number(self, m: re.Match[str]) -> bool:
         word, end = m.group(), m.end()
         digits = word.replace("~", "-")
         if "w" in word:
-            self._d.error(
-                codes.UNSUPPORTED_ML,
-                f"word literal `{word}` is not supported",
-                self._source.span(self._at, end),
-            )
-            return False
+            if word.startswith("~"):
+                return self._error(self._at, end, "a word literal has no sign")
+            number = word.removeprefix("0w")
+            return self._add("WORD", end, int("0" + number, 16 if "x" in number else 10))
         if "x" in word:
             return self._add("INT", end, int(digits, 16))
         if any(c in word for c in ".eE"):

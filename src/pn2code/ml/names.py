@@ -16,6 +16,7 @@ from pn2code.ml.environment import (
     EmptyEntry,
     Entry,
     OverloadedEntry,
+    SealedEntry,
     UnitEntry,
     UnsupportedEntry,
     split_name,
@@ -29,6 +30,7 @@ _STRUCTURE_TYPES = {
     "IntInf": "IntInf.int",
     "String": "string",
     "Char": "char",
+    "Word": "word",
 }
 
 
@@ -67,9 +69,13 @@ class Names:
     def infer(self, name: str, span: Span) -> Draft:
         """A use of a name."""
         entry = self.lookup(name)
+        return self._unbound(name, span) if entry is None else self.entry(entry, name, span)
+
+    def entry(self, entry: Entry, name: str, span: Span) -> Draft:
+        """A use of what a name stands for."""
         match entry:
-            case None:
-                return self._unbound(name, span)
+            case SealedEntry():
+                return self._sealed(entry, name, span)
             case Binding():
                 return self._variable(entry, span)
             case BuiltinEntry():
@@ -107,6 +113,18 @@ class Names:
                 )
                 return BROKEN
 
+    def _sealed(self, entry: SealedEntry, name: str, span: Span) -> Draft:
+        """A member of a structure: typed as its signature says, translated as what it is."""
+        own, _ = self._ctx.unifier.instantiate(entry.type, list(entry.quants))
+        inner = self.entry(entry.inner, name, span)
+        unifier = self._ctx.unifier
+        before, unifier.see_through = unifier.see_through, True
+        try:
+            unifier.unify(inner.type, own)
+        finally:
+            unifier.see_through = before
+        return Draft(own, inner.build)
+
     def _variable(self, binding: Binding, span: Span) -> Draft:
         if not binding.generalised:
             # A use inside its own declaration, or of something not polymorphic.
@@ -138,7 +156,7 @@ class Names:
         return Draft(own, build)
 
     def _constructor(self, entry: ConEntry, span: Span) -> Draft:
-        own, _ = self._ctx.unifier.instantiate_type(entry.type, entry.generics)
+        own = self._ctx.constructor_type(entry)
         if entry.constructor == NIL:
             return Draft(own, lambda: core.ListExp((), to_type(own), span))
         return Draft(own, lambda: core.Con(entry.constructor, to_type(own), span))
@@ -162,20 +180,34 @@ class Names:
                     hint=hint or f"it has: {', '.join(sorted(members_of(colset)))}",
                 )
                 return BROKEN
-            hint = suggestion(structure, self._ctx.colsets)
+            hint = self._path_hint(structure, last)
         elif not name[0].isalpha():
-            hint = _operator_hint(name, self._ctx.scope.names())
+            hint = advice.adjacent_symbols(name, self._ctx.scope.names())
         else:
-            hint = suggestion(name, self._ctx.scope.names())
+            hint = advice.unbound_word(name, self._ctx.colsets) or suggestion(
+                name, self._ctx.scope.names()
+            )
             if name in self._ctx.net_variables:
                 hint = (
                     "it is a variable of the net: list it in `input (..)` of a code segment, "
                     "give it to a function as an argument"
                 )
-            elif name in ("nth", "exists", "find", "last", "take", "drop", "tabulate", "partition"):
-                hint = f"it is called `List.{name}`"
+        if not hint and name[0].isalpha() and not path:
+            inside = span.source.origin.part == "declaration"
+            hint = (
+                "it must be declared before this place"
+                if inside
+                else f"declare it: `var {name} : C;` for a variable of colour set C, or `val {name} = ..`"
+            )
         self._ctx.error(codes.UNBOUND, f"{quoted(name)} is not declared", span, hint=hint)
         return BROKEN
+
+    def _path_hint(self, structure: str, member: str) -> str:
+        """For `structure.member` where no such thing is known."""
+        variable = self._ctx.scope.value(structure)
+        if isinstance(variable, Binding):
+            return f"a field of a record is selected with `#{member} {structure}`"
+        return advice.unbound_path(structure, member, self._ctx.colsets, BUILTINS)
 
 
 def _replace_int(t: Ty, by: Ty) -> Ty:
@@ -186,13 +218,3 @@ def _replace_int(t: Ty, by: Ty) -> Ty:
     if isinstance(t, IFun):
         return IFun(_replace_int(t.argument, by), _replace_int(t.result, by))
     return t
-
-
-def _operator_hint(name: str, known: set[str]) -> str:
-    """For two operators written without a blank between."""
-    known = known | {"=", "*"}
-    for cut in range(len(name) - 1, 0, -1):
-        if name[:cut] in known and name[cut:] in known | {"#", "~"}:
-            tail = "(~..)" if name[cut:] == "~" else f" {name[cut:]}"
-            return f"adjacent symbols are read as one name: write {name[:cut]}{tail}"
-    return {"&&": "write `andalso`", "||": "write `orelse`"}.get(name, "")

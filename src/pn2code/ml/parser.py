@@ -16,15 +16,12 @@ from lark.exceptions import UnexpectedToken
 from lark.lexer import Lexer
 
 from pn2code.diagnostics import Diagnostics, SourceText, Span
-from pn2code.ml import codes, syntax
+from pn2code.ml import advice, codes, syntax
 from pn2code.ml.lexer import Lexeme, insert_delay_parentheses, tokenize
 from pn2code.ml.tree import Group, MlToken, TreeBuilder
 from pn2code.parser_cache import kept_lark
 
-_STARTS = ["program", "expression", "expressions", "code"]
-_UNSUPPORTED_WORDS = frozenset(
-    {"ABSTYPE", "FUNCTOR", "SIGNATURE", "SIG", "SHARING", "INCLUDE", "EQTYPE", "WHERE", "SEAL"}
-)
+_STARTS = ["program", "expression", "expressions", "layered", "code"]
 _OLD_DECLARATIONS = frozenset({"colset", "color", "var", "globref", "pageref", "instref", "use"})
 
 
@@ -155,18 +152,18 @@ def _old_declaration(source: SourceText, tokens: Sequence[Lexeme], d: Diagnostic
 # --- syntax errors in words --------------------------------------------------------------------
 
 _WORDS = {
-    "ID": "a name", "INT": "a number", "TYVAR": "a type variable", "$END": "the end of the text",
+    "ID": "a name", "INT": "a number", "WORD": "a word", "TYVAR": "a type variable", "$END": "the end of the text",
     "LPAREN": "`(`", "RPAREN": "`)`", "LBRACK": "`[`", "RBRACK": "`]`", "LBRACE": "`{`", "RBRACE": "`}`",
     "COMMA": "`,`", "SEMI": "`;`", "WILD": "`_`", "DOTS": "`...`", "COLON": "`:`", "BAR": "`|`", "EQ": "`=`",
     "DARROW": "`=>`", "ARROW": "`->`", "HASH": "`#`", "STAR": "`*`",
 }  # fmt: skip
 _STARTS_OF = {
-    "expression": "ID INT REAL STRING CHAR LPAREN LBRACK LBRACE HASH OP EQ STAR LET RAISE IF WHILE CASE FN ANDALSO"
+    "expression": "ID INT WORD REAL STRING CHAR LPAREN LBRACK LBRACE HASH OP EQ STAR LET RAISE IF WHILE CASE FN ANDALSO"
     " ORELSE COLON HANDLE",
-    "pattern": "ID INT REAL STRING CHAR LPAREN LBRACK LBRACE OP STAR WILD AS COLON",
+    "pattern": "ID INT WORD REAL STRING CHAR LPAREN LBRACK LBRACE OP STAR WILD AS COLON",
     "type": "ID TYVAR LPAREN LBRACE",
     "declaration": "VAL FUN TYPE DATATYPE EXCEPTION LOCAL OPEN INFIX INFIXR NONFIX STRUCTURE SEMI",
-    "operand end": "ID INT REAL STRING CHAR RPAREN RBRACK RBRACE END WILD TYVAR",
+    "operand end": "ID INT WORD REAL STRING CHAR RPAREN RBRACK RBRACE END WILD TYVAR",
 }
 _EXP_START, _PAT_START, _TYPE_START, _DEC_START, _OPERAND_END = (
     frozenset(terminals.split()) for terminals in _STARTS_OF.values()
@@ -190,9 +187,6 @@ def _report(
         previous = tokens[-1] if tokens else None
     else:
         span = Span(source, token.start_pos or 0, token.end_pos or 0)
-        if token.type in _UNSUPPORTED_WORDS:
-            d.error(codes.UNSUPPORTED_ML, f"`{token}` is not supported", span)
-            return
         if token.type == "AS" and start != "program":
             d.error(
                 codes.UNSUPPORTED_INSCRIPTION,
@@ -206,7 +200,10 @@ def _report(
         previous = before[-1] if before else None
     expected = _expected(problem, previous)
     message = f"{found}, {expected} expected" if expected else found
-    d.error(codes.SYNTAX_ERROR, message, span, hint=hint or _advice(token.type, previous))
+    before = [t for t in tokens if t.end <= span.start or at_end]
+    accepted = frozenset(problem.accepts or ())
+    hint = hint or advice.syntax(token.type, str(token), before, accepted, start)
+    d.error(codes.SYNTAX_ERROR, message, span, hint=hint)
 
 
 def _expected(problem: UnexpectedToken, previous: Lexeme | None) -> str:
@@ -232,15 +229,3 @@ def _expected(problem: UnexpectedToken, previous: Lexeme | None) -> str:
     if len(words) > 5:
         words = [*words[:4], "..."]
     return " or ".join([", ".join(words[:-1]), words[-1]] if len(words) > 1 else words)
-
-
-def _advice(kind: str, previous: Lexeme | None) -> str:
-    if kind == "WILD":
-        return "`_` stands only in patterns of functions, `case` and `val`; here use a variable"
-    if kind == "EQ" and previous is not None and previous.kind == "FUN":
-        return "a function needs a name and an argument: `fun f x = ..`"
-    if kind == "ELSE":
-        return "`else` belongs to an `if .. then ..` before it"
-    if kind == "$END" and previous is not None and previous.kind == "THEN":
-        return "`if` needs both branches: `if .. then .. else ..`"
-    return ""

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
 
 from pn2code.diagnostics import Span
 from pn2code.ml import codes, core
@@ -16,6 +17,8 @@ from pn2code.ml.inference import (
     I_REAL,
     I_STRING,
     I_UNIT,
+    I_WORD,
+    ICon,
     IFun,
     IRec,
     Ty,
@@ -27,7 +30,35 @@ from pn2code.ml.inference import (
 )
 from pn2code.ml.types import UNIT, TRecord
 
-Bindings = dict[str, Binding]
+MAX_ALTERNATIVES = 256
+"""Rules that one rule with alternatives may stand for."""
+
+
+@dataclass(frozen=True, slots=True)
+class Deref:
+    """`ref p` in a pattern: the cell gets a hidden name, and its contents are matched afterwards.
+
+    Args:
+        cell: the hidden variable.
+        content: type of the contents.
+        inner: the pattern for the contents.
+        irrefutable: whether that always matches.
+        span: of the pattern.
+    """
+
+    cell: Binding
+    content: Ty
+    inner: PatternBuild
+    irrefutable: bool
+    span: Span
+
+
+class Bindings(dict[str, Binding]):
+    """The variables of a pattern by name, and the references in it."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.derefs: list[Deref] = []
 
 
 class Patterns:
@@ -61,6 +92,13 @@ class Patterns:
                 binding = self._bind(p.name.name, p.name.span, t, bindings)
                 inner = self.check(p.pattern, t, bindings)
                 return lambda: core.PAs(self._ctx.symbol_of(binding), inner(), to_type(t), p.span)
+            case s.OrPat():
+                self._ctx.error(
+                    codes.UNSUPPORTED_ML,
+                    "alternatives `(p | q)` are supported in the rules of functions and `case` only",
+                    p.span,
+                )
+                return lambda: core.PWild(to_type(t), p.span)
             case s.FlatPat():
                 raise AssertionError("flat pattern after the fixity pass")
 
@@ -84,17 +122,32 @@ class Patterns:
             s.LitKind.REAL: I_REAL,
             s.LitKind.STRING: I_STRING,
             s.LitKind.CHAR: I_CHAR,
+            s.LitKind.WORD: I_WORD,
         }
         own = kinds.get(p.kind)
         if own is None:
             own = self._ctx.unifier.fresh(among=[c.name for c in LITERAL_TYPES])
         self._unify(own, t, p.span)
-        return lambda: core.PLit(p.value, to_type(t), p.span)
+
+        def build() -> core.Pat:
+            known = to_type(t)
+            self._ctx.check_literal(p.value, known, p.span)
+            return core.PLit(p.value, known, p.span)
+
+        return build
 
     def _name(self, p: s.NamePat, t: Ty, bindings: Bindings) -> PatternBuild:
         entry = self._ctx.scope.value(p.name)
         if isinstance(entry, ConEntry):
             return self._constant(p, entry, t)
+        if isinstance(entry, BuiltinEntry) and entry.name == "Ref.ref":
+            self._ctx.error(
+                codes.CONSTRUCTOR_ARITY,
+                "constructor `ref` needs an argument",
+                p.span,
+                hint="write `ref _` for any argument",
+            )
+            return lambda: core.PWild(to_type(t), p.span)
         if isinstance(entry, UnitEntry):
             self._unify(I_UNIT, t, p.span)
             return lambda: core.PRecord((), UNIT, p.span)
@@ -108,10 +161,6 @@ class Patterns:
         entry = self._ctx.scope.value(p.name)
         if isinstance(entry, BrokenEntry):
             self._ctx.tainted = True
-            return
-        if isinstance(entry, BuiltinEntry) and entry.name == "Ref.ref":
-            self._ctx.error(codes.UNSUPPORTED_ML, "`ref` in a pattern is not supported", p.span,
-                            hint="use a variable, and `!` to read it")  # fmt: skip
             return
         constructors = [
             n for n in self._ctx.scope.names() if isinstance(self._ctx.scope.value(n), ConEntry)
@@ -132,18 +181,20 @@ class Patterns:
                 hint=f"write `{p.name} _` for any argument",
             )
             return lambda: core.PWild(to_type(t), p.span)
-        own, _ = self._ctx.unifier.instantiate_type(entry.type, entry.generics)
+        own = self._ctx.constructor_type(entry)
         self._unify(own, t, p.span)
         return lambda: core.PCon(entry.constructor, None, to_type(t), p.span)
 
     def _constructor(self, p: s.ConPat, t: Ty, bindings: Bindings) -> PatternBuild:
         name = p.constructor
         entry = self._ctx.scope.value(name.name)
+        if isinstance(entry, BuiltinEntry) and entry.name == "Ref.ref":
+            return self._reference(p, t, bindings)
         if not isinstance(entry, ConEntry):
             self._unknown(name)
             self.check(p.argument, self._ctx.unifier.fresh(), bindings)
             return lambda: core.PWild(to_type(t), p.span)
-        own, _ = self._ctx.unifier.instantiate_type(entry.type, entry.generics)
+        own = self._ctx.constructor_type(entry)
         if not isinstance(own, IFun):
             self._ctx.error(
                 codes.CONSTRUCTOR_ARITY, f"constructor `{name.name}` takes no argument", name.span
@@ -153,6 +204,16 @@ class Patterns:
         self._unify(own.result, t, p.span)
         argument = self.check(p.argument, own.argument, bindings)
         return lambda: core.PCon(entry.constructor, argument(), to_type(t), p.span)
+
+    def _reference(self, p: s.ConPat, t: Ty, bindings: Bindings) -> PatternBuild:
+        """`ref p`: a variable here; the contents are matched after the rest of the pattern."""
+        content = self._ctx.unifier.fresh()
+        self._unify(ICon("ref", (content,)), t, p.span)
+        cell = Binding("cell", t)
+        inner = self.check(p.argument, content, bindings)
+        always = is_irrefutable(p.argument, self._ctx)
+        bindings.derefs.append(Deref(cell, content, inner, always, p.span))
+        return lambda: core.PVar(self._ctx.symbol_of(cell), to_type(t), p.span)
 
     def _record(self, p: s.RecordPat, t: Ty, bindings: Bindings) -> PatternBuild:
         fields: dict[str, Ty] = {}
@@ -214,6 +275,55 @@ def is_irrefutable(p: s.Pat, ctx: Context) -> bool:
             return False
 
 
+def expand(patterns: Sequence[s.Pat]) -> list[tuple[s.Pat, ...]] | None:
+    """The patterns without alternatives: one tuple for each choice among them; None if these are too many."""
+    out: list[tuple[s.Pat, ...]] = [()]
+    for p in patterns:
+        choices = _choices(p)
+        if choices is None or len(out) * len(choices) > MAX_ALTERNATIVES:
+            return None
+        out = [(*before, c) for before in out for c in choices]
+    return out
+
+
+def _choices(p: s.Pat) -> list[s.Pat] | None:
+    match p:
+        case s.OrPat():
+            found: list[s.Pat] = []
+            for alternative in p.alternatives:
+                inner = _choices(alternative)
+                if inner is None:
+                    return None
+                found += inner
+            return found
+        case s.RecordPat():
+            parts = expand([x for _, x in p.fields])
+            if parts is None or len(parts) == 1:
+                return None if parts is None else [p]
+            labels = [n for n, _ in p.fields]
+            return [replace(p, fields=tuple(zip(labels, c, strict=True))) for c in parts]
+        case s.ListPat():
+            parts = expand(p.items)
+            if parts is None or len(parts) == 1:
+                return None if parts is None else [p]
+            return [replace(p, items=c) for c in parts]
+        case s.ConPat():
+            return _inside(p, p.argument, lambda x: replace(p, argument=x))
+        case s.TypedPat():
+            return _inside(p, p.pattern, lambda x: replace(p, pattern=x))
+        case s.AsPat():
+            return _inside(p, p.pattern, lambda x: replace(p, pattern=x))
+        case _:
+            return [p]
+
+
+def _inside(p: s.Pat, part: s.Pat, rebuild: Callable[[s.Pat], s.Pat]) -> list[s.Pat] | None:
+    choices = _choices(part)
+    if choices is None or len(choices) == 1:
+        return None if choices is None else [p]
+    return [rebuild(c) for c in choices]
+
+
 def pattern_names(patterns: Sequence[s.Pat]) -> set[str]:
     """All names that patterns may bind, for the case that the declaration has an error."""
     out: set[str] = set()
@@ -223,6 +333,8 @@ def pattern_names(patterns: Sequence[s.Pat]) -> set[str]:
                 out.add(p.name)
             case s.RecordPat():
                 out |= pattern_names([x for _, x in p.fields])
+            case s.OrPat():
+                out |= pattern_names(p.alternatives)
             case s.ListPat():
                 out |= pattern_names(p.items)
             case s.ConPat():

@@ -62,6 +62,7 @@ class LitKind(Enum):
     """Kinds of literals."""
 
     INT = "int"
+    WORD = "word"
     REAL = "real"
     STRING = "string"
     CHAR = "char"
@@ -104,6 +105,14 @@ class SelectorExp:
 @frozen
 class ListExp:
     """`[e1, ..., en]`."""
+
+    items: tuple[Exp, ...]
+    span: Span
+
+
+@frozen
+class VectorExp:
+    """`#[e1, ..., en]`."""
 
     items: tuple[Exp, ...]
     span: Span
@@ -260,7 +269,7 @@ class FlatExp:
 
 Exp = (
     LitExp | NameExp | RecordExp | SelectorExp | ListExp | SequenceExp | LetExp | ApplyExp | InfixExp | LogicExp
-    | TypedExp | HandleExp | RaiseExp | IfExp | WhileExp | CaseExp | FnExp | FlatExp
+    | TypedExp | HandleExp | RaiseExp | IfExp | WhileExp | CaseExp | FnExp | FlatExp | VectorExp
 )  # fmt: skip
 
 # --- patterns ----------------------------------------------------------------------------------
@@ -337,6 +346,14 @@ class AsPat:
 
 
 @frozen
+class OrPat:
+    """`(p1 | ... | pn)`, a form of SML/NJ."""
+
+    alternatives: tuple[Pat, ...]
+    span: Span
+
+
+@frozen
 class FlatPat:
     """As `FlatExp`."""
 
@@ -345,7 +362,7 @@ class FlatPat:
 
 
 Pat = (
-    WildPat | LitPat | NamePat | RecordPat | ListPat | ConPat | TypedPat | AsPat | FlatPat
+    WildPat | LitPat | NamePat | RecordPat | ListPat | ConPat | TypedPat | AsPat | OrPat | FlatPat
 )  # fmt: skip
 
 # --- declarations ------------------------------------------------------------------------------
@@ -363,10 +380,11 @@ class ValBinding:
 
 @frozen
 class ValDec:
-    """`val p = e and ...`."""
+    """`val p = e and ...`; `tyvars` as written after `val`."""
 
     bindings: tuple[ValBinding, ...]
     span: Span
+    tyvars: tuple[str, ...] = ()
 
 
 @frozen
@@ -408,10 +426,11 @@ class FlatFunBinding:
 
 @frozen
 class FunDec:
-    """`fun ... and ...`."""
+    """`fun ... and ...`; `tyvars` as written after `fun`."""
 
     bindings: tuple[FunBinding | FlatFunBinding, ...]
     span: Span
+    tyvars: tuple[str, ...] = ()
 
 
 @frozen
@@ -515,12 +534,192 @@ class InfixDec:
 
 
 @frozen
-class StructureDec:
-    """`structure S = struct decs end`, or `structure S = T` (`alias`)."""
+class AbstypeDec:
+    """`abstype ... with decs end`: outside, the types have neither constructors nor equality."""
+
+    datatypes: DatatypeDec
+    declarations: tuple[Dec, ...]
+    span: Span
+
+
+# --- modules -----------------------------------------------------------------------------------
+
+
+@frozen
+class StructStr:
+    """`struct decs end`."""
+
+    declarations: tuple[Dec, ...]
+    span: Span
+
+
+@frozen
+class NameStr:
+    """`S`, `A.B`."""
 
     name: str
+    span: Span
+
+
+@frozen
+class ApplyStr:
+    """`F (argument)`; declarations `F (val x = ..)` are the argument `struct .. end`."""
+
+    functor: str
+    argument: Str
+    span: Span
+
+
+@frozen
+class LetStr:
+    """`let decs in S end`."""
+
     declarations: tuple[Dec, ...]
-    alias: str | None
+    body: Str
+    span: Span
+
+
+@frozen
+class SealedStr:
+    """`S : SIG` or, `opaque`, `S :> SIG`."""
+
+    structure: Str
+    signature: Sig
+    opaque: bool
+    span: Span
+
+
+Str = StructStr | NameStr | ApplyStr | LetStr | SealedStr
+
+
+@frozen
+class SigSig:
+    """`sig specs end`."""
+
+    specs: tuple[Spec, ...]
+    span: Span
+
+
+@frozen
+class NameSig:
+    """A signature by its name."""
+
+    name: str
+    span: Span
+
+
+@frozen
+class WhereSig:
+    """`SIG where type t = ty`; the name of a binding may be a path."""
+
+    signature: Sig
+    types: tuple[TypeBinding, ...]
+    span: Span
+
+
+Sig = SigSig | NameSig | WhereSig
+
+
+@frozen
+class ValSpec:
+    """`val x : ty`."""
+
+    name: str
+    type: Ty
+    span: Span
+
+
+@frozen
+class TypeSpec:
+    """`type 'a t`, `eqtype t`, `type t = ty`."""
+
+    parameters: tuple[str, ...]
+    name: str
+    type: Ty | None
+    equality: bool
+    span: Span
+
+
+@frozen
+class ExceptionSpec:
+    """`exception E of ty`."""
+
+    name: str
+    argument: Ty | None
+    span: Span
+
+
+@frozen
+class StructureSpec:
+    """`structure S : SIG`."""
+
+    name: str
+    signature: Sig
+    span: Span
+
+
+@frozen
+class IncludeSpec:
+    """`include SIG`."""
+
+    signatures: tuple[Sig, ...]
+    span: Span
+
+
+@frozen
+class SharingSpec:
+    """`sharing type t = u`: checked by use only."""
+
+    names: tuple[str, ...]
+    span: Span
+
+
+Spec = (
+    ValSpec | TypeSpec | DatatypeDec | DatatypeCopyDec | ExceptionSpec | StructureSpec | IncludeSpec | SharingSpec
+)  # fmt: skip
+
+
+@frozen
+class StructureDec:
+    """`structure S = body and ...`."""
+
+    bindings: tuple[StructureBinding, ...]
+    span: Span
+
+
+@frozen
+class StructureBinding:
+    """`S = body`."""
+
+    name: str
+    body: Str
+    span: Span
+
+
+@frozen
+class SignatureDec:
+    """`signature S = sig .. end and ...`."""
+
+    bindings: tuple[tuple[str, Sig], ...]
+    span: Span
+
+
+@frozen
+class FunctorBinding:
+    """`F (X : SIG) = body`; `parameter` is "" in `F (specs) = body`, where the names of the argument are open."""
+
+    name: str
+    parameter: str
+    signature: Sig
+    body: Str
+    span: Span
+
+
+@frozen
+class FunctorDec:
+    """`functor F (X : SIG) = body and ...`."""
+
+    bindings: tuple[FunctorBinding, ...]
     span: Span
 
 
@@ -534,7 +733,7 @@ class ExpDec:
 
 Dec = (
     ValDec | FunDec | TypeDec | DatatypeDec | DatatypeCopyDec | ExceptionDec | LocalDec | OpenDec | InfixDec
-    | StructureDec | ExpDec
+    | AbstypeDec | StructureDec | SignatureDec | FunctorDec | ExpDec
 )  # fmt: skip
 
 

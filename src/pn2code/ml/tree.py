@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 from lark import Token, Transformer
@@ -37,6 +37,7 @@ class Dots:
 
 _LITERALS = {
     "INT": s.LitKind.INT,
+    "WORD": s.LitKind.WORD,
     "REAL": s.LitKind.REAL,
     "STRING": s.LitKind.STRING,
     "CHAR": s.LitKind.CHAR,
@@ -74,13 +75,17 @@ class TreeBuilder(Transformer[Any, Any]):
     def _group(self, children: Children) -> Group:
         return Group(self._nodes(children), self._span(children))
 
-    program = decs = match = _group
+    program = decs = match = specs = _group
 
     # --- starts
 
     def expression(self, children: Children) -> s.Exp:
         exp: s.Exp = children[0]
         return exp
+
+    def layered(self, children: Children) -> tuple[s.Exp, s.Pat]:
+        """`x as pat`, an inscription of its own kind."""
+        return children[0], children[2]
 
     def expressions(self, children: Children) -> Group:
         return self._group(children)
@@ -139,6 +144,9 @@ class TreeBuilder(Transformer[Any, Any]):
 
     def list_exp(self, children: Children) -> s.ListExp:
         return s.ListExp(self._nodes(children), self._span(children))
+
+    def vector_exp(self, children: Children) -> s.VectorExp:
+        return s.VectorExp(self._nodes(children), self._span(children))
 
     def record_exp(self, children: Children) -> s.RecordExp:
         fields = tuple((g.items[0], g.items[1]) for g in self._nodes(children))
@@ -214,6 +222,9 @@ class TreeBuilder(Transformer[Any, Any]):
     def tuple_pat(self, children: Children) -> s.RecordPat:
         return s.RecordPat(_number(self._nodes(children)), False, self._span(children))
 
+    def or_pat(self, children: Children) -> s.OrPat:
+        return s.OrPat(self._nodes(children), self._span(children))
+
     def list_pat(self, children: Children) -> s.ListPat:
         return s.ListPat(self._nodes(children), self._span(children))
 
@@ -273,7 +284,11 @@ class TreeBuilder(Transformer[Any, Any]):
         for binding in self._only(children, s.ValBinding):
             recursive = recursive or binding.recursive  # `rec` counts for all that follow
             bindings.append(s.ValBinding(binding.pattern, binding.value, recursive, binding.span))
-        return s.ValDec(tuple(bindings), self._span(children))
+        return s.ValDec(tuple(bindings), self._span(children), self._tyvars(children))
+
+    def _tyvars(self, children: Children) -> tuple[str, ...]:
+        """The type variables written after `val` or `fun`."""
+        return tuple(n for g in self._only(children, Group) for n in g.items)
 
     def valbind(self, children: Children) -> s.ValBinding:
         pattern, value = self._nodes(children)
@@ -282,7 +297,9 @@ class TreeBuilder(Transformer[Any, Any]):
         )
 
     def fun_dec(self, children: Children) -> s.FunDec:
-        return s.FunDec(self._only(children, s.FlatFunBinding), self._span(children))
+        return s.FunDec(
+            self._only(children, s.FlatFunBinding), self._span(children), self._tyvars(children)
+        )
 
     def funbind(self, children: Children) -> s.FlatFunBinding:
         return s.FlatFunBinding(self._nodes(children), self._span(children))
@@ -352,14 +369,122 @@ class TreeBuilder(Transformer[Any, Any]):
     def opname(self, children: Children) -> Group:
         return Group((str(children[0]),), self._span(children))
 
-    def structure_dec(self, children: Children) -> s.StructureDec:
-        (name,) = self._texts(children, "ID")
-        (declarations,) = self._only(children, Group)
-        return s.StructureDec(name, declarations.items, None, self._span(children))
+    def abstype_dec(self, children: Children) -> s.AbstypeDec:
+        *withtypes, body = self._only(children, Group)
+        datatypes = s.DatatypeDec(
+            self._only(children, s.DatatypeBinding),
+            withtypes[0].items if withtypes else (),
+            self._span(children[: 2 + len(withtypes)]),
+        )
+        return s.AbstypeDec(datatypes, body.items, self._span(children))
 
-    def structure_alias(self, children: Children) -> s.StructureDec:
-        name, alias = self._texts(children, "ID")
-        return s.StructureDec(name, (), alias, self._span(children))
+    # --- modules
+
+    def structure_dec(self, children: Children) -> s.StructureDec:
+        return s.StructureDec(self._only(children, s.StructureBinding), self._span(children))
+
+    def strbind(self, children: Children) -> s.StructureBinding:
+        (name,) = self._texts(children, "ID")
+        body = self._sealed(children[-1], children[1])
+        return s.StructureBinding(name, body, self._span(children))
+
+    def ascription(self, children: Children) -> Group:
+        return Group((children[0].type == "SEAL", children[1]), self._span(children))
+
+    def _sealed(self, body: s.Str, ascription: Any) -> s.Str:
+        if not isinstance(ascription, Group):
+            return body
+        opaque, signature = ascription.items
+        return s.SealedStr(body, signature, opaque, body.span)
+
+    def struct_str(self, children: Children) -> s.StructStr:
+        return s.StructStr(children[1].items, self._span(children))
+
+    def name_str(self, children: Children) -> s.NameStr:
+        return s.NameStr(str(children[0]), self._span(children))
+
+    def apply_str(self, children: Children) -> s.ApplyStr:
+        argument = children[2]
+        if isinstance(argument, Group):
+            argument = s.StructStr(argument.items, self._span(children))
+        return s.ApplyStr(str(children[0]), argument, self._span(children))
+
+    def let_str(self, children: Children) -> s.LetStr:
+        return s.LetStr(children[1].items, children[3], self._span(children))
+
+    def sealed_str(self, children: Children) -> s.Str:
+        return self._sealed(children[0], children[1])
+
+    def signature_dec(self, children: Children) -> s.SignatureDec:
+        bindings = tuple(g.items for g in self._only(children, Group))
+        return s.SignatureDec(bindings, self._span(children))
+
+    def sigbind(self, children: Children) -> Group:
+        return Group((str(children[0]), children[2]), self._span(children))
+
+    def sig_sig(self, children: Children) -> s.SigSig:
+        return s.SigSig(_spread(children[1].items), self._span(children))
+
+    def name_sig(self, children: Children) -> s.NameSig:
+        return s.NameSig(str(children[0]), self._span(children))
+
+    def where_sig(self, children: Children) -> s.WhereSig:
+        return s.WhereSig(children[0], self._only(children, s.TypeBinding), self._span(children))
+
+    def valspec(self, children: Children) -> s.ValSpec:
+        return s.ValSpec(children[0].items[0], children[2], self._span(children))
+
+    def opid(self, children: Children) -> Group:
+        return Group((str(children[-1]),), self._span(children))
+
+    def type_spec(self, children: Children) -> Group:
+        equality = children[0].type == "EQTYPE"
+        specs = self._only(children, s.TypeSpec)
+        return Group(tuple(replace(x, equality=equality) for x in specs), self._span(children))
+
+    def tyspec(self, children: Children) -> s.TypeSpec:
+        parameters = children[0].items if isinstance(children[0], Group) else ()
+        (name,) = self._texts(children, "ID")
+        written = None if isinstance(children[-1], Token) else children[-1]
+        return s.TypeSpec(parameters, name, written, False, self._span(children))
+
+    def exspec(self, children: Children) -> s.ExceptionSpec:
+        argument = None if len(children) == 1 else children[2]
+        return s.ExceptionSpec(str(children[0]), argument, self._span(children))
+
+    def strspec(self, children: Children) -> s.StructureSpec:
+        return s.StructureSpec(str(children[0]), children[2], self._span(children))
+
+    def include_spec(self, children: Children) -> s.IncludeSpec:
+        signatures = tuple(
+            s.NameSig(str(c), self._of(c)) if isinstance(c, Token) else c for c in children[1:]
+        )
+        return s.IncludeSpec(signatures, self._span(children))
+
+    def sharing_spec(self, children: Children) -> s.SharingSpec:
+        return s.SharingSpec(self._texts(children, "ID"), self._span(children))
+
+    def functor_dec(self, children: Children) -> s.FunctorDec:
+        return s.FunctorDec(self._only(children, s.FunctorBinding), self._span(children))
+
+    def funcbind(self, children: Children) -> s.FunctorBinding:
+        parameter, signature = children[2].items
+        body = self._sealed(children[-1], children[4])
+        return s.FunctorBinding(str(children[0]), parameter, signature, body, self._span(children))
+
+    def funcparam(self, children: Children) -> Group:
+        if len(children) == 3:
+            return Group((str(children[0]), children[2]), self._span(children))
+        specs: Group = children[0]
+        return Group(("", s.SigSig(_spread(specs.items), specs.span)), self._span(children))
+
+
+def _spread(items: Sequence[Any]) -> tuple[Any, ...]:
+    """Specifications without the groups of `val .. and ..`."""
+    out: list[Any] = []
+    for item in items:
+        out += _spread(item.items) if isinstance(item, Group) else [item]
+    return tuple(out)
 
 
 def _number(items: Sequence[Any]) -> tuple[tuple[str, Any], ...]:

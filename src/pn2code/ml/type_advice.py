@@ -80,7 +80,7 @@ def wrong_operand(what: str, found: Ty, text: str) -> str:
             return (
                 "`:=` gives a reference (`globref`) a new value; variables of the net keep theirs"
             )
-        case "`" if kind not in ("int", "list", ""):
+        case "`" if what.startswith("left") and kind not in ("int", "list", ""):
             return "a multi-set is written `number of tokens`, backquote, token: 2`v"
     if what == "condition of `if`" or what.endswith(
         ("operand of `andalso`", "operand of `orelse`")
