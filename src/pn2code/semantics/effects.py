@@ -8,10 +8,12 @@ A safe guess from the text: a function that is mentioned counts as applied, both
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from enum import Enum
 from typing import Any
 
 from pn2code.ml import core
+from pn2code.net.flat import FlatNet
 
 Found = frozenset["Effect"]
 
@@ -34,6 +36,8 @@ _WRITTEN_ONLY = frozenset(
     {"TextIO.print", "TextIO.output", "TextIO.flushOut", "TextIO.stdOut", "TextIO.closeOut"}
 )
 _LEAVES = frozenset({"type", "span", "inst", "colset", "constructor"})
+OUTSIDE = frozenset({Effect.DRAW, Effect.LOOK})
+"""What makes a value depend on more than the net."""
 
 
 def _builtin(name: str) -> Found:
@@ -78,6 +82,22 @@ class Effects:
             elif type(item).__module__ == core.__name__:
                 todo.extend(getattr(item, name) for name in item.__slots__ if name not in _LEAVES)
         return frozenset(found)
+
+
+def outside(effects: Effects, *nodes: Any) -> bool:
+    """Whether the values of any of these depend on more than the net; a `FlatNet` stands for all its texts."""
+    parts: list[Any] = []
+    for node in nodes:
+        parts.extend(texts(node) if isinstance(node, FlatNet) else (node,))
+    return bool(effects.of(*parts) & OUTSIDE)
+
+
+def texts(net: FlatNet) -> Iterator[Any]:
+    """All initial markings and inscriptions."""
+    yield from (p.initial[0] for p in net.places if p.initial)
+    for t in net.transitions:
+        yield from (t.guards, t.delay, t.code.action if t.code else None)
+        yield from (a.inscription.value for a in t.arcs if a.inscription)
 
 
 def _symbols(pattern: core.Pat) -> list[core.Symbol]:

@@ -22,7 +22,7 @@ from pn2code.ml.colsets import Colset, Kind
 from pn2code.ml.core import Symbol
 from pn2code.net.flat import ArcKind, FlatNet, FlatTransition
 from pn2code.semantics.colour_text import read_value
-from pn2code.semantics.effects import Effect, Effects
+from pn2code.semantics.effects import OUTSIDE, Effect, Effects, outside, texts
 from pn2code.semantics.enabling import Demand, GameError
 from pn2code.semantics.game import Game, reset
 from pn2code.semantics.marking import Binding, BindingElement, Marking, place_text, variable_text
@@ -103,18 +103,26 @@ class _Follower:
 
     def draws(self) -> bool:
         """Whether anything in the net is drawn (or looked up in the surroundings)."""
-        parts: list[Any] = [p.initial[0] for p in self.net.places if p.initial]
-        for t in self.net.transitions:
-            parts += [t.guards, t.delay, t.code.action if t.code else None]
-            parts += [a.inscription.value for a in t.arcs if a.inscription]
-        return bool(self.effects.of(*parts, *self.net.program.declarations) & _OUTSIDE)
+        return outside(self.effects, self.net)
+
+    def nature(self) -> str:
+        """In words: in what way the net depends on more than itself."""
+        found = self.effects.of(*texts(self.net))
+        return " and ".join(
+            words
+            for effect, words in (
+                (Effect.DRAW, "draws random numbers"),
+                (Effect.LOOK, "depends on files or clocks"),
+            )
+            if effect in found
+        )
 
     def vague(self, unknown: Unknown, *parts: Any) -> bool:
         """Whether the values of these expressions cannot be known."""
         if not self.lenient:
             return False
         found = self.effects.of(*parts)
-        return bool(found & _OUTSIDE) or (unknown.references and Effect.READ in found)
+        return bool(found & OUTSIDE) or (unknown.references and Effect.READ in found)
 
     def start(self) -> State:
         marking, unknown = self.game.marking, EXACT
@@ -214,7 +222,7 @@ class _Follower:
         drawn = self.drawn(state)
         why = ""
         if self.lenient:
-            why = f"{_WHY_RANDOM}: what depends on them was taken as recorded"
+            why = f"the net {self.nature()}, which a recording does not tell: what depends on it was taken as recorded"
             if drawn:
                 why += f"; in the end that is what {_list(drawn)} hold{'s' * (len(drawn) == 1)}"
         return Followed(
@@ -467,10 +475,6 @@ class _Follower:
                     f"recorded is {_line(step.binding[s.name])}"
                 )
         return found
-
-
-_WHY_RANDOM = "the net draws random numbers, which a recording does not tell"
-_OUTSIDE = frozenset({Effect.DRAW, Effect.LOOK})
 
 
 def _has_real(c: Colset | None) -> bool:

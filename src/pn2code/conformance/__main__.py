@@ -1,0 +1,57 @@
+"""Makes docs/conformance.md: `python -m pn2code.conformance FOLDER [-o FILE] [--walks FILE]`.
+
+FOLDER has `corpus` and `semantics-suite`.
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+import sys
+from pathlib import Path
+
+from pn2code.conformance import compare, suite
+from pn2code.conformance.document import document
+from pn2code.conformance.finding import Finding, State
+
+LARGEST_SPACE = 10_000
+
+
+def main() -> int:
+    """Compare everything; exit code 1 when an answer differs."""
+    parser = argparse.ArgumentParser(prog="conformance", description=__doc__)
+    parser.add_argument("folder", type=Path, help="with `corpus` and `semantics-suite`")
+    parser.add_argument("-o", "--output", type=Path, help="the document (default: stdout)")
+    parser.add_argument("--walks", type=Path, help="JSON: net -> {state, note}, of compiled nets")
+    parser.add_argument("--largest", type=int, default=LARGEST_SPACE, help="state spaces up to")
+    parser.add_argument("--only", default="", help="only nets whose path contains this")
+    options = parser.parse_args()
+    sys.setrecursionlimit(20_000)
+    corpus = options.folder / "corpus"
+    nets = []
+    for path in compare.paths(corpus):
+        if options.only in path:
+            print(path, file=sys.stderr, flush=True)
+            nets.append(compare.compare(corpus, path, max_nodes=options.largest))
+    tiny = options.folder / "semantics-suite"
+    graphs = {name: suite.compare_graph(tiny, name) for name in suite.names(tiny)}
+    text = document(nets, _walks(options.walks), graphs)
+    if options.output is None:
+        print(text, end="")
+    else:
+        options.output.write_text(text, encoding="utf-8")
+    return int(any(n.state is State.DIFFERS for n in nets))
+
+
+def _walks(file: Path | None) -> dict[str, Finding]:
+    """What a sweep of compiled walks has found: net -> {"state": "yes", "note": ""}."""
+    if file is None:
+        return {}
+    data = json.loads(file.read_text(encoding="utf-8"))
+    return {
+        path: Finding(State(entry["state"]), entry.get("note", "")) for path, entry in data.items()
+    }
+
+
+if __name__ == "__main__":
+    sys.exit(main())

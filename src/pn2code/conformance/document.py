@@ -1,0 +1,119 @@
+"""The document `docs/conformance.md`: totals, then net by net."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+
+from pn2code.conformance.compare import QUESTIONS, Compared
+from pn2code.conformance.finding import NOTHING, Finding, State
+
+HEAD = """# Conformance
+
+What pn2code says of nets that people published, beside what the engine of CPN Tools said of them, net by net. Made by
+`./dev conformance`; the nets themselves are not part of this project.
+
+| column | question |
+|---|---|
+| verdict | is the net accepted or not, by both? |
+| elements | where it is not: are the same declarations and inscriptions wrong? |
+| initial marking | of every place instance, character for character |
+| run | is a recorded random run of the engine (up to 40 steps) possible here, with the same final marking? |
+| state space | the same numbers of nodes, arcs and dead markings, where the engine computed them all |
+| compiled | does the compiled net agree with the reference token game on random walks? |
+
+`yes`: agrees. `random`: the net draws random numbers there (or reads files), which a recording does not tell; what is
+determined agrees. `unsupported`: pn2code says so. `NO`: differs. `–`: nothing to compare.
+"""
+
+
+def document(
+    nets: Sequence[Compared],
+    walks: Mapping[str, Finding],
+    suite: Mapping[str, Finding],
+) -> str:
+    """The whole text, the same for the same findings.
+
+    Args:
+        nets: the nets of the corpus.
+        walks: path -> whether the compiled net agrees with the token game; empty where that was not tried.
+        suite: name -> finding, of the semantics suite.
+    """
+    parts = [HEAD, "## Totals\n", *_totals(nets, walks, suite), ""]
+    notes = [n for n in nets if n.state is not State.AGREES or _worse(walks.get(n.path))]
+    parts += ["## What does not simply agree\n", *_notes(notes, walks), ""]
+    parts += ["## Net by net\n", *_table(nets, walks), ""]
+    parts += ["## The semantics suite\n", *_suite(suite), ""]
+    return "\n".join(parts)
+
+
+def _worse(walk: Finding | None) -> bool:
+    return walk is not None and walk.state not in (State.AGREES, State.NOTHING)
+
+
+def _totals(
+    nets: Sequence[Compared], walks: Mapping[str, Finding], suite: Mapping[str, Finding]
+) -> Iterable[str]:
+    accepted = [n for n in nets if n.accepted]
+    runs = [n for n in accepted if n.runs]
+    yield f"* {len(nets)} nets; the engine accepts {len(accepted)} of them."
+    yield f"* Of these {len(runs)} are accepted and run here: {_percent(len(runs), len(accepted))}."
+    absent = [n for n in accepted if n.surroundings]
+    if absent:
+        reason = "need a file (`use`) that is not beside them; the engine had it"
+        yield f"* {len(absent)} that the engine accepts {reason}."
+    wrong = [n for n in nets if n.state is State.DIFFERS]
+    yield f"* Nets with an answer that differs: {len(wrong)}."
+    yield "\n| question | compared | yes | random | unsupported | NO |\n|---|---|---|---|---|---|"
+    for question in QUESTIONS:
+        yield _count(question, [n.findings[question] for n in nets])
+    if walks:
+        yield _count("compiled", walks.values())
+    yield _count("semantics suite", suite.values())
+
+
+def _percent(part: int, whole: int) -> str:
+    return f"{100 * part / whole:.1f} %" if whole else "–"
+
+
+def _count(name: str, findings: Iterable[Finding]) -> str:
+    states = [f.state for f in findings if f.state is not State.NOTHING]
+    numbers = [len(states)] + [
+        states.count(s) for s in (State.AGREES, State.RANDOM, State.UNSUPPORTED, State.DIFFERS)
+    ]
+    return f"| {name} | {' | '.join(map(str, numbers))} |"
+
+
+def _table(nets: Sequence[Compared], walks: Mapping[str, Finding]) -> Iterable[str]:
+    columns = ["net", "engine", *QUESTIONS, "compiled"]
+    yield f"| {' | '.join(columns)} |\n|{'---|' * len(columns)}"
+    for net in nets:
+        findings = [*(net.findings[q] for q in QUESTIONS), walks.get(net.path, NOTHING)]
+        cells = [_code(net.path), "accepts" if net.accepted else "rejects"]
+        cells += [f.state.value for f in findings]
+        yield f"| {' | '.join(cells)} |"
+
+
+def _notes(nets: Sequence[Compared], walks: Mapping[str, Finding]) -> Iterable[str]:
+    for net in nets:
+        yield f"* {_code(net.path)}"
+        named = [*net.findings.items(), ("compiled", walks.get(net.path, NOTHING))]
+        for question, finding in named:
+            if finding.note and finding.state not in (State.AGREES, State.NOTHING):
+                yield f"  * {question}, {finding.state.value}: {_text(finding.note)}"
+    if not nets:
+        yield "Nothing."
+
+
+def _suite(suite: Mapping[str, Finding]) -> Iterable[str]:
+    yield "Each net asks one question; compared are all markings and all binding elements of its state space.\n"
+    yield "| net | agrees | |\n|---|---|---|"
+    for name, finding in sorted(suite.items()):
+        yield f"| {_code(name)} | {finding.state.value} | {_text(finding.note)} |"
+
+
+def _code(text: str) -> str:
+    return "`" + text.replace("|", "\\|") + "`"
+
+
+def _text(note: str) -> str:
+    return " ".join(note.split()).replace("|", "\\|")

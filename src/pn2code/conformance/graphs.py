@@ -1,0 +1,80 @@
+"""State spaces in the notation of the real engine, ours and its own, for comparison as sets."""
+
+from __future__ import annotations
+
+import re
+from typing import Any
+
+from pn2code.net.flat import FlatNet, FlatPlace
+from pn2code.semantics.game import Game
+from pn2code.semantics.graph import StateSpace
+from pn2code.semantics.marking import BindingElement, place_text, variable_text
+from pn2code.semantics.recording import engine_name
+
+Node = tuple[str, tuple[tuple[str, str], ...]]
+"""(time, ((place, marking), ...))"""
+Arc = tuple[Node, str, str, Node]
+"""(source, transition, binding, target)"""
+
+
+def place_key(p: FlatPlace) -> str:
+    """`Page'Place 1`, the engine's name of a place instance."""
+    return f"{engine_name(p.page)}'{engine_name(p.short)} {p.instance_number}"
+
+
+def our_nodes(game: Game, space: StateSpace) -> list[Node]:
+    """Each node as (time, marking texts), in the engine's notation."""
+    nodes = []
+    for marking in space.nodes:
+        texts = (
+            (
+                place_key(p),
+                place_text(game.colours, p.colset, marking.places[p.index], earlier_first=True),
+            )
+            for p in game.net.places
+        )
+        nodes.append((str(marking.time) if game.net.timed else "", tuple(sorted(texts))))
+    return nodes
+
+
+def our_arcs(game: Game, space: StateSpace) -> set[Arc]:
+    """Our arcs, in the engine's notation."""
+    nodes = our_nodes(game, space)
+    found = set()
+    for arc in space.arcs:
+        t = game.net.transitions[arc.element.transition]
+        name = f"{engine_name(t.page)}'{engine_name(t.short)} {t.instance_number}"
+        found.add((nodes[arc.source], name, binding_text(game, arc.element), nodes[arc.target]))
+    return found
+
+
+def binding_text(game: Game, element: BindingElement) -> str:
+    """`n=1,p="a"`, by name of variable."""
+    values = sorted((s.name, variable_text(game.colours, s, x)) for s, x in element.values)
+    return ",".join(f"{name}={text}" for name, text in values)
+
+
+def engine_nodes(net: FlatNet, graph: dict[str, Any]) -> dict[int, Node]:
+    """The engine's nodes by number, with the places that the flat net has."""
+    ours = {place_key(p) for p in net.places}
+    found = {}
+    for node in graph["nodes"]:
+        texts = {name: text for name, text in node["marking"].items() if name in ours}
+        time = str(node.get("time", "")) if net.timed else ""
+        found[node["node"]] = (time, tuple(sorted(texts.items())))
+    return found
+
+
+def engine_arcs(net: FlatNet, graph: dict[str, Any]) -> set[Arc]:
+    """The engine's arcs."""
+    nodes = engine_nodes(net, graph)
+    return {
+        (nodes[a["from"]], a["transition"], _sorted_binding(a["binding"]), nodes[a["to"]])
+        for a in graph["arcs"]
+    }
+
+
+def _sorted_binding(text: str) -> str:
+    """Bindings by name of variable. (No value in the recorded graphs has a `name=` in it, but a lone record.)"""
+    parts = re.split(r",(?=[A-Za-z_][A-Za-z0-9_']*=)", text) if "{" not in text else [text]
+    return ",".join(sorted(parts))

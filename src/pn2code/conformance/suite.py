@@ -1,0 +1,50 @@
+"""The semantics suite: for tiny nets the whole graph of the real engine, and the values of expressions."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import Any
+
+from pn2code.conformance.finding import AGREES, Finding, State, differs
+from pn2code.conformance.graphs import engine_arcs, engine_nodes, our_arcs, our_nodes
+from pn2code.diagnostics import Diagnostics
+from pn2code.net import front
+from pn2code.semantics.enabling import GameError
+from pn2code.semantics.game import Game
+from pn2code.semantics.graph import state_space
+
+MAX_NODES = 300
+
+
+def names(suite: Path) -> list[str]:
+    """The nets of the suite, sorted."""
+    return sorted(f.stem for f in suite.glob("*.json"))
+
+
+def compare_graph(suite: Path, name: str) -> Finding:
+    """Every marking and every binding element of a net's state space."""
+    recorded: dict[str, Any] = json.loads((suite / f"{name}.json").read_text(encoding="utf-8"))
+    d = Diagnostics()
+    net = front.load(suite / f"{name}.cpn", d)
+    if net is None or not recorded["accepted"]:
+        if (net is not None) == recorded["accepted"]:
+            return AGREES
+        said = "accepted" if net else "; ".join(e.message for e in d.errors[:2])
+        return differs(f"here: {said}")
+    graph = recorded["graph"]
+    try:
+        game = Game(net)
+        space = state_space(game, max_nodes=MAX_NODES)
+    except GameError as error:
+        return AGREES if graph is None else differs(error.message)
+    if graph is None:
+        return AGREES if not space.complete else differs("a state space, where the engine has none")
+    ours, theirs = set(our_nodes(game, space)), set(engine_nodes(net, graph).values())
+    if ours != theirs:
+        return differs(f"{len(ours - theirs)} markings only here, {len(theirs - ours)} only there")
+    arcs, their_arcs = our_arcs(game, space), engine_arcs(net, graph)
+    if arcs != their_arcs:
+        more, less = len(arcs - their_arcs), len(their_arcs - arcs)
+        return differs(f"{more} binding elements only here, {less} only there")
+    return Finding(State.AGREES, f"{len(ours)} markings, {len(arcs)} arcs")
