@@ -7,7 +7,7 @@ net is a `Block` of the file, so that a compiler message or a reader finds the w
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 
 from pn2code.diagnostics import Origin
 from pn2code.emission import c_tables
@@ -164,6 +164,7 @@ class _Emitter:
             "zero": self._types.zero(g.type)
             if g.type.rep not in (Rep.STRUCT, Rep.UNION, Rep.STRING)
             else ('{ "", 0U }' if g.type.rep is Rep.STRING else "{ 0 }"),
+            "is_root": g.is_reference or self._types.holds_reference(g.type),
             "setup": [] if constant else s.lines,
             "table": self._names.table(g.table),
             "is_reference": g.is_reference,
@@ -254,6 +255,7 @@ class _Emitter:
         search.keeps = uses_context(
             _without_wanted(t.enumerate), self._needs_context, self._definitions
         )
+        search.releases = not self._reaches(t.enumerate, _is_write)
         search.may_fail = search.keeps or any(
             isinstance(n, ir.Wanted | ir.UnlessLegal) for n in ir_nodes(t.enumerate)
         )
@@ -267,8 +269,8 @@ class _Emitter:
         return {
             "mark": self._block(f"transition {t.name}", t.name, "transition", t.origin),
             "index": t.index,
-            "search_draws": self._draws(t.enumerate),
-            "fire_draws": self._draws(t.fire),
+            "search_draws": self._reaches(t.enumerate, _is_draw),
+            "fire_draws": self._reaches(t.fire, _is_draw),
             "name": t.name,
             "stem": name,
             "id": t.id,
@@ -287,20 +289,20 @@ class _Emitter:
                 }
                 for v, m in zip(t.variables, variables, strict=True)
             ],
-            "keeps": search.keeps,
+            "keeps": search.keeps and search.releases,
             "search": search.lines,
             "searches_marking": bool(re.search(r"\bm\b", "\n".join(search.lines))),
             "fire": fire.lines,
             "uses_binding": "b->" in text,
         }
 
-    def _draws(self, statements: tuple[ir.Stmt, ...]) -> bool:
-        """Whether random numbers are drawn, directly or in a function that is called."""
+    def _reaches(self, statements: tuple[ir.Stmt, ...], what: Callable[[object], bool]) -> bool:
+        """Whether there is something of a kind, directly or in a function that is called."""
         waiting: list[tuple[ir.Stmt, ...]] = [statements]
         seen: set[str] = set()
         while waiting:
             body = waiting.pop()
-            if any(map(_is_draw, ir_nodes(body))):
+            if any(map(what, ir_nodes(body))):
                 return True
             calls = [key for key in called(body) if key not in seen]
             seen.update(calls)
@@ -334,7 +336,11 @@ class _Emitter:
             roots |= {v.table for v in t.variables}
             bodies += [t.enumerate, t.fire]
         bodies += [p.initial for p in self._net.places] + [g.setup for g in self._net.globals]
-        roots |= {g.table for g in self._net.globals if g.is_reference}
+        roots |= {
+            g.table
+            for g in self._net.globals
+            if g.is_reference or self._types.holds_reference(g.type)
+        }
         for b in bodies:
             for node in ir_nodes(b):
                 table = getattr(node, "table", "")
@@ -351,7 +357,7 @@ class _Emitter:
         keys = self._used_tables(functions)
         wrappers = {f.key: f"is_{stem(f.hint)}" for f in functions if f.key.startswith("member ")}
         tables = c_tables.Tables(self._types, self._descriptors, wrappers)
-        recursive = [k for k in keys if tables.is_recursive(k)]
+        recursive = tables.to_declare(keys)
         values = {
             "version": self._version,
             "net": net,
@@ -379,7 +385,8 @@ class _Emitter:
             "leaves": self._leaf_tables(),
             "places": [self._place(p) for p in net.places],
             "transitions": [self._transition(t) for t in net.transitions],
-            "has_arena_values": self._has_arena_values or any(g.is_reference for g in net.globals),
+            "has_arena_values": self._has_arena_values
+            or any(g.is_reference or self._types.holds_reference(g.type) for g in net.globals),
         }
         source, blocks = self._extract(render("c/net.c.j2", **values))
         header, _ = self._extract(render("c/net.h.j2", **values))
@@ -416,6 +423,12 @@ def _without_wanted(statements: tuple[ir.Stmt, ...]) -> tuple[ir.Stmt, ...]:
         else:
             out.append(s)
     return tuple(out)
+
+
+def _is_write(node: object) -> bool:
+    if isinstance(node, ir.SetGlobal):
+        return node.is_reference
+    return isinstance(node, ir.SetContents) and node.reference.type.rep is Rep.REF
 
 
 def _is_draw(node: object) -> bool:

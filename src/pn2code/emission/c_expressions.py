@@ -60,6 +60,19 @@ class Types:
         """The C type."""
         return _SCALARS.get(t.rep) or self.names.type(t.name)
 
+    def holds_reference(self, t: IrType) -> bool:
+        """Whether there may be references in a value of the type."""
+        seen: set[str] = set()
+        waiting = [t]
+        while waiting:
+            t = waiting.pop()
+            if t.rep is Rep.REF:
+                return True
+            if t.name and t.name not in seen:
+                seen.add(t.name)
+                waiting += ir.parts(self.definitions[t.name])
+        return False
+
     def zero(self, t: IrType) -> str:
         """The harmless value."""
         match t.rep:
@@ -75,7 +88,7 @@ class Types:
                 return 'PN_STRING("")'
             case Rep.CHAR:
                 return "0U"
-            case Rep.LIST:
+            case Rep.LIST | Rep.REF:
                 return "NULL"
             case Rep.TIME:
                 return "PN_NO_TIME"
@@ -204,6 +217,19 @@ class Expressions:
                 return "pn_ok(cx)", _POSTFIX
             case ir.HasError(name=""):
                 return "pn_is_exception(cx)", _POSTFIX
+            case ir.NewRef(value=inner):
+                size = self._types.name(inner.type)
+                return f"pn_ref_new(cx, {self.address(inner)}, sizeof({size}))", _POSTFIX
+            case ir.AddressOf(name=name):
+                text = self._names.value(name, self.global_hints.get(name, name))
+                return f"&{text}", _UNARY
+            case ir.Contents(reference=inner, type=t):
+                pointer, zero = self.inside(inner, _UNARY - 1), self._types.zero(t)
+                return f"({pointer} != NULL) ? *{pointer} : {zero}", _CONDITIONAL
+            case ir.HasPacket():
+                return "cx->exception != NULL", c_ops.EQUALITY
+            case ir.Packet(type=t):
+                return f"*(const {self._types.name(t)} *)cx->exception", _UNARY
             case ir.HasError(name=name):
                 return f"pn_is_raised(cx, {c_bytes(name)})", _POSTFIX
 
@@ -233,12 +259,14 @@ class Expressions:
         return f"{self._names.function(e.function, function.hint)}({', '.join(arguments)})"
 
     def _member(self, e: ir.Member) -> str:
-        record = self.inside(e.record, _UNARY)
+        record, arrow = self.inside(e.record, _UNARY), "."
+        if isinstance(e.record, ir.Argument) and self._is_boxed(e.record):
+            record, arrow = record[2:-1], "->"  # (*p).x is p->x
         definition = self._types.definitions[e.record.type.name]
         assert isinstance(definition, ir.StructDef)
         is_time = dict(definition.fields).get(e.label) == ir.TIME
         suffix = (".real" if e.type.rep is Rep.REAL else ".integer") if is_time else ""
-        return f"{record}.{label(e.label)}{suffix}"
+        return f"{record}{arrow}{label(e.label)}{suffix}"
 
     def time(self, e: Ir | None) -> str:
         """A time as `pn_time_t`."""
@@ -368,7 +396,7 @@ class Expressions:
         negation = "!" if operator == "!=" else ""
         precedence = _UNARY if negation else _POSTFIX
         match a.type.rep:
-            case Rep.INT | Rep.BOOL | Rep.CHAR | Rep.ENUM:
+            case Rep.INT | Rep.BOOL | Rep.CHAR | Rep.ENUM | Rep.REF:
                 if isinstance(b, ir.Const) and isinstance(b.value, bool):
                     wanted = b.value == (operator == "==")
                     return self._print(a) if wanted else self._negation(a)

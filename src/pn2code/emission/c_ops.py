@@ -145,6 +145,7 @@ OPS: dict[str, Form] = {
     "Ms.random": Call("pn_ms_random_cell", context=True),
     "list.cons": Call("pn_list_cons", context=True, table=True, pointers=(0,)),
     "list.all_true": Call("pn_list_all_true"),
+    "exn.name": Call("pn_exception_name", table=True, pointers=(0,)),
     "Colset.lt": Compared("pn_compare", "<"),
     "Colset.cmp": Call("pn_compare", table=True, pointers=(0, 1), order=True),
     "Colset.mkstr": Call("pn_mkstr_string", context=True, table=True, pointers=(0,)),
@@ -225,7 +226,7 @@ OPS |= {
     "prim.real_copy_sign": Call("pn_real_copy_sign"),
     "prim.real_is_normal": Call("pn_real_is_normal"),
     "prim.real_to_large": Call("pn_inf_trunc", context=True),
-    "prim.real_format": Call("pn_real_format", context=True),
+    "prim.real_format": Call("pn_real_styled", context=True),
     "prim.real_read": Call("pn_real_read"),
 }
 """Operations of the functions of the prelude."""

@@ -8,6 +8,7 @@ from pn2code.emission.names import Names, Scope
 from pn2code.lowering import ir
 from pn2code.lowering.functions import ir_nodes
 from pn2code.lowering.ir import Ir, Rep, Stmt
+from pn2code.lowering.values import is_atomic
 
 _WIDTH = 100
 _INDENT = "    "
@@ -88,6 +89,7 @@ class Statements:
         self.has_arena_values = True
         self.keeps = False
         self.may_fail = False
+        self.releases = True
         self._loops = 0
 
     def line(self, text: str) -> None:
@@ -125,7 +127,7 @@ class Statements:
 
     def finish_search(self) -> None:
         """The end of an enumeration that was not stopped."""
-        if self.keeps:
+        if self.keeps and self.releases:
             self.line("if (!is_kept) {")
             self.line(_INDENT + "pn_arena_release(cx->arena, mark);")
             self.line("}")
@@ -185,6 +187,11 @@ class Statements:
                 self._self_call(s)
             case ir.Raise(name=name):
                 self.line(f"pn_raise(cx, {_error(name)}, {c_bytes(name)});")
+            case ir.RaiseValue(value=value, table=table):
+                pointer = self._x.address(value)
+                self.line(f"pn_raise_value(cx, &{self._names.table(table)}, {pointer});")
+            case ir.SetContents():
+                self._set_contents(s)
             case ir.ClearError():
                 self.line("pn_clear_error(cx);")
             case ir.Note(text=text):
@@ -212,6 +219,18 @@ class Statements:
         self.line(f"const {t} {fresh} = {value};")
         self.line("if (pn_ok(cx)) {")
         self.line(f"{_INDENT}{name} = {fresh};")
+        self.line("}")
+
+    def _set_contents(self, s: ir.SetContents) -> None:
+        star = "*" if s.reference.type.rep is Rep.REF and s.value.type != s.reference.type else ""
+        target = f"{star}{self._x.inside(s.reference, 13)}"
+        value = self._x.text(s.value)
+        if not is_atomic(s.value):
+            fresh = self._scope.name(("new value", id(s)), "new_value")
+            self.line(f"const {self._types.name(s.value.type)} {fresh} = {value};")
+            value = fresh
+        self.line("if (pn_ok(cx)) {")
+        self.line(f"{_INDENT}{target} = {value};")
         self.line("}")
 
     def _if(self, s: ir.If, prefix: str = "") -> None:
@@ -381,12 +400,14 @@ class Statements:
         holds = self._scope.name(("holds", id(takes)), "holds")
         before, self.moves = self.moves, name
         mark = self._scope.name(("mark", id(takes)), "start")
-        self.line(f"const size_t {mark} = pn_arena_mark(cx->arena);")
+        if self.releases:
+            self.line(f"const size_t {mark} = pn_arena_mark(cx->arena);")
         self.line(f"pn_moves_t {name};")
         self.line(f"pn_moves_init(&{name}, cx);")
         self.body(takes)
         self.line(f"const bool {holds} = pn_moves_are_possible(&{name}, m);")
-        self.line(f"pn_arena_release(cx->arena, {mark});")
+        if self.releases:
+            self.line(f"pn_arena_release(cx->arena, {mark});")
         self.line(f"if (!{holds}) {{")
         self._next()
         self.moves = before
@@ -396,7 +417,7 @@ class Statements:
             self.line("if (!pn_ok(cx)) {")
             self.line(f"{_INDENT}return true;")
             self.line("}")
-        if self.keeps:
+        if self.keeps and self.releases:
             self.line("is_kept = true;")
         self.line("if (!sink(user, self, &b)) {")
         self.line(f"{_INDENT}return false;")
@@ -469,6 +490,11 @@ def uses_context(
             case (
                 ir.UnlessBind()
                 | ir.Raise()
+                | ir.RaiseValue()
+                | ir.SetContents()
+                | ir.NewRef()
+                | ir.HasPacket()
+                | ir.Packet()
                 | ir.ClearError()
                 | ir.Ok()
                 | ir.HasError()

@@ -20,6 +20,7 @@ _KINDS = {
     Rep.STRUCT: "PN_KIND_RECORD",
     Rep.LIST: "PN_KIND_LIST",
     Rep.UNION: "PN_KIND_UNION",
+    Rep.REF: "PN_KIND_REF",
 }
 
 
@@ -27,7 +28,7 @@ def forward(definition: Definition, types: Types) -> str:
     """The typedef that comes before all bodies, "" for enumerations."""
     names = types.names
     match definition:
-        case ir.EnumDef():
+        case ir.EnumDef() | ir.RefDef():
             return ""
         case ir.StructDef(name=name) | ir.UnionDef(name=name):
             return f"typedef struct {names.tag(name)} {names.type(name)};"
@@ -55,10 +56,15 @@ def body(definition: Definition, types: Types) -> list[str]:
                 f"    {types.name(element)} head;",
                 "};",
             ]
+        case ir.RefDef(name=name, target=target):
+            return [f"typedef {types.name(target)} *{names.type(name)};"]
         case ir.UnionDef(name=name, constructors=union):
             tag = f"{names.tag(name)}_tag"
             lines = _enum(name, tuple(c for c, _, _ in union), types, f"enum {tag}", f"{tag}_t")
-            lines += ["", f"struct {names.tag(name)} {{", f"    {tag}_t tag;", "    union {"]
+            lines += ["", f"struct {names.tag(name)} {{", f"    {tag}_t tag;"]
+            if all(argument is None for _, argument, _ in union):
+                return [*lines, "};"]
+            lines.append("    union {")
             for constructor, argument, boxed in union:
                 if argument is not None:
                     pointer = "const " if boxed else ""
@@ -112,6 +118,15 @@ class Tables:
         parts = {part for _, part in d.fields if part} | ({d.element} if d.element else set())
         return key in self.needed(parts)
 
+    def to_declare(self, keys: list[str]) -> list[str]:
+        """The tables that are needed before they are defined, in this order."""
+        found = [key for key in keys if self.is_recursive(key)]
+        for i, key in enumerate(keys):
+            d = self._descriptors[key]
+            parts = [part for _, part in d.fields if part] + ([d.element] if d.element else [])
+            found += [p for p in parts if p in keys[i + 1 :] and p not in found]
+        return found
+
     def print(self, key: str) -> list[str]:
         """The constants that make the table."""
         d = self._descriptors[key]
@@ -135,7 +150,9 @@ class Tables:
         if d.fields:
             lines += self._fields(d, name, c_type)
             members += [f".count = {len(d.fields)}U", f".field = {name}_fields"]
-        if d.element:
+        if d.element and d.type.rep is Rep.REF:
+            members.append(f".element = &{self._names.table(d.element)}")
+        elif d.element:
             cell = self._names.cell(d.type.name)
             members += [
                 f".element = &{self._names.table(d.element)}",
@@ -173,17 +190,17 @@ class Tables:
     def _fields(self, d: Descriptor, name: str, c_type: str) -> list[str]:
         lines = [f"static const pn_field_t {name}_fields[] = {{"]
         definition = self._types.definitions[d.type.name]
-        boxed: dict[str, bool] = {}
+        boxed: dict[str, bool] | None = None
         if isinstance(definition, ir.UnionDef):
             boxed = {c: b for c, _, b in definition.constructors}
         for text, part in d.fields:
+            # Two exceptions of one name are apart in C, but not to their readers.
+            name_of = c_string(text.split(" ")[0] if boxed is not None else text)
             if not part:
-                lines.append(f"    {{ {c_string(text)}, NULL, 0U, false }},")
+                lines.append(f"    {{ {name_of}, NULL, 0U, false }},")
                 continue
             member = label(text) if isinstance(definition, ir.StructDef) else f"as.{label(text)}"
-            flag = "true" if boxed.get(text) else "false"
+            flag = "true" if boxed is not None and boxed[text] else "false"
             table = self._names.table(part)
-            lines.append(
-                f"    {{ {c_string(text)}, &{table}, offsetof({c_type}, {member}), {flag} }},"
-            )
+            lines.append(f"    {{ {name_of}, &{table}, offsetof({c_type}, {member}), {flag} }},")
         return [*lines, "};"]

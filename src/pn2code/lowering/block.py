@@ -7,13 +7,18 @@ from contextlib import contextmanager
 
 from pn2code.diagnostics import Span
 from pn2code.lowering import ir
-from pn2code.lowering.codes import LITERAL_RANGE, UNSUPPORTED_FUNCTION_VALUE, UnsupportedError
+from pn2code.lowering.codes import LITERAL_RANGE, UnsupportedError
 from pn2code.lowering.functions import Program
 from pn2code.lowering.ir import Ir, IrType, Local, Rep, Stmt
 from pn2code.lowering.matching import Matcher, TypeSource
 from pn2code.lowering.types import substitute
 from pn2code.lowering.values import (
-    FUNCTIONS,
+    BuiltinFunction,
+    Closure,
+    ConstructorFunction,
+    LocalReference,
+    NamedFunction,
+    Partial,
     RecordVal,
     Reference,
     TypeEnv,
@@ -22,7 +27,7 @@ from pn2code.lowering.values import (
     is_atomic,
     is_static,
 )
-from pn2code.ml.core import Symbol
+from pn2code.ml.core import Constructor, Symbol
 from pn2code.ml.types import INT, Type
 
 _INT_RANGE = (-(2**30), 2**30 - 1)
@@ -101,8 +106,6 @@ class Block(TypeSource):
     def code(self, value: Val, at: Span | None = None) -> Ir:
         """A value as C code; records are put together."""
         if isinstance(value, RecordVal):
-            if has_function(value):
-                self._refuse_function(at)
             t = self.representation(value.type)
             if t.rep is Rep.UNIT:
                 return UNIT_VALUE
@@ -110,18 +113,20 @@ class Block(TypeSource):
             assert isinstance(definition, ir.StructDef)
             parts = {label: self.code(v, at) for label, v in value.fields.items()}
             return ir.MakeStruct(t, tuple((label, parts[label]) for label, _ in definition.fields))
-        if is_static(value):
-            self._refuse_function(at)
-        assert not isinstance(value, (*FUNCTIONS, Reference))
+        if isinstance(value, Reference):
+            return ir.AddressOf(value.name, self.program.types.reference_to(value.type))
+        if isinstance(
+            value, Closure | NamedFunction | BuiltinFunction | ConstructorFunction | Partial
+        ):
+            return self.program.function_values.make(self, value, at)
+        assert not isinstance(value, LocalReference)
         return value
 
-    def _refuse_function(self, at: Span | None) -> None:
-        raise UnsupportedError(
-            UNSUPPORTED_FUNCTION_VALUE,
-            "a function or reference is used as a value here",
-            at or self.program.position,
-            hint="pass it directly to the function that uses it",
-        )
+    def tag_of(self, constructor: Constructor, argument: IrType | None) -> int:
+        """See `TypeSource`."""
+        if constructor.data_type == "exn":
+            return self.program.exceptions.tag(constructor, argument)
+        return constructor.tag
 
     def atomic(self, value: Ir, hint: str) -> Ir:
         """The value in a form that may be used several times."""

@@ -10,18 +10,17 @@ from collections.abc import Callable
 from typing import TYPE_CHECKING
 
 from pn2code.diagnostics import Origin, Span
-from pn2code.lowering import higher_order, ir, prelude
+from pn2code.lowering import exceptions, higher_order, ir, prelude, references
 from pn2code.lowering.codes import (
     UNSUPPORTED_BUILTIN,
     UNSUPPORTED_COLSET,
-    UNSUPPORTED_EXPRESSION,
     UnsupportedError,
 )
 from pn2code.lowering.functions import is_impure_builtin
 from pn2code.lowering.ir import Ir, IrType, Rep
 from pn2code.lowering.matching import negation
 from pn2code.lowering.prelude import representation
-from pn2code.lowering.values import BuiltinFunction, Polymorphic, RecordVal, Reference, Val
+from pn2code.lowering.values import BuiltinFunction, Polymorphic, RecordVal, Val
 from pn2code.ml.builtins import BUILTINS
 from pn2code.ml.colsets import Colset
 from pn2code.ml.types import TCon, TFun, TRecord, TVar, Type
@@ -167,7 +166,8 @@ class Builtins:
         if info is not None and info.unsupported:
             text = f"`{name}` is not available here: {info.unsupported}"
             body.emit(ir.Do(ir.Op("prim.stop", (ir.Const(text, ir.STRING),), ir.UNIT)))
-            return body.zero(body.program.types.lower(result, at))
+            t = body.program.types.lower(result, at)
+            return ir.Const(None, ir.UNIT) if t.rep is Rep.UNIT else body.zero(t)
         found = body.program.prelude_function(name)
         if found is None:
             raise UnsupportedError(
@@ -181,11 +181,11 @@ class Builtins:
         inst = prelude.instance(symbol, function.type)
         value = body.program.global_value(body, symbol, inst, at)
         assert not isinstance(value, Polymorphic)
-        t: Type = representation(function.type)
+        rest: Type = representation(function.type)
         for argument in arguments:
-            assert isinstance(t, TFun)
-            t = t.result
-            value = body.apply(value, argument, t, at)
+            assert isinstance(rest, TFun)
+            rest = rest.result
+            value = body.apply(value, argument, rest, at)
         return value
 
     def _model_time(self, name: str) -> str:
@@ -396,44 +396,6 @@ def _ignore(body: Body, arguments: tuple[Val, ...], result: Type, at: Span) -> V
     return ir.Const(None, ir.UNIT)
 
 
-def _reference(value: Val, at: Span) -> Reference:
-    if not isinstance(value, Reference):
-        raise UnsupportedError(
-            UNSUPPORTED_EXPRESSION, "only references declared at top level are supported", at
-        )
-    return value
-
-
-def _read(body: Body, arguments: tuple[Val, ...], result: Type, at: Span) -> Val:
-    reference = _reference(arguments[0], at)
-    return body.spill(ir.GlobalUse(reference.name, reference.type), reference.name)
-
-
-def _assigning(op: str) -> Callable[[Body, tuple[Val, ...], Type, Span], Val]:
-    def assign(body: Body, arguments: tuple[Val, ...], result: Type, at: Span) -> Val:
-        if op in ("inc", "dec"):
-            target, value = arguments[0], ir.Const(1, ir.INT)
-        else:
-            target, operand = components(body, arguments[0], 2)
-            value = body.addressable(body.code(operand, at), "value")  # type: ignore[assignment]
-        reference = _reference(target, at)
-        old = ir.GlobalUse(reference.name, reference.type)
-        new: Ir = value
-        if op in ("+=", "inc"):
-            new = ir.Op("Int.+", (old, value), ir.INT)
-        elif op in ("-=", "dec"):
-            new = ir.Op("Int.-", (old, value), ir.INT)
-        elif op == "*=":
-            new = ir.Op("Int.*", (old, value), ir.INT)
-        elif op == "::=":
-            table = body.program.types.plain(reference.type)
-            new = ir.Op("list.cons", (value, old), reference.type, table)
-        body.emit(ir.SetGlobal(reference.name, new, True))
-        return ir.Const(None, ir.UNIT)
-
-    return assign
-
-
 def head_or(body: Body, cell: Ir) -> Ir:
     """The head of a list; a harmless value if it is empty (an exception was raised then)."""
     cell = body.atomic(cell, "cell")
@@ -588,8 +550,8 @@ _SPECIAL: dict[str, Callable[[Body, tuple[Val, ...], Type, Span], Val]] = {
     "General.o": _compose,
     "General.before": _before,
     "General.ignore": _ignore,
-    "Ref.!": _read,
-    **{f"Ref.{op}": _assigning(op) for op in (":=", "+=", "-=", "*=", "::=", "inc", "dec")},
+    **references.FUNCTIONS,
+    **exceptions.FUNCTIONS,
     "List.hd": _cell("List.hd"),
     "List.tl": _cell("List.tl", rest=True),
     "List.last": _cell("List.last"),

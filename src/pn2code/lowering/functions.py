@@ -14,11 +14,13 @@ from typing import TYPE_CHECKING
 
 from pn2code.diagnostics import Origin, Span
 from pn2code.lowering import ir, prelude
+from pn2code.lowering.closures import FunctionValues, nested_functions
 from pn2code.lowering.codes import (
     UNSUPPORTED_EXPRESSION,
     UNSUPPORTED_FUNCTION_VALUE,
     UnsupportedError,
 )
+from pn2code.lowering.exceptions import Exceptions
 from pn2code.lowering.ir import Ir, Local, Rep, Stmt
 from pn2code.lowering.matching import is_irrefutable
 from pn2code.lowering.types import Types, substitute
@@ -28,6 +30,7 @@ from pn2code.lowering.values import (
     BuiltinFunction,
     Captured,
     NamedFunction,
+    Polymorphic,
     RecordVal,
     Reference,
     Val,
@@ -42,6 +45,7 @@ from pn2code.ml.core import Symbol
 from pn2code.ml.types import TCon, TFun, TRecord, Type
 
 if TYPE_CHECKING:
+    from pn2code.lowering.block import Block
     from pn2code.lowering.builtins import Builtins
     from pn2code.lowering.expressions import Body
 
@@ -105,6 +109,8 @@ class Program:
         self._global_names: set[str] = set()
         self._impure: dict[int, bool] = {}
         self._binding: dict[int, bool] = {}
+        self.function_values = FunctionValues(self)
+        self.exceptions = Exceptions(self)
         for position, dec in enumerate(program.declarations):
             if isinstance(dec, core.RecBind):
                 for symbol, _ in dec.bindings:
@@ -141,32 +147,78 @@ class Program:
             )
         position, dec = self._values[symbol.uid]
         t = substitute(symbol.type, inst)
-        if type_has_function(t):
-            return self._static_global(body, dec, inst)
+        if type_has_function(t) and self._is_static(dec.value):
+            return self._static_global(body, symbol, dec, inst)
         key: Hashable = (symbol.uid, type_key(inst))
         if key not in self._globals:
             self._make_globals(position, dec, inst)
         return self._globals[key]
 
     @staticmethod
-    def _static_global(body: Body, dec: core.ValBind, inst: Mapping[int, Type]) -> Binding:
+    def _static_global(
+        body: Body, symbol: Symbol, dec: core.ValBind, inst: Mapping[int, Type]
+    ) -> Binding:
         """`val f = fn x => ...`: looked at anew for each use."""
         outer, body.types = body.types, inst
         try:
-            return body.exp(dec.value, {})
+            value = body.exp(dec.value, {})
+            if isinstance(dec.pattern, core.PVar):
+                return value
+            return body.bind_pattern(dec.pattern, value)[symbol.uid]
         finally:
             body.types = outer
+
+    def _is_static(self, e: core.Exp) -> bool:
+        """Whether a function, or a record with functions, is the same and costs nothing each time it is looked at."""
+        match e:
+            case core.Lambda() | core.Builtin() | core.Con() | core.Lit():
+                return True
+            case core.Var(symbol=symbol):
+                if symbol.uid in self._values and type_has_function(symbol.type):
+                    return self._is_static(self._values[symbol.uid][1].value)
+                return True
+            case core.RecordExp(fields=fields):
+                return all(self._is_static(f) for _, f in fields)
+            case core.Apply(function=core.Builtin(name="General.o"), argument=argument):
+                return self._is_static(argument)
+            case core.Apply():
+                # A curried function that waits for more.
+                head: core.Exp = e
+                arguments = 0
+                while isinstance(head, core.Apply):
+                    if not self._is_static(head.argument):
+                        return False
+                    head, arguments = head.function, arguments + 1
+                return arguments < self._curried(head)
+        return False
+
+    def _curried(self, e: core.Exp) -> int:
+        """The number of arguments a function takes before it does anything."""
+        match e:
+            case core.Var(symbol=symbol) if symbol.uid in self._groups:
+                group = self._groups[symbol.uid]
+                function = next(f for s, f in group.bindings if s == symbol)
+                return len(split_parameters(function)[0])
+            case core.Builtin():
+                return self.builtins.arity(BuiltinFunction(e, e.type))
+        return 0
+
+    def body(self) -> Body:
+        """A body of a function that no ML function is."""
+        from pn2code.lowering.expressions import Body
+
+        return Body(self)
 
     def _make_globals(self, position: int, dec: core.ValBind, inst: Mapping[int, Type]) -> None:
         from pn2code.lowering.expressions import Body
 
         value = dec.value
         is_reference = False
-        if isinstance(dec.pattern, core.PVar) and _is_reference(dec.pattern.symbol.type):
-            if not (isinstance(value, core.Apply) and _is_builtin(value.function, "Ref.ref")):
-                raise UnsupportedError(
-                    UNSUPPORTED_EXPRESSION, "only `ref` of a value makes a reference here", dec.span
-                )
+        if (
+            isinstance(dec.pattern, core.PVar)
+            and isinstance(value, core.Apply)
+            and _is_builtin(value.function, "Ref.ref")
+        ):
             value, is_reference = value.argument, True
         body = Body(self, inst)
         made: list[ir.Global] = []
@@ -199,8 +251,8 @@ class Program:
             env = body.bind_pattern(dec.pattern, code)
             for symbol in pattern_symbols(dec.pattern):
                 stored = env[symbol.uid]
-                assert not is_static(stored)
-                body.emit(ir.SetGlobal(names[symbol.uid], body.code(stored)))  # type: ignore[arg-type]
+                assert not isinstance(stored, Polymorphic)
+                body.emit(ir.SetGlobal(names[symbol.uid], body.code(stored)))
         if made:
             first = made[0]
             made[0] = ir.Global(
@@ -236,21 +288,29 @@ class Program:
         self, body: Body, function: NamedFunction, arguments: tuple[Val, ...], at: Span
     ) -> Val:
         """A call of the C function for these arguments."""
-        key, code = self.prepare_call(body, function, arguments)
+        key, code = self.prepare_call(body, function, arguments, at)
         _, result = split_parameters(function.function)
         t = self.types.lower(substitute(result, function.types), at)
         call = ir.FunCall(key, code, t)
-        impure = self.is_impure(function.function) or any(map(self._is_impure_value, arguments))
+        impure = (
+            self.is_impure(function.function)
+            or any(map(self._is_impure_value, arguments))
+            or any(self.types.holds_function(c.type) for c in code)
+        )
         if impure or t.rep is Rep.UNIT:
             return body.spill(call, function.symbol.name)
         return call
 
     def prepare_call(
-        self, body: Body, function: NamedFunction, arguments: tuple[Val, ...]
+        self, body: Block, function: NamedFunction, arguments: tuple[Val, ...], at: Span
     ) -> tuple[str, tuple[Ir, ...]]:
         """The key of the C function and the C arguments."""
-        slots = self._slots(body, function, arguments)
-        parts = [capture(function), *(capture(slot) for slot in slots)]
+        parts = [capture(function)]
+        for slot in self._slots(body, function, arguments):
+            part = capture(slot)
+            if nested_functions(part.key):
+                part = capture(body.code(slot, at))
+            parts.append(part)
         identity: Hashable = tuple(part.key for part in parts)
         code = tuple(c for part in parts for c in part.code)
         if identity not in self._functions:
@@ -267,7 +327,7 @@ class Program:
             self._enter(key, function, parts)
         return self._functions[identity], code
 
-    def _slots(self, body: Body, function: NamedFunction, arguments: tuple[Val, ...]) -> list[Val]:
+    def _slots(self, body: Block, function: NamedFunction, arguments: tuple[Val, ...]) -> list[Val]:
         """The arguments as they are passed: tuples that are taken apart by the patterns, component by component."""
         slots: list[Val] = []
         for (rules, t), argument in zip(_parameters(function), arguments, strict=True):
@@ -287,7 +347,7 @@ class Program:
         return slots
 
     @staticmethod
-    def _slot(body: Body, value: Val) -> Val:
+    def _slot(body: Block, value: Val) -> Val:
         from pn2code.lowering.values import has_function
 
         return (
@@ -315,9 +375,13 @@ class Program:
 
     def finish(self) -> tuple[ir.Function, ...]:
         """Make all functions that are asked for, and those that they ask for."""
-        while self._pending:
-            key, function, rebuilt, parameters = self._pending.pop()
-            self._made[key] = self._make(key, function, rebuilt, parameters)
+        while self._pending or self.function_values.work():
+            if self._pending:
+                key, function, rebuilt, parameters = self._pending.pop()
+                self._made[key] = self._make(key, function, rebuilt, parameters)
+        self._made.update(self.function_values.finish())
+        self._made.update(self.exceptions.finish())
+        self.types.close()
         return order_functions(self._made)
 
     def _make(
@@ -426,7 +490,15 @@ class Program:
 
 
 def _is_impure_node(e: core.Exp) -> bool:
-    return isinstance(e, core.Builtin) and is_impure_builtin(e.name)
+    match e:
+        case core.Builtin(name=name):
+            return is_impure_builtin(name)
+        case core.Var(symbol=symbol):
+            # A function that is a value may do anything.
+            return symbol.is_global and isinstance(symbol.type, TCon | TRecord) and (
+                type_has_function(symbol.type)
+            )
+    return False
 
 
 def has_refutable_binding(e: core.Exp) -> bool:

@@ -13,119 +13,48 @@ One transition with guard `[n > 0]`, input arc ``1`n`` and output arc ``1`(n - 1
 from __future__ import annotations
 
 from dataclasses import field
-from enum import Enum
 
 from pn2code.diagnostics import NOWHERE, Origin
 from pn2code.frozen import frozen
+from pn2code.lowering.ir_types import (
+    BOOL,
+    CHAR,
+    INT,
+    REAL,
+    STRING,
+    TIME,
+    UNIT,
+    Definition,
+    Descriptor,
+    EnumDef,
+    IrType,
+    ListDef,
+    RefDef,
+    Rep,
+    StructDef,
+    UnionDef,
+    parts,
+)
 
-# --- types -------------------------------------------------------------------------------------
-
-
-class Rep(Enum):
-    """How a value is represented in C; see cnative/include/pn/pn_type.h."""
-
-    UNIT = "unit"
-    BOOL = "bool"
-    INT = "int"
-    REAL = "real"
-    STRING = "string"
-    CHAR = "char"
-    TIME = "time"
-    ENUM = "enum"
-    STRUCT = "struct"
-    LIST = "list"
-    UNION = "union"
-
-
-@frozen
-class IrType:
-    """A type; `name` is the key of its definition (ENUM, STRUCT, LIST, UNION), "" otherwise."""
-
-    rep: Rep
-    name: str = ""
-
-    def __str__(self) -> str:
-        """Short form for dumps."""
-        return self.name or self.rep.value
-
-
-UNIT = IrType(Rep.UNIT)
-BOOL = IrType(Rep.BOOL)
-INT = IrType(Rep.INT)
-REAL = IrType(Rep.REAL)
-STRING = IrType(Rep.STRING)
-CHAR = IrType(Rep.CHAR)
-TIME = IrType(Rep.TIME)
-"""A time stamp in a token (`pn_time_t`); expressions compute with INT or REAL."""
-
-
-@frozen
-class EnumDef:
-    """An enumeration: its constructors in order."""
-
-    name: str
-    constructors: tuple[str, ...]
-
-
-@frozen
-class StructDef:
-    """A record or tuple: fields in the order of the first colour set that has this type."""
-
-    name: str
-    fields: tuple[tuple[str, IrType], ...]
-
-
-@frozen
-class ListDef:
-    """A list: cells of this element."""
-
-    name: str
-    element: IrType
-
-
-@frozen
-class UnionDef:
-    """A data type with arguments: (constructor, argument type or None, whether the argument is behind a pointer)."""
-
-    name: str
-    constructors: tuple[tuple[str, IrType | None, bool], ...]
-
-
-Definition = EnumDef | StructDef | ListDef | UnionDef
-
-
-@frozen
-class Descriptor:
-    """A colour set, or a type without one, as the runtime's table.
-
-    Args:
-        name: key; that of the colour set, or of the type.
-        type: its representation.
-        names: ENUM: constructors; UNIT, BOOL with own names; index: the stem.
-        fields: STRUCT: (label, key of the component's descriptor) in declared order; UNION: (constructor, key or "").
-        element: LIST: key of the element's descriptor.
-        low, high: bounds, None: unbounded. LIST and STRING: of the length.
-        chars: STRING: range of the characters as codes.
-        is_index, is_float32, is_narrow, is_tuple: as in pn_type.h.
-        member: key of the function that decides membership of a subset, "" for none.
-        comment: what is declared, for the generated code.
-    """
-
-    name: str
-    type: IrType
-    names: tuple[str, ...] = ()
-    fields: tuple[tuple[str, str], ...] = ()
-    element: str = ""
-    low: int | float | None = None
-    high: int | float | None = None
-    chars: tuple[int, int] | None = None
-    is_index: bool = False
-    is_float32: bool = False
-    is_narrow: bool = False
-    is_tuple: bool = False
-    member: str = ""
-    comment: str = ""
-
+__all__ = [  # the types, which are at home in ir_types
+    "BOOL",
+    "CHAR",
+    "Definition",
+    "Descriptor",
+    "EnumDef",
+    "INT",
+    "IrType",
+    "ListDef",
+    "REAL",
+    "RefDef",
+    "Rep",
+    "STRING",
+    "StructDef",
+    "TIME",
+    "UNIT",
+    "UnionDef",
+    "parts",
+]
 
 # --- expressions -------------------------------------------------------------------------------
 
@@ -332,9 +261,51 @@ class HasError:
         return BOOL
 
 
+@frozen
+class NewRef:
+    """A fresh reference with its first contents."""
+
+    value: Ir
+    type: IrType
+
+
+@frozen
+class AddressOf:
+    """A top-level reference as a value."""
+
+    name: str
+    type: IrType
+
+
+@frozen
+class Contents:
+    """What a reference holds; a harmless value where there is no reference, after an error."""
+
+    reference: Ir
+    type: IrType
+
+
+@frozen
+class HasPacket:
+    """Whether the exception that was raised carries a value."""
+
+    @property
+    def type(self) -> IrType:
+        """A truth value."""
+        return BOOL
+
+
+@frozen
+class Packet:
+    """The exception that was raised as a value, where it carries one."""
+
+    type: IrType
+
+
 Ir = (
     Const | Use | GlobalUse | Bound | TokenValue | Now | FunCall | Op | Member | MakeStruct | EnumValue |
-    MakeUnion | IsTag | Argument | Select | Head | Tail | IsNil | Ok | HasError
+    MakeUnion | IsTag | Argument | Select | Head | Tail | IsNil | Ok | HasError | NewRef | AddressOf | Contents |
+    HasPacket | Packet
 )  # fmt: skip
 
 # --- statements --------------------------------------------------------------------------------
@@ -447,6 +418,22 @@ class Raise:
     """Raises an exception by name."""
 
     name: str
+
+
+@frozen
+class RaiseValue:
+    """Raises an exception that is a value; `table`: its descriptor."""
+
+    value: Ir
+    table: str
+
+
+@frozen
+class SetContents:
+    """Assigns what a reference holds, a value or a local (not after an error)."""
+
+    reference: Ir
+    value: Ir
 
 
 @frozen
@@ -611,8 +598,9 @@ class Reset:
 
 Stmt = (
     Let | Declare | Assign | Fill | SetGlobal | Do | If | While | ForList | ForCount | Return | SelfCall |
-    Raise | ClearError | Note | ForTokens | ForValues | Bind | Unless | UnlessLegal | UnlessAvailable |
-    UnlessBind | UnlessHeld | UnlessEmpty | Wanted | Yield | Take | TakeAll | Put | PutAll | Reset
+    Raise | RaiseValue | SetContents | ClearError | Note | ForTokens | ForValues | Bind | Unless |
+    UnlessLegal | UnlessAvailable | UnlessBind | UnlessHeld | UnlessEmpty | Wanted | Yield | Take | TakeAll |
+    Put | PutAll | Reset
 )  # fmt: skip
 
 # --- the net -----------------------------------------------------------------------------------

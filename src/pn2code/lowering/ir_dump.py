@@ -58,6 +58,8 @@ class _Dump:
             case ir.UnionDef(name=name, constructors=union):
                 parts = [c if a is None else f"{c} of {'@' * boxed}{a}" for c, a, boxed in union]
                 return f"union {name} = {' | '.join(parts)}"
+            case ir.RefDef(name=name, target=target):
+                return f"ref {name} to {target}"
 
     def _globals(self) -> Iterator[str]:
         for g in self._net.globals:
@@ -147,6 +149,10 @@ class _Dump:
                 return f"again({', '.join(map(x, s.arguments))})"
             case ir.Raise(name=name):
                 return f"raise {name}"
+            case ir.RaiseValue(value=value):
+                return f"raise value {x(value)}"
+            case ir.SetContents():
+                return f"{x(s.reference)} := {x(s.value)}"
             case ir.ClearError():
                 return "handled"
             case ir.Note(text=text):
@@ -239,6 +245,16 @@ class _Dump:
                 return "no error"
             case ir.HasError(name=name):
                 return f"error is {name or 'any'}"
+            case ir.NewRef(value=inner):
+                return f"ref({x(inner)})"
+            case ir.AddressOf(name=name):
+                return f"&{name}"
+            case ir.Contents(reference=inner):
+                return f"!{x(inner)}"
+            case ir.HasPacket():
+                return "error has a value"
+            case ir.Packet():
+                return "error value"
 
 
 def _local(local: ir.Local) -> str:

@@ -84,11 +84,18 @@ class Matcher:
         elif t.rep is Rep.LIST:
             self._list(pattern, value, out)
         elif t.rep in (Rep.ENUM, Rep.UNION):
-            if constructor.siblings != 1:
-                out.conditions.append(ir.IsTag(value, constructor.tag))
+            argument: IrType | None = None
             if pattern.argument is not None:
                 argument = self._owner.representation(pattern.argument.type)
-                self._match(pattern.argument, ir.Argument(value, constructor.tag, argument), out)
+            tag = self._owner.tag_of(constructor, argument)
+            if constructor.siblings != 1:
+                out.conditions.append(ir.IsTag(value, tag))
+            if pattern.argument is not None:
+                assert argument is not None
+                self._match(pattern.argument, ir.Argument(value, tag, argument), out)
+        elif t.rep is Rep.REF and pattern.argument is not None:
+            contents = ir.Contents(value, self._owner.representation(pattern.argument.type))
+            self._match(pattern.argument, contents, out)
         elif pattern.argument is not None:
             # An index: its number is its representation.
             self._match(pattern.argument, value, out)
@@ -120,6 +127,10 @@ class TypeSource:
 
     def literal(self, value: int | float | str, t: Type, span: Span) -> ir.Const:
         """A literal as a constant."""
+        raise NotImplementedError
+
+    def tag_of(self, constructor: core.Constructor, argument: IrType | None) -> int:
+        """The tag of a constructor in its union."""
         raise NotImplementedError
 
     def select(self, value: Val, label: str, t: Type) -> Val:

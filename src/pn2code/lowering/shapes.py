@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from pn2code.lowering.matching import is_irrefutable
-from pn2code.lowering.values import children
+from pn2code.lowering.values import children, free_variables
 from pn2code.ml import core
 
 
@@ -37,14 +37,55 @@ def is_simple(e: core.Exp) -> bool:
     return all(isinstance(n, simple) for n in nodes(e))
 
 
-def handled_name(pattern: core.Pat) -> str | None:
+def handled_name(rule: core.Rule) -> str | None:
     """The exception that a handler's pattern names, "" for any; None if it looks at a value."""
-    match pattern:
-        case core.PWild() | core.PVar():
+    match rule.pattern:
+        case core.PWild():
+            return ""
+        case core.PVar(symbol=symbol) if not _uses(rule.body, symbol.uid):
             return ""
         case core.PCon(constructor=c, argument=None | core.PWild()):
             return c.name
     return None
+
+
+def is_recursive_group(group: core.RecBind) -> bool:
+    """Whether a function of the group calls one of it."""
+    names = {symbol.uid for symbol, _ in group.bindings}
+    return any(not names.isdisjoint(free_variables(f)) for _, f in group.bindings)
+
+
+def _uses(e: core.Exp, uid: int) -> bool:
+    return any(isinstance(n, core.Var) and n.symbol.uid == uid for n in nodes(e))
+
+
+_OF_REFERENCES = frozenset({":=", "+=", "-=", "*=", "::="})
+
+
+def escapes(let: core.Let, uid: int) -> bool:
+    """Whether a local reference is used otherwise than read and assigned in the function that declares it."""
+    return any(_escapes(child, uid, False) for child in children(let))
+
+
+def _escapes(e: core.Exp, uid: int, is_inside: bool) -> bool:
+    """`is_inside`: in a function of its own."""
+    match e:
+        case core.Var(symbol=symbol):
+            return symbol.uid == uid
+        case core.Apply(
+            function=core.Builtin(name="Ref.!" | "Ref.inc" | "Ref.dec"),
+            argument=core.Var(symbol=symbol),
+        ):
+            return is_inside and symbol.uid == uid
+        case core.Apply(
+            function=core.Builtin(name=name),
+            argument=core.RecordExp(fields=((_, core.Var(symbol=symbol)), (_, value))),
+        ) if name.removeprefix("Ref.") in _OF_REFERENCES and symbol.uid == uid:
+            return is_inside or _escapes(value, uid, is_inside)
+        case core.Lambda():
+            is_inside = True
+    # Functions of a `fun` in a `let` are lambdas, too.
+    return any(_escapes(child, uid, is_inside) for child in children(e))
 
 
 def covers(rules: tuple[core.Rule, ...]) -> bool:

@@ -7,7 +7,7 @@ their order of components, their ranges and their storage may differ.
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import replace
 
 from pn2code.diagnostics import NOWHERE, Origin, Span
@@ -17,7 +17,7 @@ from pn2code.lowering.ir import Definition, Descriptor, IrType, Rep
 from pn2code.lowering.prelude import representation
 from pn2code.ml.colsets import Colset, Kind
 from pn2code.ml.core import Program
-from pn2code.ml.types import TCon, TFun, TRecord, TVar, Type
+from pn2code.ml.types import UNIT, TCon, TFun, TRecord, TVar, Type
 
 _SCALARS = {
     "int": ir.INT,
@@ -42,6 +42,19 @@ def substitute(t: Type, values: Mapping[int, Type]) -> Type:
             return TFun(substitute(a, values), substitute(r, values))
         case TRecord(fields=fields):
             return TRecord(tuple((label, substitute(f, values)) for label, f in fields))
+
+
+def closed(t: Type) -> Type:
+    """The type with unit for what nothing in the program decides (`length []`): any type will do."""
+    match t:
+        case TVar():
+            return UNIT
+        case TCon(name=name, args=args):
+            return TCon(name, tuple(map(closed, args))) if args else t
+        case TFun(argument=a, result=r):
+            return TFun(closed(a), closed(r))
+        case TRecord(fields=fields):
+            return TRecord(tuple((label, closed(f)) for label, f in fields))
 
 
 def has_function(t: Type) -> bool:
@@ -74,6 +87,8 @@ class Types:
         for colset in program.colsets.values():
             if colset.kind in (Kind.PRODUCT, Kind.RECORD, Kind.LIST, Kind.ENUM, Kind.UNION):
                 self._colset_of_type.setdefault(colset.type, colset)
+        self._open: list[str] = []
+        self.functions: dict[str, TFun] = {}
         self._index_types = {c.type for c in program.colsets.values() if c.kind is Kind.INDEX}
 
     # --- types ---------------------------------------------------------------------------------
@@ -88,7 +103,7 @@ class Types:
             if t in self._active:
                 self._hits.add(t)
             return self._known[t]
-        plain = representation(t)
+        plain = closed(representation(t))
         made = self._make(t, at) if plain == t else self.lower(plain, at)
         self._known[t] = made
         return made
@@ -118,12 +133,19 @@ class Types:
             case TCon(name=name) if name in self._program.datatypes:
                 return self._datatype(t, at)
             case TVar():
-                # Nothing in the program decides the type (`length []`): any will do.
                 return ir.UNIT
             case TFun():
-                raise UnsupportedError(
-                    UNSUPPORTED_TYPE, f"a value of type `{t}` cannot be stored", at
-                )
+                return self._function(t, at)
+            case TCon(name="ref", args=(target,)):
+                hits, self._hits = self._hits, set()
+                inner = self.lower(target, at)
+                self._hits = hits
+                return self.reference_to(inner)
+            case TCon(name="exn"):
+                name = self._fresh("exn")
+                self._open.append(name)
+                self._definitions[name] = ir.UnionDef(name, ())
+                return IrType(Rep.UNION, name)
             case TCon():
                 raise UnsupportedError(
                     UNSUPPORTED_TYPE, f"values of type `{t}` are not supported", at
@@ -181,6 +203,93 @@ class Types:
         self._definitions[name] = ir.UnionDef(name, tuple(constructors))
         return made
 
+    # --- functions, exceptions and references as values ----------------------------------------
+
+    def _function(self, t: TFun, at: Origin | Span) -> IrType:
+        """A union of all functions that are used as values of this type; see `closures`."""
+        hits, self._hits = self._hits, set()
+        argument, result = self.lower(t.argument, at), self.lower(t.result, at)
+        self._hits = hits
+        name = self._fresh(f"{argument}_to_{result}")
+        self._definitions[name] = ir.UnionDef(name, ())
+        self._open.append(name)
+        self.functions[name] = t
+        return IrType(Rep.UNION, name)
+
+    def add_constructor(self, union: IrType, hint: str, argument: IrType | None) -> int:
+        """One more constructor of a union of functions or of exceptions; gives its tag."""
+        definition = self._definitions[union.name]
+        assert isinstance(definition, ir.UnionDef)
+        known = {c for c, _, _ in definition.constructors}
+        name, n = hint, 2
+        while name in known:
+            name, n = f"{hint} {n}", n + 1
+        added = (name, argument, argument is not None)
+        self._definitions[union.name] = ir.UnionDef(union.name, (*definition.constructors, added))
+        return len(definition.constructors)
+
+    def struct(self, hint: str, fields: tuple[tuple[str, IrType], ...]) -> IrType:
+        """A struct that no ML type has."""
+        name = self._fresh(hint)
+        self._definitions[name] = ir.StructDef(name, fields)
+        return IrType(Rep.STRUCT, name)
+
+    def reference_to(self, target: IrType) -> IrType:
+        """The type of references to values of this representation."""
+        for definition in self._definitions.values():
+            if isinstance(definition, ir.RefDef) and definition.target == target:
+                return IrType(Rep.REF, definition.name)
+        name = self._fresh(f"{target}_ref")
+        self._definitions[name] = ir.RefDef(name, target)
+        return IrType(Rep.REF, name)
+
+    def holds(self, t: IrType, what: Callable[[IrType], bool]) -> bool:
+        """Whether a value of the type may have a part of some kind in it."""
+        seen: set[IrType] = set()
+        waiting = [t]
+        while waiting:
+            t = waiting.pop()
+            if what(t):
+                return True
+            if t.name and t not in seen:
+                seen.add(t)
+                waiting += ir.parts(self._definitions[t.name])
+        return False
+
+    def holds_function(self, t: IrType) -> bool:
+        """Whether there may be functions in a value of the type."""
+        return self.holds(t, lambda part: part.name in self.functions)
+
+    def holds_reference(self, t: IrType) -> bool:
+        """Whether there may be references in a value of the type."""
+        return self.holds(t, lambda part: part.rep is Rep.REF)
+
+    def close(self) -> None:
+        """All functions and exceptions are known: finish their tables."""
+        for name in self._open:
+            definition = self._definitions[name]
+            assert isinstance(definition, ir.UnionDef)
+            if not definition.constructors:
+                self._definitions[name] = ir.UnionDef(name, (("none", None, False),))
+        finished: set[str] = set()
+        while True:
+            keys = {
+                f"type {name}": name
+                for name in self._open
+                if f"type {name}" in self.descriptors and name not in finished
+            }
+            if not keys:
+                return
+            for key, name in keys.items():
+                finished.add(name)
+                definition = self._definitions[name]
+                assert isinstance(definition, ir.UnionDef)
+                fields = tuple(
+                    (c, self.plain(a) if a is not None else "")
+                    for c, a, _ in definition.constructors
+                )
+                self.descriptors[key] = replace(self.descriptors[key], fields=fields)
+
     def list_of(self, element: IrType) -> IrType:
         """The list type with elements of this representation, which some ML type must have."""
         for definition in self._definitions.values():
@@ -210,7 +319,9 @@ class Types:
                     parts = [element]
                 case ir.UnionDef(constructors=constructors):
                     parts = [a for _, a, boxed in constructors if a is not None and not boxed]
-                case ir.EnumDef():
+                case ir.RefDef(target=target) if target.rep in (Rep.ENUM, Rep.REF):
+                    parts = [target]
+                case ir.EnumDef() | ir.RefDef():
                     pass
             for part in parts:
                 if part.name and part.rep is not Rep.LIST:
@@ -238,8 +349,10 @@ class Types:
                     parts = tuple((label, self.plain(f)) for label, f in fields)
                     is_tuple = all(label.isdigit() for label, _ in fields)
                     made = replace(made, fields=parts, is_tuple=is_tuple)
-                case ir.ListDef(element=element):
+                case ir.ListDef(element=element) | ir.RefDef(target=element):
                     made = replace(made, element=self.plain(element))
+                case ir.UnionDef() if t.name in self._open:
+                    pass  # see `close`
                 case ir.UnionDef(constructors=constructors):
                     made = replace(
                         made,

@@ -12,9 +12,10 @@ from dataclasses import dataclass
 
 from pn2code.lowering import ir
 from pn2code.lowering.ir import Ir
+from pn2code.lowering.types import substitute
 from pn2code.ml import core
 from pn2code.ml.core import Symbol
-from pn2code.ml.types import Type
+from pn2code.ml.types import TFun, Type
 
 Env = Mapping[int, "Binding"]
 """Symbol uid -> what it stands for."""
@@ -89,6 +90,13 @@ class Reference:
 
 
 @dataclass(frozen=True, slots=True, eq=False)
+class LocalReference:
+    """A reference that is never a value (see `shapes.escapes`): a variable of the C function."""
+
+    local: ir.Local
+
+
+@dataclass(frozen=True, slots=True, eq=False)
 class Polymorphic:
     """A local `val` with type variables: looked at anew for each use."""
 
@@ -98,12 +106,12 @@ class Polymorphic:
 
 
 FunctionVal = Closure | NamedFunction | BuiltinFunction | ConstructorFunction | Partial
-Static = FunctionVal | RecordVal | Reference
+Static = FunctionVal | RecordVal | Reference | LocalReference
 Val = Ir | Static
 Binding = Val | Polymorphic
 
 FUNCTIONS = (Closure, NamedFunction, BuiltinFunction, ConstructorFunction, Partial)
-STATICS = (*FUNCTIONS, RecordVal, Reference, Polymorphic)
+STATICS = (*FUNCTIONS, RecordVal, Reference, LocalReference, Polymorphic)
 
 
 def is_static(value: Binding) -> bool:
@@ -123,7 +131,7 @@ def is_atomic(value: Ir) -> bool:
     match value:
         case ir.Const() | ir.Use() | ir.Bound() | ir.TokenValue() | ir.EnumValue() | ir.GlobalUse():
             return True
-        case ir.Now():
+        case ir.Now() | ir.AddressOf():
             return True
         case ir.Member(record=inner) | ir.Head(list=inner) | ir.Argument(value=inner):
             return is_atomic(inner)
@@ -132,6 +140,24 @@ def is_atomic(value: Ir) -> bool:
         case ir.Op(name="list.nil"):
             return True
     return False
+
+
+def function_type(value: FunctionVal) -> TFun:
+    """The type of a function, closed."""
+    match value:
+        case Closure(function=function, types=types) | NamedFunction(
+            function=function, types=types
+        ):
+            t = substitute(function.type, types)
+        case BuiltinFunction(type=t) | ConstructorFunction(type=t):
+            pass
+        case Partial(function=function, arguments=arguments):
+            t = function_type(function)
+            for _ in arguments:
+                assert isinstance(t, TFun)
+                t = t.result
+    assert isinstance(t, TFun)
+    return t
 
 
 # --- free variables ----------------------------------------------------------------------------
@@ -313,6 +339,8 @@ def capture(value: Binding) -> Captured:
             return _all(
                 [capture(v) for v in fields.values()], ("record", tuple(labels)), make_record
             )
+        case LocalReference():
+            raise AssertionError("a local reference escapes")
         case Reference(name=name):
             return Captured(("ref", name), (), lambda _: value)
         case Polymorphic(value=exp, env=env, types=types):
