@@ -262,8 +262,8 @@ def test_unknown_declaration() -> None:
     linked = link(document, d)
     assert linked is not None
     assert check(linked, d) is None
-    assert [x.code for x in d] == ["unsupported-declaration"]
-    assert "`errordecl` is not supported: `color X =`" in d.items[0].message
+    assert [x.code for x in d] == ["declaration-not-read"]
+    assert "could not read this declaration and kept its text: `color X =`" in d.items[0].message
 
 
 # --- terms ---

@@ -251,7 +251,7 @@ def test_unknown_format() -> None:
 def test_colour_set_without_definition() -> None:
     document, d = parse(wrap("", "<color id='c'><id>X</id></color>"))
     assert document is None
-    assert d.items[0].message == "colour set `X` lacks a known definition"
+    assert d.items[0].message == "colour set `X` has no definition that is known"
 
 
 def test_bend_points_run_from_the_transition() -> None:
@@ -272,7 +272,7 @@ def test_constraints_are_not_supported() -> None:
     document = good(wrap("<constraints/>"))
     assert document.pages[0].name == "Top"
     _, d = parse(wrap("<constraints><constraint/></constraints>"))
-    assert [x.code for x in d] == ["unsupported-constraint"]
+    assert [(x.code, x.severity.value) for x in d] == [("unsupported-constraint", "warning")]
 
 
 def test_monitors_are_kept() -> None:

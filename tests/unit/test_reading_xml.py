@@ -90,7 +90,7 @@ def test_not_xml() -> None:
 def test_mismatched_tag() -> None:
     code, message, where = only(b"<workspaceElements>\n<cpnet></page>\n</workspaceElements>")
     assert (code, where) == ("xml-syntax", "cell.cpn:2:10")
-    assert "mismatched tag" in message
+    assert "element `cpnet` is not closed before the end of another one" in message
 
 
 def test_every_truncation_is_a_diagnostic() -> None:

@@ -20,7 +20,10 @@ from pn2code.net.codes import (
     ARC_EMPTY,
     ARC_IGNORED,
     DECLARATION_EMPTY,
+    DECLARATION_UNREAD,
+    NEIGHBOUR_WRONG,
     PLACE_COLSET,
+    UNSUPPORTED_CHANNEL,
     UNSUPPORTED_DECLARATION,
     UNSUPPORTED_USE,
 )
@@ -96,6 +99,11 @@ class _Checker:
         """Hand one declaration to the elaborator."""
         e = self.elaborator
         match declaration:
+            case RawColset(kind="") | RawColset(name=""):
+                self.broken.add(declaration.name)  # reported when the file was read
+                e.unreadable((), (declaration.name,))
+            case RawVar(type=""):
+                e.unreadable(declaration.names, ())
             case RawColset():
                 spec = ColsetSpec(
                     name=declaration.name,
@@ -132,6 +140,21 @@ class _Checker:
                     declaration.origin,
                     hint="give it a value, or remove the declaration",
                 )
+            case RawOther() if declaration.tag == "errordecl":
+                shown = " ".join(declaration.text.text.split())[:60]
+                self.d.error(
+                    DECLARATION_UNREAD,
+                    f"CPN Tools could not read this declaration and kept its text: `{shown}`",
+                    declaration.origin,
+                    hint="enter it again in the words of today's CPN Tools, or remove it",
+                )
+            case RawOther() if declaration.tag == "channel":
+                self.d.warning(
+                    UNSUPPORTED_CHANNEL,
+                    f"synchronous channels are not supported: channel `{declaration.text.text}` has no effect",
+                    declaration.origin,
+                    hint="use a place between the transitions, or merge them",
+                )
             case RawOther():
                 shown = " ".join(declaration.text.text.split())[:60]
                 self.d.error(
@@ -156,10 +179,16 @@ class _Checker:
     def page(self, page: Page) -> TypedPage:
         colsets = {p.id: self.colset(p) for p in page.places}
         places = []
+        wrong: dict[str, Place] = {}
         for place in page.places:
             colset = colsets[place.id]
+            before = len(self.d.errors)
             if colset is not None:
                 places.append(self.place(place, colset))
+            if colset is None or len(self.d.errors) > before:
+                wrong[place.id] = place
+        for t in page.transitions if wrong else ():
+            self.note_neighbours(t, wrong)
         names = {p.id: p for p in page.places}
         transitions = [self.transition(t, colsets, names) for t in page.transitions]
         return TypedPage(
@@ -170,6 +199,18 @@ class _Checker:
             substitutions=page.substitutions,
             origin=page.origin,
         )
+
+    def note_neighbours(self, t: Transition, wrong: Mapping[str, Place]) -> None:
+        """Mention a transition beside a place with an error, which CPN Tools refuses to check."""
+        place = next((wrong[a.place] for a in t.arcs if a.place in wrong), None)
+        if place is not None:
+            self.d.note(
+                NEIGHBOUR_WRONG,
+                f"transition `{t.name}` waits for place `{place.name}`, which has an error",
+                t.origin,
+                notes=[Note("the place is here", place.origin)],
+                hint="correct the place first",
+            )
 
     def colset(self, place: Place) -> Colset | None:
         """Colour set of a place; UNIT where none is written."""

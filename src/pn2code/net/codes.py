@@ -58,7 +58,8 @@ UNSUPPORTED_CHANNEL = register(
     "unsupported-channel",
     "synchronous channels of CPN Tools are not supported",
     "CPN Tools 4 can synchronise transitions over channels (`ch.!x`, `ch.?y`), an experimental "
-    "feature. Merge the transitions, or use a place between them.",
+    "feature. pn2code reads the net, but lets such transitions fire alone. Merge the transitions, or use a place "
+    "between them.",
 )
 UNSUPPORTED_USE = register(
     "unsupported-use",
@@ -70,6 +71,24 @@ DECLARATION_EMPTY = register(
     "a reference declaration has no value",
     "`globref` declares a reference with a first value. One without value declares nothing, and "
     "CPN Tools passes over it, too.",
+)
+DECLARATION_UNREAD = register(
+    "declaration-not-read",
+    "CPN Tools could not read a declaration",
+    "The file holds the text of a declaration that CPN Tools itself did not understand (`errordecl`), "
+    "mostly one in the old syntax of Design/CPN. It declares nothing until it is entered again.",
+)
+PORT_DIRECTION = register(
+    "port-direction",
+    "a port is used against its direction",
+    "From an input port the transitions of its page only take tokens, and they only put tokens into an "
+    "output port; a place that gets both is an I/O port. CPN Tools runs such a net all the same.",
+)
+MONITOR_NODE = register(
+    "monitor-node",
+    "a monitor watches something that does not exist",
+    "A monitor names the places and transitions that it watches by id. One that is not there (any more) "
+    "is passed over.",
 )
 UNSUPPORTED_DECLARATION = register(
     "unsupported-declaration",
@@ -89,6 +108,12 @@ PLACE_COLSET = register(
     "the colour set of a place is not declared",
     "The type inscription of a place must be the name of a declared colour set. A place without "
     "one has UNIT, which must then be declared too.",
+)
+NEIGHBOUR_WRONG = register(
+    "neighbour-wrong",
+    "a transition stands beside a place with an error",
+    "What the arcs between a transition and a place may say depends on the place. CPN Tools does not check "
+    "a transition before the places beside it are right; pn2code checks what it can.",
 )
 ARC_EMPTY = register(
     "arc-empty",

@@ -127,6 +127,8 @@ class _Flattener:
                     top[key] = top[above]
                     self.check_port(place, self.typed[above], instance)
         first_of_fusion: dict[str, Key] = {}
+        mismatched: set[str] = set()
+        last_of_fusion = {place.fusion: key for key, place in self.typed.items() if place.fusion}
         parent = {key: key for key in top}
 
         def root(key: Key) -> Key:
@@ -140,11 +142,16 @@ class _Flattener:
         for key, place in self.typed.items():
             if place.fusion:
                 first = first_of_fusion.setdefault(place.fusion, key)
+                # CPN Tools compares with the last one, and reports the others.
+                last = last_of_fusion[place.fusion]
+                if place.fusion not in mismatched and not self.check_fusion(
+                    place.fusion, self.typed[top[key]], self.typed[top[last]]
+                ):
+                    mismatched.add(place.fusion)
                 a, b = root(first), root(key)
                 if a != b:
                     low, high = sorted((a, b), key=self.order.__getitem__)
                     parent[high] = low
-                    self.check_fusion(place.fusion, self.typed[top[first]], self.typed[top[key]])
         members: dict[Key, list[Key]] = {}
         for key in self.typed:
             members.setdefault(root(key), []).append(key)
@@ -178,7 +185,7 @@ class _Flattener:
                 hint="remove the port's initial marking, or write the same at both",
             )
 
-    def check_fusion(self, name: str, first: TypedPlace, other: TypedPlace) -> None:
+    def check_fusion(self, name: str, first: TypedPlace, other: TypedPlace) -> bool:
         colsets = first.colset.name, other.colset.name
         what = ""
         if colsets[0] != colsets[1] and first.colset.resolved != other.colset.resolved:
@@ -190,10 +197,11 @@ class _Flattener:
             self.d.error(
                 FUSION_MISMATCH,
                 f"places `{first.name}` and `{other.name}` of fusion set `{name}` have different {what}",
-                other.origin,
-                notes=[Note(f"`{first.name}` is declared here", first.origin)],
-                hint="make them equal",
+                first.origin,
+                notes=[Note(f"`{other.name}` is declared here", other.origin)],
+                hint="the places of a fusion set are one place: make them equal",
             )
+        return not what
 
     def places(self, groups: list[list[Key]]) -> list[FlatPlace]:
         short = {p.id: unique_names((x.id, x.name) for x in p.places) for p in self.net.pages}

@@ -12,8 +12,10 @@ from collections.abc import Iterator
 from pn2code.diagnostics import Diagnostics, Note
 from pn2code.net.codes import (
     FUSION_MEMBER,
+    MONITOR_NODE,
     PAGE_RECURSION,
     PORT_ASSIGNMENT,
+    PORT_DIRECTION,
     PORT_UNASSIGNED,
     SUBPAGE_UNKNOWN,
     SUBSTITUTION_INSCRIPTION,
@@ -77,6 +79,9 @@ class _Linker:
         fusions, fusion_of = self.fusions()
         pages = tuple(self.page(p, fusion_of) for p in self.document.pages)
         self.check_recursion(pages)
+        for page in pages:
+            self.check_directions(page)
+        self.check_monitors()
         used = {s.subpage for p in pages for s in p.substitutions}
         options = {k.lower(): v for k, v in self.document.options.items()}
         return Net(
@@ -132,9 +137,9 @@ class _Linker:
 
     def transition(self, t: RawTransition, arcs: list[RawArc]) -> Transition:
         if t.channel is not None:
-            self.d.error(
+            self.d.warning(
                 UNSUPPORTED_CHANNEL,
-                f"transition `{t.name}` uses a synchronous channel, which is not supported",
+                f"synchronous channels are not supported: transition `{t.name}` fires alone",
                 t.channel.text.span(),
                 hint="use a place between the transitions, or merge them",
             )
@@ -172,12 +177,12 @@ class _Linker:
                 )
         target = self.pages.get(raw.subpage)
         if target is None:
+            which = f"page `{raw.subpage}`, which does not exist" if raw.subpage else "no page"
             self.d.error(
                 SUBPAGE_UNKNOWN,
-                f"substitution transition `{t.name}` stands for page `{raw.subpage}`, "
-                "which does not exist",
+                f"substitution transition `{t.name}` stands for {which}",
                 raw.origin,
-                hint="assign a subpage again",
+                hint="assign a subpage again in CPN Tools, or make it an ordinary transition",
             )
             return None
         ports = {p.id: p for p in target.places if p.port}
@@ -186,9 +191,9 @@ class _Linker:
         for port, socket in raw.portsock:
             wrong = ""
             if port not in ports:
-                wrong = f"`{port}` is not a port of page `{target.name}`"
+                wrong = f"`{self.name(port)}` is not a port of page `{target.name}`"
             elif socket not in own:
-                wrong = f"`{socket}` is not a place of page `{page.name}`"
+                wrong = f"`{self.name(socket)}` is not a place of page `{page.name}`"
             if wrong:
                 self.d.warning(
                     PORT_ASSIGNMENT,
@@ -223,6 +228,43 @@ class _Linker:
             origin=t.origin,
             layout=t.layout,
         )
+
+    def name(self, identity: str) -> str:
+        """Name of a place, or the id if there is none."""
+        place = self.places.get(identity)
+        return place.name if place else identity
+
+    def check_directions(self, page: Page) -> None:
+        """Warn of arcs against the direction of a port."""
+        against = {"in": ArcKind.OUTPUT, "out": ArcKind.INPUT}
+        ports = {p.id: p for p in page.places if p.port in against}
+        words = {
+            "in": "an input port, but it gets tokens",
+            "out": "an output port, but it loses tokens",
+        }
+        for t in page.transitions if ports else ():
+            for arc in t.arcs:
+                port = ports.get(arc.place)
+                if port is not None and arc.kind in (against[port.port], ArcKind.BOTH):
+                    self.d.warning(
+                        PORT_DIRECTION,
+                        f"place `{port.name}` is {words[port.port]} from transition `{t.name}`",
+                        arc.origin,
+                        hint="make it an I/O port, or turn the arc around",
+                    )
+
+    def check_monitors(self) -> None:
+        """Warn of monitors of nothing."""
+        known = set(self.places) | {t.id for page in self.document.pages for t in page.transitions}
+        for monitor in self.document.monitors:
+            for node, _ in monitor.nodes:
+                if node not in known:
+                    self.d.warning(
+                        MONITOR_NODE,
+                        f"monitor `{monitor.name}` watches `{node}`, which does not exist",
+                        monitor.origin,
+                        hint="remove it from the monitor's nodes",
+                    )
 
     def fusions(self) -> tuple[tuple[FusionSet, ...], dict[str, str]]:
         """The fusion sets, and the set's name for each place id. Sets of one name are one set."""

@@ -79,6 +79,8 @@ class _Reader:
         net = root if root.tag == "cpnet" else root.child("cpnet")
         if root.tag not in ("workspaceElements", "cpnet") or net is None:
             found = f"the root element is `{_local(root.tag)}`"
+            if root.tag.startswith("{"):
+                found += f" in the namespace `{root.tag[1:].partition('}')[0]}`"
             if root.tag == "workspaceElements":
                 found = "`workspaceElements` has no `cpnet`"
             self.d.error(

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable
 
 from pn2code.diagnostics import Diagnostics, Origin
@@ -22,6 +23,13 @@ COLSET_KINDS = (
     "unit", "bool", "int", "intinf", "time", "real", "string", "enum", "index", "product", "record", "list", "union",
     "subset", "alias",
 )  # fmt: skip
+
+_NAME = re.compile(r"[A-Za-z][A-Za-z0-9_']*")
+_KEYWORDS = """
+abstype and andalso as case datatype do else end exception fn fun functor handle if in infix infixr let local nonfix of
+op open orelse raise rec signature struct structure then type val while with withtype
+"""
+_RESERVED = frozenset(_KEYWORDS.split())
 
 Warn = Callable[[Node, Node], None]
 """Reports an unknown child of an element, once per kind."""
@@ -88,18 +96,21 @@ class DeclarationReader:
                         CPN_ELEMENT,
                         f"colour set `{name}` has two definitions, `{kind.tag}` and `{child.tag}`",
                         child.at(base),
+                        hint="remove one of them",
                     )
                 kind = child
             elif child.tag not in ("id", "timed", "declare", "layout"):
                 self.unknown(node, child)
         if not name or kind is None:
-            what = "a name" if not name else "a known definition"
             self.d.error(
                 CPN_ELEMENT,
-                f"colour set `{name}` lacks {what}",
+                f"colour set `{name}` has no definition that is known"
+                if name
+                else "a colour set has no name",
                 origin,
                 hint="open the net in CPN Tools and enter the declaration again",
             )
+        self.check_name(name, origin)
         ids, fields, texts = _details(kind, base) if kind is not None else ((), (), ())
         declare = node.child("declare")
         display = node.child("layout")
@@ -127,9 +138,27 @@ class DeclarationReader:
         first = node.child("id")
         origin = first.source(base).origin if first else base
         if not names or not type_name:
-            what = "names" if not names else "a colour set"
-            self.d.error(CPN_ELEMENT, f"a variable declaration lacks {what}", origin)
+            what = "names no variable" if not names else "names no colour set"
+            self.d.error(
+                CPN_ELEMENT,
+                f"a variable declaration {what}",
+                origin,
+                hint="a declaration is written `var x, y : COLSET;`",
+            )
+        for n in names:
+            self.check_name(n, origin)
         return RawVar(node.get("id"), names, type_name, origin)
+
+    def check_name(self, name: str, origin: Origin) -> None:
+        """Names of colour sets and variables are alphanumeric names of CPN ML."""
+        if name and (not _NAME.fullmatch(name) or name in _RESERVED):
+            reason = "it is a keyword" if name in _RESERVED else "names have no such characters"
+            self.d.error(
+                CPN_ELEMENT,
+                f"`{name}` cannot be declared: {reason}",
+                origin,
+                hint="a name is a letter followed by letters, digits, `_` and `'`, and is no keyword",
+            )
 
     def globref(self, node: Node) -> RawGlobref | RawOther:
         """A `globref`; one without its value (seen in real files) is kept as `RawOther`."""

@@ -65,9 +65,9 @@ class PageReader:
         self.check_children(node)
         constraints = node.child("constraints")
         if constraints is not None and constraints.children:
-            self.d.error(
+            self.d.warning(
                 UNSUPPORTED_CONSTRAINT,
-                f"page `{name}` has declarative constraints, which are not supported",
+                f"declarative constraints are not supported: those of page `{name}` have no effect",
                 constraints.at(origin),
                 hint="express the constraints by places",
             )
@@ -209,7 +209,7 @@ class PageReader:
         if not undirected and orientation not in _ORIENTATIONS:
             self.d.error(
                 ARC_ORIENTATION,
-                f"{what} has the unknown orientation `{node.get('orientation')}`",
+                f"{what} has {_found(node.get('orientation'))}",
                 origin,
                 hint="orientations are PtoT, TtoP, BOTHDIR, Inhibitor, Reset",
             )
@@ -246,6 +246,10 @@ class PageReader:
             layout=shape,
             order=int(number(node.get("order"))),
         )
+
+
+def _found(orientation: str) -> str:
+    return f"the unknown orientation `{orientation}`" if orientation else "no orientation"
 
 
 def inscription(node: Node | None, base: Origin, part: str) -> Inscription | None:

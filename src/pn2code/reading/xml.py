@@ -33,6 +33,17 @@ MAX_BYTES = 100 * 1024 * 1024
 MAX_DEPTH = 200  # below libxml2's own limit of 256
 MAX_ELEMENTS = 2_000_000
 
+_SIGNATURES = {
+    b"\x89PNG": "a picture (PNG)",
+    b"\xff\xd8\xff": "a picture (JPEG)",
+    b"%PDF": "a PDF document",
+    b"PK\x03\x04": "a ZIP archive",
+    b"\x1f\x8b": "a compressed file (gzip)",
+    b"\x7fELF": "a program",
+    b"MZ": "a program",
+}
+"""How files begin that are given by mistake."""
+
 Marks = tuple[tuple[int, int, int], ...]
 
 
@@ -219,18 +230,23 @@ class _Surveyor:
         except _RefusedError:
             return None
         except expat.ExpatError as e:
-            self._syntax_error(e.code, e.lineno, e.offset + 1)
+            self._syntax_error(e.code, e.lineno, e.offset + 1, data)
             return None
         except (LookupError, ValueError) as e:
             # pyexpat asks Python for encodings that expat does not know.
-            self.d.error(XML_SYNTAX, f"unknown character encoding: {_lower(str(e))}", self._here())
+            self.d.error(
+                XML_SYNTAX,
+                f"the character encoding that the file declares is not known: {_lower(str(e))}",
+                self._here(),
+                hint="CPN Tools writes iso-8859-1",
+            )
             return None
         return self.places
 
     def _here(self) -> Origin:
         return Origin(self.file, self.parser.CurrentLineNumber, self.parser.CurrentColumnNumber + 1)
 
-    def _syntax_error(self, code: int, line: int, column: int) -> None:
+    def _syntax_error(self, code: int, line: int, column: int, data: bytes) -> None:
         origin = Origin(self.file, line, column)
         ends = {
             expat.errors.codes[expat.errors.XML_ERROR_NO_ELEMENTS],
@@ -238,11 +254,13 @@ class _Surveyor:
             expat.errors.codes[expat.errors.XML_ERROR_PARTIAL_CHAR],
             expat.errors.codes[expat.errors.XML_ERROR_UNCLOSED_CDATA_SECTION],
         }
-        if code in ends and self.places:
-            inside = f" inside element `{self.tags[-1]}`" if self.tags else ""
+        if code in ends and (self.places or data.lstrip().startswith(b"<")):
+            inside = " in the middle of an element" if self.places else " before its first element"
+            if self.tags:
+                inside = f" inside element `{self.tags[-1]}`"
             self.d.error(
                 XML_TRUNCATED,
-                f"the file ends too early,{inside or ' in the middle of an element'}",
+                f"the file ends too early,{inside}",
                 origin,
                 notes=[f"element `{self.tags[-1]}` begins on line {self.open[-1].line}"]
                 if self.tags
@@ -250,16 +268,56 @@ class _Surveyor:
                 hint="the file was cut off: save or copy the net again",
             )
             return
-        words = expat.ErrorString(code) or "syntax error"
         if code == expat.errors.codes[expat.errors.XML_ERROR_UNDEFINED_ENTITY]:
             self.d.error(XML_ENTITY, "the file uses an undeclared XML entity", origin)
             return
-        self.d.error(
-            XML_SYNTAX,
-            f"not well-formed XML: {words}",
-            origin,
-            hint="a .cpn file is XML: is this a net saved by CPN Tools?",
-        )
+        words, hint = self._explain(code, data)
+        notes = []
+        if code == expat.errors.codes[expat.errors.XML_ERROR_TAG_MISMATCH] and self.tags:
+            notes = [f"element `{self.tags[-1]}` begins on line {self.open[-1].line}"]
+        self.d.error(XML_SYNTAX, f"not well-formed XML: {words}", origin, notes=notes, hint=hint)
+
+    def _explain(self, code: int, data: bytes) -> tuple[str, str]:
+        """A syntax error in words, and what to do."""
+        words = expat.ErrorString(code) or "syntax error"
+        hint = "a .cpn file is XML: is this a net saved by CPN Tools?"
+        errors = expat.errors
+        if not self.places:
+            for start, what in _SIGNATURES.items():
+                if data.startswith(start):
+                    return f"this is {what}", "give the .cpn file itself"
+        if code == errors.codes[errors.XML_ERROR_TAG_MISMATCH] and self.tags:
+            words = f"element `{self.tags[-1]}` is not closed before the end of another one"
+            hint = "the file was edited by hand or damaged: save the net again in CPN Tools"
+        elif code == errors.codes[errors.XML_ERROR_JUNK_AFTER_DOC_ELEMENT]:
+            words = "something follows after the end of the root element"
+            hint = "a .cpn file has one root element, `workspaceElements`; remove what follows it"
+        elif code == errors.codes[errors.XML_ERROR_INVALID_TOKEN] and self.places:
+            return self._invalid(data)
+        elif code == errors.codes[errors.XML_ERROR_DUPLICATE_ATTRIBUTE]:
+            words = "an element has the same attribute twice"
+            hint = "remove one of them"
+        return words, hint
+
+    def _invalid(self, data: bytes) -> tuple[str, str]:
+        """For a byte that cannot stand where it does."""
+        at = self.parser.ErrorByteIndex
+        byte = data[at : at + 1]
+        before = data[max(0, at - 1) : at]
+        if before == b"&" or byte == b"&":
+            return "`&` stands for itself nowhere", "in XML it is written `&amp;`"
+        if before == b"<" or byte == b"<":
+            return "`<` does not begin a tag here", "in texts it is written `&lt;`"
+        if byte and byte < b" ":
+            return f"an invisible control character (U+{byte[0]:04X})", "remove it"
+        if byte >= b"\x80":
+            return (
+                f"byte 0x{byte[0]:02X} is no character of the file's encoding",
+                "declare the encoding in which it was written, e.g. "
+                "<?xml version='1.0' encoding='iso-8859-1'?>",
+            )
+        words = "a tag is not written as XML demands"
+        return words, 'attributes are written name="value", with quotes'
 
     def _start(self, tag: str, _attributes: dict[str, str]) -> None:
         if len(self.open) >= MAX_DEPTH:
