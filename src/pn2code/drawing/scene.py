@@ -1,9 +1,9 @@
 """A page as shapes and texts with positions: what there is to draw, before it is SVG. y grows downwards.
 
 How CPN Tools places things, as found in its source and in many files: positions are centres, of inscriptions and
-tags too, but the upper left corner of free texts; y grows upwards; arcs end where they meet the shape's edge, arcs
-between the same two nodes run side by side in the order of their `order`; an arc whose bend lies beside a node meets
-it at a right angle; texts in their default state (`[]`, `@+`) are not shown.
+tags too, but a free text begins at its position with the base line of its first line; y grows upwards; arcs end
+where they meet the shape's edge, arcs between the same two nodes run side by side in the order of their `order`;
+an arc whose bend lies beside a node meets it at a right angle; texts in their default state (`[]`, `@+`) are hidden.
 """
 
 from __future__ import annotations
@@ -371,7 +371,8 @@ class _Builder:
         if aux.layout.shape not in ("box", "ellipse"):
             if block:
                 w, h = text.extent(block, aux.layout.bold)
-                box = Box(at[0], at[1], at[0] + w, at[1] + h)
+                top = at[1] - text.ASCENT
+                box = Box(at[0], top, at[0] + w, top + h)
                 self.labels.append(Label(aux.id, "aux", block, box, aux.layout, ""))
             return None
         box = around(*at, aux.layout.width, aux.layout.height)

@@ -14,6 +14,8 @@ SIZE = 13.0
 """Font size in CPN Tools units."""
 LINE = 14.0
 """Distance of lines; CPN Tools measures a label as 14 or 15 high."""
+ASCENT = 11.0
+"""From the top of a line to its base line."""
 FAMILY = "Arial, 'Liberation Sans', Arimo, Helvetica, sans-serif"
 BOLD = 1.065
 """How much wider bold text is."""
