@@ -7,7 +7,6 @@ kept raw and validated by
 
 from __future__ import annotations
 
-import difflib
 import hashlib
 import json
 import re
@@ -21,6 +20,7 @@ from typing import Any, Literal, cast
 from pn2code.cell import codes
 from pn2code.cell.partition import ChannelKind
 from pn2code.diagnostics import Diagnostics, Origin
+from pn2code.diagnostics.near import did_you_mean
 from pn2code.frozen import frozen
 
 CommandName = Literal["move_joint", "move_linear", "move_home", "measure", "tool", "wait"]
@@ -217,11 +217,6 @@ def _key_parts(text: str) -> Iterable[str]:
     return (p.strip().strip("\"'") for p in text.strip().split("."))
 
 
-def _suggest(word: str, known: Iterable[str]) -> str:
-    near = difflib.get_close_matches(word, list(known), n=1)
-    return f"did you mean `{near[0]}`?" if near else ""
-
-
 class _Reader:
     """Typed access to the tables, reporting what is wrong."""
 
@@ -236,7 +231,7 @@ class _Reader:
                     codes.CELL_KEY,
                     f"unknown key `{key}`" + (f" in `{'.'.join(map(str, path))}`" if path else ""),
                     self.at(*path, key),
-                    hint=_suggest(key, known) or f"known keys: {', '.join(sorted(known))}",
+                    hint=did_you_mean(key, known) or f"known keys: {', '.join(sorted(known))}",
                 )
 
     def get(
@@ -419,7 +414,7 @@ def _apply_layout(
                     codes.CELL_KEY,
                     f"layout `{name}` places an unknown robot `{robot}`",
                     r.at("layouts", name, "robots", robot),
-                    hint=_suggest(robot, data.get("robots", {})),
+                    hint=did_you_mean(robot, data.get("robots", {})),
                 )
     if not layout:
         return "", data
@@ -428,7 +423,7 @@ def _apply_layout(
             codes.CELL_UNKNOWN_LAYOUT,
             f"there is no layout `{layout}`",
             r.at("layouts"),
-            hint=_suggest(layout, layouts) or f"known layouts: {', '.join(layouts) or 'none'}",
+            hint=did_you_mean(layout, layouts) or f"known layouts: {', '.join(layouts) or 'none'}",
         )
         return "", data
     table = {k: v for k, v in layouts[layout].items() if k != "description"}
@@ -567,7 +562,7 @@ def _primitives(r: _Reader, data: dict[str, Any]) -> dict[str, Primitive]:
                 codes.CELL_VALUE,
                 f"unknown robot command `{command}`",
                 r.at(*at, "command"),
-                hint=_suggest(command, COMMANDS) or f"known commands: {', '.join(COMMANDS)}",
+                hint=did_you_mean(command, COMMANDS) or f"known commands: {', '.join(COMMANDS)}",
             )
             command = "wait"
         frame = r.get(table, at, "frame", str, "`world` or `tool`", "world")
@@ -624,7 +619,7 @@ def _report(r: _Reader, data: dict[str, Any], config: CellConfig) -> ReportConfi
                 codes.CELL_VALUE,
                 f"`rows` names `{name}`, which is not a channel",
                 r.at("report", "rows"),
-                hint=_suggest(name, known),
+                hint=did_you_mean(name, known),
             )
     count = r.get(table, at, "count", dict, "a table label = action", {})
     actions = [p.action for p in config.primitives.values() if p.command == "tool"]
@@ -634,7 +629,7 @@ def _report(r: _Reader, data: dict[str, Any], config: CellConfig) -> ReportConfi
                 codes.CELL_VALUE,
                 f"`count.{label}` names `{action}`, which is not a tool action",
                 r.at("report", "count"),
-                hint=_suggest(str(action), actions),
+                hint=did_you_mean(str(action), actions),
             )
     warn = r.get(table, at, "warn_condition", (int, float), "a number", 50.0)
     return ReportConfig(rows, tuple((str(k), str(v)) for k, v in count.items()), float(warn))

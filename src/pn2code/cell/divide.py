@@ -8,7 +8,6 @@ In: a `FlatNet` and a `CellConfig` (or None: the supervisor owns the whole net).
 
 from __future__ import annotations
 
-import difflib
 from collections.abc import Callable, Iterable
 from pathlib import PurePath
 
@@ -17,6 +16,7 @@ from pn2code.cell.config import CellConfig, ChannelConfig
 from pn2code.cell.partition import Channel, Input, Owner, OwnerKind, Partition
 from pn2code.cell.scalars import scalars_of
 from pn2code.diagnostics import Diagnostics, Note, Origin
+from pn2code.diagnostics.near import did_you_mean
 from pn2code.ml.colsets import Colset, Kind
 from pn2code.net.flat import ArcKind, FlatNet, FlatPlace
 
@@ -76,14 +76,15 @@ def _owners(net: FlatNet, config: CellConfig, d: Diagnostics) -> tuple[Owner, ..
             owners.append(Owner(len(owners), name, kind, found[0]))
         elif not found:
             last = [p.rsplit("/", 1)[-1] for p in paths]
-            near = difflib.get_close_matches(instance, [*paths, *last], n=1)
             d.error(
                 codes.CELL_UNKNOWN_PAGE,
                 f"the net has no page instance `{instance}` for `{name}`",
                 origin,
-                hint=f"did you mean `{near[0]}`?"
-                if near
-                else f"page instances of the net: {', '.join(f'`{p}`' for p in paths[:12])}",
+                hint=did_you_mean(
+                    instance,
+                    [*paths, *last],
+                    f"page instances of the net: {', '.join(f'`{p}`' for p in paths[:12])}",
+                ),
             )
         else:
             d.error(
@@ -169,14 +170,12 @@ class _PlaceFinder:
                 hint="write the path: " + " or ".join(f"`{p.name}`" for p in found[:4]),
             )
         else:
-            near = difflib.get_close_matches(
-                name, [p.short for p in self._net.places] + [p.name for p in self._net.places], n=1
-            )
+            names = [p.short for p in self._net.places] + [p.name for p in self._net.places]
             self._d.error(
                 codes.CELL_UNKNOWN_PLACE,
                 f"{what}: the net has no place `{name}`",
                 at,
-                hint=f"did you mean `{near[0]}`?" if near else "",
+                hint=did_you_mean(name, names),
             )
         return None
 

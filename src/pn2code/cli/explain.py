@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import difflib
 import importlib
 import textwrap
 from typing import Annotated
@@ -11,6 +10,7 @@ import typer
 
 from pn2code.cli.options import Exit
 from pn2code.diagnostics.codes import all_codes
+from pn2code.diagnostics.near import did_you_mean
 
 EPILOG = """Examples:
 
@@ -49,9 +49,8 @@ def explain(
             typer.echo(f"{entry.code:32} {entry.title}")
         return
     if code not in known:
-        near = difflib.get_close_matches(code, known, n=1)
-        hint = f"; did you mean `{near[0]}`?" if near else "; `pn2code explain` lists all codes"
-        typer.echo(f"pn2code: no diagnostic has the code `{code}`{hint}", err=True)
+        hint = did_you_mean(code, known, "`pn2code explain` lists all codes")
+        typer.echo(f"pn2code: no diagnostic has the code `{code}`; {hint}", err=True)
         raise typer.Exit(Exit.USAGE)
     entry = known[code]
     typer.echo(f"{entry.code}: {entry.title}\n")

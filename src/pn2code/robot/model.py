@@ -9,13 +9,13 @@ the cell's folder. The URDF is the only description: axes, limits and speeds are
 
 from __future__ import annotations
 
-import difflib
 from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
 
 from pn2code.diagnostics import Diagnostics, Origin
+from pn2code.diagnostics.near import did_you_mean
 from pn2code.robot import codes, urdf
 from pn2code.robot.transforms import Array
 from pn2code.robot.urdf import Joint, Urdf
@@ -83,13 +83,12 @@ def _find(
         return None
     if name in known:
         return library / f"{name}.urdf"
-    near = difflib.get_close_matches(name, known, n=1)
+    hint = f"known: {', '.join(known)}; or give the path of a .urdf file"
     d.error(
         code,
         f"unknown {what} `{name}`",
         at,
-        hint=(f"did you mean `{near[0]}`? " if near else "")
-        + f"known: {', '.join(known)}; or give the path of a .urdf file",
+        hint=f"{did_you_mean(name, known)} {hint}".strip(),
     )
     return None
 

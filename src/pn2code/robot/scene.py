@@ -9,7 +9,6 @@ beside boxes, cylinders and meshes; nothing here knows what the cell is for.
 
 from __future__ import annotations
 
-import difflib
 import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
@@ -19,6 +18,7 @@ from typing import Any, Literal
 import numpy as np
 
 from pn2code.diagnostics import Diagnostics, Origin
+from pn2code.diagnostics.near import did_you_mean
 from pn2code.robot import codes
 from pn2code.robot.commands import Pose
 from pn2code.robot.kinematics import BRANCH_NAMES, Branch, Kinematics
@@ -310,14 +310,13 @@ class _Table:
     def done(self) -> None:
         for key in self.data:
             if key not in self._used:
-                near = difflib.get_close_matches(key, self._used, n=1)
                 self.d.error(
                     codes.ROBOT_KEY,
                     f"unknown key `{key}` in `{'.'.join(self.path)}`",
                     self.at(key),
-                    hint=f"did you mean `{near[0]}`?"
-                    if near
-                    else f"known keys: {', '.join(sorted(set(self._used)))}",
+                    hint=did_you_mean(
+                        key, self._used, f"known keys: {', '.join(sorted(set(self._used)))}"
+                    ),
                 )
 
 

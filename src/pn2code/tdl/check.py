@@ -8,11 +8,11 @@ reached, variables that may have no value, declarations that nothing uses.
 
 from __future__ import annotations
 
-import difflib
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 
 from pn2code.diagnostics import Diagnostics, Note, Span
+from pn2code.diagnostics.near import did_you_mean
 from pn2code.tdl import codes, flow, paths
 from pn2code.tdl import tree as t
 from pn2code.tdl.evaluate import ScriptError, ScriptValue, evaluate
@@ -230,7 +230,7 @@ class _Checker:
                         codes.UNKNOWN_LABEL,
                         f"there is no label `{label.name}` in this body",
                         label.span,
-                        hint=_near(label.name, self.labels),
+                        hint=did_you_mean(label.name, self.labels),
                     )
             case t.Call(procedure):
                 self.call(procedure)
@@ -265,7 +265,7 @@ class _Checker:
             codes.UNKNOWN_NAME,
             f"there is no procedure `{procedure.name}`",
             procedure.span,
-            hint=_near(procedure.name, self.procedures),
+            hint=did_you_mean(procedure.name, self.procedures),
         )
 
     def mark(self, binding: tuple[tuple[str, t.Datum], ...], span: Span) -> None:
@@ -388,7 +388,7 @@ class _Checker:
                 codes.UNKNOWN_FRAME,
                 f"there is no frame `{s.frame}`",
                 span,
-                hint=_near(s.frame, ("world", "tool")) or "frames are `world` and `tool`",
+                hint=did_you_mean(s.frame, ("world", "tool")) or "frames are `world` and `tool`",
             )
         elif s.target is None:
             self.d.error(codes.FRAME, "`home` is a joint position and has no frame", span)
@@ -447,7 +447,7 @@ class _Checker:
                 codes.UNKNOWN_NAME,
                 f"variable `{x.name}` is not declared",
                 x.span,
-                hint=_near(x.name, self.variables) or f"declare it: `var {x.name} : int`",
+                hint=did_you_mean(x.name, self.variables) or f"declare it: `var {x.name} : int`",
             )
         return None
 
@@ -521,8 +521,3 @@ def _unit_hint(e: t.Expression, found: Type, wanted: Type) -> str:
     if found in QUANTITIES and wanted in NUMBERS:
         return f"divide it by its unit: `{e.span.text} / 1 {examples[found]}`"
     return ""
-
-
-def _near(word: str, known: Iterable[str]) -> str:
-    near = difflib.get_close_matches(word, list(known), n=1)
-    return f"did you mean `{near[0]}`?" if near else ""

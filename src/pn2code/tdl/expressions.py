@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-import difflib
 from dataclasses import dataclass, field
 from typing import Final, assert_never
 
 from pn2code.diagnostics import Diagnostics, Span
+from pn2code.diagnostics.near import did_you_mean
 from pn2code.tdl import codes
 from pn2code.tdl import tree as t
 from pn2code.tdl.types import (
@@ -50,14 +50,15 @@ class Scope:
         """A declared file of the right direction; reports what is wrong."""
         found = self.files.get(name)
         if found is None:
-            near = difflib.get_close_matches(name, list(self.files), n=1)
             self.d.error(
                 codes.UNKNOWN_FILE,
                 f"file `{name}` is not declared",
                 span,
-                hint=f"did you mean `{near[0]}`?"
-                if near
-                else f'declare it: `{direction.value} {name} "{name}.robcad" : int`',
+                hint=did_you_mean(
+                    name,
+                    self.files,
+                    f'declare it: `{direction.value} {name} "{name}.robcad" : int`',
+                ),
             )
             return None
         self.used.add(name)
@@ -136,12 +137,11 @@ def _name(name: str, span: Span, scope: Scope) -> Type | None:
             f"to ask whether it holds a message: `filled({name})`",
         )
         return None
-    near = difflib.get_close_matches(name, list(scope.values), n=1)
     scope.d.error(
         codes.UNKNOWN_NAME,
         f"variable `{name}` is not declared",
         span,
-        hint=f"did you mean `{near[0]}`?" if near else f"declare it: `var {name} : int`",
+        hint=did_you_mean(name, scope.values, f"declare it: `var {name} : int`"),
     )
     return None
 
@@ -209,12 +209,11 @@ def _binary(e: t.Binary, scope: Scope) -> Type | None:
 def _call(e: t.CallExpression, scope: Scope) -> Type | None:
     name = e.function
     if name not in FUNCTIONS:
-        near = difflib.get_close_matches(name, FUNCTIONS, n=1)
         scope.d.error(
             codes.UNKNOWN_FUNCTION,
             f"there is no function `{name}`",
             e.span,
-            hint=f"did you mean `{near[0]}`?" if near else f"functions are {', '.join(FUNCTIONS)}",
+            hint=did_you_mean(name, FUNCTIONS, f"functions are {', '.join(FUNCTIONS)}"),
         )
         return None
     if len(e.arguments) != FUNCTIONS[name]:
