@@ -36,6 +36,7 @@ static void print_help(void)
                  "  --trace FILE   write the run (docs/trace.md); - is the standard output\n"
                  "  --enabled      print what is enabled at the start, one JSON object a line, and do nothing else\n"
                  "  --marking      print the marking at the end as JSON\n"
+                 "  --choice K     another seed for the choices after a replay alone\n"
                  "  --replay FILE  first repeat these steps (src/simulate_replay.c); - is the standard input; they do not count for\n"
                  "                 --steps\n"
                  "  --report FILE  write how the run ended, as JSON (src/simulate_report.c)\n"
@@ -97,6 +98,7 @@ static bool read_valued(const char *option, const char *value, sim_options_t *op
     }
     return ((strcmp(option, "--steps") == 0) && read_number(value, &options->steps))
            || ((strcmp(option, "--seed") == 0) && read_number(value, &options->seed))
+           || ((strcmp(option, "--choice") == 0) && (options->has_choice = read_number(value, &options->choice)))
            || ((strcmp(option, "--until") == 0) && read_time(value, options))
            || ((strcmp(option, "--progress") == 0) && read_real(value, &options->progress_s));
 }
@@ -181,15 +183,24 @@ static bool play_with_trace(sim_t *sim)
 {
     char seed[64];
     if (!pn_trace_open(&sim->trace, sim->options.trace, s_line, sizeof s_line)) {
-        (void)fprintf(stderr, "simulate: cannot write `%s`: %s\n", sim->options.trace, strerror(errno));
+        (void)snprintf(sim->message, sizeof sim->message, "%s", strerror(errno));
+        (void)fprintf(stderr, "simulate: cannot write `%s`: %s\n", sim->options.trace, sim->message);
+        sim->why = "trace";
         return false;
     }
     (void)snprintf(seed, sizeof seed, "\"seed\": %llu", (unsigned long long)sim->options.seed);
     pn_trace_header_with(&sim->trace, &pn_net, "simulate", NULL, seed);
-    play(sim);
-    pn_trace_model_end(&sim->trace, pn_net.now(sim->marking), pn_net.real_time, sim->why);
+    if (sim->trace.failed) {
+        (void)snprintf(sim->message, sizeof sim->message, "%s", strerror(errno));
+    } else {
+        play(sim);
+        pn_trace_model_end(&sim->trace, pn_net.now(sim->marking), pn_net.real_time, sim->why);
+    }
     if (!pn_trace_close(&sim->trace)) {
         (void)fprintf(stderr, "simulate: `%s` could not be written completely\n", sim->options.trace);
+        if (sim->message[0] == '\0') {
+            (void)snprintf(sim->message, sizeof sim->message, "%s", strerror(errno));
+        }
         sim->why = "trace";
         return false;
     }
@@ -219,6 +230,7 @@ static int run(sim_t *sim)
         sim->why = "steps";
         print_enabled(sim);
     } else {
+        sim_report_start(sim);
         is_written = play_with_trace(sim);
     }
     int code = tell(sim);

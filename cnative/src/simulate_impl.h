@@ -12,6 +12,8 @@
 typedef struct sim_options {
     uint64_t steps;
     uint64_t seed;
+    uint64_t choice;     /* of the choices after a replay */
+    bool has_choice;
     const char *trace;   /* NULL: none */
     const char *report;  /* NULL: none */
     const char *replay;  /* NULL: none; "-": the standard input */
@@ -71,6 +73,8 @@ bool sim_replay(sim_t *sim);
 
 /* A JSON object on a line of its own: {"steps": 100, "t": 12}, at most one in `progress_s` seconds. */
 void sim_report_progress(sim_t *sim);
+/* The first line: the marking at the start. */
+void sim_report_start(sim_t *sim);
 /* The last line: how the run has ended, and the marking. False when it could not be written. */
 bool sim_report_end(sim_t *sim);
 /* The marking as JSON: {"Top.P": [[1, 5]], ...}; false when it could not be written. */

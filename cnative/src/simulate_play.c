@@ -8,6 +8,7 @@
 #define _POSIX_C_SOURCE 200809L /* sigaction */
 #define _XOPEN_SOURCE 700
 
+#include <errno.h>
 #include <signal.h>
 #include <string.h>
 
@@ -137,7 +138,10 @@ sim_next_t sim_settle(sim_t *sim)
 static bool draw(sim_t *sim, uint32_t *transition)
 {
     pn_ctx_t *cx = &sim->cx;
+    const uint64_t seed = cx->seed;
+    cx->seed = sim->options.has_choice ? sim->options.choice : seed;
     pn_random_start(cx, PN_RANDOM_CHOICE);
+    cx->seed = seed;
     const uint32_t i = sim->enabled[pn_random_below(cx, (int64_t)sim->enabled_count)];
     const uint64_t state = cx->random; /* enumerating starts streams of its own */
     search_t search = { 0U, 0U, NULL, pn_net.transition[i].binding_size };
@@ -171,6 +175,7 @@ bool sim_fire(sim_t *sim, uint32_t transition)
     pn_trace_model_occurrence(&sim->trace, pn_net.now(sim->marking), pn_net.real_time, &pn_net.transition[transition],
                               sim->binding);
     if (sim->trace.failed) {
+        (void)snprintf(sim->message, sizeof sim->message, "%s", strerror(errno));
         sim->why = "trace";
         return false;
     }

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT
  * simulate_report.c - JSON lines for the program that has started the simulator.
  *
+ *     {"initial": {"Top.P": [[1, 3]]}}                                                                  the start
  *     {"steps": 1000, "t": 12}                                                                          progress
  *     {"why": "finished", "steps": 1200, "replayed": 0, "t": 14, "marking": {"Top.P": [[1, 5]]}}        the end
  *
@@ -104,6 +105,16 @@ static void text_error(pn_text_t *text, const sim_t *sim)
             pn_text_str(text, ", \"binding\": ");
             pn_net.transition[sim->transition].binding_json(sim->binding, text);
         }
+    }
+}
+
+void sim_report_start(sim_t *sim)
+{
+    if (sim->report != NULL) {
+        (void)fputs("{\"initial\": ", sim->report);
+        (void)sim_print_marking(sim->marking, sim->report);
+        (void)fputs("}\n", sim->report);
+        (void)fflush(sim->report);
     }
 }
 

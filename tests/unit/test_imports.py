@@ -29,9 +29,12 @@ ALLOWED: dict[str, set[str]] = {
             "pipeline"},
     "report": {"cell", "run", "robot", "diagnostics"},
     "pipeline": {"diagnostics", "cell", "emission", "lowering", "net", "reading", "tdl"},
+    "monitors": {"diagnostics", "ml", "net", "reading", "semantics"},
+    "simulate": {"diagnostics", "ml", "net", "semantics", "monitors", "cell", "lowering", "emission", "toolchain",
+                 "parser_cache"},
     "__main__": {"cli"},
     "cli": {"diagnostics", "cell", "channels", "emission", "net", "pipeline", "run", "report", "semantics", "toolchain",
-            "robot", "tdl", "ml", "lowering", "reading", "drawing"},
+            "robot", "tdl", "ml", "lowering", "reading", "drawing", "simulate", "monitors"},
 }  # fmt: skip
 EVERYWHERE = {"frozen"}
 

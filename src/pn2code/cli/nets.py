@@ -19,10 +19,11 @@ from pn2code.semantics.game import Game, GameError
 
 @dataclass(frozen=True, slots=True)
 class OpenNet:
-    """A net and the cell beside it, if there is one."""
+    """A net, the cell beside it, if there is one, and what the front end knows of it."""
 
     flat: FlatNet
     config: CellConfig | None
+    examined: front.Examined
 
     @property
     def storage(self) -> Mapping[str, str]:
@@ -50,12 +51,14 @@ def open_net(
     if found is None:
         stop(d, form)
     net_path, config = found
-    flat = front.load(net_path, d, {**(config.values if config else {}), **values})
+    replaced = {**(config.values if config else {}), **values}
+    examined = front.examine(net_path, d, replaced, int_bits=int_bits)
+    flat = examined.flat
     if flat is None or d.has_errors:
         stop(d, form)
     unsupported = [i for i in d.sorted() if i.code.startswith("unsupported-")]
     print_diagnostics((i for i in unsupported if i.severity is Severity.WARNING), form)
-    return OpenNet(flat, config)
+    return OpenNet(flat, config, examined)
 
 
 @contextmanager

@@ -16,39 +16,23 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
-from typing import Any, Protocol
+from typing import Any
 
 from pn2code.diagnostics import Diagnostics, Origin
 from pn2code.monitors.codes import MONITOR_FILE, UNSUPPORTED_MONITOR
+from pn2code.monitors.folder import Folder
 from pn2code.monitors.functions import Checked, MonitorProgram, binding_element, is_timed
 from pn2code.monitors.kinds import BREAKPOINTS, COLLECTORS, Kind, Monitor, kind_text
 from pn2code.monitors.statistics import Number, Statistics, Untimed
 from pn2code.monitors.statistics import Timed as TimedStatistics
 from pn2code.net.flat import FlatTransition, PlaceInstance
 from pn2code.semantics.enabling import GameError, running
+from pn2code.semantics.files import FileProblem, Files
 from pn2code.semantics.game import Game
 from pn2code.semantics.marking import BindingElement, PlaceMarking
 from pn2code.semantics.multiset import MultiSet
 from pn2code.semantics.report import time_text
 from pn2code.semantics.values import MlUnavailable, Timed, Value, int_text
-
-
-class Folder(Protocol):
-    """Where monitors write: the folder that `--files` names, or nowhere."""
-
-    def append(self, name: str, text: str) -> None:
-        """Adds to a file below the folder, which is emptied when it is first written to in a run.
-
-        Raises:
-            OSError: it cannot be written.
-        """
-
-
-class Nowhere:
-    """Swallows everything."""
-
-    def append(self, name: str, text: str) -> None:
-        """Does nothing."""
 
 
 class _Unavailable(Exception):  # noqa: N818
@@ -115,7 +99,7 @@ class Watch:
         self.game = game
         self.net = game.net
         self.d = d
-        self.folder = folder or Nowhere()
+        self.folder = folder or Folder(Files())
         by_id: dict[str, _Running] = {}
         with running(Origin(game.net.file, part="monitors"), "a function of a monitor"):
             ready = program.ready(
@@ -394,9 +378,10 @@ class Watch:
             return
         try:
             self.folder.append(name, text)
-        except OSError as problem:
+        except (OSError, FileProblem) as problem:
             m.broken_files.add(name)
-            reason = (problem.strerror or str(problem)).lower()
+            said = problem.strerror if isinstance(problem, OSError) else problem.message
+            reason = (said or str(problem)).lower()
             self.d.warning(
                 MONITOR_FILE,
                 f"monitor `{m.monitor.name}` cannot write `{name}`: {reason}",

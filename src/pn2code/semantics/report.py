@@ -9,10 +9,11 @@ from __future__ import annotations
 from collections.abc import Iterable
 from typing import Any
 
+from pn2code.ml.core import Symbol
 from pn2code.net.flat import FlatNet
 from pn2code.semantics.colours import Colours
 from pn2code.semantics.marking import BindingElement, Marking, place_text, variable_text
-from pn2code.semantics.values import real_text
+from pn2code.semantics.values import Value, real_text
 
 PlaceRow = dict[str, str | int]
 """`page`, `instance`, `name`, `id`, `marking`."""
@@ -107,6 +108,11 @@ def enabled_text(net: FlatNet, time: int | float, elements: Iterable[BindingElem
         shown = ", ".join(f"{name} = {' '.join(text.split())}" for name, text in values.items())
         lines.append(f"  {shown or 'no variables'}")
     return "\n".join(lines if at >= 0 else [*lines, "nothing is enabled"])
+
+
+def value_text(symbol: Symbol, value: Value) -> str:
+    """The value of a net variable."""
+    return variable_text(_TEXTS, symbol, value)
 
 
 def time_text(time: int | float) -> str:

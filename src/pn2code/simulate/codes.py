@@ -14,15 +14,15 @@ TRACE_UNWRITABLE = register(
 SIMULATOR_FAILED = register(
     "simulator-failed",
     "the compiled simulator came to a bad end",
-    "The compiled net was killed, or did not say how its run ended. When the system ended it (not enough memory), try a "
-    "shorter run; else this is a bug in pn2code. `--engine reference` simulates the same run without C.",
+    "The compiled net was killed, or did not say how its run ended. When the system ended it (not enough memory), try "
+    "a shorter run; else this is a bug in pn2code. `--engine reference` simulates the same run without C.",
 )
 ENGINE_CHANGED = register(
     "engine-reference",
     "the reference engine is used instead of the compiled one",
-    "The net cannot be compiled here: there is no C compiler, it uses something that compiled code does not support, or "
-    "its monitors change references that the net uses. The reference token game makes the same run, more slowly. With "
-    "`--engine compiled` this is an error.",
+    "The net cannot be compiled here: there is no C compiler, it uses something that compiled code does not support, "
+    "or its monitors change references that the net uses. The reference token game makes the same run, more slowly. "
+    "With `--engine compiled` this is an error.",
 )
 CACHE_UNUSABLE = register(
     "simulator-cache",

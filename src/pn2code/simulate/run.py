@@ -17,22 +17,9 @@ from pn2code.semantics.marking import Marking
 Progress = Callable[[int, int | float], None]
 """Is told the number of steps and the model time, now and then."""
 
+DEFAULT_SEED = 1
 MOST_OUTPUT = 1 << 24
 """Characters of the net's output that are kept."""
-
-
-class TraceUnwritableError(Exception):
-    """The trace cannot be written.
-
-    Args:
-        path: its file.
-        reason: in the system's words, lower case.
-    """
-
-    def __init__(self, path: Path, reason: str) -> None:
-        super().__init__(f"cannot write the trace `{path}`: {reason}")
-        self.path = path
-        self.reason = reason
 
 
 @dataclass(frozen=True, slots=True)
@@ -43,7 +30,8 @@ class Request:
         net: the net.
         storage: as for `Game`.
         steps: most steps; None: no limit.
-        seed: of all random choices.
+        seed: of all random numbers; None: that of the trace that is repeated, or 1. With such a trace it decides the
+            choices after it, and nothing else.
         until: no step after this model time; None: no limit.
         trace: where the run is written; None: nowhere.
         replay: lines of a trace to begin with; they do not count for `steps`.
@@ -57,7 +45,7 @@ class Request:
     net: FlatNet
     storage: Mapping[str, str] = field(default_factory=dict)
     steps: int | None = 1000
-    seed: int = 1
+    seed: int | None = None
     until: int | float | None = None
     trace: Path | None = None
     replay: Path | None = None
@@ -66,6 +54,14 @@ class Request:
     files: Path | None = None
     progress: Progress = lambda steps, time: None
     interrupted: Callable[[], bool] = lambda: False
+
+    def seeds(self, traced: int | None) -> tuple[int, int]:
+        """Of the net's random numbers, and of the choices; `traced` is that of the trace that is repeated."""
+        own = DEFAULT_SEED if self.seed is None else self.seed
+        if self.replay is None:
+            return own, own
+        recorded = DEFAULT_SEED if traced is None else traced
+        return recorded, recorded if self.seed is None else own
 
 
 @dataclass(frozen=True, slots=True)

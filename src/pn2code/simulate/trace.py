@@ -44,6 +44,20 @@ def _escape(found: re.Match[str]) -> str:
     return _SHORT.get(c) or f"\\u{ord(c):04x}"
 
 
+class TraceUnwritableError(Exception):
+    """The trace cannot be written.
+
+    Args:
+        path: its file.
+        reason: in the system's words, lower case.
+    """
+
+    def __init__(self, path: Path, reason: str) -> None:
+        super().__init__(f"cannot write the trace `{path}`: {reason}")
+        self.path = path
+        self.reason = reason
+
+
 class TraceFile:
     """A trace being written.
 
@@ -51,13 +65,20 @@ class TraceFile:
         path: the file; None: nothing is written.
 
     Raises:
-        OSError: it cannot be opened, or a line cannot be written.
+        TraceUnwritableError: it cannot be opened, or a line cannot be written.
     """
 
     def __init__(self, path: Path | None) -> None:
         self._path = path
-        self._file = path.open("wb", buffering=0) if path is not None else None
         self._good = 0
+        try:
+            self._file = path.open("wb", buffering=0) if path is not None else None
+        except OSError as problem:
+            raise self._unwritable(problem) from None
+
+    def _unwritable(self, problem: OSError) -> TraceUnwritableError:
+        assert self._path is not None
+        return TraceUnwritableError(self._path, (problem.strerror or str(problem)).lower())
 
     def header(self, game: Game, by: str, seed: int) -> None:
         """The first line; before the game begins."""
@@ -87,9 +108,9 @@ class TraceFile:
             left = memoryview(data)
             while left:
                 left = left[self._file.write(left) :]
-        except OSError:
+        except OSError as problem:
             self._cut()
-            raise
+            raise self._unwritable(problem) from None
         self._good += len(data)
 
     def _cut(self) -> None:

@@ -89,14 +89,22 @@ def build(
         where = f"everything it said is in {log}"
     except OSError as problem:
         where = f"the log could not be written: {problem.strerror}"
-    _report(folder, output, tuple(files), where, d)
+    report_failure(folder, output, tuple(files), where, d)
     return None
 
 
-def _report(
+def report_failure(
     folder: Path, output: str, files: tuple[OutputFile, ...], where: str, d: Diagnostics
 ) -> None:
-    """One diagnostic for each complaint about generated code; one for the build if there is none."""
+    """One diagnostic for each complaint about generated code; one for the build if there is none.
+
+    Args:
+        folder: where it was built.
+        output: what the tools said.
+        files: the generated files, for their blocks.
+        where: a sentence that says where more can be read.
+        d: gets the errors.
+    """
     blocks = {f.path: f.blocks for f in files}
     complaints = _COMPLAINT.findall(output)[:_MOST]
     for file, line, column, message in complaints:

@@ -1,0 +1,218 @@
+"""`pn2code simulate`: a run at random, with monitors, traces and a report."""
+
+from __future__ import annotations
+
+import json
+import math
+from pathlib import Path
+from typing import Annotated, Any
+
+import typer
+
+from pn2code.cli.interrupts import Interrupts
+from pn2code.cli.nets import OpenNet, open_net
+from pn2code.cli.options import (
+    DEFAULT_INT_BITS,
+    Engine,
+    Exit,
+    FilesOption,
+    Format,
+    FormatOption,
+    IntBitsOption,
+    JsonOption,
+    SetOption,
+    parse_values,
+    print_diagnostics,
+    stop,
+)
+from pn2code.diagnostics import Diagnostics, Origin
+from pn2code.semantics.codes import TRACE_REFUSED
+from pn2code.semantics.report import places
+from pn2code.simulate.choose import Wish, monitors_of
+from pn2code.simulate.choose import simulate as play
+from pn2code.simulate.progress import ProgressLine
+from pn2code.simulate.report import text
+from pn2code.simulate.run import Outcome, Request
+from pn2code.simulate.script import TraceRefusedError
+from pn2code.simulate.trace import TraceUnwritableError
+
+EPILOG = """Examples:
+
+  pn2code simulate net.cpn --steps 100 --seed 7 --trace run.trace.jsonl
+
+  pn2code simulate net.cpn --until 1000 --json
+
+  pn2code simulate net.cpn --replay run.trace.jsonl --steps 100
+"""
+
+DEFAULT_STEPS = 1000
+
+
+def simulate(
+    net: Annotated[Path, typer.Argument(help="A .cpn file, a cell.toml, or a folder with one.")],
+    steps: Annotated[
+        int | None,
+        typer.Option(
+            metavar="N",
+            min=0,
+            help="At most N steps.  [default: 1000; with --until: no limit]",
+            show_default=False,
+        ),
+    ] = None,
+    seed: Annotated[
+        int | None,
+        typer.Option(
+            metavar="K",
+            min=0,
+            max=2**64 - 1,
+            help="Start of all random numbers.  [default: 1]",
+            show_default=False,
+        ),
+    ] = None,
+    until: Annotated[
+        str | None, typer.Option(metavar="T", help="No step after model time T.")
+    ] = None,
+    trace: Annotated[
+        Path | None, typer.Option(metavar="FILE", help="Write the run (docs/trace.md).")
+    ] = None,
+    replay: Annotated[
+        Path | None,
+        typer.Option(
+            metavar="TRACE",
+            help="First repeat this trace, then go on. Its steps do not count for --steps.",
+        ),
+    ] = None,
+    engine: Annotated[
+        Engine | None,
+        typer.Option(
+            help="The compiled net, or the reference token game: the same run.  "
+            "[default: compiled, where that is possible]",
+            show_default=False,
+        ),
+    ] = None,
+    monitors: Annotated[
+        bool, typer.Option("--monitors/--no-monitors", help="Let the net's monitors work.")
+    ] = True,
+    breakpoints: Annotated[
+        bool, typer.Option("--breakpoints/--no-breakpoints", help="Let breakpoints stop the run.")
+    ] = True,
+    everything: Annotated[
+        bool, typer.Option("--all", help="Show all places, not only those that changed.")
+    ] = False,
+    as_json: JsonOption = False,
+    quiet: Annotated[
+        bool, typer.Option("--quiet", "-q", help="No progress, and no report but of errors.")
+    ] = False,
+    settings: SetOption = [],  # noqa: B006 - typer reads the default only
+    files: FilesOption = None,
+    int_bits: IntBitsOption = DEFAULT_INT_BITS,
+    form: FormatOption = Format.FULL,
+) -> None:
+    """Simulate a net: draw an enabled binding element, let it occur, and so on.
+
+    The same seed gives the same run, in both engines. Ctrl-C ends the run and shows what there is so far.
+    """
+    opened = open_net(net, parse_values(settings), form, int_bits=int_bits)
+    limit = _time(until, opened)
+    d = Diagnostics()
+    program = monitors_of(opened.examined, d) if monitors else None
+    with Interrupts() as interrupts, ProgressLine(shown=not (as_json or quiet)) as progress:
+        request = Request(
+            net=opened.flat,
+            storage=opened.storage,
+            steps=DEFAULT_STEPS if steps is None and until is None else steps,
+            seed=seed,
+            until=limit,
+            trace=trace,
+            replay=replay,
+            monitors=program,
+            breakpoints=breakpoints,
+            files=files,
+            progress=progress.update,
+            interrupted=interrupts.is_wanted,
+        )
+        outcome = _made(request, engine, d, form)
+    if outcome.failure is not None:
+        outcome.failure.report(d, outcome.steps)
+    if outcome.refusal:
+        d.error(TRACE_REFUSED, outcome.refusal, Origin(str(replay)))
+    if not as_json and not quiet:
+        typer.echo(text(opened.flat, outcome, everything=everything))
+    print_diagnostics(d.sorted(), form)
+    if as_json:
+        typer.echo(json.dumps(_json(opened, outcome), indent=1))
+    code = _code(outcome)
+    if code:
+        raise typer.Exit(code)
+
+
+def _time(until: str | None, opened: OpenNet) -> int | float | None:
+    """The model time that was given: on an integer clock the last one that is not after it."""
+    if until is None:
+        return None
+    try:
+        value = float(until.replace("~", "-"))
+    except ValueError:
+        value = math.nan
+    if not math.isfinite(value):
+        raise typer.BadParameter(
+            f"`{until}`: a model time is expected, e.g. 100", param_hint="--until"
+        )
+    if opened.flat.real_time:
+        return value
+    digits = until.strip().replace("~", "-")
+    return int(digits) if digits.lstrip("+-").isdigit() else math.floor(value)
+
+
+def _made(request: Request, engine: Engine | None, d: Diagnostics, form: Format) -> Outcome:
+    """The run; leaves with a message when it cannot be made."""
+    wish = Wish(engine.value) if engine is not None else Wish.ANY
+    try:
+        outcome = play(request, wish, d)
+    except (TraceUnwritableError, TraceRefusedError, OSError) as problem:
+        print_diagnostics(d.sorted(), form)
+        typer.echo(f"pn2code: {_sentence(problem, request)}", err=True)
+        raise typer.Exit(Exit.USAGE) from None
+    if outcome is None:
+        missing = any(i.code == "tool-missing" for i in d)
+        if missing:
+            print_diagnostics(d.sorted(), form)
+            raise typer.Exit(Exit.USAGE)
+        stop(d, form)
+    return outcome
+
+
+def _sentence(problem: Exception, request: Request) -> str:
+    match problem:
+        case TraceRefusedError():
+            return f"`{request.replay}` cannot be repeated: {problem}"
+        case OSError():
+            reason = (problem.strerror or str(problem)).lower()
+            return f"cannot read `{problem.filename or request.replay}`: {reason}"
+        case _:
+            return str(problem)
+
+
+def _json(opened: OpenNet, outcome: Outcome) -> dict[str, Any]:
+    final = outcome.final
+    return {
+        "engine": outcome.engine,
+        "seed": outcome.seed,
+        "steps": outcome.steps,
+        "replayed": outcome.replayed,
+        "time": final.time if final else None,
+        "why": outcome.why,
+        "places": places(opened.flat, final) if final else [],
+        "monitors": list(outcome.monitors),
+        "breakpoint": outcome.breakpoint,
+        "error": outcome.failure.row() if outcome.failure else None,
+        "refusal": outcome.refusal or None,
+        "seconds": round(outcome.seconds, 6),
+        "output": outcome.output,
+    }
+
+
+def _code(outcome: Outcome) -> int:
+    if outcome.why in ("error", "replay"):
+        return Exit.MODEL
+    return 130 if outcome.why == "interrupted" else Exit.OK

@@ -1,0 +1,102 @@
+"""Which engine makes a run, and the run.
+
+    outcome = simulate(request, Wish.COMPILED, d)
+
+The compiled engine is used unless it cannot be: then, if nobody insists on it, the reference engine makes the same run.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from enum import Enum
+from pathlib import Path
+
+from pn2code.diagnostics import Diagnostics, Origin, Severity
+from pn2code.monitors.functions import MonitorProgram, elaborate
+from pn2code.monitors.kinds import resolve
+from pn2code.net.front import Examined
+from pn2code.semantics.effects import Effect, Effects
+from pn2code.simulate import compiled, programs, reference
+from pn2code.simulate.codes import ENGINE_CHANGED
+from pn2code.simulate.run import Outcome, Request
+
+
+class Wish(Enum):
+    """What the user wants."""
+
+    COMPILED = "compiled"
+    REFERENCE = "reference"
+    ANY = "any"
+
+
+def monitors_of(examined: Examined, d: Diagnostics) -> MonitorProgram | None:
+    """The monitors of a net, ready for a request; None when it has none that is enabled."""
+    if examined.document is None or examined.flat is None or examined.typed is None:
+        return None
+    found = resolve(examined.document, examined.flat, d)
+    elaborator = examined.typed.elaborator
+    if not found or elaborator is None:
+        return None
+    program = elaborate(found, examined.flat, elaborator, d)
+    return program if program.monitors else None
+
+
+def simulate(request: Request, wish: Wish, d: Diagnostics) -> Outcome | None:
+    """Makes the run; None after an error that was reported.
+
+    Raises:
+        TraceUnwritableError: the trace cannot be written.
+        TraceRefusedError: the trace that is to be repeated is none.
+        OSError: it cannot be read.
+    """
+    if wish is Wish.REFERENCE:
+        return reference.run(request, d)
+    obstacle = _obstacle(request)
+    if obstacle:
+        if wish is Wish.COMPILED:
+            d.error(
+                ENGINE_CHANGED,
+                f"the compiled engine cannot make this run: {obstacle}",
+                Origin(request.net.file),
+                hint="leave `--engine compiled` out",
+            )
+            return None
+        return _instead(request, obstacle, d)
+    own = Diagnostics()
+    with programs.program(request.net, request.storage, own) as program:
+        if program is not None:
+            d.items += own.items
+            return _compiled(request, program, d)
+    if wish is Wish.COMPILED:
+        d.items += own.items
+        return None
+    first = next((i.message for i in own if i.severity is Severity.ERROR), "it cannot be compiled")
+    return _instead(request, first, d)
+
+
+def _compiled(request: Request, program: Path, d: Diagnostics) -> Outcome | None:
+    return compiled.run(request, program, d)
+
+
+def _instead(request: Request, why: str, d: Diagnostics) -> Outcome:
+    d.warning(
+        ENGINE_CHANGED,
+        f"the reference engine makes this run, which is slower: {why}",
+        Origin(request.net.file),
+    )
+    return reference.run(request, d)
+
+
+def _obstacle(request: Request) -> str:
+    """Why the compiled engine cannot make the run; "" if it can."""
+    program = request.monitors
+    if program is None or not program.monitors:
+        return ""
+    if request.files is not None:
+        return "its monitors watch, and it may use files"
+    # What compiled code does not see: changes that monitors make.
+    own = request.net.program
+    effects = Effects(replace(own, declarations=(*own.declarations, *program.declarations)))
+    if any(Effect.WRITE in effects.of(dec) for dec in program.declarations):
+        return "its monitors change references"
+    return ""
