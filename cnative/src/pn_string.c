@@ -165,13 +165,6 @@ uint8_t pn_char_to_lower(uint8_t c)
     return pn_char_is_upper(c) ? (uint8_t)(c + 32U) : c;
 }
 
-void pn_print(pn_ctx_t *cx, pn_string_t s)
-{
-    if (pn_ok(cx)) {
-        (void)fwrite(s.bytes, 1U, s.length, stderr);
-    }
-}
-
 size_t pn_int_sml(char *out, size_t capacity, int64_t value)
 {
     const uint64_t magnitude = (value < 0) ? (0U - (uint64_t)value) : (uint64_t)value;

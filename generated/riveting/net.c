@@ -2,7 +2,7 @@
  *
  * net     cell
  * sha256  bc69be1a580b3cb5513f806d04badeb94cc7b65f23314caec1160e75c4f2e321
- * digest  cfe07cc7a7a8ee0d5f6e20294741cb197482a979d056a6815b2e4a539dbb5d37
+ * digest  00d5d872ef38cb985cf8887933405ed99f76d37eb91cf785ca36b3a5d8fb7c90
  *
  * Reading order: tables of the colour sets, functions of the declarations, places with the initial marking, transitions
  * (enumerate the enabled bindings, fire one), and at the end the table `pn_net` by which hosts know all of it.
@@ -13,6 +13,7 @@
 #include <string.h>
 
 #include "pn/pn_arena.h"
+#include "pn/pn_file.h"
 #include "pn/pn_library.h"
 #include "pn/pn_num.h"
 #include "pn/pn_random.h"
@@ -7323,7 +7324,7 @@ const pn_net_t pn_net = {
     .abi = PN_NET_ABI,
     .name = "cell",
     .source = "cell.cpn",
-    .digest = "cfe07cc7a7a8ee0d5f6e20294741cb197482a979d056a6815b2e4a539dbb5d37",
+    .digest = "00d5d872ef38cb985cf8887933405ed99f76d37eb91cf785ca36b3a5d8fb7c90",
     .timed = false,
     .real_time = false,
     .marking_size = sizeof(net_marking_t),

@@ -73,7 +73,10 @@ def walk(
         return Walk(
             name, "unsupported", detail=f"{first.code}: {first.message} ({first.origin.describe()})"
         )
-    program = workshop.build(net, workshop.folder / name.replace("/", "_"))
+    try:
+        program = workshop.build(net, workshop.folder / name.replace("/", "_"))
+    except AssertionError as failure:
+        return Walk(name, "differs", detail=f"not compiled: {str(failure)[:2000]}")
     with _lines(program, seed, steps) as lines:
         return _follow(flat, name, lines, steps=steps, seed=seed, until=time.monotonic() + seconds)
 

@@ -433,7 +433,7 @@ def _is_write(node: object) -> bool:
 
 def _is_draw(node: object) -> bool:
     if isinstance(node, ir.Op):
-        return node.name.startswith("Random.") or node.name == "Ms.random"
+        return node.name.startswith(("Random.", "prim.do_random")) or node.name == "Ms.random"
     return isinstance(node, ir.Fill) and node.name == "ran"
 
 

@@ -228,7 +228,18 @@ OPS |= {
     "prim.real_to_large": Call("pn_inf_trunc", context=True),
     "prim.real_format": Call("pn_real_styled", context=True),
     "prim.real_read": Call("pn_real_read"),
-}
+    "prim.do_random_below": Call("pn_random_below", context=True),
+    "prim.do_random_unit": Call("pn_random_unit", context=True),
+    "prim.do_file_problem_name": Call("pn_file_problem_name"),
+    "prim.do_file_has_failed": Call("pn_file_has_failed"),
+    **{
+        f"prim.do_file_{name}": Call(f"pn_file_{name}", context=True)
+        for name in (
+            "read", "open", "write", "close", "problem", "change", "rename", "is_folder", "size", "may",
+            "full_path", "here", "names",
+        )
+    },
+}  # fmt: skip
 """Operations of the functions of the prelude."""
 
 SWAPPED = frozenset({"List.rm", "List.rmall", "List.pos", "Ms.cf"})

@@ -13,6 +13,7 @@
 #include <string.h>
 
 #include "pn/pn_arena.h"
+#include "pn/pn_file.h"
 #include "pn/pn_library.h"
 #include "pn/pn_num.h"
 #include "pn/pn_random.h"

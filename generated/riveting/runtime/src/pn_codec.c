@@ -55,6 +55,7 @@ static size_t encode_at(const pn_type_t *type, const void *value, uint8_t *out, 
         end = put_bytes(out, room, at, &tag, sizeof tag);
         return (argument == NULL) ? end : encode_at(constructor->type, argument, out, room, end);
     }
+    case PN_KIND_REF:
     case PN_KIND_UNIT:
     default:
         return end;
@@ -191,6 +192,7 @@ static void decode_value(reader_t *r, const pn_type_t *type, void *value)
     case PN_KIND_UNION:
         decode_union(r, type, value);
         break;
+    case PN_KIND_REF:
     case PN_KIND_UNIT:
     default:
         (void)memset(value, 0, type->size);
@@ -230,9 +232,40 @@ static void relocate_list(pn_ctx_t *cx, const pn_type_t *type, void *value)
     store_pointer(value, first);
 }
 
+static bool is_within(const unsigned char *at, const unsigned char *start, size_t size)
+{
+    return (at >= start) && (at < &start[size]);
+}
+
+/* A cell is moved once: the one left behind says where it is now. Static variables stay where they are. */
+static void relocate_ref(pn_ctx_t *cx, const pn_type_t *type, void *value)
+{
+    const pn_arena_t *arena = cx->arena;
+    const unsigned char *contents = load_pointer(value);
+    const unsigned char *active = &arena->memory[arena->permanent + (arena->active * arena->half)];
+    if ((contents == NULL) || !is_within(contents, arena->memory, arena->size) || is_within(contents, active, arena->half)) {
+        return;
+    }
+    unsigned char *left = &arena->memory[(size_t)(contents - arena->memory) - PN_REF_HEADER];
+    const void *moved = load_pointer(left);
+    if (moved == NULL) {
+        void *fresh = pn_ref_new(cx, contents, type->element->size);
+        if (fresh == NULL) {
+            return;
+        }
+        store_pointer(left, fresh);
+        store_pointer(value, fresh);
+        pn_relocate(cx, type->element, fresh);
+    } else {
+        store_pointer(value, moved);
+    }
+}
+
 void pn_relocate(pn_ctx_t *cx, const pn_type_t *type, void *value)
 {
-    if (type->kind == PN_KIND_STRING) {
+    if (type->kind == PN_KIND_REF) {
+        relocate_ref(cx, type, value);
+    } else if (type->kind == PN_KIND_STRING) {
         const pn_string_t text = load_string(value);
         const pn_string_t copy = pn_string_make(cx, text.bytes, text.length);
         (void)memcpy(value, &copy, sizeof copy);
@@ -305,6 +338,7 @@ static bool leaves_of(const pn_type_t *type, const void *value, pn_leaf_t *leaf,
     case PN_KIND_CHAR:
     case PN_KIND_LIST:
     case PN_KIND_UNION:
+    case PN_KIND_REF:
     default:
         return false;
     }
@@ -379,6 +413,7 @@ static bool value_from(pn_ctx_t *cx, const pn_type_t *type, void *value, const p
     case PN_KIND_RECORD:
     case PN_KIND_LIST:
     case PN_KIND_UNION:
+    case PN_KIND_REF:
     default:
         return false;
     }

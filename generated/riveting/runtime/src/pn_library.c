@@ -155,7 +155,7 @@ static pn_string_t exact(pn_ctx_t *cx, double x, char *text, size_t size)
     return pn_string_make(cx, text, strlen(text));
 }
 
-pn_string_t pn_real_format(pn_ctx_t *cx, int64_t style, int64_t digits, double x)
+pn_string_t pn_real_styled(pn_ctx_t *cx, int64_t style, int64_t digits, double x)
 {
     if (isnan(x)) {
         return PN_STRING("nan");

@@ -38,6 +38,7 @@ void pn_raise(pn_ctx_t *cx, pn_error_t error, const char *name)
         cx->error = error;
         cx->error_name = (name != NULL) ? name : pn_error_name(error);
         cx->error_origin = cx->origin;
+        cx->exception = NULL;
     }
 }
 
@@ -77,6 +78,7 @@ void pn_clear_error(pn_ctx_t *cx)
     cx->error = PN_OK;
     cx->error_name = "";
     cx->error_origin = "";
+    cx->exception = NULL;
 }
 
 /* --- integers ------------------------------------------------------------------------------------------------------ */

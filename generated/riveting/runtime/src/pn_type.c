@@ -65,6 +65,9 @@ int pn_compare(const pn_type_t *type, const void *a, const void *b)
         return compare_lists(type, a, b);
     case PN_KIND_UNION:
         return compare_unions(type, a, b);
+    case PN_KIND_REF:
+        /* Equality is all that matters, but it is an order as well. */
+        return (load_pointer(a) == load_pointer(b)) ? 0 : 1;
     case PN_KIND_UNIT:
     default:
         return 0;
@@ -152,6 +155,7 @@ void pn_json(const pn_type_t *type, const void *value, pn_text_t *out)
     case PN_KIND_UNION:
         json_union(type, value, out);
         break;
+    case PN_KIND_REF:
     case PN_KIND_UNIT:
     default:
         pn_text_str(out, "null");
@@ -257,6 +261,7 @@ void pn_mkstr(const pn_type_t *type, const void *value, pn_text_t *out)
     case PN_KIND_UNION:
         mkstr_union(type, value, out);
         break;
+    case PN_KIND_REF:
     case PN_KIND_UNIT:
     default:
         pn_text_str(out, (type->name_of_value != NULL) ? type->name_of_value[0] : "()");
@@ -274,6 +279,50 @@ pn_string_t pn_mkstr_string(pn_ctx_t *cx, const pn_type_t *type, const void *val
         pn_raise(cx, PN_ERR_MEMORY, NULL);
     }
     return pn_string_make(cx, buffer, text.length);
+}
+
+/* --- references and exceptions ------------------------------------------------------------------------------------- */
+
+void *pn_ref_new(pn_ctx_t *cx, const void *value, size_t size)
+{
+    unsigned char *cell = pn_arena_alloc(cx, PN_REF_HEADER + size);
+    if (cell == NULL) {
+        return NULL;
+    }
+    store_pointer(cell, NULL);
+    (void)memcpy(&cell[PN_REF_HEADER], value, size);
+    return &cell[PN_REF_HEADER];
+}
+
+/* The error that an exception of the runtime has by its name; an exception of the net itself otherwise. */
+static pn_error_t error_of(const char *name)
+{
+    static const pn_error_t known[] = {
+        PN_ERR_OVERFLOW, PN_ERR_DIV, PN_ERR_MATCH, PN_ERR_BIND, PN_ERR_SUBSCRIPT, PN_ERR_EMPTY, PN_ERR_DOMAIN, PN_ERR_SUBTRACT,
+    };
+    for (size_t i = 0U; i < (sizeof known / sizeof known[0]); i++) {
+        if (strcmp(pn_error_name(known[i]), name) == 0) {
+            return known[i];
+        }
+    }
+    return PN_ERR_RAISED;
+}
+
+void pn_raise_value(pn_ctx_t *cx, const pn_type_t *type, const void *exception)
+{
+    if (pn_ok(cx)) {
+        const char *name = type->field[load_tag(exception)].label;
+        const void *packet = pn_arena_copy(cx, exception, type->size);
+        pn_raise(cx, error_of(name), name);
+        cx->exception = (cx->error == PN_ERR_MEMORY) ? NULL : packet;
+    }
+}
+
+pn_string_t pn_exception_name(const pn_type_t *type, const void *exception)
+{
+    const char *name = type->field[load_tag(exception)].label;
+    const pn_string_t text = { name, (uint32_t)strlen(name) };
+    return text;
 }
 
 /* --- legality ------------------------------------------------------------------------------------------------------ */
@@ -337,6 +386,7 @@ static bool has_legal_parts(pn_ctx_t *cx, const pn_type_t *type, const void *val
     case PN_KIND_UNIT:
     case PN_KIND_BOOL:
     case PN_KIND_CHAR:
+    case PN_KIND_REF:
     default:
         return true;
     }
@@ -428,6 +478,7 @@ uint64_t pn_type_size(const pn_type_t *type)
     case PN_KIND_REAL:
     case PN_KIND_STRING:
     case PN_KIND_LIST:
+    case PN_KIND_REF:
     default:
         return 0U;
     }
@@ -505,6 +556,7 @@ uint64_t pn_type_position(const pn_type_t *type, const void *value)
     case PN_KIND_REAL:
     case PN_KIND_STRING:
     case PN_KIND_LIST:
+    case PN_KIND_REF:
     default:
         return 0U;
     }

@@ -10,6 +10,9 @@
 
 #include "pn/pn_type.h"
 
+/* Before the contents of a cell of pn_ref_new: where it has been moved to. */
+#define PN_REF_HEADER sizeof(max_align_t)
+
 static inline const void *load_pointer(const void *at)
 {
     const void *pointer = NULL;

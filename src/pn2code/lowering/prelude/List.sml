@@ -13,3 +13,10 @@ fun List_partition p xs =
     let fun loop (nil, yes, no) = (rev yes, rev no)
           | loop (x :: rest, yes, no) = if p x then loop (rest, x :: yes, no) else loop (rest, yes, x :: no)
     in loop (xs, nil, nil) end
+
+fun List_predlist p xs = List.exists p xs
+
+fun List_mapfilter (f, xs) =
+    let fun loop (nil, out) = rev out
+          | loop (x :: rest, out) = (case !f x of (true, y) => loop (rest, y :: out) | (false, _) => loop (rest, out))
+    in loop (xs, nil) end

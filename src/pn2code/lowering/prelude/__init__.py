@@ -21,7 +21,19 @@ from pn2code.diagnostics import Diagnostics, Origin, SourceText, Span
 from pn2code.ml import core
 from pn2code.ml.core import Symbol
 from pn2code.ml.elaborate import Elaborator
-from pn2code.ml.types import INT, INTINF, REAL, STRING, TCon, TFun, TRecord, TVar, Type, tuple_of
+from pn2code.ml.types import (
+    BOOL,
+    INT,
+    INTINF,
+    REAL,
+    STRING,
+    TCon,
+    TFun,
+    TRecord,
+    TVar,
+    Type,
+    tuple_of,
+)
 
 FOLDER = Path(__file__).resolve().parent
 
@@ -39,7 +51,6 @@ LAST_UID = 1 << 41
 
 _WORD = INTINF
 _SUBSTRING = tuple_of(STRING, INT, INT)
-_HANDLE = INT
 
 _REPRESENTATIONS: Mapping[str, Type] = {
     "word": _WORD,
@@ -49,9 +60,11 @@ _REPRESENTATIONS: Mapping[str, Type] = {
     "Timer.real_timer": INTINF,
     "Timer.cpu_timer": INTINF,
     "Date.date": tuple_of(REAL, INT),
-    "TextIO.instream": _HANDLE,
-    "TextIO.outstream": _HANDLE,
-    "OS.FileSys.dirstream": _HANDLE,
+    "TextIO.instream": tuple_of(STRING, STRING, TCon("ref", (INT,)), TCon("ref", (BOOL,))),
+    "TextIO.outstream": tuple_of(STRING, INT, TCon("ref", (BOOL,))),
+    "OS.FileSys.dirstream": tuple_of(
+        TCon("list", (STRING,)), TCon("ref", (INT,)), TCon("ref", (BOOL,))
+    ),
     "OS.Process.status": INT,
     "OS.syserror": STRING,
     "Random.rand": INT,

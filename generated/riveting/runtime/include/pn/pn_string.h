@@ -51,7 +51,7 @@ bool pn_char_is_lower(uint8_t c);
 uint8_t pn_char_to_upper(uint8_t c);
 uint8_t pn_char_to_lower(uint8_t c);
 
-/* Writes to the standard error output: the standard output belongs to the host. */
+/* Writes to the run's output (pn_file.h). */
 void pn_print(pn_ctx_t *cx, pn_string_t s);
 
 /* As CPN ML writes them: ~5, 1.5, 1E~05 (12 significant digits), true. */

@@ -12,6 +12,8 @@
  *     enumeration      enum (as unsigned int)     product, record             struct
  *     list             pointer to a constant cell { tail; head; }, NULL is the empty list
  *     union            struct { enum tag; union { ... } as; }; a recursive argument is a pointer into the arena
+ *     ref              pointer to what it holds: a cell of pn_ref_new, or a static variable
+ *     function, exn    as unions: the constructors are the functions, or exceptions, that there are
  *
  * The functions recurse over types and, for recursive data types, over values: never deeper than the value itself is nested.
  */
@@ -34,7 +36,8 @@ typedef enum pn_kind {
     PN_KIND_ENUM,
     PN_KIND_RECORD, /* product, record */
     PN_KIND_LIST,
-    PN_KIND_UNION
+    PN_KIND_UNION,
+    PN_KIND_REF
 } pn_kind_t;
 
 struct pn_type;
@@ -66,7 +69,7 @@ typedef struct pn_type {
     uint32_t count;               /* of fields, of names */
     const pn_field_t *field;      /* RECORD, UNION */
     const char *const *name_of_value; /* ENUM: constructors; UNIT, BOOL: as declared; INT with is_index: the stem */
-    const struct pn_type *element;    /* LIST */
+    const struct pn_type *element;    /* LIST, REF */
     size_t head;                  /* LIST: offset of the head in a cell; the tail is first */
     size_t cell;                  /* LIST: size of a cell */
     bool (*member)(pn_ctx_t *cx, const void *value); /* SUBSET: further condition; NULL: none */
@@ -107,6 +110,13 @@ uint64_t pn_type_position(const pn_type_t *type, const void *value);
 uint32_t pn_to_leaves(const pn_type_t *type, const void *value, pn_leaf_t *leaf, uint32_t capacity);
 /* A value from its leaves. False (PN_ERR_COLOUR) when kinds, numbers or ranges do not fit. */
 bool pn_from_leaves(pn_ctx_t *cx, const pn_type_t *type, void *value, const pn_leaf_t *leaf, uint32_t leaves);
+
+/* A cell in the arena that holds a copy of a value; NULL when the arena is full. */
+void *pn_ref_new(pn_ctx_t *cx, const void *value, size_t size);
+
+/* Raises an exception that is a value of the union `type`, unless there already is an error; the name of one. */
+void pn_raise_value(pn_ctx_t *cx, const pn_type_t *type, const void *exception);
+pn_string_t pn_exception_name(const pn_type_t *type, const void *exception);
 
 /* --- lists: cells { const cell *tail; element head; } ------------------------------------------------------------- */
 

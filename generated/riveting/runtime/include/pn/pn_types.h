@@ -41,6 +41,7 @@ typedef struct pn_ctx {
     struct pn_arena *arena;
     pn_error_t error;
     const char *error_name;   /* "Overflow", or the exception's name */
+    const void *exception;    /* the exception as a value, in the arena; NULL: its name says it all */
     const char *error_origin; /* net element being evaluated when it was raised */
     const char *origin;       /* net element being evaluated now */
     uint32_t depth;           /* of recursion */

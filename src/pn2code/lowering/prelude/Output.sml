@@ -1,0 +1,9 @@
+fun Output_getSimOutputDir () = "output"
+fun Output_getTopOutputDir () = "output"
+fun Output_getRepOutputDir () = "output"
+fun Output_getModelDir () = "."
+fun make () = if OS.FileSys.access ("output", nil) then () else OS.FileSys.mkDir "output"
+fun Output_initSimOutputDir () = make ()
+fun Output_initTopOutputDir () = make ()
+fun Output_initRepOutputDir () = make ()
+fun Output_myConcat (a, b) = OS.Path.concat (a, b)
