@@ -237,7 +237,7 @@ def test_inhibitor_and_reset_arcs() -> None:
 
 def test_use_and_unknown_declarations() -> None:
     d = diagnose('net N\n  use "a.sml"\n  place A')
-    assert [x.code for x in d.errors][0] == "unsupported-use"
+    assert [x.code for x in d.errors][0] == "used-file"
 
 
 def test_reference_without_value() -> None:

@@ -213,3 +213,9 @@ SIGNATURE = register(
     "a structure does not fit its signature",
     "`structure S : SIG = ..` needs in S everything that SIG lists, at the types that it gives.",
 )
+USED_FILE = register(
+    "used-file",
+    "a file of declarations cannot be used",
+    "`use \"file.sml\"` reads CPN ML declarations from a file in the net's folder. CPN Tools refuses the declaration when "
+    "the file is not there, and everything that needs the names declared in it.",
+)

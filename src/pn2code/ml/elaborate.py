@@ -16,9 +16,10 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, field, replace
 from functools import partial
+from pathlib import Path
 from typing import TypeVar
 
-from pn2code.diagnostics import Diagnostics, Origin, SourceText, Span
+from pn2code.diagnostics import Diagnostics, Origin, Severity, SourceText, Span
 from pn2code.ml import codes, core
 from pn2code.ml import syntax as s
 from pn2code.ml.annotations import Annotations
@@ -29,7 +30,7 @@ from pn2code.ml.constants import Constant, fold
 from pn2code.ml.context import Context, TooDeepError, suggestion
 from pn2code.ml.core import Program, Symbol
 from pn2code.ml.declarations import Declarations, break_modules, declared_by, types_declared_by
-from pn2code.ml.environment import Binding, BrokenEntry, BrokenType, Scope
+from pn2code.ml.environment import Binding, BrokenEntry, BrokenType, Scope, UnsupportedEntry
 from pn2code.ml.expressions import Expressions
 from pn2code.ml.fixity import Fixities, resolve_declaration, resolve_expression
 from pn2code.ml.inference import ICon, TypeTooLargeError, from_type
@@ -37,7 +38,8 @@ from pn2code.ml.inscriptions import Inscriptions, TypedCode
 from pn2code.ml.names import Names
 from pn2code.ml.parser import declared_names, parse_expression, parse_program
 from pn2code.ml.patterns import Patterns
-from pn2code.ml.types import Type
+from pn2code.ml.types import STRING, Type
+from pn2code.ml.used_files import UsedFiles
 
 __all__ = ["ColsetSpec", "Elaborator", "TypedCode"]
 
@@ -68,6 +70,7 @@ class Elaborator:
         values: replaces `val NAME = ...` of the net: name -> CPN ML text.
         real_time: whether the clock is real (option `realtimestamp`); decides the type `time`.
         int_bits: width of `int`, 31 or 64.
+        folder: the net's folder, where used files are; None: there are none.
     """
 
     def __init__(
@@ -77,8 +80,10 @@ class Elaborator:
         values: Mapping[str, str] | None = None,
         real_time: bool = False,
         int_bits: int = 31,
+        folder: Path | None = None,
     ) -> None:
         self._d = d
+        self._files = UsedFiles(folder)
         self._values = dict(values or {})
         self._replaced: set[str] = set()
         self._ctx = Context(d, real_time, int_bits=int_bits)
@@ -158,9 +163,9 @@ class Elaborator:
             self._break(declared_names(text), ())
             return
         for dec in program:
-            before = self._d.errors
+            before = len(self._d.items)
             self._border(text, partial(self._declaration, text, dec))
-            if len(self._d.errors) > len(before):
+            if any(x.severity is Severity.ERROR for x in self._d.items[before:]):
                 self._break(declared_names(text, dec.span.start, dec.span.end), ())
 
     def _declaration(self, text: SourceText, dec: s.Dec) -> None:
@@ -170,6 +175,10 @@ class Elaborator:
             break_modules(dec, self._ctx.top)
             return
         changed, self._fixities = resolved
+        used = self._used(changed)
+        if used is not None:
+            self._use(used)
+            return
         if isinstance(changed, s.ValDec) and self._values:
             changed = self._replace_values(changed)
         before = self._ctx.errors
@@ -238,6 +247,48 @@ class Elaborator:
             return False  # the net's own value is wrong, which is reported when it is declared
         self._expressions.check(new, t, f"value given for `{name}`")
         return self._ctx.errors == errors
+
+    def use(self, text: SourceText) -> None:
+        """`use text`: the declarations of a file; the text is CPN ML for its name."""
+        self._border(text, lambda: self._use_text(text))
+
+    def _use_text(self, text: SourceText) -> None:
+        name = self._parse(text)
+        if name is not None:
+            self._use(name)
+
+    def _used(self, dec: s.Dec) -> s.Exp | None:
+        """The argument of `use e` or `val _ = use e`; None if the declaration is not of this form."""
+        match dec:
+            case s.ExpDec(exp=e):
+                pass
+            case s.ValDec(bindings=(s.ValBinding(pattern=s.WildPat() | s.RecordPat(), value=e),)):
+                pass
+            case _:
+                return None
+        if isinstance(e, s.ApplyExp) and isinstance(e.function, s.NameExp):
+            if e.function.name == "use" and isinstance(
+                self._ctx.scope.value("use"), UnsupportedEntry
+            ):
+                return e.argument
+        return None
+
+    def _use(self, written: s.Exp) -> None:
+        found = self._inscriptions.plain(written, (STRING,), "name of a file")
+        if found is None:
+            return
+        name = self._fold(found[1])
+        if not isinstance(name, str):
+            self._d.error(
+                codes.USED_FILE,
+                "the name of this file is not a constant that can be computed here",
+                written.span,
+                hint='write it as a text: `use "functions.sml"`',
+            )
+            return
+        with self._files.read(name, written.span, self._d) as text:
+            if text is not None:
+                self.declarations(text)
 
     def globref(self, name: str, text: SourceText, origin: Origin) -> None:
         """`globref name = text`."""

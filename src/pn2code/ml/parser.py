@@ -22,7 +22,7 @@ from pn2code.ml.tree import Group, MlToken, TreeBuilder
 from pn2code.parser_cache import kept_lark
 
 _STARTS = ["program", "expression", "expressions", "layered", "code"]
-_OLD_DECLARATIONS = frozenset({"colset", "color", "var", "globref", "pageref", "instref", "use"})
+_OLD_DECLARATIONS = frozenset({"colset", "color", "var", "globref", "pageref", "instref"})
 
 
 class _Feed(Lexer):
@@ -138,7 +138,7 @@ def _old_declaration(source: SourceText, tokens: Sequence[Lexeme], d: Diagnostic
         first = i == 0 or tokens[i - 1].kind == "SEMI"
         if first and token.kind == "ID" and token.text in _OLD_DECLARATIONS:
             following = tokens[i + 1].kind
-            if following == "ID" or (token.text == "use" and following == "STRING"):
+            if following == "ID":
                 d.error(
                     codes.UNSUPPORTED_ML,
                     f"a `{token.text}` declaration as plain text is not supported",
@@ -202,7 +202,8 @@ def _report(
     message = f"{found}, {expected} expected" if expected else found
     before = [t for t in tokens if t.end <= span.start or at_end]
     accepted = frozenset(problem.accepts or ())
-    hint = hint or advice.syntax(token.type, str(token), before, accepted, start)
+    after = [t for t in tokens if t.start >= span.end and not at_end]
+    hint = hint or advice.syntax(token.type, str(token), before, after, accepted, start)
     d.error(codes.SYNTAX_ERROR, message, span, hint=hint)
 
 

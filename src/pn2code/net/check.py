@@ -5,12 +5,13 @@ All independent errors are reported; elements that depend on something broken ar
 
 from __future__ import annotations
 
-import difflib
 import re
 from collections.abc import Mapping
 from dataclasses import replace
+from pathlib import Path
 
 from pn2code.diagnostics import Diagnostics, Note, SourceText
+from pn2code.ml.advice import near
 from pn2code.ml.colsets import Colset, Kind
 from pn2code.ml.core import Exp
 from pn2code.ml.elaborate import ColsetSpec, Elaborator
@@ -25,7 +26,6 @@ from pn2code.net.codes import (
     PLACE_COLSET,
     UNSUPPORTED_CHANNEL,
     UNSUPPORTED_DECLARATION,
-    UNSUPPORTED_USE,
 )
 from pn2code.net.flat import ArcInscription, ArcKind, CodeSegment, Form
 from pn2code.net.linked import Arc, Net, Page, Place, Transition
@@ -81,7 +81,13 @@ class _Checker:
     ) -> None:
         self.net = net
         self.d = d
-        self.elaborator = Elaborator(d, values=values, real_time=net.real_time, int_bits=int_bits)
+        self.elaborator = Elaborator(
+            d,
+            values=values,
+            real_time=net.real_time,
+            int_bits=int_bits,
+            folder=Path(net.document.file).parent,
+        )
         self.broken: set[str] = set()
         declared = {
             c.name
@@ -127,12 +133,7 @@ class _Checker:
             case RawGlobref():
                 e.globref(declaration.name, declaration.text, declaration.origin)
             case RawUse():
-                self.d.error(
-                    UNSUPPORTED_USE,
-                    f"`use {declaration.text.text}` is not supported",
-                    declaration.text.span(),
-                    hint="copy the declarations of that file into the net",
-                )
+                e.use(declaration.text)
             case RawOther() if declaration.tag == "globref":
                 self.d.warning(
                     DECLARATION_EMPTY,
@@ -218,8 +219,10 @@ class _Checker:
         colset = self.program.colsets.get(name)
         if colset is not None or name in self.broken:
             return colset
-        near = difflib.get_close_matches(name, self.program.colsets, n=1)
-        hint = f"did you mean `{near[0]}`?" if near else f"declare `colset {name} = ...;`"
+        close = near(name, self.program.colsets)
+        hint = f"did you mean `{close}`?" if close else f"declare `colset {name} = ...;`"
+        if not name.isidentifier():
+            hint = f"give it a name, `colset NAME = {name};`, and write the name here"
         if place.colset is None:
             self.d.error(
                 PLACE_COLSET,

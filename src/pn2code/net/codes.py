@@ -61,11 +61,6 @@ UNSUPPORTED_CHANNEL = register(
     "feature. pn2code reads the net, but lets such transitions fire alone. Merge the transitions, or use a place "
     "between them.",
 )
-UNSUPPORTED_USE = register(
-    "unsupported-use",
-    "`use` of further files is not supported",
-    '`use "file.sml"` reads declarations from another file. Copy the declarations into the net.',
-)
 DECLARATION_EMPTY = register(
     "declaration-empty",
     "a reference declaration has no value",
