@@ -23,6 +23,7 @@ from pn2code.cli.options import (
     parse_values,
 )
 from pn2code.semantics import replay as own
+from pn2code.semantics.json_text import BadJson, parse_json
 from pn2code.semantics.recording import NotARecording, Recording, recording
 from pn2code.semantics.replay_recording import follow
 from pn2code.semantics.report import places, time_text
@@ -82,15 +83,13 @@ def kind(trace: Path) -> Recording | None:
             if trace.stat().st_size > LARGEST:
                 _refuse(f"`{trace}` is too large for a recording")
             lines.seek(0)
-            return recording(json.load(lines))
+            return recording(parse_json(lines.read()))
     except OSError as problem:
         _refuse(f"cannot read `{trace}`: {problem.strerror or problem}")
     except UnicodeDecodeError:
         _refuse(f"`{trace}` is not a trace: it is no UTF-8 text")
-    except json.JSONDecodeError as problem:
+    except BadJson as problem:
         _refuse(f"`{trace}` is not a trace: {problem}")
-    except RecursionError:
-        _refuse(f"`{trace}` is not a trace: it is nested too deeply")
     except NotARecording as problem:
         _refuse(f"`{trace}`: {problem}")
 
@@ -98,8 +97,8 @@ def kind(trace: Path) -> Recording | None:
 def _is_header(line: str) -> bool:
     """Whether a line by itself is the header of a trace, or another line of one."""
     try:
-        data = json.loads(line)
-    except (json.JSONDecodeError, RecursionError):
+        data = parse_json(line)
+    except BadJson:
         return False
     return isinstance(data, dict) and not {"trace", "transition", "event"}.isdisjoint(data)
 

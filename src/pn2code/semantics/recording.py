@@ -78,6 +78,8 @@ def _step(number: int, data: Any) -> RecordedStep:
     binding = data.get("binding") or {}
     if not isinstance(binding, dict) or not all(isinstance(x, str) for x in binding.values()):
         raise NotARecording(f"the binding of step {number} is not an object of CPN ML texts")
+    if not isinstance(data.get("time", ""), str | int | float | None):
+        raise NotARecording(f"the `time` of step {number} is not a text or number")
     instance = data.get("instance", 0)
     if isinstance(instance, bool) or not re.fullmatch(r"[0-9]+", str(instance)):
         raise NotARecording(f"the instance of step {number} is not a number")

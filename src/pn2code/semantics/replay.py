@@ -26,6 +26,7 @@ from pn2code.semantics.codes import TRACE_REFUSED
 from pn2code.semantics.colour_json import JsonError, from_json, to_json
 from pn2code.semantics.evaluate import Limits
 from pn2code.semantics.game import Game, GameError
+from pn2code.semantics.json_text import BadJson, parse_json
 from pn2code.semantics.marking import (
     BindingElement,
     Marking,
@@ -186,8 +187,8 @@ def _rules_for(by: str, time_unit: float) -> Rules:
 
 def _object(text: str) -> dict[str, Any]:
     try:
-        data = json.loads(text)
-    except json.JSONDecodeError as error:
+        data = parse_json(text)
+    except BadJson as error:
         raise _Wrong(f"not JSON: {error}") from None
     if not isinstance(data, dict):
         raise _Wrong("not a JSON object")
