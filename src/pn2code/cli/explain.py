@@ -23,6 +23,7 @@ EPILOG = """Examples:
 REGISTERING = (
     "pn2code.cell.codes",
     "pn2code.cli.robot",
+    "pn2code.drawing.codes",
     "pn2code.lowering.codes",
     "pn2code.lowering.robot_codes",
     "pn2code.ml.codes",

@@ -221,8 +221,10 @@ class _Painter:
         self, kind: str, identity: str, content: Sequence[str], link: str = "", anchor: str = ""
     ) -> None:
         """A `g` for an element; inside a link if there is one."""
-        extra = " problem" if identity in self.overlay.problems else ""
-        extra += " enabled" if identity in self.overlay.enabled else ""
+        extra = ""
+        if kind.split()[0] not in ("label", "tag"):
+            extra += " problem" if identity in self.overlay.problems else ""
+            extra += " enabled" if identity in self.overlay.enabled else ""
         inner = "".join(content)
         if link:
             inner = f'<a href="{text.attribute(link)}">{inner}</a>'
