@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from collections.abc import Callable
 from pathlib import Path
 from typing import Annotated, Any, NoReturn
 
@@ -21,12 +22,17 @@ from pn2code.cli.options import (
     JsonOption,
     SetOption,
     parse_values,
+    stop,
 )
+from pn2code.diagnostics import Diagnostics
 from pn2code.semantics import replay as own
 from pn2code.semantics.json_text import BadJson, parse_json
 from pn2code.semantics.recording import NotARecording, Recording, recording
 from pn2code.semantics.replay_recording import follow
 from pn2code.semantics.report import places, time_text
+from pn2code.simulate.recorded import repeat, repeat_occurrences
+from pn2code.simulate.run import DEFAULT_SEED, Outcome
+from pn2code.simulate.script import TraceRefusedError
 
 EPILOG = """Examples:
 
@@ -56,15 +62,13 @@ def replay(
     """
     what = kind(trace)
     opened = open_net(net, parse_values(settings), form, int_bits=int_bits)
-    if isinstance(what, Recording):
-        if engine is Engine.COMPILED:
-            _refuse("--engine compiled repeats a *.trace.jsonl only; this is a recording")
-        with playing(form):
-            result = _recording(what, opened, files)
-    elif engine is Engine.COMPILED:
-        _refuse("--engine compiled is not there yet")
-    else:
-        result = _own(trace, opened, files)
+    with playing(form):
+        if isinstance(what, Recording):
+            result = _recording(what, opened, files, engine, form)
+        elif engine is Engine.COMPILED:
+            result = _compiled(trace, opened, files, form)
+        else:
+            result = _own(trace, opened)
     if as_json:
         typer.echo(json.dumps(result, indent=1))
     else:
@@ -108,10 +112,12 @@ def _refuse(message: str) -> NoReturn:
     raise typer.Exit(Exit.USAGE)
 
 
-def _recording(run: Recording, opened: OpenNet, files: Path | None) -> dict[str, Any]:
-    """A recording, by the token game."""
-    followed = follow(run, opened.game(seed=0, files=files))
-    return {
+def _recording(
+    run: Recording, opened: OpenNet, files: Path | None, engine: Engine, form: Format
+) -> dict[str, Any]:
+    """A recording, by the token game; what is determined, by the compiled net as well if that is wanted."""
+    followed = follow(run, opened.game(seed=DEFAULT_SEED, files=files))
+    result: dict[str, Any] = {
         "ok": followed.ok,
         "steps": followed.steps,
         "failed_step": None if followed.ok else followed.steps + 1,
@@ -119,11 +125,71 @@ def _recording(run: Recording, opened: OpenNet, files: Path | None) -> dict[str,
         "time": followed.time,
         "random": followed.random,
         "drawn": list(followed.drawn),
+        "engine": Engine.REFERENCE.value,
         "places": followed.rows,
+    }
+    if engine is Engine.REFERENCE or not followed.ok:
+        return result
+    if followed.random:
+        reason = (
+            "the compiled net cannot be told what was drawn, so the token game alone followed it"
+        )
+        return {**result, "why": f"{followed.why}; {reason}"}
+    outcome = _by_program(
+        lambda d: repeat_occurrences(opened.flat, opened.storage, followed.occurrences, files, d),
+        form,
+    )
+    compiled = _outcome(outcome, opened)
+    differing = [
+        row["id"]
+        for row, ours in zip(followed.rows, compiled["places"], strict=True)
+        if row["marking"] != ours["marking"]
+    ]
+    if compiled["ok"] and differing and opened.flat.timed:
+        reason = "of equal tokens with different stamps the compiled net takes others than the recorded run did"
+        return {**result, "why": f"{reason}, so the token game alone followed it"}
+    if compiled["ok"] and differing:
+        why = f"in the end the compiled net has another marking of {differing[0]}"
+        return {**compiled, "ok": False, "failed_step": compiled["steps"] + 1, "why": why}
+    return {**compiled, "time": followed.time}
+
+
+def _compiled(trace: Path, opened: OpenNet, files: Path | None, form: Format) -> dict[str, Any]:
+    """A trace of our own, by the compiled net."""
+    outcome = _by_program(lambda d: repeat(opened.flat, opened.storage, trace, files, d), form)
+    return _outcome(outcome, opened)
+
+
+def _by_program(run: Callable[[Diagnostics], Outcome | None], form: Format) -> Outcome:
+    """What the compiled net made of a trace; leaves when there is no compiled net, or the file is no trace."""
+    d = Diagnostics()
+    try:
+        outcome = run(d)
+    except TraceRefusedError as problem:
+        _refuse(f"the trace cannot be repeated: {problem}")
+    except OSError as problem:
+        _refuse(f"the trace cannot be repeated: {problem.strerror or problem}")
+    if outcome is None:
+        stop(d, form)
+    return outcome
+
+
+def _outcome(outcome: Outcome, opened: OpenNet) -> dict[str, Any]:
+    ok = outcome.why not in ("replay", "error")
+    why = outcome.refusal or (outcome.failure.message if outcome.failure else "")
+    return {
+        "ok": ok,
+        "steps": outcome.replayed,
+        "failed_step": None if ok else outcome.replayed + 1,
+        "why": why,
+        "time": outcome.final.time if outcome.final else None,
+        "random": False,
+        "engine": Engine.COMPILED.value,
+        "places": places(opened.flat, outcome.final) if outcome.final else [],
     }
 
 
-def _own(trace: Path, opened: OpenNet, files: Path | None) -> dict[str, Any]:
+def _own(trace: Path, opened: OpenNet) -> dict[str, Any]:
     """A trace of our own, by the token game."""
     result = own.replay(trace, opened.flat, opened.storage)
     game = result.game
@@ -136,6 +202,7 @@ def _own(trace: Path, opened: OpenNet, files: Path | None) -> dict[str, Any]:
         "transition": result.transition,
         "ended": result.ended,
         "time": game.marking.time if game else None,
+        "engine": Engine.REFERENCE.value,
         "places": places(opened.flat, game.marking) if game else [],
     }
 

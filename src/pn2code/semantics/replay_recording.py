@@ -15,7 +15,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 from pn2code.ml.colsets import Colset, Kind
@@ -37,6 +37,10 @@ MOST_STATES = 200
 """States that are carried along; of more, the first are."""
 
 
+Occurrence = tuple[int | float, BindingElement]
+"""When, and what."""
+
+
 @dataclass(frozen=True, slots=True)
 class Followed:
     """What became of a recording.
@@ -49,6 +53,7 @@ class Followed:
         time: of the last marking.
         rows: the last marking; what is not known of it is as recorded, and so is said in `drawn`.
         drawn: names of the places with tokens that depend on drawn numbers.
+        occurrences: (time, binding element) of each step that was repeated.
     """
 
     ok: bool
@@ -58,15 +63,28 @@ class Followed:
     time: int | float
     rows: list[PlaceRow]
     drawn: tuple[str, ...] = ()
+    occurrences: tuple[Occurrence, ...] = ()
 
 
 @dataclass(frozen=True, slots=True)
 class State:
-    """A marking that fits what has been seen, what is not known of it, and the contents of the references."""
+    """A marking that fits what has been seen, what is not known of it, the contents of the references, and how one
+    comes there (one way, if there are several)."""
 
     marking: Marking
     unknown: Unknown
     references: tuple[Value, ...]
+    path: Any = field(default=None, compare=False)
+    """(what came before, the last occurrence), or None at the start"""
+
+    def occurrences(self) -> tuple[Occurrence, ...]:
+        """All since the start."""
+        found: list[Occurrence] = []
+        path = self.path
+        while path is not None:
+            path, last = path
+            found.append(last)
+        return tuple(reversed(found))
 
 
 class _Refused(Exception):  # noqa: N818
@@ -226,13 +244,14 @@ class _Follower:
             if drawn:
                 why += f"; in the end that is what {_list(drawn)} hold{'s' * (len(drawn) == 1)}"
         return Followed(
-            True,
-            len(run.steps),
-            why,
-            self.lenient,
-            state.marking.time,
-            self.rows(state, run),
-            drawn,
+            ok=True,
+            steps=len(run.steps),
+            why=why,
+            random=self.lenient,
+            time=state.marking.time,
+            rows=self.rows(state, run),
+            drawn=drawn,
+            occurrences=state.occurrences(),
         )
 
     def refused(self, state: State, steps: int, why: str, run: Recording) -> Followed:
@@ -447,7 +466,8 @@ class _Follower:
                 if unknown.covers(arc.place):
                     unknown = unknown.opened(arc.place)
         after = replace(marking, places=tuple(held))
-        return State(after, unknown, self.references.contents())
+        path = (state.path, (marking.time, BindingElement.make(t, full)))
+        return State(after, unknown, self.references.contents(), path)
 
     def outputs(
         self, unknown: Unknown, t: FlatTransition, binding: Binding, step: RecordedStep
