@@ -3,8 +3,8 @@
     evaluator = Evaluator(program)
     evaluator.value(exp, {net_variable: 3})      # -> a value, or MlException
 
-How it is built: `step(exp, env)` gives either the value at once (literals, variables) or a *task*, a Python
-generator. A task asks for the value of another step by yielding it, and ends by returning its value, or
+How it is built: `step(exp, env)` gives the value at once where no function of the net has to be called, else a *task*,
+a Python generator. A task asks for the value of another step by yielding it, and ends by returning its value, or
 `Tail(step)` to continue as another step. One loop, `run`, keeps the tasks that wait on a stack of its own: deep
 recursion in CPN ML never becomes deep recursion in Python, tail calls do not grow the stack, and an exception of
 CPN ML goes up through the waiting tasks as the Python exception `MlException`.
@@ -15,6 +15,7 @@ expression has seen it.
 
 from __future__ import annotations
 
+import sys
 from collections.abc import Callable, Generator, Iterable, Mapping
 from dataclasses import dataclass
 from types import GeneratorType
@@ -34,10 +35,11 @@ from pn2code.semantics.values import Closure, Data, MlException, MlLimit, Native
 Environment = Mapping[int, Value]
 Task = Generator[Any, Any, Any]
 """Yields steps, is sent their values, returns a value or a `Tail`."""
-Step = Value | Task
+Step = Any
+"""A value, or a task that finds it."""
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(slots=True, eq=False)
 class Tail:
     """What a task returns to be replaced by another step."""
 
@@ -49,12 +51,16 @@ class Limits:
     """Where evaluation gives up with `MlLimit`.
 
     Args:
-        steps: most steps in one evaluation; None: no limit.
-        depth: most tasks that may wait for each other.
+        steps: most steps in one evaluation, about one for each call of a function; None: no limit.
+        depth: most tasks that may wait for each other, about two for each call.
     """
 
-    steps: int | None = 20_000_000
-    depth: int = 200_000
+    steps: int | None = 3_000_000
+    depth: int = 700_000
+
+
+_RECURSION_LIMIT = 100_000
+"""Python frames for one expression; they are not on C's stack."""
 
 
 class Evaluator:
@@ -90,6 +96,8 @@ class Evaluator:
         output: Callable[[str], None] = lambda text: None,
         files: Files | None = None,
     ) -> None:
+        # Nested expressions (`a ++ b ++ ...`) are nested calls here; those of functions are not.
+        sys.setrecursionlimit(max(sys.getrecursionlimit(), _RECURSION_LIMIT))
         self.program: core.Program = program
         self.limits = limits or Limits()
         self.files: Files = files or Files(output=output)
@@ -125,135 +133,179 @@ class Evaluator:
         """
         waiting: list[Task] = []
         fuel = self.limits.steps
+        depth = self.limits.depth
         current: Any = step
-        error: MlException | None = None
         while True:
+            if type(current) is GeneratorType:
+                if len(waiting) >= depth:
+                    raise MlLimit(f"recursion deeper than {depth} calls that wait for each other")
+                waiting.append(current)
+                current = None
+            elif not waiting:
+                return current
             if fuel is not None:
                 fuel -= 1
                 if fuel < 0:
                     raise MlLimit(f"no end after {self.limits.steps} steps")
-            if error is None and isinstance(current, GeneratorType):
-                if len(waiting) >= self.limits.depth:
-                    raise MlLimit(f"recursion deeper than {self.limits.depth}")
-                waiting.append(current)
-                current = None
-            elif not waiting:
-                if error is not None:
-                    raise error
-                return current
-            task = waiting[-1]
             try:
-                if error is None:
-                    current = task.send(current)
-                else:
-                    # without the traceback, which would grow with every task on the way
-                    thrown, error = error.with_traceback(None), None
-                    current = task.throw(thrown)
+                current = waiting[-1].send(current)
             except StopIteration as stop:
                 waiting.pop()
-                current = stop.value.step if isinstance(stop.value, Tail) else stop.value
+                current = stop.value
+                if type(current) is Tail:
+                    current = current.step
             except MlException as raised:
                 waiting.pop()
-                error = raised
+                current = self._handled(waiting, raised)
             except RecursionError:
                 raise MlLimit("a value is nested too deeply") from None
+
+    def _handled(self, waiting: list[Task], raised: MlException) -> Step:
+        """Gives an exception to the waiting tasks, the last one first, until one handles it: what that continues with.
+
+        Raises:
+            MlException: none does.
+        """
+        while waiting:
+            try:
+                # without the traceback, which would grow with every task on the way
+                return waiting[-1].throw(raised.with_traceback(None))
+            except StopIteration as stop:
+                waiting.pop()
+                return stop.value.step if type(stop.value) is Tail else stop.value
+            except MlException as another:
+                waiting.pop()
+                raised = another
+        raise raised
 
     # --- expressions ---------------------------------------------------------------------------
 
     def step(self, exp: core.Exp, env: Environment) -> Step:
-        """The value of an expression, or the task that finds it."""
-        match exp:
-            case core.Var(symbol):
-                return env[symbol.uid] if symbol.uid in env else self.globals[symbol.uid]
-            case core.Lit(value):
-                return value
-            case core.Apply():
-                return self._apply(exp, env)
-            case core.Builtin(name, colset=colset):
-                return builtin(self, name) if colset is None else colset_builtin(self, name, colset)
-            case core.RecordExp():
-                return self._record(exp, env)
-            case core.Con(constructor):
-                return _construct(constructor)
-            case core.If():
-                return self._if(exp, env)
-            case core.Select():
-                return self._select(exp, env)
-            case core.ListExp(items):
-                return self._all(items, env) if items else ()
-            case core.Case():
-                return self._case(exp, env)
-            case core.Lambda(rules):
-                return Closure(rules, dict(env))
-            case core.Let():
-                return self._let(exp, env)
-            case core.Sequence():
-                return self._sequence(exp, env)
-            case core.While():
-                return self._while(exp, env)
-            case core.Raise():
-                return self._raise(exp, env)
-            case core.Handle():
-                return self._handle(exp, env)
-            case _:
-                assert_never(exp)
+        """The value of an expression, or the task that finds it.
+
+        What needs no call of a function of the net is evaluated at once, and may raise MlException here.
+        """
+        return _STEPS[type(exp)](self, exp, env)
 
     def call(self, function: Value, argument: Value, span: Span | None = None) -> Step:
         """The value of a function at an argument, or the task that finds it."""
-        if isinstance(function, Closure):
-            for rule in function.rules:
-                bound: dict[int, Value] = {}
-                if match(rule.pattern, argument, bound):
-                    return self.step(rule.body, {**function.environment, **bound})
-            raise MlException(exception("Match"), span)
+        if type(function) is Closure:
+            return self._enter(function, argument, span)
         assert isinstance(function, Native), "not a function"
         arguments = (*function.arguments, argument)
         if len(arguments) < function.arity:
             return Native(function.name, function.arity, function.function, arguments)
-        return function.function(self, *arguments)  # type: ignore[no-any-return]
-
-    def _apply(self, exp: core.Apply, env: Environment) -> Task:
-        function = yield self.step(exp.function, env)
-        argument = yield self.step(exp.argument, env)
         try:
-            return Tail(self.call(function, argument, exp.span))
+            return function.function(self, *arguments)
         except MlException as raised:
-            raised.span = raised.span or exp.span
+            raised.span = raised.span or span
             raise
 
-    def _record(self, exp: core.RecordExp, env: Environment) -> Task:
-        found: dict[str, Value] = {}
-        for label, field in exp.fields:
-            found[label] = yield self.step(field, env)
-        assert isinstance(exp.type, TRecord)
-        return tuple(found[label] for label, _ in exp.type.fields)
+    def _enter(self, function: Closure, argument: Value, span: Span | None) -> Task:
+        """The body of a function. Always a task, so that Python's stack does not grow with that of the net."""
+        for rule in function.rules:
+            bound: dict[int, Value] = {}
+            if match(rule.pattern, argument, bound):
+                return Tail(self.step(rule.body, {**function.environment, **bound}))
+        raise MlException(exception("Match"), span)
+        yield  # makes this a task
 
-    def _select(self, exp: core.Select, env: Environment) -> Task:
-        record = yield self.step(exp.record, env)
-        assert isinstance(exp.record.type, TRecord)
-        labels = [label for label, _ in exp.record.type.fields]
-        return record[labels.index(exp.label)]
+    def _variable(self, exp: core.Var, env: Environment) -> Step:
+        uid = exp.symbol.uid
+        return env[uid] if uid in env else self.globals[uid]
 
-    def _all(self, items: Iterable[core.Exp], env: Environment) -> Task:
+    def _builtin(self, exp: core.Builtin, env: Environment) -> Step:
+        if exp.colset is None:
+            return builtin(self, exp.name)
+        return colset_builtin(self, exp.name, exp.colset)
+
+    def _apply(self, exp: core.Apply, env: Environment) -> Step:
+        function = self.step(exp.function, env)
+        if type(function) is GeneratorType:
+            return self._apply_found(exp, env, function)
+        argument = self.step(exp.argument, env)
+        if type(argument) is GeneratorType:
+            return self._apply_to(exp, function, argument)
+        return self.call(function, argument, exp.span)
+
+    def _apply_found(self, exp: core.Apply, env: Environment, function: Task) -> Task:
+        found = yield function
+        argument = yield self.step(exp.argument, env)
+        return Tail(self.call(found, argument, exp.span))
+
+    def _apply_to(self, exp: core.Apply, function: Value, argument: Task) -> Task:
+        return Tail(self.call(function, (yield argument), exp.span))
+
+    def _record(self, exp: core.RecordExp, env: Environment) -> Step:
+        fields = exp.fields
+        values: list[Value] = []
+        for _, field in fields:
+            value = self.step(field, env)
+            if type(value) is GeneratorType:
+                return self._rest_of_record(exp, env, values, value)
+            values.append(value)
+        return _in_order(exp, values)
+
+    def _rest_of_record(
+        self, exp: core.RecordExp, env: Environment, values: list[Value], task: Task
+    ) -> Task:
+        values.append((yield task))
+        for _, field in exp.fields[len(values) :]:
+            values.append((yield self.step(field, env)))
+        return _in_order(exp, values)
+
+    def _construct(self, exp: core.Con, env: Environment) -> Step:
+        return _construct(exp.constructor)
+
+    def _select(self, exp: core.Select, env: Environment) -> Step:
+        record = self.step(exp.record, env)
+        if type(record) is GeneratorType:
+            return self._select_from(exp, record)
+        return _field(exp, record)
+
+    def _select_from(self, exp: core.Select, record: Task) -> Task:
+        return _field(exp, (yield record))
+
+    def _list(self, exp: core.ListExp, env: Environment) -> Step:
+        return self._items(exp.items, env) if exp.items else ()
+
+    def _items(self, items: Iterable[core.Exp], env: Environment) -> Task:
         found: list[Value] = []
         for item in items:
             found.append((yield self.step(item, env)))
         return tuple(found)
 
-    def _if(self, exp: core.If, env: Environment) -> Task:
-        condition = yield self.step(exp.condition, env)
-        return Tail(self.step(exp.then if condition else exp.otherwise, env))
+    def _if(self, exp: core.If, env: Environment) -> Step:
+        condition = self.step(exp.condition, env)
+        if type(condition) is GeneratorType:
+            return self._if_so(exp, env, condition)
+        return self.step(exp.then if condition else exp.otherwise, env)
 
-    def _case(self, exp: core.Case, env: Environment) -> Task:
-        value = yield self.step(exp.scrutinee, env)
+    def _if_so(self, exp: core.If, env: Environment, condition: Task) -> Task:
+        found = yield condition
+        return Tail(self.step(exp.then if found else exp.otherwise, env))
+
+    def _case(self, exp: core.Case, env: Environment) -> Step:
+        value = self.step(exp.scrutinee, env)
+        if type(value) is GeneratorType:
+            return self._case_of(exp, env, value)
+        return self._chosen(exp, env, value)
+
+    def _case_of(self, exp: core.Case, env: Environment, value: Task) -> Task:
+        return Tail(self._chosen(exp, env, (yield value)))
+
+    def _chosen(self, exp: core.Case, env: Environment, value: Value) -> Step:
         for rule in exp.rules:
             bound: dict[int, Value] = {}
             if match(rule.pattern, value, bound):
-                return Tail(self.step(rule.body, {**env, **bound}))
+                return self.step(rule.body, {**env, **bound})
         raise MlException(exception("Match"), exp.span)
 
+    def _lambda(self, exp: core.Lambda, env: Environment) -> Step:
+        return Closure(exp.rules, env)
+
     def _let(self, exp: core.Let, env: Environment) -> Task:
-        inner = dict(env)
+        inner = env
         for declaration in exp.declarations:
             inner = {**inner, **(yield self._declare(declaration, inner))}
         return Tail(self.step(exp.body, inner))
@@ -307,6 +359,46 @@ class Evaluator:
                 assert_never(declaration)
 
 
+_STEPS: dict[type, Callable[[Evaluator, Any, Environment], Step]] = {
+    core.Var: Evaluator._variable,
+    core.Lit: lambda e, exp, env: exp.value,
+    core.Apply: Evaluator._apply,
+    core.Builtin: Evaluator._builtin,
+    core.RecordExp: Evaluator._record,
+    core.Con: Evaluator._construct,
+    core.If: Evaluator._if,
+    core.Select: Evaluator._select,
+    core.ListExp: Evaluator._list,
+    core.Case: Evaluator._case,
+    core.Lambda: Evaluator._lambda,
+    core.Let: Evaluator._let,
+    core.Sequence: Evaluator._sequence,
+    core.While: Evaluator._while,
+    core.Raise: Evaluator._raise,
+    core.Handle: Evaluator._handle,
+}
+"""How to evaluate each kind of expression."""
+
+
+def _in_order(exp: core.RecordExp, values: list[Value]) -> Value:
+    """A record from the values of its fields as written."""
+    written = exp.fields
+    fields = exp.type.fields  # type: ignore[union-attr]
+    for i in range(len(written)):
+        if written[i][0] != fields[i][0]:
+            break
+    else:
+        return tuple(values)
+    found = dict(zip((label for label, _ in written), values, strict=True))
+    return tuple(found[label] for label, _ in fields)
+
+
+def _field(exp: core.Select, record: Any) -> Value:
+    assert isinstance(exp.record.type, TRecord)
+    labels = [label for label, _ in exp.record.type.fields]
+    return record[labels.index(exp.label)]  # type: ignore[no-any-return]
+
+
 def _construct(constructor: core.Constructor) -> Value:
     """A constructor as a value: itself, or the function that applies it."""
     match constructor.data_type, constructor.name:
@@ -334,12 +426,12 @@ def match(pattern: core.Pat, value: Any, bound: dict[int, Value]) -> bool:
             return _bind(symbol, value, bound)
         case core.PWild():
             return True
-        case core.PLit(literal):
-            return bool(value == literal)
         case core.PRecord(fields):
             return all(
                 match(field, item, bound) for (_, field), item in zip(fields, value, strict=True)
             )
+        case core.PLit(literal):
+            return bool(value == literal)
         case core.PAs(symbol, inner):
             return _bind(symbol, value, bound) and match(inner, value, bound)
         case core.PCon(constructor, argument):

@@ -23,7 +23,7 @@ from __future__ import annotations
 
 import math
 import struct
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
@@ -99,7 +99,7 @@ class Closure:
     """A function of the net: rules, and the values of the local variables around them."""
 
     rules: tuple[Rule, ...]
-    environment: dict[int, Value] = field(repr=False)
+    environment: Mapping[int, Value] = field(repr=False)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
