@@ -137,4 +137,5 @@ class TransitionNames:
         there = [
             t for t in named if step.page in ("", t.page) or _bare(engine_name(t.page)) == page
         ]
+        there = there or [t for t in named if not engine_name(t.page)]
         return [t for t in there if step.instance in (0, t.instance_number)] or there

@@ -30,11 +30,13 @@ from pn2code.semantics.multiset import TimedMultiSet
 from pn2code.semantics.recording import RecordedStep, Recording, TransitionNames
 from pn2code.semantics.references import References
 from pn2code.semantics.report import PlaceRow, places, time_text
-from pn2code.semantics.unknown import EXACT, Unknown, alternatives, final_difference, taken
+from pn2code.semantics.unknown import EXACT, Unknown, alternatives, counted, final_difference, taken
 from pn2code.semantics.values import Value
 
-MOST_STATES = 200
+MOST_STATES = 50
 """States that are carried along; of more, the first are."""
+MOST_WAYS = 4
+"""Ways to take the tokens of one binding that are followed."""
 
 
 Occurrence = tuple[int | float, BindingElement]
@@ -116,6 +118,7 @@ class _Follower:
         self.names = TransitionNames(game.net)
         self.references = References(game.evaluator)
         self.real_time = game.net.real_time
+        self.final_tokens: dict[int, dict[str, int]] = {}
 
     # --- what is drawn -----------------------------------------------------------------------------
 
@@ -152,6 +155,7 @@ class _Follower:
     # --- the run -------------------------------------------------------------------------------------
 
     def follow(self, run: Recording) -> Followed:
+        self.final_tokens = self.tokens_of(run)
         states = [self.start()]
         for number, step in enumerate(run.steps):
             candidates = self.names.candidates(step)
@@ -173,6 +177,15 @@ class _Follower:
                 return self.refused(states[0], number, why, run)
             states = list(after)[:MOST_STATES]
         return self.finished(states, run)
+
+    def tokens_of(self, run: Recording) -> dict[int, dict[str, int]]:
+        """The recorded final marking of the timed places: texts of tokens, how many of each."""
+        found = {}
+        for p in self.net.place_instances:
+            colset = self.net.places[p.place].colset
+            if colset.timed and (p.id, p.number) in run.final_marking:
+                found[p.place] = counted(run.final_marking[p.id, p.number], colset)
+        return found
 
     def finished(self, states: list[State], run: Recording) -> Followed:
         """After the last step: is one of the states the recorded final marking?"""
@@ -365,7 +378,7 @@ class _Follower:
 
             for binding in enabling.enabled(t, state.marking, accept=fits):
                 demands = enabling.demands(t, binding)
-                for left in alternatives(enabling, state.marking, demands):
+                for left in self.plausible(list(alternatives(enabling, state.marking, demands))):
                     found = True
                     yield left, state.unknown, binding
         if (
@@ -375,6 +388,29 @@ class _Follower:
             or not self.certain(state.unknown, t)
         ):
             yield from self.enabled_by_unknown(state, t, step)
+
+    def plausible(self, ways: list[Marking]) -> list[Marking]:
+        """Of the ways to take tokens some with which the recorded final marking can still be reached.
+
+        Nothing that is put later has a stamp before the present time: what the final marking has of such tokens must
+        be there now. Which of the others are taken first makes no difference.
+        """
+        if len(ways) == 1:
+            return ways
+        return [m for m in ways if self.holds_final(m)][:MOST_WAYS] or ways[:MOST_WAYS]
+
+    def holds_final(self, marking: Marking) -> bool:
+        for place, wanted in self.final_tokens.items():
+            tokens = marking.places[place]
+            if isinstance(tokens, TimedMultiSet):
+                colset = self.net.places[place].colset
+                held = counted(place_text(self.game.colours, colset, tokens), colset)
+                for text, count in wanted.items():
+                    stamp = _time(text.rpartition("@")[2], self.real_time)
+                    early = stamp is not None and stamp < marking.time
+                    if early and held.get(text, 0) < count:
+                        return False
+        return True
 
     def enabled_by_unknown(
         self, state: State, t: FlatTransition, step: RecordedStep

@@ -156,8 +156,8 @@ def final_difference(
     colours: Colours, c: Colset, tokens: PlaceMarking, unknown: Unknown, place: int, recorded: str
 ) -> str:
     """How a place differs from its recorded marking, as far as it is known; "" if it does not."""
-    left = _counted(recorded, c)
-    for text, count in _counted(colours.multiset_text(c, tokens), c).items():
+    left = counted(recorded, c)
+    for text, count in counted(colours.multiset_text(c, tokens), c).items():
         if left.get(text, 0) < count:
             return f"{count}`{text}"
         left[text] -= count
@@ -175,7 +175,7 @@ def final_difference(
     return ""
 
 
-def _counted(text: str, c: Colset) -> dict[str, int]:
+def counted(text: str, c: Colset) -> dict[str, int]:
     """A printed multi-set: text of a token -> how many."""
     if text == "empty":
         return {}
