@@ -18,6 +18,7 @@ from pn2code.drawing.html import Facts, draw_net
 from pn2code.drawing.scene import build
 from pn2code.drawing.style import colour, dash
 from pn2code.drawing.svg import Links, Overlay, Problem, Tokens, draw_page, draw_pages
+from pn2code.drawing.units import in_points
 from pn2code.reading.cpn import read_data
 from pn2code.reading.document import Document, RawPage
 
@@ -178,6 +179,16 @@ def test_arcs_between_the_same_nodes_run_side_by_side() -> None:
     assert abs(heads[0][1] - heads[1][1]) == pytest.approx(10)
 
 
+def test_old_files_in_millimetres_become_points() -> None:
+    old = layout().replace(b'format="6"', b'format="2"')
+    assert ids(drawn(old), "place") == ["A"]
+    (ellipse,) = groups(drawn(old), "place")[0].iter(f"{SVG}ellipse")
+    assert ellipse.get("ry") == "20"  # format 2, but already in points
+    small = old.replace(b'w="60" h="40"', b'w="20" h="10"')
+    (ellipse,) = groups(drawn(small), "place")[0].iter(f"{SVG}ellipse")
+    assert (ellipse.get("cx"), ellipse.get("ry")) == ("-283", "14.2")
+
+
 def test_default_texts_are_hidden() -> None:
     net = """
     net Defaults
@@ -286,7 +297,7 @@ def check_positions(found: Document, page: RawPage) -> None:
     scene = build(found, page)
     centres = {s.id: s.centre for s in scene.shapes}
     assert not scene.arranged
-    for node in page.nodes:
+    for node in in_points(found, page).nodes:
         x, y = centres[node.id]
         assert abs(x - node.layout.x) <= 0.5 and abs(y + node.layout.y) <= 0.5
 

@@ -14,6 +14,7 @@ from dataclasses import dataclass, field, replace
 from pn2code.drawing import text
 from pn2code.drawing.arrange import Arrangement, arrange
 from pn2code.drawing.geometry import Box, Point, along, around, enter, of_points, union
+from pn2code.drawing.units import in_points
 from pn2code.frozen import frozen
 from pn2code.reading.document import (
     Document,
@@ -161,7 +162,7 @@ def text_box(shape: Shape) -> Box:
 
 def build(document: Document, page: RawPage) -> Scene:
     """The scene of a page."""
-    return _Builder(document, page).scene()
+    return _Builder(document, in_points(document, page)).scene()
 
 
 @dataclass(slots=True)
