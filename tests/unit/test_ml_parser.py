@@ -225,7 +225,7 @@ def test_function_heads() -> None:
         ("fn x y", "syntax-error | text ends too early, `=>` expected | "),
         ("", "syntax-error | text is empty, an expression expected | "),
         ("(* only this *)", "syntax-error | text is empty, an expression expected | "),
-        ("x as y", "unsupported-inscription | `as` in an inscription is not supported | as"),
+        ("x as y", "syntax-error | `as` cannot stand here | as"),
         ("val x = 1", "syntax-error | unexpected `val`, an expression expected | val"),
     ],
 )
@@ -261,7 +261,7 @@ def test_wildcard_has_advice() -> None:
         ),
         (
             'use "f.sml"',
-            "unsupported-ml | a `use` declaration as plain text is not supported | use",
+            "used-file | the file `f.sml` cannot be used here | ",
         ),
         ("val x 3", "syntax-error | text ends too early, `=` expected | "),
         ("val (x = 3", "syntax-error | unexpected `=`, `)`, `,` or `|` expected | ="),

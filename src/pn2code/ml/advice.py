@@ -24,6 +24,7 @@ FOREIGN_OPERATORS: dict[str, str] = {
     "===": "write `=`",
     "\\=": "write `<>`",
     "/=": "write `<>`",
+    "is": "write `=`",
     "++=": "there is no assignment to variables: give the new value to a variable of its own",
 }
 """Operators of other languages, and what CPN ML has instead."""
@@ -41,6 +42,11 @@ _WORDS: dict[str, str] = {
     "append": "lists are joined with `^^`",
     "foreach": "`List.app f l` applies a function to each element of a list",
     "for": "CPN ML has no loop `for`: use `List.tabulate`, `map` or a recursive function",
+    "def": "functions are declared with `fun`: `fun f x = ..`",
+    "function": "functions are declared with `fun`: `fun f x = ..`",
+    "define": "functions are declared with `fun`: `fun f x = ..`",
+    "colset": "colour sets are declarations of their own in CPN Tools, not part of an expression",
+    "var": "variables are declarations of their own in CPN Tools, not part of an expression",
     "println": '`print` takes one string; a line ends with "\\n"',
     "printf": "`print` takes one string; numbers are converted with `Int.toString`",
 }
@@ -51,6 +57,39 @@ _OLD_MEMBERS = frozenset({
     "all", "size", "ord", "col", "ran", "mkstr", "mkstr_ms", "lt", "legal", "mult", "input", "output", "input_ms",
     "output_ms",
 })  # fmt: skip
+
+
+_STATE_SPACE = frozenset(
+    {"ListDeadMarkings", "SearchNodes", "SearchArcs", "NodeDescriptor", "ArcDescriptor", "InitNode", "EntireGraph",
+     "DeadMarking", "HomeSpace", "Reachable", "SccReachable", "NoOfNodes", "NoOfArcs", "OutNodes", "InNodes"}
+)  # fmt: skip
+
+BY_CODE: dict[str, str] = {
+    "duplicate-name": "remove or rename one of them",
+    "circular-type": "a function cannot be given itself as an argument",
+    "not-an-exception": 'declare one, `exception Bad of string`, and write `raise Bad ".."`; or `raise Fail ".."`',
+    "constructor-argument": "a constructor without argument stands alone",
+    "function-clauses": "all clauses of a function have the same number of arguments",
+    "unknown-colour-set": "it must be declared before this place, e.g. `colset NAME = int;`",
+    "colour-set-range": "write the lower bound first",
+}
+"""What to do, where nothing better is known."""
+
+DEFINITIONS: dict[str, str] = {
+    "unit": "colset E = unit with e;",
+    "bool": "colset SWITCH = bool with (off, on);",
+    "int": "colset N = int with 1..10;",
+    "string": 'colset WORD = string with "a".."z" and 1..8;',
+    "enum": "colset LIGHT = with red | green;",
+    "index": "colset SITE = index site with 1..5;",
+    "product": "colset PAIR = product INT * STRING;",
+    "record": "colset POINT = record x: INT * y: INT;",
+    "list": "colset INTS = list INT;",
+    "union": "colset MSG = union Data: STRING + Ack;",
+    "subset": "colset EVEN = subset INT by even;",
+    "alias": "colset TICKET = INT;",
+}
+"""How colour sets of each kind are written."""
 
 
 def near(name: str, known: Iterable[str], *, cutoff: float = 0.7) -> str:
@@ -67,6 +106,8 @@ def unbound_word(name: str, colsets: Iterable[str]) -> str:
         return f"it is called `List.{name}`"
     if name in _WORDS:
         return _WORDS[name]
+    if name in _STATE_SPACE:
+        return "it belongs to the state-space tool, and is not there before a state space has been made"
     member, apostrophe, colset = name.partition("'")
     if apostrophe and member in _OLD_MEMBERS and colset in set(colsets):
         return f"this is the spelling of Design/CPN: write `{colset}.{member}`"
@@ -75,13 +116,29 @@ def unbound_word(name: str, colsets: Iterable[str]) -> str:
     return ""
 
 
+def variable_out_of_scope(part: str) -> str:
+    """For a variable of the net in a text where it has no value."""
+    match part:
+        case "initial marking":
+            return "it is a variable of the net, which has a value only while a transition occurs: write a value"
+        case "priority":
+            return (
+                "it is a variable of the net; priorities are constants, the same for all bindings"
+            )
+        case "code segment":
+            return "it is a variable of the net: list it in `input (..)`"
+        case _:
+            return "it is a variable of the net: give it to a function as an argument"
+
+
 def unbound_path(structure: str, member: str, colsets: Iterable[str], known: Iterable[str]) -> str:
     """For `structure.member`; `known` are all names of the library."""
     names = list(known)
     members = [n.rpartition(".")[2] for n in names if n.rpartition(".")[0] == structure]
     if members:
         close = near(member, members)
-        return f"did you mean `{structure}.{close}`?" if close else ""
+        known = f"structure `{structure}` has no function of that name"
+        return f"did you mean `{structure}.{close}`?" if close else known
     structures = {n.rpartition(".")[0] for n in names} - {""}
     close = near(structure, {*structures, *colsets}, cutoff=0.5)
     return f"did you mean `{close}.{member}`?" if close else ""
@@ -156,14 +213,19 @@ def adjacent_symbols(name: str, known: set[str]) -> str:
 
 
 def syntax(
-    kind: str, text: str, before: Sequence[Lexeme], expected: frozenset[str], start: str
+    kind: str,
+    text: str,
+    before: Sequence[Lexeme],
+    after: Sequence[Lexeme],
+    expected: frozenset[str],
+    start: str,
 ) -> str:
     """For a token that cannot stand where it does.
 
     Args:
         kind: its terminal, "$END" at the end.
         text: as written.
-        before: the tokens before it.
+        before, after: the tokens before and after it.
         expected: terminals that could stand there.
         start: what is parsed: "expression", "expressions", "program", "code".
     """
@@ -172,7 +234,20 @@ def syntax(
     texts = {t.text for t in before}
     if "?" in texts:
         return "a choice is written `if condition then .. else ..`"
+    if "elseif" in texts or "elif" in texts:
+        return "write `else if`"
+    if (
+        "WILD" in expected
+        and kind == text.upper()
+        and text.isalpha()
+        and last in ("VAL", "FUN", "LPAREN", "COMMA")
+    ):
+        return f"`{text}` is a keyword and cannot be a name"
     match kind:
+        case "ID" if last == "LET":
+            return "after `let` come declarations: `let val y = .. in .. end`"
+        case "RPAREN" if previous is not None and previous.text == "*" and not _open(before):
+            return "this `*)` closes no comment"
         case "WILD":
             return "`_` stands only in patterns of functions, `case` and `val`; here use a variable"
         case "TYVAR":
@@ -190,16 +265,23 @@ def syntax(
         case "COMMA":
             if "{" in texts and "EQ" in expected:
                 return "a record is written {field = value, ..}; a list is written [..], a multi-set 1`v ++ 1`w"
-            if last == "INT" and start == "expression" and not _open(before):
+            numbers = last == "INT" and len(after) == 1 and after[0].kind == "INT"
+            if numbers and start == "expression" and len(before) == 1:
                 return "a decimal number is written with a point: 2.5"
             if start == "expression" and not _open(before):
                 return (
                     "a tuple needs parentheses: (a, b); multi-sets are added with `++`: 1`a ++ 1`b"
                 )
+        case "SEMI" if start == "expressions" and after:
+            return "conditions are separated by commas: [n > 1, m < 5]"
         case "SEMI" if start.startswith("expression"):
             return "an inscription does not end with `;`"
         case "AND" if start != "program":
             return "conditions are joined with `andalso`"
+        case "IN" if start.startswith("expression") and "let" not in texts:
+            return "whether a value is in a list tells `mem list value`"
+        case "INPUT" | "OUTPUT" | "ACTION":
+            return "the parts of a code segment come in the order `input (..); output (..); action ..;`"
         case "OF" | "THEN" | "ELSE" | "IN" | "END" if kind not in expected:
             return _block_word(kind, before)
         case "RPAREN" | "RBRACK" | "RBRACE":
@@ -210,6 +292,8 @@ def syntax(
             return "`case` is written `case value of pattern => result | pattern => result`"
         case "ID" if text in FOREIGN_OPERATORS:
             return FOREIGN_OPERATORS[text]
+        case _ if start == "code" and not before:
+            return "a code segment is written `input (..); output (..); action ..;`"
         case "$END":
             return _at_end(last, before, expected)
     if "THEN" in expected and kind != "$END":
@@ -262,6 +346,17 @@ def _at_end(last: str, before: Sequence[Lexeme], expected: frozenset[str]) -> st
         return "`if` needs both branches; a branch without tokens is `empty`: `if .. then .. else empty`"
     if "END" in expected:
         return "`let .. in ..` is closed with `end`"
+    if "DARROW" in expected and any(t.kind == "HANDLE" for t in before):
+        return "`handle` is written `expression handle pattern => value`"
+    if "DO" in expected:
+        return "`while` is written `while condition do expression`"
+    if "EQ" in expected and before and before[0].kind in ("VAL", "FUN"):
+        forms = {"VAL": "val name = expression", "FUN": "fun name argument = expression"}
+        return f"it is written `{forms[before[0].kind]}`"
+    if not before:
+        return "write its first value"
+    if last == "EQ":
+        return "what the name stands for is missing"
     return ""
 
 

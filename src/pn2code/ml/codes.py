@@ -219,3 +219,9 @@ USED_FILE = register(
     "`use \"file.sml\"` reads CPN ML declarations from a file in the net's folder. CPN Tools refuses the declaration when "
     "the file is not there, and everything that needs the names declared in it.",
 )
+TYPE_VARIABLE = register(
+    "type-variable",
+    "a type variable stands for one certain type only",
+    "In `fun f (x : 'a) = x + 1` the variable `'a` would have to be int, but it promises that the function works for "
+    "any type. Leave it out, or write the type that is meant.",
+)

@@ -6,7 +6,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 
 from pn2code.diagnostics import NOWHERE, Origin, SourceText
-from pn2code.ml import codes, core
+from pn2code.ml import advice, codes, core
 from pn2code.ml.builtins import FALSE, TRUE
 from pn2code.ml.colsets import Colset, Kind
 from pn2code.ml.constants import Constant
@@ -118,10 +118,12 @@ class Colsets:
 
     def _error(self, code: str, message: str, spec: ColsetSpec, hint: str = "") -> None:
         self._ctx.errors += 1
-        self._ctx.d.error(code, message, spec.origin, hint=hint)
+        self._ctx.d.error(code, message, spec.origin, hint=hint or advice.BY_CODE.get(code, ""))
 
     def _incomplete(self, spec: ColsetSpec, what: str) -> None:
-        self._error(codes.COLSET_DEFINITION, f"colour set `{spec.name}` {what}", spec)
+        example = advice.DEFINITIONS.get(spec.kind, "")
+        hint = f"it is written `{example}`" if example else ""
+        self._error(codes.COLSET_DEFINITION, f"colour set `{spec.name}` {what}", spec, hint)
 
     def _make(self, spec: ColsetSpec) -> Colset | None:
         makers: dict[str, Callable[[ColsetSpec], Colset | None]] = {
@@ -168,8 +170,7 @@ class Colsets:
             codes.UNKNOWN_COLOUR_SET,
             f"colour set `{spec.name}` is made of `{name}`, which is not declared",
             spec,
-            suggestion(name, self._ctx.colsets)
-            or "a colour set must be declared before it is used",
+            suggestion(name, self._ctx.colsets) or self._ctx.announced_hint(name, spec.name),
         )
         return None
 
@@ -209,6 +210,7 @@ class Colsets:
                 codes.COLSET_RANGE,
                 f"lower bound {_shown(low)} of colour set `{spec.name}` is above the upper bound {_shown(high)}",
                 texts[0].span(),
+                hint=advice.BY_CODE[codes.COLSET_RANGE],
             )
             return None
         return low, high
@@ -253,6 +255,7 @@ class Colsets:
                     codes.COLSET_RANGE,
                     f"bound of the characters of colour set `{spec.name}` is not one character",
                     text.span(),
+                    hint=f"it is written `{advice.DEFINITIONS['string']}`",
                 )
                 return None
         length = None

@@ -111,7 +111,7 @@ def definition(c: Colset) -> str:
         case Kind.INT | Kind.INTINF | Kind.REAL if c.low is not None:
             return f"{c.kind.value} with {c.low}..{c.high}"
         case _:
-            return c.kind.value
+            return str(c.kind.value)
 
 
 def _some(separator: str, words: list[str]) -> str:

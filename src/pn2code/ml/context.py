@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 
 from pn2code.diagnostics import Diagnostics, Note, Span
 from pn2code.ml import codes, core, type_advice
-from pn2code.ml.advice import near
+from pn2code.ml.advice import BY_CODE, near
 from pn2code.ml.builtins import DATATYPES, FIRST_EXCEPTION_TAG, LITERAL_TYPES, scheme
 from pn2code.ml.colsets import Colset
 from pn2code.ml.environment import Binding, ConEntry, Scope, library_scope
@@ -80,6 +80,7 @@ class Context:
         colsets: by name; None for those with errors.
         equality: whether a datatype (of equality arguments) has equality.
         int_bits: width of `int`.
+        announced: gives all names that the net declares anywhere.
         warned: element, part and function of each warning about a function that cannot run here.
     """
 
@@ -100,6 +101,7 @@ class Context:
     colsets: dict[str, Colset | None] = field(default_factory=dict)
     equality: dict[str, bool] = field(default_factory=dict)
     int_bits: int = 31
+    announced: Callable[[], frozenset[str]] = frozenset
     warned: set[tuple[str, str, str]] = field(default_factory=set)
     next_uid: int = 0
     next_exception: int = FIRST_EXCEPTION_TAG
@@ -252,7 +254,16 @@ class Context:
     ) -> None:
         """Reports an error."""
         self.errors += 1
+        hint = hint or BY_CODE.get(code, "")
         self.d.error(code, message, at, label=label, notes=notes, hint=hint)
+
+    def announced_hint(self, name: str, own: str = "") -> str:
+        """For a name that is declared nowhere above."""
+        if name == own:
+            return "a colour set cannot contain itself; recursive values need a `datatype`"
+        if name in self.announced():
+            return "it is declared further down: move its declaration up"
+        return BY_CODE[codes.UNKNOWN_COLOUR_SET]
 
     def check_literal(self, value: object, t: Type, span: Span) -> None:
         """Refuses an `int` literal beyond the width of `int`, as CPN Tools does."""
@@ -338,8 +349,21 @@ class Context:
                     notes=notes,
                     hint=type_advice.wrong_operand(what, found, span.text)
                     or conversion(found, (_name(expected),))
+                    or self.constructor_hint(found, expected, span.text)
                     or type_advice.wrong_value(found, expected, span.text, what),
                 )
+
+    def constructor_hint(self, found: Ty, expected: Ty, text: str) -> str:
+        """For the argument of a constructor without the constructor."""
+        wanted = prune(expected)
+        datatype = self.datatypes.get(wanted.name) if isinstance(wanted, ICon) else None
+        if datatype is None or datatype.generics:
+            return ""
+        for constructor, argument in datatype.constructors:
+            if argument is not None and self.unifier.attempt(found, from_type(argument, [])):
+                inner = text if text.startswith("(") or text.isidentifier() else f"({text})"
+                return f"put the constructor before it: `{constructor.name} {inner}`"
+        return ""
 
     def _wanted(self, what: str, found: Ty, expected: Ty, show: Shower) -> str:
         """The expected type in words where it is a multi-set, a reference or a function of any type."""
@@ -416,6 +440,11 @@ def conversion(found: Ty, wanted: Iterable[str]) -> str:
         ("real", "string"): "convert with `Real.toString`",
         ("IntInf.int", "int"): "convert with `IntInf.toInt`",
         ("int", "IntInf.int"): "convert with `IntInf.fromInt`",
+        (
+            "real",
+            "IntInf.int",
+        ): "convert with `floor`, `round` or `trunc`, and then with `IntInf.fromInt`",
+        ("IntInf.int", "string"): "convert with `IntInf.toString`",
         ("string", "int"): "convert with `Option.valOf (Int.fromString ..)`",
         ("char", "string"): "convert with `str`",
         ("bool", "string"): "convert with `Bool.toString`",

@@ -17,6 +17,7 @@ from pn2code.ml.annotations import Annotations
 from pn2code.ml.context import Context, Draft, suggestion
 from pn2code.ml.environment import (
     Binding,
+    BrokenEntry,
     BrokenStructure,
     ConEntry,
     Scope,
@@ -25,7 +26,7 @@ from pn2code.ml.environment import (
     constructor_entries,
 )
 from pn2code.ml.expressions import Expressions
-from pn2code.ml.inference import I_EXN, ICon, IFun, Meta, Quant, Ty, parts, prune, to_type
+from pn2code.ml.inference import I_EXN, ICon, IError, IFun, Meta, Quant, Ty, parts, prune, to_type
 from pn2code.ml.matches import BuiltRule
 from pn2code.ml.modules import Modules
 from pn2code.ml.names import Names
@@ -107,7 +108,7 @@ class Declarations:
 
     def _val(self, dec: s.ValDec) -> Build:
         at_top = self._ctx.at_top
-        self._enter()
+        explicit = self._enter(dec)
         bindings = Bindings()
         made: list[tuple[Callable[[], core.Pat], Draft, s.ValBinding, list[Deref], bool]] = []
         plain = [b for b in dec.bindings if not b.recursive]
@@ -123,6 +124,7 @@ class Declarations:
         rec_build = self._recursive_values(recursive, bindings)
         self._leave()
         self._generalise(bindings, all(self._expressions.is_value(b.value) for b in dec.bindings))
+        self._rigid(explicit, dec.span)
         for binding in (*bindings.values(), *(x.cell for _, _, _, xs, _ in made for x in xs)):
             binding.is_global = at_top
         self._ctx.scope.values.update(bindings)
@@ -192,7 +194,7 @@ class Declarations:
         bindings.update(own)
 
     def _expression(self, dec: s.ExpDec) -> Build:
-        self._enter()
+        self._enter(dec)
         draft = self._expressions.infer(dec.exp)
         self._leave()
         self._ctx.unifier.lower(draft.type)
@@ -203,9 +205,45 @@ class Declarations:
 
         return build
 
-    def _enter(self) -> None:
+    def _enter(self, dec: s.ValDec | s.FunDec | s.ExpDec) -> dict[str, Meta]:
+        """One level deeper; gives the type variables that belong to this declaration.
+
+        These are the ones written in it outside of inner `val` and `fun`, unless they belong to one around it.
+        """
         self._ctx.unifier.level += 1
-        self._ctx.tyvars.append({})
+        known = {name for scope in self._ctx.tyvars for name in scope}
+        own: dict[str, Meta] = {}
+        if not isinstance(dec, s.ExpDec):
+            for name in (*dec.tyvars, *written_variables(dec)):
+                if name not in known and name not in own:
+                    own[name] = self._ctx.unifier.fresh(equality=name.startswith("''"))
+        self._ctx.tyvars.append(own)
+        return own
+
+    def _rigid(self, explicit: dict[str, Meta], span: Span) -> None:
+        """Reports type variables that turned out to be one certain type, or two that are the same."""
+        seen: list[Quant] = []
+        for name, meta in explicit.items():
+            t = prune(meta)
+            if isinstance(t, Quant) and t not in seen:
+                seen.append(t)
+                if t.equality and not name.startswith("''"):
+                    self._ctx.error(
+                        codes.NOT_EQUALITY,
+                        f"values of the type variable `{name}` are compared with `=`",
+                        span,
+                        hint=f"write `'{name}`, which stands for types with equality",
+                    )
+            elif isinstance(t, IError) or self._ctx.errors:
+                continue
+            else:
+                shown = "another one" if isinstance(t, Quant | Meta) else f"`{self._ctx.show(t)}`"
+                self._ctx.error(
+                    codes.TYPE_VARIABLE,
+                    f"the type variable `{name}` would have to be {shown}",
+                    span,
+                    hint=f"`{name}` stands for any type; leave it out, or write the type that is meant",
+                )
 
     def _leave(self) -> None:
         self._ctx.tyvars.pop()
@@ -225,7 +263,7 @@ class Declarations:
 
     def _fun(self, dec: s.FunDec) -> Build:
         at_top = self._ctx.at_top
-        self._enter()
+        explicit = self._enter(dec)
         bindings = Bindings()
         functions: list[s.FunBinding] = []
         for f in dec.bindings:
@@ -246,6 +284,7 @@ class Declarations:
         builds = [(bindings[f.name], self._function(f, bindings[f.name])) for f in functions]
         self._leave()
         self._generalise(bindings, True)
+        self._rigid(explicit, functions[0].name_span)
         quants = next((b.quants for b in bindings.values()), [])
 
         def build() -> Sequence[core.Dec]:
@@ -406,7 +445,9 @@ class Declarations:
                 before = self._ctx.errors
                 argument = None if c.argument is None else self._written_type(c.argument, tyvars)
                 if self._ctx.errors > before or self._ctx.tainted:
-                    return _nothing  # the caller marks the names as broken
+                    for name in declared_by(dec):
+                        self._ctx.scope.values[name] = BrokenEntry()
+                    return _nothing
                 has_argument = argument is not None
                 constructor = core.Constructor(c.name, name, tag, has_argument, len(b.constructors))
                 constructors.append((constructor, None if argument is None else to_type(argument)))
@@ -446,21 +487,26 @@ class Declarations:
         self._ctx.scope.types[dec.name] = entry
 
     def _exception(self, dec: s.ExceptionDec) -> Build:
-        made: list[core.Dec] = []
+        made: list[tuple[core.Constructor, Ty | None, Span]] = []
         for b in dec.bindings:
             if b.original is not None:
                 entry = self._ctx.scope.value(b.original)
                 if isinstance(entry, ConEntry) and entry.constructor.data_type == "exn":
                     self._ctx.scope.values[b.name] = entry
+                    continue
+                if isinstance(entry, BrokenEntry):
+                    self._ctx.tainted = True
                 else:
                     self._ctx.error(codes.UNBOUND, f"there is no exception `{b.original}`", b.span)
+                self._ctx.scope.values[b.name] = BrokenEntry()
                 continue
             before = self._ctx.errors
             argument = None if b.argument is None else self._annotations.type(b.argument)
+            if argument is not None:
+                self._free(argument, b)
             if self._ctx.errors > before or self._ctx.tainted:
-                return _nothing
-            if argument is not None and self._free(argument, b):
-                return _nothing
+                self._ctx.scope.values[b.name] = BrokenEntry()
+                continue
             full = None if argument is None else to_type(argument)
             scheme = None if argument is None else (IFun(argument, I_EXN), ())
             constructor = core.Constructor(
@@ -470,21 +516,29 @@ class Declarations:
             self._ctx.scope.values[b.name] = ConEntry(
                 constructor, EXN if full is None else TFun(full, EXN), 0, scheme
             )
-            made.append(core.ExceptionDec(constructor, full, b.span))
-        return lambda: made
+            made.append((constructor, argument, b.span))
 
-    def _free(self, t: Ty, b: s.ExceptionBinding) -> bool:
+        def build() -> Sequence[core.Dec]:
+            return [
+                core.ExceptionDec(c, None if t is None else to_type(t), span) for c, t, span in made
+            ]
+
+        return build
+
+    def _free(self, t: Ty, b: s.ExceptionBinding) -> None:
         """Reports type variables that no surrounding function quantifies."""
         t = prune(t)
-        if isinstance(t, Meta) and t.level >= self._ctx.unifier.level:
+        known = (m for scope in self._ctx.tyvars for m in scope.values())
+        if isinstance(t, Meta) and not any(prune(m) is t for m in known):
             self._ctx.error(
                 codes.UNKNOWN_COLOUR_SET,
                 f"exception `{b.name}` carries a type variable",
                 b.span,
                 hint="give it a type",
             )
-            return True
-        return any(self._free(part, b) for part in parts(t))
+            return
+        for part in parts(t):
+            self._free(part, b)
 
     # --- blocks
 
@@ -583,3 +637,21 @@ def break_modules(dec: s.Dec, scope: Scope) -> None:
                 break_modules(x, scope)
         case _:
             pass
+
+
+def written_variables(dec: s.ValDec | s.FunDec) -> list[str]:
+    """Type variables written in a declaration, but not in `val` and `fun` inside it."""
+    found: dict[str, None] = {}
+    stack: list[object] = [*reversed(dec.bindings)]
+    while stack:
+        node = stack.pop()
+        if isinstance(node, s.VarTy):
+            found[node.name] = None
+        elif isinstance(node, tuple):
+            stack.extend(reversed(node))
+        elif isinstance(node, s.ValDec | s.FunDec | str | int | float | Span) or node is None:
+            continue
+        else:
+            names = getattr(node, "__slots__", ())
+            stack.extend(getattr(node, name) for name in reversed(names))
+    return list(found)

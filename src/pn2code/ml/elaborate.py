@@ -32,16 +32,22 @@ from pn2code.ml.core import Program, Symbol
 from pn2code.ml.declarations import Declarations, break_modules, declared_by, types_declared_by
 from pn2code.ml.environment import Binding, BrokenEntry, BrokenType, Scope, UnsupportedEntry
 from pn2code.ml.expressions import Expressions
-from pn2code.ml.fixity import Fixities, resolve_declaration, resolve_expression
+from pn2code.ml.fixity import Fixities, resolve_declaration, resolve_expression, resolve_pattern
 from pn2code.ml.inference import ICon, TypeTooLargeError, from_type
 from pn2code.ml.inscriptions import Inscriptions, TypedCode
 from pn2code.ml.names import Names
-from pn2code.ml.parser import declared_names, parse_expression, parse_program
+from pn2code.ml.parser import (
+    declared_names,
+    is_layered,
+    parse_expression,
+    parse_layered,
+    parse_program,
+)
 from pn2code.ml.patterns import Patterns
 from pn2code.ml.types import STRING, Type
 from pn2code.ml.used_files import UsedFiles
 
-__all__ = ["ColsetSpec", "Elaborator", "TypedCode"]
+__all__ = ["ColsetSpec", "Elaborator", "TypedCode", "is_layered"]
 
 T = TypeVar("T")
 
@@ -98,7 +104,7 @@ class Elaborator:
         self._variable_scope = Scope(self._ctx.top)
         self._constants: dict[int, Constant] = {}
         self._inscriptions = Inscriptions(
-            self._ctx, self._expressions, self._variable_scope, self._constants
+            self._ctx, self._expressions, patterns, self._variable_scope, self._constants
         )
         self._colsets = Colsets(self._ctx, self._declare, self._plain, self._fold)
 
@@ -111,6 +117,10 @@ class Elaborator:
         self._made += datatypes
         return colset
 
+    def announce(self, names: Callable[[], frozenset[str]]) -> None:
+        """Gives the names that the net declares anywhere: hints tell of declarations in the wrong order."""
+        self._ctx.announced = names
+
     def variables(self, names: Sequence[str], colset_name: str, origin: Origin) -> None:
         """`var names : colset_name`."""
         colset = self._ctx.colsets.get(colset_name)
@@ -120,7 +130,8 @@ class Elaborator:
                 codes.UNKNOWN_COLOUR_SET,
                 f"there is no colour set `{colset_name}`",
                 origin,
-                hint=suggestion(colset_name, self._ctx.colsets),
+                hint=suggestion(colset_name, self._ctx.colsets)
+                or self._ctx.announced_hint(colset_name),
             )
         self._ctx.net_variables.update(names)
         for name in names:
@@ -138,6 +149,7 @@ class Elaborator:
                     f"variable `{name}` of colour set `{old.colset.name}` is declared again, "
                     f"now of `{colset.name}`",
                     origin,
+                    hint="rename one of them: the last declaration counts everywhere",
                 )
             symbol = self._ctx.fresh_symbol(name, colset.type, colset)
             self._variables[name] = symbol
@@ -266,12 +278,12 @@ class Elaborator:
                 pass
             case _:
                 return None
-        if isinstance(e, s.ApplyExp) and isinstance(e.function, s.NameExp):
-            if e.function.name == "use" and isinstance(
-                self._ctx.scope.value("use"), UnsupportedEntry
-            ):
-                return e.argument
-        return None
+        builtin = isinstance(self._ctx.scope.value("use"), UnsupportedEntry)
+        match e:
+            case s.ApplyExp(function=s.NameExp(name="use"), argument=argument) if builtin:
+                return argument
+            case _:
+                return None
 
     def _use(self, written: s.Exp) -> None:
         found = self._inscriptions.plain(written, (STRING,), "name of a file")
@@ -387,6 +399,24 @@ class Elaborator:
             if exp is None:
                 return None
             return self._inscriptions.expression(text, exp, types, expected_name, declared or {})
+
+        return self._border(text, work)
+
+    def layered(self, text: SourceText, t: Type) -> tuple[core.Exp, core.Pat, core.Exp] | None:
+        """`x as pattern` on an input arc: the token x, the pattern that binds, and the condition that x matches it.
+
+        Only for texts that `is_layered`; None when an error was reported.
+        """
+
+        def work() -> tuple[core.Exp, core.Pat, core.Exp] | None:
+            parsed = parse_layered(text, self._d)
+            if parsed is None:
+                return None
+            name = resolve_expression(parsed[0], self._fixities, self._d)
+            pattern = resolve_pattern(parsed[1], self._fixities, self._d)
+            if name is None or pattern is None:
+                return None
+            return self._inscriptions.layered(name, pattern, t)
 
         return self._border(text, work)
 

@@ -225,7 +225,10 @@ class Expressions:
         result = t.result
         if expected is not None:
             self._ctx.unifier.attempt(result, expected)
+        before = self._ctx.errors
         given = argument(t.argument)
+        if self._ctx.errors > before:
+            return BROKEN  # nothing is said about further arguments
         return Draft(
             result,
             lambda: core.Apply(function.build(), given.build(), to_type(result), span),
@@ -234,6 +237,12 @@ class Expressions:
     def _application_hint(self, written: s.Exp, span: Span) -> str:
         """What may be meant where something that is no function is applied."""
         if isinstance(written, s.LitExp):
+            if span.source.origin.part in ("delay", "priority"):
+                return (
+                    "it is one expression: a number without a unit, or an operator between the two"
+                )
+            if span.source.origin.part == "declaration":
+                return "is an operator missing between the two, or `|` before a further clause?"
             return "is an operator missing between the two, such as a backquote: 1`x ?"
         arguments = [span.source.text[written.span.end : span.end].strip()]
         head: s.Exp = written
@@ -331,6 +340,7 @@ class Expressions:
     def _record(self, e: s.RecordExp, wanted: dict[str, Ty], what: str) -> Draft:
         drafts: dict[str, Draft] = {}
         order: list[str] = []
+        before = self._ctx.errors
         for label, exp in e.fields:
             if label in drafts:
                 self._ctx.error(codes.DUPLICATE_NAME, f"field `{label}` is given twice", exp.span)
@@ -340,7 +350,9 @@ class Expressions:
                 part = f"component {label}" if label.isdigit() else f"field `{label}`"
                 if what not in ("field", "expression"):
                     part += f" of the {what}" if not what.startswith("component") else ""
-                drafts[label] = self.check(exp, wanted[label], part)
+                # Components in the wrong order are one mistake.
+                tell = self._ctx.errors == before or not label.isdigit()
+                drafts[label] = self.check(exp, wanted[label] if tell else ERROR, part)
             else:
                 drafts[label] = self.infer(exp)
         t = i_record({label: draft.type for label, draft in drafts.items()})
@@ -353,7 +365,11 @@ class Expressions:
 
     def _list(self, e: s.ListExp, item: Ty, what: str) -> Draft:
         del what
-        drafts = [self.check(x, item, "list element") for x in e.items]
+        drafts = []
+        before = self._ctx.errors
+        for x in e.items:
+            wanted = item if self._ctx.errors == before else ERROR
+            drafts.append(self.check(x, wanted, "list element"))
         t = i_list(item)
 
         def build() -> core.Exp:

@@ -206,9 +206,11 @@ class _Resolver:
                 return self.pat(atoms[0])
             head, argument, *rest = atoms
             if not isinstance(head, s.NamePat):
+                hint = "patterns that belong together are written as a tuple: `(p, q)`"
+                if isinstance(head, s.LitPat):
+                    hint = "a name begins with a letter"
                 raise self._error(
-                    "only a constructor can be applied in a pattern", head.span,
-                    "patterns that belong together are written as a tuple: `(p, q)`",
+                    "only a constructor can be applied in a pattern", head.span, hint
                 )  # fmt: skip
             if rest:
                 raise self._error(
@@ -372,6 +374,7 @@ class _Resolver:
                     codes.CLAUSES,
                     f"this clause of `{first.name}` has {len(clause.patterns)} arguments, the first has {count}",
                     clause.span,
+                    hint=advice.BY_CODE[codes.CLAUSES],
                 )
                 raise FixityError
             clauses.append(clause)

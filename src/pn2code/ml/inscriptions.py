@@ -10,7 +10,7 @@ from typing import TypeVar
 from pn2code.diagnostics import Diagnostics, Note, SourceText
 from pn2code.ml import codes, core, type_advice
 from pn2code.ml import syntax as s
-from pn2code.ml.builtins import BUILTINS
+from pn2code.ml.builtins import BUILTINS, FALSE, TRUE
 from pn2code.ml.colsets import definition
 from pn2code.ml.constants import Constant, fold
 from pn2code.ml.context import Context, Draft, conversion, label_notes
@@ -32,7 +32,8 @@ from pn2code.ml.inference import (
 )
 from pn2code.ml.lexer import tokenize
 from pn2code.ml.parser import parse_code, parse_expression, parse_expressions
-from pn2code.ml.types import INTINF, REAL, TCon, TFun, Type, list_of, timed_of, tuple_of
+from pn2code.ml.patterns import Bindings, Patterns
+from pn2code.ml.types import BOOL, INTINF, REAL, TCon, TFun, Type, list_of, timed_of, tuple_of
 
 T = TypeVar("T")
 
@@ -56,11 +57,13 @@ class Inscriptions:
         self,
         ctx: Context,
         expressions: Expressions,
+        patterns: Patterns,
         variables: Scope,
         constants: Mapping[int, Constant],
     ) -> None:
         self._ctx = ctx
         self._expressions = expressions
+        self._patterns = patterns
         self._variables = variables
         self._constants = constants
 
@@ -98,12 +101,13 @@ class Inscriptions:
         declared: Mapping[str, Symbol],
     ) -> tuple[int, core.Exp] | None:
         """The first type that fits."""
-        scope = Scope(self._variables)
+        what = text.origin.part or "expression"
+        # Only arcs know the variables of the net.
+        scope = Scope(self._ctx.top if what == "initial marking" else self._variables)
         for name, symbol in declared.items():
             scope.values[name] = Binding(
                 name, from_type(symbol.type, []), symbol=symbol, colset=symbol.colset
             )
-        what = text.origin.part or "expression"
         with self._scope(scope), self._one_mistake():
             before = self._ctx.errors
             found = self._first(exp, types)
@@ -112,6 +116,49 @@ class Inscriptions:
             if self._ctx.errors == before and not self._ctx.tainted:
                 self._explain(exp, found, types, what, expected_name)
             return None
+
+    def layered(
+        self, name: s.Exp, written: s.Pat, t: Type
+    ) -> tuple[core.Exp, core.Pat, core.Exp] | None:
+        """`x as pattern` on an input arc: the token, the pattern for it, and whether the token matches."""
+        with self._scope(self._variables), self._one_mistake():
+            before = self._ctx.errors
+            wanted = from_type(t, [])
+            draft = self._expressions.check(name, wanted, "inscription")
+            bindings = Bindings()
+            pattern = self._patterns.check(written, wanted, bindings)
+            variables: dict[str, Symbol] = {}
+            for own in bindings.values():
+                known = self._variables.values.get(own.name)
+                if isinstance(known, BrokenEntry):
+                    self._ctx.tainted = True
+                elif not isinstance(known, Binding) or known.symbol is None:
+                    self._ctx.error(
+                        codes.UNBOUND,
+                        f"`{own.name}` is not a variable of the net",
+                        written.span,
+                        hint=f"declare it: `var {own.name} : C;` for a variable of colour set C",
+                    )
+                elif self._ctx.unify(own.type, known.type, written.span, f"`{own.name}`"):
+                    variables[own.name] = known.symbol
+
+            def build() -> tuple[core.Exp, core.Pat, core.Exp] | None:
+                whole = draft.build()
+                if not isinstance(whole, core.Var) or whole.symbol.colset is None:
+                    self._ctx.error(
+                        codes.SYNTAX_ERROR,
+                        "a variable of the net must stand before `as`",
+                        name.span,
+                    )
+                    return None
+                own = pattern()  # with symbols of its own: they are compared with the variables
+                test = _matches(whole, own, variables)
+                for binding in bindings.values():
+                    binding.symbol = variables[binding.name]
+                bound = core.PAs(whole.symbol, pattern(), t, written.span)
+                return whole, bound, test
+
+            return self._finish(before, build)
 
     @contextmanager
     def _one_mistake(self) -> Iterator[None]:
@@ -258,7 +305,7 @@ class Inscriptions:
         wanted_name = base.name if isinstance(base, TCon) else ""
         hint = (
             conversion(found, (wanted_name,))
-            or self._constructor_hint(found, wanted_name, exp.span.text)
+            or self._ctx.constructor_hint(found, wanted_type, exp.span.text)
             or type_advice.wrong_value(found, wanted_type, exp.span.text)
         )
         if not hint and not type_advice.is_list(found):
@@ -274,17 +321,6 @@ class Inscriptions:
             notes=(holds, *self._differences(found, from_type(base, []))),
             hint=hint,
         )
-
-    def _constructor_hint(self, found: Ty, wanted: str, text: str) -> str:
-        """For the argument of a constructor without the constructor."""
-        datatype = self._ctx.datatypes.get(wanted)
-        if datatype is None or datatype.generics:
-            return ""
-        for constructor, argument in datatype.constructors:
-            if argument is not None and self._ctx.unifier.attempt(found, from_type(argument, [])):
-                inner = text if text.startswith("(") or text.isidentifier() else f"({text})"
-                return f"put the constructor before it: `{constructor.name} {inner}`"
-        return ""
 
     def _differences(self, found: Ty, expected: Ty) -> list[str]:
         """Components of two records of the same form that differ."""
@@ -331,19 +367,14 @@ class Inscriptions:
             return draft
         shown = self._ctx.show(draft.type)
         if self._ctx.unifier.attempt(draft.type, i_list(I_BOOL)):
-            self._ctx.error(
-                codes.UNSUPPORTED_INSCRIPTION,
-                "a guard that computes a list of conditions is not supported",
-                e.span,
-                hint="write `List.all (fn b => b) (..)`",
-            )
-        else:
-            self._ctx.error(
-                codes.GUARD_TYPE,
-                f"guard is `{shown}`, but a condition (`bool`) is expected",
-                e.span,
-                label=f"this is `{shown}`",
-            )
+            return Draft(I_BOOL, lambda: _all_true(draft.build()))
+        self._ctx.error(
+            codes.GUARD_TYPE,
+            f"guard is `{shown}`, but a condition (`bool`) is expected",
+            e.span,
+            label=f"this is `{shown}`",
+            hint=type_advice.wrong_operand("condition of `if`", draft.type, e.span.text),
+        )
         return draft
 
     # --- delays and priorities
@@ -371,7 +402,7 @@ class Inscriptions:
         exp = None if parsed is None else resolve_expression(parsed, fixities, self._ctx.d)
         if exp is None:
             return None
-        with self._scope(self._variables):
+        with self._scope(self._variables), self._one_mistake():
             before = self._ctx.errors
             draft = self._expressions.check(exp, from_type(wanted, []), "delay")
             return self._finish(before, draft.build)
@@ -382,7 +413,7 @@ class Inscriptions:
         exp = None if parsed is None else resolve_expression(parsed, fixities, self._ctx.d)
         if exp is None:
             return None
-        with self._scope(self._ctx.top):
+        with self._scope(self._ctx.top), self._one_mistake():
             before = self._ctx.errors
             draft = self._expressions.check(exp, I_INT, "priority")
             built = self._finish(before, draft.build)
@@ -412,6 +443,14 @@ class Inscriptions:
         inputs = self._code_variables(parsed.inputs, "input", fixities)
         outputs = self._code_variables(parsed.outputs, "output", fixities)
         if inputs is None or outputs is None:
+            return None
+        if parsed.action is None and outputs:
+            self._ctx.error(
+                codes.CODE_SEGMENT,
+                "code segment has `output`, but no `action` that gives the values",
+                text.span(),
+                hint="write `action ..;` after it, with a value for each output variable",
+            )
             return None
         if parsed.action is None:
             exp: s.Exp | None = s.RecordExp((), text.span())
@@ -445,6 +484,7 @@ class Inscriptions:
                     codes.CODE_SEGMENT,
                     f"`{word}` lists something that is not a variable",
                     part.span,
+                    hint=f"only variables may stand there: `{word} (x, y)`",
                 )
                 return None
             entry = self._variables.values.get(part.name)
@@ -460,10 +500,63 @@ class Inscriptions:
                 )
                 return None
             if entry.symbol in out:
-                self._ctx.error(codes.DUPLICATE_NAME, f"`{part.name}` is listed twice", part.span)
+                self._ctx.error(
+                    codes.DUPLICATE_NAME,
+                    f"`{part.name}` is listed twice",
+                    part.span,
+                    hint="remove one of them",
+                )
                 return None
             out.append(entry.symbol)
         return tuple(out)
+
+
+def _all_true(conditions: core.Exp) -> core.Exp:
+    """Whether all of a list of conditions hold: a guard that computes a list."""
+    span = conditions.span
+    test = TFun(BOOL, BOOL)
+    over = TFun(conditions.type, BOOL)
+    function = core.Builtin("List.all", TFun(test, over), span, (BOOL,))
+    rules = tuple(
+        core.Rule(core.PCon(c, None, BOOL, span), core.Con(c, BOOL, span), span)
+        for c in (TRUE, FALSE)
+    )
+    same = core.Lambda(rules, test, span)
+    return core.Apply(core.Apply(function, same, over, span), conditions, BOOL, span)
+
+
+def _matches(whole: core.Var, pattern: core.Pat, variables: Mapping[str, Symbol]) -> core.Exp:
+    """Whether a token matches a pattern whose variables have the values of net variables."""
+    span = pattern.span
+    test: core.Exp = core.Con(TRUE, BOOL, span)
+    false = core.Con(FALSE, BOOL, span)
+    for own in _symbols(pattern):
+        pair = core.RecordExp(
+            (
+                ("1", core.Var(own, own.type, span)),
+                ("2", core.Var(variables[own.name], own.type, span)),
+            ),
+            tuple_of(own.type, own.type),
+            span,
+        )
+        equals = core.Builtin("=", TFun(pair.type, BOOL), span, (own.type,))
+        test = core.If(core.Apply(equals, pair, BOOL, span), test, false, BOOL, span)
+    rules = [core.Rule(pattern, test, span), core.Rule(core.PWild(whole.type, span), false, span)]
+    return core.Case(whole, tuple(rules), BOOL, span)
+
+
+def _symbols(pattern: core.Pat) -> list[Symbol]:
+    match pattern:
+        case core.PVar(symbol):
+            return [symbol]
+        case core.PAs(symbol, inner):
+            return [symbol, *_symbols(inner)]
+        case core.PRecord(fields):
+            return [x for _, p in fields for x in _symbols(p)]
+        case core.PCon(argument=inner) if inner is not None:
+            return _symbols(inner)
+        case _:
+            return []
 
 
 def _is_timed_list(t: Type) -> bool:

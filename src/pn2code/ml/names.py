@@ -22,6 +22,7 @@ from pn2code.ml.environment import (
     split_name,
 )
 from pn2code.ml.inference import I_UNIT, ICon, IFun, IRec, Ty, from_type, i_list, prune, to_type
+from pn2code.ml.parser import declared_names
 from pn2code.ml.types import UNIT
 
 _STRUCTURE_TYPES = {
@@ -184,23 +185,30 @@ class Names:
         elif not name[0].isalpha():
             hint = advice.adjacent_symbols(name, self._ctx.scope.names())
         else:
-            hint = advice.unbound_word(name, self._ctx.colsets) or suggestion(
-                name, self._ctx.scope.names()
+            hint = (
+                advice.unbound_word(name, self._ctx.colsets)
+                or self._order_hint(name, span)
+                or suggestion(name, self._ctx.scope.names())
             )
             if name in self._ctx.net_variables:
-                hint = (
-                    "it is a variable of the net: list it in `input (..)` of a code segment, "
-                    "give it to a function as an argument"
-                )
+                hint = advice.variable_out_of_scope(span.source.origin.part)
         if not hint and name[0].isalpha() and not path:
-            inside = span.source.origin.part == "declaration"
-            hint = (
-                "it must be declared before this place"
-                if inside
-                else f"declare it: `var {name} : C;` for a variable of colour set C, or `val {name} = ..`"
-            )
+            hint = f"declare it: `var {name} : C;` for a variable of colour set C, or `val {name} = ..`"
+            if span.source.origin.part == "declaration":
+                hint = "it must be declared before this place"
         self._ctx.error(codes.UNBOUND, f"{quoted(name)} is not declared", span, hint=hint)
         return BROKEN
+
+    def _order_hint(self, name: str, span: Span) -> str:
+        """For a name that is declared, but not above."""
+        if span.source.origin.part != "declaration" or name in self._ctx.net_variables:
+            return ""
+        if name in declared_names(span.source):
+            return (
+                "it is declared only here or below: functions that call themselves are declared with `fun`, "
+                "those that call each other joined with `and`"
+            )
+        return self._ctx.announced_hint(name) if name in self._ctx.announced() else ""
 
     def _path_hint(self, structure: str, member: str) -> str:
         """For `structure.member` where no such thing is known."""

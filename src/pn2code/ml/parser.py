@@ -85,6 +85,31 @@ def parse_expression(
     return cast("syntax.Exp | None", _parse(source, tokens[skip:], "expression", d, hint))
 
 
+def is_layered(source: SourceText) -> bool:
+    """Whether a text has the form `x as pattern` or `x : type as pattern`."""
+    if "as" not in source.text:
+        return False
+    tokens = tokenize(source, Diagnostics()) or []
+    depth = 0
+    for i, token in enumerate(tokens):
+        if token.kind == "AS" and not depth:
+            return tokens[0].kind == "ID" and (i == 1 or tokens[1].kind == "COLON")
+        depth += (token.kind in _OPENING) - (token.kind in _CLOSING)
+    return False
+
+
+_OPENING = frozenset({"LPAREN", "LBRACK", "LBRACE", "LET", "CASE", "FN"})
+_CLOSING = frozenset({"RPAREN", "RBRACK", "RBRACE", "END"})
+
+
+def parse_layered(source: SourceText, d: Diagnostics) -> tuple[syntax.Exp, syntax.Pat] | None:
+    """`x as pattern`, as the two sides of `as`."""
+    tokens = tokenize(source, d)
+    if tokens is None:
+        return None
+    return cast("tuple[syntax.Exp, syntax.Pat] | None", _parse(source, tokens, "layered", d))
+
+
 def parse_expressions(source: SourceText, d: Diagnostics) -> tuple[syntax.Exp, ...] | None:
     """One expression or several with commas between."""
     tokens = tokenize(source, d)
@@ -189,10 +214,10 @@ def _report(
         span = Span(source, token.start_pos or 0, token.end_pos or 0)
         if token.type == "AS" and start != "program":
             d.error(
-                codes.UNSUPPORTED_INSCRIPTION,
-                "`as` in an inscription is not supported",
+                codes.SYNTAX_ERROR,
+                "`as` cannot stand here",
                 span,
-                hint="bind the parts, and build the whole from them where it is needed",
+                hint="`x as pattern` is the whole inscription of an input arc of an untimed colour set",
             )
             return
         found = f"unexpected `{token}`" if str(token) else "unexpected `)`"

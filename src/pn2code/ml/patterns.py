@@ -169,8 +169,15 @@ class Patterns:
             codes.UNKNOWN_CONSTRUCTOR,
             f"`{p.name}` is not a constructor",
             p.span,
-            hint=suggestion(p.name, constructors),
+            hint=suggestion(p.name, constructors) or self._no_constructor(p.name),
         )
+
+    def _no_constructor(self, name: str) -> str:
+        if not name[0].isalpha():
+            return "a pattern cannot compute: use a variable there; names have no `-`, but `_`"
+        if name in self._ctx.colsets or name in ("int", "real", "string", "bool", "char", "unit"):
+            return f"a type follows its variable: `(x : {name})`"
+        return "only constructors of unions and data types can be applied in a pattern"
 
     def _constant(self, p: s.NamePat, entry: ConEntry, t: Ty) -> PatternBuild:
         if entry.constructor.has_argument:

@@ -13,6 +13,7 @@ MULTISET_OPERATORS = frozenset(
     {"++", "--", "+++", "@+", "@++", "==", "!=", "**", "<<", ">>", "<<=", ">>="}
 )
 """Infix operators of multi-sets: messages speak of multi-sets, not lists, there."""
+NUMERIC = frozenset({"+", "-", "*", "/", "div", "mod"})
 _NUMBERS = frozenset({"int", "real", "IntInf.int"})
 
 
@@ -41,6 +42,8 @@ def base(t: Ty) -> str:
 def wrong_operand(what: str, found: Ty, text: str) -> str:
     """For an operand (or argument) of the wrong type; `text` is what stands there."""
     name, kind = operand(what), base(found)
+    if kind == "ref" and name not in ("", ":=", "=", "<>"):
+        return f"this is a reference: its value is `!{text}`" if text.isidentifier() else ""
     match name:
         case "+" | "-" | "*" if (
             kind == "string" and what.startswith("left") and _CALL.fullmatch(text)
@@ -49,10 +52,18 @@ def wrong_operand(what: str, found: Ty, text: str) -> str:
             return f"functions are applied before operators: `{function} ({argument} {name} ..)`"
         case "+" | "-" | "*" if kind == "string":
             return "strings are joined with `^`" if name == "+" else ""
+        case _ if name in NUMERIC and _is_sequence(found):
+            return "expressions one after the other are separated by `;`: (print s; n + 1)"
         case "+" | "-" | "*" if kind == "list":
             return "multi-sets are added with `++` and subtracted with `--`; lists are joined with `^^`"
         case "++" if kind == "list" and "@" in text:
             return "`@+` binds more tightly than `++`: write (1`v ++ 1`w)@+d, or add timed multi-sets with `+++`"
+        case "<" | ">" | "<=" | ">=" if kind == "bool":
+            if text.startswith("not "):
+                return f"functions are applied before operators: `not ({text[4:]} {name} ..)`"
+            return f"each comparison stands for itself: `{text} andalso ..`"
+        case "<" | ">" | "<=" | ">=" if found_is_named(found):
+            return f"the order of the colours of a colour set is `{kind or 'C'}.lt (a, b)`"
         case "==" if kind != "list":
             return "`==` compares multi-sets; values are compared with `=`"
         case "!=" if kind != "list":
@@ -76,7 +87,7 @@ def wrong_operand(what: str, found: Ty, text: str) -> str:
                 "`x :: l` puts one element before a list; two lists are joined with `^^`, "
                 "one element is added at the end with `l ^^ [x]`"
             )
-        case ":=":
+        case ":=" if what.startswith("left"):
             return (
                 "`:=` gives a reference (`globref`) a new value; variables of the net keep theirs"
             )
@@ -86,6 +97,8 @@ def wrong_operand(what: str, found: Ty, text: str) -> str:
         ("operand of `andalso`", "operand of `orelse`")
     ):
         return 'a condition is needed here, such as `n > 0` or `s = "a"`' if kind != "bool" else ""
+    if what == "argument of `mem`" and kind != "list":
+        return "the list comes first: `mem list value`"
     if re.fullmatch(r"argument of `#.*`", what) and not isinstance(prune(found), IRec | Meta):
         return "`#1` takes the first component of a tuple, `#name` a field of a record"
     if what.endswith("argument of `!`"):
@@ -94,6 +107,34 @@ def wrong_operand(what: str, found: Ty, text: str) -> str:
         return "`!` gives the value of a reference (`globref`); a variable is its own value"
     if what.endswith("argument of `size`") and kind == "string":
         return "`size` counts the tokens of a multi-set; the length of a string is `String.size`"
+    return ""
+
+
+def _is_sequence(found: Ty) -> bool:
+    """Whether a type is that of a tuple whose first part gives nothing."""
+    t = prune(found)
+    if not isinstance(t, IRec) or len(t.fields) < 2:
+        return False
+    first = prune(t.fields[0][1])
+    return isinstance(first, IRec) and not first.fields
+
+
+def found_is_named(found: Ty) -> bool:
+    """Whether a type is one that a colour set declares, or made of others."""
+    t = prune(found)
+    return isinstance(t, IRec) or (
+        isinstance(t, ICon) and t.name[:1].isupper() and "." not in t.name
+    )
+
+
+def _wrong_action(found: Ty, expected: Ty) -> str:
+    """For the action of a code segment that does not give values for its outputs."""
+    if isinstance(expected, IRec) and not expected.fields:
+        return "there is no `output`, so the action must end with `()`: `action (..; ())`"
+    if isinstance(found, IRec) and not found.fields:
+        return "the action must end with a value for each output variable: `action (..; value)`"
+    if isinstance(expected, IRec):
+        return f"the action gives a tuple with a value for each of the {len(expected.fields)} output variables"
     return ""
 
 
@@ -106,12 +147,21 @@ def wrong_value(found: Ty, expected: Ty, span_text: str, what: str = "") -> str:
     if kind == "ref":
         return f"{word} is a reference: its value is `!{name}`" if word != "it" else ""
     if isinstance(f, IFun) and not isinstance(e, IFun):
-        result = prune(f.result)
-        if isinstance(result, ICon) and isinstance(e, ICon) and result.name == e.name:
-            return f"{word} needs its argument: `{name} (..)`" if word != "it" else ""
+        argument = prune(f.argument)
+        inside = "" if isinstance(argument, IRec) and not argument.fields else ".."
+        if word != "it":
+            return f"{word} is a function: apply it to its argument, `{name} ({inside})`"
         return "this is a function; apply it to its argument"
+    if what == "action":
+        return _wrong_action(f, e)
     if isinstance(e, IFun):
-        return "the function is the first argument: `map f list`" if kind == "list" else ""
+        if what.startswith("predicate"):
+            return "the predicate takes one value of the colour set and gives a bool"
+        if what.startswith("argument of") and not isinstance(f, IFun):
+            return "the function is the first argument: `map f list`, `foldl f start list`"
+        return ""
+    if wanted == "ref" and operand(what) == "=" and span_text != "":
+        return "`=` compares; a reference gets a new value with `:=`"
     if isinstance(e, IRec) and isinstance(f, IRec):
         return _wrong_record(f, e)
     if isinstance(e, IRec) and e.fields and what.startswith("argument of"):
@@ -128,7 +178,22 @@ def wrong_value(found: Ty, expected: Ty, span_text: str, what: str = "") -> str:
         return "this is a multi-set; where one value is needed, leave the coefficient out"
     if wanted == "list" and kind and isinstance(e, ICon) and base(e.args[0]) == kind:
         return "a multi-set of one token is 1`x, of none `empty`; a list of one element is `[x]`"
-    return ""
+    return _general(what, wanted)
+
+
+def _general(what: str, wanted: str) -> str:
+    """Where nothing better is known than what stands there."""
+    if what == "right operand of the backquote":
+        return "the tokens must be colours of the place's colour set"
+    if what.startswith(("component", "field")):
+        return "the components must have the types of the declaration, in its order"
+    if what.startswith("argument of `not`"):
+        return "functions are applied before operators: `not (n > 1)`"
+    if what.startswith("predicate"):
+        return "the predicate takes one value and gives a bool"
+    if wanted == "bool":
+        return "a condition is needed here, such as `n > 0`"
+    return "write a value of the expected type here, or convert this one"
 
 
 def not_a_function(name: str, arguments: list[str], components: int, *, constructor: bool) -> str:
@@ -168,7 +233,8 @@ def _wrong_record(found: IRec, expected: IRec) -> str:
             close = near(n, missing, cutoff=0.5)
             if close:
                 return f"did you mean the field `{close}` instead of `{n}`?"
-    return ""
+        return f"a record has all its fields and no others: {{{', '.join(f'{n} = ..' for n in wanted)}}}"
+    return f"a tuple with {len(wanted)} components is needed: ({', '.join('..' for _ in wanted)})"
 
 
 def among(names: tuple[str, ...]) -> str:

@@ -13,9 +13,10 @@ from pathlib import Path
 from pn2code.diagnostics import Diagnostics, Note, SourceText
 from pn2code.ml.advice import near
 from pn2code.ml.colsets import Colset, Kind
-from pn2code.ml.core import Exp
-from pn2code.ml.elaborate import ColsetSpec, Elaborator
-from pn2code.ml.types import Type, list_of, timed_of
+from pn2code.ml.core import Exp, Lit
+from pn2code.ml.elaborate import ColsetSpec, Elaborator, is_layered
+from pn2code.ml.parser import declared_names
+from pn2code.ml.types import INT, Type, list_of, timed_of
 from pn2code.net.binding import Parts, Planner
 from pn2code.net.codes import (
     ARC_EMPTY,
@@ -27,7 +28,7 @@ from pn2code.net.codes import (
     UNSUPPORTED_CHANNEL,
     UNSUPPORTED_DECLARATION,
 )
-from pn2code.net.flat import ArcInscription, ArcKind, CodeSegment, Form
+from pn2code.net.flat import ArcInscription, ArcKind, CodeSegment, Form, Term
 from pn2code.net.linked import Arc, Net, Page, Place, Transition
 from pn2code.net.terms import TermReader
 from pn2code.net.typed import TypedArc, TypedNet, TypedPage, TypedPlace, TypedTransition
@@ -89,11 +90,13 @@ class _Checker:
             folder=Path(net.document.file).parent,
         )
         self.broken: set[str] = set()
+        self.tests: list[Exp] = []  # of arcs `x as pattern` of the present transition
         declared = {
             c.name
             for c in net.declarations
             if isinstance(c, RawColset) and {"all", "'all"} & set(c.declare)
         }
+        self.elaborator.announce(lambda: _declared(net))
         for declaration in net.declarations:
             self.declare(declaration)
         self.program = self.elaborator.program()
@@ -186,7 +189,9 @@ class _Checker:
             before = len(self.d.errors)
             if colset is not None:
                 places.append(self.place(place, colset))
-            if colset is None or len(self.d.errors) > before:
+            name = place.colset.text.text if place.colset else "UNIT"
+            unknown = colset is None and name not in self.broken
+            if unknown or len(self.d.errors) > before:
                 wrong[place.id] = place
         for t in page.transitions if wrong else ():
             self.note_neighbours(t, wrong)
@@ -269,6 +274,7 @@ class _Checker:
         self, t: Transition, colsets: dict[str, Colset | None], places: dict[str, Place]
     ) -> TypedTransition | None:
         before = len(self.d.errors)
+        self.tests = []
         arcs: list[TypedArc] = []
         complete = True
         for arc in t.arcs:
@@ -296,6 +302,7 @@ class _Checker:
                 code = CodeSegment(segment.inputs, segment.outputs, segment.action, origin)
         if not complete or guards is None or priority is None or len(self.d.errors) > before:
             return None
+        guards = (*guards, *self.tests)
         parts = Parts(
             name=t.name,
             arcs=[(a.kind, a.inscription) for a in arcs],
@@ -344,6 +351,8 @@ class _Checker:
                 hint=f"write which tokens of `{colset.name}` it moves",
             )
             return None
+        if not colset.timed and arc.kind is not ArcKind.OUTPUT and is_layered(text):
+            return self.layered(arc, text, colset)
         forms = _ARC_TIMED if colset.timed else _UNTIMED
         found = self.inscription(text, colset, forms, arc.kind is ArcKind.OUTPUT)
         if found is None:
@@ -354,6 +363,38 @@ class _Checker:
             return None
         inscription = ArcInscription(value, form, terms, text.origin)
         return TypedArc(arc.id, arc.kind, arc.place, inscription, arc.origin)
+
+    def layered(self, arc: Arc, text: SourceText, colset: Colset) -> TypedArc | None:
+        """`x as pattern`: one token, whose parts are bound as well; that they fit x is a guard."""
+        found = self.elaborator.layered(text, colset.type)
+        if found is None:
+            return None
+        value, pattern, test = found
+        self.tests.append(test)
+        term = Term(_one(value), pattern, value, None, False, text.origin)
+        inscription = ArcInscription(value, Form.TOKEN, (term,), text.origin)
+        return TypedArc(arc.id, arc.kind, arc.place, inscription, arc.origin)
+
+
+def _one(value: Exp) -> Lit:
+    """The coefficient of one token."""
+    return Lit(1, INT, replace(value.span, end=value.span.start))
+
+
+def _declared(net: Net) -> frozenset[str]:
+    """All names that the net declares; texts with errors count as far as they can be read."""
+    names: set[str] = set()
+    for declaration in net.declarations:
+        match declaration:
+            case RawColset(name=name) | RawGlobref(name=name):
+                names.add(name)
+            case RawVar(names=several):
+                names.update(several)
+            case RawMl(text=text):
+                names.update(declared_names(text))
+            case _:
+                pass
+    return frozenset(names)
 
 
 def _form_type(form: Form, t: Type) -> Type:
