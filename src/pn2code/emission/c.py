@@ -10,8 +10,10 @@ import re
 from collections.abc import Callable, Iterable
 
 from pn2code.diagnostics import Origin
-from pn2code.emission import c_tables
-from pn2code.emission.c_expressions import Expressions, Types, c_integer
+from pn2code.emission import c_places, c_tables
+from pn2code.emission.c_effects import Effects
+from pn2code.emission.c_expressions import Expressions, Types, c_integer, op_needs_table
+from pn2code.emission.c_firing import DirectFiring
 from pn2code.emission.c_statements import Statements, used_locals, uses_context, wrap
 from pn2code.emission.environment import c_comment, c_float, c_string, render
 from pn2code.emission.names import Members, Names, Scope, stem
@@ -55,6 +57,9 @@ class _Emitter:
         self._tables = tuple(self._names.table(p.table) for p in net.places)
         self._timed = tuple(p.timed for p in net.places)
         self._needs_context = self._context_users()
+        self._effects = Effects(net)
+        self._orders = c_places.Orders(self._types, self._names, self._descriptors)
+        self._rooms = c_places.rooms(net)
         self._has_arena_values = any(
             d.type.rep in (Rep.STRING, Rep.LIST, Rep.UNION)
             for key in self._closure({p.table for p in net.places})
@@ -166,6 +171,7 @@ class _Emitter:
             else ('{ "", 0U }' if g.type.rep is Rep.STRING else "{ 0 }"),
             "is_root": g.is_reference or self._types.holds_reference(g.type),
             "setup": [] if constant else s.lines,
+            "has_locals": any(isinstance(n, ir.Let | ir.Declare) for n in g.setup),
             "table": self._names.table(g.table),
             "is_reference": g.is_reference,
         }
@@ -192,6 +198,8 @@ class _Emitter:
                 for e in p.early
             ],
             "capacity": p.capacity,
+            "room": 0 if p.timed else self._rooms[p.index],
+            "order": "" if p.timed else self._orders.name(p.table),
             "initial": s.lines,
             "initial_text": _comment_lines(p.initial_text),
             "leaf_kinds": [kind for _, kind in leaves] if leaves else [],
@@ -261,11 +269,10 @@ class _Emitter:
         )
         search.body(t.enumerate)
         search.finish_search()
-        fire, x, _ = self._printer(t.fire, "b->")
-        x.variables = variables
-        fire.variable_types = search.variable_types
-        fire.body(t.fire)
+        is_direct = self._is_direct(t)
+        fire = self._firing(t, is_direct, variables)
         text = "\n".join(fire.lines)
+        affected = self._effects.affected(t.index)
         return {
             "mark": self._block(f"transition {t.name}", t.name, "transition", t.origin),
             "index": t.index,
@@ -293,8 +300,49 @@ class _Emitter:
             "search": search.lines,
             "searches_marking": bool(re.search(r"\bm\b", "\n".join(search.lines))),
             "fire": fire.lines,
+            "is_direct": is_direct,
             "uses_binding": "b->" in text,
+            "affected": ""
+            if len(affected) == len(self._net.transitions)
+            else ", ".join(f"{i}U" for i in affected),
         }
+
+    def _is_direct(self, t: ir.Transition) -> bool:
+        """Whether it can be printed with the functions of its places; what is taken must be what was found."""
+        takes = tuple(s.value for s in t.fire if isinstance(s, ir.Take))
+        return c_places.is_direct(self._net, t) and self._effects.is_pure(takes)
+
+    def _firing(self, t: ir.Transition, is_direct: bool, variables: tuple[str, ...]) -> Statements:
+        printer, x, scope = self._printer(t.fire, "b->")
+        x.variables = variables
+        if is_direct:
+            scope.reserve("is_taken", "fits")
+            checked = tuple(self._is_restricted(p.table) for p in self._net.places)
+            direct = DirectFiring(
+                self._types,
+                x,
+                scope,
+                self._net.real_time,
+                checked=checked,
+                tables=tuple(v.table for v in t.variables),
+                place_tables=tuple(p.table for p in self._net.places),
+            )
+            direct.used, direct.bags, direct.timed = printer.used, printer.bags, printer.timed
+            direct.tables_of_places = printer.tables_of_places
+            direct.variable_types = tuple(v.type for v in t.variables)
+            direct.fire(t.fire, uses_context(t.fire, self._needs_context, self._definitions))
+            return direct
+        printer.variable_types = tuple(v.type for v in t.variables)
+        printer.body(t.fire)
+        return printer
+
+    def _is_restricted(self, key: str) -> bool:
+        """Whether the table excludes values of its type, or rounds them."""
+        d = self._descriptors[key]
+        if d.low is not None or d.high is not None or d.chars or d.member or d.is_float32:
+            return True
+        parts = [part for _, part in d.fields if part] + ([d.element] if d.element else [])
+        return any(part != key and self._is_restricted(part) for part in parts)
 
     def _reaches(self, statements: tuple[ir.Stmt, ...], what: Callable[[object], bool]) -> bool:
         """Whether there is something of a kind, directly or in a function that is called."""
@@ -344,7 +392,8 @@ class _Emitter:
         for b in bodies:
             for node in ir_nodes(b):
                 table = getattr(node, "table", "")
-                if isinstance(table, str) and table:
+                is_looked_at = not isinstance(node, ir.Op) or op_needs_table(node)
+                if isinstance(table, str) and table and is_looked_at:
                     roots.add(table)
                 if isinstance(node, ir.Op) and node.name == "Colset.all":
                     roots.add(f"type {node.type}")
@@ -384,6 +433,7 @@ class _Emitter:
             "tables": [tables.print(k) for k in keys],
             "leaves": self._leaf_tables(),
             "places": [self._place(p) for p in net.places],
+            "orders": list(self._orders.functions.values()),
             "transitions": [self._transition(t) for t in net.transitions],
             "has_arena_values": self._has_arena_values
             or any(g.is_reference or self._types.holds_reference(g.type) for g in net.globals),

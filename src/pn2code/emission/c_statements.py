@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+
 from pn2code.emission.c_expressions import Expressions, Types, c_bytes, op_needs_context
 from pn2code.emission.environment import c_comment
 from pn2code.emission.names import Names, Scope
@@ -201,7 +203,7 @@ class Statements:
 
     def _discard(self, value: Ir) -> None:
         """Evaluate for what it does, if it can do anything."""
-        if not any(isinstance(n, (ir.FunCall, ir.Op)) for n in ir_nodes(value)):
+        if does_nothing(value):
             return
         if value.type.rep is Rep.UNIT:
             self.line(f"{self._x.text(value)};")
@@ -224,13 +226,13 @@ class Statements:
     def _set_contents(self, s: ir.SetContents) -> None:
         star = "*" if s.reference.type.rep is Rep.REF and s.value.type != s.reference.type else ""
         target = f"{star}{self._x.inside(s.reference, 13)}"
-        value = self._x.text(s.value)
+        text = self._x.text(s.value)
         if not is_atomic(s.value):
             fresh = self._scope.name(("new value", id(s)), "new_value")
-            self.line(f"const {self._types.name(s.value.type)} {fresh} = {value};")
-            value = fresh
+            self.line(f"const {self._types.name(s.value.type)} {fresh} = {text};")
+            text = fresh
         self.line("if (pn_ok(cx)) {")
-        self.line(f"{_INDENT}{target} = {value};")
+        self.line(f"{_INDENT}{target} = {text};")
         self.line("}")
 
     def _if(self, s: ir.If, prefix: str = "") -> None:
@@ -331,14 +333,20 @@ class Statements:
             case ir.UnlessHeld():
                 if s.note:
                     self.note(s.note)
-                parts = [
-                    f"&{self.bags[s.place]}", "m", self._x.address(s.value), self._x.time(s.limit),
-                ]  # fmt: skip
-                self.line(f"if (pn_bag_count({', '.join(parts)}) < {s.count}U) {{")
+                pointer = self._x.address(s.value)
+                if self.timed[s.place]:
+                    bag = self.bags[s.place]
+                    held = f"pn_bag_count(&{bag}, m, {pointer}, {self._x.time(s.limit)})"
+                else:
+                    held = f"{self._x.place_names[s.place]}_held(m, {pointer})"
+                self.line(f"if ({held} < {s.count}U) {{")
                 self._next()
             case ir.UnlessEmpty(place=place, note=note):
                 self.note(note)
-                self.line(f"if (pn_bag_available(&{self.bags[place]}, m, cx->now) > 0U) {{")
+                if self.timed[place]:
+                    self.line(f"if (pn_bag_available(&{self.bags[place]}, m, cx->now) > 0U) {{")
+                else:
+                    self.line(f"if (m->{self._x.place_names[place]}.used > 0U) {{")
                 self._next()
             case ir.Wanted(takes=takes):
                 self._wanted(takes)
@@ -396,6 +404,9 @@ class Statements:
         self._next()
 
     def _wanted(self, takes: tuple[Stmt, ...]) -> None:
+        if is_pair(takes, self.timed):
+            self._wanted_pair(takes)
+            return
         name = self._scope.name(("wanted", id(takes)), "wanted")
         holds = self._scope.name(("holds", id(takes)), "holds")
         before, self.moves = self.moves, name
@@ -411,6 +422,19 @@ class Statements:
         self.line(f"if (!{holds}) {{")
         self._next()
         self.moves = before
+
+    def _wanted_pair(self, takes: tuple[Stmt, ...]) -> None:
+        values = []
+        for note in dict.fromkeys(s.note for s in takes if isinstance(s, ir.Take) and s.note):
+            self.note(note)
+        for s in takes:
+            if isinstance(s, ir.Take):
+                values.append(self._x.address(s.value))
+                place = self._x.place_names[s.place]
+            else:
+                self.statement(s)
+        self.line(f"if (!{place}_holds(m, {', '.join(values)})) {{")
+        self._next()
 
     def _yield(self) -> None:
         if self.may_fail:
@@ -447,6 +471,18 @@ class Statements:
         self.line(f"pn_moves_{verb}({', '.join(parts)});")
 
 
+def is_pair(takes: tuple[Stmt, ...], timed: tuple[bool, ...]) -> bool:
+    """Whether one token each of two values of one untimed place is wanted."""
+    wanted = [s for s in takes if isinstance(s, ir.Take)]
+    return (
+        len(wanted) == 2
+        and len({s.place for s in wanted}) == 1
+        and not timed[wanted[0].place]
+        and all(isinstance(s.count, ir.Const) and s.count.value == 1 for s in wanted)
+        and all(isinstance(s, ir.Take | ir.Let | ir.Note) for s in takes)
+    )
+
+
 _ERRORS = {
     "Match": "PN_ERR_MATCH",
     "Bind": "PN_ERR_BIND",
@@ -465,16 +501,45 @@ def _error(name: str) -> str:
     return _ERRORS.get(name, "PN_ERR_RAISED")
 
 
+def does_nothing(value: Ir) -> bool:
+    """Whether a value need not be computed when nobody looks at it."""
+    return not any(
+        isinstance(n, (ir.FunCall, ir.NewRef)) or (isinstance(n, ir.Op) and n.name != "zero")
+        for n in ir_nodes(value)
+    )
+
+
 def used_locals(statements: tuple[Stmt, ...]) -> frozenset[int]:
-    """The locals whose values are looked at."""
-    used: set[int] = set()
-    for node in ir_nodes(statements):
-        match node:
-            case ir.Use(local=local) | ir.Fill(local=local):
-                used.add(local.uid)
-            case ir.ForList(until=until) if until is not None:
-                used.add(until.uid)
-    return frozenset(used)
+    """The locals whose values are looked at by what is printed."""
+    used: frozenset[int] | None = None
+    while True:
+        found = frozenset(_used(statements, used))
+        if found == used:
+            return found
+        used = found
+
+
+def _used(item: object, known: frozenset[int] | None) -> Iterator[int]:
+    """`known`: the locals that are used as far as is known; what goes to others is not looked at."""
+    match item:
+        case tuple():
+            for part in item:
+                yield from _used(part, known)
+            return
+        case ir.Use(local=local):
+            yield local.uid
+        case ir.Let(local=local, value=value) | ir.Assign(local=local, value=value) if (
+            known is not None and local.uid not in known and does_nothing(value)
+        ):
+            return
+        case ir.Do(value=value) if does_nothing(value):
+            return
+        case ir.Fill(local=local):
+            yield local.uid
+        case ir.ForList(until=until) if until is not None:
+            yield until.uid
+    for name in getattr(item, "__dataclass_fields__", ()):
+        yield from _used(getattr(item, name), known)
 
 
 def uses_context(

@@ -16,6 +16,7 @@
 #include "pn/pn_file.h"
 #include "pn/pn_library.h"
 #include "pn/pn_num.h"
+#include "pn/pn_place.h"
 #include "pn/pn_random.h"
 #include "pn/pn_string.h"
 #include "pn/pn_type.h"
@@ -112,6 +113,18 @@ static const pn_leaf_kind_t s_INT_kinds[] = { PN_LEAF_INT };
 static const char *const s_INT_leaves[] = { "" };
 static const uint32_t s_INT_lines[] = { 1U };
 
+static inline bool is_before_BOX(const BOX_t *a, const BOX_t *b)
+{
+    if (a->part != b->part) {
+        return a->part < b->part;
+    }
+    const int weight_order = pn_compare(&s_REAL, &a->weight, &b->weight);
+    if (weight_order != 0) {
+        return weight_order < 0;
+    }
+    return false;
+}
+
 /* place Top.Buffer, colour set BOX: page `Top`, place `Buffer` (ID16) */
 static const pn_bag_t s_at_Buffer = {
     .origin = "page `Top`, place `Buffer` (ID16)",
@@ -121,6 +134,7 @@ static const pn_bag_t s_at_Buffer = {
 };
 
 PN_PLACE_FUNCTIONS(Buffer, s_at_Buffer)
+PN_UNTIMED_PLACE(Buffer, net_marking_t, BOX_t, is_before_BOX, s_at_Buffer)
 
 /* initial marking:
  *     1`{part = screw, weight = 3.0} ++ 2`{part = nut, weight = 0.1}
@@ -145,6 +159,7 @@ static const pn_bag_t s_at_Count = {
 };
 
 PN_PLACE_FUNCTIONS(Count, s_at_Count)
+PN_UNTIMED_PLACE(Count, net_marking_t, int64_t, PN_LESS, s_at_Count)
 
 /* initial marking:
  *     0
@@ -167,6 +182,7 @@ static const pn_bag_t s_at_Out = {
 };
 
 PN_PLACE_FUNCTIONS(Out, s_at_Out)
+PN_UNTIMED_PLACE(Out, net_marking_t, BOX_t, is_before_BOX, s_at_Out)
 
 static const pn_bag_t *const s_bags[] = {
     &s_at_Buffer,
@@ -228,21 +244,30 @@ static bool Pick_fire(pn_ctx_t *cx, void *marking, void *binding)
     Pick_binding_t *const b = binding;
     cx->origin = "page `Top`, transition `Pick` (ID25)";
     cx->now = m->now;
-    const size_t before = pn_arena_mark(cx->arena);
-    pn_moves_t moves;
-    pn_moves_init(&moves, cx);
+    const int64_t Count_token = pn_int_add(cx, b->n, ml_label(cx, b->b));
+    if (!pn_ok(cx)) {
+        return false;
+    }
     /* Buffer: b (ID30) */
-    pn_moves_take(&moves, &s_at_Buffer, &b->b, 1, PN_NO_TIME);
+    bool is_taken = Buffer_take(m, &b->b, 1U);
     /* Count: n (ID32) */
-    pn_moves_take(&moves, &s_at_Count, &b->n, 1, PN_NO_TIME);
+    is_taken = is_taken && Count_take(m, &b->n, 1U);
+    if (!is_taken) {
+        pn_raise(cx, PN_ERR_SUBTRACT, NULL);
+        return false;
+    }
     /* Count: n + label b (ID34) */
-    pn_moves_put(&moves, &s_at_Count, (int64_t[]){ pn_int_add(cx, b->n, ml_label(cx, b->b)) }, 1,
-        PN_NO_TIME);
+    bool fits = Count_add(cx, m, &Count_token, 1U);
     /* Out: b (ID36) */
-    pn_moves_put(&moves, &s_at_Out, &b->b, 1, PN_NO_TIME);
-    const bool is_done = pn_moves_commit(&moves, m);
-    pn_arena_release(cx->arena, before);
-    return is_done;
+    fits = Out_add(cx, m, &b->b, 1U) && fits;
+    if (!fits) {
+        /* a place is full: everything is put back */
+        (void)Out_take(m, &b->b, 1U);
+        (void)Count_take(m, &Count_token, 1U);
+        (void)Count_add(cx, m, &b->n, 1U);
+        (void)Buffer_add(cx, m, &b->b, 1U);
+    }
+    return fits;
 }
 
 static void Pick_json(const void *binding, pn_text_t *out)
@@ -255,7 +280,10 @@ static void Pick_json(const void *binding, pn_text_t *out)
 static bool init(pn_ctx_t *cx, void *marking)
 {
     net_marking_t *const m = marking;
-    (void)memset(m, 0, sizeof *m);
+    m->now = (pn_time_t){ 0 };
+    m->Buffer.used = 0U;
+    m->Count.used = 0U;
+    m->Out.used = 0U;
     pn_arena_reset(cx->arena);
     cx->now = m->now;
     cx->step = 0U;
@@ -363,6 +391,8 @@ static const pn_place_t s_places[] = {
         .line_count = 1U, .line_leaves = s_BOX_lines,
     },
 };
+
+/* For each transition those that may be enabled in another way when it has occurred. */
 
 static const pn_transition_t s_transitions[] = {
     {

@@ -42,7 +42,7 @@ typedef struct net_marking {
         struct {
             int64_t value;
             uint32_t count;
-        } token[64];
+        } token[64 + 1];
     } Count;
     /* Top.Out: page `Top`, place `Out` (ID22) */
     struct {
@@ -50,7 +50,7 @@ typedef struct net_marking {
         struct {
             BOX_t value;
             uint32_t count;
-        } token[64];
+        } token[64 + 1];
     } Out;
 } net_marking_t;
 

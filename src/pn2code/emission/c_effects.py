@@ -1,0 +1,65 @@
+"""What an occurrence can change about what is enabled: for the hosts, that look again only where they must."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+from pn2code.lowering import ir
+from pn2code.lowering.functions import called, ir_nodes, is_impure_builtin
+
+_EXAMINED = (
+    ir.ForTokens, ir.TokenValue, ir.UnlessAvailable, ir.UnlessHeld, ir.UnlessEmpty, ir.Take, ir.TakeAll,
+)  # fmt: skip
+_CHANGED = (ir.Take, ir.TakeAll, ir.Put, ir.PutAll, ir.Reset)
+
+
+class Effects:
+    """Of the transitions of a net on each other.
+
+    Args:
+        net: the net.
+    """
+
+    def __init__(self, net: ir.NetIR) -> None:
+        self._functions: Mapping[str, ir.Function] = {f.key: f for f in net.functions}
+        self._references = {g.name for g in net.globals if g.is_reference}
+        self._examined = [_places(t.enumerate, _EXAMINED) for t in net.transitions]
+        self._changed = [_places(t.fire, _CHANGED) for t in net.transitions]
+        self._volatile = [not self.is_pure(t.enumerate) for t in net.transitions]
+
+    def affected(self, transition: int) -> tuple[int, ...]:
+        """The transitions that may be enabled in another way after an occurrence of this one, in order."""
+        return tuple(
+            i
+            for i, places in enumerate(self._examined)
+            if self._volatile[i] or places & self._changed[transition]
+        )
+
+    def is_pure(self, item: object) -> bool:
+        """Whether nothing but the binding and the marking decides: no references, random numbers, step()."""
+        waiting: list[object] = [item]
+        seen: set[str] = set()
+        while waiting:
+            body = waiting.pop()
+            if any(map(self._is_impure, ir_nodes(body))):
+                return False
+            calls = [key for key in called(body) if key not in seen]  # type: ignore[arg-type]
+            seen.update(calls)
+            waiting += [self._functions[key].body for key in calls]
+        return True
+
+    def _is_impure(self, node: object) -> bool:
+        match node:
+            case ir.Op(name=name):
+                return is_impure_builtin(name) or name == "Time.step"
+            case ir.Contents() | ir.AddressOf():
+                return True
+            case ir.GlobalUse(name=name):
+                return name in self._references
+            case ir.Fill(name=name):
+                return name == "ran"
+        return False
+
+
+def _places(statements: tuple[ir.Stmt, ...], kinds: tuple[type, ...]) -> frozenset[int]:
+    return frozenset(n.place for n in ir_nodes(statements) if isinstance(n, kinds))  # type: ignore[attr-defined]

@@ -1,0 +1,158 @@
+"""An occurrence printed with the inline functions of its places (pn_place.h).
+
+First everything is worked out, so that whatever raises leaves the marking alone; then tokens are taken and put. If a
+place turns out to be full, all is put back.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from pn2code.emission.c_expressions import Expressions, Types
+from pn2code.emission.c_places import is_count
+from pn2code.emission.c_statements import Statements
+from pn2code.emission.names import Scope
+from pn2code.lowering import ir
+from pn2code.lowering.ir import Stmt
+
+
+@dataclass(frozen=True, slots=True)
+class _Move:
+    """A take or put that is worked out.
+
+    Args:
+        verb: "take" or "add".
+        place: the member of the marking.
+        value: a pointer to the value, as C.
+        count: as C.
+        note: what it is in the net.
+    """
+
+    verb: str
+    place: str
+    value: str
+    count: str
+    note: str
+
+    def call(self, verb: str = "") -> str:
+        """The call that does it, or that undoes it."""
+        context = "cx, " if (verb or self.verb) == "add" else ""
+        return f"{self.place}_{verb or self.verb}({context}m, {self.value}, {self.count})"
+
+
+class DirectFiring(Statements):
+    """Prints the `fire` of a transition for which `c_places.is_direct` holds.
+
+    Args:
+        checked: for each place whether a value may be outside its colour set.
+        tables: for each variable of the binding the key of its descriptor.
+        place_tables: for each place the same.
+    """
+
+    def __init__(
+        self,
+        types: Types,
+        expressions: Expressions,
+        scope: Scope,
+        real_time: bool,
+        *,
+        checked: tuple[bool, ...],
+        tables: tuple[str, ...],
+        place_tables: tuple[str, ...],
+    ) -> None:
+        super().__init__(types, expressions, scope, real_time)
+        self._checked = checked
+        self._tables = tables
+        self._place_tables = place_tables
+        self._moves_made: list[_Move] = []
+        self._declared: list[str] = []
+        self.has_checks = False
+
+    def fire(self, statements: tuple[Stmt, ...], may_fail: bool) -> None:
+        """The whole body after the preamble."""
+        self.body(statements)
+        self.lines[:0] = self._declared
+        if may_fail or self.has_checks:
+            self.line("if (!pn_ok(cx)) {")
+            self.line("    return false;")
+            self.line("}")
+        takes = [m for m in self._moves_made if m.verb == "take"]
+        puts = [m for m in self._moves_made if m.verb == "add"]
+        self._take(takes)
+        if not puts:
+            self.line("return true;")
+            return
+        for i, move in enumerate(puts):
+            self.note(move.note)
+            start = "bool fits = " if i == 0 else "fits = "
+            self.line(f"{start}{move.call()}{' && fits' if i else ''};")
+        self.line("if (!fits) {")
+        self._depth += 1
+        self.note("a place is full: everything is put back")
+        for move in reversed(puts):
+            self.line(f"(void){move.call('take')};")
+        for move in reversed(takes):
+            self.line(f"(void){move.call('add')};")
+        self._depth -= 1
+        self.line("}")
+        self.line("return fits;")
+
+    def _take(self, takes: list[_Move]) -> None:
+        if not takes:
+            return
+        for i, move in enumerate(takes):
+            self.note(move.note)
+            start = "bool is_taken = " if i == 0 else "is_taken = is_taken && "
+            self.line(f"{start}{move.call()};")
+        self.line("if (!is_taken) {")
+        self.line("    pn_raise(cx, PN_ERR_SUBTRACT, NULL);")
+        self.line("    return false;")
+        self.line("}")
+
+    def _move(self, s: ir.Take | ir.Put) -> None:
+        place = self._x.place_names[s.place]
+        verb = "take" if isinstance(s, ir.Take) else "add"
+        key = (verb, id(s))
+        is_nested = self._depth > 1
+        is_plain = isinstance(s.value, ir.Bound | ir.Use)
+        must_check = isinstance(s, ir.Put) and self._checked[s.place] and not self._is_known(s)
+        if is_plain and not is_nested and not must_check:
+            value = self._x.address(s.value)
+        else:
+            fresh = self._scope.name((*key, "value"), f"{place}_token")
+            t = self._types.name(s.value.type)
+            if is_nested:
+                self._declared.append(f"    {t} {fresh} = {self._types.zero(s.value.type)};")
+                self.line(f"{fresh} = {self._x.text(s.value)};")
+            else:
+                constant = "" if must_check else "const "
+                self.line(f"{constant}{t} {fresh} = {self._x.text(s.value)};")
+            value = f"&{fresh}"
+        if must_check:
+            self.has_checks = True
+            self.line(f"pn_bag_check(cx, &{self.bags[s.place]}, {value});")
+        count = self._count(s, key, place, is_nested)
+        self._moves_made.append(_Move(verb, place, value, count, s.note))
+
+    def _count(self, s: ir.Take | ir.Put, key: tuple[str, int], place: str, is_nested: bool) -> str:
+        if is_count(s.count) and not is_nested:
+            return f"{self._x.text(s.count)}U"
+        number = self._scope.name((*key, "count"), f"{place}_tokens")
+        if is_count(s.count):
+            text = f"{self._x.text(s.count)}U"
+        else:
+            self.has_checks = True
+            text = f"pn_token_count(cx, {self._x.text(s.count)})"
+        if is_nested:
+            self._declared.append(f"    uint32_t {number} = 0U;")
+            self.line(f"{number} = {text};")
+        else:
+            self.line(f"const uint32_t {number} = {text};")
+        return number
+
+    def _is_known(self, s: ir.Put) -> bool:
+        """Whether the value is a variable of the very colour set."""
+        return (
+            isinstance(s.value, ir.Bound)
+            and self._tables[s.value.index] == self._place_tables[s.place]
+        )

@@ -1,0 +1,126 @@
+"""Untimed places with their types known: the order of their values in C, and the room that an occurrence needs."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+
+from pn2code.emission.c_expressions import Types
+from pn2code.emission.names import Names, label
+from pn2code.lowering import ir
+from pn2code.lowering.functions import ir_nodes
+from pn2code.lowering.ir import Descriptor, Rep
+
+_SCALAR = frozenset({Rep.BOOL, Rep.INT, Rep.CHAR, Rep.ENUM})
+"""Representations whose values C compares in the order of the colour set."""
+
+
+class Orders:
+    """Names and text of the functions that say which of two values comes first."""
+
+    def __init__(self, types: Types, names: Names, descriptors: Mapping[str, Descriptor]) -> None:
+        self._types = types
+        self._names = names
+        self._descriptors = descriptors
+        self.functions: dict[str, list[str]] = {}
+
+    def name(self, key: str) -> str:
+        """The macro or function that is `less` for a descriptor; makes the function if there is none yet."""
+        d = self._descriptors[key]
+        if d.type.rep in _SCALAR:
+            return "PN_LESS"
+        name = f"is_before_{self._names.table(key).removeprefix('s_')}"
+        if name not in self.functions:
+            self.functions[name] = self._function(name, key)
+        return name
+
+    def _function(self, name: str, key: str) -> list[str]:
+        d = self._descriptors[key]
+        c_type = self._types.name(d.type)
+        lines: list[str] = []
+        if d.type.rep is Rep.UNIT:
+            lines += ["    (void)a;", "    (void)b;", "    return false;"]
+        elif d.type.rep is Rep.STRUCT and d.fields:
+            self._fields(key, "", lines)
+            lines.append("    return false;")
+        else:
+            lines.append(f"    return pn_compare(&{self._names.table(key)}, a, b) < 0;")
+        head = f"static inline bool {name}(const {c_type} *a, const {c_type} *b)"
+        return [head, "{", *lines, "}"]
+
+    def _fields(self, key: str, path: str, lines: list[str]) -> None:
+        """Component by component, nested ones in place."""
+        for text, part in self._descriptors[key].fields:
+            inner = self._descriptors[part]
+            member = f"{path}{label(text)}"
+            if inner.type.rep is Rep.UNIT:
+                continue
+            if inner.type.rep is Rep.STRUCT and inner.fields:
+                self._fields(part, f"{member}.", lines)
+            elif inner.type.rep in _SCALAR:
+                lines.append(f"    if (a->{member} != b->{member}) {{")
+                lines.append(f"        return a->{member} < b->{member};")
+                lines.append("    }")
+            else:
+                order = f"{member.replace('.', '_')}_order"
+                table = self._names.table(part)
+                lines.append(
+                    f"    const int {order} = pn_compare(&{table}, &a->{member}, &b->{member});"
+                )
+                lines.append(f"    if ({order} != 0) {{")
+                lines.append(f"        return {order} < 0;")
+                lines.append("    }")
+
+
+def rooms(net: ir.NetIR) -> tuple[int, ...]:
+    """For each place: the most entries that one occurrence may add before it is asked whether they fit."""
+    return tuple(
+        max((_puts(t.fire, place.index) for t in net.transitions), default=0)
+        for place in net.places
+    )
+
+
+def _puts(statements: Iterable[ir.Stmt], place: int) -> int:
+    """The most `Put`s to a place on any way through the statements."""
+    total = 0
+    for s in statements:
+        match s:
+            case ir.Put(place=p):
+                total += p == place
+            case ir.If(then=then, otherwise=otherwise):
+                total += max(_puts(then, place), _puts(otherwise, place))
+            case _:
+                pass
+    return total
+
+
+def is_direct(net: ir.NetIR, t: ir.Transition) -> bool:
+    """Whether the occurrence is a fixed number of takes and puts of untimed places, known one by one."""
+    takes = [n for n in ir_nodes(t.fire) if isinstance(n, ir.Take)]
+    puts = [n for n in ir_nodes(t.fire) if isinstance(n, ir.Put)]
+    moved = {n.place for n in takes} | {n.place for n in puts}
+    top = [s for s in t.fire if isinstance(s, ir.Take)]
+    return (
+        not any(isinstance(n, ir.TakeAll | ir.PutAll | ir.Reset) for n in ir_nodes(t.fire))
+        and not any(net.places[place].timed for place in moved)
+        and len(takes) == len(top)
+        and all(is_count(n.count) for n in takes)
+        and len(puts) == len([*_ways(t.fire)])
+    )
+
+
+def _ways(statements: Iterable[ir.Stmt]) -> Iterable[ir.Put]:
+    """The `Put`s that stand at the top or in branches, not in loops."""
+    for s in statements:
+        match s:
+            case ir.Put():
+                yield s
+            case ir.If(then=then, otherwise=otherwise):
+                yield from _ways(then)
+                yield from _ways(otherwise)
+            case _:
+                pass
+
+
+def is_count(e: ir.Ir) -> bool:
+    """A constant number of tokens, at least one."""
+    return isinstance(e, ir.Const) and isinstance(e.value, int) and 0 < e.value < 2**31
