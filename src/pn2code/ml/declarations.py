@@ -237,7 +237,8 @@ class Declarations:
             elif isinstance(t, IError) or self._ctx.errors:
                 continue
             else:
-                shown = "another one" if isinstance(t, Quant | Meta) else f"`{self._ctx.show(t)}`"
+                unknown = isinstance(t, Quant) or (isinstance(t, Meta) and not t.among)
+                shown = "another one" if unknown else f"`{self._ctx.show(t)}`"
                 self._ctx.error(
                     codes.TYPE_VARIABLE,
                     f"the type variable `{name}` would have to be {shown}",

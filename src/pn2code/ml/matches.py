@@ -18,7 +18,7 @@ from pn2code.ml.builtins import EXCEPTIONS
 from pn2code.ml.context import Context
 from pn2code.ml.inference import to_type
 from pn2code.ml.patterns import Deref
-from pn2code.ml.types import EXN, UNIT, TCon, TFun, TRecord, Type
+from pn2code.ml.types import EXN, UNIT, TCon, TFun, Type
 
 MAX_STEPS = 100_000
 """Patterns that are looked at for one match; beyond, nothing is said of it."""
@@ -348,21 +348,13 @@ def _cases(
     declared = core.ValBind(core.PVar(go_on, t, span), core.Lambda((rule,), t, span), span)
     call = core.Apply(core.Var(go_on, t, span), core.RecordExp((), UNIT, span), result, span)
     risky = rules[at]
-    fields = [(str(i), x) for i, x in enumerate(risky.derefs, 1)]
-    contents = TRecord(tuple((n, to_type(x.content)) for n, x in fields))
-    inner = core.Case(
-        core.RecordExp(tuple((n, _content(ctx, x)) for n, x in fields), contents, span),
-        (
-            core.Rule(
-                core.PRecord(tuple((n, x.inner()) for n, x in fields), contents, span),
-                risky.rule.body,
-                risky.rule.span,
-            ),
-            core.Rule(core.PWild(contents, span), call, span),
-        ),
-        result,
-        span,
-    )
+    inner = risky.rule.body
+    for x in reversed(risky.derefs):
+        content = to_type(x.content)
+        chosen = core.Rule(x.inner(), inner, risky.rule.span)
+        none = core.Rule(core.PWild(content, span), call, span)
+        rules_inside = (chosen,) if x.irrefutable else (chosen, none)
+        inner = core.Case(_content(ctx, x), rules_inside, result, span)
     chosen = core.Rule(risky.rule.pattern, inner, risky.rule.span)
     none = core.Rule(core.PWild(whole.type, span), call, span)
     case = core.Case(scrutinee, (*before, chosen, none), result, span)

@@ -217,9 +217,10 @@ class Patterns:
         content = self._ctx.unifier.fresh()
         self._unify(ICon("ref", (content,)), t, p.span)
         cell = Binding("cell", t)
+        at = len(bindings.derefs)
         inner = self.check(p.argument, content, bindings)
         always = is_irrefutable(p.argument, self._ctx)
-        bindings.derefs.append(Deref(cell, content, inner, always, p.span))
+        bindings.derefs.insert(at, Deref(cell, content, inner, always, p.span))
         return lambda: core.PVar(self._ctx.symbol_of(cell), to_type(t), p.span)
 
     def _record(self, p: s.RecordPat, t: Ty, bindings: Bindings) -> PatternBuild:
