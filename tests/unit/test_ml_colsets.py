@@ -143,7 +143,7 @@ def test_bounds_may_use_values_declared_before() -> None:
         ("list", (), {}, "colour-set-definition | colour set `X` needs exactly one colour set that it is made of | "),
         ("union", (), {}, "colour-set-definition | colour set `X` is a union without constructors | "),
         ("subset", ("INT",), {}, "colour-set-definition | colour set `X` is a subset without a predicate or list | "),
-        ("subset", ("INT",), {"texts": ("3",), "by": True}, "type-mismatch | predicate of the subset is `int`, but `int -> bool` is expected | 3"),
+        ("subset", ("INT",), {"texts": ("3",), "by": True}, "type-mismatch | predicate of the subset is `int`, but a function `int -> bool` is expected | 3"),
         ("index", ("a", "b"), {"texts": ("1", "2")}, "colour-set-definition | colour set `X` is an index without a name for its values | "),
         ("tuple", (), {}, "unsupported-colour-set | colour set `X`: kind `tuple` is not supported | "),
         ("", (), {}, "unsupported-colour-set | colour set `X`: this form is not supported | "),
@@ -183,13 +183,14 @@ def test_members_list_of_a_subset_is_core() -> None:
     assert dump_exp(colset.members) == "[1, Int.+(2, 3)]"
 
 
-def test_a_variable_and_a_value_of_one_name_are_an_error() -> None:
+def test_a_value_hides_the_variable_of_its_name() -> None:
     m = Ml()
     m.ml("fun ok x = x val n = 3")
     m.e.variables(["ok"], "INT", Origin("net.cpn"))
     assert m.messages() == [
-        "variable-named-as-value | `n` is both a variable of the net and a value or function | val n = 3",
-        "variable-named-as-value | `ok` is both a variable of the net and a value or function | ",
+        "variable-named-as-value | `n` is both a variable of the net and a value or function: inscriptions mean the value | val n = 3",
+        "variable-named-as-value | `ok` is both a variable of the net and a value or function: inscriptions mean the value | ",
     ]
-    assert m.inscription("1`n ++ 1`ok", "INT") is None  # without further diagnostics
-    assert len(m.d.items) == 2
+    assert not m.d.has_errors
+    assert m.inscription("1`n", "INT") is not None
+    assert m.inscription("1`ok", "INT") is None  # a function

@@ -17,7 +17,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from pn2code.diagnostics import Diagnostics, Note, Span
-from pn2code.ml.core import Apply, Builtin, Exp, Pat, RecordExp, Symbol
+from pn2code.ml.core import Apply, Builtin, Exp, If, Pat, RecordExp, Symbol
 from pn2code.net.codes import CODE_OUTPUT_BOUND, UNBOUND_VARIABLE
 from pn2code.net.enumerable import DECLARED, SMALL, size
 from pn2code.net.flat import (
@@ -222,12 +222,24 @@ class Planner:
             if kind is ArcKind.OUTPUT or inscription is None:
                 continue
             for term in inscription.terms:
+                if s in self.variables.of(term.coefficient):
+                    notes.append(
+                        Note(f"a coefficient does not bind `{s.name}`, it only counts", term.origin)
+                    )
                 if term.pattern is not None or s not in self.variables.of(term.value):
                     continue
                 reason = "it is not a pattern, so it only tests"
                 if self.variables.of(term.coefficient):
                     reason = "its coefficient has a variable, so it only tests"
                 notes.append(Note(f"this summand does not bind `{s.name}`: {reason}", term.origin))
+        for guard in parts.guards:
+            if isinstance(guard, If) and s in self.variables.of(guard):
+                notes.append(
+                    Note(
+                        "a condition inside `andalso`, `orelse` or `if` binds nothing: separate conditions by commas",
+                        guard.span.origin,
+                    )
+                )
         colset = s.colset.name if s.colset else "its colour set"
         self.d.error(
             UNBOUND_VARIABLE,

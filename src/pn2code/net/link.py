@@ -278,6 +278,7 @@ class _Linker:
                         FUSION_MEMBER,
                         f"fusion set `{fusion.name}` lists place `{member}`, which does not exist",
                         fusion.origin,
+                        hint="it is passed over; remove it from the set",
                     )
                 elif member in fusion_of and fusion_of[member] != fusion.name:
                     self.d.error(

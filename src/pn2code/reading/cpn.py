@@ -73,6 +73,7 @@ class _Reader:
             CPN_UNKNOWN_ELEMENT,
             f"element `{child.tag}` inside `{parent.tag}` is not known and is ignored",
             child.at(self.base),
+            hint="is it misspelled? If a program wrote it on purpose, the net means the same without it",
         )
 
     def document(self, root: Node, sha256: str) -> Document | None:
@@ -149,6 +150,7 @@ class _Reader:
                 CPN_FORMAT,
                 f"format `{number}` is not known and is read like format 6",
                 generator.at(self.base),
+                hint="look whether everything of the net is there: `pn2code check` counts what was read",
             )
         return number
 
