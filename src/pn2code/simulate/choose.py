@@ -9,7 +9,6 @@ from __future__ import annotations
 
 from dataclasses import replace
 from enum import Enum
-from pathlib import Path
 
 from pn2code.diagnostics import Diagnostics, Origin, Severity
 from pn2code.monitors.functions import MonitorProgram, elaborate
@@ -17,8 +16,14 @@ from pn2code.monitors.kinds import resolve
 from pn2code.net.front import Examined
 from pn2code.semantics.effects import Effect, Effects
 from pn2code.simulate import compiled, programs, reference
-from pn2code.simulate.codes import ENGINE_CHANGED
+from pn2code.simulate.codes import ENGINE_CHANGED, SIMULATOR_FAILED
 from pn2code.simulate.run import Outcome, Request
+
+GROWTH = 16
+MOST_ROOM = 1 << 22
+"""Different tokens of a place."""
+MOST_MEMORY = 1 << 30
+"""Bytes for lists and strings."""
 
 
 class Wish(Enum):
@@ -63,10 +68,10 @@ def simulate(request: Request, wish: Wish, d: Diagnostics) -> Outcome | None:
             return None
         return _instead(request, obstacle, d)
     own = Diagnostics()
-    with programs.program(request.net, request.storage, own) as program:
-        if program is not None:
-            d.items += own.items
-            return _compiled(request, program, d)
+    outcome, is_built = _compiled(request, own)
+    if is_built:
+        d.items += own.items
+        return outcome
     if wish is Wish.COMPILED:
         d.items += own.items
         return None
@@ -74,8 +79,28 @@ def simulate(request: Request, wish: Wish, d: Diagnostics) -> Outcome | None:
     return _instead(request, first, d)
 
 
-def _compiled(request: Request, program: Path, d: Diagnostics) -> Outcome | None:
-    return compiled.run(request, program, d)
+def _compiled(request: Request, d: Diagnostics) -> tuple[Outcome | None, bool]:
+    """The run, and whether there was a program for it. What proves to be too small is made larger, and the run anew."""
+    room, memory = programs.ROOM, compiled.MEMORY
+    while True:
+        with programs.program(request.net, request.storage, d, room=room) as program:
+            if program is None:
+                return None, False
+            try:
+                return compiled.run(request, program, d, memory=memory), True
+            except compiled.OutOfRoomError as full:
+                if full.limit == "room" and room < MOST_ROOM:
+                    room *= GROWTH
+                elif full.limit == "memory" and memory < MOST_MEMORY:
+                    memory *= GROWTH
+                else:
+                    d.error(
+                        SIMULATOR_FAILED,
+                        f"there is no more {full.limit} for the run",
+                        Origin(request.net.file),
+                        hint="simulate fewer steps: something in the net grows without end",
+                    )
+                    return None, True
 
 
 def _instead(request: Request, why: str, d: Diagnostics) -> Outcome:

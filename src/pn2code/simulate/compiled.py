@@ -36,18 +36,41 @@ PROGRESS_S = 0.25
 _NO_LIMIT = 2**64 - 1
 
 
-def run(request: Request, program: Path, d: Diagnostics) -> Outcome | None:
+MEMORY = 1 << 22
+"""Bytes for lists and strings at first."""
+
+
+class OutOfRoomError(Exception):
+    """The program has too little room for this run; with more the same run can be made.
+
+    Args:
+        limit: "room" (of places) or "memory" (of lists and strings).
+    """
+
+    def __init__(self, limit: str) -> None:
+        super().__init__(limit)
+        self.limit = limit
+
+
+def run(request: Request, program: Path, d: Diagnostics, *, memory: int = MEMORY) -> Outcome | None:
     """Plays the run; None when the program came to a bad end, which was reported.
 
+    Args:
+        request: what is asked for.
+        program: the simulator.
+        d: gets the errors, and warnings of monitors.
+        memory: bytes for lists and strings.
+
     Raises:
+        OutOfRoomError: the program is too small for this run.
         TraceUnwritableError: the trace cannot be written.
         TraceRefusedError: the trace that is to be repeated is none.
         OSError: it cannot be read, or the program cannot be started.
     """
     given = Trace.open(request.replay, request.net) if request.replay else None
     if request.monitors is not None and request.monitors.monitors:
-        return _followed(request, program, given, d)
-    return _alone(request, program, given, d)
+        return _followed(request, program, given, memory, d)
+    return _alone(request, program, given, memory, d)
 
 
 # --- the process -----------------------------------------------------------------------------------
@@ -60,11 +83,12 @@ class _Process:
         request: what is asked for.
         program: the simulator.
         given: the trace that it repeats first.
+        memory: for lists and strings.
         follows: whether its trace comes through a pipe, and its output is of no interest.
     """
 
     def __init__(
-        self, request: Request, program: Path, given: Trace | None, *, follows: bool
+        self, request: Request, program: Path, given: Trace | None, memory: int, *, follows: bool
     ) -> None:
         self.request = request
         self.output = Output()
@@ -84,6 +108,7 @@ class _Process:
         self.report = os.fdopen(report_in, encoding="utf-8", errors="surrogateescape")
         seed, choice = request.seeds(given.header.seed if given else None)
         command = _command(request, program, trace, report_out, seed, choice)
+        command += ["--memory", str(memory)]
         try:
             self.process = subprocess.Popen(
                 command,
@@ -195,10 +220,12 @@ def _last_report(process: _Process) -> dict[str, Any] | None:
 # --- by itself -------------------------------------------------------------------------------------
 
 
-def _alone(request: Request, program: Path, given: Trace | None, d: Diagnostics) -> Outcome | None:
+def _alone(
+    request: Request, program: Path, given: Trace | None, memory: int, d: Diagnostics
+) -> Outcome | None:
     net = request.net
     began = time.perf_counter()
-    process = _Process(request, program, given, follows=False)
+    process = _Process(request, program, given, memory, follows=False)
     try:
         last = _last_report(process)
     except BaseException:
@@ -217,6 +244,8 @@ def _alone(request: Request, program: Path, given: Trace | None, d: Diagnostics)
     refusal = last.get("message", "") if why == "replay" else ""
     if process.refused is not None and why != "replay":
         why, refusal = "replay", str(process.refused)
+    if why == "error" and "limit" in last:
+        raise OutOfRoomError(last["limit"])
     return Outcome(
         engine="compiled",
         seed=request.seeds(given.header.seed if given else None)[0],
@@ -281,7 +310,7 @@ def _failure(net: FlatNet, last: Mapping[str, Any]) -> Failure:
 
 
 def _followed(
-    request: Request, program: Path, given: Trace | None, d: Diagnostics
+    request: Request, program: Path, given: Trace | None, memory: int, d: Diagnostics
 ) -> Outcome | None:
     own = ReferenceRun(request, d, by="simulate")
     own.seed = request.seeds(given.header.seed if given else None)[0]
@@ -290,7 +319,7 @@ def _followed(
         why = own.begin(given)
         last: dict[str, Any] | None = None
         if not why:
-            process = _Process(replace(request, trace=None), program, given, follows=True)
+            process = _Process(replace(request, trace=None), program, given, memory, follows=True)
             try:
                 why = _follow(own, process)
                 if not why:
@@ -338,6 +367,8 @@ def _catch_up(own: ReferenceRun, last: Mapping[str, Any], process: _Process) -> 
     if own.game is not None and last["t"] > own.game.marking.time:
         own.game.set_time(last["t"])
     if why == "error":
+        if "limit" in last:
+            raise OutOfRoomError(last["limit"])
         own.fail_as(_failure(own.request.net, last))
     elif why == "replay":
         own.refuse(last.get("message", ""))

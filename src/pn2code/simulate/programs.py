@@ -36,6 +36,8 @@ from pn2code.toolchain.build import BUILD_FAILED, TOOL_MISSING, find_compiler, r
 
 FLAGS = ("-std=c11", "-O2", "-pipe", "-ffp-contract=off")
 """`-ffp-contract=off`: sums of products are rounded as in the token game, on every processor."""
+ROOM = 1 << 14
+"""Different tokens that a place can hold at first. What is not used costs address space only."""
 MOST_PROGRAMS = 64
 """Programs that are kept; the ones that were not used for the longest time go first."""
 _HOSTS = ("supervisor", "explore")
@@ -73,10 +75,19 @@ class Compiler:
 
 
 @contextmanager
-def program(net: FlatNet, storage: Mapping[str, str], d: Diagnostics) -> Iterator[Path | None]:
-    """The simulator of a net, as long as the block lasts; None after a diagnostic."""
+def program(
+    net: FlatNet, storage: Mapping[str, str], d: Diagnostics, *, room: int = ROOM
+) -> Iterator[Path | None]:
+    """The simulator of a net, as long as the block lasts; None after a diagnostic.
+
+    Args:
+        net: the net.
+        storage: as for `Game`.
+        d: gets the errors.
+        room: different tokens that each place can hold.
+    """
     compiler = Compiler.find(d)
-    files = generated(net, storage, d) if compiler is not None else None
+    files = generated(net, storage, d, room) if compiler is not None else None
     if compiler is None or files is None:
         yield None
         return
@@ -108,13 +119,13 @@ def _no_room(problem: OSError, d: Diagnostics) -> None:
 
 
 def generated(
-    net: FlatNet, storage: Mapping[str, str], d: Diagnostics
+    net: FlatNet, storage: Mapping[str, str], d: Diagnostics, room: int = ROOM
 ) -> tuple[OutputFile, ...] | None:
     """net.c and net.h; None when the net cannot be compiled, which was reported."""
     partition = divide(net, None, d)
     if partition is None:
         return None
-    ir = lower_net.lower(partition, storage, d)
+    ir = lower_net.lower(partition, storage, d, capacity={p.name: room for p in net.places})
     return None if ir is None or d.has_errors else emit_c.emit(ir, pn2code.__version__)
 
 
