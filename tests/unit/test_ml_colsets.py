@@ -132,6 +132,7 @@ def test_bounds_may_use_values_declared_before() -> None:
         ("int", (), {"texts": ("1", "true")}, "type-mismatch | upper bound is `bool`, but `int` is expected | true"),
         ("int", (), {"texts": ("1", "length [1]")}, "colour-set-range | upper bound is not a constant that can be computed here | length [1]"),
         ("int", (), {"texts": ("1", "n")}, "unbound-identifier | `n` is not declared | n"),
+        ("subset", ("INT",), {"texts": ("fn n => n > 3",), "by": True}, "subset-bare-fn | the predicate of the subset `X` is a `fn` without parentheses | fn n => n > 3"),
         ("int", (), {"texts": ("1", "2 +")}, "fixity-error | operator `+` has no right operand | +"),
         ("string", (), {"texts": ('"aa"', '"z"')}, 'colour-set-range | bound of the characters of colour set `X` is not one character | "aa"'),
         ("bool", ("no",), {}, "colour-set-definition | colour set `X` needs a name for false and one for true, or none | "),

@@ -1,4 +1,5 @@
-"""Makes docs/conformance.md: `python -m pn2code.conformance FOLDER [-o FILE] [--walks FILE]`.
+"""Makes docs/conformance.md: `./dev conformance [--walks FILE]`, or
+`python -m pn2code.conformance FOLDER [-o FILE] [--walks FILE]`.
 
 FOLDER has `corpus` and `semantics-suite`.
 """
@@ -22,7 +23,7 @@ def main() -> int:
     parser = argparse.ArgumentParser(prog="conformance", description=__doc__)
     parser.add_argument("folder", type=Path, help="with `corpus` and `semantics-suite`")
     parser.add_argument("-o", "--output", type=Path, help="the document (default: stdout)")
-    parser.add_argument("--walks", type=Path, help="JSON: net -> {state, note}, of compiled nets")
+    parser.add_argument("--walks", type=Path, help="what `./dev walks -o FILE` has written")
     parser.add_argument("--largest", type=int, default=LARGEST_SPACE, help="state spaces up to")
     parser.add_argument("--only", default="", help="only nets whose path contains this")
     options = parser.parse_args()
@@ -43,13 +44,22 @@ def main() -> int:
     return int(any(n.state is State.DIFFERS for n in nets))
 
 
+_VERDICTS = {
+    "agrees": State.AGREES,
+    "differs": State.DIFFERS,
+    "unsupported": State.UNSUPPORTED,
+    "rejected": State.NOTHING,
+}
+
+
 def _walks(file: Path | None) -> dict[str, Finding]:
-    """What a sweep of compiled walks has found: net -> {"state": "yes", "note": ""}."""
+    """What `./dev walks` has found, by path below the folder of the collections."""
     if file is None:
         return {}
     data = json.loads(file.read_text(encoding="utf-8"))
     return {
-        path: Finding(State(entry["state"]), entry.get("note", "")) for path, entry in data.items()
+        entry["net"]: Finding(_VERDICTS[entry["verdict"]], entry["detail"])
+        for entry in data["nets"]
     }
 
 

@@ -22,7 +22,8 @@ What pn2code says of nets that people published, beside what the engine of CPN T
 | compiled | does the compiled net agree with the reference token game on random walks? |
 
 `yes`: agrees. `random`: the net draws random numbers there (or reads files), which a recording does not tell; what is
-determined agrees. `unsupported`: pn2code says so. `NO`: differs. `–`: nothing to compare.
+determined agrees. `intended`: the engine has a known bug there, or leaves it to chance. `unsupported`: pn2code says so.
+`NO`: differs. `–`: nothing to compare.
 """
 
 
@@ -35,19 +36,26 @@ def document(
 
     Args:
         nets: the nets of the corpus.
-        walks: path -> whether the compiled net agrees with the token game; empty where that was not tried.
+        walks: `corpus/nets/PATH` or `semantics-suite/NAME.cpn` -> whether the compiled net agrees with the token
+            game; empty where that was not tried.
         suite: name -> finding, of the semantics suite.
     """
     parts = [HEAD, "## Totals\n", *_totals(nets, walks, suite), ""]
-    notes = [n for n in nets if n.state is not State.AGREES or _worse(walks.get(n.path))]
+    notes = [n for n in nets if n.state is not State.AGREES or _worse(_walk(n, walks))]
     parts += ["## What does not simply agree\n", *_notes(notes, walks), ""]
     parts += ["## Net by net\n", *_table(nets, walks), ""]
-    parts += ["## The semantics suite\n", *_suite(suite), ""]
+    parts += ["## The semantics suite\n", *_suite(suite, walks), ""]
     return "\n".join(parts)
 
 
-def _worse(walk: Finding | None) -> bool:
-    return walk is not None and walk.state not in (State.AGREES, State.NOTHING)
+def _worse(walk: Finding) -> bool:
+    return walk.state not in (State.AGREES, State.NOTHING)
+
+
+def _walk(net: Compared, walks: Mapping[str, Finding]) -> Finding:
+    """Of nets that both accept."""
+    found = walks.get(f"corpus/nets/{net.path}", NOTHING)
+    return found if net.accepted else NOTHING
 
 
 def _totals(
@@ -63,11 +71,11 @@ def _totals(
         yield f"* {len(absent)} that the engine accepts {reason}."
     wrong = [n for n in nets if n.state is State.DIFFERS]
     yield f"* Nets with an answer that differs: {len(wrong)}."
-    yield "\n| question | compared | yes | random | unsupported | NO |\n|---|---|---|---|---|---|"
+    yield "\n| question | compared | yes | random | intended | unsupported | NO |\n|---|---|---|---|---|---|---|"
     for question in QUESTIONS:
         yield _count(question, [n.findings[question] for n in nets])
     if walks:
-        yield _count("compiled", walks.values())
+        yield _count("compiled", [_walk(n, walks) for n in nets])
     yield _count("semantics suite", suite.values())
 
 
@@ -76,10 +84,9 @@ def _percent(part: int, whole: int) -> str:
 
 
 def _count(name: str, findings: Iterable[Finding]) -> str:
-    states = [f.state for f in findings if f.state is not State.NOTHING]
-    numbers = [len(states)] + [
-        states.count(s) for s in (State.AGREES, State.RANDOM, State.UNSUPPORTED, State.DIFFERS)
-    ]
+    states: list[State] = [f.state for f in findings if f.state is not State.NOTHING]
+    order = (State.AGREES, State.RANDOM, State.INTENDED, State.UNSUPPORTED, State.DIFFERS)
+    numbers = [len(states), *(states.count(s) for s in order)]
     return f"| {name} | {' | '.join(map(str, numbers))} |"
 
 
@@ -87,7 +94,7 @@ def _table(nets: Sequence[Compared], walks: Mapping[str, Finding]) -> Iterable[s
     columns = ["net", "engine", *QUESTIONS, "compiled"]
     yield f"| {' | '.join(columns)} |\n|{'---|' * len(columns)}"
     for net in nets:
-        findings = [*(net.findings[q] for q in QUESTIONS), walks.get(net.path, NOTHING)]
+        findings = [*(net.findings[q] for q in QUESTIONS), _walk(net, walks)]
         cells = [_code(net.path), "accepts" if net.accepted else "rejects"]
         cells += [f.state.value for f in findings]
         yield f"| {' | '.join(cells)} |"
@@ -96,7 +103,7 @@ def _table(nets: Sequence[Compared], walks: Mapping[str, Finding]) -> Iterable[s
 def _notes(nets: Sequence[Compared], walks: Mapping[str, Finding]) -> Iterable[str]:
     for net in nets:
         yield f"* {_code(net.path)}"
-        named = [*net.findings.items(), ("compiled", walks.get(net.path, NOTHING))]
+        named = [*net.findings.items(), ("compiled", _walk(net, walks))]
         for question, finding in named:
             if finding.note and finding.state not in (State.AGREES, State.NOTHING):
                 yield f"  * {question}, {finding.state.value}: {_text(finding.note)}"
@@ -104,11 +111,13 @@ def _notes(nets: Sequence[Compared], walks: Mapping[str, Finding]) -> Iterable[s
         yield "Nothing."
 
 
-def _suite(suite: Mapping[str, Finding]) -> Iterable[str]:
+def _suite(suite: Mapping[str, Finding], walks: Mapping[str, Finding]) -> Iterable[str]:
     yield "Each net asks one question; compared are all markings and all binding elements of its state space.\n"
-    yield "| net | agrees | |\n|---|---|---|"
+    yield "| net | agrees | compiled | |\n|---|---|---|---|"
     for name, finding in sorted(suite.items()):
-        yield f"| {_code(name)} | {finding.state.value} | {_text(finding.note)} |"
+        walk = walks.get(f"semantics-suite/{name}.cpn", NOTHING)
+        cells = [_code(name), finding.state.value, walk.state.value, _text(finding.note)]
+        yield f"| {' | '.join(cells)} |"
 
 
 def _code(text: str) -> str:

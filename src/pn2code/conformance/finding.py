@@ -12,6 +12,8 @@ class State(Enum):
     AGREES = "yes"
     RANDOM = "random"
     """the net draws random numbers here: what is determined agrees"""
+    INTENDED = "intended"
+    """the engine has a known bug, or leaves it to chance; the note says which rule holds here"""
     UNSUPPORTED = "unsupported"
     DIFFERS = "NO"
     NOTHING = "–"

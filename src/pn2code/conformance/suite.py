@@ -10,6 +10,7 @@ from pn2code.conformance.finding import AGREES, Finding, State, differs
 from pn2code.conformance.graphs import engine_arcs, engine_nodes, our_arcs, our_nodes
 from pn2code.diagnostics import Diagnostics
 from pn2code.net import front
+from pn2code.semantics.effects import Effects, outside
 from pn2code.semantics.enabling import GameError
 from pn2code.semantics.game import Game
 from pn2code.semantics.graph import state_space
@@ -22,8 +23,24 @@ def names(suite: Path) -> list[str]:
     return sorted(f.stem for f in suite.glob("*.json"))
 
 
+INTENDED = {
+    "E20_same_colour": "of equal tokens with different stamps that may be taken the engine takes one at random, and "
+    "its state space keeps the other successor by chance; here the latest is taken",
+    "E34_nonlinear": "a variable twice in one pattern: the engine takes tokens whose components differ and then raises "
+    "an exception; here the components must be equal",
+}
+"""Where the answer shall be another one than the engine's."""
+
+
 def compare_graph(suite: Path, name: str) -> Finding:
     """Every marking and every binding element of a net's state space."""
+    found = _compare(suite, name)
+    if found.state is State.DIFFERS and name in INTENDED:
+        return Finding(State.INTENDED, INTENDED[name])
+    return found
+
+
+def _compare(suite: Path, name: str) -> Finding:
     recorded: dict[str, Any] = json.loads((suite / f"{name}.json").read_text(encoding="utf-8"))
     d = Diagnostics()
     net = front.load(suite / f"{name}.cpn", d)
@@ -41,6 +58,8 @@ def compare_graph(suite: Path, name: str) -> Finding:
     if graph is None:
         return AGREES if not space.complete else differs("a state space, where the engine has none")
     ours, theirs = set(our_nodes(game, space)), set(engine_nodes(net, graph).values())
+    if ours != theirs and outside(Effects(net.program), net):
+        return Finding(State.RANDOM, "a value is drawn")
     if ours != theirs:
         return differs(f"{len(ours - theirs)} markings only here, {len(theirs - ours)} only there")
     arcs, their_arcs = our_arcs(game, space), engine_arcs(net, graph)

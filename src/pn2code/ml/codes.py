@@ -129,6 +129,13 @@ COLSET_DEFINITION = register(
     "A definition lacks a part that its kind needs, or has one too many: an enumeration needs values, a "
     "product components.",
 )
+SUBSET_BARE_FN = register(
+    "subset-bare-fn",
+    "the predicate of a subset is a `fn` without parentheses",
+    "CPN Tools puts a type constraint behind the predicate (`PREDICATE : INT -> bool`). Behind a bare "
+    "`fn n => n > 0` it belongs to the body `n > 0`, which is no function: the colour set is rejected. Write "
+    "`colset C = subset INT by (fn n => n > 0);`, or give the function a name with `fun`.",
+)
 VARIABLE_CLASH = register(
     "variable-of-other-colour-set",
     "a net variable is declared twice with different colour sets",
@@ -216,7 +223,7 @@ SIGNATURE = register(
 USED_FILE = register(
     "used-file",
     "a file of declarations cannot be used",
-    "`use \"file.sml\"` reads CPN ML declarations from a file in the net's folder. CPN Tools refuses the declaration when "
+    '`use "file.sml"` reads CPN ML declarations from a file in the net\'s folder. CPN Tools refuses the declaration when '
     "the file is not there, and everything that needs the names declared in it.",
 )
 TYPE_VARIABLE = register(

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 
@@ -37,6 +38,8 @@ from pn2code.ml.types import (
     record,
     tuple_of,
 )
+
+_BARE_FN = re.compile(r"\s*fn\b")
 
 
 @dataclass(frozen=True, slots=True)
@@ -418,6 +421,15 @@ class Colsets:
             return None
         if len(spec.texts) != 1:
             self._incomplete(spec, "is a subset without a predicate or list")
+            return None
+        if spec.by_predicate and _BARE_FN.match(spec.texts[0].text):
+            self._ctx.errors += 1
+            self._ctx.d.error(
+                codes.SUBSET_BARE_FN,
+                f"the predicate of the subset `{spec.name}` is a `fn` without parentheses",
+                spec.texts[0].span(),
+                hint=f"write `({' '.join(spec.texts[0].text.split())})`",
+            )
             return None
         wanted: Type = TFun(base.type, BOOL) if spec.by_predicate else list_of(base.type)
         what = "predicate of the subset" if spec.by_predicate else "list of the subset"
