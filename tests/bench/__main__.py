@@ -19,6 +19,7 @@ from statistics import median
 sys.path.insert(0, str(Path(__file__).parents[1]))  # as pytest does: the tests' helpers
 
 from tests.bench import measures as m
+from tests.bench import snakes_peer
 
 
 @dataclass(frozen=True, slots=True)
@@ -84,19 +85,28 @@ def rows(bench: m.Bench) -> list[Row]:
     out.append(Row("full run, PyBullet, no pictures", "s", *bullet, 15.0, beside))
     out.append(Row("full run, PyBullet, pictures and charts", "s", *m.run_cell(bench)))
     say("latency")
-    found = m.latency(bench)
+    delays = m.latency(bench)
     for kind, words in (("published", "answer published"), ("woken", "robot woken by the answer")):
         for share, limit in (("p50", 70.0), ("p99", 250.0)):
-            peer = ("bare C ping-pong", found[f"bare {share}"])
+            peer = ("bare C ping-pong", delays[f"bare {share}"])
             bound = limit if kind == "published" else None
-            out.append(Row(f"{words}, {share}", "us", found[f"{kind} {share}"], (), bound, peer))
+            out.append(Row(f"{words}, {share}", "us", delays[f"{kind} {share}"], (), bound, peer))
+    return out + firing_rows(bench)
+
+
+def firing_rows(bench: m.Bench) -> list[Row]:
+    """Firings per second beside those of the token game and of SNAKES."""
     say("firings")
-    for name, text, steps, slow in (
-        ("a ring of four transitions", m.RING, 2_000_000, 2_000),
-        ("ten philosophers", m.TABLE, 200_000, 500),
+    out = []
+    for name, text, steps, slow, peer in (
+        ("a ring of four transitions", m.RING, 10_000_000, 3_000, snakes_peer.ring),
+        ("ten philosophers", m.TABLE, 1_000_000, 500, snakes_peer.table),
+        ("a protocol with strings", m.PROTOCOL, 1_000_000, 1_000, snakes_peer.protocol),
     ):
-        compiled, game = m.firings(bench, text, steps, slow)
-        out.append(Row(f"compiled firings, {name}", "/s", compiled, (), None, ("token game", game)))
+        found = m.firings(bench, text, steps, slow, peer)
+        for other, samples in (("SNAKES", found.snakes), ("token game", found.game)):
+            row = Row(f"firings, {name}", "/s", found.compiled, (), None, (other, samples))
+            out.append(row)
     return out
 
 
@@ -108,13 +118,15 @@ def say(what: str) -> None:
 def main() -> int:
     """Measure and print; 1 when a limit is missed."""
     parser = argparse.ArgumentParser(prog="python -m tests.bench", description=__doc__)
+    parser.add_argument("--firings", action="store_true", help="only firings per second")
     parser.add_argument("--repeat", type=int, default=9, help="of short measures (default 9)")
     options = parser.parse_args()
     cores = os.cpu_count() or 1
     load = os.getloadavg()[0]
     is_busy = load > cores / 2
     with tempfile.TemporaryDirectory(prefix="pn2code-bench-") as name:
-        table = rows(m.Bench(Path(name), options.repeat))
+        bench = m.Bench(Path(name), options.repeat)
+        table = firing_rows(bench) if options.firings else rows(bench)
     print(f"{cores} cores; load at the start {load:.1f}" + is_busy * ": busy")
     print("\n| what | median | spread | work | unit | at most | beside it, in the same run |")
     print("|---|---|---|---|---|---|---|")

@@ -15,6 +15,7 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import NamedTuple
 
+from tests.bench.snakes_peer import firings_per_second
 from tests.helpers.netbuilder import cpn
 
 from pn2code import pipeline
@@ -65,6 +66,40 @@ TABLE = """
         in Eating : i
         out Thinking : i
         out Forks : 1`i ++ 1`(next i)
+"""
+PROTOCOL = """
+    net Protocol
+      colset INT = int;
+      colset DATA = string;
+      colset PACKET = product INT * DATA;
+      colset SLOT = int with 0..2;
+      colset MESSAGE = product SLOT * PACKET;
+      var p: PACKET;
+      var c: SLOT;
+      var n, k: INT;
+      var d, s: DATA;
+      fun packet n = (n, "packet " ^ INT.mkstr n)
+      place Send : PACKET = [packet 1, packet 2, packet 3, packet 4, packet 5, packet 6, packet 7, packet 8]
+      place Limit : SLOT = SLOT.all()
+      place A : MESSAGE
+      place B : MESSAGE
+      place Received : PACKET = (1, "")
+      trans Send
+        in Send : p
+        in Limit : c
+        out Send : p
+        out A : (c, p)
+      trans Lose
+        in A : (c, p)
+        out Limit : c
+      trans Pass
+        in A : (c, p)
+        out B : (c, p)
+      trans Receive
+        in B : (c, (n, d))
+        in Received : (k, s)
+        out Received : if n = k then (k mod 8 + 1, if k = 8 then d else s ^ d) else (k, s)
+        out Limit : c
 """
 
 
@@ -235,10 +270,18 @@ def latency(bench: Bench) -> dict[str, list[float]]:
 # --- firings -----------------------------------------------------------------------------------
 
 
+class Firings(NamedTuple):
+    """Of one net with random choices, a second: the compiled simulator, the reference token game, SNAKES."""
+
+    compiled: list[float]
+    game: list[float]
+    snakes: list[float]
+
+
 def firings(
-    bench: Bench, text: str, steps: int, slow_steps: int
-) -> tuple[list[float], list[float]]:
-    """Firings per second of a net with random choices: compiled `simulate`, reference token game."""
+    bench: Bench, text: str, steps: int, slow_steps: int, peer: Callable[[], object]
+) -> Firings:
+    """All three in turn, so that what else the machine does falls on all alike."""
     folder = bench.fresh()
     folder.mkdir()
     net = folder / "net.cpn"
@@ -263,4 +306,7 @@ def firings(
             pass
         return slow_steps / (time.perf_counter() - start)
 
-    return compiled, bench.repeated(bench.few, play)
+    def play_peer() -> float:
+        return firings_per_second(peer, slow_steps)
+
+    return Firings(compiled, bench.repeated(bench.few, play), bench.repeated(bench.few, play_peer))
