@@ -33,6 +33,7 @@ typedef struct sup_options {
     const char *directory;
     bool own_directory;       /* the default one: made when it is missing */
     const char *input;
+    const char *files; /* folder for the net's files; NULL: none */
     const char *trace;        /* NULL: none */
     bool dry_run;
     bool lockstep;

@@ -16,7 +16,10 @@
 #include "pn/pn_file.h"
 #include "pn/pn_library.h"
 #include "pn/pn_num.h"
+#include "pn/pn_place.h"
 #include "pn/pn_random.h"
+#include "pn/pn_read.h"
+#include "pn/pn_read.h"
 #include "pn/pn_string.h"
 #include "pn/pn_type.h"
 
@@ -636,6 +639,502 @@ static const char *const s_WORK_leaves[] = { "1", "2", "3.x", "3.y", "3.z", "3.r
     "4.1", "4.2", "4.3" };
 static const uint32_t s_WORK_lines[] = { 1U, 1U, 6U, 3U };
 
+static inline bool is_before_POSE(const POSE_t *a, const POSE_t *b)
+{
+    const int x_order = pn_compare(&s_REAL, &a->x, &b->x);
+    if (x_order != 0) {
+        return x_order < 0;
+    }
+    const int y_order = pn_compare(&s_REAL, &a->y, &b->y);
+    if (y_order != 0) {
+        return y_order < 0;
+    }
+    const int z_order = pn_compare(&s_REAL, &a->z, &b->z);
+    if (z_order != 0) {
+        return z_order < 0;
+    }
+    const int rx_order = pn_compare(&s_REAL, &a->rx, &b->rx);
+    if (rx_order != 0) {
+        return rx_order < 0;
+    }
+    const int ry_order = pn_compare(&s_REAL, &a->ry, &b->ry);
+    if (ry_order != 0) {
+        return ry_order < 0;
+    }
+    const int rz_order = pn_compare(&s_REAL, &a->rz, &b->rz);
+    if (rz_order != 0) {
+        return rz_order < 0;
+    }
+    return false;
+}
+
+static inline bool is_before_PLAN(const PLAN_t *a, const PLAN_t *b)
+{
+    if (a->c1 != b->c1) {
+        return a->c1 < b->c1;
+    }
+    const int c2_x_order = pn_compare(&s_FLOAT, &a->c2.x, &b->c2.x);
+    if (c2_x_order != 0) {
+        return c2_x_order < 0;
+    }
+    const int c2_y_order = pn_compare(&s_FLOAT, &a->c2.y, &b->c2.y);
+    if (c2_y_order != 0) {
+        return c2_y_order < 0;
+    }
+    const int c2_z_order = pn_compare(&s_FLOAT, &a->c2.z, &b->c2.z);
+    if (c2_z_order != 0) {
+        return c2_z_order < 0;
+    }
+    const int c2_rx_order = pn_compare(&s_FLOAT, &a->c2.rx, &b->c2.rx);
+    if (c2_rx_order != 0) {
+        return c2_rx_order < 0;
+    }
+    const int c2_ry_order = pn_compare(&s_FLOAT, &a->c2.ry, &b->c2.ry);
+    if (c2_ry_order != 0) {
+        return c2_ry_order < 0;
+    }
+    const int c2_rz_order = pn_compare(&s_FLOAT, &a->c2.rz, &b->c2.rz);
+    if (c2_rz_order != 0) {
+        return c2_rz_order < 0;
+    }
+    const int c3_x_order = pn_compare(&s_FLOAT, &a->c3.x, &b->c3.x);
+    if (c3_x_order != 0) {
+        return c3_x_order < 0;
+    }
+    const int c3_y_order = pn_compare(&s_FLOAT, &a->c3.y, &b->c3.y);
+    if (c3_y_order != 0) {
+        return c3_y_order < 0;
+    }
+    const int c3_z_order = pn_compare(&s_FLOAT, &a->c3.z, &b->c3.z);
+    if (c3_z_order != 0) {
+        return c3_z_order < 0;
+    }
+    const int c3_rx_order = pn_compare(&s_FLOAT, &a->c3.rx, &b->c3.rx);
+    if (c3_rx_order != 0) {
+        return c3_rx_order < 0;
+    }
+    const int c3_ry_order = pn_compare(&s_FLOAT, &a->c3.ry, &b->c3.ry);
+    if (c3_ry_order != 0) {
+        return c3_ry_order < 0;
+    }
+    const int c3_rz_order = pn_compare(&s_FLOAT, &a->c3.rz, &b->c3.rz);
+    if (c3_rz_order != 0) {
+        return c3_rz_order < 0;
+    }
+    return false;
+}
+
+static inline bool is_before_SEAM(const SEAM_t *a, const SEAM_t *b)
+{
+    if (a->points != b->points) {
+        return a->points < b->points;
+    }
+    const int first_x_order = pn_compare(&s_FLOAT, &a->first.x, &b->first.x);
+    if (first_x_order != 0) {
+        return first_x_order < 0;
+    }
+    const int first_y_order = pn_compare(&s_FLOAT, &a->first.y, &b->first.y);
+    if (first_y_order != 0) {
+        return first_y_order < 0;
+    }
+    const int first_z_order = pn_compare(&s_FLOAT, &a->first.z, &b->first.z);
+    if (first_z_order != 0) {
+        return first_z_order < 0;
+    }
+    const int first_rx_order = pn_compare(&s_FLOAT, &a->first.rx, &b->first.rx);
+    if (first_rx_order != 0) {
+        return first_rx_order < 0;
+    }
+    const int first_ry_order = pn_compare(&s_FLOAT, &a->first.ry, &b->first.ry);
+    if (first_ry_order != 0) {
+        return first_ry_order < 0;
+    }
+    const int first_rz_order = pn_compare(&s_FLOAT, &a->first.rz, &b->first.rz);
+    if (first_rz_order != 0) {
+        return first_rz_order < 0;
+    }
+    const int last_x_order = pn_compare(&s_FLOAT, &a->last.x, &b->last.x);
+    if (last_x_order != 0) {
+        return last_x_order < 0;
+    }
+    const int last_y_order = pn_compare(&s_FLOAT, &a->last.y, &b->last.y);
+    if (last_y_order != 0) {
+        return last_y_order < 0;
+    }
+    const int last_z_order = pn_compare(&s_FLOAT, &a->last.z, &b->last.z);
+    if (last_z_order != 0) {
+        return last_z_order < 0;
+    }
+    const int last_rx_order = pn_compare(&s_FLOAT, &a->last.rx, &b->last.rx);
+    if (last_rx_order != 0) {
+        return last_rx_order < 0;
+    }
+    const int last_ry_order = pn_compare(&s_FLOAT, &a->last.ry, &b->last.ry);
+    if (last_ry_order != 0) {
+        return last_ry_order < 0;
+    }
+    const int last_rz_order = pn_compare(&s_FLOAT, &a->last.rz, &b->last.rz);
+    if (last_rz_order != 0) {
+        return last_rz_order < 0;
+    }
+    return false;
+}
+
+static inline bool is_before_VERIFIED(const VERIFIED_t *a, const VERIFIED_t *b)
+{
+    if (a->c1.points != b->c1.points) {
+        return a->c1.points < b->c1.points;
+    }
+    const int c1_first_x_order = pn_compare(&s_FLOAT, &a->c1.first.x, &b->c1.first.x);
+    if (c1_first_x_order != 0) {
+        return c1_first_x_order < 0;
+    }
+    const int c1_first_y_order = pn_compare(&s_FLOAT, &a->c1.first.y, &b->c1.first.y);
+    if (c1_first_y_order != 0) {
+        return c1_first_y_order < 0;
+    }
+    const int c1_first_z_order = pn_compare(&s_FLOAT, &a->c1.first.z, &b->c1.first.z);
+    if (c1_first_z_order != 0) {
+        return c1_first_z_order < 0;
+    }
+    const int c1_first_rx_order = pn_compare(&s_FLOAT, &a->c1.first.rx, &b->c1.first.rx);
+    if (c1_first_rx_order != 0) {
+        return c1_first_rx_order < 0;
+    }
+    const int c1_first_ry_order = pn_compare(&s_FLOAT, &a->c1.first.ry, &b->c1.first.ry);
+    if (c1_first_ry_order != 0) {
+        return c1_first_ry_order < 0;
+    }
+    const int c1_first_rz_order = pn_compare(&s_FLOAT, &a->c1.first.rz, &b->c1.first.rz);
+    if (c1_first_rz_order != 0) {
+        return c1_first_rz_order < 0;
+    }
+    const int c1_last_x_order = pn_compare(&s_FLOAT, &a->c1.last.x, &b->c1.last.x);
+    if (c1_last_x_order != 0) {
+        return c1_last_x_order < 0;
+    }
+    const int c1_last_y_order = pn_compare(&s_FLOAT, &a->c1.last.y, &b->c1.last.y);
+    if (c1_last_y_order != 0) {
+        return c1_last_y_order < 0;
+    }
+    const int c1_last_z_order = pn_compare(&s_FLOAT, &a->c1.last.z, &b->c1.last.z);
+    if (c1_last_z_order != 0) {
+        return c1_last_z_order < 0;
+    }
+    const int c1_last_rx_order = pn_compare(&s_FLOAT, &a->c1.last.rx, &b->c1.last.rx);
+    if (c1_last_rx_order != 0) {
+        return c1_last_rx_order < 0;
+    }
+    const int c1_last_ry_order = pn_compare(&s_FLOAT, &a->c1.last.ry, &b->c1.last.ry);
+    if (c1_last_ry_order != 0) {
+        return c1_last_ry_order < 0;
+    }
+    const int c1_last_rz_order = pn_compare(&s_FLOAT, &a->c1.last.rz, &b->c1.last.rz);
+    if (c1_last_rz_order != 0) {
+        return c1_last_rz_order < 0;
+    }
+    const int c2_x_order = pn_compare(&s_REAL, &a->c2.x, &b->c2.x);
+    if (c2_x_order != 0) {
+        return c2_x_order < 0;
+    }
+    const int c2_y_order = pn_compare(&s_REAL, &a->c2.y, &b->c2.y);
+    if (c2_y_order != 0) {
+        return c2_y_order < 0;
+    }
+    const int c2_z_order = pn_compare(&s_REAL, &a->c2.z, &b->c2.z);
+    if (c2_z_order != 0) {
+        return c2_z_order < 0;
+    }
+    const int c2_rx_order = pn_compare(&s_REAL, &a->c2.rx, &b->c2.rx);
+    if (c2_rx_order != 0) {
+        return c2_rx_order < 0;
+    }
+    const int c2_ry_order = pn_compare(&s_REAL, &a->c2.ry, &b->c2.ry);
+    if (c2_ry_order != 0) {
+        return c2_ry_order < 0;
+    }
+    const int c2_rz_order = pn_compare(&s_REAL, &a->c2.rz, &b->c2.rz);
+    if (c2_rz_order != 0) {
+        return c2_rz_order < 0;
+    }
+    const int c3_x_order = pn_compare(&s_REAL, &a->c3.x, &b->c3.x);
+    if (c3_x_order != 0) {
+        return c3_x_order < 0;
+    }
+    const int c3_y_order = pn_compare(&s_REAL, &a->c3.y, &b->c3.y);
+    if (c3_y_order != 0) {
+        return c3_y_order < 0;
+    }
+    const int c3_z_order = pn_compare(&s_REAL, &a->c3.z, &b->c3.z);
+    if (c3_z_order != 0) {
+        return c3_z_order < 0;
+    }
+    const int c3_rx_order = pn_compare(&s_REAL, &a->c3.rx, &b->c3.rx);
+    if (c3_rx_order != 0) {
+        return c3_rx_order < 0;
+    }
+    const int c3_ry_order = pn_compare(&s_REAL, &a->c3.ry, &b->c3.ry);
+    if (c3_ry_order != 0) {
+        return c3_ry_order < 0;
+    }
+    const int c3_rz_order = pn_compare(&s_REAL, &a->c3.rz, &b->c3.rz);
+    if (c3_rz_order != 0) {
+        return c3_rz_order < 0;
+    }
+    return false;
+}
+
+static inline bool is_before_RIVETING(const RIVETING_t *a, const RIVETING_t *b)
+{
+    if (a->c1 != b->c1) {
+        return a->c1 < b->c1;
+    }
+    const int c2_x_order = pn_compare(&s_FLOAT, &a->c2.x, &b->c2.x);
+    if (c2_x_order != 0) {
+        return c2_x_order < 0;
+    }
+    const int c2_y_order = pn_compare(&s_FLOAT, &a->c2.y, &b->c2.y);
+    if (c2_y_order != 0) {
+        return c2_y_order < 0;
+    }
+    const int c2_z_order = pn_compare(&s_FLOAT, &a->c2.z, &b->c2.z);
+    if (c2_z_order != 0) {
+        return c2_z_order < 0;
+    }
+    const int c2_rx_order = pn_compare(&s_FLOAT, &a->c2.rx, &b->c2.rx);
+    if (c2_rx_order != 0) {
+        return c2_rx_order < 0;
+    }
+    const int c2_ry_order = pn_compare(&s_FLOAT, &a->c2.ry, &b->c2.ry);
+    if (c2_ry_order != 0) {
+        return c2_ry_order < 0;
+    }
+    const int c2_rz_order = pn_compare(&s_FLOAT, &a->c2.rz, &b->c2.rz);
+    if (c2_rz_order != 0) {
+        return c2_rz_order < 0;
+    }
+    const int c3_c1_order = pn_compare(&s_FLOAT, &a->c3.c1, &b->c3.c1);
+    if (c3_c1_order != 0) {
+        return c3_c1_order < 0;
+    }
+    const int c3_c2_order = pn_compare(&s_FLOAT, &a->c3.c2, &b->c3.c2);
+    if (c3_c2_order != 0) {
+        return c3_c2_order < 0;
+    }
+    const int c3_c3_order = pn_compare(&s_FLOAT, &a->c3.c3, &b->c3.c3);
+    if (c3_c3_order != 0) {
+        return c3_c3_order < 0;
+    }
+    return false;
+}
+
+static inline bool is_before_UNIT(const pn_unit_t *a, const pn_unit_t *b)
+{
+    (void)a;
+    (void)b;
+    return false;
+}
+
+static inline bool is_before_ORDER(const PLAN_t *a, const PLAN_t *b)
+{
+    if (a->c1 != b->c1) {
+        return a->c1 < b->c1;
+    }
+    const int c2_x_order = pn_compare(&s_REAL, &a->c2.x, &b->c2.x);
+    if (c2_x_order != 0) {
+        return c2_x_order < 0;
+    }
+    const int c2_y_order = pn_compare(&s_REAL, &a->c2.y, &b->c2.y);
+    if (c2_y_order != 0) {
+        return c2_y_order < 0;
+    }
+    const int c2_z_order = pn_compare(&s_REAL, &a->c2.z, &b->c2.z);
+    if (c2_z_order != 0) {
+        return c2_z_order < 0;
+    }
+    const int c2_rx_order = pn_compare(&s_REAL, &a->c2.rx, &b->c2.rx);
+    if (c2_rx_order != 0) {
+        return c2_rx_order < 0;
+    }
+    const int c2_ry_order = pn_compare(&s_REAL, &a->c2.ry, &b->c2.ry);
+    if (c2_ry_order != 0) {
+        return c2_ry_order < 0;
+    }
+    const int c2_rz_order = pn_compare(&s_REAL, &a->c2.rz, &b->c2.rz);
+    if (c2_rz_order != 0) {
+        return c2_rz_order < 0;
+    }
+    const int c3_x_order = pn_compare(&s_REAL, &a->c3.x, &b->c3.x);
+    if (c3_x_order != 0) {
+        return c3_x_order < 0;
+    }
+    const int c3_y_order = pn_compare(&s_REAL, &a->c3.y, &b->c3.y);
+    if (c3_y_order != 0) {
+        return c3_y_order < 0;
+    }
+    const int c3_z_order = pn_compare(&s_REAL, &a->c3.z, &b->c3.z);
+    if (c3_z_order != 0) {
+        return c3_z_order < 0;
+    }
+    const int c3_rx_order = pn_compare(&s_REAL, &a->c3.rx, &b->c3.rx);
+    if (c3_rx_order != 0) {
+        return c3_rx_order < 0;
+    }
+    const int c3_ry_order = pn_compare(&s_REAL, &a->c3.ry, &b->c3.ry);
+    if (c3_ry_order != 0) {
+        return c3_ry_order < 0;
+    }
+    const int c3_rz_order = pn_compare(&s_REAL, &a->c3.rz, &b->c3.rz);
+    if (c3_rz_order != 0) {
+        return c3_rz_order < 0;
+    }
+    return false;
+}
+
+static inline bool is_before_ASKED(const ASKED_t *a, const ASKED_t *b)
+{
+    if (a->c1.points != b->c1.points) {
+        return a->c1.points < b->c1.points;
+    }
+    const int c1_first_x_order = pn_compare(&s_FLOAT, &a->c1.first.x, &b->c1.first.x);
+    if (c1_first_x_order != 0) {
+        return c1_first_x_order < 0;
+    }
+    const int c1_first_y_order = pn_compare(&s_FLOAT, &a->c1.first.y, &b->c1.first.y);
+    if (c1_first_y_order != 0) {
+        return c1_first_y_order < 0;
+    }
+    const int c1_first_z_order = pn_compare(&s_FLOAT, &a->c1.first.z, &b->c1.first.z);
+    if (c1_first_z_order != 0) {
+        return c1_first_z_order < 0;
+    }
+    const int c1_first_rx_order = pn_compare(&s_FLOAT, &a->c1.first.rx, &b->c1.first.rx);
+    if (c1_first_rx_order != 0) {
+        return c1_first_rx_order < 0;
+    }
+    const int c1_first_ry_order = pn_compare(&s_FLOAT, &a->c1.first.ry, &b->c1.first.ry);
+    if (c1_first_ry_order != 0) {
+        return c1_first_ry_order < 0;
+    }
+    const int c1_first_rz_order = pn_compare(&s_FLOAT, &a->c1.first.rz, &b->c1.first.rz);
+    if (c1_first_rz_order != 0) {
+        return c1_first_rz_order < 0;
+    }
+    const int c1_last_x_order = pn_compare(&s_FLOAT, &a->c1.last.x, &b->c1.last.x);
+    if (c1_last_x_order != 0) {
+        return c1_last_x_order < 0;
+    }
+    const int c1_last_y_order = pn_compare(&s_FLOAT, &a->c1.last.y, &b->c1.last.y);
+    if (c1_last_y_order != 0) {
+        return c1_last_y_order < 0;
+    }
+    const int c1_last_z_order = pn_compare(&s_FLOAT, &a->c1.last.z, &b->c1.last.z);
+    if (c1_last_z_order != 0) {
+        return c1_last_z_order < 0;
+    }
+    const int c1_last_rx_order = pn_compare(&s_FLOAT, &a->c1.last.rx, &b->c1.last.rx);
+    if (c1_last_rx_order != 0) {
+        return c1_last_rx_order < 0;
+    }
+    const int c1_last_ry_order = pn_compare(&s_FLOAT, &a->c1.last.ry, &b->c1.last.ry);
+    if (c1_last_ry_order != 0) {
+        return c1_last_ry_order < 0;
+    }
+    const int c1_last_rz_order = pn_compare(&s_FLOAT, &a->c1.last.rz, &b->c1.last.rz);
+    if (c1_last_rz_order != 0) {
+        return c1_last_rz_order < 0;
+    }
+    const int c2_x_order = pn_compare(&s_REAL, &a->c2.x, &b->c2.x);
+    if (c2_x_order != 0) {
+        return c2_x_order < 0;
+    }
+    const int c2_y_order = pn_compare(&s_REAL, &a->c2.y, &b->c2.y);
+    if (c2_y_order != 0) {
+        return c2_y_order < 0;
+    }
+    const int c2_z_order = pn_compare(&s_REAL, &a->c2.z, &b->c2.z);
+    if (c2_z_order != 0) {
+        return c2_z_order < 0;
+    }
+    const int c2_rx_order = pn_compare(&s_REAL, &a->c2.rx, &b->c2.rx);
+    if (c2_rx_order != 0) {
+        return c2_rx_order < 0;
+    }
+    const int c2_ry_order = pn_compare(&s_REAL, &a->c2.ry, &b->c2.ry);
+    if (c2_ry_order != 0) {
+        return c2_ry_order < 0;
+    }
+    const int c2_rz_order = pn_compare(&s_REAL, &a->c2.rz, &b->c2.rz);
+    if (c2_rz_order != 0) {
+        return c2_rz_order < 0;
+    }
+    return false;
+}
+
+static inline bool is_before_VECTOR(const VECTOR_t *a, const VECTOR_t *b)
+{
+    const int c1_order = pn_compare(&s_REAL, &a->c1, &b->c1);
+    if (c1_order != 0) {
+        return c1_order < 0;
+    }
+    const int c2_order = pn_compare(&s_REAL, &a->c2, &b->c2);
+    if (c2_order != 0) {
+        return c2_order < 0;
+    }
+    const int c3_order = pn_compare(&s_REAL, &a->c3, &b->c3);
+    if (c3_order != 0) {
+        return c3_order < 0;
+    }
+    return false;
+}
+
+static inline bool is_before_WORK(const WORK_t *a, const WORK_t *b)
+{
+    if (a->c1 != b->c1) {
+        return a->c1 < b->c1;
+    }
+    if (a->c2 != b->c2) {
+        return a->c2 < b->c2;
+    }
+    const int c3_x_order = pn_compare(&s_FLOAT, &a->c3.x, &b->c3.x);
+    if (c3_x_order != 0) {
+        return c3_x_order < 0;
+    }
+    const int c3_y_order = pn_compare(&s_FLOAT, &a->c3.y, &b->c3.y);
+    if (c3_y_order != 0) {
+        return c3_y_order < 0;
+    }
+    const int c3_z_order = pn_compare(&s_FLOAT, &a->c3.z, &b->c3.z);
+    if (c3_z_order != 0) {
+        return c3_z_order < 0;
+    }
+    const int c3_rx_order = pn_compare(&s_FLOAT, &a->c3.rx, &b->c3.rx);
+    if (c3_rx_order != 0) {
+        return c3_rx_order < 0;
+    }
+    const int c3_ry_order = pn_compare(&s_FLOAT, &a->c3.ry, &b->c3.ry);
+    if (c3_ry_order != 0) {
+        return c3_ry_order < 0;
+    }
+    const int c3_rz_order = pn_compare(&s_FLOAT, &a->c3.rz, &b->c3.rz);
+    if (c3_rz_order != 0) {
+        return c3_rz_order < 0;
+    }
+    const int c4_c1_order = pn_compare(&s_FLOAT, &a->c4.c1, &b->c4.c1);
+    if (c4_c1_order != 0) {
+        return c4_c1_order < 0;
+    }
+    const int c4_c2_order = pn_compare(&s_FLOAT, &a->c4.c2, &b->c4.c2);
+    if (c4_c2_order != 0) {
+        return c4_c2_order < 0;
+    }
+    const int c4_c3_order = pn_compare(&s_FLOAT, &a->c4.c3, &b->c4.c3);
+    if (c4_c3_order != 0) {
+        return c4_c3_order < 0;
+    }
+    return false;
+}
+
 /* place Cell.dadosrobo1, colour set POSE: page `Cell`, place `dadosrobo1` (ID1412310013) */
 static const pn_bag_t s_at_dadosrobo1 = {
     .origin = "page `Cell`, place `dadosrobo1` (ID1412310013)",
@@ -645,6 +1144,7 @@ static const pn_bag_t s_at_dadosrobo1 = {
 };
 
 PN_PLACE_FUNCTIONS(dadosrobo1, s_at_dadosrobo1)
+PN_UNTIMED_PLACE(dadosrobo1, net_marking_t, POSE_t, is_before_POSE, s_at_dadosrobo1)
 
 /* place Cell.flag1_interno, colour set COMMAND: page `Cell`, place `flag1_interno` (ID1412310016) */
 static const pn_bag_t s_at_flag1_interno = {
@@ -655,6 +1155,7 @@ static const pn_bag_t s_at_flag1_interno = {
 };
 
 PN_PLACE_FUNCTIONS(flag1_interno, s_at_flag1_interno)
+PN_UNTIMED_PLACE(flag1_interno, net_marking_t, int64_t, PN_LESS, s_at_flag1_interno)
 
 /* place Cell.flag1_externo, colour set REPLY: page `Cell`, place `flag1_externo` (ID1412310019) */
 static const pn_bag_t s_at_flag1_externo = {
@@ -665,6 +1166,7 @@ static const pn_bag_t s_at_flag1_externo = {
 };
 
 PN_PLACE_FUNCTIONS(flag1_externo, s_at_flag1_externo)
+PN_UNTIMED_PLACE(flag1_externo, net_marking_t, int64_t, PN_LESS, s_at_flag1_externo)
 
 /* place Cell.referencia1, colour set POSE: page `Cell`, place `referencia1` (ID1412310022) */
 static const pn_bag_t s_at_referencia1 = {
@@ -675,6 +1177,7 @@ static const pn_bag_t s_at_referencia1 = {
 };
 
 PN_PLACE_FUNCTIONS(referencia1, s_at_referencia1)
+PN_UNTIMED_PLACE(referencia1, net_marking_t, POSE_t, is_before_POSE, s_at_referencia1)
 
 /* place Cell.medida1, colour set POSE: page `Cell`, place `medida1` (ID1412310025) */
 static const pn_bag_t s_at_medida1 = {
@@ -685,6 +1188,7 @@ static const pn_bag_t s_at_medida1 = {
 };
 
 PN_PLACE_FUNCTIONS(medida1, s_at_medida1)
+PN_UNTIMED_PLACE(medida1, net_marking_t, POSE_t, is_before_POSE, s_at_medida1)
 
 /* place Cell.dadosrobo2, colour set POSE: page `Cell`, place `dadosrobo2` (ID1412310028) */
 static const pn_bag_t s_at_dadosrobo2 = {
@@ -695,6 +1199,7 @@ static const pn_bag_t s_at_dadosrobo2 = {
 };
 
 PN_PLACE_FUNCTIONS(dadosrobo2, s_at_dadosrobo2)
+PN_UNTIMED_PLACE(dadosrobo2, net_marking_t, POSE_t, is_before_POSE, s_at_dadosrobo2)
 
 /* place Cell.flag2_interno, colour set COMMAND: page `Cell`, place `flag2_interno` (ID1412310031) */
 static const pn_bag_t s_at_flag2_interno = {
@@ -705,6 +1210,7 @@ static const pn_bag_t s_at_flag2_interno = {
 };
 
 PN_PLACE_FUNCTIONS(flag2_interno, s_at_flag2_interno)
+PN_UNTIMED_PLACE(flag2_interno, net_marking_t, int64_t, PN_LESS, s_at_flag2_interno)
 
 /* place Cell.flag2_externo, colour set REPLY: page `Cell`, place `flag2_externo` (ID1412310034) */
 static const pn_bag_t s_at_flag2_externo = {
@@ -715,6 +1221,7 @@ static const pn_bag_t s_at_flag2_externo = {
 };
 
 PN_PLACE_FUNCTIONS(flag2_externo, s_at_flag2_externo)
+PN_UNTIMED_PLACE(flag2_externo, net_marking_t, int64_t, PN_LESS, s_at_flag2_externo)
 
 /* place Cell.Supervisor.coordenadas, colour set PLAN: page `Supervisor`, place `coordenadas` (ID1412310094) */
 static const pn_bag_t s_at_Supervisor_coordenadas = {
@@ -725,6 +1232,7 @@ static const pn_bag_t s_at_Supervisor_coordenadas = {
 };
 
 PN_PLACE_FUNCTIONS(Supervisor_coordenadas, s_at_Supervisor_coordenadas)
+PN_UNTIMED_PLACE(Supervisor_coordenadas, net_marking_t, PLAN_t, is_before_PLAN, s_at_Supervisor_coordenadas)
 
 /* initial marking:
  *     (5,
@@ -756,6 +1264,7 @@ static const pn_bag_t s_at_Supervisor_planned = {
 };
 
 PN_PLACE_FUNCTIONS(Supervisor_planned, s_at_Supervisor_planned)
+PN_UNTIMED_PLACE(Supervisor_planned, net_marking_t, SEAM_t, is_before_SEAM, s_at_Supervisor_planned)
 
 /* place Cell.Supervisor.approached, colour set SEAM: page `Supervisor`, place `approached` (ID1412310100) */
 static const pn_bag_t s_at_Supervisor_approached = {
@@ -766,6 +1275,7 @@ static const pn_bag_t s_at_Supervisor_approached = {
 };
 
 PN_PLACE_FUNCTIONS(Supervisor_approached, s_at_Supervisor_approached)
+PN_UNTIMED_PLACE(Supervisor_approached, net_marking_t, SEAM_t, is_before_SEAM, s_at_Supervisor_approached)
 
 /* place Cell.Supervisor.verified, colour set VERIFIED: page `Supervisor`, place `verified` (ID1412310103) */
 static const pn_bag_t s_at_Supervisor_verified = {
@@ -776,6 +1286,7 @@ static const pn_bag_t s_at_Supervisor_verified = {
 };
 
 PN_PLACE_FUNCTIONS(Supervisor_verified, s_at_Supervisor_verified)
+PN_UNTIMED_PLACE(Supervisor_verified, net_marking_t, VERIFIED_t, is_before_VERIFIED, s_at_Supervisor_verified)
 
 /* place Cell.Supervisor.corrected, colour set RIVETING: page `Supervisor`, place `corrected` (ID1412310106) */
 static const pn_bag_t s_at_Supervisor_corrected = {
@@ -786,6 +1297,7 @@ static const pn_bag_t s_at_Supervisor_corrected = {
 };
 
 PN_PLACE_FUNCTIONS(Supervisor_corrected, s_at_Supervisor_corrected)
+PN_UNTIMED_PLACE(Supervisor_corrected, net_marking_t, RIVETING_t, is_before_RIVETING, s_at_Supervisor_corrected)
 
 /* place Cell.Supervisor.installed, colour set UNIT: page `Supervisor`, place `installed` (ID1412310109) */
 static const pn_bag_t s_at_Supervisor_installed = {
@@ -796,6 +1308,7 @@ static const pn_bag_t s_at_Supervisor_installed = {
 };
 
 PN_PLACE_FUNCTIONS(Supervisor_installed, s_at_Supervisor_installed)
+PN_UNTIMED_PLACE(Supervisor_installed, net_marking_t, pn_unit_t, is_before_UNIT, s_at_Supervisor_installed)
 
 /* place Cell.Supervisor.Finished, colour set UNIT: page `Supervisor`, place `Finished` (ID1412310112) */
 static const pn_bag_t s_at_Supervisor_Finished = {
@@ -806,6 +1319,7 @@ static const pn_bag_t s_at_Supervisor_Finished = {
 };
 
 PN_PLACE_FUNCTIONS(Supervisor_Finished, s_at_Supervisor_Finished)
+PN_UNTIMED_PLACE(Supervisor_Finished, net_marking_t, pn_unit_t, is_before_UNIT, s_at_Supervisor_Finished)
 
 /* place Cell.Supervisor.Approach.order, colour set ORDER: page `Approach`, place `order` (ID1412310290) */
 static const pn_bag_t s_at_Supervisor_Approach_order = {
@@ -816,6 +1330,7 @@ static const pn_bag_t s_at_Supervisor_Approach_order = {
 };
 
 PN_PLACE_FUNCTIONS(Supervisor_Approach_order, s_at_Supervisor_Approach_order)
+PN_UNTIMED_PLACE(Supervisor_Approach_order, net_marking_t, PLAN_t, is_before_ORDER, s_at_Supervisor_Approach_order)
 
 /* place Cell.Supervisor.Approach.done, colour set UNIT: page `Approach`, place `done` (ID1412310293) */
 static const pn_bag_t s_at_Supervisor_Approach_done = {
@@ -826,6 +1341,7 @@ static const pn_bag_t s_at_Supervisor_Approach_done = {
 };
 
 PN_PLACE_FUNCTIONS(Supervisor_Approach_done, s_at_Supervisor_Approach_done)
+PN_UNTIMED_PLACE(Supervisor_Approach_done, net_marking_t, pn_unit_t, is_before_UNIT, s_at_Supervisor_Approach_done)
 
 /* place Cell.Supervisor.Approach.seam, colour set SEAM: page `Approach`, place `seam` (ID1412310352) */
 static const pn_bag_t s_at_Supervisor_Approach_seam = {
@@ -836,6 +1352,7 @@ static const pn_bag_t s_at_Supervisor_Approach_seam = {
 };
 
 PN_PLACE_FUNCTIONS(Supervisor_Approach_seam, s_at_Supervisor_Approach_seam)
+PN_UNTIMED_PLACE(Supervisor_Approach_seam, net_marking_t, SEAM_t, is_before_SEAM, s_at_Supervisor_Approach_seam)
 
 /* place Cell.Supervisor.Approach.Move both.moving 1, colour set UNIT: page `MoveBoth`, place `moving 1` (ID1412310959) */
 static const pn_bag_t s_at_Supervisor_Approach_Move_both_moving_1 = {
@@ -846,6 +1363,7 @@ static const pn_bag_t s_at_Supervisor_Approach_Move_both_moving_1 = {
 };
 
 PN_PLACE_FUNCTIONS(Supervisor_Approach_Move_both_moving_1, s_at_Supervisor_Approach_Move_both_moving_1)
+PN_UNTIMED_PLACE(Supervisor_Approach_Move_both_moving_1, net_marking_t, pn_unit_t, is_before_UNIT, s_at_Supervisor_Approach_Move_both_moving_1)
 
 /* place Cell.Supervisor.Approach.Move both.there 1, colour set UNIT: page `MoveBoth`, place `there 1` (ID1412310967) */
 static const pn_bag_t s_at_Supervisor_Approach_Move_both_there_1 = {
@@ -856,6 +1374,7 @@ static const pn_bag_t s_at_Supervisor_Approach_Move_both_there_1 = {
 };
 
 PN_PLACE_FUNCTIONS(Supervisor_Approach_Move_both_there_1, s_at_Supervisor_Approach_Move_both_there_1)
+PN_UNTIMED_PLACE(Supervisor_Approach_Move_both_there_1, net_marking_t, pn_unit_t, is_before_UNIT, s_at_Supervisor_Approach_Move_both_there_1)
 
 /* place Cell.Supervisor.Approach.Move both.moving 2, colour set UNIT: page `MoveBoth`, place `moving 2` (ID1412310996) */
 static const pn_bag_t s_at_Supervisor_Approach_Move_both_moving_2 = {
@@ -866,6 +1385,7 @@ static const pn_bag_t s_at_Supervisor_Approach_Move_both_moving_2 = {
 };
 
 PN_PLACE_FUNCTIONS(Supervisor_Approach_Move_both_moving_2, s_at_Supervisor_Approach_Move_both_moving_2)
+PN_UNTIMED_PLACE(Supervisor_Approach_Move_both_moving_2, net_marking_t, pn_unit_t, is_before_UNIT, s_at_Supervisor_Approach_Move_both_moving_2)
 
 /* place Cell.Supervisor.Approach.Move both.there 2, colour set UNIT: page `MoveBoth`, place `there 2` (ID1412311004) */
 static const pn_bag_t s_at_Supervisor_Approach_Move_both_there_2 = {
@@ -876,6 +1396,7 @@ static const pn_bag_t s_at_Supervisor_Approach_Move_both_there_2 = {
 };
 
 PN_PLACE_FUNCTIONS(Supervisor_Approach_Move_both_there_2, s_at_Supervisor_Approach_Move_both_there_2)
+PN_UNTIMED_PLACE(Supervisor_Approach_Move_both_there_2, net_marking_t, pn_unit_t, is_before_UNIT, s_at_Supervisor_Approach_Move_both_there_2)
 
 /* place Cell.Supervisor.Verify.first asked, colour set SEAM: page `Verify`, place `first asked` (ID1412310382) */
 static const pn_bag_t s_at_Supervisor_Verify_first_asked = {
@@ -886,6 +1407,7 @@ static const pn_bag_t s_at_Supervisor_Verify_first_asked = {
 };
 
 PN_PLACE_FUNCTIONS(Supervisor_Verify_first_asked, s_at_Supervisor_Verify_first_asked)
+PN_UNTIMED_PLACE(Supervisor_Verify_first_asked, net_marking_t, SEAM_t, is_before_SEAM, s_at_Supervisor_Verify_first_asked)
 
 /* place Cell.Supervisor.Verify.last asked, colour set ASKED: page `Verify`, place `last asked` (ID1412310390) */
 static const pn_bag_t s_at_Supervisor_Verify_last_asked = {
@@ -896,6 +1418,7 @@ static const pn_bag_t s_at_Supervisor_Verify_last_asked = {
 };
 
 PN_PLACE_FUNCTIONS(Supervisor_Verify_last_asked, s_at_Supervisor_Verify_last_asked)
+PN_UNTIMED_PLACE(Supervisor_Verify_last_asked, net_marking_t, ASKED_t, is_before_ASKED, s_at_Supervisor_Verify_last_asked)
 
 /* place Cell.Supervisor.Correct.offset, colour set VECTOR: page `Correct`, place `offset` (ID1412310458) */
 static const pn_bag_t s_at_Supervisor_Correct_offset = {
@@ -906,6 +1429,7 @@ static const pn_bag_t s_at_Supervisor_Correct_offset = {
 };
 
 PN_PLACE_FUNCTIONS(Supervisor_Correct_offset, s_at_Supervisor_Correct_offset)
+PN_UNTIMED_PLACE(Supervisor_Correct_offset, net_marking_t, VECTOR_t, is_before_VECTOR, s_at_Supervisor_Correct_offset)
 
 /* place Cell.Supervisor.Correct.order, colour set ORDER: page `Correct`, place `order` (ID1412310466) */
 static const pn_bag_t s_at_Supervisor_Correct_order = {
@@ -916,6 +1440,7 @@ static const pn_bag_t s_at_Supervisor_Correct_order = {
 };
 
 PN_PLACE_FUNCTIONS(Supervisor_Correct_order, s_at_Supervisor_Correct_order)
+PN_UNTIMED_PLACE(Supervisor_Correct_order, net_marking_t, PLAN_t, is_before_ORDER, s_at_Supervisor_Correct_order)
 
 /* place Cell.Supervisor.Correct.done, colour set UNIT: page `Correct`, place `done` (ID1412310475) */
 static const pn_bag_t s_at_Supervisor_Correct_done = {
@@ -926,6 +1451,7 @@ static const pn_bag_t s_at_Supervisor_Correct_done = {
 };
 
 PN_PLACE_FUNCTIONS(Supervisor_Correct_done, s_at_Supervisor_Correct_done)
+PN_UNTIMED_PLACE(Supervisor_Correct_done, net_marking_t, pn_unit_t, is_before_UNIT, s_at_Supervisor_Correct_done)
 
 /* place Cell.Supervisor.Correct.seam, colour set RIVETING: page `Correct`, place `seam` (ID1412310523) */
 static const pn_bag_t s_at_Supervisor_Correct_seam = {
@@ -936,6 +1462,7 @@ static const pn_bag_t s_at_Supervisor_Correct_seam = {
 };
 
 PN_PLACE_FUNCTIONS(Supervisor_Correct_seam, s_at_Supervisor_Correct_seam)
+PN_UNTIMED_PLACE(Supervisor_Correct_seam, net_marking_t, RIVETING_t, is_before_RIVETING, s_at_Supervisor_Correct_seam)
 
 /* place Cell.Supervisor.Correct.Move both.moving 1, colour set UNIT: page `MoveBoth`, place `moving 1` (ID1412310959) */
 static const pn_bag_t s_at_Supervisor_Correct_Move_both_moving_1 = {
@@ -946,6 +1473,7 @@ static const pn_bag_t s_at_Supervisor_Correct_Move_both_moving_1 = {
 };
 
 PN_PLACE_FUNCTIONS(Supervisor_Correct_Move_both_moving_1, s_at_Supervisor_Correct_Move_both_moving_1)
+PN_UNTIMED_PLACE(Supervisor_Correct_Move_both_moving_1, net_marking_t, pn_unit_t, is_before_UNIT, s_at_Supervisor_Correct_Move_both_moving_1)
 
 /* place Cell.Supervisor.Correct.Move both.there 1, colour set UNIT: page `MoveBoth`, place `there 1` (ID1412310967) */
 static const pn_bag_t s_at_Supervisor_Correct_Move_both_there_1 = {
@@ -956,6 +1484,7 @@ static const pn_bag_t s_at_Supervisor_Correct_Move_both_there_1 = {
 };
 
 PN_PLACE_FUNCTIONS(Supervisor_Correct_Move_both_there_1, s_at_Supervisor_Correct_Move_both_there_1)
+PN_UNTIMED_PLACE(Supervisor_Correct_Move_both_there_1, net_marking_t, pn_unit_t, is_before_UNIT, s_at_Supervisor_Correct_Move_both_there_1)
 
 /* place Cell.Supervisor.Correct.Move both.moving 2, colour set UNIT: page `MoveBoth`, place `moving 2` (ID1412310996) */
 static const pn_bag_t s_at_Supervisor_Correct_Move_both_moving_2 = {
@@ -966,6 +1495,7 @@ static const pn_bag_t s_at_Supervisor_Correct_Move_both_moving_2 = {
 };
 
 PN_PLACE_FUNCTIONS(Supervisor_Correct_Move_both_moving_2, s_at_Supervisor_Correct_Move_both_moving_2)
+PN_UNTIMED_PLACE(Supervisor_Correct_Move_both_moving_2, net_marking_t, pn_unit_t, is_before_UNIT, s_at_Supervisor_Correct_Move_both_moving_2)
 
 /* place Cell.Supervisor.Correct.Move both.there 2, colour set UNIT: page `MoveBoth`, place `there 2` (ID1412311004) */
 static const pn_bag_t s_at_Supervisor_Correct_Move_both_there_2 = {
@@ -976,6 +1506,7 @@ static const pn_bag_t s_at_Supervisor_Correct_Move_both_there_2 = {
 };
 
 PN_PLACE_FUNCTIONS(Supervisor_Correct_Move_both_there_2, s_at_Supervisor_Correct_Move_both_there_2)
+PN_UNTIMED_PLACE(Supervisor_Correct_Move_both_there_2, net_marking_t, pn_unit_t, is_before_UNIT, s_at_Supervisor_Correct_Move_both_there_2)
 
 /* place Cell.Supervisor.Install.shift, colour set ORDER: page `Install`, place `shift` (ID1412310585) */
 static const pn_bag_t s_at_Supervisor_Install_shift = {
@@ -986,6 +1517,7 @@ static const pn_bag_t s_at_Supervisor_Install_shift = {
 };
 
 PN_PLACE_FUNCTIONS(Supervisor_Install_shift, s_at_Supervisor_Install_shift)
+PN_UNTIMED_PLACE(Supervisor_Install_shift, net_marking_t, PLAN_t, is_before_ORDER, s_at_Supervisor_Install_shift)
 
 /* place Cell.Supervisor.Install.ready, colour set UNIT: page `Install`, place `ready` (ID1412310588) */
 static const pn_bag_t s_at_Supervisor_Install_ready = {
@@ -996,6 +1528,7 @@ static const pn_bag_t s_at_Supervisor_Install_ready = {
 };
 
 PN_PLACE_FUNCTIONS(Supervisor_Install_ready, s_at_Supervisor_Install_ready)
+PN_UNTIMED_PLACE(Supervisor_Install_ready, net_marking_t, pn_unit_t, is_before_UNIT, s_at_Supervisor_Install_ready)
 
 /* place Cell.Supervisor.Install.riveted, colour set UNIT: page `Install`, place `riveted` (ID1412310591) */
 static const pn_bag_t s_at_Supervisor_Install_riveted = {
@@ -1006,6 +1539,7 @@ static const pn_bag_t s_at_Supervisor_Install_riveted = {
 };
 
 PN_PLACE_FUNCTIONS(Supervisor_Install_riveted, s_at_Supervisor_Install_riveted)
+PN_UNTIMED_PLACE(Supervisor_Install_riveted, net_marking_t, pn_unit_t, is_before_UNIT, s_at_Supervisor_Install_riveted)
 
 /* place Cell.Supervisor.Install.return, colour set ORDER: page `Install`, place `return` (ID1412310599) */
 static const pn_bag_t s_at_Supervisor_Install_return = {
@@ -1016,6 +1550,7 @@ static const pn_bag_t s_at_Supervisor_Install_return = {
 };
 
 PN_PLACE_FUNCTIONS(Supervisor_Install_return, s_at_Supervisor_Install_return)
+PN_UNTIMED_PLACE(Supervisor_Install_return, net_marking_t, PLAN_t, is_before_ORDER, s_at_Supervisor_Install_return)
 
 /* place Cell.Supervisor.Install.work, colour set WORK: page `Install`, place `work` (ID1412310629) */
 static const pn_bag_t s_at_Supervisor_Install_work = {
@@ -1026,6 +1561,7 @@ static const pn_bag_t s_at_Supervisor_Install_work = {
 };
 
 PN_PLACE_FUNCTIONS(Supervisor_Install_work, s_at_Supervisor_Install_work)
+PN_UNTIMED_PLACE(Supervisor_Install_work, net_marking_t, WORK_t, is_before_WORK, s_at_Supervisor_Install_work)
 
 /* place Cell.Supervisor.Install.Shift.moving 1, colour set UNIT: page `MoveBoth`, place `moving 1` (ID1412310959) */
 static const pn_bag_t s_at_Supervisor_Install_Shift_moving_1 = {
@@ -1036,6 +1572,7 @@ static const pn_bag_t s_at_Supervisor_Install_Shift_moving_1 = {
 };
 
 PN_PLACE_FUNCTIONS(Supervisor_Install_Shift_moving_1, s_at_Supervisor_Install_Shift_moving_1)
+PN_UNTIMED_PLACE(Supervisor_Install_Shift_moving_1, net_marking_t, pn_unit_t, is_before_UNIT, s_at_Supervisor_Install_Shift_moving_1)
 
 /* place Cell.Supervisor.Install.Shift.there 1, colour set UNIT: page `MoveBoth`, place `there 1` (ID1412310967) */
 static const pn_bag_t s_at_Supervisor_Install_Shift_there_1 = {
@@ -1046,6 +1583,7 @@ static const pn_bag_t s_at_Supervisor_Install_Shift_there_1 = {
 };
 
 PN_PLACE_FUNCTIONS(Supervisor_Install_Shift_there_1, s_at_Supervisor_Install_Shift_there_1)
+PN_UNTIMED_PLACE(Supervisor_Install_Shift_there_1, net_marking_t, pn_unit_t, is_before_UNIT, s_at_Supervisor_Install_Shift_there_1)
 
 /* place Cell.Supervisor.Install.Shift.moving 2, colour set UNIT: page `MoveBoth`, place `moving 2` (ID1412310996) */
 static const pn_bag_t s_at_Supervisor_Install_Shift_moving_2 = {
@@ -1056,6 +1594,7 @@ static const pn_bag_t s_at_Supervisor_Install_Shift_moving_2 = {
 };
 
 PN_PLACE_FUNCTIONS(Supervisor_Install_Shift_moving_2, s_at_Supervisor_Install_Shift_moving_2)
+PN_UNTIMED_PLACE(Supervisor_Install_Shift_moving_2, net_marking_t, pn_unit_t, is_before_UNIT, s_at_Supervisor_Install_Shift_moving_2)
 
 /* place Cell.Supervisor.Install.Shift.there 2, colour set UNIT: page `MoveBoth`, place `there 2` (ID1412311004) */
 static const pn_bag_t s_at_Supervisor_Install_Shift_there_2 = {
@@ -1066,6 +1605,7 @@ static const pn_bag_t s_at_Supervisor_Install_Shift_there_2 = {
 };
 
 PN_PLACE_FUNCTIONS(Supervisor_Install_Shift_there_2, s_at_Supervisor_Install_Shift_there_2)
+PN_UNTIMED_PLACE(Supervisor_Install_Shift_there_2, net_marking_t, pn_unit_t, is_before_UNIT, s_at_Supervisor_Install_Shift_there_2)
 
 /* place Cell.Supervisor.Install.Rivet.advance, colour set ORDER: page `Rivet`, place `advance` (ID1412310721) */
 static const pn_bag_t s_at_Supervisor_Install_Rivet_advance = {
@@ -1076,6 +1616,7 @@ static const pn_bag_t s_at_Supervisor_Install_Rivet_advance = {
 };
 
 PN_PLACE_FUNCTIONS(Supervisor_Install_Rivet_advance, s_at_Supervisor_Install_Rivet_advance)
+PN_UNTIMED_PLACE(Supervisor_Install_Rivet_advance, net_marking_t, PLAN_t, is_before_ORDER, s_at_Supervisor_Install_Rivet_advance)
 
 /* place Cell.Supervisor.Install.Rivet.contact, colour set UNIT: page `Rivet`, place `contact` (ID1412310730) */
 static const pn_bag_t s_at_Supervisor_Install_Rivet_contact = {
@@ -1086,6 +1627,7 @@ static const pn_bag_t s_at_Supervisor_Install_Rivet_contact = {
 };
 
 PN_PLACE_FUNCTIONS(Supervisor_Install_Rivet_contact, s_at_Supervisor_Install_Rivet_contact)
+PN_UNTIMED_PLACE(Supervisor_Install_Rivet_contact, net_marking_t, pn_unit_t, is_before_UNIT, s_at_Supervisor_Install_Rivet_contact)
 
 /* place Cell.Supervisor.Install.Rivet.fastened, colour set UNIT: page `Rivet`, place `fastened` (ID1412310739) */
 static const pn_bag_t s_at_Supervisor_Install_Rivet_fastened = {
@@ -1096,6 +1638,7 @@ static const pn_bag_t s_at_Supervisor_Install_Rivet_fastened = {
 };
 
 PN_PLACE_FUNCTIONS(Supervisor_Install_Rivet_fastened, s_at_Supervisor_Install_Rivet_fastened)
+PN_UNTIMED_PLACE(Supervisor_Install_Rivet_fastened, net_marking_t, pn_unit_t, is_before_UNIT, s_at_Supervisor_Install_Rivet_fastened)
 
 /* place Cell.Supervisor.Install.Rivet.retract, colour set ORDER: page `Rivet`, place `retract` (ID1412310747) */
 static const pn_bag_t s_at_Supervisor_Install_Rivet_retract = {
@@ -1106,6 +1649,7 @@ static const pn_bag_t s_at_Supervisor_Install_Rivet_retract = {
 };
 
 PN_PLACE_FUNCTIONS(Supervisor_Install_Rivet_retract, s_at_Supervisor_Install_Rivet_retract)
+PN_UNTIMED_PLACE(Supervisor_Install_Rivet_retract, net_marking_t, PLAN_t, is_before_ORDER, s_at_Supervisor_Install_Rivet_retract)
 
 /* place Cell.Supervisor.Install.Rivet.Advance.moving 1, colour set UNIT: page `MoveBoth`, place `moving 1` (ID1412310959) */
 static const pn_bag_t s_at_Supervisor_Install_Rivet_Advance_moving_1 = {
@@ -1116,6 +1660,7 @@ static const pn_bag_t s_at_Supervisor_Install_Rivet_Advance_moving_1 = {
 };
 
 PN_PLACE_FUNCTIONS(Supervisor_Install_Rivet_Advance_moving_1, s_at_Supervisor_Install_Rivet_Advance_moving_1)
+PN_UNTIMED_PLACE(Supervisor_Install_Rivet_Advance_moving_1, net_marking_t, pn_unit_t, is_before_UNIT, s_at_Supervisor_Install_Rivet_Advance_moving_1)
 
 /* place Cell.Supervisor.Install.Rivet.Advance.there 1, colour set UNIT: page `MoveBoth`, place `there 1` (ID1412310967) */
 static const pn_bag_t s_at_Supervisor_Install_Rivet_Advance_there_1 = {
@@ -1126,6 +1671,7 @@ static const pn_bag_t s_at_Supervisor_Install_Rivet_Advance_there_1 = {
 };
 
 PN_PLACE_FUNCTIONS(Supervisor_Install_Rivet_Advance_there_1, s_at_Supervisor_Install_Rivet_Advance_there_1)
+PN_UNTIMED_PLACE(Supervisor_Install_Rivet_Advance_there_1, net_marking_t, pn_unit_t, is_before_UNIT, s_at_Supervisor_Install_Rivet_Advance_there_1)
 
 /* place Cell.Supervisor.Install.Rivet.Advance.moving 2, colour set UNIT: page `MoveBoth`, place `moving 2` (ID1412310996) */
 static const pn_bag_t s_at_Supervisor_Install_Rivet_Advance_moving_2 = {
@@ -1136,6 +1682,7 @@ static const pn_bag_t s_at_Supervisor_Install_Rivet_Advance_moving_2 = {
 };
 
 PN_PLACE_FUNCTIONS(Supervisor_Install_Rivet_Advance_moving_2, s_at_Supervisor_Install_Rivet_Advance_moving_2)
+PN_UNTIMED_PLACE(Supervisor_Install_Rivet_Advance_moving_2, net_marking_t, pn_unit_t, is_before_UNIT, s_at_Supervisor_Install_Rivet_Advance_moving_2)
 
 /* place Cell.Supervisor.Install.Rivet.Advance.there 2, colour set UNIT: page `MoveBoth`, place `there 2` (ID1412311004) */
 static const pn_bag_t s_at_Supervisor_Install_Rivet_Advance_there_2 = {
@@ -1146,6 +1693,7 @@ static const pn_bag_t s_at_Supervisor_Install_Rivet_Advance_there_2 = {
 };
 
 PN_PLACE_FUNCTIONS(Supervisor_Install_Rivet_Advance_there_2, s_at_Supervisor_Install_Rivet_Advance_there_2)
+PN_UNTIMED_PLACE(Supervisor_Install_Rivet_Advance_there_2, net_marking_t, pn_unit_t, is_before_UNIT, s_at_Supervisor_Install_Rivet_Advance_there_2)
 
 /* place Cell.Supervisor.Install.Rivet.Fasten.pressing, colour set UNIT: page `Fasten`, place `pressing` (ID1412310847) */
 static const pn_bag_t s_at_Supervisor_Install_Rivet_Fasten_pressing = {
@@ -1156,6 +1704,7 @@ static const pn_bag_t s_at_Supervisor_Install_Rivet_Fasten_pressing = {
 };
 
 PN_PLACE_FUNCTIONS(Supervisor_Install_Rivet_Fasten_pressing, s_at_Supervisor_Install_Rivet_Fasten_pressing)
+PN_UNTIMED_PLACE(Supervisor_Install_Rivet_Fasten_pressing, net_marking_t, pn_unit_t, is_before_UNIT, s_at_Supervisor_Install_Rivet_Fasten_pressing)
 
 /* place Cell.Supervisor.Install.Rivet.Fasten.drilling, colour set UNIT: page `Fasten`, place `drilling` (ID1412310855) */
 static const pn_bag_t s_at_Supervisor_Install_Rivet_Fasten_drilling = {
@@ -1166,6 +1715,7 @@ static const pn_bag_t s_at_Supervisor_Install_Rivet_Fasten_drilling = {
 };
 
 PN_PLACE_FUNCTIONS(Supervisor_Install_Rivet_Fasten_drilling, s_at_Supervisor_Install_Rivet_Fasten_drilling)
+PN_UNTIMED_PLACE(Supervisor_Install_Rivet_Fasten_drilling, net_marking_t, pn_unit_t, is_before_UNIT, s_at_Supervisor_Install_Rivet_Fasten_drilling)
 
 /* place Cell.Supervisor.Install.Rivet.Fasten.inserting, colour set UNIT: page `Fasten`, place `inserting` (ID1412310863) */
 static const pn_bag_t s_at_Supervisor_Install_Rivet_Fasten_inserting = {
@@ -1176,6 +1726,7 @@ static const pn_bag_t s_at_Supervisor_Install_Rivet_Fasten_inserting = {
 };
 
 PN_PLACE_FUNCTIONS(Supervisor_Install_Rivet_Fasten_inserting, s_at_Supervisor_Install_Rivet_Fasten_inserting)
+PN_UNTIMED_PLACE(Supervisor_Install_Rivet_Fasten_inserting, net_marking_t, pn_unit_t, is_before_UNIT, s_at_Supervisor_Install_Rivet_Fasten_inserting)
 
 /* place Cell.Supervisor.Install.Rivet.Fasten.releasing, colour set UNIT: page `Fasten`, place `releasing` (ID1412310871) */
 static const pn_bag_t s_at_Supervisor_Install_Rivet_Fasten_releasing = {
@@ -1186,6 +1737,7 @@ static const pn_bag_t s_at_Supervisor_Install_Rivet_Fasten_releasing = {
 };
 
 PN_PLACE_FUNCTIONS(Supervisor_Install_Rivet_Fasten_releasing, s_at_Supervisor_Install_Rivet_Fasten_releasing)
+PN_UNTIMED_PLACE(Supervisor_Install_Rivet_Fasten_releasing, net_marking_t, pn_unit_t, is_before_UNIT, s_at_Supervisor_Install_Rivet_Fasten_releasing)
 
 /* place Cell.Supervisor.Install.Rivet.Retract.moving 1, colour set UNIT: page `MoveBoth`, place `moving 1` (ID1412310959) */
 static const pn_bag_t s_at_Supervisor_Install_Rivet_Retract_moving_1 = {
@@ -1196,6 +1748,7 @@ static const pn_bag_t s_at_Supervisor_Install_Rivet_Retract_moving_1 = {
 };
 
 PN_PLACE_FUNCTIONS(Supervisor_Install_Rivet_Retract_moving_1, s_at_Supervisor_Install_Rivet_Retract_moving_1)
+PN_UNTIMED_PLACE(Supervisor_Install_Rivet_Retract_moving_1, net_marking_t, pn_unit_t, is_before_UNIT, s_at_Supervisor_Install_Rivet_Retract_moving_1)
 
 /* place Cell.Supervisor.Install.Rivet.Retract.there 1, colour set UNIT: page `MoveBoth`, place `there 1` (ID1412310967) */
 static const pn_bag_t s_at_Supervisor_Install_Rivet_Retract_there_1 = {
@@ -1206,6 +1759,7 @@ static const pn_bag_t s_at_Supervisor_Install_Rivet_Retract_there_1 = {
 };
 
 PN_PLACE_FUNCTIONS(Supervisor_Install_Rivet_Retract_there_1, s_at_Supervisor_Install_Rivet_Retract_there_1)
+PN_UNTIMED_PLACE(Supervisor_Install_Rivet_Retract_there_1, net_marking_t, pn_unit_t, is_before_UNIT, s_at_Supervisor_Install_Rivet_Retract_there_1)
 
 /* place Cell.Supervisor.Install.Rivet.Retract.moving 2, colour set UNIT: page `MoveBoth`, place `moving 2` (ID1412310996) */
 static const pn_bag_t s_at_Supervisor_Install_Rivet_Retract_moving_2 = {
@@ -1216,6 +1770,7 @@ static const pn_bag_t s_at_Supervisor_Install_Rivet_Retract_moving_2 = {
 };
 
 PN_PLACE_FUNCTIONS(Supervisor_Install_Rivet_Retract_moving_2, s_at_Supervisor_Install_Rivet_Retract_moving_2)
+PN_UNTIMED_PLACE(Supervisor_Install_Rivet_Retract_moving_2, net_marking_t, pn_unit_t, is_before_UNIT, s_at_Supervisor_Install_Rivet_Retract_moving_2)
 
 /* place Cell.Supervisor.Install.Rivet.Retract.there 2, colour set UNIT: page `MoveBoth`, place `there 2` (ID1412311004) */
 static const pn_bag_t s_at_Supervisor_Install_Rivet_Retract_there_2 = {
@@ -1226,6 +1781,7 @@ static const pn_bag_t s_at_Supervisor_Install_Rivet_Retract_there_2 = {
 };
 
 PN_PLACE_FUNCTIONS(Supervisor_Install_Rivet_Retract_there_2, s_at_Supervisor_Install_Rivet_Retract_there_2)
+PN_UNTIMED_PLACE(Supervisor_Install_Rivet_Retract_there_2, net_marking_t, pn_unit_t, is_before_UNIT, s_at_Supervisor_Install_Rivet_Retract_there_2)
 
 /* place Cell.Supervisor.Install.Return.moving 1, colour set UNIT: page `MoveBoth`, place `moving 1` (ID1412310959) */
 static const pn_bag_t s_at_Supervisor_Install_Return_moving_1 = {
@@ -1236,6 +1792,7 @@ static const pn_bag_t s_at_Supervisor_Install_Return_moving_1 = {
 };
 
 PN_PLACE_FUNCTIONS(Supervisor_Install_Return_moving_1, s_at_Supervisor_Install_Return_moving_1)
+PN_UNTIMED_PLACE(Supervisor_Install_Return_moving_1, net_marking_t, pn_unit_t, is_before_UNIT, s_at_Supervisor_Install_Return_moving_1)
 
 /* place Cell.Supervisor.Install.Return.there 1, colour set UNIT: page `MoveBoth`, place `there 1` (ID1412310967) */
 static const pn_bag_t s_at_Supervisor_Install_Return_there_1 = {
@@ -1246,6 +1803,7 @@ static const pn_bag_t s_at_Supervisor_Install_Return_there_1 = {
 };
 
 PN_PLACE_FUNCTIONS(Supervisor_Install_Return_there_1, s_at_Supervisor_Install_Return_there_1)
+PN_UNTIMED_PLACE(Supervisor_Install_Return_there_1, net_marking_t, pn_unit_t, is_before_UNIT, s_at_Supervisor_Install_Return_there_1)
 
 /* place Cell.Supervisor.Install.Return.moving 2, colour set UNIT: page `MoveBoth`, place `moving 2` (ID1412310996) */
 static const pn_bag_t s_at_Supervisor_Install_Return_moving_2 = {
@@ -1256,6 +1814,7 @@ static const pn_bag_t s_at_Supervisor_Install_Return_moving_2 = {
 };
 
 PN_PLACE_FUNCTIONS(Supervisor_Install_Return_moving_2, s_at_Supervisor_Install_Return_moving_2)
+PN_UNTIMED_PLACE(Supervisor_Install_Return_moving_2, net_marking_t, pn_unit_t, is_before_UNIT, s_at_Supervisor_Install_Return_moving_2)
 
 /* place Cell.Supervisor.Install.Return.there 2, colour set UNIT: page `MoveBoth`, place `there 2` (ID1412311004) */
 static const pn_bag_t s_at_Supervisor_Install_Return_there_2 = {
@@ -1266,6 +1825,7 @@ static const pn_bag_t s_at_Supervisor_Install_Return_there_2 = {
 };
 
 PN_PLACE_FUNCTIONS(Supervisor_Install_Return_there_2, s_at_Supervisor_Install_Return_there_2)
+PN_UNTIMED_PLACE(Supervisor_Install_Return_there_2, net_marking_t, pn_unit_t, is_before_UNIT, s_at_Supervisor_Install_Return_there_2)
 
 /* place Cell.Supervisor.Home.leaving 1, colour set UNIT: page `Home`, place `leaving 1` (ID1412311057) */
 static const pn_bag_t s_at_Supervisor_Home_leaving_1 = {
@@ -1276,6 +1836,7 @@ static const pn_bag_t s_at_Supervisor_Home_leaving_1 = {
 };
 
 PN_PLACE_FUNCTIONS(Supervisor_Home_leaving_1, s_at_Supervisor_Home_leaving_1)
+PN_UNTIMED_PLACE(Supervisor_Home_leaving_1, net_marking_t, pn_unit_t, is_before_UNIT, s_at_Supervisor_Home_leaving_1)
 
 /* place Cell.Supervisor.Home.home 1, colour set UNIT: page `Home`, place `home 1` (ID1412311065) */
 static const pn_bag_t s_at_Supervisor_Home_home_1 = {
@@ -1286,6 +1847,7 @@ static const pn_bag_t s_at_Supervisor_Home_home_1 = {
 };
 
 PN_PLACE_FUNCTIONS(Supervisor_Home_home_1, s_at_Supervisor_Home_home_1)
+PN_UNTIMED_PLACE(Supervisor_Home_home_1, net_marking_t, pn_unit_t, is_before_UNIT, s_at_Supervisor_Home_home_1)
 
 /* place Cell.Supervisor.Home.leaving 2, colour set UNIT: page `Home`, place `leaving 2` (ID1412311088) */
 static const pn_bag_t s_at_Supervisor_Home_leaving_2 = {
@@ -1296,6 +1858,7 @@ static const pn_bag_t s_at_Supervisor_Home_leaving_2 = {
 };
 
 PN_PLACE_FUNCTIONS(Supervisor_Home_leaving_2, s_at_Supervisor_Home_leaving_2)
+PN_UNTIMED_PLACE(Supervisor_Home_leaving_2, net_marking_t, pn_unit_t, is_before_UNIT, s_at_Supervisor_Home_leaving_2)
 
 /* place Cell.Supervisor.Home.home 2, colour set UNIT: page `Home`, place `home 2` (ID1412311096) */
 static const pn_bag_t s_at_Supervisor_Home_home_2 = {
@@ -1306,6 +1869,7 @@ static const pn_bag_t s_at_Supervisor_Home_home_2 = {
 };
 
 PN_PLACE_FUNCTIONS(Supervisor_Home_home_2, s_at_Supervisor_Home_home_2)
+PN_UNTIMED_PLACE(Supervisor_Home_home_2, net_marking_t, pn_unit_t, is_before_UNIT, s_at_Supervisor_Home_home_2)
 
 /* place Cell.Robot1.Waiting, colour set UNIT: page `Robot`, place `Waiting` (ID1412311130) */
 static const pn_bag_t s_at_Robot1_Waiting = {
@@ -1316,6 +1880,7 @@ static const pn_bag_t s_at_Robot1_Waiting = {
 };
 
 PN_PLACE_FUNCTIONS(Robot1_Waiting, s_at_Robot1_Waiting)
+PN_UNTIMED_PLACE(Robot1_Waiting, net_marking_t, pn_unit_t, is_before_UNIT, s_at_Robot1_Waiting)
 
 /* initial marking:
  *     1`()
@@ -1338,6 +1903,7 @@ static const pn_bag_t s_at_Robot1_Commanded = {
 };
 
 PN_PLACE_FUNCTIONS(Robot1_Commanded, s_at_Robot1_Commanded)
+PN_UNTIMED_PLACE(Robot1_Commanded, net_marking_t, int64_t, PN_LESS, s_at_Robot1_Commanded)
 
 /* place Cell.Robot1.Done, colour set UNIT: page `Robot`, place `Done` (ID1412311142) */
 static const pn_bag_t s_at_Robot1_Done = {
@@ -1348,6 +1914,7 @@ static const pn_bag_t s_at_Robot1_Done = {
 };
 
 PN_PLACE_FUNCTIONS(Robot1_Done, s_at_Robot1_Done)
+PN_UNTIMED_PLACE(Robot1_Done, net_marking_t, pn_unit_t, is_before_UNIT, s_at_Robot1_Done)
 
 /* place Cell.Robot2.Waiting, colour set UNIT: page `Robot`, place `Waiting` (ID1412311130) */
 static const pn_bag_t s_at_Robot2_Waiting = {
@@ -1358,6 +1925,7 @@ static const pn_bag_t s_at_Robot2_Waiting = {
 };
 
 PN_PLACE_FUNCTIONS(Robot2_Waiting, s_at_Robot2_Waiting)
+PN_UNTIMED_PLACE(Robot2_Waiting, net_marking_t, pn_unit_t, is_before_UNIT, s_at_Robot2_Waiting)
 
 /* initial marking:
  *     1`()
@@ -1380,6 +1948,7 @@ static const pn_bag_t s_at_Robot2_Commanded = {
 };
 
 PN_PLACE_FUNCTIONS(Robot2_Commanded, s_at_Robot2_Commanded)
+PN_UNTIMED_PLACE(Robot2_Commanded, net_marking_t, int64_t, PN_LESS, s_at_Robot2_Commanded)
 
 /* place Cell.Robot2.Done, colour set UNIT: page `Robot`, place `Done` (ID1412311142) */
 static const pn_bag_t s_at_Robot2_Done = {
@@ -1390,6 +1959,7 @@ static const pn_bag_t s_at_Robot2_Done = {
 };
 
 PN_PLACE_FUNCTIONS(Robot2_Done, s_at_Robot2_Done)
+PN_UNTIMED_PLACE(Robot2_Done, net_marking_t, pn_unit_t, is_before_UNIT, s_at_Robot2_Done)
 
 /* place Cell.Robot2.referencia, colour set POSE: page `Robot`, place `referencia` (ID1412311236) */
 static const pn_bag_t s_at_Robot2_referencia = {
@@ -1400,6 +1970,7 @@ static const pn_bag_t s_at_Robot2_referencia = {
 };
 
 PN_PLACE_FUNCTIONS(Robot2_referencia, s_at_Robot2_referencia)
+PN_UNTIMED_PLACE(Robot2_referencia, net_marking_t, POSE_t, is_before_POSE, s_at_Robot2_referencia)
 
 /* place Cell.Robot2.medida, colour set POSE: page `Robot`, place `medida` (ID1412311240) */
 static const pn_bag_t s_at_Robot2_medida = {
@@ -1410,6 +1981,7 @@ static const pn_bag_t s_at_Robot2_medida = {
 };
 
 PN_PLACE_FUNCTIONS(Robot2_medida, s_at_Robot2_medida)
+PN_UNTIMED_PLACE(Robot2_medida, net_marking_t, POSE_t, is_before_POSE, s_at_Robot2_medida)
 
 static const pn_bag_t *const s_bags[] = {
     &s_at_dadosrobo1,
@@ -1535,18 +2107,26 @@ static bool Supervisor_Load_Load_fire(pn_ctx_t *cx, void *marking, void *binding
     Supervisor_Load_Load_binding_t *const b = binding;
     cx->origin = "page `Load`, transition `Load` (ID1412310271)";
     cx->now = m->now;
-    const size_t before = pn_arena_mark(cx->arena);
-    pn_moves_t moves;
-    pn_moves_init(&moves, cx);
+    const PLAN_t Supervisor_coordenadas_token = (PLAN_t){ .c1 = b->n, .c2 = b->p, .c3 = b->q };
+    SEAM_t Supervisor_planned_token = (SEAM_t){ .points = b->n, .first = b->p, .last = b->q };
+    pn_bag_check(cx, &s_at_Supervisor_planned, &Supervisor_planned_token);
+    if (!pn_ok(cx)) {
+        return false;
+    }
     /* coordenadas: (n, p, q) (ID1412310280) */
-    pn_moves_take(&moves, &s_at_Supervisor_coordenadas,
-        &(PLAN_t){ .c1 = b->n, .c2 = b->p, .c3 = b->q }, 1, PN_NO_TIME);
+    bool is_taken = Supervisor_coordenadas_take(m, &Supervisor_coordenadas_token, 1U);
+    if (!is_taken) {
+        pn_raise(cx, PN_ERR_SUBTRACT, NULL);
+        return false;
+    }
     /* planned: {points = n, first = p, last = q} (ID1412310282) */
-    pn_moves_put(&moves, &s_at_Supervisor_planned,
-        &(SEAM_t){ .points = b->n, .first = b->p, .last = b->q }, 1, PN_NO_TIME);
-    const bool is_done = pn_moves_commit(&moves, m);
-    pn_arena_release(cx->arena, before);
-    return is_done;
+    bool fits = Supervisor_planned_add(cx, m, &Supervisor_planned_token, 1U);
+    if (!fits) {
+        /* a place is full: everything is put back */
+        (void)Supervisor_planned_take(m, &Supervisor_planned_token, 1U);
+        (void)Supervisor_coordenadas_add(cx, m, &Supervisor_coordenadas_token, 1U);
+    }
+    return fits;
 }
 
 static void Supervisor_Load_Load_json(const void *binding, pn_text_t *out)
@@ -1594,20 +2174,29 @@ static bool Supervisor_Approach_Send_fire(pn_ctx_t *cx, void *marking, void *bin
     Supervisor_Approach_Send_binding_t *const b = binding;
     cx->origin = "page `Approach`, transition `Send` (ID1412310300)";
     cx->now = m->now;
-    const size_t before = pn_arena_mark(cx->arena);
-    pn_moves_t moves;
-    pn_moves_init(&moves, cx);
+    PLAN_t Supervisor_Approach_order_token = (PLAN_t){ .c1 = val_JOINT,
+        .c2 = ml_standoff(b->s.first), .c3 = ml_standoff(ml_facing(b->s.first)) };
+    pn_bag_check(cx, &s_at_Supervisor_Approach_order, &Supervisor_Approach_order_token);
+    if (!pn_ok(cx)) {
+        return false;
+    }
     /* planned: s (ID1412310355) */
-    pn_moves_take(&moves, &s_at_Supervisor_planned, &b->s, 1, PN_NO_TIME);
+    bool is_taken = Supervisor_planned_take(m, &b->s, 1U);
+    if (!is_taken) {
+        pn_raise(cx, PN_ERR_SUBTRACT, NULL);
+        return false;
+    }
     /* order: (JOINT, standoff (#first s), standoff (facing (#first s))) (ID1412310357) */
-    pn_moves_put(&moves, &s_at_Supervisor_Approach_order,
-        &(PLAN_t){ .c1 = val_JOINT, .c2 = ml_standoff(b->s.first),
-        .c3 = ml_standoff(ml_facing(b->s.first)) }, 1, PN_NO_TIME);
+    bool fits = Supervisor_Approach_order_add(cx, m, &Supervisor_Approach_order_token, 1U);
     /* seam: s (ID1412310367) */
-    pn_moves_put(&moves, &s_at_Supervisor_Approach_seam, &b->s, 1, PN_NO_TIME);
-    const bool is_done = pn_moves_commit(&moves, m);
-    pn_arena_release(cx->arena, before);
-    return is_done;
+    fits = Supervisor_Approach_seam_add(cx, m, &b->s, 1U) && fits;
+    if (!fits) {
+        /* a place is full: everything is put back */
+        (void)Supervisor_Approach_seam_take(m, &b->s, 1U);
+        (void)Supervisor_Approach_order_take(m, &Supervisor_Approach_order_token, 1U);
+        (void)Supervisor_planned_add(cx, m, &b->s, 1U);
+    }
+    return fits;
 }
 
 static void Supervisor_Approach_Send_json(const void *binding, pn_text_t *out)
@@ -1640,8 +2229,7 @@ static bool Supervisor_Approach_Arrived_enumerate(pn_ctx_t *cx, const void *mark
     cx->origin = "page `Approach`, transition `Arrived` (ID1412310311)";
     cx->now = m->now;
     /* done: () (ID1412310363) */
-    if (pn_bag_count(&s_at_Supervisor_Approach_done, m, (pn_unit_t[]){ PN_UNIT },
-        PN_NO_TIME) < 1U) {
+    if (Supervisor_Approach_done_held(m, (pn_unit_t[]){ PN_UNIT }) < 1U) {
         return true;
     }
     /* seam: s (ID1412310369) */
@@ -1660,18 +2248,24 @@ static bool Supervisor_Approach_Arrived_fire(pn_ctx_t *cx, void *marking, void *
     Supervisor_Approach_Arrived_binding_t *const b = binding;
     cx->origin = "page `Approach`, transition `Arrived` (ID1412310311)";
     cx->now = m->now;
-    const size_t before = pn_arena_mark(cx->arena);
-    pn_moves_t moves;
-    pn_moves_init(&moves, cx);
+    const pn_unit_t Supervisor_Approach_done_token = PN_UNIT;
     /* done: () (ID1412310363) */
-    pn_moves_take(&moves, &s_at_Supervisor_Approach_done, (pn_unit_t[]){ PN_UNIT }, 1, PN_NO_TIME);
+    bool is_taken = Supervisor_Approach_done_take(m, &Supervisor_Approach_done_token, 1U);
     /* seam: s (ID1412310369) */
-    pn_moves_take(&moves, &s_at_Supervisor_Approach_seam, &b->s, 1, PN_NO_TIME);
+    is_taken = is_taken && Supervisor_Approach_seam_take(m, &b->s, 1U);
+    if (!is_taken) {
+        pn_raise(cx, PN_ERR_SUBTRACT, NULL);
+        return false;
+    }
     /* approached: s (ID1412310365) */
-    pn_moves_put(&moves, &s_at_Supervisor_approached, &b->s, 1, PN_NO_TIME);
-    const bool is_done = pn_moves_commit(&moves, m);
-    pn_arena_release(cx->arena, before);
-    return is_done;
+    bool fits = Supervisor_approached_add(cx, m, &b->s, 1U);
+    if (!fits) {
+        /* a place is full: everything is put back */
+        (void)Supervisor_approached_take(m, &b->s, 1U);
+        (void)Supervisor_Approach_seam_add(cx, m, &b->s, 1U);
+        (void)Supervisor_Approach_done_add(cx, m, &Supervisor_Approach_done_token, 1U);
+    }
+    return fits;
 }
 
 static void Supervisor_Approach_Arrived_json(const void *binding, pn_text_t *out)
@@ -1725,29 +2319,42 @@ static bool Supervisor_Approach_Move_both_Command_fire(pn_ctx_t *cx, void *marki
     Supervisor_Approach_Move_both_Command_binding_t *const b = binding;
     cx->origin = "page `MoveBoth`, transition `Command` (ID1412310941)";
     cx->now = m->now;
-    const size_t before = pn_arena_mark(cx->arena);
-    pn_moves_t moves;
-    pn_moves_init(&moves, cx);
+    const PLAN_t Supervisor_Approach_order_token = (PLAN_t){ .c1 = b->c, .c2 = b->p, .c3 = b->q };
+    const pn_unit_t Supervisor_Approach_Move_both_moving_1_token = PN_UNIT;
+    const pn_unit_t Supervisor_Approach_Move_both_moving_2_token = PN_UNIT;
     /* order: (c, p, q) (ID1412310946) */
-    pn_moves_take(&moves, &s_at_Supervisor_Approach_order,
-        &(PLAN_t){ .c1 = b->c, .c2 = b->p, .c3 = b->q }, 1, PN_NO_TIME);
+    bool is_taken = Supervisor_Approach_order_take(m, &Supervisor_Approach_order_token, 1U);
+    if (!is_taken) {
+        pn_raise(cx, PN_ERR_SUBTRACT, NULL);
+        return false;
+    }
     /* moving 1: () (ID1412310970) */
-    pn_moves_put(&moves, &s_at_Supervisor_Approach_Move_both_moving_1, (pn_unit_t[]){ PN_UNIT }, 1,
-        PN_NO_TIME);
+    bool fits = Supervisor_Approach_Move_both_moving_1_add(cx, m,
+        &Supervisor_Approach_Move_both_moving_1_token, 1U);
     /* dadosrobo1: p (ID1412310982) */
-    pn_moves_put(&moves, &s_at_dadosrobo1, &b->p, 1, PN_NO_TIME);
+    fits = dadosrobo1_add(cx, m, &b->p, 1U) && fits;
     /* flag1_interno: c (ID1412310988) */
-    pn_moves_put(&moves, &s_at_flag1_interno, &b->c, 1, PN_NO_TIME);
+    fits = flag1_interno_add(cx, m, &b->c, 1U) && fits;
     /* moving 2: () (ID1412311007) */
-    pn_moves_put(&moves, &s_at_Supervisor_Approach_Move_both_moving_2, (pn_unit_t[]){ PN_UNIT }, 1,
-        PN_NO_TIME);
+    fits = Supervisor_Approach_Move_both_moving_2_add(cx, m,
+        &Supervisor_Approach_Move_both_moving_2_token, 1U) && fits;
     /* dadosrobo2: q (ID1412311019) */
-    pn_moves_put(&moves, &s_at_dadosrobo2, &b->q, 1, PN_NO_TIME);
+    fits = dadosrobo2_add(cx, m, &b->q, 1U) && fits;
     /* flag2_interno: c (ID1412311025) */
-    pn_moves_put(&moves, &s_at_flag2_interno, &b->c, 1, PN_NO_TIME);
-    const bool is_done = pn_moves_commit(&moves, m);
-    pn_arena_release(cx->arena, before);
-    return is_done;
+    fits = flag2_interno_add(cx, m, &b->c, 1U) && fits;
+    if (!fits) {
+        /* a place is full: everything is put back */
+        (void)flag2_interno_take(m, &b->c, 1U);
+        (void)dadosrobo2_take(m, &b->q, 1U);
+        (void)Supervisor_Approach_Move_both_moving_2_take(m,
+            &Supervisor_Approach_Move_both_moving_2_token, 1U);
+        (void)flag1_interno_take(m, &b->c, 1U);
+        (void)dadosrobo1_take(m, &b->p, 1U);
+        (void)Supervisor_Approach_Move_both_moving_1_take(m,
+            &Supervisor_Approach_Move_both_moving_1_token, 1U);
+        (void)Supervisor_Approach_order_add(cx, m, &Supervisor_Approach_order_token, 1U);
+    }
+    return fits;
 }
 
 static void Supervisor_Approach_Move_both_Command_json(const void *binding, pn_text_t *out)
@@ -1776,13 +2383,11 @@ static bool Supervisor_Approach_Move_both_Both_enumerate(pn_ctx_t *cx, const voi
     cx->origin = "page `MoveBoth`, transition `Both` (ID1412310948)";
     cx->now = m->now;
     /* there 1: () (ID1412310976) */
-    if (pn_bag_count(&s_at_Supervisor_Approach_Move_both_there_1, m, (pn_unit_t[]){ PN_UNIT },
-        PN_NO_TIME) < 1U) {
+    if (Supervisor_Approach_Move_both_there_1_held(m, (pn_unit_t[]){ PN_UNIT }) < 1U) {
         return true;
     }
     /* there 2: () (ID1412311013) */
-    if (pn_bag_count(&s_at_Supervisor_Approach_Move_both_there_2, m, (pn_unit_t[]){ PN_UNIT },
-        PN_NO_TIME) < 1U) {
+    if (Supervisor_Approach_Move_both_there_2_held(m, (pn_unit_t[]){ PN_UNIT }) < 1U) {
         return true;
     }
     if (!sink(user, self, &b)) {
@@ -1797,20 +2402,31 @@ static bool Supervisor_Approach_Move_both_Both_fire(pn_ctx_t *cx, void *marking,
     (void)binding;
     cx->origin = "page `MoveBoth`, transition `Both` (ID1412310948)";
     cx->now = m->now;
-    const size_t before = pn_arena_mark(cx->arena);
-    pn_moves_t moves;
-    pn_moves_init(&moves, cx);
+    const pn_unit_t Supervisor_Approach_Move_both_there_1_token = PN_UNIT;
+    const pn_unit_t Supervisor_Approach_Move_both_there_2_token = PN_UNIT;
+    const pn_unit_t Supervisor_Approach_done_token = PN_UNIT;
     /* there 1: () (ID1412310976) */
-    pn_moves_take(&moves, &s_at_Supervisor_Approach_Move_both_there_1, (pn_unit_t[]){ PN_UNIT }, 1,
-        PN_NO_TIME);
+    bool is_taken = Supervisor_Approach_Move_both_there_1_take(m,
+        &Supervisor_Approach_Move_both_there_1_token, 1U);
     /* there 2: () (ID1412311013) */
-    pn_moves_take(&moves, &s_at_Supervisor_Approach_Move_both_there_2, (pn_unit_t[]){ PN_UNIT }, 1,
-        PN_NO_TIME);
+    is_taken = is_taken
+        && Supervisor_Approach_Move_both_there_2_take(m,
+        &Supervisor_Approach_Move_both_there_2_token, 1U);
+    if (!is_taken) {
+        pn_raise(cx, PN_ERR_SUBTRACT, NULL);
+        return false;
+    }
     /* done: () (ID1412310957) */
-    pn_moves_put(&moves, &s_at_Supervisor_Approach_done, (pn_unit_t[]){ PN_UNIT }, 1, PN_NO_TIME);
-    const bool is_done = pn_moves_commit(&moves, m);
-    pn_arena_release(cx->arena, before);
-    return is_done;
+    bool fits = Supervisor_Approach_done_add(cx, m, &Supervisor_Approach_done_token, 1U);
+    if (!fits) {
+        /* a place is full: everything is put back */
+        (void)Supervisor_Approach_done_take(m, &Supervisor_Approach_done_token, 1U);
+        (void)Supervisor_Approach_Move_both_there_2_add(cx, m,
+            &Supervisor_Approach_Move_both_there_2_token, 1U);
+        (void)Supervisor_Approach_Move_both_there_1_add(cx, m,
+            &Supervisor_Approach_Move_both_there_1_token, 1U);
+    }
+    return fits;
 }
 
 static void Supervisor_Approach_Move_both_Both_json(const void *binding, pn_text_t *out)
@@ -1839,12 +2455,11 @@ static bool Supervisor_Approach_Move_both_Reply_1_enumerate(pn_ctx_t *cx, const 
     cx->origin = "page `MoveBoth`, transition `Reply 1` (ID1412310962)";
     cx->now = m->now;
     /* moving 1: () (ID1412310972) */
-    if (pn_bag_count(&s_at_Supervisor_Approach_Move_both_moving_1, m, (pn_unit_t[]){ PN_UNIT },
-        PN_NO_TIME) < 1U) {
+    if (Supervisor_Approach_Move_both_moving_1_held(m, (pn_unit_t[]){ PN_UNIT }) < 1U) {
         return true;
     }
     /* flag1_externo: 1 (ID1412310994) */
-    if (pn_bag_count(&s_at_flag1_externo, m, (int64_t[]){ 1 }, PN_NO_TIME) < 1U) {
+    if (flag1_externo_held(m, (int64_t[]){ 1 }) < 1U) {
         return true;
     }
     if (!sink(user, self, &b)) {
@@ -1859,20 +2474,30 @@ static bool Supervisor_Approach_Move_both_Reply_1_fire(pn_ctx_t *cx, void *marki
     (void)binding;
     cx->origin = "page `MoveBoth`, transition `Reply 1` (ID1412310962)";
     cx->now = m->now;
-    const size_t before = pn_arena_mark(cx->arena);
-    pn_moves_t moves;
-    pn_moves_init(&moves, cx);
+    const pn_unit_t Supervisor_Approach_Move_both_moving_1_token = PN_UNIT;
+    const int64_t flag1_externo_token = 1;
+    const pn_unit_t Supervisor_Approach_Move_both_there_1_token = PN_UNIT;
     /* moving 1: () (ID1412310972) */
-    pn_moves_take(&moves, &s_at_Supervisor_Approach_Move_both_moving_1, (pn_unit_t[]){ PN_UNIT }, 1,
-        PN_NO_TIME);
+    bool is_taken = Supervisor_Approach_Move_both_moving_1_take(m,
+        &Supervisor_Approach_Move_both_moving_1_token, 1U);
     /* flag1_externo: 1 (ID1412310994) */
-    pn_moves_take(&moves, &s_at_flag1_externo, (int64_t[]){ 1 }, 1, PN_NO_TIME);
+    is_taken = is_taken && flag1_externo_take(m, &flag1_externo_token, 1U);
+    if (!is_taken) {
+        pn_raise(cx, PN_ERR_SUBTRACT, NULL);
+        return false;
+    }
     /* there 1: () (ID1412310974) */
-    pn_moves_put(&moves, &s_at_Supervisor_Approach_Move_both_there_1, (pn_unit_t[]){ PN_UNIT }, 1,
-        PN_NO_TIME);
-    const bool is_done = pn_moves_commit(&moves, m);
-    pn_arena_release(cx->arena, before);
-    return is_done;
+    bool fits = Supervisor_Approach_Move_both_there_1_add(cx, m,
+        &Supervisor_Approach_Move_both_there_1_token, 1U);
+    if (!fits) {
+        /* a place is full: everything is put back */
+        (void)Supervisor_Approach_Move_both_there_1_take(m,
+            &Supervisor_Approach_Move_both_there_1_token, 1U);
+        (void)flag1_externo_add(cx, m, &flag1_externo_token, 1U);
+        (void)Supervisor_Approach_Move_both_moving_1_add(cx, m,
+            &Supervisor_Approach_Move_both_moving_1_token, 1U);
+    }
+    return fits;
 }
 
 static void Supervisor_Approach_Move_both_Reply_1_json(const void *binding, pn_text_t *out)
@@ -1901,12 +2526,11 @@ static bool Supervisor_Approach_Move_both_Reply_2_enumerate(pn_ctx_t *cx, const 
     cx->origin = "page `MoveBoth`, transition `Reply 2` (ID1412310999)";
     cx->now = m->now;
     /* moving 2: () (ID1412311009) */
-    if (pn_bag_count(&s_at_Supervisor_Approach_Move_both_moving_2, m, (pn_unit_t[]){ PN_UNIT },
-        PN_NO_TIME) < 1U) {
+    if (Supervisor_Approach_Move_both_moving_2_held(m, (pn_unit_t[]){ PN_UNIT }) < 1U) {
         return true;
     }
     /* flag2_externo: 1 (ID1412311031) */
-    if (pn_bag_count(&s_at_flag2_externo, m, (int64_t[]){ 1 }, PN_NO_TIME) < 1U) {
+    if (flag2_externo_held(m, (int64_t[]){ 1 }) < 1U) {
         return true;
     }
     if (!sink(user, self, &b)) {
@@ -1921,20 +2545,30 @@ static bool Supervisor_Approach_Move_both_Reply_2_fire(pn_ctx_t *cx, void *marki
     (void)binding;
     cx->origin = "page `MoveBoth`, transition `Reply 2` (ID1412310999)";
     cx->now = m->now;
-    const size_t before = pn_arena_mark(cx->arena);
-    pn_moves_t moves;
-    pn_moves_init(&moves, cx);
+    const pn_unit_t Supervisor_Approach_Move_both_moving_2_token = PN_UNIT;
+    const int64_t flag2_externo_token = 1;
+    const pn_unit_t Supervisor_Approach_Move_both_there_2_token = PN_UNIT;
     /* moving 2: () (ID1412311009) */
-    pn_moves_take(&moves, &s_at_Supervisor_Approach_Move_both_moving_2, (pn_unit_t[]){ PN_UNIT }, 1,
-        PN_NO_TIME);
+    bool is_taken = Supervisor_Approach_Move_both_moving_2_take(m,
+        &Supervisor_Approach_Move_both_moving_2_token, 1U);
     /* flag2_externo: 1 (ID1412311031) */
-    pn_moves_take(&moves, &s_at_flag2_externo, (int64_t[]){ 1 }, 1, PN_NO_TIME);
+    is_taken = is_taken && flag2_externo_take(m, &flag2_externo_token, 1U);
+    if (!is_taken) {
+        pn_raise(cx, PN_ERR_SUBTRACT, NULL);
+        return false;
+    }
     /* there 2: () (ID1412311011) */
-    pn_moves_put(&moves, &s_at_Supervisor_Approach_Move_both_there_2, (pn_unit_t[]){ PN_UNIT }, 1,
-        PN_NO_TIME);
-    const bool is_done = pn_moves_commit(&moves, m);
-    pn_arena_release(cx->arena, before);
-    return is_done;
+    bool fits = Supervisor_Approach_Move_both_there_2_add(cx, m,
+        &Supervisor_Approach_Move_both_there_2_token, 1U);
+    if (!fits) {
+        /* a place is full: everything is put back */
+        (void)Supervisor_Approach_Move_both_there_2_take(m,
+            &Supervisor_Approach_Move_both_there_2_token, 1U);
+        (void)flag2_externo_add(cx, m, &flag2_externo_token, 1U);
+        (void)Supervisor_Approach_Move_both_moving_2_add(cx, m,
+            &Supervisor_Approach_Move_both_moving_2_token, 1U);
+    }
+    return fits;
 }
 
 static void Supervisor_Approach_Move_both_Reply_2_json(const void *binding, pn_text_t *out)
@@ -1982,20 +2616,32 @@ static bool Supervisor_Verify_Ask_first_fire(pn_ctx_t *cx, void *marking, void *
     Supervisor_Verify_Ask_first_binding_t *const b = binding;
     cx->origin = "page `Verify`, transition `Ask first` (ID1412310377)";
     cx->now = m->now;
-    const size_t before = pn_arena_mark(cx->arena);
-    pn_moves_t moves;
-    pn_moves_init(&moves, cx);
+    const POSE_t referencia1_token = b->s.first;
+    int64_t flag1_interno_token = val_MEASURE;
+    pn_bag_check(cx, &s_at_flag1_interno, &flag1_interno_token);
+    if (!pn_ok(cx)) {
+        return false;
+    }
     /* approached: s (ID1412310418) */
-    pn_moves_take(&moves, &s_at_Supervisor_approached, &b->s, 1, PN_NO_TIME);
+    bool is_taken = Supervisor_approached_take(m, &b->s, 1U);
+    if (!is_taken) {
+        pn_raise(cx, PN_ERR_SUBTRACT, NULL);
+        return false;
+    }
     /* first asked: s (ID1412310420) */
-    pn_moves_put(&moves, &s_at_Supervisor_Verify_first_asked, &b->s, 1, PN_NO_TIME);
+    bool fits = Supervisor_Verify_first_asked_add(cx, m, &b->s, 1U);
     /* referencia1: #first s (ID1412310430) */
-    pn_moves_put(&moves, &s_at_referencia1, &b->s.first, 1, PN_NO_TIME);
+    fits = referencia1_add(cx, m, &referencia1_token, 1U) && fits;
     /* flag1_interno: MEASURE (ID1412310432) */
-    pn_moves_put(&moves, &s_at_flag1_interno, &val_MEASURE, 1, PN_NO_TIME);
-    const bool is_done = pn_moves_commit(&moves, m);
-    pn_arena_release(cx->arena, before);
-    return is_done;
+    fits = flag1_interno_add(cx, m, &flag1_interno_token, 1U) && fits;
+    if (!fits) {
+        /* a place is full: everything is put back */
+        (void)flag1_interno_take(m, &flag1_interno_token, 1U);
+        (void)referencia1_take(m, &referencia1_token, 1U);
+        (void)Supervisor_Verify_first_asked_take(m, &b->s, 1U);
+        (void)Supervisor_approached_add(cx, m, &b->s, 1U);
+    }
+    return fits;
 }
 
 static void Supervisor_Verify_Ask_first_json(const void *binding, pn_text_t *out)
@@ -2030,7 +2676,7 @@ static bool Supervisor_Verify_Ask_last_enumerate(pn_ctx_t *cx, const void *marki
     cx->origin = "page `Verify`, transition `Ask last` (ID1412310385)";
     cx->now = m->now;
     /* flag1_externo: 1 (ID1412310440) */
-    if (pn_bag_count(&s_at_flag1_externo, m, (int64_t[]){ 1 }, PN_NO_TIME) < 1U) {
+    if (flag1_externo_held(m, (int64_t[]){ 1 }) < 1U) {
         return true;
     }
     /* first asked: s (ID1412310422) */
@@ -2053,25 +2699,41 @@ static bool Supervisor_Verify_Ask_last_fire(pn_ctx_t *cx, void *marking, void *b
     Supervisor_Verify_Ask_last_binding_t *const b = binding;
     cx->origin = "page `Verify`, transition `Ask last` (ID1412310385)";
     cx->now = m->now;
-    const size_t before = pn_arena_mark(cx->arena);
-    pn_moves_t moves;
-    pn_moves_init(&moves, cx);
+    const int64_t flag1_externo_token = 1;
+    ASKED_t Supervisor_Verify_last_asked_token = (ASKED_t){ .c1 = b->s, .c2 = b->a };
+    pn_bag_check(cx, &s_at_Supervisor_Verify_last_asked, &Supervisor_Verify_last_asked_token);
+    const POSE_t referencia1_token = b->s.last;
+    int64_t flag1_interno_token = val_MEASURE;
+    pn_bag_check(cx, &s_at_flag1_interno, &flag1_interno_token);
+    if (!pn_ok(cx)) {
+        return false;
+    }
     /* first asked: s (ID1412310422) */
-    pn_moves_take(&moves, &s_at_Supervisor_Verify_first_asked, &b->s, 1, PN_NO_TIME);
+    bool is_taken = Supervisor_Verify_first_asked_take(m, &b->s, 1U);
     /* medida1: a (ID1412310438) */
-    pn_moves_take(&moves, &s_at_medida1, &b->a, 1, PN_NO_TIME);
+    is_taken = is_taken && medida1_take(m, &b->a, 1U);
     /* flag1_externo: 1 (ID1412310440) */
-    pn_moves_take(&moves, &s_at_flag1_externo, (int64_t[]){ 1 }, 1, PN_NO_TIME);
+    is_taken = is_taken && flag1_externo_take(m, &flag1_externo_token, 1U);
+    if (!is_taken) {
+        pn_raise(cx, PN_ERR_SUBTRACT, NULL);
+        return false;
+    }
     /* last asked: (s, a) (ID1412310424) */
-    pn_moves_put(&moves, &s_at_Supervisor_Verify_last_asked, &(ASKED_t){ .c1 = b->s, .c2 = b->a },
-        1, PN_NO_TIME);
+    bool fits = Supervisor_Verify_last_asked_add(cx, m, &Supervisor_Verify_last_asked_token, 1U);
     /* referencia1: #last s (ID1412310434) */
-    pn_moves_put(&moves, &s_at_referencia1, &b->s.last, 1, PN_NO_TIME);
+    fits = referencia1_add(cx, m, &referencia1_token, 1U) && fits;
     /* flag1_interno: MEASURE (ID1412310436) */
-    pn_moves_put(&moves, &s_at_flag1_interno, &val_MEASURE, 1, PN_NO_TIME);
-    const bool is_done = pn_moves_commit(&moves, m);
-    pn_arena_release(cx->arena, before);
-    return is_done;
+    fits = flag1_interno_add(cx, m, &flag1_interno_token, 1U) && fits;
+    if (!fits) {
+        /* a place is full: everything is put back */
+        (void)flag1_interno_take(m, &flag1_interno_token, 1U);
+        (void)referencia1_take(m, &referencia1_token, 1U);
+        (void)Supervisor_Verify_last_asked_take(m, &Supervisor_Verify_last_asked_token, 1U);
+        (void)flag1_externo_add(cx, m, &flag1_externo_token, 1U);
+        (void)medida1_add(cx, m, &b->a, 1U);
+        (void)Supervisor_Verify_first_asked_add(cx, m, &b->s, 1U);
+    }
+    return fits;
 }
 
 static void Supervisor_Verify_Ask_last_json(const void *binding, pn_text_t *out)
@@ -2108,7 +2770,7 @@ static bool Supervisor_Verify_Measured_enumerate(pn_ctx_t *cx, const void *marki
     cx->origin = "page `Verify`, transition `Measured` (ID1412310393)";
     cx->now = m->now;
     /* flag1_externo: 1 (ID1412310444) */
-    if (pn_bag_count(&s_at_flag1_externo, m, (int64_t[]){ 1 }, PN_NO_TIME) < 1U) {
+    if (flag1_externo_held(m, (int64_t[]){ 1 }) < 1U) {
         return true;
     }
     /* last asked: (s, a) (ID1412310426) */
@@ -2132,22 +2794,33 @@ static bool Supervisor_Verify_Measured_fire(pn_ctx_t *cx, void *marking, void *b
     Supervisor_Verify_Measured_binding_t *const b = binding;
     cx->origin = "page `Verify`, transition `Measured` (ID1412310393)";
     cx->now = m->now;
-    const size_t before = pn_arena_mark(cx->arena);
-    pn_moves_t moves;
-    pn_moves_init(&moves, cx);
+    const ASKED_t Supervisor_Verify_last_asked_token = (ASKED_t){ .c1 = b->s, .c2 = b->a };
+    const int64_t flag1_externo_token = 1;
+    VERIFIED_t Supervisor_verified_token = (VERIFIED_t){ .c1 = b->s, .c2 = b->a, .c3 = b->b };
+    pn_bag_check(cx, &s_at_Supervisor_verified, &Supervisor_verified_token);
+    if (!pn_ok(cx)) {
+        return false;
+    }
     /* last asked: (s, a) (ID1412310426) */
-    pn_moves_take(&moves, &s_at_Supervisor_Verify_last_asked, &(ASKED_t){ .c1 = b->s, .c2 = b->a },
-        1, PN_NO_TIME);
+    bool is_taken = Supervisor_Verify_last_asked_take(m, &Supervisor_Verify_last_asked_token, 1U);
     /* medida1: b (ID1412310442) */
-    pn_moves_take(&moves, &s_at_medida1, &b->b, 1, PN_NO_TIME);
+    is_taken = is_taken && medida1_take(m, &b->b, 1U);
     /* flag1_externo: 1 (ID1412310444) */
-    pn_moves_take(&moves, &s_at_flag1_externo, (int64_t[]){ 1 }, 1, PN_NO_TIME);
+    is_taken = is_taken && flag1_externo_take(m, &flag1_externo_token, 1U);
+    if (!is_taken) {
+        pn_raise(cx, PN_ERR_SUBTRACT, NULL);
+        return false;
+    }
     /* verified: (s, a, b) (ID1412310428) */
-    pn_moves_put(&moves, &s_at_Supervisor_verified,
-        &(VERIFIED_t){ .c1 = b->s, .c2 = b->a, .c3 = b->b }, 1, PN_NO_TIME);
-    const bool is_done = pn_moves_commit(&moves, m);
-    pn_arena_release(cx->arena, before);
-    return is_done;
+    bool fits = Supervisor_verified_add(cx, m, &Supervisor_verified_token, 1U);
+    if (!fits) {
+        /* a place is full: everything is put back */
+        (void)Supervisor_verified_take(m, &Supervisor_verified_token, 1U);
+        (void)flag1_externo_add(cx, m, &flag1_externo_token, 1U);
+        (void)medida1_add(cx, m, &b->b, 1U);
+        (void)Supervisor_Verify_last_asked_add(cx, m, &Supervisor_Verify_last_asked_token, 1U);
+    }
+    return fits;
 }
 
 static void Supervisor_Verify_Measured_json(const void *binding, pn_text_t *out)
@@ -2207,24 +2880,32 @@ static bool Supervisor_Correct_Compare_fire(pn_ctx_t *cx, void *marking, void *b
     Supervisor_Correct_Compare_binding_t *const b = binding;
     cx->origin = "page `Correct`, transition `Compare` (ID1412310453)";
     cx->now = m->now;
-    const size_t before = pn_arena_mark(cx->arena);
-    pn_moves_t moves;
-    pn_moves_init(&moves, cx);
-    /* verified: ({points = n, first = p, last = q}, a, b) (ID1412310531) */
-    pn_moves_take(&moves, &s_at_Supervisor_verified,
-        &(VERIFIED_t){ .c1 = (SEAM_t){ .points = b->n, .first = b->p, .last = b->q }, .c2 = b->a,
-        .c3 = b->b }, 1, PN_NO_TIME);
+    const VERIFIED_t Supervisor_verified_token = (VERIFIED_t){ .c1 = (SEAM_t){ .points = b->n,
+        .first = b->p, .last = b->q }, .c2 = b->a, .c3 = b->b };
     const VECTOR_t token = ml_difference(b->p, b->a);
+    RIVETING_t Supervisor_Correct_seam_token = (RIVETING_t){ .c1 = b->n, .c2 = b->p,
+        .c3 = ml_pitch(cx, b->n, ml_corrected(b->p, b->a), ml_corrected(b->q, b->b)) };
+    pn_bag_check(cx, &s_at_Supervisor_Correct_seam, &Supervisor_Correct_seam_token);
+    if (!pn_ok(cx)) {
+        return false;
+    }
+    /* verified: ({points = n, first = p, last = q}, a, b) (ID1412310531) */
+    bool is_taken = Supervisor_verified_take(m, &Supervisor_verified_token, 1U);
+    if (!is_taken) {
+        pn_raise(cx, PN_ERR_SUBTRACT, NULL);
+        return false;
+    }
     /* offset: difference (p, a) (ID1412310533) */
-    pn_moves_put(&moves, &s_at_Supervisor_Correct_offset, &token, 1, PN_NO_TIME);
+    bool fits = Supervisor_Correct_offset_add(cx, m, &token, 1U);
     /* seam: (n, p, pitch (n, corrected (p, a), corrected (q, b))) (ID1412310535) */
-    pn_moves_put(&moves, &s_at_Supervisor_Correct_seam,
-        &(RIVETING_t){ .c1 = b->n, .c2 = b->p,
-        .c3 = ml_pitch(cx, b->n, ml_corrected(b->p, b->a), ml_corrected(b->q, b->b)) }, 1,
-        PN_NO_TIME);
-    const bool is_done = pn_moves_commit(&moves, m);
-    pn_arena_release(cx->arena, before);
-    return is_done;
+    fits = Supervisor_Correct_seam_add(cx, m, &Supervisor_Correct_seam_token, 1U) && fits;
+    if (!fits) {
+        /* a place is full: everything is put back */
+        (void)Supervisor_Correct_seam_take(m, &Supervisor_Correct_seam_token, 1U);
+        (void)Supervisor_Correct_offset_take(m, &token, 1U);
+        (void)Supervisor_verified_add(cx, m, &Supervisor_verified_token, 1U);
+    }
+    return fits;
 }
 
 static void Supervisor_Correct_Compare_json(const void *binding, pn_text_t *out)
@@ -2290,24 +2971,36 @@ static bool Supervisor_Correct_Move_over_fire(pn_ctx_t *cx, void *marking, void 
     Supervisor_Correct_Move_over_binding_t *const b = binding;
     cx->origin = "page `Correct`, transition `Move over` (ID1412310461)";
     cx->now = m->now;
-    const size_t before = pn_arena_mark(cx->arena);
-    pn_moves_t moves;
-    pn_moves_init(&moves, cx);
+    const RIVETING_t Supervisor_Correct_seam_token = (RIVETING_t){ .c1 = b->n, .c2 = b->p,
+        .c3 = b->d };
+    RIVETING_t Supervisor_Correct_seam_token_2 = (RIVETING_t){ .c1 = b->n, .c2 = b->p, .c3 = b->d };
+    pn_bag_check(cx, &s_at_Supervisor_Correct_seam, &Supervisor_Correct_seam_token_2);
+    PLAN_t Supervisor_Correct_order_token = (PLAN_t){ .c1 = val_LINEAR, .c2 = ml_inTool(b->p, b->v),
+        .c3 = ml_inTool(ml_facing(b->p), b->v) };
+    pn_bag_check(cx, &s_at_Supervisor_Correct_order, &Supervisor_Correct_order_token);
+    if (!pn_ok(cx)) {
+        return false;
+    }
     /* offset: v (ID1412310537) */
-    pn_moves_take(&moves, &s_at_Supervisor_Correct_offset, &b->v, 1, PN_NO_TIME);
+    bool is_taken = Supervisor_Correct_offset_take(m, &b->v, 1U);
     /* seam: (n, p, d) (ID1412310539) */
-    pn_moves_take(&moves, &s_at_Supervisor_Correct_seam,
-        &(RIVETING_t){ .c1 = b->n, .c2 = b->p, .c3 = b->d }, 1, PN_NO_TIME);
+    is_taken = is_taken && Supervisor_Correct_seam_take(m, &Supervisor_Correct_seam_token, 1U);
+    if (!is_taken) {
+        pn_raise(cx, PN_ERR_SUBTRACT, NULL);
+        return false;
+    }
     /* seam: (n, p, d) (ID1412310539) */
-    pn_moves_put(&moves, &s_at_Supervisor_Correct_seam,
-        &(RIVETING_t){ .c1 = b->n, .c2 = b->p, .c3 = b->d }, 1, PN_NO_TIME);
+    bool fits = Supervisor_Correct_seam_add(cx, m, &Supervisor_Correct_seam_token_2, 1U);
     /* order: (LINEAR, inTool (p, v), inTool (facing p, v)) (ID1412310541) */
-    pn_moves_put(&moves, &s_at_Supervisor_Correct_order,
-        &(PLAN_t){ .c1 = val_LINEAR, .c2 = ml_inTool(b->p, b->v),
-        .c3 = ml_inTool(ml_facing(b->p), b->v) }, 1, PN_NO_TIME);
-    const bool is_done = pn_moves_commit(&moves, m);
-    pn_arena_release(cx->arena, before);
-    return is_done;
+    fits = Supervisor_Correct_order_add(cx, m, &Supervisor_Correct_order_token, 1U) && fits;
+    if (!fits) {
+        /* a place is full: everything is put back */
+        (void)Supervisor_Correct_order_take(m, &Supervisor_Correct_order_token, 1U);
+        (void)Supervisor_Correct_seam_take(m, &Supervisor_Correct_seam_token_2, 1U);
+        (void)Supervisor_Correct_seam_add(cx, m, &Supervisor_Correct_seam_token, 1U);
+        (void)Supervisor_Correct_offset_add(cx, m, &b->v, 1U);
+    }
+    return fits;
 }
 
 static void Supervisor_Correct_Move_over_json(const void *binding, pn_text_t *out)
@@ -2344,7 +3037,7 @@ static bool Supervisor_Correct_Moved_enumerate(pn_ctx_t *cx, const void *marking
     cx->origin = "page `Correct`, transition `Moved` (ID1412310478)";
     cx->now = m->now;
     /* done: () (ID1412310547) */
-    if (pn_bag_count(&s_at_Supervisor_Correct_done, m, (pn_unit_t[]){ PN_UNIT }, PN_NO_TIME) < 1U) {
+    if (Supervisor_Correct_done_held(m, (pn_unit_t[]){ PN_UNIT }) < 1U) {
         return true;
     }
     /* seam: (n, p, d) (ID1412310549) */
@@ -2365,20 +3058,31 @@ static bool Supervisor_Correct_Moved_fire(pn_ctx_t *cx, void *marking, void *bin
     Supervisor_Correct_Moved_binding_t *const b = binding;
     cx->origin = "page `Correct`, transition `Moved` (ID1412310478)";
     cx->now = m->now;
-    const size_t before = pn_arena_mark(cx->arena);
-    pn_moves_t moves;
-    pn_moves_init(&moves, cx);
+    const pn_unit_t Supervisor_Correct_done_token = PN_UNIT;
+    const RIVETING_t Supervisor_Correct_seam_token = (RIVETING_t){ .c1 = b->n, .c2 = b->p,
+        .c3 = b->d };
+    RIVETING_t Supervisor_corrected_token = (RIVETING_t){ .c1 = b->n, .c2 = b->p, .c3 = b->d };
+    pn_bag_check(cx, &s_at_Supervisor_corrected, &Supervisor_corrected_token);
+    if (!pn_ok(cx)) {
+        return false;
+    }
     /* done: () (ID1412310547) */
-    pn_moves_take(&moves, &s_at_Supervisor_Correct_done, (pn_unit_t[]){ PN_UNIT }, 1, PN_NO_TIME);
+    bool is_taken = Supervisor_Correct_done_take(m, &Supervisor_Correct_done_token, 1U);
     /* seam: (n, p, d) (ID1412310549) */
-    pn_moves_take(&moves, &s_at_Supervisor_Correct_seam,
-        &(RIVETING_t){ .c1 = b->n, .c2 = b->p, .c3 = b->d }, 1, PN_NO_TIME);
+    is_taken = is_taken && Supervisor_Correct_seam_take(m, &Supervisor_Correct_seam_token, 1U);
+    if (!is_taken) {
+        pn_raise(cx, PN_ERR_SUBTRACT, NULL);
+        return false;
+    }
     /* corrected: (n, p, d) (ID1412310551) */
-    pn_moves_put(&moves, &s_at_Supervisor_corrected,
-        &(RIVETING_t){ .c1 = b->n, .c2 = b->p, .c3 = b->d }, 1, PN_NO_TIME);
-    const bool is_done = pn_moves_commit(&moves, m);
-    pn_arena_release(cx->arena, before);
-    return is_done;
+    bool fits = Supervisor_corrected_add(cx, m, &Supervisor_corrected_token, 1U);
+    if (!fits) {
+        /* a place is full: everything is put back */
+        (void)Supervisor_corrected_take(m, &Supervisor_corrected_token, 1U);
+        (void)Supervisor_Correct_seam_add(cx, m, &Supervisor_Correct_seam_token, 1U);
+        (void)Supervisor_Correct_done_add(cx, m, &Supervisor_Correct_done_token, 1U);
+    }
+    return fits;
 }
 
 static void Supervisor_Correct_Moved_json(const void *binding, pn_text_t *out)
@@ -2444,20 +3148,30 @@ static bool Supervisor_Correct_As_planned_fire(pn_ctx_t *cx, void *marking, void
     Supervisor_Correct_As_planned_binding_t *const b = binding;
     cx->origin = "page `Correct`, transition `As planned` (ID1412310526)";
     cx->now = m->now;
-    const size_t before = pn_arena_mark(cx->arena);
-    pn_moves_t moves;
-    pn_moves_init(&moves, cx);
+    const RIVETING_t Supervisor_Correct_seam_token = (RIVETING_t){ .c1 = b->n, .c2 = b->p,
+        .c3 = b->d };
+    RIVETING_t Supervisor_corrected_token = (RIVETING_t){ .c1 = b->n, .c2 = b->p, .c3 = b->d };
+    pn_bag_check(cx, &s_at_Supervisor_corrected, &Supervisor_corrected_token);
+    if (!pn_ok(cx)) {
+        return false;
+    }
     /* offset: v (ID1412310553) */
-    pn_moves_take(&moves, &s_at_Supervisor_Correct_offset, &b->v, 1, PN_NO_TIME);
+    bool is_taken = Supervisor_Correct_offset_take(m, &b->v, 1U);
     /* seam: (n, p, d) (ID1412310555) */
-    pn_moves_take(&moves, &s_at_Supervisor_Correct_seam,
-        &(RIVETING_t){ .c1 = b->n, .c2 = b->p, .c3 = b->d }, 1, PN_NO_TIME);
+    is_taken = is_taken && Supervisor_Correct_seam_take(m, &Supervisor_Correct_seam_token, 1U);
+    if (!is_taken) {
+        pn_raise(cx, PN_ERR_SUBTRACT, NULL);
+        return false;
+    }
     /* corrected: (n, p, d) (ID1412310557) */
-    pn_moves_put(&moves, &s_at_Supervisor_corrected,
-        &(RIVETING_t){ .c1 = b->n, .c2 = b->p, .c3 = b->d }, 1, PN_NO_TIME);
-    const bool is_done = pn_moves_commit(&moves, m);
-    pn_arena_release(cx->arena, before);
-    return is_done;
+    bool fits = Supervisor_corrected_add(cx, m, &Supervisor_corrected_token, 1U);
+    if (!fits) {
+        /* a place is full: everything is put back */
+        (void)Supervisor_corrected_take(m, &Supervisor_corrected_token, 1U);
+        (void)Supervisor_Correct_seam_add(cx, m, &Supervisor_Correct_seam_token, 1U);
+        (void)Supervisor_Correct_offset_add(cx, m, &b->v, 1U);
+    }
+    return fits;
 }
 
 static void Supervisor_Correct_As_planned_json(const void *binding, pn_text_t *out)
@@ -2511,29 +3225,42 @@ static bool Supervisor_Correct_Move_both_Command_fire(pn_ctx_t *cx, void *markin
     Supervisor_Correct_Move_both_Command_binding_t *const b = binding;
     cx->origin = "page `MoveBoth`, transition `Command` (ID1412310941)";
     cx->now = m->now;
-    const size_t before = pn_arena_mark(cx->arena);
-    pn_moves_t moves;
-    pn_moves_init(&moves, cx);
+    const PLAN_t Supervisor_Correct_order_token = (PLAN_t){ .c1 = b->c, .c2 = b->p, .c3 = b->q };
+    const pn_unit_t Supervisor_Correct_Move_both_moving_1_token = PN_UNIT;
+    const pn_unit_t Supervisor_Correct_Move_both_moving_2_token = PN_UNIT;
     /* order: (c, p, q) (ID1412310946) */
-    pn_moves_take(&moves, &s_at_Supervisor_Correct_order,
-        &(PLAN_t){ .c1 = b->c, .c2 = b->p, .c3 = b->q }, 1, PN_NO_TIME);
+    bool is_taken = Supervisor_Correct_order_take(m, &Supervisor_Correct_order_token, 1U);
+    if (!is_taken) {
+        pn_raise(cx, PN_ERR_SUBTRACT, NULL);
+        return false;
+    }
     /* moving 1: () (ID1412310970) */
-    pn_moves_put(&moves, &s_at_Supervisor_Correct_Move_both_moving_1, (pn_unit_t[]){ PN_UNIT }, 1,
-        PN_NO_TIME);
+    bool fits = Supervisor_Correct_Move_both_moving_1_add(cx, m,
+        &Supervisor_Correct_Move_both_moving_1_token, 1U);
     /* dadosrobo1: p (ID1412310982) */
-    pn_moves_put(&moves, &s_at_dadosrobo1, &b->p, 1, PN_NO_TIME);
+    fits = dadosrobo1_add(cx, m, &b->p, 1U) && fits;
     /* flag1_interno: c (ID1412310988) */
-    pn_moves_put(&moves, &s_at_flag1_interno, &b->c, 1, PN_NO_TIME);
+    fits = flag1_interno_add(cx, m, &b->c, 1U) && fits;
     /* moving 2: () (ID1412311007) */
-    pn_moves_put(&moves, &s_at_Supervisor_Correct_Move_both_moving_2, (pn_unit_t[]){ PN_UNIT }, 1,
-        PN_NO_TIME);
+    fits = Supervisor_Correct_Move_both_moving_2_add(cx, m,
+        &Supervisor_Correct_Move_both_moving_2_token, 1U) && fits;
     /* dadosrobo2: q (ID1412311019) */
-    pn_moves_put(&moves, &s_at_dadosrobo2, &b->q, 1, PN_NO_TIME);
+    fits = dadosrobo2_add(cx, m, &b->q, 1U) && fits;
     /* flag2_interno: c (ID1412311025) */
-    pn_moves_put(&moves, &s_at_flag2_interno, &b->c, 1, PN_NO_TIME);
-    const bool is_done = pn_moves_commit(&moves, m);
-    pn_arena_release(cx->arena, before);
-    return is_done;
+    fits = flag2_interno_add(cx, m, &b->c, 1U) && fits;
+    if (!fits) {
+        /* a place is full: everything is put back */
+        (void)flag2_interno_take(m, &b->c, 1U);
+        (void)dadosrobo2_take(m, &b->q, 1U);
+        (void)Supervisor_Correct_Move_both_moving_2_take(m,
+            &Supervisor_Correct_Move_both_moving_2_token, 1U);
+        (void)flag1_interno_take(m, &b->c, 1U);
+        (void)dadosrobo1_take(m, &b->p, 1U);
+        (void)Supervisor_Correct_Move_both_moving_1_take(m,
+            &Supervisor_Correct_Move_both_moving_1_token, 1U);
+        (void)Supervisor_Correct_order_add(cx, m, &Supervisor_Correct_order_token, 1U);
+    }
+    return fits;
 }
 
 static void Supervisor_Correct_Move_both_Command_json(const void *binding, pn_text_t *out)
@@ -2562,13 +3289,11 @@ static bool Supervisor_Correct_Move_both_Both_enumerate(pn_ctx_t *cx, const void
     cx->origin = "page `MoveBoth`, transition `Both` (ID1412310948)";
     cx->now = m->now;
     /* there 1: () (ID1412310976) */
-    if (pn_bag_count(&s_at_Supervisor_Correct_Move_both_there_1, m, (pn_unit_t[]){ PN_UNIT },
-        PN_NO_TIME) < 1U) {
+    if (Supervisor_Correct_Move_both_there_1_held(m, (pn_unit_t[]){ PN_UNIT }) < 1U) {
         return true;
     }
     /* there 2: () (ID1412311013) */
-    if (pn_bag_count(&s_at_Supervisor_Correct_Move_both_there_2, m, (pn_unit_t[]){ PN_UNIT },
-        PN_NO_TIME) < 1U) {
+    if (Supervisor_Correct_Move_both_there_2_held(m, (pn_unit_t[]){ PN_UNIT }) < 1U) {
         return true;
     }
     if (!sink(user, self, &b)) {
@@ -2583,20 +3308,31 @@ static bool Supervisor_Correct_Move_both_Both_fire(pn_ctx_t *cx, void *marking, 
     (void)binding;
     cx->origin = "page `MoveBoth`, transition `Both` (ID1412310948)";
     cx->now = m->now;
-    const size_t before = pn_arena_mark(cx->arena);
-    pn_moves_t moves;
-    pn_moves_init(&moves, cx);
+    const pn_unit_t Supervisor_Correct_Move_both_there_1_token = PN_UNIT;
+    const pn_unit_t Supervisor_Correct_Move_both_there_2_token = PN_UNIT;
+    const pn_unit_t Supervisor_Correct_done_token = PN_UNIT;
     /* there 1: () (ID1412310976) */
-    pn_moves_take(&moves, &s_at_Supervisor_Correct_Move_both_there_1, (pn_unit_t[]){ PN_UNIT }, 1,
-        PN_NO_TIME);
+    bool is_taken = Supervisor_Correct_Move_both_there_1_take(m,
+        &Supervisor_Correct_Move_both_there_1_token, 1U);
     /* there 2: () (ID1412311013) */
-    pn_moves_take(&moves, &s_at_Supervisor_Correct_Move_both_there_2, (pn_unit_t[]){ PN_UNIT }, 1,
-        PN_NO_TIME);
+    is_taken = is_taken
+        && Supervisor_Correct_Move_both_there_2_take(m, &Supervisor_Correct_Move_both_there_2_token,
+        1U);
+    if (!is_taken) {
+        pn_raise(cx, PN_ERR_SUBTRACT, NULL);
+        return false;
+    }
     /* done: () (ID1412310957) */
-    pn_moves_put(&moves, &s_at_Supervisor_Correct_done, (pn_unit_t[]){ PN_UNIT }, 1, PN_NO_TIME);
-    const bool is_done = pn_moves_commit(&moves, m);
-    pn_arena_release(cx->arena, before);
-    return is_done;
+    bool fits = Supervisor_Correct_done_add(cx, m, &Supervisor_Correct_done_token, 1U);
+    if (!fits) {
+        /* a place is full: everything is put back */
+        (void)Supervisor_Correct_done_take(m, &Supervisor_Correct_done_token, 1U);
+        (void)Supervisor_Correct_Move_both_there_2_add(cx, m,
+            &Supervisor_Correct_Move_both_there_2_token, 1U);
+        (void)Supervisor_Correct_Move_both_there_1_add(cx, m,
+            &Supervisor_Correct_Move_both_there_1_token, 1U);
+    }
+    return fits;
 }
 
 static void Supervisor_Correct_Move_both_Both_json(const void *binding, pn_text_t *out)
@@ -2625,12 +3361,11 @@ static bool Supervisor_Correct_Move_both_Reply_1_enumerate(pn_ctx_t *cx, const v
     cx->origin = "page `MoveBoth`, transition `Reply 1` (ID1412310962)";
     cx->now = m->now;
     /* moving 1: () (ID1412310972) */
-    if (pn_bag_count(&s_at_Supervisor_Correct_Move_both_moving_1, m, (pn_unit_t[]){ PN_UNIT },
-        PN_NO_TIME) < 1U) {
+    if (Supervisor_Correct_Move_both_moving_1_held(m, (pn_unit_t[]){ PN_UNIT }) < 1U) {
         return true;
     }
     /* flag1_externo: 1 (ID1412310994) */
-    if (pn_bag_count(&s_at_flag1_externo, m, (int64_t[]){ 1 }, PN_NO_TIME) < 1U) {
+    if (flag1_externo_held(m, (int64_t[]){ 1 }) < 1U) {
         return true;
     }
     if (!sink(user, self, &b)) {
@@ -2645,20 +3380,30 @@ static bool Supervisor_Correct_Move_both_Reply_1_fire(pn_ctx_t *cx, void *markin
     (void)binding;
     cx->origin = "page `MoveBoth`, transition `Reply 1` (ID1412310962)";
     cx->now = m->now;
-    const size_t before = pn_arena_mark(cx->arena);
-    pn_moves_t moves;
-    pn_moves_init(&moves, cx);
+    const pn_unit_t Supervisor_Correct_Move_both_moving_1_token = PN_UNIT;
+    const int64_t flag1_externo_token = 1;
+    const pn_unit_t Supervisor_Correct_Move_both_there_1_token = PN_UNIT;
     /* moving 1: () (ID1412310972) */
-    pn_moves_take(&moves, &s_at_Supervisor_Correct_Move_both_moving_1, (pn_unit_t[]){ PN_UNIT }, 1,
-        PN_NO_TIME);
+    bool is_taken = Supervisor_Correct_Move_both_moving_1_take(m,
+        &Supervisor_Correct_Move_both_moving_1_token, 1U);
     /* flag1_externo: 1 (ID1412310994) */
-    pn_moves_take(&moves, &s_at_flag1_externo, (int64_t[]){ 1 }, 1, PN_NO_TIME);
+    is_taken = is_taken && flag1_externo_take(m, &flag1_externo_token, 1U);
+    if (!is_taken) {
+        pn_raise(cx, PN_ERR_SUBTRACT, NULL);
+        return false;
+    }
     /* there 1: () (ID1412310974) */
-    pn_moves_put(&moves, &s_at_Supervisor_Correct_Move_both_there_1, (pn_unit_t[]){ PN_UNIT }, 1,
-        PN_NO_TIME);
-    const bool is_done = pn_moves_commit(&moves, m);
-    pn_arena_release(cx->arena, before);
-    return is_done;
+    bool fits = Supervisor_Correct_Move_both_there_1_add(cx, m,
+        &Supervisor_Correct_Move_both_there_1_token, 1U);
+    if (!fits) {
+        /* a place is full: everything is put back */
+        (void)Supervisor_Correct_Move_both_there_1_take(m,
+            &Supervisor_Correct_Move_both_there_1_token, 1U);
+        (void)flag1_externo_add(cx, m, &flag1_externo_token, 1U);
+        (void)Supervisor_Correct_Move_both_moving_1_add(cx, m,
+            &Supervisor_Correct_Move_both_moving_1_token, 1U);
+    }
+    return fits;
 }
 
 static void Supervisor_Correct_Move_both_Reply_1_json(const void *binding, pn_text_t *out)
@@ -2687,12 +3432,11 @@ static bool Supervisor_Correct_Move_both_Reply_2_enumerate(pn_ctx_t *cx, const v
     cx->origin = "page `MoveBoth`, transition `Reply 2` (ID1412310999)";
     cx->now = m->now;
     /* moving 2: () (ID1412311009) */
-    if (pn_bag_count(&s_at_Supervisor_Correct_Move_both_moving_2, m, (pn_unit_t[]){ PN_UNIT },
-        PN_NO_TIME) < 1U) {
+    if (Supervisor_Correct_Move_both_moving_2_held(m, (pn_unit_t[]){ PN_UNIT }) < 1U) {
         return true;
     }
     /* flag2_externo: 1 (ID1412311031) */
-    if (pn_bag_count(&s_at_flag2_externo, m, (int64_t[]){ 1 }, PN_NO_TIME) < 1U) {
+    if (flag2_externo_held(m, (int64_t[]){ 1 }) < 1U) {
         return true;
     }
     if (!sink(user, self, &b)) {
@@ -2707,20 +3451,30 @@ static bool Supervisor_Correct_Move_both_Reply_2_fire(pn_ctx_t *cx, void *markin
     (void)binding;
     cx->origin = "page `MoveBoth`, transition `Reply 2` (ID1412310999)";
     cx->now = m->now;
-    const size_t before = pn_arena_mark(cx->arena);
-    pn_moves_t moves;
-    pn_moves_init(&moves, cx);
+    const pn_unit_t Supervisor_Correct_Move_both_moving_2_token = PN_UNIT;
+    const int64_t flag2_externo_token = 1;
+    const pn_unit_t Supervisor_Correct_Move_both_there_2_token = PN_UNIT;
     /* moving 2: () (ID1412311009) */
-    pn_moves_take(&moves, &s_at_Supervisor_Correct_Move_both_moving_2, (pn_unit_t[]){ PN_UNIT }, 1,
-        PN_NO_TIME);
+    bool is_taken = Supervisor_Correct_Move_both_moving_2_take(m,
+        &Supervisor_Correct_Move_both_moving_2_token, 1U);
     /* flag2_externo: 1 (ID1412311031) */
-    pn_moves_take(&moves, &s_at_flag2_externo, (int64_t[]){ 1 }, 1, PN_NO_TIME);
+    is_taken = is_taken && flag2_externo_take(m, &flag2_externo_token, 1U);
+    if (!is_taken) {
+        pn_raise(cx, PN_ERR_SUBTRACT, NULL);
+        return false;
+    }
     /* there 2: () (ID1412311011) */
-    pn_moves_put(&moves, &s_at_Supervisor_Correct_Move_both_there_2, (pn_unit_t[]){ PN_UNIT }, 1,
-        PN_NO_TIME);
-    const bool is_done = pn_moves_commit(&moves, m);
-    pn_arena_release(cx->arena, before);
-    return is_done;
+    bool fits = Supervisor_Correct_Move_both_there_2_add(cx, m,
+        &Supervisor_Correct_Move_both_there_2_token, 1U);
+    if (!fits) {
+        /* a place is full: everything is put back */
+        (void)Supervisor_Correct_Move_both_there_2_take(m,
+            &Supervisor_Correct_Move_both_there_2_token, 1U);
+        (void)flag2_externo_add(cx, m, &flag2_externo_token, 1U);
+        (void)Supervisor_Correct_Move_both_moving_2_add(cx, m,
+            &Supervisor_Correct_Move_both_moving_2_token, 1U);
+    }
+    return fits;
 }
 
 static void Supervisor_Correct_Move_both_Reply_2_json(const void *binding, pn_text_t *out)
@@ -2761,8 +3515,7 @@ static bool Supervisor_Install_Go_back_enumerate(pn_ctx_t *cx, const void *marki
     cx->origin = "page `Install`, transition `Go back` (ID1412310594)";
     cx->now = m->now;
     /* riveted: () (ID1412310685) */
-    if (pn_bag_count(&s_at_Supervisor_Install_riveted, m, (pn_unit_t[]){ PN_UNIT },
-        PN_NO_TIME) < 1U) {
+    if (Supervisor_Install_riveted_held(m, (pn_unit_t[]){ PN_UNIT }) < 1U) {
         return true;
     }
     /* work: (n, k, p, d) (ID1412310705) */
@@ -2788,22 +3541,33 @@ static bool Supervisor_Install_Go_back_fire(pn_ctx_t *cx, void *marking, void *b
     Supervisor_Install_Go_back_binding_t *const b = binding;
     cx->origin = "page `Install`, transition `Go back` (ID1412310594)";
     cx->now = m->now;
-    const size_t before = pn_arena_mark(cx->arena);
-    pn_moves_t moves;
-    pn_moves_init(&moves, cx);
+    const pn_unit_t Supervisor_Install_riveted_token = PN_UNIT;
+    const WORK_t Supervisor_Install_work_token = (WORK_t){ .c1 = b->n, .c2 = b->k, .c3 = b->p,
+        .c4 = b->d };
+    PLAN_t Supervisor_Install_return_token = (PLAN_t){ .c1 = val_LINEAR,
+        .c2 = ml_inTool(b->p, ml_wayBack(cx, b->n, b->d)),
+        .c3 = ml_inTool(ml_facing(b->p), ml_wayBack(cx, b->n, b->d)) };
+    pn_bag_check(cx, &s_at_Supervisor_Install_return, &Supervisor_Install_return_token);
+    if (!pn_ok(cx)) {
+        return false;
+    }
     /* riveted: () (ID1412310685) */
-    pn_moves_take(&moves, &s_at_Supervisor_Install_riveted, (pn_unit_t[]){ PN_UNIT }, 1,
-        PN_NO_TIME);
+    bool is_taken = Supervisor_Install_riveted_take(m, &Supervisor_Install_riveted_token, 1U);
     /* work: (n, k, p, d) (ID1412310705) */
-    pn_moves_take(&moves, &s_at_Supervisor_Install_work,
-        &(WORK_t){ .c1 = b->n, .c2 = b->k, .c3 = b->p, .c4 = b->d }, 1, PN_NO_TIME);
+    is_taken = is_taken && Supervisor_Install_work_take(m, &Supervisor_Install_work_token, 1U);
+    if (!is_taken) {
+        pn_raise(cx, PN_ERR_SUBTRACT, NULL);
+        return false;
+    }
     /* return: (LINEAR, inTool (p, wayBack (n, d)), inTool (facing p, wayBack (n, d))) (ID141 ... */
-    pn_moves_put(&moves, &s_at_Supervisor_Install_return,
-        &(PLAN_t){ .c1 = val_LINEAR, .c2 = ml_inTool(b->p, ml_wayBack(cx, b->n, b->d)),
-        .c3 = ml_inTool(ml_facing(b->p), ml_wayBack(cx, b->n, b->d)) }, 1, PN_NO_TIME);
-    const bool is_done = pn_moves_commit(&moves, m);
-    pn_arena_release(cx->arena, before);
-    return is_done;
+    bool fits = Supervisor_Install_return_add(cx, m, &Supervisor_Install_return_token, 1U);
+    if (!fits) {
+        /* a place is full: everything is put back */
+        (void)Supervisor_Install_return_take(m, &Supervisor_Install_return_token, 1U);
+        (void)Supervisor_Install_work_add(cx, m, &Supervisor_Install_work_token, 1U);
+        (void)Supervisor_Install_riveted_add(cx, m, &Supervisor_Install_riveted_token, 1U);
+    }
+    return fits;
 }
 
 static void Supervisor_Install_Go_back_json(const void *binding, pn_text_t *out)
@@ -2844,8 +3608,7 @@ static bool Supervisor_Install_Next_rivet_enumerate(pn_ctx_t *cx, const void *ma
     cx->origin = "page `Install`, transition `Next rivet` (ID1412310624)";
     cx->now = m->now;
     /* riveted: () (ID1412310697) */
-    if (pn_bag_count(&s_at_Supervisor_Install_riveted, m, (pn_unit_t[]){ PN_UNIT },
-        PN_NO_TIME) < 1U) {
+    if (Supervisor_Install_riveted_held(m, (pn_unit_t[]){ PN_UNIT }) < 1U) {
         return true;
     }
     /* work: (n, k, p, d) (ID1412310701) */
@@ -2871,26 +3634,38 @@ static bool Supervisor_Install_Next_rivet_fire(pn_ctx_t *cx, void *marking, void
     Supervisor_Install_Next_rivet_binding_t *const b = binding;
     cx->origin = "page `Install`, transition `Next rivet` (ID1412310624)";
     cx->now = m->now;
-    const size_t before = pn_arena_mark(cx->arena);
-    pn_moves_t moves;
-    pn_moves_init(&moves, cx);
+    const pn_unit_t Supervisor_Install_riveted_token = PN_UNIT;
+    const WORK_t Supervisor_Install_work_token = (WORK_t){ .c1 = b->n, .c2 = b->k, .c3 = b->p,
+        .c4 = b->d };
+    PLAN_t Supervisor_Install_shift_token = (PLAN_t){ .c1 = val_LINEAR, .c2 = ml_inTool(b->p, b->d),
+        .c3 = ml_inTool(ml_facing(b->p), b->d) };
+    pn_bag_check(cx, &s_at_Supervisor_Install_shift, &Supervisor_Install_shift_token);
+    WORK_t Supervisor_Install_work_token_2 = (WORK_t){ .c1 = b->n, .c2 = pn_int_sub(cx, b->k, 1),
+        .c3 = b->p, .c4 = b->d };
+    pn_bag_check(cx, &s_at_Supervisor_Install_work, &Supervisor_Install_work_token_2);
+    if (!pn_ok(cx)) {
+        return false;
+    }
     /* riveted: () (ID1412310697) */
-    pn_moves_take(&moves, &s_at_Supervisor_Install_riveted, (pn_unit_t[]){ PN_UNIT }, 1,
-        PN_NO_TIME);
+    bool is_taken = Supervisor_Install_riveted_take(m, &Supervisor_Install_riveted_token, 1U);
     /* work: (n, k, p, d) (ID1412310701) */
-    pn_moves_take(&moves, &s_at_Supervisor_Install_work,
-        &(WORK_t){ .c1 = b->n, .c2 = b->k, .c3 = b->p, .c4 = b->d }, 1, PN_NO_TIME);
+    is_taken = is_taken && Supervisor_Install_work_take(m, &Supervisor_Install_work_token, 1U);
+    if (!is_taken) {
+        pn_raise(cx, PN_ERR_SUBTRACT, NULL);
+        return false;
+    }
     /* shift: (LINEAR, inTool (p, d), inTool (facing p, d)) (ID1412310699) */
-    pn_moves_put(&moves, &s_at_Supervisor_Install_shift,
-        &(PLAN_t){ .c1 = val_LINEAR, .c2 = ml_inTool(b->p, b->d),
-        .c3 = ml_inTool(ml_facing(b->p), b->d) }, 1, PN_NO_TIME);
+    bool fits = Supervisor_Install_shift_add(cx, m, &Supervisor_Install_shift_token, 1U);
     /* work: (n, k - 1, p, d) (ID1412310703) */
-    pn_moves_put(&moves, &s_at_Supervisor_Install_work,
-        &(WORK_t){ .c1 = b->n, .c2 = pn_int_sub(cx, b->k, 1), .c3 = b->p, .c4 = b->d }, 1,
-        PN_NO_TIME);
-    const bool is_done = pn_moves_commit(&moves, m);
-    pn_arena_release(cx->arena, before);
-    return is_done;
+    fits = Supervisor_Install_work_add(cx, m, &Supervisor_Install_work_token_2, 1U) && fits;
+    if (!fits) {
+        /* a place is full: everything is put back */
+        (void)Supervisor_Install_work_take(m, &Supervisor_Install_work_token_2, 1U);
+        (void)Supervisor_Install_shift_take(m, &Supervisor_Install_shift_token, 1U);
+        (void)Supervisor_Install_work_add(cx, m, &Supervisor_Install_work_token, 1U);
+        (void)Supervisor_Install_riveted_add(cx, m, &Supervisor_Install_riveted_token, 1U);
+    }
+    return fits;
 }
 
 static void Supervisor_Install_Next_rivet_json(const void *binding, pn_text_t *out)
@@ -2944,21 +3719,32 @@ static bool Supervisor_Install_Start_fire(pn_ctx_t *cx, void *marking, void *bin
     Supervisor_Install_Start_binding_t *const b = binding;
     cx->origin = "page `Install`, transition `Start` (ID1412310632)";
     cx->now = m->now;
-    const size_t before = pn_arena_mark(cx->arena);
-    pn_moves_t moves;
-    pn_moves_init(&moves, cx);
+    const RIVETING_t Supervisor_corrected_token = (RIVETING_t){ .c1 = b->n, .c2 = b->p,
+        .c3 = b->d };
+    const pn_unit_t Supervisor_Install_ready_token = PN_UNIT;
+    WORK_t Supervisor_Install_work_token = (WORK_t){ .c1 = b->n, .c2 = pn_int_add(cx, b->n, 2),
+        .c3 = b->p, .c4 = b->d };
+    pn_bag_check(cx, &s_at_Supervisor_Install_work, &Supervisor_Install_work_token);
+    if (!pn_ok(cx)) {
+        return false;
+    }
     /* corrected: (n, p, d) (ID1412310691) */
-    pn_moves_take(&moves, &s_at_Supervisor_corrected,
-        &(RIVETING_t){ .c1 = b->n, .c2 = b->p, .c3 = b->d }, 1, PN_NO_TIME);
+    bool is_taken = Supervisor_corrected_take(m, &Supervisor_corrected_token, 1U);
+    if (!is_taken) {
+        pn_raise(cx, PN_ERR_SUBTRACT, NULL);
+        return false;
+    }
     /* ready: () (ID1412310693) */
-    pn_moves_put(&moves, &s_at_Supervisor_Install_ready, (pn_unit_t[]){ PN_UNIT }, 1, PN_NO_TIME);
+    bool fits = Supervisor_Install_ready_add(cx, m, &Supervisor_Install_ready_token, 1U);
     /* work: (n, n + 2, p, d) (ID1412310695) */
-    pn_moves_put(&moves, &s_at_Supervisor_Install_work,
-        &(WORK_t){ .c1 = b->n, .c2 = pn_int_add(cx, b->n, 2), .c3 = b->p, .c4 = b->d }, 1,
-        PN_NO_TIME);
-    const bool is_done = pn_moves_commit(&moves, m);
-    pn_arena_release(cx->arena, before);
-    return is_done;
+    fits = Supervisor_Install_work_add(cx, m, &Supervisor_Install_work_token, 1U) && fits;
+    if (!fits) {
+        /* a place is full: everything is put back */
+        (void)Supervisor_Install_work_take(m, &Supervisor_Install_work_token, 1U);
+        (void)Supervisor_Install_ready_take(m, &Supervisor_Install_ready_token, 1U);
+        (void)Supervisor_corrected_add(cx, m, &Supervisor_corrected_token, 1U);
+    }
+    return fits;
 }
 
 static void Supervisor_Install_Start_json(const void *binding, pn_text_t *out)
@@ -3012,29 +3798,42 @@ static bool Supervisor_Install_Shift_Command_fire(pn_ctx_t *cx, void *marking, v
     Supervisor_Install_Shift_Command_binding_t *const b = binding;
     cx->origin = "page `MoveBoth`, transition `Command` (ID1412310941)";
     cx->now = m->now;
-    const size_t before = pn_arena_mark(cx->arena);
-    pn_moves_t moves;
-    pn_moves_init(&moves, cx);
+    const PLAN_t Supervisor_Install_shift_token = (PLAN_t){ .c1 = b->c, .c2 = b->p, .c3 = b->q };
+    const pn_unit_t Supervisor_Install_Shift_moving_1_token = PN_UNIT;
+    const pn_unit_t Supervisor_Install_Shift_moving_2_token = PN_UNIT;
     /* shift: (c, p, q) (ID1412310946) */
-    pn_moves_take(&moves, &s_at_Supervisor_Install_shift,
-        &(PLAN_t){ .c1 = b->c, .c2 = b->p, .c3 = b->q }, 1, PN_NO_TIME);
+    bool is_taken = Supervisor_Install_shift_take(m, &Supervisor_Install_shift_token, 1U);
+    if (!is_taken) {
+        pn_raise(cx, PN_ERR_SUBTRACT, NULL);
+        return false;
+    }
     /* moving 1: () (ID1412310970) */
-    pn_moves_put(&moves, &s_at_Supervisor_Install_Shift_moving_1, (pn_unit_t[]){ PN_UNIT }, 1,
-        PN_NO_TIME);
+    bool fits = Supervisor_Install_Shift_moving_1_add(cx, m,
+        &Supervisor_Install_Shift_moving_1_token, 1U);
     /* dadosrobo1: p (ID1412310982) */
-    pn_moves_put(&moves, &s_at_dadosrobo1, &b->p, 1, PN_NO_TIME);
+    fits = dadosrobo1_add(cx, m, &b->p, 1U) && fits;
     /* flag1_interno: c (ID1412310988) */
-    pn_moves_put(&moves, &s_at_flag1_interno, &b->c, 1, PN_NO_TIME);
+    fits = flag1_interno_add(cx, m, &b->c, 1U) && fits;
     /* moving 2: () (ID1412311007) */
-    pn_moves_put(&moves, &s_at_Supervisor_Install_Shift_moving_2, (pn_unit_t[]){ PN_UNIT }, 1,
-        PN_NO_TIME);
+    fits = Supervisor_Install_Shift_moving_2_add(cx, m, &Supervisor_Install_Shift_moving_2_token,
+        1U) && fits;
     /* dadosrobo2: q (ID1412311019) */
-    pn_moves_put(&moves, &s_at_dadosrobo2, &b->q, 1, PN_NO_TIME);
+    fits = dadosrobo2_add(cx, m, &b->q, 1U) && fits;
     /* flag2_interno: c (ID1412311025) */
-    pn_moves_put(&moves, &s_at_flag2_interno, &b->c, 1, PN_NO_TIME);
-    const bool is_done = pn_moves_commit(&moves, m);
-    pn_arena_release(cx->arena, before);
-    return is_done;
+    fits = flag2_interno_add(cx, m, &b->c, 1U) && fits;
+    if (!fits) {
+        /* a place is full: everything is put back */
+        (void)flag2_interno_take(m, &b->c, 1U);
+        (void)dadosrobo2_take(m, &b->q, 1U);
+        (void)Supervisor_Install_Shift_moving_2_take(m, &Supervisor_Install_Shift_moving_2_token,
+            1U);
+        (void)flag1_interno_take(m, &b->c, 1U);
+        (void)dadosrobo1_take(m, &b->p, 1U);
+        (void)Supervisor_Install_Shift_moving_1_take(m, &Supervisor_Install_Shift_moving_1_token,
+            1U);
+        (void)Supervisor_Install_shift_add(cx, m, &Supervisor_Install_shift_token, 1U);
+    }
+    return fits;
 }
 
 static void Supervisor_Install_Shift_Command_json(const void *binding, pn_text_t *out)
@@ -3063,13 +3862,11 @@ static bool Supervisor_Install_Shift_Both_enumerate(pn_ctx_t *cx, const void *ma
     cx->origin = "page `MoveBoth`, transition `Both` (ID1412310948)";
     cx->now = m->now;
     /* there 1: () (ID1412310976) */
-    if (pn_bag_count(&s_at_Supervisor_Install_Shift_there_1, m, (pn_unit_t[]){ PN_UNIT },
-        PN_NO_TIME) < 1U) {
+    if (Supervisor_Install_Shift_there_1_held(m, (pn_unit_t[]){ PN_UNIT }) < 1U) {
         return true;
     }
     /* there 2: () (ID1412311013) */
-    if (pn_bag_count(&s_at_Supervisor_Install_Shift_there_2, m, (pn_unit_t[]){ PN_UNIT },
-        PN_NO_TIME) < 1U) {
+    if (Supervisor_Install_Shift_there_2_held(m, (pn_unit_t[]){ PN_UNIT }) < 1U) {
         return true;
     }
     if (!sink(user, self, &b)) {
@@ -3084,20 +3881,30 @@ static bool Supervisor_Install_Shift_Both_fire(pn_ctx_t *cx, void *marking, void
     (void)binding;
     cx->origin = "page `MoveBoth`, transition `Both` (ID1412310948)";
     cx->now = m->now;
-    const size_t before = pn_arena_mark(cx->arena);
-    pn_moves_t moves;
-    pn_moves_init(&moves, cx);
+    const pn_unit_t Supervisor_Install_Shift_there_1_token = PN_UNIT;
+    const pn_unit_t Supervisor_Install_Shift_there_2_token = PN_UNIT;
+    const pn_unit_t Supervisor_Install_ready_token = PN_UNIT;
     /* there 1: () (ID1412310976) */
-    pn_moves_take(&moves, &s_at_Supervisor_Install_Shift_there_1, (pn_unit_t[]){ PN_UNIT }, 1,
-        PN_NO_TIME);
+    bool is_taken = Supervisor_Install_Shift_there_1_take(m,
+        &Supervisor_Install_Shift_there_1_token, 1U);
     /* there 2: () (ID1412311013) */
-    pn_moves_take(&moves, &s_at_Supervisor_Install_Shift_there_2, (pn_unit_t[]){ PN_UNIT }, 1,
-        PN_NO_TIME);
+    is_taken = is_taken
+        && Supervisor_Install_Shift_there_2_take(m, &Supervisor_Install_Shift_there_2_token, 1U);
+    if (!is_taken) {
+        pn_raise(cx, PN_ERR_SUBTRACT, NULL);
+        return false;
+    }
     /* ready: () (ID1412310957) */
-    pn_moves_put(&moves, &s_at_Supervisor_Install_ready, (pn_unit_t[]){ PN_UNIT }, 1, PN_NO_TIME);
-    const bool is_done = pn_moves_commit(&moves, m);
-    pn_arena_release(cx->arena, before);
-    return is_done;
+    bool fits = Supervisor_Install_ready_add(cx, m, &Supervisor_Install_ready_token, 1U);
+    if (!fits) {
+        /* a place is full: everything is put back */
+        (void)Supervisor_Install_ready_take(m, &Supervisor_Install_ready_token, 1U);
+        (void)Supervisor_Install_Shift_there_2_add(cx, m, &Supervisor_Install_Shift_there_2_token,
+            1U);
+        (void)Supervisor_Install_Shift_there_1_add(cx, m, &Supervisor_Install_Shift_there_1_token,
+            1U);
+    }
+    return fits;
 }
 
 static void Supervisor_Install_Shift_Both_json(const void *binding, pn_text_t *out)
@@ -3126,12 +3933,11 @@ static bool Supervisor_Install_Shift_Reply_1_enumerate(pn_ctx_t *cx, const void 
     cx->origin = "page `MoveBoth`, transition `Reply 1` (ID1412310962)";
     cx->now = m->now;
     /* moving 1: () (ID1412310972) */
-    if (pn_bag_count(&s_at_Supervisor_Install_Shift_moving_1, m, (pn_unit_t[]){ PN_UNIT },
-        PN_NO_TIME) < 1U) {
+    if (Supervisor_Install_Shift_moving_1_held(m, (pn_unit_t[]){ PN_UNIT }) < 1U) {
         return true;
     }
     /* flag1_externo: 1 (ID1412310994) */
-    if (pn_bag_count(&s_at_flag1_externo, m, (int64_t[]){ 1 }, PN_NO_TIME) < 1U) {
+    if (flag1_externo_held(m, (int64_t[]){ 1 }) < 1U) {
         return true;
     }
     if (!sink(user, self, &b)) {
@@ -3146,20 +3952,29 @@ static bool Supervisor_Install_Shift_Reply_1_fire(pn_ctx_t *cx, void *marking, v
     (void)binding;
     cx->origin = "page `MoveBoth`, transition `Reply 1` (ID1412310962)";
     cx->now = m->now;
-    const size_t before = pn_arena_mark(cx->arena);
-    pn_moves_t moves;
-    pn_moves_init(&moves, cx);
+    const pn_unit_t Supervisor_Install_Shift_moving_1_token = PN_UNIT;
+    const int64_t flag1_externo_token = 1;
+    const pn_unit_t Supervisor_Install_Shift_there_1_token = PN_UNIT;
     /* moving 1: () (ID1412310972) */
-    pn_moves_take(&moves, &s_at_Supervisor_Install_Shift_moving_1, (pn_unit_t[]){ PN_UNIT }, 1,
-        PN_NO_TIME);
+    bool is_taken = Supervisor_Install_Shift_moving_1_take(m,
+        &Supervisor_Install_Shift_moving_1_token, 1U);
     /* flag1_externo: 1 (ID1412310994) */
-    pn_moves_take(&moves, &s_at_flag1_externo, (int64_t[]){ 1 }, 1, PN_NO_TIME);
+    is_taken = is_taken && flag1_externo_take(m, &flag1_externo_token, 1U);
+    if (!is_taken) {
+        pn_raise(cx, PN_ERR_SUBTRACT, NULL);
+        return false;
+    }
     /* there 1: () (ID1412310974) */
-    pn_moves_put(&moves, &s_at_Supervisor_Install_Shift_there_1, (pn_unit_t[]){ PN_UNIT }, 1,
-        PN_NO_TIME);
-    const bool is_done = pn_moves_commit(&moves, m);
-    pn_arena_release(cx->arena, before);
-    return is_done;
+    bool fits = Supervisor_Install_Shift_there_1_add(cx, m, &Supervisor_Install_Shift_there_1_token,
+        1U);
+    if (!fits) {
+        /* a place is full: everything is put back */
+        (void)Supervisor_Install_Shift_there_1_take(m, &Supervisor_Install_Shift_there_1_token, 1U);
+        (void)flag1_externo_add(cx, m, &flag1_externo_token, 1U);
+        (void)Supervisor_Install_Shift_moving_1_add(cx, m, &Supervisor_Install_Shift_moving_1_token,
+            1U);
+    }
+    return fits;
 }
 
 static void Supervisor_Install_Shift_Reply_1_json(const void *binding, pn_text_t *out)
@@ -3188,12 +4003,11 @@ static bool Supervisor_Install_Shift_Reply_2_enumerate(pn_ctx_t *cx, const void 
     cx->origin = "page `MoveBoth`, transition `Reply 2` (ID1412310999)";
     cx->now = m->now;
     /* moving 2: () (ID1412311009) */
-    if (pn_bag_count(&s_at_Supervisor_Install_Shift_moving_2, m, (pn_unit_t[]){ PN_UNIT },
-        PN_NO_TIME) < 1U) {
+    if (Supervisor_Install_Shift_moving_2_held(m, (pn_unit_t[]){ PN_UNIT }) < 1U) {
         return true;
     }
     /* flag2_externo: 1 (ID1412311031) */
-    if (pn_bag_count(&s_at_flag2_externo, m, (int64_t[]){ 1 }, PN_NO_TIME) < 1U) {
+    if (flag2_externo_held(m, (int64_t[]){ 1 }) < 1U) {
         return true;
     }
     if (!sink(user, self, &b)) {
@@ -3208,20 +4022,29 @@ static bool Supervisor_Install_Shift_Reply_2_fire(pn_ctx_t *cx, void *marking, v
     (void)binding;
     cx->origin = "page `MoveBoth`, transition `Reply 2` (ID1412310999)";
     cx->now = m->now;
-    const size_t before = pn_arena_mark(cx->arena);
-    pn_moves_t moves;
-    pn_moves_init(&moves, cx);
+    const pn_unit_t Supervisor_Install_Shift_moving_2_token = PN_UNIT;
+    const int64_t flag2_externo_token = 1;
+    const pn_unit_t Supervisor_Install_Shift_there_2_token = PN_UNIT;
     /* moving 2: () (ID1412311009) */
-    pn_moves_take(&moves, &s_at_Supervisor_Install_Shift_moving_2, (pn_unit_t[]){ PN_UNIT }, 1,
-        PN_NO_TIME);
+    bool is_taken = Supervisor_Install_Shift_moving_2_take(m,
+        &Supervisor_Install_Shift_moving_2_token, 1U);
     /* flag2_externo: 1 (ID1412311031) */
-    pn_moves_take(&moves, &s_at_flag2_externo, (int64_t[]){ 1 }, 1, PN_NO_TIME);
+    is_taken = is_taken && flag2_externo_take(m, &flag2_externo_token, 1U);
+    if (!is_taken) {
+        pn_raise(cx, PN_ERR_SUBTRACT, NULL);
+        return false;
+    }
     /* there 2: () (ID1412311011) */
-    pn_moves_put(&moves, &s_at_Supervisor_Install_Shift_there_2, (pn_unit_t[]){ PN_UNIT }, 1,
-        PN_NO_TIME);
-    const bool is_done = pn_moves_commit(&moves, m);
-    pn_arena_release(cx->arena, before);
-    return is_done;
+    bool fits = Supervisor_Install_Shift_there_2_add(cx, m, &Supervisor_Install_Shift_there_2_token,
+        1U);
+    if (!fits) {
+        /* a place is full: everything is put back */
+        (void)Supervisor_Install_Shift_there_2_take(m, &Supervisor_Install_Shift_there_2_token, 1U);
+        (void)flag2_externo_add(cx, m, &flag2_externo_token, 1U);
+        (void)Supervisor_Install_Shift_moving_2_add(cx, m, &Supervisor_Install_Shift_moving_2_token,
+            1U);
+    }
+    return fits;
 }
 
 static void Supervisor_Install_Shift_Reply_2_json(const void *binding, pn_text_t *out)
@@ -3250,8 +4073,7 @@ static bool Supervisor_Install_Rivet_Go_in_enumerate(pn_ctx_t *cx, const void *m
     cx->origin = "page `Rivet`, transition `Go in` (ID1412310716)";
     cx->now = m->now;
     /* ready: () (ID1412310816) */
-    if (pn_bag_count(&s_at_Supervisor_Install_ready, m, (pn_unit_t[]){ PN_UNIT },
-        PN_NO_TIME) < 1U) {
+    if (Supervisor_Install_ready_held(m, (pn_unit_t[]){ PN_UNIT }) < 1U) {
         return true;
     }
     if (!sink(user, self, &b)) {
@@ -3266,18 +4088,29 @@ static bool Supervisor_Install_Rivet_Go_in_fire(pn_ctx_t *cx, void *marking, voi
     (void)binding;
     cx->origin = "page `Rivet`, transition `Go in` (ID1412310716)";
     cx->now = m->now;
-    const size_t before = pn_arena_mark(cx->arena);
-    pn_moves_t moves;
-    pn_moves_init(&moves, cx);
+    const pn_unit_t Supervisor_Install_ready_token = PN_UNIT;
+    PLAN_t Supervisor_Install_Rivet_advance_token = (PLAN_t){ .c1 = val_LINEAR,
+        .c2 = ml_alongTool(val_approachDistance), .c3 = ml_alongTool(val_approachDistance) };
+    pn_bag_check(cx, &s_at_Supervisor_Install_Rivet_advance,
+        &Supervisor_Install_Rivet_advance_token);
+    if (!pn_ok(cx)) {
+        return false;
+    }
     /* ready: () (ID1412310816) */
-    pn_moves_take(&moves, &s_at_Supervisor_Install_ready, (pn_unit_t[]){ PN_UNIT }, 1, PN_NO_TIME);
+    bool is_taken = Supervisor_Install_ready_take(m, &Supervisor_Install_ready_token, 1U);
+    if (!is_taken) {
+        pn_raise(cx, PN_ERR_SUBTRACT, NULL);
+        return false;
+    }
     /* advance: (LINEAR, alongTool approachDistance, alongTool approachDistance) (ID1412310818) */
-    pn_moves_put(&moves, &s_at_Supervisor_Install_Rivet_advance,
-        &(PLAN_t){ .c1 = val_LINEAR, .c2 = ml_alongTool(val_approachDistance),
-        .c3 = ml_alongTool(val_approachDistance) }, 1, PN_NO_TIME);
-    const bool is_done = pn_moves_commit(&moves, m);
-    pn_arena_release(cx->arena, before);
-    return is_done;
+    bool fits = Supervisor_Install_Rivet_advance_add(cx, m, &Supervisor_Install_Rivet_advance_token,
+        1U);
+    if (!fits) {
+        /* a place is full: everything is put back */
+        (void)Supervisor_Install_Rivet_advance_take(m, &Supervisor_Install_Rivet_advance_token, 1U);
+        (void)Supervisor_Install_ready_add(cx, m, &Supervisor_Install_ready_token, 1U);
+    }
+    return fits;
 }
 
 static void Supervisor_Install_Rivet_Go_in_json(const void *binding, pn_text_t *out)
@@ -3306,8 +4139,7 @@ static bool Supervisor_Install_Rivet_Go_out_enumerate(pn_ctx_t *cx, const void *
     cx->origin = "page `Rivet`, transition `Go out` (ID1412310742)";
     cx->now = m->now;
     /* fastened: () (ID1412310828) */
-    if (pn_bag_count(&s_at_Supervisor_Install_Rivet_fastened, m, (pn_unit_t[]){ PN_UNIT },
-        PN_NO_TIME) < 1U) {
+    if (Supervisor_Install_Rivet_fastened_held(m, (pn_unit_t[]){ PN_UNIT }) < 1U) {
         return true;
     }
     if (!sink(user, self, &b)) {
@@ -3322,19 +4154,31 @@ static bool Supervisor_Install_Rivet_Go_out_fire(pn_ctx_t *cx, void *marking, vo
     (void)binding;
     cx->origin = "page `Rivet`, transition `Go out` (ID1412310742)";
     cx->now = m->now;
-    const size_t before = pn_arena_mark(cx->arena);
-    pn_moves_t moves;
-    pn_moves_init(&moves, cx);
+    const pn_unit_t Supervisor_Install_Rivet_fastened_token = PN_UNIT;
+    PLAN_t Supervisor_Install_Rivet_retract_token = (PLAN_t){ .c1 = val_LINEAR,
+        .c2 = ml_alongTool(-val_approachDistance), .c3 = ml_alongTool(-val_approachDistance) };
+    pn_bag_check(cx, &s_at_Supervisor_Install_Rivet_retract,
+        &Supervisor_Install_Rivet_retract_token);
+    if (!pn_ok(cx)) {
+        return false;
+    }
     /* fastened: () (ID1412310828) */
-    pn_moves_take(&moves, &s_at_Supervisor_Install_Rivet_fastened, (pn_unit_t[]){ PN_UNIT }, 1,
-        PN_NO_TIME);
+    bool is_taken = Supervisor_Install_Rivet_fastened_take(m,
+        &Supervisor_Install_Rivet_fastened_token, 1U);
+    if (!is_taken) {
+        pn_raise(cx, PN_ERR_SUBTRACT, NULL);
+        return false;
+    }
     /* retract: (LINEAR, alongTool (~approachDistance), alongTool (~approachDistance)) (ID141 ... */
-    pn_moves_put(&moves, &s_at_Supervisor_Install_Rivet_retract,
-        &(PLAN_t){ .c1 = val_LINEAR, .c2 = ml_alongTool(-val_approachDistance),
-        .c3 = ml_alongTool(-val_approachDistance) }, 1, PN_NO_TIME);
-    const bool is_done = pn_moves_commit(&moves, m);
-    pn_arena_release(cx->arena, before);
-    return is_done;
+    bool fits = Supervisor_Install_Rivet_retract_add(cx, m, &Supervisor_Install_Rivet_retract_token,
+        1U);
+    if (!fits) {
+        /* a place is full: everything is put back */
+        (void)Supervisor_Install_Rivet_retract_take(m, &Supervisor_Install_Rivet_retract_token, 1U);
+        (void)Supervisor_Install_Rivet_fastened_add(cx, m, &Supervisor_Install_Rivet_fastened_token,
+            1U);
+    }
+    return fits;
 }
 
 static void Supervisor_Install_Rivet_Go_out_json(const void *binding, pn_text_t *out)
@@ -3388,29 +4232,45 @@ static bool Supervisor_Install_Rivet_Advance_Command_fire(pn_ctx_t *cx, void *ma
     Supervisor_Install_Rivet_Advance_Command_binding_t *const b = binding;
     cx->origin = "page `MoveBoth`, transition `Command` (ID1412310941)";
     cx->now = m->now;
-    const size_t before = pn_arena_mark(cx->arena);
-    pn_moves_t moves;
-    pn_moves_init(&moves, cx);
+    const PLAN_t Supervisor_Install_Rivet_advance_token = (PLAN_t){ .c1 = b->c, .c2 = b->p,
+        .c3 = b->q };
+    const pn_unit_t Supervisor_Install_Rivet_Advance_moving_1_token = PN_UNIT;
+    const pn_unit_t Supervisor_Install_Rivet_Advance_moving_2_token = PN_UNIT;
     /* advance: (c, p, q) (ID1412310946) */
-    pn_moves_take(&moves, &s_at_Supervisor_Install_Rivet_advance,
-        &(PLAN_t){ .c1 = b->c, .c2 = b->p, .c3 = b->q }, 1, PN_NO_TIME);
+    bool is_taken = Supervisor_Install_Rivet_advance_take(m,
+        &Supervisor_Install_Rivet_advance_token, 1U);
+    if (!is_taken) {
+        pn_raise(cx, PN_ERR_SUBTRACT, NULL);
+        return false;
+    }
     /* moving 1: () (ID1412310970) */
-    pn_moves_put(&moves, &s_at_Supervisor_Install_Rivet_Advance_moving_1, (pn_unit_t[]){ PN_UNIT },
-        1, PN_NO_TIME);
+    bool fits = Supervisor_Install_Rivet_Advance_moving_1_add(cx, m,
+        &Supervisor_Install_Rivet_Advance_moving_1_token, 1U);
     /* dadosrobo1: p (ID1412310982) */
-    pn_moves_put(&moves, &s_at_dadosrobo1, &b->p, 1, PN_NO_TIME);
+    fits = dadosrobo1_add(cx, m, &b->p, 1U) && fits;
     /* flag1_interno: c (ID1412310988) */
-    pn_moves_put(&moves, &s_at_flag1_interno, &b->c, 1, PN_NO_TIME);
+    fits = flag1_interno_add(cx, m, &b->c, 1U) && fits;
     /* moving 2: () (ID1412311007) */
-    pn_moves_put(&moves, &s_at_Supervisor_Install_Rivet_Advance_moving_2, (pn_unit_t[]){ PN_UNIT },
-        1, PN_NO_TIME);
+    fits = Supervisor_Install_Rivet_Advance_moving_2_add(cx, m,
+        &Supervisor_Install_Rivet_Advance_moving_2_token, 1U) && fits;
     /* dadosrobo2: q (ID1412311019) */
-    pn_moves_put(&moves, &s_at_dadosrobo2, &b->q, 1, PN_NO_TIME);
+    fits = dadosrobo2_add(cx, m, &b->q, 1U) && fits;
     /* flag2_interno: c (ID1412311025) */
-    pn_moves_put(&moves, &s_at_flag2_interno, &b->c, 1, PN_NO_TIME);
-    const bool is_done = pn_moves_commit(&moves, m);
-    pn_arena_release(cx->arena, before);
-    return is_done;
+    fits = flag2_interno_add(cx, m, &b->c, 1U) && fits;
+    if (!fits) {
+        /* a place is full: everything is put back */
+        (void)flag2_interno_take(m, &b->c, 1U);
+        (void)dadosrobo2_take(m, &b->q, 1U);
+        (void)Supervisor_Install_Rivet_Advance_moving_2_take(m,
+            &Supervisor_Install_Rivet_Advance_moving_2_token, 1U);
+        (void)flag1_interno_take(m, &b->c, 1U);
+        (void)dadosrobo1_take(m, &b->p, 1U);
+        (void)Supervisor_Install_Rivet_Advance_moving_1_take(m,
+            &Supervisor_Install_Rivet_Advance_moving_1_token, 1U);
+        (void)Supervisor_Install_Rivet_advance_add(cx, m, &Supervisor_Install_Rivet_advance_token,
+            1U);
+    }
+    return fits;
 }
 
 static void Supervisor_Install_Rivet_Advance_Command_json(const void *binding, pn_text_t *out)
@@ -3439,13 +4299,11 @@ static bool Supervisor_Install_Rivet_Advance_Both_enumerate(pn_ctx_t *cx, const 
     cx->origin = "page `MoveBoth`, transition `Both` (ID1412310948)";
     cx->now = m->now;
     /* there 1: () (ID1412310976) */
-    if (pn_bag_count(&s_at_Supervisor_Install_Rivet_Advance_there_1, m, (pn_unit_t[]){ PN_UNIT },
-        PN_NO_TIME) < 1U) {
+    if (Supervisor_Install_Rivet_Advance_there_1_held(m, (pn_unit_t[]){ PN_UNIT }) < 1U) {
         return true;
     }
     /* there 2: () (ID1412311013) */
-    if (pn_bag_count(&s_at_Supervisor_Install_Rivet_Advance_there_2, m, (pn_unit_t[]){ PN_UNIT },
-        PN_NO_TIME) < 1U) {
+    if (Supervisor_Install_Rivet_Advance_there_2_held(m, (pn_unit_t[]){ PN_UNIT }) < 1U) {
         return true;
     }
     if (!sink(user, self, &b)) {
@@ -3460,21 +4318,32 @@ static bool Supervisor_Install_Rivet_Advance_Both_fire(pn_ctx_t *cx, void *marki
     (void)binding;
     cx->origin = "page `MoveBoth`, transition `Both` (ID1412310948)";
     cx->now = m->now;
-    const size_t before = pn_arena_mark(cx->arena);
-    pn_moves_t moves;
-    pn_moves_init(&moves, cx);
+    const pn_unit_t Supervisor_Install_Rivet_Advance_there_1_token = PN_UNIT;
+    const pn_unit_t Supervisor_Install_Rivet_Advance_there_2_token = PN_UNIT;
+    const pn_unit_t Supervisor_Install_Rivet_contact_token = PN_UNIT;
     /* there 1: () (ID1412310976) */
-    pn_moves_take(&moves, &s_at_Supervisor_Install_Rivet_Advance_there_1, (pn_unit_t[]){ PN_UNIT },
-        1, PN_NO_TIME);
+    bool is_taken = Supervisor_Install_Rivet_Advance_there_1_take(m,
+        &Supervisor_Install_Rivet_Advance_there_1_token, 1U);
     /* there 2: () (ID1412311013) */
-    pn_moves_take(&moves, &s_at_Supervisor_Install_Rivet_Advance_there_2, (pn_unit_t[]){ PN_UNIT },
-        1, PN_NO_TIME);
+    is_taken = is_taken
+        && Supervisor_Install_Rivet_Advance_there_2_take(m,
+        &Supervisor_Install_Rivet_Advance_there_2_token, 1U);
+    if (!is_taken) {
+        pn_raise(cx, PN_ERR_SUBTRACT, NULL);
+        return false;
+    }
     /* contact: () (ID1412310957) */
-    pn_moves_put(&moves, &s_at_Supervisor_Install_Rivet_contact, (pn_unit_t[]){ PN_UNIT }, 1,
-        PN_NO_TIME);
-    const bool is_done = pn_moves_commit(&moves, m);
-    pn_arena_release(cx->arena, before);
-    return is_done;
+    bool fits = Supervisor_Install_Rivet_contact_add(cx, m, &Supervisor_Install_Rivet_contact_token,
+        1U);
+    if (!fits) {
+        /* a place is full: everything is put back */
+        (void)Supervisor_Install_Rivet_contact_take(m, &Supervisor_Install_Rivet_contact_token, 1U);
+        (void)Supervisor_Install_Rivet_Advance_there_2_add(cx, m,
+            &Supervisor_Install_Rivet_Advance_there_2_token, 1U);
+        (void)Supervisor_Install_Rivet_Advance_there_1_add(cx, m,
+            &Supervisor_Install_Rivet_Advance_there_1_token, 1U);
+    }
+    return fits;
 }
 
 static void Supervisor_Install_Rivet_Advance_Both_json(const void *binding, pn_text_t *out)
@@ -3503,12 +4372,11 @@ static bool Supervisor_Install_Rivet_Advance_Reply_1_enumerate(pn_ctx_t *cx, con
     cx->origin = "page `MoveBoth`, transition `Reply 1` (ID1412310962)";
     cx->now = m->now;
     /* moving 1: () (ID1412310972) */
-    if (pn_bag_count(&s_at_Supervisor_Install_Rivet_Advance_moving_1, m, (pn_unit_t[]){ PN_UNIT },
-        PN_NO_TIME) < 1U) {
+    if (Supervisor_Install_Rivet_Advance_moving_1_held(m, (pn_unit_t[]){ PN_UNIT }) < 1U) {
         return true;
     }
     /* flag1_externo: 1 (ID1412310994) */
-    if (pn_bag_count(&s_at_flag1_externo, m, (int64_t[]){ 1 }, PN_NO_TIME) < 1U) {
+    if (flag1_externo_held(m, (int64_t[]){ 1 }) < 1U) {
         return true;
     }
     if (!sink(user, self, &b)) {
@@ -3523,20 +4391,30 @@ static bool Supervisor_Install_Rivet_Advance_Reply_1_fire(pn_ctx_t *cx, void *ma
     (void)binding;
     cx->origin = "page `MoveBoth`, transition `Reply 1` (ID1412310962)";
     cx->now = m->now;
-    const size_t before = pn_arena_mark(cx->arena);
-    pn_moves_t moves;
-    pn_moves_init(&moves, cx);
+    const pn_unit_t Supervisor_Install_Rivet_Advance_moving_1_token = PN_UNIT;
+    const int64_t flag1_externo_token = 1;
+    const pn_unit_t Supervisor_Install_Rivet_Advance_there_1_token = PN_UNIT;
     /* moving 1: () (ID1412310972) */
-    pn_moves_take(&moves, &s_at_Supervisor_Install_Rivet_Advance_moving_1, (pn_unit_t[]){ PN_UNIT },
-        1, PN_NO_TIME);
+    bool is_taken = Supervisor_Install_Rivet_Advance_moving_1_take(m,
+        &Supervisor_Install_Rivet_Advance_moving_1_token, 1U);
     /* flag1_externo: 1 (ID1412310994) */
-    pn_moves_take(&moves, &s_at_flag1_externo, (int64_t[]){ 1 }, 1, PN_NO_TIME);
+    is_taken = is_taken && flag1_externo_take(m, &flag1_externo_token, 1U);
+    if (!is_taken) {
+        pn_raise(cx, PN_ERR_SUBTRACT, NULL);
+        return false;
+    }
     /* there 1: () (ID1412310974) */
-    pn_moves_put(&moves, &s_at_Supervisor_Install_Rivet_Advance_there_1, (pn_unit_t[]){ PN_UNIT },
-        1, PN_NO_TIME);
-    const bool is_done = pn_moves_commit(&moves, m);
-    pn_arena_release(cx->arena, before);
-    return is_done;
+    bool fits = Supervisor_Install_Rivet_Advance_there_1_add(cx, m,
+        &Supervisor_Install_Rivet_Advance_there_1_token, 1U);
+    if (!fits) {
+        /* a place is full: everything is put back */
+        (void)Supervisor_Install_Rivet_Advance_there_1_take(m,
+            &Supervisor_Install_Rivet_Advance_there_1_token, 1U);
+        (void)flag1_externo_add(cx, m, &flag1_externo_token, 1U);
+        (void)Supervisor_Install_Rivet_Advance_moving_1_add(cx, m,
+            &Supervisor_Install_Rivet_Advance_moving_1_token, 1U);
+    }
+    return fits;
 }
 
 static void Supervisor_Install_Rivet_Advance_Reply_1_json(const void *binding, pn_text_t *out)
@@ -3565,12 +4443,11 @@ static bool Supervisor_Install_Rivet_Advance_Reply_2_enumerate(pn_ctx_t *cx, con
     cx->origin = "page `MoveBoth`, transition `Reply 2` (ID1412310999)";
     cx->now = m->now;
     /* moving 2: () (ID1412311009) */
-    if (pn_bag_count(&s_at_Supervisor_Install_Rivet_Advance_moving_2, m, (pn_unit_t[]){ PN_UNIT },
-        PN_NO_TIME) < 1U) {
+    if (Supervisor_Install_Rivet_Advance_moving_2_held(m, (pn_unit_t[]){ PN_UNIT }) < 1U) {
         return true;
     }
     /* flag2_externo: 1 (ID1412311031) */
-    if (pn_bag_count(&s_at_flag2_externo, m, (int64_t[]){ 1 }, PN_NO_TIME) < 1U) {
+    if (flag2_externo_held(m, (int64_t[]){ 1 }) < 1U) {
         return true;
     }
     if (!sink(user, self, &b)) {
@@ -3585,20 +4462,30 @@ static bool Supervisor_Install_Rivet_Advance_Reply_2_fire(pn_ctx_t *cx, void *ma
     (void)binding;
     cx->origin = "page `MoveBoth`, transition `Reply 2` (ID1412310999)";
     cx->now = m->now;
-    const size_t before = pn_arena_mark(cx->arena);
-    pn_moves_t moves;
-    pn_moves_init(&moves, cx);
+    const pn_unit_t Supervisor_Install_Rivet_Advance_moving_2_token = PN_UNIT;
+    const int64_t flag2_externo_token = 1;
+    const pn_unit_t Supervisor_Install_Rivet_Advance_there_2_token = PN_UNIT;
     /* moving 2: () (ID1412311009) */
-    pn_moves_take(&moves, &s_at_Supervisor_Install_Rivet_Advance_moving_2, (pn_unit_t[]){ PN_UNIT },
-        1, PN_NO_TIME);
+    bool is_taken = Supervisor_Install_Rivet_Advance_moving_2_take(m,
+        &Supervisor_Install_Rivet_Advance_moving_2_token, 1U);
     /* flag2_externo: 1 (ID1412311031) */
-    pn_moves_take(&moves, &s_at_flag2_externo, (int64_t[]){ 1 }, 1, PN_NO_TIME);
+    is_taken = is_taken && flag2_externo_take(m, &flag2_externo_token, 1U);
+    if (!is_taken) {
+        pn_raise(cx, PN_ERR_SUBTRACT, NULL);
+        return false;
+    }
     /* there 2: () (ID1412311011) */
-    pn_moves_put(&moves, &s_at_Supervisor_Install_Rivet_Advance_there_2, (pn_unit_t[]){ PN_UNIT },
-        1, PN_NO_TIME);
-    const bool is_done = pn_moves_commit(&moves, m);
-    pn_arena_release(cx->arena, before);
-    return is_done;
+    bool fits = Supervisor_Install_Rivet_Advance_there_2_add(cx, m,
+        &Supervisor_Install_Rivet_Advance_there_2_token, 1U);
+    if (!fits) {
+        /* a place is full: everything is put back */
+        (void)Supervisor_Install_Rivet_Advance_there_2_take(m,
+            &Supervisor_Install_Rivet_Advance_there_2_token, 1U);
+        (void)flag2_externo_add(cx, m, &flag2_externo_token, 1U);
+        (void)Supervisor_Install_Rivet_Advance_moving_2_add(cx, m,
+            &Supervisor_Install_Rivet_Advance_moving_2_token, 1U);
+    }
+    return fits;
 }
 
 static void Supervisor_Install_Rivet_Advance_Reply_2_json(const void *binding, pn_text_t *out)
@@ -3627,8 +4514,7 @@ static bool Supervisor_Install_Rivet_Fasten_Press_enumerate(pn_ctx_t *cx, const 
     cx->origin = "page `Fasten`, transition `Press` (ID1412310842)";
     cx->now = m->now;
     /* contact: () (ID1412310883) */
-    if (pn_bag_count(&s_at_Supervisor_Install_Rivet_contact, m, (pn_unit_t[]){ PN_UNIT },
-        PN_NO_TIME) < 1U) {
+    if (Supervisor_Install_Rivet_contact_held(m, (pn_unit_t[]){ PN_UNIT }) < 1U) {
         return true;
     }
     if (!sink(user, self, &b)) {
@@ -3643,20 +4529,34 @@ static bool Supervisor_Install_Rivet_Fasten_Press_fire(pn_ctx_t *cx, void *marki
     (void)binding;
     cx->origin = "page `Fasten`, transition `Press` (ID1412310842)";
     cx->now = m->now;
-    const size_t before = pn_arena_mark(cx->arena);
-    pn_moves_t moves;
-    pn_moves_init(&moves, cx);
+    const pn_unit_t Supervisor_Install_Rivet_contact_token = PN_UNIT;
+    const pn_unit_t Supervisor_Install_Rivet_Fasten_pressing_token = PN_UNIT;
+    int64_t flag2_interno_token = val_PRESS;
+    pn_bag_check(cx, &s_at_flag2_interno, &flag2_interno_token);
+    if (!pn_ok(cx)) {
+        return false;
+    }
     /* contact: () (ID1412310883) */
-    pn_moves_take(&moves, &s_at_Supervisor_Install_Rivet_contact, (pn_unit_t[]){ PN_UNIT }, 1,
-        PN_NO_TIME);
+    bool is_taken = Supervisor_Install_Rivet_contact_take(m,
+        &Supervisor_Install_Rivet_contact_token, 1U);
+    if (!is_taken) {
+        pn_raise(cx, PN_ERR_SUBTRACT, NULL);
+        return false;
+    }
     /* pressing: () (ID1412310885) */
-    pn_moves_put(&moves, &s_at_Supervisor_Install_Rivet_Fasten_pressing, (pn_unit_t[]){ PN_UNIT },
-        1, PN_NO_TIME);
+    bool fits = Supervisor_Install_Rivet_Fasten_pressing_add(cx, m,
+        &Supervisor_Install_Rivet_Fasten_pressing_token, 1U);
     /* flag2_interno: PRESS (ID1412310927) */
-    pn_moves_put(&moves, &s_at_flag2_interno, &val_PRESS, 1, PN_NO_TIME);
-    const bool is_done = pn_moves_commit(&moves, m);
-    pn_arena_release(cx->arena, before);
-    return is_done;
+    fits = flag2_interno_add(cx, m, &flag2_interno_token, 1U) && fits;
+    if (!fits) {
+        /* a place is full: everything is put back */
+        (void)flag2_interno_take(m, &flag2_interno_token, 1U);
+        (void)Supervisor_Install_Rivet_Fasten_pressing_take(m,
+            &Supervisor_Install_Rivet_Fasten_pressing_token, 1U);
+        (void)Supervisor_Install_Rivet_contact_add(cx, m, &Supervisor_Install_Rivet_contact_token,
+            1U);
+    }
+    return fits;
 }
 
 static void Supervisor_Install_Rivet_Fasten_Press_json(const void *binding, pn_text_t *out)
@@ -3685,12 +4585,11 @@ static bool Supervisor_Install_Rivet_Fasten_Drill_enumerate(pn_ctx_t *cx, const 
     cx->origin = "page `Fasten`, transition `Drill` (ID1412310850)";
     cx->now = m->now;
     /* pressing: () (ID1412310887) */
-    if (pn_bag_count(&s_at_Supervisor_Install_Rivet_Fasten_pressing, m, (pn_unit_t[]){ PN_UNIT },
-        PN_NO_TIME) < 1U) {
+    if (Supervisor_Install_Rivet_Fasten_pressing_held(m, (pn_unit_t[]){ PN_UNIT }) < 1U) {
         return true;
     }
     /* flag2_externo: 1 (ID1412310931) */
-    if (pn_bag_count(&s_at_flag2_externo, m, (int64_t[]){ 1 }, PN_NO_TIME) < 1U) {
+    if (flag2_externo_held(m, (int64_t[]){ 1 }) < 1U) {
         return true;
     }
     if (!sink(user, self, &b)) {
@@ -3705,22 +4604,38 @@ static bool Supervisor_Install_Rivet_Fasten_Drill_fire(pn_ctx_t *cx, void *marki
     (void)binding;
     cx->origin = "page `Fasten`, transition `Drill` (ID1412310850)";
     cx->now = m->now;
-    const size_t before = pn_arena_mark(cx->arena);
-    pn_moves_t moves;
-    pn_moves_init(&moves, cx);
+    const pn_unit_t Supervisor_Install_Rivet_Fasten_pressing_token = PN_UNIT;
+    const int64_t flag2_externo_token = 1;
+    const pn_unit_t Supervisor_Install_Rivet_Fasten_drilling_token = PN_UNIT;
+    int64_t flag1_interno_token = val_DRILL;
+    pn_bag_check(cx, &s_at_flag1_interno, &flag1_interno_token);
+    if (!pn_ok(cx)) {
+        return false;
+    }
     /* pressing: () (ID1412310887) */
-    pn_moves_take(&moves, &s_at_Supervisor_Install_Rivet_Fasten_pressing, (pn_unit_t[]){ PN_UNIT },
-        1, PN_NO_TIME);
+    bool is_taken = Supervisor_Install_Rivet_Fasten_pressing_take(m,
+        &Supervisor_Install_Rivet_Fasten_pressing_token, 1U);
     /* flag2_externo: 1 (ID1412310931) */
-    pn_moves_take(&moves, &s_at_flag2_externo, (int64_t[]){ 1 }, 1, PN_NO_TIME);
+    is_taken = is_taken && flag2_externo_take(m, &flag2_externo_token, 1U);
+    if (!is_taken) {
+        pn_raise(cx, PN_ERR_SUBTRACT, NULL);
+        return false;
+    }
     /* drilling: () (ID1412310889) */
-    pn_moves_put(&moves, &s_at_Supervisor_Install_Rivet_Fasten_drilling, (pn_unit_t[]){ PN_UNIT },
-        1, PN_NO_TIME);
+    bool fits = Supervisor_Install_Rivet_Fasten_drilling_add(cx, m,
+        &Supervisor_Install_Rivet_Fasten_drilling_token, 1U);
     /* flag1_interno: DRILL (ID1412310919) */
-    pn_moves_put(&moves, &s_at_flag1_interno, &val_DRILL, 1, PN_NO_TIME);
-    const bool is_done = pn_moves_commit(&moves, m);
-    pn_arena_release(cx->arena, before);
-    return is_done;
+    fits = flag1_interno_add(cx, m, &flag1_interno_token, 1U) && fits;
+    if (!fits) {
+        /* a place is full: everything is put back */
+        (void)flag1_interno_take(m, &flag1_interno_token, 1U);
+        (void)Supervisor_Install_Rivet_Fasten_drilling_take(m,
+            &Supervisor_Install_Rivet_Fasten_drilling_token, 1U);
+        (void)flag2_externo_add(cx, m, &flag2_externo_token, 1U);
+        (void)Supervisor_Install_Rivet_Fasten_pressing_add(cx, m,
+            &Supervisor_Install_Rivet_Fasten_pressing_token, 1U);
+    }
+    return fits;
 }
 
 static void Supervisor_Install_Rivet_Fasten_Drill_json(const void *binding, pn_text_t *out)
@@ -3749,12 +4664,11 @@ static bool Supervisor_Install_Rivet_Fasten_Insert_enumerate(pn_ctx_t *cx, const
     cx->origin = "page `Fasten`, transition `Insert` (ID1412310858)";
     cx->now = m->now;
     /* drilling: () (ID1412310891) */
-    if (pn_bag_count(&s_at_Supervisor_Install_Rivet_Fasten_drilling, m, (pn_unit_t[]){ PN_UNIT },
-        PN_NO_TIME) < 1U) {
+    if (Supervisor_Install_Rivet_Fasten_drilling_held(m, (pn_unit_t[]){ PN_UNIT }) < 1U) {
         return true;
     }
     /* flag1_externo: 1 (ID1412310923) */
-    if (pn_bag_count(&s_at_flag1_externo, m, (int64_t[]){ 1 }, PN_NO_TIME) < 1U) {
+    if (flag1_externo_held(m, (int64_t[]){ 1 }) < 1U) {
         return true;
     }
     if (!sink(user, self, &b)) {
@@ -3769,22 +4683,38 @@ static bool Supervisor_Install_Rivet_Fasten_Insert_fire(pn_ctx_t *cx, void *mark
     (void)binding;
     cx->origin = "page `Fasten`, transition `Insert` (ID1412310858)";
     cx->now = m->now;
-    const size_t before = pn_arena_mark(cx->arena);
-    pn_moves_t moves;
-    pn_moves_init(&moves, cx);
+    const pn_unit_t Supervisor_Install_Rivet_Fasten_drilling_token = PN_UNIT;
+    const int64_t flag1_externo_token = 1;
+    const pn_unit_t Supervisor_Install_Rivet_Fasten_inserting_token = PN_UNIT;
+    int64_t flag1_interno_token = val_INSERT;
+    pn_bag_check(cx, &s_at_flag1_interno, &flag1_interno_token);
+    if (!pn_ok(cx)) {
+        return false;
+    }
     /* drilling: () (ID1412310891) */
-    pn_moves_take(&moves, &s_at_Supervisor_Install_Rivet_Fasten_drilling, (pn_unit_t[]){ PN_UNIT },
-        1, PN_NO_TIME);
+    bool is_taken = Supervisor_Install_Rivet_Fasten_drilling_take(m,
+        &Supervisor_Install_Rivet_Fasten_drilling_token, 1U);
     /* flag1_externo: 1 (ID1412310923) */
-    pn_moves_take(&moves, &s_at_flag1_externo, (int64_t[]){ 1 }, 1, PN_NO_TIME);
+    is_taken = is_taken && flag1_externo_take(m, &flag1_externo_token, 1U);
+    if (!is_taken) {
+        pn_raise(cx, PN_ERR_SUBTRACT, NULL);
+        return false;
+    }
     /* inserting: () (ID1412310893) */
-    pn_moves_put(&moves, &s_at_Supervisor_Install_Rivet_Fasten_inserting, (pn_unit_t[]){ PN_UNIT },
-        1, PN_NO_TIME);
+    bool fits = Supervisor_Install_Rivet_Fasten_inserting_add(cx, m,
+        &Supervisor_Install_Rivet_Fasten_inserting_token, 1U);
     /* flag1_interno: INSERT (ID1412310921) */
-    pn_moves_put(&moves, &s_at_flag1_interno, &val_INSERT, 1, PN_NO_TIME);
-    const bool is_done = pn_moves_commit(&moves, m);
-    pn_arena_release(cx->arena, before);
-    return is_done;
+    fits = flag1_interno_add(cx, m, &flag1_interno_token, 1U) && fits;
+    if (!fits) {
+        /* a place is full: everything is put back */
+        (void)flag1_interno_take(m, &flag1_interno_token, 1U);
+        (void)Supervisor_Install_Rivet_Fasten_inserting_take(m,
+            &Supervisor_Install_Rivet_Fasten_inserting_token, 1U);
+        (void)flag1_externo_add(cx, m, &flag1_externo_token, 1U);
+        (void)Supervisor_Install_Rivet_Fasten_drilling_add(cx, m,
+            &Supervisor_Install_Rivet_Fasten_drilling_token, 1U);
+    }
+    return fits;
 }
 
 static void Supervisor_Install_Rivet_Fasten_Insert_json(const void *binding, pn_text_t *out)
@@ -3813,12 +4743,11 @@ static bool Supervisor_Install_Rivet_Fasten_Release_enumerate(pn_ctx_t *cx, cons
     cx->origin = "page `Fasten`, transition `Release` (ID1412310866)";
     cx->now = m->now;
     /* inserting: () (ID1412310895) */
-    if (pn_bag_count(&s_at_Supervisor_Install_Rivet_Fasten_inserting, m, (pn_unit_t[]){ PN_UNIT },
-        PN_NO_TIME) < 1U) {
+    if (Supervisor_Install_Rivet_Fasten_inserting_held(m, (pn_unit_t[]){ PN_UNIT }) < 1U) {
         return true;
     }
     /* flag1_externo: 1 (ID1412310925) */
-    if (pn_bag_count(&s_at_flag1_externo, m, (int64_t[]){ 1 }, PN_NO_TIME) < 1U) {
+    if (flag1_externo_held(m, (int64_t[]){ 1 }) < 1U) {
         return true;
     }
     if (!sink(user, self, &b)) {
@@ -3833,22 +4762,38 @@ static bool Supervisor_Install_Rivet_Fasten_Release_fire(pn_ctx_t *cx, void *mar
     (void)binding;
     cx->origin = "page `Fasten`, transition `Release` (ID1412310866)";
     cx->now = m->now;
-    const size_t before = pn_arena_mark(cx->arena);
-    pn_moves_t moves;
-    pn_moves_init(&moves, cx);
+    const pn_unit_t Supervisor_Install_Rivet_Fasten_inserting_token = PN_UNIT;
+    const int64_t flag1_externo_token = 1;
+    const pn_unit_t Supervisor_Install_Rivet_Fasten_releasing_token = PN_UNIT;
+    int64_t flag2_interno_token = val_RELEASE;
+    pn_bag_check(cx, &s_at_flag2_interno, &flag2_interno_token);
+    if (!pn_ok(cx)) {
+        return false;
+    }
     /* inserting: () (ID1412310895) */
-    pn_moves_take(&moves, &s_at_Supervisor_Install_Rivet_Fasten_inserting, (pn_unit_t[]){ PN_UNIT },
-        1, PN_NO_TIME);
+    bool is_taken = Supervisor_Install_Rivet_Fasten_inserting_take(m,
+        &Supervisor_Install_Rivet_Fasten_inserting_token, 1U);
     /* flag1_externo: 1 (ID1412310925) */
-    pn_moves_take(&moves, &s_at_flag1_externo, (int64_t[]){ 1 }, 1, PN_NO_TIME);
+    is_taken = is_taken && flag1_externo_take(m, &flag1_externo_token, 1U);
+    if (!is_taken) {
+        pn_raise(cx, PN_ERR_SUBTRACT, NULL);
+        return false;
+    }
     /* releasing: () (ID1412310897) */
-    pn_moves_put(&moves, &s_at_Supervisor_Install_Rivet_Fasten_releasing, (pn_unit_t[]){ PN_UNIT },
-        1, PN_NO_TIME);
+    bool fits = Supervisor_Install_Rivet_Fasten_releasing_add(cx, m,
+        &Supervisor_Install_Rivet_Fasten_releasing_token, 1U);
     /* flag2_interno: RELEASE (ID1412310929) */
-    pn_moves_put(&moves, &s_at_flag2_interno, &val_RELEASE, 1, PN_NO_TIME);
-    const bool is_done = pn_moves_commit(&moves, m);
-    pn_arena_release(cx->arena, before);
-    return is_done;
+    fits = flag2_interno_add(cx, m, &flag2_interno_token, 1U) && fits;
+    if (!fits) {
+        /* a place is full: everything is put back */
+        (void)flag2_interno_take(m, &flag2_interno_token, 1U);
+        (void)Supervisor_Install_Rivet_Fasten_releasing_take(m,
+            &Supervisor_Install_Rivet_Fasten_releasing_token, 1U);
+        (void)flag1_externo_add(cx, m, &flag1_externo_token, 1U);
+        (void)Supervisor_Install_Rivet_Fasten_inserting_add(cx, m,
+            &Supervisor_Install_Rivet_Fasten_inserting_token, 1U);
+    }
+    return fits;
 }
 
 static void Supervisor_Install_Rivet_Fasten_Release_json(const void *binding, pn_text_t *out)
@@ -3877,12 +4822,11 @@ static bool Supervisor_Install_Rivet_Fasten_Finish_enumerate(pn_ctx_t *cx, const
     cx->origin = "page `Fasten`, transition `Finish` (ID1412310874)";
     cx->now = m->now;
     /* releasing: () (ID1412310899) */
-    if (pn_bag_count(&s_at_Supervisor_Install_Rivet_Fasten_releasing, m, (pn_unit_t[]){ PN_UNIT },
-        PN_NO_TIME) < 1U) {
+    if (Supervisor_Install_Rivet_Fasten_releasing_held(m, (pn_unit_t[]){ PN_UNIT }) < 1U) {
         return true;
     }
     /* flag2_externo: 1 (ID1412310933) */
-    if (pn_bag_count(&s_at_flag2_externo, m, (int64_t[]){ 1 }, PN_NO_TIME) < 1U) {
+    if (flag2_externo_held(m, (int64_t[]){ 1 }) < 1U) {
         return true;
     }
     if (!sink(user, self, &b)) {
@@ -3897,20 +4841,30 @@ static bool Supervisor_Install_Rivet_Fasten_Finish_fire(pn_ctx_t *cx, void *mark
     (void)binding;
     cx->origin = "page `Fasten`, transition `Finish` (ID1412310874)";
     cx->now = m->now;
-    const size_t before = pn_arena_mark(cx->arena);
-    pn_moves_t moves;
-    pn_moves_init(&moves, cx);
+    const pn_unit_t Supervisor_Install_Rivet_Fasten_releasing_token = PN_UNIT;
+    const int64_t flag2_externo_token = 1;
+    const pn_unit_t Supervisor_Install_Rivet_fastened_token = PN_UNIT;
     /* releasing: () (ID1412310899) */
-    pn_moves_take(&moves, &s_at_Supervisor_Install_Rivet_Fasten_releasing, (pn_unit_t[]){ PN_UNIT },
-        1, PN_NO_TIME);
+    bool is_taken = Supervisor_Install_Rivet_Fasten_releasing_take(m,
+        &Supervisor_Install_Rivet_Fasten_releasing_token, 1U);
     /* flag2_externo: 1 (ID1412310933) */
-    pn_moves_take(&moves, &s_at_flag2_externo, (int64_t[]){ 1 }, 1, PN_NO_TIME);
+    is_taken = is_taken && flag2_externo_take(m, &flag2_externo_token, 1U);
+    if (!is_taken) {
+        pn_raise(cx, PN_ERR_SUBTRACT, NULL);
+        return false;
+    }
     /* fastened: () (ID1412310901) */
-    pn_moves_put(&moves, &s_at_Supervisor_Install_Rivet_fastened, (pn_unit_t[]){ PN_UNIT }, 1,
-        PN_NO_TIME);
-    const bool is_done = pn_moves_commit(&moves, m);
-    pn_arena_release(cx->arena, before);
-    return is_done;
+    bool fits = Supervisor_Install_Rivet_fastened_add(cx, m,
+        &Supervisor_Install_Rivet_fastened_token, 1U);
+    if (!fits) {
+        /* a place is full: everything is put back */
+        (void)Supervisor_Install_Rivet_fastened_take(m, &Supervisor_Install_Rivet_fastened_token,
+            1U);
+        (void)flag2_externo_add(cx, m, &flag2_externo_token, 1U);
+        (void)Supervisor_Install_Rivet_Fasten_releasing_add(cx, m,
+            &Supervisor_Install_Rivet_Fasten_releasing_token, 1U);
+    }
+    return fits;
 }
 
 static void Supervisor_Install_Rivet_Fasten_Finish_json(const void *binding, pn_text_t *out)
@@ -3964,29 +4918,45 @@ static bool Supervisor_Install_Rivet_Retract_Command_fire(pn_ctx_t *cx, void *ma
     Supervisor_Install_Rivet_Retract_Command_binding_t *const b = binding;
     cx->origin = "page `MoveBoth`, transition `Command` (ID1412310941)";
     cx->now = m->now;
-    const size_t before = pn_arena_mark(cx->arena);
-    pn_moves_t moves;
-    pn_moves_init(&moves, cx);
+    const PLAN_t Supervisor_Install_Rivet_retract_token = (PLAN_t){ .c1 = b->c, .c2 = b->p,
+        .c3 = b->q };
+    const pn_unit_t Supervisor_Install_Rivet_Retract_moving_1_token = PN_UNIT;
+    const pn_unit_t Supervisor_Install_Rivet_Retract_moving_2_token = PN_UNIT;
     /* retract: (c, p, q) (ID1412310946) */
-    pn_moves_take(&moves, &s_at_Supervisor_Install_Rivet_retract,
-        &(PLAN_t){ .c1 = b->c, .c2 = b->p, .c3 = b->q }, 1, PN_NO_TIME);
+    bool is_taken = Supervisor_Install_Rivet_retract_take(m,
+        &Supervisor_Install_Rivet_retract_token, 1U);
+    if (!is_taken) {
+        pn_raise(cx, PN_ERR_SUBTRACT, NULL);
+        return false;
+    }
     /* moving 1: () (ID1412310970) */
-    pn_moves_put(&moves, &s_at_Supervisor_Install_Rivet_Retract_moving_1, (pn_unit_t[]){ PN_UNIT },
-        1, PN_NO_TIME);
+    bool fits = Supervisor_Install_Rivet_Retract_moving_1_add(cx, m,
+        &Supervisor_Install_Rivet_Retract_moving_1_token, 1U);
     /* dadosrobo1: p (ID1412310982) */
-    pn_moves_put(&moves, &s_at_dadosrobo1, &b->p, 1, PN_NO_TIME);
+    fits = dadosrobo1_add(cx, m, &b->p, 1U) && fits;
     /* flag1_interno: c (ID1412310988) */
-    pn_moves_put(&moves, &s_at_flag1_interno, &b->c, 1, PN_NO_TIME);
+    fits = flag1_interno_add(cx, m, &b->c, 1U) && fits;
     /* moving 2: () (ID1412311007) */
-    pn_moves_put(&moves, &s_at_Supervisor_Install_Rivet_Retract_moving_2, (pn_unit_t[]){ PN_UNIT },
-        1, PN_NO_TIME);
+    fits = Supervisor_Install_Rivet_Retract_moving_2_add(cx, m,
+        &Supervisor_Install_Rivet_Retract_moving_2_token, 1U) && fits;
     /* dadosrobo2: q (ID1412311019) */
-    pn_moves_put(&moves, &s_at_dadosrobo2, &b->q, 1, PN_NO_TIME);
+    fits = dadosrobo2_add(cx, m, &b->q, 1U) && fits;
     /* flag2_interno: c (ID1412311025) */
-    pn_moves_put(&moves, &s_at_flag2_interno, &b->c, 1, PN_NO_TIME);
-    const bool is_done = pn_moves_commit(&moves, m);
-    pn_arena_release(cx->arena, before);
-    return is_done;
+    fits = flag2_interno_add(cx, m, &b->c, 1U) && fits;
+    if (!fits) {
+        /* a place is full: everything is put back */
+        (void)flag2_interno_take(m, &b->c, 1U);
+        (void)dadosrobo2_take(m, &b->q, 1U);
+        (void)Supervisor_Install_Rivet_Retract_moving_2_take(m,
+            &Supervisor_Install_Rivet_Retract_moving_2_token, 1U);
+        (void)flag1_interno_take(m, &b->c, 1U);
+        (void)dadosrobo1_take(m, &b->p, 1U);
+        (void)Supervisor_Install_Rivet_Retract_moving_1_take(m,
+            &Supervisor_Install_Rivet_Retract_moving_1_token, 1U);
+        (void)Supervisor_Install_Rivet_retract_add(cx, m, &Supervisor_Install_Rivet_retract_token,
+            1U);
+    }
+    return fits;
 }
 
 static void Supervisor_Install_Rivet_Retract_Command_json(const void *binding, pn_text_t *out)
@@ -4015,13 +4985,11 @@ static bool Supervisor_Install_Rivet_Retract_Both_enumerate(pn_ctx_t *cx, const 
     cx->origin = "page `MoveBoth`, transition `Both` (ID1412310948)";
     cx->now = m->now;
     /* there 1: () (ID1412310976) */
-    if (pn_bag_count(&s_at_Supervisor_Install_Rivet_Retract_there_1, m, (pn_unit_t[]){ PN_UNIT },
-        PN_NO_TIME) < 1U) {
+    if (Supervisor_Install_Rivet_Retract_there_1_held(m, (pn_unit_t[]){ PN_UNIT }) < 1U) {
         return true;
     }
     /* there 2: () (ID1412311013) */
-    if (pn_bag_count(&s_at_Supervisor_Install_Rivet_Retract_there_2, m, (pn_unit_t[]){ PN_UNIT },
-        PN_NO_TIME) < 1U) {
+    if (Supervisor_Install_Rivet_Retract_there_2_held(m, (pn_unit_t[]){ PN_UNIT }) < 1U) {
         return true;
     }
     if (!sink(user, self, &b)) {
@@ -4036,20 +5004,31 @@ static bool Supervisor_Install_Rivet_Retract_Both_fire(pn_ctx_t *cx, void *marki
     (void)binding;
     cx->origin = "page `MoveBoth`, transition `Both` (ID1412310948)";
     cx->now = m->now;
-    const size_t before = pn_arena_mark(cx->arena);
-    pn_moves_t moves;
-    pn_moves_init(&moves, cx);
+    const pn_unit_t Supervisor_Install_Rivet_Retract_there_1_token = PN_UNIT;
+    const pn_unit_t Supervisor_Install_Rivet_Retract_there_2_token = PN_UNIT;
+    const pn_unit_t Supervisor_Install_riveted_token = PN_UNIT;
     /* there 1: () (ID1412310976) */
-    pn_moves_take(&moves, &s_at_Supervisor_Install_Rivet_Retract_there_1, (pn_unit_t[]){ PN_UNIT },
-        1, PN_NO_TIME);
+    bool is_taken = Supervisor_Install_Rivet_Retract_there_1_take(m,
+        &Supervisor_Install_Rivet_Retract_there_1_token, 1U);
     /* there 2: () (ID1412311013) */
-    pn_moves_take(&moves, &s_at_Supervisor_Install_Rivet_Retract_there_2, (pn_unit_t[]){ PN_UNIT },
-        1, PN_NO_TIME);
+    is_taken = is_taken
+        && Supervisor_Install_Rivet_Retract_there_2_take(m,
+        &Supervisor_Install_Rivet_Retract_there_2_token, 1U);
+    if (!is_taken) {
+        pn_raise(cx, PN_ERR_SUBTRACT, NULL);
+        return false;
+    }
     /* riveted: () (ID1412310957) */
-    pn_moves_put(&moves, &s_at_Supervisor_Install_riveted, (pn_unit_t[]){ PN_UNIT }, 1, PN_NO_TIME);
-    const bool is_done = pn_moves_commit(&moves, m);
-    pn_arena_release(cx->arena, before);
-    return is_done;
+    bool fits = Supervisor_Install_riveted_add(cx, m, &Supervisor_Install_riveted_token, 1U);
+    if (!fits) {
+        /* a place is full: everything is put back */
+        (void)Supervisor_Install_riveted_take(m, &Supervisor_Install_riveted_token, 1U);
+        (void)Supervisor_Install_Rivet_Retract_there_2_add(cx, m,
+            &Supervisor_Install_Rivet_Retract_there_2_token, 1U);
+        (void)Supervisor_Install_Rivet_Retract_there_1_add(cx, m,
+            &Supervisor_Install_Rivet_Retract_there_1_token, 1U);
+    }
+    return fits;
 }
 
 static void Supervisor_Install_Rivet_Retract_Both_json(const void *binding, pn_text_t *out)
@@ -4078,12 +5057,11 @@ static bool Supervisor_Install_Rivet_Retract_Reply_1_enumerate(pn_ctx_t *cx, con
     cx->origin = "page `MoveBoth`, transition `Reply 1` (ID1412310962)";
     cx->now = m->now;
     /* moving 1: () (ID1412310972) */
-    if (pn_bag_count(&s_at_Supervisor_Install_Rivet_Retract_moving_1, m, (pn_unit_t[]){ PN_UNIT },
-        PN_NO_TIME) < 1U) {
+    if (Supervisor_Install_Rivet_Retract_moving_1_held(m, (pn_unit_t[]){ PN_UNIT }) < 1U) {
         return true;
     }
     /* flag1_externo: 1 (ID1412310994) */
-    if (pn_bag_count(&s_at_flag1_externo, m, (int64_t[]){ 1 }, PN_NO_TIME) < 1U) {
+    if (flag1_externo_held(m, (int64_t[]){ 1 }) < 1U) {
         return true;
     }
     if (!sink(user, self, &b)) {
@@ -4098,20 +5076,30 @@ static bool Supervisor_Install_Rivet_Retract_Reply_1_fire(pn_ctx_t *cx, void *ma
     (void)binding;
     cx->origin = "page `MoveBoth`, transition `Reply 1` (ID1412310962)";
     cx->now = m->now;
-    const size_t before = pn_arena_mark(cx->arena);
-    pn_moves_t moves;
-    pn_moves_init(&moves, cx);
+    const pn_unit_t Supervisor_Install_Rivet_Retract_moving_1_token = PN_UNIT;
+    const int64_t flag1_externo_token = 1;
+    const pn_unit_t Supervisor_Install_Rivet_Retract_there_1_token = PN_UNIT;
     /* moving 1: () (ID1412310972) */
-    pn_moves_take(&moves, &s_at_Supervisor_Install_Rivet_Retract_moving_1, (pn_unit_t[]){ PN_UNIT },
-        1, PN_NO_TIME);
+    bool is_taken = Supervisor_Install_Rivet_Retract_moving_1_take(m,
+        &Supervisor_Install_Rivet_Retract_moving_1_token, 1U);
     /* flag1_externo: 1 (ID1412310994) */
-    pn_moves_take(&moves, &s_at_flag1_externo, (int64_t[]){ 1 }, 1, PN_NO_TIME);
+    is_taken = is_taken && flag1_externo_take(m, &flag1_externo_token, 1U);
+    if (!is_taken) {
+        pn_raise(cx, PN_ERR_SUBTRACT, NULL);
+        return false;
+    }
     /* there 1: () (ID1412310974) */
-    pn_moves_put(&moves, &s_at_Supervisor_Install_Rivet_Retract_there_1, (pn_unit_t[]){ PN_UNIT },
-        1, PN_NO_TIME);
-    const bool is_done = pn_moves_commit(&moves, m);
-    pn_arena_release(cx->arena, before);
-    return is_done;
+    bool fits = Supervisor_Install_Rivet_Retract_there_1_add(cx, m,
+        &Supervisor_Install_Rivet_Retract_there_1_token, 1U);
+    if (!fits) {
+        /* a place is full: everything is put back */
+        (void)Supervisor_Install_Rivet_Retract_there_1_take(m,
+            &Supervisor_Install_Rivet_Retract_there_1_token, 1U);
+        (void)flag1_externo_add(cx, m, &flag1_externo_token, 1U);
+        (void)Supervisor_Install_Rivet_Retract_moving_1_add(cx, m,
+            &Supervisor_Install_Rivet_Retract_moving_1_token, 1U);
+    }
+    return fits;
 }
 
 static void Supervisor_Install_Rivet_Retract_Reply_1_json(const void *binding, pn_text_t *out)
@@ -4140,12 +5128,11 @@ static bool Supervisor_Install_Rivet_Retract_Reply_2_enumerate(pn_ctx_t *cx, con
     cx->origin = "page `MoveBoth`, transition `Reply 2` (ID1412310999)";
     cx->now = m->now;
     /* moving 2: () (ID1412311009) */
-    if (pn_bag_count(&s_at_Supervisor_Install_Rivet_Retract_moving_2, m, (pn_unit_t[]){ PN_UNIT },
-        PN_NO_TIME) < 1U) {
+    if (Supervisor_Install_Rivet_Retract_moving_2_held(m, (pn_unit_t[]){ PN_UNIT }) < 1U) {
         return true;
     }
     /* flag2_externo: 1 (ID1412311031) */
-    if (pn_bag_count(&s_at_flag2_externo, m, (int64_t[]){ 1 }, PN_NO_TIME) < 1U) {
+    if (flag2_externo_held(m, (int64_t[]){ 1 }) < 1U) {
         return true;
     }
     if (!sink(user, self, &b)) {
@@ -4160,20 +5147,30 @@ static bool Supervisor_Install_Rivet_Retract_Reply_2_fire(pn_ctx_t *cx, void *ma
     (void)binding;
     cx->origin = "page `MoveBoth`, transition `Reply 2` (ID1412310999)";
     cx->now = m->now;
-    const size_t before = pn_arena_mark(cx->arena);
-    pn_moves_t moves;
-    pn_moves_init(&moves, cx);
+    const pn_unit_t Supervisor_Install_Rivet_Retract_moving_2_token = PN_UNIT;
+    const int64_t flag2_externo_token = 1;
+    const pn_unit_t Supervisor_Install_Rivet_Retract_there_2_token = PN_UNIT;
     /* moving 2: () (ID1412311009) */
-    pn_moves_take(&moves, &s_at_Supervisor_Install_Rivet_Retract_moving_2, (pn_unit_t[]){ PN_UNIT },
-        1, PN_NO_TIME);
+    bool is_taken = Supervisor_Install_Rivet_Retract_moving_2_take(m,
+        &Supervisor_Install_Rivet_Retract_moving_2_token, 1U);
     /* flag2_externo: 1 (ID1412311031) */
-    pn_moves_take(&moves, &s_at_flag2_externo, (int64_t[]){ 1 }, 1, PN_NO_TIME);
+    is_taken = is_taken && flag2_externo_take(m, &flag2_externo_token, 1U);
+    if (!is_taken) {
+        pn_raise(cx, PN_ERR_SUBTRACT, NULL);
+        return false;
+    }
     /* there 2: () (ID1412311011) */
-    pn_moves_put(&moves, &s_at_Supervisor_Install_Rivet_Retract_there_2, (pn_unit_t[]){ PN_UNIT },
-        1, PN_NO_TIME);
-    const bool is_done = pn_moves_commit(&moves, m);
-    pn_arena_release(cx->arena, before);
-    return is_done;
+    bool fits = Supervisor_Install_Rivet_Retract_there_2_add(cx, m,
+        &Supervisor_Install_Rivet_Retract_there_2_token, 1U);
+    if (!fits) {
+        /* a place is full: everything is put back */
+        (void)Supervisor_Install_Rivet_Retract_there_2_take(m,
+            &Supervisor_Install_Rivet_Retract_there_2_token, 1U);
+        (void)flag2_externo_add(cx, m, &flag2_externo_token, 1U);
+        (void)Supervisor_Install_Rivet_Retract_moving_2_add(cx, m,
+            &Supervisor_Install_Rivet_Retract_moving_2_token, 1U);
+    }
+    return fits;
 }
 
 static void Supervisor_Install_Rivet_Retract_Reply_2_json(const void *binding, pn_text_t *out)
@@ -4227,29 +5224,42 @@ static bool Supervisor_Install_Return_Command_fire(pn_ctx_t *cx, void *marking, 
     Supervisor_Install_Return_Command_binding_t *const b = binding;
     cx->origin = "page `MoveBoth`, transition `Command` (ID1412310941)";
     cx->now = m->now;
-    const size_t before = pn_arena_mark(cx->arena);
-    pn_moves_t moves;
-    pn_moves_init(&moves, cx);
+    const PLAN_t Supervisor_Install_return_token = (PLAN_t){ .c1 = b->c, .c2 = b->p, .c3 = b->q };
+    const pn_unit_t Supervisor_Install_Return_moving_1_token = PN_UNIT;
+    const pn_unit_t Supervisor_Install_Return_moving_2_token = PN_UNIT;
     /* return: (c, p, q) (ID1412310946) */
-    pn_moves_take(&moves, &s_at_Supervisor_Install_return,
-        &(PLAN_t){ .c1 = b->c, .c2 = b->p, .c3 = b->q }, 1, PN_NO_TIME);
+    bool is_taken = Supervisor_Install_return_take(m, &Supervisor_Install_return_token, 1U);
+    if (!is_taken) {
+        pn_raise(cx, PN_ERR_SUBTRACT, NULL);
+        return false;
+    }
     /* moving 1: () (ID1412310970) */
-    pn_moves_put(&moves, &s_at_Supervisor_Install_Return_moving_1, (pn_unit_t[]){ PN_UNIT }, 1,
-        PN_NO_TIME);
+    bool fits = Supervisor_Install_Return_moving_1_add(cx, m,
+        &Supervisor_Install_Return_moving_1_token, 1U);
     /* dadosrobo1: p (ID1412310982) */
-    pn_moves_put(&moves, &s_at_dadosrobo1, &b->p, 1, PN_NO_TIME);
+    fits = dadosrobo1_add(cx, m, &b->p, 1U) && fits;
     /* flag1_interno: c (ID1412310988) */
-    pn_moves_put(&moves, &s_at_flag1_interno, &b->c, 1, PN_NO_TIME);
+    fits = flag1_interno_add(cx, m, &b->c, 1U) && fits;
     /* moving 2: () (ID1412311007) */
-    pn_moves_put(&moves, &s_at_Supervisor_Install_Return_moving_2, (pn_unit_t[]){ PN_UNIT }, 1,
-        PN_NO_TIME);
+    fits = Supervisor_Install_Return_moving_2_add(cx, m, &Supervisor_Install_Return_moving_2_token,
+        1U) && fits;
     /* dadosrobo2: q (ID1412311019) */
-    pn_moves_put(&moves, &s_at_dadosrobo2, &b->q, 1, PN_NO_TIME);
+    fits = dadosrobo2_add(cx, m, &b->q, 1U) && fits;
     /* flag2_interno: c (ID1412311025) */
-    pn_moves_put(&moves, &s_at_flag2_interno, &b->c, 1, PN_NO_TIME);
-    const bool is_done = pn_moves_commit(&moves, m);
-    pn_arena_release(cx->arena, before);
-    return is_done;
+    fits = flag2_interno_add(cx, m, &b->c, 1U) && fits;
+    if (!fits) {
+        /* a place is full: everything is put back */
+        (void)flag2_interno_take(m, &b->c, 1U);
+        (void)dadosrobo2_take(m, &b->q, 1U);
+        (void)Supervisor_Install_Return_moving_2_take(m, &Supervisor_Install_Return_moving_2_token,
+            1U);
+        (void)flag1_interno_take(m, &b->c, 1U);
+        (void)dadosrobo1_take(m, &b->p, 1U);
+        (void)Supervisor_Install_Return_moving_1_take(m, &Supervisor_Install_Return_moving_1_token,
+            1U);
+        (void)Supervisor_Install_return_add(cx, m, &Supervisor_Install_return_token, 1U);
+    }
+    return fits;
 }
 
 static void Supervisor_Install_Return_Command_json(const void *binding, pn_text_t *out)
@@ -4278,13 +5288,11 @@ static bool Supervisor_Install_Return_Both_enumerate(pn_ctx_t *cx, const void *m
     cx->origin = "page `MoveBoth`, transition `Both` (ID1412310948)";
     cx->now = m->now;
     /* there 1: () (ID1412310976) */
-    if (pn_bag_count(&s_at_Supervisor_Install_Return_there_1, m, (pn_unit_t[]){ PN_UNIT },
-        PN_NO_TIME) < 1U) {
+    if (Supervisor_Install_Return_there_1_held(m, (pn_unit_t[]){ PN_UNIT }) < 1U) {
         return true;
     }
     /* there 2: () (ID1412311013) */
-    if (pn_bag_count(&s_at_Supervisor_Install_Return_there_2, m, (pn_unit_t[]){ PN_UNIT },
-        PN_NO_TIME) < 1U) {
+    if (Supervisor_Install_Return_there_2_held(m, (pn_unit_t[]){ PN_UNIT }) < 1U) {
         return true;
     }
     if (!sink(user, self, &b)) {
@@ -4299,20 +5307,30 @@ static bool Supervisor_Install_Return_Both_fire(pn_ctx_t *cx, void *marking, voi
     (void)binding;
     cx->origin = "page `MoveBoth`, transition `Both` (ID1412310948)";
     cx->now = m->now;
-    const size_t before = pn_arena_mark(cx->arena);
-    pn_moves_t moves;
-    pn_moves_init(&moves, cx);
+    const pn_unit_t Supervisor_Install_Return_there_1_token = PN_UNIT;
+    const pn_unit_t Supervisor_Install_Return_there_2_token = PN_UNIT;
+    const pn_unit_t Supervisor_installed_token = PN_UNIT;
     /* there 1: () (ID1412310976) */
-    pn_moves_take(&moves, &s_at_Supervisor_Install_Return_there_1, (pn_unit_t[]){ PN_UNIT }, 1,
-        PN_NO_TIME);
+    bool is_taken = Supervisor_Install_Return_there_1_take(m,
+        &Supervisor_Install_Return_there_1_token, 1U);
     /* there 2: () (ID1412311013) */
-    pn_moves_take(&moves, &s_at_Supervisor_Install_Return_there_2, (pn_unit_t[]){ PN_UNIT }, 1,
-        PN_NO_TIME);
+    is_taken = is_taken
+        && Supervisor_Install_Return_there_2_take(m, &Supervisor_Install_Return_there_2_token, 1U);
+    if (!is_taken) {
+        pn_raise(cx, PN_ERR_SUBTRACT, NULL);
+        return false;
+    }
     /* installed: () (ID1412310957) */
-    pn_moves_put(&moves, &s_at_Supervisor_installed, (pn_unit_t[]){ PN_UNIT }, 1, PN_NO_TIME);
-    const bool is_done = pn_moves_commit(&moves, m);
-    pn_arena_release(cx->arena, before);
-    return is_done;
+    bool fits = Supervisor_installed_add(cx, m, &Supervisor_installed_token, 1U);
+    if (!fits) {
+        /* a place is full: everything is put back */
+        (void)Supervisor_installed_take(m, &Supervisor_installed_token, 1U);
+        (void)Supervisor_Install_Return_there_2_add(cx, m, &Supervisor_Install_Return_there_2_token,
+            1U);
+        (void)Supervisor_Install_Return_there_1_add(cx, m, &Supervisor_Install_Return_there_1_token,
+            1U);
+    }
+    return fits;
 }
 
 static void Supervisor_Install_Return_Both_json(const void *binding, pn_text_t *out)
@@ -4341,12 +5359,11 @@ static bool Supervisor_Install_Return_Reply_1_enumerate(pn_ctx_t *cx, const void
     cx->origin = "page `MoveBoth`, transition `Reply 1` (ID1412310962)";
     cx->now = m->now;
     /* moving 1: () (ID1412310972) */
-    if (pn_bag_count(&s_at_Supervisor_Install_Return_moving_1, m, (pn_unit_t[]){ PN_UNIT },
-        PN_NO_TIME) < 1U) {
+    if (Supervisor_Install_Return_moving_1_held(m, (pn_unit_t[]){ PN_UNIT }) < 1U) {
         return true;
     }
     /* flag1_externo: 1 (ID1412310994) */
-    if (pn_bag_count(&s_at_flag1_externo, m, (int64_t[]){ 1 }, PN_NO_TIME) < 1U) {
+    if (flag1_externo_held(m, (int64_t[]){ 1 }) < 1U) {
         return true;
     }
     if (!sink(user, self, &b)) {
@@ -4361,20 +5378,30 @@ static bool Supervisor_Install_Return_Reply_1_fire(pn_ctx_t *cx, void *marking, 
     (void)binding;
     cx->origin = "page `MoveBoth`, transition `Reply 1` (ID1412310962)";
     cx->now = m->now;
-    const size_t before = pn_arena_mark(cx->arena);
-    pn_moves_t moves;
-    pn_moves_init(&moves, cx);
+    const pn_unit_t Supervisor_Install_Return_moving_1_token = PN_UNIT;
+    const int64_t flag1_externo_token = 1;
+    const pn_unit_t Supervisor_Install_Return_there_1_token = PN_UNIT;
     /* moving 1: () (ID1412310972) */
-    pn_moves_take(&moves, &s_at_Supervisor_Install_Return_moving_1, (pn_unit_t[]){ PN_UNIT }, 1,
-        PN_NO_TIME);
+    bool is_taken = Supervisor_Install_Return_moving_1_take(m,
+        &Supervisor_Install_Return_moving_1_token, 1U);
     /* flag1_externo: 1 (ID1412310994) */
-    pn_moves_take(&moves, &s_at_flag1_externo, (int64_t[]){ 1 }, 1, PN_NO_TIME);
+    is_taken = is_taken && flag1_externo_take(m, &flag1_externo_token, 1U);
+    if (!is_taken) {
+        pn_raise(cx, PN_ERR_SUBTRACT, NULL);
+        return false;
+    }
     /* there 1: () (ID1412310974) */
-    pn_moves_put(&moves, &s_at_Supervisor_Install_Return_there_1, (pn_unit_t[]){ PN_UNIT }, 1,
-        PN_NO_TIME);
-    const bool is_done = pn_moves_commit(&moves, m);
-    pn_arena_release(cx->arena, before);
-    return is_done;
+    bool fits = Supervisor_Install_Return_there_1_add(cx, m,
+        &Supervisor_Install_Return_there_1_token, 1U);
+    if (!fits) {
+        /* a place is full: everything is put back */
+        (void)Supervisor_Install_Return_there_1_take(m, &Supervisor_Install_Return_there_1_token,
+            1U);
+        (void)flag1_externo_add(cx, m, &flag1_externo_token, 1U);
+        (void)Supervisor_Install_Return_moving_1_add(cx, m,
+            &Supervisor_Install_Return_moving_1_token, 1U);
+    }
+    return fits;
 }
 
 static void Supervisor_Install_Return_Reply_1_json(const void *binding, pn_text_t *out)
@@ -4403,12 +5430,11 @@ static bool Supervisor_Install_Return_Reply_2_enumerate(pn_ctx_t *cx, const void
     cx->origin = "page `MoveBoth`, transition `Reply 2` (ID1412310999)";
     cx->now = m->now;
     /* moving 2: () (ID1412311009) */
-    if (pn_bag_count(&s_at_Supervisor_Install_Return_moving_2, m, (pn_unit_t[]){ PN_UNIT },
-        PN_NO_TIME) < 1U) {
+    if (Supervisor_Install_Return_moving_2_held(m, (pn_unit_t[]){ PN_UNIT }) < 1U) {
         return true;
     }
     /* flag2_externo: 1 (ID1412311031) */
-    if (pn_bag_count(&s_at_flag2_externo, m, (int64_t[]){ 1 }, PN_NO_TIME) < 1U) {
+    if (flag2_externo_held(m, (int64_t[]){ 1 }) < 1U) {
         return true;
     }
     if (!sink(user, self, &b)) {
@@ -4423,20 +5449,30 @@ static bool Supervisor_Install_Return_Reply_2_fire(pn_ctx_t *cx, void *marking, 
     (void)binding;
     cx->origin = "page `MoveBoth`, transition `Reply 2` (ID1412310999)";
     cx->now = m->now;
-    const size_t before = pn_arena_mark(cx->arena);
-    pn_moves_t moves;
-    pn_moves_init(&moves, cx);
+    const pn_unit_t Supervisor_Install_Return_moving_2_token = PN_UNIT;
+    const int64_t flag2_externo_token = 1;
+    const pn_unit_t Supervisor_Install_Return_there_2_token = PN_UNIT;
     /* moving 2: () (ID1412311009) */
-    pn_moves_take(&moves, &s_at_Supervisor_Install_Return_moving_2, (pn_unit_t[]){ PN_UNIT }, 1,
-        PN_NO_TIME);
+    bool is_taken = Supervisor_Install_Return_moving_2_take(m,
+        &Supervisor_Install_Return_moving_2_token, 1U);
     /* flag2_externo: 1 (ID1412311031) */
-    pn_moves_take(&moves, &s_at_flag2_externo, (int64_t[]){ 1 }, 1, PN_NO_TIME);
+    is_taken = is_taken && flag2_externo_take(m, &flag2_externo_token, 1U);
+    if (!is_taken) {
+        pn_raise(cx, PN_ERR_SUBTRACT, NULL);
+        return false;
+    }
     /* there 2: () (ID1412311011) */
-    pn_moves_put(&moves, &s_at_Supervisor_Install_Return_there_2, (pn_unit_t[]){ PN_UNIT }, 1,
-        PN_NO_TIME);
-    const bool is_done = pn_moves_commit(&moves, m);
-    pn_arena_release(cx->arena, before);
-    return is_done;
+    bool fits = Supervisor_Install_Return_there_2_add(cx, m,
+        &Supervisor_Install_Return_there_2_token, 1U);
+    if (!fits) {
+        /* a place is full: everything is put back */
+        (void)Supervisor_Install_Return_there_2_take(m, &Supervisor_Install_Return_there_2_token,
+            1U);
+        (void)flag2_externo_add(cx, m, &flag2_externo_token, 1U);
+        (void)Supervisor_Install_Return_moving_2_add(cx, m,
+            &Supervisor_Install_Return_moving_2_token, 1U);
+    }
+    return fits;
 }
 
 static void Supervisor_Install_Return_Reply_2_json(const void *binding, pn_text_t *out)
@@ -4465,7 +5501,7 @@ static bool Supervisor_Home_Send_home_enumerate(pn_ctx_t *cx, const void *markin
     cx->origin = "page `Home`, transition `Send home` (ID1412311039)";
     cx->now = m->now;
     /* installed: () (ID1412311044) */
-    if (pn_bag_count(&s_at_Supervisor_installed, m, (pn_unit_t[]){ PN_UNIT }, PN_NO_TIME) < 1U) {
+    if (Supervisor_installed_held(m, (pn_unit_t[]){ PN_UNIT }) < 1U) {
         return true;
     }
     if (!sink(user, self, &b)) {
@@ -4480,22 +5516,39 @@ static bool Supervisor_Home_Send_home_fire(pn_ctx_t *cx, void *marking, void *bi
     (void)binding;
     cx->origin = "page `Home`, transition `Send home` (ID1412311039)";
     cx->now = m->now;
-    const size_t before = pn_arena_mark(cx->arena);
-    pn_moves_t moves;
-    pn_moves_init(&moves, cx);
+    const pn_unit_t Supervisor_installed_token = PN_UNIT;
+    const pn_unit_t Supervisor_Home_leaving_1_token = PN_UNIT;
+    int64_t flag1_interno_token = val_HOME;
+    pn_bag_check(cx, &s_at_flag1_interno, &flag1_interno_token);
+    const pn_unit_t Supervisor_Home_leaving_2_token = PN_UNIT;
+    int64_t flag2_interno_token = val_HOME;
+    pn_bag_check(cx, &s_at_flag2_interno, &flag2_interno_token);
+    if (!pn_ok(cx)) {
+        return false;
+    }
     /* installed: () (ID1412311044) */
-    pn_moves_take(&moves, &s_at_Supervisor_installed, (pn_unit_t[]){ PN_UNIT }, 1, PN_NO_TIME);
+    bool is_taken = Supervisor_installed_take(m, &Supervisor_installed_token, 1U);
+    if (!is_taken) {
+        pn_raise(cx, PN_ERR_SUBTRACT, NULL);
+        return false;
+    }
     /* leaving 1: () (ID1412311068) */
-    pn_moves_put(&moves, &s_at_Supervisor_Home_leaving_1, (pn_unit_t[]){ PN_UNIT }, 1, PN_NO_TIME);
+    bool fits = Supervisor_Home_leaving_1_add(cx, m, &Supervisor_Home_leaving_1_token, 1U);
     /* flag1_interno: HOME (ID1412311080) */
-    pn_moves_put(&moves, &s_at_flag1_interno, &val_HOME, 1, PN_NO_TIME);
+    fits = flag1_interno_add(cx, m, &flag1_interno_token, 1U) && fits;
     /* leaving 2: () (ID1412311099) */
-    pn_moves_put(&moves, &s_at_Supervisor_Home_leaving_2, (pn_unit_t[]){ PN_UNIT }, 1, PN_NO_TIME);
+    fits = Supervisor_Home_leaving_2_add(cx, m, &Supervisor_Home_leaving_2_token, 1U) && fits;
     /* flag2_interno: HOME (ID1412311111) */
-    pn_moves_put(&moves, &s_at_flag2_interno, &val_HOME, 1, PN_NO_TIME);
-    const bool is_done = pn_moves_commit(&moves, m);
-    pn_arena_release(cx->arena, before);
-    return is_done;
+    fits = flag2_interno_add(cx, m, &flag2_interno_token, 1U) && fits;
+    if (!fits) {
+        /* a place is full: everything is put back */
+        (void)flag2_interno_take(m, &flag2_interno_token, 1U);
+        (void)Supervisor_Home_leaving_2_take(m, &Supervisor_Home_leaving_2_token, 1U);
+        (void)flag1_interno_take(m, &flag1_interno_token, 1U);
+        (void)Supervisor_Home_leaving_1_take(m, &Supervisor_Home_leaving_1_token, 1U);
+        (void)Supervisor_installed_add(cx, m, &Supervisor_installed_token, 1U);
+    }
+    return fits;
 }
 
 static void Supervisor_Home_Send_home_json(const void *binding, pn_text_t *out)
@@ -4524,11 +5577,11 @@ static bool Supervisor_Home_Both_enumerate(pn_ctx_t *cx, const void *marking,
     cx->origin = "page `Home`, transition `Both` (ID1412311046)";
     cx->now = m->now;
     /* home 1: () (ID1412311074) */
-    if (pn_bag_count(&s_at_Supervisor_Home_home_1, m, (pn_unit_t[]){ PN_UNIT }, PN_NO_TIME) < 1U) {
+    if (Supervisor_Home_home_1_held(m, (pn_unit_t[]){ PN_UNIT }) < 1U) {
         return true;
     }
     /* home 2: () (ID1412311105) */
-    if (pn_bag_count(&s_at_Supervisor_Home_home_2, m, (pn_unit_t[]){ PN_UNIT }, PN_NO_TIME) < 1U) {
+    if (Supervisor_Home_home_2_held(m, (pn_unit_t[]){ PN_UNIT }) < 1U) {
         return true;
     }
     if (!sink(user, self, &b)) {
@@ -4543,18 +5596,26 @@ static bool Supervisor_Home_Both_fire(pn_ctx_t *cx, void *marking, void *binding
     (void)binding;
     cx->origin = "page `Home`, transition `Both` (ID1412311046)";
     cx->now = m->now;
-    const size_t before = pn_arena_mark(cx->arena);
-    pn_moves_t moves;
-    pn_moves_init(&moves, cx);
+    const pn_unit_t Supervisor_Home_home_1_token = PN_UNIT;
+    const pn_unit_t Supervisor_Home_home_2_token = PN_UNIT;
+    const pn_unit_t Supervisor_Finished_token = PN_UNIT;
     /* home 1: () (ID1412311074) */
-    pn_moves_take(&moves, &s_at_Supervisor_Home_home_1, (pn_unit_t[]){ PN_UNIT }, 1, PN_NO_TIME);
+    bool is_taken = Supervisor_Home_home_1_take(m, &Supervisor_Home_home_1_token, 1U);
     /* home 2: () (ID1412311105) */
-    pn_moves_take(&moves, &s_at_Supervisor_Home_home_2, (pn_unit_t[]){ PN_UNIT }, 1, PN_NO_TIME);
+    is_taken = is_taken && Supervisor_Home_home_2_take(m, &Supervisor_Home_home_2_token, 1U);
+    if (!is_taken) {
+        pn_raise(cx, PN_ERR_SUBTRACT, NULL);
+        return false;
+    }
     /* Finished: () (ID1412311055) */
-    pn_moves_put(&moves, &s_at_Supervisor_Finished, (pn_unit_t[]){ PN_UNIT }, 1, PN_NO_TIME);
-    const bool is_done = pn_moves_commit(&moves, m);
-    pn_arena_release(cx->arena, before);
-    return is_done;
+    bool fits = Supervisor_Finished_add(cx, m, &Supervisor_Finished_token, 1U);
+    if (!fits) {
+        /* a place is full: everything is put back */
+        (void)Supervisor_Finished_take(m, &Supervisor_Finished_token, 1U);
+        (void)Supervisor_Home_home_2_add(cx, m, &Supervisor_Home_home_2_token, 1U);
+        (void)Supervisor_Home_home_1_add(cx, m, &Supervisor_Home_home_1_token, 1U);
+    }
+    return fits;
 }
 
 static void Supervisor_Home_Both_json(const void *binding, pn_text_t *out)
@@ -4583,12 +5644,11 @@ static bool Supervisor_Home_Reply_1_enumerate(pn_ctx_t *cx, const void *marking,
     cx->origin = "page `Home`, transition `Reply 1` (ID1412311060)";
     cx->now = m->now;
     /* leaving 1: () (ID1412311070) */
-    if (pn_bag_count(&s_at_Supervisor_Home_leaving_1, m, (pn_unit_t[]){ PN_UNIT },
-        PN_NO_TIME) < 1U) {
+    if (Supervisor_Home_leaving_1_held(m, (pn_unit_t[]){ PN_UNIT }) < 1U) {
         return true;
     }
     /* flag1_externo: 1 (ID1412311086) */
-    if (pn_bag_count(&s_at_flag1_externo, m, (int64_t[]){ 1 }, PN_NO_TIME) < 1U) {
+    if (flag1_externo_held(m, (int64_t[]){ 1 }) < 1U) {
         return true;
     }
     if (!sink(user, self, &b)) {
@@ -4603,18 +5663,26 @@ static bool Supervisor_Home_Reply_1_fire(pn_ctx_t *cx, void *marking, void *bind
     (void)binding;
     cx->origin = "page `Home`, transition `Reply 1` (ID1412311060)";
     cx->now = m->now;
-    const size_t before = pn_arena_mark(cx->arena);
-    pn_moves_t moves;
-    pn_moves_init(&moves, cx);
+    const pn_unit_t Supervisor_Home_leaving_1_token = PN_UNIT;
+    const int64_t flag1_externo_token = 1;
+    const pn_unit_t Supervisor_Home_home_1_token = PN_UNIT;
     /* leaving 1: () (ID1412311070) */
-    pn_moves_take(&moves, &s_at_Supervisor_Home_leaving_1, (pn_unit_t[]){ PN_UNIT }, 1, PN_NO_TIME);
+    bool is_taken = Supervisor_Home_leaving_1_take(m, &Supervisor_Home_leaving_1_token, 1U);
     /* flag1_externo: 1 (ID1412311086) */
-    pn_moves_take(&moves, &s_at_flag1_externo, (int64_t[]){ 1 }, 1, PN_NO_TIME);
+    is_taken = is_taken && flag1_externo_take(m, &flag1_externo_token, 1U);
+    if (!is_taken) {
+        pn_raise(cx, PN_ERR_SUBTRACT, NULL);
+        return false;
+    }
     /* home 1: () (ID1412311072) */
-    pn_moves_put(&moves, &s_at_Supervisor_Home_home_1, (pn_unit_t[]){ PN_UNIT }, 1, PN_NO_TIME);
-    const bool is_done = pn_moves_commit(&moves, m);
-    pn_arena_release(cx->arena, before);
-    return is_done;
+    bool fits = Supervisor_Home_home_1_add(cx, m, &Supervisor_Home_home_1_token, 1U);
+    if (!fits) {
+        /* a place is full: everything is put back */
+        (void)Supervisor_Home_home_1_take(m, &Supervisor_Home_home_1_token, 1U);
+        (void)flag1_externo_add(cx, m, &flag1_externo_token, 1U);
+        (void)Supervisor_Home_leaving_1_add(cx, m, &Supervisor_Home_leaving_1_token, 1U);
+    }
+    return fits;
 }
 
 static void Supervisor_Home_Reply_1_json(const void *binding, pn_text_t *out)
@@ -4643,12 +5711,11 @@ static bool Supervisor_Home_Reply_2_enumerate(pn_ctx_t *cx, const void *marking,
     cx->origin = "page `Home`, transition `Reply 2` (ID1412311091)";
     cx->now = m->now;
     /* leaving 2: () (ID1412311101) */
-    if (pn_bag_count(&s_at_Supervisor_Home_leaving_2, m, (pn_unit_t[]){ PN_UNIT },
-        PN_NO_TIME) < 1U) {
+    if (Supervisor_Home_leaving_2_held(m, (pn_unit_t[]){ PN_UNIT }) < 1U) {
         return true;
     }
     /* flag2_externo: 1 (ID1412311117) */
-    if (pn_bag_count(&s_at_flag2_externo, m, (int64_t[]){ 1 }, PN_NO_TIME) < 1U) {
+    if (flag2_externo_held(m, (int64_t[]){ 1 }) < 1U) {
         return true;
     }
     if (!sink(user, self, &b)) {
@@ -4663,18 +5730,26 @@ static bool Supervisor_Home_Reply_2_fire(pn_ctx_t *cx, void *marking, void *bind
     (void)binding;
     cx->origin = "page `Home`, transition `Reply 2` (ID1412311091)";
     cx->now = m->now;
-    const size_t before = pn_arena_mark(cx->arena);
-    pn_moves_t moves;
-    pn_moves_init(&moves, cx);
+    const pn_unit_t Supervisor_Home_leaving_2_token = PN_UNIT;
+    const int64_t flag2_externo_token = 1;
+    const pn_unit_t Supervisor_Home_home_2_token = PN_UNIT;
     /* leaving 2: () (ID1412311101) */
-    pn_moves_take(&moves, &s_at_Supervisor_Home_leaving_2, (pn_unit_t[]){ PN_UNIT }, 1, PN_NO_TIME);
+    bool is_taken = Supervisor_Home_leaving_2_take(m, &Supervisor_Home_leaving_2_token, 1U);
     /* flag2_externo: 1 (ID1412311117) */
-    pn_moves_take(&moves, &s_at_flag2_externo, (int64_t[]){ 1 }, 1, PN_NO_TIME);
+    is_taken = is_taken && flag2_externo_take(m, &flag2_externo_token, 1U);
+    if (!is_taken) {
+        pn_raise(cx, PN_ERR_SUBTRACT, NULL);
+        return false;
+    }
     /* home 2: () (ID1412311103) */
-    pn_moves_put(&moves, &s_at_Supervisor_Home_home_2, (pn_unit_t[]){ PN_UNIT }, 1, PN_NO_TIME);
-    const bool is_done = pn_moves_commit(&moves, m);
-    pn_arena_release(cx->arena, before);
-    return is_done;
+    bool fits = Supervisor_Home_home_2_add(cx, m, &Supervisor_Home_home_2_token, 1U);
+    if (!fits) {
+        /* a place is full: everything is put back */
+        (void)Supervisor_Home_home_2_take(m, &Supervisor_Home_home_2_token, 1U);
+        (void)flag2_externo_add(cx, m, &flag2_externo_token, 1U);
+        (void)Supervisor_Home_leaving_2_add(cx, m, &Supervisor_Home_leaving_2_token, 1U);
+    }
+    return fits;
 }
 
 static void Supervisor_Home_Reply_2_json(const void *binding, pn_text_t *out)
@@ -4707,7 +5782,7 @@ static bool Robot1_Accept_enumerate(pn_ctx_t *cx, const void *marking,
     cx->origin = "page `Robot`, transition `Accept` (ID1412311125)";
     cx->now = m->now;
     /* Waiting: () (ID1412311138) */
-    if (pn_bag_count(&s_at_Robot1_Waiting, m, (pn_unit_t[]){ PN_UNIT }, PN_NO_TIME) < 1U) {
+    if (Robot1_Waiting_held(m, (pn_unit_t[]){ PN_UNIT }) < 1U) {
         return true;
     }
     /* flag1_interno: c (ID1412311136) */
@@ -4726,18 +5801,24 @@ static bool Robot1_Accept_fire(pn_ctx_t *cx, void *marking, void *binding)
     Robot1_Accept_binding_t *const b = binding;
     cx->origin = "page `Robot`, transition `Accept` (ID1412311125)";
     cx->now = m->now;
-    const size_t before = pn_arena_mark(cx->arena);
-    pn_moves_t moves;
-    pn_moves_init(&moves, cx);
+    const pn_unit_t Robot1_Waiting_token = PN_UNIT;
     /* flag1_interno: c (ID1412311136) */
-    pn_moves_take(&moves, &s_at_flag1_interno, &b->c, 1, PN_NO_TIME);
+    bool is_taken = flag1_interno_take(m, &b->c, 1U);
     /* Waiting: () (ID1412311138) */
-    pn_moves_take(&moves, &s_at_Robot1_Waiting, (pn_unit_t[]){ PN_UNIT }, 1, PN_NO_TIME);
+    is_taken = is_taken && Robot1_Waiting_take(m, &Robot1_Waiting_token, 1U);
+    if (!is_taken) {
+        pn_raise(cx, PN_ERR_SUBTRACT, NULL);
+        return false;
+    }
     /* Commanded: c (ID1412311140) */
-    pn_moves_put(&moves, &s_at_Robot1_Commanded, &b->c, 1, PN_NO_TIME);
-    const bool is_done = pn_moves_commit(&moves, m);
-    pn_arena_release(cx->arena, before);
-    return is_done;
+    bool fits = Robot1_Commanded_add(cx, m, &b->c, 1U);
+    if (!fits) {
+        /* a place is full: everything is put back */
+        (void)Robot1_Commanded_take(m, &b->c, 1U);
+        (void)Robot1_Waiting_add(cx, m, &Robot1_Waiting_token, 1U);
+        (void)flag1_interno_add(cx, m, &b->c, 1U);
+    }
+    return fits;
 }
 
 static void Robot1_Accept_json(const void *binding, pn_text_t *out)
@@ -4766,7 +5847,7 @@ static bool Robot1_Report_enumerate(pn_ctx_t *cx, const void *marking,
     cx->origin = "page `Robot`, transition `Report` (ID1412311145)";
     cx->now = m->now;
     /* Done: () (ID1412311154) */
-    if (pn_bag_count(&s_at_Robot1_Done, m, (pn_unit_t[]){ PN_UNIT }, PN_NO_TIME) < 1U) {
+    if (Robot1_Done_held(m, (pn_unit_t[]){ PN_UNIT }) < 1U) {
         return true;
     }
     if (!sink(user, self, &b)) {
@@ -4781,18 +5862,30 @@ static bool Robot1_Report_fire(pn_ctx_t *cx, void *marking, void *binding)
     (void)binding;
     cx->origin = "page `Robot`, transition `Report` (ID1412311145)";
     cx->now = m->now;
-    const size_t before = pn_arena_mark(cx->arena);
-    pn_moves_t moves;
-    pn_moves_init(&moves, cx);
+    const pn_unit_t Robot1_Done_token = PN_UNIT;
+    int64_t flag1_externo_token = 1;
+    pn_bag_check(cx, &s_at_flag1_externo, &flag1_externo_token);
+    const pn_unit_t Robot1_Waiting_token = PN_UNIT;
+    if (!pn_ok(cx)) {
+        return false;
+    }
     /* Done: () (ID1412311154) */
-    pn_moves_take(&moves, &s_at_Robot1_Done, (pn_unit_t[]){ PN_UNIT }, 1, PN_NO_TIME);
+    bool is_taken = Robot1_Done_take(m, &Robot1_Done_token, 1U);
+    if (!is_taken) {
+        pn_raise(cx, PN_ERR_SUBTRACT, NULL);
+        return false;
+    }
     /* flag1_externo: 1 (ID1412311156) */
-    pn_moves_put(&moves, &s_at_flag1_externo, (int64_t[]){ 1 }, 1, PN_NO_TIME);
+    bool fits = flag1_externo_add(cx, m, &flag1_externo_token, 1U);
     /* Waiting: () (ID1412311158) */
-    pn_moves_put(&moves, &s_at_Robot1_Waiting, (pn_unit_t[]){ PN_UNIT }, 1, PN_NO_TIME);
-    const bool is_done = pn_moves_commit(&moves, m);
-    pn_arena_release(cx->arena, before);
-    return is_done;
+    fits = Robot1_Waiting_add(cx, m, &Robot1_Waiting_token, 1U) && fits;
+    if (!fits) {
+        /* a place is full: everything is put back */
+        (void)Robot1_Waiting_take(m, &Robot1_Waiting_token, 1U);
+        (void)flag1_externo_take(m, &flag1_externo_token, 1U);
+        (void)Robot1_Done_add(cx, m, &Robot1_Done_token, 1U);
+    }
+    return fits;
 }
 
 static void Robot1_Report_json(const void *binding, pn_text_t *out)
@@ -4852,20 +5945,26 @@ static bool Robot1_MoveJoint_fire(pn_ctx_t *cx, void *marking, void *binding)
     Robot1_MoveJoint_binding_t *const b = binding;
     cx->origin = "page `Robot`, transition `MoveJoint` (ID1412311160)";
     cx->now = m->now;
-    const size_t before = pn_arena_mark(cx->arena);
-    pn_moves_t moves;
-    pn_moves_init(&moves, cx);
     /* code segment: action moveJoint p */
     ml_moveJoint(b->p);
+    const pn_unit_t Robot1_Done_token = PN_UNIT;
     /* Commanded: c (ID1412311165) */
-    pn_moves_take(&moves, &s_at_Robot1_Commanded, &b->c, 1, PN_NO_TIME);
+    bool is_taken = Robot1_Commanded_take(m, &b->c, 1U);
     /* dadosrobo1: p (ID1412311244) */
-    pn_moves_take(&moves, &s_at_dadosrobo1, &b->p, 1, PN_NO_TIME);
+    is_taken = is_taken && dadosrobo1_take(m, &b->p, 1U);
+    if (!is_taken) {
+        pn_raise(cx, PN_ERR_SUBTRACT, NULL);
+        return false;
+    }
     /* Done: () (ID1412311167) */
-    pn_moves_put(&moves, &s_at_Robot1_Done, (pn_unit_t[]){ PN_UNIT }, 1, PN_NO_TIME);
-    const bool is_done = pn_moves_commit(&moves, m);
-    pn_arena_release(cx->arena, before);
-    return is_done;
+    bool fits = Robot1_Done_add(cx, m, &Robot1_Done_token, 1U);
+    if (!fits) {
+        /* a place is full: everything is put back */
+        (void)Robot1_Done_take(m, &Robot1_Done_token, 1U);
+        (void)dadosrobo1_add(cx, m, &b->p, 1U);
+        (void)Robot1_Commanded_add(cx, m, &b->c, 1U);
+    }
+    return fits;
 }
 
 static void Robot1_MoveJoint_json(const void *binding, pn_text_t *out)
@@ -4925,20 +6024,26 @@ static bool Robot1_MoveLinear_fire(pn_ctx_t *cx, void *marking, void *binding)
     Robot1_MoveLinear_binding_t *const b = binding;
     cx->origin = "page `Robot`, transition `MoveLinear` (ID1412311169)";
     cx->now = m->now;
-    const size_t before = pn_arena_mark(cx->arena);
-    pn_moves_t moves;
-    pn_moves_init(&moves, cx);
     /* code segment: action moveLinear p */
     ml_moveLinear(b->p);
+    const pn_unit_t Robot1_Done_token = PN_UNIT;
     /* Commanded: c (ID1412311174) */
-    pn_moves_take(&moves, &s_at_Robot1_Commanded, &b->c, 1, PN_NO_TIME);
+    bool is_taken = Robot1_Commanded_take(m, &b->c, 1U);
     /* dadosrobo1: p (ID1412311246) */
-    pn_moves_take(&moves, &s_at_dadosrobo1, &b->p, 1, PN_NO_TIME);
+    is_taken = is_taken && dadosrobo1_take(m, &b->p, 1U);
+    if (!is_taken) {
+        pn_raise(cx, PN_ERR_SUBTRACT, NULL);
+        return false;
+    }
     /* Done: () (ID1412311176) */
-    pn_moves_put(&moves, &s_at_Robot1_Done, (pn_unit_t[]){ PN_UNIT }, 1, PN_NO_TIME);
-    const bool is_done = pn_moves_commit(&moves, m);
-    pn_arena_release(cx->arena, before);
-    return is_done;
+    bool fits = Robot1_Done_add(cx, m, &Robot1_Done_token, 1U);
+    if (!fits) {
+        /* a place is full: everything is put back */
+        (void)Robot1_Done_take(m, &Robot1_Done_token, 1U);
+        (void)dadosrobo1_add(cx, m, &b->p, 1U);
+        (void)Robot1_Commanded_add(cx, m, &b->c, 1U);
+    }
+    return fits;
 }
 
 static void Robot1_MoveLinear_json(const void *binding, pn_text_t *out)
@@ -4992,18 +6097,23 @@ static bool Robot1_MoveHome_fire(pn_ctx_t *cx, void *marking, void *binding)
     Robot1_MoveHome_binding_t *const b = binding;
     cx->origin = "page `Robot`, transition `MoveHome` (ID1412311178)";
     cx->now = m->now;
-    const size_t before = pn_arena_mark(cx->arena);
-    pn_moves_t moves;
-    pn_moves_init(&moves, cx);
     /* code segment: action moveHome () */
     ml_moveHome();
+    const pn_unit_t Robot1_Done_token = PN_UNIT;
     /* Commanded: c (ID1412311183) */
-    pn_moves_take(&moves, &s_at_Robot1_Commanded, &b->c, 1, PN_NO_TIME);
+    bool is_taken = Robot1_Commanded_take(m, &b->c, 1U);
+    if (!is_taken) {
+        pn_raise(cx, PN_ERR_SUBTRACT, NULL);
+        return false;
+    }
     /* Done: () (ID1412311185) */
-    pn_moves_put(&moves, &s_at_Robot1_Done, (pn_unit_t[]){ PN_UNIT }, 1, PN_NO_TIME);
-    const bool is_done = pn_moves_commit(&moves, m);
-    pn_arena_release(cx->arena, before);
-    return is_done;
+    bool fits = Robot1_Done_add(cx, m, &Robot1_Done_token, 1U);
+    if (!fits) {
+        /* a place is full: everything is put back */
+        (void)Robot1_Done_take(m, &Robot1_Done_token, 1U);
+        (void)Robot1_Commanded_add(cx, m, &b->c, 1U);
+    }
+    return fits;
 }
 
 static void Robot1_MoveHome_json(const void *binding, pn_text_t *out)
@@ -5065,22 +6175,29 @@ static bool Robot1_Measure_fire(pn_ctx_t *cx, void *marking, void *binding)
     Robot1_Measure_binding_t *const b = binding;
     cx->origin = "page `Robot`, transition `Measure` (ID1412311187)";
     cx->now = m->now;
-    const size_t before = pn_arena_mark(cx->arena);
-    pn_moves_t moves;
-    pn_moves_init(&moves, cx);
     /* code segment: action measure r */
     b->m = ml_measure(b->r);
+    const pn_unit_t Robot1_Done_token = PN_UNIT;
     /* Commanded: c (ID1412311192) */
-    pn_moves_take(&moves, &s_at_Robot1_Commanded, &b->c, 1, PN_NO_TIME);
+    bool is_taken = Robot1_Commanded_take(m, &b->c, 1U);
     /* referencia1: r (ID1412311248) */
-    pn_moves_take(&moves, &s_at_referencia1, &b->r, 1, PN_NO_TIME);
+    is_taken = is_taken && referencia1_take(m, &b->r, 1U);
+    if (!is_taken) {
+        pn_raise(cx, PN_ERR_SUBTRACT, NULL);
+        return false;
+    }
     /* Done: () (ID1412311194) */
-    pn_moves_put(&moves, &s_at_Robot1_Done, (pn_unit_t[]){ PN_UNIT }, 1, PN_NO_TIME);
+    bool fits = Robot1_Done_add(cx, m, &Robot1_Done_token, 1U);
     /* medida1: m (ID1412311250) */
-    pn_moves_put(&moves, &s_at_medida1, &b->m, 1, PN_NO_TIME);
-    const bool is_done = pn_moves_commit(&moves, m);
-    pn_arena_release(cx->arena, before);
-    return is_done;
+    fits = medida1_add(cx, m, &b->m, 1U) && fits;
+    if (!fits) {
+        /* a place is full: everything is put back */
+        (void)medida1_take(m, &b->m, 1U);
+        (void)Robot1_Done_take(m, &Robot1_Done_token, 1U);
+        (void)referencia1_add(cx, m, &b->r, 1U);
+        (void)Robot1_Commanded_add(cx, m, &b->c, 1U);
+    }
+    return fits;
 }
 
 static void Robot1_Measure_json(const void *binding, pn_text_t *out)
@@ -5134,18 +6251,23 @@ static bool Robot1_Drill_fire(pn_ctx_t *cx, void *marking, void *binding)
     Robot1_Drill_binding_t *const b = binding;
     cx->origin = "page `Robot`, transition `Drill` (ID1412311196)";
     cx->now = m->now;
-    const size_t before = pn_arena_mark(cx->arena);
-    pn_moves_t moves;
-    pn_moves_init(&moves, cx);
     /* code segment: action drill () */
     ml_drill();
+    const pn_unit_t Robot1_Done_token = PN_UNIT;
     /* Commanded: c (ID1412311201) */
-    pn_moves_take(&moves, &s_at_Robot1_Commanded, &b->c, 1, PN_NO_TIME);
+    bool is_taken = Robot1_Commanded_take(m, &b->c, 1U);
+    if (!is_taken) {
+        pn_raise(cx, PN_ERR_SUBTRACT, NULL);
+        return false;
+    }
     /* Done: () (ID1412311203) */
-    pn_moves_put(&moves, &s_at_Robot1_Done, (pn_unit_t[]){ PN_UNIT }, 1, PN_NO_TIME);
-    const bool is_done = pn_moves_commit(&moves, m);
-    pn_arena_release(cx->arena, before);
-    return is_done;
+    bool fits = Robot1_Done_add(cx, m, &Robot1_Done_token, 1U);
+    if (!fits) {
+        /* a place is full: everything is put back */
+        (void)Robot1_Done_take(m, &Robot1_Done_token, 1U);
+        (void)Robot1_Commanded_add(cx, m, &b->c, 1U);
+    }
+    return fits;
 }
 
 static void Robot1_Drill_json(const void *binding, pn_text_t *out)
@@ -5199,18 +6321,23 @@ static bool Robot1_Insert_fire(pn_ctx_t *cx, void *marking, void *binding)
     Robot1_Insert_binding_t *const b = binding;
     cx->origin = "page `Robot`, transition `Insert` (ID1412311205)";
     cx->now = m->now;
-    const size_t before = pn_arena_mark(cx->arena);
-    pn_moves_t moves;
-    pn_moves_init(&moves, cx);
     /* code segment: action insert () */
     ml_insert();
+    const pn_unit_t Robot1_Done_token = PN_UNIT;
     /* Commanded: c (ID1412311210) */
-    pn_moves_take(&moves, &s_at_Robot1_Commanded, &b->c, 1, PN_NO_TIME);
+    bool is_taken = Robot1_Commanded_take(m, &b->c, 1U);
+    if (!is_taken) {
+        pn_raise(cx, PN_ERR_SUBTRACT, NULL);
+        return false;
+    }
     /* Done: () (ID1412311212) */
-    pn_moves_put(&moves, &s_at_Robot1_Done, (pn_unit_t[]){ PN_UNIT }, 1, PN_NO_TIME);
-    const bool is_done = pn_moves_commit(&moves, m);
-    pn_arena_release(cx->arena, before);
-    return is_done;
+    bool fits = Robot1_Done_add(cx, m, &Robot1_Done_token, 1U);
+    if (!fits) {
+        /* a place is full: everything is put back */
+        (void)Robot1_Done_take(m, &Robot1_Done_token, 1U);
+        (void)Robot1_Commanded_add(cx, m, &b->c, 1U);
+    }
+    return fits;
 }
 
 static void Robot1_Insert_json(const void *binding, pn_text_t *out)
@@ -5264,18 +6391,23 @@ static bool Robot1_Press_fire(pn_ctx_t *cx, void *marking, void *binding)
     Robot1_Press_binding_t *const b = binding;
     cx->origin = "page `Robot`, transition `Press` (ID1412311214)";
     cx->now = m->now;
-    const size_t before = pn_arena_mark(cx->arena);
-    pn_moves_t moves;
-    pn_moves_init(&moves, cx);
     /* code segment: action press () */
     ml_press();
+    const pn_unit_t Robot1_Done_token = PN_UNIT;
     /* Commanded: c (ID1412311219) */
-    pn_moves_take(&moves, &s_at_Robot1_Commanded, &b->c, 1, PN_NO_TIME);
+    bool is_taken = Robot1_Commanded_take(m, &b->c, 1U);
+    if (!is_taken) {
+        pn_raise(cx, PN_ERR_SUBTRACT, NULL);
+        return false;
+    }
     /* Done: () (ID1412311221) */
-    pn_moves_put(&moves, &s_at_Robot1_Done, (pn_unit_t[]){ PN_UNIT }, 1, PN_NO_TIME);
-    const bool is_done = pn_moves_commit(&moves, m);
-    pn_arena_release(cx->arena, before);
-    return is_done;
+    bool fits = Robot1_Done_add(cx, m, &Robot1_Done_token, 1U);
+    if (!fits) {
+        /* a place is full: everything is put back */
+        (void)Robot1_Done_take(m, &Robot1_Done_token, 1U);
+        (void)Robot1_Commanded_add(cx, m, &b->c, 1U);
+    }
+    return fits;
 }
 
 static void Robot1_Press_json(const void *binding, pn_text_t *out)
@@ -5329,18 +6461,23 @@ static bool Robot1_Release_fire(pn_ctx_t *cx, void *marking, void *binding)
     Robot1_Release_binding_t *const b = binding;
     cx->origin = "page `Robot`, transition `Release` (ID1412311223)";
     cx->now = m->now;
-    const size_t before = pn_arena_mark(cx->arena);
-    pn_moves_t moves;
-    pn_moves_init(&moves, cx);
     /* code segment: action release () */
     ml_release();
+    const pn_unit_t Robot1_Done_token = PN_UNIT;
     /* Commanded: c (ID1412311228) */
-    pn_moves_take(&moves, &s_at_Robot1_Commanded, &b->c, 1, PN_NO_TIME);
+    bool is_taken = Robot1_Commanded_take(m, &b->c, 1U);
+    if (!is_taken) {
+        pn_raise(cx, PN_ERR_SUBTRACT, NULL);
+        return false;
+    }
     /* Done: () (ID1412311230) */
-    pn_moves_put(&moves, &s_at_Robot1_Done, (pn_unit_t[]){ PN_UNIT }, 1, PN_NO_TIME);
-    const bool is_done = pn_moves_commit(&moves, m);
-    pn_arena_release(cx->arena, before);
-    return is_done;
+    bool fits = Robot1_Done_add(cx, m, &Robot1_Done_token, 1U);
+    if (!fits) {
+        /* a place is full: everything is put back */
+        (void)Robot1_Done_take(m, &Robot1_Done_token, 1U);
+        (void)Robot1_Commanded_add(cx, m, &b->c, 1U);
+    }
+    return fits;
 }
 
 static void Robot1_Release_json(const void *binding, pn_text_t *out)
@@ -5373,7 +6510,7 @@ static bool Robot2_Accept_enumerate(pn_ctx_t *cx, const void *marking,
     cx->origin = "page `Robot`, transition `Accept` (ID1412311125)";
     cx->now = m->now;
     /* Waiting: () (ID1412311138) */
-    if (pn_bag_count(&s_at_Robot2_Waiting, m, (pn_unit_t[]){ PN_UNIT }, PN_NO_TIME) < 1U) {
+    if (Robot2_Waiting_held(m, (pn_unit_t[]){ PN_UNIT }) < 1U) {
         return true;
     }
     /* flag2_interno: c (ID1412311136) */
@@ -5392,18 +6529,24 @@ static bool Robot2_Accept_fire(pn_ctx_t *cx, void *marking, void *binding)
     Robot2_Accept_binding_t *const b = binding;
     cx->origin = "page `Robot`, transition `Accept` (ID1412311125)";
     cx->now = m->now;
-    const size_t before = pn_arena_mark(cx->arena);
-    pn_moves_t moves;
-    pn_moves_init(&moves, cx);
+    const pn_unit_t Robot2_Waiting_token = PN_UNIT;
     /* flag2_interno: c (ID1412311136) */
-    pn_moves_take(&moves, &s_at_flag2_interno, &b->c, 1, PN_NO_TIME);
+    bool is_taken = flag2_interno_take(m, &b->c, 1U);
     /* Waiting: () (ID1412311138) */
-    pn_moves_take(&moves, &s_at_Robot2_Waiting, (pn_unit_t[]){ PN_UNIT }, 1, PN_NO_TIME);
+    is_taken = is_taken && Robot2_Waiting_take(m, &Robot2_Waiting_token, 1U);
+    if (!is_taken) {
+        pn_raise(cx, PN_ERR_SUBTRACT, NULL);
+        return false;
+    }
     /* Commanded: c (ID1412311140) */
-    pn_moves_put(&moves, &s_at_Robot2_Commanded, &b->c, 1, PN_NO_TIME);
-    const bool is_done = pn_moves_commit(&moves, m);
-    pn_arena_release(cx->arena, before);
-    return is_done;
+    bool fits = Robot2_Commanded_add(cx, m, &b->c, 1U);
+    if (!fits) {
+        /* a place is full: everything is put back */
+        (void)Robot2_Commanded_take(m, &b->c, 1U);
+        (void)Robot2_Waiting_add(cx, m, &Robot2_Waiting_token, 1U);
+        (void)flag2_interno_add(cx, m, &b->c, 1U);
+    }
+    return fits;
 }
 
 static void Robot2_Accept_json(const void *binding, pn_text_t *out)
@@ -5432,7 +6575,7 @@ static bool Robot2_Report_enumerate(pn_ctx_t *cx, const void *marking,
     cx->origin = "page `Robot`, transition `Report` (ID1412311145)";
     cx->now = m->now;
     /* Done: () (ID1412311154) */
-    if (pn_bag_count(&s_at_Robot2_Done, m, (pn_unit_t[]){ PN_UNIT }, PN_NO_TIME) < 1U) {
+    if (Robot2_Done_held(m, (pn_unit_t[]){ PN_UNIT }) < 1U) {
         return true;
     }
     if (!sink(user, self, &b)) {
@@ -5447,18 +6590,30 @@ static bool Robot2_Report_fire(pn_ctx_t *cx, void *marking, void *binding)
     (void)binding;
     cx->origin = "page `Robot`, transition `Report` (ID1412311145)";
     cx->now = m->now;
-    const size_t before = pn_arena_mark(cx->arena);
-    pn_moves_t moves;
-    pn_moves_init(&moves, cx);
+    const pn_unit_t Robot2_Done_token = PN_UNIT;
+    int64_t flag2_externo_token = 1;
+    pn_bag_check(cx, &s_at_flag2_externo, &flag2_externo_token);
+    const pn_unit_t Robot2_Waiting_token = PN_UNIT;
+    if (!pn_ok(cx)) {
+        return false;
+    }
     /* Done: () (ID1412311154) */
-    pn_moves_take(&moves, &s_at_Robot2_Done, (pn_unit_t[]){ PN_UNIT }, 1, PN_NO_TIME);
+    bool is_taken = Robot2_Done_take(m, &Robot2_Done_token, 1U);
+    if (!is_taken) {
+        pn_raise(cx, PN_ERR_SUBTRACT, NULL);
+        return false;
+    }
     /* flag2_externo: 1 (ID1412311156) */
-    pn_moves_put(&moves, &s_at_flag2_externo, (int64_t[]){ 1 }, 1, PN_NO_TIME);
+    bool fits = flag2_externo_add(cx, m, &flag2_externo_token, 1U);
     /* Waiting: () (ID1412311158) */
-    pn_moves_put(&moves, &s_at_Robot2_Waiting, (pn_unit_t[]){ PN_UNIT }, 1, PN_NO_TIME);
-    const bool is_done = pn_moves_commit(&moves, m);
-    pn_arena_release(cx->arena, before);
-    return is_done;
+    fits = Robot2_Waiting_add(cx, m, &Robot2_Waiting_token, 1U) && fits;
+    if (!fits) {
+        /* a place is full: everything is put back */
+        (void)Robot2_Waiting_take(m, &Robot2_Waiting_token, 1U);
+        (void)flag2_externo_take(m, &flag2_externo_token, 1U);
+        (void)Robot2_Done_add(cx, m, &Robot2_Done_token, 1U);
+    }
+    return fits;
 }
 
 static void Robot2_Report_json(const void *binding, pn_text_t *out)
@@ -5518,20 +6673,26 @@ static bool Robot2_MoveJoint_fire(pn_ctx_t *cx, void *marking, void *binding)
     Robot2_MoveJoint_binding_t *const b = binding;
     cx->origin = "page `Robot`, transition `MoveJoint` (ID1412311160)";
     cx->now = m->now;
-    const size_t before = pn_arena_mark(cx->arena);
-    pn_moves_t moves;
-    pn_moves_init(&moves, cx);
     /* code segment: action moveJoint p */
     ml_moveJoint(b->p);
+    const pn_unit_t Robot2_Done_token = PN_UNIT;
     /* Commanded: c (ID1412311165) */
-    pn_moves_take(&moves, &s_at_Robot2_Commanded, &b->c, 1, PN_NO_TIME);
+    bool is_taken = Robot2_Commanded_take(m, &b->c, 1U);
     /* dadosrobo2: p (ID1412311244) */
-    pn_moves_take(&moves, &s_at_dadosrobo2, &b->p, 1, PN_NO_TIME);
+    is_taken = is_taken && dadosrobo2_take(m, &b->p, 1U);
+    if (!is_taken) {
+        pn_raise(cx, PN_ERR_SUBTRACT, NULL);
+        return false;
+    }
     /* Done: () (ID1412311167) */
-    pn_moves_put(&moves, &s_at_Robot2_Done, (pn_unit_t[]){ PN_UNIT }, 1, PN_NO_TIME);
-    const bool is_done = pn_moves_commit(&moves, m);
-    pn_arena_release(cx->arena, before);
-    return is_done;
+    bool fits = Robot2_Done_add(cx, m, &Robot2_Done_token, 1U);
+    if (!fits) {
+        /* a place is full: everything is put back */
+        (void)Robot2_Done_take(m, &Robot2_Done_token, 1U);
+        (void)dadosrobo2_add(cx, m, &b->p, 1U);
+        (void)Robot2_Commanded_add(cx, m, &b->c, 1U);
+    }
+    return fits;
 }
 
 static void Robot2_MoveJoint_json(const void *binding, pn_text_t *out)
@@ -5591,20 +6752,26 @@ static bool Robot2_MoveLinear_fire(pn_ctx_t *cx, void *marking, void *binding)
     Robot2_MoveLinear_binding_t *const b = binding;
     cx->origin = "page `Robot`, transition `MoveLinear` (ID1412311169)";
     cx->now = m->now;
-    const size_t before = pn_arena_mark(cx->arena);
-    pn_moves_t moves;
-    pn_moves_init(&moves, cx);
     /* code segment: action moveLinear p */
     ml_moveLinear(b->p);
+    const pn_unit_t Robot2_Done_token = PN_UNIT;
     /* Commanded: c (ID1412311174) */
-    pn_moves_take(&moves, &s_at_Robot2_Commanded, &b->c, 1, PN_NO_TIME);
+    bool is_taken = Robot2_Commanded_take(m, &b->c, 1U);
     /* dadosrobo2: p (ID1412311246) */
-    pn_moves_take(&moves, &s_at_dadosrobo2, &b->p, 1, PN_NO_TIME);
+    is_taken = is_taken && dadosrobo2_take(m, &b->p, 1U);
+    if (!is_taken) {
+        pn_raise(cx, PN_ERR_SUBTRACT, NULL);
+        return false;
+    }
     /* Done: () (ID1412311176) */
-    pn_moves_put(&moves, &s_at_Robot2_Done, (pn_unit_t[]){ PN_UNIT }, 1, PN_NO_TIME);
-    const bool is_done = pn_moves_commit(&moves, m);
-    pn_arena_release(cx->arena, before);
-    return is_done;
+    bool fits = Robot2_Done_add(cx, m, &Robot2_Done_token, 1U);
+    if (!fits) {
+        /* a place is full: everything is put back */
+        (void)Robot2_Done_take(m, &Robot2_Done_token, 1U);
+        (void)dadosrobo2_add(cx, m, &b->p, 1U);
+        (void)Robot2_Commanded_add(cx, m, &b->c, 1U);
+    }
+    return fits;
 }
 
 static void Robot2_MoveLinear_json(const void *binding, pn_text_t *out)
@@ -5658,18 +6825,23 @@ static bool Robot2_MoveHome_fire(pn_ctx_t *cx, void *marking, void *binding)
     Robot2_MoveHome_binding_t *const b = binding;
     cx->origin = "page `Robot`, transition `MoveHome` (ID1412311178)";
     cx->now = m->now;
-    const size_t before = pn_arena_mark(cx->arena);
-    pn_moves_t moves;
-    pn_moves_init(&moves, cx);
     /* code segment: action moveHome () */
     ml_moveHome();
+    const pn_unit_t Robot2_Done_token = PN_UNIT;
     /* Commanded: c (ID1412311183) */
-    pn_moves_take(&moves, &s_at_Robot2_Commanded, &b->c, 1, PN_NO_TIME);
+    bool is_taken = Robot2_Commanded_take(m, &b->c, 1U);
+    if (!is_taken) {
+        pn_raise(cx, PN_ERR_SUBTRACT, NULL);
+        return false;
+    }
     /* Done: () (ID1412311185) */
-    pn_moves_put(&moves, &s_at_Robot2_Done, (pn_unit_t[]){ PN_UNIT }, 1, PN_NO_TIME);
-    const bool is_done = pn_moves_commit(&moves, m);
-    pn_arena_release(cx->arena, before);
-    return is_done;
+    bool fits = Robot2_Done_add(cx, m, &Robot2_Done_token, 1U);
+    if (!fits) {
+        /* a place is full: everything is put back */
+        (void)Robot2_Done_take(m, &Robot2_Done_token, 1U);
+        (void)Robot2_Commanded_add(cx, m, &b->c, 1U);
+    }
+    return fits;
 }
 
 static void Robot2_MoveHome_json(const void *binding, pn_text_t *out)
@@ -5731,22 +6903,29 @@ static bool Robot2_Measure_fire(pn_ctx_t *cx, void *marking, void *binding)
     Robot2_Measure_binding_t *const b = binding;
     cx->origin = "page `Robot`, transition `Measure` (ID1412311187)";
     cx->now = m->now;
-    const size_t before = pn_arena_mark(cx->arena);
-    pn_moves_t moves;
-    pn_moves_init(&moves, cx);
     /* code segment: action measure r */
     b->m = ml_measure(b->r);
+    const pn_unit_t Robot2_Done_token = PN_UNIT;
     /* Commanded: c (ID1412311192) */
-    pn_moves_take(&moves, &s_at_Robot2_Commanded, &b->c, 1, PN_NO_TIME);
+    bool is_taken = Robot2_Commanded_take(m, &b->c, 1U);
     /* referencia: r (ID1412311248) */
-    pn_moves_take(&moves, &s_at_Robot2_referencia, &b->r, 1, PN_NO_TIME);
+    is_taken = is_taken && Robot2_referencia_take(m, &b->r, 1U);
+    if (!is_taken) {
+        pn_raise(cx, PN_ERR_SUBTRACT, NULL);
+        return false;
+    }
     /* Done: () (ID1412311194) */
-    pn_moves_put(&moves, &s_at_Robot2_Done, (pn_unit_t[]){ PN_UNIT }, 1, PN_NO_TIME);
+    bool fits = Robot2_Done_add(cx, m, &Robot2_Done_token, 1U);
     /* medida: m (ID1412311250) */
-    pn_moves_put(&moves, &s_at_Robot2_medida, &b->m, 1, PN_NO_TIME);
-    const bool is_done = pn_moves_commit(&moves, m);
-    pn_arena_release(cx->arena, before);
-    return is_done;
+    fits = Robot2_medida_add(cx, m, &b->m, 1U) && fits;
+    if (!fits) {
+        /* a place is full: everything is put back */
+        (void)Robot2_medida_take(m, &b->m, 1U);
+        (void)Robot2_Done_take(m, &Robot2_Done_token, 1U);
+        (void)Robot2_referencia_add(cx, m, &b->r, 1U);
+        (void)Robot2_Commanded_add(cx, m, &b->c, 1U);
+    }
+    return fits;
 }
 
 static void Robot2_Measure_json(const void *binding, pn_text_t *out)
@@ -5800,18 +6979,23 @@ static bool Robot2_Drill_fire(pn_ctx_t *cx, void *marking, void *binding)
     Robot2_Drill_binding_t *const b = binding;
     cx->origin = "page `Robot`, transition `Drill` (ID1412311196)";
     cx->now = m->now;
-    const size_t before = pn_arena_mark(cx->arena);
-    pn_moves_t moves;
-    pn_moves_init(&moves, cx);
     /* code segment: action drill () */
     ml_drill();
+    const pn_unit_t Robot2_Done_token = PN_UNIT;
     /* Commanded: c (ID1412311201) */
-    pn_moves_take(&moves, &s_at_Robot2_Commanded, &b->c, 1, PN_NO_TIME);
+    bool is_taken = Robot2_Commanded_take(m, &b->c, 1U);
+    if (!is_taken) {
+        pn_raise(cx, PN_ERR_SUBTRACT, NULL);
+        return false;
+    }
     /* Done: () (ID1412311203) */
-    pn_moves_put(&moves, &s_at_Robot2_Done, (pn_unit_t[]){ PN_UNIT }, 1, PN_NO_TIME);
-    const bool is_done = pn_moves_commit(&moves, m);
-    pn_arena_release(cx->arena, before);
-    return is_done;
+    bool fits = Robot2_Done_add(cx, m, &Robot2_Done_token, 1U);
+    if (!fits) {
+        /* a place is full: everything is put back */
+        (void)Robot2_Done_take(m, &Robot2_Done_token, 1U);
+        (void)Robot2_Commanded_add(cx, m, &b->c, 1U);
+    }
+    return fits;
 }
 
 static void Robot2_Drill_json(const void *binding, pn_text_t *out)
@@ -5865,18 +7049,23 @@ static bool Robot2_Insert_fire(pn_ctx_t *cx, void *marking, void *binding)
     Robot2_Insert_binding_t *const b = binding;
     cx->origin = "page `Robot`, transition `Insert` (ID1412311205)";
     cx->now = m->now;
-    const size_t before = pn_arena_mark(cx->arena);
-    pn_moves_t moves;
-    pn_moves_init(&moves, cx);
     /* code segment: action insert () */
     ml_insert();
+    const pn_unit_t Robot2_Done_token = PN_UNIT;
     /* Commanded: c (ID1412311210) */
-    pn_moves_take(&moves, &s_at_Robot2_Commanded, &b->c, 1, PN_NO_TIME);
+    bool is_taken = Robot2_Commanded_take(m, &b->c, 1U);
+    if (!is_taken) {
+        pn_raise(cx, PN_ERR_SUBTRACT, NULL);
+        return false;
+    }
     /* Done: () (ID1412311212) */
-    pn_moves_put(&moves, &s_at_Robot2_Done, (pn_unit_t[]){ PN_UNIT }, 1, PN_NO_TIME);
-    const bool is_done = pn_moves_commit(&moves, m);
-    pn_arena_release(cx->arena, before);
-    return is_done;
+    bool fits = Robot2_Done_add(cx, m, &Robot2_Done_token, 1U);
+    if (!fits) {
+        /* a place is full: everything is put back */
+        (void)Robot2_Done_take(m, &Robot2_Done_token, 1U);
+        (void)Robot2_Commanded_add(cx, m, &b->c, 1U);
+    }
+    return fits;
 }
 
 static void Robot2_Insert_json(const void *binding, pn_text_t *out)
@@ -5930,18 +7119,23 @@ static bool Robot2_Press_fire(pn_ctx_t *cx, void *marking, void *binding)
     Robot2_Press_binding_t *const b = binding;
     cx->origin = "page `Robot`, transition `Press` (ID1412311214)";
     cx->now = m->now;
-    const size_t before = pn_arena_mark(cx->arena);
-    pn_moves_t moves;
-    pn_moves_init(&moves, cx);
     /* code segment: action press () */
     ml_press();
+    const pn_unit_t Robot2_Done_token = PN_UNIT;
     /* Commanded: c (ID1412311219) */
-    pn_moves_take(&moves, &s_at_Robot2_Commanded, &b->c, 1, PN_NO_TIME);
+    bool is_taken = Robot2_Commanded_take(m, &b->c, 1U);
+    if (!is_taken) {
+        pn_raise(cx, PN_ERR_SUBTRACT, NULL);
+        return false;
+    }
     /* Done: () (ID1412311221) */
-    pn_moves_put(&moves, &s_at_Robot2_Done, (pn_unit_t[]){ PN_UNIT }, 1, PN_NO_TIME);
-    const bool is_done = pn_moves_commit(&moves, m);
-    pn_arena_release(cx->arena, before);
-    return is_done;
+    bool fits = Robot2_Done_add(cx, m, &Robot2_Done_token, 1U);
+    if (!fits) {
+        /* a place is full: everything is put back */
+        (void)Robot2_Done_take(m, &Robot2_Done_token, 1U);
+        (void)Robot2_Commanded_add(cx, m, &b->c, 1U);
+    }
+    return fits;
 }
 
 static void Robot2_Press_json(const void *binding, pn_text_t *out)
@@ -5995,18 +7189,23 @@ static bool Robot2_Release_fire(pn_ctx_t *cx, void *marking, void *binding)
     Robot2_Release_binding_t *const b = binding;
     cx->origin = "page `Robot`, transition `Release` (ID1412311223)";
     cx->now = m->now;
-    const size_t before = pn_arena_mark(cx->arena);
-    pn_moves_t moves;
-    pn_moves_init(&moves, cx);
     /* code segment: action release () */
     ml_release();
+    const pn_unit_t Robot2_Done_token = PN_UNIT;
     /* Commanded: c (ID1412311228) */
-    pn_moves_take(&moves, &s_at_Robot2_Commanded, &b->c, 1, PN_NO_TIME);
+    bool is_taken = Robot2_Commanded_take(m, &b->c, 1U);
+    if (!is_taken) {
+        pn_raise(cx, PN_ERR_SUBTRACT, NULL);
+        return false;
+    }
     /* Done: () (ID1412311230) */
-    pn_moves_put(&moves, &s_at_Robot2_Done, (pn_unit_t[]){ PN_UNIT }, 1, PN_NO_TIME);
-    const bool is_done = pn_moves_commit(&moves, m);
-    pn_arena_release(cx->arena, before);
-    return is_done;
+    bool fits = Robot2_Done_add(cx, m, &Robot2_Done_token, 1U);
+    if (!fits) {
+        /* a place is full: everything is put back */
+        (void)Robot2_Done_take(m, &Robot2_Done_token, 1U);
+        (void)Robot2_Commanded_add(cx, m, &b->c, 1U);
+    }
+    return fits;
 }
 
 static void Robot2_Release_json(const void *binding, pn_text_t *out)
@@ -6019,7 +7218,80 @@ static void Robot2_Release_json(const void *binding, pn_text_t *out)
 static bool init(pn_ctx_t *cx, void *marking)
 {
     net_marking_t *const m = marking;
-    (void)memset(m, 0, sizeof *m);
+    m->now = (pn_time_t){ 0 };
+    m->dadosrobo1.used = 0U;
+    m->flag1_interno.used = 0U;
+    m->flag1_externo.used = 0U;
+    m->referencia1.used = 0U;
+    m->medida1.used = 0U;
+    m->dadosrobo2.used = 0U;
+    m->flag2_interno.used = 0U;
+    m->flag2_externo.used = 0U;
+    m->Supervisor_coordenadas.used = 0U;
+    m->Supervisor_planned.used = 0U;
+    m->Supervisor_approached.used = 0U;
+    m->Supervisor_verified.used = 0U;
+    m->Supervisor_corrected.used = 0U;
+    m->Supervisor_installed.used = 0U;
+    m->Supervisor_Finished.used = 0U;
+    m->Supervisor_Approach_order.used = 0U;
+    m->Supervisor_Approach_done.used = 0U;
+    m->Supervisor_Approach_seam.used = 0U;
+    m->Supervisor_Approach_Move_both_moving_1.used = 0U;
+    m->Supervisor_Approach_Move_both_there_1.used = 0U;
+    m->Supervisor_Approach_Move_both_moving_2.used = 0U;
+    m->Supervisor_Approach_Move_both_there_2.used = 0U;
+    m->Supervisor_Verify_first_asked.used = 0U;
+    m->Supervisor_Verify_last_asked.used = 0U;
+    m->Supervisor_Correct_offset.used = 0U;
+    m->Supervisor_Correct_order.used = 0U;
+    m->Supervisor_Correct_done.used = 0U;
+    m->Supervisor_Correct_seam.used = 0U;
+    m->Supervisor_Correct_Move_both_moving_1.used = 0U;
+    m->Supervisor_Correct_Move_both_there_1.used = 0U;
+    m->Supervisor_Correct_Move_both_moving_2.used = 0U;
+    m->Supervisor_Correct_Move_both_there_2.used = 0U;
+    m->Supervisor_Install_shift.used = 0U;
+    m->Supervisor_Install_ready.used = 0U;
+    m->Supervisor_Install_riveted.used = 0U;
+    m->Supervisor_Install_return.used = 0U;
+    m->Supervisor_Install_work.used = 0U;
+    m->Supervisor_Install_Shift_moving_1.used = 0U;
+    m->Supervisor_Install_Shift_there_1.used = 0U;
+    m->Supervisor_Install_Shift_moving_2.used = 0U;
+    m->Supervisor_Install_Shift_there_2.used = 0U;
+    m->Supervisor_Install_Rivet_advance.used = 0U;
+    m->Supervisor_Install_Rivet_contact.used = 0U;
+    m->Supervisor_Install_Rivet_fastened.used = 0U;
+    m->Supervisor_Install_Rivet_retract.used = 0U;
+    m->Supervisor_Install_Rivet_Advance_moving_1.used = 0U;
+    m->Supervisor_Install_Rivet_Advance_there_1.used = 0U;
+    m->Supervisor_Install_Rivet_Advance_moving_2.used = 0U;
+    m->Supervisor_Install_Rivet_Advance_there_2.used = 0U;
+    m->Supervisor_Install_Rivet_Fasten_pressing.used = 0U;
+    m->Supervisor_Install_Rivet_Fasten_drilling.used = 0U;
+    m->Supervisor_Install_Rivet_Fasten_inserting.used = 0U;
+    m->Supervisor_Install_Rivet_Fasten_releasing.used = 0U;
+    m->Supervisor_Install_Rivet_Retract_moving_1.used = 0U;
+    m->Supervisor_Install_Rivet_Retract_there_1.used = 0U;
+    m->Supervisor_Install_Rivet_Retract_moving_2.used = 0U;
+    m->Supervisor_Install_Rivet_Retract_there_2.used = 0U;
+    m->Supervisor_Install_Return_moving_1.used = 0U;
+    m->Supervisor_Install_Return_there_1.used = 0U;
+    m->Supervisor_Install_Return_moving_2.used = 0U;
+    m->Supervisor_Install_Return_there_2.used = 0U;
+    m->Supervisor_Home_leaving_1.used = 0U;
+    m->Supervisor_Home_home_1.used = 0U;
+    m->Supervisor_Home_leaving_2.used = 0U;
+    m->Supervisor_Home_home_2.used = 0U;
+    m->Robot1_Waiting.used = 0U;
+    m->Robot1_Commanded.used = 0U;
+    m->Robot1_Done.used = 0U;
+    m->Robot2_Waiting.used = 0U;
+    m->Robot2_Commanded.used = 0U;
+    m->Robot2_Done.used = 0U;
+    m->Robot2_referencia.used = 0U;
+    m->Robot2_medida.used = 0U;
     pn_arena_reset(cx->arena);
     cx->now = m->now;
     cx->step = 0U;
@@ -6761,414 +8033,620 @@ static const pn_place_t s_places[] = {
     },
 };
 
+/* For each transition those that may be enabled in another way when it has occurred. */
+static const uint32_t s_affected_by_Supervisor_Load_Load[] = { 0U, 1U };
+static const uint32_t s_affected_by_Supervisor_Approach_Send[] = { 1U, 2U, 3U };
+static const uint32_t s_affected_by_Supervisor_Approach_Arrived[] = { 2U, 7U };
+static const uint32_t s_affected_by_Supervisor_Approach_Move_both_Command[] = { 3U, 5U, 6U, 48U, 50U, 51U, 58U, 60U, 61U };
+static const uint32_t s_affected_by_Supervisor_Approach_Move_both_Both[] = { 2U, 4U };
+static const uint32_t s_affected_by_Supervisor_Approach_Move_both_Reply_1[] = { 4U, 5U, 8U, 9U, 16U, 23U, 29U, 33U, 34U, 38U, 42U, 46U };
+static const uint32_t s_affected_by_Supervisor_Approach_Move_both_Reply_2[] = { 4U, 6U, 17U, 24U, 30U, 32U, 35U, 39U, 43U, 47U };
+static const uint32_t s_affected_by_Supervisor_Verify_Ask_first[] = { 7U, 8U, 48U, 53U };
+static const uint32_t s_affected_by_Supervisor_Verify_Ask_last[] = { 5U, 8U, 9U, 16U, 23U, 29U, 33U, 34U, 38U, 42U, 46U, 48U, 53U };
+static const uint32_t s_affected_by_Supervisor_Verify_Measured[] = { 5U, 8U, 9U, 10U, 16U, 23U, 29U, 33U, 34U, 38U, 42U, 46U };
+static const uint32_t s_affected_by_Supervisor_Correct_Compare[] = { 10U, 11U, 12U, 13U };
+static const uint32_t s_affected_by_Supervisor_Correct_Move_over[] = { 11U, 12U, 13U, 14U };
+static const uint32_t s_affected_by_Supervisor_Correct_Moved[] = { 11U, 12U, 13U, 20U };
+static const uint32_t s_affected_by_Supervisor_Correct_As_planned[] = { 11U, 12U, 13U, 20U };
+static const uint32_t s_affected_by_Supervisor_Correct_Move_both_Command[] = { 14U, 16U, 17U, 48U, 50U, 51U, 58U, 60U, 61U };
+static const uint32_t s_affected_by_Supervisor_Correct_Move_both_Both[] = { 12U, 15U };
+static const uint32_t s_affected_by_Supervisor_Correct_Move_both_Reply_1[] = { 5U, 8U, 9U, 15U, 16U, 23U, 29U, 33U, 34U, 38U, 42U, 46U };
+static const uint32_t s_affected_by_Supervisor_Correct_Move_both_Reply_2[] = { 6U, 15U, 17U, 24U, 30U, 32U, 35U, 39U, 43U, 47U };
+static const uint32_t s_affected_by_Supervisor_Install_Go_back[] = { 18U, 19U, 40U };
+static const uint32_t s_affected_by_Supervisor_Install_Next_rivet[] = { 18U, 19U, 21U };
+static const uint32_t s_affected_by_Supervisor_Install_Start[] = { 18U, 19U, 20U, 25U };
+static const uint32_t s_affected_by_Supervisor_Install_Shift_Command[] = { 21U, 23U, 24U, 48U, 50U, 51U, 58U, 60U, 61U };
+static const uint32_t s_affected_by_Supervisor_Install_Shift_Both[] = { 22U, 25U };
+static const uint32_t s_affected_by_Supervisor_Install_Shift_Reply_1[] = { 5U, 8U, 9U, 16U, 22U, 23U, 29U, 33U, 34U, 38U, 42U, 46U };
+static const uint32_t s_affected_by_Supervisor_Install_Shift_Reply_2[] = { 6U, 17U, 22U, 24U, 30U, 32U, 35U, 39U, 43U, 47U };
+static const uint32_t s_affected_by_Supervisor_Install_Rivet_Go_in[] = { 25U, 27U };
+static const uint32_t s_affected_by_Supervisor_Install_Rivet_Go_out[] = { 26U, 36U };
+static const uint32_t s_affected_by_Supervisor_Install_Rivet_Advance_Command[] = { 27U, 29U, 30U, 48U, 50U, 51U, 58U, 60U, 61U };
+static const uint32_t s_affected_by_Supervisor_Install_Rivet_Advance_Both[] = { 28U, 31U };
+static const uint32_t s_affected_by_Supervisor_Install_Rivet_Advance_Reply_1[] = { 5U, 8U, 9U, 16U, 23U, 28U, 29U, 33U, 34U, 38U, 42U, 46U };
+static const uint32_t s_affected_by_Supervisor_Install_Rivet_Advance_Reply_2[] = { 6U, 17U, 24U, 28U, 30U, 32U, 35U, 39U, 43U, 47U };
+static const uint32_t s_affected_by_Supervisor_Install_Rivet_Fasten_Press[] = { 31U, 32U, 58U };
+static const uint32_t s_affected_by_Supervisor_Install_Rivet_Fasten_Drill[] = { 6U, 17U, 24U, 30U, 32U, 33U, 35U, 39U, 43U, 47U, 48U };
+static const uint32_t s_affected_by_Supervisor_Install_Rivet_Fasten_Insert[] = { 5U, 8U, 9U, 16U, 23U, 29U, 33U, 34U, 38U, 42U, 46U, 48U };
+static const uint32_t s_affected_by_Supervisor_Install_Rivet_Fasten_Release[] = { 5U, 8U, 9U, 16U, 23U, 29U, 33U, 34U, 35U, 38U, 42U, 46U, 58U };
+static const uint32_t s_affected_by_Supervisor_Install_Rivet_Fasten_Finish[] = { 6U, 17U, 24U, 26U, 30U, 32U, 35U, 39U, 43U, 47U };
+static const uint32_t s_affected_by_Supervisor_Install_Rivet_Retract_Command[] = { 36U, 38U, 39U, 48U, 50U, 51U, 58U, 60U, 61U };
+static const uint32_t s_affected_by_Supervisor_Install_Rivet_Retract_Both[] = { 18U, 19U, 37U };
+static const uint32_t s_affected_by_Supervisor_Install_Rivet_Retract_Reply_1[] = { 5U, 8U, 9U, 16U, 23U, 29U, 33U, 34U, 37U, 38U, 42U, 46U };
+static const uint32_t s_affected_by_Supervisor_Install_Rivet_Retract_Reply_2[] = { 6U, 17U, 24U, 30U, 32U, 35U, 37U, 39U, 43U, 47U };
+static const uint32_t s_affected_by_Supervisor_Install_Return_Command[] = { 40U, 42U, 43U, 48U, 50U, 51U, 58U, 60U, 61U };
+static const uint32_t s_affected_by_Supervisor_Install_Return_Both[] = { 41U, 44U };
+static const uint32_t s_affected_by_Supervisor_Install_Return_Reply_1[] = { 5U, 8U, 9U, 16U, 23U, 29U, 33U, 34U, 38U, 41U, 42U, 46U };
+static const uint32_t s_affected_by_Supervisor_Install_Return_Reply_2[] = { 6U, 17U, 24U, 30U, 32U, 35U, 39U, 41U, 43U, 47U };
+static const uint32_t s_affected_by_Supervisor_Home_Send_home[] = { 44U, 46U, 47U, 48U, 58U };
+static const uint32_t s_affected_by_Supervisor_Home_Both[] = { 45U };
+static const uint32_t s_affected_by_Supervisor_Home_Reply_1[] = { 5U, 8U, 9U, 16U, 23U, 29U, 33U, 34U, 38U, 42U, 45U, 46U };
+static const uint32_t s_affected_by_Supervisor_Home_Reply_2[] = { 6U, 17U, 24U, 30U, 32U, 35U, 39U, 43U, 45U, 47U };
+static const uint32_t s_affected_by_Robot1_Accept[] = { 48U, 50U, 51U, 52U, 53U, 54U, 55U, 56U, 57U };
+static const uint32_t s_affected_by_Robot1_Report[] = { 5U, 8U, 9U, 16U, 23U, 29U, 33U, 34U, 38U, 42U, 46U, 48U, 49U };
+static const uint32_t s_affected_by_Robot1_MoveJoint[] = { 49U, 50U, 51U, 52U, 53U, 54U, 55U, 56U, 57U };
+static const uint32_t s_affected_by_Robot1_MoveLinear[] = { 49U, 50U, 51U, 52U, 53U, 54U, 55U, 56U, 57U };
+static const uint32_t s_affected_by_Robot1_MoveHome[] = { 49U, 50U, 51U, 52U, 53U, 54U, 55U, 56U, 57U };
+static const uint32_t s_affected_by_Robot1_Measure[] = { 8U, 9U, 49U, 50U, 51U, 52U, 53U, 54U, 55U, 56U, 57U };
+static const uint32_t s_affected_by_Robot1_Drill[] = { 49U, 50U, 51U, 52U, 53U, 54U, 55U, 56U, 57U };
+static const uint32_t s_affected_by_Robot1_Insert[] = { 49U, 50U, 51U, 52U, 53U, 54U, 55U, 56U, 57U };
+static const uint32_t s_affected_by_Robot1_Press[] = { 49U, 50U, 51U, 52U, 53U, 54U, 55U, 56U, 57U };
+static const uint32_t s_affected_by_Robot1_Release[] = { 49U, 50U, 51U, 52U, 53U, 54U, 55U, 56U, 57U };
+static const uint32_t s_affected_by_Robot2_Accept[] = { 58U, 60U, 61U, 62U, 63U, 64U, 65U, 66U, 67U };
+static const uint32_t s_affected_by_Robot2_Report[] = { 6U, 17U, 24U, 30U, 32U, 35U, 39U, 43U, 47U, 58U, 59U };
+static const uint32_t s_affected_by_Robot2_MoveJoint[] = { 59U, 60U, 61U, 62U, 63U, 64U, 65U, 66U, 67U };
+static const uint32_t s_affected_by_Robot2_MoveLinear[] = { 59U, 60U, 61U, 62U, 63U, 64U, 65U, 66U, 67U };
+static const uint32_t s_affected_by_Robot2_MoveHome[] = { 59U, 60U, 61U, 62U, 63U, 64U, 65U, 66U, 67U };
+static const uint32_t s_affected_by_Robot2_Measure[] = { 59U, 60U, 61U, 62U, 63U, 64U, 65U, 66U, 67U };
+static const uint32_t s_affected_by_Robot2_Drill[] = { 59U, 60U, 61U, 62U, 63U, 64U, 65U, 66U, 67U };
+static const uint32_t s_affected_by_Robot2_Insert[] = { 59U, 60U, 61U, 62U, 63U, 64U, 65U, 66U, 67U };
+static const uint32_t s_affected_by_Robot2_Press[] = { 59U, 60U, 61U, 62U, 63U, 64U, 65U, 66U, 67U };
+static const uint32_t s_affected_by_Robot2_Release[] = { 59U, 60U, 61U, 62U, 63U, 64U, 65U, 66U, 67U };
+
 static const pn_transition_t s_transitions[] = {
     {
         .name = "Cell.Supervisor.Load.Load", .id = "ID1412310271", .owner = 0, .priority = 1000,
         .origin = "page `Load`, transition `Load` (ID1412310271)",
         .enumerate = Supervisor_Load_Load_enumerate, .fire = Supervisor_Load_Load_fire, .binding_json = Supervisor_Load_Load_json,
         .binding_size = sizeof(Supervisor_Load_Load_binding_t),
+        .affected_count = sizeof s_affected_by_Supervisor_Load_Load / sizeof s_affected_by_Supervisor_Load_Load[0],
+        .affected = s_affected_by_Supervisor_Load_Load,
     },
     {
         .name = "Cell.Supervisor.Approach.Send", .id = "ID1412310300", .owner = 0, .priority = 1000,
         .origin = "page `Approach`, transition `Send` (ID1412310300)",
         .enumerate = Supervisor_Approach_Send_enumerate, .fire = Supervisor_Approach_Send_fire, .binding_json = Supervisor_Approach_Send_json,
         .binding_size = sizeof(Supervisor_Approach_Send_binding_t),
+        .affected_count = sizeof s_affected_by_Supervisor_Approach_Send / sizeof s_affected_by_Supervisor_Approach_Send[0],
+        .affected = s_affected_by_Supervisor_Approach_Send,
     },
     {
         .name = "Cell.Supervisor.Approach.Arrived", .id = "ID1412310311", .owner = 0, .priority = 1000,
         .origin = "page `Approach`, transition `Arrived` (ID1412310311)",
         .enumerate = Supervisor_Approach_Arrived_enumerate, .fire = Supervisor_Approach_Arrived_fire, .binding_json = Supervisor_Approach_Arrived_json,
         .binding_size = sizeof(Supervisor_Approach_Arrived_binding_t),
+        .affected_count = sizeof s_affected_by_Supervisor_Approach_Arrived / sizeof s_affected_by_Supervisor_Approach_Arrived[0],
+        .affected = s_affected_by_Supervisor_Approach_Arrived,
     },
     {
         .name = "Cell.Supervisor.Approach.Move both.Command", .id = "ID1412310941", .owner = 0, .priority = 1000,
         .origin = "page `MoveBoth`, transition `Command` (ID1412310941)",
         .enumerate = Supervisor_Approach_Move_both_Command_enumerate, .fire = Supervisor_Approach_Move_both_Command_fire, .binding_json = Supervisor_Approach_Move_both_Command_json,
         .binding_size = sizeof(Supervisor_Approach_Move_both_Command_binding_t),
+        .affected_count = sizeof s_affected_by_Supervisor_Approach_Move_both_Command / sizeof s_affected_by_Supervisor_Approach_Move_both_Command[0],
+        .affected = s_affected_by_Supervisor_Approach_Move_both_Command,
     },
     {
         .name = "Cell.Supervisor.Approach.Move both.Both", .id = "ID1412310948", .owner = 0, .priority = 1000,
         .origin = "page `MoveBoth`, transition `Both` (ID1412310948)",
         .enumerate = Supervisor_Approach_Move_both_Both_enumerate, .fire = Supervisor_Approach_Move_both_Both_fire, .binding_json = Supervisor_Approach_Move_both_Both_json,
         .binding_size = sizeof(Supervisor_Approach_Move_both_Both_binding_t),
+        .affected_count = sizeof s_affected_by_Supervisor_Approach_Move_both_Both / sizeof s_affected_by_Supervisor_Approach_Move_both_Both[0],
+        .affected = s_affected_by_Supervisor_Approach_Move_both_Both,
     },
     {
         .name = "Cell.Supervisor.Approach.Move both.Reply 1", .id = "ID1412310962", .owner = 0, .priority = 1000,
         .origin = "page `MoveBoth`, transition `Reply 1` (ID1412310962)",
         .enumerate = Supervisor_Approach_Move_both_Reply_1_enumerate, .fire = Supervisor_Approach_Move_both_Reply_1_fire, .binding_json = Supervisor_Approach_Move_both_Reply_1_json,
         .binding_size = sizeof(Supervisor_Approach_Move_both_Reply_1_binding_t),
+        .affected_count = sizeof s_affected_by_Supervisor_Approach_Move_both_Reply_1 / sizeof s_affected_by_Supervisor_Approach_Move_both_Reply_1[0],
+        .affected = s_affected_by_Supervisor_Approach_Move_both_Reply_1,
     },
     {
         .name = "Cell.Supervisor.Approach.Move both.Reply 2", .id = "ID1412310999", .owner = 0, .priority = 1000,
         .origin = "page `MoveBoth`, transition `Reply 2` (ID1412310999)",
         .enumerate = Supervisor_Approach_Move_both_Reply_2_enumerate, .fire = Supervisor_Approach_Move_both_Reply_2_fire, .binding_json = Supervisor_Approach_Move_both_Reply_2_json,
         .binding_size = sizeof(Supervisor_Approach_Move_both_Reply_2_binding_t),
+        .affected_count = sizeof s_affected_by_Supervisor_Approach_Move_both_Reply_2 / sizeof s_affected_by_Supervisor_Approach_Move_both_Reply_2[0],
+        .affected = s_affected_by_Supervisor_Approach_Move_both_Reply_2,
     },
     {
         .name = "Cell.Supervisor.Verify.Ask first", .id = "ID1412310377", .owner = 0, .priority = 1000,
         .origin = "page `Verify`, transition `Ask first` (ID1412310377)",
         .enumerate = Supervisor_Verify_Ask_first_enumerate, .fire = Supervisor_Verify_Ask_first_fire, .binding_json = Supervisor_Verify_Ask_first_json,
         .binding_size = sizeof(Supervisor_Verify_Ask_first_binding_t),
+        .affected_count = sizeof s_affected_by_Supervisor_Verify_Ask_first / sizeof s_affected_by_Supervisor_Verify_Ask_first[0],
+        .affected = s_affected_by_Supervisor_Verify_Ask_first,
     },
     {
         .name = "Cell.Supervisor.Verify.Ask last", .id = "ID1412310385", .owner = 0, .priority = 1000,
         .origin = "page `Verify`, transition `Ask last` (ID1412310385)",
         .enumerate = Supervisor_Verify_Ask_last_enumerate, .fire = Supervisor_Verify_Ask_last_fire, .binding_json = Supervisor_Verify_Ask_last_json,
         .binding_size = sizeof(Supervisor_Verify_Ask_last_binding_t),
+        .affected_count = sizeof s_affected_by_Supervisor_Verify_Ask_last / sizeof s_affected_by_Supervisor_Verify_Ask_last[0],
+        .affected = s_affected_by_Supervisor_Verify_Ask_last,
     },
     {
         .name = "Cell.Supervisor.Verify.Measured", .id = "ID1412310393", .owner = 0, .priority = 1000,
         .origin = "page `Verify`, transition `Measured` (ID1412310393)",
         .enumerate = Supervisor_Verify_Measured_enumerate, .fire = Supervisor_Verify_Measured_fire, .binding_json = Supervisor_Verify_Measured_json,
         .binding_size = sizeof(Supervisor_Verify_Measured_binding_t),
+        .affected_count = sizeof s_affected_by_Supervisor_Verify_Measured / sizeof s_affected_by_Supervisor_Verify_Measured[0],
+        .affected = s_affected_by_Supervisor_Verify_Measured,
     },
     {
         .name = "Cell.Supervisor.Correct.Compare", .id = "ID1412310453", .owner = 0, .priority = 1000,
         .origin = "page `Correct`, transition `Compare` (ID1412310453)",
         .enumerate = Supervisor_Correct_Compare_enumerate, .fire = Supervisor_Correct_Compare_fire, .binding_json = Supervisor_Correct_Compare_json,
         .binding_size = sizeof(Supervisor_Correct_Compare_binding_t),
+        .affected_count = sizeof s_affected_by_Supervisor_Correct_Compare / sizeof s_affected_by_Supervisor_Correct_Compare[0],
+        .affected = s_affected_by_Supervisor_Correct_Compare,
     },
     {
         .name = "Cell.Supervisor.Correct.Move over", .id = "ID1412310461", .owner = 0, .priority = 1000,
         .origin = "page `Correct`, transition `Move over` (ID1412310461)",
         .enumerate = Supervisor_Correct_Move_over_enumerate, .fire = Supervisor_Correct_Move_over_fire, .binding_json = Supervisor_Correct_Move_over_json,
         .binding_size = sizeof(Supervisor_Correct_Move_over_binding_t),
+        .affected_count = sizeof s_affected_by_Supervisor_Correct_Move_over / sizeof s_affected_by_Supervisor_Correct_Move_over[0],
+        .affected = s_affected_by_Supervisor_Correct_Move_over,
     },
     {
         .name = "Cell.Supervisor.Correct.Moved", .id = "ID1412310478", .owner = 0, .priority = 1000,
         .origin = "page `Correct`, transition `Moved` (ID1412310478)",
         .enumerate = Supervisor_Correct_Moved_enumerate, .fire = Supervisor_Correct_Moved_fire, .binding_json = Supervisor_Correct_Moved_json,
         .binding_size = sizeof(Supervisor_Correct_Moved_binding_t),
+        .affected_count = sizeof s_affected_by_Supervisor_Correct_Moved / sizeof s_affected_by_Supervisor_Correct_Moved[0],
+        .affected = s_affected_by_Supervisor_Correct_Moved,
     },
     {
         .name = "Cell.Supervisor.Correct.As planned", .id = "ID1412310526", .owner = 0, .priority = 1000,
         .origin = "page `Correct`, transition `As planned` (ID1412310526)",
         .enumerate = Supervisor_Correct_As_planned_enumerate, .fire = Supervisor_Correct_As_planned_fire, .binding_json = Supervisor_Correct_As_planned_json,
         .binding_size = sizeof(Supervisor_Correct_As_planned_binding_t),
+        .affected_count = sizeof s_affected_by_Supervisor_Correct_As_planned / sizeof s_affected_by_Supervisor_Correct_As_planned[0],
+        .affected = s_affected_by_Supervisor_Correct_As_planned,
     },
     {
         .name = "Cell.Supervisor.Correct.Move both.Command", .id = "ID1412310941", .owner = 0, .priority = 1000,
         .origin = "page `MoveBoth`, transition `Command` (ID1412310941)",
         .enumerate = Supervisor_Correct_Move_both_Command_enumerate, .fire = Supervisor_Correct_Move_both_Command_fire, .binding_json = Supervisor_Correct_Move_both_Command_json,
         .binding_size = sizeof(Supervisor_Correct_Move_both_Command_binding_t),
+        .affected_count = sizeof s_affected_by_Supervisor_Correct_Move_both_Command / sizeof s_affected_by_Supervisor_Correct_Move_both_Command[0],
+        .affected = s_affected_by_Supervisor_Correct_Move_both_Command,
     },
     {
         .name = "Cell.Supervisor.Correct.Move both.Both", .id = "ID1412310948", .owner = 0, .priority = 1000,
         .origin = "page `MoveBoth`, transition `Both` (ID1412310948)",
         .enumerate = Supervisor_Correct_Move_both_Both_enumerate, .fire = Supervisor_Correct_Move_both_Both_fire, .binding_json = Supervisor_Correct_Move_both_Both_json,
         .binding_size = sizeof(Supervisor_Correct_Move_both_Both_binding_t),
+        .affected_count = sizeof s_affected_by_Supervisor_Correct_Move_both_Both / sizeof s_affected_by_Supervisor_Correct_Move_both_Both[0],
+        .affected = s_affected_by_Supervisor_Correct_Move_both_Both,
     },
     {
         .name = "Cell.Supervisor.Correct.Move both.Reply 1", .id = "ID1412310962", .owner = 0, .priority = 1000,
         .origin = "page `MoveBoth`, transition `Reply 1` (ID1412310962)",
         .enumerate = Supervisor_Correct_Move_both_Reply_1_enumerate, .fire = Supervisor_Correct_Move_both_Reply_1_fire, .binding_json = Supervisor_Correct_Move_both_Reply_1_json,
         .binding_size = sizeof(Supervisor_Correct_Move_both_Reply_1_binding_t),
+        .affected_count = sizeof s_affected_by_Supervisor_Correct_Move_both_Reply_1 / sizeof s_affected_by_Supervisor_Correct_Move_both_Reply_1[0],
+        .affected = s_affected_by_Supervisor_Correct_Move_both_Reply_1,
     },
     {
         .name = "Cell.Supervisor.Correct.Move both.Reply 2", .id = "ID1412310999", .owner = 0, .priority = 1000,
         .origin = "page `MoveBoth`, transition `Reply 2` (ID1412310999)",
         .enumerate = Supervisor_Correct_Move_both_Reply_2_enumerate, .fire = Supervisor_Correct_Move_both_Reply_2_fire, .binding_json = Supervisor_Correct_Move_both_Reply_2_json,
         .binding_size = sizeof(Supervisor_Correct_Move_both_Reply_2_binding_t),
+        .affected_count = sizeof s_affected_by_Supervisor_Correct_Move_both_Reply_2 / sizeof s_affected_by_Supervisor_Correct_Move_both_Reply_2[0],
+        .affected = s_affected_by_Supervisor_Correct_Move_both_Reply_2,
     },
     {
         .name = "Cell.Supervisor.Install.Go back", .id = "ID1412310594", .owner = 0, .priority = 1000,
         .origin = "page `Install`, transition `Go back` (ID1412310594)",
         .enumerate = Supervisor_Install_Go_back_enumerate, .fire = Supervisor_Install_Go_back_fire, .binding_json = Supervisor_Install_Go_back_json,
         .binding_size = sizeof(Supervisor_Install_Go_back_binding_t),
+        .affected_count = sizeof s_affected_by_Supervisor_Install_Go_back / sizeof s_affected_by_Supervisor_Install_Go_back[0],
+        .affected = s_affected_by_Supervisor_Install_Go_back,
     },
     {
         .name = "Cell.Supervisor.Install.Next rivet", .id = "ID1412310624", .owner = 0, .priority = 1000,
         .origin = "page `Install`, transition `Next rivet` (ID1412310624)",
         .enumerate = Supervisor_Install_Next_rivet_enumerate, .fire = Supervisor_Install_Next_rivet_fire, .binding_json = Supervisor_Install_Next_rivet_json,
         .binding_size = sizeof(Supervisor_Install_Next_rivet_binding_t),
+        .affected_count = sizeof s_affected_by_Supervisor_Install_Next_rivet / sizeof s_affected_by_Supervisor_Install_Next_rivet[0],
+        .affected = s_affected_by_Supervisor_Install_Next_rivet,
     },
     {
         .name = "Cell.Supervisor.Install.Start", .id = "ID1412310632", .owner = 0, .priority = 1000,
         .origin = "page `Install`, transition `Start` (ID1412310632)",
         .enumerate = Supervisor_Install_Start_enumerate, .fire = Supervisor_Install_Start_fire, .binding_json = Supervisor_Install_Start_json,
         .binding_size = sizeof(Supervisor_Install_Start_binding_t),
+        .affected_count = sizeof s_affected_by_Supervisor_Install_Start / sizeof s_affected_by_Supervisor_Install_Start[0],
+        .affected = s_affected_by_Supervisor_Install_Start,
     },
     {
         .name = "Cell.Supervisor.Install.Shift.Command", .id = "ID1412310941", .owner = 0, .priority = 1000,
         .origin = "page `MoveBoth`, transition `Command` (ID1412310941)",
         .enumerate = Supervisor_Install_Shift_Command_enumerate, .fire = Supervisor_Install_Shift_Command_fire, .binding_json = Supervisor_Install_Shift_Command_json,
         .binding_size = sizeof(Supervisor_Install_Shift_Command_binding_t),
+        .affected_count = sizeof s_affected_by_Supervisor_Install_Shift_Command / sizeof s_affected_by_Supervisor_Install_Shift_Command[0],
+        .affected = s_affected_by_Supervisor_Install_Shift_Command,
     },
     {
         .name = "Cell.Supervisor.Install.Shift.Both", .id = "ID1412310948", .owner = 0, .priority = 1000,
         .origin = "page `MoveBoth`, transition `Both` (ID1412310948)",
         .enumerate = Supervisor_Install_Shift_Both_enumerate, .fire = Supervisor_Install_Shift_Both_fire, .binding_json = Supervisor_Install_Shift_Both_json,
         .binding_size = sizeof(Supervisor_Install_Shift_Both_binding_t),
+        .affected_count = sizeof s_affected_by_Supervisor_Install_Shift_Both / sizeof s_affected_by_Supervisor_Install_Shift_Both[0],
+        .affected = s_affected_by_Supervisor_Install_Shift_Both,
     },
     {
         .name = "Cell.Supervisor.Install.Shift.Reply 1", .id = "ID1412310962", .owner = 0, .priority = 1000,
         .origin = "page `MoveBoth`, transition `Reply 1` (ID1412310962)",
         .enumerate = Supervisor_Install_Shift_Reply_1_enumerate, .fire = Supervisor_Install_Shift_Reply_1_fire, .binding_json = Supervisor_Install_Shift_Reply_1_json,
         .binding_size = sizeof(Supervisor_Install_Shift_Reply_1_binding_t),
+        .affected_count = sizeof s_affected_by_Supervisor_Install_Shift_Reply_1 / sizeof s_affected_by_Supervisor_Install_Shift_Reply_1[0],
+        .affected = s_affected_by_Supervisor_Install_Shift_Reply_1,
     },
     {
         .name = "Cell.Supervisor.Install.Shift.Reply 2", .id = "ID1412310999", .owner = 0, .priority = 1000,
         .origin = "page `MoveBoth`, transition `Reply 2` (ID1412310999)",
         .enumerate = Supervisor_Install_Shift_Reply_2_enumerate, .fire = Supervisor_Install_Shift_Reply_2_fire, .binding_json = Supervisor_Install_Shift_Reply_2_json,
         .binding_size = sizeof(Supervisor_Install_Shift_Reply_2_binding_t),
+        .affected_count = sizeof s_affected_by_Supervisor_Install_Shift_Reply_2 / sizeof s_affected_by_Supervisor_Install_Shift_Reply_2[0],
+        .affected = s_affected_by_Supervisor_Install_Shift_Reply_2,
     },
     {
         .name = "Cell.Supervisor.Install.Rivet.Go in", .id = "ID1412310716", .owner = 0, .priority = 1000,
         .origin = "page `Rivet`, transition `Go in` (ID1412310716)",
         .enumerate = Supervisor_Install_Rivet_Go_in_enumerate, .fire = Supervisor_Install_Rivet_Go_in_fire, .binding_json = Supervisor_Install_Rivet_Go_in_json,
         .binding_size = sizeof(Supervisor_Install_Rivet_Go_in_binding_t),
+        .affected_count = sizeof s_affected_by_Supervisor_Install_Rivet_Go_in / sizeof s_affected_by_Supervisor_Install_Rivet_Go_in[0],
+        .affected = s_affected_by_Supervisor_Install_Rivet_Go_in,
     },
     {
         .name = "Cell.Supervisor.Install.Rivet.Go out", .id = "ID1412310742", .owner = 0, .priority = 1000,
         .origin = "page `Rivet`, transition `Go out` (ID1412310742)",
         .enumerate = Supervisor_Install_Rivet_Go_out_enumerate, .fire = Supervisor_Install_Rivet_Go_out_fire, .binding_json = Supervisor_Install_Rivet_Go_out_json,
         .binding_size = sizeof(Supervisor_Install_Rivet_Go_out_binding_t),
+        .affected_count = sizeof s_affected_by_Supervisor_Install_Rivet_Go_out / sizeof s_affected_by_Supervisor_Install_Rivet_Go_out[0],
+        .affected = s_affected_by_Supervisor_Install_Rivet_Go_out,
     },
     {
         .name = "Cell.Supervisor.Install.Rivet.Advance.Command", .id = "ID1412310941", .owner = 0, .priority = 1000,
         .origin = "page `MoveBoth`, transition `Command` (ID1412310941)",
         .enumerate = Supervisor_Install_Rivet_Advance_Command_enumerate, .fire = Supervisor_Install_Rivet_Advance_Command_fire, .binding_json = Supervisor_Install_Rivet_Advance_Command_json,
         .binding_size = sizeof(Supervisor_Install_Rivet_Advance_Command_binding_t),
+        .affected_count = sizeof s_affected_by_Supervisor_Install_Rivet_Advance_Command / sizeof s_affected_by_Supervisor_Install_Rivet_Advance_Command[0],
+        .affected = s_affected_by_Supervisor_Install_Rivet_Advance_Command,
     },
     {
         .name = "Cell.Supervisor.Install.Rivet.Advance.Both", .id = "ID1412310948", .owner = 0, .priority = 1000,
         .origin = "page `MoveBoth`, transition `Both` (ID1412310948)",
         .enumerate = Supervisor_Install_Rivet_Advance_Both_enumerate, .fire = Supervisor_Install_Rivet_Advance_Both_fire, .binding_json = Supervisor_Install_Rivet_Advance_Both_json,
         .binding_size = sizeof(Supervisor_Install_Rivet_Advance_Both_binding_t),
+        .affected_count = sizeof s_affected_by_Supervisor_Install_Rivet_Advance_Both / sizeof s_affected_by_Supervisor_Install_Rivet_Advance_Both[0],
+        .affected = s_affected_by_Supervisor_Install_Rivet_Advance_Both,
     },
     {
         .name = "Cell.Supervisor.Install.Rivet.Advance.Reply 1", .id = "ID1412310962", .owner = 0, .priority = 1000,
         .origin = "page `MoveBoth`, transition `Reply 1` (ID1412310962)",
         .enumerate = Supervisor_Install_Rivet_Advance_Reply_1_enumerate, .fire = Supervisor_Install_Rivet_Advance_Reply_1_fire, .binding_json = Supervisor_Install_Rivet_Advance_Reply_1_json,
         .binding_size = sizeof(Supervisor_Install_Rivet_Advance_Reply_1_binding_t),
+        .affected_count = sizeof s_affected_by_Supervisor_Install_Rivet_Advance_Reply_1 / sizeof s_affected_by_Supervisor_Install_Rivet_Advance_Reply_1[0],
+        .affected = s_affected_by_Supervisor_Install_Rivet_Advance_Reply_1,
     },
     {
         .name = "Cell.Supervisor.Install.Rivet.Advance.Reply 2", .id = "ID1412310999", .owner = 0, .priority = 1000,
         .origin = "page `MoveBoth`, transition `Reply 2` (ID1412310999)",
         .enumerate = Supervisor_Install_Rivet_Advance_Reply_2_enumerate, .fire = Supervisor_Install_Rivet_Advance_Reply_2_fire, .binding_json = Supervisor_Install_Rivet_Advance_Reply_2_json,
         .binding_size = sizeof(Supervisor_Install_Rivet_Advance_Reply_2_binding_t),
+        .affected_count = sizeof s_affected_by_Supervisor_Install_Rivet_Advance_Reply_2 / sizeof s_affected_by_Supervisor_Install_Rivet_Advance_Reply_2[0],
+        .affected = s_affected_by_Supervisor_Install_Rivet_Advance_Reply_2,
     },
     {
         .name = "Cell.Supervisor.Install.Rivet.Fasten.Press", .id = "ID1412310842", .owner = 0, .priority = 1000,
         .origin = "page `Fasten`, transition `Press` (ID1412310842)",
         .enumerate = Supervisor_Install_Rivet_Fasten_Press_enumerate, .fire = Supervisor_Install_Rivet_Fasten_Press_fire, .binding_json = Supervisor_Install_Rivet_Fasten_Press_json,
         .binding_size = sizeof(Supervisor_Install_Rivet_Fasten_Press_binding_t),
+        .affected_count = sizeof s_affected_by_Supervisor_Install_Rivet_Fasten_Press / sizeof s_affected_by_Supervisor_Install_Rivet_Fasten_Press[0],
+        .affected = s_affected_by_Supervisor_Install_Rivet_Fasten_Press,
     },
     {
         .name = "Cell.Supervisor.Install.Rivet.Fasten.Drill", .id = "ID1412310850", .owner = 0, .priority = 1000,
         .origin = "page `Fasten`, transition `Drill` (ID1412310850)",
         .enumerate = Supervisor_Install_Rivet_Fasten_Drill_enumerate, .fire = Supervisor_Install_Rivet_Fasten_Drill_fire, .binding_json = Supervisor_Install_Rivet_Fasten_Drill_json,
         .binding_size = sizeof(Supervisor_Install_Rivet_Fasten_Drill_binding_t),
+        .affected_count = sizeof s_affected_by_Supervisor_Install_Rivet_Fasten_Drill / sizeof s_affected_by_Supervisor_Install_Rivet_Fasten_Drill[0],
+        .affected = s_affected_by_Supervisor_Install_Rivet_Fasten_Drill,
     },
     {
         .name = "Cell.Supervisor.Install.Rivet.Fasten.Insert", .id = "ID1412310858", .owner = 0, .priority = 1000,
         .origin = "page `Fasten`, transition `Insert` (ID1412310858)",
         .enumerate = Supervisor_Install_Rivet_Fasten_Insert_enumerate, .fire = Supervisor_Install_Rivet_Fasten_Insert_fire, .binding_json = Supervisor_Install_Rivet_Fasten_Insert_json,
         .binding_size = sizeof(Supervisor_Install_Rivet_Fasten_Insert_binding_t),
+        .affected_count = sizeof s_affected_by_Supervisor_Install_Rivet_Fasten_Insert / sizeof s_affected_by_Supervisor_Install_Rivet_Fasten_Insert[0],
+        .affected = s_affected_by_Supervisor_Install_Rivet_Fasten_Insert,
     },
     {
         .name = "Cell.Supervisor.Install.Rivet.Fasten.Release", .id = "ID1412310866", .owner = 0, .priority = 1000,
         .origin = "page `Fasten`, transition `Release` (ID1412310866)",
         .enumerate = Supervisor_Install_Rivet_Fasten_Release_enumerate, .fire = Supervisor_Install_Rivet_Fasten_Release_fire, .binding_json = Supervisor_Install_Rivet_Fasten_Release_json,
         .binding_size = sizeof(Supervisor_Install_Rivet_Fasten_Release_binding_t),
+        .affected_count = sizeof s_affected_by_Supervisor_Install_Rivet_Fasten_Release / sizeof s_affected_by_Supervisor_Install_Rivet_Fasten_Release[0],
+        .affected = s_affected_by_Supervisor_Install_Rivet_Fasten_Release,
     },
     {
         .name = "Cell.Supervisor.Install.Rivet.Fasten.Finish", .id = "ID1412310874", .owner = 0, .priority = 1000,
         .origin = "page `Fasten`, transition `Finish` (ID1412310874)",
         .enumerate = Supervisor_Install_Rivet_Fasten_Finish_enumerate, .fire = Supervisor_Install_Rivet_Fasten_Finish_fire, .binding_json = Supervisor_Install_Rivet_Fasten_Finish_json,
         .binding_size = sizeof(Supervisor_Install_Rivet_Fasten_Finish_binding_t),
+        .affected_count = sizeof s_affected_by_Supervisor_Install_Rivet_Fasten_Finish / sizeof s_affected_by_Supervisor_Install_Rivet_Fasten_Finish[0],
+        .affected = s_affected_by_Supervisor_Install_Rivet_Fasten_Finish,
     },
     {
         .name = "Cell.Supervisor.Install.Rivet.Retract.Command", .id = "ID1412310941", .owner = 0, .priority = 1000,
         .origin = "page `MoveBoth`, transition `Command` (ID1412310941)",
         .enumerate = Supervisor_Install_Rivet_Retract_Command_enumerate, .fire = Supervisor_Install_Rivet_Retract_Command_fire, .binding_json = Supervisor_Install_Rivet_Retract_Command_json,
         .binding_size = sizeof(Supervisor_Install_Rivet_Retract_Command_binding_t),
+        .affected_count = sizeof s_affected_by_Supervisor_Install_Rivet_Retract_Command / sizeof s_affected_by_Supervisor_Install_Rivet_Retract_Command[0],
+        .affected = s_affected_by_Supervisor_Install_Rivet_Retract_Command,
     },
     {
         .name = "Cell.Supervisor.Install.Rivet.Retract.Both", .id = "ID1412310948", .owner = 0, .priority = 1000,
         .origin = "page `MoveBoth`, transition `Both` (ID1412310948)",
         .enumerate = Supervisor_Install_Rivet_Retract_Both_enumerate, .fire = Supervisor_Install_Rivet_Retract_Both_fire, .binding_json = Supervisor_Install_Rivet_Retract_Both_json,
         .binding_size = sizeof(Supervisor_Install_Rivet_Retract_Both_binding_t),
+        .affected_count = sizeof s_affected_by_Supervisor_Install_Rivet_Retract_Both / sizeof s_affected_by_Supervisor_Install_Rivet_Retract_Both[0],
+        .affected = s_affected_by_Supervisor_Install_Rivet_Retract_Both,
     },
     {
         .name = "Cell.Supervisor.Install.Rivet.Retract.Reply 1", .id = "ID1412310962", .owner = 0, .priority = 1000,
         .origin = "page `MoveBoth`, transition `Reply 1` (ID1412310962)",
         .enumerate = Supervisor_Install_Rivet_Retract_Reply_1_enumerate, .fire = Supervisor_Install_Rivet_Retract_Reply_1_fire, .binding_json = Supervisor_Install_Rivet_Retract_Reply_1_json,
         .binding_size = sizeof(Supervisor_Install_Rivet_Retract_Reply_1_binding_t),
+        .affected_count = sizeof s_affected_by_Supervisor_Install_Rivet_Retract_Reply_1 / sizeof s_affected_by_Supervisor_Install_Rivet_Retract_Reply_1[0],
+        .affected = s_affected_by_Supervisor_Install_Rivet_Retract_Reply_1,
     },
     {
         .name = "Cell.Supervisor.Install.Rivet.Retract.Reply 2", .id = "ID1412310999", .owner = 0, .priority = 1000,
         .origin = "page `MoveBoth`, transition `Reply 2` (ID1412310999)",
         .enumerate = Supervisor_Install_Rivet_Retract_Reply_2_enumerate, .fire = Supervisor_Install_Rivet_Retract_Reply_2_fire, .binding_json = Supervisor_Install_Rivet_Retract_Reply_2_json,
         .binding_size = sizeof(Supervisor_Install_Rivet_Retract_Reply_2_binding_t),
+        .affected_count = sizeof s_affected_by_Supervisor_Install_Rivet_Retract_Reply_2 / sizeof s_affected_by_Supervisor_Install_Rivet_Retract_Reply_2[0],
+        .affected = s_affected_by_Supervisor_Install_Rivet_Retract_Reply_2,
     },
     {
         .name = "Cell.Supervisor.Install.Return.Command", .id = "ID1412310941", .owner = 0, .priority = 1000,
         .origin = "page `MoveBoth`, transition `Command` (ID1412310941)",
         .enumerate = Supervisor_Install_Return_Command_enumerate, .fire = Supervisor_Install_Return_Command_fire, .binding_json = Supervisor_Install_Return_Command_json,
         .binding_size = sizeof(Supervisor_Install_Return_Command_binding_t),
+        .affected_count = sizeof s_affected_by_Supervisor_Install_Return_Command / sizeof s_affected_by_Supervisor_Install_Return_Command[0],
+        .affected = s_affected_by_Supervisor_Install_Return_Command,
     },
     {
         .name = "Cell.Supervisor.Install.Return.Both", .id = "ID1412310948", .owner = 0, .priority = 1000,
         .origin = "page `MoveBoth`, transition `Both` (ID1412310948)",
         .enumerate = Supervisor_Install_Return_Both_enumerate, .fire = Supervisor_Install_Return_Both_fire, .binding_json = Supervisor_Install_Return_Both_json,
         .binding_size = sizeof(Supervisor_Install_Return_Both_binding_t),
+        .affected_count = sizeof s_affected_by_Supervisor_Install_Return_Both / sizeof s_affected_by_Supervisor_Install_Return_Both[0],
+        .affected = s_affected_by_Supervisor_Install_Return_Both,
     },
     {
         .name = "Cell.Supervisor.Install.Return.Reply 1", .id = "ID1412310962", .owner = 0, .priority = 1000,
         .origin = "page `MoveBoth`, transition `Reply 1` (ID1412310962)",
         .enumerate = Supervisor_Install_Return_Reply_1_enumerate, .fire = Supervisor_Install_Return_Reply_1_fire, .binding_json = Supervisor_Install_Return_Reply_1_json,
         .binding_size = sizeof(Supervisor_Install_Return_Reply_1_binding_t),
+        .affected_count = sizeof s_affected_by_Supervisor_Install_Return_Reply_1 / sizeof s_affected_by_Supervisor_Install_Return_Reply_1[0],
+        .affected = s_affected_by_Supervisor_Install_Return_Reply_1,
     },
     {
         .name = "Cell.Supervisor.Install.Return.Reply 2", .id = "ID1412310999", .owner = 0, .priority = 1000,
         .origin = "page `MoveBoth`, transition `Reply 2` (ID1412310999)",
         .enumerate = Supervisor_Install_Return_Reply_2_enumerate, .fire = Supervisor_Install_Return_Reply_2_fire, .binding_json = Supervisor_Install_Return_Reply_2_json,
         .binding_size = sizeof(Supervisor_Install_Return_Reply_2_binding_t),
+        .affected_count = sizeof s_affected_by_Supervisor_Install_Return_Reply_2 / sizeof s_affected_by_Supervisor_Install_Return_Reply_2[0],
+        .affected = s_affected_by_Supervisor_Install_Return_Reply_2,
     },
     {
         .name = "Cell.Supervisor.Home.Send home", .id = "ID1412311039", .owner = 0, .priority = 1000,
         .origin = "page `Home`, transition `Send home` (ID1412311039)",
         .enumerate = Supervisor_Home_Send_home_enumerate, .fire = Supervisor_Home_Send_home_fire, .binding_json = Supervisor_Home_Send_home_json,
         .binding_size = sizeof(Supervisor_Home_Send_home_binding_t),
+        .affected_count = sizeof s_affected_by_Supervisor_Home_Send_home / sizeof s_affected_by_Supervisor_Home_Send_home[0],
+        .affected = s_affected_by_Supervisor_Home_Send_home,
     },
     {
         .name = "Cell.Supervisor.Home.Both", .id = "ID1412311046", .owner = 0, .priority = 1000,
         .origin = "page `Home`, transition `Both` (ID1412311046)",
         .enumerate = Supervisor_Home_Both_enumerate, .fire = Supervisor_Home_Both_fire, .binding_json = Supervisor_Home_Both_json,
         .binding_size = sizeof(Supervisor_Home_Both_binding_t),
+        .affected_count = sizeof s_affected_by_Supervisor_Home_Both / sizeof s_affected_by_Supervisor_Home_Both[0],
+        .affected = s_affected_by_Supervisor_Home_Both,
     },
     {
         .name = "Cell.Supervisor.Home.Reply 1", .id = "ID1412311060", .owner = 0, .priority = 1000,
         .origin = "page `Home`, transition `Reply 1` (ID1412311060)",
         .enumerate = Supervisor_Home_Reply_1_enumerate, .fire = Supervisor_Home_Reply_1_fire, .binding_json = Supervisor_Home_Reply_1_json,
         .binding_size = sizeof(Supervisor_Home_Reply_1_binding_t),
+        .affected_count = sizeof s_affected_by_Supervisor_Home_Reply_1 / sizeof s_affected_by_Supervisor_Home_Reply_1[0],
+        .affected = s_affected_by_Supervisor_Home_Reply_1,
     },
     {
         .name = "Cell.Supervisor.Home.Reply 2", .id = "ID1412311091", .owner = 0, .priority = 1000,
         .origin = "page `Home`, transition `Reply 2` (ID1412311091)",
         .enumerate = Supervisor_Home_Reply_2_enumerate, .fire = Supervisor_Home_Reply_2_fire, .binding_json = Supervisor_Home_Reply_2_json,
         .binding_size = sizeof(Supervisor_Home_Reply_2_binding_t),
+        .affected_count = sizeof s_affected_by_Supervisor_Home_Reply_2 / sizeof s_affected_by_Supervisor_Home_Reply_2[0],
+        .affected = s_affected_by_Supervisor_Home_Reply_2,
     },
     {
         .name = "Cell.Robot1.Accept", .id = "ID1412311125", .owner = 1, .priority = 1000,
         .origin = "page `Robot`, transition `Accept` (ID1412311125)",
         .enumerate = Robot1_Accept_enumerate, .fire = Robot1_Accept_fire, .binding_json = Robot1_Accept_json,
         .binding_size = sizeof(Robot1_Accept_binding_t),
+        .affected_count = sizeof s_affected_by_Robot1_Accept / sizeof s_affected_by_Robot1_Accept[0],
+        .affected = s_affected_by_Robot1_Accept,
     },
     {
         .name = "Cell.Robot1.Report", .id = "ID1412311145", .owner = 1, .priority = 1000,
         .origin = "page `Robot`, transition `Report` (ID1412311145)",
         .enumerate = Robot1_Report_enumerate, .fire = Robot1_Report_fire, .binding_json = Robot1_Report_json,
         .binding_size = sizeof(Robot1_Report_binding_t),
+        .affected_count = sizeof s_affected_by_Robot1_Report / sizeof s_affected_by_Robot1_Report[0],
+        .affected = s_affected_by_Robot1_Report,
     },
     {
         .name = "Cell.Robot1.MoveJoint", .id = "ID1412311160", .owner = 1, .priority = 1000,
         .origin = "page `Robot`, transition `MoveJoint` (ID1412311160)",
         .enumerate = Robot1_MoveJoint_enumerate, .fire = Robot1_MoveJoint_fire, .binding_json = Robot1_MoveJoint_json,
         .binding_size = sizeof(Robot1_MoveJoint_binding_t),
+        .affected_count = sizeof s_affected_by_Robot1_MoveJoint / sizeof s_affected_by_Robot1_MoveJoint[0],
+        .affected = s_affected_by_Robot1_MoveJoint,
     },
     {
         .name = "Cell.Robot1.MoveLinear", .id = "ID1412311169", .owner = 1, .priority = 1000,
         .origin = "page `Robot`, transition `MoveLinear` (ID1412311169)",
         .enumerate = Robot1_MoveLinear_enumerate, .fire = Robot1_MoveLinear_fire, .binding_json = Robot1_MoveLinear_json,
         .binding_size = sizeof(Robot1_MoveLinear_binding_t),
+        .affected_count = sizeof s_affected_by_Robot1_MoveLinear / sizeof s_affected_by_Robot1_MoveLinear[0],
+        .affected = s_affected_by_Robot1_MoveLinear,
     },
     {
         .name = "Cell.Robot1.MoveHome", .id = "ID1412311178", .owner = 1, .priority = 1000,
         .origin = "page `Robot`, transition `MoveHome` (ID1412311178)",
         .enumerate = Robot1_MoveHome_enumerate, .fire = Robot1_MoveHome_fire, .binding_json = Robot1_MoveHome_json,
         .binding_size = sizeof(Robot1_MoveHome_binding_t),
+        .affected_count = sizeof s_affected_by_Robot1_MoveHome / sizeof s_affected_by_Robot1_MoveHome[0],
+        .affected = s_affected_by_Robot1_MoveHome,
     },
     {
         .name = "Cell.Robot1.Measure", .id = "ID1412311187", .owner = 1, .priority = 1000,
         .origin = "page `Robot`, transition `Measure` (ID1412311187)",
         .enumerate = Robot1_Measure_enumerate, .fire = Robot1_Measure_fire, .binding_json = Robot1_Measure_json,
         .binding_size = sizeof(Robot1_Measure_binding_t),
+        .affected_count = sizeof s_affected_by_Robot1_Measure / sizeof s_affected_by_Robot1_Measure[0],
+        .affected = s_affected_by_Robot1_Measure,
     },
     {
         .name = "Cell.Robot1.Drill", .id = "ID1412311196", .owner = 1, .priority = 1000,
         .origin = "page `Robot`, transition `Drill` (ID1412311196)",
         .enumerate = Robot1_Drill_enumerate, .fire = Robot1_Drill_fire, .binding_json = Robot1_Drill_json,
         .binding_size = sizeof(Robot1_Drill_binding_t),
+        .affected_count = sizeof s_affected_by_Robot1_Drill / sizeof s_affected_by_Robot1_Drill[0],
+        .affected = s_affected_by_Robot1_Drill,
     },
     {
         .name = "Cell.Robot1.Insert", .id = "ID1412311205", .owner = 1, .priority = 1000,
         .origin = "page `Robot`, transition `Insert` (ID1412311205)",
         .enumerate = Robot1_Insert_enumerate, .fire = Robot1_Insert_fire, .binding_json = Robot1_Insert_json,
         .binding_size = sizeof(Robot1_Insert_binding_t),
+        .affected_count = sizeof s_affected_by_Robot1_Insert / sizeof s_affected_by_Robot1_Insert[0],
+        .affected = s_affected_by_Robot1_Insert,
     },
     {
         .name = "Cell.Robot1.Press", .id = "ID1412311214", .owner = 1, .priority = 1000,
         .origin = "page `Robot`, transition `Press` (ID1412311214)",
         .enumerate = Robot1_Press_enumerate, .fire = Robot1_Press_fire, .binding_json = Robot1_Press_json,
         .binding_size = sizeof(Robot1_Press_binding_t),
+        .affected_count = sizeof s_affected_by_Robot1_Press / sizeof s_affected_by_Robot1_Press[0],
+        .affected = s_affected_by_Robot1_Press,
     },
     {
         .name = "Cell.Robot1.Release", .id = "ID1412311223", .owner = 1, .priority = 1000,
         .origin = "page `Robot`, transition `Release` (ID1412311223)",
         .enumerate = Robot1_Release_enumerate, .fire = Robot1_Release_fire, .binding_json = Robot1_Release_json,
         .binding_size = sizeof(Robot1_Release_binding_t),
+        .affected_count = sizeof s_affected_by_Robot1_Release / sizeof s_affected_by_Robot1_Release[0],
+        .affected = s_affected_by_Robot1_Release,
     },
     {
         .name = "Cell.Robot2.Accept", .id = "ID1412311125", .owner = 2, .priority = 1000,
         .origin = "page `Robot`, transition `Accept` (ID1412311125)",
         .enumerate = Robot2_Accept_enumerate, .fire = Robot2_Accept_fire, .binding_json = Robot2_Accept_json,
         .binding_size = sizeof(Robot2_Accept_binding_t),
+        .affected_count = sizeof s_affected_by_Robot2_Accept / sizeof s_affected_by_Robot2_Accept[0],
+        .affected = s_affected_by_Robot2_Accept,
     },
     {
         .name = "Cell.Robot2.Report", .id = "ID1412311145", .owner = 2, .priority = 1000,
         .origin = "page `Robot`, transition `Report` (ID1412311145)",
         .enumerate = Robot2_Report_enumerate, .fire = Robot2_Report_fire, .binding_json = Robot2_Report_json,
         .binding_size = sizeof(Robot2_Report_binding_t),
+        .affected_count = sizeof s_affected_by_Robot2_Report / sizeof s_affected_by_Robot2_Report[0],
+        .affected = s_affected_by_Robot2_Report,
     },
     {
         .name = "Cell.Robot2.MoveJoint", .id = "ID1412311160", .owner = 2, .priority = 1000,
         .origin = "page `Robot`, transition `MoveJoint` (ID1412311160)",
         .enumerate = Robot2_MoveJoint_enumerate, .fire = Robot2_MoveJoint_fire, .binding_json = Robot2_MoveJoint_json,
         .binding_size = sizeof(Robot2_MoveJoint_binding_t),
+        .affected_count = sizeof s_affected_by_Robot2_MoveJoint / sizeof s_affected_by_Robot2_MoveJoint[0],
+        .affected = s_affected_by_Robot2_MoveJoint,
     },
     {
         .name = "Cell.Robot2.MoveLinear", .id = "ID1412311169", .owner = 2, .priority = 1000,
         .origin = "page `Robot`, transition `MoveLinear` (ID1412311169)",
         .enumerate = Robot2_MoveLinear_enumerate, .fire = Robot2_MoveLinear_fire, .binding_json = Robot2_MoveLinear_json,
         .binding_size = sizeof(Robot2_MoveLinear_binding_t),
+        .affected_count = sizeof s_affected_by_Robot2_MoveLinear / sizeof s_affected_by_Robot2_MoveLinear[0],
+        .affected = s_affected_by_Robot2_MoveLinear,
     },
     {
         .name = "Cell.Robot2.MoveHome", .id = "ID1412311178", .owner = 2, .priority = 1000,
         .origin = "page `Robot`, transition `MoveHome` (ID1412311178)",
         .enumerate = Robot2_MoveHome_enumerate, .fire = Robot2_MoveHome_fire, .binding_json = Robot2_MoveHome_json,
         .binding_size = sizeof(Robot2_MoveHome_binding_t),
+        .affected_count = sizeof s_affected_by_Robot2_MoveHome / sizeof s_affected_by_Robot2_MoveHome[0],
+        .affected = s_affected_by_Robot2_MoveHome,
     },
     {
         .name = "Cell.Robot2.Measure", .id = "ID1412311187", .owner = 2, .priority = 1000,
         .origin = "page `Robot`, transition `Measure` (ID1412311187)",
         .enumerate = Robot2_Measure_enumerate, .fire = Robot2_Measure_fire, .binding_json = Robot2_Measure_json,
         .binding_size = sizeof(Robot2_Measure_binding_t),
+        .affected_count = sizeof s_affected_by_Robot2_Measure / sizeof s_affected_by_Robot2_Measure[0],
+        .affected = s_affected_by_Robot2_Measure,
     },
     {
         .name = "Cell.Robot2.Drill", .id = "ID1412311196", .owner = 2, .priority = 1000,
         .origin = "page `Robot`, transition `Drill` (ID1412311196)",
         .enumerate = Robot2_Drill_enumerate, .fire = Robot2_Drill_fire, .binding_json = Robot2_Drill_json,
         .binding_size = sizeof(Robot2_Drill_binding_t),
+        .affected_count = sizeof s_affected_by_Robot2_Drill / sizeof s_affected_by_Robot2_Drill[0],
+        .affected = s_affected_by_Robot2_Drill,
     },
     {
         .name = "Cell.Robot2.Insert", .id = "ID1412311205", .owner = 2, .priority = 1000,
         .origin = "page `Robot`, transition `Insert` (ID1412311205)",
         .enumerate = Robot2_Insert_enumerate, .fire = Robot2_Insert_fire, .binding_json = Robot2_Insert_json,
         .binding_size = sizeof(Robot2_Insert_binding_t),
+        .affected_count = sizeof s_affected_by_Robot2_Insert / sizeof s_affected_by_Robot2_Insert[0],
+        .affected = s_affected_by_Robot2_Insert,
     },
     {
         .name = "Cell.Robot2.Press", .id = "ID1412311214", .owner = 2, .priority = 1000,
         .origin = "page `Robot`, transition `Press` (ID1412311214)",
         .enumerate = Robot2_Press_enumerate, .fire = Robot2_Press_fire, .binding_json = Robot2_Press_json,
         .binding_size = sizeof(Robot2_Press_binding_t),
+        .affected_count = sizeof s_affected_by_Robot2_Press / sizeof s_affected_by_Robot2_Press[0],
+        .affected = s_affected_by_Robot2_Press,
     },
     {
         .name = "Cell.Robot2.Release", .id = "ID1412311223", .owner = 2, .priority = 1000,
         .origin = "page `Robot`, transition `Release` (ID1412311223)",
         .enumerate = Robot2_Release_enumerate, .fire = Robot2_Release_fire, .binding_json = Robot2_Release_json,
         .binding_size = sizeof(Robot2_Release_binding_t),
+        .affected_count = sizeof s_affected_by_Robot2_Release / sizeof s_affected_by_Robot2_Release[0],
+        .affected = s_affected_by_Robot2_Release,
     },
 };
 

@@ -97,7 +97,16 @@ class Types:
                 assert isinstance(definition, ir.EnumDef)
                 return self.names.constructor(t.name, definition.constructors[0])
             case Rep.STRUCT | Rep.UNION:
-                return f"({self.name(t)}){{ 0 }}"
+                return f"({self.name(t)}){{ {self._zeros(t)} }}"
+
+    def _zeros(self, t: IrType) -> str:
+        """What stands between the braces; all fields where the first has fields of its own, as compilers warn else."""
+        definition = self.definitions[t.name]
+        if isinstance(definition, ir.StructDef):
+            first = definition.fields[0][1].rep
+            if first in (Rep.STRUCT, Rep.UNION, Rep.STRING, Rep.TIME):
+                return ", ".join(f".{label(x)} = {self.zero(f)}" for x, f in definition.fields)
+        return "0"
 
 
 class Expressions:
@@ -140,7 +149,10 @@ class Expressions:
         """A pointer to the value: of the object that holds it, or of a temporary."""
         if self._is_object(e):
             return f"&{self.inside(e, _UNARY)}"
-        if isinstance(e, ir.MakeStruct | ir.MakeUnion):
+        is_zero = (
+            isinstance(e, ir.Op) and e.name == "zero" and e.type.rep in (Rep.STRUCT, Rep.UNION)
+        )
+        if is_zero or isinstance(e, ir.MakeStruct | ir.MakeUnion):
             return f"&{self.text(e)}"  # a compound literal is an object
         return f"({self._types.name(e.type)}[]){{ {self.text(e)} }}"
 
@@ -412,6 +424,12 @@ class Expressions:
                 table = self._names.table(e.table)
                 text = f"{negation}pn_equal(&{table}, {self.address(a)}, {self.address(b)})"
                 return text, precedence
+
+
+def op_needs_table(e: ir.Op) -> bool:
+    """Whether the operation looks at the table of a type in C."""
+    form = OPS.get(c_ops.CONTAINED.get(e.name, e.name))
+    return form is None or isinstance(form, Compared) or (isinstance(form, Call) and form.table)
 
 
 def op_needs_context(e: ir.Op) -> bool:

@@ -9,11 +9,10 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import TYPE_CHECKING
 
-from pn2code.diagnostics import Origin, Span
-from pn2code.lowering import exceptions, higher_order, ir, prelude, references
+from pn2code.diagnostics import Span
+from pn2code.lowering import colset_functions, exceptions, higher_order, ir, prelude, references
 from pn2code.lowering.codes import (
     UNSUPPORTED_BUILTIN,
-    UNSUPPORTED_COLSET,
     UnsupportedError,
 )
 from pn2code.lowering.functions import is_impure_builtin
@@ -22,7 +21,6 @@ from pn2code.lowering.matching import negation
 from pn2code.lowering.prelude import representation
 from pn2code.lowering.values import BuiltinFunction, Polymorphic, RecordVal, Val
 from pn2code.ml.builtins import BUILTINS
-from pn2code.ml.colsets import Colset
 from pn2code.ml.types import TCon, TFun, TRecord, TVar, Type
 
 if TYPE_CHECKING:
@@ -92,6 +90,9 @@ class Builtins:
 
     def __init__(self, real_time: bool) -> None:
         self._real_time = real_time
+
+    def _clock(self) -> IrType:
+        return ir.REAL if self._real_time else ir.INT
 
     @staticmethod
     def is_primitive(name: str) -> bool:
@@ -227,14 +228,14 @@ class Builtins:
         types = body.program.types
         table = types.colset(colset)
         t = types.lower(result, at)
-        if name == "all" and types.descriptors[table].member:
-            return subset_values(body, colset, t, at)
-        if name in ("size", "ord", "all", "col", "ran", "base") and types.has_subset(table):
-            raise UnsupportedError(
-                UNSUPPORTED_COLSET,
-                f"`{colset.name}.{name}` of a subset is not supported in compiled code",
-                at,
-            )
+        if name in colset_functions.LISTED and not types.is_small(table) and name != "base":
+            return colset_functions.ColsetFunctions(body, colset, at).listed(name, arguments)
+        if name == "read":
+            text, position = (body.code(v) for v in components(body, arguments[0], 2))
+            local = body.local("read", t)
+            body.emit(ir.Declare(local))
+            body.emit(ir.Fill(local, "input", table, (text, position)))
+            return ir.Use(local)
         if name in ("lt", "cmp"):
             a, b = (
                 body.addressable(body.code(v), "side") for v in components(body, arguments[0], 2)
@@ -248,7 +249,12 @@ class Builtins:
         if name == "all":
             types.plain(t)
             return ir.Op("Colset.all", (), t, table)
-        if name in ("col", "ran", "base"):
+        if name == "base":
+            return colset_functions.base_value(body, colset, at)
+        if name == "timed.base":
+            value = colset_functions.base_value(body, colset, at)
+            return ir.MakeStruct(t, (("value", value), ("stamp", ir.Now(self._clock()))))
+        if name in ("col", "ran"):
             local = body.local(name, t)
             operands = (body.code(arguments[0]),) if name == "col" else ()
             body.emit(ir.Declare(local))
@@ -267,8 +273,9 @@ class Builtins:
                 for x, part in definition.fields
             )
             return ir.MakeStruct(t, fields)
-        if name == "illegal_msg":
-            return ir.Const("illegal color", ir.STRING)
+        written = colset_functions.ColsetFunctions(body, colset, at).apply(name, arguments)
+        if written is not None:
+            return written
         if name.startswith("of_"):
             value = body.atomic(body.code(arguments[0]), "value")
             return ir.IsTag(value, colset.names.index(name.removeprefix("of_")))
@@ -302,27 +309,6 @@ def _combinations(body: Body, multisets: Val, t: IrType) -> Ir:
 
     return higher_order.collect(
         body, t, lambda keep: combine([label for label, _ in definition.fields], {}, keep)
-    )
-
-
-def subset_values(body: Body, colset: Colset, t: IrType, at: Span | Origin) -> Ir:
-    """All values of a subset: those of its base that belong to it, or those it lists, in order."""
-    types = body.program.types
-    base = colset.resolved.components[0]
-    assert base is not None
-    key, table = types.colset(base), types.colset(colset)
-    types.plain(t)
-    if types.is_small(key):
-        candidates: Ir = ir.Op("Colset.all", (), t, key)
-    elif colset.resolved.members is not None:
-        listed = body.ir(colset.resolved.members, {})
-        candidates = higher_order.sort_values(body, listed, key)
-    else:
-        raise UnsupportedError(
-            UNSUPPORTED_COLSET, f"the values of subset `{colset.name}` cannot be counted", at
-        )
-    return higher_order.filter_values(
-        body, candidates, lambda v: ir.Op("Colset.legal", (v,), ir.BOOL, table)
     )
 
 
@@ -544,6 +530,14 @@ def _bound(value: int) -> Callable[[Body, tuple[Val, ...], Type, Span], Val]:
     return make
 
 
+def _timed_part(label: str) -> Callable[[Body, tuple[Val, ...], Type, Span], Val]:
+    def part(body: Body, arguments: tuple[Val, ...], result: Type, at: Span) -> Val:
+        token = body.atomic(body.code(arguments[0], at), "token")
+        return ir.Member(token, label, body.program.types.lower(result))
+
+    return part
+
+
 _SPECIAL: dict[str, Callable[[Body, tuple[Val, ...], Type, Span], Val]] = {
     "=": _equality,
     "<>": _inequality,
@@ -567,6 +561,8 @@ _SPECIAL: dict[str, Callable[[Body, tuple[Val, ...], Type, Span], Val]] = {
     "Option.isSome": _is_some,
     "Option.getOpt": _value_or,
     "Time.time": _now,
+    "prim.timed_value": _timed_part("value"),
+    "prim.timed_stamp": _timed_part("stamp"),
     "Time.@": _stamped(delayed=False),
     "Time.token@+": _stamped(delayed=True),
     "Time.token@++": _stamped(delayed=True),

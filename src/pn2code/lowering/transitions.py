@@ -9,8 +9,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from pn2code.lowering import ir
-from pn2code.lowering.builtins import components, equal, subset_values
+from pn2code.lowering import colset_functions, ir
+from pn2code.lowering.builtins import components, equal
 from pn2code.lowering.codes import UNSUPPORTED_COLSET, UnsupportedError
 from pn2code.lowering.expressions import Body
 from pn2code.lowering.functions import Program
@@ -210,7 +210,6 @@ class _Enumeration:
         """Loop over a small colour set; a subset is filtered from its base, or made into a list first."""
         table = self._variables[index].table
         types = self._program.types
-        d = types.descriptors[table]
         with self._body.block() as statements:
             self._bound.add(symbol.uid)
             self._restrict(symbol)
@@ -219,7 +218,7 @@ class _Enumeration:
         if types.is_small(table):
             self._body.emit(ir.ForValues(index, table, tuple(statements), note))
             return
-        if not d.member or symbol.colset is None:
+        if symbol.colset is None or not colset_functions.is_countable(symbol.colset):
             raise UnsupportedError(
                 UNSUPPORTED_COLSET,
                 f"the values of `{symbol.name}` cannot be counted",
@@ -227,9 +226,9 @@ class _Enumeration:
             )
         self._body.emit(ir.Note(note))
         values_type = types.lower(list_of(symbol.type))
-        values = subset_values(self._body, symbol.colset, values_type, self._t.origin)
+        values = colset_functions.all_values(self._body, symbol.colset, self._t.origin)
         cell = self._body.local("cell", values_type)
-        head = ir.Bind(index, ir.Head(ir.Use(cell), d.type))
+        head = ir.Bind(index, ir.Head(ir.Use(cell), types.lower(symbol.type)))
         self._body.emit(ir.ForList(cell, values, (head, *statements)))
 
     def _bind_term(self, step: BindTerm, position: int) -> None:

@@ -18,6 +18,8 @@
 #include "pn/pn_num.h"
 #include "pn/pn_place.h"
 #include "pn/pn_random.h"
+#include "pn/pn_read.h"
+#include "pn/pn_read.h"
 #include "pn/pn_string.h"
 #include "pn/pn_type.h"
 

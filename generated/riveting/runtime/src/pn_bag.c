@@ -114,13 +114,24 @@ uint64_t pn_bag_count(const pn_bag_t *bag, const void *marking, const void *valu
 
 /* --- change -------------------------------------------------------------------------------------------------------- */
 
-static bool fail_full(pn_ctx_t *cx, const pn_bag_t *bag)
+bool pn_bag_fail_full(pn_ctx_t *cx, const pn_bag_t *bag)
 {
     const char *origin = cx->origin;
     cx->origin = bag->origin;
     pn_raise(cx, PN_ERR_CAPACITY, NULL);
     cx->origin = origin;
     return false;
+}
+
+void pn_bag_check(pn_ctx_t *cx, const pn_bag_t *bag, void *value)
+{
+    const char *origin = cx->origin;
+    cx->origin = bag->origin;
+    if (!pn_is_legal(cx, bag->type, value)) {
+        pn_raise(cx, PN_ERR_COLOUR, NULL);
+    }
+    pn_narrow(cx, bag->type, value);
+    cx->origin = origin;
 }
 
 bool pn_bag_add(pn_ctx_t *cx, const pn_bag_t *bag, void *marking, const void *value, uint32_t count, pn_time_t stamp)
@@ -142,14 +153,14 @@ bool pn_bag_add(pn_ctx_t *cx, const pn_bag_t *bag, void *marking, const void *va
         void *entry = entry_of(bag, marking, i);
         const uint32_t before = pn_bag_count_of(bag, entry);
         if (count > (UINT32_MAX - before)) {
-            return fail_full(cx, bag);
+            return pn_bag_fail_full(cx, bag);
         }
         set_count(bag, entry, before + count);
         return true;
     }
     const uint32_t used = pn_bag_used(bag, marking);
     if (used >= bag->capacity) {
-        return fail_full(cx, bag);
+        return pn_bag_fail_full(cx, bag);
     }
     void *entry = entry_of(bag, marking, i);
     (void)memmove(part_of(entry, bag->stride), entry, (used - i) * bag->stride);
@@ -300,7 +311,7 @@ size_t pn_bag_decode(pn_ctx_t *cx, const pn_bag_t *bag, void *marking, const uin
     (void)memcpy(&used, in, sizeof used);
     pn_bag_clear(bag, marking);
     if (used > bag->capacity) {
-        (void)fail_full(cx, bag);
+        (void)pn_bag_fail_full(cx, bag);
         return SIZE_MAX;
     }
     for (uint32_t i = 0U; i < used; i++) {

@@ -34,8 +34,7 @@ static void add(pn_moves_t *moves, pn_move_kind_t kind, const pn_bag_t *bag, con
     moves->last = move;
 }
 
-/* A coefficient as a number of tokens. */
-static uint32_t tokens(pn_ctx_t *cx, int64_t count)
+uint32_t pn_token_count(pn_ctx_t *cx, int64_t count)
 {
     if (count > (int64_t)UINT32_MAX) {
         pn_raise(cx, PN_ERR_CAPACITY, NULL);
@@ -56,7 +55,7 @@ static void *copy_of(pn_ctx_t *cx, const pn_bag_t *bag, const void *value)
 
 void pn_moves_take(pn_moves_t *moves, const pn_bag_t *bag, const void *value, int64_t count, pn_time_t limit)
 {
-    const uint32_t n = tokens(moves->cx, count);
+    const uint32_t n = pn_token_count(moves->cx, count);
     const void *wanted = (n > 0U) ? copy_of(moves->cx, bag, value) : NULL;
     /* Timed tokens are taken one by one, since they may have different stamps. */
     const uint32_t step = bag->is_timed ? 1U : n;
@@ -75,7 +74,7 @@ void pn_moves_take_list(pn_moves_t *moves, const pn_bag_t *bag, const pn_type_t 
 void pn_moves_put(pn_moves_t *moves, const pn_bag_t *bag, const void *value, int64_t count, pn_time_t stamp)
 {
     pn_ctx_t *cx = moves->cx;
-    const uint32_t n = tokens(cx, count);
+    const uint32_t n = pn_token_count(cx, count);
     if ((n == 0U) || !pn_ok(cx)) {
         return;
     }
@@ -83,13 +82,7 @@ void pn_moves_put(pn_moves_t *moves, const pn_bag_t *bag, const void *value, int
     if (stored == NULL) {
         return;
     }
-    const char *origin = cx->origin;
-    cx->origin = bag->origin;
-    if (!pn_is_legal(cx, bag->type, stored)) {
-        pn_raise(cx, PN_ERR_COLOUR, NULL);
-    }
-    pn_narrow(cx, bag->type, stored);
-    cx->origin = origin;
+    pn_bag_check(cx, bag, stored);
     add(moves, PN_MOVE_PUT, bag, stored, n, stamp);
 }
 

@@ -6,12 +6,17 @@
  *
  * simulate_play.c searches and fires, simulate_replay.c repeats given steps, simulate_report.c tells the caller.
  */
+#define _POSIX_C_SOURCE 200809L
+#define _DEFAULT_SOURCE 1 /* mmap without a file */
+
 #include <errno.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/mman.h>
 
 #include "pn/pn_arena.h"
+#include "pn/pn_file.h"
 #include "pn/pn_num.h"
 #include "pn/pn_text.h"
 #include "simulate_impl.h"
@@ -23,7 +28,10 @@ enum {
     EXIT_INTERRUPTED = 130
 };
 
-static max_align_t s_memory[PN_ARENA_DEFAULT_SIZE / sizeof(max_align_t)];
+enum {
+    FOUND_SIZE = 1 << 18 /* bytes of bindings that are kept between finding and drawing one */
+};
+
 static char s_line[SIM_TEXT_SIZE]; /* of the trace; pages that are never touched cost nothing */
 
 static void print_help(void)
@@ -36,8 +44,11 @@ static void print_help(void)
                  "  --trace FILE   write the run (docs/trace.md); - is the standard output\n"
                  "  --enabled      print what is enabled at the start, one JSON object a line, and do nothing else\n"
                  "  --marking      print the marking at the end as JSON\n"
+                 "  --memory B     bytes for lists and strings (default 4 MB)\n"
+                 "  --choice K     another seed for the choices after a replay alone\n"
                  "  --replay FILE  first repeat these steps (src/simulate_replay.c); - is the standard input; they do not count for\n"
                  "                 --steps\n"
+                 "  --files DIR    let the net read and write files below DIR; without it there are none\n"
                  "  --report FILE  write how the run ended, as JSON (src/simulate_report.c)\n"
                  "  --progress S   with --report: a line every S seconds\n"
                  "  --help         this text\n\n"
@@ -87,6 +98,10 @@ static bool read_valued(const char *option, const char *value, sim_options_t *op
         options->trace = value;
         return true;
     }
+    if (strcmp(option, "--files") == 0) {
+        options->files = value;
+        return true;
+    }
     if (strcmp(option, "--report") == 0) {
         options->report = value;
         return true;
@@ -97,13 +112,15 @@ static bool read_valued(const char *option, const char *value, sim_options_t *op
     }
     return ((strcmp(option, "--steps") == 0) && read_number(value, &options->steps))
            || ((strcmp(option, "--seed") == 0) && read_number(value, &options->seed))
+           || ((strcmp(option, "--choice") == 0) && (options->has_choice = read_number(value, &options->choice)))
+           || ((strcmp(option, "--memory") == 0) && read_number(value, &options->memory))
            || ((strcmp(option, "--until") == 0) && read_time(value, options))
            || ((strcmp(option, "--progress") == 0) && read_real(value, &options->progress_s));
 }
 
 static bool read_options(int argc, char **argv, sim_options_t *options)
 {
-    *options = (sim_options_t){ .steps = 1000U, .seed = 1U };
+    *options = (sim_options_t){ .steps = 1000U, .seed = 1U, .memory = PN_ARENA_DEFAULT_SIZE };
     for (int i = 1; i < argc; i++) {
         const char *option = argv[i];
         if (strcmp(option, "--enabled") == 0) {
@@ -181,15 +198,24 @@ static bool play_with_trace(sim_t *sim)
 {
     char seed[64];
     if (!pn_trace_open(&sim->trace, sim->options.trace, s_line, sizeof s_line)) {
-        (void)fprintf(stderr, "simulate: cannot write `%s`: %s\n", sim->options.trace, strerror(errno));
+        (void)snprintf(sim->message, sizeof sim->message, "%s", strerror(errno));
+        (void)fprintf(stderr, "simulate: cannot write `%s`: %s\n", sim->options.trace, sim->message);
+        sim->why = "trace";
         return false;
     }
     (void)snprintf(seed, sizeof seed, "\"seed\": %llu", (unsigned long long)sim->options.seed);
     pn_trace_header_with(&sim->trace, &pn_net, "simulate", NULL, seed);
-    play(sim);
-    pn_trace_model_end(&sim->trace, pn_net.now(sim->marking), pn_net.real_time, sim->why);
+    if (sim->trace.failed) {
+        (void)snprintf(sim->message, sizeof sim->message, "%s", strerror(errno));
+    } else {
+        play(sim);
+        pn_trace_model_end(&sim->trace, pn_net.now(sim->marking), pn_net.real_time, sim->why);
+    }
     if (!pn_trace_close(&sim->trace)) {
         (void)fprintf(stderr, "simulate: `%s` could not be written completely\n", sim->options.trace);
+        if (sim->message[0] == '\0') {
+            (void)snprintf(sim->message, sizeof sim->message, "%s", strerror(errno));
+        }
         sim->why = "trace";
         return false;
     }
@@ -219,6 +245,7 @@ static int run(sim_t *sim)
         sim->why = "steps";
         print_enabled(sim);
     } else {
+        sim_report_start(sim);
         is_written = play_with_trace(sim);
     }
     int code = tell(sim);
@@ -233,13 +260,27 @@ static int run(sim_t *sim)
     return is_written ? code : EXIT_USAGE;
 }
 
+/* Zeroed memory, of which only what is used costs anything; NULL if there is none. Never given back: the program ends. */
+static void *reserve(uint64_t size)
+{
+    const size_t bytes = (size > 0U) ? (size_t)size : 1U;
+    void *memory = mmap(NULL, bytes, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
+    return (memory == MAP_FAILED) ? NULL : memory;
+}
+
 static bool make(sim_t *sim, pn_arena_t *arena)
 {
-    /* The only use of the heap, before anything runs. */
-    sim->marking = calloc(1U, pn_net.marking_size);
-    sim->binding = calloc(1U, pn_net.binding_size);
-    sim->enabled = calloc((size_t)pn_net.transition_count + 1U, sizeof *sim->enabled);
-    if ((sim->marking == NULL) || (sim->binding == NULL) || (sim->enabled == NULL)) {
+    /* Before anything runs; nothing is allocated later. */
+    void *memory = reserve(sim->options.memory);
+    sim->marking = reserve(pn_net.marking_size);
+    sim->binding = reserve(pn_net.binding_size);
+    sim->enabled = reserve(((uint64_t)pn_net.transition_count + 1U) * sizeof *sim->enabled);
+    sim->level_end = reserve(((uint64_t)pn_net.transition_count + 1U) * sizeof *sim->level_end);
+    sim->known = reserve((uint64_t)pn_net.transition_count + 1U);
+    sim->found_size = FOUND_SIZE;
+    sim->found = reserve(FOUND_SIZE);
+    if ((memory == NULL) || (sim->marking == NULL) || (sim->binding == NULL) || (sim->enabled == NULL)
+        || (sim->level_end == NULL) || (sim->known == NULL) || (sim->found == NULL)) {
         (void)fprintf(stderr, "simulate: not enough memory\n");
         return false;
     }
@@ -250,7 +291,13 @@ static bool make(sim_t *sim, pn_arena_t *arena)
             return false;
         }
     }
-    pn_arena_init(arena, s_memory, sizeof s_memory);
+    if ((sim->options.files != NULL) && !pn_file_allow(sim->options.files)) {
+        (void)fprintf(stderr, "simulate: there is no folder `%s`\n", sim->options.files);
+        return false;
+    }
+    pn_file_set_output(stdout);
+    sim_find_levels(sim);
+    pn_arena_init(arena, memory, (size_t)sim->options.memory);
     pn_ctx_init(&sim->cx, arena, sim->options.seed);
     sim->why = "";
     sim->doing = "";
@@ -273,9 +320,5 @@ int main(int argc, char **argv)
         (void)fprintf(stderr, "simulate: the net was generated for another version of the runtime; generate it again\n");
         return EXIT_USAGE;
     }
-    const int code = make(&s_sim, &arena) ? run(&s_sim) : EXIT_USAGE;
-    free(s_sim.marking);
-    free(s_sim.binding);
-    free(s_sim.enabled);
-    return code;
+    return make(&s_sim, &arena) ? run(&s_sim) : EXIT_USAGE;
 }

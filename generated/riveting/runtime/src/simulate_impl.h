@@ -12,8 +12,12 @@
 typedef struct sim_options {
     uint64_t steps;
     uint64_t seed;
+    uint64_t memory;     /* bytes for lists and strings */
+    uint64_t choice;     /* of the choices after a replay */
+    bool has_choice;
     const char *trace;   /* NULL: none */
     const char *report;  /* NULL: none */
+    const char *files;   /* folder for the net's files; NULL: none */
     const char *replay;  /* NULL: none; "-": the standard input */
     double progress_s;   /* seconds between two progress lines of the report; 0: none */
     pn_time_t until;
@@ -31,6 +35,13 @@ typedef enum sim_next {
     SIM_FAILED    /* an inscription raised an exception */
 } sim_next_t;
 
+/* What is known of a transition in the present marking and at the present time. */
+typedef enum sim_known {
+    SIM_UNKNOWN,
+    SIM_ENABLED,
+    SIM_DISABLED
+} sim_known_t;
+
 typedef struct sim {
     sim_options_t options;
     pn_ctx_t cx;
@@ -38,6 +49,10 @@ typedef struct sim {
     void *binding;       /* of the occurrence that is being worked on */
     uint32_t *enabled;   /* room for the indices of all transitions */
     uint32_t enabled_count;
+    uint32_t *level_end; /* for each place in the order of trying: where the transitions of its priority end */
+    uint8_t *known;      /* sim_known_t of each transition: what is still true since it was last looked at */
+    unsigned char *found; /* bindings of one transition, one after the other, as many as there is room for */
+    size_t found_size;
     pn_trace_t trace;
     FILE *report;
     uint64_t steps;      /* occurrences, replayed ones included */
@@ -53,6 +68,10 @@ typedef struct sim {
 
 /* Moves time on to where something is enabled, if nothing is now; fills `enabled` with the transitions of the best priority. */
 sim_next_t sim_settle(sim_t *sim);
+/* Works out `level_end`. */
+void sim_find_levels(sim_t *sim);
+/* Forgets what is known of all transitions: the marking or the time has changed from outside. */
+void sim_forget(sim_t *sim);
 /* One occurrence at random; false when the run ends here (`why` says why). */
 bool sim_step(sim_t *sim);
 /* Lets `binding` of a transition occur and writes it to the trace; false after an error. */
@@ -71,6 +90,8 @@ bool sim_replay(sim_t *sim);
 
 /* A JSON object on a line of its own: {"steps": 100, "t": 12}, at most one in `progress_s` seconds. */
 void sim_report_progress(sim_t *sim);
+/* The first line: the marking at the start. */
+void sim_report_start(sim_t *sim);
 /* The last line: how the run has ended, and the marking. False when it could not be written. */
 bool sim_report_end(sim_t *sim);
 /* The marking as JSON: {"Top.P": [[1, 5]], ...}; false when it could not be written. */

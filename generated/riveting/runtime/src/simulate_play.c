@@ -8,6 +8,7 @@
 #define _POSIX_C_SOURCE 200809L /* sigaction */
 #define _XOPEN_SOURCE 700
 
+#include <errno.h>
 #include <signal.h>
 #include <string.h>
 
@@ -58,19 +59,34 @@ static bool stop_at_first(void *user, uint32_t transition, const void *binding)
     return false;
 }
 
-/* What a search is for: the number of bindings, or binding number `wanted`. */
+/* The bindings of a transition: counted, and kept while there is room; or only binding number `wanted`. */
 typedef struct search {
     uint64_t count;
     uint64_t wanted;
     void *binding;
     size_t size;
+    unsigned char *kept;
+    size_t used; /* bytes of what is kept */
+    size_t room; /* bytes */
 } search_t;
 
-static bool count_binding(void *user, uint32_t transition, const void *binding)
+static bool keep_binding(void *user, uint32_t transition, const void *binding)
 {
     search_t *search = user;
     (void)transition;
-    if ((search->binding != NULL) && (search->count == search->wanted)) {
+    if (search->size <= (search->room - search->used)) {
+        (void)memcpy(&search->kept[search->used], binding, search->size);
+        search->used += search->size;
+    }
+    search->count++;
+    return true;
+}
+
+static bool find_binding(void *user, uint32_t transition, const void *binding)
+{
+    search_t *search = user;
+    (void)transition;
+    if (search->count == search->wanted) {
         (void)memcpy(search->binding, binding, search->size);
         return false;
     }
@@ -78,30 +94,55 @@ static bool count_binding(void *user, uint32_t transition, const void *binding)
     return true;
 }
 
+void sim_forget(sim_t *sim)
+{
+    (void)memset(sim->known, SIM_UNKNOWN, pn_net.transition_count);
+}
+
+/* Whether a transition is enabled; looks only when it is not known. */
+static bool is_enabled(sim_t *sim, uint32_t transition)
+{
+    if (sim->known[transition] == (uint8_t)SIM_UNKNOWN) {
+        bool is_found = false;
+        const size_t mark = pn_arena_mark(sim->cx.arena);
+        (void)pn_net.transition[transition].enumerate(&sim->cx, sim->marking, transition, stop_at_first, &is_found);
+        pn_arena_release(sim->cx.arena, mark);
+        sim->known[transition] = (uint8_t)((is_found && pn_ok(&sim->cx)) ? SIM_ENABLED : SIM_DISABLED);
+    }
+    return sim->known[transition] == (uint8_t)SIM_ENABLED;
+}
+
+void sim_find_levels(sim_t *sim)
+{
+    uint32_t end = pn_net.order_count;
+    for (uint32_t k = pn_net.order_count; k > 0U; k--) {
+        const int32_t priority = pn_net.transition[pn_net.order[k - 1U]].priority;
+        if ((k < pn_net.order_count) && (pn_net.transition[pn_net.order[k]].priority != priority)) {
+            end = k;
+        }
+        sim->level_end[k - 1U] = end;
+    }
+}
+
 /* Fills `enabled` with the transitions of the best priority that are enabled now. False after an error. */
 static bool find_enabled(sim_t *sim)
 {
-    int32_t best = 0;
-    sim->enabled_count = 0U;
-    for (uint32_t k = 0U; k < pn_net.order_count; k++) {
+    uint32_t count = 0U;
+    uint32_t last = pn_net.order_count;
+    for (uint32_t k = 0U; k < last; k++) {
         const uint32_t i = pn_net.order[k];
-        if ((sim->enabled_count > 0U) && (pn_net.transition[i].priority > best)) {
-            break;
-        }
-        bool is_enabled = false;
-        const size_t mark = pn_arena_mark(sim->cx.arena);
-        (void)pn_net.transition[i].enumerate(&sim->cx, sim->marking, i, stop_at_first, &is_enabled);
-        pn_arena_release(sim->cx.arena, mark);
-        if (!pn_ok(&sim->cx)) {
+        if (is_enabled(sim, i)) {
+            sim->enabled[count] = i;
+            if (count == 0U) {
+                last = sim->level_end[k]; /* what comes after is less urgent */
+            }
+            count++;
+        } else if (!pn_ok(&sim->cx)) {
             sim_fail(sim, "looking for its bindings", (int64_t)i, false);
             return false;
         }
-        if (is_enabled) {
-            best = pn_net.transition[i].priority;
-            sim->enabled[sim->enabled_count] = i;
-            sim->enabled_count++;
-        }
     }
+    sim->enabled_count = count;
     return true;
 }
 
@@ -112,11 +153,15 @@ static bool is_after(pn_time_t a, pn_time_t b)
 
 sim_next_t sim_settle(sim_t *sim)
 {
+    bool is_fine = find_enabled(sim);
+    if (is_fine && (sim->enabled_count > 0U) && !sim->options.has_until) {
+        return SIM_FOUND;
+    }
     const pn_time_t start = pn_net.now(sim->marking);
     pn_time_t next = start;
-    bool is_fine = find_enabled(sim);
     while (is_fine && (sim->enabled_count == 0U) && pn_net.timed && pn_net.next_time(sim->marking, &next)) {
         pn_net.set_now(sim->marking, next);
+        sim_forget(sim);
         is_fine = find_enabled(sim);
     }
     if (!is_fine) {
@@ -124,36 +169,62 @@ sim_next_t sim_settle(sim_t *sim)
     }
     if (sim->enabled_count == 0U) {
         pn_net.set_now(sim->marking, start);
+        sim_forget(sim);
         return SIM_FINISHED;
     }
     const bool is_beyond = sim->options.has_until && is_after(pn_net.now(sim->marking), sim->options.until);
     if (is_beyond) {
         pn_net.set_now(sim->marking, is_after(start, sim->options.until) ? start : sim->options.until);
+        sim_forget(sim);
     }
     return is_beyond ? SIM_BEYOND : SIM_FOUND;
+}
+
+/* A number below `count` from the stream of the choice, which is started when the first is needed: of one thing there is no
+ * choice, and no number is drawn. */
+static uint64_t choose(sim_t *sim, uint64_t count, uint64_t *state)
+{
+    pn_ctx_t *cx = &sim->cx;
+    if (count <= 1U) {
+        return 0U;
+    }
+    if (*state == 0U) {
+        const uint64_t seed = cx->seed;
+        cx->seed = sim->options.has_choice ? sim->options.choice : seed;
+        pn_random_start(cx, PN_RANDOM_CHOICE);
+        cx->seed = seed;
+    } else {
+        cx->random = *state; /* enumerating has started streams of its own */
+    }
+    const int64_t chosen = pn_random_below(cx, (int64_t)count);
+    *state = cx->random;
+    return (uint64_t)chosen;
 }
 
 /* Draws one of the enabled transitions and one of its bindings. False after an error. */
 static bool draw(sim_t *sim, uint32_t *transition)
 {
     pn_ctx_t *cx = &sim->cx;
-    pn_random_start(cx, PN_RANDOM_CHOICE);
-    const uint32_t i = sim->enabled[pn_random_below(cx, (int64_t)sim->enabled_count)];
-    const uint64_t state = cx->random; /* enumerating starts streams of its own */
-    search_t search = { 0U, 0U, NULL, pn_net.transition[i].binding_size };
+    uint64_t state = 0U;
+    const uint32_t i = sim->enabled[choose(sim, sim->enabled_count, &state)];
+    search_t search = { .binding = sim->binding, .size = pn_net.transition[i].binding_size };
+    search.kept = sim->found;
+    search.room = sim->found_size;
     const size_t mark = pn_arena_mark(cx->arena);
-    (void)pn_net.transition[i].enumerate(cx, sim->marking, i, count_binding, &search);
-    pn_arena_release(cx->arena, mark);
+    (void)pn_net.transition[i].enumerate(cx, sim->marking, i, keep_binding, &search);
     *transition = i;
     if (!pn_ok(cx)) {
         sim_fail(sim, "looking for its bindings", (int64_t)i, false);
         return false;
     }
-    cx->random = state;
-    search.wanted = (uint64_t)pn_random_below(cx, (int64_t)search.count);
-    search.binding = sim->binding;
+    search.wanted = choose(sim, search.count, &state);
+    if ((search.wanted * search.size) < search.used) {
+        (void)memcpy(sim->binding, &sim->found[search.wanted * search.size], search.size);
+        return true;
+    }
+    pn_arena_release(cx->arena, mark);
     search.count = 0U;
-    (void)pn_net.transition[i].enumerate(cx, sim->marking, i, count_binding, &search);
+    (void)pn_net.transition[i].enumerate(cx, sim->marking, i, find_binding, &search);
     return true;
 }
 
@@ -168,11 +239,20 @@ bool sim_fire(sim_t *sim, uint32_t transition)
         return false;
     }
     sim->steps++;
-    pn_trace_model_occurrence(&sim->trace, pn_net.now(sim->marking), pn_net.real_time, &pn_net.transition[transition],
-                              sim->binding);
-    if (sim->trace.failed) {
-        sim->why = "trace";
-        return false;
+    const pn_transition_t *done = &pn_net.transition[transition];
+    if (done->affected == NULL) {
+        sim_forget(sim);
+    }
+    for (uint32_t k = 0U; k < done->affected_count; k++) {
+        sim->known[done->affected[k]] = (uint8_t)SIM_UNKNOWN;
+    }
+    if (sim->options.trace != NULL) {
+        pn_trace_model_occurrence(&sim->trace, pn_net.now(sim->marking), pn_net.real_time, done, sim->binding);
+        if (sim->trace.failed) {
+            (void)snprintf(sim->message, sizeof sim->message, "%s", strerror(errno));
+            sim->why = "trace";
+            return false;
+        }
     }
     if (pn_arena_is_crowded(cx->arena)) {
         pn_net.collect(cx, sim->marking);

@@ -1,11 +1,13 @@
 /* SPDX-License-Identifier: MIT
  * simulate_report.c - JSON lines for the program that has started the simulator.
  *
+ *     {"initial": {"Top.P": [[1, 3]]}}                                                                  the start
  *     {"steps": 1000, "t": 12}                                                                          progress
  *     {"why": "finished", "steps": 1200, "replayed": 0, "t": 14, "marking": {"Top.P": [[1, 5]]}}        the end
  *
  * After an error the end also has "error", "origin", "doing", and where they are known "transition" (its index) and "binding";
- * after a replay that was refused "message".
+ * when it was one of the program and not of the net, "limit": "room" (a place is full) or "memory" (of lists and strings); after
+ * a replay that was refused "message".
  */
 #include <inttypes.h>
 #include <string.h>
@@ -97,6 +99,11 @@ static void text_error(pn_text_t *text, const sim_t *sim)
     text_member(text, "error", sim->cx.error_name);
     text_member(text, "origin", sim->cx.error_origin);
     text_member(text, "doing", sim->doing);
+    if (sim->cx.error == PN_ERR_CAPACITY) {
+        text_member(text, "limit", "room");
+    } else if (sim->cx.error == PN_ERR_MEMORY) {
+        text_member(text, "limit", "memory");
+    }
     if (sim->transition >= 0) {
         pn_text_str(text, ", \"transition\": ");
         pn_text_int(text, sim->transition);
@@ -104,6 +111,16 @@ static void text_error(pn_text_t *text, const sim_t *sim)
             pn_text_str(text, ", \"binding\": ");
             pn_net.transition[sim->transition].binding_json(sim->binding, text);
         }
+    }
+}
+
+void sim_report_start(sim_t *sim)
+{
+    if (sim->report != NULL) {
+        (void)fputs("{\"initial\": ", sim->report);
+        (void)sim_print_marking(sim->marking, sim->report);
+        (void)fputs("}\n", sim->report);
+        (void)fflush(sim->report);
     }
 }
 

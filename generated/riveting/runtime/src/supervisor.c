@@ -11,6 +11,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "pn/pn_file.h"
 #include "pn/pn_port.h"
 
 #define TRACE_LINE 65536U
@@ -74,6 +75,7 @@ static void print_help(const char *program)
                "  --trace FILE       write every firing to FILE (*.trace.jsonl, see docs/trace.md)\n"
                "  --dry-run          no shared files: play the whole net, robots included, in memory and print each\n"
                "                     message; a check before the cell moves\n"
+               "  --files DIR        let the net read and write files below DIR; without it there are none\n"
                "  --time-scale X     units of model time that pass in one second, for timed nets; default 1.\n"
                "                     Without a cell, and in a dry run, model time jumps ahead unless this is given\n"
                "  --reply-timeout S  stop when a robot owes an answer for longer than S seconds; 0: never");
@@ -166,6 +168,8 @@ static bool text_option(sup_options_t *o, int argc, char **argv, int *at, bool *
         o->directory = value;
     } else if ((value = option_value("--input", argc, argv, at, missing)) != NULL) {
         o->input = value;
+    } else if ((value = option_value("--files", argc, argv, at, missing)) != NULL) {
+        o->files = value;
     } else if ((value = option_value("--trace", argc, argv, at, missing)) != NULL) {
         o->trace = value;
     } else {
@@ -257,6 +261,9 @@ static bool get_memory(sup_t *sup)
     sup->fired_of = calloc((size_t)pn_net.transition_count + 1U, sizeof *sup->fired_of);
     if ((sup->marking == NULL) || (sup->binding == NULL) || (sup->fired_of == NULL)) {
         return sup_stop(sup, SUP_EXIT_IO, "not enough memory");
+    }
+    if ((sup->options.files != NULL) && !pn_file_allow(sup->options.files)) {
+        return sup_stop(sup, SUP_EXIT_USAGE, "there is no folder `%s`", sup->options.files);
     }
     pn_arena_init(&sup->arena, s_arena_memory, sizeof s_arena_memory);
     pn_ctx_init(&sup->cx, &sup->arena, 1U);

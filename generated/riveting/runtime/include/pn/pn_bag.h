@@ -46,6 +46,10 @@ uint64_t pn_bag_available(const pn_bag_t *bag, const void *marking, pn_time_t no
 uint64_t pn_bag_count(const pn_bag_t *bag, const void *marking, const void *value, pn_time_t limit);
 /* Adds tokens. False (PN_ERR_CAPACITY, nothing changed) when there is no room. */
 bool pn_bag_add(pn_ctx_t *cx, const pn_bag_t *bag, void *marking, const void *value, uint32_t count, pn_time_t stamp);
+/* Raises PN_ERR_CAPACITY at the place; false. */
+bool pn_bag_fail_full(pn_ctx_t *cx, const pn_bag_t *bag);
+/* Narrows a value and raises PN_ERR_COLOUR at the place if it is not in the colour set. */
+void pn_bag_check(pn_ctx_t *cx, const pn_bag_t *bag, void *value);
 void pn_bag_clear(const pn_bag_t *bag, void *marking);
 /* The earliest time after `now` at which a token becomes available, if it is before *next or *found is false. */
 void pn_bag_next_time(const pn_bag_t *bag, const void *marking, pn_time_t now, bool *found, pn_time_t *next);
@@ -120,6 +124,8 @@ typedef struct pn_moves {
     pn_move_t *last;
 } pn_moves_t;
 
+/* A coefficient as a number of tokens, 0 if it is negative. Raises PN_ERR_CAPACITY when it is beyond all places. */
+uint32_t pn_token_count(pn_ctx_t *cx, int64_t count);
 void pn_moves_init(pn_moves_t *moves, pn_ctx_t *cx);
 /* Wants `count` tokens (none if count <= 0) of a value with stamps not after `limit`. The value is copied. */
 void pn_moves_take(pn_moves_t *moves, const pn_bag_t *bag, const void *value, int64_t count, pn_time_t limit);

@@ -94,6 +94,9 @@ typedef struct pn_transition {
     /* The binding as a JSON object, values in the form of the traces. Code-segment outputs included after a fire. */
     void (*binding_json)(const void *binding, pn_text_t *out);
     size_t binding_size;
+    /* The transitions that may be enabled in another way after this one has occurred, model time being the same. NULL: all. */
+    uint32_t affected_count;
+    const uint32_t *affected;
 } pn_transition_t;
 
 typedef struct pn_owner {

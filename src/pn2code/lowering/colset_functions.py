@@ -1,0 +1,330 @@
+"""Functions of colour sets that the runtime does not have: written in CPN ML (prelude/Colour.sml) on top of those it has.
+
+And all values of a colour set that the runtime cannot number: lists, strings and subsets, and what is made of them.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import TYPE_CHECKING
+
+from pn2code.diagnostics import Origin, Span
+from pn2code.lowering import higher_order, ir, prelude
+from pn2code.lowering.ir import Ir
+from pn2code.lowering.values import BuiltinFunction, Polymorphic, RecordVal, Val
+from pn2code.ml import core
+from pn2code.ml.colsets import Colset, Kind
+from pn2code.ml.types import (
+    BOOL,
+    CHAR,
+    INT,
+    INTINF,
+    REAL,
+    STRING,
+    UNIT,
+    TCon,
+    TFun,
+    Type,
+    list_of,
+    tuple_of,
+)
+
+if TYPE_CHECKING:
+    from pn2code.lowering.expressions import Body
+
+_ORDER = TCon("order")
+_OUT = TCon("TextIO.outstream")
+_IN = TCon("TextIO.instream")
+_AT = tuple_of(STRING, TCon("ref", (INT,)))
+
+LISTED = frozenset({"size", "ord", "col", "ran", "base", "all"})
+"""Functions that need all values."""
+
+
+class ColsetFunctions:
+    """The functions of one colour set in one body."""
+
+    def __init__(self, body: Body, colset: Colset, at: Span) -> None:
+        self._body = body
+        self._colset = colset
+        self._at = at
+        self._time: Type = REAL if body.program.real_time else INTINF
+
+    def apply(self, name: str, arguments: tuple[Val, ...]) -> Val | None:
+        """The value of a function for its argument; None if it is not one of these."""
+        cs = self._colset.type
+        ms, token, tms = list_of(cs), TCon("timed", (cs,)), list_of(TCon("timed", (cs,)))
+        mkstr = ("mkstr", TFun(cs, STRING))
+        lt = ("lt", TFun(tuple_of(cs, cs), BOOL))
+        cmp = ("cmp", TFun(tuple_of(cs, cs), _ORDER))
+        legal = ("legal", TFun(cs, BOOL))
+        read = ("read", TFun(_AT, cs))
+        stamp = ("stamp", TFun(_AT, self._time))
+        table: dict[str, tuple[tuple[tuple[str, Type], ...], Type, Type]] = {
+            "mkstr_ms": ((mkstr, lt), ms, STRING),
+            "output": ((mkstr,), tuple_of(_OUT, cs), UNIT),
+            "output_ms": ((mkstr, lt), tuple_of(_OUT, ms), UNIT),
+            "input": ((read,), _IN, cs),
+            "input_ms": ((read,), _IN, ms),
+            "timed.mkstr": ((mkstr,), token, STRING),
+            "timed.mkstr_ms": ((mkstr, lt), tms, STRING),
+            "timed.output": ((mkstr,), tuple_of(_OUT, token), UNIT),
+            "timed.output_ms": ((mkstr, lt), tuple_of(_OUT, tms), UNIT),
+            "timed.input": ((read, stamp), _IN, token),
+            "timed.input_ms": ((read, stamp), _IN, tms),
+            "timed.lt": ((cmp,), tuple_of(token, token), BOOL),
+            "timed.cmp": ((cmp,), tuple_of(token, token), _ORDER),
+            "timed.legal": ((legal,), token, BOOL),
+        }
+        own = ir.Const(self._colset.name, ir.STRING)
+        if name in table:
+            functions, argument, result = table[name]
+            return self._call(name, functions, arguments[0], argument, result)
+        if name in ("illegal_msg", "timed.illegal_msg"):
+            part = token if name.startswith("timed.") else cs
+            pair = RecordVal({"1": arguments[0], "2": own}, tuple_of(part, STRING))
+            return self._call(name, (legal, mkstr), pair, tuple_of(part, STRING), STRING)
+        results = {"timed.all": tms, "timed.size": INT, "timed.ord": INT, "timed.col": token, "timed.ran": token}
+        if name in results:
+            return self._call("no_bounds", (), own, STRING, results[name])
+        return None
+
+    def listed(self, name: str, arguments: tuple[Val, ...]) -> Val:
+        """One of `LISTED`, for a colour set that the runtime cannot number."""
+        cs = self._colset.type
+        if name == "base":
+            return base_value(self._body, self._colset, self._at)
+        values = all_values(self._body, self._colset, self._at)
+        ms = list_of(cs)
+        match name:
+            case "all":
+                return values
+            case "size":
+                return self._call("size", (), values, ms, INT)
+            case "ord":
+                pair = RecordVal({"1": values, "2": arguments[0]}, tuple_of(ms, cs))
+                cmp = ("cmp", TFun(tuple_of(cs, cs), _ORDER))
+                return self._call("ord", (cmp,), pair, tuple_of(ms, cs), INT)
+            case "col":
+                pair = RecordVal({"1": values, "2": arguments[0]}, tuple_of(ms, INT))
+                return self._call("col", (), pair, tuple_of(ms, INT), cs)
+        return self._call("ran", (), values, ms, cs)
+
+    def _call(
+        self,
+        name: str,
+        functions: tuple[tuple[str, Type], ...],
+        argument: Val,
+        argument_type: Type,
+        result: Type,
+    ) -> Val:
+        """A function of the prelude, first applied to functions of the colour set."""
+        values: list[Val] = [self._function(n, t) for n, t in functions]
+        types = [t for _, t in functions]
+        whole: Type = TFun(argument_type, result)
+        steps: list[tuple[Val, Type]] = []
+        if len(values) == 1:
+            steps.append((values[0], whole))
+            whole = TFun(types[0], whole)
+        elif values:
+            together = tuple_of(*types)
+            fields = {str(i): v for i, v in enumerate(values, 1)}
+            steps.append((RecordVal(fields, together), whole))
+            whole = TFun(together, whole)
+        steps.append((argument, result))
+        return call(self._body, f"Colour.{name.replace('.', '_')}", whole, steps, self._at)
+
+    def _function(self, name: str, t: Type) -> Val:
+        if name == "stamp":
+            operation = "number" if self._body.program.real_time else "integer"
+            return BuiltinFunction(core.Builtin(f"prim.do_read_{operation}", t, self._at), t)
+        node = core.Builtin(f"Colset.{name}", t, self._at, (), self._colset)
+        return BuiltinFunction(node, t)
+
+
+def call(body: Body, name: str, t: Type, steps: list[tuple[Val, Type]], at: Span) -> Val:
+    """A function of the prelude at a type, applied to its curried arguments (each with the type of the result)."""
+    found = body.program.prelude_function(name)
+    assert found is not None, name
+    _, symbol = found
+    value = body.program.global_value(body, symbol, prelude.instance(symbol, t), at)
+    assert not isinstance(value, Polymorphic)
+    for argument, result in steps:
+        value = body.apply(value, argument, prelude.representation(result), at)
+    return value
+
+
+# --- values ------------------------------------------------------------------------------------
+
+
+def all_values(body: Body, colset: Colset, at: Span | Origin) -> Ir:
+    """A list of all values, in order."""
+    types = body.program.types
+    c = colset.resolved
+    table = types.colset(colset)
+    t = types.lower(list_of(colset.type))
+    types.plain(t)
+    span = at if isinstance(at, Span) else _no_span(colset, at)
+    if types.is_small(table):
+        return ir.Op("Colset.all", (), t, table)
+    match c.kind:
+        case Kind.SUBSET:
+            return _subset(body, c, t, table, span)
+        case Kind.PRODUCT | Kind.RECORD:
+            return _combinations(body, c, t, span)
+        case Kind.UNION:
+            return _constructors(body, c, t, span)
+        case Kind.LIST if isinstance(c.low, int) and isinstance(c.high, int):
+            part = c.components[0]
+            assert part is not None
+            items = body.atomic(all_values(body, part, span), "items")
+            return _sequences(body, "sequences", items, list_of(part.type), c.low, c.high, t, span)
+        case Kind.STRING if c.length is not None and isinstance(c.low, str) and isinstance(c.high, str):
+            pair = RecordVal(
+                {"1": ir.Const(ord(c.low), ir.INT), "2": ir.Const(ord(c.high), ir.INT)},
+                tuple_of(INT, INT),
+            )
+            letters_type = TFun(tuple_of(INT, INT), list_of(CHAR))
+            letters = call(body, "Colour.letters", letters_type, [(pair, list_of(CHAR))], span)
+            return _sequences(
+                body, "strings", body.code(letters), list_of(CHAR), *c.length, t, span
+            )
+    # Without bounds: the runtime raises CPN'Error.
+    return ir.Op("Colset.all", (), t, table)
+
+
+def is_countable(colset: Colset) -> bool:
+    """Whether `all_values` gives something."""
+    c = colset.resolved
+    match c.kind:
+        case Kind.SUBSET:
+            return c.members is not None or all(is_countable(p) for p in c.components if p)
+        case Kind.PRODUCT | Kind.RECORD | Kind.UNION:
+            return all(is_countable(p) for p in c.components if p is not None)
+        case Kind.LIST:
+            part = c.components[0]
+            return (
+                isinstance(c.low, int) and isinstance(c.high, int) and part is not None
+            ) and is_countable(part)
+        case Kind.STRING:
+            return c.length is not None and isinstance(c.low, str) and isinstance(c.high, str)
+        case Kind.INT | Kind.INTINF | Kind.INDEX:
+            return isinstance(c.low, int) and isinstance(c.high, int)
+        case Kind.UNIT | Kind.BOOL | Kind.ENUM:
+            return True
+    return False
+
+
+def _no_span(colset: Colset, at: Origin) -> Span:
+    from pn2code.diagnostics import SourceText
+
+    return Span(SourceText(colset.name, at), 0, 0)
+
+
+def _sequences(
+    body: Body, name: str, items: Ir, items_type: Type, low: int, high: int, t: ir.IrType, at: Span
+) -> Ir:
+    argument = tuple_of(items_type, INT, INT)
+    result = list_of(STRING) if name == "strings" else list_of(items_type)
+    values: dict[str, Val] = {
+        "1": items,
+        "2": ir.Const(low, ir.INT),
+        "3": ir.Const(high, ir.INT),
+    }
+    step: tuple[Val, Type] = (RecordVal(values, argument), result)
+    made = body.code(call(body, f"Colour.{name}", TFun(argument, result), [step], at))
+    assert made.type == t
+    return made
+
+
+def _subset(body: Body, c: Colset, t: ir.IrType, table: str, at: Span) -> Ir:
+    """Those of the base that belong to it, or those it lists, in order."""
+    base = c.components[0]
+    assert base is not None
+    if c.members is None:
+        candidates = all_values(body, base, at)
+    else:
+        key = body.program.types.colset(base)
+        candidates = higher_order.sort_values(body, body.ir(c.members, {}), key)
+    return higher_order.filter_values(
+        body, candidates, lambda v: ir.Op("Colset.legal", (v,), ir.BOOL, table)
+    )
+
+
+def _combinations(body: Body, c: Colset, t: ir.IrType, at: Span) -> Ir:
+    """All combinations, the last component fastest."""
+    labels = c.labels or tuple(str(i) for i in range(1, len(c.components) + 1))
+    parts = {x: p for x, p in zip(labels, c.components, strict=True) if p is not None}
+    lists = {x: body.atomic(all_values(body, p, at), "all") for x, p in parts.items()}
+    element = body.element(t)
+    definition = body.program.types.definition(element)
+    assert isinstance(definition, ir.StructDef)
+
+    def combine(rest: list[str], chosen: dict[str, Ir], keep: Callable[[Ir], None]) -> None:
+        if not rest:
+            fields = tuple((label, chosen[label]) for label, _ in definition.fields)
+            keep(ir.MakeStruct(element, fields))
+            return
+        label, *others = rest
+        higher_order.for_each(
+            body, lists[label], lambda x: combine(others, {**chosen, label: x}, keep)
+        )
+
+    return higher_order.collect(body, t, lambda keep: combine(list(labels), {}, keep))
+
+
+def _constructors(body: Body, c: Colset, t: ir.IrType, at: Span) -> Ir:
+    """Each constructor with all its arguments."""
+    element = body.element(t)
+
+    def fill(keep: Callable[[Ir], None]) -> None:
+        for tag, part in enumerate(c.components):
+            if part is None:
+                keep(ir.MakeUnion(tag, None, element))
+            else:
+                higher_order.for_each(
+                    body,
+                    all_values(body, part, at),
+                    lambda x, tag=tag: keep(ir.MakeUnion(tag, x, element)),  # type: ignore[misc]
+                )
+
+    return higher_order.collect(body, t, fill)
+
+
+def base_value(body: Body, colset: Colset, at: Span) -> Ir:
+    """Some value: the first one, or the simplest of an unbounded colour set."""
+    c = colset.resolved
+    types = body.program.types
+    t = types.lower(colset.type)
+    match c.kind:
+        case Kind.STRING:
+            letter = c.low if isinstance(c.low, str) else "a"
+            return ir.Const(letter * (c.length[0] if c.length else 0), ir.STRING)
+        case Kind.LIST:
+            part = c.components[0]
+            assert part is not None
+            item = body.addressable(base_value(body, part, at), "item")
+            made: Ir = ir.Op("list.nil", (), t)
+            for _ in range(c.low if isinstance(c.low, int) else 0):
+                made = ir.Op("list.cons", (item, made), t, types.plain(t))
+            return made
+        case Kind.PRODUCT | Kind.RECORD:
+            labels = c.labels or tuple(str(i) for i in range(1, len(c.components) + 1))
+            parts = {
+                x: base_value(body, p, at)
+                for x, p in zip(labels, c.components, strict=True)
+                if p is not None
+            }
+            definition = types.definition(t)
+            assert isinstance(definition, ir.StructDef)
+            return ir.MakeStruct(t, tuple((x, parts[x]) for x, _ in definition.fields))
+        case Kind.UNION if (part := c.components[0]) is not None:
+            return ir.MakeUnion(0, base_value(body, part, at), t)
+        case Kind.SUBSET:
+            values = body.atomic(all_values(body, colset, at), "all")
+            return ir.Select(ir.IsNil(values), body.zero(t), ir.Head(values, t), t)
+    local = body.local("base", t)
+    body.emit(ir.Declare(local))
+    body.emit(ir.Fill(local, "base", types.colset(colset), ()))
+    return ir.Use(local)
+
