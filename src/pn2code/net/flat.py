@@ -175,11 +175,12 @@ class PlaceInstance:
 
     Args:
         id: XML id of the place.
-        name: as on the page.
+        name: as on the page, in one line; its id if it has none.
         page: name of the page.
         instance: path of the page instance.
         number: CPN Tools' number of that page instance, from 1.
         place: index in `FlatNet.places`.
+        caption: the name exactly as it is written, with line breaks; "" if it has none.
     """
 
     id: str
@@ -188,6 +189,7 @@ class PlaceInstance:
     instance: str
     number: int
     place: int
+    caption: str = ""
 
 
 @frozen

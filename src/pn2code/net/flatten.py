@@ -72,6 +72,7 @@ class _Flattener:
         places = tuple(self.places(groups))
         transitions = tuple(self.transitions(group_of))
         document = self.net.net.document
+        captions = {p.id: p.caption for page in document.pages for p in page.places}
         arcs = sum(len(t.arcs) for t in transitions)
         return FlatNet(
             name=c_stem(document.file),
@@ -90,6 +91,7 @@ class _Flattener:
                     instance=instance.path,
                     number=instance.number,
                     place=group_of[(instance.index, place.id)],
+                    caption=captions.get(place.id, place.name),
                 )
                 for instance in self.instances
                 for place in instance.page.places

@@ -16,7 +16,7 @@ from pn2code.semantics.marking import BindingElement, Marking, place_text, varia
 from pn2code.semantics.values import Value, real_text
 
 PlaceRow = dict[str, str | int]
-"""`page`, `instance`, `name`, `id`, `marking`."""
+"""`page`, `instance`, `name`, `id`, `marking`; of a fusion set also `fusion`."""
 
 _NO_EVALUATOR: Any = None
 _TEXTS = Colours(_NO_EVALUATOR)
@@ -27,21 +27,29 @@ def places(net: FlatNet, marking: Marking) -> list[PlaceRow]:
     """What every place instance holds, as CPN Tools prints it.
 
     Ports, sockets and members of fusion sets each have a row, with what they share; so has a fusion set itself (with
-    its own id and no page), as in the real tool. A place without a name has the name "".
+    its own id as name and no page; `fusion` is its name), as in the real tool. Names are as they are written, with line
+    breaks; a place without a name has the name "".
     """
     texts = [place_text(_TEXTS, p.colset, marking.places[p.index]) for p in net.places]
     rows: list[PlaceRow] = [
         {
             "page": p.page,
             "instance": p.number,
-            "name": "" if p.name == p.id else p.name,
+            "name": p.caption,
             "id": p.id,
             "marking": texts[p.place],
         }
         for p in net.place_instances
     ]
     rows.extend(
-        {"page": "", "instance": 1, "name": f.name, "id": f.id, "marking": texts[f.place]}
+        {
+            "page": "",
+            "instance": 1,
+            "name": f.id,
+            "id": f.id,
+            "fusion": f.name,
+            "marking": texts[f.place],
+        }
         for f in net.fusions
         if f.place >= 0
     )
@@ -91,7 +99,7 @@ def marking_text(net: FlatNet, marking: Marking, *, empty: bool = False) -> str:
 
 
 def _name(row: PlaceRow) -> str:
-    return str(row["name"] or row["id"])
+    return " ".join(str(row["name"]).split()) or str(row["id"])
 
 
 def enabled_text(net: FlatNet, time: int | float, elements: Iterable[BindingElement]) -> str:

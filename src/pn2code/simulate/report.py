@@ -53,7 +53,9 @@ def _marking(net: FlatNet, outcome: Outcome, everything: bool) -> str:
     if everything or outcome.initial is None:
         return marking_text(net, outcome.final, empty=everything)
     before = {_key(row): row["marking"] for row in places(net, outcome.initial)}
-    rows = [r for r in places(net, outcome.final) if before.get(_key(r)) != r["marking"]]
+    rows = [
+        r for r in places(net, outcome.final) if before.get(_key(r)) != r["marking"] and r["page"]
+    ]
     if not rows:
         return "no marking has changed"
     width = max(len(_place(r)) for r in rows)
@@ -71,8 +73,8 @@ def _key(row: Mapping[str, Any]) -> tuple[Any, ...]:
 
 def _place(row: Mapping[str, Any]) -> str:
     number = f" ({row['instance']})" if row["instance"] != 1 else ""
-    name = row["name"] or row["id"]
-    return f"{row['page']}.{name}{number}" if row["page"] else str(name)
+    name = " ".join(str(row["name"]).split()) or row["id"]
+    return f"{row['page']}.{name}{number}"
 
 
 def monitors_text(rows: Iterable[Mapping[str, Any]]) -> str:
