@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager
 
 from pn2code.diagnostics import Span
 from pn2code.lowering import ir
 from pn2code.lowering.codes import LITERAL_RANGE, UnsupportedError
+from pn2code.lowering.effects import code_may_raise, has_effect, may_raise, raises_only_overflow
 from pn2code.lowering.functions import Program
 from pn2code.lowering.ir import Ir, IrType, Local, Rep, Stmt
 from pn2code.lowering.matching import Matcher, TypeSource
@@ -88,7 +89,7 @@ class Block(TypeSource):
 
     def zero(self, t: IrType) -> Ir:
         """A harmless value, after an error."""
-        return ir.Op("zero", (), t)
+        return UNIT_VALUE if t == ir.UNIT else ir.Op("zero", (), t)
 
     def literal(self, value: int | float | str, t: Type, span: Span) -> ir.Const:
         """See `TypeSource`."""
@@ -151,9 +152,44 @@ class Block(TypeSource):
                 for k, v in value.fields.items()
             }
             return RecordVal(fields, value.type)
+        if isinstance(value, Partial):
+            arguments = tuple(self.settle(a, hint) for a in value.arguments)
+            return Partial(value.function, arguments)
         if is_static(value):
             return value
         return self.atomic(self.code(value), hint)
+
+    def discard(self, value: Val) -> None:
+        """Nobody looks at the value, but it may raise."""
+        if isinstance(value, RecordVal):
+            for part in value.fields.values():
+                self.discard(part)
+        elif isinstance(value, Partial):
+            for part in value.arguments:
+                self.discard(part)
+        elif not is_static(value):
+            code = self.code(value)
+            if code_may_raise(code):
+                self.emit(ir.Do(code))
+
+    def in_order(self, parts: Iterable[Callable[[], Val]]) -> list[Val]:
+        """The values of expressions that are evaluated one after the other: what may raise is computed before what
+        comes after it changes or raises something."""
+        values: list[Val] = []
+        for part in parts:
+            block = self.statements
+            mark = len(block)
+            value = part()
+            if any(map(may_raise, values)):
+                clashes = self.program.handles and (
+                    may_raise(value) and not all(map(raises_only_overflow, [*values, value]))
+                )
+                if clashes or has_effect(block[mark:]):
+                    with self.block() as before:
+                        values = [self.settle(v, "operand") if may_raise(v) else v for v in values]
+                    block[mark:mark] = before
+            values.append(value)
+        return values
 
     def select(self, value: Val, label: str, t: Type) -> Val:
         """See `TypeSource`."""

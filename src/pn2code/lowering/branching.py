@@ -59,7 +59,9 @@ class Branching(Block):
 
     def match_settled(self, pattern: core.Pat, value: Val) -> Match:
         """Match a value of any kind: what a pattern looks into is computed first."""
-        if not isinstance(pattern, core.PVar | core.PWild):
+        if isinstance(pattern, core.PWild):
+            self.discard(value)
+        elif not isinstance(pattern, core.PVar):
             value = self.settle(value, "value")
         return self._matcher.match(pattern, value)
 
@@ -260,6 +262,7 @@ class Branching(Block):
         self.emit(ir.RaiseValue(value, self.program.exceptions.table()))
 
     def _handle(self, e: core.Handle, env: Env, target: Local | None) -> None:
+        self.program.handles = True
         was_ok = self.local("was_ok", ir.BOOL)
         self.emit(ir.Let(was_ok, ir.Ok()))
         self.into(e.body, env, target)
@@ -360,8 +363,9 @@ class Branching(Block):
         )
 
     def _tail_call(self, e: core.Apply, env: Env) -> None:
-        function = self.exp(e.function, env)
-        argument = self.exp(e.argument, env)
+        function, argument = self.in_order(
+            [lambda: self.exp(e.function, env), lambda: self.exp(e.argument, env)]
+        )
         named: Val = function
         arguments: tuple[Val, ...] = (argument,)
         if isinstance(function, Partial):

@@ -375,10 +375,13 @@ def _result_of(body: Body, function: Val, default: Type) -> Type:
 
 
 def _before(body: Body, arguments: tuple[Val, ...], result: Type, at: Span) -> Val:
-    return components(body, arguments[0], 2)[0]
+    value, after = components(body, arguments[0], 2)
+    body.discard(after)
+    return value
 
 
 def _ignore(body: Body, arguments: tuple[Val, ...], result: Type, at: Span) -> Val:
+    body.discard(arguments[0])
     return ir.Const(None, ir.UNIT)
 
 

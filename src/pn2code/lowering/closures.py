@@ -259,11 +259,10 @@ def _name(code: Ir) -> str:
     return "captured"
 
 
-def is_function(value: Val) -> bool:
-    """Whether it is a function that is known at compile time."""
-    return is_static(value) and isinstance(
-        value, Closure | NamedFunction | BuiltinFunction | ConstructorFunction | Partial
-    )
-
-
-__all__ = ["FunctionValues", "Type", "is_function", "nested_functions"]
+def argument_type(program: Program, value: Val) -> Type:
+    """The type of what a function takes."""
+    if isinstance(value, Closure | NamedFunction | BuiltinFunction | ConstructorFunction | Partial):
+        return function_type(value).argument
+    code = value
+    assert not is_static(code)
+    return program.types.functions[code.type.name].argument  # type: ignore[union-attr]

@@ -85,11 +85,15 @@ class Exceptions:
         for name, constructor in by_name.items():
             made = ir.MakeUnion(self.tag(constructor, None), None, t)
             statements.append(ir.If(ir.HasError(name), (ir.Return(made),), ()))
-        for constructor, argument in EXCEPTIONS.values():
-            if argument is not None:
-                part = self._program.types.lower(argument)
-                empty = ir.MakeUnion(self.tag(constructor, part), ir.Op("zero", (), part), t)
-                statements.append(ir.If(ir.HasError(constructor.name), (ir.Return(empty),), ()))
+        for number, (constructor, argument) in enumerate(EXCEPTIONS.values(), 1):
+            part = self._program.types.lower(argument) if argument is not None else None
+            if part is None or (constructor.tag, str(part)) not in self._tags and part != ir.STRING:
+                continue
+            # The runtime raises it without a value.
+            empty = ir.Local(number, "empty", part)
+            made = ir.MakeUnion(self.tag(constructor, part), ir.Use(empty), t)
+            way = (ir.Let(empty, ir.Op("zero", (), part)), ir.Return(made))
+            statements.append(ir.If(ir.HasError(constructor.name), way, ()))
         statements.append(ir.Return(ir.Op("zero", (), t)))
         return {
             _RAISED: ir.Function(

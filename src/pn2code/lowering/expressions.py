@@ -7,6 +7,8 @@ their order is that of CPN ML; what is pure stays an expression, so that simple 
 
 from __future__ import annotations
 
+from functools import partial
+
 from pn2code.diagnostics import Span
 from pn2code.lowering import ir
 from pn2code.lowering.block import UNIT_VALUE
@@ -63,15 +65,17 @@ class Body(Branching):
             case core.Con():
                 return self._constructor(e)
             case core.Apply():
-                function = self.exp(e.function, env)
-                argument = self.exp(e.argument, env)
+                function, argument = self.in_order(
+                    [lambda: self.exp(e.function, env), lambda: self.exp(e.argument, env)]
+                )
                 return self.apply(function, argument, self.type_of(e.type), e.span)
             case core.Lambda():
                 return Closure(e, env, self.types)
             case core.RecordExp(fields=()):
                 return _UNIT
             case core.RecordExp():
-                fields = {label: self.exp(part, env) for label, part in e.fields}
+                values = self.in_order(partial(self.exp, part, env) for _, part in e.fields)
+                fields = dict(zip((label for label, _ in e.fields), values, strict=True))
                 return RecordVal(fields, self.type_of(e.type))
             case core.Select():
                 return self._select(e, env)
@@ -94,10 +98,12 @@ class Body(Branching):
     def effect(self, e: core.Exp, env: Env) -> None:
         """Evaluate only for what it does."""
         value = self.exp(e, env)
-        if not is_static(value):
-            code = self.code(value)
-            if not is_atomic(code):
-                self.emit(ir.Do(code))
+        if is_static(value):
+            self.discard(value)
+            return
+        code = self.code(value)
+        if not is_atomic(code):
+            self.emit(ir.Do(code))
 
     def _variable(self, e: core.Var, env: Env) -> Val:
         inst = {i: self.type_of(t) for i, t in enumerate(e.inst, e.symbol.first_generic)}
@@ -141,11 +147,16 @@ class Body(Branching):
 
     def _select(self, e: core.Select, env: Env) -> Val:
         record = self.exp(e.record, env)
+        if isinstance(record, RecordVal):
+            for label, part in record.fields.items():
+                if label != e.label:
+                    self.discard(part)
         return self.select(record, e.label, e.type)
 
     def _list(self, e: core.ListExp, env: Env) -> Ir:
         t = self.representation(e.type)
-        items = [self.addressable(self.ir(item, env), "item") for item in e.items]
+        values = self.in_order(partial(self.exp, item, env) for item in e.items)
+        items = [self.addressable(self.code(value, e.span), "item") for value in values]
         result: Ir = ir.Op("list.nil", (), t)
         for item in reversed(items):
             result = ir.Op("list.cons", (item, result), t, self.program.types.plain(t))

@@ -36,6 +36,7 @@ from pn2code.lowering.values import (
     Val,
     capture,
     children,
+    declared,
     is_static,
     pattern_symbols,
     type_key,
@@ -109,6 +110,12 @@ class Program:
         self._global_names: set[str] = set()
         self._impure: dict[int, bool] = {}
         self._binding: dict[int, bool] = {}
+        self.handles = any(
+            isinstance(node, core.Handle)
+            for dec in program.declarations
+            for e in declared(dec)
+            for node in _nodes(e)
+        )
         self.function_values = FunctionValues(self)
         self.exceptions = Exceptions(self)
         for position, dec in enumerate(program.declarations):
@@ -495,8 +502,10 @@ def _is_impure_node(e: core.Exp) -> bool:
             return is_impure_builtin(name)
         case core.Var(symbol=symbol):
             # A function that is a value may do anything.
-            return symbol.is_global and isinstance(symbol.type, TCon | TRecord) and (
-                type_has_function(symbol.type)
+            return (
+                symbol.is_global
+                and isinstance(symbol.type, TCon | TRecord)
+                and (type_has_function(symbol.type))
             )
     return False
 

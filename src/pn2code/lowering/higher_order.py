@@ -11,10 +11,11 @@ from typing import TYPE_CHECKING
 
 from pn2code.diagnostics import Span
 from pn2code.lowering import ir
+from pn2code.lowering.closures import argument_type
 from pn2code.lowering.ir import Ir, IrType, Local
 from pn2code.lowering.matching import negation
 from pn2code.lowering.values import RecordVal, Val
-from pn2code.ml.types import BOOL, UNIT, TCon, Type, tuple_of
+from pn2code.ml.types import BOOL, UNIT, TCon, Type
 
 if TYPE_CHECKING:
     from pn2code.lowering.expressions import Body
@@ -190,8 +191,10 @@ def _folding(*, right: bool) -> Special:
         so_far = body.local("so_far", initial.type)
         body.emit(ir.Let(so_far, initial, mutable=True))
 
+        both = argument_type(body.program, f)
+
         def step(x: Ir) -> None:
-            pair = RecordVal({"1": x, "2": ir.Use(so_far)}, tuple_of(result, result))
+            pair = RecordVal({"1": x, "2": ir.Use(so_far)}, both)
             body.emit(ir.Assign(so_far, body.code(body.apply(f, pair, result, at))))
 
         _loop(body, code, step)
@@ -284,7 +287,7 @@ def _sorting(*, unique: bool) -> Special:
         function, values = arguments
 
         def less(a: Ir, b: Ir) -> Ir:
-            pair = RecordVal({"1": a, "2": b}, tuple_of(result, result))
+            pair = RecordVal({"1": a, "2": b}, argument_type(body.program, function))
             return _test_pair(body, function, pair, at)
 
         return _insertion_sort(body, body.code(values, at), less, unique=unique)

@@ -78,8 +78,6 @@ class Types:
         self._storage = storage
         self._definitions: dict[str, Definition] = {}
         self._known: dict[Type, IrType] = {}
-        self._active: list[Type] = []
-        self._hits: set[Type] = set()
         self.descriptors: dict[str, Descriptor] = {}
         self._colset_keys: dict[tuple[str, str, str], str] = {}
         self.subsets: list[tuple[str, Colset]] = []
@@ -100,8 +98,6 @@ class Types:
     def lower(self, t: Type, at: Origin | Span = NOWHERE) -> IrType:
         """The representation of a closed type."""
         if t in self._known:
-            if t in self._active:
-                self._hits.add(t)
             return self._known[t]
         plain = closed(representation(t))
         made = self._make(t, at) if plain == t else self.lower(plain, at)
@@ -119,9 +115,9 @@ class Types:
             case TCon(name=name) if name in _SCALARS:
                 return _SCALARS[name]
             case TCon(name="list", args=(element,)):
-                hits, self._hits = self._hits, set()
                 inner = self.lower(element, at)
-                self._hits = hits
+                if t in self._known:
+                    return self._known[t]  # made on the way, by a type that contains itself
                 name = self._fresh(self._named(t) or f"{inner}_list")
                 self._definitions[name] = ir.ListDef(name, inner)
                 return IrType(Rep.LIST, name)
@@ -137,9 +133,7 @@ class Types:
             case TFun():
                 return self._function(t, at)
             case TCon(name="ref", args=(target,)):
-                hits, self._hits = self._hits, set()
                 inner = self.lower(target, at)
-                self._hits = hits
                 return self.reference_to(inner)
             case TCon(name="exn"):
                 name = self._fresh("exn")
@@ -171,6 +165,8 @@ class Types:
             field_type = t.field(label)
             assert field_type is not None
             fields.append((label, self.lower(field_type, at)))
+        if t in self._known:
+            return self._known[t]
         hint = self._named(t) or "_".join(
             (["tuple"] if t.is_tuple else ["record"]) + [str(f) for _, f in fields]
         )
@@ -189,17 +185,13 @@ class Types:
         made = IrType(Rep.UNION, name)
         self._definitions[name] = ir.UnionDef(name, ())  # reserves the name
         self._known[t] = made
-        self._active.append(t)
         constructors: list[tuple[str, IrType | None, bool]] = []
         for constructor, argument in dec.constructors:
             if argument is None:
                 constructors.append((constructor.name, None, False))
                 continue
-            hits, self._hits = self._hits, set()
             lowered = self.lower(substitute(argument, values), at)
-            constructors.append((constructor.name, lowered, bool(self._hits)))
-            self._hits = hits
-        self._active.pop()
+            constructors.append((constructor.name, lowered, False))
         self._definitions[name] = ir.UnionDef(name, tuple(constructors))
         return made
 
@@ -207,9 +199,9 @@ class Types:
 
     def _function(self, t: TFun, at: Origin | Span) -> IrType:
         """A union of all functions that are used as values of this type; see `closures`."""
-        hits, self._hits = self._hits, set()
         argument, result = self.lower(t.argument, at), self.lower(t.result, at)
-        self._hits = hits
+        if t in self._known:
+            return self._known[t]
         name = self._fresh(f"{argument}_to_{result}")
         self._definitions[name] = ir.UnionDef(name, ())
         self._open.append(name)
@@ -264,8 +256,41 @@ class Types:
         """Whether there may be references in a value of the type."""
         return self.holds(t, lambda part: part.rep is Rep.REF)
 
+    def _box(self) -> None:
+        """Arguments that would make a data type part of itself are behind pointers."""
+        for name in reversed(self._definitions):
+            definition = self._definitions[name]
+            if isinstance(definition, ir.UnionDef) and name not in self._open:
+                self._definitions[name] = ir.UnionDef(
+                    name,
+                    tuple(
+                        (c, a, a is not None and self._contains(a, name))
+                        for c, a, _ in definition.constructors
+                    ),
+                )
+
+    def _contains(self, t: IrType, name: str) -> bool:
+        """Whether a value of the type has one of the other in it, not behind a pointer."""
+        seen: set[str] = set()
+        waiting = [t]
+        while waiting:
+            t = waiting.pop()
+            if t.name == name:
+                return True
+            if t.rep in (Rep.STRUCT, Rep.UNION) and t.name not in seen:
+                seen.add(t.name)
+                match self._definitions[t.name]:
+                    case ir.StructDef(fields=fields):
+                        waiting += [f for _, f in fields]
+                    case ir.UnionDef(constructors=constructors):
+                        waiting += [
+                            a for _, a, boxed in constructors if a is not None and not boxed
+                        ]
+        return False
+
     def close(self) -> None:
         """All functions and exceptions are known: finish their tables."""
+        self._box()
         for name in self._open:
             definition = self._definitions[name]
             assert isinstance(definition, ir.UnionDef)

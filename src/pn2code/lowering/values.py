@@ -145,8 +145,8 @@ def is_atomic(value: Ir) -> bool:
 def function_type(value: FunctionVal) -> TFun:
     """The type of a function, closed."""
     match value:
-        case Closure(function=function, types=types) | NamedFunction(
-            function=function, types=types
+        case (
+            Closure(function=function, types=types) | NamedFunction(function=function, types=types)
         ):
             t = substitute(function.type, types)
         case BuiltinFunction(type=t) | ConstructorFunction(type=t):
@@ -196,7 +196,7 @@ def children(node: core.Exp) -> tuple[core.Exp, ...]:
         case core.Case(scrutinee=s, rules=rules):
             return (s, *(r.body for r in rules))
         case core.Let(declarations=decs, body=body):
-            return (*(e for d in decs for e in _declared(d)), body)
+            return (*(e for d in decs for e in declared(d)), body)
         case core.While(condition=c, body=b):
             return (c, b)
         case core.Raise(exception=e):
@@ -207,7 +207,8 @@ def children(node: core.Exp) -> tuple[core.Exp, ...]:
             return ()
 
 
-def _declared(dec: core.Dec) -> tuple[core.Exp, ...]:
+def declared(dec: core.Dec) -> tuple[core.Exp, ...]:
+    """The expressions of a declaration."""
     match dec:
         case core.ValBind(value=v):
             return (v,)
