@@ -348,7 +348,9 @@ class _Checker:
                 f"{arc.origin.element} has no inscription",
                 arc.origin,
                 notes=[Note(f"place `{place.name}` has colour set `{colset.name}`", place.origin)],
-                hint=f"write which tokens of `{colset.name}` it moves",
+                hint="write 1`(); CPN Tools adds it only at places of the colour set `UNIT`"
+                if colset.resolved.kind is Kind.UNIT
+                else f"write which tokens of `{colset.name}` it moves",
             )
             return None
         if not colset.timed and arc.kind is not ArcKind.OUTPUT and is_layered(text):
@@ -410,8 +412,8 @@ def _form_type(form: Form, t: Type) -> Type:
 
 
 def _is_unit(colset: Colset) -> bool:
-    """Whether `()` is its one value."""
-    return colset.resolved.kind is Kind.UNIT and not colset.resolved.names
+    """Whether CPN Tools' editor completes the texts at places of this colour set; it goes by the name."""
+    return colset.name == "UNIT"
 
 
 def _unit_number(text: SourceText, colset: Colset) -> SourceText:

@@ -118,11 +118,11 @@ class _Reader:
                     if child.tag not in _CPNET:
                         self.unknown(net, child)
         if not raw_pages:
-            self.d.error(
+            self.d.warning(
                 CPN_ELEMENT,
                 "the net has no page",
                 net.at(self.base),
-                hint="add a page in CPN Tools",
+                hint="nothing can happen in it: is it the right file?",
             )
         globbox = blocks[0] if len(blocks) == 1 else RawBlock("", tuple(blocks))
         return Document(
