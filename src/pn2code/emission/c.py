@@ -90,6 +90,7 @@ class _Emitter:
         scope = Scope()
         x = Expressions(self._types, self._net.real_time, scope, binding)
         x.functions = self._functions
+        x.int_bits = self._net.int_bits
         x.needs_context = self._needs_context
         x.place_names = self._place_names
         x.global_hints = {g.name: g.hint for g in self._net.globals}

@@ -125,6 +125,7 @@ class Expressions:
         self.variables: tuple[str, ...] = ()
         self.place_names: tuple[str, ...] = ()
         self.functions: dict[str, ir.Function] = {}
+        self.int_bits = 31
         self.needs_context: frozenset[str] = frozenset()
         self.global_hints: dict[str, str] = {}
 
@@ -190,6 +191,8 @@ class Expressions:
                 return self._constant(e)
             case ir.Use(local=local):
                 return self.local(local), _PRIMARY
+            case ir.GlobalUse(type=t) if t.rep is Rep.UNIT:
+                return "PN_UNIT", _PRIMARY
             case ir.GlobalUse(name=name):
                 return self._names.value(name, self.global_hints.get(name, name)), _PRIMARY
             case ir.Bound(index=index):
@@ -342,7 +345,7 @@ class Expressions:
             a, b = e.arguments
             return self._op(ir.Op(c_ops.CONTAINED[e.name], (b, a), e.type, e.table))
         arguments = e.arguments[::-1] if e.name in c_ops.SWAPPED else e.arguments
-        match OPS[e.name]:
+        match c_ops.form_of(e.name, self.int_bits):
             case Literal(text=text):
                 return text, _PRIMARY
             case Infix(operator=operator, precedence=precedence):

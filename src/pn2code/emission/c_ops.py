@@ -247,6 +247,27 @@ OPS |= {
 }  # fmt: skip
 """Operations of the functions of the prelude."""
 
+WIDE: dict[str, Form] = {
+    **{
+        f"Int.{_name}": Call(f"pn_wide_{_function}", context=True)
+        for _name, _function in (
+            ("+", "add"), ("-", "sub"), ("*", "mul"), ("~", "neg"), ("abs", "abs"), ("div", "div"), ("quot", "quot"),
+        )
+    },
+    "Int.mod": Call("pn_inf_mod", context=True),
+    "Int.rem": Call("pn_inf_rem", context=True),
+    "Int.fromLarge": Call(""),
+    "IntInf.toInt": Call(""),
+    **{f"Real.{_name}": Call(f"pn_wide_{_name}", context=True) for _name in ("floor", "ceil", "round", "trunc")},
+}  # fmt: skip
+"""Name -> form where `int` has 64 bits."""
+
+
+def form_of(name: str, int_bits: int) -> Form:
+    """How an operation looks in C."""
+    return (WIDE.get(name) if int_bits > 31 else None) or OPS[name]
+
+
 SWAPPED = frozenset({"List.rm", "List.rmall", "List.pos", "Ms.cf"})
 """Operations whose ML operands are (value, list) and whose C operands are (list, value)."""
 CONTAINED = {"Ms.<<=": "Ms.>>=", "Ms.<<": "Ms.>>"}

@@ -97,7 +97,8 @@ class Block(TypeSource):
         if rep.rep is Rep.CHAR:
             return ir.Const(ord(str(value)), rep)
         if rep.rep is Rep.INT:
-            low, high = _INT_RANGE if self.type_of(t) == INT else _INTINF_RANGE
+            is_narrow = self.type_of(t) == INT and self.program.core.int_bits == 31
+            low, high = _INT_RANGE if is_narrow else _INTINF_RANGE
             if not low <= int(value) <= high:
                 raise UnsupportedError(
                     LITERAL_RANGE, f"the literal {value} is out of the range of `{t}`", span

@@ -523,11 +523,12 @@ def _sum_timed(body: Body, arguments: tuple[Val, ...], result: Type, at: Span) -
     return ir.Op("List.@", (a, b), a.type, body.program.types.plain(a.type))
 
 
-def _bound(value: int) -> Callable[[Body, tuple[Val, ...], Type, Span], Val]:
-    """`Int.maxInt` and its like: SOME of a constant."""
+def _bound(value_for: Callable[[int], int]) -> Callable[[Body, tuple[Val, ...], Type, Span], Val]:
+    """`Int.maxInt` and its like: SOME of a number that depends on the width of `int`."""
 
     def make(body: Body, arguments: tuple[Val, ...], result: Type, at: Span) -> Val:
         assert isinstance(result, TCon)
+        value = value_for(body.program.core.int_bits)
         return ir.MakeUnion(1, ir.Const(value, ir.INT), body.program.types.lower(result))
 
     return make
@@ -573,7 +574,7 @@ _SPECIAL: dict[str, Callable[[Body, tuple[Val, ...], Type, Span], Val]] = {
     "Time.@++": _with_stamps,
     "Time.+++": _sum_timed,
     "Time.ms": _without_stamps,
-    "Int.maxInt": _bound(2**30 - 1),
-    "Int.minInt": _bound(-(2**30)),
-    "Int.precision": _bound(31),
+    "Int.maxInt": _bound(lambda bits: 2 ** (bits - 1) - 1),
+    "Int.minInt": _bound(lambda bits: -(2 ** (bits - 1))),
+    "Int.precision": _bound(lambda bits: bits),
 }

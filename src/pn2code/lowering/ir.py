@@ -700,6 +700,7 @@ class NetIR:
         descriptors: by key, in order of dependence.
         functions: in an order in which each is preceded by what it calls, except in recursion.
         order: transition indices by priority, then position.
+        int_bits: width of `int`, 31 or 64.
     """
 
     name: str
@@ -716,6 +717,7 @@ class NetIR:
     transitions: tuple[Transition, ...]
     owners: tuple[str, ...]
     order: tuple[int, ...]
+    int_bits: int = 31
     origin: Origin = field(default=NOWHERE)
 
     def definition(self, name: str) -> Definition:

@@ -106,6 +106,7 @@ class _Lowering:
             transitions=tuple(t for t in transitions if t is not None),
             owners=tuple(o.name for o in self._partition.owners),
             order=tuple(order),
+            int_bits=self._net.program.int_bits,
         )
 
     def _guarded(self, origin: Origin, make: Callable[[], T]) -> T | None:

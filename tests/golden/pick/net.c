@@ -19,7 +19,6 @@
 #include "pn/pn_place.h"
 #include "pn/pn_random.h"
 #include "pn/pn_read.h"
-#include "pn/pn_read.h"
 #include "pn/pn_string.h"
 #include "pn/pn_type.h"
 
