@@ -537,6 +537,26 @@ def test_html_has_paths_a_tree_and_fusion_sets() -> None:
     assert '<dt id="fusion-1">Common</dt>' in written
 
 
+def test_html_has_the_declarations_with_their_errors() -> None:
+    found = document(SMALL)
+    written = draw_net(found, Facts("small.cpn", problems={"": [Problem("<odd>")]}))
+    assert "<pre>colset PAIR = product INT * STRING;</pre>" in written
+    assert "<pre>var n : INT;</pre>" in written
+    assert '<p class="errors">&lt;odd&gt;</p>' in written
+
+
+def test_many_uses_of_pages_end() -> None:
+    """A hierarchy with millions of ways down is listed in part."""
+    rows = ["net Many", "  standard"]
+    for i in range(24):
+        rows += [f"  page P{i}", "    place A : INT"]
+        rows += [f"    subst S{k} = P{i + 1} ()" for k in range(2) if i < 23]
+        rows += [f"    subst T{k} = P{i + 2} ()" for k in range(2) if i < 22]
+    written = draw_net(document("\n".join(rows)), Facts("many.cpn"))
+    assert written.count("<section id=") == 25
+    assert len(written) < 2_000_000
+
+
 def test_pages_that_contain_themselves_are_drawn() -> None:
     net = netbuilder.cpn(SMALL).replace(b"</trans>\n</page>", b"</trans></page>")
     found = read_data(net, "test.cpn", Diagnostics())
@@ -548,7 +568,7 @@ def test_pages_that_contain_themselves_are_drawn() -> None:
     looped = read_data(again, "test.cpn", Diagnostics())
     assert looped is not None
     written = draw_net(looped, Facts("loop.cpn"))
-    assert written.count("<section id=") == 3
+    assert written.count("<section id=") == 4
 
 
 # --- texts ---------------------------------------------------------------------------------------

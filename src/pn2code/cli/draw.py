@@ -172,14 +172,13 @@ def _state(flat: FlatNet, storage: Mapping[str, str], seed: int, form: Format) -
 
 
 def _problems(d: Diagnostics) -> dict[str, list[Problem]]:
-    """Errors by the element they are about."""
+    """Errors by the element they are about; those about none have the key ""."""
     from pn2code.drawing.svg import Problem
 
     found: dict[str, list[Problem]] = {}
     for error in d.errors:
-        if error.origin.element_id:
-            problem = Problem(error.message, error.origin.part)
-            found.setdefault(error.origin.element_id, []).append(problem)
+        problem = Problem(error.message, error.origin.part)
+        found.setdefault(error.origin.element_id, []).append(problem)
     return found
 
 
@@ -246,7 +245,7 @@ class _Drawing:
         if self.state is not None and self.instance is None:
             figures = {p.id: self.state.figures(p, self.base) for p in self.pages}
         shown = replace(self.document, pages=tuple(self.pages))
-        return draw_net(shown, Facts(path.name, remark), figures)
+        return draw_net(shown, Facts(path.name, remark, self.base.problems), figures)
 
     def note_arranged(self, d: Diagnostics) -> None:
         """A note for each page whose positions are ours."""

@@ -7,14 +7,25 @@ list of the set's members, bread crumbs and the tree of pages to pages, the sear
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from dataclasses import field
 
 from pn2code import resources
+from pn2code.drawing import text
 from pn2code.drawing.geometry import Box
 from pn2code.drawing.scene import Scene, build
-from pn2code.drawing.svg import MARGIN, Links, Overlay, figure, svg_attributes
+from pn2code.drawing.svg import MARGIN, Links, Overlay, Problem, figure, svg_attributes
 from pn2code.drawing.text import escape
 from pn2code.frozen import frozen
-from pn2code.reading.document import Document, RawPage
+from pn2code.reading.document import (
+    Document,
+    RawBlock,
+    RawColset,
+    RawDeclaration,
+    RawGlobref,
+    RawPage,
+    RawUse,
+    RawVar,
+)
 
 _MOST_PATHS = 6
 _MOST_TREE = 2000
@@ -30,10 +41,12 @@ class Facts:
     Args:
         title: the name of the net.
         remark: one line below it.
+        problems: what is wrong beside the pages, by id of a declaration; "" for what has no place at all.
     """
 
     title: str
     remark: str = ""
+    problems: Mapping[str, Sequence[Problem]] = field(default_factory=dict)
 
 
 def draw_net(document: Document, facts: Facts, figures: Mapping[str, Figures] | None = None) -> str:
@@ -110,11 +123,14 @@ class _Writer:
             "<h2>Pages</h2>",
             *self.tree(),
         ]
+        rows.append('<ul><li><a href="#declarations">Declarations</a></li>')
         if self.members:
-            rows.append('<p><a href="#fusion">Fusion sets</a></p>')
+            rows.append('<li><a href="#fusion">Fusion sets</a></li>')
+        rows.append("</ul>")
         rows += ["<h2>Places and transitions</h2>", *self.index(), "</nav>", "<main>"]
         for page in self.document.pages:
             rows += self.section(page)
+        rows += self.declarations()
         rows += self.fusions()
         rows += ["</main>", f"<script>\n{script}</script>", "</body>", "</html>", ""]
         return "\n".join(row for row in rows if row) + "\n"
@@ -152,7 +168,7 @@ class _Writer:
                 rows.append("<ul>")
                 for subpage in counted:
                     show(subpage, (*above, subpage))
-                    if below.count(subpage) > 1:
+                    if below.count(subpage) > 1 and rows[-1] == "</li>":
                         rows[-1] = (
                             rows[-1].removesuffix("</li>") + f" × {below.count(subpage)}</li>"
                         )
@@ -251,6 +267,30 @@ class _Writer:
         sockets = [s for s in self.sockets.get(identity, ()) if s in self.anchors]
         return f"#{self.anchors[sockets[0]]}" if kind == "port" and sockets else ""
 
+    def declarations(self) -> list[str]:
+        """The declarations as CPN ML, with what is wrong in them."""
+        rows = ['<section id="declarations">', "<h2>Declarations</h2>"]
+        rows += [
+            f'<p class="errors">{escape(p.message)}</p>' for p in self.facts.problems.get("", ())
+        ]
+
+        def show(block: RawBlock, level: int) -> None:
+            if block.name:
+                rows.append(f"<h{level}>{escape(block.name)}</h{level}>")
+            for item in block.items:
+                if isinstance(item, RawBlock):
+                    show(item, min(level + 1, 6))
+                    continue
+                rows.append(f"<pre>{escape(declaration_text(item))}</pre>")
+                rows.extend(
+                    f'<p class="errors">{escape(p.message)}</p>'
+                    for p in self.facts.problems.get(item.id, ())
+                )
+
+        show(self.document.globbox, 3)
+        rows.append("</section>")
+        return rows
+
     def fusions(self) -> list[str]:
         """The fusion sets with their members."""
         if not self.members:
@@ -260,6 +300,37 @@ class _Writer:
             listed = ", ".join(self.element(i) for i in self.members[name])
             rows.append(f'<dt id="fusion-{number}">{escape(name)}</dt><dd>{listed}</dd>')
         return [*rows, "</dl>", "</section>"]
+
+
+def declaration_text(item: RawDeclaration) -> str:
+    """A declaration about as it is written in CPN Tools."""
+    match item:
+        case RawColset():
+            timed = " timed" if item.timed else ""
+            shown = item.layout_text or f"colset {item.name} = {_definition(item)}{timed};"
+            return "\n".join(text.lines(shown))
+        case RawVar():
+            return f"var {', '.join(item.names)} : {item.type};"
+        case RawGlobref():
+            return f"globref {item.name} = {item.text.text};"
+        case RawUse():
+            return f"use {item.text.text};"
+        case _:
+            return "\n".join(text.lines(item.text.text))
+
+
+def _definition(item: RawColset) -> str:
+    """The right-hand side of a colour set that the file gives in pieces."""
+    if item.fields:
+        sign = " + " if item.kind == "union" else " * "
+        parts = sign.join(f"{name}{':' if of else ''}{of}" for name, of in item.fields)
+        return f"{item.kind} {parts}"
+    names = (" * " if item.kind == "product" else " | " if item.kind == "enum" else " ").join(
+        item.ids
+    )
+    kind = {"enum": "with", "alias": ""}.get(item.kind, item.kind)
+    texts = f" with {' .. '.join(t.text for t in item.texts)}" if item.texts else ""
+    return f"{kind} {names}{texts}".strip()
 
 
 def counted(n: int, thing: str) -> str:

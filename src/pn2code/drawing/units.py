@@ -5,7 +5,6 @@ Their texts have the size that they have today, so such a page is drawn with its
 
 from __future__ import annotations
 
-import statistics
 from dataclasses import replace
 
 from pn2code.reading.document import (
@@ -27,8 +26,8 @@ def in_points(document: Document, page: RawPage) -> RawPage:
     """The page with coordinates in points."""
     if document.format not in ("1", "2"):
         return page
-    heights = [n.layout.height for p in document.pages for n in p.nodes if n.layout.height > 0]
-    if not heights or statistics.median(heights) >= _SMALL:
+    heights = sorted(n.layout.height for p in document.pages for n in p.nodes)
+    if not heights or not 0 < heights[len(heights) // 2] < _SMALL:
         return page
     return replace(
         page,

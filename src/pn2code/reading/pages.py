@@ -75,9 +75,9 @@ class PageReader:
         transitions = tuple(self.transition(n, name) for n in node.all("trans"))
         names = {p.id: p.name for p in places} | {t.id: t.name for t in transitions}
         points = {n.get("id"): point(n) for n in node.all("place") + node.all("trans")}
+        place_ids, transition_ids = {p.id for p in places}, {t.id for t in transitions}
         arcs = [
-            self.arc(n, name, {p.id for p in places}, {t.id for t in transitions}, names, points)
-            for n in node.all("arc")
+            self.arc(n, name, place_ids, transition_ids, names, points) for n in node.all("arc")
         ]
         auxiliaries = tuple(
             RawAux(n.get("id"), _text(n.child("text")), layout(n)) for n in node.all("Aux")
