@@ -39,6 +39,9 @@ void sim_catch_signals(void)
     (void)sigemptyset(&action.sa_mask);
     (void)sigaction(SIGINT, &action, NULL);
     (void)sigaction(SIGTERM, &action, NULL);
+    action.sa_handler = SIG_IGN; /* a file that may not grow any more is an error of writing */
+    action.sa_flags = 0;
+    (void)sigaction(SIGXFSZ, &action, NULL);
 }
 
 void sim_fail(sim_t *sim, const char *doing, int64_t transition, bool has_binding)
