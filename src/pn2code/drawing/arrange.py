@@ -22,9 +22,9 @@ from pn2code.frozen import frozen
 GAP_X, GAP_Y = 90.0, 80.0
 """Between the nodes of a layer, and between layers: room for inscriptions."""
 _DUMMY = 10.0
-_SWEEPS = 12
+_SWEEPS, _FEW_SWEEPS, _MANY = 12, 4, 4000
 _ROW = 2400.0
-_MOST_DUMMIES = 20_000
+_MOST_DUMMIES = 10_000
 
 
 @frozen
@@ -56,14 +56,13 @@ def arrange(
     """Positions for nodes (id -> width, height) and bends for edges (id -> start, end)."""
     centres: dict[str, Point] = {}
     bends: dict[str, tuple[Point, ...]] = {}
+    leaving: dict[str, list[str]] = {}
+    for edge, (start, _) in edges.items():
+        leaving.setdefault(start, []).append(edge)
     left = top = row = 0.0
     for members in _connected(nodes, edges):
-        own = {e: ends for e, ends in edges.items() if ends[0] in members}
-        part = _Part(
-            [n for n in nodes if n in members],
-            [nodes[n][0] for n in nodes if n in members],
-            [nodes[n][1] for n in nodes if n in members],
-        )
+        part = _Part(members, [nodes[n][0] for n in members], [nodes[n][1] for n in members])
+        own = {e: edges[e] for n in members for e in leaving.get(n, ())}
         _layer(part, own)
         _order(part)
         _place(part)
@@ -78,25 +77,28 @@ def arrange(
     return Arrangement(centres, bends)
 
 
-def _connected(nodes: Iterable[str], edges: Mapping[str, tuple[str, str]]) -> list[set[str]]:
-    """The connected parts, the larger ones first, else in order of the nodes."""
+def _connected(nodes: Iterable[str], edges: Mapping[str, tuple[str, str]]) -> list[list[str]]:
+    """The connected parts, the larger ones first, each in order of the nodes."""
     neighbours: dict[str, list[str]] = {n: [] for n in nodes}
     for a, b in edges.values():
         neighbours[a].append(b)
         neighbours[b].append(a)
-    parts: list[set[str]] = []
-    seen: set[str] = set()
+    number: dict[str, int] = {}
+    count = 0
     for start in neighbours:
-        if start in seen:
+        if start in number:
             continue
-        part, todo = {start}, [start]
+        number[start] = count
+        todo = [start]
         while todo:
             for n in neighbours[todo.pop()]:
-                if n not in part:
-                    part.add(n)
+                if n not in number:
+                    number[n] = count
                     todo.append(n)
-        seen |= part
-        parts.append(part)
+        count += 1
+    parts: list[list[str]] = [[] for _ in range(count)]
+    for n in neighbours:
+        parts[number[n]].append(n)
     return sorted(parts, key=len, reverse=True)
 
 
@@ -177,6 +179,11 @@ def _add_dummies(
             part.chains[edge] = chain if ends[edge] == (a, b) else chain[::-1]
 
 
+def _sweeps(part: _Part) -> int:
+    """How often order and positions are improved: less for parts that nobody can follow by eye."""
+    return _SWEEPS if len(part.layer) < _MANY else _FEW_SWEEPS
+
+
 def _order(part: _Part) -> None:
     """The order inside each layer, by barycentres of the neighbours, downwards and upwards in turn."""
     depth = max(part.layer) + 1
@@ -187,7 +194,7 @@ def _order(part: _Part) -> None:
     for members in part.layers:
         for k, i in enumerate(members):
             rank[i] = float(k)
-    for sweep in range(_SWEEPS):
+    for sweep in range(_sweeps(part)):
         downwards = sweep % 2 == 0
         sides = part.up if downwards else part.down
         for members in part.layers if downwards else reversed(part.layers):
@@ -215,7 +222,7 @@ def _place(part: _Part) -> None:
             part.x[i] = at
         for i in members:
             part.x[i] -= at / 2
-    for sweep in range(_SWEEPS):
+    for sweep in range(_sweeps(part)):
         downwards = sweep % 2 == 0
         sides = part.up if downwards else part.down
         for members in part.layers if downwards else reversed(part.layers):
