@@ -16,7 +16,7 @@ ALLOWED: dict[str, set[str]] = {
     "reading": {"diagnostics"},
     "net": {"diagnostics", "ml", "reading"},
     "semantics": {"diagnostics", "ml", "net"},
-    "conformance": {"diagnostics", "net", "semantics"},
+    "conformance": {"diagnostics", "ml", "net", "reading", "semantics"},
     "cell": {"diagnostics", "ml", "net"},
     "lowering": {"diagnostics", "ml", "net", "cell", "tdl"},
     "robot": {"diagnostics"},

@@ -67,7 +67,7 @@ def test_what_is_random_is_little(shared: Path) -> None:
 
 def test_the_document_tells_what_was_found(shared: Path) -> None:
     nets = all_compared(shared)
-    text = document(nets, {}, {})
-    assert text == document(nets, {}, {})
+    text = document(nets, {}, {}, {})
+    assert text == document(nets, {}, {}, {})
     assert f"* {len(nets)} nets; the engine accepts" in text
     assert all(f"| `{net.path}` |" in text for net in nets)

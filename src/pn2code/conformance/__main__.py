@@ -13,6 +13,7 @@ from pathlib import Path
 
 from pn2code.conformance import compare, suite
 from pn2code.conformance.document import document
+from pn2code.conformance.expressions import compare_expressions
 from pn2code.conformance.finding import Finding, State
 
 LARGEST_SPACE = 10_000
@@ -36,7 +37,7 @@ def main() -> int:
             nets.append(compare.compare(corpus, path, max_nodes=options.largest))
     tiny = options.folder / "semantics-suite"
     graphs = {name: suite.compare_graph(tiny, name) for name in suite.names(tiny)}
-    text = document(nets, _walks(options.walks), graphs)
+    text = document(nets, _walks(options.walks), graphs, compare_expressions(tiny))
     if options.output is None:
         print(text, end="")
     else:

@@ -31,6 +31,7 @@ def document(
     nets: Sequence[Compared],
     walks: Mapping[str, Finding],
     suite: Mapping[str, Finding],
+    expressions: Mapping[str, Finding],
 ) -> str:
     """The whole text, the same for the same findings.
 
@@ -39,12 +40,14 @@ def document(
         walks: `corpus/nets/PATH` or `semantics-suite/NAME.cpn` -> whether the compiled net agrees with the token
             game; empty where that was not tried.
         suite: name -> finding, of the semantics suite.
+        expressions: of CPN ML -> finding.
     """
-    parts = [HEAD, "## Totals\n", *_totals(nets, walks, suite), ""]
+    parts = [HEAD, "## Totals\n", *_totals(nets, walks, suite, expressions), ""]
     notes = [n for n in nets if n.state is not State.AGREES or _worse(_walk(n, walks))]
     parts += ["## What does not simply agree\n", *_notes(notes, walks), ""]
     parts += ["## Net by net\n", *_table(nets, walks), ""]
     parts += ["## The semantics suite\n", *_suite(suite, walks), ""]
+    parts += ["## Expressions\n", *_expressions(expressions), ""]
     return "\n".join(parts)
 
 
@@ -59,7 +62,10 @@ def _walk(net: Compared, walks: Mapping[str, Finding]) -> Finding:
 
 
 def _totals(
-    nets: Sequence[Compared], walks: Mapping[str, Finding], suite: Mapping[str, Finding]
+    nets: Sequence[Compared],
+    walks: Mapping[str, Finding],
+    suite: Mapping[str, Finding],
+    expressions: Mapping[str, Finding],
 ) -> Iterable[str]:
     accepted = [n for n in nets if n.accepted]
     runs = [n for n in accepted if n.runs]
@@ -77,6 +83,7 @@ def _totals(
     if walks:
         yield _count("compiled", [_walk(n, walks) for n in nets])
     yield _count("semantics suite", suite.values())
+    yield _count("expressions", expressions.values())
 
 
 def _percent(part: int, whole: int) -> str:
@@ -118,6 +125,13 @@ def _suite(suite: Mapping[str, Finding], walks: Mapping[str, Finding]) -> Iterab
         walk = walks.get(f"semantics-suite/{name}.cpn", NOTHING)
         cells = [_code(name), finding.state.value, walk.state.value, _text(finding.note)]
         yield f"| {' | '.join(cells)} |"
+
+
+def _expressions(found: Mapping[str, Finding]) -> Iterable[str]:
+    others = {e: f for e, f in found.items() if f.state is not State.AGREES}
+    yield f"{len(found)} expressions of CPN ML; {len(found) - len(others)} have the engine's value."
+    for expression, finding in others.items():
+        yield f"* {_code(expression)}, {finding.state.value}: {_text(finding.note)}"
 
 
 def _code(text: str) -> str:
