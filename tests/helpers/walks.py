@@ -22,6 +22,10 @@ from pn2code.net.front import load
 from pn2code.semantics.game import Game, GameError
 
 
+ROOMS = (0, 4096, 65536)
+"""Different tokens that a place can hold, tried one after the other; 0: as many as a supervisor has."""
+
+
 @dataclass(frozen=True, slots=True)
 class Walk:
     """What became of a net.
@@ -67,18 +71,24 @@ def walk(
     if flat is None:
         codes = ", ".join(sorted({e.code for e in d.errors}))
         return Walk(name, "rejected", detail=codes)
-    net, d = lowered(flat)
-    if net is None:
-        first = d.errors[0]
-        return Walk(
-            name, "unsupported", detail=f"{first.code}: {first.message} ({first.origin.describe()})"
-        )
-    try:
-        program = workshop.build(net, workshop.folder / name.replace("/", "_"))
-    except AssertionError as failure:
-        return Walk(name, "differs", detail=f"not compiled: {str(failure)[:2000]}")
-    with _lines(program, seed, steps) as lines:
-        return _follow(flat, name, lines, steps=steps, seed=seed, until=time.monotonic() + seconds)
+    result = Walk(name, "differs")
+    for room in ROOMS:
+        capacity = {p.name: room for p in flat.places} if room else None
+        net, d = lowered(flat, capacity=capacity)
+        if net is None:
+            first = d.errors[0]
+            where = f"{first.code}: {first.message} ({first.origin.describe()})"
+            return Walk(name, "unsupported", detail=where)
+        try:
+            program = workshop.build(net, workshop.folder / name.replace("/", "_"))
+        except AssertionError as failure:
+            return Walk(name, "differs", detail=f"not compiled: {str(failure)[:2000]}")
+        until = time.monotonic() + seconds
+        with _lines(program, seed, steps) as lines:
+            result = _follow(flat, name, lines, steps=steps, seed=seed, until=until)
+        if "place is full" not in result.detail:
+            break
+    return result
 
 
 @contextmanager
