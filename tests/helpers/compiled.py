@@ -136,7 +136,7 @@ def agrees(
     """
     lines = run(program, seed, steps)
     try:
-        game = Game(flat, dict(storage or {}))
+        game = Game(flat, dict(storage or {}), seed=seed)
     except GameError as error:
         assert "error" in lines[0], f"only the token game fails at the start: {error}"
         return 0
