@@ -303,6 +303,16 @@ def test_files_that_are_no_traces(
     assert not done.out
 
 
+def test_replay_of_a_net_with_errors_has_the_shape_too(cli: Cli, tmp_path: Path) -> None:
+    broken = tmp_path / "broken.cpn"
+    write_broken(broken)
+    done = cli("replay", recorded(broken, tmp_path, PICK), broken, "--json")
+    assert done.code == 1
+    assert (done.data["ok"], done.data["steps"], done.data["failed_step"]) == (False, 0, None)
+    assert "errors" in done.data["why"]
+    assert "error[" in done.err
+
+
 def test_traces_that_cannot_be_read(cli: Cli, net: Path, tmp_path: Path) -> None:
     assert cli("replay", tmp_path / "none.json", net).code == 2
     assert cli("replay", tmp_path, net).code == 2

@@ -204,6 +204,23 @@ def test_references_are_those_of_each_run() -> None:
     assert "the code segment gives `k` = 1, recorded is 2" in wrong.why
 
 
+def test_arrays_too() -> None:
+    text = """
+        net Count
+          standard
+          val counts = Array.array (2, 0);
+          colset N = int;
+          var n, k: N;
+          page Top
+            place A : N = 1`0 ++ 1`1
+            place B : N
+            trans T code input (n); output (k); action (Array.update (counts, n, 5); Array.sub (counts, 0))
+              in A : n
+              out B : k
+    """
+    assert run(text, [("0", "T", {"n": "1", "k": "0"}), ("0", "T", {"n": "0", "k": "5"})]).ok
+
+
 @pytest.mark.parametrize(
     "data",
     [

@@ -61,20 +61,35 @@ def replay(
     and that is said.
     """
     what = kind(trace)
-    opened = open_net(net, parse_values(settings), form, int_bits=int_bits)
-    with playing(form):
-        if isinstance(what, Recording):
-            result = _recording(what, opened, files, engine, form)
-        elif engine is Engine.COMPILED:
-            result = _compiled(trace, opened, files, form)
-        else:
-            result = _own(trace, opened)
+    try:
+        opened = open_net(net, parse_values(settings), form, int_bits=int_bits)
+        with playing(form):
+            if isinstance(what, Recording):
+                result = _recording(what, opened, files, engine, form)
+            elif engine is Engine.COMPILED:
+                result = _compiled(trace, opened, files, form)
+            else:
+                result = _own(trace, opened)
+    except typer.Exit as left:
+        if as_json and left.exit_code == Exit.MODEL:
+            typer.echo(json.dumps(_NOT_PLAYED, indent=1))
+        raise
     if as_json:
         typer.echo(json.dumps(result, indent=1))
     else:
         typer.echo(_sentence(trace, result))
     if not result["ok"]:
         raise typer.Exit(Exit.MODEL)
+
+
+_NOT_PLAYED: dict[str, Any] = {
+    "ok": False,
+    "steps": 0,
+    "failed_step": None,
+    "why": "the net cannot be played: it has errors, or its initial marking raises an exception",
+    "time": None,
+    "places": [],
+}
 
 
 def kind(trace: Path) -> Recording | None:

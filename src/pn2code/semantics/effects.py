@@ -30,8 +30,10 @@ class Effect(Enum):
 NONE: Found = frozenset()
 _DRAW = ("Random.",)
 _DRAWING = frozenset({"Colset.ran", "Ms.random"})
-_LOOK = ("TextIO.", "BinIO.", "OS.", "Posix.", "Timer.", "Time.now", "Date.", "CommandLine.", "ConnManagementLayer.",
-         "Colset.input")  # fmt: skip
+_LOOK = (
+    "TextIO.", "BinIO.", "OS.FileSys.", "OS.Process.", "Posix.", "Timer.", "Time.now", "Date.", "CommandLine.",
+    "ConnManagementLayer.",
+)  # fmt: skip
 _WRITTEN_ONLY = frozenset(
     {"TextIO.print", "TextIO.output", "TextIO.flushOut", "TextIO.stdOut", "TextIO.closeOut"}
 )
@@ -44,7 +46,8 @@ def _builtin(name: str) -> Found:
     """The effects of a function of the built-in environment."""
     if name in _DRAWING or name.startswith(_DRAW):
         return frozenset({Effect.DRAW})
-    if name.startswith(_LOOK) and name not in _WRITTEN_ONLY:
+    reads = name.startswith("Colset.") and ".input" in name
+    if reads or (name.startswith(_LOOK) and name not in _WRITTEN_ONLY):
         return frozenset({Effect.LOOK})
     if name.startswith(("Ref.", "Array.")) and name != "Ref.ref":
         return frozenset({Effect.READ} if name == "Ref.!" else {Effect.READ, Effect.WRITE})

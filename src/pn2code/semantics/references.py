@@ -1,4 +1,4 @@
-"""The contents of a net's references: remembered and put back, when several runs are followed side by side."""
+"""What a net's references and arrays hold: remembered and put back, when several runs are followed side by side."""
 
 from __future__ import annotations
 
@@ -6,13 +6,13 @@ from collections.abc import Iterator
 from typing import Any
 
 from pn2code.semantics.evaluate import Evaluator
-from pn2code.semantics.values import Closure, Data, Ref, Value
+from pn2code.semantics.values import Array, Closure, Data, Ref, Value
 
 
 class References:
-    """The references that can be reached from the declarations, in a fixed order.
+    """The references and arrays that can be reached from the declarations, in a fixed order.
 
-    References that come into being later are not followed.
+    Those that come into being later are not followed.
     """
 
     def __init__(self, evaluator: Evaluator) -> None:
@@ -20,15 +20,19 @@ class References:
 
     def contents(self) -> tuple[Value, ...]:
         """What they hold."""
-        return tuple(ref.contents for ref in self._all)
+        return tuple(r.contents if isinstance(r, Ref) else tuple(r.items) for r in self._all)
 
     def restore(self, contents: tuple[Value, ...]) -> None:
         """Let them hold what they held."""
-        for ref, value in zip(self._all, contents, strict=True):
-            ref.contents = value
+        for found, value in zip(self._all, contents, strict=True):
+            if isinstance(found, Ref):
+                found.contents = value
+            else:
+                assert isinstance(value, tuple)
+                found.items[:] = value
 
 
-def _reachable(start: Any) -> Iterator[Ref]:
+def _reachable(start: Any) -> Iterator[Ref | Array]:
     seen: set[int] = set()
     todo: list[Any] = [start]
     while todo:
@@ -39,6 +43,9 @@ def _reachable(start: Any) -> Iterator[Ref]:
         if isinstance(item, Ref):
             yield item
             todo.append(item.contents)
+        elif isinstance(item, Array):
+            yield item
+            todo.extend(item.items)
         elif isinstance(item, dict):
             todo.extend(item.values())
         elif isinstance(item, tuple | list):
