@@ -27,11 +27,13 @@ REGISTERING = (
     "pn2code.lowering.codes",
     "pn2code.lowering.robot_codes",
     "pn2code.ml.codes",
+    "pn2code.monitors.codes",
     "pn2code.net.codes",
     "pn2code.reading.codes",
     "pn2code.robot.codes",
     "pn2code.run.cell",
     "pn2code.semantics.codes",
+    "pn2code.simulate.codes",
     "pn2code.tdl.codes",
     "pn2code.toolchain.build",
 )
