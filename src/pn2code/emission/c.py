@@ -156,7 +156,11 @@ class _Emitter:
         s.body(g.setup)
         name = self._names.value(g.name, g.hint)
         constant = ""
-        if len(g.setup) == 1 and isinstance(g.setup[0], ir.SetGlobal) and not g.is_reference:
+        if (
+            len(g.setup) == 1
+            and isinstance(g.setup[0], ir.SetGlobal)
+            and not (g.is_reference or g.setup[0].is_reference)
+        ):
             value = g.setup[0].value
             if isinstance(value, ir.Const) and value.type.rep in (Rep.INT, Rep.REAL, Rep.BOOL):
                 constant = x.text(value)
@@ -172,7 +176,11 @@ class _Emitter:
             else ('{ "", 0U }' if g.type.rep is Rep.STRING else "{ 0 }"),
             "is_root": g.is_reference or self._types.holds_reference(g.type),
             "setup": [] if constant else s.lines,
-            "has_locals": any(isinstance(n, ir.Let | ir.Declare) for n in g.setup),
+            "has_locals": any(
+                isinstance(n, ir.Let | ir.Declare | ir.SetContents)
+                or (isinstance(n, ir.SetGlobal) and n.is_reference)
+                for n in g.setup
+            ),
             "table": self._names.table(g.table),
             "is_reference": g.is_reference,
         }

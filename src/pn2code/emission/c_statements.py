@@ -211,6 +211,9 @@ class Statements:
             self.line(f"(void){self._x.inside(value, 14)};")
 
     def _set_global(self, s: ir.SetGlobal) -> None:
+        if s.value.type.rep is Rep.UNIT:
+            self._discard(s.value)
+            return
         name = self._names.value(s.name, self._x.global_hints.get(s.name, s.name))
         if not s.is_reference:
             self.line(f"{name} = {self._x.text(s.value)};")

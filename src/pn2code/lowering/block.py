@@ -182,8 +182,10 @@ class Block(TypeSource):
             mark = len(block)
             value = part()
             if any(map(may_raise, values)):
+                grown = tuple(block[mark:])
                 clashes = self.program.handles and (
-                    may_raise(value) and not all(map(raises_only_overflow, [*values, value]))
+                    (may_raise(value) or code_may_raise(grown))
+                    and not all(map(raises_only_overflow, [*values, value, grown]))
                 )
                 if clashes or has_effect(block[mark:]):
                     with self.block() as before:

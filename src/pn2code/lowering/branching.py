@@ -65,9 +65,11 @@ class Branching(Block):
             value = self.settle(value, "value")
         return self._matcher.match(pattern, value)
 
-    def bind_pattern(self, pattern: core.Pat, value: Val, env: Env | None = None) -> Env:
-        """The environment with the variables of a pattern; Bind is raised where it does not fit."""
-        return self.bind_all(self.match_settled(pattern, value), env or {}, "Bind")
+    def bind_pattern(
+        self, pattern: core.Pat, value: Val, env: Env | None = None, exception: str = "Bind"
+    ) -> Env:
+        """The environment with the variables of a pattern; the exception is raised where it does not fit."""
+        return self.bind_all(self.match_settled(pattern, value), env or {}, exception)
 
     def match(self, pattern: core.Pat, value: Val) -> Match:
         """Match a value whose C parts are atomic."""

@@ -32,10 +32,11 @@ def _is_total(name: str) -> bool:
     return name.startswith(_TOTAL_STRUCTURES) and name not in _RAISING
 
 
-def code_may_raise(code: Ir) -> bool:
+def code_may_raise(code: Ir | tuple[Stmt, ...]) -> bool:
     """Whether computing it may raise an exception."""
     return any(
-        isinstance(n, ir.FunCall) or (isinstance(n, ir.Op) and not _is_total(n.name))
+        isinstance(n, ir.FunCall | ir.Raise | ir.RaiseValue)
+        or (isinstance(n, ir.Op) and not _is_total(n.name))
         for n in ir_nodes(code)
     )
 
@@ -49,16 +50,16 @@ def may_raise(value: Val) -> bool:
     return not is_static(value) and code_may_raise(value)  # type: ignore[arg-type]
 
 
-def raises_only_overflow(value: Val) -> bool:
+def raises_only_overflow(value: Val | tuple[Stmt, ...]) -> bool:
     """Whether there is but one exception that it may raise, so that it does not matter who raises it."""
     if isinstance(value, RecordVal):
         return all(map(raises_only_overflow, value.fields.values()))
     if isinstance(value, Partial):
         return all(map(raises_only_overflow, value.arguments))
-    if is_static(value):
+    if not isinstance(value, tuple) and is_static(value):
         return True
     for node in ir_nodes(value):
-        if isinstance(node, ir.FunCall):
+        if isinstance(node, ir.FunCall | ir.Raise | ir.RaiseValue):
             return False
         if isinstance(node, ir.Op) and not _is_total(node.name) and node.name not in _OVERFLOWING:
             return False

@@ -256,10 +256,20 @@ class Program:
             body.emit(ir.SetGlobal(names[dec.pattern.symbol.uid], body.code(code)))
         else:
             env = body.bind_pattern(dec.pattern, code)
+            if isinstance(dec.pattern, core.PWild):
+                body.discard(code)
             for symbol in pattern_symbols(dec.pattern):
                 stored = env[symbol.uid]
                 assert not isinstance(stored, Polymorphic)
                 body.emit(ir.SetGlobal(names[symbol.uid], body.code(stored)))
+        if not made and body.statements:
+            name = self._fresh_global("effect")
+            made.append(
+                ir.Global(
+                    name, "effect", ir.UNIT, self.types.plain(ir.UNIT), False, (),
+                    dec.span.text, dec.span.origin,
+                )
+            )  # fmt: skip
         if made:
             first = made[0]
             made[0] = ir.Global(
@@ -382,6 +392,12 @@ class Program:
 
     def finish(self) -> tuple[ir.Function, ...]:
         """Make all functions that are asked for, and those that they ask for."""
+        for position, dec in enumerate(self.core.declarations):
+            # What a declaration does is done, whether its value is used or not.
+            is_made = (position, type_key({})) in self._setups
+            if isinstance(dec, core.ValBind) and self.is_impure(dec.value) and not is_made:
+                self.position = dec.span.origin
+                self._make_globals(position, dec, {})
         while self._pending or self.function_values.work():
             if self._pending:
                 key, function, rebuilt, parameters = self._pending.pop()
@@ -423,7 +439,7 @@ class Program:
             if len(remaining.rules) > 1:
                 body.tail_rules(remaining.rules, argument, env)
                 break
-            env = dict(body.bind_pattern(remaining.rules[0].pattern, argument, env))
+            env = dict(body.bind_pattern(remaining.rules[0].pattern, argument, env, "Match"))
             remaining = remaining.rules[0].body
         else:
             body.tail(remaining, env)

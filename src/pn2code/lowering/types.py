@@ -343,7 +343,11 @@ class Types:
                 case ir.ListDef(element=element):
                     parts = [element]
                 case ir.UnionDef(constructors=constructors):
-                    parts = [a for _, a, boxed in constructors if a is not None and not boxed]
+                    parts = [
+                        a
+                        for _, a, boxed in constructors
+                        if a is not None and (not boxed or a.rep in (Rep.ENUM, Rep.REF))
+                    ]
                 case ir.RefDef(target=target) if target.rep in (Rep.ENUM, Rep.REF):
                     parts = [target]
                 case ir.EnumDef() | ir.RefDef():
