@@ -174,6 +174,9 @@ def _made(request: Request, engine: Engine | None, d: Diagnostics, form: Format)
         typer.echo(f"pn2code: {_sentence(problem, request)}", err=True)
         raise typer.Exit(Exit.USAGE) from None
     if outcome is None:
+        if request.interrupted():  # while the net was compiled
+            typer.echo("pn2code: interrupted", err=True)
+            raise typer.Exit(130)
         missing = any(i.code == "tool-missing" for i in d)
         if missing:
             print_diagnostics(d.sorted(), form)
