@@ -88,6 +88,16 @@ def test_the_final_marking_must_be_the_same() -> None:
     assert found.steps == 1
 
 
+def test_pages_and_places_must_be_there() -> None:
+    net = flat(PLAIN)
+    step = {"transition": "Send_Packet", "page": "Top", "binding": {"n": "2", "s": '"c"'}}
+    assert follow(recording({"steps": [step]}), Game(net)).ok
+    assert not follow(recording({"steps": [{**step, "instance": 2}]}), Game(net)).ok
+    assert not follow(recording({"steps": [{**step, "page": "Sub"}]}), Game(net)).ok
+    final = {"steps": [], "final_marking": [{"id": "X", "instance": 1, "marking": "empty"}]}
+    assert "`X`, instance 1, which" in follow(recording(final), Game(net)).why
+
+
 TIES = """
     net Ties
       standard

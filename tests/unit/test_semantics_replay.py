@@ -160,6 +160,7 @@ def test_initial_markings_of_the_header(net: FlatNet) -> None:
     assert replay_lines(written, net).steps == 1
     assert "lacks" in refused(net, [changed(written[0], initial={}), *written[1:]]).why
     assert "does not have" in refused(net, [changed(written[0], initial={"X": []})]).why
+    assert "not an object" in refused(net, [changed(written[0], initial=3)]).why
     assert (
         "initial marking of" in refused(net, [changed(written[0], initial={"Top.Jobs": [1]})]).why
     )

@@ -131,11 +131,11 @@ class TransitionNames:
                 self._found.setdefault(name, []).append(t)
 
     def candidates(self, step: RecordedStep) -> list[FlatTransition]:
-        """All with that name, on that page and instance if there are such."""
+        """All with that name on that page and instance."""
         named = self._found.get(_bare(step.transition)) or self._found.get(step.transition, [])
         page = _bare(step.page)
         there = [
             t for t in named if step.page in ("", t.page) or _bare(engine_name(t.page)) == page
         ]
         there = there or [t for t in named if not engine_name(t.page)]
-        return [t for t in there if step.instance in (0, t.instance_number)] or there
+        return [t for t in there if step.instance in (0, t.instance_number)]

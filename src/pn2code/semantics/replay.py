@@ -201,7 +201,10 @@ def _initial(net: FlatNet, header: dict[str, Any]) -> dict[str, PlaceMarking]:
         raise _Wrong('the first line is not the header of a trace: `"trace": 1` is missing')
     places = {p.name: p for p in net.places}
     found: dict[str, PlaceMarking] = {}
-    for name, data in header.get("initial", {}).items():
+    initial = header.get("initial", {})
+    if not isinstance(initial, dict):
+        raise _Wrong("the `initial` of the header is not an object")
+    for name, data in initial.items():
         if name not in places:
             raise _Wrong(f"the header names the place `{name}`, which the net does not have")
         try:

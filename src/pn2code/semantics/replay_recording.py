@@ -161,7 +161,8 @@ class _Follower:
             candidates = self.names.candidates(step)
             if not candidates:
                 page = f" on page `{step.page}`" if step.page else ""
-                why = f"`{step.transition}`: the net has no such transition{page}"
+                which = f", instance {step.instance}" if step.instance > 1 else ""
+                why = f"`{step.transition}`: the net has no such transition{page}{which}"
                 return self.refused(states[0], number, why, run)
             self.game.evaluator.steps = number + 1
             after: dict[State, None] = {}
@@ -211,7 +212,10 @@ class _Follower:
         rows = self.rows_by_place(state.marking)
         for key, recorded in run.final_marking.items():
             if key not in rows:
-                continue
+                return (
+                    state,
+                    f"the recording has a place `{key[0]}`, instance {key[1]}, which the net does not have",
+                )
             index, ours = rows[key]
             if ours != recorded and state.unknown.covers(index):
                 colset = self.net.places[index].colset
