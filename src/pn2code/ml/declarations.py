@@ -650,8 +650,10 @@ def written_variables(dec: s.ValDec | s.FunDec) -> list[str]:
             found[node.name] = None
         elif isinstance(node, tuple):
             stack.extend(reversed(node))
-        elif isinstance(node, s.ValDec | s.FunDec | str | int | float | Span) or node is None:
-            continue
+        elif node is None or isinstance(
+            node, s.ValDec | s.FunDec | s.TypeDec | s.DatatypeDec | str | int | float | Span
+        ):
+            continue  # a type declaration binds its own
         else:
             names = getattr(node, "__slots__", ())
             stack.extend(getattr(node, name) for name in reversed(names))

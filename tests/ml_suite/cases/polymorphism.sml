@@ -1,0 +1,18 @@
+fun id x = x ==> (id 1, id "a", id [true])
+fun pair x = (x, x) ==> (pair 1, pair (pair "x"))
+fun swap (a, b) = (b, a) ==> (swap (1, "a"), swap ("b", 2.5))
+fun const x y = x ==> (const 1 "a", const "b" 2)
+fun len [] = 0 | len (_ :: xs) = 1 + len xs ==> (len [1, 2], len ["a"], len ([] : real list))
+fun member x [] = false | member x (y :: ys) = x = y orelse member x ys ==> (member 2 [1, 2], member "c" ["a"], member (1, "x") [(1, "x")])
+fun map2 f [] = [] | map2 f (x :: xs) = f x :: map2 f xs ==> (map2 Int.toString [1, 2], map2 String.size ["a", "bb"])
+let fun id x = x in (id 5, id "five") end
+let val empty_list = [] in (1 :: empty_list, "a" :: empty_list) end
+fun rev2 xs = let fun go ([], acc) = acc | go (x :: r, acc) = go (r, x :: acc) in go (xs, []) end ==> (rev2 [1, 2, 3], rev2 [#"a", #"b"])
+fun assoc k xs = case List.find (fn (k', _) => k' = k) xs of SOME (_, v) => SOME v | NONE => NONE ==> (assoc 1 [(1, "one")], assoc "x" [("y", 2)])
+fun apply_all fs x = map (fn f => f x) fs ==> (apply_all [fn x => x + 1] 1, apply_all [fn s => s ^ "?"] "a")
+datatype 'a box = Box of 'a fun unbox (Box x) = x fun map_box f (Box x) = Box (f x) ==> (unbox (Box 3), unbox (map_box Int.toString (Box 4)))
+fun first (x, _, _) = x fun third (_, _, z) = z ==> (first (1, "b", 2.5), third (1, "b", [3]))
+fun eq_pairs (a, b) (c, d) = a = c andalso b = d ==> (eq_pairs (1, "x") (1, "x"), eq_pairs (true, [1]) (true, [2]))
+fun until p f x = if p x then x else until p f (f x) ==> (until (fn x => x > 100) (fn x => x * 2) 1, until (fn s => String.size s > 3) (fn s => s ^ s) "a")
+fun zip3 (x :: xs, y :: ys, z :: zs) = (x, y, z) :: zip3 (xs, ys, zs) | zip3 _ = [] ==> zip3 ([1, 2], ["a", "b"], [true, false])
+fun group [] = [] | group (x :: xs) = let fun take ([], n) = (n, []) | take (y :: ys, n) = if y = x then take (ys, n + 1) else (n, y :: ys) val (n, rest) = take (xs, 1) in (x, n) :: group rest end ==> (group [1, 1, 2, 3, 3, 3], group (explode "aab"))

@@ -1,0 +1,36 @@
+Substring.full "abc"
+Substring.size (Substring.substring ("hello", 1, 3))
+Substring.substring ("hello", 3, 3) handle Subscript => Substring.full "no"
+Substring.extract ("hello", 2, NONE)
+Substring.triml 2 (Substring.full "hello")
+Substring.trimr 2 (Substring.full "hello")
+Substring.triml 9 (Substring.full "hello")
+Substring.slice (Substring.full "hello", 1, SOME 3)
+Substring.sub (Substring.full "hello", 1)
+Substring.first (Substring.full "xy")
+Substring.first (Substring.full "")
+Substring.getc (Substring.full "ab")
+Substring.isEmpty (Substring.full "")
+Substring.splitl Char.isDigit (Substring.full "123abc")
+Substring.splitr Char.isDigit (Substring.full "abc123")
+Substring.splitAt (Substring.full "hello", 2)
+Substring.dropl Char.isSpace (Substring.full "  x ")
+Substring.dropr Char.isSpace (Substring.full "  x ")
+Substring.takel Char.isAlpha (Substring.full "ab1")
+Substring.taker Char.isAlpha (Substring.full "1ab")
+Substring.position "lo" (Substring.full "hello world")
+Substring.position "zz" (Substring.full "hello")
+Substring.isPrefix "he" (Substring.full "hello")
+Substring.isSuffix "lo" (Substring.full "hello")
+Substring.compare (Substring.full "a", Substring.full "b")
+Substring.concat [Substring.full "a", Substring.full "b"]
+Substring.explode (Substring.full "ab")
+Substring.tokens Char.isSpace (Substring.full " a  b ")
+Substring.fields (fn c => c = #",") (Substring.full "a,,b")
+Substring.translate (fn c => str c ^ str c) (Substring.full "ab")
+Substring.foldl (fn (c, n) => n + ord c) 0 (Substring.full "ab")
+Substring.foldr (op ::) [] (Substring.full "ab")
+Substring.base (Substring.triml 1 (Substring.full "abc"))
+Substring.span (Substring.substring ("hello", 0, 2), Substring.substring ("hello", 3, 1)) handle Span => Substring.full "span"
+fun trim s = Substring.string (Substring.dropl Char.isSpace (Substring.dropr Char.isSpace (Substring.full s))) ==> trim "  two words  "
+fun words s = map Substring.string (Substring.tokens (not o Char.isAlpha) (Substring.full s)) ==> words "It's 3 o'clock."
