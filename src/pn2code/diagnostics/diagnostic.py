@@ -61,6 +61,9 @@ class Diagnostics:
     """What the stages of one run have to say; the only mutable value handed from stage to stage."""
 
     items: list[Diagnostic] = field(default_factory=list)
+    _looked_at: list[Diagnostic] = field(default_factory=list, repr=False)
+    _errors: list[Diagnostic] = field(default_factory=list, repr=False)
+    _known: set[Diagnostic] = field(default_factory=set, repr=False)
 
     def error(
         self,
@@ -115,18 +118,35 @@ class Diagnostics:
         origin = at.origin if isinstance(at, Span) else at
         fixed = tuple(Note(n) if isinstance(n, str) else n for n in notes)
         item = Diagnostic(severity, code, message, origin, span, label, fixed, hint)
-        if item not in self.items:
+        self._look()
+        if item not in self._known:
             self.items.append(item)
+
+    def _look(self) -> None:
+        """Takes note of what is new in `items`: nets with thousands of errors must not take forever."""
+        seen = len(self._looked_at)
+        if seen > len(self.items) or (seen and self.items[seen - 1] is not self._looked_at[-1]):
+            seen = 0  # somebody took items away
+            self._looked_at.clear()
+            self._errors.clear()
+            self._known.clear()
+        for item in self.items[seen:]:
+            self._looked_at.append(item)
+            self._known.add(item)
+            if item.severity is Severity.ERROR:
+                self._errors.append(item)
 
     @property
     def has_errors(self) -> bool:
         """Whether any error was reported."""
-        return any(d.severity is Severity.ERROR for d in self.items)
+        self._look()
+        return bool(self._errors)
 
     @property
     def errors(self) -> list[Diagnostic]:
         """The errors, in order of report."""
-        return [d for d in self.items if d.severity is Severity.ERROR]
+        self._look()
+        return list(self._errors)
 
     def sorted(self) -> list[Diagnostic]:
         """By position in the file."""
