@@ -49,6 +49,19 @@ NETS: dict[str, str] = {
             both N : 1`(y * 1)
             out Q : (y, x)
     """,
+    "no token taken, but an available one is wanted": """
+        net Cell
+          standard
+          colset T = int timed;
+          var x: T;
+          place A : T = 1`1@3 +++ 1`2@1
+          place B : T
+          place C : INT = 3`0
+          trans Go
+            in A : 0`x
+            in C : 0
+            out B : x@+2
+    """,
     "inhibitor and reset arcs": """
         net Cell
           standard

@@ -8,7 +8,6 @@ from ml_suite import suite
 from pn2code.semantics.evaluate import Evaluator
 from pn2code.semantics.values import UNIT, MlException, MlLimit
 
-
 FEWEST = 850
 
 

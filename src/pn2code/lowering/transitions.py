@@ -253,8 +253,9 @@ class _Enumeration:
         timed = self._net.places[arc.place].colset.timed
         count = _constant(term.coefficient)
         assert count is not None
-        if count <= 0 or (count == 1 and not timed):
+        if count <= 1 and not timed:
             return
+        count = max(count, 1)  # ``0`x`` takes nothing, but wants a token that is available
         if timed and count > 1:
             with self._body.block() as takes:
                 take_terms(self._program, self._net, self._body, arc, self._env, [term])
