@@ -89,6 +89,23 @@ class State:
         return tuple(reversed(found))
 
 
+@dataclass(frozen=True, slots=True)
+class _Way:
+    """A way in which a recorded binding is enabled.
+
+    Args:
+        left: the marking without the tokens that are taken.
+        unknown: what is not known of it.
+        binding: without the outputs of the code segment.
+        read: whether the values were read from the recording, which tells reals with 12 digits.
+    """
+
+    left: Marking
+    unknown: Unknown
+    binding: Binding
+    read: bool = False
+
+
 class _Refused(Exception):  # noqa: N818
     """A step cannot be repeated in a state; the message says why."""
 
@@ -301,10 +318,9 @@ class _Follower:
         self.check_priority(state, t)
         reason = ""
         count = 0
-        for marking, unknown, binding in self.enabled(state, t, step):
-            before = replace(state, marking=marking, unknown=unknown)
+        for way in self.enabled(state, t, step):
             try:
-                after = self.occur(before, t, binding, step)
+                after = self.occur(state, t, way, step)
             except (_Refused, GameError) as refused:
                 reason = reason or str(refused)
                 continue
@@ -367,10 +383,8 @@ class _Follower:
             if next(self.game.enabling.enabled(other, state.marking), None) is not None:
                 raise _Refused(f"`{other.name}` has a higher priority and is enabled")
 
-    def enabled(
-        self, state: State, t: FlatTransition, step: RecordedStep
-    ) -> Iterator[tuple[Marking, Unknown, Binding]]:
-        """The ways in which the recorded binding is enabled: tokens left, and the binding without code outputs."""
+    def enabled(self, state: State, t: FlatTransition, step: RecordedStep) -> Iterator[_Way]:
+        """The ways in which the recorded binding is enabled."""
         enabling = self.game.enabling
         found = False
         if self.certain(state.unknown, t):
@@ -384,14 +398,10 @@ class _Follower:
                 demands = enabling.demands(t, binding)
                 for left in self.plausible(list(alternatives(enabling, state.marking, demands))):
                     found = True
-                    yield left, state.unknown, binding
-        if (
-            not found
-            and self.lenient
-            and state.unknown.anything
-            or not self.certain(state.unknown, t)
-        ):
-            yield from self.enabled_by_unknown(state, t, step)
+                    yield _Way(left, state.unknown, binding)
+        depends = not self.certain(state.unknown, t)
+        if depends or (not found and self.lenient and state.unknown.anything):
+            yield self.enabled_by_unknown(state, t, step)
 
     def plausible(self, ways: list[Marking]) -> list[Marking]:
         """Of the ways to take tokens some with which the recorded final marking can still be reached.
@@ -416,9 +426,7 @@ class _Follower:
                         return False
         return True
 
-    def enabled_by_unknown(
-        self, state: State, t: FlatTransition, step: RecordedStep
-    ) -> Iterator[tuple[Marking, Unknown, Binding]]:
+    def enabled_by_unknown(self, state: State, t: FlatTransition, step: RecordedStep) -> _Way:
         """As `enabled`, with tokens that are not known: the binding is read from its text."""
         enabling = self.game.enabling
         unknown = state.unknown
@@ -443,7 +451,7 @@ class _Follower:
         left = taken(enabling, self.game.colours, marking, unknown, demands)
         if isinstance(left, Demand):
             raise _Refused(enabling.shortage(marking, left, demands))
-        yield *left, binding
+        return _Way(*left, binding, read=True)
 
     def read(self, t: FlatTransition, step: RecordedStep) -> dict[Symbol, Value]:
         """The recorded values of the variables that are not outputs of the code segment."""
@@ -466,48 +474,47 @@ class _Follower:
 
     # --- an occurrence -----------------------------------------------------------------------------------
 
-    def occur(self, state: State, t: FlatTransition, binding: Binding, step: RecordedStep) -> State:
-        """The state after the occurrence; `state` is without the tokens that are taken."""
+    def occur(self, state: State, t: FlatTransition, way: _Way, step: RecordedStep) -> State:
+        """The state after the occurrence."""
         game = self.game
-        marking, unknown = state.marking, state.unknown
+        unknown, now = way.unknown, way.left.time
         self.references.restore(state.references)
-        game.evaluator.now = marking.time
-        full = {**binding, **self.outputs(unknown, t, binding, step)}
+        game.evaluator.now = now
         action = t.code.action if t.code else None
-        if self.vague(unknown, action) and Effect.WRITE in self.effects.of(action):
-            unknown = replace(unknown, references=True)
-        rounded = unknown is not state.unknown and any(_has_real(s.colset) for s in t.variables)
-        rounded = rounded or (
-            self.lenient and bool(unknown) and any(_has_real(s.colset) for s in t.variables)
-        )
+        full = {**way.binding, **self.outputs(unknown, t, way.binding, step)}
+        drawn = self.vague(unknown, action)
+        rounded = (way.read or drawn) and any(_has_real(s.colset) for s in t.variables)
+        unknown = self.remember(unknown, drawn, action)
         late = unknown.clock or self.vague(unknown, t.delay)
         delay = 0 if late else game.delay(t, full)
-        held = list(marking.places)
+        held = list(way.left.places)
         for arc in t.arcs:
             if arc.inscription is None or arc.kind not in (ArcKind.OUTPUT, ArcKind.BOTH):
                 continue
-            colset = self.net.places[arc.place].colset
-            if rounded or self.vague(unknown, arc.inscription.value):
+            drawn = self.vague(unknown, arc.inscription.value)
+            if rounded or drawn:
                 unknown = unknown.opened(arc.place)
-                if Effect.WRITE in self.effects.of(arc.inscription.value):
-                    unknown = replace(unknown, references=True)
-                continue
-            now = marking.time
-            if late and colset.timed:
-                empty = TimedMultiSet()
-                put = game.put(empty, arc, full, 0, now)
+                unknown = self.remember(unknown, drawn, arc.inscription.value)
+            elif late and self.net.places[arc.place].colset.timed:
+                put = game.put(TimedMultiSet(), arc, full, 0, now)
                 assert isinstance(put, TimedMultiSet)
                 unknown = unknown.with_late(arc.place, put.untimed())
             else:
                 held[arc.place] = game.put(held[arc.place], arc, full, delay, now)
         for arc in t.arcs:
             if arc.kind is ArcKind.RESET:
-                held[arc.place] = reset(held[arc.place], marking.time)
+                held[arc.place] = reset(held[arc.place], now)
                 if unknown.covers(arc.place):
                     unknown = unknown.opened(arc.place)
-        after = replace(marking, places=tuple(held))
-        path = (state.path, (marking.time, BindingElement.make(t, full)))
+        after = replace(way.left, places=tuple(held))
+        path = (state.path, (now, BindingElement.make(t, full)))
         return State(after, unknown, self.references.contents(), path)
+
+    def remember(self, unknown: Unknown, drawn: bool, *parts: Any) -> Unknown:
+        """Evaluating something that is drawn may have put drawn values into references."""
+        if drawn and Effect.WRITE in self.effects.of(*parts):
+            return replace(unknown, references=True)
+        return unknown
 
     def outputs(
         self, unknown: Unknown, t: FlatTransition, binding: Binding, step: RecordedStep
