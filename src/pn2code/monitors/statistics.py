@@ -17,7 +17,7 @@ Without any value everything is 0. Integers stay integers (CPN Tools sums them a
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 
 Number = int | float
@@ -160,3 +160,20 @@ class Timed:
 
 
 Statistics = Untimed | Timed
+
+
+def restored(found: Mapping[str, Number], now: Number | None) -> Statistics:
+    """What another program has collected.
+
+    Args:
+        found: `count`, `min`, `max`, `first`, `last`, `sum`, `ss` up to the last value, `start`, `updated`.
+        now: the model time, for timed statistics; None: untimed.
+    """
+    s: Statistics = Untimed() if now is None else Timed(lambda: now)
+    s.count = int(found["count"])
+    s._min, s._max = found["min"], found["max"]
+    s._first, s._last = found["first"], found["last"]
+    s._sum, s._squares = found["sum"], found["ss"]
+    if isinstance(s, Timed):
+        s._start, s._updated = found["start"], found["updated"]
+    return s

@@ -25,7 +25,7 @@ from pn2code.monitors.functions import Checked, MonitorProgram, binding_element,
 from pn2code.monitors.kinds import BREAKPOINTS, COLLECTORS, Kind, Monitor, kind_text
 from pn2code.monitors.statistics import Number, Statistics, Untimed
 from pn2code.monitors.statistics import Timed as TimedStatistics
-from pn2code.net.flat import FlatTransition, PlaceInstance
+from pn2code.net.flat import FlatNet, PlaceInstance
 from pn2code.semantics.enabling import GameError, running
 from pn2code.semantics.files import FileProblem, Files
 from pn2code.semantics.game import Game
@@ -169,15 +169,8 @@ class Watch:
         """What each collector has collected, how much each writer has written, in order of the file."""
         rows: list[dict[str, Any]] = []
         for m in self.monitors:
-            row: dict[str, Any] = {
-                "id": m.monitor.id,
-                "name": m.monitor.name,
-                "kind": kind_text(m.kind),
-            }
-            if m.statistics is not None:
-                row["timed"] = isinstance(m.statistics, TimedStatistics)
-                row.update({k: _finite(v) for k, v in m.statistics.values().items()})
-            elif m.kind is Kind.WRITE_IN_FILE:
+            row = result_row(m.monitor, m.statistics)
+            if m.kind is Kind.WRITE_IN_FILE:
                 row.update(file=_file(m.monitor), written=m.written)
             elif m.kind is Kind.USER_DEFINED:
                 row["calls"] = m.calls
@@ -200,8 +193,7 @@ class Watch:
         match m.kind:
             case Kind.MARKING_SIZE | Kind.LIST_LENGTH:
                 place = m.places[0].place
-                around = (t.index for t in self.net.transitions if _is_around(t, place))
-                return frozenset(around) if self.net.timed else frozenset()
+                return frozenset(around(self.net, place) if self.net.timed else ())
             case Kind.PLACE_CONTENT | Kind.TRANSITION_ENABLED:
                 return frozenset()
             case Kind.COUNT_OCCURRENCES:
@@ -305,11 +297,7 @@ class Watch:
         if m.kind is Kind.MARKING_SIZE:
             return len(tokens)
         if len(tokens) != 1:
-            raise GameError(
-                f"monitor `{m.monitor.name}` measures the list in place `{place.name}`, "
-                f"which holds {len(tokens)} tokens instead of one",
-                m.monitor.origin,
-            )
+            raise GameError(not_one_list(m.monitor, len(tokens)), m.monitor.origin)
         token: Any = next(iter(tokens))
         return len(token.value if self.net.places[place.place].colset.timed else token)
 
@@ -410,8 +398,30 @@ def _log(m: Monitor) -> str:
     return f"output/logfiles/{m.ml_name}.log"
 
 
-def _is_around(t: FlatTransition, place: int) -> bool:
-    return any(arc.place == place for arc in t.arcs)
+def around(net: FlatNet, place: int) -> list[int]:
+    """The indices of the transitions with an arc to or from a place."""
+    return [t.index for t in net.transitions if any(arc.place == place for arc in t.arcs)]
+
+
+def result_row(monitor: Monitor, statistics: Statistics | None) -> dict[str, Any]:
+    """Which monitor it is, and what it has collected."""
+    row: dict[str, Any] = {
+        "id": monitor.id,
+        "name": monitor.name,
+        "kind": kind_text(monitor.kind),
+    }
+    if statistics is not None:
+        row["timed"] = isinstance(statistics, TimedStatistics)
+        row.update({k: _finite(v) for k, v in statistics.values().items()})
+    return row
+
+
+def not_one_list(monitor: Monitor, tokens: int) -> str:
+    """What is wrong when a list is to be measured and there are no lists, or several."""
+    return (
+        f"monitor `{monitor.name}` measures the list in place `{monitor.places[0].name}`, "
+        f"which holds {tokens} tokens instead of one"
+    )
 
 
 def _finite(x: Number) -> Number | None:

@@ -1,13 +1,12 @@
 """A run by the compiled net: a process of its own that tells how it goes on (cnative/src/simulate_report.c).
 
-With monitors the process also sends its trace, and the token game follows it step by step: it repeats each occurrence,
-without looking for what is enabled, and the monitors watch that. Then the trace file, the output and the final marking
-are those of the token game, and a breakpoint ends the process.
+Monitors without functions are watched by the process. With others it also sends its trace, and the token game follows
+it step by step: it repeats each occurrence, without looking for what is enabled, and the monitors watch that. Then the
+trace file, the output and the final marking are those of the token game, and a breakpoint ends the process.
 """
 
 from __future__ import annotations
 
-import codecs
 import json
 import os
 import signal
@@ -21,7 +20,9 @@ from pathlib import Path
 from typing import IO, Any
 
 from pn2code.diagnostics import Diagnostics, Origin
-from pn2code.net.flat import FlatNet
+from pn2code.monitors.simple import Simple
+from pn2code.monitors.watch import not_one_list
+from pn2code.net.flat import FlatNet, FlatTransition
 from pn2code.semantics.colour_json import from_json
 from pn2code.semantics.marking import BindingElement, Marking, place_from_json
 from pn2code.semantics.report import value_text
@@ -68,9 +69,12 @@ def run(request: Request, program: Path, d: Diagnostics, *, memory: int = MEMORY
         OSError: it cannot be read, or the program cannot be started.
     """
     given = Trace.open(request.replay, request.net) if request.replay else None
+    simple: Simple | None = None
     if request.monitors is not None and request.monitors.monitors:
+        simple = Simple.of(request.monitors, request.net, breakpoints=request.breakpoints)
+    if simple is None and request.monitors is not None and request.monitors.monitors:
         return _followed(request, program, given, memory, d)
-    return _alone(request, program, given, memory, d)
+    return _alone(request, program, given, memory, simple, d)
 
 
 # --- the process -----------------------------------------------------------------------------------
@@ -84,11 +88,19 @@ class _Process:
         program: the simulator.
         given: the trace that it repeats first.
         memory: for lists and strings.
+        simple: the monitors that it watches.
         follows: whether its trace comes through a pipe, and its output is of no interest.
     """
 
     def __init__(
-        self, request: Request, program: Path, given: Trace | None, memory: int, *, follows: bool
+        self,
+        request: Request,
+        program: Path,
+        given: Trace | None,
+        memory: int,
+        simple: Simple | None = None,
+        *,
+        follows: bool,
     ) -> None:
         self.request = request
         self.output = Output()
@@ -108,7 +120,7 @@ class _Process:
         self.report = os.fdopen(report_in, encoding="utf-8", errors="surrogateescape")
         seed, choice = request.seeds(given.header.seed if given else None)
         command = _command(request, program, trace, report_out, seed, choice)
-        command += ["--memory", str(memory)]
+        command += ["--memory", str(memory), *(simple.options() if simple else [])]
         try:
             self.process = subprocess.Popen(
                 command,
@@ -138,19 +150,18 @@ class _Process:
     @staticmethod
     def _collect(stream: IO[bytes], output: Output) -> None:
         """Texts of CPN ML are bytes, one a character."""
-        decoder = codecs.getincrementaldecoder("latin-1")()
-        while data := stream.read1(1 << 16):  # type: ignore[attr-defined]
-            output.write(decoder.decode(data))
+        with stream:
+            while data := stream.read1(1 << 16):  # type: ignore[attr-defined]
+                output.write(data.decode("latin-1"))
 
     def _feed(self, stream: IO[bytes], given: Trace) -> None:
         """Hands over the steps that are to be repeated; a broken pipe means that the process has had enough."""
-        with suppress(BrokenPipeError):
+        with suppress(BrokenPipeError), stream:
             try:
                 for step in given.steps():
                     stream.write(step.script().encode("utf-8", "surrogateescape"))
             except TraceRefusedError as refused:
                 self.refused = refused
-            stream.close()
 
     def _pass_on(self) -> None:
         """Tells the process when the run shall end."""
@@ -221,11 +232,16 @@ def _last_report(process: _Process) -> dict[str, Any] | None:
 
 
 def _alone(
-    request: Request, program: Path, given: Trace | None, memory: int, d: Diagnostics
+    request: Request,
+    program: Path,
+    given: Trace | None,
+    memory: int,
+    simple: Simple | None,
+    d: Diagnostics,
 ) -> Outcome | None:
     net = request.net
     began = time.perf_counter()
-    process = _Process(request, program, given, memory, follows=False)
+    process = _Process(request, program, given, memory, simple, follows=False)
     try:
         last = _last_report(process)
     except BaseException:
@@ -246,6 +262,7 @@ def _alone(
         why, refusal = "replay", str(process.refused)
     if why == "error" and "limit" in last:
         raise OutOfRoomError(last["limit"])
+    stopped = simple.breakpoint(last["watch"]) if simple and why == "breakpoint" else None
     return Outcome(
         engine="compiled",
         seed=request.seeds(given.header.seed if given else None)[0],
@@ -254,8 +271,10 @@ def _alone(
         replayed=last["replayed"],
         initial=_marking(net, last["initial"], 0) if last["initial"] is not None else None,
         final=_marking(net, last["marking"], last["t"]) if last["initial"] is not None else None,
-        failure=_failure(net, last) if why == "error" else None,
+        failure=_failure(net, last, simple) if why == "error" else None,
         refusal=refusal,
+        breakpoint=stopped.row() if stopped else None,
+        monitors=simple.rows(last["watched"], last["t"]) if simple else (),
         output=process.output.text(),
         seconds=seconds,
     )
@@ -285,25 +304,34 @@ def _stamps(tokens: list[list[Any]], real: bool) -> list[list[Any]]:
     return [[*t[:2], float(t[2])] if real and len(t) == 3 else t for t in tokens]
 
 
-def _failure(net: FlatNet, last: Mapping[str, Any]) -> Failure:
+def _failure(net: FlatNet, last: Mapping[str, Any], simple: Simple | None = None) -> Failure:
     """The error of a report."""
     index = last.get("transition")
     t = net.transitions[index] if index is not None else None
+    if simple is not None and "watch" in last:
+        m = simple.monitors[last["watch"]]
+        tokens = sum(token[0] for token in last["marking"][net.places[m.places[0].place].name])
+        return Failure(not_one_list(m, tokens), m.origin, None, t, _binding(t, last))
     name = last["error"]
     if t is None:
         message = f"`{name}` in the declarations or an initial marking: {last['origin']}"
         return Failure(message, Origin(net.file))
     doing = "the occurrence of" if "binding" in last else "the search for bindings of"
     where = f" ({last['origin']})" if last["origin"] else ""
-    binding: dict[str, str] | None = None
-    if "binding" in last:
-        outputs = t.code.outputs if t.code else ()
-        binding = {
-            s.name: value_text(s, from_json(s.colset, last["binding"][s.name]))
-            for s in t.variables
-            if s.colset is not None and s not in outputs
-        }
-    return Failure(f"{doing} `{t.name}` raised `{name}`{where}", t.origin, None, t, binding)
+    message = f"{doing} `{t.name}` raised `{name}`{where}"
+    return Failure(message, t.origin, None, t, _binding(t, last))
+
+
+def _binding(t: FlatTransition | None, last: Mapping[str, Any]) -> dict[str, str] | None:
+    """Texts of the variables that were bound, but for outputs of the code segment."""
+    if t is None or "binding" not in last:
+        return None
+    outputs = t.code.outputs if t.code else ()
+    return {
+        s.name: value_text(s, from_json(s.colset, last["binding"][s.name]))
+        for s in t.variables
+        if s.colset is not None and s not in outputs
+    }
 
 
 # --- followed by the token game --------------------------------------------------------------------
