@@ -9,6 +9,7 @@ from __future__ import annotations
 import itertools
 import math
 from collections.abc import Iterable, Sequence
+from functools import cache
 from typing import TYPE_CHECKING, Any
 
 from pn2code.ml.colsets import Colset, Kind
@@ -46,9 +47,15 @@ def parts_of(c: Colset, value: Any) -> list[tuple[str, Colset, Value]]:
     if c.kind is Kind.PRODUCT:
         named = enumerate(c.components, 1)
         return [(str(i), p, x) for (i, p), x in zip(named, value, strict=True) if p is not None]
-    stored = dict(zip(sorted(c.labels, key=label_key), value, strict=True))
-    named_parts = zip(c.labels, c.components, strict=True)
-    return [(label, part, stored[label]) for label, part in named_parts if part is not None]
+    named_parts = zip(c.labels, c.components, _places(c.labels), strict=True)
+    return [(label, part, value[at]) for label, part, at in named_parts if part is not None]
+
+
+@cache
+def _places(labels: tuple[str, ...]) -> tuple[int, ...]:
+    """Where the value of a record has each field."""
+    stored = sorted(labels, key=label_key)
+    return tuple(stored.index(label) for label in labels)
 
 
 def assemble(c: Colset, values: Sequence[Value]) -> tuple[Value, ...]:
@@ -65,6 +72,8 @@ class Colours:
     def __init__(self, evaluator: Evaluator) -> None:
         self.evaluator = evaluator
         self._all: dict[Colset, tuple[Value, ...]] = {}
+        self._restricted: dict[int, bool] = {}
+        self._kept: list[Colset] = []
 
     # --- order -----------------------------------------------------------------------------------
 
@@ -239,6 +248,12 @@ class Colours:
 
     def legal(self, c: Colset, value: Any) -> bool:
         """Whether a value of the colour set's type is within all its bounds."""
+        restricted = self._restricted.get(id(c))
+        if restricted is None:
+            self._kept.append(c)  # its id stays its own
+            restricted = self._restricted[id(c)] = _has_bounds(c)
+        if not restricted:
+            return True
         match c.kind:
             case Kind.INT | Kind.INTINF | Kind.TIME | Kind.REAL:
                 return _within(c, value)
@@ -400,6 +415,14 @@ class Colours:
                 return Data(value.name, value.tag, inner)
             case _:
                 return value  # type: ignore[no-any-return]
+
+
+def _has_bounds(c: Colset) -> bool:
+    """Whether some value of the colour set's type is not legal."""
+    own = c.low is not None or c.high is not None or c.length is not None
+    return (
+        own or c.kind is Kind.SUBSET or any(_has_bounds(p) for p in c.components if p is not None)
+    )
 
 
 def _within(c: Colset, number: Any) -> bool:

@@ -7,7 +7,6 @@ the order of the place's colour set (`BindAll` and `BindRandom`: the values in o
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -68,18 +67,37 @@ class GameError(Exception):
         d.error(RUNTIME_ERROR, self.message, self.origin, notes=notes)
 
 
-@contextmanager
-def running(origin: Origin, doing: str) -> Iterator[None]:
-    """What CPN ML raises while we do something becomes a GameError that names the element."""
-    try:
-        yield
-    except MlException as raised:
-        message = f"{doing} raised the exception `{raised}`"
-        raise GameError(message, origin, raised.span) from None
-    except MlUnavailable as unavailable:
-        raise GameError(f"{doing} cannot go on: {unavailable}", origin) from None
-    except (MlLimit, RecursionError) as limit:
-        raise GameError(f"{doing} was given up: {limit}", origin) from None
+class running:  # noqa: N801 - a context manager reads as a word
+    """What CPN ML raises while we do something becomes a GameError that names the element.
+
+    Args:
+        origin: the element.
+        doing: what, for the message.
+        part: which part of the element it is, if `origin` does not say it.
+    """
+
+    __slots__ = ("doing", "origin", "part")
+
+    def __init__(self, origin: Origin, doing: str, part: str = "") -> None:
+        self.origin = origin
+        self.doing = doing
+        self.part = part
+
+    def __enter__(self) -> None:
+        """Nothing: this is called for each evaluation."""
+
+    def __exit__(self, kind: object, raised: BaseException | None, trace: object) -> None:
+        """Raise the GameError."""
+        if raised is None:
+            return
+        origin = replace(self.origin, part=self.part) if self.part else self.origin
+        if isinstance(raised, MlException):
+            message = f"{self.doing} raised the exception `{raised}`"
+            raise GameError(message, origin, raised.span) from None
+        if isinstance(raised, MlUnavailable):
+            raise GameError(f"{self.doing} cannot go on: {raised}", origin) from None
+        if isinstance(raised, MlLimit | RecursionError):
+            raise GameError(f"{self.doing} was given up: {raised}", origin) from None
 
 
 @dataclass(frozen=True, slots=True)
@@ -201,7 +219,7 @@ class Enabling:
     def _match_equation(
         self, t: FlatTransition, guard: int, pattern: Pat, value: Any, found: Found
     ) -> Iterator[Found]:
-        with running(_part(t, "guard"), f"the guard of `{t.name}`"):
+        with running(t.origin, f"the guard of `{t.name}`", "guard"):
             try:
                 result = self._evaluate(value, found)
             except MlException as raised:
@@ -230,7 +248,7 @@ class Enabling:
         return all(self._guard(t, i, found) for i in self._guard_positions(t)[position])
 
     def _guard(self, t: FlatTransition, i: int, found: Found) -> bool:
-        with running(_part(t, "guard"), f"the guard of `{t.name}`"):
+        with running(t.origin, f"the guard of `{t.name}`", "guard"):
             try:
                 return bool(self._evaluate(t.guards[i], found))
             except MlException as raised:
@@ -437,10 +455,6 @@ class Enabling:
 def available(tokens: PlaceMarking, now: float) -> list[Value] | list[Timed]:
     """The tokens of a place that are available at a time."""
     return list(tokens) if isinstance(tokens, MultiSet) else tokens.available(now)
-
-
-def _part(t: FlatTransition, part: str) -> Origin:
-    return replace(t.origin, part=part)
 
 
 def _one_line(text: str) -> str:

@@ -246,7 +246,7 @@ class Game:
         """The delay of the transition."""
         if t.delay is None:
             return 0
-        with running(replace(t.origin, part="delay"), f"the delay of `{t.name}`"):
+        with running(t.origin, f"the delay of `{t.name}`", "delay"):
             return self.evaluator.value(t.delay, binding)
 
     def put(
