@@ -414,6 +414,9 @@ def test_monitors_that_change_references_need_the_reference_engine(tmp_path: Pat
     )
     text = COUNTER.replace("var n: INT;", "globref count = 0;\n      var n: INT;")
     net = write(text, tmp_path / "cell.cpn", spec)
+    assert result(net)["engine"] == "compiled", "the net does not look at the reference"
+    text = text.replace("(n + 1) mod 1000", "(n + !count) mod 1000")
+    net = write(text, tmp_path / "cell.cpn", spec)
     done = simulate(net, "--json")
     assert json.loads(done.stdout)["engine"] == "reference"
     assert "its monitors change references" in done.stderr

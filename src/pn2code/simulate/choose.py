@@ -7,14 +7,13 @@ The compiled engine is used unless it cannot be: then, if nobody insists on it, 
 
 from __future__ import annotations
 
-from dataclasses import replace
 from enum import Enum
 
 from pn2code.diagnostics import Diagnostics, Origin, Severity
 from pn2code.monitors.functions import MonitorProgram, elaborate
 from pn2code.monitors.kinds import resolve
+from pn2code.monitors.sharing import shared_references
 from pn2code.net.front import Examined
-from pn2code.semantics.effects import Effect, Effects
 from pn2code.simulate import compiled, programs, reference
 from pn2code.simulate.codes import ENGINE_CHANGED, SIMULATOR_FAILED
 from pn2code.simulate.run import Outcome, Request
@@ -119,9 +118,7 @@ def _obstacle(request: Request) -> str:
         return ""
     if request.files is not None:
         return "its monitors watch, and it may use files"
-    # What compiled code does not see: changes that monitors make.
-    own = request.net.program
-    effects = Effects(replace(own, declarations=(*own.declarations, *program.declarations)))
-    if any(Effect.WRITE in effects.of(dec) for dec in program.declarations):
-        return "its monitors change references"
+    shared = shared_references(program, request.net)
+    if shared:
+        return f"its monitors change references, and share `{shared[0]}` with the net"
     return ""
