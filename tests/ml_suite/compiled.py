@@ -101,7 +101,7 @@ def main() -> None:
             for case in found:
                 result = results[case.name]
                 if result != case.expected:
-                    reason = " ".join(result.split())[:160]
+                    reason = ascii(" ".join(result.split()))[1:-1][:160]
                     known = reason.startswith(("refused", "not ", "the ", "C compiler"))
                     wrong.append(f"{case.name} {reason if known else f'gives {reason}'}")
                     print(wrong[-1], f"({case.text[:60]})", flush=True)
