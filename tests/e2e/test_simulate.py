@@ -291,6 +291,17 @@ def test_what_was_written_ends_with_a_whole_line(tmp_path: Path, engine: str) ->
     assert len(lines) > 10 and "event" not in lines[-1]
 
 
+def test_a_trace_is_not_written_over_what_is_read(tmp_path: Path) -> None:
+    net = write(COUNTER, tmp_path / "cell.cpn")
+    before = net.read_bytes()
+    assert "is read by this run" in simulate(net, "--trace", net, code=2).stderr
+    assert net.read_bytes() == before
+    trace = tmp_path / "run.trace.jsonl"
+    result(net, "--steps", 3, "--trace", trace)
+    assert "is read by" in simulate(net, "--replay", trace, "--trace", trace, code=2).stderr
+    assert len(trace.read_text().splitlines()) == 5
+
+
 # --- the compiler and its cache --------------------------------------------------------------------
 
 

@@ -114,6 +114,7 @@ def simulate(
     """
     opened = open_net(net, parse_values(settings), form, int_bits=int_bits)
     limit = _time(until, opened)
+    _check_trace(trace, replay, Path(opened.flat.file))
     d = Diagnostics()
     program = monitors_of(opened.examined, d) if monitors else None
     with Interrupts() as interrupts, ProgressLine(shown=not (as_json or quiet)) as progress:
@@ -144,6 +145,17 @@ def simulate(
     code = _code(outcome)
     if code:
         raise typer.Exit(code)
+
+
+def _check_trace(trace: Path | None, *read: Path | None) -> None:
+    """A trace must not be written over what is read."""
+    if trace is None:
+        return
+    if str(trace) == "-":
+        raise typer.BadParameter("a file is expected", param_hint="--trace")
+    for other in read:
+        if other is not None and trace.exists() and other.exists() and trace.samefile(other):
+            raise typer.BadParameter(f"`{trace}` is read by this run", param_hint="--trace")
 
 
 def _time(until: str | None, opened: OpenNet) -> int | float | None:

@@ -317,7 +317,8 @@ def _failure(net: FlatNet, last: Mapping[str, Any], simple: Simple | None = None
         message = f"`{name}` in the declarations or an initial marking: {last['origin']}"
         return Failure(message, Origin(net.file))
     doing = "the occurrence of" if "binding" in last else "the search for bindings of"
-    where = f" ({last['origin']})" if last["origin"] else ""
+    said = last["origin"]
+    where = f" ({said})" if said and said != t.origin.describe() else ""
     message = f"{doing} `{t.name}` raised `{name}`{where}"
     return Failure(message, t.origin, None, t, _binding(t, last))
 
