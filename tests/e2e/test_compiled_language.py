@@ -7,6 +7,7 @@ with all warnings as errors, run under sanitizers.
 from __future__ import annotations
 
 import shutil
+import textwrap
 from pathlib import Path
 
 import pytest
@@ -384,6 +385,194 @@ PROGRAMS: dict[str, tuple[str, dict[str, list[str]]]] = {
             ]
         },
     ),
+    "functions of many kinds": (
+        """
+        datatype 'a box = Box of 'a | Two of 'a * 'a
+        exception B of int
+        fun app0 f = f ()
+        val units = [fn () => 1, fn () => 2]
+        val makers = [Box, fn x => Two (x, x)]
+        val folds = [foldl (op +) 0, foldr (op -) 0, length]
+        val ops = [("plus", op +), ("minus", op -), ("times", op * )]
+        val maps = [List.map (fn x => x + 1), List.filter (fn x => x > 2), rev]
+        fun find k = case List.find (fn (s, _) => s = k) ops of SOME (_, f) => f | NONE => (fn (a, b) => a)
+        fun tags (Box x) = x | tags (Two (x, y)) = x + y
+        val conses = [op ::, fn (x, l) => l ^^ [x]]
+        val showers = [INT.mkstr, Int.toString, fn x => "<" ^ Int.toString x ^ ">"]
+        val exns = List.map B [1, 2, 3]
+        fun nested (f, {g, h = (k, l)}) x = f (g (k (l x)))
+        val unitary = [print, fn s => ()]
+        """,
+        {
+            INTS: [
+                "foldl (fn (f, s) => s + f ()) 0 units",
+                "foldl (fn (f, s) => s + tags (f n)) 0 makers",
+                "foldl (fn (f, s) => s * 10 + f [1, n, 3]) 0 folds",
+                'find "minus" (n, 3) + find "times" (n, 3) + find "x" (n, 1)',
+                "length (foldl (fn (f, l) => f l) [1, n, 3, 2] maps)",
+                "hd (foldl (fn (f, l) => f (n, l)) [7] conses) + length (List.map (fn f => f (n, [])) conses)",
+                "foldl (fn (B k, s) => s + k | (_, s) => s) 0 exns",
+                "nested (fn x => x + 1, {g = ~, h = (fn x => x * n, fn x => x - 1)}) 4",
+                '(List.app (fn f => f "") unitary; n)',
+                "app0 (fn () => n) + app0 (hd units)",
+            ],
+            STRINGS: [
+                "String.concat (List.map (fn f => f n) showers)",
+            ],
+        },
+    ),
+    "colours": (
+        """
+        colset COL = with red | green | blue
+        colset PAIR = product INT * COL
+        colset REC = record a: INT * b: COL
+        colset LST = list PAIR
+        colset UNI = union num: INT + col: COL + non
+        fun flip red = green | flip green = blue | flip blue = red
+        val flips = [flip, flip o flip, fn c => c]
+        fun total (num n) = n | total (col c) = COL.ord c | total non = ~1
+        val pick = {a = fn (n, c) => n, b = fn (n, c : COL) => COL.ord c}
+        fun update f {a, b} = {a = f a, b = b} : REC
+        val updates = [update (fn x => x + 1), fn r => REC.set_b r blue]
+        """,
+        {
+            INTS: [
+                "COL.ord (foldl (fn (f, c) => f c) red flips)",
+                "foldl (fn (u, s) => s + total u) 0 [num n, col green, non]",
+                "#a pick (n, red) + #b pick (n, blue)",
+                "#a (foldl (fn (f, r) => f r) {a = n, b = red} updates)",
+            ],
+            STRINGS: [
+                "COL.mkstr (#b (foldl (fn (f, r) => f r) {a = n, b = red} updates))",
+                "LST.mkstr (List.map (fn c => (n, c)) (COL.all ()))",
+            ],
+        },
+    ),
+    "more references": (
+        """
+        val grid = List.tabulate (3, fn i => List.tabulate (3, fn j => ref (i * 3 + j)))
+        fun at (i, j) = List.nth (List.nth (grid, i), j)
+        fun f (ref x) = x
+        fun memo g = let val known = ref [] in fn x => case List.find (fn (y, _) => y = x) (!known) of
+            SOME (_, v) => v | NONE => let val v = g x in (known := (x, v) :: !known; v) end end
+        val calls = ref 0
+        val slow = memo (fn x => (calls := !calls + 1; x * x))
+        val self = ref (fn (x : int) => x)
+        fun fact n = if n = 0 then 1 else n * (!self) (n - 1)
+        datatype 'a cell = Empty | Cell of {value: 'a, next: 'a cell ref}
+        fun push r x = r := Cell {value = x, next = ref (!r)}
+        fun all r = case !r of Empty => [] | Cell {value, next} => value :: all next
+        val names = ref ["a"]
+        val point = ref {x = 1, y = 2.5}
+        val pp = ref (ref 3)
+        fun swap (a as ref x, b as ref y) = (a := y; b := x)
+        """,
+        {
+            INTS: [
+                "(at (1, 1) := n; !(at (1, 1)) + !(at (2, 2)))",
+                "f (ref n)",
+                "slow n + slow n + !calls",
+                "(self := fact; (!self) (n mod 7))",
+                "let val r = ref Empty in (push r n; push r 2; List.app (push r) [3, 4]; foldl (op +) 0 (all r)) end",
+                "(point := {x = n + #x (!point), y = 1.0}; #x (!point))",
+                "(!pp := n + !(!pp); pp := ref (!(!pp) + 1); !(!pp))",
+                "let val a = ref n val b = ref 2 in (swap (a, b); !a * 10 + !b) end",
+                "(inc calls; dec calls; calls += 2; calls -= 1; !calls)",
+                "let val r = ref [n] in (r ::= 4; length (!r)) end",
+            ],
+            STRINGS: [
+                "(names := !names ^^ [Int.toString n]; String.concat (!names))",
+            ],
+        },
+    ),
+    "patterns": (
+        """
+        fun kind "a" = 1 | kind "bc" = 2 | kind s = String.size s
+        fun chars [] = 0 | chars (#"x" :: r) = 1 + chars r | chars (_ :: r) = chars r
+        fun deep ((a, SOME b) :: (c, NONE) :: _, {k, ...} : {k: int, l: int}) = a + b + c + k
+          | deep ([(a, NONE)], _) = a
+          | deep (l as _ :: _, {l = k, ...}) = length l * k
+          | deep ([], {k, l}) = k - l
+        fun both (x as (a, b), y as [_, _]) = a + b + length y + #1 x | both ((a, _), l) = a - length l
+        fun bools (true, false) = 1 | bools (false, _) = 2 | bools _ = 3
+        fun curried 0 _ [] = 1 | curried n s (x :: r) = n + x + curried (n - 1) s r | curried n s [] = String.size s
+        fun ors x = case x of (1 | 2) => 10 | (3 | 5) => 20 | _ => 30
+        """,
+        {
+            INTS: [
+                'kind (if n > 4 then "bc" else "a") + kind "xyz"',
+                'chars (explode "axbxx")',
+                "deep ([(n, SOME 1), (2, NONE)], {k = 3, l = 4})",
+                "deep ([(n, NONE)], {k = 3, l = 4})",
+                "deep ([(n, SOME 1), (2, SOME 3)], {k = 3, l = 4}) + deep ([], {k = n, l = 1})",
+                "both ((n, 2), [1, 2]) + both ((n, 2), [1])",
+                "bools (n > 3, n > 6)",
+                'curried (n mod 3) "abc" [1, 2]',
+                'curried 5 "abc" [1, n]',
+            ],
+        },
+    ),
+    "closures over closures": (
+        """
+        fun const x _ = x
+        fun pipe fs = fn x => foldl (fn (f, y) => f y) x fs
+        fun tower 0 = [] | tower n = let val rest = tower (n - 1) in (fn x => x + n) :: (pipe rest) :: rest end
+        fun choose p f g = fn x => if p x then f x else g x
+        val classify = choose (fn x => x > 5) (fn x => "big " ^ Int.toString x) (choose
+            (fn x => x > 2) (const "mid") (fn _ => "small"))
+        fun fix f x = f (fix f) x
+        datatype 'a rec_fn = R of 'a rec_fn -> 'a
+        fun y f = let fun g (R h) = f (fn a => h (R h) a) in g (R (fn (R h) => f (fn a => h (R h) a))) end
+        fun parser s = let val pos = ref 0 val text = explode s fun peek () = if !pos < length text then
+            SOME (List.nth (text, !pos)) else NONE fun next () = (pos := !pos + 1) fun num acc = case peek ()
+            of SOME c => if Char.isDigit c then (next (); num (acc * 10 + ord c - 48)) else acc | NONE => acc
+            fun term () = (case peek () of SOME #"(" => (next (); let val v = sum () in (next (); v) end)
+            | _ => num 0) and prod () = let fun more v = case peek () of
+            SOME #"*" => (next (); more (v * term ())) | _ => v in more (term ()) end and sum () = let
+            fun more v = case peek () of SOME #"+" => (next (); more (v + prod ())) |
+            SOME #"-" => (next (); more (v - prod ())) | _ => v in more (prod ()) end in sum () end
+        fun state f = fn s => let val (a, s') = f s in (a, s' + 1) end
+        fun bind m k s = let val (a, s') = m s in k a s' end
+        fun return x s = (x, s)
+        fun count 0 = return 0 | count n = bind (state (fn s => (s, s))) (fn a => bind (count (n - 1))
+            (fn b => return (a + b)))
+        """,
+        {
+            INTS: [
+                "pipe (tower 3) n",
+                "fix (fn f => fn 0 => 1 | k => k * f (k - 1)) n",
+                "y (fn f => fn 0 => 1 | k => k * f (k - 1)) (n mod 6)",
+                'parser ("2*(3+" ^ Int.toString n ^ ")-4*5+1")',
+                "#1 (count n 10) + #2 (count 3 n)",
+                "(const n o const 3) 4",
+            ],
+            STRINGS: [
+                "classify n",
+            ],
+        },
+    ),
+    "modules": (
+        """
+        structure S = struct val base = 10 fun f x = x + base exception Bad of int val fs = [f,
+            fn x => x * 2] structure T = struct fun g x = f (f x) end end
+        signature ORD = sig type t val less : t * t -> bool end
+        functor Sort (O : ORD) = struct fun insert (x, []) = [x] | insert (x, y :: r) = if O.less (x, y)
+            then x :: y :: r else y :: insert (x, r) fun sort l = foldl insert [] l end
+        structure IntSort = Sort (struct type t = int val less = op < end)
+        structure Back = Sort (struct type t = int fun less (a, b) = a > b end)
+        local val hidden = ref 3 in fun peek () = !hidden fun poke x = hidden := x end
+        abstype counter = C of int with fun make n = C n fun up (C n) = C (n + 1) fun value (C n) = n end
+        """,
+        {
+            INTS: [
+                "S.T.g n + hd S.fs n",
+                "hd (IntSort.sort [3, n, 2]) + hd (Back.sort [3, n, 2])",
+                "(poke (n + peek ()); peek ())",
+                "value (up (up (make n)))",
+                "(raise S.Bad n) handle S.Bad k => k + 1",
+            ],
+        },
+    ),
 }
 
 
@@ -415,11 +604,13 @@ def net_of(declarations: str, expressions: dict[str, list[str]]) -> str:
 def _grouped(declarations: str) -> list[str]:
     """The declarations, each with its continuation lines deeper."""
     out = []
-    starts = ("fun ", "val ", "exception ", "datatype ", "globref ", "and ")
-    for raw in declarations.strip().splitlines():
-        line = raw.strip()
-        if line.startswith(starts) and not line.startswith("and "):
-            out.append(line)
+    starts = (
+        "fun ", "val ", "exception ", "datatype ", "globref ", "colset ", "structure ", "signature ", "functor ",
+        "local ", "abstype ",
+    )  # fmt: skip
+    for line in textwrap.dedent(declarations).strip("\n").rstrip().splitlines():
+        if line.startswith(starts):
+            out.append(f"{line};" if line.startswith("colset ") else line)
         else:
             out.append(f"    {line}")
     return out
@@ -433,3 +624,101 @@ def test_programs(name: str, workshop: Workshop, tmp_path: Path) -> None:
     program = workshop.build(compiled, tmp_path)
     for seed in (1, 2):
         assert agrees(net, program, seed=seed, steps=10) == 3
+
+
+STATE = """
+    net Cell
+      standard
+      colset LST = list INT;
+      val a = ref [0]
+      val alias = a
+      val cells = [ref "x", ref "y"]
+      val same = List.nth (cells, 1)
+      val counter = let val r = ref 0 in {get = fn () => !r, up = fn () => r := !r + 1} end
+      val hooks = ref ([] : (int -> int) list)
+      exception Last of string
+      val last = ref Div
+      datatype node = End | Link of int * node ref
+      val ring = let val e = ref End val h = Link (1, e) in (e := h; ref h) end
+      fun turn () = case !ring of Link (x, r) =>
+          (case !r of Link (y, q) => (ring := Link (y + 1, ref (Link (x, r)))) | End => ())
+        | End => ()
+      fun value () = case !ring of Link (x, r) => x | End => ~1
+      fun trim l = if length l > 40 then List.take (l, 40) else l
+      fun step n = (a := trim (n :: !alias); same := Int.toString n ^ !same; same := substring (!same, 0, 2);
+         #up counter ();
+         hooks := (fn x => x + n) :: (if length (!hooks) > 5 then List.take (!hooks, 5) else !hooks);
+         last := (if n mod 2 = 0 then Last (Int.toString n) else (raise !last) handle e => e);
+         turn (); List.tabulate (300, fn i => i + n))
+      fun seen () = length (!a) + hd (!alias) + #get counter () + foldl (fn (f, x) => f x) 0 (!hooks) + value ()
+      fun word () = !(List.last cells) ^ !same ^ ((raise !last) handle Last s => s | e => exnName e)
+      var n: INT;
+      var l: LST;
+      place P : INT = 1`1
+      place Q : INT
+      place S : STRING
+      place L : LST = 1`[]
+      trans T code input (n); output (l); action step n
+        in P : n
+        out P : (n * 7 + 3) mod 1000
+        out L : l
+        out Q : seen ()
+        out S : word ()
+        reset Q
+        reset S
+        reset L
+"""
+
+
+def test_references_stay_shared_when_values_move(workshop: Workshop, tmp_path: Path) -> None:
+    """The steps fill the arena several times; aliases, captured references and rings are still the same."""
+    net = flat(STATE)
+    compiled, _ = lowered(net)
+    assert compiled is not None
+    assert agrees(net, workshop.build(compiled, tmp_path), seed=1, steps=700) == 701
+
+
+DELAYS = """
+    net Cell
+      standard
+      colset JOB = int timed;
+      val two = 2
+      fun delay n = n mod 4
+      var n: INT;
+      var j: JOB;
+      place N : INT = 1`1 ++ 1`2 ++ 1`3 ++ 1`7
+      place P : JOB = 1`1@5 +++ 1`2@9 +++ 1`3@30
+      place Q : JOB
+      trans T
+        in N : n
+        in P : j@+(delay n)
+        out N : n + 1
+        out P : j@+12
+      trans U
+        in P : j@+two
+        out Q : j
+"""
+
+
+def test_computed_delays_of_input_arcs(workshop: Workshop, tmp_path: Path) -> None:
+    net = flat(DELAYS)
+    compiled, _ = lowered(net)
+    assert compiled is not None
+    program = workshop.build(compiled, tmp_path)
+    assert all(agrees(net, program, seed=seed, steps=40) > 3 for seed in (1, 2, 3))
+
+
+def test_what_declarations_do_is_done(workshop: Workshop, tmp_path: Path) -> None:
+    text = net_of(
+        """
+        val seen = ref 1
+        val _ = seen := 5
+        val unused = (seen := !seen * 3; 7)
+        val () = seen := !seen + 1
+        """,
+        {INTS: ["n + !seen"]},
+    )
+    net = flat(text)
+    compiled, _ = lowered(net)
+    assert compiled is not None
+    assert agrees(net, workshop.build(compiled, tmp_path), seed=1, steps=10) == 3

@@ -4,8 +4,6 @@ from __future__ import annotations
 
 from textwrap import dedent
 
-import pytest
-
 from helpers.compiled import lowered
 from helpers.netbuilder import flat
 from pn2code.lowering.ir_dump import dump
@@ -182,17 +180,28 @@ def test_capacity() -> None:
     assert net.places[0].capacity == 1000
 
 
-@pytest.mark.parametrize(
-    ("declarations", "expression", "code"),
-    [
-        ("", "IntInf.toInt (99999999999999999999 - 1)", "literal-out-of-range"),
-    ],
-)
-def test_refused(declarations: str, expression: str, code: str) -> None:
-    body = f"place P : INT = 1`1\nplace Q : INT\ntrans T\n  in P : n\n  out Q : {expression}"
-    net, d = lowered(flat(net_with(f"{declarations}\nvar n: INT;", body)))
+def early(declarations: str, delay: str, option: str = "false") -> str:
+    """A net with a delay on an input arc."""
+    time = "5.0" if option == "true" else "5"
+    return (
+        f"net Cell\n  standard\n  option realtimestamp {option}\n  colset JOB = int timed;\n  {declarations}\n"
+        f"  var n: JOB;\n  place P : JOB = 1`1@{time}\n  trans T\n    in P : n{delay}\n"
+    )
+
+
+def test_delays_of_input_arcs() -> None:
+    net, _ = lowered(flat(early("val d = 3", "@+d")))
+    assert net is not None
+    assert (net.places[0].early, net.places[0].is_early_open) == ((3,), False)
+    net, _ = lowered(flat(early("", "@+(n + 1)")))
+    assert net is not None
+    assert (net.places[0].early, net.places[0].is_early_open) == ((), True)
+
+
+def test_refused() -> None:
+    net, d = lowered(flat(early("fun f n = Real.fromInt n", "@++(f n)", "true")))
     assert net is None
-    assert [e.code for e in d.errors] == [code]
+    assert [e.code for e in d.errors] == ["unsupported-expression"]
     assert d.errors[0].origin.line > 0
 
 

@@ -200,6 +200,7 @@ class _Emitter:
             "type": self._types.name(p.type),
             "table": self._names.table(p.table),
             "timed": p.timed,
+            "is_early_open": p.is_early_open,
             "early": [
                 f".real = {c_float(float(e))}"
                 if self._net.real_time

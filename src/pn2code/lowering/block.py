@@ -7,7 +7,6 @@ from contextlib import contextmanager
 
 from pn2code.diagnostics import Span
 from pn2code.lowering import ir
-from pn2code.lowering.codes import LITERAL_RANGE, UnsupportedError
 from pn2code.lowering.effects import code_may_raise, has_effect, may_raise, raises_only_overflow
 from pn2code.lowering.functions import Program
 from pn2code.lowering.ir import Ir, IrType, Local, Rep, Stmt
@@ -29,7 +28,7 @@ from pn2code.lowering.values import (
     is_static,
 )
 from pn2code.ml.core import Constructor, Symbol
-from pn2code.ml.types import INT, Type
+from pn2code.ml.types import Type
 
 _INT_RANGE = (-(2**30), 2**30 - 1)
 _INTINF_RANGE = (-(2**63) + 1, 2**63 - 1)
@@ -96,13 +95,6 @@ class Block(TypeSource):
         rep = self.representation(t)
         if rep.rep is Rep.CHAR:
             return ir.Const(ord(str(value)), rep)
-        if rep.rep is Rep.INT:
-            is_narrow = self.type_of(t) == INT and self.program.core.int_bits == 31
-            low, high = _INT_RANGE if is_narrow else _INTINF_RANGE
-            if not low <= int(value) <= high:
-                raise UnsupportedError(
-                    LITERAL_RANGE, f"the literal {value} is out of the range of `{t}`", span
-                )
         return ir.Const(value, rep)
 
     def code(self, value: Val, at: Span | None = None) -> Ir:

@@ -13,10 +13,6 @@ from pn2code.diagnostics import Span
 from pn2code.lowering import ir
 from pn2code.lowering.block import UNIT_VALUE
 from pn2code.lowering.branching import Branching
-from pn2code.lowering.codes import (
-    UNSUPPORTED_FUNCTION_VALUE,
-    UnsupportedError,
-)
 from pn2code.lowering.functions import split_parameters
 from pn2code.lowering.ir import Ir, IrType, Rep
 from pn2code.lowering.matching import (
@@ -56,6 +52,10 @@ class Body(Branching):
     def exp(self, e: core.Exp, env: Env) -> Val:
         """The value of an expression."""
         match e:
+            case core.Lit(value=int() as value) if abs(value) >= 2**63:
+                text = f"the integer {value} is beyond 64 bits"
+                self.emit(ir.Do(ir.Op("prim.stop", (ir.Const(text, ir.STRING),), ir.UNIT)))
+                return self.zero(ir.INT)
             case core.Lit():
                 return self.literal(e.value, e.type, e.span)
             case core.Var():
@@ -199,9 +199,9 @@ class Body(Branching):
 
     def _inline(self, function: Closure, argument: Val, at: Span) -> Val:
         if len(self._inlined) > _MAX_INLINE:
-            raise UnsupportedError(
-                UNSUPPORTED_FUNCTION_VALUE, "functions are nested too deeply to be followed", at
-            )
+            # Too many functions in each other's places: a call of a value ends that.
+            code = self.code(function, at)
+            return self.program.function_values.apply(self, code, argument, at)
         self._inlined.append(id(function.function))
         outer, self.types = self.types, function.types
         try:

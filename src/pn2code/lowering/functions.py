@@ -17,7 +17,6 @@ from pn2code.lowering import ir, prelude
 from pn2code.lowering.closures import FunctionValues, nested_functions
 from pn2code.lowering.codes import (
     UNSUPPORTED_EXPRESSION,
-    UNSUPPORTED_FUNCTION_VALUE,
     UnsupportedError,
 )
 from pn2code.lowering.exceptions import Exceptions
@@ -51,6 +50,7 @@ if TYPE_CHECKING:
     from pn2code.lowering.expressions import Body
 
 _MAX_FUNCTIONS = 2000
+"""From then on functions are passed as values."""
 
 IMPURE = frozenset(
     [f"Ref.{op}" for op in ("!", ":=", "+=", "-=", "*=", "::=", "inc", "dec")]
@@ -210,6 +210,21 @@ class Program:
                 return self.builtins.arity(BuiltinFunction(e, e.type))
         return 0
 
+    def constant(self, e: core.Exp) -> int | float | None:
+        """The number that an expression is: a literal, its negation, a value declared as one."""
+        match e:
+            case core.Lit(value=int() | float() as value):
+                return value
+            case core.Apply(function=core.Builtin(name=name), argument=argument) if name.endswith(
+                ".~"
+            ):
+                inner = self.constant(argument)
+                return None if inner is None else -inner
+            case core.Var(symbol=symbol) if symbol.uid in self._values:
+                dec = self._values[symbol.uid][1]
+                return self.constant(dec.value) if isinstance(dec.pattern, core.PVar) else None
+        return None
+
     def body(self) -> Body:
         """A body of a function that no ML function is."""
         from pn2code.lowering.expressions import Body
@@ -323,20 +338,15 @@ class Program:
     ) -> tuple[str, tuple[Ir, ...]]:
         """The key of the C function and the C arguments."""
         parts = [capture(function)]
+        is_crowded = len(self._functions) >= _MAX_FUNCTIONS
         for slot in self._slots(body, function, arguments):
             part = capture(slot)
-            if nested_functions(part.key):
+            if nested_functions(part.key) or (is_crowded and is_static(slot)):
                 part = capture(body.code(slot, at))
             parts.append(part)
         identity: Hashable = tuple(part.key for part in parts)
         code = tuple(c for part in parts for c in part.code)
         if identity not in self._functions:
-            if len(self._functions) >= _MAX_FUNCTIONS:
-                raise UnsupportedError(
-                    UNSUPPORTED_FUNCTION_VALUE,
-                    f"`{function.symbol.name}` is passed a new function each time it calls itself",
-                    self.position,
-                )
             number = self._counters.get(function.symbol.name, 0) + 1
             self._counters[function.symbol.name] = number
             key = f"{function.symbol.name}/{number}"

@@ -660,6 +660,8 @@ class Place:
     capacity: int
     initial: tuple[Stmt, ...]
     initial_text: str
+    is_early_open: bool = False
+    """whether there are delays of input arcs that are known only when they are computed"""
     early: tuple[int | float, ...] = ()
     """delays of input arcs: tokens may be taken so much before their stamps"""
 

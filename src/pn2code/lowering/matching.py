@@ -66,6 +66,8 @@ class Matcher:
             case core.PAs(symbol=symbol, pattern=inner):
                 out.bindings.append((symbol, value))
                 self._match(inner, value, out)
+            case core.PLit(value=int() as number) if abs(number) >= 2**63:
+                out.conditions.append(ir.Const(False, ir.BOOL))
             case core.PLit():
                 code = self._owner.code(value)
                 literal = self._owner.literal(pattern.value, pattern.type, pattern.span)

@@ -22,7 +22,6 @@ from pn2code.lowering.functions import Program, ir_nodes
 from pn2code.lowering.inscriptions import Putter
 from pn2code.lowering.transitions import lower_transition
 from pn2code.lowering.types import Types
-from pn2code.ml import core
 from pn2code.ml.colsets import Colset, Kind
 from pn2code.ml.types import BOOL
 from pn2code.net.flat import FlatNet, FlatPlace, FlatTransition
@@ -153,6 +152,7 @@ class _Lowering:
             Putter(body, place.index, {}, stamp, None, "").put(exp, form)
             text = exp.span.source.text
         owner = self._partition.place_owner[place.index]
+        early, is_early_open = self._early(place)
         return ir.Place(
             index=place.index,
             name=place.name,
@@ -165,7 +165,8 @@ class _Lowering:
             capacity=self._capacity.get(place.name, self._capacity.get(place.short, 0)),
             initial=tuple(body.statements),
             initial_text=text,
-            early=self._early(place),
+            early=early,
+            is_early_open=is_early_open,
         )
 
     def _room(self, places: list[ir.Place]) -> int:
@@ -185,9 +186,11 @@ class _Lowering:
             return self._types.count(multiset.table)
         return UNKNOWN_ENTRIES
 
-    def _early(self, place: FlatPlace) -> tuple[int | float, ...]:
-        """The delays of input arcs from a place; they must be constants, since they decide when time goes on."""
+    def _early(self, place: FlatPlace) -> tuple[tuple[int | float, ...], bool]:
+        """The delays of input arcs from a place, which decide when time goes on; whether there are others that are
+        known only when they are computed."""
         found: set[int | float] = set()
+        is_open = False
         for t in self._net.transitions:
             for arc in t.arcs:
                 if arc.place != place.index or arc.inscription is None:
@@ -195,15 +198,18 @@ class _Lowering:
                 for term in arc.inscription.terms:
                     if term.delay is None:
                         continue
-                    value = constant(term.delay)
+                    value = self._program.constant(term.delay)
+                    if value is None and not self._net.real_time:
+                        is_open = True
+                        continue
                     if value is None:
                         raise UnsupportedError(
                             UNSUPPORTED_EXPRESSION,
-                            "the delay of an input arc must be a number in compiled code",
+                            "with a real clock the delay of an input arc must be a number in compiled code",
                             term.delay.span,
                         )
                     found.add(value)
-        return tuple(sorted(found - {0}))
+        return tuple(sorted(found - {0})), is_open
 
     def _members(self) -> tuple[ir.Function, ...]:
         """The functions that decide membership of subsets."""
@@ -234,14 +240,3 @@ class _Lowering:
             f"member {key}", f"member_{colset.name}", (value,), ir.BOOL, tuple(body.statements), False, False,
             source.span.text, colset.origin,
         )  # fmt: skip
-
-
-def constant(e: core.Exp) -> int | float | None:
-    """The number that an expression is, if it is a literal or its negation."""
-    match e:
-        case core.Lit(value=int() | float() as value):
-            return value
-        case core.Apply(function=core.Builtin(name=name), argument=argument) if name.endswith(".~"):
-            inner = constant(argument)
-            return None if inner is None else -inner
-    return None
