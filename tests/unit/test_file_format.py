@@ -506,3 +506,15 @@ def test_line_and_column_of_an_error(
     line = next(i for i, x in enumerate(lines) if "wrong" in x)
     error = next(x for x in found.d.errors if "`wrong` is not declared" in x.message)
     assert (error.origin.line, error.origin.column) == (line + 1, lines[line].index("wrong") + 1)
+
+
+def test_thousands_of_errors_come_to_an_end(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("pn2code.diagnostics.diagnostic.MAX_ITEMS", 20)
+    for page in (place("P", "INT") * 100, "".join(place(f"P{i}", "NONE") for i in range(100))):
+        found = load(minimal(INT, page), tmp_path)
+        assert found.flat is None
+        assert len(found.d) == 21
+        assert found.d.items[-1].code == "too-many-messages"
+        assert found.d.items[-1].message == "more than 20 messages: the rest is not looked at"

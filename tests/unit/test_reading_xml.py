@@ -219,3 +219,11 @@ def test_utf16_and_bom() -> None:
     text = text.replace("utf-16", "utf-8")
     assert read_data(text.encode("utf-8-sig"), "f", d) is not None
     assert not list(d)
+
+
+def test_long_texts_and_attributes(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(xml, "MAX_TEXT", 20)
+    for inside in (b"<a>%s</a>" % (b"x\n" * 20), b"<a b='%s'/>" % (b"x" * 30), b"\n" * 50):
+        code, message, _ = only(b"<workspaceElements>" + inside + b"</workspaceElements>")
+        assert code == "xml-limit"
+        assert message.endswith("more than 20 characters")

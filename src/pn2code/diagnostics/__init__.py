@@ -1,6 +1,12 @@
 """Origins, diagnostics, the registry of their codes, and the ways they are printed."""
 
-from pn2code.diagnostics.diagnostic import Diagnostic, Diagnostics, Note, Severity
+from pn2code.diagnostics.diagnostic import (
+    Diagnostic,
+    Diagnostics,
+    Note,
+    Severity,
+    TooManyDiagnosticsError,
+)
 from pn2code.diagnostics.origin import NOWHERE, Origin, SourceText, Span
 
 __all__ = [
@@ -12,4 +18,5 @@ __all__ = [
     "Severity",
     "SourceText",
     "Span",
+    "TooManyDiagnosticsError",
 ]

@@ -15,6 +15,13 @@ from pn2code.diagnostics.codes import require_code
 from pn2code.diagnostics.origin import Origin, Span
 from pn2code.frozen import frozen
 
+MAX_ITEMS = 10_000
+"""Nobody reads more; a file with more wrong than that is not what it should be."""
+
+
+class TooManyDiagnosticsError(Exception):
+    """Raised by the report after the last that is kept; whoever drives the stages ends there."""
+
 
 class Severity(Enum):
     """How bad: an error stops the pipeline after its stage, the others do not."""
@@ -120,7 +127,14 @@ class Diagnostics:
         item = Diagnostic(severity, code, message, origin, span, label, fixed, hint)
         self._look()
         if item not in self._known:
+            if len(self.items) >= MAX_ITEMS:
+                raise TooManyDiagnosticsError
             self.items.append(item)
+
+    def give_up(self, code: str, message: str, at: Origin, hint: str) -> None:
+        """A last error, after `TooManyDiagnosticsError`."""
+        require_code(code)
+        self.items.append(Diagnostic(Severity.ERROR, code, message, at, hint=hint))
 
     def _look(self) -> None:
         """Takes note of what is new in `items`: nets with thousands of errors must not take forever."""

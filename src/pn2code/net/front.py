@@ -6,13 +6,13 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
-from pn2code.diagnostics import Diagnostics
+from pn2code.diagnostics import Diagnostics, TooManyDiagnosticsError
 from pn2code.net.check import check
 from pn2code.net.flat import FlatNet
 from pn2code.net.flatten import check_hierarchy, flatten
 from pn2code.net.link import link
 from pn2code.net.typed import TypedNet
-from pn2code.reading.cpn import read
+from pn2code.reading.cpn import give_up, read
 from pn2code.reading.document import Document
 
 
@@ -48,6 +48,16 @@ def examine(
         values: replacements for `val` declarations of the net: name -> CPN ML text.
         int_bits: width of `int`: 31, as in CPN Tools, or 64.
     """
+    try:
+        return _examine(path, d, values, int_bits)
+    except TooManyDiagnosticsError:
+        give_up(str(path), d)
+        return Examined(None, None)
+
+
+def _examine(
+    path: Path, d: Diagnostics, values: Mapping[str, str] | None, int_bits: int
+) -> Examined:
     before = len(d.errors)
     document = read(path, d, partial=True)
     net = link(document, d, partial=True) if document is not None else None

@@ -20,6 +20,12 @@ FILE_TOO_LARGE = register(
     "3.6 MB). Larger files are refused before they are parsed, so that a wrong or hostile file "
     "cannot fill the memory.",
 )
+TOO_MANY = register(
+    "too-many-messages",
+    "there is more to say than anybody reads",
+    "After ten thousand messages about one file pn2code gives up: it is not what it should be, or one mistake "
+    "in a declaration has to be corrected first.",
+)
 XML_SYNTAX = register(
     "xml-syntax",
     "the file is not well-formed XML",
@@ -39,9 +45,9 @@ XML_ENTITY = register(
 )
 XML_LIMIT = register(
     "xml-limit",
-    "the XML is nested too deeply or has too many elements",
-    "Nets of CPN Tools are nested about ten levels deep and have some ten thousand elements. Files "
-    "far beyond this are refused, so that a hostile file cannot fill memory or stack.",
+    "the XML is nested too deeply, or has too many elements or too long texts",
+    "Nets of CPN Tools are nested about ten levels deep, have some ten thousand elements, and texts of some thousand "
+    "characters. Files far beyond this are refused, so that a hostile file cannot fill memory or stack.",
 )
 NOT_CPN = register(
     "not-cpn",

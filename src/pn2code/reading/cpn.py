@@ -16,8 +16,14 @@ from __future__ import annotations
 import hashlib
 from pathlib import Path
 
-from pn2code.diagnostics import Diagnostics, Origin
-from pn2code.reading.codes import CPN_ELEMENT, CPN_FORMAT, CPN_UNKNOWN_ELEMENT, NOT_CPN
+from pn2code.diagnostics import Diagnostics, Origin, TooManyDiagnosticsError
+from pn2code.reading.codes import (
+    CPN_ELEMENT,
+    CPN_FORMAT,
+    CPN_UNKNOWN_ELEMENT,
+    NOT_CPN,
+    TOO_MANY,
+)
 from pn2code.reading.declarations import DeclarationReader
 from pn2code.reading.document import Document, RawBlock, RawFusion, RawInstance, RawMonitor
 from pn2code.reading.pages import PageReader, readable
@@ -51,8 +57,22 @@ def read_data(data: bytes, file: str, d: Diagnostics, *, partial: bool = False) 
     root = parse(data, file, d)
     if root is None:
         return None
-    document = _Reader(file, d).document(root, hashlib.sha256(data).hexdigest())
+    try:
+        document = _Reader(file, d).document(root, hashlib.sha256(data).hexdigest())
+    except TooManyDiagnosticsError:
+        give_up(file, d)
+        return None
     return None if len(d.errors) > before and not partial else document
+
+
+def give_up(file: str, d: Diagnostics) -> None:
+    """Say that there are more messages than anybody reads."""
+    d.give_up(
+        TOO_MANY,
+        f"more than {len(d.items):,} messages: the rest is not looked at",
+        Origin(file),
+        "correct what is said first",
+    )
 
 
 class _Reader:

@@ -31,7 +31,10 @@ from pn2code.reading.codes import (
 
 MAX_BYTES = 100 * 1024 * 1024
 MAX_DEPTH = 200  # below libxml2's own limit of 256
-MAX_ELEMENTS = 2_000_000
+MAX_ELEMENTS = 1_000_000
+"""The largest real net seen has 50,000; one of 10,000 places some 800,000."""
+MAX_TEXT = 250_000
+"""Characters of one text or of the attributes of one element; the longest of real nets have some thousand."""
 
 _SIGNATURES = {
     b"\x89PNG": "a picture (PNG)",
@@ -319,7 +322,9 @@ class _Surveyor:
         words = "a tag is not written as XML demands"
         return words, 'attributes are written name="value", with quotes'
 
-    def _start(self, tag: str, _attributes: dict[str, str]) -> None:
+    def _start(self, tag: str, attributes: dict[str, str]) -> None:
+        if sum(map(len, attributes.values())) > MAX_TEXT:
+            self._refuse(XML_LIMIT, f"an attribute has more than {MAX_TEXT:,} characters")
         if len(self.open) >= MAX_DEPTH:
             self._refuse(XML_LIMIT, f"elements are nested more than {MAX_DEPTH} levels deep")
         if len(self.places) >= MAX_ELEMENTS:
@@ -338,6 +343,8 @@ class _Surveyor:
 
     def _characters(self, text: str) -> None:
         place = self.open[-1]
+        if place.skipped + place.length > MAX_TEXT:
+            self._refuse(XML_LIMIT, f"a text has more than {MAX_TEXT:,} characters")
         if not place.length and text.isspace():
             place.skipped += len(text)
             return
