@@ -431,6 +431,8 @@ class Expressions:
 
 def op_needs_table(e: ir.Op) -> bool:
     """Whether the operation looks at the table of a type in C."""
+    if e.name == "=" and e.arguments[0].type.rep is Rep.REF:
+        return False
     form = OPS.get(c_ops.CONTAINED.get(e.name, e.name))
     return form is None or isinstance(form, Compared) or (isinstance(form, Call) and form.table)
 

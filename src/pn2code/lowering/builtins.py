@@ -69,7 +69,6 @@ SAME = frozenset(
         "IntInf.fromLarge",
         "IntInf.fromInt",
         "Int.toLarge",
-        "ModelTime.fromIntInf",
     ]
 )
 """Built-in functions that give back their argument, as it is represented."""
@@ -194,7 +193,9 @@ class Builtins:
         op = name.split(".")[1]
         structure = "Real" if self._real_time else "IntInf"
         if op == "fromInt":
-            return "Real.fromInt" if self._real_time else "IntInf.fromInt"
+            return "Real.fromInt" if self._real_time else "time.same"
+        if op == "fromIntInf":
+            return "Real.fromLargeInt" if self._real_time else "time.same"
         if op == "toReal":
             return "time.same" if self._real_time else "Real.fromLargeInt"
         return f"{structure}.{_COMPARISONS[op]}"

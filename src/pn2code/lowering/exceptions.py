@@ -123,18 +123,5 @@ def _name(body: Body, arguments: tuple[Val, ...], result: Type, at: Span) -> Val
     return ir.Op("exn.name", (value,), ir.STRING, body.program.exceptions.table())
 
 
-def _message(body: Body, arguments: tuple[Val, ...], result: Type, at: Span) -> Val:
-    """The name; of `Fail` what it says, too."""
-    value = body.atomic(body.code(arguments[0], at), "exception")
-    exceptions = body.program.exceptions
-    name = ir.Op("exn.name", (value,), ir.STRING, exceptions.table())
-    fail, _ = EXCEPTIONS["Fail"]
-    tag = exceptions.tag(fail, ir.STRING)
-    text = ir.Op(
-        "String.^", (ir.Const("Fail: ", ir.STRING), ir.Argument(value, tag, ir.STRING)), ir.STRING
-    )
-    return ir.Select(ir.IsTag(value, tag), text, name, ir.STRING)
-
-
-FUNCTIONS = {"General.exnName": _name, "General.exnMessage": _message}
+FUNCTIONS = {"General.exnName": _name}
 """Full name -> how it is lowered."""
