@@ -154,6 +154,18 @@ def test_a_trace_that_is_no_run_is_refused(tmp_path: Path) -> None:
     assert "no such file" in simulate(net, "--replay", tmp_path / "none", code=2).stderr
 
 
+def test_a_trace_with_initial_markings_of_its_own(tmp_path: Path) -> None:
+    net = write(COUNTER, tmp_path / "cell.cpn")
+    trace = tmp_path / "run.trace.jsonl"
+    header = '{"trace": 1, "by": "reference", "initial": {"Top.P": [[1, 41]]}}'
+    step = '{"step": 1, "t": 0, "transition": "Top.T", "binding": {"n": 41}}'
+    trace.write_text(f"{header}\n{step}\n")
+    found = result(net, "--replay", trace, "--steps", 2)
+    assert (found["engine"], found["steps"]) == ("reference", 3)
+    assert found["places"][0]["marking"] == "1`44"
+    simulate(net, "--replay", trace, "--engine", "compiled", code=1)
+
+
 # --- how runs end ----------------------------------------------------------------------------------
 
 TIMED = """
@@ -294,11 +306,11 @@ def test_what_was_written_ends_with_a_whole_line(tmp_path: Path, engine: str) ->
 def test_a_trace_is_not_written_over_what_is_read(tmp_path: Path) -> None:
     net = write(COUNTER, tmp_path / "cell.cpn")
     before = net.read_bytes()
-    assert "is read by this run" in simulate(net, "--trace", net, code=2).stderr
+    assert "--trace" in simulate(net, "--trace", net, code=2).stderr
     assert net.read_bytes() == before
     trace = tmp_path / "run.trace.jsonl"
     result(net, "--steps", 3, "--trace", trace)
-    assert "is read by" in simulate(net, "--replay", trace, "--trace", trace, code=2).stderr
+    assert "--trace" in simulate(net, "--replay", trace, "--trace", trace, code=2).stderr
     assert len(trace.read_text().splitlines()) == 5
 
 

@@ -17,6 +17,7 @@ from pn2code.net.front import Examined
 from pn2code.simulate import compiled, programs, reference
 from pn2code.simulate.codes import ENGINE_CHANGED, SIMULATOR_FAILED
 from pn2code.simulate.run import Outcome, Request
+from pn2code.simulate.script import Trace
 
 GROWTH = 16
 MOST_ROOM = 1 << 22
@@ -113,6 +114,8 @@ def _instead(request: Request, why: str, d: Diagnostics) -> Outcome:
 
 def _obstacle(request: Request) -> str:
     """Why the compiled engine cannot make the run; "" if it can."""
+    if request.replay is not None and Trace.open(request.replay, request.net).header.initial:
+        return "the trace has initial markings of its own"
     program = request.monitors
     if program is None or not program.monitors:
         return ""
