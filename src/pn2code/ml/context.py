@@ -73,6 +73,7 @@ class Context:
         unknown: names reported as not declared in this text; each is reported once.
         net_variables: names of the net's variables, for advice where they are not in scope.
         tainted: set when something is used whose declaration had an error.
+        weak: types of values that are not generalised; what is unknown in them at the end of the declaration stays so.
         open_records: selectors and open patterns whose record type must be known in the end.
         tyvars: explicit type variables in force, innermost last.
         generic_base: number of type variables quantified around the declaration being translated.
@@ -95,6 +96,7 @@ class Context:
     unknown: set[str] = field(default_factory=set)
     net_variables: set[str] = field(default_factory=set)
     open_records: list[tuple[Meta, Span]] = field(default_factory=list)
+    weak: list[Ty] = field(default_factory=list)
     tyvars: list[dict[str, Meta]] = field(default_factory=list)
     generic_base: int = 0
     datatypes: dict[str, core.DatatypeDec] = field(default_factory=dict)

@@ -6,6 +6,7 @@ once all types are known. It serves the top level and `let` alike.
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable, Sequence
 from dataclasses import replace
 from functools import partial
@@ -41,6 +42,8 @@ from pn2code.ml.patterns import (
 from pn2code.ml.types import EXN, UNIT, TFun, Type, tuple_of
 
 Build = Callable[[], Sequence[core.Dec]]
+_TYVAR = re.compile(r"(?<![A-Za-z0-9_'])'")
+"""Where a type variable may begin."""
 _NO_BODY = core.RecordExp((), UNIT, Span(SourceText("", NOWHERE), 0, 0))
 
 
@@ -259,6 +262,7 @@ class Declarations:
         else:
             for binding in bindings.values():
                 self._ctx.unifier.lower(binding.type)
+                self._ctx.weak.append(binding.type)
 
     # --- functions
 
@@ -438,11 +442,13 @@ class Declarations:
             quants, tyvars = self._parameters(b.parameters)
             own = ICon(name, tuple(quants))
             constructors: list[tuple[core.Constructor, Type | None]] = []
+            seen: set[str] = set()
             for tag, c in enumerate(b.constructors):
-                if any(c.name == other.name for other, _ in constructors):
+                if c.name in seen:
                     self._ctx.error(
                         codes.DUPLICATE_NAME, f"constructor `{c.name}` is declared twice", c.span
                     )
+                seen.add(c.name)
                 before = self._ctx.errors
                 argument = None if c.argument is None else self._written_type(c.argument, tyvars)
                 if self._ctx.errors > before or self._ctx.tainted:
@@ -643,6 +649,9 @@ def break_modules(dec: s.Dec, scope: Scope) -> None:
 def written_variables(dec: s.ValDec | s.FunDec) -> list[str]:
     """Type variables written in a declaration, but not in `val` and `fun` inside it."""
     found: dict[str, None] = {}
+    source = dec.span.source.text
+    if not _TYVAR.search(source, dec.span.start, dec.span.end):
+        return []
     stack: list[object] = [*reversed(dec.bindings)]
     while stack:
         node = stack.pop()

@@ -208,9 +208,9 @@ class Elaborator:
                 self._clash(name, dec.span)
         made = build()
         self._made += made
-        for binding in self._ctx.top.values.values():
-            if isinstance(binding, Binding) and not binding.quants:
-                self._ctx.unifier.close(binding.type)
+        for weak in self._ctx.weak:
+            self._ctx.unifier.close(weak)
+        self._ctx.weak.clear()
         for one in made:
             if isinstance(one, core.ValBind) and isinstance(one.pattern, core.PVar):
                 value = self._fold(one.value)

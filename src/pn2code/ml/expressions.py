@@ -41,7 +41,7 @@ from pn2code.ml.inference import (
 from pn2code.ml.matches import BuiltRule
 from pn2code.ml.names import Names
 from pn2code.ml.patterns import Bindings, Deref, Patterns, expand
-from pn2code.ml.types import BOOL, EXN, UNIT, TFun
+from pn2code.ml.types import BOOL, EXN, UNIT, TFun, Type
 
 _ASSOCIATIVE = frozenset({"Ms.++", "Time.+++", "String.^", "List.@"})
 """Long chains of these become balanced trees: a sum of 1000 terms is then 10 levels deep."""
@@ -299,12 +299,10 @@ class Expressions:
         terms.append(node)
         terms.reverse()
         operators.reverse()
-        functions = [self._names.infer(o.name, o.span) for o in operators]
-        operator_type = prune(functions[0].type)
+        function = self._names.infer(name, operators[0].span)  # one use for all of them
+        operator_type = prune(function.type)
         assert isinstance(operator_type, IFun)
         t = operator_type.result
-        for function in functions[1:]:
-            self._ctx.unifier.unify(function.type, operator_type)
         if expected is not None:
             self._ctx.unifier.attempt(t, expected)
         drafts = []
@@ -313,24 +311,28 @@ class Expressions:
             wanted = t if self._ctx.errors == before else ERROR
             drafts.append(self.check(x, wanted, f"operand of `{name}`"))
 
-        def join(left: core.Exp, right: core.Exp, at: int, span: Span) -> core.Exp:
-            full = to_type(t)
-            pair = core.RecordExp((("1", left), ("2", right)), to_type(i_tuple(t, t)), span)
-            return core.Apply(functions[at].build(), pair, full, span)
+        made: list[tuple[core.Exp, Type, Type]] = []
+
+        def join(left: core.Exp, right: core.Exp, span: Span) -> core.Exp:
+            if not made:
+                made.append((function.build(), to_type(t), to_type(i_tuple(t, t))))
+            operator, full, both = made[0]
+            pair = core.RecordExp((("1", left), ("2", right)), both, span)
+            return core.Apply(operator, pair, full, span)
 
         def balanced(low: int, high: int) -> core.Exp:
             if high - low == 1:
                 return drafts[low].build()
             middle = (low + high) // 2
             span = terms[low].span.to(terms[high - 1].span)
-            return join(balanced(low, middle), balanced(middle, high), middle - 1, span)
+            return join(balanced(low, middle), balanced(middle, high), span)
 
         def build() -> core.Exp:
             if len(terms) > _BALANCE_FROM:
                 return balanced(0, len(terms))
             out = drafts[0].build()
             for i, draft in enumerate(drafts[1:]):
-                out = join(out, draft.build(), i, terms[0].span.to(terms[i + 1].span))
+                out = join(out, draft.build(), terms[0].span.to(terms[i + 1].span))
             return out
 
         return Draft(t, build)

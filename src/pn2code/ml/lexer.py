@@ -1,14 +1,13 @@
 """CPN ML text to tokens.
 
-A token is a lark `Token` whose `start_pos`/`end_pos` are character offsets in the text. Literals carry their value in a
-`Lexeme`. Comments nest, so this is written by hand; the grammar proper is in `grammar.lark`.
+A token is a `Lexeme` with its place in the text; literals carry their value. Comments nest, so this is written by hand; the grammar proper is in `grammar.lark`.
 """
 
 from __future__ import annotations
 
 import re
 from collections.abc import Sequence
-from dataclasses import dataclass
+from typing import NamedTuple
 
 from pn2code.diagnostics import Diagnostics, SourceText
 from pn2code.ml import advice, codes
@@ -44,9 +43,8 @@ _SIMPLE_ESCAPES = {
 }  # fmt: skip
 
 
-@dataclass(frozen=True, slots=True)
-class Lexeme:
-    """A token before it is handed to the parser.
+class Lexeme(NamedTuple):
+    """A token.
 
     Args:
         kind: terminal name of the grammar.

@@ -77,8 +77,11 @@ class _Walk:
         self._steps = 0
         self.reached: set[int] = set()
 
-    def tree(self, rows: Sequence[Row], width: int) -> list[str] | None:
-        """Marks the rules that are reached; gives a case that none covers, a pattern for each column."""
+    def tree(self, rows: Sequence[Row], width: int, start: int = 0) -> list[str] | None:
+        """Marks the rules that are reached; gives a case that none covers, a pattern for each column.
+
+        In the first row the columns before `start` are known to match everything.
+        """
         while True:
             self._steps += len(rows) + 1
             if self._steps > MAX_STEPS:
@@ -86,7 +89,10 @@ class _Walk:
             if not rows:
                 return ["_"] * width
             patterns, index = rows[0]
-            column = next((i for i, p in enumerate(patterns) if not _is_free(p)), None)
+            column = next(
+                (i for i in range(start, len(patterns)) if not _is_free(patterns[i])), None
+            )
+            start = 0
             if column is not None:
                 break
             self.reached.add(index)
@@ -106,6 +112,7 @@ class _Walk:
         found = self.tree(
             [_replaced(row, column, _fields(row[0][column], head)) for row in rows],
             width - 1 + len(labels),
+            column,
         )
         if found is None:
             return None
@@ -132,7 +139,7 @@ class _Walk:
         missing: list[str] | None = None
         for key, group in groups.items():
             size = len(_argument(heads[key], None))
-            found = self.tree(group, width - 1 + size)
+            found = self.tree(group, width - 1 + size, column if group[0][1] == rows[0][1] else 0)
             if found is not None and missing is None:
                 shown = _shown(heads[key], found[column] if size else "")
                 missing = [*found[:column], shown, *found[column + size :]]

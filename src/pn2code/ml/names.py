@@ -23,8 +23,10 @@ from pn2code.ml.environment import (
 )
 from pn2code.ml.inference import I_UNIT, ICon, IFun, IRec, Ty, from_type, i_list, prune, to_type
 from pn2code.ml.parser import declared_names
-from pn2code.ml.types import UNIT
+from pn2code.ml.types import UNIT, Type
 
+_MOST_ADVICE = 200
+"""After so many errors no advice is looked for, which takes longer than the errors themselves."""
 _STRUCTURE_TYPES = {
     "Int": "int",
     "Real": "real",
@@ -40,6 +42,7 @@ class Names:
 
     def __init__(self, ctx: Context) -> None:
         self._ctx = ctx
+        self._types: dict[str, Ty] = {}
 
     def lookup(self, name: str) -> Entry | None:
         """What a name means: a value in scope, or a function of a colour set's structure."""
@@ -82,6 +85,8 @@ class Names:
             case BuiltinEntry():
                 info = BUILTINS[entry.name]
                 t, generics = self._ctx.library_type(info.text)
+                if not generics:
+                    return self._simple(entry.name, name, t, span)
                 own, inst = self._ctx.unifier.instantiate_type(t, generics)
 
                 def build_builtin() -> core.Exp:
@@ -113,6 +118,20 @@ class Names:
                     codes.UNSUPPORTED_BUILTIN, f"function `{name}` is not supported", span
                 )
                 return BROKEN
+
+    def _simple(self, builtin: str, name: str, t: Type, span: Span) -> Draft:
+        """A built-in without type variables; its type is made once."""
+        own = self._types.get(builtin)
+        if own is None:
+            own = self._types[builtin] = from_type(t, [])
+        unsupported = BUILTINS[builtin].unsupported
+
+        def build() -> core.Exp:
+            if unsupported:
+                self._ctx.warn_unsupported(name, unsupported, span)
+            return core.Builtin(builtin, t, span, ())
+
+        return Draft(own, build)
 
     def _sealed(self, entry: SealedEntry, name: str, span: Span) -> Draft:
         """A member of a structure: typed as its signature says, translated as what it is."""
@@ -167,6 +186,9 @@ class Names:
         if name in self._ctx.unknown:
             return BROKEN
         self._ctx.unknown.add(name)
+        if self._ctx.errors > _MOST_ADVICE:
+            self._ctx.error(codes.UNBOUND, f"{quoted(name)} is not declared", span)
+            return BROKEN
         hint = ""
         *path, last = split_name(name)
         if path:

@@ -6,33 +6,35 @@ Syntax errors are reported with what was found and, in words, what could stand t
 
 from __future__ import annotations
 
+from bisect import bisect_left, bisect_right
 from collections.abc import Iterator, Sequence
-from functools import cache
+from functools import cache, lru_cache
 from importlib.resources import files
+from itertools import pairwise
 from typing import Any, cast
 
-from lark import Lark, Token
-from lark.exceptions import UnexpectedToken
+from lark import Lark
 from lark.lexer import Lexer
 
-from pn2code.diagnostics import Diagnostics, SourceText, Span
+from pn2code.diagnostics import NOWHERE, Diagnostics, SourceText, Span
 from pn2code.ml import advice, codes, syntax
+from pn2code.ml.lalr import Loop, SyntaxProblem
 from pn2code.ml.lexer import Lexeme, insert_delay_parentheses, tokenize
-from pn2code.ml.tree import Group, MlToken, TreeBuilder
+from pn2code.ml.tree import Group, TreeBuilder
 from pn2code.parser_cache import kept_lark
 
 _STARTS = ["program", "expression", "expressions", "layered", "code"]
 _OLD_DECLARATIONS = frozenset({"colset", "color", "var", "globref", "pageref", "instref"})
 
 
-class _Feed(Lexer):
-    """Hands tokens that are already there to the parser."""
+class _NoLexer(Lexer):
+    """Lark's lexer is not used: its tables are (see `lalr`)."""
 
     def __init__(self, lexer_conf: object) -> None:
         pass
 
-    def lex(self, data: Any) -> Iterator[Token]:  # type: ignore[override]
-        """The tokens."""
+    def lex(self, data: Any) -> Iterator[Any]:  # type: ignore[override]
+        """Never called."""
         yield from data
 
 
@@ -45,12 +47,17 @@ def _lark() -> Lark:
     return kept_lark(
         "cpnml",
         grammar,
-        lexer=_Feed,
+        lexer=_NoLexer,
         start=_STARTS,
         keep_all_tokens=True,
         maybe_placeholders=False,
         transformer=_BUILDER,
     )
+
+
+@cache
+def _loop() -> Loop:
+    return Loop(_lark())
 
 
 def parse_program(source: SourceText, d: Diagnostics) -> tuple[syntax.Dec, ...] | None:
@@ -129,31 +136,35 @@ def parse_code(source: SourceText, d: Diagnostics) -> syntax.CodeSegment | None:
 
 def declared_names(source: SourceText, start: int = 0, end: int | None = None) -> tuple[str, ...]:
     """Names that a text with syntax errors seems to declare, so that their uses are not reported as well."""
-    tokens = tokenize(source, Diagnostics()) or []
-    out = []
-    for before, token in zip(tokens, tokens[1:], strict=False):
-        inside = token.start >= start and (end is None or token.end <= end)
-        if (
-            inside
-            and before.kind in ("VAL", "FUN", "AND", "EXCEPTION", "REC")
-            and token.kind == "ID"
-        ):
-            out.append(token.text)
-    return tuple(out)
+    starts, ends, names = _declared(source.text)
+    first = bisect_left(starts, start)
+    last = len(starts) if end is None else bisect_right(ends, end)
+    return names[first:last]
+
+
+@lru_cache(maxsize=4)
+def _declared(text: str) -> tuple[tuple[int, ...], tuple[int, ...], tuple[str, ...]]:
+    """Where the names begin and end that a text seems to declare, and they themselves."""
+    tokens = tokenize(SourceText(text, NOWHERE), Diagnostics()) or []
+    found = [
+        token
+        for before, token in pairwise(tokens)
+        if before.kind in ("VAL", "FUN", "AND", "EXCEPTION", "REC") and token.kind == "ID"
+    ]
+    return (
+        tuple(t.start for t in found),
+        tuple(t.end for t in found),
+        tuple(t.text for t in found),
+    )
 
 
 def _parse(
     source: SourceText, tokens: Sequence[Lexeme], start: str, d: Diagnostics, hint: str = ""
 ) -> Any:
-    feed = []
-    for t in tokens:
-        token = MlToken(t.kind, t.text, t.start, 0, 0, 0, 0, t.end)
-        token.data = t.value
-        feed.append(token)
     _BUILDER.source = source
     try:
-        return _lark().parse(feed, start=start)
-    except UnexpectedToken as problem:
+        return _loop().parse(tokens, start)
+    except SyntaxProblem as problem:
         _report(source, tokens, problem, d, hint, start)
         return None
 
@@ -187,7 +198,8 @@ _STARTS_OF = {
     " ORELSE COLON HANDLE",
     "pattern": "ID INT WORD REAL STRING CHAR LPAREN LBRACK LBRACE OP STAR WILD AS COLON",
     "type": "ID TYVAR LPAREN LBRACE",
-    "declaration": "VAL FUN TYPE DATATYPE EXCEPTION LOCAL OPEN INFIX INFIXR NONFIX STRUCTURE SEMI",
+    "declaration": "VAL FUN TYPE DATATYPE ABSTYPE EXCEPTION LOCAL OPEN INFIX INFIXR NONFIX STRUCTURE SIGNATURE FUNCTOR"
+    " SEMI",
     "operand end": "ID INT WORD REAL STRING CHAR RPAREN RBRACK RBRACE END WILD TYVAR",
 }
 _EXP_START, _PAT_START, _TYPE_START, _DEC_START, _OPERAND_END = (
@@ -198,21 +210,22 @@ _EXP_START, _PAT_START, _TYPE_START, _DEC_START, _OPERAND_END = (
 def _report(
     source: SourceText,
     tokens: Sequence[Lexeme],
-    problem: UnexpectedToken,
+    problem: SyntaxProblem,
     d: Diagnostics,
     hint: str,
     start: str,
 ) -> None:
     token = problem.token
-    at_end = token.type == "$END"
-    if at_end:
+    at_end = token is None
+    kind, word = ("$END", "") if token is None else (token.kind, token.text)
+    if token is None:
         end = tokens[-1].end if tokens else 0
         span = Span(source, end, end)
         found = "text ends too early" if tokens else "text is empty"
         previous = tokens[-1] if tokens else None
     else:
-        span = Span(source, token.start_pos or 0, token.end_pos or 0)
-        if token.type == "AS" and start != "program":
+        span = Span(source, token.start, token.end)
+        if kind == "AS" and start != "program":
             d.error(
                 codes.SYNTAX_ERROR,
                 "`as` cannot stand here",
@@ -220,20 +233,20 @@ def _report(
                 hint="`x as pattern` is the whole inscription of an input arc of an untimed colour set",
             )
             return
-        found = f"unexpected `{token}`" if str(token) else "unexpected `)`"
+        found = f"unexpected `{word}`" if word else "unexpected `)`"
         before = [t for t in tokens if t.end <= span.start and t.text]
         previous = before[-1] if before else None
     expected = _expected(problem, previous)
     message = f"{found}, {expected} expected" if expected else found
     before = [t for t in tokens if t.end <= span.start or at_end]
-    accepted = frozenset(problem.accepts or ())
+    accepted = problem.accepts
     after = [t for t in tokens if t.start >= span.end and not at_end]
-    hint = hint or advice.syntax(token.type, str(token), before, after, accepted, start)
+    hint = hint or advice.syntax(kind, word, before, after, accepted, start)
     d.error(codes.SYNTAX_ERROR, message, span, hint=hint)
 
 
-def _expected(problem: UnexpectedToken, previous: Lexeme | None) -> str:
-    accepts = set(problem.accepts or ())
+def _expected(problem: SyntaxProblem, previous: Lexeme | None) -> str:
+    accepts = set(problem.accepts)
     after_operand = (
         previous is not None
         and previous.kind in _OPERAND_END

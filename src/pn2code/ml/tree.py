@@ -7,17 +7,11 @@ from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
-from lark import Token, Transformer
+from lark import Transformer
 
 from pn2code.diagnostics import NOWHERE, SourceText, Span
 from pn2code.ml import syntax as s
-
-
-class MlToken(Token):
-    """A lark token with the value of a literal."""
-
-    __slots__ = ("data",)
-    data: int | float | str | None
+from pn2code.ml.lexer import Lexeme
 
 
 @dataclass(frozen=True, slots=True)
@@ -54,8 +48,8 @@ class TreeBuilder(Transformer[Any, Any]):
     # --- helpers
 
     def _of(self, child: Any) -> Span:
-        if isinstance(child, Token):
-            return Span(self.source, child.start_pos or 0, child.end_pos or 0)
+        if isinstance(child, Lexeme):
+            return Span(self.source, child.start, child.end)
         span: Span = child.span
         return span
 
@@ -66,11 +60,11 @@ class TreeBuilder(Transformer[Any, Any]):
 
     @staticmethod
     def _nodes(children: Iterable[Any]) -> tuple[Any, ...]:
-        return tuple(c for c in children if not isinstance(c, Token))
+        return tuple(c for c in children if not isinstance(c, Lexeme))
 
     @staticmethod
     def _texts(children: Iterable[Any], *kinds: str) -> tuple[str, ...]:
-        return tuple(str(c) for c in children if isinstance(c, Token) and c.type in kinds)
+        return tuple(c.text for c in children if isinstance(c, Lexeme) and c.kind in kinds)
 
     def _group(self, children: Children) -> Group:
         return Group(self._nodes(children), self._span(children))
@@ -119,12 +113,12 @@ class TreeBuilder(Transformer[Any, Any]):
         return s.FlatExp(tuple(children), self._span(children))
 
     def name_exp(self, children: Children) -> s.NameExp:
-        return s.NameExp(str(children[-1]), len(children) > 1, self._span(children))
+        return s.NameExp(children[-1].text, len(children) > 1, self._span(children))
 
     def literal(self, children: Children) -> s.LitExp:
-        token: MlToken = children[0]
-        assert token.data is not None
-        return s.LitExp(_LITERALS[token.type], token.data, self._of(token))
+        token: Lexeme = children[0]
+        assert token.value is not None
+        return s.LitExp(_LITERALS[token.kind], token.value, self._of(token))
 
     def unit_exp(self, children: Children) -> s.RecordExp:
         return s.RecordExp((), self._span(children))
@@ -156,7 +150,7 @@ class TreeBuilder(Transformer[Any, Any]):
         return Group((children[0].items[0], children[2]), self._span(children))
 
     def label(self, children: Children) -> Group:
-        return Group((str(children[0]),), self._span(children))
+        return Group((children[0].text,), self._span(children))
 
     def selector(self, children: Children) -> s.SelectorExp:
         return s.SelectorExp(children[1].items[0], self._span(children))
@@ -171,7 +165,7 @@ class TreeBuilder(Transformer[Any, Any]):
         return s.LetExp(declarations.items, body, self._span(children))
 
     def keyword(self, children: Children) -> s.Keyword:
-        return s.Keyword(str(children[0]), self._span(children))
+        return s.Keyword(children[0].text, self._span(children))
 
     def constraint(self, children: Children) -> s.Constraint:
         return s.Constraint(children[1], self._span(children))
@@ -206,12 +200,12 @@ class TreeBuilder(Transformer[Any, Any]):
         return s.FlatPat(tuple(children), self._span(children))
 
     def name_pat(self, children: Children) -> s.NamePat:
-        return s.NamePat(str(children[-1]), len(children) > 1, self._span(children))
+        return s.NamePat(children[-1].text, len(children) > 1, self._span(children))
 
     def literal_pat(self, children: Children) -> s.LitPat:
-        token: MlToken = children[0]
-        assert token.data is not None
-        return s.LitPat(_LITERALS[token.type], token.data, self._of(token))
+        token: Lexeme = children[0]
+        assert token.value is not None
+        return s.LitPat(_LITERALS[token.kind], token.value, self._of(token))
 
     def wild_pat(self, children: Children) -> s.WildPat:
         return s.WildPat(self._span(children))
@@ -255,10 +249,10 @@ class TreeBuilder(Transformer[Any, Any]):
         return s.RecordTy(_number(self._nodes(children)), self._span(children))
 
     def var_ty(self, children: Children) -> s.VarTy:
-        return s.VarTy(str(children[0]), self._span(children))
+        return s.VarTy(children[0].text, self._span(children))
 
     def name_ty(self, children: Children) -> s.NameTy:
-        return s.NameTy(str(children[-1]), self._nodes(children), self._span(children))
+        return s.NameTy(children[-1].text, self._nodes(children), self._span(children))
 
     def record_ty(self, children: Children) -> s.RecordTy:
         fields = tuple((g.items[0], g.items[1]) for g in self._nodes(children))
@@ -361,13 +355,13 @@ class TreeBuilder(Transformer[Any, Any]):
         return s.OpenDec(self._texts(children, "ID"), self._span(children))
 
     def infix_dec(self, children: Children) -> s.InfixDec:
-        kind = {"INFIX": "left", "INFIXR": "right", "NONFIX": "nonfix"}[children[0].type]
+        kind = {"INFIX": "left", "INFIXR": "right", "NONFIX": "nonfix"}[children[0].kind]
         digits = self._texts(children, "INT")
         names = tuple(str(g.items[0]) for g in self._only(children, Group))
         return s.InfixDec(kind, int(digits[0]) if digits else 0, names, self._span(children))
 
     def opname(self, children: Children) -> Group:
-        return Group((str(children[0]),), self._span(children))
+        return Group((children[0].text,), self._span(children))
 
     def abstype_dec(self, children: Children) -> s.AbstypeDec:
         *withtypes, body = self._only(children, Group)
@@ -389,7 +383,7 @@ class TreeBuilder(Transformer[Any, Any]):
         return s.StructureBinding(name, body, self._span(children))
 
     def ascription(self, children: Children) -> Group:
-        return Group((children[0].type == "SEAL", children[1]), self._span(children))
+        return Group((children[0].kind == "SEAL", children[1]), self._span(children))
 
     def _sealed(self, body: s.Str, ascription: Any) -> s.Str:
         if not isinstance(ascription, Group):
@@ -401,13 +395,13 @@ class TreeBuilder(Transformer[Any, Any]):
         return s.StructStr(children[1].items, self._span(children))
 
     def name_str(self, children: Children) -> s.NameStr:
-        return s.NameStr(str(children[0]), self._span(children))
+        return s.NameStr(children[0].text, self._span(children))
 
     def apply_str(self, children: Children) -> s.ApplyStr:
         argument = children[2]
         if isinstance(argument, Group):
             argument = s.StructStr(argument.items, self._span(children))
-        return s.ApplyStr(str(children[0]), argument, self._span(children))
+        return s.ApplyStr(children[0].text, argument, self._span(children))
 
     def let_str(self, children: Children) -> s.LetStr:
         return s.LetStr(children[1].items, children[3], self._span(children))
@@ -420,13 +414,13 @@ class TreeBuilder(Transformer[Any, Any]):
         return s.SignatureDec(bindings, self._span(children))
 
     def sigbind(self, children: Children) -> Group:
-        return Group((str(children[0]), children[2]), self._span(children))
+        return Group((children[0].text, children[2]), self._span(children))
 
     def sig_sig(self, children: Children) -> s.SigSig:
         return s.SigSig(_spread(children[1].items), self._span(children))
 
     def name_sig(self, children: Children) -> s.NameSig:
-        return s.NameSig(str(children[0]), self._span(children))
+        return s.NameSig(children[0].text, self._span(children))
 
     def where_sig(self, children: Children) -> s.WhereSig:
         return s.WhereSig(children[0], self._only(children, s.TypeBinding), self._span(children))
@@ -435,29 +429,29 @@ class TreeBuilder(Transformer[Any, Any]):
         return s.ValSpec(children[0].items[0], children[2], self._span(children))
 
     def opid(self, children: Children) -> Group:
-        return Group((str(children[-1]),), self._span(children))
+        return Group((children[-1].text,), self._span(children))
 
     def type_spec(self, children: Children) -> Group:
-        equality = children[0].type == "EQTYPE"
+        equality = children[0].kind == "EQTYPE"
         specs = self._only(children, s.TypeSpec)
         return Group(tuple(replace(x, equality=equality) for x in specs), self._span(children))
 
     def tyspec(self, children: Children) -> s.TypeSpec:
         parameters = children[0].items if isinstance(children[0], Group) else ()
         (name,) = self._texts(children, "ID")
-        written = None if isinstance(children[-1], Token) else children[-1]
+        written = None if isinstance(children[-1], Lexeme) else children[-1]
         return s.TypeSpec(parameters, name, written, False, self._span(children))
 
     def exspec(self, children: Children) -> s.ExceptionSpec:
         argument = None if len(children) == 1 else children[2]
-        return s.ExceptionSpec(str(children[0]), argument, self._span(children))
+        return s.ExceptionSpec(children[0].text, argument, self._span(children))
 
     def strspec(self, children: Children) -> s.StructureSpec:
-        return s.StructureSpec(str(children[0]), children[2], self._span(children))
+        return s.StructureSpec(children[0].text, children[2], self._span(children))
 
     def include_spec(self, children: Children) -> s.IncludeSpec:
         signatures = tuple(
-            s.NameSig(str(c), self._of(c)) if isinstance(c, Token) else c for c in children[1:]
+            s.NameSig(c.text, self._of(c)) if isinstance(c, Lexeme) else c for c in children[1:]
         )
         return s.IncludeSpec(signatures, self._span(children))
 
@@ -470,11 +464,11 @@ class TreeBuilder(Transformer[Any, Any]):
     def funcbind(self, children: Children) -> s.FunctorBinding:
         parameter, signature = children[2].items
         body = self._sealed(children[-1], children[4])
-        return s.FunctorBinding(str(children[0]), parameter, signature, body, self._span(children))
+        return s.FunctorBinding(children[0].text, parameter, signature, body, self._span(children))
 
     def funcparam(self, children: Children) -> Group:
         if len(children) == 3:
-            return Group((str(children[0]), children[2]), self._span(children))
+            return Group((children[0].text, children[2]), self._span(children))
         specs: Group = children[0]
         return Group(("", s.SigSig(_spread(specs.items), specs.span)), self._span(children))
 
