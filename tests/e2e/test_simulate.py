@@ -371,6 +371,27 @@ def test_a_cache_that_cannot_be_written(tmp_path: Path) -> None:
     (tmp_path / "cache").write_text("a file, no folder")
     found = result(net, "--engine", "compiled", env=_environment(tmp_path))
     assert (found["engine"], found["steps"]) == ("compiled", 1000)
+    (tmp_path / "cache").unlink()
+    folder = tmp_path / "cache" / "pn2code"
+    folder.mkdir(parents=True, mode=0o700)
+    (folder / "simulators").write_text("a file, no folder")
+    done = simulate(net, "--engine", "compiled", env=_environment(tmp_path))
+    assert "simulator-cache" in done.stderr
+
+
+def test_a_program_that_comes_to_a_bad_end(tmp_path: Path) -> None:
+    """As it happens when there is not enough memory."""
+    real = shutil.which("gcc") or shutil.which("cc")
+    fake = tmp_path / "cc"
+    fake.write_text(
+        f'#!/bin/sh\n{real} "$@" || exit 1\n'
+        'for a; do [ "$a" = simulate ] && printf "#!/bin/sh\\nkill -9 \\$\\$\\n" > simulate; done; exit 0\n'
+    )
+    fake.chmod(0o755)
+    net = write(COUNTER, tmp_path / "cell.cpn")
+    environment = _environment(tmp_path, CC=str(fake))
+    done = simulate(net, "--engine", "compiled", env=environment, code=1)
+    assert "simulator-failed" in done.stderr and "signal 9" in done.stderr
 
 
 def test_a_place_with_very_many_tokens(tmp_path: Path) -> None:

@@ -30,6 +30,7 @@ from pn2code.semantics.codes import TRACE_REFUSED
 from pn2code.semantics.report import places
 from pn2code.simulate.choose import Wish, monitors_of
 from pn2code.simulate.choose import simulate as play
+from pn2code.simulate.codes import TRACE_UNWRITABLE
 from pn2code.simulate.progress import ProgressLine
 from pn2code.simulate.report import text
 from pn2code.simulate.run import Outcome, Request
@@ -182,8 +183,11 @@ def _made(request: Request, engine: Engine | None, d: Diagnostics, form: Format)
     try:
         outcome = play(request, wish, d)
     except (TraceUnwritableError, TraceRefusedError, OSError) as problem:
+        if isinstance(problem, TraceUnwritableError):
+            d.error(TRACE_UNWRITABLE, str(problem), Origin(str(problem.path)))
         print_diagnostics(d.sorted(), form)
-        typer.echo(f"pn2code: {_sentence(problem, request)}", err=True)
+        if not isinstance(problem, TraceUnwritableError):
+            typer.echo(f"pn2code: {_sentence(problem, request)}", err=True)
         raise typer.Exit(Exit.USAGE) from None
     if outcome is None:
         if request.interrupted():  # while the net was compiled
@@ -205,7 +209,7 @@ def _sentence(problem: Exception, request: Request) -> str:
             reason = (problem.strerror or str(problem)).lower()
             return f"cannot read `{problem.filename or request.replay}`: {reason}"
         case _:
-            return str(problem)
+            raise AssertionError("no other problem is told in this way")
 
 
 def _json(opened: OpenNet, outcome: Outcome) -> dict[str, Any]:

@@ -319,7 +319,9 @@ def _failure(net: FlatNet, last: Mapping[str, Any], simple: Simple | None = None
     doing = "the occurrence of" if "binding" in last else "the search for bindings of"
     said = last["origin"]
     where = f" ({said})" if said and said != t.origin.describe() else ""
-    message = f"{doing} `{t.name}` raised `{name}`{where}"
+    # An exception has a name; limits and what is not available here are told in words.
+    what = f"raised `{name}`" if name.isidentifier() else f"cannot go on: {name}"
+    message = f"{doing} `{t.name}` {what}{where}"
     return Failure(message, t.origin, None, t, _binding(t, last))
 
 
