@@ -12,6 +12,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
+from functools import lru_cache
 
 from pn2code.frozen import frozen
 from pn2code.ml.builtins import NO_EQUALITY
@@ -490,11 +491,24 @@ def parts(t: Ty) -> tuple[Ty, ...]:
     return ()
 
 
+@lru_cache(maxsize=10_000)
+def _i_atom(name: str) -> ICon:
+    """A type constructor without arguments: most types of a net are one."""
+    return ICon(name)
+
+
+@lru_cache(maxsize=10_000)
+def _atom(name: str) -> TCon:
+    return TCon(name)
+
+
 def from_type(t: Type, variables: list[Ty]) -> Ty:
     """A finished type as one of inference, `variables` for its `TVar`s."""
     if isinstance(t, TVar):
         return variables[t.index]
     if isinstance(t, TCon):
+        if not t.args:
+            return _i_atom(t.name)
         return ICon(t.name, tuple(from_type(a, variables) for a in t.args))
     if isinstance(t, TRecord):
         return IRec(tuple((n, from_type(f, variables)) for n, f in t.fields))
@@ -511,6 +525,8 @@ def to_type(t: Ty) -> Type:
     if isinstance(t, Quant):
         return TVar(t.index, t.equality)
     if isinstance(t, ICon):
+        if not t.args:
+            return _atom(t.name)
         return TCon(t.name, tuple(to_type(a) for a in t.args))
     if isinstance(t, IRec):
         return TRecord(tuple((n, to_type(f)) for n, f in t.fields))
