@@ -319,6 +319,55 @@ def test_traces_that_cannot_be_read(cli: Cli, net: Path, tmp_path: Path) -> None
     assert cli("replay", recorded(net, tmp_path, PICK), tmp_path / "none.cpn").code == 2
 
 
+@pytest.mark.cc
+def test_the_compiled_net_repeats_runs(cli: Cli, net: Path, tmp_path: Path) -> None:
+    trace = recorded(net, tmp_path, PICK, MOVE, final_time="0")
+    done = cli("replay", trace, net, "--engine", "compiled", "--json")
+    assert done.code == 0, done.err
+    data = done.data
+    assert (data["ok"], data["steps"], data["engine"]) == (True, 2, "compiled")
+    assert rows(data)["Sub", 2, "Own"] == "1`1"
+    own = tmp_path / "own.trace.jsonl"
+    header = {"trace": 1, "net": "cell", "by": "simulate", "initial": {}}
+    step = {"step": 1, "t": 0, "transition": "Top.Pick", "binding": {"n": 1, "s": "a"}}
+    own.write_text("\n".join(map(json.dumps, (header, step, {**step, "step": 2}))))
+    for engine in ("compiled", "reference"):
+        refused = cli("replay", own, net, "--engine", engine, "--json")
+        assert refused.code == 1
+        data = refused.data
+        assert (data["ok"], data["steps"], data["failed_step"]) == (False, 1, 2)
+        assert rows(data)["Top", 1, "Out"] == "1`1"
+        assert "not enabled" in data["why"]
+
+
+@pytest.mark.cc
+def test_ties_that_the_compiled_net_decides_otherwise(cli: Cli, tmp_path: Path) -> None:
+    path = tmp_path / "ties.cpn"
+    write(
+        """
+        net Ties
+          standard
+          colset T = int timed;
+          var t: T;
+          page Top
+            place A : T = 1`1@0 +++ 1`1@3
+            place Go : T = 1`7@4
+            trans Go
+              in Go : 7
+              in A : t
+        """,
+        path,
+    )
+    place = next(r for r in cli("marking", path, "--json").data["places"] if r["name"] == "A")
+    step = {"time": "4", "transition": "Go", "page": "Top", "instance": 1, "binding": {"t": "1"}}
+    for left, engine in (("1`1@0", "compiled"), ("1`1@3", "reference")):
+        final = [{"id": place["id"], "instance": 1, "marking": left}]
+        trace = recorded(path, tmp_path, step, final_marking=final)
+        data = cli("replay", trace, path, "--engine", "compiled", "--json").data
+        assert (data["ok"], data["engine"]) == (True, engine)
+        assert ("stamps" in data["why"]) is (engine == "reference")
+
+
 @pytest.mark.shared
 def test_recordings_of_the_real_engine(cli: Cli, shared: Path) -> None:
     """A dozen of them through the command itself; `test_semantics_corpus` compares all."""

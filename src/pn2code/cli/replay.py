@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Callable
 from pathlib import Path
 from typing import Annotated, Any, NoReturn
 
@@ -12,6 +11,7 @@ import typer
 from pn2code.cli.nets import OpenNet, open_net, playing
 from pn2code.cli.options import (
     DEFAULT_INT_BITS,
+    DEFAULT_SEED,
     Engine,
     EngineOption,
     Exit,
@@ -22,17 +22,13 @@ from pn2code.cli.options import (
     JsonOption,
     SetOption,
     parse_values,
-    stop,
 )
-from pn2code.diagnostics import Diagnostics
 from pn2code.semantics import replay as own
+from pn2code.semantics.files import Files
 from pn2code.semantics.json_text import BadJson, parse_json
 from pn2code.semantics.recording import NotARecording, Recording, recording
 from pn2code.semantics.replay_recording import follow
 from pn2code.semantics.report import places, time_text
-from pn2code.simulate.recorded import repeat, repeat_occurrences
-from pn2code.simulate.run import DEFAULT_SEED, Outcome
-from pn2code.simulate.script import TraceRefusedError
 
 EPILOG = """Examples:
 
@@ -67,9 +63,11 @@ def replay(
             if isinstance(what, Recording):
                 result = _recording(what, opened, files, engine, form)
             elif engine is Engine.COMPILED:
-                result = _compiled(trace, opened, files, form)
+                from pn2code.cli.replay_compiled import repeat_own  # loads the compiler
+
+                result = repeat_own(trace, opened, files, form)
             else:
-                result = _own(trace, opened)
+                result = _own(trace, opened, files)
     except typer.Exit as left:
         if as_json and left.exit_code == Exit.MODEL:
             typer.echo(json.dumps(_NOT_PLAYED, indent=1))
@@ -100,17 +98,17 @@ def kind(trace: Path) -> Recording | None:
             if _is_header(first):
                 return None
             if trace.stat().st_size > LARGEST:
-                _refuse(f"`{trace}` is too large for a recording")
+                refuse(f"`{trace}` is too large for a recording")
             lines.seek(0)
             return recording(parse_json(lines.read()))
     except OSError as problem:
-        _refuse(f"cannot read `{trace}`: {problem.strerror or problem}")
+        refuse(f"cannot read `{trace}`: {problem.strerror or problem}")
     except UnicodeDecodeError:
-        _refuse(f"`{trace}` is not a trace: it is no UTF-8 text")
+        refuse(f"`{trace}` is not a trace: it is no UTF-8 text")
     except BadJson as problem:
-        _refuse(f"`{trace}` is not a trace: {problem}")
+        refuse(f"`{trace}` is not a trace: {problem}")
     except NotARecording as problem:
-        _refuse(f"`{trace}`: {problem}")
+        refuse(f"`{trace}`: {problem}")
 
 
 def _is_header(line: str) -> bool:
@@ -122,7 +120,8 @@ def _is_header(line: str) -> bool:
     return isinstance(data, dict) and not {"trace", "transition", "event"}.isdisjoint(data)
 
 
-def _refuse(message: str) -> NoReturn:
+def refuse(message: str) -> NoReturn:
+    """Leaves: a file is not what it should be."""
     typer.echo(f"pn2code: {message}", err=True)
     raise typer.Exit(Exit.USAGE)
 
@@ -146,67 +145,20 @@ def _recording(
     if engine is Engine.REFERENCE or not followed.ok:
         return result
     if followed.random:
-        reason = (
-            "the compiled net cannot be told what was drawn, so the token game alone followed it"
-        )
-        return {**result, "why": f"{followed.why}; {reason}"}
-    outcome = _by_program(
-        lambda d: repeat_occurrences(opened.flat, opened.storage, followed.occurrences, files, d),
-        form,
-    )
-    compiled = _outcome(outcome, opened)
-    differing = [
-        row["id"]
-        for row, ours in zip(followed.rows, compiled["places"], strict=True)
-        if row["marking"] != ours["marking"]
-    ]
-    if compiled["ok"] and differing and opened.flat.timed:
-        reason = "of equal tokens with different stamps the compiled net takes others than the recorded run did"
-        return {**result, "why": f"{reason}, so the token game alone followed it"}
-    if compiled["ok"] and differing:
-        why = f"in the end the compiled net has another marking of {differing[0]}"
-        return {**compiled, "ok": False, "failed_step": compiled["steps"] + 1, "why": why}
-    return {**compiled, "time": followed.time}
+        return {**result, "why": f"{followed.why}; {_NOT_COMPILED}"}
+    from pn2code.cli.replay_compiled import repeat_recorded  # loads the compiler
+
+    return repeat_recorded(opened, followed, result, files, form)
 
 
-def _compiled(trace: Path, opened: OpenNet, files: Path | None, form: Format) -> dict[str, Any]:
-    """A trace of our own, by the compiled net."""
-    outcome = _by_program(lambda d: repeat(opened.flat, opened.storage, trace, files, d), form)
-    return _outcome(outcome, opened)
+_NOT_COMPILED = (
+    "the compiled net cannot be told what was drawn, so the token game alone followed it"
+)
 
 
-def _by_program(run: Callable[[Diagnostics], Outcome | None], form: Format) -> Outcome:
-    """What the compiled net made of a trace; leaves when there is no compiled net, or the file is no trace."""
-    d = Diagnostics()
-    try:
-        outcome = run(d)
-    except TraceRefusedError as problem:
-        _refuse(f"the trace cannot be repeated: {problem}")
-    except OSError as problem:
-        _refuse(f"the trace cannot be repeated: {problem.strerror or problem}")
-    if outcome is None:
-        stop(d, form)
-    return outcome
-
-
-def _outcome(outcome: Outcome, opened: OpenNet) -> dict[str, Any]:
-    ok = outcome.why not in ("replay", "error")
-    why = outcome.refusal or (outcome.failure.message if outcome.failure else "")
-    return {
-        "ok": ok,
-        "steps": outcome.replayed,
-        "failed_step": None if ok else outcome.replayed + 1,
-        "why": why,
-        "time": outcome.final.time if outcome.final else None,
-        "random": False,
-        "engine": Engine.COMPILED.value,
-        "places": places(opened.flat, outcome.final) if outcome.final else [],
-    }
-
-
-def _own(trace: Path, opened: OpenNet) -> dict[str, Any]:
+def _own(trace: Path, opened: OpenNet, files: Path | None) -> dict[str, Any]:
     """A trace of our own, by the token game."""
-    result = own.replay(trace, opened.flat, opened.storage)
+    result = own.replay(trace, opened.flat, opened.storage, files=Files(files))
     game = result.game
     return {
         "ok": result.ok,

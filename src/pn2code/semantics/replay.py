@@ -25,6 +25,7 @@ from pn2code.net.flat import FlatNet, FlatTransition
 from pn2code.semantics.codes import TRACE_REFUSED
 from pn2code.semantics.colour_json import JsonError, from_json, to_json
 from pn2code.semantics.evaluate import Limits
+from pn2code.semantics.files import Files
 from pn2code.semantics.game import Game, GameError
 from pn2code.semantics.json_text import BadJson, parse_json
 from pn2code.semantics.marking import (
@@ -112,6 +113,7 @@ def replay(
     time_unit: float = 1.0,
     check_digest: bool = False,
     limits: Limits | None = None,
+    files: Files | None = None,
 ) -> ReplayResult:
     """Replays a trace file.
 
@@ -124,6 +126,7 @@ def replay(
         check_digest: whether the header's digest must be the SHA-256 of the net's file. (Compilers hash the
             configuration of the cell with it.)
         limits: of each evaluation.
+        files: what the net can do with files; nothing by default.
     """
     with path.open(encoding="utf-8", errors="replace") as lines:
         return replay_lines(
@@ -134,6 +137,7 @@ def replay(
             time_unit=time_unit,
             check_digest=check_digest,
             limits=limits,
+            files=files,
         )
 
 
@@ -146,6 +150,7 @@ def replay_lines(
     time_unit: float = 1.0,
     check_digest: bool = False,
     limits: Limits | None = None,
+    files: Files | None = None,
 ) -> ReplayResult:
     """Replays the lines of a trace; see `replay`."""
     game: Game | None = None
@@ -162,7 +167,9 @@ def replay_lines(
                 if check_digest and line.get("digest") != net.sha256:
                     raise _Wrong("the trace is of another net: its digest differs")
                 source = str(line.get("net", source))
-                game = Game(net, storage, _initial(net, line), seed=_seed(line), limits=limits)
+                game = Game(
+                    net, storage, _initial(net, line), seed=_seed(line), limits=limits, files=files
+                )
                 rules = rules or _rules_for(str(line.get("by", "")), time_unit)
             elif line.get("event") == "end":
                 assert rules is not None
