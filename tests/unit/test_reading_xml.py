@@ -223,7 +223,14 @@ def test_utf16_and_bom() -> None:
 
 def test_long_texts_and_attributes(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(xml, "MAX_TEXT", 20)
-    for inside in (b"<a>%s</a>" % (b"x\n" * 20), b"<a b='%s'/>" % (b"x" * 30), b"\n" * 50):
+    for inside in (b"<a>%s</a>" % (b"x\n" * 20), b"<a b='%s'/>" % (b"x" * 30)):
         code, message, _ = only(b"<workspaceElements>" + inside + b"</workspaceElements>")
         assert code == "xml-limit"
         assert message.endswith("more than 20 characters")
+
+
+def test_white_space_between_elements_may_be_long(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(xml, "MAX_TEXT", 20)
+    data = b"<workspaceElements>" + b"<cpnet>" + b"\n   " * 50 + b"</cpnet></workspaceElements>"
+    document = read_data(data, "cell.cpn", Diagnostics())
+    assert document is not None

@@ -12,6 +12,7 @@ Example: `<text>1`x &lt; 2</text>` at line 3, column 1 gives a node with text ``
 from __future__ import annotations
 
 import stat
+import sys
 from dataclasses import dataclass, field
 from pathlib import Path
 from xml.parsers import expat
@@ -31,8 +32,10 @@ from pn2code.reading.codes import (
 
 MAX_BYTES = 100 * 1024 * 1024
 MAX_DEPTH = 200  # below libxml2's own limit of 256
-MAX_ELEMENTS = 1_000_000
-"""The largest real net seen has 50,000; one of 10,000 places some 800,000."""
+MAX_ELEMENTS = 800_000
+"""The largest real net seen has 50,000; one of 10,000 places some 500,000."""
+MAX_SPACE = 5_000_000
+"""Characters of white space at the beginning of one element; libxml2 refuses 10 million."""
 MAX_TEXT = 250_000
 """Characters of one text or of the attributes of one element; the longest of real nets have some thousand."""
 
@@ -155,6 +158,14 @@ def parse(data: bytes, file: str, d: Diagnostics) -> Node | None:
         root = etree.fromstring(data, parser)
     except etree.XMLSyntaxError as e:
         line, column = e.position
+        if "HUGE" in str(e.msg):
+            d.error(
+                XML_LIMIT,
+                "a text is too long for the XML parser",
+                Origin(file, line, column),
+                hint="no net of CPN Tools has this: the file is damaged or hostile",
+            )
+            return None
         d.error(XML_SYNTAX, f"not well-formed XML: {_lower(e.msg)}", Origin(file, line, column))
         return None
     return _build(root, places)
@@ -168,21 +179,25 @@ def _lower(message: str | None) -> str:
 def _build(root: etree._Element, places: list[_Place]) -> Node:
     """The `Node` tree of an lxml tree; `places` is in document order, as is `root.iter()`."""
     nodes: list[Node] = []
-    for element, place in zip(root.iter(), places, strict=True):
+    used = _Place(0, -1, 0, 0)
+    for number, element in enumerate(root.iter()):
+        place = places[number]
+        places[number] = used  # large nets need the memory
         text = ""
         if place.length:  # most elements hold other elements only, with white space between
             text = (element.text or "") + "".join(child.tail or "" for child in element)
         node = Node(
-            str(element.tag),
+            sys.intern(str(element.tag)),
             dict(element.attrib),  # type: ignore[arg-type]
             place.line,
             place.column,
             text[place.skipped :],
-            tuple(place.marks),
+            tuple(place.marks or ()),
         )
         nodes.append(node)
         if place.parent >= 0:
             nodes[place.parent].children.append(node)
+    assert len(nodes) == len(places), "both parsers see the same elements"
     return nodes[0]
 
 
@@ -199,7 +214,7 @@ class _Place:
     parent: int
     line: int
     column: int
-    marks: list[tuple[int, int, int]] = field(default_factory=list)
+    marks: list[tuple[int, int, int]] | None = None
     skipped: int = 0
     length: int = 0
     expected: tuple[int, int] = (0, 0)
@@ -343,13 +358,19 @@ class _Surveyor:
 
     def _characters(self, text: str) -> None:
         place = self.open[-1]
-        if place.skipped + place.length > MAX_TEXT:
+        if place.length > MAX_TEXT:  # white space between elements is free
             self._refuse(XML_LIMIT, f"a text has more than {MAX_TEXT:,} characters")
         if not place.length and text.isspace():
             place.skipped += len(text)
+            if place.skipped > MAX_SPACE:
+                self._refuse(
+                    XML_LIMIT, f"there are more than {MAX_SPACE:,} characters of white space"
+                )
             return
         line, column = self.parser.CurrentLineNumber, self.parser.CurrentColumnNumber + 1
         if (line, column) != place.expected:
+            if place.marks is None:
+                place.marks = []
             place.marks.append((place.length, line, column))
         place.length += len(text)
         # expat gives each line end as a chunk of its own
