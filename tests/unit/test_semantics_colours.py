@@ -13,7 +13,7 @@ from pn2code.ml.colsets import Colset
 from pn2code.semantics.colour_json import JsonError, from_json, to_json
 from pn2code.semantics.colours import Colours, NotFinite
 from pn2code.semantics.evaluate import Evaluator
-from pn2code.semantics.values import Data, MlException, Timed
+from pn2code.semantics.values import Data, MlException, MlLimit, Timed
 
 NET = """
     net Colours
@@ -265,3 +265,22 @@ def test_json_of_another_form_is_refused(
 ) -> None:
     with pytest.raises(JsonError, match=name):
         from_json(world[1][name], json.loads(text))
+
+
+def test_large_colour_sets_are_counted_without_being_listed() -> None:
+    net = flat(
+        """
+        net Large
+          standard
+          colset BIG = int with 0..1000000000;
+          colset PAIR = product BIG * BIG;
+        """
+    )
+    colours = Evaluator(net.program).colours
+    big, pair = net.program.colsets["BIG"], net.program.colsets["PAIR"]
+    assert colours.size(pair) == 1000000001**2
+    assert colours.ord(pair, (2, 3)) == 2 * 1000000001 + 3
+    assert colours.col(pair, 2 * 1000000001 + 3) == (2, 3)
+    assert colours.legal(big, colours.ran(big))
+    with pytest.raises(MlLimit, match="more than"):
+        colours.all(pair)

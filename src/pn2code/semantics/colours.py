@@ -18,6 +18,7 @@ from pn2code.semantics.values import (
     UNIT,
     Data,
     MlException,
+    MlLimit,
     Timed,
     Value,
     equal,
@@ -29,6 +30,10 @@ from pn2code.semantics.values import (
 
 if TYPE_CHECKING:
     from pn2code.semantics.evaluate import Evaluator
+
+
+MOST_VALUES = 2_000_000
+"""Most values of a colour set that are listed."""
 
 
 class NotFinite(ValueError):  # noqa: N818
@@ -107,8 +112,11 @@ class Colours:
 
         Raises:
             MlException: CPN'Error for a colour set without bounds.
+            MlLimit: there are too many.
         """
         if c not in self._all:
+            if c.kind in (Kind.INT, Kind.INTINF, Kind.INDEX, Kind.PRODUCT, Kind.RECORD, Kind.UNION):
+                _enough(c, self.size(c))
             self._all[c] = tuple(self._enumerate(c))
         return self._all[c]
 
@@ -130,20 +138,21 @@ class Colours:
             case Kind.UNION:
                 return self._enumerate_union(c)
             case Kind.INT | Kind.INTINF | Kind.INDEX:
-                if not isinstance(c.low, int) or not isinstance(c.high, int):
-                    raise _unbounded(c)
-                numbers = range(c.low, c.high + 1)
+                numbers = _numbers(c)
                 return (
                     [Data(c.names[0], 0, i) for i in numbers] if c.kind is Kind.INDEX else numbers
                 )
             case Kind.LIST:
                 if not isinstance(c.low, int) or not isinstance(c.high, int):
                     raise _unbounded(c)
-                return self._sequences(self.all(component(c)), c.low, c.high)
+                items = self.all(component(c))
+                _enough(c, sum(len(items) ** n for n in range(c.low, c.high + 1)))
+                return self._sequences(items, c.low, c.high)
             case Kind.STRING:
                 if c.length is None or not isinstance(c.low, str) or not isinstance(c.high, str):
                     raise _unbounded(c)
                 letters = [chr(code) for code in range(ord(c.low), ord(c.high) + 1)]
+                _enough(c, sum(len(letters) ** n for n in range(c.length[0], c.length[1] + 1)))
                 texts = self._sequences(letters, *c.length)
                 return ["".join(map(str, text)) for text in texts]
             case _:
@@ -184,10 +193,14 @@ class Colours:
     def size(self, c: Colset) -> int:
         """Number of values; raises CPN'Error for a colour set without bounds."""
         match c.kind:
+            case Kind.ALIAS:
+                return self.size(component(c))
             case Kind.PRODUCT | Kind.RECORD:
                 return math.prod(self.size(part) for part in c.components if part is not None)
             case Kind.UNION:
                 return sum(1 if part is None else self.size(part) for part in c.components)
+            case Kind.INT | Kind.INTINF | Kind.INDEX:
+                return len(_numbers(c))
             case _:
                 return len(self.all(c))
 
@@ -201,6 +214,15 @@ class Colours:
                 for _, part, item in parts_of(c, value):
                     position = position * self.size(part) + self.ord(part, item)
                 return position
+            case Kind.UNION:
+                before = sum(1 if p is None else self.size(p) for p in c.components[: value.tag])
+                own = c.components[value.tag]
+                return before if own is None else before + self.ord(own, value.argument)
+            case Kind.INT | Kind.INTINF | Kind.INDEX:
+                number = value.argument if c.kind is Kind.INDEX else value
+                if number not in _numbers(c):
+                    raise _out_of_range()
+                return int(number - _numbers(c)[0])
             case _:
                 everything = self.all(c)
                 if value not in everything:
@@ -209,17 +231,37 @@ class Colours:
 
     def col(self, c: Colset, position: int) -> Value:
         """The value at a position; raises CPN'Error when there is none."""
-        everything = self.all(c)
-        if not 0 <= position < len(everything):
+        if not 0 <= position < self.size(c):
             raise _out_of_range()
-        return everything[position]
+        match c.kind:
+            case Kind.ALIAS:
+                return self.col(component(c), position)
+            case Kind.PRODUCT | Kind.RECORD:
+                values: list[Value] = []
+                for part in reversed([p for p in c.components if p is not None]):
+                    position, own = divmod(position, self.size(part))
+                    values.append(self.col(part, own))
+                return assemble(c, values[::-1])
+            case Kind.UNION:
+                return self._col_of_union(c, position)
+            case Kind.INT | Kind.INTINF:
+                return _numbers(c)[position]
+            case Kind.INDEX:
+                return Data(c.names[0], 0, _numbers(c)[position])
+            case _:
+                return self.all(c)[position]
+
+    def _col_of_union(self, c: Colset, position: int) -> Value:
+        for tag, (name, part) in enumerate(zip(c.names, c.components, strict=True)):
+            size = 1 if part is None else self.size(part)
+            if position < size:
+                return Data(name, tag, None if part is None else self.col(part, position))
+            position -= size
+        raise _out_of_range()
 
     def ran(self, c: Colset) -> Value:
         """A value at random; raises CPN'Error for a colour set without bounds."""
-        everything = self.all(c)
-        if not everything:
-            raise _out_of_range()
-        return everything[self.evaluator.random.below(len(everything))]
+        return self.col(c, self.evaluator.random.below(self.size(c)))
 
     def base(self, c: Colset) -> Value:
         """Some value of the colour set: the first one, or the simplest of an unbounded one."""
@@ -415,6 +457,18 @@ class Colours:
                 return Data(value.name, value.tag, inner)
             case _:
                 return value  # type: ignore[no-any-return]
+
+
+def _numbers(c: Colset) -> range:
+    """The numbers of an int or index colour set; raises CPN'Error when it has no bounds."""
+    if not isinstance(c.low, int) or not isinstance(c.high, int):
+        raise _unbounded(c)
+    return range(c.low, c.high + 1)
+
+
+def _enough(c: Colset, size: int) -> None:
+    if size > MOST_VALUES:
+        raise MlLimit(f"the colour set {c.name} has more than {MOST_VALUES} values")
 
 
 def _has_bounds(c: Colset) -> bool:
