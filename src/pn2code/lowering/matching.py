@@ -95,6 +95,11 @@ class Matcher:
             if pattern.argument is not None:
                 assert argument is not None
                 self._match(pattern.argument, ir.Argument(value, tag, argument), out)
+        elif constructor.data_type == "timed" and isinstance(pattern.argument, core.PRecord):
+            # A timed token: its value and its stamp.
+            for (_, inner), label in zip(pattern.argument.fields, ("value", "stamp"), strict=True):
+                part = ir.Member(value, label, self._owner.representation(inner.type))
+                self._match(inner, part, out)
         elif t.rep is Rep.REF and pattern.argument is not None:
             contents = ir.Contents(value, self._owner.representation(pattern.argument.type))
             self._match(pattern.argument, contents, out)

@@ -159,6 +159,8 @@ class _Walk:
                 return str(next(n for n in range(len(values) + 1) if n not in values))
             return "_"
         declaration = self._datatypes.get(first.constructor.data_type)
+        if first.constructor.siblings == 1:
+            return None
         if first.constructor.siblings == 0 or declaration is None:
             return "_"
         tags = {h.constructor.tag for h in heads if isinstance(h, core.PCon)}

@@ -9,7 +9,7 @@ from pn2code.diagnostics import Span
 from pn2code.ml import codes, core
 from pn2code.ml import syntax as s
 from pn2code.ml.annotations import Annotations
-from pn2code.ml.builtins import CONS, LITERAL_TYPES, NIL
+from pn2code.ml.builtins import BUILTINS, CONS, LITERAL_TYPES, NIL
 from pn2code.ml.context import Context, PatternBuild, suggestion
 from pn2code.ml.environment import Binding, BrokenEntry, BuiltinEntry, ConEntry, UnitEntry
 from pn2code.ml.inference import (
@@ -59,6 +59,10 @@ class Bindings(dict[str, Binding]):
     def __init__(self) -> None:
         super().__init__()
         self.derefs: list[Deref] = []
+
+
+TIMED = core.Constructor("@", "timed", 0, True, 1)
+"""What `v@s` is in a pattern."""
 
 
 class Patterns:
@@ -197,6 +201,8 @@ class Patterns:
         entry = self._ctx.scope.value(name.name)
         if isinstance(entry, BuiltinEntry) and entry.name == "Ref.ref":
             return self._reference(p, t, bindings)
+        if isinstance(entry, BuiltinEntry) and entry.name == "Time.@":
+            return self._timed(p, t, bindings)
         if not isinstance(entry, ConEntry):
             self._unknown(name)
             self.check(p.argument, self._ctx.unifier.fresh(), bindings)
@@ -222,6 +228,15 @@ class Patterns:
         always = is_irrefutable(p.argument, self._ctx)
         bindings.derefs.insert(at, Deref(cell, content, inner, always, p.span))
         return lambda: core.PVar(self._ctx.symbol_of(cell), to_type(t), p.span)
+
+    def _timed(self, p: s.ConPat, t: Ty, bindings: Bindings) -> PatternBuild:
+        """`v@s`: a timed token taken apart; to CPN Tools `@` is a constructor."""
+        own, generics = self._ctx.library_type(BUILTINS["Time.@"].text)
+        function, _ = self._ctx.unifier.instantiate_type(own, generics)
+        assert isinstance(function, IFun)
+        self._unify(function.result, t, p.span)
+        argument = self.check(p.argument, function.argument, bindings)
+        return lambda: core.PCon(TIMED, argument(), to_type(t), p.span)
 
     def _record(self, p: s.RecordPat, t: Ty, bindings: Bindings) -> PatternBuild:
         fields: dict[str, Ty] = {}
@@ -279,6 +294,10 @@ def is_irrefutable(p: s.Pat, ctx: Context) -> bool:
             return all(is_irrefutable(x, ctx) for _, x in p.fields)
         case s.TypedPat() | s.AsPat():
             return is_irrefutable(p.pattern, ctx)
+        case s.ConPat():
+            entry = ctx.scope.value(p.constructor.name)
+            is_timed = isinstance(entry, BuiltinEntry) and entry.name == "Time.@"
+            return is_timed and is_irrefutable(p.argument, ctx)
         case _:
             return False
 

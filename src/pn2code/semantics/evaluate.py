@@ -443,6 +443,9 @@ def match(pattern: core.Pat, value: Any, bound: dict[int, Value]) -> bool:
                 case "list", _:
                     assert argument is not None
                     return len(value) > 0 and match(argument, (value[0], value[1:]), bound)
+                case "timed", _:
+                    assert argument is not None
+                    return match(argument, (value.value, value.stamp), bound)
                 case _:
                     same = bool(value.tag == constructor.tag)
                     return same and (argument is None or match(argument, value.argument, bound))
