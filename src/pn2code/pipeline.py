@@ -106,7 +106,7 @@ def generate(
 def _refuse_unsupported(d: Diagnostics) -> None:
     """Make the warnings of unsupported things errors."""
     d.items = [
-        replace(i, severity=Severity.ERROR)
+        replace(i, severity=Severity.ERROR, hint="a supervisor must not stop there: remove it")
         if i.severity is Severity.WARNING and i.code.startswith("unsupported-")
         else i
         for i in d.items

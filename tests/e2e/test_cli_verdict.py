@@ -165,6 +165,36 @@ def test_check_of_what_is_missing_still_has_the_shape(cli: Cli, tmp_path: Path) 
     assert [i["code"] for i in data["diagnostics"]] == ["file-missing"]
 
 
+def test_what_cannot_run_here_is_a_warning_and_refuses_a_supervisor(
+    cli: Cli, tmp_path: Path
+) -> None:
+    path = tmp_path / "sockets.cpn"
+    write(
+        """
+        net Sockets
+          standard
+          page Top
+            place A : UNIT = 1`()
+            trans T code action ConnManagementLayer.closeConnection "c"
+              in A : ()
+        """,
+        path,
+    )
+    done = cli("check", path, "--json")
+    assert done.code == 0
+    (warning,) = [i for i in done.data["diagnostics"] if i["severity"] == "warning"]
+    assert warning["code"] == "unsupported-function"
+    assert warning["element"] == "transition `T`"
+    assert cli("check", path).out.endswith(
+        "1 page, 1 place, 1 transition, 1 arc: no errors, 1 warning\n"
+    )
+    assert cli("enabled", path).code == 0
+    refused = cli("generate", path, "-o", tmp_path / "out")
+    assert refused.code == 1
+    assert "error[unsupported-function]" in refused.err
+    assert not (tmp_path / "out").exists()
+
+
 # --- marking and enabled ---------------------------------------------------------------------------
 
 

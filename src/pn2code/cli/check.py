@@ -77,7 +77,8 @@ def check(
         typer.echo(json.dumps(shape, indent=1))
     else:
         print_diagnostics(d.sorted(), form)
-        counted = ", ".join(f"{n} {key}" for key, n in numbers.items()) + ": "
+        words = (f"{n} {key if n != 1 else key[:-1]}" for key, n in numbers.items())
+        counted = ", ".join(words) + ": "
         typer.echo(f"{where}: {counted if elements else ''}{render.count(d)}")
     if not ok:
         raise typer.Exit(code_of(d))
