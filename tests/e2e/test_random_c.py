@@ -37,6 +37,31 @@ NETS = {
             in C : c
             in A : if dice 1 > 3 then 1`2 else 1`3
     """,
+    "input arcs": """
+        net Taking
+          standard
+          fun some n = if discrete (1, 3) = 1 then 1`n else empty
+          fun first (x :: _) = x
+          colset INTS = list INT;
+          var n, m: INT;
+          var l: INTS;
+          place A : INT = 3`1 ++ 3`2
+          place B : INT = 2`1 ++ 1`2 ++ 1`3
+          place C : INT = 4`1 ++ 4`2 ++ 2`3
+          place L : INTS = 1`[1] ++ 1`[2, 3] ++ 1`[]
+          place Out : INTS
+          trans T
+            in A : n
+            in C : some n
+            in B : m
+            out Out : [n, m]
+            out A : discrete (1, 2)
+          trans U guard [l <> []]
+            in L : l
+            in C : first l
+            out Out : l
+            out L : l
+    """,
     "distributions": """
         net Distributions
           standard

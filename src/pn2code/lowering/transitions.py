@@ -151,7 +151,7 @@ class _Enumeration:
         for arc in self._t.arcs:
             if arc.kind is ArcKind.INHIBITOR:
                 self._body.emit(ir.UnlessEmpty(arc.place, arc_note(self._net, arc)))
-        self._ready()
+        self._ready(-1)
         self._step(0)
         return tuple(self._body.statements)
 
@@ -199,7 +199,7 @@ class _Enumeration:
                 if self._program.may_raise_bind(step.value):
                     self._body.emit(ir.UnlessBind())
                 self._match(step.pattern, value, guard_note(self._t, step.guard))
-                self._ready()
+                self._ready(position)
                 self._step(position + 1)
             case BindAll(symbol=symbol) | BindRandom(symbol=symbol):
                 index = self._index[symbol.uid]
@@ -213,7 +213,7 @@ class _Enumeration:
         with self._body.block() as statements:
             self._bound.add(symbol.uid)
             self._restrict(symbol)
-            self._ready()
+            self._ready(position)
             self._step(position + 1)
         if types.is_small(table):
             self._body.emit(ir.ForValues(index, table, tuple(statements), note))
@@ -243,7 +243,7 @@ class _Enumeration:
             self._match(term.pattern, ir.TokenValue(arc.place, index, token), "", place.colset)
             if (step.arc, step.term) in self._found:
                 self._available(arc, term, index)
-            self._ready()
+            self._ready(position)
             self._step(position + 1)
         note = arc_note(self._net, arc)
         self._body.emit(ir.ForTokens(arc.place, index, tuple(statements), note))
@@ -299,8 +299,13 @@ class _Enumeration:
 
     # --- tests ---------------------------------------------------------------------------------
 
-    def _ready(self) -> None:
-        """Test what can be tested with the variables bound so far."""
+    def _ready(self, position: int) -> None:
+        """Test what can be tested with the variables bound by the steps up to `position`.
+
+        Guards come first, then what the arcs want. Inscriptions that may raise an exception or draw a random number are
+        not looked at before all variables are bound, so that they are looked at as often as in the token game.
+        """
+        is_last = position + 1 == len(self._t.plan)
         for i, guard in enumerate(self._t.guards):
             if i not in self._tested and self._can(guard):
                 self._tested.add(i)
@@ -309,20 +314,29 @@ class _Enumeration:
                     condition = self._body.spill(condition, "guard")
                     self._body.emit(ir.UnlessBind())
                 self._body.emit(ir.Unless(condition, guard_note(self._t, i)))
-        places = list(dict.fromkeys(d.arc.place for d in self._demands))
-        for place in places:
+        if any(self._draws(d.term) for d in self._demands):
+            if is_last:
+                self._want(self._demands)
+                self._demands = []
+            return
+        for place in dict.fromkeys(d.arc.place for d in self._demands):
             mine = [d for d in self._demands if d.arc.place == place]
             if not all(self._can_term(d.term) for d in mine):
                 continue
-            self._demands = [d for d in self._demands if d.arc.place != place]
-            if len(mine) == 1 and self._holds(mine[0]):
+            if not is_last and not all(is_total(x) for d in mine for x in parts(d.term)):
                 continue
-            with self._body.block() as takes:
-                for demand in mine:
-                    take_terms(
-                        self._program, self._net, self._body, demand.arc, self._env, [demand.term]
-                    )
-            self._body.emit(ir.Wanted(tuple(takes)))
+            self._demands = [d for d in self._demands if d.arc.place != place]
+            if len(mine) != 1 or not self._holds(mine[0]):
+                self._want(mine)
+
+    def _want(self, demands: list[_Demand]) -> None:
+        with self._body.block() as takes:
+            for d in demands:
+                take_terms(self._program, self._net, self._body, d.arc, self._env, [d.term])
+        self._body.emit(ir.Wanted(tuple(takes)))
+
+    def _draws(self, term: Term) -> bool:
+        return any(self._program.is_impure(x) for x in parts(term))
 
     def _holds(self, demand: _Demand) -> bool:
         """Test for a single value with a constant coefficient; False if the demand is not of this kind."""
@@ -343,8 +357,40 @@ class _Enumeration:
         return free <= self._bound
 
     def _can_term(self, term: Term) -> bool:
-        parts = [term.coefficient, term.value] + ([term.delay] if term.delay is not None else [])
-        return all(self._can(p) for p in parts)
+        return all(self._can(x) for x in parts(term))
+
+
+def parts(term: Term) -> list[core.Exp]:
+    """The expressions of a term of an input arc."""
+    return [term.coefficient, term.value] + ([term.delay] if term.delay is not None else [])
+
+
+_TOTAL = frozenset(
+    {"=", "<>", "Ms.`", "Ms.++", "Bool.not", "String.^"}
+    | {f"{s}.{op}" for s in ("Int", "IntInf", "Real", "String") for op in ("<", "<=", ">", ">=")}
+    | {f"{s}.{op}" for s in ("Int", "IntInf", "Real") for op in ("+", "-", "*", "~")}
+)
+"""Built-in functions that do nothing but give a value; an Overflow is taken where it comes."""
+
+
+def is_total(e: core.Exp) -> bool:
+    """Whether an expression has a value without doing anything: neither exceptions nor random numbers."""
+    match e:
+        case core.Lit() | core.Var() | core.Con():
+            return True
+        case core.RecordExp(fields=fields):
+            return all(is_total(x) for _, x in fields)
+        case core.ListExp(items=items):
+            return all(map(is_total, items))
+        case core.Apply(function=core.Con(), argument=argument):
+            return is_total(argument)
+        case core.Apply(function=core.Builtin(name=name), argument=argument) if name in _TOTAL:
+            return is_total(argument)
+        case core.Select(record=record):
+            return is_total(record)
+        case core.If(condition=c, then=t, otherwise=o):
+            return is_total(c) and is_total(t) and is_total(o)
+    return False
 
 
 def _colsets(types: Types, pattern: core.Pat, colset: Colset | None) -> dict[int, str]:

@@ -38,6 +38,7 @@ void pn_ctx_init(pn_ctx_t *cx, pn_arena_t *arena, uint64_t seed)
     cx->error_origin = "";
     cx->origin = "";
     cx->seed = seed;
+    pn_stack_init(cx);
     pn_random_start(cx, PN_RANDOM_START);
 }
 

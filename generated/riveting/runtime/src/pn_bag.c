@@ -213,6 +213,9 @@ void pn_bag_next_time(const pn_bag_t *bag, const void *marking, pn_time_t now, b
     for (uint32_t i = 0U; i < pn_bag_used(bag, marking); i++) {
         const pn_time_t stamp = pn_bag_stamp_of(bag, pn_bag_entry(bag, marking, i));
         consider(bag, stamp, now, found, next);
+        if (bag->is_early_open && (stamp.integer > now.integer)) {
+            consider(bag, (pn_time_t){ .integer = now.integer + 1 }, now, found, next);
+        }
         for (uint32_t k = 0U; k < bag->early_count; k++) {
             pn_time_t earlier = stamp;
             if (bag->is_real_time) {

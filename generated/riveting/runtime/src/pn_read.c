@@ -30,8 +30,12 @@ void pn_read_fail(pn_ctx_t *cx)
     pn_raise(cx, PN_ERR_RAISED, "IOError");
 }
 
+/* After an error references are NULL: there is nothing to read then. */
 bool pn_read_accept(pn_string_t text, int64_t *at, pn_string_t word)
 {
+    if (at == NULL) {
+        return false;
+    }
     skip(text, at);
     const int64_t left = (int64_t)text.length - *at;
     if ((word.length == 0U) || ((int64_t)word.length > left) || (memcmp(&text.bytes[*at], word.bytes, word.length) != 0)) {
@@ -56,6 +60,9 @@ static void expect(pn_ctx_t *cx, pn_string_t text, int64_t *at, pn_string_t word
 
 bool pn_read_is_done(pn_string_t text, int64_t *at)
 {
+    if (at == NULL) {
+        return true;
+    }
     skip(text, at);
     return *at >= (int64_t)text.length;
 }
@@ -73,6 +80,9 @@ static bool sign(pn_string_t text, int64_t *at)
 
 int64_t pn_read_integer(pn_ctx_t *cx, pn_string_t text, int64_t *at)
 {
+    if (at == NULL) {
+        return 0;
+    }
     const int64_t start = *at;
     const bool has_bracket = pn_read_accept(text, at, PN_STRING("("));
     skip(text, at);
@@ -106,6 +116,9 @@ static void digits(pn_string_t text, int64_t *at, char *out, size_t *length, siz
 double pn_read_number(pn_ctx_t *cx, pn_string_t text, int64_t *at)
 {
     char out[800]; /* more digits than any double needs */
+    if (at == NULL) {
+        return 0.0;
+    }
     const size_t capacity = sizeof out - 16U;
     const int64_t start = *at;
     const bool has_bracket = pn_read_accept(text, at, PN_STRING("("));
@@ -309,8 +322,11 @@ static void input(pn_ctx_t *cx, const pn_type_t *type, void *value, pn_string_t 
 
 void pn_colset_input(pn_ctx_t *cx, const pn_type_t *type, void *value, pn_string_t text, int64_t *at)
 {
-    const int64_t start = *at;
     (void)memset(value, 0, type->size);
+    if (at == NULL) {
+        return;
+    }
+    const int64_t start = *at;
     input(cx, type, value, text, at);
     if (!pn_ok(cx)) {
         *at = start;

@@ -49,6 +49,7 @@ static void print_help(void)
                  "  --replay FILE  first repeat these steps (src/simulate_replay.c); - is the standard input; they do not count for\n"
                  "                 --steps\n"
                  "  --files DIR    let the net read and write files below DIR; without it there are none\n"
+                 "  --watch WHAT   a monitor (src/simulate_watch.c); may be repeated\n"
                  "  --report FILE  write how the run ended, as JSON (src/simulate_report.c)\n"
                  "  --progress S   with --report: a line every S seconds\n"
                  "  --help         this text\n\n"
@@ -101,6 +102,9 @@ static bool read_valued(const char *option, const char *value, sim_options_t *op
     if (strcmp(option, "--files") == 0) {
         options->files = value;
         return true;
+    }
+    if (strcmp(option, "--watch") == 0) {
+        return sim_watch_add(value);
     }
     if (strcmp(option, "--report") == 0) {
         options->report = value;
@@ -177,7 +181,7 @@ static void print_enabled(sim_t *sim)
 
 static void play(sim_t *sim)
 {
-    if ((sim->options.replay != NULL) && !sim_replay(sim)) {
+    if (!sim_watch_start(sim) || ((sim->options.replay != NULL) && !sim_replay(sim))) {
         return;
     }
     sim->why = "steps";
@@ -209,6 +213,7 @@ static bool play_with_trace(sim_t *sim)
         (void)snprintf(sim->message, sizeof sim->message, "%s", strerror(errno));
     } else {
         play(sim);
+        sim_watch_stop(sim);
         pn_trace_model_end(&sim->trace, pn_net.now(sim->marking), pn_net.real_time, sim->why);
     }
     if (!pn_trace_close(&sim->trace)) {
@@ -302,6 +307,8 @@ static bool make(sim_t *sim, pn_arena_t *arena)
     sim->why = "";
     sim->doing = "";
     sim->transition = -1;
+    sim->watch = -1;
+    sim->watch_limit = "";
     return true;
 }
 

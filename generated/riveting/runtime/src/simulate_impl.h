@@ -62,12 +62,17 @@ typedef struct sim {
     char message[512];   /* of a replay that is refused */
     int64_t transition;  /* that went wrong; -1: none */
     bool has_binding;    /* `binding` is of that transition */
+    bool time_grew;      /* in the last sim_settle */
+    int64_t watch;       /* the monitor that stopped the run, or that failed; -1: none */
+    const char *watch_limit; /* "watch": its numbers became too large */
 } sim_t;
 
 /* --- simulate_play.c: the search and the steps --- */
 
 /* Moves time on to where something is enabled, if nothing is now; fills `enabled` with the transitions of the best priority. */
 sim_next_t sim_settle(sim_t *sim);
+/* The first half of it: fills `enabled` with what is enabled now. False after an error. */
+bool sim_find_enabled(sim_t *sim);
 /* Works out `level_end`. */
 void sim_find_levels(sim_t *sim);
 /* Forgets what is known of all transitions: the marking or the time has changed from outside. */
@@ -85,6 +90,19 @@ void sim_catch_signals(void);
 
 /* Repeats the steps of a script (see there); false when the run ends here. */
 bool sim_replay(sim_t *sim);
+
+/* --- simulate_watch.c: the simple monitors --- */
+
+/* Takes a monitor from its text (see there); false when it is not well-formed. */
+bool sim_watch_add(const char *text);
+/* Before the first step, after a step, after model time went on while something is enabled, after the last step. False: the run ends
+ * here, `why` says why. */
+bool sim_watch_start(sim_t *sim);
+bool sim_watch_step(sim_t *sim, uint32_t transition);
+bool sim_watch_time(sim_t *sim);
+void sim_watch_stop(sim_t *sim);
+/* A member "watched" for the report: what each has collected. */
+void sim_text_watches(pn_text_t *text);
 
 /* --- simulate_report.c: for the program that has started this one --- */
 

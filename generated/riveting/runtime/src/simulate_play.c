@@ -39,6 +39,9 @@ void sim_catch_signals(void)
     (void)sigemptyset(&action.sa_mask);
     (void)sigaction(SIGINT, &action, NULL);
     (void)sigaction(SIGTERM, &action, NULL);
+    action.sa_handler = SIG_IGN; /* a file that may not grow any more is an error of writing */
+    action.sa_flags = 0;
+    (void)sigaction(SIGXFSZ, &action, NULL);
 }
 
 void sim_fail(sim_t *sim, const char *doing, int64_t transition, bool has_binding)
@@ -125,7 +128,7 @@ void sim_find_levels(sim_t *sim)
 }
 
 /* Fills `enabled` with the transitions of the best priority that are enabled now. False after an error. */
-static bool find_enabled(sim_t *sim)
+bool sim_find_enabled(sim_t *sim)
 {
     uint32_t count = 0U;
     uint32_t last = pn_net.order_count;
@@ -153,7 +156,8 @@ static bool is_after(pn_time_t a, pn_time_t b)
 
 sim_next_t sim_settle(sim_t *sim)
 {
-    bool is_fine = find_enabled(sim);
+    bool is_fine = sim_find_enabled(sim);
+    sim->time_grew = false;
     if (is_fine && (sim->enabled_count > 0U) && !sim->options.has_until) {
         return SIM_FOUND;
     }
@@ -162,7 +166,8 @@ sim_next_t sim_settle(sim_t *sim)
     while (is_fine && (sim->enabled_count == 0U) && pn_net.timed && pn_net.next_time(sim->marking, &next)) {
         pn_net.set_now(sim->marking, next);
         sim_forget(sim);
-        is_fine = find_enabled(sim);
+        is_fine = sim_find_enabled(sim);
+        sim->time_grew = true;
     }
     if (!is_fine) {
         return SIM_FAILED;
@@ -261,6 +266,13 @@ bool sim_fire(sim_t *sim, uint32_t transition)
             return false;
         }
     }
+    if (!sim_watch_step(sim, transition)) {
+        if ((strcmp(sim->why, "error") == 0) && (sim->watch >= 0)) {
+            sim->transition = (int64_t)transition;
+            sim->has_binding = true;
+        }
+        return false;
+    }
     return true;
 }
 
@@ -270,7 +282,7 @@ bool sim_step(sim_t *sim)
     sim->cx.step = sim->steps;
     switch (sim_settle(sim)) {
     case SIM_FOUND:
-        return draw(sim, &transition) && sim_fire(sim, transition);
+        return (!sim->time_grew || sim_watch_time(sim)) && draw(sim, &transition) && sim_fire(sim, transition);
     case SIM_FINISHED:
         sim->why = "finished";
         return false;

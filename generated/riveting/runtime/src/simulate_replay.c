@@ -115,6 +115,9 @@ static bool repeat(sim_t *sim, const given_t *given)
     if (next != SIM_FOUND) {
         return refuse(sim, "not enabled: nothing is", (next == SIM_BEYOND) ? " until the given time" : "");
     }
+    if (sim->time_grew && !sim_watch_time(sim)) {
+        return false;
+    }
     if (!check_time(sim, given)) {
         return false;
     }

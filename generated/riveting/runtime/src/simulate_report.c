@@ -6,8 +6,9 @@
  *     {"why": "finished", "steps": 1200, "replayed": 0, "t": 14, "marking": {"Top.P": [[1, 5]]}}        the end
  *
  * After an error the end also has "error", "origin", "doing", and where they are known "transition" (its index) and "binding";
- * when it was one of the program and not of the net, "limit": "room" (a place is full) or "memory" (of lists and strings); after
- * a replay that was refused "message".
+ * when it was one of the program and not of the net, "limit": "room" (a place is full), "memory" (of lists and strings) or "watch"
+ * (numbers of a monitor); after a replay that was refused "message"; after a breakpoint, or when a monitor failed, "watch": its index.
+ * "watched" has what each monitor of --watch has collected.
  */
 #include <inttypes.h>
 #include <string.h>
@@ -99,7 +100,9 @@ static void text_error(pn_text_t *text, const sim_t *sim)
     text_member(text, "error", sim->cx.error_name);
     text_member(text, "origin", sim->cx.error_origin);
     text_member(text, "doing", sim->doing);
-    if (sim->cx.error == PN_ERR_CAPACITY) {
+    if (sim->watch_limit[0] != '\0') {
+        text_member(text, "limit", sim->watch_limit);
+    } else if (sim->cx.error == PN_ERR_CAPACITY) {
         text_member(text, "limit", "room");
     } else if (sim->cx.error == PN_ERR_MEMORY) {
         text_member(text, "limit", "memory");
@@ -142,6 +145,11 @@ bool sim_report_end(sim_t *sim)
     if (strcmp(sim->why, "error") == 0) {
         text_error(&text, sim);
     }
+    if (sim->watch >= 0) {
+        pn_text_str(&text, ", \"watch\": ");
+        pn_text_int(&text, sim->watch);
+    }
+    sim_text_watches(&text);
     if (sim->message[0] != '\0') {
         text_member(&text, "message", sim->message);
     }

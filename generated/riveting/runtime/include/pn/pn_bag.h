@@ -27,6 +27,7 @@ typedef struct pn_bag {
     size_t stamp;
     uint32_t early_count;      /* of the delays of input arcs (`x@+3`), by which tokens may be taken before their stamps */
     const pn_time_t *early;
+    bool is_early_open;        /* there are delays that are known only when they are computed; integer time then goes on in ones */
 } pn_bag_t;
 
 /* The offsets of a place `member` of a marking, for the initialiser of a pn_bag_t; PN_BAG_STAMPS as well if it is timed. */

@@ -22,13 +22,27 @@ static inline bool pn_ok(const pn_ctx_t *cx)
     return cx->error == PN_OK;
 }
 
+/* Finds out how deep the recursion may be: as deep as the stack of the calling thread, which is made larger if possible;
+ * PN_DEPTH_MAX calls where the system says nothing. Called by pn_ctx_init. */
+void pn_stack_init(pn_ctx_t *cx);
+
 /* Begins a call of a recursive function: false when an error is set or the recursion is too deep (PN_ERR_DEPTH). */
 #ifndef PN_DEPTH_MAX
 #define PN_DEPTH_MAX 10000U
 #endif
+static inline bool pn_is_deep(const pn_ctx_t *cx)
+{
+#if defined(__GNUC__)
+    if (cx->stack_limit != 0U) {
+        return (uintptr_t)__builtin_frame_address(0) < cx->stack_limit;
+    }
+#endif
+    return cx->depth >= PN_DEPTH_MAX;
+}
+
 static inline bool pn_enter(pn_ctx_t *cx)
 {
-    if (cx->depth >= PN_DEPTH_MAX) {
+    if (pn_is_deep(cx)) {
         pn_raise(cx, PN_ERR_DEPTH, NULL);
     }
     if (cx->error != PN_OK) {

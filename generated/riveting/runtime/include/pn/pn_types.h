@@ -45,6 +45,7 @@ typedef struct pn_ctx {
     const char *error_origin; /* net element being evaluated when it was raised */
     const char *origin;       /* net element being evaluated now */
     uint32_t depth;           /* of recursion */
+    uintptr_t stack_limit;    /* lowest address that recursion may reach; 0: not known, the depth counts */
     pn_time_t now;            /* model time of the marking being looked at; set by enumerate, fire and init */
     uint64_t step;            /* number of occurrences so far, for step(); the host counts */
     uint64_t seed;            /* of all random numbers of the run */
