@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import pytest
+
 from helpers.netbuilder import diagnose, flat
 
 HIERARCHY = """
@@ -227,3 +229,12 @@ def test_timed() -> None:
     )
     assert net.timed and net.real_time
     assert not flat("net N\n  standard\n  colset T = int timed;\n  place A : INT").timed
+
+
+def test_a_deep_hierarchy_is_refused(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("pn2code.net.flatten.MAX_DEPTH", 3)
+    pages = "".join(f"  page P{i}\n    subst S = P{i + 1} ()\n" for i in range(4))
+    d = diagnose(f"net N\n  standard\n{pages}  page P4\n    place A : INT\n")
+    (error,) = d.errors
+    assert error.code == "net-too-large"
+    assert error.message == "5 pages stand one below the other, more than the 3 allowed"

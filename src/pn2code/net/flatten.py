@@ -24,11 +24,13 @@ from pn2code.net.flat import (
     FlatTransition,
     PlaceInstance,
 )
-from pn2code.net.instances import PageInstance, count_elements, expand, unique_names
+from pn2code.net.instances import PageInstance, expand, measure, unique_names
 from pn2code.net.typed import TypedNet, TypedPlace
 
 MAX_ELEMENTS = 500_000
 """Places and transitions of a flat net."""
+MAX_DEPTH = 1_000
+"""Pages one below the other."""
 
 Key = tuple[int, str]
 """A place instance: index of the page instance, place id."""
@@ -36,7 +38,15 @@ Key = tuple[int, str]
 
 def flatten(net: TypedNet, d: Diagnostics) -> FlatNet | None:
     """Expand the hierarchy; None after errors."""
-    total = count_elements(net)
+    total, depth = measure(net)
+    if depth > MAX_DEPTH:
+        d.error(
+            NET_TOO_LARGE,
+            f"{depth:,} pages stand one below the other, more than the {MAX_DEPTH:,} allowed",
+            Origin(net.net.document.file),
+            hint="real nets have less than ten levels: was the file made by a program?",
+        )
+        return None
     if total > MAX_ELEMENTS:
         d.error(
             NET_TOO_LARGE,
@@ -52,7 +62,8 @@ def flatten(net: TypedNet, d: Diagnostics) -> FlatNet | None:
 
 def check_hierarchy(net: TypedNet, d: Diagnostics) -> None:
     """Report ports and fusion sets that do not fit, of a net in which other things are wrong and may be missing."""
-    if count_elements(net) <= MAX_ELEMENTS:
+    total, depth = measure(net)
+    if total <= MAX_ELEMENTS and depth <= MAX_DEPTH:
         _Flattener(net, expand(net), d).merge()
 
 

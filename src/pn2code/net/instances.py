@@ -42,10 +42,16 @@ class PageInstance:
         return f"{self.path.replace('/', '.')}.{element}"
 
 
-def count_elements(net: TypedNet) -> int:
-    """How many places and transitions the flat net would have, before merging; cheap however many that are."""
+def measure(net: TypedNet) -> tuple[int, int]:
+    """Size of the hierarchy, cheap however large it is.
+
+    Returns:
+        How many places and transitions the flat net would have, before merging, and how many pages stand one
+        below the other.
+    """
     pages = {p.id: p for p in net.pages}
     totals: dict[str, int] = {}
+    depths: dict[str, int] = {}
     for start in net.pages:
         # Post-order with an explicit stack; recursion of pages has been refused by the linker.
         stack = [(start.id, False)]
@@ -58,10 +64,11 @@ def count_elements(net: TypedNet) -> int:
             if expanded or not below:
                 own = len(page.places) + len(page.transitions) + 1
                 totals[identity] = own + sum(totals[b] for b in below)
+                depths[identity] = 1 + max((depths[b] for b in below), default=0)
             else:
                 stack.append((identity, True))
                 stack.extend((b, False) for b in below)
-    return sum(totals[p] for p in net.prime_pages)
+    return sum(totals[p] for p in net.prime_pages), max(depths.values(), default=0)
 
 
 def expand(net: TypedNet) -> list[PageInstance]:
