@@ -53,10 +53,20 @@ _WORDS: dict[str, str] = {
 _LIST_FUNCTIONS = frozenset(
     {"nth", "exists", "find", "last", "take", "drop", "tabulate", "partition"}
 )
-_OLD_MEMBERS = frozenset({
+_MEMBERS = [
     "all", "size", "ord", "col", "ran", "mkstr", "mkstr_ms", "lt", "legal", "mult", "input", "output", "input_ms",
-    "output_ms",
-})  # fmt: skip
+    "output_ms", "illegal_msg", "cmp",
+]  # fmt: skip
+_OLD_MEMBERS: dict[str, str] = {
+    **{name: name for name in _MEMBERS},
+    "mkst": "mkstr",
+    "mkst_col": "mkstr",
+    "mkst_ms": "mkstr_ms",
+    "input_col": "input",
+    "output_col": "output",
+}
+"""Functions of a colour set in Design/CPN, `all'C`, and what they are called today, where that is another name."""
+_OUTSIDE = {"MSC": "message sequence charts", "SPN": "BritNeY", "Britney": "BritNeY", "TCP": "sockets"}
 
 
 _STATE_SPACE = frozenset(
@@ -110,7 +120,7 @@ def unbound_word(name: str, colsets: Iterable[str]) -> str:
         return "it belongs to the state-space tool, and is not there before a state space has been made"
     member, apostrophe, colset = name.partition("'")
     if apostrophe and member in _OLD_MEMBERS and colset in set(colsets):
-        return f"this is the spelling of Design/CPN: write `{colset}.{member}`"
+        return f"this is the spelling of Design/CPN: write `{colset}.{_OLD_MEMBERS[member]}`"
     if name in set(colsets):
         return f"`{name}` is a colour set; here one of its values or a variable is needed"
     return ""
@@ -140,8 +150,14 @@ def unbound_path(structure: str, member: str, colsets: Iterable[str], known: Ite
         known = f"structure `{structure}` has no function of that name"
         return f"did you mean `{structure}.{close}`?" if close else known
     structures = {n.rpartition(".")[0] for n in names} - {""}
-    close = near(structure, {*structures, *colsets}, cutoff=0.5)
-    return f"did you mean `{close}.{member}`?" if close else ""
+    if structure in _OUTSIDE:
+        return f"`{structure}` ({_OUTSIDE[structure]}) is a library outside of CPN Tools that is not loaded"
+    fitting = {n for n in structures if f"{n}.{member}" in names}
+    if member in _MEMBERS or member.startswith(("set_", "of_")):
+        fitting.update(colsets)
+    close = near(structure, fitting, cutoff=0.5)
+    missing = f"there is no structure or colour set `{structure}`"
+    return f"did you mean `{close}.{member}`?" if close else missing
 
 
 # --- syntax

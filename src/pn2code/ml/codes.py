@@ -232,3 +232,8 @@ TYPE_VARIABLE = register(
     "In `fun f (x : 'a) = x + 1` the variable `'a` would have to be int, but it promises that the function works for "
     "any type. Leave it out, or write the type that is meant.",
 )
+TEXT_TOO_LONG = register(
+    "text-too-long",
+    "a text is too long",
+    "One declaration or inscription has more than 300,000 symbols. Split it, or read the data at run time.",
+)

@@ -178,7 +178,9 @@ class Elaborator:
             before = len(self._d.items)
             self._border(text, partial(self._declaration, text, dec))
             if any(x.severity is Severity.ERROR for x in self._d.items[before:]):
-                self._break(declared_names(text, dec.span.start, dec.span.end), ())
+                names = declared_names(text, dec.span.start, dec.span.end)
+                self._break(names, types_declared_by(dec))
+                break_modules(dec, self._ctx.top)
 
     def _declaration(self, text: SourceText, dec: s.Dec) -> None:
         resolved = resolve_declaration(dec, self._fixities, self._d)

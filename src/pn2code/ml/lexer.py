@@ -16,6 +16,8 @@ _KEYWORDS = """
 abstype and andalso as case datatype do else end eqtype exception fn fun functor handle if in include infix infixr let
 local nonfix of op open orelse raise rec sharing sig signature struct structure then type val where while with withtype
 """
+MAX_TOKENS = 300_000
+"""Longest text that is read; checking takes seconds for each hundred thousand symbols."""
 KEYWORDS: frozenset[str] = frozenset(_KEYWORDS.split())
 CODE_WORDS: frozenset[str] = frozenset({"input", "output", "action"})
 """Keywords in code segments only."""
@@ -84,6 +86,14 @@ class _Lexer:
                 if not self._comment():
                     return None
             elif not self._token():
+                return None
+            elif len(self._tokens) > MAX_TOKENS:
+                self._d.error(
+                    codes.TEXT_TOO_LONG,
+                    f"this text has more than {MAX_TOKENS} symbols",
+                    self._source.span(0, min(40, len(self._text))),
+                    hint="split it into several declarations",
+                )
                 return None
         return self._tokens
 

@@ -216,6 +216,8 @@ class Names:
                 hint = advice.variable_out_of_scope(span.source.origin.part)
         if not hint and name[0].isalpha() and not path:
             hint = f"declare it: `var {name} : C;` for a variable of colour set C, or `val {name} = ..`"
+            if span.source.origin.part in ("initial marking", "priority"):
+                hint = f"declare it: `val {name} = ..`, or `fun {name} () = ..`"
             if span.source.origin.part == "declaration":
                 hint = "it must be declared before this place"
         self._ctx.error(codes.UNBOUND, f"{quoted(name)} is not declared", span, hint=hint)

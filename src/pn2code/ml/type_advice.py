@@ -93,6 +93,8 @@ def wrong_operand(what: str, found: Ty, text: str) -> str:
             )
         case "`" if what.startswith("left") and kind not in ("int", "list", ""):
             return "a multi-set is written `number of tokens`, backquote, token: 2`v"
+    if isinstance(prune(found), IFun):
+        return ""
     if what == "condition of `if`" or what.endswith(
         ("operand of `andalso`", "operand of `orelse`")
     ):
