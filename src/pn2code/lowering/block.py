@@ -45,6 +45,7 @@ class Block(TypeSource):
         self.statements: list[Stmt] = []
         self._locals = 0
         self._inlined: list[int] = []
+        self._inlines = 0
         self._matcher = Matcher(self)
         self.has_self_call = False
 
@@ -169,20 +170,27 @@ class Block(TypeSource):
         """The values of expressions that are evaluated one after the other: what may raise is computed before what
         comes after it changes or raises something."""
         values: list[Val] = []
+        pending: list[int] = []  # those of them that may still raise
         for part in parts:
             block = self.statements
             mark = len(block)
             value = part()
-            if any(map(may_raise, values)):
+            if pending:
                 grown = tuple(block[mark:])
                 clashes = self.program.handles and (
                     (may_raise(value) or code_may_raise(grown))
-                    and not all(map(raises_only_overflow, [*values, value, grown]))
+                    and not all(
+                        map(raises_only_overflow, [*(values[i] for i in pending), value, grown])
+                    )
                 )
                 if clashes or has_effect(block[mark:]):
                     with self.block() as before:
-                        values = [self.settle(v, "operand") if may_raise(v) else v for v in values]
+                        for i in pending:
+                            values[i] = self.settle(values[i], "operand")
                     block[mark:mark] = before
+                    pending = []
+            if may_raise(value):
+                pending.append(len(values))
             values.append(value)
         return values
 

@@ -41,6 +41,9 @@ from pn2code.ml import core
 from pn2code.ml.types import INT, TFun, Type
 
 _MAX_INLINE = 60
+"""Functions in each other's places."""
+_MAX_INLINES = 1000
+"""Functions put in place in one C function."""
 _UNIT = UNIT_VALUE
 
 
@@ -198,7 +201,8 @@ class Body(Branching):
         return ir.MakeUnion(self.tag_of(function.constructor, code.type), code, t)
 
     def _inline(self, function: Closure, argument: Val, at: Span) -> Val:
-        if len(self._inlined) > _MAX_INLINE:
+        self._inlines += 1
+        if len(self._inlined) > _MAX_INLINE or self._inlines > _MAX_INLINES:
             # Too many functions in each other's places: a call of a value ends that.
             code = self.code(function, at)
             return self.program.function_values.apply(self, code, argument, at)
