@@ -150,27 +150,67 @@ def collate(e: Evaluator, compare: Value, p: tuple[Items, Items]) -> Task:
 
 
 def sort(e: Evaluator, less: Value, items: Items) -> Task:
-    """Merge sort; stable. (CPN Tools' own may exchange elements that are equal to `less`.)"""
-    if len(items) < 2:
-        return items
-    middle = len(items) // 2
-    left = list((yield sort(e, less, items[:middle])))
-    right = list((yield sort(e, less, items[middle:])))
-    left.reverse()
-    right.reverse()
-    merged: list[Value] = []
-    while left and right:
-        take_right = yield e.call(less, (right[-1], left[-1]))
-        merged.append(right.pop() if take_right else left.pop())
-    return (*merged, *reversed(left), *reversed(right))
+    """Merge sort of the runs that are there, in CPN Tools' order of comparisons.
+
+    Stable if `less` is a strict order; with `<=` for `less`, equal elements of different runs change places.
+    """
+    return _merge_sort(e, less, items, _merge)
 
 
 def _unique_sort(e: Evaluator, less: Value, items: Items) -> Task:
-    found: list[Value] = []
-    for item in (yield sort(e, less, items)):
-        if not found or (yield e.call(less, (found[-1], item))):
-            found.append(item)
-    return tuple(found)
+    """The same; of equal elements of different runs the later one stays."""
+    return _merge_sort(e, less, items, _merge_unique)
+
+
+def _merge_sort(e: Evaluator, less: Value, items: Items, merge: Callable[..., Task]) -> Task:
+    lists: list[Items] = []  # the latest run last
+    start = runs = 0
+    while start < len(items):
+        end = start + 1
+        while end < len(items) and (yield e.call(less, (items[end - 1], items[end]))):
+            end += 1
+        lists.append(items[start:end])
+        runs += 1
+        # as many merges as the number of runs can be halved: both lists then come from as many runs
+        size = runs
+        while len(lists) > 1 and size % 2 == 0:
+            later, earlier = lists.pop(), lists.pop()
+            lists.append((yield merge(e, less, later, earlier)))
+            size //= 2
+        start = end
+    while len(lists) > 1:
+        later, earlier = lists.pop(), lists.pop()
+        lists.append((yield merge(e, less, later, earlier)))
+    return lists[0] if lists else ()
+
+
+def _merge(e: Evaluator, less: Value, later: Items, earlier: Items) -> Task:
+    i = j = 0
+    merged: list[Value] = []
+    while i < len(later) and j < len(earlier):
+        if (yield e.call(less, (later[i], earlier[j]))):
+            merged.append(later[i])
+            i += 1
+        else:
+            merged.append(earlier[j])
+            j += 1
+    return (*merged, *later[i:], *earlier[j:])
+
+
+def _merge_unique(e: Evaluator, less: Value, later: Items, earlier: Items) -> Task:
+    i = j = 0
+    merged: list[Value] = []
+    while i < len(later) and j < len(earlier):
+        if (yield e.call(less, (later[i], earlier[j]))):
+            merged.append(later[i])
+            i += 1
+        elif (yield e.call(less, (earlier[j], later[i]))):
+            merged.append(earlier[j])
+            j += 1
+        else:
+            merged.append(later[i])
+            i, j = i + 1, j + 1
+    return (*merged, *later[i:], *earlier[j:])
 
 
 # --- of CPN Tools --------------------------------------------------------------------------------

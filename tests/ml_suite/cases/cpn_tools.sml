@@ -75,3 +75,9 @@ let val f = TextIO.openOut "out.txt" in TextIO.output (f, "x"); TextIO.closeOut 
 INT.input (TextIO.openString " (~5) ") ==>> ~5
 INT.input_ms (TextIO.openString "2`1 ++ 1`3 ") ==>> [1, 1, 3]
 STRING.input (TextIO.openString "\"a b\"") ==>> "a b"
+sort (fn ((a, _), (b, _)) => a < b) [(2, "a"), (1, "b"), (2, "c"), (1, "d"), (3, "e"), (1, "f")] ==>> [(1, "b"), (1, "d"), (1, "f"), (2, "a"), (2, "c"), (3, "e")]
+sort (fn ((a, _), (b, _)) => a <= b) [(2, "a"), (1, "b"), (2, "c"), (1, "d"), (3, "e"), (1, "f")] ==>> [(1, "f"), (1, "d"), (1, "b"), (2, "c"), (2, "a"), (3, "e")]
+sort (fn ((a, _), (b, _)) => a <= b) [(1, "a"), (1, "b"), (1, "c")] ==>> [(1, "a"), (1, "b"), (1, "c")]
+unique_sort (fn ((a, _), (b, _)) => a < b) [(2, "a"), (1, "b"), (2, "c"), (1, "d")] ==>> [(1, "d"), (2, "c")]
+unique_sort (op <) [3, 1, 2, 3, 1] ==>> [1, 2, 3]
+sort (op <) [5, 4, 3, 2, 1, 6, 7, 0] ==>> [0, 1, 2, 3, 4, 5, 6, 7]
