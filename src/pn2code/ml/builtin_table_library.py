@@ -279,6 +279,8 @@ Output.initSimOutputDir : unit -> unit ; makes the folder `output`
 Output.initTopOutputDir : unit -> unit ; makes the folder `output`
 Output.initRepOutputDir : unit -> unit ; makes the folder `output`
 Output.myConcat : string * string -> string ; OS.Path.concat
+CPN'PerfReport.selectUntimedStats : 'a -> unit ; nothing: which statistics a report of CPN Tools shows
+CPN'PerfReport.selectTimedStats : 'a -> unit ; nothing: which statistics a report of CPN Tools shows
 
 -- wall clocks stand still here, so that runs can be repeated
 Time.zeroTime : Time.time ; no time

@@ -364,6 +364,10 @@ FUNCTIONS: dict[str, tuple[int, Function]] = {
         f"Output.{name}": _on_files(_make_output)
         for name in ("initSimOutputDir", "initTopOutputDir", "initRepOutputDir")
     },
+    **{
+        f"CPN'PerfReport.select{kind}Stats": (1, lambda e, choice: ())
+        for kind in ("Untimed", "Timed")
+    },
     "Output.myConcat": (1, lambda e, p: concatenated(p)),
 }
 """Full name -> number of curried arguments, function."""
