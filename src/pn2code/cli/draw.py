@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import difflib
 import sys
 from collections.abc import Mapping, Sequence
 from pathlib import Path
@@ -23,6 +22,7 @@ from pn2code.cli.options import (
     stop,
 )
 from pn2code.diagnostics import Diagnostics, Origin, Severity
+from pn2code.diagnostics.near import nearest
 from pn2code.drawing.codes import DRAW_ARRANGED, DRAW_OUTPUT, DRAW_PAGE
 from pn2code.net import front
 from pn2code.reading.document import Document, RawPage
@@ -138,9 +138,9 @@ def _chosen(document: Document, wanted: str | None, form: Format) -> list[RawPag
     if found:
         return found
     names = [p.name for p in document.pages]
-    close = difflib.get_close_matches(name, names, n=1, cutoff=0.5)
+    close = nearest(name, names, cutoff=0.5)
     listed = ", ".join(f"`{n}`" for n in names[:12]) + (", ..." if len(names) > 12 else "")
-    hint = f"did you mean `{close[0]}`?" if close else f"the pages are {listed}"
+    hint = f"did you mean `{close}`?" if close else f"the pages are {listed}"
     _refuse(DRAW_PAGE, f"there is no page `{wanted}`", hint, form)
 
 
