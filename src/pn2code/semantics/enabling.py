@@ -285,7 +285,7 @@ class Enabling:
         return self._guards[t.index]
 
     def _evaluate(self, exp: Any, found: Found) -> Any:
-        return self.evaluator.run(self.evaluator.step(exp, found))
+        return self.evaluator.evaluate(exp, found)
 
     def _early(self, arc: FlatArc, term: Term, found: Found) -> Any:
         if term.delay is None:

@@ -96,8 +96,6 @@ class Evaluator:
         output: Callable[[str], None] = lambda text: None,
         files: Files | None = None,
     ) -> None:
-        # Nested expressions (`a ++ b ++ ...`) are nested calls here; those of functions are not.
-        sys.setrecursionlimit(max(sys.getrecursionlimit(), _RECURSION_LIMIT))
         self.program: core.Program = program
         self.limits = limits or Limits()
         self.files: Files = files or Files(output=output)
@@ -117,8 +115,15 @@ class Evaluator:
 
     def value(self, exp: core.Exp, binding: Mapping[Symbol, Value] | None = None) -> Value:
         """The value of an expression over net variables."""
-        environment = {symbol.uid: value for symbol, value in (binding or {}).items()}
-        return self.run(self.step(exp, environment))  # type: ignore[no-any-return]
+        return self.evaluate(exp, {symbol.uid: value for symbol, value in (binding or {}).items()})  # type: ignore[no-any-return]
+
+    def evaluate(self, exp: core.Exp, environment: Environment) -> Any:
+        """The value of an expression in an environment; raises what `run` raises."""
+        return self.run(self._first(exp, environment))
+
+    def _first(self, exp: core.Exp, environment: Environment) -> Task:
+        return Tail(self.step(exp, environment))
+        yield  # makes this a task
 
     def apply(self, function: Value, argument: Value) -> Value:
         """The value of a function at an argument."""
@@ -131,6 +136,15 @@ class Evaluator:
             MlException: it raised an exception that nothing handles.
             MlLimit: the limits are reached.
         """
+        # Nested expressions (`a ++ b ++ ...`) are nested calls here; those of functions are not.
+        before = sys.getrecursionlimit()
+        sys.setrecursionlimit(max(before, _RECURSION_LIMIT))
+        try:
+            return self._run(step)
+        finally:
+            sys.setrecursionlimit(before)
+
+    def _run(self, step: Step) -> Any:
         waiting: list[Task] = []
         fuel = self.limits.steps
         depth = self.limits.depth
