@@ -16,7 +16,19 @@ from typer.core import TyperGroup
 import pn2code
 from pn2code.cli.options import Exit
 
-VERBS = ("check", "marking", "enabled", "simulate", "replay", "generate", "run", "robot", "draw", "dump", "explain")
+VERBS = (
+    "check",
+    "marking",
+    "enabled",
+    "simulate",
+    "replay",
+    "generate",
+    "run",
+    "robot",
+    "draw",
+    "dump",
+    "explain",
+)
 
 
 class _Verbs(TyperGroup):
