@@ -188,7 +188,7 @@ def _renumbered(node: Any, offset: int, known: dict[int, Symbol]) -> Any:
 def instance(symbol: Symbol, t: Type) -> dict[int, Type]:
     """The types of a function's type variables where it has a type (that of a built-in function, perhaps by name)."""
     found: dict[int, Type] = {}
-    for general, special in _pairs(symbol.type, representation(t)):
+    for general, special in _pairs(representation(symbol.type), representation(t)):
         found.setdefault(general, special)
     return found
 
