@@ -214,6 +214,25 @@ def test_references_are_those_of_each_run() -> None:
     assert "the code segment gives `k` = 1, recorded is 2" in wrong.why
 
 
+def test_references_when_a_run_is_followed_twice() -> None:
+    text = """
+        net Count
+          standard
+          globref count = 0;
+          colset N = int;  colset T = int timed;
+          var n, k: N;
+          page Top
+            place A : N = 1`1 ++ 1`2
+            place B : T
+            trans T delay @+discrete (1, 1000) code output (k); action (count := !count + 1; !count)
+              in A : n
+              out B : k
+    """
+    steps: Steps = [("0", "T", {"n": "2", "k": "1"}), ("0", "T", {"n": "1", "k": "2"})]
+    found = run(text, steps, {"B": "1`1@1001+++\n1`2@1002"})
+    assert (found.ok, found.random) == (True, True)
+
+
 def test_arrays_too() -> None:
     text = """
         net Count

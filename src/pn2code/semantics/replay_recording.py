@@ -111,37 +111,36 @@ class _Refused(Exception):  # noqa: N818
 
 
 def follow(run: Recording, game: Game) -> Followed:
-    """Replays a recording from the game's marking on (which is not changed).
+    """Replays a recording from the game's marking on; the marking is not changed, references and `steps` are.
 
-    Raises:
-        GameError: never for what the run does; such errors are reasons.
+    An error of the net on the way is a reason why a step cannot be repeated.
     """
     effects = Effects(game.net.program)
-    strict = _Follower(game, effects, lenient=False)
-    result = strict.follow(run)
-    if result.ok or not strict.draws():
+    references = References(game.evaluator)
+    at_first = references.contents()
+    result = _Follower(game, effects, references, lenient=False).follow(run)
+    if result.ok or not outside(effects, game.net):
         return result
-    return _Follower(game, effects, lenient=True).follow(run)
+    references.restore(at_first)
+    return _Follower(game, effects, references, lenient=True).follow(run)
 
 
 class _Follower:
     """Carries states along a recording."""
 
-    def __init__(self, game: Game, effects: Effects, *, lenient: bool) -> None:
+    def __init__(
+        self, game: Game, effects: Effects, references: References, *, lenient: bool
+    ) -> None:
         self.game = game
         self.net: FlatNet = game.net
         self.effects = effects
         self.lenient = lenient
         self.names = TransitionNames(game.net)
-        self.references = References(game.evaluator)
+        self.references = references
         self.real_time = game.net.real_time
         self.final_tokens: dict[int, dict[str, int]] = {}
 
     # --- what is drawn -----------------------------------------------------------------------------
-
-    def draws(self) -> bool:
-        """Whether anything in the net is drawn (or looked up in the surroundings)."""
-        return outside(self.effects, self.net)
 
     def nature(self) -> str:
         """In words: in what way the net depends on more than itself."""
@@ -187,7 +186,8 @@ class _Follower:
             for state in states:
                 for t in candidates:
                     try:
-                        after |= dict.fromkeys(self.step(state, t, step))
+                        for found in self.step(state, t, step):
+                            after[found] = None
                     except (_Refused, GameError) as refused:
                         reasons[str(refused)] = None
             if not after:
