@@ -307,7 +307,7 @@ def timed(expression: str) -> Any:
         ("TI'timed.cmp(4@7, 3@8)", Data("GREATER", 2)),
         ("(TI'timed.size() handle CPN'Error _ => ~1)", -1),
         ("P.input (TextIO.openString \" ( (~2) ,\\\"a, b\\\") rest\")", (-2, "a, b")),
-        ("P.mkstr_ms (P.input_ms (TextIO.openString \"2`(1,\\\"x\\\") ++\\n1`(2,\\\"y\\\")\\n\"))", "2`(1,\"x\")++\n1`(2,\"y\")"),
+        ("size (P.input_ms (TextIO.openString \"2`(1,\\\"x\\\") ++\\n1`(2,\\\"y\\\")\\n\"))", 3),
         ("INT.input_ms (TextIO.openString \"empty\")", ()),
         ("(INT.input (TextIO.openString \"red\") handle CPN'StreamIO.IOError s => 0)", 0),
         ("TI'timed.mkstr_ms (TI'timed.input_ms (TextIO.openString \"2`3@7 +++ 1`4@8\"))", "2`3@7+++\n1`4@8"),

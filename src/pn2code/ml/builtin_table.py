@@ -265,7 +265,7 @@ Ms.ms_to_list : 'a ms -> 'a list ; the elements
 Ms.list_to_ms : 'a list -> 'a ms ; the elements
 Ms.sort_ms : ('a * 'a -> bool) -> 'a ms -> 'a ms ; sorted by `less`
 Ms.legal_ms : ('a -> bool) -> 'a ms -> bool ; whether all are legal
-Ms.mkstr_ms : ('a -> string) * ('a * 'a -> bool) -> 'a ms -> string ; the text of a multi-set, given those of its elements
+Ms.mkstr_ms : ('a -> string) * ('a * 'a -> bool) -> 'a ms -> string ; its text, given those of the elements
 
 -- time
 Time.@ : 'a * time -> 'a timed ; a token with an absolute time stamp

@@ -1,3 +1,4 @@
+# ruff: noqa: E501  (tables: one entry a line)
 """The rest of the SML Basis library, and what exists in CPN Tools but cannot run here: tables as in `builtin_table`.
 
 A line `== reason` flags the entries below it as unsupported: nets that use them are accepted with a warning, and a run

@@ -334,9 +334,9 @@ HIDDEN: frozenset[str] = frozenset(
 """Full names that no net can write; it has the short ones."""
 
 _OTHER_STRUCTURES = """
-Array2 BinIO CharVector CharArray ArraySlice VectorSlice CharVectorSlice CharArraySlice IEEEReal IO Int32 Int64 LargeWord
-SMLofNJ StringCvt Unix Posix Socket Word32 Word64 Word8Array Word8VectorSlice CPN'Time CPN'Replications Replications
-Queue Comms CPN'Sim CPN'NetCapture CPN'Monitors CPN'Env CPN'Settings CPN'StreamIO Cpn
+Array2 BinIO CharVector CharArray ArraySlice VectorSlice CharVectorSlice CharArraySlice IEEEReal IO Int32 Int64
+LargeWord SMLofNJ StringCvt Unix Posix Socket Word32 Word64 Word8Array Word8VectorSlice CPN'Time CPN'Replications
+Replications Queue Comms CPN'Sim CPN'NetCapture CPN'Monitors CPN'Env CPN'Settings CPN'StreamIO Cpn
 """
 
 STRUCTURES: frozenset[str] = frozenset(
@@ -349,7 +349,9 @@ STRUCTURES: frozenset[str] = frozenset(
 )
 """Structures of the library."""
 
-INCOMPLETE: frozenset[str] = frozenset({*_OTHER_STRUCTURES.split(), "Word8", "Word8Vector", "Random", "OS", "Output"})
+INCOMPLETE: frozenset[str] = frozenset(
+    {*_OTHER_STRUCTURES.split(), "Word8", "Word8Vector", "Random", "OS", "Output"}
+)
 """Those of which pn2code knows only a part: an unknown member is "not supported", not "not declared"."""
 
 UNSUPPORTED_NAMES: frozenset[str] = frozenset({"inst", "use"})
@@ -380,6 +382,8 @@ def _datatype(name: str, generics: int, *constructors: tuple[str, Type | None]) 
     return DatatypeDec(name, generics, made, None)
 
 
+_MONTHS = ("Jan", "Feb", "Mar", "Apr", "May", "Jun", "Jul", "Aug", "Sep", "Oct", "Nov", "Dec")
+
 DATATYPES: dict[str, DatatypeDec] = {
     "bool": _datatype("bool", 0, ("false", None), ("true", None)),
     "list": _datatype("list", 1, ("nil", None), ("::", tuple_of(TVar(0), _LIST_A))),
@@ -407,11 +411,9 @@ DATATYPES: dict[str, DatatypeDec] = {
     "OS.FileSys.access_mode": _datatype(
         "OS.FileSys.access_mode", 0, ("A_READ", None), ("A_WRITE", None), ("A_EXEC", None)
     ),
-    "Date.month": _datatype(
-        "Date.month", 0, *((m, None) for m in "Jan Feb Mar Apr May Jun Jul Aug Sep Oct Nov Dec".split())
-    ),
+    "Date.month": _datatype("Date.month", 0, *((name, None) for name in _MONTHS)),
     "Date.weekday": _datatype(
-        "Date.weekday", 0, *((d, None) for d in "Mon Tue Wed Thu Fri Sat Sun".split())
+        "Date.weekday", 0, *((d, None) for d in ["Mon", "Tue", "Wed", "Thu", "Fri", "Sat", "Sun"])
     ),
 }
 """The built-in data types by name; constructors of those with a qualified name are in that structure only."""
@@ -495,17 +497,16 @@ TOP_LEVEL_EXCEPTIONS: frozenset[str] = frozenset(
 
 FIRST_EXCEPTION_TAG = 100
 
+_ABSTRACT = (
+    "TextIO.instream", "TextIO.outstream", "OS.FileSys.dirstream", "OS.Process.status", "OS.syserror", "Time.time",
+    "Timer.real_timer", "Timer.cpu_timer", "Date.date", "Random.rand", "Word8.word", "Word8Vector.vector",
+)  # fmt: skip
+
 TYPE_ARITY: dict[str, int] = {
     "int": 0, "real": 0, "string": 0, "char": 0, "bool": 0, "exn": 0, "order": 0, "IntInf.int": 0,
     "list": 1, "option": 1, "ref": 1, "timed": 1, "vector": 1, "array": 1, "word": 0, "substring": 0,
-    **{
-        name: 0
-        for name in (
-            "TextIO.instream", "TextIO.outstream", "OS.FileSys.dirstream", "OS.Process.status", "OS.syserror",
-            "Time.time", "Timer.real_timer", "Timer.cpu_timer", "Date.date", "Random.rand", "Word8.word",
-            "Word8Vector.vector", *(name for name in DATATYPES if "." in name),
-        )
-    },
+    **dict.fromkeys(_ABSTRACT, 0),
+    **{name: 0 for name in DATATYPES if "." in name},
 }  # fmt: skip
 """Type constructors that are there at the start and their number of arguments."""
 
@@ -521,8 +522,8 @@ TYPE_ABBREVIATIONS: dict[str, str] = {
 """Names for other types; their arguments are `'a`, `'b`."""
 
 NO_EQUALITY: frozenset[str] = frozenset(
-    {"exn", "substring", "TextIO.instream", "TextIO.outstream", "OS.FileSys.dirstream", "Random.rand", "Timer.real_timer",
-     "Timer.cpu_timer", "Date.date"}
+    {"exn", "substring", "TextIO.instream", "TextIO.outstream", "OS.FileSys.dirstream", "Random.rand", "Date.date",
+     "Timer.real_timer", "Timer.cpu_timer"}
 )  # fmt: skip
 """Type constructors whose values have no equality (functions have none either). `real` has: CPN Tools patched it in."""
 

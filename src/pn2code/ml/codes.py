@@ -182,9 +182,9 @@ UNSUPPORTED_ML = register(
 UNSUPPORTED_BUILTIN = register(
     "unsupported-function",
     "a function of the standard library is not supported",
-    "As an error: the name belongs to a structure of the SML library that pn2code knows only in part. As a warning: the "
-    "function exists in CPN Tools, but needs something that is not there in a simulation or supervisor made by pn2code "
-    "(sockets, other programs, the computer's clock). The rest of the net is checked as usual; a run stops where the "
+    "As an error: the name belongs to a structure of the SML library that pn2code knows only in part. As a warning: "
+    "the function exists in CPN Tools, but needs something that is not there in a simulation or supervisor made by "
+    "pn2code (sockets, other programs, the computer's clock). The rest of the net is checked as usual; a run stops where the "
     "function is applied, and `generate` refuses the net. Declare a function of the same name after it to replace it.",
 )
 UNSUPPORTED_COLSET = register(
@@ -223,8 +223,8 @@ SIGNATURE = register(
 USED_FILE = register(
     "used-file",
     "a file of declarations cannot be used",
-    '`use "file.sml"` reads CPN ML declarations from a file in the net\'s folder. CPN Tools refuses the declaration when '
-    "the file is not there, and everything that needs the names declared in it.",
+    '`use "file.sml"` reads CPN ML declarations from a file in the net\'s folder. CPN Tools refuses the declaration '
+    "when the file is not there, and everything that needs the names declared in it.",
 )
 TYPE_VARIABLE = register(
     "type-variable",
