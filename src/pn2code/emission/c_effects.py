@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
+from pn2code.emission.c_places import staying_pairs
 from pn2code.lowering import ir
 from pn2code.lowering.functions import called, ir_nodes, is_impure_builtin
 
@@ -24,7 +25,7 @@ class Effects:
         self._functions: Mapping[str, ir.Function] = {f.key: f for f in net.functions}
         self._references = {g.name for g in net.globals if g.is_reference}
         self._examined = [_places(t.enumerate, _EXAMINED) for t in net.transitions]
-        self._changed = [_places(t.fire, _CHANGED) for t in net.transitions]
+        self._changed = [self._changed_by(net, t) for t in net.transitions]
         self._volatile = [not self.is_pure(t.enumerate) for t in net.transitions]
 
     def affected(self, transition: int) -> tuple[int, ...]:
@@ -34,6 +35,17 @@ class Effects:
             for i, places in enumerate(self._examined)
             if self._volatile[i] or places & self._changed[transition]
         )
+
+    def _changed_by(self, net: ir.NetIR, t: ir.Transition) -> frozenset[int]:
+        """The places whose tokens are others after the occurrence: what stays where it is does not count."""
+        staying = {
+            id(s)
+            for take, put in staying_pairs(t.fire)
+            if not net.places[take.place].timed and self.is_pure(take.value)
+            for s in (take, put)
+        }
+        moves = [n for n in ir_nodes(t.fire) if isinstance(n, _CHANGED) and id(n) not in staying]
+        return frozenset(n.place for n in moves)
 
     def is_pure(self, item: object) -> bool:
         """Whether nothing but the binding and the marking decides: no references, random numbers, step()."""

@@ -9,7 +9,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from pn2code.emission.c_expressions import Expressions, Types
-from pn2code.emission.c_places import is_count
+from pn2code.emission.c_places import is_count, staying_pairs
 from pn2code.emission.c_statements import Statements
 from pn2code.emission.names import Scope
 from pn2code.lowering import ir
@@ -66,10 +66,13 @@ class DirectFiring(Statements):
         self._place_tables = place_tables
         self._moves_made: list[_Move] = []
         self._declared: list[str] = []
+        self._staying: set[int] = set()
         self.has_checks = False
 
     def fire(self, statements: tuple[Stmt, ...], may_fail: bool) -> None:
         """The whole body after the preamble."""
+        staying = staying_pairs(statements)
+        self._staying = {id(s) for pair in staying for s in pair}
         self.body(statements)
         self.lines[:0] = self._declared
         if may_fail or self.has_checks:
@@ -78,6 +81,8 @@ class DirectFiring(Statements):
             self.line("}")
         takes = [m for m in self._moves_made if m.verb == "take"]
         puts = [m for m in self._moves_made if m.verb == "add"]
+        for take, _ in staying:
+            self.note(f"{take.note or self._x.place_names[take.place]}: stays where it is")
         self._take(takes)
         if not puts:
             self.line("return true;")
@@ -110,6 +115,8 @@ class DirectFiring(Statements):
         self.line("}")
 
     def _move(self, s: ir.Take | ir.Put) -> None:
+        if id(s) in self._staying:
+            return
         place = self._x.place_names[s.place]
         verb = "take" if isinstance(s, ir.Take) else "add"
         key = (verb, id(s))

@@ -124,3 +124,18 @@ def _ways(statements: Iterable[ir.Stmt]) -> Iterable[ir.Put]:
 def is_count(e: ir.Ir) -> bool:
     """A constant number of tokens, at least one."""
     return isinstance(e, ir.Const) and isinstance(e.value, int) and 0 < e.value < 2**31
+
+
+def staying_pairs(statements: tuple[ir.Stmt, ...]) -> list[tuple[ir.Take, ir.Put]]:
+    """Takes and puts of the same tokens, as of arcs in both directions: nothing need be done about them."""
+    puts = [s for s in statements if isinstance(s, ir.Put)]
+    found: list[tuple[ir.Take, ir.Put]] = []
+    for take in statements:
+        if not isinstance(take, ir.Take):
+            continue
+        for put in puts:
+            if (put.place, put.value, put.count) == (take.place, take.value, take.count):
+                found.append((take, put))
+                puts.remove(put)
+                break
+    return found
