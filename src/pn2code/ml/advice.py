@@ -66,7 +66,12 @@ _OLD_MEMBERS: dict[str, str] = {
     "output_col": "output",
 }
 """Functions of a colour set in Design/CPN, `all'C`, and what they are called today, where that is another name."""
-_OUTSIDE = {"MSC": "message sequence charts", "SPN": "BritNeY", "Britney": "BritNeY", "TCP": "sockets"}
+_OUTSIDE = {
+    "MSC": "message sequence charts",
+    "SPN": "BritNeY",
+    "Britney": "BritNeY",
+    "TCP": "sockets",
+}
 
 
 _STATE_SPACE = frozenset(

@@ -81,6 +81,7 @@ class Context:
         colsets: by name; None for those with errors.
         equality: whether a datatype (of equality arguments) has equality.
         int_bits: width of `int`.
+        unread_files: files of declarations that are not there or could not be read.
         announced: gives all names that the net declares anywhere.
         warned: element, part and function of each warning about a function that cannot run here.
     """
@@ -103,6 +104,7 @@ class Context:
     colsets: dict[str, Colset | None] = field(default_factory=dict)
     equality: dict[str, bool] = field(default_factory=dict)
     int_bits: int = 31
+    unread_files: list[str] = field(default_factory=list)
     announced: Callable[[], frozenset[str]] = frozenset
     warned: set[tuple[str, str, str]] = field(default_factory=set)
     next_uid: int = 0

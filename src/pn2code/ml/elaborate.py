@@ -303,6 +303,8 @@ class Elaborator:
         with self._files.read(name, written.span, self._d) as text:
             if text is not None:
                 self.declarations(text)
+            else:
+                self._ctx.unread_files.append(name)
 
     def globref(self, name: str, text: SourceText, origin: Origin) -> None:
         """`globref name = text`."""

@@ -310,6 +310,11 @@ class Inscriptions:
         )
         if not hint and not type_advice.is_list(found):
             hint = f"write one token of `{expected_name}`, or a multi-set such as 1`v"
+        variable = self._ctx.scope.value(exp.name) if isinstance(exp, s.NameExp) else None
+        if isinstance(variable, Binding) and variable.colset is not None:
+            own = variable.colset.name
+            other = f", or {hint}" if hint.startswith(("convert", "put")) else ""
+            hint = f"`{variable.name}` is a variable of colour set `{own}`: use one of `{expected_name}`{other}"
         shown = self._ctx.show(found)
         if "`" in exp.span.text and type_advice.is_list(found):
             shown = shown.removesuffix(" list") + " ms"
@@ -373,7 +378,8 @@ class Inscriptions:
             f"guard is `{shown}`, but a condition (`bool`) is expected",
             e.span,
             label=f"this is `{shown}`",
-            hint=type_advice.wrong_operand("condition of `if`", draft.type, e.span.text),
+            hint=type_advice.wrong_operand("condition of `if`", draft.type, e.span.text)
+            or type_advice.wrong_value(draft.type, I_BOOL, e.span.text),
         )
         return draft
 

@@ -214,6 +214,8 @@ class Names:
             )
             if name in self._ctx.net_variables:
                 hint = advice.variable_out_of_scope(span.source.origin.part)
+        if not hint and name[0].isalpha() and self._ctx.unread_files:
+            hint = f"it may be declared in `{self._ctx.unread_files[-1]}`, which could not be read"
         if not hint and name[0].isalpha() and not path:
             hint = f"declare it: `var {name} : C;` for a variable of colour set C, or `val {name} = ..`"
             if span.source.origin.part in ("initial marking", "priority"):
