@@ -69,7 +69,11 @@ class TreeBuilder(Transformer[Any, Any]):
     def _group(self, children: Children) -> Group:
         return Group(self._nodes(children), self._span(children))
 
-    program = decs = match = specs = _group
+    unit = decs = match = specs = _group
+
+    def program(self, children: Children) -> Group:
+        decs = [dec for unit in self._nodes(children) for dec in unit.items]
+        return Group(tuple(decs), self._span(children))
 
     # --- starts
 
@@ -266,8 +270,9 @@ class TreeBuilder(Transformer[Any, Any]):
 
     # --- declarations
 
-    def exp_dec(self, children: Children) -> s.ExpDec:
-        return s.ExpDec(children[0], self._span(children))
+    def exp_unit(self, children: Children) -> Group:
+        span = self._span(children)
+        return Group((s.ExpDec(children[0], span),), span)
 
     def _only(self, children: Children, kind: type) -> tuple[Any, ...]:
         return tuple(c for c in children if isinstance(c, kind))
