@@ -573,6 +573,154 @@ PROGRAMS: dict[str, tuple[str, dict[str, list[str]]]] = {
             ],
         },
     ),
+    "after errors": (
+        """
+        datatype tree = Node of tree * int * tree | Leaf
+        datatype t = T of t option
+        datatype u = U of v and v = V of u * int | W
+        datatype box = Box of {f: int -> int, r: int ref, l: int list, s: string}
+        fun bad s = if s = "" then Leaf else raise Fail s
+        fun badt s = if s = "" then T NONE else raise Fail s
+        fun badu s = if s = "" then U W else raise Fail s
+        fun badbox s = if s = "" then Box {f = ~, r = ref 1, l = [], s = ""} else raise Fail s
+        fun badfn s = if s = "" then ~ else raise Fail s
+        fun badref s = if s = "" then ref 1 else raise Fail s
+        fun badlist s = if s = "" then [1] else raise Fail s
+        fun badopt s = if s = "" then SOME (fn x => x + 1) else raise Fail s
+        fun top t = case t of Leaf => 0 | Node (l, x, r) => x
+        exception E of int * string
+        """,
+        {
+            INTS: [
+                '(case bad "x" of Leaf => 0 | Node (l, x, r) => x) handle Fail s => String.size s',
+                '(case badt "x" of T NONE => 1 | T (SOME (T y)) => 2) handle Fail s => 7',
+                '(case badt "x" of T x => (case x of SOME (T y) => 3 | NONE => 4)) handle Fail s => 7',
+                '(case badu "x" of U (V (U z, n)) => n | U W => 0) handle Fail _ => 8',
+                '(case badbox "x" of Box {f, r, l, s} => (r := 5; f (!r) + hd l + String.size (s ^ s '
+                '^ "x"))) handle Fail _ => 9',
+                '(badfn "x" 3 + (badfn "yy") 4) handle Fail s => String.size s',
+                '(!(badref "x") + (badref "y" := 3; 4)) handle Fail s => String.size s',
+                '(hd (badlist "x") + length (tl (badlist "y"))) handle Fail s => String.size s | Empty => 100',
+                '((valOf (badopt "x")) n) handle Fail s => 5',
+                'top (bad "abc") handle Fail s => String.size s',
+                'top (Node (bad "", n, bad "zz")) handle Fail s => String.size s',
+                '(raise E (1 div 0, "x")) handle Div => 3 | E (k, s) => k',
+                "(List.nth ([1, 2], n) + (1 div 0)) handle Div => 1 | Subscript => 2",
+                "((fn SOME x => x) (List.find (fn x => x > n) [6, 2])) handle Match => ~1 | Option => ~2",
+                'foldl (fn (x, s) => if x > 2 then raise E (s, "f") else s + x) 0 [1, 2, 3, 4] handle E (k, _) => k',
+                "length (List.map (fn x => (10 div (x - 1)) handle Div => 0) [1, 2, n])",
+                'hd (List.map (fn x => if x = n then raise E (x, "m") else x) [1, 5, 9]) handle E (k, s) => k * 100',
+            ],
+            STRINGS: [
+                '(substring ("abc", n, 1)) handle Subscript => "sub" | e => exnName e',
+                '(str (chr (n * 100))) handle Chr => "chr" | e => exnName e',
+                '(Int.toString (valOf NONE)) handle Option => "opt"',
+                '(let val (x :: _) = List.filter (fn k => k > n) [4] in Int.toString x end) handle Bind => "bind"',
+                '(case n of 1 => "one" | 5 => "five") handle Match => "match"',
+            ],
+        },
+    ),
+    "units": (
+        """
+        val u = ()
+        val us = [(), (), ()]
+        val r = ref ()
+        fun f () = ()
+        fun g (x, ()) = x
+        val log = ref 0
+        fun tick () = log := !log + 1
+        val acts = [tick, fn () => (), fn () => tick ()]
+        fun seq [] = () | seq (a :: rest) = (a (); seq rest)
+        datatype d = D of unit | E of unit * int
+        fun h (D ()) = 1 | h (E ((), n)) = n
+        val o1 = SOME ()
+        fun ignoreit (_ : int) = ()
+        val ifun = [fn (x : int) => (), ignoreit]
+        exception X of unit
+        """,
+        {
+            INTS: [
+                "length us + (f (); n)",
+                "g (n, f ())",
+                "(seq acts; !log)",
+                "h (D ()) + h (E (u, n))",
+                "(case o1 of SOME () => n | NONE => 0)",
+                "(r := f (); !r; n)",
+                "(List.app (fn a => a n) ifun; n)",
+                "(raise X ()) handle X () => n",
+                "length (List.map (fn () => 1) us)",
+                "foldl (fn ((), s) => s + 1) n us",
+                "(if u = () andalso us = [(), (), ()] then 1 else 0)",
+                "(let val () = tick () val _ = tick () in !log end)",
+                "(while !log > 0 do log := !log - 1; !log)",
+            ],
+        },
+    ),
+    "equality": (
+        """
+        datatype s = A | B of int * string | C of s list
+        datatype node = N of int * node ref | Z
+        fun member eq (x, []) = false | member eq (x, y :: r) = eq (x, y) orelse member eq (x, r)
+        fun count x l = length (List.filter (fn y => y = x) l)
+        fun same (a : ''a, b) = if a = b then 1 else 0
+        fun assoc (x, []) = NONE | assoc (x, (y, v) :: r) = if x = y then SOME v else assoc (x, r)
+        val r1 = ref Z
+        """,
+        {
+            INTS: [
+                'if member (op =) ((n, "a"), [(1, "a"), (5, "b")]) then 1 else 0',
+                'count (B (n, "x")) [A, B (5, "x"), B (5, "y"), C [A]]',
+                'same ([SOME n], [SOME 5]) + same (C [B (n, "")], C [B (n, "")])',
+                'same (#"a", #"b") + same ("x", "x") + same ({a = n, b = true}, {a = 1, b = true})',
+                "(case assoc ([n], [([1], 10), ([5], 50)]) of SOME v => v | NONE => 0)",
+                "let val a = N (n, r1) val b = N (n, r1) val c = N (n, ref Z) in same (a, b) * 10 + same (a, c) end",
+                "if (op <>) (n, 5) then 1 else 2",
+                "let val f = op = in if f (n, 1) then 1 else 0 end",
+                "let val eqs = [op =, op <>, fn (a : int, b) => a > b] in length (List.filter (fn f "
+                "=> f (n, 5)) eqs) end",
+            ],
+        },
+    ),
+    "local functions": (
+        """
+        fun outer n = let fun inner 0 = n | inner k = inner (k - 1) + helper k and helper k = if k > n then
+            inner (k - n) else k in inner (n + 2) end
+        fun count p l = let fun go ([], c) = c | go (x :: r, c) = go (r, if p x then c + 1 else c) in go (l, 0) end
+        fun sort less l = let fun ins (x, []) = [x] | ins (x, y :: r) = if less (x, y) then x :: y :: r else
+            y :: ins (x, r) in foldr ins [] l end
+        fun poly x = let fun dup y = (y, y) val (a, b) = dup x val (c, d) = dup "s" in (a, c) end
+        fun shadow x = let val x = x + 1 val x = x * 2 fun f x = x + 1 in f x end
+        fun mutual n = let val total = ref 0 fun down 0 = () | down k = (total := !total + k; up (k - 1))
+            and up 0 = () | up k = (total := !total * 2; down (k - 1)) in (down n; !total) end
+        fun curry3 a = let val b = a + 1 in fn c => let val d = b + c in fn e => d * e end end
+        fun build n = let fun mk 0 = [] | mk k = (fn x => x + k * n) :: mk (k - 1) in mk 3 end
+        val partial = curry3 1
+        val partial2 = partial 2
+        fun gen () = let val c = ref 0 in (fn () => (c := !c + 1; !c), fn () => c := 0) end
+        val (next, reset) = gen ()
+        fun vararg x = let fun more acc 0 = acc | more acc y = more (acc + y) (y - 1) in more 0 x end
+        infix 6 plus
+        fun a plus b = a + b
+        infixr 5 ---
+        fun x --- y = x - y
+        """,
+        {
+            INTS: [
+                "outer (n mod 4 + 1)",
+                "count (fn x => x > n) [1, 5, 7, 9]",
+                "hd (sort (op >) [3, n, 2])",
+                "#1 (poly n) + String.size (#2 (poly 1))",
+                "shadow n",
+                "mutual n",
+                "curry3 n 2 3 + partial2 n + partial n 1",
+                "foldl (fn (f, x) => f x) 0 (build n)",
+                "next () + next ()",
+                "(reset (); next ())",
+                "vararg n",
+                "(n plus 2 --- 3 --- 1)",
+            ],
+        },
+    ),
 }
 
 
@@ -606,7 +754,7 @@ def _grouped(declarations: str) -> list[str]:
     out = []
     starts = (
         "fun ", "val ", "exception ", "datatype ", "globref ", "colset ", "structure ", "signature ", "functor ",
-        "local ", "abstype ",
+        "local ", "abstype ", "infix ", "infixr ",
     )  # fmt: skip
     for line in textwrap.dedent(declarations).strip("\n").rstrip().splitlines():
         if line.startswith(starts):

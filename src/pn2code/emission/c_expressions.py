@@ -164,6 +164,8 @@ class Expressions:
             case ir.Member(record=inner):
                 return self._is_object(inner)
             case ir.Argument(value=inner):
+                if self._is_unsafe(e):
+                    return False
                 return self._is_boxed(e) or self._is_object(inner)
             case ir.Head():
                 return True
@@ -173,6 +175,10 @@ class Expressions:
         definition = self._types.definitions[e.value.type.name]
         assert isinstance(definition, ir.UnionDef)
         return definition.constructors[e.tag][2]
+
+    def _is_unsafe(self, e: ir.Argument) -> bool:
+        """Whether there may be nothing behind the pointer, after an error."""
+        return not e.is_tested and self._is_boxed(e)
 
     def _constructor(self, t: IrType, tag: int) -> tuple[str, str]:
         """The enumerator of a constructor, and the member of the union that holds its argument."""
@@ -218,6 +224,9 @@ class Expressions:
             case ir.Argument():
                 _, member = self._constructor(e.value.type, e.tag)
                 text = f"{self.inside(e.value, _UNARY)}.as.{member}"
+                if self._is_unsafe(e):
+                    zero = self._types.zero(e.type)
+                    return f"(({text} != NULL) ? *{text} : {zero})", _POSTFIX
                 return (f"(*{text})" if self._is_boxed(e) else text), _POSTFIX
             case ir.Select():
                 then, otherwise = (self.inside(x, _CONDITIONAL) for x in (e.then, e.otherwise))
@@ -275,7 +284,8 @@ class Expressions:
 
     def _member(self, e: ir.Member) -> str:
         record, arrow = self.inside(e.record, _UNARY), "."
-        if isinstance(e.record, ir.Argument) and self._is_boxed(e.record):
+        is_boxed = isinstance(e.record, ir.Argument) and self._is_boxed(e.record)
+        if is_boxed and not self._is_unsafe(e.record):  # type: ignore[arg-type]
             record, arrow = record[2:-1], "->"  # (*p).x is p->x
         definition = self._types.definitions[e.record.type.name]
         assert isinstance(definition, ir.StructDef)

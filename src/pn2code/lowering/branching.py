@@ -241,6 +241,14 @@ class Branching(Block):
         condition = conjunction(match.conditions)
         # The data type's constructors are all there: the last of them needs no test.
         is_last = index + 1 == len(rules) and covers(rules)
+        if is_last and condition is not None and self._is_recursive(value):
+            # It does: after an error there may be no argument behind the pointer.
+            with self.block() as then:
+                ways.finish(rule.body, self.bind_all(Match([], match.bindings), env))
+            with self.block() as otherwise:
+                ways.give_up()
+            self.emit(ir.If(condition, tuple(then), tuple(otherwise)))
+            return
         if condition is None or is_last:
             ways.finish(rule.body, self.bind_all(Match([], match.bindings), env))
             return
@@ -249,6 +257,9 @@ class Branching(Block):
         with self.block() as otherwise:
             self._rule(index + 1, rules, value, env, exception, ways)
         self.emit(ir.If(condition, tuple(then), tuple(otherwise)))
+
+    def _is_recursive(self, value: Val) -> bool:
+        return self.program.types.is_recursive(self.code(value).type)
 
     # --- exceptions ----------------------------------------------------------------------------
 

@@ -190,11 +190,13 @@ class IsTag:
 
 @frozen
 class Argument:
-    """The argument of a union value whose constructor is known to be `tag`."""
+    """The argument of a union value whose constructor is known to be `tag`; not `is_tested`: because there is no other,
+    so that after an error there may be nothing."""
 
     value: Ir
     tag: int
     type: IrType
+    is_tested: bool = True
 
 
 @frozen

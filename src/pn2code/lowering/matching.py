@@ -94,7 +94,9 @@ class Matcher:
                 out.conditions.append(ir.IsTag(value, tag))
             if pattern.argument is not None:
                 assert argument is not None
-                self._match(pattern.argument, ir.Argument(value, tag, argument), out)
+                is_tested = constructor.siblings != 1
+                inside = ir.Argument(value, tag, argument, is_tested)
+                self._match(pattern.argument, inside, out)
         elif constructor.data_type == "timed" and isinstance(pattern.argument, core.PRecord):
             # A timed token: its value and its stamp.
             for (_, inner), label in zip(pattern.argument.fields, ("value", "stamp"), strict=True):

@@ -269,6 +269,13 @@ class Types:
                     ),
                 )
 
+    def is_recursive(self, t: IrType) -> bool:
+        """Whether arguments of a data type may be behind pointers."""
+        definition = self._definitions.get(t.name)
+        return isinstance(definition, ir.UnionDef) and any(
+            a is not None and self._contains(a, t.name) for _, a, _ in definition.constructors
+        )
+
     def _contains(self, t: IrType, name: str) -> bool:
         """Whether a value of the type has one of the other in it, not behind a pointer."""
         seen: set[str] = set()
