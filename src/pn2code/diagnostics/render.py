@@ -76,10 +76,30 @@ def _excerpt(span: Span) -> tuple[str, int, int]:
     begin = text.rfind("\n", 0, start) + 1
     end = text.find("\n", start)
     end = len(text) if end < 0 else end
-    line = text[begin:end]
+    line = _visible(text[begin:end])
     before = line[: start - begin].expandtabs(4)
     inside = line[start - begin : max(start, min(span.end, end)) - begin].expandtabs(4)
-    return line.expandtabs(4), len(before), max(1, len(inside))
+    line = line.expandtabs(4)
+    at, width = len(before), max(1, len(inside))
+    if len(line) > _WIDEST:
+        # Long lines are shown around the place.
+        cut = max(0, min(at - _WIDEST // 2, len(line) - _WIDEST))
+        shown = line[cut : cut + _WIDEST]
+        if cut:
+            shown, at = f"...{shown}", at - cut + 3
+        if cut + _WIDEST < len(line):
+            shown += "..."
+        return shown, at, min(width, len(shown) - at)
+    return line, at, width
+
+
+_WIDEST = 160
+"""Characters of a line that are shown."""
+
+
+def _visible(line: str) -> str:
+    """Invisible characters (zero width, direction, control) as a sign of one column."""
+    return "".join(c if c.isprintable() or c in "\t\xa0" else "\ufffd" for c in line)
 
 
 def concise(item: Diagnostic) -> str:
