@@ -2970,33 +2970,24 @@ static bool Supervisor_Correct_Move_over_fire(pn_ctx_t *cx, void *marking, void 
     Supervisor_Correct_Move_over_binding_t *const b = binding;
     cx->origin = "page `Correct`, transition `Move over` (ID1412310461)";
     cx->now = m->now;
-    const RIVETING_t Supervisor_Correct_seam_token = (RIVETING_t){ .c1 = b->n, .c2 = b->p,
-        .c3 = b->d };
-    RIVETING_t Supervisor_Correct_seam_token_2 = (RIVETING_t){ .c1 = b->n, .c2 = b->p, .c3 = b->d };
-    pn_bag_check(cx, &s_at_Supervisor_Correct_seam, &Supervisor_Correct_seam_token_2);
     PLAN_t Supervisor_Correct_order_token = (PLAN_t){ .c1 = val_LINEAR, .c2 = ml_inTool(b->p, b->v),
         .c3 = ml_inTool(ml_facing(b->p), b->v) };
     pn_bag_check(cx, &s_at_Supervisor_Correct_order, &Supervisor_Correct_order_token);
     if (!pn_ok(cx)) {
         return false;
     }
+    /* seam: (n, p, d) (ID1412310539): stays where it is */
     /* offset: v (ID1412310537) */
     bool is_taken = Supervisor_Correct_offset_take(m, &b->v, 1U);
-    /* seam: (n, p, d) (ID1412310539) */
-    is_taken = is_taken && Supervisor_Correct_seam_take(m, &Supervisor_Correct_seam_token, 1U);
     if (!is_taken) {
         pn_raise(cx, PN_ERR_SUBTRACT, NULL);
         return false;
     }
-    /* seam: (n, p, d) (ID1412310539) */
-    bool fits = Supervisor_Correct_seam_add(cx, m, &Supervisor_Correct_seam_token_2, 1U);
     /* order: (LINEAR, inTool (p, v), inTool (facing p, v)) (ID1412310541) */
-    fits = Supervisor_Correct_order_add(cx, m, &Supervisor_Correct_order_token, 1U) && fits;
+    bool fits = Supervisor_Correct_order_add(cx, m, &Supervisor_Correct_order_token, 1U);
     if (!fits) {
         /* a place is full: everything is put back */
         (void)Supervisor_Correct_order_take(m, &Supervisor_Correct_order_token, 1U);
-        (void)Supervisor_Correct_seam_take(m, &Supervisor_Correct_seam_token_2, 1U);
-        (void)Supervisor_Correct_seam_add(cx, m, &Supervisor_Correct_seam_token, 1U);
         (void)Supervisor_Correct_offset_add(cx, m, &b->v, 1U);
     }
     return fits;
@@ -8044,7 +8035,7 @@ static const uint32_t s_affected_by_Supervisor_Verify_Ask_first[] = { 7U, 8U, 48
 static const uint32_t s_affected_by_Supervisor_Verify_Ask_last[] = { 5U, 8U, 9U, 16U, 23U, 29U, 33U, 34U, 38U, 42U, 46U, 48U, 53U };
 static const uint32_t s_affected_by_Supervisor_Verify_Measured[] = { 5U, 8U, 9U, 10U, 16U, 23U, 29U, 33U, 34U, 38U, 42U, 46U };
 static const uint32_t s_affected_by_Supervisor_Correct_Compare[] = { 10U, 11U, 12U, 13U };
-static const uint32_t s_affected_by_Supervisor_Correct_Move_over[] = { 11U, 12U, 13U, 14U };
+static const uint32_t s_affected_by_Supervisor_Correct_Move_over[] = { 11U, 13U, 14U };
 static const uint32_t s_affected_by_Supervisor_Correct_Moved[] = { 11U, 12U, 13U, 20U };
 static const uint32_t s_affected_by_Supervisor_Correct_As_planned[] = { 11U, 12U, 13U, 20U };
 static const uint32_t s_affected_by_Supervisor_Correct_Move_both_Command[] = { 14U, 16U, 17U, 48U, 50U, 51U, 58U, 60U, 61U };

@@ -99,13 +99,25 @@ int64_t pn_int_rem(pn_ctx_t *cx, int64_t a, int64_t b)
     return pn_inf_rem(cx, a, b);
 }
 
+/* Whether 0 <= a and 0 < b, both below 2^32: then unsigned division gives the same, several times as fast. */
+static bool is_narrow(int64_t a, int64_t b)
+{
+    return ((((uint64_t)a | (uint64_t)b) >> 32U) == 0U) && (b != 0);
+}
+
 int64_t pn_int_div(pn_ctx_t *cx, int64_t a, int64_t b)
 {
+    if (is_narrow(a, b)) {
+        return pn_int_checked(cx, (int64_t)((uint32_t)a / (uint32_t)b));
+    }
     return pn_int_checked(cx, pn_wide_div(cx, a, b));
 }
 
 int64_t pn_int_mod(pn_ctx_t *cx, int64_t a, int64_t b)
 {
+    if (is_narrow(a, b)) {
+        return (int64_t)((uint32_t)a % (uint32_t)b);
+    }
     return pn_inf_mod(cx, a, b);
 }
 
