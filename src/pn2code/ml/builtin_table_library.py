@@ -155,6 +155,13 @@ ListPair.foldrEq : ('a * 'b * 'c -> 'c) -> 'c -> 'a list * 'b list -> 'c ; from 
 Option.compose : ('a -> 'b) * ('c -> 'a option) -> 'c -> 'b option ; the first after the second, if any
 Option.composePartial : ('a -> 'b option) * ('c -> 'a option) -> 'c -> 'b option ; the first after the second, if any
 
+-- what CPN Tools has at top level besides
+Misc.a_cmp : ('a * 'a -> bool) -> 'a * 'a -> order ; a three-way comparison from `less`
+Misc.makelist : ('a -> string) -> 'a list -> string ; the text of a list, `[a,b]`
+Misc.split : int * 'a list * 'a list -> 'a list * 'a list ; the rest behind n elements, and those before (in front: the third, reversed)
+Misc.basename : string -> string ; what follows the last `/` that is not at the end
+Misc.time_of_day : unit -> real ; 0.0 here: runs can be repeated
+
 -- vectors and arrays
 Vector.maxLen : int ; 16777215
 Vector.fromList : 'a list -> 'a vector ; the elements

@@ -184,8 +184,9 @@ UNSUPPORTED_BUILTIN = register(
     "a function of the standard library is not supported",
     "As an error: the name belongs to a structure of the SML library that pn2code knows only in part. As a warning: "
     "the function exists in CPN Tools, but needs something that is not there in a simulation or supervisor made by "
-    "pn2code (sockets, other programs, the computer's clock). The rest of the net is checked as usual; a run stops where the "
-    "function is applied, and `generate` refuses the net. Declare a function of the same name after it to replace it.",
+    "pn2code (sockets, other programs, the computer's clock). The rest of the net is checked as usual; a run stops "
+    "where the function is applied, and `generate` refuses the net. Declare a function of the same name after it to "
+    "replace it.",
 )
 UNSUPPORTED_COLSET = register(
     "unsupported-colour-set",

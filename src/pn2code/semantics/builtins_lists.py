@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 from pn2code.semantics.values import (
     NONE,
+    ORDER,
     UNIT,
     Data,
     MlException,
@@ -313,7 +314,33 @@ def _map_filter(e: Evaluator, p: tuple[Ref, Items]) -> Task:
     return tuple(found)
 
 
+# --- other functions of CPN Tools -----------------------------------------------------------------
+
+
+def _compare_by(e: Evaluator, less: Value, p: tuple[Value, Value]) -> Task:
+    if (yield e.call(less, p)):
+        return ORDER[0]
+    return ORDER[2] if (yield e.call(less, (p[1], p[0]))) else ORDER[1]
+
+
+def _list_text(e: Evaluator, text: Value, items: Items) -> Task:
+    texts = yield _map(e, text, items)
+    return f"[{','.join(texts)}]"
+
+
+def _split(e: Evaluator, p: tuple[int, Items, Items]) -> Value:
+    n, rest, front = p
+    if not 0 <= n <= len(rest):
+        raise MlException(exception("Match"))
+    return rest[n:], (*front[::-1], *rest[:n])
+
+
 FUNCTIONS: dict[str, tuple[int, Function]] = {
+    "Misc.a_cmp": (2, _compare_by),
+    "Misc.makelist": (2, _list_text),
+    "Misc.split": (1, _split),
+    "Misc.basename": (1, lambda e, path: path.removesuffix("/").rpartition("/")[2]),
+    "Misc.time_of_day": (1, lambda e, unit: 0.0),
     "Option.compose": (2, _compose_options),
     "Option.composePartial": (2, _compose_partial),
     "Option.valOf": (1, _value_of),

@@ -81,3 +81,11 @@ sort (fn ((a, _), (b, _)) => a <= b) [(1, "a"), (1, "b"), (1, "c")] ==>> [(1, "a
 unique_sort (fn ((a, _), (b, _)) => a < b) [(2, "a"), (1, "b"), (2, "c"), (1, "d")] ==>> [(1, "d"), (2, "c")]
 unique_sort (op <) [3, 1, 2, 3, 1] ==>> [1, 2, 3]
 sort (op <) [5, 4, 3, 2, 1, 6, 7, 0] ==>> [0, 1, 2, 3, 4, 5, 6, 7]
+map (a_cmp (op <)) [(1, 2), (2, 2), (3, 2)] ==>> [LESS, EQUAL, GREATER]
+makelist Int.toString [1, ~2] ==>> "[1,~2]"
+makelist Int.toString [] ==>> "[]"
+split (2, [1, 2, 3], []) ==>> ([3], [1, 2])
+split (4, [1], []) ==>> raised Match
+map basename ["/var/tmp/test", "a/b/", "x"] ==>> ["test", "b", "x"]
+flatten [[1, 2], [], [3]] ==>> [1, 2, 3]
+isSubstring "ell" "hello" ==>> true
