@@ -125,6 +125,8 @@ def test_an_exception_not_handled_goes_on_past_references() -> None:
         ("functor F (X : sig type t end) = struct fun f (x : X.t) = x + 1 end structure A = F (struct type t = int end)", ["no-such-operator | left operand of `+` is `t`, but a number is expected"]),
         (f"{SORT} structure S = Sort (struct type t = int val lt = 3 end)", ["signature-mismatch | `lt` of the structure is `int`, but its signature needs `int * int -> bool`"]),
         ("structure M = struct val x = 1 + true end val y = M.x + M.z", ["type-mismatch | right operand of `+` is `bool`, but `int` is expected"]),
+        ("datatype 'a t = L | N of 'a t * 'a u withtype 'a u = list val x = L", ["type-mismatch | type `list` takes 1 argument, not 0"]),
+        ("val x = let type t = nope datatype d = D of t in D end", ["unknown-colour-set | there is no colour set or type `nope`"]),
         ("abstype t = A of int with val a = A 1 end val b = A 2", ["unbound-identifier | `A` is not declared"]),
         ("abstype t = A of int with val a = A 1 end val b = a = a", ["not-an-equality-type | left operand of `=` is `t`, which has no equality"]),
         ("fun f (x : 'a) : 'a = x + 1", ["type-variable | the type variable `'a` would have to be `int`"]),

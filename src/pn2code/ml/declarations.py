@@ -20,6 +20,7 @@ from pn2code.ml.environment import (
     Binding,
     BrokenEntry,
     BrokenStructure,
+    BrokenType,
     ConEntry,
     Scope,
     TypeAbbreviation,
@@ -422,8 +423,12 @@ class Declarations:
 
     def _type(self, b: s.TypeBinding) -> None:
         quants, tyvars = self._parameters(b.parameters)
+        before = self._ctx.errors
         body = self._written_type(b.type, tyvars)
-        self._ctx.scope.types[b.name] = TypeAbbreviation(tuple(quants), body)
+        broken = self._ctx.errors > before or self._ctx.tainted
+        self._ctx.scope.types[b.name] = (
+            BrokenType() if broken else TypeAbbreviation(tuple(quants), body)
+        )
 
     def _datatype(self, dec: s.DatatypeDec) -> Build:
         names: list[str] = []
