@@ -19,7 +19,7 @@ from pn2code.emission.environment import c_comment, c_float, c_string, render
 from pn2code.emission.names import Members, Names, Scope, stem
 from pn2code.emission.output import Block, OutputFile
 from pn2code.lowering import ir
-from pn2code.lowering.functions import called, ir_nodes
+from pn2code.lowering.calls import called, ir_nodes
 from pn2code.lowering.ir import NetIR, Rep
 
 _MARK = "\x01"

@@ -6,7 +6,8 @@ from collections.abc import Mapping
 
 from pn2code.emission.c_places import staying_pairs
 from pn2code.lowering import ir
-from pn2code.lowering.functions import called, ir_nodes, is_impure_builtin
+from pn2code.lowering.calls import called, ir_nodes
+from pn2code.lowering.functions import is_impure_builtin
 
 _EXAMINED = (
     ir.ForTokens, ir.TokenValue, ir.UnlessAvailable, ir.UnlessHeld, ir.UnlessEmpty, ir.Take, ir.TakeAll,

@@ -7,7 +7,7 @@ from collections.abc import Iterable, Mapping
 from pn2code.emission.c_expressions import Types
 from pn2code.emission.names import Names, label
 from pn2code.lowering import ir
-from pn2code.lowering.functions import ir_nodes
+from pn2code.lowering.calls import ir_nodes
 from pn2code.lowering.ir import Descriptor, Rep
 
 _SCALAR = frozenset({Rep.BOOL, Rep.INT, Rep.CHAR, Rep.ENUM})

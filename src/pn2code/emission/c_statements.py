@@ -8,7 +8,7 @@ from pn2code.emission.c_expressions import Expressions, Types, c_bytes, op_needs
 from pn2code.emission.environment import c_comment
 from pn2code.emission.names import Names, Scope
 from pn2code.lowering import ir
-from pn2code.lowering.functions import ir_nodes
+from pn2code.lowering.calls import ir_nodes
 from pn2code.lowering.ir import Ir, Rep, Stmt
 from pn2code.lowering.values import is_atomic
 

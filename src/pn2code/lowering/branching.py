@@ -11,9 +11,9 @@ from dataclasses import dataclass
 from pn2code.diagnostics import Span
 from pn2code.lowering import ir
 from pn2code.lowering.block import UNIT_VALUE, Block
-from pn2code.lowering.functions import split_parameters
 from pn2code.lowering.ir import Ir, Local, Rep
 from pn2code.lowering.matching import Match, conjunction, is_irrefutable, negation
+from pn2code.lowering.parameters import split_parameters
 from pn2code.lowering.shapes import covers, handled_name, is_simple, nodes, size
 from pn2code.lowering.types import has_function as type_has_function
 from pn2code.lowering.values import Binding, Env, NamedFunction, Partial, Val, is_atomic

@@ -7,7 +7,8 @@ cannot raise may be moved; the rest is computed into a local where the order wou
 from __future__ import annotations
 
 from pn2code.lowering import ir
-from pn2code.lowering.functions import ir_nodes, is_impure_builtin
+from pn2code.lowering.calls import ir_nodes
+from pn2code.lowering.functions import is_impure_builtin
 from pn2code.lowering.ir import Ir, Stmt
 from pn2code.lowering.values import Partial, RecordVal, Val, is_static
 

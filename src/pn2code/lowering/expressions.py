@@ -13,11 +13,11 @@ from pn2code.diagnostics import Span
 from pn2code.lowering import ir
 from pn2code.lowering.block import UNIT_VALUE
 from pn2code.lowering.branching import Branching
-from pn2code.lowering.functions import split_parameters
 from pn2code.lowering.ir import Ir, IrType, Rep
 from pn2code.lowering.matching import (
     is_irrefutable,
 )
+from pn2code.lowering.parameters import split_parameters
 from pn2code.lowering.shapes import escapes, is_recursive_group
 from pn2code.lowering.types import has_function as type_has_function
 from pn2code.lowering.types import substitute

@@ -14,14 +14,22 @@ from typing import TYPE_CHECKING
 
 from pn2code.diagnostics import Origin, Span
 from pn2code.lowering import ir, prelude
+from pn2code.lowering.calls import order_functions
 from pn2code.lowering.closures import FunctionValues, nested_functions
 from pn2code.lowering.codes import (
     UNSUPPORTED_EXPRESSION,
     UnsupportedError,
 )
 from pn2code.lowering.exceptions import Exceptions
-from pn2code.lowering.ir import Ir, Local, Rep, Stmt
+from pn2code.lowering.ir import Ir, Local, Rep
 from pn2code.lowering.matching import is_irrefutable
+from pn2code.lowering.parameters import (
+    hint_of,
+    is_split,
+    parameter_names,
+    parameters_of,
+    split_parameters,
+)
 from pn2code.lowering.types import Types, substitute
 from pn2code.lowering.types import has_function as type_has_function
 from pn2code.lowering.values import (
@@ -42,7 +50,7 @@ from pn2code.lowering.values import (
 )
 from pn2code.ml import core
 from pn2code.ml.core import Symbol
-from pn2code.ml.types import TCon, TFun, TRecord, Type
+from pn2code.ml.types import TCon, TRecord, Type
 
 if TYPE_CHECKING:
     from pn2code.lowering.block import Block
@@ -65,26 +73,6 @@ IMPURE_PREFIXES = ("Random.", "TextIO.", "prim.do_")
 def is_impure_builtin(name: str) -> bool:
     """Whether the built-in function reads or changes something."""
     return name in IMPURE or name.startswith(IMPURE_PREFIXES)
-
-
-def split_parameters(function: core.Lambda) -> tuple[tuple[Type, ...], Type]:
-    """The types of the curried parameters that a definition takes one after the other, and that of the body."""
-    parameters = []
-    body: core.Exp = function
-    while isinstance(body, core.Lambda):
-        assert isinstance(body.type, TFun)
-        parameters.append(body.type.argument)
-        if len(body.rules) != 1:
-            return tuple(parameters), body.type.result
-        body = body.rules[0].body
-    return tuple(parameters), body.type
-
-
-def is_split(rules: tuple[core.Rule, ...], t: Type) -> bool:
-    """Whether a tuple parameter is passed component by component: no rule needs it as a whole."""
-    takes_apart = all(isinstance(r.pattern, core.PRecord | core.PWild) for r in rules)
-    is_used = any(isinstance(r.pattern, core.PRecord) for r in rules)
-    return isinstance(t, TRecord) and t.is_tuple and takes_apart and is_used
 
 
 class Program:
@@ -357,7 +345,7 @@ class Program:
     def _slots(self, body: Block, function: NamedFunction, arguments: tuple[Val, ...]) -> list[Val]:
         """The arguments as they are passed: tuples that are taken apart by the patterns, component by component."""
         slots: list[Val] = []
-        for (rules, t), argument in zip(_parameters(function), arguments, strict=True):
+        for (rules, t), argument in zip(parameters_of(function), arguments, strict=True):
             if isinstance(argument, RecordVal):
                 if is_split(rules, t):
                     assert isinstance(t, TRecord)
@@ -385,7 +373,7 @@ class Program:
         """Note a function to be made: with parameters in the place of what was captured."""
         parameters: list[Local] = []
         rebuilt: list[Binding] = []
-        names = _names(function)
+        names = parameter_names(function)
         counter = 0
         for i, part in enumerate(parts):
             hint = names[i - 1] if 0 < i <= len(names) else "captured"
@@ -394,7 +382,7 @@ class Program:
                 counter += 1
                 # An argument has the parameter's name, what a function captured the name it has where it is captured.
                 is_argument = i > 0 and isinstance(part.key, tuple) and part.key[0] == "code"
-                name = hint if is_argument else _hint_of(c) or "captured"
+                name = hint if is_argument else hint_of(c) or "captured"
                 fresh.append(Local(-counter, name, c.type))
             parameters.extend(fresh)
             rebuilt.append(part.rebuild([ir.Use(p) for p in fresh]))
@@ -433,7 +421,7 @@ class Program:
         env = dict(self.group_env(head))
         at = 0
         remaining: core.Exp = function.function
-        for rules, t in _parameters(function):
+        for rules, t in parameters_of(function):
             if is_split(rules, t):
                 assert isinstance(t, TRecord)
                 n = len(t.fields)
@@ -555,127 +543,3 @@ def _nodes(e: core.Exp) -> Iterator[core.Exp]:
     yield e
     for child in children(e):
         yield from _nodes(child)
-
-
-def _parameters(function: NamedFunction) -> list[tuple[tuple[core.Rule, ...], Type]]:
-    """Per curried parameter: the rules that look at it, and its type in the scheme."""
-    types, _ = split_parameters(function.function)
-    out = []
-    body: core.Exp = function.function
-    for t in types:
-        assert isinstance(body, core.Lambda)
-        out.append((body.rules, t))
-        body = body.rules[0].body
-    return out
-
-
-def _names(function: NamedFunction) -> list[str]:
-    """Names for the C parameters, one per slot."""
-    names = []
-    for rules, t in _parameters(function):
-        if is_split(rules, t):
-            assert isinstance(t, TRecord)
-            for i, (label, _) in enumerate(t.fields):
-                inner = [
-                    r.pattern.fields[i][1] for r in rules if isinstance(r.pattern, core.PRecord)
-                ]
-                names.append(_pattern_name(inner) or f"a{label}")
-        else:
-            names.append(_pattern_name([r.pattern for r in rules]) or "a")
-    return names
-
-
-def _pattern_name(patterns: list[core.Pat]) -> str:
-    for pattern in patterns:
-        if isinstance(pattern, core.PVar | core.PAs):
-            return pattern.symbol.name
-    return ""
-
-
-def _hint_of(code: Ir) -> str:
-    match code:
-        case ir.Use(local=local):
-            return local.hint
-        case ir.Bound(name=name) | ir.GlobalUse(name=name):
-            return name
-        case ir.Member(label=label) if not label.isdigit():
-            return label
-    return ""
-
-
-# --- order and recursion -----------------------------------------------------------------------
-
-
-def called(statements: tuple[Stmt, ...]) -> list[str]:
-    """The keys of the functions that statements call, in order of first use."""
-    found: dict[str, None] = {}
-    for node in ir_nodes(statements):
-        if isinstance(node, ir.FunCall):
-            found.setdefault(node.function)
-    return list(found)
-
-
-def ir_nodes(item: object) -> Iterator[object]:
-    """All IR nodes in a statement, expression or tuple of them."""
-    waiting = [item]
-    while waiting:
-        item = waiting.pop()
-        if isinstance(item, tuple):
-            waiting.extend(reversed(item))
-        elif fields := getattr(item, "__dataclass_fields__", None):
-            yield item
-            waiting.extend(getattr(item, name) for name in reversed(fields))
-
-
-def order_functions(made: dict[str, ir.Function]) -> tuple[ir.Function, ...]:
-    """Callees first; functions that call themselves are marked."""
-    graph = {key: called(f.body) for key, f in made.items()}
-    order: list[str] = []
-    components: dict[str, int] = {}
-    index: dict[str, int] = {}
-    low: dict[str, int] = {}
-    stack: list[str] = []
-    recursive: set[str] = set()
-
-    def visit(key: str) -> None:
-        index[key] = low[key] = len(index)
-        stack.append(key)
-        for callee in graph[key]:
-            if callee not in index:
-                visit(callee)
-                low[key] = min(low[key], low[callee])
-            elif callee not in components:
-                low[key] = min(low[key], index[callee])
-        if low[key] == index[key]:
-            members = []
-            while True:
-                member = stack.pop()
-                components[member] = index[key]
-                members.append(member)
-                if member == key:
-                    break
-            order.extend(reversed(members))
-            if len(members) > 1 or key in graph[key]:
-                recursive.update(members)
-
-    for key in sorted(made):
-        if key not in index:
-            visit(key)
-    result = []
-    for key in order:
-        f = made[key]
-        is_recursive = key in recursive
-        result.append(
-            ir.Function(
-                f.key,
-                f.hint,
-                f.parameters,
-                f.result,
-                f.body,
-                f.loops and not is_recursive,
-                is_recursive,
-                f.source,
-                f.origin,
-            )  # fmt: skip
-        )
-    return tuple(result)

@@ -16,9 +16,10 @@ from pn2code.cell.partition import Partition
 from pn2code.diagnostics import Diagnostics, Origin
 from pn2code.lowering import ir
 from pn2code.lowering.builtins import Builtins
+from pn2code.lowering.calls import ir_nodes
 from pn2code.lowering.codes import STORAGE_COLSET, UNSUPPORTED_EXPRESSION, UnsupportedError
 from pn2code.lowering.expressions import Body
-from pn2code.lowering.functions import Program, ir_nodes
+from pn2code.lowering.functions import Program
 from pn2code.lowering.inscriptions import Putter
 from pn2code.lowering.transitions import lower_transition
 from pn2code.lowering.types import Types
