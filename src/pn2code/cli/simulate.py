@@ -56,7 +56,7 @@ def simulate(
         typer.Option(
             metavar="N",
             min=0,
-            help="At most N steps.  [default: 1000; with --until: no limit]",
+            help="At most N steps (default 1000; with --until no limit).",
             show_default=False,
         ),
     ] = None,
@@ -66,7 +66,7 @@ def simulate(
             metavar="K",
             min=0,
             max=2**64 - 1,
-            help="Start of all random numbers.  [default: 1]",
+            help="Start of all random numbers (default 1).",
             show_default=False,
         ),
     ] = None,
@@ -87,7 +87,7 @@ def simulate(
         Engine | None,
         typer.Option(
             help="The compiled net, or the reference token game: the same run.  "
-            "[default: compiled, where that is possible]",
+            "(default: compiled, where that is possible)",
             show_default=False,
         ),
     ] = None,
