@@ -315,3 +315,30 @@ def timed(expression: str) -> Any:
 )  # fmt: skip
 def test_timed_structures_and_reading_colours(expression: str, expected: Any) -> None:
     assert timed(expression) == expected
+
+
+@pytest.mark.parametrize(
+    ("expression", "narrow", "wide"),
+    [
+        ("(1073741823 + 1) handle Overflow => ~1", -1, 2**30),
+        ("valOf Int.maxInt", 2**30 - 1, 2**63 - 1),
+        ("valOf Int.precision", 31, 64),
+        ("(valOf Int.maxInt + 1) handle Overflow => ~1", -1, -1),
+        ("IntInf.toInt (IntInf.pow (2, 40)) handle Overflow => ~1", -1, 2**40),
+        ("round 1E12 handle Overflow => ~1", -1, 10**12),
+        ("valOf (Int.fromString \"5000000000\") handle Overflow => ~1", -1, 5 * 10**9),
+        ("let val r = ref (valOf Int.maxInt) in (inc r; !r) handle Overflow => ~1 end", -1, -1),
+    ],
+)  # fmt: skip
+def test_the_width_of_int(expression: str, narrow: int, wide: int) -> None:
+    for bits, expected in ((31, narrow), (64, wide)):
+        d = Diagnostics()
+        e = Elaborator(d, int_bits=bits)
+        e.declarations(SourceText(f"val it = {expression}", NOWHERE))
+        assert not d.has_errors, report(d)
+        program = e.program()
+        assert Evaluator(program).globals[program.globals["it"].uid] == expected
+
+
+def test_long_chains_of_operators_and_lists_are_no_deep_recursion() -> None:
+    assert value("length it", "val it = " + " ++ ".join(["1`1"] * 200)) == 200
