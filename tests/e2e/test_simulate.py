@@ -402,6 +402,22 @@ def test_a_place_with_very_many_tokens(tmp_path: Path) -> None:
     assert found["places"][1]["marking"].count("`") == 30_001
 
 
+def test_numbers_beyond_64_bits(tmp_path: Path) -> None:
+    text = """
+        net Large
+          standard
+          var i: INTINF;
+          place P : INTINF = 1`2
+          trans Square
+            in P : i
+            out P : IntInf.* (i, i)
+    """
+    net = write(text, tmp_path / "cell.cpn")
+    found = result(net, "--steps", 8)
+    assert (found["engine"], found["steps"]) == ("reference", 8)
+    assert found["places"][0]["marking"] == f"1`{2**256}"
+
+
 # --- monitors --------------------------------------------------------------------------------------
 
 WATCHED = (

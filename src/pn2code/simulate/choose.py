@@ -93,6 +93,14 @@ def _compiled(request: Request, d: Diagnostics) -> tuple[Outcome | None, bool]:
                     room *= GROWTH
                 elif full.limit == "memory" and memory < MOST_MEMORY:
                     memory *= GROWTH
+                elif full.limit == "numbers":
+                    d.error(
+                        SIMULATOR_FAILED,
+                        "the net computes an `IntInf.int` beyond 64 bits",
+                        Origin(request.net.file),
+                        hint="`--engine reference` has numbers of any size",
+                    )
+                    return None, False
                 else:
                     d.error(
                         SIMULATOR_FAILED,
