@@ -6,8 +6,8 @@
  *     {"why": "finished", "steps": 1200, "replayed": 0, "t": 14, "marking": {"Top.P": [[1, 5]]}}        the end
  *
  * After an error the end also has "error", "origin", "doing", and where they are known "transition" (its index) and "binding";
- * when it was one of the program and not of the net, "limit": "room" (a place is full), "memory" (of lists and strings) or "watch"
- * (numbers of a monitor); after a replay that was refused "message"; after a breakpoint, or when a monitor failed, "watch": its index.
+ * when it was one of the program and not of the net, "limit": "room" (a place is full), "memory" (of lists and strings), "numbers"
+ * (an IntInf.int beyond 64 bits) or "watch" (numbers of a monitor); after a replay that was refused "message"; after a breakpoint, or when a monitor failed, "watch": its index.
  * "watched" has what each monitor of --watch has collected.
  */
 #include <inttypes.h>
@@ -106,6 +106,8 @@ static void text_error(pn_text_t *text, const sim_t *sim)
         text_member(text, "limit", "room");
     } else if (sim->cx.error == PN_ERR_MEMORY) {
         text_member(text, "limit", "memory");
+    } else if (sim->cx.error == PN_ERR_LARGE) {
+        text_member(text, "limit", "numbers");
     }
     if (sim->transition >= 0) {
         pn_text_str(text, ", \"transition\": ");
