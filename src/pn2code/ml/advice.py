@@ -86,6 +86,11 @@ BY_CODE: dict[str, str] = {
     "constructor-argument": "a constructor without argument stands alone",
     "function-clauses": "all clauses of a function have the same number of arguments",
     "unknown-colour-set": "it must be declared before this place, e.g. `colset NAME = int;`",
+    "no-such-operator": "both operands must be numbers of one type; comparisons also work on strings",
+    "type-mismatch": "write a value of the expected type here, or convert this one",
+    "guard-not-boolean": "a guard is a condition such as `n > 0`, or a list of conditions",
+    "unknown-field": "look at the declaration of the record",
+    "syntax-error": "look before this place, too: a bracket, an operator or a word may be missing there",
     "colour-set-range": "write the lower bound first",
 }
 """What to do, where nothing better is known."""

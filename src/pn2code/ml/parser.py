@@ -242,6 +242,7 @@ def _report(
     accepted = problem.accepts
     after = [t for t in tokens if t.start >= span.end and not at_end]
     hint = hint or advice.syntax(kind, word, before, after, accepted, start)
+    hint = hint or advice.BY_CODE[codes.SYNTAX_ERROR]
     d.error(codes.SYNTAX_ERROR, message, span, hint=hint)
 
 
