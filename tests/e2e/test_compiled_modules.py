@@ -1,3 +1,4 @@
+# ruff: noqa: E501  (a net: one declaration a line)
 """Modules, references and alternatives in patterns, layered inscriptions: compiled, against the token game."""
 
 from __future__ import annotations

@@ -178,6 +178,19 @@ def test_what_rules_cover(declarations: str, expected: list[str]) -> None:
     assert [x.message for x in m.d] == expected
 
 
+@pytest.mark.parametrize(
+    "declarations",
+    [
+        "structure S = INT val x = S.mkstr 3",
+        "open E val x = ord red",
+        "functor F (C : sig type cs val lt : cs * cs -> bool end) = struct fun least (a, b) = if C.lt (a, b) then a else b end "
+        "structure A = F (E) val x = A.least (red, blue)",
+    ],
+)
+def test_colour_sets_are_structures(declarations: str) -> None:
+    assert errors(declarations) == []
+
+
 def test_large_matches_are_looked_at_or_left() -> None:
     """Ten thousand clauses; a match whose decision tree is too large says nothing."""
     m = Ml()

@@ -1,6 +1,7 @@
 """CPN ML text to tokens.
 
-A token is a `Lexeme` with its place in the text; literals carry their value. Comments nest, so this is written by hand; the grammar proper is in `grammar.lark`.
+A token is a `Lexeme` with its place in the text; literals carry their value. Comments nest, so this is written by hand;
+the grammar proper is in `grammar.lark`.
 """
 
 from __future__ import annotations

@@ -18,6 +18,7 @@ from pn2code.diagnostics import Span
 from pn2code.ml import codes, core
 from pn2code.ml import syntax as s
 from pn2code.ml.annotations import Annotations, arity
+from pn2code.ml.colset_members import members_of
 from pn2code.ml.context import Context, suggestion
 from pn2code.ml.environment import (
     AbstractType,
@@ -25,6 +26,7 @@ from pn2code.ml.environment import (
     BrokenStructure,
     BrokenType,
     BuiltinStructure,
+    ColsetEntry,
     ConEntry,
     Entry,
     FunctorEntry,
@@ -37,7 +39,17 @@ from pn2code.ml.environment import (
     library_members,
     library_value,
 )
-from pn2code.ml.inference import I_EXN, I_UNIT, IFun, Meta, Quant, Ty, UnifyError, to_type
+from pn2code.ml.inference import (
+    I_EXN,
+    I_UNIT,
+    IFun,
+    Meta,
+    Quant,
+    Ty,
+    UnifyError,
+    from_type,
+    to_type,
+)
 from pn2code.ml.names import Names
 from pn2code.ml.types import EXN, TFun
 
@@ -118,12 +130,24 @@ class Modules:
     def named(self, name: str, span: Span) -> Found:
         """A structure by its name."""
         found = self._ctx.scope.structure(name)
+        if found is None and name in self._ctx.colsets:
+            found = self._colset(name)
         if found is None:
             self._ctx.error(codes.UNBOUND, f"there is no structure `{name}`", span)
             return BrokenStructure()
         if isinstance(found, BrokenStructure):
             self._ctx.tainted = True
         return found
+
+    def _colset(self, name: str) -> Found:
+        """A colour set as a structure: its functions, and its type under the name `cs`."""
+        colset = self._ctx.colsets[name]
+        if colset is None:
+            return BrokenStructure()
+        scope = Scope()
+        scope.types["cs"] = TypeAbbreviation((), from_type(colset.type, []))
+        scope.values.update({m: ColsetEntry(colset, m) for m in sorted(members_of(colset))})
+        return scope
 
     # --- structures
 
