@@ -183,7 +183,7 @@ class _Flattener:
                 PORT_COLSET,
                 f"port `{port.name}` has colour set `{port.colset.name}`, but its socket "
                 f"`{socket.name}` has `{socket.colset.name}`",
-                replace(port.origin, instance=instance.path),
+                port.origin,  # no instance: said once, however often the page is used
                 notes=[Note("the socket is declared here", socket.origin)],
                 hint="give both the same colour set",
             )
