@@ -86,7 +86,10 @@ def test_only_files_below_the_folder_are_there(program: Path, tmp_path: Path) ->
 
 def test_a_folder_that_is_not_there(program: Path, tmp_path: Path) -> None:
     done = subprocess.run(
-        [str(program), "--files", str(tmp_path / "nowhere")], capture_output=True, text=True, check=False
+        [str(program), "--files", str(tmp_path / "nowhere")],
+        capture_output=True,
+        text=True,
+        check=False,
     )
     assert done.returncode == 2
     assert "there is no folder" in done.stderr

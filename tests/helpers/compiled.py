@@ -34,7 +34,8 @@ WARNINGS = (
 SANITIZERS = ("-g", "-O0", "-fsanitize=address,undefined", "-fno-sanitize-recover=all")
 FAST = ("-O1",)
 RUNTIME = (
-    "arena", "bag", "codec", "file", "library", "list", "moves", "num", "random", "read", "stack", "string", "text", "trace", "type",
+    "arena", "bag", "codec", "file", "library", "list", "moves", "num", "random", "read", "stack",
+    "string", "text", "trace", "type",
 )  # fmt: skip
 
 

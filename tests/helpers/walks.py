@@ -21,7 +21,6 @@ from pn2code.net.flat import FlatNet
 from pn2code.net.front import load
 from pn2code.semantics.game import Game, GameError
 
-
 ROOMS = (0, 4096, 65536)
 """Different tokens that a place can hold, tried one after the other; 0: as many as a supervisor has."""
 

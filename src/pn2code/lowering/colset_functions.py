@@ -1,4 +1,4 @@
-"""Functions of colour sets that the runtime does not have: written in CPN ML (prelude/Colour.sml) on top of those it has.
+"""Functions of colour sets that the runtime does not have, written in CPN ML (prelude/Colour.sml) on top of the others.
 
 And all values of a colour set that the runtime cannot number: lists, strings and subsets, and what is made of them.
 """
@@ -84,7 +84,13 @@ class ColsetFunctions:
             part = token if name.startswith("timed.") else cs
             pair = RecordVal({"1": arguments[0], "2": own}, tuple_of(part, STRING))
             return self._call(name, (legal, mkstr), pair, tuple_of(part, STRING), STRING)
-        results = {"timed.all": tms, "timed.size": INT, "timed.ord": INT, "timed.col": token, "timed.ran": token}
+        results = {
+            "timed.all": tms,
+            "timed.size": INT,
+            "timed.ord": INT,
+            "timed.col": token,
+            "timed.ran": token,
+        }
         if name in results:
             return self._call("no_bounds", (), own, STRING, results[name])
         return None
@@ -179,7 +185,9 @@ def all_values(body: Body, colset: Colset, at: Span | Origin) -> Ir:
             assert part is not None
             items = body.atomic(all_values(body, part, span), "items")
             return _sequences(body, "sequences", items, list_of(part.type), c.low, c.high, t, span)
-        case Kind.STRING if c.length is not None and isinstance(c.low, str) and isinstance(c.high, str):
+        case Kind.STRING if (
+            c.length is not None and isinstance(c.low, str) and isinstance(c.high, str)
+        ):
             pair = RecordVal(
                 {"1": ir.Const(ord(c.low), ir.INT), "2": ir.Const(ord(c.high), ir.INT)},
                 tuple_of(INT, INT),
@@ -327,4 +335,3 @@ def base_value(body: Body, colset: Colset, at: Span) -> Ir:
     body.emit(ir.Declare(local))
     body.emit(ir.Fill(local, "base", types.colset(colset), ()))
     return ir.Use(local)
-
