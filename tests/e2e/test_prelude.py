@@ -74,7 +74,7 @@ Real.fmt (StringCvt.FIX (SOME 2)) 3.14159 ^ Real.fmt (StringCvt.SCI (SOME 3)) 31
 Real.fmt (StringCvt.FIX NONE) 0.5
   0.500000
 Real.fmt (StringCvt.GEN (SOME 3)) 1234567.0 ^ Real.fmt (StringCvt.FIX (SOME 0)) (~2.5)
-  1.23E6~2
+  1.23E06~2
 IntInf.toString (IntInf.pow (3, 20)) ^ IntInf.toString (IntInf.pow (~2, 5))
   3486784401~32
 Int.toString (IntInf.log2 1025)

@@ -2,7 +2,7 @@
 fun check_int (i : int) = i;
 fun show_int (i : int) = Int.toString (check_int i);
 fun show_real x =
-  if Real.isNan x then "nan" else if Real.isFinite x then Real.fmt (StringCvt.SCI (SOME 11)) x
+  if Real.isNan x then "nan" else if Real.== (x, 0.0) then (if Real.signBit x then "~0" else "0") else if Real.isFinite x then Real.fmt (StringCvt.SCI (SOME 11)) x
   else if x > 0.0 then "inf" else "~inf";
 fun show_string s = "\"" ^ String.toString s ^ "\"";
 fun show_char c = "#\"" ^ Char.toString c ^ "\"";

@@ -297,7 +297,7 @@ def format_real(how: Data, x: float) -> str:
         raise fail("Size")
     if not math.isfinite(x) or how.name == "GEN":
         return real_text(x, 12 if digits is None else digits)
-    sign = "~" if math.copysign(1.0, x) < 0 else ""
+    sign = "~" if x < 0 else ""
     x = abs(x)
     if how.name == "FIX":
         return f"{sign}{x:.{6 if digits is None else digits}f}"

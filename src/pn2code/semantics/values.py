@@ -230,9 +230,9 @@ def real_text(x: float, precision: int = 12) -> str:
         return "nan"
     if math.isinf(x):
         return "inf" if x > 0 else "~inf"
-    sign = "~" if math.copysign(1.0, x) < 0 else ""
     if x == 0:
-        return sign + "0.0"
+        return "0.0"  # also of minus zero
+    sign = "~" if x < 0 else ""
     mantissa, exponent_text = f"{abs(x):.{precision - 1}e}".split("e")
     digits, exponent = mantissa.replace(".", "").rstrip("0"), int(exponent_text)
     if exponent < -4 or exponent >= precision:

@@ -29,7 +29,7 @@ Real.toString 0.00001 ==>> "1E~05"
 Real.toString 0.00012345 ==>> "0.00012345"
 Real.toString ~1.5E~10 ==>> "~1.5E~10"
 Real.toString 0.1 ==>> "0.1"
-Real.toString ~0.0 ==>> "~0.0"
+Real.toString ~0.0 ==>> "0.0"
 Real.toString (real 3) ==>> "3.0"
 time () ==>> 0
 step () ==>> 0
@@ -89,3 +89,12 @@ split (4, [1], []) ==>> raised Match
 map basename ["/var/tmp/test", "a/b/", "x"] ==>> ["test", "b", "x"]
 flatten [[1, 2], [], [3]] ==>> [1, 2, 3]
 isSubstring "ell" "hello" ==>> true
+Real.fmt (StringCvt.GEN (SOME 3)) 12345.0 ==>> "1.23E04"
+Real.fmt (StringCvt.GEN (SOME 3)) 100.0 ==>> "100.0"
+Real.fmt (StringCvt.GEN (SOME 2)) 0.00001 ==>> "1E~05"
+Real.fmt (StringCvt.GEN (SOME 1)) 0.0 ==>> "0.0"
+Real.fmt (StringCvt.GEN (SOME 20)) 0.5 ==>> "0.5"
+Real.fmt (StringCvt.SCI (SOME 2)) ~0.0 ==>> "0.00E0"
+Real.fmt (StringCvt.FIX (SOME 1)) ~0.0 ==>> "0.0"
+Real.toString 0.0001 ==>> "0.0001"
+Real.toString 999999999999.0 ==>> "999999999999.0"
