@@ -103,29 +103,33 @@ static pn_string_t in_sml(pn_ctx_t *cx, char *text)
     return pn_string_make(cx, text, n);
 }
 
-/* General notation: so many significant digits without trailing zeros, with exponent when it is below -5 or not below the number
- * of digits. */
+/* General notation as SML/NJ has it: so many significant digits without trailing zeros, but for one behind the point; with an
+ * exponent of two digits at least when that is below -4 or not below the number of digits. */
 static pn_string_t general(pn_ctx_t *cx, int64_t digits, double x, char *text, size_t size)
 {
     (void)snprintf(text, size, "%.*e", (int)digits - 1, x);
-    const char *e = strchr(text, 'e');
+    char *e = strchr(text, 'e');
     const int64_t exponent = (e != NULL) ? strtol(e + 1, NULL, 10) : 0;
-    const bool is_scientific = (exponent < -5) || (exponent >= digits);
-    if (!is_scientific) {
+    const bool is_scientific = (exponent < -4) || (exponent >= digits);
+    if (is_scientific && (e != NULL)) {
+        *e = '\0';
+    } else {
         (void)snprintf(text, size, "%.*f", (int)(digits - 1 - exponent), x);
     }
-    /* Trailing zeros of the digits, and a point without digits. */
-    const char *exponent_at = strchr(text, 'e');
-    size_t end = (exponent_at != NULL) ? (size_t)(exponent_at - text) : strlen(text);
+    size_t end = strlen(text);
     if (memchr(text, '.', end) != NULL) {
-        size_t last = end;
-        while (text[last - 1U] == '0') {
-            last--;
+        while (text[end - 1U] == '0') {
+            end--;
         }
-        if (text[last - 1U] == '.') {
-            last--;
+        if (text[end - 1U] == '.') {
+            end--;
         }
-        (void)memmove(&text[last], &text[end], strlen(&text[end]) + 1U);
+        text[end] = '\0';
+    }
+    if (is_scientific) {
+        (void)snprintf(&text[end], size - end, "E%s%02d", (exponent < 0) ? "~" : "", abs((int)exponent));
+    } else if (memchr(text, '.', end) == NULL) {
+        (void)snprintf(&text[end], size - end, ".0");
     }
     return in_sml(cx, text);
 }
@@ -166,6 +170,9 @@ pn_string_t pn_real_styled(pn_ctx_t *cx, int64_t style, int64_t digits, double x
     char text[1600]; /* the largest number has 309 digits in front of the point */
     const int64_t most = 1000;
     const int places = (int)((digits > most) ? most : digits);
+    if (pn_real_equal(x, 0.0)) {
+        x = 0.0; /* zero has no sign */
+    }
     switch (style) {
     case 0:
         (void)snprintf(text, sizeof text, "%.*e", places, x);
@@ -174,13 +181,10 @@ pn_string_t pn_real_styled(pn_ctx_t *cx, int64_t style, int64_t digits, double x
         (void)snprintf(text, sizeof text, "%.*f", places, x);
         return in_sml(cx, text);
     case 2:
-        if (pn_real_equal(x, 0.0)) {
-            return signbit(x) ? PN_STRING("~0") : PN_STRING("0");
-        }
         return general(cx, places, x, text, sizeof text);
     default:
         if (pn_real_equal(x, 0.0)) {
-            return signbit(x) ? PN_STRING("~0.0") : PN_STRING("0.0");
+            return PN_STRING("0.0");
         }
         return exact(cx, x, text, sizeof text);
     }

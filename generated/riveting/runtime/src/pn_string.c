@@ -174,7 +174,7 @@ size_t pn_int_sml(char *out, size_t capacity, int64_t value)
 /* SML/NJ's Real.toString: 12 significant digits, at least one decimal, E notation outside 1E~04 .. 1E12. */
 size_t pn_real_sml(char *out, size_t capacity, double value)
 {
-    const char *sign = signbit(value) ? "~" : "";
+    const char *sign = (value < 0.0) ? "~" : ""; /* zero has none */
     if (isnan(value)) {
         return (size_t)snprintf(out, capacity, "nan");
     }
