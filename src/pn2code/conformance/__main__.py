@@ -37,7 +37,10 @@ def main() -> int:
             nets.append(compare.compare(corpus, path, max_nodes=options.largest))
     tiny = options.folder / "semantics-suite"
     graphs = {name: suite.compare_graph(tiny, name) for name in suite.names(tiny)}
-    text = document(nets, _walks(options.walks), graphs, compare_expressions(tiny))
+    expressions = compare_expressions(tiny)
+    text = document(
+        nets, _walks(options.walks), graphs, expressions, about_walks=_about(options.walks)
+    )
     if options.output is None:
         print(text, end="")
     else:
@@ -62,6 +65,24 @@ def _walks(file: Path | None) -> dict[str, Finding]:
         entry["net"]: Finding(_VERDICTS[entry["verdict"]], entry["detail"])
         for entry in data["nets"]
     }
+
+
+def _about(file: Path | None) -> str:
+    """How far the walks went."""
+    if file is None:
+        return ""
+    data = json.loads(file.read_text(encoding="utf-8"))
+    ends = data["ends"]
+    said = (
+        ("steps", "took all steps"),
+        ("dead", "came to a dead marking"),
+        ("error", "ended with the same error in both"),
+        ("time", "were cut after some seconds"),
+    )
+    return (
+        f"Compiled walks, the semantics suite included: {data['steps']:,} steps at most, everything compared before each "
+        f"step; of those that agree {', '.join(f'{ends[k]} {words}' for k, words in said if ends.get(k))}."
+    )
 
 
 if __name__ == "__main__":

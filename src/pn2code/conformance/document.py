@@ -32,6 +32,7 @@ def document(
     walks: Mapping[str, Finding],
     suite: Mapping[str, Finding],
     expressions: Mapping[str, Finding],
+    about_walks: str = "",
 ) -> str:
     """The whole text, the same for the same findings.
 
@@ -41,8 +42,11 @@ def document(
             game; empty where that was not tried.
         suite: name -> finding, of the semantics suite.
         expressions: of CPN ML -> finding.
+        about_walks: a sentence about the walks.
     """
-    parts = [HEAD, "## Totals\n", *_totals(nets, walks, suite, expressions), ""]
+    parts = [HEAD, "## Totals\n", *_totals(nets, walks, suite, expressions)]
+    parts += ["", about_walks] if about_walks else []
+    parts.append("")
     notes = [n for n in nets if n.state is not State.AGREES or _worse(_walk(n, walks))]
     parts += ["## What does not simply agree\n", *_notes(notes, walks), ""]
     parts += ["## Net by net\n", *_table(nets, walks), ""]
