@@ -80,8 +80,8 @@ def _about(file: Path | None) -> str:
         ("time", "were cut after some seconds"),
     )
     return (
-        f"Compiled walks, the semantics suite included: {data['steps']:,} steps at most, everything compared before each "
-        f"step; of those that agree {', '.join(f'{ends[k]} {words}' for k, words in said if ends.get(k))}."
+        f"Compiled walks, the semantics suite included: {data['steps']:,} steps at most, everything compared before "
+        f"each step; of those that agree {', '.join(f'{ends[k]} {words}' for k, words in said if ends.get(k))}."
     )
 
 
