@@ -21,7 +21,8 @@ pytestmark = pytest.mark.cc
 
 NET = 'net Suite\n  standard\n  place P : STRING = 1`""'
 LEFT_OUT = (
-    "ran()", "random", "uniform", "discrete", "exponential", "normal", "poisson", "time()", "Time.now()", "IntInf.pow(2,70)",
+    "ran()", "random", "uniform", "discrete", "exponential", "normal", "poisson", "time()",
+    "Time.now()", "IntInf.pow(2,70)",
 )  # fmt: skip
 """Words of expressions whose values are not always the same, and what is beyond 64 bits."""
 
