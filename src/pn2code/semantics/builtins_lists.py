@@ -15,6 +15,7 @@ from pn2code.semantics.values import (
     Value,
     equal,
     exception,
+    fitting,
     some,
 )
 
@@ -137,7 +138,7 @@ def _fold_pairs(e: Evaluator, function: Value, start: Value, pairs: Iterable[Ite
 def _tabulate(e: Evaluator, p: tuple[int, Value]) -> Task:
     if p[0] < 0:
         raise MlException(exception("Size"))
-    return (yield _map(e, p[1], tuple(range(p[0]))))
+    return (yield _map(e, p[1], tuple(range(fitting(p[0])))))
 
 
 def collate(e: Evaluator, compare: Value, p: tuple[Items, Items]) -> Task:

@@ -9,7 +9,7 @@ from collections.abc import Callable
 from typing import TYPE_CHECKING, Any
 
 from pn2code.semantics.builtins_lists import keep, sort, without_all
-from pn2code.semantics.values import MlException, Value, equal, exception
+from pn2code.semantics.values import MlException, Value, equal, exception, fitting
 
 if TYPE_CHECKING:
     from pn2code.semantics.evaluate import Evaluator, Task
@@ -76,7 +76,7 @@ def _only(e: Evaluator, items: Items) -> Value:
 
 FUNCTIONS: dict[str, tuple[int, Function]] = {
     # Python repeats zero times when the factor is negative, as CPN ML does
-    "Ms.`": (1, lambda e, p: (p[1],) * p[0]),
+    "Ms.`": (1, lambda e, p: (p[1],) * fitting(p[0])),
     "Ms.++": (1, lambda e, p: p[0] + p[1]),
     "Ms.--": (1, _subtract),
     "Ms.**": (1, lambda e, p: p[1] * p[0]),

@@ -10,9 +10,11 @@ from typing import TYPE_CHECKING, Any
 
 from pn2code.semantics.builtins_scan import from_string, scanner
 from pn2code.semantics.values import (
+    MAX_BITS,
     NONE,
     Data,
     MlException,
+    MlLimit,
     Value,
     exception,
     int_text,
@@ -54,10 +56,21 @@ def _quot(a: int, b: int) -> int:
 
 def _power(base: int, exponent: int) -> int:
     if exponent >= 0:
+        _fitting_bits(base.bit_length() * exponent if abs(base) > 1 else 0)
         return int(base**exponent)
     if base in (1, -1):
         return int(base ** (-exponent))
     return 1 // _nonzero(base) if base == 0 else 0
+
+
+def _fitting_bits(bits: int) -> None:
+    if bits > MAX_BITS:
+        raise MlLimit(f"a number of about {bits:,} bits, more than {MAX_BITS:,}")
+
+
+def _shifted(p: tuple[int, int]) -> int:
+    _fitting_bits(p[0].bit_length() + p[1])
+    return p[0] << p[1]
 
 
 def _sign(x: float) -> int:
@@ -146,7 +159,7 @@ UNBOUNDED: dict[str, Function] = {
     "xorb": lambda e, p: p[0] ^ p[1],
     "andb": lambda e, p: p[0] & p[1],
     "notb": lambda e, a: ~a,
-    "<<": lambda e, p: p[0] << p[1],
+    "<<": lambda e, p: _shifted(p),
     "~>>": lambda e, p: p[0] >> p[1],
 }
 """Operations that only `IntInf` has."""

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 from pn2code.semantics.builtins_lists import collate
 from pn2code.semantics.builtins_scan import from_string, scanner
-from pn2code.semantics.values import NONE, Data, MlException, Value, exception, some
+from pn2code.semantics.values import MAX_STRING, NONE, Data, MlException, Value, exception, some
 
 if TYPE_CHECKING:
     from pn2code.semantics.evaluate import Evaluator, Task
@@ -143,7 +143,7 @@ def _is_between(low: str, high: str) -> tuple[int, Function]:
 
 
 CONSTANTS: dict[str, Value] = {
-    "String.maxSize": 16777211,
+    "String.maxSize": MAX_STRING,
     "Char.minChar": "\0",
     "Char.maxChar": "\xff",
     "Char.maxOrd": 255,

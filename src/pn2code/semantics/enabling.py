@@ -98,6 +98,9 @@ class running:  # noqa: N801 - a context manager reads as a word
             raise GameError(f"{self.doing} cannot go on: {raised}", origin) from None
         if isinstance(raised, MlLimit | RecursionError):
             raise GameError(f"{self.doing} was given up: {raised}", origin) from None
+        if isinstance(raised, MemoryError):
+            why = "it needs more memory than there is"
+            raise GameError(f"{self.doing} was given up: {why}", origin) from None
 
 
 @dataclass(frozen=True, slots=True)

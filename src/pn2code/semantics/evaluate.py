@@ -30,7 +30,18 @@ from pn2code.semantics.builtins import builtin, colset_builtin
 from pn2code.semantics.colours import Colours
 from pn2code.semantics.files import Files
 from pn2code.semantics.random import RandomStream
-from pn2code.semantics.values import Closure, Data, MlException, MlLimit, Native, Value, exception
+from pn2code.semantics.values import (
+    MAX_BITS,
+    MAX_ITEMS,
+    MAX_STRING,
+    Closure,
+    Data,
+    MlException,
+    MlLimit,
+    Native,
+    Value,
+    exception,
+)
 
 Environment = Mapping[int, Value]
 Task = Generator[Any, Any, Any]
@@ -59,8 +70,31 @@ class Limits:
     depth: int = 700_000
 
 
+_LARGEST_INT = 1 << MAX_BITS
+
 _RECURSION_LIMIT = 100_000
 """Python frames for one expression; they are not on C's stack."""
+
+
+_GROWING = frozenset({str, tuple, int})
+
+
+def _bounded(value: Any) -> Any:
+    """A result that is not too large: a function that doubles one with each call would soon take all memory.
+
+    Raises:
+        MlException: Size, for a string.
+        MlLimit: for a list, a multi-set or an unbounded integer.
+    """
+    if type(value) is int:
+        if not -_LARGEST_INT < value < _LARGEST_INT:
+            raise MlLimit(f"a number has more than {MAX_BITS:,} bits")
+    elif len(value) > MAX_ITEMS:
+        if type(value) is not str:
+            raise MlLimit(f"a list or a multi-set has more than {MAX_ITEMS:,} elements")
+        if len(value) > MAX_STRING:
+            raise MlException(exception("Size"))
+    return value
 
 
 class Evaluator:
@@ -173,6 +207,8 @@ class Evaluator:
                 current = self._handled(waiting, raised)
             except RecursionError:
                 raise MlLimit("a value is nested too deeply") from None
+            except MemoryError:
+                raise MlLimit("a value needs more memory than there is") from None
 
     def _handled(self, waiting: list[Task], raised: MlException) -> Step:
         """Gives an exception to the waiting tasks, the last one first, until one handles it: what that continues with.
@@ -210,7 +246,8 @@ class Evaluator:
         if len(arguments) < function.arity:
             return Native(function.name, function.arity, function.function, arguments)
         try:
-            return function.function(self, *arguments)
+            value = function.function(self, *arguments)
+            return _bounded(value) if type(value) in _GROWING else value
         except MlException as raised:
             raised.span = raised.span or span
             raise

@@ -274,8 +274,16 @@ class Game:
 
     def _tokens(self, value: Any, form: Form, colset: Colset, origin: Origin) -> list[Value]:
         """The tokens that an inscription's value stands for, legal and as they are stored."""
-        single = form in (Form.TOKEN, Form.TIMED_TOKEN)
-        return [self._checked(x, colset, origin) for x in ((value,) if single else value)]
+        if form in (Form.TOKEN, Form.TIMED_TOKEN):
+            return [self._checked(value, colset, origin)]
+        stored: list[Value] = []
+        before: Any = None
+        for token in value:
+            # 1000000`1 is a million times the same object.
+            same = bool(stored) and token is before
+            stored.append(stored[-1] if same else self._checked(token, colset, origin))
+            before = token
+        return stored
 
     def _checked(self, token: Value, c: Colset, origin: Origin) -> Value:
         value = token.value if isinstance(token, Timed) else token

@@ -171,6 +171,26 @@ class MlLimit(Exception):  # noqa: N818
     """Evaluation went on for too long or too deep; CPN ML cannot handle it."""
 
 
+MAX_STRING = 16_777_211
+"""`String.maxSize`."""
+MAX_ITEMS = 5_000_000
+"""Elements of a list or a multi-set: evaluation gives up beyond, long before memory ends."""
+
+MAX_BITS = 1_000_000
+"""Of an unbounded integer."""
+
+
+def fitting(count: int) -> int:
+    """A number of elements.
+
+    Raises:
+        MlLimit: it is more than `MAX_ITEMS`.
+    """
+    if count > MAX_ITEMS:
+        raise MlLimit(f"a list or a multi-set of {count:,} elements, more than {MAX_ITEMS:,}")
+    return count
+
+
 def exception(name: str, argument: Value | None = None) -> Data:
     """The value of a built-in exception; of one that CPN ML has no name for when it is not in the table."""
     known = EXCEPTIONS.get(name)
