@@ -425,7 +425,8 @@ class Expressions:
                 if isinstance(b, ir.Const) and isinstance(b.value, bool):
                     wanted = b.value == (operator == "==")
                     return self._print(a) if wanted else self._negation(a)
-                x, y = (self.inside(v, c_ops.EQUALITY) for v in (a, b))
+                # C reads `a == b < c` as intended, but compilers warn of it, and people stumble.
+                x, y = (self.inside(v, c_ops.RELATION) for v in (a, b))
                 return f"{x} {operator} {y}", c_ops.EQUALITY
             case Rep.REAL:
                 return f"{negation}pn_real_equal({self.text(a)}, {self.text(b)})", precedence
