@@ -1,0 +1,131 @@
+"""Nets that are too large, too deep or endless: a clear message or success, with bounded memory."""
+
+from __future__ import annotations
+
+import resource
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+from helpers.netbuilder import cpn
+
+GIGABYTE = 1 << 30
+
+
+def bounded() -> None:
+    resource.setrlimit(resource.RLIMIT_DATA, (GIGABYTE, GIGABYTE))
+
+
+def pn2code(*arguments: object) -> subprocess.CompletedProcess[str]:
+    """The command with at most 1 GB."""
+    return subprocess.run(
+        [sys.executable, "-m", "pn2code", *map(str, arguments)],
+        capture_output=True,
+        text=True,
+        check=False,
+        timeout=300,
+        preexec_fn=bounded,  # noqa: PLW1509 - the test has one thread
+    )
+
+
+def check(folder: Path, data: bytes) -> subprocess.CompletedProcess[str]:
+    path = folder / "net.cpn"
+    path.write_bytes(data)
+    return pn2code("check", path, "--format", "concise")
+
+
+def test_a_file_beyond_the_limit_is_refused_unread(tmp_path: Path) -> None:
+    path = tmp_path / "net.cpn"
+    with path.open("wb") as file:
+        file.write(b"<?xml version='1.0'?><workspaceElements>")
+        file.truncate(101 * 1024 * 1024)
+    done = pn2code("check", path)
+    assert done.returncode == 1
+    assert "file-too-large" in done.stdout + done.stderr
+
+
+def test_a_hundred_megabytes_of_elements_are_refused(tmp_path: Path) -> None:
+    one = b"<place id='ID1'><text>A</text></place>\n"
+    head, tail = b"<workspaceElements><cpnet><page id='P'>", b"</page></cpnet></workspaceElements>"
+    size = 100 * 1024 * 1024 - len(head) - len(tail)
+    done = check(tmp_path, head + one * (size // len(one)) + tail)
+    assert done.returncode == 1
+    assert "xml-limit" in done.stdout + done.stderr
+
+
+def test_ten_thousand_places(tmp_path: Path) -> None:
+    places = "\n".join(f"  place P{i} : INT = 1`{i}" for i in range(10_000))
+    done = check(tmp_path, cpn(f"net Many\n  standard\n{places}\n"))
+    assert done.returncode == 0, done.stdout + done.stderr
+    assert "10000 places" in done.stdout
+
+
+def test_a_thousand_pages(tmp_path: Path) -> None:
+    text = "net Pages\n  standard\n  var n: INT;\n"
+    for i in range(1_000):
+        text += f"  page Page{i}\n    place P : INT = 1`1\n    trans T\n      in P : n\n"
+    done = check(tmp_path, cpn(text))
+    assert done.returncode == 0, done.stdout + done.stderr
+    assert "1000 pages" in done.stdout
+
+
+def test_ten_thousand_constructors(tmp_path: Path) -> None:
+    constructors = " | ".join(f"c{i}" for i in range(10_000))
+    text = f"net Constructors\n  standard\n  colset C = with {constructors};\n  place P : C = C.all()\n"
+    done = check(tmp_path, cpn(text))
+    assert done.returncode == 0, done.stdout + done.stderr
+
+
+@pytest.mark.parametrize(
+    "term", ["1`1 ++ ", "n" * 1_000 + " + ", "(", "[", "1 :: ", "~", "fn x => ", '"' + "a" * 1_000]
+)
+def test_a_megabyte_of_inscription(tmp_path: Path, term: str) -> None:
+    text = term * (1_000_000 // len(term)) + "1`1"
+    net = cpn("net Long\n  standard\n  place P : INT = XXX\n").replace(b"XXX", text.encode())
+    done = check(tmp_path, net.replace(b"&&", b"&amp;&amp;"))
+    said = done.stdout + done.stderr
+    assert done.returncode in (0, 1), said[-2000:]
+    assert "internal error" not in said
+    assert done.returncode == 0 or "error" in said
+
+
+@pytest.mark.parametrize(
+    ("text", "said"),
+    [
+        ("let fun f x = f (x + 1) handle Overflow => f 0 in f 0 end", "given up"),
+        ("let fun f x = 1 + f x in f 0 end", "given up"),
+        ("(while true do (); 1)", "steps"),
+        ('let fun f x = f (x ^ x) in f "ab" end', "Size"),
+        ("let fun f x = f (x ++ x) in f (1`1) end", "5,000,000"),
+        ("1000000000`1", "5,000,000"),
+        ("List.tabulate (1000000000, fn i => i)", "5,000,000"),
+        ("IntInf.toInt (IntInf.pow (IntInf.fromInt 3, 1000000000))", "bits"),
+    ],
+)
+def test_an_endless_or_huge_initial_marking_is_given_up(
+    tmp_path: Path, text: str, said: str
+) -> None:
+    path = tmp_path / "net.cpn"
+    path.write_bytes(cpn(f"net Endless\n  standard\n  place P : INT = {text}\n"))
+    done = pn2code("marking", path)
+    assert done.returncode == 1
+    assert said in done.stdout + done.stderr
+    assert "initial marking" in done.stdout + done.stderr
+
+
+@pytest.mark.cc
+@pytest.mark.parametrize(
+    ("guard", "said"),
+    [("let fun f x = 1 + f x in f n > 0 end", ("recurs", "deep", "stack"))],
+)
+def test_deep_recursion_in_a_compiled_guard_is_an_error(
+    tmp_path: Path, guard: str, said: tuple[str, ...]
+) -> None:
+    path = tmp_path / "net.cpn"
+    net = f"net Deep\n  standard\n  var n: INT;\n  place P : INT = 1`1\n  trans T guard [{guard}]\n    in P : n\n"
+    path.write_bytes(cpn(net))
+    done = pn2code("simulate", path, "--steps", 5, "--engine", "compiled")
+    text = done.stdout + done.stderr
+    assert done.returncode not in (0, 70, -11), text
+    assert any(word in text for word in said), text

@@ -1,0 +1,1 @@
+"""Fuzzing the whole way from a file to generated C; see `__main__`."""
