@@ -524,25 +524,26 @@ def used_locals(statements: tuple[Stmt, ...]) -> frozenset[int]:
 
 def _used(item: object, known: frozenset[int] | None) -> Iterator[int]:
     """`known`: the locals that are used as far as is known; what goes to others is not looked at."""
-    match item:
-        case tuple():
-            for part in item:
-                yield from _used(part, known)
-            return
-        case ir.Use(local=local):
-            yield local.uid
-        case ir.Let(local=local, value=value) | ir.Assign(local=local, value=value) if (
-            known is not None and local.uid not in known and does_nothing(value)
-        ):
-            return
-        case ir.Do(value=value) if does_nothing(value):
-            return
-        case ir.Fill(local=local):
-            yield local.uid
-        case ir.ForList(until=until) if until is not None:
-            yield until.uid
-    for name in getattr(item, "__dataclass_fields__", ()):
-        yield from _used(getattr(item, name), known)
+    waiting = [item]
+    while waiting:
+        item = waiting.pop()
+        match item:
+            case tuple():
+                waiting.extend(item)
+                continue
+            case ir.Use(local=local):
+                yield local.uid
+            case ir.Let(local=local, value=value) | ir.Assign(local=local, value=value) if (
+                known is not None and local.uid not in known and does_nothing(value)
+            ):
+                continue
+            case ir.Do(value=value) if does_nothing(value):
+                continue
+            case ir.Fill(local=local):
+                yield local.uid
+            case ir.ForList(until=until) if until is not None:
+                yield until.uid
+        waiting.extend(getattr(item, name) for name in getattr(item, "__dataclass_fields__", ()))
 
 
 def uses_context(

@@ -23,6 +23,7 @@ from pn2code.diagnostics import SourceText, Span
 from pn2code.lowering import ir
 from pn2code.lowering.ir import Ir, IrType, Local, Rep, Stmt
 from pn2code.lowering.values import (
+    Binding,
     BuiltinFunction,
     Captured,
     Closure,
@@ -34,6 +35,7 @@ from pn2code.lowering.values import (
     Rebuild,
     Val,
     capture,
+    free_variables,
     function_type,
     is_static,
 )
@@ -69,7 +71,7 @@ class FunctionValues:
     def make(self, body: Block, value: FunctionVal, at: Span | None) -> Ir:
         """A function as a value."""
         t = self._program.types.lower(function_type(value), at or self._program.position)
-        taken = capture(value)
+        taken = capture(self._flattened(body, value, at))
         code = tuple(body.addressable(c, "captured") for c in taken.code)
         identity = (t.name, taken.key)
         if identity not in self._tags:
@@ -88,6 +90,31 @@ class FunctionValues:
         labels = [label for label, _ in definition.fields]
         fields = tuple(zip(labels, code, strict=True))
         return ir.MakeUnion(tag, ir.MakeStruct(argument, fields), t)
+
+    @staticmethod
+    def _flattened(body: Block, value: FunctionVal, at: Span | None) -> FunctionVal:
+        """The function, with values for the functions that it captured, if these captured anything themselves."""
+
+        def inner(part: Binding) -> Binding:
+            is_function = isinstance(
+                part, Closure | NamedFunction | BuiltinFunction | ConstructorFunction | Partial
+            )
+            return body.code(part, at) if is_function and capture(part).code else part  # type: ignore[arg-type]
+
+        match value:
+            case Closure(function=function, env=env, types=types):
+                wanted = free_variables(function)
+                return Closure(
+                    function, {u: inner(v) for u, v in env.items() if u in wanted}, types
+                )
+            case NamedFunction(symbol=symbol, group=group, env=env, types=types):
+                wanted = frozenset[int]().union(*(free_variables(f) for _, f in group.bindings))
+                kept = {u: inner(v) for u, v in env.items() if u in wanted}
+                return NamedFunction(symbol, group, kept, types)
+            case Partial(function=applied, arguments=arguments):
+                made = tuple(inner(a) for a in arguments)
+                return Partial(applied, made)  # type: ignore[arg-type]
+        return value
 
     def _enter(
         self,
@@ -198,26 +225,29 @@ def _key(name: str) -> str:
     return f"apply {name}"
 
 
-def nested_functions(key: Hashable) -> bool:
-    """Whether a captured function has itself among what it captured: it would go on for ever to make specialised
-    copies for such functions."""
-    return _is_nested(key, frozenset())
+def is_intricate(key: Hashable) -> bool:
+    """Whether a captured function has itself among what it captured, or functions in functions in functions: copies
+    for such functions would go on for ever, or for long."""
+    return _is_intricate(key, ())
 
 
-def _is_nested(key: Hashable, around: frozenset[Hashable]) -> bool:
-    if not isinstance(key, tuple):
+def _is_intricate(key: Hashable, around: tuple[Hashable, ...]) -> bool:
+    if not isinstance(key, tuple) or len(key) != 2 or not isinstance(key[1], tuple):
         return False
-    if len(key) >= 2 and key[0] in ("fn", "fun") and isinstance(key[1], int):
-        return key[:2] in around
-    if len(key) == 2 and isinstance(key[0], tuple) and isinstance(key[1], tuple):
-        head, parts = key
-        inner = around
-        if len(head) >= 2 and head[0] in ("fn", "fun"):
-            if head[:2] in around:
-                return True
-            inner = around | {head[:2]}
-        return any(_is_nested(part, inner) for part in parts)
-    return any(_is_nested(part, around) for part in key)
+    head, parts = key
+    if head == "partial" and parts:
+        # The function that waits for more is around its arguments.
+        applied, *parts = parts
+        head = applied[0] if isinstance(applied, tuple) and applied else None
+        parts = [*parts, *(applied[1] if isinstance(applied, tuple) and len(applied) == 2 else ())]
+    if isinstance(head, tuple) and head and head[0] in ("fn", "fun"):
+        if head[:2] in around or len(around) >= _MOST_AROUND:
+            return True
+        around = (*around, head[:2])
+    return any(_is_intricate(part, around) for part in parts)
+
+
+_MOST_AROUND = 4
 
 
 def _hint(value: FunctionVal) -> str:

@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING
 from pn2code.diagnostics import Origin, Span
 from pn2code.lowering import ir, prelude
 from pn2code.lowering.calls import order_functions
-from pn2code.lowering.closures import FunctionValues, nested_functions
+from pn2code.lowering.closures import FunctionValues, is_intricate
 from pn2code.lowering.codes import (
     UNSUPPORTED_EXPRESSION,
     UnsupportedError,
@@ -57,8 +57,8 @@ if TYPE_CHECKING:
     from pn2code.lowering.builtins import Builtins
     from pn2code.lowering.expressions import Body
 
-_MAX_FUNCTIONS = 2000
-"""From then on functions are passed as values."""
+_MAX_COPIES = 60
+"""Of a function for different functions that are passed to it; from then on they are passed as values."""
 
 IMPURE = frozenset(
     [f"Ref.{op}" for op in ("!", ":=", "+=", "-=", "*=", "::=", "inc", "dec")]
@@ -326,10 +326,10 @@ class Program:
     ) -> tuple[str, tuple[Ir, ...]]:
         """The key of the C function and the C arguments."""
         parts = [capture(function)]
-        is_crowded = len(self._functions) >= _MAX_FUNCTIONS
+        is_crowded = self._counters.get(function.symbol.name, 0) >= _MAX_COPIES
         for slot in self._slots(body, function, arguments):
             part = capture(slot)
-            if nested_functions(part.key) or (is_crowded and is_static(slot)):
+            if is_intricate(part.key) or (is_crowded and is_static(slot)):
                 part = capture(body.code(slot, at))
             parts.append(part)
         identity: Hashable = tuple(part.key for part in parts)
