@@ -3,11 +3,14 @@
 from __future__ import annotations
 
 import resource
+import signal
 import subprocess
 import sys
+import time
 from pathlib import Path
 
 import pytest
+
 from helpers.netbuilder import cpn
 
 GIGABYTE = 1 << 30
@@ -25,7 +28,7 @@ def pn2code(*arguments: object) -> subprocess.CompletedProcess[str]:
         text=True,
         check=False,
         timeout=300,
-        preexec_fn=bounded,  # noqa: PLW1509 - the test has one thread
+        preexec_fn=bounded,
     )
 
 
@@ -129,3 +132,36 @@ def test_deep_recursion_in_a_compiled_guard_is_an_error(
     text = done.stdout + done.stderr
     assert done.returncode not in (0, 70, -11), text
     assert any(word in text for word in said), text
+
+
+ENDLESS = """
+    net Endless
+      standard
+      var n: INT;
+      place P : INT = 1`1
+      trans T guard [(while true do (); n > 0)]
+        in P : n
+"""
+
+
+@pytest.mark.cc
+@pytest.mark.parametrize("is_told", [True, False])
+def test_an_endless_guard_in_a_compiled_net_is_given_up(tmp_path: Path, is_told: bool) -> None:
+    """Ctrl-C ends it, and so does time."""
+    path = tmp_path / "net.cpn"
+    path.write_bytes(cpn(ENDLESS))
+    program = (
+        "import sys\nfrom pn2code.simulate import compiled\nfrom pn2code.cli.main import main\n"
+        f"compiled.ENDLESS_S = {1000.0 if is_told else 0.5}\ncompiled.GRACE_S = 0.5\n"
+        "main()"
+    )
+    command = [sys.executable, "-c", program, "simulate", str(path), "--engine", "compiled"]
+    process = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
+    if is_told:
+        while process.poll() is None:
+            time.sleep(1.0)
+            process.send_signal(signal.SIGINT)
+    said, _ = process.communicate(timeout=120)
+    assert process.returncode != 0
+    if not is_told:
+        assert "does not come to an end" in said

@@ -4,8 +4,8 @@
     python -m tests.fuzz --nets N       random nets are compiled and compared instead: see `walks`
 
 A case is a number: case 17 is the same net wherever the base nets are the same. Nothing but diagnostics may come
-out: no exception, no more than 10 s of the processor, no more than 1 GB, and a net that is refused has an error that says
-why. What breaks this is saved, with the command that shows it again; exit code 1 then.
+out: no exception, no more than 10 s of the processor, no more than 1 GB, and a net that is refused has an error that
+says why. What breaks this is saved, with the command that shows it again; exit code 1 then.
 """
 
 from __future__ import annotations

@@ -32,6 +32,10 @@ from pn2code.simulate.run import Failure, Outcome, Output, Request
 from pn2code.simulate.script import Trace, TraceRefusedError
 from pn2code.simulate.trace import TraceUnwritableError
 
+ENDLESS_S = 120.0
+"""Without a word for so long, the process is in an expression that has no end: it says something between any two steps."""
+GRACE_S = 5.0
+"""Told to end, it has so much time."""
 PROGRESS_S = 0.25
 """Seconds between two reports."""
 _NO_LIMIT = 2**64 - 1
@@ -109,6 +113,9 @@ class _Process:
         self.traced: IO[str] | None = None
         self._threads: list[threading.Thread] = []
         self._ended = threading.Event()
+        self._heard = time.monotonic()
+        self._follows = follows
+        self.endless = False
         report_in, report_out = os.pipe()
         handed = [report_out]
         trace = str(request.trace) if request.trace is not None else None
@@ -164,16 +171,23 @@ class _Process:
                 self.refused = refused
 
     def _pass_on(self) -> None:
-        """Tells the process when the run shall end."""
+        """Tells the process when the run shall end; ends it when it does not hear."""
         while not self._ended.wait(0.05):
-            if self.request.interrupted():
-                with suppress(ProcessLookupError):
-                    self.process.send_signal(signal.SIGINT)
-                return
+            # Who follows a trace may be slower than the process, which waits then.
+            silent = not self._follows and time.monotonic() - self._heard > ENDLESS_S
+            if not (silent or self.request.interrupted()):
+                continue
+            with suppress(ProcessLookupError):
+                self.process.send_signal(signal.SIGINT)
+            if not self._ended.wait(GRACE_S * (10 if self._follows else 1)):
+                self.endless = True
+                self.kill()
+            return
 
     def lines(self) -> Iterator[dict[str, Any]]:
         """What it reports, line by line."""
         for text in self.report:
+            self._heard = time.monotonic()
             try:
                 yield json.loads(text)
             except ValueError:
@@ -283,6 +297,14 @@ def _alone(
 def _bad_end(process: _Process, code: int, d: Diagnostics) -> None:
     said = process.errors.text().strip()
     how = f"was ended by signal {-code}" if code < 0 else f"ended with code {code}"
+    if process.endless:
+        d.error(
+            SIMULATOR_FAILED,
+            "the run was given up: an expression of the net does not come to an end",
+            Origin(process.request.net.file),
+            hint="`--engine reference` stops such an expression and says which one it is",
+        )
+        return
     d.error(
         SIMULATOR_FAILED,
         f"the compiled simulator {how}",
