@@ -25,6 +25,7 @@ const char *pn_error_name(pn_error_t error)
     case PN_ERR_DEPTH: return "recursion too deep";
     case PN_ERR_SUBTRACT: return "Subtract";
     case PN_ERR_RAISED: return "exception of the net";
+    case PN_ERR_ENDLESS: return "an evaluation without end";
     case PN_ERR_LARGE: return "an IntInf.int beyond 64 bits";
     case PN_ERR_UNSUPPORTED: return "a function that is not available here";
     case PN_ERR_INTERNAL: return "internal error";
@@ -60,6 +61,7 @@ bool pn_is_exception(const pn_ctx_t *cx)
     case PN_ERR_CAPACITY:
     case PN_ERR_MEMORY:
     case PN_ERR_DEPTH:
+    case PN_ERR_ENDLESS:
     case PN_ERR_LARGE:
     case PN_ERR_UNSUPPORTED:
     case PN_ERR_INTERNAL:

@@ -2088,6 +2088,7 @@ static bool Supervisor_Load_Load_enumerate(pn_ctx_t *cx, const void *marking,
     Supervisor_Load_Load_binding_t b = { 0 };
     cx->origin = "page `Load`, transition `Load` (ID1412310271)";
     cx->now = m->now;
+    cx->rounds = 0U;
     /* coordenadas: (n, p, q) (ID1412310280) */
     for (uint32_t i = 0U; i < m->Supervisor_coordenadas.used; i++) {
         b.n = m->Supervisor_coordenadas.token[i].value.c1;
@@ -2106,6 +2107,7 @@ static bool Supervisor_Load_Load_fire(pn_ctx_t *cx, void *marking, void *binding
     Supervisor_Load_Load_binding_t *const b = binding;
     cx->origin = "page `Load`, transition `Load` (ID1412310271)";
     cx->now = m->now;
+    cx->rounds = 0U;
     const PLAN_t Supervisor_coordenadas_token = (PLAN_t){ .c1 = b->n, .c2 = b->p, .c3 = b->q };
     SEAM_t Supervisor_planned_token = (SEAM_t){ .points = b->n, .first = b->p, .last = b->q };
     pn_bag_check(cx, &s_at_Supervisor_planned, &Supervisor_planned_token);
@@ -2157,6 +2159,7 @@ static bool Supervisor_Approach_Send_enumerate(pn_ctx_t *cx, const void *marking
     Supervisor_Approach_Send_binding_t b = { 0 };
     cx->origin = "page `Approach`, transition `Send` (ID1412310300)";
     cx->now = m->now;
+    cx->rounds = 0U;
     /* planned: s (ID1412310355) */
     for (uint32_t i = 0U; i < m->Supervisor_planned.used; i++) {
         b.s = m->Supervisor_planned.token[i].value;
@@ -2173,6 +2176,7 @@ static bool Supervisor_Approach_Send_fire(pn_ctx_t *cx, void *marking, void *bin
     Supervisor_Approach_Send_binding_t *const b = binding;
     cx->origin = "page `Approach`, transition `Send` (ID1412310300)";
     cx->now = m->now;
+    cx->rounds = 0U;
     PLAN_t Supervisor_Approach_order_token = (PLAN_t){ .c1 = val_JOINT,
         .c2 = ml_standoff(b->s.first), .c3 = ml_standoff(ml_facing(b->s.first)) };
     pn_bag_check(cx, &s_at_Supervisor_Approach_order, &Supervisor_Approach_order_token);
@@ -2227,6 +2231,7 @@ static bool Supervisor_Approach_Arrived_enumerate(pn_ctx_t *cx, const void *mark
     Supervisor_Approach_Arrived_binding_t b = { 0 };
     cx->origin = "page `Approach`, transition `Arrived` (ID1412310311)";
     cx->now = m->now;
+    cx->rounds = 0U;
     /* done: () (ID1412310363) */
     if (Supervisor_Approach_done_held(m, (pn_unit_t[]){ PN_UNIT }) < 1U) {
         return true;
@@ -2247,6 +2252,7 @@ static bool Supervisor_Approach_Arrived_fire(pn_ctx_t *cx, void *marking, void *
     Supervisor_Approach_Arrived_binding_t *const b = binding;
     cx->origin = "page `Approach`, transition `Arrived` (ID1412310311)";
     cx->now = m->now;
+    cx->rounds = 0U;
     const pn_unit_t Supervisor_Approach_done_token = PN_UNIT;
     /* done: () (ID1412310363) */
     bool is_taken = Supervisor_Approach_done_take(m, &Supervisor_Approach_done_token, 1U);
@@ -2300,6 +2306,7 @@ static bool Supervisor_Approach_Move_both_Command_enumerate(pn_ctx_t *cx, const 
     Supervisor_Approach_Move_both_Command_binding_t b = { 0 };
     cx->origin = "page `MoveBoth`, transition `Command` (ID1412310941)";
     cx->now = m->now;
+    cx->rounds = 0U;
     /* order: (c, p, q) (ID1412310946) */
     for (uint32_t i = 0U; i < m->Supervisor_Approach_order.used; i++) {
         b.c = m->Supervisor_Approach_order.token[i].value.c1;
@@ -2318,6 +2325,7 @@ static bool Supervisor_Approach_Move_both_Command_fire(pn_ctx_t *cx, void *marki
     Supervisor_Approach_Move_both_Command_binding_t *const b = binding;
     cx->origin = "page `MoveBoth`, transition `Command` (ID1412310941)";
     cx->now = m->now;
+    cx->rounds = 0U;
     const PLAN_t Supervisor_Approach_order_token = (PLAN_t){ .c1 = b->c, .c2 = b->p, .c3 = b->q };
     const pn_unit_t Supervisor_Approach_Move_both_moving_1_token = PN_UNIT;
     const pn_unit_t Supervisor_Approach_Move_both_moving_2_token = PN_UNIT;
@@ -2381,6 +2389,7 @@ static bool Supervisor_Approach_Move_both_Both_enumerate(pn_ctx_t *cx, const voi
     Supervisor_Approach_Move_both_Both_binding_t b = { 0 };
     cx->origin = "page `MoveBoth`, transition `Both` (ID1412310948)";
     cx->now = m->now;
+    cx->rounds = 0U;
     /* there 1: () (ID1412310976) */
     if (Supervisor_Approach_Move_both_there_1_held(m, (pn_unit_t[]){ PN_UNIT }) < 1U) {
         return true;
@@ -2401,6 +2410,7 @@ static bool Supervisor_Approach_Move_both_Both_fire(pn_ctx_t *cx, void *marking,
     (void)binding;
     cx->origin = "page `MoveBoth`, transition `Both` (ID1412310948)";
     cx->now = m->now;
+    cx->rounds = 0U;
     const pn_unit_t Supervisor_Approach_Move_both_there_1_token = PN_UNIT;
     const pn_unit_t Supervisor_Approach_Move_both_there_2_token = PN_UNIT;
     const pn_unit_t Supervisor_Approach_done_token = PN_UNIT;
@@ -2453,6 +2463,7 @@ static bool Supervisor_Approach_Move_both_Reply_1_enumerate(pn_ctx_t *cx, const 
     Supervisor_Approach_Move_both_Reply_1_binding_t b = { 0 };
     cx->origin = "page `MoveBoth`, transition `Reply 1` (ID1412310962)";
     cx->now = m->now;
+    cx->rounds = 0U;
     /* moving 1: () (ID1412310972) */
     if (Supervisor_Approach_Move_both_moving_1_held(m, (pn_unit_t[]){ PN_UNIT }) < 1U) {
         return true;
@@ -2473,6 +2484,7 @@ static bool Supervisor_Approach_Move_both_Reply_1_fire(pn_ctx_t *cx, void *marki
     (void)binding;
     cx->origin = "page `MoveBoth`, transition `Reply 1` (ID1412310962)";
     cx->now = m->now;
+    cx->rounds = 0U;
     const pn_unit_t Supervisor_Approach_Move_both_moving_1_token = PN_UNIT;
     const int64_t flag1_externo_token = 1;
     const pn_unit_t Supervisor_Approach_Move_both_there_1_token = PN_UNIT;
@@ -2524,6 +2536,7 @@ static bool Supervisor_Approach_Move_both_Reply_2_enumerate(pn_ctx_t *cx, const 
     Supervisor_Approach_Move_both_Reply_2_binding_t b = { 0 };
     cx->origin = "page `MoveBoth`, transition `Reply 2` (ID1412310999)";
     cx->now = m->now;
+    cx->rounds = 0U;
     /* moving 2: () (ID1412311009) */
     if (Supervisor_Approach_Move_both_moving_2_held(m, (pn_unit_t[]){ PN_UNIT }) < 1U) {
         return true;
@@ -2544,6 +2557,7 @@ static bool Supervisor_Approach_Move_both_Reply_2_fire(pn_ctx_t *cx, void *marki
     (void)binding;
     cx->origin = "page `MoveBoth`, transition `Reply 2` (ID1412310999)";
     cx->now = m->now;
+    cx->rounds = 0U;
     const pn_unit_t Supervisor_Approach_Move_both_moving_2_token = PN_UNIT;
     const int64_t flag2_externo_token = 1;
     const pn_unit_t Supervisor_Approach_Move_both_there_2_token = PN_UNIT;
@@ -2599,6 +2613,7 @@ static bool Supervisor_Verify_Ask_first_enumerate(pn_ctx_t *cx, const void *mark
     Supervisor_Verify_Ask_first_binding_t b = { 0 };
     cx->origin = "page `Verify`, transition `Ask first` (ID1412310377)";
     cx->now = m->now;
+    cx->rounds = 0U;
     /* approached: s (ID1412310418) */
     for (uint32_t i = 0U; i < m->Supervisor_approached.used; i++) {
         b.s = m->Supervisor_approached.token[i].value;
@@ -2615,6 +2630,7 @@ static bool Supervisor_Verify_Ask_first_fire(pn_ctx_t *cx, void *marking, void *
     Supervisor_Verify_Ask_first_binding_t *const b = binding;
     cx->origin = "page `Verify`, transition `Ask first` (ID1412310377)";
     cx->now = m->now;
+    cx->rounds = 0U;
     const POSE_t referencia1_token = b->s.first;
     int64_t flag1_interno_token = val_MEASURE;
     pn_bag_check(cx, &s_at_flag1_interno, &flag1_interno_token);
@@ -2674,6 +2690,7 @@ static bool Supervisor_Verify_Ask_last_enumerate(pn_ctx_t *cx, const void *marki
     Supervisor_Verify_Ask_last_binding_t b = { 0 };
     cx->origin = "page `Verify`, transition `Ask last` (ID1412310385)";
     cx->now = m->now;
+    cx->rounds = 0U;
     /* flag1_externo: 1 (ID1412310440) */
     if (flag1_externo_held(m, (int64_t[]){ 1 }) < 1U) {
         return true;
@@ -2698,6 +2715,7 @@ static bool Supervisor_Verify_Ask_last_fire(pn_ctx_t *cx, void *marking, void *b
     Supervisor_Verify_Ask_last_binding_t *const b = binding;
     cx->origin = "page `Verify`, transition `Ask last` (ID1412310385)";
     cx->now = m->now;
+    cx->rounds = 0U;
     const int64_t flag1_externo_token = 1;
     ASKED_t Supervisor_Verify_last_asked_token = (ASKED_t){ .c1 = b->s, .c2 = b->a };
     pn_bag_check(cx, &s_at_Supervisor_Verify_last_asked, &Supervisor_Verify_last_asked_token);
@@ -2768,6 +2786,7 @@ static bool Supervisor_Verify_Measured_enumerate(pn_ctx_t *cx, const void *marki
     Supervisor_Verify_Measured_binding_t b = { 0 };
     cx->origin = "page `Verify`, transition `Measured` (ID1412310393)";
     cx->now = m->now;
+    cx->rounds = 0U;
     /* flag1_externo: 1 (ID1412310444) */
     if (flag1_externo_held(m, (int64_t[]){ 1 }) < 1U) {
         return true;
@@ -2793,6 +2812,7 @@ static bool Supervisor_Verify_Measured_fire(pn_ctx_t *cx, void *marking, void *b
     Supervisor_Verify_Measured_binding_t *const b = binding;
     cx->origin = "page `Verify`, transition `Measured` (ID1412310393)";
     cx->now = m->now;
+    cx->rounds = 0U;
     const ASKED_t Supervisor_Verify_last_asked_token = (ASKED_t){ .c1 = b->s, .c2 = b->a };
     const int64_t flag1_externo_token = 1;
     VERIFIED_t Supervisor_verified_token = (VERIFIED_t){ .c1 = b->s, .c2 = b->a, .c3 = b->b };
@@ -2859,6 +2879,7 @@ static bool Supervisor_Correct_Compare_enumerate(pn_ctx_t *cx, const void *marki
     Supervisor_Correct_Compare_binding_t b = { 0 };
     cx->origin = "page `Correct`, transition `Compare` (ID1412310453)";
     cx->now = m->now;
+    cx->rounds = 0U;
     /* verified: ({points = n, first = p, last = q}, a, b) (ID1412310531) */
     for (uint32_t i = 0U; i < m->Supervisor_verified.used; i++) {
         b.p = m->Supervisor_verified.token[i].value.c1.first;
@@ -2879,6 +2900,7 @@ static bool Supervisor_Correct_Compare_fire(pn_ctx_t *cx, void *marking, void *b
     Supervisor_Correct_Compare_binding_t *const b = binding;
     cx->origin = "page `Correct`, transition `Compare` (ID1412310453)";
     cx->now = m->now;
+    cx->rounds = 0U;
     const VERIFIED_t Supervisor_verified_token = (VERIFIED_t){ .c1 = (SEAM_t){ .points = b->n,
         .first = b->p, .last = b->q }, .c2 = b->a, .c3 = b->b };
     const VECTOR_t token = ml_difference(b->p, b->a);
@@ -2944,6 +2966,7 @@ static bool Supervisor_Correct_Move_over_enumerate(pn_ctx_t *cx, const void *mar
     Supervisor_Correct_Move_over_binding_t b = { 0 };
     cx->origin = "page `Correct`, transition `Move over` (ID1412310461)";
     cx->now = m->now;
+    cx->rounds = 0U;
     /* offset: v (ID1412310537) */
     for (uint32_t i = 0U; i < m->Supervisor_Correct_offset.used; i++) {
         b.v = m->Supervisor_Correct_offset.token[i].value;
@@ -2970,6 +2993,7 @@ static bool Supervisor_Correct_Move_over_fire(pn_ctx_t *cx, void *marking, void 
     Supervisor_Correct_Move_over_binding_t *const b = binding;
     cx->origin = "page `Correct`, transition `Move over` (ID1412310461)";
     cx->now = m->now;
+    cx->rounds = 0U;
     PLAN_t Supervisor_Correct_order_token = (PLAN_t){ .c1 = val_LINEAR, .c2 = ml_inTool(b->p, b->v),
         .c3 = ml_inTool(ml_facing(b->p), b->v) };
     pn_bag_check(cx, &s_at_Supervisor_Correct_order, &Supervisor_Correct_order_token);
@@ -3026,6 +3050,7 @@ static bool Supervisor_Correct_Moved_enumerate(pn_ctx_t *cx, const void *marking
     Supervisor_Correct_Moved_binding_t b = { 0 };
     cx->origin = "page `Correct`, transition `Moved` (ID1412310478)";
     cx->now = m->now;
+    cx->rounds = 0U;
     /* done: () (ID1412310547) */
     if (Supervisor_Correct_done_held(m, (pn_unit_t[]){ PN_UNIT }) < 1U) {
         return true;
@@ -3048,6 +3073,7 @@ static bool Supervisor_Correct_Moved_fire(pn_ctx_t *cx, void *marking, void *bin
     Supervisor_Correct_Moved_binding_t *const b = binding;
     cx->origin = "page `Correct`, transition `Moved` (ID1412310478)";
     cx->now = m->now;
+    cx->rounds = 0U;
     const pn_unit_t Supervisor_Correct_done_token = PN_UNIT;
     const RIVETING_t Supervisor_Correct_seam_token = (RIVETING_t){ .c1 = b->n, .c2 = b->p,
         .c3 = b->d };
@@ -3112,6 +3138,7 @@ static bool Supervisor_Correct_As_planned_enumerate(pn_ctx_t *cx, const void *ma
     Supervisor_Correct_As_planned_binding_t b = { 0 };
     cx->origin = "page `Correct`, transition `As planned` (ID1412310526)";
     cx->now = m->now;
+    cx->rounds = 0U;
     /* offset: v (ID1412310553) */
     for (uint32_t i = 0U; i < m->Supervisor_Correct_offset.used; i++) {
         b.v = m->Supervisor_Correct_offset.token[i].value;
@@ -3138,6 +3165,7 @@ static bool Supervisor_Correct_As_planned_fire(pn_ctx_t *cx, void *marking, void
     Supervisor_Correct_As_planned_binding_t *const b = binding;
     cx->origin = "page `Correct`, transition `As planned` (ID1412310526)";
     cx->now = m->now;
+    cx->rounds = 0U;
     const RIVETING_t Supervisor_Correct_seam_token = (RIVETING_t){ .c1 = b->n, .c2 = b->p,
         .c3 = b->d };
     RIVETING_t Supervisor_corrected_token = (RIVETING_t){ .c1 = b->n, .c2 = b->p, .c3 = b->d };
@@ -3197,6 +3225,7 @@ static bool Supervisor_Correct_Move_both_Command_enumerate(pn_ctx_t *cx, const v
     Supervisor_Correct_Move_both_Command_binding_t b = { 0 };
     cx->origin = "page `MoveBoth`, transition `Command` (ID1412310941)";
     cx->now = m->now;
+    cx->rounds = 0U;
     /* order: (c, p, q) (ID1412310946) */
     for (uint32_t i = 0U; i < m->Supervisor_Correct_order.used; i++) {
         b.c = m->Supervisor_Correct_order.token[i].value.c1;
@@ -3215,6 +3244,7 @@ static bool Supervisor_Correct_Move_both_Command_fire(pn_ctx_t *cx, void *markin
     Supervisor_Correct_Move_both_Command_binding_t *const b = binding;
     cx->origin = "page `MoveBoth`, transition `Command` (ID1412310941)";
     cx->now = m->now;
+    cx->rounds = 0U;
     const PLAN_t Supervisor_Correct_order_token = (PLAN_t){ .c1 = b->c, .c2 = b->p, .c3 = b->q };
     const pn_unit_t Supervisor_Correct_Move_both_moving_1_token = PN_UNIT;
     const pn_unit_t Supervisor_Correct_Move_both_moving_2_token = PN_UNIT;
@@ -3278,6 +3308,7 @@ static bool Supervisor_Correct_Move_both_Both_enumerate(pn_ctx_t *cx, const void
     Supervisor_Correct_Move_both_Both_binding_t b = { 0 };
     cx->origin = "page `MoveBoth`, transition `Both` (ID1412310948)";
     cx->now = m->now;
+    cx->rounds = 0U;
     /* there 1: () (ID1412310976) */
     if (Supervisor_Correct_Move_both_there_1_held(m, (pn_unit_t[]){ PN_UNIT }) < 1U) {
         return true;
@@ -3298,6 +3329,7 @@ static bool Supervisor_Correct_Move_both_Both_fire(pn_ctx_t *cx, void *marking, 
     (void)binding;
     cx->origin = "page `MoveBoth`, transition `Both` (ID1412310948)";
     cx->now = m->now;
+    cx->rounds = 0U;
     const pn_unit_t Supervisor_Correct_Move_both_there_1_token = PN_UNIT;
     const pn_unit_t Supervisor_Correct_Move_both_there_2_token = PN_UNIT;
     const pn_unit_t Supervisor_Correct_done_token = PN_UNIT;
@@ -3350,6 +3382,7 @@ static bool Supervisor_Correct_Move_both_Reply_1_enumerate(pn_ctx_t *cx, const v
     Supervisor_Correct_Move_both_Reply_1_binding_t b = { 0 };
     cx->origin = "page `MoveBoth`, transition `Reply 1` (ID1412310962)";
     cx->now = m->now;
+    cx->rounds = 0U;
     /* moving 1: () (ID1412310972) */
     if (Supervisor_Correct_Move_both_moving_1_held(m, (pn_unit_t[]){ PN_UNIT }) < 1U) {
         return true;
@@ -3370,6 +3403,7 @@ static bool Supervisor_Correct_Move_both_Reply_1_fire(pn_ctx_t *cx, void *markin
     (void)binding;
     cx->origin = "page `MoveBoth`, transition `Reply 1` (ID1412310962)";
     cx->now = m->now;
+    cx->rounds = 0U;
     const pn_unit_t Supervisor_Correct_Move_both_moving_1_token = PN_UNIT;
     const int64_t flag1_externo_token = 1;
     const pn_unit_t Supervisor_Correct_Move_both_there_1_token = PN_UNIT;
@@ -3421,6 +3455,7 @@ static bool Supervisor_Correct_Move_both_Reply_2_enumerate(pn_ctx_t *cx, const v
     Supervisor_Correct_Move_both_Reply_2_binding_t b = { 0 };
     cx->origin = "page `MoveBoth`, transition `Reply 2` (ID1412310999)";
     cx->now = m->now;
+    cx->rounds = 0U;
     /* moving 2: () (ID1412311009) */
     if (Supervisor_Correct_Move_both_moving_2_held(m, (pn_unit_t[]){ PN_UNIT }) < 1U) {
         return true;
@@ -3441,6 +3476,7 @@ static bool Supervisor_Correct_Move_both_Reply_2_fire(pn_ctx_t *cx, void *markin
     (void)binding;
     cx->origin = "page `MoveBoth`, transition `Reply 2` (ID1412310999)";
     cx->now = m->now;
+    cx->rounds = 0U;
     const pn_unit_t Supervisor_Correct_Move_both_moving_2_token = PN_UNIT;
     const int64_t flag2_externo_token = 1;
     const pn_unit_t Supervisor_Correct_Move_both_there_2_token = PN_UNIT;
@@ -3504,6 +3540,7 @@ static bool Supervisor_Install_Go_back_enumerate(pn_ctx_t *cx, const void *marki
     Supervisor_Install_Go_back_binding_t b = { 0 };
     cx->origin = "page `Install`, transition `Go back` (ID1412310594)";
     cx->now = m->now;
+    cx->rounds = 0U;
     /* riveted: () (ID1412310685) */
     if (Supervisor_Install_riveted_held(m, (pn_unit_t[]){ PN_UNIT }) < 1U) {
         return true;
@@ -3531,6 +3568,7 @@ static bool Supervisor_Install_Go_back_fire(pn_ctx_t *cx, void *marking, void *b
     Supervisor_Install_Go_back_binding_t *const b = binding;
     cx->origin = "page `Install`, transition `Go back` (ID1412310594)";
     cx->now = m->now;
+    cx->rounds = 0U;
     const pn_unit_t Supervisor_Install_riveted_token = PN_UNIT;
     const WORK_t Supervisor_Install_work_token = (WORK_t){ .c1 = b->n, .c2 = b->k, .c3 = b->p,
         .c4 = b->d };
@@ -3597,6 +3635,7 @@ static bool Supervisor_Install_Next_rivet_enumerate(pn_ctx_t *cx, const void *ma
     Supervisor_Install_Next_rivet_binding_t b = { 0 };
     cx->origin = "page `Install`, transition `Next rivet` (ID1412310624)";
     cx->now = m->now;
+    cx->rounds = 0U;
     /* riveted: () (ID1412310697) */
     if (Supervisor_Install_riveted_held(m, (pn_unit_t[]){ PN_UNIT }) < 1U) {
         return true;
@@ -3624,6 +3663,7 @@ static bool Supervisor_Install_Next_rivet_fire(pn_ctx_t *cx, void *marking, void
     Supervisor_Install_Next_rivet_binding_t *const b = binding;
     cx->origin = "page `Install`, transition `Next rivet` (ID1412310624)";
     cx->now = m->now;
+    cx->rounds = 0U;
     const pn_unit_t Supervisor_Install_riveted_token = PN_UNIT;
     const WORK_t Supervisor_Install_work_token = (WORK_t){ .c1 = b->n, .c2 = b->k, .c3 = b->p,
         .c4 = b->d };
@@ -3691,6 +3731,7 @@ static bool Supervisor_Install_Start_enumerate(pn_ctx_t *cx, const void *marking
     Supervisor_Install_Start_binding_t b = { 0 };
     cx->origin = "page `Install`, transition `Start` (ID1412310632)";
     cx->now = m->now;
+    cx->rounds = 0U;
     /* corrected: (n, p, d) (ID1412310691) */
     for (uint32_t i = 0U; i < m->Supervisor_corrected.used; i++) {
         b.n = m->Supervisor_corrected.token[i].value.c1;
@@ -3709,6 +3750,7 @@ static bool Supervisor_Install_Start_fire(pn_ctx_t *cx, void *marking, void *bin
     Supervisor_Install_Start_binding_t *const b = binding;
     cx->origin = "page `Install`, transition `Start` (ID1412310632)";
     cx->now = m->now;
+    cx->rounds = 0U;
     const RIVETING_t Supervisor_corrected_token = (RIVETING_t){ .c1 = b->n, .c2 = b->p,
         .c3 = b->d };
     const pn_unit_t Supervisor_Install_ready_token = PN_UNIT;
@@ -3770,6 +3812,7 @@ static bool Supervisor_Install_Shift_Command_enumerate(pn_ctx_t *cx, const void 
     Supervisor_Install_Shift_Command_binding_t b = { 0 };
     cx->origin = "page `MoveBoth`, transition `Command` (ID1412310941)";
     cx->now = m->now;
+    cx->rounds = 0U;
     /* shift: (c, p, q) (ID1412310946) */
     for (uint32_t i = 0U; i < m->Supervisor_Install_shift.used; i++) {
         b.c = m->Supervisor_Install_shift.token[i].value.c1;
@@ -3788,6 +3831,7 @@ static bool Supervisor_Install_Shift_Command_fire(pn_ctx_t *cx, void *marking, v
     Supervisor_Install_Shift_Command_binding_t *const b = binding;
     cx->origin = "page `MoveBoth`, transition `Command` (ID1412310941)";
     cx->now = m->now;
+    cx->rounds = 0U;
     const PLAN_t Supervisor_Install_shift_token = (PLAN_t){ .c1 = b->c, .c2 = b->p, .c3 = b->q };
     const pn_unit_t Supervisor_Install_Shift_moving_1_token = PN_UNIT;
     const pn_unit_t Supervisor_Install_Shift_moving_2_token = PN_UNIT;
@@ -3851,6 +3895,7 @@ static bool Supervisor_Install_Shift_Both_enumerate(pn_ctx_t *cx, const void *ma
     Supervisor_Install_Shift_Both_binding_t b = { 0 };
     cx->origin = "page `MoveBoth`, transition `Both` (ID1412310948)";
     cx->now = m->now;
+    cx->rounds = 0U;
     /* there 1: () (ID1412310976) */
     if (Supervisor_Install_Shift_there_1_held(m, (pn_unit_t[]){ PN_UNIT }) < 1U) {
         return true;
@@ -3871,6 +3916,7 @@ static bool Supervisor_Install_Shift_Both_fire(pn_ctx_t *cx, void *marking, void
     (void)binding;
     cx->origin = "page `MoveBoth`, transition `Both` (ID1412310948)";
     cx->now = m->now;
+    cx->rounds = 0U;
     const pn_unit_t Supervisor_Install_Shift_there_1_token = PN_UNIT;
     const pn_unit_t Supervisor_Install_Shift_there_2_token = PN_UNIT;
     const pn_unit_t Supervisor_Install_ready_token = PN_UNIT;
@@ -3922,6 +3968,7 @@ static bool Supervisor_Install_Shift_Reply_1_enumerate(pn_ctx_t *cx, const void 
     Supervisor_Install_Shift_Reply_1_binding_t b = { 0 };
     cx->origin = "page `MoveBoth`, transition `Reply 1` (ID1412310962)";
     cx->now = m->now;
+    cx->rounds = 0U;
     /* moving 1: () (ID1412310972) */
     if (Supervisor_Install_Shift_moving_1_held(m, (pn_unit_t[]){ PN_UNIT }) < 1U) {
         return true;
@@ -3942,6 +3989,7 @@ static bool Supervisor_Install_Shift_Reply_1_fire(pn_ctx_t *cx, void *marking, v
     (void)binding;
     cx->origin = "page `MoveBoth`, transition `Reply 1` (ID1412310962)";
     cx->now = m->now;
+    cx->rounds = 0U;
     const pn_unit_t Supervisor_Install_Shift_moving_1_token = PN_UNIT;
     const int64_t flag1_externo_token = 1;
     const pn_unit_t Supervisor_Install_Shift_there_1_token = PN_UNIT;
@@ -3992,6 +4040,7 @@ static bool Supervisor_Install_Shift_Reply_2_enumerate(pn_ctx_t *cx, const void 
     Supervisor_Install_Shift_Reply_2_binding_t b = { 0 };
     cx->origin = "page `MoveBoth`, transition `Reply 2` (ID1412310999)";
     cx->now = m->now;
+    cx->rounds = 0U;
     /* moving 2: () (ID1412311009) */
     if (Supervisor_Install_Shift_moving_2_held(m, (pn_unit_t[]){ PN_UNIT }) < 1U) {
         return true;
@@ -4012,6 +4061,7 @@ static bool Supervisor_Install_Shift_Reply_2_fire(pn_ctx_t *cx, void *marking, v
     (void)binding;
     cx->origin = "page `MoveBoth`, transition `Reply 2` (ID1412310999)";
     cx->now = m->now;
+    cx->rounds = 0U;
     const pn_unit_t Supervisor_Install_Shift_moving_2_token = PN_UNIT;
     const int64_t flag2_externo_token = 1;
     const pn_unit_t Supervisor_Install_Shift_there_2_token = PN_UNIT;
@@ -4062,6 +4112,7 @@ static bool Supervisor_Install_Rivet_Go_in_enumerate(pn_ctx_t *cx, const void *m
     Supervisor_Install_Rivet_Go_in_binding_t b = { 0 };
     cx->origin = "page `Rivet`, transition `Go in` (ID1412310716)";
     cx->now = m->now;
+    cx->rounds = 0U;
     /* ready: () (ID1412310816) */
     if (Supervisor_Install_ready_held(m, (pn_unit_t[]){ PN_UNIT }) < 1U) {
         return true;
@@ -4078,6 +4129,7 @@ static bool Supervisor_Install_Rivet_Go_in_fire(pn_ctx_t *cx, void *marking, voi
     (void)binding;
     cx->origin = "page `Rivet`, transition `Go in` (ID1412310716)";
     cx->now = m->now;
+    cx->rounds = 0U;
     const pn_unit_t Supervisor_Install_ready_token = PN_UNIT;
     PLAN_t Supervisor_Install_Rivet_advance_token = (PLAN_t){ .c1 = val_LINEAR,
         .c2 = ml_alongTool(val_approachDistance), .c3 = ml_alongTool(val_approachDistance) };
@@ -4128,6 +4180,7 @@ static bool Supervisor_Install_Rivet_Go_out_enumerate(pn_ctx_t *cx, const void *
     Supervisor_Install_Rivet_Go_out_binding_t b = { 0 };
     cx->origin = "page `Rivet`, transition `Go out` (ID1412310742)";
     cx->now = m->now;
+    cx->rounds = 0U;
     /* fastened: () (ID1412310828) */
     if (Supervisor_Install_Rivet_fastened_held(m, (pn_unit_t[]){ PN_UNIT }) < 1U) {
         return true;
@@ -4144,6 +4197,7 @@ static bool Supervisor_Install_Rivet_Go_out_fire(pn_ctx_t *cx, void *marking, vo
     (void)binding;
     cx->origin = "page `Rivet`, transition `Go out` (ID1412310742)";
     cx->now = m->now;
+    cx->rounds = 0U;
     const pn_unit_t Supervisor_Install_Rivet_fastened_token = PN_UNIT;
     PLAN_t Supervisor_Install_Rivet_retract_token = (PLAN_t){ .c1 = val_LINEAR,
         .c2 = ml_alongTool(-val_approachDistance), .c3 = ml_alongTool(-val_approachDistance) };
@@ -4204,6 +4258,7 @@ static bool Supervisor_Install_Rivet_Advance_Command_enumerate(pn_ctx_t *cx, con
     Supervisor_Install_Rivet_Advance_Command_binding_t b = { 0 };
     cx->origin = "page `MoveBoth`, transition `Command` (ID1412310941)";
     cx->now = m->now;
+    cx->rounds = 0U;
     /* advance: (c, p, q) (ID1412310946) */
     for (uint32_t i = 0U; i < m->Supervisor_Install_Rivet_advance.used; i++) {
         b.c = m->Supervisor_Install_Rivet_advance.token[i].value.c1;
@@ -4222,6 +4277,7 @@ static bool Supervisor_Install_Rivet_Advance_Command_fire(pn_ctx_t *cx, void *ma
     Supervisor_Install_Rivet_Advance_Command_binding_t *const b = binding;
     cx->origin = "page `MoveBoth`, transition `Command` (ID1412310941)";
     cx->now = m->now;
+    cx->rounds = 0U;
     const PLAN_t Supervisor_Install_Rivet_advance_token = (PLAN_t){ .c1 = b->c, .c2 = b->p,
         .c3 = b->q };
     const pn_unit_t Supervisor_Install_Rivet_Advance_moving_1_token = PN_UNIT;
@@ -4288,6 +4344,7 @@ static bool Supervisor_Install_Rivet_Advance_Both_enumerate(pn_ctx_t *cx, const 
     Supervisor_Install_Rivet_Advance_Both_binding_t b = { 0 };
     cx->origin = "page `MoveBoth`, transition `Both` (ID1412310948)";
     cx->now = m->now;
+    cx->rounds = 0U;
     /* there 1: () (ID1412310976) */
     if (Supervisor_Install_Rivet_Advance_there_1_held(m, (pn_unit_t[]){ PN_UNIT }) < 1U) {
         return true;
@@ -4308,6 +4365,7 @@ static bool Supervisor_Install_Rivet_Advance_Both_fire(pn_ctx_t *cx, void *marki
     (void)binding;
     cx->origin = "page `MoveBoth`, transition `Both` (ID1412310948)";
     cx->now = m->now;
+    cx->rounds = 0U;
     const pn_unit_t Supervisor_Install_Rivet_Advance_there_1_token = PN_UNIT;
     const pn_unit_t Supervisor_Install_Rivet_Advance_there_2_token = PN_UNIT;
     const pn_unit_t Supervisor_Install_Rivet_contact_token = PN_UNIT;
@@ -4361,6 +4419,7 @@ static bool Supervisor_Install_Rivet_Advance_Reply_1_enumerate(pn_ctx_t *cx, con
     Supervisor_Install_Rivet_Advance_Reply_1_binding_t b = { 0 };
     cx->origin = "page `MoveBoth`, transition `Reply 1` (ID1412310962)";
     cx->now = m->now;
+    cx->rounds = 0U;
     /* moving 1: () (ID1412310972) */
     if (Supervisor_Install_Rivet_Advance_moving_1_held(m, (pn_unit_t[]){ PN_UNIT }) < 1U) {
         return true;
@@ -4381,6 +4440,7 @@ static bool Supervisor_Install_Rivet_Advance_Reply_1_fire(pn_ctx_t *cx, void *ma
     (void)binding;
     cx->origin = "page `MoveBoth`, transition `Reply 1` (ID1412310962)";
     cx->now = m->now;
+    cx->rounds = 0U;
     const pn_unit_t Supervisor_Install_Rivet_Advance_moving_1_token = PN_UNIT;
     const int64_t flag1_externo_token = 1;
     const pn_unit_t Supervisor_Install_Rivet_Advance_there_1_token = PN_UNIT;
@@ -4432,6 +4492,7 @@ static bool Supervisor_Install_Rivet_Advance_Reply_2_enumerate(pn_ctx_t *cx, con
     Supervisor_Install_Rivet_Advance_Reply_2_binding_t b = { 0 };
     cx->origin = "page `MoveBoth`, transition `Reply 2` (ID1412310999)";
     cx->now = m->now;
+    cx->rounds = 0U;
     /* moving 2: () (ID1412311009) */
     if (Supervisor_Install_Rivet_Advance_moving_2_held(m, (pn_unit_t[]){ PN_UNIT }) < 1U) {
         return true;
@@ -4452,6 +4513,7 @@ static bool Supervisor_Install_Rivet_Advance_Reply_2_fire(pn_ctx_t *cx, void *ma
     (void)binding;
     cx->origin = "page `MoveBoth`, transition `Reply 2` (ID1412310999)";
     cx->now = m->now;
+    cx->rounds = 0U;
     const pn_unit_t Supervisor_Install_Rivet_Advance_moving_2_token = PN_UNIT;
     const int64_t flag2_externo_token = 1;
     const pn_unit_t Supervisor_Install_Rivet_Advance_there_2_token = PN_UNIT;
@@ -4503,6 +4565,7 @@ static bool Supervisor_Install_Rivet_Fasten_Press_enumerate(pn_ctx_t *cx, const 
     Supervisor_Install_Rivet_Fasten_Press_binding_t b = { 0 };
     cx->origin = "page `Fasten`, transition `Press` (ID1412310842)";
     cx->now = m->now;
+    cx->rounds = 0U;
     /* contact: () (ID1412310883) */
     if (Supervisor_Install_Rivet_contact_held(m, (pn_unit_t[]){ PN_UNIT }) < 1U) {
         return true;
@@ -4519,6 +4582,7 @@ static bool Supervisor_Install_Rivet_Fasten_Press_fire(pn_ctx_t *cx, void *marki
     (void)binding;
     cx->origin = "page `Fasten`, transition `Press` (ID1412310842)";
     cx->now = m->now;
+    cx->rounds = 0U;
     const pn_unit_t Supervisor_Install_Rivet_contact_token = PN_UNIT;
     const pn_unit_t Supervisor_Install_Rivet_Fasten_pressing_token = PN_UNIT;
     int64_t flag2_interno_token = val_PRESS;
@@ -4574,6 +4638,7 @@ static bool Supervisor_Install_Rivet_Fasten_Drill_enumerate(pn_ctx_t *cx, const 
     Supervisor_Install_Rivet_Fasten_Drill_binding_t b = { 0 };
     cx->origin = "page `Fasten`, transition `Drill` (ID1412310850)";
     cx->now = m->now;
+    cx->rounds = 0U;
     /* pressing: () (ID1412310887) */
     if (Supervisor_Install_Rivet_Fasten_pressing_held(m, (pn_unit_t[]){ PN_UNIT }) < 1U) {
         return true;
@@ -4594,6 +4659,7 @@ static bool Supervisor_Install_Rivet_Fasten_Drill_fire(pn_ctx_t *cx, void *marki
     (void)binding;
     cx->origin = "page `Fasten`, transition `Drill` (ID1412310850)";
     cx->now = m->now;
+    cx->rounds = 0U;
     const pn_unit_t Supervisor_Install_Rivet_Fasten_pressing_token = PN_UNIT;
     const int64_t flag2_externo_token = 1;
     const pn_unit_t Supervisor_Install_Rivet_Fasten_drilling_token = PN_UNIT;
@@ -4653,6 +4719,7 @@ static bool Supervisor_Install_Rivet_Fasten_Insert_enumerate(pn_ctx_t *cx, const
     Supervisor_Install_Rivet_Fasten_Insert_binding_t b = { 0 };
     cx->origin = "page `Fasten`, transition `Insert` (ID1412310858)";
     cx->now = m->now;
+    cx->rounds = 0U;
     /* drilling: () (ID1412310891) */
     if (Supervisor_Install_Rivet_Fasten_drilling_held(m, (pn_unit_t[]){ PN_UNIT }) < 1U) {
         return true;
@@ -4673,6 +4740,7 @@ static bool Supervisor_Install_Rivet_Fasten_Insert_fire(pn_ctx_t *cx, void *mark
     (void)binding;
     cx->origin = "page `Fasten`, transition `Insert` (ID1412310858)";
     cx->now = m->now;
+    cx->rounds = 0U;
     const pn_unit_t Supervisor_Install_Rivet_Fasten_drilling_token = PN_UNIT;
     const int64_t flag1_externo_token = 1;
     const pn_unit_t Supervisor_Install_Rivet_Fasten_inserting_token = PN_UNIT;
@@ -4732,6 +4800,7 @@ static bool Supervisor_Install_Rivet_Fasten_Release_enumerate(pn_ctx_t *cx, cons
     Supervisor_Install_Rivet_Fasten_Release_binding_t b = { 0 };
     cx->origin = "page `Fasten`, transition `Release` (ID1412310866)";
     cx->now = m->now;
+    cx->rounds = 0U;
     /* inserting: () (ID1412310895) */
     if (Supervisor_Install_Rivet_Fasten_inserting_held(m, (pn_unit_t[]){ PN_UNIT }) < 1U) {
         return true;
@@ -4752,6 +4821,7 @@ static bool Supervisor_Install_Rivet_Fasten_Release_fire(pn_ctx_t *cx, void *mar
     (void)binding;
     cx->origin = "page `Fasten`, transition `Release` (ID1412310866)";
     cx->now = m->now;
+    cx->rounds = 0U;
     const pn_unit_t Supervisor_Install_Rivet_Fasten_inserting_token = PN_UNIT;
     const int64_t flag1_externo_token = 1;
     const pn_unit_t Supervisor_Install_Rivet_Fasten_releasing_token = PN_UNIT;
@@ -4811,6 +4881,7 @@ static bool Supervisor_Install_Rivet_Fasten_Finish_enumerate(pn_ctx_t *cx, const
     Supervisor_Install_Rivet_Fasten_Finish_binding_t b = { 0 };
     cx->origin = "page `Fasten`, transition `Finish` (ID1412310874)";
     cx->now = m->now;
+    cx->rounds = 0U;
     /* releasing: () (ID1412310899) */
     if (Supervisor_Install_Rivet_Fasten_releasing_held(m, (pn_unit_t[]){ PN_UNIT }) < 1U) {
         return true;
@@ -4831,6 +4902,7 @@ static bool Supervisor_Install_Rivet_Fasten_Finish_fire(pn_ctx_t *cx, void *mark
     (void)binding;
     cx->origin = "page `Fasten`, transition `Finish` (ID1412310874)";
     cx->now = m->now;
+    cx->rounds = 0U;
     const pn_unit_t Supervisor_Install_Rivet_Fasten_releasing_token = PN_UNIT;
     const int64_t flag2_externo_token = 1;
     const pn_unit_t Supervisor_Install_Rivet_fastened_token = PN_UNIT;
@@ -4890,6 +4962,7 @@ static bool Supervisor_Install_Rivet_Retract_Command_enumerate(pn_ctx_t *cx, con
     Supervisor_Install_Rivet_Retract_Command_binding_t b = { 0 };
     cx->origin = "page `MoveBoth`, transition `Command` (ID1412310941)";
     cx->now = m->now;
+    cx->rounds = 0U;
     /* retract: (c, p, q) (ID1412310946) */
     for (uint32_t i = 0U; i < m->Supervisor_Install_Rivet_retract.used; i++) {
         b.c = m->Supervisor_Install_Rivet_retract.token[i].value.c1;
@@ -4908,6 +4981,7 @@ static bool Supervisor_Install_Rivet_Retract_Command_fire(pn_ctx_t *cx, void *ma
     Supervisor_Install_Rivet_Retract_Command_binding_t *const b = binding;
     cx->origin = "page `MoveBoth`, transition `Command` (ID1412310941)";
     cx->now = m->now;
+    cx->rounds = 0U;
     const PLAN_t Supervisor_Install_Rivet_retract_token = (PLAN_t){ .c1 = b->c, .c2 = b->p,
         .c3 = b->q };
     const pn_unit_t Supervisor_Install_Rivet_Retract_moving_1_token = PN_UNIT;
@@ -4974,6 +5048,7 @@ static bool Supervisor_Install_Rivet_Retract_Both_enumerate(pn_ctx_t *cx, const 
     Supervisor_Install_Rivet_Retract_Both_binding_t b = { 0 };
     cx->origin = "page `MoveBoth`, transition `Both` (ID1412310948)";
     cx->now = m->now;
+    cx->rounds = 0U;
     /* there 1: () (ID1412310976) */
     if (Supervisor_Install_Rivet_Retract_there_1_held(m, (pn_unit_t[]){ PN_UNIT }) < 1U) {
         return true;
@@ -4994,6 +5069,7 @@ static bool Supervisor_Install_Rivet_Retract_Both_fire(pn_ctx_t *cx, void *marki
     (void)binding;
     cx->origin = "page `MoveBoth`, transition `Both` (ID1412310948)";
     cx->now = m->now;
+    cx->rounds = 0U;
     const pn_unit_t Supervisor_Install_Rivet_Retract_there_1_token = PN_UNIT;
     const pn_unit_t Supervisor_Install_Rivet_Retract_there_2_token = PN_UNIT;
     const pn_unit_t Supervisor_Install_riveted_token = PN_UNIT;
@@ -5046,6 +5122,7 @@ static bool Supervisor_Install_Rivet_Retract_Reply_1_enumerate(pn_ctx_t *cx, con
     Supervisor_Install_Rivet_Retract_Reply_1_binding_t b = { 0 };
     cx->origin = "page `MoveBoth`, transition `Reply 1` (ID1412310962)";
     cx->now = m->now;
+    cx->rounds = 0U;
     /* moving 1: () (ID1412310972) */
     if (Supervisor_Install_Rivet_Retract_moving_1_held(m, (pn_unit_t[]){ PN_UNIT }) < 1U) {
         return true;
@@ -5066,6 +5143,7 @@ static bool Supervisor_Install_Rivet_Retract_Reply_1_fire(pn_ctx_t *cx, void *ma
     (void)binding;
     cx->origin = "page `MoveBoth`, transition `Reply 1` (ID1412310962)";
     cx->now = m->now;
+    cx->rounds = 0U;
     const pn_unit_t Supervisor_Install_Rivet_Retract_moving_1_token = PN_UNIT;
     const int64_t flag1_externo_token = 1;
     const pn_unit_t Supervisor_Install_Rivet_Retract_there_1_token = PN_UNIT;
@@ -5117,6 +5195,7 @@ static bool Supervisor_Install_Rivet_Retract_Reply_2_enumerate(pn_ctx_t *cx, con
     Supervisor_Install_Rivet_Retract_Reply_2_binding_t b = { 0 };
     cx->origin = "page `MoveBoth`, transition `Reply 2` (ID1412310999)";
     cx->now = m->now;
+    cx->rounds = 0U;
     /* moving 2: () (ID1412311009) */
     if (Supervisor_Install_Rivet_Retract_moving_2_held(m, (pn_unit_t[]){ PN_UNIT }) < 1U) {
         return true;
@@ -5137,6 +5216,7 @@ static bool Supervisor_Install_Rivet_Retract_Reply_2_fire(pn_ctx_t *cx, void *ma
     (void)binding;
     cx->origin = "page `MoveBoth`, transition `Reply 2` (ID1412310999)";
     cx->now = m->now;
+    cx->rounds = 0U;
     const pn_unit_t Supervisor_Install_Rivet_Retract_moving_2_token = PN_UNIT;
     const int64_t flag2_externo_token = 1;
     const pn_unit_t Supervisor_Install_Rivet_Retract_there_2_token = PN_UNIT;
@@ -5196,6 +5276,7 @@ static bool Supervisor_Install_Return_Command_enumerate(pn_ctx_t *cx, const void
     Supervisor_Install_Return_Command_binding_t b = { 0 };
     cx->origin = "page `MoveBoth`, transition `Command` (ID1412310941)";
     cx->now = m->now;
+    cx->rounds = 0U;
     /* return: (c, p, q) (ID1412310946) */
     for (uint32_t i = 0U; i < m->Supervisor_Install_return.used; i++) {
         b.c = m->Supervisor_Install_return.token[i].value.c1;
@@ -5214,6 +5295,7 @@ static bool Supervisor_Install_Return_Command_fire(pn_ctx_t *cx, void *marking, 
     Supervisor_Install_Return_Command_binding_t *const b = binding;
     cx->origin = "page `MoveBoth`, transition `Command` (ID1412310941)";
     cx->now = m->now;
+    cx->rounds = 0U;
     const PLAN_t Supervisor_Install_return_token = (PLAN_t){ .c1 = b->c, .c2 = b->p, .c3 = b->q };
     const pn_unit_t Supervisor_Install_Return_moving_1_token = PN_UNIT;
     const pn_unit_t Supervisor_Install_Return_moving_2_token = PN_UNIT;
@@ -5277,6 +5359,7 @@ static bool Supervisor_Install_Return_Both_enumerate(pn_ctx_t *cx, const void *m
     Supervisor_Install_Return_Both_binding_t b = { 0 };
     cx->origin = "page `MoveBoth`, transition `Both` (ID1412310948)";
     cx->now = m->now;
+    cx->rounds = 0U;
     /* there 1: () (ID1412310976) */
     if (Supervisor_Install_Return_there_1_held(m, (pn_unit_t[]){ PN_UNIT }) < 1U) {
         return true;
@@ -5297,6 +5380,7 @@ static bool Supervisor_Install_Return_Both_fire(pn_ctx_t *cx, void *marking, voi
     (void)binding;
     cx->origin = "page `MoveBoth`, transition `Both` (ID1412310948)";
     cx->now = m->now;
+    cx->rounds = 0U;
     const pn_unit_t Supervisor_Install_Return_there_1_token = PN_UNIT;
     const pn_unit_t Supervisor_Install_Return_there_2_token = PN_UNIT;
     const pn_unit_t Supervisor_installed_token = PN_UNIT;
@@ -5348,6 +5432,7 @@ static bool Supervisor_Install_Return_Reply_1_enumerate(pn_ctx_t *cx, const void
     Supervisor_Install_Return_Reply_1_binding_t b = { 0 };
     cx->origin = "page `MoveBoth`, transition `Reply 1` (ID1412310962)";
     cx->now = m->now;
+    cx->rounds = 0U;
     /* moving 1: () (ID1412310972) */
     if (Supervisor_Install_Return_moving_1_held(m, (pn_unit_t[]){ PN_UNIT }) < 1U) {
         return true;
@@ -5368,6 +5453,7 @@ static bool Supervisor_Install_Return_Reply_1_fire(pn_ctx_t *cx, void *marking, 
     (void)binding;
     cx->origin = "page `MoveBoth`, transition `Reply 1` (ID1412310962)";
     cx->now = m->now;
+    cx->rounds = 0U;
     const pn_unit_t Supervisor_Install_Return_moving_1_token = PN_UNIT;
     const int64_t flag1_externo_token = 1;
     const pn_unit_t Supervisor_Install_Return_there_1_token = PN_UNIT;
@@ -5419,6 +5505,7 @@ static bool Supervisor_Install_Return_Reply_2_enumerate(pn_ctx_t *cx, const void
     Supervisor_Install_Return_Reply_2_binding_t b = { 0 };
     cx->origin = "page `MoveBoth`, transition `Reply 2` (ID1412310999)";
     cx->now = m->now;
+    cx->rounds = 0U;
     /* moving 2: () (ID1412311009) */
     if (Supervisor_Install_Return_moving_2_held(m, (pn_unit_t[]){ PN_UNIT }) < 1U) {
         return true;
@@ -5439,6 +5526,7 @@ static bool Supervisor_Install_Return_Reply_2_fire(pn_ctx_t *cx, void *marking, 
     (void)binding;
     cx->origin = "page `MoveBoth`, transition `Reply 2` (ID1412310999)";
     cx->now = m->now;
+    cx->rounds = 0U;
     const pn_unit_t Supervisor_Install_Return_moving_2_token = PN_UNIT;
     const int64_t flag2_externo_token = 1;
     const pn_unit_t Supervisor_Install_Return_there_2_token = PN_UNIT;
@@ -5490,6 +5578,7 @@ static bool Supervisor_Home_Send_home_enumerate(pn_ctx_t *cx, const void *markin
     Supervisor_Home_Send_home_binding_t b = { 0 };
     cx->origin = "page `Home`, transition `Send home` (ID1412311039)";
     cx->now = m->now;
+    cx->rounds = 0U;
     /* installed: () (ID1412311044) */
     if (Supervisor_installed_held(m, (pn_unit_t[]){ PN_UNIT }) < 1U) {
         return true;
@@ -5506,6 +5595,7 @@ static bool Supervisor_Home_Send_home_fire(pn_ctx_t *cx, void *marking, void *bi
     (void)binding;
     cx->origin = "page `Home`, transition `Send home` (ID1412311039)";
     cx->now = m->now;
+    cx->rounds = 0U;
     const pn_unit_t Supervisor_installed_token = PN_UNIT;
     const pn_unit_t Supervisor_Home_leaving_1_token = PN_UNIT;
     int64_t flag1_interno_token = val_HOME;
@@ -5566,6 +5656,7 @@ static bool Supervisor_Home_Both_enumerate(pn_ctx_t *cx, const void *marking,
     Supervisor_Home_Both_binding_t b = { 0 };
     cx->origin = "page `Home`, transition `Both` (ID1412311046)";
     cx->now = m->now;
+    cx->rounds = 0U;
     /* home 1: () (ID1412311074) */
     if (Supervisor_Home_home_1_held(m, (pn_unit_t[]){ PN_UNIT }) < 1U) {
         return true;
@@ -5586,6 +5677,7 @@ static bool Supervisor_Home_Both_fire(pn_ctx_t *cx, void *marking, void *binding
     (void)binding;
     cx->origin = "page `Home`, transition `Both` (ID1412311046)";
     cx->now = m->now;
+    cx->rounds = 0U;
     const pn_unit_t Supervisor_Home_home_1_token = PN_UNIT;
     const pn_unit_t Supervisor_Home_home_2_token = PN_UNIT;
     const pn_unit_t Supervisor_Finished_token = PN_UNIT;
@@ -5633,6 +5725,7 @@ static bool Supervisor_Home_Reply_1_enumerate(pn_ctx_t *cx, const void *marking,
     Supervisor_Home_Reply_1_binding_t b = { 0 };
     cx->origin = "page `Home`, transition `Reply 1` (ID1412311060)";
     cx->now = m->now;
+    cx->rounds = 0U;
     /* leaving 1: () (ID1412311070) */
     if (Supervisor_Home_leaving_1_held(m, (pn_unit_t[]){ PN_UNIT }) < 1U) {
         return true;
@@ -5653,6 +5746,7 @@ static bool Supervisor_Home_Reply_1_fire(pn_ctx_t *cx, void *marking, void *bind
     (void)binding;
     cx->origin = "page `Home`, transition `Reply 1` (ID1412311060)";
     cx->now = m->now;
+    cx->rounds = 0U;
     const pn_unit_t Supervisor_Home_leaving_1_token = PN_UNIT;
     const int64_t flag1_externo_token = 1;
     const pn_unit_t Supervisor_Home_home_1_token = PN_UNIT;
@@ -5700,6 +5794,7 @@ static bool Supervisor_Home_Reply_2_enumerate(pn_ctx_t *cx, const void *marking,
     Supervisor_Home_Reply_2_binding_t b = { 0 };
     cx->origin = "page `Home`, transition `Reply 2` (ID1412311091)";
     cx->now = m->now;
+    cx->rounds = 0U;
     /* leaving 2: () (ID1412311101) */
     if (Supervisor_Home_leaving_2_held(m, (pn_unit_t[]){ PN_UNIT }) < 1U) {
         return true;
@@ -5720,6 +5815,7 @@ static bool Supervisor_Home_Reply_2_fire(pn_ctx_t *cx, void *marking, void *bind
     (void)binding;
     cx->origin = "page `Home`, transition `Reply 2` (ID1412311091)";
     cx->now = m->now;
+    cx->rounds = 0U;
     const pn_unit_t Supervisor_Home_leaving_2_token = PN_UNIT;
     const int64_t flag2_externo_token = 1;
     const pn_unit_t Supervisor_Home_home_2_token = PN_UNIT;
@@ -5771,6 +5867,7 @@ static bool Robot1_Accept_enumerate(pn_ctx_t *cx, const void *marking,
     Robot1_Accept_binding_t b = { 0 };
     cx->origin = "page `Robot`, transition `Accept` (ID1412311125)";
     cx->now = m->now;
+    cx->rounds = 0U;
     /* Waiting: () (ID1412311138) */
     if (Robot1_Waiting_held(m, (pn_unit_t[]){ PN_UNIT }) < 1U) {
         return true;
@@ -5791,6 +5888,7 @@ static bool Robot1_Accept_fire(pn_ctx_t *cx, void *marking, void *binding)
     Robot1_Accept_binding_t *const b = binding;
     cx->origin = "page `Robot`, transition `Accept` (ID1412311125)";
     cx->now = m->now;
+    cx->rounds = 0U;
     const pn_unit_t Robot1_Waiting_token = PN_UNIT;
     /* flag1_interno: c (ID1412311136) */
     bool is_taken = flag1_interno_take(m, &b->c, 1U);
@@ -5836,6 +5934,7 @@ static bool Robot1_Report_enumerate(pn_ctx_t *cx, const void *marking,
     Robot1_Report_binding_t b = { 0 };
     cx->origin = "page `Robot`, transition `Report` (ID1412311145)";
     cx->now = m->now;
+    cx->rounds = 0U;
     /* Done: () (ID1412311154) */
     if (Robot1_Done_held(m, (pn_unit_t[]){ PN_UNIT }) < 1U) {
         return true;
@@ -5852,6 +5951,7 @@ static bool Robot1_Report_fire(pn_ctx_t *cx, void *marking, void *binding)
     (void)binding;
     cx->origin = "page `Robot`, transition `Report` (ID1412311145)";
     cx->now = m->now;
+    cx->rounds = 0U;
     const pn_unit_t Robot1_Done_token = PN_UNIT;
     int64_t flag1_externo_token = 1;
     pn_bag_check(cx, &s_at_flag1_externo, &flag1_externo_token);
@@ -5911,6 +6011,7 @@ static bool Robot1_MoveJoint_enumerate(pn_ctx_t *cx, const void *marking,
     Robot1_MoveJoint_binding_t b = { 0 };
     cx->origin = "page `Robot`, transition `MoveJoint` (ID1412311160)";
     cx->now = m->now;
+    cx->rounds = 0U;
     /* Commanded: c (ID1412311165) */
     for (uint32_t i = 0U; i < m->Robot1_Commanded.used; i++) {
         b.c = m->Robot1_Commanded.token[i].value;
@@ -5935,6 +6036,7 @@ static bool Robot1_MoveJoint_fire(pn_ctx_t *cx, void *marking, void *binding)
     Robot1_MoveJoint_binding_t *const b = binding;
     cx->origin = "page `Robot`, transition `MoveJoint` (ID1412311160)";
     cx->now = m->now;
+    cx->rounds = 0U;
     /* code segment: action moveJoint p */
     ml_moveJoint(b->p);
     const pn_unit_t Robot1_Done_token = PN_UNIT;
@@ -5990,6 +6092,7 @@ static bool Robot1_MoveLinear_enumerate(pn_ctx_t *cx, const void *marking,
     Robot1_MoveLinear_binding_t b = { 0 };
     cx->origin = "page `Robot`, transition `MoveLinear` (ID1412311169)";
     cx->now = m->now;
+    cx->rounds = 0U;
     /* Commanded: c (ID1412311174) */
     for (uint32_t i = 0U; i < m->Robot1_Commanded.used; i++) {
         b.c = m->Robot1_Commanded.token[i].value;
@@ -6014,6 +6117,7 @@ static bool Robot1_MoveLinear_fire(pn_ctx_t *cx, void *marking, void *binding)
     Robot1_MoveLinear_binding_t *const b = binding;
     cx->origin = "page `Robot`, transition `MoveLinear` (ID1412311169)";
     cx->now = m->now;
+    cx->rounds = 0U;
     /* code segment: action moveLinear p */
     ml_moveLinear(b->p);
     const pn_unit_t Robot1_Done_token = PN_UNIT;
@@ -6067,6 +6171,7 @@ static bool Robot1_MoveHome_enumerate(pn_ctx_t *cx, const void *marking,
     Robot1_MoveHome_binding_t b = { 0 };
     cx->origin = "page `Robot`, transition `MoveHome` (ID1412311178)";
     cx->now = m->now;
+    cx->rounds = 0U;
     /* Commanded: c (ID1412311183) */
     for (uint32_t i = 0U; i < m->Robot1_Commanded.used; i++) {
         b.c = m->Robot1_Commanded.token[i].value;
@@ -6087,6 +6192,7 @@ static bool Robot1_MoveHome_fire(pn_ctx_t *cx, void *marking, void *binding)
     Robot1_MoveHome_binding_t *const b = binding;
     cx->origin = "page `Robot`, transition `MoveHome` (ID1412311178)";
     cx->now = m->now;
+    cx->rounds = 0U;
     /* code segment: action moveHome () */
     ml_moveHome();
     const pn_unit_t Robot1_Done_token = PN_UNIT;
@@ -6141,6 +6247,7 @@ static bool Robot1_Measure_enumerate(pn_ctx_t *cx, const void *marking,
     Robot1_Measure_binding_t b = { 0 };
     cx->origin = "page `Robot`, transition `Measure` (ID1412311187)";
     cx->now = m->now;
+    cx->rounds = 0U;
     /* Commanded: c (ID1412311192) */
     for (uint32_t i = 0U; i < m->Robot1_Commanded.used; i++) {
         b.c = m->Robot1_Commanded.token[i].value;
@@ -6165,6 +6272,7 @@ static bool Robot1_Measure_fire(pn_ctx_t *cx, void *marking, void *binding)
     Robot1_Measure_binding_t *const b = binding;
     cx->origin = "page `Robot`, transition `Measure` (ID1412311187)";
     cx->now = m->now;
+    cx->rounds = 0U;
     /* code segment: action measure r */
     b->m = ml_measure(b->r);
     const pn_unit_t Robot1_Done_token = PN_UNIT;
@@ -6221,6 +6329,7 @@ static bool Robot1_Drill_enumerate(pn_ctx_t *cx, const void *marking,
     Robot1_Drill_binding_t b = { 0 };
     cx->origin = "page `Robot`, transition `Drill` (ID1412311196)";
     cx->now = m->now;
+    cx->rounds = 0U;
     /* Commanded: c (ID1412311201) */
     for (uint32_t i = 0U; i < m->Robot1_Commanded.used; i++) {
         b.c = m->Robot1_Commanded.token[i].value;
@@ -6241,6 +6350,7 @@ static bool Robot1_Drill_fire(pn_ctx_t *cx, void *marking, void *binding)
     Robot1_Drill_binding_t *const b = binding;
     cx->origin = "page `Robot`, transition `Drill` (ID1412311196)";
     cx->now = m->now;
+    cx->rounds = 0U;
     /* code segment: action drill () */
     ml_drill();
     const pn_unit_t Robot1_Done_token = PN_UNIT;
@@ -6291,6 +6401,7 @@ static bool Robot1_Insert_enumerate(pn_ctx_t *cx, const void *marking,
     Robot1_Insert_binding_t b = { 0 };
     cx->origin = "page `Robot`, transition `Insert` (ID1412311205)";
     cx->now = m->now;
+    cx->rounds = 0U;
     /* Commanded: c (ID1412311210) */
     for (uint32_t i = 0U; i < m->Robot1_Commanded.used; i++) {
         b.c = m->Robot1_Commanded.token[i].value;
@@ -6311,6 +6422,7 @@ static bool Robot1_Insert_fire(pn_ctx_t *cx, void *marking, void *binding)
     Robot1_Insert_binding_t *const b = binding;
     cx->origin = "page `Robot`, transition `Insert` (ID1412311205)";
     cx->now = m->now;
+    cx->rounds = 0U;
     /* code segment: action insert () */
     ml_insert();
     const pn_unit_t Robot1_Done_token = PN_UNIT;
@@ -6361,6 +6473,7 @@ static bool Robot1_Press_enumerate(pn_ctx_t *cx, const void *marking,
     Robot1_Press_binding_t b = { 0 };
     cx->origin = "page `Robot`, transition `Press` (ID1412311214)";
     cx->now = m->now;
+    cx->rounds = 0U;
     /* Commanded: c (ID1412311219) */
     for (uint32_t i = 0U; i < m->Robot1_Commanded.used; i++) {
         b.c = m->Robot1_Commanded.token[i].value;
@@ -6381,6 +6494,7 @@ static bool Robot1_Press_fire(pn_ctx_t *cx, void *marking, void *binding)
     Robot1_Press_binding_t *const b = binding;
     cx->origin = "page `Robot`, transition `Press` (ID1412311214)";
     cx->now = m->now;
+    cx->rounds = 0U;
     /* code segment: action press () */
     ml_press();
     const pn_unit_t Robot1_Done_token = PN_UNIT;
@@ -6431,6 +6545,7 @@ static bool Robot1_Release_enumerate(pn_ctx_t *cx, const void *marking,
     Robot1_Release_binding_t b = { 0 };
     cx->origin = "page `Robot`, transition `Release` (ID1412311223)";
     cx->now = m->now;
+    cx->rounds = 0U;
     /* Commanded: c (ID1412311228) */
     for (uint32_t i = 0U; i < m->Robot1_Commanded.used; i++) {
         b.c = m->Robot1_Commanded.token[i].value;
@@ -6451,6 +6566,7 @@ static bool Robot1_Release_fire(pn_ctx_t *cx, void *marking, void *binding)
     Robot1_Release_binding_t *const b = binding;
     cx->origin = "page `Robot`, transition `Release` (ID1412311223)";
     cx->now = m->now;
+    cx->rounds = 0U;
     /* code segment: action release () */
     ml_release();
     const pn_unit_t Robot1_Done_token = PN_UNIT;
@@ -6499,6 +6615,7 @@ static bool Robot2_Accept_enumerate(pn_ctx_t *cx, const void *marking,
     Robot2_Accept_binding_t b = { 0 };
     cx->origin = "page `Robot`, transition `Accept` (ID1412311125)";
     cx->now = m->now;
+    cx->rounds = 0U;
     /* Waiting: () (ID1412311138) */
     if (Robot2_Waiting_held(m, (pn_unit_t[]){ PN_UNIT }) < 1U) {
         return true;
@@ -6519,6 +6636,7 @@ static bool Robot2_Accept_fire(pn_ctx_t *cx, void *marking, void *binding)
     Robot2_Accept_binding_t *const b = binding;
     cx->origin = "page `Robot`, transition `Accept` (ID1412311125)";
     cx->now = m->now;
+    cx->rounds = 0U;
     const pn_unit_t Robot2_Waiting_token = PN_UNIT;
     /* flag2_interno: c (ID1412311136) */
     bool is_taken = flag2_interno_take(m, &b->c, 1U);
@@ -6564,6 +6682,7 @@ static bool Robot2_Report_enumerate(pn_ctx_t *cx, const void *marking,
     Robot2_Report_binding_t b = { 0 };
     cx->origin = "page `Robot`, transition `Report` (ID1412311145)";
     cx->now = m->now;
+    cx->rounds = 0U;
     /* Done: () (ID1412311154) */
     if (Robot2_Done_held(m, (pn_unit_t[]){ PN_UNIT }) < 1U) {
         return true;
@@ -6580,6 +6699,7 @@ static bool Robot2_Report_fire(pn_ctx_t *cx, void *marking, void *binding)
     (void)binding;
     cx->origin = "page `Robot`, transition `Report` (ID1412311145)";
     cx->now = m->now;
+    cx->rounds = 0U;
     const pn_unit_t Robot2_Done_token = PN_UNIT;
     int64_t flag2_externo_token = 1;
     pn_bag_check(cx, &s_at_flag2_externo, &flag2_externo_token);
@@ -6639,6 +6759,7 @@ static bool Robot2_MoveJoint_enumerate(pn_ctx_t *cx, const void *marking,
     Robot2_MoveJoint_binding_t b = { 0 };
     cx->origin = "page `Robot`, transition `MoveJoint` (ID1412311160)";
     cx->now = m->now;
+    cx->rounds = 0U;
     /* Commanded: c (ID1412311165) */
     for (uint32_t i = 0U; i < m->Robot2_Commanded.used; i++) {
         b.c = m->Robot2_Commanded.token[i].value;
@@ -6663,6 +6784,7 @@ static bool Robot2_MoveJoint_fire(pn_ctx_t *cx, void *marking, void *binding)
     Robot2_MoveJoint_binding_t *const b = binding;
     cx->origin = "page `Robot`, transition `MoveJoint` (ID1412311160)";
     cx->now = m->now;
+    cx->rounds = 0U;
     /* code segment: action moveJoint p */
     ml_moveJoint(b->p);
     const pn_unit_t Robot2_Done_token = PN_UNIT;
@@ -6718,6 +6840,7 @@ static bool Robot2_MoveLinear_enumerate(pn_ctx_t *cx, const void *marking,
     Robot2_MoveLinear_binding_t b = { 0 };
     cx->origin = "page `Robot`, transition `MoveLinear` (ID1412311169)";
     cx->now = m->now;
+    cx->rounds = 0U;
     /* Commanded: c (ID1412311174) */
     for (uint32_t i = 0U; i < m->Robot2_Commanded.used; i++) {
         b.c = m->Robot2_Commanded.token[i].value;
@@ -6742,6 +6865,7 @@ static bool Robot2_MoveLinear_fire(pn_ctx_t *cx, void *marking, void *binding)
     Robot2_MoveLinear_binding_t *const b = binding;
     cx->origin = "page `Robot`, transition `MoveLinear` (ID1412311169)";
     cx->now = m->now;
+    cx->rounds = 0U;
     /* code segment: action moveLinear p */
     ml_moveLinear(b->p);
     const pn_unit_t Robot2_Done_token = PN_UNIT;
@@ -6795,6 +6919,7 @@ static bool Robot2_MoveHome_enumerate(pn_ctx_t *cx, const void *marking,
     Robot2_MoveHome_binding_t b = { 0 };
     cx->origin = "page `Robot`, transition `MoveHome` (ID1412311178)";
     cx->now = m->now;
+    cx->rounds = 0U;
     /* Commanded: c (ID1412311183) */
     for (uint32_t i = 0U; i < m->Robot2_Commanded.used; i++) {
         b.c = m->Robot2_Commanded.token[i].value;
@@ -6815,6 +6940,7 @@ static bool Robot2_MoveHome_fire(pn_ctx_t *cx, void *marking, void *binding)
     Robot2_MoveHome_binding_t *const b = binding;
     cx->origin = "page `Robot`, transition `MoveHome` (ID1412311178)";
     cx->now = m->now;
+    cx->rounds = 0U;
     /* code segment: action moveHome () */
     ml_moveHome();
     const pn_unit_t Robot2_Done_token = PN_UNIT;
@@ -6869,6 +6995,7 @@ static bool Robot2_Measure_enumerate(pn_ctx_t *cx, const void *marking,
     Robot2_Measure_binding_t b = { 0 };
     cx->origin = "page `Robot`, transition `Measure` (ID1412311187)";
     cx->now = m->now;
+    cx->rounds = 0U;
     /* Commanded: c (ID1412311192) */
     for (uint32_t i = 0U; i < m->Robot2_Commanded.used; i++) {
         b.c = m->Robot2_Commanded.token[i].value;
@@ -6893,6 +7020,7 @@ static bool Robot2_Measure_fire(pn_ctx_t *cx, void *marking, void *binding)
     Robot2_Measure_binding_t *const b = binding;
     cx->origin = "page `Robot`, transition `Measure` (ID1412311187)";
     cx->now = m->now;
+    cx->rounds = 0U;
     /* code segment: action measure r */
     b->m = ml_measure(b->r);
     const pn_unit_t Robot2_Done_token = PN_UNIT;
@@ -6949,6 +7077,7 @@ static bool Robot2_Drill_enumerate(pn_ctx_t *cx, const void *marking,
     Robot2_Drill_binding_t b = { 0 };
     cx->origin = "page `Robot`, transition `Drill` (ID1412311196)";
     cx->now = m->now;
+    cx->rounds = 0U;
     /* Commanded: c (ID1412311201) */
     for (uint32_t i = 0U; i < m->Robot2_Commanded.used; i++) {
         b.c = m->Robot2_Commanded.token[i].value;
@@ -6969,6 +7098,7 @@ static bool Robot2_Drill_fire(pn_ctx_t *cx, void *marking, void *binding)
     Robot2_Drill_binding_t *const b = binding;
     cx->origin = "page `Robot`, transition `Drill` (ID1412311196)";
     cx->now = m->now;
+    cx->rounds = 0U;
     /* code segment: action drill () */
     ml_drill();
     const pn_unit_t Robot2_Done_token = PN_UNIT;
@@ -7019,6 +7149,7 @@ static bool Robot2_Insert_enumerate(pn_ctx_t *cx, const void *marking,
     Robot2_Insert_binding_t b = { 0 };
     cx->origin = "page `Robot`, transition `Insert` (ID1412311205)";
     cx->now = m->now;
+    cx->rounds = 0U;
     /* Commanded: c (ID1412311210) */
     for (uint32_t i = 0U; i < m->Robot2_Commanded.used; i++) {
         b.c = m->Robot2_Commanded.token[i].value;
@@ -7039,6 +7170,7 @@ static bool Robot2_Insert_fire(pn_ctx_t *cx, void *marking, void *binding)
     Robot2_Insert_binding_t *const b = binding;
     cx->origin = "page `Robot`, transition `Insert` (ID1412311205)";
     cx->now = m->now;
+    cx->rounds = 0U;
     /* code segment: action insert () */
     ml_insert();
     const pn_unit_t Robot2_Done_token = PN_UNIT;
@@ -7089,6 +7221,7 @@ static bool Robot2_Press_enumerate(pn_ctx_t *cx, const void *marking,
     Robot2_Press_binding_t b = { 0 };
     cx->origin = "page `Robot`, transition `Press` (ID1412311214)";
     cx->now = m->now;
+    cx->rounds = 0U;
     /* Commanded: c (ID1412311219) */
     for (uint32_t i = 0U; i < m->Robot2_Commanded.used; i++) {
         b.c = m->Robot2_Commanded.token[i].value;
@@ -7109,6 +7242,7 @@ static bool Robot2_Press_fire(pn_ctx_t *cx, void *marking, void *binding)
     Robot2_Press_binding_t *const b = binding;
     cx->origin = "page `Robot`, transition `Press` (ID1412311214)";
     cx->now = m->now;
+    cx->rounds = 0U;
     /* code segment: action press () */
     ml_press();
     const pn_unit_t Robot2_Done_token = PN_UNIT;
@@ -7159,6 +7293,7 @@ static bool Robot2_Release_enumerate(pn_ctx_t *cx, const void *marking,
     Robot2_Release_binding_t b = { 0 };
     cx->origin = "page `Robot`, transition `Release` (ID1412311223)";
     cx->now = m->now;
+    cx->rounds = 0U;
     /* Commanded: c (ID1412311228) */
     for (uint32_t i = 0U; i < m->Robot2_Commanded.used; i++) {
         b.c = m->Robot2_Commanded.token[i].value;
@@ -7179,6 +7314,7 @@ static bool Robot2_Release_fire(pn_ctx_t *cx, void *marking, void *binding)
     Robot2_Release_binding_t *const b = binding;
     cx->origin = "page `Robot`, transition `Release` (ID1412311223)";
     cx->now = m->now;
+    cx->rounds = 0U;
     /* code segment: action release () */
     ml_release();
     const pn_unit_t Robot2_Done_token = PN_UNIT;
@@ -7284,6 +7420,7 @@ static bool init(pn_ctx_t *cx, void *marking)
     m->Robot2_medida.used = 0U;
     pn_arena_reset(cx->arena);
     cx->now = m->now;
+    cx->rounds = 0U;
     cx->step = 0U;
     pn_random_start(cx, PN_RANDOM_START);
     pn_arena_seal(cx->arena);

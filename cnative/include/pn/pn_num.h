@@ -40,12 +40,26 @@ static inline bool pn_is_deep(const pn_ctx_t *cx)
     return cx->depth >= PN_DEPTH_MAX;
 }
 
+/* Begins a round of a loop or of a recursion: false when an error is set, or after so many rounds that the evaluation of an
+ * inscription is taken to have no end (PN_ERR_ENDLESS; some seconds). */
+#ifndef PN_ROUNDS_MAX
+#define PN_ROUNDS_MAX UINT64_C(1000000000)
+#endif
+static inline bool pn_goes_on(pn_ctx_t *cx)
+{
+    cx->rounds++;
+    if (cx->rounds > PN_ROUNDS_MAX) {
+        pn_raise(cx, PN_ERR_ENDLESS, NULL);
+    }
+    return cx->error == PN_OK;
+}
+
 static inline bool pn_enter(pn_ctx_t *cx)
 {
     if (pn_is_deep(cx)) {
         pn_raise(cx, PN_ERR_DEPTH, NULL);
     }
-    if (cx->error != PN_OK) {
+    if (!pn_goes_on(cx)) {
         return false;
     }
     cx->depth++;

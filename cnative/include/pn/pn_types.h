@@ -29,6 +29,7 @@ typedef enum pn_error {
     PN_ERR_DEPTH,      /* recursion too deep */
     PN_ERR_SUBTRACT,   /* multi-set difference of what is not contained */
     PN_ERR_RAISED,     /* an exception of the net itself */
+    PN_ERR_ENDLESS,    /* an evaluation that does not come to an end; not an exception of CPN ML */
     PN_ERR_LARGE,      /* an IntInf.int beyond 64 bits; not an exception of CPN ML */
     PN_ERR_UNSUPPORTED, /* a library function that exists in CPN Tools and cannot run here; the name says which and why */
     PN_ERR_INTERNAL    /* a contract of the runtime was broken */
@@ -45,6 +46,7 @@ typedef struct pn_ctx {
     const char *error_origin; /* net element being evaluated when it was raised */
     const char *origin;       /* net element being evaluated now */
     uint32_t depth;           /* of recursion */
+    uint64_t rounds;          /* of recursion and loops since the evaluation began; see pn_goes_on */
     uintptr_t stack_limit;    /* lowest address that recursion may reach; 0: not known, the depth counts */
     pn_time_t now;            /* model time of the marking being looked at; set by enumerate, fire and init */
     uint64_t step;            /* number of occurrences so far, for step(); the host counts */

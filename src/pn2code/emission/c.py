@@ -127,7 +127,7 @@ class _Emitter:
             if not is_void:
                 s.line(f"return {s.result};")
         elif f.loops:
-            s.line("while (pn_ok(cx)) {")
+            s.line("while (pn_goes_on(cx)) {")
             s.block(f.body)
             s.line("}")
             if not is_void:

@@ -167,7 +167,7 @@ class Statements:
             case ir.If():
                 self._if(s)
             case ir.While():
-                self.line("while (pn_ok(cx)) {")
+                self.line("while (pn_goes_on(cx)) {")
                 self.block(s.setup)
                 self.line(f"{_INDENT}if (!({self._x.text(s.condition)})) {{")
                 self.line(f"{_INDENT * 2}break;")

@@ -66,7 +66,7 @@ class Limits:
         depth: most tasks that may wait for each other, about two for each call.
     """
 
-    steps: int | None = 3_000_000
+    steps: int | None = 1_000_000
     depth: int = 700_000
 
 

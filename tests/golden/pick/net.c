@@ -79,7 +79,7 @@ static const double val_heavy = 2.5;
  */
 static int64_t ml_total(pn_ctx_t *cx, int64_t n, int64_t sum)
 {
-    while (pn_ok(cx)) {
+    while (pn_goes_on(cx)) {
         if (n == 0) {
             return sum;
         }
@@ -221,6 +221,7 @@ static bool Pick_enumerate(pn_ctx_t *cx, const void *marking,
     Pick_binding_t b = { 0 };
     cx->origin = "page `Top`, transition `Pick` (ID25)";
     cx->now = m->now;
+    cx->rounds = 0U;
     /* Buffer: b (ID30) */
     for (uint32_t i = 0U; i < m->Buffer.used; i++) {
         b.b = m->Buffer.token[i].value;
@@ -245,6 +246,7 @@ static bool Pick_fire(pn_ctx_t *cx, void *marking, void *binding)
     Pick_binding_t *const b = binding;
     cx->origin = "page `Top`, transition `Pick` (ID25)";
     cx->now = m->now;
+    cx->rounds = 0U;
     const int64_t Count_token = pn_int_add(cx, b->n, ml_label(cx, b->b));
     if (!pn_ok(cx)) {
         return false;
@@ -287,6 +289,7 @@ static bool init(pn_ctx_t *cx, void *marking)
     m->Out.used = 0U;
     pn_arena_reset(cx->arena);
     cx->now = m->now;
+    cx->rounds = 0U;
     cx->step = 0U;
     pn_random_start(cx, PN_RANDOM_START);
     pn_arena_seal(cx->arena);
