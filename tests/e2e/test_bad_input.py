@@ -68,7 +68,7 @@ NETS = {
         "cell.cpn", whole("Dear net,\n"), "xml-syntax", ("not well-formed",), "Dear net", "saved by CPN Tools"
     ),
     "binary": Case(
-        "cell.cpn", whole("\x7fELF\x02\0\0\0\xff"), "xml-syntax", ("not well-formed",), "ELF", "saved by CPN Tools"
+        "cell.cpn", whole("\x7fELF\x02\0\0\0\xff"), "xml-syntax", ("not well-formed",), "ELF", "the .cpn file itself"
     ),
     "empty": Case("cell.cpn", whole(""), "xml-truncated", ("empty",), "", "save the net again"),
     "other XML": Case(

@@ -92,11 +92,10 @@ def compile_c(root: Path, out: Path, sources: list[Path], *flags: str) -> Path:
 
 
 def host_sources(root: Path) -> list[Path]:
-    """The host, the channels, and what they use of the core."""
+    """The host and the whole runtime."""
     source = root / "cnative/src"
-    core = [source / f"pn_{name}.c" for name in ("arena", "num", "string", "text", "trace")]
-    patterns = ("supervisor*.c", "pn_channel*.c", "port_*.c")
-    return [*core, *(p for pattern in patterns for p in sorted(source.glob(pattern)))]
+    patterns = ("supervisor*.c", "pn_*.c", "port_*.c")
+    return [p for pattern in patterns for p in sorted(source.glob(pattern))]
 
 
 @pytest.fixture(scope="session")
@@ -105,7 +104,7 @@ def built(root: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
     if shutil.which("gcc") is None:
         pytest.skip("no gcc")
     folder = tmp_path_factory.mktemp("supervisor")
-    # Only what the host needs of the runtime; each object once.
+    # Each object once.
     objects = [
         compile_c(root, folder / f"{source.stem}.o", [source], *SANITIZE, "-c")
         for source in host_sources(root)

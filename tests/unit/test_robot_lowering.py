@@ -574,7 +574,7 @@ REFUSED = {
         "error[unsupported-robot-time] transition `T` has a delay",
     ),
     "timed": (
-        "place A : TUNIT = 1\ntrans T\n  both A",
+        "place A : TUNIT = 1`()\ntrans T\n  both A : ()",
         (),
         "error[unsupported-robot-time] place `A` has a timed colour set",
     ),
