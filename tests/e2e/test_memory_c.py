@@ -59,7 +59,7 @@ def test_a_long_run(tmp_path: Path) -> None:
 
 
 def resident(pid: int) -> int:
-    """Memory of a process, kilobytes; 0 when it has gone. (What wait4 tells includes the tests' own, from before exec.)"""
+    """Memory of a process, kilobytes; 0 when it has gone. (wait4 includes the tests' own, from before exec.)"""
     try:
         status = Path(f"/proc/{pid}/status").read_text()
     except OSError:

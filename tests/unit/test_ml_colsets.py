@@ -74,7 +74,9 @@ def test_datatypes_of_colour_sets_are_declared() -> None:
     program = m.e.program()
     assert [c.name for c, _ in program.datatypes["E"].constructors] == ["red", "green", "blue"]
     assert [str(t) for _, t in program.datatypes["U"].constructors] == ["int", "None"]
-    assert {"bool", "list", "option", "order", "E", "U"} == {n for n in program.datatypes if "." not in n}
+    assert {"bool", "list", "option", "order", "E", "U"} == {
+        n for n in program.datatypes if "." not in n
+    }
     assert list(program.colsets) == [
         "INT",
         "STRING",

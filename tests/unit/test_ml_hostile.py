@@ -79,7 +79,9 @@ def _twice(n: int, form: str) -> str:
         + " in f39 end",
         "val x = fn z => let val x0 = z " + _twice(60, "val x{i} = (x{j}, x{j})") + " in x59 end",
         "type t0 = int " + _twice(60, "type t{i} = t{j} * t{j}") + " fun f (x : t59) = x",
-        "type 'a t0 = 'a " + _twice(60, "type 'a t{i} = 'a t{j} * 'a t{j}") + " val x : int t59 = 3",
+        "type 'a t0 = 'a "
+        + _twice(60, "type 'a t{i} = 'a t{j} * 'a t{j}")
+        + " val x : int t59 = 3",
     ],
 )
 def test_types_that_double_are_refused(text: str) -> None:

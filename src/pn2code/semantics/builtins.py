@@ -244,7 +244,9 @@ _COLSET_FUNCTIONS: dict[str, Function] = {
     "timed.output": lambda e, c, p: write(e, p[0], e.colours.token_text(c, p[1]) + " "),
     "timed.output_ms": lambda e, c, p: write(e, p[0], output_ms_text(e.colours, c, p[1])),
     "timed.input": lambda e, c, stream: read_token(c, stream, real_time=e.real_time),
-    "timed.input_ms": lambda e, c, stream: read_multiset(c, stream, timed=True, real_time=e.real_time),
+    "timed.input_ms": lambda e, c, stream: read_multiset(
+        c, stream, timed=True, real_time=e.real_time
+    ),
 }
 
 

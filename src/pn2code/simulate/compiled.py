@@ -33,7 +33,7 @@ from pn2code.simulate.script import Trace, TraceRefusedError
 from pn2code.simulate.trace import TraceUnwritableError
 
 ENDLESS_S = 120.0
-"""Without a word for so long, the process is in an expression that has no end: it says something between any two steps."""
+"""Without a word for so long, the process is in an expression that has no end: between steps it says something."""
 GRACE_S = 5.0
 """Told to end, it has so much time."""
 PROGRESS_S = 0.25
