@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import pytest
 
+from helpers import netbuilder
 from helpers.ml import Ml, shown, source
 from pn2code.diagnostics import Diagnostics
 from pn2code.ml import syntax as s
@@ -331,3 +332,12 @@ def test_spans_are_offsets_in_the_text() -> None:
     assert exp is not None
     assert (exp.span.start, exp.span.text) == (2, "f (x,\n y)")
     assert (exp.span.origin.line, exp.span.origin.column) == (1, 3)
+
+
+@pytest.mark.parametrize("digit", ["~1", "10", "0x1F", "99999999999999999999"])
+def test_a_precedence_is_a_digit(digit: str) -> None:
+    net = f"net X\n  standard\n  fun f (a, b) = a + b;\n  infix {digit} f\n  place A : INT\n"
+    d = netbuilder.diagnose(net)
+    assert [(e.code, e.message) for e in d.errors] == [
+        ("fixity-error", "the precedence of an infix operator is a digit, 0 to 9")
+    ]

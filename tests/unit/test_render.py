@@ -65,3 +65,11 @@ def test_other_forms() -> None:
     assert concise(d.items[0]) == "net.cpn:7:3: error: this is wrong [cpn-element]"
     assert json.loads(report(d, "json").splitlines()[0])["hint"] == "do it right"
     assert count(d) == "1 error, 1 warning"
+
+
+def test_the_place_in_a_very_long_line_is_shown() -> None:
+    lines = shown("a" * 100_000 + " BAD " + "b" * 100_000, 100_001, 100_004)
+    at = next(i for i, line in enumerate(lines) if "BAD" in line)
+    assert lines[at].index("BAD") == lines[at + 1].index("^^^")
+    assert "...aaa" in lines[at]
+    assert lines[at].endswith("bbb...")

@@ -76,6 +76,8 @@ def _excerpt(span: Span) -> tuple[str, int, int]:
     begin = text.rfind("\n", 0, start) + 1
     end = text.find("\n", start)
     end = len(text) if end < 0 else end
+    # Of a line of a megabyte the rest is never shown; there may be thousands of excerpts of it.
+    begin, end = max(begin, start - _FARTHEST), min(end, start + _FARTHEST)
     line = _visible(text[begin:end])
     before = line[: start - begin].expandtabs(4)
     inside = line[start - begin : max(start, min(span.end, end)) - begin].expandtabs(4)
@@ -95,10 +97,14 @@ def _excerpt(span: Span) -> tuple[str, int, int]:
 
 _WIDEST = 160
 """Characters of a line that are shown."""
+_FARTHEST = 400
+"""Characters before and after the place that are looked at."""
 
 
 def _visible(line: str) -> str:
     """Invisible characters (zero width, direction, control) as a sign of one column."""
+    if line.isprintable():
+        return line
     return "".join(c if c.isprintable() or c in "\t\xa0" else "\ufffd" for c in line)
 
 

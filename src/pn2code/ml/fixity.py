@@ -315,6 +315,13 @@ class _Resolver:
                 functors = tuple(replace(b, body=self.structure(b.body)) for b in dec.bindings)
                 return replace(dec, bindings=functors)
             case s.InfixDec():
+                if not 0 <= dec.precedence <= 9:
+                    self._d.error(
+                        codes.FIXITY_ERROR,
+                        "the precedence of an infix operator is a digit, 0 to 9",
+                        dec.span,
+                        hint="9 binds most tightly; `*` has 7, `+` 6, `=` 4",
+                    )
                 for name in dec.names:
                     if dec.kind == "nonfix":
                         self.fixities.pop(name, None)

@@ -361,9 +361,10 @@ class TreeBuilder(Transformer[Any, Any]):
 
     def infix_dec(self, children: Children) -> s.InfixDec:
         kind = {"INFIX": "left", "INFIXR": "right", "NONFIX": "nonfix"}[children[0].kind]
-        digits = self._texts(children, "INT")
+        digits = [c.value for c in children if isinstance(c, Lexeme) and c.kind == "INT"]
         names = tuple(str(g.items[0]) for g in self._only(children, Group))
-        return s.InfixDec(kind, int(digits[0]) if digits else 0, names, self._span(children))
+        # What is not between 0 and 9 is reported where the declaration takes effect.
+        return s.InfixDec(kind, int(digits[0] or 0) if digits else 0, names, self._span(children))
 
     def opname(self, children: Children) -> Group:
         return Group((children[0].text,), self._span(children))
