@@ -72,12 +72,17 @@ def rows(bench: m.Bench) -> list[Row]:
     out = [
         Row("start-up (`pn2code --version`)", "s", *m.start_up(bench), peer=python),
         Row("`check` of the riveting net", "s", *m.check_net(bench), 0.5),
+        Row("`check` of 60 pages, 720 places, 600 transitions", "s", *m.check_large(bench), 3.0),
         Row("`check` of the riveting cell with its geometry", "s", *m.check_cell(bench)),
         Row("`generate` of the riveting cell", "s", *m.generate(bench), 1.0),
     ]
     say("C build")
     one = ("1 job", m.build(bench, 1).wall)
     out.append(Row("C build, 2 jobs", "s", *m.build(bench, 2), 5.0, one))
+    largest = m.largest_of_corpus()
+    if largest is not None:
+        what = f"`generate` and C build, 2 jobs, of the largest net collected (`{largest.name}`)"
+        out.append(Row(what, "s", *m.generate_and_build(bench, largest), 30.0))
     say("runs")
     bullet = m.run_cell(bench, "--no-pictures")
     fake = m.run_cell(bench, "--no-pictures", "--backend", "fake")

@@ -194,6 +194,56 @@ def check_net(bench: Bench) -> Times:
     return bench.times(bench.many, lambda: bench.pn2code("check", net))
 
 
+def large_net(pages: int = 60, places: int = 12, transitions: int = 10) -> str:
+    """A net with so many places and transitions on each page, in the short form."""
+    lines = [
+        "net Large", "  standard", "  colset PART = with screw | nut | bolt;",
+        "  colset PACKET = product INT * STRING;",
+        "  colset ITEM = record id: INT * kind: PART;", "  colset ITEMS = list ITEM;",
+        "  var n, m: INT; var s: STRING; var p: PART; var i: ITEM; var l: ITEMS;", "  fun twice x = 2 * x",
+        "  fun put (x : ITEM, nil) = [x]",
+        "    | put (x : ITEM, y :: r) = if #id x < #id y then x :: y :: r else y :: put (x, r)",
+    ]  # fmt: skip
+    kinds = ("INT = 1`1 ++ 2`5", 'PACKET = 1`(1, "a")', "ITEM", "ITEMS = 1`[]")
+    for page in range(pages):
+        lines.append(f"  page Page{page}")
+        lines += [f"    place P{k} : {kinds[k % 4]}" for k in range(places)]
+        for t in range(transitions):
+            k = 4 * (t % (places // 4))
+            lines += [
+                f'    trans T{t} guard [n < 10, s <> "x"]', f"      in P{k} : n", f"      in P{k + 1} : (m, s)",
+                f"      both P{k + 3} : l", f"      out P{k} : if n > 3 then 1`(twice n) else empty",
+                f'      out P{k + 1} : (m + 1, s ^ "b")', f"      out P{k + 2} : {{id = n, kind = nut}}",
+            ]  # fmt: skip
+    return "\n".join(lines)
+
+
+def check_large(bench: Bench) -> Times:
+    """`pn2code check` of a net of 60 pages, 720 places, 600 transitions and 3,600 arcs."""
+    net = bench.folder / "large.cpn"
+    net.write_bytes(cpn(large_net()))
+    return bench.times(bench.few, lambda: bench.pn2code("check", net))
+
+
+def largest_of_corpus() -> Path | None:
+    """The largest net of the collection beside the repository that can be compiled; None without the collection."""
+    shared = Path(os.environ.get("PN2CODE_SHARED", ROOT.parent / "shared")) / "corpus" / "nets"
+    found = sorted(shared.rglob("*.cpn"), key=lambda p: (-p.stat().st_size, p))
+    return next((p for p in found if pipeline.generate(p, Diagnostics()) is not None), None)
+
+
+def generate_and_build(bench: Bench, net: Path) -> Times:
+    """`pn2code generate` into a new folder, and `make` there with two jobs."""
+
+    def once() -> float:
+        folder = bench.fresh()
+        return bench.pn2code("generate", net, "-o", folder) + bench.timed(
+            "make", "-s", "-j2", cwd=folder
+        )
+
+    return bench.times(bench.few, once)
+
+
 def check_cell(bench: Bench) -> Times:
     """`pn2code check` of the riveting cell, with its robots' geometry in all layouts."""
     return bench.times(bench.many, lambda: bench.pn2code("check", CELL))
