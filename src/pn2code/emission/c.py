@@ -11,7 +11,7 @@ from collections.abc import Callable, Iterable
 
 from pn2code.diagnostics import Origin
 from pn2code.emission import c_places, c_tables
-from pn2code.emission.c_effects import Effects
+from pn2code.emission.c_effects import Effects, reaches
 from pn2code.emission.c_expressions import Expressions, Types, c_integer, op_needs_table
 from pn2code.emission.c_firing import DirectFiring
 from pn2code.emission.c_statements import Statements, used_locals, uses_context, wrap
@@ -21,6 +21,7 @@ from pn2code.emission.output import Block, OutputFile
 from pn2code.lowering import ir
 from pn2code.lowering.calls import called, ir_nodes
 from pn2code.lowering.ir import NetIR, Rep
+from pn2code.lowering.ir_types import is_restricted
 
 _MARK = "\x01"
 _LEAVES = {
@@ -327,7 +328,7 @@ class _Emitter:
         x.variables = variables
         if is_direct:
             scope.reserve("is_taken", "fits")
-            checked = tuple(self._is_restricted(p.table) for p in self._net.places)
+            checked = tuple(is_restricted(self._descriptors, p.table) for p in self._net.places)
             direct = DirectFiring(
                 self._types,
                 x,
@@ -346,26 +347,9 @@ class _Emitter:
         printer.body(t.fire)
         return printer
 
-    def _is_restricted(self, key: str) -> bool:
-        """Whether the table excludes values of its type, or rounds them."""
-        d = self._descriptors[key]
-        if d.low is not None or d.high is not None or d.chars or d.member or d.is_float32:
-            return True
-        parts = [part for _, part in d.fields if part] + ([d.element] if d.element else [])
-        return any(part != key and self._is_restricted(part) for part in parts)
-
     def _reaches(self, statements: tuple[ir.Stmt, ...], what: Callable[[object], bool]) -> bool:
         """Whether there is something of a kind, directly or in a function that is called."""
-        waiting: list[tuple[ir.Stmt, ...]] = [statements]
-        seen: set[str] = set()
-        while waiting:
-            body = waiting.pop()
-            if any(map(what, ir_nodes(body))):
-                return True
-            calls = [key for key in called(body) if key not in seen]
-            seen.update(calls)
-            waiting += [self._functions[key].body for key in calls]
-        return False
+        return reaches(self._functions, statements, what)
 
     # --- the whole -----------------------------------------------------------------------------
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 
 from pn2code.emission.c_places import staying_pairs
 from pn2code.lowering import ir
@@ -50,16 +50,7 @@ class Effects:
 
     def is_pure(self, item: object) -> bool:
         """Whether nothing but the binding and the marking decides: no references, random numbers, step()."""
-        waiting: list[object] = [item]
-        seen: set[str] = set()
-        while waiting:
-            body = waiting.pop()
-            if any(map(self._is_impure, ir_nodes(body))):
-                return False
-            calls = [key for key in called(body) if key not in seen]  # type: ignore[arg-type]
-            seen.update(calls)
-            waiting += [self._functions[key].body for key in calls]
-        return True
+        return not reaches(self._functions, item, self._is_impure)
 
     def _is_impure(self, node: object) -> bool:
         match node:
@@ -76,3 +67,19 @@ class Effects:
 
 def _places(statements: tuple[ir.Stmt, ...], kinds: tuple[type, ...]) -> frozenset[int]:
     return frozenset(n.place for n in ir_nodes(statements) if isinstance(n, kinds))  # type: ignore[attr-defined]
+
+
+def reaches(
+    functions: Mapping[str, ir.Function], item: object, what: Callable[[object], bool]
+) -> bool:
+    """Whether there is something of a kind in IR, directly or in a function that is called."""
+    waiting: list[object] = [item]
+    seen: set[str] = set()
+    while waiting:
+        body = waiting.pop()
+        if any(map(what, ir_nodes(body))):
+            return True
+        calls = [key for key in called(body) if key not in seen]  # type: ignore[arg-type]
+        seen.update(calls)
+        waiting += [functions[key].body for key in calls]
+    return False

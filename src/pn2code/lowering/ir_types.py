@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from enum import Enum
 
 from pn2code.frozen import frozen
@@ -137,3 +138,12 @@ class Descriptor:
     is_tuple: bool = False
     member: str = ""
     comment: str = ""
+
+
+def is_restricted(descriptors: Mapping[str, Descriptor], key: str) -> bool:
+    """Whether a descriptor excludes values of its type, or rounds them, itself or in a part."""
+    d = descriptors[key]
+    if d.low is not None or d.high is not None or d.chars or d.member or d.is_float32:
+        return True
+    parts = [part for _, part in d.fields if part] + ([d.element] if d.element else [])
+    return any(part != key and is_restricted(descriptors, part) for part in parts)

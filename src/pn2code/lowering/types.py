@@ -14,6 +14,7 @@ from pn2code.diagnostics import NOWHERE, Origin, Span
 from pn2code.lowering import ir
 from pn2code.lowering.codes import UNSUPPORTED_TYPE, UnsupportedError
 from pn2code.lowering.ir import Definition, Descriptor, IrType, Rep
+from pn2code.lowering.ir_types import is_restricted
 from pn2code.lowering.prelude import representation
 from pn2code.ml.colsets import Colset, Kind
 from pn2code.ml.core import Program
@@ -508,8 +509,4 @@ class Types:
 
     def is_restricted(self, key: str) -> bool:
         """Whether the table excludes values of its type."""
-        d = self.descriptors[key]
-        if d.low is not None or d.high is not None or d.chars or d.member or d.is_float32:
-            return True
-        parts = [part for _, part in d.fields if part] + ([d.element] if d.element else [])
-        return any(part != key and self.is_restricted(part) for part in parts)
+        return is_restricted(self.descriptors, key)
