@@ -1,7 +1,9 @@
 """Random walks: a net compiled to C and the token game side by side, as many steps as asked for or as time allows.
 
 The compiled `walk` (cnative/tests/walk.c) chooses; before each step its enabled binding elements, in order, its model
-time and its marking must be those of the token game, and an error of the net must come up in both.
+time and its marking must be those of the token game, and an error of the net must come up in both. A run that comes to
+a dead marking or to an error is followed by another one from the initial marking, with the next seed, until there
+are enough steps.
 """
 
 from __future__ import annotations
@@ -11,11 +13,11 @@ import subprocess
 import time
 from collections.abc import Iterator
 from contextlib import contextmanager
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 from typing import Any
 
-from helpers.compiled import Workshop, compare_step, lowered
+from helpers.compiled import Comparison, Workshop, lowered
 from pn2code.diagnostics import Diagnostics
 from pn2code.net.flat import FlatNet
 from pn2code.net.front import load
@@ -23,6 +25,12 @@ from pn2code.semantics.game import Game, GameError
 
 ROOMS = (0, 4096, 65536)
 """Different tokens that a place can hold, tried one after the other; 0: as many as a supervisor has."""
+
+RUNS = 200
+"""Most runs of a net."""
+
+WITHOUT_STEP = 5
+"""Runs in which nothing at all occurs, after which a net is left alone."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -32,9 +40,11 @@ class Walk:
     Args:
         net: its path below the collection.
         verdict: "agrees", "differs", "rejected" (by the front end), "unsupported" (by the compiler).
-        steps: occurrences that were equal.
-        end: why it ended: "steps", "dead", "time", "error" (of the net, in both).
+        steps: occurrences that were equal, of all runs together.
+        end: why it ended: "steps", "time", or, if no more runs were made, how the last one ended: "dead",
+            "error" (of the net, in both).
         detail: what differs, or the error.
+        runs: how many there were.
     """
 
     net: str
@@ -42,6 +52,7 @@ class Walk:
     steps: int = 0
     end: str = ""
     detail: str = ""
+    runs: int = 0
 
     def as_json(self) -> dict[str, Any]:
         """For a file of results."""
@@ -63,8 +74,9 @@ def walk(
     steps: int,
     seed: int = 1,
     seconds: float = 60.0,
+    runs: int = RUNS,
 ) -> Walk:
-    """Compile a net and walk through it."""
+    """Compile a net and walk through it, in no more than so many runs and, about, so many seconds."""
     d = Diagnostics()
     flat = load(path, d)
     if flat is None:
@@ -83,11 +95,29 @@ def walk(
         except AssertionError as failure:
             return Walk(name, "differs", detail=f"not compiled: {str(failure)[:2000]}")
         until = time.monotonic() + seconds
-        with _lines(program, seed, steps) as lines:
-            result = _follow(flat, name, lines, steps=steps, seed=seed, until=until)
+        result = _runs(flat, name, program, steps=steps, seed=seed, until=until, runs=runs)
         if "place is full" not in result.detail:
             break
     return result
+
+
+def _runs(
+    flat: FlatNet, name: str, program: Path, *, steps: int, seed: int, until: float, runs: int
+) -> Walk:
+    """One run after the other, until there are enough steps."""
+    done = empty = 0
+    run = Walk(name, "agrees", end="time")
+    for number in range(runs):
+        with _lines(program, seed + number, steps - done) as lines:
+            run = _follow(flat, name, lines, steps=steps - done, seed=seed + number, until=until)
+        done += run.steps
+        empty = empty + 1 if run.steps == 0 else 0
+        run = replace(run, steps=done, runs=number + 1)
+        if run.verdict != "agrees" or run.end not in ("dead", "error") or done == steps:
+            break
+        if empty == WITHOUT_STEP or time.monotonic() > until:
+            break
+    return replace(run, end="steps") if run.verdict == "agrees" and done == steps else run
 
 
 @contextmanager
@@ -125,11 +155,12 @@ def _follow(
         game = Game(flat, seed=seed)
     except GameError as error:
         failure = str(error)
+    compare = Comparison(game) if game is not None else None
     for line in lines:
-        if game is None or failure:
+        if game is None or compare is None:
             break
         try:
-            game.advance()
+            game.marking = game.settle(game.marking)
             enabled = game.enabled()
         except GameError as error:
             failure = str(error)
@@ -137,7 +168,7 @@ def _follow(
         if "error" in line:
             break
         try:
-            compare_step(game, enabled, line, done)
+            compare.step(enabled, line, done)
         except AssertionError as different:
             return Walk(name, "differs", done, detail=str(different)[:2000])
         if line["chosen"] < 0:
@@ -147,7 +178,7 @@ def _follow(
         if time.monotonic() > until:
             return Walk(name, "agrees", done, "time")
         try:
-            game.fire(enabled[line["chosen"]])
+            game.fire(enabled[line["chosen"]], checked=False)
         except GameError as error:
             failure = str(error)
             line = next(lines, {})

@@ -1,4 +1,4 @@
-"""What evaluating an expression may do besides giving a value: draw random numbers, read or write references.
+"""What evaluating an expression may do besides giving a value: draw random numbers, read or write references, count.
 
     effects = Effects(net.program)
     Effect.DRAW in effects.of(arc.inscription.value)
@@ -25,6 +25,7 @@ class Effect(Enum):
     LOOK = "looks at the surroundings (files, clocks)"
     READ = "reads a reference"
     WRITE = "changes a reference"
+    COUNT = "asks for the number of steps"
 
 
 NONE: Found = frozenset()
@@ -49,6 +50,8 @@ def _builtin(name: str) -> Found:
     reads = name.startswith("Colset.") and ".input" in name
     if reads or (name.startswith(_LOOK) and name not in _WRITTEN_ONLY):
         return frozenset({Effect.LOOK})
+    if name == "Time.step":
+        return frozenset({Effect.COUNT})
     if name.startswith(("Ref.", "Array.")) and name != "Ref.ref":
         return frozenset({Effect.READ} if name == "Ref.!" else {Effect.READ, Effect.WRITE})
     return NONE

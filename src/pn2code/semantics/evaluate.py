@@ -472,36 +472,32 @@ def match(pattern: core.Pat, value: Any, bound: dict[int, Value]) -> bool:
     A variable that is in `bound` already must have an equal value: net variables may occur again.
     What was added before a mismatch stays, so a caller who goes on copies `bound` first.
     """
-    match pattern:
-        case core.PVar(symbol):
-            return _bind(symbol, value, bound)
-        case core.PWild():
-            return True
-        case core.PRecord(fields):
-            return all(
-                match(field, item, bound) for (_, field), item in zip(fields, value, strict=True)
-            )
-        case core.PLit(literal):
-            return bool(value == literal)
-        case core.PAs(symbol, inner):
-            return _bind(symbol, value, bound) and match(inner, value, bound)
-        case core.PCon(constructor, argument):
-            match constructor.data_type, constructor.name:
-                case "bool", name:
-                    return bool(value == (name == "true"))
-                case "list", "nil":
-                    return len(value) == 0
-                case "list", _:
-                    assert argument is not None
-                    return len(value) > 0 and match(argument, (value[0], value[1:]), bound)
-                case "timed", _:
-                    assert argument is not None
-                    return match(argument, (value.value, value.stamp), bound)
-                case _:
-                    same = bool(value.tag == constructor.tag)
-                    return same and (argument is None or match(argument, value.argument, bound))
+    return _MATCHES[type(pattern)](pattern, value, bound)
+
+
+def _match_record(pattern: core.PRecord, value: Any, bound: dict[int, Value]) -> bool:
+    for (_, field), item in zip(pattern.fields, value, strict=True):
+        if not _MATCHES[type(field)](field, item, bound):
+            return False
+    return True
+
+
+def _match_constructor(pattern: core.PCon, value: Any, bound: dict[int, Value]) -> bool:
+    constructor, argument = pattern.constructor, pattern.argument
+    match constructor.data_type, constructor.name:
+        case "bool", name:
+            return bool(value == (name == "true"))
+        case "list", "nil":
+            return len(value) == 0
+        case "list", _:
+            assert argument is not None
+            return len(value) > 0 and match(argument, (value[0], value[1:]), bound)
+        case "timed", _:
+            assert argument is not None
+            return match(argument, (value.value, value.stamp), bound)
         case _:
-            assert_never(pattern)
+            same = bool(value.tag == constructor.tag)
+            return same and (argument is None or match(argument, value.argument, bound))
 
 
 def _bind(symbol: Symbol, value: Value, bound: dict[int, Value]) -> bool:
@@ -509,6 +505,19 @@ def _bind(symbol: Symbol, value: Value, bound: dict[int, Value]) -> bool:
         return v.equal(bound[symbol.uid], value)
     bound[symbol.uid] = value
     return True
+
+
+_MATCHES: dict[type, Callable[[Any, Any, dict[int, Value]], bool]] = {
+    core.PVar: lambda pattern, value, bound: _bind(pattern.symbol, value, bound),
+    core.PWild: lambda pattern, value, bound: True,
+    core.PRecord: _match_record,
+    core.PLit: lambda pattern, value, bound: bool(value == pattern.value),
+    core.PAs: lambda pattern, value, bound: (
+        _bind(pattern.symbol, value, bound) and match(pattern.pattern, value, bound)
+    ),
+    core.PCon: _match_constructor,
+}
+"""How to match each kind of pattern."""
 
 
 def variables(node: core.Exp | core.Pat | core.Dec | core.Rule) -> frozenset[Symbol]:

@@ -36,6 +36,7 @@ from pn2code.semantics.marking import (
 )
 from pn2code.semantics.multiset import MultiSet, TimedMultiSet
 from pn2code.semantics.random import occurrence_of
+from pn2code.semantics.remembered import Remembered
 from pn2code.semantics.values import Timed, Value
 
 __all__ = ["Binding", "BindingElement", "Game", "GameError", "Marking", "NotEnabled"]
@@ -89,6 +90,8 @@ class Game:
             )
         self.colours = self.evaluator.colours
         self.enabling = Enabling(net, self.evaluator)
+        self._remembered = Remembered(net, self.enabling)
+        self._by_priority = sorted(net.transitions, key=lambda t: t.priority)
         self.start: int | float = 0.0 if net.real_time else 0
         self.own_initial_marking = Marking(self.start, tuple(map(self._initial, net.places)))
         self.marking = self._with_overrides(self.own_initial_marking, initial or {})
@@ -152,10 +155,10 @@ class Game:
         """What is enabled at the marking's time, priorities respected, in the documented order."""
         elements: list[BindingElement] = []
         best: int | None = None
-        for t in sorted(self.net.transitions, key=lambda t: t.priority):
+        for t in self._by_priority:
             if best is not None and t.priority > best:
                 break
-            for binding in self.enabling.enabled(t, marking):
+            for binding in self._remembered.enabled(t, marking):
                 best = t.priority
                 elements.append(BindingElement.make(t, binding))
         return elements
@@ -163,10 +166,10 @@ class Game:
     def enabled_transitions(self, marking: Marking) -> list[FlatTransition]:
         """The transitions of which `enabled_in` lists elements; no more than one binding of each is looked for."""
         found: list[FlatTransition] = []
-        for t in sorted(self.net.transitions, key=lambda t: t.priority):
+        for t in self._by_priority:
             if found and t.priority > found[0].priority:
                 break
-            if next(self.enabling.enabled(t, marking), None) is not None:
+            if self._remembered.is_enabled(t, marking):
                 found.append(t)
         return found
 

@@ -207,7 +207,10 @@ def equal(a: Value, b: Value) -> bool:
     todo: list[tuple[Any, Any]] = [(a, b)]
     while todo:
         x, y = todo.pop()
-        if isinstance(x, tuple):
+        if isinstance(x, int | float | str):
+            if x != y:
+                return False
+        elif isinstance(x, tuple):
             if len(x) != len(y):
                 return False
             todo.extend(zip(x, y, strict=True))
