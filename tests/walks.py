@@ -1,6 +1,6 @@
 """`./dev walks`: every net of the collections compiled and walked through next to the token game; the results as JSON.
 
-    python -m tests.walks [--steps 1000] [--seconds 60] [--seed 1] [--only TEXT] [-o FILE]
+    python -m tests.walks [--steps 1000] [--seconds 60] [--seed 1] [--only TEXT] [--again FILE] [-o FILE]
 
 Exit code 1 if a net differs.
 """
@@ -28,8 +28,17 @@ def main() -> int:
     parser.add_argument("--seconds", type=float, default=60.0, help="per net")
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--only", default="", help="nets whose path contains this text")
+    parser.add_argument(
+        "--again",
+        type=Path,
+        help="only those that an earlier output of this says `time` or `differs` of",
+    )
     parser.add_argument("-o", "--output", type=Path)
     options = parser.parse_args()
+    earlier = json.loads(options.again.read_text())["nets"] if options.again else []
+    finished = {
+        r["net"]: Walk(**r) for r in earlier if r["end"] != "time" and r["verdict"] != "differs"
+    }
     root = Path(__file__).resolve().parents[1]
     shared = Path(os.environ.get("PN2CODE_SHARED", root.parent / "shared"))
     results: list[Walk] = []
@@ -39,7 +48,7 @@ def main() -> int:
             name = path.relative_to(shared).as_posix()
             if options.only not in name:
                 continue
-            result = walk(
+            result = finished.get(name) or walk(
                 path,
                 name,
                 workshop,
@@ -48,9 +57,11 @@ def main() -> int:
                 seconds=options.seconds,
             )
             results.append(result)
+            if name in finished:
+                continue
             detail = " ".join(result.detail.split())[:300]
             print(
-                f"{result.verdict:12}{result.steps:6} {result.end:6} {name}  {detail}",
+                f"{result.verdict:12}{result.steps:6} {result.end:6}{result.runs:4} {name}  {detail}",
                 file=sys.stderr,
                 flush=True,
             )
