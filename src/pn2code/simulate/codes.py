@@ -26,9 +26,3 @@ ENGINE_CHANGED = register(
     "or its monitors change references that the net uses. The reference token game makes the same run, more slowly. "
     "With `--engine compiled` this is an error.",
 )
-CACHE_UNUSABLE = register(
-    "simulator-cache",
-    "compiled simulators cannot be kept",
-    "Compiled nets are kept in `$XDG_CACHE_HOME/pn2code` or `~/.cache/pn2code`, so that a second run starts at once. "
-    "There is no room, or the folder is not yours alone: the net is compiled for this run only.",
-)
