@@ -79,7 +79,7 @@ def draw(
         stop(d, form)
     path, config = found
     values = {**(config.values if config else {}), **parse_values(settings)}
-    examined = front.examine(path, d, values)
+    examined = front.examine(path, d, values, drawn=True)
     document = examined.document
     if document is None or not document.pages:
         stop(d, form)

@@ -11,8 +11,9 @@ from pn2code.net.check import check
 from pn2code.net.flat import FlatNet
 from pn2code.net.flatten import check_hierarchy, flatten
 from pn2code.net.link import link
+from pn2code.net.source import read
 from pn2code.net.typed import TypedNet
-from pn2code.reading.cpn import give_up, read
+from pn2code.reading.cpn import give_up
 from pn2code.reading.document import Document
 
 
@@ -37,6 +38,7 @@ def examine(
     values: Mapping[str, str] | None = None,
     *,
     int_bits: int = 31,
+    drawn: bool = False,
 ) -> Examined:
     """Read, link, check and flatten a `.cpn` file, going on after errors.
 
@@ -47,19 +49,20 @@ def examine(
         d: gets errors and warnings of all stages.
         values: replacements for `val` declarations of the net: name -> CPN ML text.
         int_bits: width of `int`: 31, as in CPN Tools, or 64.
+        drawn: whether the document will be drawn, that is, has its layout.
     """
     try:
-        return _examine(path, d, values, int_bits)
+        return _examine(path, d, values, int_bits, drawn)
     except TooManyDiagnosticsError:
         give_up(str(path), d)
         return Examined(None, None)
 
 
 def _examine(
-    path: Path, d: Diagnostics, values: Mapping[str, str] | None, int_bits: int
+    path: Path, d: Diagnostics, values: Mapping[str, str] | None, int_bits: int, drawn: bool
 ) -> Examined:
     before = len(d.errors)
-    document = read(path, d, partial=True)
+    document = read(path, d, partial=True, drawn=drawn)
     net = link(document, d, partial=True) if document is not None else None
     if net is None:
         return Examined(document, None)

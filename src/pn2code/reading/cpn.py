@@ -34,13 +34,16 @@ _CPNET = {
 }  # fmt: skip
 
 
-def read(path: Path, d: Diagnostics, *, partial: bool = False) -> Document | None:
+def read(
+    path: Path, d: Diagnostics, *, partial: bool = False, drawn: bool = True
+) -> Document | None:
     """Read a `.cpn` file.
 
     Args:
         path: the file; messages and origins carry it as given.
         d: gets the errors and warnings.
         partial: give what could be read even after errors, for a look at the rest of the net.
+        drawn: whether the layout is needed.
 
     Returns:
         The document, or None if there were errors (if `partial`: only if this is no net at all).
@@ -48,17 +51,19 @@ def read(path: Path, d: Diagnostics, *, partial: bool = False) -> Document | Non
     data = read_bytes(path, d)
     if data is None:
         return None
-    return read_data(data, str(path), d, partial=partial)
+    return read_data(data, str(path), d, partial=partial, drawn=drawn)
 
 
-def read_data(data: bytes, file: str, d: Diagnostics, *, partial: bool = False) -> Document | None:
+def read_data(
+    data: bytes, file: str, d: Diagnostics, *, partial: bool = False, drawn: bool = True
+) -> Document | None:
     """Read the bytes of a `.cpn` file; `file` is the name used in messages."""
     before = len(d.errors)
     root = parse(data, file, d)
     if root is None:
         return None
     try:
-        document = _Reader(file, d).document(root, hashlib.sha256(data).hexdigest())
+        document = _Reader(file, d, drawn).document(root, hashlib.sha256(data).hexdigest())
     except TooManyDiagnosticsError:
         give_up(file, d)
         return None
@@ -78,8 +83,9 @@ def give_up(file: str, d: Diagnostics) -> None:
 class _Reader:
     """Reads one file."""
 
-    def __init__(self, file: str, d: Diagnostics) -> None:
+    def __init__(self, file: str, d: Diagnostics, drawn: bool) -> None:
         self.file = file
+        self.drawn = drawn
         self.d = d
         self.base = Origin(file)
         self.reported: set[tuple[str, str]] = set()
@@ -113,7 +119,7 @@ class _Reader:
             return None
         generator = root.child("generator")
         declarations = DeclarationReader(self.base, self.d, self.unknown)
-        pages = PageReader(self.file, self.d, self.unknown)
+        pages = PageReader(self.file, self.d, self.unknown, drawn=self.drawn)
         blocks: list[RawBlock] = []
         raw_pages = []
         fusions = []

@@ -13,18 +13,23 @@ Point = tuple[float, float]
 def number(text: str) -> float:
     """A coordinate; decimal commas (CPN Tools run in such a locale) are accepted, nonsense is 0."""
     try:
-        value = float(text.strip().replace(",", "."))
+        value = float(text)
     except ValueError:
-        return 0.0
+        try:
+            value = float(text.strip().replace(",", "."))
+        except ValueError:
+            return 0.0
     return value if math.isfinite(value) else 0.0
 
 
 def point(node: Node) -> Point:
     """The `posattr` of an element."""
     position = node.child("posattr")
-    return (
-        (0.0, 0.0) if position is None else (number(position.get("x")), number(position.get("y")))
-    )
+    return (0.0, 0.0) if position is None else _xy(position)
+
+
+def _xy(position: Node) -> Point:
+    return number(position.get("x")), number(position.get("y"))
 
 
 def offset(node: Node | None) -> Layout:
@@ -43,15 +48,20 @@ def layout(node: Node | None, bends: tuple[Point, ...] = ()) -> Layout:
     """Layout of a place, transition, inscription, tag, arc or auxiliary."""
     if node is None:
         return Layout()
-    x, y = point(node)
-    fill, line, words = node.child("fillattr"), node.child("lineattr"), node.child("textattr")
+    first: dict[str, Node] = {}
+    for child in node.children:
+        if child.tag not in first:
+            first[child.tag] = child
+    position = first.get("posattr")
+    x, y = (0.0, 0.0) if position is None else _xy(position)
+    fill, line, words = first.get("fillattr"), first.get("lineattr"), first.get("textattr")
     shape, width, height = "", 0.0, 0.0
     for tag in ("ellipse", "box", "label"):
-        found = node.child(tag)
+        found = first.get(tag)
         if found is not None:
             shape, width, height = tag, number(found.get("w")), number(found.get("h"))
             break
-    heads = node.child("arrowattr")
+    heads = first.get("arrowattr")
     filled = fill is not None and fill.get("filled").lower() == "true"
     return Layout(
         x=x,
@@ -67,7 +77,7 @@ def layout(node: Node | None, bends: tuple[Point, ...] = ()) -> Layout:
         line=line.get("type").lower() if line else "",
         bold=words is not None and words.get("bold").lower() == "true",
         head=number(heads.get("headsize", "1")) if heads else 1.0,
-        known=node.child("posattr") is not None,
+        known=position is not None,
     )
 
 

@@ -15,6 +15,7 @@ from pn2code.reading.codes import (
 from pn2code.reading.declarations import Warn
 from pn2code.reading.document import (
     Inscription,
+    Layout,
     RawArc,
     RawAux,
     RawPage,
@@ -38,6 +39,7 @@ _KNOWN = {
     "arc": _DRAWING | {"arrowattr", "transend", "placeend", "annot", "bendpoint"},
 }  # fmt: skip
 _ORIENTATIONS = {"ptot", "ttop", "bothdir", "inhibitor", "reset"}
+_NO_LAYOUT = Layout()
 _PAIR = re.compile(r"\(\s*([^(),\s]*)\s*,\s*([^(),\s]*)\s*\)")
 
 
@@ -47,10 +49,15 @@ def readable(text: str) -> str:
 
 
 class PageReader:
-    """Reads pages; remembers ids over all pages of a file."""
+    """Reads pages; remembers ids over all pages of a file.
 
-    def __init__(self, file: str, d: Diagnostics, unknown: Warn) -> None:
+    Args:
+        drawn: whether anybody will look at the layout; without it, all things are where they are by default.
+    """
+
+    def __init__(self, file: str, d: Diagnostics, unknown: Warn, *, drawn: bool = True) -> None:
         self.file = file
+        self.drawn = drawn
         self.d = d
         self.unknown = unknown
         self.seen: dict[str, Origin] = {}
@@ -74,13 +81,15 @@ class PageReader:
         places = tuple(self.place(n, name) for n in node.all("place"))
         transitions = tuple(self.transition(n, name) for n in node.all("trans"))
         names = {p.id: p.name for p in places} | {t.id: t.name for t in transitions}
-        points = {n.get("id"): point(n) for n in node.all("place") + node.all("trans")}
+        points: dict[str, Point] = {}
+        if self.drawn:
+            points = {n.get("id"): point(n) for n in node.all("place") + node.all("trans")}
         place_ids, transition_ids = {p.id for p in places}, {t.id for t in transitions}
         arcs = [
             self.arc(n, name, place_ids, transition_ids, names, points) for n in node.all("arc")
         ]
         auxiliaries = tuple(
-            RawAux(n.get("id"), _text(n.child("text")), layout(n)) for n in node.all("Aux")
+            RawAux(n.get("id"), _text(n.child("text")), self.layout(n)) for n in node.all("Aux")
         )
         return RawPage(
             id=node.get("id"),
@@ -128,17 +137,17 @@ class PageReader:
         return RawPlace(
             id=node.get("id"),
             name=name,
-            type=inscription(node.child("type"), origin, "colour set"),
-            initial=inscription(node.child("initmark"), origin, "initial marking"),
+            type=self.inscription(node.child("type"), origin, "colour set"),
+            initial=self.inscription(node.child("initmark"), origin, "initial marking"),
             port=port.get("type") if port else "",
             fusion=fusion.get("name") if fusion else "",
             origin=origin,
-            layout=layout(node),
+            layout=self.layout(node),
             caption=caption,
-            port_layout=layout(port),
-            fusion_layout=layout(fusion),
-            token=offset(node.child("token")),
-            marking=offset(node.child("marking")),
+            port_layout=self.layout(port),
+            fusion_layout=self.layout(fusion),
+            token=self.offset(node.child("token")),
+            marking=self.offset(node.child("marking")),
         )
 
     def transition(self, node: Node, page: str) -> RawTransition:
@@ -150,14 +159,14 @@ class PageReader:
         return RawTransition(
             id=node.get("id"),
             name=name,
-            guard=inscription(node.child("cond"), origin, "guard"),
-            delay=inscription(node.child("time"), origin, "delay"),
-            code=inscription(node.child("code"), origin, "code segment"),
-            priority=inscription(node.child("priority"), origin, "priority"),
-            channel=inscription(node.child("channel"), origin, "channel"),
+            guard=self.inscription(node.child("cond"), origin, "guard"),
+            delay=self.inscription(node.child("time"), origin, "delay"),
+            code=self.inscription(node.child("code"), origin, "code segment"),
+            priority=self.inscription(node.child("priority"), origin, "priority"),
+            channel=self.inscription(node.child("channel"), origin, "channel"),
             substitution=self.substitution(subst, origin) if subst else None,
             origin=origin,
-            layout=layout(node),
+            layout=self.layout(node),
             caption=caption,
         )
 
@@ -179,7 +188,7 @@ class PageReader:
                 origin,
                 hint="assignments are written (port id, socket id)(port id, socket id)",
             )
-        tag = layout(node.child("subpageinfo"))
+        tag = self.layout(node.child("subpageinfo"))
         return RawSubstitution(node.get("subpage"), tuple(_PAIR.findall(text)), origin, tag)
 
     def arc(
@@ -235,32 +244,41 @@ class PageReader:
             )
         if dangling:
             return None
-        shape = layout(node, bends(node, points[transition], points[place]))
+        shape = _NO_LAYOUT
+        if self.drawn:
+            shape = layout(node, bends(node, points[transition], points[place]))
         return RawArc(
             id=node.get("id"),
             orientation=orientation,
             transition=transition,
             place=place,
-            inscription=inscription(node.child("annot"), origin, "inscription"),
+            inscription=self.inscription(node.child("annot"), origin, "inscription"),
             origin=origin,
             layout=shape,
             order=int(number(node.get("order"))),
         )
 
+    def inscription(self, node: Node | None, base: Origin, part: str) -> Inscription | None:
+        """The text of an inscription; None when it has none, or only white space."""
+        text = node.child("text") if node else None
+        if node is None or text is None or not text.text.strip():
+            return None
+        origin = Origin(
+            base.file, text.line, text.column, base.page, base.element, base.element_id, part
+        )
+        return Inscription(text.source(origin), self.layout(node))
+
+    def layout(self, node: Node | None) -> Layout:
+        """Layout of anything but an arc."""
+        return layout(node) if self.drawn else _NO_LAYOUT
+
+    def offset(self, node: Node | None) -> Layout:
+        """Layout of a `token` or `marking`."""
+        return offset(node) if self.drawn else _NO_LAYOUT
+
 
 def _found(orientation: str) -> str:
     return f"the unknown orientation `{orientation}`" if orientation else "no orientation"
-
-
-def inscription(node: Node | None, base: Origin, part: str) -> Inscription | None:
-    """The text of an inscription; None when it has none, or only white space."""
-    text = node.child("text") if node else None
-    if node is None or text is None or not text.text.strip():
-        return None
-    origin = Origin(
-        base.file, text.line, text.column, base.page, base.element, base.element_id, part
-    )
-    return Inscription(text.source(origin), layout(node))
 
 
 def _text(node: Node | None) -> str:

@@ -1,9 +1,8 @@
 """XML, read without trust: bytes in, a tree of `Node`s with exact positions out.
 
-Two parsers see the same bytes. First `xml.parsers.expat` walks through: it refuses entities,
-excessive depth and excessive numbers of elements before anything is built, and notes line and
-column of every element and of every run of characters (lxml knows only an element's line). Then
-lxml builds the tree, with DTD loading, network access and entity resolution switched off.
+`xml.parsers.expat` walks through the bytes once. Every handler refuses what is hostile (entities, excessive depth,
+excessive numbers of elements, endless texts) before it adds to the tree, and notes line and column of every element
+and of every run of characters. Nothing outside the bytes is ever looked at: no DTD, no network, no other file.
 
 Example: `<text>1`x &lt; 2</text>` at line 3, column 1 gives a node with text ``1`x < 2`` whose
 `source` knows that `<` stands at column 11 and ` 2` at column 15.
@@ -12,12 +11,9 @@ Example: `<text>1`x &lt; 2</text>` at line 3, column 1 gives a node with text ``
 from __future__ import annotations
 
 import stat
-import sys
 from dataclasses import dataclass, field
 from pathlib import Path
 from xml.parsers import expat
-
-from lxml import etree
 
 from pn2code.diagnostics import Diagnostics, Origin, SourceText
 from pn2code.reading.codes import (
@@ -31,11 +27,12 @@ from pn2code.reading.codes import (
 )
 
 MAX_BYTES = 100 * 1024 * 1024
-MAX_DEPTH = 200  # below libxml2's own limit of 256
+MAX_DEPTH = 200
+"""Elements inside one another; those of real nets have less than ten levels."""
 MAX_ELEMENTS = 800_000
 """The largest real net seen has 50,000; one of 10,000 places some 500,000."""
 MAX_SPACE = 5_000_000
-"""Characters of white space at the beginning of one element; libxml2 refuses 10 million."""
+"""Characters of white space at the beginning of one element."""
 MAX_TEXT = 250_000
 """Characters of one text or of the attributes of one element; the longest of real nets have some thousand."""
 
@@ -76,7 +73,10 @@ class Node:
 
     def child(self, tag: str) -> Node | None:
         """The first child with a tag."""
-        return next((c for c in self.children if c.tag == tag), None)
+        for child in self.children:
+            if child.tag == tag:
+                return child
+        return None
 
     def all(self, tag: str) -> list[Node]:
         """All children with a tag."""
@@ -140,35 +140,16 @@ def parse(data: bytes, file: str, d: Diagnostics) -> Node | None:
     if not data.strip():
         d.error(XML_TRUNCATED, "the file is empty", Origin(file), hint="save the net again")
         return None
-    places = _Surveyor(file, d).survey(data)
-    if places is None:
-        return None
-    parser = etree.XMLParser(
-        resolve_entities=False,
-        no_network=True,
-        load_dtd=False,
-        dtd_validation=False,
-        attribute_defaults=False,
-        huge_tree=False,
-        remove_comments=True,
-        remove_pis=True,
-        recover=False,
-    )
-    try:
-        root = etree.fromstring(data, parser)
-    except etree.XMLSyntaxError as e:
-        line, column = e.position
-        if "HUGE" in str(e.msg):
-            d.error(
-                XML_LIMIT,
-                "a text is too long for the XML parser",
-                Origin(file, line, column),
-                hint="no net of CPN Tools has this: the file is damaged or hostile",
-            )
-            return None
-        d.error(XML_SYNTAX, f"not well-formed XML: {_lower(e.msg)}", Origin(file, line, column))
-        return None
-    return _build(root, places)
+    return _Builder(file, d).build(data)
+
+
+def _qualified(name: str) -> str:
+    """`{namespace}name`, of which expat gives `namespace}name`."""
+    return "{" + name if "}" in name else name
+
+
+def _local(tag: str) -> str:
+    return tag.rpartition("}")[2]
 
 
 def _lower(message: str | None) -> str:
@@ -176,73 +157,52 @@ def _lower(message: str | None) -> str:
     return text[:1].lower() + text[1:]
 
 
-def _build(root: etree._Element, places: list[_Place]) -> Node:
-    """The `Node` tree of an lxml tree; `places` is in document order, as is `root.iter()`."""
-    nodes: list[Node] = []
-    used = _Place(0, -1, 0, 0)
-    for number, element in enumerate(root.iter()):
-        place = places[number]
-        places[number] = used  # large nets need the memory
-        text = ""
-        if place.length:  # most elements hold other elements only, with white space between
-            text = (element.text or "") + "".join(child.tail or "" for child in element)
-        node = Node(
-            sys.intern(str(element.tag)),
-            dict(element.attrib),  # type: ignore[arg-type]
-            place.line,
-            place.column,
-            text[place.skipped :],
-            tuple(place.marks or ()),
-        )
-        nodes.append(node)
-        if place.parent >= 0:
-            nodes[place.parent].children.append(node)
-    assert len(nodes) == len(places), "both parsers see the same elements"
-    return nodes[0]
-
-
 @dataclass(slots=True)
-class _Place:
-    """Where an element stands, and marks of its direct text; the rest is the state of the survey.
+class _Text:
+    """The characters of an element so far.
 
     Args:
-        number: of the element, in document order; parent: that of the element around it, -1 for the root.
-        skipped: characters of white space before the text; length: of the text without them.
+        parts: in order; length: of all of them.
+        marks: as in `SourceText`.
+        line, column: of the next character if nothing comes between.
     """
 
-    number: int
-    parent: int
-    line: int
-    column: int
-    marks: list[tuple[int, int, int]] | None = None
-    skipped: int = 0
+    parts: list[str] = field(default_factory=list)
     length: int = 0
-    expected: tuple[int, int] = (0, 0)
+    marks: list[tuple[int, int, int]] = field(default_factory=list)
+    line: int = 0
+    column: int = 0
 
 
 class _RefusedError(Exception):
-    """Ends a survey; the diagnostic has been reported."""
+    """Ends the building; the diagnostic has been reported."""
 
 
-class _Surveyor:
-    """The first pass: positions, and refusal of what is hostile."""
+class _Builder:
+    """Makes the tree, and refuses what is hostile."""
 
     def __init__(self, file: str, d: Diagnostics) -> None:
         self.file = file
         self.d = d
-        self.places: list[_Place] = []
-        self.open: list[_Place] = []
-        self.tags: list[str] = []
-        self.parser = expat.ParserCreate()
+        self.root: Node | None = None
+        self.elements = 0
+        self.namespaces = False
+        self.open: list[Node] = []
+        # Of the innermost open element: its text, and white space before that.
+        self.text: _Text | None = None
+        self.space = 0
+        self.outer: list[tuple[_Text | None, int]] = []  # the same of those around it
+        self.parser = expat.ParserCreate(namespace_separator="}")
         self.parser.SetParamEntityParsing(expat.XML_PARAM_ENTITY_PARSING_NEVER)
         self.parser.StartElementHandler = self._start
         self.parser.EndElementHandler = self._end
         self.parser.CharacterDataHandler = self._characters
+        self.parser.StartNamespaceDeclHandler = self._namespace
         self.parser.EntityDeclHandler = self._entity_declaration
         self.parser.SkippedEntityHandler = self._skipped_entity
         self.parser.ExternalEntityRefHandler = self._external_entity
 
-    def survey(self, data: bytes) -> list[_Place] | None:
+    def build(self, data: bytes) -> Node | None:
         try:
             self.parser.Parse(data, True)
         except _RefusedError:
@@ -259,7 +219,7 @@ class _Surveyor:
                 hint="CPN Tools writes iso-8859-1",
             )
             return None
-        return self.places
+        return self.root
 
     def _here(self) -> Origin:
         return Origin(self.file, self.parser.CurrentLineNumber, self.parser.CurrentColumnNumber + 1)
@@ -272,16 +232,16 @@ class _Surveyor:
             expat.errors.codes[expat.errors.XML_ERROR_PARTIAL_CHAR],
             expat.errors.codes[expat.errors.XML_ERROR_UNCLOSED_CDATA_SECTION],
         }
-        if code in ends and (self.places or data.lstrip().startswith(b"<")):
-            inside = " in the middle of an element" if self.places else " before its first element"
-            if self.tags:
-                inside = f" inside element `{self.tags[-1]}`"
+        if code in ends and (self.root or data.lstrip().startswith(b"<")):
+            inside = " in the middle of an element" if self.root else " before its first element"
+            if self.open:
+                inside = f" inside element `{_local(self.open[-1].tag)}`"
             self.d.error(
                 XML_TRUNCATED,
                 f"the file ends too early,{inside}",
                 origin,
-                notes=[f"element `{self.tags[-1]}` begins on line {self.open[-1].line}"]
-                if self.tags
+                notes=[f"element `{_local(self.open[-1].tag)}` begins on line {self.open[-1].line}"]
+                if self.open
                 else [],
                 hint="the file was cut off: save or copy the net again",
             )
@@ -291,8 +251,8 @@ class _Surveyor:
             return
         words, hint = self._explain(code, data)
         notes = []
-        if code == expat.errors.codes[expat.errors.XML_ERROR_TAG_MISMATCH] and self.tags:
-            notes = [f"element `{self.tags[-1]}` begins on line {self.open[-1].line}"]
+        if code == expat.errors.codes[expat.errors.XML_ERROR_TAG_MISMATCH] and self.open:
+            notes = [f"element `{_local(self.open[-1].tag)}` begins on line {self.open[-1].line}"]
         self.d.error(XML_SYNTAX, f"not well-formed XML: {words}", origin, notes=notes, hint=hint)
 
     def _explain(self, code: int, data: bytes) -> tuple[str, str]:
@@ -300,18 +260,22 @@ class _Surveyor:
         words = expat.ErrorString(code) or "syntax error"
         hint = "a .cpn file is XML: is this a net saved by CPN Tools?"
         errors = expat.errors
-        if not self.places:
+        if not self.root:
             for start, what in _SIGNATURES.items():
                 if data.startswith(start):
                     return f"this is {what}", "give the .cpn file itself"
-        if code == errors.codes[errors.XML_ERROR_TAG_MISMATCH] and self.tags:
-            words = f"element `{self.tags[-1]}` is not closed before the end of another one"
+        if code == errors.codes[errors.XML_ERROR_TAG_MISMATCH] and self.open:
+            name = _local(self.open[-1].tag)
+            words = f"element `{name}` is not closed before the end of another one"
             hint = "the file was edited by hand or damaged: save the net again in CPN Tools"
         elif code == errors.codes[errors.XML_ERROR_JUNK_AFTER_DOC_ELEMENT]:
             words = "something follows after the end of the root element"
             hint = "a .cpn file has one root element, `workspaceElements`; remove what follows it"
-        elif code == errors.codes[errors.XML_ERROR_INVALID_TOKEN] and self.places:
+        elif code == errors.codes[errors.XML_ERROR_INVALID_TOKEN] and self.root:
             return self._invalid(data)
+        elif code == errors.codes[errors.XML_ERROR_UNBOUND_PREFIX]:
+            words = "a name has a prefix, before `:`, that is declared nowhere"
+            hint = "no name of CPN Tools has one: the file was edited by hand or damaged"
         elif code == errors.codes[errors.XML_ERROR_DUPLICATE_ATTRIBUTE]:
             words = "an element has the same attribute twice"
             hint = "remove one of them"
@@ -338,43 +302,60 @@ class _Surveyor:
         return words, 'attributes are written name="value", with quotes'
 
     def _start(self, tag: str, attributes: dict[str, str]) -> None:
-        if sum(map(len, attributes.values())) > MAX_TEXT:
+        if len("".join(attributes.values())) > MAX_TEXT:
             self._refuse(XML_LIMIT, f"an attribute has more than {MAX_TEXT:,} characters")
         if len(self.open) >= MAX_DEPTH:
             self._refuse(XML_LIMIT, f"elements are nested more than {MAX_DEPTH} levels deep")
-        if len(self.places) >= MAX_ELEMENTS:
+        if self.elements >= MAX_ELEMENTS:
             self._refuse(XML_LIMIT, f"there are more than {MAX_ELEMENTS:,} elements")
-        parent = self.open[-1].number if self.open else -1
+        self.elements += 1
+        if self.namespaces:
+            tag = _qualified(tag)
+            attributes = {_qualified(name): value for name, value in attributes.items()}
         parser = self.parser
-        line, column = parser.CurrentLineNumber, parser.CurrentColumnNumber + 1
-        place = _Place(len(self.places), parent, line, column)
-        self.places.append(place)
-        self.open.append(place)
-        self.tags.append(tag)
+        node = Node(
+            tag, attributes, parser.CurrentLineNumber, parser.CurrentColumnNumber + 1, "", (), []
+        )
+        if self.open:
+            self.open[-1].children.append(node)
+        else:
+            self.root = node
+        self.open.append(node)
+        self.outer.append((self.text, self.space))
+        self.text, self.space = None, 0
 
     def _end(self, _tag: str) -> None:
-        self.open.pop()
-        self.tags.pop()
+        node, text = self.open.pop(), self.text
+        if text is not None:
+            node.text, node.marks = "".join(text.parts), tuple(text.marks)
+        self.text, self.space = self.outer.pop()
 
-    def _characters(self, text: str) -> None:
-        place = self.open[-1]
-        if place.length > MAX_TEXT:  # white space between elements is free
+    def _characters(self, characters: str) -> None:
+        text = self.text
+        if text is None:
+            if characters.isspace():  # nearly always: white space between elements is free
+                self.space += len(characters)
+                if self.space > MAX_SPACE:
+                    self._refuse(
+                        XML_LIMIT, f"there are more than {MAX_SPACE:,} characters of white space"
+                    )
+                return
+            text = self.text = _Text()
+        elif text.length > MAX_TEXT:
             self._refuse(XML_LIMIT, f"a text has more than {MAX_TEXT:,} characters")
-        if not place.length and text.isspace():
-            place.skipped += len(text)
-            if place.skipped > MAX_SPACE:
-                self._refuse(
-                    XML_LIMIT, f"there are more than {MAX_SPACE:,} characters of white space"
-                )
-            return
         line, column = self.parser.CurrentLineNumber, self.parser.CurrentColumnNumber + 1
-        if (line, column) != place.expected:
-            if place.marks is None:
-                place.marks = []
-            place.marks.append((place.length, line, column))
-        place.length += len(text)
+        if line != text.line or column != text.column:
+            text.marks.append((text.length, line, column))
+        text.parts.append(characters)
+        text.length += len(characters)
         # expat gives each line end as a chunk of its own
-        place.expected = (line + 1, 1) if text == "\n" else (line, column + len(text))
+        if characters == "\n":
+            text.line, text.column = line + 1, 1
+        else:
+            text.line, text.column = line, column + len(characters)
+
+    def _namespace(self, _prefix: str | None, _uri: str | None) -> None:
+        self.namespaces = True
 
     def _entity_declaration(
         self,
