@@ -62,7 +62,7 @@ size_t pn_bag_encode(const pn_bag_t *bag, const void *marking, uint8_t *out, siz
 size_t pn_bag_decode(pn_ctx_t *cx, const pn_bag_t *bag, void *marking, const uint8_t *in, size_t length);
 void pn_bag_relocate(pn_ctx_t *cx, const pn_bag_t *bag, void *marking);
 
-/* The functions of one place for the table of the net: `stem`_count, _token, _put, _clear, _json over its bag. */
+/* The functions of one place for the table of the net: `stem`_count, _token, _put, _clear, _json, _encode, _decode over its bag. */
 #define PN_PLACE_FUNCTIONS(stem, bag)                                                                               \
     static uint64_t stem##_count(const void *marking)                                                               \
     {                                                                                                               \
@@ -84,6 +84,14 @@ void pn_bag_relocate(pn_ctx_t *cx, const pn_bag_t *bag, void *marking);
     static void stem##_json(const void *marking, pn_text_t *out)                                                    \
     {                                                                                                               \
         pn_bag_json(&(bag), marking, out);                                                                          \
+    }                                                                                                               \
+    static size_t stem##_encode(const void *marking, uint8_t *out, size_t room)                                     \
+    {                                                                                                               \
+        return pn_bag_encode(&(bag), marking, out, room);                                                           \
+    }                                                                                                               \
+    static size_t stem##_decode(pn_ctx_t *cx, void *marking, const uint8_t *in, size_t length)                      \
+    {                                                                                                               \
+        return pn_bag_decode(cx, &(bag), marking, in, length);                                                      \
     }
 
 /* Times as the context and the tokens hold them. */

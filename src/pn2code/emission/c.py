@@ -313,6 +313,8 @@ class _Emitter:
             "fire": fire.lines,
             "is_direct": is_direct,
             "uses_binding": "b->" in text,
+            "touched": ", ".join(f"{i}U" for i in self._effects.touched(t.index)),
+            "draws": not self._effects.is_pure((t.enumerate, t.fire)),
             "affected": ""
             if len(affected) == len(self._net.transitions)
             else ", ".join(f"{i}U" for i in affected),
@@ -429,6 +431,7 @@ class _Emitter:
             "places": [self._place(p) for p in net.places],
             "orders": list(self._orders.functions.values()),
             "transitions": [self._transition(t) for t in net.transitions],
+            "has_references": any(g.is_reference for g in net.globals),
             "has_arena_values": self._has_arena_values
             or any(g.is_reference or self._types.holds_reference(g.type) for g in net.globals),
         }

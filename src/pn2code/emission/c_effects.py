@@ -37,6 +37,10 @@ class Effects:
             if self._volatile[i] or places & self._changed[transition]
         )
 
+    def touched(self, transition: int) -> tuple[int, ...]:
+        """The places whose tokens an occurrence of this transition may change, in order."""
+        return tuple(sorted(self._changed[transition]))
+
     def _changed_by(self, net: ir.NetIR, t: ir.Transition) -> frozenset[int]:
         """The places whose tokens are others after the occurrence: what stays where it is does not count."""
         staying = {
