@@ -12,7 +12,7 @@ Typical use (the `link` and `check` stages of `pn2code.net`):
 from __future__ import annotations
 
 import sys
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Hashable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, field, replace
 from functools import partial
@@ -44,6 +44,7 @@ from pn2code.ml.parser import (
     parse_program,
 )
 from pn2code.ml.patterns import Patterns
+from pn2code.ml.repeats import Repeats
 from pn2code.ml.types import STRING, Type
 from pn2code.ml.used_files import UsedFiles
 
@@ -106,12 +107,14 @@ class Elaborator:
         self._inscriptions = Inscriptions(
             self._ctx, self._expressions, patterns, self._variable_scope, self._constants
         )
+        self._repeats = Repeats()
         self._colsets = Colsets(self._ctx, self._declare, self._plain, self._fold)
 
     # --- declarations
 
     def colset(self, spec: ColsetSpec) -> Colset | None:
         """Declares a colour set; None when it was reported to be wrong."""
+        self._repeats.clear()
         self._ctx.tainted = False
         colset, datatypes = self._colsets.declare(spec)
         self._made += datatypes
@@ -123,6 +126,7 @@ class Elaborator:
 
     def variables(self, names: Sequence[str], colset_name: str, origin: Origin) -> None:
         """`var names : colset_name`."""
+        self._repeats.clear()
         colset = self._ctx.colsets.get(colset_name)
         if colset_name not in self._ctx.colsets:
             self._ctx.errors += 1
@@ -183,6 +187,7 @@ class Elaborator:
                 break_modules(dec, self._ctx.top)
 
     def _declaration(self, text: SourceText, dec: s.Dec) -> None:
+        self._repeats.clear()
         resolved = resolve_declaration(dec, self._fixities, self._d)
         if resolved is None:
             self._break(declared_names(text, dec.span.start, dec.span.end), types_declared_by(dec))
@@ -227,6 +232,7 @@ class Elaborator:
 
     def _break(self, values: Sequence[str] | set[str], types: Sequence[str] | set[str]) -> None:
         """Names of a declaration with an error are known, but nothing is said about their uses."""
+        self._repeats.clear()
         for name in values:
             self._ctx.top.values[name] = BrokenEntry()
         for name in types:
@@ -372,6 +378,7 @@ class Elaborator:
             top.signatures, top.functors = kept.signatures, kept.functors
             self._d, self._ctx.d, self._ctx.errors = before
             self._fixities = fixities
+            self._repeats.clear()
 
     # --- inscriptions
 
@@ -404,7 +411,10 @@ class Elaborator:
                 return None
             return self._inscriptions.expression(text, exp, types, expected_name, declared or {})
 
-        return self._border(text, work)
+        if declared:
+            return self._border(text, work)
+        key = (text.text, text.origin.part, tuple(types), expected_name, output)
+        return self._once(key, text, work)
 
     def layered(self, text: SourceText, t: Type) -> tuple[core.Exp, core.Pat, core.Exp] | None:
         """`x as pattern` on an input arc: the token x, the pattern that binds, and the condition that x matches it.
@@ -426,7 +436,8 @@ class Elaborator:
 
     def guard(self, text: SourceText) -> tuple[core.Exp, ...] | None:
         """`[g1, g2]`, `g1, g2` or one expression -> conjuncts of type bool; empty or `[]` -> ()."""
-        return self._border(text, lambda: self._inscriptions.guard(text, self._fixities))
+        key = (text.text, "guard")
+        return self._once(key, text, lambda: self._inscriptions.guard(text, self._fixities))
 
     def code_segment(self, text: SourceText) -> TypedCode | None:
         """`input (..); output (..); action exp;`."""
@@ -435,7 +446,8 @@ class Elaborator:
     def delay(self, text: SourceText, real_time: bool = False) -> core.Exp | None:
         """`@+ e` (int; the type is int) or `@++ t` (the type is IntInf.int or real): the delay expression."""
         del real_time  # the clock is known from the beginning
-        return self._border(text, lambda: self._inscriptions.delay(text, self._fixities))
+        key = (text.text, "delay")
+        return self._once(key, text, lambda: self._inscriptions.delay(text, self._fixities))
 
     def priority(self, text: SourceText) -> int | None:
         """The constant value of a priority inscription."""
@@ -460,6 +472,17 @@ class Elaborator:
 
     def _fold(self, exp: core.Exp) -> Constant | None:
         return fold(exp, self._constants)
+
+    def _once(self, key: Hashable, text: SourceText, work: Callable[[], T | None]) -> T | None:
+        """What `work` makes of a text, or what it made of the same text elsewhere, if there was nothing to say."""
+        found: T | None = self._repeats.get(key, text)
+        if found is not None:
+            return found
+        before = len(self._d.items)
+        made = self._border(text, work)
+        if made is not None and len(self._d.items) == before:
+            self._repeats.keep(key, text, made)
+        return made
 
     def _border(self, text: SourceText, work: Callable[[], T]) -> T | None:
         """Runs one text's elaboration; leaves a clean state behind, and reports texts beyond Python's stack."""
