@@ -99,7 +99,7 @@ static pn_time_t later(pn_ctx_t *cx, bool is_real_time, pn_time_t time, pn_time_
     if (is_real_time) {
         sum.real = time.real + delay.real;
     } else {
-        sum.integer = pn_inf_add(cx, time.integer, delay.integer);
+        sum.integer = pn_time_sum(cx, time.integer, delay.integer);
     }
     return sum;
 }

@@ -122,14 +122,14 @@ static void test_numbers(void)
     CHECK(pn_int_div(&cx, 1, 0) == 0);
     CHECK(cx.error == PN_ERR_OVERFLOW); /* the first error stays */
     pn_clear_error(&cx);
-    CHECK(pn_inf_mul(&cx, INT64_MIN, -1) == 0);
+    CHECK(pn_time_sum(&cx, INT64_MAX, 1) == 0);
     CHECK(cx.error == PN_ERR_LARGE);
     CHECK(!pn_is_exception(&cx));
     pn_clear_error(&cx);
     CHECK(pn_wide_mul(&cx, INT64_MIN, -1) == 0);
     CHECK(cx.error == PN_ERR_OVERFLOW);
     pn_clear_error(&cx);
-    CHECK(pn_inf_mul(&cx, INT64_C(3037000499), INT64_C(3037000499)) == INT64_C(9223372030926249001));
+    CHECK(pn_wide_mul(&cx, INT64_C(3037000499), INT64_C(3037000499)) == INT64_C(9223372030926249001));
     CHECK(pn_ok(&cx));
     CHECK(pn_real_floor(&cx, 1e300) == 0);
     CHECK(cx.error == PN_ERR_OVERFLOW);

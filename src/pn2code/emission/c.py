@@ -12,7 +12,13 @@ from collections.abc import Callable, Iterable
 from pn2code.diagnostics import Origin
 from pn2code.emission import c_places, c_tables
 from pn2code.emission.c_effects import Effects, reaches
-from pn2code.emission.c_expressions import Expressions, Types, c_integer, op_needs_table
+from pn2code.emission.c_expressions import (
+    Expressions,
+    Types,
+    c_big_initialiser,
+    c_integer,
+    op_needs_table,
+)
 from pn2code.emission.c_firing import DirectFiring
 from pn2code.emission.c_statements import Statements, used_locals, uses_context, wrap
 from pn2code.emission.environment import c_comment, c_float, c_string, render
@@ -27,6 +33,7 @@ _MARK = "\x01"
 _LEAVES = {
     Rep.BOOL: "PN_LEAF_BOOL",
     Rep.INT: "PN_LEAF_INT",
+    Rep.BIG: "PN_LEAF_INT",
     Rep.REAL: "PN_LEAF_REAL",
     Rep.STRING: "PN_LEAF_STRING",
     Rep.ENUM: "PN_LEAF_ENUM",
@@ -165,6 +172,12 @@ class _Emitter:
             value = g.setup[0].value
             if isinstance(value, ir.Const) and value.type.rep in (Rep.INT, Rep.REAL, Rep.BOOL):
                 constant = x.text(value)
+            elif (
+                isinstance(value, ir.Const)
+                and isinstance(value.value, int)
+                and value.type == ir.BIG
+            ):
+                constant = c_big_initialiser(value.value)
         return {
             "mark": self._block(f"val {g.name}", g.hint, "declaration", g.origin),
             "title": _where(g.origin),
@@ -172,9 +185,7 @@ class _Emitter:
             "type": self._types.name(g.type),
             "name": name,
             "constant": constant,
-            "zero": self._types.zero(g.type)
-            if g.type.rep not in (Rep.STRUCT, Rep.UNION, Rep.STRING)
-            else ('{ "", 0U }' if g.type.rep is Rep.STRING else "{ 0 }"),
+            "zero": _initial(self._types.zero(g.type), g.type.rep),
             "is_root": g.is_reference or self._types.holds_reference(g.type),
             "setup": [] if constant else s.lines,
             "has_locals": any(
@@ -502,6 +513,15 @@ def _comment_lines(source: str) -> list[str]:
 def _indented(line: str) -> str:
     text = line.lstrip()
     return " " * (len(line) - len(text)) + c_comment(text)
+
+
+def _initial(zero: str, rep: Rep) -> str:
+    """The harmless value as the initialiser of a static variable."""
+    if rep is Rep.STRING:
+        return '{ "", 0U }'
+    if rep is Rep.BIG:
+        return c_big_initialiser(0)
+    return "{ 0 }" if rep in (Rep.STRUCT, Rep.UNION) else zero
 
 
 __all__ = ["emit"]

@@ -17,6 +17,7 @@ _SCALARS = {
     Rep.UNIT: "pn_unit_t",
     Rep.BOOL: "bool",
     Rep.INT: "int64_t",
+    Rep.BIG: "pn_big_t",
     Rep.REAL: "double",
     Rep.STRING: "pn_string_t",
     Rep.CHAR: "uint8_t",
@@ -47,6 +48,25 @@ def c_integer(value: int) -> str:
     if value == -(2**63):
         return "INT64_MIN"
     return f"INT64_C({value})" if value >= 0 else f"-INT64_C({-value})"
+
+
+def big_bytes(value: int) -> bytes:
+    """An integer beyond 64 bits as pn_big.h keeps it."""
+    count = (abs(value).bit_length() + 31) // 32
+    header = 2 * count + (value < 0)
+    return header.to_bytes(4, "little") + abs(value).to_bytes(4 * count, "little")
+
+
+def c_big(value: int) -> str:
+    """A pn_big_t."""
+    if -(2**63) <= value < 2**63:
+        return f"PN_BIG({c_integer(value)})"
+    return f"PN_BIG_BYTES({c_bytes(big_bytes(value).decode('latin-1'))})"
+
+
+def c_big_initialiser(value: int) -> str:
+    """A pn_big_t that a static variable starts with."""
+    return c_big(value).replace("PN_BIG", "PN_BIG_INIT", 1)
 
 
 @dataclass(frozen=True, slots=True)
@@ -82,6 +102,8 @@ class Types:
                 return "false"
             case Rep.INT:
                 return "0"
+            case Rep.BIG:
+                return "PN_BIG(0)"
             case Rep.REAL:
                 return "0.0"
             case Rep.STRING:
@@ -104,7 +126,7 @@ class Types:
         definition = self.definitions[t.name]
         if isinstance(definition, ir.StructDef):
             first = definition.fields[0][1].rep
-            if first in (Rep.STRUCT, Rep.UNION, Rep.STRING, Rep.TIME):
+            if first in (Rep.STRUCT, Rep.UNION, Rep.STRING, Rep.TIME, Rep.BIG):
                 return ", ".join(f".{label(x)} = {self.zero(f)}" for x, f in definition.fields)
         return "0"
 
@@ -270,6 +292,9 @@ class Expressions:
                 return f"PN_STRING({c_bytes(str(e.value))})", _POSTFIX
             case Rep.CHAR:
                 return f"{e.value}U", _PRIMARY
+            case Rep.BIG:
+                assert isinstance(e.value, int)
+                return c_big(e.value), _POSTFIX
             case _:
                 assert isinstance(e.value, int)
                 text = c_integer(e.value)
@@ -430,6 +455,8 @@ class Expressions:
                 return f"{x} {operator} {y}", c_ops.EQUALITY
             case Rep.REAL:
                 return f"{negation}pn_real_equal({self.text(a)}, {self.text(b)})", precedence
+            case Rep.BIG:
+                return f"{negation}pn_big_equal({self.text(a)}, {self.text(b)})", precedence
             case Rep.STRING:
                 return f"{negation}pn_string_equal({self.text(a)}, {self.text(b)})", precedence
             case Rep.UNIT:

@@ -74,7 +74,7 @@ OPS: dict[str, Form] = {
     "Real.!=": Call("!pn_real_equal"),
     "Real.rem": Call("fmod"),
     "Real.fromInt": Call("pn_int_to_real"),
-    "Real.fromLargeInt": Call("pn_int_to_real"),
+    "Real.fromLargeInt": Call("pn_big_to_real"),
     "Real.realFloor": Call("floor"),
     "Real.realCeil": Call("ceil"),
     "Real.realRound": Call("pn_real_round_even"),
@@ -100,12 +100,21 @@ OPS: dict[str, Form] = {
     "Char.chr": Call("pn_char_of_int", context=True),
     "Char.compare": Call("pn_int_order", order=True),
     "Int.toString": Call("pn_string_of_int", context=True),
-    "IntInf.toString": Call("pn_string_of_int", context=True),
-    "Int.fromLarge": Call("pn_int_checked", context=True),
-    "IntInf.toInt": Call("pn_int_checked", context=True),
+    "IntInf.toString": Call("pn_big_string", context=True),
+    "Int.fromLarge": Call("pn_big_to_int", context=True),
+    "IntInf.toInt": Call("pn_big_to_int", context=True),
     "TextIO.print": Call("pn_print", context=True),
-    "Time.step": Call("pn_step", context=True),
+    "Time.step": Call("pn_big_step", context=True),
     "time.same": Call(""),
+    "time.+": Call("pn_time_sum", context=True),
+    "time.to_large": Call("pn_big_of"),
+    "time.of_large": Call("pn_big_to_time", context=True),
+    "Int.toLarge": Call("pn_big_of"),
+    "IntInf.fromInt": Call("pn_big_of"),
+    "IntInf.compare": Call("pn_big_order", order=True),
+    "IntInf.min": Call("pn_big_min"),
+    "IntInf.max": Call("pn_big_max"),
+    "IntInf.sign": Call("pn_big_sign"),
     "List.null": Prefix("IS_NIL"),
     "List.length": Call("pn_list_length"),
     "Ms.size": Call("pn_list_length"),
@@ -155,20 +164,21 @@ OPS: dict[str, Form] = {
 }
 """Name -> form, for what the loops below do not add."""
 
-for _structure, _prefix in (("Int", "pn_int"), ("IntInf", "pn_inf")):
+for _structure, _prefix in (("Int", "pn_int"), ("IntInf", "pn_big")):
     for _name, _function in (
         ("+", "add"), ("-", "sub"), ("*", "mul"), ("~", "neg"), ("abs", "abs"), ("div", "div"), ("mod", "mod"),
         ("quot", "quot"), ("rem", "rem"),
     ):  # fmt: skip
         OPS[f"{_structure}.{_name}"] = Call(f"{_prefix}_{_function}", context=True)
-    for _name in ("min", "max", "sign"):
-        OPS[f"{_structure}.{_name}"] = Call(f"pn_int_{_name}")
-    OPS[f"{_structure}.compare"] = Call("pn_int_order", order=True)
-for _structure in ("Int", "IntInf", "Real", "Char"):
+for _name in ("min", "max", "sign"):
+    OPS[f"Int.{_name}"] = Call(f"pn_int_{_name}")
+OPS["Int.compare"] = Call("pn_int_order", order=True)
+for _structure in ("Int", "Real", "Char"):
     for _name in ("<", "<=", ">", ">="):
         OPS[f"{_structure}.{_name}"] = Infix(_name, RELATION)
 for _name in ("<", "<=", ">", ">="):
     OPS[f"String.{_name}"] = Compared("pn_string_order", _name)
+    OPS[f"IntInf.{_name}"] = Compared("pn_big_order", _name)
 for _name in (
     "sqrt",
     "sin",
@@ -212,12 +222,12 @@ for _name in (
 
 OPS |= {
     "prim.stop": Call("pn_stop", context=True),
-    "prim.and": Call("pn_bits_and"),
-    "prim.or": Call("pn_bits_or"),
-    "prim.xor": Call("pn_bits_xor"),
-    "prim.not": Call("pn_bits_not"),
-    "prim.shift_left": Call("pn_shift_left", context=True),
-    "prim.shift_right": Call("pn_shift_right"),
+    "prim.and": Call("pn_big_and", context=True),
+    "prim.or": Call("pn_big_or", context=True),
+    "prim.xor": Call("pn_big_xor", context=True),
+    "prim.not": Call("pn_big_not", context=True),
+    "prim.shift_left": Call("pn_big_shift_left", context=True),
+    "prim.shift_right": Call("pn_big_shift_right", context=True),
     "prim.real_exponent": Call("pn_real_exponent"),
     "prim.real_scale": Call("pn_real_scale"),
     "prim.real_next": Call("pn_real_next"),
@@ -225,7 +235,7 @@ OPS |= {
     "prim.real_sign_bit": Call("pn_real_sign_bit"),
     "prim.real_copy_sign": Call("pn_real_copy_sign"),
     "prim.real_is_normal": Call("pn_real_is_normal"),
-    "prim.real_to_large": Call("pn_inf_trunc", context=True),
+    "prim.real_to_large": Call("pn_big_of_real", context=True),
     "prim.real_format": Call("pn_real_styled", context=True),
     "prim.real_read": Call("pn_real_read"),
     "prim.do_read_accept": Call("pn_read_accept"),
@@ -233,7 +243,7 @@ OPS |= {
     "prim.do_read_number": Call("pn_read_number", context=True),
     "prim.do_read_is_done": Call("pn_read_is_done"),
     "prim.do_read_fail": Call("pn_read_fail", context=True),
-    "prim.do_random_below": Call("pn_random_below", context=True),
+    "prim.do_random_below": Call("pn_big_random_below", context=True),
     "prim.do_random_unit": Call("pn_random_unit", context=True),
     "prim.do_file_problem_name": Call("pn_file_problem_name"),
     "prim.do_file_has_failed": Call("pn_file_has_failed"),
@@ -254,10 +264,10 @@ WIDE: dict[str, Form] = {
             ("+", "add"), ("-", "sub"), ("*", "mul"), ("~", "neg"), ("abs", "abs"), ("div", "div"), ("quot", "quot"),
         )
     },
-    "Int.mod": Call("pn_inf_mod", context=True),
-    "Int.rem": Call("pn_inf_rem", context=True),
-    "Int.fromLarge": Call(""),
-    "IntInf.toInt": Call(""),
+    "Int.mod": Call("pn_wide_mod", context=True),
+    "Int.rem": Call("pn_wide_rem", context=True),
+    "Int.fromLarge": Call("pn_big_to_wide", context=True),
+    "IntInf.toInt": Call("pn_big_to_wide", context=True),
     **{f"Real.{_name}": Call(f"pn_wide_{_name}", context=True) for _name in ("floor", "ceil", "round", "trunc")},
 }  # fmt: skip
 """Name -> form where `int` has 64 bits."""

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from pn2code.emission.c_expressions import Types, c_integer
+from pn2code.emission.c_expressions import Types, c_big_initialiser, c_integer
 from pn2code.emission.environment import c_comment, c_float, c_string
 from pn2code.emission.names import label
 from pn2code.lowering import ir
@@ -12,6 +12,7 @@ _KINDS = {
     Rep.UNIT: "PN_KIND_UNIT",
     Rep.BOOL: "PN_KIND_BOOL",
     Rep.INT: "PN_KIND_INT",
+    Rep.BIG: "PN_KIND_BIG",
     Rep.TIME: "PN_KIND_INT",
     Rep.REAL: "PN_KIND_REAL",
     Rep.STRING: "PN_KIND_STRING",
@@ -174,6 +175,11 @@ class Tables:
                 low = c_float(float(d.low)) if d.low is not None else "-(double)INFINITY"
                 high = c_float(float(d.high)) if d.high is not None else "(double)INFINITY"
                 members += [f".real_low = {low}", f".real_high = {high}"]
+            elif d.type.rep is Rep.BIG:
+                assert d.low is not None
+                assert d.high is not None
+                low, high = (c_big_initialiser(int(x)) for x in (d.low, d.high))
+                members += [f".big_low = {low}", f".big_high = {high}"]
             else:
                 low = c_integer(int(d.low)) if d.low is not None else "INT64_MIN"
                 high = c_integer(int(d.high)) if d.high is not None else "INT64_MAX"

@@ -10,7 +10,15 @@ from collections.abc import Callable
 from typing import TYPE_CHECKING
 
 from pn2code.diagnostics import Span
-from pn2code.lowering import colset_functions, exceptions, higher_order, ir, prelude, references
+from pn2code.lowering import (
+    clock,
+    colset_functions,
+    exceptions,
+    higher_order,
+    ir,
+    prelude,
+    references,
+)
 from pn2code.lowering.codes import (
     UNSUPPORTED_BUILTIN,
     UnsupportedError,
@@ -67,8 +75,6 @@ SAME = frozenset(
         "Int.fromInt",
         "IntInf.toLarge",
         "IntInf.fromLarge",
-        "IntInf.fromInt",
-        "Int.toLarge",
     ]
 )
 """Built-in functions that give back their argument, as it is represented."""
@@ -89,9 +95,6 @@ class Builtins:
 
     def __init__(self, real_time: bool) -> None:
         self._real_time = real_time
-
-    def _clock(self) -> IrType:
-        return ir.REAL if self._real_time else ir.INT
 
     @staticmethod
     def is_primitive(name: str) -> bool:
@@ -193,7 +196,7 @@ class Builtins:
         op = name.split(".")[1]
         structure = "Real" if self._real_time else "IntInf"
         if op == "fromInt":
-            return "Real.fromInt" if self._real_time else "time.same"
+            return "Real.fromInt" if self._real_time else "IntInf.fromInt"
         if op == "fromIntInf":
             return "Real.fromLargeInt" if self._real_time else "time.same"
         if op == "toReal":
@@ -254,7 +257,9 @@ class Builtins:
             return colset_functions.base_value(body, colset, at)
         if name == "timed.base":
             value = colset_functions.base_value(body, colset, at)
-            return ir.MakeStruct(t, (("value", value), ("stamp", ir.Now(self._clock()))))
+            return ir.MakeStruct(
+                t, (("value", value), ("stamp", ir.Now(clock.clock(self._real_time))))
+            )
         if name in ("col", "ran"):
             local = body.local(name, t)
             operands = (body.code(arguments[0]),) if name == "col" else ()
@@ -349,7 +354,7 @@ def _inequality(body: Body, arguments: tuple[Val, ...], result: Type, at: Span) 
 
 
 def _now(body: Body, arguments: tuple[Val, ...], result: Type, at: Span) -> Val:
-    return ir.Now(body.program.types.lower(result))
+    return clock.now(body.program.real_time)
 
 
 def _compose(body: Body, arguments: tuple[Val, ...], result: Type, at: Span) -> Val:
@@ -484,26 +489,18 @@ def _stamped(*, delayed: bool) -> Callable[[Body, tuple[Val, ...], Type, Span], 
     def make(body: Body, arguments: tuple[Val, ...], result: Type, at: Span) -> Val:
         value, time = (body.code(v, at) for v in components(body, arguments[0], 2))
         t = body.program.types.lower(result)
-        stamp = after_now(body, time) if delayed else time
+        make_stamp = clock.after_now if delayed else clock.in_clock
+        stamp = make_stamp(body.program.real_time, time)
         return ir.MakeStruct(t, (("value", value), ("stamp", stamp)))
 
     return make
-
-
-def after_now(body: Body, delay: Ir) -> Ir:
-    """Model time plus a delay, in the type of model time."""
-    if body.program.real_time:
-        if delay.type == ir.INT:
-            delay = ir.Op("Real.fromInt", (delay,), ir.REAL)
-        return ir.Op("Real.+", (ir.Now(ir.REAL), delay), ir.REAL)
-    return ir.Op("IntInf.+", (ir.Now(ir.INT), delay), ir.INT)
 
 
 def _with_stamps(body: Body, arguments: tuple[Val, ...], result: Type, at: Span) -> Val:
     """`ms @+ d`."""
     multiset, delay = (body.code(v, at) for v in components(body, arguments[0], 2))
     t = body.program.types.lower(result)
-    stamp = body.atomic(after_now(body, delay), "stamp")
+    stamp = body.atomic(clock.after_now(body.program.real_time, delay), "stamp")
     timed = body.element(t)
 
     def stamped(value: Ir) -> Val:
@@ -538,7 +535,7 @@ def _bound(value_for: Callable[[int], int]) -> Callable[[Body, tuple[Val, ...], 
 def _timed_part(label: str) -> Callable[[Body, tuple[Val, ...], Type, Span], Val]:
     def part(body: Body, arguments: tuple[Val, ...], result: Type, at: Span) -> Val:
         token = body.atomic(body.code(arguments[0], at), "token")
-        return ir.Member(token, label, body.program.types.lower(result))
+        return clock.timed_part(token, label, body.program.types.lower(result))
 
     return part
 

@@ -18,13 +18,14 @@ _TOTAL_NAMES = """
     IntInf.compare Int.toString IntInf.toString List.null List.length List.@ List.rev List.revAppend List.concat
     List.mem List.rm List.rmall List.contains List.contains_all List.union List.remdupl List.intersect Ms.` Ms.++
     Ms.size Ms.** Ms.== Ms.!= Ms.<< Ms.<<= Ms.>> Ms.>>= Ms.cf Time.step Colset.lt Colset.cmp Colset.mkstr
-    exn.name time.same    Int.min Int.max Int.sign IntInf.min IntInf.max IntInf.sign
+    exn.name time.same time.to_large IntInf.fromInt Int.toLarge IntInf.+ IntInf.- IntInf.* IntInf.~ IntInf.abs
+     Int.min Int.max Int.sign IntInf.min IntInf.max IntInf.sign
 """
 _TOTAL = frozenset(_TOTAL_NAMES.split())
 """Operations that always give a value (memory apart)."""
 _TOTAL_STRUCTURES = ("Bool.", "Math.", "Real.", "Char.is", "Char.to")
 _RAISING = frozenset(f"Real.{x}" for x in ("floor", "ceil", "round", "trunc", "sign", "compare"))
-_OVERFLOWING = frozenset(f"{s}.{x}" for s in ("Int", "IntInf") for x in ("+", "-", "*", "~", "abs"))
+_OVERFLOWING = frozenset(f"Int.{x}" for x in ("+", "-", "*", "~", "abs"))
 
 
 def _is_total(name: str) -> bool:

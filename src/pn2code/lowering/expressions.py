@@ -55,7 +55,9 @@ class Body(Branching):
     def exp(self, e: core.Exp, env: Env) -> Val:
         """The value of an expression."""
         match e:
-            case core.Lit(value=int() as value) if abs(value) >= 2**63:
+            case core.Lit(value=int() as value) if abs(value) >= 2**63 and (
+                self.representation(e.type) == ir.INT
+            ):
                 text = f"the integer {value} is beyond 64 bits"
                 self.emit(ir.Do(ir.Op("prim.stop", (ir.Const(text, ir.STRING),), ir.UNIT)))
                 return self.zero(ir.INT)

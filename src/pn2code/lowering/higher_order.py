@@ -107,10 +107,37 @@ def filter_values(body: Body, values: Ir, test: Callable[[Ir], Ir]) -> Ir:
 
 
 def sort_values(body: Body, values: Ir, table: str) -> Ir:
-    """The elements in the order of a colour set, one of each."""
-    return _insertion_sort(
-        body, values, lambda a, b: ir.Op("Colset.lt", (a, b), ir.BOOL, table), unique=True
-    )
+    """The elements in the order of a colour set, one of each: each goes in front of the first that is greater."""
+    in_order = _accumulator(body, values.type, "in_order")
+
+    def less(a: Ir, b: Ir) -> Ir:
+        return ir.Op("Colset.lt", (a, b), ir.BOOL, table)
+
+    def insert(x: Ir) -> None:
+        out = _accumulator(body, values.type)
+        placed = body.local("placed", ir.BOOL)
+        body.emit(ir.Let(placed, ir.Const(False, ir.BOOL), mutable=True))
+        is_open = negation(ir.Use(placed))
+
+        def pass_by(y: Ir) -> None:
+            comes_first = ir.Op("andalso", (is_open, body.atomic(less(x, y), "is_less")), ir.BOOL)
+            with body.block() as then:
+                _push(body, out, x)
+                body.emit(ir.Assign(placed, ir.Const(True, ir.BOOL)))
+            body.emit(ir.If(comes_first, tuple(then), ()))
+            is_same = ir.Op("andalso", (is_open, negation(less(y, x))), ir.BOOL)
+            leave_out = (ir.Assign(placed, ir.Const(True, ir.BOOL)),)
+            body.emit(ir.If(is_same, leave_out, ()))
+            _push(body, out, y)
+
+        _loop(body, ir.Use(in_order), pass_by)
+        with body.block() as then:
+            _push(body, out, x)
+        body.emit(ir.If(is_open, tuple(then), ()))
+        body.emit(ir.Assign(in_order, _reversed(body, out)))
+
+    _loop(body, values, insert)
+    return ir.Use(in_order)
 
 
 def _filter(body: Body, arguments: tuple[Val, ...], result: Type, at: Span) -> Val:
@@ -250,55 +277,6 @@ def _flat_map(body: Body, arguments: tuple[Val, ...], result: Type, at: Span) ->
     return _reversed(body, out)
 
 
-def _insertion_sort(body: Body, values: Ir, less: Callable[[Ir, Ir], Ir], *, unique: bool) -> Ir:
-    """Each element goes in front of the first that is greater; equal ones keep their order, or are left out."""
-    in_order = _accumulator(body, values.type, "in_order")
-
-    def insert(x: Ir) -> None:
-        out = _accumulator(body, values.type)
-        placed = body.local("placed", ir.BOOL)
-        body.emit(ir.Let(placed, ir.Const(False, ir.BOOL), mutable=True))
-        is_open = negation(ir.Use(placed))
-
-        def pass_by(y: Ir) -> None:
-            comes_first = ir.Op("andalso", (is_open, body.atomic(less(x, y), "is_less")), ir.BOOL)
-            with body.block() as then:
-                _push(body, out, x)
-                body.emit(ir.Assign(placed, ir.Const(True, ir.BOOL)))
-            body.emit(ir.If(comes_first, tuple(then), ()))
-            if unique:
-                is_same = ir.Op("andalso", (is_open, negation(less(y, x))), ir.BOOL)
-                leave_out = (ir.Assign(placed, ir.Const(True, ir.BOOL)),)
-                body.emit(ir.If(is_same, leave_out, ()))
-            _push(body, out, y)
-
-        _loop(body, ir.Use(in_order), pass_by)
-        with body.block() as then:
-            _push(body, out, x)
-        body.emit(ir.If(is_open, tuple(then), ()))
-        body.emit(ir.Assign(in_order, _reversed(body, out)))
-
-    _loop(body, values, insert)
-    return ir.Use(in_order)
-
-
-def _sorting(*, unique: bool) -> Special:
-    def sort(body: Body, arguments: tuple[Val, ...], result: Type, at: Span) -> Val:
-        function, values = arguments
-
-        def less(a: Ir, b: Ir) -> Ir:
-            pair = RecordVal({"1": a, "2": b}, argument_type(body.program, function))
-            return _test_pair(body, function, pair, at)
-
-        return _insertion_sort(body, body.code(values, at), less, unique=unique)
-
-    return sort
-
-
-def _test_pair(body: Body, function: Val, pair: RecordVal, at: Span) -> Ir:
-    return body.code(body.apply(function, pair, BOOL, at))
-
-
 def _option_map(body: Body, arguments: tuple[Val, ...], result: Type, at: Span) -> Val:
     f, option = arguments
     t = body.program.types.lower(result)
@@ -332,9 +310,6 @@ FUNCTIONS: dict[str, Special] = {
     "List.mapPartial": _map_partial,
     "List.fmap": _flat_map,
     "Ms.ext_ms": _flat_map,
-    "List.sort": _sorting(unique=False),
-    "List.unique_sort": _sorting(unique=True),
-    "Ms.sort_ms": _sorting(unique=False),
     "Option.map": _option_map,
 }
 """Full name -> how it is lowered."""

@@ -8,7 +8,8 @@ by element.
 from __future__ import annotations
 
 from pn2code.lowering import ir
-from pn2code.lowering.builtins import after_now, components
+from pn2code.lowering.builtins import components
+from pn2code.lowering.clock import after_now, clock, in_clock, plus
 from pn2code.lowering.expressions import Body
 from pn2code.lowering.ir import Ir
 from pn2code.lowering.values import Env
@@ -96,17 +97,15 @@ class Putter:
                 argument=core.RecordExp(fields=((_, v), (_, d))),
             ):
                 value = body.ir(v, env)
-                time = body.ir(d, env)
-                self._token(
-                    ONE, value, self._shifted(time if name == "Time.@" else after_now(body, time))
-                )
+                stamp_of = in_clock if name == "Time.@" else after_now
+                stamp = stamp_of(body.program.real_time, body.ir(d, env))
+                self._token(ONE, value, self._shifted(stamp))
             case _:
                 token = body.atomic(body.ir(exp, env), "token")
                 definition = body.program.types.definition(token.type)
                 assert isinstance(definition, ir.StructDef)
                 inner = dict(definition.fields)["value"]
-                clock = ir.REAL if body.program.real_time else ir.INT
-                own = ir.Member(token, "stamp", clock)
+                own = ir.Member(token, "stamp", clock(body.program.real_time))
                 self._token(ONE, ir.Member(token, "value", inner), self._shifted(own))
 
     def _timed_multiset(self, exp: core.Exp) -> None:
@@ -122,7 +121,9 @@ class Putter:
                 function=core.Builtin(name="Time.@+" | "Time.@++"),
                 argument=core.RecordExp(fields=((_, ms), (_, d))),
             ):
-                self._multiset(ms, self._shifted(after_now(body, body.ir(d, env))))
+                self._multiset(
+                    ms, self._shifted(after_now(body.program.real_time, body.ir(d, env)))
+                )
             case core.Apply(
                 function=core.Builtin(name="Ms.`"), argument=core.RecordExp(fields=((_, n), (_, v)))
             ) if (
@@ -132,7 +133,8 @@ class Putter:
             ):
                 value, time = components(body, body.exp(v.argument, env), 2)
                 count = body.ir(n, env)
-                self._token(count, body.code(value), self._shifted(body.code(time)))
+                stamp = in_clock(body.program.real_time, body.code(time))
+                self._token(count, body.code(value), self._shifted(stamp))
             case core.ListExp(items=()):
                 pass
             case core.If():
@@ -151,10 +153,3 @@ class Putter:
 
     def _shifted(self, stamp: Ir) -> Ir:
         return stamp if self._delay is None else plus(stamp, self._delay)
-
-
-def plus(a: Ir, b: Ir) -> Ir:
-    """The sum of two times."""
-    if isinstance(b, ir.Const) and b.value == 0:
-        return a
-    return ir.Op("Real.+" if a.type == ir.REAL else "IntInf.+", (a, b), a.type)

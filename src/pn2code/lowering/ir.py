@@ -17,6 +17,7 @@ from dataclasses import field
 from pn2code.diagnostics import NOWHERE, Origin
 from pn2code.frozen import frozen
 from pn2code.lowering.ir_types import (
+    BIG,
     BOOL,
     CHAR,
     INT,
@@ -37,6 +38,7 @@ from pn2code.lowering.ir_types import (
 )
 
 __all__ = [  # the types, which are at home in ir_types
+    "BIG",
     "BOOL",
     "CHAR",
     "Definition",

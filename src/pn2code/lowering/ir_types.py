@@ -14,6 +14,7 @@ class Rep(Enum):
     UNIT = "unit"
     BOOL = "bool"
     INT = "int"
+    BIG = "big"
     REAL = "real"
     STRING = "string"
     CHAR = "char"
@@ -44,11 +45,13 @@ class IrType:
 UNIT = IrType(Rep.UNIT)
 BOOL = IrType(Rep.BOOL)
 INT = IrType(Rep.INT)
+BIG = IrType(Rep.BIG)
+"""`IntInf.int`: no limit."""
 REAL = IrType(Rep.REAL)
 STRING = IrType(Rep.STRING)
 CHAR = IrType(Rep.CHAR)
 TIME = IrType(Rep.TIME)
-"""A time stamp in a token (`pn_time_t`); expressions compute with INT or REAL."""
+"""A time stamp in a token (`pn_time_t`), computed as INT or REAL; in ML the former is a BIG."""
 
 
 @frozen

@@ -10,6 +10,7 @@ from dataclasses import dataclass, field
 
 from pn2code.diagnostics import Span
 from pn2code.lowering import ir
+from pn2code.lowering.clock import timed_part
 from pn2code.lowering.ir import Ir, IrType, Rep
 from pn2code.lowering.values import RecordVal, Val
 from pn2code.ml import core
@@ -66,7 +67,9 @@ class Matcher:
             case core.PAs(symbol=symbol, pattern=inner):
                 out.bindings.append((symbol, value))
                 self._match(inner, value, out)
-            case core.PLit(value=int() as number) if abs(number) >= 2**63:
+            case core.PLit(value=int() as number, type=t) if abs(number) >= 2**63 and (
+                self._owner.representation(t) == ir.INT
+            ):
                 out.conditions.append(ir.Const(False, ir.BOOL))
             case core.PLit():
                 code = self._owner.code(value)
@@ -100,7 +103,7 @@ class Matcher:
         elif constructor.data_type == "timed" and isinstance(pattern.argument, core.PRecord):
             # A timed token: its value and its stamp.
             for (_, inner), label in zip(pattern.argument.fields, ("value", "stamp"), strict=True):
-                part = ir.Member(value, label, self._owner.representation(inner.type))
+                part = timed_part(value, label, self._owner.representation(inner.type))
                 self._match(inner, part, out)
         elif t.rep is Rep.REF and pattern.argument is not None:
             contents = ir.Contents(value, self._owner.representation(pattern.argument.type))

@@ -11,10 +11,11 @@ from dataclasses import dataclass
 
 from pn2code.lowering import colset_functions, ir
 from pn2code.lowering.builtins import components, equal
+from pn2code.lowering.clock import clock, in_clock, plus
 from pn2code.lowering.codes import UNSUPPORTED_COLSET, UnsupportedError
 from pn2code.lowering.expressions import Body
 from pn2code.lowering.functions import Program
-from pn2code.lowering.inscriptions import Putter, plus
+from pn2code.lowering.inscriptions import Putter
 from pn2code.lowering.ir import Ir, Stmt
 from pn2code.lowering.matching import conjunction
 from pn2code.lowering.types import Types
@@ -68,26 +69,14 @@ def _table(program: Program, symbol: Symbol) -> str:
     return program.types.plain(program.types.lower(symbol.type))
 
 
-def clock(program: Program) -> ir.IrType:
-    """The type of model time."""
-    return ir.REAL if program.real_time else ir.INT
-
-
 def _limit(
     program: Program, body: Body, delay: core.Exp | None, env: Env, timed: bool
 ) -> Ir | None:
     """The latest stamp that a term of an input arc accepts."""
     if not timed:
         return None
-    now = ir.Now(clock(program))
-    return now if delay is None else plus(now, as_time(program, body.ir(delay, env)))
-
-
-def as_time(program: Program, code: Ir) -> Ir:
-    """A delay in the type of model time."""
-    if program.real_time and code.type == ir.INT:
-        return ir.Op("Real.fromInt", (code,), ir.REAL)
-    return code
+    now = ir.Now(clock(program.real_time))
+    return now if delay is None else plus(now, in_clock(program.real_time, body.ir(delay, env)))
 
 
 def take_terms(
@@ -441,14 +430,14 @@ def _firing(
     is_timed = any(net.places[a.place].colset.timed for a in t.arcs if a.kind in _PUTTING)
     if t.delay is not None and is_timed:
         body.emit(ir.Note(f"delay @+{t.delay.span.text}"))
-        delay = body.atomic(as_time(program, body.ir(t.delay, env)), "delay")
+        delay = body.atomic(in_clock(program.real_time, body.ir(t.delay, env)), "delay")
     for arc in t.arcs:
         if arc.kind in _PUTTING:
             assert arc.inscription is not None
             timed = net.places[arc.place].colset.timed
             stamp: Ir | None = None
             if timed:
-                now = ir.Now(clock(program))
+                now = ir.Now(clock(program.real_time))
                 stamp = now if delay is None else plus(now, delay)
             note = arc_note(net, arc)
             form = arc.inscription.form

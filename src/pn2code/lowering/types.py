@@ -22,7 +22,7 @@ from pn2code.ml.types import UNIT, TCon, TFun, TRecord, TVar, Type
 
 _SCALARS = {
     "int": ir.INT,
-    "IntInf.int": ir.INT,
+    "IntInf.int": ir.BIG,
     "real": ir.REAL,
     "string": ir.STRING,
     "char": ir.CHAR,
@@ -486,15 +486,16 @@ class Types:
         d = self.descriptors[key]
         if d.member or d.type.rep in (Rep.REAL, Rep.STRING, Rep.LIST):
             return False
-        if d.type.rep is Rep.INT:
-            return d.low is not None and d.high is not None
+        if d.type.rep in (Rep.INT, Rep.BIG):
+            bounds = (d.low, d.high)
+            return all(x is not None and (d.type == ir.INT or abs(x) < 2**63) for x in bounds)
         return all(self.is_small(part) for _, part in d.fields if part)
 
     def count(self, key: str) -> int:
         """The number of values of a small table."""
         d = self.descriptors[key]
         match d.type.rep:
-            case Rep.INT:
+            case Rep.INT | Rep.BIG:
                 return int(d.high or 0) - int(d.low or 0) + 1
             case Rep.BOOL:
                 return 2

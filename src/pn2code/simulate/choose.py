@@ -96,7 +96,7 @@ def _compiled(request: Request, d: Diagnostics) -> tuple[Outcome | None, bool]:
                 elif full.limit == "numbers":
                     d.error(
                         SIMULATOR_FAILED,
-                        "the net computes an `IntInf.int` beyond 64 bits",
+                        "a model time is beyond 64 bits",
                         Origin(request.net.file),
                         hint="`--engine reference` has numbers of any size",
                     )

@@ -11,3 +11,5 @@ fun Ms_mkstr_ms (text, less) ms =
             nil => "empty"
           | x :: rest => String.concatWith "++\n" (count (x, 1, rest, nil))
     end
+
+fun Ms_sort_ms less ms = sort less ms
