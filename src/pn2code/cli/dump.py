@@ -59,7 +59,7 @@ def stage_text(
     from pn2code.net import front
     from pn2code.net.dump import dump_document, dump_flat, dump_net
     from pn2code.net.link import link
-    from pn2code.reading.cpn import read
+    from pn2code.net.source import read
 
     found = locate(path, d)
     if found is None:
