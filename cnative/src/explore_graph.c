@@ -331,7 +331,7 @@ static void traces_json(ex_run_t *run, FILE *out)
         if (!is_dead(graph, node)) {
             continue;
         }
-        (void)snprintf(path, sizeof path, "%s/dead-%" PRIu32 ".trace.jsonl", run->options.trace_to, node + 1U);
+        (void)snprintf(path, sizeof path, "%s%" PRIu32 ".trace.jsonl", run->options.trace_to, node + 1U);
         const int64_t steps = ex_write_trace(run, graph, node, path);
         if (steps >= 0) {
             pn_text_t text;
