@@ -17,6 +17,7 @@ ALLOWED: dict[str, set[str]] = {
     "pnml": {"diagnostics", "ml", "reading"},
     "net": {"diagnostics", "ml", "pnml", "reading"},
     "semantics": {"diagnostics", "ml", "net"},
+    "structure": {"diagnostics", "ml", "net", "semantics"},
     "conformance": {"diagnostics", "ml", "net", "reading", "semantics"},
     "cell": {"diagnostics", "ml", "net"},
     "lowering": {"diagnostics", "ml", "net", "cell", "tdl"},
@@ -35,7 +36,7 @@ ALLOWED: dict[str, set[str]] = {
                  "parser_cache"},
     "__main__": {"cli"},
     "cli": {"diagnostics", "cell", "channels", "emission", "net", "pipeline", "run", "report", "semantics", "toolchain",
-            "robot", "tdl", "ml", "lowering", "reading", "drawing", "simulate", "monitors"},
+            "robot", "tdl", "ml", "lowering", "reading", "drawing", "simulate", "monitors", "structure"},
 }  # fmt: skip
 EVERYWHERE = {"frozen"}
 

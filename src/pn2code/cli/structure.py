@@ -1,0 +1,46 @@
+"""`pn2code structure`: what follows from the net itself, without its state space."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from pn2code.cli.nets import open_net
+from pn2code.cli.options import (
+    DEFAULT_INT_BITS,
+    Format,
+    FormatOption,
+    IntBitsOption,
+    JsonOption,
+    SetOption,
+    parse_values,
+)
+from pn2code.structure import analyse, report
+
+EPILOG = """Examples:
+
+  pn2code structure net.cpn
+
+  pn2code structure net.cpn --set n=10 --json
+"""
+
+
+def structure(
+    net: Annotated[Path, typer.Argument(help="A net, a cell.toml, or a folder with one.")],
+    as_json: JsonOption = False,
+    everything: Annotated[bool, typer.Option("--all", help="Long lists are not cut.")] = False,
+    settings: SetOption = [],  # noqa: B006 - typer reads the default only
+    int_bits: IntBitsOption = DEFAULT_INT_BITS,
+    form: FormatOption = Format.FULL,
+) -> None:
+    """Invariants, siphons, traps, bounds and classes of a net, from its structure alone."""
+    opened = open_net(net, parse_values(settings), form, int_bits=int_bits)
+    given = {entry.place for entry in opened.config.inputs} if opened.config else set()
+    analysis = analyse(opened.flat, storage=opened.storage, given=given)
+    if as_json:
+        typer.echo(json.dumps(report.as_json(analysis), indent=1))
+    else:
+        typer.echo(report.text(analysis, everything=everything))

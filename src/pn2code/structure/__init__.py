@@ -1,0 +1,12 @@
+"""Structural analysis: what follows from the net itself, without its state space.
+
+    analysis = analyse(flat)                 # everything, see `analysis`
+    bounds(flat)[place.index].bound          # proven bounds alone, for whoever packs markings
+
+Everything here is *sound*: what it claims holds in every reachable marking. It is not complete: where an inscription
+is beyond it, it says less. Docs: docs/structure.md.
+"""
+
+from pn2code.structure.analysis import Analysis, Limits, analyse, bounds
+
+__all__ = ["Analysis", "Limits", "analyse", "bounds"]

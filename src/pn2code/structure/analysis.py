@@ -1,0 +1,425 @@
+"""All of the structural analysis of a net, as one value.
+
+    analysis = analyse(flat)
+    analysis.p_invariants[0].weights       # place index -> weight
+    analysis.bounds[3].bound               # of place 3, with its proof
+
+`bounds(flat)` gives the bounds alone, in less time.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Mapping, Sequence
+from dataclasses import dataclass, field
+
+from pn2code.net.flat import FlatNet
+from pn2code.semantics.effects import Effects, outside
+from pn2code.semantics.evaluate import Evaluator
+from pn2code.semantics.game import Game, GameError
+from pn2code.semantics.multiset import MultiSet, TimedMultiSet
+from pn2code.structure import flows, siphons
+from pn2code.structure.bounds import MOST_PROGRAMS, PlaceBound, markable, place_bounds
+from pn2code.structure.classes import Graph, classes, components, graph
+from pn2code.structure.coloured import ColouredInvariants, coloured_invariants
+from pn2code.structure.skeleton import Skeleton, skeleton
+from pn2code.structure.symbolic import Symbolic
+
+
+@dataclass(frozen=True, slots=True)
+class Limits:
+    """Where the searches stop; they count work, so that the same net always gives the same answer.
+
+    Args:
+        flows: of the searches for invariants.
+        siphons: most minimal siphons, and traps.
+        siphon_work: see `siphons.minimal`.
+        programs: most linear programs for bounds.
+    """
+
+    flows: flows.Limits = field(default_factory=flows.Limits)
+    siphons: int = 500
+    siphon_work: int = 20_000
+    programs: int = MOST_PROGRAMS
+
+
+@dataclass(frozen=True, slots=True)
+class PInvariant:
+    """`sum of weight * tokens = constant`; None where the initial marking is not known."""
+
+    weights: Mapping[int, int]
+    constant: int | None
+
+
+@dataclass(frozen=True, slots=True)
+class TInvariant:
+    """If each of the modes (by index in `Skeleton.modes`) occurs so often, all places have as many tokens as before."""
+
+    weights: Mapping[int, int]
+
+
+@dataclass(frozen=True, slots=True)
+class Siphon:
+    """A minimal siphon.
+
+    Args:
+        places: of it.
+        marked: whether it has tokens in the initial marking.
+        trap: the largest trap inside it.
+        trap_is_marked: whether that has tokens at the start: then the siphon always has some.
+    """
+
+    places: frozenset[int]
+    marked: bool
+    trap: frozenset[int]
+    trap_is_marked: bool
+
+
+@dataclass(frozen=True, slots=True)
+class Elements:
+    """Places and transitions that stand out.
+
+    Args:
+        isolated_places, isolated_transitions: without any arc.
+        source_places: nothing puts tokens into them. sink_places: nothing takes tokens from them.
+        constant_places: they have arcs, but their number of tokens never changes.
+        never_marked: they have no token in any reachable marking.
+        source_transitions: they need no token. sink_transitions: they put none.
+        dead: transitions that never occur -> why.
+    """
+
+    isolated_places: tuple[int, ...]
+    isolated_transitions: tuple[int, ...]
+    source_places: tuple[int, ...]
+    sink_places: tuple[int, ...]
+    constant_places: tuple[int, ...]
+    never_marked: tuple[int, ...]
+    source_transitions: tuple[int, ...]
+    sink_transitions: tuple[int, ...]
+    dead: Mapping[int, str]
+
+
+@dataclass(frozen=True, slots=True)
+class Analysis:
+    """What the structure says.
+
+    Args:
+        skeleton: the net without colours.
+        evaluator: of its declarations; None if they raise an exception.
+        marking, initial: the initial marking and its numbers of tokens; None where it is not known.
+        unknown: why it is not known: place -> reason.
+        p_invariants: minimal semi-positive ones, of numbers of tokens.
+        p_complete: whether these are all.
+        p_basis: all invariants are integer combinations of these; None if the net is too large.
+        uncovered: places in no semi-positive P-invariant -> why, where that is known.
+        t_invariants, t_complete: minimal semi-positive T-invariants, over modes.
+        coloured: the coloured invariants.
+        siphons, siphons_complete: minimal siphons.
+        traps, traps_complete: minimal traps.
+        bounds: place -> its bound.
+        elements: what stands out.
+        classes: class -> whether the skeleton is of it.
+        components, strongly_connected: connected parts, and whether each is strongly connected.
+    """
+
+    skeleton: Skeleton
+    evaluator: Evaluator | None
+    marking: tuple[MultiSet | TimedMultiSet | None, ...]
+    initial: tuple[int | None, ...]
+    unknown: Mapping[int, str]
+    p_invariants: tuple[PInvariant, ...]
+    p_complete: bool
+    p_basis: tuple[PInvariant, ...] | None
+    uncovered: Mapping[int, str]
+    t_invariants: tuple[TInvariant, ...]
+    t_complete: bool
+    coloured: ColouredInvariants
+    siphons: tuple[Siphon, ...]
+    siphons_complete: bool
+    traps: tuple[frozenset[int], ...]
+    traps_complete: bool
+    bounds: Mapping[int, PlaceBound]
+    elements: Elements
+    classes: Mapping[str, bool | None]
+    components: int
+    strongly_connected: bool
+
+    @property
+    def net(self) -> FlatNet:
+        """The net."""
+        return self.skeleton.net
+
+    @property
+    def commoner(self) -> bool | None:
+        """Whether every minimal siphon contains a marked trap; None where not all of them are known."""
+        if not all(s.trap_is_marked for s in self.siphons):
+            return False
+        return True if self.siphons_complete else None
+
+
+@dataclass(frozen=True, slots=True)
+class _Start:
+    evaluator: Evaluator | None
+    marking: tuple[MultiSet | TimedMultiSet | None, ...]
+    unknown: dict[int, str]
+
+    @property
+    def initial(self) -> tuple[int | None, ...]:
+        return tuple(None if m is None else len(m) for m in self.marking)
+
+
+def analyse(
+    net: FlatNet,
+    limits: Limits | None = None,
+    *,
+    storage: Mapping[str, str] | None = None,
+    given: Collection[str] = (),
+) -> Analysis:
+    """Everything.
+
+    Args:
+        net: the net.
+        limits: of the searches.
+        storage: colour sets of reals that are stored in another way, as for `Game`.
+        given: names of places whose initial marking is given from outside: it is not known here.
+    """
+    limits = limits or Limits()
+    start = _start(net, storage or {}, given)
+    symbolic = Symbolic(net, start.evaluator)
+    skel = skeleton(net, symbolic)
+    initial = start.initial
+    p_flows = _p_flows(skel, limits)
+    everything = flows.basis(_without_resets(skel), limits.flows)
+    coloured = coloured_invariants(skel, symbolic, start.marking, bool(storage))
+    t_flows = _t_flows(skel, limits)
+    g = graph(net)
+    covered = {p for v in p_flows.vectors for p in v}
+    found, complete = _siphons(skel, initial, limits)
+    traps = siphons.minimal(
+        siphons.trap_rules(skel),
+        range(len(net.places)),
+        most=limits.siphons,
+        work=limits.siphon_work,
+    )
+    place_bound = place_bounds(
+        skel, initial, p_flows.vectors, coloured.found, programs=limits.programs
+    )
+    parts, strong = components(g, len(net.places))
+    t_covered = {skel.modes[k].transition for v in t_flows.vectors for k in v}
+    named: dict[str, bool | None] = dict(classes(skel, g))
+    named["conservative"] = _covers(len(covered), len(net.places), p_flows)
+    named["consistent"] = _covers(len(t_covered), len(net.transitions), t_flows)
+    return Analysis(
+        skeleton=skel,
+        evaluator=start.evaluator,
+        marking=start.marking,
+        initial=initial,
+        unknown=start.unknown,
+        p_invariants=tuple(PInvariant(v, _constant(v, initial)) for v in p_flows.vectors),
+        p_complete=p_flows.complete,
+        p_basis=None
+        if everything is None
+        else tuple(PInvariant(v, _constant(v, initial)) for v in everything),
+        uncovered={p.index: _why_not(p.index, skel) for p in net.places if p.index not in covered},
+        t_invariants=tuple(TInvariant(v) for v in t_flows.vectors),
+        t_complete=t_flows.complete,
+        coloured=coloured,
+        siphons=found,
+        siphons_complete=complete,
+        traps=traps.found,
+        traps_complete=traps.complete,
+        bounds=place_bound,
+        elements=_elements(skel, g, initial, place_bound),
+        classes=named,
+        components=parts,
+        strongly_connected=strong,
+    )
+
+
+def bounds(
+    net: FlatNet,
+    limits: Limits | None = None,
+    *,
+    storage: Mapping[str, str] | None = None,
+    given: Collection[str] = (),
+) -> dict[int, PlaceBound]:
+    """Place index -> what is proven of its number of tokens, with the proof. Arguments as for `analyse`."""
+    limits = limits or Limits()
+    start = _start(net, storage or {}, given)
+    symbolic = Symbolic(net, start.evaluator)
+    skel = skeleton(net, symbolic)
+    coloured = coloured_invariants(skel, symbolic, start.marking, bool(storage))
+    vectors = _p_flows(skel, limits).vectors
+    return place_bounds(skel, start.initial, vectors, coloured.found, programs=limits.programs)
+
+
+def _covers(covered: int, of: int, found: flows.Flows) -> bool | None:
+    if covered == of:
+        return True
+    return False if found.complete else None
+
+
+def _constant(vector: Mapping[int, int], initial: Sequence[int | None]) -> int | None:
+    total = 0
+    for p, w in vector.items():
+        n = initial[p]
+        if n is None:
+            return None
+        total += w * n
+    return total
+
+
+# --- the initial marking ---------------------------------------------------------------------------
+
+
+def _start(net: FlatNet, storage: Mapping[str, str], given: Collection[str]) -> _Start:
+    """The initial marking, as far as it does not depend on chance or on files."""
+    try:
+        game = Game(net, storage)
+    except GameError as error:
+        reason = f"the initial marking cannot be evaluated: {error.message}"
+        return _Start(None, (None,) * len(net.places), {p.index: reason for p in net.places})
+    effects = Effects(net.program)
+    marking: list[MultiSet | TimedMultiSet | None] = list(game.marking.places)
+    unknown: dict[int, str] = {}
+    for place in net.places:
+        if place.name in given:
+            unknown[place.index] = "the initial marking is given from outside"
+        elif place.initial is not None and outside(effects, place.initial[0]):
+            unknown[place.index] = "the initial marking depends on random numbers or files"
+    for p in unknown:
+        marking[p] = None
+    return _Start(game.evaluator, tuple(marking), unknown)
+
+
+# --- invariants ------------------------------------------------------------------------------------
+
+
+def _without_resets(skel: Skeleton) -> list[dict[int, int]]:
+    """The matrix of the numbers of tokens; a place that is reset gets a column of its own, which no other cancels."""
+    rows = [dict(r) for r in skel.counts]
+    for p in skel.resets:
+        rows[p][-1 - p] = 1
+    return rows
+
+
+def _p_flows(skel: Skeleton, limits: Limits) -> flows.Flows:
+    return flows.semiflows(_without_resets(skel), limits.flows)
+
+
+def _t_flows(skel: Skeleton, limits: Limits) -> flows.Flows:
+    """Over modes; those whose change is not known, and those that reset a place, are in none."""
+    rows: list[dict[int, int]] = []
+    resetting = skel.resetting
+    for k, mode in enumerate(skel.modes):
+        row = dict(mode.delta)
+        if mode.unknown or mode.transition in resetting:
+            row[-1 - k] = 1
+        rows.append(row)
+    return flows.semiflows(rows, limits.flows)
+
+
+def _why_not(place: int, skel: Skeleton) -> str:
+    if place in skel.resets:
+        return "a reset arc empties it"
+    arcs = [v for v in skel.varying if v.place == place]
+    if arcs:
+        name = skel.net.transitions[arcs[0].transition].short
+        return f"the arc with `{name}` moves {arcs[0].size} tokens"
+    return ""
+
+
+# --- siphons, elements -----------------------------------------------------------------------------
+
+
+def _siphons(
+    skel: Skeleton, initial: Sequence[int | None], limits: Limits
+) -> tuple[tuple[Siphon, ...], bool]:
+    rules = siphons.siphon_rules(skel)
+    traps = siphons.trap_rules(skel)
+    # A place that nothing touches is a siphon of no interest.
+    alone = {p for p in range(len(initial)) if not _touched(skel, p)}
+    sets = siphons.minimal(
+        rules,
+        range(len(initial)),
+        most=limits.siphons,
+        work=limits.siphon_work,
+        skip=lambda p: p in alone,
+    )
+    found = []
+    for places in sets.found:
+        trap = siphons.largest(traps, places)
+        found.append(
+            Siphon(
+                places,
+                any(initial[p] for p in places),
+                trap,
+                any(initial[p] for p in trap),
+            )
+        )
+    return tuple(found), sets.complete
+
+
+def _touched(skel: Skeleton, place: int) -> bool:
+    return any(a.place == place for t in skel.net.transitions for a in t.arcs)
+
+
+def _elements(
+    skel: Skeleton, g: Graph, initial: Sequence[int | None], known: Mapping[int, PlaceBound]
+) -> Elements:
+    net = skel.net
+    marked, live = markable(skel, initial)
+    touched = {p for places in g.touched for p in places}
+    places = [p.index for p in net.places]
+    changing = {p for m in skel.modes for p in (*m.delta, *m.unknown)} | set(skel.resets)
+    return Elements(
+        isolated_places=tuple(p for p in places if p not in touched),
+        isolated_transitions=tuple(t for t, s in enumerate(g.touched) if not s),
+        source_places=tuple(p for p in places if p in touched and not g.givers[p]),
+        sink_places=tuple(
+            p for p in places if p in touched and not g.takers[p] and p not in skel.resets
+        ),
+        constant_places=tuple(p for p in places if p in touched and p not in changing),
+        never_marked=tuple(p for p in places if p not in marked and p in touched),
+        source_transitions=tuple(t for t, s in enumerate(g.pre) if not s and g.touched[t]),
+        sink_transitions=tuple(t for t, s in enumerate(g.post) if not s and g.touched[t]),
+        dead=_dead(skel, live, marked, known),
+    )
+
+
+def _dead(
+    skel: Skeleton,
+    live: Collection[int],
+    marked: Collection[int],
+    known: Mapping[int, PlaceBound],
+) -> dict[int, str]:
+    """Transitions none of whose modes can occur, with the reason of the last one."""
+    reasons: dict[int, str] = {}
+    able: set[int] = set()
+    for k, mode in enumerate(skel.modes):
+        reason = _obstacle(skel, k, live, marked, known)
+        if reason is None:
+            able.add(mode.transition)
+        else:
+            reasons[mode.transition] = reason
+    return {t: r for t, r in sorted(reasons.items()) if t not in able}
+
+
+def _obstacle(
+    skel: Skeleton,
+    k: int,
+    live: Collection[int],
+    marked: Collection[int],
+    known: Mapping[int, PlaceBound],
+) -> str | None:
+    mode = skel.modes[k]
+    names = skel.net.places
+    if mode.transition in skel.never:
+        return "its guard is false"
+    if k not in live:
+        missing = sorted(p for p, s in mode.take.items() if s.low > 0 and p not in marked)
+        return f"`{names[missing[0]].short}` is never marked"
+    for p, size in mode.take.items():
+        bound = known[p].bound
+        if bound is not None and size.low > bound:
+            return f"it needs {size.low} tokens on `{names[p].short}`, which has at most {bound}"
+    return None

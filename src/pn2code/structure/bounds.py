@@ -1,0 +1,273 @@
+"""Bounds of places that the net's structure proves, what is never marked, what can never occur.
+
+A bound has a *proof*: weights y >= 0 of places, such that the weighted number of tokens never grows
+(`y * change <= 0` for each mode of each transition; `= 0` for an invariant). Then a place holds at most
+`y * initial / weight` tokens. Proofs are multiplied out in integers (`flows.is_sub_invariant`).
+
+Reset and inhibitor arcs do no harm here: they take tokens away, or forbid something. Arcs with a varying number of
+tokens count with the worst case.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+
+from pn2code.structure import flows
+from pn2code.structure.coloured import ColouredInvariant
+from pn2code.structure.skeleton import Mode, Skeleton
+
+MOST_PROGRAMS = 150
+
+
+@dataclass(frozen=True, slots=True)
+class Proof:
+    """Why a place is bounded.
+
+    Args:
+        kind: "never marked", "constant", "invariant" (the sum never changes) or "sub-invariant" (it never grows).
+        weights: place -> weight; empty for "never marked".
+        initial: the weighted sum in the initial marking.
+    """
+
+    kind: str
+    weights: Mapping[int, int]
+    initial: int
+
+
+@dataclass(frozen=True, slots=True)
+class ColourProof:
+    """Why a place never has more than `most` tokens of one colour: an invariant, and the place's weight in it."""
+
+    most: int
+    invariant: ColouredInvariant
+    weight: int
+
+
+@dataclass(frozen=True, slots=True)
+class PlaceBound:
+    """What is proven of a place.
+
+    Args:
+        place: its index.
+        bound: most tokens at a time, in any reachable marking; None: nothing is proven.
+        proof: of that.
+        lower: fewest tokens, from the invariants and the bounds of the other places.
+        colour: most tokens of the same colour, if that is proven by an invariant of its own.
+    """
+
+    place: int
+    bound: int | None
+    proof: Proof | None
+    lower: int = 0
+    colour: ColourProof | None = None
+
+    @property
+    def per_colour(self) -> int | None:
+        """Most tokens of the same colour; None: nothing is proven."""
+        known = [
+            n for n in (self.bound, self.colour.most if self.colour else None) if n is not None
+        ]
+        return min(known, default=None)
+
+
+def markable(
+    skeleton: Skeleton, initial: Sequence[int | None]
+) -> tuple[frozenset[int], frozenset[int]]:
+    """Places that may be marked at some time, and the modes (by index) that may occur.
+
+    The other places are the largest siphon that is empty at the start.
+    """
+    marked = {p for p, n in enumerate(initial) if n is None or n > 0}
+    waiting: list[set[int]] = []
+    needed: dict[int, list[int]] = {}
+    todo: list[int] = []
+    for k, mode in enumerate(skeleton.modes):
+        missing = {p for p, size in mode.take.items() if size.low > 0 and p not in marked}
+        waiting.append(missing)
+        for p in missing:
+            needed.setdefault(p, []).append(k)
+        if not missing and mode.transition not in skeleton.never:
+            todo.append(k)
+    live: set[int] = set()
+    while todo:
+        k = todo.pop()
+        live.add(k)
+        for p in skeleton.modes[k].put:
+            if p not in marked:
+                marked.add(p)
+                for other in needed.get(p, ()):
+                    waiting[other].discard(p)
+                    if (
+                        not waiting[other]
+                        and skeleton.modes[other].transition not in skeleton.never
+                    ):
+                        todo.append(other)
+    return frozenset(marked), frozenset(live)
+
+
+def place_bounds(
+    skeleton: Skeleton,
+    initial: Sequence[int | None],
+    invariants: Sequence[flows.Vector],
+    coloured: Sequence[ColouredInvariant],
+    *,
+    programs: int = MOST_PROGRAMS,
+) -> dict[int, PlaceBound]:
+    """The best bound known for each place."""
+    marked, live = markable(skeleton, initial)
+    best: dict[int, Proof] = {}
+
+    def offer(place: int, proof: Proof) -> None:
+        known = best.get(place)
+        if known is None or _bound(place, proof) < _bound(place, known):
+            best[place] = proof
+
+    for p in range(len(initial)):
+        if p not in marked:
+            best[p] = Proof("never marked", {}, 0)
+    for vector in invariants:
+        total = _total(vector, initial)
+        if total is None or not all(w > 0 for w in vector.values()):
+            continue
+        for p in vector:
+            offer(p, Proof("constant" if len(vector) == 1 else "invariant", vector, total))
+    _by_programs(
+        skeleton, initial, [skeleton.modes[k] for k in sorted(live)], best, offer, programs
+    )
+    colours = _colour_proofs(coloured)
+    upper = {p: _bound(p, proof) for p, proof in best.items()}
+    lower = _lower(invariants, initial, upper)
+    return {
+        p: PlaceBound(p, upper.get(p), best.get(p), lower.get(p, 0), colours.get(p))
+        for p in range(len(initial))
+    }
+
+
+def _lower(
+    invariants: Sequence[flows.Vector], initial: Sequence[int | None], upper: Mapping[int, int]
+) -> dict[int, int]:
+    """Fewest tokens: what is left of an invariant's sum when all its other places are full."""
+    found: dict[int, int] = {}
+    for vector in invariants:
+        total = _total(vector, initial)
+        if total is None or not all(p in upper for p in vector):
+            continue
+        full = sum(w * upper[p] for p, w in vector.items())
+        for p, w in vector.items():
+            rest = total - (full - w * upper[p])
+            if rest > 0:
+                found[p] = max(found.get(p, 0), -(-rest // w))
+    return found
+
+
+def _bound(place: int, proof: Proof) -> int:
+    return proof.initial // proof.weights[place] if proof.weights else 0
+
+
+def _total(vector: Mapping[int, int], initial: Sequence[int | None]) -> int | None:
+    total = 0
+    for p, w in vector.items():
+        n = initial[p]
+        if n is None:
+            return None
+        total += w * n
+    return total
+
+
+def _by_programs(
+    skeleton: Skeleton,
+    initial: Sequence[int | None],
+    modes: Sequence[Mode],
+    best: Mapping[int, Proof],
+    offer: Callable[[int, Proof], None],
+    programs: int,
+) -> None:
+    """Better bounds by linear programs: for places without one, then for those whose bound is above 1."""
+    rows, limited = worst_changes(skeleton, modes)
+    usable = [p for p in limited if initial[p] is not None]
+    if not any(_open(p, best) for p in usable):
+        return
+    position = {p: i for i, p in enumerate(usable)}
+    matrix = [rows[p] or {} for p in usable]
+    entries = sum(map(len, matrix))
+    budget = min(programs, 600_000 // max(1_500, entries))
+    program = flows.Program(matrix, len(modes), at_most=True)
+    possible = program.support()
+    costs = [float(initial[p] or 0) for p in usable]
+    wanted = [p for p in usable if _open(p, best) and position[p] in possible]
+    wanted.sort(key=lambda p: (p in best, p))
+    for p in wanted:
+        if program.solved > budget:
+            return
+        vector = program.invariant(position[p], costs)
+        if vector is None:
+            continue
+        weights = {usable[i]: w for i, w in vector.items()}
+        total = _total(weights, initial)
+        if total is not None:
+            offer(p, Proof("sub-invariant", weights, total))
+
+
+def _open(place: int, best: Mapping[int, Proof]) -> bool:
+    """Whether a better bound is worth looking for."""
+    return place not in best or _bound(place, best[place]) > 1
+
+
+def worst_changes(
+    skeleton: Skeleton, modes: Sequence[Mode]
+) -> tuple[list[dict[int, int] | None], list[int]]:
+    """Place -> {mode: the most it grows}; None for a place that one of the modes may fill without limit."""
+    rows: list[dict[int, int] | None] = [{} for _ in skeleton.net.places]
+    for k, mode in enumerate(modes):
+        for p in {*mode.take, *mode.put}:
+            row = rows[p]
+            if row is None:
+                continue
+            if p not in mode.unknown:
+                if p in mode.delta:
+                    row[k] = mode.delta[p]
+                continue
+            put, take = mode.put.get(p), mode.take.get(p)
+            most = put.high if put is not None else 0
+            if most is None:
+                rows[p] = None
+            else:
+                row[k] = most - (take.low if take is not None else 0)
+    return rows, [p for p, row in enumerate(rows) if row is not None]
+
+
+def _colour_proofs(coloured: Sequence[ColouredInvariant]) -> dict[int, ColourProof]:
+    """From invariants with positive weights only: M(place)(c) <= constant(c) / weight."""
+    found: dict[int, ColourProof] = {}
+    for invariant in coloured:
+        if invariant.constant is None or not invariant.is_semi_positive:
+            continue
+        for projection, weight in invariant.terms:
+            if projection.steps:
+                continue
+            most = max((n // weight for n in invariant.constant.values()), default=0)
+            known = found.get(projection.place)
+            if known is None or most < known.most:
+                found[projection.place] = ColourProof(most, invariant, weight)
+    return found
+
+
+def check(skeleton: Skeleton, bound: PlaceBound, initial: Sequence[int | None]) -> bool:
+    """Multiplies the proof of a bound out again, from the net's modes."""
+    proof = bound.proof
+    if proof is None:
+        return bound.bound is None
+    marked, live = markable(skeleton, initial)
+    if not proof.weights:
+        return bound.place not in marked and bound.bound == 0
+    total = _total(proof.weights, initial)
+    if total is None or bound.bound != total // proof.weights[bound.place]:
+        return False
+    if proof.kind in ("invariant", "constant"):
+        kept = not any(p in skeleton.resets for p in proof.weights)
+        return kept and flows.is_invariant(skeleton.counts, proof.weights)
+    rows, _ = worst_changes(skeleton, [skeleton.modes[k] for k in sorted(live)])
+    if any(rows[p] is None for p in proof.weights):
+        return False
+    return flows.is_sub_invariant([r or {} for r in rows], proof.weights)
