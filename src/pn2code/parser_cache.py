@@ -11,13 +11,16 @@ import hashlib
 import os
 import tempfile
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
-from lark import Lark
+if TYPE_CHECKING:
+    from lark import Lark
 
 
 def kept_lark(name: str, grammar: str, **options: Any) -> Lark:
     """An LALR parser; `name` is the stem of its file in the cache."""
+    from lark import Lark  # takes a while, and not every verb parses
+
     options = {"parser": "lalr", **options}
     folder = private_folder()
     if folder is None:
@@ -29,15 +32,26 @@ def kept_lark(name: str, grammar: str, **options: Any) -> Lark:
     kept = folder / f"{name}-{digest}.lark"
     if kept.exists():
         return Lark(grammar, cache=str(kept), **options)
-    # Written beside and renamed, so that no other process reads half a file.
-    handle, path = tempfile.mkstemp(dir=folder, prefix=f"{name}-", suffix=".tmp")
-    os.close(handle)
-    temporary = Path(path)
+    temporary = _beside(kept)
     temporary.unlink()
     parser = Lark(grammar, cache=str(temporary), **options)
     if temporary.exists():
         temporary.replace(kept)
     return parser
+
+
+def write_whole(path: Path, data: bytes) -> None:
+    """Write a file of the cache so that no other process reads half of it."""
+    temporary = _beside(path)
+    temporary.write_bytes(data)
+    temporary.replace(path)
+
+
+def _beside(path: Path) -> Path:
+    """A new file beside one that is to be replaced by it."""
+    handle, name = tempfile.mkstemp(dir=path.parent, prefix=f"{path.stem}-", suffix=".tmp")
+    os.close(handle)
+    return Path(name)
 
 
 def private_folder() -> Path | None:

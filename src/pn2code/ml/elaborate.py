@@ -446,8 +446,13 @@ class Elaborator:
     def delay(self, text: SourceText, real_time: bool = False) -> core.Exp | None:
         """`@+ e` (int; the type is int) or `@++ t` (the type is IntInf.int or real): the delay expression."""
         del real_time  # the clock is known from the beginning
-        key = (text.text, "delay")
-        return self._once(key, text, lambda: self._inscriptions.delay(text, self._fixities))
+
+        def work() -> tuple[core.Exp] | None:
+            made = self._inscriptions.delay(text, self._fixities)
+            return None if made is None else (made,)
+
+        found = self._once((text.text, "delay"), text, work)
+        return None if found is None else found[0]
 
     def priority(self, text: SourceText) -> int | None:
         """The constant value of a priority inscription."""
@@ -479,7 +484,7 @@ class Elaborator:
         if found is not None:
             return found
         before = len(self._d.items)
-        made = self._border(text, work)
+        made: T | None = self._border(text, work)
         if made is not None and len(self._d.items) == before:
             self._repeats.keep(key, text, made)
         return made

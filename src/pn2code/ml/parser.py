@@ -1,4 +1,4 @@
-"""Tokens to syntax tree, with lark's LALR parser and the grammar in `grammar.lark`.
+"""Tokens to syntax tree, with an LALR parser for the grammar in `grammar.lark`.
 
 `parse_program("val x = 1")` gives a tuple of declarations whose infix operators are still flat (see `fixity`).
 Syntax errors are reported with what was found and, in words, what could stand there.
@@ -7,57 +7,27 @@ Syntax errors are reported with what was found and, in words, what could stand t
 from __future__ import annotations
 
 from bisect import bisect_left, bisect_right
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from functools import cache, lru_cache
-from importlib.resources import files
 from itertools import pairwise
 from typing import Any, cast
-
-from lark import Lark
-from lark.lexer import Lexer
 
 from pn2code.diagnostics import NOWHERE, Diagnostics, SourceText, Span
 from pn2code.ml import advice, codes, syntax
 from pn2code.ml.lalr import Loop, SyntaxProblem
 from pn2code.ml.lexer import Lexeme, insert_delay_parentheses, tokenize
+from pn2code.ml.tables import tables
 from pn2code.ml.tree import Group, TreeBuilder
-from pn2code.parser_cache import kept_lark
 
-_STARTS = ["program", "expression", "expressions", "layered", "code"]
 _OLD_DECLARATIONS = frozenset({"colset", "color", "var", "globref", "pageref", "instref"})
-
-
-class _NoLexer(Lexer):
-    """Lark's lexer is not used: its tables are (see `lalr`)."""
-
-    def __init__(self, lexer_conf: object) -> None:
-        pass
-
-    def lex(self, data: Any) -> Iterator[Any]:  # type: ignore[override]
-        """Never called."""
-        yield from data
 
 
 _BUILDER = TreeBuilder()
 
 
 @cache
-def _lark() -> Lark:
-    grammar = files("pn2code.ml").joinpath("grammar.lark").read_text(encoding="utf-8")
-    return kept_lark(
-        "cpnml",
-        grammar,
-        lexer=_NoLexer,
-        start=_STARTS,
-        keep_all_tokens=True,
-        maybe_placeholders=False,
-        transformer=_BUILDER,
-    )
-
-
-@cache
 def _loop() -> Loop:
-    return Loop(_lark())
+    return Loop(tables(), _BUILDER)
 
 
 def parse_program(source: SourceText, d: Diagnostics) -> tuple[syntax.Dec, ...] | None:

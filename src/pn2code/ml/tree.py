@@ -7,8 +7,6 @@ from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
-from lark import Transformer
-
 from pn2code.diagnostics import NOWHERE, SourceText, Span
 from pn2code.ml import syntax as s
 from pn2code.ml.lexer import Lexeme
@@ -40,8 +38,8 @@ _LITERALS = {
 Children = list[Any]
 
 
-class TreeBuilder(Transformer[Any, Any]):
-    """Embedded in the parser; `source` is set before each parse."""
+class TreeBuilder:
+    """Used by the parser; `source` is set before each parse."""
 
     source: SourceText = SourceText("", NOWHERE)
 
