@@ -292,7 +292,7 @@ static bool see_interned(ex_run_t *run, ex_bounds_t *bounds)
     for (uint64_t i = 0U; is_fine && (i < count); i++) {
         const ex_bytes_entry_t entry = all->of[i];
         pn_text_t text;
-        if (entry.place == UINT32_MAX) {
+        if (entry.place >= pn_net.place_count) { /* a hole, or a time */
             continue;
         }
         const pn_place_t *const place = &pn_net.place[entry.place];
