@@ -253,7 +253,14 @@ def test_value_restriction() -> None:
         ("val x = 1 handle Foo => 2", None),
         ("exception E = NoSuch", "unbound-identifier | there is no exception `NoSuch` | E = NoSuch"),
         ("open NoSuch", "unbound-identifier | there is no structure `NoSuch` | open NoSuch"),
-        ("val x = BinIO.openIn \"f\"", "unsupported-function | function `BinIO.openIn` is not supported | BinIO.openIn"),
+        ("val x = BinIO.openIn \"f\"", "unsupported-function | `BinIO.openIn` is not available here: files of bytes are not "
+         "read or written; those of text are, see `--files` | BinIO.openIn"),
+        ("val x = BinIO.openOn \"f\"", "unbound-identifier | `BinIO.openOn` is not declared | BinIO.openOn"),
+        ("fun f x = SMLofNJ.Cont.callcc x + 1", "unsupported-function | `SMLofNJ.Cont.callcc` is not available here: "
+         "pn2code has not got this part of the library | SMLofNJ.Cont.callcc"),
+        ("fun f () = CPN'Sim.something 1", "unsupported-function | `CPN'Sim.something` is not available here: "
+         "it belongs to the inner parts of CPN Tools | CPN'Sim.something"),
+        ("val x = INetSock.inetAF", "unsupported-function | function `INetSock.inetAF` is not supported | INetSock.inetAF"),
         ("val x = List.nosuch", "unbound-identifier | `List.nosuch` is not declared | List.nosuch"),
         ("val x = NoSuch.f 1", "unbound-identifier | `NoSuch.f` is not declared | NoSuch.f"),
         ("fun f ref = 1", "constructor-argument | constructor `ref` needs an argument | ref"),
@@ -290,6 +297,9 @@ def test_type_errors(text: str, expected: str | None) -> None:
         ("val x = \"a\" ^ 5", "convert with `Int.toString`"),
         ("fun f x = n + x", "it is a variable of the net"),
         ("fun f (x : Int) = x", "did you mean `INT`?"),
+        ("val explodes = 1; val x = explod + 1", "did you mean `explodes`?"),
+        ("val rve = 1; val x = rEV [1]", "did you mean `rev`?"),
+        ("val x = CPN'Replicatons.nreplications 1", "there is no structure or colour set"),
     ],
 )  # fmt: skip
 def test_hints(text: str, hint: str) -> None:

@@ -8,8 +8,9 @@ the habits that people bring from other languages (`&&`, `!=`, `-1`, 'text'), an
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from difflib import get_close_matches
 from typing import TYPE_CHECKING
+
+from pn2code.diagnostics.near import nearest
 
 if TYPE_CHECKING:
     from pn2code.ml.lexer import Lexeme
@@ -113,12 +114,8 @@ DEFINITIONS: dict[str, str] = {
 """How colour sets of each kind are written."""
 
 
-def near(name: str, known: Iterable[str], *, cutoff: float = 0.7) -> str:
-    """The known name that is most like `name`, or ""."""
-    names = sorted(known)
-    same = [k for k in names if k.lower() == name.lower()]
-    close = same or get_close_matches(name, names, n=1, cutoff=cutoff)
-    return close[0] if close else ""
+CLOSE = 0.7
+"""How much alike a name and what may have been meant are, at least; see `nearest`."""
 
 
 def unbound_word(name: str, colsets: Iterable[str]) -> str:
@@ -154,19 +151,18 @@ def variable_out_of_scope(part: str) -> str:
 
 def unbound_path(structure: str, member: str, colsets: Iterable[str], known: Iterable[str]) -> str:
     """For `structure.member`; `known` are all names of the library."""
-    names = list(known)
+    names = [n for n in known if not n.startswith("CPN'")]
     members = [n.rpartition(".")[2] for n in names if n.rpartition(".")[0] == structure]
     if members:
-        close = near(member, members)
-        known = f"structure `{structure}` has no function of that name"
-        return f"did you mean `{structure}.{close}`?" if close else known
+        close = nearest(member, members, cutoff=CLOSE)
+        nothing = f"structure `{structure}` has no function of that name"
+        return f"did you mean `{structure}.{close}`?" if close else nothing
     structures = {n.rpartition(".")[0] for n in names} - {""}
     if structure in _OUTSIDE:
         return f"`{structure}` ({_OUTSIDE[structure]}) is a library outside of CPN Tools that is not loaded"
     fitting = {n for n in structures if f"{n}.{member}" in names}
-    if member in _MEMBERS or member.startswith(("set_", "of_")):
-        fitting.update(colsets)
-    close = near(structure, fitting, cutoff=0.5)
+    own = set(colsets) if member in _MEMBERS or member.startswith(("set_", "of_")) else set()
+    close = nearest(structure, own, fitting, cutoff=0.5)
     missing = f"there is no structure or colour set `{structure}`"
     return f"did you mean `{close}.{member}`?" if close else missing
 

@@ -18,6 +18,7 @@ from dataclasses import dataclass
 from functools import cache
 
 from pn2code.ml.builtin_table import COLSET_TABLE, TABLE
+from pn2code.ml.builtin_table_absent import ABSENT_TABLE
 from pn2code.ml.builtin_table_library import LIBRARY_TABLE
 from pn2code.ml.core import Constructor, DatatypeDec
 from pn2code.ml.types import (
@@ -167,8 +168,38 @@ def _read(table: str) -> dict[str, BuiltinInfo]:
     return out
 
 
-BUILTINS: dict[str, BuiltinInfo] = {**_read(TABLE), **_read(LIBRARY_TABLE)}
+def _read_absent(table: str) -> dict[str, BuiltinInfo]:
+    out: dict[str, BuiltinInfo] = {}
+    reason = ""
+    for line in table.strip().splitlines():
+        if line.startswith("=="):
+            reason = line[2:].strip()
+            continue
+        structure, members = line.split(" : ", 1)
+        for member in members.split():
+            name = f"{structure}.{member}"
+            out[name] = BuiltinInfo(name, "'a -> 'b", "is not there", reason)
+    return out
+
+
+BUILTINS: dict[str, BuiltinInfo] = {
+    **_read_absent(ABSENT_TABLE),
+    **_read(TABLE),
+    **_read(LIBRARY_TABLE),
+}
 COLSET_MEMBERS: dict[str, BuiltinInfo] = _read(COLSET_TABLE)
+
+
+def internal_function(name: str) -> str | None:
+    """The built-in that stands for a member of a structure of CPN Tools' own; None if there is no such structure.
+
+    What these structures have is not known here, so any member is taken for a function that is not available.
+    """
+    if name.split(".")[0] not in _INTERNAL:
+        return None
+    reason = "it belongs to the inner parts of CPN Tools"
+    return BUILTINS.setdefault(name, BuiltinInfo(name, "'a -> 'b", "is not there", reason)).name
+
 
 _NUMBERS = ("Int", "Real", "IntInf")
 _ORDERED = ("Int", "Real", "IntInf", "String", "Char")
@@ -352,10 +383,33 @@ STRUCTURES: frozenset[str] = frozenset(
 )
 """Structures of the library."""
 
-INCOMPLETE: frozenset[str] = frozenset(
-    {*_OTHER_STRUCTURES.split(), "Word8", "Word8Vector", "Random", "OS", "Output"}
+_INTERNAL = frozenset(
+    {s for s in STRUCTURES if s.startswith("CPN'")}
+    | {"Replications", "Queue", "Comms", "Cpn", "Output"}
 )
-"""Those of which pn2code knows only a part: an unknown member is "not supported", not "not declared"."""
+"""Structures of CPN Tools itself, of which it is not known here what they have."""
+
+ABSENT_VALUES: frozenset[str] = frozenset(
+    {f"Date.{name}" for name in (
+        "Jan", "Feb", "Mar", "Apr", "May", "Jun", "Jul", "Aug", "Sep", "Oct", "Nov", "Dec", "Mon", "Tue", "Wed", "Thu",
+        "Fri", "Sat", "Sun", "Date",
+    )}
+    | {f"IEEEReal.{name}" for name in (
+        "TO_NEAREST", "TO_NEGINF", "TO_POSINF", "TO_ZERO", "NAN", "INF", "ZERO", "NORMAL", "SUBNORMAL", "LESS",
+        "EQUAL", "GREATER", "UNORDERED",
+    )}
+    | {f"IO.{name}" for name in (
+        "NO_BUF", "LINE_BUF", "BLOCK_BUF", "BlockingNotSupported", "RandomAccessNotSupported",
+        "NonblockingNotSupported",
+    )}
+    | {f"StringCvt.{name}" for name in ("BIN", "OCT", "DEC", "HEX", "SCI", "FIX", "GEN", "EXACT")}
+    | {f"{name}.maxLen" for name in ("CharVector", "CharArray", "Word8Vector", "Word8Array")}
+    | {f"{name}.wordSize" for name in ("Word8", "Word32", "LargeWord")}
+    | {f"Int32.{name}" for name in ("minInt", "maxInt", "precision")}
+    | {"Array2.RowMajor", "Array2.ColMajor", "INetSock.inetAF", "Unix.W_EXITED", "Posix.Process.W_EXITED"}
+    | {f"Posix.FileSys.{name}" for name in ("stdin", "stdout", "stderr")}
+)  # fmt: skip
+"""What else the library of SML/NJ has and pn2code has not: values, constructors, exceptions."""
 
 UNSUPPORTED_NAMES: frozenset[str] = frozenset({"inst", "use"})
 """Top-level names of CPN Tools that are not supported; a net may declare its own."""

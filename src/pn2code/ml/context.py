@@ -7,8 +7,9 @@ from contextlib import contextmanager
 from dataclasses import dataclass, field
 
 from pn2code.diagnostics import Diagnostics, Note, Span
+from pn2code.diagnostics.near import nearest
 from pn2code.ml import codes, core, type_advice
-from pn2code.ml.advice import BY_CODE, near
+from pn2code.ml.advice import BY_CODE, CLOSE
 from pn2code.ml.builtins import DATATYPES, FIRST_EXCEPTION_TAG, LITERAL_TYPES, scheme
 from pn2code.ml.colsets import Colset
 from pn2code.ml.environment import Binding, ConEntry, Scope, library_scope
@@ -397,9 +398,9 @@ class Context:
         return self._names.get(t)
 
 
-def suggestion(name: str, known: Iterable[str]) -> str:
-    """`did you mean ..?`, or nothing."""
-    close = near(name, known)
+def suggestion(name: str, *known: Iterable[str]) -> str:
+    """`did you mean ..?`, or nothing; names of an earlier group are preferred."""
+    close = nearest(name, *known, cutoff=CLOSE)
     return f"did you mean `{close}`?" if close else ""
 
 

@@ -8,11 +8,11 @@ from functools import cache
 
 from pn2code.frozen import frozen
 from pn2code.ml.builtins import (
+    ABSENT_VALUES,
     BUILTINS,
     DATATYPES,
     EXCEPTIONS,
     HIDDEN,
-    INCOMPLETE,
     OVERLOADED,
     QUALIFIED,
     QUALIFIED_EXCEPTIONS,
@@ -23,6 +23,7 @@ from pn2code.ml.builtins import (
     TYPE_ABBREVIATIONS,
     TYPE_ARITY,
     UNSUPPORTED_NAMES,
+    internal_function,
 )
 from pn2code.ml.colsets import Colset
 from pn2code.ml.core import Constructor, DatatypeDec, Symbol
@@ -249,6 +250,10 @@ class Scope:
         """All value names in scope, for suggestions."""
         return {name for s in self._chain() for name in s.values}
 
+    def own_names(self) -> set[str]:
+        """The value names in scope that the net itself declares, for suggestions."""
+        return {name for s in self._chain() if s.parent is not None for name in s.values}
+
     def type_names(self) -> set[str]:
         """All type names in scope, for suggestions."""
         return {name for s in self._chain() for name in s.types}
@@ -308,7 +313,10 @@ def library_value(structure: str, member: str) -> Entry | None:
     base = _library().values.get(member)
     if isinstance(base, ConEntry | EmptyEntry) and member in _CONSTRUCTORS_OF.get(structure, ()):
         return base
-    return UnsupportedEntry(name) if structure.split(".")[0] in INCOMPLETE else None
+    if name in ABSENT_VALUES:
+        return UnsupportedEntry(name)
+    internal = internal_function(name)
+    return None if internal is None else BuiltinEntry(internal)
 
 
 _CONSTRUCTORS_OF = {

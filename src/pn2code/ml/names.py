@@ -210,7 +210,7 @@ class Names:
             hint = (
                 advice.unbound_word(name, self._ctx.colsets)
                 or self._order_hint(name, span)
-                or suggestion(name, self._ctx.scope.names())
+                or suggestion(name, self._ctx.scope.own_names(), self._ctx.scope.names())
             )
             if name in self._ctx.net_variables:
                 hint = advice.variable_out_of_scope(span.source.origin.part)

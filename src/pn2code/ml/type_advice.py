@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 
-from pn2code.ml.advice import near
+from pn2code.diagnostics.near import nearest
 from pn2code.ml.inference import ICon, IFun, IRec, Meta, Ty, prune
 
 _OPERAND = re.compile(r"(?:left |right )?operand of (?:`(.+)`|the backquote)")
@@ -232,7 +232,7 @@ def _wrong_record(found: IRec, expected: IRec) -> str:
         extra = [n for n in here if n not in wanted]
         missing = [n for n in wanted if n not in here]
         for n in extra:
-            close = near(n, missing, cutoff=0.5)
+            close = nearest(n, missing, cutoff=0.5)
             if close:
                 return f"did you mean the field `{close}` instead of `{n}`?"
         return f"a record has all its fields and no others: {{{', '.join(f'{n} = ..' for n in wanted)}}}"
