@@ -12,7 +12,7 @@
 #define DIGIT 4U /* bytes */
 #define DIGIT_BITS 32U
 #define DIGITS_MAX ((size_t)INT32_MAX / 2U)
-#define STEPS_PER_ROUND 16U
+#define STEPS_PER_ROUND 4U
 
 static const pn_big_t zero = { 0, NULL };
 
