@@ -21,6 +21,7 @@ from pn2code.diagnostics import Diagnostics
 from pn2code.emission.c import emit
 from pn2code.lowering.ir import NetIR
 from pn2code.lowering.net import lower
+from pn2code.lowering.packing import Packing
 from pn2code.net.flat import FlatNet
 from pn2code.resources import cnative_folder
 from pn2code.semantics.game import Game, GameError
@@ -51,12 +52,13 @@ def lowered(
     storage: Mapping[str, str] | None = None,
     capacity: Mapping[str, int] | None = None,
     config: CellConfig | None = None,
+    packing: Packing | None = None,
 ) -> tuple[NetIR | None, Diagnostics]:
     """The intermediate form of a net, and what lowering has to say."""
     d = Diagnostics()
     partition = divide(flat, config, d)
     assert partition is not None
-    return lower(partition, storage or {}, d, capacity=capacity), d
+    return lower(partition, storage or {}, d, capacity=capacity, packing=packing), d
 
 
 @dataclass(frozen=True)

@@ -10,7 +10,7 @@ import re
 from collections.abc import Callable, Iterable
 
 from pn2code.diagnostics import Origin
-from pn2code.emission import c_places, c_tables
+from pn2code.emission import c_packed, c_places, c_tables
 from pn2code.emission.c_effects import Effects, reaches
 from pn2code.emission.c_expressions import (
     Expressions,
@@ -28,6 +28,7 @@ from pn2code.lowering import ir
 from pn2code.lowering.calls import called, ir_nodes
 from pn2code.lowering.ir import NetIR, Rep
 from pn2code.lowering.ir_types import is_restricted
+from pn2code.lowering.packing import packed_bits
 
 _MARK = "\x01"
 _LEAVES = {
@@ -68,6 +69,8 @@ class _Emitter:
         self._effects = Effects(net)
         self._orders = c_places.Orders(self._types, self._names, self._descriptors)
         self._rooms = c_places.rooms(net)
+        self._numbers = c_packed.Numbers(self._types, self._names, self._descriptors)
+        self._packed = self._numbers.of_places(net.places)
         self._has_arena_values = any(
             d.type.rep in (Rep.STRING, Rep.LIST, Rep.UNION)
             for key in self._closure({p.table for p in net.places})
@@ -101,11 +104,13 @@ class _Emitter:
         x.int_bits = self._net.int_bits
         x.needs_context = self._needs_context
         x.place_names = self._place_names
+        x.packed = self._packed
         x.global_hints = {g.name: g.hint for g in self._net.globals}
         s = Statements(self._types, x, scope, self._net.real_time)
         s.used = used_locals(statements)
         s.bags = self._bags
         s.timed = self._timed
+        s.token_types = tuple(p.type for p in self._net.places)
         s.tables_of_places = self._tables
         return s, x, scope
 
@@ -221,7 +226,10 @@ class _Emitter:
             ],
             "capacity": p.capacity,
             "room": 0 if p.timed else self._rooms[p.index],
-            "order": "" if p.timed else self._orders.name(p.table),
+            "order": "" if p.timed or p.packed else self._orders.name(p.table),
+            "packed": p.packed,
+            "number_of": self._numbers.number_of(p.table) if p.packed else "",
+            "colour_set": self._names.table(p.table).removeprefix("s_"),
             "initial": s.lines,
             "initial_text": _comment_lines(p.initial_text),
             "leaf_kinds": [kind for _, kind in leaves] if leaves else [],
@@ -353,6 +361,7 @@ class _Emitter:
             )
             direct.used, direct.bags, direct.timed = printer.used, printer.bags, printer.timed
             direct.tables_of_places = printer.tables_of_places
+            direct.token_types = printer.token_types
             direct.variable_types = tuple(v.type for v in t.variables)
             direct.fire(t.fire, uses_context(t.fire, self._needs_context, self._definitions))
             return direct
@@ -441,7 +450,15 @@ class _Emitter:
             "leaves": self._leaf_tables(),
             "places": [self._place(p) for p in net.places],
             "orders": list(self._orders.functions.values()),
+            "numbers": self._numbers.functions
+            + [
+                self._numbers.pointers(t)
+                for t in dict.fromkeys(p.table for p in net.places if p.packed)
+            ],
+            "packed_words": (packed_bits(net.places) + 63) // 64,
+            "packed_size": (packed_bits(net.places) + 31) // 32 * 4,
             "transitions": [self._transition(t) for t in net.transitions],
+            "bag_places": ", ".join(f"{p.index}U" for p in net.places if not p.packed),
             "has_references": any(g.is_reference for g in net.globals),
             "has_arena_values": self._has_arena_values
             or any(g.is_reference or self._types.holds_reference(g.type) for g in net.globals),

@@ -131,6 +131,21 @@ class Types:
         return "0"
 
 
+@dataclass(frozen=True, slots=True)
+class PackedPlace:
+    """A packed place as statements see it.
+
+    Args:
+        colours: how many.
+        colour_of: the function that makes a colour of its number.
+        has_members: not every number is that of a colour: subsets are in the colour set.
+    """
+
+    colours: int
+    colour_of: str
+    has_members: bool
+
+
 class Expressions:
     """Prints the expressions of one C function.
 
@@ -146,6 +161,7 @@ class Expressions:
         self._binding = binding
         self.variables: tuple[str, ...] = ()
         self.place_names: tuple[str, ...] = ()
+        self.packed: tuple[PackedPlace | None, ...] = ()
         self.functions: dict[str, ir.Function] = {}
         self.int_bits = 31
         self.needs_context: frozenset[str] = frozenset()
@@ -225,6 +241,8 @@ class Expressions:
                 return self._names.value(name, self.global_hints.get(name, name)), _PRIMARY
             case ir.Bound(index=index):
                 return f"{self._binding}{self.variables[index]}", _POSTFIX
+            case ir.TokenValue(place=place, index=index) if self.packed and self.packed[place]:
+                return self.token(place, index), _PRIMARY
             case ir.TokenValue(place=place, index=index):
                 return f"m->{self.place_names[place]}.token[{self.local(index)}].value", _POSTFIX
             case ir.Now(type=t):
@@ -278,6 +296,10 @@ class Expressions:
                 return f"*(const {self._types.name(t)} *)cx->exception", _UNARY
             case ir.HasError(name=name):
                 return f"pn_is_raised(cx, {c_bytes(name)})", _POSTFIX
+
+    def token(self, place: int, index: ir.Local) -> str:
+        """The variable that holds the token of a packed place that a loop looks at."""
+        return self._scope.name(("token", place, index.uid), f"{self.place_names[place]}_token")
 
     def _constant(self, e: ir.Const) -> tuple[str, int]:
         match e.type.rep:

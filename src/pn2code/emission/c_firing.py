@@ -26,6 +26,7 @@ class _Move:
         value: a pointer to the value, as C.
         count: as C.
         note: what it is in the net.
+        is_packed: whether the place is.
     """
 
     verb: str
@@ -33,6 +34,7 @@ class _Move:
     value: str
     count: str
     note: str
+    is_packed: bool
 
     def call(self, verb: str = "") -> str:
         """The call that does it, or that undoes it."""
@@ -87,20 +89,47 @@ class DirectFiring(Statements):
         if not puts:
             self.line("return true;")
             return
-        for i, move in enumerate(puts):
-            self.note(move.note)
-            start = "bool fits = " if i == 0 else "fits = "
-            self.line(f"{start}{move.call()}{' && fits' if i else ''};")
+        done = self._put(puts)
         self.line("if (!fits) {")
         self._depth += 1
         self.note("a place is full: everything is put back")
-        for move in reversed(puts):
-            self.line(f"(void){move.call('take')};")
+        for move, is_done in reversed(done):
+            undo = f"(void){move.call('take')};"
+            if is_done:
+                self.line(f"if ({is_done}) {{")
+                self.line(f"    {undo}")
+                self.line("}")
+            else:
+                self.line(undo)
         for move in reversed(takes):
             self.line(f"(void){move.call('add')};")
         self._depth -= 1
         self.line("}")
         self.line("return fits;")
+
+    def _put(self, puts: list[_Move]) -> list[tuple[_Move, str]]:
+        """Puts, and says in `fits` whether all had room.
+
+        Gives what is to be undone if not, and what tells that it has been done: a place that is packed and full is as it was.
+        """
+        if not any(move.is_packed for move in puts):
+            for i, move in enumerate(puts):
+                self.note(move.note)
+                start = "bool fits = " if i == 0 else "fits = "
+                self.line(f"{start}{move.call()}{' && fits' if i else ''};")
+            return [(move, "") for move in puts]
+        if len(puts) == 1:
+            self.note(puts[0].note)
+            self.line(f"const bool fits = {puts[0].call()};")
+            return []
+        done = []
+        for i, move in enumerate(puts):
+            name = self._scope.name(("fits", i), f"fits_{move.place}")
+            self.note(move.note)
+            self.line(f"const bool {name} = {move.call()};")
+            done.append((move, name))
+        self.line(f"const bool fits = {' && '.join(name for _, name in done)};")
+        return [(move, name if move.is_packed else "") for move, name in done]
 
     def _take(self, takes: list[_Move]) -> None:
         if not takes:
@@ -137,9 +166,18 @@ class DirectFiring(Statements):
             value = f"&{fresh}"
         if must_check:
             self.has_checks = True
-            self.line(f"pn_bag_check(cx, &{self.bags[s.place]}, {value});")
+            self._check(s, value)
         count = self._count(s, key, place, is_nested)
-        self._moves_made.append(_Move(verb, place, value, count, s.note))
+        self._moves_made.append(
+            _Move(verb, place, value, count, s.note, self._packed(s.place) is not None)
+        )
+
+    def _check(self, s: ir.Take | ir.Put, value: str) -> None:
+        packed = self._packed(s.place)
+        if packed and not packed.has_members:
+            self.line(f"{self._x.place_names[s.place]}_check(cx, {value});")
+        else:
+            self.line(f"pn_bag_check(cx, &{self.bags[s.place]}, {value});")
 
     def _count(self, s: ir.Take | ir.Put, key: tuple[str, int], place: str, is_nested: bool) -> str:
         if is_count(s.count) and not is_nested:

@@ -4,7 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from pn2code.emission.c_expressions import Expressions, Types, c_bytes, op_needs_context
+from pn2code.emission.c_expressions import (
+    Expressions,
+    PackedPlace,
+    Types,
+    c_bytes,
+    op_needs_context,
+)
 from pn2code.emission.environment import c_comment
 from pn2code.emission.names import Names, Scope
 from pn2code.lowering import ir
@@ -86,6 +92,7 @@ class Statements:
         self.tables_of_places: tuple[str, ...] = ()
         self.bags: tuple[str, ...] = ()
         self.timed: tuple[bool, ...] = ()
+        self.token_types: tuple[ir.IrType, ...] = ()
         self.moves = "moves"
         self.variable_types: tuple[ir.IrType, ...] = ()
         self.has_arena_values = True
@@ -348,6 +355,8 @@ class Statements:
                 self.note(note)
                 if self.timed[place]:
                     self.line(f"if (pn_bag_available(&{self.bags[place]}, m, cx->now) > 0U) {{")
+                elif self._packed(place):
+                    self.line(f"if (!{self._x.place_names[place]}_is_empty(m)) {{")
                 else:
                     self.line(f"if (m->{self._x.place_names[place]}.used > 0U) {{")
                 self._next()
@@ -363,7 +372,30 @@ class Statements:
                 self.note(note)
                 self.line(f"pn_moves_reset(&{self.moves}, &{self.bags[place]}, cx->now);")
 
+    def _packed(self, place: int) -> PackedPlace | None:
+        return self._x.packed[place] if self._x.packed else None
+
+    def _for_colours(self, s: ir.ForTokens, packed: PackedPlace) -> None:
+        """The loop over the tokens of a packed place: over the numbers of the colours of which there are some."""
+        i = self._x.local(s.index)
+        place = self._x.place_names[s.place]
+        start, step = f"{i} = {place}_next(m, 0U)", f"{i} = {place}_next(m, {i} + 1U)"
+        self.note(s.note)
+        self.line(f"for (uint32_t {start}; {i} < {packed.colours}U; {step}) {{")
+        self._loops += 1
+        if any(isinstance(n, ir.TokenValue) and n.index == s.index for n in ir_nodes(s.body)):
+            t = self._types.name(self.token_types[s.place])
+            token = self._x.token(s.place, s.index)
+            self.line(f"{_INDENT}const {t} {token} = {packed.colour_of}({i});")
+        self.block(s.body)
+        self._loops -= 1
+        self.line("}")
+
     def _for_tokens(self, s: ir.ForTokens) -> None:
+        packed = self._packed(s.place)
+        if packed:
+            self._for_colours(s, packed)
+            return
         i = self._x.local(s.index)
         place = self._x.place_names[s.place]
         self.note(s.note)
@@ -398,6 +430,11 @@ class Statements:
         self.line("}")
 
     def _unless_available(self, s: ir.UnlessAvailable) -> None:
+        if self._packed(s.place):
+            count = f"{self._x.place_names[s.place]}_count_of(m, {self._x.local(s.index)})"
+            self.line(f"if ({count} < {s.count}U) {{")
+            self._next()
+            return
         token = f"m->{self._x.place_names[s.place]}.token[{self._x.local(s.index)}]"
         if s.limit is None:
             self.line(f"if ({token}.count < {s.count}U) {{")

@@ -12,7 +12,7 @@ from functools import cache
 
 from jinja2 import Environment, FileSystemBytecodeCache, FileSystemLoader, StrictUndefined
 
-from pn2code.parser_cache import private_folder
+from pn2code.private_folder import private_folder
 from pn2code.resources import templates_folder
 
 

@@ -650,6 +650,15 @@ class Global:
 
 
 @frozen
+class Packed:
+    """Where a packed place has its counters, see `packing`: their number, the bits of one, the first bit."""
+
+    colours: int
+    width: int
+    bit: int
+
+
+@frozen
 class Place:
     """A place: its array and its initial marking (`Put`s)."""
 
@@ -668,6 +677,7 @@ class Place:
     """whether there are delays of input arcs that are known only when they are computed"""
     early: tuple[int | float, ...] = ()
     """delays of input arcs: tokens may be taken so much before their stamps"""
+    packed: Packed | None = None
 
 
 @frozen

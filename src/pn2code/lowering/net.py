@@ -21,6 +21,7 @@ from pn2code.lowering.codes import STORAGE_COLSET, UNSUPPORTED_EXPRESSION, Unsup
 from pn2code.lowering.expressions import Body
 from pn2code.lowering.functions import Program
 from pn2code.lowering.inscriptions import Putter
+from pn2code.lowering.packing import Packing, packed
 from pn2code.lowering.transitions import lower_transition
 from pn2code.lowering.types import Types
 from pn2code.ml.colsets import Colset, Kind
@@ -40,6 +41,7 @@ def lower(
     d: Diagnostics,
     *,
     capacity: Mapping[str, int] | None = None,
+    packing: Packing | None = None,
     digest: str = "",
 ) -> ir.NetIR | None:
     """Lower the whole net.
@@ -50,9 +52,10 @@ def lower(
         capacity: by place name (full or short), how many entries (distinct colours; timed: with distinct
         stamps) it has room
             for; all others see `_Lowering._room`.
+        packing: which places are packed, and how; None: none is.
         digest: SHA-256 of the net and of what the cell contributes; the net's own by default.
     """
-    return _Lowering(partition, storage, d, capacity or {}, digest).run()
+    return _Lowering(partition, storage, d, capacity or {}, packing, digest).run()
 
 
 class _Lowering:
@@ -62,6 +65,7 @@ class _Lowering:
         storage: Mapping[str, str],
         d: Diagnostics,
         capacity: Mapping[str, int],
+        packing: Packing | None,
         digest: str,
     ) -> None:
         self._partition = partition
@@ -69,6 +73,7 @@ class _Lowering:
         self._storage = storage
         self._d = d
         self._capacity = capacity
+        self._packing = packing
         self._digest = digest or self._net.sha256
         self._types = Types(self._net.program, storage)
         builtins = Builtins(self._net.real_time)
@@ -102,12 +107,19 @@ class _Lowering:
             descriptors=tuple(self._types.descriptors.values()),
             globals=self._program.globals(),
             functions=(*functions, *members),
-            places=tuple(replace(p, capacity=p.capacity or room) for p in places if p is not None),
+            places=self._packed(
+                [replace(p, capacity=p.capacity or room) for p in places if p is not None]
+            ),
             transitions=tuple(t for t in transitions if t is not None),
             owners=tuple(o.name for o in self._partition.owners),
             order=tuple(order),
             int_bits=self._net.program.int_bits,
         )
+
+    def _packed(self, places: list[ir.Place]) -> tuple[ir.Place, ...]:
+        if self._packing is None:
+            return tuple(places)
+        return packed(places, self._types.descriptors, self._packing)
 
     def _guarded(self, origin: Origin, make: Callable[[], T]) -> T | None:
         self._program.position = origin

@@ -1,0 +1,196 @@
+"""Packed places in C: the number of a colour among all of its colour set, and the colour of a number."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+from pn2code.emission.c_expressions import PackedPlace, Types, c_integer
+from pn2code.emission.names import Names, label
+from pn2code.lowering import ir
+from pn2code.lowering.ir import Descriptor, Rep
+from pn2code.lowering.packing import colours
+
+
+class Numbers:
+    """Names and text of the functions `number_of_X` and `colour_of_X`, for colour sets that can be packed."""
+
+    def __init__(self, types: Types, names: Names, descriptors: Mapping[str, Descriptor]) -> None:
+        self._types = types
+        self._names = names
+        self._descriptors = descriptors
+        self._made: set[str] = set()
+        self.functions: list[list[str]] = []
+
+    def number_of(self, key: str) -> str:
+        """The function that numbers the colours of a descriptor."""
+        self._make(key)
+        return f"number_of_{self._stem(key)}"
+
+    def colour_of(self, key: str) -> str:
+        """Its inverse."""
+        self._make(key)
+        return f"colour_of_{self._stem(key)}"
+
+    def pointers(self, key: str) -> list[str]:
+        """The same two as functions over untyped values, for the table of a place."""
+        c_type, stem = self._types.name(self._descriptors[key].type), self._stem(key)
+        return [
+            f"static uint32_t find_number_of_{stem}(const void *value)",
+            "{",
+            f"    return {self.number_of(key)}(value);",
+            "}",
+            f"static void put_colour_of_{stem}(uint32_t number, void *value)",
+            "{",
+            f"    {c_type} *const colour = value;",
+            f"    *colour = {self.colour_of(key)}(number);",
+            "}",
+        ]
+
+    def of_places(self, places: tuple[ir.Place, ...]) -> tuple[PackedPlace | None, ...]:
+        """What statements print of the places that are packed."""
+        return tuple(
+            PackedPlace(p.packed.colours, self.colour_of(p.table), self._has_member(p.table))
+            if p.packed
+            else None
+            for p in places
+        )
+
+    def _has_member(self, key: str) -> bool:
+        d = self._descriptors[key]
+        return bool(d.member) or any(self._has_member(part) for _, part in d.fields if part)
+
+    def _stem(self, key: str) -> str:
+        return self._names.table(key).removeprefix("s_")
+
+    def _make(self, key: str) -> None:
+        if key in self._made:
+            return
+        self._made.add(key)
+        d = self._descriptors[key]
+        for _, part in d.fields:
+            if part:
+                self._make(part)
+        c_type = self._types.name(d.type)
+        number, colour = self._bodies(d)
+        stem = self._stem(key)
+        self.functions.append(
+            [
+                f"PN_INLINE uint32_t number_of_{stem}(const {c_type} *v)",
+                "{",
+                *(f"    {line}" for line in number),
+                "}",
+                f"PN_INLINE {c_type} colour_of_{stem}(uint32_t number)",
+                "{",
+                *(f"    {line}" for line in colour),
+                "}",
+            ]
+        )
+
+    def _bodies(self, d: Descriptor) -> tuple[list[str], list[str]]:
+        match d.type.rep:
+            case Rep.UNIT:
+                return ["(void)v;", "return 0U;"], ["(void)number;", "return PN_UNIT;"]
+            case Rep.BOOL:
+                return ["return *v ? 1U : 0U;"], ["return number != 0U;"]
+            case Rep.CHAR:
+                return ["return *v;"], ["return (uint8_t)number;"]
+            case Rep.ENUM:
+                c_type = self._types.name(d.type)
+                return ["return (uint32_t)*v;"], [f"return ({c_type})number;"]
+            case Rep.INT:
+                return self._range(int(d.low or 0), int(d.high or 0))
+            case Rep.STRUCT:
+                return self._struct(d)
+            case _:
+                return self._union(d)
+
+    @staticmethod
+    def _range(low: int, high: int) -> tuple[list[str], list[str]]:
+        first, last = c_integer(low), c_integer(high)
+        shifted = "*v" if low == 0 else (f"*v - {first}" if low > 0 else f"*v + {c_integer(-low)}")
+        distance = f" {'+' if low > 0 else '-'} {c_integer(abs(low))}" if low else ""
+        number = f"((*v >= {first}) && (*v <= {last})) ? (uint32_t)({shifted}) : PN_NO_COLOUR"
+        return [f"return {number};"], [f"return (int64_t)number{distance};"]
+
+    def _is_total(self, key: str) -> bool:
+        """Whether every value that C can hold has a number."""
+        d = self._descriptors[key]
+        if d.type.rep in (Rep.UNIT, Rep.BOOL, Rep.CHAR, Rep.ENUM):
+            return True
+        parts = [part for _, part in d.fields if part]
+        return d.type.rep is Rep.STRUCT and all(map(self._is_total, parts))
+
+    def _struct(self, d: Descriptor) -> tuple[list[str], list[str]]:
+        number: list[str] = []
+        colour: list[str] = []
+        partial: list[str] = []
+        text = ""
+        sizes = [colours(self._descriptors, part) for _, part in d.fields]
+        below = 1
+        for n in sizes:
+            below *= n
+        for (name, part), n in zip(d.fields, sizes, strict=True):
+            member = label(name)
+            call = f"number_of_{self._stem(part)}(&v->{member})"
+            if self._is_total(part):
+                own = call
+            else:
+                own = f"of_{member}"
+                number.append(f"const uint32_t {own} = {call};")
+                partial.append(own)
+            text = f"(({text}) * {n}U) + {own}" if text else own
+            below //= n
+            rest = "number" if below == 1 else f"(number / {below}U)"
+            rest = rest if len(d.fields) == 1 else f"{rest} % {n}U"
+            colour.append(f"    .{member} = colour_of_{self._stem(part)}({rest}),")
+        if partial:
+            tests = " || ".join(f"({p} == PN_NO_COLOUR)" for p in partial)
+            number += [f"if ({tests}) {{", "    return PN_NO_COLOUR;", "}"]
+        number.append(f"return {text or '0U'};")
+        if not d.fields:
+            return ["(void)v;", *number], ["(void)number;", f"return {self._types.zero(d.type)};"]
+        c_type = self._types.name(d.type)
+        return number, [f"return ({c_type}){{", *colour, "};"]
+
+    def _union(self, d: Descriptor) -> tuple[list[str], list[str]]:
+        definition = self._types.definitions[d.type.name]
+        assert isinstance(definition, ir.UnionDef)
+        c_type = self._types.name(d.type)
+        number = ["switch (v->tag) {"]
+        colour: list[str] = []
+        before = 0
+        for i, (constructor, part) in enumerate(d.fields):
+            tag = self._names.constructor(d.type.name, definition.constructors[i][0])
+            number.append(f"case {tag}:")
+            n = 1
+            if part:
+                n = colours(self._descriptors, part)
+                own = f"number_of_{self._stem(part)}(&v->as.{label(constructor)})"
+                if before == 0:
+                    number.append(f"    return {own};")
+                elif self._is_total(part):
+                    number.append(f"    return {before}U + {own};")
+                else:
+                    number += [
+                        f"    return ({own} != PN_NO_COLOUR)",
+                        f"        ? ({before}U + {own})",
+                        "        : PN_NO_COLOUR;",
+                    ]
+                own_number = "number" if before == 0 else f"number - {before}U"
+                made = f".tag = {tag}, .as.{label(constructor)} = colour_of_{self._stem(part)}({own_number})"
+            else:
+                number.append(f"    return {before}U;")
+                made = f".tag = {tag}"
+            before += n
+            if i < len(d.fields) - 1:
+                colour += [
+                    f"if (number < {before}U) {{",
+                    f"    return ({c_type}){{ {made} }};",
+                    "}",
+                ]
+            else:
+                colour.append(f"return ({c_type}){{ {made} }};")
+        if len(d.fields) == 1 and not d.fields[0][1]:
+            colour.insert(0, "(void)number;")
+        number += ["default:", "    return PN_NO_COLOUR;", "}"]
+        return number, colour

@@ -1,0 +1,184 @@
+"""Which untimed places are packed, a counter of a few bits for each colour instead of a sorted array, and where.
+
+    packing = choose(net, initial)      # widths from what the places hold at first
+    ir = lower(partition, storage, d, packing=packing)
+    ...
+    packing = packing.wider("Top.P")    # a counter of that place has overflowed
+
+A place can be packed when its colour set is finite and small: see `colours`. Subsets have counters for all colours of
+their base.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import replace
+
+from pn2code.frozen import frozen
+from pn2code.lowering import ir
+from pn2code.lowering.ir_types import Descriptor, Rep
+from pn2code.ml.colsets import Kind
+from pn2code.ml.types import UNIT
+from pn2code.net.flat import FlatNet
+
+MOST_COLOURS = 4096
+MOST_BITS = 8192
+"""Of one place."""
+MOST_WIDTH = 32
+LEAST_UNIT_WIDTH = 4
+"""Tokens of one colour gather: the counter of such a place has at least so many bits."""
+_WORD = 64
+_COLOUR_BYTES = 256
+"""What `pn_colour_t` of pn_bag.h has room for."""
+
+
+@frozen
+class Packing:
+    """Widths of counters.
+
+    Args:
+        width: by place name, bits per counter, 1 to 32; 0: the place is not packed.
+        default: of all other places; 0: only the named ones are packed.
+        most_colours: places with more colours are not packed.
+    """
+
+    width: Mapping[str, int]
+    default: int = 1
+    most_colours: int = MOST_COLOURS
+
+    def of(self, place: str) -> int:
+        """The width for a place, by its full name."""
+        return self.width.get(place, self.default)
+
+    def wider(self, place: str) -> Packing:
+        """With twice the width for a place of which a counter has overflowed; beyond 32 bits it is not packed."""
+        width = self.of(place) * 2
+        return replace(self, width={**self.width, place: width if width <= MOST_WIDTH else 0})
+
+
+def choose(net: FlatNet, initial: Sequence[Iterable[int]]) -> Packing:
+    """The widths to begin with.
+
+    Args:
+        net: the net.
+        initial: for each place the counts of the different tokens that it holds at first.
+    """
+    widths: dict[str, int] = {}
+    for place, counts in zip(net.places, initial, strict=True):
+        most = max(counts, default=0)
+        if not place.colset.timed:
+            own = place.colset.resolved
+            is_unit = own.type == UNIT or (own.kind is Kind.ENUM and len(own.names) == 1)
+            widths[place.name] = (
+                max(LEAST_UNIT_WIDTH, bits(2 * most))
+                if is_unit
+                else (1 if most <= 1 else bits(2 * most))
+            )
+    return Packing(widths)
+
+
+def bits(count: int) -> int:
+    """The bits of a counter that goes up to `count`, at most 32."""
+    return min(max(count.bit_length(), 1), MOST_WIDTH)
+
+
+# --- colours --------------------------------------------------------------------------------------
+
+
+def colours(descriptors: Mapping[str, Descriptor], key: str) -> int:
+    """The number of colours of a colour set that can be packed; 0 if it cannot."""
+    found = _count(descriptors, key, ())
+    return found if 0 < found <= MOST_COLOURS and _size(descriptors, key) <= _COLOUR_BYTES else 0
+
+
+def _count(descriptors: Mapping[str, Descriptor], key: str, outer: tuple[str, ...]) -> int:
+    """0: more than can be packed, or unbounded."""
+    d = descriptors[key]
+    total = 0
+    match d.type.rep:
+        case Rep.UNIT:
+            return 1
+        case Rep.BOOL:
+            return 2
+        case Rep.CHAR:
+            return 256
+        case Rep.ENUM:
+            return len(d.names)
+        case Rep.INT:
+            if d.low is None or d.high is None:
+                return 0
+            total = max(int(d.high) - int(d.low) + 1, 0)
+        case Rep.STRUCT | Rep.UNION if key not in outer:
+            total = 1 if d.type.rep is Rep.STRUCT else 0
+            for _, part in d.fields:
+                n = _count(descriptors, part, (*outer, key)) if part else 1
+                if n == 0:
+                    return 0
+                total = total * n if d.type.rep is Rep.STRUCT else total + n
+                if total > MOST_COLOURS:
+                    return 0
+        case _:
+            return 0
+    return total if total <= MOST_COLOURS else 0
+
+
+def _size(descriptors: Mapping[str, Descriptor], key: str) -> int:
+    """At least the bytes of a value in C."""
+    d = descriptors[key]
+    parts = [_size(descriptors, part) for _, part in d.fields if part]
+    match d.type.rep:
+        case Rep.STRUCT:
+            return sum(parts) + 8
+        case Rep.UNION:
+            return max(parts, default=0) + 8
+    return 8
+
+
+# --- layout ---------------------------------------------------------------------------------------
+
+
+def packed(
+    places: Sequence[ir.Place], descriptors: Mapping[str, Descriptor], packing: Packing
+) -> tuple[ir.Place, ...]:
+    """The places, those that can be packed with the position of their counters."""
+    sizes: dict[int, tuple[int, int]] = {}
+    for p in places:
+        n, width = colours(descriptors, p.table), packing.of(p.name)
+        if p.timed or not 0 < n <= packing.most_colours or width <= 0:
+            continue
+        if n * width > _WORD:  # no counter lies across two words
+            width = 1 << (width - 1).bit_length()
+        if width <= MOST_WIDTH and n * width <= MOST_BITS:
+            sizes[p.index] = (n, width)
+    first = _positions({i: n * w for i, (n, w) in sizes.items()})
+    return tuple(
+        replace(p, packed=ir.Packed(*sizes[p.index], first[p.index]), capacity=sizes[p.index][0])
+        if p.index in sizes
+        else p
+        for p in places
+    )
+
+
+def _positions(sizes: Mapping[int, int]) -> dict[int, int]:
+    """The first bit of each: large ones begin with a word, others lie in one, in the first that has room."""
+    first: dict[int, int] = {}
+    used: list[int] = []
+    for place, size in sizes.items():
+        if size > _WORD:
+            first[place] = len(used) * _WORD
+            used += [_WORD] * (size // _WORD) + ([size % _WORD] if size % _WORD else [])
+    for place, size in sizes.items():
+        if size <= _WORD:
+            word = next((k for k, n in enumerate(used) if n + size <= _WORD), len(used))
+            if word == len(used):
+                used.append(0)
+            first[place] = word * _WORD + used[word]
+            used[word] += size
+    return first
+
+
+def packed_bits(places: Iterable[ir.Place]) -> int:
+    """The bits of the packed part up to the last that is used."""
+    return max(
+        (p.packed.bit + p.packed.colours * p.packed.width for p in places if p.packed), default=0
+    )
