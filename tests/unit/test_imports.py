@@ -31,6 +31,8 @@ ALLOWED: dict[str, set[str]] = {
             "pipeline"},
     "report": {"cell", "run", "robot", "diagnostics"},
     "pipeline": {"diagnostics", "cell", "emission", "lowering", "net", "reading", "tdl"},
+    "unfold": {"diagnostics", "ml", "net", "semantics"},
+    "convert": {"diagnostics", "ml", "net", "reading", "semantics", "unfold", "pnml"},
     "monitors": {"diagnostics", "ml", "net", "reading", "semantics"},
     "simulate": {"diagnostics", "ml", "net", "semantics", "monitors", "cell", "lowering", "emission", "toolchain",
                  "parser_cache"},
