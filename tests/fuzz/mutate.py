@@ -1,5 +1,5 @@
 # ruff: noqa: E501 - rows of texts
-"""Changed `.cpn` files: elements, attributes, texts, ids, numbers, bytes, encodings.
+"""Changed `.cpn` files: elements, attributes, texts, ids, numbers, bytes, encodings, and features that a net lacks.
 
 `mutate(r, data)` gives the bytes of a net like `data` with some changes; the same random numbers give the same bytes.
 """
@@ -11,7 +11,7 @@ import re
 from random import Random
 
 from lxml import etree
-from tests.fuzz import ml_text
+from tests.fuzz import features, ml_text
 
 TEXTS = ("text", "ml", "id", "layout")
 STRANGE = (
@@ -30,9 +30,12 @@ def mutate(r: Random, data: bytes) -> bytes:
     root = etree.fromstring(data, parser)
     elements = [e for e in root.iter() if isinstance(e.tag, str)]
     others = [e.text for e in elements if e.tag in ("text", "ml") and e.text and e.text.strip()]
-    if kind < 0.55:
+    if kind < 0.4:
         for _ in range(r.choice((1, 1, 2, 4))):
             _ml(r, elements, others)
+    elif kind < 0.65:
+        for _ in range(r.choice((1, 1, 2, 3, 6))):
+            features.add(r, root)
     elif kind < 0.9:
         for _ in range(r.choice((1, 1, 2, 3, 8))):
             _structure(r, root)
