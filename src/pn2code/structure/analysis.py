@@ -38,7 +38,7 @@ class Limits:
 
     flows: flows.Limits = field(default_factory=flows.Limits)
     siphons: int = 500
-    siphon_work: int = 20_000
+    siphon_work: int = 1_000_000
     programs: int = MOST_PROGRAMS
 
 
@@ -337,17 +337,11 @@ def _siphons(
     rules = siphons.siphon_rules(skel)
     traps = siphons.trap_rules(skel)
     # A place that nothing touches is a siphon of no interest.
-    alone = {p for p in range(len(initial)) if not _touched(skel, p)}
-    sets = siphons.minimal(
-        rules,
-        range(len(initial)),
-        most=limits.siphons,
-        work=limits.siphon_work,
-        skip=lambda p: p in alone,
-    )
+    touched = sorted({a.place for t in skel.net.transitions for a in t.arcs})
+    sets = siphons.minimal(rules, touched, most=limits.siphons, work=limits.siphon_work)
     found = []
     for places in sets.found:
-        trap = siphons.largest(traps, places)
+        trap = frozenset(siphons.places_of(traps.largest(siphons.mask_of(places))))
         found.append(
             Siphon(
                 places,
@@ -357,10 +351,6 @@ def _siphons(
             )
         )
     return tuple(found), sets.complete
-
-
-def _touched(skel: Skeleton, place: int) -> bool:
-    return any(a.place == place for t in skel.net.transitions for a in t.arcs)
 
 
 def _elements(

@@ -16,6 +16,7 @@ from dataclasses import dataclass
 from pn2code.structure import flows
 from pn2code.structure.coloured import ColouredInvariant
 from pn2code.structure.skeleton import Mode, Skeleton
+from pn2code.structure.symbolic import Image, image_type, is_multiset
 
 MOST_PROGRAMS = 150
 
@@ -238,13 +239,16 @@ def worst_changes(
 
 
 def _colour_proofs(coloured: Sequence[ColouredInvariant]) -> dict[int, ColourProof]:
-    """From invariants with positive weights only: M(place)(c) <= constant(c) / weight."""
+    """From invariants with positive weights only: M(place)(c) <= constant(projection of c) / weight.
+
+    Not with functions that give multi-sets: of some colours these may be empty.
+    """
     found: dict[int, ColourProof] = {}
     for invariant in coloured:
         if invariant.constant is None or not invariant.is_semi_positive:
             continue
         for projection, weight in invariant.terms:
-            if projection.steps:
+            if any(isinstance(s, Image) and is_multiset(image_type(s)) for s in projection.steps):
                 continue
             most = max((n // weight for n in invariant.constant.values()), default=0)
             known = found.get(projection.place)

@@ -15,6 +15,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
+from heapq import heapify, heappop, heappush
 from math import gcd
 from typing import Any
 
@@ -103,8 +104,13 @@ def _eliminated(rows: Sequence[Row], limits: Limits) -> tuple[list[Vector], bool
             columns.setdefault(c, set()).add(i)
     _same_columns(working, columns)
     work = 0
-    while columns:
-        column = min(columns, key=lambda c: (_growth(working, columns[c], c), c))
+    growth = {c: _growth(working, members, c) for c, members in columns.items()}
+    queue = [(n, c) for c, n in growth.items()]
+    heapify(queue)
+    while queue:
+        expected, column = heappop(queue)
+        if column not in columns or growth[column] != expected:
+            continue
         involved = columns.pop(column)
         plus = sorted(i for i in involved if working[i].rest[column] > 0)
         minus = sorted(i for i in involved if working[i].rest[column] < 0)
@@ -123,9 +129,10 @@ def _eliminated(rows: Sequence[Row], limits: Limits) -> tuple[list[Vector], bool
                 if _contains_third(union, own, by_row):
                     continue
                 made.append(_combined(working[i], working[j], column))
+        touched = {c for i in involved for c in working[i].rest if c != column}
         for i in involved:
             for c in working[i].rest:
-                if c != column and c in columns:
+                if c != column:
                     columns[c].discard(i)
             del working[i]
         for line in made:
@@ -133,8 +140,12 @@ def _eliminated(rows: Sequence[Row], limits: Limits) -> tuple[list[Vector], bool
             for c in line.rest:
                 columns[c].add(fresh)
             fresh += 1
-        for c in [c for c, members in columns.items() if not members]:
-            del columns[c]
+        for c in touched:
+            if columns[c]:
+                growth[c] = _growth(working, columns[c], c)
+                heappush(queue, (growth[c], c))
+            else:
+                del columns[c]
     return [x.vector for x in working.values()], True
 
 

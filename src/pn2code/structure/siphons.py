@@ -7,20 +7,72 @@ whose number of tokens varies, "may" is the most and "must" the least of an arc.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 
 from pn2code.structure.skeleton import Mode, Size, Skeleton
 
-NONE = Size(0, 0)
+
+class Rules:
+    """What holds of a set: if it contains a place of a rule's target it contains one of the rule's source.
+
+    Sets of places are bit masks here. Unions of sets that obey obey too, so there is a largest one inside any set.
+
+    Attributes:
+        work: how many rules have been looked at.
+    """
+
+    def __init__(self, rules: Iterable[tuple[frozenset[int], frozenset[int]]]) -> None:
+        unique = dict.fromkeys((t - s, s) for t, s in rules if t - s)
+        self._targets = [mask_of(t) for t, _ in unique]
+        self._sources = [mask_of(s) for _, s in unique]
+        self._uses: dict[int, list[int]] = {}
+        for k, (_, source) in enumerate(unique):
+            for p in source:
+                self._uses.setdefault(p, []).append(k)
+        self.work = 0
+
+    def largest(self, within: int) -> int:
+        """The largest set within these places that obeys."""
+        gone = 0
+        for target, source in zip(self._targets, self._sources, strict=True):
+            if not source & within:
+                gone |= target & within
+        self.work += len(self._targets)
+        return self._without(within & ~gone, gone)
+
+    def without(self, obeying: int, place: int) -> int:
+        """The largest one within a set that obeys, and without a place of it."""
+        return self._without(obeying & ~(1 << place), 1 << place)
+
+    def _without(self, inside: int, gone: int) -> int:
+        targets, sources, uses = self._targets, self._sources, self._uses
+        todo = list(places_of(gone))
+        while todo:
+            found = uses.get(todo.pop(), ())
+            self.work += len(found) + 1
+            for k in found:
+                lost = targets[k] & inside
+                if lost and not sources[k] & inside:
+                    inside &= ~lost
+                    todo.extend(places_of(lost))
+        return inside
 
 
-@dataclass(frozen=True, slots=True)
-class Rule:
-    """`some place of target` needs `some place of source`: what holds for a set that contains a place of `target`."""
+def mask_of(places: Iterable[int]) -> int:
+    """A set of places as bits."""
+    mask = 0
+    for p in places:
+        mask |= 1 << p
+    return mask
 
-    target: frozenset[int]
-    source: frozenset[int]
+
+def places_of(mask: int) -> Iterator[int]:
+    """The places, ascending."""
+    while mask:
+        lowest = mask & -mask
+        yield lowest.bit_length() - 1
+        mask ^= lowest
 
 
 @dataclass(frozen=True, slots=True)
@@ -31,112 +83,68 @@ class Sets:
     complete: bool
 
 
-def siphon_rules(skeleton: Skeleton) -> list[Rule]:
+def siphon_rules(skeleton: Skeleton) -> Rules:
     """A mode that may put into a siphon must take from it."""
-    return _rules(_rule(_may(m.put), _must(m.take)) for m in skeleton.modes)
+    return Rules((frozenset(m.put), _must(m.take)) for m in skeleton.modes)
 
 
-def trap_rules(skeleton: Skeleton) -> list[Rule]:
+def trap_rules(skeleton: Skeleton) -> Rules:
     """A mode that may take from a trap must put into it; what a reset empties counts as taken, and is not put."""
     resets: dict[int, set[int]] = {}
     for place, ts in skeleton.resets.items():
         for t in ts:
             resets.setdefault(t, set()).add(place)
 
-    def of(m: Mode) -> Rule:
+    def of(m: Mode) -> tuple[frozenset[int], frozenset[int]]:
         emptied = frozenset(resets.get(m.transition, ()))
-        return _rule(_may(m.take) | emptied, _must(m.put) - emptied)
+        # A place that is emptied does not keep what the same transition puts there.
+        return frozenset(m.take) | emptied, _must(m.put) - emptied
 
-    return _rules(map(of, skeleton.modes))
-
-
-def _may(side: object) -> frozenset[int]:
-    assert isinstance(side, dict)
-    return frozenset(side)
+    return Rules(map(of, skeleton.modes))
 
 
-def _must(side: object) -> frozenset[int]:
-    assert isinstance(side, dict)
+def _must(side: Mapping[int, Size]) -> frozenset[int]:
     return frozenset(p for p, size in side.items() if size.low > 0)
 
 
-def _rule(target: frozenset[int], source: frozenset[int]) -> Rule:
-    return Rule(target - source, source)
-
-
-def _rules(rules: Iterable[Rule]) -> list[Rule]:
-    return list(dict.fromkeys(r for r in rules if r.target))
-
-
-def largest(rules: Sequence[Rule], within: Iterable[int]) -> frozenset[int]:
-    """The largest set within the places that obeys the rules (it may be empty)."""
-    inside = set(within)
-    # How many sources of each rule are still inside; at none its targets must go.
-    counts = [len(r.source & inside) for r in rules]
-    uses: dict[int, list[int]] = {}
-    for k, r in enumerate(rules):
-        for p in r.source:
-            uses.setdefault(p, []).append(k)
-    todo = [k for k, n in enumerate(counts) if not n]
-    while todo:
-        for p in rules[todo.pop()].target & inside:
-            inside.discard(p)
-            for k in uses.get(p, ()):
-                counts[k] -= 1
-                if not counts[k]:
-                    todo.append(k)
-    return frozenset(inside)
-
-
-def minimal(
-    rules: Sequence[Rule],
-    places: Iterable[int],
-    *,
-    most: int,
-    work: int,
-    skip: Callable[[int], bool] = lambda p: False,
-) -> Sets:
+def minimal(rules: Rules, places: Iterable[int], *, most: int, work: int) -> Sets:
     """The minimal non-empty sets that obey the rules.
 
     A set found splits what is left: others lack one of its places (and have the ones before that).
 
     Args:
         rules: of siphons or of traps.
-        places: all of them.
+        places: those to choose from.
         most: how many sets at most.
-        work: how many times a largest set is computed at most, for nets of 100 rules (fewer for larger ones).
-        skip: places that are left out.
+        work: how many rules are looked at, at most.
     """
-    everything = frozenset(p for p in places if not skip(p))
-    left = max(50, work * 100 // max(100, len(rules)))
-    found: dict[frozenset[int], None] = {}
-    stack: list[tuple[frozenset[int], frozenset[int]]] = [(everything, frozenset())]
+    limit = rules.work + work
+    found: dict[int, None] = {}
+    stack: list[tuple[int, int]] = [
+        (rules.largest(mask_of(places)), 0)
+    ]  # obeying set, places it must keep
     while stack:
-        allowed, required = stack.pop()
-        if left <= 0 or len(found) >= most:
-            return Sets(_sorted(found), False)
-        left -= 1
-        whole = largest(rules, allowed)
-        if not whole or not required <= whole:
+        whole, required = stack.pop()
+        if not whole or required & ~whole:
             continue
+        if rules.work > limit or len(found) >= most:
+            return Sets(_sorted(found), False)
         candidate = whole
-        for p in sorted(whole - required):
-            if p in candidate:
-                left -= 1
-                smaller = largest(rules, candidate - {p})
-                if smaller and required <= smaller:
+        for p in places_of(whole & ~required):
+            if candidate >> p & 1:
+                smaller = rules.without(candidate, p)
+                if smaller and not required & ~smaller:
                     candidate = smaller
-        left -= len(required)
-        if not any(largest(rules, candidate - {p}) for p in required):
+        if not any(rules.without(candidate, p) for p in places_of(required)):
             found[candidate] = None
-        fixed = required
         pieces = []
-        for p in sorted(candidate - required):
-            pieces.append((whole - {p}, fixed))
-            fixed |= {p}
+        for p in places_of(candidate & ~required):
+            pieces.append((rules.without(whole, p), required))
+            required |= 1 << p
         stack.extend(reversed(pieces))
     return Sets(_sorted(found), True)
 
 
-def _sorted(found: Iterable[frozenset[int]]) -> tuple[frozenset[int], ...]:
-    return tuple(sorted(found, key=lambda s: (len(s), sorted(s))))
+def _sorted(found: Iterable[int]) -> tuple[frozenset[int], ...]:
+    sets = [frozenset(places_of(mask)) for mask in found]
+    return tuple(sorted(sets, key=lambda s: (len(s), sorted(s))))
