@@ -20,12 +20,6 @@
 #include "pn/pn_bag.h"
 #include "pn/pn_place.h"
 
-#if defined(__GNUC__)
-#define PN_INLINE __attribute__((always_inline, unused)) static inline
-#else
-#define PN_INLINE static inline
-#endif
-
 /* The number of the lowest bit that is set, of bits that are not all 0. */
 PN_INLINE uint32_t pn_lowest_bit(uint64_t bits)
 {

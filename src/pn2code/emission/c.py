@@ -333,6 +333,11 @@ class _Emitter:
             "is_direct": is_direct,
             "uses_binding": "b->" in text,
             "touched": ", ".join(f"{i}U" for i in self._effects.touched(t.index)),
+            "touched_bags": [
+                self._place_names[i]
+                for i in self._effects.touched(t.index)
+                if not self._net.places[i].packed
+            ],
             "draws": not self._effects.is_pure((t.enumerate, t.fire)),
             "affected": ""
             if len(affected) == len(self._net.transitions)

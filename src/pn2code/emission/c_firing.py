@@ -110,7 +110,8 @@ class DirectFiring(Statements):
     def _put(self, puts: list[_Move]) -> list[tuple[_Move, str]]:
         """Puts, and says in `fits` whether all had room.
 
-        Gives what is to be undone if not, and what tells that it has been done: a place that is packed and full is as it was.
+        Gives what is to be undone if not, and what tells that it has been done: a packed place that is full does not
+        change.
         """
         if not any(move.is_packed for move in puts):
             for i, move in enumerate(puts):

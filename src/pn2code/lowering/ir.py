@@ -717,6 +717,7 @@ class NetIR:
         functions: in an order in which each is preceded by what it calls, except in recursion.
         order: transition indices by priority, then position.
         int_bits: width of `int`, 31 or 64.
+        has_successors: whether there are functions that make all markings after a marking.
     """
 
     name: str
@@ -734,6 +735,7 @@ class NetIR:
     owners: tuple[str, ...]
     order: tuple[int, ...]
     int_bits: int = 31
+    has_successors: bool = False
     origin: Origin = field(default=NOWHERE)
 
     def definition(self, name: str) -> Definition:

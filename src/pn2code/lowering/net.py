@@ -114,6 +114,7 @@ class _Lowering:
             owners=tuple(o.name for o in self._partition.owners),
             order=tuple(order),
             int_bits=self._net.program.int_bits,
+            has_successors=self._packing is not None and self._packing.successors,
         )
 
     def _packed(self, places: list[ir.Place]) -> tuple[ir.Place, ...]:

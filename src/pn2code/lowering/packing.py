@@ -40,11 +40,13 @@ class Packing:
         width: by place name, bits per counter, 1 to 32; 0: the place is not packed.
         default: of all other places; 0: only the named ones are packed.
         most_colours: places with more colours are not packed.
+        successors: whether the net has functions that make all markings after a marking (pn_transition_t.successors).
     """
 
     width: Mapping[str, int]
     default: int = 1
     most_colours: int = MOST_COLOURS
+    successors: bool = True
 
     def of(self, place: str) -> int:
         """The width for a place, by its full name."""
