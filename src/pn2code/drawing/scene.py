@@ -489,6 +489,18 @@ def needs_arranging(page: RawPage) -> bool:
     return len(layouts) - len(points) > _ARRANGED_SHARE * len(layouts)
 
 
+def positions(document: Document) -> dict[str, Point]:
+    """Where the nodes stand, by id, in the units of the file (y upwards); arranged where the file does not say."""
+    found: dict[str, Point] = {}
+    for page in document.pages:
+        if needs_arranging(page):
+            centres = _arrangement(page).centres
+            found.update({identity: (x, -y) for identity, (x, y) in centres.items()})
+        else:
+            found.update({n.id: (n.layout.x, n.layout.y) for n in page.nodes})
+    return found
+
+
 def _arrangement(page: RawPage) -> Arrangement:
     nodes = {p.id: node_size(p.layout, PLACE_SIZE) for p in page.places}
     nodes |= {t.id: node_size(t.layout, TRANSITION_SIZE) for t in page.transitions}

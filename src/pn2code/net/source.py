@@ -5,7 +5,6 @@ from __future__ import annotations
 from pathlib import Path
 
 from pn2code.diagnostics import Diagnostics
-from pn2code.pnml import read as pnml
 from pn2code.reading import cpn
 from pn2code.reading.document import Document
 from pn2code.reading.xml import read_bytes
@@ -28,6 +27,9 @@ def read(
     data = read_bytes(path, d)
     if data is None:
         return None
-    if pnml.is_pnml(str(path), data):
-        return pnml.read_data(data, str(path), d, partial=partial)
+    if path.suffix.lower() != ".cpn":
+        from pn2code.pnml import read as pnml  # most nets are no PNML
+
+        if pnml.is_pnml(str(path), data):
+            return pnml.read_data(data, str(path), d, partial=partial)
     return cpn.read_data(data, str(path), d, partial=partial, drawn=drawn)

@@ -48,5 +48,5 @@ UNSUPPORTED_PNML = register(
     "unsupported-pnml",
     "a feature of PNML is not supported",
     "Place/transition nets and symmetric nets are read completely, of high-level nets what has numbers, Booleans, "
-    "enumerations, products and multi-sets. Lists, strings and user-defined sorts without definition are not translated.",
+    "enumerations, products and multi-sets. Lists, strings and sorts without definition are not translated.",
 )

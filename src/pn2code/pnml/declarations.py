@@ -69,8 +69,14 @@ class Declarations:
         for node in nodes:
             self._collect(node, strangers)
         # Names that mean several things are given to none of them.
-        told = [n for n in self._nodes.values() if n.tag in ("feconstant", "partitionelement", "variabledecl")]
-        self._shared = {name for name, count in Counter(n.get("name") for n in told).items() if count > 1}
+        told = [
+            n
+            for n in self._nodes.values()
+            if n.tag in ("feconstant", "partitionelement", "variabledecl")
+        ]
+        self._shared = {
+            name for name, count in Counter(n.get("name") for n in told).items() if count > 1
+        }
         for node in [n for n in self._nodes.values() if n.tag in ("namedsort", "partition")]:
             self.user_sort(node.get("id"), node)
         for node in [n for n in self._nodes.values() if n.tag == "variabledecl"]:
@@ -131,12 +137,21 @@ class Declarations:
         found = self._nodes.get(identity)
         if found is not None:
             said = f"`{identity}` is declared as `{found.tag}`, but a {what} is needed here"
-            self.d.error(PNML_REFERENCE, said, origin, notes=[Note("it is declared here", self.at(found))])
+            self.d.error(
+                PNML_REFERENCE, said, origin, notes=[Note("it is declared here", self.at(found))]
+            )
             return
         known = [i for i, n in self._nodes.items() if n.tag in tags]
-        said = f"there is no {what} with the id `{identity}`" if identity else f"the id of a {what} is missing"
+        said = (
+            f"there is no {what} with the id `{identity}`"
+            if identity
+            else f"the id of a {what} is missing"
+        )
         self.d.error(
-            PNML_REFERENCE, said, origin, hint=did_you_mean(identity, known, "declare it, or correct the reference")
+            PNML_REFERENCE,
+            said,
+            origin,
+            hint=did_you_mean(identity, known, "declare it, or correct the reference"),
         )
 
     # --- sorts -----------------------------------------------------------------------------------
@@ -175,7 +190,12 @@ class Declarations:
             self.unknown("sort", identity, origin, ("namedsort", "partition"))
             return None
         if identity in self._open or len(self._open) > _MOST_DEEP:
-            self.error(PNML_ELEMENT, f"the sort `{identity}` is made of itself", node, "name other components")
+            self.error(
+                PNML_ELEMENT,
+                f"the sort `{identity}` is made of itself",
+                node,
+                "name other components",
+            )
             return None
         self._open.append(identity)
         sort: Sort | None = None
@@ -184,7 +204,9 @@ class Declarations:
         elif node.tag == "namedsort" and node.children:
             sort = self._define(node.children[0], node, self.at(node))
         else:
-            self.error(UNSUPPORTED_PNML, f"the sort `{identity}` has no definition", node, "define it")
+            self.error(
+                UNSUPPORTED_PNML, f"the sort `{identity}` has no definition", node, "define it"
+            )
         self._open.pop()
         self._sorts[identity] = sort
         return sort
@@ -215,7 +237,12 @@ class Declarations:
             case "finiteenumeration" | "cyclicenumeration":
                 values = self._values(node, "feconstant")
                 if not values:
-                    self.error(PNML_ELEMENT, f"the enumeration `{shown}` has no constants", named, "give it some")
+                    self.error(
+                        PNML_ELEMENT,
+                        f"the enumeration `{shown}` has no constants",
+                        named,
+                        "give it some",
+                    )
                     return None
                 name = self._sort_name(named, "Enum")
                 self._declare(name, "enum", origin, ids=values)
@@ -226,14 +253,18 @@ class Declarations:
                 parts = [self.sort(child, origin) for child in node.children]
                 if None in parts or not parts:
                     if not parts:
-                        self.error(PNML_ELEMENT, "a product has no components", named, "name some sorts")
+                        self.error(
+                            PNML_ELEMENT, "a product has no components", named, "name some sorts"
+                        )
                     return None
                 known = tuple(p for p in parts if p is not None)
                 if len(known) == 1:
                     return known[0]
                 name = self._sort_name(named, "Product")
                 self._declare(name, "product", origin, ids=tuple(p.name for p in known))
-                return Sort(name, shown or " * ".join(p.shown for p in known), SortKind.PRODUCT, parts=known)
+                return Sort(
+                    name, shown or " * ".join(p.shown for p in known), SortKind.PRODUCT, parts=known
+                )
             case "partition":
                 return self._partition(node)
             case _:
@@ -243,7 +274,9 @@ class Declarations:
         try:
             low, high = int(node.get("start")), int(node.get("end"))
         except ValueError:
-            self.error(PNML_ELEMENT, "a range needs whole numbers as `start` and `end`", node, "write them")
+            self.error(
+                PNML_ELEMENT, "a range needs whole numbers as `start` and `end`", node, "write them"
+            )
             return None
         if low > high or max(abs(low), abs(high)) > _LARGEST:
             self.error(
@@ -262,7 +295,9 @@ class Declarations:
         base = self.sort(of, self.at(node)) if of is not None else None
         if base is None:
             if of is None:
-                self.error(PNML_ELEMENT, "a partition does not say what it divides", node, "name a sort")
+                self.error(
+                    PNML_ELEMENT, "a partition does not say what it divides", node, "name a sort"
+                )
             return None
         values = self._values(node, "partitionelement")
         if not values:
@@ -270,7 +305,9 @@ class Declarations:
             return None
         name = self._sort_name(node, "Partition")
         self._declare(name, "enum", self.at(node), ids=values)
-        return Sort(name, node.get("name") or node.get("id"), SortKind.PARTITION, values, parts=(base,))
+        return Sort(
+            name, node.get("name") or node.get("id"), SortKind.PARTITION, values, parts=(base,)
+        )
 
     def _values(self, node: Node, tag: str) -> tuple[str, ...]:
         found = []
@@ -314,7 +351,9 @@ class Declarations:
 
     # --- variables, constants, operators ---------------------------------------------------------
 
-    def variable(self, identity: str, at: Node, origin: Origin | None = None) -> tuple[str, Sort] | None:
+    def variable(
+        self, identity: str, at: Node, origin: Origin | None = None
+    ) -> tuple[str, Sort] | None:
         """Name and sort of a variable."""
         if identity in self._variables:
             return self._variables[identity]
@@ -324,7 +363,9 @@ class Declarations:
             self.unknown("variable", identity, origin or self.at(at), ("variabledecl",))
             return None
         if not node.children:
-            self.error(PNML_ELEMENT, f"the variable `{identity}` has no sort", node, "name its sort")
+            self.error(
+                PNML_ELEMENT, f"the variable `{identity}` has no sort", node, "name its sort"
+            )
         elif (sort := self.sort(node.children[0], self.at(node))) is not None:
             plain = [node.get("name")] if node.get("name") not in self._shared else []
             name = self.names.make([*plain, identity], "v")
@@ -391,7 +432,9 @@ class Declarations:
             for member in element.children:
                 value = self.literal(member, base)
                 if value is None:
-                    self.unknown("constant", member.get("declaration"), self.at(element), ("feconstant",))
+                    self.unknown(
+                        "constant", member.get("declaration"), self.at(element), ("feconstant",)
+                    )
                     return None
                 rules.append(f"{value} => {part}")
         rules = list(dict.fromkeys(rules))
@@ -400,7 +443,9 @@ class Declarations:
         if len(rules) < total:
             rules.append(f"_ => {sort.values[-1]}")
         text = " | ".join(rules)
-        return self._function(f"part_{sort.name}", lambda name: f"val {name} = fn {text}", node), sort
+        return self._function(
+            f"part_{sort.name}", lambda name: f"val {name} = fn {text}", node
+        ), sort
 
     def literal(self, node: Node, sort: Sort) -> str | None:
         """A constant term as CPN ML; None if it is none."""
@@ -418,7 +463,9 @@ class Declarations:
         if key not in self._functions:
             name = self.names.make([key], key)
             self._functions[key] = name
-            origin = Origin(self.base.file, at.line, at.column, "", f"function `{name}`", "", "declaration")
+            origin = Origin(
+                self.base.file, at.line, at.column, "", f"function `{name}`", "", "declaration"
+            )
             self.items.append(RawMl("", SourceText(text(name), origin), origin))
         return self._functions[key]
 

@@ -67,7 +67,10 @@ def is_pnml(file: str, data: bytes) -> bool:
     """Whether a file is to be read as PNML: its name or its beginning says so."""
     if file.lower().endswith(".pnml"):
         return True
-    return not file.lower().endswith(".cpn") and re.search(rb"<(\w+:)?pnml[\s>]", data[:4096]) is not None
+    return (
+        not file.lower().endswith(".cpn")
+        and re.search(rb"<(\w+:)?pnml[\s>]", data[:4096]) is not None
+    )
 
 
 def read_data(data: bytes, file: str, d: Diagnostics, *, partial: bool = False) -> Document | None:
@@ -110,7 +113,9 @@ class _Reader:
     def document(self, root: Node, sha256: str) -> Document | None:
         net = root.child("net")
         if root.tag != "pnml" or net is None:
-            found = f"the root element is `{root.tag}`" if root.tag != "pnml" else "`pnml` has no `net`"
+            found = (
+                f"the root element is `{root.tag}`" if root.tag != "pnml" else "`pnml` has no `net`"
+            )
             self.d.error(
                 NOT_PNML,
                 f"not a PNML net: {found}",
@@ -133,7 +138,9 @@ class _Reader:
         declared = [n for page in (net, *pages) for n in page.all("declaration")]
         self.declarations = Declarations(declared, self.base, self.d)
         if not self.is_high_level:
-            origin = Origin(self.file, net.line, net.column, "", f"net `{net.get('id')}`", net.get("id"))
+            origin = Origin(
+                self.file, net.line, net.column, "", f"net `{net.get('id')}`", net.get("id")
+            )
             self.declarations.items.append(
                 RawColset("", _UNIT, "unit", (), (), (), False, (), False, "", origin)
             )
@@ -207,7 +214,13 @@ class _Reader:
         """Enter all nodes and arcs by their ids."""
         for page in pages:
             for node in page.children:
-                if node.tag in ("place", "transition", "referencePlace", "referenceTransition", "arc"):
+                if node.tag in (
+                    "place",
+                    "transition",
+                    "referencePlace",
+                    "referenceTransition",
+                    "arc",
+                ):
                     self.enter(node, page)
 
     def enter(self, node: Node, page: Node) -> None:
@@ -221,7 +234,10 @@ class _Reader:
                 return  # nobody refers to arcs
         if not identity:
             self.d.error(
-                PNML_ELEMENT, f"a {node.tag} has no id", origin, hint="add an id attribute that is unique"
+                PNML_ELEMENT,
+                f"a {node.tag} has no id",
+                origin,
+                hint="add an id attribute that is unique",
             )
         elif identity in self.nodes:
             first = self.nodes[identity]
@@ -428,7 +444,11 @@ class _Reader:
         ends = [self.nodes.get(i) for i in (source, target)]
         for word, wanted, end in zip(("source", "target"), (source, target), ends, strict=True):
             if end is None or end.tag == "arc":
-                why = f"leads to `{wanted}`, which is no node of the net" if wanted else f"has no {word}"
+                why = (
+                    f"leads to `{wanted}`, which is no node of the net"
+                    if wanted
+                    else f"has no {word}"
+                )
                 nodes = [i for i, n in self.nodes.items() if n.tag != "arc"]
                 hint = did_you_mean(wanted, nodes, "draw it again, or remove it")
                 self.d.error(ARC_DANGLING, f"arc `{node.get('id')}` {why}", origin, hint=hint)
@@ -477,7 +497,9 @@ class _Reader:
         if kind not in _ORIENTATIONS or outwards:
             self.d.error(
                 UNSUPPORTED_PNML,
-                f"arcs of type `{kind}` " + ("from a transition " if outwards else "") + "are not supported",
+                f"arcs of type `{kind}` "
+                + ("from a transition " if outwards else "")
+                + "are not supported",
                 origin,
                 hint="arcs are normal, or, from a place to a transition, inhibitor, reset or test",
             )

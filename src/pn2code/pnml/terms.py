@@ -135,7 +135,9 @@ class Terms:
     def _many(self, term: Term, node: Node, sort: Sort | None) -> Term:
         """The term as a multi-set over a sort."""
         if sort is not None and term.sort is not None and not sort.fits(term.sort):
-            raise self._wanted(f"a multi-set over `{sort.shown}`", term, node, "use terms of this sort")
+            raise self._wanted(
+                f"a multi-set over `{sort.shown}`", term, node, "use terms of this sort"
+            )
         if term.many:
             return term
         return Term((("1`", node), *_closed(term, node)), term.sort, True, False, count=1)
@@ -200,12 +202,16 @@ class Terms:
         body = operator.child("def")
         self._calls += 1
         if body is None or not body.children or self._calls > _MOST_CALLS:
-            why = "has no definition" if body is None or not body.children else "is defined by itself"
+            why = (
+                "has no definition" if body is None or not body.children else "is defined by itself"
+            )
             raise self.fail(PNML_ELEMENT, f"the operator `{identity}` {why}", node, "define it")
         inner = body.children[0]
         if inner.tag == "subterm" and inner.children:
             inner = inner.children[0]
-        values = {v.get("id"): self._term(a, None) for v, a in zip(parameters, arguments, strict=True)}
+        values = {
+            v.get("id"): self._term(a, None) for v, a in zip(parameters, arguments, strict=True)
+        }
         before, self._given = self._given, values
         try:
             return self._term(inner, sort)
@@ -233,7 +239,10 @@ class Terms:
         of = of if of is not None else sort if sort is not None and sort.is_number else None
         if of is not None and of.kind is SortKind.RANGE and not of.low <= value <= of.high:
             raise self.fail(
-                PNML_SORT, f"{value} is not in the range `{of.shown}`", node, f"use {of.low} to {of.high}"
+                PNML_SORT,
+                f"{value} is not in the range `{of.shown}`",
+                node,
+                f"use {of.low} to {of.high}",
             )
         return Term(((number(value), node),), of if of is not None else INTEGER)
 
@@ -265,7 +274,9 @@ class Terms:
         terms = [self._term(a, w) for a, w in zip(arguments, wanted, strict=True)]
         for term, argument, part in zip(terms, arguments, wanted, strict=True):
             if part is not None and term.sort is not None and not part.fits(term.sort):
-                raise self._wanted(f"a component of sort `{part.shown}`", term, argument, "use terms of this sort")
+                raise self._wanted(
+                    f"a component of sort `{part.shown}`", term, argument, "use terms of this sort"
+                )
         if any(t.many for t in terms):
             if sort is None:
                 raise self.fail(PNML_SORT, "a multi-set cannot stand here", node, "use one value")
@@ -297,7 +308,12 @@ class Terms:
         codes = [_closed(a, left), _closed(b, right)]
         if sign not in ("=", "<>") and a.sort is not None and not a.sort.is_number:
             if not a.sort.is_listed:
-                raise self._wanted("a value of an ordered sort", a, left, "only numbers and enumerations are ordered")
+                raise self._wanted(
+                    "a value of an ordered sort",
+                    a,
+                    left,
+                    "only numbers and enumerations are ordered",
+                )
             name = a.sort.name
             codes = [((f"{name}.ord ", node), *c) for c in codes]
         return Term(_joined(f" {sign} ", codes, node), BOOL, atomic=False)
@@ -367,7 +383,9 @@ class Terms:
         if of is None:
             raise TermError
         if of.kind is SortKind.INTEGER:
-            raise self.fail(PNML_SORT, f"`{of.shown}` has infinitely many values", node, "use a finite sort")
+            raise self.fail(
+                PNML_SORT, f"`{of.shown}` has infinitely many values", node, "use a finite sort"
+            )
         if of.kind is SortKind.DOT:
             return Term((("1`()", node),), of, True, False)
         return Term(((f"{of.name}.all()", node),), of, True, False, 1)
@@ -381,7 +399,9 @@ class Terms:
         terms = [self._many(self._term(a, sort), a, sort) for a in arguments]
         if len(terms) == 1:
             return terms[0]
-        code = _joined(" ++ ", [_summand(t, a) for t, a in zip(terms, arguments, strict=True)], node)
+        code = _joined(
+            " ++ ", [_summand(t, a) for t, a in zip(terms, arguments, strict=True)], node
+        )
         return Term(code, next((t.sort for t in terms if t.sort is not None), sort), True, False)
 
     def _subtract(self, node: Node, sort: Sort | None) -> Term:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-
 from pn2code.frozen import frozen
 from pn2code.ml.core import Symbol
 from pn2code.net.flat import FlatNet

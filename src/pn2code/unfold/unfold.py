@@ -1,4 +1,5 @@
-"""Unfolding by forward closure: from the colours of the initial marking, all that can follow if tokens are never used up.
+"""Unfolding by forward closure: from the colours of the initial marking, all that can follow if tokens were never
+used up.
 
 The bindings of a transition are searched over the colours known so far, by the token game's own search, restricted so
 that at least one token is new (semi-naive): each binding is found once. One whose other demands are not known yet waits
@@ -80,10 +81,20 @@ def _check(net: FlatNet, d: Diagnostics) -> None:
     for p in net.places:
         if p.colset.timed:
             said = f"place `{p.name}` is timed"
-            d.error(UNSUPPORTED_UNFOLDING, said, p.origins[0] if p.origins else Origin(net.file), hint=hint)
+            d.error(
+                UNSUPPORTED_UNFOLDING,
+                said,
+                p.origins[0] if p.origins else Origin(net.file),
+                hint=hint,
+            )
     for t in net.transitions:
         if t.code is not None:
-            d.error(UNSUPPORTED_UNFOLDING, f"transition `{t.name}` has a code segment", t.origin, hint=hint)
+            d.error(
+                UNSUPPORTED_UNFOLDING,
+                f"transition `{t.name}` has a code segment",
+                t.origin,
+                hint=hint,
+            )
         for e, part in _inscriptions(t):
             found = impure(e, net.program)
             if found:
@@ -130,7 +141,7 @@ class _Search(Enabling):
     def __init__(self, net: FlatNet, evaluator: Evaluator) -> None:
         super().__init__(net, evaluator)
         self.choices: dict[tuple[int, int], tuple[list[Value], set[Value]]] = {}
-        self.faults: list[tuple[FlatTransition, dict[int, Value], GameError]] = []
+        self.faults: list[tuple[FlatTransition, GameError]] = []
 
     def _match_tokens(
         self, arc: FlatArc, index: int, marking: Marking, found: dict[int, Value], free: bool
@@ -152,7 +163,7 @@ class _Search(Enabling):
         try:
             return super()._guard(t, i, found)
         except GameError as error:
-            self.faults.append((t, found, error))
+            self.faults.append((t, error))
             return False
 
 
@@ -215,7 +226,9 @@ class _Closure:
         self.count += 1
         if self.count > self.max_places:
             p = self.net.places[place]
-            raise _TooLargeError("places", self.max_places, p.origins[0] if p.origins else Origin(self.net.file))
+            raise _TooLargeError(
+                "places", self.max_places, p.origins[0] if p.origins else Origin(self.net.file)
+            )
         self.known[place].add(value)
         self.new[place].append(value)
         for element in self.waiting.pop(token, ()):
@@ -228,8 +241,8 @@ class _Closure:
                 self.enter(t, binding)
         except GameError as error:
             self.faults.append(_Fault(t.name, error.message, error.origin, t, {}))
-        for faulty, _, error in self.search.faults:
-            self.faults.append(_Fault(faulty.name, error.message, error.origin, faulty, {}))
+        for faulty, raised in self.search.faults:
+            self.faults.append(_Fault(faulty.name, raised.message, raised.origin, faulty, {}))
         self.search.faults.clear()
 
     def enter(self, t: FlatTransition, binding: Binding) -> None:
@@ -275,7 +288,9 @@ class _Closure:
             for token in element.post:
                 self.add(token)
 
-    def fault(self, t: FlatTransition, binding: Binding, error: GameError, pre: dict[Token, int]) -> None:
+    def fault(
+        self, t: FlatTransition, binding: Binding, error: GameError, pre: dict[Token, int]
+    ) -> None:
         self.faults.append(_Fault(self.name(t, binding), error.message, error.origin, t, pre))
 
     # --- the result ------------------------------------------------------------------------------
