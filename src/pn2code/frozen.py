@@ -1,9 +1,9 @@
 """`@frozen`: what `@dataclass(frozen=True, slots=True)` gives, for modules with dozens of node classes.
 
 Python 3.11's dataclasses compile six functions for each class, about a millisecond; with some hundred node classes that
-was half of the start-up time. A frozen class compiles one, its `__init__`; the rest is shared. They are dataclasses in
-every other way: `fields`, `replace`, `match`, subclasses. What they do not have: `__post_init__`, `init=False`,
-key-word-only fields.
+was half of the start-up time. A frozen class compiles one, its `__init__`, when the first object is made; the rest is
+shared. They are dataclasses in every other way: `fields`, `replace`, `match`, subclasses. What they do not have:
+`__post_init__`, `init=False`, key-word-only fields, class variables.
 
 Example:
 
@@ -24,27 +24,93 @@ from typing import Any, NoReturn, TypeVar, dataclass_transform
 T = TypeVar("T")
 
 
+@dataclasses.dataclass(init=False, repr=False, eq=False, slots=True)
+class _Sample:
+    """What the standard library puts into a class."""
+
+    field: int
+
+
+_KIND: Any = _Sample.__dataclass_fields__["field"]._field_type  # type: ignore[attr-defined]
+_PARAMETERS: Any = _Sample.__dataclass_params__  # type: ignore[attr-defined]
+
+
 @dataclass_transform(frozen_default=True, field_specifiers=(dataclasses.field,))
 def frozen(cls: type[T]) -> type[T]:
     """Make a class a frozen, slotted dataclass that compares and hashes by value."""
-    cls.__doc__ = cls.__doc__ or cls.__name__  # else dataclasses computes a signature for it
-    made: Any = dataclasses.dataclass(init=False, repr=False, eq=False, slots=True)(cls)
-    fields = dataclasses.fields(made)
-    made.__init__ = _init(made, fields)
+    inherited: dict[str, dataclasses.Field[Any]] = {}
+    for base in reversed(cls.__mro__[1:]):
+        inherited.update(getattr(base, "__dataclass_fields__", {}))
+    content = dict(cls.__dict__)
+    annotations = content.get("__annotations__", {})
+    own = {name: _field(cls, name, content.pop(name, dataclasses.MISSING)) for name in annotations}
+    for name, f in own.items():
+        f.name, f.type = name, annotations[name]
+    everything = {**inherited, **own}
+    for name in ("__dict__", "__weakref__"):
+        content.pop(name, None)
+    metaclass: Any = type(cls)
+    made: Any = metaclass(
+        cls.__name__,
+        cls.__bases__,
+        {
+            **content,
+            "__doc__": cls.__doc__ or cls.__name__,
+            "__slots__": tuple(name for name in own if name not in inherited),
+            "__match_args__": tuple(everything),
+            "__dataclass_fields__": everything,
+            "__dataclass_params__": _PARAMETERS,
+            "__repr__": _repr,
+            "__reduce__": _reduce,
+            "__setattr__": _frozen,
+            "__delattr__": _frozen,
+        },
+    )
+    made.__qualname__ = cls.__qualname__
+    fields = tuple(everything.values())
+    made.__init__ = _first_init(made, fields)
     made.__eq__, made.__hash__ = _comparison(tuple(f.name for f in fields if f.compare))
-    made.__repr__ = _repr
-    made.__reduce__ = _reduce
-    made.__setattr__ = _frozen
-    made.__delattr__ = _frozen
     return made  # type: ignore[no-any-return]
+
+
+def _field(cls: type, name: str, default: object) -> dataclasses.Field[Any]:
+    """The field of a name from what the class statement assigns to it."""
+    f: Any = default
+    if not isinstance(default, dataclasses.Field):
+        if default.__class__.__hash__ is None:
+            raise ValueError(f"{cls.__name__}.{name}: a default that can change; use a factory")
+        f = (
+            dataclasses.field(default=default)
+            if default is not dataclasses.MISSING
+            else dataclasses.field()
+        )
+    annotation = cls.__annotations__[name]
+    if (
+        not f.init
+        or f.kw_only is True
+        or hasattr(cls, "__post_init__")
+        or (isinstance(annotation, str) and "ClassVar" in annotation)
+    ):
+        raise TypeError(f"{cls.__name__}.{name}: not for @frozen; use @dataclass")
+    f.kw_only = False
+    f._field_type = _KIND
+    return f  # type: ignore[no-any-return]
+
+
+def _first_init(made: Any, fields: tuple[dataclasses.Field[Any], ...]) -> Callable[..., None]:
+    """An `__init__` that puts the real one in its place: of many classes no object is ever made."""
+
+    def first(self: Any, *values: Any, **named: Any) -> None:
+        made.__init__ = _init(made, fields)
+        made.__init__(self, *values, **named)
+
+    return first
 
 
 def _init(made: type, fields: tuple[dataclasses.Field[Any], ...]) -> Callable[..., None]:
     names: dict[str, object] = {"MISSING": dataclasses.MISSING}
     parameters, lines = ["self"], []
     for f in fields:
-        if not f.init or f.kw_only or hasattr(made, "__post_init__"):
-            raise TypeError(f"{made.__name__}.{f.name}: not for @frozen; use @dataclass")
         # Setting through the slot itself passes by the `__setattr__` that forbids it.
         names[f"set_{f.name}"] = getattr(made, f.name).__set__
         parameter, value = f.name, f.name

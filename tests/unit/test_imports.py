@@ -10,9 +10,11 @@ from pathlib import Path
 ALLOWED: dict[str, set[str]] = {
     "diagnostics": set(),
     "resources": set(),
+    "private_folder": set(),
     "parser_cache": set(),
+    "bytecode": set(),
     "frozen": set(),
-    "ml": {"diagnostics", "parser_cache"},
+    "ml": {"diagnostics"},
     "reading": {"diagnostics"},
     "pnml": {"diagnostics", "ml", "reading"},
     "net": {"diagnostics", "ml", "pnml", "reading"},
@@ -23,7 +25,7 @@ ALLOWED: dict[str, set[str]] = {
     "lowering": {"diagnostics", "ml", "net", "cell", "tdl"},
     "robot": {"diagnostics"},
     "tdl": {"diagnostics", "robot", "parser_cache"},
-    "emission": {"diagnostics", "ml", "net", "cell", "lowering", "resources", "tdl", "parser_cache"},
+    "emission": {"diagnostics", "ml", "net", "cell", "lowering", "resources", "tdl"},
     "drawing": {"diagnostics", "net", "reading", "resources", "semantics"},
     "channels": {"diagnostics", "cell"},
     "toolchain": {"diagnostics", "emission"},
@@ -38,9 +40,10 @@ ALLOWED: dict[str, set[str]] = {
                  "parser_cache"},
     "__main__": {"cli"},
     "cli": {"diagnostics", "cell", "channels", "emission", "net", "pipeline", "run", "report", "semantics", "toolchain",
-            "robot", "tdl", "ml", "lowering", "reading", "drawing", "simulate", "monitors", "structure"},
+            "robot", "tdl", "ml", "lowering", "bytecode", "reading", "drawing", "simulate", "monitors", "structure",
+            "convert", "unfold"},
 }  # fmt: skip
-EVERYWHERE = {"frozen"}
+EVERYWHERE = {"frozen", "private_folder"}
 
 # Of `robot`, the script language may know the commands (plain values) only; of the reports, running only the data.
 ONLY = {("tdl", "robot"): {"pn2code.robot.commands"}}

@@ -3,10 +3,13 @@
 from __future__ import annotations
 
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from pn2code.cell import codes
-from pn2code.cell.config import CellConfig, load
 from pn2code.diagnostics import Diagnostics, Origin
+
+if TYPE_CHECKING:
+    from pn2code.cell.config import CellConfig
 
 
 def locate(
@@ -22,10 +25,14 @@ def locate(
             hint="check the path",
         )
         return None
+    beside = path.parent / "cell.toml"
+    if path.is_file() and path.suffix != ".toml" and not beside.is_file():
+        return path, None
+    from pn2code.cell.config import load  # most nets have no cell
+
     if path.is_dir() or path.suffix == ".toml":
         config = load(path, d, layout=layout)
         return (config.net_path, config) if config and _has_net(config, d) else None
-    beside = path.parent / "cell.toml"
     if not beside.is_file():
         return path, None
     config = load(beside, d, layout=layout)

@@ -4,13 +4,10 @@ from __future__ import annotations
 
 import json
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from pn2code.cell.config import CellConfig
-from pn2code.cell.config import load as load_cell
-from pn2code.cell.divide import divide
 from pn2code.cell.locate import locate
 from pn2code.cli.options import (
     DEFAULT_INT_BITS,
@@ -27,6 +24,10 @@ from pn2code.diagnostics import Diagnostic, Diagnostics, render
 from pn2code.net import front
 from pn2code.net.front import Examined
 
+if TYPE_CHECKING:
+    from pn2code.cell.config import CellConfig
+    from pn2code.net.flat import FlatNet
+
 EPILOG = """Examples:
 
   pn2code check net.cpn
@@ -38,10 +39,15 @@ COUNTED = ("pages", "places", "transitions", "arcs")
 """What is counted, as the file has it: substitution transitions are transitions, a page counts once."""
 
 
-def _geometry(config: CellConfig, d: Diagnostics) -> None:
-    """The robots and the scene, in all layouts."""
-    from pn2code.robot import scene  # loads NumPy and the like
+def _cell(config: CellConfig, flat: FlatNet | None, d: Diagnostics) -> None:
+    """What cell.toml says of the net; the robots and the scene, in all layouts."""
+    # Most nets have no cell, and these load NumPy and the like.
+    from pn2code.cell.config import load as load_cell
+    from pn2code.cell.divide import divide
+    from pn2code.robot import scene
 
+    if flat is not None and not d.has_errors:
+        divide(flat, config, d)
     for layout in config.layouts or {"": ""}:
         cell = config if layout == config.layout else load_cell(config.path, d, layout=layout)
         if cell is not None and cell.locator is not None:
@@ -64,10 +70,8 @@ def check(
         where, config = found
         values = {**(config.values if config else {}), **parse_values(settings)}
         result = front.examine(where, d, values, int_bits=int_bits)
-        if result.flat is not None and config is not None and not d.has_errors:
-            divide(result.flat, config, d)
         if config is not None:
-            _geometry(config, d)
+            _cell(config, result.flat, d)
     ok = result.flat is not None and not d.has_errors
     elements = result.document.elements if result.document else {}
     numbers = {key: elements.get(key, 0) for key in COUNTED}

@@ -1,7 +1,7 @@
 """The tables of the CPN ML parser: computed by lark from `grammar.lark` once for each user, then kept.
 
 Lark takes half a second for them, and a tenth to be loaded at all; so it is not even imported where they are kept
-(`parser_cache`). They are kept as JSON: a damaged file is computed anew.
+(`private_folder`). They are kept as JSON: a damaged file is computed anew.
 """
 
 from __future__ import annotations
@@ -9,11 +9,10 @@ from __future__ import annotations
 import hashlib
 import json
 from contextlib import suppress
-from importlib.metadata import version
-from importlib.resources import files
+from pathlib import Path
 from typing import Any, NamedTuple
 
-from pn2code.parser_cache import private_folder, write_whole
+from pn2code.private_folder import private_folder, write_whole
 
 STARTS = ["program", "expression", "expressions", "layered", "code"]
 _FORM = 1
@@ -56,11 +55,11 @@ class Tables(NamedTuple):
 
 def tables() -> Tables:
     """Those of `grammar.lark`."""
-    grammar = files("pn2code.ml").joinpath("grammar.lark").read_text(encoding="utf-8")
+    grammar = Path(__file__).with_name("grammar.lark").read_text(encoding="utf-8")
     folder = private_folder()
     if folder is None:
         return _computed(grammar)
-    digest = hashlib.sha256(f"{_FORM} {version('lark')}\n{grammar}".encode()).hexdigest()[:16]
+    digest = hashlib.sha256(f"{_FORM}\n{grammar}".encode()).hexdigest()[:16]
     kept = folder / f"cpnml-{digest}.json"
     with suppress(OSError, ValueError, TypeError, KeyError):
         found = json.loads(kept.read_bytes())

@@ -26,7 +26,7 @@ from pn2code.diagnostics import Diagnostics, Origin
 from pn2code.diagnostics.codes import register
 from pn2code.emission import runtime
 from pn2code.emission.output import OutputFile
-from pn2code.parser_cache import private_folder
+from pn2code.private_folder import private_folder
 from pn2code.toolchain.build import BUILD_FAILED, TOOL_MISSING, find_compiler, report_failure
 
 CACHE_UNUSABLE = register(

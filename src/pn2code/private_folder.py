@@ -1,0 +1,36 @@
+"""The user's own cache folder: `$XDG_CACHE_HOME/pn2code` or `~/.cache/pn2code`."""
+
+from __future__ import annotations
+
+import os
+from pathlib import Path
+
+
+def private_folder() -> Path | None:
+    """A folder that only this user can write to, or None: what is loaded must not come from anyone else."""
+    try:
+        base = Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache")
+        folder = base / "pn2code"
+        folder.mkdir(mode=0o700, parents=True, exist_ok=True)
+        status = folder.stat()
+    except (OSError, RuntimeError):
+        return None
+    if not hasattr(os, "getuid") or status.st_uid != os.getuid() or status.st_mode & 0o022:
+        return None
+    return folder if os.access(folder, os.W_OK) else None
+
+
+def write_whole(path: Path, data: bytes) -> None:
+    """Write a file of the folder so that no other process reads half of it."""
+    temporary = new_beside(path)
+    temporary.write_bytes(data)
+    temporary.replace(path)
+
+
+def new_beside(path: Path) -> Path:
+    """A new, empty file beside one that is to be replaced by it."""
+    import tempfile  # loads a good deal, and is rarely needed
+
+    handle, name = tempfile.mkstemp(dir=path.parent, prefix=f"{path.stem}-", suffix=".tmp")
+    os.close(handle)
+    return Path(name)
