@@ -46,7 +46,8 @@ static void print_help(void)
                  "  --progress          lines of JSON on the standard error\n"
                  "  --dead-limit N      dead states that are listed (default 1000)\n"
                  "  --write-graph FILE  all nodes and arcs as lines of JSON\n"
-                 "  --trace-to DIR      a shortest trace to each dead state that is listed\n"
+                 "  --trace-to NAME     a shortest trace to a dead state, as NAMEn.trace.jsonl with its number n\n"
+                 "  --traces N          so many of them (default 1)\n"
                  "  --seed N            of random numbers (default 1)\n"
                  "  --help              this text\n\n"
                  "The report is one JSON object on the standard output.\n\n"
@@ -121,6 +122,7 @@ static bool read_valued(const char *option, const char *value, ex_options_t *opt
            || ((strcmp(option, "--arena") == 0) && read_mebi(value, &options->arena))
            || ((strcmp(option, "--approximate") == 0) && read_approximation(value, options))
            || ((strcmp(option, "--spill") == 0) && read_text(value, &options->spill))
+           || ((strcmp(option, "--traces") == 0) && read_number(value, UINT32_MAX, &options->traces))
            || ((strcmp(option, "--dead-limit") == 0) && read_number(value, UINT32_MAX, &options->dead_limit))
            || ((strcmp(option, "--write-graph") == 0) && read_text(value, &options->write_graph))
            || ((strcmp(option, "--trace-to") == 0) && read_text(value, &options->trace_to))
@@ -130,7 +132,8 @@ static bool read_valued(const char *option, const char *value, ex_options_t *opt
 static bool read_options(int argc, char **argv, ex_options_t *options)
 {
     *options = (ex_options_t){ .threads = 1U, .max_states = UINT64_MAX, .memory = DEFAULT_MEMORY, .arena = DEFAULT_ARENA,
-                               .seed = 1U, .has_graph = true, .dead_limit = (uint64_t)DEFAULT_DEAD };
+                               .seed = 1U, .has_graph = true, .dead_limit = (uint64_t)DEFAULT_DEAD,
+                               .traces = 1U };
     for (int i = 1; i < argc; i++) {
         const char *option = argv[i];
         if (strcmp(option, "--no-graph") == 0) {

@@ -1,0 +1,240 @@
+"""`pn2code verify`: the state space of a net, and what it says."""
+
+from __future__ import annotations
+
+import json
+import re
+from datetime import datetime
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from pn2code.cli.interrupts import Interrupts
+from pn2code.cli.nets import OpenNet, open_net, playing
+from pn2code.cli.options import (
+    DEFAULT_INT_BITS,
+    Exit,
+    Format,
+    FormatOption,
+    IntBitsOption,
+    JsonOption,
+    SetOption,
+    parse_values,
+    print_diagnostics,
+    stop,
+)
+from pn2code.diagnostics import Diagnostics, Origin
+from pn2code.semantics.game import GameError
+from pn2code.simulate.script import TraceRefusedError
+from pn2code.verify.codes import REPORT_UNWRITABLE, STATE_ERROR
+from pn2code.verify.explore import Wishes, explore
+from pn2code.verify.limits import Approximation, Limits, Order, cores
+from pn2code.verify.path import steps, text
+from pn2code.verify.progress import ProgressLine
+from pn2code.verify.report import report, why_partial
+from pn2code.verify.result import Exploration, row
+from pn2code.verify.webpage import webpage
+
+EPILOG = """Examples:
+
+  pn2code verify net.cpn
+
+  pn2code verify net.cpn --set n=6 --report net.html --threads 2
+
+  pn2code verify net.cpn --max-states 1000000 --max-seconds 60 --json
+"""
+
+SHOWN_STEPS = 40
+"""Of a longer trace only the first steps are printed."""
+
+
+def verify(
+    net: Annotated[Path, typer.Argument(help="A .cpn or .pnml file, a cell.toml, or a folder.")],
+    max_states: Annotated[
+        int | None, typer.Option(metavar="N", min=1, help="Stop after N markings.")
+    ] = None,
+    max_seconds: Annotated[
+        float | None, typer.Option(metavar="S", min=0.0, help="Stop after S seconds.")
+    ] = None,
+    memory: Annotated[
+        int | None,
+        typer.Option(
+            metavar="MIB",
+            min=16,
+            help="Most memory for the tables.  (default: three quarters of what is free)",
+            show_default=False,
+        ),
+    ] = None,
+    threads: Annotated[
+        int | None,
+        typer.Option(
+            metavar="N", min=1, max=256, help="Default: all processors.", show_default=False
+        ),
+    ] = None,
+    order: Annotated[
+        Order, typer.Option(help="Breadth first (shortest traces) or depth first.")
+    ] = Order.BREADTH,
+    approximate: Annotated[
+        Approximation | None,
+        typer.Option(
+            help="Store less than the markings; some may be missed, and it is said how many."
+        ),
+    ] = None,
+    no_reduction: Annotated[
+        bool, typer.Option("--no-reduction", help="Count the full space (the default).")
+    ] = False,
+    spill: Annotated[
+        Path | None,
+        typer.Option(
+            metavar="DIR", exists=True, file_okay=False, help="Keep large tables in this folder."
+        ),
+    ] = None,
+    report_to: Annotated[
+        Path | None,
+        typer.Option(
+            "--report", metavar="FILE", help="Write the report; as HTML if its name ends so."
+        ),
+    ] = None,
+    traces: Annotated[
+        Path | None,
+        typer.Option(
+            "--traces",
+            metavar="DIR",
+            help="Where traces to dead markings are written (default: here).",
+            show_default=False,
+        ),
+    ] = None,
+    most_traces: Annotated[
+        int, typer.Option("--most-traces", metavar="N", min=0, help="Traces at most.")
+    ] = 1,
+    graph: Annotated[
+        bool,
+        typer.Option(
+            "--graph/--no-graph",
+            help="Components, home markings, liveness, fairness; they need all arcs once more.",
+        ),
+    ] = True,
+    as_json: JsonOption = False,
+    quiet: Annotated[
+        bool, typer.Option("--quiet", "-q", help="No progress, and nothing but errors.")
+    ] = False,
+    settings: SetOption = [],  # noqa: B006 - typer reads the default only
+    int_bits: IntBitsOption = DEFAULT_INT_BITS,
+    form: FormatOption = Format.FULL,
+) -> None:
+    """Explore the whole state space of a net, and report what it says.
+
+    Counts of nodes and arcs, bounds of places, dead and home markings, dead and live transitions, fairness: the report
+    of CPN Tools, complete. Exit code 0: everything was seen; 3: a limit was hit, which the report says.
+    """
+    opened = open_net(net, parse_values(settings), form, int_bits=int_bits)
+    limits = Limits(
+        max_states=max_states,
+        max_seconds=max_seconds,
+        memory=memory,
+        threads=threads or cores(),
+        order=order,
+        approximation=approximate,
+        spill=spill,
+        graph=graph,
+        traces=most_traces,
+    )
+    d = Diagnostics()
+    with Interrupts() as interrupts, ProgressLine(shown=not (as_json or quiet)) as progress:
+        wishes = Wishes(
+            traces=_folder(traces) if most_traces else None,
+            stem=_stem(opened),
+            progress=progress.update,
+            interrupted=interrupts.is_wanted,
+        )
+        with playing(form):
+            found = explore(opened.flat, opened.storage, limits, d, wishes)
+    if found is None:
+        stop(d, form)
+    if found.error is not None and found.why == "error":
+        _tell_error(opened, found, d)
+    if report_to is not None:
+        _write_report(opened, found, report_to, d)
+    if not as_json and not quiet:
+        typer.echo(_text(opened, found))
+    print_diagnostics(d.sorted(), form)
+    if as_json:
+        typer.echo(json.dumps(row(opened.flat, found), indent=1))
+    code = _code(found, d)
+    if code:
+        raise typer.Exit(code)
+
+
+def _folder(traces: Path | None) -> Path:
+    folder = traces or Path()
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+    except OSError as problem:
+        reason = (problem.strerror or str(problem)).lower()
+        raise typer.BadParameter(f"`{folder}`: {reason}", param_hint="--traces") from None
+    return folder
+
+
+def _stem(opened: OpenNet) -> str:
+    """What the names of trace files begin with."""
+    return re.sub(r"[^A-Za-z0-9_.-]+", "_", opened.flat.name) or "net"
+
+
+def _code(found: Exploration, d: Diagnostics) -> int:
+    if d.has_errors:
+        return Exit.MODEL
+    return Exit.OK if found.complete else Exit.INCONCLUSIVE
+
+
+def _tell_error(opened: OpenNet, found: Exploration, d: Diagnostics) -> None:
+    assert found.error is not None
+    index = found.error.get("transition")
+    t = None if index is None else opened.flat.transitions[index]
+    where = f"transition `{t.name}`" if t is not None else found.error["where"]
+    d.error(
+        STATE_ERROR,
+        f"{where} raises `{found.error['message']}` in a marking that can be reached",
+        t.origin if t is not None else Origin(opened.flat.file),
+        notes=[found.error["where"]] if found.error["where"] else [],
+        hint="`pn2code simulate` comes there too; guard the inscription, or handle the exception",
+    )
+
+
+def _write_report(opened: OpenNet, found: Exploration, path: Path, d: Diagnostics) -> None:
+    now = datetime.now().astimezone()
+    page = path.suffix.lower() in (".html", ".htm")
+    body = (
+        webpage(opened.flat, found, opened.storage, now)
+        if page
+        else report(opened.flat, found, now)
+    )
+    try:
+        path.write_text(body, encoding="utf-8")
+    except OSError as problem:
+        reason = (problem.strerror or str(problem)).lower()
+        d.error(REPORT_UNWRITABLE, f"cannot write `{path}`: {reason}", Origin(str(path)))
+
+
+def _text(opened: OpenNet, found: Exploration) -> str:
+    parts = [report(opened.flat, found, None).rstrip(), _figures(found)]
+    for trace in found.traces:
+        head = f"Shortest run to the dead marking {trace.node}: {trace.steps} steps, {trace.file}"
+        try:
+            told = text(
+                steps(opened.flat, opened.storage, trace.file, most=SHOWN_STEPS), trace.steps
+            )
+        except (TraceRefusedError, GameError, OSError) as problem:
+            told = f"  (it cannot be shown: {problem})"
+        parts.append(f"{head}\n{told}" if told else head)
+    return "\n\n\n".join(parts)
+
+
+def _figures(found: Exploration) -> str:
+    partial = "" if found.complete else f" TRUNCATED: {why_partial(found)}."
+    return (
+        f"{found.nodes:,} markings and {found.arcs:,} arcs in {found.seconds:.2f} s "
+        f"({found.states_per_second:,.0f} markings/s, {found.threads} thread{'s' * (found.threads > 1)}), "
+        f"{found.bytes_per_state:.1f} bytes a marking, {found.peak_mib:.0f} MiB at most; "
+        f"compiled in {found.compile_seconds:.1f} s.{partial}"
+    )

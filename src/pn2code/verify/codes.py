@@ -1,0 +1,40 @@
+"""Diagnostic codes of verification."""
+
+from __future__ import annotations
+
+from pn2code.diagnostics.codes import register
+
+EXPLORER_FAILED = register(
+    "explorer-failed",
+    "the explorer came to a bad end",
+    "The compiled explorer was killed or did not say how it ended. When the system ended it (not enough memory), give "
+    "it a limit with `--memory`, so that it stops in time and tells what it has seen; else this is a bug in pn2code.",
+)
+STATE_ERROR = register(
+    "state-error",
+    "an inscription raises an exception in a marking that can be reached",
+    "While the state space was computed, an arc inscription, a guard, a delay or a code segment raised an exception "
+    "(Overflow, Div, a value outside its colour set, ...), as in a simulation that comes there. CPN Tools stops its "
+    "calculation likewise. What was seen until then is reported as partial.",
+)
+BEYOND_ROOM = register(
+    "place-unbounded",
+    "a place gets more tokens than can be explored",
+    "A place was given more room again and again, and its multi-set still grows: the place is probably unbounded, and "
+    "the state space infinite. Limit the place in the net (a capacity place, a guard), or the exploration "
+    "(`--max-states`).",
+)
+DRAWS_RANDOM = register(
+    "state-space-random",
+    "the state space of a net that draws random numbers is one of many",
+    "A guard, an arc or a code segment draws a random number, reads a file, or reads a reference that changes. The "
+    "state space then depends on the numbers drawn, and on the order of exploration: bounds and dead markings hold for "
+    "this exploration only. In CPN Tools it is the same. Replace the random function by a free variable over a small "
+    "colour set: all its values are then explored.",
+)
+REPORT_UNWRITABLE = register(
+    "report-unwritable",
+    "a report cannot be written",
+    "The file that `--report` names cannot be opened or written: the folder is missing, there is no permission, or the "
+    "disk is full. The exploration itself is complete, and its result is printed.",
+)

@@ -1,0 +1,54 @@
+"""How far, and how, a state space is explored."""
+
+from __future__ import annotations
+
+import os
+from dataclasses import dataclass
+from enum import StrEnum
+from pathlib import Path
+
+
+class Order(StrEnum):
+    """The order in which markings are expanded."""
+
+    BREADTH = "bfs"
+    DEPTH = "dfs"
+
+
+class Approximation(StrEnum):
+    """Ways of storing less than the markings; some may then be taken for others, and be missed."""
+
+    BITSTATE = "bitstate"
+    HASH = "hash"
+
+
+@dataclass(frozen=True, slots=True)
+class Limits:
+    """What an exploration may use.
+
+    Args:
+        max_states: markings, None: no limit.
+        max_seconds: of exploration, None: no limit.
+        memory: MiB of the explorer's tables, None: three quarters of what is free at the start.
+        threads: at least 1.
+        order: breadth first gives shortest traces.
+        approximation: None: every marking is stored completely.
+        spill: a folder for tables that are larger than memory, None: none.
+        graph: whether the graph is analysed (components, home markings, liveness, fairness).
+        traces: most dead markings that get a trace.
+    """
+
+    max_states: int | None = None
+    max_seconds: float | None = None
+    memory: int | None = None
+    threads: int = 1
+    order: Order = Order.BREADTH
+    approximation: Approximation | None = None
+    spill: Path | None = None
+    graph: bool = True
+    traces: int = 1
+
+
+def cores() -> int:
+    """Processors that this process may use."""
+    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1

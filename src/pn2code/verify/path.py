@@ -1,0 +1,132 @@
+"""A trace told step by step: what occurs, with which binding, and what it changes.
+
+The trace is played by the reference token game, so that what the compiled explorer has found is found to be true by
+an implementation that shares no code with it.
+"""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from pn2code.net.flat import FlatNet, FlatPlace
+from pn2code.semantics.colours import Colours
+from pn2code.semantics.files import Files
+from pn2code.semantics.game import Game
+from pn2code.semantics.marking import BindingElement, Marking
+from pn2code.semantics.report import element, time_text
+from pn2code.semantics.values import Value
+from pn2code.simulate.script import Trace
+
+MOST_SHOWN = 100
+"""Characters of a multi-set."""
+_NO_EVALUATOR: Any = None
+_TEXTS = Colours(_NO_EVALUATOR)
+"""Texts need nothing evaluated."""
+
+
+@dataclass(frozen=True, slots=True)
+class Change:
+    """What a step takes from a place and puts there, and what is there then: multi-sets as CPN ML texts, "" for none."""
+
+    place: str
+    taken: str
+    put: str
+    after: str
+
+
+@dataclass(frozen=True, slots=True)
+class Step:
+    """An occurrence.
+
+    Args:
+        number: from 1.
+        time: model time, "" in an untimed net.
+        transition: its name.
+        binding: variable -> CPN ML text.
+        changes: the places whose marking it changed.
+    """
+
+    number: int
+    time: str
+    transition: str
+    binding: Mapping[str, str]
+    changes: tuple[Change, ...]
+
+
+def steps(net: FlatNet, storage: Mapping[str, str], trace: Path, *, most: int) -> tuple[Step, ...]:
+    """The first `most` steps of a trace, each checked by the token game.
+
+    Raises:
+        TraceRefusedError: the file is no trace of the net.
+        GameError: an inscription raises an exception.
+        OSError: it cannot be read.
+    """
+    opened = Trace.open(trace, net)
+    game = Game(net, storage, seed=opened.header.seed or 1, files=Files(None))
+    found: list[Step] = []
+    before = game.marking
+    for step in opened.steps():
+        if len(found) == most:
+            break
+        if step.time is not None and step.time > game.marking.time:
+            game.set_time(step.time)
+        played = BindingElement.make(step.transition, step.bound)
+        game.fire(played)
+        time = time_text(game.marking.time) if net.timed else ""
+        told = element(net, played)
+        name = net.transitions[step.transition.index].name
+        changes = tuple(_changes(net, before, game.marking))
+        found.append(Step(len(found) + 1, time, name, told["binding"], changes))
+        before = game.marking
+    return tuple(found)
+
+
+def _changes(net: FlatNet, before: Marking, after: Marking) -> Iterator[Change]:
+    for place in net.places:
+        old, new = before.places[place.index], after.places[place.index]
+        if old == new:
+            continue
+        had, has = Counter(old), Counter(new)
+        yield Change(
+            place.name,
+            _text(place, (had - has).elements()),
+            _text(place, (has - had).elements()),
+            _text(place, has.elements()) or "empty",
+        )
+
+
+def _text(place: FlatPlace, tokens: Iterable[Value]) -> str:
+    """In one line."""
+    some = tuple(tokens)
+    return " ".join(_TEXTS.multiset_text(place.colset, some).split("\n")) if some else ""
+
+
+def text(found: tuple[Step, ...], total: int) -> str:
+    """For people."""
+    lines = []
+    for step in found:
+        values = ", ".join(f"{k} = {v}" for k, v in step.binding.items())
+        at = f"  @{step.time}" if step.time else ""
+        lines.append(
+            f"  {step.number:>3}  {step.transition}" + (f"  ({values})" if values else "") + at
+        )
+        for change in step.changes:
+            lines.append(f"         {change.place}: {summary(change)}")
+    if total > len(found):
+        lines.append(f"  ... {total - len(found)} more steps in the trace")
+    return "\n".join(lines)
+
+
+def summary(change: Change) -> str:
+    """`- 1`3  + 1`4`, shortened."""
+    parts = [f"- {_short(change.taken)}"] if change.taken else []
+    parts += [f"+ {_short(change.put)}"] if change.put else []
+    return "  ".join(parts)
+
+
+def _short(text: str) -> str:
+    return text if len(text) <= MOST_SHOWN else f"{text[: MOST_SHOWN - 3]}..."

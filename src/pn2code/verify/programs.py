@@ -1,0 +1,106 @@
+"""Compiled explorers: a net and the host `explore`.
+
+with program(net, {}, Sizes.start(net, {}), d) as built:      # None after a diagnostic
+    subprocess.run([built, "--threads", "2"])
+"""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
+from dataclasses import dataclass, field, replace
+from pathlib import Path
+
+import pn2code
+from pn2code.cell.divide import divide
+from pn2code.diagnostics import Diagnostics
+from pn2code.emission import c as emit_c
+from pn2code.emission.output import OutputFile
+from pn2code.lowering import net as lower_net
+from pn2code.lowering.packing import Packing, choose
+from pn2code.net.flat import FlatNet
+from pn2code.semantics.files import Files
+from pn2code.semantics.game import Game
+from pn2code.toolchain import programs
+from pn2code.toolchain.programs import Host
+
+HOST = Host("explore", flags=("-pthread", "-march=native"), libraries=("-pthread", "-lm"))
+"""Explorers run where they are compiled, so they may use all that the processor has."""
+ROOM = 16
+"""Different tokens that a place can hold at first; what proves too little is made more, place by place."""
+MOST_ROOM = 1 << 20
+MEMORY = 1 << 26
+"""Bytes for the lists and strings of one thread, at first."""
+MOST_MEMORY = 1 << 32
+GROWTH = 4
+
+
+@dataclass(frozen=True, slots=True)
+class Sizes:
+    """What the places of a compiled net hold.
+
+    Args:
+        packing: the widths of counters.
+        room: by name of the place, different tokens; all others `ROOM`.
+        memory: bytes for lists and strings.
+    """
+
+    packing: Packing
+    room: Mapping[str, int] = field(default_factory=dict)
+    memory: int = MEMORY
+
+    @staticmethod
+    def start(net: FlatNet, storage: Mapping[str, str]) -> Sizes:
+        """From what the places hold at first.
+
+        Raises:
+            GameError: a declaration or an initial marking raises an exception.
+        """
+        marking = Game(net, storage, files=Files(None)).marking
+        counts = [Counter(tokens).values() for tokens in marking.places]
+        room = {
+            p.name: max(ROOM, 2 * len(tokens)) for p, tokens in zip(net.places, counts, strict=True)
+        }
+        return Sizes(choose(net, counts), {k: n for k, n in room.items() if n > ROOM})
+
+    def larger(self, place: str | None) -> Sizes | None:
+        """With more for a place, or (None) for lists and strings; None at the end of all sizes."""
+        if place is None:
+            return replace(self, memory=self.memory * GROWTH) if self.memory < MOST_MEMORY else None
+        room = self.room.get(place, ROOM) * GROWTH
+        if room > MOST_ROOM:
+            return None
+        return replace(self, room={**self.room, place: room}, packing=self.packing.wider(place))
+
+
+def generated(
+    net: FlatNet, storage: Mapping[str, str], sizes: Sizes, d: Diagnostics
+) -> tuple[OutputFile, ...] | None:
+    """net.c and net.h; None when the net cannot be compiled, which was reported."""
+    partition = divide(net, None, d)
+    if partition is None:
+        return None
+    capacity = {p.name: sizes.room.get(p.name, ROOM) for p in net.places}
+    ir = lower_net.lower(partition, storage, d, capacity=capacity, packing=sizes.packing)
+    return None if ir is None or d.has_errors else emit_c.emit(ir, pn2code.__version__)
+
+
+@contextmanager
+def program(
+    net: FlatNet, storage: Mapping[str, str], sizes: Sizes, d: Diagnostics
+) -> Iterator[Path | None]:
+    """The explorer of a net, as long as the block lasts; None after a diagnostic.
+
+    Args:
+        net: the net.
+        storage: as for `Game`.
+        sizes: how much its places hold.
+        d: gets the errors.
+    """
+    files = generated(net, storage, sizes, d)
+    if files is None:
+        yield None
+        return
+    with programs.program(HOST, files, d) as found:
+        yield found

@@ -1,0 +1,181 @@
+"""The report of a state space, in the layout of CPN Tools.
+
+    print(report(net, found, datetime.now()))
+
+What CPN Tools says is said in its words. Lines that it does not have (the digest of the net, why a space is partial,
+approximations, reductions) stand in the head, so that a report says by itself what it rests on.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from datetime import datetime
+
+import pn2code
+from pn2code.net.flat import FlatNet, FlatPlace
+from pn2code.semantics.recording import engine_name
+from pn2code.verify.result import Exploration, Graph, multiset_text, transition_name
+
+_RULE = "-" * 72
+_NAME = 20
+"""Columns of a name in the tables of bounds; a longer one has a line of its own."""
+_LISTED = 5
+"""Of more nodes than that in a list only their number and the first are given."""
+_WHY = {
+    "states": "the limit of states was reached",
+    "seconds": "the limit of time was reached",
+    "memory": "the limit of memory was reached",
+    "interrupted": "it was interrupted",
+    "error": "an inscription raised an exception",
+}
+
+
+def report(net: FlatNet, found: Exploration, written: datetime | None) -> str:
+    """The whole text.
+
+    Args:
+        net: the net.
+        found: its state space.
+        written: the date it carries; None: none, so that equal spaces give equal reports.
+    """
+    parts = [_head(net, found, written), _statistics(found)]
+    if found.bounds is not None:
+        parts.append(_boundedness(net, found))
+    if found.graph is not None:
+        parts.append(_home(found, found.graph))
+    parts.append(_liveness(net, found))
+    if found.graph is not None:
+        parts.append(_fairness(net, found.graph))
+    return "\n\n\n".join(parts) + "\n"
+
+
+def why_partial(found: Exploration) -> str:
+    """Why not everything was seen, as a clause."""
+    return _WHY.get(found.why, found.why)
+
+
+def _section(title: str) -> list[str]:
+    return [f" {title}", _RULE]
+
+
+def _head(net: FlatNet, found: Exploration, written: datetime | None) -> str:
+    lines = ["CPN Tools state space report for:", net.file]
+    if written is not None:
+        lines.append(f"Report generated: {written:%a %b %e %H:%M:%S %Y}")
+    lines += [
+        "",
+        f"Made by pn2code {pn2code.__version__} from the net with SHA-256",
+        f"{net.sha256}.",
+    ]
+    if not found.complete:
+        lines += [
+            f"PARTIAL: {why_partial(found)}. What follows is about the part that was seen: upper bounds may be",
+            "greater, lower bounds smaller, dead transitions may occur, and there may be further dead markings.",
+        ]
+    if found.approximation is not None:
+        lines.append(
+            f"APPROXIMATE ({found.approximation['kind']}): a marking may have been taken for another one; the "
+            f"probability\nthat any was omitted is about {found.approximation['omission_probability']:.2g}."
+        )
+    if found.reductions:
+        lines.append(f"REDUCED by {', '.join(found.reductions)}.")
+    return "\n".join(lines)
+
+
+def _statistics(found: Exploration) -> str:
+    status = "Full" if found.complete else "Partial"
+    lines = [
+        *_section("Statistics"),
+        "",
+        "  State Space",
+        f"     Nodes:  {found.nodes}",
+        f"     Arcs:   {found.arcs}",
+        f"     Secs:   {found.seconds:.0f}",
+        f"     Status: {status}",
+    ]
+    if found.graph is not None:
+        lines += [
+            "",
+            "  Scc Graph",
+            f"     Nodes:  {found.graph.scc_nodes}",
+            f"     Arcs:   {found.graph.scc_arcs}",
+            f"     Secs:   {found.graph.seconds:.0f}",
+        ]
+    return "\n".join(lines)
+
+
+def _boundedness(net: FlatNet, found: Exploration) -> str:
+    assert found.bounds is not None
+    rows = sorted((place_name(p), p) for p in net.places)
+    lines = [*_section("Boundedness Properties"), "", "  Best Integer Bounds"]
+    lines.append(f"     {'':24}Upper      Lower")
+    for name, place in rows:
+        own = found.bounds[place.index]
+        lines += _row(name, f"{own.upper}".ljust(11) + f"{own.lower}", _NAME + 4)
+    for title, pick in (("Upper", 1), ("Lower", 0)):
+        lines += ["", f"  Best {title} Multi-set Bounds"]
+        for name, place in rows:
+            own = found.bounds[place.index]
+            multiset = (own.lower_multiset, own.upper_multiset)[pick]
+            lines += _row(name, multiset_text(place.colset, multiset) or "not computed", _NAME)
+    return "\n".join(lines)
+
+
+def place_name(place: FlatPlace) -> str:
+    """`Page'Place 1`, the real tool's name of a place instance."""
+    return f"{engine_name(place.page)}'{engine_name(place.short)} {place.instance_number}"
+
+
+def _row(name: str, text: str, width: int) -> list[str]:
+    if len(name) < width:
+        return [f"     {name.ljust(width)}{text}"]
+    return [f"     {name}", f"     {'':{width}}{text}"]
+
+
+def _home(found: Exploration, graph: Graph) -> str:
+    said = "All" if graph.home_count == found.nodes else _nodes(graph.home, graph.home_count)
+    return "\n".join([*_section("Home Properties"), "", "  Home Markings", f"     {said}"])
+
+
+def _nodes(first: Sequence[int], count: int) -> str:
+    """`None`, `[7,8]`, or of many their number and the first."""
+    if count == 0:
+        return "None"
+    listed = ",".join(map(str, first[:_LISTED]))
+    return f"[{listed}]" if count <= _LISTED else f"{count} [{listed},...]"
+
+
+def _liveness(net: FlatNet, found: Exploration) -> str:
+    everything = found.dead_count == found.nodes and found.complete
+    dead = "All" if everything else _nodes(found.dead, found.dead_count)
+    lines = [*_section("Liveness Properties"), "", "  Dead Markings", f"     {dead}"]
+    lines += ["", "  Dead Transition Instances", *_instances(net, found.dead_transitions())]
+    if found.graph is not None:
+        lines += ["", "  Live Transition Instances", *_instances(net, found.live_transitions())]
+    return "\n".join(lines)
+
+
+def _instances(net: FlatNet, which: Iterable[int]) -> list[str]:
+    names = sorted(transition_name(net, i) for i in which)
+    if not names:
+        return ["     None"]
+    if len(names) == len(net.transitions):
+        return ["     All"]
+    return [f"     {name}" for name in names]
+
+
+def _fairness(net: FlatNet, graph: Graph) -> str:
+    lines = _section("Fairness Properties")
+    if graph.fairness is None:
+        return "\n".join([*lines, "     No infinite occurrence sequences."])
+    for kind, title in (
+        ("impartial", "Impartial Transition Instances"),
+        ("fair", "Fair Transition Instances"),
+        ("just", "Just Transition Instances"),
+        ("none", "Transition Instances with No Fairness"),
+    ):
+        names = sorted(
+            transition_name(net, i) for i, own in enumerate(graph.fairness) if own == kind
+        )
+        lines += ["", f"  {title}", *(f"     {name}" for name in names or ["None"])]
+    return "\n".join(lines)

@@ -1,0 +1,260 @@
+"""What an exploration has found, in terms of the net."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from pn2code.ml.colsets import Colset
+from pn2code.net.flat import FlatNet
+from pn2code.semantics.colour_json import from_json
+from pn2code.semantics.colours import Colours
+from pn2code.semantics.recording import engine_name
+
+FAIRNESS = ("impartial", "fair", "just", "none")
+_NO_EVALUATOR: Any = None
+_TEXTS = Colours(_NO_EVALUATOR)
+"""Texts and the order of values need nothing evaluated."""
+
+
+@dataclass(frozen=True, slots=True)
+class Bounds:
+    """Of one place: least and greatest number of tokens, and for each colour (JSON of the traces) the same.
+
+    `lower_multiset` and `upper_multiset` are [[count, value], ...] in the order of the colour set; None: not computed.
+    """
+
+    lower: int
+    upper: int
+    lower_multiset: tuple[tuple[int, Any], ...] | None
+    upper_multiset: tuple[tuple[int, Any], ...] | None
+
+
+@dataclass(frozen=True, slots=True)
+class Graph:
+    """What only the whole graph tells. Nodes are numbered breadth first; 1 is the initial marking.
+
+    Args:
+        scc_nodes, scc_arcs: strongly connected components, and arcs between different ones.
+        home_count: number of home markings; `home`: the first of them.
+        initial_is_home: whether the initial marking is one.
+        live: for each transition.
+        fairness: for each transition one of `FAIRNESS`; None: there is no infinite occurrence sequence.
+        seconds: what it took.
+    """
+
+    scc_nodes: int
+    scc_arcs: int
+    home_count: int
+    home: tuple[int, ...]
+    initial_is_home: bool
+    live: tuple[bool, ...]
+    fairness: tuple[str, ...] | None
+    seconds: float
+
+
+@dataclass(frozen=True, slots=True)
+class Trace:
+    """A shortest run to a marking."""
+
+    node: int
+    file: Path
+    steps: int
+
+
+@dataclass(frozen=True, slots=True)
+class Exploration:
+    """The state space, or the part of it that was seen.
+
+    Args:
+        complete: whether everything was seen; else `why` says what was in the way: "states", "seconds", "memory",
+            "interrupted", "error".
+        error: of "error": `message`, `where`, `transition` (index or None).
+        nodes, arcs, depth: of the graph.
+        seconds: of exploration, compilation and analysis not included.
+        bytes_per_state: of the tables; `peak_mib`: of the process.
+        fired: for each transition the number of its arcs.
+        bounds: for each place; None when nothing is known.
+        dead_count: markings without successors; `dead`: their first nodes.
+        graph: None when it was not computed, or is not complete.
+        approximation: None, or its name and the probability that a marking was omitted.
+        reductions: what was used to see less than everything.
+    """
+
+    complete: bool
+    why: str
+    error: Mapping[str, Any] | None
+    nodes: int
+    arcs: int
+    depth: int
+    seconds: float
+    cpu_seconds: float
+    bytes_per_state: float
+    peak_mib: float
+    compile_seconds: float
+    threads: int
+    fired: tuple[int, ...]
+    bounds: tuple[Bounds, ...] | None
+    dead_count: int
+    dead: tuple[int, ...]
+    graph: Graph | None
+    traces: tuple[Trace, ...]
+    approximation: Mapping[str, Any] | None
+    reductions: tuple[str, ...]
+
+    @property
+    def states_per_second(self) -> float:
+        """Markings found in a second of exploration."""
+        return self.nodes / self.seconds if self.seconds > 0 else 0.0
+
+    @staticmethod
+    def of(net: FlatNet, found: Mapping[str, Any], compile_seconds: float) -> Exploration:
+        """From what the explorer prints."""
+        graph = found.get("graph")
+        return Exploration(
+            complete=found["complete"],
+            why=found["why"],
+            error=found["error"],
+            nodes=found["nodes"],
+            arcs=found["arcs"],
+            depth=found["depth"],
+            seconds=found["seconds"],
+            cpu_seconds=found.get("cpu_seconds", found["seconds"]),
+            bytes_per_state=found["bytes_per_state"],
+            peak_mib=found["peak_mib"],
+            compile_seconds=compile_seconds,
+            threads=found["threads"],
+            fired=tuple(found["fired"]),
+            bounds=_bounds(found.get("bounds")),
+            dead_count=found["dead_count"],
+            dead=tuple(found["dead"]),
+            graph=_graph(graph) if graph is not None else None,
+            traces=tuple(
+                Trace(t["node"], Path(t["file"]), t["steps"]) for t in found.get("traces") or ()
+            ),
+            approximation=found.get("approximate"),
+            reductions=tuple(found.get("reductions") or ()),
+        )
+
+    def dead_transitions(self) -> tuple[int, ...]:
+        """Transitions that never occur, by index."""
+        return tuple(i for i, count in enumerate(self.fired) if count == 0)
+
+    def live_transitions(self) -> tuple[int, ...]:
+        """Transitions that can always become enabled again, by index."""
+        return tuple(i for i, live in enumerate(self.graph.live) if live) if self.graph else ()
+
+
+def _bounds(found: Sequence[Mapping[str, Any]] | None) -> tuple[Bounds, ...] | None:
+    if not found:
+        return None
+    return tuple(
+        Bounds(
+            b["lower"], b["upper"], _multiset(b["lower_multiset"]), _multiset(b["upper_multiset"])
+        )
+        for b in found
+    )
+
+
+def _multiset(found: Sequence[Sequence[Any]] | None) -> tuple[tuple[int, Any], ...] | None:
+    return None if found is None else tuple((row[0], row[1]) for row in found)
+
+
+def _graph(found: Mapping[str, Any]) -> Graph:
+    fairness = found["fairness"]
+    return Graph(
+        scc_nodes=found["scc_nodes"],
+        scc_arcs=found["scc_arcs"],
+        home_count=found["home_count"],
+        home=tuple(found["home"]),
+        initial_is_home=found["initial_is_home"],
+        live=tuple(found["live"]),
+        fairness=None if fairness is None else tuple(fairness),
+        seconds=found["seconds"],
+    )
+
+
+def transition_name(net: FlatNet, index: int) -> str:
+    """`Page'Transition 1`, the real tool's name of a transition instance."""
+    t = net.transitions[index]
+    return f"{engine_name(t.page)}'{engine_name(t.short)} {t.instance_number}"
+
+
+def row(net: FlatNet, found: Exploration) -> dict[str, Any]:
+    """For programs (docs/verify.md)."""
+    graph = found.graph
+    fairness = None
+    if graph is not None:
+        fairness = {
+            kind: [
+                transition_name(net, i) for i, own in enumerate(graph.fairness or ()) if own == kind
+            ]
+            for kind in FAIRNESS
+        }
+    return {
+        "complete": found.complete,
+        "why": found.why,
+        "nodes": found.nodes,
+        "arcs": found.arcs,
+        "scc_nodes": graph.scc_nodes if graph else None,
+        "scc_arcs": graph.scc_arcs if graph else None,
+        "dead_markings": found.dead_count,
+        "dead_marking_nodes": list(found.dead),
+        "home_markings": graph.home_count if graph else None,
+        "home_marking_nodes": list(graph.home) if graph else None,
+        "initial_is_home": graph.initial_is_home if graph else None,
+        "dead_transitions": [transition_name(net, i) for i in found.dead_transitions()],
+        "live_transitions": (
+            [transition_name(net, i) for i in found.live_transitions()] if graph else None
+        ),
+        "infinite_occurrence_sequences": graph.fairness is not None if graph else None,
+        "fairness": fairness,
+        "bounds": bounds_rows(net, found),
+        "seconds": round(found.seconds, 6),
+        "states_per_second": round(found.states_per_second, 1),
+        "bytes_per_state": round(found.bytes_per_state, 2),
+        "peak_mib": round(found.peak_mib, 1),
+        "compile_seconds": round(found.compile_seconds, 3),
+        "analysis_seconds": round(graph.seconds, 6) if graph else None,
+        "threads": found.threads,
+        "depth": found.depth,
+        "reductions": list(found.reductions),
+        "approximation": dict(found.approximation) if found.approximation else None,
+        "error": dict(found.error) if found.error else None,
+        "traces": [{"node": t.node, "file": str(t.file), "steps": t.steps} for t in found.traces],
+    }
+
+
+def bounds_rows(net: FlatNet, found: Exploration) -> list[dict[str, Any]]:
+    """For each place instance `page`, `instance`, `name`, `id`, `lower`, `upper`, and the multi-set bounds as texts."""
+    if found.bounds is None:
+        return []
+    rows = []
+    for place in net.place_instances:
+        own = found.bounds[place.place]
+        colset = net.places[place.place].colset
+        rows.append(
+            {
+                "page": place.page,
+                "instance": place.number,
+                "name": place.caption or place.name,
+                "id": place.id,
+                "lower": own.lower,
+                "upper": own.upper,
+                "lower_multiset": multiset_text(colset, own.lower_multiset),
+                "upper_multiset": multiset_text(colset, own.upper_multiset),
+            }
+        )
+    return rows
+
+
+def multiset_text(colset: Colset, found: Sequence[tuple[int, Any]] | None) -> str | None:
+    """As the real tool prints it, without stamps; None for None."""
+    if found is None:
+        return None
+    values = [(from_json(colset, value), count) for count, value in found if count]
+    values.sort(key=lambda item: _TEXTS.key(colset, item[0]))
+    lines = [f"{count}`{_TEXTS.text(colset, value)}" for value, count in values]
+    return "++\n".join(lines) or "empty"

@@ -1,0 +1,175 @@
+"""The report of a state space as one HTML file: readable without scripts and without a network."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from datetime import datetime
+from typing import Any
+
+from jinja2 import Environment, FileSystemLoader, StrictUndefined
+
+import pn2code
+from pn2code.net.flat import FlatNet
+from pn2code.resources import templates_folder
+from pn2code.semantics.game import GameError
+from pn2code.simulate.script import TraceRefusedError
+from pn2code.verify.path import Step, steps
+from pn2code.verify.report import place_name, why_partial
+from pn2code.verify.result import Exploration, Trace, multiset_text, transition_name
+
+MOST_STEPS = 200
+"""Of a longer trace only the first steps are shown."""
+
+
+def webpage(net: FlatNet, found: Exploration, storage: Mapping[str, str], written: datetime) -> str:
+    """The whole page.
+
+    Args:
+        net: the net.
+        found: its state space.
+        storage: as for `Game`, which repeats the traces.
+        written: the date it carries.
+    """
+    # Names and inscriptions are strangers' texts: all of them are escaped.
+    env = Environment(
+        loader=FileSystemLoader(templates_folder() / "html"),
+        autoescape=True,
+        undefined=StrictUndefined,
+        trim_blocks=True,
+        lstrip_blocks=True,
+    )
+    css = (templates_folder() / "html" / "report.css").read_text(encoding="utf-8")
+    return env.get_template("report.html.j2").render(
+        title=net.name,
+        file=net.file,
+        css=css,
+        version=pn2code.__version__,
+        sha256=net.sha256,
+        written=f"{written:%Y-%m-%d %H:%M}",
+        verdicts=list(_verdicts(found)),
+        statistics=list(_statistics(found)),
+        bounds=_bounds(net, found),
+        markings=list(_markings(found)),
+        transitions=_transitions(net, found),
+        traces=[_trace(net, storage, trace) for trace in found.traces],
+        timed=net.timed,
+    )
+
+
+def _verdicts(found: Exploration) -> list[dict[str, str]]:
+    said = []
+    if found.complete:
+        said.append(
+            {"kind": "good", "text": "Complete: every marking that can be reached was seen."}
+        )
+    else:
+        text = f"Partial: {why_partial(found)}. What follows is about the part that was seen."
+        said.append({"kind": "open", "text": text})
+    if found.approximation is not None:
+        kind, omitted = found.approximation["kind"], found.approximation["omission_probability"]
+        text = f"Approximate ({kind}): the probability that a marking was omitted is about {omitted:.2g}."
+        said.append({"kind": "open", "text": text})
+    if found.reductions:
+        said.append({"kind": "open", "text": f"Reduced by {', '.join(found.reductions)}."})
+    if found.error is not None:
+        text = f"An inscription raises {found.error['message']}: {found.error['where']}"
+        said.append({"kind": "bad", "text": text})
+    if found.dead_count:
+        number = f"{found.dead_count:,} dead marking{'s' * (found.dead_count > 1)}"
+        said.append({"kind": "open", "text": f"{number}: nothing is enabled there."})
+    elif found.complete:
+        said.append({"kind": "good", "text": "No dead marking: something can always occur."})
+    return said
+
+
+def _statistics(found: Exploration) -> list[tuple[str, str]]:
+    rows = [("Nodes", f"{found.nodes:,}"), ("Arcs", f"{found.arcs:,}")]
+    if found.graph is not None:
+        rows.append(("Strongly connected components", f"{found.graph.scc_nodes:,}"))
+        rows.append(("Arcs between components", f"{found.graph.scc_arcs:,}"))
+    return [
+        *rows,
+        ("Depth", f"{found.depth:,}"),
+        ("Exploration", f"{found.seconds:.2f} s, {found.states_per_second:,.0f} markings/s"),
+        ("Compilation", f"{found.compile_seconds:.1f} s"),
+        ("Threads", f"{found.threads}"),
+        (
+            "Memory",
+            f"{found.bytes_per_state:.1f} bytes a marking, {found.peak_mib:,.0f} MiB at most",
+        ),
+    ]
+
+
+def _bounds(net: FlatNet, found: Exploration) -> list[dict[str, Any]]:
+    if found.bounds is None:
+        return []
+    rows = []
+    for place in net.places:
+        own = found.bounds[place.index]
+        rows.append(
+            {
+                "name": place_name(place),
+                "lower": own.lower,
+                "upper": own.upper,
+                "lower_multiset": multiset_text(place.colset, own.lower_multiset) or "",
+                "upper_multiset": multiset_text(place.colset, own.upper_multiset) or "",
+            }
+        )
+    return sorted(rows, key=lambda row: str(row["name"]))
+
+
+def _markings(found: Exploration) -> list[tuple[str, str]]:
+    rows = []
+    if found.graph is not None:
+        every = found.graph.home_count == found.nodes
+        rows.append(
+            ("Home markings", "all" if every else _listed(found.graph.home_count, found.graph.home))
+        )
+    rows.append(("Dead markings", _listed(found.dead_count, found.dead)))
+    return rows
+
+
+def _listed(count: int, first: tuple[int, ...]) -> str:
+    if count == 0:
+        return "none"
+    some = ", ".join(map(str, first[:12]))
+    more = ", ..." if count > len(first[:12]) else ""
+    return f"{count:,}" + (f" (nodes {some}{more})" if some else "")
+
+
+def _transitions(net: FlatNet, found: Exploration) -> list[dict[str, Any]]:
+    live = set(found.live_transitions())
+    fairness = found.graph.fairness if found.graph else None
+    rows = []
+    for index, arcs in enumerate(found.fired):
+        kind = "dead" if arcs == 0 else "live" if index in live else ""
+        rows.append(
+            {
+                "name": transition_name(net, index),
+                "arcs": f"{arcs:,}",
+                "kind": kind,
+                "fairness": fairness[index]
+                if fairness
+                else "no infinite sequence"
+                if found.graph
+                else "",
+            }
+        )
+    return sorted(rows, key=lambda row: str(row["name"]))
+
+
+def _trace(net: FlatNet, storage: Mapping[str, str], trace: Trace) -> dict[str, Any]:
+    problem = ""
+    shown: tuple[Step, ...] = ()
+    try:
+        shown = steps(net, storage, trace.file, most=MOST_STEPS)
+    except (TraceRefusedError, GameError, OSError) as error:
+        problem = f"The trace cannot be shown: {error}"
+    return {
+        "node": trace.node,
+        "file": trace.file,
+        "steps": trace.steps,
+        "shown": shown,
+        "left": max(trace.steps - MOST_STEPS, 0) if not problem else 0,
+        "problem": problem,
+    }
