@@ -171,6 +171,17 @@ class Counter:
             return Size(len(e.items), len(e.items))
         return UNKNOWN
 
+    def is_false(self, guard: core.Exp) -> bool:
+        """Whether a guard is false whatever the binding, as far as its constants tell."""
+        if self._variables.of(guard) or not self.symbolic.is_timeless(guard):
+            return False
+        if self.symbolic.evaluator is None:
+            return False
+        try:
+            return self.symbolic.evaluator.value(guard) is False
+        except (MlException, MlLimit, MlUnavailable, RecursionError):
+            return False
+
     def _by_evaluation(self, e: core.Exp, evaluator: Evaluator) -> Size | None:
         variables = list(self._variables.of(e))
         product = 1
@@ -219,7 +230,7 @@ def skeleton(net: FlatNet, symbolic: Symbolic) -> Skeleton:
     columns: list[int] = []
     for t in net.transitions:
         facts = symbolic.facts(t)
-        if any(_is_false(symbolic.normal(g, Facts())) for g in t.guards):
+        if any(counter.is_false(g) for g in t.guards):
             never.add(t.index)
         take: dict[int, dict[Part, int]] = {}
         put: dict[int, dict[Part, int]] = {}
@@ -266,10 +277,6 @@ def _sums(arc: FlatArc, symbolic: Symbolic, facts: Facts) -> Iterator[dict[Part,
         yield symbolic.inscription(arc.inscription, facts)
         if arc.kind is ArcKind.BOTH:
             yield symbolic.inscription(arc.inscription, facts)
-
-
-def _is_false(e: core.Exp) -> bool:
-    return isinstance(e, core.Con) and e.constructor.data_type == "bool" and not e.constructor.tag
 
 
 # --- counting ------------------------------------------------------------------------------------
