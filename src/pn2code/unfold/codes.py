@@ -18,6 +18,6 @@ UNFOLDING_FAULT = register(
     "unfolding-fault",
     "an inscription raises an exception for a binding",
     "Unfolding looks at all bindings for which the colours can be there, whether or not enough tokens are there at "
-    "the same time. For one of them an inscription raises an exception or gives an illegal colour. If that binding can become "
-    "enabled, the net has a mistake; the unfolded net lacks the transition.",
+    "the same time. For one of them an inscription raises an exception or gives an illegal colour. If that binding can "
+    "become enabled, the net has a mistake; the unfolded net lacks the transition.",
 )
