@@ -24,6 +24,7 @@ from pn2code.ml import core
 from pn2code.ml.colsets import Colset, Kind
 from pn2code.ml.core import Symbol
 from pn2code.ml.types import list_of
+from pn2code.net.enumerable import SMALL, size
 from pn2code.net.flat import (
     ArcKind,
     BindAll,
@@ -375,6 +376,8 @@ def is_total(e: core.Exp) -> bool:
             return is_total(argument)
         case core.Apply(function=core.Builtin(name=name), argument=argument) if name in _TOTAL:
             return is_total(argument)
+        case core.Apply(function=core.Builtin(name="Colset.all", colset=colset)):
+            return colset is not None and size(colset, SMALL) is not None
         case core.Select(record=record):
             return is_total(record)
         case core.If(condition=c, then=t, otherwise=o):
