@@ -17,6 +17,7 @@ _ROOM = 130.0
 """Between the centres of neighbours."""
 _MOST_SCALE = 8.0
 _MOST_COMPARED = 400
+_WIDTH, _HEIGHT, _LETTER, _MARGIN = 60.0, 40.0, 6.5, 14.0
 
 
 def position(node: Node | None) -> Point | None:
@@ -40,11 +41,18 @@ def scale(points: Iterable[Point]) -> float:
     return min(_MOST_SCALE, max(1.0, _ROOM / typical)) if typical > 0 else _MOST_SCALE
 
 
-def placed(point: Point | None, by: float, offset: Point = (0.0, 0.0)) -> Layout:
-    """The layout of a node."""
+def placed(point: Point | None, by: float, offset: Point, name: str) -> Layout:
+    """The layout of a node, as wide as its name."""
+    width = max(_WIDTH, _LETTER * len(name) + _MARGIN)
     if point is None:
-        return Layout()
-    return Layout(x=point[0] * by + offset[0], y=-(point[1] * by) + offset[1], known=True)
+        return Layout(width=width, height=_HEIGHT)
+    return Layout(
+        x=point[0] * by + offset[0],
+        y=-(point[1] * by) + offset[1],
+        width=width,
+        height=_HEIGHT,
+        known=True,
+    )
 
 
 def bends(arc: Node, by: float, offset: Point, from_place: bool) -> Layout:

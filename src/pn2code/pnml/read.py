@@ -298,7 +298,8 @@ class _Reader:
             below += (min(ys, default=0.0) - max(ys, default=0.0)) - 200.0
             offsets.append(offset)
             for node in nodes:
-                layout = placed(position(node), by, offset)
+                shown = self.names.get(node.get("id"), "")
+                layout = placed(position(node), by, offset, shown)
                 if self.nodes.get(node.get("id")) is not node:
                     continue  # reported
                 self.strangers.check(node, _KNOWN[node.tag])

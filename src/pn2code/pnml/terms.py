@@ -368,7 +368,7 @@ class Terms:
         if digits == "1":
             return term
         most = term.most * int(digits) if digits.isdigit() else 0
-        code = (*_closed(count, at), (" ** ", node), *_closed(term, counted))
+        code = (*_closed(count, at), (" ** ", node), *_operand(term, counted))
         return Term(code, term.sort, True, False, most)
 
     def _scalar(self, node: Node, sort: Sort | None) -> Term:
@@ -410,7 +410,7 @@ class Terms:
         for other in others:
             term = self._many(self._term(other, sort), other, sort)
             if 0 < term.count <= result.most:  # one value is taken from all of them: it is there
-                code = (*_closed(result, first), (" -- ", node), *_closed(term, other))
+                code = (*result.code, (" -- ", node), *_operand(term, other))
                 result = Term(code, result.sort, True, False)
             else:
                 name = self.declarations.minus(node)
@@ -479,10 +479,15 @@ def _closed(term: Term, node: Node) -> Code:
     return term.code if term.atomic else (("(", node), *term.code, (")", node))
 
 
-def _summand(term: Term, node: Node) -> Code:
-    """A term in a sum: coefficients and sums stand as they are, so that patterns stay visible."""
+def _operand(term: Term, node: Node) -> Code:
+    """A multi-set as an operand: only sums and differences need parentheses."""
     text = _text(term)
-    return term.code if "`" in text and " -- " not in text else _closed(term, node)
+    return _closed(term, node) if " ++ " in text or " -- " in text else term.code
+
+
+def _summand(term: Term, node: Node) -> Code:
+    """A multi-set in a sum: sums stand as they are, so that patterns stay visible."""
+    return _closed(term, node) if " -- " in _text(term) else term.code
 
 
 def _text(term: Term) -> str:
