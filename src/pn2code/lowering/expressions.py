@@ -44,6 +44,8 @@ _MAX_INLINE = 60
 """Functions in each other's places."""
 _MAX_INLINES = 1000
 """Functions put in place in one C function."""
+_ITEMS_AT_ONCE = 50
+"""Items of a list that one C expression puts together."""
 _UNIT = UNIT_VALUE
 
 
@@ -163,8 +165,10 @@ class Body(Branching):
         values = self.in_order(partial(self.exp, item, env) for item in e.items)
         items = [self.addressable(self.code(value, e.span), "item") for value in values]
         result: Ir = ir.Op("list.nil", (), t)
-        for item in reversed(items):
+        for n, item in enumerate(reversed(items), 1):
             result = ir.Op("list.cons", (item, result), t, self.program.types.plain(t))
+            if n % _ITEMS_AT_ONCE == 0:
+                result = self.spill(result, "rest")
         return result
 
     # --- application ---------------------------------------------------------------------------
