@@ -192,3 +192,20 @@ def test_a_number_too_large_for_the_memory(tmp_path: Path, workshop: Workshop) -
     assert ir is not None, [(e.code, e.message) for e in d.errors]
     [line] = run(workshop.build(ir, tmp_path / "net"), 1, 0)
     assert line["error"] == "memory for lists and strings is full"
+
+
+def test_beyond_the_reals(tmp_path: Path, workshop: Workshop) -> None:
+    net = flat("""
+        net Reals
+          standard
+          fun safe f = IntInf.toString (f ()) handle Overflow => "Overflow" | Domain => "Domain"
+          place A : STRING = 1`(Real.toString (Real.fromLargeInt (IntInf.pow (10, 400))))
+            ++ 1`(Real.toString (Real.fromLargeInt (~ (IntInf.pow (10, 400)))))
+            ++ 1`(safe (fn () => Real.toLargeInt IEEEReal.TO_ZERO (1.0 / 0.0)))
+            ++ 1`(safe (fn () => Real.toLargeInt IEEEReal.TO_ZERO (0.0 / 0.0)))
+            ++ 1`(safe (fn () => Real.toLargeInt IEEEReal.TO_NEAREST 1E300))
+    """)
+    ir, d = lowered(net)
+    assert ir is not None, [(e.code, e.message) for e in d.errors]
+    program = workshop.build(ir, tmp_path / "net")
+    assert agrees(net, program, seed=1, steps=0) == 0

@@ -380,7 +380,7 @@ def _real_of(i: int) -> float:
     try:
         return float(i)
     except OverflowError:
-        return math.copysign(math.inf, i)
+        return math.inf if i > 0 else -math.inf
 
 
 REALS: dict[str, Function] = {
