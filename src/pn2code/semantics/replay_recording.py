@@ -24,13 +24,22 @@ from pn2code.net.flat import ArcKind, FlatNet, FlatTransition
 from pn2code.semantics.colour_text import read_value
 from pn2code.semantics.effects import OUTSIDE, Effect, Effects, outside, texts
 from pn2code.semantics.enabling import Demand, GameError
+from pn2code.semantics.evaluate import variables
 from pn2code.semantics.game import Game, reset
 from pn2code.semantics.marking import Binding, BindingElement, Marking, place_text, variable_text
 from pn2code.semantics.multiset import TimedMultiSet
 from pn2code.semantics.recording import RecordedStep, Recording, TransitionNames
 from pn2code.semantics.references import References
 from pn2code.semantics.report import PlaceRow, places, time_text
-from pn2code.semantics.unknown import EXACT, Unknown, alternatives, counted, final_difference, taken
+from pn2code.semantics.unknown import (
+    EXACT,
+    Unknown,
+    alternatives,
+    counted,
+    final_difference,
+    taken,
+    without_delay,
+)
 from pn2code.semantics.values import Value
 
 MOST_STATES = 50
@@ -483,7 +492,7 @@ class _Follower:
         action = t.code.action if t.code else None
         full = {**way.binding, **self.outputs(unknown, t, way.binding, step)}
         drawn = self.vague(unknown, action)
-        rounded = (way.read or drawn) and any(_has_real(s.colset) for s in t.variables)
+        printed = {s for s in t.variables if _has_real(s.colset)} if way.read or drawn else set()
         unknown = self.remember(unknown, drawn, action)
         late = unknown.clock or self.vague(unknown, t.delay)
         delay = 0 if late else game.delay(t, full)
@@ -492,7 +501,15 @@ class _Follower:
             if arc.inscription is None or arc.kind not in (ArcKind.OUTPUT, ArcKind.BOTH):
                 continue
             drawn = self.vague(unknown, arc.inscription.value)
-            if rounded or drawn:
+            rounded = bool(printed and printed & variables(arc.inscription.value))
+            tokens = without_delay(arc) if drawn and not rounded else None
+            if tokens and tokens.inscription and not self.vague(unknown, tokens.inscription.value):
+                # Which tokens they are is known; when they are available is drawn.
+                put = game.put(TimedMultiSet(), tokens, full, 0, now)
+                assert isinstance(put, TimedMultiSet)
+                unknown = unknown.with_late(arc.place, put.untimed())
+                unknown = self.remember(unknown, drawn, arc.inscription.value)
+            elif rounded or drawn:
                 unknown = unknown.opened(arc.place)
                 unknown = self.remember(unknown, drawn, arc.inscription.value)
             elif late and self.net.places[arc.place].colset.timed:

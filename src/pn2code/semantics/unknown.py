@@ -11,7 +11,9 @@ import itertools
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
 
+from pn2code.ml import core
 from pn2code.ml.colsets import Colset
+from pn2code.net.flat import FlatArc, Form
 from pn2code.semantics.colours import Colours
 from pn2code.semantics.enabling import Demand, Enabling
 from pn2code.semantics.marking import Marking, PlaceMarking
@@ -79,6 +81,24 @@ class Unknown:
             replace(marking, places=tuple(places)),
             replace(self, late=late, open=self.open | {place}),
         )
+
+
+def without_delay(arc: FlatArc) -> FlatArc | None:
+    """For an output arc `tokens @+ delay`: the arc as if it were `tokens` alone."""
+    inscription = arc.inscription
+    if inscription is None or inscription.form not in _UNDELAYED:
+        return None
+    match inscription.value:
+        case core.Apply(
+            function=core.Builtin(name="Time.@+" | "Time.@++" | "Time.token@+" | "Time.token@++"),
+            argument=core.RecordExp(fields=((_, tokens), _)),
+        ):
+            form = _UNDELAYED[inscription.form]
+            return replace(arc, inscription=replace(inscription, value=tokens, form=form))
+    return None
+
+
+_UNDELAYED = {Form.TIMED_TOKEN: Form.TOKEN, Form.TIMED_MULTISET: Form.MULTISET}
 
 
 EXACT = Unknown()
