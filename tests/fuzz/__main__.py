@@ -113,7 +113,7 @@ class Worker:
                 stderr=self._errors,
                 text=True,
                 cwd=ROOT,
-                env={**os.environ, "PYTHONPATH": f"{ROOT}:{ROOT / 'tests'}"},
+                env={**os.environ, "PYTHONPATH": f"{ROOT / 'src'}:{ROOT}:{ROOT / 'tests'}"},
             )
         return self._process
 
