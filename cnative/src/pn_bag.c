@@ -141,6 +141,22 @@ bool pn_bag_colour_json(const pn_bag_t *bag, uint32_t number, pn_text_t *out)
     return true;
 }
 
+pn_sum_state_t pn_sum_make(pn_ctx_t *cx, const pn_bag_t *bag, const pn_type_t *list, const void *multiset, uint64_t *sum)
+{
+    const uint32_t start = bag->bit % 64U;
+    (void)memset(sum, 0, PN_SUM_WORDS(bag->bit, bag->colours, bag->width) * sizeof *sum);
+    for (const void *rest = multiset; (rest != NULL) && pn_ok(cx); rest = pn_list_tail(rest)) {
+        const void *value = pn_list_head(list, rest);
+        const uint32_t number = bag->number_of(value);
+        if ((number == PN_NO_COLOUR) || (pn_counter(sum, start, bag->width, number) == pn_counter_most(bag->width))
+            || !pn_is_legal(cx, bag->type, value)) {
+            return pn_ok(cx) ? PN_SUM_OTHER : PN_SUM_UNKNOWN;
+        }
+        pn_counter_add(sum, start, bag->width, number, 1U);
+    }
+    return pn_ok(cx) ? PN_SUM_KNOWN : PN_SUM_UNKNOWN;
+}
+
 /* --- counting ------------------------------------------------------------------------------------------------------ */
 
 uint64_t pn_bag_total(const pn_bag_t *bag, const void *marking)

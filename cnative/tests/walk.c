@@ -4,7 +4,8 @@
  *     walk SEED STEPS
  *
  * prints JSON lines {"t": now, "enabled": [[transition, binding], ...], "marking": {...}, "chosen": i}, `chosen` being -1 at the
- * end, or {"error": name}. Every marking is encoded, decoded and encoded again, and collected, on the way.
+ * end, or {"error": name}. Every marking is encoded, decoded and encoded again, and collected, on the way, and
+ * its successors are made in both ways, if the net has two.
  */
 #include <stdio.h>
 #include <stdlib.h>
@@ -78,6 +79,70 @@ static void check_codec(pn_ctx_t *cx, void *marking, void *copy)
     }
 }
 
+/* --- successors: the same as those of enumerate and fire ------------------------------------------------------------ */
+
+typedef struct pass {
+    pn_ctx_t *cx;
+    const void *marking;
+    void *next;
+    void *binding;
+    uint64_t count;
+    uint64_t hash;
+} pass_t;
+
+static bool note_successor(void *user, uint32_t transition, const void *binding, const void *next)
+{
+    pass_t *pass = user;
+    static char text[1U << 16U];
+    pn_text_t json;
+    pn_text_init(&json, text, sizeof text);
+    pn_net.transition[transition].binding_json(binding, &json);
+    const size_t length = pn_net.encode(next, s_bytes[1], sizeof s_bytes[1]);
+    for (size_t i = 0U; i < (length + json.length); i++) {
+        pass->hash = (pass->hash ^ ((i < length) ? s_bytes[1][i] : (uint8_t)text[i - length])) * 0x100000001B3U;
+    }
+    pass->hash = (pass->hash ^ transition) * 0x100000001B3U;
+    pass->count++;
+    return true;
+}
+
+static bool note_fired(void *user, uint32_t transition, const void *binding)
+{
+    pass_t *pass = user;
+    (void)memcpy(pass->binding, binding, pn_net.transition[transition].binding_size);
+    (void)memcpy(pass->next, pass->marking, pn_net.marking_size);
+    return pn_net.transition[transition].fire(pass->cx, pass->next, pass->binding)
+           && note_successor(user, transition, pass->binding, pass->next);
+}
+
+static void check_successors(pn_ctx_t *cx, const void *marking, void *next, void *binding)
+{
+    for (uint32_t t = 0U; t < pn_net.transition_count; t++) {
+        const pn_transition_t *transition = &pn_net.transition[t];
+        if ((transition->successors == NULL) || transition->draws) {
+            continue;
+        }
+        pass_t pass[2] = { { cx, marking, next, binding, 0U, 0U }, { cx, marking, next, binding, 0U, 0U } };
+        pn_error_t error[2];
+        const pn_ctx_t before = *cx;
+        const pn_arena_t arena = *cx->arena;
+        for (uint32_t k = 0U; k < 2U; k++) {
+            bool goes_on = false;
+            if (k == 0U) {
+                goes_on = transition->successors(cx, marking, t, next, note_successor, &pass[k]);
+            } else {
+                goes_on = transition->enumerate(cx, marking, t, note_fired, &pass[k]);
+            }
+            error[k] = (goes_on || (cx->error != PN_OK)) ? cx->error : PN_ERR_INTERNAL;
+            *cx = before;
+            *cx->arena = arena;
+        }
+        if ((error[0] != error[1]) || (pass[0].count != pass[1].count) || (pass[0].hash != pass[1].hash)) {
+            pn_raise(cx, PN_ERR_INTERNAL, "successors are others than enumerate and fire make");
+        }
+    }
+}
+
 static void print_step(const void *marking, pn_text_t *text, int64_t chosen)
 {
     pn_text_str(text, "], \"t\": ");
@@ -127,6 +192,7 @@ static bool step(pn_ctx_t *cx, void *marking, void *copy, void *binding)
         return false;
     }
     check_codec(cx, marking, copy);
+    check_successors(cx, marking, copy, binding);
     list_t one = { NULL, 0U, (uint64_t)chosen, binding, 0U };
     enumerate(cx, marking, &one);
     cx->step++;

@@ -10,7 +10,9 @@
  *     place_count_of(m, i)    the number of tokens of colour i
  *     place_next(m, i)        the first colour from i on of which there is a token; the number of colours if there is none
  *     place_is_empty(m)       whether there is no token
- *     place_check(cx, v)      raises PN_ERR_COLOUR at the place if the value is not in the colour set
+ *     place_check(cx, v)      raises PN_ERR_COLOUR at the place if the value is not in the colour set: that is always asked where not
+ *                             every number is that of a colour (`is_whole`: subsets), but only until it is known of a colour
+ *     place_has_sum(m, s)     whether there are all tokens of a sum; place_take_sum takes, place_add_sum puts them
  *
  * Unlike there, place_add changes nothing when a counter would overflow.
  */
@@ -18,7 +20,15 @@
 #define PN_PACKED_H
 
 #include "pn/pn_bag.h"
+#include "pn/pn_num.h"
 #include "pn/pn_place.h"
+
+/* Storage of a static variable that each thread has for itself. */
+#if defined(__STDC_NO_THREADS__)
+#define PN_OF_THREAD
+#else
+#define PN_OF_THREAD _Thread_local
+#endif
 
 /* The number of the lowest bit that is set, of bits that are not all 0. */
 PN_INLINE uint32_t pn_lowest_bit(uint64_t bits)
@@ -75,7 +85,71 @@ PN_INLINE uint32_t pn_counter_next(const uint64_t *word, uint32_t bit, uint32_t 
     return colours;
 }
 
-#define PN_PACKED_PLACE(place, marking_t, value_t, number_of, first, colours, width, bag)                          \
+/* --- sums: whole multi-sets as counters, in words of their own that lie as those of the place do -------------------- */
+
+/* Words of a sum. */
+#define PN_SUM_WORDS(first, colours, width) (((((first) % 64U) + ((colours) * (width))) + 63U) / 64U)
+
+/* Whether it is known, for some values of its variables. */
+typedef enum pn_sum_state {
+    PN_SUM_UNKNOWN,
+    PN_SUM_KNOWN,
+    PN_SUM_OTHER /* it does not fit into the counters, or is not in the colour set */
+} pn_sum_state_t;
+
+/* Makes a sum of a list with cells of `list`; unknown after an error. */
+pn_sum_state_t pn_sum_make(pn_ctx_t *cx, const pn_bag_t *bag, const pn_type_t *list, const void *multiset, uint64_t *sum);
+
+PN_INLINE bool pn_sum_is_in(const uint64_t *word, uint32_t bit, uint32_t colours, uint32_t width, const uint64_t *sum)
+{
+    bool is_in = true;
+    if (width == 1U) {
+        for (uint32_t k = 0U; k < PN_SUM_WORDS(bit, colours, width); k++) {
+            is_in = is_in && ((sum[k] & ~word[(bit / 64U) + k]) == 0U);
+        }
+        return is_in;
+    }
+    const uint32_t start = bit % 64U;
+    for (uint32_t i = pn_counter_next(sum, start, colours, width, 0U); is_in && (i < colours);
+         i = pn_counter_next(sum, start, colours, width, i + 1U)) {
+        is_in = pn_counter(sum, start, width, i) <= pn_counter(word, bit, width, i);
+    }
+    return is_in;
+}
+
+PN_INLINE bool pn_sum_has_room(const uint64_t *word, uint32_t bit, uint32_t colours, uint32_t width, const uint64_t *sum)
+{
+    bool has_room = true;
+    if (width == 1U) {
+        for (uint32_t k = 0U; k < PN_SUM_WORDS(bit, colours, width); k++) {
+            has_room = has_room && ((sum[k] & word[(bit / 64U) + k]) == 0U);
+        }
+        return has_room;
+    }
+    const uint32_t start = bit % 64U;
+    for (uint32_t i = pn_counter_next(sum, start, colours, width, 0U); has_room && (i < colours);
+         i = pn_counter_next(sum, start, colours, width, i + 1U)) {
+        has_room = pn_counter(sum, start, width, i) <= (pn_counter_most(width) - pn_counter(word, bit, width, i));
+    }
+    return has_room;
+}
+
+/* Where it fits, no counter runs over into the next. */
+PN_INLINE void pn_sum_add(uint64_t *word, uint32_t bit, uint32_t colours, uint32_t width, const uint64_t *sum)
+{
+    for (uint32_t k = 0U; k < PN_SUM_WORDS(bit, colours, width); k++) {
+        word[(bit / 64U) + k] += sum[k];
+    }
+}
+
+PN_INLINE void pn_sum_subtract(uint64_t *word, uint32_t bit, uint32_t colours, uint32_t width, const uint64_t *sum)
+{
+    for (uint32_t k = 0U; k < PN_SUM_WORDS(bit, colours, width); k++) {
+        word[(bit / 64U) + k] -= sum[k];
+    }
+}
+
+#define PN_PACKED_PLACE(place, marking_t, value_t, number_of, first, colours, width, is_whole, bag)                \
     PN_INLINE uint32_t place##_count_of(const marking_t *m, uint32_t i)                                            \
     {                                                                                                              \
         return pn_counter(m->packed, (first), (width), i);                                                         \
@@ -114,6 +188,9 @@ PN_INLINE uint32_t pn_counter_next(const uint64_t *word, uint32_t bit, uint32_t 
     PN_INLINE bool place##_add(pn_ctx_t *cx, marking_t *m, const value_t *v, uint32_t n)                           \
     {                                                                                                              \
         const uint32_t i = number_of(v);                                                                           \
+        if (n == 0U) {                                                                                             \
+            return true;                                                                                           \
+        }                                                                                                          \
         if ((i == PN_NO_COLOUR) || (n > (pn_counter_most(width) - place##_count_of(m, i)))) {                      \
             return pn_bag_fail_full(cx, &(bag));                                                                   \
         }                                                                                                          \
@@ -122,9 +199,34 @@ PN_INLINE uint32_t pn_counter_next(const uint64_t *word, uint32_t bit, uint32_t 
     }                                                                                                              \
     PN_INLINE void place##_check(pn_ctx_t *cx, value_t *v)                                                         \
     {                                                                                                              \
-        if (number_of(v) == PN_NO_COLOUR) {                                                                        \
+        static PN_OF_THREAD bool is_colour[(is_whole) ? 1U : (colours)];                                           \
+        const uint32_t i = number_of(v);                                                                           \
+        if ((i == PN_NO_COLOUR) || !((is_whole) || is_colour[(is_whole) ? 0U : i])) {                              \
             pn_bag_check(cx, &(bag), v);                                                                           \
+            if ((i != PN_NO_COLOUR) && !(is_whole) && pn_ok(cx)) {                                                 \
+                is_colour[i] = true;                                                                               \
+            }                                                                                                      \
         }                                                                                                          \
+    }                                                                                                              \
+    PN_INLINE bool place##_has_sum(const marking_t *m, const uint64_t *sum)                                        \
+    {                                                                                                              \
+        return pn_sum_is_in(m->packed, (first), (colours), (width), sum);                                          \
+    }                                                                                                              \
+    PN_INLINE bool place##_take_sum(marking_t *m, const uint64_t *sum)                                             \
+    {                                                                                                              \
+        const bool is_in = pn_sum_is_in(m->packed, (first), (colours), (width), sum);                              \
+        if (is_in) {                                                                                               \
+            pn_sum_subtract(m->packed, (first), (colours), (width), sum);                                          \
+        }                                                                                                          \
+        return is_in;                                                                                              \
+    }                                                                                                              \
+    PN_INLINE bool place##_add_sum(pn_ctx_t *cx, marking_t *m, const uint64_t *sum)                                \
+    {                                                                                                              \
+        if (!pn_sum_has_room(m->packed, (first), (colours), (width), sum)) {                                       \
+            return pn_bag_fail_full(cx, &(bag));                                                                   \
+        }                                                                                                          \
+        pn_sum_add(m->packed, (first), (colours), (width), sum);                                                   \
+        return true;                                                                                               \
     }
 
 #endif /* PN_PACKED_H */

@@ -10,7 +10,7 @@ import re
 from collections.abc import Callable, Iterable
 
 from pn2code.diagnostics import Origin
-from pn2code.emission import c_packed, c_places, c_tables
+from pn2code.emission import c_packed, c_places, c_sums, c_tables
 from pn2code.emission.c_effects import Effects, reaches
 from pn2code.emission.c_expressions import (
     Expressions,
@@ -21,6 +21,7 @@ from pn2code.emission.c_expressions import (
 )
 from pn2code.emission.c_firing import DirectFiring
 from pn2code.emission.c_statements import Statements, used_locals, uses_context, wrap
+from pn2code.emission.c_sums import Sum
 from pn2code.emission.environment import c_comment, c_float, c_string, render
 from pn2code.emission.names import Members, Names, Scope, stem
 from pn2code.emission.output import Block, OutputFile
@@ -70,7 +71,10 @@ class _Emitter:
         self._orders = c_places.Orders(self._types, self._names, self._descriptors)
         self._rooms = c_places.rooms(net)
         self._numbers = c_packed.Numbers(self._types, self._names, self._descriptors)
-        self._packed = self._numbers.of_places(net.places)
+        self._packed = self._numbers.of_places(
+            net.places, lambda key: self._effects.is_pure(self._functions[key].body)
+        )
+        self._sums_found: dict[int, dict[tuple[int, ir.Ir], Sum]] = {}
         self._has_arena_values = any(
             d.type.rep in (Rep.STRING, Rep.LIST, Rep.UNION)
             for key in self._closure({p.table for p in net.places})
@@ -228,6 +232,7 @@ class _Emitter:
             "room": 0 if p.timed else self._rooms[p.index],
             "order": "" if p.timed or p.packed else self._orders.name(p.table),
             "packed": p.packed,
+            "is_whole": not p.packed or not self._numbers.members(p.table),
             "number_of": self._numbers.number_of(p.table) if p.packed else "",
             "colour_set": self._names.table(p.table).removeprefix("s_"),
             "initial": s.lines,
@@ -297,10 +302,14 @@ class _Emitter:
         search.may_fail = search.keeps or any(
             isinstance(n, ir.Wanted | ir.UnlessLegal) for n in ir_nodes(t.enumerate)
         )
+        search.sums = self._sums(t)
         search.body(t.enumerate)
         search.finish_search()
         is_direct = self._is_direct(t)
         fire = self._firing(t, is_direct, variables)
+        sums = self._sums(t)
+        has_lists = is_direct and any(isinstance(s, ir.TakeAll | ir.PutAll) for s in t.fire)
+        lists = self._firing(t, False, variables) if has_lists else None
         text = "\n".join(fire.lines)
         affected = self._effects.affected(t.index)
         return {
@@ -331,6 +340,12 @@ class _Emitter:
             "searches_marking": bool(re.search(r"\bm\b", "\n".join(search.lines))),
             "fire": fire.lines,
             "is_direct": is_direct,
+            "sums": [
+                self._sum_function(s, t, variables)
+                for s in sums.values()
+                if any(f"{s.name}(" in line for line in search.lines + fire.lines)
+            ],
+            "lists": lists.lines if lists else [],
             "uses_binding": "b->" in text,
             "touched": ", ".join(f"{i}U" for i in self._effects.touched(t.index)),
             "touched_bags": [
@@ -347,7 +362,28 @@ class _Emitter:
     def _is_direct(self, t: ir.Transition) -> bool:
         """Whether it can be printed with the functions of its places; what is taken must be what was found."""
         takes = tuple(s.value for s in t.fire if isinstance(s, ir.Take))
-        return c_places.is_direct(self._net, t) and self._effects.is_pure(takes)
+        return c_places.is_direct(self._net, t, self._sums(t)) and self._effects.is_pure(takes)
+
+    def _sums(self, t: ir.Transition) -> dict[tuple[int, ir.Ir], Sum]:
+        if t.index not in self._sums_found:
+            stem = self._names.transition(t.index, t.name)
+            self._sums_found[t.index] = c_sums.find(
+                self._net, t, stem, self._descriptors, self._effects
+            )
+        return self._sums_found[t.index]
+
+    def _sum_function(self, s: Sum, t: ir.Transition, variables: tuple[str, ...]) -> list[str]:
+        _, x, _ = self._printer((), "b->")
+        x.variables = variables
+        return c_sums.function(
+            s,
+            f"{self._names.transition(t.index, t.name)}_binding_t",
+            self._bags[s.place],
+            self._names.table(s.table),
+            self._numbers,
+            x.text,
+            lambda i: x.address(ir.Bound(i, t.variables[i].type)),
+        )
 
     def _firing(self, t: ir.Transition, is_direct: bool, variables: tuple[str, ...]) -> Statements:
         printer, x, scope = self._printer(t.fire, "b->")
@@ -367,6 +403,8 @@ class _Emitter:
             direct.used, direct.bags, direct.timed = printer.used, printer.bags, printer.timed
             direct.tables_of_places = printer.tables_of_places
             direct.token_types = printer.token_types
+            direct.sums = self._sums(t)
+            direct.otherwise = f"{self._names.transition(t.index, t.name)}_fire_lists(cx, m, b)"
             direct.variable_types = tuple(v.type for v in t.variables)
             direct.fire(t.fire, uses_context(t.fire, self._needs_context, self._definitions))
             return direct

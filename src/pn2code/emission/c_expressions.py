@@ -138,12 +138,12 @@ class PackedPlace:
     Args:
         colours: how many.
         colour_of: the function that makes a colour of its number.
-        has_members: not every number is that of a colour: subsets are in the colour set.
+        is_pure: always the same values are in the colour set.
     """
 
     colours: int
     colour_of: str
-    has_members: bool
+    is_pure: bool
 
 
 class Expressions:

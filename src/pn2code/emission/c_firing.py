@@ -24,7 +24,7 @@ class _Move:
         verb: "take" or "add".
         place: the member of the marking.
         value: a pointer to the value, as C.
-        count: as C.
+        count: as C; "": the value is a sum of tokens.
         note: what it is in the net.
         is_packed: whether the place is.
     """
@@ -39,6 +39,8 @@ class _Move:
     def call(self, verb: str = "") -> str:
         """The call that does it, or that undoes it."""
         context = "cx, " if (verb or self.verb) == "add" else ""
+        if not self.count:
+            return f"{self.place}_{verb or self.verb}_sum({context}m, {self.value})"
         return f"{self.place}_{verb or self.verb}({context}m, {self.value}, {self.count})"
 
 
@@ -69,14 +71,18 @@ class DirectFiring(Statements):
         self._moves_made: list[_Move] = []
         self._declared: list[str] = []
         self._staying: set[int] = set()
+        self._takes: list[ir.Take] = []
+        self._sums_used: dict[str, str] = {}
+        self.otherwise = ""
         self.has_checks = False
 
     def fire(self, statements: tuple[Stmt, ...], may_fail: bool) -> None:
         """The whole body after the preamble."""
         staying = staying_pairs(statements)
         self._staying = {id(s) for pair in staying for s in pair}
+        self._takes = [s for s in statements if isinstance(s, ir.Take)]
         self.body(statements)
-        self.lines[:0] = self._declared
+        self.lines[:0] = [*self._sum_lines(), *self._declared]
         if may_fail or self.has_checks:
             self.line("if (!pn_ok(cx)) {")
             self.line("    return false;")
@@ -132,6 +138,26 @@ class DirectFiring(Statements):
         self.line(f"const bool fits = {' && '.join(name for _, name in done)};")
         return [(move, name if move.is_packed else "") for move, name in done]
 
+    def _moves(self, s: ir.TakeAll | ir.PutAll) -> None:
+        known = self.sums[s.place, s.multiset]
+        name = self._scope.name(("sum", known.name), "sum")
+        self._sums_used[known.name] = name
+        verb = "take" if isinstance(s, ir.TakeAll) else "add"
+        place = self._x.place_names[s.place]
+        self._moves_made.append(_Move(verb, place, name, "", s.note or known.note, True))
+
+    def _sum_lines(self) -> list[str]:
+        """The sums, and the way to go when one is not known: list by list."""
+        lines = [
+            f"    const uint64_t *const {name} = {function}(cx, b);"
+            for function, name in self._sums_used.items()
+        ]
+        if lines:
+            tests = [f"{name} == NULL" for name in self._sums_used.values()]
+            condition = tests[0] if len(tests) == 1 else " || ".join(f"({t})" for t in tests)
+            lines += [f"    if ({condition}) {{", f"        return {self.otherwise};", "    }"]
+        return lines
+
     def _take(self, takes: list[_Move]) -> None:
         if not takes:
             return
@@ -175,7 +201,7 @@ class DirectFiring(Statements):
 
     def _check(self, s: ir.Take | ir.Put, value: str) -> None:
         packed = self._packed(s.place)
-        if packed and not packed.has_members:
+        if packed and packed.is_pure:
             self.line(f"{self._x.place_names[s.place]}_check(cx, {value});")
         else:
             self.line(f"pn_bag_check(cx, &{self.bags[s.place]}, {value});")
@@ -197,8 +223,8 @@ class DirectFiring(Statements):
         return number
 
     def _is_known(self, s: ir.Put) -> bool:
-        """Whether the value is a variable of the very colour set."""
-        return (
-            isinstance(s.value, ir.Bound)
-            and self._tables[s.value.index] == self._place_tables[s.place]
-        )
+        """Whether the value is of the very colour set: a variable of it, or what is taken from a place of it."""
+        table = self._place_tables[s.place]
+        if isinstance(s.value, ir.Bound) and self._tables[s.value.index] == table:
+            return True
+        return any(self._place_tables[t.place] == table and t.value == s.value for t in self._takes)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 
 from pn2code.emission.c_expressions import PackedPlace, Types, c_integer
 from pn2code.emission.names import Names, label
@@ -46,18 +46,31 @@ class Numbers:
             "}",
         ]
 
-    def of_places(self, places: tuple[ir.Place, ...]) -> tuple[PackedPlace | None, ...]:
-        """What statements print of the places that are packed."""
+    def of_places(
+        self, places: tuple[ir.Place, ...], is_pure: Callable[[str], bool]
+    ) -> tuple[PackedPlace | None, ...]:
+        """What statements print of the places that are packed.
+
+        Args:
+            places: of the net.
+            is_pure: whether the function that decides about the members of a subset gives always the same answers.
+        """
         return tuple(
-            PackedPlace(p.packed.colours, self.colour_of(p.table), self._has_member(p.table))
+            PackedPlace(
+                p.packed.colours,
+                self.colour_of(p.table),
+                all(map(is_pure, self.members(p.table))),
+            )
             if p.packed
             else None
             for p in places
         )
 
-    def _has_member(self, key: str) -> bool:
+    def members(self, key: str) -> tuple[str, ...]:
+        """The functions that decide about members of subsets that a colour set is made of."""
         d = self._descriptors[key]
-        return bool(d.member) or any(self._has_member(part) for _, part in d.fields if part)
+        own = (d.member,) if d.member else ()
+        return own + tuple(m for _, part in d.fields if part for m in self.members(part))
 
     def _stem(self, key: str) -> str:
         return self._names.table(key).removeprefix("s_")

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Container, Iterable, Mapping
 
 from pn2code.emission.c_expressions import Types
 from pn2code.emission.names import Names, label
@@ -93,14 +93,17 @@ def _puts(statements: Iterable[ir.Stmt], place: int) -> int:
     return total
 
 
-def is_direct(net: ir.NetIR, t: ir.Transition) -> bool:
-    """Whether the occurrence is a fixed number of takes and puts of untimed places, known one by one."""
+def is_direct(net: ir.NetIR, t: ir.Transition, sums: Container[tuple[int, ir.Ir]] = ()) -> bool:
+    """Whether the occurrence is a fixed number of takes and puts of untimed places, known one by one or as `sums`."""
     takes = [n for n in ir_nodes(t.fire) if isinstance(n, ir.Take)]
     puts = [n for n in ir_nodes(t.fire) if isinstance(n, ir.Put)]
     moved = {n.place for n in takes} | {n.place for n in puts}
     top = [s for s in t.fire if isinstance(s, ir.Take)]
+    whole = [n for n in ir_nodes(t.fire) if isinstance(n, ir.TakeAll | ir.PutAll)]
     return (
-        not any(isinstance(n, ir.TakeAll | ir.PutAll | ir.Reset) for n in ir_nodes(t.fire))
+        not any(isinstance(n, ir.Reset) for n in ir_nodes(t.fire))
+        and all((n.place, n.multiset) in sums for n in whole)
+        and len(whole) == sum(isinstance(s, ir.TakeAll | ir.PutAll) for s in t.fire)
         and not any(net.places[place].timed for place in moved)
         and len(takes) == len(top)
         and all(is_count(n.count) for n in takes)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 
 from pn2code.emission.c_expressions import (
     Expressions,
@@ -11,6 +11,7 @@ from pn2code.emission.c_expressions import (
     c_bytes,
     op_needs_context,
 )
+from pn2code.emission.c_sums import Sum
 from pn2code.emission.environment import c_comment
 from pn2code.emission.names import Names, Scope
 from pn2code.lowering import ir
@@ -93,6 +94,7 @@ class Statements:
         self.bags: tuple[str, ...] = ()
         self.timed: tuple[bool, ...] = ()
         self.token_types: tuple[ir.IrType, ...] = ()
+        self.sums: Mapping[tuple[int, Ir], Sum] = {}
         self.moves = "moves"
         self.variable_types: tuple[ir.IrType, ...] = ()
         self.has_arena_values = True
@@ -447,8 +449,34 @@ class Statements:
         if is_pair(takes, self.timed):
             self._wanted_pair(takes)
             return
-        name = self._scope.name(("wanted", id(takes)), "wanted")
         holds = self._scope.name(("holds", id(takes)), "holds")
+        first = takes[0]
+        known = (
+            self.sums.get((first.place, first.multiset))
+            if len(takes) == 1 and isinstance(first, ir.TakeAll)
+            else None
+        )
+        if known is None:
+            self._work_out_wanted(takes, f"const bool {holds}")
+        else:
+            place = self._x.place_names[known.place]
+            total = self._scope.name(("sum", id(takes)), "sum")
+            self.note(known.note)
+            self.line(f"const uint64_t *const {total} = {known.name}(cx, &b);")
+            self.line(f"bool {holds} = false;")
+            self.line(f"if ({total} != NULL) {{")
+            self.line(f"{_INDENT}{holds} = {place}_has_sum(m, {total});")
+            self.line("} else {")
+            self._depth += 1
+            self._work_out_wanted(takes, holds)
+            self._depth -= 1
+            self.line("}")
+        self.line(f"if (!{holds}) {{")
+        self._next()
+
+    def _work_out_wanted(self, takes: tuple[Stmt, ...], holds: str) -> None:
+        """Assigns to `holds` whether there are all tokens."""
+        name = self._scope.name(("wanted", id(takes)), "wanted")
         before, self.moves = self.moves, name
         mark = self._scope.name(("mark", id(takes)), "start")
         if self.releases:
@@ -456,11 +484,9 @@ class Statements:
         self.line(f"pn_moves_t {name};")
         self.line(f"pn_moves_init(&{name}, cx);")
         self.body(takes)
-        self.line(f"const bool {holds} = pn_moves_are_possible(&{name}, m);")
+        self.line(f"{holds} = pn_moves_are_possible(&{name}, m);")
         if self.releases:
             self.line(f"pn_arena_release(cx->arena, {mark});")
-        self.line(f"if (!{holds}) {{")
-        self._next()
         self.moves = before
 
     def _wanted_pair(self, takes: tuple[Stmt, ...]) -> None:

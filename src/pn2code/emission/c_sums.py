@@ -1,0 +1,157 @@
+"""Multi-sets that arcs compute from a few variables with few values: worked out once for each, then kept as counters.
+
+`others(s)` on an arc of a packed place is a function that makes a list. In C it is called once for each value of `s`;
+after that the arc is a comparison, addition or subtraction of words (`place_has_sum` and the like in pn_packed.h).
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Mapping
+
+from pn2code.emission.c_effects import Effects, reaches
+from pn2code.emission.c_packed import Numbers
+from pn2code.frozen import frozen
+from pn2code.lowering import ir
+from pn2code.lowering.calls import ir_nodes
+from pn2code.lowering.ir import Descriptor
+from pn2code.lowering.packing import colours
+
+_MOST_SUMS = 1024
+_MOST_WORDS = 1 << 14
+"""Of all sums of one arc."""
+
+
+@frozen
+class Sum:
+    """A multi-set of an arc.
+
+    Args:
+        name: of the function in C that gives its counters.
+        place: whose.
+        multiset: the list.
+        table: descriptor of the list.
+        variables: (index in the binding, key of its descriptor, number of its colours).
+        words: of its counters.
+        note: the inscription.
+    """
+
+    name: str
+    place: int
+    multiset: ir.Ir
+    table: str
+    variables: tuple[tuple[int, str, int], ...]
+    words: int
+    note: str
+
+    @property
+    def count(self) -> int:
+        """How many multi-sets there are."""
+        return math.prod(n for _, _, n in self.variables)
+
+
+def find(
+    net: ir.NetIR,
+    t: ir.Transition,
+    stem: str,
+    descriptors: Mapping[str, Descriptor],
+    effects: Effects,
+) -> dict[tuple[int, ir.Ir], Sum]:
+    """The sums of a transition by place and multi-set; `stem` is its name in C."""
+    found: dict[tuple[int, ir.Ir], Sum] = {}
+    for node in ir_nodes((t.enumerate, t.fire)):
+        if not isinstance(node, ir.TakeAll | ir.PutAll) or (node.place, node.multiset) in found:
+            continue
+        packed = net.places[node.place].packed
+        if packed is None or not _is_function_of_binding(net, node.multiset, effects):
+            continue
+        variables = _variables(t, node.multiset, descriptors)
+        words = (packed.bit % 64 + packed.colours * packed.width + 63) // 64
+        if variables is None:
+            continue
+        number = len(found) + 1
+        made = Sum(
+            f"{stem}_sum_{number}",
+            node.place,
+            node.multiset,
+            node.table,
+            variables,
+            words,
+            node.note,
+        )
+        if made.count <= _MOST_SUMS and made.count * words <= _MOST_WORDS:
+            found[node.place, node.multiset] = made
+    return found
+
+
+def _is_function_of_binding(net: ir.NetIR, multiset: ir.Ir, effects: Effects) -> bool:
+    functions = {f.key: f for f in net.functions}
+    return (
+        not any(isinstance(n, ir.Use | ir.TokenValue) for n in ir_nodes(multiset))
+        and effects.is_pure(multiset)
+        and not reaches(functions, multiset, lambda n: isinstance(n, ir.Now))
+    )
+
+
+def _variables(
+    t: ir.Transition, multiset: ir.Ir, descriptors: Mapping[str, Descriptor]
+) -> tuple[tuple[int, str, int], ...] | None:
+    """The variables that decide; None if they have too many values."""
+    indices = sorted({n.index for n in ir_nodes(multiset) if isinstance(n, ir.Bound)})
+    own = [t.variables[i] for i in indices]
+    counts = [colours(descriptors, v.table) for v in own]
+    if any(v.is_output for v in own) or 0 in counts:
+        return None
+    return tuple((i, v.table, n) for i, v, n in zip(indices, own, counts, strict=True))
+
+
+def function(
+    s: Sum,
+    binding: str,
+    bag: str,
+    list_table: str,
+    numbers: Numbers,
+    text: Callable[[ir.Ir], str],
+    address: Callable[[int], str],
+) -> list[str]:
+    """The function in C.
+
+    Args:
+        s: the sum.
+        binding: type of the binding.
+        bag: of the place.
+        list_table: of the list.
+        numbers: of colours.
+        text: prints an expression over `b->`.
+        address: of a variable.
+    """
+    lines = [
+        f"static const uint64_t *{s.name}(pn_ctx_t *cx, const {binding} *b)",
+        "{",
+        f"    static PN_OF_THREAD uint8_t state[{s.count}];",
+        f"    static PN_OF_THREAD uint64_t counters[{s.count}][{s.words}];",
+    ]
+    number = ""
+    for k, (index, table, n) in enumerate(s.variables, 1):
+        own = f"{numbers.number_of(table)}({address(index)})"
+        name = "number" if len(s.variables) == 1 else f"number_{k}"
+        lines.append(f"    const uint32_t {name} = {own};")
+        lines += [f"    if ({name} == PN_NO_COLOUR) {{", "        return NULL;", "    }"]
+        number = f"(({number}) * {n}U) + {name}" if number else name
+    if not s.variables:
+        lines += ["    const uint32_t number = 0U;", "    (void)b;"]
+    elif len(s.variables) > 1:
+        lines.append(f"    const uint32_t number = {number};")
+    lines += [
+        "    if (state[number] == PN_SUM_UNKNOWN) {",
+        "        const size_t start = pn_arena_mark(cx->arena);",
+        f"        state[number] = (uint8_t)pn_sum_make(cx, &{bag}, &{list_table},",
+        f"            {text(s.multiset)}, counters[number]);",
+        "        if (pn_ok(cx)) {",
+        "            pn_arena_release(cx->arena, start);",
+        "        }",
+        "    }",
+        "    return (state[number] == PN_SUM_KNOWN) ? counters[number] : NULL;",
+        "}",
+    ]
+    return lines
