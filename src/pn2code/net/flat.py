@@ -232,6 +232,8 @@ class FlatTransition:
     code: CodeSegment | None
     priority: int
     origin: Origin
+    caption: str = ""
+    """the name exactly as it is written, with line breaks; "" if it has none"""
 
 
 @frozen

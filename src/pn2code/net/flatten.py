@@ -260,6 +260,8 @@ class _Flattener:
             for t in i.page.transitions
         ]
         names = unique_names(proposals)
+        document = self.net.net.document
+        captions = {t.id: t.caption for page in document.pages for t in page.transitions}
         for instance in self.instances:
             for t in instance.page.transitions:
                 arcs = tuple(
@@ -289,6 +291,7 @@ class _Flattener:
                         code=t.code,
                         priority=t.priority,
                         origin=replace(t.origin, instance=instance.path),
+                        caption=captions.get(t.id, t.name),
                     )
                 )
         return found

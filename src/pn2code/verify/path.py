@@ -30,7 +30,7 @@ _TEXTS = Colours(_NO_EVALUATOR)
 
 @dataclass(frozen=True, slots=True)
 class Change:
-    """What a step takes from a place and puts there, and what is there then: multi-sets as CPN ML texts, "" for none."""
+    """What a step takes from a place and puts there, and what is there then: CPN ML texts, "" for none."""
 
     place: str
     taken: str

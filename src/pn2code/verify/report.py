@@ -12,9 +12,9 @@ from collections.abc import Iterable, Sequence
 from datetime import datetime
 
 import pn2code
-from pn2code.net.flat import FlatNet, FlatPlace
-from pn2code.semantics.recording import engine_name
-from pn2code.verify.result import Exploration, Graph, multiset_text, transition_name
+from pn2code.net.flat import FlatNet
+from pn2code.semantics.engine_names import EngineNames
+from pn2code.verify.result import Exploration, Graph, multiset_text
 
 _RULE = "-" * 72
 _NAME = 20
@@ -106,7 +106,8 @@ def _statistics(found: Exploration) -> str:
 
 def _boundedness(net: FlatNet, found: Exploration) -> str:
     assert found.bounds is not None
-    rows = sorted((place_name(p), p) for p in net.places)
+    place_name = EngineNames(net).place
+    rows = sorted(((place_name(p.index), p) for p in net.places), key=lambda row: row[0])
     lines = [*_section("Boundedness Properties"), "", "  Best Integer Bounds"]
     lines.append(f"     {'':24}Upper      Lower")
     for name, place in rows:
@@ -119,11 +120,6 @@ def _boundedness(net: FlatNet, found: Exploration) -> str:
             multiset = (own.lower_multiset, own.upper_multiset)[pick]
             lines += _row(name, multiset_text(place.colset, multiset) or "not computed", _NAME)
     return "\n".join(lines)
-
-
-def place_name(place: FlatPlace) -> str:
-    """`Page'Place 1`, the real tool's name of a place instance."""
-    return f"{engine_name(place.page)}'{engine_name(place.short)} {place.instance_number}"
 
 
 def _row(name: str, text: str, width: int) -> list[str]:
@@ -156,7 +152,8 @@ def _liveness(net: FlatNet, found: Exploration) -> str:
 
 
 def _instances(net: FlatNet, which: Iterable[int]) -> list[str]:
-    names = sorted(transition_name(net, i) for i in which)
+    name = EngineNames(net).transition
+    names = sorted(name(i) for i in which)
     if not names:
         return ["     None"]
     if len(names) == len(net.transitions):
@@ -166,6 +163,7 @@ def _instances(net: FlatNet, which: Iterable[int]) -> list[str]:
 
 def _fairness(net: FlatNet, graph: Graph) -> str:
     lines = _section("Fairness Properties")
+    transition_name = EngineNames(net).transition
     if graph.fairness is None:
         return "\n".join([*lines, "     No infinite occurrence sequences."])
     for kind, title in (
@@ -174,8 +172,6 @@ def _fairness(net: FlatNet, graph: Graph) -> str:
         ("just", "Just Transition Instances"),
         ("none", "Transition Instances with No Fairness"),
     ):
-        names = sorted(
-            transition_name(net, i) for i, own in enumerate(graph.fairness) if own == kind
-        )
+        names = sorted(transition_name(i) for i, own in enumerate(graph.fairness) if own == kind)
         lines += ["", f"  {title}", *(f"     {name}" for name in names or ["None"])]
     return "\n".join(lines)

@@ -11,7 +11,7 @@ from pn2code.ml.colsets import Colset
 from pn2code.net.flat import FlatNet
 from pn2code.semantics.colour_json import from_json
 from pn2code.semantics.colours import Colours
-from pn2code.semantics.recording import engine_name
+from pn2code.semantics.engine_names import EngineNames
 
 FAIRNESS = ("impartial", "fair", "just", "none")
 _NO_EVALUATOR: Any = None
@@ -176,21 +176,14 @@ def _graph(found: Mapping[str, Any]) -> Graph:
     )
 
 
-def transition_name(net: FlatNet, index: int) -> str:
-    """`Page'Transition 1`, the real tool's name of a transition instance."""
-    t = net.transitions[index]
-    return f"{engine_name(t.page)}'{engine_name(t.short)} {t.instance_number}"
-
-
 def row(net: FlatNet, found: Exploration) -> dict[str, Any]:
     """For programs (docs/verify.md)."""
     graph = found.graph
+    name = EngineNames(net).transition
     fairness = None
     if graph is not None:
         fairness = {
-            kind: [
-                transition_name(net, i) for i, own in enumerate(graph.fairness or ()) if own == kind
-            ]
+            kind: [name(i) for i, own in enumerate(graph.fairness or ()) if own == kind]
             for kind in FAIRNESS
         }
     return {
@@ -205,10 +198,8 @@ def row(net: FlatNet, found: Exploration) -> dict[str, Any]:
         "home_markings": graph.home_count if graph else None,
         "home_marking_nodes": list(graph.home) if graph else None,
         "initial_is_home": graph.initial_is_home if graph else None,
-        "dead_transitions": [transition_name(net, i) for i in found.dead_transitions()],
-        "live_transitions": (
-            [transition_name(net, i) for i in found.live_transitions()] if graph else None
-        ),
+        "dead_transitions": [name(i) for i in found.dead_transitions()],
+        "live_transitions": ([name(i) for i in found.live_transitions()] if graph else None),
         "infinite_occurrence_sequences": graph.fairness is not None if graph else None,
         "fairness": fairness,
         "bounds": bounds_rows(net, found),

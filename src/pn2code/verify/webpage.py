@@ -11,11 +11,12 @@ from jinja2 import Environment, FileSystemLoader, StrictUndefined
 import pn2code
 from pn2code.net.flat import FlatNet
 from pn2code.resources import templates_folder
+from pn2code.semantics.engine_names import EngineNames
 from pn2code.semantics.game import GameError
 from pn2code.simulate.script import TraceRefusedError
 from pn2code.verify.path import Step, steps
-from pn2code.verify.report import place_name, why_partial
-from pn2code.verify.result import Exploration, Trace, multiset_text, transition_name
+from pn2code.verify.report import why_partial
+from pn2code.verify.result import Exploration, Trace, multiset_text
 
 MOST_STEPS = 200
 """Of a longer trace only the first steps are shown."""
@@ -104,11 +105,12 @@ def _bounds(net: FlatNet, found: Exploration) -> list[dict[str, Any]]:
     if found.bounds is None:
         return []
     rows = []
+    names = EngineNames(net)
     for place in net.places:
         own = found.bounds[place.index]
         rows.append(
             {
-                "name": place_name(place),
+                "name": names.place(place.index),
                 "lower": own.lower,
                 "upper": own.upper,
                 "lower_multiset": multiset_text(place.colset, own.lower_multiset) or "",
@@ -138,6 +140,7 @@ def _listed(count: int, first: tuple[int, ...]) -> str:
 
 
 def _transitions(net: FlatNet, found: Exploration) -> list[dict[str, Any]]:
+    names = EngineNames(net)
     live = set(found.live_transitions())
     fairness = found.graph.fairness if found.graph else None
     rows = []
@@ -145,7 +148,7 @@ def _transitions(net: FlatNet, found: Exploration) -> list[dict[str, Any]]:
         kind = "dead" if arcs == 0 else "live" if index in live else ""
         rows.append(
             {
-                "name": transition_name(net, index),
+                "name": names.transition(index),
                 "arcs": f"{arcs:,}",
                 "kind": kind,
                 "fairness": fairness[index]

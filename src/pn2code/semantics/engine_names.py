@@ -1,0 +1,48 @@
+"""Names of place and transition instances as the real engine writes them: `Page'Place 1`.
+
+    EngineNames(net).transition(0)      # "Top'Send_Packet 1"
+
+Each odd character, line breaks too, becomes `_`; a name that begins with a digit gets an `N` before it. Of the
+places and transitions of a page the first of a name has it, the others have `_u1`, `_u2`, ... behind it.
+"""
+
+from __future__ import annotations
+
+from pn2code.net.flat import FlatNet
+from pn2code.semantics.recording import engine_name
+
+
+class EngineNames:
+    """The names of a net's instances."""
+
+    def __init__(self, net: FlatNet) -> None:
+        self._net = net
+        used: dict[tuple[str, str], int] = {}
+        self._names: dict[str, str] = {}
+        for place in net.place_instances:
+            self._name(used, place.page, place.id, place.caption or place.name)
+        for t in net.transitions:
+            self._name(used, t.page, t.id, t.caption or t.short)
+
+    def _name(self, used: dict[tuple[str, str], int], page: str, element: str, text: str) -> None:
+        if element in self._names:
+            return  # another instance of its page
+        name = _legal(text)
+        number = used.get((page, name), 0)
+        used[page, name] = number + 1
+        self._names[element] = f"{name}_u{number}" if number else name
+
+    def transition(self, index: int) -> str:
+        """Of `FlatNet.transitions[index]`."""
+        t = self._net.transitions[index]
+        return f"{_legal(t.page)}'{self._names[t.id]} {t.instance_number}"
+
+    def place(self, index: int) -> str:
+        """Of `FlatNet.places[index]`: that of the topmost of the places that share the marking."""
+        p = self._net.places[index]
+        return f"{_legal(p.page)}'{self._names.get(p.id, _legal(p.short))} {p.instance_number}"
+
+
+def _legal(text: str) -> str:
+    name = engine_name(text)
+    return f"N{name}" if name[:1].isdigit() else name
