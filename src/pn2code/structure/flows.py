@@ -30,7 +30,7 @@ class Limits:
     Args:
         rows: most vectors kept at a time while columns are eliminated.
         work: most pairs of vectors compared.
-        programs: most linear programs solved to cover rows when `semiflows` was cut.
+        programs: most linear programs solved to cover rows when `semiflows` was cut (fewer for a large matrix).
         cells: largest dense matrix (rows times columns) for a basis.
     """
 
@@ -223,8 +223,9 @@ def _covering(rows: Sequence[Row], known: Iterable[Vector], limits: Limits) -> l
     program = Program(rows)
     possible = program.support()
     found: list[Vector] = []
+    budget = min(limits.programs, max(20, 300_000 // max(1, sum(map(len, rows)))))
     for i in range(len(rows)):
-        if program.solved > limits.programs:
+        if program.solved > budget:
             break
         if i not in covered and i in possible:
             vector = program.invariant(i)
