@@ -394,6 +394,8 @@ class Declarations:
 
     # --- generated functions ---------------------------------------------------------------------
 
+    # Parameters have a prime, which no name of the net has: `x` may be a constant.
+
     def step(self, sort: Sort, by: int, at: Node) -> str:
         """The function that gives the next (by = 1) or previous (-1) value, around the end."""
         stem = "succ" if by > 0 else "pred"
@@ -402,18 +404,22 @@ class Declarations:
             first, last = number(sort.low), number(sort.high)
             if sort.is_number:
                 end, start = (last, first) if by > 0 else (first, last)
-                return f"fun {name} x = if x = {end} then {start} else x {'+' if by > 0 else '-'} 1"
+                return (
+                    f"fun {name} x' = if x' = {end} then {start} else x' {'+' if by > 0 else '-'} 1"
+                )
             ends = (len(sort.values) - 1, 0) if by > 0 else (0, len(sort.values) - 1)
-            n = f"{sort.name}.ord x"
+            n = f"{sort.name}.ord x'"
             sign = "+" if by > 0 else "-"
-            return f"fun {name} x = {sort.name}.col (if {n} = {ends[0]} then {ends[1]} else {n} {sign} 1)"
+            return f"fun {name} x' = {sort.name}.col (if {n} = {ends[0]} then {ends[1]} else {n} {sign} 1)"
 
         return self._function(f"{stem}_{sort.name}", text, at)
 
     def minus(self, at: Node) -> str:
         """The function that takes a multi-set from another, as far as it is there."""
         return self._function(
-            "minus_ms", lambda name: f"fun {name} (a, b) = List.foldl (fn (x, m) => rm x m) a b", at
+            "minus_ms",
+            lambda name: f"fun {name} (a', b') = List.foldl (fn (x', m') => rm x' m') a' b'",
+            at,
         )
 
     def part_of(self, identity: str, at: Node, origin: Origin) -> tuple[str, Sort] | None:

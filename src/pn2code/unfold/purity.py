@@ -24,7 +24,7 @@ def impure(exp: Any, program: Program) -> str:
         node = todo.pop()
         match node:
             case Builtin(name):
-                if name in _IMPURE or name.startswith(_IMPURE_STRUCTURES):
+                if name in _IMPURE or (name.startswith(_IMPURE_STRUCTURES) and name != "Ref.ref"):
                     return name
             case Var(symbol):
                 if symbol in bodies and symbol not in seen:
