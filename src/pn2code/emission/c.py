@@ -346,7 +346,8 @@ class _Emitter:
                 if any(f"{s.name}(" in line for line in search.lines + fire.lines)
             ],
             "lists": lists.lines if lists else [],
-            "uses_binding": "b->" in text,
+            "lists_use_binding": bool(lists) and bool(re.search(r"\bb\b", "\n".join(lists.lines))),
+            "uses_binding": bool(re.search(r"\bb\b", text)),
             "touched": ", ".join(f"{i}U" for i in self._effects.touched(t.index)),
             "touched_bags": [
                 self._place_names[i]
@@ -493,11 +494,6 @@ class _Emitter:
             "leaves": self._leaf_tables(),
             "places": [self._place(p) for p in net.places],
             "orders": list(self._orders.functions.values()),
-            "numbers": self._numbers.functions
-            + [
-                self._numbers.pointers(t)
-                for t in dict.fromkeys(p.table for p in net.places if p.packed)
-            ],
             "packed_words": (packed_bits(net.places) + 63) // 64,
             "packed_size": (packed_bits(net.places) + 31) // 32 * 4,
             "transitions": [self._transition(t) for t in net.transitions],
@@ -506,6 +502,11 @@ class _Emitter:
             "has_arena_values": self._has_arena_values
             or any(g.is_reference or self._types.holds_reference(g.type) for g in net.globals),
         }
+        # After the transitions, which want numbers of colours of their own.
+        values["numbers"] = self._numbers.functions + [
+            self._numbers.pointers(t)
+            for t in dict.fromkeys(p.table for p in net.places if p.packed)
+        ]
         source, blocks = self._extract(render("c/net.c.j2", **values))
         header, _ = self._extract(render("c/net.h.j2", **values))
         return (OutputFile("net.c", source, blocks), OutputFile("net.h", header))
