@@ -113,10 +113,14 @@ def _callback(rule: Rule, builder: object) -> Callback | None:
     """What makes a rule's value of the values of its parts; None: the only part itself."""
     if rule.is_passed and rule.size == 1 and not rule.spliced:
         return None
-    make: Callback = getattr(builder, rule.name) if rule.name else list
+    make: Callback = getattr(builder, rule.name) if rule.name else _as_it_is
     if rule.is_passed:
         make = _passed(make)
     return _spliced(make, frozenset(rule.spliced)) if rule.spliced else make
+
+
+def _as_it_is(children: Children) -> Children:
+    return children  # no copy: long repetitions are made part by part
 
 
 def _passed(make: Callback) -> Callback:
