@@ -346,7 +346,8 @@ class _Emitter:
                 if any(f"{s.name}(" in line for line in search.lines + fire.lines)
             ],
             "lists": lists.lines if lists else [],
-            "lists_use_binding": bool(lists) and bool(re.search(r"\bb\b", "\n".join(lists.lines))),
+            "lists_use_binding": lists is not None
+            and bool(re.search(r"\bb\b", "\n".join(lists.lines))),
             "uses_binding": bool(re.search(r"\bb\b", text)),
             "touched": ", ".join(f"{i}U" for i in self._effects.touched(t.index)),
             "touched_bags": [
