@@ -19,7 +19,7 @@ from collections.abc import Callable
 from contextlib import suppress
 from pathlib import Path
 
-from pn2code.cli.main import main
+from pn2code.cli.main import play
 
 DEADLINE_S = 60.0
 
@@ -102,7 +102,7 @@ class Command(Child):
         def body() -> int:
             prepare()
             sys.argv = self.arguments
-            main()
+            play()
 
         super().__init__(body, self._out.fileno(), self._err.fileno())
 
