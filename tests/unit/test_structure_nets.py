@@ -730,3 +730,12 @@ def test_the_verb(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert (row["page"], row["instance"], row["name"], row["upper"]) == ("Top", 1, "A", 5)
     assert shape["coloured_invariants"]["found"][0]["constant"] == "5`1"
     assert shape["bounded"] is True
+
+
+def test_sub_invariants_are_looked_for_only_where_they_can_tell_more() -> None:
+    """In a consistent net the invariants say all: with and without linear programs the bounds are the same."""
+    cyclic = net(MUTEX)
+    assert bounds(cyclic) == bounds(cyclic, Limits(programs=0))
+    losing = net(MUTEX + "    trans lose\n      in crit1\n")
+    assert {b.bound for b in bounds(losing).values()} == {1}
+    assert None in {b.bound for b in bounds(losing, Limits(programs=0)).values()}

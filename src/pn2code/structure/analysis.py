@@ -201,7 +201,12 @@ def analyse(
         work=limits.siphon_work,
     )
     place_bound = place_bounds(
-        skel, initial, p_flows.vectors, coloured.found, programs=limits.programs
+        skel,
+        initial,
+        p_flows.vectors,
+        coloured.found,
+        cycling=_cycling(p_flows, t_flows),
+        programs=limits.programs,
     )
     parts, strong = components(g, len(net.places))
     t_covered = {skel.modes[k].transition for v in t_flows.vectors for k in v}
@@ -248,8 +253,20 @@ def bounds(
     symbolic = Symbolic(net, start.evaluator)
     skel = skeleton(net, symbolic)
     coloured = coloured_invariants(skel, symbolic, start.marking, bool(storage))
-    vectors = _p_flows(skel, limits).vectors
-    return place_bounds(skel, start.initial, vectors, coloured.found, programs=limits.programs)
+    p_flows, t_flows = _p_flows(skel, limits), _t_flows(skel, _SHORT)
+    return place_bounds(
+        skel,
+        start.initial,
+        p_flows.vectors,
+        coloured.found,
+        cycling=_cycling(p_flows, t_flows),
+        programs=limits.programs,
+    )
+
+
+def _cycling(p_flows: flows.Flows, t_flows: flows.Flows) -> set[int]:
+    """For `place_bounds`."""
+    return {k for v in t_flows.vectors for k in v} if p_flows.complete else set()
 
 
 def _covers(covered: int, of: int, found: flows.Flows) -> bool | None:
@@ -304,6 +321,9 @@ def _without_resets(skel: Skeleton) -> list[dict[int, int]]:
 
 def _p_flows(skel: Skeleton, limits: Limits) -> flows.Flows:
     return flows.semiflows(_without_resets(skel), limits.flows)
+
+
+_SHORT = Limits(flows=flows.Limits(rows=1_000, work=20_000, programs=0))
 
 
 def _t_flows(skel: Skeleton, limits: Limits) -> flows.Flows:

@@ -10,7 +10,7 @@ tokens count with the worst case.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import dataclass
 
 from pn2code.structure import flows
@@ -113,9 +113,20 @@ def place_bounds(
     invariants: Sequence[flows.Vector],
     coloured: Sequence[ColouredInvariant],
     *,
+    cycling: Collection[int] = (),
     programs: int = MOST_PROGRAMS,
 ) -> dict[int, PlaceBound]:
-    """The best bound known for each place."""
+    """The best bound known for each place.
+
+    Args:
+        skeleton: the net.
+        initial: numbers of tokens.
+        invariants: P-invariants.
+        coloured: coloured ones.
+        cycling: modes that are in a T-invariant, if `invariants` are all the minimal ones. If these are all modes,
+            every sub-invariant is an invariant (y * C * x = 0 with all x > 0), and no linear program can tell more.
+        programs: most linear programs.
+    """
     marked, live = markable(skeleton, initial)
     best: dict[int, Proof] = {}
 
@@ -133,9 +144,10 @@ def place_bounds(
             continue
         for p in vector:
             offer(p, Proof("constant" if len(vector) == 1 else "invariant", vector, total))
-    _by_programs(
-        skeleton, initial, [skeleton.modes[k] for k in sorted(live)], best, offer, programs
-    )
+    if len(live) < len(skeleton.modes) or not live <= set(cycling):
+        _by_programs(
+            skeleton, initial, [skeleton.modes[k] for k in sorted(live)], best, offer, programs
+        )
     colours = _colour_proofs(coloured)
     upper = {p: _bound(p, proof) for p, proof in best.items()}
     lower = _lower(invariants, initial, upper)

@@ -83,7 +83,7 @@ def semiflows(rows: Sequence[Row], limits: Limits | None = None) -> Flows:
     """
     limits = limits or Limits()
     found, complete = _eliminated(rows, limits)
-    if not complete:
+    if not complete and limits.programs:
         found = [*found, *_covering(rows, found, limits)]
     unique = {tuple(sorted(v.items())): v for v in found}
     vectors = tuple(dict(key) for key in sorted(unique, key=lambda k: (len(k), k)))
