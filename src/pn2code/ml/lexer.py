@@ -34,6 +34,7 @@ RESERVED_SYMBOLS: dict[str, str] = {
 _SYMBOL = r"[!%&$#+\-/:<=>?@\\~`^|*]"
 _ALPHA = r"[A-Za-z][A-Za-z0-9_']*"
 _SPACE = re.compile(r"[ \t\r\n\f\v\u00a0]+")
+_SPACES = " \t\r\n\f\v\u00a0"
 _NUMBER = re.compile(
     r"~?0w(?:x[0-9a-fA-F]+|[0-9]+)|~?0x[0-9a-fA-F]+|~?[0-9]+(?:\.[0-9]+)?(?:[eE]~?[0-9]+)?"
 )
@@ -81,7 +82,7 @@ class _Lexer:
 
     def run(self) -> list[Lexeme] | None:
         while self._at < len(self._text):
-            if m := _SPACE.match(self._text, self._at):
+            if self._text[self._at] in _SPACES and (m := _SPACE.match(self._text, self._at)):
                 self._at = m.end()
             elif self._text.startswith("(*", self._at):
                 if not self._comment():
@@ -122,6 +123,9 @@ class _Lexer:
 
     def _token(self) -> bool:
         text, at = self._text, self._at
+        punctuation = PUNCTUATION.get(text[at])
+        if punctuation is not None:
+            return self._add(punctuation, at + 1)
         if m := _NUMBER.match(text, at):
             return self._number(m)
         if m := _NAME.match(text, at):
@@ -135,8 +139,6 @@ class _Lexer:
             return self._add("TYVAR", m.end())
         if text.startswith("...", at):
             return self._add("DOTS", at + 3)
-        if text[at] in PUNCTUATION:
-            return self._add(PUNCTUATION[text[at]], at + 1)
         if m := _SYMBOLIC.match(text, at):
             return self._add(RESERVED_SYMBOLS.get(m.group(), "ID"), m.end())
         return self._error(at, at + 1, *advice.unknown_character(text[at], text[:at]))
