@@ -22,6 +22,11 @@
 #include "pn/pn_string.h"
 #include "pn/pn_type.h"
 
+/* Hosts that are compiled in one piece with the net say here that the compiler shall put searches where they are called. */
+#ifndef PN_NET_SEARCH
+#define PN_NET_SEARCH
+#endif
+
 #if PN_NET_ABI != 1U
 #error "Generate this file again: runtime and generator disagree (PN_NET_ABI)."
 #endif
@@ -2081,7 +2086,7 @@ static const pn_type_t s_binding_Supervisor_Load_Load = {
     .field = s_variables_Supervisor_Load_Load,
 };
 
-static bool Supervisor_Load_Load_enumerate(pn_ctx_t *cx, const void *marking,
+PN_NET_SEARCH static bool Supervisor_Load_Load_enumerate(pn_ctx_t *cx, const void *marking,
     uint32_t self, pn_binding_sink_t sink, void *user)
 {
     const net_marking_t *const m = marking;
@@ -2101,7 +2106,7 @@ static bool Supervisor_Load_Load_enumerate(pn_ctx_t *cx, const void *marking,
     return true;
 }
 
-static bool Supervisor_Load_Load_fire(pn_ctx_t *cx, void *marking, void *binding)
+PN_NET_SEARCH static bool Supervisor_Load_Load_fire(pn_ctx_t *cx, void *marking, void *binding)
 {
     net_marking_t *const m = marking;
     Supervisor_Load_Load_binding_t *const b = binding;
@@ -2152,7 +2157,7 @@ static const pn_type_t s_binding_Supervisor_Approach_Send = {
     .field = s_variables_Supervisor_Approach_Send,
 };
 
-static bool Supervisor_Approach_Send_enumerate(pn_ctx_t *cx, const void *marking,
+PN_NET_SEARCH static bool Supervisor_Approach_Send_enumerate(pn_ctx_t *cx, const void *marking,
     uint32_t self, pn_binding_sink_t sink, void *user)
 {
     const net_marking_t *const m = marking;
@@ -2170,7 +2175,7 @@ static bool Supervisor_Approach_Send_enumerate(pn_ctx_t *cx, const void *marking
     return true;
 }
 
-static bool Supervisor_Approach_Send_fire(pn_ctx_t *cx, void *marking, void *binding)
+PN_NET_SEARCH static bool Supervisor_Approach_Send_fire(pn_ctx_t *cx, void *marking, void *binding)
 {
     net_marking_t *const m = marking;
     Supervisor_Approach_Send_binding_t *const b = binding;
@@ -2224,7 +2229,7 @@ static const pn_type_t s_binding_Supervisor_Approach_Arrived = {
     .field = s_variables_Supervisor_Approach_Arrived,
 };
 
-static bool Supervisor_Approach_Arrived_enumerate(pn_ctx_t *cx, const void *marking,
+PN_NET_SEARCH static bool Supervisor_Approach_Arrived_enumerate(pn_ctx_t *cx, const void *marking,
     uint32_t self, pn_binding_sink_t sink, void *user)
 {
     const net_marking_t *const m = marking;
@@ -2246,7 +2251,7 @@ static bool Supervisor_Approach_Arrived_enumerate(pn_ctx_t *cx, const void *mark
     return true;
 }
 
-static bool Supervisor_Approach_Arrived_fire(pn_ctx_t *cx, void *marking, void *binding)
+PN_NET_SEARCH static bool Supervisor_Approach_Arrived_fire(pn_ctx_t *cx, void *marking, void *binding)
 {
     net_marking_t *const m = marking;
     Supervisor_Approach_Arrived_binding_t *const b = binding;
@@ -2299,7 +2304,7 @@ static const pn_type_t s_binding_Supervisor_Approach_Move_both_Command = {
     .field = s_variables_Supervisor_Approach_Move_both_Command,
 };
 
-static bool Supervisor_Approach_Move_both_Command_enumerate(pn_ctx_t *cx, const void *marking,
+PN_NET_SEARCH static bool Supervisor_Approach_Move_both_Command_enumerate(pn_ctx_t *cx, const void *marking,
     uint32_t self, pn_binding_sink_t sink, void *user)
 {
     const net_marking_t *const m = marking;
@@ -2319,7 +2324,7 @@ static bool Supervisor_Approach_Move_both_Command_enumerate(pn_ctx_t *cx, const 
     return true;
 }
 
-static bool Supervisor_Approach_Move_both_Command_fire(pn_ctx_t *cx, void *marking, void *binding)
+PN_NET_SEARCH static bool Supervisor_Approach_Move_both_Command_fire(pn_ctx_t *cx, void *marking, void *binding)
 {
     net_marking_t *const m = marking;
     Supervisor_Approach_Move_both_Command_binding_t *const b = binding;
@@ -2382,7 +2387,7 @@ static const pn_type_t s_binding_Supervisor_Approach_Move_both_Both = {
     .field = NULL,
 };
 
-static bool Supervisor_Approach_Move_both_Both_enumerate(pn_ctx_t *cx, const void *marking,
+PN_NET_SEARCH static bool Supervisor_Approach_Move_both_Both_enumerate(pn_ctx_t *cx, const void *marking,
     uint32_t self, pn_binding_sink_t sink, void *user)
 {
     const net_marking_t *const m = marking;
@@ -2404,7 +2409,7 @@ static bool Supervisor_Approach_Move_both_Both_enumerate(pn_ctx_t *cx, const voi
     return true;
 }
 
-static bool Supervisor_Approach_Move_both_Both_fire(pn_ctx_t *cx, void *marking, void *binding)
+PN_NET_SEARCH static bool Supervisor_Approach_Move_both_Both_fire(pn_ctx_t *cx, void *marking, void *binding)
 {
     net_marking_t *const m = marking;
     (void)binding;
@@ -2456,7 +2461,7 @@ static const pn_type_t s_binding_Supervisor_Approach_Move_both_Reply_1 = {
     .field = NULL,
 };
 
-static bool Supervisor_Approach_Move_both_Reply_1_enumerate(pn_ctx_t *cx, const void *marking,
+PN_NET_SEARCH static bool Supervisor_Approach_Move_both_Reply_1_enumerate(pn_ctx_t *cx, const void *marking,
     uint32_t self, pn_binding_sink_t sink, void *user)
 {
     const net_marking_t *const m = marking;
@@ -2478,7 +2483,7 @@ static bool Supervisor_Approach_Move_both_Reply_1_enumerate(pn_ctx_t *cx, const 
     return true;
 }
 
-static bool Supervisor_Approach_Move_both_Reply_1_fire(pn_ctx_t *cx, void *marking, void *binding)
+PN_NET_SEARCH static bool Supervisor_Approach_Move_both_Reply_1_fire(pn_ctx_t *cx, void *marking, void *binding)
 {
     net_marking_t *const m = marking;
     (void)binding;
@@ -2529,7 +2534,7 @@ static const pn_type_t s_binding_Supervisor_Approach_Move_both_Reply_2 = {
     .field = NULL,
 };
 
-static bool Supervisor_Approach_Move_both_Reply_2_enumerate(pn_ctx_t *cx, const void *marking,
+PN_NET_SEARCH static bool Supervisor_Approach_Move_both_Reply_2_enumerate(pn_ctx_t *cx, const void *marking,
     uint32_t self, pn_binding_sink_t sink, void *user)
 {
     const net_marking_t *const m = marking;
@@ -2551,7 +2556,7 @@ static bool Supervisor_Approach_Move_both_Reply_2_enumerate(pn_ctx_t *cx, const 
     return true;
 }
 
-static bool Supervisor_Approach_Move_both_Reply_2_fire(pn_ctx_t *cx, void *marking, void *binding)
+PN_NET_SEARCH static bool Supervisor_Approach_Move_both_Reply_2_fire(pn_ctx_t *cx, void *marking, void *binding)
 {
     net_marking_t *const m = marking;
     (void)binding;
@@ -2606,7 +2611,7 @@ static const pn_type_t s_binding_Supervisor_Verify_Ask_first = {
     .field = s_variables_Supervisor_Verify_Ask_first,
 };
 
-static bool Supervisor_Verify_Ask_first_enumerate(pn_ctx_t *cx, const void *marking,
+PN_NET_SEARCH static bool Supervisor_Verify_Ask_first_enumerate(pn_ctx_t *cx, const void *marking,
     uint32_t self, pn_binding_sink_t sink, void *user)
 {
     const net_marking_t *const m = marking;
@@ -2624,7 +2629,7 @@ static bool Supervisor_Verify_Ask_first_enumerate(pn_ctx_t *cx, const void *mark
     return true;
 }
 
-static bool Supervisor_Verify_Ask_first_fire(pn_ctx_t *cx, void *marking, void *binding)
+PN_NET_SEARCH static bool Supervisor_Verify_Ask_first_fire(pn_ctx_t *cx, void *marking, void *binding)
 {
     net_marking_t *const m = marking;
     Supervisor_Verify_Ask_first_binding_t *const b = binding;
@@ -2683,7 +2688,7 @@ static const pn_type_t s_binding_Supervisor_Verify_Ask_last = {
     .field = s_variables_Supervisor_Verify_Ask_last,
 };
 
-static bool Supervisor_Verify_Ask_last_enumerate(pn_ctx_t *cx, const void *marking,
+PN_NET_SEARCH static bool Supervisor_Verify_Ask_last_enumerate(pn_ctx_t *cx, const void *marking,
     uint32_t self, pn_binding_sink_t sink, void *user)
 {
     const net_marking_t *const m = marking;
@@ -2709,7 +2714,7 @@ static bool Supervisor_Verify_Ask_last_enumerate(pn_ctx_t *cx, const void *marki
     return true;
 }
 
-static bool Supervisor_Verify_Ask_last_fire(pn_ctx_t *cx, void *marking, void *binding)
+PN_NET_SEARCH static bool Supervisor_Verify_Ask_last_fire(pn_ctx_t *cx, void *marking, void *binding)
 {
     net_marking_t *const m = marking;
     Supervisor_Verify_Ask_last_binding_t *const b = binding;
@@ -2779,7 +2784,7 @@ static const pn_type_t s_binding_Supervisor_Verify_Measured = {
     .field = s_variables_Supervisor_Verify_Measured,
 };
 
-static bool Supervisor_Verify_Measured_enumerate(pn_ctx_t *cx, const void *marking,
+PN_NET_SEARCH static bool Supervisor_Verify_Measured_enumerate(pn_ctx_t *cx, const void *marking,
     uint32_t self, pn_binding_sink_t sink, void *user)
 {
     const net_marking_t *const m = marking;
@@ -2806,7 +2811,7 @@ static bool Supervisor_Verify_Measured_enumerate(pn_ctx_t *cx, const void *marki
     return true;
 }
 
-static bool Supervisor_Verify_Measured_fire(pn_ctx_t *cx, void *marking, void *binding)
+PN_NET_SEARCH static bool Supervisor_Verify_Measured_fire(pn_ctx_t *cx, void *marking, void *binding)
 {
     net_marking_t *const m = marking;
     Supervisor_Verify_Measured_binding_t *const b = binding;
@@ -2872,7 +2877,7 @@ static const pn_type_t s_binding_Supervisor_Correct_Compare = {
     .field = s_variables_Supervisor_Correct_Compare,
 };
 
-static bool Supervisor_Correct_Compare_enumerate(pn_ctx_t *cx, const void *marking,
+PN_NET_SEARCH static bool Supervisor_Correct_Compare_enumerate(pn_ctx_t *cx, const void *marking,
     uint32_t self, pn_binding_sink_t sink, void *user)
 {
     const net_marking_t *const m = marking;
@@ -2894,7 +2899,7 @@ static bool Supervisor_Correct_Compare_enumerate(pn_ctx_t *cx, const void *marki
     return true;
 }
 
-static bool Supervisor_Correct_Compare_fire(pn_ctx_t *cx, void *marking, void *binding)
+PN_NET_SEARCH static bool Supervisor_Correct_Compare_fire(pn_ctx_t *cx, void *marking, void *binding)
 {
     net_marking_t *const m = marking;
     Supervisor_Correct_Compare_binding_t *const b = binding;
@@ -2959,7 +2964,7 @@ static const pn_type_t s_binding_Supervisor_Correct_Move_over = {
     .field = s_variables_Supervisor_Correct_Move_over,
 };
 
-static bool Supervisor_Correct_Move_over_enumerate(pn_ctx_t *cx, const void *marking,
+PN_NET_SEARCH static bool Supervisor_Correct_Move_over_enumerate(pn_ctx_t *cx, const void *marking,
     uint32_t self, pn_binding_sink_t sink, void *user)
 {
     const net_marking_t *const m = marking;
@@ -2987,7 +2992,7 @@ static bool Supervisor_Correct_Move_over_enumerate(pn_ctx_t *cx, const void *mar
     return true;
 }
 
-static bool Supervisor_Correct_Move_over_fire(pn_ctx_t *cx, void *marking, void *binding)
+PN_NET_SEARCH static bool Supervisor_Correct_Move_over_fire(pn_ctx_t *cx, void *marking, void *binding)
 {
     net_marking_t *const m = marking;
     Supervisor_Correct_Move_over_binding_t *const b = binding;
@@ -3043,7 +3048,7 @@ static const pn_type_t s_binding_Supervisor_Correct_Moved = {
     .field = s_variables_Supervisor_Correct_Moved,
 };
 
-static bool Supervisor_Correct_Moved_enumerate(pn_ctx_t *cx, const void *marking,
+PN_NET_SEARCH static bool Supervisor_Correct_Moved_enumerate(pn_ctx_t *cx, const void *marking,
     uint32_t self, pn_binding_sink_t sink, void *user)
 {
     const net_marking_t *const m = marking;
@@ -3067,7 +3072,7 @@ static bool Supervisor_Correct_Moved_enumerate(pn_ctx_t *cx, const void *marking
     return true;
 }
 
-static bool Supervisor_Correct_Moved_fire(pn_ctx_t *cx, void *marking, void *binding)
+PN_NET_SEARCH static bool Supervisor_Correct_Moved_fire(pn_ctx_t *cx, void *marking, void *binding)
 {
     net_marking_t *const m = marking;
     Supervisor_Correct_Moved_binding_t *const b = binding;
@@ -3077,11 +3082,8 @@ static bool Supervisor_Correct_Moved_fire(pn_ctx_t *cx, void *marking, void *bin
     const pn_unit_t Supervisor_Correct_done_token = PN_UNIT;
     const RIVETING_t Supervisor_Correct_seam_token = (RIVETING_t){ .c1 = b->n, .c2 = b->p,
         .c3 = b->d };
-    RIVETING_t Supervisor_corrected_token = (RIVETING_t){ .c1 = b->n, .c2 = b->p, .c3 = b->d };
-    pn_bag_check(cx, &s_at_Supervisor_corrected, &Supervisor_corrected_token);
-    if (!pn_ok(cx)) {
-        return false;
-    }
+    const RIVETING_t Supervisor_corrected_token = (RIVETING_t){ .c1 = b->n, .c2 = b->p,
+        .c3 = b->d };
     /* done: () (ID1412310547) */
     bool is_taken = Supervisor_Correct_done_take(m, &Supervisor_Correct_done_token, 1U);
     /* seam: (n, p, d) (ID1412310549) */
@@ -3131,7 +3133,7 @@ static const pn_type_t s_binding_Supervisor_Correct_As_planned = {
     .field = s_variables_Supervisor_Correct_As_planned,
 };
 
-static bool Supervisor_Correct_As_planned_enumerate(pn_ctx_t *cx, const void *marking,
+PN_NET_SEARCH static bool Supervisor_Correct_As_planned_enumerate(pn_ctx_t *cx, const void *marking,
     uint32_t self, pn_binding_sink_t sink, void *user)
 {
     const net_marking_t *const m = marking;
@@ -3159,7 +3161,7 @@ static bool Supervisor_Correct_As_planned_enumerate(pn_ctx_t *cx, const void *ma
     return true;
 }
 
-static bool Supervisor_Correct_As_planned_fire(pn_ctx_t *cx, void *marking, void *binding)
+PN_NET_SEARCH static bool Supervisor_Correct_As_planned_fire(pn_ctx_t *cx, void *marking, void *binding)
 {
     net_marking_t *const m = marking;
     Supervisor_Correct_As_planned_binding_t *const b = binding;
@@ -3168,11 +3170,8 @@ static bool Supervisor_Correct_As_planned_fire(pn_ctx_t *cx, void *marking, void
     cx->rounds = 0U;
     const RIVETING_t Supervisor_Correct_seam_token = (RIVETING_t){ .c1 = b->n, .c2 = b->p,
         .c3 = b->d };
-    RIVETING_t Supervisor_corrected_token = (RIVETING_t){ .c1 = b->n, .c2 = b->p, .c3 = b->d };
-    pn_bag_check(cx, &s_at_Supervisor_corrected, &Supervisor_corrected_token);
-    if (!pn_ok(cx)) {
-        return false;
-    }
+    const RIVETING_t Supervisor_corrected_token = (RIVETING_t){ .c1 = b->n, .c2 = b->p,
+        .c3 = b->d };
     /* offset: v (ID1412310553) */
     bool is_taken = Supervisor_Correct_offset_take(m, &b->v, 1U);
     /* seam: (n, p, d) (ID1412310555) */
@@ -3218,7 +3217,7 @@ static const pn_type_t s_binding_Supervisor_Correct_Move_both_Command = {
     .field = s_variables_Supervisor_Correct_Move_both_Command,
 };
 
-static bool Supervisor_Correct_Move_both_Command_enumerate(pn_ctx_t *cx, const void *marking,
+PN_NET_SEARCH static bool Supervisor_Correct_Move_both_Command_enumerate(pn_ctx_t *cx, const void *marking,
     uint32_t self, pn_binding_sink_t sink, void *user)
 {
     const net_marking_t *const m = marking;
@@ -3238,7 +3237,7 @@ static bool Supervisor_Correct_Move_both_Command_enumerate(pn_ctx_t *cx, const v
     return true;
 }
 
-static bool Supervisor_Correct_Move_both_Command_fire(pn_ctx_t *cx, void *marking, void *binding)
+PN_NET_SEARCH static bool Supervisor_Correct_Move_both_Command_fire(pn_ctx_t *cx, void *marking, void *binding)
 {
     net_marking_t *const m = marking;
     Supervisor_Correct_Move_both_Command_binding_t *const b = binding;
@@ -3301,7 +3300,7 @@ static const pn_type_t s_binding_Supervisor_Correct_Move_both_Both = {
     .field = NULL,
 };
 
-static bool Supervisor_Correct_Move_both_Both_enumerate(pn_ctx_t *cx, const void *marking,
+PN_NET_SEARCH static bool Supervisor_Correct_Move_both_Both_enumerate(pn_ctx_t *cx, const void *marking,
     uint32_t self, pn_binding_sink_t sink, void *user)
 {
     const net_marking_t *const m = marking;
@@ -3323,7 +3322,7 @@ static bool Supervisor_Correct_Move_both_Both_enumerate(pn_ctx_t *cx, const void
     return true;
 }
 
-static bool Supervisor_Correct_Move_both_Both_fire(pn_ctx_t *cx, void *marking, void *binding)
+PN_NET_SEARCH static bool Supervisor_Correct_Move_both_Both_fire(pn_ctx_t *cx, void *marking, void *binding)
 {
     net_marking_t *const m = marking;
     (void)binding;
@@ -3375,7 +3374,7 @@ static const pn_type_t s_binding_Supervisor_Correct_Move_both_Reply_1 = {
     .field = NULL,
 };
 
-static bool Supervisor_Correct_Move_both_Reply_1_enumerate(pn_ctx_t *cx, const void *marking,
+PN_NET_SEARCH static bool Supervisor_Correct_Move_both_Reply_1_enumerate(pn_ctx_t *cx, const void *marking,
     uint32_t self, pn_binding_sink_t sink, void *user)
 {
     const net_marking_t *const m = marking;
@@ -3397,7 +3396,7 @@ static bool Supervisor_Correct_Move_both_Reply_1_enumerate(pn_ctx_t *cx, const v
     return true;
 }
 
-static bool Supervisor_Correct_Move_both_Reply_1_fire(pn_ctx_t *cx, void *marking, void *binding)
+PN_NET_SEARCH static bool Supervisor_Correct_Move_both_Reply_1_fire(pn_ctx_t *cx, void *marking, void *binding)
 {
     net_marking_t *const m = marking;
     (void)binding;
@@ -3448,7 +3447,7 @@ static const pn_type_t s_binding_Supervisor_Correct_Move_both_Reply_2 = {
     .field = NULL,
 };
 
-static bool Supervisor_Correct_Move_both_Reply_2_enumerate(pn_ctx_t *cx, const void *marking,
+PN_NET_SEARCH static bool Supervisor_Correct_Move_both_Reply_2_enumerate(pn_ctx_t *cx, const void *marking,
     uint32_t self, pn_binding_sink_t sink, void *user)
 {
     const net_marking_t *const m = marking;
@@ -3470,7 +3469,7 @@ static bool Supervisor_Correct_Move_both_Reply_2_enumerate(pn_ctx_t *cx, const v
     return true;
 }
 
-static bool Supervisor_Correct_Move_both_Reply_2_fire(pn_ctx_t *cx, void *marking, void *binding)
+PN_NET_SEARCH static bool Supervisor_Correct_Move_both_Reply_2_fire(pn_ctx_t *cx, void *marking, void *binding)
 {
     net_marking_t *const m = marking;
     (void)binding;
@@ -3533,7 +3532,7 @@ static const pn_type_t s_binding_Supervisor_Install_Go_back = {
     .field = s_variables_Supervisor_Install_Go_back,
 };
 
-static bool Supervisor_Install_Go_back_enumerate(pn_ctx_t *cx, const void *marking,
+PN_NET_SEARCH static bool Supervisor_Install_Go_back_enumerate(pn_ctx_t *cx, const void *marking,
     uint32_t self, pn_binding_sink_t sink, void *user)
 {
     const net_marking_t *const m = marking;
@@ -3562,7 +3561,7 @@ static bool Supervisor_Install_Go_back_enumerate(pn_ctx_t *cx, const void *marki
     return true;
 }
 
-static bool Supervisor_Install_Go_back_fire(pn_ctx_t *cx, void *marking, void *binding)
+PN_NET_SEARCH static bool Supervisor_Install_Go_back_fire(pn_ctx_t *cx, void *marking, void *binding)
 {
     net_marking_t *const m = marking;
     Supervisor_Install_Go_back_binding_t *const b = binding;
@@ -3628,7 +3627,7 @@ static const pn_type_t s_binding_Supervisor_Install_Next_rivet = {
     .field = s_variables_Supervisor_Install_Next_rivet,
 };
 
-static bool Supervisor_Install_Next_rivet_enumerate(pn_ctx_t *cx, const void *marking,
+PN_NET_SEARCH static bool Supervisor_Install_Next_rivet_enumerate(pn_ctx_t *cx, const void *marking,
     uint32_t self, pn_binding_sink_t sink, void *user)
 {
     const net_marking_t *const m = marking;
@@ -3657,7 +3656,7 @@ static bool Supervisor_Install_Next_rivet_enumerate(pn_ctx_t *cx, const void *ma
     return true;
 }
 
-static bool Supervisor_Install_Next_rivet_fire(pn_ctx_t *cx, void *marking, void *binding)
+PN_NET_SEARCH static bool Supervisor_Install_Next_rivet_fire(pn_ctx_t *cx, void *marking, void *binding)
 {
     net_marking_t *const m = marking;
     Supervisor_Install_Next_rivet_binding_t *const b = binding;
@@ -3724,7 +3723,7 @@ static const pn_type_t s_binding_Supervisor_Install_Start = {
     .field = s_variables_Supervisor_Install_Start,
 };
 
-static bool Supervisor_Install_Start_enumerate(pn_ctx_t *cx, const void *marking,
+PN_NET_SEARCH static bool Supervisor_Install_Start_enumerate(pn_ctx_t *cx, const void *marking,
     uint32_t self, pn_binding_sink_t sink, void *user)
 {
     const net_marking_t *const m = marking;
@@ -3744,7 +3743,7 @@ static bool Supervisor_Install_Start_enumerate(pn_ctx_t *cx, const void *marking
     return true;
 }
 
-static bool Supervisor_Install_Start_fire(pn_ctx_t *cx, void *marking, void *binding)
+PN_NET_SEARCH static bool Supervisor_Install_Start_fire(pn_ctx_t *cx, void *marking, void *binding)
 {
     net_marking_t *const m = marking;
     Supervisor_Install_Start_binding_t *const b = binding;
@@ -3805,7 +3804,7 @@ static const pn_type_t s_binding_Supervisor_Install_Shift_Command = {
     .field = s_variables_Supervisor_Install_Shift_Command,
 };
 
-static bool Supervisor_Install_Shift_Command_enumerate(pn_ctx_t *cx, const void *marking,
+PN_NET_SEARCH static bool Supervisor_Install_Shift_Command_enumerate(pn_ctx_t *cx, const void *marking,
     uint32_t self, pn_binding_sink_t sink, void *user)
 {
     const net_marking_t *const m = marking;
@@ -3825,7 +3824,7 @@ static bool Supervisor_Install_Shift_Command_enumerate(pn_ctx_t *cx, const void 
     return true;
 }
 
-static bool Supervisor_Install_Shift_Command_fire(pn_ctx_t *cx, void *marking, void *binding)
+PN_NET_SEARCH static bool Supervisor_Install_Shift_Command_fire(pn_ctx_t *cx, void *marking, void *binding)
 {
     net_marking_t *const m = marking;
     Supervisor_Install_Shift_Command_binding_t *const b = binding;
@@ -3888,7 +3887,7 @@ static const pn_type_t s_binding_Supervisor_Install_Shift_Both = {
     .field = NULL,
 };
 
-static bool Supervisor_Install_Shift_Both_enumerate(pn_ctx_t *cx, const void *marking,
+PN_NET_SEARCH static bool Supervisor_Install_Shift_Both_enumerate(pn_ctx_t *cx, const void *marking,
     uint32_t self, pn_binding_sink_t sink, void *user)
 {
     const net_marking_t *const m = marking;
@@ -3910,7 +3909,7 @@ static bool Supervisor_Install_Shift_Both_enumerate(pn_ctx_t *cx, const void *ma
     return true;
 }
 
-static bool Supervisor_Install_Shift_Both_fire(pn_ctx_t *cx, void *marking, void *binding)
+PN_NET_SEARCH static bool Supervisor_Install_Shift_Both_fire(pn_ctx_t *cx, void *marking, void *binding)
 {
     net_marking_t *const m = marking;
     (void)binding;
@@ -3961,7 +3960,7 @@ static const pn_type_t s_binding_Supervisor_Install_Shift_Reply_1 = {
     .field = NULL,
 };
 
-static bool Supervisor_Install_Shift_Reply_1_enumerate(pn_ctx_t *cx, const void *marking,
+PN_NET_SEARCH static bool Supervisor_Install_Shift_Reply_1_enumerate(pn_ctx_t *cx, const void *marking,
     uint32_t self, pn_binding_sink_t sink, void *user)
 {
     const net_marking_t *const m = marking;
@@ -3983,7 +3982,7 @@ static bool Supervisor_Install_Shift_Reply_1_enumerate(pn_ctx_t *cx, const void 
     return true;
 }
 
-static bool Supervisor_Install_Shift_Reply_1_fire(pn_ctx_t *cx, void *marking, void *binding)
+PN_NET_SEARCH static bool Supervisor_Install_Shift_Reply_1_fire(pn_ctx_t *cx, void *marking, void *binding)
 {
     net_marking_t *const m = marking;
     (void)binding;
@@ -4033,7 +4032,7 @@ static const pn_type_t s_binding_Supervisor_Install_Shift_Reply_2 = {
     .field = NULL,
 };
 
-static bool Supervisor_Install_Shift_Reply_2_enumerate(pn_ctx_t *cx, const void *marking,
+PN_NET_SEARCH static bool Supervisor_Install_Shift_Reply_2_enumerate(pn_ctx_t *cx, const void *marking,
     uint32_t self, pn_binding_sink_t sink, void *user)
 {
     const net_marking_t *const m = marking;
@@ -4055,7 +4054,7 @@ static bool Supervisor_Install_Shift_Reply_2_enumerate(pn_ctx_t *cx, const void 
     return true;
 }
 
-static bool Supervisor_Install_Shift_Reply_2_fire(pn_ctx_t *cx, void *marking, void *binding)
+PN_NET_SEARCH static bool Supervisor_Install_Shift_Reply_2_fire(pn_ctx_t *cx, void *marking, void *binding)
 {
     net_marking_t *const m = marking;
     (void)binding;
@@ -4105,7 +4104,7 @@ static const pn_type_t s_binding_Supervisor_Install_Rivet_Go_in = {
     .field = NULL,
 };
 
-static bool Supervisor_Install_Rivet_Go_in_enumerate(pn_ctx_t *cx, const void *marking,
+PN_NET_SEARCH static bool Supervisor_Install_Rivet_Go_in_enumerate(pn_ctx_t *cx, const void *marking,
     uint32_t self, pn_binding_sink_t sink, void *user)
 {
     const net_marking_t *const m = marking;
@@ -4123,7 +4122,7 @@ static bool Supervisor_Install_Rivet_Go_in_enumerate(pn_ctx_t *cx, const void *m
     return true;
 }
 
-static bool Supervisor_Install_Rivet_Go_in_fire(pn_ctx_t *cx, void *marking, void *binding)
+PN_NET_SEARCH static bool Supervisor_Install_Rivet_Go_in_fire(pn_ctx_t *cx, void *marking, void *binding)
 {
     net_marking_t *const m = marking;
     (void)binding;
@@ -4173,7 +4172,7 @@ static const pn_type_t s_binding_Supervisor_Install_Rivet_Go_out = {
     .field = NULL,
 };
 
-static bool Supervisor_Install_Rivet_Go_out_enumerate(pn_ctx_t *cx, const void *marking,
+PN_NET_SEARCH static bool Supervisor_Install_Rivet_Go_out_enumerate(pn_ctx_t *cx, const void *marking,
     uint32_t self, pn_binding_sink_t sink, void *user)
 {
     const net_marking_t *const m = marking;
@@ -4191,7 +4190,7 @@ static bool Supervisor_Install_Rivet_Go_out_enumerate(pn_ctx_t *cx, const void *
     return true;
 }
 
-static bool Supervisor_Install_Rivet_Go_out_fire(pn_ctx_t *cx, void *marking, void *binding)
+PN_NET_SEARCH static bool Supervisor_Install_Rivet_Go_out_fire(pn_ctx_t *cx, void *marking, void *binding)
 {
     net_marking_t *const m = marking;
     (void)binding;
@@ -4251,7 +4250,7 @@ static const pn_type_t s_binding_Supervisor_Install_Rivet_Advance_Command = {
     .field = s_variables_Supervisor_Install_Rivet_Advance_Command,
 };
 
-static bool Supervisor_Install_Rivet_Advance_Command_enumerate(pn_ctx_t *cx, const void *marking,
+PN_NET_SEARCH static bool Supervisor_Install_Rivet_Advance_Command_enumerate(pn_ctx_t *cx, const void *marking,
     uint32_t self, pn_binding_sink_t sink, void *user)
 {
     const net_marking_t *const m = marking;
@@ -4271,7 +4270,7 @@ static bool Supervisor_Install_Rivet_Advance_Command_enumerate(pn_ctx_t *cx, con
     return true;
 }
 
-static bool Supervisor_Install_Rivet_Advance_Command_fire(pn_ctx_t *cx, void *marking, void *binding)
+PN_NET_SEARCH static bool Supervisor_Install_Rivet_Advance_Command_fire(pn_ctx_t *cx, void *marking, void *binding)
 {
     net_marking_t *const m = marking;
     Supervisor_Install_Rivet_Advance_Command_binding_t *const b = binding;
@@ -4337,7 +4336,7 @@ static const pn_type_t s_binding_Supervisor_Install_Rivet_Advance_Both = {
     .field = NULL,
 };
 
-static bool Supervisor_Install_Rivet_Advance_Both_enumerate(pn_ctx_t *cx, const void *marking,
+PN_NET_SEARCH static bool Supervisor_Install_Rivet_Advance_Both_enumerate(pn_ctx_t *cx, const void *marking,
     uint32_t self, pn_binding_sink_t sink, void *user)
 {
     const net_marking_t *const m = marking;
@@ -4359,7 +4358,7 @@ static bool Supervisor_Install_Rivet_Advance_Both_enumerate(pn_ctx_t *cx, const 
     return true;
 }
 
-static bool Supervisor_Install_Rivet_Advance_Both_fire(pn_ctx_t *cx, void *marking, void *binding)
+PN_NET_SEARCH static bool Supervisor_Install_Rivet_Advance_Both_fire(pn_ctx_t *cx, void *marking, void *binding)
 {
     net_marking_t *const m = marking;
     (void)binding;
@@ -4412,7 +4411,7 @@ static const pn_type_t s_binding_Supervisor_Install_Rivet_Advance_Reply_1 = {
     .field = NULL,
 };
 
-static bool Supervisor_Install_Rivet_Advance_Reply_1_enumerate(pn_ctx_t *cx, const void *marking,
+PN_NET_SEARCH static bool Supervisor_Install_Rivet_Advance_Reply_1_enumerate(pn_ctx_t *cx, const void *marking,
     uint32_t self, pn_binding_sink_t sink, void *user)
 {
     const net_marking_t *const m = marking;
@@ -4434,7 +4433,7 @@ static bool Supervisor_Install_Rivet_Advance_Reply_1_enumerate(pn_ctx_t *cx, con
     return true;
 }
 
-static bool Supervisor_Install_Rivet_Advance_Reply_1_fire(pn_ctx_t *cx, void *marking, void *binding)
+PN_NET_SEARCH static bool Supervisor_Install_Rivet_Advance_Reply_1_fire(pn_ctx_t *cx, void *marking, void *binding)
 {
     net_marking_t *const m = marking;
     (void)binding;
@@ -4485,7 +4484,7 @@ static const pn_type_t s_binding_Supervisor_Install_Rivet_Advance_Reply_2 = {
     .field = NULL,
 };
 
-static bool Supervisor_Install_Rivet_Advance_Reply_2_enumerate(pn_ctx_t *cx, const void *marking,
+PN_NET_SEARCH static bool Supervisor_Install_Rivet_Advance_Reply_2_enumerate(pn_ctx_t *cx, const void *marking,
     uint32_t self, pn_binding_sink_t sink, void *user)
 {
     const net_marking_t *const m = marking;
@@ -4507,7 +4506,7 @@ static bool Supervisor_Install_Rivet_Advance_Reply_2_enumerate(pn_ctx_t *cx, con
     return true;
 }
 
-static bool Supervisor_Install_Rivet_Advance_Reply_2_fire(pn_ctx_t *cx, void *marking, void *binding)
+PN_NET_SEARCH static bool Supervisor_Install_Rivet_Advance_Reply_2_fire(pn_ctx_t *cx, void *marking, void *binding)
 {
     net_marking_t *const m = marking;
     (void)binding;
@@ -4558,7 +4557,7 @@ static const pn_type_t s_binding_Supervisor_Install_Rivet_Fasten_Press = {
     .field = NULL,
 };
 
-static bool Supervisor_Install_Rivet_Fasten_Press_enumerate(pn_ctx_t *cx, const void *marking,
+PN_NET_SEARCH static bool Supervisor_Install_Rivet_Fasten_Press_enumerate(pn_ctx_t *cx, const void *marking,
     uint32_t self, pn_binding_sink_t sink, void *user)
 {
     const net_marking_t *const m = marking;
@@ -4576,7 +4575,7 @@ static bool Supervisor_Install_Rivet_Fasten_Press_enumerate(pn_ctx_t *cx, const 
     return true;
 }
 
-static bool Supervisor_Install_Rivet_Fasten_Press_fire(pn_ctx_t *cx, void *marking, void *binding)
+PN_NET_SEARCH static bool Supervisor_Install_Rivet_Fasten_Press_fire(pn_ctx_t *cx, void *marking, void *binding)
 {
     net_marking_t *const m = marking;
     (void)binding;
@@ -4631,7 +4630,7 @@ static const pn_type_t s_binding_Supervisor_Install_Rivet_Fasten_Drill = {
     .field = NULL,
 };
 
-static bool Supervisor_Install_Rivet_Fasten_Drill_enumerate(pn_ctx_t *cx, const void *marking,
+PN_NET_SEARCH static bool Supervisor_Install_Rivet_Fasten_Drill_enumerate(pn_ctx_t *cx, const void *marking,
     uint32_t self, pn_binding_sink_t sink, void *user)
 {
     const net_marking_t *const m = marking;
@@ -4653,7 +4652,7 @@ static bool Supervisor_Install_Rivet_Fasten_Drill_enumerate(pn_ctx_t *cx, const 
     return true;
 }
 
-static bool Supervisor_Install_Rivet_Fasten_Drill_fire(pn_ctx_t *cx, void *marking, void *binding)
+PN_NET_SEARCH static bool Supervisor_Install_Rivet_Fasten_Drill_fire(pn_ctx_t *cx, void *marking, void *binding)
 {
     net_marking_t *const m = marking;
     (void)binding;
@@ -4712,7 +4711,7 @@ static const pn_type_t s_binding_Supervisor_Install_Rivet_Fasten_Insert = {
     .field = NULL,
 };
 
-static bool Supervisor_Install_Rivet_Fasten_Insert_enumerate(pn_ctx_t *cx, const void *marking,
+PN_NET_SEARCH static bool Supervisor_Install_Rivet_Fasten_Insert_enumerate(pn_ctx_t *cx, const void *marking,
     uint32_t self, pn_binding_sink_t sink, void *user)
 {
     const net_marking_t *const m = marking;
@@ -4734,7 +4733,7 @@ static bool Supervisor_Install_Rivet_Fasten_Insert_enumerate(pn_ctx_t *cx, const
     return true;
 }
 
-static bool Supervisor_Install_Rivet_Fasten_Insert_fire(pn_ctx_t *cx, void *marking, void *binding)
+PN_NET_SEARCH static bool Supervisor_Install_Rivet_Fasten_Insert_fire(pn_ctx_t *cx, void *marking, void *binding)
 {
     net_marking_t *const m = marking;
     (void)binding;
@@ -4793,7 +4792,7 @@ static const pn_type_t s_binding_Supervisor_Install_Rivet_Fasten_Release = {
     .field = NULL,
 };
 
-static bool Supervisor_Install_Rivet_Fasten_Release_enumerate(pn_ctx_t *cx, const void *marking,
+PN_NET_SEARCH static bool Supervisor_Install_Rivet_Fasten_Release_enumerate(pn_ctx_t *cx, const void *marking,
     uint32_t self, pn_binding_sink_t sink, void *user)
 {
     const net_marking_t *const m = marking;
@@ -4815,7 +4814,7 @@ static bool Supervisor_Install_Rivet_Fasten_Release_enumerate(pn_ctx_t *cx, cons
     return true;
 }
 
-static bool Supervisor_Install_Rivet_Fasten_Release_fire(pn_ctx_t *cx, void *marking, void *binding)
+PN_NET_SEARCH static bool Supervisor_Install_Rivet_Fasten_Release_fire(pn_ctx_t *cx, void *marking, void *binding)
 {
     net_marking_t *const m = marking;
     (void)binding;
@@ -4874,7 +4873,7 @@ static const pn_type_t s_binding_Supervisor_Install_Rivet_Fasten_Finish = {
     .field = NULL,
 };
 
-static bool Supervisor_Install_Rivet_Fasten_Finish_enumerate(pn_ctx_t *cx, const void *marking,
+PN_NET_SEARCH static bool Supervisor_Install_Rivet_Fasten_Finish_enumerate(pn_ctx_t *cx, const void *marking,
     uint32_t self, pn_binding_sink_t sink, void *user)
 {
     const net_marking_t *const m = marking;
@@ -4896,7 +4895,7 @@ static bool Supervisor_Install_Rivet_Fasten_Finish_enumerate(pn_ctx_t *cx, const
     return true;
 }
 
-static bool Supervisor_Install_Rivet_Fasten_Finish_fire(pn_ctx_t *cx, void *marking, void *binding)
+PN_NET_SEARCH static bool Supervisor_Install_Rivet_Fasten_Finish_fire(pn_ctx_t *cx, void *marking, void *binding)
 {
     net_marking_t *const m = marking;
     (void)binding;
@@ -4955,7 +4954,7 @@ static const pn_type_t s_binding_Supervisor_Install_Rivet_Retract_Command = {
     .field = s_variables_Supervisor_Install_Rivet_Retract_Command,
 };
 
-static bool Supervisor_Install_Rivet_Retract_Command_enumerate(pn_ctx_t *cx, const void *marking,
+PN_NET_SEARCH static bool Supervisor_Install_Rivet_Retract_Command_enumerate(pn_ctx_t *cx, const void *marking,
     uint32_t self, pn_binding_sink_t sink, void *user)
 {
     const net_marking_t *const m = marking;
@@ -4975,7 +4974,7 @@ static bool Supervisor_Install_Rivet_Retract_Command_enumerate(pn_ctx_t *cx, con
     return true;
 }
 
-static bool Supervisor_Install_Rivet_Retract_Command_fire(pn_ctx_t *cx, void *marking, void *binding)
+PN_NET_SEARCH static bool Supervisor_Install_Rivet_Retract_Command_fire(pn_ctx_t *cx, void *marking, void *binding)
 {
     net_marking_t *const m = marking;
     Supervisor_Install_Rivet_Retract_Command_binding_t *const b = binding;
@@ -5041,7 +5040,7 @@ static const pn_type_t s_binding_Supervisor_Install_Rivet_Retract_Both = {
     .field = NULL,
 };
 
-static bool Supervisor_Install_Rivet_Retract_Both_enumerate(pn_ctx_t *cx, const void *marking,
+PN_NET_SEARCH static bool Supervisor_Install_Rivet_Retract_Both_enumerate(pn_ctx_t *cx, const void *marking,
     uint32_t self, pn_binding_sink_t sink, void *user)
 {
     const net_marking_t *const m = marking;
@@ -5063,7 +5062,7 @@ static bool Supervisor_Install_Rivet_Retract_Both_enumerate(pn_ctx_t *cx, const 
     return true;
 }
 
-static bool Supervisor_Install_Rivet_Retract_Both_fire(pn_ctx_t *cx, void *marking, void *binding)
+PN_NET_SEARCH static bool Supervisor_Install_Rivet_Retract_Both_fire(pn_ctx_t *cx, void *marking, void *binding)
 {
     net_marking_t *const m = marking;
     (void)binding;
@@ -5115,7 +5114,7 @@ static const pn_type_t s_binding_Supervisor_Install_Rivet_Retract_Reply_1 = {
     .field = NULL,
 };
 
-static bool Supervisor_Install_Rivet_Retract_Reply_1_enumerate(pn_ctx_t *cx, const void *marking,
+PN_NET_SEARCH static bool Supervisor_Install_Rivet_Retract_Reply_1_enumerate(pn_ctx_t *cx, const void *marking,
     uint32_t self, pn_binding_sink_t sink, void *user)
 {
     const net_marking_t *const m = marking;
@@ -5137,7 +5136,7 @@ static bool Supervisor_Install_Rivet_Retract_Reply_1_enumerate(pn_ctx_t *cx, con
     return true;
 }
 
-static bool Supervisor_Install_Rivet_Retract_Reply_1_fire(pn_ctx_t *cx, void *marking, void *binding)
+PN_NET_SEARCH static bool Supervisor_Install_Rivet_Retract_Reply_1_fire(pn_ctx_t *cx, void *marking, void *binding)
 {
     net_marking_t *const m = marking;
     (void)binding;
@@ -5188,7 +5187,7 @@ static const pn_type_t s_binding_Supervisor_Install_Rivet_Retract_Reply_2 = {
     .field = NULL,
 };
 
-static bool Supervisor_Install_Rivet_Retract_Reply_2_enumerate(pn_ctx_t *cx, const void *marking,
+PN_NET_SEARCH static bool Supervisor_Install_Rivet_Retract_Reply_2_enumerate(pn_ctx_t *cx, const void *marking,
     uint32_t self, pn_binding_sink_t sink, void *user)
 {
     const net_marking_t *const m = marking;
@@ -5210,7 +5209,7 @@ static bool Supervisor_Install_Rivet_Retract_Reply_2_enumerate(pn_ctx_t *cx, con
     return true;
 }
 
-static bool Supervisor_Install_Rivet_Retract_Reply_2_fire(pn_ctx_t *cx, void *marking, void *binding)
+PN_NET_SEARCH static bool Supervisor_Install_Rivet_Retract_Reply_2_fire(pn_ctx_t *cx, void *marking, void *binding)
 {
     net_marking_t *const m = marking;
     (void)binding;
@@ -5269,7 +5268,7 @@ static const pn_type_t s_binding_Supervisor_Install_Return_Command = {
     .field = s_variables_Supervisor_Install_Return_Command,
 };
 
-static bool Supervisor_Install_Return_Command_enumerate(pn_ctx_t *cx, const void *marking,
+PN_NET_SEARCH static bool Supervisor_Install_Return_Command_enumerate(pn_ctx_t *cx, const void *marking,
     uint32_t self, pn_binding_sink_t sink, void *user)
 {
     const net_marking_t *const m = marking;
@@ -5289,7 +5288,7 @@ static bool Supervisor_Install_Return_Command_enumerate(pn_ctx_t *cx, const void
     return true;
 }
 
-static bool Supervisor_Install_Return_Command_fire(pn_ctx_t *cx, void *marking, void *binding)
+PN_NET_SEARCH static bool Supervisor_Install_Return_Command_fire(pn_ctx_t *cx, void *marking, void *binding)
 {
     net_marking_t *const m = marking;
     Supervisor_Install_Return_Command_binding_t *const b = binding;
@@ -5352,7 +5351,7 @@ static const pn_type_t s_binding_Supervisor_Install_Return_Both = {
     .field = NULL,
 };
 
-static bool Supervisor_Install_Return_Both_enumerate(pn_ctx_t *cx, const void *marking,
+PN_NET_SEARCH static bool Supervisor_Install_Return_Both_enumerate(pn_ctx_t *cx, const void *marking,
     uint32_t self, pn_binding_sink_t sink, void *user)
 {
     const net_marking_t *const m = marking;
@@ -5374,7 +5373,7 @@ static bool Supervisor_Install_Return_Both_enumerate(pn_ctx_t *cx, const void *m
     return true;
 }
 
-static bool Supervisor_Install_Return_Both_fire(pn_ctx_t *cx, void *marking, void *binding)
+PN_NET_SEARCH static bool Supervisor_Install_Return_Both_fire(pn_ctx_t *cx, void *marking, void *binding)
 {
     net_marking_t *const m = marking;
     (void)binding;
@@ -5425,7 +5424,7 @@ static const pn_type_t s_binding_Supervisor_Install_Return_Reply_1 = {
     .field = NULL,
 };
 
-static bool Supervisor_Install_Return_Reply_1_enumerate(pn_ctx_t *cx, const void *marking,
+PN_NET_SEARCH static bool Supervisor_Install_Return_Reply_1_enumerate(pn_ctx_t *cx, const void *marking,
     uint32_t self, pn_binding_sink_t sink, void *user)
 {
     const net_marking_t *const m = marking;
@@ -5447,7 +5446,7 @@ static bool Supervisor_Install_Return_Reply_1_enumerate(pn_ctx_t *cx, const void
     return true;
 }
 
-static bool Supervisor_Install_Return_Reply_1_fire(pn_ctx_t *cx, void *marking, void *binding)
+PN_NET_SEARCH static bool Supervisor_Install_Return_Reply_1_fire(pn_ctx_t *cx, void *marking, void *binding)
 {
     net_marking_t *const m = marking;
     (void)binding;
@@ -5498,7 +5497,7 @@ static const pn_type_t s_binding_Supervisor_Install_Return_Reply_2 = {
     .field = NULL,
 };
 
-static bool Supervisor_Install_Return_Reply_2_enumerate(pn_ctx_t *cx, const void *marking,
+PN_NET_SEARCH static bool Supervisor_Install_Return_Reply_2_enumerate(pn_ctx_t *cx, const void *marking,
     uint32_t self, pn_binding_sink_t sink, void *user)
 {
     const net_marking_t *const m = marking;
@@ -5520,7 +5519,7 @@ static bool Supervisor_Install_Return_Reply_2_enumerate(pn_ctx_t *cx, const void
     return true;
 }
 
-static bool Supervisor_Install_Return_Reply_2_fire(pn_ctx_t *cx, void *marking, void *binding)
+PN_NET_SEARCH static bool Supervisor_Install_Return_Reply_2_fire(pn_ctx_t *cx, void *marking, void *binding)
 {
     net_marking_t *const m = marking;
     (void)binding;
@@ -5571,7 +5570,7 @@ static const pn_type_t s_binding_Supervisor_Home_Send_home = {
     .field = NULL,
 };
 
-static bool Supervisor_Home_Send_home_enumerate(pn_ctx_t *cx, const void *marking,
+PN_NET_SEARCH static bool Supervisor_Home_Send_home_enumerate(pn_ctx_t *cx, const void *marking,
     uint32_t self, pn_binding_sink_t sink, void *user)
 {
     const net_marking_t *const m = marking;
@@ -5589,7 +5588,7 @@ static bool Supervisor_Home_Send_home_enumerate(pn_ctx_t *cx, const void *markin
     return true;
 }
 
-static bool Supervisor_Home_Send_home_fire(pn_ctx_t *cx, void *marking, void *binding)
+PN_NET_SEARCH static bool Supervisor_Home_Send_home_fire(pn_ctx_t *cx, void *marking, void *binding)
 {
     net_marking_t *const m = marking;
     (void)binding;
@@ -5649,7 +5648,7 @@ static const pn_type_t s_binding_Supervisor_Home_Both = {
     .field = NULL,
 };
 
-static bool Supervisor_Home_Both_enumerate(pn_ctx_t *cx, const void *marking,
+PN_NET_SEARCH static bool Supervisor_Home_Both_enumerate(pn_ctx_t *cx, const void *marking,
     uint32_t self, pn_binding_sink_t sink, void *user)
 {
     const net_marking_t *const m = marking;
@@ -5671,7 +5670,7 @@ static bool Supervisor_Home_Both_enumerate(pn_ctx_t *cx, const void *marking,
     return true;
 }
 
-static bool Supervisor_Home_Both_fire(pn_ctx_t *cx, void *marking, void *binding)
+PN_NET_SEARCH static bool Supervisor_Home_Both_fire(pn_ctx_t *cx, void *marking, void *binding)
 {
     net_marking_t *const m = marking;
     (void)binding;
@@ -5718,7 +5717,7 @@ static const pn_type_t s_binding_Supervisor_Home_Reply_1 = {
     .field = NULL,
 };
 
-static bool Supervisor_Home_Reply_1_enumerate(pn_ctx_t *cx, const void *marking,
+PN_NET_SEARCH static bool Supervisor_Home_Reply_1_enumerate(pn_ctx_t *cx, const void *marking,
     uint32_t self, pn_binding_sink_t sink, void *user)
 {
     const net_marking_t *const m = marking;
@@ -5740,7 +5739,7 @@ static bool Supervisor_Home_Reply_1_enumerate(pn_ctx_t *cx, const void *marking,
     return true;
 }
 
-static bool Supervisor_Home_Reply_1_fire(pn_ctx_t *cx, void *marking, void *binding)
+PN_NET_SEARCH static bool Supervisor_Home_Reply_1_fire(pn_ctx_t *cx, void *marking, void *binding)
 {
     net_marking_t *const m = marking;
     (void)binding;
@@ -5787,7 +5786,7 @@ static const pn_type_t s_binding_Supervisor_Home_Reply_2 = {
     .field = NULL,
 };
 
-static bool Supervisor_Home_Reply_2_enumerate(pn_ctx_t *cx, const void *marking,
+PN_NET_SEARCH static bool Supervisor_Home_Reply_2_enumerate(pn_ctx_t *cx, const void *marking,
     uint32_t self, pn_binding_sink_t sink, void *user)
 {
     const net_marking_t *const m = marking;
@@ -5809,7 +5808,7 @@ static bool Supervisor_Home_Reply_2_enumerate(pn_ctx_t *cx, const void *marking,
     return true;
 }
 
-static bool Supervisor_Home_Reply_2_fire(pn_ctx_t *cx, void *marking, void *binding)
+PN_NET_SEARCH static bool Supervisor_Home_Reply_2_fire(pn_ctx_t *cx, void *marking, void *binding)
 {
     net_marking_t *const m = marking;
     (void)binding;
@@ -5860,7 +5859,7 @@ static const pn_type_t s_binding_Robot1_Accept = {
     .field = s_variables_Robot1_Accept,
 };
 
-static bool Robot1_Accept_enumerate(pn_ctx_t *cx, const void *marking,
+PN_NET_SEARCH static bool Robot1_Accept_enumerate(pn_ctx_t *cx, const void *marking,
     uint32_t self, pn_binding_sink_t sink, void *user)
 {
     const net_marking_t *const m = marking;
@@ -5882,7 +5881,7 @@ static bool Robot1_Accept_enumerate(pn_ctx_t *cx, const void *marking,
     return true;
 }
 
-static bool Robot1_Accept_fire(pn_ctx_t *cx, void *marking, void *binding)
+PN_NET_SEARCH static bool Robot1_Accept_fire(pn_ctx_t *cx, void *marking, void *binding)
 {
     net_marking_t *const m = marking;
     Robot1_Accept_binding_t *const b = binding;
@@ -5927,7 +5926,7 @@ static const pn_type_t s_binding_Robot1_Report = {
     .field = NULL,
 };
 
-static bool Robot1_Report_enumerate(pn_ctx_t *cx, const void *marking,
+PN_NET_SEARCH static bool Robot1_Report_enumerate(pn_ctx_t *cx, const void *marking,
     uint32_t self, pn_binding_sink_t sink, void *user)
 {
     const net_marking_t *const m = marking;
@@ -5945,7 +5944,7 @@ static bool Robot1_Report_enumerate(pn_ctx_t *cx, const void *marking,
     return true;
 }
 
-static bool Robot1_Report_fire(pn_ctx_t *cx, void *marking, void *binding)
+PN_NET_SEARCH static bool Robot1_Report_fire(pn_ctx_t *cx, void *marking, void *binding)
 {
     net_marking_t *const m = marking;
     (void)binding;
@@ -6004,7 +6003,7 @@ static const pn_type_t s_binding_Robot1_MoveJoint = {
     .field = s_variables_Robot1_MoveJoint,
 };
 
-static bool Robot1_MoveJoint_enumerate(pn_ctx_t *cx, const void *marking,
+PN_NET_SEARCH static bool Robot1_MoveJoint_enumerate(pn_ctx_t *cx, const void *marking,
     uint32_t self, pn_binding_sink_t sink, void *user)
 {
     const net_marking_t *const m = marking;
@@ -6030,7 +6029,7 @@ static bool Robot1_MoveJoint_enumerate(pn_ctx_t *cx, const void *marking,
     return true;
 }
 
-static bool Robot1_MoveJoint_fire(pn_ctx_t *cx, void *marking, void *binding)
+PN_NET_SEARCH static bool Robot1_MoveJoint_fire(pn_ctx_t *cx, void *marking, void *binding)
 {
     net_marking_t *const m = marking;
     Robot1_MoveJoint_binding_t *const b = binding;
@@ -6085,7 +6084,7 @@ static const pn_type_t s_binding_Robot1_MoveLinear = {
     .field = s_variables_Robot1_MoveLinear,
 };
 
-static bool Robot1_MoveLinear_enumerate(pn_ctx_t *cx, const void *marking,
+PN_NET_SEARCH static bool Robot1_MoveLinear_enumerate(pn_ctx_t *cx, const void *marking,
     uint32_t self, pn_binding_sink_t sink, void *user)
 {
     const net_marking_t *const m = marking;
@@ -6111,7 +6110,7 @@ static bool Robot1_MoveLinear_enumerate(pn_ctx_t *cx, const void *marking,
     return true;
 }
 
-static bool Robot1_MoveLinear_fire(pn_ctx_t *cx, void *marking, void *binding)
+PN_NET_SEARCH static bool Robot1_MoveLinear_fire(pn_ctx_t *cx, void *marking, void *binding)
 {
     net_marking_t *const m = marking;
     Robot1_MoveLinear_binding_t *const b = binding;
@@ -6164,7 +6163,7 @@ static const pn_type_t s_binding_Robot1_MoveHome = {
     .field = s_variables_Robot1_MoveHome,
 };
 
-static bool Robot1_MoveHome_enumerate(pn_ctx_t *cx, const void *marking,
+PN_NET_SEARCH static bool Robot1_MoveHome_enumerate(pn_ctx_t *cx, const void *marking,
     uint32_t self, pn_binding_sink_t sink, void *user)
 {
     const net_marking_t *const m = marking;
@@ -6186,7 +6185,7 @@ static bool Robot1_MoveHome_enumerate(pn_ctx_t *cx, const void *marking,
     return true;
 }
 
-static bool Robot1_MoveHome_fire(pn_ctx_t *cx, void *marking, void *binding)
+PN_NET_SEARCH static bool Robot1_MoveHome_fire(pn_ctx_t *cx, void *marking, void *binding)
 {
     net_marking_t *const m = marking;
     Robot1_MoveHome_binding_t *const b = binding;
@@ -6240,7 +6239,7 @@ static const pn_type_t s_binding_Robot1_Measure = {
     .field = s_variables_Robot1_Measure,
 };
 
-static bool Robot1_Measure_enumerate(pn_ctx_t *cx, const void *marking,
+PN_NET_SEARCH static bool Robot1_Measure_enumerate(pn_ctx_t *cx, const void *marking,
     uint32_t self, pn_binding_sink_t sink, void *user)
 {
     const net_marking_t *const m = marking;
@@ -6266,7 +6265,7 @@ static bool Robot1_Measure_enumerate(pn_ctx_t *cx, const void *marking,
     return true;
 }
 
-static bool Robot1_Measure_fire(pn_ctx_t *cx, void *marking, void *binding)
+PN_NET_SEARCH static bool Robot1_Measure_fire(pn_ctx_t *cx, void *marking, void *binding)
 {
     net_marking_t *const m = marking;
     Robot1_Measure_binding_t *const b = binding;
@@ -6322,7 +6321,7 @@ static const pn_type_t s_binding_Robot1_Drill = {
     .field = s_variables_Robot1_Drill,
 };
 
-static bool Robot1_Drill_enumerate(pn_ctx_t *cx, const void *marking,
+PN_NET_SEARCH static bool Robot1_Drill_enumerate(pn_ctx_t *cx, const void *marking,
     uint32_t self, pn_binding_sink_t sink, void *user)
 {
     const net_marking_t *const m = marking;
@@ -6344,7 +6343,7 @@ static bool Robot1_Drill_enumerate(pn_ctx_t *cx, const void *marking,
     return true;
 }
 
-static bool Robot1_Drill_fire(pn_ctx_t *cx, void *marking, void *binding)
+PN_NET_SEARCH static bool Robot1_Drill_fire(pn_ctx_t *cx, void *marking, void *binding)
 {
     net_marking_t *const m = marking;
     Robot1_Drill_binding_t *const b = binding;
@@ -6394,7 +6393,7 @@ static const pn_type_t s_binding_Robot1_Insert = {
     .field = s_variables_Robot1_Insert,
 };
 
-static bool Robot1_Insert_enumerate(pn_ctx_t *cx, const void *marking,
+PN_NET_SEARCH static bool Robot1_Insert_enumerate(pn_ctx_t *cx, const void *marking,
     uint32_t self, pn_binding_sink_t sink, void *user)
 {
     const net_marking_t *const m = marking;
@@ -6416,7 +6415,7 @@ static bool Robot1_Insert_enumerate(pn_ctx_t *cx, const void *marking,
     return true;
 }
 
-static bool Robot1_Insert_fire(pn_ctx_t *cx, void *marking, void *binding)
+PN_NET_SEARCH static bool Robot1_Insert_fire(pn_ctx_t *cx, void *marking, void *binding)
 {
     net_marking_t *const m = marking;
     Robot1_Insert_binding_t *const b = binding;
@@ -6466,7 +6465,7 @@ static const pn_type_t s_binding_Robot1_Press = {
     .field = s_variables_Robot1_Press,
 };
 
-static bool Robot1_Press_enumerate(pn_ctx_t *cx, const void *marking,
+PN_NET_SEARCH static bool Robot1_Press_enumerate(pn_ctx_t *cx, const void *marking,
     uint32_t self, pn_binding_sink_t sink, void *user)
 {
     const net_marking_t *const m = marking;
@@ -6488,7 +6487,7 @@ static bool Robot1_Press_enumerate(pn_ctx_t *cx, const void *marking,
     return true;
 }
 
-static bool Robot1_Press_fire(pn_ctx_t *cx, void *marking, void *binding)
+PN_NET_SEARCH static bool Robot1_Press_fire(pn_ctx_t *cx, void *marking, void *binding)
 {
     net_marking_t *const m = marking;
     Robot1_Press_binding_t *const b = binding;
@@ -6538,7 +6537,7 @@ static const pn_type_t s_binding_Robot1_Release = {
     .field = s_variables_Robot1_Release,
 };
 
-static bool Robot1_Release_enumerate(pn_ctx_t *cx, const void *marking,
+PN_NET_SEARCH static bool Robot1_Release_enumerate(pn_ctx_t *cx, const void *marking,
     uint32_t self, pn_binding_sink_t sink, void *user)
 {
     const net_marking_t *const m = marking;
@@ -6560,7 +6559,7 @@ static bool Robot1_Release_enumerate(pn_ctx_t *cx, const void *marking,
     return true;
 }
 
-static bool Robot1_Release_fire(pn_ctx_t *cx, void *marking, void *binding)
+PN_NET_SEARCH static bool Robot1_Release_fire(pn_ctx_t *cx, void *marking, void *binding)
 {
     net_marking_t *const m = marking;
     Robot1_Release_binding_t *const b = binding;
@@ -6608,7 +6607,7 @@ static const pn_type_t s_binding_Robot2_Accept = {
     .field = s_variables_Robot2_Accept,
 };
 
-static bool Robot2_Accept_enumerate(pn_ctx_t *cx, const void *marking,
+PN_NET_SEARCH static bool Robot2_Accept_enumerate(pn_ctx_t *cx, const void *marking,
     uint32_t self, pn_binding_sink_t sink, void *user)
 {
     const net_marking_t *const m = marking;
@@ -6630,7 +6629,7 @@ static bool Robot2_Accept_enumerate(pn_ctx_t *cx, const void *marking,
     return true;
 }
 
-static bool Robot2_Accept_fire(pn_ctx_t *cx, void *marking, void *binding)
+PN_NET_SEARCH static bool Robot2_Accept_fire(pn_ctx_t *cx, void *marking, void *binding)
 {
     net_marking_t *const m = marking;
     Robot2_Accept_binding_t *const b = binding;
@@ -6675,7 +6674,7 @@ static const pn_type_t s_binding_Robot2_Report = {
     .field = NULL,
 };
 
-static bool Robot2_Report_enumerate(pn_ctx_t *cx, const void *marking,
+PN_NET_SEARCH static bool Robot2_Report_enumerate(pn_ctx_t *cx, const void *marking,
     uint32_t self, pn_binding_sink_t sink, void *user)
 {
     const net_marking_t *const m = marking;
@@ -6693,7 +6692,7 @@ static bool Robot2_Report_enumerate(pn_ctx_t *cx, const void *marking,
     return true;
 }
 
-static bool Robot2_Report_fire(pn_ctx_t *cx, void *marking, void *binding)
+PN_NET_SEARCH static bool Robot2_Report_fire(pn_ctx_t *cx, void *marking, void *binding)
 {
     net_marking_t *const m = marking;
     (void)binding;
@@ -6752,7 +6751,7 @@ static const pn_type_t s_binding_Robot2_MoveJoint = {
     .field = s_variables_Robot2_MoveJoint,
 };
 
-static bool Robot2_MoveJoint_enumerate(pn_ctx_t *cx, const void *marking,
+PN_NET_SEARCH static bool Robot2_MoveJoint_enumerate(pn_ctx_t *cx, const void *marking,
     uint32_t self, pn_binding_sink_t sink, void *user)
 {
     const net_marking_t *const m = marking;
@@ -6778,7 +6777,7 @@ static bool Robot2_MoveJoint_enumerate(pn_ctx_t *cx, const void *marking,
     return true;
 }
 
-static bool Robot2_MoveJoint_fire(pn_ctx_t *cx, void *marking, void *binding)
+PN_NET_SEARCH static bool Robot2_MoveJoint_fire(pn_ctx_t *cx, void *marking, void *binding)
 {
     net_marking_t *const m = marking;
     Robot2_MoveJoint_binding_t *const b = binding;
@@ -6833,7 +6832,7 @@ static const pn_type_t s_binding_Robot2_MoveLinear = {
     .field = s_variables_Robot2_MoveLinear,
 };
 
-static bool Robot2_MoveLinear_enumerate(pn_ctx_t *cx, const void *marking,
+PN_NET_SEARCH static bool Robot2_MoveLinear_enumerate(pn_ctx_t *cx, const void *marking,
     uint32_t self, pn_binding_sink_t sink, void *user)
 {
     const net_marking_t *const m = marking;
@@ -6859,7 +6858,7 @@ static bool Robot2_MoveLinear_enumerate(pn_ctx_t *cx, const void *marking,
     return true;
 }
 
-static bool Robot2_MoveLinear_fire(pn_ctx_t *cx, void *marking, void *binding)
+PN_NET_SEARCH static bool Robot2_MoveLinear_fire(pn_ctx_t *cx, void *marking, void *binding)
 {
     net_marking_t *const m = marking;
     Robot2_MoveLinear_binding_t *const b = binding;
@@ -6912,7 +6911,7 @@ static const pn_type_t s_binding_Robot2_MoveHome = {
     .field = s_variables_Robot2_MoveHome,
 };
 
-static bool Robot2_MoveHome_enumerate(pn_ctx_t *cx, const void *marking,
+PN_NET_SEARCH static bool Robot2_MoveHome_enumerate(pn_ctx_t *cx, const void *marking,
     uint32_t self, pn_binding_sink_t sink, void *user)
 {
     const net_marking_t *const m = marking;
@@ -6934,7 +6933,7 @@ static bool Robot2_MoveHome_enumerate(pn_ctx_t *cx, const void *marking,
     return true;
 }
 
-static bool Robot2_MoveHome_fire(pn_ctx_t *cx, void *marking, void *binding)
+PN_NET_SEARCH static bool Robot2_MoveHome_fire(pn_ctx_t *cx, void *marking, void *binding)
 {
     net_marking_t *const m = marking;
     Robot2_MoveHome_binding_t *const b = binding;
@@ -6988,7 +6987,7 @@ static const pn_type_t s_binding_Robot2_Measure = {
     .field = s_variables_Robot2_Measure,
 };
 
-static bool Robot2_Measure_enumerate(pn_ctx_t *cx, const void *marking,
+PN_NET_SEARCH static bool Robot2_Measure_enumerate(pn_ctx_t *cx, const void *marking,
     uint32_t self, pn_binding_sink_t sink, void *user)
 {
     const net_marking_t *const m = marking;
@@ -7014,7 +7013,7 @@ static bool Robot2_Measure_enumerate(pn_ctx_t *cx, const void *marking,
     return true;
 }
 
-static bool Robot2_Measure_fire(pn_ctx_t *cx, void *marking, void *binding)
+PN_NET_SEARCH static bool Robot2_Measure_fire(pn_ctx_t *cx, void *marking, void *binding)
 {
     net_marking_t *const m = marking;
     Robot2_Measure_binding_t *const b = binding;
@@ -7070,7 +7069,7 @@ static const pn_type_t s_binding_Robot2_Drill = {
     .field = s_variables_Robot2_Drill,
 };
 
-static bool Robot2_Drill_enumerate(pn_ctx_t *cx, const void *marking,
+PN_NET_SEARCH static bool Robot2_Drill_enumerate(pn_ctx_t *cx, const void *marking,
     uint32_t self, pn_binding_sink_t sink, void *user)
 {
     const net_marking_t *const m = marking;
@@ -7092,7 +7091,7 @@ static bool Robot2_Drill_enumerate(pn_ctx_t *cx, const void *marking,
     return true;
 }
 
-static bool Robot2_Drill_fire(pn_ctx_t *cx, void *marking, void *binding)
+PN_NET_SEARCH static bool Robot2_Drill_fire(pn_ctx_t *cx, void *marking, void *binding)
 {
     net_marking_t *const m = marking;
     Robot2_Drill_binding_t *const b = binding;
@@ -7142,7 +7141,7 @@ static const pn_type_t s_binding_Robot2_Insert = {
     .field = s_variables_Robot2_Insert,
 };
 
-static bool Robot2_Insert_enumerate(pn_ctx_t *cx, const void *marking,
+PN_NET_SEARCH static bool Robot2_Insert_enumerate(pn_ctx_t *cx, const void *marking,
     uint32_t self, pn_binding_sink_t sink, void *user)
 {
     const net_marking_t *const m = marking;
@@ -7164,7 +7163,7 @@ static bool Robot2_Insert_enumerate(pn_ctx_t *cx, const void *marking,
     return true;
 }
 
-static bool Robot2_Insert_fire(pn_ctx_t *cx, void *marking, void *binding)
+PN_NET_SEARCH static bool Robot2_Insert_fire(pn_ctx_t *cx, void *marking, void *binding)
 {
     net_marking_t *const m = marking;
     Robot2_Insert_binding_t *const b = binding;
@@ -7214,7 +7213,7 @@ static const pn_type_t s_binding_Robot2_Press = {
     .field = s_variables_Robot2_Press,
 };
 
-static bool Robot2_Press_enumerate(pn_ctx_t *cx, const void *marking,
+PN_NET_SEARCH static bool Robot2_Press_enumerate(pn_ctx_t *cx, const void *marking,
     uint32_t self, pn_binding_sink_t sink, void *user)
 {
     const net_marking_t *const m = marking;
@@ -7236,7 +7235,7 @@ static bool Robot2_Press_enumerate(pn_ctx_t *cx, const void *marking,
     return true;
 }
 
-static bool Robot2_Press_fire(pn_ctx_t *cx, void *marking, void *binding)
+PN_NET_SEARCH static bool Robot2_Press_fire(pn_ctx_t *cx, void *marking, void *binding)
 {
     net_marking_t *const m = marking;
     Robot2_Press_binding_t *const b = binding;
@@ -7286,7 +7285,7 @@ static const pn_type_t s_binding_Robot2_Release = {
     .field = s_variables_Robot2_Release,
 };
 
-static bool Robot2_Release_enumerate(pn_ctx_t *cx, const void *marking,
+PN_NET_SEARCH static bool Robot2_Release_enumerate(pn_ctx_t *cx, const void *marking,
     uint32_t self, pn_binding_sink_t sink, void *user)
 {
     const net_marking_t *const m = marking;
@@ -7308,7 +7307,7 @@ static bool Robot2_Release_enumerate(pn_ctx_t *cx, const void *marking,
     return true;
 }
 
-static bool Robot2_Release_fire(pn_ctx_t *cx, void *marking, void *binding)
+PN_NET_SEARCH static bool Robot2_Release_fire(pn_ctx_t *cx, void *marking, void *binding)
 {
     net_marking_t *const m = marking;
     Robot2_Release_binding_t *const b = binding;
@@ -7507,6 +7506,8 @@ static const pn_place_t s_places[] = {
         .capacity = 64U, .timed = false,
         .count = dadosrobo1_count, .token = dadosrobo1_token, .put = dadosrobo1_put,
         .clear = dadosrobo1_clear, .json = dadosrobo1_json,
+        .encode = dadosrobo1_encode, .decode = dadosrobo1_decode,
+        .bit = UINT32_MAX,
         .leaf_count = 6U, .leaf_kind = s_POSE_kinds, .leaf_name = s_POSE_leaves,
         .line_count = 1U, .line_leaves = s_POSE_lines,
     },
@@ -7516,6 +7517,8 @@ static const pn_place_t s_places[] = {
         .capacity = 64U, .timed = false,
         .count = flag1_interno_count, .token = flag1_interno_token, .put = flag1_interno_put,
         .clear = flag1_interno_clear, .json = flag1_interno_json,
+        .encode = flag1_interno_encode, .decode = flag1_interno_decode,
+        .bit = UINT32_MAX,
         .leaf_count = 1U, .leaf_kind = s_COMMAND_kinds, .leaf_name = s_COMMAND_leaves,
         .line_count = 1U, .line_leaves = s_COMMAND_lines,
     },
@@ -7525,6 +7528,8 @@ static const pn_place_t s_places[] = {
         .capacity = 64U, .timed = false,
         .count = flag1_externo_count, .token = flag1_externo_token, .put = flag1_externo_put,
         .clear = flag1_externo_clear, .json = flag1_externo_json,
+        .encode = flag1_externo_encode, .decode = flag1_externo_decode,
+        .bit = UINT32_MAX,
         .leaf_count = 1U, .leaf_kind = s_REPLY_kinds, .leaf_name = s_REPLY_leaves,
         .line_count = 1U, .line_leaves = s_REPLY_lines,
     },
@@ -7534,6 +7539,8 @@ static const pn_place_t s_places[] = {
         .capacity = 64U, .timed = false,
         .count = referencia1_count, .token = referencia1_token, .put = referencia1_put,
         .clear = referencia1_clear, .json = referencia1_json,
+        .encode = referencia1_encode, .decode = referencia1_decode,
+        .bit = UINT32_MAX,
         .leaf_count = 6U, .leaf_kind = s_POSE_kinds, .leaf_name = s_POSE_leaves,
         .line_count = 1U, .line_leaves = s_POSE_lines,
     },
@@ -7543,6 +7550,8 @@ static const pn_place_t s_places[] = {
         .capacity = 64U, .timed = false,
         .count = medida1_count, .token = medida1_token, .put = medida1_put,
         .clear = medida1_clear, .json = medida1_json,
+        .encode = medida1_encode, .decode = medida1_decode,
+        .bit = UINT32_MAX,
         .leaf_count = 6U, .leaf_kind = s_POSE_kinds, .leaf_name = s_POSE_leaves,
         .line_count = 1U, .line_leaves = s_POSE_lines,
     },
@@ -7552,6 +7561,8 @@ static const pn_place_t s_places[] = {
         .capacity = 64U, .timed = false,
         .count = dadosrobo2_count, .token = dadosrobo2_token, .put = dadosrobo2_put,
         .clear = dadosrobo2_clear, .json = dadosrobo2_json,
+        .encode = dadosrobo2_encode, .decode = dadosrobo2_decode,
+        .bit = UINT32_MAX,
         .leaf_count = 6U, .leaf_kind = s_POSE_kinds, .leaf_name = s_POSE_leaves,
         .line_count = 1U, .line_leaves = s_POSE_lines,
     },
@@ -7561,6 +7572,8 @@ static const pn_place_t s_places[] = {
         .capacity = 64U, .timed = false,
         .count = flag2_interno_count, .token = flag2_interno_token, .put = flag2_interno_put,
         .clear = flag2_interno_clear, .json = flag2_interno_json,
+        .encode = flag2_interno_encode, .decode = flag2_interno_decode,
+        .bit = UINT32_MAX,
         .leaf_count = 1U, .leaf_kind = s_COMMAND_kinds, .leaf_name = s_COMMAND_leaves,
         .line_count = 1U, .line_leaves = s_COMMAND_lines,
     },
@@ -7570,6 +7583,8 @@ static const pn_place_t s_places[] = {
         .capacity = 64U, .timed = false,
         .count = flag2_externo_count, .token = flag2_externo_token, .put = flag2_externo_put,
         .clear = flag2_externo_clear, .json = flag2_externo_json,
+        .encode = flag2_externo_encode, .decode = flag2_externo_decode,
+        .bit = UINT32_MAX,
         .leaf_count = 1U, .leaf_kind = s_REPLY_kinds, .leaf_name = s_REPLY_leaves,
         .line_count = 1U, .line_leaves = s_REPLY_lines,
     },
@@ -7579,6 +7594,8 @@ static const pn_place_t s_places[] = {
         .capacity = 64U, .timed = false,
         .count = Supervisor_coordenadas_count, .token = Supervisor_coordenadas_token, .put = Supervisor_coordenadas_put,
         .clear = Supervisor_coordenadas_clear, .json = Supervisor_coordenadas_json,
+        .encode = Supervisor_coordenadas_encode, .decode = Supervisor_coordenadas_decode,
+        .bit = UINT32_MAX,
         .leaf_count = 13U, .leaf_kind = s_PLAN_kinds, .leaf_name = s_PLAN_leaves,
         .line_count = 3U, .line_leaves = s_PLAN_lines,
     },
@@ -7588,6 +7605,8 @@ static const pn_place_t s_places[] = {
         .capacity = 64U, .timed = false,
         .count = Supervisor_planned_count, .token = Supervisor_planned_token, .put = Supervisor_planned_put,
         .clear = Supervisor_planned_clear, .json = Supervisor_planned_json,
+        .encode = Supervisor_planned_encode, .decode = Supervisor_planned_decode,
+        .bit = UINT32_MAX,
         .leaf_count = 13U, .leaf_kind = s_SEAM_kinds, .leaf_name = s_SEAM_leaves,
         .line_count = 3U, .line_leaves = s_SEAM_lines,
     },
@@ -7597,6 +7616,8 @@ static const pn_place_t s_places[] = {
         .capacity = 64U, .timed = false,
         .count = Supervisor_approached_count, .token = Supervisor_approached_token, .put = Supervisor_approached_put,
         .clear = Supervisor_approached_clear, .json = Supervisor_approached_json,
+        .encode = Supervisor_approached_encode, .decode = Supervisor_approached_decode,
+        .bit = UINT32_MAX,
         .leaf_count = 13U, .leaf_kind = s_SEAM_kinds, .leaf_name = s_SEAM_leaves,
         .line_count = 3U, .line_leaves = s_SEAM_lines,
     },
@@ -7606,6 +7627,8 @@ static const pn_place_t s_places[] = {
         .capacity = 64U, .timed = false,
         .count = Supervisor_verified_count, .token = Supervisor_verified_token, .put = Supervisor_verified_put,
         .clear = Supervisor_verified_clear, .json = Supervisor_verified_json,
+        .encode = Supervisor_verified_encode, .decode = Supervisor_verified_decode,
+        .bit = UINT32_MAX,
         .leaf_count = 25U, .leaf_kind = s_VERIFIED_kinds, .leaf_name = s_VERIFIED_leaves,
         .line_count = 3U, .line_leaves = s_VERIFIED_lines,
     },
@@ -7615,6 +7638,8 @@ static const pn_place_t s_places[] = {
         .capacity = 64U, .timed = false,
         .count = Supervisor_corrected_count, .token = Supervisor_corrected_token, .put = Supervisor_corrected_put,
         .clear = Supervisor_corrected_clear, .json = Supervisor_corrected_json,
+        .encode = Supervisor_corrected_encode, .decode = Supervisor_corrected_decode,
+        .bit = UINT32_MAX,
         .leaf_count = 10U, .leaf_kind = s_RIVETING_kinds, .leaf_name = s_RIVETING_leaves,
         .line_count = 3U, .line_leaves = s_RIVETING_lines,
     },
@@ -7624,6 +7649,8 @@ static const pn_place_t s_places[] = {
         .capacity = 64U, .timed = false,
         .count = Supervisor_installed_count, .token = Supervisor_installed_token, .put = Supervisor_installed_put,
         .clear = Supervisor_installed_clear, .json = Supervisor_installed_json,
+        .encode = Supervisor_installed_encode, .decode = Supervisor_installed_decode,
+        .bit = UINT32_MAX,
         .leaf_count = 1U, .leaf_kind = s_UNIT_kinds, .leaf_name = s_UNIT_leaves,
         .line_count = 1U, .line_leaves = s_UNIT_lines,
     },
@@ -7633,6 +7660,8 @@ static const pn_place_t s_places[] = {
         .capacity = 64U, .timed = false,
         .count = Supervisor_Finished_count, .token = Supervisor_Finished_token, .put = Supervisor_Finished_put,
         .clear = Supervisor_Finished_clear, .json = Supervisor_Finished_json,
+        .encode = Supervisor_Finished_encode, .decode = Supervisor_Finished_decode,
+        .bit = UINT32_MAX,
         .leaf_count = 1U, .leaf_kind = s_UNIT_kinds, .leaf_name = s_UNIT_leaves,
         .line_count = 1U, .line_leaves = s_UNIT_lines,
     },
@@ -7642,6 +7671,8 @@ static const pn_place_t s_places[] = {
         .capacity = 64U, .timed = false,
         .count = Supervisor_Approach_order_count, .token = Supervisor_Approach_order_token, .put = Supervisor_Approach_order_put,
         .clear = Supervisor_Approach_order_clear, .json = Supervisor_Approach_order_json,
+        .encode = Supervisor_Approach_order_encode, .decode = Supervisor_Approach_order_decode,
+        .bit = UINT32_MAX,
         .leaf_count = 13U, .leaf_kind = s_ORDER_kinds, .leaf_name = s_ORDER_leaves,
         .line_count = 3U, .line_leaves = s_ORDER_lines,
     },
@@ -7651,6 +7682,8 @@ static const pn_place_t s_places[] = {
         .capacity = 64U, .timed = false,
         .count = Supervisor_Approach_done_count, .token = Supervisor_Approach_done_token, .put = Supervisor_Approach_done_put,
         .clear = Supervisor_Approach_done_clear, .json = Supervisor_Approach_done_json,
+        .encode = Supervisor_Approach_done_encode, .decode = Supervisor_Approach_done_decode,
+        .bit = UINT32_MAX,
         .leaf_count = 1U, .leaf_kind = s_UNIT_kinds, .leaf_name = s_UNIT_leaves,
         .line_count = 1U, .line_leaves = s_UNIT_lines,
     },
@@ -7660,6 +7693,8 @@ static const pn_place_t s_places[] = {
         .capacity = 64U, .timed = false,
         .count = Supervisor_Approach_seam_count, .token = Supervisor_Approach_seam_token, .put = Supervisor_Approach_seam_put,
         .clear = Supervisor_Approach_seam_clear, .json = Supervisor_Approach_seam_json,
+        .encode = Supervisor_Approach_seam_encode, .decode = Supervisor_Approach_seam_decode,
+        .bit = UINT32_MAX,
         .leaf_count = 13U, .leaf_kind = s_SEAM_kinds, .leaf_name = s_SEAM_leaves,
         .line_count = 3U, .line_leaves = s_SEAM_lines,
     },
@@ -7669,6 +7704,8 @@ static const pn_place_t s_places[] = {
         .capacity = 64U, .timed = false,
         .count = Supervisor_Approach_Move_both_moving_1_count, .token = Supervisor_Approach_Move_both_moving_1_token, .put = Supervisor_Approach_Move_both_moving_1_put,
         .clear = Supervisor_Approach_Move_both_moving_1_clear, .json = Supervisor_Approach_Move_both_moving_1_json,
+        .encode = Supervisor_Approach_Move_both_moving_1_encode, .decode = Supervisor_Approach_Move_both_moving_1_decode,
+        .bit = UINT32_MAX,
         .leaf_count = 1U, .leaf_kind = s_UNIT_kinds, .leaf_name = s_UNIT_leaves,
         .line_count = 1U, .line_leaves = s_UNIT_lines,
     },
@@ -7678,6 +7715,8 @@ static const pn_place_t s_places[] = {
         .capacity = 64U, .timed = false,
         .count = Supervisor_Approach_Move_both_there_1_count, .token = Supervisor_Approach_Move_both_there_1_token, .put = Supervisor_Approach_Move_both_there_1_put,
         .clear = Supervisor_Approach_Move_both_there_1_clear, .json = Supervisor_Approach_Move_both_there_1_json,
+        .encode = Supervisor_Approach_Move_both_there_1_encode, .decode = Supervisor_Approach_Move_both_there_1_decode,
+        .bit = UINT32_MAX,
         .leaf_count = 1U, .leaf_kind = s_UNIT_kinds, .leaf_name = s_UNIT_leaves,
         .line_count = 1U, .line_leaves = s_UNIT_lines,
     },
@@ -7687,6 +7726,8 @@ static const pn_place_t s_places[] = {
         .capacity = 64U, .timed = false,
         .count = Supervisor_Approach_Move_both_moving_2_count, .token = Supervisor_Approach_Move_both_moving_2_token, .put = Supervisor_Approach_Move_both_moving_2_put,
         .clear = Supervisor_Approach_Move_both_moving_2_clear, .json = Supervisor_Approach_Move_both_moving_2_json,
+        .encode = Supervisor_Approach_Move_both_moving_2_encode, .decode = Supervisor_Approach_Move_both_moving_2_decode,
+        .bit = UINT32_MAX,
         .leaf_count = 1U, .leaf_kind = s_UNIT_kinds, .leaf_name = s_UNIT_leaves,
         .line_count = 1U, .line_leaves = s_UNIT_lines,
     },
@@ -7696,6 +7737,8 @@ static const pn_place_t s_places[] = {
         .capacity = 64U, .timed = false,
         .count = Supervisor_Approach_Move_both_there_2_count, .token = Supervisor_Approach_Move_both_there_2_token, .put = Supervisor_Approach_Move_both_there_2_put,
         .clear = Supervisor_Approach_Move_both_there_2_clear, .json = Supervisor_Approach_Move_both_there_2_json,
+        .encode = Supervisor_Approach_Move_both_there_2_encode, .decode = Supervisor_Approach_Move_both_there_2_decode,
+        .bit = UINT32_MAX,
         .leaf_count = 1U, .leaf_kind = s_UNIT_kinds, .leaf_name = s_UNIT_leaves,
         .line_count = 1U, .line_leaves = s_UNIT_lines,
     },
@@ -7705,6 +7748,8 @@ static const pn_place_t s_places[] = {
         .capacity = 64U, .timed = false,
         .count = Supervisor_Verify_first_asked_count, .token = Supervisor_Verify_first_asked_token, .put = Supervisor_Verify_first_asked_put,
         .clear = Supervisor_Verify_first_asked_clear, .json = Supervisor_Verify_first_asked_json,
+        .encode = Supervisor_Verify_first_asked_encode, .decode = Supervisor_Verify_first_asked_decode,
+        .bit = UINT32_MAX,
         .leaf_count = 13U, .leaf_kind = s_SEAM_kinds, .leaf_name = s_SEAM_leaves,
         .line_count = 3U, .line_leaves = s_SEAM_lines,
     },
@@ -7714,6 +7759,8 @@ static const pn_place_t s_places[] = {
         .capacity = 64U, .timed = false,
         .count = Supervisor_Verify_last_asked_count, .token = Supervisor_Verify_last_asked_token, .put = Supervisor_Verify_last_asked_put,
         .clear = Supervisor_Verify_last_asked_clear, .json = Supervisor_Verify_last_asked_json,
+        .encode = Supervisor_Verify_last_asked_encode, .decode = Supervisor_Verify_last_asked_decode,
+        .bit = UINT32_MAX,
         .leaf_count = 19U, .leaf_kind = s_ASKED_kinds, .leaf_name = s_ASKED_leaves,
         .line_count = 2U, .line_leaves = s_ASKED_lines,
     },
@@ -7723,6 +7770,8 @@ static const pn_place_t s_places[] = {
         .capacity = 64U, .timed = false,
         .count = Supervisor_Correct_offset_count, .token = Supervisor_Correct_offset_token, .put = Supervisor_Correct_offset_put,
         .clear = Supervisor_Correct_offset_clear, .json = Supervisor_Correct_offset_json,
+        .encode = Supervisor_Correct_offset_encode, .decode = Supervisor_Correct_offset_decode,
+        .bit = UINT32_MAX,
         .leaf_count = 3U, .leaf_kind = s_VECTOR_kinds, .leaf_name = s_VECTOR_leaves,
         .line_count = 1U, .line_leaves = s_VECTOR_lines,
     },
@@ -7732,6 +7781,8 @@ static const pn_place_t s_places[] = {
         .capacity = 64U, .timed = false,
         .count = Supervisor_Correct_order_count, .token = Supervisor_Correct_order_token, .put = Supervisor_Correct_order_put,
         .clear = Supervisor_Correct_order_clear, .json = Supervisor_Correct_order_json,
+        .encode = Supervisor_Correct_order_encode, .decode = Supervisor_Correct_order_decode,
+        .bit = UINT32_MAX,
         .leaf_count = 13U, .leaf_kind = s_ORDER_kinds, .leaf_name = s_ORDER_leaves,
         .line_count = 3U, .line_leaves = s_ORDER_lines,
     },
@@ -7741,6 +7792,8 @@ static const pn_place_t s_places[] = {
         .capacity = 64U, .timed = false,
         .count = Supervisor_Correct_done_count, .token = Supervisor_Correct_done_token, .put = Supervisor_Correct_done_put,
         .clear = Supervisor_Correct_done_clear, .json = Supervisor_Correct_done_json,
+        .encode = Supervisor_Correct_done_encode, .decode = Supervisor_Correct_done_decode,
+        .bit = UINT32_MAX,
         .leaf_count = 1U, .leaf_kind = s_UNIT_kinds, .leaf_name = s_UNIT_leaves,
         .line_count = 1U, .line_leaves = s_UNIT_lines,
     },
@@ -7750,6 +7803,8 @@ static const pn_place_t s_places[] = {
         .capacity = 64U, .timed = false,
         .count = Supervisor_Correct_seam_count, .token = Supervisor_Correct_seam_token, .put = Supervisor_Correct_seam_put,
         .clear = Supervisor_Correct_seam_clear, .json = Supervisor_Correct_seam_json,
+        .encode = Supervisor_Correct_seam_encode, .decode = Supervisor_Correct_seam_decode,
+        .bit = UINT32_MAX,
         .leaf_count = 10U, .leaf_kind = s_RIVETING_kinds, .leaf_name = s_RIVETING_leaves,
         .line_count = 3U, .line_leaves = s_RIVETING_lines,
     },
@@ -7759,6 +7814,8 @@ static const pn_place_t s_places[] = {
         .capacity = 64U, .timed = false,
         .count = Supervisor_Correct_Move_both_moving_1_count, .token = Supervisor_Correct_Move_both_moving_1_token, .put = Supervisor_Correct_Move_both_moving_1_put,
         .clear = Supervisor_Correct_Move_both_moving_1_clear, .json = Supervisor_Correct_Move_both_moving_1_json,
+        .encode = Supervisor_Correct_Move_both_moving_1_encode, .decode = Supervisor_Correct_Move_both_moving_1_decode,
+        .bit = UINT32_MAX,
         .leaf_count = 1U, .leaf_kind = s_UNIT_kinds, .leaf_name = s_UNIT_leaves,
         .line_count = 1U, .line_leaves = s_UNIT_lines,
     },
@@ -7768,6 +7825,8 @@ static const pn_place_t s_places[] = {
         .capacity = 64U, .timed = false,
         .count = Supervisor_Correct_Move_both_there_1_count, .token = Supervisor_Correct_Move_both_there_1_token, .put = Supervisor_Correct_Move_both_there_1_put,
         .clear = Supervisor_Correct_Move_both_there_1_clear, .json = Supervisor_Correct_Move_both_there_1_json,
+        .encode = Supervisor_Correct_Move_both_there_1_encode, .decode = Supervisor_Correct_Move_both_there_1_decode,
+        .bit = UINT32_MAX,
         .leaf_count = 1U, .leaf_kind = s_UNIT_kinds, .leaf_name = s_UNIT_leaves,
         .line_count = 1U, .line_leaves = s_UNIT_lines,
     },
@@ -7777,6 +7836,8 @@ static const pn_place_t s_places[] = {
         .capacity = 64U, .timed = false,
         .count = Supervisor_Correct_Move_both_moving_2_count, .token = Supervisor_Correct_Move_both_moving_2_token, .put = Supervisor_Correct_Move_both_moving_2_put,
         .clear = Supervisor_Correct_Move_both_moving_2_clear, .json = Supervisor_Correct_Move_both_moving_2_json,
+        .encode = Supervisor_Correct_Move_both_moving_2_encode, .decode = Supervisor_Correct_Move_both_moving_2_decode,
+        .bit = UINT32_MAX,
         .leaf_count = 1U, .leaf_kind = s_UNIT_kinds, .leaf_name = s_UNIT_leaves,
         .line_count = 1U, .line_leaves = s_UNIT_lines,
     },
@@ -7786,6 +7847,8 @@ static const pn_place_t s_places[] = {
         .capacity = 64U, .timed = false,
         .count = Supervisor_Correct_Move_both_there_2_count, .token = Supervisor_Correct_Move_both_there_2_token, .put = Supervisor_Correct_Move_both_there_2_put,
         .clear = Supervisor_Correct_Move_both_there_2_clear, .json = Supervisor_Correct_Move_both_there_2_json,
+        .encode = Supervisor_Correct_Move_both_there_2_encode, .decode = Supervisor_Correct_Move_both_there_2_decode,
+        .bit = UINT32_MAX,
         .leaf_count = 1U, .leaf_kind = s_UNIT_kinds, .leaf_name = s_UNIT_leaves,
         .line_count = 1U, .line_leaves = s_UNIT_lines,
     },
@@ -7795,6 +7858,8 @@ static const pn_place_t s_places[] = {
         .capacity = 64U, .timed = false,
         .count = Supervisor_Install_shift_count, .token = Supervisor_Install_shift_token, .put = Supervisor_Install_shift_put,
         .clear = Supervisor_Install_shift_clear, .json = Supervisor_Install_shift_json,
+        .encode = Supervisor_Install_shift_encode, .decode = Supervisor_Install_shift_decode,
+        .bit = UINT32_MAX,
         .leaf_count = 13U, .leaf_kind = s_ORDER_kinds, .leaf_name = s_ORDER_leaves,
         .line_count = 3U, .line_leaves = s_ORDER_lines,
     },
@@ -7804,6 +7869,8 @@ static const pn_place_t s_places[] = {
         .capacity = 64U, .timed = false,
         .count = Supervisor_Install_ready_count, .token = Supervisor_Install_ready_token, .put = Supervisor_Install_ready_put,
         .clear = Supervisor_Install_ready_clear, .json = Supervisor_Install_ready_json,
+        .encode = Supervisor_Install_ready_encode, .decode = Supervisor_Install_ready_decode,
+        .bit = UINT32_MAX,
         .leaf_count = 1U, .leaf_kind = s_UNIT_kinds, .leaf_name = s_UNIT_leaves,
         .line_count = 1U, .line_leaves = s_UNIT_lines,
     },
@@ -7813,6 +7880,8 @@ static const pn_place_t s_places[] = {
         .capacity = 64U, .timed = false,
         .count = Supervisor_Install_riveted_count, .token = Supervisor_Install_riveted_token, .put = Supervisor_Install_riveted_put,
         .clear = Supervisor_Install_riveted_clear, .json = Supervisor_Install_riveted_json,
+        .encode = Supervisor_Install_riveted_encode, .decode = Supervisor_Install_riveted_decode,
+        .bit = UINT32_MAX,
         .leaf_count = 1U, .leaf_kind = s_UNIT_kinds, .leaf_name = s_UNIT_leaves,
         .line_count = 1U, .line_leaves = s_UNIT_lines,
     },
@@ -7822,6 +7891,8 @@ static const pn_place_t s_places[] = {
         .capacity = 64U, .timed = false,
         .count = Supervisor_Install_return_count, .token = Supervisor_Install_return_token, .put = Supervisor_Install_return_put,
         .clear = Supervisor_Install_return_clear, .json = Supervisor_Install_return_json,
+        .encode = Supervisor_Install_return_encode, .decode = Supervisor_Install_return_decode,
+        .bit = UINT32_MAX,
         .leaf_count = 13U, .leaf_kind = s_ORDER_kinds, .leaf_name = s_ORDER_leaves,
         .line_count = 3U, .line_leaves = s_ORDER_lines,
     },
@@ -7831,6 +7902,8 @@ static const pn_place_t s_places[] = {
         .capacity = 64U, .timed = false,
         .count = Supervisor_Install_work_count, .token = Supervisor_Install_work_token, .put = Supervisor_Install_work_put,
         .clear = Supervisor_Install_work_clear, .json = Supervisor_Install_work_json,
+        .encode = Supervisor_Install_work_encode, .decode = Supervisor_Install_work_decode,
+        .bit = UINT32_MAX,
         .leaf_count = 11U, .leaf_kind = s_WORK_kinds, .leaf_name = s_WORK_leaves,
         .line_count = 4U, .line_leaves = s_WORK_lines,
     },
@@ -7840,6 +7913,8 @@ static const pn_place_t s_places[] = {
         .capacity = 64U, .timed = false,
         .count = Supervisor_Install_Shift_moving_1_count, .token = Supervisor_Install_Shift_moving_1_token, .put = Supervisor_Install_Shift_moving_1_put,
         .clear = Supervisor_Install_Shift_moving_1_clear, .json = Supervisor_Install_Shift_moving_1_json,
+        .encode = Supervisor_Install_Shift_moving_1_encode, .decode = Supervisor_Install_Shift_moving_1_decode,
+        .bit = UINT32_MAX,
         .leaf_count = 1U, .leaf_kind = s_UNIT_kinds, .leaf_name = s_UNIT_leaves,
         .line_count = 1U, .line_leaves = s_UNIT_lines,
     },
@@ -7849,6 +7924,8 @@ static const pn_place_t s_places[] = {
         .capacity = 64U, .timed = false,
         .count = Supervisor_Install_Shift_there_1_count, .token = Supervisor_Install_Shift_there_1_token, .put = Supervisor_Install_Shift_there_1_put,
         .clear = Supervisor_Install_Shift_there_1_clear, .json = Supervisor_Install_Shift_there_1_json,
+        .encode = Supervisor_Install_Shift_there_1_encode, .decode = Supervisor_Install_Shift_there_1_decode,
+        .bit = UINT32_MAX,
         .leaf_count = 1U, .leaf_kind = s_UNIT_kinds, .leaf_name = s_UNIT_leaves,
         .line_count = 1U, .line_leaves = s_UNIT_lines,
     },
@@ -7858,6 +7935,8 @@ static const pn_place_t s_places[] = {
         .capacity = 64U, .timed = false,
         .count = Supervisor_Install_Shift_moving_2_count, .token = Supervisor_Install_Shift_moving_2_token, .put = Supervisor_Install_Shift_moving_2_put,
         .clear = Supervisor_Install_Shift_moving_2_clear, .json = Supervisor_Install_Shift_moving_2_json,
+        .encode = Supervisor_Install_Shift_moving_2_encode, .decode = Supervisor_Install_Shift_moving_2_decode,
+        .bit = UINT32_MAX,
         .leaf_count = 1U, .leaf_kind = s_UNIT_kinds, .leaf_name = s_UNIT_leaves,
         .line_count = 1U, .line_leaves = s_UNIT_lines,
     },
@@ -7867,6 +7946,8 @@ static const pn_place_t s_places[] = {
         .capacity = 64U, .timed = false,
         .count = Supervisor_Install_Shift_there_2_count, .token = Supervisor_Install_Shift_there_2_token, .put = Supervisor_Install_Shift_there_2_put,
         .clear = Supervisor_Install_Shift_there_2_clear, .json = Supervisor_Install_Shift_there_2_json,
+        .encode = Supervisor_Install_Shift_there_2_encode, .decode = Supervisor_Install_Shift_there_2_decode,
+        .bit = UINT32_MAX,
         .leaf_count = 1U, .leaf_kind = s_UNIT_kinds, .leaf_name = s_UNIT_leaves,
         .line_count = 1U, .line_leaves = s_UNIT_lines,
     },
@@ -7876,6 +7957,8 @@ static const pn_place_t s_places[] = {
         .capacity = 64U, .timed = false,
         .count = Supervisor_Install_Rivet_advance_count, .token = Supervisor_Install_Rivet_advance_token, .put = Supervisor_Install_Rivet_advance_put,
         .clear = Supervisor_Install_Rivet_advance_clear, .json = Supervisor_Install_Rivet_advance_json,
+        .encode = Supervisor_Install_Rivet_advance_encode, .decode = Supervisor_Install_Rivet_advance_decode,
+        .bit = UINT32_MAX,
         .leaf_count = 13U, .leaf_kind = s_ORDER_kinds, .leaf_name = s_ORDER_leaves,
         .line_count = 3U, .line_leaves = s_ORDER_lines,
     },
@@ -7885,6 +7968,8 @@ static const pn_place_t s_places[] = {
         .capacity = 64U, .timed = false,
         .count = Supervisor_Install_Rivet_contact_count, .token = Supervisor_Install_Rivet_contact_token, .put = Supervisor_Install_Rivet_contact_put,
         .clear = Supervisor_Install_Rivet_contact_clear, .json = Supervisor_Install_Rivet_contact_json,
+        .encode = Supervisor_Install_Rivet_contact_encode, .decode = Supervisor_Install_Rivet_contact_decode,
+        .bit = UINT32_MAX,
         .leaf_count = 1U, .leaf_kind = s_UNIT_kinds, .leaf_name = s_UNIT_leaves,
         .line_count = 1U, .line_leaves = s_UNIT_lines,
     },
@@ -7894,6 +7979,8 @@ static const pn_place_t s_places[] = {
         .capacity = 64U, .timed = false,
         .count = Supervisor_Install_Rivet_fastened_count, .token = Supervisor_Install_Rivet_fastened_token, .put = Supervisor_Install_Rivet_fastened_put,
         .clear = Supervisor_Install_Rivet_fastened_clear, .json = Supervisor_Install_Rivet_fastened_json,
+        .encode = Supervisor_Install_Rivet_fastened_encode, .decode = Supervisor_Install_Rivet_fastened_decode,
+        .bit = UINT32_MAX,
         .leaf_count = 1U, .leaf_kind = s_UNIT_kinds, .leaf_name = s_UNIT_leaves,
         .line_count = 1U, .line_leaves = s_UNIT_lines,
     },
@@ -7903,6 +7990,8 @@ static const pn_place_t s_places[] = {
         .capacity = 64U, .timed = false,
         .count = Supervisor_Install_Rivet_retract_count, .token = Supervisor_Install_Rivet_retract_token, .put = Supervisor_Install_Rivet_retract_put,
         .clear = Supervisor_Install_Rivet_retract_clear, .json = Supervisor_Install_Rivet_retract_json,
+        .encode = Supervisor_Install_Rivet_retract_encode, .decode = Supervisor_Install_Rivet_retract_decode,
+        .bit = UINT32_MAX,
         .leaf_count = 13U, .leaf_kind = s_ORDER_kinds, .leaf_name = s_ORDER_leaves,
         .line_count = 3U, .line_leaves = s_ORDER_lines,
     },
@@ -7912,6 +8001,8 @@ static const pn_place_t s_places[] = {
         .capacity = 64U, .timed = false,
         .count = Supervisor_Install_Rivet_Advance_moving_1_count, .token = Supervisor_Install_Rivet_Advance_moving_1_token, .put = Supervisor_Install_Rivet_Advance_moving_1_put,
         .clear = Supervisor_Install_Rivet_Advance_moving_1_clear, .json = Supervisor_Install_Rivet_Advance_moving_1_json,
+        .encode = Supervisor_Install_Rivet_Advance_moving_1_encode, .decode = Supervisor_Install_Rivet_Advance_moving_1_decode,
+        .bit = UINT32_MAX,
         .leaf_count = 1U, .leaf_kind = s_UNIT_kinds, .leaf_name = s_UNIT_leaves,
         .line_count = 1U, .line_leaves = s_UNIT_lines,
     },
@@ -7921,6 +8012,8 @@ static const pn_place_t s_places[] = {
         .capacity = 64U, .timed = false,
         .count = Supervisor_Install_Rivet_Advance_there_1_count, .token = Supervisor_Install_Rivet_Advance_there_1_token, .put = Supervisor_Install_Rivet_Advance_there_1_put,
         .clear = Supervisor_Install_Rivet_Advance_there_1_clear, .json = Supervisor_Install_Rivet_Advance_there_1_json,
+        .encode = Supervisor_Install_Rivet_Advance_there_1_encode, .decode = Supervisor_Install_Rivet_Advance_there_1_decode,
+        .bit = UINT32_MAX,
         .leaf_count = 1U, .leaf_kind = s_UNIT_kinds, .leaf_name = s_UNIT_leaves,
         .line_count = 1U, .line_leaves = s_UNIT_lines,
     },
@@ -7930,6 +8023,8 @@ static const pn_place_t s_places[] = {
         .capacity = 64U, .timed = false,
         .count = Supervisor_Install_Rivet_Advance_moving_2_count, .token = Supervisor_Install_Rivet_Advance_moving_2_token, .put = Supervisor_Install_Rivet_Advance_moving_2_put,
         .clear = Supervisor_Install_Rivet_Advance_moving_2_clear, .json = Supervisor_Install_Rivet_Advance_moving_2_json,
+        .encode = Supervisor_Install_Rivet_Advance_moving_2_encode, .decode = Supervisor_Install_Rivet_Advance_moving_2_decode,
+        .bit = UINT32_MAX,
         .leaf_count = 1U, .leaf_kind = s_UNIT_kinds, .leaf_name = s_UNIT_leaves,
         .line_count = 1U, .line_leaves = s_UNIT_lines,
     },
@@ -7939,6 +8034,8 @@ static const pn_place_t s_places[] = {
         .capacity = 64U, .timed = false,
         .count = Supervisor_Install_Rivet_Advance_there_2_count, .token = Supervisor_Install_Rivet_Advance_there_2_token, .put = Supervisor_Install_Rivet_Advance_there_2_put,
         .clear = Supervisor_Install_Rivet_Advance_there_2_clear, .json = Supervisor_Install_Rivet_Advance_there_2_json,
+        .encode = Supervisor_Install_Rivet_Advance_there_2_encode, .decode = Supervisor_Install_Rivet_Advance_there_2_decode,
+        .bit = UINT32_MAX,
         .leaf_count = 1U, .leaf_kind = s_UNIT_kinds, .leaf_name = s_UNIT_leaves,
         .line_count = 1U, .line_leaves = s_UNIT_lines,
     },
@@ -7948,6 +8045,8 @@ static const pn_place_t s_places[] = {
         .capacity = 64U, .timed = false,
         .count = Supervisor_Install_Rivet_Fasten_pressing_count, .token = Supervisor_Install_Rivet_Fasten_pressing_token, .put = Supervisor_Install_Rivet_Fasten_pressing_put,
         .clear = Supervisor_Install_Rivet_Fasten_pressing_clear, .json = Supervisor_Install_Rivet_Fasten_pressing_json,
+        .encode = Supervisor_Install_Rivet_Fasten_pressing_encode, .decode = Supervisor_Install_Rivet_Fasten_pressing_decode,
+        .bit = UINT32_MAX,
         .leaf_count = 1U, .leaf_kind = s_UNIT_kinds, .leaf_name = s_UNIT_leaves,
         .line_count = 1U, .line_leaves = s_UNIT_lines,
     },
@@ -7957,6 +8056,8 @@ static const pn_place_t s_places[] = {
         .capacity = 64U, .timed = false,
         .count = Supervisor_Install_Rivet_Fasten_drilling_count, .token = Supervisor_Install_Rivet_Fasten_drilling_token, .put = Supervisor_Install_Rivet_Fasten_drilling_put,
         .clear = Supervisor_Install_Rivet_Fasten_drilling_clear, .json = Supervisor_Install_Rivet_Fasten_drilling_json,
+        .encode = Supervisor_Install_Rivet_Fasten_drilling_encode, .decode = Supervisor_Install_Rivet_Fasten_drilling_decode,
+        .bit = UINT32_MAX,
         .leaf_count = 1U, .leaf_kind = s_UNIT_kinds, .leaf_name = s_UNIT_leaves,
         .line_count = 1U, .line_leaves = s_UNIT_lines,
     },
@@ -7966,6 +8067,8 @@ static const pn_place_t s_places[] = {
         .capacity = 64U, .timed = false,
         .count = Supervisor_Install_Rivet_Fasten_inserting_count, .token = Supervisor_Install_Rivet_Fasten_inserting_token, .put = Supervisor_Install_Rivet_Fasten_inserting_put,
         .clear = Supervisor_Install_Rivet_Fasten_inserting_clear, .json = Supervisor_Install_Rivet_Fasten_inserting_json,
+        .encode = Supervisor_Install_Rivet_Fasten_inserting_encode, .decode = Supervisor_Install_Rivet_Fasten_inserting_decode,
+        .bit = UINT32_MAX,
         .leaf_count = 1U, .leaf_kind = s_UNIT_kinds, .leaf_name = s_UNIT_leaves,
         .line_count = 1U, .line_leaves = s_UNIT_lines,
     },
@@ -7975,6 +8078,8 @@ static const pn_place_t s_places[] = {
         .capacity = 64U, .timed = false,
         .count = Supervisor_Install_Rivet_Fasten_releasing_count, .token = Supervisor_Install_Rivet_Fasten_releasing_token, .put = Supervisor_Install_Rivet_Fasten_releasing_put,
         .clear = Supervisor_Install_Rivet_Fasten_releasing_clear, .json = Supervisor_Install_Rivet_Fasten_releasing_json,
+        .encode = Supervisor_Install_Rivet_Fasten_releasing_encode, .decode = Supervisor_Install_Rivet_Fasten_releasing_decode,
+        .bit = UINT32_MAX,
         .leaf_count = 1U, .leaf_kind = s_UNIT_kinds, .leaf_name = s_UNIT_leaves,
         .line_count = 1U, .line_leaves = s_UNIT_lines,
     },
@@ -7984,6 +8089,8 @@ static const pn_place_t s_places[] = {
         .capacity = 64U, .timed = false,
         .count = Supervisor_Install_Rivet_Retract_moving_1_count, .token = Supervisor_Install_Rivet_Retract_moving_1_token, .put = Supervisor_Install_Rivet_Retract_moving_1_put,
         .clear = Supervisor_Install_Rivet_Retract_moving_1_clear, .json = Supervisor_Install_Rivet_Retract_moving_1_json,
+        .encode = Supervisor_Install_Rivet_Retract_moving_1_encode, .decode = Supervisor_Install_Rivet_Retract_moving_1_decode,
+        .bit = UINT32_MAX,
         .leaf_count = 1U, .leaf_kind = s_UNIT_kinds, .leaf_name = s_UNIT_leaves,
         .line_count = 1U, .line_leaves = s_UNIT_lines,
     },
@@ -7993,6 +8100,8 @@ static const pn_place_t s_places[] = {
         .capacity = 64U, .timed = false,
         .count = Supervisor_Install_Rivet_Retract_there_1_count, .token = Supervisor_Install_Rivet_Retract_there_1_token, .put = Supervisor_Install_Rivet_Retract_there_1_put,
         .clear = Supervisor_Install_Rivet_Retract_there_1_clear, .json = Supervisor_Install_Rivet_Retract_there_1_json,
+        .encode = Supervisor_Install_Rivet_Retract_there_1_encode, .decode = Supervisor_Install_Rivet_Retract_there_1_decode,
+        .bit = UINT32_MAX,
         .leaf_count = 1U, .leaf_kind = s_UNIT_kinds, .leaf_name = s_UNIT_leaves,
         .line_count = 1U, .line_leaves = s_UNIT_lines,
     },
@@ -8002,6 +8111,8 @@ static const pn_place_t s_places[] = {
         .capacity = 64U, .timed = false,
         .count = Supervisor_Install_Rivet_Retract_moving_2_count, .token = Supervisor_Install_Rivet_Retract_moving_2_token, .put = Supervisor_Install_Rivet_Retract_moving_2_put,
         .clear = Supervisor_Install_Rivet_Retract_moving_2_clear, .json = Supervisor_Install_Rivet_Retract_moving_2_json,
+        .encode = Supervisor_Install_Rivet_Retract_moving_2_encode, .decode = Supervisor_Install_Rivet_Retract_moving_2_decode,
+        .bit = UINT32_MAX,
         .leaf_count = 1U, .leaf_kind = s_UNIT_kinds, .leaf_name = s_UNIT_leaves,
         .line_count = 1U, .line_leaves = s_UNIT_lines,
     },
@@ -8011,6 +8122,8 @@ static const pn_place_t s_places[] = {
         .capacity = 64U, .timed = false,
         .count = Supervisor_Install_Rivet_Retract_there_2_count, .token = Supervisor_Install_Rivet_Retract_there_2_token, .put = Supervisor_Install_Rivet_Retract_there_2_put,
         .clear = Supervisor_Install_Rivet_Retract_there_2_clear, .json = Supervisor_Install_Rivet_Retract_there_2_json,
+        .encode = Supervisor_Install_Rivet_Retract_there_2_encode, .decode = Supervisor_Install_Rivet_Retract_there_2_decode,
+        .bit = UINT32_MAX,
         .leaf_count = 1U, .leaf_kind = s_UNIT_kinds, .leaf_name = s_UNIT_leaves,
         .line_count = 1U, .line_leaves = s_UNIT_lines,
     },
@@ -8020,6 +8133,8 @@ static const pn_place_t s_places[] = {
         .capacity = 64U, .timed = false,
         .count = Supervisor_Install_Return_moving_1_count, .token = Supervisor_Install_Return_moving_1_token, .put = Supervisor_Install_Return_moving_1_put,
         .clear = Supervisor_Install_Return_moving_1_clear, .json = Supervisor_Install_Return_moving_1_json,
+        .encode = Supervisor_Install_Return_moving_1_encode, .decode = Supervisor_Install_Return_moving_1_decode,
+        .bit = UINT32_MAX,
         .leaf_count = 1U, .leaf_kind = s_UNIT_kinds, .leaf_name = s_UNIT_leaves,
         .line_count = 1U, .line_leaves = s_UNIT_lines,
     },
@@ -8029,6 +8144,8 @@ static const pn_place_t s_places[] = {
         .capacity = 64U, .timed = false,
         .count = Supervisor_Install_Return_there_1_count, .token = Supervisor_Install_Return_there_1_token, .put = Supervisor_Install_Return_there_1_put,
         .clear = Supervisor_Install_Return_there_1_clear, .json = Supervisor_Install_Return_there_1_json,
+        .encode = Supervisor_Install_Return_there_1_encode, .decode = Supervisor_Install_Return_there_1_decode,
+        .bit = UINT32_MAX,
         .leaf_count = 1U, .leaf_kind = s_UNIT_kinds, .leaf_name = s_UNIT_leaves,
         .line_count = 1U, .line_leaves = s_UNIT_lines,
     },
@@ -8038,6 +8155,8 @@ static const pn_place_t s_places[] = {
         .capacity = 64U, .timed = false,
         .count = Supervisor_Install_Return_moving_2_count, .token = Supervisor_Install_Return_moving_2_token, .put = Supervisor_Install_Return_moving_2_put,
         .clear = Supervisor_Install_Return_moving_2_clear, .json = Supervisor_Install_Return_moving_2_json,
+        .encode = Supervisor_Install_Return_moving_2_encode, .decode = Supervisor_Install_Return_moving_2_decode,
+        .bit = UINT32_MAX,
         .leaf_count = 1U, .leaf_kind = s_UNIT_kinds, .leaf_name = s_UNIT_leaves,
         .line_count = 1U, .line_leaves = s_UNIT_lines,
     },
@@ -8047,6 +8166,8 @@ static const pn_place_t s_places[] = {
         .capacity = 64U, .timed = false,
         .count = Supervisor_Install_Return_there_2_count, .token = Supervisor_Install_Return_there_2_token, .put = Supervisor_Install_Return_there_2_put,
         .clear = Supervisor_Install_Return_there_2_clear, .json = Supervisor_Install_Return_there_2_json,
+        .encode = Supervisor_Install_Return_there_2_encode, .decode = Supervisor_Install_Return_there_2_decode,
+        .bit = UINT32_MAX,
         .leaf_count = 1U, .leaf_kind = s_UNIT_kinds, .leaf_name = s_UNIT_leaves,
         .line_count = 1U, .line_leaves = s_UNIT_lines,
     },
@@ -8056,6 +8177,8 @@ static const pn_place_t s_places[] = {
         .capacity = 64U, .timed = false,
         .count = Supervisor_Home_leaving_1_count, .token = Supervisor_Home_leaving_1_token, .put = Supervisor_Home_leaving_1_put,
         .clear = Supervisor_Home_leaving_1_clear, .json = Supervisor_Home_leaving_1_json,
+        .encode = Supervisor_Home_leaving_1_encode, .decode = Supervisor_Home_leaving_1_decode,
+        .bit = UINT32_MAX,
         .leaf_count = 1U, .leaf_kind = s_UNIT_kinds, .leaf_name = s_UNIT_leaves,
         .line_count = 1U, .line_leaves = s_UNIT_lines,
     },
@@ -8065,6 +8188,8 @@ static const pn_place_t s_places[] = {
         .capacity = 64U, .timed = false,
         .count = Supervisor_Home_home_1_count, .token = Supervisor_Home_home_1_token, .put = Supervisor_Home_home_1_put,
         .clear = Supervisor_Home_home_1_clear, .json = Supervisor_Home_home_1_json,
+        .encode = Supervisor_Home_home_1_encode, .decode = Supervisor_Home_home_1_decode,
+        .bit = UINT32_MAX,
         .leaf_count = 1U, .leaf_kind = s_UNIT_kinds, .leaf_name = s_UNIT_leaves,
         .line_count = 1U, .line_leaves = s_UNIT_lines,
     },
@@ -8074,6 +8199,8 @@ static const pn_place_t s_places[] = {
         .capacity = 64U, .timed = false,
         .count = Supervisor_Home_leaving_2_count, .token = Supervisor_Home_leaving_2_token, .put = Supervisor_Home_leaving_2_put,
         .clear = Supervisor_Home_leaving_2_clear, .json = Supervisor_Home_leaving_2_json,
+        .encode = Supervisor_Home_leaving_2_encode, .decode = Supervisor_Home_leaving_2_decode,
+        .bit = UINT32_MAX,
         .leaf_count = 1U, .leaf_kind = s_UNIT_kinds, .leaf_name = s_UNIT_leaves,
         .line_count = 1U, .line_leaves = s_UNIT_lines,
     },
@@ -8083,6 +8210,8 @@ static const pn_place_t s_places[] = {
         .capacity = 64U, .timed = false,
         .count = Supervisor_Home_home_2_count, .token = Supervisor_Home_home_2_token, .put = Supervisor_Home_home_2_put,
         .clear = Supervisor_Home_home_2_clear, .json = Supervisor_Home_home_2_json,
+        .encode = Supervisor_Home_home_2_encode, .decode = Supervisor_Home_home_2_decode,
+        .bit = UINT32_MAX,
         .leaf_count = 1U, .leaf_kind = s_UNIT_kinds, .leaf_name = s_UNIT_leaves,
         .line_count = 1U, .line_leaves = s_UNIT_lines,
     },
@@ -8092,6 +8221,8 @@ static const pn_place_t s_places[] = {
         .capacity = 64U, .timed = false,
         .count = Robot1_Waiting_count, .token = Robot1_Waiting_token, .put = Robot1_Waiting_put,
         .clear = Robot1_Waiting_clear, .json = Robot1_Waiting_json,
+        .encode = Robot1_Waiting_encode, .decode = Robot1_Waiting_decode,
+        .bit = UINT32_MAX,
         .leaf_count = 1U, .leaf_kind = s_UNIT_kinds, .leaf_name = s_UNIT_leaves,
         .line_count = 1U, .line_leaves = s_UNIT_lines,
     },
@@ -8101,6 +8232,8 @@ static const pn_place_t s_places[] = {
         .capacity = 64U, .timed = false,
         .count = Robot1_Commanded_count, .token = Robot1_Commanded_token, .put = Robot1_Commanded_put,
         .clear = Robot1_Commanded_clear, .json = Robot1_Commanded_json,
+        .encode = Robot1_Commanded_encode, .decode = Robot1_Commanded_decode,
+        .bit = UINT32_MAX,
         .leaf_count = 1U, .leaf_kind = s_COMMAND_kinds, .leaf_name = s_COMMAND_leaves,
         .line_count = 1U, .line_leaves = s_COMMAND_lines,
     },
@@ -8110,6 +8243,8 @@ static const pn_place_t s_places[] = {
         .capacity = 64U, .timed = false,
         .count = Robot1_Done_count, .token = Robot1_Done_token, .put = Robot1_Done_put,
         .clear = Robot1_Done_clear, .json = Robot1_Done_json,
+        .encode = Robot1_Done_encode, .decode = Robot1_Done_decode,
+        .bit = UINT32_MAX,
         .leaf_count = 1U, .leaf_kind = s_UNIT_kinds, .leaf_name = s_UNIT_leaves,
         .line_count = 1U, .line_leaves = s_UNIT_lines,
     },
@@ -8119,6 +8254,8 @@ static const pn_place_t s_places[] = {
         .capacity = 64U, .timed = false,
         .count = Robot2_Waiting_count, .token = Robot2_Waiting_token, .put = Robot2_Waiting_put,
         .clear = Robot2_Waiting_clear, .json = Robot2_Waiting_json,
+        .encode = Robot2_Waiting_encode, .decode = Robot2_Waiting_decode,
+        .bit = UINT32_MAX,
         .leaf_count = 1U, .leaf_kind = s_UNIT_kinds, .leaf_name = s_UNIT_leaves,
         .line_count = 1U, .line_leaves = s_UNIT_lines,
     },
@@ -8128,6 +8265,8 @@ static const pn_place_t s_places[] = {
         .capacity = 64U, .timed = false,
         .count = Robot2_Commanded_count, .token = Robot2_Commanded_token, .put = Robot2_Commanded_put,
         .clear = Robot2_Commanded_clear, .json = Robot2_Commanded_json,
+        .encode = Robot2_Commanded_encode, .decode = Robot2_Commanded_decode,
+        .bit = UINT32_MAX,
         .leaf_count = 1U, .leaf_kind = s_COMMAND_kinds, .leaf_name = s_COMMAND_leaves,
         .line_count = 1U, .line_leaves = s_COMMAND_lines,
     },
@@ -8137,6 +8276,8 @@ static const pn_place_t s_places[] = {
         .capacity = 64U, .timed = false,
         .count = Robot2_Done_count, .token = Robot2_Done_token, .put = Robot2_Done_put,
         .clear = Robot2_Done_clear, .json = Robot2_Done_json,
+        .encode = Robot2_Done_encode, .decode = Robot2_Done_decode,
+        .bit = UINT32_MAX,
         .leaf_count = 1U, .leaf_kind = s_UNIT_kinds, .leaf_name = s_UNIT_leaves,
         .line_count = 1U, .line_leaves = s_UNIT_lines,
     },
@@ -8146,6 +8287,8 @@ static const pn_place_t s_places[] = {
         .capacity = 64U, .timed = false,
         .count = Robot2_referencia_count, .token = Robot2_referencia_token, .put = Robot2_referencia_put,
         .clear = Robot2_referencia_clear, .json = Robot2_referencia_json,
+        .encode = Robot2_referencia_encode, .decode = Robot2_referencia_decode,
+        .bit = UINT32_MAX,
         .leaf_count = 6U, .leaf_kind = s_POSE_kinds, .leaf_name = s_POSE_leaves,
         .line_count = 1U, .line_leaves = s_POSE_lines,
     },
@@ -8155,10 +8298,14 @@ static const pn_place_t s_places[] = {
         .capacity = 64U, .timed = false,
         .count = Robot2_medida_count, .token = Robot2_medida_token, .put = Robot2_medida_put,
         .clear = Robot2_medida_clear, .json = Robot2_medida_json,
+        .encode = Robot2_medida_encode, .decode = Robot2_medida_decode,
+        .bit = UINT32_MAX,
         .leaf_count = 6U, .leaf_kind = s_POSE_kinds, .leaf_name = s_POSE_leaves,
         .line_count = 1U, .line_leaves = s_POSE_lines,
     },
 };
+
+static const uint32_t s_bag_places[] = { 0U, 1U, 2U, 3U, 4U, 5U, 6U, 7U, 8U, 9U, 10U, 11U, 12U, 13U, 14U, 15U, 16U, 17U, 18U, 19U, 20U, 21U, 22U, 23U, 24U, 25U, 26U, 27U, 28U, 29U, 30U, 31U, 32U, 33U, 34U, 35U, 36U, 37U, 38U, 39U, 40U, 41U, 42U, 43U, 44U, 45U, 46U, 47U, 48U, 49U, 50U, 51U, 52U, 53U, 54U, 55U, 56U, 57U, 58U, 59U, 60U, 61U, 62U, 63U, 64U, 65U, 66U, 67U, 68U, 69U, 70U, 71U, 72U };
 
 /* For each transition those that may be enabled in another way when it has occurred. */
 static const uint32_t s_affected_by_Supervisor_Load_Load[] = { 0U, 1U };
@@ -8230,6 +8377,76 @@ static const uint32_t s_affected_by_Robot2_Insert[] = { 59U, 60U, 61U, 62U, 63U,
 static const uint32_t s_affected_by_Robot2_Press[] = { 59U, 60U, 61U, 62U, 63U, 64U, 65U, 66U, 67U };
 static const uint32_t s_affected_by_Robot2_Release[] = { 59U, 60U, 61U, 62U, 63U, 64U, 65U, 66U, 67U };
 
+/* For each transition the places that its occurrence may change. */
+static const uint32_t s_touched_by_Supervisor_Load_Load[] = { 8U, 9U };
+static const uint32_t s_touched_by_Supervisor_Approach_Send[] = { 9U, 15U, 17U };
+static const uint32_t s_touched_by_Supervisor_Approach_Arrived[] = { 10U, 16U, 17U };
+static const uint32_t s_touched_by_Supervisor_Approach_Move_both_Command[] = { 0U, 1U, 5U, 6U, 15U, 18U, 20U };
+static const uint32_t s_touched_by_Supervisor_Approach_Move_both_Both[] = { 16U, 19U, 21U };
+static const uint32_t s_touched_by_Supervisor_Approach_Move_both_Reply_1[] = { 2U, 18U, 19U };
+static const uint32_t s_touched_by_Supervisor_Approach_Move_both_Reply_2[] = { 7U, 20U, 21U };
+static const uint32_t s_touched_by_Supervisor_Verify_Ask_first[] = { 1U, 3U, 10U, 22U };
+static const uint32_t s_touched_by_Supervisor_Verify_Ask_last[] = { 1U, 2U, 3U, 4U, 22U, 23U };
+static const uint32_t s_touched_by_Supervisor_Verify_Measured[] = { 2U, 4U, 11U, 23U };
+static const uint32_t s_touched_by_Supervisor_Correct_Compare[] = { 11U, 24U, 27U };
+static const uint32_t s_touched_by_Supervisor_Correct_Move_over[] = { 24U, 25U };
+static const uint32_t s_touched_by_Supervisor_Correct_Moved[] = { 12U, 26U, 27U };
+static const uint32_t s_touched_by_Supervisor_Correct_As_planned[] = { 12U, 24U, 27U };
+static const uint32_t s_touched_by_Supervisor_Correct_Move_both_Command[] = { 0U, 1U, 5U, 6U, 25U, 28U, 30U };
+static const uint32_t s_touched_by_Supervisor_Correct_Move_both_Both[] = { 26U, 29U, 31U };
+static const uint32_t s_touched_by_Supervisor_Correct_Move_both_Reply_1[] = { 2U, 28U, 29U };
+static const uint32_t s_touched_by_Supervisor_Correct_Move_both_Reply_2[] = { 7U, 30U, 31U };
+static const uint32_t s_touched_by_Supervisor_Install_Go_back[] = { 34U, 35U, 36U };
+static const uint32_t s_touched_by_Supervisor_Install_Next_rivet[] = { 32U, 34U, 36U };
+static const uint32_t s_touched_by_Supervisor_Install_Start[] = { 12U, 33U, 36U };
+static const uint32_t s_touched_by_Supervisor_Install_Shift_Command[] = { 0U, 1U, 5U, 6U, 32U, 37U, 39U };
+static const uint32_t s_touched_by_Supervisor_Install_Shift_Both[] = { 33U, 38U, 40U };
+static const uint32_t s_touched_by_Supervisor_Install_Shift_Reply_1[] = { 2U, 37U, 38U };
+static const uint32_t s_touched_by_Supervisor_Install_Shift_Reply_2[] = { 7U, 39U, 40U };
+static const uint32_t s_touched_by_Supervisor_Install_Rivet_Go_in[] = { 33U, 41U };
+static const uint32_t s_touched_by_Supervisor_Install_Rivet_Go_out[] = { 43U, 44U };
+static const uint32_t s_touched_by_Supervisor_Install_Rivet_Advance_Command[] = { 0U, 1U, 5U, 6U, 41U, 45U, 47U };
+static const uint32_t s_touched_by_Supervisor_Install_Rivet_Advance_Both[] = { 42U, 46U, 48U };
+static const uint32_t s_touched_by_Supervisor_Install_Rivet_Advance_Reply_1[] = { 2U, 45U, 46U };
+static const uint32_t s_touched_by_Supervisor_Install_Rivet_Advance_Reply_2[] = { 7U, 47U, 48U };
+static const uint32_t s_touched_by_Supervisor_Install_Rivet_Fasten_Press[] = { 6U, 42U, 49U };
+static const uint32_t s_touched_by_Supervisor_Install_Rivet_Fasten_Drill[] = { 1U, 7U, 49U, 50U };
+static const uint32_t s_touched_by_Supervisor_Install_Rivet_Fasten_Insert[] = { 1U, 2U, 50U, 51U };
+static const uint32_t s_touched_by_Supervisor_Install_Rivet_Fasten_Release[] = { 2U, 6U, 51U, 52U };
+static const uint32_t s_touched_by_Supervisor_Install_Rivet_Fasten_Finish[] = { 7U, 43U, 52U };
+static const uint32_t s_touched_by_Supervisor_Install_Rivet_Retract_Command[] = { 0U, 1U, 5U, 6U, 44U, 53U, 55U };
+static const uint32_t s_touched_by_Supervisor_Install_Rivet_Retract_Both[] = { 34U, 54U, 56U };
+static const uint32_t s_touched_by_Supervisor_Install_Rivet_Retract_Reply_1[] = { 2U, 53U, 54U };
+static const uint32_t s_touched_by_Supervisor_Install_Rivet_Retract_Reply_2[] = { 7U, 55U, 56U };
+static const uint32_t s_touched_by_Supervisor_Install_Return_Command[] = { 0U, 1U, 5U, 6U, 35U, 57U, 59U };
+static const uint32_t s_touched_by_Supervisor_Install_Return_Both[] = { 13U, 58U, 60U };
+static const uint32_t s_touched_by_Supervisor_Install_Return_Reply_1[] = { 2U, 57U, 58U };
+static const uint32_t s_touched_by_Supervisor_Install_Return_Reply_2[] = { 7U, 59U, 60U };
+static const uint32_t s_touched_by_Supervisor_Home_Send_home[] = { 1U, 6U, 13U, 61U, 63U };
+static const uint32_t s_touched_by_Supervisor_Home_Both[] = { 14U, 62U, 64U };
+static const uint32_t s_touched_by_Supervisor_Home_Reply_1[] = { 2U, 61U, 62U };
+static const uint32_t s_touched_by_Supervisor_Home_Reply_2[] = { 7U, 63U, 64U };
+static const uint32_t s_touched_by_Robot1_Accept[] = { 1U, 65U, 66U };
+static const uint32_t s_touched_by_Robot1_Report[] = { 2U, 65U, 67U };
+static const uint32_t s_touched_by_Robot1_MoveJoint[] = { 0U, 66U, 67U };
+static const uint32_t s_touched_by_Robot1_MoveLinear[] = { 0U, 66U, 67U };
+static const uint32_t s_touched_by_Robot1_MoveHome[] = { 66U, 67U };
+static const uint32_t s_touched_by_Robot1_Measure[] = { 3U, 4U, 66U, 67U };
+static const uint32_t s_touched_by_Robot1_Drill[] = { 66U, 67U };
+static const uint32_t s_touched_by_Robot1_Insert[] = { 66U, 67U };
+static const uint32_t s_touched_by_Robot1_Press[] = { 66U, 67U };
+static const uint32_t s_touched_by_Robot1_Release[] = { 66U, 67U };
+static const uint32_t s_touched_by_Robot2_Accept[] = { 6U, 68U, 69U };
+static const uint32_t s_touched_by_Robot2_Report[] = { 7U, 68U, 70U };
+static const uint32_t s_touched_by_Robot2_MoveJoint[] = { 5U, 69U, 70U };
+static const uint32_t s_touched_by_Robot2_MoveLinear[] = { 5U, 69U, 70U };
+static const uint32_t s_touched_by_Robot2_MoveHome[] = { 69U, 70U };
+static const uint32_t s_touched_by_Robot2_Measure[] = { 69U, 70U, 71U, 72U };
+static const uint32_t s_touched_by_Robot2_Drill[] = { 69U, 70U };
+static const uint32_t s_touched_by_Robot2_Insert[] = { 69U, 70U };
+static const uint32_t s_touched_by_Robot2_Press[] = { 69U, 70U };
+static const uint32_t s_touched_by_Robot2_Release[] = { 69U, 70U };
+
 static const pn_transition_t s_transitions[] = {
     {
         .name = "Cell.Supervisor.Load.Load", .id = "ID1412310271", .owner = 0, .priority = 1000,
@@ -8238,6 +8455,8 @@ static const pn_transition_t s_transitions[] = {
         .binding_size = sizeof(Supervisor_Load_Load_binding_t),
         .affected_count = sizeof s_affected_by_Supervisor_Load_Load / sizeof s_affected_by_Supervisor_Load_Load[0],
         .affected = s_affected_by_Supervisor_Load_Load,
+        .touched_count = sizeof s_touched_by_Supervisor_Load_Load / sizeof s_touched_by_Supervisor_Load_Load[0],
+        .touched = s_touched_by_Supervisor_Load_Load,
     },
     {
         .name = "Cell.Supervisor.Approach.Send", .id = "ID1412310300", .owner = 0, .priority = 1000,
@@ -8246,6 +8465,8 @@ static const pn_transition_t s_transitions[] = {
         .binding_size = sizeof(Supervisor_Approach_Send_binding_t),
         .affected_count = sizeof s_affected_by_Supervisor_Approach_Send / sizeof s_affected_by_Supervisor_Approach_Send[0],
         .affected = s_affected_by_Supervisor_Approach_Send,
+        .touched_count = sizeof s_touched_by_Supervisor_Approach_Send / sizeof s_touched_by_Supervisor_Approach_Send[0],
+        .touched = s_touched_by_Supervisor_Approach_Send,
     },
     {
         .name = "Cell.Supervisor.Approach.Arrived", .id = "ID1412310311", .owner = 0, .priority = 1000,
@@ -8254,6 +8475,8 @@ static const pn_transition_t s_transitions[] = {
         .binding_size = sizeof(Supervisor_Approach_Arrived_binding_t),
         .affected_count = sizeof s_affected_by_Supervisor_Approach_Arrived / sizeof s_affected_by_Supervisor_Approach_Arrived[0],
         .affected = s_affected_by_Supervisor_Approach_Arrived,
+        .touched_count = sizeof s_touched_by_Supervisor_Approach_Arrived / sizeof s_touched_by_Supervisor_Approach_Arrived[0],
+        .touched = s_touched_by_Supervisor_Approach_Arrived,
     },
     {
         .name = "Cell.Supervisor.Approach.Move both.Command", .id = "ID1412310941", .owner = 0, .priority = 1000,
@@ -8262,6 +8485,8 @@ static const pn_transition_t s_transitions[] = {
         .binding_size = sizeof(Supervisor_Approach_Move_both_Command_binding_t),
         .affected_count = sizeof s_affected_by_Supervisor_Approach_Move_both_Command / sizeof s_affected_by_Supervisor_Approach_Move_both_Command[0],
         .affected = s_affected_by_Supervisor_Approach_Move_both_Command,
+        .touched_count = sizeof s_touched_by_Supervisor_Approach_Move_both_Command / sizeof s_touched_by_Supervisor_Approach_Move_both_Command[0],
+        .touched = s_touched_by_Supervisor_Approach_Move_both_Command,
     },
     {
         .name = "Cell.Supervisor.Approach.Move both.Both", .id = "ID1412310948", .owner = 0, .priority = 1000,
@@ -8270,6 +8495,8 @@ static const pn_transition_t s_transitions[] = {
         .binding_size = sizeof(Supervisor_Approach_Move_both_Both_binding_t),
         .affected_count = sizeof s_affected_by_Supervisor_Approach_Move_both_Both / sizeof s_affected_by_Supervisor_Approach_Move_both_Both[0],
         .affected = s_affected_by_Supervisor_Approach_Move_both_Both,
+        .touched_count = sizeof s_touched_by_Supervisor_Approach_Move_both_Both / sizeof s_touched_by_Supervisor_Approach_Move_both_Both[0],
+        .touched = s_touched_by_Supervisor_Approach_Move_both_Both,
     },
     {
         .name = "Cell.Supervisor.Approach.Move both.Reply 1", .id = "ID1412310962", .owner = 0, .priority = 1000,
@@ -8278,6 +8505,8 @@ static const pn_transition_t s_transitions[] = {
         .binding_size = sizeof(Supervisor_Approach_Move_both_Reply_1_binding_t),
         .affected_count = sizeof s_affected_by_Supervisor_Approach_Move_both_Reply_1 / sizeof s_affected_by_Supervisor_Approach_Move_both_Reply_1[0],
         .affected = s_affected_by_Supervisor_Approach_Move_both_Reply_1,
+        .touched_count = sizeof s_touched_by_Supervisor_Approach_Move_both_Reply_1 / sizeof s_touched_by_Supervisor_Approach_Move_both_Reply_1[0],
+        .touched = s_touched_by_Supervisor_Approach_Move_both_Reply_1,
     },
     {
         .name = "Cell.Supervisor.Approach.Move both.Reply 2", .id = "ID1412310999", .owner = 0, .priority = 1000,
@@ -8286,6 +8515,8 @@ static const pn_transition_t s_transitions[] = {
         .binding_size = sizeof(Supervisor_Approach_Move_both_Reply_2_binding_t),
         .affected_count = sizeof s_affected_by_Supervisor_Approach_Move_both_Reply_2 / sizeof s_affected_by_Supervisor_Approach_Move_both_Reply_2[0],
         .affected = s_affected_by_Supervisor_Approach_Move_both_Reply_2,
+        .touched_count = sizeof s_touched_by_Supervisor_Approach_Move_both_Reply_2 / sizeof s_touched_by_Supervisor_Approach_Move_both_Reply_2[0],
+        .touched = s_touched_by_Supervisor_Approach_Move_both_Reply_2,
     },
     {
         .name = "Cell.Supervisor.Verify.Ask first", .id = "ID1412310377", .owner = 0, .priority = 1000,
@@ -8294,6 +8525,8 @@ static const pn_transition_t s_transitions[] = {
         .binding_size = sizeof(Supervisor_Verify_Ask_first_binding_t),
         .affected_count = sizeof s_affected_by_Supervisor_Verify_Ask_first / sizeof s_affected_by_Supervisor_Verify_Ask_first[0],
         .affected = s_affected_by_Supervisor_Verify_Ask_first,
+        .touched_count = sizeof s_touched_by_Supervisor_Verify_Ask_first / sizeof s_touched_by_Supervisor_Verify_Ask_first[0],
+        .touched = s_touched_by_Supervisor_Verify_Ask_first,
     },
     {
         .name = "Cell.Supervisor.Verify.Ask last", .id = "ID1412310385", .owner = 0, .priority = 1000,
@@ -8302,6 +8535,8 @@ static const pn_transition_t s_transitions[] = {
         .binding_size = sizeof(Supervisor_Verify_Ask_last_binding_t),
         .affected_count = sizeof s_affected_by_Supervisor_Verify_Ask_last / sizeof s_affected_by_Supervisor_Verify_Ask_last[0],
         .affected = s_affected_by_Supervisor_Verify_Ask_last,
+        .touched_count = sizeof s_touched_by_Supervisor_Verify_Ask_last / sizeof s_touched_by_Supervisor_Verify_Ask_last[0],
+        .touched = s_touched_by_Supervisor_Verify_Ask_last,
     },
     {
         .name = "Cell.Supervisor.Verify.Measured", .id = "ID1412310393", .owner = 0, .priority = 1000,
@@ -8310,6 +8545,8 @@ static const pn_transition_t s_transitions[] = {
         .binding_size = sizeof(Supervisor_Verify_Measured_binding_t),
         .affected_count = sizeof s_affected_by_Supervisor_Verify_Measured / sizeof s_affected_by_Supervisor_Verify_Measured[0],
         .affected = s_affected_by_Supervisor_Verify_Measured,
+        .touched_count = sizeof s_touched_by_Supervisor_Verify_Measured / sizeof s_touched_by_Supervisor_Verify_Measured[0],
+        .touched = s_touched_by_Supervisor_Verify_Measured,
     },
     {
         .name = "Cell.Supervisor.Correct.Compare", .id = "ID1412310453", .owner = 0, .priority = 1000,
@@ -8318,6 +8555,8 @@ static const pn_transition_t s_transitions[] = {
         .binding_size = sizeof(Supervisor_Correct_Compare_binding_t),
         .affected_count = sizeof s_affected_by_Supervisor_Correct_Compare / sizeof s_affected_by_Supervisor_Correct_Compare[0],
         .affected = s_affected_by_Supervisor_Correct_Compare,
+        .touched_count = sizeof s_touched_by_Supervisor_Correct_Compare / sizeof s_touched_by_Supervisor_Correct_Compare[0],
+        .touched = s_touched_by_Supervisor_Correct_Compare,
     },
     {
         .name = "Cell.Supervisor.Correct.Move over", .id = "ID1412310461", .owner = 0, .priority = 1000,
@@ -8326,6 +8565,8 @@ static const pn_transition_t s_transitions[] = {
         .binding_size = sizeof(Supervisor_Correct_Move_over_binding_t),
         .affected_count = sizeof s_affected_by_Supervisor_Correct_Move_over / sizeof s_affected_by_Supervisor_Correct_Move_over[0],
         .affected = s_affected_by_Supervisor_Correct_Move_over,
+        .touched_count = sizeof s_touched_by_Supervisor_Correct_Move_over / sizeof s_touched_by_Supervisor_Correct_Move_over[0],
+        .touched = s_touched_by_Supervisor_Correct_Move_over,
     },
     {
         .name = "Cell.Supervisor.Correct.Moved", .id = "ID1412310478", .owner = 0, .priority = 1000,
@@ -8334,6 +8575,8 @@ static const pn_transition_t s_transitions[] = {
         .binding_size = sizeof(Supervisor_Correct_Moved_binding_t),
         .affected_count = sizeof s_affected_by_Supervisor_Correct_Moved / sizeof s_affected_by_Supervisor_Correct_Moved[0],
         .affected = s_affected_by_Supervisor_Correct_Moved,
+        .touched_count = sizeof s_touched_by_Supervisor_Correct_Moved / sizeof s_touched_by_Supervisor_Correct_Moved[0],
+        .touched = s_touched_by_Supervisor_Correct_Moved,
     },
     {
         .name = "Cell.Supervisor.Correct.As planned", .id = "ID1412310526", .owner = 0, .priority = 1000,
@@ -8342,6 +8585,8 @@ static const pn_transition_t s_transitions[] = {
         .binding_size = sizeof(Supervisor_Correct_As_planned_binding_t),
         .affected_count = sizeof s_affected_by_Supervisor_Correct_As_planned / sizeof s_affected_by_Supervisor_Correct_As_planned[0],
         .affected = s_affected_by_Supervisor_Correct_As_planned,
+        .touched_count = sizeof s_touched_by_Supervisor_Correct_As_planned / sizeof s_touched_by_Supervisor_Correct_As_planned[0],
+        .touched = s_touched_by_Supervisor_Correct_As_planned,
     },
     {
         .name = "Cell.Supervisor.Correct.Move both.Command", .id = "ID1412310941", .owner = 0, .priority = 1000,
@@ -8350,6 +8595,8 @@ static const pn_transition_t s_transitions[] = {
         .binding_size = sizeof(Supervisor_Correct_Move_both_Command_binding_t),
         .affected_count = sizeof s_affected_by_Supervisor_Correct_Move_both_Command / sizeof s_affected_by_Supervisor_Correct_Move_both_Command[0],
         .affected = s_affected_by_Supervisor_Correct_Move_both_Command,
+        .touched_count = sizeof s_touched_by_Supervisor_Correct_Move_both_Command / sizeof s_touched_by_Supervisor_Correct_Move_both_Command[0],
+        .touched = s_touched_by_Supervisor_Correct_Move_both_Command,
     },
     {
         .name = "Cell.Supervisor.Correct.Move both.Both", .id = "ID1412310948", .owner = 0, .priority = 1000,
@@ -8358,6 +8605,8 @@ static const pn_transition_t s_transitions[] = {
         .binding_size = sizeof(Supervisor_Correct_Move_both_Both_binding_t),
         .affected_count = sizeof s_affected_by_Supervisor_Correct_Move_both_Both / sizeof s_affected_by_Supervisor_Correct_Move_both_Both[0],
         .affected = s_affected_by_Supervisor_Correct_Move_both_Both,
+        .touched_count = sizeof s_touched_by_Supervisor_Correct_Move_both_Both / sizeof s_touched_by_Supervisor_Correct_Move_both_Both[0],
+        .touched = s_touched_by_Supervisor_Correct_Move_both_Both,
     },
     {
         .name = "Cell.Supervisor.Correct.Move both.Reply 1", .id = "ID1412310962", .owner = 0, .priority = 1000,
@@ -8366,6 +8615,8 @@ static const pn_transition_t s_transitions[] = {
         .binding_size = sizeof(Supervisor_Correct_Move_both_Reply_1_binding_t),
         .affected_count = sizeof s_affected_by_Supervisor_Correct_Move_both_Reply_1 / sizeof s_affected_by_Supervisor_Correct_Move_both_Reply_1[0],
         .affected = s_affected_by_Supervisor_Correct_Move_both_Reply_1,
+        .touched_count = sizeof s_touched_by_Supervisor_Correct_Move_both_Reply_1 / sizeof s_touched_by_Supervisor_Correct_Move_both_Reply_1[0],
+        .touched = s_touched_by_Supervisor_Correct_Move_both_Reply_1,
     },
     {
         .name = "Cell.Supervisor.Correct.Move both.Reply 2", .id = "ID1412310999", .owner = 0, .priority = 1000,
@@ -8374,6 +8625,8 @@ static const pn_transition_t s_transitions[] = {
         .binding_size = sizeof(Supervisor_Correct_Move_both_Reply_2_binding_t),
         .affected_count = sizeof s_affected_by_Supervisor_Correct_Move_both_Reply_2 / sizeof s_affected_by_Supervisor_Correct_Move_both_Reply_2[0],
         .affected = s_affected_by_Supervisor_Correct_Move_both_Reply_2,
+        .touched_count = sizeof s_touched_by_Supervisor_Correct_Move_both_Reply_2 / sizeof s_touched_by_Supervisor_Correct_Move_both_Reply_2[0],
+        .touched = s_touched_by_Supervisor_Correct_Move_both_Reply_2,
     },
     {
         .name = "Cell.Supervisor.Install.Go back", .id = "ID1412310594", .owner = 0, .priority = 1000,
@@ -8382,6 +8635,8 @@ static const pn_transition_t s_transitions[] = {
         .binding_size = sizeof(Supervisor_Install_Go_back_binding_t),
         .affected_count = sizeof s_affected_by_Supervisor_Install_Go_back / sizeof s_affected_by_Supervisor_Install_Go_back[0],
         .affected = s_affected_by_Supervisor_Install_Go_back,
+        .touched_count = sizeof s_touched_by_Supervisor_Install_Go_back / sizeof s_touched_by_Supervisor_Install_Go_back[0],
+        .touched = s_touched_by_Supervisor_Install_Go_back,
     },
     {
         .name = "Cell.Supervisor.Install.Next rivet", .id = "ID1412310624", .owner = 0, .priority = 1000,
@@ -8390,6 +8645,8 @@ static const pn_transition_t s_transitions[] = {
         .binding_size = sizeof(Supervisor_Install_Next_rivet_binding_t),
         .affected_count = sizeof s_affected_by_Supervisor_Install_Next_rivet / sizeof s_affected_by_Supervisor_Install_Next_rivet[0],
         .affected = s_affected_by_Supervisor_Install_Next_rivet,
+        .touched_count = sizeof s_touched_by_Supervisor_Install_Next_rivet / sizeof s_touched_by_Supervisor_Install_Next_rivet[0],
+        .touched = s_touched_by_Supervisor_Install_Next_rivet,
     },
     {
         .name = "Cell.Supervisor.Install.Start", .id = "ID1412310632", .owner = 0, .priority = 1000,
@@ -8398,6 +8655,8 @@ static const pn_transition_t s_transitions[] = {
         .binding_size = sizeof(Supervisor_Install_Start_binding_t),
         .affected_count = sizeof s_affected_by_Supervisor_Install_Start / sizeof s_affected_by_Supervisor_Install_Start[0],
         .affected = s_affected_by_Supervisor_Install_Start,
+        .touched_count = sizeof s_touched_by_Supervisor_Install_Start / sizeof s_touched_by_Supervisor_Install_Start[0],
+        .touched = s_touched_by_Supervisor_Install_Start,
     },
     {
         .name = "Cell.Supervisor.Install.Shift.Command", .id = "ID1412310941", .owner = 0, .priority = 1000,
@@ -8406,6 +8665,8 @@ static const pn_transition_t s_transitions[] = {
         .binding_size = sizeof(Supervisor_Install_Shift_Command_binding_t),
         .affected_count = sizeof s_affected_by_Supervisor_Install_Shift_Command / sizeof s_affected_by_Supervisor_Install_Shift_Command[0],
         .affected = s_affected_by_Supervisor_Install_Shift_Command,
+        .touched_count = sizeof s_touched_by_Supervisor_Install_Shift_Command / sizeof s_touched_by_Supervisor_Install_Shift_Command[0],
+        .touched = s_touched_by_Supervisor_Install_Shift_Command,
     },
     {
         .name = "Cell.Supervisor.Install.Shift.Both", .id = "ID1412310948", .owner = 0, .priority = 1000,
@@ -8414,6 +8675,8 @@ static const pn_transition_t s_transitions[] = {
         .binding_size = sizeof(Supervisor_Install_Shift_Both_binding_t),
         .affected_count = sizeof s_affected_by_Supervisor_Install_Shift_Both / sizeof s_affected_by_Supervisor_Install_Shift_Both[0],
         .affected = s_affected_by_Supervisor_Install_Shift_Both,
+        .touched_count = sizeof s_touched_by_Supervisor_Install_Shift_Both / sizeof s_touched_by_Supervisor_Install_Shift_Both[0],
+        .touched = s_touched_by_Supervisor_Install_Shift_Both,
     },
     {
         .name = "Cell.Supervisor.Install.Shift.Reply 1", .id = "ID1412310962", .owner = 0, .priority = 1000,
@@ -8422,6 +8685,8 @@ static const pn_transition_t s_transitions[] = {
         .binding_size = sizeof(Supervisor_Install_Shift_Reply_1_binding_t),
         .affected_count = sizeof s_affected_by_Supervisor_Install_Shift_Reply_1 / sizeof s_affected_by_Supervisor_Install_Shift_Reply_1[0],
         .affected = s_affected_by_Supervisor_Install_Shift_Reply_1,
+        .touched_count = sizeof s_touched_by_Supervisor_Install_Shift_Reply_1 / sizeof s_touched_by_Supervisor_Install_Shift_Reply_1[0],
+        .touched = s_touched_by_Supervisor_Install_Shift_Reply_1,
     },
     {
         .name = "Cell.Supervisor.Install.Shift.Reply 2", .id = "ID1412310999", .owner = 0, .priority = 1000,
@@ -8430,6 +8695,8 @@ static const pn_transition_t s_transitions[] = {
         .binding_size = sizeof(Supervisor_Install_Shift_Reply_2_binding_t),
         .affected_count = sizeof s_affected_by_Supervisor_Install_Shift_Reply_2 / sizeof s_affected_by_Supervisor_Install_Shift_Reply_2[0],
         .affected = s_affected_by_Supervisor_Install_Shift_Reply_2,
+        .touched_count = sizeof s_touched_by_Supervisor_Install_Shift_Reply_2 / sizeof s_touched_by_Supervisor_Install_Shift_Reply_2[0],
+        .touched = s_touched_by_Supervisor_Install_Shift_Reply_2,
     },
     {
         .name = "Cell.Supervisor.Install.Rivet.Go in", .id = "ID1412310716", .owner = 0, .priority = 1000,
@@ -8438,6 +8705,8 @@ static const pn_transition_t s_transitions[] = {
         .binding_size = sizeof(Supervisor_Install_Rivet_Go_in_binding_t),
         .affected_count = sizeof s_affected_by_Supervisor_Install_Rivet_Go_in / sizeof s_affected_by_Supervisor_Install_Rivet_Go_in[0],
         .affected = s_affected_by_Supervisor_Install_Rivet_Go_in,
+        .touched_count = sizeof s_touched_by_Supervisor_Install_Rivet_Go_in / sizeof s_touched_by_Supervisor_Install_Rivet_Go_in[0],
+        .touched = s_touched_by_Supervisor_Install_Rivet_Go_in,
     },
     {
         .name = "Cell.Supervisor.Install.Rivet.Go out", .id = "ID1412310742", .owner = 0, .priority = 1000,
@@ -8446,6 +8715,8 @@ static const pn_transition_t s_transitions[] = {
         .binding_size = sizeof(Supervisor_Install_Rivet_Go_out_binding_t),
         .affected_count = sizeof s_affected_by_Supervisor_Install_Rivet_Go_out / sizeof s_affected_by_Supervisor_Install_Rivet_Go_out[0],
         .affected = s_affected_by_Supervisor_Install_Rivet_Go_out,
+        .touched_count = sizeof s_touched_by_Supervisor_Install_Rivet_Go_out / sizeof s_touched_by_Supervisor_Install_Rivet_Go_out[0],
+        .touched = s_touched_by_Supervisor_Install_Rivet_Go_out,
     },
     {
         .name = "Cell.Supervisor.Install.Rivet.Advance.Command", .id = "ID1412310941", .owner = 0, .priority = 1000,
@@ -8454,6 +8725,8 @@ static const pn_transition_t s_transitions[] = {
         .binding_size = sizeof(Supervisor_Install_Rivet_Advance_Command_binding_t),
         .affected_count = sizeof s_affected_by_Supervisor_Install_Rivet_Advance_Command / sizeof s_affected_by_Supervisor_Install_Rivet_Advance_Command[0],
         .affected = s_affected_by_Supervisor_Install_Rivet_Advance_Command,
+        .touched_count = sizeof s_touched_by_Supervisor_Install_Rivet_Advance_Command / sizeof s_touched_by_Supervisor_Install_Rivet_Advance_Command[0],
+        .touched = s_touched_by_Supervisor_Install_Rivet_Advance_Command,
     },
     {
         .name = "Cell.Supervisor.Install.Rivet.Advance.Both", .id = "ID1412310948", .owner = 0, .priority = 1000,
@@ -8462,6 +8735,8 @@ static const pn_transition_t s_transitions[] = {
         .binding_size = sizeof(Supervisor_Install_Rivet_Advance_Both_binding_t),
         .affected_count = sizeof s_affected_by_Supervisor_Install_Rivet_Advance_Both / sizeof s_affected_by_Supervisor_Install_Rivet_Advance_Both[0],
         .affected = s_affected_by_Supervisor_Install_Rivet_Advance_Both,
+        .touched_count = sizeof s_touched_by_Supervisor_Install_Rivet_Advance_Both / sizeof s_touched_by_Supervisor_Install_Rivet_Advance_Both[0],
+        .touched = s_touched_by_Supervisor_Install_Rivet_Advance_Both,
     },
     {
         .name = "Cell.Supervisor.Install.Rivet.Advance.Reply 1", .id = "ID1412310962", .owner = 0, .priority = 1000,
@@ -8470,6 +8745,8 @@ static const pn_transition_t s_transitions[] = {
         .binding_size = sizeof(Supervisor_Install_Rivet_Advance_Reply_1_binding_t),
         .affected_count = sizeof s_affected_by_Supervisor_Install_Rivet_Advance_Reply_1 / sizeof s_affected_by_Supervisor_Install_Rivet_Advance_Reply_1[0],
         .affected = s_affected_by_Supervisor_Install_Rivet_Advance_Reply_1,
+        .touched_count = sizeof s_touched_by_Supervisor_Install_Rivet_Advance_Reply_1 / sizeof s_touched_by_Supervisor_Install_Rivet_Advance_Reply_1[0],
+        .touched = s_touched_by_Supervisor_Install_Rivet_Advance_Reply_1,
     },
     {
         .name = "Cell.Supervisor.Install.Rivet.Advance.Reply 2", .id = "ID1412310999", .owner = 0, .priority = 1000,
@@ -8478,6 +8755,8 @@ static const pn_transition_t s_transitions[] = {
         .binding_size = sizeof(Supervisor_Install_Rivet_Advance_Reply_2_binding_t),
         .affected_count = sizeof s_affected_by_Supervisor_Install_Rivet_Advance_Reply_2 / sizeof s_affected_by_Supervisor_Install_Rivet_Advance_Reply_2[0],
         .affected = s_affected_by_Supervisor_Install_Rivet_Advance_Reply_2,
+        .touched_count = sizeof s_touched_by_Supervisor_Install_Rivet_Advance_Reply_2 / sizeof s_touched_by_Supervisor_Install_Rivet_Advance_Reply_2[0],
+        .touched = s_touched_by_Supervisor_Install_Rivet_Advance_Reply_2,
     },
     {
         .name = "Cell.Supervisor.Install.Rivet.Fasten.Press", .id = "ID1412310842", .owner = 0, .priority = 1000,
@@ -8486,6 +8765,8 @@ static const pn_transition_t s_transitions[] = {
         .binding_size = sizeof(Supervisor_Install_Rivet_Fasten_Press_binding_t),
         .affected_count = sizeof s_affected_by_Supervisor_Install_Rivet_Fasten_Press / sizeof s_affected_by_Supervisor_Install_Rivet_Fasten_Press[0],
         .affected = s_affected_by_Supervisor_Install_Rivet_Fasten_Press,
+        .touched_count = sizeof s_touched_by_Supervisor_Install_Rivet_Fasten_Press / sizeof s_touched_by_Supervisor_Install_Rivet_Fasten_Press[0],
+        .touched = s_touched_by_Supervisor_Install_Rivet_Fasten_Press,
     },
     {
         .name = "Cell.Supervisor.Install.Rivet.Fasten.Drill", .id = "ID1412310850", .owner = 0, .priority = 1000,
@@ -8494,6 +8775,8 @@ static const pn_transition_t s_transitions[] = {
         .binding_size = sizeof(Supervisor_Install_Rivet_Fasten_Drill_binding_t),
         .affected_count = sizeof s_affected_by_Supervisor_Install_Rivet_Fasten_Drill / sizeof s_affected_by_Supervisor_Install_Rivet_Fasten_Drill[0],
         .affected = s_affected_by_Supervisor_Install_Rivet_Fasten_Drill,
+        .touched_count = sizeof s_touched_by_Supervisor_Install_Rivet_Fasten_Drill / sizeof s_touched_by_Supervisor_Install_Rivet_Fasten_Drill[0],
+        .touched = s_touched_by_Supervisor_Install_Rivet_Fasten_Drill,
     },
     {
         .name = "Cell.Supervisor.Install.Rivet.Fasten.Insert", .id = "ID1412310858", .owner = 0, .priority = 1000,
@@ -8502,6 +8785,8 @@ static const pn_transition_t s_transitions[] = {
         .binding_size = sizeof(Supervisor_Install_Rivet_Fasten_Insert_binding_t),
         .affected_count = sizeof s_affected_by_Supervisor_Install_Rivet_Fasten_Insert / sizeof s_affected_by_Supervisor_Install_Rivet_Fasten_Insert[0],
         .affected = s_affected_by_Supervisor_Install_Rivet_Fasten_Insert,
+        .touched_count = sizeof s_touched_by_Supervisor_Install_Rivet_Fasten_Insert / sizeof s_touched_by_Supervisor_Install_Rivet_Fasten_Insert[0],
+        .touched = s_touched_by_Supervisor_Install_Rivet_Fasten_Insert,
     },
     {
         .name = "Cell.Supervisor.Install.Rivet.Fasten.Release", .id = "ID1412310866", .owner = 0, .priority = 1000,
@@ -8510,6 +8795,8 @@ static const pn_transition_t s_transitions[] = {
         .binding_size = sizeof(Supervisor_Install_Rivet_Fasten_Release_binding_t),
         .affected_count = sizeof s_affected_by_Supervisor_Install_Rivet_Fasten_Release / sizeof s_affected_by_Supervisor_Install_Rivet_Fasten_Release[0],
         .affected = s_affected_by_Supervisor_Install_Rivet_Fasten_Release,
+        .touched_count = sizeof s_touched_by_Supervisor_Install_Rivet_Fasten_Release / sizeof s_touched_by_Supervisor_Install_Rivet_Fasten_Release[0],
+        .touched = s_touched_by_Supervisor_Install_Rivet_Fasten_Release,
     },
     {
         .name = "Cell.Supervisor.Install.Rivet.Fasten.Finish", .id = "ID1412310874", .owner = 0, .priority = 1000,
@@ -8518,6 +8805,8 @@ static const pn_transition_t s_transitions[] = {
         .binding_size = sizeof(Supervisor_Install_Rivet_Fasten_Finish_binding_t),
         .affected_count = sizeof s_affected_by_Supervisor_Install_Rivet_Fasten_Finish / sizeof s_affected_by_Supervisor_Install_Rivet_Fasten_Finish[0],
         .affected = s_affected_by_Supervisor_Install_Rivet_Fasten_Finish,
+        .touched_count = sizeof s_touched_by_Supervisor_Install_Rivet_Fasten_Finish / sizeof s_touched_by_Supervisor_Install_Rivet_Fasten_Finish[0],
+        .touched = s_touched_by_Supervisor_Install_Rivet_Fasten_Finish,
     },
     {
         .name = "Cell.Supervisor.Install.Rivet.Retract.Command", .id = "ID1412310941", .owner = 0, .priority = 1000,
@@ -8526,6 +8815,8 @@ static const pn_transition_t s_transitions[] = {
         .binding_size = sizeof(Supervisor_Install_Rivet_Retract_Command_binding_t),
         .affected_count = sizeof s_affected_by_Supervisor_Install_Rivet_Retract_Command / sizeof s_affected_by_Supervisor_Install_Rivet_Retract_Command[0],
         .affected = s_affected_by_Supervisor_Install_Rivet_Retract_Command,
+        .touched_count = sizeof s_touched_by_Supervisor_Install_Rivet_Retract_Command / sizeof s_touched_by_Supervisor_Install_Rivet_Retract_Command[0],
+        .touched = s_touched_by_Supervisor_Install_Rivet_Retract_Command,
     },
     {
         .name = "Cell.Supervisor.Install.Rivet.Retract.Both", .id = "ID1412310948", .owner = 0, .priority = 1000,
@@ -8534,6 +8825,8 @@ static const pn_transition_t s_transitions[] = {
         .binding_size = sizeof(Supervisor_Install_Rivet_Retract_Both_binding_t),
         .affected_count = sizeof s_affected_by_Supervisor_Install_Rivet_Retract_Both / sizeof s_affected_by_Supervisor_Install_Rivet_Retract_Both[0],
         .affected = s_affected_by_Supervisor_Install_Rivet_Retract_Both,
+        .touched_count = sizeof s_touched_by_Supervisor_Install_Rivet_Retract_Both / sizeof s_touched_by_Supervisor_Install_Rivet_Retract_Both[0],
+        .touched = s_touched_by_Supervisor_Install_Rivet_Retract_Both,
     },
     {
         .name = "Cell.Supervisor.Install.Rivet.Retract.Reply 1", .id = "ID1412310962", .owner = 0, .priority = 1000,
@@ -8542,6 +8835,8 @@ static const pn_transition_t s_transitions[] = {
         .binding_size = sizeof(Supervisor_Install_Rivet_Retract_Reply_1_binding_t),
         .affected_count = sizeof s_affected_by_Supervisor_Install_Rivet_Retract_Reply_1 / sizeof s_affected_by_Supervisor_Install_Rivet_Retract_Reply_1[0],
         .affected = s_affected_by_Supervisor_Install_Rivet_Retract_Reply_1,
+        .touched_count = sizeof s_touched_by_Supervisor_Install_Rivet_Retract_Reply_1 / sizeof s_touched_by_Supervisor_Install_Rivet_Retract_Reply_1[0],
+        .touched = s_touched_by_Supervisor_Install_Rivet_Retract_Reply_1,
     },
     {
         .name = "Cell.Supervisor.Install.Rivet.Retract.Reply 2", .id = "ID1412310999", .owner = 0, .priority = 1000,
@@ -8550,6 +8845,8 @@ static const pn_transition_t s_transitions[] = {
         .binding_size = sizeof(Supervisor_Install_Rivet_Retract_Reply_2_binding_t),
         .affected_count = sizeof s_affected_by_Supervisor_Install_Rivet_Retract_Reply_2 / sizeof s_affected_by_Supervisor_Install_Rivet_Retract_Reply_2[0],
         .affected = s_affected_by_Supervisor_Install_Rivet_Retract_Reply_2,
+        .touched_count = sizeof s_touched_by_Supervisor_Install_Rivet_Retract_Reply_2 / sizeof s_touched_by_Supervisor_Install_Rivet_Retract_Reply_2[0],
+        .touched = s_touched_by_Supervisor_Install_Rivet_Retract_Reply_2,
     },
     {
         .name = "Cell.Supervisor.Install.Return.Command", .id = "ID1412310941", .owner = 0, .priority = 1000,
@@ -8558,6 +8855,8 @@ static const pn_transition_t s_transitions[] = {
         .binding_size = sizeof(Supervisor_Install_Return_Command_binding_t),
         .affected_count = sizeof s_affected_by_Supervisor_Install_Return_Command / sizeof s_affected_by_Supervisor_Install_Return_Command[0],
         .affected = s_affected_by_Supervisor_Install_Return_Command,
+        .touched_count = sizeof s_touched_by_Supervisor_Install_Return_Command / sizeof s_touched_by_Supervisor_Install_Return_Command[0],
+        .touched = s_touched_by_Supervisor_Install_Return_Command,
     },
     {
         .name = "Cell.Supervisor.Install.Return.Both", .id = "ID1412310948", .owner = 0, .priority = 1000,
@@ -8566,6 +8865,8 @@ static const pn_transition_t s_transitions[] = {
         .binding_size = sizeof(Supervisor_Install_Return_Both_binding_t),
         .affected_count = sizeof s_affected_by_Supervisor_Install_Return_Both / sizeof s_affected_by_Supervisor_Install_Return_Both[0],
         .affected = s_affected_by_Supervisor_Install_Return_Both,
+        .touched_count = sizeof s_touched_by_Supervisor_Install_Return_Both / sizeof s_touched_by_Supervisor_Install_Return_Both[0],
+        .touched = s_touched_by_Supervisor_Install_Return_Both,
     },
     {
         .name = "Cell.Supervisor.Install.Return.Reply 1", .id = "ID1412310962", .owner = 0, .priority = 1000,
@@ -8574,6 +8875,8 @@ static const pn_transition_t s_transitions[] = {
         .binding_size = sizeof(Supervisor_Install_Return_Reply_1_binding_t),
         .affected_count = sizeof s_affected_by_Supervisor_Install_Return_Reply_1 / sizeof s_affected_by_Supervisor_Install_Return_Reply_1[0],
         .affected = s_affected_by_Supervisor_Install_Return_Reply_1,
+        .touched_count = sizeof s_touched_by_Supervisor_Install_Return_Reply_1 / sizeof s_touched_by_Supervisor_Install_Return_Reply_1[0],
+        .touched = s_touched_by_Supervisor_Install_Return_Reply_1,
     },
     {
         .name = "Cell.Supervisor.Install.Return.Reply 2", .id = "ID1412310999", .owner = 0, .priority = 1000,
@@ -8582,6 +8885,8 @@ static const pn_transition_t s_transitions[] = {
         .binding_size = sizeof(Supervisor_Install_Return_Reply_2_binding_t),
         .affected_count = sizeof s_affected_by_Supervisor_Install_Return_Reply_2 / sizeof s_affected_by_Supervisor_Install_Return_Reply_2[0],
         .affected = s_affected_by_Supervisor_Install_Return_Reply_2,
+        .touched_count = sizeof s_touched_by_Supervisor_Install_Return_Reply_2 / sizeof s_touched_by_Supervisor_Install_Return_Reply_2[0],
+        .touched = s_touched_by_Supervisor_Install_Return_Reply_2,
     },
     {
         .name = "Cell.Supervisor.Home.Send home", .id = "ID1412311039", .owner = 0, .priority = 1000,
@@ -8590,6 +8895,8 @@ static const pn_transition_t s_transitions[] = {
         .binding_size = sizeof(Supervisor_Home_Send_home_binding_t),
         .affected_count = sizeof s_affected_by_Supervisor_Home_Send_home / sizeof s_affected_by_Supervisor_Home_Send_home[0],
         .affected = s_affected_by_Supervisor_Home_Send_home,
+        .touched_count = sizeof s_touched_by_Supervisor_Home_Send_home / sizeof s_touched_by_Supervisor_Home_Send_home[0],
+        .touched = s_touched_by_Supervisor_Home_Send_home,
     },
     {
         .name = "Cell.Supervisor.Home.Both", .id = "ID1412311046", .owner = 0, .priority = 1000,
@@ -8598,6 +8905,8 @@ static const pn_transition_t s_transitions[] = {
         .binding_size = sizeof(Supervisor_Home_Both_binding_t),
         .affected_count = sizeof s_affected_by_Supervisor_Home_Both / sizeof s_affected_by_Supervisor_Home_Both[0],
         .affected = s_affected_by_Supervisor_Home_Both,
+        .touched_count = sizeof s_touched_by_Supervisor_Home_Both / sizeof s_touched_by_Supervisor_Home_Both[0],
+        .touched = s_touched_by_Supervisor_Home_Both,
     },
     {
         .name = "Cell.Supervisor.Home.Reply 1", .id = "ID1412311060", .owner = 0, .priority = 1000,
@@ -8606,6 +8915,8 @@ static const pn_transition_t s_transitions[] = {
         .binding_size = sizeof(Supervisor_Home_Reply_1_binding_t),
         .affected_count = sizeof s_affected_by_Supervisor_Home_Reply_1 / sizeof s_affected_by_Supervisor_Home_Reply_1[0],
         .affected = s_affected_by_Supervisor_Home_Reply_1,
+        .touched_count = sizeof s_touched_by_Supervisor_Home_Reply_1 / sizeof s_touched_by_Supervisor_Home_Reply_1[0],
+        .touched = s_touched_by_Supervisor_Home_Reply_1,
     },
     {
         .name = "Cell.Supervisor.Home.Reply 2", .id = "ID1412311091", .owner = 0, .priority = 1000,
@@ -8614,6 +8925,8 @@ static const pn_transition_t s_transitions[] = {
         .binding_size = sizeof(Supervisor_Home_Reply_2_binding_t),
         .affected_count = sizeof s_affected_by_Supervisor_Home_Reply_2 / sizeof s_affected_by_Supervisor_Home_Reply_2[0],
         .affected = s_affected_by_Supervisor_Home_Reply_2,
+        .touched_count = sizeof s_touched_by_Supervisor_Home_Reply_2 / sizeof s_touched_by_Supervisor_Home_Reply_2[0],
+        .touched = s_touched_by_Supervisor_Home_Reply_2,
     },
     {
         .name = "Cell.Robot1.Accept", .id = "ID1412311125", .owner = 1, .priority = 1000,
@@ -8622,6 +8935,8 @@ static const pn_transition_t s_transitions[] = {
         .binding_size = sizeof(Robot1_Accept_binding_t),
         .affected_count = sizeof s_affected_by_Robot1_Accept / sizeof s_affected_by_Robot1_Accept[0],
         .affected = s_affected_by_Robot1_Accept,
+        .touched_count = sizeof s_touched_by_Robot1_Accept / sizeof s_touched_by_Robot1_Accept[0],
+        .touched = s_touched_by_Robot1_Accept,
     },
     {
         .name = "Cell.Robot1.Report", .id = "ID1412311145", .owner = 1, .priority = 1000,
@@ -8630,6 +8945,8 @@ static const pn_transition_t s_transitions[] = {
         .binding_size = sizeof(Robot1_Report_binding_t),
         .affected_count = sizeof s_affected_by_Robot1_Report / sizeof s_affected_by_Robot1_Report[0],
         .affected = s_affected_by_Robot1_Report,
+        .touched_count = sizeof s_touched_by_Robot1_Report / sizeof s_touched_by_Robot1_Report[0],
+        .touched = s_touched_by_Robot1_Report,
     },
     {
         .name = "Cell.Robot1.MoveJoint", .id = "ID1412311160", .owner = 1, .priority = 1000,
@@ -8638,6 +8955,8 @@ static const pn_transition_t s_transitions[] = {
         .binding_size = sizeof(Robot1_MoveJoint_binding_t),
         .affected_count = sizeof s_affected_by_Robot1_MoveJoint / sizeof s_affected_by_Robot1_MoveJoint[0],
         .affected = s_affected_by_Robot1_MoveJoint,
+        .touched_count = sizeof s_touched_by_Robot1_MoveJoint / sizeof s_touched_by_Robot1_MoveJoint[0],
+        .touched = s_touched_by_Robot1_MoveJoint,
     },
     {
         .name = "Cell.Robot1.MoveLinear", .id = "ID1412311169", .owner = 1, .priority = 1000,
@@ -8646,6 +8965,8 @@ static const pn_transition_t s_transitions[] = {
         .binding_size = sizeof(Robot1_MoveLinear_binding_t),
         .affected_count = sizeof s_affected_by_Robot1_MoveLinear / sizeof s_affected_by_Robot1_MoveLinear[0],
         .affected = s_affected_by_Robot1_MoveLinear,
+        .touched_count = sizeof s_touched_by_Robot1_MoveLinear / sizeof s_touched_by_Robot1_MoveLinear[0],
+        .touched = s_touched_by_Robot1_MoveLinear,
     },
     {
         .name = "Cell.Robot1.MoveHome", .id = "ID1412311178", .owner = 1, .priority = 1000,
@@ -8654,6 +8975,8 @@ static const pn_transition_t s_transitions[] = {
         .binding_size = sizeof(Robot1_MoveHome_binding_t),
         .affected_count = sizeof s_affected_by_Robot1_MoveHome / sizeof s_affected_by_Robot1_MoveHome[0],
         .affected = s_affected_by_Robot1_MoveHome,
+        .touched_count = sizeof s_touched_by_Robot1_MoveHome / sizeof s_touched_by_Robot1_MoveHome[0],
+        .touched = s_touched_by_Robot1_MoveHome,
     },
     {
         .name = "Cell.Robot1.Measure", .id = "ID1412311187", .owner = 1, .priority = 1000,
@@ -8662,6 +8985,8 @@ static const pn_transition_t s_transitions[] = {
         .binding_size = sizeof(Robot1_Measure_binding_t),
         .affected_count = sizeof s_affected_by_Robot1_Measure / sizeof s_affected_by_Robot1_Measure[0],
         .affected = s_affected_by_Robot1_Measure,
+        .touched_count = sizeof s_touched_by_Robot1_Measure / sizeof s_touched_by_Robot1_Measure[0],
+        .touched = s_touched_by_Robot1_Measure,
     },
     {
         .name = "Cell.Robot1.Drill", .id = "ID1412311196", .owner = 1, .priority = 1000,
@@ -8670,6 +8995,8 @@ static const pn_transition_t s_transitions[] = {
         .binding_size = sizeof(Robot1_Drill_binding_t),
         .affected_count = sizeof s_affected_by_Robot1_Drill / sizeof s_affected_by_Robot1_Drill[0],
         .affected = s_affected_by_Robot1_Drill,
+        .touched_count = sizeof s_touched_by_Robot1_Drill / sizeof s_touched_by_Robot1_Drill[0],
+        .touched = s_touched_by_Robot1_Drill,
     },
     {
         .name = "Cell.Robot1.Insert", .id = "ID1412311205", .owner = 1, .priority = 1000,
@@ -8678,6 +9005,8 @@ static const pn_transition_t s_transitions[] = {
         .binding_size = sizeof(Robot1_Insert_binding_t),
         .affected_count = sizeof s_affected_by_Robot1_Insert / sizeof s_affected_by_Robot1_Insert[0],
         .affected = s_affected_by_Robot1_Insert,
+        .touched_count = sizeof s_touched_by_Robot1_Insert / sizeof s_touched_by_Robot1_Insert[0],
+        .touched = s_touched_by_Robot1_Insert,
     },
     {
         .name = "Cell.Robot1.Press", .id = "ID1412311214", .owner = 1, .priority = 1000,
@@ -8686,6 +9015,8 @@ static const pn_transition_t s_transitions[] = {
         .binding_size = sizeof(Robot1_Press_binding_t),
         .affected_count = sizeof s_affected_by_Robot1_Press / sizeof s_affected_by_Robot1_Press[0],
         .affected = s_affected_by_Robot1_Press,
+        .touched_count = sizeof s_touched_by_Robot1_Press / sizeof s_touched_by_Robot1_Press[0],
+        .touched = s_touched_by_Robot1_Press,
     },
     {
         .name = "Cell.Robot1.Release", .id = "ID1412311223", .owner = 1, .priority = 1000,
@@ -8694,6 +9025,8 @@ static const pn_transition_t s_transitions[] = {
         .binding_size = sizeof(Robot1_Release_binding_t),
         .affected_count = sizeof s_affected_by_Robot1_Release / sizeof s_affected_by_Robot1_Release[0],
         .affected = s_affected_by_Robot1_Release,
+        .touched_count = sizeof s_touched_by_Robot1_Release / sizeof s_touched_by_Robot1_Release[0],
+        .touched = s_touched_by_Robot1_Release,
     },
     {
         .name = "Cell.Robot2.Accept", .id = "ID1412311125", .owner = 2, .priority = 1000,
@@ -8702,6 +9035,8 @@ static const pn_transition_t s_transitions[] = {
         .binding_size = sizeof(Robot2_Accept_binding_t),
         .affected_count = sizeof s_affected_by_Robot2_Accept / sizeof s_affected_by_Robot2_Accept[0],
         .affected = s_affected_by_Robot2_Accept,
+        .touched_count = sizeof s_touched_by_Robot2_Accept / sizeof s_touched_by_Robot2_Accept[0],
+        .touched = s_touched_by_Robot2_Accept,
     },
     {
         .name = "Cell.Robot2.Report", .id = "ID1412311145", .owner = 2, .priority = 1000,
@@ -8710,6 +9045,8 @@ static const pn_transition_t s_transitions[] = {
         .binding_size = sizeof(Robot2_Report_binding_t),
         .affected_count = sizeof s_affected_by_Robot2_Report / sizeof s_affected_by_Robot2_Report[0],
         .affected = s_affected_by_Robot2_Report,
+        .touched_count = sizeof s_touched_by_Robot2_Report / sizeof s_touched_by_Robot2_Report[0],
+        .touched = s_touched_by_Robot2_Report,
     },
     {
         .name = "Cell.Robot2.MoveJoint", .id = "ID1412311160", .owner = 2, .priority = 1000,
@@ -8718,6 +9055,8 @@ static const pn_transition_t s_transitions[] = {
         .binding_size = sizeof(Robot2_MoveJoint_binding_t),
         .affected_count = sizeof s_affected_by_Robot2_MoveJoint / sizeof s_affected_by_Robot2_MoveJoint[0],
         .affected = s_affected_by_Robot2_MoveJoint,
+        .touched_count = sizeof s_touched_by_Robot2_MoveJoint / sizeof s_touched_by_Robot2_MoveJoint[0],
+        .touched = s_touched_by_Robot2_MoveJoint,
     },
     {
         .name = "Cell.Robot2.MoveLinear", .id = "ID1412311169", .owner = 2, .priority = 1000,
@@ -8726,6 +9065,8 @@ static const pn_transition_t s_transitions[] = {
         .binding_size = sizeof(Robot2_MoveLinear_binding_t),
         .affected_count = sizeof s_affected_by_Robot2_MoveLinear / sizeof s_affected_by_Robot2_MoveLinear[0],
         .affected = s_affected_by_Robot2_MoveLinear,
+        .touched_count = sizeof s_touched_by_Robot2_MoveLinear / sizeof s_touched_by_Robot2_MoveLinear[0],
+        .touched = s_touched_by_Robot2_MoveLinear,
     },
     {
         .name = "Cell.Robot2.MoveHome", .id = "ID1412311178", .owner = 2, .priority = 1000,
@@ -8734,6 +9075,8 @@ static const pn_transition_t s_transitions[] = {
         .binding_size = sizeof(Robot2_MoveHome_binding_t),
         .affected_count = sizeof s_affected_by_Robot2_MoveHome / sizeof s_affected_by_Robot2_MoveHome[0],
         .affected = s_affected_by_Robot2_MoveHome,
+        .touched_count = sizeof s_touched_by_Robot2_MoveHome / sizeof s_touched_by_Robot2_MoveHome[0],
+        .touched = s_touched_by_Robot2_MoveHome,
     },
     {
         .name = "Cell.Robot2.Measure", .id = "ID1412311187", .owner = 2, .priority = 1000,
@@ -8742,6 +9085,8 @@ static const pn_transition_t s_transitions[] = {
         .binding_size = sizeof(Robot2_Measure_binding_t),
         .affected_count = sizeof s_affected_by_Robot2_Measure / sizeof s_affected_by_Robot2_Measure[0],
         .affected = s_affected_by_Robot2_Measure,
+        .touched_count = sizeof s_touched_by_Robot2_Measure / sizeof s_touched_by_Robot2_Measure[0],
+        .touched = s_touched_by_Robot2_Measure,
     },
     {
         .name = "Cell.Robot2.Drill", .id = "ID1412311196", .owner = 2, .priority = 1000,
@@ -8750,6 +9095,8 @@ static const pn_transition_t s_transitions[] = {
         .binding_size = sizeof(Robot2_Drill_binding_t),
         .affected_count = sizeof s_affected_by_Robot2_Drill / sizeof s_affected_by_Robot2_Drill[0],
         .affected = s_affected_by_Robot2_Drill,
+        .touched_count = sizeof s_touched_by_Robot2_Drill / sizeof s_touched_by_Robot2_Drill[0],
+        .touched = s_touched_by_Robot2_Drill,
     },
     {
         .name = "Cell.Robot2.Insert", .id = "ID1412311205", .owner = 2, .priority = 1000,
@@ -8758,6 +9105,8 @@ static const pn_transition_t s_transitions[] = {
         .binding_size = sizeof(Robot2_Insert_binding_t),
         .affected_count = sizeof s_affected_by_Robot2_Insert / sizeof s_affected_by_Robot2_Insert[0],
         .affected = s_affected_by_Robot2_Insert,
+        .touched_count = sizeof s_touched_by_Robot2_Insert / sizeof s_touched_by_Robot2_Insert[0],
+        .touched = s_touched_by_Robot2_Insert,
     },
     {
         .name = "Cell.Robot2.Press", .id = "ID1412311214", .owner = 2, .priority = 1000,
@@ -8766,6 +9115,8 @@ static const pn_transition_t s_transitions[] = {
         .binding_size = sizeof(Robot2_Press_binding_t),
         .affected_count = sizeof s_affected_by_Robot2_Press / sizeof s_affected_by_Robot2_Press[0],
         .affected = s_affected_by_Robot2_Press,
+        .touched_count = sizeof s_touched_by_Robot2_Press / sizeof s_touched_by_Robot2_Press[0],
+        .touched = s_touched_by_Robot2_Press,
     },
     {
         .name = "Cell.Robot2.Release", .id = "ID1412311223", .owner = 2, .priority = 1000,
@@ -8774,6 +9125,8 @@ static const pn_transition_t s_transitions[] = {
         .binding_size = sizeof(Robot2_Release_binding_t),
         .affected_count = sizeof s_affected_by_Robot2_Release / sizeof s_affected_by_Robot2_Release[0],
         .affected = s_affected_by_Robot2_Release,
+        .touched_count = sizeof s_touched_by_Robot2_Release / sizeof s_touched_by_Robot2_Release[0],
+        .touched = s_touched_by_Robot2_Release,
     },
 };
 
@@ -8847,6 +9200,77 @@ static const uint32_t s_order[] = {
     66U, /* Cell.Robot2.Press */
     67U, /* Cell.Robot2.Release */
 };
+
+/* For hosts that are compiled in one piece with the net: index and name of each transition. */
+#define NET_TRANSITIONS(EACH) \
+    EACH(0U, Supervisor_Load_Load) \
+    EACH(1U, Supervisor_Approach_Send) \
+    EACH(2U, Supervisor_Approach_Arrived) \
+    EACH(3U, Supervisor_Approach_Move_both_Command) \
+    EACH(4U, Supervisor_Approach_Move_both_Both) \
+    EACH(5U, Supervisor_Approach_Move_both_Reply_1) \
+    EACH(6U, Supervisor_Approach_Move_both_Reply_2) \
+    EACH(7U, Supervisor_Verify_Ask_first) \
+    EACH(8U, Supervisor_Verify_Ask_last) \
+    EACH(9U, Supervisor_Verify_Measured) \
+    EACH(10U, Supervisor_Correct_Compare) \
+    EACH(11U, Supervisor_Correct_Move_over) \
+    EACH(12U, Supervisor_Correct_Moved) \
+    EACH(13U, Supervisor_Correct_As_planned) \
+    EACH(14U, Supervisor_Correct_Move_both_Command) \
+    EACH(15U, Supervisor_Correct_Move_both_Both) \
+    EACH(16U, Supervisor_Correct_Move_both_Reply_1) \
+    EACH(17U, Supervisor_Correct_Move_both_Reply_2) \
+    EACH(18U, Supervisor_Install_Go_back) \
+    EACH(19U, Supervisor_Install_Next_rivet) \
+    EACH(20U, Supervisor_Install_Start) \
+    EACH(21U, Supervisor_Install_Shift_Command) \
+    EACH(22U, Supervisor_Install_Shift_Both) \
+    EACH(23U, Supervisor_Install_Shift_Reply_1) \
+    EACH(24U, Supervisor_Install_Shift_Reply_2) \
+    EACH(25U, Supervisor_Install_Rivet_Go_in) \
+    EACH(26U, Supervisor_Install_Rivet_Go_out) \
+    EACH(27U, Supervisor_Install_Rivet_Advance_Command) \
+    EACH(28U, Supervisor_Install_Rivet_Advance_Both) \
+    EACH(29U, Supervisor_Install_Rivet_Advance_Reply_1) \
+    EACH(30U, Supervisor_Install_Rivet_Advance_Reply_2) \
+    EACH(31U, Supervisor_Install_Rivet_Fasten_Press) \
+    EACH(32U, Supervisor_Install_Rivet_Fasten_Drill) \
+    EACH(33U, Supervisor_Install_Rivet_Fasten_Insert) \
+    EACH(34U, Supervisor_Install_Rivet_Fasten_Release) \
+    EACH(35U, Supervisor_Install_Rivet_Fasten_Finish) \
+    EACH(36U, Supervisor_Install_Rivet_Retract_Command) \
+    EACH(37U, Supervisor_Install_Rivet_Retract_Both) \
+    EACH(38U, Supervisor_Install_Rivet_Retract_Reply_1) \
+    EACH(39U, Supervisor_Install_Rivet_Retract_Reply_2) \
+    EACH(40U, Supervisor_Install_Return_Command) \
+    EACH(41U, Supervisor_Install_Return_Both) \
+    EACH(42U, Supervisor_Install_Return_Reply_1) \
+    EACH(43U, Supervisor_Install_Return_Reply_2) \
+    EACH(44U, Supervisor_Home_Send_home) \
+    EACH(45U, Supervisor_Home_Both) \
+    EACH(46U, Supervisor_Home_Reply_1) \
+    EACH(47U, Supervisor_Home_Reply_2) \
+    EACH(48U, Robot1_Accept) \
+    EACH(49U, Robot1_Report) \
+    EACH(50U, Robot1_MoveJoint) \
+    EACH(51U, Robot1_MoveLinear) \
+    EACH(52U, Robot1_MoveHome) \
+    EACH(53U, Robot1_Measure) \
+    EACH(54U, Robot1_Drill) \
+    EACH(55U, Robot1_Insert) \
+    EACH(56U, Robot1_Press) \
+    EACH(57U, Robot1_Release) \
+    EACH(58U, Robot2_Accept) \
+    EACH(59U, Robot2_Report) \
+    EACH(60U, Robot2_MoveJoint) \
+    EACH(61U, Robot2_MoveLinear) \
+    EACH(62U, Robot2_MoveHome) \
+    EACH(63U, Robot2_Measure) \
+    EACH(64U, Robot2_Drill) \
+    EACH(65U, Robot2_Insert) \
+    EACH(66U, Robot2_Press) \
+    EACH(67U, Robot2_Release)
 
 typedef union any_binding {
     Supervisor_Load_Load_binding_t Supervisor_Load_Load;
@@ -8949,4 +9373,7 @@ const pn_net_t pn_net = {
     .encode = encode,
     .decode = decode,
     .collect = collect,
+    .packed_size = 0U,
+    .bag_count = sizeof s_bag_places / sizeof s_bag_places[0],
+    .bags = s_bag_places,
 };

@@ -5,6 +5,7 @@
 
 #include "pn/pn_arena.h"
 #include "pn/pn_num.h"
+#include "pn/pn_packed.h"
 #include "pn/pn_text.h"
 #include "pn_bag_impl.h"
 #include "pn_type_impl.h"
@@ -81,10 +82,88 @@ static bool is_after(const pn_bag_t *bag, const void *entry, pn_time_t limit)
     return bag->is_timed && (pn_time_order(bag->is_real_time, pn_bag_stamp_of(bag, entry), limit) > 0);
 }
 
+/* --- packed places: the counters ----------------------------------------------------------------------------------- */
+
+static uint32_t packed_next(const pn_bag_t *bag, const void *marking, uint32_t from)
+{
+    return pn_counter_next(marking, bag->bit, bag->colours, bag->width, from);
+}
+
+static uint32_t packed_count(const pn_bag_t *bag, const void *marking, uint32_t number)
+{
+    return pn_counter(marking, bag->bit, bag->width, number);
+}
+
+static uint64_t packed_total(const pn_bag_t *bag, const void *marking)
+{
+    uint64_t total = 0U;
+    for (uint32_t i = packed_next(bag, marking, 0U); i < bag->colours; i = packed_next(bag, marking, i + 1U)) {
+        total += packed_count(bag, marking, i);
+    }
+    return total;
+}
+
+static bool packed_add(pn_ctx_t *cx, const pn_bag_t *bag, void *marking, const void *value, uint32_t count)
+{
+    const uint32_t number = bag->number_of(value);
+    if ((number == PN_NO_COLOUR) || (count > (pn_counter_most(bag->width) - packed_count(bag, marking, number)))) {
+        return pn_bag_fail_full(cx, bag);
+    }
+    pn_counter_add(marking, bag->bit, bag->width, number, count);
+    return true;
+}
+
+bool pn_bag_take_packed(const pn_bag_t *bag, void *marking, const void *value, uint32_t count)
+{
+    const uint32_t number = bag->number_of(value);
+    if ((number == PN_NO_COLOUR) || (packed_count(bag, marking, number) < count)) {
+        return false;
+    }
+    pn_counter_subtract(marking, bag->bit, bag->width, number, count);
+    return true;
+}
+
+static void packed_clear(const pn_bag_t *bag, void *marking)
+{
+    for (uint32_t i = packed_next(bag, marking, 0U); i < bag->colours; i = packed_next(bag, marking, i + 1U)) {
+        pn_counter_subtract(marking, bag->bit, bag->width, i, packed_count(bag, marking, i));
+    }
+}
+
+bool pn_bag_colour_json(const pn_bag_t *bag, uint32_t number, pn_text_t *out)
+{
+    pn_colour_t colour;
+    if (!bag->is_packed || (number >= bag->colours)) {
+        return false;
+    }
+    bag->colour_of(number, &colour);
+    pn_json(bag->type, &colour, out);
+    return true;
+}
+
+pn_sum_state_t pn_sum_make(pn_ctx_t *cx, const pn_bag_t *bag, const pn_type_t *list, const void *multiset, uint64_t *sum)
+{
+    const uint32_t start = bag->bit % 64U;
+    (void)memset(sum, 0, PN_SUM_WORDS(bag->bit, bag->colours, bag->width) * sizeof *sum);
+    for (const void *rest = multiset; (rest != NULL) && pn_ok(cx); rest = pn_list_tail(rest)) {
+        const void *value = pn_list_head(list, rest);
+        const uint32_t number = bag->number_of(value);
+        if ((number == PN_NO_COLOUR) || (pn_counter(sum, start, bag->width, number) == pn_counter_most(bag->width))
+            || !pn_is_legal(cx, bag->type, value)) {
+            return pn_ok(cx) ? PN_SUM_OTHER : PN_SUM_UNKNOWN;
+        }
+        pn_counter_add(sum, start, bag->width, number, 1U);
+    }
+    return pn_ok(cx) ? PN_SUM_KNOWN : PN_SUM_UNKNOWN;
+}
+
 /* --- counting ------------------------------------------------------------------------------------------------------ */
 
 uint64_t pn_bag_total(const pn_bag_t *bag, const void *marking)
 {
+    if (bag->is_packed) {
+        return packed_total(bag, marking);
+    }
     uint64_t total = 0U;
     for (uint32_t i = 0U; i < pn_bag_used(bag, marking); i++) {
         total += pn_bag_count_of(bag, pn_bag_entry(bag, marking, i));
@@ -94,6 +173,9 @@ uint64_t pn_bag_total(const pn_bag_t *bag, const void *marking)
 
 uint64_t pn_bag_available(const pn_bag_t *bag, const void *marking, pn_time_t now)
 {
+    if (bag->is_packed) {
+        return packed_total(bag, marking);
+    }
     uint64_t total = 0U;
     for (uint32_t i = 0U; i < pn_bag_used(bag, marking); i++) {
         const void *entry = pn_bag_entry(bag, marking, i);
@@ -104,6 +186,10 @@ uint64_t pn_bag_available(const pn_bag_t *bag, const void *marking, pn_time_t no
 
 uint64_t pn_bag_count(const pn_bag_t *bag, const void *marking, const void *value, pn_time_t limit)
 {
+    if (bag->is_packed) {
+        const uint32_t number = bag->number_of(value);
+        return (number != PN_NO_COLOUR) ? packed_count(bag, marking, number) : 0U;
+    }
     uint64_t total = 0U;
     for (uint32_t i = pn_bag_lower_bound(bag, marking, value); pn_bag_is_at(bag, marking, i, value); i++) {
         const void *entry = pn_bag_entry(bag, marking, i);
@@ -136,6 +222,9 @@ void pn_bag_check(pn_ctx_t *cx, const pn_bag_t *bag, void *value)
 
 bool pn_bag_add(pn_ctx_t *cx, const pn_bag_t *bag, void *marking, const void *value, uint32_t count, pn_time_t stamp)
 {
+    if (bag->is_packed) {
+        return packed_add(cx, bag, marking, value, count);
+    }
     uint32_t i = pn_bag_lower_bound(bag, marking, value);
     bool is_there = pn_bag_is_at(bag, marking, i, value);
     while (bag->is_timed && is_there) {
@@ -190,6 +279,10 @@ void pn_bag_remove_at(const pn_bag_t *bag, void *marking, uint32_t i, uint32_t c
 
 void pn_bag_clear(const pn_bag_t *bag, void *marking)
 {
+    if (bag->is_packed) {
+        packed_clear(bag, marking);
+        return;
+    }
     (void)memset(entry_of(bag, marking, 0U), 0, bag->stride * pn_bag_used(bag, marking));
     set_used(bag, marking, 0U);
 }
@@ -228,8 +321,27 @@ void pn_bag_next_time(const pn_bag_t *bag, const void *marking, pn_time_t now, b
     }
 }
 
+static void packed_json(const pn_bag_t *bag, const void *marking, pn_text_t *out)
+{
+    pn_text_char(out, '[');
+    const char *separator = "[";
+    for (uint32_t i = packed_next(bag, marking, 0U); i < bag->colours; i = packed_next(bag, marking, i + 1U)) {
+        pn_text_str(out, separator);
+        pn_text_uint(out, packed_count(bag, marking, i));
+        pn_text_str(out, ", ");
+        (void)pn_bag_colour_json(bag, i, out);
+        pn_text_char(out, ']');
+        separator = ", [";
+    }
+    pn_text_char(out, ']');
+}
+
 void pn_bag_json(const pn_bag_t *bag, const void *marking, pn_text_t *out)
 {
+    if (bag->is_packed) {
+        packed_json(bag, marking, out);
+        return;
+    }
     pn_text_char(out, '[');
     for (uint32_t i = 0U; i < pn_bag_used(bag, marking); i++) {
         const void *entry = pn_bag_entry(bag, marking, i);
@@ -253,6 +365,18 @@ void pn_bag_json(const pn_bag_t *bag, const void *marking, pn_text_t *out)
 
 uint32_t pn_bag_token(const pn_bag_t *bag, const void *marking, uint32_t i, pn_leaf_t *leaf, uint32_t capacity)
 {
+    if (bag->is_packed) {
+        pn_colour_t colour;
+        uint32_t number = packed_next(bag, marking, 0U);
+        for (uint32_t k = 0U; (k < i) && (number < bag->colours); k++) {
+            number = packed_next(bag, marking, number + 1U);
+        }
+        if (number >= bag->colours) {
+            return 0U;
+        }
+        bag->colour_of(number, &colour);
+        return pn_to_leaves(bag->type, &colour, leaf, capacity);
+    }
     if (i >= pn_bag_used(bag, marking)) {
         return 0U;
     }
@@ -285,8 +409,29 @@ static size_t put_bytes(uint8_t *out, size_t room, size_t at, const void *bytes,
     return at + length;
 }
 
+/* The same bytes as those of a place that is not packed. */
+static size_t packed_encode(const pn_bag_t *bag, const void *marking, uint8_t *out, size_t room)
+{
+    uint32_t used = 0U;
+    size_t at = sizeof used;
+    for (uint32_t i = packed_next(bag, marking, 0U); i < bag->colours; i = packed_next(bag, marking, i + 1U)) {
+        pn_colour_t colour;
+        const uint32_t count = packed_count(bag, marking, i);
+        bag->colour_of(i, &colour);
+        at = put_bytes(out, room, at, &count, sizeof count);
+        const size_t left = (at < room) ? (room - at) : 0U;
+        at += pn_encode(bag->type, &colour, &out[(at < room) ? at : 0U], left);
+        used++;
+    }
+    (void)put_bytes(out, room, 0U, &used, sizeof used);
+    return at;
+}
+
 size_t pn_bag_encode(const pn_bag_t *bag, const void *marking, uint8_t *out, size_t room)
 {
+    if (bag->is_packed) {
+        return packed_encode(bag, marking, out, room);
+    }
     const uint32_t used = pn_bag_used(bag, marking);
     size_t at = put_bytes(out, room, 0U, &used, sizeof used);
     for (uint32_t i = 0U; i < used; i++) {
@@ -303,8 +448,38 @@ size_t pn_bag_encode(const pn_bag_t *bag, const void *marking, uint8_t *out, siz
     return at;
 }
 
+static size_t packed_decode(pn_ctx_t *cx, const pn_bag_t *bag, void *marking, const uint8_t *in, size_t length)
+{
+    uint32_t used = 0U;
+    size_t at = sizeof used;
+    if (length < at) {
+        return SIZE_MAX;
+    }
+    (void)memcpy(&used, in, sizeof used);
+    packed_clear(bag, marking);
+    for (uint32_t i = 0U; i < used; i++) {
+        pn_colour_t colour;
+        uint32_t count = 0U;
+        if ((length - at) < sizeof count) {
+            return SIZE_MAX;
+        }
+        (void)memcpy(&count, &in[at], sizeof count);
+        at += sizeof count;
+        (void)memset(&colour, 0, bag->type->size);
+        const size_t size = pn_decode(cx, bag->type, &colour, &in[at], length - at);
+        if ((size == SIZE_MAX) || !packed_add(cx, bag, marking, &colour, count)) {
+            return SIZE_MAX;
+        }
+        at += size;
+    }
+    return at;
+}
+
 size_t pn_bag_decode(pn_ctx_t *cx, const pn_bag_t *bag, void *marking, const uint8_t *in, size_t length)
 {
+    if (bag->is_packed) {
+        return packed_decode(cx, bag, marking, in, length);
+    }
     const size_t stamp_size = bag->is_timed ? sizeof(pn_time_t) : 0U;
     uint32_t used = 0U;
     size_t at = sizeof used;
@@ -341,6 +516,9 @@ size_t pn_bag_decode(pn_ctx_t *cx, const pn_bag_t *bag, void *marking, const uin
 
 void pn_bag_relocate(pn_ctx_t *cx, const pn_bag_t *bag, void *marking)
 {
+    if (bag->is_packed) {
+        return; /* a colour of few refers to nothing */
+    }
     for (uint32_t i = 0U; i < pn_bag_used(bag, marking); i++) {
         pn_relocate(cx, bag->type, part_of(entry_of(bag, marking, i), bag->value));
     }

@@ -17,4 +17,7 @@ bool pn_bag_is_at(const pn_bag_t *bag, const void *marking, uint32_t i, const vo
 /* Takes `count` tokens out of entry i, which has at least so many. */
 void pn_bag_remove_at(const pn_bag_t *bag, void *marking, uint32_t i, uint32_t count);
 
+/* Takes tokens of one value out of a packed place; false, and nothing taken, when there are fewer. */
+bool pn_bag_take_packed(const pn_bag_t *bag, void *marking, const void *value, uint32_t count);
+
 #endif /* PN_BAG_IMPL_H */

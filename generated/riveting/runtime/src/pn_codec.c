@@ -29,6 +29,15 @@ static size_t encode_at(const pn_type_t *type, const void *value, uint8_t *out, 
     case PN_KIND_CHAR:
     case PN_KIND_ENUM:
         return put_bytes(out, room, at, value, type->size);
+    case PN_KIND_BIG: {
+        const pn_big_t number = load_big(value);
+        static const uint8_t none[4] = { 0U, 0U, 0U, 0U }; /* the header of what has up to 64 bits */
+        if (number.large != NULL) {
+            return put_bytes(out, room, at, number.large, pn_big_size(number.large));
+        }
+        end = put_bytes(out, room, at, none, sizeof none);
+        return put_bytes(out, room, end, &number.small, sizeof number.small);
+    }
     case PN_KIND_STRING: {
         const pn_string_t text = load_string(value);
         end = put_bytes(out, room, at, &text.length, sizeof text.length);
@@ -109,6 +118,22 @@ static void decode_string(reader_t *r, void *value)
     (void)memcpy(value, &text, sizeof text);
 }
 
+static void decode_big(reader_t *r, void *value)
+{
+    const uint8_t *start = &r->in[r->at];
+    pn_big_t number = { 0, NULL };
+    if (get_count(r) == 0U) {
+        get_bytes(r, &number.small, sizeof number.small);
+    } else if (!r->failed && pn_big_is_valid(start, r->length - r->at + sizeof(uint32_t))) {
+        const size_t size = pn_big_size(start);
+        number = pn_big_copy(r->cx, PN_BIG_BYTES(start));
+        r->at += size - sizeof(uint32_t);
+    } else {
+        r->failed = true;
+    }
+    (void)memcpy(value, &number, sizeof number);
+}
+
 static void decode_list(reader_t *r, const pn_type_t *type, void *value)
 {
     const uint32_t length = get_count(r);
@@ -176,6 +201,9 @@ static void decode_value(reader_t *r, const pn_type_t *type, void *value)
     case PN_KIND_ENUM:
         get_bytes(r, value, type->size);
         r->failed = r->failed || (load_tag(value) >= type->count);
+        break;
+    case PN_KIND_BIG:
+        decode_big(r, value);
         break;
     case PN_KIND_STRING:
         decode_string(r, value);
@@ -269,6 +297,9 @@ void pn_relocate(pn_ctx_t *cx, const pn_type_t *type, void *value)
         const pn_string_t text = load_string(value);
         const pn_string_t copy = pn_string_make(cx, text.bytes, text.length);
         (void)memcpy(value, &copy, sizeof copy);
+    } else if (type->kind == PN_KIND_BIG) {
+        const pn_big_t copy = pn_big_copy(cx, load_big(value));
+        (void)memcpy(value, &copy, sizeof copy);
     } else if (type->kind == PN_KIND_RECORD) {
         for (uint32_t i = 0U; i < type->count; i++) {
             pn_relocate(cx, type->field[i].type, part_of(value, type->field[i].offset));
@@ -314,6 +345,10 @@ static bool leaves_of(const pn_type_t *type, const void *value, pn_leaf_t *leaf,
         one.kind = type->is_index ? PN_LEAF_ENUM : PN_LEAF_INT;
         one.integer = load_int(value);
         return push_leaf(leaf, capacity, used, one);
+    case PN_KIND_BIG:
+        one.kind = PN_LEAF_INT;
+        one.integer = load_big(value).small;
+        return (load_big(value).large == NULL) && push_leaf(leaf, capacity, used, one);
     case PN_KIND_REAL:
         one.kind = PN_LEAF_REAL;
         one.real = load_real(value);
@@ -391,6 +426,11 @@ static bool value_from(pn_ctx_t *cx, const pn_type_t *type, void *value, const p
     case PN_KIND_INT:
         (void)memcpy(value, &one->integer, sizeof one->integer);
         return is_integer;
+    case PN_KIND_BIG: {
+        const pn_big_t number = PN_BIG(one->integer);
+        (void)memcpy(value, &number, sizeof number);
+        return is_integer;
+    }
     case PN_KIND_REAL: {
         const double number = (one->kind == PN_LEAF_INT) ? (double)one->integer : one->real;
         (void)memcpy(value, &number, sizeof number);

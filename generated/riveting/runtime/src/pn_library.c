@@ -14,25 +14,6 @@ void pn_stop(pn_ctx_t *cx, pn_string_t text)
     pn_raise(cx, PN_ERR_UNSUPPORTED, text.bytes);
 }
 
-int64_t pn_shift_left(pn_ctx_t *cx, int64_t a, int64_t n)
-{
-    int64_t result = a;
-    for (int64_t i = 0; (i < n) && (result != 0) && pn_ok(cx); i++) {
-        result = pn_inf_add(cx, result, result);
-    }
-    return result;
-}
-
-int64_t pn_shift_right(int64_t a, int64_t n)
-{
-    if (n > 62) {
-        return (a < 0) ? -1 : 0;
-    }
-    const int64_t divisor = (int64_t)(UINT64_C(1) << (uint64_t)n);
-    const int64_t quotient = a / divisor;
-    return ((a % divisor) < 0) ? (quotient - 1) : quotient;
-}
-
 int64_t pn_real_exponent(double x)
 {
     int exponent = 0;

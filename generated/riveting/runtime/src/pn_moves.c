@@ -99,7 +99,7 @@ static pn_time_t later(pn_ctx_t *cx, bool is_real_time, pn_time_t time, pn_time_
     if (is_real_time) {
         sum.real = time.real + delay.real;
     } else {
-        sum.integer = pn_inf_add(cx, time.integer, delay.integer);
+        sum.integer = pn_time_sum(cx, time.integer, delay.integer);
     }
     return sum;
 }
@@ -177,6 +177,13 @@ static pn_move_t *next_move(const pn_moves_t *moves, pn_move_kind_t kind)
 static bool take(pn_ctx_t *cx, pn_move_t *move, void *marking)
 {
     const pn_bag_t *bag = move->bag;
+    if (bag->is_packed) {
+        const bool is_taken = pn_bag_take_packed(bag, marking, move->value, move->count);
+        if (!is_taken) {
+            pn_raise(cx, PN_ERR_SUBTRACT, NULL);
+        }
+        return is_taken;
+    }
     uint32_t i = pn_bag_lower_bound(bag, marking, move->value);
     bool is_there = pn_bag_is_at(bag, marking, i, move->value);
     if (bag->is_timed) {
@@ -217,6 +224,10 @@ static void undo_move(pn_ctx_t *cx, const pn_move_t *move, void *marking)
         (void)pn_bag_add(cx, bag, marking, move->value, move->count, move->taken);
         return;
     }
+    if (bag->is_packed) {
+        (void)pn_bag_take_packed(bag, marking, move->value, move->count);
+        return;
+    }
     for (uint32_t i = pn_bag_lower_bound(bag, marking, move->value); pn_bag_is_at(bag, marking, i, move->value); i++) {
         const pn_time_t stamp = pn_bag_stamp_of(bag, pn_bag_entry(bag, marking, i));
         if (!bag->is_timed || (pn_time_order(bag->is_real_time, stamp, move->time) == 0)) {
@@ -244,6 +255,10 @@ static void undo(const pn_moves_t *moves, void *marking)
 static void reset(const pn_move_t *move, void *marking)
 {
     const pn_bag_t *bag = move->bag;
+    if (!bag->is_timed) {
+        pn_bag_clear(bag, marking);
+        return;
+    }
     for (uint32_t i = pn_bag_used(bag, marking); i > 0U; i--) {
         const void *entry = pn_bag_entry(bag, marking, i - 1U);
         const bool stays = bag->is_timed && (pn_time_order(bag->is_real_time, pn_bag_stamp_of(bag, entry), move->time) > 0);

@@ -26,7 +26,7 @@ const char *pn_error_name(pn_error_t error)
     case PN_ERR_SUBTRACT: return "Subtract";
     case PN_ERR_RAISED: return "exception of the net";
     case PN_ERR_ENDLESS: return "an evaluation without end";
-    case PN_ERR_LARGE: return "an IntInf.int beyond 64 bits";
+    case PN_ERR_LARGE: return "a model time beyond 64 bits";
     case PN_ERR_UNSUPPORTED: return "a function that is not available here";
     case PN_ERR_INTERNAL: return "internal error";
     default: return "unknown error";
@@ -98,29 +98,7 @@ int64_t pn_int_quot(pn_ctx_t *cx, int64_t a, int64_t b)
 
 int64_t pn_int_rem(pn_ctx_t *cx, int64_t a, int64_t b)
 {
-    return pn_inf_rem(cx, a, b);
-}
-
-/* Whether 0 <= a and 0 < b, both below 2^32: then unsigned division gives the same, several times as fast. */
-static bool is_narrow(int64_t a, int64_t b)
-{
-    return ((((uint64_t)a | (uint64_t)b) >> 32U) == 0U) && (b != 0);
-}
-
-int64_t pn_int_div(pn_ctx_t *cx, int64_t a, int64_t b)
-{
-    if (is_narrow(a, b)) {
-        return pn_int_checked(cx, (int64_t)((uint32_t)a / (uint32_t)b));
-    }
-    return pn_int_checked(cx, pn_wide_div(cx, a, b));
-}
-
-int64_t pn_int_mod(pn_ctx_t *cx, int64_t a, int64_t b)
-{
-    if (is_narrow(a, b)) {
-        return (int64_t)((uint32_t)a % (uint32_t)b);
-    }
-    return pn_inf_mod(cx, a, b);
+    return pn_wide_rem(cx, a, b);
 }
 
 /* 64-bit arithmetic; `error` is raised for what has more bits. */
@@ -139,15 +117,15 @@ static int64_t add(pn_ctx_t *cx, int64_t a, int64_t b, pn_error_t error)
     return a + b;
 }
 
-static int64_t subtract(pn_ctx_t *cx, int64_t a, int64_t b, pn_error_t error)
+static int64_t subtract(pn_ctx_t *cx, int64_t a, int64_t b)
 {
     if ((b > 0) ? (a < (INT64_MIN + b)) : (a > (INT64_MAX + b))) {
-        return beyond(cx, error);
+        return beyond(cx, PN_ERR_OVERFLOW);
     }
     return a - b;
 }
 
-static int64_t multiply(pn_ctx_t *cx, int64_t a, int64_t b, pn_error_t error)
+static int64_t multiply(pn_ctx_t *cx, int64_t a, int64_t b)
 {
     bool fits = true;
     if ((a > 0) && (b > 0)) {
@@ -159,30 +137,30 @@ static int64_t multiply(pn_ctx_t *cx, int64_t a, int64_t b, pn_error_t error)
     } else if (a < 0) {
         fits = b >= (INT64_MAX / a);
     }
-    return fits ? (a * b) : beyond(cx, error);
+    return fits ? (a * b) : beyond(cx, PN_ERR_OVERFLOW);
 }
 
-static int64_t negate(pn_ctx_t *cx, int64_t a, pn_error_t error)
+static int64_t negate(pn_ctx_t *cx, int64_t a)
 {
-    return (a == INT64_MIN) ? beyond(cx, error) : -a;
+    return (a == INT64_MIN) ? beyond(cx, PN_ERR_OVERFLOW) : -a;
 }
 
-static int64_t quotient(pn_ctx_t *cx, int64_t a, int64_t b, pn_error_t error)
+static int64_t quotient(pn_ctx_t *cx, int64_t a, int64_t b)
 {
     if (b == 0) {
         return beyond(cx, PN_ERR_DIV);
     }
-    return (b == -1) ? negate(cx, a, error) : (a / b);
+    return (b == -1) ? negate(cx, a) : (a / b);
 }
 
-static int64_t divide(pn_ctx_t *cx, int64_t a, int64_t b, pn_error_t error)
+static int64_t divide(pn_ctx_t *cx, int64_t a, int64_t b)
 {
-    const int64_t towards_zero = quotient(cx, a, b, error);
+    const int64_t towards_zero = quotient(cx, a, b);
     const bool is_inexact = (b != 0) && (b != -1) && ((a % b) != 0);
     return (is_inexact && ((a < 0) != (b < 0))) ? (towards_zero - 1) : towards_zero;
 }
 
-int64_t pn_inf_rem(pn_ctx_t *cx, int64_t a, int64_t b)
+int64_t pn_wide_rem(pn_ctx_t *cx, int64_t a, int64_t b)
 {
     if (b == 0) {
         return beyond(cx, PN_ERR_DIV);
@@ -190,13 +168,13 @@ int64_t pn_inf_rem(pn_ctx_t *cx, int64_t a, int64_t b)
     return (b == -1) ? 0 : (a % b);
 }
 
-int64_t pn_inf_mod(pn_ctx_t *cx, int64_t a, int64_t b)
+int64_t pn_wide_mod(pn_ctx_t *cx, int64_t a, int64_t b)
 {
-    const int64_t remainder = pn_inf_rem(cx, a, b);
+    const int64_t remainder = pn_wide_rem(cx, a, b);
     return ((remainder != 0) && ((remainder < 0) != (b < 0))) ? (remainder + b) : remainder;
 }
 
-int64_t pn_inf_add(pn_ctx_t *cx, int64_t a, int64_t b)
+int64_t pn_time_sum(pn_ctx_t *cx, int64_t a, int64_t b)
 {
     return add(cx, a, b, PN_ERR_LARGE);
 }
@@ -206,64 +184,34 @@ int64_t pn_wide_add(pn_ctx_t *cx, int64_t a, int64_t b)
     return add(cx, a, b, PN_ERR_OVERFLOW);
 }
 
-int64_t pn_inf_sub(pn_ctx_t *cx, int64_t a, int64_t b)
-{
-    return subtract(cx, a, b, PN_ERR_LARGE);
-}
-
 int64_t pn_wide_sub(pn_ctx_t *cx, int64_t a, int64_t b)
 {
-    return subtract(cx, a, b, PN_ERR_OVERFLOW);
-}
-
-int64_t pn_inf_mul(pn_ctx_t *cx, int64_t a, int64_t b)
-{
-    return multiply(cx, a, b, PN_ERR_LARGE);
+    return subtract(cx, a, b);
 }
 
 int64_t pn_wide_mul(pn_ctx_t *cx, int64_t a, int64_t b)
 {
-    return multiply(cx, a, b, PN_ERR_OVERFLOW);
-}
-
-int64_t pn_inf_quot(pn_ctx_t *cx, int64_t a, int64_t b)
-{
-    return quotient(cx, a, b, PN_ERR_LARGE);
+    return multiply(cx, a, b);
 }
 
 int64_t pn_wide_quot(pn_ctx_t *cx, int64_t a, int64_t b)
 {
-    return quotient(cx, a, b, PN_ERR_OVERFLOW);
-}
-
-int64_t pn_inf_div(pn_ctx_t *cx, int64_t a, int64_t b)
-{
-    return divide(cx, a, b, PN_ERR_LARGE);
+    return quotient(cx, a, b);
 }
 
 int64_t pn_wide_div(pn_ctx_t *cx, int64_t a, int64_t b)
 {
-    return divide(cx, a, b, PN_ERR_OVERFLOW);
-}
-
-int64_t pn_inf_neg(pn_ctx_t *cx, int64_t a)
-{
-    return negate(cx, a, PN_ERR_LARGE);
+    return divide(cx, a, b);
 }
 
 int64_t pn_wide_neg(pn_ctx_t *cx, int64_t a)
 {
-    return negate(cx, a, PN_ERR_OVERFLOW);
-}
-
-int64_t pn_inf_abs(pn_ctx_t *cx, int64_t a)
-{
-    return (a < 0) ? pn_inf_neg(cx, a) : a;
+    return negate(cx, a);
 }
 
 int64_t pn_wide_abs(pn_ctx_t *cx, int64_t a)
 {
-    return (a < 0) ? pn_wide_neg(cx, a) : a;
+    return (a < 0) ? negate(cx, a) : a;
 }
 
 /* --- reals --------------------------------------------------------------------------------------------------------- */
@@ -276,28 +224,20 @@ double pn_real_round_even(double x)
     return is_up ? (below + 1.0) : below;
 }
 
-static int64_t to_integer(pn_ctx_t *cx, double x, pn_error_t error)
+static int64_t to_integer(pn_ctx_t *cx, double x)
 {
     if (isnan(x)) {
         return beyond(cx, PN_ERR_DOMAIN);
     }
-    if (isinf(x)) {
-        return beyond(cx, PN_ERR_OVERFLOW);
-    }
     if ((x < -9223372036854775808.0) || (x >= 9223372036854775808.0)) {
-        return beyond(cx, error);
+        return beyond(cx, PN_ERR_OVERFLOW);
     }
     return (int64_t)x;
 }
 
-int64_t pn_inf_floor(pn_ctx_t *cx, double x)
-{
-    return to_integer(cx, floor(x), PN_ERR_LARGE);
-}
-
 int64_t pn_wide_floor(pn_ctx_t *cx, double x)
 {
-    return to_integer(cx, floor(x), PN_ERR_OVERFLOW);
+    return to_integer(cx, floor(x));
 }
 
 int64_t pn_real_floor(pn_ctx_t *cx, double x)
@@ -305,14 +245,9 @@ int64_t pn_real_floor(pn_ctx_t *cx, double x)
     return pn_int_checked(cx, pn_wide_floor(cx, x));
 }
 
-int64_t pn_inf_ceil(pn_ctx_t *cx, double x)
-{
-    return to_integer(cx, ceil(x), PN_ERR_LARGE);
-}
-
 int64_t pn_wide_ceil(pn_ctx_t *cx, double x)
 {
-    return to_integer(cx, ceil(x), PN_ERR_OVERFLOW);
+    return to_integer(cx, ceil(x));
 }
 
 int64_t pn_real_ceil(pn_ctx_t *cx, double x)
@@ -320,14 +255,9 @@ int64_t pn_real_ceil(pn_ctx_t *cx, double x)
     return pn_int_checked(cx, pn_wide_ceil(cx, x));
 }
 
-int64_t pn_inf_round(pn_ctx_t *cx, double x)
-{
-    return to_integer(cx, pn_real_round_even(x), PN_ERR_LARGE);
-}
-
 int64_t pn_wide_round(pn_ctx_t *cx, double x)
 {
-    return to_integer(cx, pn_real_round_even(x), PN_ERR_OVERFLOW);
+    return to_integer(cx, pn_real_round_even(x));
 }
 
 int64_t pn_real_round(pn_ctx_t *cx, double x)
@@ -335,14 +265,9 @@ int64_t pn_real_round(pn_ctx_t *cx, double x)
     return pn_int_checked(cx, pn_wide_round(cx, x));
 }
 
-int64_t pn_inf_trunc(pn_ctx_t *cx, double x)
-{
-    return to_integer(cx, trunc(x), PN_ERR_LARGE);
-}
-
 int64_t pn_wide_trunc(pn_ctx_t *cx, double x)
 {
-    return to_integer(cx, trunc(x), PN_ERR_OVERFLOW);
+    return to_integer(cx, trunc(x));
 }
 
 int64_t pn_real_trunc(pn_ctx_t *cx, double x)

@@ -78,29 +78,30 @@ static bool sign(pn_string_t text, int64_t *at)
     return is_minus;
 }
 
-int64_t pn_read_integer(pn_ctx_t *cx, pn_string_t text, int64_t *at)
+pn_big_t pn_read_integer(pn_ctx_t *cx, pn_string_t text, int64_t *at)
 {
+    pn_big_t number = PN_BIG(0);
     if (at == NULL) {
-        return 0;
+        return number;
     }
     const int64_t start = *at;
     const bool has_bracket = pn_read_accept(text, at, PN_STRING("("));
     skip(text, at);
     const bool is_minus = sign(text, at);
-    if (!pn_char_is_digit(character(text, *at))) {
-        *at = start;
-        pn_read_fail(cx);
-        return 0;
-    }
-    int64_t number = 0; /* counted downwards: there is one more negative number */
-    while (pn_char_is_digit(character(text, *at)) && pn_ok(cx)) {
-        number = pn_inf_sub(cx, pn_inf_mul(cx, number, 10), (int64_t)character(text, *at) - (int64_t)'0');
+    const int64_t first = *at;
+    while (pn_char_is_digit(character(text, *at))) {
         (*at)++;
     }
+    if (*at == first) {
+        *at = start;
+        pn_read_fail(cx);
+        return number;
+    }
+    number = pn_big_of_digits(cx, &text.bytes[first], (size_t)(*at - first), is_minus);
     if (has_bracket) {
         expect(cx, text, at, PN_STRING(")"));
     }
-    return is_minus ? number : pn_inf_neg(cx, number);
+    return number;
 }
 
 static void digits(pn_string_t text, int64_t *at, char *out, size_t *length, size_t capacity)
@@ -286,7 +287,12 @@ static void input(pn_ctx_t *cx, const pn_type_t *type, void *value, pn_string_t 
         if (type->is_index) {
             expect(cx, text, at, named(type->name_of_value[0]));
         }
-        const int64_t number = pn_ok(cx) ? pn_read_integer(cx, text, at) : 0;
+        const int64_t number = pn_ok(cx) ? pn_big_to_wide(cx, pn_read_integer(cx, text, at)) : 0;
+        (void)memcpy(value, &number, sizeof number);
+        break;
+    }
+    case PN_KIND_BIG: {
+        const pn_big_t number = pn_ok(cx) ? pn_read_integer(cx, text, at) : PN_BIG(0);
         (void)memcpy(value, &number, sizeof number);
         break;
     }

@@ -44,6 +44,8 @@ int pn_compare(const pn_type_t *type, const void *a, const void *b)
         return (int)load_bool(a) - (int)load_bool(b);
     case PN_KIND_INT:
         return pn_int_order(load_int(a), load_int(b));
+    case PN_KIND_BIG:
+        return pn_big_order(load_big(a), load_big(b));
     case PN_KIND_REAL:
         return pn_real_order(load_real(a), load_real(b));
     case PN_KIND_STRING:
@@ -121,6 +123,18 @@ static void json_union(const pn_type_t *type, const void *value, pn_text_t *out)
     pn_text_char(out, ']');
 }
 
+/* A large number; what has no room is left out. */
+static void text_big(pn_big_t value, char minus, pn_text_t *out)
+{
+    const size_t length = pn_big_decimal(value, minus, &out->buffer[out->length], out->capacity - out->length);
+    if (length == SIZE_MAX) {
+        out->buffer[out->length] = '\0';
+        out->truncated = true;
+    } else {
+        out->length += length;
+    }
+}
+
 void pn_json(const pn_type_t *type, const void *value, pn_text_t *out)
 {
     switch (type->kind) {
@@ -129,6 +143,9 @@ void pn_json(const pn_type_t *type, const void *value, pn_text_t *out)
         break;
     case PN_KIND_INT:
         pn_text_int(out, load_int(value));
+        break;
+    case PN_KIND_BIG:
+        text_big(load_big(value), '-', out);
         break;
     case PN_KIND_REAL:
         pn_text_json_real(out, load_real(value));
@@ -171,6 +188,14 @@ static void mkstr_int(const pn_type_t *type, int64_t value, pn_text_t *out)
     pn_text_str(out, type->is_index ? type->name_of_value[0] : "");
     pn_text_str(out, has_parentheses ? "(" : "");
     pn_text_str(out, digits);
+    pn_text_str(out, has_parentheses ? ")" : "");
+}
+
+static void mkstr_big(pn_big_t value, pn_text_t *out)
+{
+    const bool has_parentheses = pn_big_sign(value) < 0;
+    pn_text_str(out, has_parentheses ? "(" : "");
+    text_big(value, '~', out);
     pn_text_str(out, has_parentheses ? ")" : "");
 }
 
@@ -227,6 +252,9 @@ void pn_mkstr(const pn_type_t *type, const void *value, pn_text_t *out)
         break;
     case PN_KIND_INT:
         mkstr_int(type, load_int(value), out);
+        break;
+    case PN_KIND_BIG:
+        mkstr_big(load_big(value), out);
         break;
     case PN_KIND_REAL: {
         char digits[40];
@@ -360,6 +388,10 @@ static bool has_legal_parts(pn_ctx_t *cx, const pn_type_t *type, const void *val
         const int64_t number = load_int(value);
         return !type->has_range || ((number >= type->low) && (number <= type->high));
     }
+    case PN_KIND_BIG: {
+        const pn_big_t number = load_big(value);
+        return !type->has_range || ((pn_big_order(number, type->big_low) >= 0) && (pn_big_order(number, type->big_high) <= 0));
+    }
     case PN_KIND_REAL: {
         const double number = load_real(value);
         const bool is_in_range = !type->has_range || ((number >= type->real_low) && (number <= type->real_high));
@@ -440,6 +472,13 @@ static uint64_t limited(uint64_t size)
     return (size > (UINT64_C(1) << 32U)) ? 0U : size;
 }
 
+/* The number of integers from low to high. */
+static uint64_t size_of_range(int64_t low, int64_t high)
+{
+    const uint64_t difference = (uint64_t)high - (uint64_t)low;
+    return ((high < low) || (difference == UINT64_MAX)) ? 0U : limited(difference + 1U);
+}
+
 uint64_t pn_type_size(const pn_type_t *type)
 {
     switch (type->kind) {
@@ -450,7 +489,12 @@ uint64_t pn_type_size(const pn_type_t *type)
     case PN_KIND_CHAR:
         return 256U;
     case PN_KIND_INT:
-        return (type->has_range && (type->high >= type->low)) ? limited((uint64_t)(type->high - type->low) + 1U) : 0U;
+        return type->has_range ? size_of_range(type->low, type->high) : 0U;
+    case PN_KIND_BIG:
+        if (!type->has_range || (type->big_low.large != NULL) || (type->big_high.large != NULL)) {
+            return 0U;
+        }
+        return size_of_range(type->big_low.small, type->big_high.small);
     case PN_KIND_ENUM:
         return type->count;
     case PN_KIND_RECORD: {
@@ -496,6 +540,9 @@ void pn_type_value(const pn_type_t *type, uint64_t i, void *value)
     } else if (type->kind == PN_KIND_INT) {
         const int64_t number = type->low + (int64_t)i;
         (void)memcpy(value, &number, sizeof number);
+    } else if (type->kind == PN_KIND_BIG) {
+        const pn_big_t number = PN_BIG(type->big_low.small + (int64_t)i);
+        (void)memcpy(value, &number, sizeof number);
     } else if (type->kind == PN_KIND_ENUM) {
         const uint32_t tag = (uint32_t)i;
         (void)memcpy(value, &tag, sizeof tag);
@@ -532,7 +579,9 @@ uint64_t pn_type_position(const pn_type_t *type, const void *value)
     case PN_KIND_CHAR:
         return load_byte(value);
     case PN_KIND_INT:
-        return (uint64_t)(load_int(value) - type->low);
+        return (uint64_t)load_int(value) - (uint64_t)type->low;
+    case PN_KIND_BIG:
+        return (uint64_t)load_big(value).small - (uint64_t)type->big_low.small;
     case PN_KIND_ENUM:
         return load_tag(value);
     case PN_KIND_RECORD: {

@@ -32,6 +32,13 @@ static inline int64_t load_int(const void *at)
     return value;
 }
 
+static inline pn_big_t load_big(const void *at)
+{
+    pn_big_t value = { 0, NULL };
+    (void)memcpy(&value, at, sizeof value);
+    return value;
+}
+
 static inline double load_real(const void *at)
 {
     double value = 0.0;

@@ -29,7 +29,7 @@ static const char *error_words(pn_error_t error)
     case PN_ERR_SUBTRACT: words = "more tokens are taken than there are"; break;
     case PN_ERR_RAISED: words = "an exception of the net"; break;
     case PN_ERR_ENDLESS: words = "an evaluation does not come to an end"; break;
-    case PN_ERR_LARGE: words = "an IntInf.int is beyond 64 bits"; break;
+    case PN_ERR_LARGE: words = "a model time is beyond 64 bits"; break;
     case PN_ERR_UNSUPPORTED: words = "a function is not available here"; break;
     case PN_ERR_INTERNAL: words = "internal error of the runtime"; break;
     default: break;

@@ -6,7 +6,8 @@
  *     struct { uint32_t used; struct { pose_t value; uint32_t count; } token[64]; } Waiting;           untimed
  *     struct { uint32_t used; struct { pose_t value; uint32_t count; pn_time_t stamp; } token[64]; }   timed
  *
- * sorted by value, then stamp, without equal neighbours. A pn_bag_t tells where they are.
+ * sorted by value, then stamp, without equal neighbours; or, if it is packed, a counter for each colour (pn_packed.h). A pn_bag_t
+ * tells where they are.
  */
 #ifndef PN_BAG_H
 #define PN_BAG_H
@@ -28,7 +29,23 @@ typedef struct pn_bag {
     uint32_t early_count;      /* of the delays of input arcs (`x@+3`), by which tokens may be taken before their stamps */
     const pn_time_t *early;
     bool is_early_open;        /* there are delays that are known only when they are computed; integer time then goes on in ones */
+    /* A packed place: its counters in the packed part of the marking, the number of a colour (PN_NO_COLOUR: it is none) and the
+     * colour of a number. */
+    bool is_packed;
+    uint32_t bit;
+    uint32_t colours;
+    uint32_t width;
+    uint32_t (*number_of)(const void *value);
+    void (*colour_of)(uint32_t number, void *value);
 } pn_bag_t;
+
+#define PN_NO_COLOUR UINT32_MAX
+
+/* Room for a colour of a packed place. */
+typedef union pn_colour {
+    max_align_t align;
+    unsigned char bytes[256];
+} pn_colour_t;
 
 /* The offsets of a place `member` of a marking, for the initialiser of a pn_bag_t; PN_BAG_STAMPS as well if it is timed. */
 #define PN_BAG_TOKENS(marking_type, member)                                                                        \
@@ -61,8 +78,10 @@ bool pn_bag_put(pn_ctx_t *cx, const pn_bag_t *bag, void *marking, const pn_leaf_
 size_t pn_bag_encode(const pn_bag_t *bag, const void *marking, uint8_t *out, size_t room);
 size_t pn_bag_decode(pn_ctx_t *cx, const pn_bag_t *bag, void *marking, const uint8_t *in, size_t length);
 void pn_bag_relocate(pn_ctx_t *cx, const pn_bag_t *bag, void *marking);
+/* A colour of a packed place as JSON; false if there is no such one. */
+bool pn_bag_colour_json(const pn_bag_t *bag, uint32_t number, pn_text_t *out);
 
-/* The functions of one place for the table of the net: `stem`_count, _token, _put, _clear, _json over its bag. */
+/* The functions of one place for the table of the net: `stem`_count, _token, _put, _clear, _json, _encode, _decode over its bag. */
 #define PN_PLACE_FUNCTIONS(stem, bag)                                                                               \
     static uint64_t stem##_count(const void *marking)                                                               \
     {                                                                                                               \
@@ -84,6 +103,14 @@ void pn_bag_relocate(pn_ctx_t *cx, const pn_bag_t *bag, void *marking);
     static void stem##_json(const void *marking, pn_text_t *out)                                                    \
     {                                                                                                               \
         pn_bag_json(&(bag), marking, out);                                                                          \
+    }                                                                                                               \
+    static size_t stem##_encode(const void *marking, uint8_t *out, size_t room)                                     \
+    {                                                                                                               \
+        return pn_bag_encode(&(bag), marking, out, room);                                                           \
+    }                                                                                                               \
+    static size_t stem##_decode(pn_ctx_t *cx, void *marking, const uint8_t *in, size_t length)                      \
+    {                                                                                                               \
+        return pn_bag_decode(cx, &(bag), marking, in, length);                                                      \
     }
 
 /* Times as the context and the tokens hold them. */

@@ -1,7 +1,5 @@
 /* SPDX-License-Identifier: MIT
  * pn_library.h - the operations that the library functions written in CPN ML (lowering/prelude) are made from.
- *
- * Integers here are IntInf.int: 64 bits.
  */
 #ifndef PN_LIBRARY_H
 #define PN_LIBRARY_H
@@ -11,32 +9,6 @@
 
 /* Stops the run with an error that no handler of CPN ML catches: the text says what is not available, and why. */
 void pn_stop(pn_ctx_t *cx, pn_string_t text);
-
-/* Bitwise, in two's complement. */
-static inline int64_t pn_bits_and(int64_t a, int64_t b)
-{
-    return (int64_t)((uint64_t)a & (uint64_t)b);
-}
-
-static inline int64_t pn_bits_or(int64_t a, int64_t b)
-{
-    return (int64_t)((uint64_t)a | (uint64_t)b);
-}
-
-static inline int64_t pn_bits_xor(int64_t a, int64_t b)
-{
-    return (int64_t)((uint64_t)a ^ (uint64_t)b);
-}
-
-static inline int64_t pn_bits_not(int64_t a)
-{
-    return -1 - a;
-}
-
-/* a * 2^n, n >= 0; PN_ERR_LARGE where that is more than 64 bits. */
-int64_t pn_shift_left(pn_ctx_t *cx, int64_t a, int64_t n);
-/* a div 2^n, n >= 0. */
-int64_t pn_shift_right(int64_t a, int64_t n);
 
 /* x = m * 2^e with 0.5 <= |m| < 1: e. */
 int64_t pn_real_exponent(double x);

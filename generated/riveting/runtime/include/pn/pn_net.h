@@ -46,6 +46,9 @@ typedef struct pn_leaf {
 /* Called for each enabled binding element; returns false to stop the enumeration. The binding lives until the call returns. */
 typedef bool (*pn_binding_sink_t)(void *user, uint32_t transition, const void *binding);
 
+/* Called for each enabled binding element with the marking after its occurrence; returns false to stop. Both live until it returns. */
+typedef bool (*pn_successor_sink_t)(void *user, uint32_t transition, const void *binding, const void *next);
+
 /* Sink for text: bytes are appended to a host's buffer or file. */
 typedef struct pn_text {
     char *buffer;     /* zero-terminated after each append */
@@ -77,6 +80,19 @@ typedef struct pn_place {
     const char *const *leaf_name;    /* "x", "y", ... or "1", "2" for components; for messages */
     uint32_t line_count;             /* how an input file is laid out: leaves per line, by top-level component */
     const uint32_t *line_leaves;
+    /* A packed place holds, for each colour, a counter of `width` bits in the packed part of the marking. Counter i, of colour i in
+     * the order of the colour set, starts at bit `bit` + i * `width`; bit k of the packed part is bit k % 8 of byte k / 8. */
+    bool is_packed;
+    uint32_t colours;                /* number of counters; 0 if it is not packed */
+    uint32_t width;
+    uint32_t bit;                    /* UINT32_MAX if it is not packed */
+    /* Canonical bytes of the place alone, the same whether it is packed or not: equal multi-sets, equal bytes. Returns the length
+     * that is needed; when that is more than `capacity`, what has been written is worth nothing. */
+    size_t (*encode)(const void *marking, uint8_t *out, size_t capacity);
+    /* Reads them back into a marking. Returns the bytes used; SIZE_MAX when they are malformed or the place is full. */
+    size_t (*decode)(pn_ctx_t *cx, void *marking, const uint8_t *in, size_t length);
+    /* A colour of a packed place as JSON; false if there is no such one. NULL if the place is not packed. */
+    bool (*colour_json)(uint32_t ordinal, pn_text_t *out);
 } pn_place_t;
 
 typedef struct pn_transition {
@@ -97,6 +113,14 @@ typedef struct pn_transition {
     /* The transitions that may be enabled in another way after this one has occurred, model time being the same. NULL: all. */
     uint32_t affected_count;
     const uint32_t *affected;
+    /* The places whose marking an occurrence may change: not those from which it only takes what it puts there again. */
+    uint32_t touched_count;
+    const uint32_t *touched;
+    /* Random numbers, files or references decide about it: what is possible in a marking depends on more than the marking. */
+    bool draws;
+    /* For every enabled binding, in the order of `enumerate`: makes in *next the marking after its occurrence and calls the sink.
+     * Returns false when the sink stopped it; errors are in the context. NULL: enumerate, copy and fire. */
+    bool (*successors)(pn_ctx_t *cx, const void *marking, uint32_t self, void *next, pn_successor_sink_t sink, void *user);
 } pn_transition_t;
 
 typedef struct pn_owner {
@@ -133,6 +157,10 @@ typedef struct pn_net {
     /* Between firings: moves what the marking refers to into the other half of the arena (see pn_arena.h). No-op for nets
      * whose values need no arena. */
     void (*collect)(pn_ctx_t *cx, void *marking);
+    size_t packed_size;       /* bytes of the packed part, with which a marking begins, a multiple of 4; equal markings, equal bytes */
+    uint32_t bag_count;       /* the places that are not packed */
+    const uint32_t *bags;
+    bool has_references;      /* `ref`s of the net are state outside the marking */
 } pn_net_t;
 
 extern const pn_net_t pn_net;

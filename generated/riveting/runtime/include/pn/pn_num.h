@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT
  * pn_num.h - numbers of CPN ML: checked integers, real functions.
  *
- * `int` is the 31-bit integer of the real tool, kept in an int64_t; `IntInf.int` and model times are 64-bit here, and what does not
- * fit is reported, not wrapped. `div` and `mod` round down, `quot` and `rem` toward zero. On error the value is 0.
+ * `int` is the 31-bit integer of the real tool, kept in an int64_t; what does not fit is reported, not wrapped. `div` and `mod` round
+ * down, `quot` and `rem` toward zero. On error the value is 0.
  */
 #ifndef PN_NUM_H
 #define PN_NUM_H
@@ -80,8 +80,8 @@ void pn_clear_error(pn_ctx_t *cx);
 #define PN_PI 3.141592653589793
 #define PN_E 2.718281828459045
 
-/* Integers: `int` has 31 bits (pn_int_*), or 64 (pn_wide_*) in nets generated so; beyond them Overflow is raised. IntInf.int
- * (pn_inf_*) is unbounded in CPN ML and has 64 bits here: beyond them is PN_ERR_LARGE, which no handler catches. */
+/* Integers: `int` has 31 bits (pn_int_*), or 64 (pn_wide_*) in nets generated so; beyond them Overflow is raised. Model
+ * time has 64 bits, beyond which is PN_ERR_LARGE, that no handler catches. IntInf.int has no limit: see pn_big.h. */
 #define PN_INT_MAX INT64_C(1073741823)
 #define PN_INT_MIN (-INT64_C(1073741824))
 
@@ -138,20 +138,8 @@ static inline int64_t pn_int_sign(int64_t a)
     return (a > 0) ? 1 : ((a < 0) ? -1 : 0);
 }
 
-int64_t pn_int_div(pn_ctx_t *cx, int64_t a, int64_t b);
-int64_t pn_int_mod(pn_ctx_t *cx, int64_t a, int64_t b);
 int64_t pn_int_quot(pn_ctx_t *cx, int64_t a, int64_t b);
 int64_t pn_int_rem(pn_ctx_t *cx, int64_t a, int64_t b);
-
-int64_t pn_inf_add(pn_ctx_t *cx, int64_t a, int64_t b);
-int64_t pn_inf_sub(pn_ctx_t *cx, int64_t a, int64_t b);
-int64_t pn_inf_mul(pn_ctx_t *cx, int64_t a, int64_t b);
-int64_t pn_inf_neg(pn_ctx_t *cx, int64_t a);
-int64_t pn_inf_abs(pn_ctx_t *cx, int64_t a);
-int64_t pn_inf_div(pn_ctx_t *cx, int64_t a, int64_t b);
-int64_t pn_inf_mod(pn_ctx_t *cx, int64_t a, int64_t b);
-int64_t pn_inf_quot(pn_ctx_t *cx, int64_t a, int64_t b);
-int64_t pn_inf_rem(pn_ctx_t *cx, int64_t a, int64_t b);
 
 int64_t pn_wide_add(pn_ctx_t *cx, int64_t a, int64_t b);
 int64_t pn_wide_sub(pn_ctx_t *cx, int64_t a, int64_t b);
@@ -160,6 +148,26 @@ int64_t pn_wide_neg(pn_ctx_t *cx, int64_t a);
 int64_t pn_wide_abs(pn_ctx_t *cx, int64_t a);
 int64_t pn_wide_div(pn_ctx_t *cx, int64_t a, int64_t b);
 int64_t pn_wide_quot(pn_ctx_t *cx, int64_t a, int64_t b);
+int64_t pn_wide_mod(pn_ctx_t *cx, int64_t a, int64_t b);
+int64_t pn_wide_rem(pn_ctx_t *cx, int64_t a, int64_t b);
+/* The sum of two model times; PN_ERR_LARGE. */
+int64_t pn_time_sum(pn_ctx_t *cx, int64_t a, int64_t b);
+
+/* Whether 0 <= a and 0 < b, both below 2^32: then unsigned division gives the same, several times as fast. */
+static inline bool pn_is_narrow(int64_t a, int64_t b)
+{
+    return ((((uint64_t)a | (uint64_t)b) >> 32U) == 0U) && (b != 0);
+}
+
+static inline int64_t pn_int_div(pn_ctx_t *cx, int64_t a, int64_t b)
+{
+    return pn_int_checked(cx, pn_is_narrow(a, b) ? (int64_t)((uint32_t)a / (uint32_t)b) : pn_wide_div(cx, a, b));
+}
+
+static inline int64_t pn_int_mod(pn_ctx_t *cx, int64_t a, int64_t b)
+{
+    return pn_is_narrow(a, b) ? (int64_t)((uint32_t)a % (uint32_t)b) : pn_wide_mod(cx, a, b);
+}
 
 static inline double pn_int_to_real(int64_t a)
 {
@@ -173,11 +181,7 @@ int64_t pn_real_round(pn_ctx_t *cx, double x);
 int64_t pn_real_trunc(pn_ctx_t *cx, double x);
 /* Rounds a half to even, as a real. */
 double pn_real_round_even(double x);
-/* The same to 64-bit integers: IntInf.int and model time; int. */
-int64_t pn_inf_floor(pn_ctx_t *cx, double x);
-int64_t pn_inf_ceil(pn_ctx_t *cx, double x);
-int64_t pn_inf_round(pn_ctx_t *cx, double x);
-int64_t pn_inf_trunc(pn_ctx_t *cx, double x);
+/* The same to 64-bit integers. */
 int64_t pn_wide_floor(pn_ctx_t *cx, double x);
 int64_t pn_wide_ceil(pn_ctx_t *cx, double x);
 int64_t pn_wide_round(pn_ctx_t *cx, double x);

@@ -15,13 +15,24 @@
 #ifndef PN_PLACE_H
 #define PN_PLACE_H
 
+#include <string.h>
+
 #include "pn/pn_bag.h"
 
 #if defined(__GNUC__)
 #define PN_MAYBE_UNUSED __attribute__((unused))
+#define PN_INLINE __attribute__((always_inline, unused)) static inline
 #else
 #define PN_MAYBE_UNUSED
+#define PN_INLINE static inline
 #endif
+
+/* Copies what an array place holds from one marking into another. */
+#define PN_COPY_PLACE(place, to, from)                                                                              \
+    do {                                                                                                            \
+        (to)->place.used = (from)->place.used;                                                                      \
+        (void)memcpy((to)->place.token, (from)->place.token, (from)->place.used * sizeof (to)->place.token[0]);     \
+    } while (false)
 
 /* The order of values that C compares itself. */
 #define PN_LESS(a, b) (*(a) < *(b))

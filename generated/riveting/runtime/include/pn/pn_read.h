@@ -7,13 +7,14 @@
 #ifndef PN_READ_H
 #define PN_READ_H
 
+#include "pn/pn_big.h"
 #include "pn/pn_string.h"
 #include "pn/pn_type.h"
 
 /* Reads a word or sign if it is there; what begins a longer word is not. */
 bool pn_read_accept(pn_string_t text, int64_t *at, pn_string_t word);
 /* Numbers, perhaps in parentheses. */
-int64_t pn_read_integer(pn_ctx_t *cx, pn_string_t text, int64_t *at);
+pn_big_t pn_read_integer(pn_ctx_t *cx, pn_string_t text, int64_t *at);
 double pn_read_number(pn_ctx_t *cx, pn_string_t text, int64_t *at);
 /* Whether only blanks are left, which are read. */
 bool pn_read_is_done(pn_string_t text, int64_t *at);

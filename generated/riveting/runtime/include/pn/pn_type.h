@@ -6,8 +6,9 @@
  *
  * Representation in C
  *
- *     unit             pn_unit_t                  int, IntInf, time, index    int64_t
- *     bool             bool                       real                        double
+ *     unit             pn_unit_t                  int, index                  int64_t
+ *     IntInf, time     pn_big_t                   real                        double
+ *     bool             bool
  *     string           pn_string_t                char                        uint8_t
  *     enumeration      enum (as unsigned int)     product, record             struct
  *     list             pointer to a constant cell { tail; head; }, NULL is the empty list
@@ -20,6 +21,7 @@
 #ifndef PN_TYPE_H
 #define PN_TYPE_H
 
+#include "pn/pn_big.h"
 #include "pn/pn_net.h"
 #include "pn/pn_string.h"
 
@@ -29,7 +31,8 @@ typedef uint8_t pn_unit_t;
 typedef enum pn_kind {
     PN_KIND_UNIT,
     PN_KIND_BOOL,
-    PN_KIND_INT,    /* int, intinf, time, index */
+    PN_KIND_INT,    /* int, index */
+    PN_KIND_BIG,    /* intinf, time */
     PN_KIND_REAL,
     PN_KIND_STRING,
     PN_KIND_CHAR,
@@ -54,13 +57,15 @@ typedef struct pn_type {
     pn_kind_t kind;
     const char *name;             /* of the colour set */
     size_t size;                  /* sizeof its C type */
-    bool has_range;               /* INT: low..high; REAL: real_low..real_high; LIST: length low..high */
+    bool has_range;               /* INT: low..high; BIG: big_low..big_high; REAL: real_low..real_high; LIST: length low..high */
     bool is_index;                /* INT: a value of an index colour set: `name_of_value[0] (number)` */
     bool is_float32;              /* REAL: stored in single precision */
     bool is_narrow;               /* something in it is stored in single precision */
     bool is_tuple;                /* RECORD: printed as a JSON array */
     int64_t low;
     int64_t high;
+    pn_big_t big_low;
+    pn_big_t big_high;
     double real_low;
     double real_high;
     bool has_chars;               /* STRING: characters char_low..char_high */

@@ -30,7 +30,7 @@ typedef enum pn_error {
     PN_ERR_SUBTRACT,   /* multi-set difference of what is not contained */
     PN_ERR_RAISED,     /* an exception of the net itself */
     PN_ERR_ENDLESS,    /* an evaluation that does not come to an end; not an exception of CPN ML */
-    PN_ERR_LARGE,      /* an IntInf.int beyond 64 bits; not an exception of CPN ML */
+    PN_ERR_LARGE,      /* a model time beyond 64 bits; not an exception of CPN ML */
     PN_ERR_UNSUPPORTED, /* a library function that exists in CPN Tools and cannot run here; the name says which and why */
     PN_ERR_INTERNAL    /* a contract of the runtime was broken */
 } pn_error_t;

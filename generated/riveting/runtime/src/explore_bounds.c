@@ -1,0 +1,378 @@
+/* SPDX-License-Identifier: MIT
+ * explore_bounds.c - how many tokens each place holds at least and at most, and of each colour.
+ *
+ * Packed places are looked at in every state: their counters lie in the marking. Of a counter of one bit the least and the most are the
+ * conjunction and the disjunction of all states, 64 at a time. Other places are looked at once for each multi-set that they ever held
+ * (explore_intern.c has them all), however many states there are.
+ */
+#include "explore_impl.h"
+
+#include <inttypes.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "pn/pn_packed.h"
+#include "pn/pn_text.h"
+
+/* One colour of a place that is not packed, as JSON. */
+typedef struct colour {
+    char *text;
+    uint64_t hash;
+    uint64_t most;
+    uint64_t least;
+    uint64_t seen;      /* multi-sets in which it is */
+    uint64_t round;     /* the last multi-set in which it was */
+    uint64_t now;       /* of it there */
+} colour_t;
+
+typedef struct colours {
+    colour_t *colour;
+    uint32_t *entry;    /* index + 1 of the colour */
+    uint32_t count;
+    uint32_t room;      /* a power of two: of entries; half as many colours */
+} colours_t;
+
+typedef struct place_bounds {
+    uint64_t least;
+    uint64_t most;
+    uint64_t multisets; /* looked at */
+    uint32_t *counter_least; /* packed, more than one bit: by colour */
+    uint32_t *counter_most;
+    colours_t colours;
+} place_bounds_t;
+
+struct ex_bounds {
+    uint64_t states;
+    uint64_t *all;      /* conjunction of the packed parts */
+    uint64_t *any;      /* disjunction */
+    place_bounds_t *place;
+};
+
+static size_t packed_words(void)
+{
+    return (pn_net.packed_size + sizeof(uint64_t) - 1U) / sizeof(uint64_t);
+}
+
+bool ex_bounds_make(ex_worker_t *worker)
+{
+    ex_bounds_t *const bounds = calloc(1U, sizeof *bounds);
+    worker->bounds = bounds;
+    if (bounds == NULL) {
+        return false;
+    }
+    bounds->all = calloc(packed_words() + 1U, sizeof *bounds->all);
+    bounds->any = calloc(packed_words() + 1U, sizeof *bounds->any);
+    bounds->place = calloc((size_t)pn_net.place_count + 1U, sizeof *bounds->place);
+    if ((bounds->all == NULL) || (bounds->any == NULL) || (bounds->place == NULL)) {
+        return false;
+    }
+    (void)memset(bounds->all, 0xff, packed_words() * sizeof *bounds->all);
+    for (uint32_t p = 0U; p < pn_net.place_count; p++) {
+        const pn_place_t *const place = &pn_net.place[p];
+        place_bounds_t *const own = &bounds->place[p];
+        own->least = UINT64_MAX;
+        if (place->is_packed && (place->width > 1U)) {
+            own->counter_least = calloc(place->colours, sizeof *own->counter_least);
+            own->counter_most = calloc(place->colours, sizeof *own->counter_most);
+            if ((own->counter_least == NULL) || (own->counter_most == NULL)) {
+                return false;
+            }
+            (void)memset(own->counter_least, 0xff, place->colours * sizeof *own->counter_least);
+        }
+    }
+    return true;
+}
+
+/* --- packed places ------------------------------------------------------------------------------------------------- */
+
+/* The tokens of a place with counters of one bit. */
+static uint32_t count_bits(const uint64_t *word, uint32_t bit, uint32_t colours)
+{
+    uint32_t total = 0U;
+    for (uint32_t i = 0U; i < colours;) {
+        const uint32_t at = bit + i;
+        const uint32_t left = 64U - (at % 64U);
+        const uint32_t some = ((colours - i) < left) ? (colours - i) : left;
+        const uint64_t mask = (some < 64U) ? (((uint64_t)1U << some) - 1U) : UINT64_MAX;
+        total += (uint32_t)__builtin_popcountll((word[at / 64U] >> (at % 64U)) & mask);
+        i += some;
+    }
+    return total;
+}
+
+static uint64_t see_counters(place_bounds_t *own, const pn_place_t *place, const uint64_t *word)
+{
+    uint64_t total = 0U;
+    for (uint32_t i = 0U; i < place->colours; i++) {
+        const uint32_t count = pn_counter(word, place->bit, place->width, i);
+        total += count;
+        own->counter_least[i] = (count < own->counter_least[i]) ? count : own->counter_least[i];
+        own->counter_most[i] = (count > own->counter_most[i]) ? count : own->counter_most[i];
+    }
+    return total;
+}
+
+void ex_bounds_see(ex_worker_t *worker)
+{
+    ex_bounds_t *const bounds = worker->bounds;
+    const uint64_t *const word = worker->marking;
+    bounds->states += 1U;
+    for (size_t i = 0U; i < packed_words(); i++) {
+        bounds->all[i] &= word[i];
+        bounds->any[i] |= word[i];
+    }
+    for (uint32_t p = 0U; p < pn_net.place_count; p++) {
+        const pn_place_t *const place = &pn_net.place[p];
+        place_bounds_t *const own = &bounds->place[p];
+        if (!place->is_packed) {
+            continue;
+        }
+        const uint64_t total =
+            (place->width == 1U) ? count_bits(word, place->bit, place->colours) : see_counters(own, place, word);
+        own->least = (total < own->least) ? total : own->least;
+        own->most = (total > own->most) ? total : own->most;
+    }
+}
+
+/* Adds what another thread has seen. */
+static void merge(ex_bounds_t *bounds, const ex_bounds_t *other)
+{
+    bounds->states += other->states;
+    for (size_t i = 0U; i < packed_words(); i++) {
+        bounds->all[i] &= other->all[i];
+        bounds->any[i] |= other->any[i];
+    }
+    for (uint32_t p = 0U; p < pn_net.place_count; p++) {
+        const pn_place_t *const place = &pn_net.place[p];
+        place_bounds_t *const own = &bounds->place[p];
+        const place_bounds_t *const theirs = &other->place[p];
+        own->least = (theirs->least < own->least) ? theirs->least : own->least;
+        own->most = (theirs->most > own->most) ? theirs->most : own->most;
+        for (uint32_t i = 0U; (own->counter_least != NULL) && (i < place->colours); i++) {
+            own->counter_least[i] = (theirs->counter_least[i] < own->counter_least[i]) ? theirs->counter_least[i] : own->counter_least[i];
+            own->counter_most[i] = (theirs->counter_most[i] > own->counter_most[i]) ? theirs->counter_most[i] : own->counter_most[i];
+        }
+    }
+}
+
+/* --- other places -------------------------------------------------------------------------------------------------- */
+
+static uint64_t text_hash(const char *text, size_t length)
+{
+    uint64_t hash = 1469598103934665603U; /* FNV-1a */
+    for (size_t i = 0U; i < length; i++) {
+        hash = (hash ^ (unsigned char)text[i]) * 1099511628211U;
+    }
+    return hash;
+}
+
+static bool enlarge(colours_t *c)
+{
+    const uint32_t room = (c->room == 0U) ? 16U : (c->room * 2U);
+    uint32_t *const entry = calloc(room, sizeof *entry);
+    colour_t *const colour = realloc(c->colour, (size_t)(room / 2U) * sizeof *colour);
+    c->colour = (colour != NULL) ? colour : c->colour;
+    if ((entry == NULL) || (colour == NULL)) {
+        free(entry);
+        return false;
+    }
+    for (uint32_t i = 0U; i < c->count; i++) {
+        uint32_t at = (uint32_t)colour[i].hash & (room - 1U);
+        while (entry[at] != 0U) {
+            at = (at + 1U) & (room - 1U);
+        }
+        entry[at] = i + 1U;
+    }
+    free(c->entry);
+    c->entry = entry;
+    c->room = room;
+    return true;
+}
+
+/* The colour with that text; a new one if there is none. NULL: no memory. */
+static colour_t *find_colour(colours_t *c, const char *text, size_t length)
+{
+    const uint64_t hash = text_hash(text, length);
+    if ((c->count >= (c->room / 2U)) && !enlarge(c)) {
+        return NULL;
+    }
+    uint32_t at = (uint32_t)hash & (c->room - 1U);
+    for (; c->entry[at] != 0U; at = (at + 1U) & (c->room - 1U)) {
+        colour_t *const found = &c->colour[c->entry[at] - 1U];
+        if ((found->hash == hash) && (strncmp(found->text, text, length) == 0) && (found->text[length] == '\0')) {
+            return found;
+        }
+    }
+    char *const copy = malloc(length + 1U);
+    if (copy == NULL) {
+        return NULL;
+    }
+    (void)memcpy(copy, text, length);
+    copy[length] = '\0';
+    colour_t *const fresh = &c->colour[c->count];
+    *fresh = (colour_t){ .text = copy, .hash = hash, .least = UINT64_MAX };
+    c->count += 1U;
+    c->entry[at] = c->count;
+    return fresh;
+}
+
+/* The end of a JSON value: the comma or bracket behind it. */
+static const char *value_end(const char *text)
+{
+    uint32_t depth = 0U;
+    bool is_string = false;
+    for (; *text != '\0'; text++) {
+        if (is_string) {
+            text += ((*text == '\\') && (text[1] != '\0')) ? 1 : 0;
+            is_string = (*text != '"');
+        } else if (*text == '"') {
+            is_string = true;
+        } else if ((*text == '[') || (*text == '{')) {
+            depth += 1U;
+        } else if ((*text == ']') || (*text == '}')) {
+            if (depth == 0U) {
+                return text;
+            }
+            depth -= 1U;
+        } else if ((*text == ',') && (depth == 0U)) {
+            return text;
+        }
+    }
+    return text;
+}
+
+/* One multi-set of the place as JSON: [[count, value], ...] or [[count, value, stamp], ...]. */
+static bool see_multiset(place_bounds_t *own, const char *text)
+{
+    uint64_t total = 0U;
+    own->multisets += 1U;
+    const char *at = &text[1];
+    while (*at == '[') {
+        char *value = NULL;
+        const uint64_t count = strtoull(&at[1], &value, 10);
+        value += 2; /* comma, blank */
+        const char *const end = value_end(value);
+        colour_t *const colour = find_colour(&own->colours, value, (size_t)(end - value));
+        if (colour == NULL) {
+            return false;
+        }
+        if (colour->round != own->multisets) {
+            /* In the multi-sets before this one it was not seen, or has been counted. */
+            colour->round = own->multisets;
+            colour->now = 0U;
+            colour->seen += 1U;
+        }
+        colour->now += count;
+        total += count;
+        at = value_end(end + ((*end == ',') ? 1 : 0)) + 1;
+        at += (*at == ',') ? 2 : 0;
+    }
+    for (uint32_t i = 0U; i < own->colours.count; i++) {
+        colour_t *const colour = &own->colours.colour[i];
+        if (colour->round == own->multisets) {
+            colour->most = (colour->now > colour->most) ? colour->now : colour->most;
+            colour->least = (colour->now < colour->least) ? colour->now : colour->least;
+        }
+    }
+    own->least = (total < own->least) ? total : own->least;
+    own->most = (total > own->most) ? total : own->most;
+    return true;
+}
+
+#define TEXT_SIZE ((size_t)1U << 22)
+
+/* All multi-sets that the places which are not packed ever held. */
+static bool see_interned(ex_run_t *run, ex_bounds_t *bounds)
+{
+    ex_worker_t *const worker = &run->worker[0];
+    const ex_bytes_t *const all = ex_interned(run);
+    char *const buffer = malloc(TEXT_SIZE);
+    bool is_fine = (buffer != NULL);
+    const uint64_t count = (all != NULL) ? atomic_load(&all->index.count) : 0U;
+    for (uint64_t i = 0U; is_fine && (i < count); i++) {
+        const ex_bytes_entry_t entry = all->of[i];
+        pn_text_t text;
+        if (entry.place >= pn_net.place_count) { /* a hole, or a time */
+            continue;
+        }
+        const pn_place_t *const place = &pn_net.place[entry.place];
+        const size_t mark = pn_arena_mark(worker->cx.arena);
+        pn_text_init(&text, buffer, TEXT_SIZE);
+        is_fine = (place->decode(&worker->cx, worker->marking, &all->byte[entry.offset], entry.length) != SIZE_MAX);
+        place->json(worker->marking, &text);
+        pn_arena_release(worker->cx.arena, mark);
+        is_fine = is_fine && !text.truncated && see_multiset(&bounds->place[entry.place], buffer);
+    }
+    free(buffer);
+    return is_fine;
+}
+
+/* --- the report ---------------------------------------------------------------------------------------------------- */
+
+static void list_item(FILE *out, bool *is_first, uint64_t count, const char *colour)
+{
+    if (count > 0U) {
+        (void)fprintf(out, "%s[%" PRIu64 ", %s]", *is_first ? "" : ", ", count, colour);
+        *is_first = false;
+    }
+}
+
+static void packed_json(const ex_bounds_t *bounds, const pn_place_t *place, const place_bounds_t *own, bool is_upper, FILE *out,
+                        char *buffer)
+{
+    bool is_first = true;
+    for (uint32_t i = 0U; i < place->colours; i++) {
+        pn_text_t text;
+        pn_text_init(&text, buffer, TEXT_SIZE);
+        uint64_t count = 0U;
+        if (place->width == 1U) {
+            count = pn_counter(is_upper ? bounds->any : bounds->all, place->bit, 1U, i);
+        } else {
+            count = is_upper ? own->counter_most[i] : own->counter_least[i];
+        }
+        if (count > 0U) {
+            place->colour_json(i, &text);
+            list_item(out, &is_first, count, buffer);
+        }
+    }
+}
+
+static void colours_json(const place_bounds_t *own, bool is_upper, FILE *out)
+{
+    bool is_first = true;
+    for (uint32_t i = 0U; i < own->colours.count; i++) {
+        const colour_t *const colour = &own->colours.colour[i];
+        const uint64_t least = (colour->seen == own->multisets) ? colour->least : 0U;
+        list_item(out, &is_first, is_upper ? colour->most : least, colour->text);
+    }
+}
+
+void ex_bounds_json(ex_run_t *run, FILE *out)
+{
+    ex_bounds_t *const bounds = run->worker[0].bounds;
+    char *const buffer = malloc(TEXT_SIZE);
+    for (uint32_t i = 1U; (bounds != NULL) && (i < run->options.threads); i++) {
+        if (run->worker[i].bounds != NULL) {
+            merge(bounds, run->worker[i].bounds);
+        }
+    }
+    const bool is_known = (bounds != NULL) && (buffer != NULL) && (bounds->states > 0U) && see_interned(run, bounds);
+    (void)fprintf(out, "\"bounds\": %s", is_known ? "[" : "null");
+    for (uint32_t p = 0U; is_known && (p < pn_net.place_count); p++) {
+        const pn_place_t *const place = &pn_net.place[p];
+        const place_bounds_t *const own = &bounds->place[p];
+        (void)fprintf(out, "%s{\"lower\": %" PRIu64 ", \"upper\": %" PRIu64, (p > 0U) ? ", " : "", own->least, own->most);
+        for (int is_upper = 0; is_upper <= 1; is_upper++) {
+            (void)fprintf(out, ", \"%s_multiset\": [", (is_upper == 1) ? "upper" : "lower");
+            if (place->is_packed) {
+                packed_json(bounds, place, own, is_upper == 1, out, buffer);
+            } else {
+                colours_json(own, is_upper == 1, out);
+            }
+            (void)fprintf(out, "]");
+        }
+        (void)fprintf(out, "}");
+    }
+    (void)fprintf(out, "%s", is_known ? "]" : "");
+    free(buffer);
+}

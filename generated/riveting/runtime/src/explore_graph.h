@@ -1,0 +1,82 @@
+/* SPDX-License-Identifier: MIT
+ * explore_graph.h - the graph of a state space: nodes in breadth-first order, the arcs of each, and what is computed over them.
+ *
+ * Node 0 is the initial marking (reports count from 1). Arcs lie node by node: those of node i are row[i] .. row[i + 1] - 1.
+ */
+#ifndef EXPLORE_GRAPH_H
+#define EXPLORE_GRAPH_H
+
+#include "explore_impl.h"
+
+#define EX_NO_NODE UINT32_MAX
+
+typedef struct ex_graph {
+    uint32_t nodes;
+    uint64_t arcs;
+    uint64_t room;         /* arcs that `target` and `label` have room for */
+    uint64_t *slot;        /* node -> slot of the store */
+    uint32_t *number;      /* slot -> node + 1; 0: not seen yet */
+    uint32_t *parent;      /* node -> the one it was first reached from; the initial marking's own */
+    uint64_t *row;         /* nodes + 1 of them */
+    uint32_t *target;
+    uint16_t *label;       /* arc -> transition */
+    uint64_t dead_count;
+    uint64_t node_room;    /* nodes that there is memory for */
+    bool is_whole;         /* all successors of all nodes are there */
+    /* Components: those that can be reached have smaller numbers than those from which they are reached. */
+    uint32_t *component;   /* node -> component */
+    uint32_t components;
+    uint64_t component_arcs; /* between different components */
+    bool is_acyclic;
+    /* Properties. */
+    uint64_t home_count;
+    uint32_t home_component; /* EX_NO_NODE: there is none */
+    bool *is_live;         /* by transition */
+    uint8_t *fairness;     /* by transition: ex_fairness_t */
+    double seconds;
+} ex_graph_t;
+
+typedef enum ex_fairness {
+    EX_IMPARTIAL,
+    EX_FAIR,
+    EX_JUST,
+    EX_UNFAIR
+} ex_fairness_t;
+
+/* What of a graph is looked at: arcs without those of a transition, nodes only if they are in a set. */
+typedef struct ex_part {
+    uint32_t without;      /* transition; EX_NO_NODE: all arcs */
+    const uint64_t *only;  /* bit set of nodes; NULL: all of them */
+    bool within;           /* only arcs inside a component of the whole graph */
+} ex_part_t;
+
+/* --- explore_scc.c --- */
+
+/* Fills component, components, component_arcs, is_acyclic. False: no memory, or told to stop. */
+bool ex_components(ex_run_t *run, ex_graph_t *graph);
+
+typedef enum ex_cycle {
+    EX_CYCLE,
+    EX_NO_CYCLE,
+    EX_CYCLE_UNKNOWN /* no memory, or told to stop */
+} ex_cycle_t;
+
+/* Whether the part has a cycle; with `through` (a bit set) whether it has one that goes through one of these nodes. */
+ex_cycle_t ex_has_cycle(ex_run_t *run, const ex_graph_t *graph, const ex_part_t *part, const uint64_t *through);
+
+/* --- explore_properties.c --- */
+
+/* Fills home, live and fairness. False: no memory, or told to stop. */
+bool ex_properties(ex_run_t *run, ex_graph_t *graph);
+
+/* --- explore_trace.c --- */
+
+/* A shortest run to a node as a file "dead-N.trace.jsonl" of the folder; steps < 0: it could not be written. */
+int64_t ex_write_trace(ex_run_t *run, const ex_graph_t *graph, uint32_t node, const char *path);
+/* The whole graph as lines of JSON. */
+bool ex_write_graph(ex_run_t *run, const ex_graph_t *graph, const char *path);
+
+#define EX_BIT(set, i) ((((set)[(i) >> 6U]) >> ((i) & 63U)) & 1U)
+#define EX_SET_BIT(set, i) ((set)[(i) >> 6U] |= (uint64_t)1U << ((i) & 63U))
+
+#endif /* EXPLORE_GRAPH_H */

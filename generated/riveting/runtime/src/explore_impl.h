@@ -1,0 +1,399 @@
+/* SPDX-License-Identifier: MIT
+ * explore_impl.h - what the parts of the explorer share.
+ *
+ * A marking is made into a *vector* of words (explore_codec.c) and a vector into a *key* of at most 16 bytes: the bytes of the vector
+ * themselves when they are few enough, else the two numbers at the root of its tree of pairs (explore_tree.c). Equal markings, equal
+ * keys; a key can be made into a marking again. The store (explore_store.c) is a set of keys. Its slots are numbered; a key stays in its
+ * slot unless the store grows, which happens during the exploration only (explore_search.c). After a complete exploration the graph phase
+ * (explore_graph.c) goes through the slots, makes the successors of each key once more and looks up their slots.
+ */
+#ifndef EXPLORE_IMPL_H
+#define EXPLORE_IMPL_H
+
+#include <pthread.h>
+#include <stdatomic.h>
+#include <stdio.h>
+
+#include "pn/pn_arena.h"
+#include "pn/pn_net.h"
+
+#define EX_MOST_THREADS 64U
+#define EX_NO_SLOT UINT64_MAX
+#define EX_SPARE_KEYS 1024U /* a store grows when less room than for so many is left below its limit */
+
+__extension__ typedef unsigned __int128 ex_wide_t;
+
+typedef struct ex_options {
+    bool is_depth_first;
+    uint32_t threads;
+    uint64_t max_states;   /* UINT64_MAX: no limit; so the others */
+    double max_seconds;    /* 0: no limit */
+    uint64_t memory;       /* bytes */
+    uint64_t arena;        /* bytes of each thread, for lists and strings */
+    uint64_t seed;
+    bool has_graph;        /* wanted */
+    bool is_bitstate;
+    bool is_hashed;        /* hash compaction */
+    bool shows_progress;
+    bool shows_help;
+    const char *spill;       /* folder; NULL: none */
+    const char *write_graph; /* file; NULL: none */
+    const char *trace_to;    /* what the names of traces to dead markings begin with; NULL: none */
+    uint64_t dead_limit;
+    uint64_t traces;         /* most traces in trace_to */
+} ex_options_t;
+
+/* Why it ended, in the order of importance. */
+typedef enum ex_why {
+    EX_COMPLETE,
+    EX_STATES,
+    EX_SECONDS,
+    EX_MEMORY,
+    EX_INTERRUPTED,
+    EX_CAPACITY, /* a place has too little room, or an arena: the program can be built or started with more */
+    EX_ERROR     /* an inscription raised an exception */
+} ex_why_t;
+
+/* The first error of an evaluation. */
+typedef struct ex_error {
+    char message[256];
+    char where[512];
+    const char *kind;   /* "capacity": of the place; "memory": of lists and strings; "exception" */
+    int64_t place;      /* index, -1: none */
+    int64_t transition; /* index, -1: none */
+} ex_error_t;
+
+/* A state as it is stored: `length` bytes (ex_store_t.length), the rest zero. */
+typedef struct ex_key {
+    uint64_t low;
+    uint64_t high;
+} ex_key_t;
+
+struct ex_run;
+struct ex_worker;
+
+/* --- memory (explore_memory.c) ------------------------------------------------------------------------------------- */
+
+/* Zeroed memory, page-aligned; counted, refused (NULL) beyond the limit of --memory. With --spill it lies in a file. Pages that are
+ * never touched cost nothing but count. Large blocks get huge pages. Thread-safe. */
+void *ex_alloc(struct ex_run *run, uint64_t size);
+void ex_free(struct ex_run *run, void *memory, uint64_t size);
+/* Whether so much could be had now. */
+bool ex_has_room(const struct ex_run *run, uint64_t size);
+/* Counts memory that is used of a reservation; false beyond the limit. */
+bool ex_count(struct ex_run *run, uint64_t size);
+void ex_uncount(struct ex_run *run, uint64_t size);
+/* As ex_alloc, but the caller has counted it. */
+void *ex_map(struct ex_run *run, uint64_t size);
+/* Zeroed addresses that cost nothing and do not count until they are used. NULL: not so many. */
+void *ex_reserve(uint64_t size);
+/* Gives back the pages of a part of a block that is going to be freed; they still count. */
+void ex_discard(struct ex_run *run, void *memory, uint64_t size, uint64_t from, uint64_t to);
+/* ex_free without counting. */
+void ex_unmap(void *memory, uint64_t size);
+/* Whether a block of that size lies in a file and does not count. */
+bool ex_is_spilled(const struct ex_run *run, uint64_t size);
+
+/* --- numbers of things (explore_intern.c) -------------------------------------------------------------------------- */
+
+#define EX_NO_NUMBER UINT32_MAX
+
+/* Gives equal things equal numbers, from 0 on nearly without holes. Threads may do it at the same time; it never moves what it has, but
+ * has to grow now and then, while nobody uses it. */
+typedef struct ex_index {
+    struct ex_run *run;
+    _Atomic uint64_t *entry; /* low half: number + 1, 0: free; high half: of the hash */
+    uint64_t entries;
+    uint64_t limit;          /* numbers from which on it has to grow */
+    uint64_t most;           /* numbers for which addresses are reserved */
+    _Atomic uint64_t count;  /* numbers given */
+} ex_index_t;
+
+/* Four numbers as one: the inner nodes of trees. */
+typedef struct ex_quad {
+    uint64_t low;
+    uint64_t high;
+} ex_quad_t;
+
+typedef struct ex_quads {
+    ex_index_t index;
+    ex_quad_t *quad;
+} ex_quads_t;
+
+/* Strings of bytes, each with the place to which it belongs. */
+typedef struct ex_bytes_entry {
+    uint64_t offset;
+    uint32_t length;
+    uint32_t place; /* UINT32_MAX: a hole */
+} ex_bytes_entry_t;
+
+typedef struct ex_bytes {
+    ex_index_t index;
+    ex_bytes_entry_t *of;
+    unsigned char *byte;
+    uint64_t reserved;
+    _Atomic uint64_t used;    /* bytes */
+    _Atomic uint64_t counted;
+} ex_bytes_t;
+
+bool ex_quads_make(ex_quads_t *quads, struct ex_run *run);
+bool ex_bytes_make(ex_bytes_t *bytes, struct ex_run *run);
+/* The number; EX_NO_NUMBER: it has to grow first. */
+uint32_t ex_quads_number(ex_quads_t *quads, ex_quad_t quad);
+uint32_t ex_bytes_number(ex_bytes_t *bytes, uint32_t place, const unsigned char *byte, uint32_t length);
+/* Makes room if need be; false when there is no memory. */
+bool ex_quads_grow(ex_quads_t *quads);
+bool ex_bytes_grow(ex_bytes_t *bytes);
+uint64_t ex_quads_bytes(const ex_quads_t *quads);
+uint64_t ex_bytes_bytes(const ex_bytes_t *bytes);
+
+/* --- codec (explore_codec.c) --------------------------------------------------------------------------------------- */
+
+/* A group of words that share a number: an inner node of the tree. */
+typedef struct ex_node {
+    uint32_t child[4]; /* cells */
+    uint32_t count;
+    uint32_t parent;   /* node; UINT32_MAX: at the root */
+} ex_node_t;
+
+/* The shape of the vectors: found once, from the tables of the net.
+ *
+ * A vector consists of cells: the words of the packed part, a word for each bag (the number of its bytes), one for the time if the net
+ * is timed. Where places cannot be encoded one by one, there is one word for the whole marking. */
+typedef struct ex_codec {
+    bool is_whole;
+    bool is_direct;          /* the key is the vector: units of up to 64 bits, one behind the other */
+    bool has_cells;          /* there is more than the packed part */
+    uint32_t units;          /* of the packed part */
+    uint32_t packed_words;
+    uint32_t words;          /* cells, without those of the inner nodes */
+    uint32_t time_word;      /* UINT32_MAX: none */
+    uint64_t *unit_mask;     /* bits of a unit that are used */
+    uint32_t *unit_shift;    /* where it is in the key */
+    uint32_t *word_shift;    /* the same for the words behind the packed part */
+    uint32_t *word_of;       /* by place: its word; UINT32_MAX: packed */
+    uint32_t *place_of;      /* by word behind the packed part */
+    uint32_t **touched_words;  /* by transition: words of the packed part that an occurrence may change */
+    uint32_t *touched_count;
+    uint32_t **touched_bags;   /* by transition: places */
+    uint32_t *touched_bag_count;
+    ex_node_t *node;
+    uint32_t nodes;
+    uint32_t *parent;        /* by cell: node */
+    uint32_t root[2];        /* cells */
+    uint32_t key_bytes;
+    ex_bytes_t bytes;
+    ex_quads_t quads;
+} ex_codec_t;
+
+/* What a thread needs for it. */
+typedef struct ex_scratch {
+    uint32_t *cell;          /* of the state that is loaded: words, then inner nodes */
+    bool is_loaded;          /* `cell` and worker->marking are those of a state */
+    uint64_t *dirty;         /* a bit for each inner node */
+    uint32_t *undo_cell;
+    uint32_t *undo_value;
+    uint32_t undone;
+    unsigned char *buffer;
+    size_t buffer_size;
+    void *next;              /* marking */
+    void *binding;
+    pn_arena_t arena;
+} ex_scratch_t;
+
+bool ex_codec_make(struct ex_run *run);
+bool ex_scratch_make(struct ex_worker *worker);
+/* For ex_successors: the key of `next`, which is what has become of the loaded state by a transition; the time is the same. */
+bool ex_encode_next(struct ex_worker *worker, uint32_t transition, const void *next, ex_key_t *key);
+/* The word of the time has to be that of worker->marking. */
+bool ex_encode_time(struct ex_worker *worker);
+/* Bytes of the tables of interned places and of pairs. */
+uint64_t ex_codec_bytes(const struct ex_run *run);
+/* The canonical bytes of all multi-sets that places which are not packed ever held; NULL: all places are packed. */
+const ex_bytes_t *ex_interned(const struct ex_run *run);
+
+/* The key of a marking; false after an error or when memory is used up (the worker's `failed` tells). */
+bool ex_encode(struct ex_worker *worker, const void *marking, ex_key_t *key);
+/* Makes worker->marking that of the key, at the time at which the state was created. False after an error. */
+bool ex_load(struct ex_worker *worker, const ex_key_t *key);
+
+/* --- successors (explore_successors.c) ----------------------------------------------------------------------------- */
+
+/* An arc: the binding, outputs of the code segment included, lives until the call returns. False: stop. */
+typedef bool (*ex_arc_sink_t)(void *user, uint32_t transition, const void *binding, const ex_key_t *key);
+
+typedef enum ex_found {
+    EX_SOME,    /* at least one successor */
+    EX_DEAD,    /* none, now and at any later time */
+    EX_STOPPED, /* the sink said so */
+    EX_FAILED   /* an inscription raised an exception, or memory is used up: worker->failed */
+} ex_found_t;
+
+/* All binding elements of the best priority that are enabled in the state, or at the next time at which there are any; in the
+ * documented order. worker->marking is then the state at the time of these occurrences (pn_net.now). */
+ex_found_t ex_successors(struct ex_worker *worker, const ex_key_t *key, ex_arc_sink_t sink, void *user);
+
+/* --- store (explore_store.c) --------------------------------------------------------------------------------------- */
+
+typedef struct ex_store {
+    struct ex_run *run;
+    unsigned char *bucket;   /* lines of 64 bytes */
+    uint64_t buckets;
+    uint64_t limit;          /* keys from which on it ought to grow */
+    uint32_t slots;          /* of a bucket */
+    uint32_t length;         /* bytes of a key */
+    uint64_t low_mask;       /* of ex_key_t: which bytes are part of a key */
+    uint64_t high_mask;
+    _Atomic uint64_t used;   /* keys; exact while nobody inserts */
+} ex_store_t;
+
+typedef enum ex_insertion {
+    EX_NEW,
+    EX_KNOWN,
+    EX_FULL /* nothing was done: ex_store_grow first, while no other thread uses the store */
+} ex_insertion_t;
+
+bool ex_store_make(ex_store_t *store, struct ex_run *run, uint32_t length, uint64_t keys);
+void ex_store_free(ex_store_t *store);
+/* Makes room; false when there is no memory (the store stays as it was, or has lost keys: the run ends). */
+bool ex_store_grow(ex_store_t *store);
+uint64_t ex_store_bytes(const ex_store_t *store);
+
+__extension__ typedef unsigned __int128 ex_wide_t;
+
+static inline uint64_t ex_hash(const ex_key_t *key)
+{
+    /* Product of 128 bits, folded, twice. */
+    const ex_wide_t first =
+        (ex_wide_t)(key->low ^ 0x9e3779b97f4a7c15U) * (key->high ^ 0xd6e8feb86659fd93U);
+    const uint64_t folded = (uint64_t)first ^ (uint64_t)(first >> 64U) ^ key->low;
+    const ex_wide_t second =
+        (ex_wide_t)(folded ^ 0xa0761d6478bd642fU) * 0xe7037ed1a0b428dbU;
+    return (uint64_t)second ^ (uint64_t)(second >> 64U);
+}
+
+/* A hash, scaled to 0 .. count - 1; in the same order. */
+static inline uint64_t ex_scaled(uint64_t hash, uint64_t count)
+{
+    return (uint64_t)(((ex_wide_t)hash * count) >> 64U);
+}
+
+static inline void ex_store_prefetch(const ex_store_t *store, uint64_t hash)
+{
+    __builtin_prefetch(&store->bucket[ex_scaled(hash, store->buckets) * 64U], 1, 3);
+}
+
+/* `hash` is ex_hash of the key. Threads may insert at the same time. `slot`: where it is, NULL if that is of no interest. */
+ex_insertion_t ex_store_insert(ex_store_t *store, const ex_key_t *key, uint64_t hash, uint64_t *slot);
+/* The slot of a key, EX_NO_SLOT when it is not there. */
+uint64_t ex_store_find(const ex_store_t *store, const ex_key_t *key, uint64_t hash);
+/* Slots are 0 .. ex_store_slots - 1. */
+uint64_t ex_store_slots(const ex_store_t *store);
+/* The key in a slot; false when the slot is empty. */
+bool ex_store_fetch(const ex_store_t *store, uint64_t slot, ex_key_t *key);
+
+/* --- the run ------------------------------------------------------------------------------------------------------- */
+
+/* What one thread has. */
+typedef struct ex_worker {
+    struct ex_run *run;
+    uint32_t index;
+    pn_ctx_t cx;
+    void *marking;           /* of the state last loaded */
+    bool failed;             /* an evaluation or an allocation has failed: see run->error, run->why */
+    ex_scratch_t *scratch; /* of the codec and the successors */
+    struct ex_search *search;   /* of the search */
+    struct ex_bounds *bounds;   /* of explore_bounds.c */
+    /* Counted during the exploration. */
+    uint64_t states;         /* expanded */
+    uint64_t arcs;
+    uint64_t dead;
+    uint64_t *fired;         /* by transition */
+} ex_worker_t;
+
+typedef struct ex_run {
+    ex_options_t options;
+    ex_codec_t *codec;
+    ex_store_t store;
+    ex_worker_t *worker;     /* options.threads of them */
+    ex_key_t initial;
+    double started;          /* seconds of the monotonic clock */
+    _Atomic int why;         /* ex_why_t: EX_COMPLETE until something has happened */
+    _Atomic bool is_stopping;
+    _Atomic bool is_pausing; /* a table has to grow: all threads are to come to ex_pause */
+    pthread_mutex_t gate;    /* of what follows */
+    pthread_cond_t gate_changed;
+    uint32_t at_work;        /* threads that may use the tables */
+    uint32_t paused;         /* of them, in ex_pause */
+    uint64_t pauses;         /* done */
+    pthread_mutex_t error_lock;
+    ex_error_t error;        /* where why is EX_ERROR or EX_CAPACITY, or EX_MEMORY with a kind that is not NULL */
+    _Atomic uint64_t memory_used;
+    /* Results of the exploration. */
+    uint64_t nodes;
+    uint64_t arcs;
+    uint64_t depth;
+    uint64_t dead_count;
+    uint64_t *fired;         /* by transition */
+    uint64_t expanded;
+    double seconds;          /* of the exploration, without the graph */
+    double cpu_seconds;
+    double omission_probability;
+    uint64_t approximate_bytes; /* of what stands for the store */
+    bool has_bounds;
+    struct ex_level *level;     /* of explore_search.c */
+    _Atomic(const char *) phase; /* for the progress lines */
+    struct ex_graph *graph;  /* of explore_graph.c; NULL: none */
+} ex_run_t;
+
+/* Waits until all threads are here, or idle, and one of them has made the tables grow. Asked for where a table is full; a thread that
+ * works for long without asking looks at ex_is_pausing now and then. False: the run stops. */
+bool ex_pause(ex_worker_t *worker);
+static inline bool ex_is_pausing(const ex_run_t *run)
+{
+    return atomic_load_explicit(&run->is_pausing, memory_order_relaxed);
+}
+/* With the gate locked, when a thread has become idle: the pause may begin. */
+void ex_check_pause(ex_run_t *run);
+/* Notes why the run has to end, unless something more important is known, and makes all threads stop. */
+void ex_stop(ex_run_t *run, ex_why_t why);
+/* The same for the error in the worker's context. */
+void ex_fail(ex_worker_t *worker, int64_t transition);
+/* Whether to stop: asked often (once in a few states or arcs), it looks at signals and, now and then, at the clock. */
+static inline bool ex_is_stopping(const ex_run_t *run)
+{
+    return atomic_load_explicit(&run->is_stopping, memory_order_relaxed);
+}
+double ex_clock(void);
+/* Calls `work` on each worker, in a thread of its own when there are several, and waits for all of them. */
+void ex_parallel(ex_run_t *run, void (*work)(ex_worker_t *worker, void *user), void *user);
+
+/* For the progress lines; about right while threads explore. */
+typedef struct ex_progress {
+    uint64_t states;
+    uint64_t arcs;
+    uint64_t frontier;
+    uint64_t depth;
+} ex_progress_t;
+void ex_progress(ex_run_t *run, ex_progress_t *progress);
+
+/* The exploration: fills the results. False when it could not begin. */
+bool ex_explore(ex_run_t *run);
+
+/* --- bounds (explore_bounds.c) ------------------------------------------------------------------------------------- */
+
+typedef struct ex_bounds ex_bounds_t;
+bool ex_bounds_make(ex_worker_t *worker);
+/* Called once for each state, with worker->marking that of the state. */
+void ex_bounds_see(ex_worker_t *worker);
+/* After the exploration: ,"bounds": [...] as a member of the report. */
+void ex_bounds_json(ex_run_t *run, FILE *out);
+
+/* --- graph (explore_graph.c) --------------------------------------------------------------------------------------- */
+
+/* After a complete exploration with an exact store. False: there is no graph (no memory, stopped: run->why says so). */
+bool ex_graph(ex_run_t *run);
+/* Members of the report: "dead": [...], "graph": {...} or null, "traces": [...]; without a graph too. */
+void ex_graph_json(ex_run_t *run, FILE *out);
+
+#endif /* EXPLORE_IMPL_H */

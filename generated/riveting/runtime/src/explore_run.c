@@ -1,0 +1,138 @@
+/* SPDX-License-Identifier: MIT
+ * explore_run.c - threads, pauses in which tables grow, and why a run ends.
+ */
+#define _POSIX_C_SOURCE 200809L
+
+#include "explore_impl.h"
+
+#include <string.h>
+#include <time.h>
+
+#include "pn/pn_num.h"
+
+double ex_clock(void)
+{
+    struct timespec now = { 0, 0 };
+    (void)clock_gettime(CLOCK_MONOTONIC, &now);
+    return (double)now.tv_sec + ((double)now.tv_nsec / 1e9);
+}
+
+void ex_stop(ex_run_t *run, ex_why_t why)
+{
+    int known = atomic_load(&run->why);
+    while ((known < (int)why) && !atomic_compare_exchange_weak(&run->why, &known, (int)why)) {
+    }
+    atomic_store(&run->is_stopping, true);
+}
+
+static int64_t place_at(const char *origin)
+{
+    for (uint32_t i = 0U; i < pn_net.place_count; i++) {
+        if (strcmp(pn_net.place[i].origin, origin) == 0) {
+            return (int64_t)i;
+        }
+    }
+    return -1;
+}
+
+void ex_fail(ex_worker_t *worker, int64_t transition)
+{
+    ex_run_t *run = worker->run;
+    const pn_ctx_t *cx = &worker->cx;
+    const bool is_capacity = cx->error == PN_ERR_CAPACITY;
+    const bool is_memory = cx->error == PN_ERR_MEMORY;
+    worker->failed = true;
+    (void)pthread_mutex_lock(&run->error_lock);
+    if (run->error.kind == NULL) { /* the first one counts */
+        (void)snprintf(run->error.message, sizeof run->error.message, "%s", cx->error_name);
+        (void)snprintf(run->error.where, sizeof run->error.where, "%s", cx->error_origin);
+        run->error.kind = is_capacity ? "capacity" : (is_memory ? "memory" : "exception");
+        run->error.place = is_capacity ? place_at(cx->error_origin) : -1;
+        run->error.transition = transition;
+    }
+    (void)pthread_mutex_unlock(&run->error_lock);
+    ex_stop(run, (is_capacity || is_memory) ? EX_CAPACITY : EX_ERROR);
+}
+
+/* --- pauses --------------------------------------------------------------------------------------------------------- */
+
+/* Whatever is nearly full grows; the others wait. */
+static void grow_all(ex_run_t *run)
+{
+    const bool is_full = (atomic_load(&run->store.used) + EX_SPARE_KEYS) >= run->store.limit;
+    const bool is_fine = (!is_full || ex_store_grow(&run->store)) && ex_bytes_grow(&run->codec->bytes)
+                         && (run->codec->is_direct || ex_quads_grow(&run->codec->quads));
+    if (!is_fine) {
+        ex_stop(run, EX_MEMORY);
+    }
+    run->paused = 0U;
+    run->pauses++;
+    atomic_store(&run->is_pausing, false);
+    (void)pthread_cond_broadcast(&run->gate_changed);
+}
+
+void ex_check_pause(ex_run_t *run)
+{
+    if (ex_is_pausing(run) && (run->paused > 0U) && (run->paused == run->at_work)) {
+        grow_all(run);
+    }
+}
+
+bool ex_pause(ex_worker_t *worker)
+{
+    ex_run_t *run = worker->run;
+    (void)pthread_mutex_lock(&run->gate);
+    const uint64_t pauses = run->pauses;
+    atomic_store(&run->is_pausing, true);
+    run->paused++;
+    ex_check_pause(run);
+    while (pauses == run->pauses) {
+        (void)pthread_cond_wait(&run->gate_changed, &run->gate);
+    }
+    (void)pthread_mutex_unlock(&run->gate);
+    return !ex_is_stopping(run);
+}
+
+/* --- threads -------------------------------------------------------------------------------------------------------- */
+
+typedef struct job {
+    ex_worker_t *worker;
+    void (*work)(ex_worker_t *worker, void *user);
+    void *user;
+    pthread_t thread;
+} job_t;
+
+static void *start(void *user)
+{
+    job_t *job = user;
+    ex_run_t *run = job->worker->run;
+    job->work(job->worker, job->user);
+    (void)pthread_mutex_lock(&run->gate);
+    run->at_work--;
+    ex_check_pause(run);
+    (void)pthread_mutex_unlock(&run->gate);
+    return NULL;
+}
+
+void ex_parallel(ex_run_t *run, void (*work)(ex_worker_t *worker, void *user), void *user)
+{
+    job_t job[EX_MOST_THREADS];
+    const uint32_t threads = run->options.threads;
+    uint32_t started = 1U;
+    run->at_work = threads;
+    for (uint32_t i = 0U; i < threads; i++) {
+        job[i] = (job_t){ .worker = &run->worker[i], .work = work, .user = user };
+    }
+    for (; started < threads; started++) {
+        if (pthread_create(&job[started].thread, NULL, start, &job[started]) != 0) {
+            break;
+        }
+    }
+    (void)pthread_mutex_lock(&run->gate);
+    run->at_work -= threads - started; /* those that could not be had */
+    (void)pthread_mutex_unlock(&run->gate);
+    (void)start(&job[0]);
+    for (uint32_t i = 1U; i < started; i++) {
+        (void)pthread_join(job[i].thread, NULL);
+    }
+}

@@ -1,0 +1,495 @@
+/* SPDX-License-Identifier: MIT
+ * explore_search.c - through all states, breadth first or depth first.
+ *
+ * Keys of states that are still to be expanded lie in chunks. Breadth first, threads take chunks of this level and fill chunks of the
+ * next one; depth first, each has a stack of chunks and gives the lowest one away when others have nothing to do. Successors are put
+ * into the store in batches: while the cache line of one is on its way from memory, others are made.
+ */
+#define _POSIX_C_SOURCE 200809L
+
+#include "explore_impl.h"
+
+#include <math.h>
+#include <string.h>
+#include <time.h>
+
+enum {
+    CHUNK_SIZE = 1 << 14,
+    BATCH = 64,
+    SHARED_FROM = 32, /* keys in a chunk that is given to idle threads */
+    FIRST_KEYS = 1 << 14,
+    REPORTED = 1 << 12 /* states after which a thread tells how far it is */
+};
+
+/* Keys behind one another; in depth-first search each with its depth. */
+typedef struct chunk {
+    struct chunk *next;
+    uint32_t count;
+    uint32_t taken;   /* from the beginning; of a chunk that is being expanded */
+    unsigned char byte[];
+} chunk_t;
+
+typedef struct ex_level {
+    ex_run_t *run;
+    uint32_t stride;    /* bytes of an entry */
+    uint32_t capacity;  /* entries of a chunk */
+    chunk_t *now;       /* of this level, or given away */
+    chunk_t *next;      /* of the next level */
+    chunk_t *spare;
+    uint64_t depth;
+    uint32_t idle;
+    _Atomic uint32_t hungry; /* threads without work */
+    _Atomic uint64_t expanded; /* for the progress: as of the last chunks */
+    _Atomic uint64_t arcs;
+    _Atomic uint64_t deepest;
+    bool is_finished;
+} search_t;
+
+typedef struct pending {
+    ex_key_t key;
+    uint64_t hash;
+} pending_t;
+
+typedef struct ex_search {
+    search_t *search;
+    chunk_t *out;       /* being filled; depth first: the top of the stack */
+    chunk_t *bottom;    /* depth first: the lowest chunk of the stack (`next` leads downwards) */
+    pending_t batch[BATCH];
+    uint32_t pending;
+    uint64_t depth;     /* of the successors */
+    uint64_t deepest;
+    uint64_t reported_arcs;
+    uint64_t reported_states;
+} ex_search_t;
+
+/* --- chunks ---------------------------------------------------------------------------------------------------------- */
+
+/* With the gate locked. */
+static chunk_t *spare_chunk(search_t *search)
+{
+    chunk_t *chunk = search->spare;
+    if (chunk != NULL) {
+        search->spare = chunk->next;
+        return chunk;
+    }
+    return NULL;
+}
+
+static chunk_t *new_chunk(search_t *search)
+{
+    (void)pthread_mutex_lock(&search->run->gate);
+    chunk_t *chunk = spare_chunk(search);
+    (void)pthread_mutex_unlock(&search->run->gate);
+    if (chunk == NULL) {
+        chunk = ex_alloc(search->run, (uint64_t)CHUNK_SIZE);
+    }
+    if (chunk == NULL) {
+        ex_stop(search->run, EX_MEMORY);
+        return NULL;
+    }
+    chunk->next = NULL;
+    chunk->count = 0U;
+    chunk->taken = 0U;
+    return chunk;
+}
+
+static void put_entry(const search_t *search, chunk_t *chunk, const ex_key_t *key, uint64_t depth)
+{
+    /* What is written too much is overwritten by the next one; behind the last there is room. */
+    unsigned char *at = &chunk->byte[(size_t)chunk->count * search->stride];
+    (void)memcpy(at, key, sizeof *key);
+    if (search->run->options.is_depth_first) {
+        const uint32_t shortened = (depth < UINT32_MAX) ? (uint32_t)depth : UINT32_MAX;
+        (void)memcpy(&at[search->stride - sizeof shortened], &shortened, sizeof shortened);
+    }
+    chunk->count++;
+}
+
+static uint64_t get_entry(const search_t *search, const chunk_t *chunk, uint32_t i, ex_key_t *key)
+{
+    const unsigned char *at = &chunk->byte[(size_t)i * search->stride];
+    uint32_t depth = 0U;
+    (void)memcpy(key, at, sizeof *key);
+    key->low &= search->run->store.low_mask;
+    key->high &= search->run->store.high_mask;
+    if (search->run->options.is_depth_first) {
+        (void)memcpy(&depth, &at[search->stride - sizeof depth], sizeof depth);
+    }
+    return depth;
+}
+
+/* Gives the chunk that is being filled to the next level. With the gate locked. */
+static void hand_over(ex_search_t *own)
+{
+    search_t *search = own->search;
+    if ((own->out != NULL) && (own->out->count > 0U)) {
+        own->out->next = search->next;
+        search->next = own->out;
+        own->out = NULL;
+    }
+}
+
+/* Gives the lowest chunk of the stack to threads that have nothing to do. */
+static void share_stack(ex_search_t *own)
+{
+    search_t *search = own->search;
+    chunk_t *above = own->out;
+    while ((above != NULL) && (above->next != own->bottom)) {
+        above = above->next;
+    }
+    if (above == NULL) {
+        return;
+    }
+    chunk_t *given = own->bottom;
+    above->next = NULL;
+    own->bottom = above;
+    (void)pthread_mutex_lock(&search->run->gate);
+    given->next = search->now;
+    search->now = given;
+    (void)pthread_cond_broadcast(&search->run->gate_changed);
+    (void)pthread_mutex_unlock(&search->run->gate);
+}
+
+/* A state that has been found for the first time. */
+static bool add_new(ex_search_t *own, const ex_key_t *key)
+{
+    search_t *search = own->search;
+    const bool is_stack = search->run->options.is_depth_first;
+    if ((own->out != NULL) && (own->out->count == search->capacity) && !is_stack) {
+        (void)pthread_mutex_lock(&search->run->gate);
+        hand_over(own);
+        (void)pthread_mutex_unlock(&search->run->gate);
+    }
+    if ((own->out == NULL) || (own->out->count == search->capacity)) {
+        chunk_t *chunk = new_chunk(search);
+        if (chunk == NULL) {
+            return false;
+        }
+        chunk->next = own->out;
+        if (own->out == NULL) {
+            own->bottom = chunk;
+        }
+        own->out = chunk;
+    }
+    put_entry(search, own->out, key, own->depth);
+    if (is_stack && (own->depth > own->deepest)) {
+        own->deepest = own->depth;
+    }
+    if (is_stack && (own->out != own->bottom) && (atomic_load_explicit(&search->hungry, memory_order_relaxed) > 0U)) {
+        share_stack(own);
+    }
+    return true;
+}
+
+/* --- batches --------------------------------------------------------------------------------------------------------- */
+
+/* Inserts what has been collected. False when the run stops. */
+static bool flush(ex_worker_t *worker)
+{
+    ex_run_t *run = worker->run;
+    ex_search_t *own = worker->search;
+    ex_store_t *store = &run->store;
+    uint64_t found = 0U;
+    bool goes_on = true;
+    if (ex_is_pausing(run)) {
+        (void)ex_pause(worker);
+    }
+    /* What other threads are inserting now is not counted yet, but there is room above the limit. */
+    if (((atomic_load_explicit(&store->used, memory_order_relaxed) + (2U * (uint64_t)BATCH)) > store->limit) && !ex_pause(worker)) {
+        return false;
+    }
+    const uint64_t before = atomic_load_explicit(&store->used, memory_order_relaxed);
+    for (uint32_t i = 0U; goes_on && (i < own->pending); i++) {
+        const pending_t *pending = &own->batch[i];
+        if ((before + found) >= run->options.max_states) {
+            const bool is_known = ex_store_find(store, &pending->key, pending->hash) != EX_NO_SLOT;
+            goes_on = is_known;
+            if (!is_known) {
+                ex_stop(run, EX_STATES);
+            }
+            continue;
+        }
+        const ex_insertion_t insertion = ex_store_insert(store, &pending->key, pending->hash, NULL);
+        if (insertion == EX_NEW) {
+            found++;
+            goes_on = add_new(own, &pending->key);
+        } else if (insertion == EX_FULL) {
+            ex_stop(run, EX_MEMORY); /* so many threads at the same time */
+            goes_on = false;
+        }
+    }
+    own->pending = 0U;
+    if (found > 0U) {
+        (void)atomic_fetch_add_explicit(&store->used, found, memory_order_relaxed);
+    }
+    return goes_on && !ex_is_stopping(run);
+}
+
+static bool on_arc(void *user, uint32_t transition, const void *binding, const ex_key_t *key)
+{
+    ex_worker_t *worker = user;
+    ex_search_t *own = worker->search;
+    (void)binding;
+    pending_t *pending = &own->batch[own->pending];
+    pending->key = *key;
+    pending->hash = ex_hash(key);
+    ex_store_prefetch(&worker->run->store, pending->hash);
+    worker->fired[transition]++;
+    worker->arcs++;
+    own->pending++;
+    return (own->pending < (uint32_t)BATCH) || flush(worker);
+}
+
+/* --- the loop -------------------------------------------------------------------------------------------------------- */
+
+/* For the progress lines. */
+static void report(ex_worker_t *worker)
+{
+    ex_search_t *own = worker->search;
+    search_t *search = own->search;
+    (void)atomic_fetch_add_explicit(&search->arcs, worker->arcs - own->reported_arcs, memory_order_relaxed);
+    (void)atomic_fetch_add_explicit(&search->expanded, worker->states - own->reported_states, memory_order_relaxed);
+    own->reported_arcs = worker->arcs;
+    own->reported_states = worker->states;
+    if (search->run->options.is_depth_first) {
+        uint64_t deepest = atomic_load_explicit(&search->deepest, memory_order_relaxed);
+        while ((deepest < own->deepest) && !atomic_compare_exchange_weak(&search->deepest, &deepest, own->deepest)) {
+        }
+    }
+}
+
+void ex_progress(ex_run_t *run, ex_progress_t *progress)
+{
+    const search_t *search = run->level;
+    const uint64_t states = atomic_load_explicit(&run->store.used, memory_order_relaxed);
+    progress->states = states;
+    if (search != NULL) {
+        const uint64_t expanded = atomic_load_explicit(&search->expanded, memory_order_relaxed);
+        progress->arcs = atomic_load_explicit(&search->arcs, memory_order_relaxed);
+        progress->depth = atomic_load_explicit(&search->deepest, memory_order_relaxed);
+        progress->frontier = (states > expanded) ? (states - expanded) : 0U;
+    }
+}
+
+/* False when the run stops. */
+static bool expand(ex_worker_t *worker, const ex_key_t *key)
+{
+    switch (ex_successors(worker, key, on_arc, worker)) {
+    case EX_SOME:
+        break;
+    case EX_DEAD:
+        worker->dead++;
+        break;
+    case EX_STOPPED:
+    case EX_FAILED:
+    default:
+        return false;
+    }
+    worker->states++;
+    ex_bounds_see(worker);
+    if ((worker->states % (uint64_t)REPORTED) == 0U) {
+        report(worker);
+    }
+    return true;
+}
+
+/* A chunk to expand; NULL when there is none and never will be. `used` was expanded and is free again. */
+static chunk_t *take_chunk(ex_worker_t *worker, chunk_t *used)
+{
+    ex_run_t *run = worker->run;
+    ex_search_t *own = worker->search;
+    search_t *search = own->search;
+    chunk_t *chunk = NULL;
+    report(worker);
+    (void)pthread_mutex_lock(&run->gate);
+    if (used != NULL) {
+        used->next = search->spare;
+        search->spare = used;
+    }
+    while (!search->is_finished && !ex_is_stopping(run)) {
+        if (search->now != NULL) {
+            chunk = search->now;
+            search->now = chunk->next;
+            break;
+        }
+        if (!run->options.is_depth_first) {
+            hand_over(own);
+        }
+        if (run->at_work > 1U) {
+            /* Others are still at it. */
+            run->at_work--;
+            (void)atomic_fetch_add_explicit(&search->hungry, 1U, memory_order_relaxed);
+            ex_check_pause(run);
+            (void)pthread_cond_wait(&run->gate_changed, &run->gate);
+            (void)atomic_fetch_sub_explicit(&search->hungry, 1U, memory_order_relaxed);
+            run->at_work++;
+            continue;
+        }
+        search->now = search->next;
+        search->next = NULL;
+        if (search->now == NULL) {
+            search->is_finished = true;
+        } else {
+            search->depth++;
+            atomic_store_explicit(&search->deepest, search->depth, memory_order_relaxed);
+        }
+        if ((search->now == NULL) || (search->now->next != NULL)) {
+            (void)pthread_cond_broadcast(&run->gate_changed);
+        }
+    }
+    if (chunk == NULL) {
+        (void)pthread_cond_broadcast(&run->gate_changed);
+    }
+    (void)pthread_mutex_unlock(&run->gate);
+    return chunk;
+}
+
+/* Breadth first: everything in a chunk, from the first to the last. */
+static bool expand_chunk(ex_worker_t *worker, chunk_t *chunk)
+{
+    ex_search_t *own = worker->search;
+    bool goes_on = true;
+    for (chunk->taken = 0U; goes_on && (chunk->taken < chunk->count); chunk->taken++) {
+        ex_key_t key;
+        (void)get_entry(own->search, chunk, chunk->taken, &key);
+        goes_on = expand(worker, &key);
+    }
+    return goes_on && flush(worker);
+}
+
+/* Depth first: the top of the stack, until it is empty. */
+static bool expand_stack(ex_worker_t *worker)
+{
+    ex_search_t *own = worker->search;
+    search_t *search = own->search;
+    while (own->out != NULL) {
+        ex_key_t key;
+        if (own->out->count == 0U) {
+            chunk_t *empty = own->out;
+            own->out = empty->next;
+            (void)pthread_mutex_lock(&search->run->gate);
+            empty->next = search->spare;
+            search->spare = empty;
+            (void)pthread_mutex_unlock(&search->run->gate);
+            continue;
+        }
+        own->out->count--;
+        own->depth = get_entry(search, own->out, own->out->count, &key) + 1U;
+        if (!expand(worker, &key) || !flush(worker)) {
+            return false;
+        }
+    }
+    return true;
+}
+
+static void work(ex_worker_t *worker, void *user)
+{
+    ex_search_t *own = worker->search;
+    chunk_t *used = NULL;
+    bool goes_on = true;
+    (void)user;
+    while (goes_on) {
+        chunk_t *chunk = take_chunk(worker, used);
+        if (chunk == NULL) {
+            break;
+        }
+        used = NULL;
+        if (worker->run->options.is_depth_first) {
+            chunk->next = NULL;
+            own->out = chunk;
+            own->bottom = chunk;
+            goes_on = expand_stack(worker);
+        } else {
+            goes_on = expand_chunk(worker, chunk);
+            used = chunk;
+        }
+    }
+    if (!goes_on) {
+        (void)pthread_mutex_lock(&worker->run->gate);
+        (void)pthread_cond_broadcast(&worker->run->gate_changed);
+        (void)pthread_mutex_unlock(&worker->run->gate);
+    }
+}
+
+/* --- the run --------------------------------------------------------------------------------------------------------- */
+
+static double cpu_clock(void)
+{
+    struct timespec now = { 0, 0 };
+    (void)clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
+    return (double)now.tv_sec + ((double)now.tv_nsec / 1e9);
+}
+
+/* The initial state. */
+static bool begin(ex_run_t *run, search_t *search)
+{
+    ex_worker_t *first = &run->worker[0];
+    if (!pn_net.init(&first->cx, first->marking)) {
+        ex_fail(first, -1);
+        return false;
+    }
+    if (!ex_encode(first, first->marking, &run->initial)) {
+        return false;
+    }
+    if (!ex_store_make(&run->store, run, run->codec->key_bytes, (uint64_t)FIRST_KEYS)) {
+        ex_stop(run, EX_MEMORY);
+        return false;
+    }
+    search->stride = run->store.length + (run->options.is_depth_first ? (uint32_t)sizeof(uint32_t) : 0U);
+    search->capacity = (uint32_t)(((size_t)CHUNK_SIZE - sizeof(chunk_t) - sizeof(ex_key_t)) / search->stride);
+    (void)ex_store_insert(&run->store, &run->initial, ex_hash(&run->initial), NULL);
+    atomic_store(&run->store.used, 1U);
+    chunk_t *chunk = new_chunk(search);
+    if (chunk == NULL) {
+        return false;
+    }
+    put_entry(search, chunk, &run->initial, 0U);
+    search->now = chunk;
+    return true;
+}
+
+static void sum_up(ex_run_t *run, const search_t *search)
+{
+    run->nodes = atomic_load(&run->store.used);
+    run->depth = search->depth;
+    for (uint32_t i = 0U; i < run->options.threads; i++) {
+        const ex_worker_t *worker = &run->worker[i];
+        run->expanded += worker->states;
+        run->arcs += worker->arcs;
+        run->dead_count += worker->dead;
+        if (run->options.is_depth_first && (worker->search->deepest > run->depth)) {
+            run->depth = worker->search->deepest;
+        }
+        for (uint32_t t = 0U; t < pn_net.transition_count; t++) {
+            run->fired[t] += worker->fired[t];
+        }
+    }
+}
+
+bool ex_explore(ex_run_t *run)
+{
+    search_t *search = ex_alloc(run, sizeof *search);
+    if (search == NULL) {
+        ex_stop(run, EX_MEMORY);
+        return false;
+    }
+    search->run = run;
+    run->level = search;
+    for (uint32_t i = 0U; i < run->options.threads; i++) {
+        run->worker[i].search = ex_alloc(run, sizeof *run->worker[i].search);
+        if (run->worker[i].search == NULL) {
+            ex_stop(run, EX_MEMORY);
+            return false;
+        }
+        run->worker[i].search->search = search;
+    }
+    const double started = ex_clock();
+    const double cpu_started = cpu_clock();
+    if (begin(run, search)) {
+        ex_parallel(run, work, NULL);
+    }
+    sum_up(run, search);
+    run->seconds = ex_clock() - started;
+    run->cpu_seconds = cpu_clock() - cpu_started;
+    return true;
+}

@@ -1,0 +1,104 @@
+/* SPDX-License-Identifier: MIT
+ * explore_successors.c - what is enabled in a state, and what becomes of it.
+ */
+#include "explore_impl.h"
+
+#include <string.h>
+
+#include "pn/pn_arena.h"
+#include "pn/pn_num.h"
+
+typedef struct hunt {
+    ex_worker_t *worker;
+    ex_arc_sink_t sink;
+    void *user;
+    bool is_found;
+    bool is_stopped; /* by the sink */
+} hunt_t;
+
+static bool on_successor(void *user, uint32_t transition, const void *binding, const void *next)
+{
+    hunt_t *hunt = user;
+    ex_key_t key;
+    hunt->is_found = true;
+    if (!ex_encode_next(hunt->worker, transition, next, &key)) {
+        return false;
+    }
+    if (!hunt->sink(hunt->user, transition, binding, &key)) {
+        hunt->is_stopped = true;
+        return false;
+    }
+    return true;
+}
+
+/* Of transitions that can only be enumerated and fired. */
+static bool on_binding(void *user, uint32_t transition, const void *binding)
+{
+    hunt_t *hunt = user;
+    ex_worker_t *worker = hunt->worker;
+    ex_scratch_t *scratch = worker->scratch;
+    const size_t mark = pn_arena_mark(&scratch->arena);
+    (void)memcpy(scratch->binding, binding, pn_net.transition[transition].binding_size);
+    (void)memcpy(scratch->next, worker->marking, pn_net.marking_size);
+    const bool is_done = pn_net.transition[transition].fire(&worker->cx, scratch->next, scratch->binding)
+                         && on_successor(user, transition, scratch->binding, scratch->next);
+    pn_arena_release(&scratch->arena, mark);
+    return is_done;
+}
+
+/* All bindings of a transition; false when it is to go no further. */
+static bool hunt_transition(hunt_t *hunt, uint32_t t)
+{
+    ex_worker_t *worker = hunt->worker;
+    const pn_transition_t *transition = &pn_net.transition[t];
+    const size_t mark = pn_arena_mark(&worker->scratch->arena);
+    if (transition->successors != NULL) {
+        (void)transition->successors(&worker->cx, worker->marking, t, worker->scratch->next, on_successor, hunt);
+    } else {
+        (void)transition->enumerate(&worker->cx, worker->marking, t, on_binding, hunt);
+    }
+    pn_arena_release(&worker->scratch->arena, mark);
+    if (worker->cx.error != PN_OK) {
+        ex_fail(worker, (int64_t)t);
+        return false;
+    }
+    return !worker->failed && !hunt->is_stopped;
+}
+
+/* The transitions of the best priority at which something is enabled now. False when it is to go no further. */
+static bool hunt_now(hunt_t *hunt)
+{
+    int32_t priority = 0;
+    for (uint32_t k = 0U; k < pn_net.order_count; k++) {
+        const uint32_t t = pn_net.order[k];
+        if (hunt->is_found && (pn_net.transition[t].priority != priority)) {
+            break;
+        }
+        priority = pn_net.transition[t].priority;
+        if (!hunt_transition(hunt, t)) {
+            return false;
+        }
+    }
+    return true;
+}
+
+ex_found_t ex_successors(ex_worker_t *worker, const ex_key_t *key, ex_arc_sink_t sink, void *user)
+{
+    hunt_t hunt = { .worker = worker, .sink = sink, .user = user };
+    if (!ex_load(worker, key)) {
+        return EX_FAILED;
+    }
+    bool goes_on = hunt_now(&hunt);
+    pn_time_t next = { 0 };
+    while (goes_on && !hunt.is_found && pn_net.timed && pn_net.next_time(worker->marking, &next)) {
+        pn_net.set_now(worker->marking, next);
+        goes_on = ex_encode_time(worker) && hunt_now(&hunt);
+    }
+    if (hunt.is_stopped) {
+        return EX_STOPPED;
+    }
+    if (!goes_on) {
+        return EX_FAILED;
+    }
+    return hunt.is_found ? EX_SOME : EX_DEAD;
+}

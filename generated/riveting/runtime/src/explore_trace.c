@@ -1,0 +1,184 @@
+/* SPDX-License-Identifier: MIT
+ * explore_trace.c - a run to a node as a trace that can be replayed, and the whole graph as lines of JSON for pictures and comparisons.
+ */
+#include "explore_graph.h"
+
+#include <inttypes.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "pn/pn_text.h"
+#include "pn/pn_trace.h"
+
+#define LINE_SIZE ((size_t)1U << 22)
+
+/* Looks for the first arc to a state, and writes it into the trace. */
+typedef struct step_search {
+    ex_worker_t *worker;
+    ex_key_t wanted;
+    pn_trace_t *trace;
+    bool is_found;
+} step_search_t;
+
+static bool is_same(const ex_key_t *a, const ex_key_t *b)
+{
+    return (a->low == b->low) && (a->high == b->high);
+}
+
+static bool write_step(void *user, uint32_t transition, const void *binding, const ex_key_t *key)
+{
+    step_search_t *const search = user;
+    if (!is_same(key, &search->wanted)) {
+        return true;
+    }
+    search->is_found = true;
+    pn_trace_model_occurrence(search->trace, pn_net.now(search->worker->marking), pn_net.real_time, &pn_net.transition[transition],
+                              binding);
+    return false;
+}
+
+/* The nodes from the initial marking to `node`, both included; the caller frees them. NULL: no memory. */
+static uint32_t *way_to(const ex_graph_t *graph, uint32_t node, uint64_t *length)
+{
+    uint64_t count = 1U;
+    for (uint32_t at = node; at != 0U; at = graph->parent[at]) {
+        count += 1U;
+    }
+    uint32_t *const way = malloc(count * sizeof *way);
+    *length = count;
+    if (way == NULL) {
+        return NULL;
+    }
+    for (uint32_t at = node; count > 0U; at = graph->parent[at]) {
+        count -= 1U;
+        way[count] = at;
+    }
+    return way;
+}
+
+int64_t ex_write_trace(ex_run_t *run, const ex_graph_t *graph, uint32_t node, const char *path)
+{
+    ex_worker_t *const worker = &run->worker[0];
+    pn_trace_t trace;
+    char members[64];
+    uint64_t length = 0U;
+    char *const line = malloc(LINE_SIZE);
+    uint32_t *const way = way_to(graph, node, &length);
+    bool is_fine = (line != NULL) && (way != NULL) && pn_trace_open(&trace, path, line, LINE_SIZE);
+    if (!is_fine) {
+        free(line);
+        free(way);
+        return -1;
+    }
+    (void)snprintf(members, sizeof members, "\"seed\": %" PRIu64, run->options.seed);
+    pn_trace_header_with(&trace, &pn_net, "simulate", NULL, members);
+    for (uint64_t i = 0U; is_fine && ((i + 1U) < length); i++) {
+        ex_key_t from;
+        step_search_t search = { .worker = worker, .trace = &trace };
+        is_fine = ex_store_fetch(&run->store, graph->slot[way[i]], &from) &&
+                  ex_store_fetch(&run->store, graph->slot[way[i + 1U]], &search.wanted);
+        is_fine = is_fine && (ex_successors(worker, &from, write_step, &search) == EX_STOPPED) && search.is_found;
+    }
+    ex_key_t last;
+    is_fine = is_fine && ex_store_fetch(&run->store, graph->slot[node], &last) && ex_load(worker, &last);
+    if (is_fine) {
+        pn_trace_model_end(&trace, pn_net.now(worker->marking), pn_net.real_time, "finished");
+    }
+    is_fine = pn_trace_close(&trace) && is_fine;
+    free(line);
+    free(way);
+    return is_fine ? (int64_t)(length - 1U) : -1;
+}
+
+/* --- the whole graph ----------------------------------------------------------------------------------------------- */
+
+typedef struct graph_writer {
+    ex_worker_t *worker;
+    const ex_graph_t *graph;
+    FILE *file;
+    pn_text_t text;
+    uint32_t node;
+    bool is_fine;
+} graph_writer_t;
+
+static bool write_text(graph_writer_t *w)
+{
+    w->is_fine = w->is_fine && !w->text.truncated && (fputs(w->text.buffer, w->file) >= 0);
+    return w->is_fine;
+}
+
+static void time_json(pn_text_t *text, pn_time_t now)
+{
+    if (pn_net.real_time) {
+        pn_text_json_real(text, now.real);
+    } else {
+        pn_text_int(text, now.integer);
+    }
+}
+
+static bool write_arc(void *user, uint32_t transition, const void *binding, const ex_key_t *key)
+{
+    graph_writer_t *const w = user;
+    const ex_store_t *const store = &w->worker->run->store;
+    const uint64_t slot = ex_store_find(store, key, ex_hash(key));
+    if (slot == EX_NO_SLOT) {
+        return true;
+    }
+    pn_text_clear(&w->text);
+    pn_text_str(&w->text, "{\"from\": ");
+    pn_text_uint(&w->text, (uint64_t)w->node + 1U);
+    pn_text_str(&w->text, ", \"to\": ");
+    pn_text_uint(&w->text, w->graph->number[slot]);
+    pn_text_str(&w->text, ", \"t\": ");
+    time_json(&w->text, pn_net.now(w->worker->marking));
+    pn_text_str(&w->text, ", \"transition\": ");
+    pn_text_json_str(&w->text, pn_net.transition[transition].name);
+    pn_text_str(&w->text, ", \"index\": ");
+    pn_text_uint(&w->text, transition);
+    pn_text_str(&w->text, ", \"binding\": ");
+    pn_net.transition[transition].binding_json(binding, &w->text);
+    pn_text_str(&w->text, "}\n");
+    return write_text(w);
+}
+
+static bool write_node(graph_writer_t *w, const ex_key_t *key)
+{
+    if (!ex_load(w->worker, key)) {
+        return false;
+    }
+    pn_text_clear(&w->text);
+    pn_text_str(&w->text, "{\"node\": ");
+    pn_text_uint(&w->text, (uint64_t)w->node + 1U);
+    pn_text_str(&w->text, ", \"t\": ");
+    time_json(&w->text, pn_net.now(w->worker->marking));
+    pn_text_str(&w->text, ", \"marking\": {");
+    for (uint32_t i = 0U; i < pn_net.place_count; i++) {
+        pn_text_str(&w->text, (i > 0U) ? ", " : "");
+        pn_text_json_str(&w->text, pn_net.place[i].name);
+        pn_text_str(&w->text, ": ");
+        pn_net.place[i].json(w->worker->marking, &w->text);
+    }
+    pn_text_str(&w->text, "}}\n");
+    return write_text(w);
+}
+
+bool ex_write_graph(ex_run_t *run, const ex_graph_t *graph, const char *path)
+{
+    char *const line = malloc(LINE_SIZE);
+    FILE *const file = fopen(path, "w");
+    graph_writer_t w = { .worker = &run->worker[0], .graph = graph, .file = file, .is_fine = (line != NULL) && (file != NULL) };
+    if (w.is_fine) {
+        pn_text_init(&w.text, line, LINE_SIZE);
+    }
+    for (uint32_t node = 0U; w.is_fine && (node < graph->nodes); node++) {
+        ex_key_t key;
+        w.node = node;
+        w.is_fine = ex_store_fetch(&run->store, graph->slot[node], &key) && write_node(&w, &key);
+        w.is_fine = w.is_fine && (ex_successors(w.worker, &key, write_arc, &w) != EX_FAILED) && w.is_fine;
+    }
+    if (file != NULL) {
+        w.is_fine = (fclose(file) == 0) && w.is_fine;
+    }
+    free(line);
+    return w.is_fine;
+}
