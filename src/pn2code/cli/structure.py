@@ -38,8 +38,7 @@ def structure(
 ) -> None:
     """Invariants, siphons, traps, bounds and classes of a net, from its structure alone."""
     opened = open_net(net, parse_values(settings), form, int_bits=int_bits)
-    given = {entry.place for entry in opened.config.inputs} if opened.config else set()
-    analysis = analyse(opened.flat, storage=opened.storage, given=given)
+    analysis = analyse(opened.flat, storage=opened.storage)
     if as_json:
         typer.echo(json.dumps(report.as_json(analysis), indent=1))
     else:
