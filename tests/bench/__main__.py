@@ -104,9 +104,9 @@ def firing_rows(bench: m.Bench) -> list[Row]:
     say("firings")
     out = []
     for name, text, steps, slow, peer in (
-        ("a ring of four transitions", m.RING, 10_000_000, 3_000, snakes_peer.ring),
-        ("ten philosophers", m.TABLE, 1_000_000, 500, snakes_peer.table),
-        ("a protocol with strings", m.PROTOCOL, 1_000_000, 1_000, snakes_peer.protocol),
+        ("a ring of four transitions", m.RING, 30_000_000, 3_000, snakes_peer.ring),
+        ("ten philosophers", m.TABLE, 4_000_000, 500, snakes_peer.table),
+        ("a protocol with strings", m.PROTOCOL, 5_000_000, 1_000, snakes_peer.protocol),
     ):
         found = m.firings(bench, text, steps, slow, peer)
         for other, samples in (("SNAKES", found.snakes), ("token game", found.game)):

@@ -20,9 +20,9 @@ from tests.helpers.netbuilder import cpn
 
 from pn2code import pipeline
 from pn2code.diagnostics import Diagnostics, render
-from pn2code.emission.write import write
 from pn2code.net import front
 from pn2code.semantics.game import Game
+from pn2code.simulate import programs
 
 ROOT = Path(__file__).parents[2]
 CELL = ROOT / "examples" / "riveting"
@@ -337,16 +337,16 @@ def firings(
     net = folder / "net.cpn"
     net.write_bytes(cpn(text))
     d = Diagnostics()
-    generated = pipeline.generate(net, d)
     flat = front.load(net, d)
-    if generated is None or flat is None:
+    if flat is None:
         raise SystemExit(f"bench: {render.report(d.sorted())}")
-    write(folder / "c", generated.files)
-    bench.timed("make", "-s", "simulate", cwd=folder / "c")
-    simulate = folder / "c" / "simulate"
-    # The start of the process does not count.
-    empty = min(bench.repeated(bench.few, lambda: bench.timed(simulate, "--steps", 0)))
-    walls = bench.repeated(bench.few, lambda: bench.timed(simulate, "--steps", steps))
+    with programs.program(flat, {}, d) as simulate:
+        if simulate is None:
+            raise SystemExit(f"bench: {render.report(d.sorted())}")
+        program = simulate
+        # The start of the process does not count.
+        empty = min(bench.repeated(bench.few, lambda: bench.timed(program, "--steps", 0)))
+        walls = bench.repeated(bench.few, lambda: bench.timed(program, "--steps", steps))
     compiled = [steps / (wall - empty) for wall in walls]
 
     def play() -> float:

@@ -334,7 +334,7 @@ def test_a_second_run_does_not_compile(tmp_path: Path) -> None:
     fake.chmod(0o755)
     environment = _environment(tmp_path, CC=str(fake))
     other = write(COUNTER.replace("1000", "999"), tmp_path / "other.cpn")
-    assert "refused" in simulate(other, "--engine", "compiled", env=environment, code=1).stderr
+    assert "build-failed" in simulate(other, "--engine", "compiled", env=environment, code=1).stderr
     assert sorted(p.name for p in folder.iterdir()) == kept, "nothing is left behind"
 
 
@@ -382,7 +382,7 @@ def test_a_program_that_comes_to_a_bad_end(tmp_path: Path) -> None:
     fake = tmp_path / "cc"
     fake.write_text(
         f'#!/bin/sh\n{real} "$@" || exit 1\n'
-        'for a; do [ "$a" = simulate ] && printf "#!/bin/sh\\nkill -9 \\$\\$\\n" > simulate; done; exit 0\n'
+        'for a; do [ "$a" = program ] && printf "#!/bin/sh\\nkill -9 \\$\\$\\n" > program; done; exit 0\n'
     )
     fake.chmod(0o755)
     net = write(COUNTER, tmp_path / "cell.cpn")

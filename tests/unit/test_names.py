@@ -25,6 +25,8 @@ from pn2code.emission.names import RESERVED, Names, Scope, label, stem
         ("_x", "x"),
         ("__init__", "init"),
         ("pn_net", "pn_net_"),
+        ("sim", "sim_"),
+        ("sim_t", "sim_t_"),
         ("日本", "unnamed"),
     ],
 )

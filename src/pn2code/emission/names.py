@@ -29,6 +29,15 @@ KEYWORDS = frozenset(_KEYWORDS.split())
 RESERVED = KEYWORDS | frozenset(_OWN.split())
 """These, and the names that generated functions use themselves."""
 
+_PREFIXES = ("pn_", "PN_", "sim_", "SIM_", "NET_")
+"""Of the runtime, and of the simulator, which is compiled in one piece with the net."""
+_TYPES = """
+    size_t ptrdiff_t wchar_t max_align_t off_t ssize_t fpos_t float_t double_t locale_t time_t clock_t sig_atomic_t
+    int8_t int16_t int32_t int64_t uint8_t uint16_t uint32_t uint64_t intptr_t uintptr_t intmax_t uintmax_t
+    net_marking_t any_binding_t
+"""
+"""Of the headers, and of every net."""
+
 _MAX_STEM = 48
 
 
@@ -47,7 +56,8 @@ def stem(text: str, reserved: frozenset[str] = RESERVED) -> str:
     name = "_".join(words)[:_MAX_STEM].rstrip("_") or "unnamed"
     if name[0].isdigit():
         name = f"n{name}"
-    return f"{name}_" if name in reserved or name.startswith(("pn_", "PN_")) else name
+    is_of_host = name == "sim" or name.startswith(_PREFIXES)
+    return f"{name}_" if name in reserved or is_of_host else name
 
 
 class Scope:
@@ -96,6 +106,7 @@ class Names:
 
     def __init__(self) -> None:
         self._scope = Scope()
+        self._scope.reserve(*_TYPES.split())
 
     def type(self, key: str) -> str:
         """`POSE_t`."""

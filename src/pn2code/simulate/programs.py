@@ -20,7 +20,7 @@ from pn2code.net.flat import FlatNet
 from pn2code.toolchain import programs
 from pn2code.toolchain.programs import Host
 
-HOST = Host("simulate", without="; or use `--engine reference`")
+HOST = Host("simulate", without="; or use `--engine reference`", whole="simulate_play.c")
 ROOM = 1 << 14
 """Different tokens that a place can hold at first. What is not used costs address space only."""
 

@@ -38,6 +38,8 @@ CACHE_UNUSABLE = register(
 
 FLAGS = ("-std=c11", "-O2", "-pipe", "-ffp-contract=off")
 """`-ffp-contract=off`: sums of products are rounded as in the token game, on every processor."""
+LARGE = 1_000_000
+"""Characters of generated C beyond which a net is not compiled in one piece with its host."""
 MOST_PROGRAMS = 64
 """Programs of a host that are kept; the ones that were not used for the longest time go first."""
 _HOSTS = ("simulate", "supervisor", "explore")
@@ -53,12 +55,14 @@ class Host:
         flags: for the C compiler, added to `FLAGS`.
         libraries: for the linker.
         without: what to do without a C compiler, the end of a sentence.
+        whole: a source of the host that can have the net as a part of itself (PN_NET_SOURCE); "" if there is none.
     """
 
     name: str
     flags: tuple[str, ...] = ()
     libraries: tuple[str, ...] = ("-lm",)
     without: str = ""
+    whole: str = ""
 
 
 @dataclass(frozen=True, slots=True)
@@ -182,7 +186,7 @@ class _Builder:
                 path.write_text(f.text, encoding="utf-8")
             with ThreadPoolExecutor(2) as pool:
                 library = pool.submit(self._library, room, d)
-                net = self._compile(room, "net.c", d)
+                net = self._net(room, d)
                 if not library.result() or not net:
                     return None
             made = room / "program"
@@ -217,8 +221,19 @@ class _Builder:
         made.replace(self.library)
         return True
 
-    def _compile(self, room: Path, source: str, d: Diagnostics) -> bool:
-        return self._compiler(room, "-Iruntime/include", "-I.", "-c", source, d=d)
+    def _net(self, room: Path, d: Diagnostics) -> bool:
+        """net.o: the net in one piece with the host's source that calls it, or alone.
+
+        In one piece it is several times as fast, and takes longer to compile. Should a name of the net be one that the
+        host has too, they are compiled apart: the library has that source as well.
+        """
+        includes = ("-Iruntime/include", "-I.")
+        if self.host.whole and sum(len(f.text) for f in self.files) <= LARGE:
+            source = f"runtime/src/{self.host.whole}"
+            whole = ('-DPN_NET_SOURCE="net.c"', "-c", source, "-o", "net.o")
+            if self._compiler(room, *includes, *whole, d=Diagnostics()):
+                return True
+        return self._compiler(room, *includes, "-c", "net.c", d=d)
 
     def _compiler(self, room: Path, *arguments: str, d: Diagnostics) -> bool:
         done = _run([*self.compiler.command, *self.flags, *arguments], room)
