@@ -739,3 +739,30 @@ def test_sub_invariants_are_looked_for_only_where_they_can_tell_more() -> None:
     losing = net(MUTEX + "    trans lose\n      in crit1\n")
     assert {b.bound for b in bounds(losing).values()} == {1}
     assert None in {b.bound for b in bounds(losing, Limits(programs=0)).values()}
+
+
+def test_outputs_of_code_segments_may_lie_outside_their_colour_set() -> None:
+    made = net("""
+        fun copies s = List.tabulate (if s > 3 then 9 else 1, fn k => k);
+        place A = 1
+        place B : INT
+        trans t code output (m); action 7
+          in A
+          out B : copies m
+    """)
+    a = analyse(made)
+    assert upper(a) == {"A": 1, "B": None}
+    assert wrong_on_walk(a, made, steps=3, seed=1) == []
+
+
+def test_the_number_of_the_step_is_no_fact() -> None:
+    """`step()` in a guard is that of the step before."""
+    made = net("""
+        place A : INT = 1`0
+        place B : INT
+        trans t guard [n = IntInf.toInt (step ())]
+          in A : n
+          out B : IntInf.toInt (step ())
+    """)
+    a = analyse(made)
+    assert wrong_on_walk(a, made, steps=3, seed=1) == []

@@ -142,6 +142,9 @@ class Counter:
     def __init__(self, symbolic: Symbolic) -> None:
         self.symbolic = symbolic
         self._variables = NetVariables(symbolic.net.program.variables)
+        # What a code segment gives need not be in the colour set of the variable.
+        codes = [t.code for t in symbolic.net.transitions if t.code is not None]
+        self._unchecked = {symbol for code in codes for symbol in code.outputs}
         self._known: dict[core.Exp, Size] = {}
         self._left = MOST_EVALUATIONS
 
@@ -160,7 +163,11 @@ class Counter:
             found = self._by_evaluation(e, evaluator)
             if found is not None:
                 return found
-        if isinstance(e, core.Var) and e.symbol.colset is not None:
+        if (
+            isinstance(e, core.Var)
+            and e.symbol.colset is not None
+            and e.symbol not in self._unchecked
+        ):
             return _length(e.symbol.colset)
         if isinstance(e, core.Case):
             sizes = [self._size(rule.body, atom) for rule in e.rules]
@@ -186,6 +193,8 @@ class Counter:
         variables = list(self._variables.of(e))
         product = 1
         for symbol in variables:
+            if symbol in self._unchecked:
+                return None
             n = number_of_values(symbol.colset, MOST_BINDINGS) if symbol.colset else None
             if n is None or (product := product * n) > MOST_BINDINGS:
                 return None

@@ -135,7 +135,7 @@ class Symbolic:
         facts = Facts()
         own = frozenset(t.variables)
         for guard in t.guards:
-            if not self.effects.of(guard):
+            if self.is_timeless(guard):  # `step()` is another one when the transition occurs
                 self._learn(guard, facts, own)
         return facts
 
