@@ -546,3 +546,17 @@ def test_positions_are_stretched_and_turned() -> None:
     assert p.y > t.y  # y grows upwards here
     assert p.y - t.y == pytest.approx(130)
     assert page.arcs[0].layout.bends == ((30 * 3.25, -40 * 3.25),)
+
+
+def test_an_error_has_no_consequences() -> None:
+    """Of a place with an unknown sort, and of what uses it, nothing else is said."""
+    text = net(
+        place("P", "Abd", number(1, const("a"))),
+        transition("t"),
+        arc("P", "t", number(1, var("x"))),
+        declarations=ABC,
+    )
+    d = Diagnostics()
+    found = document(text, d)
+    assert found is None and len(d.items) == 1
+    assert d.items[0].hint == "did you mean `Abc`?"

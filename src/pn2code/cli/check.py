@@ -55,7 +55,7 @@ def _cell(config: CellConfig, flat: FlatNet | None, d: Diagnostics) -> None:
 
 
 def check(
-    net: Annotated[Path, typer.Argument(help="A .cpn file, a cell.toml, or a folder with one.")],
+    net: Annotated[Path, typer.Argument(help="A .cpn or .pnml file, a cell.toml, or a folder.")],
     as_json: JsonOption = False,
     settings: SetOption = [],  # noqa: B006 - typer reads the default only
     int_bits: IntBitsOption = DEFAULT_INT_BITS,

@@ -37,9 +37,7 @@ _FORMATS = (".pnml", ".pml", ".promela", ".cpn")
 
 
 def convert(
-    net: Annotated[
-        Path, typer.Argument(help="A .cpn or .pnml file, a cell.toml, or a folder with one.")
-    ],
+    net: Annotated[Path, typer.Argument(help="A .cpn or .pnml file, a cell.toml, or a folder.")],
     output: Annotated[
         Path,
         typer.Option(

@@ -46,7 +46,7 @@ _PICTURES = (".png", ".pdf", ".jpg", ".jpeg", ".eps", ".ps")
 
 
 def draw(
-    net: Annotated[Path, typer.Argument(help="A .cpn file, a cell.toml, or a folder with one.")],
+    net: Annotated[Path, typer.Argument(help="A .cpn or .pnml file, a cell.toml, or a folder.")],
     output: Annotated[
         str,
         typer.Option(

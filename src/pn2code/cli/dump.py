@@ -32,7 +32,7 @@ class Stage(StrEnum):
 
 
 def dump(
-    net: Annotated[Path, typer.Argument(help="A .cpn file, a cell.toml, or a folder with one.")],
+    net: Annotated[Path, typer.Argument(help="A .cpn or .pnml file, a cell.toml, or a folder.")],
     stage: Annotated[Stage, typer.Option(help="After which stage.")] = Stage.FLAT,
     only: Annotated[str, typer.Option(help="Only elements whose name contains this.")] = "",
     settings: SetOption = [],  # noqa: B006 - typer reads the default only

@@ -32,7 +32,7 @@ EPILOG = """Examples:
 
 
 def enabled(
-    net: Annotated[Path, typer.Argument(help="A .cpn file, a cell.toml, or a folder with one.")],
+    net: Annotated[Path, typer.Argument(help="A .cpn or .pnml file, a cell.toml, or a folder.")],
     as_json: JsonOption = False,
     settings: SetOption = [],  # noqa: B006 - typer reads the default only
     seed: SeedOption = DEFAULT_SEED,

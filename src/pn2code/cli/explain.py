@@ -23,12 +23,14 @@ EPILOG = """Examples:
 REGISTERING = (
     "pn2code.cell.codes",
     "pn2code.cli.robot",
+    "pn2code.convert.codes",
     "pn2code.drawing.codes",
     "pn2code.lowering.codes",
     "pn2code.lowering.robot_codes",
     "pn2code.ml.codes",
     "pn2code.monitors.codes",
     "pn2code.net.codes",
+    "pn2code.pnml.codes",
     "pn2code.reading.codes",
     "pn2code.robot.codes",
     "pn2code.run.cell",
@@ -36,6 +38,7 @@ REGISTERING = (
     "pn2code.simulate.codes",
     "pn2code.tdl.codes",
     "pn2code.toolchain.build",
+    "pn2code.unfold.codes",
 )
 """The modules that declare codes; a verb loads some of them only."""
 

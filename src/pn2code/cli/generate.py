@@ -29,7 +29,7 @@ EPILOG = """Examples:
 
 
 def generate(
-    net: Annotated[Path, typer.Argument(help="A .cpn file, a cell.toml, or a folder with one.")],
+    net: Annotated[Path, typer.Argument(help="A .cpn or .pnml file, a cell.toml, or a folder.")],
     output: Annotated[
         Path | None,
         typer.Option("-o", "--output", help="Output folder (default: generated/<net>)."),

@@ -34,7 +34,7 @@ EmptyOption = Annotated[bool, typer.Option("--empty", help="Show empty places, t
 
 
 def marking(
-    net: Annotated[Path, typer.Argument(help="A .cpn file, a cell.toml, or a folder with one.")],
+    net: Annotated[Path, typer.Argument(help="A .cpn or .pnml file, a cell.toml, or a folder.")],
     as_json: JsonOption = False,
     empty: EmptyOption = False,
     settings: SetOption = [],  # noqa: B006 - typer reads the default only

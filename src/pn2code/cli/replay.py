@@ -43,7 +43,7 @@ LARGEST = 500_000_000
 
 def replay(
     trace: Annotated[Path, typer.Argument(help="A *.trace.jsonl, or a recording by CPN Tools.")],
-    net: Annotated[Path, typer.Argument(help="A .cpn file, a cell.toml, or a folder with one.")],
+    net: Annotated[Path, typer.Argument(help="A .cpn or .pnml file, a cell.toml, or a folder.")],
     as_json: JsonOption = False,
     engine: EngineOption = Engine.REFERENCE,
     settings: SetOption = [],  # noqa: B006 - typer reads the default only

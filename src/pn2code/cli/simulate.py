@@ -50,7 +50,7 @@ DEFAULT_STEPS = 1000
 
 
 def simulate(
-    net: Annotated[Path, typer.Argument(help="A .cpn file, a cell.toml, or a folder with one.")],
+    net: Annotated[Path, typer.Argument(help="A .cpn or .pnml file, a cell.toml, or a folder.")],
     steps: Annotated[
         int | None,
         typer.Option(

@@ -65,6 +65,7 @@ class Declarations:
         self._constants: dict[str, str] = {}
         self._functions: dict[str, str] = {}
         self._open: list[str] = []
+        self._broken = ""
         strangers = Strangers(base, d)
         for node in nodes:
             self._collect(node, strangers)
@@ -210,6 +211,13 @@ class Declarations:
         self._open.pop()
         self._sorts[identity] = sort
         return sort
+
+    def broken(self) -> str:
+        """A colour set for places whose sort has an error: nothing more is said of them."""
+        if not self._broken:
+            self._broken = self.sorts_names.make(["Unknown"], "Unknown")
+            self._declare(self._broken, "", self.base)
+        return self._broken
 
     def _built_in(self, tag: str, origin: Origin) -> Sort:
         if tag not in self._plain:

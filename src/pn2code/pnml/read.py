@@ -339,8 +339,7 @@ class _Reader:
         if self.is_high_level:
             sort = self.place_sort(node, origin)
             self.sorts[identity] = sort
-            # The error has been reported; a place without sort is passed over by who checks its arcs.
-            colset = sort.name if sort else _UNIT
+            colset = sort.name if sort else self.declarations.broken()
             type_node = node.child("type") or node
             at = replace(origin, line=type_node.line, column=type_node.column, part="colour set")
             kind = Inscription(SourceText(colset, at))

@@ -250,6 +250,8 @@ class _Builder:
             self.d.error(XML_ENTITY, "the file uses an undeclared XML entity", origin)
             return
         words, hint = self._explain(code, data)
+        if self.file.lower().endswith(".pnml"):
+            hint = "a .pnml file is XML: save the net again with the tool that wrote it"
         notes = []
         if code == expat.errors.codes[expat.errors.XML_ERROR_TAG_MISMATCH] and self.open:
             notes = [f"element `{_local(self.open[-1].tag)}` begins on line {self.open[-1].line}"]
