@@ -167,12 +167,12 @@ class Expressions:
             case s.LitKind.WORD:
                 t = I_WORD
 
-        def build() -> core.Exp:
-            known = to_type(t)
-            self._ctx.check_literal(e.value, known, e.span)
-            return core.Lit(e.value, known, e.span)
+        return Draft(t, partial(self._literal_of, e, t))
 
-        return Draft(t, build)
+    def _literal_of(self, e: s.LitExp, t: Ty) -> core.Exp:
+        known = to_type(t)
+        self._ctx.check_literal(e.value, known, e.span)
+        return core.Lit(e.value, known, e.span)
 
     # --- application
 
@@ -369,9 +369,15 @@ class Expressions:
         del what
         drafts = []
         before = self._ctx.errors
+        literals: set[s.LitKind] = set()  # kinds that elements may have: long lists consist of them
         for x in e.items:
             wanted = item if self._ctx.errors == before else ERROR
+            if isinstance(x, s.LitExp) and x.kind in literals and wanted is item:
+                drafts.append(Draft(item, partial(self._literal_of, x, item)))
+                continue
             drafts.append(self.check(x, wanted, "list element"))
+            if isinstance(x, s.LitExp):
+                literals.add(x.kind)
         t = i_list(item)
 
         def build() -> core.Exp:
