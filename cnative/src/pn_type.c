@@ -303,8 +303,18 @@ pn_string_t pn_mkstr_string(pn_ctx_t *cx, const pn_type_t *type, const void *val
     pn_text_t text;
     pn_text_init(&text, buffer, sizeof buffer);
     pn_mkstr(type, value, &text);
-    if (text.truncated) {
-        pn_raise(cx, PN_ERR_MEMORY, NULL);
+    for (size_t room = 4U * sizeof buffer; text.truncated; room *= 4U) {
+        const size_t mark = pn_arena_mark(cx->arena);
+        char *bytes = pn_arena_alloc(cx, room);
+        if (bytes == NULL) {
+            return PN_STRING("");
+        }
+        pn_text_init(&text, bytes, room);
+        pn_mkstr(type, value, &text);
+        if (!text.truncated) {
+            return (pn_string_t){ bytes, (uint32_t)text.length };
+        }
+        pn_arena_release(cx->arena, mark);
     }
     return pn_string_make(cx, buffer, text.length);
 }

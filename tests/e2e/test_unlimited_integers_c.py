@@ -194,7 +194,7 @@ def test_a_number_too_large_for_the_memory(tmp_path: Path, workshop: Workshop) -
     assert line["error"] == "memory for lists and strings is full"
 
 
-def test_beyond_the_reals(tmp_path: Path, workshop: Workshop) -> None:
+def test_beyond_the_reals_and_long_texts(tmp_path: Path, workshop: Workshop) -> None:
     net = flat("""
         net Reals
           standard
@@ -204,6 +204,7 @@ def test_beyond_the_reals(tmp_path: Path, workshop: Workshop) -> None:
             ++ 1`(safe (fn () => Real.toLargeInt IEEEReal.TO_ZERO (1.0 / 0.0)))
             ++ 1`(safe (fn () => Real.toLargeInt IEEEReal.TO_ZERO (0.0 / 0.0)))
             ++ 1`(safe (fn () => Real.toLargeInt IEEEReal.TO_NEAREST 1E300))
+          place Long : STRING = 1`(INTINF.mkstr (IntInf.pow (7, 6000)))
     """)
     ir, d = lowered(net)
     assert ir is not None, [(e.code, e.message) for e in d.errors]

@@ -23,6 +23,7 @@ from __future__ import annotations
 
 import math
 import struct
+import sys
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
@@ -178,6 +179,8 @@ MAX_ITEMS = 5_000_000
 
 MAX_BITS = 1_000_000
 """Of an unbounded integer."""
+# All of them have a text; Python's own limit is 4,300 digits.
+sys.set_int_max_str_digits(MAX_BITS // 3)
 
 
 def fitting(count: int) -> int:

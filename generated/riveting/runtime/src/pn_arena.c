@@ -79,21 +79,6 @@ void pn_arena_seal(pn_arena_t *arena)
     arena->peak = 0U;
 }
 
-size_t pn_arena_mark(const pn_arena_t *arena)
-{
-    return arena->used;
-}
-
-void pn_arena_release(pn_arena_t *arena, size_t mark)
-{
-    arena->used = mark;
-}
-
-bool pn_arena_is_crowded(const pn_arena_t *arena)
-{
-    return arena->used > (arena->half / 2U);
-}
-
 void pn_arena_flip(pn_arena_t *arena)
 {
     arena->active = 1U - arena->active;

@@ -5,38 +5,20 @@
 
 #include "pn/pn_num.h"
 
-static uint64_t mix(uint64_t state)
-{
-    uint64_t z = state + UINT64_C(0x9E3779B97F4A7C15);
-    z = (z ^ (z >> 30U)) * UINT64_C(0xBF58476D1CE4E5B9);
-    z = (z ^ (z >> 27U)) * UINT64_C(0x94D049BB133111EB);
-    return z ^ (z >> 31U);
-}
-
 void pn_random_start(pn_ctx_t *cx, uint64_t purpose)
 {
-    cx->random = mix(mix(mix(cx->seed) ^ cx->step) ^ purpose);
+    cx->random = pn_random_key(cx->seed, cx->step, purpose);
 }
 
 uint64_t pn_random_next(pn_ctx_t *cx)
 {
-    const uint64_t bits = mix(cx->random);
-    cx->random += UINT64_C(0x9E3779B97F4A7C15);
-    return bits;
+    return pn_random_draw(&cx->random);
 }
 
 /* 0 <= x < range; any 64 bits for 0. */
 static uint64_t below(pn_ctx_t *cx, uint64_t range)
 {
-    uint64_t x = pn_random_next(cx);
-    if (range != 0U) {
-        const uint64_t limit = UINT64_MAX - (UINT64_MAX % range);
-        while (x >= limit) { /* less than one more draw on average */
-            x = pn_random_next(cx);
-        }
-        x %= range;
-    }
-    return x;
+    return (range == 0U) ? pn_random_next(cx) : pn_random_pick(&cx->random, range);
 }
 
 int64_t pn_random_below(pn_ctx_t *cx, int64_t n)

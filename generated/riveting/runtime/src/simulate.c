@@ -184,17 +184,17 @@ static void play(sim_t *sim)
     if (!sim_watch_start(sim) || ((sim->options.replay != NULL) && !sim_replay(sim))) {
         return;
     }
-    sim->why = "steps";
-    for (uint64_t step = 0U; step < sim->options.steps; step++) {
-        if (sim_is_interrupted()) {
-            sim->why = "interrupted";
-            return;
-        }
-        if (!sim_step(sim)) {
-            return;
-        }
-        sim_report_progress(sim);
+    sim_play(sim);
+}
+
+bool sim_trace_step(sim_t *sim, uint32_t transition, const void *binding)
+{
+    pn_trace_model_occurrence(&sim->trace, pn_net.now(sim->marking), pn_net.real_time, &pn_net.transition[transition], binding);
+    if (sim->trace.failed) {
+        (void)snprintf(sim->message, sizeof sim->message, "%s", strerror(errno));
+        sim->why = "trace";
     }
+    return !sim->trace.failed;
 }
 
 /* The header of the trace, the run, its end; false when the trace cannot be written. */
@@ -244,6 +244,9 @@ static int run(sim_t *sim)
 {
     bool is_written = true;
     sim_catch_signals();
+    if ((sim->report != NULL) && (sim->options.progress_s > 0.0)) {
+        sim_time_progress(sim->options.progress_s);
+    }
     if (!pn_net.init(&sim->cx, sim->marking)) {
         sim_fail(sim, "the declarations and the initial marking were made", -1, false);
     } else if (sim->options.shows_enabled) {
@@ -265,8 +268,7 @@ static int run(sim_t *sim)
     return is_written ? code : EXIT_USAGE;
 }
 
-/* Zeroed memory, of which only what is used costs anything; NULL if there is none. Never given back: the program ends. */
-static void *reserve(uint64_t size)
+void *sim_reserve(uint64_t size)
 {
     const size_t bytes = (size > 0U) ? (size_t)size : 1U;
     void *memory = mmap(NULL, bytes, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
@@ -276,16 +278,12 @@ static void *reserve(uint64_t size)
 static bool make(sim_t *sim, pn_arena_t *arena)
 {
     /* Before anything runs; nothing is allocated later. */
-    void *memory = reserve(sim->options.memory);
-    sim->marking = reserve(pn_net.marking_size);
-    sim->binding = reserve(pn_net.binding_size);
-    sim->enabled = reserve(((uint64_t)pn_net.transition_count + 1U) * sizeof *sim->enabled);
-    sim->level_end = reserve(((uint64_t)pn_net.transition_count + 1U) * sizeof *sim->level_end);
-    sim->known = reserve((uint64_t)pn_net.transition_count + 1U);
+    void *memory = sim_reserve(sim->options.memory);
+    sim->marking = sim_reserve(pn_net.marking_size);
+    sim->binding = sim_reserve(pn_net.binding_size);
     sim->found_size = FOUND_SIZE;
-    sim->found = reserve(FOUND_SIZE);
-    if ((memory == NULL) || (sim->marking == NULL) || (sim->binding == NULL) || (sim->enabled == NULL)
-        || (sim->level_end == NULL) || (sim->known == NULL) || (sim->found == NULL)) {
+    sim->found = sim_reserve(FOUND_SIZE);
+    if ((memory == NULL) || (sim->marking == NULL) || (sim->binding == NULL) || (sim->found == NULL) || !sim_prepare(sim)) {
         (void)fprintf(stderr, "simulate: not enough memory\n");
         return false;
     }
@@ -301,9 +299,9 @@ static bool make(sim_t *sim, pn_arena_t *arena)
         return false;
     }
     pn_file_set_output(stdout);
-    sim_find_levels(sim);
     pn_arena_init(arena, memory, (size_t)sim->options.memory);
     pn_ctx_init(&sim->cx, arena, sim->options.seed);
+    sim->is_watched = sim_watch_is_needed();
     sim->why = "";
     sim->doing = "";
     sim->transition = -1;

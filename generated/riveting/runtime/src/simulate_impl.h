@@ -4,6 +4,7 @@
 #ifndef SIMULATE_IMPL_H
 #define SIMULATE_IMPL_H
 
+#include <signal.h>
 #include <stdio.h>
 
 #include "pn/pn_net.h"
@@ -35,13 +36,6 @@ typedef enum sim_next {
     SIM_FAILED    /* an inscription raised an exception */
 } sim_next_t;
 
-/* What is known of a transition in the present marking and at the present time. */
-typedef enum sim_known {
-    SIM_UNKNOWN,
-    SIM_ENABLED,
-    SIM_DISABLED
-} sim_known_t;
-
 typedef struct sim {
     sim_options_t options;
     pn_ctx_t cx;
@@ -50,7 +44,9 @@ typedef struct sim {
     uint32_t *enabled;   /* room for the indices of all transitions */
     uint32_t enabled_count;
     uint32_t *level_end; /* for each place in the order of trying: where the transitions of its priority end */
-    uint8_t *known;      /* sim_known_t of each transition: what is still true since it was last looked at */
+    uint64_t *ready;     /* the set of those that are known to be enabled; a bit for each place in the order of trying */
+    uint64_t *unsure;    /* the set of those of which it is not known; in neither set: not enabled */
+    uint64_t *touched;   /* for each transition the set of those of which nothing is known after it has occurred */
     unsigned char *found; /* bindings of one transition, one after the other, as many as there is room for */
     size_t found_size;
     pn_trace_t trace;
@@ -62,6 +58,7 @@ typedef struct sim {
     char message[512];   /* of a replay that is refused */
     int64_t transition;  /* that went wrong; -1: none */
     bool has_binding;    /* `binding` is of that transition */
+    bool is_watched;     /* there are monitors */
     bool time_grew;      /* in the last sim_settle */
     int64_t watch;       /* the monitor that stopped the run, or that failed; -1: none */
     const char *watch_limit; /* "watch": its numbers became too large */
@@ -73,18 +70,32 @@ typedef struct sim {
 sim_next_t sim_settle(sim_t *sim);
 /* The first half of it: fills `enabled` with what is enabled now. False after an error. */
 bool sim_find_enabled(sim_t *sim);
-/* Works out `level_end`. */
-void sim_find_levels(sim_t *sim);
+/* Makes room for what is known of transitions; false if there is none. */
+bool sim_prepare(sim_t *sim);
 /* Forgets what is known of all transitions: the marking or the time has changed from outside. */
 void sim_forget(sim_t *sim);
-/* One occurrence at random; false when the run ends here (`why` says why). */
-bool sim_step(sim_t *sim);
+/* The steps at random; `why` says how they ended. */
+void sim_play(sim_t *sim);
 /* Lets `binding` of a transition occur and writes it to the trace; false after an error. */
 bool sim_fire(sim_t *sim, uint32_t transition);
 /* Notes that the evaluation has failed: `why` is "error". */
 void sim_fail(sim_t *sim, const char *doing, int64_t transition, bool has_binding);
-bool sim_is_interrupted(void);
+
+/* --- simulate.c --- */
+
+/* Zeroed memory, of which only what is used costs anything; NULL if there is none. Never given back: the program ends. */
+void *sim_reserve(uint64_t size);
+/* Writes an occurrence to the trace; false after an error, `why` is "trace". */
+bool sim_trace_step(sim_t *sim, uint32_t transition, const void *binding);
+
+/* --- simulate_signal.c: what comes from outside --- */
+
+/* Set by signals; whoever makes steps looks at them after each. */
+extern volatile sig_atomic_t sim_interrupted;
+extern volatile sig_atomic_t sim_progress_due;
 void sim_catch_signals(void);
+/* From now on progress is due every so many seconds, and at once. */
+void sim_time_progress(double seconds);
 
 /* --- simulate_replay.c: steps that are given --- */
 
@@ -95,6 +106,8 @@ bool sim_replay(sim_t *sim);
 
 /* Takes a monitor from its text (see there); false when it is not well-formed. */
 bool sim_watch_add(const char *text);
+/* Whether there are any. */
+bool sim_watch_is_needed(void);
 /* Before the first step, after a step, after model time went on while something is enabled, after the last step. False: the run ends
  * here, `why` says why. */
 bool sim_watch_start(sim_t *sim);
@@ -106,7 +119,7 @@ void sim_text_watches(pn_text_t *text);
 
 /* --- simulate_report.c: for the program that has started this one --- */
 
-/* A JSON object on a line of its own: {"steps": 100, "t": 12}, at most one in `progress_s` seconds. */
+/* A JSON object on a line of its own: {"steps": 100, "t": 12}. */
 void sim_report_progress(sim_t *sim);
 /* The first line: the marking at the start. */
 void sim_report_start(sim_t *sim);

@@ -148,8 +148,10 @@ static bool repeat_all(sim_t *sim, FILE *script)
             return false;
         }
         sim->replayed++;
-        sim_report_progress(sim);
-        if (sim_is_interrupted()) {
+        if (sim_progress_due != 0) {
+            sim_report_progress(sim);
+        }
+        if (sim_interrupted != 0) {
             sim->why = "interrupted";
             return false;
         }

@@ -7,12 +7,11 @@
  *
  * After an error the end also has "error", "origin", "doing", and where they are known "transition" (its index) and "binding";
  * when it was one of the program and not of the net, "limit": "room" (a place is full), "memory" (of lists and strings), "numbers"
- * (an IntInf.int beyond 64 bits) or "watch" (numbers of a monitor); after a replay that was refused "message"; after a breakpoint, or when a monitor failed, "watch": its index.
+ * (a model time beyond 64 bits) or "watch" (numbers of a monitor); after a replay that was refused "message"; after a breakpoint, or when a monitor failed, "watch": its index.
  * "watched" has what each monitor of --watch has collected.
  */
 #include <inttypes.h>
 #include <string.h>
-#include <time.h>
 
 #include "pn/pn_text.h"
 #include "simulate_impl.h"
@@ -41,25 +40,10 @@ static void text_start(pn_text_t *text)
     pn_text_init(text, sim_text_buffer, sizeof sim_text_buffer);
 }
 
-static double wall_clock(void)
-{
-    struct timespec now = { 0, 0 };
-    (void)timespec_get(&now, TIME_UTC);
-    return (double)now.tv_sec + ((double)now.tv_nsec / 1e9);
-}
-
 void sim_report_progress(sim_t *sim)
 {
-    static double s_last;
-    if ((sim->report == NULL) || !(sim->options.progress_s > 0.0)) {
-        return;
-    }
-    const double now = wall_clock();
-    if ((now >= s_last) && (now < (s_last + sim->options.progress_s))) {
-        return;
-    }
-    s_last = now;
     pn_text_t text;
+    sim_progress_due = 0;
     text_start(&text);
     pn_text_str(&text, "{\"steps\": ");
     pn_text_uint(&text, sim->steps);

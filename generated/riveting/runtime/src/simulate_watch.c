@@ -87,6 +87,11 @@ bool sim_watch_add(const char *text)
     return read_when(end + 1, watch);
 }
 
+bool sim_watch_is_needed(void)
+{
+    return s_count > 0U;
+}
+
 /* --- values -------------------------------------------------------------------------------------------------------- */
 
 /* The length of the only list in a place, from its JSON [[1, [...]]] or [[1, [...], stamp]]; -1 when it is not the only token. */

@@ -48,11 +48,21 @@ const void *pn_arena_copy(pn_ctx_t *cx, const void *value, size_t size);
 void pn_arena_seal(pn_arena_t *arena);
 
 /* The mark of now, and going back to it: what was allocated since is forgotten. */
-size_t pn_arena_mark(const pn_arena_t *arena);
-void pn_arena_release(pn_arena_t *arena, size_t mark);
+static inline size_t pn_arena_mark(const pn_arena_t *arena)
+{
+    return arena->used;
+}
+
+static inline void pn_arena_release(pn_arena_t *arena, size_t mark)
+{
+    arena->used = mark;
+}
 
 /* Whether enough is used that collecting pays off. */
-bool pn_arena_is_crowded(const pn_arena_t *arena);
+static inline bool pn_arena_is_crowded(const pn_arena_t *arena)
+{
+    return arena->used > (arena->half / 2U);
+}
 
 /* Makes the other half, emptied, the active one. What lay in the left one stays readable until the next flip. */
 void pn_arena_flip(pn_arena_t *arena);

@@ -70,6 +70,37 @@
 #define PN_RANDOM_BINDINGS(transition)   (UINT64_C(2) + (UINT64_C(2) * (uint64_t)(transition)))
 #define PN_RANDOM_OCCURRENCE(transition) (UINT64_C(3) + (UINT64_C(2) * (uint64_t)(transition)))
 
+/* mix, key, next and below as above, with a state of the caller's own. */
+static inline uint64_t pn_random_mix(uint64_t state)
+{
+    uint64_t z = state + UINT64_C(0x9E3779B97F4A7C15);
+    z = (z ^ (z >> 30U)) * UINT64_C(0xBF58476D1CE4E5B9);
+    z = (z ^ (z >> 27U)) * UINT64_C(0x94D049BB133111EB);
+    return z ^ (z >> 31U);
+}
+
+static inline uint64_t pn_random_key(uint64_t seed, uint64_t step, uint64_t purpose)
+{
+    return pn_random_mix(pn_random_mix(pn_random_mix(seed) ^ step) ^ purpose);
+}
+
+static inline uint64_t pn_random_draw(uint64_t *state)
+{
+    const uint64_t bits = pn_random_mix(*state);
+    *state += UINT64_C(0x9E3779B97F4A7C15);
+    return bits;
+}
+
+/* n > 0. The limit is looked at only where a number could be beyond it: divisions of 64 bits take their time. */
+static inline uint64_t pn_random_pick(uint64_t *state, uint64_t n)
+{
+    uint64_t x = pn_random_draw(state);
+    while ((x > (UINT64_MAX - n)) && (x >= (UINT64_MAX - (UINT64_MAX % n)))) {
+        x = pn_random_draw(state);
+    }
+    return x % n;
+}
+
 /* Starts the stream for a purpose; the context has the seed and the step. */
 void pn_random_start(pn_ctx_t *cx, uint64_t purpose);
 
