@@ -114,6 +114,8 @@ class _Emitter:
         s.used = used_locals(statements)
         s.bags = self._bags
         s.timed = self._timed
+        if any(self._packed):
+            s.number_of = self._numbers.if_whole
         s.token_types = tuple(p.type for p in self._net.places)
         s.tables_of_places = self._tables
         return s, x, scope
@@ -234,7 +236,8 @@ class _Emitter:
             "packed": p.packed,
             "is_whole": not p.packed or not self._numbers.members(p.table),
             "number_of": self._numbers.number_of(p.table) if p.packed else "",
-            "colour_set": self._names.table(p.table).removeprefix("s_"),
+            "finder": self._numbers.finder(p.table) if p.packed else "",
+            "maker": self._numbers.maker(p.table) if p.packed else "",
             "initial": s.lines,
             "initial_text": _comment_lines(p.initial_text),
             "leaf_kinds": [kind for _, kind in leaves] if leaves else [],
@@ -468,6 +471,7 @@ class _Emitter:
         wrappers = {f.key: f"is_{stem(f.hint)}" for f in functions if f.key.startswith("member ")}
         tables = c_tables.Tables(self._types, self._descriptors, wrappers)
         recursive = tables.to_declare(keys)
+        transitions = [self._transition(t) for t in net.transitions]  # what they call is known then
         values = {
             "version": self._version,
             "net": net,
@@ -497,7 +501,7 @@ class _Emitter:
             "orders": list(self._orders.functions.values()),
             "packed_words": (packed_bits(net.places) + 63) // 64,
             "packed_size": (packed_bits(net.places) + 31) // 32 * 4,
-            "transitions": [self._transition(t) for t in net.transitions],
+            "transitions": transitions,
             "bag_places": ", ".join(f"{p.index}U" for p in net.places if not p.packed),
             "has_references": any(g.is_reference for g in net.globals),
             "has_arena_values": self._has_arena_values

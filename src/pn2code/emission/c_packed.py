@@ -24,22 +24,22 @@ class Numbers:
     def number_of(self, key: str) -> str:
         """The function that numbers the colours of a descriptor."""
         self._make(key)
-        return f"number_of_{self._stem(key)}"
+        return self._number(key)
 
     def colour_of(self, key: str) -> str:
         """Its inverse."""
         self._make(key)
-        return f"colour_of_{self._stem(key)}"
+        return self._colour(key)
 
     def pointers(self, key: str) -> list[str]:
         """The same two as functions over untyped values, for the table of a place."""
-        c_type, stem = self._types.name(self._descriptors[key].type), self._stem(key)
+        c_type = self._types.name(self._descriptors[key].type)
         return [
-            f"static uint32_t find_number_of_{stem}(const void *value)",
+            f"static uint32_t {self.finder(key)}(const void *value)",
             "{",
             f"    return {self.number_of(key)}(value);",
             "}",
-            f"static void put_colour_of_{stem}(uint32_t number, void *value)",
+            f"static void {self.maker(key)}(uint32_t number, void *value)",
             "{",
             f"    {c_type} *const colour = value;",
             f"    *colour = {self.colour_of(key)}(number);",
@@ -66,14 +66,30 @@ class Numbers:
             for p in places
         )
 
+    def if_whole(self, key: str) -> str:
+        """`number_of` of a colour set that has numbers, and in which everything is that has one; "" otherwise."""
+        is_numbered = colours(self._descriptors, key) > 0
+        return self.number_of(key) if is_numbered and not self.members(key) else ""
+
     def members(self, key: str) -> tuple[str, ...]:
         """The functions that decide about members of subsets that a colour set is made of."""
         d = self._descriptors[key]
         own = (d.member,) if d.member else ()
         return own + tuple(m for _, part in d.fields if part for m in self.members(part))
 
-    def _stem(self, key: str) -> str:
-        return self._names.table(key).removeprefix("s_")
+    def _number(self, key: str) -> str:
+        return self._names.number(key, "number_of_{}")
+
+    def _colour(self, key: str) -> str:
+        return self._names.number(key, "colour_of_{}")
+
+    def finder(self, key: str) -> str:
+        """`number_of` over untyped values."""
+        return self._names.number(key, "find_number_of_{}")
+
+    def maker(self, key: str) -> str:
+        """`colour_of` over untyped values."""
+        return self._names.number(key, "put_colour_of_{}")
 
     def _make(self, key: str) -> None:
         if key in self._made:
@@ -85,14 +101,13 @@ class Numbers:
                 self._make(part)
         c_type = self._types.name(d.type)
         number, colour = self._bodies(d)
-        stem = self._stem(key)
         self.functions.append(
             [
-                f"PN_INLINE uint32_t number_of_{stem}(const {c_type} *v)",
+                f"PN_INLINE uint32_t {self._number(key)}(const {c_type} *v)",
                 "{",
                 *(f"    {line}" for line in number),
                 "}",
-                f"PN_INLINE {c_type} colour_of_{stem}(uint32_t number)",
+                f"PN_INLINE {c_type} {self._colour(key)}(uint32_t number)",
                 "{",
                 *(f"    {line}" for line in colour),
                 "}",
@@ -144,7 +159,7 @@ class Numbers:
             below *= n
         for (name, part), n in zip(d.fields, sizes, strict=True):
             member = label(name)
-            call = f"number_of_{self._stem(part)}(&v->{member})"
+            call = f"{self._number(part)}(&v->{member})"
             if self._is_total(part):
                 own = call
             else:
@@ -155,7 +170,7 @@ class Numbers:
             below //= n
             rest = "number" if below == 1 else f"(number / {below}U)"
             rest = rest if len(d.fields) == 1 else f"{rest} % {n}U"
-            colour.append(f"    .{member} = colour_of_{self._stem(part)}({rest}),")
+            colour.append(f"    .{member} = {self._colour(part)}({rest}),")
         if partial:
             tests = " || ".join(f"({p} == PN_NO_COLOUR)" for p in partial)
             number += [f"if ({tests}) {{", "    return PN_NO_COLOUR;", "}"]
@@ -178,7 +193,7 @@ class Numbers:
             n = 1
             if part:
                 n = colours(self._descriptors, part)
-                own = f"number_of_{self._stem(part)}(&v->as.{label(constructor)})"
+                own = f"{self._number(part)}(&v->as.{label(constructor)})"
                 if before == 0:
                     number.append(f"    return {own};")
                 elif self._is_total(part):
@@ -190,7 +205,9 @@ class Numbers:
                         "        : PN_NO_COLOUR;",
                     ]
                 own_number = "number" if before == 0 else f"number - {before}U"
-                made = f".tag = {tag}, .as.{label(constructor)} = colour_of_{self._stem(part)}({own_number})"
+                made = (
+                    f".tag = {tag}, .as.{label(constructor)} = {self._colour(part)}({own_number})"
+                )
             else:
                 number.append(f"    return {before}U;")
                 made = f".tag = {tag}"

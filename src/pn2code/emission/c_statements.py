@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 
 from pn2code.emission.c_expressions import (
     Expressions,
@@ -95,6 +95,7 @@ class Statements:
         self.timed: tuple[bool, ...] = ()
         self.token_types: tuple[ir.IrType, ...] = ()
         self.sums: Mapping[tuple[int, Ir], Sum] = {}
+        self.number_of: Callable[[str], str] = lambda key: ""  # "": not by number
         self.moves = "moves"
         self.variable_types: tuple[ir.IrType, ...] = ()
         self.has_arena_values = True
@@ -334,7 +335,11 @@ class Statements:
                 self._next()
             case ir.UnlessLegal(variable=variable, table=table):
                 pointer = self._x.address(ir.Bound(variable, self.variable_types[variable]))
-                self.line(f"if (!pn_is_legal(cx, &{self._names.table(table)}, {pointer})) {{")
+                number_of = self.number_of(table)
+                if number_of:
+                    self.line(f"if ({number_of}({pointer}) == PN_NO_COLOUR) {{")
+                else:
+                    self.line(f"if (!pn_is_legal(cx, &{self._names.table(table)}, {pointer})) {{")
                 self._next()
             case ir.UnlessAvailable():
                 self._unless_available(s)

@@ -130,6 +130,10 @@ class Names:
         """The descriptor of a colour set: `s_POSE`; of a type without one: `s_type_POSE`."""
         return self._scope.name(("table", key), key, "s_{}")
 
+    def number(self, key: str, pattern: str) -> str:
+        """`number_of_PH`, `colour_of_PH`: functions that number the colours of a colour set."""
+        return self._scope.name((pattern, key), key, pattern)
+
     def function(self, key: str, hint: str) -> str:
         """`ml_rotate`."""
         return self._scope.name(("function", key), hint, "ml_{}")
