@@ -292,6 +292,31 @@ uint64_t ex_store_slots(const ex_store_t *store);
 /* The key in a slot; false when the slot is empty. */
 bool ex_store_fetch(const ex_store_t *store, uint64_t slot, ex_key_t *key);
 
+/* --- bit states (explore_bits.c) ----------------------------------------------------------------------------------- */
+
+/* Three bits of a word for each state. */
+typedef struct ex_bits {
+    _Atomic uint64_t *word;
+    uint64_t words;
+    uint64_t bytes;
+    _Atomic uint64_t inserted;
+    pthread_mutex_t lock; /* of what follows */
+    double expected;      /* states that have been missed, as far as estimated */
+    double last;          /* probability that the next one is */
+} ex_bits_t;
+
+bool ex_bits_make(ex_bits_t *bits, struct ex_run *run);
+/* `hash` has to be a good one, and is all that counts of a state. */
+ex_insertion_t ex_bits_insert(ex_bits_t *bits, uint64_t hash);
+bool ex_bits_hold(const ex_bits_t *bits, uint64_t hash);
+/* The probability that at least one state was missed. */
+double ex_bits_omission(ex_bits_t *bits);
+
+static inline void ex_bits_prefetch(const ex_bits_t *bits, uint64_t hash)
+{
+    __builtin_prefetch((const void *)&bits->word[ex_scaled(hash, bits->words)], 1, 3);
+}
+
 /* --- the run ------------------------------------------------------------------------------------------------------- */
 
 /* What one thread has. */
@@ -314,7 +339,8 @@ typedef struct ex_worker {
 typedef struct ex_run {
     ex_options_t options;
     ex_codec_t *codec;
-    ex_store_t store;
+    ex_store_t store;        /* of approximations: of hashes, or `used` alone */
+    ex_bits_t bits;
     ex_worker_t *worker;     /* options.threads of them */
     ex_key_t initial;
     double started;          /* seconds of the monotonic clock */

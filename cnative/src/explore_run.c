@@ -59,7 +59,7 @@ void ex_fail(ex_worker_t *worker, int64_t transition)
 /* Whatever is nearly full grows; the others wait. */
 static void grow_all(ex_run_t *run)
 {
-    const bool is_full = (atomic_load(&run->store.used) + EX_SPARE_KEYS) >= run->store.limit;
+    const bool is_full = (run->store.bucket != NULL) && ((atomic_load(&run->store.used) + EX_SPARE_KEYS) >= run->store.limit);
     const bool is_fine = (!is_full || ex_store_grow(&run->store)) && ex_bytes_grow(&run->codec->bytes)
                          && (run->codec->is_direct || ex_quads_grow(&run->codec->quads));
     if (!is_fine) {
