@@ -76,7 +76,7 @@ def walk(
     seconds: float = 60.0,
     runs: int = RUNS,
 ) -> Walk:
-    """Compile a net and walk through it, in no more than so many runs and, about, so many seconds."""
+    """Compile a net and walk through it, in no more than so many runs and, about, so many seconds of the processor."""
     d = Diagnostics()
     flat = load(path, d)
     if flat is None:
@@ -94,7 +94,7 @@ def walk(
             program = workshop.build(net, workshop.folder / name.replace("/", "_"))
         except AssertionError as failure:
             return Walk(name, "differs", detail=f"not compiled: {str(failure)[:2000]}")
-        until = time.monotonic() + seconds
+        until = time.process_time() + seconds
         result = _runs(flat, name, program, steps=steps, seed=seed, until=until, runs=runs)
         if "place is full" not in result.detail:
             break
@@ -115,7 +115,7 @@ def _runs(
         run = replace(run, steps=done, runs=number + 1)
         if run.verdict != "agrees" or run.end not in ("dead", "error") or done == steps:
             break
-        if empty == WITHOUT_STEP or time.monotonic() > until:
+        if empty == WITHOUT_STEP or time.process_time() > until:
             break
     return replace(run, end="steps") if run.verdict == "agrees" and done == steps else run
 
@@ -175,7 +175,7 @@ def _follow(
             return Walk(name, "agrees", done, "dead")
         if done == steps:
             return Walk(name, "agrees", done, "steps")
-        if time.monotonic() > until:
+        if time.process_time() > until:
             return Walk(name, "agrees", done, "time")
         try:
             game.fire(enabled[line["chosen"]], checked=False)

@@ -135,6 +135,7 @@ class Enabling:
         self.evaluator = evaluator
         self.colours = evaluator.colours
         self._guards: dict[int, list[list[int]]] = {}
+        self._in_order: dict[int, tuple[PlaceMarking, list[Value]]] = {}
 
     # --- search for bindings ---------------------------------------------------------------------
 
@@ -216,8 +217,13 @@ class Enabling:
             yield choice
 
     def _colours_in(self, place: int, tokens: PlaceMarking) -> list[Value]:
-        values = tokens.counts if isinstance(tokens, MultiSet) else tokens.stamps
-        return self.colours.sorted(self.net.places[place].colset, values)
+        """The different colours that a place holds, in order; asked again and again while it holds the same."""
+        before, found = self._in_order.get(place, (None, []))
+        if before is not tokens:
+            values = tokens.counts if isinstance(tokens, MultiSet) else tokens.stamps
+            found = self.colours.sorted(self.net.places[place].colset, values)
+            self._in_order[place] = tokens, found
+        return found
 
     def _match_equation(
         self, t: FlatTransition, guard: int, pattern: Pat, value: Any, found: Found
