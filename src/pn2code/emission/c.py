@@ -32,6 +32,8 @@ from pn2code.lowering.ir_types import is_restricted
 from pn2code.lowering.packing import packed_bits
 
 _MARK = "\x01"
+_MOST_INLINED = 150
+"""Transitions of a net for which the compiler is told to put searches where they are called."""
 _LEAVES = {
     Rep.BOOL: "PN_LEAF_BOOL",
     Rep.INT: "PN_LEAF_INT",
@@ -340,7 +342,7 @@ class _Emitter:
             ],
             "keeps": search.keeps and search.releases,
             "search": search.lines,
-            "searches_marking": bool(re.search(r"\bm\b", "\n".join(search.lines))),
+            "searches_marking": _mentions("m", "\n".join(search.lines)),
             "fire": fire.lines,
             "is_direct": is_direct,
             "sums": [
@@ -349,9 +351,8 @@ class _Emitter:
                 if any(f"{s.name}(" in line for line in search.lines + fire.lines)
             ],
             "lists": lists.lines if lists else [],
-            "lists_use_binding": lists is not None
-            and bool(re.search(r"\bb\b", "\n".join(lists.lines))),
-            "uses_binding": bool(re.search(r"\bb\b", text)),
+            "lists_use_binding": lists is not None and _mentions("b", "\n".join(lists.lines)),
+            "uses_binding": _mentions("b", text),
             "touched": ", ".join(f"{i}U" for i in self._effects.touched(t.index)),
             "touched_bags": [
                 self._place_names[i]
@@ -502,6 +503,9 @@ class _Emitter:
             "packed_words": (packed_bits(net.places) + 63) // 64,
             "packed_size": (packed_bits(net.places) + 31) // 32 * 4,
             "transitions": transitions,
+            "inlined": "PN_INLINE"
+            if net.has_successors and len(net.transitions) <= _MOST_INLINED
+            else "PN_NET_SEARCH static",
             "bag_places": ", ".join(f"{p.index}U" for p in net.places if not p.packed),
             "has_references": any(g.is_reference for g in net.globals),
             "has_arena_values": self._has_arena_values
@@ -591,3 +595,12 @@ def _initial(zero: str, rep: Rep) -> str:
 
 
 __all__ = ["emit"]
+
+
+_APART = re.compile(r'"(?:[^"\\]|\\.)*"|/\*.*?\*/', re.S)
+"""Strings and comments of C."""
+
+
+def _mentions(variable: str, code: str) -> bool:
+    """Whether C code uses a variable: not a member of that name, nor a word in a string or comment."""
+    return re.search(rf"(?<![.>\w]){variable}\b", _APART.sub("", code)) is not None
