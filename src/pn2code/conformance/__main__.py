@@ -74,14 +74,15 @@ def _about(file: Path | None) -> str:
     data = json.loads(file.read_text(encoding="utf-8"))
     ends = data["ends"]
     said = (
-        ("steps", "took all steps"),
-        ("dead", "came to a dead marking"),
-        ("error", "ended with the same error in both"),
+        ("steps", "made all steps"),
+        ("dead", "have only short runs to a dead marking and made those"),
+        ("error", "have only short runs to an error, the same in both"),
         ("time", "were cut after some seconds"),
     )
     return (
-        f"Compiled walks, the semantics suite included: {data['steps']:,} steps at most, everything compared before "
-        f"each step; of those that agree {', '.join(f'{ends[k]} {words}' for k, words in said if ends.get(k))}."
+        f"Compiled walks, the semantics suite included: {data['steps']:,} steps of each net, from the start again "
+        "after a dead marking or an error, everything compared before each step; of those that agree "
+        f"{', '.join(f'{ends[k]} {words}' for k, words in said if ends.get(k))}."
     )
 
 
