@@ -7,7 +7,8 @@ from pathlib import Path
 
 import pytest
 
-from helpers.pnml_nets import graph, load, unfolded_size
+from helpers.pnml_nets import flat, graph, load, unfolded_size
+from pn2code.convert import pnml_symmetric
 from pn2code.diagnostics import Diagnostics
 from pn2code.semantics.multiset import MultiSet
 from pn2code.unfold.unfold import unfold
@@ -58,3 +59,14 @@ def test_all_unfolded(contest: Path) -> None:
             explored += 1
             assert unfolded_size(u) == (states, arcs), path.stem
     assert explored >= 6
+
+
+@pytest.mark.parametrize("name", [*PLAYED, "TokenRing-COL-005", "QuasiCertifProtocol-COL-02"])
+def test_written_again(name: str, contest: Path, tmp_path: Path) -> None:
+    """Successors, products, differences and comparisons survive the way through CPN ML."""
+    d = Diagnostics()
+    text = pnml_symmetric.emit(load(contest / f"{name}.pnml"), d, title=name)
+    assert text is not None, [e.message for e in d.errors]
+    u = unfold(flat(text, tmp_path), d)
+    assert u is not None
+    assert unfolded_size(u) == expected(contest)[name][:2]

@@ -7,7 +7,8 @@ UNSUPPORTED_IN_PNML = register(
     "the net has something that symmetric nets cannot express",
     "PNML knows place/transition nets and symmetric nets: colour sets that are enumerations, ranges of whole numbers, "
     "Booleans, unit and products of these; on arcs sums of tuples of variables, constants, successors and "
-    "predecessors; guards that compare such values. `--unfold` writes any net with finitely many colours as a place/transition net.",
+    "predecessors; guards that compare such values. `--unfold` writes any net with finitely many colours as a "
+    "place/transition net.",
 )
 UNSUPPORTED_IN_PROMELA = register(
     "unsupported-in-promela",

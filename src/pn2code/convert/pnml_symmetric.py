@@ -21,8 +21,22 @@ from pn2code.convert.pnml import element
 from pn2code.diagnostics import Diagnostics, Origin
 from pn2code.ml.builtins import FALSE, TRUE
 from pn2code.ml.colsets import Colset, Kind
-from pn2code.ml.core import Apply, Builtin, Con, Exp, If, ListExp, RecordExp, Sequence, Symbol, Var
+from pn2code.ml.core import (
+    Apply,
+    Builtin,
+    Con,
+    Exp,
+    If,
+    ListExp,
+    Program,
+    RecBind,
+    RecordExp,
+    Sequence,
+    Symbol,
+    Var,
+)
 from pn2code.net.flat import ArcKind, FlatArc, FlatNet, FlatTransition, Form
+from pn2code.pnml.declarations import minus_text
 from pn2code.semantics.evaluate import variables
 from pn2code.semantics.game import Game
 from pn2code.semantics.marking import Marking
@@ -81,6 +95,7 @@ class _Writer:
         self.d = d
         self.positions = positions
         self.sorts: dict[str, str] = {}
+        self.minus = frozenset(_minus(net.program))
         self.names: dict[str, _Sort] = {}
         self.symbols: dict[Symbol, str] = {}
         self.declared: list[str] = []
@@ -277,6 +292,8 @@ class _Writer:
                 return _sum([self.sum(a, c), self.sum(b, c)])
             case Apply(Builtin("Ms.--"), RecordExp((("1", a), ("2", b)))):
                 return _nested("subtract", [self.sum(a, c), self.sum(b, c)])
+            case Apply(Var(symbol), RecordExp((("1", a), ("2", b)))) if symbol in self.minus:
+                return _nested("subtract", [self.sum(a, c), self.sum(b, c)])
             case Apply(Builtin("Ms.`"), RecordExp((("1", n), ("2", v)))):
                 return _numberof(self.count(n), self.value(v, c))
             case Apply(Builtin("Ms.**"), RecordExp((("1", n), ("2", m)))):
@@ -418,6 +435,15 @@ class _Writer:
         """`<declaration>`."""
         inside = element("structure", element("declarations", *self.declared))
         return element("declaration", inside)
+
+
+def _minus(program: Program) -> Iterator[Symbol]:
+    """The functions that subtract multi-sets in nets that were read from PNML."""
+    for declaration in program.declarations:
+        if isinstance(declaration, RecBind):
+            for symbol, _ in declaration.bindings:
+                if declaration.span.source.text == minus_text(symbol.name):
+                    yield symbol
 
 
 def _ordinals(a: Exp, b: Exp) -> tuple[Exp, Exp, bool | None]:

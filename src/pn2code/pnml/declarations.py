@@ -424,11 +424,7 @@ class Declarations:
 
     def minus(self, at: Node) -> str:
         """The function that takes a multi-set from another, as far as it is there."""
-        return self._function(
-            "minus_ms",
-            lambda name: f"fun {name} (a', b') = List.foldl (fn (x', m') => rm x' m') a' b'",
-            at,
-        )
+        return self._function("minus_ms", minus_text, at)
 
     def part_of(self, identity: str, at: Node, origin: Origin) -> tuple[str, Sort] | None:
         """The function from a sort to the element of a partition that a value is in, and the partition."""
@@ -482,6 +478,11 @@ class Declarations:
             )
             self.items.append(RawMl("", SourceText(text(name), origin), origin))
         return self._functions[key]
+
+
+def minus_text(name: str) -> str:
+    """The declaration of the function that subtracts multi-sets as far as they are there."""
+    return f"fun {name} (a', b') = List.foldl (fn (x', m') => rm x' m') a' b'"
 
 
 _WORDS = {
