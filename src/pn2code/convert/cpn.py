@@ -126,8 +126,8 @@ class _Writer:
             self.at(x, y),
             element("text", escape(p.name)),
             element("ellipse", w=_WIDTH, h=_HEIGHT),
-            self.label("type", p.type, x + 45, y - 26),
-            self.label("initmark", p.initial, x + 45, y + 26),
+            self.label("type", p.type.text.text if p.type else "UNIT", x + 45, y - 26),
+            self.label("initmark", _tokens(p.initial, ""), x + 45, y + 26),
             id=self.id(p.id),
         )
 
@@ -139,10 +139,10 @@ class _Writer:
             element("text", escape(t.name)),
             element("box", w=_WIDTH, h=_HEIGHT),
             element("binding", x=0, y=0),
-            self.label("cond", t.guard, x - 45, y + 30),
-            self.label("time", None, x + 45, y + 30),
-            self.label("code", None, x + 45, y - 30),
-            self.label("priority", None, x - 45, y - 30),
+            self.label("cond", f"[{t.guard.text.text}]" if t.guard else "", x - 45, y + 30),
+            self.label("time", "", x + 45, y + 30),
+            self.label("code", "", x + 45, y - 30),
+            self.label("priority", "", x - 45, y - 30),
             id=self.id(t.id),
             explicit="false",
         )
@@ -150,13 +150,14 @@ class _Writer:
     def arc(self, a: RawArc) -> str:
         x1, y1 = self.points.get(a.transition, (0.0, 0.0))
         x2, y2 = self.points.get(a.place, (0.0, 0.0))
+        words = _tokens(a.inscription, "" if a.orientation in ("inhibitor", "reset") else "1")
         return element(
             "arc",
             self.at(0, 0),
             element("arrowattr", headsize="1.2", currentcyckle=2),
             element("transend", idref=self.id(a.transition)),
             element("placeend", idref=self.id(a.place)),
-            self.label("annot", a.inscription, (x1 + x2) / 2, (y1 + y2) / 2 + 8),
+            self.label("annot", words, (x1 + x2) / 2, (y1 + y2) / 2 + 8),
             id=self.new(),
             orientation=_ORIENTATIONS[a.orientation],
             order=1,
@@ -165,12 +166,15 @@ class _Writer:
     def at(self, x: float, y: float) -> str:
         return element("posattr", x=f"{x:.1f}", y=f"{y:.1f}") + _LOOK
 
-    def label(self, tag: str, i: Inscription | None, x: float, y: float) -> str:
-        words = i.text.text if i else ""
-        if tag == "cond" and words:
-            words = f"[{words}]"
+    def label(self, tag: str, words: str, x: float, y: float) -> str:
         inside = element("text", escape(words), tool="CPN Tools", version="4.0.1")
         return element(tag, self.at(x, y), inside, id=self.new())
+
+
+def _tokens(i: Inscription | None, otherwise: str) -> str:
+    """The text of a multi-set; numbers of P/T nets are multi-sets of the unit token."""
+    words = i.text.text if i else otherwise
+    return f"{words}`()" if words.isdigit() else words
 
 
 def _id(name: str) -> str:

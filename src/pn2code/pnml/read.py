@@ -3,8 +3,8 @@
 In: a path or bytes. Out: a `Document` whose inscriptions are CPN ML and know the PNML elements that they came from.
 Pages that share nodes by reference places and transitions become one page; others stay pages of their own.
 
-Example: `<initialMarking><text>5</text></initialMarking>` at a place of a P/T net becomes the initial marking ``5`()``
-of a place of the colour set UNIT.
+Example: `<initialMarking><text>5</text></initialMarking>` at a place of a P/T net becomes the initial marking ``5``
+of a place of the colour set UNIT, where CPN Tools needs neither the name of the colour set nor more than the number.
 """
 
 from __future__ import annotations
@@ -352,7 +352,6 @@ class _Reader:
             elif marking is not None and text_of(marking) and term is None:
                 self.no_structure(marking, origin)
         else:
-            kind = Inscription(SourceText(_UNIT, replace(origin, part="colour set")))
             label = node.child("initialMarking")
             if label is not None:
                 initial = self.weight(label, origin, "initial marking", 0)
@@ -391,7 +390,7 @@ class _Reader:
         )
 
     def weight(self, label: Node, base: Origin, part: str, least: int) -> Inscription | None:
-        """The number of a P/T net's label, as a multi-set of dots; None for 0."""
+        """The number of a P/T net's label; None for the least one, which needs no text."""
         node = label.child("text") or label
         text = node.text.strip()
         # Some tools write `Default,5`.
@@ -405,7 +404,7 @@ class _Reader:
             )
             return None
         at = node.source(replace(base, part=part)).origin
-        return Inscription(SourceText(f"{int(digits)}`()", at)) if int(digits) else None
+        return Inscription(SourceText(str(int(digits)), at)) if int(digits) != least else None
 
     def transition(self, node: Node, page: str) -> RawTransition:
         origin = self.element(node, page)
@@ -473,6 +472,10 @@ class _Reader:
         inscription: Inscription | None = None
         if orientation in ("inhibitor", "reset"):
             self.plain(node, origin, orientation)
+        elif not self.is_high_level:
+            label = node.child("inscription")
+            if label is not None and text_of(label):
+                inscription = self.weight(label, origin, "inscription", 1)
         else:
             found = self.inscription(node, origin, place)
             if found is None:
@@ -518,13 +521,8 @@ class _Reader:
             )
 
     def inscription(self, node: Node, origin: Origin, place: Node) -> Inscription | None:
-        """The tokens that an arc moves; None after an error."""
+        """The tokens that an arc of a high-level net moves; None after an error."""
         inside = replace(origin, part="inscription")
-        if not self.is_high_level:
-            label = node.child("inscription")
-            if label is None or not text_of(label):
-                return Inscription(SourceText("1`()", inside))
-            return self.weight(label, origin, "inscription", 1)
         sort = self.sorts.get(place.get("id"))
         if sort is None:
             if place.get("id") not in self.sorts:
