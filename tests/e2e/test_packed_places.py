@@ -92,6 +92,7 @@ NETS: dict[str, str] = {
           place Busy : S
           place Token = 1
           place Waste : S
+          place Pairs : MES
           trans Send
             in Token : ()
             in Idle : s
@@ -114,6 +115,10 @@ NETS: dict[str, str] = {
             in Waste : 2`s
             inhibit Busy
             out Waste : mes s
+            out Pairs : MES.mult (S.all() -- 1`s, 1`s) ++ List.map (fn x => (x, s)) (mes s)
+          trans Unpair
+            in Pairs : MES.mult (S.all() -- 1`s, 1`s)
+            in Waste : s
     """,
     "values outside of the colour set": """
         net Cell

@@ -86,6 +86,7 @@ class Program:
         self.builtins = builtins
         self.real_time = real_time
         self.position = Origin("")
+        self.lists_are_functions = False
         self._functions: dict[Hashable, str] = {}
         self._made: dict[str, ir.Function] = {}
         self._pending: list[tuple[str, NamedFunction, tuple[Binding, ...], list[Local]]] = []
@@ -404,6 +405,24 @@ class Program:
         self._made.update(self.exceptions.finish())
         self.types.close()
         return order_functions(self._made)
+
+    def add_function(
+        self,
+        hint: str,
+        parameters: tuple[Local, ...],
+        result: ir.IrType,
+        body: tuple[ir.Stmt, ...],
+        span: Span,
+    ) -> str:
+        """A function that no declaration has; gives its key. Equal ones are one."""
+        for key, known in self._made.items():
+            if (known.hint, known.parameters, known.body) == (hint, parameters, body):
+                return key
+        key = f"{hint} {len(self._made) + 1}"
+        self._made[key] = ir.Function(
+            key, hint, parameters, result, body, False, False, span.text, span.origin
+        )
+        return key
 
     def _make(
         self,

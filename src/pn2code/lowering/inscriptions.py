@@ -7,7 +7,7 @@ by element.
 
 from __future__ import annotations
 
-from pn2code.lowering import ir
+from pn2code.lowering import arc_lists, ir
 from pn2code.lowering.builtins import components
 from pn2code.lowering.clock import after_now, clock, in_clock, plus
 from pn2code.lowering.expressions import Body
@@ -85,7 +85,7 @@ class Putter:
                     self._multiset(exp.otherwise, stamp)
                 body.emit(ir.If(condition, tuple(then), tuple(otherwise)))
             case _:
-                value = body.ir(exp, env)
+                value = arc_lists.multiset(body, exp, env)
                 table = body.program.types.plain(value.type)
                 body.emit(ir.PutAll(self._place, value, table, stamp, False, self._note_once()))
 

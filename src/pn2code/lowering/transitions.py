@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from pn2code.lowering import colset_functions, ir
+from pn2code.lowering import arc_lists, colset_functions, ir
 from pn2code.lowering.builtins import components, equal
 from pn2code.lowering.clock import clock, in_clock, plus
 from pn2code.lowering.codes import UNSUPPORTED_COLSET, UnsupportedError
@@ -95,7 +95,7 @@ def take_terms(
     for term in arc.inscription.terms if terms is None else terms:
         limit = _limit(program, body, term.delay, env, timed)
         if term.whole:
-            multiset = body.ir(term.value, env)
+            multiset = arc_lists.multiset(body, term.value, env)
             table = program.types.plain(multiset.type)
             body.emit(ir.TakeAll(arc.place, multiset, table, limit, note))
         else:
