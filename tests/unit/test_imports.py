@@ -20,7 +20,7 @@ ALLOWED: dict[str, set[str]] = {
     "net": {"diagnostics", "ml", "pnml", "reading"},
     "semantics": {"diagnostics", "ml", "net"},
     "structure": {"diagnostics", "ml", "net", "semantics"},
-    "conformance": {"diagnostics", "ml", "net", "reading", "semantics"},
+    "conformance": {"diagnostics", "ml", "net", "reading", "semantics", "verify"},
     "cell": {"diagnostics", "ml", "net"},
     "lowering": {"diagnostics", "ml", "net", "cell", "tdl"},
     "robot": {"diagnostics"},
@@ -38,10 +38,12 @@ ALLOWED: dict[str, set[str]] = {
     "monitors": {"diagnostics", "ml", "net", "reading", "semantics"},
     "simulate": {"diagnostics", "ml", "net", "semantics", "monitors", "cell", "lowering", "emission", "toolchain",
                  "parser_cache"},
+    "verify": {"diagnostics", "ml", "net", "semantics", "cell", "lowering", "emission", "toolchain", "resources",
+               "simulate"},
     "__main__": {"cli"},
     "cli": {"diagnostics", "cell", "channels", "emission", "net", "pipeline", "run", "report", "semantics", "toolchain",
             "robot", "tdl", "ml", "lowering", "bytecode", "reading", "drawing", "simulate", "monitors", "structure",
-            "convert", "unfold"},
+            "convert", "unfold", "verify"},
 }  # fmt: skip
 EVERYWHERE = {"frozen", "private_folder"}
 

@@ -38,7 +38,9 @@ REGISTERING = (
     "pn2code.simulate.codes",
     "pn2code.tdl.codes",
     "pn2code.toolchain.build",
+    "pn2code.toolchain.programs",
     "pn2code.unfold.codes",
+    "pn2code.verify.codes",
 )
 """The modules that declare codes; a verb loads some of them only."""
 
