@@ -29,7 +29,7 @@ from pn2code.semantics.game import GameError
 from pn2code.simulate.script import TraceRefusedError
 from pn2code.verify.codes import REPORT_UNWRITABLE, STATE_ERROR
 from pn2code.verify.explore import Wishes, explore
-from pn2code.verify.limits import Approximation, Limits, Order, cores
+from pn2code.verify.limits import Approximation, Limits, Order, Reduction, cores
 from pn2code.verify.path import steps, text
 from pn2code.verify.progress import ProgressLine
 from pn2code.verify.report import report, why_partial
@@ -81,8 +81,17 @@ def verify(
             help="Store less than the markings; some may be missed, and it is said how many."
         ),
     ] = None,
+    reduce: Annotated[
+        list[Reduction],
+        typer.Option(
+            help="See less than the whole space; may be given several times.", show_default=False
+        ),
+    ] = [],  # noqa: B006 - typer reads the default only
     no_reduction: Annotated[
-        bool, typer.Option("--no-reduction", help="Count the full space (the default).")
+        bool,
+        typer.Option(
+            "--no-reduction", help="Count the full space (the default), whatever `--reduce` says."
+        ),
     ] = False,
     spill: Annotated[
         Path | None,
@@ -139,6 +148,7 @@ def verify(
         spill=spill,
         graph=graph,
         traces=most_traces,
+        reductions=() if no_reduction else tuple(dict.fromkeys(reduce)),
     )
     d = Diagnostics()
     with Interrupts() as interrupts, ProgressLine(shown=not (as_json or quiet)) as progress:

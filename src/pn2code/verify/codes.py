@@ -38,3 +38,11 @@ REPORT_UNWRITABLE = register(
     "The file that `--report` names cannot be opened or written: the folder is missing, there is no permission, or the "
     "disk is full. The exploration itself is complete, and its result is printed.",
 )
+REDUCTION_NOT_POSSIBLE = register(
+    "reduction-not-possible",
+    "a reduction of the state space that was asked for does not fit the net",
+    "A reduction leaves states out, or takes some for the same, and keeps the answers only for nets that do not look "
+    "at the difference. `--reduce time` takes states for the same that differ only in how late it is: no inscription "
+    "may read the time, `step()` or the stamps of tokens, and nothing outside the marking (references, random numbers, "
+    "files) may decide. The exploration goes on without the reduction.",
+)

@@ -23,8 +23,9 @@ from pn2code.diagnostics import Diagnostics, Origin
 from pn2code.net.flat import FlatNet
 from pn2code.verify import programs
 from pn2code.verify.codes import BEYOND_ROOM, EXPLORER_FAILED
-from pn2code.verify.limits import Limits
+from pn2code.verify.limits import Limits, Reduction
 from pn2code.verify.programs import Sizes
+from pn2code.verify.reductions import possible
 from pn2code.verify.result import Exploration
 
 Progress = Callable[[Mapping[str, Any]], None]
@@ -79,6 +80,7 @@ def explore(
         GameError: a declaration or an initial marking raises an exception.
     """
     wishes = wishes or Wishes()
+    reductions = possible(net, limits.reductions, d)
     sizes = Sizes.start(net, storage)
     compiling = 0.0
     while True:
@@ -87,7 +89,7 @@ def explore(
             compiling += time.perf_counter() - began
             if program is None:
                 return None
-            found = _run(net, program, _options(limits, sizes, wishes), wishes, d)
+            found = _run(net, program, _options(limits, reductions, sizes, wishes), wishes, d)
         if found is None:
             return None
         error = found["error"]
@@ -107,7 +109,9 @@ def explore(
         sizes = larger
 
 
-def _options(limits: Limits, sizes: Sizes, wishes: Wishes) -> list[str]:
+def _options(
+    limits: Limits, reductions: Sequence[Reduction], sizes: Sizes, wishes: Wishes
+) -> list[str]:
     given: list[tuple[str, object]] = [
         ("--threads", limits.threads),
         ("--order", limits.order.value),
@@ -120,6 +124,7 @@ def _options(limits: Limits, sizes: Sizes, wishes: Wishes) -> list[str]:
         ("--trace-to", wishes.traces and wishes.traces / f"{wishes.stem}.dead-"),
         ("--traces", limits.traces if wishes.traces else None),
         ("--write-graph", wishes.graph),
+        *(("--reduce", reduction.value) for reduction in reductions),
     ]
     options = [text for name, value in given if value is not None for text in (name, str(value))]
     return options + ["--progress"] + ([] if limits.graph else ["--no-graph"])

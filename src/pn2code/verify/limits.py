@@ -22,6 +22,12 @@ class Approximation(StrEnum):
     HASH = "hash"
 
 
+class Reduction(StrEnum):
+    """Ways of seeing less than the whole space that keep what is asked."""
+
+    TIME = "time"
+
+
 @dataclass(frozen=True, slots=True)
 class Limits:
     """What an exploration may use.
@@ -36,6 +42,7 @@ class Limits:
         spill: a folder for tables that are larger than memory, None: none.
         graph: whether the graph is analysed (components, home markings, liveness, fairness).
         traces: most dead markings that get a trace.
+        reductions: those that are wanted; one that the net does not permit is left out, with a diagnostic.
     """
 
     max_states: int | None = None
@@ -47,6 +54,7 @@ class Limits:
     spill: Path | None = None
     graph: bool = True
     traces: int = 1
+    reductions: tuple[Reduction, ...] = ()
 
 
 def cores() -> int:
