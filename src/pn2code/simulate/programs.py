@@ -16,6 +16,7 @@ from pn2code.diagnostics import Diagnostics
 from pn2code.emission import c as emit_c
 from pn2code.emission.output import OutputFile
 from pn2code.lowering import net as lower_net
+from pn2code.lowering.packing import MOST_WIDTH, Packing
 from pn2code.net.flat import FlatNet
 from pn2code.toolchain import programs
 from pn2code.toolchain.programs import Host
@@ -23,6 +24,8 @@ from pn2code.toolchain.programs import Host
 HOST = Host("simulate", without="; or use `--engine reference`", whole="simulate_play.c")
 ROOM = 1 << 14
 """Different tokens that a place can hold at first. What is not used costs address space only."""
+PACKING = Packing({}, MOST_WIDTH, most_colours=2, successors=False)
+"""Counters instead of arrays where there are so few colours that this is faster; they never overflow."""
 
 
 @contextmanager
@@ -52,5 +55,6 @@ def generated(
     partition = divide(net, None, d)
     if partition is None:
         return None
-    ir = lower_net.lower(partition, storage, d, capacity={p.name: room for p in net.places})
+    capacity = {p.name: room for p in net.places}
+    ir = lower_net.lower(partition, storage, d, capacity=capacity, packing=PACKING)
     return None if ir is None or d.has_errors else emit_c.emit(ir, pn2code.__version__)
