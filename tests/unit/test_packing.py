@@ -1,0 +1,92 @@
+"""Which places are packed, how wide their counters are, and where they lie."""
+
+from __future__ import annotations
+
+from collections import Counter
+
+from helpers.compiled import lowered
+from helpers.netbuilder import flat
+from pn2code.lowering import ir
+from pn2code.lowering.packing import Packing, bits, choose, packed_bits
+from pn2code.semantics.game import Game
+
+NET = """
+    net Cell
+      standard
+      colset ONE = with only;
+      colset RGB = with red | green | blue;
+      colset SMALL = int with ~3..4;
+      colset LARGE = int with 0..4999;
+      colset WIDE = product SMALL * SMALL * RGB;
+      colset EVEN = subset SMALL by (fn n => n mod 2 = 0);
+      colset TIMED = SMALL timed;
+      colset ANY = union A: RGB + B + C: EVEN;
+      colset LIST = list RGB;
+      colset TREE = union Leaf + Node: RGB;
+      place U = 9
+      place O : ONE = 3`only
+      place R : RGB = 1`red ++ 1`blue
+      place S : SMALL = 5`1 ++ 1`2
+      place Large : LARGE
+      place W : WIDE
+      place E : EVEN
+      place T : TIMED
+      place X : ANY
+      place L : LIST
+      place Text : STRING
+      place N : INT
+      place M : SMALL
+"""
+
+
+def _places(packing: Packing) -> dict[str, ir.Packed | None]:
+    net, d = lowered(flat(NET), packing=packing)
+    assert net is not None and not d.has_errors
+    return {p.name.removeprefix("Top."): p.packed for p in net.places}
+
+
+def test_what_is_packed() -> None:
+    places = _places(Packing({}))
+    colours = {name: p.colours for name, p in places.items() if p is not None}
+    assert colours == {
+        "U": 1, "O": 1, "R": 3, "S": 8, "W": 192, "E": 8, "X": 3 + 1 + 8, "M": 8,
+    }  # fmt: skip
+    assert not any(p for p in _places(Packing({}, 0)).values())
+    few = _places(Packing({"Top.S": 2}, 4, most_colours=3))
+    assert {n for n, p in few.items() if p} == {"U", "O", "R"}
+
+
+def test_widths_come_from_the_initial_marking() -> None:
+    net = flat(NET)
+    marking = Game(net, {}).marking
+    packing = choose(net, [Counter(tokens).values() for tokens in marking.places])
+    found = {name: p.width for name, p in _places(packing).items() if p is not None}
+    assert found == {"U": 5, "O": 4, "R": 1, "S": 4, "W": 1, "E": 1, "X": 1, "M": 1}
+    wider = packing.wider("Top.W").wider("Top.W").wider("Top.U")
+    found = {name: p.width for name, p in _places(wider).items() if p is not None}
+    assert (found["W"], found["U"], found["R"]) == (4, 10, 1)
+    for _ in range(3):
+        wider = wider.wider("Top.U")
+    assert wider.of("Top.U") == 0
+    assert _places(wider)["U"] is None
+    assert [bits(n) for n in (0, 1, 2, 10, 2**40)] == [1, 1, 2, 4, 32]
+
+
+def test_no_counter_lies_across_words_and_none_on_another() -> None:
+    for width in (1, 3, 5, 7, 12, 31):
+        net, _ = lowered(flat(NET), packing=Packing({}, width))
+        assert net is not None
+        taken: set[int] = set()
+        for p in net.places:
+            if p.packed is None:
+                continue
+            n, w, first = p.packed.colours, p.packed.width, p.packed.bit
+            assert w >= width
+            own = set(range(first, first + n * w))
+            assert len(own & taken) == 0
+            taken |= own
+            for i in range(n):
+                assert (first + i * w) // 64 == (first + i * w + w - 1) // 64
+            if n * w <= 64:
+                assert first // 64 == (first + n * w - 1) // 64
+        assert packed_bits(net.places) == max(taken) + 1
