@@ -42,6 +42,8 @@ LARGE = 1_000_000
 """Characters of generated C beyond which a net is not compiled in one piece with its host."""
 MOST_PROGRAMS = 64
 """Programs of a host that are kept; the ones that were not used for the longest time go first."""
+GROUPS = 8
+"""Calls of the compiler for the runtime."""
 _HOSTS = ("simulate", "supervisor", "explore")
 """Sources of the runtime that belong to hosts, by what their names begin with."""
 
@@ -205,8 +207,16 @@ class _Builder:
             return True
         sources = [f.path for f in self.runtime if f.path.endswith(".c")]
         objects = [f"{Path(s).stem}.o" for s in sources]
-        if not self._compiler(room, "-Iruntime/include", "-c", *sources, d=d):
-            return False
+        # Large ones first, so that all processors are busy to the end.
+        sources.sort(key=lambda name: -(room / name).stat().st_size)
+        groups = [sources[i::GROUPS] for i in range(GROUPS)]
+
+        def compiled(group: Sequence[str]) -> bool:
+            return self._compiler(room, "-Iruntime/include", "-c", *group, d=d)
+
+        with ThreadPoolExecutor(max(os.cpu_count() or 1, 1)) as pool:
+            if not all(list(pool.map(compiled, groups))):
+                return False
         made = room / "runtime.a"
         archiver = shutil.which("ar")
         done = _run([archiver or "ar", "rcs", made.name, *objects], room)
