@@ -8,6 +8,7 @@ from pathlib import Path
 
 import pytest
 
+from helpers.explored import Explorers
 from pn2code import pipeline
 from pn2code.diagnostics import Diagnostics, render
 from pn2code.emission.write import write
@@ -36,3 +37,11 @@ def riveting_program(root: Path, tmp_path_factory: pytest.TempPathFactory) -> Pa
             assert build.build(folder, generated.files, d) is not None, render.report(d)
             done.touch()
     return folder
+
+
+@pytest.fixture(scope="session")
+def explorers(tmp_path_factory: pytest.TempPathFactory) -> Explorers:
+    """The runtime of explorers, compiled once."""
+    if build.find_compiler() is None:
+        pytest.skip("no C compiler")
+    return Explorers.open(tmp_path_factory.mktemp("explorers"))

@@ -181,6 +181,7 @@ class PlaceInstance:
         number: CPN Tools' number of that page instance, from 1.
         place: index in `FlatNet.places`.
         caption: the name exactly as it is written, with line breaks; "" if it has none.
+        is_assigned: whether it is a port that has a socket.
     """
 
     id: str
@@ -190,6 +191,7 @@ class PlaceInstance:
     number: int
     place: int
     caption: str = ""
+    is_assigned: bool = False
 
 
 @frozen

@@ -103,6 +103,7 @@ class _Flattener:
                     number=instance.number,
                     place=group_of[(instance.index, place.id)],
                     caption=captions.get(place.id, place.name),
+                    is_assigned=self.has_socket(instance, place),
                 )
                 for instance in self.instances
                 for place in instance.page.places
@@ -132,10 +133,10 @@ class _Flattener:
         for instance in self.instances:
             for place in instance.page.places:
                 key = (instance.index, place.id)
-                above = (instance.parent, instance.sockets.get(place.id, ""))
-                if above not in self.typed:
+                if not self.has_socket(instance, place):
                     top[key] = key
                 else:
+                    above = (instance.parent, instance.sockets[place.id])
                     # Parents come before their children, so the socket's own top is known.
                     top[key] = top[above]
                     self.check_port(place, self.typed[above], instance)
@@ -170,6 +171,10 @@ class _Flattener:
             members.setdefault(root(key), []).append(key)
         groups = [self.topmost_first(g, top) for g in members.values()]
         return groups, {key: n for n, group in enumerate(groups) for key in group}
+
+    def has_socket(self, instance: PageInstance, place: TypedPlace) -> bool:
+        """Whether a place is a port that is assigned to a socket."""
+        return (instance.parent, instance.sockets.get(place.id, "")) in self.typed
 
     def topmost_first(self, group: list[Key], top: dict[Key, Key]) -> list[Key]:
         return sorted(group, key=lambda k: (top[k] != k, self.order[k]))

@@ -8,7 +8,7 @@ places and transitions of a page the first of a name has it, the others have `_u
 
 from __future__ import annotations
 
-from pn2code.net.flat import FlatNet
+from pn2code.net.flat import FlatNet, PlaceInstance
 from pn2code.semantics.recording import engine_name
 
 
@@ -36,6 +36,10 @@ class EngineNames:
         """Of `FlatNet.transitions[index]`."""
         t = self._net.transitions[index]
         return f"{_legal(t.page)}'{self._names[t.id]} {t.instance_number}"
+
+    def place_instance(self, place: PlaceInstance) -> str:
+        """Of a place as it stands on a page."""
+        return f"{_legal(place.page)}'{self._names[place.id]} {place.number}"
 
     def place(self, index: int) -> str:
         """Of `FlatNet.places[index]`: that of the topmost of the places that share the marking."""

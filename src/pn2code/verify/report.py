@@ -106,8 +106,12 @@ def _statistics(found: Exploration) -> str:
 
 def _boundedness(net: FlatNet, found: Exploration) -> str:
     assert found.bounds is not None
-    place_name = EngineNames(net).place
-    rows = sorted(((place_name(p.index), p) for p in net.places), key=lambda row: row[0])
+    # Members of fusion sets have rows of their own; a port with a socket has not.
+    name_of = EngineNames(net).place_instance
+    shown = [p for p in net.place_instances if not p.is_assigned]
+    rows = sorted(
+        ((name_of(p), net.places[p.place]) for p in shown), key=lambda row: _order(row[0])
+    )
     lines = [*_section("Boundedness Properties"), "", "  Best Integer Bounds"]
     lines.append(f"     {'':24}Upper      Lower")
     for name, place in rows:
@@ -120,6 +124,11 @@ def _boundedness(net: FlatNet, found: Exploration) -> str:
             multiset = (own.lower_multiset, own.upper_multiset)[pick]
             lines += _row(name, multiset_text(place.colset, multiset) or "not computed", _NAME)
     return "\n".join(lines)
+
+
+def _order(name: str) -> str:
+    """The real tool sorts by name and number without the blank between them: `P20 1` before `P2 1`."""
+    return name.replace(" ", "")
 
 
 def _row(name: str, text: str, width: int) -> list[str]:
@@ -153,7 +162,7 @@ def _liveness(net: FlatNet, found: Exploration) -> str:
 
 def _instances(net: FlatNet, which: Iterable[int]) -> list[str]:
     name = EngineNames(net).transition
-    names = sorted(name(i) for i in which)
+    names = sorted((name(i) for i in which), key=_order)
     if not names:
         return ["     None"]
     if len(names) == len(net.transitions):
@@ -172,6 +181,7 @@ def _fairness(net: FlatNet, graph: Graph) -> str:
         ("just", "Just Transition Instances"),
         ("none", "Transition Instances with No Fairness"),
     ):
-        names = sorted(transition_name(i) for i, own in enumerate(graph.fairness) if own == kind)
+        some = (transition_name(i) for i, own in enumerate(graph.fairness) if own == kind)
+        names = sorted(some, key=_order)
         lines += ["", f"  {title}", *(f"     {name}" for name in names or ["None"])]
     return "\n".join(lines)

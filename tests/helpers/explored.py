@@ -1,0 +1,223 @@
+"""Compiled explorers in tests: the whole graph of a net, next to that of the reference token game.
+
+`Explorers.open(folder)` compiles the runtime once; `agrees` explores a net both ways and compares markings, binding
+elements, and what is said of the graph with `helpers.graph_facts`, which follows the definitions word by word.
+"""
+
+from __future__ import annotations
+
+import json
+import shutil
+import subprocess
+from collections import Counter
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from helpers.graph_facts import Facts
+from pn2code.diagnostics import Diagnostics
+from pn2code.net.flat import FlatNet
+from pn2code.resources import cnative_folder
+from pn2code.semantics.files import Files
+from pn2code.semantics.game import Game, GameError
+from pn2code.semantics.graph import StateSpace, state_space
+from pn2code.semantics.marking import binding_to_json, place_to_json
+from pn2code.verify.programs import Sizes, generated
+
+QUICK = ("-O0",)
+SANITIZERS = ("-g", "-O1", "-fsanitize=address,undefined", "-fno-sanitize-recover=all")
+THREADS = ("-g", "-O1", "-fsanitize=thread")
+SECONDS = 120
+OTHER_HOSTS = ("simulate", "supervisor")
+
+
+@dataclass(frozen=True, slots=True)
+class Explored:
+    """What an explorer has said: its report, its exit code, and with `--write-graph` the graph."""
+
+    report: dict[str, Any]
+    code: int
+    nodes: tuple[str, ...] = ()
+    arcs: tuple[tuple[int, int, str], ...] = ()
+
+
+@dataclass(frozen=True, slots=True)
+class Explorers:
+    """A folder with the runtime, and how nets are compiled."""
+
+    folder: Path
+    compiler: str
+    flags: tuple[str, ...]
+
+    @staticmethod
+    def open(folder: Path, flags: tuple[str, ...] = QUICK) -> Explorers:
+        """Compile the runtime."""
+        compiler = shutil.which("gcc") or shutil.which("cc")
+        assert compiler is not None
+        made = Explorers(folder, compiler, flags)
+        objects = folder / "runtime"
+        objects.mkdir(parents=True)
+        sources = [
+            str(f)
+            for f in sorted((cnative_folder() / "src").glob("*.c"))
+            if not f.name.startswith(OTHER_HOSTS)
+        ]
+        made._run(objects, "-c", *sources)
+        return made
+
+    def _run(self, folder: Path, *arguments: str) -> None:
+        command = [self.compiler, "-std=c11", "-ffp-contract=off", "-pthread", *self.flags]
+        command += [f"-I{cnative_folder() / 'include'}", f"-I{folder}", *arguments]
+        done = subprocess.run(command, cwd=folder, capture_output=True, text=True, check=False)
+        assert done.returncode == 0, done.stderr[-3000:]
+
+    def build(self, flat: FlatNet, sizes: Sizes, name: str) -> Path:
+        """The explorer of a net."""
+        d = Diagnostics()
+        files = generated(flat, {}, sizes, d)
+        assert files is not None, [(e.message, e.origin.describe()) for e in d.errors]
+        folder = self.folder / name
+        folder.mkdir(exist_ok=True)
+        for file in files:
+            (folder / file.path).write_text(file.text)
+        objects = [str(f) for f in sorted((self.folder / "runtime").glob("*.o"))]
+        self._run(folder, "net.c", *objects, "-lm", "-o", "explore")
+        return folder / "explore"
+
+    def explore(self, flat: FlatNet, *options: object, name: str = "net") -> Explored:
+        """Explore a net, with more room where places turn out to hold more, as `pn2code verify` does."""
+        sizes = Sizes.start(flat, {})
+        while True:
+            found = explored(self.build(flat, sizes, name), *options)
+            error = found.report["error"]
+            if not error or error["kind"] not in ("capacity", "memory"):
+                return found
+            index = error["place"] if error["kind"] == "capacity" else None
+            larger = sizes.larger(None if index is None else flat.places[index].name)
+            assert larger is not None, error
+            sizes = larger
+
+
+def explored(program: Path, *options: object) -> Explored:
+    """Run an explorer, and read what it says."""
+    graph = program.with_name("graph.jsonl")
+    graph.unlink(missing_ok=True)
+    command = [str(program), *map(str, options), "--write-graph", str(graph)]
+    done = subprocess.run(command, capture_output=True, text=True, check=False, timeout=SECONDS)
+    assert done.stdout, f"code {done.returncode}: {done.stderr[-3000:]}"
+    nodes: list[str] = []
+    arcs: list[tuple[int, int, str]] = []
+    for line in graph.read_text().splitlines() if graph.exists() else ():
+        entry = json.loads(line)
+        if "node" in entry:
+            assert entry["node"] == len(nodes) + 1
+            nodes.append(_node(entry["t"], entry["marking"]))
+        else:
+            element = _element(entry["t"], entry["transition"], entry["binding"])
+            arcs.append((entry["from"] - 1, entry["to"] - 1, element))
+    return Explored(json.loads(done.stdout), done.returncode, tuple(nodes), tuple(arcs))
+
+
+def _node(time: float, marking: Mapping[str, Any]) -> str:
+    return json.dumps([float(time), marking], sort_keys=True)
+
+
+def _element(time: float, transition: str, binding: Mapping[str, Any]) -> str:
+    return json.dumps([float(time), transition, binding], sort_keys=True)
+
+
+def reference(flat: FlatNet, most: int) -> StateSpace | GameError:
+    """By the token game, up to so many markings; or the exception of an inscription."""
+    try:
+        game = Game(flat, {}, files=Files(None))
+        return state_space(game, max_nodes=most)
+    except GameError as error:
+        return error
+
+
+def agrees(
+    explorers: Explorers, flat: FlatNet, *options: object, nodes: int = 120, arcs: int = 1500
+) -> str:
+    """Compare; gives "same", "exception" or "large" (more than that), and fails on a difference."""
+    found = explorers.explore(flat, "--max-states", nodes, *options)
+    report = found.report
+    if report["why"] in ("states", "seconds") or report["arcs"] > arcs:
+        assert report["why"] == "complete" or found.code == 3
+        return "large"
+    space = reference(flat, 2 * nodes)
+    if isinstance(space, GameError):
+        assert report["why"] == "error", f"only the token game fails: {space}\n{report}"
+        assert found.code == 1
+        return "exception"
+    if report["why"] == "error":
+        assert not space.complete, f"only the compiled net fails: {report['error']}"
+        return "large"
+    assert report["complete"], (report["why"], report["error"])
+    assert (report["nodes"], report["arcs"]) == (len(space.nodes), len(space.arcs))
+    compare_graph(flat, space, found)
+    compare_facts(flat, space, report)
+    return "same"
+
+
+def compare_graph(flat: FlatNet, space: StateSpace, found: Explored) -> None:
+    """Markings and binding elements."""
+    game = Game(flat, {}, files=Files(None))
+    nodes = []
+    for marking in space.nodes:
+        texts = {
+            p.name: place_to_json(game.colours, p.colset, marking.places[p.index])
+            for p in flat.places
+        }
+        nodes.append(_node(marking.time, texts))
+    times = {arc.source: game.settle(space.nodes[arc.source]).time for arc in space.arcs}
+    arcs = Counter(
+        (
+            nodes[arc.source],
+            nodes[arc.target],
+            _element(
+                times[arc.source],
+                flat.transitions[arc.element.transition].name,
+                binding_to_json(arc.element),
+            ),
+        )
+        for arc in space.arcs
+    )
+    assert Counter(found.nodes) == Counter(nodes)
+    theirs = Counter((found.nodes[a], found.nodes[b], element) for a, b, element in found.arcs)
+    assert theirs == arcs
+
+
+def compare_facts(flat: FlatNet, space: StateSpace, report: Mapping[str, Any]) -> None:
+    """All that is said of the graph."""
+    arcs = [(a.source, a.target, a.element.transition) for a in space.arcs]
+    facts = Facts(len(space.nodes), len(flat.transitions), arcs)
+    graph = report["graph"]
+    assert report["dead_count"] == len(space.dead) == len(report["dead"])
+    assert report["fired"] == facts.fired()
+    assert (graph["scc_nodes"], graph["scc_arcs"]) == facts.components()
+    assert graph["home_count"] == len(facts.home())
+    assert graph["initial_is_home"] == (0 in facts.home())
+    assert graph["live"] == facts.live()
+    assert graph["fairness"] == facts.fairness()
+    assert report["depth"] == facts.depth()
+    colours = Game(flat, {}, files=Files(None)).colours
+    for place, said in zip(flat.places, report["bounds"], strict=True):
+        counted = []
+        for marking in space.nodes:
+            rows = place_to_json(colours, place.colset, marking.places[place.index])
+            own: Counter[str] = Counter()
+            for row in rows:
+                own[json.dumps(row[1])] += row[0]
+            counted.append(own)
+        sizes = [own.total() for own in counted]
+        values = {value for own in counted for value in own}
+        assert (said["lower"], said["upper"]) == (min(sizes), max(sizes)), place.name
+        most = {v: max(own[v] for own in counted) for v in values}
+        least = {v: n for v in values if (n := min(own[v] for own in counted))}
+        assert _multiset(said["upper_multiset"]) == most, place.name
+        assert _multiset(said["lower_multiset"]) == least, place.name
+
+
+def _multiset(rows: list[list[Any]]) -> dict[str, int]:
+    return {json.dumps(value): count for count, value in rows if count}
