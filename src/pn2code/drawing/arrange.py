@@ -42,6 +42,7 @@ class _Part:
     names: list[str]
     widths: list[float]
     heights: list[float]
+    gap: tuple[float, float]
     layer: list[int] = field(default_factory=list)
     down: list[list[int]] = field(default_factory=list)
     up: list[list[int]] = field(default_factory=list)
@@ -51,9 +52,18 @@ class _Part:
 
 
 def arrange(
-    nodes: Mapping[str, tuple[float, float]], edges: Mapping[str, tuple[str, str]]
+    nodes: Mapping[str, tuple[float, float]],
+    edges: Mapping[str, tuple[str, str]],
+    layers: Mapping[str, int] | None = None,
+    gap: tuple[float, float] = (GAP_X, GAP_Y),
 ) -> Arrangement:
-    """Positions for nodes (id -> width, height) and bends for edges (id -> start, end)."""
+    """Positions for nodes (id -> width, height) and bends for edges (id -> start, end).
+
+    Args:
+        nodes, edges: what is arranged.
+        layers: the layer of each node, from 0, when the caller knows better; edges inside a layer get no bends.
+        gap: between the nodes of a layer, and between layers.
+    """
     centres: dict[str, Point] = {}
     bends: dict[str, tuple[Point, ...]] = {}
     leaving: dict[str, list[str]] = {}
@@ -61,19 +71,22 @@ def arrange(
         leaving.setdefault(start, []).append(edge)
     left = top = row = 0.0
     for members in _connected(nodes, edges):
-        part = _Part(members, [nodes[n][0] for n in members], [nodes[n][1] for n in members])
+        part = _Part(members, [nodes[n][0] for n in members], [nodes[n][1] for n in members], gap)
         own = {e: edges[e] for n in members for e in leaving.get(n, ())}
-        _layer(part, own)
+        if layers is None:
+            _layer(part, own)
+        else:
+            _take_layers(part, own, layers)
         _order(part)
         _place(part)
         at, below, right = _coordinates(part)
         if left > 0 and left + right > _ROW:
-            left, top, row = 0.0, top + row + GAP_Y, 0.0
+            left, top, row = 0.0, top + row + gap[1], 0.0
         for i, name in enumerate(part.names):
             centres[name] = (left + at[i][0], top + at[i][1])
         for edge, chain in part.chains.items():
             bends[edge] = tuple((left + at[i][0], top + at[i][1]) for i in chain)
-        left, row = left + right + GAP_X, max(row, below)
+        left, row = left + right + gap[0], max(row, below)
     return Arrangement(centres, bends)
 
 
@@ -141,6 +154,22 @@ def _layer(part: _Part, edges: Mapping[str, tuple[str, str]]) -> None:
     for a in sorted(range(size), key=lambda i: position[i]):
         for b in leaving[a]:
             part.layer[b] = max(part.layer[b], part.layer[a] + 1)
+    _add_dummies(part, ends, forward)
+
+
+def _take_layers(
+    part: _Part, edges: Mapping[str, tuple[str, str]], layers: Mapping[str, int]
+) -> None:
+    """The layers that the caller wants; then the dummies."""
+    number = {n: i for i, n in enumerate(part.names)}
+    lowest = min(layers[n] for n in part.names)
+    part.layer = [layers[n] - lowest for n in part.names]
+    ends = {e: (number[a], number[b]) for e, (a, b) in edges.items()}
+    forward = {
+        e: (a, b) if part.layer[a] < part.layer[b] else (b, a)
+        for e, (a, b) in ends.items()
+        if part.layer[a] != part.layer[b]
+    }
     _add_dummies(part, ends, forward)
 
 
@@ -212,7 +241,8 @@ def _place(part: _Part) -> None:
     part.x = [0.0] * len(part.layer)
 
     def space(a: int, b: int) -> float:
-        gap = GAP_X if part.widths[a] > _DUMMY and part.widths[b] > _DUMMY else GAP_X / 3
+        wide = part.widths[a] > _DUMMY and part.widths[b] > _DUMMY
+        gap = part.gap[0] if wide else part.gap[0] / 3
         return (part.widths[a] + part.widths[b]) / 2 + gap
 
     for members in part.layers:
@@ -246,10 +276,10 @@ def _coordinates(part: _Part) -> tuple[list[Point], float, float]:
     for members in part.layers:
         height = max((part.heights[i] for i in members), default=0.0)
         tops.append(y + height / 2)
-        y += height + GAP_Y
+        y += height + part.gap[1]
     shift = min(x - w / 2 for x, w in zip(part.x, part.widths, strict=True))
     right = max(x + w / 2 for x, w in zip(part.x, part.widths, strict=True))
     points = [
         (round(x - shift), round(tops[layer])) for x, layer in zip(part.x, part.layer, strict=True)
     ]
-    return [(float(a), float(b)) for a, b in points], y - GAP_Y, right - shift
+    return [(float(a), float(b)) for a, b in points], y - part.gap[1], right - shift
