@@ -38,6 +38,8 @@ typedef struct ex_options {
     bool shows_help;
     const char *spill;       /* folder; NULL: none */
     const char *write_graph; /* file; NULL: none */
+    uint64_t write_limit;    /* most nodes of a graph that is written */
+    double progress_every;   /* seconds between lines */
     const char *trace_to;    /* what the names of traces to dead markings begin with; NULL: none */
     uint64_t dead_limit;
     uint64_t traces;         /* most traces in trace_to */
