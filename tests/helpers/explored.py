@@ -40,6 +40,7 @@ class Explored:
     code: int
     nodes: tuple[str, ...] = ()
     arcs: tuple[tuple[int, int, str], ...] = ()
+    lines: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True, slots=True)
@@ -108,7 +109,8 @@ def explored(program: Path, *options: object) -> Explored:
     assert done.stdout, f"code {done.returncode}: {done.stderr[-3000:]}"
     nodes: list[str] = []
     arcs: list[tuple[int, int, str]] = []
-    for line in graph.read_text().splitlines() if graph.exists() else ():
+    lines = graph.read_text(encoding="utf-8").splitlines() if graph.exists() else []
+    for line in lines:
         entry = json.loads(line)
         if "node" in entry:
             assert entry["node"] == len(nodes) + 1
@@ -116,7 +118,9 @@ def explored(program: Path, *options: object) -> Explored:
         else:
             element = _element(entry["t"], entry["transition"], entry["binding"])
             arcs.append((entry["from"] - 1, entry["to"] - 1, element))
-    return Explored(json.loads(done.stdout), done.returncode, tuple(nodes), tuple(arcs))
+    return Explored(
+        json.loads(done.stdout), done.returncode, tuple(nodes), tuple(arcs), tuple(lines)
+    )
 
 
 def _node(time: float, marking: Mapping[str, Any]) -> str:

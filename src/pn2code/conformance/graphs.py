@@ -2,14 +2,27 @@
 
 from __future__ import annotations
 
+import json
 import re
+from collections.abc import Iterable
 from typing import Any
 
 from pn2code.net.flat import FlatNet, FlatPlace
+from pn2code.semantics.colour_json import from_json
+from pn2code.semantics.colours import Colours
 from pn2code.semantics.game import Game
 from pn2code.semantics.graph import StateSpace
-from pn2code.semantics.marking import BindingElement, place_text, variable_text
+from pn2code.semantics.marking import (
+    BindingElement,
+    place_from_json,
+    place_text,
+    variable_text,
+)
 from pn2code.semantics.recording import engine_name
+
+_NO_EVALUATOR: Any = None
+_TEXTS = Colours(_NO_EVALUATOR)
+"""Texts need nothing evaluated."""
 
 Node = tuple[str, tuple[tuple[str, str], ...]]
 """(time, ((place, marking), ...))"""
@@ -52,6 +65,39 @@ def binding_text(game: Game, element: BindingElement) -> str:
     """`n=1,p="a"`, by name of variable."""
     values = sorted((s.name, variable_text(game.colours, s, x)) for s, x in element.values)
     return ",".join(f"{name}={text}" for name, text in values)
+
+
+def written(net: FlatNet, lines: Iterable[str]) -> tuple[list[Node], set[Arc]]:
+    """What the compiled explorer writes of a graph (`--write-graph`), in the engine's notation."""
+    nodes: list[Node] = []
+    rows = []
+    for line in lines:
+        entry = json.loads(line)
+        if "node" in entry:
+            nodes.append(_written_node(net, entry))
+        else:
+            rows.append(entry)
+    arcs = set()
+    for row in rows:
+        t = net.transitions[row["index"]]
+        name = f"{engine_name(t.page)}'{engine_name(t.short)} {t.instance_number}"
+        symbols = {s.name: s for s in t.variables}
+        values = sorted(
+            (name, _TEXTS.text(colset, from_json(colset, value)))
+            for name, value in row["binding"].items()
+            if (colset := symbols[name].colset) is not None
+        )
+        binding = ",".join(f"{name}={text}" for name, text in values)
+        arcs.add((nodes[row["from"] - 1], name, binding, nodes[row["to"] - 1]))
+    return nodes, arcs
+
+
+def _written_node(net: FlatNet, entry: dict[str, Any]) -> Node:
+    texts = []
+    for p in net.places:
+        tokens = place_from_json(p.colset, entry["marking"][p.name])
+        texts.append((place_key(p), place_text(_TEXTS, p.colset, tokens, earlier_first=True)))
+    return (str(entry["t"]) if net.timed else "", tuple(sorted(texts)))
 
 
 def engine_nodes(net: FlatNet, graph: dict[str, Any]) -> dict[int, Node]:
