@@ -19,7 +19,7 @@ from statistics import median
 sys.path.insert(0, str(Path(__file__).parents[1]))  # as pytest does: the tests' helpers
 
 from tests.bench import measures as m
-from tests.bench import snakes_peer
+from tests.bench import snakes_peer, states
 
 
 @dataclass(frozen=True, slots=True)
@@ -125,7 +125,10 @@ def main() -> int:
     parser = argparse.ArgumentParser(prog="python -m tests.bench", description=__doc__)
     parser.add_argument("--firings", action="store_true", help="only firings per second")
     parser.add_argument("--repeat", type=int, default=9, help="of short measures (default 9)")
+    parser.add_argument("--states", action="store_true", help="only state spaces, beside SPIN")
     options = parser.parse_args()
+    if options.states:
+        return states.measure(min(options.repeat, 3), 1)
     cores = os.cpu_count() or 1
     load = os.getloadavg()[0]
     is_busy = load > cores / 2
