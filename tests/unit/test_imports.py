@@ -38,7 +38,7 @@ ALLOWED: dict[str, set[str]] = {
     "monitors": {"diagnostics", "ml", "net", "reading", "semantics"},
     "simulate": {"diagnostics", "ml", "net", "semantics", "monitors", "cell", "lowering", "emission", "toolchain",
                  "parser_cache"},
-    "verify": {"diagnostics", "ml", "net", "semantics", "cell", "lowering", "emission", "toolchain", "resources",
+    "verify": {"diagnostics", "ml", "net", "semantics", "structure", "cell", "lowering", "emission", "toolchain", "resources",
                "simulate"},
     "__main__": {"cli"},
     "cli": {"diagnostics", "cell", "channels", "emission", "net", "pipeline", "run", "report", "semantics", "toolchain",

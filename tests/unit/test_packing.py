@@ -62,6 +62,15 @@ def test_widths_come_from_the_initial_marking() -> None:
     packing = choose(net, [Counter(tokens).values() for tokens in marking.places])
     found = {name: p.width for name, p in _places(packing).items() if p is not None}
     assert found == {"U": 5, "O": 4, "R": 1, "S": 4, "W": 1, "E": 1, "X": 1, "M": 1}
+    indices = {p.short: p.index for p in net.places}
+    proven = {"U": 9, "O": 100000, "R": 3, "S": 20, "W": 0, "M": 900}
+    known = choose(
+        net,
+        [Counter(tokens).values() for tokens in marking.places],
+        {indices[name]: n for name, n in proven.items()},
+    )
+    found = {name: p.width for name, p in _places(known).items() if p is not None}
+    assert found == {"U": 4, "O": 4, "R": 2, "S": 4, "W": 1, "E": 1, "X": 1, "M": 1}
     wider = packing.wider("Top.W").wider("Top.W").wider("Top.U")
     found = {name: p.width for name, p in _places(wider).items() if p is not None}
     assert (found["W"], found["U"], found["R"]) == (4, 10, 1)

@@ -27,6 +27,8 @@ MOST_BITS = 8192
 MOST_WIDTH = 32
 LEAST_UNIT_WIDTH = 4
 """Tokens of one colour gather: the counter of such a place has at least so many bits."""
+_NEAR, _NEAR_UNIT = 3, 2**16 - 1
+"""Proven numbers of tokens that counters are made for."""
 _WORD = 64
 _COLOUR_BYTES = 256
 """What `pn_colour_t` of pn_bag.h has room for."""
@@ -58,24 +60,32 @@ class Packing:
         return replace(self, width={**self.width, place: width if width <= MOST_WIDTH else 0})
 
 
-def choose(net: FlatNet, initial: Sequence[Iterable[int]]) -> Packing:
+def choose(
+    net: FlatNet, initial: Sequence[Iterable[int]], proven: Mapping[int, int] | None = None
+) -> Packing:
     """The widths to begin with.
 
     Args:
         net: the net.
         initial: for each place the counts of the different tokens that it holds at first.
+        proven: by index, most tokens of one colour that a place can ever hold, where that is known.
     """
     widths: dict[str, int] = {}
     for place, counts in zip(net.places, initial, strict=True):
+        if place.colset.timed:
+            continue
         most = max(counts, default=0)
-        if not place.colset.timed:
-            own = place.colset.resolved
-            is_unit = own.type == UNIT or (own.kind is Kind.ENUM and len(own.names) == 1)
-            widths[place.name] = (
-                max(LEAST_UNIT_WIDTH, bits(2 * most))
-                if is_unit
-                else (1 if most <= 1 else bits(2 * most))
-            )
+        own = place.colset.resolved
+        is_unit = own.type == UNIT or (own.kind is Kind.ENUM and len(own.names) == 1)
+        width = 1 if most <= 1 else bits(2 * most)
+        if is_unit:
+            width = max(LEAST_UNIT_WIDTH, width)
+        known = (proven or {}).get(place.index)
+        if known is not None:
+            # Of a large number it is seldom known that they are all of the same colour.
+            is_near = known <= (_NEAR_UNIT if is_unit else _NEAR)
+            width = bits(known) if is_near else min(width, bits(known))
+        widths[place.name] = width
     return Packing(widths)
 
 

@@ -22,6 +22,7 @@ from pn2code.lowering.packing import Packing, choose
 from pn2code.net.flat import FlatNet
 from pn2code.semantics.files import Files
 from pn2code.semantics.game import Game
+from pn2code.structure import bounds
 from pn2code.toolchain import programs
 from pn2code.toolchain.programs import Host
 
@@ -62,7 +63,12 @@ class Sizes:
         room = {
             p.name: max(ROOM, 2 * len(tokens)) for p, tokens in zip(net.places, counts, strict=True)
         }
-        return Sizes(choose(net, counts), {k: n for k, n in room.items() if n > ROOM})
+        proven = {
+            k: b.per_colour
+            for k, b in bounds(net, storage=storage).items()
+            if b.per_colour is not None
+        }
+        return Sizes(choose(net, counts, proven), {k: n for k, n in room.items() if n > ROOM})
 
     def larger(self, place: str | None) -> Sizes | None:
         """With more for a place, or (None) for lists and strings; None at the end of all sizes."""
