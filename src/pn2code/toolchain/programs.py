@@ -260,7 +260,9 @@ class _Builder:
     def _prune(self) -> None:
         """Forgets the programs that were used least recently. Another process may do the same."""
         used: list[tuple[float, Path]] = []
-        for path in self.folder.glob(f"{self.host.name}-*[0-9a-f]"):
+        for path in self.folder.glob(f"{self.host.name}-[0-9a-f]*[0-9a-f]"):
+            if path.suffix:
+                continue  # the runtime
             with suppress(OSError):
                 used.append((path.stat().st_mtime, path))
         for _, path in sorted(used, reverse=True)[MOST_PROGRAMS:]:
