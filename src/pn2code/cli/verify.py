@@ -31,6 +31,7 @@ from pn2code.verify.codes import REPORT_UNWRITABLE, STATE_ERROR
 from pn2code.verify.explore import Wishes, explore
 from pn2code.verify.limits import Approximation, Limits, Order, Reduction, cores
 from pn2code.verify.path import steps, text
+from pn2code.verify.pictures import GRAPH_KINDS, PLOT_KINDS, Pictures
 from pn2code.verify.progress import ProgressLine
 from pn2code.verify.report import report, why_partial
 from pn2code.verify.result import Exploration, row
@@ -43,6 +44,8 @@ EPILOG = """Examples:
   pn2code verify net.cpn --set n=6 --report net.html --threads 2
 
   pn2code verify net.cpn --max-states 1000000 --max-seconds 60 --json
+
+  pn2code verify small.cpn --draw graph.html
 """
 
 SHOWN_STEPS = 40
@@ -105,6 +108,20 @@ def verify(
             "--report", metavar="FILE", help="Write the report; as HTML if its name ends so."
         ),
     ] = None,
+    draw_to: Annotated[
+        Path | None,
+        typer.Option(
+            "--draw", metavar="FILE", help="Draw the graph of a small space: .svg or .html."
+        ),
+    ] = None,
+    plot_to: Annotated[
+        Path | None,
+        typer.Option(
+            "--plot",
+            metavar="FILE",
+            help="Plot states, rate and memory over time and depth: .svg or .png.",
+        ),
+    ] = None,
     traces: Annotated[
         Path | None,
         typer.Option(
@@ -137,6 +154,8 @@ def verify(
     Counts of nodes and arcs, bounds of places, dead and home markings, dead and live transitions, fairness: the report
     of CPN Tools, complete. Exit code 0: everything was seen; 3: a limit was hit, which the report says.
     """
+    _check_kind(draw_to, GRAPH_KINDS, "--draw")
+    _check_kind(plot_to, PLOT_KINDS, "--plot")
     opened = open_net(net, parse_values(settings), form, int_bits=int_bits)
     limits = Limits(
         max_states=max_states,
@@ -151,17 +170,19 @@ def verify(
         reductions=() if no_reduction else tuple(dict.fromkeys(reduce)),
     )
     d = Diagnostics()
-    with Interrupts() as interrupts, ProgressLine(shown=not (as_json or quiet)) as progress:
-        wishes = Wishes(
-            traces=_folder(traces) if most_traces else None,
-            stem=_stem(opened),
-            progress=progress.update,
-            interrupted=interrupts.is_wanted,
-        )
-        with playing(form):
-            found = explore(opened.flat, opened.storage, limits, d, wishes)
-    if found is None:
-        stop(d, form)
+    with Pictures(draw_to, plot_to) as pictures:
+        with Interrupts() as interrupts, ProgressLine(shown=not (as_json or quiet)) as progress:
+            wishes = Wishes(
+                traces=_folder(traces) if most_traces else None,
+                stem=_stem(opened),
+                progress=progress.update,
+                interrupted=interrupts.is_wanted,
+            )
+            with playing(form):
+                found = explore(opened.flat, opened.storage, limits, d, pictures.wishes(wishes))
+        if found is None:
+            stop(d, form)
+        pictures.write(opened.flat, found, d)
     if found.error is not None and found.why == "error":
         _tell_error(opened, found, d)
     if report_to is not None:
@@ -184,6 +205,14 @@ def _folder(traces: Path | None) -> Path:
         reason = (problem.strerror or str(problem)).lower()
         raise typer.BadParameter(f"`{folder}`: {reason}", param_hint="--traces") from None
     return folder
+
+
+def _check_kind(path: Path | None, kinds: tuple[str, ...], option: str) -> None:
+    """The ending of a picture's name says its form."""
+    if path is not None and path.suffix.lower() not in kinds:
+        raise typer.BadParameter(
+            f"`{path}` does not end in {' or '.join(kinds)}", param_hint=option
+        )
 
 
 def _stem(opened: OpenNet) -> str:

@@ -35,8 +35,15 @@ DRAWS_RANDOM = register(
 REPORT_UNWRITABLE = register(
     "report-unwritable",
     "a report cannot be written",
-    "The file that `--report` names cannot be opened or written: the folder is missing, there is no permission, or the "
-    "disk is full. The exploration itself is complete, and its result is printed.",
+    "The file that `--report`, `--draw` or `--plot` names cannot be opened or written: the folder is missing, there is "
+    "no permission, or the disk is full. The exploration itself is complete, and its result is printed.",
+)
+GRAPH_NOT_DRAWN = register(
+    "graph-not-drawn",
+    "the graph of a state space is not drawn",
+    "`--draw` draws small state spaces: at most 300 nodes as `.svg`, 2,000 as `.html`, with at most 12 times as many "
+    "arcs; more cannot be followed by eye. It needs the whole graph: no limit was hit, no `--approximate`, no "
+    "`--no-graph`. Everything else that was asked for is done. `--plot` draws how a long exploration went.",
 )
 REDUCTION_NOT_POSSIBLE = register(
     "reduction-not-possible",

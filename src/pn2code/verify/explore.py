@@ -49,13 +49,17 @@ class Wishes:
     Args:
         traces: a folder for the traces to dead markings; None: none are wanted.
         stem: what the names of their files begin with.
-        graph: a file for the whole graph, marking by marking; None: not wanted.
+        graph: a file for the whole graph, marking by marking; None: not wanted. It is not written when the
+            exploration is not complete, or has more than `graph_limit` nodes.
+        pace: seconds between two tellings of progress.
         progress, interrupted: how the outside hears and says that it has been enough.
     """
 
     traces: Path | None = None
     stem: str = "net"
     graph: Path | None = None
+    graph_limit: int | None = None
+    pace: float = 0.5
     progress: Progress = _nothing
     interrupted: Callable[[], bool] = _never
 
@@ -124,6 +128,8 @@ def _options(
         ("--trace-to", wishes.traces and wishes.traces / f"{wishes.stem}.dead-"),
         ("--traces", limits.traces if wishes.traces else None),
         ("--write-graph", wishes.graph),
+        ("--write-limit", wishes.graph_limit),
+        ("--progress-every", wishes.pace),
         *(("--reduce", reduction.value) for reduction in reductions),
     ]
     options = [text for name, value in given if value is not None for text in (name, str(value))]

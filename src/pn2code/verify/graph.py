@@ -1,7 +1,7 @@
 """A small state space, node by node, as the explorer writes it; and what a picture of it says.
 
 graph = read(net, Path("graph.jsonl"))
-graph.nodes[0].marks            # (("Think", "1`1++\\n1`2"), ...) of the initial marking
+graph.nodes[0].marks            # (("Think", "1`1++ 1`2"), ...) of the initial marking
 graph.arcs[0].label             # "Take p=1"
 """
 
@@ -32,7 +32,7 @@ class Node:
     Args:
         number: from 1, breadth first.
         time: model time as a text, "" in an untimed net.
-        marks: (place, multi-set as CPN ML) of the places that are marked, in the order of the net.
+        marks: (place, multi-set as CPN ML in one line) of the places that are marked, in the order of the net.
         depth: the fewest steps from the initial marking.
         component: number of its strongly connected component, from 0 in the order of their first nodes.
     """
@@ -140,7 +140,8 @@ def _graph(net: FlatNet, rows: Sequence[Mapping[str, Any]], arcs: tuple[Arc, ...
             data = row["marking"][place.name]
             if data:
                 held = place_from_json(place.colset, data)
-                marks.append((name, place_text(_TEXTS, place.colset, held, earlier_first=True)))
+                shown = place_text(_TEXTS, place.colset, held, earlier_first=True)
+                marks.append((name, " ".join(shown.split("\n"))))
         time = time_text(row["t"]) if net.timed else ""
         nodes.append(Node(number, time, tuple(marks), depth[number], component[number]))
     left = {arc.source for arc in arcs}

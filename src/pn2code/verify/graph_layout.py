@@ -195,9 +195,7 @@ def _are_short(nodes: Sequence[Node]) -> bool:
 def _node_lines(node: Node, full: bool) -> tuple[str, ...]:
     if not full:
         return (str(node.number),)
-    rows = [f"time {node.time}"] if node.time else []
-    rows += [f"{place}: {' '.join(tokens.split(chr(10)))}" for place, tokens in node.marks]
-    shown = text.shorten("\n".join(rows) or "empty", _NODE_LINES + 2, _NODE_WIDTH)
+    shown = text.shorten(node.text, _NODE_LINES + 2, _NODE_WIDTH)
     return (str(node.number), *text.lines(shown))
 
 

@@ -233,20 +233,46 @@ def _side_head(tip: Point, ink: str) -> str:
     return f'<path d="M{_n(x)} {_n(y)}L{_n(x + _HEAD)} {_n(y - _HALF)}V{_n(y + _HALF)}z" fill="{ink}"/>'
 
 
-def legend(graph: StateGraph) -> list[tuple[str, str, str, float, str]]:
-    """What colours mean: (kind, fill, line, thickness, text), only of what the picture has."""
-    found = [("node", "#ffffff", INK, 2.5, "initial marking")]
+@dataclass(frozen=True, slots=True)
+class Item:
+    """A line of the legend: what a node ("" for the fill: a line) of such colours means."""
+
+    fill: str
+    ink: str
+    thick: float
+    text: str
+
+
+def legend(graph: StateGraph) -> list[Item]:
+    """What colours mean; only of what the picture has."""
+    found = [Item("#ffffff", INK, 2.5, "initial marking")]
     if graph.dead:
-        found.append(("node", DEAD_FILL, DEAD, 2.0, "dead marking"))
+        found.append(Item(DEAD_FILL, DEAD, 2.0, "dead marking"))
     if graph.home and not all_home(graph):
-        found.append(("node", "#ffffff", HOME, 1.0, "home marking"))
+        found.append(Item("#ffffff", HOME, 1.0, "home marking"))
     if graph.cyclic:
         many = len(graph.cyclic) > 1
         said = "components with cycles, each its colour" if many else "in a cycle"
-        found.append(("node", GROUPS[min(graph.cyclic) % len(GROUPS)], INK, 1.0, said))
+        found.append(Item(GROUPS[min(graph.cyclic) % len(GROUPS)], INK, 1.0, said))
     if graph.way:
-        found.append(("line", "", WAY, 2.2, "a shortest way to a dead marking"))
+        found.append(Item("", WAY, 2.2, "a shortest way to a dead marking"))
     return found
+
+
+def sample(item: Item) -> str:
+    """A small SVG of its own that shows what an item of the legend is about."""
+    shape = _sample(item, 2, 9)
+    return f'<svg xmlns="http://www.w3.org/2000/svg" width="28" height="18">{shape}</svg>'
+
+
+def _sample(item: Item, x: float, y: float) -> str:
+    style = f'stroke="{item.ink}" stroke-width="{_n(item.thick)}"'
+    if not item.fill:
+        return f'<path d="M{_n(x)} {_n(y)}h24" {style}/>'
+    return (
+        f'<rect x="{_n(x)}" y="{_n(y - 7)}" width="24" height="14" rx="4" '
+        f'fill="{item.fill}" {style}/>'
+    )
 
 
 def facts(graph: StateGraph) -> str:
@@ -270,7 +296,7 @@ def facts(graph: StateGraph) -> str:
 def _legend(graph: StateGraph, title: str, box: Box) -> tuple[list[str], Box]:
     """Heading and legend above the picture."""
     items = legend(graph)
-    widths = [text.width(said) + 46 for *_, said in items]
+    widths = [text.width(item.text) + 46 for item in items]
     per_row = max(box.width, 420.0)
     left, x, lines = box.left, 0.0, 1
     spots = []
@@ -286,18 +312,9 @@ def _legend(graph: StateGraph, title: str, box: Box) -> tuple[list[str], Box]:
         f"{text.escape(title)}</text>",
         f'<text x="{_n(left)}" y="{_n(top + 36)}" fill="{SOFT}">{text.escape(facts(graph))}</text>',
     ]
-    for (x, line), (kind, fill, ink, thick, said) in zip(spots, items, strict=True):
+    for (x, line), item in zip(spots, items, strict=True):
         y = top + 46 + 22 * (line - 1) + 9
-        if kind == "node":
-            rows.append(
-                f'<rect x="{_n(x)}" y="{_n(y - 7)}" width="24" height="14" rx="4" fill="{fill}" '
-                f'stroke="{ink}" stroke-width="{_n(thick)}"/>'
-            )
-        else:
-            rows.append(
-                f'<path d="M{_n(x)} {_n(y)}h24" stroke="{ink}" stroke-width="{_n(thick)}"/>'
-            )
-        rows.append(_line(said, x + 30, y + 4.5, INK, ""))
+        rows += [_sample(item, x, y), _line(item.text, x + 30, y + 4.5, INK, "")]
     widest = max(
         [text.width(title, bold=True) * 1.35, text.width(facts(graph))]
         + [x - left + w for (x, _), w in zip(spots, widths, strict=True)]

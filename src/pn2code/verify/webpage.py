@@ -7,6 +7,7 @@ from datetime import datetime
 from typing import Any
 
 from jinja2 import Environment, FileSystemLoader, StrictUndefined
+from markupsafe import Markup
 
 import pn2code
 from pn2code.net.flat import FlatNet
@@ -43,7 +44,7 @@ def webpage(net: FlatNet, found: Exploration, storage: Mapping[str, str], writte
     return env.get_template("report.html.j2").render(
         title=net.name,
         file=net.file,
-        css=css,
+        css=Markup(css),
         version=pn2code.__version__,
         sha256=net.sha256,
         written=f"{written:%Y-%m-%d %H:%M}",
