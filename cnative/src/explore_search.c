@@ -232,7 +232,7 @@ static bool flush(ex_worker_t *worker)
         && !ex_pause(worker)) {
         return false;
     }
-    const uint64_t before = atomic_load_explicit(&store->used, memory_order_relaxed);
+    uint64_t before = atomic_load_explicit(&store->used, memory_order_relaxed);
     const bool is_near = (run->options.max_states - before) <= (2U * (uint64_t)BATCH * run->options.threads);
     for (uint32_t i = 0U; goes_on && (i < own->pending); i++) {
         const pending_t *pending = &own->batch[i];
@@ -243,13 +243,18 @@ static bool flush(ex_worker_t *worker)
             }
             continue;
         }
-        const ex_insertion_t insertion = insert(run, pending);
+        ex_insertion_t insertion = insert(run, pending);
+        while ((insertion == EX_FULL) && goes_on) {
+            /* A number has become too large for its word, or the table is full to the last slot. */
+            (void)atomic_fetch_add_explicit(&store->used, found, memory_order_relaxed);
+            before += found;
+            found = 0U;
+            goes_on = ex_pause(worker);
+            insertion = insert(run, pending);
+        }
         if (insertion == EX_NEW) {
             found++;
             goes_on = add_new(own, &pending->key);
-        } else if (insertion == EX_FULL) {
-            ex_stop(run, EX_MEMORY); /* so many threads at the same time */
-            goes_on = false;
         }
     }
     own->pending = 0U;
@@ -499,16 +504,26 @@ static uint64_t mask_of(uint32_t bytes)
 static bool begin(ex_run_t *run, search_t *search)
 {
     ex_worker_t *first = &run->worker[0];
+    run->at_work = 1U; /* tables may grow already */
     if (!pn_net.init(&first->cx, first->marking)) {
         ex_fail(first, -1);
         return false;
     }
+    ex_reduce_time(first);
+    if (!ex_layout(run) || !pn_net.init(&first->cx, first->marking)) {
+        ex_stop(run, EX_MEMORY);
+        return false;
+    }
+    ex_reduce_time(first);
     if (!ex_encode(first, first->marking, &run->initial)) {
         return false;
     }
-    const uint32_t length = run->codec->key_bytes;
-    if (run->options.is_bitstate ? !ex_bits_make(&run->bits, run)
-                                 : !ex_store_make(&run->store, run, run->options.is_hashed ? 8U : length, (uint64_t)FIRST_KEYS)) {
+    uint32_t width[EX_KEY_WORDS] = { 32U, 32U, 0U, 0U };
+    const uint32_t length = run->codec->roots * (uint32_t)sizeof(uint32_t);
+    if (!run->options.is_hashed) {
+        ex_key_widths(run, width);
+    }
+    if (run->options.is_bitstate ? !ex_bits_make(&run->bits, run) : !ex_store_make(&run->store, run, width, (uint64_t)FIRST_KEYS)) {
         ex_stop(run, EX_MEMORY);
         return false;
     }
