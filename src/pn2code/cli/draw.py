@@ -23,7 +23,7 @@ from pn2code.cli.options import (
 )
 from pn2code.diagnostics import Diagnostics, Origin, Severity
 from pn2code.diagnostics.near import nearest
-from pn2code.drawing.codes import DRAW_ARRANGED, DRAW_OUTPUT, DRAW_PAGE
+from pn2code.drawing.codes import DRAW_ARRANGED, DRAW_OUTPUT, DRAW_PAGE, DRAW_TRACE
 from pn2code.net import front
 from pn2code.reading.document import Document, RawPage
 
@@ -31,6 +31,7 @@ if TYPE_CHECKING:
     from pn2code.drawing.state import State
     from pn2code.drawing.svg import Overlay, Problem
     from pn2code.net.flat import FlatNet
+    from pn2code.verify.moments import Moment
 
 EPILOG = """Examples:
 
@@ -39,6 +40,8 @@ EPILOG = """Examples:
   pn2code draw net.cpn -o net.svg --page Sender --marking
 
   pn2code draw net.cpn -o pages/
+
+  pn2code draw net.cpn --trace net.dead-40.trace.jsonl -o steps.html
 """
 
 _HTML = (".html", ".htm")
@@ -63,6 +66,16 @@ def draw(
         bool,
         typer.Option("--marking", help="With the initial marking and what is enabled in it."),
     ] = False,
+    trace: Annotated[
+        Path | None,
+        typer.Option(
+            "--trace", metavar="FILE", help="With the marking after the steps of a trace.jsonl."
+        ),
+    ] = None,
+    step: Annotated[
+        int | None,
+        typer.Option("--step", metavar="N", min=0, help="Of the trace; default: the last."),
+    ] = None,
     instance: Annotated[
         int | None,
         typer.Option("--instance", metavar="N", min=1, help="Which instance's marking is shown."),
@@ -85,12 +98,23 @@ def draw(
         stop(d, form)
     pages = _chosen(document, page, form)
     state: State | None = None
-    if marking and examined.flat is not None and not d.has_errors:
-        state = _state(examined.flat, config.storage if config else {}, seed, form)
+    moments: list[Moment] = []
+    storage = config.storage if config else {}
+    if step is not None and trace is None:
+        _refuse(DRAW_TRACE, "`--step` needs `--trace`", "add --trace FILE", form)
+    if examined.flat is not None and not d.has_errors:
+        if trace is not None:
+            moments = _moments(examined.flat, storage, trace, step, kind == "html", form)
+            state = moments[-1 if step is None else min(step, len(moments) - 1)].state
+        elif marking:
+            state = _state(examined.flat, storage, seed, form)
     if instance is not None:
         _check_instance(state, pages, instance, form)
     drawing = _Drawing(document, pages, _problems(d), state, instance)
-    if kind == "html":
+    if kind == "html" and moments:
+        chosen = len(moments) - 1 if step is None else step
+        _write({Path(output): drawing.steps(path, moments, chosen)}, form)
+    elif kind == "html":
         _write({Path(output): drawing.html(path)}, form)
     elif kind == "folder":
         _write({Path(output) / name: text for name, text in drawing.files().items()}, form)
@@ -99,7 +123,7 @@ def draw(
     else:
         _write({Path(output): drawing.svg()}, form)
     drawing.note_arranged(d)
-    _report(d, kind, marking, form)
+    _report(d, kind, marking or trace is not None, form)
 
 
 def _kind(output: str, form: Format) -> str:
@@ -149,7 +173,7 @@ def _check_instance(
 ) -> None:
     """`--instance` needs a marking, and a page that has so many instances."""
     if state is None:
-        _refuse(DRAW_PAGE, "`--instance` needs `--marking`", "add --marking", form)
+        _refuse(DRAW_PAGE, "`--instance` needs `--marking` or `--trace`", "add one of them", form)
     if len(pages) > 1:
         _refuse(DRAW_PAGE, "`--instance` needs `--page`", "say which page is meant", form)
     numbers = state.instances(pages[0])
@@ -169,6 +193,33 @@ def _state(flat: FlatNet, storage: Mapping[str, str], seed: int, form: Format) -
         game = Game(flat, storage, seed=seed)
         marking = game.settle(game.marking)
         return State(flat, marking, enabled_in(game, marking))
+
+
+def _moments(
+    flat: FlatNet,
+    storage: Mapping[str, str],
+    trace: Path,
+    step: int | None,
+    everything: bool,
+    form: Format,
+) -> list[Moment]:
+    """The start and all steps of a trace, or the wanted step (the last one) alone."""
+    from pn2code.cli.nets import playing
+    from pn2code.simulate.script import TraceRefusedError
+    from pn2code.verify.moments import follow
+
+    try:
+        with playing(form):
+            found = list(follow(flat, storage, trace, lambda n: everything or step in (None, n)))
+            steps = found[-1].number if found else 0
+    except TraceRefusedError as refused:
+        _refuse(DRAW_TRACE, f"`{trace}`: {refused}", "it must be a trace of this net", form)
+    except OSError as problem:
+        reason = (problem.strerror or str(problem)).lower()
+        _refuse(DRAW_TRACE, f"`{trace}`: {reason}", "give a file that can be read", form)
+    if step is not None and (not found or (everything and step > steps)):
+        _refuse(DRAW_TRACE, f"`{trace}` has no step {step}", "steps are numbered from 1", form)
+    return found
 
 
 def _problems(d: Diagnostics) -> dict[str, list[Problem]]:
@@ -205,8 +256,7 @@ class _Drawing:
         """What is drawn over the first (or chosen) instance of a page."""
         if self.state is None:
             return self.base
-        numbers = self.state.instances(page)
-        number = self.instance or (numbers[0] if numbers else 1)
+        number = self.instance or self.state.shown_first(page)
         return self.state.overlay(page, number, self.base)
 
     def svg(self) -> str:
@@ -246,6 +296,12 @@ class _Drawing:
             figures = {p.id: self.state.figures(p, self.base) for p in self.pages}
         shown = replace(self.document, pages=tuple(self.pages))
         return draw_net(shown, Facts(path.name, remark, self.base.problems), figures)
+
+    def steps(self, path: Path, moments: list[Moment], chosen: int) -> str:
+        """One HTML file with the steps of a trace."""
+        from pn2code.verify.steps_page import steps_page
+
+        return steps_page(self.document, self.pages, moments, chosen, path.name)
 
     def note_arranged(self, d: Diagnostics) -> None:
         """A note for each page whose positions are ours."""

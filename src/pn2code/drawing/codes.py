@@ -15,6 +15,12 @@ DRAW_OUTPUT = register(
     "a file that ends in `.html` (all pages, linked), a folder (one SVG for each page), or `-` for an SVG on standard "
     "output. Other formats are made from an SVG by other programs, for example `rsvg-convert page.svg -o page.png`.",
 )
+DRAW_TRACE = register(
+    "draw-trace",
+    "the steps of a trace cannot be drawn",
+    "`--trace` takes a file that `simulate --trace` or `verify` has written, of the same net with the same `--set`; "
+    "`--step` a number of steps in it, 0 for the start. The steps are played by the reference token game.",
+)
 DRAW_ARRANGED = register(
     "draw-arranged",
     "a page was arranged automatically",

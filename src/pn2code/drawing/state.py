@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection
+from collections.abc import Collection, Mapping
 
 from pn2code.drawing.svg import Overlay, Tokens
 from pn2code.net.flat import FlatNet, FlatTransition
@@ -19,9 +19,17 @@ class State:
         net: the net.
         marking: its marking.
         enabled: the transitions to be shown as enabled; see `enabled_in`.
+        highlight: colours of elements, by id, on an instance of their page: (id, number of the instance).
     """
 
-    def __init__(self, net: FlatNet, marking: Marking, enabled: Collection[FlatTransition]) -> None:
+    def __init__(
+        self,
+        net: FlatNet,
+        marking: Marking,
+        enabled: Collection[FlatTransition],
+        highlight: Mapping[tuple[str, int], str] | None = None,
+    ) -> None:
+        self._highlight = highlight or {}
         self._tokens: dict[str, dict[int, Tokens]] = {}
         self._enabled: dict[str, set[int]] = {}
         # `places` has a row for each place instance, in this order, and then some for fusion sets.
@@ -51,7 +59,15 @@ class State:
         enabled = frozenset(
             t.id for t in page.transitions if instance in self._enabled.get(t.id, ())
         )
-        return Overlay(tokens, enabled, base.highlight, base.problems)
+        own = {i: ink for (i, number), ink in self._highlight.items() if number == instance}
+        return Overlay(tokens, enabled, {**base.highlight, **own}, base.problems)
+
+    def shown_first(self, page: RawPage) -> int:
+        """The instance of a page on which something is highlighted, else the first."""
+        numbers = self.instances(page)
+        nodes = {node.id for node in page.nodes}
+        marked = {number for i, number in self._highlight if i in nodes}
+        return next((n for n in numbers if n in marked), numbers[0] if numbers else 1)
 
     def figures(self, page: RawPage, base: Overlay) -> list[tuple[str, Overlay]]:
         """The different looks of a page's instances, each with a caption when there are several."""

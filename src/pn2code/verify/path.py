@@ -9,10 +9,11 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
+from itertools import islice
 from pathlib import Path
 from typing import Any
 
-from pn2code.net.flat import FlatNet, FlatPlace
+from pn2code.net.flat import FlatNet, FlatPlace, FlatTransition
 from pn2code.semantics.colours import Colours
 from pn2code.semantics.files import Files
 from pn2code.semantics.game import Game
@@ -65,24 +66,41 @@ def steps(net: FlatNet, storage: Mapping[str, str], trace: Path, *, most: int) -
         GameError: an inscription raises an exception.
         OSError: it cannot be read.
     """
+    _, played = play(net, storage, trace)
+    return tuple(step for step, _ in islice(played, most))
+
+
+def play(
+    net: FlatNet, storage: Mapping[str, str], trace: Path
+) -> tuple[Game, Iterator[tuple[Step, FlatTransition]]]:
+    """The game at the start of a trace, and its steps; each has occurred in the game when it is given.
+
+    Raises:
+        TraceRefusedError, GameError, OSError: as for `steps`, now or later.
+    """
     opened = Trace.open(trace, net)
-    game = Game(net, storage, seed=opened.header.seed or 1, files=Files(None))
-    found: list[Step] = []
-    before = game.marking
-    for step in opened.steps():
-        if len(found) == most:
-            break
-        if step.time is not None and step.time > game.marking.time:
+    game = Game(
+        net,
+        storage,
+        opened.header.initial or None,
+        seed=opened.header.seed or 1,
+        files=Files(None),
+    )
+    return game, _play(net, game, opened)
+
+
+def _play(net: FlatNet, game: Game, trace: Trace) -> Iterator[tuple[Step, FlatTransition]]:
+    for number, step in enumerate(trace.steps(), 1):
+        before = game.marking
+        if step.time is not None and step.time > before.time:
             game.set_time(step.time)
         played = BindingElement.make(step.transition, step.bound)
         game.fire(played)
         time = time_text(game.marking.time) if net.timed else ""
         told = element(net, played)
-        name = net.transitions[step.transition.index].name
+        name = step.transition.name
         changes = tuple(_changes(net, before, game.marking))
-        found.append(Step(len(found) + 1, time, name, told["binding"], changes))
-        before = game.marking
-    return tuple(found)
+        yield Step(number, time, name, told["binding"], changes), step.transition
 
 
 def _changes(net: FlatNet, before: Marking, after: Marking) -> Iterator[Change]:
