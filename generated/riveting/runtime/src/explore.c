@@ -42,10 +42,13 @@ static void print_help(void)
                  "  --arena MIB         of each thread, for lists and strings (default 64)\n"
                  "  --no-graph          states and bounds alone: no components, no traces\n"
                  "  --approximate HOW   bitstate, hash: states may be missed; the report says how probably\n"
+                 "  --reduce time       states that differ only in how late it is are one\n"
                  "  --spill DIR         keep large tables in files of a folder\n"
                  "  --progress          lines of JSON on the standard error\n"
+                 "  --progress-every S  seconds between them (default 0.5)\n"
                  "  --dead-limit N      dead states that are listed (default 1000)\n"
                  "  --write-graph FILE  all nodes and arcs as lines of JSON\n"
+                 "  --write-limit N     but none of a graph with more nodes\n"
                  "  --trace-to NAME     a shortest trace to a dead state, as NAMEn.trace.jsonl with its number n\n"
                  "  --traces N          so many of them (default 1)\n"
                  "  --seed N            of random numbers (default 1)\n"
@@ -102,6 +105,13 @@ static bool read_approximation(const char *text, ex_options_t *options)
     return options->is_bitstate || options->is_hashed;
 }
 
+static bool read_reduction(const char *text, ex_options_t *options)
+{
+    const bool is_time = (strcmp(text, "time") == 0) && !pn_net.real_time;
+    options->is_time_reduced = options->is_time_reduced || (is_time && pn_net.timed);
+    return is_time;
+}
+
 static bool read_text(const char *text, const char **option)
 {
     *option = text;
@@ -121,10 +131,13 @@ static bool read_valued(const char *option, const char *value, ex_options_t *opt
            || ((strcmp(option, "--memory") == 0) && read_mebi(value, &options->memory))
            || ((strcmp(option, "--arena") == 0) && read_mebi(value, &options->arena))
            || ((strcmp(option, "--approximate") == 0) && read_approximation(value, options))
+           || ((strcmp(option, "--reduce") == 0) && read_reduction(value, options))
            || ((strcmp(option, "--spill") == 0) && read_text(value, &options->spill))
            || ((strcmp(option, "--traces") == 0) && read_number(value, UINT32_MAX, &options->traces))
            || ((strcmp(option, "--dead-limit") == 0) && read_number(value, UINT32_MAX, &options->dead_limit))
            || ((strcmp(option, "--write-graph") == 0) && read_text(value, &options->write_graph))
+           || ((strcmp(option, "--write-limit") == 0) && read_number(value, UINT64_MAX, &options->write_limit))
+           || ((strcmp(option, "--progress-every") == 0) && read_seconds(value, &options->progress_every))
            || ((strcmp(option, "--trace-to") == 0) && read_text(value, &options->trace_to))
            || ((strcmp(option, "--seed") == 0) && read_number(value, UINT64_MAX, &options->seed));
 }
@@ -133,7 +146,7 @@ static bool read_options(int argc, char **argv, ex_options_t *options)
 {
     *options = (ex_options_t){ .threads = 1U, .max_states = UINT64_MAX, .memory = DEFAULT_MEMORY, .arena = DEFAULT_ARENA,
                                .seed = 1U, .has_graph = true, .dead_limit = (uint64_t)DEFAULT_DEAD,
-                               .traces = 1U };
+                               .traces = 1U, .write_limit = UINT64_MAX, .progress_every = 0.5 };
     for (int i = 1; i < argc; i++) {
         const char *option = argv[i];
         if (strcmp(option, "--no-graph") == 0) {
@@ -190,9 +203,9 @@ static void show_progress(ex_run_t *run, watch_t *watch)
     const double rate = (now > watch->shown) ? ((double)(progress.states - watch->states) / (now - watch->shown)) : 0.0;
     (void)fprintf(stderr,
                   "{\"states\": %" PRIu64 ", \"arcs\": %" PRIu64 ", \"rate\": %.0f, \"frontier\": %" PRIu64 ", \"depth\": %" PRIu64
-                  ", \"mib\": %" PRIu64 ", \"seconds\": %.1f, \"phase\": \"%s\"}\n",
+                  ", \"mib\": %.1f, \"seconds\": %.3f, \"phase\": \"%s\"}\n",
                   progress.states, progress.arcs, rate, progress.frontier, progress.depth,
-                  atomic_load(&run->memory_used) / MEBI, now - run->started, (phase != NULL) ? phase : "explore");
+                  (double)atomic_load(&run->memory_used) / (double)MEBI, now - run->started, (phase != NULL) ? phase : "explore");
     (void)fflush(stderr);
     watch->states = progress.states;
     watch->shown = now;
@@ -207,8 +220,8 @@ static void *keep_watch(void *user)
     watch->shown = run->started;
     while (!watch->is_over) {
         const double now = ex_clock();
-        double until = now + 0.5;
-        if (run->options.shows_progress && ((now - watch->shown) >= 0.5)) {
+        double until = now + run->options.progress_every;
+        if (run->options.shows_progress && ((now - watch->shown) >= run->options.progress_every)) {
             show_progress(run, watch);
         }
         if (run->options.max_seconds > 0.0) {
@@ -330,6 +343,7 @@ static void print_report(ex_run_t *run)
     } else {
         (void)printf("null");
     }
+    (void)printf(",\n \"reductions\": [%s]", options->is_time_reduced ? "\"time\"" : "");
     (void)printf(",\n \"fired\": [");
     for (uint32_t t = 0U; t < pn_net.transition_count; t++) {
         (void)printf("%s%" PRIu64, (t > 0U) ? ", " : "", run->fired[t]);

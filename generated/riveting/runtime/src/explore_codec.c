@@ -1,6 +1,10 @@
 /* SPDX-License-Identifier: MIT
  * explore_codec.c - markings as vectors of words, vectors as keys, and back.
  *
+ * A vector of at most four words is a key. A longer one is divided into four parts, of which each has a number: that of the root of a
+ * tree of words, whose inner nodes have numbers, too. Where it is cut follows the places, as different places often vary independently;
+ * so the numbers stay small, and the store keeps no more bits of them than they need.
+ *
  * A successor differs in few places from the state it comes from: only the places that its transition touches are encoded again, and
  * only the inner nodes above words that have changed are looked up again.
  */
@@ -15,7 +19,7 @@
 
 enum {
     UNIT = 8,
-    KEY_BITS = 128,
+    WORD_BITS = 32,
     DECODED_MOST = 1 << 20 /* bytes of decoded values that are kept; a page cache is faster than more of them */
 };
 
@@ -43,25 +47,73 @@ static void *table(ex_run_t *run, uint64_t count, uint64_t size)
     return ex_alloc(run, (count + 1U) * size);
 }
 
-/* Marks the bits of the packed part that places use, and where units lie in a direct key. Returns the bits used. */
-static uint32_t lay_units(ex_codec_t *codec)
+static uint32_t bits_in(const pn_place_t *place)
 {
+    return place->is_packed ? (place->colours * place->width) : 0U;
+}
+
+static int by_bit(const void *a, const void *b)
+{
+    const pn_place_t *first = &pn_net.place[*(const uint32_t *)a];
+    const pn_place_t *second = &pn_net.place[*(const uint32_t *)b];
+    return (first->bit > second->bit) - (first->bit < second->bit);
+}
+
+static void add_slice(ex_codec_t *codec, uint32_t bit, uint32_t width)
+{
+    codec->slice_bit[codec->packed_words] = bit;
+    codec->slice_width[codec->packed_words] = width;
+    codec->packed_words++;
+}
+
+/* Slices of the packed part: first those of short places, as many in one as possible, then those of long ones. `order` has room for the
+ * indices of all places. */
+static void lay_slices(ex_codec_t *codec, uint32_t *order)
+{
+    uint32_t count = 0U;
     for (uint32_t i = 0U; i < pn_net.place_count; i++) {
-        const pn_place_t *place = &pn_net.place[i];
-        if (!place->is_packed) {
+        if (bits_in(&pn_net.place[i]) > 0U) {
+            order[count++] = i;
+        }
+    }
+    qsort(order, count, sizeof *order, by_bit);
+    for (uint32_t k = 0U; k < count; k++) {
+        const pn_place_t *place = &pn_net.place[order[k]];
+        const uint32_t end = place->bit + bits_in(place);
+        const uint32_t last = codec->packed_words - 1U;
+        if (bits_in(place) > (uint32_t)WORD_BITS) {
             continue;
         }
-        for (uint32_t k = 0U; k < (place->colours * place->width); k++) {
-            const uint32_t bit = place->bit + k;
-            codec->unit_mask[bit / 64U] |= (uint64_t)1U << (bit % 64U);
+        if ((codec->packed_words > 0U) && ((end - codec->slice_bit[last]) <= (uint32_t)WORD_BITS)) {
+            codec->slice_width[last] = end - codec->slice_bit[last]; /* what lies between, if anything, belongs to nobody else */
+        } else {
+            add_slice(codec, place->bit, bits_in(place));
         }
     }
-    uint32_t at = 0U;
-    for (uint32_t u = 0U; u < codec->units; u++) {
-        codec->unit_shift[u] = at;
-        at += (codec->unit_mask[u] == 0U) ? 0U : (64U - (uint32_t)__builtin_clzll(codec->unit_mask[u]));
+    for (uint32_t k = 0U; k < count; k++) {
+        const pn_place_t *place = &pn_net.place[order[k]];
+        const uint32_t bits = bits_in(place);
+        for (uint32_t at = 0U; (bits > (uint32_t)WORD_BITS) && (at < bits); at += (uint32_t)WORD_BITS) {
+            codec->is_joined[codec->packed_words] = at > 0U;
+            add_slice(codec, place->bit + at, ((bits - at) < (uint32_t)WORD_BITS) ? (bits - at) : (uint32_t)WORD_BITS);
+        }
     }
-    return at;
+}
+
+/* The words of a short packed part as they lie in the marking, if there is nothing else. */
+static void lay_plain(ex_codec_t *codec, uint32_t words)
+{
+    for (uint32_t w = 0U; w < words; w++) {
+        add_slice(codec, w * (uint32_t)WORD_BITS, 0U);
+    }
+    for (uint32_t i = 0U; i < pn_net.place_count; i++) {
+        const pn_place_t *place = &pn_net.place[i];
+        for (uint32_t k = place->bit; k < (place->bit + bits_in(place)); k++) {
+            uint32_t *width = &codec->slice_width[k / (uint32_t)WORD_BITS];
+            const uint32_t needed = (k % (uint32_t)WORD_BITS) + 1U;
+            *width = (needed > *width) ? needed : *width;
+        }
+    }
 }
 
 /* The words behind the packed part. */
@@ -94,6 +146,7 @@ static uint32_t add_node(ex_codec_t *codec, const uint32_t *cell, uint32_t count
     ex_node_t *node = &codec->node[codec->nodes];
     node->count = count;
     node->parent = NONE;
+    node->table = EX_KEY_WORDS;
     for (uint32_t i = 0U; i < count; i++) {
         node->child[i] = cell[i];
         codec->parent[cell[i]] = codec->nodes;
@@ -102,18 +155,11 @@ static uint32_t add_node(ex_codec_t *codec, const uint32_t *cell, uint32_t count
     return codec->words + codec->nodes - 1U;
 }
 
-/* Groups of four, until two cells are left. */
-static void lay_tree(ex_codec_t *codec, uint32_t *cell)
+/* The tree of a part of the key; `cell` holds its words and is overwritten. */
+static void lay_part(ex_codec_t *codec, uint32_t *cell, uint32_t count)
 {
-    uint32_t count = codec->words;
-    for (uint32_t i = 0U; i < count; i++) {
-        cell[i] = i;
-    }
-    for (uint32_t i = 0U; i < (2U * count); i++) {
-        codec->parent[i] = NONE;
-    }
-    while (count > 2U) {
-        const uint32_t groups = (count <= 8U) ? 2U : rounded_up(count, 4U);
+    while (count > 1U) {
+        const uint32_t groups = rounded_up(count, 4U);
         uint32_t from = 0U;
         for (uint32_t g = 0U; g < groups; g++) {
             const uint32_t to = (uint32_t)(((uint64_t)count * (g + 1U)) / groups);
@@ -122,56 +168,72 @@ static void lay_tree(ex_codec_t *codec, uint32_t *cell)
         }
         count = groups;
     }
-    codec->root[0] = cell[0];
-    codec->root[1] = (count > 1U) ? cell[1] : cell[0];
+    if (cell[0] >= codec->words) {
+        codec->node[cell[0] - codec->words].table = codec->roots;
+        codec->has_quads[codec->roots] = true;
+    }
+    codec->root[codec->roots] = cell[0];
+    codec->roots++;
+}
+
+void ex_codec_group(ex_codec_t *codec, uint32_t *word, const uint32_t end[EX_KEY_WORDS], uint32_t parts)
+{
+    uint32_t from = 0U;
+    codec->nodes = 0U;
+    codec->roots = 0U;
+    for (uint32_t i = 0U; i < (2U * codec->words); i++) {
+        codec->parent[i] = NONE;
+    }
+    for (uint32_t part = 0U; part < parts; part++) {
+        lay_part(codec, &word[from], end[part] - from);
+        from = end[part];
+    }
     for (uint32_t n = 0U; n < codec->nodes; n++) {
         codec->node[n].parent = codec->parent[codec->words + n];
+        codec->has_quads[codec->node[n].table] = true;
     }
 }
 
-static int by_number(const void *a, const void *b)
+/* Divides the words into parts of about the same length, for a start. */
+static void lay_tree(ex_codec_t *codec, uint32_t *word)
 {
-    const uint32_t first = *(const uint32_t *)a;
-    const uint32_t second = *(const uint32_t *)b;
-    return (first > second) - (first < second);
+    uint32_t end[EX_KEY_WORDS];
+    const uint32_t parts = (codec->words < EX_KEY_WORDS) ? codec->words : EX_KEY_WORDS;
+    for (uint32_t i = 0U; i < codec->words; i++) {
+        word[i] = i;
+    }
+    for (uint32_t part = 0U; part < parts; part++) {
+        end[part] = (uint32_t)(((uint64_t)codec->words * (part + 1U)) / parts);
+    }
+    ex_codec_group(codec, word, end, parts);
 }
 
 /* What a transition may change. */
 static bool lay_touched(ex_run_t *run, ex_codec_t *codec, uint32_t t)
 {
     const pn_transition_t *transition = &pn_net.transition[t];
-    uint64_t words = 0U;
-    for (uint32_t k = 0U; k < transition->touched_count; k++) {
-        const pn_place_t *place = &pn_net.place[transition->touched[k]];
-        words += place->is_packed ? (2U + rounded_up(place->colours * place->width, 32U)) : 0U;
-    }
-    codec->touched_words[t] = table(run, words, sizeof(uint32_t));
+    codec->touched_words[t] = table(run, codec->packed_words, sizeof(uint32_t));
     codec->touched_bags[t] = table(run, transition->touched_count, sizeof(uint32_t));
     if ((codec->touched_words[t] == NULL) || (codec->touched_bags[t] == NULL)) {
         return false;
     }
-    uint32_t *word = codec->touched_words[t];
-    uint32_t count = 0U;
     for (uint32_t k = 0U; k < transition->touched_count; k++) {
         const uint32_t p = transition->touched[k];
-        const pn_place_t *place = &pn_net.place[p];
-        if (!place->is_packed) {
+        if (!pn_net.place[p].is_packed) {
             codec->touched_bags[t][codec->touched_bag_count[t]++] = p;
-            continue;
-        }
-        const uint32_t last = (place->bit + (place->colours * place->width) - 1U) / 32U;
-        for (uint32_t w = place->bit / 32U; w <= last; w++) {
-            word[count++] = w;
         }
     }
-    qsort(word, count, sizeof *word, by_number);
-    uint32_t kept = 0U;
-    for (uint32_t k = 0U; k < count; k++) {
-        if ((kept == 0U) || (word[kept - 1U] != word[k])) {
-            word[kept++] = word[k];
+    for (uint32_t w = 0U; w < codec->packed_words; w++) {
+        bool is_touched = false;
+        for (uint32_t k = 0U; !is_touched && (k < transition->touched_count); k++) {
+            const pn_place_t *place = &pn_net.place[transition->touched[k]];
+            is_touched = (place->bit < (codec->slice_bit[w] + codec->slice_width[w]))
+                         && (codec->slice_bit[w] < (place->bit + bits_in(place)));
+        }
+        if (is_touched) {
+            codec->touched_words[t][codec->touched_count[t]++] = w;
         }
     }
-    codec->touched_count[t] = kept;
     return true;
 }
 
@@ -184,12 +246,10 @@ bool ex_codec_make(ex_run_t *run)
     run->codec = codec;
     codec->is_whole = !has_places();
     const uint32_t packed = codec->is_whole ? 0U : (uint32_t)pn_net.packed_size;
-    codec->packed_words = rounded_up(packed, 4U);
-    codec->units = rounded_up(packed, (uint32_t)UNIT);
-    const uint64_t most = (uint64_t)codec->packed_words + pn_net.place_count + 2U;
-    codec->unit_mask = table(run, codec->units, sizeof(uint64_t));
-    codec->unit_shift = table(run, codec->units, sizeof(uint32_t));
-    codec->word_shift = table(run, most, sizeof(uint32_t));
+    const uint32_t packed_words = rounded_up(packed, 4U);
+    const uint64_t most = (2U * (uint64_t)packed_words) + (2U * (uint64_t)pn_net.place_count) + 2U;
+    codec->slice_bit = table(run, most, sizeof(uint32_t));
+    codec->slice_width = table(run, most, sizeof(uint32_t));
     codec->word_of = table(run, pn_net.place_count, sizeof(uint32_t));
     codec->place_of = table(run, most, sizeof(uint32_t));
     codec->touched_words = table(run, pn_net.transition_count, sizeof(uint32_t *));
@@ -199,22 +259,26 @@ bool ex_codec_make(ex_run_t *run)
     codec->node = table(run, most, sizeof *codec->node);
     codec->parent = table(run, 2U * most, sizeof(uint32_t));
     uint32_t *cell = table(run, most, sizeof *cell);
-    if ((codec->unit_mask == NULL) || (codec->unit_shift == NULL) || (codec->word_shift == NULL) || (codec->word_of == NULL)
+    codec->is_joined = table(run, most, sizeof(bool));
+    if ((codec->slice_bit == NULL) || (codec->slice_width == NULL) || (codec->is_joined == NULL) || (codec->word_of == NULL)
         || (codec->place_of == NULL) || (codec->touched_words == NULL) || (codec->touched_count == NULL)
         || (codec->touched_bags == NULL) || (codec->touched_bag_count == NULL) || (codec->node == NULL)
         || (codec->parent == NULL) || (cell == NULL)) {
         return false;
     }
-    uint32_t bits = codec->is_whole ? 0U : lay_units(codec);
-    lay_words(codec);
-    for (uint32_t w = codec->packed_words; w < codec->words; w++) {
-        codec->word_shift[w - codec->packed_words] = bits;
-        bits += 32U;
+    codec->is_plain = !codec->is_whole && !pn_net.timed && (pn_net.bag_count == 0U) && (packed_words <= EX_KEY_WORDS);
+    if (codec->is_plain) {
+        lay_plain(codec, packed_words);
+    } else if (!codec->is_whole) {
+        lay_slices(codec, cell);
     }
-    codec->is_direct = bits <= (uint32_t)KEY_BITS;
-    codec->key_bytes = codec->is_direct ? rounded_up(bits, 8U) : 8U;
-    if (!codec->is_direct) {
-        lay_tree(codec, cell);
+    lay_words(codec);
+    lay_tree(codec, cell);
+    if (codec->is_plain) {
+        unsigned char mask[2U * sizeof(uint64_t)] = { 0U };
+        (void)memset(mask, 0xff, packed);
+        (void)memcpy(&codec->plain_low, mask, sizeof codec->plain_low);
+        (void)memcpy(&codec->plain_high, &mask[sizeof codec->plain_low], sizeof codec->plain_high);
     }
     ex_free(run, cell, (most + 1U) * sizeof *cell);
     for (uint32_t t = 0U; !codec->is_whole && (t < pn_net.transition_count); t++) {
@@ -222,13 +286,57 @@ bool ex_codec_make(ex_run_t *run)
             return false;
         }
     }
-    return ex_bytes_make(&codec->bytes, run) && (codec->is_direct || ex_quads_make(&codec->quads, run));
+    return ex_bytes_make(&codec->bytes, run) && ex_codec_number(run);
+}
+
+bool ex_codec_number(ex_run_t *run)
+{
+    ex_codec_t *codec = run->codec;
+    for (uint32_t i = 0U; i < EX_TABLES; i++) {
+        if (codec->quads[i].quad != NULL) {
+            ex_quads_free(&codec->quads[i]);
+        }
+        if (codec->has_quads[i] && !ex_quads_make(&codec->quads[i], run)) {
+            return false;
+        }
+    }
+    return true;
 }
 
 uint64_t ex_codec_bytes(const ex_run_t *run)
 {
     const ex_codec_t *codec = run->codec;
-    return (codec->has_cells ? ex_bytes_bytes(&codec->bytes) : 0U) + (codec->is_direct ? 0U : ex_quads_bytes(&codec->quads));
+    uint64_t bytes = codec->has_cells ? ex_bytes_bytes(&codec->bytes) : 0U;
+    for (uint32_t i = 0U; i < EX_TABLES; i++) {
+        bytes += codec->has_quads[i] ? ex_quads_bytes(&codec->quads[i]) : 0U;
+    }
+    return bytes;
+}
+
+static uint32_t bits_of(uint64_t count)
+{
+    const uint32_t bits = 64U - (uint32_t)__builtin_clzll(count | 1U);
+    return (bits < (uint32_t)WORD_BITS) ? bits : (uint32_t)WORD_BITS;
+}
+
+void ex_key_widths(const ex_run_t *run, uint32_t width[EX_KEY_WORDS])
+{
+    const ex_codec_t *codec = run->codec;
+    for (uint32_t i = 0U; i < EX_KEY_WORDS; i++) {
+        width[i] = 0U;
+        if (i >= codec->roots) {
+            continue;
+        }
+        const uint32_t cell = codec->root[i];
+        if (cell < codec->packed_words) {
+            width[i] = codec->slice_width[cell];
+        } else {
+            const ex_index_t *index = (cell < codec->words) ? &codec->bytes.index
+                                                            : &codec->quads[codec->node[cell - codec->words].table].index;
+            const uint64_t count = atomic_load(&index->count);
+            width[i] = bits_of(count + (count / 4U) + 64U);
+        }
+    }
 }
 
 bool ex_scratch_make(ex_worker_t *worker)
@@ -240,9 +348,9 @@ bool ex_scratch_make(ex_worker_t *worker)
         return false;
     }
     worker->scratch = scratch;
-    const uint64_t cells = (uint64_t)codec->words + codec->nodes;
+    const uint64_t cells = 2U * ((uint64_t)codec->words + 1U); /* more inner nodes than words there never are */
     scratch->cell = table(run, cells, sizeof *scratch->cell);
-    scratch->dirty = table(run, (codec->nodes / 64U) + 1U, sizeof *scratch->dirty);
+    scratch->dirty = table(run, (codec->words / 64U) + 1U, sizeof *scratch->dirty);
     scratch->undo_cell = table(run, cells, sizeof *scratch->undo_cell);
     scratch->undo_value = table(run, cells, sizeof *scratch->undo_value);
     scratch->buffer_size = 4096U;
@@ -335,7 +443,7 @@ static inline void set_cell(ex_worker_t *worker, uint32_t c, uint32_t value)
     ex_scratch_t *scratch = worker->scratch;
     const uint32_t old = scratch->cell[c];
     if (old != value) {
-        const uint32_t parent = worker->run->codec->is_direct ? NONE : worker->run->codec->parent[c];
+        const uint32_t parent = worker->run->codec->parent[c];
         scratch->undo_cell[scratch->undone] = c;
         scratch->undo_value[scratch->undone] = old;
         scratch->undone++;
@@ -368,7 +476,7 @@ static bool number_node(ex_worker_t *worker, uint32_t n, uint32_t *number)
     ex_codec_t *codec = worker->run->codec;
     const ex_quad_t quad = quad_of(&codec->node[n], worker->scratch->cell);
     for (;;) {
-        *number = ex_quads_number(&codec->quads, quad);
+        *number = ex_quads_number(&codec->quads[codec->node[n].table], quad);
         if (*number != EX_NO_NUMBER) {
             return true;
         }
@@ -398,38 +506,44 @@ static bool number_dirty(ex_worker_t *worker)
     return true;
 }
 
-static inline uint64_t unit_of(const void *marking, uint32_t u, uint64_t mask)
+/* The key of a marking that is nothing but a short packed part. */
+static inline void plain_key(const ex_codec_t *codec, const void *marking, ex_key_t *key)
 {
-    uint64_t unit;
-    (void)memcpy(&unit, (const unsigned char *)marking + ((size_t)u * sizeof unit), sizeof unit);
-    return unit & mask;
+    uint64_t word[2];
+    (void)memcpy(word, marking, sizeof word); /* there is room for so much */
+    key->low = word[0] & codec->plain_low;
+    key->high = word[1] & codec->plain_high;
 }
 
-/* The key of the packed part of a marking and of the other cells. */
-static inline void direct_key(const ex_codec_t *codec, const void *marking, const uint32_t *cell, ex_key_t *key)
-{
-    ex_wide_t wide = 0U;
-    for (uint32_t u = 0U; u < codec->units; u++) {
-        wide |= (ex_wide_t)unit_of(marking, u, codec->unit_mask[u]) << codec->unit_shift[u];
-    }
-    for (uint32_t w = codec->packed_words; w < codec->words; w++) {
-        wide |= (ex_wide_t)cell[w] << codec->word_shift[w - codec->packed_words];
-    }
-    key->low = (uint64_t)wide;
-    key->high = (uint64_t)(wide >> 64U);
-}
-
+/* The key of the cells. */
 static inline void root_key(const ex_codec_t *codec, const uint32_t *cell, ex_key_t *key)
 {
-    key->low = cell[codec->root[0]] | ((uint64_t)cell[codec->root[1]] << 32U);
-    key->high = 0U;
+    uint32_t word[EX_KEY_WORDS] = { 0U, 0U, 0U, 0U };
+    for (uint32_t i = 0U; i < codec->roots; i++) {
+        word[i] = cell[codec->root[i]];
+    }
+    key->low = word[0] | ((uint64_t)word[1] << 32U);
+    key->high = word[2] | ((uint64_t)word[3] << 32U);
 }
 
-static inline uint32_t packed_word(const void *marking, uint32_t w)
+/* A word of the vector from the packed part. */
+static inline uint32_t slice_of(const ex_codec_t *codec, const void *marking, uint32_t w)
 {
-    uint32_t word;
-    (void)memcpy(&word, (const unsigned char *)marking + ((size_t)w * sizeof word), sizeof word);
-    return word;
+    const uint32_t bit = codec->slice_bit[w];
+    uint64_t word;
+    (void)memcpy(&word, (const unsigned char *)marking + (bit / 8U), sizeof word);
+    return (uint32_t)((word >> (bit % 8U)) & (((uint64_t)1U << codec->slice_width[w]) - 1U));
+}
+
+/* The other way round: the bits are 0 before. */
+static inline void put_slice(const ex_codec_t *codec, void *marking, uint32_t w, uint32_t value)
+{
+    const uint32_t bit = codec->slice_bit[w];
+    unsigned char *at = (unsigned char *)marking + (bit / 8U);
+    uint64_t word;
+    (void)memcpy(&word, at, sizeof word);
+    word |= (uint64_t)value << (bit % 8U);
+    (void)memcpy(at, &word, sizeof word);
 }
 
 /* --- encoding -------------------------------------------------------------------------------------------------------------- */
@@ -443,21 +557,17 @@ bool ex_encode(ex_worker_t *worker, const void *marking, ex_key_t *key)
     scratch->is_loaded = false;
     if (codec->is_whole) {
         is_fine = intern_whole(worker, marking, &cell[0]);
-        direct_key(codec, marking, cell, key);
+        root_key(codec, cell, key);
         return is_fine;
     }
     for (uint32_t w = 0U; w < codec->packed_words; w++) {
-        cell[w] = packed_word(marking, w);
+        cell[w] = slice_of(codec, marking, w);
     }
     for (uint32_t i = 0U; is_fine && (i < pn_net.place_count); i++) {
         is_fine = (codec->word_of[i] == NONE) || intern_place(worker, i, marking, &cell[codec->word_of[i]]);
     }
     if (is_fine && (codec->time_word != NONE)) {
         is_fine = intern_time(worker, marking, &cell[codec->time_word]);
-    }
-    if (codec->is_direct) {
-        direct_key(codec, marking, cell, key);
-        return is_fine;
     }
     for (uint32_t n = 0U; is_fine && (n < codec->nodes); n++) {
         is_fine = number_node(worker, n, &cell[codec->words + n]);
@@ -470,15 +580,23 @@ bool ex_encode_time(ex_worker_t *worker)
 {
     const ex_codec_t *codec = worker->run->codec;
     ex_scratch_t *scratch = worker->scratch;
+    const bool is_reduced = worker->run->options.is_time_reduced;
     uint32_t number;
-    if (codec->time_word == NONE) {
-        return true;
+    for (uint32_t i = 0U; is_reduced && (i < pn_net.place_count); i++) {
+        if (pn_net.place[i].timed && (codec->word_of[i] != NONE)) {
+            if (!intern_place(worker, i, worker->marking, &number)) {
+                return false;
+            }
+            set_cell(worker, codec->word_of[i], number);
+        }
     }
-    if (!intern_time(worker, worker->marking, &number)) {
-        return false;
+    if (!is_reduced && (codec->time_word != NONE)) {
+        if (!intern_time(worker, worker->marking, &number)) {
+            return false;
+        }
+        set_cell(worker, codec->time_word, number);
     }
-    set_cell(worker, codec->time_word, number);
-    if (!codec->is_direct && !number_dirty(worker)) {
+    if (!number_dirty(worker)) {
         return false;
     }
     scratch->undone = 0U; /* it stays */
@@ -489,8 +607,8 @@ bool ex_encode_next(ex_worker_t *worker, uint32_t transition, const void *next, 
 {
     const ex_codec_t *codec = worker->run->codec;
     ex_scratch_t *scratch = worker->scratch;
-    if (!codec->has_cells && codec->is_direct) {
-        direct_key(codec, next, scratch->cell, key);
+    if (codec->is_plain) {
+        plain_key(codec, next, key);
         return true;
     }
     bool is_fine = true;
@@ -508,16 +626,12 @@ bool ex_encode_next(ex_worker_t *worker, uint32_t transition, const void *next, 
             set_cell(worker, codec->word_of[place], number);
         }
     }
-    if (codec->is_direct) {
-        direct_key(codec, next, scratch->cell, key);
-    } else {
-        for (uint32_t k = 0U; k < codec->touched_count[transition]; k++) {
-            const uint32_t w = codec->touched_words[transition][k];
-            set_cell(worker, w, packed_word(next, w));
-        }
-        is_fine = is_fine && number_dirty(worker);
-        root_key(codec, scratch->cell, key);
+    for (uint32_t k = 0U; k < codec->touched_count[transition]; k++) {
+        const uint32_t w = codec->touched_words[transition][k];
+        set_cell(worker, w, slice_of(codec, next, w));
     }
+    is_fine = is_fine && number_dirty(worker);
+    root_key(codec, scratch->cell, key);
     undo(scratch);
     return is_fine;
 }
@@ -529,7 +643,7 @@ static void open_tree(const ex_codec_t *codec, uint32_t *cell)
 {
     for (uint32_t n = codec->nodes; n > 0U; n--) {
         const ex_node_t *node = &codec->node[n - 1U];
-        const ex_quad_t quad = codec->quads.quad[cell[codec->words + n - 1U]];
+        const ex_quad_t quad = codec->quads[node->table].quad[cell[codec->words + n - 1U]];
         const uint32_t value[4] = { (uint32_t)quad.low, (uint32_t)(quad.low >> 32U), (uint32_t)quad.high,
                                     (uint32_t)(quad.high >> 32U) };
         for (uint32_t i = 0U; i < node->count; i++) {
@@ -578,33 +692,23 @@ bool ex_load(ex_worker_t *worker, const ex_key_t *key)
     ex_scratch_t *scratch = worker->scratch;
     uint32_t *cell = scratch->cell;
     unsigned char *packed = worker->marking;
-    if (!codec->has_cells && codec->is_direct) {
-        const ex_wide_t wide = ((ex_wide_t)key->high << 64U) | key->low;
-        for (uint32_t u = 0U; u < codec->units; u++) {
-            const uint64_t unit = (uint64_t)(wide >> codec->unit_shift[u]) & codec->unit_mask[u];
-            const size_t at = (size_t)u * sizeof unit;
-            (void)memcpy(&packed[at], &unit, ((pn_net.packed_size - at) < sizeof unit) ? (pn_net.packed_size - at) : sizeof unit);
-        }
+    if (codec->is_plain) {
+        const uint64_t plain[2] = { key->low, key->high };
+        (void)memcpy(packed, plain, pn_net.packed_size);
         return true;
     }
     tidy_arena(scratch);
     uint32_t *old = scratch->undo_value; /* nothing else uses it now */
     (void)memcpy(old, &cell[codec->packed_words], (codec->words - codec->packed_words) * sizeof *old);
-    if (codec->is_direct) {
-        const ex_wide_t wide = ((ex_wide_t)key->high << 64U) | key->low;
-        for (uint32_t u = 0U; u < codec->units; u++) {
-            const uint64_t unit = (uint64_t)(wide >> codec->unit_shift[u]) & codec->unit_mask[u];
-            const size_t at = (size_t)u * sizeof unit;
-            (void)memcpy(&packed[at], &unit, ((pn_net.packed_size - at) < sizeof unit) ? (pn_net.packed_size - at) : sizeof unit);
-        }
-        for (uint32_t w = codec->packed_words; w < codec->words; w++) {
-            cell[w] = (uint32_t)(wide >> codec->word_shift[w - codec->packed_words]);
-        }
-    } else {
-        cell[codec->root[0]] = (uint32_t)key->low;
-        cell[codec->root[1]] = (uint32_t)(key->low >> 32U);
-        open_tree(codec, cell);
-        (void)memcpy(packed, cell, codec->packed_words * sizeof *cell);
+    const uint32_t word[EX_KEY_WORDS] = { (uint32_t)key->low, (uint32_t)(key->low >> 32U), (uint32_t)key->high,
+                                          (uint32_t)(key->high >> 32U) };
+    for (uint32_t i = 0U; i < codec->roots; i++) {
+        cell[codec->root[i]] = word[i];
+    }
+    open_tree(codec, cell);
+    (void)memset(packed, 0, pn_net.packed_size);
+    for (uint32_t w = 0U; w < codec->packed_words; w++) {
+        put_slice(codec, packed, w, cell[w]);
     }
     bool is_fine = true;
     for (uint32_t w = codec->packed_words; is_fine && (w < codec->words); w++) {

@@ -1,9 +1,8 @@
 /* SPDX-License-Identifier: MIT
  * explore_impl.h - what the parts of the explorer share.
  *
- * A marking is made into a *vector* of words (explore_codec.c) and a vector into a *key* of at most 16 bytes: the bytes of the vector
- * themselves when they are few enough, else the two numbers at the root of its tree of pairs (explore_tree.c). Equal markings, equal
- * keys; a key can be made into a marking again. The store (explore_store.c) is a set of keys. Its slots are numbered; a key stays in its
+ * A marking is made into a *vector* of words (explore_codec.c) and a vector into a *key* of at most four words: those of the vector
+ * themselves when they are so few, else the numbers of its parts. Equal markings, equal keys; a key can be made into a marking again. The store (explore_store.c) is a set of keys. Its slots are numbered; a key stays in its
  * slot unless the store grows, which happens during the exploration only (explore_search.c). After a complete exploration the graph phase
  * (explore_graph.c) goes through the slots, makes the successors of each key once more and looks up their slots.
  */
@@ -34,10 +33,13 @@ typedef struct ex_options {
     bool has_graph;        /* wanted */
     bool is_bitstate;
     bool is_hashed;        /* hash compaction */
+    bool is_time_reduced;  /* stamps count from the model time on, which is always 0; those that are not after it are equal */
     bool shows_progress;
     bool shows_help;
     const char *spill;       /* folder; NULL: none */
     const char *write_graph; /* file; NULL: none */
+    uint64_t write_limit;    /* most nodes of a graph that is written */
+    double progress_every;   /* seconds between lines */
     const char *trace_to;    /* what the names of traces to dead markings begin with; NULL: none */
     uint64_t dead_limit;
     uint64_t traces;         /* most traces in trace_to */
@@ -63,11 +65,13 @@ typedef struct ex_error {
     int64_t transition; /* index, -1: none */
 } ex_error_t;
 
-/* A state as it is stored: `length` bytes (ex_store_t.length), the rest zero. */
+/* What stands for a state: up to four words, the lower half of `low` first; the rest zero. */
 typedef struct ex_key {
     uint64_t low;
     uint64_t high;
 } ex_key_t;
+
+#define EX_KEY_WORDS 4U
 
 struct ex_run;
 struct ex_worker;
@@ -109,7 +113,7 @@ typedef struct ex_index {
     _Atomic uint64_t count;  /* numbers given */
 } ex_index_t;
 
-/* Four numbers as one: the inner nodes of trees. */
+/* Up to four numbers as one: the inner nodes of trees. */
 typedef struct ex_quad {
     uint64_t low;
     uint64_t high;
@@ -137,6 +141,7 @@ typedef struct ex_bytes {
 } ex_bytes_t;
 
 bool ex_quads_make(ex_quads_t *quads, struct ex_run *run);
+void ex_quads_free(ex_quads_t *quads);
 bool ex_bytes_make(ex_bytes_t *bytes, struct ex_run *run);
 /* The number; EX_NO_NUMBER: it has to grow first. */
 uint32_t ex_quads_number(ex_quads_t *quads, ex_quad_t quad);
@@ -153,24 +158,28 @@ uint64_t ex_bytes_bytes(const ex_bytes_t *bytes);
 typedef struct ex_node {
     uint32_t child[4]; /* cells */
     uint32_t count;
-    uint32_t parent;   /* node; UINT32_MAX: at the root */
+    uint32_t parent;   /* node; UINT32_MAX: it is a part of the key */
+    uint32_t table;    /* of numbers */
 } ex_node_t;
+
+#define EX_TABLES (EX_KEY_WORDS + 1U) /* of numbers: for each part of the key, and for all nodes below */
 
 /* The shape of the vectors: found once, from the tables of the net.
  *
- * A vector consists of cells: the words of the packed part, a word for each bag (the number of its bytes), one for the time if the net
- * is timed. Where places cannot be encoded one by one, there is one word for the whole marking. */
+ * A vector consists of cells: slices of the packed part (of one long place, or of several short ones), a word for each bag (the number
+ * of its bytes), one for the time if the net is timed. Where places cannot be encoded one by one, there is one word for the whole marking. */
 typedef struct ex_codec {
     bool is_whole;
-    bool is_direct;          /* the key is the vector: units of up to 64 bits, one behind the other */
+    bool is_plain;           /* the key is the packed part, there is nothing else */
+    uint64_t plain_low;      /* then: the bytes of the marking that belong to it */
+    uint64_t plain_high;
     bool has_cells;          /* there is more than the packed part */
-    uint32_t units;          /* of the packed part */
     uint32_t packed_words;
     uint32_t words;          /* cells, without those of the inner nodes */
     uint32_t time_word;      /* UINT32_MAX: none */
-    uint64_t *unit_mask;     /* bits of a unit that are used */
-    uint32_t *unit_shift;    /* where it is in the key */
-    uint32_t *word_shift;    /* the same for the words behind the packed part */
+    uint32_t *slice_bit;     /* of the packed part, by word of the vector: its first bit there */
+    uint32_t *slice_width;   /* and the number of bits, at most 32 */
+    bool *is_joined;         /* whether it goes on with the place of the word before */
     uint32_t *word_of;       /* by place: its word; UINT32_MAX: packed */
     uint32_t *place_of;      /* by word behind the packed part */
     uint32_t **touched_words;  /* by transition: words of the packed part that an occurrence may change */
@@ -180,10 +189,11 @@ typedef struct ex_codec {
     ex_node_t *node;
     uint32_t nodes;
     uint32_t *parent;        /* by cell: node */
-    uint32_t root[2];        /* cells */
-    uint32_t key_bytes;
+    uint32_t root[EX_KEY_WORDS]; /* cells that make the key */
+    uint32_t roots;
     ex_bytes_t bytes;
-    ex_quads_t quads;
+    ex_quads_t quads[EX_TABLES];
+    bool has_quads[EX_TABLES];
 } ex_codec_t;
 
 /* What a thread needs for it. */
@@ -202,10 +212,19 @@ typedef struct ex_scratch {
 } ex_scratch_t;
 
 bool ex_codec_make(struct ex_run *run);
+/* Other parts of the key: words `end[i - 1]` .. `end[i] - 1` of the permutation `word` (which is overwritten) become part i. */
+void ex_codec_group(ex_codec_t *codec, uint32_t *word, const uint32_t end[EX_KEY_WORDS], uint32_t parts);
+/* New tables for the numbers of nodes. */
+bool ex_codec_number(struct ex_run *run);
+/* Finds good parts (explore_layout.c) by going at random from the marking of the first worker, if that is harmless; keys made before are
+ * worth nothing then. False: no memory. */
+bool ex_layout(struct ex_run *run);
 bool ex_scratch_make(struct ex_worker *worker);
 /* For ex_successors: the key of `next`, which is what has become of the loaded state by a transition; the time is the same. */
 bool ex_encode_next(struct ex_worker *worker, uint32_t transition, const void *next, ex_key_t *key);
-/* The word of the time has to be that of worker->marking. */
+/* Bits that the words of the keys need now. */
+void ex_key_widths(const struct ex_run *run, uint32_t width[EX_KEY_WORDS]);
+/* The words of the time and, when it is reduced, of the timed places have to be those of worker->marking. */
 bool ex_encode_time(struct ex_worker *worker);
 /* Bytes of the tables of interned places and of pairs. */
 uint64_t ex_codec_bytes(const struct ex_run *run);
@@ -229,6 +248,8 @@ typedef enum ex_found {
     EX_FAILED   /* an inscription raised an exception, or memory is used up: worker->failed */
 } ex_found_t;
 
+/* If the time is reduced: worker->marking, at the time 0, becomes the state that stands for all that are like it. */
+void ex_reduce_time(struct ex_worker *worker);
 /* All binding elements of the best priority that are enabled in the state, or at the next time at which there are any; in the
  * documented order. worker->marking is then the state at the time of these occurrences (pn_net.now). */
 ex_found_t ex_successors(struct ex_worker *worker, const ex_key_t *key, ex_arc_sink_t sink, void *user);
@@ -242,7 +263,8 @@ typedef struct ex_store {
     uint64_t limit;          /* keys from which on it ought to grow */
     uint32_t slots;          /* of a bucket */
     uint32_t length;         /* bytes of a key */
-    uint64_t low_mask;       /* of ex_key_t: which bytes are part of a key */
+    uint32_t width[EX_KEY_WORDS]; /* bits of each word of a key that are kept */
+    uint64_t low_mask;       /* the same as masks of ex_key_t */
     uint64_t high_mask;
     _Atomic uint64_t used;   /* keys; exact while nobody inserts */
 } ex_store_t;
@@ -250,13 +272,15 @@ typedef struct ex_store {
 typedef enum ex_insertion {
     EX_NEW,
     EX_KNOWN,
-    EX_FULL /* nothing was done: ex_store_grow first, while no other thread uses the store */
+    EX_FULL /* nothing was done: it has to grow first (ex_pause) */
 } ex_insertion_t;
 
-bool ex_store_make(ex_store_t *store, struct ex_run *run, uint32_t length, uint64_t keys);
+/* `width`: bits of each word of a key. */
+bool ex_store_make(ex_store_t *store, struct ex_run *run, const uint32_t width[EX_KEY_WORDS], uint64_t keys);
 void ex_store_free(ex_store_t *store);
-/* Makes room; false when there is no memory (the store stays as it was, or has lost keys: the run ends). */
-bool ex_store_grow(ex_store_t *store);
+/* Makes room, and words of keys as wide as they have to be; does nothing when all is well. False when there is no memory (the store stays
+ * as it was, or has lost keys: the run ends). Nobody else uses it. */
+bool ex_store_grow(ex_store_t *store, const uint32_t width[EX_KEY_WORDS]);
 uint64_t ex_store_bytes(const ex_store_t *store);
 
 __extension__ typedef unsigned __int128 ex_wide_t;
@@ -292,6 +316,31 @@ uint64_t ex_store_slots(const ex_store_t *store);
 /* The key in a slot; false when the slot is empty. */
 bool ex_store_fetch(const ex_store_t *store, uint64_t slot, ex_key_t *key);
 
+/* --- bit states (explore_bits.c) ----------------------------------------------------------------------------------- */
+
+/* Three bits of a word for each state. */
+typedef struct ex_bits {
+    _Atomic uint64_t *word;
+    uint64_t words;
+    uint64_t bytes;
+    _Atomic uint64_t inserted;
+    pthread_mutex_t lock; /* of what follows */
+    double expected;      /* states that have been missed, as far as estimated */
+    double last;          /* probability that the next one is */
+} ex_bits_t;
+
+bool ex_bits_make(ex_bits_t *bits, struct ex_run *run);
+/* `hash` has to be a good one, and is all that counts of a state. */
+ex_insertion_t ex_bits_insert(ex_bits_t *bits, uint64_t hash);
+bool ex_bits_hold(const ex_bits_t *bits, uint64_t hash);
+/* The probability that at least one state was missed. */
+double ex_bits_omission(ex_bits_t *bits);
+
+static inline void ex_bits_prefetch(const ex_bits_t *bits, uint64_t hash)
+{
+    __builtin_prefetch((const void *)&bits->word[ex_scaled(hash, bits->words)], 1, 3);
+}
+
 /* --- the run ------------------------------------------------------------------------------------------------------- */
 
 /* What one thread has. */
@@ -304,6 +353,7 @@ typedef struct ex_worker {
     ex_scratch_t *scratch; /* of the codec and the successors */
     struct ex_search *search;   /* of the search */
     struct ex_bounds *bounds;   /* of explore_bounds.c */
+    int64_t elapsed;         /* when the time is reduced: how much of it went by in ex_successors before something was enabled */
     /* Counted during the exploration. */
     uint64_t states;         /* expanded */
     uint64_t arcs;
@@ -314,7 +364,8 @@ typedef struct ex_worker {
 typedef struct ex_run {
     ex_options_t options;
     ex_codec_t *codec;
-    ex_store_t store;
+    ex_store_t store;        /* of approximations: of hashes, or `used` alone */
+    ex_bits_t bits;
     ex_worker_t *worker;     /* options.threads of them */
     ex_key_t initial;
     double started;          /* seconds of the monotonic clock */

@@ -10,7 +10,7 @@
 #include <string.h>
 
 enum {
-    FIRST_ENTRIES = 1 << 14,
+    FIRST_ENTRIES = 1 << 10,
     BLOCK = 1 << 20 /* bytes that are counted at a time */
 };
 
@@ -134,6 +134,15 @@ bool ex_quads_make(ex_quads_t *quads, ex_run_t *run)
 {
     quads->quad = reserve(run, sizeof *quads->quad, &quads->index.most);
     return (quads->quad != NULL) && index_make(&quads->index, run) && ex_count(run, quads->index.limit * sizeof *quads->quad);
+}
+
+void ex_quads_free(ex_quads_t *quads)
+{
+    ex_index_t *index = &quads->index;
+    ex_unmap(quads->quad, index->most * sizeof *quads->quad);
+    ex_uncount(index->run, index->limit * sizeof *quads->quad);
+    ex_free(index->run, index->entry, index->entries * sizeof *index->entry);
+    *quads = (ex_quads_t){ .quad = NULL };
 }
 
 uint32_t ex_quads_number(ex_quads_t *quads, ex_quad_t quad)

@@ -59,9 +59,18 @@ void ex_fail(ex_worker_t *worker, int64_t transition)
 /* Whatever is nearly full grows; the others wait. */
 static void grow_all(ex_run_t *run)
 {
-    const bool is_full = (atomic_load(&run->store.used) + EX_SPARE_KEYS) >= run->store.limit;
-    const bool is_fine = (!is_full || ex_store_grow(&run->store)) && ex_bytes_grow(&run->codec->bytes)
-                         && (run->codec->is_direct || ex_quads_grow(&run->codec->quads));
+    ex_codec_t *codec = run->codec;
+    uint32_t width[EX_KEY_WORDS];
+    bool is_fine = ex_bytes_grow(&codec->bytes);
+    for (uint32_t i = 0U; i < EX_TABLES; i++) {
+        is_fine = is_fine && (!codec->has_quads[i] || ex_quads_grow(&codec->quads[i]));
+    }
+    if (run->options.is_hashed) {
+        (void)memcpy(width, run->store.width, sizeof width);
+    } else {
+        ex_key_widths(run, width);
+    }
+    is_fine = is_fine && ((run->store.bucket == NULL) || ex_store_grow(&run->store, width));
     if (!is_fine) {
         ex_stop(run, EX_MEMORY);
     }

@@ -33,11 +33,13 @@ typedef struct ex_level {
     ex_run_t *run;
     uint32_t stride;    /* bytes of an entry */
     uint32_t capacity;  /* entries of a chunk */
+    uint64_t low_mask;  /* of ex_key_t: which bytes are part of a key */
+    uint64_t high_mask;
     chunk_t *now;       /* of this level, or given away */
     chunk_t *next;      /* of the next level */
     chunk_t *spare;
     uint64_t depth;
-    uint32_t idle;
+    uint32_t parts;
     _Atomic uint32_t hungry; /* threads without work */
     _Atomic uint64_t expanded; /* for the progress: as of the last chunks */
     _Atomic uint64_t arcs;
@@ -47,15 +49,18 @@ typedef struct ex_level {
 
 typedef struct pending {
     ex_key_t key;
+    ex_key_t stored; /* what stands for it in the store */
     uint64_t hash;
 } pending_t;
 
 typedef struct ex_search {
     search_t *search;
     chunk_t *out;       /* being filled; depth first: the top of the stack */
+    chunk_t *expanding; /* breadth first */
     chunk_t *bottom;    /* depth first: the lowest chunk of the stack (`next` leads downwards) */
     pending_t batch[BATCH];
     uint32_t pending;
+    bool is_exact;
     uint64_t depth;     /* of the successors */
     uint64_t deepest;
     uint64_t reported_arcs;
@@ -110,8 +115,8 @@ static uint64_t get_entry(const search_t *search, const chunk_t *chunk, uint32_t
     const unsigned char *at = &chunk->byte[(size_t)i * search->stride];
     uint32_t depth = 0U;
     (void)memcpy(key, at, sizeof *key);
-    key->low &= search->run->store.low_mask;
-    key->high &= search->run->store.high_mask;
+    key->low &= search->low_mask;
+    key->high &= search->high_mask;
     if (search->run->options.is_depth_first) {
         (void)memcpy(&depth, &at[search->stride - sizeof depth], sizeof depth);
     }
@@ -183,6 +188,34 @@ static bool add_new(ex_search_t *own, const ex_key_t *key)
 
 /* --- batches --------------------------------------------------------------------------------------------------------- */
 
+/* Whether a state has been seen; for approximations: it seems so. */
+static bool is_known(ex_run_t *run, const pending_t *pending)
+{
+    return run->options.is_bitstate ? ex_bits_hold(&run->bits, pending->hash)
+                                    : (ex_store_find(&run->store, &pending->stored, pending->hash) != EX_NO_SLOT);
+}
+
+static ex_insertion_t insert(ex_run_t *run, const pending_t *pending)
+{
+    return run->options.is_bitstate ? ex_bits_insert(&run->bits, pending->hash)
+                                    : ex_store_insert(&run->store, &pending->stored, pending->hash, NULL);
+}
+
+/* Of hash compaction and bit states: another hash is all that is kept of a key. */
+static void shorten(const ex_run_t *run, pending_t *pending)
+{
+    const ex_key_t turned = { pending->key.high ^ 0x6a09e667f3bcc909U, pending->key.low ^ 0xbb67ae8584caa73bU };
+    const uint64_t other = ex_hash(&turned);
+    if (run->options.is_bitstate) {
+        pending->hash = other ^ (pending->hash * 0x9e3779b97f4a7c15U);
+        ex_bits_prefetch(&run->bits, pending->hash);
+    } else {
+        pending->stored = (ex_key_t){ .low = other, .high = 0U };
+        pending->hash = ex_hash(&pending->stored);
+        ex_store_prefetch(&run->store, pending->hash);
+    }
+}
+
 /* Inserts what has been collected. False when the run stops. */
 static bool flush(ex_worker_t *worker)
 {
@@ -195,27 +228,33 @@ static bool flush(ex_worker_t *worker)
         (void)ex_pause(worker);
     }
     /* What other threads are inserting now is not counted yet, but there is room above the limit. */
-    if (((atomic_load_explicit(&store->used, memory_order_relaxed) + (2U * (uint64_t)BATCH)) > store->limit) && !ex_pause(worker)) {
+    if (!run->options.is_bitstate && ((atomic_load_explicit(&store->used, memory_order_relaxed) + (2U * (uint64_t)BATCH)) > store->limit)
+        && !ex_pause(worker)) {
         return false;
     }
-    const uint64_t before = atomic_load_explicit(&store->used, memory_order_relaxed);
+    uint64_t before = atomic_load_explicit(&store->used, memory_order_relaxed);
+    const bool is_near = (run->options.max_states - before) <= (2U * (uint64_t)BATCH * run->options.threads);
     for (uint32_t i = 0U; goes_on && (i < own->pending); i++) {
         const pending_t *pending = &own->batch[i];
-        if ((before + found) >= run->options.max_states) {
-            const bool is_known = ex_store_find(store, &pending->key, pending->hash) != EX_NO_SLOT;
-            goes_on = is_known;
-            if (!is_known) {
+        if (is_near && ((before + found) >= run->options.max_states)) {
+            if (!is_known(run, pending)) {
                 ex_stop(run, EX_STATES);
+                goes_on = false;
             }
             continue;
         }
-        const ex_insertion_t insertion = ex_store_insert(store, &pending->key, pending->hash, NULL);
+        ex_insertion_t insertion = insert(run, pending);
+        while ((insertion == EX_FULL) && goes_on) {
+            /* A number has become too large for its word, or the table is full to the last slot. */
+            (void)atomic_fetch_add_explicit(&store->used, found, memory_order_relaxed);
+            before += found;
+            found = 0U;
+            goes_on = ex_pause(worker);
+            insertion = insert(run, pending);
+        }
         if (insertion == EX_NEW) {
             found++;
             goes_on = add_new(own, &pending->key);
-        } else if (insertion == EX_FULL) {
-            ex_stop(run, EX_MEMORY); /* so many threads at the same time */
-            goes_on = false;
         }
     }
     own->pending = 0U;
@@ -232,8 +271,13 @@ static bool on_arc(void *user, uint32_t transition, const void *binding, const e
     (void)binding;
     pending_t *pending = &own->batch[own->pending];
     pending->key = *key;
+    pending->stored = *key;
     pending->hash = ex_hash(key);
-    ex_store_prefetch(&worker->run->store, pending->hash);
+    if (own->is_exact) {
+        ex_store_prefetch(&worker->run->store, pending->hash);
+    } else {
+        shorten(worker->run, pending);
+    }
     worker->fired[transition]++;
     worker->arcs++;
     own->pending++;
@@ -281,6 +325,8 @@ static bool expand(ex_worker_t *worker, const ex_key_t *key)
         worker->dead++;
         break;
     case EX_STOPPED:
+        ex_bounds_see(worker);
+        return false;
     case EX_FAILED:
     default:
         return false;
@@ -291,6 +337,27 @@ static bool expand(ex_worker_t *worker, const ex_key_t *key)
         report(worker);
     }
     return true;
+}
+
+/* A level that is one chunk, for several threads. With the gate locked. */
+static void split(search_t *search)
+{
+    chunk_t *chunk = search->now;
+    const uint32_t parts = search->run->options.threads;
+    while ((search->parts < parts) && (chunk->count >= (2U * (uint32_t)SHARED_FROM))) {
+        chunk_t *other = spare_chunk(search);
+        other = (other != NULL) ? other : ex_alloc(search->run, (uint64_t)CHUNK_SIZE);
+        if (other == NULL) {
+            return;
+        }
+        const uint32_t given = chunk->count / (parts - search->parts + 1U);
+        other->count = given;
+        chunk->count -= given;
+        (void)memcpy(other->byte, &chunk->byte[(size_t)chunk->count * search->stride], (size_t)given * search->stride);
+        other->next = search->now;
+        search->now = other;
+        search->parts++;
+    }
 }
 
 /* A chunk to expand; NULL when there is none and never will be. `used` was expanded and is free again. */
@@ -331,6 +398,10 @@ static chunk_t *take_chunk(ex_worker_t *worker, chunk_t *used)
             search->is_finished = true;
         } else {
             search->depth++;
+            search->parts = 1U;
+            if ((search->now->next == NULL) && (run->options.threads > 1U)) {
+                split(search);
+            }
             atomic_store_explicit(&search->deepest, search->depth, memory_order_relaxed);
         }
         if ((search->now == NULL) || (search->now->next != NULL)) {
@@ -349,10 +420,14 @@ static bool expand_chunk(ex_worker_t *worker, chunk_t *chunk)
 {
     ex_search_t *own = worker->search;
     bool goes_on = true;
+    own->expanding = chunk;
     for (chunk->taken = 0U; goes_on && (chunk->taken < chunk->count); chunk->taken++) {
         ex_key_t key;
         (void)get_entry(own->search, chunk, chunk->taken, &key);
         goes_on = expand(worker, &key);
+    }
+    if (goes_on) {
+        own->expanding = NULL;
     }
     return goes_on && flush(worker);
 }
@@ -420,24 +495,47 @@ static double cpu_clock(void)
     return (double)now.tv_sec + ((double)now.tv_nsec / 1e9);
 }
 
+static uint64_t mask_of(uint32_t bytes)
+{
+    return (bytes < 8U) ? ((((uint64_t)1U) << (bytes * 8U)) - 1U) : UINT64_MAX;
+}
+
 /* The initial state. */
 static bool begin(ex_run_t *run, search_t *search)
 {
     ex_worker_t *first = &run->worker[0];
+    run->at_work = 1U; /* tables may grow already */
     if (!pn_net.init(&first->cx, first->marking)) {
         ex_fail(first, -1);
         return false;
     }
-    if (!ex_encode(first, first->marking, &run->initial)) {
-        return false;
-    }
-    if (!ex_store_make(&run->store, run, run->codec->key_bytes, (uint64_t)FIRST_KEYS)) {
+    ex_reduce_time(first);
+    if (!ex_layout(run) || !pn_net.init(&first->cx, first->marking)) {
         ex_stop(run, EX_MEMORY);
         return false;
     }
-    search->stride = run->store.length + (run->options.is_depth_first ? (uint32_t)sizeof(uint32_t) : 0U);
+    ex_reduce_time(first);
+    if (!ex_encode(first, first->marking, &run->initial)) {
+        return false;
+    }
+    uint32_t width[EX_KEY_WORDS] = { 32U, 32U, 0U, 0U };
+    const uint32_t length = run->codec->roots * (uint32_t)sizeof(uint32_t);
+    if (!run->options.is_hashed) {
+        ex_key_widths(run, width);
+    }
+    if (run->options.is_bitstate ? !ex_bits_make(&run->bits, run) : !ex_store_make(&run->store, run, width, (uint64_t)FIRST_KEYS)) {
+        ex_stop(run, EX_MEMORY);
+        return false;
+    }
+    search->stride = length + (run->options.is_depth_first ? (uint32_t)sizeof(uint32_t) : 0U);
     search->capacity = (uint32_t)(((size_t)CHUNK_SIZE - sizeof(chunk_t) - sizeof(ex_key_t)) / search->stride);
-    (void)ex_store_insert(&run->store, &run->initial, ex_hash(&run->initial), NULL);
+    search->low_mask = mask_of(length);
+    search->high_mask = (length > 8U) ? mask_of(length - 8U) : 0U;
+    pending_t pending = { .key = run->initial, .stored = run->initial, .hash = ex_hash(&run->initial) };
+    if (run->options.is_bitstate || run->options.is_hashed) {
+        shorten(run, &pending);
+    }
+    (void)insert(run, &pending);
     atomic_store(&run->store.used, 1U);
     chunk_t *chunk = new_chunk(search);
     if (chunk == NULL) {
@@ -446,6 +544,36 @@ static bool begin(ex_run_t *run, search_t *search)
     put_entry(search, chunk, &run->initial, 0U);
     search->now = chunk;
     return true;
+}
+
+/* States that have been found and not expanded belong to the bounds, too. */
+static void see_chunks(ex_run_t *run, const chunk_t *chunk, uint32_t from, bool is_list)
+{
+    ex_worker_t *worker = &run->worker[0];
+    for (; chunk != NULL; chunk = is_list ? chunk->next : NULL) {
+        for (uint32_t i = from; i < chunk->count; i++) {
+            ex_key_t key;
+            (void)get_entry(run->level, chunk, i, &key);
+            if (ex_load(worker, &key)) {
+                ex_bounds_see(worker);
+            }
+        }
+    }
+}
+
+static void see_rest(ex_run_t *run)
+{
+    const search_t *search = run->level;
+    run->worker[0].cx.error = PN_OK; /* has been noted */
+    see_chunks(run, search->now, 0U, true);
+    see_chunks(run, search->next, 0U, true);
+    for (uint32_t i = 0U; i < run->options.threads; i++) {
+        const ex_search_t *own = run->worker[i].search;
+        see_chunks(run, own->out, 0U, run->options.is_depth_first);
+        if (own->expanding != NULL) {
+            see_chunks(run, own->expanding, own->expanding->taken, false);
+        }
+    }
 }
 
 static void sum_up(ex_run_t *run, const search_t *search)
@@ -482,6 +610,7 @@ bool ex_explore(ex_run_t *run)
             return false;
         }
         run->worker[i].search->search = search;
+        run->worker[i].search->is_exact = !run->options.is_bitstate && !run->options.is_hashed;
     }
     const double started = ex_clock();
     const double cpu_started = cpu_clock();
@@ -489,7 +618,17 @@ bool ex_explore(ex_run_t *run)
         ex_parallel(run, work, NULL);
     }
     sum_up(run, search);
+    if (run->options.is_bitstate) {
+        run->omission_probability = ex_bits_omission(&run->bits);
+        run->approximate_bytes = run->bits.bytes;
+    } else if (run->options.is_hashed) {
+        const double nodes = (double)run->nodes;
+        run->omission_probability = -expm1(-(nodes * nodes) / 36893488147419103232.0); /* pairs that share 64 bits */
+    }
     run->seconds = ex_clock() - started;
     run->cpu_seconds = cpu_clock() - cpu_started;
+    if (atomic_load(&run->why) != (int)EX_COMPLETE) {
+        see_rest(run);
+    }
     return true;
 }

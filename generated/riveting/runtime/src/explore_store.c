@@ -25,25 +25,53 @@ enum {
     STEP = 1 << 21 /* bytes that are given back at a time */
 };
 
-/* A key as the two words with which it is compared: its beginning and its end, which may overlap. */
+#define SLACK (2U * (uint64_t)STEP) /* bytes of both tables at the same time while one becomes the other */
+
+/* A key without the bits that are always zero, as the two words with which it is compared: its beginning and its end, which may
+ * overlap. */
 typedef struct probe {
     uint64_t first;
     uint64_t last;
     uint32_t length;
 } probe_t;
 
-static probe_t probe_of(const ex_store_t *store, const ex_key_t *key)
+static inline ex_wide_t pack(const ex_store_t *store, const ex_key_t *key)
 {
-    probe_t probe = { .first = key->low, .last = key->low, .length = store->length };
+    const uint64_t low = (uint32_t)key->low | ((key->low >> 32U) << store->width[0]);
+    const uint64_t high = (uint32_t)key->high | ((key->high >> 32U) << store->width[2]);
+    return ((ex_wide_t)high << (store->width[0] + store->width[1])) | low;
+}
+
+static inline uint64_t cut(ex_wide_t wide, uint32_t from, uint32_t width)
+{
+    return (uint64_t)(wide >> from) & (((uint64_t)1U << width) - 1U);
+}
+
+static void unpack(const ex_store_t *store, ex_wide_t wide, ex_key_t *key)
+{
+    const uint32_t *width = store->width;
+    uint32_t at = width[0];
+    key->low = cut(wide, 0U, width[0]) | (cut(wide, at, width[1]) << 32U);
+    at += width[1];
+    key->high = cut(wide, at, width[2]);
+    at += width[2];
+    key->high |= (width[3] > 0U) ? (cut(wide, at, width[3]) << 32U) : 0U;
+}
+
+static bool fits(const ex_store_t *store, const ex_key_t *key)
+{
+    return ((key->low & ~store->low_mask) | (key->high & ~store->high_mask)) == 0U;
+}
+
+static inline probe_t probe_of(const ex_store_t *store, const ex_key_t *key)
+{
     const uint32_t length = store->length;
-    if (length > 8U) {
-        const uint32_t cut = (length - 8U) * 8U; /* bits of the beginning that the end does not repeat */
-        probe.last = (cut == 64U) ? key->high : ((key->low >> cut) | (key->high << (64U - cut)));
-    } else if (length < 8U) {
-        probe.last = (uint32_t)(key->low >> ((length - 4U) * 8U));
-        probe.first = (uint32_t)key->low;
+    const ex_wide_t wide = pack(store, key);
+    const uint64_t low = (uint64_t)wide;
+    if (length >= 8U) {
+        return (probe_t){ .first = low, .last = (uint64_t)(wide >> ((length - 8U) * 8U)), .length = length };
     }
-    return probe;
+    return (probe_t){ .first = (uint32_t)low, .last = (uint32_t)(low >> ((length - 4U) * 8U)), .length = length };
 }
 
 static bool is_equal(const unsigned char *at, const probe_t *probe)
@@ -117,15 +145,28 @@ static uint64_t limit_of(const ex_store_t *store)
     return ((store->buckets * store->slots) / 10U) * 9U;
 }
 
-bool ex_store_make(ex_store_t *store, ex_run_t *run, uint32_t length, uint64_t keys)
+/* The layout for keys of such widths. */
+static void lay(ex_store_t *store, const uint32_t width[EX_KEY_WORDS])
 {
-    store->run = run;
+    uint64_t mask[EX_KEY_WORDS];
+    uint32_t bits = 0U;
+    for (uint32_t i = 0U; i < EX_KEY_WORDS; i++) {
+        store->width[i] = width[i];
+        bits += width[i];
+        mask[i] = ((uint64_t)1U << width[i]) - 1U;
+    }
+    store->low_mask = mask[0] | (mask[1] << 32U);
+    store->high_mask = mask[2] | (mask[3] << 32U);
+    const uint32_t length = (bits + 7U) / 8U;
     store->length = (length < (uint32_t)LEAST_LENGTH) ? (uint32_t)LEAST_LENGTH : length;
     const uint32_t slots = (uint32_t)LINE / (1U + store->length);
     store->slots = (slots > (uint32_t)MOST_SLOTS) ? (uint32_t)MOST_SLOTS : slots;
-    store->low_mask = (store->length >= 8U) ? UINT64_MAX : ((((uint64_t)1U) << (store->length * 8U)) - 1U);
-    store->high_mask = (store->length >= 16U) ? UINT64_MAX : ((store->length <= 8U) ? 0U
-                       : ((((uint64_t)1U) << ((store->length - 8U) * 8U)) - 1U));
+}
+
+bool ex_store_make(ex_store_t *store, ex_run_t *run, const uint32_t width[EX_KEY_WORDS], uint64_t keys)
+{
+    store->run = run;
+    lay(store, width);
     store->buckets = (keys / store->slots) + 1U;
     store->limit = limit_of(store);
     atomic_init(&store->used, 0U);
@@ -158,12 +199,9 @@ static uint64_t after(const ex_store_t *store, uint64_t b)
 
 static void read_key(const ex_store_t *store, const unsigned char *at, ex_key_t *key)
 {
-    key->low = 0U;
-    key->high = 0U;
-    (void)memcpy(&key->low, at, (store->length < 8U) ? store->length : 8U);
-    if (store->length > 8U) {
-        (void)memcpy(&key->high, &at[8], store->length - 8U);
-    }
+    uint64_t word[2] = { 0U, 0U };
+    (void)memcpy(word, at, store->length);
+    unpack(store, ((ex_wide_t)word[1] << 64U) | word[0], key);
 }
 
 bool ex_store_fetch(const ex_store_t *store, uint64_t slot, ex_key_t *key)
@@ -179,6 +217,9 @@ bool ex_store_fetch(const ex_store_t *store, uint64_t slot, ex_key_t *key)
 
 uint64_t ex_store_find(const ex_store_t *store, const ex_key_t *key, uint64_t hash)
 {
+    if (!fits(store, key)) {
+        return EX_NO_SLOT;
+    }
     const probe_t probe = probe_of(store, key);
     const unsigned char tag = tag_of(hash);
     uint64_t b = ex_scaled(hash, store->buckets);
@@ -202,6 +243,9 @@ uint64_t ex_store_find(const ex_store_t *store, const ex_key_t *key, uint64_t ha
 
 ex_insertion_t ex_store_insert(ex_store_t *store, const ex_key_t *key, uint64_t hash, uint64_t *slot)
 {
+    if (!fits(store, key)) {
+        return EX_FULL;
+    }
     const probe_t probe = probe_of(store, key);
     const unsigned char tag = tag_of(hash);
     uint64_t b = ex_scaled(hash, store->buckets);
@@ -264,16 +308,6 @@ static bool put(ex_store_t *store, const ex_key_t *key)
     return false;
 }
 
-/* The number of homes of the next table: twice as many while it is small, a quarter more when it is large. */
-static uint64_t larger(const ex_store_t *store)
-{
-    const uint64_t bytes = store->buckets * (uint64_t)LINE;
-    if (bytes < ((uint64_t)1U << 20U)) {
-        return store->buckets * 2U;
-    }
-    return store->buckets + ((bytes < ((uint64_t)1U << 24U)) ? (store->buckets / 2U) : (store->buckets / 4U));
-}
-
 /* The pass through both tables. What has been read is given back while the new table fills, so that not much more than one of them
  * takes room. */
 static bool move_all(const ex_store_t *old, ex_store_t *new)
@@ -300,23 +334,23 @@ static bool move_all(const ex_store_t *old, ex_store_t *new)
 /* Counts what the new table takes more than the old one, for which there must be room; false: there is none. */
 static bool count_growth(const ex_store_t *old, const ex_store_t *new)
 {
-    const uint64_t slack = 2U * (uint64_t)STEP;
     const uint64_t more = ex_is_spilled(new->run, ex_store_bytes(new)) ? 0U : ex_store_bytes(new);
     const uint64_t less = ex_is_spilled(old->run, ex_store_bytes(old)) ? 0U : ex_store_bytes(old);
-    if (ex_store_bytes(old) < slack) {
+    if (ex_store_bytes(old) < SLACK) {
         return ex_count(new->run, more); /* both at the same time */
     }
     if (more <= less) {
         return true;
     }
-    return ex_has_room(new->run, (more - less) + slack) && ex_count(new->run, more - less);
+    return ex_has_room(new->run, (more - less) + SLACK) && ex_count(new->run, more - less);
 }
 
-/* With a table of so many homes. */
-static bool grow_to(ex_store_t *store, uint64_t homes)
+/* With a table of so many buckets and keys of such widths. */
+static bool grow_to(ex_store_t *store, uint64_t buckets, const uint32_t width[EX_KEY_WORDS])
 {
     ex_store_t new = *store;
-    new.buckets = homes;
+    lay(&new, width);
+    new.buckets = buckets;
     new.limit = limit_of(&new);
     if (!count_growth(store, &new)) {
         return false;
@@ -327,31 +361,58 @@ static bool grow_to(ex_store_t *store, uint64_t homes)
     }
     const bool is_whole = move_all(store, &new);
     ex_unmap(store->bucket, ex_store_bytes(store));
-    if ((ex_store_bytes(store) < (2U * (uint64_t)STEP)) && !ex_is_spilled(store->run, ex_store_bytes(store))) {
-        ex_uncount(store->run, ex_store_bytes(store));
+    if (!ex_is_spilled(store->run, ex_store_bytes(store))) {
+        if (ex_store_bytes(store) < SLACK) {
+            ex_uncount(store->run, ex_store_bytes(store));
+        } else if (ex_store_bytes(&new) < ex_store_bytes(store)) {
+            ex_uncount(store->run, ex_store_bytes(store) - ex_store_bytes(&new));
+        }
     }
-    store->bucket = new.bucket;
-    store->buckets = new.buckets;
-    store->buckets = new.buckets;
-    store->limit = new.limit;
+    const uint64_t used = atomic_load(&store->used);
+    *store = new;
+    atomic_store(&store->used, used);
     return is_whole;
 }
 
-bool ex_store_grow(ex_store_t *store)
+/* Twice as much while it is little, a quarter more when it is much. */
+static uint64_t larger(uint64_t keys, uint64_t bytes)
 {
-    const uint64_t wanted = larger(store) - store->buckets;
+    if (bytes < ((uint64_t)1U << 20U)) {
+        return keys * 2U;
+    }
+    return keys + ((bytes < ((uint64_t)1U << 24U)) ? (keys / 2U) : (keys / 4U));
+}
+
+bool ex_store_grow(ex_store_t *store, const uint32_t width[EX_KEY_WORDS])
+{
+    const uint64_t used = atomic_load(&store->used);
+    const bool is_full = (used + EX_SPARE_KEYS) >= store->limit;
+    ex_store_t new = *store;
+    uint32_t wider[EX_KEY_WORDS];
+    bool is_narrow = false;
+    for (uint32_t i = 0U; i < EX_KEY_WORDS; i++) {
+        wider[i] = (width[i] > store->width[i]) ? width[i] : store->width[i];
+        is_narrow = is_narrow || (width[i] > store->width[i]);
+    }
+    if (!is_full && !is_narrow) {
+        return true;
+    }
+    lay(&new, wider);
+    const uint64_t room = store->buckets * store->slots; /* keys */
+    const uint64_t wanted = is_full ? larger(room, ex_store_bytes(store)) : room;
     for (uint64_t part = 1U; part <= 4U; part *= 2U) {
-        ex_store_t new = *store;
-        new.buckets += wanted / part;
-        const uint64_t slack = 2U * (uint64_t)STEP;
-        const uint64_t bytes = (ex_store_bytes(store) < slack) ? ex_store_bytes(&new) : ((wanted / part) * (uint64_t)LINE) + slack;
-        if (ex_is_spilled(store->run, ex_store_bytes(&new)) || ex_has_room(store->run, bytes)) {
-            return grow_to(store, store->buckets + (wanted / part));
+        const uint64_t keys = is_full ? (room + ((wanted - room) / part)) : room;
+        new.buckets = (keys / new.slots) + 1U;
+        const uint64_t bytes = ex_store_bytes(&new);
+        const uint64_t old = ex_store_bytes(store);
+        const uint64_t more = (old < SLACK) ? bytes : (((bytes > old) ? (bytes - old) : 0U) + SLACK);
+        if (ex_is_spilled(store->run, bytes) || ex_has_room(store->run, more)) {
+            return grow_to(store, new.buckets, wider);
         }
     }
     /* No room for a larger one: this one can become a little fuller. */
-    const uint64_t most = ((store->buckets * store->slots) / 100U) * 97U;
-    const bool is_possible = store->limit < most;
-    store->limit = most;
+    const uint64_t most = (room / 100U) * 97U;
+    const bool is_possible = !is_narrow && (store->limit < most);
+    store->limit = is_possible ? most : store->limit;
     return is_possible;
 }

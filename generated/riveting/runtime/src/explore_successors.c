@@ -14,13 +14,49 @@ typedef struct hunt {
     void *user;
     bool is_found;
     bool is_stopped; /* by the sink */
+    bool has_aged;   /* worker->marking is later than the cells of the codec */
 } hunt_t;
+
+/* Makes all stamps count from `by` on. */
+static void age(void *marking, pn_time_t by)
+{
+    for (uint32_t i = 0U; i < pn_net.place_count; i++) {
+        if (pn_net.place[i].age != NULL) {
+            pn_net.place[i].age(marking, by);
+        }
+    }
+}
+
+/* What an occurrence has put with a stamp before the time (its delay is negative) is available like all that is. */
+static void settle(void *next, uint32_t transition)
+{
+    for (uint32_t k = 0U; k < pn_net.transition[transition].touched_count; k++) {
+        const pn_place_t *place = &pn_net.place[pn_net.transition[transition].touched[k]];
+        if (place->age != NULL) {
+            place->age(next, (pn_time_t){ .integer = 0 });
+        }
+    }
+}
+
+void ex_reduce_time(ex_worker_t *worker)
+{
+    if (worker->run->options.is_time_reduced) {
+        age(worker->marking, (pn_time_t){ .integer = 0 });
+    }
+}
 
 static bool on_successor(void *user, uint32_t transition, const void *binding, const void *next)
 {
     hunt_t *hunt = user;
     ex_key_t key;
     hunt->is_found = true;
+    if (hunt->worker->run->options.is_time_reduced) {
+        settle(hunt->worker->scratch->next, transition); /* that is *next */
+        if (hunt->has_aged && !ex_encode_time(hunt->worker)) {
+            return false;
+        }
+        hunt->has_aged = false;
+    }
     if (!ex_encode_next(hunt->worker, transition, next, &key)) {
         return false;
     }
@@ -82,17 +118,34 @@ static bool hunt_now(hunt_t *hunt)
     return true;
 }
 
+/* Lets the time go on. */
+static bool advance(hunt_t *hunt, pn_time_t next)
+{
+    ex_worker_t *worker = hunt->worker;
+    if (worker->run->options.is_time_reduced) {
+        age(worker->marking, next);
+        worker->elapsed += next.integer;
+        hunt->has_aged = true;
+        return true;
+    }
+    pn_net.set_now(worker->marking, next);
+    return ex_encode_time(worker);
+}
+
 ex_found_t ex_successors(ex_worker_t *worker, const ex_key_t *key, ex_arc_sink_t sink, void *user)
 {
     hunt_t hunt = { .worker = worker, .sink = sink, .user = user };
+    worker->elapsed = 0;
     if (!ex_load(worker, key)) {
         return EX_FAILED;
     }
     bool goes_on = hunt_now(&hunt);
     pn_time_t next = { 0 };
     while (goes_on && !hunt.is_found && pn_net.timed && pn_net.next_time(worker->marking, &next)) {
-        pn_net.set_now(worker->marking, next);
-        goes_on = ex_encode_time(worker) && hunt_now(&hunt);
+        goes_on = advance(&hunt, next) && hunt_now(&hunt);
+    }
+    if (hunt.has_aged) {
+        worker->scratch->is_loaded = false;
     }
     if (hunt.is_stopped) {
         return EX_STOPPED;

@@ -17,8 +17,19 @@ typedef struct step_search {
     ex_worker_t *worker;
     ex_key_t wanted;
     pn_trace_t *trace;
+    int64_t before; /* time that is in no state, because it is reduced */
     bool is_found;
 } step_search_t;
+
+/* The time at which the worker's state is, on the way of a trace. */
+static pn_time_t time_of(const ex_worker_t *worker, int64_t before)
+{
+    pn_time_t now = pn_net.now(worker->marking);
+    if (worker->run->options.is_time_reduced) {
+        now.integer = before;
+    }
+    return now;
+}
 
 static bool is_same(const ex_key_t *a, const ex_key_t *b)
 {
@@ -32,8 +43,8 @@ static bool write_step(void *user, uint32_t transition, const void *binding, con
         return true;
     }
     search->is_found = true;
-    pn_trace_model_occurrence(search->trace, pn_net.now(search->worker->marking), pn_net.real_time, &pn_net.transition[transition],
-                              binding);
+    const pn_time_t now = time_of(search->worker, search->before + search->worker->elapsed);
+    pn_trace_model_occurrence(search->trace, now, pn_net.real_time, &pn_net.transition[transition], binding);
     return false;
 }
 
@@ -62,6 +73,7 @@ int64_t ex_write_trace(ex_run_t *run, const ex_graph_t *graph, uint32_t node, co
     pn_trace_t trace;
     char members[64];
     uint64_t length = 0U;
+    int64_t elapsed = 0;
     char *const line = malloc(LINE_SIZE);
     uint32_t *const way = way_to(graph, node, &length);
     bool is_fine = (line != NULL) && (way != NULL) && pn_trace_open(&trace, path, line, LINE_SIZE);
@@ -74,15 +86,16 @@ int64_t ex_write_trace(ex_run_t *run, const ex_graph_t *graph, uint32_t node, co
     pn_trace_header_with(&trace, &pn_net, "simulate", NULL, members);
     for (uint64_t i = 0U; is_fine && ((i + 1U) < length); i++) {
         ex_key_t from;
-        step_search_t search = { .worker = worker, .trace = &trace };
+        step_search_t search = { .worker = worker, .trace = &trace, .before = elapsed };
         is_fine = ex_store_fetch(&run->store, graph->slot[way[i]], &from) &&
                   ex_store_fetch(&run->store, graph->slot[way[i + 1U]], &search.wanted);
         is_fine = is_fine && (ex_successors(worker, &from, write_step, &search) == EX_STOPPED) && search.is_found;
+        elapsed += worker->elapsed;
     }
     ex_key_t last;
     is_fine = is_fine && ex_store_fetch(&run->store, graph->slot[node], &last) && ex_load(worker, &last);
     if (is_fine) {
-        pn_trace_model_end(&trace, pn_net.now(worker->marking), pn_net.real_time, "finished");
+        pn_trace_model_end(&trace, time_of(worker, elapsed), pn_net.real_time, "finished");
     }
     is_fine = pn_trace_close(&trace) && is_fine;
     free(line);

@@ -287,6 +287,35 @@ void pn_bag_clear(const pn_bag_t *bag, void *marking)
     set_used(bag, marking, 0U);
 }
 
+void pn_bag_age(const pn_bag_t *bag, void *marking, pn_time_t by)
+{
+    if (!bag->is_timed || bag->is_real_time) {
+        return;
+    }
+    const uint32_t used = pn_bag_used(bag, marking);
+    uint32_t kept = 0U;
+    for (uint32_t i = 0U; i < used; i++) {
+        const void *entry = pn_bag_entry(bag, marking, i);
+        const void *before = (kept > 0U) ? pn_bag_entry(bag, marking, kept - 1U) : NULL;
+        pn_time_t stamp = pn_bag_stamp_of(bag, entry);
+        stamp.integer = (stamp.integer > by.integer) ? (stamp.integer - by.integer) : 0;
+        const uint32_t count = pn_bag_count_of(bag, entry);
+        /* Only what is available now can have become the same. */
+        if ((before != NULL) && (stamp.integer == 0) && (pn_bag_stamp_of(bag, before).integer == 0)
+            && pn_equal(bag->type, part(before, bag->value), part(entry, bag->value))
+            && (count <= (UINT32_MAX - pn_bag_count_of(bag, before)))) {
+            set_count(bag, entry_of(bag, marking, kept - 1U), pn_bag_count_of(bag, before) + count);
+            continue;
+        }
+        void *target = entry_of(bag, marking, kept);
+        (void)memmove(target, entry, bag->stride);
+        (void)memcpy(part_of(target, bag->stamp), &stamp, sizeof stamp);
+        kept++;
+    }
+    (void)memset(entry_of(bag, marking, kept), 0, bag->stride * (used - kept));
+    set_used(bag, marking, kept);
+}
+
 /* --- seen from outside --------------------------------------------------------------------------------------------- */
 
 static void consider(const pn_bag_t *bag, pn_time_t time, pn_time_t now, bool *found, pn_time_t *next)

@@ -69,6 +69,8 @@ bool pn_bag_fail_full(pn_ctx_t *cx, const pn_bag_t *bag);
 /* Narrows a value and raises PN_ERR_COLOUR at the place if it is not in the colour set. */
 void pn_bag_check(pn_ctx_t *cx, const pn_bag_t *bag, void *value);
 void pn_bag_clear(const pn_bag_t *bag, void *marking);
+/* Integer stamps count from `by` on, and those that are not after it are 0 and equal. */
+void pn_bag_age(const pn_bag_t *bag, void *marking, pn_time_t by);
 /* The earliest time after `now` at which a token becomes available, if it is before *next or *found is false. */
 void pn_bag_next_time(const pn_bag_t *bag, const void *marking, pn_time_t now, bool *found, pn_time_t *next);
 void pn_bag_json(const pn_bag_t *bag, const void *marking, pn_text_t *out);

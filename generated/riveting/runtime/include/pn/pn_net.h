@@ -93,6 +93,9 @@ typedef struct pn_place {
     size_t (*decode)(pn_ctx_t *cx, void *marking, const uint8_t *in, size_t length);
     /* A colour of a packed place as JSON; false if there is no such one. NULL if the place is not packed. */
     bool (*colour_json)(uint32_t ordinal, pn_text_t *out);
+    /* Of a timed place (integer time): stamps count from `by` on; those that are not after it become 0, and are the same then. NULL of
+     * an untimed place. */
+    void (*age)(void *marking, pn_time_t by);
 } pn_place_t;
 
 typedef struct pn_transition {

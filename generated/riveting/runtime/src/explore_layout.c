@@ -1,0 +1,280 @@
+/* SPDX-License-Identifier: MIT
+ * explore_layout.c - which words of the vectors become a part of the key together.
+ *
+ * A part needs a number for each combination of its words that occurs; so words that depend on each other belong together. How many
+ * combinations there are is estimated from a sample, states on a way at random, by how often two of them have the same one. Beginning
+ * with each place for itself, the two parts whose union adds the fewest combinations are united, until there are four.
+ */
+#include "explore_impl.h"
+
+#include <string.h>
+
+enum {
+    SAMPLES = 2048,
+    APART = 3,         /* steps from one to the next */
+    LONGEST = 768,     /* steps before the way begins again */
+    MOST_ITEMS = 40,
+    SET_SIZE = 4096    /* a power of two, more than SAMPLES */
+};
+
+typedef struct item {
+    uint32_t first;    /* in `next` */
+    uint32_t last;
+    uint32_t words;
+    double number;     /* of combinations, estimated */
+    bool is_united;    /* with another one: gone */
+} item_t;
+
+typedef struct layout {
+    ex_run_t *run;
+    uint32_t samples;
+    uint64_t *value;   /* of item i in sample s: value[i * SAMPLES + s] */
+    uint32_t *next;    /* word -> the next one of the item */
+    item_t item[MOST_ITEMS];
+    uint32_t items;
+    uint64_t set[SET_SIZE];
+    uint32_t times[SET_SIZE];
+    double number[MOST_ITEMS][MOST_ITEMS]; /* of combinations of the union */
+    uint64_t random;
+    ex_key_t drawn;
+    uint64_t seen;
+} layout_t;
+
+static uint64_t mixed(uint64_t a, uint64_t b)
+{
+    const ex_key_t key = { a, b };
+    return ex_hash(&key) | 1U; /* never 0 */
+}
+
+/* Draws one of the successors, all equally likely. */
+static bool draw(void *user, uint32_t transition, const void *binding, const ex_key_t *key)
+{
+    layout_t *layout = user;
+    (void)transition;
+    (void)binding;
+    layout->seen++;
+    layout->random = (layout->random * 6364136223846793005U) + 1442695040888963407U;
+    if (ex_scaled(layout->random, layout->seen) == 0U) {
+        layout->drawn = *key;
+    }
+    return true;
+}
+
+/* Takes the loaded state into the sample. */
+static void note(layout_t *layout, const uint32_t *cell)
+{
+    for (uint32_t i = 0U; i < layout->items; i++) {
+        uint64_t value = 1U;
+        for (uint32_t w = layout->item[i].first; w != UINT32_MAX; w = layout->next[w]) {
+            value = mixed(value, cell[w]);
+        }
+        layout->value[((size_t)i * (size_t)SAMPLES) + layout->samples] = value;
+    }
+    layout->samples++;
+}
+
+static bool walk(layout_t *layout)
+{
+    ex_worker_t *worker = &layout->run->worker[0];
+    ex_key_t initial;
+    if (!ex_encode(worker, worker->marking, &initial)) {
+        return false;
+    }
+    ex_key_t key = initial;
+    for (uint32_t step = 0U; (layout->samples < (uint32_t)SAMPLES) && !ex_is_stopping(layout->run); step++) {
+        if ((step % (uint32_t)APART) == 0U) {
+            if (!ex_load(worker, &key)) {
+                return false;
+            }
+            note(layout, worker->scratch->cell);
+        }
+        layout->seen = 0U;
+        const ex_found_t found = ex_successors(worker, &key, draw, layout);
+        if (found == EX_FAILED) {
+            return false;
+        }
+        key = ((found == EX_DEAD) || ((step % (uint32_t)LONGEST) == ((uint32_t)LONGEST - 1U))) ? initial : layout->drawn;
+    }
+    return true;
+}
+
+/* The number of combinations of two items (the same twice: of one), from the pairs of samples that have the same. */
+static double estimate(layout_t *layout, uint32_t a, uint32_t b)
+{
+    const uint64_t *first = &layout->value[(size_t)a * (size_t)SAMPLES];
+    const uint64_t *second = &layout->value[(size_t)b * (size_t)SAMPLES];
+    uint64_t pairs = 0U;
+    (void)memset(layout->set, 0, sizeof layout->set);
+    (void)memset(layout->times, 0, sizeof layout->times);
+    for (uint32_t s = 0U; s < layout->samples; s++) {
+        const uint64_t turned = (second[s] << 31U) | (second[s] >> 33U);
+        const uint64_t value = (a == b) ? first[s] : ((first[s] * 0x9e3779b97f4a7c15U) ^ turned);
+        uint32_t at = (uint32_t)(value >> 40U) % (uint32_t)SET_SIZE;
+        while ((layout->set[at] != 0U) && (layout->set[at] != value)) {
+            at = (at + 1U) % (uint32_t)SET_SIZE;
+        }
+        layout->set[at] = value;
+        pairs += layout->times[at];
+        layout->times[at]++;
+    }
+    const double all = ((double)layout->samples * ((double)layout->samples - 1.0)) / 2.0;
+    return all / ((pairs > 0U) ? (double)pairs : 0.5);
+}
+
+/* Items: the words of a place, or more of them where there are too many. */
+static void make_items(layout_t *layout)
+{
+    const ex_codec_t *codec = layout->run->codec;
+    uint32_t places = 0U;
+    for (uint32_t w = 0U; w < codec->words; w++) {
+        places += ((w < codec->packed_words) && codec->is_joined[w]) ? 0U : 1U;
+    }
+    const uint32_t each = (places + (uint32_t)MOST_ITEMS - 1U) / (uint32_t)MOST_ITEMS;
+    uint32_t place = 0U;
+    for (uint32_t w = 0U; w < codec->words; w++) {
+        const bool is_joined = (w < codec->packed_words) && codec->is_joined[w];
+        layout->next[w] = UINT32_MAX;
+        if (!is_joined && ((place++ % each) == 0U)) {
+            layout->item[layout->items++] = (item_t){ .first = w, .last = w, .words = 1U };
+            continue;
+        }
+        item_t *item = &layout->item[layout->items - 1U];
+        layout->next[item->last] = w;
+        item->last = w;
+        item->words++;
+    }
+}
+
+static void unite(layout_t *layout, uint32_t a, uint32_t b)
+{
+    item_t *item = &layout->item[a];
+    item_t *other = &layout->item[b];
+    uint64_t *first = &layout->value[(size_t)a * (size_t)SAMPLES];
+    const uint64_t *second = &layout->value[(size_t)b * (size_t)SAMPLES];
+    for (uint32_t s = 0U; s < layout->samples; s++) {
+        first[s] = mixed(first[s], second[s]);
+    }
+    layout->next[item->last] = other->first;
+    item->last = other->last;
+    item->words += other->words;
+    item->number = layout->number[a][b];
+    other->is_united = true;
+}
+
+/* Unites items until they fit into a key. */
+static void unite_all(layout_t *layout)
+{
+    const uint32_t items = layout->items;
+    for (uint32_t a = 0U; a < items; a++) {
+        layout->item[a].number = estimate(layout, a, a);
+        for (uint32_t b = 0U; b < a; b++) {
+            layout->number[b][a] = estimate(layout, b, a);
+        }
+    }
+    for (uint32_t left = items; left > EX_KEY_WORDS; left--) {
+        uint32_t best_a = 0U;
+        uint32_t best_b = 0U;
+        double best = 1e300;
+        for (uint32_t b = 1U; b < items; b++) {
+            for (uint32_t a = 0U; (a < b) && !layout->item[b].is_united; a++) {
+                if (layout->item[a].is_united) {
+                    continue;
+                }
+                const double more = layout->number[a][b] - layout->item[a].number - layout->item[b].number;
+                /* Of what makes no difference, short parts: less has to be looked up. */
+                const double cost = more + (0.01 * (double)(layout->item[a].words + layout->item[b].words));
+                if (cost < best) {
+                    best = cost;
+                    best_a = a;
+                    best_b = b;
+                }
+            }
+        }
+        unite(layout, best_a, best_b);
+        for (uint32_t i = 0U; i < items; i++) {
+            if (!layout->item[i].is_united && (i != best_a)) {
+                const uint32_t low = (i < best_a) ? i : best_a;
+                const uint32_t high = (i < best_a) ? best_a : i;
+                layout->number[low][high] = estimate(layout, low, high);
+            }
+        }
+    }
+}
+
+static void regroup(layout_t *layout, uint32_t *word)
+{
+    uint32_t end[EX_KEY_WORDS];
+    uint32_t parts = 0U;
+    uint32_t at = 0U;
+    for (uint32_t i = 0U; i < layout->items; i++) {
+        if (layout->item[i].is_united) {
+            continue;
+        }
+        for (uint32_t w = layout->item[i].first; w != UINT32_MAX; w = layout->next[w]) {
+            word[at++] = w;
+        }
+        end[parts++] = at;
+    }
+    ex_codec_group(layout->run->codec, word, end, parts);
+}
+
+/* Whether looking at some states beforehand changes nothing. */
+static bool is_harmless(void)
+{
+    for (uint32_t t = 0U; t < pn_net.transition_count; t++) {
+        if (pn_net.transition[t].draws) {
+            return false;
+        }
+    }
+    return !pn_net.has_references;
+}
+
+/* What went wrong on the way goes wrong again when the exploration comes there. */
+static void forget(ex_run_t *run)
+{
+    ex_worker_t *worker = &run->worker[0];
+    const int why = atomic_load(&run->why);
+    worker->failed = false;
+    worker->scratch->is_loaded = false;
+    worker->scratch->undone = 0U;
+    worker->cx.error = PN_OK;
+    if ((why == (int)EX_ERROR) || (why == (int)EX_CAPACITY)) {
+        (void)memset(&run->error, 0, sizeof run->error);
+        atomic_store(&run->why, (int)EX_COMPLETE);
+        atomic_store(&run->is_stopping, false);
+    }
+}
+
+bool ex_layout(ex_run_t *run)
+{
+    const ex_codec_t *codec = run->codec;
+    if ((codec->words <= EX_KEY_WORDS) || !is_harmless()) {
+        return true;
+    }
+    const uint64_t values = (uint64_t)MOST_ITEMS * (uint64_t)SAMPLES * sizeof(uint64_t);
+    const uint64_t words = ((uint64_t)codec->words + 1U) * sizeof(uint32_t);
+    layout_t *layout = ex_alloc(run, sizeof *layout);
+    uint64_t *value = ex_alloc(run, values);
+    uint32_t *next = ex_alloc(run, words);
+    uint32_t *word = ex_alloc(run, words);
+    bool is_fine = true;
+    if ((layout != NULL) && (value != NULL) && (next != NULL) && (word != NULL)) {
+        layout->run = run;
+        layout->value = value;
+        layout->next = next;
+        layout->random = 1U;
+        make_items(layout);
+        if (layout->items > EX_KEY_WORDS) {
+            (void)walk(layout);
+            forget(run);
+            unite_all(layout);
+        }
+        regroup(layout, word);
+        is_fine = ex_codec_number(run);
+    }
+    ex_free(run, word, words);
+    ex_free(run, next, words);
+    ex_free(run, value, values);
+    ex_free(run, layout, sizeof *layout);
+    return is_fine;
+}
