@@ -44,6 +44,8 @@ EPILOG = """Examples:
   pn2code draw net.cpn --trace net.dead-40.trace.jsonl -o steps.html
 """
 
+_AROUND = 300
+"""Steps before and after the chosen one that are told in an HTML file."""
 _HTML = (".html", ".htm")
 _PICTURES = (".png", ".pdf", ".jpg", ".jpeg", ".eps", ".ps")
 
@@ -99,21 +101,22 @@ def draw(
     pages = _chosen(document, page, form)
     state: State | None = None
     moments: list[Moment] = []
+    chosen = last = 0
     storage = config.storage if config else {}
     if step is not None and trace is None:
         _refuse(DRAW_TRACE, "`--step` needs `--trace`", "add --trace FILE", form)
     if examined.flat is not None and not d.has_errors:
         if trace is not None:
-            moments = _moments(examined.flat, storage, trace, step, kind == "html", form)
-            state = moments[-1 if step is None else min(step, len(moments) - 1)].state
+            around = _AROUND if kind == "html" else 0
+            moments, chosen, last = _moments(examined.flat, storage, trace, step, around, form)
+            state = next(m.state for m in moments if m.number == chosen)
         elif marking:
             state = _state(examined.flat, storage, seed, form)
     if instance is not None:
         _check_instance(state, pages, instance, form)
     drawing = _Drawing(document, pages, _problems(d), state, instance)
     if kind == "html" and moments:
-        chosen = len(moments) - 1 if step is None else step
-        _write({Path(output): drawing.steps(path, moments, chosen)}, form)
+        _write({Path(output): drawing.steps(path, moments, chosen, last)}, form)
     elif kind == "html":
         _write({Path(output): drawing.html(path)}, form)
     elif kind == "folder":
@@ -200,26 +203,28 @@ def _moments(
     storage: Mapping[str, str],
     trace: Path,
     step: int | None,
-    everything: bool,
+    around: int,
     form: Format,
-) -> list[Moment]:
-    """The start and all steps of a trace, or the wanted step (the last one) alone."""
+) -> tuple[list[Moment], int, int]:
+    """The wanted step of a trace (the last one) with some around it, its number, and how many steps there are."""
     from pn2code.cli.nets import playing
-    from pn2code.simulate.script import TraceRefusedError
+    from pn2code.simulate.script import Trace, TraceRefusedError
     from pn2code.verify.moments import follow
 
     try:
+        last = sum(1 for _ in Trace.open(trace, flat).steps())
+        chosen = last if step is None else step
+        if chosen > last:
+            hint = f"its steps are numbered from 1 to {last}; 0 is the start"
+            _refuse(DRAW_TRACE, f"`{trace}` has no step {step}", hint, form)
         with playing(form):
-            found = list(follow(flat, storage, trace, lambda n: everything or step in (None, n)))
-            steps = found[-1].number if found else 0
+            found = list(follow(flat, storage, trace, lambda n: abs(n - chosen) <= around))
     except TraceRefusedError as refused:
         _refuse(DRAW_TRACE, f"`{trace}`: {refused}", "it must be a trace of this net", form)
     except OSError as problem:
         reason = (problem.strerror or str(problem)).lower()
         _refuse(DRAW_TRACE, f"`{trace}`: {reason}", "give a file that can be read", form)
-    if step is not None and (not found or (everything and step > steps)):
-        _refuse(DRAW_TRACE, f"`{trace}` has no step {step}", "steps are numbered from 1", form)
-    return found
+    return found, chosen, last
 
 
 def _problems(d: Diagnostics) -> dict[str, list[Problem]]:
@@ -297,11 +302,11 @@ class _Drawing:
         shown = replace(self.document, pages=tuple(self.pages))
         return draw_net(shown, Facts(path.name, remark, self.base.problems), figures)
 
-    def steps(self, path: Path, moments: list[Moment], chosen: int) -> str:
+    def steps(self, path: Path, moments: list[Moment], chosen: int, last: int) -> str:
         """One HTML file with the steps of a trace."""
         from pn2code.verify.steps_page import steps_page
 
-        return steps_page(self.document, self.pages, moments, chosen, path.name)
+        return steps_page(self.document, self.pages, moments, chosen, last, path.name)
 
     def note_arranged(self, d: Diagnostics) -> None:
         """A note for each page whose positions are ours."""

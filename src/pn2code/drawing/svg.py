@@ -243,6 +243,10 @@ class _Painter:
             filling = "none"
         rows = [self.title(shape.title, shape.id)]
         halo = self.halo(shape.id)
+        if halo != ENABLED and shape.id in self.overlay.enabled:
+            outer = box.grown(thick / 2 + 4.5)
+            rows.append(_outline(shape.round, outer, ENABLED, 2.5, "none", ""))
+            self.boxes.append(outer.grown(1.5))
         if halo:
             rows.append(_outline(shape.round, box.grown(thick / 2 + 1.5), halo, 4.0, "none", ""))
             self.boxes.append(box.grown(thick / 2 + 4))

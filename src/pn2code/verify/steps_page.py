@@ -28,14 +28,16 @@ def steps_page(
     pages: Sequence[RawPage],
     moments: Sequence[Moment],
     chosen: int,
+    last: int,
     title: str,
 ) -> str:
     """The HTML file.
 
     Args:
         document, pages: the net, and its pages to be drawn.
-        moments: the start and all steps, in order.
+        moments: some that follow each other.
         chosen: the number of the step that is shown first, with all pages.
+        last: the number of the last step.
         title: what stands above.
     """
     scenes = {p.id: build(document, p) for p in pages}
@@ -49,14 +51,13 @@ def steps_page(
         [own if m.number == chosen else [] for m, own in zip(moments, every, strict=True)],
     )
     all_shown = [bool(own) or not pages for own in choice]
-    last = moments[-1].number
     sections = [
         {
             "number": m.number,
             "step": m.step,
             "figures": [_figure(scenes[p.id], p, n, m) for p, n in own],
-            "before": m.number - 1 if m.number and all_shown[i - 1] else None,
-            "after": m.number + 1 if m.number < last and all_shown[i + 1] else None,
+            "before": m.number - 1 if i and all_shown[i - 1] else None,
+            "after": m.number + 1 if all_shown[i + 1 : i + 2] == [True] else None,
         }
         for i, (m, own) in enumerate(zip(moments, choice, strict=True))
     ]
