@@ -1,0 +1,333 @@
+/* SPDX-License-Identifier: MIT
+ * explore_core.c - the store and the tables of numbers against plain ones: `explore_core store|threads|numbers|memory SEED`.
+ *
+ * Prints `fine`, or what is wrong.
+ */
+#include <stdlib.h>
+#include <string.h>
+
+#include "explore_impl.h"
+
+static uint64_t s_random;
+
+static uint64_t draw(uint64_t below)
+{
+    s_random = (s_random * 6364136223846793005U) + 1442695040888963407U;
+    return ex_scaled(s_random ^ (s_random << 29U), below);
+}
+
+static void check(bool is_fine, const char *what)
+{
+    if (!is_fine) {
+        (void)printf("%s\n", what);
+        exit(1);
+    }
+}
+
+/* --- a plain set: keys of which it is remembered whether they are in it --------------------------------------------------- */
+
+enum {
+    KEYS = 1 << 20,
+    WORKERS = 4
+};
+
+typedef struct plain {
+    ex_key_t key;
+    bool is_in;
+} plain_t;
+
+static plain_t s_plain[KEYS];
+
+/* Key number i: all different, with words of so many bits. */
+static ex_key_t numbered(uint64_t i, const uint32_t width[EX_KEY_WORDS])
+{
+    uint32_t word[EX_KEY_WORDS];
+    uint64_t rest = i;
+    uint64_t mixed = i * 0x9e3779b97f4a7c15U;
+    for (uint32_t k = 0U; k < EX_KEY_WORDS; k++) {
+        const uint64_t mask = ((uint64_t)1U << width[k]) - 1U;
+        if (rest > 0U) {
+            word[k] = (uint32_t)(rest & mask);
+            rest >>= width[k];
+        } else {
+            word[k] = (uint32_t)((mixed >> 32U) & mask);
+            mixed *= 0xd6e8feb86659fd93U;
+        }
+    }
+    /* The words that the number itself did not need depend on it: different numbers stay different. */
+    return (ex_key_t){ word[0] | ((uint64_t)word[1] << 32U), word[2] | ((uint64_t)word[3] << 32U) };
+}
+
+static void make_run(ex_run_t *run, uint64_t memory)
+{
+    (void)memset(run, 0, sizeof *run);
+    run->options.memory = memory;
+    run->options.threads = 1U;
+}
+
+/* --- the store ------------------------------------------------------------------------------------------------------------ */
+
+static uint64_t count_slots(const ex_store_t *store)
+{
+    uint64_t used = 0U;
+    for (uint64_t slot = 0U; slot < ex_store_slots(store); slot++) {
+        ex_key_t key;
+        if (ex_store_fetch(store, slot, &key)) {
+            used++;
+            check(ex_store_find(store, &key, ex_hash(&key)) == slot, "a key is not found in its slot");
+        }
+    }
+    return used;
+}
+
+/* Words of the keys of such widths; half of the keys come later than the others. */
+static void try_store(const uint32_t width[EX_KEY_WORDS], uint64_t keys)
+{
+    ex_run_t run;
+    ex_store_t store;
+    make_run(&run, (uint64_t)1U << 30U);
+    check(ex_store_make(&store, &run, width, 16U), "no memory");
+    uint64_t inserted = 0U;
+    (void)memset(s_plain, 0, sizeof s_plain);
+    for (uint64_t step = 0U; step < (3U * keys); step++) {
+        const uint64_t i = draw((step < keys) ? (keys / 2U) : keys);
+        const ex_key_t key = numbered(i + 1U, width);
+        const uint64_t hash = ex_hash(&key);
+        check((ex_store_find(&store, &key, hash) != EX_NO_SLOT) == s_plain[i].is_in, "found, or not found, wrongly");
+        uint64_t slot = EX_NO_SLOT;
+        ex_insertion_t insertion = ex_store_insert(&store, &key, hash, &slot);
+        for (uint32_t k = 0U; (k < 4U) && (insertion == EX_FULL); k++) {
+            check(ex_store_grow(&store, width), "it does not grow");
+            insertion = ex_store_insert(&store, &key, hash, &slot);
+        }
+        check(insertion == (s_plain[i].is_in ? EX_KNOWN : EX_NEW), "known, or new, wrongly");
+        check(ex_store_find(&store, &key, hash) == slot, "not where it was put");
+        inserted += (insertion == EX_NEW) ? 1U : 0U;
+        s_plain[i].is_in = true;
+        s_plain[i].key = key;
+        atomic_store(&store.used, inserted);
+        if (inserted > store.limit) {
+            check(ex_store_grow(&store, width), "it does not grow");
+        }
+    }
+    for (uint64_t i = 0U; i < keys; i++) {
+        const ex_key_t *const key = &s_plain[i].key;
+        ex_key_t back = { 0U, 0U };
+        if (s_plain[i].is_in) {
+            const uint64_t slot = ex_store_find(&store, key, ex_hash(key));
+            check((slot != EX_NO_SLOT) && ex_store_fetch(&store, slot, &back), "lost");
+            check((back.low == key->low) && (back.high == key->high), "another key came back");
+        }
+    }
+    check(count_slots(&store) == inserted, "another number of slots than of keys");
+    ex_store_free(&store);
+    check(atomic_load(&run.memory_used) == 0U, "memory is counted that was given back");
+}
+
+static void try_stores(void)
+{
+    static const uint32_t s_layouts[][EX_KEY_WORDS] = {
+        { 20U, 0U, 0U, 0U }, { 32U, 0U, 0U, 0U },  { 12U, 13U, 7U, 0U },   { 32U, 24U, 14U, 0U },
+        { 1U, 3U, 25U, 9U }, { 32U, 32U, 0U, 0U }, { 32U, 32U, 32U, 32U }, { 17U, 0U, 13U, 32U },
+    };
+    for (size_t i = 0U; i < (sizeof s_layouts / sizeof s_layouts[0]); i++) {
+        try_store(s_layouts[i], (uint64_t)20000U + draw(60000U));
+    }
+    ex_run_t run;
+    ex_store_t store;
+    make_run(&run, (uint64_t)1U << 28U);
+    const uint32_t narrow[EX_KEY_WORDS] = { 4U, 4U, 0U, 0U };
+    const uint32_t wide[EX_KEY_WORDS] = { 20U, 9U, 0U, 0U };
+    check(ex_store_make(&store, &run, narrow, 64U), "no memory");
+    uint64_t inserted = 0U;
+    bool is_wide = false;
+    for (uint64_t i = 0U; i < 50000U; i++) {
+        const ex_key_t key = { (i * 7U) | ((i & 511U) << 32U), 0U };
+        ex_insertion_t insertion = ex_store_insert(&store, &key, ex_hash(&key), NULL);
+        check(is_wide || ((i * 7U) < 16U) || (insertion == EX_FULL), "a key that does not fit is taken");
+        while (insertion == EX_FULL) {
+            check(ex_store_grow(&store, wide), "it does not become wider");
+            is_wide = true;
+            insertion = ex_store_insert(&store, &key, ex_hash(&key), NULL);
+        }
+        check(insertion == EX_NEW, "not new");
+        inserted++;
+        atomic_store(&store.used, inserted);
+    }
+    check(count_slots(&store) == inserted, "another number of slots than of keys, when it was made wider");
+    ex_store_free(&store);
+}
+
+/* --- threads -------------------------------------------------------------------------------------------------------------- */
+
+typedef struct job {
+    ex_store_t *store;
+    ex_quads_t *quads;
+    ex_bytes_t *bytes;
+    uint64_t start;
+    uint64_t count;
+    uint64_t fresh;
+    uint32_t *number;
+    uint32_t *name;
+} job_t;
+
+static const uint32_t s_widths[EX_KEY_WORDS] = { 30U, 30U, 10U, 0U };
+
+static void *insert_all(void *user)
+{
+    job_t *const job = user;
+    for (uint64_t k = 0U; k < job->count; k++) {
+        const uint64_t i = ((k + job->start) % job->count) + 1U;
+        const ex_key_t key = numbered(i, s_widths);
+        const ex_insertion_t insertion = ex_store_insert(job->store, &key, ex_hash(&key), NULL);
+        check(insertion != EX_FULL, "full");
+        job->fresh += (insertion == EX_NEW) ? 1U : 0U;
+        const ex_quad_t quad = { i * 3U, i << 20U };
+        unsigned char text[64];
+        const int length = snprintf((char *)text, sizeof text, "%0*llu", (int)(i % 40U) + 1, (unsigned long long)i);
+        job->number[i - 1U] = ex_quads_number(job->quads, quad);
+        job->name[i - 1U] = ex_bytes_number(job->bytes, (uint32_t)(i % 7U), text, (uint32_t)length);
+    }
+    return NULL;
+}
+
+static void try_threads(void)
+{
+    const uint64_t count = 60000U;
+    ex_run_t run;
+    ex_store_t store;
+    ex_quads_t quads;
+    ex_bytes_t bytes;
+    pthread_t thread[WORKERS];
+    job_t job[WORKERS];
+    make_run(&run, (uint64_t)1U << 30U);
+    (void)memset(&quads, 0, sizeof quads);
+    (void)memset(&bytes, 0, sizeof bytes);
+    check(ex_store_make(&store, &run, s_widths, (count * 5U) / 4U) && ex_quads_make(&quads, &run) && ex_bytes_make(&bytes, &run),
+          "no memory");
+    while ((quads.index.limit < (count + WORKERS)) || (bytes.index.limit < (count + WORKERS))) {
+        /* As if they were nearly full. */
+        atomic_store(&quads.index.count, quads.index.limit);
+        atomic_store(&bytes.index.count, bytes.index.limit);
+        check(ex_quads_grow(&quads) && ex_bytes_grow(&bytes), "it does not grow");
+        atomic_store(&quads.index.count, 0U);
+        atomic_store(&bytes.index.count, 0U);
+    }
+    for (uint32_t w = 0U; w < (uint32_t)WORKERS; w++) {
+        job[w] = (job_t){ .store = &store, .quads = &quads, .bytes = &bytes, .start = (w % 2U) * (count / 3U), .count = count };
+        job[w].number = calloc(count, sizeof(uint32_t));
+        job[w].name = calloc(count, sizeof(uint32_t));
+        check((job[w].number != NULL) && (job[w].name != NULL), "no memory");
+        check(pthread_create(&thread[w], NULL, insert_all, &job[w]) == 0, "no thread");
+    }
+    uint64_t fresh = 0U;
+    for (uint32_t w = 0U; w < (uint32_t)WORKERS; w++) {
+        (void)pthread_join(thread[w], NULL);
+        fresh += job[w].fresh;
+    }
+    check(fresh == count, "new more than once, or never");
+    check(count_slots(&store) == count, "another number of slots than of keys");
+    for (uint64_t i = 0U; i < count; i++) {
+        for (uint32_t w = 1U; w < (uint32_t)WORKERS; w++) {
+            check(job[w].number[i] == job[0].number[i], "threads have different numbers");
+            check(job[w].name[i] == job[0].name[i], "threads have different numbers of texts");
+        }
+        check(quads.quad[job[0].number[i]].low == ((i + 1U) * 3U), "the number of something else");
+        check(bytes.of[job[0].name[i]].place == (uint32_t)((i + 1U) % 7U), "the number of another text");
+    }
+    for (uint32_t w = 0U; w < (uint32_t)WORKERS; w++) {
+        free(job[w].number);
+        free(job[w].name);
+    }
+    ex_store_free(&store);
+}
+
+/* --- numbers -------------------------------------------------------------------------------------------------------------- */
+
+static void try_numbers(void)
+{
+    const uint64_t count = 150000U;
+    ex_run_t run;
+    ex_quads_t quads;
+    ex_bytes_t bytes;
+    make_run(&run, (uint64_t)1U << 30U);
+    (void)memset(&quads, 0, sizeof quads);
+    (void)memset(&bytes, 0, sizeof bytes);
+    check(ex_quads_make(&quads, &run) && ex_bytes_make(&bytes, &run), "no memory");
+    uint32_t *const number = calloc(count, sizeof *number);
+    uint32_t *const name = calloc(count, sizeof *name);
+    check((number != NULL) && (name != NULL), "no memory");
+    uint64_t given = 0U;
+    for (uint64_t step = 0U; step < (3U * count); step++) {
+        const uint64_t i = draw(count);
+        const ex_quad_t quad = { i, ~i };
+        unsigned char text[32] = { 0 };
+        (void)memcpy(text, &i, sizeof i);
+        const uint32_t length = (uint32_t)(i % 24U) + 8U;
+        uint32_t found = ex_quads_number(&quads, quad);
+        uint32_t named = ex_bytes_number(&bytes, 3U, text, length);
+        while (found == EX_NO_NUMBER) {
+            check(ex_quads_grow(&quads), "it does not grow");
+            found = ex_quads_number(&quads, quad);
+        }
+        while (named == EX_NO_NUMBER) {
+            check(ex_bytes_grow(&bytes), "it does not grow");
+            named = ex_bytes_number(&bytes, 3U, text, length);
+        }
+        given += (number[i] == 0U) ? 1U : 0U;
+        check((number[i] == 0U) || (number[i] == (found + 1U)), "another number than before");
+        check((name[i] == 0U) || (name[i] == (named + 1U)), "another number of a text than before");
+        number[i] = found + 1U;
+        name[i] = named + 1U;
+        check((quads.quad[found].low == quad.low) && (quads.quad[found].high == quad.high), "the number of something else");
+        check((bytes.of[named].length == length) && (memcmp(&bytes.byte[bytes.of[named].offset], text, length) == 0),
+              "the number of another text");
+    }
+    check((atomic_load(&quads.index.count) == given) && (atomic_load(&bytes.index.count) == given), "holes without threads");
+    unsigned char text[8] = { 1U, 0U };
+    check(ex_bytes_number(&bytes, 4U, text, 8U) != (name[1] - 1U), "places share a text");
+    free(number);
+    free(name);
+}
+
+/* --- memory --------------------------------------------------------------------------------------------------------------- */
+
+static void try_memory(void)
+{
+    ex_run_t run;
+    ex_store_t store;
+    const uint64_t limit = (uint64_t)6U << 20U;
+    make_run(&run, limit);
+    check(ex_store_make(&store, &run, s_widths, 64U), "no memory");
+    uint64_t inserted = 0U;
+    for (uint64_t i = 1U;; i++) {
+        const ex_key_t key = numbered(i, s_widths);
+        check(ex_store_insert(&store, &key, ex_hash(&key), NULL) == EX_NEW, "not new");
+        inserted++;
+        atomic_store(&store.used, inserted);
+        check(atomic_load(&run.memory_used) <= limit, "more memory than allowed");
+        if (((inserted + EX_SPARE_KEYS) >= store.limit) && !ex_store_grow(&store, s_widths)) {
+            break;
+        }
+    }
+    check(count_slots(&store) == inserted, "keys were lost when memory was used up");
+    check((inserted * 16U) > (limit / 4U), "it gave up too early");
+}
+
+int main(int argc, char **argv)
+{
+    static const struct {
+        const char *name;
+        void (*try)(void);
+    } s_parts[] = { { "store", try_stores }, { "threads", try_threads }, { "numbers", try_numbers }, { "memory", try_memory } };
+    s_random = (argc > 2) ? strtoull(argv[2], NULL, 10) : 1U;
+    for (size_t i = 0U; (argc > 1) && (i < (sizeof s_parts / sizeof s_parts[0])); i++) {
+        if (strcmp(argv[1], s_parts[i].name) == 0) {
+            s_parts[i].try();
+            (void)printf("fine\n");
+            return 0;
+        }
+    }
+    (void)printf("usage: explore_core store|threads|numbers|memory SEED\n");
+    return 2;
+}
