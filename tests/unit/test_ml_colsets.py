@@ -132,7 +132,7 @@ def test_bounds_may_use_values_declared_before() -> None:
         ("int", (), {"texts": ("5", "1")}, "colour-set-range | lower bound `5` of colour set `X` is above the upper bound `1` | 5"),
         ("int", (), {"texts": ("1",)}, "colour-set-definition | colour set `X` needs a lower and an upper bound | "),
         ("int", (), {"texts": ("1", "true")}, "type-mismatch | upper bound is `bool`, but `int` is expected | true"),
-        ("int", (), {"texts": ("1", "length [1]")}, "colour-set-range | upper bound is not a constant that can be computed here | length [1]"),
+        ("int", (), {"texts": ("1", "List.hd [1] div 0")}, "colour-set-range | upper bound is not a constant that can be computed here | List.hd [1] div 0"),
         ("int", (), {"texts": ("1", "n")}, "unbound-identifier | `n` is not declared | n"),
         ("subset", ("INT",), {"texts": ("fn n => n > 3",), "by": True}, "subset-bare-fn | the predicate of the subset `X` is a `fn` without parentheses | fn n => n > 3"),
         ("int", (), {"texts": ("1", "2 +")}, "fixity-error | operator `+` has no right operand | +"),

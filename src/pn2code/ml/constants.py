@@ -59,23 +59,33 @@ def fold(e: core.Exp, known: Mapping[int, Constant]) -> Constant | None:
 def _apply(name: str, argument: core.Exp, known: Mapping[int, Constant]) -> Constant | None:
     if isinstance(argument, core.RecordExp) and len(argument.fields) == 2:
         left, right = (fold(x, known) for _, x in argument.fields)
-        if name == "String.^" and isinstance(left, str) and isinstance(right, str):
-            return left + right
-        if name in _INT and _is_int(left) and _is_int(right):
-            assert isinstance(left, int) and isinstance(right, int)
-            if name in ("Int.div", "Int.mod") and right == 0:
-                return None
-            return _INT[name](left, right)
-        if name in _COMPARE and _is_int(left) and _is_int(right):
-            assert isinstance(left, int) and isinstance(right, int)
-            return _COMPARE[name](left, right)
-        if name in _REAL and isinstance(left, float) and isinstance(right, float):
+        return binary(name, left, right)
+    return unary(name, fold(argument, known))
+
+
+def binary(name: str, left: object, right: object) -> Constant | None:
+    """The result of an operator of the library; None when it has none, or the operator is none of these."""
+    if name == "String.^" and isinstance(left, str) and isinstance(right, str):
+        return left + right
+    if _is_int(left) and _is_int(right):
+        assert isinstance(left, int) and isinstance(right, int)
+        if name in _INT:
+            return (
+                None if name in ("Int.div", "Int.mod") and right == 0 else _INT[name](left, right)
+            )
+        return _COMPARE[name](left, right) if name in _COMPARE else None
+    if isinstance(left, float) and isinstance(right, float):
+        if name in _REAL:
             return _REAL[name](left, right)
-        if name == "Real./" and isinstance(left, float) and isinstance(right, float) and right:
-            return left / right
-        return None
-    value = fold(argument, known)
-    if name in ("Int.~", "IntInf.~", "Real.~") and isinstance(value, int | float):
+        return left / right if name == "Real./" and right else None
+    return None
+
+
+def unary(name: str, value: object) -> Constant | None:
+    """The same for functions of one argument."""
+    is_number = isinstance(value, int | float) and not isinstance(value, bool)
+    if name in ("Int.~", "IntInf.~", "Real.~") and is_number:
+        assert isinstance(value, int | float)
         return -value
     if name == "Int.abs" and _is_int(value):
         assert isinstance(value, int)
@@ -83,8 +93,10 @@ def _apply(name: str, argument: core.Exp, known: Mapping[int, Constant]) -> Cons
     if name == "Real.fromInt" and _is_int(value):
         assert isinstance(value, int)
         return float(value)
+    if name == "Bool.not" and isinstance(value, bool):
+        return not value
     return None
 
 
-def _is_int(value: Constant | None) -> bool:
+def _is_int(value: object) -> bool:
     return isinstance(value, int) and not isinstance(value, bool)

@@ -26,6 +26,7 @@ from pn2code.ml.annotations import Annotations
 from pn2code.ml.builtins import INFIX
 from pn2code.ml.colset_specs import Colsets, ColsetSpec
 from pn2code.ml.colsets import Colset
+from pn2code.ml.computing import Computing
 from pn2code.ml.constants import Constant, fold
 from pn2code.ml.context import Context, TooDeepError, suggestion
 from pn2code.ml.core import Program, Symbol
@@ -104,8 +105,10 @@ class Elaborator:
         self._variables: dict[str, Symbol] = {}
         self._variable_scope = Scope(self._ctx.top)
         self._constants: dict[int, Constant] = {}
+        self._bodies: dict[int, core.Exp] = {}
+        self._computing = Computing(self._constants, self._bodies)
         self._inscriptions = Inscriptions(
-            self._ctx, self._expressions, patterns, self._variable_scope, self._constants
+            self._ctx, self._expressions, patterns, self._variable_scope, self._fold
         )
         self._repeats = Repeats()
         self._colsets = Colsets(self._ctx, self._declare, self._plain, self._fold)
@@ -220,9 +223,13 @@ class Elaborator:
         self._ctx.weak.clear()
         for one in made:
             if isinstance(one, core.ValBind) and isinstance(one.pattern, core.PVar):
-                value = self._fold(one.value)
+                value = fold(one.value, self._constants)
                 if value is not None:
                     self._constants[one.pattern.symbol.uid] = value
+                else:
+                    self._bodies[one.pattern.symbol.uid] = one.value
+            elif isinstance(one, core.RecBind):
+                self._bodies.update({symbol.uid: body for symbol, body in one.bindings})
 
     def unreadable(self, values: Sequence[str], types: Sequence[str]) -> None:
         """Names that declarations declare about which all has been said; nothing is said about their uses."""
@@ -476,7 +483,7 @@ class Elaborator:
         return self._border(text, work)
 
     def _fold(self, exp: core.Exp) -> Constant | None:
-        return fold(exp, self._constants)
+        return self._computing.value(exp)
 
     def _once(self, key: Hashable, text: SourceText, work: Callable[[], T | None]) -> T | None:
         """What `work` makes of a text, or what it made of the same text elsewhere, if there was nothing to say."""

@@ -12,7 +12,7 @@ from pn2code.ml import codes, core, type_advice
 from pn2code.ml import syntax as s
 from pn2code.ml.builtins import BUILTINS, FALSE, TRUE
 from pn2code.ml.colsets import definition
-from pn2code.ml.constants import Constant, fold
+from pn2code.ml.constants import Constant
 from pn2code.ml.context import Context, Draft, conversion, label_notes
 from pn2code.ml.core import Symbol
 from pn2code.ml.environment import Binding, BrokenEntry, BuiltinEntry, Scope
@@ -59,13 +59,13 @@ class Inscriptions:
         expressions: Expressions,
         patterns: Patterns,
         variables: Scope,
-        constants: Mapping[int, Constant],
+        computed: Callable[[core.Exp], Constant | None],
     ) -> None:
         self._ctx = ctx
         self._expressions = expressions
         self._patterns = patterns
         self._variables = variables
-        self._constants = constants
+        self._computed = computed
 
     @contextmanager
     def _scope(self, scope: Scope) -> Iterator[None]:
@@ -425,7 +425,7 @@ class Inscriptions:
             built = self._finish(before, draft.build)
         if built is None:
             return None
-        value = fold(built, self._constants)
+        value = self._computed(built)
         if not isinstance(value, int) or value < 0:
             self._ctx.error(
                 codes.PRIORITY,
