@@ -200,7 +200,7 @@ def test_errors_in_delays(text: str, expected: str) -> None:
 
 def test_priorities() -> None:
     m = Ml()
-    m.ml("val P_HIGH = 100; fun f x = x")
+    m.ml("val P_HIGH = 100; fun f x = x div 0")
     assert [m.e.priority(source(t, "priority")) for t in ("7", "P_HIGH", "P_HIGH + 1")] == [
         7,
         100,
