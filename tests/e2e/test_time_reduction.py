@@ -1,0 +1,228 @@
+"""`--reduce time`: the same answers as the whole space, and the very quotient that the token game gives."""
+
+from __future__ import annotations
+
+import json
+from collections import Counter
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from helpers.explored import Explored, Explorers
+from helpers.netbuilder import flat, write
+from helpers.quotient import quotient
+from pn2code.cli.main import app
+from pn2code.net.flat import FlatNet
+from pn2code.net.front import load
+from pn2code.diagnostics import Diagnostics
+from pn2code.verify.time_reduction import obstacle
+
+pytestmark = pytest.mark.cc
+
+# Early tokens, several stamps of one colour, reset and inhibitor arcs, delays below zero are in `ODD`.
+TWO_MACHINES = """
+    net Machines
+      colset PART = with screw | nut timed;
+      colset MACHINE = index m with 1..2 timed;
+      var p: PART;  var x: MACHINE;
+      place Stock : PART = 1`screw ++ 1`nut
+      place Free : MACHINE = 1`m(1) ++ 1`m(2)
+      place Work : WORK
+      place Done : PART
+      colset WORK = product MACHINE * PART timed;
+      trans Begin
+        in Stock : p
+        in Free : x
+        out Work : (x, p)@+(if p = screw then 3 else 5)
+      trans End
+        in Work : (x, p)
+        out Free : x@+1
+        out Done : p
+      trans Back delay @+7
+        in Done : p
+        out Stock : p
+"""
+CONVEYOR = """
+    net Conveyor
+      standard
+      val P_HIGH = 100;
+      colset BOX = int with 1..3 timed;
+      colset SLOT = unit timed;
+      var b: BOX;
+      place Source : BOX = 1`1 ++ 1`2 ++ 1`3
+      place Belt : BOX
+      place Room : UNIT = 2`()
+      place Sink : BOX
+      trans Load priority P_HIGH
+        in Source : b
+        in Room : ()
+        out Belt : b@+10
+      trans Take
+        in Belt : b@+(2 * b)
+        out Room : ()
+        out Sink : b@+4
+      trans Return
+        in Sink : b
+        out Source : b@+(20 - b)
+"""
+ODD = """
+    net Odd
+      standard
+      colset T = int with 0..2 timed;
+      colset K = int with 0..4;
+      var t: T;  var k: K;  var u: T;
+      place A : T = 1`0@0 +++ 2`1@3
+      place B : T
+      place C : T = 1`0@4
+      place Budget : UNIT = 1`()
+      place Keys : K = 1`1 ++ 1`4
+      trans Early
+        in A : t@+k
+        both Keys : k
+        out B : t@+ (t - 1)
+      trans Clear
+        in C : u
+        in B : 1
+        in Budget : ()
+        reset A
+        out C : u@+6
+        out A : 1`0@+1
+      trans Idle
+        inhibit B
+        in A : 0
+        out B : 2@+3
+      trans Again
+        in B : 2`1
+        out A : 1`1@+ ~4 +++ 1`1@+2
+      trans Return
+        in B : t
+        out A : t@+9
+"""
+FINITE = """
+    net Finite
+      standard
+      colset JOB = int with 1..3 timed;
+      var j: JOB;
+      place Waiting : JOB = 1`1 ++ 1`2 ++ 1`3
+      place Tools : UNIT = 2`()
+      place Delays : INT = 1`3 ++ 1`8
+      var n: INT;
+      place Busy : JOB
+      place Ready : JOB
+      place Never : JOB
+      trans Start
+        in Waiting : j
+        in Tools : ()
+        out Busy : j@+(2 * j)
+      trans Stop
+        in Busy : j
+        out Tools : ()
+        out Ready : j@+1
+      trans Again
+        in Delays : n
+        in Ready : j
+        out Waiting : j@+n
+      trans Unused
+        in Never : j
+        out Ready : j
+"""
+
+
+@pytest.fixture(scope="module")
+def explorers(tmp_path_factory: pytest.TempPathFactory) -> Explorers:
+    return Explorers.open(tmp_path_factory.mktemp("explorers"))
+
+
+def parts(found: Explored) -> tuple[Counter[str], Counter[tuple[str, str, str]]]:
+    """Markings without time, and arcs between them without times."""
+    nodes = [json.dumps(json.loads(node)[1], sort_keys=True) for node in found.nodes]
+    arcs = [
+        (nodes[a], nodes[b], json.dumps(json.loads(e)[1:], sort_keys=True))
+        for a, b, e in found.arcs
+    ]
+    return Counter(nodes), Counter(arcs)
+
+
+def assert_is_quotient(explorers: Explorers, net: FlatNet, *options: object) -> Explored:
+    assert obstacle(net) is None
+    found = explorers.explore(net, "--reduce", "time", *options)
+    expected = quotient(net)
+    assert found.report["complete"] and found.report["reductions"] == ["time"]
+    nodes, arcs = parts(found)
+    assert nodes == Counter(expected.nodes)
+    assert arcs == expected.arcs
+    assert found.report["nodes"] == len(expected.nodes)
+    assert found.report["dead_count"] == expected.dead
+    return found
+
+
+@pytest.mark.parametrize("text", [TWO_MACHINES, CONVEYOR, ODD], ids=["machines", "conveyor", "odd"])
+def test_a_cyclic_net_becomes_finite(explorers: Explorers, text: str) -> None:
+    net = flat(text)
+    whole = explorers.explore(net, "--max-states", 5000, "--no-graph")
+    assert whole.report["why"] == "states"
+    assert_is_quotient(explorers, net, "--threads", 2)
+
+
+def verdicts(report: dict[str, Any]) -> dict[str, Any]:
+    return {
+        "dead": report["dead_count"] > 0,
+        "bounds": report["bounds"],
+        "dead transitions": [count == 0 for count in report["fired"]],
+        "live transitions": report["graph"]["live"],
+        "infinite": report["graph"]["fairness"] is not None,
+        "fairness": report["graph"]["fairness"],
+    }
+
+
+def test_verdicts_are_those_of_the_whole_space(explorers: Explorers) -> None:
+    net = flat(FINITE)
+    whole = explorers.explore(net)
+    reduced = assert_is_quotient(explorers, net)
+    assert reduced.report["nodes"] < whole.report["nodes"]
+    assert verdicts(reduced.report) == verdicts(whole.report)
+
+
+REFUSED = """
+    net Refused
+      standard
+      colset T = int timed;
+      var t, n: T;
+      globref count = 0;
+      fun late () = time() > 5
+      place A : T = 1`1
+      place N : T
+      trans Go %s
+        in A : t
+        out N : %s
+"""
+
+
+@pytest.mark.parametrize(
+    ("clauses", "output", "why"),
+    [
+        ("guard [late ()]", "t", "reads the model time"),
+        ("guard [step() < 7]", "t", "reads the number of steps"),
+        ("delay @+discrete(1, 2)", "t", "draws random numbers"),
+        ("guard [!count = 0]", "t", "uses a reference"),
+        ("", "[t@7]", "makes or looks at time stamps"),
+        ("", "if [1@0] = [t@0] then 1`t else empty", "makes or looks at time stamps"),
+    ],
+)
+def test_what_reads_the_time_is_refused(clauses: str, output: str, why: str) -> None:
+    found = obstacle(flat(REFUSED % (clauses, output)))
+    assert found is not None and why in found.message
+
+
+@pytest.mark.parametrize(("delay", "refused"), [("(~1)", True), ("3", False), ("t", True)])
+def test_early_delays_must_not_be_negative(delay: str, refused: bool) -> None:
+    net = flat(REFUSED.replace("in A : t", f"in A : t@+{delay}") % ("", "t"))
+    assert (obstacle(net) is not None) == refused
+
+
+def test_real_clocks_are_refused() -> None:
+    found = obstacle(
+        flat(TWO_MACHINES.replace("net Machines", "net Machines\n      option realtimestamp true"))
+    )
+    assert found is not None and "rounded" in found.message
