@@ -338,7 +338,7 @@ double ex_bits_omission(ex_bits_t *bits);
 
 static inline void ex_bits_prefetch(const ex_bits_t *bits, uint64_t hash)
 {
-    __builtin_prefetch((const void *)&bits->word[ex_scaled(hash, bits->words)], 1, 3);
+    __builtin_prefetch(&bits->word[ex_scaled(hash, bits->words)], 1, 3);
 }
 
 /* --- the run ------------------------------------------------------------------------------------------------------- */

@@ -163,11 +163,18 @@ static void lay(ex_store_t *store, const uint32_t width[EX_KEY_WORDS])
     store->slots = (slots > (uint32_t)MOST_SLOTS) ? (uint32_t)MOST_SLOTS : slots;
 }
 
+/* Whole pages, as memory is counted. */
+static uint64_t buckets_for(const ex_store_t *store, uint64_t keys)
+{
+    const uint64_t page = 64U;
+    return (((keys / store->slots) + page) / page) * page;
+}
+
 bool ex_store_make(ex_store_t *store, ex_run_t *run, const uint32_t width[EX_KEY_WORDS], uint64_t keys)
 {
     store->run = run;
     lay(store, width);
-    store->buckets = (keys / store->slots) + 1U;
+    store->buckets = buckets_for(store, keys);
     store->limit = limit_of(store);
     atomic_init(&store->used, 0U);
     store->bucket = ex_alloc(run, store->buckets * (uint64_t)LINE);
@@ -402,7 +409,7 @@ bool ex_store_grow(ex_store_t *store, const uint32_t width[EX_KEY_WORDS])
     const uint64_t wanted = is_full ? larger(room, ex_store_bytes(store)) : room;
     for (uint64_t part = 1U; part <= 4U; part *= 2U) {
         const uint64_t keys = is_full ? (room + ((wanted - room) / part)) : room;
-        new.buckets = (keys / new.slots) + 1U;
+        new.buckets = buckets_for(&new, keys);
         const uint64_t bytes = ex_store_bytes(&new);
         const uint64_t old = ex_store_bytes(store);
         const uint64_t more = (old < SLACK) ? bytes : (((bytes > old) ? (bytes - old) : 0U) + SLACK);
