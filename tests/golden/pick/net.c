@@ -22,6 +22,11 @@
 #include "pn/pn_string.h"
 #include "pn/pn_type.h"
 
+/* Hosts that are compiled in one piece with the net say here that the compiler shall put searches where they are called. */
+#ifndef PN_NET_SEARCH
+#define PN_NET_SEARCH
+#endif
+
 #if PN_NET_ABI != 1U
 #error "Generate this file again: runtime and generator disagree (PN_NET_ABI)."
 #endif
@@ -214,7 +219,7 @@ static const pn_type_t s_binding_Pick = {
     .field = s_variables_Pick,
 };
 
-static bool Pick_enumerate(pn_ctx_t *cx, const void *marking,
+PN_NET_SEARCH static bool Pick_enumerate(pn_ctx_t *cx, const void *marking,
     uint32_t self, pn_binding_sink_t sink, void *user)
 {
     const net_marking_t *const m = marking;
@@ -240,7 +245,7 @@ static bool Pick_enumerate(pn_ctx_t *cx, const void *marking,
     return true;
 }
 
-static bool Pick_fire(pn_ctx_t *cx, void *marking, void *binding)
+PN_NET_SEARCH static bool Pick_fire(pn_ctx_t *cx, void *marking, void *binding)
 {
     net_marking_t *const m = marking;
     Pick_binding_t *const b = binding;
@@ -373,6 +378,8 @@ static const pn_place_t s_places[] = {
         .capacity = 64U, .timed = false,
         .count = Buffer_count, .token = Buffer_token, .put = Buffer_put,
         .clear = Buffer_clear, .json = Buffer_json,
+        .encode = Buffer_encode, .decode = Buffer_decode,
+        .bit = UINT32_MAX,
         .leaf_count = 2U, .leaf_kind = s_BOX_kinds, .leaf_name = s_BOX_leaves,
         .line_count = 1U, .line_leaves = s_BOX_lines,
     },
@@ -382,6 +389,8 @@ static const pn_place_t s_places[] = {
         .capacity = 64U, .timed = false,
         .count = Count_count, .token = Count_token, .put = Count_put,
         .clear = Count_clear, .json = Count_json,
+        .encode = Count_encode, .decode = Count_decode,
+        .bit = UINT32_MAX,
         .leaf_count = 1U, .leaf_kind = s_INT_kinds, .leaf_name = s_INT_leaves,
         .line_count = 1U, .line_leaves = s_INT_lines,
     },
@@ -391,12 +400,19 @@ static const pn_place_t s_places[] = {
         .capacity = 64U, .timed = false,
         .count = Out_count, .token = Out_token, .put = Out_put,
         .clear = Out_clear, .json = Out_json,
+        .encode = Out_encode, .decode = Out_decode,
+        .bit = UINT32_MAX,
         .leaf_count = 2U, .leaf_kind = s_BOX_kinds, .leaf_name = s_BOX_leaves,
         .line_count = 1U, .line_leaves = s_BOX_lines,
     },
 };
 
+static const uint32_t s_bag_places[] = { 0U, 1U, 2U };
+
 /* For each transition those that may be enabled in another way when it has occurred. */
+
+/* For each transition the places that its occurrence may change. */
+static const uint32_t s_touched_by_Pick[] = { 0U, 1U, 2U };
 
 static const pn_transition_t s_transitions[] = {
     {
@@ -404,12 +420,18 @@ static const pn_transition_t s_transitions[] = {
         .origin = "page `Top`, transition `Pick` (ID25)",
         .enumerate = Pick_enumerate, .fire = Pick_fire, .binding_json = Pick_json,
         .binding_size = sizeof(Pick_binding_t),
+        .touched_count = sizeof s_touched_by_Pick / sizeof s_touched_by_Pick[0],
+        .touched = s_touched_by_Pick,
     },
 };
 
 static const uint32_t s_order[] = {
     0U, /* Top.Pick */
 };
+
+/* For hosts that are compiled in one piece with the net: index and name of each transition. */
+#define NET_TRANSITIONS(EACH) \
+    EACH(0U, Pick)
 
 typedef union any_binding {
     Pick_binding_t Pick;
@@ -443,4 +465,7 @@ const pn_net_t pn_net = {
     .encode = encode,
     .decode = decode,
     .collect = collect,
+    .packed_size = 0U,
+    .bag_count = sizeof s_bag_places / sizeof s_bag_places[0],
+    .bags = s_bag_places,
 };
