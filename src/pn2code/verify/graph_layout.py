@@ -18,7 +18,7 @@ MOST_LABELLED = 120
 """Lines between nodes: with more of them, labels would be all that is seen."""
 MOST_FULL = 80
 """Nodes with their markings in them."""
-_NODE_LINES, _NODE_WIDTH = 6, 30
+_NODE_LINES, _NODE_WIDTH = 6, 42
 _LABEL_LINES, _LABEL_WIDTH = 3, 34
 _LOOP = 26.0
 _PORT = 12.0

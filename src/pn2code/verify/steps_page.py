@@ -50,20 +50,18 @@ def steps_page(
         (c for c in (every, involved) if sum(map(len, c)) <= MOST_FIGURES),
         [own if m.number == chosen else [] for m, own in zip(moments, every, strict=True)],
     )
-    all_shown = [bool(own) or not pages for own in choice]
     sections = [
         {
             "number": m.number,
             "step": m.step,
             "figures": [_figure(scenes[p.id], p, n, m) for p, n in own],
-            "before": m.number - 1 if i and all_shown[i - 1] else None,
-            "after": m.number + 1 if all_shown[i + 1 : i + 2] == [True] else None,
+            "before": m.number - 1 if m is not moments[0] else None,
+            "after": m.number + 1 if m is not moments[-1] else None,
         }
-        for i, (m, own) in enumerate(zip(moments, choice, strict=True))
+        for m, own in zip(moments, choice, strict=True)
     ]
     # The chosen one comes last: it hides when another, before it, is visited.
-    shown = [s for s in sections if s["figures"] and s["number"] != chosen]
-    shown += [s for s in sections if s["number"] == chosen]
+    sections.sort(key=lambda section: section["number"] == chosen)
     folder = resources.templates_folder() / "html"
     env = Environment(
         loader=FileSystemLoader(folder),
@@ -76,13 +74,10 @@ def steps_page(
     return env.get_template("steps.html.j2").render(
         title=title,
         css=Markup("".join(css)),
-        sections=shown,
+        sections=sections,
         chosen=chosen,
         last=last,
-        overview=[
-            {"number": m.number, "step": m.step, "is_shown": is_shown}
-            for m, is_shown in zip(moments, all_shown, strict=True)
-        ],
+        moments=moments,
         is_timed=any(m.step is not None and m.step.time for m in moments),
     )
 
