@@ -272,7 +272,8 @@ def _text(opened: OpenNet, found: Exploration) -> str:
 def _figures(found: Exploration) -> str:
     partial = "" if found.complete else f" TRUNCATED: {why_partial(found)}."
     return (
-        f"{found.nodes:,} markings and {found.arcs:,} arcs in {found.seconds:.2f} s "
+        f"{found.nodes:,} markings and {found.arcs:,} arcs{' of the reduced space' * found.is_reduced} "
+        f"in {found.seconds:.2f} s "
         f"({found.states_per_second:,.0f} markings/s, {found.threads} thread{'s' * (found.threads > 1)}), "
         f"{found.bytes_per_state:.1f} bytes a marking, {found.peak_mib:.0f} MiB at most; "
         f"compiled in {found.compile_seconds:.1f} s.{partial}"

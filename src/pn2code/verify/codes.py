@@ -51,5 +51,13 @@ REDUCTION_NOT_POSSIBLE = register(
     "A reduction leaves states out, or takes some for the same, and keeps the answers only for nets that do not look "
     "at the difference. `--reduce time` takes states for the same that differ only in how late it is: no inscription "
     "may read the time, `step()` or the stamps of tokens, and nothing outside the marking (references, random numbers, "
-    "files) may decide. The exploration goes on without the reduction.",
+    "files) may decide. `--reduce partial-order` and `--reduce symmetry` look at all binding elements before: the net "
+    "has to be untimed, without code segments and references, over finite colour sets. The exploration goes on without "
+    "the reduction.",
+)
+REDUCTION_MISMATCH = register(
+    "reduction-mismatch",
+    "the compiled net does not do what a reduction was told that it does",
+    "In each state the explorer compares the enabled binding elements of the compiled net with those of the unfolded "
+    "one, on which the reduction rests. They differ: this is a bug in pn2code. Nothing that was found counts.",
 )

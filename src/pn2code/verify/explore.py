@@ -15,17 +15,17 @@ import threading
 import time
 from collections.abc import Callable, Mapping, Sequence
 from contextlib import suppress
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import IO, Any
 
 from pn2code.diagnostics import Diagnostics, Origin
 from pn2code.net.flat import FlatNet
 from pn2code.verify import programs
-from pn2code.verify.codes import BEYOND_ROOM, EXPLORER_FAILED
-from pn2code.verify.limits import Limits, Reduction
+from pn2code.verify.codes import BEYOND_ROOM, EXPLORER_FAILED, REDUCTION_MISMATCH
+from pn2code.verify.limits import Limits
 from pn2code.verify.programs import Sizes
-from pn2code.verify.reductions import possible
+from pn2code.verify.reductions import OF_ELEMENTS, Chosen, possible, refuse
 from pn2code.verify.result import Exploration
 
 Progress = Callable[[Mapping[str, Any]], None]
@@ -84,7 +84,7 @@ def explore(
         GameError: a declaration or an initial marking raises an exception.
     """
     wishes = wishes or Wishes()
-    reductions = possible(net, limits.reductions, d)
+    chosen = possible(net, limits.reductions, d)
     sizes = Sizes.start(net, storage)
     compiling = 0.0
     while True:
@@ -93,12 +93,23 @@ def explore(
             compiling += time.perf_counter() - began
             if program is None:
                 return None
-            found = _run(net, program, _options(limits, reductions, sizes, wishes), wishes, d)
+            options = _options(limits, chosen, sizes, wishes)
+            found = _run_with_table(net, program, options, chosen, wishes, d)
         if found is None:
             return None
         error = found["error"]
+        if error and error["kind"] == "reduction":
+            for reduction in set(OF_ELEMENTS).intersection(chosen.reductions):
+                refuse(reduction, error["message"], Origin(net.file), d)
+            chosen = chosen.without_elements()
+            continue
+        if error and error["kind"] == "mismatch":
+            _differs(net, error, d)
+            return None
         if not error or error["kind"] not in ("capacity", "memory"):
-            return Exploration.of(net, found, compiling)
+            return replace(
+                Exploration.of(net, found, compiling), symmetries=chosen.symmetry_names()
+            )
         place = net.places[error["place"]] if error["kind"] == "capacity" else None
         larger = sizes.larger(place.name if place else None)
         if larger is None:
@@ -113,9 +124,7 @@ def explore(
         sizes = larger
 
 
-def _options(
-    limits: Limits, reductions: Sequence[Reduction], sizes: Sizes, wishes: Wishes
-) -> list[str]:
+def _options(limits: Limits, chosen: Chosen, sizes: Sizes, wishes: Wishes) -> list[str]:
     given: list[tuple[str, object]] = [
         ("--threads", limits.threads),
         ("--order", limits.order.value),
@@ -130,10 +139,38 @@ def _options(
         ("--write-graph", wishes.graph),
         ("--write-limit", wishes.graph_limit),
         ("--progress-every", wishes.pace),
-        *(("--reduce", reduction.value) for reduction in reductions),
+        *(("--reduce", reduction.value) for reduction in chosen.reductions),
     ]
     options = [text for name, value in given if value is not None for text in (name, str(value))]
     return options + ["--progress"] + ([] if limits.graph else ["--no-graph"])
+
+
+def _run_with_table(
+    net: FlatNet,
+    program: Path,
+    options: Sequence[str],
+    chosen: Chosen,
+    wishes: Wishes,
+    d: Diagnostics,
+) -> dict[str, Any] | None:
+    """Like `_run`, with a file of the binding elements as long as it runs, if reductions need one."""
+    if chosen.elements is None:
+        return _run(net, program, options, wishes, d)
+    with tempfile.NamedTemporaryFile("w", encoding="ascii", prefix="pn2code-") as table:
+        table.write(chosen.elements.text())
+        table.flush()
+        return _run(net, program, [*options, "--elements", table.name], wishes, d)
+
+
+def _differs(net: FlatNet, error: Mapping[str, Any], d: Diagnostics) -> None:
+    index = error["transition"]
+    known = index is not None and index < len(net.transitions)
+    d.error(
+        REDUCTION_MISMATCH,
+        f"the compiled net and the unfolded net differ: {error['message']}",
+        net.transitions[index].origin if known else Origin(net.file),
+        hint="explore with `--no-reduction`",
+    )
 
 
 def _run(

@@ -26,6 +26,8 @@ class Reduction(StrEnum):
     """Ways of seeing less than the whole space that keep what is asked."""
 
     TIME = "time"
+    PARTIAL_ORDER = "partial-order"
+    SYMMETRY = "symmetry"
 
 
 @dataclass(frozen=True, slots=True)

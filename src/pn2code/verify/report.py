@@ -79,17 +79,26 @@ def _head(net: FlatNet, found: Exploration, written: datetime | None) -> str:
         )
     if found.reductions:
         lines.append(f"REDUCED by {', '.join(found.reductions)}.")
+    if found.is_reduced:
+        lines.append(
+            "Dead markings are kept; what is not said here is not known of the whole space."
+        )
+    if found.symmetries:
+        lines.append(
+            f"A node stands for all markings that are symmetric to it ({', '.join(found.symmetries)})."
+        )
     return "\n".join(lines)
 
 
 def _statistics(found: Exploration) -> str:
     status = "Full" if found.complete else "Partial"
+    status = "Reduced" if found.complete and found.is_reduced else status
     lines = [
         *_section("Statistics"),
         "",
         "  State Space",
         f"     Nodes:  {found.nodes}",
-        f"     Arcs:   {found.arcs}",
+        *([] if found.is_reduced else [f"     Arcs:   {found.arcs}"]),
         f"     Secs:   {found.seconds:.0f}",
         f"     Status: {status}",
     ]
@@ -154,7 +163,8 @@ def _liveness(net: FlatNet, found: Exploration) -> str:
     everything = found.dead_count == found.nodes and found.complete
     dead = "All" if everything else _nodes(found.dead, found.dead_count)
     lines = [*_section("Liveness Properties"), "", "  Dead Markings", f"     {dead}"]
-    lines += ["", "  Dead Transition Instances", *_instances(net, found.dead_transitions())]
+    if found.knows_dead_transitions:
+        lines += ["", "  Dead Transition Instances", *_instances(net, found.dead_transitions())]
     if found.graph is not None:
         lines += ["", "  Live Transition Instances", *_instances(net, found.live_transitions())]
     return "\n".join(lines)

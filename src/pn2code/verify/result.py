@@ -80,7 +80,9 @@ class Exploration:
         dead_count: markings without successors; `dead`: their first nodes.
         graph: None when it was not computed, or is not complete.
         approximation: None, or its name and the probability that a marking was omitted.
-        reductions: what was used to see less than everything.
+        reductions: what was used to see less than everything; "partial-order" keeps whether there are dead markings and
+            how many; with "symmetry" a node stands for all markings that are symmetric to it.
+        symmetries: for people, of "symmetry".
     """
 
     complete: bool
@@ -103,6 +105,17 @@ class Exploration:
     traces: tuple[Trace, ...]
     approximation: Mapping[str, Any] | None
     reductions: tuple[str, ...]
+    symmetries: tuple[str, ...] = ()
+
+    @property
+    def is_reduced(self) -> bool:
+        """Whether nodes and arcs are less than those of the whole space, and only some properties are known."""
+        return bool({"partial-order", "symmetry"}.intersection(self.reductions))
+
+    @property
+    def knows_dead_transitions(self) -> bool:
+        """Whether a transition without arcs never occurs."""
+        return "partial-order" not in self.reductions
 
     @property
     def states_per_second(self) -> float:
@@ -127,7 +140,7 @@ class Exploration:
             compile_seconds=compile_seconds,
             threads=found["threads"],
             fired=tuple(found["fired"]),
-            bounds=_bounds(found.get("bounds")),
+            bounds=_reduced_bounds(_bounds(found.get("bounds")), found.get("reductions") or ()),
             dead_count=found["dead_count"],
             dead=tuple(found["dead"]),
             graph=_graph(graph) if graph is not None else None,
@@ -156,6 +169,17 @@ def _bounds(found: Sequence[Mapping[str, Any]] | None) -> tuple[Bounds, ...] | N
         )
         for b in found
     )
+
+
+def _reduced_bounds(
+    found: tuple[Bounds, ...] | None, reductions: Sequence[str]
+) -> tuple[Bounds, ...] | None:
+    """Those that reductions keep: symmetries change the colours, not the number of tokens of a place."""
+    if found is None or "partial-order" in reductions:
+        return None
+    if "symmetry" in reductions:
+        return tuple(Bounds(b.lower, b.upper, None, None) for b in found)
+    return found
 
 
 def _multiset(found: Sequence[Sequence[Any]] | None) -> tuple[tuple[int, Any], ...] | None:
@@ -190,7 +214,7 @@ def row(net: FlatNet, found: Exploration) -> dict[str, Any]:
         "complete": found.complete,
         "why": found.why,
         "nodes": found.nodes,
-        "arcs": found.arcs,
+        "arcs": None if found.is_reduced else found.arcs,
         "scc_nodes": graph.scc_nodes if graph else None,
         "scc_arcs": graph.scc_arcs if graph else None,
         "dead_markings": found.dead_count,
@@ -198,7 +222,9 @@ def row(net: FlatNet, found: Exploration) -> dict[str, Any]:
         "home_markings": graph.home_count if graph else None,
         "home_marking_nodes": list(graph.home) if graph else None,
         "initial_is_home": graph.initial_is_home if graph else None,
-        "dead_transitions": [name(i) for i in found.dead_transitions()],
+        "dead_transitions": (
+            [name(i) for i in found.dead_transitions()] if found.knows_dead_transitions else None
+        ),
         "live_transitions": ([name(i) for i in found.live_transitions()] if graph else None),
         "infinite_occurrence_sequences": graph.fairness is not None if graph else None,
         "fairness": fairness,
@@ -212,6 +238,7 @@ def row(net: FlatNet, found: Exploration) -> dict[str, Any]:
         "threads": found.threads,
         "depth": found.depth,
         "reductions": list(found.reductions),
+        "symmetries": list(found.symmetries),
         "approximation": dict(found.approximation) if found.approximation else None,
         "error": dict(found.error) if found.error else None,
         "traces": [{"node": t.node, "file": str(t.file), "steps": t.steps} for t in found.traces],

@@ -73,6 +73,12 @@ def _verdicts(found: Exploration) -> list[dict[str, str]]:
         said.append({"kind": "open", "text": text})
     if found.reductions:
         said.append({"kind": "open", "text": f"Reduced by {', '.join(found.reductions)}."})
+    if found.is_reduced:
+        text = "Dead markings are kept; what is not said here is not known of the whole space."
+        said.append({"kind": "open", "text": text})
+    if found.symmetries:
+        text = f"A node stands for all markings that are symmetric to it ({', '.join(found.symmetries)})."
+        said.append({"kind": "open", "text": text})
     if found.error is not None:
         text = f"An inscription raises {found.error['message']}: {found.error['where']}"
         said.append({"kind": "bad", "text": text})
@@ -85,7 +91,9 @@ def _verdicts(found: Exploration) -> list[dict[str, str]]:
 
 
 def _statistics(found: Exploration) -> list[tuple[str, str]]:
-    rows = [("Nodes", f"{found.nodes:,}"), ("Arcs", f"{found.arcs:,}")]
+    rows = [("Nodes", f"{found.nodes:,}")]
+    if not found.is_reduced:
+        rows.append(("Arcs", f"{found.arcs:,}"))
     if found.graph is not None:
         rows.append(("Strongly connected components", f"{found.graph.scc_nodes:,}"))
         rows.append(("Arcs between components", f"{found.graph.scc_arcs:,}"))
@@ -146,11 +154,12 @@ def _transitions(net: FlatNet, found: Exploration) -> list[dict[str, Any]]:
     fairness = found.graph.fairness if found.graph else None
     rows = []
     for index, arcs in enumerate(found.fired):
-        kind = "dead" if arcs == 0 else "live" if index in live else ""
+        is_dead = arcs == 0 and found.knows_dead_transitions
+        kind = "dead" if is_dead else "live" if index in live else ""
         rows.append(
             {
                 "name": names.transition(index),
-                "arcs": f"{arcs:,}",
+                "arcs": "" if found.is_reduced else f"{arcs:,}",
                 "kind": kind,
                 "fairness": fairness[index]
                 if fairness
