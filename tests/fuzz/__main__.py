@@ -2,6 +2,7 @@
 
     python -m tests.fuzz [--seconds 600] [--cases N] [--seed 1] [--save FOLDER]
     python -m tests.fuzz --nets N       random nets are compiled and compared instead: see `walks`
+    python -m tests.fuzz --graphs N     their whole state spaces: see `graphs`
 
 A case is a number: case 17 is the same net wherever the base nets are the same. Nothing but diagnostics may come
 out: no exception, no more than 10 s of the processor, no more than 1 GB, and a net that is refused has an error that
@@ -171,6 +172,10 @@ def main() -> int:
         from tests.fuzz import walks
 
         return walks.main()
+    if any(o.startswith("--graphs") for o in others):
+        from tests.fuzz import graphs
+
+        return graphs.main()
     if others:
         parser.error(f"unrecognized arguments: {' '.join(others)}")
     shared = Path(os.environ.get("PN2CODE_SHARED", ROOT.parent / "shared"))

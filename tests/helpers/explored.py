@@ -7,11 +7,12 @@ elements, and what is said of the graph with `helpers.graph_facts`, which follow
 from __future__ import annotations
 
 import json
+import os
 import shutil
 import subprocess
 from collections import Counter
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
@@ -29,6 +30,7 @@ QUICK = ("-O0",)
 SANITIZERS = ("-g", "-O1", "-fsanitize=address,undefined", "-fno-sanitize-recover=all")
 THREADS = ("-g", "-O1", "-fsanitize=thread")
 SECONDS = 120
+LIBRARY = "libnet.so"
 OTHER_HOSTS = ("simulate", "supervisor")
 
 
@@ -45,7 +47,7 @@ class Explored:
 
 @dataclass(frozen=True, slots=True)
 class Explorers:
-    """A folder with the runtime, and how nets are compiled."""
+    """A folder with the explorer, and how nets are compiled: each as a shared library that it finds when it starts."""
 
     folder: Path
     compiler: str
@@ -53,28 +55,29 @@ class Explorers:
 
     @staticmethod
     def open(folder: Path, flags: tuple[str, ...] = QUICK) -> Explorers:
-        """Compile the runtime."""
+        """Compile the explorer."""
         compiler = shutil.which("gcc") or shutil.which("cc")
         assert compiler is not None
         made = Explorers(folder, compiler, flags)
-        objects = folder / "runtime"
-        objects.mkdir(parents=True)
-        sources = [
-            str(f)
-            for f in sorted((cnative_folder() / "src").glob("*.c"))
-            if not f.name.startswith(OTHER_HOSTS)
-        ]
-        made._run(objects, "-c", *sources)
+        host = folder / "host"
+        host.mkdir(parents=True)
+        source = cnative_folder() / "src"
+        sources = [f for f in sorted(source.glob("*.c")) if not f.name.startswith(OTHER_HOSTS)]
+        (host / "stub.c").write_text("char pn_net[1];\n")
+        made._run(host, "-shared", "stub.c", "-o", LIBRARY)
+        made._run(host, "-c", *map(str, sources))
+        objects = [str(f) for f in sorted(host.glob("*.o"))]
+        made._run(host, "-rdynamic", *objects, LIBRARY, "-lm", "-o", "explore")
         return made
 
     def _run(self, folder: Path, *arguments: str) -> None:
-        command = [self.compiler, "-std=c11", "-ffp-contract=off", "-pthread", *self.flags]
+        command = [self.compiler, "-std=c11", "-ffp-contract=off", "-pthread", "-fPIC", *self.flags]
         command += [f"-I{cnative_folder() / 'include'}", f"-I{folder}", *arguments]
         done = subprocess.run(command, cwd=folder, capture_output=True, text=True, check=False)
         assert done.returncode == 0, done.stderr[-3000:]
 
     def build(self, flat: FlatNet, sizes: Sizes, name: str) -> Path:
-        """The explorer of a net."""
+        """A folder with a compiled net."""
         d = Diagnostics()
         files = generated(flat, {}, sizes, d)
         assert files is not None, [(e.message, e.origin.describe()) for e in d.errors]
@@ -82,15 +85,25 @@ class Explorers:
         folder.mkdir(exist_ok=True)
         for file in files:
             (folder / file.path).write_text(file.text)
-        objects = [str(f) for f in sorted((self.folder / "runtime").glob("*.o"))]
-        self._run(folder, "net.c", *objects, "-lm", "-o", "explore")
-        return folder / "explore"
+        self._run(folder, "-shared", "net.c", "-o", LIBRARY)
+        return folder
 
-    def explore(self, flat: FlatNet, *options: object, name: str = "net") -> Explored:
-        """Explore a net, with more room where places turn out to hold more, as `pn2code verify` does."""
+    def explore(
+        self, flat: FlatNet, *options: object, name: str = "net", width: int = 1
+    ) -> Explored:
+        """Explore a net, with more room where places turn out to hold more, as `pn2code verify` does.
+
+        Args:
+            flat: the net.
+            options: of the explorer.
+            name: of its folder.
+            width: least width of the counters of packed places; 0: no place is packed.
+        """
         sizes = Sizes.start(flat, {})
+        widths = {p: max(w, width) if width else 0 for p, w in sizes.packing.width.items()}
+        sizes = replace(sizes, packing=replace(sizes.packing, width=widths, default=width))
         while True:
-            found = explored(self.build(flat, sizes, name), *options)
+            found = self.run(self.build(flat, sizes, name), *options)
             error = found.report["error"]
             if not error or error["kind"] not in ("capacity", "memory"):
                 return found
@@ -99,28 +112,33 @@ class Explorers:
             assert larger is not None, error
             sizes = larger
 
-
-def explored(program: Path, *options: object) -> Explored:
-    """Run an explorer, and read what it says."""
-    graph = program.with_name("graph.jsonl")
-    graph.unlink(missing_ok=True)
-    command = [str(program), *map(str, options), "--write-graph", str(graph)]
-    done = subprocess.run(command, capture_output=True, text=True, check=False, timeout=SECONDS)
-    assert done.stdout, f"code {done.returncode}: {done.stderr[-3000:]}"
-    nodes: list[str] = []
-    arcs: list[tuple[int, int, str]] = []
-    lines = graph.read_text(encoding="utf-8").splitlines() if graph.exists() else []
-    for line in lines:
-        entry = json.loads(line)
-        if "node" in entry:
-            assert entry["node"] == len(nodes) + 1
-            nodes.append(_node(entry["t"], entry["marking"]))
-        else:
-            element = _element(entry["t"], entry["transition"], entry["binding"])
-            arcs.append((entry["from"] - 1, entry["to"] - 1, element))
-    return Explored(
-        json.loads(done.stdout), done.returncode, tuple(nodes), tuple(arcs), tuple(lines)
-    )
+    def run(self, folder: Path, *options: object) -> Explored:
+        """Run the explorer of a compiled net, and read what it says."""
+        graph = folder / "graph.jsonl"
+        graph.unlink(missing_ok=True)
+        command = [str(self.folder / "host" / "explore"), *map(str, options)]
+        done = subprocess.run(
+            [*command, "--write-graph", str(graph)],
+            capture_output=True,
+            text=True,
+            check=False,
+            timeout=SECONDS,
+            env={**os.environ, "LD_LIBRARY_PATH": str(folder)},
+        )
+        assert done.stdout, f"code {done.returncode}: {done.stderr[-3000:]}"
+        nodes: list[str] = []
+        arcs: list[tuple[int, int, str]] = []
+        lines = graph.read_text(encoding="utf-8").splitlines() if graph.exists() else []
+        for line in lines:
+            entry = json.loads(line)
+            if "node" in entry:
+                assert entry["node"] == len(nodes) + 1
+                nodes.append(_node(entry["t"], entry["marking"]))
+            else:
+                element = _element(entry["t"], entry["transition"], entry["binding"])
+                arcs.append((entry["from"] - 1, entry["to"] - 1, element))
+        report = json.loads(done.stdout)
+        return Explored(report, done.returncode, tuple(nodes), tuple(arcs), tuple(lines))
 
 
 def _node(time: float, marking: Mapping[str, Any]) -> str:
@@ -141,10 +159,19 @@ def reference(flat: FlatNet, most: int) -> StateSpace | GameError:
 
 
 def agrees(
-    explorers: Explorers, flat: FlatNet, *options: object, nodes: int = 120, arcs: int = 1500
+    explorers: Explorers,
+    flat: FlatNet,
+    *options: object,
+    width: int = 4,
+    nodes: int = 250,
+    arcs: int = 2500,
 ) -> str:
     """Compare; gives "same", "exception" or "large" (more than that), and fails on a difference."""
-    found = explorers.explore(flat, "--max-states", nodes, *options)
+    try:
+        Game(flat, {}, files=Files(None))
+    except GameError:
+        return "exception"  # in an initial marking: there is nothing to explore
+    found = explorers.explore(flat, "--max-states", nodes, *options, width=width)
     report = found.report
     if report["why"] in ("states", "seconds") or report["arcs"] > arcs:
         assert report["why"] == "complete" or found.code == 3

@@ -108,10 +108,9 @@ def _final(data: Any) -> Iterator[tuple[tuple[str, int], str]]:
 
 
 def engine_name(name: str) -> str:
-    """A name of the net as the engine writes it: cut at the first odd character, blanks replaced."""
-    cut = re.match(r"[A-Za-z'_0-9 \n\t.\-]*", name.strip())
-    assert cut is not None, "the empty text matches"
-    return re.sub(r"[^A-Za-z'_0-9]", "_", cut[0].strip())
+    """A name of the net as the engine writes it: each line cut at the first odd character, blanks replaced."""
+    cut = re.sub(r"[^A-Za-z'_0-9 \n\t.\-].*", "", name.strip())
+    return re.sub(r"[^A-Za-z'_0-9]", "_", cut.strip())
 
 
 def _bare(name: str) -> str:
