@@ -22,6 +22,7 @@ _NODE_LINES, _NODE_WIDTH = 6, 42
 _LABEL_LINES, _LABEL_WIDTH = 3, 34
 _LOOP = 26.0
 _PORT = 12.0
+_DROP = 3.0
 
 Edge = tuple[int, int]
 
@@ -104,6 +105,7 @@ def lay_out(graph: StateGraph) -> Layout:
     centre = {n: found.centres[f"n{n}"] for n in size}
     placed = {n: around(*centre[n], *size[n]) for n in size}
     inner: dict[Edge, list[Point]] = {}
+    hanging: dict[int, int] = {}  # how many lines hang below a layer: each has a height of its own
     for a, b in edges:
         name = f"{a}-{b}"
         if not labelled:
@@ -111,7 +113,9 @@ def lay_out(graph: StateGraph) -> Layout:
         elif a != b:
             before = list(found.bends.get(f"{name}>", ()))
             after = list(found.bends.get(f">{name}", ()))
-            passed = _through(around(*found.centres[name], *boxes[name]), layer[a], layer[b])
+            drop = _DROP * (1 + hanging.get(layer[a], 0) % 5)
+            hanging[layer[a]] = hanging.get(layer[a], 0) + (layer[a] == layer[b])
+            passed = _through(around(*found.centres[name], *boxes[name]), layer[a], layer[b], drop)
             inner[a, b] = [*before, *passed, *after]
     ends = _ports(inner, placed, layer)
     drawn = []
@@ -146,11 +150,11 @@ def _gap(
     return 22.0, min(max(46.0, widest / 22), 220.0)
 
 
-def _through(box: Box, source: int, target: int) -> list[Point]:
+def _through(box: Box, source: int, target: int, drop: float) -> list[Point]:
     """Where a line passes its label: straight from above to below, or the other way."""
-    x, y = _centre(box)
+    x, _ = _centre(box)
     if source == target:
-        return [(x, y)]
+        return [(x, box.bottom + drop)]  # below the labels of its layer, its own too
     return [(x, box.top), (x, box.bottom)] if source < target else [(x, box.bottom), (x, box.top)]
 
 
