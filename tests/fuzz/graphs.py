@@ -24,10 +24,10 @@ from helpers.random_graphs import WIDTHS, numbered
 ROOT = Path(__file__).resolve().parents[2]
 
 
-def verdict(explorers: Explorers, text: str, options: tuple[object, ...]) -> str:
-    """ "same", "exception", "large"; or "differs: " and how."""
+def verdict(explorers: Explorers, text: str, width: int, options: tuple[object, ...]) -> str:
+    """What `agrees` says, or how the net differs."""
     try:
-        return agrees(explorers, flat(text), *options)
+        return agrees(explorers, flat(text), *options, width=width)
     except Exception as failure:  # whatever it is, it is to be shown with its net
         return f"differs: {type(failure).__name__}: {failure}"
 

@@ -14,7 +14,8 @@ from pathlib import Path
 from pn2code.conformance import compare, suite
 from pn2code.conformance.document import document
 from pn2code.conformance.expressions import compare_expressions
-from pn2code.conformance.finding import Finding, State
+from pn2code.conformance.finding import NOTHING, Finding, State
+from pn2code.conformance.spaces import explored
 
 LARGEST_SPACE = 10_000
 
@@ -27,25 +28,30 @@ def main() -> int:
     parser.add_argument("--walks", type=Path, help="what `./dev walks -o FILE` has written")
     parser.add_argument("--largest", type=int, default=LARGEST_SPACE, help="state spaces up to")
     parser.add_argument("--only", default="", help="only nets whose path contains this")
+    parser.add_argument("--no-explorer", action="store_true", help="compile no explorers")
     options = parser.parse_args()
     sys.setrecursionlimit(20_000)
     corpus = options.folder / "corpus"
     nets = []
+    spaces = {}
     for path in compare.paths(corpus):
         if options.only in path:
             print(path, file=sys.stderr, flush=True)
             nets.append(compare.compare(corpus, path, max_nodes=options.largest))
+            spaces[path] = NOTHING if options.no_explorer else explored(corpus, path)
     tiny = options.folder / "semantics-suite"
     graphs = {name: suite.compare_graph(tiny, name) for name in suite.names(tiny)}
     expressions = compare_expressions(tiny)
+    walks = _walks(options.walks)
     text = document(
-        nets, _walks(options.walks), graphs, expressions, about_walks=_about(options.walks)
+        nets, walks, graphs, expressions, about_walks=_about(options.walks), spaces=spaces
     )
     if options.output is None:
         print(text, end="")
     else:
         options.output.write_text(text, encoding="utf-8")
-    return int(any(n.state is State.DIFFERS for n in nets))
+    differs = any(n.state is State.DIFFERS for n in nets)
+    return int(differs or any(f.state is State.DIFFERS for f in spaces.values()))
 
 
 _VERDICTS = {

@@ -19,6 +19,7 @@ What pn2code says of nets that people published, beside what the engine of CPN T
 | initial marking | of every place instance, character for character |
 | run | is a recorded random run of the engine (up to 40 steps) possible here, with the same final marking? |
 | state space | the same numbers of nodes, arcs and dead markings, where the engine computed them all |
+| explorer | is the report of `pn2code verify` the engine's, line by line, from sizes and bounds to fairness? |
 | compiled | does the compiled net agree with the reference token game on random walks? |
 
 `yes`: agrees. `random`: the net draws random numbers there (or reads files), which a recording does not tell; what is
@@ -33,6 +34,7 @@ def document(
     suite: Mapping[str, Finding],
     expressions: Mapping[str, Finding],
     about_walks: str = "",
+    spaces: Mapping[str, Finding] = {},
 ) -> str:
     """The whole text, the same for the same findings.
 
@@ -43,13 +45,20 @@ def document(
         suite: name -> finding, of the semantics suite.
         expressions: of CPN ML -> finding.
         about_walks: a sentence about the walks.
+        spaces: path of a net of the corpus -> whether the compiled explorer agrees with the engine.
     """
-    parts = [HEAD, "## Totals\n", *_totals(nets, walks, suite, expressions)]
+    parts = [HEAD, "## Totals\n", *_totals(nets, walks, suite, expressions, spaces)]
     parts += ["", about_walks] if about_walks else []
     parts.append("")
-    notes = [n for n in nets if n.state is not State.AGREES or _worse(_walk(n, walks))]
-    parts += ["## What does not simply agree\n", *_notes(notes, walks), ""]
-    parts += ["## Net by net\n", *_table(nets, walks), ""]
+    notes = [
+        n
+        for n in nets
+        if n.state is not State.AGREES
+        or _worse(_walk(n, walks))
+        or _worse(spaces.get(n.path, NOTHING))
+    ]
+    parts += ["## What does not simply agree\n", *_notes(notes, walks, spaces), ""]
+    parts += ["## Net by net\n", *_table(nets, walks, spaces), ""]
     parts += ["## The semantics suite\n", *_suite(suite, walks), ""]
     parts += ["## Expressions\n", *_expressions(expressions), ""]
     return "\n".join(parts)
@@ -70,6 +79,7 @@ def _totals(
     walks: Mapping[str, Finding],
     suite: Mapping[str, Finding],
     expressions: Mapping[str, Finding],
+    spaces: Mapping[str, Finding],
 ) -> Iterable[str]:
     accepted = [n for n in nets if n.accepted]
     runs = [n for n in accepted if n.runs]
@@ -79,11 +89,17 @@ def _totals(
     if absent:
         reason = "need a file (`use`) that is not beside them; the engine had it"
         yield f"* {len(absent)} that the engine accepts {reason}."
-    wrong = [n for n in nets if State.DIFFERS in (n.state, _walk(n, walks).state)]
+    wrong = [
+        n
+        for n in nets
+        if State.DIFFERS in (n.state, _walk(n, walks).state, spaces.get(n.path, NOTHING).state)
+    ]
     yield f"* Nets with an answer that differs: {len(wrong)}."
     yield "\n| question | compared | yes | random | intended | unsupported | NO |\n|---|---|---|---|---|---|---|"
     for question in QUESTIONS:
         yield _count(question, [n.findings[question] for n in nets])
+    if spaces:
+        yield _count("explorer", spaces.values())
     if walks:
         yield _count("compiled", [_walk(n, walks) for n in nets])
     yield _count("semantics suite", suite.values())
@@ -101,20 +117,26 @@ def _count(name: str, findings: Iterable[Finding]) -> str:
     return f"| {name} | {' | '.join(map(str, numbers))} |"
 
 
-def _table(nets: Sequence[Compared], walks: Mapping[str, Finding]) -> Iterable[str]:
-    columns = ["net", "engine", *QUESTIONS, "compiled"]
+def _table(
+    nets: Sequence[Compared], walks: Mapping[str, Finding], spaces: Mapping[str, Finding]
+) -> Iterable[str]:
+    columns = ["net", "engine", *QUESTIONS, "explorer", "compiled"]
     yield f"| {' | '.join(columns)} |\n|{'---|' * len(columns)}"
     for net in nets:
-        findings = [*(net.findings[q] for q in QUESTIONS), _walk(net, walks)]
+        findings = [net.findings[q] for q in QUESTIONS]
+        findings += [spaces.get(net.path, NOTHING), _walk(net, walks)]
         cells = [_code(net.path), "accepts" if net.accepted else "rejects"]
         cells += [f.state.value for f in findings]
         yield f"| {' | '.join(cells)} |"
 
 
-def _notes(nets: Sequence[Compared], walks: Mapping[str, Finding]) -> Iterable[str]:
+def _notes(
+    nets: Sequence[Compared], walks: Mapping[str, Finding], spaces: Mapping[str, Finding]
+) -> Iterable[str]:
     for net in nets:
         yield f"* {_code(net.path)}"
-        named = [*net.findings.items(), ("compiled", _walk(net, walks))]
+        named = [*net.findings.items(), ("explorer", spaces.get(net.path, NOTHING))]
+        named.append(("compiled", _walk(net, walks)))
         for question, finding in named:
             if finding.note and finding.state not in (State.AGREES, State.NOTHING):
                 yield f"  * {question}, {finding.state.value}: {_text(finding.note)}"
