@@ -175,8 +175,12 @@ ex_found_t ex_successors(ex_worker_t *worker, const ex_key_t *key, ex_arc_sink_t
     }
     bool goes_on = hunt_now(&hunt);
     pn_time_t next = { 0 };
-    while (goes_on && !hunt.is_found && pn_net.timed && pn_net.next_time(worker->marking, &next)) {
+    while (goes_on && !hunt.is_found && pn_net.timed && pn_net.next_time(&worker->cx, worker->marking, &next)) {
         goes_on = advance(&hunt, next) && hunt_now(&hunt);
+    }
+    if (goes_on && !hunt.is_found && (worker->cx.error != PN_OK)) {
+        ex_fail(worker, -1); /* a delay could not be computed */
+        goes_on = false;
     }
     if (hunt.has_aged) {
         worker->scratch->is_loaded = false;

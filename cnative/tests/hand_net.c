@@ -315,8 +315,9 @@ static void set_now(void *marking, pn_time_t time)
     ((marking_t *)marking)->now = time.integer;
 }
 
-static bool next_time(const void *marking, pn_time_t *next)
+static bool next_time(pn_ctx_t *cx, const void *marking, pn_time_t *next)
 {
+    (void)cx;
     const marking_t *const m = marking;
     next->integer = m->idle_stamp;
     return (m->idle > 0U) && (m->idle_stamp > m->now);

@@ -174,7 +174,7 @@ static bool step(pn_ctx_t *cx, void *marking, void *copy, void *binding)
         pn_text_init(&text, s_text, sizeof s_text);
         pn_text_str(&text, "{\"enabled\": [");
         enumerate(cx, marking, &all);
-        more = (all.count == 0U) && pn_ok(cx) && pn_net.timed && pn_net.next_time(marking, &next);
+        more = (all.count == 0U) && pn_ok(cx) && pn_net.timed && pn_net.next_time(cx, marking, &next);
         if (more) {
             pn_net.set_now(marking, next);
         }

@@ -225,7 +225,6 @@ class _Emitter:
             "type": self._types.name(p.type),
             "table": self._names.table(p.table),
             "timed": p.timed,
-            "is_early_open": p.is_early_open,
             "early": [
                 f".real = {c_float(float(e))}"
                 if self._net.real_time
@@ -342,6 +341,8 @@ class _Emitter:
             ],
             "keeps": search.keeps and search.releases,
             "search": search.lines,
+            "thresholds": self._thresholds(t, variables),
+            "thresholds_draw": self._reaches(t.thresholds, _is_draw),
             "searches_marking": _mentions("m", "\n".join(search.lines)),
             "fire": fire.lines,
             "is_direct": is_direct,
@@ -364,6 +365,17 @@ class _Emitter:
             if len(affected) == len(self._net.transitions)
             else ", ".join(f"{i}U" for i in affected),
         }
+
+    def _thresholds(self, t: ir.Transition, variables: tuple[str, ...]) -> list[str]:
+        """The search for the times at which tokens become available, without its preamble."""
+        if not t.thresholds:
+            return []
+        search, x, _ = self._printer(t.thresholds, "b.")
+        x.variables = variables
+        search.variable_types = tuple(v.type for v in t.variables)
+        search.is_void = True
+        search.body(t.thresholds)
+        return search.lines
 
     def _is_direct(self, t: ir.Transition) -> bool:
         """Whether it can be printed with the functions of its places; what is taken must be what was found."""
@@ -427,7 +439,7 @@ class _Emitter:
     def _used_functions(self) -> list[ir.Function]:
         roots: list[str] = []
         for t in self._net.transitions:
-            roots += called(t.enumerate) + called(t.fire)
+            roots += called(t.enumerate) + called(t.fire) + called(t.thresholds)
         for p in self._net.places:
             roots += called(p.initial)
         for g in self._net.globals:
@@ -447,7 +459,7 @@ class _Emitter:
         bodies: list[object] = [f.body for f in functions]
         for t in self._net.transitions:
             roots |= {v.table for v in t.variables}
-            bodies += [t.enumerate, t.fire]
+            bodies += [t.enumerate, t.fire, t.thresholds]
         bodies += [p.initial for p in self._net.places] + [g.setup for g in self._net.globals]
         roots |= {
             g.table

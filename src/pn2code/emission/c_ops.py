@@ -107,6 +107,7 @@ OPS: dict[str, Form] = {
     "Time.step": Call("pn_big_step", context=True),
     "time.same": Call(""),
     "time.+": Call("pn_time_sum", context=True),
+    "time.latest": Call("pn_real_latest"),
     "time.to_large": Call("pn_big_of"),
     "time.of_large": Call("pn_big_to_time", context=True),
     "Int.toLarge": Call("pn_big_of"),

@@ -143,7 +143,7 @@ class Statements:
             self.line("if (!is_kept) {")
             self.line(_INDENT + "pn_arena_release(cx->arena, mark);")
             self.line("}")
-        self.line("return true;")
+        self.line("return;" if self.is_void else "return true;")
 
     def _declaration(self, local: ir.Local) -> str:
         return f"{self._types.name(local.type)} {self._x.local(local)}"
@@ -375,6 +375,10 @@ class Statements:
                 self._move(s)
             case ir.TakeAll() | ir.PutAll():
                 self._moves(s)
+            case ir.Threshold(place=place, delay=delay, note=note):
+                self.note(note)
+                bag, time = self.bags[place], self._x.time(delay)
+                self.line(f"pn_bag_threshold(&{bag}, m, cx->now, {time}, found, next);")
             case ir.Reset(place=place, note=note):
                 self.note(note)
                 self.line(f"pn_moves_reset(&{self.moves}, &{self.bags[place]}, cx->now);")

@@ -44,6 +44,14 @@ def plus(a: Ir, b: Ir) -> Ir:
     return ir.Op("Real.+" if a.type == ir.REAL else "time.+", (a, b), a.type)
 
 
+def accepted(real_time: bool, delay: Ir) -> Ir:
+    """The latest stamp that an input arc with a delay accepts: the last with stamp - delay <= now, as it is rounded."""
+    early = in_clock(real_time, delay)
+    if real_time and not (isinstance(early, ir.Const) and early.value == 0):
+        return ir.Op("time.latest", (ir.Now(ir.REAL), early), ir.REAL)
+    return plus(ir.Now(clock(real_time)), early)
+
+
 def timed_part(token: Ir, label: str, t: IrType) -> Ir:
     """The value of a timed token, or its stamp as ML has it."""
     if t == ir.BIG and label == "stamp":

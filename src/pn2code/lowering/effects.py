@@ -19,7 +19,7 @@ _TOTAL_NAMES = """
     List.mem List.rm List.rmall List.contains List.contains_all List.union List.remdupl List.intersect Ms.` Ms.++
     Ms.size Ms.** Ms.== Ms.!= Ms.<< Ms.<<= Ms.>> Ms.>>= Ms.cf Time.step Colset.lt Colset.cmp Colset.mkstr
     exn.name time.same time.to_large IntInf.fromInt Int.toLarge IntInf.+ IntInf.- IntInf.* IntInf.~ IntInf.abs
-     Int.min Int.max Int.sign IntInf.min IntInf.max IntInf.sign
+    time.latest Int.min Int.max Int.sign IntInf.min IntInf.max IntInf.sign
 """
 _TOTAL = frozenset(_TOTAL_NAMES.split())
 """Operations that always give a value (memory apart)."""

@@ -600,11 +600,20 @@ class Reset:
     note: str = ""
 
 
+@frozen
+class Threshold:
+    """When the tokens of a timed place become available to an arc with a delay: for the next time."""
+
+    place: int
+    delay: Ir
+    note: str = ""
+
+
 Stmt = (
     Let | Declare | Assign | Fill | SetGlobal | Do | If | While | ForList | ForCount | Return | SelfCall |
     Raise | RaiseValue | SetContents | ClearError | Note | ForTokens | ForValues | Bind | Unless |
     UnlessLegal | UnlessAvailable | UnlessBind | UnlessHeld | UnlessEmpty | Wanted | Yield | Take | TakeAll |
-    Put | PutAll | Reset
+    Put | PutAll | Reset | Threshold
 )  # fmt: skip
 
 # --- the net -----------------------------------------------------------------------------------
@@ -673,10 +682,8 @@ class Place:
     capacity: int
     initial: tuple[Stmt, ...]
     initial_text: str
-    is_early_open: bool = False
-    """whether there are delays of input arcs that are known only when they are computed"""
     early: tuple[int | float, ...] = ()
-    """delays of input arcs: tokens may be taken so much before their stamps"""
+    """constant delays of input arcs: tokens may be taken so much before their stamps"""
     packed: Packed | None = None
 
 
@@ -692,7 +699,8 @@ class Variable:
 
 @frozen
 class Transition:
-    """A transition as two programs."""
+    """A transition as two programs; and one more if delays of its input arcs have to be computed: `Threshold`s for all
+    bindings that are possible whatever the stamps are."""
 
     index: int
     name: str
@@ -704,6 +712,7 @@ class Transition:
     enumerate: tuple[Stmt, ...]
     fire: tuple[Stmt, ...]
     guard_text: str
+    thresholds: tuple[Stmt, ...] = ()
 
 
 @frozen

@@ -87,6 +87,9 @@ class _Dump:
         yield from self._block(t.enumerate, 2)
         yield "  fire"
         yield from self._block(t.fire, 2)
+        if t.thresholds:
+            yield "  thresholds"
+            yield from self._block(t.thresholds, 2)
 
     # --- statements ----------------------------------------------------------------------------
 
@@ -184,6 +187,8 @@ class _Dump:
                 return f"take all {self._place_name(s.place)} {x(s.multiset)}{_note(s.note)}"
             case ir.PutAll():
                 return f"put all {self._place_name(s.place)} {x(s.multiset)}{_note(s.note)}"
+            case ir.Threshold():
+                return f"threshold {self._place_name(s.place)} - {x(s.delay)}{_note(s.note)}"
             case ir.Reset():
                 return f"reset {self._place_name(s.place)}{_note(s.note)}"
             case _:

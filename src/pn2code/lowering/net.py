@@ -17,7 +17,7 @@ from pn2code.diagnostics import Diagnostics, Origin
 from pn2code.lowering import ir
 from pn2code.lowering.builtins import Builtins
 from pn2code.lowering.calls import ir_nodes
-from pn2code.lowering.codes import STORAGE_COLSET, UNSUPPORTED_EXPRESSION, UnsupportedError
+from pn2code.lowering.codes import STORAGE_COLSET, UnsupportedError
 from pn2code.lowering.expressions import Body
 from pn2code.lowering.functions import Program
 from pn2code.lowering.inscriptions import Putter
@@ -167,7 +167,6 @@ class _Lowering:
             Putter(body, place.index, {}, stamp, None, "").put(exp, form)
             text = exp.span.source.text
         owner = self._partition.place_owner[place.index]
-        early, is_early_open = self._early(place)
         return ir.Place(
             index=place.index,
             name=place.name,
@@ -180,8 +179,7 @@ class _Lowering:
             capacity=self._capacity.get(place.name, self._capacity.get(place.short, 0)),
             initial=tuple(body.statements),
             initial_text=text,
-            early=early,
-            is_early_open=is_early_open,
+            early=self._early(place),
         )
 
     def _room(self, places: list[ir.Place]) -> int:
@@ -201,30 +199,17 @@ class _Lowering:
             return self._types.count(multiset.table)
         return UNKNOWN_ENTRIES
 
-    def _early(self, place: FlatPlace) -> tuple[tuple[int | float, ...], bool]:
-        """The delays of input arcs from a place, which decide when time goes on; whether there are others that are
-        known only when they are computed."""
-        found: set[int | float] = set()
-        is_open = False
-        for t in self._net.transitions:
-            for arc in t.arcs:
-                if arc.place != place.index or arc.inscription is None:
-                    continue
-                for term in arc.inscription.terms:
-                    if term.delay is None:
-                        continue
-                    value = self._program.constant(term.delay)
-                    if value is None and not self._net.real_time:
-                        is_open = True
-                        continue
-                    if value is None:
-                        raise UnsupportedError(
-                            UNSUPPORTED_EXPRESSION,
-                            "with a real clock the delay of an input arc must be a number in compiled code",
-                            term.delay.span,
-                        )
-                    found.add(value)
-        return tuple(sorted(found - {0})), is_open
+    def _early(self, place: FlatPlace) -> tuple[int | float, ...]:
+        """The constant delays of input arcs from a place, which decide when time goes on."""
+        found = {
+            self._program.constant(term.delay)
+            for t in self._net.transitions
+            for arc in t.arcs
+            if arc.place == place.index and arc.inscription is not None
+            for term in arc.inscription.terms
+            if term.delay is not None
+        }
+        return tuple(sorted(value for value in found if value))
 
     def _members(self) -> tuple[ir.Function, ...]:
         """The functions that decide membership of subsets."""

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 
 from pn2code.lowering import arc_lists, colset_functions, ir
 from pn2code.lowering.builtins import components, equal
-from pn2code.lowering.clock import clock, in_clock, plus
+from pn2code.lowering.clock import accepted, clock, in_clock, plus
 from pn2code.lowering.codes import UNSUPPORTED_COLSET, UnsupportedError
 from pn2code.lowering.expressions import Body
 from pn2code.lowering.functions import Program
@@ -61,6 +61,7 @@ def lower_transition(
         enumerate=_Enumeration(program, net, t, variables).run(),
         fire=_firing(program, net, t, variables),
         guard_text=", ".join(g.span.text for g in t.guards),
+        thresholds=_Thresholds(program, net, t, variables).run(),
     )
 
 
@@ -76,8 +77,9 @@ def _limit(
     """The latest stamp that a term of an input arc accepts."""
     if not timed:
         return None
-    now = ir.Now(clock(program.real_time))
-    return now if delay is None else plus(now, in_clock(program.real_time, body.ir(delay, env)))
+    if delay is None:
+        return ir.Now(clock(program.real_time))
+    return accepted(program.real_time, body.ir(delay, env))
 
 
 def take_terms(
@@ -135,6 +137,7 @@ class _Enumeration:
         self._demands: list[_Demand] = []
         self._found: set[tuple[int, int]] = set()
         self._done = False
+        self._computed: list[tuple[FlatArc, Term]] = []
 
     def run(self) -> tuple[Stmt, ...]:
         self._plan_demands()
@@ -174,11 +177,15 @@ class _Enumeration:
                 else:
                     self._demands.append(_Demand(arc, term))
 
+    def _found_all(self) -> None:
+        """With all variables bound."""
+        self._body.emit(ir.Yield())
+
     # --- steps of the plan ---------------------------------------------------------------------
 
     def _step(self, position: int) -> None:
         if position == len(self._t.plan):
-            self._body.emit(ir.Yield())
+            self._found_all()
             return
         step = self._t.plan[position]
         match step:
@@ -348,6 +355,45 @@ class _Enumeration:
 
     def _can_term(self, term: Term) -> bool:
         return all(self._can(x) for x in parts(term))
+
+
+class _Thresholds(_Enumeration):
+    """When tokens become available to input arcs with delays that are not constant, as the token game finds it: a
+    search in which all tokens are available gives the values that the delays can have."""
+
+    def run(self) -> tuple[Stmt, ...]:
+        computed = [
+            (arc, term)
+            for arc in self._t.arcs
+            if arc.kind in _TAKING and arc.inscription is not None
+            for term in arc.inscription.terms
+            if self._net.places[arc.place].colset.timed
+            and term.delay is not None
+            and self._program.constant(term.delay) is None
+        ]
+        free = [self._uses_variables(term) for _, term in computed]
+        for (arc, term), uses in zip(computed, free, strict=True):
+            if not uses:
+                self._threshold(arc, term)
+        self._computed = [x for x, uses in zip(computed, free, strict=True) if uses]
+        if self._computed:
+            self._ready(-1)
+            self._step(0)
+        return tuple(self._body.statements)
+
+    def _uses_variables(self, term: Term) -> bool:
+        assert term.delay is not None
+        return any(uid in self._index for uid in free_variables(term.delay))
+
+    def _found_all(self) -> None:
+        for arc, term in self._computed:
+            self._threshold(arc, term)
+
+    def _threshold(self, arc: FlatArc, term: Term) -> None:
+        assert term.delay is not None
+        delay = in_clock(self._program.real_time, self._body.ir(term.delay, self._env))
+        delay = self._body.atomic(delay, "delay")
+        self._body.emit(ir.Threshold(arc.place, delay, arc_note(self._net, arc)))
 
 
 def parts(term: Term) -> list[core.Exp]:
