@@ -16,7 +16,7 @@ from typing import Any
 from pn2code.verify.result import Exploration
 
 _BLUE, _RED, _GREEN, _PURPLE = "#0072B2", "#D55E00", "#009E73", "#CC79A7"
-_MOST_POINTS = 200
+_MOST_POINTS, _FEW_POINTS = 200, 5
 
 
 @dataclass(frozen=True, slots=True)
@@ -97,7 +97,7 @@ def plot(record: Record, found: Exploration, title: str, path: Path) -> None:
 
     matplotlib.use("Agg")
     import matplotlib.pyplot as plt
-    from matplotlib.ticker import EngFormatter
+    from matplotlib.ticker import EngFormatter, MaxNLocator
 
     samples = record.samples(found)
     rows: list[tuple[str, str, str, Callable[[Sample], float]]] = [
@@ -124,12 +124,14 @@ def plot(record: Record, found: Exploration, title: str, path: Path) -> None:
                 at.spines[["top", "right"]].set_visible(False)
             left.set_ylabel(label)
             left.set_ylim(bottom=0)
+            left.yaxis.set_major_locator(MaxNLocator(5, integer=True))
             left.yaxis.set_major_formatter(EngFormatter(unit=unit, sep=" " if unit else ""))
         axes[-1][0].set_xlabel("time of exploration [s]")
         axes[-1][1].set_xlabel("depth [steps from the initial marking]")
         axes[-1][0].set_xlim(left=0)
         axes[-1][1].set_xlim(left=0)
-        figure.suptitle(f"{title}\n{_facts(found)}", fontsize=11)
+        short = "\n(too short for more points)" if len(samples) < _FEW_POINTS else ""
+        figure.suptitle(f"{title}\n{_facts(found)}{short}", fontsize=11)
         try:
             kept = {"Date": None} if path.suffix.lower() == ".svg" else None
             figure.savefig(path, dpi=110, metadata=kept)
