@@ -100,11 +100,12 @@ class Pictures:
 
         assert self._lines is not None
         whole = graph.read(net, self._lines)
-        remarks = [f"Reduced by {', '.join(found.reductions)}."] if found.reductions else []
+        how = f"reduced by {', '.join(found.reductions)}" if found.reductions else ""
         if path.suffix.lower() == ".svg":
-            text = graph_svg.picture(whole, " ".join([net.name, *remarks]))
+            text = graph_svg.picture(whole, f"{net.name} ({how})" if how else net.name)
         else:
-            text = graph_page.page(net, whole, remarks)
+            said = "Not the whole graph: {}. Nodes, components and home markings are those of what is left."
+            text = graph_page.page(net, whole, [said.format(how)] if how else [])
         path.write_text(text, encoding="utf-8")
 
     def _obstacle(self, found: Exploration) -> tuple[str, str]:
