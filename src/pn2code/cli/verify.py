@@ -27,6 +27,7 @@ from pn2code.cli.options import (
 from pn2code.diagnostics import Diagnostics, Origin
 from pn2code.semantics.game import GameError
 from pn2code.simulate.script import TraceRefusedError
+from pn2code.verify import chance
 from pn2code.verify.codes import REPORT_UNWRITABLE, STATE_ERROR
 from pn2code.verify.explore import Wishes, explore
 from pn2code.verify.limits import Approximation, Limits, Order, Reduction, cores
@@ -170,6 +171,7 @@ def verify(
         reductions=() if no_reduction else tuple(dict.fromkeys(reduce)),
     )
     d = Diagnostics()
+    chance.warn(opened.flat, d)
     with Pictures(draw_to, plot_to) as pictures:
         with Interrupts() as interrupts, ProgressLine(shown=not (as_json or quiet)) as progress:
             wishes = Wishes(

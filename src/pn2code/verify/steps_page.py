@@ -85,7 +85,7 @@ def steps_page(
 def _instances(pages: Sequence[RawPage], moment: Moment) -> list[tuple[RawPage, int]]:
     """All instances of the pages; what the step is about comes first."""
     found = [(p, n) for p in pages for n in moment.state.instances(p) or [1]]
-    return sorted(found, key=lambda own: not _is_about(*own, moment))
+    return sorted(found, key=lambda own: not _is_about(own[0], own[1], moment))
 
 
 def _is_about(page: RawPage, number: int, moment: Moment) -> bool:
