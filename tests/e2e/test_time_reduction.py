@@ -8,14 +8,13 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from typer.testing import CliRunner
 
 from helpers.explored import Explored, Explorers
 from helpers.netbuilder import flat, write
 from helpers.quotient import quotient
 from pn2code.cli.main import app
 from pn2code.net.flat import FlatNet
-from pn2code.net.front import load
-from pn2code.diagnostics import Diagnostics
 from pn2code.verify.time_reduction import obstacle
 
 pytestmark = pytest.mark.cc
@@ -226,3 +225,48 @@ def test_real_clocks_are_refused() -> None:
         flat(TWO_MACHINES.replace("net Machines", "net Machines\n      option realtimestamp true"))
     )
     assert found is not None and "rounded" in found.message
+
+
+STUCK = """
+    net Stuck
+      standard
+      colset PART = int with 1..4 timed;
+      var p: PART;  var n: INT;
+      place Stock : PART = 1`1 ++ 1`2
+      place Wear : INT = 1`0
+      place Done : PART
+      trans Make guard [n < 4] delay @+p
+        in Stock : p
+        in Wear : n
+        out Wear : n + 1
+        out Done : p@+3
+      trans Renew
+        in Done : p@+1
+        out Stock : p@+5
+"""
+
+
+def test_traces_have_the_true_times(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    net = write(STUCK, tmp_path / "stuck.cpn")
+    monkeypatch.chdir(tmp_path)
+    run = CliRunner().invoke(app, ["verify", str(net), "--reduce", "time", "--report", "r.txt"])
+    assert run.exit_code == 0, run.output
+    assert "REDUCED by time" in Path("r.txt").read_text()
+    (trace,) = tmp_path.glob("stuck.dead-*.trace.jsonl")
+    assert any('"t": 1' in line for line in trace.read_text().splitlines())
+    replay = ["replay", str(trace), str(net), "--json", "--engine", "reference"]
+    answer = json.loads(CliRunner().invoke(app, replay).stdout)
+    assert answer["ok"] and answer["steps"] >= 4, answer
+    assert answer["time"] >= 10
+
+
+def test_a_net_that_reads_the_time_is_explored_without(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    text = STUCK.replace("guard [n < 4]", "guard [n < 4, time() < 100]")
+    net = write(text, tmp_path / "stuck.cpn")
+    monkeypatch.chdir(tmp_path)
+    run = CliRunner().invoke(app, ["verify", str(net), "--reduce", "time", "--most-traces", "0"])
+    assert run.exit_code == 0, run.output
+    assert "reduction-not-possible" in run.output and "reads the model time" in run.output
+    assert "REDUCED" not in run.output
