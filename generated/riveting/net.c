@@ -7450,13 +7450,13 @@ static void set_now(void *marking, pn_time_t time)
     m->now = time;
 }
 
-static bool next_time(const void *marking, pn_time_t *next)
+static bool next_time(pn_ctx_t *cx, const void *marking, pn_time_t *next)
 {
     bool found = false;
     for (size_t i = 0U; i < (sizeof s_bags / sizeof s_bags[0]); i++) {
         pn_bag_next_time(s_bags[i], marking, now(marking), &found, next);
     }
-    return found;
+    return pn_ok(cx) && found;
 }
 
 static size_t encode(const void *marking, uint8_t *out, size_t capacity)

@@ -12,7 +12,7 @@
 #include <sys/resource.h>
 #include <time.h>
 
-#include "explore_impl.h"
+#include "explore_reduce.h"
 #include "pn/pn_file.h"
 #include "pn/pn_text.h"
 
@@ -43,6 +43,8 @@ static void print_help(void)
                  "  --no-graph          states and bounds alone: no components, no traces\n"
                  "  --approximate HOW   bitstate, hash: states may be missed; the report says how probably\n"
                  "  --reduce time       states that differ only in how late it is are one\n"
+                 "  --reduce HOW        partial-order, symmetry: fewer states, the same answer whether there are dead ones\n"
+                 "  --elements FILE     the table of binding elements that these two need\n"
                  "  --spill DIR         keep large tables in files of a folder\n"
                  "  --progress          lines of JSON on the standard error\n"
                  "  --progress-every S  seconds between them (default 0.5)\n"
@@ -108,8 +110,12 @@ static bool read_approximation(const char *text, ex_options_t *options)
 static bool read_reduction(const char *text, ex_options_t *options)
 {
     const bool is_time = (strcmp(text, "time") == 0) && !pn_net.real_time;
+    const bool is_stubborn = strcmp(text, "partial-order") == 0;
+    const bool is_symmetric = strcmp(text, "symmetry") == 0;
     options->is_time_reduced = options->is_time_reduced || (is_time && pn_net.timed);
-    return is_time;
+    options->is_stubborn = options->is_stubborn || is_stubborn;
+    options->is_symmetric = options->is_symmetric || is_symmetric;
+    return is_time || is_stubborn || is_symmetric;
 }
 
 static bool read_text(const char *text, const char **option)
@@ -132,6 +138,7 @@ static bool read_valued(const char *option, const char *value, ex_options_t *opt
            || ((strcmp(option, "--arena") == 0) && read_mebi(value, &options->arena))
            || ((strcmp(option, "--approximate") == 0) && read_approximation(value, options))
            || ((strcmp(option, "--reduce") == 0) && read_reduction(value, options))
+           || ((strcmp(option, "--elements") == 0) && read_text(value, &options->elements))
            || ((strcmp(option, "--spill") == 0) && read_text(value, &options->spill))
            || ((strcmp(option, "--traces") == 0) && read_number(value, UINT32_MAX, &options->traces))
            || ((strcmp(option, "--dead-limit") == 0) && read_number(value, UINT32_MAX, &options->dead_limit))
@@ -320,6 +327,21 @@ static uint64_t peak_mib(void)
     return (uint64_t)usage.ru_maxrss / 1024U;
 }
 
+static void print_reductions(const ex_options_t *options)
+{
+    const bool is_used[] = { options->is_time_reduced, options->is_stubborn, options->is_symmetric };
+    static const char *const s_names[] = { "time", "partial-order", "symmetry" };
+    const char *between = "";
+    (void)printf(",\n \"reductions\": [");
+    for (uint32_t i = 0U; i < 3U; i++) {
+        if (is_used[i]) {
+            (void)printf("%s\"%s\"", between, s_names[i]);
+            between = ", ";
+        }
+    }
+    (void)printf("]");
+}
+
 static void print_report(ex_run_t *run)
 {
     const ex_why_t why = (ex_why_t)atomic_load(&run->why);
@@ -343,7 +365,7 @@ static void print_report(ex_run_t *run)
     } else {
         (void)printf("null");
     }
-    (void)printf(",\n \"reductions\": [%s]", options->is_time_reduced ? "\"time\"" : "");
+    print_reductions(options);
     (void)printf(",\n \"fired\": [");
     for (uint32_t t = 0U; t < pn_net.transition_count; t++) {
         (void)printf("%s%" PRIu64, (t > 0U) ? ", " : "", run->fired[t]);
@@ -393,7 +415,7 @@ static int explore(ex_run_t *run)
     run->started = ex_clock();
     atomic_store(&run->phase, "explore");
     start_watch(&watch);
-    const bool is_explored = ex_explore(run);
+    const bool is_explored = ex_reduction_make(run) && ex_explore(run);
     const bool is_exact = !run->options.is_bitstate && !run->options.is_hashed;
     if (is_explored && run->options.has_graph && is_exact && (atomic_load(&run->why) == (int)EX_COMPLETE)) {
         atomic_store(&run->phase, "graph");

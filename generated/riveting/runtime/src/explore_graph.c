@@ -165,6 +165,9 @@ static void number_block(ex_graph_t *graph, const block_t *block, uint32_t first
         const uint32_t node = first + i;
         graph->row[node] = graph->arcs;
         graph->dead_count += block->is_dead[i];
+        if (block->is_dead[i] != 0U) {
+            EX_SET_BIT(graph->dead, node);
+        }
         for (; (at < block->used) && (block->arc[at].node == i); at++) {
             const uint64_t slot = block->arc[at].slot;
             if (graph->number[slot] == 0U) {
@@ -253,11 +256,13 @@ bool ex_graph(ex_run_t *run)
     graph->number = ex_alloc(run, ex_store_slots(&run->store) * sizeof *graph->number);
     graph->parent = ex_alloc(run, nodes * sizeof *graph->parent);
     graph->row = ex_alloc(run, (nodes + 1U) * sizeof *graph->row);
-    bool is_fine = (graph->slot != NULL) && (graph->number != NULL) && (graph->parent != NULL) && (graph->row != NULL) &&
+    graph->dead = ex_alloc(run, ((nodes / 64U) + 1U) * sizeof *graph->dead);
+    bool is_fine = (graph->slot != NULL) && (graph->number != NULL) && (graph->parent != NULL) && (graph->row != NULL) && (graph->dead != NULL) &&
                    reserve_arcs(run, graph, run->arcs);
     atomic_store(&run->phase, "graph");
     is_fine = is_fine && build(run, graph) && (!is_whole || (graph->nodes == nodes));
-    if (is_fine && is_whole) {
+    graph->is_reduced = run->reduction != NULL;
+    if (is_fine && is_whole && !graph->is_reduced) {
         atomic_store(&run->phase, "components");
         is_fine = ex_components(run, graph);
         atomic_store(&run->phase, "properties");
@@ -274,7 +279,7 @@ bool ex_graph(ex_run_t *run)
 
 static bool is_dead(const ex_graph_t *graph, uint32_t node)
 {
-    return graph->row[node] == graph->row[node + 1U];
+    return EX_BIT(graph->dead, node) != 0U;
 }
 
 static void dead_json(const ex_run_t *run, FILE *out)
@@ -350,7 +355,7 @@ void ex_graph_json(ex_run_t *run, FILE *out)
 {
     dead_json(run, out);
     (void)fprintf(out, ", \"graph\": ");
-    if ((run->graph != NULL) && run->graph->is_whole) {
+    if ((run->graph != NULL) && run->graph->is_whole && !run->graph->is_reduced) {
         members_json(run->graph, out);
     } else {
         (void)fprintf(out, "null");

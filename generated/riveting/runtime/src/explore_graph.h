@@ -21,8 +21,10 @@ typedef struct ex_graph {
     uint32_t *target;
     uint16_t *label;       /* arc -> transition */
     uint64_t dead_count;
+    uint64_t *dead;        /* a bit for each node; without reductions the dead ones are those without arcs */
     uint64_t node_room;    /* nodes that there is memory for */
     bool is_whole;         /* all successors of all nodes are there */
+    bool is_reduced;       /* it lacks states or arcs: components and properties are not computed */
     /* Components: those that can be reached have smaller numbers than those from which they are reached. */
     uint32_t *component;   /* node -> component */
     uint32_t components;

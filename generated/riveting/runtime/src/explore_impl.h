@@ -36,6 +36,9 @@ typedef struct ex_options {
     bool is_time_reduced;  /* stamps count from the model time on, which is always 0; those that are not after it are equal */
     bool shows_progress;
     bool shows_help;
+    bool is_stubborn;        /* reductions: see explore_reduce.h */
+    bool is_symmetric;
+    const char *elements;    /* file: the table that these need */
     const char *spill;       /* folder; NULL: none */
     const char *write_graph; /* file; NULL: none */
     uint64_t write_limit;    /* most nodes of a graph that is written */
@@ -64,6 +67,22 @@ typedef struct ex_error {
     int64_t place;      /* index, -1: none */
     int64_t transition; /* index, -1: none */
 } ex_error_t;
+
+/* What is rare is kept out of what is frequent. */
+#if defined(__GNUC__)
+#define EX_APART __attribute__((noinline))
+#else
+#define EX_APART
+#endif
+
+/* The same number, in a register of its own: two words that were stored one by one are not to be loaded as one. */
+static inline uint64_t ex_alone(uint64_t x)
+{
+#if defined(__GNUC__)
+    __asm__("" : "+r"(x));
+#endif
+    return x;
+}
 
 /* What stands for a state: up to four words, the lower half of `low` first; the rest zero. */
 typedef struct ex_key {
@@ -254,6 +273,11 @@ void ex_reduce_time(struct ex_worker *worker);
  * documented order. worker->marking is then the state at the time of these occurrences (pn_net.now). */
 ex_found_t ex_successors(struct ex_worker *worker, const ex_key_t *key, ex_arc_sink_t sink, void *user);
 
+/* As ex_arc_sink_t, with the marking that follows. */
+typedef bool (*ex_marking_sink_t)(void *user, uint32_t transition, const void *binding, const void *next);
+/* All binding elements that are enabled in worker->marking now, whatever the reductions. */
+ex_found_t ex_all_successors(struct ex_worker *worker, ex_marking_sink_t sink, void *user);
+
 /* --- store (explore_store.c) --------------------------------------------------------------------------------------- */
 
 typedef struct ex_store {
@@ -353,6 +377,8 @@ typedef struct ex_worker {
     ex_scratch_t *scratch; /* of the codec and the successors */
     struct ex_search *search;   /* of the search */
     struct ex_bounds *bounds;   /* of explore_bounds.c */
+    struct ex_stubborn *stubborn; /* of explore_stubborn.c */
+    struct ex_symmetry *symmetry; /* of explore_symmetry.c */
     int64_t elapsed;         /* when the time is reduced: how much of it went by in ex_successors before something was enabled */
     /* Counted during the exploration. */
     uint64_t states;         /* expanded */
@@ -393,6 +419,7 @@ typedef struct ex_run {
     uint64_t approximate_bytes; /* of what stands for the store */
     bool has_bounds;
     struct ex_level *level;     /* of explore_search.c */
+    struct ex_reduction *reduction; /* of explore_elements.c; NULL: none that needs a table */
     _Atomic(const char *) phase; /* for the progress lines */
     struct ex_graph *graph;  /* of explore_graph.c; NULL: none */
 } ex_run_t;

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  * explore_successors.c - what is enabled in a state, and what becomes of it.
  */
-#include "explore_impl.h"
+#include "explore_reduce.h"
 
 #include <string.h>
 
@@ -11,6 +11,7 @@
 typedef struct hunt {
     ex_worker_t *worker;
     ex_arc_sink_t sink;
+    ex_marking_sink_t all; /* not NULL: gets every successor, as it is */
     void *user;
     bool is_found;
     bool is_stopped; /* by the sink */
@@ -45,11 +46,40 @@ void ex_reduce_time(ex_worker_t *worker)
     }
 }
 
+/* Whether the reductions look at a successor. */
+static bool is_taken(const hunt_t *hunt, uint32_t transition, const void *next)
+{
+    bool is_known = true;
+    const bool is_taken = ex_stubborn_takes(hunt->worker, transition, next, &is_known);
+    if (!is_known) {
+        ex_differs(hunt->worker, transition, "a binding element occurs that the table of elements lacks");
+    }
+    return is_taken;
+}
+
+/* The key of a successor, of that which stands for it if there are symmetries. */
+static bool encode(const hunt_t *hunt, uint32_t transition, const void *next, ex_key_t *key)
+{
+    const ex_reduction_t *reduction = hunt->worker->run->reduction;
+    if ((reduction != NULL) && reduction->is_symmetric) {
+        return ex_encode(hunt->worker, ex_canonical(hunt->worker, next), key);
+    }
+    return ex_encode_next(hunt->worker, transition, next, key);
+}
+
 static bool on_successor(void *user, uint32_t transition, const void *binding, const void *next)
 {
     hunt_t *hunt = user;
+    const ex_reduction_t *reduction = hunt->worker->run->reduction;
     ex_key_t key;
     hunt->is_found = true;
+    if (hunt->all != NULL) {
+        hunt->is_stopped = !hunt->all(hunt->user, transition, binding, next);
+        return !hunt->is_stopped;
+    }
+    if ((reduction != NULL) && reduction->is_stubborn && !is_taken(hunt, transition, next)) {
+        return !hunt->worker->failed;
+    }
     if (hunt->worker->run->options.is_time_reduced) {
         settle(hunt->worker->scratch->next, transition); /* that is *next */
         if (hunt->has_aged && !ex_encode_time(hunt->worker)) {
@@ -57,7 +87,7 @@ static bool on_successor(void *user, uint32_t transition, const void *binding, c
         }
         hunt->has_aged = false;
     }
-    if (!ex_encode_next(hunt->worker, transition, next, &key)) {
+    if (!encode(hunt, transition, next, &key)) {
         return false;
     }
     if (!hunt->sink(hunt->user, transition, binding, &key)) {
@@ -139,14 +169,39 @@ ex_found_t ex_successors(ex_worker_t *worker, const ex_key_t *key, ex_arc_sink_t
     if (!ex_load(worker, key)) {
         return EX_FAILED;
     }
+    const ex_reduction_t *reduction = worker->run->reduction;
+    if ((reduction != NULL) && reduction->is_stubborn) {
+        ex_stubborn_begin(worker);
+    }
     bool goes_on = hunt_now(&hunt);
     pn_time_t next = { 0 };
-    while (goes_on && !hunt.is_found && pn_net.timed && pn_net.next_time(worker->marking, &next)) {
+    while (goes_on && !hunt.is_found && pn_net.timed && pn_net.next_time(&worker->cx, worker->marking, &next)) {
         goes_on = advance(&hunt, next) && hunt_now(&hunt);
+    }
+    if (goes_on && !hunt.is_found && (worker->cx.error != PN_OK)) {
+        ex_fail(worker, -1); /* a delay could not be computed */
+        goes_on = false;
     }
     if (hunt.has_aged) {
         worker->scratch->is_loaded = false;
     }
+    if (hunt.is_stopped) {
+        return EX_STOPPED;
+    }
+    if (!goes_on) {
+        return EX_FAILED;
+    }
+    if ((reduction != NULL) && reduction->is_stubborn && !ex_stubborn_is_even(worker)) {
+        ex_differs(worker, UINT32_MAX, "a binding element of the table of elements does not occur");
+        return EX_FAILED;
+    }
+    return hunt.is_found ? EX_SOME : EX_DEAD;
+}
+
+ex_found_t ex_all_successors(ex_worker_t *worker, ex_marking_sink_t sink, void *user)
+{
+    hunt_t hunt = { .worker = worker, .all = sink, .user = user };
+    const bool goes_on = hunt_now(&hunt);
     if (hunt.is_stopped) {
         return EX_STOPPED;
     }

@@ -2,6 +2,7 @@
  * explore_trace.c - a run to a node as a trace that can be replayed, and the whole graph as lines of JSON for pictures and comparisons.
  */
 #include "explore_graph.h"
+#include "explore_reduce.h"
 
 #include <inttypes.h>
 #include <stdlib.h>
@@ -67,6 +68,54 @@ static uint32_t *way_to(const ex_graph_t *graph, uint32_t node, uint64_t *length
     return way;
 }
 
+/* --- with symmetries: the states of the way stand for others, and a run goes through one of them after the other --- */
+
+typedef struct walk {
+    ex_worker_t *worker;
+    const uint64_t *wanted; /* packed part of the state that is next on the way */
+    void *marking;          /* where the run is, and then where it goes on */
+    pn_trace_t *trace;
+    bool is_found;
+} walk_t;
+
+static bool walk_step(void *user, uint32_t transition, const void *binding, const void *next)
+{
+    walk_t *const walk = user;
+    if (memcmp(ex_canonical(walk->worker, next), walk->wanted, pn_net.packed_size) != 0) {
+        return true;
+    }
+    walk->is_found = true;
+    (void)memcpy(walk->marking, next, pn_net.marking_size);
+    pn_trace_model_occurrence(walk->trace, pn_net.now(walk->worker->marking), pn_net.real_time, &pn_net.transition[transition], binding);
+    return false;
+}
+
+static bool write_walk(ex_run_t *run, const ex_graph_t *graph, const uint32_t *way, uint64_t length, pn_trace_t *trace)
+{
+    ex_worker_t *const worker = &run->worker[0];
+    uint64_t *const wanted = calloc(1U, pn_net.marking_size + sizeof *wanted);
+    void *const marking = calloc(1U, pn_net.marking_size + sizeof *wanted);
+    walk_t walk = { .worker = worker, .wanted = wanted, .marking = marking, .trace = trace };
+    ex_key_t key;
+    bool is_fine = (wanted != NULL) && (marking != NULL) && ex_load(worker, &run->initial);
+    if (is_fine) {
+        (void)memcpy(marking, worker->marking, pn_net.marking_size);
+    }
+    for (uint64_t i = 1U; is_fine && (i < length); i++) {
+        is_fine = ex_store_fetch(&run->store, graph->slot[way[i]], &key) && ex_load(worker, &key);
+        if (is_fine) {
+            (void)memcpy(wanted, worker->marking, pn_net.packed_size);
+            (void)memcpy(worker->marking, marking, pn_net.marking_size);
+            worker->scratch->is_loaded = false;
+            walk.is_found = false;
+            is_fine = (ex_all_successors(worker, walk_step, &walk) == EX_STOPPED) && walk.is_found;
+        }
+    }
+    free(wanted);
+    free(marking);
+    return is_fine;
+}
+
 int64_t ex_write_trace(ex_run_t *run, const ex_graph_t *graph, uint32_t node, const char *path)
 {
     ex_worker_t *const worker = &run->worker[0];
@@ -84,7 +133,11 @@ int64_t ex_write_trace(ex_run_t *run, const ex_graph_t *graph, uint32_t node, co
     }
     (void)snprintf(members, sizeof members, "\"seed\": %" PRIu64, run->options.seed);
     pn_trace_header_with(&trace, &pn_net, "simulate", NULL, members);
-    for (uint64_t i = 0U; is_fine && ((i + 1U) < length); i++) {
+    const bool is_symmetric = (run->reduction != NULL) && run->reduction->is_symmetric;
+    if (is_symmetric) {
+        is_fine = write_walk(run, graph, way, length, &trace);
+    }
+    for (uint64_t i = 0U; is_fine && !is_symmetric && ((i + 1U) < length); i++) {
         ex_key_t from;
         step_search_t search = { .worker = worker, .trace = &trace, .before = elapsed };
         is_fine = ex_store_fetch(&run->store, graph->slot[way[i]], &from) &&

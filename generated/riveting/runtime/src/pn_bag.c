@@ -327,6 +327,26 @@ static void consider(const pn_bag_t *bag, pn_time_t time, pn_time_t now, bool *f
     }
 }
 
+/* When a token becomes available to an arc that takes it so much before its stamp. */
+static void consider_early(const pn_bag_t *bag, pn_time_t stamp, pn_time_t early, pn_time_t now, bool *found, pn_time_t *next)
+{
+    if (bag->is_real_time) {
+        consider(bag, (pn_time_t){ .real = stamp.real - early.real }, now, found, next);
+        return;
+    }
+    int64_t time = 0;
+    if (!__builtin_sub_overflow(stamp.integer, early.integer, &time)) {
+        consider(bag, (pn_time_t){ .integer = time }, now, found, next);
+    }
+}
+
+void pn_bag_threshold(const pn_bag_t *bag, const void *marking, pn_time_t now, pn_time_t early, bool *found, pn_time_t *next)
+{
+    for (uint32_t i = 0U; bag->is_timed && (i < pn_bag_used(bag, marking)); i++) {
+        consider_early(bag, pn_bag_stamp_of(bag, pn_bag_entry(bag, marking, i)), early, now, found, next);
+    }
+}
+
 void pn_bag_next_time(const pn_bag_t *bag, const void *marking, pn_time_t now, bool *found, pn_time_t *next)
 {
     if (!bag->is_timed) {
@@ -335,17 +355,8 @@ void pn_bag_next_time(const pn_bag_t *bag, const void *marking, pn_time_t now, b
     for (uint32_t i = 0U; i < pn_bag_used(bag, marking); i++) {
         const pn_time_t stamp = pn_bag_stamp_of(bag, pn_bag_entry(bag, marking, i));
         consider(bag, stamp, now, found, next);
-        if (bag->is_early_open && (stamp.integer > now.integer)) {
-            consider(bag, (pn_time_t){ .integer = now.integer + 1 }, now, found, next);
-        }
         for (uint32_t k = 0U; k < bag->early_count; k++) {
-            pn_time_t earlier = stamp;
-            if (bag->is_real_time) {
-                earlier.real -= bag->early[k].real;
-            } else {
-                earlier.integer -= bag->early[k].integer;
-            }
-            consider(bag, earlier, now, found, next);
+            consider_early(bag, stamp, bag->early[k], now, found, next);
         }
     }
 }

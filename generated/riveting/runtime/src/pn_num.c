@@ -311,6 +311,57 @@ int pn_real_order(double a, double b)
     return (a > b) - (a < b);
 }
 
+/* The reals in their order as integers, and back. */
+static int64_t real_rank(double x)
+{
+    int64_t bits = 0;
+    (void)memcpy(&bits, &x, sizeof bits);
+    return (bits >= 0) ? bits : (INT64_MIN - bits);
+}
+
+static double real_of_rank(int64_t rank)
+{
+    const int64_t bits = (rank >= 0) ? rank : (INT64_MIN - rank);
+    double x = 0.0;
+    (void)memcpy(&x, &bits, sizeof x);
+    return x;
+}
+
+double pn_real_latest(double now, double early)
+{
+    const double most = (double)INFINITY;
+    if (isnan(early) || isnan(now) || !((-most - early) <= now)) {
+        return -most;
+    }
+    if ((most - early) <= now) {
+        return most;
+    }
+    /* stamp - early grows with the stamp: the first rank is one of those accepted, the last is not. */
+    int64_t first = real_rank(-most);
+    int64_t last = real_rank(most);
+    const double guess = now + early;
+    if (isfinite(guess)) {
+        /* nearly always it is this one */
+        const int64_t rank = real_rank(guess);
+        if ((guess - early) <= now) {
+            first = rank;
+            last = ((real_of_rank(rank + 1) - early) <= now) ? last : (rank + 1);
+        } else {
+            last = rank;
+            first = ((real_of_rank(rank - 1) - early) <= now) ? (rank - 1) : first;
+        }
+    }
+    while ((last - 1) > first) {
+        const int64_t middle = (first & last) + ((first ^ last) >> 1);
+        if ((real_of_rank(middle) - early) <= now) {
+            first = middle;
+        } else {
+            last = middle;
+        }
+    }
+    return real_of_rank(first);
+}
+
 /* The shortest digits that read back to x > 0: 15 digits always come back from decimal, 17 from binary; below the normal
  * range fewer than 15 may do. Gives d.ddd...e[+-]xx as printf writes it. */
 static void shortest_digits(char *out, double x)

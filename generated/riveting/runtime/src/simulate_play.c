@@ -392,11 +392,15 @@ static sim_next_t sim_move_on(sim_t *sim)
     bool is_fine = true;
     const pn_time_t start = pn_net.now(sim->marking);
     pn_time_t next = start;
-    while (is_fine && (sim->enabled_count == 0U) && pn_net.timed && pn_net.next_time(sim->marking, &next)) {
+    while (is_fine && (sim->enabled_count == 0U) && pn_net.timed && pn_net.next_time(&sim->cx, sim->marking, &next)) {
         pn_net.set_now(sim->marking, next);
         sim_forget(sim);
         is_fine = sim_find_enabled(sim);
         sim->time_grew = true;
+    }
+    if (is_fine && !pn_ok(&sim->cx)) {
+        sim_fail(sim, "looking for the next time", -1, false);
+        is_fine = false;
     }
     if (!is_fine) {
         return SIM_FAILED;

@@ -89,7 +89,7 @@ bool sup_play(sup_t *sup, int32_t owner, sup_fired_t fired, void *user, uint64_t
 void sup_set_time(sup_t *sup, double t);
 
 /* When, in seconds, something may become enabled by time alone; false if never. */
-bool sup_next_time(const sup_t *sup, double *t);
+bool sup_next_time(sup_t *sup, double *t);
 
 /* Whether a final place holds a token. */
 bool sup_is_final(const sup_t *sup);

@@ -170,10 +170,13 @@ void sup_set_time(sup_t *sup, double t)
     sup->net->set_now(sup->marking, next);
 }
 
-bool sup_next_time(const sup_t *sup, double *t)
+bool sup_next_time(sup_t *sup, double *t)
 {
     pn_time_t next;
-    if (!sup->net->timed || !sup->net->next_time(sup->marking, &next)) {
+    if (!sup->net->timed || !sup->net->next_time(&sup->cx, sup->marking, &next)) {
+        if (sup->cx.error != PN_OK) {
+            (void)sup_stop_error(sup, "looking for the next time");
+        }
         return false;
     }
     *t = (sup->net->real_time ? next.real : (double)next.integer) / sup->options.time_scale;

@@ -26,9 +26,8 @@ typedef struct pn_bag {
     size_t value;            /* offsets in a token */
     size_t count;
     size_t stamp;
-    uint32_t early_count;      /* of the delays of input arcs (`x@+3`), by which tokens may be taken before their stamps */
+    uint32_t early_count;      /* of the constant delays of input arcs (`x@+3`), by which tokens may be taken before their stamps */
     const pn_time_t *early;
-    bool is_early_open;        /* there are delays that are known only when they are computed; integer time then goes on in ones */
     /* A packed place: its counters in the packed part of the marking, the number of a colour (PN_NO_COLOUR: it is none) and the
      * colour of a number. */
     bool is_packed;
@@ -71,8 +70,10 @@ void pn_bag_check(pn_ctx_t *cx, const pn_bag_t *bag, void *value);
 void pn_bag_clear(const pn_bag_t *bag, void *marking);
 /* Integer stamps count from `by` on, and those that are not after it are 0 and equal. */
 void pn_bag_age(const pn_bag_t *bag, void *marking, pn_time_t by);
-/* The earliest time after `now` at which a token becomes available, if it is before *next or *found is false. */
+/* The earliest time after `now` at which a token becomes available to arcs with constant delays, if it is before *next or *found is
+ * false; and the same for arcs with one delay, which was computed. */
 void pn_bag_next_time(const pn_bag_t *bag, const void *marking, pn_time_t now, bool *found, pn_time_t *next);
+void pn_bag_threshold(const pn_bag_t *bag, const void *marking, pn_time_t now, pn_time_t early, bool *found, pn_time_t *next);
 void pn_bag_json(const pn_bag_t *bag, const void *marking, pn_text_t *out);
 uint32_t pn_bag_token(const pn_bag_t *bag, const void *marking, uint32_t i, pn_leaf_t *leaf, uint32_t capacity);
 /* Adds one token made of leaves, stamped with the context's time. */

@@ -152,8 +152,9 @@ typedef struct pn_net {
     /* Model time. Times are int64_t; in a real-time net microseconds-free doubles, bit-copied (pn_time_t in pn_types.h). */
     pn_time_t (*now)(const void *marking);
     void (*set_now)(void *marking, pn_time_t now);
-    /* The earliest time after `now` at which a token stamp ends; false if there is none. */
-    bool (*next_time)(const void *marking, pn_time_t *next);
+    /* The earliest time after `now` at which something may become enabled: a stamp ends, or the delay of an input arc lets a token be
+     * taken before that. False if there is none, or after an error (delays are computed). */
+    bool (*next_time)(pn_ctx_t *cx, const void *marking, pn_time_t *next);
     /* Canonical bytes of a marking: equal markings, equal bytes. Returns the length, 0 when `capacity` is too small. */
     size_t (*encode)(const void *marking, uint8_t *out, size_t capacity);
     bool (*decode)(pn_ctx_t *cx, void *marking, const uint8_t *in, size_t length);

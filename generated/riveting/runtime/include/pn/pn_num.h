@@ -207,6 +207,8 @@ size_t pn_real_repr(char *out, double x);
 
 /* -1, 0, 1 in the order of colour sets: nan before every number, 0.0 and -0.0 equal. */
 int pn_real_order(double a, double b);
+/* The latest stamp with stamp - early <= now, as these are computed: what an input arc with a delay accepts. */
+double pn_real_latest(double now, double early);
 static inline int pn_int_order(int64_t a, int64_t b)
 {
     return (a > b) - (a < b);
