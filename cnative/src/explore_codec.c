@@ -509,10 +509,12 @@ static bool number_dirty(ex_worker_t *worker)
 /* The key of a marking that is nothing but a short packed part. */
 static inline void plain_key(const ex_codec_t *codec, const void *marking, ex_key_t *key)
 {
-    uint64_t word[2];
-    (void)memcpy(word, marking, sizeof word); /* there is room for so much */
-    key->low = word[0] & codec->plain_low;
-    key->high = word[1] & codec->plain_high;
+    uint64_t low;
+    uint64_t high;
+    (void)memcpy(&low, marking, sizeof low); /* there is room for so much */
+    (void)memcpy(&high, (const unsigned char *)marking + sizeof low, sizeof high);
+    key->low = ex_alone(low) & codec->plain_low;
+    key->high = ex_alone(high) & codec->plain_high;
 }
 
 /* The key of the cells. */
@@ -603,14 +605,10 @@ bool ex_encode_time(ex_worker_t *worker)
     return true;
 }
 
-bool ex_encode_next(ex_worker_t *worker, uint32_t transition, const void *next, ex_key_t *key)
+static EX_APART bool encode_cells(ex_worker_t *worker, uint32_t transition, const void *next, ex_key_t *key)
 {
     const ex_codec_t *codec = worker->run->codec;
     ex_scratch_t *scratch = worker->scratch;
-    if (codec->is_plain) {
-        plain_key(codec, next, key);
-        return true;
-    }
     bool is_fine = true;
     uint32_t number;
     if (codec->is_whole) {
@@ -634,6 +632,16 @@ bool ex_encode_next(ex_worker_t *worker, uint32_t transition, const void *next, 
     root_key(codec, scratch->cell, key);
     undo(scratch);
     return is_fine;
+}
+
+bool ex_encode_next(ex_worker_t *worker, uint32_t transition, const void *next, ex_key_t *key)
+{
+    const ex_codec_t *codec = worker->run->codec;
+    if (codec->is_plain) {
+        plain_key(codec, next, key);
+        return true;
+    }
+    return encode_cells(worker, transition, next, key);
 }
 
 /* --- decoding -------------------------------------------------------------------------------------------------------------- */

@@ -68,6 +68,22 @@ typedef struct ex_error {
     int64_t transition; /* index, -1: none */
 } ex_error_t;
 
+/* What is rare is kept out of what is frequent. */
+#if defined(__GNUC__)
+#define EX_APART __attribute__((noinline))
+#else
+#define EX_APART
+#endif
+
+/* The same number, in a register of its own: two words that were stored one by one are not to be loaded as one. */
+static inline uint64_t ex_alone(uint64_t x)
+{
+#if defined(__GNUC__)
+    __asm__("" : "+r"(x));
+#endif
+    return x;
+}
+
 /* What stands for a state: up to four words, the lower half of `low` first; the rest zero. */
 typedef struct ex_key {
     uint64_t low;

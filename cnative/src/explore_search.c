@@ -3,7 +3,8 @@
  *
  * Keys of states that are still to be expanded lie in chunks. Breadth first, threads take chunks of this level and fill chunks of the
  * next one; depth first, each has a stack of chunks and gives the lowest one away when others have nothing to do. Successors are put
- * into the store in batches: while the cache line of one is on its way from memory, others are made.
+ * into the store in batches: while the cache line of one is on its way from memory, others are made. Those that this thread has met
+ * a short while ago are not even looked up: neighbours have many successors in common.
  */
 #define _POSIX_C_SOURCE 200809L
 
@@ -16,6 +17,7 @@
 enum {
     CHUNK_SIZE = 1 << 14,
     BATCH = 64,
+    RECENT = 1 << 13,  /* a power of two: as many as a cache near the processor holds */
     SHARED_FROM = 32, /* keys in a chunk that is given to idle threads */
     FIRST_KEYS = 1 << 14,
     REPORTED = 1 << 12 /* states after which a thread tells how far it is */
@@ -58,6 +60,7 @@ typedef struct ex_search {
     chunk_t *out;       /* being filled; depth first: the top of the stack */
     chunk_t *expanding; /* breadth first */
     chunk_t *bottom;    /* depth first: the lowest chunk of the stack (`next` leads downwards) */
+    ex_key_t recent[RECENT]; /* keys that are in the store, or in the batch; zero: none, or the key that is zero */
     pending_t batch[BATCH];
     uint32_t pending;
     bool is_exact;
@@ -264,22 +267,32 @@ static bool flush(ex_worker_t *worker)
     return goes_on && !ex_is_stopping(run);
 }
 
-static bool on_arc(void *user, uint32_t transition, const void *binding, const ex_key_t *key)
+static bool on_arc(void *user, uint32_t transition, const void *binding, const ex_key_t *found)
 {
     ex_worker_t *worker = user;
     ex_search_t *own = worker->search;
     (void)binding;
+    const ex_key_t key = { ex_alone(found->low), ex_alone(found->high) };
+    const uint64_t hash = ex_hash(&key);
+    ex_key_t *recent = &own->recent[hash % (uint64_t)RECENT];
+    worker->fired[transition]++;
+    worker->arcs++;
+    if ((((recent->low ^ key.low) | (recent->high ^ key.high)) == 0U) && ((key.low | key.high) != 0U)) {
+        return true;
+    }
+    recent->low = key.low;
+    recent->high = key.high;
     pending_t *pending = &own->batch[own->pending];
-    pending->key = *key;
-    pending->stored = *key;
-    pending->hash = ex_hash(key);
+    pending->key.low = key.low;
+    pending->key.high = key.high;
+    pending->stored.low = key.low;
+    pending->stored.high = key.high;
+    pending->hash = hash;
     if (own->is_exact) {
-        ex_store_prefetch(&worker->run->store, pending->hash);
+        ex_store_prefetch(&worker->run->store, hash);
     } else {
         shorten(worker->run, pending);
     }
-    worker->fired[transition]++;
-    worker->arcs++;
     own->pending++;
     return (own->pending < (uint32_t)BATCH) || flush(worker);
 }
