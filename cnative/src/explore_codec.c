@@ -135,6 +135,7 @@ static void lay_words(ex_codec_t *codec)
     }
     codec->words = word;
     codec->has_cells = word > codec->packed_words;
+    codec->zero_cell = (2U * word) + 1U; /* behind all nodes */
 }
 
 /* A node over some cells; a lone cell stands for itself. */
@@ -147,6 +148,9 @@ static uint32_t add_node(ex_codec_t *codec, const uint32_t *cell, uint32_t count
     node->count = count;
     node->parent = NONE;
     node->table = EX_KEY_WORDS;
+    for (uint32_t i = 0U; i < EX_TUPLE_WORDS; i++) {
+        node->child[i] = codec->zero_cell;
+    }
     for (uint32_t i = 0U; i < count; i++) {
         node->child[i] = cell[i];
         codec->parent[cell[i]] = codec->nodes;
@@ -159,7 +163,7 @@ static uint32_t add_node(ex_codec_t *codec, const uint32_t *cell, uint32_t count
 static void lay_part(ex_codec_t *codec, uint32_t *cell, uint32_t count)
 {
     while (count > 1U) {
-        const uint32_t groups = rounded_up(count, 4U);
+        const uint32_t groups = rounded_up(count, EX_TUPLE_WORDS);
         uint32_t from = 0U;
         for (uint32_t g = 0U; g < groups; g++) {
             const uint32_t to = (uint32_t)(((uint64_t)count * (g + 1U)) / groups);
@@ -170,7 +174,6 @@ static void lay_part(ex_codec_t *codec, uint32_t *cell, uint32_t count)
     }
     if (cell[0] >= codec->words) {
         codec->node[cell[0] - codec->words].table = codec->roots;
-        codec->has_quads[codec->roots] = true;
     }
     codec->root[codec->roots] = cell[0];
     codec->roots++;
@@ -181,6 +184,7 @@ void ex_codec_group(ex_codec_t *codec, uint32_t *word, const uint32_t end[EX_KEY
     uint32_t from = 0U;
     codec->nodes = 0U;
     codec->roots = 0U;
+    (void)memset(codec->tuple_words, 0, sizeof codec->tuple_words);
     for (uint32_t i = 0U; i < (2U * codec->words); i++) {
         codec->parent[i] = NONE;
     }
@@ -190,7 +194,8 @@ void ex_codec_group(ex_codec_t *codec, uint32_t *word, const uint32_t end[EX_KEY
     }
     for (uint32_t n = 0U; n < codec->nodes; n++) {
         codec->node[n].parent = codec->parent[codec->words + n];
-        codec->has_quads[codec->node[n].table] = true;
+        codec->tuple_words[codec->node[n].table] =
+            (codec->node[n].table < EX_KEY_WORDS) ? codec->node[n].count : EX_TUPLE_WORDS;
     }
 }
 
@@ -293,10 +298,10 @@ bool ex_codec_number(ex_run_t *run)
 {
     ex_codec_t *codec = run->codec;
     for (uint32_t i = 0U; i < EX_TABLES; i++) {
-        if (codec->quads[i].quad != NULL) {
-            ex_quads_free(&codec->quads[i]);
+        if (codec->tuples[i].lane != NULL) {
+            ex_tuples_free(&codec->tuples[i]);
         }
-        if (codec->has_quads[i] && !ex_quads_make(&codec->quads[i], run)) {
+        if ((codec->tuple_words[i] > 0U) && !ex_tuples_make(&codec->tuples[i], run, codec->tuple_words[i])) {
             return false;
         }
     }
@@ -308,7 +313,7 @@ uint64_t ex_codec_bytes(const ex_run_t *run)
     const ex_codec_t *codec = run->codec;
     uint64_t bytes = codec->has_cells ? ex_bytes_bytes(&codec->bytes) : 0U;
     for (uint32_t i = 0U; i < EX_TABLES; i++) {
-        bytes += codec->has_quads[i] ? ex_quads_bytes(&codec->quads[i]) : 0U;
+        bytes += (codec->tuple_words[i] > 0U) ? ex_tuples_bytes(&codec->tuples[i]) : 0U;
     }
     return bytes;
 }
@@ -332,7 +337,7 @@ void ex_key_widths(const ex_run_t *run, uint32_t width[EX_KEY_WORDS])
             width[i] = codec->slice_width[cell];
         } else {
             const ex_index_t *index = (cell < codec->words) ? &codec->bytes.index
-                                                            : &codec->quads[codec->node[cell - codec->words].table].index;
+                                                            : &codec->tuples[codec->node[cell - codec->words].table].index;
             const uint64_t count = atomic_load(&index->count);
             width[i] = bits_of(count + (count / 4U) + 64U);
         }
@@ -462,21 +467,21 @@ static void undo(ex_scratch_t *scratch)
     scratch->undone = 0U;
 }
 
-static ex_quad_t quad_of(const ex_node_t *node, const uint32_t *cell)
+static inline void lanes_of(const ex_node_t *node, const uint32_t *cell, uint64_t lane[EX_TUPLE_LANES])
 {
-    uint64_t value[4] = { 0U, 0U, 0U, 0U };
-    for (uint32_t i = 0U; i < node->count; i++) {
-        value[i] = cell[node->child[i]];
+    for (uint32_t i = 0U; i < EX_TUPLE_LANES; i++) {
+        /* Children that there are not are cells that are always 0. */
+        lane[i] = cell[node->child[2U * i]] | ((uint64_t)cell[node->child[(2U * i) + 1U]] << 32U);
     }
-    return (ex_quad_t){ value[0] | (value[1] << 32U), value[2] | (value[3] << 32U) };
 }
 
 static bool number_node(ex_worker_t *worker, uint32_t n, uint32_t *number)
 {
     ex_codec_t *codec = worker->run->codec;
-    const ex_quad_t quad = quad_of(&codec->node[n], worker->scratch->cell);
+    uint64_t lane[EX_TUPLE_LANES];
+    lanes_of(&codec->node[n], worker->scratch->cell, lane);
     for (;;) {
-        *number = ex_quads_number(&codec->quads[codec->node[n].table], quad);
+        *number = ex_tuples_number(&codec->tuples[codec->node[n].table], lane);
         if (*number != EX_NO_NUMBER) {
             return true;
         }
@@ -651,11 +656,10 @@ static void open_tree(const ex_codec_t *codec, uint32_t *cell)
 {
     for (uint32_t n = codec->nodes; n > 0U; n--) {
         const ex_node_t *node = &codec->node[n - 1U];
-        const ex_quad_t quad = codec->quads[node->table].quad[cell[codec->words + n - 1U]];
-        const uint32_t value[4] = { (uint32_t)quad.low, (uint32_t)(quad.low >> 32U), (uint32_t)quad.high,
-                                    (uint32_t)(quad.high >> 32U) };
+        const ex_tuples_t *tuples = &codec->tuples[node->table];
+        const uint64_t *lane = &tuples->lane[(uint64_t)cell[codec->words + n - 1U] * tuples->lanes];
         for (uint32_t i = 0U; i < node->count; i++) {
-            cell[node->child[i]] = value[i];
+            cell[node->child[i]] = (uint32_t)(lane[i / 2U] >> (32U * (i % 2U)));
         }
     }
 }

@@ -63,7 +63,7 @@ static void grow_all(ex_run_t *run)
     uint32_t width[EX_KEY_WORDS];
     bool is_fine = ex_bytes_grow(&codec->bytes);
     for (uint32_t i = 0U; i < EX_TABLES; i++) {
-        is_fine = is_fine && (!codec->has_quads[i] || ex_quads_grow(&codec->quads[i]));
+        is_fine = is_fine && ((codec->tuple_words[i] == 0U) || ex_tuples_grow(&codec->tuples[i]));
     }
     if (run->options.is_hashed) {
         (void)memcpy(width, run->store.width, sizeof width);

@@ -162,7 +162,7 @@ static void try_stores(void)
 
 typedef struct job {
     ex_store_t *store;
-    ex_quads_t *quads;
+    ex_tuples_t *tuples;
     ex_bytes_t *bytes;
     uint64_t start;
     uint64_t count;
@@ -182,10 +182,10 @@ static void *insert_all(void *user)
         const ex_insertion_t insertion = ex_store_insert(job->store, &key, ex_hash(&key), NULL);
         check(insertion != EX_FULL, "full");
         job->fresh += (insertion == EX_NEW) ? 1U : 0U;
-        const ex_quad_t quad = { i * 3U, i << 20U };
+        const uint64_t lane[EX_TUPLE_LANES] = { i * 3U, i << 20U, i ^ 5U, 0U };
         unsigned char text[64];
         const int length = snprintf((char *)text, sizeof text, "%0*llu", (int)(i % 40U) + 1, (unsigned long long)i);
-        job->number[i - 1U] = ex_quads_number(job->quads, quad);
+        job->number[i - 1U] = ex_tuples_number(job->tuples, lane);
         job->name[i - 1U] = ex_bytes_number(job->bytes, (uint32_t)(i % 7U), text, (uint32_t)length);
     }
     return NULL;
@@ -196,25 +196,25 @@ static void try_threads(void)
     const uint64_t count = 60000U;
     ex_run_t run;
     ex_store_t store;
-    ex_quads_t quads;
+    ex_tuples_t tuples;
     ex_bytes_t bytes;
     pthread_t thread[WORKERS];
     job_t job[WORKERS];
     make_run(&run, (uint64_t)1U << 30U);
-    (void)memset(&quads, 0, sizeof quads);
+    (void)memset(&tuples, 0, sizeof tuples);
     (void)memset(&bytes, 0, sizeof bytes);
-    check(ex_store_make(&store, &run, s_widths, (count * 5U) / 4U) && ex_quads_make(&quads, &run) && ex_bytes_make(&bytes, &run),
+    check(ex_store_make(&store, &run, s_widths, (count * 5U) / 4U) && ex_tuples_make(&tuples, &run, 5U) && ex_bytes_make(&bytes, &run),
           "no memory");
-    while ((quads.index.limit < (count + WORKERS)) || (bytes.index.limit < (count + WORKERS))) {
+    while ((tuples.index.limit < (count + WORKERS)) || (bytes.index.limit < (count + WORKERS))) {
         /* As if they were nearly full. */
-        atomic_store(&quads.index.count, quads.index.limit);
+        atomic_store(&tuples.index.count, tuples.index.limit);
         atomic_store(&bytes.index.count, bytes.index.limit);
-        check(ex_quads_grow(&quads) && ex_bytes_grow(&bytes), "it does not grow");
-        atomic_store(&quads.index.count, 0U);
+        check(ex_tuples_grow(&tuples) && ex_bytes_grow(&bytes), "it does not grow");
+        atomic_store(&tuples.index.count, 0U);
         atomic_store(&bytes.index.count, 0U);
     }
     for (uint32_t w = 0U; w < (uint32_t)WORKERS; w++) {
-        job[w] = (job_t){ .store = &store, .quads = &quads, .bytes = &bytes, .start = (w % 2U) * (count / 3U), .count = count };
+        job[w] = (job_t){ .store = &store, .tuples = &tuples, .bytes = &bytes, .start = (w % 2U) * (count / 3U), .count = count };
         job[w].number = calloc(count, sizeof(uint32_t));
         job[w].name = calloc(count, sizeof(uint32_t));
         check((job[w].number != NULL) && (job[w].name != NULL), "no memory");
@@ -232,7 +232,7 @@ static void try_threads(void)
             check(job[w].number[i] == job[0].number[i], "threads have different numbers");
             check(job[w].name[i] == job[0].name[i], "threads have different numbers of texts");
         }
-        check(quads.quad[job[0].number[i]].low == ((i + 1U) * 3U), "the number of something else");
+        check(tuples.lane[(uint64_t)job[0].number[i] * 3U] == ((i + 1U) * 3U), "the number of something else");
         check(bytes.of[job[0].name[i]].place == (uint32_t)((i + 1U) % 7U), "the number of another text");
     }
     for (uint32_t w = 0U; w < (uint32_t)WORKERS; w++) {
@@ -248,27 +248,27 @@ static void try_numbers(void)
 {
     const uint64_t count = 150000U;
     ex_run_t run;
-    ex_quads_t quads;
+    ex_tuples_t tuples;
     ex_bytes_t bytes;
     make_run(&run, (uint64_t)1U << 30U);
-    (void)memset(&quads, 0, sizeof quads);
+    (void)memset(&tuples, 0, sizeof tuples);
     (void)memset(&bytes, 0, sizeof bytes);
-    check(ex_quads_make(&quads, &run) && ex_bytes_make(&bytes, &run), "no memory");
+    check(ex_tuples_make(&tuples, &run, 5U) && ex_bytes_make(&bytes, &run), "no memory");
     uint32_t *const number = calloc(count, sizeof *number);
     uint32_t *const name = calloc(count, sizeof *name);
     check((number != NULL) && (name != NULL), "no memory");
     uint64_t given = 0U;
     for (uint64_t step = 0U; step < (3U * count); step++) {
         const uint64_t i = draw(count);
-        const ex_quad_t quad = { i, ~i };
+        const uint64_t lane[EX_TUPLE_LANES] = { i, ~i, i / 2U, 0U };
         unsigned char text[32] = { 0 };
         (void)memcpy(text, &i, sizeof i);
         const uint32_t length = (uint32_t)(i % 24U) + 8U;
-        uint32_t found = ex_quads_number(&quads, quad);
+        uint32_t found = ex_tuples_number(&tuples, lane);
         uint32_t named = ex_bytes_number(&bytes, 3U, text, length);
         while (found == EX_NO_NUMBER) {
-            check(ex_quads_grow(&quads), "it does not grow");
-            found = ex_quads_number(&quads, quad);
+            check(ex_tuples_grow(&tuples), "it does not grow");
+            found = ex_tuples_number(&tuples, lane);
         }
         while (named == EX_NO_NUMBER) {
             check(ex_bytes_grow(&bytes), "it does not grow");
@@ -279,11 +279,11 @@ static void try_numbers(void)
         check((name[i] == 0U) || (name[i] == (named + 1U)), "another number of a text than before");
         number[i] = found + 1U;
         name[i] = named + 1U;
-        check((quads.quad[found].low == quad.low) && (quads.quad[found].high == quad.high), "the number of something else");
+        check(memcmp(&tuples.lane[(uint64_t)found * 3U], lane, 3U * sizeof lane[0]) == 0, "the number of something else");
         check((bytes.of[named].length == length) && (memcmp(&bytes.byte[bytes.of[named].offset], text, length) == 0),
               "the number of another text");
     }
-    check((atomic_load(&quads.index.count) == given) && (atomic_load(&bytes.index.count) == given), "holes without threads");
+    check((atomic_load(&tuples.index.count) == given) && (atomic_load(&bytes.index.count) == given), "holes without threads");
     unsigned char text[8] = { 1U, 0U };
     check(ex_bytes_number(&bytes, 4U, text, 8U) != (name[1] - 1U), "places share a text");
     free(number);
