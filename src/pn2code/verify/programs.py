@@ -35,6 +35,8 @@ MEMORY = 1 << 26
 """Bytes for the lists and strings of one thread, at first."""
 MOST_MEMORY = 1 << 32
 GROWTH = 4
+FEW = 2
+"""Places that get more one by one, before all do that may need it."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -45,11 +47,15 @@ class Sizes:
         packing: the widths of counters.
         room: by name of the place, different tokens; all others `ROOM`.
         memory: bytes for lists and strings.
+        proven: places whose counters are wide enough for all that can come.
+        enlarged: how often a place turned out to hold more.
     """
 
     packing: Packing
     room: Mapping[str, int] = field(default_factory=dict)
     memory: int = MEMORY
+    proven: frozenset[str] = frozenset()
+    enlarged: int = 0
 
     @staticmethod
     def start(net: FlatNet, storage: Mapping[str, str]) -> Sizes:
@@ -68,7 +74,10 @@ class Sizes:
             for k, b in bounds(net, storage=storage).items()
             if b.per_colour is not None
         }
-        return Sizes(choose(net, counts, proven), {k: n for k, n in room.items() if n > ROOM})
+        more = {k: n for k, n in room.items() if n > ROOM}
+        return Sizes(
+            choose(net, counts, proven), more, proven=frozenset(net.places[i].name for i in proven)
+        )
 
     def larger(self, place: str | None) -> Sizes | None:
         """With more for a place, or (None) for lists and strings; None at the end of all sizes."""
@@ -77,7 +86,21 @@ class Sizes:
         room = self.room.get(place, ROOM) * GROWTH
         if room > MOST_ROOM:
             return None
-        return replace(self, room={**self.room, place: room}, packing=self.packing.wider(place))
+        packing = self.packing.wider(place)
+        width = packing.of(place)
+        if self.enlarged >= FEW and width > 0:
+            # Others will be next. To find that out one by one would take longer than their counters are worth.
+            wider = {
+                name: max(own, width) if own > 0 and name not in self.proven else own
+                for name, own in packing.width.items()
+            }
+            packing = replace(packing, width=wider)
+        return replace(
+            self,
+            room={**self.room, place: room},
+            packing=packing,
+            enlarged=self.enlarged + 1,
+        )
 
 
 def generated(
