@@ -91,7 +91,7 @@ def _judge(
     most: int,
 ) -> tuple[str, bool]:
     if not found.get("complete") or not whole.get("complete"):
-        is_wrong = bool(whole.get("complete")) or found.get("why") == "error"
+        is_wrong = found.get("why") not in ("complete", "states", "seconds", "memory")
         states = f"{whole.get('nodes')} -> {found.get('nodes')}"
         return f"{'+'.join(reductions)}: {found.get('why', found)}, {states}", is_wrong
     said = f"{'+'.join(reductions)}: {whole['nodes']} -> {found['nodes']}"

@@ -17,7 +17,7 @@
 #include <string.h>
 
 enum {
-    WORK = 1 << 18 /* uses that are looked at in a state after the first set has been found */
+    WORK = 1 << 16 /* uses that are looked at in a state after the first set has been found */
 };
 
 /* Enabled elements with the same effect, which cannot be told apart. */
@@ -27,6 +27,16 @@ typedef struct effect {
     uint32_t left;   /* that have not come as successors */
     bool is_chosen;
 } effect_t;
+
+/* What has been closed for a counter: the same needs not be done again. */
+typedef struct closed {
+    uint64_t rivals;  /* number of the set in which it was, of elements that take `pre` and put `post` */
+    uint32_t pre;
+    uint32_t post;
+    uint64_t helpers; /* number of the set in which those were added that put tokens */
+    uint64_t costs;   /* number of the set in which it was worked out what that costs */
+    uint64_t cost;
+} closed_t;
 
 typedef struct ex_stubborn {
     const ex_reduction_t *reduction;
@@ -46,6 +56,8 @@ typedef struct ex_stubborn {
     uint32_t *best;       /* enabled elements of the best set */
     uint32_t best_count;
     uint64_t *next;       /* packed words */
+    closed_t *closed;     /* by counter */
+    uint64_t sets;        /* that have been begun */
     uint64_t work;
 } stubborn_t;
 
@@ -79,9 +91,11 @@ bool ex_stubborn_make(ex_worker_t *worker, const ex_reduction_t *reduction)
     own->is_in = ex_alloc(run, bits * sizeof *own->is_in);
     own->set = ex_alloc(run, elements * sizeof *own->set);
     own->best = ex_alloc(run, elements * sizeof *own->best);
+    own->closed = ex_alloc(run, ((uint64_t)reduction->counters + 1U) * sizeof *own->closed);
     own->next = ex_alloc(run, ((uint64_t)reduction->words + 1U) * sizeof *own->next);
     return (own->value != NULL) && (own->enabled != NULL) && (own->effect_of != NULL) && (own->effect != NULL) && (own->table != NULL)
-           && (own->is_enabled != NULL) && (own->is_in != NULL) && (own->set != NULL) && (own->best != NULL) && (own->next != NULL);
+           && (own->is_enabled != NULL) && (own->is_in != NULL) && (own->set != NULL) && (own->best != NULL) && (own->next != NULL)
+           && (own->closed != NULL);
 }
 
 /* --- effects --------------------------------------------------------------------------------------------------------- */
@@ -246,7 +260,17 @@ static void add_rivals(stubborn_t *own, uint32_t e, const ex_touch_t *touch)
 {
     const ex_reduction_t *reduction = own->reduction;
     const ex_counter_t *counter = &reduction->counter[touch->other];
-    const bool has_choice = (touch->pre > 0U) && !touch->is_reset && !touch->is_inhibitor;
+    const bool is_plain = !touch->is_reset && !touch->is_inhibitor;
+    const bool has_choice = (touch->pre > 0U) && is_plain;
+    closed_t *closed = &own->closed[touch->other];
+    if (is_plain && (closed->rivals == own->sets) && (closed->pre == touch->pre) && (closed->post == touch->post)) {
+        return; /* they conflict with the same ones, and are in the set themselves */
+    }
+    if (is_plain) {
+        closed->rivals = own->sets;
+        closed->pre = touch->pre;
+        closed->post = touch->post;
+    }
     uint64_t conflicts = 0U;
     uint64_t putting = 0U;
     own->work += counter->end - counter->first;
@@ -300,12 +324,23 @@ static uint64_t cost_of_reason(stubborn_t *own, const ex_touch_t *touch, bool is
     const ex_counter_t *counter = &reduction->counter[touch->other];
     const uint32_t value = own->value[touch->other];
     uint64_t cost = 0U;
+    closed_t *closed = &own->closed[touch->other];
+    if (!is_inhibitor && (closed->helpers == own->sets)) {
+        return 0U;
+    }
+    if (!is_inhibitor && (closed->costs == own->sets)) {
+        return closed->cost; /* or less by now */
+    }
     own->work += counter->end - counter->first;
     for (uint64_t k = counter->first; k < counter->end; k++) {
         const ex_touch_t *use = &reduction->use[k];
         if (is_helper(use, value, is_inhibitor)) {
             cost += cost_of(own, use->other);
         }
+    }
+    if (!is_inhibitor) {
+        closed->costs = own->sets;
+        closed->cost = cost;
     }
     return cost;
 }
@@ -335,6 +370,9 @@ static void add_helpers(stubborn_t *own, uint32_t e)
     }
     const ex_counter_t *counter = &reduction->counter[reason->other];
     const uint32_t value = own->value[reason->other];
+    if (!is_reason_inhibitor) {
+        own->closed[reason->other].helpers = own->sets;
+    }
     for (uint64_t k = counter->first; k < counter->end; k++) {
         if (is_helper(&reduction->use[k], value, is_reason_inhibitor)) {
             add(own, reduction->use[k].other);
@@ -348,6 +386,7 @@ static bool close_for(stubborn_t *own, uint32_t enabled)
     const bool is_first = own->best_count == UINT32_MAX;
     own->set_count = 0U;
     own->set_enabled = 0U;
+    own->sets++;
     add_disabling(own, enabled);
     for (uint32_t i = 0U; (i < own->set_count) && (own->set_enabled < own->best_count); i++) {
         const uint32_t e = own->set[i];
