@@ -3,12 +3,15 @@
 from __future__ import annotations
 
 import json
+import signal
+import time
+from contextlib import suppress
 from pathlib import Path
 
 import pytest
 
 from helpers.netbuilder import write
-from helpers.processes import pn2code
+from helpers.processes import Command, pn2code
 
 pytestmark = pytest.mark.cc
 
@@ -94,3 +97,52 @@ def test_an_exception_in_a_marking(tmp_path: Path) -> None:
     assert "Div" in done.stderr
     assert "`T`" in done.stderr
     assert said["nodes"] == 3
+
+
+def test_what_cannot_be_written(net: Path) -> None:
+    """A trace is a warning: the verdict stands. A report that was asked for is an error."""
+    done = pn2code("verify", net, "--set", "last=4", "--quiet", "--traces", "/proc/self")
+    assert done.returncode == 0
+    assert "warning[trace-unwritable]" in done.stderr
+    done = pn2code(
+        "verify", net, "--set", "last=4", "-q", "--most-traces", "0", "--report", "/no/r"
+    )
+    assert done.returncode == 1
+    assert "error[report-unwritable]" in done.stderr
+
+
+def test_approximation(net: Path, tmp_path: Path) -> None:
+    for kind in ("hash", "bitstate"):
+        said = pn2code(
+            "verify", net, "--set", "last=4", "--approximate", kind, "--report", tmp_path / kind
+        )
+        assert said.returncode == 0
+        text = (tmp_path / kind).read_text()
+        assert f"APPROXIMATE ({kind})" in text
+        assert "the probability" in text
+        assert "Dead Markings\n     1\n" in text
+
+
+def explorer_of(command: Command) -> bool:
+    """Whether the explorer runs."""
+    children = Path(f"/proc/{command.pid}/task/{command.pid}/children").read_text().split()
+    for child in children:
+        with suppress(OSError):
+            if b"--max-seconds" in Path(f"/proc/{child}/cmdline").read_bytes():
+                return True
+    return False
+
+
+@pytest.mark.skipif(not Path("/proc/self/task").exists(), reason="looks at /proc")
+def test_interrupted(net: Path) -> None:
+    command = Command("verify", net, "--json", "--most-traces", "0", "--max-seconds", "50")
+    try:
+        until = time.monotonic() + 50.0
+        while not explorer_of(command) and time.monotonic() < until:
+            time.sleep(0.02)
+        command.signal(signal.SIGINT)
+        done = command.done()
+    finally:
+        command.kill()
+    said = json.loads(done.stdout)
+    assert (done.returncode, said["complete"], said["why"]) == (3, False, "interrupted")

@@ -28,7 +28,7 @@ from pn2code.diagnostics import Diagnostics, Origin
 from pn2code.semantics.game import GameError
 from pn2code.simulate.script import TraceRefusedError
 from pn2code.verify import chance
-from pn2code.verify.codes import REPORT_UNWRITABLE, STATE_ERROR
+from pn2code.verify.codes import REPORT_UNWRITABLE, STATE_ERROR, TRACE_UNWRITABLE
 from pn2code.verify.explore import Wishes, explore
 from pn2code.verify.limits import Approximation, Limits, Order, Reduction, cores
 from pn2code.verify.path import steps, text
@@ -187,6 +187,14 @@ def verify(
         pictures.write(opened.flat, found, d)
     if found.error is not None and found.why == "error":
         _tell_error(opened, found, d)
+    if found.graph is not None and len(found.traces) < min(most_traces, found.dead_count):
+        folder = traces or Path()
+        d.warning(
+            TRACE_UNWRITABLE,
+            f"a trace to a dead marking cannot be written into `{folder}`",
+            Origin(str(folder)),
+            hint="give another folder with `--traces DIR`, or none are wanted with `--most-traces 0`",
+        )
     if report_to is not None:
         _write_report(opened, found, report_to, d)
     if not as_json and not quiet:

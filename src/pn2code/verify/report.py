@@ -155,6 +155,8 @@ def _nodes(first: Sequence[int], count: int) -> str:
     """`None`, `[7,8]`, or of many their number and the first."""
     if count == 0:
         return "None"
+    if not first:
+        return str(count)  # nodes have numbers only where there is a graph
     listed = ",".join(map(str, first[:_LISTED]))
     return f"[{listed}]" if count <= _LISTED else f"{count} [{listed},...]"
 
