@@ -664,6 +664,35 @@ static void open_tree(const ex_codec_t *codec, uint32_t *cell)
     }
 }
 
+void ex_key_cells(const ex_codec_t *codec, const ex_key_t *key, uint32_t *cell)
+{
+    const uint32_t word[EX_KEY_WORDS] = { (uint32_t)key->low, (uint32_t)(key->low >> 32U), (uint32_t)key->high,
+                                          (uint32_t)(key->high >> 32U) };
+    for (uint32_t i = 0U; i < codec->roots; i++) {
+        cell[codec->root[i]] = word[i];
+    }
+    open_tree(codec, cell);
+}
+
+bool ex_cells_key(ex_codec_t *codec, uint32_t *cell, ex_key_t *key)
+{
+    for (uint32_t n = 0U; n < codec->nodes; n++) {
+        ex_tuples_t *tuples = &codec->tuples[codec->node[n].table];
+        uint64_t lane[EX_TUPLE_LANES];
+        lanes_of(&codec->node[n], cell, lane);
+        uint32_t number = ex_tuples_number(tuples, lane);
+        while (number == EX_NO_NUMBER) {
+            if (!ex_tuples_grow(tuples)) {
+                return false;
+            }
+            number = ex_tuples_number(tuples, lane);
+        }
+        cell[codec->words + n] = number;
+    }
+    root_key(codec, cell, key);
+    return true;
+}
+
 /* Decodes what is in a cell into the marking. */
 static bool decode_cell(ex_worker_t *worker, uint32_t w)
 {
@@ -712,12 +741,7 @@ bool ex_load(ex_worker_t *worker, const ex_key_t *key)
     tidy_arena(scratch);
     uint32_t *old = scratch->undo_value; /* nothing else uses it now */
     (void)memcpy(old, &cell[codec->packed_words], (codec->words - codec->packed_words) * sizeof *old);
-    const uint32_t word[EX_KEY_WORDS] = { (uint32_t)key->low, (uint32_t)(key->low >> 32U), (uint32_t)key->high,
-                                          (uint32_t)(key->high >> 32U) };
-    for (uint32_t i = 0U; i < codec->roots; i++) {
-        cell[codec->root[i]] = word[i];
-    }
-    open_tree(codec, cell);
+    ex_key_cells(codec, key, cell);
     (void)memset(packed, 0, pn_net.packed_size);
     for (uint32_t w = 0U; w < codec->packed_words; w++) {
         put_slice(codec, packed, w, cell[w]);

@@ -238,6 +238,14 @@ bool ex_codec_number(struct ex_run *run);
 /* Finds good parts (explore_layout.c) by going at random from the marking of the first worker, if that is harmless; keys made before are
  * worth nothing then. False: no memory. */
 bool ex_layout(struct ex_run *run);
+/* The same with what the store holds, when nobody uses it: its keys become other ones, and so do those that `replace` gives to the function
+ * that it is called with. False: no memory. */
+typedef void (*ex_replace_t)(const void *layout, ex_key_t *key);
+bool ex_layout_again(struct ex_run *run, void (*replace)(struct ex_run *run, ex_replace_t one, const void *layout));
+/* The cells of a key, in a table of at least zero_cell + 1 of them that are 0. */
+void ex_key_cells(const ex_codec_t *codec, const ex_key_t *key, uint32_t *cell);
+/* The key of cells of which the words are there; false: no memory. Nobody else uses the tables. */
+bool ex_cells_key(ex_codec_t *codec, uint32_t *cell, ex_key_t *key);
 bool ex_scratch_make(struct ex_worker *worker);
 /* For ex_successors: the key of `next`, which is what has become of the loaded state by a transition; the time is the same. */
 bool ex_encode_next(struct ex_worker *worker, uint32_t transition, const void *next, ex_key_t *key);
@@ -419,6 +427,7 @@ typedef struct ex_run {
     uint64_t approximate_bytes; /* of what stands for the store */
     bool has_bounds;
     struct ex_level *level;     /* of explore_search.c */
+    bool is_laid_again;         /* ex_layout_again has been done */
     struct ex_reduction *reduction; /* of explore_elements.c; NULL: none that needs a table */
     _Atomic(const char *) phase; /* for the progress lines */
     struct ex_graph *graph;  /* of explore_graph.c; NULL: none */
