@@ -20,6 +20,7 @@
 enum {
     UNIT = 8,
     WORD_BITS = 32,
+    UNIT_BITS = 64,
     DECODED_MOST = 1 << 20 /* bytes of decoded values that are kept; a page cache is faster than more of them */
 };
 
@@ -66,6 +67,13 @@ static void add_slice(ex_codec_t *codec, uint32_t bit, uint32_t width)
     codec->packed_words++;
 }
 
+/* Whether a place goes into a slice: slices lie within one of the units in which generated code handles the packed part. */
+static bool is_short(const pn_place_t *place)
+{
+    const uint32_t last = place->bit + bits_in(place) - 1U;
+    return (bits_in(place) <= (uint32_t)WORD_BITS) && ((place->bit / (uint32_t)UNIT_BITS) == (last / (uint32_t)UNIT_BITS));
+}
+
 /* Slices of the packed part: first those of short places, as many in one as possible, then those of long ones. `order` has room for the
  * indices of all places. */
 static void lay_slices(ex_codec_t *codec, uint32_t *order)
@@ -81,10 +89,11 @@ static void lay_slices(ex_codec_t *codec, uint32_t *order)
         const pn_place_t *place = &pn_net.place[order[k]];
         const uint32_t end = place->bit + bits_in(place);
         const uint32_t last = codec->packed_words - 1U;
-        if (bits_in(place) > (uint32_t)WORD_BITS) {
+        if (!is_short(place)) {
             continue;
         }
-        if ((codec->packed_words > 0U) && ((end - codec->slice_bit[last]) <= (uint32_t)WORD_BITS)) {
+        if ((codec->packed_words > 0U) && ((end - codec->slice_bit[last]) <= (uint32_t)WORD_BITS)
+            && (((end - 1U) / (uint32_t)UNIT_BITS) == (codec->slice_bit[last] / (uint32_t)UNIT_BITS))) {
             codec->slice_width[last] = end - codec->slice_bit[last]; /* what lies between, if anything, belongs to nobody else */
         } else {
             add_slice(codec, place->bit, bits_in(place));
@@ -92,10 +101,12 @@ static void lay_slices(ex_codec_t *codec, uint32_t *order)
     }
     for (uint32_t k = 0U; k < count; k++) {
         const pn_place_t *place = &pn_net.place[order[k]];
-        const uint32_t bits = bits_in(place);
-        for (uint32_t at = 0U; (bits > (uint32_t)WORD_BITS) && (at < bits); at += (uint32_t)WORD_BITS) {
-            codec->is_joined[codec->packed_words] = at > 0U;
-            add_slice(codec, place->bit + at, ((bits - at) < (uint32_t)WORD_BITS) ? (bits - at) : (uint32_t)WORD_BITS);
+        const uint32_t end = place->bit + bits_in(place);
+        for (uint32_t at = place->bit; !is_short(place) && (at < end);) {
+            const uint32_t next = ((at / (uint32_t)WORD_BITS) + 1U) * (uint32_t)WORD_BITS;
+            codec->is_joined[codec->packed_words] = at > place->bit;
+            add_slice(codec, at, ((end < next) ? end : next) - at);
+            at = next;
         }
     }
 }
@@ -537,20 +548,20 @@ static inline void root_key(const ex_codec_t *codec, const uint32_t *cell, ex_ke
 static inline uint32_t slice_of(const ex_codec_t *codec, const void *marking, uint32_t w)
 {
     const uint32_t bit = codec->slice_bit[w];
-    uint64_t word;
-    (void)memcpy(&word, (const unsigned char *)marking + (bit / 8U), sizeof word);
-    return (uint32_t)((word >> (bit % 8U)) & (((uint64_t)1U << codec->slice_width[w]) - 1U));
+    uint64_t unit;
+    (void)memcpy(&unit, (const unsigned char *)marking + ((bit / (uint32_t)UNIT_BITS) * sizeof unit), sizeof unit);
+    return (uint32_t)((unit >> (bit % (uint32_t)UNIT_BITS)) & (((uint64_t)1U << codec->slice_width[w]) - 1U));
 }
 
 /* The other way round: the bits are 0 before. */
 static inline void put_slice(const ex_codec_t *codec, void *marking, uint32_t w, uint32_t value)
 {
     const uint32_t bit = codec->slice_bit[w];
-    unsigned char *at = (unsigned char *)marking + (bit / 8U);
-    uint64_t word;
-    (void)memcpy(&word, at, sizeof word);
-    word |= (uint64_t)value << (bit % 8U);
-    (void)memcpy(at, &word, sizeof word);
+    unsigned char *at = (unsigned char *)marking + ((bit / (uint32_t)UNIT_BITS) * sizeof(uint64_t));
+    uint64_t unit;
+    (void)memcpy(&unit, at, sizeof unit);
+    unit |= (uint64_t)value << (bit % (uint32_t)UNIT_BITS);
+    (void)memcpy(at, &unit, sizeof unit);
 }
 
 /* --- encoding -------------------------------------------------------------------------------------------------------------- */
