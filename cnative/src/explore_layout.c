@@ -12,6 +12,7 @@
 
 enum {
     SAMPLES = 2048,
+    FEW_SAMPLES = 64,  /* where reductions make successors expensive, and states few */
     MOST_SAMPLES = 16384,
     WORK = 4 << 20,    /* samples times pairs of items, about, of a second look */
     APART = 3,         /* steps from one to the next */
@@ -97,7 +98,8 @@ static bool walk(layout_t *layout)
         if (found == EX_FAILED) {
             return false;
         }
-        key = ((found == EX_DEAD) || ((step % (uint32_t)LONGEST) == ((uint32_t)LONGEST - 1U))) ? initial : layout->drawn;
+        const bool is_end = (found == EX_DEAD) || (layout->seen == 0U); /* or the reductions look at nothing here */
+        key = (is_end || ((step % (uint32_t)LONGEST) == ((uint32_t)LONGEST - 1U))) ? initial : layout->drawn;
     }
     return true;
 }
@@ -282,7 +284,7 @@ bool ex_layout(ex_run_t *run)
         layout->value = value;
         layout->next = next;
         layout->random = 1U;
-        layout->room = (uint32_t)SAMPLES;
+        layout->room = (run->reduction != NULL) ? (uint32_t)FEW_SAMPLES : (uint32_t)SAMPLES;
         make_items(layout);
         if (layout->items > EX_KEY_WORDS) {
             (void)walk(layout);

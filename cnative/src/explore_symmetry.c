@@ -308,6 +308,36 @@ static bool is_known_leaf(symmetry_t *own, uint32_t depth, uint32_t *kept)
     return false;
 }
 
+/* Puts the points of a class that are all alike one behind the other: in which order makes no difference. */
+static uint32_t single_out_all(symmetry_t *own, uint32_t depth, uint32_t wanted)
+{
+    const uint32_t points = own->reduction->exchanges.points;
+    const uint32_t *rank = &own->rank[(size_t)depth * (points + 1U)];
+    uint32_t *deeper = &own->rank[((size_t)depth + 1U) * (points + 1U)];
+    uint32_t next = wanted;
+    for (uint32_t p = 0U; p < points; p++) {
+        deeper[p] = (rank[p] == wanted) ? next : rank[p];
+        next += (rank[p] == wanted) ? 1U : 0U;
+    }
+    return refine(own, deeper);
+}
+
+/* Of the points of a class one of each kind of those that are alike; how many. */
+static uint32_t list_different(symmetry_t *own, const uint32_t *rank, uint32_t wanted, uint32_t *list)
+{
+    uint32_t count = 0U;
+    for (uint32_t p = 0U; p < own->reduction->exchanges.points; p++) {
+        bool is_new = rank[p] == wanted;
+        for (uint32_t i = 0U; is_new && (i < count); i++) {
+            is_new = !is_alike(own, list[i], p);
+        }
+        if (is_new) {
+            list[count++] = p;
+        }
+    }
+    return count;
+}
+
 /* All leaves below a node that may be the best one. Not deeper than there are points. */
 static void search(symmetry_t *own, uint32_t depth, uint32_t classes) // NOLINT(misc-no-recursion)
 {
@@ -320,25 +350,20 @@ static void search(symmetry_t *own, uint32_t depth, uint32_t classes) // NOLINT(
         return;
     }
     uint32_t count = 0U;
-    uint32_t done = 0U;
     uint32_t kept = 0U;
     const uint32_t wanted = first_class(own, rank, &count);
-    for (uint32_t p = 0U; p < points; p++) {
-        bool is_new = rank[p] == wanted;
-        for (uint32_t i = 0U; is_new && (i < done); i++) {
-            is_new = !is_alike(own, tried[i], p);
-        }
-        if (!is_new) {
-            continue;
-        }
-        tried[done++] = p;
-        const uint32_t found = single_out(own, depth, p);
+    const uint32_t different = list_different(own, rank, wanted, tried);
+    if (different == 1U) {
+        search(own, depth + 1U, single_out_all(own, depth, wanted));
+        return;
+    }
+    for (uint32_t i = 0U; i < different; i++) {
+        const uint32_t found = single_out(own, depth, tried[i]);
         first_leaf(own, depth + 1U, found);
-        if (is_known_leaf(own, depth, &kept)) {
-            continue;
+        if (!is_known_leaf(own, depth, &kept)) {
+            (void)single_out(own, depth, tried[i]); /* the levels below were used */
+            search(own, depth + 1U, found);
         }
-        (void)single_out(own, depth, p); /* the levels below were used */
-        search(own, depth + 1U, found);
     }
 }
 

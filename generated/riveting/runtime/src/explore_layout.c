@@ -2,8 +2,9 @@
  * explore_layout.c - which words of the vectors become a part of the key together.
  *
  * A part needs a number for each combination of its words that occurs; so words that depend on each other belong together. How many
- * combinations there are is estimated from a sample, states on a way at random, by how often two of them have the same one. Beginning
- * with each place for itself, the two parts whose union adds the fewest combinations are united, until there are four.
+ * combinations there are is estimated from a sample: at the beginning of states on a way at random, later of states from the store, whose
+ * keys are then made anew. Beginning with each place for itself, the two parts whose union adds the fewest combinations are united,
+ * until there are four.
  */
 #include "explore_impl.h"
 
@@ -11,10 +12,13 @@
 
 enum {
     SAMPLES = 2048,
+    FEW_SAMPLES = 64,  /* where reductions make successors expensive, and states few */
+    MOST_SAMPLES = 16384,
+    WORK = 4 << 20,    /* samples times pairs of items, about, of a second look */
     APART = 3,         /* steps from one to the next */
     LONGEST = 768,     /* steps before the way begins again */
     MOST_ITEMS = 40,
-    SET_SIZE = 4096    /* a power of two, more than SAMPLES */
+    SET_SIZE = 32768   /* a power of two, more than MOST_SAMPLES */
 };
 
 typedef struct item {
@@ -28,7 +32,8 @@ typedef struct item {
 typedef struct layout {
     ex_run_t *run;
     uint32_t samples;
-    uint64_t *value;   /* of item i in sample s: value[i * SAMPLES + s] */
+    uint32_t room;     /* for samples */
+    uint64_t *value;   /* of item i in sample s: value[i * room + s] */
     uint32_t *next;    /* word -> the next one of the item */
     item_t item[MOST_ITEMS];
     uint32_t items;
@@ -68,7 +73,7 @@ static void note(layout_t *layout, const uint32_t *cell)
         for (uint32_t w = layout->item[i].first; w != UINT32_MAX; w = layout->next[w]) {
             value = mixed(value, cell[w]);
         }
-        layout->value[((size_t)i * (size_t)SAMPLES) + layout->samples] = value;
+        layout->value[((size_t)i * layout->room) + layout->samples] = value;
     }
     layout->samples++;
 }
@@ -81,7 +86,7 @@ static bool walk(layout_t *layout)
         return false;
     }
     ex_key_t key = initial;
-    for (uint32_t step = 0U; (layout->samples < (uint32_t)SAMPLES) && !ex_is_stopping(layout->run); step++) {
+    for (uint32_t step = 0U; (layout->samples < layout->room) && !ex_is_stopping(layout->run); step++) {
         if ((step % (uint32_t)APART) == 0U) {
             if (!ex_load(worker, &key)) {
                 return false;
@@ -93,32 +98,43 @@ static bool walk(layout_t *layout)
         if (found == EX_FAILED) {
             return false;
         }
-        key = ((found == EX_DEAD) || ((step % (uint32_t)LONGEST) == ((uint32_t)LONGEST - 1U))) ? initial : layout->drawn;
+        const bool is_end = (found == EX_DEAD) || (layout->seen == 0U); /* or the reductions look at nothing here */
+        key = (is_end || ((step % (uint32_t)LONGEST) == ((uint32_t)LONGEST - 1U))) ? initial : layout->drawn;
     }
     return true;
 }
 
-/* The number of combinations of two items (the same twice: of one), from the pairs of samples that have the same. */
+/* The number of combinations of two items (the same twice: of one): those in the sample, and as many more as those that are in it once
+ * and twice suggest (Chao's estimate). */
 static double estimate(layout_t *layout, uint32_t a, uint32_t b)
 {
-    const uint64_t *first = &layout->value[(size_t)a * (size_t)SAMPLES];
-    const uint64_t *second = &layout->value[(size_t)b * (size_t)SAMPLES];
-    uint64_t pairs = 0U;
-    (void)memset(layout->set, 0, sizeof layout->set);
-    (void)memset(layout->times, 0, sizeof layout->times);
+    const uint64_t *first = &layout->value[(size_t)a * layout->room];
+    const uint64_t *second = &layout->value[(size_t)b * layout->room];
+    uint32_t size = 64U;
+    while (size < (2U * layout->samples)) {
+        size *= 2U;
+    }
+    uint32_t distinct = 0U;
+    uint32_t once = 0U;
+    uint32_t twice = 0U;
+    (void)memset(layout->set, 0, size * sizeof layout->set[0]);
+    (void)memset(layout->times, 0, size * sizeof layout->times[0]);
     for (uint32_t s = 0U; s < layout->samples; s++) {
         const uint64_t turned = (second[s] << 31U) | (second[s] >> 33U);
         const uint64_t value = (a == b) ? first[s] : ((first[s] * 0x9e3779b97f4a7c15U) ^ turned);
-        uint32_t at = (uint32_t)(value >> 40U) % (uint32_t)SET_SIZE;
-        while ((layout->set[at] != 0U) && (layout->set[at] != value)) {
-            at = (at + 1U) % (uint32_t)SET_SIZE;
+        uint32_t at = (uint32_t)(value >> 40U) & (size - 1U);
+        while ((layout->times[at] != 0U) && (layout->set[at] != value)) {
+            at = (at + 1U) & (size - 1U);
         }
         layout->set[at] = value;
-        pairs += layout->times[at];
         layout->times[at]++;
+        distinct += (layout->times[at] == 1U) ? 1U : 0U;
+        once += (layout->times[at] == 1U) ? 1U : 0U;
+        once -= (layout->times[at] == 2U) ? 1U : 0U;
+        twice += (layout->times[at] == 2U) ? 1U : 0U;
+        twice -= (layout->times[at] == 3U) ? 1U : 0U;
     }
-    const double all = ((double)layout->samples * ((double)layout->samples - 1.0)) / 2.0;
-    return all / ((pairs > 0U) ? (double)pairs : 0.5);
+    return (double)distinct + (((double)once * ((double)once - 1.0)) / (2.0 * ((double)twice + 1.0)));
 }
 
 /* Items: the words of a place, or more of them where there are too many. */
@@ -149,8 +165,8 @@ static void unite(layout_t *layout, uint32_t a, uint32_t b)
 {
     item_t *item = &layout->item[a];
     item_t *other = &layout->item[b];
-    uint64_t *first = &layout->value[(size_t)a * (size_t)SAMPLES];
-    const uint64_t *second = &layout->value[(size_t)b * (size_t)SAMPLES];
+    uint64_t *first = &layout->value[(size_t)a * layout->room];
+    const uint64_t *second = &layout->value[(size_t)b * layout->room];
     for (uint32_t s = 0U; s < layout->samples; s++) {
         first[s] = mixed(first[s], second[s]);
     }
@@ -245,13 +261,18 @@ static void forget(ex_run_t *run)
     }
 }
 
+static uint64_t value_bytes(uint32_t samples)
+{
+    return (uint64_t)MOST_ITEMS * samples * sizeof(uint64_t);
+}
+
 bool ex_layout(ex_run_t *run)
 {
     const ex_codec_t *codec = run->codec;
     if ((codec->words <= EX_KEY_WORDS) || !is_harmless()) {
         return true;
     }
-    const uint64_t values = (uint64_t)MOST_ITEMS * (uint64_t)SAMPLES * sizeof(uint64_t);
+    const uint64_t values = value_bytes((uint32_t)SAMPLES);
     const uint64_t words = ((uint64_t)codec->words + 1U) * sizeof(uint32_t);
     layout_t *layout = ex_alloc(run, sizeof *layout);
     uint64_t *value = ex_alloc(run, values);
@@ -263,6 +284,7 @@ bool ex_layout(ex_run_t *run)
         layout->value = value;
         layout->next = next;
         layout->random = 1U;
+        layout->room = (run->reduction != NULL) ? (uint32_t)FEW_SAMPLES : (uint32_t)SAMPLES;
         make_items(layout);
         if (layout->items > EX_KEY_WORDS) {
             (void)walk(layout);
@@ -274,6 +296,146 @@ bool ex_layout(ex_run_t *run)
     }
     ex_free(run, word, words);
     ex_free(run, next, words);
+    ex_free(run, value, values);
+    ex_free(run, layout, sizeof *layout);
+    return is_fine;
+}
+
+/* --- a second look ---------------------------------------------------------------------------------------------------- */
+
+/* From keys of one kind to keys of another. */
+typedef struct change {
+    const ex_codec_t *old;
+    ex_codec_t *new;
+    uint32_t *old_cell;
+    uint32_t *new_cell;
+    bool has_failed; /* no memory */
+} change_t;
+
+static void replace_key(const void *user, ex_key_t *key)
+{
+    change_t *change = *(change_t *const *)user;
+    ex_key_cells(change->old, key, change->old_cell);
+    (void)memcpy(change->new_cell, change->old_cell, change->new->words * sizeof *change->new_cell);
+    if (!ex_cells_key(change->new, change->new_cell, key)) {
+        change->has_failed = true;
+    }
+}
+
+/* States from all of the store. */
+static void sample_store(layout_t *layout, uint32_t *cell)
+{
+    const ex_store_t *store = &layout->run->store;
+    const uint64_t used = atomic_load(&store->used);
+    const uint64_t step = (used / layout->room) + 1U;
+    uint64_t seen = 0U;
+    for (uint64_t slot = 0U; (slot < ex_store_slots(store)) && (layout->samples < layout->room); slot++) {
+        ex_key_t key;
+        if (ex_store_fetch(store, slot, &key) && ((seen++ % step) == 0U)) {
+            ex_key_cells(layout->run->codec, &key, cell);
+            note(layout, cell);
+        }
+    }
+}
+
+/* The store with other keys. */
+static bool refill(ex_run_t *run, change_t *change)
+{
+    ex_store_t *store = &run->store;
+    const uint64_t used = atomic_load(&store->used);
+    const uint64_t bytes = (used + 1U) * sizeof(ex_key_t);
+    ex_key_t *key = ex_alloc(run, bytes);
+    uint64_t count = 0U;
+    if (key == NULL) {
+        return false;
+    }
+    const change_t *const shared = change;
+    for (uint64_t slot = 0U; (slot < ex_store_slots(store)) && !change->has_failed; slot++) {
+        if (ex_store_fetch(store, slot, &key[count])) {
+            replace_key(&shared, &key[count]);
+            count++;
+        }
+    }
+    uint32_t width[EX_KEY_WORDS];
+    ex_store_t new;
+    ex_key_widths(run, width);
+    const bool is_fine = !change->has_failed && ex_store_make(&new, run, width, (used * 3U) / 2U);
+    for (uint64_t i = 0U; is_fine && (i < count); i++) {
+        (void)ex_store_insert(&new, &key[i], ex_hash(&key[i]), NULL);
+    }
+    ex_free(run, key, bytes);
+    if (is_fine) {
+        ex_store_free(store);
+        *store = new;
+        atomic_store(&store->used, count);
+    }
+    return is_fine;
+}
+
+/* Other tables of nodes and numbers, beside the old ones. */
+static bool rebuild(ex_run_t *run, layout_t *layout, change_t *change, uint32_t *word,
+                    void (*replace)(ex_run_t *run, ex_replace_t one, const void *layout))
+{
+    ex_codec_t *codec = run->codec;
+    const uint64_t words = codec->words;
+    ex_codec_t old = *codec;
+    codec->node = ex_alloc(run, (words + 1U) * sizeof *codec->node);
+    codec->parent = ex_alloc(run, 2U * (words + 1U) * sizeof *codec->parent);
+    (void)memset(codec->tuples, 0, sizeof codec->tuples);
+    if ((codec->node == NULL) || (codec->parent == NULL)) {
+        return false;
+    }
+    regroup(layout, word);
+    if (!ex_codec_number(run)) {
+        return false;
+    }
+    change->old = &old;
+    change->new = codec;
+    if (!refill(run, change)) {
+        return false;
+    }
+    const change_t *const shared = change;
+    replace_key(&shared, &run->initial);
+    replace(run, replace_key, &shared);
+    for (uint32_t i = 0U; i < EX_TABLES; i++) {
+        if (old.tuples[i].lane != NULL) {
+            ex_tuples_free(&old.tuples[i]);
+        }
+    }
+    return !change->has_failed;
+}
+
+bool ex_layout_again(ex_run_t *run, void (*replace)(ex_run_t *run, ex_replace_t one, const void *layout))
+{
+    const ex_codec_t *codec = run->codec;
+    if (codec->words <= EX_KEY_WORDS) {
+        return true;
+    }
+    const uint64_t cells = (2U * ((uint64_t)codec->words + 1U)) * sizeof(uint32_t);
+    const uint64_t values = value_bytes((uint32_t)MOST_SAMPLES);
+    layout_t *layout = ex_alloc(run, sizeof *layout);
+    uint64_t *value = ex_alloc(run, values);
+    uint32_t *cell = ex_alloc(run, 4U * cells);
+    bool is_fine = true;
+    if ((layout != NULL) && (value != NULL) && (cell != NULL)) {
+        const uint64_t table = cells / sizeof *cell;
+        change_t change = { .old_cell = cell, .new_cell = &cell[table] };
+        layout->run = run;
+        layout->value = value;
+        layout->next = &cell[2U * table];
+        make_items(layout);
+        const uint32_t pairs = (layout->items * layout->items) + 1U;
+        const uint32_t samples = (uint32_t)WORK / pairs;
+        layout->room = (samples < (uint32_t)SAMPLES) ? (uint32_t)SAMPLES : samples;
+        layout->room = (layout->room > (uint32_t)MOST_SAMPLES) ? (uint32_t)MOST_SAMPLES : layout->room;
+        if (layout->items > EX_KEY_WORDS) {
+            sample_store(layout, cell);
+            unite_all(layout);
+            (void)memset(cell, 0, 2U * cells);
+            is_fine = rebuild(run, layout, &change, &cell[3U * table], replace);
+        }
+    }
+    ex_free(run, cell, 4U * cells);
     ex_free(run, value, values);
     ex_free(run, layout, sizeof *layout);
     return is_fine;
