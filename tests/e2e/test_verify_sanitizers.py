@@ -1,0 +1,57 @@
+"""The explorer under the sanitizers for addresses, undefined behaviour and threads."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from helpers.explored import SANITIZERS, THREADS, Explored, Explorers, agrees
+from helpers.netbuilder import flat
+from helpers.random_graphs import numbered
+
+pytestmark = pytest.mark.cc
+
+BAGS = """
+    net Bags
+      colset INT = int;
+      colset LIST = list INT;
+      var n : INT;
+      var l : LIST;
+      place Numbers : INT = 1`1 ++ 1`2 ++ 1`3 ++ 1`4 ++ 1`5 ++ 1`6
+      place Lists : LIST = 1`[] ++ 1`[7]
+      trans Put
+        in Numbers : n
+        in Lists : l
+        out Lists : n :: l
+"""
+
+
+def sorted_bounds(found: Explored) -> list[dict[str, object]]:
+    """Colours come in the order in which they were seen."""
+    return [
+        {k: sorted(map(str, v)) if isinstance(v, list) else v for k, v in place.items()}
+        for place in found.report["bounds"]
+    ]
+
+
+@pytest.mark.parametrize("flags", [SANITIZERS, THREADS], ids=["addresses", "threads"])
+def test_sanitized(tmp_path: Path, flags: tuple[str, ...]) -> None:
+    explorers = Explorers.open(tmp_path / "explorers", flags)
+    bags = flat(BAGS)
+    one = explorers.explore(bags, "--threads", 1, "--traces", 3, "--trace-to", tmp_path / "t")
+    for options in (("--threads", 2), ("--threads", 2, "--order", "dfs"), ("--spill", tmp_path)):
+        other = explorers.explore(bags, *options)
+        assert other.report["complete"]
+        assert (other.report["nodes"], other.report["arcs"]) == (
+            one.report["nodes"],
+            one.report["arcs"],
+        )
+        assert sorted_bounds(other) == sorted_bounds(one)
+        assert (other.nodes, other.arcs) == (one.nodes, one.arcs)
+    assert len(list(tmp_path.glob("*.trace.jsonl"))) == 3
+    for kind in ("hash", "bitstate"):
+        explorers.explore(bags, "--approximate", kind, "--threads", 2)
+    explorers.explore(bags, "--max-states", 100)
+    for number in (1, 5):
+        agrees(explorers, flat(numbered(number)), "--threads", 2, width=number % 3)
