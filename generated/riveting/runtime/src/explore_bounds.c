@@ -23,6 +23,7 @@ typedef struct colour {
     uint64_t seen;      /* multi-sets in which it is */
     uint64_t round;     /* the last multi-set in which it was */
     uint64_t now;       /* of it there */
+    uint32_t next;      /* index + 1 of another colour that is in that one too */
 } colour_t;
 
 typedef struct colours {
@@ -245,6 +246,7 @@ static const char *value_end(const char *text)
 static bool see_multiset(place_bounds_t *own, const char *text)
 {
     uint64_t total = 0U;
+    uint32_t first = 0U; /* index + 1 of a colour that is in it */
     own->multisets += 1U;
     const char *at = &text[1];
     while (*at == '[') {
@@ -261,18 +263,19 @@ static bool see_multiset(place_bounds_t *own, const char *text)
             colour->round = own->multisets;
             colour->now = 0U;
             colour->seen += 1U;
+            colour->next = first;
+            first = (uint32_t)(colour - own->colours.colour) + 1U;
         }
         colour->now += count;
         total += count;
         at = value_end(end + ((*end == ',') ? 1 : 0)) + 1;
         at += (*at == ',') ? 2 : 0;
     }
-    for (uint32_t i = 0U; i < own->colours.count; i++) {
-        colour_t *const colour = &own->colours.colour[i];
-        if (colour->round == own->multisets) {
-            colour->most = (colour->now > colour->most) ? colour->now : colour->most;
-            colour->least = (colour->now < colour->least) ? colour->now : colour->least;
-        }
+    while (first != 0U) {
+        colour_t *const colour = &own->colours.colour[first - 1U];
+        colour->most = (colour->now > colour->most) ? colour->now : colour->most;
+        colour->least = (colour->now < colour->least) ? colour->now : colour->least;
+        first = colour->next;
     }
     own->least = (total < own->least) ? total : own->least;
     own->most = (total > own->most) ? total : own->most;

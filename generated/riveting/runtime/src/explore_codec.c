@@ -20,6 +20,7 @@
 enum {
     UNIT = 8,
     WORD_BITS = 32,
+    UNIT_BITS = 64,
     DECODED_MOST = 1 << 20 /* bytes of decoded values that are kept; a page cache is faster than more of them */
 };
 
@@ -66,6 +67,13 @@ static void add_slice(ex_codec_t *codec, uint32_t bit, uint32_t width)
     codec->packed_words++;
 }
 
+/* Whether a place goes into a slice: slices lie within one of the units in which generated code handles the packed part. */
+static bool is_short(const pn_place_t *place)
+{
+    const uint32_t last = place->bit + bits_in(place) - 1U;
+    return (bits_in(place) <= (uint32_t)WORD_BITS) && ((place->bit / (uint32_t)UNIT_BITS) == (last / (uint32_t)UNIT_BITS));
+}
+
 /* Slices of the packed part: first those of short places, as many in one as possible, then those of long ones. `order` has room for the
  * indices of all places. */
 static void lay_slices(ex_codec_t *codec, uint32_t *order)
@@ -81,10 +89,11 @@ static void lay_slices(ex_codec_t *codec, uint32_t *order)
         const pn_place_t *place = &pn_net.place[order[k]];
         const uint32_t end = place->bit + bits_in(place);
         const uint32_t last = codec->packed_words - 1U;
-        if (bits_in(place) > (uint32_t)WORD_BITS) {
+        if (!is_short(place)) {
             continue;
         }
-        if ((codec->packed_words > 0U) && ((end - codec->slice_bit[last]) <= (uint32_t)WORD_BITS)) {
+        if ((codec->packed_words > 0U) && ((end - codec->slice_bit[last]) <= (uint32_t)WORD_BITS)
+            && (((end - 1U) / (uint32_t)UNIT_BITS) == (codec->slice_bit[last] / (uint32_t)UNIT_BITS))) {
             codec->slice_width[last] = end - codec->slice_bit[last]; /* what lies between, if anything, belongs to nobody else */
         } else {
             add_slice(codec, place->bit, bits_in(place));
@@ -92,10 +101,12 @@ static void lay_slices(ex_codec_t *codec, uint32_t *order)
     }
     for (uint32_t k = 0U; k < count; k++) {
         const pn_place_t *place = &pn_net.place[order[k]];
-        const uint32_t bits = bits_in(place);
-        for (uint32_t at = 0U; (bits > (uint32_t)WORD_BITS) && (at < bits); at += (uint32_t)WORD_BITS) {
-            codec->is_joined[codec->packed_words] = at > 0U;
-            add_slice(codec, place->bit + at, ((bits - at) < (uint32_t)WORD_BITS) ? (bits - at) : (uint32_t)WORD_BITS);
+        const uint32_t end = place->bit + bits_in(place);
+        for (uint32_t at = place->bit; !is_short(place) && (at < end);) {
+            const uint32_t next = ((at / (uint32_t)WORD_BITS) + 1U) * (uint32_t)WORD_BITS;
+            codec->is_joined[codec->packed_words] = at > place->bit;
+            add_slice(codec, at, ((end < next) ? end : next) - at);
+            at = next;
         }
     }
 }
@@ -135,6 +146,7 @@ static void lay_words(ex_codec_t *codec)
     }
     codec->words = word;
     codec->has_cells = word > codec->packed_words;
+    codec->zero_cell = (2U * word) + 1U; /* behind all nodes */
 }
 
 /* A node over some cells; a lone cell stands for itself. */
@@ -147,6 +159,9 @@ static uint32_t add_node(ex_codec_t *codec, const uint32_t *cell, uint32_t count
     node->count = count;
     node->parent = NONE;
     node->table = EX_KEY_WORDS;
+    for (uint32_t i = 0U; i < EX_TUPLE_WORDS; i++) {
+        node->child[i] = codec->zero_cell;
+    }
     for (uint32_t i = 0U; i < count; i++) {
         node->child[i] = cell[i];
         codec->parent[cell[i]] = codec->nodes;
@@ -159,7 +174,7 @@ static uint32_t add_node(ex_codec_t *codec, const uint32_t *cell, uint32_t count
 static void lay_part(ex_codec_t *codec, uint32_t *cell, uint32_t count)
 {
     while (count > 1U) {
-        const uint32_t groups = rounded_up(count, 4U);
+        const uint32_t groups = rounded_up(count, EX_TUPLE_WORDS);
         uint32_t from = 0U;
         for (uint32_t g = 0U; g < groups; g++) {
             const uint32_t to = (uint32_t)(((uint64_t)count * (g + 1U)) / groups);
@@ -170,7 +185,6 @@ static void lay_part(ex_codec_t *codec, uint32_t *cell, uint32_t count)
     }
     if (cell[0] >= codec->words) {
         codec->node[cell[0] - codec->words].table = codec->roots;
-        codec->has_quads[codec->roots] = true;
     }
     codec->root[codec->roots] = cell[0];
     codec->roots++;
@@ -181,6 +195,7 @@ void ex_codec_group(ex_codec_t *codec, uint32_t *word, const uint32_t end[EX_KEY
     uint32_t from = 0U;
     codec->nodes = 0U;
     codec->roots = 0U;
+    (void)memset(codec->tuple_words, 0, sizeof codec->tuple_words);
     for (uint32_t i = 0U; i < (2U * codec->words); i++) {
         codec->parent[i] = NONE;
     }
@@ -190,7 +205,8 @@ void ex_codec_group(ex_codec_t *codec, uint32_t *word, const uint32_t end[EX_KEY
     }
     for (uint32_t n = 0U; n < codec->nodes; n++) {
         codec->node[n].parent = codec->parent[codec->words + n];
-        codec->has_quads[codec->node[n].table] = true;
+        codec->tuple_words[codec->node[n].table] =
+            (codec->node[n].table < EX_KEY_WORDS) ? codec->node[n].count : EX_TUPLE_WORDS;
     }
 }
 
@@ -293,10 +309,10 @@ bool ex_codec_number(ex_run_t *run)
 {
     ex_codec_t *codec = run->codec;
     for (uint32_t i = 0U; i < EX_TABLES; i++) {
-        if (codec->quads[i].quad != NULL) {
-            ex_quads_free(&codec->quads[i]);
+        if (codec->tuples[i].lane != NULL) {
+            ex_tuples_free(&codec->tuples[i]);
         }
-        if (codec->has_quads[i] && !ex_quads_make(&codec->quads[i], run)) {
+        if ((codec->tuple_words[i] > 0U) && !ex_tuples_make(&codec->tuples[i], run, codec->tuple_words[i])) {
             return false;
         }
     }
@@ -308,7 +324,7 @@ uint64_t ex_codec_bytes(const ex_run_t *run)
     const ex_codec_t *codec = run->codec;
     uint64_t bytes = codec->has_cells ? ex_bytes_bytes(&codec->bytes) : 0U;
     for (uint32_t i = 0U; i < EX_TABLES; i++) {
-        bytes += codec->has_quads[i] ? ex_quads_bytes(&codec->quads[i]) : 0U;
+        bytes += (codec->tuple_words[i] > 0U) ? ex_tuples_bytes(&codec->tuples[i]) : 0U;
     }
     return bytes;
 }
@@ -332,7 +348,7 @@ void ex_key_widths(const ex_run_t *run, uint32_t width[EX_KEY_WORDS])
             width[i] = codec->slice_width[cell];
         } else {
             const ex_index_t *index = (cell < codec->words) ? &codec->bytes.index
-                                                            : &codec->quads[codec->node[cell - codec->words].table].index;
+                                                            : &codec->tuples[codec->node[cell - codec->words].table].index;
             const uint64_t count = atomic_load(&index->count);
             width[i] = bits_of(count + (count / 4U) + 64U);
         }
@@ -462,21 +478,21 @@ static void undo(ex_scratch_t *scratch)
     scratch->undone = 0U;
 }
 
-static ex_quad_t quad_of(const ex_node_t *node, const uint32_t *cell)
+static inline void lanes_of(const ex_node_t *node, const uint32_t *cell, uint64_t lane[EX_TUPLE_LANES])
 {
-    uint64_t value[4] = { 0U, 0U, 0U, 0U };
-    for (uint32_t i = 0U; i < node->count; i++) {
-        value[i] = cell[node->child[i]];
+    for (uint32_t i = 0U; i < EX_TUPLE_LANES; i++) {
+        /* Children that there are not are cells that are always 0. */
+        lane[i] = cell[node->child[2U * i]] | ((uint64_t)cell[node->child[(2U * i) + 1U]] << 32U);
     }
-    return (ex_quad_t){ value[0] | (value[1] << 32U), value[2] | (value[3] << 32U) };
 }
 
 static bool number_node(ex_worker_t *worker, uint32_t n, uint32_t *number)
 {
     ex_codec_t *codec = worker->run->codec;
-    const ex_quad_t quad = quad_of(&codec->node[n], worker->scratch->cell);
+    uint64_t lane[EX_TUPLE_LANES];
+    lanes_of(&codec->node[n], worker->scratch->cell, lane);
     for (;;) {
-        *number = ex_quads_number(&codec->quads[codec->node[n].table], quad);
+        *number = ex_tuples_number(&codec->tuples[codec->node[n].table], lane);
         if (*number != EX_NO_NUMBER) {
             return true;
         }
@@ -532,20 +548,20 @@ static inline void root_key(const ex_codec_t *codec, const uint32_t *cell, ex_ke
 static inline uint32_t slice_of(const ex_codec_t *codec, const void *marking, uint32_t w)
 {
     const uint32_t bit = codec->slice_bit[w];
-    uint64_t word;
-    (void)memcpy(&word, (const unsigned char *)marking + (bit / 8U), sizeof word);
-    return (uint32_t)((word >> (bit % 8U)) & (((uint64_t)1U << codec->slice_width[w]) - 1U));
+    uint64_t unit;
+    (void)memcpy(&unit, (const unsigned char *)marking + ((bit / (uint32_t)UNIT_BITS) * sizeof unit), sizeof unit);
+    return (uint32_t)((unit >> (bit % (uint32_t)UNIT_BITS)) & (((uint64_t)1U << codec->slice_width[w]) - 1U));
 }
 
 /* The other way round: the bits are 0 before. */
 static inline void put_slice(const ex_codec_t *codec, void *marking, uint32_t w, uint32_t value)
 {
     const uint32_t bit = codec->slice_bit[w];
-    unsigned char *at = (unsigned char *)marking + (bit / 8U);
-    uint64_t word;
-    (void)memcpy(&word, at, sizeof word);
-    word |= (uint64_t)value << (bit % 8U);
-    (void)memcpy(at, &word, sizeof word);
+    unsigned char *at = (unsigned char *)marking + ((bit / (uint32_t)UNIT_BITS) * sizeof(uint64_t));
+    uint64_t unit;
+    (void)memcpy(&unit, at, sizeof unit);
+    unit |= (uint64_t)value << (bit % (uint32_t)UNIT_BITS);
+    (void)memcpy(at, &unit, sizeof unit);
 }
 
 /* --- encoding -------------------------------------------------------------------------------------------------------------- */
@@ -651,13 +667,41 @@ static void open_tree(const ex_codec_t *codec, uint32_t *cell)
 {
     for (uint32_t n = codec->nodes; n > 0U; n--) {
         const ex_node_t *node = &codec->node[n - 1U];
-        const ex_quad_t quad = codec->quads[node->table].quad[cell[codec->words + n - 1U]];
-        const uint32_t value[4] = { (uint32_t)quad.low, (uint32_t)(quad.low >> 32U), (uint32_t)quad.high,
-                                    (uint32_t)(quad.high >> 32U) };
+        const ex_tuples_t *tuples = &codec->tuples[node->table];
+        const uint64_t *lane = &tuples->lane[(uint64_t)cell[codec->words + n - 1U] * tuples->lanes];
         for (uint32_t i = 0U; i < node->count; i++) {
-            cell[node->child[i]] = value[i];
+            cell[node->child[i]] = (uint32_t)(lane[i / 2U] >> (32U * (i % 2U)));
         }
     }
+}
+
+void ex_key_cells(const ex_codec_t *codec, const ex_key_t *key, uint32_t *cell)
+{
+    const uint32_t word[EX_KEY_WORDS] = { (uint32_t)key->low, (uint32_t)(key->low >> 32U), (uint32_t)key->high,
+                                          (uint32_t)(key->high >> 32U) };
+    for (uint32_t i = 0U; i < codec->roots; i++) {
+        cell[codec->root[i]] = word[i];
+    }
+    open_tree(codec, cell);
+}
+
+bool ex_cells_key(ex_codec_t *codec, uint32_t *cell, ex_key_t *key)
+{
+    for (uint32_t n = 0U; n < codec->nodes; n++) {
+        ex_tuples_t *tuples = &codec->tuples[codec->node[n].table];
+        uint64_t lane[EX_TUPLE_LANES];
+        lanes_of(&codec->node[n], cell, lane);
+        uint32_t number = ex_tuples_number(tuples, lane);
+        while (number == EX_NO_NUMBER) {
+            if (!ex_tuples_grow(tuples)) {
+                return false;
+            }
+            number = ex_tuples_number(tuples, lane);
+        }
+        cell[codec->words + n] = number;
+    }
+    root_key(codec, cell, key);
+    return true;
 }
 
 /* Decodes what is in a cell into the marking. */
@@ -708,12 +752,7 @@ bool ex_load(ex_worker_t *worker, const ex_key_t *key)
     tidy_arena(scratch);
     uint32_t *old = scratch->undo_value; /* nothing else uses it now */
     (void)memcpy(old, &cell[codec->packed_words], (codec->words - codec->packed_words) * sizeof *old);
-    const uint32_t word[EX_KEY_WORDS] = { (uint32_t)key->low, (uint32_t)(key->low >> 32U), (uint32_t)key->high,
-                                          (uint32_t)(key->high >> 32U) };
-    for (uint32_t i = 0U; i < codec->roots; i++) {
-        cell[codec->root[i]] = word[i];
-    }
-    open_tree(codec, cell);
+    ex_key_cells(codec, key, cell);
     (void)memset(packed, 0, pn_net.packed_size);
     for (uint32_t w = 0U; w < codec->packed_words; w++) {
         put_slice(codec, packed, w, cell[w]);

@@ -132,16 +132,15 @@ typedef struct ex_index {
     _Atomic uint64_t count;  /* numbers given */
 } ex_index_t;
 
-/* Up to four numbers as one: the inner nodes of trees. */
-typedef struct ex_quad {
-    uint64_t low;
-    uint64_t high;
-} ex_quad_t;
+/* Up to eight words as one number: the inner nodes of trees. Words lie two and two in a lane, the first one in the lower half. */
+#define EX_TUPLE_WORDS 8U
+#define EX_TUPLE_LANES 4U
 
-typedef struct ex_quads {
+typedef struct ex_tuples {
     ex_index_t index;
-    ex_quad_t *quad;
-} ex_quads_t;
+    uint64_t *lane;    /* `lanes` of each number */
+    uint32_t lanes;
+} ex_tuples_t;
 
 /* Strings of bytes, each with the place to which it belongs. */
 typedef struct ex_bytes_entry {
@@ -159,23 +158,23 @@ typedef struct ex_bytes {
     _Atomic uint64_t counted;
 } ex_bytes_t;
 
-bool ex_quads_make(ex_quads_t *quads, struct ex_run *run);
-void ex_quads_free(ex_quads_t *quads);
+bool ex_tuples_make(ex_tuples_t *tuples, struct ex_run *run, uint32_t words);
+void ex_tuples_free(ex_tuples_t *tuples);
 bool ex_bytes_make(ex_bytes_t *bytes, struct ex_run *run);
-/* The number; EX_NO_NUMBER: it has to grow first. */
-uint32_t ex_quads_number(ex_quads_t *quads, ex_quad_t quad);
+/* The number; EX_NO_NUMBER: it has to grow first. What is behind the last word is 0. */
+uint32_t ex_tuples_number(ex_tuples_t *tuples, const uint64_t lane[EX_TUPLE_LANES]);
 uint32_t ex_bytes_number(ex_bytes_t *bytes, uint32_t place, const unsigned char *byte, uint32_t length);
 /* Makes room if need be; false when there is no memory. */
-bool ex_quads_grow(ex_quads_t *quads);
+bool ex_tuples_grow(ex_tuples_t *tuples);
 bool ex_bytes_grow(ex_bytes_t *bytes);
-uint64_t ex_quads_bytes(const ex_quads_t *quads);
+uint64_t ex_tuples_bytes(const ex_tuples_t *tuples);
 uint64_t ex_bytes_bytes(const ex_bytes_t *bytes);
 
 /* --- codec (explore_codec.c) --------------------------------------------------------------------------------------- */
 
 /* A group of words that share a number: an inner node of the tree. */
 typedef struct ex_node {
-    uint32_t child[4]; /* cells */
+    uint32_t child[EX_TUPLE_WORDS]; /* cells */
     uint32_t count;
     uint32_t parent;   /* node; UINT32_MAX: it is a part of the key */
     uint32_t table;    /* of numbers */
@@ -196,6 +195,7 @@ typedef struct ex_codec {
     uint32_t packed_words;
     uint32_t words;          /* cells, without those of the inner nodes */
     uint32_t time_word;      /* UINT32_MAX: none */
+    uint32_t zero_cell;      /* a cell that is always 0 */
     uint32_t *slice_bit;     /* of the packed part, by word of the vector: its first bit there */
     uint32_t *slice_width;   /* and the number of bits, at most 32 */
     bool *is_joined;         /* whether it goes on with the place of the word before */
@@ -211,8 +211,8 @@ typedef struct ex_codec {
     uint32_t root[EX_KEY_WORDS]; /* cells that make the key */
     uint32_t roots;
     ex_bytes_t bytes;
-    ex_quads_t quads[EX_TABLES];
-    bool has_quads[EX_TABLES];
+    ex_tuples_t tuples[EX_TABLES];
+    uint32_t tuple_words[EX_TABLES]; /* 0: there is no such table */
 } ex_codec_t;
 
 /* What a thread needs for it. */
@@ -238,6 +238,14 @@ bool ex_codec_number(struct ex_run *run);
 /* Finds good parts (explore_layout.c) by going at random from the marking of the first worker, if that is harmless; keys made before are
  * worth nothing then. False: no memory. */
 bool ex_layout(struct ex_run *run);
+/* The same with what the store holds, when nobody uses it: its keys become other ones, and so do those that `replace` gives to the function
+ * that it is called with. False: no memory. */
+typedef void (*ex_replace_t)(const void *layout, ex_key_t *key);
+bool ex_layout_again(struct ex_run *run, void (*replace)(struct ex_run *run, ex_replace_t one, const void *layout));
+/* The cells of a key, in a table of at least zero_cell + 1 of them that are 0. */
+void ex_key_cells(const ex_codec_t *codec, const ex_key_t *key, uint32_t *cell);
+/* The key of cells of which the words are there; false: no memory. Nobody else uses the tables. */
+bool ex_cells_key(ex_codec_t *codec, uint32_t *cell, ex_key_t *key);
 bool ex_scratch_make(struct ex_worker *worker);
 /* For ex_successors: the key of `next`, which is what has become of the loaded state by a transition; the time is the same. */
 bool ex_encode_next(struct ex_worker *worker, uint32_t transition, const void *next, ex_key_t *key);
@@ -419,6 +427,7 @@ typedef struct ex_run {
     uint64_t approximate_bytes; /* of what stands for the store */
     bool has_bounds;
     struct ex_level *level;     /* of explore_search.c */
+    bool is_laid_again;         /* ex_layout_again has been done */
     struct ex_reduction *reduction; /* of explore_elements.c; NULL: none that needs a table */
     _Atomic(const char *) phase; /* for the progress lines */
     struct ex_graph *graph;  /* of explore_graph.c; NULL: none */

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT
- * explore_intern.c - numbers for groups of four numbers and for strings of bytes.
+ * explore_intern.c - numbers for tuples of words and for strings of bytes.
  *
  * An index of one word for each number: half of it is a part of the hash, so that hardly ever something else is looked at in vain. A
  * thread that has something new takes the next number, writes the thing down and only then, by one compare-and-swap, enters it in the
@@ -26,9 +26,15 @@ static uint64_t home(const ex_index_t *index, uint64_t hash)
     return ex_scaled(hash, index->entries);
 }
 
-static uint64_t quad_hash(ex_quad_t quad)
+static uint64_t tuple_hash(const uint64_t *lane, uint32_t lanes)
 {
-    const ex_key_t key = { quad.low, quad.high };
+    ex_key_t key = { lane[0], (lanes > 1U) ? lane[1] : 0U };
+    if (lanes > 2U) {
+        const uint64_t last = (lanes > 3U) ? lane[3] : 0U;
+        const ex_wide_t more = (ex_wide_t)(lane[2] ^ 0x8ebc6af09c88c6e3U) * (last ^ 0x589965cc75374cc3U);
+        key.low ^= (uint64_t)more;
+        key.high += (uint64_t)(more >> 64U) ^ lane[2];
+    }
     return ex_hash(&key);
 }
 
@@ -128,27 +134,40 @@ static void *reserve(ex_run_t *run, uint64_t size, uint64_t *most)
     return NULL;
 }
 
-/* --- groups of four ------------------------------------------------------------------------------------------------- */
+/* --- tuples ------------------------------------------------------------------------------------------------------------ */
 
-bool ex_quads_make(ex_quads_t *quads, ex_run_t *run)
+bool ex_tuples_make(ex_tuples_t *tuples, ex_run_t *run, uint32_t words)
 {
-    quads->quad = reserve(run, sizeof *quads->quad, &quads->index.most);
-    return (quads->quad != NULL) && index_make(&quads->index, run) && ex_count(run, quads->index.limit * sizeof *quads->quad);
+    tuples->lanes = (words + 1U) / 2U;
+    tuples->lane = reserve(run, tuples->lanes * sizeof *tuples->lane, &tuples->index.most);
+    return (tuples->lane != NULL) && index_make(&tuples->index, run)
+           && ex_count(run, tuples->index.limit * tuples->lanes * sizeof *tuples->lane);
 }
 
-void ex_quads_free(ex_quads_t *quads)
+void ex_tuples_free(ex_tuples_t *tuples)
 {
-    ex_index_t *index = &quads->index;
-    ex_unmap(quads->quad, index->most * sizeof *quads->quad);
-    ex_uncount(index->run, index->limit * sizeof *quads->quad);
+    ex_index_t *index = &tuples->index;
+    const uint64_t size = tuples->lanes * sizeof *tuples->lane;
+    ex_unmap(tuples->lane, index->most * size);
+    ex_uncount(index->run, index->limit * size);
     ex_free(index->run, index->entry, index->entries * sizeof *index->entry);
-    *quads = (ex_quads_t){ .quad = NULL };
+    *tuples = (ex_tuples_t){ .lane = NULL };
 }
 
-uint32_t ex_quads_number(ex_quads_t *quads, ex_quad_t quad)
+static bool is_tuple(const ex_tuples_t *tuples, uint64_t number, const uint64_t *lane)
 {
-    ex_index_t *index = &quads->index;
-    const uint64_t hash = quad_hash(quad);
+    const uint64_t *found = &tuples->lane[number * tuples->lanes];
+    uint64_t difference = 0U;
+    for (uint32_t i = 0U; i < tuples->lanes; i++) {
+        difference |= found[i] ^ lane[i];
+    }
+    return difference == 0U;
+}
+
+uint32_t ex_tuples_number(ex_tuples_t *tuples, const uint64_t lane[EX_TUPLE_LANES])
+{
+    ex_index_t *index = &tuples->index;
+    const uint64_t hash = tuple_hash(lane, tuples->lanes);
     const uint32_t wanted = (uint32_t)hash;
     uint64_t number = UINT64_MAX;
     uint64_t at = home(index, hash);
@@ -163,7 +182,9 @@ uint32_t ex_quads_number(ex_quads_t *quads, ex_quad_t quad)
                     }
                 } while (!atomic_compare_exchange_weak_explicit(&index->count, &number, number + 1U, memory_order_relaxed,
                                                                 memory_order_relaxed));
-                quads->quad[number] = quad;
+                for (uint32_t i = 0U; i < tuples->lanes; i++) {
+                    tuples->lane[(number * tuples->lanes) + i] = lane[i];
+                }
             }
             if (atomic_compare_exchange_strong_explicit(&index->entry[at], &entry, entry_of(hash, number), memory_order_acq_rel,
                                                         memory_order_acquire)) {
@@ -172,7 +193,7 @@ uint32_t ex_quads_number(ex_quads_t *quads, ex_quad_t quad)
         }
         if ((uint32_t)(entry >> 32U) == wanted) {
             const uint32_t found = (uint32_t)entry - 1U;
-            if ((quads->quad[found].low == quad.low) && (quads->quad[found].high == quad.high)) {
+            if (is_tuple(tuples, found, lane)) {
                 return found; /* a number that was taken meanwhile stays a hole */
             }
         }
@@ -180,29 +201,30 @@ uint32_t ex_quads_number(ex_quads_t *quads, ex_quad_t quad)
     }
 }
 
-bool ex_quads_grow(ex_quads_t *quads)
+bool ex_tuples_grow(ex_tuples_t *tuples)
 {
-    ex_index_t *index = &quads->index;
+    ex_index_t *index = &tuples->index;
     if (!is_crowded(index)) {
         return true;
     }
     ex_index_t old;
-    if (!index_enlarge(index, sizeof *quads->quad, &old)) {
+    if (!index_enlarge(index, tuples->lanes * sizeof *tuples->lane, &old)) {
         return false;
     }
     for (uint64_t at = 0U; at < old.entries; at++) {
         uint64_t number;
         if (old_number(&old, at, &number)) {
-            index_put(index, quad_hash(quads->quad[number]), number);
+            index_put(index, tuple_hash(&tuples->lane[number * tuples->lanes], tuples->lanes), number);
         }
     }
     ex_free(index->run, old.entry, old.entries * sizeof *old.entry);
     return true;
 }
 
-uint64_t ex_quads_bytes(const ex_quads_t *quads)
+uint64_t ex_tuples_bytes(const ex_tuples_t *tuples)
 {
-    return (quads->index.entries * sizeof *quads->index.entry) + (atomic_load(&quads->index.count) * sizeof *quads->quad);
+    return (tuples->index.entries * sizeof *tuples->index.entry)
+           + (atomic_load(&tuples->index.count) * tuples->lanes * sizeof *tuples->lane);
 }
 
 /* --- strings of bytes ------------------------------------------------------------------------------------------------ */

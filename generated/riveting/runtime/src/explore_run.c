@@ -63,7 +63,7 @@ static void grow_all(ex_run_t *run)
     uint32_t width[EX_KEY_WORDS];
     bool is_fine = ex_bytes_grow(&codec->bytes);
     for (uint32_t i = 0U; i < EX_TABLES; i++) {
-        is_fine = is_fine && (!codec->has_quads[i] || ex_quads_grow(&codec->quads[i]));
+        is_fine = is_fine && ((codec->tuple_words[i] == 0U) || ex_tuples_grow(&codec->tuples[i]));
     }
     if (run->options.is_hashed) {
         (void)memcpy(width, run->store.width, sizeof width);
@@ -104,6 +104,9 @@ bool ex_pause(ex_worker_t *worker)
 
 /* --- threads -------------------------------------------------------------------------------------------------------- */
 
+/* As much as pn_stack_init counts on at most, and a little more. Addresses alone cost nothing. */
+#define STACK_SIZE ((size_t)100U << 20U)
+
 typedef struct job {
     ex_worker_t *worker;
     void (*work)(ex_worker_t *worker, void *user);
@@ -115,6 +118,7 @@ static void *start(void *user)
 {
     job_t *job = user;
     ex_run_t *run = job->worker->run;
+    pn_stack_init(&job->worker->cx); /* each thread has a stack of its own */
     job->work(job->worker, job->user);
     (void)pthread_mutex_lock(&run->gate);
     run->at_work--;
@@ -128,18 +132,22 @@ void ex_parallel(ex_run_t *run, void (*work)(ex_worker_t *worker, void *user), v
     job_t job[EX_MOST_THREADS];
     const uint32_t threads = run->options.threads;
     uint32_t started = 1U;
+    pthread_attr_t attributes;
+    (void)pthread_attr_init(&attributes);
+    (void)pthread_attr_setstacksize(&attributes, STACK_SIZE);
     run->at_work = threads;
     for (uint32_t i = 0U; i < threads; i++) {
         job[i] = (job_t){ .worker = &run->worker[i], .work = work, .user = user };
     }
     for (; started < threads; started++) {
-        if (pthread_create(&job[started].thread, NULL, start, &job[started]) != 0) {
+        if (pthread_create(&job[started].thread, &attributes, start, &job[started]) != 0) {
             break;
         }
     }
     (void)pthread_mutex_lock(&run->gate);
     run->at_work -= threads - started; /* those that could not be had */
     (void)pthread_mutex_unlock(&run->gate);
+    (void)pthread_attr_destroy(&attributes);
     (void)start(&job[0]);
     for (uint32_t i = 1U; i < started; i++) {
         (void)pthread_join(job[i].thread, NULL);

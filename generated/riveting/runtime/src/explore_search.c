@@ -20,6 +20,7 @@ enum {
     RECENT = 1 << 13,  /* a power of two: as many as a cache near the processor holds */
     SHARED_FROM = 32, /* keys in a chunk that is given to idle threads */
     FIRST_KEYS = 1 << 14,
+    ENOUGH = 1 << 18,  /* states for a second look at the layout of keys */
     REPORTED = 1 << 12 /* states after which a thread tells how far it is */
 };
 
@@ -373,6 +374,47 @@ static void split(search_t *search)
     }
 }
 
+/* The keys of this level become other ones. */
+static void replace_level(ex_run_t *run, ex_replace_t one, const void *layout)
+{
+    const search_t *search = run->level;
+    for (chunk_t *chunk = search->now; chunk != NULL; chunk = chunk->next) {
+        const uint32_t count = chunk->count;
+        ex_key_t before = { 0U, 0U };
+        for (chunk->count = 0U; chunk->count < count;) {
+            /* Writing an entry touches the beginning of the next one. */
+            ex_key_t key;
+            ex_key_t next = { 0U, 0U };
+            if (chunk->count == 0U) {
+                (void)get_entry(search, chunk, 0U, &before);
+            }
+            key = before;
+            if ((chunk->count + 1U) < count) {
+                (void)get_entry(search, chunk, chunk->count + 1U, &next);
+            }
+            one(layout, &key);
+            put_entry(search, chunk, &key, 0U);
+            before = next;
+        }
+    }
+}
+
+/* Between two levels, when there are enough states to see which words of their vectors depend on each other. With the gate locked, and
+ * nobody else at work. */
+static void lay_again(ex_run_t *run)
+{
+    search_t *search = run->level;
+    run->is_laid_again = true;
+    if (!ex_layout_again(run, replace_level)) {
+        search->now = NULL; /* neither keys of the one kind nor of the other */
+        ex_stop(run, EX_MEMORY);
+    }
+    for (uint32_t i = 0U; i < run->options.threads; i++) {
+        run->worker[i].scratch->is_loaded = false;
+        (void)memset(run->worker[i].search->recent, 0, sizeof run->worker[i].search->recent);
+    }
+}
+
 /* A chunk to expand; NULL when there is none and never will be. `used` was expanded and is free again. */
 static chunk_t *take_chunk(ex_worker_t *worker, chunk_t *used)
 {
@@ -412,7 +454,10 @@ static chunk_t *take_chunk(ex_worker_t *worker, chunk_t *used)
         } else {
             search->depth++;
             search->parts = 1U;
-            if ((search->now->next == NULL) && (run->options.threads > 1U)) {
+            if (own->is_exact && !run->is_laid_again && (atomic_load(&run->store.used) >= (uint64_t)ENOUGH)) {
+                lay_again(run);
+            }
+            if ((search->now != NULL) && (search->now->next == NULL) && (run->options.threads > 1U)) {
                 split(search);
             }
             atomic_store_explicit(&search->deepest, search->depth, memory_order_relaxed);
