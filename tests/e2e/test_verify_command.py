@@ -103,7 +103,7 @@ def test_what_cannot_be_written(net: Path) -> None:
     """A trace is a warning: the verdict stands. A report that was asked for is an error."""
     done = pn2code("verify", net, "--set", "last=4", "--quiet", "--traces", "/proc/self")
     assert done.returncode == 0
-    assert "warning[trace-unwritable]" in done.stderr
+    assert "warning[dead-trace-unwritable]" in done.stderr
     done = pn2code(
         "verify", net, "--set", "last=4", "-q", "--most-traces", "0", "--report", "/no/r"
     )

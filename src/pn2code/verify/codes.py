@@ -62,8 +62,8 @@ REDUCTION_MISMATCH = register(
     "one, on which the reduction rests. They differ: this is a bug in pn2code. Nothing that was found counts.",
 )
 TRACE_UNWRITABLE = register(
-    "trace-unwritable",
-    "a trace cannot be written",
+    "dead-trace-unwritable",
+    "a trace to a dead marking cannot be written",
     "The run to a dead marking is written into the current folder, or into that of `--traces`: there is no permission, "
     "or the disk is full. What was found is not affected. `--most-traces 0` wants no traces.",
 )
