@@ -119,7 +119,7 @@ RINGS = """
 
 @pytest.mark.parametrize("width", [0, 1])
 def test_another_layout_keeps_the_graph(explorers: Explorers, width: int) -> None:
-    """Keys are made anew in the midst of the exploration: whenever, and with how many threads, the graph is the same."""
+    """Keys are made anew in the midst of an exploration: whenever it is, the graph is the same."""
     net = flat(RINGS)
     plain = explorers.explore(net, width=width)
     assert plain.report["complete"]
