@@ -24,7 +24,11 @@ net Chance
     ("clauses", "text", "words"),
     [
         ("", "discrete (1, 6)", "draws random numbers"),
-        (" code input (n); output (m); action n + IntInf.toInt (step ())", "m", "asks for the number of steps"),
+        (
+            " code input (n); output (m); action n + IntInf.toInt (step ())",
+            "m",
+            "asks for the number of steps",
+        ),
         (" code input (n); action count := n", "!count", "reads a reference"),
         ("", "n + 1", ""),
         ("", "!count", ""),  # never changed

@@ -27,6 +27,7 @@ enum {
 #define DEFAULT_MEMORY (4096U * MEBI)
 #define DEFAULT_ARENA (64U * MEBI)
 #define DEFAULT_DEAD 1000U
+#define DEFAULT_LAY_AGAIN ((uint64_t)1U << 18U)
 
 static ex_run_t s_run;
 
@@ -54,6 +55,7 @@ static void print_help(void)
                  "  --trace-to NAME     a shortest trace to a dead state, as NAMEn.trace.jsonl with its number n\n"
                  "  --traces N          so many of them (default 1)\n"
                  "  --seed N            of random numbers (default 1)\n"
+                 "  --lay-again N       after N states see once more how they are stored best (default 262144)\n"
                  "  --help              this text\n\n"
                  "The report is one JSON object on the standard output.\n\n"
                  "exit codes: 0 complete, 1 an inscription raised an exception, 2 wrong usage, 3 truncated\n",
@@ -146,13 +148,14 @@ static bool read_valued(const char *option, const char *value, ex_options_t *opt
            || ((strcmp(option, "--write-limit") == 0) && read_number(value, UINT64_MAX, &options->write_limit))
            || ((strcmp(option, "--progress-every") == 0) && read_seconds(value, &options->progress_every))
            || ((strcmp(option, "--trace-to") == 0) && read_text(value, &options->trace_to))
+           || ((strcmp(option, "--lay-again") == 0) && read_number(value, UINT64_MAX, &options->lay_again))
            || ((strcmp(option, "--seed") == 0) && read_number(value, UINT64_MAX, &options->seed));
 }
 
 static bool read_options(int argc, char **argv, ex_options_t *options)
 {
     *options = (ex_options_t){ .threads = 1U, .max_states = UINT64_MAX, .memory = DEFAULT_MEMORY, .arena = DEFAULT_ARENA,
-                               .seed = 1U, .has_graph = true, .dead_limit = (uint64_t)DEFAULT_DEAD,
+                               .seed = 1U, .lay_again = DEFAULT_LAY_AGAIN, .has_graph = true, .dead_limit = (uint64_t)DEFAULT_DEAD,
                                .traces = 1U, .write_limit = UINT64_MAX, .progress_every = 0.5 };
     for (int i = 1; i < argc; i++) {
         const char *option = argv[i];

@@ -30,6 +30,7 @@ typedef struct ex_options {
     uint64_t memory;       /* bytes */
     uint64_t arena;        /* bytes of each thread, for lists and strings */
     uint64_t seed;
+    uint64_t lay_again;    /* states after which the layout of keys is looked at once more */
     bool has_graph;        /* wanted */
     bool is_bitstate;
     bool is_hashed;        /* hash compaction */

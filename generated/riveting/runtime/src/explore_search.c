@@ -20,7 +20,6 @@ enum {
     RECENT = 1 << 13,  /* a power of two: as many as a cache near the processor holds */
     SHARED_FROM = 32, /* keys in a chunk that is given to idle threads */
     FIRST_KEYS = 1 << 14,
-    ENOUGH = 1 << 18,  /* states for a second look at the layout of keys */
     REPORTED = 1 << 12 /* states after which a thread tells how far it is */
 };
 
@@ -454,7 +453,7 @@ static chunk_t *take_chunk(ex_worker_t *worker, chunk_t *used)
         } else {
             search->depth++;
             search->parts = 1U;
-            if (own->is_exact && !run->is_laid_again && (atomic_load(&run->store.used) >= (uint64_t)ENOUGH)) {
+            if (own->is_exact && !run->is_laid_again && (atomic_load(&run->store.used) >= run->options.lay_again)) {
                 lay_again(run);
             }
             if ((search->now != NULL) && (search->now->next == NULL) && (run->options.threads > 1U)) {
