@@ -522,17 +522,6 @@ static bool number_dirty(ex_worker_t *worker)
     return true;
 }
 
-/* The key of a marking that is nothing but a short packed part. */
-static inline void plain_key(const ex_codec_t *codec, const void *marking, ex_key_t *key)
-{
-    uint64_t low;
-    uint64_t high;
-    (void)memcpy(&low, marking, sizeof low); /* there is room for so much */
-    (void)memcpy(&high, (const unsigned char *)marking + sizeof low, sizeof high);
-    key->low = ex_alone(low) & codec->plain_low;
-    key->high = ex_alone(high) & codec->plain_high;
-}
-
 /* The key of the cells. */
 static inline void root_key(const ex_codec_t *codec, const uint32_t *cell, ex_key_t *key)
 {
@@ -654,7 +643,7 @@ bool ex_encode_next(ex_worker_t *worker, uint32_t transition, const void *next, 
 {
     const ex_codec_t *codec = worker->run->codec;
     if (codec->is_plain) {
-        plain_key(codec, next, key);
+        ex_plain_key(codec, next, key);
         return true;
     }
     return encode_cells(worker, transition, next, key);

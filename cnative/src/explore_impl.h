@@ -12,6 +12,7 @@
 #include <pthread.h>
 #include <stdatomic.h>
 #include <stdio.h>
+#include <string.h>
 
 #include "pn/pn_arena.h"
 #include "pn/pn_net.h"
@@ -215,6 +216,17 @@ typedef struct ex_codec {
     ex_tuples_t tuples[EX_TABLES];
     uint32_t tuple_words[EX_TABLES]; /* 0: there is no such table */
 } ex_codec_t;
+
+/* The key of a marking that is nothing but a short packed part. */
+static inline void ex_plain_key(const ex_codec_t *codec, const void *marking, ex_key_t *key)
+{
+    uint64_t low;
+    uint64_t high;
+    (void)memcpy(&low, marking, sizeof low); /* there is room for so much */
+    (void)memcpy(&high, (const unsigned char *)marking + sizeof low, sizeof high);
+    key->low = ex_alone(low) & codec->plain_low;
+    key->high = ex_alone(high) & codec->plain_high;
+}
 
 /* What a thread needs for it. */
 typedef struct ex_scratch {
