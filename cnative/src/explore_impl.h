@@ -207,6 +207,9 @@ typedef struct ex_codec {
     uint32_t *touched_count;
     uint32_t **touched_bags;   /* by transition: places */
     uint32_t *touched_bag_count;
+    uint32_t *part_of;         /* by word: the part of the key in which it is */
+    uint8_t *touched_parts;    /* by transition: a bit for each of them */
+    bool is_flat;              /* no part is more than one node over words */
     ex_node_t *node;
     uint32_t nodes;
     uint32_t *parent;        /* by cell: node */
