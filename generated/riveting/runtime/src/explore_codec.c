@@ -190,6 +190,21 @@ static void lay_part(ex_codec_t *codec, uint32_t *cell, uint32_t count)
     codec->roots++;
 }
 
+/* The parts of the key that transitions touch. */
+static void find_parts(ex_codec_t *codec)
+{
+    for (uint32_t t = 0U; !codec->is_whole && (t < pn_net.transition_count); t++) {
+        uint32_t parts = 0U;
+        for (uint32_t k = 0U; k < codec->touched_count[t]; k++) {
+            parts |= 1U << codec->part_of[codec->touched_words[t][k]];
+        }
+        for (uint32_t k = 0U; k < codec->touched_bag_count[t]; k++) {
+            parts |= 1U << codec->part_of[codec->word_of[codec->touched_bags[t][k]]];
+        }
+        codec->touched_parts[t] = (uint8_t)parts;
+    }
+}
+
 void ex_codec_group(ex_codec_t *codec, uint32_t *word, const uint32_t end[EX_KEY_WORDS], uint32_t parts)
 {
     uint32_t from = 0U;
@@ -200,10 +215,16 @@ void ex_codec_group(ex_codec_t *codec, uint32_t *word, const uint32_t end[EX_KEY
         codec->parent[i] = NONE;
     }
     for (uint32_t part = 0U; part < parts; part++) {
+        for (uint32_t i = from; i < end[part]; i++) {
+            codec->part_of[word[i]] = part;
+        }
         lay_part(codec, &word[from], end[part] - from);
         from = end[part];
     }
+    find_parts(codec);
+    codec->is_flat = !codec->is_whole;
     for (uint32_t n = 0U; n < codec->nodes; n++) {
+        codec->is_flat = codec->is_flat && (codec->node[n].table < EX_KEY_WORDS);
         codec->node[n].parent = codec->parent[codec->words + n];
         codec->tuple_words[codec->node[n].table] =
             (codec->node[n].table < EX_KEY_WORDS) ? codec->node[n].count : EX_TUPLE_WORDS;
@@ -272,12 +293,14 @@ bool ex_codec_make(ex_run_t *run)
     codec->touched_count = table(run, pn_net.transition_count, sizeof(uint32_t));
     codec->touched_bags = table(run, pn_net.transition_count, sizeof(uint32_t *));
     codec->touched_bag_count = table(run, pn_net.transition_count, sizeof(uint32_t));
+    codec->touched_parts = table(run, pn_net.transition_count, sizeof(uint8_t));
+    codec->part_of = table(run, most, sizeof(uint32_t));
     codec->node = table(run, most, sizeof *codec->node);
     codec->parent = table(run, 2U * most, sizeof(uint32_t));
     uint32_t *cell = table(run, most, sizeof *cell);
     codec->is_joined = table(run, most, sizeof(bool));
     if ((codec->slice_bit == NULL) || (codec->slice_width == NULL) || (codec->is_joined == NULL) || (codec->word_of == NULL)
-        || (codec->place_of == NULL) || (codec->touched_words == NULL) || (codec->touched_count == NULL)
+        || (codec->place_of == NULL) || (codec->touched_words == NULL) || (codec->touched_parts == NULL) || (codec->part_of == NULL) || (codec->touched_count == NULL)
         || (codec->touched_bags == NULL) || (codec->touched_bag_count == NULL) || (codec->node == NULL)
         || (codec->parent == NULL) || (cell == NULL)) {
         return false;
@@ -289,6 +312,11 @@ bool ex_codec_make(ex_run_t *run)
         lay_slices(codec, cell);
     }
     lay_words(codec);
+    for (uint32_t t = 0U; !codec->is_whole && (t < pn_net.transition_count); t++) {
+        if (!lay_touched(run, codec, t)) {
+            return false;
+        }
+    }
     lay_tree(codec, cell);
     if (codec->is_plain) {
         unsigned char mask[2U * sizeof(uint64_t)] = { 0U };
@@ -297,11 +325,6 @@ bool ex_codec_make(ex_run_t *run)
         (void)memcpy(&codec->plain_high, &mask[sizeof codec->plain_low], sizeof codec->plain_high);
     }
     ex_free(run, cell, (most + 1U) * sizeof *cell);
-    for (uint32_t t = 0U; !codec->is_whole && (t < pn_net.transition_count); t++) {
-        if (!lay_touched(run, codec, t)) {
-            return false;
-        }
-    }
     return ex_bytes_make(&codec->bytes, run) && ex_codec_number(run);
 }
 
@@ -486,13 +509,11 @@ static inline void lanes_of(const ex_node_t *node, const uint32_t *cell, uint64_
     }
 }
 
-static bool number_node(ex_worker_t *worker, uint32_t n, uint32_t *number)
+static bool number_lanes(ex_worker_t *worker, uint32_t table, const uint64_t lane[EX_TUPLE_LANES], uint32_t *number)
 {
     ex_codec_t *codec = worker->run->codec;
-    uint64_t lane[EX_TUPLE_LANES];
-    lanes_of(&codec->node[n], worker->scratch->cell, lane);
     for (;;) {
-        *number = ex_tuples_number(&codec->tuples[codec->node[n].table], lane);
+        *number = ex_tuples_number(&codec->tuples[table], lane);
         if (*number != EX_NO_NUMBER) {
             return true;
         }
@@ -501,6 +522,14 @@ static bool number_node(ex_worker_t *worker, uint32_t n, uint32_t *number)
             return false;
         }
     }
+}
+
+static bool number_node(ex_worker_t *worker, uint32_t n, uint32_t *number)
+{
+    const ex_node_t *node = &worker->run->codec->node[n];
+    uint64_t lane[EX_TUPLE_LANES];
+    lanes_of(node, worker->scratch->cell, lane);
+    return number_lanes(worker, node->table, lane, number);
 }
 
 /* Looks up the nodes above what has changed. Children come before their parents. */
@@ -520,17 +549,6 @@ static bool number_dirty(ex_worker_t *worker)
         }
     }
     return true;
-}
-
-/* The key of a marking that is nothing but a short packed part. */
-static inline void plain_key(const ex_codec_t *codec, const void *marking, ex_key_t *key)
-{
-    uint64_t low;
-    uint64_t high;
-    (void)memcpy(&low, marking, sizeof low); /* there is room for so much */
-    (void)memcpy(&high, (const unsigned char *)marking + sizeof low, sizeof high);
-    key->low = ex_alone(low) & codec->plain_low;
-    key->high = ex_alone(high) & codec->plain_high;
 }
 
 /* The key of the cells. */
@@ -621,6 +639,60 @@ bool ex_encode_time(ex_worker_t *worker)
     return true;
 }
 
+/* A part of the key of a successor: a node over words, of which those of bags are in the cells already. */
+static inline bool encode_part(ex_worker_t *worker, const ex_node_t *node, const void *next, bool is_different, uint32_t *number)
+{
+    const ex_codec_t *codec = worker->run->codec;
+    const uint32_t *cell = worker->scratch->cell;
+    uint64_t lane[EX_TUPLE_LANES] = { 0U, 0U, 0U, 0U };
+    uint32_t difference = is_different ? 1U : 0U;
+    for (uint32_t i = 0U; i < node->count; i++) {
+        const uint32_t c = node->child[i];
+        const uint32_t word = (c < codec->packed_words) ? slice_of(codec, next, c) : cell[c];
+        difference |= word ^ cell[c];
+        lane[i / 2U] |= (uint64_t)word << (32U * (i % 2U));
+    }
+    return (difference == 0U) || number_lanes(worker, node->table, lane, number);
+}
+
+/* The key of a successor where all nodes are parts of the key: only those that the transition touches are looked at. */
+static EX_APART bool encode_flat(ex_worker_t *worker, uint32_t transition, const void *next, ex_key_t *key)
+{
+    const ex_codec_t *codec = worker->run->codec;
+    ex_scratch_t *scratch = worker->scratch;
+    uint32_t *cell = scratch->cell;
+    uint32_t word[EX_KEY_WORDS] = { 0U, 0U, 0U, 0U };
+    bool is_fine = true;
+    for (uint32_t k = 0U; is_fine && (k < codec->touched_bag_count[transition]); k++) {
+        const uint32_t place = codec->touched_bags[transition][k];
+        const uint32_t c = codec->word_of[place];
+        uint32_t number;
+        is_fine = intern_place(worker, place, next, &number);
+        if (is_fine && (number != cell[c])) {
+            scratch->undo_cell[scratch->undone] = c;
+            scratch->undo_value[scratch->undone] = cell[c];
+            scratch->undone++;
+            cell[c] = number;
+        }
+    }
+    for (uint32_t i = 0U; i < codec->roots; i++) {
+        const uint32_t c = codec->root[i];
+        word[i] = cell[c];
+        if (!is_fine || (((codec->touched_parts[transition] >> i) & 1U) == 0U)) {
+            continue;
+        }
+        if (c < codec->packed_words) {
+            word[i] = slice_of(codec, next, c);
+        } else if (c >= codec->words) {
+            is_fine = encode_part(worker, &codec->node[c - codec->words], next, scratch->undone > 0U, &word[i]);
+        }
+    }
+    key->low = word[0] | ((uint64_t)word[1] << 32U);
+    key->high = word[2] | ((uint64_t)word[3] << 32U);
+    undo(scratch);
+    return is_fine;
+}
+
 static EX_APART bool encode_cells(ex_worker_t *worker, uint32_t transition, const void *next, ex_key_t *key)
 {
     const ex_codec_t *codec = worker->run->codec;
@@ -654,10 +726,10 @@ bool ex_encode_next(ex_worker_t *worker, uint32_t transition, const void *next, 
 {
     const ex_codec_t *codec = worker->run->codec;
     if (codec->is_plain) {
-        plain_key(codec, next, key);
+        ex_plain_key(codec, next, key);
         return true;
     }
-    return encode_cells(worker, transition, next, key);
+    return codec->is_flat ? encode_flat(worker, transition, next, key) : encode_cells(worker, transition, next, key);
 }
 
 /* --- decoding -------------------------------------------------------------------------------------------------------------- */

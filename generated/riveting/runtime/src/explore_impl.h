@@ -12,6 +12,7 @@
 #include <pthread.h>
 #include <stdatomic.h>
 #include <stdio.h>
+#include <string.h>
 
 #include "pn/pn_arena.h"
 #include "pn/pn_net.h"
@@ -206,6 +207,9 @@ typedef struct ex_codec {
     uint32_t *touched_count;
     uint32_t **touched_bags;   /* by transition: places */
     uint32_t *touched_bag_count;
+    uint32_t *part_of;         /* by word: the part of the key in which it is */
+    uint8_t *touched_parts;    /* by transition: a bit for each of them */
+    bool is_flat;              /* no part is more than one node over words */
     ex_node_t *node;
     uint32_t nodes;
     uint32_t *parent;        /* by cell: node */
@@ -215,6 +219,17 @@ typedef struct ex_codec {
     ex_tuples_t tuples[EX_TABLES];
     uint32_t tuple_words[EX_TABLES]; /* 0: there is no such table */
 } ex_codec_t;
+
+/* The key of a marking that is nothing but a short packed part. */
+static inline void ex_plain_key(const ex_codec_t *codec, const void *marking, ex_key_t *key)
+{
+    uint64_t low;
+    uint64_t high;
+    (void)memcpy(&low, marking, sizeof low); /* there is room for so much */
+    (void)memcpy(&high, (const unsigned char *)marking + sizeof low, sizeof high);
+    key->low = ex_alone(low) & codec->plain_low;
+    key->high = ex_alone(high) & codec->plain_high;
+}
 
 /* What a thread needs for it. */
 typedef struct ex_scratch {

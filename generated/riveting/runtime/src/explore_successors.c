@@ -12,6 +12,7 @@ typedef struct hunt {
     ex_worker_t *worker;
     ex_arc_sink_t sink;
     ex_marking_sink_t all; /* not NULL: gets every successor, as it is */
+    pn_successor_sink_t on_next; /* what is done with each */
     void *user;
     bool is_found;
     bool is_stopped; /* by the sink */
@@ -97,6 +98,20 @@ static bool on_successor(void *user, uint32_t transition, const void *binding, c
     return true;
 }
 
+/* The same where nothing is reduced and the packed part of the marking is the key. */
+static bool on_plain(void *user, uint32_t transition, const void *binding, const void *next)
+{
+    hunt_t *hunt = user;
+    ex_key_t key;
+    hunt->is_found = true;
+    ex_plain_key(hunt->worker->run->codec, next, &key);
+    if (!hunt->sink(hunt->user, transition, binding, &key)) {
+        hunt->is_stopped = true;
+        return false;
+    }
+    return true;
+}
+
 /* Of transitions that can only be enumerated and fired. */
 static bool on_binding(void *user, uint32_t transition, const void *binding)
 {
@@ -107,7 +122,7 @@ static bool on_binding(void *user, uint32_t transition, const void *binding)
     (void)memcpy(scratch->binding, binding, pn_net.transition[transition].binding_size);
     (void)memcpy(scratch->next, worker->marking, pn_net.marking_size);
     const bool is_done = pn_net.transition[transition].fire(&worker->cx, scratch->next, scratch->binding)
-                         && on_successor(user, transition, scratch->binding, scratch->next);
+                         && hunt->on_next(user, transition, scratch->binding, scratch->next);
     pn_arena_release(&scratch->arena, mark);
     return is_done;
 }
@@ -119,7 +134,7 @@ static bool hunt_transition(hunt_t *hunt, uint32_t t)
     const pn_transition_t *transition = &pn_net.transition[t];
     const size_t mark = pn_arena_mark(&worker->scratch->arena);
     if (transition->successors != NULL) {
-        (void)transition->successors(&worker->cx, worker->marking, t, worker->scratch->next, on_successor, hunt);
+        (void)transition->successors(&worker->cx, worker->marking, t, worker->scratch->next, hunt->on_next, hunt);
     } else {
         (void)transition->enumerate(&worker->cx, worker->marking, t, on_binding, hunt);
     }
@@ -164,12 +179,13 @@ static bool advance(hunt_t *hunt, pn_time_t next)
 
 ex_found_t ex_successors(ex_worker_t *worker, const ex_key_t *key, ex_arc_sink_t sink, void *user)
 {
-    hunt_t hunt = { .worker = worker, .sink = sink, .user = user };
+    const ex_reduction_t *reduction = worker->run->reduction;
+    const bool is_plain = worker->run->codec->is_plain && (reduction == NULL); /* there is no time either */
+    hunt_t hunt = { .worker = worker, .sink = sink, .user = user, .on_next = is_plain ? on_plain : on_successor };
     worker->elapsed = 0;
     if (!ex_load(worker, key)) {
         return EX_FAILED;
     }
-    const ex_reduction_t *reduction = worker->run->reduction;
     if ((reduction != NULL) && reduction->is_stubborn) {
         ex_stubborn_begin(worker);
     }
@@ -200,7 +216,7 @@ ex_found_t ex_successors(ex_worker_t *worker, const ex_key_t *key, ex_arc_sink_t
 
 ex_found_t ex_all_successors(ex_worker_t *worker, ex_marking_sink_t sink, void *user)
 {
-    hunt_t hunt = { .worker = worker, .all = sink, .user = user };
+    hunt_t hunt = { .worker = worker, .all = sink, .user = user, .on_next = on_successor };
     const bool goes_on = hunt_now(&hunt);
     if (hunt.is_stopped) {
         return EX_STOPPED;
