@@ -1,11 +1,15 @@
 # What `make` users expect; ./dev does the work and says what else there is.
-.PHONY: help test lint fuzz bench ml-suite conformance
+.PHONY: thorough help test lint fuzz bench ml-suite conformance
 
 help:
 	@./dev help
 
 test lint bench ml-suite conformance:
 	./dev $@
+
+# The tests with all of their long sweeps.
+thorough:
+	PN2CODE_THOROUGH=1 ./dev test
 
 # Ten minutes of changed nets and random CPN ML, then some random nets compiled and compared with the token game.
 fuzz:

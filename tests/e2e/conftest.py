@@ -41,7 +41,16 @@ def riveting_program(root: Path, tmp_path_factory: pytest.TempPathFactory) -> Pa
 
 @pytest.fixture(scope="session")
 def explorers(tmp_path_factory: pytest.TempPathFactory) -> Explorers:
-    """The runtime of explorers, compiled once."""
+    """The runtime of explorers, compiled once, also when several workers share it; nets in a folder of each."""
     if build.find_compiler() is None:
         pytest.skip("no C compiler")
-    return Explorers.open(tmp_path_factory.mktemp("explorers"))
+    base = tmp_path_factory.getbasetemp()
+    if "PYTEST_XDIST_WORKER" in os.environ:
+        base = base.parent
+    shared, done = base / "explorer", base / "explorer.done"
+    with (base / "explorer.lock").open("w") as lock:
+        fcntl.flock(lock, fcntl.LOCK_EX)
+        if not done.exists():
+            Explorers.open(shared)
+            done.touch()
+    return Explorers.of(shared, tmp_path_factory.mktemp("explorers"))

@@ -12,10 +12,11 @@ import pytest
 from helpers.explored import Explorers, agrees
 from helpers.netbuilder import flat
 from helpers.random_graphs import WIDTHS, numbered
+from helpers.thorough import amount
 
 pytestmark = pytest.mark.cc
 
-NETS = 100
+NETS = amount(24, 400)
 
 
 @pytest.mark.parametrize("part", range(4))

@@ -11,6 +11,7 @@ import pytest
 from helpers.explored import Explored, Explorers
 from helpers.netbuilder import flat, write
 from helpers.table_nets import TableExplorer, orbits, random_net, symmetric_net
+from helpers.thorough import amount
 from pn2code.cli import main
 from pn2code.net.flat import FlatNet
 from pn2code.verify.elements import elements
@@ -112,7 +113,7 @@ def tables(explorers: Explorers) -> TableExplorer:
 
 def test_dead_markings_of_random_nets(tables: TableExplorer) -> None:
     less = dead = 0
-    for seed in range(120):
+    for seed in range(amount(40, 400)):
         net = random_net(Random(seed))
         space = net.graph(1500)
         if space is None:
@@ -122,13 +123,13 @@ def test_dead_markings_of_random_nets(tables: TableExplorer) -> None:
         assert found["dead_count"] == len(found["dead"]) == len(net.dead(space)), seed
         less += found["nodes"] < len(space)
         dead += found["dead_count"] > 0
-    assert less > 50
-    assert dead > 20
+    assert less > 15
+    assert dead > 5
 
 
 def test_orbits_of_random_nets(tables: TableExplorer) -> None:
     less = 0
-    for seed in range(100):
+    for seed in range(amount(40, 400)):
         net, group = symmetric_net(Random(seed))
         space = net.graph(1500)
         if space is None:
@@ -141,7 +142,7 @@ def test_orbits_of_random_nets(tables: TableExplorer) -> None:
         assert both["complete"], (seed, both["error"])
         assert both["dead_count"] == dead, seed
         less += found["nodes"] < len(space)
-    assert less > 30
+    assert less > 10
 
 
 def test_philosophers(explorers: Explorers, tmp_path: Path) -> None:

@@ -9,6 +9,7 @@ import pytest
 from helpers.explored import SANITIZERS, THREADS, Explored, Explorers, agrees
 from helpers.netbuilder import flat
 from helpers.random_graphs import numbered
+from helpers.thorough import amount
 
 pytestmark = pytest.mark.cc
 
@@ -18,7 +19,7 @@ BAGS = """
       colset LIST = list INT;
       var n : INT;
       var l : LIST;
-      place Numbers : INT = 1`1 ++ 1`2 ++ 1`3 ++ 1`4 ++ 1`5 ++ 1`6
+      place Numbers : INT = 1`1 ++ 1`2 ++ 1`3 ++ 1`4
       place Lists : LIST = 1`[] ++ 1`[7]
       trans Put
         in Numbers : n
@@ -53,5 +54,5 @@ def test_sanitized(tmp_path: Path, flags: tuple[str, ...]) -> None:
     for kind in ("hash", "bitstate"):
         explorers.explore(bags, "--approximate", kind, "--threads", 2)
     explorers.explore(bags, "--max-states", 100)
-    for number in (1, 5):
+    for number in (1, 5)[: amount(1, 2)]:
         agrees(explorers, flat(numbered(number)), "--threads", 2, width=number % 3)

@@ -52,14 +52,25 @@ class Explorers:
     folder: Path
     compiler: str
     flags: tuple[str, ...]
+    host: Path
+
+    @staticmethod
+    def of(compiled: Path, folder: Path) -> Explorers:
+        """With what `open` compiled elsewhere, and nets in a folder of one's own."""
+        made = Explorers._at(folder, QUICK)
+        return replace(made, host=compiled / "host")
+
+    @staticmethod
+    def _at(folder: Path, flags: tuple[str, ...]) -> Explorers:
+        compiler = shutil.which("gcc") or shutil.which("cc")
+        assert compiler is not None
+        return Explorers(folder, compiler, flags, folder / "host")
 
     @staticmethod
     def open(folder: Path, flags: tuple[str, ...] = QUICK) -> Explorers:
         """Compile the explorer."""
-        compiler = shutil.which("gcc") or shutil.which("cc")
-        assert compiler is not None
-        made = Explorers(folder, compiler, flags)
-        host = folder / "host"
+        made = Explorers._at(folder, flags)
+        host = made.host
         host.mkdir(parents=True)
         source = cnative_folder() / "src"
         sources = [f for f in sorted(source.glob("*.c")) if not f.name.startswith(OTHER_HOSTS)]
@@ -116,7 +127,7 @@ class Explorers:
         """Run the explorer of a compiled net, and read what it says."""
         graph = folder / "graph.jsonl"
         graph.unlink(missing_ok=True)
-        command = [str(self.folder / "host" / "explore"), *map(str, options)]
+        command = [str(self.host / "explore"), *map(str, options)]
         done = subprocess.run(
             [*command, "--write-graph", str(graph)],
             capture_output=True,

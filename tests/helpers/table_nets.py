@@ -267,7 +267,7 @@ class TableExplorer:
         folder = explorers.folder / "table_net"
         folder.mkdir(exist_ok=True)
         made = folder / "explore"
-        objects = sorted(explorers.folder.glob("*/*.o"))
+        objects = sorted(explorers.host.glob("*.o"))
         command = [explorers.compiler, "-std=c11", "-pthread", *explorers.flags]
         command += [f"-I{cnative_folder() / 'include'}", str(SOURCE), *map(str, objects)]
         done = subprocess.run(
