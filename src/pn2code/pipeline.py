@@ -96,7 +96,7 @@ def generate(
             version=version,
         ),
         *emit_tdl.emit(robots, source=Path(net.file).name, digest=digest, version=version),
-        *runtime.emit(),
+        *runtime.emit("supervisor", "simulate"),
         *_inputs(config),
     ]
     files.append(manifest.emit(partition, files, digest=digest, version=version))

@@ -56,7 +56,7 @@ def test_it_compiles_without_a_warning(text: str, tmp_path: Path) -> None:
     assert flat is not None
     files = programs.generated(flat, {}, d)
     assert files is not None
-    for f in (*files, *runtime.emit()):
+    for f in (*files, *runtime.emit(programs.HOST.name)):
         path = tmp_path / f.path
         path.parent.mkdir(parents=True, exist_ok=True)
         path.write_text(f.text, encoding="utf-8")

@@ -18,6 +18,7 @@ from typing import Any
 
 from helpers.graph_facts import Facts
 from pn2code.diagnostics import Diagnostics
+from pn2code.emission.runtime import HOSTS
 from pn2code.net.flat import FlatNet
 from pn2code.resources import cnative_folder
 from pn2code.semantics.files import Files
@@ -31,7 +32,7 @@ SANITIZERS = ("-g", "-O0", "-fsanitize=address,undefined", "-fno-sanitize-recove
 THREADS = ("-g", "-O0", "-fsanitize=thread")
 SECONDS = 120
 LIBRARY = "libnet.so"
-OTHER_HOSTS = ("simulate", "supervisor")
+OTHER_HOSTS = tuple(name for name in HOSTS if name != "explore")
 
 
 @dataclass(frozen=True, slots=True)

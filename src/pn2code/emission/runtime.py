@@ -2,14 +2,21 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
 from pn2code.emission.output import OutputFile
 from pn2code.resources import cnative_folder
 
+HOSTS = ("simulate", "supervisor", "explore")
+"""What a net can be linked with: the sources of a host begin with its name; all others are common to them."""
 
-def emit() -> tuple[OutputFile, ...]:
-    """Headers and sources of `cnative/` (not its tests) under `runtime/`."""
+
+def emit(*hosts: str) -> tuple[OutputFile, ...]:
+    """Headers and sources of `cnative/` (not its tests) under `runtime/`, of the hosts only those that are named."""
     root = cnative_folder()
-    files = sorted([*root.glob("include/**/*.h"), *root.glob("src/**/*.[ch]")])
+    others = tuple(name for name in HOSTS if name not in hosts)
+    found = sorted([*root.glob("include/**/*.h"), *root.glob("src/**/*.[ch]")])
+    files: list[Path] = [f for f in found if not f.name.startswith(others)]
     return tuple(
         OutputFile(f"runtime/{f.relative_to(root).as_posix()}", f.read_text(encoding="utf-8"))
         for f in files

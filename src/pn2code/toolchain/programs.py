@@ -44,8 +44,6 @@ MOST_PROGRAMS = 64
 """Programs of a host that are kept; the ones that were not used for the longest time go first."""
 GROUPS = 8
 """Calls of the compiler for the runtime."""
-_HOSTS = ("simulate", "supervisor", "explore")
-"""Sources of the runtime that belong to hosts, by what their names begin with."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -148,8 +146,7 @@ class _Builder:
         self.flags = (*FLAGS, *host.flags)
         self.compiler = compiler
         self.files = tuple(files)
-        others = tuple(name for name in _HOSTS if name != host.name)
-        self.runtime = [f for f in runtime.emit() if not Path(f.path).name.startswith(others)]
+        self.runtime = runtime.emit(host.name)
         tools = [*compiler.command, compiler.version, *self.flags, *host.libraries]
         self.library = folder / f"{host.name}-runtime-{_digest(tools, self.runtime)}.a"
         self.program = folder / f"{host.name}-{_digest(tools, [*self.runtime, *self.files])}"
