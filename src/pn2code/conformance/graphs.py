@@ -7,9 +7,10 @@ import re
 from collections.abc import Iterable
 from typing import Any
 
-from pn2code.net.flat import FlatNet, FlatPlace
+from pn2code.net.flat import FlatNet
 from pn2code.semantics.colour_json import from_json
-from pn2code.semantics.colours import Colours
+from pn2code.semantics.colours import TEXTS
+from pn2code.semantics.engine_names import EngineNames
 from pn2code.semantics.game import Game
 from pn2code.semantics.graph import StateSpace
 from pn2code.semantics.marking import (
@@ -18,11 +19,6 @@ from pn2code.semantics.marking import (
     place_text,
     variable_text,
 )
-from pn2code.semantics.recording import engine_name
-
-_NO_EVALUATOR: Any = None
-_TEXTS = Colours(_NO_EVALUATOR)
-"""Texts need nothing evaluated."""
 
 Node = tuple[str, tuple[tuple[str, str], ...]]
 """(time, ((place, marking), ...))"""
@@ -30,18 +26,14 @@ Arc = tuple[Node, str, str, Node]
 """(source, transition, binding, target)"""
 
 
-def place_key(p: FlatPlace) -> str:
-    """`Page'Place 1`, the engine's name of a place instance."""
-    return f"{engine_name(p.page)}'{engine_name(p.short)} {p.instance_number}"
-
-
 def our_nodes(game: Game, space: StateSpace) -> list[Node]:
     """Each node as (time, marking texts), in the engine's notation."""
     nodes = []
+    names = EngineNames(game.net)
     for marking in space.nodes:
         texts = (
             (
-                place_key(p),
+                names.place(p.index),
                 place_text(game.colours, p.colset, marking.places[p.index], earlier_first=True),
             )
             for p in game.net.places
@@ -53,10 +45,10 @@ def our_nodes(game: Game, space: StateSpace) -> list[Node]:
 def our_arcs(game: Game, space: StateSpace) -> set[Arc]:
     """Our arcs, in the engine's notation."""
     nodes = our_nodes(game, space)
+    names = EngineNames(game.net)
     found = set()
     for arc in space.arcs:
-        t = game.net.transitions[arc.element.transition]
-        name = f"{engine_name(t.page)}'{engine_name(t.short)} {t.instance_number}"
+        name = names.transition(arc.element.transition)
         found.add((nodes[arc.source], name, binding_text(game, arc.element), nodes[arc.target]))
     return found
 
@@ -70,39 +62,41 @@ def binding_text(game: Game, element: BindingElement) -> str:
 def written(net: FlatNet, lines: Iterable[str]) -> tuple[list[Node], set[Arc]]:
     """What the compiled explorer writes of a graph (`--write-graph`), in the engine's notation."""
     nodes: list[Node] = []
+    names = EngineNames(net)
     rows = []
     for line in lines:
         entry = json.loads(line)
         if "node" in entry:
-            nodes.append(_written_node(net, entry))
+            nodes.append(_written_node(net, names, entry))
         else:
             rows.append(entry)
     arcs = set()
     for row in rows:
-        t = net.transitions[row["index"]]
-        name = f"{engine_name(t.page)}'{engine_name(t.short)} {t.instance_number}"
-        symbols = {s.name: s for s in t.variables}
+        symbols = {s.name: s for s in net.transitions[row["index"]].variables}
         values = sorted(
-            (name, _TEXTS.text(colset, from_json(colset, value)))
+            (name, TEXTS.text(colset, from_json(colset, value)))
             for name, value in row["binding"].items()
             if (colset := symbols[name].colset) is not None
         )
         binding = ",".join(f"{name}={text}" for name, text in values)
-        arcs.add((nodes[row["from"] - 1], name, binding, nodes[row["to"] - 1]))
+        transition = names.transition(row["index"])
+        arcs.add((nodes[row["from"] - 1], transition, binding, nodes[row["to"] - 1]))
     return nodes, arcs
 
 
-def _written_node(net: FlatNet, entry: dict[str, Any]) -> Node:
+def _written_node(net: FlatNet, names: EngineNames, entry: dict[str, Any]) -> Node:
     texts = []
     for p in net.places:
         tokens = place_from_json(p.colset, entry["marking"][p.name])
-        texts.append((place_key(p), place_text(_TEXTS, p.colset, tokens, earlier_first=True)))
+        text = place_text(TEXTS, p.colset, tokens, earlier_first=True)
+        texts.append((names.place(p.index), text))
     return (str(entry["t"]) if net.timed else "", tuple(sorted(texts)))
 
 
 def engine_nodes(net: FlatNet, graph: dict[str, Any]) -> dict[int, Node]:
     """The engine's nodes by number, with the places that the flat net has."""
-    ours = {place_key(p) for p in net.places}
+    names = EngineNames(net)
+    ours = {names.place(p.index) for p in net.places}
     found = {}
     for node in graph["nodes"]:
         texts = {name: text for name, text in node["marking"].items() if name in ours}

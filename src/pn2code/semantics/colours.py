@@ -491,3 +491,8 @@ def _unbounded(c: Colset) -> MlException:
 
 def _out_of_range() -> MlException:
     return MlException(exception("CPN'Error", "Out of range!"))
+
+
+_NO_EVALUATOR: Any = None
+TEXTS = Colours(_NO_EVALUATOR)
+"""For texts and the order of values, for which nothing is evaluated."""

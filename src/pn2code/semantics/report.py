@@ -11,16 +11,12 @@ from typing import Any
 
 from pn2code.ml.core import Symbol
 from pn2code.net.flat import FlatNet
-from pn2code.semantics.colours import Colours
+from pn2code.semantics.colours import TEXTS
 from pn2code.semantics.marking import BindingElement, Marking, place_text, variable_text
 from pn2code.semantics.values import Value, real_text
 
 PlaceRow = dict[str, str | int]
 """`page`, `instance`, `name`, `id`, `marking`; of a fusion set also `fusion`."""
-
-_NO_EVALUATOR: Any = None
-_TEXTS = Colours(_NO_EVALUATOR)
-"""Texts and the order of values need nothing evaluated."""
 
 
 def places(net: FlatNet, marking: Marking) -> list[PlaceRow]:
@@ -30,7 +26,7 @@ def places(net: FlatNet, marking: Marking) -> list[PlaceRow]:
     its own id as name and no page; `fusion` is its name), as in the real tool. Names are as they are written, with line
     breaks; a place without a name has the name "".
     """
-    texts = [place_text(_TEXTS, p.colset, marking.places[p.index]) for p in net.places]
+    texts = [place_text(TEXTS, p.colset, marking.places[p.index]) for p in net.places]
     rows: list[PlaceRow] = [
         {
             "page": p.page,
@@ -69,7 +65,7 @@ def element(net: FlatNet, e: BindingElement) -> dict[str, Any]:
         "instance": t.instance_number,
         "transition": t.short,
         "id": t.id,
-        "binding": {s.name: variable_text(_TEXTS, s, value) for s, value in e.values},
+        "binding": {s.name: variable_text(TEXTS, s, value) for s, value in e.values},
     }
 
 
@@ -120,7 +116,7 @@ def enabled_text(net: FlatNet, time: int | float, elements: Iterable[BindingElem
 
 def value_text(symbol: Symbol, value: Value) -> str:
     """The value of a net variable."""
-    return variable_text(_TEXTS, symbol, value)
+    return variable_text(TEXTS, symbol, value)
 
 
 def time_text(time: int | float) -> str:

@@ -16,13 +16,9 @@ from typing import Any
 
 from pn2code.net.flat import FlatNet, FlatTransition
 from pn2code.semantics.colour_json import from_json
-from pn2code.semantics.colours import Colours
+from pn2code.semantics.colours import TEXTS
 from pn2code.semantics.marking import place_from_json, place_text, variable_text
 from pn2code.semantics.report import time_text
-
-_NO_EVALUATOR: Any = None
-_TEXTS = Colours(_NO_EVALUATOR)
-"""Texts need nothing evaluated."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -140,7 +136,7 @@ def _graph(net: FlatNet, rows: Sequence[Mapping[str, Any]], arcs: tuple[Arc, ...
             data = row["marking"][place.name]
             if data:
                 held = place_from_json(place.colset, data)
-                shown = place_text(_TEXTS, place.colset, held, earlier_first=True)
+                shown = place_text(TEXTS, place.colset, held, earlier_first=True)
                 marks.append((name, " ".join(shown.split("\n"))))
         time = time_text(row["t"]) if net.timed else ""
         nodes.append(Node(number, time, tuple(marks), depth[number], component[number]))
@@ -205,7 +201,7 @@ def _binding(t: FlatTransition, data: Mapping[str, Any]) -> Iterator[tuple[str, 
         if symbol.name in data:
             assert symbol.colset is not None, "a net variable has a colour set"
             value = from_json(symbol.colset, data[symbol.name])
-            yield symbol.name, variable_text(_TEXTS, symbol, value)
+            yield symbol.name, variable_text(TEXTS, symbol, value)
 
 
 def _place_names(net: FlatNet) -> list[str]:

@@ -11,10 +11,9 @@ from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from itertools import islice
 from pathlib import Path
-from typing import Any
 
 from pn2code.net.flat import FlatNet, FlatPlace, FlatTransition
-from pn2code.semantics.colours import Colours
+from pn2code.semantics.colours import TEXTS
 from pn2code.semantics.files import Files
 from pn2code.semantics.game import Game
 from pn2code.semantics.marking import BindingElement, Marking
@@ -24,9 +23,6 @@ from pn2code.simulate.script import Trace
 
 MOST_SHOWN = 100
 """Characters of a multi-set."""
-_NO_EVALUATOR: Any = None
-_TEXTS = Colours(_NO_EVALUATOR)
-"""Texts need nothing evaluated."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -120,7 +116,7 @@ def _changes(net: FlatNet, before: Marking, after: Marking) -> Iterator[Change]:
 def _text(place: FlatPlace, tokens: Iterable[Value]) -> str:
     """In one line."""
     some = tuple(tokens)
-    return " ".join(_TEXTS.multiset_text(place.colset, some).split("\n")) if some else ""
+    return " ".join(TEXTS.multiset_text(place.colset, some).split("\n")) if some else ""
 
 
 def text(found: tuple[Step, ...], total: int) -> str:

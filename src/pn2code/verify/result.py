@@ -10,13 +10,10 @@ from typing import Any
 from pn2code.ml.colsets import Colset
 from pn2code.net.flat import FlatNet
 from pn2code.semantics.colour_json import from_json
-from pn2code.semantics.colours import Colours
+from pn2code.semantics.colours import TEXTS
 from pn2code.semantics.engine_names import EngineNames
 
 FAIRNESS = ("impartial", "fair", "just", "none")
-_NO_EVALUATOR: Any = None
-_TEXTS = Colours(_NO_EVALUATOR)
-"""Texts and the order of values need nothing evaluated."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -273,6 +270,6 @@ def multiset_text(colset: Colset, found: Sequence[tuple[int, Any]] | None) -> st
     if found is None:
         return None
     values = [(from_json(colset, value), count) for count, value in found if count]
-    values.sort(key=lambda item: _TEXTS.key(colset, item[0]))
-    lines = [f"{count}`{_TEXTS.text(colset, value)}" for value, count in values]
+    values.sort(key=lambda item: TEXTS.key(colset, item[0]))
+    lines = [f"{count}`{TEXTS.text(colset, value)}" for value, count in values]
     return "++\n".join(lines) or "empty"
