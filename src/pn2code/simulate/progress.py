@@ -10,8 +10,8 @@ from typing import Self, TextIO
 PERIOD_S = 0.2
 
 
-class ProgressLine:
-    """Shows steps, model time and steps per second on stderr; nothing where that is no terminal.
+class Line:
+    """A line that is written over again; nothing where the stream is no terminal. It is gone at the end.
 
     Args:
         shown: whether anything is shown at all.
@@ -22,12 +22,9 @@ class ProgressLine:
         self._stream = stream or sys.stderr
         self._shown = shown and self._stream.isatty()
         self._written = False
-        self._calls = 0
-        self._began = self._last = time.monotonic()
-        self._last_steps = 0
 
     def __enter__(self) -> Self:
-        self._say("compiling ...")
+        self.say("compiling ...")
         return self
 
     def __exit__(
@@ -40,6 +37,22 @@ class ProgressLine:
             self._stream.write("\r\x1b[K")
             self._stream.flush()
 
+    def say(self, text: str) -> None:
+        """Shows a text instead of the one before."""
+        if self._shown:
+            self._written = True
+            self._stream.write(f"\r\x1b[K{text}")
+            self._stream.flush()
+
+
+class ProgressLine(Line):
+    """Shows steps, model time and steps per second."""
+
+    def __init__(self, *, shown: bool = True, stream: TextIO | None = None) -> None:
+        super().__init__(shown=shown, stream=stream)
+        self._last = time.monotonic()
+        self._last_steps = 0
+
     def update(self, steps: int, now: int | float) -> None:
         """The run has made so many steps, at this model time."""
         if not self._shown:
@@ -50,10 +63,4 @@ class ProgressLine:
             return
         rate = (steps - self._last_steps) / passed
         self._last, self._last_steps = clock, steps
-        self._say(f"{steps:,} steps   time {now}   {rate:,.0f} steps/s")
-
-    def _say(self, text: str) -> None:
-        if self._shown:
-            self._written = True
-            self._stream.write(f"\r\x1b[K{text}")
-            self._stream.flush()
+        self.say(f"{steps:,} steps   time {now}   {rate:,.0f} steps/s")

@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-import sys
 from collections.abc import Mapping
-from types import TracebackType
-from typing import Any, Self, TextIO
+from typing import Any
+
+from pn2code.simulate.progress import Line
 
 _PHASES = {
     "explore": "exploring",
@@ -16,32 +16,8 @@ _PHASES = {
 }
 
 
-class ProgressLine:
-    """Shows states, rate, frontier, depth and memory on stderr; nothing where that is no terminal.
-
-    Args:
-        shown: whether anything is shown at all.
-        stream: where; stderr by default.
-    """
-
-    def __init__(self, *, shown: bool = True, stream: TextIO | None = None) -> None:
-        self._stream = stream or sys.stderr
-        self._shown = shown and self._stream.isatty()
-        self._written = False
-
-    def __enter__(self) -> Self:
-        self._say("compiling ...")
-        return self
-
-    def __exit__(
-        self,
-        kind: type[BaseException] | None,
-        value: BaseException | None,
-        trace: TracebackType | None,
-    ) -> None:
-        if self._written:
-            self._stream.write("\r\x1b[K")
-            self._stream.flush()
+class ProgressLine(Line):
+    """Shows states, rate, frontier, depth and memory."""
 
     def update(self, said: Mapping[str, Any]) -> None:
         """What the explorer says of itself, twice a second."""
@@ -55,10 +31,4 @@ class ProgressLine:
             f"{said.get('mib', 0):,.0f} MiB",
             f"{said.get('seconds', 0):.0f} s",
         ]
-        self._say(f"{phase}: " + "  ".join(parts))
-
-    def _say(self, text: str) -> None:
-        if self._shown:
-            self._stream.write(f"\r\x1b[K{text}")
-            self._stream.flush()
-            self._written = True
+        self.say(f"{phase}: " + "  ".join(parts))

@@ -12,7 +12,7 @@ from collections.abc import Iterable, Sequence
 from datetime import datetime
 
 import pn2code
-from pn2code.net.flat import FlatNet
+from pn2code.net.flat import FlatNet, FlatPlace
 from pn2code.semantics.engine_names import EngineNames
 from pn2code.verify.result import Exploration, Graph, multiset_text
 
@@ -115,12 +115,7 @@ def _statistics(found: Exploration) -> str:
 
 def _boundedness(net: FlatNet, found: Exploration) -> str:
     assert found.bounds is not None
-    # Members of fusion sets have rows of their own; a port with a socket has not.
-    name_of = EngineNames(net).place_instance
-    shown = [p for p in net.place_instances if not p.is_assigned]
-    rows = sorted(
-        ((name_of(p), net.places[p.place]) for p in shown), key=lambda row: _order(row[0])
-    )
+    rows = bounded_places(net)
     lines = [*_section("Boundedness Properties"), "", "  Best Integer Bounds"]
     lines.append(f"     {'':24}Upper      Lower")
     for name, place in rows:
@@ -133,6 +128,17 @@ def _boundedness(net: FlatNet, found: Exploration) -> str:
             multiset = (own.lower_multiset, own.upper_multiset)[pick]
             lines += _row(name, multiset_text(place.colset, multiset) or "not computed", _NAME)
     return "\n".join(lines)
+
+
+def bounded_places(net: FlatNet) -> list[tuple[str, FlatPlace]]:
+    """The places of a table of bounds with their names, in its order.
+
+    Members of fusion sets have rows of their own; a port with a socket has not.
+    """
+    name_of = EngineNames(net).place_instance
+    shown = [p for p in net.place_instances if not p.is_assigned]
+    rows = [(name_of(p), net.places[p.place]) for p in shown]
+    return sorted(rows, key=lambda row: _order(row[0]))
 
 
 def _order(name: str) -> str:

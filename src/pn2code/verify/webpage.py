@@ -16,7 +16,7 @@ from pn2code.semantics.engine_names import EngineNames
 from pn2code.semantics.game import GameError
 from pn2code.simulate.script import TraceRefusedError
 from pn2code.verify.path import Step, steps
-from pn2code.verify.report import why_partial
+from pn2code.verify.report import bounded_places, why_partial
 from pn2code.verify.result import Exploration, Trace, multiset_text
 
 MOST_STEPS = 200
@@ -114,19 +114,18 @@ def _bounds(net: FlatNet, found: Exploration) -> list[dict[str, Any]]:
     if found.bounds is None:
         return []
     rows = []
-    names = EngineNames(net)
-    for place in net.places:
+    for name, place in bounded_places(net):
         own = found.bounds[place.index]
         rows.append(
             {
-                "name": names.place(place.index),
+                "name": name,
                 "lower": own.lower,
                 "upper": own.upper,
                 "lower_multiset": multiset_text(place.colset, own.lower_multiset) or "",
                 "upper_multiset": multiset_text(place.colset, own.upper_multiset) or "",
             }
         )
-    return sorted(rows, key=lambda row: str(row["name"]))
+    return rows
 
 
 def _markings(found: Exploration) -> list[tuple[str, str]]:
