@@ -102,6 +102,9 @@ struct ex_worker;
 /* Zeroed memory, page-aligned; counted, refused (NULL) beyond the limit of --memory. With --spill it lies in a file. Pages that are
  * never touched cost nothing but count. Large blocks get huge pages. Thread-safe. */
 void *ex_alloc(struct ex_run *run, uint64_t size);
+/* Room for `count` things and one more, zeroed. */
+void *ex_table(struct ex_run *run, uint64_t count, uint64_t size);
+void ex_free_table(struct ex_run *run, void *memory, uint64_t count, uint64_t size);
 void ex_free(struct ex_run *run, void *memory, uint64_t size);
 /* Whether so much could be had now. */
 bool ex_has_room(const struct ex_run *run, uint64_t size);
@@ -172,7 +175,7 @@ bool ex_bytes_grow(ex_bytes_t *bytes);
 uint64_t ex_tuples_bytes(const ex_tuples_t *tuples);
 uint64_t ex_bytes_bytes(const ex_bytes_t *bytes);
 
-/* --- codec (explore_codec.c) --------------------------------------------------------------------------------------- */
+/* --- codec (explore_shape.c, explore_codec.c) ---------------------------------------------------------------------- */
 
 /* A group of words that share a number: an inner node of the tree. */
 typedef struct ex_node {

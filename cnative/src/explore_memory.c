@@ -119,6 +119,11 @@ void *ex_alloc(ex_run_t *run, uint64_t wanted)
     return memory;
 }
 
+void *ex_table(ex_run_t *run, uint64_t count, uint64_t size)
+{
+    return ex_alloc(run, (count + 1U) * size);
+}
+
 void ex_unmap(void *memory, uint64_t size)
 {
     (void)munmap(memory, (size_t)rounded(size));
@@ -132,6 +137,11 @@ void ex_free(ex_run_t *run, void *memory, uint64_t size)
             ex_uncount(run, rounded(size));
         }
     }
+}
+
+void ex_free_table(ex_run_t *run, void *memory, uint64_t count, uint64_t size)
+{
+    ex_free(run, memory, (count + 1U) * size);
 }
 
 void ex_discard(ex_run_t *run, void *memory, uint64_t size, uint64_t from, uint64_t to)

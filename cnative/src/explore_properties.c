@@ -11,49 +11,94 @@
  */
 #include "explore_graph.h"
 
-static void find_home_and_live(ex_graph_t *graph, uint8_t *is_terminal, uint32_t *seen)
+/* Marks the terminal components; gives their number. */
+static uint32_t find_terminal(const ex_graph_t *graph, bool *is_terminal)
 {
-    const uint32_t transitions = pn_net.transition_count;
-    uint32_t terminal_count = 0U;
+    uint32_t count = 0U;
+    for (uint32_t c = 0U; c < graph->components; c++) {
+        is_terminal[c] = true;
+    }
     for (uint32_t node = 0U; node < graph->nodes; node++) {
         for (uint64_t arc = graph->row[node]; arc < graph->row[node + 1U]; arc++) {
             if (graph->component[graph->target[arc]] != graph->component[node]) {
-                is_terminal[graph->component[node]] = 0U;
+                is_terminal[graph->component[node]] = false;
             }
         }
     }
     for (uint32_t c = 0U; c < graph->components; c++) {
-        terminal_count += is_terminal[c];
-        if (is_terminal[c] != 0U) {
+        count += is_terminal[c] ? 1U : 0U;
+    }
+    return count;
+}
+
+static void find_home(ex_graph_t *graph, const bool *is_terminal, uint32_t terminal_count)
+{
+    for (uint32_t c = 0U; (terminal_count == 1U) && (c < graph->components); c++) {
+        if (is_terminal[c]) {
             graph->home_component = c;
         }
-    }
-    if (terminal_count != 1U) {
-        graph->home_component = EX_NO_NODE;
-    }
-    /* seen[t]: in how many terminal components t has an arc. Nodes of a component need not be neighbours: one transition at a time,
-     * marking components in is_terminal by 2. */
-    for (uint32_t t = 0U; t < transitions; t++) {
-        for (uint32_t node = 0U; node < graph->nodes; node++) {
-            uint8_t *const mark = &is_terminal[graph->component[node]];
-            if (*mark != 1U) {
-                continue;
-            }
-            for (uint64_t arc = graph->row[node]; (*mark == 1U) && (arc < graph->row[node + 1U]); arc++) {
-                if (graph->label[arc] == t) {
-                    *mark = 2U;
-                    seen[t] += 1U;
-                }
-            }
-        }
-        for (uint32_t c = 0U; c < graph->components; c++) {
-            is_terminal[c] = (is_terminal[c] != 0U) ? 1U : 0U;
-        }
-        graph->is_live[t] = (seen[t] == terminal_count);
     }
     for (uint32_t node = 0U; node < graph->nodes; node++) {
         graph->home_count += (graph->component[node] == graph->home_component) ? 1U : 0U;
     }
+}
+
+/* The nodes, those of each component next to each other: component c has member[start[c]] .. member[start[c + 1] - 1]. */
+static void sort_by_component(const ex_graph_t *graph, uint32_t *start, uint32_t *member)
+{
+    for (uint32_t node = 0U; node < graph->nodes; node++) {
+        start[graph->component[node] + 1U] += 1U;
+    }
+    for (uint32_t c = 0U; c < graph->components; c++) {
+        start[c + 1U] += start[c];
+    }
+    for (uint32_t node = graph->nodes; node > 0U; node--) {
+        /* From behind: each component fills from its end, and start[c + 1] becomes its beginning. */
+        const uint32_t c = graph->component[node - 1U];
+        start[c + 1U] -= 1U;
+        member[start[c + 1U]] = node - 1U;
+    }
+}
+
+/* For each transition the number of terminal components in which it has an arc: `last` is the last one that was counted. */
+static void find_live(ex_graph_t *graph, const bool *is_terminal, uint32_t terminal_count, const uint32_t *member,
+                      uint32_t *last, uint32_t *seen)
+{
+    for (uint32_t i = 0U; i < graph->nodes; i++) {
+        const uint32_t node = member[i];
+        const uint32_t c = graph->component[node];
+        for (uint64_t arc = graph->row[node]; is_terminal[c] && (arc < graph->row[node + 1U]); arc++) {
+            const uint16_t t = graph->label[arc];
+            seen[t] += (last[t] != (c + 1U)) ? 1U : 0U;
+            last[t] = c + 1U;
+        }
+    }
+    for (uint32_t t = 0U; t < pn_net.transition_count; t++) {
+        graph->is_live[t] = (seen[t] == terminal_count);
+    }
+}
+
+static bool find_home_and_live(ex_run_t *run, ex_graph_t *graph)
+{
+    const uint64_t transitions = pn_net.transition_count;
+    bool *const is_terminal = ex_table(run, graph->components, sizeof *is_terminal);
+    uint32_t *const start = ex_table(run, (uint64_t)graph->components + 1U, sizeof *start);
+    uint32_t *const member = ex_table(run, graph->nodes, sizeof *member);
+    uint32_t *const last = ex_table(run, transitions, sizeof *last);
+    uint32_t *const seen = ex_table(run, transitions, sizeof *seen);
+    const bool has_memory = (is_terminal != NULL) && (start != NULL) && (member != NULL) && (last != NULL) && (seen != NULL);
+    if (has_memory) {
+        const uint32_t terminal_count = find_terminal(graph, is_terminal);
+        find_home(graph, is_terminal, terminal_count);
+        sort_by_component(graph, start, member);
+        find_live(graph, is_terminal, terminal_count, member, last, seen);
+    }
+    ex_free_table(run, is_terminal, graph->components, sizeof *is_terminal);
+    ex_free_table(run, start, (uint64_t)graph->components + 1U, sizeof *start);
+    ex_free_table(run, member, graph->nodes, sizeof *member);
+    ex_free_table(run, last, transitions, sizeof *last);
+    ex_free_table(run, seen, transitions, sizeof *seen);
+    return has_memory;
 }
 
 /* What is worked out transition by transition, by all threads. */
@@ -115,23 +160,14 @@ static void find_some_fairness(ex_worker_t *worker, void *user)
 
 bool ex_properties(ex_run_t *run, ex_graph_t *graph)
 {
-    const uint32_t transitions = pn_net.transition_count;
-    uint8_t *const is_terminal = ex_alloc(run, graph->components);
-    uint32_t *const seen = ex_alloc(run, (uint64_t)transitions * sizeof *seen);
-    graph->is_live = ex_alloc(run, (uint64_t)transitions * sizeof *graph->is_live);
-    graph->fairness = ex_alloc(run, transitions);
-    const bool has_memory = (is_terminal != NULL) && ((transitions == 0U) || ((seen != NULL) && (graph->is_live != NULL) &&
-                                                                              (graph->fairness != NULL)));
-    if (has_memory) {
-        for (uint32_t c = 0U; c < graph->components; c++) {
-            is_terminal[c] = 1U;
-        }
-        find_home_and_live(graph, is_terminal, seen);
+    const uint64_t transitions = pn_net.transition_count;
+    graph->is_live = ex_table(run, transitions, sizeof *graph->is_live);
+    graph->fairness = ex_table(run, transitions, sizeof *graph->fairness);
+    if ((graph->is_live == NULL) || (graph->fairness == NULL) || !find_home_and_live(run, graph)) {
+        return false;
     }
-    ex_free(run, is_terminal, graph->components);
-    ex_free(run, seen, (uint64_t)transitions * sizeof *seen);
-    if (!has_memory || graph->is_acyclic) {
-        return has_memory;
+    if (graph->is_acyclic) {
+        return true;
     }
     fairness_work_t work = { .graph = graph };
     atomic_init(&work.next, 0U);
