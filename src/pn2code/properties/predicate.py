@@ -1,6 +1,6 @@
 """`Predicate`: a condition on one marking, as the compiler takes it.
 
-    { length (Mark.Top'Free 1) > 2 }     exp: length m > 2, places: ((m : COLOUR list, 3),)
+{ length (Mark.Top'Free 1) > 2 }     exp: length m > 2, places: ((m : COLOUR list, 3),)
 """
 
 from __future__ import annotations
