@@ -9,9 +9,10 @@ import pytest
 
 from helpers.netbuilder import flat
 from pn2code.ml.colsets import Colset
+from pn2code.net.engine_names import engine_name
 from pn2code.semantics.colour_text import read_value
 from pn2code.semantics.game import Game
-from pn2code.semantics.recording import NotARecording, engine_name, recording
+from pn2code.semantics.recording import NotARecording, recording
 from pn2code.semantics.replay_recording import Followed, follow
 from pn2code.semantics.values import Data
 

@@ -7,10 +7,10 @@ import re
 from collections.abc import Iterable
 from typing import Any
 
+from pn2code.net.engine_names import EngineNames
 from pn2code.net.flat import FlatNet
 from pn2code.semantics.colour_json import from_json
 from pn2code.semantics.colours import TEXTS
-from pn2code.semantics.engine_names import EngineNames
 from pn2code.semantics.game import Game
 from pn2code.semantics.graph import StateSpace
 from pn2code.semantics.marking import (

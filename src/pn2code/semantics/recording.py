@@ -15,6 +15,7 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from typing import Any
 
+from pn2code.net.engine_names import engine_name
 from pn2code.net.flat import FlatNet, FlatTransition
 
 
@@ -105,12 +106,6 @@ def _final(data: Any) -> Iterator[tuple[tuple[str, int], str]]:
 
 
 # --- names -----------------------------------------------------------------------------------------
-
-
-def engine_name(name: str) -> str:
-    """A name of the net as the engine writes it: each line cut at the first odd character, blanks replaced."""
-    cut = re.sub(r"[^A-Za-z'_0-9 \n\t.\-].*", "", name.strip())
-    return re.sub(r"[^A-Za-z'_0-9]", "_", cut.strip())
 
 
 def _bare(name: str) -> str:

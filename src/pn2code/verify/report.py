@@ -12,8 +12,8 @@ from collections.abc import Iterable, Sequence
 from datetime import datetime
 
 import pn2code
+from pn2code.net.engine_names import EngineNames
 from pn2code.net.flat import FlatNet, FlatPlace
-from pn2code.semantics.engine_names import EngineNames
 from pn2code.verify.result import Exploration, Graph, multiset_text
 
 _RULE = "-" * 72

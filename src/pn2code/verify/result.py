@@ -8,10 +8,10 @@ from pathlib import Path
 from typing import Any
 
 from pn2code.ml.colsets import Colset
+from pn2code.net.engine_names import EngineNames
 from pn2code.net.flat import FlatNet
 from pn2code.semantics.colour_json import from_json
 from pn2code.semantics.colours import TEXTS
-from pn2code.semantics.engine_names import EngineNames
 
 FAIRNESS = ("impartial", "fair", "just", "none")
 

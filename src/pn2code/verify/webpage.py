@@ -10,9 +10,9 @@ from jinja2 import Environment, FileSystemLoader, StrictUndefined
 from markupsafe import Markup
 
 import pn2code
+from pn2code.net.engine_names import EngineNames
 from pn2code.net.flat import FlatNet
 from pn2code.resources import templates_folder
-from pn2code.semantics.engine_names import EngineNames
 from pn2code.semantics.game import GameError
 from pn2code.simulate.script import TraceRefusedError
 from pn2code.verify.path import Step, steps

@@ -8,8 +8,9 @@ places and transitions of a page the first of a name has it, the others have `_u
 
 from __future__ import annotations
 
+import re
+
 from pn2code.net.flat import FlatNet, PlaceInstance
-from pn2code.semantics.recording import engine_name
 
 
 class EngineNames:
@@ -45,6 +46,12 @@ class EngineNames:
         """Of `FlatNet.places[index]`: that of the topmost of the places that share the marking."""
         p = self._net.places[index]
         return f"{_legal(p.page)}'{self._names.get(p.id, _legal(p.short))} {p.instance_number}"
+
+
+def engine_name(name: str) -> str:
+    """A name of the net as the engine writes it: each line cut at the first odd character, blanks replaced."""
+    cut = re.sub(r"[^A-Za-z'_0-9 \n\t.\-].*", "", name.strip())
+    return re.sub(r"[^A-Za-z'_0-9]", "_", cut.strip())
 
 
 def _legal(text: str) -> str:
