@@ -12,6 +12,7 @@
 #include <sys/resource.h>
 #include <time.h>
 
+#include "explore_error.h"
 #include "explore_reduce.h"
 #include "pn/pn_file.h"
 #include "pn/pn_text.h"
@@ -54,6 +55,7 @@ static void print_help(void)
                  "  --write-limit N     but none of a graph with more nodes\n"
                  "  --trace-to NAME     a shortest trace to a dead state, as NAMEn.trace.jsonl with its number n\n"
                  "  --traces N          so many of them (default 1)\n"
+                 "  --error-trace-to NAME  a shortest trace to an exception, as NAMEn.trace.jsonl\n"
                  "  --seed N            of random numbers (default 1)\n"
                  "  --lay-again N       after N states see once more how they are stored best (default 262144)\n"
                  "  --help              this text\n\n"
@@ -148,6 +150,7 @@ static bool read_valued(const char *option, const char *value, ex_options_t *opt
            || ((strcmp(option, "--write-limit") == 0) && read_number(value, UINT64_MAX, &options->write_limit))
            || ((strcmp(option, "--progress-every") == 0) && read_seconds(value, &options->progress_every))
            || ((strcmp(option, "--trace-to") == 0) && read_text(value, &options->trace_to))
+           || ((strcmp(option, "--error-trace-to") == 0) && read_text(value, &options->error_trace_to))
            || ((strcmp(option, "--lay-again") == 0) && read_number(value, UINT64_MAX, &options->lay_again))
            || ((strcmp(option, "--seed") == 0) && read_number(value, UINT64_MAX, &options->seed));
 }
@@ -306,8 +309,9 @@ static void print_index(int64_t index)
     }
 }
 
-static void print_error(const ex_error_t *error)
+static void print_error(const ex_run_t *run)
 {
+    const ex_error_t *const error = &run->error;
     if (error->kind == NULL) {
         (void)printf("null");
         return;
@@ -320,7 +324,9 @@ static void print_error(const ex_error_t *error)
     print_index(error->place);
     (void)printf(", \"transition\": ");
     print_index(error->transition);
-    (void)printf(", \"kind\": \"%s\"}", error->kind);
+    (void)printf(", \"kind\": \"%s\"", error->kind);
+    ex_raised_json(run, stdout);
+    (void)printf("}");
 }
 
 static uint64_t peak_mib(void)
@@ -352,7 +358,7 @@ static void print_report(ex_run_t *run)
     const uint64_t store_bytes = ((run->store.bucket != NULL) ? ex_store_bytes(&run->store) : run->approximate_bytes)
                                  + ((run->codec != NULL) ? ex_codec_bytes(run) : 0U);
     (void)printf("{\"complete\": %s, \"why\": \"%s\", \"error\": ", (why == EX_COMPLETE) ? "true" : "false", why_text(why));
-    print_error(&run->error);
+    print_error(run);
     (void)printf(",\n \"nodes\": %" PRIu64 ", \"arcs\": %" PRIu64 ", \"depth\": %" PRIu64 ", \"expanded\": %" PRIu64,
                  run->nodes, run->arcs, run->depth, run->expanded);
     (void)printf(",\n \"seconds\": %.6f, \"cpu_seconds\": %.6f, \"states_per_second\": %.0f", run->seconds, run->cpu_seconds,
@@ -423,6 +429,10 @@ static int explore(ex_run_t *run)
     if (is_explored && run->options.has_graph && is_exact && (atomic_load(&run->why) == (int)EX_COMPLETE)) {
         atomic_store(&run->phase, "graph");
         (void)ex_graph(run);
+    }
+    if (is_explored && is_exact && (atomic_load(&run->why) == (int)EX_ERROR) && (strcmp(run->error.kind, "exception") == 0)) {
+        atomic_store(&run->phase, "trace");
+        ex_follow_error(run);
     }
     end_watch(&watch);
     print_report(run);

@@ -73,8 +73,14 @@ bool ex_properties(ex_run_t *run, ex_graph_t *graph);
 
 /* --- explore_trace.c --- */
 
-/* A shortest run to a node as a file "dead-N.trace.jsonl" of the folder; steps < 0: it could not be written. */
+#define EX_PATH_SIZE 4096U
+
+/* A shortest run to a node as a file, which appears as a whole; steps < 0: it could not be written. worker[0].marking is then where it ends. */
 int64_t ex_write_trace(ex_run_t *run, const ex_graph_t *graph, uint32_t node, const char *path);
+/* The same; `why` it ends there. */
+int64_t ex_write_run(ex_run_t *run, const ex_graph_t *graph, uint32_t node, const char *path, const char *why);
+/* What a file is called while it is being written: the process's own, beside `path`. False: too long. */
+bool ex_part_name(char name[EX_PATH_SIZE], const char *path);
 /* The whole graph as lines of JSON. */
 bool ex_write_graph(ex_run_t *run, const ex_graph_t *graph, const char *path);
 

@@ -48,6 +48,7 @@ typedef struct ex_options {
     const char *trace_to;    /* what the names of traces to dead markings begin with; NULL: none */
     uint64_t dead_limit;
     uint64_t traces;         /* most traces in trace_to */
+    const char *error_trace_to; /* the same for the trace to an exception */
 } ex_options_t;
 
 /* Why it ended, in the order of importance. */
@@ -450,6 +451,7 @@ typedef struct ex_run {
     struct ex_reduction *reduction; /* of explore_elements.c; NULL: none that needs a table */
     _Atomic(const char *) phase; /* for the progress lines */
     struct ex_graph *graph;  /* of explore_graph.c; NULL: none */
+    struct ex_raised *raised; /* of explore_error.c; NULL: the way to the exception is not known */
 } ex_run_t;
 
 /* Waits until all threads are here, or idle, and one of them has made the tables grow. Asked for where a table is full; a thread that

@@ -1,12 +1,15 @@
 /* SPDX-License-Identifier: MIT
  * explore_trace.c - a run to a node as a trace that can be replayed, and the whole graph as lines of JSON for pictures and comparisons.
  */
+#define _POSIX_C_SOURCE 200809L /* getpid */
+
 #include "explore_graph.h"
 #include "explore_reduce.h"
 
 #include <inttypes.h>
 #include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
 
 #include "pn/pn_text.h"
 #include "pn/pn_trace.h"
@@ -111,21 +114,37 @@ static bool write_walk(ex_run_t *run, const ex_graph_t *graph, const uint32_t *w
             is_fine = (ex_all_successors(worker, walk_step, &walk) == EX_STOPPED) && walk.is_found;
         }
     }
+    if (is_fine) { /* where the run is now */
+        (void)memcpy(worker->marking, marking, pn_net.marking_size);
+        worker->scratch->is_loaded = false;
+    }
     free(wanted);
     free(marking);
     return is_fine;
 }
 
+bool ex_part_name(char name[EX_PATH_SIZE], const char *path)
+{
+    const int length = snprintf(name, EX_PATH_SIZE, "%s.%ld.part", path, (long)getpid());
+    return (length > 0) && ((size_t)length < (size_t)EX_PATH_SIZE);
+}
+
 int64_t ex_write_trace(ex_run_t *run, const ex_graph_t *graph, uint32_t node, const char *path)
+{
+    return ex_write_run(run, graph, node, path, "finished");
+}
+
+int64_t ex_write_run(ex_run_t *run, const ex_graph_t *graph, uint32_t node, const char *path, const char *why)
 {
     ex_worker_t *const worker = &run->worker[0];
     pn_trace_t trace;
+    char part[EX_PATH_SIZE];
     char members[64];
     uint64_t length = 0U;
     int64_t elapsed = 0;
     char *const line = malloc(LINE_SIZE);
     uint32_t *const way = way_to(graph, node, &length);
-    bool is_fine = (line != NULL) && (way != NULL) && pn_trace_open(&trace, path, line, LINE_SIZE);
+    bool is_fine = (line != NULL) && (way != NULL) && ex_part_name(part, path) && pn_trace_open(&trace, part, line, LINE_SIZE);
     if (!is_fine) {
         free(line);
         free(way);
@@ -146,11 +165,15 @@ int64_t ex_write_trace(ex_run_t *run, const ex_graph_t *graph, uint32_t node, co
         elapsed += worker->elapsed;
     }
     ex_key_t last;
-    is_fine = is_fine && ex_store_fetch(&run->store, graph->slot[node], &last) && ex_load(worker, &last);
+    is_fine = is_fine && (is_symmetric || (ex_store_fetch(&run->store, graph->slot[node], &last) && ex_load(worker, &last)));
     if (is_fine) {
-        pn_trace_model_end(&trace, time_of(worker, elapsed), pn_net.real_time, "finished");
+        pn_trace_model_end(&trace, time_of(worker, elapsed), pn_net.real_time, why);
     }
     is_fine = pn_trace_close(&trace) && is_fine;
+    is_fine = is_fine && (rename(part, path) == 0);
+    if (!is_fine) {
+        (void)unlink(part);
+    }
     free(line);
     free(way);
     return is_fine ? (int64_t)(length - 1U) : -1;
@@ -244,6 +267,9 @@ bool ex_write_graph(ex_run_t *run, const ex_graph_t *graph, const char *path)
     }
     if (file != NULL) {
         w.is_fine = (fclose(file) == 0) && w.is_fine;
+        if (!w.is_fine) {
+            (void)unlink(path); /* half of it would look like a graph */
+        }
     }
     free(line);
     return w.is_fine;
