@@ -126,6 +126,14 @@ typedef struct pn_transition {
     bool (*successors)(pn_ctx_t *cx, const void *marking, uint32_t self, void *next, pn_successor_sink_t sink, void *user);
 } pn_transition_t;
 
+/* A condition on markings, asked by those who explore the net. */
+typedef struct pn_predicate {
+    const char *name;
+    const char *text;    /* as its author wrote it */
+    /* Errors are in the context. What it needs of the arena the host releases. */
+    bool (*holds)(pn_ctx_t *cx, const void *marking);
+} pn_predicate_t;
+
 typedef struct pn_owner {
     const char *name;   /* "supervisor", "robot1" */
 } pn_owner_t;
@@ -165,6 +173,8 @@ typedef struct pn_net {
     uint32_t bag_count;       /* the places that are not packed */
     const uint32_t *bags;
     bool has_references;      /* `ref`s of the net are state outside the marking */
+    uint32_t predicate_count; /* 0: none was generated with the net */
+    const pn_predicate_t *predicate;
 } pn_net_t;
 
 extern const pn_net_t pn_net;

@@ -109,6 +109,7 @@ class _Emitter:
         x.functions = self._functions
         x.int_bits = self._net.int_bits
         x.needs_context = self._needs_context
+        x.bags = self._bags
         x.place_names = self._place_names
         x.packed = self._packed
         x.global_hints = {g.name: g.hint for g in self._net.globals}
@@ -366,6 +367,20 @@ class _Emitter:
             else ", ".join(f"{i}U" for i in affected),
         }
 
+    def _predicate(self, p: ir.Predicate, number: int) -> dict[str, object]:
+        s, _, _ = self._printer(p.body)
+        s.body(p.body)
+        return {
+            "mark": self._block(f"property {p.name}", p.name, "property", p.origin),
+            "function": f"predicate_{number}",
+            "name": p.name,
+            "source": _comment_lines(p.text),
+            "text": p.text,
+            "origin": f"property `{p.name}`",
+            "lines": s.lines,
+            "uses_marking": _mentions("marking", "\n".join(s.lines)),
+        }
+
     def _thresholds(self, t: ir.Transition, variables: tuple[str, ...]) -> list[str]:
         """The search for the times at which tokens become available, without its preamble."""
         if not t.thresholds:
@@ -436,7 +451,9 @@ class _Emitter:
 
     # --- the whole -----------------------------------------------------------------------------
 
-    def _used_functions(self) -> list[ir.Function]:
+    def _used_functions(self, *, with_predicates: bool) -> list[ir.Function]:
+        for predicate in self._net.predicates if with_predicates else ():
+            roots += called(predicate.body)
         roots: list[str] = []
         for t in self._net.transitions:
             roots += called(t.enumerate) + called(t.fire) + called(t.thresholds)
@@ -453,9 +470,12 @@ class _Emitter:
                 roots += called(self._functions[key].body)
         return [f for f in self._net.functions if f.key in found]
 
-    def _used_tables(self, functions: Iterable[ir.Function]) -> list[str]:
+    def _used_tables(
+        self, functions: Iterable[ir.Function], predicates: Iterable[ir.Predicate] = ()
+    ) -> list[str]:
         """Keys in order of dependence."""
         roots = {p.table for p in self._net.places}
+        bodies += [p.body for p in predicates]
         bodies: list[object] = [f.body for f in functions]
         for t in self._net.transitions:
             roots |= {v.table for v in t.variables}
@@ -479,11 +499,15 @@ class _Emitter:
 
     def run(self) -> tuple[OutputFile, ...]:
         net = self._net
-        functions = self._used_functions()
+        functions = self._used_functions(with_predicates=False)
         keys = self._used_tables(functions)
         wrappers = {f.key: f"is_{stem(f.hint)}" for f in functions if f.key.startswith("member ")}
         tables = c_tables.Tables(self._types, self._descriptors, wrappers)
         recursive = tables.to_declare(keys)
+        further = [f for f in self._used_functions(with_predicates=True) if f not in functions]
+        further_keys = [
+            k for k in self._used_tables([*functions, *further], net.predicates) if k not in keys
+        ]
         transitions = [self._transition(t) for t in net.transitions]  # what they call is known then
         values = {
             "version": self._version,
@@ -522,6 +546,13 @@ class _Emitter:
             "has_references": any(g.is_reference for g in net.globals),
             "has_arena_values": self._has_arena_values
             or any(g.is_reference or self._types.holds_reference(g.type) for g in net.globals),
+        # After all that belongs to the net, so that it looks the same with and without them.
+        values["further_functions"] = [self._function(f) for f in further]
+        values["further_recursive_tables"] = [
+            self._names.table(k) for k in tables.to_declare(further_keys)
+        ]
+        values["further_tables"] = [tables.print(k) for k in further_keys]
+        values["predicates"] = [self._predicate(p, i) for i, p in enumerate(net.predicates)]
         }
         # After the transitions, which want numbers of colours of their own.
         values["numbers"] = self._numbers.functions + [

@@ -161,6 +161,7 @@ class Expressions:
         self._binding = binding
         self.variables: tuple[str, ...] = ()
         self.place_names: tuple[str, ...] = ()
+        self.bags: tuple[str, ...] = ()
         self.packed: tuple[PackedPlace | None, ...] = ()
         self.functions: dict[str, ir.Function] = {}
         self.int_bits = 31
@@ -245,6 +246,13 @@ class Expressions:
                 return self.token(place, index), _PRIMARY
             case ir.TokenValue(place=place, index=index):
                 return f"m->{self.place_names[place]}.token[{self.local(index)}].value", _POSTFIX
+            case ir.PlaceTokens(place=place, table=table):
+                text = (
+                    f"explore_tokens(cx, &{self.bags[place]}, &{self._names.table(table)}, marking)"
+                )
+                return text, _POSTFIX
+            case ir.PlaceTotal(place=place):
+                return f"(int64_t)pn_bag_total(&{self.bags[place]}, marking)", _UNARY
             case ir.Now(type=t):
                 return ("cx->now.real" if t.rep is Rep.REAL else "cx->now.integer"), _POSTFIX
             case ir.FunCall():

@@ -640,6 +640,7 @@ def uses_context(
                 | ir.Ok()
                 | ir.HasError()
                 | ir.Now()
+                | ir.PlaceTokens()
                 | ir.Fill()
                 | ir.While()
             ):

@@ -26,6 +26,12 @@ UNSUPPORTED_COLSET = register(
     "a colour set that the compiler cannot handle in this role",
     "For example the number of the values of a subset, which is not known at compile time.",
 )
+OUTSIDE_MARKING = register(
+    "unsupported-outside-marking",
+    "a property looks at more than the marking",
+    "A property is asked of every marking that can be reached. References, random numbers, files and the number of "
+    "steps are in no marking: the answer would depend on the way to it.",
+)
 STORAGE_COLSET = register(
     "storage-colour-set",
     "the storage table names something that is not a real colour set",

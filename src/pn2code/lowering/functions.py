@@ -478,6 +478,10 @@ class Program:
         """Whether the order of evaluation matters for it."""
         return self._reaches(e, _is_impure_node, self._impure)
 
+    def reaches(self, e: core.Exp, has: Callable[[core.Exp], bool]) -> bool:
+        """Whether something holds for a part of an expression, or of what it uses of the declarations."""
+        return self._reaches(e, has, {})
+
     def _reaches(
         self, e: core.Exp, has: Callable[[core.Exp], bool], known: dict[int, bool]
     ) -> bool:

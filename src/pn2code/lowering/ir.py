@@ -117,6 +117,28 @@ class TokenValue:
 
 
 @frozen
+class PlaceTokens:
+    """The multi-set of a place as a list, in order; of a timed place as a list of timed tokens. Of predicates alone.
+    `table`: descriptor of the list type."""
+
+    place: int
+    type: IrType
+    table: str
+
+
+@frozen
+class PlaceTotal:
+    """The number of tokens of a place. Of predicates alone."""
+
+    place: int
+
+    @property
+    def type(self) -> IrType:
+        """A number."""
+        return INT
+
+
+@frozen
 class Now:
     """Model time as INT or REAL."""
 
@@ -309,7 +331,7 @@ class Packet:
 Ir = (
     Const | Use | GlobalUse | Bound | TokenValue | Now | FunCall | Op | Member | MakeStruct | EnumValue |
     MakeUnion | IsTag | Argument | Select | Head | Tail | IsNil | Ok | HasError | NewRef | AddressOf | Contents |
-    HasPacket | Packet
+    HasPacket | Packet | PlaceTokens | PlaceTotal
 )  # fmt: skip
 
 # --- statements --------------------------------------------------------------------------------
@@ -716,6 +738,22 @@ class Transition:
 
 
 @frozen
+class Predicate:
+    """A condition on a marking: a function that returns a truth value.
+
+    Args:
+        name: for messages.
+        text: as the author wrote it.
+        origin: where.
+    """
+
+    name: str
+    text: str
+    body: tuple[Stmt, ...]
+    origin: Origin
+
+
+@frozen
 class NetIR:
     """The whole net.
 
@@ -727,6 +765,7 @@ class NetIR:
         order: transition indices by priority, then position.
         int_bits: width of `int`, 31 or 64.
         has_successors: whether there are functions that make all markings after a marking.
+        predicates: what is asked of markings, by hosts that explore them.
     """
 
     name: str
@@ -745,6 +784,7 @@ class NetIR:
     order: tuple[int, ...]
     int_bits: int = 31
     has_successors: bool = False
+    predicates: tuple[Predicate, ...] = ()
     origin: Origin = field(default=NOWHERE)
 
     def definition(self, name: str) -> Definition:

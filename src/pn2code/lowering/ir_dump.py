@@ -217,6 +217,10 @@ class _Dump:
                 return self._variables[index].name
             case ir.TokenValue():
                 return f"{self._place_name(e.place)}[{_local(e.index)}]"
+            case ir.PlaceTokens(place=place):
+                return f"tokens of {self._place_name(place)}"
+            case ir.PlaceTotal(place=place):
+                return f"number of tokens of {self._place_name(place)}"
             case ir.Now():
                 return "now"
             case ir.FunCall():

@@ -7,7 +7,7 @@ and then there is no `NetIR`.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from functools import partial
 from typing import TypeVar
@@ -22,11 +22,13 @@ from pn2code.lowering.expressions import Body
 from pn2code.lowering.functions import Program
 from pn2code.lowering.inscriptions import Putter
 from pn2code.lowering.packing import Packing, packed
+from pn2code.lowering.predicates import lower_predicate
 from pn2code.lowering.transitions import lower_transition
 from pn2code.lowering.types import Types
 from pn2code.ml.colsets import Colset, Kind
 from pn2code.ml.types import BOOL
 from pn2code.net.flat import FlatNet, FlatPlace, FlatTransition
+from pn2code.net.predicate import Predicate
 
 T = TypeVar("T")
 
@@ -43,6 +45,7 @@ def lower(
     capacity: Mapping[str, int] | None = None,
     packing: Packing | None = None,
     digest: str = "",
+    predicates: Sequence[Predicate] = (),
 ) -> ir.NetIR | None:
     """Lower the whole net.
 
@@ -54,8 +57,9 @@ def lower(
             for; all others see `_Lowering._room`.
         packing: which places are packed, and how; None: none is.
         digest: SHA-256 of the net and of what the cell contributes; the net's own by default.
+        predicates: what is asked of markings, beside the net.
     """
-    return _Lowering(partition, storage, d, capacity or {}, packing, digest).run()
+    return _Lowering(partition, storage, d, capacity or {}, packing, digest, predicates).run()
 
 
 class _Lowering:
@@ -67,6 +71,7 @@ class _Lowering:
         capacity: Mapping[str, int],
         packing: Packing | None,
         digest: str,
+        predicates: Sequence[Predicate],
     ) -> None:
         self._partition = partition
         self._net: FlatNet = partition.net
@@ -74,6 +79,7 @@ class _Lowering:
         self._d = d
         self._capacity = capacity
         self._packing = packing
+        self._predicates = predicates
         self._digest = digest or self._net.sha256
         self._types = Types(self._net.program, storage)
         builtins = Builtins(self._net.real_time)
@@ -89,6 +95,9 @@ class _Lowering:
             transitions = [
                 self._guarded(t.origin, partial(self._transition, t)) for t in self._net.transitions
             ]
+        predicates = [
+            self._guarded(p.exp.span.origin, partial(self._predicate, p)) for p in self._predicates
+        ]
         members = self._members()
         functions = self._guarded(Origin(self._net.file), self._program.finish) or ()
         if self._failed:
@@ -116,6 +125,7 @@ class _Lowering:
             order=tuple(order),
             int_bits=self._net.program.int_bits,
             has_successors=self._packing is not None and self._packing.successors,
+            predicates=tuple(p for p in predicates if p is not None),
         )
 
     def _packed(self, places: list[ir.Place]) -> tuple[ir.Place, ...]:
@@ -154,6 +164,9 @@ class _Lowering:
         return lower_transition(
             self._program, self._net, t, self._partition.transition_owner[t.index]
         )
+
+    def _predicate(self, p: Predicate) -> ir.Predicate:
+        return lower_predicate(self._program, self._net, p)
 
     def _place(self, place: FlatPlace) -> ir.Place:
         self._types.lower(place.colset.type, place.colset.origin)

@@ -7,7 +7,7 @@ with program(net, {}, Sizes.start(net, {}), d) as built:      # None after a dia
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, field, replace
 from pathlib import Path
@@ -20,6 +20,7 @@ from pn2code.emission.output import OutputFile
 from pn2code.lowering import net as lower_net
 from pn2code.lowering.packing import Packing, choose
 from pn2code.net.flat import FlatNet
+from pn2code.net.predicate import Predicate
 from pn2code.semantics.files import Files
 from pn2code.semantics.game import Game
 from pn2code.structure import bounds
@@ -104,20 +105,30 @@ class Sizes:
 
 
 def generated(
-    net: FlatNet, storage: Mapping[str, str], sizes: Sizes, d: Diagnostics
+    net: FlatNet,
+    storage: Mapping[str, str],
+    sizes: Sizes,
+    d: Diagnostics,
+    predicates: Sequence[Predicate] = (),
 ) -> tuple[OutputFile, ...] | None:
     """net.c and net.h; None when the net cannot be compiled, which was reported."""
     partition = divide(net, None, d)
     if partition is None:
         return None
     capacity = {p.name: sizes.room.get(p.name, ROOM) for p in net.places}
-    ir = lower_net.lower(partition, storage, d, capacity=capacity, packing=sizes.packing)
+    ir = lower_net.lower(
+        partition, storage, d, capacity=capacity, packing=sizes.packing, predicates=predicates
+    )
     return None if ir is None or d.has_errors else emit_c.emit(ir, pn2code.__version__)
 
 
 @contextmanager
 def program(
-    net: FlatNet, storage: Mapping[str, str], sizes: Sizes, d: Diagnostics
+    net: FlatNet,
+    storage: Mapping[str, str],
+    sizes: Sizes,
+    d: Diagnostics,
+    predicates: Sequence[Predicate] = (),
 ) -> Iterator[Path | None]:
     """The explorer of a net, as long as the block lasts; None after a diagnostic.
 
@@ -126,8 +137,9 @@ def program(
         storage: as for `Game`.
         sizes: how much its places hold.
         d: gets the errors.
+        predicates: what can be asked of its markings.
     """
-    files = generated(net, storage, sizes, d)
+    files = generated(net, storage, sizes, d, predicates)
     if files is None:
         yield None
         return
