@@ -22,6 +22,7 @@ ALLOWED: dict[str, set[str]] = {
     "structure": {"diagnostics", "ml", "net", "semantics"},
     "conformance": {"diagnostics", "ml", "net", "reading", "semantics", "verify"},
     "cell": {"diagnostics", "ml", "net"},
+    "properties": {"diagnostics", "ml", "net", "cell", "parser_cache", "semantics"},
     "lowering": {"diagnostics", "ml", "net", "cell", "tdl"},
     "robot": {"diagnostics"},
     "tdl": {"diagnostics", "robot", "parser_cache"},

@@ -465,6 +465,30 @@ class Elaborator:
         """The constant value of a priority inscription."""
         return self._border(text, lambda: self._inscriptions.priority(text, self._fixities))
 
+    def symbol(self, name: str, t: Type) -> Symbol:
+        """A new symbol, which no text can mention by its name unless it is declared for it."""
+        return self._ctx.fresh_symbol(name, t)
+
+    def condition(
+        self,
+        text: SourceText,
+        prepare: Callable[[s.Exp], tuple[s.Exp, Mapping[str, Symbol]] | None],
+    ) -> core.Exp | None:
+        """A condition that does not belong to the net, as of a property; the variables of the net are not in scope.
+
+        Args:
+            text: the text.
+            prepare: changes the syntax tree, operators resolved, before it is typed, and says which further names are
+                in scope; None after an error.
+        """
+
+        def work() -> core.Exp | None:
+            parsed = self._parse(text)
+            prepared = None if parsed is None else prepare(parsed)
+            return None if prepared is None else self._inscriptions.condition(*prepared)
+
+        return self._border(text, work)
+
     # --- helpers
 
     def _parse(self, text: SourceText, *, output: bool = False) -> s.Exp | None:

@@ -383,6 +383,16 @@ class Inscriptions:
         )
         return draft
 
+    def condition(self, exp: s.Exp, declared: Mapping[str, Symbol]) -> core.Exp | None:
+        """Of type bool, without the variables of the net."""
+        scope = Scope(self._ctx.top)
+        for name, symbol in declared.items():
+            scope.values[name] = Binding(name, from_type(symbol.type, []), symbol=symbol)
+        with self._scope(scope), self._one_mistake():
+            before = self._ctx.errors
+            draft = self._expressions.check(exp, I_BOOL, "condition")
+            return self._finish(before, draft.build)
+
     # --- delays and priorities
 
     def delay(self, text: SourceText, fixities: Fixities) -> core.Exp | None:

@@ -1,0 +1,54 @@
+"""Diagnostic codes of properties."""
+
+from __future__ import annotations
+
+from pn2code.diagnostics.codes import register
+
+SYNTAX = register(
+    "property-syntax",
+    "a property cannot be read",
+    "The text of a property is not one of the language of docs/properties.md. It begins with a word that says what "
+    "kind it is: `deadlock free`, `bound`, `always`, `never`, `reachable`, `mutex`, `every .. is followed by ..`, "
+    "`ctl` or `ltl`. Conditions on markings are CPN ML in braces: `always { size (Mark.Top'P 1) <= 3 }`.",
+)
+UNKNOWN_NAME = register(
+    "property-unknown-name",
+    "a property names a place or transition that the net does not have",
+    "Places and transitions are named as in the state-space queries of CPN Tools: `Page'Place 1`, blanks and other odd "
+    "characters written as `_`. The number is that of the page instance; it may be left out when the page has one "
+    'instance. The path of a trace, in quotes, is possible as well: `"Top.Robot1.Accept"`.',
+)
+FORM = register(
+    "property-form",
+    "an operator of a property stands where it has no meaning",
+    "Conditions on one marking (`always`, `never`, `reachable`, `mutex`, `except`) have no operators of time. In `ctl` "
+    "each operator of time has a quantifier: `AG`, `EF`, `A[p U q]`. In `ltl` it has none: `G`, `F`, `X`, `p U q`; "
+    "there, and in `every`, `fires(Page'Transition 1)` says what the next step is.",
+)
+FILE = register(
+    "property-file",
+    "a file of properties is wrong",
+    "A file of properties is TOML with tables `[[property]]`: `name`, `says` (plain words), `holds` (the text), and "
+    'optionally `expect = false` and `fair = ["strong Page\'T 1"]`. Names are unique. docs/properties.md has more.',
+)
+OUTSIDE = register(
+    "property-outside",
+    "a condition depends on more than the marking",
+    "A condition in braces is evaluated in every marking, in no particular order. What it says must follow from the "
+    "marking (and the model time) alone: it may not draw random numbers, read files, count steps, or look at or "
+    "change references. Write it as a function of what the places hold.",
+)
+REDUCTION = register(
+    "property-reduction",
+    "a reduction that was asked for does not keep the properties",
+    "With `--reduce partial-order` and `--reduce symmetry` only some of the markings are seen, or some stand for "
+    "others; what a property says of a path or of a colour may be lost. `--reduce time` takes markings for the same "
+    "that differ in time stamps only, so no condition may look at these, and no answer can be in units of time. The "
+    "properties are more important: the net is explored without the reduction.",
+)
+PROPERTY_FAILED = register(
+    "property-failed",
+    "a property could not be decided",
+    "The state space was not seen as a whole (a limit was hit, or it is approximate), or a condition of the property "
+    "raises an exception in a marking that can be reached. The answer is neither yes nor no: exit code 3.",
+)

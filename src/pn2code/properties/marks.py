@@ -1,0 +1,96 @@
+"""CPN ML that looks at markings: `Mark.Page'Place 1` stands for the multi-set of a place instance.
+
+The number may be left out when the page has one instance. Only places that are named so are looked at, so no function
+of the whole marking is needed: each becomes a variable of the condition.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, field, fields, is_dataclass, replace
+from typing import Any
+
+from pn2code.diagnostics import SourceText
+from pn2code.ml import syntax as s
+from pn2code.ml.core import Exp, Symbol
+from pn2code.ml.elaborate import Elaborator
+from pn2code.net.flat import FlatNet
+from pn2code.properties.names import Names
+from pn2code.properties.predicate import marking_type
+
+_STRUCTURE = "Mark."
+
+
+@dataclass(slots=True)
+class Marks:
+    """Types conditions on markings.
+
+    Args:
+        net: the net.
+        elaborator: knows its declarations.
+        names: resolves the names of places.
+    """
+
+    net: FlatNet
+    elaborator: Elaborator
+    names: Names
+    _symbols: dict[int, Symbol] = field(default_factory=dict)
+
+    def symbol(self, place: int) -> Symbol:
+        """What stands for the multi-set of a place; the same in all conditions. Nobody can write its name."""
+        if place not in self._symbols:
+            t = marking_type(self.net.places[place])
+            name = f"Mark {self.names.place_text(place)}"
+            self._symbols[place] = self.elaborator.symbol(name, t)
+        return self._symbols[place]
+
+    def condition(self, text: SourceText) -> tuple[Exp, tuple[tuple[Symbol, int], ...]] | None:
+        """The typed condition and the places it looks at; None after a diagnostic."""
+        used: dict[int, Symbol] = {}
+        failed = False
+
+        def prepare(exp: s.Exp) -> tuple[s.Exp, dict[str, Symbol]] | None:
+            changed = _rewritten(exp, mark)
+            return None if failed else (changed, {x.name: x for x in used.values()})
+
+        def mark(node: Any) -> Any:
+            """The variable for `Mark.P` and `Mark.P 1`; None for all else."""
+            nonlocal failed
+            number: int | None = None
+            name: Any = node
+            if isinstance(node, s.ApplyExp) and isinstance(node.argument, s.LitExp):
+                literal = node.argument
+                if literal.kind is s.LitKind.INT and isinstance(literal.value, int):
+                    name, number = node.function, literal.value
+            if not isinstance(name, s.NameExp) or not name.name.startswith(_STRUCTURE):
+                return None
+            place = self.names.marked(name.name.removeprefix(_STRUCTURE), number, node.span)
+            if place is None:
+                failed = True
+                return name
+            used[place] = self.symbol(place)
+            return s.NameExp(used[place].name, False, node.span)
+
+        exp = self.elaborator.condition(text, prepare)
+        if exp is None:
+            return None
+        return exp, tuple((used[place], place) for place in sorted(used))
+
+
+def _rewritten(node: Any, change: Callable[[Any], Any]) -> Any:
+    """A syntax tree with parts replaced by what `change` gives for them (None: look inside)."""
+    if isinstance(node, tuple):
+        made = tuple(_rewritten(x, change) for x in node)
+        return node if all(a is b for a, b in zip(made, node, strict=True)) else made
+    if not is_dataclass(node) or type(node).__module__ != s.__name__:
+        return node
+    changed = change(node)
+    if changed is not None:
+        return changed
+    parts: dict[str, Any] = {}
+    for f in fields(node):
+        own = getattr(node, f.name)
+        other = _rewritten(own, change)
+        if other is not own:
+            parts[f.name] = other
+    return replace(node, **parts) if parts else node  # type: ignore[type-var]

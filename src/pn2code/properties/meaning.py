@@ -1,0 +1,169 @@
+"""Properties in terms of a flat net: places and transitions by index, conditions by number.
+
+What is asked (`Invariant`, `Bound`, `Branching`, `Linear`, `Response`) is all that the explorer and the judge know of.
+"""
+
+from __future__ import annotations
+
+from pn2code.diagnostics import Origin
+from pn2code.frozen import frozen
+from pn2code.properties.predicate import Predicate
+
+
+@frozen
+class Atom:
+    """Something true or false of a node, or (`fires`) of the arc that is taken next.
+
+    Args:
+        kind: "true", "dead", "initial", "pred", "enabled", "fires".
+        number: of "pred" in `Questions.predicates`, of "enabled" and "fires" in `FlatNet.transitions`.
+    """
+
+    kind: str
+    number: int = -1
+
+
+@frozen
+class Op:
+    """An operator with its operands, named as in `tree.Operation`.
+
+    Args:
+        operator: its name.
+        parts: its operands.
+        step: of "EX" and "AX" by one transition: its index; else -1.
+    """
+
+    operator: str
+    parts: tuple[Formula, ...]
+    step: int = -1
+
+
+Formula = Atom | Op
+
+TRUE = Atom("true")
+DEAD = Atom("dead")
+
+
+def negation(f: Formula) -> Formula:
+    """The opposite; of an opposite what it is the opposite of."""
+    if isinstance(f, Op) and f.operator == "not":
+        return f.parts[0]
+    return Op("not", (f,))
+
+
+def conjunction(*parts: Formula) -> Formula:
+    """All of them."""
+    found = parts[0] if parts else TRUE
+    for part in parts[1:]:
+        found = Op("and", (found, part))
+    return found
+
+
+def disjunction(*parts: Formula) -> Formula:
+    """One of them."""
+    found = parts[0] if parts else Op("not", (TRUE,))
+    for part in parts[1:]:
+        found = Op("or", (found, part))
+    return found
+
+
+def looks_at_steps(f: Formula) -> bool:
+    """Whether `fires` is in it: then it says something of a step, not of a node."""
+    if isinstance(f, Atom):
+        return f.kind == "fires"
+    return any(map(looks_at_steps, f.parts))
+
+
+@frozen
+class Fairness:
+    """An assumption: a transition (index) that is enabled infinitely often (strong), or from some point on (weak),
+    occurs infinitely often."""
+
+    strong: bool
+    transition: int
+
+
+@frozen
+class Invariant:
+    """In all nodes the condition holds.
+
+    Args:
+        condition: of one node, without operators of time.
+        wanted: whether that is what the author says; False: that a node exists where it does *not* hold (`reachable`).
+    """
+
+    condition: Formula
+    wanted: bool = True
+
+
+@frozen
+class Bound:
+    """A place has at least `low` and at most `high` tokens in all nodes; None: no limit."""
+
+    place: int
+    low: int | None
+    high: int | None
+
+
+@frozen
+class Branching:
+    """The CTL formula holds in the initial node."""
+
+    formula: Formula
+
+
+@frozen
+class Linear:
+    """The LTL formula holds on all maximal paths that are fair."""
+
+    formula: Formula
+    fair: tuple[Fairness, ...] = ()
+
+
+@frozen
+class Response:
+    """Each `first` is followed by a `second`, within so many firings, or units of time.
+
+    The events are `Atom("fires", t)`, the step that is taken, or conditions on nodes: that such a node is entered.
+    """
+
+    first: Formula
+    second: Formula
+    firings: int | None
+    time: str | None
+
+
+Asked = Invariant | Bound | Branching | Linear | Response
+
+
+@frozen
+class Property:
+    """A property of a net.
+
+    Args:
+        name: unique.
+        says: in plain words, "" if it was not said.
+        holds: the text.
+        kind: "deadlock", "bound", "always", "never", "reachable", "mutex", "response", "ctl", "ltl".
+        expect: whether it is expected to be true.
+        asked: its meaning.
+        fair: the fairness that is assumed, as texts.
+        origin: of the text.
+    """
+
+    name: str
+    says: str
+    holds: str
+    kind: str
+    expect: bool
+    asked: Asked
+    fair: tuple[str, ...]
+    origin: Origin
+
+
+@frozen
+class Properties:
+    """All that is asked about a net in one exploration; `predicates` by number."""
+
+    properties: tuple[Property, ...] = ()
+    predicates: tuple[Predicate, ...] = ()

@@ -1,0 +1,364 @@
+"""Text of a property -> syntax tree, or a diagnostic with line and caret.
+
+parse(SourceText("always { size (Mark.Top'P 1) <= 3 }", Origin("command line", 1, 1)), d)
+-> Marking("always", Ml(" size (Mark.Top'P 1) <= 3 "))
+"""
+
+from __future__ import annotations
+
+from functools import cache
+from typing import Any, cast
+
+from lark import Lark, Token, Transformer, v_args
+from lark.exceptions import UnexpectedCharacters, UnexpectedToken, VisitError
+from lark.tree import Meta
+
+from pn2code.diagnostics import Diagnostics, SourceText, Span
+from pn2code.diagnostics.near import did_you_mean
+from pn2code.parser_cache import kept_lark
+from pn2code.properties import codes
+from pn2code.properties import tree as t
+from pn2code.properties.chunks import blanked, part
+from pn2code.properties.grammar import GRAMMAR, KEYWORDS
+
+MAX_LENGTH = 100_000
+"""Characters of a property."""
+MAX_DEPTH = 200
+"""Nesting of its formula; the stages behind recurse over it."""
+_FIRST = ("deadlock", "bound", "always", "never", "reachable", "mutex", "every", "ctl", "ltl")
+
+
+def parse(source: SourceText, d: Diagnostics) -> t.Property | None:
+    """Parse a property; None when something was reported."""
+    return cast(t.Property | None, _read(source, "start", d))
+
+
+def parse_fair(source: SourceText, d: Diagnostics) -> t.Fair | None:
+    """Parse an assumption, `weak Page'Transition 1`; None when something was reported."""
+    return cast(t.Fair | None, _read(source, "fair", d))
+
+
+def _read(source: SourceText, start: str, d: Diagnostics) -> Any:
+    if len(source.text) > MAX_LENGTH:
+        d.error(
+            codes.SYNTAX,
+            f"the property is longer than {MAX_LENGTH:,} characters",
+            source.span(0, 40),
+            hint="give parts of it a name: functions of the net can be used in it",
+        )
+        return None
+    if "\x00" in source.text:
+        d.error(codes.SYNTAX, "the property has a character 0", source.span(0, 1))
+        return None
+    text, unclosed = blanked(source.text)
+    if unclosed is not None:
+        d.error(
+            codes.SYNTAX,
+            "this brace is not closed",
+            source.span(unclosed, unclosed + 1),
+            hint="a condition in CPN ML ends with `}`; braces of its records and strings count for themselves",
+        )
+        return None
+    before = len(d.errors)
+    try:
+        tree = _parser().parse(text, start=start)
+        if _too_deep(tree, source, d):
+            return None
+        found = _Builder(source, d).transform(tree)
+    except UnexpectedCharacters as problem:
+        at = cast(int, problem.pos_in_stream)
+        _unexpected_character(text, at, source, d)
+        return None
+    except UnexpectedToken as problem:
+        _unexpected_token(problem, source, d)
+        return None
+    except VisitError as problem:  # lark wraps what the builder raises; that is a bug of ours
+        raise problem.orig_exc from None
+    return found if len(d.errors) == before else None
+
+
+@cache
+def _parser() -> Lark:
+    return kept_lark(
+        "property",
+        GRAMMAR,
+        start=["start", "fair"],
+        lexer="basic",
+        propagate_positions=True,
+        maybe_placeholders=False,
+    )
+
+
+# --- messages ----------------------------------------------------------------------------------
+
+_CONDITION = "a condition"
+_WORDS = {
+    "NAME": "a name like `Page'Name`", "STRING": "a name like `Page'Name`", "INT": "a number",
+    "REAL": "a number", "COMPARISON": "a comparison", "$END": "the end", "ML": _CONDITION,
+}  # fmt: skip
+_FORMULA = {
+    "ML", "TRUE", "FALSE", "DEAD", "INITIAL", "ENABLED", "FIRES", "TOKENS", "LPAR", "NOT", "BANG", "X", "F", "G",
+    "AX", "EX", "AF", "EF", "AG", "EG", "A", "E", "INT",
+}  # fmt: skip
+_BETWEEN = {"U", "R", "W", "AND", "OR", "__ANON"}
+_FOREIGN = {
+    "andalso": "write `&&` or `and`", "orelse": "write `||` or `or`", "implies": "write `->`", "iff": "write `<->`",
+    "GF": "write `G F`", "FG": "write `F G`", "next": "write `X`", "eventually": "write `F`", "globally": "write `G`",
+    "until": "write `U`", "Mark": "CPN ML stands in braces: `{ .. }`", "size": "CPN ML stands in braces: `{ .. }`",
+}  # fmt: skip
+
+
+def _expected(terminals: set[str]) -> str:
+    """What could stand here, in a few words."""
+    left = set(terminals)
+    words: list[str] = []
+    if "ML" in left:
+        left -= _FORMULA
+        words.append(_CONDITION)
+    elif {"U", "R", "W"} & left:
+        left = {x for x in left if x not in _BETWEEN and not x.startswith("__ANON")}
+        left -= {"AND", "OR"}
+        words.append("an operator")
+    for name in sorted(left):
+        word = _WORDS.get(name) or _literal(name)
+        if word not in words:
+            words.append(word)
+    if len(words) > 6:
+        words = [*words[:6], "..."]
+    return words[0] if len(words) == 1 else ", ".join(words[:-1]) + " or " + words[-1]
+
+
+def _literal(terminal: str) -> str:
+    found = next((x for x in _parser().terminals if x.name == terminal), None)
+    return f"`{found.pattern.value}`" if found is not None else terminal.lower()
+
+
+def _unexpected_token(problem: UnexpectedToken, source: SourceText, d: Diagnostics) -> None:
+    token = problem.token
+    expected = {str(x) for x in (problem.accepts or problem.expected)}
+    if token.type == "$END":
+        end = len(source.text.rstrip())
+        if not end and "DEADLOCK" in expected:
+            d.error(
+                codes.SYNTAX,
+                "the property is empty",
+                source.span(0, 1),
+                hint="e.g. `deadlock free`, or `always { size (Mark.Page'Place 1) <= 3 }`",
+            )
+            return
+        d.error(
+            codes.SYNTAX,
+            f"the property ends here, but {_expected(expected)} is expected",
+            source.span(end, end + 1),
+            hint="docs/properties.md has an example of each kind",
+        )
+        return
+    start = cast(int, token.start_pos)
+    word = source.text[start : start + len(token)]
+    if not source.text[:start].strip() and "DEADLOCK" in expected:
+        d.error(
+            codes.SYNTAX,
+            f"`{_short(word)}` is no kind of property",
+            source.span(start, start + len(token)),
+            hint=did_you_mean(word, _FIRST)
+            or f"it begins with {', '.join(f'`{x}`' for x in _FIRST[:-1])} or `{_FIRST[-1]}`",
+        )
+        return
+    hint = _FOREIGN.get(word, "")
+    if not hint and word in KEYWORDS and "NAME" in expected:
+        hint = f"`{word}` is a word of the language: write the name with its page, `Page'{word}`"
+    if not hint and token.type == "NAME" and len(word) > 2:
+        hint = did_you_mean(word, [x for x in KEYWORDS if x.upper() in expected])
+    if not hint and token.type == "NAME" and "ML" in expected:
+        hint = f"say what of it: `tokens({word}) >= 1`, `enabled({word})`, or CPN ML in braces"
+    d.error(
+        codes.SYNTAX,
+        f"`{_short(word)}` cannot stand here: {_expected(expected)} is expected",
+        source.span(start, start + len(token)),
+        hint=hint or "docs/properties.md has an example of each kind",
+    )
+
+
+def _short(text: str) -> str:
+    return text if len(text) <= 30 else f"{text[:27]}..."
+
+
+def _unexpected_character(text: str, at: int, source: SourceText, d: Diagnostics) -> None:
+    sign = text[at]
+    hint = {
+        "&": "write `&&`",
+        "|": "write `||`",
+        '"': "a path in quotes ends on its line",
+        "}": "there is no `{` before it",
+        "-": "numbers here are not negative",
+        "~": "numbers here are not negative",
+    }.get(sign, "CPN ML stands in braces: `{ .. }`")
+    shown = sign if sign.isprintable() else f"character {ord(sign)}"
+    d.error(codes.SYNTAX, f"`{shown}` cannot stand here", source.span(at, at + 1), hint=hint)
+
+
+def _too_deep(tree: Any, source: SourceText, d: Diagnostics) -> bool:
+    stack: list[tuple[Any, int]] = [(tree, 0)]
+    while stack:
+        node, depth = stack.pop()
+        if isinstance(node, Token):
+            continue
+        if depth > MAX_DEPTH:
+            start = node.meta.start_pos
+            d.error(
+                codes.SYNTAX,
+                "the property is nested too deeply",
+                source.span(start, start + 1),
+                hint="write two properties, or give a condition a name as a function of the net",
+            )
+            return True
+        stack.extend((c, depth + 1) for c in node.children)
+    return False
+
+
+# --- building the tree -------------------------------------------------------------------------
+
+
+@v_args(meta=True)
+class _Builder(Transformer[Token, Any]):
+    """Lark's tree -> ours."""
+
+    def __init__(self, source: SourceText, d: Diagnostics) -> None:
+        super().__init__()
+        self._source = source
+        self._d = d
+
+    def _span(self, meta: Meta) -> Span:
+        return self._source.span(meta.start_pos, meta.end_pos)
+
+    # kinds
+
+    def deadlock(self, _: Meta, c: list[Any]) -> t.Property:
+        return t.DeadlockFree(c[0] if c else None)
+
+    def upper(self, _: Meta, c: list[Any]) -> t.Property:
+        return t.Bound(c[0], None, int(c[1]))
+
+    def lower(self, _: Meta, c: list[Any]) -> t.Property:
+        return t.Bound(c[1], int(c[0]), None)
+
+    def both(self, _: Meta, c: list[Any]) -> t.Property:
+        return t.Bound(c[1], int(c[0]), int(c[2]))
+
+    def always(self, _: Meta, c: list[Any]) -> t.Property:
+        return t.Marking("always", c[0])
+
+    def never(self, _: Meta, c: list[Any]) -> t.Property:
+        return t.Marking("never", c[0])
+
+    def reachable(self, _: Meta, c: list[Any]) -> t.Property:
+        return t.Marking("reachable", c[0])
+
+    def mutex(self, _: Meta, c: list[Any]) -> t.Property:
+        return t.Mutex(tuple(t.Marked(x, x.span) if isinstance(x, t.Name) else x for x in c))
+
+    def response(self, _: Meta, c: list[Any]) -> t.Property:
+        made = t.Response(c[0], c[1])
+        if len(c) == 2:
+            return made
+        kind, value = c[2]
+        if kind == "firings":
+            return t.Response(c[0], c[1], firings=int(value))
+        if kind == "time":
+            return t.Response(c[0], c[1], time=str(value))
+        return t.Response(c[0], c[1], fair=value)
+
+    def within_firings(self, _: Meta, c: list[Any]) -> tuple[str, Any]:
+        return "firings", c[0]
+
+    def within_time(self, _: Meta, c: list[Any]) -> tuple[str, Any]:
+        return "time", c[0]
+
+    def assuming(self, _: Meta, c: list[Any]) -> tuple[str, Any]:
+        return "assuming", tuple(c)
+
+    def fair(self, _: Meta, c: list[Any]) -> t.Fair:
+        return t.Fair(c[0] != "weak", c[-1] if isinstance(c[-1], t.Name) else None)
+
+    def ctl(self, _: Meta, c: list[Any]) -> t.Property:
+        return t.Branching(c[0])
+
+    def ltl(self, _: Meta, c: list[Any]) -> t.Property:
+        return t.Linear(c[0], c[1][1] if len(c) > 1 else ())
+
+    # formulas
+
+    def iff(self, meta: Meta, c: list[Any]) -> t.Formula:
+        return t.Operation("iff", tuple(c), None, self._span(meta))
+
+    def implies(self, meta: Meta, c: list[Any]) -> t.Formula:
+        return t.Operation("implies", tuple(c), None, self._span(meta))
+
+    def disjunction(self, meta: Meta, c: list[Any]) -> t.Formula:
+        return t.Operation("or", tuple(c), None, self._span(meta))
+
+    def conjunction(self, meta: Meta, c: list[Any]) -> t.Formula:
+        return t.Operation("and", tuple(c), None, self._span(meta))
+
+    def until(self, meta: Meta, c: list[Any]) -> t.Formula:
+        return t.Operation(str(c[1]), (c[0], c[2]), None, self._span(meta))
+
+    def negation(self, meta: Meta, c: list[Any]) -> t.Formula:
+        return t.Operation("not", tuple(c), None, self._span(meta))
+
+    def temporal(self, meta: Meta, c: list[Any]) -> t.Formula:
+        return t.Operation(str(c[0]), (c[1],), None, self._span(meta))
+
+    def step(self, meta: Meta, c: list[Any]) -> t.Formula:
+        return t.Operation(str(c[0]), (c[2],), c[1], self._span(meta))
+
+    def quantified(self, meta: Meta, c: list[Any]) -> t.Formula:
+        quantifier, inner = c
+        if isinstance(inner, t.Operation) and inner.operator in ("U", "R", "W"):
+            return t.Operation(f"{quantifier}{inner.operator}", inner.parts, None, self._span(meta))
+        self._d.error(
+            codes.SYNTAX,
+            f"`U` (or `W`, `R`) is expected between the brackets of `{quantifier}[ .. ]`",
+            self._span(meta),
+            hint=f"write `{quantifier}[p U q]`, or `{quantifier}G p`, `{quantifier}F p`, `{quantifier}X p`",
+        )
+        return t.Word("true", self._span(meta))
+
+    def word(self, meta: Meta, c: list[Any]) -> t.Formula:
+        return t.Word(str(c[0]), self._span(meta))
+
+    def enabled(self, meta: Meta, c: list[Any]) -> t.Formula:
+        return t.Enabled(c[0], self._span(meta))
+
+    def fires(self, meta: Meta, c: list[Any]) -> t.Formula:
+        return t.Fires(c[0], self._span(meta))
+
+    def comparison(self, meta: Meta, c: list[Any]) -> t.Formula:
+        operator = str(c[1])
+        return self._compare("=" if operator == "==" else operator, c[0], c[2], meta)
+
+    def at_most(self, meta: Meta, c: list[Any]) -> t.Formula:
+        return self._compare("<=", c[0], c[1], meta)
+
+    def less(self, meta: Meta, c: list[Any]) -> t.Formula:
+        return self._compare("<", c[0], c[1], meta)
+
+    def more(self, meta: Meta, c: list[Any]) -> t.Formula:
+        return self._compare(">", c[0], c[1], meta)
+
+    def _compare(self, operator: str, left: Any, right: Any, meta: Meta) -> t.Formula:
+        return t.Tokens(operator, left, right, self._span(meta))
+
+    def operand(self, _: Meta, c: list[Any]) -> int | t.Name:
+        return c[0] if isinstance(c[0], t.Name) else int(c[0])
+
+    def ml(self, meta: Meta, c: list[Any]) -> t.Formula:
+        inside = part(self._source, meta.start_pos + 1, meta.end_pos - 1)
+        return t.Ml(inside, self._span(meta))
+
+    def name(self, meta: Meta, c: list[Any]) -> t.Name:
+        token = c[0]
+        if token.type == "STRING":
+            return t.Name(str(token)[1:-1], None, True, self._span(meta))
+        number = int(c[1]) if len(c) > 1 else None
+        return t.Name(str(token), number, False, self._span(meta))
