@@ -34,8 +34,8 @@ from pn2code.verify.limits import Approximation, Limits, Order, Reduction, cores
 from pn2code.verify.path import steps, text
 from pn2code.verify.pictures import GRAPH_KINDS, PLOT_KINDS, Pictures
 from pn2code.verify.progress import ProgressLine
-from pn2code.verify.report import report, why_partial
-from pn2code.verify.result import Exploration, row
+from pn2code.verify.report import error_text, report, why_partial
+from pn2code.verify.result import Exploration, Trace, row
 from pn2code.verify.webpage import webpage
 
 EPILOG = """Examples:
@@ -188,13 +188,9 @@ def verify(
     if found.error is not None and found.why == "error":
         _tell_error(opened, found, d)
     if found.graph is not None and len(found.traces) < min(most_traces, found.dead_count):
-        folder = traces or Path()
-        d.warning(
-            TRACE_UNWRITABLE,
-            f"a trace to a dead marking cannot be written into `{folder}`",
-            Origin(str(folder)),
-            hint="give another folder with `--traces DIR`, or none are wanted with `--most-traces 0`",
-        )
+        _unwritable("a dead marking", traces, d)
+    if found.error and found.error.get("node") and most_traces and found.error_trace is None:
+        _unwritable("the marking in which an exception is raised", traces, d)
     if report_to is not None:
         _write_report(opened, found, report_to, d)
     if not as_json and not quiet:
@@ -237,16 +233,35 @@ def _code(found: Exploration, d: Diagnostics) -> int:
 
 
 def _tell_error(opened: OpenNet, found: Exploration, d: Diagnostics) -> None:
-    assert found.error is not None
-    index = found.error.get("transition")
+    error, trace = found.error, found.error_trace
+    assert error is not None
+    index = error.get("transition")
     t = None if index is None else opened.flat.transitions[index]
-    where = f"transition `{t.name}`" if t is not None else found.error["where"]
+    where = f"transition `{t.name}`" if t is not None else error["where"]
+    notes = [error["where"]] if error["where"] else []
+    if error.get("binding"):
+        values = ", ".join(f"{name} = {value}" for name, value in error["binding"].items())
+        notes.append(f"the occurrence with {values}")
+    if error.get("node") is None:
+        notes.append("the way there is not known: it takes memory, and markings that are stored")
+    if trace is not None:
+        notes.append(f"{trace.steps} steps lead to that marking: {trace.file}")
     d.error(
         STATE_ERROR,
-        f"{where} raises `{found.error['message']}` in a marking that can be reached",
+        f"{where} raises `{error['message']}` in a marking that can be reached",
         t.origin if t is not None else Origin(opened.flat.file),
-        notes=[found.error["where"]] if found.error["where"] else [],
+        notes=notes,
         hint="`pn2code simulate` comes there too; guard the inscription, or handle the exception",
+    )
+
+
+def _unwritable(goal: str, traces: Path | None, d: Diagnostics) -> None:
+    folder = traces or Path()
+    d.warning(
+        TRACE_UNWRITABLE,
+        f"a trace to {goal} cannot be written into `{folder}`",
+        Origin(str(folder)),
+        hint="give another folder with `--traces DIR`, or none are wanted with `--most-traces 0`",
     )
 
 
@@ -268,15 +283,21 @@ def _write_report(opened: OpenNet, found: Exploration, path: Path, d: Diagnostic
 def _text(opened: OpenNet, found: Exploration) -> str:
     parts = [report(opened.flat, found, None).rstrip(), _figures(found)]
     for trace in found.traces:
-        head = f"Shortest run to the dead marking {trace.node}: {trace.steps} steps, {trace.file}"
-        try:
-            told = text(
-                steps(opened.flat, opened.storage, trace.file, most=SHOWN_STEPS), trace.steps
-            )
-        except (TraceRefusedError, GameError, OSError) as problem:
-            told = f"  (it cannot be shown: {problem})"
-        parts.append(f"{head}\n{told}" if told else head)
+        parts.append(_told(opened, trace, f"the dead marking {trace.node}"))
+    if found.error_trace is not None:
+        goal = f"marking {found.error_trace.node}, in which an exception is raised"
+        told = _told(opened, found.error_trace, goal)
+        parts.append(f"{told}\n  then {error_text(opened.flat, found)}")
     return "\n\n\n".join(parts)
+
+
+def _told(opened: OpenNet, trace: Trace, goal: str) -> str:
+    head = f"Shortest run to {goal}: {trace.steps} steps, {trace.file}"
+    try:
+        shown = steps(opened.flat, opened.storage, trace.file, most=SHOWN_STEPS)
+    except (TraceRefusedError, GameError, OSError) as problem:
+        return f"{head}\n  (it cannot be shown: {problem})"
+    return f"{head}\n{text(shown, trace.steps)}" if trace.steps else head
 
 
 def _figures(found: Exploration) -> str:

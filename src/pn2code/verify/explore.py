@@ -47,7 +47,7 @@ class Wishes:
     """What to do besides counting.
 
     Args:
-        traces: a folder for the traces to dead markings; None: none are wanted.
+        traces: a folder for the traces to dead markings and to an exception; None: none are wanted.
         stem: what the names of their files begin with.
         graph: a file for the whole graph, marking by marking; None: not wanted. It is not written when the
             exploration is not complete, or has more than `graph_limit` nodes.
@@ -136,6 +136,7 @@ def _options(limits: Limits, chosen: Chosen, sizes: Sizes, wishes: Wishes) -> li
         ("--spill", limits.spill),
         ("--trace-to", wishes.traces and wishes.traces / f"{wishes.stem}.dead-"),
         ("--traces", limits.traces if wishes.traces else None),
+        ("--error-trace-to", wishes.traces and wishes.traces / f"{wishes.stem}.error-"),
         ("--write-graph", wishes.graph),
         ("--write-limit", wishes.graph_limit),
         ("--progress-every", wishes.pace),

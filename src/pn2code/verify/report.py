@@ -54,6 +54,17 @@ def why_partial(found: Exploration) -> str:
     return _WHY.get(found.why, found.why)
 
 
+def error_text(net: FlatNet, found: Exploration) -> str:
+    """What raises the exception of `found.error`: the transition, and the binding if it is an occurrence."""
+    error = found.error
+    assert error is not None
+    index, binding = error.get("transition"), error.get("binding")
+    what = f"`{net.transitions[index].name}`" if index is not None else error["where"]
+    if binding:
+        what += f" with {', '.join(f'{k} = {v}' for k, v in binding.items())}"
+    return f"{what} raises `{error['message']}`"
+
+
 def _section(title: str) -> list[str]:
     return [f" {title}", _RULE]
 

@@ -12,6 +12,7 @@ from pn2code.net.engine_names import EngineNames
 from pn2code.net.flat import FlatNet
 from pn2code.semantics.colour_json import from_json
 from pn2code.semantics.colours import TEXTS
+from pn2code.semantics.report import value_text
 
 FAIRNESS = ("impartial", "fair", "just", "none")
 
@@ -60,6 +61,11 @@ class Trace:
     file: Path
     steps: int
 
+    @staticmethod
+    def of(found: Mapping[str, Any]) -> Trace:
+        """From what the explorer prints."""
+        return Trace(found["node"], Path(found["file"]), found["steps"])
+
 
 @dataclass(frozen=True, slots=True)
 class Exploration:
@@ -68,7 +74,8 @@ class Exploration:
     Args:
         complete: whether everything was seen; else `why` says what was in the way: "states", "seconds", "memory",
             "interrupted", "error".
-        error: of "error": `message`, `where`, `transition` (index or None).
+        error: of "error": `message`, `where`, `transition` (index or None), `node` (None: not known),
+            `binding` (texts, when it is an occurrence that raises it), `trace` (as those of `traces`, or None).
         nodes, arcs, depth: of the graph.
         seconds: of exploration, compilation and analysis not included.
         bytes_per_state: of the tables; `peak_mib`: of the process.
@@ -126,7 +133,7 @@ class Exploration:
         return Exploration(
             complete=found["complete"],
             why=found["why"],
-            error=found["error"],
+            error=_error(net, found["error"]),
             nodes=found["nodes"],
             arcs=found["arcs"],
             depth=found["depth"],
@@ -141,12 +148,16 @@ class Exploration:
             dead_count=found["dead_count"],
             dead=tuple(found["dead"]),
             graph=_graph(graph) if graph is not None else None,
-            traces=tuple(
-                Trace(t["node"], Path(t["file"]), t["steps"]) for t in found.get("traces") or ()
-            ),
+            traces=tuple(Trace.of(t) for t in found.get("traces") or ()),
             approximation=found.get("approximate"),
             reductions=tuple(found.get("reductions") or ()),
         )
+
+    @property
+    def error_trace(self) -> Trace | None:
+        """The run to the marking in which an inscription raises an exception."""
+        trace = self.error and self.error.get("trace")
+        return Trace.of(trace) if trace else None
 
     def dead_transitions(self) -> tuple[int, ...]:
         """Transitions that never occur, by index."""
@@ -155,6 +166,20 @@ class Exploration:
     def live_transitions(self) -> tuple[int, ...]:
         """Transitions that can always become enabled again, by index."""
         return tuple(i for i, live in enumerate(self.graph.live) if live) if self.graph else ()
+
+
+def _error(net: FlatNet, found: Mapping[str, Any] | None) -> Mapping[str, Any] | None:
+    """With the binding as CPN ML texts, without what the code segment would have given."""
+    if found is None or not found.get("binding"):
+        return found
+    transition = net.transitions[found["transition"]]
+    outputs = transition.code.outputs if transition.code else ()
+    binding = {
+        s.name: value_text(s, from_json(s.colset, found["binding"][s.name]))
+        for s in transition.variables
+        if s.colset is not None and s not in outputs
+    }
+    return {**found, "binding": binding}
 
 
 def _bounds(found: Sequence[Mapping[str, Any]] | None) -> tuple[Bounds, ...] | None:

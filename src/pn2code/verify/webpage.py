@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from datetime import datetime
 from typing import Any
 
@@ -16,7 +16,7 @@ from pn2code.resources import templates_folder
 from pn2code.semantics.game import GameError
 from pn2code.simulate.script import TraceRefusedError
 from pn2code.verify.path import Step, steps
-from pn2code.verify.report import bounded_places, why_partial
+from pn2code.verify.report import bounded_places, error_text, why_partial
 from pn2code.verify.result import Exploration, Trace, multiset_text
 
 MOST_STEPS = 200
@@ -48,17 +48,17 @@ def webpage(net: FlatNet, found: Exploration, storage: Mapping[str, str], writte
         version=pn2code.__version__,
         sha256=net.sha256,
         written=f"{written:%Y-%m-%d %H:%M}",
-        verdicts=list(_verdicts(found)),
+        verdicts=list(_verdicts(net, found)),
         statistics=list(_statistics(found)),
         bounds=_bounds(net, found),
         markings=list(_markings(found)),
         transitions=_transitions(net, found),
-        traces=[_trace(net, storage, trace) for trace in found.traces],
+        traces=_traces(net, found, storage),
         timed=net.timed,
     )
 
 
-def _verdicts(found: Exploration) -> list[dict[str, str]]:
+def _verdicts(net: FlatNet, found: Exploration) -> list[dict[str, str]]:
     said = []
     if found.complete:
         said.append(
@@ -80,7 +80,7 @@ def _verdicts(found: Exploration) -> list[dict[str, str]]:
         text = f"A node stands for all markings that are symmetric to it ({', '.join(found.symmetries)})."
         said.append({"kind": "open", "text": text})
     if found.error is not None:
-        text = f"An inscription raises {found.error['message']}: {found.error['where']}"
+        text = f"In a marking that can be reached {error_text(net, found).replace('`', '')}."
         said.append({"kind": "bad", "text": text})
     if found.dead_count:
         number = f"{found.dead_count:,} dead marking{'s' * (found.dead_count > 1)}"
@@ -154,7 +154,13 @@ def _transitions(net: FlatNet, found: Exploration) -> list[dict[str, Any]]:
     rows = []
     for index, arcs in enumerate(found.fired):
         is_dead = arcs == 0 and found.knows_dead_transitions
-        kind = "dead" if is_dead else "live" if index in live else ""
+        kind = (
+            ("dead" if found.complete else "not seen")
+            if is_dead
+            else "live"
+            if index in live
+            else ""
+        )
         rows.append(
             {
                 "name": names.transition(index),
@@ -168,6 +174,17 @@ def _transitions(net: FlatNet, found: Exploration) -> list[dict[str, Any]]:
             }
         )
     return sorted(rows, key=lambda row: str(row["name"]))
+
+
+def _traces(
+    net: FlatNet, found: Exploration, storage: Mapping[str, str]
+) -> Iterator[dict[str, Any]]:
+    for trace in found.traces:
+        yield {**_trace(net, storage, trace), "goal": f"the dead marking {trace.node}", "then": ""}
+    if found.error_trace is not None:
+        goal = f"marking {found.error_trace.node}, in which an exception is raised"
+        then = f"Then {error_text(net, found).replace('`', '')}."
+        yield {**_trace(net, storage, found.error_trace), "goal": goal, "then": then}
 
 
 def _trace(net: FlatNet, storage: Mapping[str, str], trace: Trace) -> dict[str, Any]:
