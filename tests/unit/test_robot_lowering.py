@@ -566,17 +566,28 @@ REFUSED = {
     "free choice": (
         "place A = 1\ntrans T code input (a); action if a then drill () else ()\n  both A\n  out x : a",
         ("x out BOOL",),
-        "error[unsupported-robot-program] nothing decides the value of `a`: a robot script cannot choose freely",
+        "error[unsupported-robot-program] nothing decides the value of `a`: a script cannot choose freely; if a sensor "
+        "decides it, add `[sensors.a]` to cell.toml",
     ),
     "delay": (
         "place A = 1\ntrans T delay @+3\n  both A",
         (),
-        "error[unsupported-robot-time] transition `T` has a delay",
+        "error[unsupported-robot-time] transition `T` has a delay, but `A`, where the program goes, has no time stamps",
     ),
     "timed": (
-        "place A : TUNIT = 1`()\ntrans T\n  both A : ()",
+        "place A = 1\nplace B : TUNIT = 1`()\ntrans T\n  both A\n  both B : ()\ntrans U\n  both A",
         (),
-        "error[unsupported-robot-time] place `A` has a timed colour set",
+        "error[unsupported-robot-time] place `B` has a timed colour set, but holds data only",
+    ),
+    "preemption": (
+        "place A : TUNIT = 1`()\ntrans T\n  in A : () @+ 2\n  out A : ()",
+        (),
+        "error[unsupported-robot-time] transition `T` uses time stamps",
+    ),
+    "commands and a delay": (
+        "place A : TUNIT = 1`()\ntrans T delay @+ 2 code action drill ()\n  both A : ()",
+        (),
+        "error[unsupported-robot-time] transition `T` has both commands and a delay",
     ),
     "list": (
         "place A : INTS = 1`[1]\ntrans T\n  both A : l",

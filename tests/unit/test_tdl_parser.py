@@ -60,6 +60,7 @@ begin
     tool drill for 3 s
     tool "two words" for 500 ms
     measure p into q
+    sense grip into k
     write done 1, 2.5e-3
     write done (k + j) * 2 - 3 div 4 mod 5, real(k) / 2
     b := if k > 1 then true else not b and k <= 3

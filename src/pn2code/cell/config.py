@@ -73,8 +73,25 @@ class InputConfig:
 
 
 @frozen
+class SensorConfig:
+    """A `[sensors.NAME]` table: who decides what the net leaves open.
+
+    Args:
+        variable: the net variable that it decides, wherever nothing in the net does.
+        file: in a run: what it says, one value a line, over and over; "": drawn at random.
+        seed: of what is drawn at random.
+    """
+
+    name: str
+    variable: str
+    file: str
+    seed: int
+    origin: Origin
+
+
+@frozen
 class RobotConfig:
-    """A robot: which page instance is its program; its geometry stays in `CellConfig.geometry`."""
+    """A robot or device: which page instance is its program; a robot's geometry stays in `CellConfig.geometry`."""
 
     name: str
     instance: str
@@ -98,11 +115,13 @@ class ReportConfig:
     Args:
         rows: channel names whose k-th messages stand side by side in row k of rows.tsv.
         count: label -> tool action that is counted.
+        occurrences: label -> transition that is counted: its name, or as much of its path as wanted.
         warn_condition: condition numbers above this are reported as close to a singularity.
     """
 
     rows: tuple[str, ...] = ()
     count: tuple[tuple[str, str], ...] = ()
+    occurrences: tuple[tuple[str, str], ...] = ()
     warn_condition: float = 50.0
 
 
@@ -131,12 +150,19 @@ class CellConfig:
     channels: tuple[ChannelConfig, ...]
     primitives: dict[str, Primitive]
     robots: tuple[RobotConfig, ...]
+    devices: tuple[RobotConfig, ...]
+    sensors: tuple[SensorConfig, ...]
     report: ReportConfig
     geometry: dict[str, Any]
     layouts: dict[str, str]
     layout: str = ""
     raw: dict[str, Any] = field(default_factory=dict, repr=False)
     locator: Locator | None = field(default=None, repr=False, compare=False)
+
+    @property
+    def programs(self) -> tuple[RobotConfig, ...]:
+        """Whoever runs a script: the robots, then the devices."""
+        return (*self.robots, *self.devices)
 
     @property
     def net_path(self) -> Path:
@@ -160,7 +186,12 @@ class CellConfig:
                 "primitives",
             )
         }
-        text = json.dumps({**logic, "robots": robots}, sort_keys=True)
+        logic["robots"] = robots
+        if self.devices:
+            logic["devices"] = self.raw["devices"]
+        if self.sensors:
+            logic["sensors"] = {s.name: s.variable for s in self.sensors}
+        text = json.dumps(logic, sort_keys=True)
         return hashlib.sha256(text.encode()).hexdigest()
 
 
@@ -300,6 +331,8 @@ _TOP = {
     "channel",
     "primitives",
     "robots",
+    "devices",
+    "sensors",
     "motion",
     "scene",
     "report",
@@ -376,6 +409,8 @@ def _read(
         channels=tuple(_channels(r, data)),
         primitives=_primitives(r, data),
         robots=tuple(_robots(r, robots)),
+        devices=tuple(_devices(r, data)),
+        sensors=tuple(_sensors(r, data)),
         report=ReportConfig(),
         geometry={
             "robots": {
@@ -596,21 +631,67 @@ def _robots(r: _Reader, robots: dict[str, Any]) -> Iterable[RobotConfig]:
         if not isinstance(table, dict):
             r.d.error(codes.CELL_VALUE, f"`robots.{name}` must be a table", r.at(*at))
             continue
-        if not re.fullmatch(r"[A-Za-z][A-Za-z0-9_]*", name) or name == "supervisor":
+        _name(r, name, at, "a robot name")
+        instance = r.get(table, at, "instance", str, "a substitution transition", "", required=True)
+        yield RobotConfig(name, instance, r.at(*at, "instance"))
+
+
+def _name(r: _Reader, name: str, at: tuple[str | int, ...], what: str) -> None:
+    if not re.fullmatch(r"[A-Za-z][A-Za-z0-9_]*", name) or name == "supervisor":
+        r.d.error(
+            codes.CELL_VALUE,
+            f"`{name}` is not {what}",
+            r.at(*at),
+            hint="a letter, then letters, digits and `_`; not `supervisor`",
+        )
+
+
+def _devices(r: _Reader, data: dict[str, Any]) -> Iterable[RobotConfig]:
+    for name, table in r.table(data, "devices").items():
+        at: tuple[str | int, ...] = ("devices", name)
+        if not isinstance(table, dict):
+            r.d.error(codes.CELL_VALUE, f"`devices.{name}` must be a table", r.at(*at))
+            continue
+        r.keys(table, at, {"instance"})
+        _name(r, name, at, "a device name")
+        if name in data.get("robots", {}):
             r.d.error(
                 codes.CELL_VALUE,
-                f"`{name}` is not a robot name",
+                f"`{name}` is a robot and a device",
                 r.at(*at),
-                hint="a letter, then letters, digits and `_`; not `supervisor`",
+                hint="give the device another name",
             )
         instance = r.get(table, at, "instance", str, "a substitution transition", "", required=True)
         yield RobotConfig(name, instance, r.at(*at, "instance"))
 
 
+def _sensors(r: _Reader, data: dict[str, Any]) -> Iterable[SensorConfig]:
+    variables: dict[str, str] = {}
+    for name, table in r.table(data, "sensors").items():
+        at: tuple[str | int, ...] = ("sensors", name)
+        if not isinstance(table, dict):
+            r.d.error(codes.CELL_VALUE, f"`sensors.{name}` must be a table", r.at(*at))
+            continue
+        r.keys(table, at, {"variable", "file", "seed"})
+        _name(r, name, at, "a sensor name")
+        variable = r.get(table, at, "variable", str, "a variable of the net", name)
+        if variable in variables:
+            r.d.error(
+                codes.CELL_VALUE,
+                f"variable `{variable}` is decided by two sensors, `{variables[variable]}` and `{name}`",
+                r.at(*at),
+                hint="remove one of them",
+            )
+        variables.setdefault(variable, name)
+        file = r.file_name(table, at) if "file" in table else ""
+        seed = r.get(table, at, "seed", int, "a whole number", 1)
+        yield SensorConfig(name, variable, file, seed, r.at(*at))
+
+
 def _report(r: _Reader, data: dict[str, Any], config: CellConfig) -> ReportConfig:
     table = r.table(data, "report")
     at: tuple[str | int, ...] = ("report",)
-    r.keys(table, at, {"rows", "count", "warn_condition"})
+    r.keys(table, at, {"rows", "count", "occurrences", "warn_condition"})
     rows = tuple(map(str, r.get(table, at, "rows", list, "a list of channels", [])))
     known = [c.place for c in config.channels]
     for name in rows:
@@ -631,5 +712,11 @@ def _report(r: _Reader, data: dict[str, Any], config: CellConfig) -> ReportConfi
                 r.at("report", "count"),
                 hint=did_you_mean(str(action), actions),
             )
+    occurrences = r.get(table, at, "occurrences", dict, "a table label = transition", {})
     warn = r.get(table, at, "warn_condition", (int, float), "a number", 50.0)
-    return ReportConfig(rows, tuple((str(k), str(v)) for k, v in count.items()), float(warn))
+    return ReportConfig(
+        rows,
+        tuple((str(k), str(v)) for k, v in count.items()),
+        tuple((str(k), str(v)) for k, v in occurrences.items()),
+        float(warn),
+    )

@@ -61,6 +61,7 @@ def _owners(net: FlatNet, config: CellConfig, d: Diagnostics) -> tuple[Owner, ..
         ("supervisor", OwnerKind.SUPERVISOR, config.supervisor.instance, config.supervisor.origin)
     ]
     wanted += [(r.name, OwnerKind.ROBOT, r.instance, r.origin) for r in config.robots]
+    wanted += [(r.name, OwnerKind.DEVICE, r.instance, r.origin) for r in config.devices]
     owners: list[Owner] = []
     for name, kind, instance, origin in wanted:
         found = [p for p in paths if p == instance or p.endswith("/" + instance)]

@@ -16,13 +16,15 @@ class OwnerKind(Enum):
 
     SUPERVISOR = "supervisor"
     ROBOT = "robot"
+    DEVICE = "device"
+    """a script like a robot's, without an arm"""
 
 
 @frozen
 class Owner:
-    """A party: `name` is "supervisor" or the robot's name in cell.toml; `instance` the path of its
+    """A party: `name` is "supervisor" or the robot's or device's name in cell.toml; `instance` the path of its
     page instance ("Top/Robot1");
-    `index` is 0 for the supervisor, then the robots in order."""
+    `index` is 0 for the supervisor, then the robots in order, then the devices."""
 
     index: int
     name: str

@@ -19,12 +19,14 @@ from pn2code.diagnostics.codes import register
 from pn2code.net import front
 from pn2code.robot.commands import Command
 from pn2code.run.robot import Arm, InstantArm, RobotPlayer, script_specs
+from pn2code.run.sensors import Sensors
 from pn2code.tdl import tree as t
 from pn2code.tdl.check import CheckedProgram, check
 from pn2code.tdl.parse import parse
 
 if TYPE_CHECKING:
     from pn2code.robot.executor import RobotExecutor
+    from pn2code.run.device import DeviceExecutor
 
 EPILOG = """Examples:
 
@@ -82,11 +84,12 @@ def robot(
     name = name or program.tree.name
     arm: Arm = InstantArm()
     specs = script_specs(program, name)
+    sensors = Sensors()
     if cell is not None:
         found = _in_cell(cell, layout, name, d)
         if found is None:
             stop(d, form)
-        specs, executor = found
+        specs, executor, sensors = found
         from pn2code.run.arm import MovingArm  # loads NumPy and the like
 
         arm = MovingArm(executor, speed)
@@ -110,6 +113,7 @@ def robot(
             arm,
             on_command=show,
             interrupted=lambda: bool(stopping),
+            sense=lambda sensor: sensors.ask(name, sensor),
             wait_s=wait,
         )
         ended = player.run()
@@ -121,10 +125,12 @@ def robot(
 
 def _in_cell(
     cell: Path, layout: str | None, name: str, d: Diagnostics
-) -> tuple[tuple[ChannelSpec, ...], RobotExecutor] | None:
-    """The channels of a cell, and what carries out the commands of one of its robots."""
+) -> tuple[tuple[ChannelSpec, ...], RobotExecutor | DeviceExecutor, Sensors] | None:
+    """The channels of a cell, what carries out the commands of one of its robots or devices, its sensors."""
     from pn2code.robot import scene
     from pn2code.robot.executor import RobotExecutor
+    from pn2code.run.device import DeviceExecutor
+    from pn2code.run.sensors import load as load_sensors
 
     found = locate(cell, d, layout=layout)
     if found is None:
@@ -132,15 +138,20 @@ def _in_cell(
     path, config = found
     if config is None or config.locator is None:
         _usage(f"`{cell}` has no cell.toml beside it; give the folder of a cell")
-    if name not in {r.name for r in config.robots}:
-        known = ", ".join(f"`{r.name}`" for r in config.robots)
+    if name not in {r.name for r in config.programs}:
+        known = ", ".join(f"`{r.name}`" for r in config.programs)
         _usage(f"the cell has no robot `{name}`; choose one of {known} with --name")
     flat = front.load(path, d, config.values)
     partition = divide(flat, config, d) if flat is not None else None
     loaded = scene.load(config.geometry, config.folder, config.locator.origin, d)
     if partition is None or loaded is None or d.has_errors:
         return None
-    return specs_of(partition), RobotExecutor(loaded.robot(name), loaded.motion)
+    sensors = load_sensors(config, partition.net, (config.folder,), None, d)
+    if sensors is None:
+        return None
+    if name in {r.name for r in config.devices}:
+        return specs_of(partition), DeviceExecutor(name), sensors
+    return specs_of(partition), RobotExecutor(loaded.robot(name), loaded.motion), sensors
 
 
 def _check_files(

@@ -60,6 +60,9 @@ def run(
     speed: Annotated[
         float, typer.Option(min=0.01, max=1000.0, help="With --realtime: so many times faster.")
     ] = 1.0,
+    seed: Annotated[
+        int | None, typer.Option(metavar="K", help="Of what sensors draw at random.")
+    ] = None,
     settings: SetOption = [],  # noqa: B006 - typer reads the default only
     form: FormatOption = Format.FULL,
 ) -> None:
@@ -89,6 +92,7 @@ def run(
         realtime=realtime,
         speed=speed,
         looks=pictures or video,
+        seed=seed,
     )
     album = Album(out, pictures=pictures, video=video)
     with Progress(console) as progress:
@@ -110,7 +114,7 @@ def run(
             progress.say("drawing charts")
             from pn2code.report import charts
 
-            charts.draw(result.record, tuple(r.name for r in result.prepared.config.robots), out)
+            charts.draw(result.record, tuple(r.name for r in result.prepared.config.programs), out)
     if result is None:
         stop(d, form)
     print_diagnostics(d.sorted(), form)

@@ -123,7 +123,7 @@ def emit(
         version: of pn2code.
     """
     net = partition.net
-    peers = [o for o in partition.owners if o.kind is OwnerKind.ROBOT]
+    peers = [o for o in partition.owners if o.kind is not OwnerKind.SUPERVISOR]
     peer_index = {owner.index: i for i, owner in enumerate(peers)}
     supervisor = next((o.index for o in partition.owners if o.kind is OwnerKind.SUPERVISOR), -1)
     # Channels between two robots are none of the supervisor's business.

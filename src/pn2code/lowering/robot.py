@@ -18,9 +18,11 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 
+from pn2code.cell.codes import CELL_VALUE
 from pn2code.cell.config import CellConfig
 from pn2code.cell.partition import Owner, OwnerKind, Partition
 from pn2code.diagnostics import Diagnostics, Note, Origin
+from pn2code.diagnostics.near import did_you_mean
 from pn2code.lowering import robot_codes as codes
 from pn2code.lowering import robot_names
 from pn2code.lowering.robot_evaluate import Evaluator
@@ -68,11 +70,36 @@ def lower_robots(
     before = len(d.errors)
     out = []
     for owner in partition.owners:
-        if owner.kind is OwnerKind.ROBOT:
+        if owner.kind is not OwnerKind.SUPERVISOR:
             ir = _lower(partition, owner, config, d)
             if ir is not None:
                 out.append(ir)
+    if len(d.errors) == before:
+        _unasked(out, partition, config, d)
     return tuple(out) if len(d.errors) == before else None
+
+
+def _unasked(
+    programs: Sequence[RobotIR], partition: Partition, config: CellConfig, d: Diagnostics
+) -> None:
+    """Sensors that no program asks: a misspelt variable would otherwise go unnoticed."""
+    asked = {
+        s.sensor
+        for ir in programs
+        for body in (ir.body, *(p for _, p in ir.procedures))
+        for s in flow.walk(statements(body))
+        if isinstance(s, t.Sense)
+    }
+    names = {v.name for x in partition.net.transitions for v in x.variables}
+    for sensor in config.sensors:
+        if identifier(sensor.name) not in asked:
+            d.error(
+                CELL_VALUE,
+                f"sensor `{sensor.name}` is asked by nobody: no robot or device leaves variable "
+                f"`{sensor.variable}` open",
+                sensor.origin,
+                hint=did_you_mean(sensor.variable, names - {sensor.variable}),
+            )
 
 
 def _lower(
@@ -115,6 +142,7 @@ class _Translator:
         self.step = StepTranslator(
             self.machine, self.names, self.config.primitives, self.pure,
             self.place_names, self.shapes, self.file_names,
+            {s.variable: s.name for s in self.config.sensors}, self.config.storage,
         )  # fmt: skip
 
     # --- declarations ---
@@ -569,7 +597,7 @@ class _Translator:
 
 def _without_own(s: Situation) -> Situation:
     """The situation where its conditions on the program's own data have been tested already."""
-    return Situation(s.step, s.env, s.channels, (), s.remote)
+    return Situation(s.step, s.env, s.channels, (), s.remote, s.sensed)
 
 
 def _filled(file: str) -> t.Expression:
@@ -628,7 +656,7 @@ def _used(body: Sequence[Node]) -> tuple[set[str], set[str]]:
                         names.update(x.name for x in targets)
                     case t.Write(file) | t.Clear(file):
                         files.add(file.name)
-                    case t.Assign(target) | t.Measure(_, target):
+                    case t.Assign(target) | t.Measure(_, target) | t.Sense(_, target):
                         names.add(target.name)
                     case _:
                         pass

@@ -15,14 +15,16 @@ UNSUPPORTED_PROGRAM = register(
     "unsupported-robot-program",
     "a robot page uses something that scripts cannot do",
     "For example an inhibitor or reset arc, a multi-set inscription with a coefficient other "
-    "than 1, a variable that is bound by nothing (a free choice), or guards on several "
-    "messages of which only some have come.",
+    "than 1, a variable that is bound by nothing (a free choice; `[sensors]` in cell.toml says "
+    "who decides it), or guards on several messages of which only some have come.",
 )
 UNSUPPORTED_TIME = register(
     "unsupported-robot-time",
-    "a robot page uses model time",
-    "In a robot script time passes while commands are carried out. Time stamps and delays in "
-    "a robot's part of the net have no meaning there: use a `wait` primitive.",
+    "a robot page uses model time in a way that scripts cannot",
+    "A delay on the token that tells where the program is becomes a `wait`. Other tokens of a "
+    "robot cannot wait: data have no time stamps, nothing is taken before its time (`@+` on an "
+    "input arc), and a transition with commands has no delay as well, because the commands "
+    "take their own time: let one transition carry them out and another one wait.",
 )
 UNSUPPORTED_EXPRESSION = register(
     "unsupported-robot-expression",
@@ -49,5 +51,6 @@ PRIMITIVE = register(
     "a robot primitive is used in a way that is not a command",
     "Primitives are the functions named in `[primitives]` of cell.toml. Moves and "
     "measurements take a pose, `tool` and `move_home` take unit, `wait` takes a number of "
-    "seconds. They are called in code segments only.",
+    "seconds. They are called in code segments only. A device has no arm: it can `wait` and do "
+    "`tool` actions.",
 )

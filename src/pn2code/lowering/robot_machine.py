@@ -32,6 +32,8 @@ class Outcome:
 
     conditions: tuple[tuple[core.Exp, bool], ...]
     puts: tuple[tuple[int, core.Exp], ...]
+    delays: tuple[tuple[int, core.Exp], ...] = ()
+    """of the tokens put, those that have one: `@+ d` on the arc"""
 
 
 @dataclass(frozen=True, slots=True)
@@ -159,6 +161,29 @@ def tokens(
             yield (), None
 
 
+def delayed_tokens(
+    e: core.Exp, form: Form
+) -> Iterator[tuple[tuple[tuple[core.Exp, bool], ...], list[core.Exp] | None, core.Exp | None]]:
+    """As `tokens`, of inscriptions that may have a delay, which is the third component."""
+    match e:
+        case core.If(condition, then, otherwise) if form in _PLAIN:
+            for holds, part in ((True, then), (False, otherwise)):
+                for conditions, found, delay in delayed_tokens(part, form):
+                    yield ((condition, holds), *conditions), found, delay
+        case core.Apply(
+            core.Builtin("Time.token@+" | "Time.token@++" | "Time.@+" | "Time.@++"),
+            core.RecordExp(((_, value), (_, delay))),
+        ) if form in _PLAIN:
+            for conditions, found in tokens(value, _PLAIN[form]):
+                yield conditions, found, delay
+        case _:
+            for conditions, found in tokens(e, form):
+                yield conditions, found, None
+
+
+_PLAIN = {Form.TIMED_TOKEN: Form.TOKEN, Form.TIMED_MULTISET: Form.MULTISET}
+
+
 @dataclass(slots=True)
 class _Analyser:
     partition: Partition
@@ -205,13 +230,6 @@ class _Analyser:
     def step(self, t: FlatTransition) -> Step | None:
         """A transition's tokens, one by one; None after a report."""
         before = len(self.d.errors)
-        if t.delay is not None:
-            self.d.error(
-                codes.UNSUPPORTED_TIME,
-                f"transition `{t.short}` has a delay",
-                t.origin,
-                hint="in a robot script time passes while commands are carried out: use a `wait` primitive",
-            )
         takes: list[tuple[int, Term, int, int]] = []
         outcomes = [Outcome((), ())]
         for number, arc in enumerate(t.arcs):
@@ -256,13 +274,10 @@ class _Analyser:
 
     def outputs(self, t: FlatTransition, arc: FlatArc, so_far: list[Outcome]) -> list[Outcome]:
         assert arc.inscription is not None
-        if arc.inscription.form in (Form.TIMED_TOKEN, Form.TIMED_MULTISET):
-            self.d.error(
-                codes.UNSUPPORTED_TIME, f"transition `{t.short}` uses time stamps", arc.origin
-            )
-            return so_far
         out = []
-        for conditions, values in tokens(arc.inscription.value, arc.inscription.form):
+        for conditions, values, delay in delayed_tokens(
+            arc.inscription.value, arc.inscription.form
+        ):
             if values is None:
                 self.d.error(
                     codes.UNSUPPORTED_PROGRAM,
@@ -276,7 +291,10 @@ class _Analyser:
                 if not _contradict(o.conditions, conditions):
                     new = tuple(c for c in conditions if c not in o.conditions)
                     puts = tuple((arc.place, v) for v in values)
-                    out.append(Outcome((*o.conditions, *new), (*o.puts, *puts)))
+                    delays = tuple((arc.place, delay) for _ in values if delay is not None)
+                    out.append(
+                        Outcome((*o.conditions, *new), (*o.puts, *puts), (*o.delays, *delays))
+                    )
         return out
 
     # roles of places
@@ -298,15 +316,6 @@ class _Analyser:
             | {p for s in steps for o in s.outcomes for p, _ in o.puts}
         )
         local = [p for p in local if p not in self.channels]
-        for p in local:
-            if net.places[p].colset.timed:
-                self.d.error(
-                    codes.UNSUPPORTED_TIME,
-                    f"place `{net.places[p].short}` has a timed colour set",
-                    net.places[p].origins[0],
-                    hint="in a robot script time passes while commands are carried out: use a `wait` primitive",
-                )
-                return None
         read = {p for s in steps for p, *_ in s.takes}
         sinks = [p for p in local if p not in read]
         exchanged = [p for p in local if p in read and self.is_variable(p, steps)]
@@ -318,6 +327,19 @@ class _Analyser:
         control = sorted(chosen)
         if not self.initial_control(control):
             return None
+        for p in exchanged:
+            if p not in chosen and net.places[p].colset.timed:
+                self.d.error(
+                    codes.UNSUPPORTED_TIME,
+                    f"place `{net.places[p].short}` has a timed colour set, but holds data only",
+                    net.places[p].origins[0],
+                    notes=[
+                        f"control stands at {', '.join(f'`{net.places[c].short}`' for c in control)}"
+                    ],
+                    hint="in a script only the token that tells where the program is can wait for time: "
+                    "make the colour set of this place untimed",
+                )
+                return None
         return (
             control,
             [p for p in exchanged if p not in chosen],

@@ -17,12 +17,13 @@ from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, field
 
 from pn2code.cell.config import Primitive
+from pn2code.cell.partition import OwnerKind
 from pn2code.diagnostics import Span
 from pn2code.lowering import robot_codes as codes
 from pn2code.lowering.robot_evaluate import Evaluator
 from pn2code.lowering.robot_ir import Chain, Comment, Element, Line, Node
 from pn2code.lowering.robot_machine import Machine, Outcome, Step
-from pn2code.lowering.robot_names import Names
+from pn2code.lowering.robot_names import Names, identifier
 from pn2code.lowering.robot_values import (
     FALSE,
     TRUE,
@@ -41,9 +42,11 @@ from pn2code.lowering.robot_values import (
     equal,
     flatten,
     select,
+    shape_of_colset,
 )
 from pn2code.lowering.robot_values import Primitive as PrimitiveValue
 from pn2code.ml.colsets import Colset, Kind
+from pn2code.ml.core import Symbol
 from pn2code.net.flat import BindAll, BindEquation, BindRandom
 from pn2code.tdl import tree as t
 from pn2code.tdl import types as tdl
@@ -58,6 +61,7 @@ class Situation:
         channels: places of the channels it takes from, in order of its arcs.
         local: conditions that the program's own data decide.
         remote: conditions that need the messages.
+        sensed: net variables that nothing in the net decides, the sensor that does, and the script's variable.
     """
 
     step: Step
@@ -65,6 +69,7 @@ class Situation:
     channels: tuple[int, ...]
     local: tuple[t.Expression, ...]
     remote: tuple[t.Expression, ...]
+    sensed: tuple[tuple[Symbol, str, str], ...] = ()
 
     @property
     def own_condition(self) -> t.Expression:
@@ -91,6 +96,7 @@ class StepTranslator:
         place_names: the variables of a local place, in order of its leaves.
         shapes: shapes of places.
         file_names: names of the files of channel places.
+        sensors: net variable -> the sensor that decides it.
     """
 
     machine: Machine
@@ -100,7 +106,11 @@ class StepTranslator:
     place_names: dict[int, list[str]]
     shapes: dict[int, Shape]
     file_names: dict[int, str]
+    sensors: Mapping[str, str] = field(default_factory=dict)
+    storage: Mapping[str, str] = field(default_factory=dict)
     _nodes: list[Node] = field(default_factory=list)
+    _acts: bool = False
+    """whether the transition at hand carries out commands"""
 
     # enabling
 
@@ -119,6 +129,8 @@ class StepTranslator:
                 codes.UNSUPPORTED_PROGRAM,
             )
         ordered = [*control, *variables, *messages]
+        sensed: list[tuple[Symbol, str, str]] = []
+        avoid = {n for p, *_ in ordered for n in all_names(x.exp for x in _scalars(values[p]))}
         for place, term, _, _ in ordered:
             if term.pattern is not None:
                 found += self.pure.match(term.pattern, values[place], env)
@@ -126,11 +138,10 @@ class StepTranslator:
             if isinstance(bind, BindEquation):
                 found += self.pure.match(bind.pattern, self.pure.evaluate(bind.value, env), env)
             elif isinstance(bind, BindAll | BindRandom) and bind.symbol.uid not in env:
-                raise UnsupportedError(
-                    f"nothing decides the value of `{bind.symbol.name}`: a robot script cannot choose freely",
-                    _whole(step),
-                    codes.UNSUPPORTED_PROGRAM,
-                )
+                sensor, name, leaf = self._sensor(bind.symbol, step, avoid)
+                avoid.add(name)
+                sensed.append((bind.symbol, sensor, name))
+                env[bind.symbol.uid] = Scalar(t.Name(name), leaf.type)
         for place, term, _, _ in ordered:
             if term.pattern is None:
                 value = self.pure.evaluate(term.value, env)
@@ -143,6 +154,15 @@ class StepTranslator:
             name for p, *_ in messages for name in all_names(x.exp for x in _scalars(values[p]))
         }
         conditions = [c for c in dict.fromkeys(found) if c != TRUE]
+        for symbol, sensor, name in sensed:
+            if name in all_names(conditions):
+                raise UnsupportedError(
+                    f"whether `{transition.short}` is enabled depends on `{symbol.name}`, which sensor "
+                    f"`{sensor}` decides while it occurs: let one transition put `{symbol.name}` into a "
+                    "place, and decide in the next",
+                    _whole(step),
+                    codes.UNSUPPORTED_PROGRAM,
+                )
         if FALSE in conditions:
             conditions = [FALSE]
         return Situation(
@@ -151,15 +171,50 @@ class StepTranslator:
             tuple(p for p, *_ in messages),
             tuple(c for c in conditions if not all_names([c]) & received),
             tuple(c for c in conditions if all_names([c]) & received),
+            tuple(sensed),
         )
+
+    def _sensor(self, symbol: Symbol, step: Step, avoid: set[str]) -> tuple[str, str, Leaf]:
+        """The sensor that decides a free variable, the script's variable for it, and its type."""
+        sensor = self.sensors.get(symbol.name)
+        if sensor is None:
+            raise UnsupportedError(
+                f"nothing decides the value of `{symbol.name}`: a script cannot choose freely; if a sensor "
+                f"decides it, add `[sensors.{symbol.name}]` to cell.toml",
+                _whole(step),
+                codes.UNSUPPORTED_PROGRAM,
+            )
+        assert symbol.colset is not None
+        shape = shape_of_colset(symbol.colset, self.pure.program, self.storage)
+        if not isinstance(shape, Leaf) or shape.type is tdl.Type.POSE:
+            raise UnsupportedError(
+                f"sensor `{sensor}` decides `{symbol.name}` of colour set `{symbol.colset.name}`, but a "
+                "sensor gives one number, truth value or text",
+                _whole(step),
+                codes.UNSUPPORTED_COLSET,
+            )
+        transition = step.transition
+        element = Element(
+            transition.name,
+            "transition",
+            transition.origin,
+            f"transition {transition.short} ({transition.id})",
+        )
+        (name,) = self.names.shared([identifier(symbol.name)], shape, element, avoid)
+        return sensor, name, shape
 
     # occurrence
 
     def act(self, situation: Situation) -> tuple[list[Node], Env]:
         """The commands of the code segment, and the environment with its outputs."""
         code = situation.step.transition.code
+        asked: list[Node] = [
+            Line(t.Sense(identifier(sensor), t.Target(name)))
+            for _, sensor, name in situation.sensed
+        ]
+        self._acts = False
         if code is None:
-            return [], situation.env
+            return asked, situation.env
         self._nodes = []
         output = code.outputs[0].name if len(code.outputs) == 1 else "measured"
         avoid = all_names(x.exp for v in situation.env.values() for x in _scalars(v))
@@ -179,7 +234,10 @@ class StepTranslator:
         else:
             for i, symbol in enumerate(code.outputs, 1):
                 env[symbol.uid] = select(result, str(i), code.action.span)
-        return self._nodes, env
+        # A sensor is asked as late as it can be: after what the robot does, unless that depends on it.
+        if any(s in code.inputs for s, _, _ in situation.sensed):
+            return [*asked, *self._nodes], env
+        return [*self._nodes, *asked], env
 
     def _branch(
         self, test: t.Expression, a: Callable[[], Value], b: Callable[[], Value], span: Span
@@ -201,7 +259,14 @@ class StepTranslator:
         self, name: str, argument: Value, span: Span, output: str, avoid: set[str], s: Situation
     ) -> Value:
         primitive = self.primitives[name]
+        self._acts = True
         command = primitive.command
+        if self.machine.owner.kind is OwnerKind.DEVICE and command not in ("tool", "wait"):
+            raise UnsupportedError(
+                f"`{name}` is a `{command}`, but device `{self.machine.owner.name}` has no arm",
+                span,
+                codes.PRIMITIVE,
+            )
         if command in ("move_joint", "move_linear", "measure"):
             if not (isinstance(argument, Scalar) and argument.type is tdl.Type.POSE):
                 raise UnsupportedError(
@@ -304,7 +369,39 @@ class StepTranslator:
                 names = self.place_names[place]
                 assignments += zip(names, (x.exp for x in leaves), strict=True)
         writes.sort(key=lambda w: w[0])
-        return [w for _, w in writes] + self._assign(assignments, situation)
+        waits = self._wait(situation, outcome, env)
+        return [*(w for _, w in writes), *waits, *self._assign(assignments, situation)]
+
+    def _wait(self, situation: Situation, outcome: Outcome, env: Env) -> list[Node]:
+        """The delay of the token that tells where the program is. Model time is in seconds."""
+        place = self.machine.target(outcome)
+        transition = situation.step.transition
+        flat = self.machine.net.places[place]
+        if not flat.colset.timed:
+            if transition.delay is not None:
+                raise UnsupportedError(
+                    f"transition `{transition.short}` has a delay, but `{flat.short}`, where the program "
+                    "goes, has no time stamps",
+                    transition.delay.span,
+                    codes.UNSUPPORTED_TIME,
+                )
+            return []
+        own = [] if transition.delay is None else [transition.delay]
+        out: list[Node] = []
+        for delay in [*own, *(e for p, e in outcome.delays if p == place)]:
+            value = self.pure.evaluate(delay, env)
+            if not (isinstance(value, Scalar) and value.type in tdl.NUMBERS | {tdl.Type.TIME}):
+                raise UnsupportedError("this delay is not a number", delay.span)
+            if value.exp in (t.Value(0), t.Value(0.0)):
+                continue
+            out.append(Line(t.WaitTime(as_quantity(value, tdl.Type.TIME).exp)))
+        if out and self._acts:
+            raise UnsupportedError(
+                f"transition `{transition.short}` has both commands and a delay",
+                _whole(situation.step),
+                codes.UNSUPPORTED_TIME,
+            )
+        return out
 
     def _assign(
         self, assignments: list[tuple[str, t.Expression]], situation: Situation

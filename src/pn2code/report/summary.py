@@ -65,7 +65,7 @@ def summarise(record: RunRecord, report: ReportConfig, robots: tuple[str, ...]) 
         "reason": record.reason,
         "cycle_seconds": round(record.time, 6),
         "rows": len(merged_rows(record.messages, report.rows)) if report.rows else 0,
-        **summary_counts(record, dict(report.count)),
+        **summary_counts(record, dict(report.count), dict(report.occurrences)),
         "activities": activities,
         "robots": per_robot,
         "clearances": _minima(record),

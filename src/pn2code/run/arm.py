@@ -8,17 +8,18 @@ from pn2code.robot.commands import Command, Pose
 from pn2code.robot.executor import RobotExecutor
 from pn2code.robot.motion import MotionFault
 from pn2code.robot.transforms import describe
+from pn2code.run.device import DeviceExecutor
 from pn2code.run.robot import ArmError
 
 
 class MovingArm:
-    """Implements `pn2code.run.robot.Arm` with the motions of a cell's robot.
+    """Implements `pn2code.run.robot.Arm` with the motions of a cell's robot, or the actions of a device.
 
     Args:
         speed: seconds of the arm per second of the wall clock.
     """
 
-    def __init__(self, executor: RobotExecutor, speed: float = 1.0) -> None:
+    def __init__(self, executor: RobotExecutor | DeviceExecutor, speed: float = 1.0) -> None:
         self._executor = executor
         self._speed = speed
 
@@ -42,10 +43,10 @@ class MovingArm:
         now = min(self._now(), motion.ends)
         self._executor.stop(now)
         part = (now - motion.began) / motion.duration if motion.duration else 1.0
-        return (
-            f"`{motion.kind}` was broken off after {100 * part:.0f} %, "
-            f"at TCP pose {describe(self._executor.pose)}"
-        )
+        text = f"`{motion.kind}` was broken off after {100 * part:.0f} %"
+        if isinstance(self._executor, DeviceExecutor):
+            return text
+        return f"{text}, at TCP pose {describe(self._executor.pose)}"
 
     def _now(self) -> float:
         return time.monotonic() * self._speed

@@ -21,11 +21,12 @@ from pathlib import Path
 from typing import Any
 
 from pn2code import pipeline
-from pn2code.cell.codes import CELL_MISSING
+from pn2code.cell.codes import CELL_MISSING, CELL_VALUE
 from pn2code.cell.config import CellConfig
 from pn2code.channels import GRACE_S, SharedDirectory, specs_of
 from pn2code.diagnostics import Diagnostics, Origin, SourceText
 from pn2code.diagnostics.codes import register
+from pn2code.diagnostics.near import did_you_mean
 from pn2code.emission.output import OutputFile
 from pn2code.emission.write import OutputFolderError, write
 from pn2code.report.rows import rows_tsv
@@ -34,10 +35,12 @@ from pn2code.robot import scene
 from pn2code.robot.backend import Backend, BackendName, open_backend
 from pn2code.robot.executor import RobotExecutor
 from pn2code.robot.monitor import Monitor
+from pn2code.run.device import DeviceExecutor
 from pn2code.run.engine import Engine, Observer
 from pn2code.run.files import RobotFiles
 from pn2code.run.realtime import RealtimeEngine
 from pn2code.run.record import RunRecord, RunWarning
+from pn2code.run.sensors import load as load_sensors
 from pn2code.run.supervisor import EXIT_USAGE, Exit, SupervisorProcess
 from pn2code.run.trace import GrowingTrace, trace_text
 from pn2code.tdl.check import CheckedProgram, check
@@ -81,6 +84,7 @@ class RunOptions:
         values: `val`s to replace.
         gui: PyBullet's window.
         looks: pictures are wanted, of the run or later.
+        seed: of what sensors draw at random; None: that of cell.toml.
         realtime: on the wall clock instead of in lock-step; speed: how many times faster than that.
     """
 
@@ -93,6 +97,7 @@ class RunOptions:
     realtime: bool = False
     speed: float = 1.0
     looks: bool = True
+    seed: int | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -132,6 +137,7 @@ def prepare(path: Path, options: RunOptions, d: Diagnostics) -> Prepared | None:
     assert config.locator is not None
     robot_cell = scene.load(config.geometry, config.folder, config.locator.origin, d)
     scripts = _scripts(generated, config, d)
+    _check_report(config, generated, d)
     if robot_cell is None or scripts is None or d.has_errors:
         return None
     folder = options.out / "program"
@@ -142,13 +148,28 @@ def prepare(path: Path, options: RunOptions, d: Diagnostics) -> Prepared | None:
     return Prepared(generated, config, robot_cell, scripts, program)
 
 
+def _check_report(config: CellConfig, generated: pipeline.Generated, d: Diagnostics) -> None:
+    """The transitions that are counted must exist."""
+    assert config.locator is not None
+    names = [x.name for x in generated.partition.net.transitions]
+    for label, name in config.report.occurrences:
+        if not any(f".{x}".endswith(f".{name}") for x in names):
+            short = [x.rpartition(".")[2] for x in names]
+            d.error(
+                CELL_VALUE,
+                f"`occurrences.{label}` names `{name}`, which is not a transition of the net",
+                config.locator.origin("report", "occurrences", label),
+                hint=did_you_mean(name, [*short, *names]),
+            )
+
+
 def _scripts(
     generated: pipeline.Generated, config: CellConfig, d: Diagnostics
 ) -> dict[str, tuple[OutputFile, CheckedProgram]] | None:
     """The robots' scripts, parsed and checked as any script would be: what was generated is not trusted."""
     files = {f.path: f for f in generated.files}
     out = {}
-    for robot in config.robots:
+    for robot in config.programs:
         file = files[f"{robot.name}.tdl"]
         tree = parse(SourceText(file.text, Origin(file.path, 1, 1)), d)
         checked = check(tree, d) if tree is not None else None
@@ -179,9 +200,19 @@ def run_cell(
         inputs = stack.enter_context(_inputs(prepared.config, options, d))
         if inputs is None:
             return None
+        sensors = load_sensors(
+            prepared.config,
+            prepared.generated.partition.net,
+            (inputs, prepared.config.folder),
+            options.seed,
+            d,
+        )
+        if sensors is None:
+            return None
         engine = _start(prepared, options, inputs, stack, d, observers or [])
         if engine is None:
             return None
+        engine.sensors = sensors
         record = engine.run()
         for robot in engine.robots:
             if record.verdict == "finished":
@@ -216,7 +247,7 @@ def _start(
     specs = specs_of(partition)
     sides = {
         robot.name: stack.enter_context(SharedDirectory(shared, robot.name, specs))
-        for robot in prepared.config.robots
+        for robot in prepared.config.programs
     }
     for side in sides.values():
         if not side.await_supervisor(ROBOT_START_S if supervisor.running else 0.0):
@@ -225,9 +256,12 @@ def _start(
     trace = GrowingTrace(trace_path)
     stack.callback(trace.close)
     engine = _engine(prepared, options, supervisor, trace, backend, observers)
+    arms = {robot.name for robot in prepared.config.robots}
     for name, side in sides.items():
         script, program = prepared.scripts[name]
-        executor = RobotExecutor(cell.robot(name), cell.motion)
+        executor = (
+            RobotExecutor(cell.robot(name), cell.motion) if name in arms else DeviceExecutor(name)
+        )
         files = RobotFiles(side, GRACE_S if options.realtime else 0.0)
         engine.add_robot(name, script, program, files, executor)
     return engine
@@ -316,7 +350,7 @@ def _inputs(config: CellConfig, options: RunOptions, d: Diagnostics) -> Iterator
 
 
 def _names(prepared: Prepared) -> tuple[str, ...]:
-    return tuple(r.name for r in prepared.config.robots)
+    return tuple(r.name for r in prepared.config.programs)
 
 
 def _header(supervisor: dict[str, Any]) -> dict[str, Any]:

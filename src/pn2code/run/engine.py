@@ -42,8 +42,10 @@ from pn2code.robot.motion import MotionFault
 from pn2code.robot.scene import RobotCell
 from pn2code.robot.transforms import Array, pose_of
 from pn2code.run.accuracy import distance, distance_to_line
+from pn2code.run.device import DeviceExecutor
 from pn2code.run.files import RobotFiles
 from pn2code.run.record import ActionRecord, ActivityRecord, MessageRecord, RunRecord
+from pn2code.run.sensors import Sensors
 from pn2code.run.supervisor import SupervisorProcess
 from pn2code.run.trace import GrowingTrace
 from pn2code.tdl.check import CheckedProgram
@@ -57,6 +59,8 @@ from pn2code.tdl.interpret import (
     Interpreter,
     Marked,
     MessageConsumed,
+    Scalar,
+    Sense,
 )
 
 MAX_ROUNDS = 10_000
@@ -81,7 +85,7 @@ class Observer(Protocol):
 
 @dataclass(slots=True)
 class RobotRunner:
-    """One robot: its script's interpreter, its arm, and what it is doing.
+    """One robot or device: its script's interpreter, its arm if it has one, and what it is doing.
 
     Args:
         script: file name, for messages.
@@ -92,7 +96,7 @@ class RobotRunner:
     script: str
     interpreter: Interpreter
     files: RobotFiles
-    executor: RobotExecutor
+    executor: RobotExecutor | DeviceExecutor
     blocks: tuple[Block, ...] = ()
     motion: Motion | None = None
     line: int = 0
@@ -109,14 +113,21 @@ class RobotRunner:
         command = self.motion.command if self.motion else None
         return command.action if isinstance(command, ToolAction) else ""
 
+    @property
+    def arm(self) -> RobotExecutor | None:
+        """What moves; None: a device."""
+        return self.executor if isinstance(self.executor, RobotExecutor) else None
+
     def joints(self, t: float) -> Array:
-        """Joint position (rad) at a time not before the last event."""
-        return self.executor.q if self.motion is None else self.motion.q(t)
+        """Joint position (rad) of an arm at a time not before the last event."""
+        assert self.arm is not None
+        return self.arm.q if self.motion is None else self.motion.q(t)
 
     def path(self, times: Array) -> Array:
-        """Joint positions (n, 6) at many times, none before the last event."""
+        """Joint positions (n, 6) of an arm at many times, none before the last event."""
+        assert self.arm is not None
         if self.motion is None:
-            return np.tile(self.executor.q, (len(times), 1))
+            return np.tile(self.arm.q, (len(times), 1))
         return self.motion.sample(times)
 
 
@@ -133,7 +144,8 @@ class Engine:
         supervisor: started in lock-step mode; supervisor_trace: the trace it writes.
         supervisor_depth: how many parts of a transition's name stand before the activity: 2 for
         "Cell.Supervisor.Approach.Send".
-        robots: in the order of cell.toml.
+        robots: in the order of cell.toml; then the devices, which are robots without an arm.
+        sensors: what decides what the net leaves open.
         partition: the net and its owners.
         cell, backend: the arms and what shows them.
         monitor: what is checked at each sample.
@@ -148,6 +160,7 @@ class Engine:
     backend: Backend
     monitor: Monitor
     robots: list[RobotRunner] = field(default_factory=list)
+    sensors: Sensors = field(default_factory=Sensors)
     observers: list[Observer] = field(default_factory=list)
     now: float = 0.0
     activity: str = ""
@@ -167,9 +180,9 @@ class Engine:
         script: OutputFile,
         program: CheckedProgram,
         files: RobotFiles,
-        executor: RobotExecutor,
+        executor: RobotExecutor | DeviceExecutor,
     ) -> None:
-        """Adds a robot; its script begins when the engine runs."""
+        """Adds a robot or device; its script begins when the engine runs."""
         interpreter = Interpreter(program, files, self._heard)
         self.robots.append(
             RobotRunner(name, script.path, interpreter, files, executor, script.blocks)
@@ -181,7 +194,7 @@ class Engine:
             self._begin_run()
             while True:
                 self._settle()
-                if self._finished and all(r.motion is None for r in self.robots):
+                if self._finished and self._at_rest():
                     self.record.verdict = "finished"
                     break
                 self._advance(self._next_event())
@@ -189,8 +202,15 @@ class Engine:
             self._stop(str(why))
         return self._close()
 
+    def _at_rest(self) -> bool:
+        """Whether no arm moves. Devices may go on: they have nothing to bring to rest."""
+        return all(r.motion is None for r in self._arms())
+
+    def _arms(self) -> list[RobotRunner]:
+        return [r for r in self.robots if r.arm is not None]
+
     def _begin_run(self) -> None:
-        self._sample(0.0, {r.name: r.joints(0.0) for r in self.robots})
+        self._sample(0.0, {r.name: r.joints(0.0) for r in self._arms()})
         for observer in self.observers:
             observer.begun(self)
 
@@ -275,6 +295,8 @@ class Engine:
         """Resumes the interpreter and acts on what it asks for."""
         robot.waiting = None
         request = robot.interpreter.resume(result)
+        while isinstance(request, Sense):
+            request = robot.interpreter.resume(self._sense(robot, request))
         match request:
             case AwaitFile():
                 robot.waiting = request
@@ -284,6 +306,19 @@ class Engine:
                 robot.finished = True
             case Fault(message=message, line=line):
                 raise CellStoppedError(f"{robot.script}:{line}: {robot.name}: {message}")
+
+    def _sense(self, robot: RobotRunner, request: Sense) -> Scalar | None:
+        value = self.sensors.ask(robot.name, request.sensor)
+        self.record.events.append(
+            {
+                "t": self.now,
+                "event": "sense",
+                "robot": robot.name,
+                "sensor": request.sensor,
+                "value": value,
+            }
+        )
+        return value
 
     def _begin_command(self, robot: RobotRunner, command: Command, line: int) -> None:
         try:
@@ -330,7 +365,7 @@ class Engine:
     def _advance(self, target: float) -> None:
         """Moves time to `target`, sampling the arms on the way, and ends the commands that end then."""
         times = self._instants(target)
-        paths = {r.name: r.path(times) for r in self.robots}
+        paths = {r.name: r.path(times) for r in self._arms()}
         self.monitor.expect(paths)
         for i, t in enumerate(times):
             self._sample(float(t), {name: path[i] for name, path in paths.items()})
@@ -357,9 +392,9 @@ class Engine:
         self._note_action(robot, self.now)
         robot.executor.finish()
         robot.motion = None
-        if isinstance(motion.command, MoveJoint | MoveLinear):
-            arm = robot.executor.robot
-            reached = pose_of(arm.T_world_base @ arm.kinematics.forward(robot.executor.q))
+        if robot.arm is not None and isinstance(motion.command, MoveJoint | MoveLinear):
+            arm = robot.arm.robot
+            reached = pose_of(arm.T_world_base @ arm.kinematics.forward(robot.arm.q))
             self.record.note_error("TCP off the commanded pose", distance(reached, motion.target))
         self._follow(robot, motion.result)
 
@@ -402,7 +437,7 @@ class Engine:
         kinds = {r.name: r.motion.kind for r in self.robots if r.motion is not None}
         verdict = self.monitor.check(t, joints, self.activity, kinds)
         self.record.sample(verdict)
-        for robot, seen in zip(self.robots, verdict.samples, strict=True):
+        for robot, seen in zip(self._arms(), verdict.samples, strict=True):
             if robot.motion is not None and robot.motion.kind == "lin":
                 off = distance_to_line(seen.pose, robot.motion.start, robot.motion.target)
                 self.record.note_error("off the line on linear moves", off)

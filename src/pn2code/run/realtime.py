@@ -43,12 +43,12 @@ class RealtimeEngine(Engine):
                 self.now = (time.perf_counter() - start) * self.speed
                 self._end_commands()
                 moved = [self._robot_turn(robot) for robot in self.robots]
-                if self._look_at_supervisor() and all(r.motion is None for r in self.robots):
+                if self._look_at_supervisor() and self._at_rest():
                     self.record.verdict = "finished"
                     break
                 if self.now - self._sampled >= self.cell.motion.sample:
                     self._sampled = self.now
-                    self._sample(self.now, {r.name: r.joints(self.now) for r in self.robots})
+                    self._sample(self.now, {r.name: r.joints(self.now) for r in self._arms()})
                     for observer in self.observers:
                         observer.advanced(self)
                 if not any(moved):

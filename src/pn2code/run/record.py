@@ -159,9 +159,12 @@ def fixed4(value: float) -> str:
     return "0.0000" if text == "-0.0000" else text
 
 
-def summary_counts(record: RunRecord, count: Mapping[str, str]) -> dict[str, int]:
-    """How often each counted tool action was completed."""
+def summary_counts(
+    record: RunRecord, count: Mapping[str, str], occurrences: Mapping[str, str]
+) -> dict[str, int]:
+    """How often each counted tool action was completed, and each counted transition occurred."""
+    names = [f".{e['transition']}" for e in record.events if "transition" in e]
     return {
         label: sum(a.kind == "tool" and a.label == action for a in record.actions)
         for label, action in count.items()
-    }
+    } | {label: sum(n.endswith(f".{t}") for n in names) for label, t in occurrences.items()}

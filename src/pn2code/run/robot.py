@@ -30,7 +30,9 @@ from pn2code.tdl.interpret import (
     FileError,
     Finished,
     Interpreter,
+    Sense,
 )
+from pn2code.tdl.interpret import Scalar as SensedValue
 from pn2code.tdl.types import POSE_FIELDS, Type
 
 PAUSE_S = 0.001
@@ -147,6 +149,10 @@ def _never() -> bool:
     return False
 
 
+def _nothing(_sensor: str) -> None:
+    return None
+
+
 @dataclass(slots=True)
 class RobotPlayer:
     """Runs one robot from the supervisor's announcement to the end.
@@ -156,6 +162,7 @@ class RobotPlayer:
         arm: what carries out the commands.
         on_event: hears of marks and messages.
         on_command: hears of each command and its line.
+        sense: what a sensor says; None: nothing.
         interrupted: asked at every turn; True stops the robot safely.
         wait_s: how long to wait for the supervisor.
     """
@@ -167,6 +174,7 @@ class RobotPlayer:
     on_event: Callable[[Event], None] = _ignore
     on_command: Callable[[Command, int], None] = lambda _command, _line: None
     interrupted: Callable[[], bool] = _never
+    sense: Callable[[str], SensedValue | None] = _nothing
     wait_s: float = 10.0
     _files: RobotFiles = field(init=False)
     _looked: float = 0.0
@@ -212,7 +220,7 @@ class RobotPlayer:
 
     def _play(self) -> None:
         interpreter = Interpreter(self.program, self._files, self.on_event)
-        result: Pose | None = None
+        result: Pose | SensedValue | None = None
         while True:
             if self._finished():
                 return
@@ -224,6 +232,8 @@ class RobotPlayer:
                         return
                 case Execute(command=command, line=line):
                     result = self._execute(command, line)
+                case Sense(sensor=sensor):
+                    result = self.sense(sensor)
                 case Finished():
                     return
                 case Fault(message=message, line=line):

@@ -249,7 +249,7 @@ class _Checker:
                     type_of(m, self.scope)
             case t.Read() | t.Clear() | t.Write() | t.WaitUntil():
                 self.message(s)
-            case t.Move() | t.Speed() | t.WaitTime() | t.Tool() | t.Measure():
+            case t.Move() | t.Speed() | t.WaitTime() | t.Tool() | t.Measure() | t.Sense():
                 self.command(s)
 
     def loop(self, body: tuple[t.Statement, ...]) -> None:
@@ -346,7 +346,7 @@ class _Checker:
 
     # commands
 
-    def command(self, s: t.Move | t.Speed | t.WaitTime | t.Tool | t.Measure) -> None:
+    def command(self, s: t.Move | t.Speed | t.WaitTime | t.Tool | t.Measure | t.Sense) -> None:
         match s:
             case t.Move():
                 self.move(s)
@@ -358,6 +358,15 @@ class _Checker:
                 known = self.known(duration)
                 if known is not None and known < 0:
                     self.d.error(codes.SPEED, "the duration is negative", duration.span)
+            case t.Sense(_, target):
+                found = self.target(target)
+                if found not in (None, Type.INT, Type.REAL, Type.BOOL, Type.STRING):
+                    self.d.error(
+                        codes.TYPE,
+                        f"`{target.name}` is of type `{found}`, but a sensor gives a number, a truth "
+                        "value or a text",
+                        target.span,
+                    )
             case t.Measure(nominal, target):
                 self.expect(nominal, Type.POSE, "the nominal pose")
                 wanted = self.target(target)

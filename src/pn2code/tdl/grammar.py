@@ -10,7 +10,7 @@ from typing import Final
 KEYWORDS: Final = (
     "program", "input", "output", "const", "var", "procedure", "begin", "end", "single",
     "move", "home", "in", "at", "speed", "default", "wait", "until", "read", "into", "clear", "write", "signal",
-    "tool", "for", "measure", "mark", "with", "null", "stop", "call", "return", "goto", "exit", "when",
+    "tool", "for", "measure", "sense", "mark", "with", "null", "stop", "call", "return", "goto", "exit", "when",
     "if", "then", "elsif", "else", "while", "loop",
     "and", "or", "not", "div", "mod", "true", "false",
 )  # fmt: skip
@@ -29,7 +29,7 @@ procedure: "procedure" NAME block "end" "procedure"
 
 block: statement*
 ?statement: move | speed | wait_time | wait_until | read | clear | write | assign | tool | measure
-          | mark | stop | call | return | label | goto | exit | if | while | loop
+          | sense | mark | stop | call | return | label | goto | exit | if | while | loop
 
 move: "move" MOTION target ("in" frame)? ("at" expression)?
 ?target: HOME | expression
@@ -43,6 +43,7 @@ write: "write" NAME (SIGNAL | expression ("," expression)*)
 assign: NAME ":=" expression
 tool: TOOL (NAME | STRING) "for" expression
 measure: "measure" expression "into" NAME
+sense: "sense" NAME "into" NAME
 mark: "mark" (NAME ("." NAME)* | STRING) ("with" binding ("," binding)*)?
 binding: (NAME | STRING) "=" datum
 ?datum: expression | record | tuple | null

@@ -3,6 +3,7 @@
     interpreter = Interpreter(checked, files, on_event)
     request = interpreter.resume()
     Execute(command, line)  -> the driver runs the command, then resume(result of Measure, else None)
+    Sense(sensor, line)     -> resume(what the sensor says)
     AwaitFile(names, line)  -> resume() when one of the files holds a message
     Finished(), Fault(...)  -> that was all
 
@@ -78,6 +79,15 @@ class AwaitFile:
 
 
 @dataclass(frozen=True, slots=True)
+class Sense:
+    """Resume with what this sensor says: a scalar of `type`. It takes no time."""
+
+    sensor: str
+    type: Type
+    line: int
+
+
+@dataclass(frozen=True, slots=True)
 class Finished:
     """The script has ended."""
 
@@ -90,7 +100,7 @@ class Fault:
     line: int
 
 
-Request = Execute | AwaitFile | Finished | Fault
+Request = Execute | Sense | AwaitFile | Finished | Fault
 
 
 # --- what it tells -----------------------------------------------------------------------------
@@ -166,6 +176,7 @@ class Interpreter:
         self._at: list[tuple[str, int]] = [("", 0)]
         self._speed: dict[t.Motion, float | None] = {t.Motion.JOINT: None, t.Motion.LINEAR: None}
         self._measuring: tuple[t.Measure, ScriptPose, commands.Pose] | None = None
+        self._sensing: t.Sense | None = None
         self._end: Finished | Fault | None = None
         self._line = 0
         self._started = False
@@ -180,8 +191,11 @@ class Interpreter:
         """A copy of the variables that have a value (for reports and tests)."""
         return dict(self._values)
 
-    def resume(self, result: commands.Pose | None = None) -> Request:
-        """Run until something is needed. `result` answers a `Measure`: the pose seen, in SI."""
+    def resume(self, result: commands.Pose | Scalar | None = None) -> Request:
+        """Run until something is needed.
+
+        `result` answers a `Measure` (the pose seen, in SI) or a `Sense` (a scalar).
+        """
         if self._end is not None:
             return self._end
         try:
@@ -190,6 +204,8 @@ class Interpreter:
                 self._initialise()
             if self._measuring is not None:
                 self._finish_measure(result)
+            if self._sensing is not None:
+                self._finish_sense(result)
             for _ in range(self._limit):
                 request = self._step()
                 if request is not None:
@@ -289,6 +305,10 @@ class Interpreter:
                 self._speed[motion] = None if speed is None else self._number(speed)
             case t.Move() | t.WaitTime() | t.Tool() | t.Measure():
                 return Execute(self._command(s), self._line)
+            case t.Sense(sensor, target):
+                self._sensing = s
+                kind = self._program.variables[target.name].type.type
+                return Sense(sensor, kind, self._line)
             case t.Call() | t.Return() | t.Label() | t.Goto() | t.Exit():
                 raise AssertionError("control flow is in the instructions")
             case _:
@@ -384,11 +404,24 @@ class Interpreter:
     def _pose(self, e: t.Expression) -> commands.Pose:
         return to_si(cast(ScriptPose, evaluate(e, self)))
 
-    def _finish_measure(self, result: commands.Pose | None) -> None:
+    def _finish_sense(self, result: commands.Pose | Scalar | None) -> None:
+        assert self._sensing is not None
+        statement, self._sensing = self._sensing, None
+        if result is None or isinstance(result, commands.Pose):
+            raise ScriptError(f"sensor `{statement.sensor}` gave no value")
+        kind = self._program.variables[statement.target.name].type.type
+        try:
+            self._assign(statement.target.name, _scalar(result, kind))
+        except ValueError:
+            raise ScriptError(
+                f"sensor `{statement.sensor}` says `{result}`, but the script expects `{kind}`"
+            ) from None
+
+    def _finish_measure(self, result: commands.Pose | Scalar | None) -> None:
         assert self._measuring is not None
         statement, nominal, asked = self._measuring
         self._measuring = None
-        if result is None:
+        if not isinstance(result, commands.Pose):
             raise ScriptError("the measurement gave no pose")
         self._assign(statement.target.name, _from_si(result, asked, nominal))
 

@@ -75,7 +75,7 @@ _WORDS = {
     "GREATER_EQUAL": "`>=`", "PLUS": "`+`", "MINUS": "`-`", "AMPERSAND": "`&`", "TIMES": "`*`",
     "DIVIDE": "`/`",
 }  # fmt: skip
-_STATEMENTS = {"MOVE", "WAIT", "READ", "CLEAR", "WRITE", "MEASURE", "MARK", "STOP", "CALL", "GOTO"}
+_STATEMENTS = {"MOVE", "WAIT", "READ", "CLEAR", "WRITE", "MEASURE", "SENSE", "MARK", "STOP", "CALL", "GOTO"}
 _OPERATORS = {
     "OR", "AND", "EQUAL", "NOT_EQUAL", "LESS", "LESS_EQUAL", "GREATER", "GREATER_EQUAL", "PLUS",
     "MINUS", "AMPERSAND", "TIMES", "DIVIDE", "DIV", "MOD", "DOT", "LPAR",
@@ -352,6 +352,9 @@ class _Builder(Transformer[Token, Any]):
 
     def measure(self, meta: Meta, c: list[Any]) -> t.Measure:
         return t.Measure(c[0], self._target(c[1]), self._span(meta))
+
+    def sense(self, meta: Meta, c: list[Any]) -> t.Sense:
+        return t.Sense(str(c[0]), self._target(c[1]), self._span(meta))
 
     def mark(self, meta: Meta, c: list[Any]) -> t.Mark:
         names = [x for x in c if isinstance(x, Token)]

@@ -114,7 +114,7 @@ def _before(
 
 def _assigns(i: flow.Instruction, gives: Mapping[str, frozenset[str]]) -> frozenset[str]:
     match i:
-        case flow.Do(t.Assign(target) | t.Measure(_, target)):
+        case flow.Do(t.Assign(target) | t.Measure(_, target) | t.Sense(_, target)):
             return frozenset({target.name})
         case flow.Do(t.Read(_, targets)):
             return frozenset(x.name for x in targets)

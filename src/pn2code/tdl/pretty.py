@@ -150,6 +150,8 @@ def simple(s: t.Simple) -> str:
             return f"tool {word(action)} for {expression(duration)}"
         case t.Measure(nominal, target):
             return f"measure {expression(nominal)} into {target.name}"
+        case t.Sense(sensor, target):
+            return f"sense {sensor} into {target.name}"
         case t.Mark(name, binding):
             bound = f" with {', '.join(_binding(b) for b in binding)}" if binding else ""
             return f"mark {transition(name)}{bound}"

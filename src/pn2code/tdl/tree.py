@@ -245,6 +245,15 @@ class Measure:
 
 
 @frozen
+class Sense:
+    """`sense grip into g`: asks a sensor for what nothing in the script decides."""
+
+    sensor: str
+    target: Target
+    span: Span = field(default=GENERATED, compare=False, repr=False)
+
+
+@frozen
 class Mark:
     """`mark Top.Robot1.Accept with k = k`: the net transition has occurred with this binding."""
 
@@ -336,7 +345,7 @@ class Loop:
 
 
 Simple = (
-    Move | Speed | WaitTime | WaitUntil | Read | Clear | Write | Assign | Tool | Measure | Mark
+    Move | Speed | WaitTime | WaitUntil | Read | Clear | Write | Assign | Tool | Measure | Sense | Mark
     | Stop | Call | Return | Label | Goto | Exit
 )  # fmt: skip
 Statement = Simple | If | While | Loop

@@ -1,0 +1,148 @@
+"""What sensors say in a run: the values of a file, over and over, or drawn at random from a seed.
+
+    sensors = load(config, partition.net, folders, seed, d)
+    sensors.ask("robot1", "grip")       # -> "held"
+
+Each program asks on its own: what one is told does not depend on how often another one asks. The values are
+scalars of the colour set of the net variable that the sensor decides.
+"""
+
+from __future__ import annotations
+
+import random
+from collections.abc import Iterable
+from dataclasses import dataclass, field
+from pathlib import Path
+
+from pn2code.cell.codes import CELL_FILE, CELL_MISSING, CELL_VALUE
+from pn2code.cell.config import CellConfig, SensorConfig
+from pn2code.cell.scalars import Scalar, ScalarKind, scalars_of
+from pn2code.channels.scalars import Malformed, parse_scalars
+from pn2code.diagnostics import Diagnostics, Origin
+from pn2code.lowering.robot_names import identifier
+from pn2code.ml.colsets import Colset
+from pn2code.net.flat import FlatNet
+
+Value = int | float | bool | str
+MOST_DRAWN = 1_000_000
+"""Colour sets with more values are not drawn from."""
+
+
+@dataclass(slots=True)
+class _Sensor:
+    """One sensor: what it says in turn, or what it draws from."""
+
+    seed: int
+    script: tuple[Value, ...]
+    choices: range | tuple[Value, ...]
+    asked: dict[str, int] = field(default_factory=dict)
+    random: dict[str, random.Random] = field(default_factory=dict)
+
+    def ask(self, who: str, name: str) -> Value:
+        n = self.asked.get(who, 0)
+        self.asked[who] = n + 1
+        if self.script:
+            return self.script[n % len(self.script)]
+        source = self.random.setdefault(who, random.Random(f"{self.seed} {name} {who}"))
+        return self.choices[source.randrange(len(self.choices))]
+
+
+@dataclass(slots=True)
+class Sensors:
+    """All sensors of a cell."""
+
+    _sensors: dict[str, _Sensor] = field(default_factory=dict)
+
+    def ask(self, who: str, sensor: str) -> Value | None:
+        """What a sensor says to a robot or device; None: there is no such sensor."""
+        found = self._sensors.get(sensor)
+        return None if found is None else found.ask(who, sensor)
+
+
+def load(
+    config: CellConfig, net: FlatNet, folders: Iterable[Path], seed: int | None, d: Diagnostics
+) -> Sensors | None:
+    """The sensors of a cell; None when an error was reported.
+
+    Args:
+        folders: where their files may be, the first one that has it counts.
+        seed: replaces that of each sensor; None: its own.
+    """
+    before = len(d.errors)
+    colsets = {v.name: v.colset for t in net.transitions for v in t.variables}
+    out: dict[str, _Sensor] = {}
+    for sensor in config.sensors:
+        colset = colsets.get(sensor.variable)
+        scalars = scalars_of(colset) if colset is not None else None
+        if colset is None or scalars is None or len(scalars) != 1:
+            continue  # no program asks it: said when the programs were made
+        script = _script(sensor, scalars, tuple(folders), d) if sensor.file else ()
+        choices = () if sensor.file else _choices(sensor, colset, scalars[0], d)
+        out[identifier(sensor.name)] = _Sensor(
+            sensor.seed if seed is None else seed, script, choices
+        )
+    return Sensors(out) if len(d.errors) == before else None
+
+
+def _script(
+    sensor: SensorConfig, scalars: tuple[Scalar, ...], folders: tuple[Path, ...], d: Diagnostics
+) -> tuple[Value, ...]:
+    path = next((f / sensor.file for f in folders if (f / sensor.file).is_file()), None)
+    if path is None:
+        d.error(
+            CELL_MISSING,
+            f"sensor `{sensor.name}`: there is no file `{sensor.file}`",
+            sensor.origin,
+            hint="write one value a line, or leave out `file` to have them drawn at random",
+        )
+        return ()
+    try:
+        lines = path.read_text(encoding="utf-8").splitlines()
+    except (OSError, UnicodeDecodeError) as problem:
+        reason = getattr(problem, "strerror", None) or "not UTF-8 text"
+        d.error(
+            CELL_FILE,
+            f"cannot read `{path}`: {reason[:1].lower()}{reason[1:]}",
+            sensor.origin,
+            hint="save it as a text file in UTF-8 that may be read",
+        )
+        return ()
+    out: list[Value] = []
+    for number, line in enumerate(lines, 1):
+        text = line.partition("#")[0].rstrip()
+        if not text.strip():
+            continue
+        found = parse_scalars(scalars, text)
+        if isinstance(found, Malformed):
+            d.error(CELL_VALUE, found.text, Origin(str(path), number, found.column))
+        else:
+            out += found
+    if not out and not d.has_errors:
+        d.error(
+            CELL_VALUE,
+            f"sensor `{sensor.name}`: `{path}` holds no value",
+            Origin(str(path)),
+            hint="write one value a line",
+        )
+    return tuple(out)
+
+
+def _choices(
+    sensor: SensorConfig, colset: Colset, scalar: Scalar, d: Diagnostics
+) -> range | tuple[Value, ...]:
+    match scalar.kind:
+        case ScalarKind.BOOL:
+            return (False, True)
+        case ScalarKind.ENUM:
+            return scalar.names
+        case ScalarKind.INT | ScalarKind.INDEX:
+            low, high = scalar.low, scalar.high
+            if isinstance(low, int) and isinstance(high, int) and high - low < MOST_DRAWN:
+                return range(low, high + 1)
+    d.error(
+        CELL_VALUE,
+        f"sensor `{sensor.name}`: colour set `{colset.name}` has too many values to draw one at random",
+        sensor.origin,
+        hint='add `file = "..."`, with one value a line',
+    )
+    return ()
