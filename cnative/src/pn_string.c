@@ -38,7 +38,7 @@ pn_string_t pn_string_make(pn_ctx_t *cx, const char *bytes, size_t length)
     return (pn_string_t){ copy, (uint32_t)length };
 }
 
-int pn_string_order(pn_string_t a, pn_string_t b)
+int pn_string_compare(pn_string_t a, pn_string_t b)
 {
     const uint32_t common = (a.length < b.length) ? a.length : b.length;
     const int order = (common > 0U) ? memcmp(a.bytes, b.bytes, common) : 0;

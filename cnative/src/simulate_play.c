@@ -162,7 +162,7 @@ static SIM_INLINE void *sim_next_kept(sim_search_t *search, size_t size)
     return fits ? at : NULL;
 }
 
-static bool sim_find(void *user, uint32_t transition, const void *binding)
+static SIM_INLINE bool sim_pick(void *user, uint32_t transition, const void *binding)
 {
     sim_search_t *search = user;
     (void)transition;
@@ -173,6 +173,22 @@ static bool sim_find(void *user, uint32_t transition, const void *binding)
     search->count++;
     return true;
 }
+
+/* The same, for calls through the table. */
+static bool sim_find(void *user, uint32_t transition, const void *binding)
+{
+    return sim_pick(user, transition, binding);
+}
+
+#ifdef PN_NET_SOURCE
+static SIM_INLINE bool sim_count(void *user, uint32_t transition, const void *binding)
+{
+    (void)transition;
+    (void)binding;
+    *(uint64_t *)user += 1U;
+    return true;
+}
+#endif
 
 /* --- draws --------------------------------------------------------------------------------------------------------- */
 
@@ -253,6 +269,20 @@ static SIM_INLINE bool sim_occur(sim_t *sim, uint32_t transition, uint64_t state
     return sim_fire_with(sim, transition, fire, binding, size);
 }
 
+#ifdef PN_NET_SOURCE
+/* The same where each choice of tokens is a binding: the compiler makes products of the loops that count, so nothing is kept. */
+static SIM_INLINE bool sim_occur_plain(sim_t *sim, uint32_t transition, uint64_t state, sim_enumerate_t enumerate,
+                                       sim_fire_t fire, size_t size)
+{
+    sim_search_t search = { .binding = sim->binding, .size = size };
+    uint64_t count = 0U;
+    (void)enumerate(&sim->cx, sim->marking, transition, sim_count, &count);
+    search.wanted = sim_choose(sim, count, &state);
+    (void)enumerate(&sim->cx, sim->marking, transition, sim_pick, &search);
+    return sim_fire_with(sim, transition, fire, sim->binding, size);
+}
+#endif
+
 bool sim_fire(sim_t *sim, uint32_t transition)
 {
     const pn_transition_t *t = &pn_net.transition[transition];
@@ -264,7 +294,7 @@ bool sim_fire(sim_t *sim, uint32_t transition)
 #ifdef PN_NET_SOURCE
 
 /* A binding is kept by assignment: the compiler then leaves out what it need not put together first. */
-#define SIM_TRANSITION(index, name)                                                                            \
+#define SIM_TRANSITION(index, name, is_plain)                                                                  \
     static SIM_INLINE bool sim_keep_##name(void *user, uint32_t transition, const void *binding)               \
     {                                                                                                          \
         name##_binding_t *const at = sim_next_kept(user, sizeof *at);                                          \
@@ -280,10 +310,13 @@ bool sim_fire(sim_t *sim, uint32_t transition)
     }                                                                                                          \
     static bool sim_occur_##name(sim_t *sim, uint64_t state)                                                   \
     {                                                                                                          \
+        if (is_plain) {                                                                                        \
+            return sim_occur_plain(sim, index, state, name##_enumerate, name##_fire, sizeof(name##_binding_t)); \
+        }                                                                                                      \
         return sim_occur(sim, index, state, name##_enumerate, sim_keep_##name, name##_fire,                    \
                          sizeof(name##_binding_t));                                                            \
     }
-#define SIM_ROW(index, name) { sim_look_##name, sim_occur_##name },
+#define SIM_ROW(index, name, is_plain) { sim_look_##name, sim_occur_##name },
 #ifndef NET_TRANSITIONS /* there is none */
 #define NET_TRANSITIONS(EACH)
 #endif

@@ -16,7 +16,12 @@ typedef struct pn_string {
 
 /* A copy in the arena; the empty string when it is full. */
 pn_string_t pn_string_make(pn_ctx_t *cx, const char *bytes, size_t length);
-int pn_string_order(pn_string_t a, pn_string_t b);
+int pn_string_compare(pn_string_t a, pn_string_t b);
+/* The order of strings: < 0, 0, > 0. Copies of a token share their bytes, so most that are equal are the same. */
+static inline int pn_string_order(pn_string_t a, pn_string_t b)
+{
+    return ((a.bytes == b.bytes) && (a.length == b.length)) ? 0 : pn_string_compare(a, b);
+}
 static inline bool pn_string_equal(pn_string_t a, pn_string_t b)
 {
     return pn_string_order(a, b) == 0;

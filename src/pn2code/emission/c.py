@@ -28,7 +28,6 @@ from pn2code.emission.output import Block, OutputFile
 from pn2code.lowering import ir
 from pn2code.lowering.calls import called, ir_nodes
 from pn2code.lowering.ir import NetIR, Rep
-from pn2code.lowering.ir_types import is_restricted
 from pn2code.lowering.packing import packed_bits
 
 _MARK = "\x01"
@@ -109,8 +108,8 @@ class _Emitter:
         x.functions = self._functions
         x.int_bits = self._net.int_bits
         x.needs_context = self._needs_context
-        x.bags = self._bags
         x.place_names = self._place_names
+        x.bags = self._bags
         x.packed = self._packed
         x.global_hints = {g.name: g.hint for g in self._net.globals}
         s = Statements(self._types, x, scope, self._net.real_time)
@@ -340,6 +339,7 @@ class _Emitter:
                 }
                 for v, m in zip(t.variables, variables, strict=True)
             ],
+            "is_plain": c_places.is_plain(t),
             "keeps": search.keeps and search.releases,
             "search": search.lines,
             "thresholds": self._thresholds(t, variables),
@@ -423,14 +423,13 @@ class _Emitter:
         x.variables = variables
         if is_direct:
             scope.reserve("is_taken", "fits")
-            checked = tuple(is_restricted(self._descriptors, p.table) for p in self._net.places)
             direct = DirectFiring(
                 self._types,
                 x,
                 scope,
                 self._net.real_time,
-                checked=checked,
-                tables=tuple(v.table for v in t.variables),
+                descriptors=self._descriptors,
+                tables=tuple("" if v.is_output else v.table for v in t.variables),
                 place_tables=tuple(p.table for p in self._net.places),
             )
             direct.used, direct.bags, direct.timed = printer.used, printer.bags, printer.timed
@@ -452,9 +451,9 @@ class _Emitter:
     # --- the whole -----------------------------------------------------------------------------
 
     def _used_functions(self, *, with_predicates: bool) -> list[ir.Function]:
+        roots: list[str] = []
         for predicate in self._net.predicates if with_predicates else ():
             roots += called(predicate.body)
-        roots: list[str] = []
         for t in self._net.transitions:
             roots += called(t.enumerate) + called(t.fire) + called(t.thresholds)
         for p in self._net.places:
@@ -475,8 +474,8 @@ class _Emitter:
     ) -> list[str]:
         """Keys in order of dependence."""
         roots = {p.table for p in self._net.places}
-        bodies += [p.body for p in predicates]
         bodies: list[object] = [f.body for f in functions]
+        bodies += [p.body for p in predicates]
         for t in self._net.transitions:
             roots |= {v.table for v in t.variables}
             bodies += [t.enumerate, t.fire, t.thresholds]
@@ -504,11 +503,11 @@ class _Emitter:
         wrappers = {f.key: f"is_{stem(f.hint)}" for f in functions if f.key.startswith("member ")}
         tables = c_tables.Tables(self._types, self._descriptors, wrappers)
         recursive = tables.to_declare(keys)
+        transitions = [self._transition(t) for t in net.transitions]  # what they call is known then
         further = [f for f in self._used_functions(with_predicates=True) if f not in functions]
         further_keys = [
             k for k in self._used_tables([*functions, *further], net.predicates) if k not in keys
         ]
-        transitions = [self._transition(t) for t in net.transitions]  # what they call is known then
         values = {
             "version": self._version,
             "net": net,
@@ -546,6 +545,7 @@ class _Emitter:
             "has_references": any(g.is_reference for g in net.globals),
             "has_arena_values": self._has_arena_values
             or any(g.is_reference or self._types.holds_reference(g.type) for g in net.globals),
+        }
         # After all that belongs to the net, so that it looks the same with and without them.
         values["further_functions"] = [self._function(f) for f in further]
         values["further_recursive_tables"] = [
@@ -553,7 +553,6 @@ class _Emitter:
         ]
         values["further_tables"] = [tables.print(k) for k in further_keys]
         values["predicates"] = [self._predicate(p, i) for i, p in enumerate(net.predicates)]
-        }
         # After the transitions, which want numbers of colours of their own.
         values["numbers"] = self._numbers.functions + [
             self._numbers.pointers(t)

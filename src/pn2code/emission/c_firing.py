@@ -6,6 +6,7 @@ place turns out to be full, all is put back.
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 
 from pn2code.emission.c_expressions import Expressions, Types
@@ -13,7 +14,8 @@ from pn2code.emission.c_places import is_count, staying_pairs
 from pn2code.emission.c_statements import Statements
 from pn2code.emission.names import Scope
 from pn2code.lowering import ir
-from pn2code.lowering.ir import Stmt
+from pn2code.lowering.ir import Descriptor, Stmt
+from pn2code.lowering.ir_types import is_restricted
 
 
 @dataclass(frozen=True, slots=True)
@@ -48,9 +50,9 @@ class DirectFiring(Statements):
     """Prints the `fire` of a transition for which `c_places.is_direct` holds.
 
     Args:
-        checked: for each place whether a value may be outside its colour set.
-        tables: for each variable of the binding the key of its descriptor.
-        place_tables: for each place the same.
+        descriptors: of all colour sets and types.
+        tables: for each variable of the binding the key of its descriptor, "" where its value is not known to be of it.
+        place_tables: for each place the key.
     """
 
     def __init__(
@@ -60,12 +62,12 @@ class DirectFiring(Statements):
         scope: Scope,
         real_time: bool,
         *,
-        checked: tuple[bool, ...],
+        descriptors: Mapping[str, Descriptor],
         tables: tuple[str, ...],
         place_tables: tuple[str, ...],
     ) -> None:
         super().__init__(types, expressions, scope, real_time)
-        self._checked = checked
+        self._descriptors = descriptors
         self._tables = tables
         self._place_tables = place_tables
         self._moves_made: list[_Move] = []
@@ -178,7 +180,7 @@ class DirectFiring(Statements):
         key = (verb, id(s))
         is_nested = self._depth > 1
         is_plain = isinstance(s.value, ir.Bound | ir.Use)
-        must_check = isinstance(s, ir.Put) and self._checked[s.place] and not self._is_known(s)
+        must_check = isinstance(s, ir.Put) and not self._is_known(s)
         if is_plain and not is_nested and not must_check:
             value = self._x.address(s.value)
         else:
@@ -223,8 +225,22 @@ class DirectFiring(Statements):
         return number
 
     def _is_known(self, s: ir.Put) -> bool:
-        """Whether the value is of the very colour set: a variable of it, or what is taken from a place of it."""
+        """Whether the value is of the place's colour set, or the very one that is taken from a place of it."""
         table = self._place_tables[s.place]
-        if isinstance(s.value, ir.Bound) and self._tables[s.value.index] == table:
+        return self._is_within(s.value, table) or any(
+            self._place_tables[t.place] == table and t.value == s.value for t in self._takes
+        )
+
+    def _is_within(self, value: ir.Ir, table: str) -> bool:
+        """Whether a value is of a colour set: all values of its type are, or it is put together from variables."""
+        if not is_restricted(self._descriptors, table):
             return True
-        return any(self._place_tables[t.place] == table and t.value == s.value for t in self._takes)
+        if isinstance(value, ir.Bound):
+            return self._tables[value.index] == table
+        own = self._descriptors[table]
+        if not isinstance(value, ir.MakeStruct) or own.member:
+            return False
+        parts = dict(own.fields)
+        return all(
+            label in parts and self._is_within(part, parts[label]) for label, part in value.fields
+        )

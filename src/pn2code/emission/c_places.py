@@ -62,10 +62,11 @@ class Orders:
                 lines.append("    }")
             else:
                 order = f"{member.replace('.', '_')}_order"
-                table = self._names.table(part)
-                lines.append(
-                    f"    const int {order} = pn_compare(&{table}, &a->{member}, &b->{member});"
-                )
+                if inner.type.rep is Rep.STRING:
+                    call = f"pn_string_order(a->{member}, b->{member})"
+                else:
+                    call = f"pn_compare(&{self._names.table(part)}, &a->{member}, &b->{member})"
+                lines.append(f"    const int {order} = {call};")
                 lines.append(f"    if ({order} != 0) {{")
                 lines.append(f"        return {order} < 0;")
                 lines.append("    }")
@@ -122,6 +123,21 @@ def _ways(statements: Iterable[ir.Stmt]) -> Iterable[ir.Put]:
                 yield from _ways(otherwise)
             case _:
                 pass
+
+
+def is_plain(t: ir.Transition) -> bool:
+    """Whether each choice of tokens, one for each input arc, gives a binding: the search is loops and nothing else."""
+    return all(
+        isinstance(n, ir.ForTokens | ir.Bind | ir.Yield | ir.Note) for n in _search(t.enumerate)
+    )
+
+
+def _search(statements: Iterable[ir.Stmt]) -> Iterable[ir.Stmt]:
+    """The statements, and those in loops over tokens."""
+    for s in statements:
+        yield s
+        if isinstance(s, ir.ForTokens):
+            yield from _search(s.body)
 
 
 def is_count(e: ir.Ir) -> bool:
