@@ -2,6 +2,9 @@
  * explore.c - the state space of the whole net: options, signals, progress, the report.
  */
 #define _POSIX_C_SOURCE 200809L
+#if defined(__linux__)
+#define _DEFAULT_SOURCE 1 /* prctl */
+#endif
 
 #include <errno.h>
 #include <inttypes.h>
@@ -11,6 +14,10 @@
 #include <string.h>
 #include <sys/resource.h>
 #include <time.h>
+#include <unistd.h>
+#if defined(__linux__)
+#include <sys/prctl.h>
+#endif
 
 #include "explore_error.h"
 #include "explore_reduce.h"
@@ -57,6 +64,7 @@ static void print_help(void)
                  "  --traces N          so many of them (default 1)\n"
                  "  --error-trace-to NAME  a shortest trace to an exception, as NAMEn.trace.jsonl\n"
                  "  --seed N            of random numbers (default 1)\n"
+                 "  --parent PID        end at once when this process, which started it, has ended\n"
                  "  --lay-again N       after N states see once more how they are stored best (default 262144)\n"
                  "  --help              this text\n\n"
                  "The report is one JSON object on the standard output.\n\n"
@@ -150,6 +158,7 @@ static bool read_valued(const char *option, const char *value, ex_options_t *opt
            || ((strcmp(option, "--write-limit") == 0) && read_number(value, UINT64_MAX, &options->write_limit))
            || ((strcmp(option, "--progress-every") == 0) && read_seconds(value, &options->progress_every))
            || ((strcmp(option, "--trace-to") == 0) && read_text(value, &options->trace_to))
+           || ((strcmp(option, "--parent") == 0) && read_number(value, INT32_MAX, &options->parent))
            || ((strcmp(option, "--error-trace-to") == 0) && read_text(value, &options->error_trace_to))
            || ((strcmp(option, "--lay-again") == 0) && read_number(value, UINT64_MAX, &options->lay_again))
            || ((strcmp(option, "--seed") == 0) && read_number(value, UINT64_MAX, &options->seed));
@@ -195,6 +204,18 @@ static void catch_signals(void)
     (void)sigemptyset(&action.sa_mask);
     (void)sigaction(SIGINT, &action, NULL);
     (void)sigaction(SIGTERM, &action, NULL);
+    action.sa_handler = SIG_IGN;
+    action.sa_flags = 0;
+    (void)sigaction(SIGXFSZ, &action, NULL); /* a file that must not become larger is one that cannot be written */
+}
+
+/* Nobody is left to hear of what is explored when the parent has been killed. False: it has been, already. */
+static bool follow_parent(uint64_t parent)
+{
+#if defined(__linux__)
+    (void)prctl(PR_SET_PDEATHSIG, SIGKILL);
+#endif
+    return (uint64_t)getppid() == parent;
 }
 
 typedef struct watch {
@@ -356,7 +377,7 @@ static void print_report(ex_run_t *run)
     const ex_why_t why = (ex_why_t)atomic_load(&run->why);
     const ex_options_t *options = &run->options;
     const uint64_t store_bytes = ((run->store.bucket != NULL) ? ex_store_bytes(&run->store) : run->approximate_bytes)
-                                 + ((run->codec != NULL) ? ex_codec_bytes(run) : 0U);
+                                 + (run->has_bounds ? ex_codec_bytes(run) : 0U); /* that is: all was made */
     (void)printf("{\"complete\": %s, \"why\": \"%s\", \"error\": ", (why == EX_COMPLETE) ? "true" : "false", why_text(why));
     print_error(run);
     (void)printf(",\n \"nodes\": %" PRIu64 ", \"arcs\": %" PRIu64 ", \"depth\": %" PRIu64 ", \"expanded\": %" PRIu64,
@@ -375,9 +396,14 @@ static void print_report(ex_run_t *run)
         (void)printf("null");
     }
     print_reductions(options);
+    const int spill_error = atomic_load(&run->spill_error);
+    if (spill_error != 0) {
+        (void)printf(",\n \"spill_error\": ");
+        print_string(strerror(spill_error));
+    }
     (void)printf(",\n \"fired\": [");
     for (uint32_t t = 0U; t < pn_net.transition_count; t++) {
-        (void)printf("%s%" PRIu64, (t > 0U) ? ", " : "", run->fired[t]);
+        (void)printf("%s%" PRIu64, (t > 0U) ? ", " : "", (run->fired != NULL) ? run->fired[t] : 0U);
     }
     (void)printf("],\n \"dead_count\": %" PRIu64 ",\n ", run->dead_count);
     if (run->has_bounds) {
@@ -467,9 +493,13 @@ int main(int argc, char **argv)
         return EXIT_USAGE;
     }
     catch_signals();
+    if ((run->options.parent != 0U) && !follow_parent(run->options.parent)) {
+        return EXIT_TRUNCATED;
+    }
     if (!make(run)) {
-        (void)fprintf(stderr, "explore: not enough memory\n");
-        return EXIT_USAGE;
+        ex_stop(run, EX_MEMORY);
+        print_report(run);
+        return (fflush(stdout) == 0) ? EXIT_TRUNCATED : EXIT_USAGE;
     }
     return explore(run);
 }

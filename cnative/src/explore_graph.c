@@ -236,16 +236,28 @@ static bool build(ex_run_t *run, ex_graph_t *graph)
     return is_fine;
 }
 
+/* Whether the net may do something else the second time. */
+static bool draws(void)
+{
+    bool is_random = pn_net.has_references;
+    for (uint32_t t = 0U; t < pn_net.transition_count; t++) {
+        is_random = is_random || pn_net.transition[t].draws;
+    }
+    return is_random;
+}
+
 bool ex_graph(ex_run_t *run)
 {
     const double began = ex_clock();
     const uint64_t nodes = run->nodes;
     const bool is_whole = (atomic_load(&run->why) == EX_COMPLETE);
     if ((nodes == 0U) || (nodes >= (uint64_t)EX_NO_NODE) || (pn_net.transition_count > (uint32_t)UINT16_MAX)) {
+        ex_stop(run, EX_MEMORY); /* so large a graph cannot be held */
         return false;
     }
     ex_graph_t *const graph = ex_alloc(run, sizeof *graph);
     if (graph == NULL) {
+        ex_stop(run, EX_MEMORY);
         return false;
     }
     run->graph = graph;
@@ -271,6 +283,9 @@ bool ex_graph(ex_run_t *run)
     graph->seconds = ex_clock() - began;
     if (!is_fine) {
         run->graph = NULL; /* the process is about to end: its memory goes with it */
+        if (!draws()) {
+            ex_stop(run, EX_MEMORY); /* unless something else was in the way */
+        }
     }
     return is_fine;
 }

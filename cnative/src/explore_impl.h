@@ -49,6 +49,7 @@ typedef struct ex_options {
     uint64_t dead_limit;
     uint64_t traces;         /* most traces in trace_to */
     const char *error_trace_to; /* the same for the trace to an exception */
+    uint64_t parent;         /* process that started it, and without which it is to end; 0: none */
 } ex_options_t;
 
 /* Why it ended, in the order of importance. */
@@ -446,6 +447,7 @@ typedef struct ex_run {
     double omission_probability;
     uint64_t approximate_bytes; /* of what stands for the store */
     bool has_bounds;
+    _Atomic int spill_error;    /* errno of a file of --spill that could not be had; 0: none */
     struct ex_level *level;     /* of explore_search.c */
     bool is_laid_again;         /* ex_layout_again has been done */
     struct ex_reduction *reduction; /* of explore_elements.c; NULL: none that needs a table */

@@ -3,6 +3,7 @@
  */
 #define _GNU_SOURCE 1 /* MAP_ANONYMOUS, madvise, mkstemp */
 
+#include <errno.h>
 #include <fcntl.h>
 #include <stdlib.h>
 #include <string.h>
@@ -76,24 +77,32 @@ static void *map_huge(uint64_t size)
 }
 
 /* A file without a name, as long as it is mapped. */
-static void *map_file(const ex_run_t *run, uint64_t size)
+static void *map_file(ex_run_t *run, uint64_t size)
 {
     char path[4096];
     const int length = snprintf(path, sizeof path, "%s/explore-XXXXXX", run->options.spill);
     if ((length < 0) || ((size_t)length >= sizeof path)) {
+        atomic_store(&run->spill_error, ENAMETOOLONG);
         return NULL;
     }
     const int file = mkstemp(path);
     if (file < 0) {
+        atomic_store(&run->spill_error, errno);
         return NULL;
     }
     (void)unlink(path);
     void *memory = MAP_FAILED;
-    if (posix_fallocate(file, 0, (off_t)size) == 0) {
+    int problem = posix_fallocate(file, 0, (off_t)size); /* what is not there now would be missed when it is written */
+    if (problem == 0) {
         memory = mmap(NULL, (size_t)size, PROT_READ | PROT_WRITE, MAP_SHARED, file, 0);
+        problem = (memory == MAP_FAILED) ? errno : 0;
     }
     (void)close(file);
-    return (memory == MAP_FAILED) ? NULL : memory;
+    if (problem != 0) {
+        atomic_store(&run->spill_error, problem);
+        return NULL;
+    }
+    return memory;
 }
 
 void *ex_map(ex_run_t *run, uint64_t wanted)
