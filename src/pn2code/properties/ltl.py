@@ -254,55 +254,67 @@ def _expanded(forms: _Forms, formula: int) -> _Graph:
     return _merged(_Graph(ways, tuple(conditions)))
 
 
-_Todo = tuple[tuple[int, ...], Label, State, frozenset[int]]
-"""Forms that are left, and what a way consists of until then."""
-
-
 def _ways(forms: _Forms, state: State) -> list[_Way]:
     """All ways to go on from a set of obligations; none covers another."""
-    found: list[_Way] = []
-    empty: frozenset[int] = frozenset()
-    stack: list[_Todo] = [(tuple(sorted(state)), empty, empty, empty)]
+    found: dict[_Way, None] = {}
+    none: frozenset[int] = frozenset()
+    start = (state, none, none, none)
+    seen = {start}
+    stack = [start]
+
+    def push(*ways: tuple[frozenset[int], frozenset[int], State, frozenset[int]]) -> None:
+        for way in ways:
+            if way not in seen:
+                seen.add(way)
+                stack.append(way)
+
+    # What is left to look at, what holds by now, what must hold next, what is postponed.
     while stack:
-        todo, label, later, postponed = stack.pop()
-        if len(found) > MOST_WAYS:
+        todo, done, later, postponed = stack.pop()
+        if len(seen) > MOST_WAYS:
             raise TooLargeError
         if not todo:
-            found.append(_Way(label, later, postponed))
+            label = frozenset(x for x in done if forms.forms[x][0] == "lit")
+            found[_Way(label, later, postponed)] = None
             continue
-        number, rest = todo[0], todo[1:]
+        number = min(todo, key=lambda x: (forms.forms[x][0] in ("or", "U", "R"), x))
+        rest, now = todo - {number}, done | {number}
         match forms.forms[number]:
             case ("true",):
-                stack.append((rest, label, later, postponed))
+                push((rest, now, later, postponed))
             case ("lit", *_):
-                if not any(_excludes(forms, number, x) for x in label):
-                    stack.append((rest, label | {number}, later, postponed))
+                if not any(_excludes(forms, number, x) for x in done):
+                    push((rest, now, later, postponed))
             case ("and", int(a), int(b)):
-                stack.append(((a, b, *rest), label, later, postponed))
+                push((rest | ({a, b} - now), now, later, postponed))
             case ("or", int(a), int(b)):
-                stack.append(((b, *rest), label, later, postponed))
-                stack.append(((a, *rest), label, later, postponed))
+                choices = (now,) if {a, b} & now else ({b}, {a})
+                push(*((rest | (x - now), now, later, postponed) for x in choices))
             case ("X", int(a)):
-                stack.append((rest, label, later | {a}, postponed))
+                push((rest, now, later | {a}, postponed))
             case ("U", int(a), int(b)):
-                again = (later | {number}, postponed | {number})
-                stack.append(((a, *rest), label, *again))
-                stack.append(((b, *rest), label, later, postponed))
+                if b not in now:
+                    again = (later | {number}, postponed | {number})
+                    push((rest | ({a} - now), now, *again))
+                push((rest | ({b} - now), now, later, postponed))
             case ("R", int(a), int(b)):
-                stack.append(((b, *rest), label, later | {number}, postponed))
-                stack.append(((a, b, *rest), label, later, postponed))
+                if a not in now:
+                    push((rest | ({b} - now), now, later | {number}, postponed))
+                push((rest | ({a, b} - now), now, later, postponed))
             case _:
                 pass  # false: no way
-    return _least(found)
+    return _least(list(found))
 
 
 def _excludes(forms: _Forms, a: int, b: int) -> bool:
     """Whether two literals cannot hold together: opposites, or two different steps."""
-    (_, p, x), (_, q, y) = forms.forms[a], forms.forms[b]
-    if x == y:
-        return p != q
-    steps = isinstance(x, Atom) and isinstance(y, Atom) and x.kind == y.kind == "fires"
-    return steps and p is True and q is True
+    x, y = forms.forms[a], forms.forms[b]
+    if y[0] != "lit":
+        return False
+    if x[2] == y[2]:
+        return x[1] != y[1]
+    steps = all(isinstance(w, Atom) and w.kind == "fires" for w in (x[2], y[2]))
+    return steps and x[1] is True and y[1] is True
 
 
 def _least(found: Sequence[_Way]) -> list[_Way]:
