@@ -221,7 +221,25 @@ def test_a_device_whose_page_moves_is_refused(tmp_path: Path, monkeypatch: objec
     ]
     acting = "place A = 1\ntrans T code action drill ()\n  both A"
     cell = Cell(tmp_path, acting)
+    assert "-- Device `robot1`: page `Rob`" in cell.text
     assert not cell.messages
     interpreter = Interpreter(cell.checked(), MemoryFiles())
     request = interpreter.resume()
     assert isinstance(request, Execute) and request.command == ToolAction("drill", 3.0)
+
+
+def test_a_value_of_the_net_that_two_transitions_use_is_one_constant(tmp_path: Path) -> None:
+    robot = """
+    place A = 1
+    place B
+    trans T code action pause lift
+      in A
+      out B
+    trans U code action pause lift
+      in B
+      out A
+    """
+    cell = Cell(tmp_path, robot, extra="val lift = 2.5;")
+    assert cell.text.count("const lift") == 1
+    assert "const lift_2" not in cell.text
+    cell.checked()

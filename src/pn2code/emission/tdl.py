@@ -63,6 +63,7 @@ def _emit(ir: RobotIR, source: str, digest: str, version: str) -> OutputFile:
         version=version,
         source=comment(source),
         digest=digest,
+        kind=ir.kind.capitalize(),
         name=comment(ir.name),
         page=comment(ir.page),
         instance=comment(ir.instance),

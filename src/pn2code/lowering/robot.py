@@ -166,7 +166,9 @@ class _Translator:
                     f"place `{places[p].short}` has colour set `{places[p].colset.name}`, "
                     "which robot scripts do not have",
                     places[p].origins[0],
-                    notes=[f"robot `{self.machine.owner.name}` uses the place"],
+                    notes=[
+                        f"{self.machine.owner.kind.value} `{self.machine.owner.name}` uses the place"
+                    ],
                     hint="use units, booleans, integers, reals, strings, enumerations, "
                     "and records and products of these",
                 )
@@ -251,7 +253,12 @@ class _Translator:
             problem.code,
             problem.message,
             problem.span,
-            notes=[Note(f"{where}, in the program of robot `{self.machine.owner.name}`", origin)],
+            notes=[
+                Note(
+                    f"{where}, in the program of {self.machine.owner.kind.value} `{self.machine.owner.name}`",
+                    origin,
+                )
+            ],
         )
 
     # --- states ---
@@ -323,7 +330,7 @@ class _Translator:
                     self.d.warning(
                         codes.CHOICE,
                         f"transitions `{first.short}` and `{second.short}` may be enabled together: "
-                        f"the script of robot `{self.machine.owner.name}` prefers `{first.short}`",
+                        f"the script of {self.machine.owner.kind.value} `{self.machine.owner.name}` prefers `{first.short}`",
                         second.origin,
                         notes=[
                             Note(
@@ -583,6 +590,7 @@ class _Translator:
             ),
             procedures=procedures,
             body=body,
+            kind=owner.kind.value,
         )
 
     def _needed_constants(self) -> set[str]:

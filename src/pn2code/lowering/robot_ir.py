@@ -111,6 +111,8 @@ class RobotIR:
     left_out: tuple[LeftOut, ...]
     procedures: tuple[tuple[str, tuple[Node, ...]], ...]
     body: tuple[Node, ...]
+    kind: str = "robot"
+    """or "device": one without an arm"""
 
 
 def statements(nodes: Iterable[Node]) -> tuple[t.Statement, ...]:

@@ -210,7 +210,7 @@ class _Analyser:
         if not known:
             self.d.error(
                 codes.NOT_SEQUENTIAL,
-                f"robot `{self.owner.name}` has no transition that can occur",
+                f"{self.owner.kind.value} `{self.owner.name}` has no transition that can occur",
                 net.places[0].origins[0] if not dead else dead[0][0].origin,
                 notes=[f"its page instance is `{self.owner.instance}`"],
             )
@@ -424,7 +424,8 @@ class _Analyser:
                 return
         t = steps[0].transition
         self.error(
-            t, f"the places of robot `{self.owner.name}` are not those of a sequential program"
+            t,
+            f"the places of {self.owner.kind.value} `{self.owner.name}` are not those of a sequential program",
         )
 
     def error(self, t: FlatTransition, message: str) -> None:
@@ -452,7 +453,7 @@ class _Analyser:
         )  # fmt: skip
         self.d.error(
             codes.NOT_SEQUENTIAL,
-            f"the places that tell where robot `{self.owner.name}` is {found}",
+            f"the places that tell where {self.owner.kind.value} `{self.owner.name}` is {found}",
             places[marked[0] if marked else control[0]].origins[0],
             notes=[f"these places are {what}"],
             hint="put exactly one token on the place where the program begins",

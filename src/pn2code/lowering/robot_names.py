@@ -137,7 +137,12 @@ class Names:
         """A named constant for a `val` of the net; the value itself where that cannot be."""
         if not self._constant(value.exp):
             return value.exp
-        final = self.unique(identifier(name))
+        final = identifier(name)
+        known = self.constants.get(final)
+        if known is not None and isinstance(known.declaration, t.Const):
+            if known.declaration.value == value.exp:
+                return t.Name(final)  # the same `val`, used on another page
+        final = self.unique(final)
         element = Element(name, "declaration", span.origin, "" if final == name else f"val {name}")
         self.constants[final] = Declared(t.Const(final, value.exp), element)
         if isinstance(value.exp, t.Value):
