@@ -31,6 +31,11 @@ class Owner:
     kind: OwnerKind
     instance: str
 
+    @property
+    def phrase(self) -> str:
+        """For messages: "robot `r1`"."""
+        return f"{self.kind.value} `{self.name}`"
+
 
 class ChannelKind(Enum):
     """Data are written before the flags that announce them."""

@@ -166,9 +166,7 @@ class _Translator:
                     f"place `{places[p].short}` has colour set `{places[p].colset.name}`, "
                     "which robot scripts do not have",
                     places[p].origins[0],
-                    notes=[
-                        f"{self.machine.owner.kind.value} `{self.machine.owner.name}` uses the place"
-                    ],
+                    notes=[f"{self.machine.owner.phrase} uses the place"],
                     hint="use units, booleans, integers, reals, strings, enumerations, "
                     "and records and products of these",
                 )
@@ -255,7 +253,7 @@ class _Translator:
             problem.span,
             notes=[
                 Note(
-                    f"{where}, in the program of {self.machine.owner.kind.value} `{self.machine.owner.name}`",
+                    f"{where}, in the program of {self.machine.owner.phrase}",
                     origin,
                 )
             ],
@@ -330,7 +328,7 @@ class _Translator:
                     self.d.warning(
                         codes.CHOICE,
                         f"transitions `{first.short}` and `{second.short}` may be enabled together: "
-                        f"the script of {self.machine.owner.kind.value} `{self.machine.owner.name}` prefers `{first.short}`",
+                        f"the script of {self.machine.owner.phrase} prefers `{first.short}`",
                         second.origin,
                         notes=[
                             Note(

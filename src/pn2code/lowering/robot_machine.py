@@ -210,7 +210,7 @@ class _Analyser:
         if not known:
             self.d.error(
                 codes.NOT_SEQUENTIAL,
-                f"{self.owner.kind.value} `{self.owner.name}` has no transition that can occur",
+                f"{self.owner.phrase} has no transition that can occur",
                 net.places[0].origins[0] if not dead else dead[0][0].origin,
                 notes=[f"its page instance is `{self.owner.instance}`"],
             )
@@ -425,7 +425,7 @@ class _Analyser:
         t = steps[0].transition
         self.error(
             t,
-            f"the places of {self.owner.kind.value} `{self.owner.name}` are not those of a sequential program",
+            f"the places of {self.owner.phrase} are not those of a sequential program",
         )
 
     def error(self, t: FlatTransition, message: str) -> None:
@@ -453,7 +453,7 @@ class _Analyser:
         )  # fmt: skip
         self.d.error(
             codes.NOT_SEQUENTIAL,
-            f"the places that tell where {self.owner.kind.value} `{self.owner.name}` is {found}",
+            f"the places that tell where {self.owner.phrase} is {found}",
             places[marked[0] if marked else control[0]].origins[0],
             notes=[f"these places are {what}"],
             hint="put exactly one token on the place where the program begins",

@@ -139,9 +139,9 @@ class Names:
             return value.exp
         final = identifier(name)
         known = self.constants.get(final)
-        if known is not None and isinstance(known.declaration, t.Const):
-            if known.declaration.value == value.exp:
-                return t.Name(final)  # the same `val`, used on another page
+        declared = known.declaration if known is not None else None
+        if isinstance(declared, t.Const) and declared.value == value.exp:
+            return t.Name(final)  # the same `val`, used by another transition
         final = self.unique(final)
         element = Element(name, "declaration", span.origin, "" if final == name else f"val {name}")
         self.constants[final] = Declared(t.Const(final, value.exp), element)
