@@ -337,6 +337,7 @@ _TOP = {
     "scene",
     "report",
     "layouts",
+    "property",
 }
 
 

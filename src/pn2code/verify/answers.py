@@ -1,0 +1,125 @@
+"""What the explorer has answered, in terms of the properties that were asked."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any, Literal
+
+from pn2code.properties import meaning as m
+from pn2code.verify.result import Exploration
+
+Verdict = Literal["yes", "no", "inconclusive"]
+
+_WHY = {
+    "states": "the limit of states was reached",
+    "seconds": "the limit of time was reached",
+    "memory": "the limit of memory was reached",
+    "interrupted": "it was interrupted",
+    "error": "an inscription raised an exception",
+    "truncated": "not all markings were seen",
+    "approximate": "markings may have been taken for others",
+}
+
+
+@dataclass(frozen=True, slots=True)
+class Evidence:
+    """A run that shows why.
+
+    Args:
+        trace: its file.
+        steps: how many.
+        loop: so many steps are before the cycle that the run goes round for ever; None: it has none.
+    """
+
+    trace: Path
+    steps: int
+    loop: int | None
+
+
+@dataclass(frozen=True, slots=True)
+class Answer:
+    """What is known of a property.
+
+    Args:
+        about: the property.
+        answer: whether it is true.
+        why: of "inconclusive": the reason, as a clause.
+        evidence: a run, where one shows it.
+        value: the number that decides: most tokens of a place, or the longest wait; None: there is none.
+        node: of the marking that decides, in the numbering of the report.
+    """
+
+    about: m.Property
+    answer: Verdict
+    why: str = ""
+    evidence: Evidence | None = None
+    value: float | None = None
+    node: int | None = None
+
+    @property
+    def is_expected(self) -> bool:
+        """Whether the answer is the one that the author expects."""
+        return self.answer == ("yes" if self.about.expect else "no")
+
+    def row(self) -> dict[str, Any]:
+        """For `--json`."""
+        e = self.evidence
+        return {
+            "name": self.about.name,
+            "says": self.about.says,
+            "holds": self.about.holds,
+            "kind": self.about.kind,
+            "fair": list(self.about.fair),
+            "expect": self.about.expect,
+            "answer": self.answer,
+            "why": self.why or None,
+            "value": self.value,
+            "node": self.node,
+            "evidence": {"trace": str(e.trace), "steps": e.steps, "loop": e.loop} if e else None,
+        }
+
+
+def answers(
+    properties: m.Properties, said: Sequence[Mapping[str, Any]], found: Exploration
+) -> tuple[Answer, ...]:
+    """One for each property.
+
+    Args:
+        properties: what was asked.
+        said: what the explorer prints of each question, in order; fewer: it came to nothing.
+        found: the exploration.
+    """
+    nothing: Mapping[str, Any] = {"answer": "unknown", "why": found.why}
+    padded = [*said, *[nothing] * (len(properties.properties) - len(said))]
+    return tuple(_answer(p, one) for p, one in zip(properties.properties, padded, strict=True))
+
+
+def _answer(p: m.Property, said: Mapping[str, Any]) -> Answer:
+    verdict: Verdict = "inconclusive"
+    if said["answer"] in ("yes", "no"):
+        # Of `reachable` it is asked whether nothing is reached, of `ltl` whether a path violates it.
+        turned = isinstance(p.asked, m.Linear) or (
+            isinstance(p.asked, m.Invariant) and not p.asked.wanted
+        )
+        verdict = "yes" if (said["answer"] == "yes") != turned else "no"
+    why = said.get("why") or ""
+    evidence = None
+    if said.get("trace"):
+        evidence = Evidence(Path(said["trace"]), said["steps"], said.get("loop"))
+    return Answer(
+        p,
+        verdict,
+        _WHY.get(why, why) if verdict == "inconclusive" else "",
+        evidence,
+        said.get("value"),
+        said.get("node"),
+    )
+
+
+def verdict(found: Sequence[Answer]) -> Literal["yes", "no", "inconclusive"]:
+    """Of all together: "no" if one is not as expected, else "inconclusive" if one is not known."""
+    if any(x.answer != "inconclusive" and not x.is_expected for x in found):
+        return "no"
+    return "inconclusive" if any(x.answer == "inconclusive" for x in found) else "yes"

@@ -1,0 +1,117 @@
+"""Runs that the explorer gives as evidence, looked at again: played by the token game, judged by definition.
+
+What is confirmed here does not depend on any line of C, nor on the translation of a formula into an automaton: the
+marking that violates an invariant does so by the reference evaluator; on the lasso the formula is false, position by
+position; fairness is kept; the cycle is one.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from pathlib import Path
+
+from pn2code.net.flat import FlatNet
+from pn2code.properties import judge_ltl
+from pn2code.properties import meaning as m
+from pn2code.properties.judge import Graph, look
+from pn2code.semantics.game import Game
+from pn2code.semantics.marking import Marking
+from pn2code.verify.answers import Answer
+from pn2code.verify.path import play
+
+MOST_STEPS = 5_000
+"""Longer runs take the token game too long; they are not looked at again."""
+
+
+def problem(
+    net: FlatNet,
+    storage: Mapping[str, str],
+    predicates: m.Properties,
+    answer: Answer,
+    *,
+    exact_times: bool = True,
+) -> str | None:
+    """What is wrong with the evidence of an answer; None: nothing, or it cannot be looked at.
+
+    Args:
+        net, storage: as for `Game`.
+        predicates: all that was asked: the conditions.
+        answer: the answer.
+        exact_times: whether nodes differ by their times; else a cycle may end later than it began.
+
+    Raises:
+        TraceRefusedError, GameError, OSError: it cannot be played.
+        MlException, MlLimit: a condition cannot be evaluated.
+    """
+    evidence = answer.evidence
+    if evidence is None or evidence.steps > MOST_STEPS:
+        return None
+    game, markings, steps = _played(net, storage, evidence.trace)
+    if len(steps) != evidence.steps:
+        return f"the trace has {len(steps)} steps, not {evidence.steps}"
+    asked = answer.about.asked
+    graph, nodes = _graph(game, markings, predicates)
+    last = nodes[-1]
+    match asked:
+        case m.Invariant(condition):
+            if last in graph.nodes(condition):
+                return "the last marking of the trace decides nothing"
+        case m.Bound(place, low, high):
+            size = len(markings[-1].places[place])
+            if size >= (low or 0) and (high is None or size <= high):
+                return f"the last marking of the trace has {size} tokens"
+        case m.Linear(formula, fair):
+            path = _lasso(graph, nodes, steps, evidence.loop, exact_times)
+            if isinstance(path, str):
+                return path
+            if judge_ltl.holds_on(graph, formula, path):
+                return "the formula is true on the run"
+            if not judge_ltl.is_fair(graph, fair, path):
+                return "the run is not fair"
+        case _:
+            pass
+    return None
+
+
+def _played(
+    net: FlatNet, storage: Mapping[str, str], trace: Path
+) -> tuple[Game, list[Marking], list[int]]:
+    game, played = play(net, storage, trace)
+    markings, steps = [game.marking], []
+    for _, transition in played:
+        markings.append(game.marking)
+        steps.append(transition.index)
+    return game, markings, steps
+
+
+def _graph(
+    game: Game, markings: list[Marking], properties: m.Properties
+) -> tuple[Graph, list[int]]:
+    """The nodes of a run with what holds there, and which transitions are enabled; and the nodes in order."""
+    index: dict[Marking, int] = {}
+    nodes = [index.setdefault(marking, len(index)) for marking in markings]
+    arcs: list[tuple[int, int, int]] = []
+    for marking, n in index.items():
+        # Where they lead does not matter: nothing is asked that looks farther than the run.
+        arcs += ((n, t.index, n) for t in game.enabled_transitions(game.settle(marking)))
+    holds = tuple(
+        frozenset(n for marking, n in index.items() if look(game, p, marking))
+        for p in properties.predicates
+    )
+    return Graph(tuple(float(x.time) for x in index), tuple(arcs), holds, tuple(index)), nodes
+
+
+def _lasso(
+    graph: Graph, nodes: list[int], steps: list[int], loop: int | None, exact_times: bool
+) -> judge_ltl.Lasso | str:
+    """The run as a lasso; a text if it is none."""
+    positions = [judge_ltl.Position(nodes[i], step, nodes[i + 1]) for i, step in enumerate(steps)]
+    last = nodes[-1]
+    if loop is None or loop >= len(steps):
+        if last not in graph.dead:
+            return "the run ends where something is enabled"
+        end = judge_ltl.Position(last, judge_ltl.NO_STEP, last)
+        return judge_ltl.Lasso((*positions, end), len(positions))
+    if exact_times and nodes[loop] != last:
+        return "the cycle of the run does not come back to where it begins"
+    return judge_ltl.Lasso(tuple(positions), loop)
