@@ -150,10 +150,19 @@ def test_where_there_are_too_many_every_row_is_covered_all_the_same() -> None:
     assert len(semiflows(rows[:16], Limits(rows=4000)).vectors) == 0  # cut open: nothing is left
 
 
+def test_a_cover_of_a_matrix_with_columns_below_zero() -> None:
+    """As resets have them: no invariant covers such a row."""
+    rows = matrix(random.Random(3), 12, 8)
+    rows += [{0: 1, -7: 1}, {0: -1}, {0: 1}]
+    found = semiflows(rows, Limits(rows=1, work=10)).vectors
+    assert not any(12 in v for v in found)
+    assert any({13, 14} <= v.keys() for v in found)
+
+
 def test_sub_invariants_by_linear_programs() -> None:
     # t0 moves a to b, t1 loses from b, t2 makes c from nothing
     rows = [{0: -1}, {0: 1, 1: -1}, {2: 1}]
-    program = Program(rows, 3, at_most=True)
+    program = Program(rows, at_most=True)
     assert program.support() == {0, 1}
     found = program.invariant(1, [3.0, 1.0, 0.0])
     assert found == {0: 1, 1: 1}

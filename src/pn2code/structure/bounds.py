@@ -205,7 +205,7 @@ def _by_programs(
     matrix = [rows[p] or {} for p in usable]
     entries = sum(map(len, matrix))
     budget = min(programs, 600_000 // max(1_500, entries))
-    program = flows.Program(matrix, len(modes), at_most=True)
+    program = flows.Program(matrix, at_most=True)
     possible = program.support()
     costs = [float(initial[p] or 0) for p in usable]
     wanted = [p for p in usable if _open(p, best) and position[p] in possible]

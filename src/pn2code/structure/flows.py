@@ -239,29 +239,26 @@ class Program:
     """Linear programs over the invariants of a matrix, made exact.
 
     Args:
-        rows: the matrix.
-        columns: number of columns; by default what the rows have.
+        rows: the matrix; its columns may have any numbers.
         at_most: invariants y with y * matrix <= 0 instead of = 0 (sub-invariants: their sums never grow).
 
     Attributes:
         solved: how many programs were solved.
     """
 
-    def __init__(
-        self, rows: Sequence[Row], columns: int | None = None, *, at_most: bool = False
-    ) -> None:
+    def __init__(self, rows: Sequence[Row], *, at_most: bool = False) -> None:
         from scipy.sparse import csr_matrix  # takes a third of a second to load
 
         self._rows = rows
         self._at_most = at_most
         entries = [(c, i, n) for i, row in enumerate(rows) for c, n in row.items() if n]
-        width = columns if columns is not None else max((c for c, _, _ in entries), default=-1) + 1
+        place = {c: k for k, c in enumerate(sorted({c for c, _, _ in entries}))}
         data = (
             [n for _, _, n in entries],
-            ([c for c, _, _ in entries], [i for _, i, _ in entries]),
+            ([place[c] for c, _, _ in entries], [i for _, i, _ in entries]),
         )
-        self._matrix: Any = csr_matrix(data, shape=(width, len(rows)), dtype=float)
-        self._width = width
+        self._matrix: Any = csr_matrix(data, shape=(len(place), len(rows)), dtype=float)
+        self._width = len(place)
         self.solved = 0
 
     def support(self) -> frozenset[int]:
