@@ -298,6 +298,14 @@ class Binder:
 
     def _ml(self, text: SourceText) -> m.Formula | None:
         key = text.text.strip()
+        if not key:
+            self._d.error(
+                codes.SYNTAX,
+                "this condition is empty",
+                text.span(0, 1),
+                hint="write a condition in CPN ML: `{ size (Mark.Page'Place 1) <= 3 }`",
+            )
+            return None
         if key in self._numbers:
             return m.Atom("pred", self._numbers[key])
         found = self._marks.condition(text)
