@@ -107,10 +107,10 @@ def _judge(
         )
     )
     if symmetries is not None and "symmetry" in reductions and whole["nodes"] <= most:
-        space = _space(u)
+        space = all_markings(u)
         wanted = (
             orbits(space, generators(symmetries)),
-            orbits(_dead(u, space), generators(symmetries)),
+            orbits(dead_markings(u, space), generators(symmetries)),
         )
         said += f"; by brute force {wanted[0]} orbits, {wanted[1]} of them dead"
         is_wrong = is_wrong or len(space) != whole["nodes"] or wanted[1] != found["dead_markings"]
@@ -118,7 +118,8 @@ def _judge(
     return said, is_wrong
 
 
-def _space(u: Unfolding) -> set[Marking]:
+def all_markings(u: Unfolding) -> set[Marking]:
+    """All that can be reached."""
     seen = {u.initial}
     todo = [u.initial]
     while todo:
@@ -133,7 +134,8 @@ def _space(u: Unfolding) -> set[Marking]:
     return seen
 
 
-def _dead(u: Unfolding, space: set[Marking]) -> set[Marking]:
+def dead_markings(u: Unfolding, space: set[Marking]) -> set[Marking]:
+    """Those in which nothing is enabled."""
     return {m for m in space if not any(u.is_enabled(m, t) for t in u.transitions)}
 
 

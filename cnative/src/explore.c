@@ -20,6 +20,7 @@
 #endif
 
 #include "explore_error.h"
+#include "explore_query.h"
 #include "explore_reduce.h"
 #include "pn/pn_file.h"
 #include "pn/pn_text.h"
@@ -63,6 +64,8 @@ static void print_help(void)
                  "  --trace-to NAME     a shortest trace to a dead state, as NAMEn.trace.jsonl with its number n\n"
                  "  --traces N          so many of them (default 1)\n"
                  "  --error-trace-to NAME  a shortest trace to an exception, as NAMEn.trace.jsonl\n"
+                 "  --queries FILE      questions about the states and runs; see explore_query_read.c\n"
+                 "  --query-trace-to NAME  runs that prove the answers, as NAMEn.trace.jsonl with the number n of the question\n"
                  "  --seed N            of random numbers (default 1)\n"
                  "  --parent PID        end at once when this process, which started it, has ended\n"
                  "  --lay-again N       after N states see once more how they are stored best (default 262144)\n"
@@ -160,6 +163,8 @@ static bool read_valued(const char *option, const char *value, ex_options_t *opt
            || ((strcmp(option, "--trace-to") == 0) && read_text(value, &options->trace_to))
            || ((strcmp(option, "--parent") == 0) && read_number(value, INT32_MAX, &options->parent))
            || ((strcmp(option, "--error-trace-to") == 0) && read_text(value, &options->error_trace_to))
+           || ((strcmp(option, "--queries") == 0) && read_text(value, &options->queries))
+           || ((strcmp(option, "--query-trace-to") == 0) && read_text(value, &options->query_trace_to))
            || ((strcmp(option, "--lay-again") == 0) && read_number(value, UINT64_MAX, &options->lay_again))
            || ((strcmp(option, "--seed") == 0) && read_number(value, UINT64_MAX, &options->seed));
 }
@@ -303,10 +308,10 @@ static void end_watch(watch_t *watch)
 
 /* --- the report ------------------------------------------------------------------------------------------------------ */
 
-static const char *why_text(ex_why_t why)
+const char *ex_why_text(ex_why_t why)
 {
     static const char *const s_texts[] = {
-        [EX_COMPLETE] = "complete", [EX_STATES] = "states",           [EX_SECONDS] = "seconds", [EX_MEMORY] = "memory",
+        [EX_COMPLETE] = "complete", [EX_DECIDED] = "decided", [EX_STATES] = "states",           [EX_SECONDS] = "seconds", [EX_MEMORY] = "memory",
         [EX_INTERRUPTED] = "interrupted", [EX_CAPACITY] = "capacity", [EX_ERROR] = "error",
     };
     return s_texts[why];
@@ -378,7 +383,7 @@ static void print_report(ex_run_t *run)
     const ex_options_t *options = &run->options;
     const uint64_t store_bytes = ((run->store.bucket != NULL) ? ex_store_bytes(&run->store) : run->approximate_bytes)
                                  + (run->has_bounds ? ex_codec_bytes(run) : 0U); /* that is: all was made */
-    (void)printf("{\"complete\": %s, \"why\": \"%s\", \"error\": ", (why == EX_COMPLETE) ? "true" : "false", why_text(why));
+    (void)printf("{\"complete\": %s, \"why\": \"%s\", \"error\": ", (why == EX_COMPLETE) ? "true" : "false", ex_why_text(why));
     print_error(run);
     (void)printf(",\n \"nodes\": %" PRIu64 ", \"arcs\": %" PRIu64 ", \"depth\": %" PRIu64 ", \"expanded\": %" PRIu64,
                  run->nodes, run->arcs, run->depth, run->expanded);
@@ -411,6 +416,7 @@ static void print_report(ex_run_t *run)
         (void)printf(",\n ");
     }
     ex_graph_json(run, stdout);
+    ex_queries_json(run, stdout);
     (void)printf("}\n");
 }
 
@@ -435,7 +441,8 @@ static bool make(ex_run_t *run)
         worker->run = run;
         worker->index = i;
         worker->fired = ex_alloc(run, ((uint64_t)pn_net.transition_count + 1U) * sizeof *worker->fired);
-        if ((worker->fired == NULL) || !ex_scratch_make(worker) || !ex_bounds_make(worker)) {
+        if ((worker->fired == NULL) || !ex_scratch_make(worker) || !ex_bounds_make(worker) ||
+            ((run->queries != NULL) && !ex_early_make(worker))) {
             return false;
         }
     }
@@ -460,11 +467,16 @@ static int explore(ex_run_t *run)
         atomic_store(&run->phase, "trace");
         ex_follow_error(run);
     }
+    if (is_explored && (run->queries != NULL)) {
+        atomic_store(&run->phase, "properties");
+        ex_queries_answer(run);
+    }
     end_watch(&watch);
     print_report(run);
     const bool is_written = fflush(stdout) == 0;
     switch ((ex_why_t)atomic_load(&run->why)) {
     case EX_COMPLETE:
+    case EX_DECIDED:
         return is_written ? EXIT_FINE : EXIT_USAGE;
     case EX_ERROR:
     case EX_CAPACITY:
@@ -490,6 +502,9 @@ int main(int argc, char **argv)
     }
     if (pn_net.abi != PN_NET_ABI) {
         (void)fprintf(stderr, "explore: the net was generated for another version of the runtime; generate it again\n");
+        return EXIT_USAGE;
+    }
+    if ((run->options.queries != NULL) && !ex_queries_read(run)) {
         return EXIT_USAGE;
     }
     catch_signals();

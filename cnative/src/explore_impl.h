@@ -48,6 +48,8 @@ typedef struct ex_options {
     const char *trace_to;    /* what the names of traces to dead markings begin with; NULL: none */
     uint64_t dead_limit;
     uint64_t traces;         /* most traces in trace_to */
+    const char *queries;        /* file of questions; NULL: none */
+    const char *query_trace_to; /* what the names of traces that prove their answers begin with */
     const char *error_trace_to; /* the same for the trace to an exception */
     uint64_t parent;         /* process that started it, and without which it is to end; 0: none */
 } ex_options_t;
@@ -55,6 +57,7 @@ typedef struct ex_options {
 /* Why it ended, in the order of importance. */
 typedef enum ex_why {
     EX_COMPLETE,
+    EX_DECIDED,  /* all questions have been answered before that */
     EX_STATES,
     EX_SECONDS,
     EX_MEMORY,
@@ -408,6 +411,7 @@ typedef struct ex_worker {
     struct ex_bounds *bounds;   /* of explore_bounds.c */
     struct ex_stubborn *stubborn; /* of explore_stubborn.c */
     struct ex_symmetry *symmetry; /* of explore_symmetry.c */
+    struct ex_early *early;       /* of explore_query_early.c */
     int64_t elapsed;         /* when the time is reduced: how much of it went by in ex_successors before something was enabled */
     /* Counted during the exploration. */
     uint64_t states;         /* expanded */
@@ -453,6 +457,7 @@ typedef struct ex_run {
     struct ex_reduction *reduction; /* of explore_elements.c; NULL: none that needs a table */
     _Atomic(const char *) phase; /* for the progress lines */
     struct ex_graph *graph;  /* of explore_graph.c; NULL: none */
+    struct ex_queries *queries;  /* of explore_query_read.c; NULL: nothing is asked */
     struct ex_raised *raised; /* of explore_error.c; NULL: the way to the exception is not known */
 } ex_run_t;
 
@@ -469,6 +474,8 @@ void ex_check_pause(ex_run_t *run);
 void ex_stop(ex_run_t *run, ex_why_t why);
 /* The same for the error in the worker's context. */
 void ex_fail(ex_worker_t *worker, int64_t transition);
+/* As the report has it. */
+const char *ex_why_text(ex_why_t why);
 /* Whether to stop: asked often (once in a few states or arcs), it looks at signals and, now and then, at the clock. */
 static inline bool ex_is_stopping(const ex_run_t *run)
 {
@@ -498,6 +505,11 @@ bool ex_bounds_make(ex_worker_t *worker);
 void ex_bounds_see(ex_worker_t *worker);
 /* After the exploration: ,"bounds": [...] as a member of the report. */
 void ex_bounds_json(ex_run_t *run, FILE *out);
+
+/* --- questions (explore_query_early.c) ------------------------------------------------------------------------------- */
+
+/* Where questions are asked: a state has been expanded. */
+void ex_early_see(ex_worker_t *worker, const ex_key_t *key, ex_found_t found);
 
 /* --- graph (explore_graph.c) --------------------------------------------------------------------------------------- */
 

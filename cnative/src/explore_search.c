@@ -331,7 +331,8 @@ void ex_progress(ex_run_t *run, ex_progress_t *progress)
 /* False when the run stops. */
 static bool expand(ex_worker_t *worker, const ex_key_t *key)
 {
-    switch (ex_successors(worker, key, on_arc, worker)) {
+    const ex_found_t found = ex_successors(worker, key, on_arc, worker);
+    switch (found) {
     case EX_SOME:
         break;
     case EX_DEAD:
@@ -346,6 +347,9 @@ static bool expand(ex_worker_t *worker, const ex_key_t *key)
     }
     worker->states++;
     ex_bounds_see(worker);
+    if (worker->early != NULL) {
+        ex_early_see(worker, key, found);
+    }
     if ((worker->states % (uint64_t)REPORTED) == 0U) {
         report(worker);
     }

@@ -16,10 +16,13 @@
 
 #define LINE_SIZE ((size_t)1U << 22)
 
+#define ANY_TRANSITION UINT32_MAX
+
 /* Looks for the first arc to a state, and writes it into the trace. */
 typedef struct step_search {
     ex_worker_t *worker;
     ex_key_t wanted;
+    uint32_t transition; /* of the arc */
     pn_trace_t *trace;
     int64_t before; /* time that is in no state, because it is reduced */
     bool is_found;
@@ -43,7 +46,7 @@ static bool is_same(const ex_key_t *a, const ex_key_t *b)
 static bool write_step(void *user, uint32_t transition, const void *binding, const ex_key_t *key)
 {
     step_search_t *const search = user;
-    if (!is_same(key, &search->wanted)) {
+    if (!is_same(key, &search->wanted) || ((search->transition != ANY_TRANSITION) && (search->transition != transition))) {
         return true;
     }
     search->is_found = true;
@@ -136,18 +139,26 @@ int64_t ex_write_trace(ex_run_t *run, const ex_graph_t *graph, uint32_t node, co
 
 int64_t ex_write_run(ex_run_t *run, const ex_graph_t *graph, uint32_t node, const char *path, const char *why)
 {
+    uint64_t length = 0U;
+    uint32_t *const way = way_to(graph, node, &length);
+    const int64_t steps = (way != NULL) ? ex_write_way(run, graph, way, NULL, length - 1U, path, why) : -1;
+    free(way);
+    return steps;
+}
+
+int64_t ex_write_way(ex_run_t *run, const ex_graph_t *graph, const uint32_t *way, const uint16_t *label, uint64_t steps, const char *path,
+                     const char *why)
+{
     ex_worker_t *const worker = &run->worker[0];
     pn_trace_t trace;
     char part[EX_PATH_SIZE];
     char members[64];
-    uint64_t length = 0U;
+    const uint64_t length = steps + 1U;
     int64_t elapsed = 0;
     char *const line = malloc(LINE_SIZE);
-    uint32_t *const way = way_to(graph, node, &length);
-    bool is_fine = (line != NULL) && (way != NULL) && ex_part_name(part, path) && pn_trace_open(&trace, part, line, LINE_SIZE);
+    bool is_fine = (line != NULL) && ex_part_name(part, path) && pn_trace_open(&trace, part, line, LINE_SIZE);
     if (!is_fine) {
         free(line);
-        free(way);
         return -1;
     }
     (void)snprintf(members, sizeof members, "\"seed\": %" PRIu64, run->options.seed);
@@ -159,13 +170,14 @@ int64_t ex_write_run(ex_run_t *run, const ex_graph_t *graph, uint32_t node, cons
     for (uint64_t i = 0U; is_fine && !is_symmetric && ((i + 1U) < length); i++) {
         ex_key_t from;
         step_search_t search = { .worker = worker, .trace = &trace, .before = elapsed };
+        search.transition = (label != NULL) ? label[i + 1U] : ANY_TRANSITION;
         is_fine = ex_store_fetch(&run->store, graph->slot[way[i]], &from) &&
                   ex_store_fetch(&run->store, graph->slot[way[i + 1U]], &search.wanted);
         is_fine = is_fine && (ex_successors(worker, &from, write_step, &search) == EX_STOPPED) && search.is_found;
         elapsed += worker->elapsed;
     }
     ex_key_t last;
-    is_fine = is_fine && (is_symmetric || (ex_store_fetch(&run->store, graph->slot[node], &last) && ex_load(worker, &last)));
+    is_fine = is_fine && (is_symmetric || (ex_store_fetch(&run->store, graph->slot[way[steps]], &last) && ex_load(worker, &last)));
     if (is_fine) {
         pn_trace_model_end(&trace, time_of(worker, elapsed), pn_net.real_time, why);
     }
@@ -175,8 +187,7 @@ int64_t ex_write_run(ex_run_t *run, const ex_graph_t *graph, uint32_t node, cons
         (void)unlink(part);
     }
     free(line);
-    free(way);
-    return is_fine ? (int64_t)(length - 1U) : -1;
+    return is_fine ? (int64_t)steps : -1;
 }
 
 /* --- the whole graph ----------------------------------------------------------------------------------------------- */

@@ -8,6 +8,7 @@ markings must be the same.
 from __future__ import annotations
 
 import json
+import os
 import shutil
 import subprocess
 from collections.abc import Mapping
@@ -123,7 +124,9 @@ class Workshop:
         return self.link(folder / host, folder / "net.o", *sorted(self.folder.glob(f"{host}*.o")))
 
 
-def run(program: Path, *arguments: object) -> list[dict[str, Any]]:
+def run(
+    program: Path, *arguments: object, environment: Mapping[str, str] | None = None
+) -> list[dict[str, Any]]:
     """The JSON lines that a program prints; the test fails when it crashes."""
     done = subprocess.run(
         [str(program), *map(str, arguments)],
@@ -131,19 +134,26 @@ def run(program: Path, *arguments: object) -> list[dict[str, Any]]:
         text=True,
         check=False,
         timeout=300,
+        env={**os.environ, **(environment or {})},
     )
     assert done.returncode == 0, f"{program}: {done.stderr[-3000:]}"
     return [json.loads(line) for line in done.stdout.splitlines()]
 
 
 def agrees(
-    flat: FlatNet, program: Path, *, seed: int, steps: int, storage: Mapping[str, str] | None = None
+    flat: FlatNet,
+    program: Path,
+    *,
+    seed: int,
+    steps: int,
+    storage: Mapping[str, str] | None = None,
+    environment: Mapping[str, str] | None = None,
 ) -> int:
     """Walk in the program and follow in the token game; gives the number of steps that were the same.
 
     An exception of the net must be raised in both at the same step.
     """
-    lines = run(program, seed, steps)
+    lines = run(program, seed, steps, environment=environment)
     try:
         game = Game(flat, dict(storage or {}), seed=seed)
     except GameError as error:

@@ -80,6 +80,9 @@ class Explorers:
         made._run(host, "-c", *map(str, sources))
         objects = [str(f) for f in sorted(host.glob("*.o"))]
         made._run(host, "-rdynamic", *objects, LIBRARY, "-lm", "-o", "explore")
+        others = [f for f in objects if not Path(f).name.startswith("explore")]
+        walker = cnative_folder() / "tests" / "walk.c"
+        made._run(host, "-rdynamic", str(walker), *others, LIBRARY, "-lm", "-o", "walk")
         return made
 
     def _run(self, folder: Path, *arguments: str) -> None:
@@ -101,7 +104,12 @@ class Explorers:
         return folder
 
     def explore(
-        self, flat: FlatNet, *options: object, name: str = "net", width: int = 1
+        self,
+        flat: FlatNet,
+        *options: object,
+        name: str = "net",
+        width: int = 1,
+        reads: bool = True,
     ) -> Explored:
         """Explore a net, with more room where places turn out to hold more, as `pn2code verify` does.
 
@@ -110,12 +118,12 @@ class Explorers:
             options: of the explorer.
             name: of its folder.
             width: least width of the counters of packed places; 0: no place is packed.
+            reads: whether the lines of the graph are read.
         """
-        sizes = Sizes.start(flat, {})
-        widths = {p: max(w, width) if width else 0 for p, w in sizes.packing.width.items()}
-        sizes = replace(sizes, packing=replace(sizes.packing, width=widths, default=width))
+        run = self.run if reads else self.said
+        sizes = wide(Sizes.start(flat, {}), width)
         while True:
-            found = self.run(self.build(flat, sizes, name), *options)
+            found = run(self.build(flat, sizes, name), *options)
             error = found.report["error"]
             if not error or error["kind"] not in ("capacity", "memory"):
                 return found
@@ -126,6 +134,21 @@ class Explorers:
 
     def run(self, folder: Path, *options: object) -> Explored:
         """Run the explorer of a compiled net, and read what it says."""
+        said = self.said(folder, *options)
+        nodes: list[str] = []
+        arcs: list[tuple[int, int, str]] = []
+        for line in said.lines:
+            entry = json.loads(line)
+            if "node" in entry:
+                assert entry["node"] == len(nodes) + 1
+                nodes.append(node_key(entry["t"], entry["marking"]))
+            else:
+                element = element_key(entry["t"], entry["transition"], entry["binding"])
+                arcs.append((entry["from"] - 1, entry["to"] - 1, element))
+        return replace(said, nodes=tuple(nodes), arcs=tuple(arcs))
+
+    def said(self, folder: Path, *options: object) -> Explored:
+        """Run the explorer of a compiled net; the graph is there as lines only."""
         graph = folder / "graph.jsonl"
         graph.unlink(missing_ok=True)
         command = [str(self.host / "explore"), *map(str, options)]
@@ -145,26 +168,23 @@ class Explorers:
         found = [word for word in ("Sanitizer", "runtime error") if word in done.stderr]
         assert not found, done.stderr[-5000:]
         assert done.stdout, f"code {done.returncode}: {done.stderr[-3000:]}"
-        nodes: list[str] = []
-        arcs: list[tuple[int, int, str]] = []
         lines = graph.read_text(encoding="utf-8").splitlines() if graph.exists() else []
-        for line in lines:
-            entry = json.loads(line)
-            if "node" in entry:
-                assert entry["node"] == len(nodes) + 1
-                nodes.append(_node(entry["t"], entry["marking"]))
-            else:
-                element = _element(entry["t"], entry["transition"], entry["binding"])
-                arcs.append((entry["from"] - 1, entry["to"] - 1, element))
-        report = json.loads(done.stdout)
-        return Explored(report, done.returncode, tuple(nodes), tuple(arcs), tuple(lines))
+        return Explored(json.loads(done.stdout), done.returncode, lines=tuple(lines))
 
 
-def _node(time: float, marking: Mapping[str, Any]) -> str:
+def wide(sizes: Sizes, width: int) -> Sizes:
+    """With counters of at least that width; 0: no place is packed."""
+    widths = {p: max(w, width) if width else 0 for p, w in sizes.packing.width.items()}
+    return replace(sizes, packing=replace(sizes.packing, width=widths, default=width))
+
+
+def node_key(time: float, marking: Mapping[str, Any]) -> str:
+    """A marking as text; equal ones are equal."""
     return json.dumps([float(time), marking], sort_keys=True)
 
 
-def _element(time: float, transition: str, binding: Mapping[str, Any]) -> str:
+def element_key(time: float, transition: str, binding: Mapping[str, Any]) -> str:
+    """A binding element with its time as text; equal ones are equal."""
     return json.dumps([float(time), transition, binding], sort_keys=True)
 
 
@@ -219,13 +239,13 @@ def compare_graph(flat: FlatNet, space: StateSpace, found: Explored) -> None:
             p.name: place_to_json(game.colours, p.colset, marking.places[p.index])
             for p in flat.places
         }
-        nodes.append(_node(marking.time, texts))
+        nodes.append(node_key(marking.time, texts))
     times = {arc.source: game.settle(space.nodes[arc.source]).time for arc in space.arcs}
     arcs = Counter(
         (
             nodes[arc.source],
             nodes[arc.target],
-            _element(
+            element_key(
                 times[arc.source],
                 flat.transitions[arc.element.transition].name,
                 binding_to_json(arc.element),
@@ -265,9 +285,10 @@ def compare_facts(flat: FlatNet, space: StateSpace, report: Mapping[str, Any]) -
         assert (said["lower"], said["upper"]) == (min(sizes), max(sizes)), place.name
         most = {v: max(own[v] for own in counted) for v in values}
         least = {v: n for v in values if (n := min(own[v] for own in counted))}
-        assert _multiset(said["upper_multiset"]) == most, place.name
-        assert _multiset(said["lower_multiset"]) == least, place.name
+        assert multiset(said["upper_multiset"]) == most, place.name
+        assert multiset(said["lower_multiset"]) == least, place.name
 
 
-def _multiset(rows: list[list[Any]]) -> dict[str, int]:
+def multiset(rows: list[list[Any]]) -> dict[str, int]:
+    """Coefficients by colour, of what the explorer says of bounds."""
     return {json.dumps(value): count for count, value in rows if count}

@@ -51,7 +51,7 @@ BOOL = Kind("BOOL", "bool", size=2)
 UNIT = Kind("UNIT", "unit", size=1)
 STRING = Kind("STRING", "string")
 REAL = Kind("REAL", "real")
-_VARIABLES = ("v", "w", "x")
+VARIABLES = ("v", "w", "x")
 
 
 @dataclass(slots=True)
@@ -72,12 +72,16 @@ class Scope:
 
 
 @dataclass(frozen=True, slots=True)
-class _Place:
+class Place:
+    """A place on the page that is written."""
+
     name: str
     kind: Kind
 
 
-class _Writer:
+class Writer:
+    """Writes one net; `helpers.random_unions` has one that writes many into a file."""
+
     def __init__(self, r: Random) -> None:
         self.r = r
         self.kinds: list[Kind] = [INT, BOOL, UNIT, STRING, REAL]
@@ -178,7 +182,7 @@ class _Writer:
         self.variables(name)
 
     def variables(self, name: str) -> None:
-        self.lines.append(f"  var {', '.join(f'{v}{name}' for v in _VARIABLES)}: {name};")
+        self.lines.append(f"  var {', '.join(f'{v}{name}' for v in VARIABLES)}: {name};")
 
     def function(self, name: str) -> None:
         takes, gives = self.component(), self.component()
@@ -426,11 +430,11 @@ class _Writer:
         """A pattern of an input arc; binds variables of the net."""
         r = self.r
         if kind.name.startswith("C") and (depth <= 0 or self.chance(0.45)):
-            name = f"{r.choice(_VARIABLES)}{kind.name}"
+            name = f"{r.choice(VARIABLES)}{kind.name}"
             scope.add(name, kind)
             return name
         if kind.name in ("INT", "BOOL", "STRING", "UNIT", "REAL") and self.chance(0.85):
-            name = f"{r.choice(_VARIABLES)}{kind.name}"
+            name = f"{r.choice(VARIABLES)}{kind.name}"
             scope.add(name, kind)
             return name
         match kind.kind:
@@ -458,7 +462,7 @@ class _Writer:
                 assert inner is not None
                 if self.chance(0.5):
                     return f"[{', '.join(self.pattern(inner, scope, depth - 1) for _ in range(r.randint(0, 2)))}]"
-                rest = f"{r.choice(_VARIABLES)}{kind.name}"
+                rest = f"{r.choice(VARIABLES)}{kind.name}"
                 head = self.pattern(inner, scope, depth - 1)
                 scope.add(rest, kind)
                 return f"{head} :: {rest}" if depth >= 2 else f"({head} :: {rest})"
@@ -506,11 +510,11 @@ class _Writer:
             return " +++ ".join(terms)
         return " ++ ".join(terms)
 
-    def transition(self, name: str, places: list[_Place], indent: str) -> None:
+    def transition(self, name: str, places: list[Place], indent: str) -> None:
         r = self.r
         scope = Scope()
         arcs: list[str] = []
-        used: list[_Place] = []
+        used: list[Place] = []
         for _ in range(r.randint(0 if self.chance(0.1) else 1, 3)):
             place = r.choice(places)
             word = "in" if self.chance(0.85) else "both"
@@ -525,7 +529,7 @@ class _Writer:
                 [k for k in self.kinds if k.name.startswith("C") and k.has_equality] or [INT]
             )
             known = {n for n, _ in scope.bound}
-            fresh = [v for v in _VARIABLES if f"{v}{kind.name}" not in known]
+            fresh = [v for v in VARIABLES if f"{v}{kind.name}" not in known]
             if fresh:
                 text = self.value(kind, scope, 2)
                 guards.append(f"{fresh[0]}{kind.name} = {text}")
@@ -573,7 +577,7 @@ class _Writer:
         places = []
         for i in range(r.randint(2, 5)):
             own = [k for k in self.kinds if k.name.startswith("C")] or self.kinds
-            place = _Place(f"P{i}", r.choice(own) if self.chance(0.8) else r.choice(self.kinds))
+            place = Place(f"P{i}", r.choice(own) if self.chance(0.8) else r.choice(self.kinds))
             places.append(place)
             self.lines.append(
                 f"    place {place.name} : {place.kind.name} = {self.initial(place.kind)}"
@@ -583,7 +587,7 @@ class _Writer:
             kind = r.choice(self.kinds)
             initial = self.initial(kind)
             for i in (8, 9):
-                places.append(_Place(f"P{i}", kind))
+                places.append(Place(f"P{i}", kind))
                 self.lines.append(f"    place P{i} fusion Shared : {kind.name} = {initial}")
         for i in range(r.randint(2, 5)):
             self.transition(f"T{i}", places, "    ")
@@ -594,10 +598,10 @@ class _Writer:
             self.lines.append("  page Sub")
             self.lines.append(f"    place A port io : {a.kind.name}")
             self.lines.append(f"    place B port io : {b.kind.name}")
-            inner = [_Place("A", a.kind), _Place("B", b.kind)]
+            inner = [Place("A", a.kind), Place("B", b.kind)]
             if self.chance(0.5):
                 kind = r.choice(self.kinds)
-                inner.append(_Place("Own", kind))
+                inner.append(Place("Own", kind))
                 self.lines.append(f"    place Own : {kind.name} = {self.initial(kind)}")
             for i in range(r.randint(1, 2)):
                 self.transition(f"U{i}", inner, "    ")
@@ -613,4 +617,4 @@ def _product(parts: list[tuple[str, Kind | None]]) -> int:
 
 def random_net(r: Random) -> str:
     """A net."""
-    return _Writer(r).net()
+    return Writer(r).net()

@@ -40,7 +40,7 @@ ALLOWED: dict[str, set[str]] = {
     "simulate": {"diagnostics", "ml", "net", "semantics", "monitors", "cell", "lowering", "emission", "toolchain",
                  "parser_cache"},
     "verify": {"diagnostics", "ml", "net", "semantics", "structure", "cell", "lowering", "emission", "toolchain",
-               "resources", "simulate", "drawing", "reading", "unfold"},
+               "resources", "simulate", "drawing", "reading", "unfold", "properties"},
     "__main__": {"cli"},
     "cli": {"diagnostics", "cell", "channels", "emission", "net", "pipeline", "run", "report", "semantics", "toolchain",
             "robot", "tdl", "ml", "lowering", "bytecode", "reading", "drawing", "simulate", "monitors", "structure",

@@ -37,6 +37,7 @@ from pn2code.verify.progress import ProgressLine
 from pn2code.verify.report import error_text, report, why_partial
 from pn2code.verify.result import Exploration, Trace, row
 from pn2code.verify.webpage import webpage
+from pn2code.whole_file import whole_file
 
 EPILOG = """Examples:
 
@@ -73,7 +74,7 @@ def verify(
     threads: Annotated[
         int | None,
         typer.Option(
-            metavar="N", min=1, max=256, help="Default: all processors.", show_default=False
+            metavar="N", min=1, max=64, help="Default: all processors.", show_default=False
         ),
     ] = None,
     order: Annotated[
@@ -274,7 +275,8 @@ def _write_report(opened: OpenNet, found: Exploration, path: Path, d: Diagnostic
         else report(opened.flat, found, now)
     )
     try:
-        path.write_text(body, encoding="utf-8")
+        with whole_file(path) as beside:
+            beside.write_text(body, encoding="utf-8")
     except OSError as problem:
         reason = (problem.strerror or str(problem)).lower()
         d.error(REPORT_UNWRITABLE, f"cannot write `{path}`: {reason}", Origin(str(path)))

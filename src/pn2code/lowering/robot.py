@@ -71,9 +71,15 @@ def lower_robots(
     out = []
     for owner in partition.owners:
         if owner.kind is not OwnerKind.SUPERVISOR:
-            ir = _lower(partition, owner, config, d)
+            found = Diagnostics()
+            ir = _lower(partition, owner, config, found)
             if ir is not None:
                 out.append(ir)
+            # Instances of one page have the same mistakes: said once.
+            said = {(x.code, x.message, x.origin.line, x.origin.column) for x in d}
+            for x in found:
+                if (x.code, x.message, x.origin.line, x.origin.column) not in said:
+                    d.items.append(x)
     if len(d.errors) == before:
         _unasked(out, partition, config, d)
     return tuple(out) if len(d.errors) == before else None
@@ -320,10 +326,8 @@ class _Translator:
         for i, a in enumerate(situations):
             for b in situations[i + 1 :]:
                 # Conditions on different messages say nothing about each other.
-                same = set(a.channels) == set(b.channels)
-                first_if = a.condition if same else a.own_condition
-                second_if = b.condition if same else b.own_condition
-                if not self.exclude(first_if, second_if):
+                both = set(a.channels) & set(b.channels)
+                if not self.exclude(self.known(a, both)[0], self.known(b, both)[0]):
                     first, second = a.step.transition, b.step.transition
                     self.d.warning(
                         codes.CHOICE,
@@ -341,6 +345,13 @@ class _Translator:
 
     def exclude(self, a: t.Expression, b: t.Expression) -> bool:
         return exclusive(a, b, self.names.constant_values)
+
+    def known(self, s: Situation, channels: set[int]) -> tuple[t.Expression, t.Expression]:
+        """What can be said of a transition's conditions when only these messages have come, and what cannot."""
+        others = {n for c in s.channels if c not in channels for n in self.message_names[c]}
+        early = [c for c in s.remote if not all_names([c]) & others]
+        late = [c for c in s.remote if all_names([c]) & others]
+        return conjunction([*s.local, *early]), conjunction(late)
 
     def decide(self, place: int, situations: list[Situation]) -> Tree:
         """The tree of a state, by what its transitions wait for (docs/tdl.md, "Translation")."""
@@ -363,6 +374,13 @@ class _Translator:
                 for u in units
             ]
             return self.chain(place, branches, [u[0].step for u in units])
+        common = set.intersection(*(set(s.channels) for s in situations))
+        if common and all(
+            self.exclude(self.known(a, common)[0], self.known(b, common)[0])
+            for i, a in enumerate(situations)
+            for b in situations[i + 1 :]
+        ):
+            return self.by_common(place, situations, common)
         if all(not s.remote for s in situations):
             return self.race(place, situations)
         self.d.error(
@@ -420,6 +438,26 @@ class _Translator:
         flat = self.places[place]
         comment = Comment(f"{flat.short}: take a message, then decide")
         return Then((Region(flat.name, "place", flat.origins[0], (comment, *front)),), tree)
+
+    def by_common(self, place: int, situations: list[Situation], common: set[int]) -> Tree:
+        """Transitions that a message they all take tells apart: take it, decide, then wait for the rest."""
+        branches = []
+        for s in situations:
+            first, late = self.known(s, common)
+            rest = [c for c in s.channels if c not in common]
+            own: list[Node] = [header(s.step, self.machine), *self.receive(rest)]
+            if late == TRUE:
+                branches.append((first, self.occur(s, own)))
+            else:
+                inner = self.chain(place, [(late, self.occur(s, []))], [s.step])
+                branches.append((first, Then((self.region(s, own),), inner)))
+        flat = self.places[place]
+        front = (
+            Comment(f"{flat.short}: take a message, then decide"),
+            *self.receive([c for c in situations[0].channels if c in common]),
+        )
+        tree = self.chain(place, branches, [s.step for s in situations])
+        return Then((Region(flat.name, "place", flat.origins[0], front),), tree)
 
     def race(self, place: int, situations: list[Situation]) -> Tree:
         """Transitions that wait for different messages: whichever comes first, in documented order."""

@@ -41,14 +41,13 @@ OUTSIDE = register(
 REDUCTION = register(
     "property-reduction",
     "a reduction that was asked for does not keep the properties",
-    "With `--reduce partial-order` and `--reduce symmetry` only some of the markings are seen, or some stand for "
-    "others; what a property says of a path or of a colour may be lost. `--reduce time` takes markings for the same "
-    "that differ in time stamps only, so no condition may look at these, and no answer can be in units of time. The "
-    "properties are more important: the net is explored without the reduction.",
+    "`--reduce time` takes markings for the same that differ in how late it is only, so no answer can be in units of "
+    "time. The properties are more important: the net is explored without the reduction.",
 )
-PROPERTY_FAILED = register(
-    "property-failed",
-    "a property could not be decided",
-    "The state space was not seen as a whole (a limit was hit, or it is approximate), or a condition of the property "
-    "raises an exception in a marking that can be reached. The answer is neither yes nor no: exit code 3.",
+EVIDENCE = register(
+    "property-evidence",
+    "a run does not show what it should",
+    "Each run that the explorer gives as a reason for its answer is played again by the reference token game, and the "
+    "property is evaluated on it by definition. If the two do not agree, one of them is wrong: this is a bug in "
+    "pn2code, and the answer does not count.",
 )

@@ -163,6 +163,10 @@ class Game:
                 elements.append(BindingElement.make(t, binding))
         return elements
 
+    def bindings(self, t: FlatTransition, marking: Marking) -> Iterator[Binding]:
+        """The bindings with which a transition is enabled at the marking's time, whatever other transitions are."""
+        return iter(self._remembered.enabled(t, marking))
+
     def enabled_transitions(self, marking: Marking) -> list[FlatTransition]:
         """The transitions of which `enabled_in` lists elements; no more than one binding of each is looked for."""
         found: list[FlatTransition] = []

@@ -39,8 +39,15 @@ class StateSpace:
     dead: tuple[int, ...]
 
 
-def state_space(game: Game, *, max_nodes: int = 10_000) -> StateSpace:
+def state_space(
+    game: Game, *, max_nodes: int = 10_000, max_arcs: int | None = None
+) -> StateSpace:
     """All markings that can be reached from the game's current one, at most `max_nodes` of them.
+
+    Args:
+        game: is not changed.
+        max_nodes: as many are expanded when there are more.
+        max_arcs: ends at once, incomplete, when there are more of either.
 
     Raises:
         GameError: an inscription raises an exception somewhere on the way.
@@ -60,10 +67,14 @@ def state_space(game: Game, *, max_nodes: int = 10_000) -> StateSpace:
             successor, occurred = game.occur(marking, element)
             if successor not in index:
                 if len(nodes) >= max_nodes:
+                    if max_arcs is not None:
+                        return StateSpace(tuple(nodes), tuple(arcs), False, ())
                     complete = False
                     continue
                 index[successor] = len(nodes)
                 nodes.append(successor)
             arcs[StateArc(at, occurred, index[successor])] = None
+            if max_arcs is not None and len(arcs) > max_arcs:
+                return StateSpace(tuple(nodes), tuple(arcs), False, ())
         at += 1
     return StateSpace(tuple(nodes), tuple(arcs), complete, tuple(dead))

@@ -14,9 +14,11 @@ from __future__ import annotations
 import hashlib
 import os
 import shutil
+import signal
 import subprocess
 import tempfile
-from collections.abc import Iterator, Sequence
+import time
+from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import contextmanager, suppress
 from dataclasses import dataclass
@@ -44,6 +46,10 @@ MOST_PROGRAMS = 64
 """Programs of a host that are kept; the ones that were not used for the longest time go first."""
 GROUPS = 8
 """Calls of the compiler for the runtime."""
+STALE_S = 6 * 3600.0
+"""After that a folder in which something is built belongs to a process that was killed."""
+_BUILDS = "build-"
+_LOOK_S = 0.1
 
 
 @dataclass(frozen=True, slots=True)
@@ -56,6 +62,8 @@ class Host:
         libraries: for the linker.
         without: what to do without a C compiler, the end of a sentence.
         whole: a source of the host that can have the net as a part of itself (PN_NET_SOURCE); "" if there is none.
+        also: hosts whose sources it has, too.
+        instead: names of sources that are left out, since the host has others in their place.
     """
 
     name: str
@@ -63,6 +71,13 @@ class Host:
     libraries: tuple[str, ...] = ("-lm",)
     without: str = ""
     whole: str = ""
+    also: tuple[str, ...] = ()
+    instead: tuple[str, ...] = ()
+
+    def runtime(self) -> tuple[OutputFile, ...]:
+        """The C runtime as this host needs it."""
+        found = runtime.emit(self.name, *self.also)
+        return tuple(f for f in found if Path(f.path).name not in self.instead)
 
 
 @dataclass(frozen=True, slots=True)
@@ -95,14 +110,29 @@ class Compiler:
         return None
 
 
+class _InterruptedError(Exception):
+    """It was wished that the build ends."""
+
+
+def _never() -> bool:
+    return False
+
+
 @contextmanager
-def program(host: Host, files: Sequence[OutputFile], d: Diagnostics) -> Iterator[Path | None]:
-    """A host with a net, as long as the block lasts; None after a diagnostic.
+def program(
+    host: Host,
+    files: Sequence[OutputFile],
+    d: Diagnostics,
+    *,
+    interrupted: Callable[[], bool] = _never,
+) -> Iterator[Path | None]:
+    """A host with a net, as long as the block lasts; None after a diagnostic, or when it was interrupted.
 
     Args:
         host: what is linked with the net.
         files: net.c and net.h.
         d: gets the errors.
+        interrupted: asked while compilers run: they are ended when it says so.
     """
     compiler = Compiler.find(host, d)
     if compiler is None:
@@ -110,7 +140,11 @@ def program(host: Host, files: Sequence[OutputFile], d: Diagnostics) -> Iterator
         return
     kept = private_folder()
     if kept is not None:
-        found = _Builder(kept / "programs", host, compiler, files).kept(d)
+        try:
+            found = _Builder(kept / "programs", host, compiler, files, interrupted).kept(d)
+        except _InterruptedError:
+            yield None
+            return
         if found is not None or d.has_errors:
             yield found
             return
@@ -122,9 +156,11 @@ def program(host: Host, files: Sequence[OutputFile], d: Diagnostics) -> Iterator
         return
     with folder as name:
         try:
-            found = _Builder(Path(name), host, compiler, files).built(d)
+            found = _Builder(Path(name), host, compiler, files, interrupted).built(d)
         except OSError as problem:
             _no_room(host, problem, d)
+            found = None
+        except _InterruptedError:
             found = None
         yield found
 
@@ -139,14 +175,20 @@ class _Builder:
     """Builds in a folder."""
 
     def __init__(
-        self, folder: Path, host: Host, compiler: Compiler, files: Sequence[OutputFile]
+        self,
+        folder: Path,
+        host: Host,
+        compiler: Compiler,
+        files: Sequence[OutputFile],
+        interrupted: Callable[[], bool],
     ) -> None:
+        self.interrupted = interrupted
         self.folder = folder
         self.host = host
         self.flags = (*FLAGS, *host.flags)
         self.compiler = compiler
         self.files = tuple(files)
-        self.runtime = runtime.emit(host.name)
+        self.runtime = host.runtime()
         tools = [*compiler.command, compiler.version, *self.flags, *host.libraries]
         self.library = folder / f"{host.name}-runtime-{_digest(tools, self.runtime)}.a"
         self.program = folder / f"{host.name}-{_digest(tools, [*self.runtime, *self.files])}"
@@ -177,7 +219,7 @@ class _Builder:
         Raises:
             OSError: there is no room.
         """
-        with tempfile.TemporaryDirectory(prefix="build-", dir=self.folder) as name:
+        with tempfile.TemporaryDirectory(prefix=_BUILDS, dir=self.folder) as name:
             room = Path(name)
             for f in (*self.runtime, *self.files):
                 path = room / f.path
@@ -189,7 +231,8 @@ class _Builder:
                 if not library.result() or not net:
                     return None
             made = room / "program"
-            parts = ["net.o", str(self.library), *self.host.libraries]
+            own = [f"{Path(f.path).stem}.o" for f in self._sources()]
+            parts = [*own, str(self.library), *self.host.libraries]
             done = self._compiler(room, "-o", made.name, *parts, d=d)
             if not done:
                 return None
@@ -216,7 +259,7 @@ class _Builder:
                 return False
         made = room / "runtime.a"
         archiver = shutil.which("ar")
-        done = _run([archiver or "ar", "rcs", made.name, *objects], room)
+        done = _run([archiver or "ar", "rcs", made.name, *objects], room, self.interrupted)
         if done is None or done.returncode != 0:
             said = "`ar` is not installed" if done is None else done.stderr.strip()
             d.error(
@@ -235,6 +278,9 @@ class _Builder:
         host has too, they are compiled apart: the library has that source as well.
         """
         includes = ("-Iruntime/include", "-I.")
+        others = [f.path for f in self._sources() if f.path != "net.c"]
+        if others and not self._compiler(room, *includes, "-c", *others, d=d):
+            return False
         if self.host.whole and sum(len(f.text) for f in self.files) <= LARGE:
             source = f"runtime/src/{self.host.whole}"
             whole = ('-DPN_NET_SOURCE="net.c"', "-c", source, "-o", "net.o")
@@ -242,8 +288,12 @@ class _Builder:
                 return True
         return self._compiler(room, *includes, "-c", "net.c", d=d)
 
+    def _sources(self) -> list[OutputFile]:
+        """What is compiled besides the runtime."""
+        return [f for f in self.files if f.path.endswith(".c")]
+
     def _compiler(self, room: Path, *arguments: str, d: Diagnostics) -> bool:
-        done = _run([*self.compiler.command, *self.flags, *arguments], room)
+        done = _run([*self.compiler.command, *self.flags, *arguments], room, self.interrupted)
         if done is not None and done.returncode == 0:
             return True
         said = done.stderr if done is not None else "the compiler cannot be started"
@@ -265,6 +315,10 @@ class _Builder:
         for _, path in sorted(used, reverse=True)[MOST_PROGRAMS:]:
             with suppress(OSError):
                 path.unlink()
+        for path in self.folder.glob(f"{_BUILDS}*"):
+            with suppress(OSError):
+                if time.time() - path.stat().st_mtime > STALE_S:
+                    shutil.rmtree(path, ignore_errors=True)
 
 
 def _digest(tools: Sequence[str], files: Sequence[OutputFile]) -> str:
@@ -277,21 +331,46 @@ def _digest(tools: Sequence[str], files: Sequence[OutputFile]) -> str:
 
 
 def _run(
-    command: Sequence[str], folder: Path | None = None
+    command: Sequence[str],
+    folder: Path | None = None,
+    interrupted: Callable[[], bool] = _never,
 ) -> subprocess.CompletedProcess[str] | None:
-    """Runs a tool to its end; None when it is not there."""
+    """Runs a tool to its end; None when it is not there.
+
+    It does not hear the terminal's Ctrl-C, which would look like a failure of its own. Its temporary files lie in the
+    folder, and go with it.
+
+    Raises:
+        _InterruptedError: it was wished, and the tool has been ended.
+    """
+    own = {"TMPDIR": str(folder)} if folder else {}
     try:
-        return subprocess.run(
+        process = subprocess.Popen(
             command,
             cwd=folder,
-            capture_output=True,
+            stdin=subprocess.DEVNULL,
+            stdout=subprocess.PIPE,
+            stderr=subprocess.PIPE,
             text=True,
             errors="replace",
-            check=False,
-            env={**os.environ, "LC_ALL": "C"},
+            start_new_session=True,
+            env={**os.environ, **own, "LC_ALL": "C"},
         )
     except OSError:
         return None
+    try:
+        while True:
+            with suppress(subprocess.TimeoutExpired):
+                said, errors = process.communicate(timeout=_LOOK_S)
+                break
+            if interrupted():
+                raise _InterruptedError
+    except BaseException:
+        with suppress(OSError):
+            os.killpg(process.pid, signal.SIGKILL)
+        process.communicate()
+        raise
+    return subprocess.CompletedProcess(command, process.returncode, said, errors)
 
 
 def _reason(problem: OSError) -> str:

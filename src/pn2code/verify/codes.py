@@ -61,6 +61,12 @@ REDUCTION_MISMATCH = register(
     "In each state the explorer compares the enabled binding elements of the compiled net with those of the unfolded "
     "one, on which the reduction rests. They differ: this is a bug in pn2code. Nothing that was found counts.",
 )
+SPILL_FULL = register(
+    "spill-full",
+    "the folder of `--spill` takes no more",
+    "Tables that are larger than memory lie in files of the folder that `--spill` names. It is full, or cannot be "
+    "written: the exploration stops, and what was seen until then is reported as partial.",
+)
 TRACE_UNWRITABLE = register(
     "dead-trace-unwritable",
     "a trace to a dead marking cannot be written",

@@ -21,9 +21,10 @@ from typing import IO, Any
 
 from pn2code.diagnostics import Diagnostics, Origin
 from pn2code.net.flat import FlatNet
+from pn2code.net.predicate import Predicate
 from pn2code.verify import programs
-from pn2code.verify.codes import BEYOND_ROOM, EXPLORER_FAILED, REDUCTION_MISMATCH
-from pn2code.verify.limits import Limits
+from pn2code.verify.codes import BEYOND_ROOM, EXPLORER_FAILED, REDUCTION_MISMATCH, SPILL_FULL
+from pn2code.verify.limits import Limits, default_memory
 from pn2code.verify.programs import Sizes
 from pn2code.verify.reductions import OF_ELEMENTS, Chosen, possible, refuse
 from pn2code.verify.result import Exploration
@@ -51,6 +52,8 @@ class Wishes:
         stem: what the names of their files begin with.
         graph: a file for the whole graph, marking by marking; None: not wanted. It is not written when the
             exploration is not complete, or has more than `graph_limit` nodes.
+        questions: about the states and the runs (`properties.questions`), "" for none; `predicates`: the conditions
+            that they mention. `evidence`: a folder for the runs that show the answers.
         pace: seconds between two tellings of progress.
         progress, interrupted: how the outside hears and says that it has been enough.
     """
@@ -59,6 +62,9 @@ class Wishes:
     stem: str = "net"
     graph: Path | None = None
     graph_limit: int | None = None
+    questions: str = ""
+    predicates: tuple[Predicate, ...] = ()
+    evidence: Path | None = None
     pace: float = 0.5
     progress: Progress = _nothing
     interrupted: Callable[[], bool] = _never
@@ -84,19 +90,30 @@ def explore(
         GameError: a declaration or an initial marking raises an exception.
     """
     wishes = wishes or Wishes()
-    chosen = possible(net, limits.reductions, d)
+    chosen = possible(net, limits.reductions, d, wishes.predicates)
     sizes = Sizes.start(net, storage)
     compiling = 0.0
     while True:
         began = time.perf_counter()
-        with programs.program(net, storage, sizes, d) as program:
+        compiled = programs.program(
+            net, storage, sizes, d, wishes.predicates, interrupted=wishes.interrupted
+        )
+        with compiled as program:
             compiling += time.perf_counter() - began
             if program is None:
-                return None
+                if d.has_errors or not wishes.interrupted():
+                    return None
+                return Exploration.of(net, nothing(net, limits), compiling)
             options = _options(limits, chosen, sizes, wishes)
-            found = _run_with_table(net, program, options, chosen, wishes, d)
+            found = _run_with_tables(net, program, options, chosen, wishes, d)
         if found is None:
             return None
+        if found.get("spill_error") and found["why"] == "memory":
+            d.warning(
+                SPILL_FULL,
+                f"no more can be kept in `{limits.spill}`: {found['spill_error'].lower()}",
+                Origin(str(limits.spill)),
+            )
         error = found["error"]
         if error and error["kind"] == "reduction":
             for reduction in set(OF_ELEMENTS).intersection(chosen.reductions):
@@ -124,6 +141,21 @@ def explore(
         sizes = larger
 
 
+def nothing(net: FlatNet, limits: Limits) -> dict[str, Any]:
+    """What an explorer would have printed that was interrupted before it began."""
+    sizes = ("nodes", "arcs", "depth", "seconds", "bytes_per_state", "peak_mib", "dead_count")
+    return {
+        **dict.fromkeys(sizes, 0),
+        "complete": False,
+        "why": "interrupted",
+        "error": None,
+        "threads": limits.threads,
+        "fired": [0] * len(net.transitions),
+        "dead": [],
+        "reductions": [reduction.value for reduction in limits.reductions],
+    }
+
+
 def _options(limits: Limits, chosen: Chosen, sizes: Sizes, wishes: Wishes) -> list[str]:
     given: list[tuple[str, object]] = [
         ("--threads", limits.threads),
@@ -131,12 +163,14 @@ def _options(limits: Limits, chosen: Chosen, sizes: Sizes, wishes: Wishes) -> li
         ("--arena", sizes.memory >> 20),
         ("--max-states", limits.max_states),
         ("--max-seconds", limits.max_seconds),
-        ("--memory", limits.memory),
+        ("--memory", limits.memory or default_memory()),
+        ("--parent", os.getpid()),
         ("--approximate", limits.approximation.value if limits.approximation else None),
         ("--spill", limits.spill),
         ("--trace-to", wishes.traces and wishes.traces / f"{wishes.stem}.dead-"),
         ("--traces", limits.traces if wishes.traces else None),
         ("--error-trace-to", wishes.traces and wishes.traces / f"{wishes.stem}.error-"),
+        ("--query-trace-to", wishes.evidence and wishes.evidence / f"{wishes.stem}.property-"),
         ("--write-graph", wishes.graph),
         ("--write-limit", wishes.graph_limit),
         ("--progress-every", wishes.pace),
@@ -146,7 +180,7 @@ def _options(limits: Limits, chosen: Chosen, sizes: Sizes, wishes: Wishes) -> li
     return options + ["--progress"] + ([] if limits.graph else ["--no-graph"])
 
 
-def _run_with_table(
+def _run_with_tables(
     net: FlatNet,
     program: Path,
     options: Sequence[str],
@@ -154,13 +188,37 @@ def _run_with_table(
     wishes: Wishes,
     d: Diagnostics,
 ) -> dict[str, Any] | None:
-    """Like `_run`, with a file of the binding elements as long as it runs, if reductions need one."""
-    if chosen.elements is None:
+    """Like `_run`, with files of binding elements (for reductions) and of questions as long as it runs."""
+    tables = {
+        "--elements": chosen.elements.text() if chosen.elements else "",
+        "--queries": wishes.questions,
+    }
+    made: list[Path] = []
+    options = list(options)
+    try:
+        for option, text in tables.items():
+            if not text:
+                continue
+            try:
+                handle, name = tempfile.mkstemp(prefix="pn2code-")
+                os.close(handle)
+                made.append(Path(name))
+                made[-1].write_text(text, encoding="ascii")
+            except OSError as problem:
+                reason = (problem.strerror or str(problem)).lower()
+                what = "binding elements" if option == "--elements" else "questions"
+                d.error(
+                    EXPLORER_FAILED,
+                    f"there is no room for the table of {what}: {reason}",
+                    Origin(net.file),
+                    hint="explore with `--no-reduction`, or set TMPDIR",
+                )
+                return None
+            options += [option, name]
         return _run(net, program, options, wishes, d)
-    with tempfile.NamedTemporaryFile("w", encoding="ascii", prefix="pn2code-") as table:
-        table.write(chosen.elements.text())
-        table.flush()
-        return _run(net, program, [*options, "--elements", table.name], wishes, d)
+    finally:
+        for table in made:
+            table.unlink(missing_ok=True)
 
 
 def _differs(net: FlatNet, error: Mapping[str, Any], d: Diagnostics) -> None:
@@ -178,42 +236,61 @@ def _run(
     net: FlatNet, program: Path, options: Sequence[str], wishes: Wishes, d: Diagnostics
 ) -> dict[str, Any] | None:
     """One process from its start to its last word."""
-    with tempfile.TemporaryFile("w+b") as out:
-        process = subprocess.Popen(
-            [str(program), *options],
-            stdin=subprocess.DEVNULL,
-            stdout=out,
-            stderr=subprocess.PIPE,
-            start_new_session=True,  # Ctrl-C is for us; we pass it on, once
-            env={**os.environ, "LC_ALL": "C"},
-        )
-        assert process.stderr is not None
-        said: list[str] = []
-        listener = threading.Thread(
-            target=_listen, args=(process.stderr, wishes, said), daemon=True
-        )
+    process = subprocess.Popen(
+        [str(program), *options],
+        stdin=subprocess.DEVNULL,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        start_new_session=True,  # Ctrl-C is for us; we pass it on, once
+        env={**os.environ, "LC_ALL": "C"},
+    )
+    assert process.stdout is not None and process.stderr is not None
+    said: list[str] = []
+    report: list[bytes] = []
+    listeners = (
+        threading.Thread(target=_listen, args=(process.stderr, wishes, said), daemon=True),
+        threading.Thread(target=_read, args=(process.stdout, report), daemon=True),
+    )
+    for listener in listeners:
         listener.start()
-        told = False
-        try:
-            while True:
-                with suppress(subprocess.TimeoutExpired):
-                    process.wait(0.05)
-                    break
-                if not told and wishes.interrupted():
-                    told = True
-                    process.send_signal(signal.SIGINT)
-        except BaseException:
-            process.kill()
-            raise
-        listener.join()
-        out.seek(0)
-        text = out.read().decode("utf-8", "surrogateescape")
+    told = False
     try:
-        found: dict[str, Any] = json.loads(text)
+        while True:
+            with suppress(subprocess.TimeoutExpired):
+                process.wait(0.05)
+                break
+            if not told and wishes.interrupted():
+                told = True
+                process.send_signal(signal.SIGINT)
+    except BaseException:
+        process.kill()
+        process.wait()
+        _tidy(wishes, process.pid)
+        raise
+    for listener in listeners:
+        listener.join()
+    try:
+        found: dict[str, Any] = json.loads(b"".join(report).decode("utf-8", "surrogateescape"))
     except ValueError:
+        _tidy(wishes, process.pid)
+        if told and process.returncode == -signal.SIGINT:  # before it could listen
+            return nothing(net, Limits())
         _bad_end(net, process.returncode, said, d)
         return None
     return found
+
+
+def _tidy(wishes: Wishes, pid: int) -> None:
+    """Removes what an explorer that came to a bad end was writing."""
+    if wishes.traces is not None:
+        for part in wishes.traces.glob(f"*.{pid}.part"):
+            with suppress(OSError):
+                part.unlink()
+
+
+def _read(stream: IO[bytes], report: list[bytes]) -> None:
+    with stream:
+        report.append(stream.read())
 
 
 def _listen(stream: IO[bytes], wishes: Wishes, said: list[str]) -> None:

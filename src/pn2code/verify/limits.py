@@ -3,9 +3,14 @@
 from __future__ import annotations
 
 import os
+from contextlib import suppress
 from dataclasses import dataclass
 from enum import StrEnum
 from pathlib import Path
+
+_LEAST = 64
+_UNKNOWN = 2048
+"""MiB, when the system does not say what is free."""
 
 
 class Order(StrEnum):
@@ -57,6 +62,29 @@ class Limits:
     graph: bool = True
     traces: int = 1
     reductions: tuple[Reduction, ...] = ()
+
+
+def default_memory() -> int:
+    """Three quarters of what is free now, in MiB: of the machine, and of the control group that we are in."""
+    free = [_machine(), _group()]
+    known = [size for size in free if size is not None]
+    return max(_LEAST, min(known) * 3 // 4 >> 20) if known else _UNKNOWN
+
+
+def _machine() -> int | None:
+    with suppress(OSError, ValueError, IndexError):
+        for line in Path("/proc/meminfo").read_text(encoding="ascii").splitlines():
+            if line.startswith("MemAvailable:"):
+                return int(line.split()[1]) << 10
+    return None
+
+
+def _group() -> int | None:
+    folder = Path("/sys/fs/cgroup")
+    with suppress(OSError, ValueError):
+        most = int((folder / "memory.max").read_text(encoding="ascii"))  # "max": no limit
+        return max(most - int((folder / "memory.current").read_text(encoding="ascii")), 0)
+    return None
 
 
 def cores() -> int:

@@ -10,6 +10,7 @@ from __future__ import annotations
 import tempfile
 from collections.abc import Callable, Mapping
 from dataclasses import replace
+from errno import ENOSPC
 from pathlib import Path
 from types import TracebackType
 from typing import Any, Self
@@ -19,6 +20,7 @@ from pn2code.net.flat import FlatNet
 from pn2code.verify.codes import GRAPH_NOT_DRAWN, REPORT_UNWRITABLE
 from pn2code.verify.explore import Wishes
 from pn2code.verify.result import Exploration
+from pn2code.whole_file import whole_file
 
 GRAPH_KINDS = (".svg", ".html")
 PLOT_KINDS = (".svg", ".png")
@@ -46,7 +48,10 @@ class Pictures:
         self._folder: tempfile.TemporaryDirectory[str] | None = None
 
     def __enter__(self) -> Self:
-        self._folder = tempfile.TemporaryDirectory(prefix="pn2code-") if self._graph else None
+        try:
+            self._folder = tempfile.TemporaryDirectory(prefix="pn2code-") if self._graph else None
+        except OSError:
+            self._folder = None  # which is said when there would be a picture
         return self
 
     def __exit__(
@@ -98,7 +103,8 @@ class Pictures:
             return
         from pn2code.verify import graph, graph_page, graph_svg
 
-        assert self._lines is not None
+        if self._lines is None or not self._lines.exists():
+            raise OSError(ENOSPC, f"no room for the graph in `{tempfile.gettempdir()}`")
         whole = graph.read(net, self._lines)
         how = f"reduced by {', '.join(found.reductions)}" if found.reductions else ""
         if path.suffix.lower() == ".svg":
@@ -106,7 +112,8 @@ class Pictures:
         else:
             said = "Not the whole graph: {}. Nodes, components and home markings are those of what is left."
             text = graph_page.page(net, whole, [said.format(how)] if how else [])
-        path.write_text(text, encoding="utf-8")
+        with whole_file(path) as beside:
+            beside.write_text(text, encoding="utf-8")
 
     def _obstacle(self, found: Exploration) -> tuple[str, str]:
         """Why there is no picture, and what to do; "" when there is one."""
@@ -120,14 +127,15 @@ class Pictures:
             most = f"at most {self._most:,} nodes and {self._most * _MOST_ARCS:,} arcs can be seen"
             page = found.nodes <= MOST_HTML and self._most < MOST_HTML
             return f"{size}, {most}", "an .html file takes more" if page else smaller
-        if self._lines is None or not self._lines.exists():
+        if found.graph is None and (self._lines is None or not self._lines.exists()):
             return "the graph is not known with `--no-graph`", "leave it out"
         return "", ""
 
     def _write_plot(self, path: Path, net: FlatNet, found: Exploration, d: Diagnostics) -> None:
         from pn2code.verify.plots import plot
 
-        plot(self._record, found, net.name, path)
+        with whole_file(path) as beside:
+            plot(self._record, found, net.name, beside)
 
 
 def _both(

@@ -7,7 +7,7 @@ with program(net, {}, Sizes.start(net, {}), d) as built:      # None after a dia
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, field, replace
 from pathlib import Path
@@ -129,8 +129,10 @@ def program(
     sizes: Sizes,
     d: Diagnostics,
     predicates: Sequence[Predicate] = (),
+    *,
+    interrupted: Callable[[], bool] = lambda: False,
 ) -> Iterator[Path | None]:
-    """The explorer of a net, as long as the block lasts; None after a diagnostic.
+    """The explorer of a net, as long as the block lasts; None after a diagnostic, or when it was interrupted.
 
     Args:
         net: the net.
@@ -138,10 +140,11 @@ def program(
         sizes: how much its places hold.
         d: gets the errors.
         predicates: what can be asked of its markings.
+        interrupted: asked while compilers run.
     """
     files = generated(net, storage, sizes, d, predicates)
     if files is None:
         yield None
         return
-    with programs.program(HOST, files, d) as found:
+    with programs.program(HOST, files, d, interrupted=interrupted) as found:
         yield found

@@ -44,8 +44,19 @@ class Chosen:
         return found.names() if is_used and found is not None else ()
 
 
-def possible(net: FlatNet, wanted: Sequence[Reduction], d: Diagnostics) -> Chosen:
+def possible(
+    net: FlatNet,
+    wanted: Sequence[Reduction],
+    d: Diagnostics,
+    predicates: Sequence[Predicate] = (),
+) -> Chosen:
     """Those that keep the answers for this net; each of the others gives a warning.
+
+    Args:
+        net: the net.
+        wanted: what was asked for.
+        d: gets the warnings.
+        predicates: conditions on markings that are asked for besides.
 
     Raises:
         GameError: a declaration or an initial marking raises an exception.
@@ -54,7 +65,7 @@ def possible(net: FlatNet, wanted: Sequence[Reduction], d: Diagnostics) -> Chose
     for reduction in wanted:
         if reduction not in OBSTACLES:
             continue
-        obstacle = OBSTACLES[reduction](net)
+        obstacle = OBSTACLES[reduction](net, predicates)
         if obstacle is None:
             found.append(reduction)
         else:

@@ -14,6 +14,8 @@ from datetime import datetime
 import pn2code
 from pn2code.net.engine_names import EngineNames
 from pn2code.net.flat import FlatNet, FlatPlace
+from pn2code.verify import properties_text
+from pn2code.verify.answers import Answer
 from pn2code.verify.result import Exploration, Graph, multiset_text
 
 _RULE = "-" * 72
@@ -27,16 +29,23 @@ _WHY = {
     "memory": "the limit of memory was reached",
     "interrupted": "it was interrupted",
     "error": "an inscription raised an exception",
+    "decided": "all properties were decided by then",
 }
 
 
-def report(net: FlatNet, found: Exploration, written: datetime | None) -> str:
+def report(
+    net: FlatNet,
+    found: Exploration,
+    written: datetime | None,
+    answers: Sequence[Answer] = (),
+) -> str:
     """The whole text.
 
     Args:
         net: the net.
         found: its state space.
         written: the date it carries; None: none, so that equal spaces give equal reports.
+        answers: of properties that were asked.
     """
     parts = [_head(net, found, written), _statistics(found)]
     if found.bounds is not None:
@@ -46,6 +55,8 @@ def report(net: FlatNet, found: Exploration, written: datetime | None) -> str:
     parts.append(_liveness(net, found))
     if found.graph is not None:
         parts.append(_fairness(net, found.graph))
+    if answers:
+        parts.append(properties_text.section(answers))
     return "\n\n\n".join(parts) + "\n"
 
 

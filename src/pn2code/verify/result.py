@@ -110,6 +110,7 @@ class Exploration:
     approximation: Mapping[str, Any] | None
     reductions: tuple[str, ...]
     symmetries: tuple[str, ...] = ()
+    answers: tuple[Mapping[str, Any], ...] = ()
 
     @property
     def is_reduced(self) -> bool:
@@ -151,6 +152,7 @@ class Exploration:
             traces=tuple(Trace.of(t) for t in found.get("traces") or ()),
             approximation=found.get("approximate"),
             reductions=tuple(found.get("reductions") or ()),
+            answers=tuple(found.get("queries") or ()),
         )
 
     @property

@@ -16,7 +16,7 @@ reason = obstacle(net)        # None: the reduction is possible
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 from pn2code.diagnostics import Origin, Span
@@ -24,13 +24,14 @@ from pn2code.ml import core
 from pn2code.ml.colsets import Kind
 from pn2code.ml.types import TCon, TFun, TRecord, Type
 from pn2code.net.flat import ArcKind, FlatNet, FlatTransition
+from pn2code.net.predicate import Predicate
 from pn2code.net.uses import walk
 
 _READS_TIME = frozenset({"Time.time", "Time.step"})
 _STAMPS_UNSEEN = frozenset(
     {
         *("Time.@+", "Time.@++", "Time.token@+", "Time.token@++", "Time.+++", "Time.ms"),
-        *("List.@", "List.concat", "Ms.++"),
+        *("List.@", "List.concat", "Ms.++", "List.length", "Ms.size", "List.null"),
     }
 )
 """Functions that have to do with timed tokens and do not look at their stamps."""
@@ -57,13 +58,17 @@ class Obstacle:
     at: Origin | Span
 
 
-def obstacle(net: FlatNet) -> Obstacle | None:
-    """The first thing in the net that tells states apart by the time alone; None: there is none."""
+def obstacle(net: FlatNet, predicates: Sequence[Predicate] = ()) -> Obstacle | None:
+    """The first thing in the net, or in the conditions that are asked for, that tells states apart by the time alone; None: there is none."""
     if net.real_time:
         return Obstacle("the clock is real, and sums of reals are rounded", Origin(net.file))
     look = _Look(net)
     for t in net.transitions:
         found = look.transition(t)
+        if found is not None:
+            return found
+    for predicate in predicates:
+        found = look.expression(predicate.exp, f"the property `{predicate.name}` ")
         if found is not None:
             return found
     return look.colour_sets()
@@ -86,7 +91,7 @@ class _Look:
                         f"the delay of an input arc of `{t.name}` may be negative", term.delay.span
                     )
         for e in _expressions(t):
-            found = self._expression(e, t)
+            found = self.expression(e, f"`{t.name}` ")
             if found is not None:
                 return found
         return None
@@ -94,20 +99,19 @@ class _Look:
     def colour_sets(self) -> Obstacle | None:
         for colset in self._net.program.colsets.values():
             for e in (colset.predicate, colset.members):
-                found = None if e is None else self._expression(e, None)
+                found = None if e is None else self.expression(e, "a colour set ")
                 if found is not None:
                     return found
         return None
 
-    def _expression(self, e: core.Exp, user: FlatTransition | None) -> Obstacle | None:
+    def expression(self, e: core.Exp, user: str) -> Obstacle | None:
         """Looks at an expression and at all that it uses of the declarations."""
         waiting = [e]
         while waiting:
             for x in walk(waiting.pop()):
                 what = _reads(x)
                 if what is not None:
-                    where = f"`{user.name}` " if user is not None else "a colour set "
-                    return Obstacle(f"{where}{what}", x.span)
+                    return Obstacle(f"{user}{what}", x.span)
                 if isinstance(x, core.Var) and x.symbol.uid not in self._seen:
                     self._seen.add(x.symbol.uid)
                     waiting += self._declared.get(x.symbol.uid, ())

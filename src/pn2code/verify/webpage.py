@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from datetime import datetime
 from typing import Any
 
@@ -15,6 +15,8 @@ from pn2code.net.flat import FlatNet
 from pn2code.resources import templates_folder
 from pn2code.semantics.game import GameError
 from pn2code.simulate.script import TraceRefusedError
+from pn2code.verify import properties_text
+from pn2code.verify.answers import Answer
 from pn2code.verify.path import Step, steps
 from pn2code.verify.report import bounded_places, error_text, why_partial
 from pn2code.verify.result import Exploration, Trace, multiset_text
@@ -23,7 +25,13 @@ MOST_STEPS = 200
 """Of a longer trace only the first steps are shown."""
 
 
-def webpage(net: FlatNet, found: Exploration, storage: Mapping[str, str], written: datetime) -> str:
+def webpage(
+    net: FlatNet,
+    found: Exploration,
+    storage: Mapping[str, str],
+    written: datetime,
+    answers: Sequence[Answer] = (),
+) -> str:
     """The whole page.
 
     Args:
@@ -31,6 +39,7 @@ def webpage(net: FlatNet, found: Exploration, storage: Mapping[str, str], writte
         found: its state space.
         storage: as for `Game`, which repeats the traces.
         written: the date it carries.
+        answers: of properties that were asked.
     """
     # Names and inscriptions are strangers' texts: all of them are escaped.
     env = Environment(
@@ -54,8 +63,31 @@ def webpage(net: FlatNet, found: Exploration, storage: Mapping[str, str], writte
         markings=list(_markings(found)),
         transitions=_transitions(net, found),
         traces=_traces(net, found, storage),
+        properties=[_property(net, storage, a) for a in answers],
         timed=net.timed,
     )
+
+
+def _property(net: FlatNet, storage: Mapping[str, str], a: Answer) -> dict[str, Any]:
+    """A row of the table of properties, with the run that shows the answer."""
+    found: dict[str, Any] = {
+        "name": a.about.name,
+        "said": properties_text.said(a),
+        "remarks": properties_text.remarks(a),
+        "answer": {"inconclusive": "not known"}.get(a.answer, a.answer),
+        "kind": "open" if a.answer == "inconclusive" else "good" if a.is_expected else "bad",
+        "run": None,
+    }
+    if a.evidence is not None:
+        loop = a.evidence.loop
+        is_lasso = loop is not None and loop < a.evidence.steps
+        trace = Trace(0, a.evidence.trace, a.evidence.steps)
+        found["run"] = {
+            **_trace(net, storage, trace, ""),
+            "heading": properties_text.heading(a),
+            "loop": loop + 1 if is_lasso and loop is not None else None,
+        }
+    return found
 
 
 def _verdicts(net: FlatNet, found: Exploration) -> list[dict[str, str]]:

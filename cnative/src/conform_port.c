@@ -1,0 +1,385 @@
+/* SPDX-License-Identifier: MIT
+ * conform_port.c - the operating system as a program under test sees it: files in memory, a clock that stands, a state that can be
+ * saved and restored. It takes the place of port_posix.c; everything above it is the deployed supervisor, byte for byte.
+ *
+ * The supervisor goes round its cycle and waits. There it is asked, line by line on standard input, and answers by a line of JSON:
+ *
+ *     push              saves the state: {"pushed": true}. The state is the process: it waits while a copy of it goes on
+ *     pop               goes back to the state saved last: {"popped": true}
+ *     write NAME HEX    another party publishes a file (its bytes in hexadecimal): {"written": true}
+ *     time SECONDS      the clock shows so much since the start: {"time": true}
+ *     go                one cycle: {"files": {NAME: TEXT, ...}, "marking": {PLACE: [[count, value], ...], ...}, "fired": N,
+ *                       "ended": null | "finished" | "stopped"}; of a program that has ended, the state before is back then
+ *
+ * At the start the first cycle has been done, and its answer is given unasked.
+ */
+#define _POSIX_C_SOURCE 200809L
+
+#include <errno.h>
+#include <inttypes.h>
+#include <signal.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include "pn/pn_port.h"
+#include "pn/pn_text.h"
+#include "supervisor_impl.h"
+
+#define FILES_MAX 512U
+#define FILE_SIZE 4200U /* of a message at most 4095 */
+#define NAME_SIZE 256U
+#define LINE_SIZE (2U * FILE_SIZE + NAME_SIZE + 32U)
+#define ANSWER_SIZE ((size_t)1U << 24U)
+
+enum { DIRECTORY = 1000, FIRST_FILE = 2000 }; /* descriptors: numbers that no real one has */
+
+typedef struct memory_file {
+    bool exists;
+    char name[NAME_SIZE];
+    size_t length;
+    char data[FILE_SIZE];
+} memory_file_t;
+
+static memory_file_t s_file[FILES_MAX];
+#define BEGIN_NS UINT64_C(1000000000) /* any beginning will do */
+static uint64_t s_now_ns = BEGIN_NS;
+static const sup_t *s_sup;              /* the program under test */
+static uint64_t s_fired_before;
+static char s_answer[ANSWER_SIZE];
+
+/* --- files ------------------------------------------------------------------------------------------------------------- */
+
+static memory_file_t *find(const char *name)
+{
+    for (uint32_t i = 0U; i < FILES_MAX; i++) {
+        if (s_file[i].exists && (strcmp(s_file[i].name, name) == 0)) {
+            return &s_file[i];
+        }
+    }
+    return NULL;
+}
+
+static memory_file_t *make(const char *name)
+{
+    memory_file_t *file = find(name);
+    for (uint32_t i = 0U; (file == NULL) && (i < FILES_MAX); i++) {
+        if (!s_file[i].exists) {
+            file = &s_file[i];
+            file->exists = true;
+            file->length = 0U;
+            (void)snprintf(file->name, sizeof file->name, "%s", name);
+        }
+    }
+    return file;
+}
+
+static int put(memory_file_t *file, const char *data, size_t length)
+{
+    if ((file == NULL) || (length > FILE_SIZE)) {
+        return ENOSPC;
+    }
+    if (length > 0U) {
+        (void)memcpy(file->data, data, length);
+    }
+    file->length = length;
+    return 0;
+}
+
+int pn_port_dir_open(const char *path, bool create, int *directory)
+{
+    (void)path;
+    (void)create;
+    *directory = DIRECTORY;
+    return 0;
+}
+
+bool pn_port_dir_exists(int directory)
+{
+    return directory == DIRECTORY;
+}
+
+void pn_port_close(int descriptor)
+{
+    (void)descriptor;
+}
+
+int pn_port_read(int directory, const char *name, char *buffer, size_t capacity, size_t *length, int *held)
+{
+    const memory_file_t *const file = find(name);
+    (void)directory;
+    if (held != NULL) {
+        *held = -1;
+    }
+    if (file == NULL) {
+        return ENOENT;
+    }
+    *length = (file->length < capacity) ? file->length : capacity;
+    (void)memcpy(buffer, file->data, *length);
+    return 0;
+}
+
+int pn_port_publish(int directory, const char *name, const char *temporary, const char *data, size_t length)
+{
+    (void)directory;
+    (void)temporary;
+    return put(make(name), data, length);
+}
+
+int pn_port_prepare(int directory, const char *temporary, const char *data, size_t length, int *file)
+{
+    memory_file_t *const made = make(temporary);
+    (void)directory;
+    const int error = put(made, data, length);
+    if (error == 0) {
+        *file = FIRST_FILE + (int)(made - s_file);
+    }
+    return error;
+}
+
+int pn_port_publish_prepared(int directory, const char *name, const char *temporary, int file, const char *data,
+                             size_t length)
+{
+    memory_file_t *const made = &s_file[file - FIRST_FILE];
+    (void)directory;
+    (void)temporary;
+    if ((made->length + length) > FILE_SIZE) {
+        return ENOSPC;
+    }
+    (void)memcpy(&made->data[made->length], data, length);
+    made->length += length;
+    const int error = put(make(name), made->data, made->length);
+    made->exists = false;
+    return error;
+}
+
+void pn_port_remove(int directory, const char *name)
+{
+    memory_file_t *const file = find(name);
+    (void)directory;
+    if (file != NULL) {
+        file->exists = false;
+    }
+}
+
+int pn_port_lock(int directory, const char *name, int *file)
+{
+    memory_file_t *const made = make(name);
+    (void)directory;
+    if (made == NULL) {
+        return ENOSPC;
+    }
+    *file = FIRST_FILE + (int)(made - s_file);
+    return 0;
+}
+
+int pn_port_rewrite(int file, const char *data, size_t length)
+{
+    return put(&s_file[file - FIRST_FILE], data, length);
+}
+
+int pn_port_probe(int directory, const char *name, bool *exists, bool *locked)
+{
+    (void)directory;
+    *exists = find(name) != NULL;
+    *locked = false; /* no other party is a process here */
+    return 0;
+}
+
+int pn_port_watch(const char *path, int *watch)
+{
+    (void)path;
+    *watch = -1; /* so the program looks at all files in each cycle */
+    return 0;
+}
+
+bool pn_port_changes(int watch, pn_port_change_t change, void *user)
+{
+    (void)watch;
+    change(user, NULL);
+    return true;
+}
+
+/* --- time and signals -------------------------------------------------------------------------------------------------- */
+
+uint64_t pn_port_now(void)
+{
+    return s_now_ns;
+}
+
+uint32_t pn_port_unique(void)
+{
+    return 1U;
+}
+
+uint64_t pn_port_pid(void)
+{
+    return 1U;
+}
+
+int pn_port_signals(void)
+{
+    return 0;
+}
+
+int pn_port_stop_signal(void)
+{
+    return 0;
+}
+
+long pn_port_receive(int descriptor, char *buffer, size_t capacity)
+{
+    (void)descriptor;
+    (void)buffer;
+    (void)capacity;
+    return 0;
+}
+
+/* --- the conversation -------------------------------------------------------------------------------------------------- */
+
+static void say(const char *line)
+{
+    (void)fputs(line, stdout);
+    (void)fputc('\n', stdout);
+    (void)fflush(stdout);
+}
+
+/* What the last cycle has left: all files but the temporary ones, the marking of the places that are the program's. */
+static void answer(const char *ended)
+{
+    pn_text_t text;
+    const char *between = "";
+    pn_text_init(&text, s_answer, sizeof s_answer);
+    pn_text_str(&text, "{\"files\": {");
+    for (uint32_t i = 0U; i < FILES_MAX; i++) {
+        if (s_file[i].exists && (s_file[i].name[0] != '.')) {
+            pn_text_str(&text, between);
+            pn_text_json_str(&text, s_file[i].name);
+            pn_text_str(&text, ": ");
+            pn_text_json_bytes(&text, s_file[i].data, s_file[i].length);
+            between = ", ";
+        }
+    }
+    pn_text_str(&text, "}, \"marking\": {");
+    between = "";
+    for (uint32_t i = 0U; (s_sup != NULL) && (i < s_sup->net->place_count); i++) {
+        const pn_place_t *const place = &s_sup->net->place[i];
+        pn_text_str(&text, between);
+        pn_text_json_str(&text, place->name);
+        pn_text_str(&text, ": ");
+        place->json(s_sup->marking, &text);
+        between = ", ";
+    }
+    pn_text_str(&text, "}, \"fired\": ");
+    pn_text_uint(&text, (s_sup != NULL) ? (s_sup->fired - s_fired_before) : 0U);
+    pn_text_str(&text, ", \"ended\": ");
+    if (ended == NULL) {
+        pn_text_str(&text, "null");
+    } else {
+        pn_text_json_str(&text, ended);
+        pn_text_str(&text, ", \"reason\": ");
+        pn_text_json_str(&text, (s_sup != NULL) ? s_sup->reason : "");
+    }
+    pn_text_str(&text, text.truncated ? "" : "}");
+    say(text.truncated ? "{\"error\": \"the marking is too large to be told\"}" : s_answer);
+    s_fired_before = (s_sup != NULL) ? s_sup->fired : 0U;
+}
+
+/* A line of standard input, byte by byte: nothing may be read ahead, as what comes next may be for a copy of this process. */
+static bool command(char *line, size_t capacity)
+{
+    size_t length = 0U;
+    char c = '\0';
+    while ((read(STDIN_FILENO, &c, 1U) == 1) && (c != '\n')) {
+        if ((length + 1U) < capacity) {
+            line[length] = c;
+            length++;
+        }
+    }
+    line[length] = '\0';
+    return c == '\n';
+}
+
+/* The copy goes on; this process is the saved state, and answers when the copy has ended. */
+static void push(void)
+{
+    (void)fflush(stdout);
+    const pid_t copy = fork();
+    if (copy == 0) {
+        say("{\"pushed\": true}");
+        return;
+    }
+    if (copy < 0) {
+        say("{\"error\": \"the state cannot be saved\"}");
+        return;
+    }
+    int status = 0;
+    while ((waitpid(copy, &status, 0) < 0) && (errno == EINTR)) {
+        /* again */
+    }
+    if (WIFSIGNALED(status)) {
+        (void)printf("{\"error\": \"the program was ended by signal %d\"}\n", WTERMSIG(status));
+        (void)fflush(stdout);
+    } else {
+        say("{\"popped\": true}");
+    }
+}
+
+static int digit(char c)
+{
+    return ((c >= '0') && (c <= '9')) ? (c - '0') : (c - 'a') + 10;
+}
+
+static void write_file(char *text)
+{
+    char data[FILE_SIZE];
+    size_t length = 0U;
+    char *const space = strchr(text, ' ');
+    if (space != NULL) {
+        *space = '\0';
+        for (const char *at = space + 1; (at[0] != '\0') && (at[1] != '\0') && (length < FILE_SIZE); at += 2) {
+            data[length] = (char)((digit(at[0]) * 16) + digit(at[1]));
+            length++;
+        }
+    }
+    say((put(make(text), data, length) == 0) ? "{\"written\": true}" : "{\"error\": \"there is no room for the file\"}");
+}
+
+/* The program waits: here it is asked. Back when it is to go on. */
+bool pn_port_wait(int descriptor, uint64_t timeout_ns)
+{
+    static char s_line[LINE_SIZE];
+    (void)timeout_ns;
+    answer(NULL);
+    for (;;) {
+        if (!command(s_line, sizeof s_line) || (strcmp(s_line, "pop") == 0)) {
+            _exit(EXIT_SUCCESS);
+        }
+        if (strcmp(s_line, "push") == 0) {
+            push();
+        } else if (strncmp(s_line, "write ", 6U) == 0) {
+            write_file(&s_line[6]);
+        } else if (strncmp(s_line, "time ", 5U) == 0) {
+            s_now_ns = BEGIN_NS + (uint64_t)((strtod(&s_line[5], NULL) * 1e9) + 0.5);
+            say("{\"time\": true}");
+        } else if (strcmp(s_line, "go") == 0) {
+            return descriptor >= 0;
+        } else {
+            say("{\"error\": \"unknown command\"}");
+        }
+    }
+}
+
+/* The linker puts this in front of the host's own (--wrap): here the program under test becomes known, and its end is told. */
+void __real_sup_run_cell(sup_t *sup);
+void __wrap_sup_run_cell(sup_t *sup);
+void __wrap_sup_run_cell(sup_t *sup)
+{
+    s_sup = sup;
+    __real_sup_run_cell(sup);
+    answer(sup->stopped ? "stopped" : "finished");
+    (void)fflush(stdout);
+    _exit(EXIT_SUCCESS);
+}

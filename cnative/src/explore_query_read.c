@@ -1,0 +1,540 @@
+/* SPDX-License-Identifier: MIT
+ * explore_query_read.c - reads a file of questions.
+ *
+ *     pred 0                          items, numbered from 0; operands stand before
+ *     not 0
+ *     ef 1
+ *     ? initially 2                   questions, answered in their order
+ *     ? bound 3 0 4                   place 3 has 0 .. 4 tokens; `-`: any number
+ *     ? within-firings s0 f2 10       after each node of item 0, transition 2 occurs in one of the next 10 firings
+ *     ? lasso                         whether there is a run that this automaton accepts:
+ *     automaton 2 0                   states, the initial one
+ *     accepting 1
+ *     arc 0 1 +0 -f3                  at a node of item 0, if transition 3 is not the next
+ *     strong 2                        fairness that is assumed; weak
+ *     end
+ */
+#define _POSIX_C_SOURCE 200809L /* strtok_r */
+
+#include "explore_query.h"
+
+#include <errno.h>
+#include <inttypes.h>
+#include <math.h>
+#include <stdlib.h>
+
+enum {
+    MOST_WORDS = 4096,
+    MOST_NUMBER = 1 << 30
+};
+
+typedef struct reader {
+    ex_queries_t *queries;
+    const char *path;
+    char *rest;         /* of the text */
+    uint64_t line;
+    uint64_t item_room;
+    uint64_t question_room;
+    const char *word[MOST_WORDS];
+    uint32_t words;
+    ex_automaton_t *automaton; /* being read */
+    uint64_t edge_room;
+    bool is_wrong;      /* a line has too many words */
+} reader_t;
+
+static bool complain(const reader_t *r, const char *what, const char *word)
+{
+    (void)fprintf(stderr, "explore: %s:%" PRIu64 ": %s: `%s`\n", r->path, r->line, what, word);
+    return false;
+}
+
+/* --- words ----------------------------------------------------------------------------------------------------------- */
+
+/* The next line that says something, in words; false at the end. */
+static bool next_line(reader_t *r)
+{
+    r->words = 0U;
+    while ((*r->rest != '\0') && (r->words == 0U)) {
+        char *at = r->rest;
+        char *const end = strchr(at, '\n');
+        r->rest = (end != NULL) ? (end + 1) : (at + strlen(at));
+        if (end != NULL) {
+            *end = '\0';
+        }
+        r->line += 1U;
+        if (*at == '#') {
+            continue;
+        }
+        char *kept = NULL;
+        for (char *word = strtok_r(at, " \t\r", &kept); word != NULL; word = strtok_r(NULL, " \t\r", &kept)) {
+            if (r->words == (uint32_t)MOST_WORDS) {
+                r->is_wrong = true;
+                return complain(r, "too many words", word);
+            }
+            r->word[r->words] = word;
+            r->words += 1U;
+        }
+    }
+    return r->words > 0U;
+}
+
+/* A number below `end`. */
+static bool read_number(const reader_t *r, const char *word, uint64_t end, const char *what, uint32_t *number)
+{
+    char *rest = NULL;
+    errno = 0;
+    const unsigned long long value = strtoull(word, &rest, 10);
+    *number = (uint32_t)value;
+    if ((word[0] < '0') || (word[0] > '9') || (*rest != '\0') || (errno != 0) || (value >= end)) {
+        return complain(r, what, word);
+    }
+    return true;
+}
+
+static bool read_item(const reader_t *r, const char *word, uint32_t *number)
+{
+    return read_number(r, word, r->queries->items, "there is no such item", number);
+}
+
+static bool read_transition(const reader_t *r, const char *word, uint32_t *number)
+{
+    return read_number(r, word, pn_net.transition_count, "there is no such transition", number);
+}
+
+/* `-` or a number of tokens. */
+static bool read_limit(const reader_t *r, const char *word, uint64_t none, uint64_t *limit)
+{
+    char *rest = NULL;
+    errno = 0;
+    if (strcmp(word, "-") == 0) {
+        *limit = none;
+        return true;
+    }
+    *limit = strtoull(word, &rest, 10);
+    return ((word[0] >= '0') && (word[0] <= '9') && (*rest == '\0') && (errno == 0)) || complain(r, "not a number", word);
+}
+
+/* `s3`: nodes of item 3; `f3`: arcs of transition 3. */
+static bool read_event(const reader_t *r, const char *word, ex_event_t *event)
+{
+    event->is_transition = word[0] == 'f';
+    if (event->is_transition) {
+        return read_transition(r, &word[1], &event->number);
+    }
+    return (word[0] == 's') ? read_item(r, &word[1], &event->number) : complain(r, "not an event", word);
+}
+
+/* Room for one more in a table; NULL: no memory. */
+static void *with_room(void *table, uint64_t used, uint64_t *room, size_t size)
+{
+    if (used < *room) {
+        return table;
+    }
+    const uint64_t more = (*room == 0U) ? 16U : (*room * 2U);
+    unsigned char *const larger = realloc(table, more * size);
+    if (larger != NULL) {
+        (void)memset(&larger[*room * size], 0, (more - *room) * size);
+        *room = more;
+    }
+    return larger;
+}
+
+/* --- items ----------------------------------------------------------------------------------------------------------- */
+
+typedef struct form {
+    const char *word;
+    ex_item_kind_t kind;
+    uint32_t operands;
+} form_t;
+
+static const form_t s_forms[] = {
+    { "true", EX_ITEM_TRUE, 0U }, { "dead", EX_ITEM_DEAD, 0U }, { "initial", EX_ITEM_INITIAL, 0U }, { "pred", EX_ITEM_PRED, 0U },
+    { "enabled", EX_ITEM_ENABLED, 0U }, { "not", EX_ITEM_NOT, 1U }, { "and", EX_ITEM_AND, 2U }, { "or", EX_ITEM_OR, 2U },
+    { "ex", EX_ITEM_EX, 1U }, { "ax", EX_ITEM_AX, 1U }, { "ef", EX_ITEM_EF, 1U }, { "af", EX_ITEM_AF, 1U }, { "eg", EX_ITEM_EG, 1U },
+    { "ag", EX_ITEM_AG, 1U }, { "eu", EX_ITEM_EU, 2U }, { "au", EX_ITEM_AU, 2U }, { "exa", EX_ITEM_EXA, 1U },
+};
+
+static bool add_item(reader_t *r, const ex_item_t *item)
+{
+    ex_queries_t *const queries = r->queries;
+    ex_item_t *const items = with_room(queries->item, queries->items, &r->item_room, sizeof *items);
+    if (items == NULL) {
+        return complain(r, "not enough memory", r->path);
+    }
+    queries->item = items;
+    items[queries->items] = *item;
+    items[queries->items].raised_at = EX_NO_NODE;
+    queries->items += 1U;
+    return true;
+}
+
+/* What is known of an item by its form. */
+static void classify(const ex_queries_t *queries, ex_item_t *item, bool has_operands)
+{
+    const ex_item_t *const a = has_operands ? &queries->item[item->a] : NULL;
+    const ex_item_t *const b = has_operands ? &queries->item[item->b] : NULL;
+    const bool is_and = item->kind == EX_ITEM_AND;
+    const bool is_or = item->kind == EX_ITEM_OR;
+    const bool is_not = item->kind == EX_ITEM_NOT;
+    const bool is_formed = is_and || is_or || is_not;
+    item->is_local = (item->kind < EX_ITEM_EX) && (!has_operands || (a->is_local && b->is_local));
+    item->is_nameless = (item->kind <= EX_ITEM_DEAD) || (is_formed && a->is_nameless && b->is_nameless);
+    item->is_about_dead = (item->kind == EX_ITEM_TRUE) || (is_not && (a->kind == EX_ITEM_DEAD)) ||
+                          (is_and && a->is_about_dead && b->is_about_dead) || (is_or && (a->is_about_dead || b->is_about_dead));
+}
+
+static bool read_state_item(reader_t *r)
+{
+    const form_t *form = NULL;
+    for (uint32_t i = 0U; i < (sizeof s_forms / sizeof s_forms[0]); i++) {
+        form = (strcmp(r->word[0], s_forms[i].word) == 0) ? &s_forms[i] : form;
+    }
+    if (form == NULL) {
+        return complain(r, "no such item", r->word[0]);
+    }
+    const bool has_number = (form->kind == EX_ITEM_PRED) || (form->kind == EX_ITEM_ENABLED) || (form->kind == EX_ITEM_EXA);
+    const uint32_t wanted = 1U + form->operands + (has_number ? 1U : 0U);
+    if (r->words != wanted) {
+        return complain(r, "wrong number of operands", r->word[0]);
+    }
+    ex_item_t item = { .kind = form->kind };
+    bool is_fine = true;
+    if (form->kind == EX_ITEM_PRED) {
+        is_fine = read_number(r, r->word[1], pn_net.predicate_count, "the net has no such predicate", &item.number);
+    } else if (has_number) {
+        is_fine = read_transition(r, r->word[1], &item.number);
+    }
+    is_fine = is_fine && ((form->operands == 0U) || read_item(r, r->word[wanted - form->operands], &item.a)) &&
+              ((form->operands < 2U) || read_item(r, r->word[wanted - 1U], &item.b));
+    if (!is_fine) {
+        return false;
+    }
+    item.b = (form->operands < 2U) ? item.a : item.b;
+    classify(r->queries, &item, form->operands > 0U);
+    return add_item(r, &item);
+}
+
+/* --- automata -------------------------------------------------------------------------------------------------------- */
+
+/* `+fT`: transition T is the next; `-fT`: it is not. */
+static bool read_firing(const reader_t *r, const char *word, ex_edge_t *edge)
+{
+    uint32_t transition = 0U;
+    const uint64_t words = ((uint64_t)pn_net.transition_count / 64U) + 1U; /* one bit more than there are transitions */
+    if (!read_transition(r, &word[2], &transition)) {
+        return false;
+    }
+    if (edge->allowed == NULL) {
+        edge->allowed = malloc(words * sizeof *edge->allowed);
+        if (edge->allowed == NULL) {
+            return complain(r, "not enough memory", word);
+        }
+        (void)memset(edge->allowed, 0xff, words * sizeof *edge->allowed);
+    }
+    const uint64_t bit = (uint64_t)1U << (transition % 64U);
+    const uint64_t kept = edge->allowed[transition / 64U];
+    if (word[0] == '+') {
+        (void)memset(edge->allowed, 0, words * sizeof *edge->allowed);
+        edge->allowed[transition / 64U] = kept & bit;
+    } else {
+        edge->allowed[transition / 64U] = kept & ~bit;
+    }
+    return true;
+}
+
+static bool read_literal(const reader_t *r, const char *word, ex_edge_t *edge)
+{
+    if ((word[0] != '+') && (word[0] != '-')) {
+        return complain(r, "not a condition", word);
+    }
+    if (word[1] == 'f') {
+        return read_firing(r, word, edge);
+    }
+    ex_literal_t *const literal = &edge->literal[edge->literals];
+    literal->is_positive = word[0] == '+';
+    edge->literals += 1U;
+    return read_item(r, &word[1], &literal->item);
+}
+
+static bool read_edge(reader_t *r)
+{
+    ex_automaton_t *const automaton = r->automaton;
+    ex_edge_t *const edges = with_room(automaton->edge, automaton->edges, &r->edge_room, sizeof *edges);
+    if ((edges == NULL) || (r->words < 3U)) {
+        return complain(r, "wrong number of operands", r->word[0]);
+    }
+    automaton->edge = edges;
+    ex_edge_t *const edge = &edges[automaton->edges];
+    edge->literal = calloc(r->words, sizeof *edge->literal);
+    bool is_fine = (edge->literal != NULL) && read_number(r, r->word[1], automaton->states, "there is no such state", &edge->from) &&
+                   read_number(r, r->word[2], automaton->states, "there is no such state", &edge->to);
+    for (uint32_t i = 3U; is_fine && (i < r->words); i++) {
+        is_fine = read_literal(r, r->word[i], edge);
+    }
+    automaton->edges += 1U;
+    return is_fine;
+}
+
+/* A transition for which fairness is assumed, and an item for the nodes where it is enabled. */
+static bool add_fair(reader_t *r, const char *word, bool is_strong)
+{
+    ex_automaton_t *const automaton = r->automaton;
+    uint32_t transition = 0U;
+    const size_t count = (size_t)automaton->fair_count + 1U;
+    if (!read_transition(r, word, &transition)) {
+        return false;
+    }
+    automaton->fair = realloc(automaton->fair, count * sizeof *automaton->fair);
+    automaton->is_strong = realloc(automaton->is_strong, count * sizeof *automaton->is_strong);
+    automaton->fair_item = realloc(automaton->fair_item, count * sizeof *automaton->fair_item);
+    if ((automaton->fair == NULL) || (automaton->is_strong == NULL) || (automaton->fair_item == NULL)) {
+        return complain(r, "not enough memory", word);
+    }
+    automaton->fair[count - 1U] = transition;
+    automaton->is_strong[count - 1U] = is_strong;
+    automaton->fair_count += 1U;
+    return true;
+}
+
+/* Fairness needs items, which must not get numbers that later lines count on: they are added at the end of the file. */
+static bool add_fair_items(reader_t *r, const ex_automaton_t *automaton)
+{
+    bool is_fine = true;
+    for (uint32_t i = 0U; is_fine && (i < automaton->fair_count); i++) {
+        const ex_item_t item = { .kind = EX_ITEM_ENABLED, .number = automaton->fair[i], .is_local = true };
+        automaton->fair_item[i] = r->queries->items;
+        is_fine = add_item(r, &item);
+    }
+    return is_fine;
+}
+
+static int by_state(const void *a, const void *b)
+{
+    const ex_edge_t *const first = a;
+    const ex_edge_t *const second = b;
+    return (first->from < second->from) ? -1 : ((first->from > second->from) ? 1 : 0);
+}
+
+static bool finish_automaton(reader_t *r)
+{
+    ex_automaton_t *const automaton = r->automaton;
+    if (automaton->edges > 0U) {
+        qsort(automaton->edge, automaton->edges, sizeof *automaton->edge, by_state);
+    }
+    automaton->first = calloc((size_t)automaton->states + 1U, sizeof *automaton->first);
+    if (automaton->first == NULL) {
+        return complain(r, "not enough memory", r->path);
+    }
+    for (uint32_t i = 0U; i < automaton->edges; i++) {
+        automaton->first[automaton->edge[i].from + 1U] += 1U;
+    }
+    for (uint32_t s = 0U; s < automaton->states; s++) {
+        automaton->first[s + 1U] += automaton->first[s];
+    }
+    r->automaton = NULL;
+    return true;
+}
+
+static bool begin_automaton(reader_t *r)
+{
+    if (!next_line(r) || (strcmp(r->word[0], "automaton") != 0) || (r->words != 3U)) {
+        return complain(r, "an automaton is missing", "lasso");
+    }
+    ex_automaton_t *const automaton = calloc(1U, sizeof *automaton);
+    if (automaton == NULL) {
+        return complain(r, "not enough memory", r->path);
+    }
+    r->automaton = automaton;
+    r->edge_room = 0U;
+    r->queries->question[r->queries->questions - 1U].automaton = automaton;
+    if (!read_number(r, r->word[1], (uint64_t)MOST_NUMBER, "not a number", &automaton->states) ||
+        !read_number(r, r->word[2], automaton->states, "there is no such state", &automaton->initial)) {
+        return false;
+    }
+    automaton->is_accepting = calloc(automaton->states, sizeof *automaton->is_accepting);
+    return (automaton->is_accepting != NULL) || complain(r, "not enough memory", r->path);
+}
+
+static bool read_automaton_line(reader_t *r)
+{
+    bool is_fine = true;
+    if (strcmp(r->word[0], "arc") == 0) {
+        return read_edge(r);
+    }
+    if (strcmp(r->word[0], "end") == 0) {
+        return finish_automaton(r);
+    }
+    const bool is_strong = strcmp(r->word[0], "strong") == 0;
+    const bool is_fairness = is_strong || (strcmp(r->word[0], "weak") == 0);
+    if (!is_fairness && (strcmp(r->word[0], "accepting") != 0)) {
+        return complain(r, "no part of an automaton", r->word[0]);
+    }
+    for (uint32_t i = 1U; is_fine && (i < r->words); i++) {
+        uint32_t state = 0U;
+        if (is_fairness) {
+            is_fine = add_fair(r, r->word[i], is_strong);
+        } else {
+            is_fine = read_number(r, r->word[i], r->automaton->states, "there is no such state", &state);
+            r->automaton->is_accepting[state] = is_fine || r->automaton->is_accepting[state];
+        }
+    }
+    return is_fine;
+}
+
+/* --- questions ------------------------------------------------------------------------------------------------------- */
+
+static bool read_bound(const reader_t *r, ex_question_t *question)
+{
+    /* `a` is the place until all lines are read: its item comes at the end of the file. */
+    return read_number(r, r->word[2], pn_net.place_count, "there is no such place", &question->a) &&
+           read_limit(r, r->word[3], 0U, &question->low) && read_limit(r, r->word[4], UINT64_MAX, &question->high);
+}
+
+static bool read_response(const reader_t *r, ex_question_t *question)
+{
+    char *rest = NULL;
+    if (!read_event(r, r->word[2], &question->first) || !read_event(r, r->word[3], &question->second)) {
+        return false;
+    }
+    question->has_most = strcmp(r->word[4], "-") != 0;
+    question->most = question->has_most ? strtod(r->word[4], &rest) : 0.0;
+    if (question->has_most && ((rest == r->word[4]) || (*rest != '\0') || !isfinite(question->most))) {
+        return complain(r, "not a number", r->word[4]);
+    }
+    return (question->kind == EX_ASK_FIRINGS) || pn_net.timed || complain(r, "the net has no time", r->word[1]);
+}
+
+typedef struct asking {
+    const char *word;
+    ex_question_kind_t kind;
+    uint32_t words;
+} asking_t;
+
+static const asking_t s_askings[] = {
+    { "invariant", EX_ASK_INVARIANT, 3U }, { "initially", EX_ASK_INITIALLY, 3U }, { "bound", EX_ASK_BOUND, 5U },
+    { "lasso", EX_ASK_LASSO, 2U }, { "within-firings", EX_ASK_FIRINGS, 5U }, { "within-time", EX_ASK_TIME, 5U },
+};
+
+static bool read_question(reader_t *r)
+{
+    ex_queries_t *const queries = r->queries;
+    const asking_t *asking = NULL;
+    for (uint32_t i = 0U; (r->words > 1U) && (i < (sizeof s_askings / sizeof s_askings[0])); i++) {
+        asking = (strcmp(r->word[1], s_askings[i].word) == 0) ? &s_askings[i] : asking;
+    }
+    if ((asking == NULL) || (r->words != asking->words)) {
+        return complain(r, "no such question, or the wrong number of operands", (r->words > 1U) ? r->word[1] : "?");
+    }
+    ex_question_t *const questions = with_room(queries->question, queries->questions, &r->question_room, sizeof *questions);
+    if (questions == NULL) {
+        return complain(r, "not enough memory", r->path);
+    }
+    queries->question = questions;
+    ex_question_t *const question = &questions[queries->questions];
+    question->kind = asking->kind;
+    question->node = EX_NO_NODE;
+    question->steps = -1;
+    queries->questions += 1U;
+    switch (asking->kind) {
+    case EX_ASK_INVARIANT:
+    case EX_ASK_INITIALLY:
+        return read_item(r, r->word[2], &question->a);
+    case EX_ASK_BOUND:
+        return read_bound(r, question);
+    case EX_ASK_LASSO:
+        return begin_automaton(r);
+    case EX_ASK_FIRINGS:
+    case EX_ASK_TIME:
+    default:
+        return read_response(r, question);
+    }
+}
+
+/* --- the file -------------------------------------------------------------------------------------------------------- */
+
+/* What only the questions need gets items with numbers that no line mentions. */
+static bool add_hidden_items(reader_t *r)
+{
+    ex_queries_t *const queries = r->queries;
+    bool is_fine = true;
+    for (uint32_t i = 0U; is_fine && (i < queries->questions); i++) {
+        ex_question_t *const question = &queries->question[i];
+        if (question->kind == EX_ASK_BOUND) {
+            const ex_item_t item = { .kind = EX_ITEM_WITHIN, .number = question->a, .low = question->low, .high = question->high,
+                                     .is_local = true };
+            question->a = queries->items;
+            is_fine = add_item(r, &item);
+        } else if (question->automaton != NULL) {
+            is_fine = add_fair_items(r, question->automaton);
+        }
+    }
+    return is_fine;
+}
+
+/* The whole file as a string to be freed; NULL: it cannot be read. */
+static char *read_file(const char *path)
+{
+    FILE *const file = fopen(path, "rb");
+    char *text = NULL;
+    size_t used = 0U;
+    size_t room = 0U;
+    bool is_fine = file != NULL;
+    while (is_fine && (feof(file) == 0)) {
+        if ((used + 1U) >= room) {
+            room = (room == 0U) ? 65536U : (room * 2U);
+            char *const larger = realloc(text, room);
+            is_fine = larger != NULL;
+            text = is_fine ? larger : text;
+        }
+        used += is_fine ? fread(&text[used], 1U, room - used - 1U, file) : 0U;
+        is_fine = is_fine && (ferror(file) == 0);
+    }
+    if (file != NULL) {
+        (void)fclose(file);
+    }
+    if (!is_fine) {
+        free(text);
+        return NULL;
+    }
+    text[used] = '\0';
+    return text;
+}
+
+static bool read_lines(reader_t *r)
+{
+    bool is_fine = true;
+    while (is_fine && next_line(r)) {
+        if (r->automaton != NULL) {
+            is_fine = read_automaton_line(r);
+        } else if (strcmp(r->word[0], "?") == 0) {
+            is_fine = read_question(r);
+        } else {
+            is_fine = read_state_item(r);
+        }
+    }
+    is_fine = is_fine && !r->is_wrong;
+    return is_fine && ((r->automaton == NULL) || complain(r, "the automaton has no end", "lasso"));
+}
+
+bool ex_queries_read(ex_run_t *run)
+{
+    ex_queries_t *const queries = calloc(1U, sizeof *queries);
+    char *const text = read_file(run->options.queries);
+    reader_t *const r = calloc(1U, sizeof *r);
+    if ((queries == NULL) || (text == NULL) || (r == NULL)) {
+        (void)fprintf(stderr, "explore: cannot read `%s`\n", run->options.queries);
+        free(text);
+        free(r);
+        return false;
+    }
+    queries->run = run;
+    (void)pthread_mutex_init(&queries->lock, NULL);
+    r->queries = queries;
+    r->path = run->options.queries;
+    r->rest = text;
+    const bool is_fine = read_lines(r) && add_hidden_items(r);
+    free(text);
+    free(r);
+    run->queries = is_fine ? queries : NULL;
+    return is_fine;
+}

@@ -1,0 +1,189 @@
+"""Properties in `pn2code verify`: gathered from where they are written, asked, and their answers shown."""
+
+from __future__ import annotations
+
+import os
+import re
+from collections.abc import Sequence
+from contextlib import suppress
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+from pn2code.cli.nets import OpenNet
+from pn2code.diagnostics import Diagnostics, Origin
+from pn2code.properties import codes, sources
+from pn2code.properties import meaning as m
+from pn2code.properties.ltl import TooLargeError
+from pn2code.properties.questions import Questions
+from pn2code.semantics.effects import Effect, Effects
+from pn2code.semantics.game import GameError
+from pn2code.semantics.values import MlException, MlLimit
+from pn2code.simulate.script import TraceRefusedError
+from pn2code.verify import confirm
+from pn2code.verify.answers import Answer, answers
+from pn2code.verify.codes import TRACE_UNWRITABLE
+from pn2code.verify.limits import Reduction
+from pn2code.verify.result import Exploration
+
+_OUTSIDE = frozenset({Effect.DRAW, Effect.LOOK, Effect.WRITE, Effect.COUNT})
+_PROVEN_BY_RUN = (m.Invariant, m.Bound, m.Linear)
+"""What is shown by a run whenever it is decided against it."""
+
+
+@dataclass(frozen=True, slots=True)
+class Asked:
+    """What is asked about a net; nothing, if no properties are written anywhere."""
+
+    properties: m.Properties = m.Properties()
+    questions: str = ""
+
+    def __bool__(self) -> bool:
+        """Whether anything is asked."""
+        return bool(self.properties.properties)
+
+    @property
+    def is_timed(self) -> bool:
+        """Whether an answer is in units of time."""
+        limits = (p.asked for p in self.properties.properties)
+        return any(isinstance(x, m.Response) and x.time is not None for x in limits)
+
+
+def asked(
+    opened: OpenNet, texts: Sequence[str], file: Path | None, d: Diagnostics, *, found: bool
+) -> Asked:
+    """All properties of a net; what is wrong with them is reported.
+
+    Args:
+        opened: the net.
+        texts: of the command line.
+        file: a file of properties; None: the one beside the net, if there is one.
+        d: gets the errors.
+        found: whether those of the file beside the net and of the cell count.
+    """
+    written = [sources.from_option(text, i) for i, text in enumerate(texts, 1)]
+    beside = sources.beside(Path(opened.flat.file))
+    if file is not None:
+        written += sources.from_file(file, d)
+    elif found and beside.is_file():
+        written += sources.from_file(beside, d)
+    if found:
+        written += sources.from_cell(opened.config, d)
+    typed = opened.examined.typed
+    if not written or typed is None:
+        return Asked()
+    properties = sources.bind(written, opened.flat, typed.elaborator, d)
+    _check_effects(opened, properties, d)
+    questions = Questions()
+    for p in properties.properties:
+        try:
+            questions.ask(p.asked)
+        except TooLargeError:
+            d.error(
+                codes.FORM,
+                "the automaton of this formula becomes too large",
+                p.origin,
+                hint="write several properties instead of one",
+            )
+    return Asked(properties, questions.text())
+
+
+def _check_effects(opened: OpenNet, properties: m.Properties, d: Diagnostics) -> None:
+    """Conditions follow from the marking; references may be read if nothing in the net changes them."""
+    effects = Effects(opened.flat.program)
+    changes = any(
+        Effect.WRITE in effects.of(t.guards, t.delay, t.code.action if t.code else None)
+        or any(Effect.WRITE in effects.of(a.inscription.value) for a in t.arcs if a.inscription)
+        for t in opened.flat.transitions
+    )
+    for predicate in properties.predicates:
+        own = effects.of(predicate.exp)
+        wrong = [e for e in Effect if e in own and (e in _OUTSIDE or changes)]
+        if wrong:
+            d.error(
+                codes.OUTSIDE,
+                f"this condition {wrong[0].value}",
+                predicate.exp.span,
+                hint="say it of what the places hold: nothing else is the same whenever a marking is reached",
+            )
+
+
+def kept(
+    asked: Asked, reductions: Sequence[Reduction], net: OpenNet, d: Diagnostics
+) -> tuple[Reduction, ...]:
+    """The reductions that were asked for without those that lose the answers."""
+    if asked.is_timed and Reduction.TIME in reductions:
+        d.warning(
+            codes.REDUCTION,
+            "the reduction `time` forgets how late it is, but a property asks for units of time",
+            Origin(net.flat.file),
+            hint="the net is explored without it",
+        )
+        return tuple(r for r in reductions if r is not Reduction.TIME)
+    return tuple(reductions)
+
+
+def answered(
+    asked: Asked, opened: OpenNet, found: Exploration, stem: str, d: Diagnostics
+) -> tuple[Answer, ...]:
+    """The answers; runs have got readable names, and have been looked at again.
+
+    A run that does not show what it should is an error: then either engine is wrong.
+    """
+    given = answers(asked.properties, found.answers, found)
+    named = _named(given, stem)
+    for answer in named:
+        if answer.evidence is not None:
+            _confirm(answer, asked, opened, found, d)
+        elif answer.answer == "no" and isinstance(answer.about.asked, _PROVEN_BY_RUN):
+            if found.graph is not None or found.why == "decided":
+                d.warning(
+                    TRACE_UNWRITABLE,
+                    f"the run that shows why `{answer.about.name}` is false cannot be written",
+                    answer.about.origin,
+                    hint="give another folder with `--traces DIR`",
+                )
+    return named
+
+
+def _confirm(
+    answer: Answer, asked: Asked, opened: OpenNet, found: Exploration, d: Diagnostics
+) -> None:
+    assert answer.evidence is not None
+    try:
+        problem = confirm.problem(
+            opened.flat,
+            opened.storage,
+            asked.properties,
+            answer,
+            exact_times="time" not in found.reductions,
+        )
+    except (TraceRefusedError, GameError, OSError, ValueError, MlException, MlLimit) as error:
+        problem = str(error)
+    if problem is not None:
+        d.error(
+            codes.EVIDENCE,
+            f"the run that should show why `{answer.about.name}` is {answer.answer} does not: {problem}",
+            answer.about.origin,
+            notes=[f"the run is {answer.evidence.trace}"],
+            hint="the explorer and the token game differ: this is a bug in pn2code",
+        )
+
+
+def _named(given: Sequence[Answer], stem: str) -> tuple[Answer, ...]:
+    """With traces called by the names of the properties."""
+    used: set[str] = set()
+    named = []
+    for answer in given:
+        if answer.evidence is None:
+            named.append(answer)
+            continue
+        slug = re.sub(r"[^A-Za-z0-9_.]+", "-", answer.about.name).strip("-.")[:60] or "property"
+        while slug.lower() in used:
+            slug += "-2"
+        used.add(slug.lower())
+        trace = answer.evidence.trace.with_name(f"{stem}.{slug}.trace.jsonl")
+        with suppress(OSError):
+            os.replace(answer.evidence.trace, trace)
+            answer = replace(answer, evidence=replace(answer.evidence, trace=trace))
+        named.append(answer)
+    return tuple(named)

@@ -1,0 +1,188 @@
+"""The compiled net against the token game: in every reachable marking the same binding elements and the same markings.
+
+report = compare(net, storage, d)      # CoreReport(nodes=754, arcs=1121, complete=True, deviation=None)
+
+The compiled explorer writes its whole graph; the token game then looks at each node by itself: what is enabled there,
+and what comes of it. Equal at the first node and at each that is reached, the two graphs are equal. Beyond a stated size
+runs of the compiled simulator are repeated step by step instead.
+"""
+
+from __future__ import annotations
+
+import json
+import subprocess
+import tempfile
+from collections import Counter
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from pn2code.diagnostics import Diagnostics
+from pn2code.net.flat import FlatNet
+from pn2code.semantics.files import Files
+from pn2code.semantics.game import Game, GameError
+from pn2code.semantics.marking import (
+    Marking,
+    binding_to_json,
+    place_from_json,
+    place_to_json,
+)
+from pn2code.semantics.replay import replay
+from pn2code.simulate import programs
+from pn2code.verify.explore import Wishes, explore
+from pn2code.verify.limits import Limits
+
+MOST_NODES = 20_000
+WALKS = 20
+WALK_STEPS = 500
+
+
+@dataclass(frozen=True, slots=True)
+class CoreReport:
+    """What was compared.
+
+    Args:
+        nodes, arcs: of the state space, each looked at in both; 0 where it is larger than the limit.
+        complete: whether that is the whole state space.
+        walks, steps: random runs of the compiled simulator that were repeated, and their steps, where it is not.
+        deviation: in words; None: there is none.
+    """
+
+    nodes: int
+    arcs: int
+    complete: bool
+    walks: int = 0
+    steps: int = 0
+    deviation: str | None = None
+
+
+class _Differs(Exception):  # noqa: N818
+    """The two differ; the text says where."""
+
+
+def compare(
+    net: FlatNet,
+    storage: Mapping[str, str],
+    d: Diagnostics,
+    *,
+    most: int = MOST_NODES,
+    walks: int = WALKS,
+) -> CoreReport | None:
+    """Compares the whole graph, or samples of it; None after an error that was reported.
+
+    Args:
+        net: the net.
+        storage: as for `Game`.
+        d: gets the errors.
+        most: nodes up to which the whole graph is compared.
+        walks: random runs beyond that.
+
+    Raises:
+        GameError: a declaration or an initial marking raises an exception.
+    """
+    with tempfile.TemporaryDirectory(prefix="pn2code-") as name:
+        graph = Path(name) / "graph.jsonl"
+        wishes = Wishes(graph=graph, graph_limit=most)
+        limits = Limits(max_states=most, traces=0)
+        found = explore(net, storage, limits, d, wishes)
+        if found is None:
+            return None
+        if found.complete and graph.exists():
+            return _whole(net, storage, graph)
+        return _sampled(net, storage, walks, Path(name), d)
+
+
+def _whole(net: FlatNet, storage: Mapping[str, str], graph: Path) -> CoreReport:
+    markings: list[tuple[float, Mapping[str, Any]]] = []
+    leaving: list[Counter[str]] = []
+    rows: list[Mapping[str, Any]] = []
+    with graph.open(encoding="utf-8", errors="surrogateescape") as lines:
+        for line in lines:
+            row = json.loads(line)
+            if "node" in row:
+                markings.append((row["t"], row["marking"]))
+                leaving.append(Counter())
+            else:
+                rows.append(row)
+    for row in rows:
+        element = _key(row["t"], row["transition"], row["binding"])
+        leaving[row["from"] - 1][f"{element} -> {_marking_key(*markings[row['to'] - 1])}"] += 1
+    game = Game(net, storage, files=Files(None))
+    try:
+        _first(net, game, markings)
+        for (time, places), arcs in zip(markings, leaving, strict=True):
+            _node(net, game, time, places, arcs)
+    except (_Differs, GameError) as difference:
+        return CoreReport(len(markings), len(rows), False, deviation=str(difference))
+    return CoreReport(len(markings), len(rows), True)
+
+
+def _first(net: FlatNet, game: Game, markings: list[tuple[float, Mapping[str, Any]]]) -> None:
+    own = _marking_key(game.marking.time, _places(net, game, game.marking))
+    if not markings or _marking_key(*markings[0]) != own:
+        raise _Differs("the initial markings differ")
+
+
+def _node(
+    net: FlatNet, game: Game, time: float, places: Mapping[str, Any], arcs: Counter[str]
+) -> None:
+    """Raises `_Differs` unless the node has the arcs that the token game gives it."""
+    tokens = tuple(place_from_json(p.colset, places[p.name]) for p in net.places)
+    marking = game.settle(Marking(time if net.real_time else int(time), tokens))
+    expected: Counter[str] = Counter()
+    for element in game.enabled_in(marking):
+        after, occurred = game.occur(marking, element)
+        name = net.transitions[element.transition].name
+        key = _key(marking.time, name, binding_to_json(occurred))
+        expected[f"{key} -> {_marking_key(after.time, _places(net, game, after))}"] += 1
+    # One arc for each binding element: equal ones are one.
+    for text in expected.keys() - arcs.keys():
+        raise _Differs(f"only the token game has, at {_short(places)}: {text}")
+    for text in arcs.keys() - expected.keys():
+        raise _Differs(f"only the compiled net has, at {_short(places)}: {text}")
+
+
+def _sampled(
+    net: FlatNet, storage: Mapping[str, str], walks: int, folder: Path, d: Diagnostics
+) -> CoreReport | None:
+    steps = 0
+    with programs.program(net, storage, d) as program:
+        if program is None:
+            return None
+        for seed, trace in _runs(program, walks, folder):
+            result = replay(trace, net, storage, files=Files(None))
+            steps += result.steps
+            if not result.ok:
+                why = f"run with seed {seed}, step {result.steps + 1}: {result.why}"
+                return CoreReport(0, 0, False, seed, steps, why)
+    return CoreReport(0, 0, False, walks, steps)
+
+
+def _runs(program: Path, walks: int, folder: Path) -> Iterator[tuple[int, Path]]:
+    """Traces of random runs."""
+    trace = folder / "walk.trace.jsonl"
+    for seed in range(1, walks + 1):
+        options = ["--steps", str(WALK_STEPS), "--seed", str(seed), "--trace", str(trace)]
+        subprocess.run([str(program), *options], capture_output=True, check=False)
+        yield seed, trace
+
+
+def _places(net: FlatNet, game: Game, marking: Marking) -> dict[str, Any]:
+    return {
+        p.name: place_to_json(game.colours, p.colset, marking.places[p.index]) for p in net.places
+    }
+
+
+def _marking_key(time: float, places: Mapping[str, Any]) -> str:
+    held = {name: tokens for name, tokens in places.items() if tokens}
+    return json.dumps([float(time), held], sort_keys=True)
+
+
+def _key(time: float, transition: str, binding: Mapping[str, Any]) -> str:
+    return json.dumps([float(time), transition, binding], sort_keys=True)
+
+
+def _short(places: Mapping[str, Any]) -> str:
+    text = json.dumps({name: tokens for name, tokens in places.items() if tokens})
+    return text if len(text) < 400 else f"{text[:400]}..."

@@ -1,0 +1,168 @@
+"""The supervisor under test: the deployed program over files in memory (`cnative/src/conform_port.c`), asked state by state.
+
+with Probe(program, inputs, trace) as probe:
+    first = probe.first                   # the answer after the first cycle
+    probe.push([("flag1_externo.robcad", "1\\n# 1 00000001 2b3c...\\n")])
+    after = probe.go()                    # Answer(files, marking, fired, ended, reason)
+    probe.pop()
+"""
+
+from __future__ import annotations
+
+import json
+import subprocess
+import tempfile
+from collections.abc import Mapping, Sequence
+from contextlib import suppress
+from dataclasses import dataclass
+from pathlib import Path
+from types import TracebackType
+from typing import Any, Self
+
+from pn2code.toolchain.programs import Host
+
+HOST = Host(
+    "conform",
+    libraries=("-Wl,--wrap=sup_run_cell", "-lm"),
+    also=("supervisor",),
+    instead=("port_posix.c",),
+)
+SESSION = "00000001"
+"""The name of the only session that a program under test ever has."""
+
+
+class ProbeError(Exception):
+    """The program under test does not answer; the message says how it ended."""
+
+
+@dataclass(frozen=True, slots=True)
+class Answer:
+    """What a cycle has left.
+
+    Args:
+        files: name -> text, of all files but temporary ones.
+        marking: place -> JSON of its tokens, all places of the net; those of other owners stay as they were at the start.
+        fired: occurrences in the cycle.
+        ended: None while the program goes on, else "finished" or "stopped".
+        reason: why it has stopped.
+    """
+
+    files: Mapping[str, str]
+    marking: Mapping[str, Any]
+    fired: int
+    ended: str | None
+    reason: str
+
+
+class Probe:
+    """A conversation with the program.
+
+    Args:
+        program: compiled with `HOST`.
+        options: for the program, such as its input folder.
+
+    Attributes:
+        first: what the first cycle has left.
+        depth: states that are saved.
+    """
+
+    def __init__(self, program: Path, options: Sequence[str] = ()) -> None:
+        self._said = tempfile.TemporaryFile("w+b")  # noqa: SIM115 - closed at the end of the conversation
+        self._process = subprocess.Popen(
+            [str(program), "--quiet", "--reply-timeout", "0", *options],
+            stdin=subprocess.PIPE,
+            stdout=subprocess.PIPE,
+            stderr=self._said,
+            start_new_session=True,
+        )
+        self.depth = 0
+        self.first = self._answer()
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(
+        self,
+        kind: type[BaseException] | None,
+        error: BaseException | None,
+        trace: TracebackType | None,
+    ) -> None:
+        self.close()
+
+    def close(self) -> None:
+        """Ends the program and all its saved states: each ends when nothing more is to be read."""
+        assert self._process.stdin is not None
+        assert self._process.stdout is not None
+        with suppress(BrokenPipeError):
+            self._process.stdin.close()
+        while self._process.stdout.readline():
+            pass
+        self._process.stdout.close()
+        self._process.wait()
+        self._said.close()
+
+    def push(self, files: Sequence[tuple[str, str]] = (), seconds: float | None = None) -> None:
+        """Saves the state; then other parties publish files, and the clock shows so much since the start."""
+        asked = [("push", "pushed")]
+        asked += [(f"write {n} {x.encode('latin-1').hex()}", "written") for n, x in files]
+        if seconds is not None:
+            asked.append((f"time {seconds!r}", "time"))
+        self._asked(asked)
+        self.depth += 1
+
+    def pop(self) -> None:
+        """Back to the state saved last."""
+        self._asked([("pop", "popped")])
+        self.depth -= 1
+
+    def go(self) -> Answer:
+        """One cycle. Of a program that ends in it the state saved last is back, as by `pop`."""
+        self._send("go")
+        return self._answer()
+
+    # --- lines -------------------------------------------------------------------------------------
+
+    def _send(self, line: str) -> None:
+        assert self._process.stdin is not None
+        try:
+            self._process.stdin.write(f"{line}\n".encode("ascii"))
+            self._process.stdin.flush()
+        except OSError:
+            raise self._end() from None
+
+    def _line(self) -> dict[str, Any]:
+        assert self._process.stdout is not None
+        text = self._process.stdout.readline()
+        try:
+            data: dict[str, Any] = json.loads(text.decode("utf-8", "surrogateescape"))
+        except ValueError:
+            raise self._end() from None
+        if "error" in data:
+            raise ProbeError(data["error"])
+        return data
+
+    def _asked(self, asked: Sequence[tuple[str, str]]) -> None:
+        """All at once, and then all answers: each exchange costs two changes of processes."""
+        self._send("\n".join(line for line, _ in asked))
+        for line, expected in asked:
+            if expected not in (data := self._line()):
+                raise ProbeError(f"`{line.split()[0]}` was answered by {data}")
+
+    def _answer(self) -> Answer:
+        data = self._line()
+        ended = data["ended"]
+        if ended is not None and self.depth > 0:
+            if "popped" not in (after := self._line()):
+                raise ProbeError(f"the end of the program was followed by {after}")
+            self.depth -= 1
+        return Answer(
+            data["files"], data["marking"], data["fired"], ended, data.get("reason", "")
+        )
+
+    def _end(self) -> ProbeError:
+        self._process.kill()
+        code = self._process.wait()
+        self._said.seek(0)
+        said = self._said.read().decode("utf-8", "replace").strip().splitlines()
+        how = f"signal {-code}" if code < 0 else f"code {code}"
+        return ProbeError(f"it ended with {how}" + (f": {said[-1]}" if said else ""))
