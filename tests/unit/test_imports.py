@@ -41,10 +41,12 @@ ALLOWED: dict[str, set[str]] = {
                  "parser_cache"},
     "verify": {"diagnostics", "ml", "net", "semantics", "structure", "cell", "lowering", "emission", "toolchain",
                "resources", "simulate", "drawing", "reading", "unfold", "properties"},
+    "conform": {"diagnostics", "cell", "channels", "emission", "ml", "net", "pipeline", "robot", "semantics", "simulate",
+                "tdl", "toolchain", "verify"},
     "__main__": {"cli"},
     "cli": {"diagnostics", "cell", "channels", "emission", "net", "pipeline", "run", "report", "semantics", "toolchain",
             "robot", "tdl", "ml", "lowering", "bytecode", "reading", "drawing", "simulate", "monitors", "structure",
-            "convert", "unfold", "verify"},
+            "convert", "unfold", "verify", "properties", "conform"},
 }  # fmt: skip
 EVERYWHERE = {"frozen", "private_folder"}
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 import re
 from collections.abc import Sequence
 from contextlib import suppress
@@ -26,8 +25,6 @@ from pn2code.verify.limits import Reduction
 from pn2code.verify.result import Exploration
 
 _OUTSIDE = frozenset({Effect.DRAW, Effect.LOOK, Effect.WRITE, Effect.COUNT})
-_PROVEN_BY_RUN = (m.Invariant, m.Bound, m.Linear)
-"""What is shown by a run whenever it is decided against it."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -69,7 +66,7 @@ def asked(
     if found:
         written += sources.from_cell(opened.config, d)
     typed = opened.examined.typed
-    if not written or typed is None:
+    if not written or typed is None or typed.elaborator is None:
         return Asked()
     properties = sources.bind(written, opened.flat, typed.elaborator, d)
     _check_effects(opened, properties, d)
@@ -134,15 +131,21 @@ def answered(
     for answer in named:
         if answer.evidence is not None:
             _confirm(answer, asked, opened, found, d)
-        elif answer.answer == "no" and isinstance(answer.about.asked, _PROVEN_BY_RUN):
-            if found.graph is not None or found.why == "decided":
-                d.warning(
-                    TRACE_UNWRITABLE,
-                    f"the run that shows why `{answer.about.name}` is false cannot be written",
-                    answer.about.origin,
-                    hint="give another folder with `--traces DIR`",
-                )
+        elif answer.answer == "no" and _has_run(answer.about.asked):
+            d.warning(
+                TRACE_UNWRITABLE,
+                f"the run that shows why `{answer.about.name}` is false cannot be written",
+                answer.about.origin,
+                hint="give another folder with `--traces DIR`",
+            )
     return named
+
+
+def _has_run(asked: m.Asked) -> bool:
+    """Whether a run shows that it is false."""
+    return isinstance(asked, m.Bound | m.Linear) or (
+        isinstance(asked, m.Invariant) and asked.wanted
+    )
 
 
 def _confirm(
@@ -183,7 +186,7 @@ def _named(given: Sequence[Answer], stem: str) -> tuple[Answer, ...]:
         used.add(slug.lower())
         trace = answer.evidence.trace.with_name(f"{stem}.{slug}.trace.jsonl")
         with suppress(OSError):
-            os.replace(answer.evidence.trace, trace)
+            answer.evidence.trace.replace(trace)
             answer = replace(answer, evidence=replace(answer.evidence, trace=trace))
         named.append(answer)
     return tuple(named)

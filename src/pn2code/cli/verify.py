@@ -4,12 +4,14 @@ from __future__ import annotations
 
 import json
 import re
+from collections.abc import Sequence
 from datetime import datetime
 from pathlib import Path
 from typing import Annotated
 
 import typer
 
+from pn2code.cli import properties
 from pn2code.cli.interrupts import Interrupts
 from pn2code.cli.nets import OpenNet, open_net, playing
 from pn2code.cli.options import (
@@ -28,12 +30,14 @@ from pn2code.diagnostics import Diagnostics, Origin
 from pn2code.semantics.game import GameError
 from pn2code.simulate.script import TraceRefusedError
 from pn2code.verify import chance
+from pn2code.verify.answers import Answer, verdict
 from pn2code.verify.codes import REPORT_UNWRITABLE, STATE_ERROR, TRACE_UNWRITABLE
 from pn2code.verify.explore import Wishes, explore
 from pn2code.verify.limits import Approximation, Limits, Order, Reduction, cores
 from pn2code.verify.path import steps, text
 from pn2code.verify.pictures import GRAPH_KINDS, PLOT_KINDS, Pictures
 from pn2code.verify.progress import ProgressLine
+from pn2code.verify.properties_text import told
 from pn2code.verify.report import error_text, report, why_partial
 from pn2code.verify.result import Exploration, Trace, row
 from pn2code.verify.webpage import webpage
@@ -48,6 +52,8 @@ EPILOG = """Examples:
   pn2code verify net.cpn --max-states 1000000 --max-seconds 60 --json
 
   pn2code verify small.cpn --draw graph.html
+
+  pn2code verify net.cpn --property "deadlock free" --property "always { size (Mark.Top'Buffer 1) <= 4 }"
 """
 
 SHOWN_STEPS = 40
@@ -143,6 +149,31 @@ def verify(
             help="Components, home markings, liveness, fairness; they need all arcs once more.",
         ),
     ] = True,
+    texts: Annotated[
+        list[str],
+        typer.Option(
+            "--property",
+            metavar="TEXT",
+            help="Ask this, e.g. `deadlock free` (docs/properties.md); may be given several times.",
+            show_default=False,
+        ),
+    ] = [],  # noqa: B006 - typer reads the default only
+    file: Annotated[
+        Path | None,
+        typer.Option(
+            "--properties",
+            metavar="FILE",
+            help="Ask all of this file.  (default: NET.properties.toml beside the net, if there is one)",
+            show_default=False,
+        ),
+    ] = None,
+    found_properties: Annotated[
+        bool,
+        typer.Option(
+            "--found/--no-found",
+            help="Ask what is written in NET.properties.toml and in cell.toml.",
+        ),
+    ] = True,
     as_json: JsonOption = False,
     quiet: Annotated[
         bool, typer.Option("--quiet", "-q", help="No progress, and nothing but errors.")
@@ -155,10 +186,16 @@ def verify(
 
     Counts of nodes and arcs, bounds of places, dead and home markings, dead and live transitions, fairness: the report
     of CPN Tools, complete. Exit code 0: everything was seen; 3: a limit was hit, which the report says.
+    With properties: 0: all are true, 1: one is false, 3: one is not known and none is false.
     """
     _check_kind(draw_to, GRAPH_KINDS, "--draw")
     _check_kind(plot_to, PLOT_KINDS, "--plot")
     opened = open_net(net, parse_values(settings), form, int_bits=int_bits)
+    d = Diagnostics()
+    asked = properties.asked(opened, texts, file, d, found=found_properties)
+    if d.has_errors:
+        stop(d, form)
+    wanted = () if no_reduction else tuple(dict.fromkeys(reduce))
     limits = Limits(
         max_states=max_states,
         max_seconds=max_seconds,
@@ -167,17 +204,19 @@ def verify(
         order=order,
         approximation=approximate,
         spill=spill,
-        graph=graph,
+        graph=graph or bool(asked),
         traces=most_traces,
-        reductions=() if no_reduction else tuple(dict.fromkeys(reduce)),
+        reductions=properties.kept(asked, wanted, opened, d),
     )
-    d = Diagnostics()
     chance.warn(opened.flat, d)
     with Pictures(draw_to, plot_to) as pictures:
         with Interrupts() as interrupts, ProgressLine(shown=not (as_json or quiet)) as progress:
             wishes = Wishes(
                 traces=_folder(traces) if most_traces else None,
                 stem=_stem(opened),
+                questions=asked.questions,
+                predicates=asked.properties.predicates,
+                evidence=_folder(traces) if asked else None,
                 progress=progress.update,
                 interrupted=interrupts.is_wanted,
             )
@@ -186,6 +225,7 @@ def verify(
         if found is None:
             stop(d, form)
         pictures.write(opened.flat, found, d)
+    answers = properties.answered(asked, opened, found, _stem(opened), d)
     if found.error is not None and found.why == "error":
         _tell_error(opened, found, d)
     if found.graph is not None and len(found.traces) < min(most_traces, found.dead_count):
@@ -193,13 +233,16 @@ def verify(
     if found.error and found.error.get("node") and most_traces and found.error_trace is None:
         _unwritable("the marking in which an exception is raised", traces, d)
     if report_to is not None:
-        _write_report(opened, found, report_to, d)
+        _write_report(opened, found, answers, report_to, d)
     if not as_json and not quiet:
-        typer.echo(_text(opened, found))
+        typer.echo(_text(opened, found, answers))
     print_diagnostics(d.sorted(), form)
     if as_json:
-        typer.echo(json.dumps(row(opened.flat, found), indent=1))
-    code = _code(found, d)
+        said = row(opened.flat, found)
+        if answers:
+            said["properties"] = [a.row() for a in answers]
+        typer.echo(json.dumps(said, indent=1))
+    code = _code(found, answers, d)
     if code:
         raise typer.Exit(code)
 
@@ -227,9 +270,14 @@ def _stem(opened: OpenNet) -> str:
     return re.sub(r"[^A-Za-z0-9_.-]+", "_", opened.flat.name) or "net"
 
 
-def _code(found: Exploration, d: Diagnostics) -> int:
+def _code(found: Exploration, answers: Sequence[Answer], d: Diagnostics) -> int:
+    """Where properties are asked, their answers count, not whether all markings were seen."""
     if d.has_errors:
         return Exit.MODEL
+    if answers:
+        return {"yes": Exit.OK, "no": Exit.MODEL, "inconclusive": Exit.INCONCLUSIVE}[
+            verdict(answers)
+        ]
     return Exit.OK if found.complete else Exit.INCONCLUSIVE
 
 
@@ -266,13 +314,19 @@ def _unwritable(goal: str, traces: Path | None, d: Diagnostics) -> None:
     )
 
 
-def _write_report(opened: OpenNet, found: Exploration, path: Path, d: Diagnostics) -> None:
+def _write_report(
+    opened: OpenNet,
+    found: Exploration,
+    answers: Sequence[Answer],
+    path: Path,
+    d: Diagnostics,
+) -> None:
     now = datetime.now().astimezone()
     page = path.suffix.lower() in (".html", ".htm")
     body = (
-        webpage(opened.flat, found, opened.storage, now)
+        webpage(opened.flat, found, opened.storage, now, answers)
         if page
-        else report(opened.flat, found, now)
+        else report(opened.flat, found, now, answers)
     )
     try:
         with whole_file(path) as beside:
@@ -282,14 +336,17 @@ def _write_report(opened: OpenNet, found: Exploration, path: Path, d: Diagnostic
         d.error(REPORT_UNWRITABLE, f"cannot write `{path}`: {reason}", Origin(str(path)))
 
 
-def _text(opened: OpenNet, found: Exploration) -> str:
-    parts = [report(opened.flat, found, None).rstrip(), _figures(found)]
+def _text(opened: OpenNet, found: Exploration, answers: Sequence[Answer]) -> str:
+    parts = [report(opened.flat, found, None, answers).rstrip(), _figures(found)]
+    parts += [
+        told(opened.flat, opened.storage, a, SHOWN_STEPS) for a in answers if a.evidence is not None
+    ]
     for trace in found.traces:
         parts.append(_told(opened, trace, f"the dead marking {trace.node}"))
     if found.error_trace is not None:
         goal = f"marking {found.error_trace.node}, in which an exception is raised"
-        told = _told(opened, found.error_trace, goal)
-        parts.append(f"{told}\n  then {error_text(opened.flat, found)}")
+        way = _told(opened, found.error_trace, goal)
+        parts.append(f"{way}\n  then {error_text(opened.flat, found)}")
     return "\n\n\n".join(parts)
 
 
@@ -304,6 +361,8 @@ def _told(opened: OpenNet, trace: Trace, goal: str) -> str:
 
 def _figures(found: Exploration) -> str:
     partial = "" if found.complete else f" TRUNCATED: {why_partial(found)}."
+    if found.why == "decided":
+        partial = f" Ended early: {why_partial(found)}."
     return (
         f"{found.nodes:,} markings and {found.arcs:,} arcs{' of the reduced space' * found.is_reduced} "
         f"in {found.seconds:.2f} s "

@@ -170,7 +170,7 @@ def _options(limits: Limits, chosen: Chosen, sizes: Sizes, wishes: Wishes) -> li
         ("--trace-to", wishes.traces and wishes.traces / f"{wishes.stem}.dead-"),
         ("--traces", limits.traces if wishes.traces else None),
         ("--error-trace-to", wishes.traces and wishes.traces / f"{wishes.stem}.error-"),
-        ("--query-trace-to", wishes.evidence and wishes.evidence / f"{wishes.stem}.property-"),
+        ("--query-trace-to", wishes.evidence and wishes.evidence / f"{wishes.stem}.query-"),
         ("--write-graph", wishes.graph),
         ("--write-limit", wishes.graph_limit),
         ("--progress-every", wishes.pace),

@@ -39,7 +39,7 @@ def remarks(a: Answer) -> list[str]:
     found = []
     if a.about.says:
         found.append(a.about.holds)
-    if a.about.fair:
+    if a.about.fair and "assuming" not in a.about.holds:
         found.append(f"assuming {', '.join(a.about.fair)}")
     if a.value is not None:
         found.append(f"{_VALUES.get(a.about.kind, 'value')}: {number(a.value)}")
@@ -68,9 +68,12 @@ def heading(a: Answer) -> str:
     length = f"{e.steps} step{'s' * (e.steps != 1)}"
     if e.loop is not None and e.loop < e.steps:
         turns = e.steps - e.loop
-        length += f", of which the last {turns if turns > 1 else 'one'} are repeated for ever"
-        if turns == 1:
-            length = length.replace("are repeated", "is repeated")
+        if e.loop == 0:
+            length += ", repeated for ever"
+        elif turns == 1:
+            length += ", of which the last one is repeated for ever"
+        else:
+            length += f", of which the last {turns} are repeated for ever"
     return f"`{a.about.name}` {what}: {length}, {e.trace}"
 
 

@@ -7,13 +7,14 @@ from dataclasses import dataclass
 
 from pn2code.diagnostics import Diagnostics, Origin, Span
 from pn2code.net.flat import FlatNet
+from pn2code.net.predicate import Predicate
 from pn2code.verify import time_reduction
 from pn2code.verify.codes import REDUCTION_NOT_POSSIBLE
 from pn2code.verify.elements import Elements, NotPossibleError, elements
 from pn2code.verify.limits import Reduction
 from pn2code.verify.time_reduction import Obstacle
 
-OBSTACLES: dict[Reduction, Callable[[FlatNet], Obstacle | None]] = {
+OBSTACLES: dict[Reduction, Callable[..., Obstacle | None]] = {
     Reduction.TIME: time_reduction.obstacle,
 }
 """What looks for the first thing in a net that is in the way of a reduction."""

@@ -87,6 +87,7 @@ class Exploration:
         reductions: what was used to see less than everything; "partial-order" keeps whether there are dead markings and
             how many; with "symmetry" a node stands for all markings that are symmetric to it.
         symmetries: for people, of "symmetry".
+        answers: what the explorer says of each question, in order.
     """
 
     complete: bool

@@ -16,7 +16,7 @@ reason = obstacle(net)        # None: the reduction is possible
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
 from pn2code.diagnostics import Origin, Span
@@ -59,7 +59,7 @@ class Obstacle:
 
 
 def obstacle(net: FlatNet, predicates: Sequence[Predicate] = ()) -> Obstacle | None:
-    """The first thing in the net, or in the conditions that are asked for, that tells states apart by the time alone; None: there is none."""
+    """The first thing in the net, or in what is asked, that tells states apart by the time alone; None: nothing."""
     if net.real_time:
         return Obstacle("the clock is real, and sums of reals are rounded", Origin(net.file))
     look = _Look(net)
@@ -86,7 +86,7 @@ class _Look:
             if arc.inscription is None or arc.kind is ArcKind.OUTPUT or not timed:
                 continue
             for term in arc.inscription.terms:
-                if term.delay is not None and not _is_natural(term.delay):
+                if term.delay is not None and not _is_natural(term.delay, self._declared):
                     return Obstacle(
                         f"the delay of an input arc of `{t.name}` may be negative", term.delay.span
                     )
@@ -224,15 +224,18 @@ def _takes_apart(pattern: core.Pat) -> bool:
     return False
 
 
-def _is_natural(e: core.Exp) -> bool:
-    """Whether a delay is known not to be negative."""
+def _is_natural(e: core.Exp, declared: Mapping[int, tuple[core.Exp, ...]]) -> bool:
+    """Whether a delay is known not to be negative; `declared`: what the declarations of symbols evaluate."""
     match e:
         case core.Lit(value=int() as number):
             return number >= 0
         case core.Var(symbol=symbol):
+            values = declared.get(symbol.uid, ())
+            if values:  # `val patience = 5;`
+                return all(_is_natural(x, declared) for x in values)
             return _is_natural_colset(symbol)
         case core.If(then=then, otherwise=otherwise):
-            return _is_natural(then) and _is_natural(otherwise)
+            return _is_natural(then, declared) and _is_natural(otherwise, declared)
         case core.Apply(function=core.Builtin(name=name), argument=argument):
             if name in (
                 "Int.toLarge",
@@ -240,10 +243,10 @@ def _is_natural(e: core.Exp) -> bool:
                 "ModelTime.fromInt",
                 "ModelTime.fromIntInf",
             ):
-                return _is_natural(argument)
+                return _is_natural(argument, declared)
             if name in ("Int.+", "Int.*", "IntInf.+", "IntInf.*"):
                 return isinstance(argument, core.RecordExp) and all(
-                    _is_natural(x) for _, x in argument.fields
+                    _is_natural(x, declared) for _, x in argument.fields
                 )
     return False
 

@@ -83,7 +83,7 @@ def _property(net: FlatNet, storage: Mapping[str, str], a: Answer) -> dict[str, 
         is_lasso = loop is not None and loop < a.evidence.steps
         trace = Trace(0, a.evidence.trace, a.evidence.steps)
         found["run"] = {
-            **_trace(net, storage, trace, ""),
+            **_trace(net, storage, trace),
             "heading": properties_text.heading(a),
             "loop": loop + 1 if is_lasso and loop is not None else None,
         }
