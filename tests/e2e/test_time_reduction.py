@@ -214,9 +214,15 @@ def test_what_reads_the_time_is_refused(clauses: str, output: str, why: str) -> 
     assert found is not None and why in found.message
 
 
-@pytest.mark.parametrize(("delay", "refused"), [("(~1)", True), ("3", False), ("t", True)])
+@pytest.mark.parametrize(
+    ("delay", "refused"),
+    [("(~1)", True), ("3", False), ("t", True), ("soon", False), ("past", True), ("odd", True)],
+)
 def test_early_delays_must_not_be_negative(delay: str, refused: bool) -> None:
-    net = flat(REFUSED.replace("in A : t", f"in A : t@+{delay}") % ("", "t"))
+    text = REFUSED.replace("in A : t", f"in A : t@+{delay}")
+    values = "val soon = 2 * 3; val past = ~2; val (odd, even) = (~1, 2);"
+    text = text.replace("globref", f"{values}\n      globref", 1)
+    net = flat(text % ("", "t"))
     assert (obstacle(net) is not None) == refused
 
 

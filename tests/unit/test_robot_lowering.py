@@ -718,3 +718,34 @@ def test_priority_comes_before_the_order_in_the_file(tmp_path: Path) -> None:
     """
     cell = Cell(tmp_path, robot, ("x in INT", "z in INT"))
     assert cell.body.index("filled(z) then") < cell.body.index("mark Top.Robot.T")
+
+
+def test_a_message_that_all_take_tells_transitions_apart_though_one_takes_more(
+    tmp_path: Path,
+) -> None:
+    robot = """
+    place Waiting = 1
+    trans Work code input (p); action moveJoint p
+      both Waiting
+      in flag : 1
+      in job : (i, p)
+      out done : i
+    trans Park guard [k > 1] code action moveHome ()
+      both Waiting
+      in flag : k
+      out done : 0
+    """
+    cell = Cell(tmp_path, robot, ("flag in INT", "job in PAIR", "done out INT"))
+    assert not cell.messages
+    lines = [x.strip() for x in cell.body.splitlines()]
+    at = lines.index("wait until filled(flag)")
+    assert lines[at + 2 : at + 5] == [
+        f"if {lines[at + 1].split()[-1]} = 1 then",
+        "wait until filled(job)",
+        "read job into i, p",
+    ]
+    found = replayed(
+        cell, [("flag", (2,)), ("flag", (1,)), ("job", (7, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0))]
+    )
+    assert found.ok, found.message()
+    assert found.steps == 7
