@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import atexit
+import errno
 import gc
 import importlib
 import os
@@ -26,6 +27,7 @@ VERBS = (
     "replay",
     "verify",
     "structure",
+    "conform",
     "generate",
     "run",
     "robot",
@@ -34,6 +36,10 @@ VERBS = (
     "dump",
     "explain",
 )
+
+
+_FULL = frozenset({errno.ENOSPC, errno.EDQUOT, errno.EFBIG})
+"""A disk that takes no more, seen where nobody expects it: on the standard output."""
 
 
 class _Verbs(TyperGroup):
@@ -141,6 +147,10 @@ def play() -> NoReturn:
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
         sys.exit(Exit.OK)
     except Exception as problem:
+        if isinstance(problem, OSError) and problem.errno in _FULL:
+            typer.echo(f"pn2code: cannot write: {os.strerror(problem.errno).lower()}", err=True)
+            os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+            sys.exit(Exit.USAGE)
         if os.environ.get("PN2CODE_DEBUG"):
             raise
         typer.echo(
