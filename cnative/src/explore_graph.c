@@ -30,6 +30,7 @@ typedef struct block {
     uint64_t room;
     found_arc_t *arc;
     uint8_t is_dead[BLOCK_NODES];
+    uint8_t is_late[BLOCK_NODES];
 } block_t;
 
 /* Successors of one node, gathered so that their lines of the store are on their way when they are looked up. */
@@ -121,6 +122,7 @@ static void expand_blocks(ex_worker_t *worker, void *user)
             const bool is_there = ex_store_fetch(gathered.store, graph->slot[first + i], &key);
             const ex_found_t found = is_there ? ex_successors(worker, &key, gather, &gathered) : EX_FAILED;
             block->is_dead[i] = (found == EX_DEAD) ? 1U : 0U;
+            block->is_late[i] = worker->has_waited ? 1U : 0U;
             const bool is_known = (found == EX_SOME) || (found == EX_DEAD) || level->is_partial;
             if (!is_known || !look_up(level, block, &gathered, i)) {
                 atomic_store(&level->is_failed, true);
@@ -167,6 +169,9 @@ static void number_block(ex_graph_t *graph, const block_t *block, uint32_t first
         graph->dead_count += block->is_dead[i];
         if (block->is_dead[i] != 0U) {
             EX_SET_BIT(graph->dead, node);
+        }
+        if ((graph->late != NULL) && (block->is_late[i] != 0U)) {
+            EX_SET_BIT(graph->late, node);
         }
         for (; (at < block->used) && (block->arc[at].node == i); at++) {
             const uint64_t slot = block->arc[at].slot;
@@ -269,8 +274,9 @@ bool ex_graph(ex_run_t *run)
     graph->parent = ex_alloc(run, nodes * sizeof *graph->parent);
     graph->row = ex_alloc(run, (nodes + 1U) * sizeof *graph->row);
     graph->dead = ex_alloc(run, ((nodes / 64U) + 1U) * sizeof *graph->dead);
+    graph->late = pn_net.timed ? ex_alloc(run, ((nodes / 64U) + 1U) * sizeof *graph->late) : NULL;
     bool is_fine = (graph->slot != NULL) && (graph->number != NULL) && (graph->parent != NULL) && (graph->row != NULL) && (graph->dead != NULL) &&
-                   reserve_arcs(run, graph, run->arcs);
+                   ((graph->late != NULL) || !pn_net.timed) && reserve_arcs(run, graph, run->arcs);
     atomic_store(&run->phase, "graph");
     is_fine = is_fine && build(run, graph) && (!is_whole || (graph->nodes == nodes));
     graph->is_reduced = run->reduction != NULL;

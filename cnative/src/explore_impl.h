@@ -18,6 +18,7 @@
 #include "pn/pn_net.h"
 
 #define EX_MOST_THREADS 64U
+#define EX_MOST_OWNERS 256U
 #define EX_NO_SLOT UINT64_MAX
 #define EX_SPARE_KEYS 1024U /* a store grows when less room than for so many is left below its limit */
 
@@ -412,6 +413,7 @@ typedef struct ex_worker {
     struct ex_stubborn *stubborn; /* of explore_stubborn.c */
     struct ex_symmetry *symmetry; /* of explore_symmetry.c */
     struct ex_early *early;       /* of explore_query_early.c */
+    bool has_waited;         /* the time went on in ex_successors before something was enabled */
     int64_t elapsed;         /* when the time is reduced: how much of it went by in ex_successors before something was enabled */
     /* Counted during the exploration. */
     uint64_t states;         /* expanded */
@@ -456,6 +458,7 @@ typedef struct ex_run {
     bool is_laid_again;         /* ex_layout_again has been done */
     struct ex_reduction *reduction; /* of explore_elements.c; NULL: none that needs a table */
     _Atomic(const char *) phase; /* for the progress lines */
+    const uint32_t *owner_of; /* by transition: whose it is; priorities count among those of one owner. NULL: among all */
     struct ex_graph *graph;  /* of explore_graph.c; NULL: none */
     struct ex_queries *queries;  /* of explore_query_read.c; NULL: nothing is asked */
     struct ex_raised *raised; /* of explore_error.c; NULL: the way to the exception is not known */

@@ -150,6 +150,15 @@ static void mark_needed(ex_queries_t *queries)
             mark_event(queries, &question->first);
             mark_event(queries, &question->second);
             break;
+        case EX_ASK_BLOCKING:
+            if (question->has_item) {
+                queries->item[question->a].is_needed = true;
+            }
+            break;
+        case EX_ASK_FINITE:
+        case EX_ASK_BOUNDED:
+        case EX_ASK_CONFLUENT:
+            break; /* they look at arcs alone */
         case EX_ASK_INVARIANT:
         case EX_ASK_BOUND:
         case EX_ASK_INITIALLY:
@@ -411,6 +420,14 @@ static void answer(ex_queries_t *queries, ex_question_t *question)
         if ((first->is_transition || is_ready(queries, first->number, question)) &&
             (second->is_transition || is_ready(queries, second->number, question))) {
             ex_response(queries, question);
+        }
+        break;
+    case EX_ASK_FINITE:
+    case EX_ASK_BOUNDED:
+    case EX_ASK_CONFLUENT:
+    case EX_ASK_BLOCKING:
+        if ((!question->has_item || is_ready(queries, question->a, question)) && !ex_control(queries, question)) {
+            ex_doubt(queries->run, question);
         }
         break;
     case EX_ASK_INITIALLY:

@@ -103,7 +103,11 @@ typedef enum ex_question_kind {
     EX_ASK_INITIALLY,
     EX_ASK_LASSO,
     EX_ASK_FIRINGS,
-    EX_ASK_TIME
+    EX_ASK_TIME,
+    EX_ASK_FINITE,      /* of a supervisor: explore_control.c */
+    EX_ASK_BOUNDED,
+    EX_ASK_CONFLUENT,   /* `a`: 0 the run of the documented order, 1 another one */
+    EX_ASK_BLOCKING
 } ex_question_kind_t;
 
 typedef enum ex_answer {
@@ -124,6 +128,7 @@ typedef struct ex_question {
     uint32_t a;
     ex_event_t first;
     ex_event_t second;
+    bool has_item;      /* `a` is one */
     bool has_most;      /* a limit of the wait */
     double most;
     uint64_t low;       /* of a bound */
@@ -152,6 +157,8 @@ typedef struct ex_queries {
     bool needs_enabled;     /* by what is enabled in it */
     _Atomic uint32_t open;  /* questions that no state has decided; those that no single state can decide count */
     pthread_mutex_t lock;
+    uint32_t *owner;        /* by transition; 0: the supervisor's. NULL: not told */
+    struct ex_control *control; /* of explore_control.c */
     uint64_t *in_row;       /* arcs backwards: those to node i are in_source[in_row[i]] .. */
     uint32_t *in_source;
 } ex_queries_t;
@@ -213,6 +220,11 @@ ex_answer_t ex_lasso(ex_queries_t *queries, const ex_automaton_t *automaton, uin
 /* --- explore_response.c --- */
 
 void ex_response(ex_queries_t *queries, ex_question_t *question);
+
+/* --- explore_control.c --- */
+
+/* Answers a question about a supervisor. False: no memory, or told to stop. */
+bool ex_control(ex_queries_t *queries, ex_question_t *question);
 
 /* --- explore_way.c --- */
 

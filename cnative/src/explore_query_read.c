@@ -4,6 +4,7 @@
  *     pred 0                          items, numbered from 0; operands stand before
  *     not 0
  *     ef 1
+ *     within 3 1 -                    place 3 has one token at least
  *     ? initially 2                   questions, answered in their order
  *     ? bound 3 0 4                   place 3 has 0 .. 4 tokens; `-`: any number
  *     ? within-firings s0 f2 10       after each node of item 0, transition 2 occurs in one of the next 10 firings
@@ -13,6 +14,12 @@
  *     arc 0 1 +0 -f3                  at a node of item 0, if transition 3 is not the next
  *     strong 2                        fairness that is assumed; weak
  *     end
+ *     owner 0 2 5 7                   transitions of the supervisor; other numbers are robots and devices (explore_control.c)
+ *     priorities own                  priorities count among the transitions of one owner only
+ *     ? finite-response
+ *     ? bounded-response 100
+ *     ? confluence 0                  0: with a run of the documented order, 1: with one that comes to another end
+ *     ? non-blocking 3                nodes of item 3 are final; `-`: none is
  */
 #define _POSIX_C_SOURCE 200809L /* strtok_r */
 
@@ -183,11 +190,25 @@ static void classify(const ex_queries_t *queries, ex_item_t *item, bool has_oper
                           (is_and && a->is_about_dead && b->is_about_dead) || (is_or && (a->is_about_dead || b->is_about_dead));
 }
 
+/* The nodes in which a place has so many tokens. */
+static bool read_within(reader_t *r)
+{
+    ex_item_t item = { .kind = EX_ITEM_WITHIN, .is_local = true };
+    if (r->words != 4U) {
+        return complain(r, "wrong number of operands", r->word[0]);
+    }
+    return read_number(r, r->word[1], pn_net.place_count, "there is no such place", &item.number) &&
+           read_limit(r, r->word[2], 0U, &item.low) && read_limit(r, r->word[3], UINT64_MAX, &item.high) && add_item(r, &item);
+}
+
 static bool read_state_item(reader_t *r)
 {
     const form_t *form = NULL;
     for (uint32_t i = 0U; i < (sizeof s_forms / sizeof s_forms[0]); i++) {
         form = (strcmp(r->word[0], s_forms[i].word) == 0) ? &s_forms[i] : form;
+    }
+    if (strcmp(r->word[0], "within") == 0) {
+        return read_within(r);
     }
     if (form == NULL) {
         return complain(r, "no such item", r->word[0]);
@@ -404,6 +425,26 @@ static bool read_response(const reader_t *r, ex_question_t *question)
     return (question->kind == EX_ASK_FIRINGS) || pn_net.timed || complain(r, "the net has no time", r->word[1]);
 }
 
+/* Of a supervisor. */
+static bool read_control(const reader_t *r, ex_question_t *question)
+{
+    uint32_t most = 0U;
+    bool is_fine = (r->queries->owner != NULL) || complain(r, "the owners of transitions are not told", r->word[1]);
+    if (question->kind == EX_ASK_BOUNDED) {
+        is_fine = is_fine && read_number(r, r->word[2], (uint64_t)UINT32_MAX, "not a number", &most);
+        question->has_most = true;
+        question->most = (double)most;
+    } else if (question->kind == EX_ASK_CONFLUENT) {
+        is_fine = is_fine && read_number(r, r->word[2], 2U, "there is no such run", &question->a);
+    } else if (question->kind == EX_ASK_BLOCKING) {
+        question->has_item = strcmp(r->word[2], "-") != 0;
+        is_fine = is_fine && (!question->has_item || read_item(r, r->word[2], &question->a));
+    } else {
+        /* there is nothing more to read */
+    }
+    return is_fine;
+}
+
 typedef struct asking {
     const char *word;
     ex_question_kind_t kind;
@@ -412,6 +453,8 @@ typedef struct asking {
 
 static const asking_t s_askings[] = {
     { "invariant", EX_ASK_INVARIANT, 3U }, { "initially", EX_ASK_INITIALLY, 3U }, { "bound", EX_ASK_BOUND, 5U },
+    { "finite-response", EX_ASK_FINITE, 2U }, { "bounded-response", EX_ASK_BOUNDED, 3U }, { "confluence", EX_ASK_CONFLUENT, 3U },
+    { "non-blocking", EX_ASK_BLOCKING, 3U },
     { "lasso", EX_ASK_LASSO, 2U }, { "within-firings", EX_ASK_FIRINGS, 5U }, { "within-time", EX_ASK_TIME, 5U },
 };
 
@@ -443,6 +486,11 @@ static bool read_question(reader_t *r)
         return read_bound(r, question);
     case EX_ASK_LASSO:
         return begin_automaton(r);
+    case EX_ASK_FINITE:
+    case EX_ASK_BOUNDED:
+    case EX_ASK_CONFLUENT:
+    case EX_ASK_BLOCKING:
+        return read_control(r, question);
     case EX_ASK_FIRINGS:
     case EX_ASK_TIME:
     default:
@@ -500,6 +548,28 @@ static char *read_file(const char *path)
     return text;
 }
 
+/* `owner O T...`: whose transitions they are; all that are not mentioned are the supervisor's, who has the number 0. */
+static bool read_owner(reader_t *r)
+{
+    ex_queries_t *const queries = r->queries;
+    uint32_t owner = 0U;
+    uint32_t transition = 0U;
+    if (queries->owner == NULL) {
+        queries->owner = calloc((size_t)pn_net.transition_count + 1U, sizeof *queries->owner);
+    }
+    if (queries->owner == NULL) {
+        return complain(r, "not enough memory", r->path);
+    }
+    bool is_fine = (r->words > 1U) && read_number(r, r->word[1], (uint64_t)EX_MOST_OWNERS, "there are not so many owners", &owner);
+    for (uint32_t i = 2U; is_fine && (i < r->words); i++) {
+        is_fine = read_transition(r, r->word[i], &transition);
+        if (is_fine) {
+            queries->owner[transition] = owner;
+        }
+    }
+    return is_fine;
+}
+
 static bool read_lines(reader_t *r)
 {
     bool is_fine = true;
@@ -508,6 +578,11 @@ static bool read_lines(reader_t *r)
             is_fine = read_automaton_line(r);
         } else if (strcmp(r->word[0], "?") == 0) {
             is_fine = read_question(r);
+        } else if (strcmp(r->word[0], "owner") == 0) {
+            is_fine = read_owner(r);
+        } else if ((strcmp(r->word[0], "priorities") == 0) && (r->words == 2U) && (strcmp(r->word[1], "own") == 0)) {
+            is_fine = (r->queries->owner != NULL) || complain(r, "the owners of transitions are not told", r->word[0]);
+            r->queries->run->owner_of = r->queries->owner;
         } else {
             is_fine = read_state_item(r);
         }

@@ -146,10 +146,39 @@ static bool hunt_transition(hunt_t *hunt, uint32_t t)
     return !worker->failed && !hunt->is_stopped;
 }
 
+/* The same where priorities count among the transitions of an owner only. */
+static bool hunt_by_owner(hunt_t *hunt)
+{
+    const uint32_t *const owner_of = hunt->worker->run->owner_of;
+    int32_t priority[EX_MOST_OWNERS];
+    bool has_found[EX_MOST_OWNERS] = { false };
+    bool is_found = false;
+    bool goes_on = true;
+    for (uint32_t k = 0U; goes_on && (k < pn_net.order_count); k++) {
+        const uint32_t t = pn_net.order[k];
+        const uint32_t owner = owner_of[t];
+        if (has_found[owner] && (pn_net.transition[t].priority != priority[owner])) {
+            continue;
+        }
+        hunt->is_found = false;
+        goes_on = hunt_transition(hunt, t);
+        if (hunt->is_found) {
+            has_found[owner] = true;
+            priority[owner] = pn_net.transition[t].priority;
+            is_found = true;
+        }
+    }
+    hunt->is_found = is_found;
+    return goes_on;
+}
+
 /* The transitions of the best priority at which something is enabled now. False when it is to go no further. */
 static bool hunt_now(hunt_t *hunt)
 {
     int32_t priority = 0;
+    if (hunt->worker->run->owner_of != NULL) {
+        return hunt_by_owner(hunt);
+    }
     for (uint32_t k = 0U; k < pn_net.order_count; k++) {
         const uint32_t t = pn_net.order[k];
         if (hunt->is_found && (pn_net.transition[t].priority != priority)) {
@@ -167,6 +196,7 @@ static bool hunt_now(hunt_t *hunt)
 static bool advance(hunt_t *hunt, pn_time_t next)
 {
     ex_worker_t *worker = hunt->worker;
+    worker->has_waited = true;
     if (worker->run->options.is_time_reduced) {
         age(worker->marking, next);
         worker->elapsed += next.integer;
@@ -183,6 +213,7 @@ ex_found_t ex_successors(ex_worker_t *worker, const ex_key_t *key, ex_arc_sink_t
     const bool is_plain = worker->run->codec->is_plain && (reduction == NULL); /* there is no time either */
     hunt_t hunt = { .worker = worker, .sink = sink, .user = user, .on_next = is_plain ? on_plain : on_successor };
     worker->elapsed = 0;
+    worker->has_waited = false;
     if (!ex_load(worker, key)) {
         return EX_FAILED;
     }

@@ -230,14 +230,11 @@ def examine(partition: Partition, plan: Plan, limits: Limits, d: Diagnostics) ->
         reductions=(Reduction.TIME,) if is_shorter else (),
     )
     with tempfile.TemporaryDirectory(prefix="pn2code-") as name:
-        folder = Path(name)
-        asked = folder / "questions"
-        asked.write_text(questions(partition, plan.firings), encoding="ascii")
         wishes = Wishes(
-            queries=asked,
-            evidence=folder / "run",
+            questions=questions(partition, plan.firings),
+            evidence=Path(name),
+            stem="run",
             predicates=plan.predicates,
-            known=plan.known,
         )
         if plan.progress is not None:
             wishes = replace(wishes, progress=plan.progress)
@@ -254,7 +251,7 @@ def examine(partition: Partition, plan: Plan, limits: Limits, d: Diagnostics) ->
 
 def answers(partition: Partition, found: Exploration, plan: Plan) -> Iterator[Check]:
     """What the explorer's answers to `questions` mean; traces that are wanted are moved to where they are kept."""
-    rows = found.queries
+    rows = found.answers
     if len(rows) != 5 + len(partition.channels):  # it was interrupted before it began
         why = None if found.complete else found.why
         rows = tuple({"answer": "unknown", "why": why} for _ in range(5 + len(partition.channels)))
