@@ -259,7 +259,10 @@ class Graph:
         todo = [start]
         while todo:
             n = todo.pop()
-            if n in self.dead or self.times[n] - self.times[start] > most:
+            if n in self.dead:
+                return True
+            # Whatever comes next comes too late: the second event, too, if it is that.
+            if any(self.times[to] - self.times[start] > most for to in self.next[n]):
                 return True
             if n not in seen:
                 seen.add(n)
