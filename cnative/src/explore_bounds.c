@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: MIT
  * explore_bounds.c - how many tokens each place holds at least and at most, and of each colour.
  *
- * Packed places are looked at in every state: their counters lie in the marking. Of a counter of one bit the least and the most are the
+ * Packed places are looked at in every state: their counters lie in the marking. Of neighbours that are small together it is only noted
+ * which values their bits have had, and what that means is found in the end. Of a counter of one bit the least and the most are the
  * conjunction and the disjunction of all states, 64 at a time. Other places are looked at once for each multi-set that they ever held
  * (explore_intern.c has them all), however many states there are.
  */
@@ -42,8 +43,23 @@ typedef struct place_bounds {
     colours_t colours;
 } place_bounds_t;
 
+/* Packed places that are neighbours, or one of them. */
+typedef struct group {
+    uint32_t unit;       /* 64 bits of the packed part */
+    uint32_t shift;
+    uint32_t bits;       /* at most SEEN_BITS; 0: that is one large place, see `first` */
+    uint32_t first;      /* in ex_bounds.order */
+    uint32_t places;
+    uint8_t *seen;       /* by value of these bits */
+} group_t;
+
+enum { SEEN_BITS = 10, UNIT_BITS = 64 };
+
 struct ex_bounds {
     uint64_t states;
+    uint32_t *order;    /* packed places, by their first bit */
+    group_t *group;
+    uint32_t groups;
     uint64_t *all;      /* conjunction of the packed parts */
     uint64_t *any;      /* disjunction */
     place_bounds_t *place;
@@ -52,6 +68,60 @@ struct ex_bounds {
 static size_t packed_words(void)
 {
     return (pn_net.packed_size + sizeof(uint64_t) - 1U) / sizeof(uint64_t);
+}
+
+static uint32_t bits_in(const pn_place_t *place)
+{
+    return place->colours * place->width;
+}
+
+static int by_bit(const void *a, const void *b)
+{
+    const pn_place_t *const first = &pn_net.place[*(const uint32_t *)a];
+    const pn_place_t *const second = &pn_net.place[*(const uint32_t *)b];
+    return (first->bit > second->bit) - (first->bit < second->bit);
+}
+
+/* Groups of neighbours, as many in one as possible. */
+static bool make_groups(ex_bounds_t *bounds)
+{
+    uint32_t count = 0U;
+    bounds->order = calloc((size_t)pn_net.place_count + 1U, sizeof *bounds->order);
+    bounds->group = calloc((size_t)pn_net.place_count + 1U, sizeof *bounds->group);
+    if ((bounds->order == NULL) || (bounds->group == NULL)) {
+        return false;
+    }
+    for (uint32_t p = 0U; p < pn_net.place_count; p++) {
+        if (pn_net.place[p].is_packed) {
+            bounds->order[count++] = p;
+        }
+    }
+    qsort(bounds->order, count, sizeof *bounds->order, by_bit);
+    for (uint32_t k = 0U; k < count; k++) {
+        const pn_place_t *const place = &pn_net.place[bounds->order[k]];
+        const uint32_t unit = place->bit / (uint32_t)UNIT_BITS;
+        const uint32_t end = (place->bit % (uint32_t)UNIT_BITS) + bits_in(place);
+        const bool is_small = bits_in(place) <= (uint32_t)SEEN_BITS; /* then it lies in one unit */
+        group_t *const last = &bounds->group[(bounds->groups > 0U) ? (bounds->groups - 1U) : 0U];
+        if (is_small && (bounds->groups > 0U) && (last->bits > 0U) && (last->unit == unit) && ((end - last->shift) <= (uint32_t)SEEN_BITS)) {
+            last->bits = end - last->shift;
+            last->places++;
+            continue;
+        }
+        bounds->group[bounds->groups] = (group_t){ .unit = unit,
+                                                   .shift = place->bit % (uint32_t)UNIT_BITS,
+                                                   .bits = is_small ? bits_in(place) : 0U,
+                                                   .first = k,
+                                                   .places = 1U };
+        bounds->groups++;
+    }
+    for (uint32_t g = 0U; g < bounds->groups; g++) {
+        bounds->group[g].seen = calloc((size_t)1U << bounds->group[g].bits, sizeof *bounds->group[g].seen);
+        if (bounds->group[g].seen == NULL) {
+            return false;
+        }
+    }
+    return true;
 }
 
 bool ex_bounds_make(ex_worker_t *worker)
@@ -81,7 +151,7 @@ bool ex_bounds_make(ex_worker_t *worker)
             (void)memset(own->counter_least, 0xff, place->colours * sizeof *own->counter_least);
         }
     }
-    return true;
+    return make_groups(bounds);
 }
 
 /* --- packed places ------------------------------------------------------------------------------------------------- */
@@ -113,26 +183,51 @@ static uint64_t see_counters(place_bounds_t *own, const pn_place_t *place, const
     return total;
 }
 
+static void see_place(ex_bounds_t *bounds, uint32_t p, const uint64_t *word)
+{
+    const pn_place_t *const place = &pn_net.place[p];
+    place_bounds_t *const own = &bounds->place[p];
+    const uint64_t total = (place->width == 1U) ? count_bits(word, place->bit, place->colours) : see_counters(own, place, word);
+    own->least = (total < own->least) ? total : own->least;
+    own->most = (total > own->most) ? total : own->most;
+}
+
 void ex_bounds_see(ex_worker_t *worker)
 {
     ex_bounds_t *const bounds = worker->bounds;
     const uint64_t *const word = worker->marking;
+    const size_t words = packed_words();
     bounds->states += 1U;
-    for (size_t i = 0U; i < packed_words(); i++) {
+    for (size_t i = 0U; i < words; i++) {
         bounds->all[i] &= word[i];
         bounds->any[i] |= word[i];
     }
-    for (uint32_t p = 0U; p < pn_net.place_count; p++) {
-        const pn_place_t *const place = &pn_net.place[p];
-        place_bounds_t *const own = &bounds->place[p];
-        if (!place->is_packed) {
-            continue;
+    for (uint32_t g = 0U; g < bounds->groups; g++) {
+        const group_t *const group = &bounds->group[g];
+        if (group->bits > 0U) {
+            group->seen[(word[group->unit] >> group->shift) & (((uint64_t)1U << group->bits) - 1U)] = 1U;
+        } else {
+            see_place(bounds, bounds->order[group->first], word);
         }
-        const uint64_t total =
-            (place->width == 1U) ? count_bits(word, place->bit, place->colours) : see_counters(own, place, word);
-        own->least = (total < own->least) ? total : own->least;
-        own->most = (total > own->most) ? total : own->most;
     }
+}
+
+/* What the values that small places have had mean. False: no memory. */
+static bool see_groups(ex_bounds_t *bounds)
+{
+    uint64_t *const word = calloc(packed_words() + 1U, sizeof *word);
+    for (uint32_t g = 0U; (word != NULL) && (g < bounds->groups); g++) {
+        const group_t *const group = &bounds->group[g];
+        for (uint64_t value = 0U; (group->bits > 0U) && ((value >> group->bits) == 0U); value++) {
+            word[group->unit] = value << group->shift;
+            for (uint32_t k = 0U; (group->seen[value] != 0U) && (k < group->places); k++) {
+                see_place(bounds, bounds->order[group->first + k], word);
+            }
+        }
+        word[group->unit] = 0U;
+    }
+    free(word);
+    return word != NULL;
 }
 
 /* Adds what another thread has seen. */
@@ -354,12 +449,14 @@ void ex_bounds_json(ex_run_t *run, FILE *out)
 {
     ex_bounds_t *const bounds = run->worker[0].bounds;
     char *const buffer = malloc(TEXT_SIZE);
+    bool is_seen = (bounds != NULL) && see_groups(bounds);
     for (uint32_t i = 1U; (bounds != NULL) && (i < run->options.threads); i++) {
         if (run->worker[i].bounds != NULL) {
+            is_seen = is_seen && see_groups(run->worker[i].bounds);
             merge(bounds, run->worker[i].bounds);
         }
     }
-    const bool is_known = (bounds != NULL) && (buffer != NULL) && (bounds->states > 0U) && see_interned(run, bounds);
+    const bool is_known = is_seen && (buffer != NULL) && (bounds->states > 0U) && see_interned(run, bounds);
     (void)fprintf(out, "\"bounds\": %s", is_known ? "[" : "null");
     for (uint32_t p = 0U; is_known && (p < pn_net.place_count); p++) {
         const pn_place_t *const place = &pn_net.place[p];

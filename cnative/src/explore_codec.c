@@ -464,7 +464,13 @@ bool ex_load(ex_worker_t *worker, const ex_key_t *key)
     unsigned char *packed = worker->marking;
     if (codec->is_plain) {
         const uint64_t plain[2] = { key->low, key->high };
-        (void)memcpy(packed, plain, pn_net.packed_size);
+        if (codec->derived_count == 0U) {
+            (void)memcpy(packed, plain, pn_net.packed_size);
+        } else {
+            (void)memset(packed, 0, pn_net.packed_size);
+            (void)memcpy(packed, plain, (pn_net.packed_size < sizeof plain) ? pn_net.packed_size : sizeof plain);
+            ex_derive(codec, packed);
+        }
         return true;
     }
     tidy_arena(scratch);
@@ -475,6 +481,7 @@ bool ex_load(ex_worker_t *worker, const ex_key_t *key)
     for (uint32_t w = 0U; w < codec->packed_words; w++) {
         put_slice(codec, packed, w, cell[w]);
     }
+    ex_derive(codec, packed);
     bool is_fine = true;
     for (uint32_t w = codec->packed_words; is_fine && (w < codec->words); w++) {
         if (!scratch->is_loaded || (cell[w] != old[w - codec->packed_words])) {

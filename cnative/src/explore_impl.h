@@ -191,6 +191,21 @@ typedef struct ex_node {
     uint32_t table;    /* of numbers */
 } ex_node_t;
 
+/* Counters within one unit of 64 bits of the packed part that follow from others: a constant less the terms. */
+typedef struct ex_term {
+    uint32_t unit;
+    uint32_t shift;
+    uint64_t mask;
+    uint64_t weight;
+} ex_term_t;
+
+typedef struct ex_derived {
+    ex_term_t of;      /* weight 1 */
+    uint64_t constant;
+    uint32_t first;    /* of its terms */
+    uint32_t terms;
+} ex_derived_t;
+
 #define EX_TABLES (EX_KEY_WORDS + 1U) /* of numbers: for each part of the key, and for all nodes below */
 
 /* The shape of the vectors: found once, from the tables of the net.
@@ -199,9 +214,13 @@ typedef struct ex_node {
  * of its bytes), one for the time if the net is timed. Where places cannot be encoded one by one, there is one word for the whole marking. */
 typedef struct ex_codec {
     bool is_whole;
-    bool is_plain;           /* the key is the packed part, there is nothing else */
-    uint64_t plain_low;      /* then: the bytes of the marking that belong to it */
+    bool is_plain;           /* the key is the beginning of the packed part; all else follows from it */
+    bool is_word;            /* then: it is at most EX_MOST_WORD */
+    uint64_t plain_low;      /* then: the bits of the marking that belong to it */
     uint64_t plain_high;
+    ex_derived_t *derived;   /* what follows from the rest of the packed part */
+    uint32_t derived_count;
+    ex_term_t *term;
     bool has_cells;          /* there is more than the packed part */
     uint32_t packed_words;
     uint32_t words;          /* cells, without those of the inner nodes */
@@ -238,6 +257,23 @@ static inline void ex_plain_key(const ex_codec_t *codec, const void *marking, ex
     (void)memcpy(&high, (const unsigned char *)marking + sizeof low, sizeof high);
     key->low = ex_alone(low) & codec->plain_low;
     key->high = ex_alone(high) & codec->plain_high;
+}
+
+/* explore_derive.c: tables of what follows from others; the sums, from the initial marking; the counters themselves, which are 0 before. */
+bool ex_derived_make(struct ex_run *run);
+void ex_derived_start(struct ex_run *run, const void *initial);
+static inline void ex_derive(const ex_codec_t *codec, void *marking)
+{
+    uint64_t *const unit = marking;
+    for (uint32_t i = 0U; i < codec->derived_count; i++) {
+        const ex_derived_t *const derived = &codec->derived[i];
+        uint64_t value = derived->constant;
+        for (uint32_t k = 0U; k < derived->terms; k++) {
+            const ex_term_t *const term = &codec->term[derived->first + k];
+            value -= term->weight * ((unit[term->unit] >> term->shift) & term->mask);
+        }
+        unit[derived->of.unit] |= value << derived->of.shift;
+    }
 }
 
 /* What a thread needs for it. */
@@ -313,8 +349,12 @@ ex_found_t ex_all_successors(struct ex_worker *worker, ex_marking_sink_t sink, v
 
 /* --- store (explore_store.c) --------------------------------------------------------------------------------------- */
 
+/* The largest `low` of keys that are kept as one word. */
+#define EX_MOST_WORD (UINT64_MAX >> 1U)
+
 typedef struct ex_store {
     struct ex_run *run;
+    bool is_word;            /* of keys of one word: see explore_words.h */
     unsigned char *bucket;   /* lines of 64 bytes */
     uint64_t buckets;
     uint64_t limit;          /* keys from which on it ought to grow */
@@ -342,8 +382,18 @@ uint64_t ex_store_bytes(const ex_store_t *store);
 
 __extension__ typedef unsigned __int128 ex_wide_t;
 
+/* Of a key of one word. */
+static inline uint64_t ex_word_hash(uint64_t low)
+{
+    const ex_wide_t product = (ex_wide_t)(low ^ 0x9e3779b97f4a7c15U) * 0xe7037ed1a0b428dbU;
+    return (uint64_t)product ^ (uint64_t)(product >> 64U);
+}
+
 static inline uint64_t ex_hash(const ex_key_t *key)
 {
+    if (key->high == 0U) {
+        return ex_word_hash(key->low);
+    }
     /* Product of 128 bits, folded, twice. */
     const ex_wide_t first =
         (ex_wide_t)(key->low ^ 0x9e3779b97f4a7c15U) * (key->high ^ 0xd6e8feb86659fd93U);

@@ -8,204 +8,35 @@
  */
 #define _POSIX_C_SOURCE 200809L
 
-#include "explore_impl.h"
+#include "explore_search.h"
 
 #include <math.h>
 #include <string.h>
 #include <time.h>
 
 enum {
-    CHUNK_SIZE = 1 << 14,
-    BATCH = 64,
-    RECENT = 1 << 13,  /* a power of two: as many as a cache near the processor holds */
     SHARED_FROM = 32, /* keys in a chunk that is given to idle threads */
     FIRST_KEYS = 1 << 14,
     REPORTED = 1 << 12 /* states after which a thread tells how far it is */
 };
 
-/* Keys behind one another; in depth-first search each with its depth. */
-typedef struct chunk {
-    struct chunk *next;
-    uint32_t count;
-    uint32_t taken;   /* from the beginning; of a chunk that is being expanded */
-    unsigned char byte[];
-} chunk_t;
-
-typedef struct ex_level {
-    ex_run_t *run;
-    uint32_t stride;    /* bytes of an entry */
-    uint32_t capacity;  /* entries of a chunk */
-    uint64_t low_mask;  /* of ex_key_t: which bytes are part of a key */
-    uint64_t high_mask;
-    chunk_t *now;       /* of this level, or given away */
-    chunk_t *next;      /* of the next level */
-    chunk_t *spare;
-    uint64_t depth;
-    uint32_t parts;
-    _Atomic uint32_t hungry; /* threads without work */
-    _Atomic uint64_t expanded; /* for the progress: as of the last chunks */
-    _Atomic uint64_t arcs;
-    _Atomic uint64_t deepest;
-    bool is_finished;
-} search_t;
-
-typedef struct pending {
-    ex_key_t key;
-    ex_key_t stored; /* what stands for it in the store */
-    uint64_t hash;
-} pending_t;
-
-typedef struct ex_search {
-    search_t *search;
-    chunk_t *out;       /* being filled; depth first: the top of the stack */
-    chunk_t *expanding; /* breadth first */
-    chunk_t *bottom;    /* depth first: the lowest chunk of the stack (`next` leads downwards) */
-    ex_key_t recent[RECENT]; /* keys that are in the store, or in the batch; zero: none, or the key that is zero */
-    pending_t batch[BATCH];
-    uint32_t pending;
-    bool is_exact;
-    uint64_t depth;     /* of the successors */
-    uint64_t deepest;
-    uint64_t reported_arcs;
-    uint64_t reported_states;
-} ex_search_t;
-
-/* --- chunks ---------------------------------------------------------------------------------------------------------- */
-
-/* With the gate locked. */
-static chunk_t *spare_chunk(search_t *search)
-{
-    chunk_t *chunk = search->spare;
-    if (chunk != NULL) {
-        search->spare = chunk->next;
-        return chunk;
-    }
-    return NULL;
-}
-
-static chunk_t *new_chunk(search_t *search)
-{
-    (void)pthread_mutex_lock(&search->run->gate);
-    chunk_t *chunk = spare_chunk(search);
-    (void)pthread_mutex_unlock(&search->run->gate);
-    if (chunk == NULL) {
-        chunk = ex_alloc(search->run, (uint64_t)CHUNK_SIZE);
-    }
-    if (chunk == NULL) {
-        ex_stop(search->run, EX_MEMORY);
-        return NULL;
-    }
-    chunk->next = NULL;
-    chunk->count = 0U;
-    chunk->taken = 0U;
-    return chunk;
-}
-
-static void put_entry(const search_t *search, chunk_t *chunk, const ex_key_t *key, uint64_t depth)
-{
-    /* What is written too much is overwritten by the next one; behind the last there is room. */
-    unsigned char *at = &chunk->byte[(size_t)chunk->count * search->stride];
-    (void)memcpy(at, key, sizeof *key);
-    if (search->run->options.is_depth_first) {
-        const uint32_t shortened = (depth < UINT32_MAX) ? (uint32_t)depth : UINT32_MAX;
-        (void)memcpy(&at[search->stride - sizeof shortened], &shortened, sizeof shortened);
-    }
-    chunk->count++;
-}
-
-static uint64_t get_entry(const search_t *search, const chunk_t *chunk, uint32_t i, ex_key_t *key)
-{
-    const unsigned char *at = &chunk->byte[(size_t)i * search->stride];
-    uint32_t depth = 0U;
-    (void)memcpy(key, at, sizeof *key);
-    key->low &= search->low_mask;
-    key->high &= search->high_mask;
-    if (search->run->options.is_depth_first) {
-        (void)memcpy(&depth, &at[search->stride - sizeof depth], sizeof depth);
-    }
-    return depth;
-}
-
-/* Gives the chunk that is being filled to the next level. With the gate locked. */
-static void hand_over(ex_search_t *own)
-{
-    search_t *search = own->search;
-    if ((own->out != NULL) && (own->out->count > 0U)) {
-        own->out->next = search->next;
-        search->next = own->out;
-        own->out = NULL;
-    }
-}
-
-/* Gives the lowest chunk of the stack to threads that have nothing to do. */
-static void share_stack(ex_search_t *own)
-{
-    search_t *search = own->search;
-    chunk_t *above = own->out;
-    while ((above != NULL) && (above->next != own->bottom)) {
-        above = above->next;
-    }
-    if (above == NULL) {
-        return;
-    }
-    chunk_t *given = own->bottom;
-    above->next = NULL;
-    own->bottom = above;
-    (void)pthread_mutex_lock(&search->run->gate);
-    given->next = search->now;
-    search->now = given;
-    (void)pthread_cond_broadcast(&search->run->gate_changed);
-    (void)pthread_mutex_unlock(&search->run->gate);
-}
-
-/* A state that has been found for the first time. */
-static bool add_new(ex_search_t *own, const ex_key_t *key)
-{
-    search_t *search = own->search;
-    const bool is_stack = search->run->options.is_depth_first;
-    if ((own->out != NULL) && (own->out->count == search->capacity) && !is_stack) {
-        (void)pthread_mutex_lock(&search->run->gate);
-        hand_over(own);
-        (void)pthread_mutex_unlock(&search->run->gate);
-    }
-    if ((own->out == NULL) || (own->out->count == search->capacity)) {
-        chunk_t *chunk = new_chunk(search);
-        if (chunk == NULL) {
-            return false;
-        }
-        chunk->next = own->out;
-        if (own->out == NULL) {
-            own->bottom = chunk;
-        }
-        own->out = chunk;
-    }
-    put_entry(search, own->out, key, own->depth);
-    if (is_stack && (own->depth > own->deepest)) {
-        own->deepest = own->depth;
-    }
-    if (is_stack && (own->out != own->bottom) && (atomic_load_explicit(&search->hungry, memory_order_relaxed) > 0U)) {
-        share_stack(own);
-    }
-    return true;
-}
-
 /* --- batches --------------------------------------------------------------------------------------------------------- */
 
 /* Whether a state has been seen; for approximations: it seems so. */
-static bool is_known(ex_run_t *run, const pending_t *pending)
+static bool is_known(ex_run_t *run, const ex_pending_t *pending)
 {
     return run->options.is_bitstate ? ex_bits_hold(&run->bits, pending->hash)
                                     : (ex_store_find(&run->store, &pending->stored, pending->hash) != EX_NO_SLOT);
 }
 
-static ex_insertion_t insert(ex_run_t *run, const pending_t *pending)
+static ex_insertion_t insert(ex_run_t *run, const ex_pending_t *pending)
 {
     return run->options.is_bitstate ? ex_bits_insert(&run->bits, pending->hash)
                                     : ex_store_insert(&run->store, &pending->stored, pending->hash, NULL);
 }
 
 /* Of hash compaction and bit states: another hash is all that is kept of a key. */
-static void shorten(const ex_run_t *run, pending_t *pending)
+static void shorten(const ex_run_t *run, ex_pending_t *pending)
 {
     const ex_key_t turned = { pending->key.high ^ 0x6a09e667f3bcc909U, pending->key.low ^ 0xbb67ae8584caa73bU };
     const uint64_t other = ex_hash(&turned);
@@ -219,6 +50,24 @@ static void shorten(const ex_run_t *run, pending_t *pending)
     }
 }
 
+bool ex_batch_begin(ex_worker_t *worker)
+{
+    ex_run_t *run = worker->run;
+    const ex_store_t *store = &run->store;
+    if (ex_is_pausing(run)) {
+        (void)ex_pause(worker);
+    }
+    /* What other threads are inserting now is not counted yet, but there is room above the limit. */
+    return run->options.is_bitstate || ((atomic_load_explicit(&store->used, memory_order_relaxed) + (2U * (uint64_t)EX_BATCH)) <= store->limit)
+           || ex_pause(worker);
+}
+
+bool ex_is_near_limit(const ex_run_t *run)
+{
+    const uint64_t used = atomic_load_explicit(&run->store.used, memory_order_relaxed);
+    return (run->options.max_states - used) <= (2U * (uint64_t)EX_BATCH * run->options.threads);
+}
+
 /* Inserts what has been collected. False when the run stops. */
 static bool flush(ex_worker_t *worker)
 {
@@ -227,18 +76,16 @@ static bool flush(ex_worker_t *worker)
     ex_store_t *store = &run->store;
     uint64_t found = 0U;
     bool goes_on = true;
-    if (ex_is_pausing(run)) {
-        (void)ex_pause(worker);
+    if (own->words != NULL) {
+        return ex_words_flush(worker);
     }
-    /* What other threads are inserting now is not counted yet, but there is room above the limit. */
-    if (!run->options.is_bitstate && ((atomic_load_explicit(&store->used, memory_order_relaxed) + (2U * (uint64_t)BATCH)) > store->limit)
-        && !ex_pause(worker)) {
+    if (!ex_batch_begin(worker)) {
         return false;
     }
     uint64_t before = atomic_load_explicit(&store->used, memory_order_relaxed);
-    const bool is_near = (run->options.max_states - before) <= (2U * (uint64_t)BATCH * run->options.threads);
+    const bool is_near = ex_is_near_limit(run);
     for (uint32_t i = 0U; goes_on && (i < own->pending); i++) {
-        const pending_t *pending = &own->batch[i];
+        const ex_pending_t *pending = &own->batch[i];
         if (is_near && ((before + found) >= run->options.max_states)) {
             if (!is_known(run, pending)) {
                 ex_stop(run, EX_STATES);
@@ -257,7 +104,7 @@ static bool flush(ex_worker_t *worker)
         }
         if (insertion == EX_NEW) {
             found++;
-            goes_on = add_new(own, &pending->key);
+            goes_on = ex_add_new(own, &pending->key);
         }
     }
     own->pending = 0U;
@@ -274,7 +121,7 @@ static bool on_arc(void *user, uint32_t transition, const void *binding, const e
     (void)binding;
     const ex_key_t key = { ex_alone(found->low), ex_alone(found->high) };
     const uint64_t hash = ex_hash(&key);
-    ex_key_t *recent = &own->recent[hash % (uint64_t)RECENT];
+    ex_key_t *recent = &own->recent[hash % (uint64_t)EX_RECENT];
     worker->fired[transition]++;
     worker->arcs++;
     if ((((recent->low ^ key.low) | (recent->high ^ key.high)) == 0U) && ((key.low | key.high) != 0U)) {
@@ -282,7 +129,7 @@ static bool on_arc(void *user, uint32_t transition, const void *binding, const e
     }
     recent->low = key.low;
     recent->high = key.high;
-    pending_t *pending = &own->batch[own->pending];
+    ex_pending_t *pending = &own->batch[own->pending];
     pending->key.low = key.low;
     pending->key.high = key.high;
     pending->stored.low = key.low;
@@ -294,7 +141,7 @@ static bool on_arc(void *user, uint32_t transition, const void *binding, const e
         shorten(worker->run, pending);
     }
     own->pending++;
-    return (own->pending < (uint32_t)BATCH) || flush(worker);
+    return (own->pending < (uint32_t)EX_BATCH) || flush(worker);
 }
 
 /* --- the loop -------------------------------------------------------------------------------------------------------- */
@@ -303,7 +150,7 @@ static bool on_arc(void *user, uint32_t transition, const void *binding, const e
 static void report(ex_worker_t *worker)
 {
     ex_search_t *own = worker->search;
-    search_t *search = own->search;
+    ex_level_t *search = own->level;
     (void)atomic_fetch_add_explicit(&search->arcs, worker->arcs - own->reported_arcs, memory_order_relaxed);
     (void)atomic_fetch_add_explicit(&search->expanded, worker->states - own->reported_states, memory_order_relaxed);
     own->reported_arcs = worker->arcs;
@@ -317,7 +164,7 @@ static void report(ex_worker_t *worker)
 
 void ex_progress(ex_run_t *run, ex_progress_t *progress)
 {
-    const search_t *search = run->level;
+    const ex_level_t *search = run->level;
     const uint64_t states = atomic_load_explicit(&run->store.used, memory_order_relaxed);
     progress->states = states;
     if (search != NULL) {
@@ -331,7 +178,7 @@ void ex_progress(ex_run_t *run, ex_progress_t *progress)
 /* False when the run stops. */
 static bool expand(ex_worker_t *worker, const ex_key_t *key)
 {
-    const ex_found_t found = ex_successors(worker, key, on_arc, worker);
+    const ex_found_t found = (worker->search->words != NULL) ? ex_words_successors(worker, key->low) : ex_successors(worker, key, on_arc, worker);
     switch (found) {
     case EX_SOME:
         break;
@@ -357,13 +204,13 @@ static bool expand(ex_worker_t *worker, const ex_key_t *key)
 }
 
 /* A level that is one chunk, for several threads. With the gate locked. */
-static void split(search_t *search)
+static void split(ex_level_t *search)
 {
-    chunk_t *chunk = search->now;
+    ex_chunk_t *chunk = search->now;
     const uint32_t parts = search->run->options.threads;
     while ((search->parts < parts) && (chunk->count >= (2U * (uint32_t)SHARED_FROM))) {
-        chunk_t *other = spare_chunk(search);
-        other = (other != NULL) ? other : ex_alloc(search->run, (uint64_t)CHUNK_SIZE);
+        ex_chunk_t *other = ex_chunk_spare(search);
+        other = (other != NULL) ? other : ex_alloc(search->run, (uint64_t)EX_CHUNK_SIZE);
         if (other == NULL) {
             return;
         }
@@ -380,8 +227,8 @@ static void split(search_t *search)
 /* The keys of this level become other ones. */
 static void replace_level(ex_run_t *run, ex_replace_t one, const void *layout)
 {
-    const search_t *search = run->level;
-    for (chunk_t *chunk = search->now; chunk != NULL; chunk = chunk->next) {
+    const ex_level_t *search = run->level;
+    for (ex_chunk_t *chunk = search->now; chunk != NULL; chunk = chunk->next) {
         const uint32_t count = chunk->count;
         ex_key_t before = { 0U, 0U };
         for (chunk->count = 0U; chunk->count < count;) {
@@ -389,14 +236,14 @@ static void replace_level(ex_run_t *run, ex_replace_t one, const void *layout)
             ex_key_t key;
             ex_key_t next = { 0U, 0U };
             if (chunk->count == 0U) {
-                (void)get_entry(search, chunk, 0U, &before);
+                (void)ex_chunk_get(search, chunk, 0U, &before);
             }
             key = before;
             if ((chunk->count + 1U) < count) {
-                (void)get_entry(search, chunk, chunk->count + 1U, &next);
+                (void)ex_chunk_get(search, chunk, chunk->count + 1U, &next);
             }
             one(layout, &key);
-            put_entry(search, chunk, &key, 0U);
+            ex_chunk_put(search, chunk, &key, 0U);
             before = next;
         }
     }
@@ -406,7 +253,7 @@ static void replace_level(ex_run_t *run, ex_replace_t one, const void *layout)
  * nobody else at work. */
 static void lay_again(ex_run_t *run)
 {
-    search_t *search = run->level;
+    ex_level_t *search = run->level;
     run->is_laid_again = true;
     if (!ex_layout_again(run, replace_level)) {
         search->now = NULL; /* neither keys of the one kind nor of the other */
@@ -419,12 +266,12 @@ static void lay_again(ex_run_t *run)
 }
 
 /* A chunk to expand; NULL when there is none and never will be. `used` was expanded and is free again. */
-static chunk_t *take_chunk(ex_worker_t *worker, chunk_t *used)
+static ex_chunk_t *take_chunk(ex_worker_t *worker, ex_chunk_t *used)
 {
     ex_run_t *run = worker->run;
     ex_search_t *own = worker->search;
-    search_t *search = own->search;
-    chunk_t *chunk = NULL;
+    ex_level_t *search = own->level;
+    ex_chunk_t *chunk = NULL;
     report(worker);
     (void)pthread_mutex_lock(&run->gate);
     if (used != NULL) {
@@ -438,7 +285,7 @@ static chunk_t *take_chunk(ex_worker_t *worker, chunk_t *used)
             break;
         }
         if (!run->options.is_depth_first) {
-            hand_over(own);
+            ex_hand_over(own);
         }
         if (run->at_work > 1U) {
             /* Others are still at it. */
@@ -477,14 +324,14 @@ static chunk_t *take_chunk(ex_worker_t *worker, chunk_t *used)
 }
 
 /* Breadth first: everything in a chunk, from the first to the last. */
-static bool expand_chunk(ex_worker_t *worker, chunk_t *chunk)
+static bool expand_chunk(ex_worker_t *worker, ex_chunk_t *chunk)
 {
     ex_search_t *own = worker->search;
     bool goes_on = true;
     own->expanding = chunk;
     for (chunk->taken = 0U; goes_on && (chunk->taken < chunk->count); chunk->taken++) {
         ex_key_t key;
-        (void)get_entry(own->search, chunk, chunk->taken, &key);
+        (void)ex_chunk_get(own->level, chunk, chunk->taken, &key);
         goes_on = expand(worker, &key);
     }
     if (goes_on) {
@@ -497,11 +344,11 @@ static bool expand_chunk(ex_worker_t *worker, chunk_t *chunk)
 static bool expand_stack(ex_worker_t *worker)
 {
     ex_search_t *own = worker->search;
-    search_t *search = own->search;
+    ex_level_t *search = own->level;
     while (own->out != NULL) {
         ex_key_t key;
         if (own->out->count == 0U) {
-            chunk_t *empty = own->out;
+            ex_chunk_t *empty = own->out;
             own->out = empty->next;
             (void)pthread_mutex_lock(&search->run->gate);
             empty->next = search->spare;
@@ -510,7 +357,7 @@ static bool expand_stack(ex_worker_t *worker)
             continue;
         }
         own->out->count--;
-        own->depth = get_entry(search, own->out, own->out->count, &key) + 1U;
+        own->depth = ex_chunk_get(search, own->out, own->out->count, &key) + 1U;
         if (!expand(worker, &key) || !flush(worker)) {
             return false;
         }
@@ -521,11 +368,11 @@ static bool expand_stack(ex_worker_t *worker)
 static void work(ex_worker_t *worker, void *user)
 {
     ex_search_t *own = worker->search;
-    chunk_t *used = NULL;
+    ex_chunk_t *used = NULL;
     bool goes_on = true;
     (void)user;
     while (goes_on) {
-        chunk_t *chunk = take_chunk(worker, used);
+        ex_chunk_t *chunk = take_chunk(worker, used);
         if (chunk == NULL) {
             break;
         }
@@ -562,7 +409,7 @@ static uint64_t mask_of(uint32_t bytes)
 }
 
 /* The initial state. */
-static bool begin(ex_run_t *run, search_t *search)
+static bool begin(ex_run_t *run, ex_level_t *search)
 {
     ex_worker_t *first = &run->worker[0];
     run->at_work = 1U; /* tables may grow already */
@@ -570,6 +417,7 @@ static bool begin(ex_run_t *run, search_t *search)
         ex_fail(first, -1);
         return false;
     }
+    ex_derived_start(run, first->marking);
     ex_reduce_time(first);
     if (!ex_layout(run) || !pn_net.init(&first->cx, first->marking)) {
         ex_stop(run, EX_MEMORY);
@@ -589,32 +437,32 @@ static bool begin(ex_run_t *run, search_t *search)
         return false;
     }
     search->stride = length + (run->options.is_depth_first ? (uint32_t)sizeof(uint32_t) : 0U);
-    search->capacity = (uint32_t)(((size_t)CHUNK_SIZE - sizeof(chunk_t) - sizeof(ex_key_t)) / search->stride);
+    search->capacity = (uint32_t)(((size_t)EX_CHUNK_SIZE - sizeof(ex_chunk_t) - sizeof(ex_key_t)) / search->stride);
     search->low_mask = mask_of(length);
     search->high_mask = (length > 8U) ? mask_of(length - 8U) : 0U;
-    pending_t pending = { .key = run->initial, .stored = run->initial, .hash = ex_hash(&run->initial) };
+    ex_pending_t pending = { .key = run->initial, .stored = run->initial, .hash = ex_hash(&run->initial) };
     if (run->options.is_bitstate || run->options.is_hashed) {
         shorten(run, &pending);
     }
     (void)insert(run, &pending);
     atomic_store(&run->store.used, 1U);
-    chunk_t *chunk = new_chunk(search);
+    ex_chunk_t *chunk = ex_chunk_new(search);
     if (chunk == NULL) {
         return false;
     }
-    put_entry(search, chunk, &run->initial, 0U);
+    ex_chunk_put(search, chunk, &run->initial, 0U);
     search->now = chunk;
     return true;
 }
 
 /* States that have been found and not expanded belong to the bounds, too. */
-static void see_chunks(ex_run_t *run, const chunk_t *chunk, uint32_t from, bool is_list)
+static void see_chunks(ex_run_t *run, const ex_chunk_t *chunk, uint32_t from, bool is_list)
 {
     ex_worker_t *worker = &run->worker[0];
     for (; chunk != NULL; chunk = is_list ? chunk->next : NULL) {
         for (uint32_t i = from; i < chunk->count; i++) {
             ex_key_t key;
-            (void)get_entry(run->level, chunk, i, &key);
+            (void)ex_chunk_get(run->level, chunk, i, &key);
             if (ex_load(worker, &key)) {
                 ex_bounds_see(worker);
             }
@@ -624,7 +472,7 @@ static void see_chunks(ex_run_t *run, const chunk_t *chunk, uint32_t from, bool 
 
 static void see_rest(ex_run_t *run)
 {
-    const search_t *search = run->level;
+    const ex_level_t *search = run->level;
     run->worker[0].cx.error = PN_OK; /* has been noted */
     see_chunks(run, search->now, 0U, true);
     see_chunks(run, search->next, 0U, true);
@@ -637,7 +485,7 @@ static void see_rest(ex_run_t *run)
     }
 }
 
-static void sum_up(ex_run_t *run, const search_t *search)
+static void sum_up(ex_run_t *run, const ex_level_t *search)
 {
     run->nodes = atomic_load(&run->store.used);
     run->depth = search->depth;
@@ -657,7 +505,7 @@ static void sum_up(ex_run_t *run, const search_t *search)
 
 bool ex_explore(ex_run_t *run)
 {
-    search_t *search = ex_alloc(run, sizeof *search);
+    ex_level_t *search = ex_alloc(run, sizeof *search);
     if (search == NULL) {
         ex_stop(run, EX_MEMORY);
         return false;
@@ -670,8 +518,12 @@ bool ex_explore(ex_run_t *run)
             ex_stop(run, EX_MEMORY);
             return false;
         }
-        run->worker[i].search->search = search;
+        run->worker[i].search->level = search;
         run->worker[i].search->is_exact = !run->options.is_bitstate && !run->options.is_hashed;
+        if (!ex_words_make(&run->worker[i])) {
+            ex_stop(run, EX_MEMORY);
+            return false;
+        }
     }
     const double started = ex_clock();
     const double cpu_started = cpu_clock();

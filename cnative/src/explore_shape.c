@@ -29,9 +29,23 @@ static bool has_places(void)
     return pn_net.place_count > 0U;
 }
 
+/* Of what is part of a vector: not of what follows from it. */
 static uint32_t bits_in(const pn_place_t *place)
 {
-    return place->is_packed ? (place->colours * place->width) : 0U;
+    return (place->is_packed && (place->share_count == 0U)) ? (place->colours * place->width) : 0U;
+}
+
+/* The end of the packed part without what follows from it. */
+static uint32_t kept_end(void)
+{
+    uint32_t end = 0U;
+    for (uint32_t i = 0U; i < pn_net.place_count; i++) {
+        const pn_place_t *place = &pn_net.place[i];
+        if ((bits_in(place) > 0U) && ((place->bit + bits_in(place)) > end)) {
+            end = place->bit + bits_in(place);
+        }
+    }
+    return end;
 }
 
 static int by_bit(const void *a, const void *b)
@@ -106,6 +120,19 @@ static void lay_plain(ex_codec_t *codec, uint32_t words)
             *width = (needed > *width) ? needed : *width;
         }
     }
+}
+
+/* Which bits of them are the key. */
+static void mask_plain(ex_codec_t *codec)
+{
+    uint64_t mask[2] = { 0U, 0U };
+    for (uint32_t w = 0U; w < codec->packed_words; w++) {
+        const uint64_t own = ((uint64_t)1U << codec->slice_width[w]) - 1U;
+        mask[w / 2U] |= own << ((uint32_t)WORD_BITS * (w % 2U));
+    }
+    codec->plain_low = mask[0];
+    codec->plain_high = mask[1];
+    codec->is_word = (mask[1] == 0U) && (mask[0] <= EX_MOST_WORD);
 }
 
 /* The words behind the packed part. */
@@ -287,9 +314,10 @@ bool ex_codec_make(ex_run_t *run)
         || (codec->parent == NULL) || (cell == NULL)) {
         return false;
     }
-    codec->is_plain = !codec->is_whole && !pn_net.timed && (pn_net.bag_count == 0U) && (packed_words <= EX_KEY_WORDS);
+    const uint32_t kept_words = rounded_up(kept_end(), (uint32_t)WORD_BITS);
+    codec->is_plain = !codec->is_whole && !pn_net.timed && (pn_net.bag_count == 0U) && (kept_words > 0U) && (kept_words <= EX_KEY_WORDS);
     if (codec->is_plain) {
-        lay_plain(codec, packed_words);
+        lay_plain(codec, kept_words);
     } else if (!codec->is_whole) {
         lay_slices(codec, cell);
     }
@@ -301,13 +329,10 @@ bool ex_codec_make(ex_run_t *run)
     }
     lay_tree(codec, cell);
     if (codec->is_plain) {
-        unsigned char mask[2U * sizeof(uint64_t)] = { 0U };
-        (void)memset(mask, 0xff, packed);
-        (void)memcpy(&codec->plain_low, mask, sizeof codec->plain_low);
-        (void)memcpy(&codec->plain_high, &mask[sizeof codec->plain_low], sizeof codec->plain_high);
+        mask_plain(codec);
     }
     ex_free_table(run, cell, most, sizeof *cell);
-    return ex_bytes_make(&codec->bytes, run) && ex_codec_number(run);
+    return ex_derived_make(run) && ex_bytes_make(&codec->bytes, run) && ex_codec_number(run);
 }
 
 bool ex_codec_number(ex_run_t *run)

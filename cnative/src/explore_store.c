@@ -5,8 +5,9 @@
  * the hash; a slot is taken by a compare-and-swap of it. Slots fill from the first to the last, and what does not fit goes to the next
  * bucket, behind the last one to the first; so two threads with the same key meet at the same slot. Where a key is at home is the hash, scaled: in a larger table the
  * order is the same, and growing is one pass from the beginning to the end through both.
+ * Keys of one word lie in a simpler way: see explore_words.h.
  */
-#include "explore_impl.h"
+#include "explore_words.h"
 
 #include <string.h>
 
@@ -142,7 +143,7 @@ static inline view_t look(const unsigned char *bucket, unsigned char tag, uint32
 
 static uint64_t limit_of(const ex_store_t *store)
 {
-    return ((store->buckets * store->slots) / 10U) * 9U;
+    return ((store->buckets * store->slots) / 10U) * (store->is_word ? 8U : 9U);
 }
 
 /* The layout for keys of such widths. */
@@ -161,6 +162,10 @@ static void lay(ex_store_t *store, const uint32_t width[EX_KEY_WORDS])
     store->length = (length < (uint32_t)LEAST_LENGTH) ? (uint32_t)LEAST_LENGTH : length;
     const uint32_t slots = (uint32_t)LINE / (1U + store->length);
     store->slots = (slots > (uint32_t)MOST_SLOTS) ? (uint32_t)MOST_SLOTS : slots;
+    if (store->is_word) {
+        store->length = (uint32_t)sizeof(uint64_t);
+        store->slots = EX_LINE_WORDS;
+    }
 }
 
 /* Whole pages, as memory is counted. */
@@ -173,6 +178,7 @@ static uint64_t buckets_for(const ex_store_t *store, uint64_t keys)
 bool ex_store_make(ex_store_t *store, ex_run_t *run, const uint32_t width[EX_KEY_WORDS], uint64_t keys)
 {
     store->run = run;
+    store->is_word = (run->codec != NULL) && run->codec->is_word && !run->options.is_hashed;
     lay(store, width);
     store->buckets = buckets_for(store, keys);
     store->limit = limit_of(store);
@@ -213,6 +219,11 @@ static void read_key(const ex_store_t *store, const unsigned char *at, ex_key_t 
 
 bool ex_store_fetch(const ex_store_t *store, uint64_t slot, ex_key_t *key)
 {
+    if (store->is_word) {
+        const uint64_t word = __atomic_load_n(&((const uint64_t *)(const void *)store->bucket)[slot], __ATOMIC_RELAXED);
+        *key = (ex_key_t){ word - 1U, 0U };
+        return word != 0U;
+    }
     const unsigned char *bucket = &store->bucket[(slot / store->slots) * (uint64_t)LINE];
     const uint32_t i = (uint32_t)(slot % store->slots);
     if (__atomic_load_n(&bucket[i], __ATOMIC_ACQUIRE) < (unsigned char)FIRST_TAG) {
@@ -226,6 +237,9 @@ uint64_t ex_store_find(const ex_store_t *store, const ex_key_t *key, uint64_t ha
 {
     if (!fits(store, key)) {
         return EX_NO_SLOT;
+    }
+    if (store->is_word) {
+        return ex_word_find(store, key->low, hash);
     }
     const probe_t probe = probe_of(store, key);
     const unsigned char tag = tag_of(hash);
@@ -252,6 +266,10 @@ ex_insertion_t ex_store_insert(ex_store_t *store, const ex_key_t *key, uint64_t 
 {
     if (!fits(store, key)) {
         return EX_FULL;
+    }
+    if (store->is_word) {
+        uint64_t where;
+        return ex_word_insert(store, key->low, hash, (slot != NULL) ? slot : &where);
     }
     const probe_t probe = probe_of(store, key);
     const unsigned char tag = tag_of(hash);
@@ -315,6 +333,30 @@ static bool put(ex_store_t *store, const ex_key_t *key)
     return false;
 }
 
+/* The same with the words of a line. */
+static bool move_line(const uint64_t *line, ex_store_t *new)
+{
+    for (uint32_t i = 0U; (i < EX_LINE_WORDS) && (line[i] != 0U); i++) {
+        uint64_t slot;
+        if (ex_word_insert(new, line[i] - 1U, ex_word_hash(line[i] - 1U), &slot) != EX_NEW) {
+            return false;
+        }
+    }
+    return true;
+}
+
+static bool move_bucket(const ex_store_t *old, const unsigned char *bucket, ex_store_t *new)
+{
+    for (uint32_t i = 0U; (i < old->slots) && (bucket[i] != (unsigned char)FREE); i++) {
+        ex_key_t key;
+        read_key(old, &bucket[old->slots + (i * old->length)], &key);
+        if (!put(new, &key)) {
+            return false;
+        }
+    }
+    return true;
+}
+
 /* The pass through both tables. What has been read is given back while the new table fills, so that not much more than one of them
  * takes room. */
 static bool move_all(const ex_store_t *old, ex_store_t *new)
@@ -322,12 +364,8 @@ static bool move_all(const ex_store_t *old, ex_store_t *new)
     uint64_t done = 0U;
     for (uint64_t b = 0U; b < old->buckets; b++) {
         const unsigned char *bucket = &old->bucket[b * (uint64_t)LINE];
-        for (uint32_t i = 0U; (i < old->slots) && (bucket[i] != (unsigned char)FREE); i++) {
-            ex_key_t key;
-            read_key(old, &bucket[old->slots + (i * old->length)], &key);
-            if (!put(new, &key)) {
-                return false;
-            }
+        if (!(old->is_word ? move_line((const uint64_t *)(const void *)bucket, new) : move_bucket(old, bucket, new))) {
+            return false;
         }
         const uint64_t at = b * (uint64_t)LINE;
         if ((at - done) >= (uint64_t)STEP) {
@@ -381,13 +419,15 @@ static bool grow_to(ex_store_t *store, uint64_t buckets, const uint32_t width[EX
     return is_whole;
 }
 
-/* Twice as much while it is little, a quarter more when it is much. */
-static uint64_t larger(uint64_t keys, uint64_t bytes)
+/* Twice as much while it is little, a quarter more when it is much; half as much where time is worth more. */
+static uint64_t larger(const ex_store_t *store)
 {
+    const uint64_t keys = ex_store_slots(store);
+    const uint64_t bytes = ex_store_bytes(store);
     if (bytes < ((uint64_t)1U << 20U)) {
         return keys * 2U;
     }
-    return keys + ((bytes < ((uint64_t)1U << 24U)) ? (keys / 2U) : (keys / 4U));
+    return keys + ((store->is_word || (bytes < ((uint64_t)1U << 24U))) ? (keys / 2U) : (keys / 4U));
 }
 
 bool ex_store_grow(ex_store_t *store, const uint32_t width[EX_KEY_WORDS])
@@ -406,7 +446,7 @@ bool ex_store_grow(ex_store_t *store, const uint32_t width[EX_KEY_WORDS])
     }
     lay(&new, wider);
     const uint64_t room = store->buckets * store->slots; /* keys */
-    const uint64_t wanted = is_full ? larger(room, ex_store_bytes(store)) : room;
+    const uint64_t wanted = is_full ? larger(store) : room;
     for (uint64_t part = 1U; part <= 4U; part *= 2U) {
         const uint64_t keys = is_full ? (room + ((wanted - room) / part)) : room;
         new.buckets = buckets_for(&new, keys);

@@ -80,12 +80,17 @@ static uint64_t count_slots(const ex_store_t *store)
     return used;
 }
 
-/* Words of the keys of such widths; half of the keys come later than the others. */
+static const uint32_t s_word_widths[EX_KEY_WORDS] = { 32U, 31U, 0U, 0U };
+
+/* Words of the keys of such widths, or keys of one word; half of the keys come later than the others. */
 static void try_store(const uint32_t width[EX_KEY_WORDS], uint64_t keys)
 {
+    static ex_codec_t codec;
     ex_run_t run;
     ex_store_t store;
     make_run(&run, (uint64_t)1U << 30U);
+    codec.is_word = (width == s_word_widths);
+    run.codec = &codec;
     check(ex_store_make(&store, &run, width, 16U), "no memory");
     uint64_t inserted = 0U;
     (void)memset(s_plain, 0, sizeof s_plain);
@@ -133,6 +138,7 @@ static void try_stores(void)
     for (size_t i = 0U; i < (sizeof s_layouts / sizeof s_layouts[0]); i++) {
         try_store(s_layouts[i], (uint64_t)20000U + draw(60000U));
     }
+    try_store(s_word_widths, (uint64_t)20000U + draw(60000U));
     ex_run_t run;
     ex_store_t store;
     make_run(&run, (uint64_t)1U << 28U);
@@ -178,7 +184,7 @@ static void *insert_all(void *user)
     job_t *const job = user;
     for (uint64_t k = 0U; k < job->count; k++) {
         const uint64_t i = ((k + job->start) % job->count) + 1U;
-        const ex_key_t key = numbered(i, s_widths);
+        const ex_key_t key = numbered(i, job->store->is_word ? s_word_widths : s_widths);
         const ex_insertion_t insertion = ex_store_insert(job->store, &key, ex_hash(&key), NULL);
         check(insertion != EX_FULL, "full");
         job->fresh += (insertion == EX_NEW) ? 1U : 0U;
@@ -191,7 +197,7 @@ static void *insert_all(void *user)
     return NULL;
 }
 
-static void try_threads(void)
+static void try_threads_on(ex_codec_t *codec)
 {
     const uint64_t count = 60000U;
     ex_run_t run;
@@ -201,9 +207,10 @@ static void try_threads(void)
     pthread_t thread[WORKERS];
     job_t job[WORKERS];
     make_run(&run, (uint64_t)1U << 30U);
+    run.codec = codec;
     (void)memset(&tuples, 0, sizeof tuples);
     (void)memset(&bytes, 0, sizeof bytes);
-    check(ex_store_make(&store, &run, s_widths, (count * 5U) / 4U) && ex_tuples_make(&tuples, &run, 5U) && ex_bytes_make(&bytes, &run),
+    check(ex_store_make(&store, &run, codec->is_word ? s_word_widths : s_widths, (count * 5U) / 4U) && ex_tuples_make(&tuples, &run, 5U) && ex_bytes_make(&bytes, &run),
           "no memory");
     while ((tuples.index.limit < (count + WORKERS)) || (bytes.index.limit < (count + WORKERS))) {
         /* As if they were nearly full. */
@@ -240,6 +247,14 @@ static void try_threads(void)
         free(job[w].name);
     }
     ex_store_free(&store);
+}
+
+static void try_threads(void)
+{
+    static ex_codec_t s_codec;
+    try_threads_on(&s_codec);
+    s_codec.is_word = true;
+    try_threads_on(&s_codec);
 }
 
 /* --- numbers -------------------------------------------------------------------------------------------------------------- */

@@ -28,7 +28,7 @@ from pn2code.emission.output import Block, OutputFile
 from pn2code.lowering import ir
 from pn2code.lowering.calls import called, ir_nodes
 from pn2code.lowering.ir import NetIR, Rep
-from pn2code.lowering.packing import packed_bits
+from pn2code.lowering.packing import KEY_BITS, key_bits, packed_bits
 
 _MARK = "\x01"
 _MOST_INLINED = 150
@@ -75,12 +75,24 @@ class _Emitter:
         self._packed = self._numbers.of_places(
             net.places, lambda key: self._effects.is_pure(self._functions[key].body)
         )
+        self._has_inlined = net.has_successors and len(net.transitions) <= _MOST_INLINED
+        self._has_words = (
+            self._has_inlined
+            and not net.timed
+            and all(p.packed for p in net.places)
+            and 0 < key_bits(net.places) <= KEY_BITS
+        )
         self._sums_found: dict[int, dict[tuple[int, ir.Ir], Sum]] = {}
         self._has_arena_values = any(
             d.type.rep in (Rep.STRING, Rep.LIST, Rep.UNION)
             for key in self._closure({p.table for p in net.places})
             for d in [self._descriptors[key]]
         )
+
+    def _word_mask(self) -> str:
+        """What takes away what follows from the rest of the first word of the packed part."""
+        has_more = any(p.packed and p.packed.shares and p.packed.bit < 64 for p in self._net.places)
+        return f" & 0x{(1 << key_bits(self._net.places)) - 1:x}U" if has_more else ""
 
     def _closure(self, roots: set[str]) -> set[str]:
         return c_tables.Tables(self._types, self._descriptors, {}).needed(roots)
@@ -235,6 +247,7 @@ class _Emitter:
             "room": 0 if p.timed else self._rooms[p.index],
             "order": "" if p.timed or p.packed else self._orders.name(p.table),
             "packed": p.packed,
+            "shares": p.packed.shares if p.packed else (),
             "is_whole": not p.packed or not self._numbers.members(p.table),
             "number_of": self._numbers.number_of(p.table) if p.packed else "",
             "finder": self._numbers.finder(p.table) if p.packed else "",
@@ -538,8 +551,10 @@ class _Emitter:
             "packed_words": (packed_bits(net.places) + 63) // 64,
             "packed_size": (packed_bits(net.places) + 31) // 32 * 4,
             "transitions": transitions,
+            "has_words": self._has_words,
+            "word_mask": self._word_mask(),
             "inlined": "PN_INLINE"
-            if net.has_successors and len(net.transitions) <= _MOST_INLINED
+            if self._has_inlined
             else "PN_NET_SEARCH static",
             "bag_places": ", ".join(f"{p.index}U" for p in net.places if not p.packed),
             "has_references": any(g.is_reference for g in net.globals),

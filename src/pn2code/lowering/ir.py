@@ -682,11 +682,15 @@ class Global:
 
 @frozen
 class Packed:
-    """Where a packed place has its counters, see `packing`: their number, the bits of one, the first bit."""
+    """Where a packed place has its counters, see `packing`: their number, the bits of one, the first bit.
+
+    Where there are `shares`, (place, weight), its counters and those of these places, so often, never change in sum.
+    """
 
     colours: int
     width: int
     bit: int
+    shares: tuple[tuple[int, int], ...] = ()
 
 
 @frozen

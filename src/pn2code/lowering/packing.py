@@ -11,7 +11,7 @@ their base.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Collection, Iterable, Mapping, Sequence
 from dataclasses import replace
 
 from pn2code.frozen import frozen
@@ -20,6 +20,7 @@ from pn2code.lowering.ir_types import Descriptor, Rep
 from pn2code.ml.colsets import Kind
 from pn2code.ml.types import UNIT
 from pn2code.net.flat import FlatNet
+from pn2code.structure import Sum
 
 MOST_COLOURS = 4096
 MOST_BITS = 8192
@@ -30,6 +31,9 @@ LEAST_UNIT_WIDTH = 4
 _NEAR, _NEAR_UNIT = 3, 2**16 - 1
 """Proven numbers of tokens that counters are made for."""
 _WORD = 64
+KEY_BITS = _WORD - 1
+"""States with no more bits than that have the shortest keys."""
+_MOST_SHARES = 12
 _COLOUR_BYTES = 256
 """What `pn_colour_t` of pn_bag.h has room for."""
 
@@ -43,12 +47,14 @@ class Packing:
         default: of all other places; 0: only the named ones are packed.
         most_colours: places with more colours are not packed.
         successors: whether the net has functions that make all markings after a marking (pn_transition_t.successors).
+        sums: of places, which never change.
     """
 
     width: Mapping[str, int]
     default: int = 1
     most_colours: int = MOST_COLOURS
     successors: bool = True
+    sums: tuple[Sum, ...] = ()
 
     def of(self, place: str) -> int:
         """The width for a place, by its full name."""
@@ -61,7 +67,10 @@ class Packing:
 
 
 def choose(
-    net: FlatNet, initial: Sequence[Iterable[int]], proven: Mapping[int, int] | None = None
+    net: FlatNet,
+    initial: Sequence[Iterable[int]],
+    proven: Mapping[int, int] | None = None,
+    sums: tuple[Sum, ...] = (),
 ) -> Packing:
     """The widths to begin with.
 
@@ -69,6 +78,7 @@ def choose(
         net: the net.
         initial: for each place the counts of the different tokens that it holds at first.
         proven: by index, most tokens of one colour that a place can ever hold, where that is known.
+        sums: as for `Packing`.
     """
     widths: dict[str, int] = {}
     for place, counts in zip(net.places, initial, strict=True):
@@ -86,7 +96,7 @@ def choose(
             is_near = known <= (_NEAR_UNIT if is_unit else _NEAR)
             width = bits(known) if is_near else min(width, bits(known))
         widths[place.name] = width
-    return Packing(widths)
+    return Packing(widths, sums=sums)
 
 
 def bits(count: int) -> int:
@@ -162,19 +172,71 @@ def packed(
             width = 1 << (width - 1).bit_length()
         if width <= MOST_WIDTH and n * width <= MOST_BITS:
             sizes[p.index] = (n, width)
-    first = _positions({i: n * w for i, (n, w) in sizes.items()})
+    bits_of = {i: n * w for i, (n, w) in sizes.items()}
+    shares: dict[int, tuple[tuple[int, int], ...]] = {}
+    if sum(bits_of.values()) > KEY_BITS:
+        shares = _shares({p.index: (p.table, *sizes[p.index]) for p in places if p.index in sizes}, packing.sums)
+    first = _positions(bits_of, shares)
     return tuple(
-        replace(p, packed=ir.Packed(*sizes[p.index], first[p.index]), capacity=sizes[p.index][0])
+        replace(
+            p,
+            packed=ir.Packed(*sizes[p.index], first[p.index], shares.get(p.index, ())),
+            capacity=sizes[p.index][0],
+        )
         if p.index in sizes
         else p
         for p in places
     )
 
 
-def _positions(sizes: Mapping[int, int]) -> dict[int, int]:
-    """The first bit of each: large ones begin with a word, others lie in one, in the first that has room."""
+def _shares(
+    shapes: Mapping[int, tuple[str, int, int]], sums: Iterable[Sum]
+) -> dict[int, tuple[tuple[int, int], ...]]:
+    """Places that follow from others, none of which follows from others itself: place -> (place, weight).
+
+    Args:
+        shapes: of the packed places: colour set, number of counters, bits of a counter.
+        sums: that never change.
+    """
+    found: dict[int, tuple[tuple[int, int], ...]] = {}
+    needed: set[int] = set()
+    for s in sums:
+        if len(s.weights) > _MOST_SHARES or not all(p in shapes for p in s.weights):
+            continue
+        own = {shapes[p] for p in s.weights}
+        is_aligned = len(own) == 1 if s.by_colour else all(n == 1 for _, n, _ in own)
+        if not is_aligned or any(p in found for p in s.weights):
+            continue
+        for place, weight in s.weights.items():
+            if weight == 1 and place not in needed and s.most < 1 << shapes[place][2]:
+                others = tuple((p, w) for p, w in s.weights.items() if p != place)
+                found[place] = others
+                needed.update(p for p, _ in others)
+                break
+    return found
+
+
+def key_bits(places: Iterable[ir.Place]) -> int:
+    """The bits of the packed part up to the last that does not follow from others."""
+    return packed_bits(p for p in places if p.packed and not p.packed.shares)
+
+
+def _positions(sizes: Mapping[int, int], last: Collection[int] = ()) -> dict[int, int]:
+    """The first bit of each: large ones begin with a word, others lie in one, in the first that has room.
+
+    Args:
+        sizes: in bits.
+        last: these come behind all others.
+    """
     first: dict[int, int] = {}
     used: list[int] = []
+    for is_last in (False, True):
+        _position({p: n for p, n in sizes.items() if (p in last) == is_last}, first, used)
+    return first
+
+
+def _position(sizes: Mapping[int, int], first: dict[int, int], used: list[int]) -> None:
+    """Adds to `first`; `used`: bits of each word."""
     for place, size in sizes.items():
         if size > _WORD:
             first[place] = len(used) * _WORD
@@ -186,7 +248,6 @@ def _positions(sizes: Mapping[int, int]) -> dict[int, int]:
                 used.append(0)
             first[place] = word * _WORD + used[word]
             used[word] += size
-    return first
 
 
 def packed_bits(places: Iterable[ir.Place]) -> int:

@@ -7,6 +7,6 @@ Everything here is *sound*: what it claims holds in every reachable marking. It 
 is beyond it, it says less. Docs: docs/structure.md.
 """
 
-from pn2code.structure.analysis import Analysis, Limits, analyse, bounds
+from pn2code.structure.analysis import Analysis, Limits, Sum, analyse, bounds, bounds_and_sums
 
-__all__ = ["Analysis", "Limits", "analyse", "bounds"]
+__all__ = ["Analysis", "Limits", "Sum", "analyse", "bounds", "bounds_and_sums"]

@@ -9,7 +9,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Mapping, Sequence
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 
 from pn2code.net.flat import FlatNet
@@ -20,7 +20,11 @@ from pn2code.semantics.multiset import MultiSet, TimedMultiSet
 from pn2code.structure import flows, siphons
 from pn2code.structure.bounds import MOST_PROGRAMS, PlaceBound, markable, place_bounds
 from pn2code.structure.classes import Graph, classes, components, graph
-from pn2code.structure.coloured import ColouredInvariants, coloured_invariants
+from pn2code.structure.coloured import (
+    ColouredInvariant,
+    ColouredInvariants,
+    coloured_invariants,
+)
 from pn2code.structure.skeleton import Skeleton, skeleton
 from pn2code.structure.symbolic import Symbolic
 
@@ -240,6 +244,21 @@ def analyse(
     )
 
 
+@dataclass(frozen=True, slots=True)
+class Sum:
+    """`sum of weight * marking` never changes.
+
+    Args:
+        weights: place -> weight, all positive.
+        most: most tokens of one colour in it.
+        by_colour: whether it holds for each colour; else for the numbers of tokens.
+    """
+
+    weights: Mapping[int, int]
+    most: int
+    by_colour: bool
+
+
 def bounds(
     net: FlatNet,
     limits: Limits | None = None,
@@ -248,13 +267,24 @@ def bounds(
     given: Collection[str] = (),
 ) -> dict[int, PlaceBound]:
     """Place index -> what is proven of its number of tokens, with the proof. Arguments as for `analyse`."""
+    return bounds_and_sums(net, limits, storage=storage, given=given)[0]
+
+
+def bounds_and_sums(
+    net: FlatNet,
+    limits: Limits | None = None,
+    *,
+    storage: Mapping[str, str] | None = None,
+    given: Collection[str] = (),
+) -> tuple[dict[int, PlaceBound], tuple[Sum, ...]]:
+    """The same, and sums that never change. Arguments as for `analyse`."""
     limits = limits or Limits()
     start = _start(net, storage or {}, given)
     symbolic = Symbolic(net, start.evaluator)
     skel = skeleton(net, symbolic)
     coloured = coloured_invariants(skel, symbolic, start.marking, bool(storage))
     p_flows, t_flows = _p_flows(skel, limits), _t_flows(skel, _SHORT)
-    return place_bounds(
+    found = place_bounds(
         skel,
         start.initial,
         p_flows.vectors,
@@ -262,6 +292,22 @@ def bounds(
         cycling=_cycling(p_flows, t_flows),
         programs=limits.programs,
     )
+    return found, (*_coloured_sums(coloured.found), *_sums(p_flows.vectors, start.initial))
+
+
+def _coloured_sums(found: Sequence[ColouredInvariant]) -> Iterator[Sum]:
+    for invariant in found:
+        is_plain = not any(projection.steps for projection, _ in invariant.terms)
+        if invariant.constant is not None and invariant.is_semi_positive and is_plain:
+            weights = {projection.place: weight for projection, weight in invariant.terms}
+            yield Sum(weights, max(invariant.constant.values(), default=0), by_colour=True)
+
+
+def _sums(vectors: Sequence[Mapping[int, int]], initial: Sequence[int | None]) -> Iterator[Sum]:
+    for weights in vectors:
+        constant = _constant(weights, initial)
+        if constant is not None and all(w > 0 for w in weights.values()):
+            yield Sum(weights, constant, by_colour=False)
 
 
 def _cycling(p_flows: flows.Flows, t_flows: flows.Flows) -> set[int]:

@@ -23,7 +23,7 @@ from pn2code.net.flat import FlatNet
 from pn2code.net.predicate import Predicate
 from pn2code.semantics.files import Files
 from pn2code.semantics.game import Game
-from pn2code.structure import bounds
+from pn2code.structure import bounds_and_sums
 from pn2code.toolchain import programs
 from pn2code.toolchain.programs import Host
 
@@ -70,14 +70,11 @@ class Sizes:
         room = {
             p.name: max(ROOM, 2 * len(tokens)) for p, tokens in zip(net.places, counts, strict=True)
         }
-        proven = {
-            k: b.per_colour
-            for k, b in bounds(net, storage=storage).items()
-            if b.per_colour is not None
-        }
+        bounds, sums = bounds_and_sums(net, storage=storage)
+        proven = {k: b.per_colour for k, b in bounds.items() if b.per_colour is not None}
         more = {k: n for k, n in room.items() if n > ROOM}
         return Sizes(
-            choose(net, counts, proven), more, proven=frozenset(net.places[i].name for i in proven)
+            choose(net, counts, proven, sums), more, proven=frozenset(net.places[i].name for i in proven)
         )
 
     def larger(self, place: str | None) -> Sizes | None:

@@ -57,6 +57,30 @@ typedef struct pn_text {
     bool truncated;
 } pn_text_t;
 
+/* Markings after a marking, of each only the first word of its packed part, from which all else follows (pn_transition_t.words). */
+typedef struct pn_words {
+    pn_ctx_t *cx;
+    const void *marking;
+    uint64_t *word;
+    uint32_t count;          /* of words that are there */
+    uint32_t room;           /* for so many */
+    bool (*is_full)(struct pn_words *words); /* called when there is no room left: makes some; false: stop */
+    void *user;
+} pn_words_t;
+
+static inline bool pn_words_add(pn_words_t *words, uint64_t word)
+{
+    words->word[words->count] = word;
+    words->count++;
+    return (words->count < words->room) || words->is_full(words);
+}
+
+/* A part of a sum of markings that never changes. */
+typedef struct pn_share {
+    uint32_t place;
+    uint32_t weight;
+} pn_share_t;
+
 typedef struct pn_place {
     const char *name;       /* "Top.Robot1.Waiting" */
     const char *colset;     /* "POSE" */
@@ -86,6 +110,10 @@ typedef struct pn_place {
     uint32_t colours;                /* number of counters; 0 if it is not packed */
     uint32_t width;
     uint32_t bit;                    /* UINT32_MAX if it is not packed */
+    /* Of a packed place that follows from others: its counters and those of these places, so often, are always the same in sum. All
+     * of them have as many counters of as many bits, or one counter each; no sum is more than a counter of this place can hold. */
+    uint32_t share_count;
+    const pn_share_t *share;
     /* Canonical bytes of the place alone, the same whether it is packed or not: equal multi-sets, equal bytes. Returns the length
      * that is needed; when that is more than `capacity`, what has been written is worth nothing. */
     size_t (*encode)(const void *marking, uint8_t *out, size_t capacity);
@@ -124,6 +152,9 @@ typedef struct pn_transition {
     /* For every enabled binding, in the order of `enumerate`: makes in *next the marking after its occurrence and calls the sink.
      * Returns false when the sink stopped it; errors are in the context. NULL: enumerate, copy and fire. */
     bool (*successors)(pn_ctx_t *cx, const void *marking, uint32_t self, void *next, pn_successor_sink_t sink, void *user);
+    /* The same, adding to *words the first word of each marking that follows. NULL: not where more than that word, and what follows from
+     * it (pn_place_t.share), changes. */
+    bool (*words)(pn_words_t *words, uint32_t self);
 } pn_transition_t;
 
 /* A condition on markings, asked by those who explore the net. */
