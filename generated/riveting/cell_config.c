@@ -2,6 +2,14 @@
  * cell.toml and generate again.
  *
  * What the supervisor exchanges with whom, through which files; see runtime/include/pn/pn_cell.h.
+ *
+ * Checked in all 754 markings of the closed net (docs/execution.md):
+ * finite-response: yes; the supervisor always comes to rest
+ * bounded-response: yes; at most 6 firings in one cycle
+ * confluence: yes; the order of firing does not matter
+ * non-blocking: yes; a token in `Finished` can be reached from each of the 754 markings under control
+ * channels: yes; at most 1 message in each of 8 channels
+ * ownership: yes; all 228 arcs keep to places of their owner and channels in their direction
  */
 #include "pn/pn_cell.h"
 

@@ -4,6 +4,130 @@
  * sha256  bc69be1a580b3cb5513f806d04badeb94cc7b65f23314caec1160e75c4f2e321
  * digest  00d5d872ef38cb985cf8887933405ed99f76d37eb91cf785ca36b3a5d8fb7c90
  *
+ * The most tokens that each place can hold, under what proves it:
+ *
+ *   the state space, all 754 markings of the closed net
+ *     Cell.dadosrobo1: 1, Cell.dadosrobo2: 1
+ *   invariant flag1_interno + flag1_externo + coordenadas + planned + approached + verified + corrected
+ *   + installed + Finished + Cell.Supervisor.Approach.order + Cell.Supervisor.Approach.done +
+ *   Cell.Supervisor.Approach.Move both.there 1 + offset + Cell.Supervisor.Correct.order +
+ *   Cell.Supervisor.Correct.done + Cell.Supervisor.Correct.Move both.there 1 + shift + ready + riveted +
+ *   return + Cell.Supervisor.Install.Shift.there 1 + advance + contact + fastened + retract +
+ *   Cell.Supervisor.Install.Rivet.Advance.there 1 + pressing + releasing +
+ *   Cell.Supervisor.Install.Rivet.Retract.there 1 + Cell.Supervisor.Install.Return.there 1 + home 1 +
+ *   Cell.Robot1.Commanded + Cell.Robot1.Done = 1
+ *     Cell.flag1_interno: 1, Cell.flag1_externo: 1, Cell.Supervisor.Install.shift: 1,
+ *     Cell.Supervisor.Install.ready: 1, Cell.Supervisor.Install.riveted: 1,
+ *     Cell.Supervisor.Install.Shift.there 1: 1, Cell.Supervisor.Install.Rivet.advance: 1,
+ *     Cell.Supervisor.Install.Rivet.contact: 1, Cell.Supervisor.Install.Rivet.fastened: 1,
+ *     Cell.Supervisor.Install.Rivet.retract: 1, Cell.Supervisor.Install.Rivet.Advance.there 1: 1,
+ *     Cell.Supervisor.Install.Rivet.Fasten.pressing: 1, Cell.Supervisor.Install.Rivet.Fasten.releasing: 1,
+ *     Cell.Supervisor.Install.Rivet.Retract.there 1: 1
+ *   invariant referencia1 + medida1 + coordenadas + planned + approached + verified + corrected +
+ *   installed + Finished + Cell.Supervisor.Approach.seam + Cell.Supervisor.Correct.seam + return + work
+ *   + Cell.Supervisor.Install.Return.moving 1 + Cell.Supervisor.Install.Return.there 1 + leaving 1 +
+ *   home 1 = 1
+ *     Cell.referencia1: 1, Cell.medida1: 1, Cell.Supervisor.coordenadas: 1, Cell.Supervisor.planned: 1,
+ *     Cell.Supervisor.approached: 1, Cell.Supervisor.verified: 1, Cell.Supervisor.corrected: 1,
+ *     Cell.Supervisor.installed: 1, Cell.Supervisor.Finished: 1, Cell.Supervisor.Approach.seam: 1,
+ *     Cell.Supervisor.Correct.seam: 1, Cell.Supervisor.Install.return: 1, Cell.Supervisor.Install.work: 1,
+ *     Cell.Supervisor.Install.Return.moving 1: 1, Cell.Supervisor.Install.Return.there 1: 1,
+ *     Cell.Supervisor.Home.leaving 1: 1, Cell.Supervisor.Home.home 1: 1
+ *   invariant referencia1 + medida1 + flag2_interno + flag2_externo + coordenadas + planned + approached
+ *   + verified + corrected + installed + Finished + Cell.Supervisor.Approach.order +
+ *   Cell.Supervisor.Approach.done + Cell.Supervisor.Approach.Move both.there 2 + offset +
+ *   Cell.Supervisor.Correct.order + Cell.Supervisor.Correct.done + Cell.Supervisor.Correct.Move
+ *   both.there 2 + shift + ready + riveted + return + Cell.Supervisor.Install.Shift.there 2 + advance +
+ *   contact + fastened + retract + Cell.Supervisor.Install.Rivet.Advance.there 2 + drilling + inserting
+ *   + Cell.Supervisor.Install.Rivet.Retract.there 2 + Cell.Supervisor.Install.Return.there 2 + home 2 +
+ *   Cell.Robot2.Commanded + Cell.Robot2.Done = 1
+ *     Cell.flag2_interno: 1, Cell.flag2_externo: 1
+ *   invariant referencia1 + medida1 + coordenadas + planned + approached + verified + corrected +
+ *   installed + Finished + Cell.Supervisor.Approach.order + Cell.Supervisor.Approach.done +
+ *   Cell.Supervisor.Approach.Move both.moving 1 + Cell.Supervisor.Approach.Move both.there 1 +
+ *   Cell.Supervisor.Correct.seam + return + work + Cell.Supervisor.Install.Return.moving 1 +
+ *   Cell.Supervisor.Install.Return.there 1 + leaving 1 + home 1 = 1
+ *     Cell.Supervisor.Approach.order: 1, Cell.Supervisor.Approach.done: 1, Cell.Supervisor.Approach.Move
+ *     both.moving 1: 1, Cell.Supervisor.Approach.Move both.there 1: 1
+ *   invariant referencia1 + medida1 + coordenadas + planned + approached + verified + corrected +
+ *   installed + Finished + Cell.Supervisor.Approach.order + Cell.Supervisor.Approach.done +
+ *   Cell.Supervisor.Approach.Move both.moving 2 + Cell.Supervisor.Approach.Move both.there 2 +
+ *   Cell.Supervisor.Correct.seam + return + work + Cell.Supervisor.Install.Return.moving 1 +
+ *   Cell.Supervisor.Install.Return.there 1 + leaving 1 + home 1 = 1
+ *     Cell.Supervisor.Approach.Move both.moving 2: 1, Cell.Supervisor.Approach.Move both.there 2: 1
+ *   invariant coordenadas + planned + approached + verified + corrected + installed + Finished +
+ *   Cell.Supervisor.Approach.seam + first asked + last asked + Cell.Supervisor.Correct.seam + return +
+ *   work + Cell.Supervisor.Install.Return.moving 1 + Cell.Supervisor.Install.Return.there 1 + leaving 1
+ *   + home 1 = 1
+ *     Cell.Supervisor.Verify.first asked: 1, Cell.Supervisor.Verify.last asked: 1
+ *   invariant referencia1 + medida1 + coordenadas + planned + approached + verified + corrected +
+ *   installed + Finished + Cell.Supervisor.Approach.seam + offset + Cell.Supervisor.Correct.order +
+ *   Cell.Supervisor.Correct.done + Cell.Supervisor.Correct.Move both.moving 1 +
+ *   Cell.Supervisor.Correct.Move both.there 1 + return + work + Cell.Supervisor.Install.Return.moving 1
+ *   + Cell.Supervisor.Install.Return.there 1 + leaving 1 + home 1 = 1
+ *     Cell.Supervisor.Correct.offset: 1, Cell.Supervisor.Correct.order: 1, Cell.Supervisor.Correct.done:
+ *     1, Cell.Supervisor.Correct.Move both.moving 1: 1, Cell.Supervisor.Correct.Move both.there 1: 1
+ *   invariant referencia1 + medida1 + coordenadas + planned + approached + verified + corrected +
+ *   installed + Finished + Cell.Supervisor.Approach.seam + offset + Cell.Supervisor.Correct.order +
+ *   Cell.Supervisor.Correct.done + Cell.Supervisor.Correct.Move both.moving 2 +
+ *   Cell.Supervisor.Correct.Move both.there 2 + return + work + Cell.Supervisor.Install.Return.moving 1
+ *   + Cell.Supervisor.Install.Return.there 1 + leaving 1 + home 1 = 1
+ *     Cell.Supervisor.Correct.Move both.moving 2: 1, Cell.Supervisor.Correct.Move both.there 2: 1
+ *   invariant referencia1 + medida1 + coordenadas + planned + approached + verified + corrected +
+ *   installed + Finished + Cell.Supervisor.Approach.seam + Cell.Supervisor.Correct.seam + shift + ready
+ *   + riveted + return + Cell.Supervisor.Install.Shift.moving 1 + Cell.Supervisor.Install.Shift.there 1
+ *   + advance + contact + fastened + retract + Cell.Supervisor.Install.Rivet.Advance.moving 1 +
+ *   Cell.Supervisor.Install.Rivet.Advance.there 1 + pressing + drilling + inserting + releasing +
+ *   Cell.Supervisor.Install.Rivet.Retract.moving 1 + Cell.Supervisor.Install.Rivet.Retract.there 1 +
+ *   Cell.Supervisor.Install.Return.moving 1 + Cell.Supervisor.Install.Return.there 1 + leaving 1 + home
+ *   1 = 1
+ *     Cell.Supervisor.Install.Shift.moving 1: 1, Cell.Supervisor.Install.Rivet.Advance.moving 1: 1,
+ *     Cell.Supervisor.Install.Rivet.Fasten.drilling: 1, Cell.Supervisor.Install.Rivet.Fasten.inserting: 1,
+ *     Cell.Supervisor.Install.Rivet.Retract.moving 1: 1
+ *   invariant referencia1 + medida1 + coordenadas + planned + approached + verified + corrected +
+ *   installed + Finished + Cell.Supervisor.Approach.seam + Cell.Supervisor.Correct.seam + shift + ready
+ *   + riveted + return + Cell.Supervisor.Install.Shift.moving 2 + Cell.Supervisor.Install.Shift.there 2
+ *   + advance + contact + fastened + retract + Cell.Supervisor.Install.Rivet.Advance.moving 1 +
+ *   Cell.Supervisor.Install.Rivet.Advance.there 1 + pressing + drilling + inserting + releasing +
+ *   Cell.Supervisor.Install.Rivet.Retract.moving 1 + Cell.Supervisor.Install.Rivet.Retract.there 1 +
+ *   Cell.Supervisor.Install.Return.moving 1 + Cell.Supervisor.Install.Return.there 1 + leaving 1 + home
+ *   1 = 1
+ *     Cell.Supervisor.Install.Shift.moving 2: 1, Cell.Supervisor.Install.Shift.there 2: 1
+ *   invariant referencia1 + medida1 + coordenadas + planned + approached + verified + corrected +
+ *   installed + Finished + Cell.Supervisor.Approach.seam + Cell.Supervisor.Correct.seam + shift + ready
+ *   + riveted + return + Cell.Supervisor.Install.Shift.moving 1 + Cell.Supervisor.Install.Shift.there 1
+ *   + advance + contact + fastened + retract + Cell.Supervisor.Install.Rivet.Advance.moving 2 +
+ *   Cell.Supervisor.Install.Rivet.Advance.there 2 + pressing + drilling + inserting + releasing +
+ *   Cell.Supervisor.Install.Rivet.Retract.moving 1 + Cell.Supervisor.Install.Rivet.Retract.there 1 +
+ *   Cell.Supervisor.Install.Return.moving 1 + Cell.Supervisor.Install.Return.there 1 + leaving 1 + home
+ *   1 = 1
+ *     Cell.Supervisor.Install.Rivet.Advance.moving 2: 1, Cell.Supervisor.Install.Rivet.Advance.there 2: 1
+ *   invariant referencia1 + medida1 + coordenadas + planned + approached + verified + corrected +
+ *   installed + Finished + Cell.Supervisor.Approach.seam + Cell.Supervisor.Correct.seam + shift + ready
+ *   + riveted + return + Cell.Supervisor.Install.Shift.moving 1 + Cell.Supervisor.Install.Shift.there 1
+ *   + advance + contact + fastened + retract + Cell.Supervisor.Install.Rivet.Advance.moving 1 +
+ *   Cell.Supervisor.Install.Rivet.Advance.there 1 + pressing + drilling + inserting + releasing +
+ *   Cell.Supervisor.Install.Rivet.Retract.moving 2 + Cell.Supervisor.Install.Rivet.Retract.there 2 +
+ *   Cell.Supervisor.Install.Return.moving 1 + Cell.Supervisor.Install.Return.there 1 + leaving 1 + home
+ *   1 = 1
+ *     Cell.Supervisor.Install.Rivet.Retract.moving 2: 1, Cell.Supervisor.Install.Rivet.Retract.there 2: 1
+ *   invariant referencia1 + medida1 + coordenadas + planned + approached + verified + corrected +
+ *   installed + Finished + Cell.Supervisor.Approach.seam + Cell.Supervisor.Correct.seam + return + work
+ *   + Cell.Supervisor.Install.Return.moving 2 + Cell.Supervisor.Install.Return.there 2 + leaving 1 +
+ *   home 1 = 1
+ *     Cell.Supervisor.Install.Return.moving 2: 1, Cell.Supervisor.Install.Return.there 2: 1
+ *   invariant referencia1 + medida1 + coordenadas + planned + approached + verified + corrected +
+ *   installed + Finished + Cell.Supervisor.Approach.seam + Cell.Supervisor.Correct.seam + return + work
+ *   + Cell.Supervisor.Install.Return.moving 1 + Cell.Supervisor.Install.Return.there 1 + leaving 2 +
+ *   home 2 = 1
+ *     Cell.Supervisor.Home.leaving 2: 1, Cell.Supervisor.Home.home 2: 1
+ *   invariant Cell.Robot1.Waiting + Cell.Robot1.Commanded + Cell.Robot1.Done = 1
+ *     Cell.Robot1.Waiting: 1, Cell.Robot1.Commanded: 1, Cell.Robot1.Done: 1
+ *   invariant Cell.Robot2.Waiting + Cell.Robot2.Commanded + Cell.Robot2.Done = 1
+ *     Cell.Robot2.Waiting: 1, Cell.Robot2.Commanded: 1, Cell.Robot2.Done: 1
+ *   never marked
+ *     Cell.Robot2.referencia: 0, Cell.Robot2.medida: 0
+ *
  * Reading order: tables of the colour sets, functions of the declarations, places with the initial marking, transitions
  * (enumerate the enabled bindings, fire one), and at the end the table `pn_net` by which hosts know all of it.
  */
@@ -1143,7 +1267,7 @@ static inline bool is_before_WORK(const WORK_t *a, const WORK_t *b)
 static const pn_bag_t s_at_dadosrobo1 = {
     .origin = "page `Cell`, place `dadosrobo1` (ID1412310013)",
     .type = &s_POSE,
-    .capacity = 64U,
+    .capacity = 1U,
     PN_BAG_TOKENS(net_marking_t, dadosrobo1),
 };
 
@@ -1154,7 +1278,7 @@ PN_UNTIMED_PLACE(dadosrobo1, net_marking_t, POSE_t, is_before_POSE, s_at_dadosro
 static const pn_bag_t s_at_flag1_interno = {
     .origin = "page `Cell`, place `flag1_interno` (ID1412310016)",
     .type = &s_COMMAND,
-    .capacity = 64U,
+    .capacity = 1U,
     PN_BAG_TOKENS(net_marking_t, flag1_interno),
 };
 
@@ -1165,7 +1289,7 @@ PN_UNTIMED_PLACE(flag1_interno, net_marking_t, int64_t, PN_LESS, s_at_flag1_inte
 static const pn_bag_t s_at_flag1_externo = {
     .origin = "page `Cell`, place `flag1_externo` (ID1412310019)",
     .type = &s_REPLY,
-    .capacity = 64U,
+    .capacity = 1U,
     PN_BAG_TOKENS(net_marking_t, flag1_externo),
 };
 
@@ -1176,7 +1300,7 @@ PN_UNTIMED_PLACE(flag1_externo, net_marking_t, int64_t, PN_LESS, s_at_flag1_exte
 static const pn_bag_t s_at_referencia1 = {
     .origin = "page `Cell`, place `referencia1` (ID1412310022)",
     .type = &s_POSE,
-    .capacity = 64U,
+    .capacity = 1U,
     PN_BAG_TOKENS(net_marking_t, referencia1),
 };
 
@@ -1187,7 +1311,7 @@ PN_UNTIMED_PLACE(referencia1, net_marking_t, POSE_t, is_before_POSE, s_at_refere
 static const pn_bag_t s_at_medida1 = {
     .origin = "page `Cell`, place `medida1` (ID1412310025)",
     .type = &s_POSE,
-    .capacity = 64U,
+    .capacity = 1U,
     PN_BAG_TOKENS(net_marking_t, medida1),
 };
 
@@ -1198,7 +1322,7 @@ PN_UNTIMED_PLACE(medida1, net_marking_t, POSE_t, is_before_POSE, s_at_medida1)
 static const pn_bag_t s_at_dadosrobo2 = {
     .origin = "page `Cell`, place `dadosrobo2` (ID1412310028)",
     .type = &s_POSE,
-    .capacity = 64U,
+    .capacity = 1U,
     PN_BAG_TOKENS(net_marking_t, dadosrobo2),
 };
 
@@ -1209,7 +1333,7 @@ PN_UNTIMED_PLACE(dadosrobo2, net_marking_t, POSE_t, is_before_POSE, s_at_dadosro
 static const pn_bag_t s_at_flag2_interno = {
     .origin = "page `Cell`, place `flag2_interno` (ID1412310031)",
     .type = &s_COMMAND,
-    .capacity = 64U,
+    .capacity = 1U,
     PN_BAG_TOKENS(net_marking_t, flag2_interno),
 };
 
@@ -1220,7 +1344,7 @@ PN_UNTIMED_PLACE(flag2_interno, net_marking_t, int64_t, PN_LESS, s_at_flag2_inte
 static const pn_bag_t s_at_flag2_externo = {
     .origin = "page `Cell`, place `flag2_externo` (ID1412310034)",
     .type = &s_REPLY,
-    .capacity = 64U,
+    .capacity = 1U,
     PN_BAG_TOKENS(net_marking_t, flag2_externo),
 };
 
@@ -1231,7 +1355,7 @@ PN_UNTIMED_PLACE(flag2_externo, net_marking_t, int64_t, PN_LESS, s_at_flag2_exte
 static const pn_bag_t s_at_Supervisor_coordenadas = {
     .origin = "page `Supervisor`, place `coordenadas` (ID1412310094)",
     .type = &s_PLAN,
-    .capacity = 64U,
+    .capacity = 1U,
     PN_BAG_TOKENS(net_marking_t, Supervisor_coordenadas),
 };
 
@@ -1263,7 +1387,7 @@ static bool Supervisor_coordenadas_init(pn_ctx_t *cx, net_marking_t *m)
 static const pn_bag_t s_at_Supervisor_planned = {
     .origin = "page `Supervisor`, place `planned` (ID1412310097)",
     .type = &s_SEAM,
-    .capacity = 64U,
+    .capacity = 1U,
     PN_BAG_TOKENS(net_marking_t, Supervisor_planned),
 };
 
@@ -1274,7 +1398,7 @@ PN_UNTIMED_PLACE(Supervisor_planned, net_marking_t, SEAM_t, is_before_SEAM, s_at
 static const pn_bag_t s_at_Supervisor_approached = {
     .origin = "page `Supervisor`, place `approached` (ID1412310100)",
     .type = &s_SEAM,
-    .capacity = 64U,
+    .capacity = 1U,
     PN_BAG_TOKENS(net_marking_t, Supervisor_approached),
 };
 
@@ -1285,7 +1409,7 @@ PN_UNTIMED_PLACE(Supervisor_approached, net_marking_t, SEAM_t, is_before_SEAM, s
 static const pn_bag_t s_at_Supervisor_verified = {
     .origin = "page `Supervisor`, place `verified` (ID1412310103)",
     .type = &s_VERIFIED,
-    .capacity = 64U,
+    .capacity = 1U,
     PN_BAG_TOKENS(net_marking_t, Supervisor_verified),
 };
 
@@ -1296,7 +1420,7 @@ PN_UNTIMED_PLACE(Supervisor_verified, net_marking_t, VERIFIED_t, is_before_VERIF
 static const pn_bag_t s_at_Supervisor_corrected = {
     .origin = "page `Supervisor`, place `corrected` (ID1412310106)",
     .type = &s_RIVETING,
-    .capacity = 64U,
+    .capacity = 1U,
     PN_BAG_TOKENS(net_marking_t, Supervisor_corrected),
 };
 
@@ -1307,7 +1431,7 @@ PN_UNTIMED_PLACE(Supervisor_corrected, net_marking_t, RIVETING_t, is_before_RIVE
 static const pn_bag_t s_at_Supervisor_installed = {
     .origin = "page `Supervisor`, place `installed` (ID1412310109)",
     .type = &s_UNIT,
-    .capacity = 64U,
+    .capacity = 1U,
     PN_BAG_TOKENS(net_marking_t, Supervisor_installed),
 };
 
@@ -1318,7 +1442,7 @@ PN_UNTIMED_PLACE(Supervisor_installed, net_marking_t, pn_unit_t, is_before_UNIT,
 static const pn_bag_t s_at_Supervisor_Finished = {
     .origin = "page `Supervisor`, place `Finished` (ID1412310112)",
     .type = &s_UNIT,
-    .capacity = 64U,
+    .capacity = 1U,
     PN_BAG_TOKENS(net_marking_t, Supervisor_Finished),
 };
 
@@ -1329,7 +1453,7 @@ PN_UNTIMED_PLACE(Supervisor_Finished, net_marking_t, pn_unit_t, is_before_UNIT, 
 static const pn_bag_t s_at_Supervisor_Approach_order = {
     .origin = "page `Approach`, place `order` (ID1412310290)",
     .type = &s_ORDER,
-    .capacity = 64U,
+    .capacity = 1U,
     PN_BAG_TOKENS(net_marking_t, Supervisor_Approach_order),
 };
 
@@ -1340,7 +1464,7 @@ PN_UNTIMED_PLACE(Supervisor_Approach_order, net_marking_t, PLAN_t, is_before_ORD
 static const pn_bag_t s_at_Supervisor_Approach_done = {
     .origin = "page `Approach`, place `done` (ID1412310293)",
     .type = &s_UNIT,
-    .capacity = 64U,
+    .capacity = 1U,
     PN_BAG_TOKENS(net_marking_t, Supervisor_Approach_done),
 };
 
@@ -1351,7 +1475,7 @@ PN_UNTIMED_PLACE(Supervisor_Approach_done, net_marking_t, pn_unit_t, is_before_U
 static const pn_bag_t s_at_Supervisor_Approach_seam = {
     .origin = "page `Approach`, place `seam` (ID1412310352)",
     .type = &s_SEAM,
-    .capacity = 64U,
+    .capacity = 1U,
     PN_BAG_TOKENS(net_marking_t, Supervisor_Approach_seam),
 };
 
@@ -1362,7 +1486,7 @@ PN_UNTIMED_PLACE(Supervisor_Approach_seam, net_marking_t, SEAM_t, is_before_SEAM
 static const pn_bag_t s_at_Supervisor_Approach_Move_both_moving_1 = {
     .origin = "page `MoveBoth`, place `moving 1` (ID1412310959)",
     .type = &s_UNIT,
-    .capacity = 64U,
+    .capacity = 1U,
     PN_BAG_TOKENS(net_marking_t, Supervisor_Approach_Move_both_moving_1),
 };
 
@@ -1373,7 +1497,7 @@ PN_UNTIMED_PLACE(Supervisor_Approach_Move_both_moving_1, net_marking_t, pn_unit_
 static const pn_bag_t s_at_Supervisor_Approach_Move_both_there_1 = {
     .origin = "page `MoveBoth`, place `there 1` (ID1412310967)",
     .type = &s_UNIT,
-    .capacity = 64U,
+    .capacity = 1U,
     PN_BAG_TOKENS(net_marking_t, Supervisor_Approach_Move_both_there_1),
 };
 
@@ -1384,7 +1508,7 @@ PN_UNTIMED_PLACE(Supervisor_Approach_Move_both_there_1, net_marking_t, pn_unit_t
 static const pn_bag_t s_at_Supervisor_Approach_Move_both_moving_2 = {
     .origin = "page `MoveBoth`, place `moving 2` (ID1412310996)",
     .type = &s_UNIT,
-    .capacity = 64U,
+    .capacity = 1U,
     PN_BAG_TOKENS(net_marking_t, Supervisor_Approach_Move_both_moving_2),
 };
 
@@ -1395,7 +1519,7 @@ PN_UNTIMED_PLACE(Supervisor_Approach_Move_both_moving_2, net_marking_t, pn_unit_
 static const pn_bag_t s_at_Supervisor_Approach_Move_both_there_2 = {
     .origin = "page `MoveBoth`, place `there 2` (ID1412311004)",
     .type = &s_UNIT,
-    .capacity = 64U,
+    .capacity = 1U,
     PN_BAG_TOKENS(net_marking_t, Supervisor_Approach_Move_both_there_2),
 };
 
@@ -1406,7 +1530,7 @@ PN_UNTIMED_PLACE(Supervisor_Approach_Move_both_there_2, net_marking_t, pn_unit_t
 static const pn_bag_t s_at_Supervisor_Verify_first_asked = {
     .origin = "page `Verify`, place `first asked` (ID1412310382)",
     .type = &s_SEAM,
-    .capacity = 64U,
+    .capacity = 1U,
     PN_BAG_TOKENS(net_marking_t, Supervisor_Verify_first_asked),
 };
 
@@ -1417,7 +1541,7 @@ PN_UNTIMED_PLACE(Supervisor_Verify_first_asked, net_marking_t, SEAM_t, is_before
 static const pn_bag_t s_at_Supervisor_Verify_last_asked = {
     .origin = "page `Verify`, place `last asked` (ID1412310390)",
     .type = &s_ASKED,
-    .capacity = 64U,
+    .capacity = 1U,
     PN_BAG_TOKENS(net_marking_t, Supervisor_Verify_last_asked),
 };
 
@@ -1428,7 +1552,7 @@ PN_UNTIMED_PLACE(Supervisor_Verify_last_asked, net_marking_t, ASKED_t, is_before
 static const pn_bag_t s_at_Supervisor_Correct_offset = {
     .origin = "page `Correct`, place `offset` (ID1412310458)",
     .type = &s_VECTOR,
-    .capacity = 64U,
+    .capacity = 1U,
     PN_BAG_TOKENS(net_marking_t, Supervisor_Correct_offset),
 };
 
@@ -1439,7 +1563,7 @@ PN_UNTIMED_PLACE(Supervisor_Correct_offset, net_marking_t, VECTOR_t, is_before_V
 static const pn_bag_t s_at_Supervisor_Correct_order = {
     .origin = "page `Correct`, place `order` (ID1412310466)",
     .type = &s_ORDER,
-    .capacity = 64U,
+    .capacity = 1U,
     PN_BAG_TOKENS(net_marking_t, Supervisor_Correct_order),
 };
 
@@ -1450,7 +1574,7 @@ PN_UNTIMED_PLACE(Supervisor_Correct_order, net_marking_t, PLAN_t, is_before_ORDE
 static const pn_bag_t s_at_Supervisor_Correct_done = {
     .origin = "page `Correct`, place `done` (ID1412310475)",
     .type = &s_UNIT,
-    .capacity = 64U,
+    .capacity = 1U,
     PN_BAG_TOKENS(net_marking_t, Supervisor_Correct_done),
 };
 
@@ -1461,7 +1585,7 @@ PN_UNTIMED_PLACE(Supervisor_Correct_done, net_marking_t, pn_unit_t, is_before_UN
 static const pn_bag_t s_at_Supervisor_Correct_seam = {
     .origin = "page `Correct`, place `seam` (ID1412310523)",
     .type = &s_RIVETING,
-    .capacity = 64U,
+    .capacity = 1U,
     PN_BAG_TOKENS(net_marking_t, Supervisor_Correct_seam),
 };
 
@@ -1472,7 +1596,7 @@ PN_UNTIMED_PLACE(Supervisor_Correct_seam, net_marking_t, RIVETING_t, is_before_R
 static const pn_bag_t s_at_Supervisor_Correct_Move_both_moving_1 = {
     .origin = "page `MoveBoth`, place `moving 1` (ID1412310959)",
     .type = &s_UNIT,
-    .capacity = 64U,
+    .capacity = 1U,
     PN_BAG_TOKENS(net_marking_t, Supervisor_Correct_Move_both_moving_1),
 };
 
@@ -1483,7 +1607,7 @@ PN_UNTIMED_PLACE(Supervisor_Correct_Move_both_moving_1, net_marking_t, pn_unit_t
 static const pn_bag_t s_at_Supervisor_Correct_Move_both_there_1 = {
     .origin = "page `MoveBoth`, place `there 1` (ID1412310967)",
     .type = &s_UNIT,
-    .capacity = 64U,
+    .capacity = 1U,
     PN_BAG_TOKENS(net_marking_t, Supervisor_Correct_Move_both_there_1),
 };
 
@@ -1494,7 +1618,7 @@ PN_UNTIMED_PLACE(Supervisor_Correct_Move_both_there_1, net_marking_t, pn_unit_t,
 static const pn_bag_t s_at_Supervisor_Correct_Move_both_moving_2 = {
     .origin = "page `MoveBoth`, place `moving 2` (ID1412310996)",
     .type = &s_UNIT,
-    .capacity = 64U,
+    .capacity = 1U,
     PN_BAG_TOKENS(net_marking_t, Supervisor_Correct_Move_both_moving_2),
 };
 
@@ -1505,7 +1629,7 @@ PN_UNTIMED_PLACE(Supervisor_Correct_Move_both_moving_2, net_marking_t, pn_unit_t
 static const pn_bag_t s_at_Supervisor_Correct_Move_both_there_2 = {
     .origin = "page `MoveBoth`, place `there 2` (ID1412311004)",
     .type = &s_UNIT,
-    .capacity = 64U,
+    .capacity = 1U,
     PN_BAG_TOKENS(net_marking_t, Supervisor_Correct_Move_both_there_2),
 };
 
@@ -1516,7 +1640,7 @@ PN_UNTIMED_PLACE(Supervisor_Correct_Move_both_there_2, net_marking_t, pn_unit_t,
 static const pn_bag_t s_at_Supervisor_Install_shift = {
     .origin = "page `Install`, place `shift` (ID1412310585)",
     .type = &s_ORDER,
-    .capacity = 64U,
+    .capacity = 1U,
     PN_BAG_TOKENS(net_marking_t, Supervisor_Install_shift),
 };
 
@@ -1527,7 +1651,7 @@ PN_UNTIMED_PLACE(Supervisor_Install_shift, net_marking_t, PLAN_t, is_before_ORDE
 static const pn_bag_t s_at_Supervisor_Install_ready = {
     .origin = "page `Install`, place `ready` (ID1412310588)",
     .type = &s_UNIT,
-    .capacity = 64U,
+    .capacity = 1U,
     PN_BAG_TOKENS(net_marking_t, Supervisor_Install_ready),
 };
 
@@ -1538,7 +1662,7 @@ PN_UNTIMED_PLACE(Supervisor_Install_ready, net_marking_t, pn_unit_t, is_before_U
 static const pn_bag_t s_at_Supervisor_Install_riveted = {
     .origin = "page `Install`, place `riveted` (ID1412310591)",
     .type = &s_UNIT,
-    .capacity = 64U,
+    .capacity = 1U,
     PN_BAG_TOKENS(net_marking_t, Supervisor_Install_riveted),
 };
 
@@ -1549,7 +1673,7 @@ PN_UNTIMED_PLACE(Supervisor_Install_riveted, net_marking_t, pn_unit_t, is_before
 static const pn_bag_t s_at_Supervisor_Install_return = {
     .origin = "page `Install`, place `return` (ID1412310599)",
     .type = &s_ORDER,
-    .capacity = 64U,
+    .capacity = 1U,
     PN_BAG_TOKENS(net_marking_t, Supervisor_Install_return),
 };
 
@@ -1560,7 +1684,7 @@ PN_UNTIMED_PLACE(Supervisor_Install_return, net_marking_t, PLAN_t, is_before_ORD
 static const pn_bag_t s_at_Supervisor_Install_work = {
     .origin = "page `Install`, place `work` (ID1412310629)",
     .type = &s_WORK,
-    .capacity = 64U,
+    .capacity = 1U,
     PN_BAG_TOKENS(net_marking_t, Supervisor_Install_work),
 };
 
@@ -1571,7 +1695,7 @@ PN_UNTIMED_PLACE(Supervisor_Install_work, net_marking_t, WORK_t, is_before_WORK,
 static const pn_bag_t s_at_Supervisor_Install_Shift_moving_1 = {
     .origin = "page `MoveBoth`, place `moving 1` (ID1412310959)",
     .type = &s_UNIT,
-    .capacity = 64U,
+    .capacity = 1U,
     PN_BAG_TOKENS(net_marking_t, Supervisor_Install_Shift_moving_1),
 };
 
@@ -1582,7 +1706,7 @@ PN_UNTIMED_PLACE(Supervisor_Install_Shift_moving_1, net_marking_t, pn_unit_t, is
 static const pn_bag_t s_at_Supervisor_Install_Shift_there_1 = {
     .origin = "page `MoveBoth`, place `there 1` (ID1412310967)",
     .type = &s_UNIT,
-    .capacity = 64U,
+    .capacity = 1U,
     PN_BAG_TOKENS(net_marking_t, Supervisor_Install_Shift_there_1),
 };
 
@@ -1593,7 +1717,7 @@ PN_UNTIMED_PLACE(Supervisor_Install_Shift_there_1, net_marking_t, pn_unit_t, is_
 static const pn_bag_t s_at_Supervisor_Install_Shift_moving_2 = {
     .origin = "page `MoveBoth`, place `moving 2` (ID1412310996)",
     .type = &s_UNIT,
-    .capacity = 64U,
+    .capacity = 1U,
     PN_BAG_TOKENS(net_marking_t, Supervisor_Install_Shift_moving_2),
 };
 
@@ -1604,7 +1728,7 @@ PN_UNTIMED_PLACE(Supervisor_Install_Shift_moving_2, net_marking_t, pn_unit_t, is
 static const pn_bag_t s_at_Supervisor_Install_Shift_there_2 = {
     .origin = "page `MoveBoth`, place `there 2` (ID1412311004)",
     .type = &s_UNIT,
-    .capacity = 64U,
+    .capacity = 1U,
     PN_BAG_TOKENS(net_marking_t, Supervisor_Install_Shift_there_2),
 };
 
@@ -1615,7 +1739,7 @@ PN_UNTIMED_PLACE(Supervisor_Install_Shift_there_2, net_marking_t, pn_unit_t, is_
 static const pn_bag_t s_at_Supervisor_Install_Rivet_advance = {
     .origin = "page `Rivet`, place `advance` (ID1412310721)",
     .type = &s_ORDER,
-    .capacity = 64U,
+    .capacity = 1U,
     PN_BAG_TOKENS(net_marking_t, Supervisor_Install_Rivet_advance),
 };
 
@@ -1626,7 +1750,7 @@ PN_UNTIMED_PLACE(Supervisor_Install_Rivet_advance, net_marking_t, PLAN_t, is_bef
 static const pn_bag_t s_at_Supervisor_Install_Rivet_contact = {
     .origin = "page `Rivet`, place `contact` (ID1412310730)",
     .type = &s_UNIT,
-    .capacity = 64U,
+    .capacity = 1U,
     PN_BAG_TOKENS(net_marking_t, Supervisor_Install_Rivet_contact),
 };
 
@@ -1637,7 +1761,7 @@ PN_UNTIMED_PLACE(Supervisor_Install_Rivet_contact, net_marking_t, pn_unit_t, is_
 static const pn_bag_t s_at_Supervisor_Install_Rivet_fastened = {
     .origin = "page `Rivet`, place `fastened` (ID1412310739)",
     .type = &s_UNIT,
-    .capacity = 64U,
+    .capacity = 1U,
     PN_BAG_TOKENS(net_marking_t, Supervisor_Install_Rivet_fastened),
 };
 
@@ -1648,7 +1772,7 @@ PN_UNTIMED_PLACE(Supervisor_Install_Rivet_fastened, net_marking_t, pn_unit_t, is
 static const pn_bag_t s_at_Supervisor_Install_Rivet_retract = {
     .origin = "page `Rivet`, place `retract` (ID1412310747)",
     .type = &s_ORDER,
-    .capacity = 64U,
+    .capacity = 1U,
     PN_BAG_TOKENS(net_marking_t, Supervisor_Install_Rivet_retract),
 };
 
@@ -1659,7 +1783,7 @@ PN_UNTIMED_PLACE(Supervisor_Install_Rivet_retract, net_marking_t, PLAN_t, is_bef
 static const pn_bag_t s_at_Supervisor_Install_Rivet_Advance_moving_1 = {
     .origin = "page `MoveBoth`, place `moving 1` (ID1412310959)",
     .type = &s_UNIT,
-    .capacity = 64U,
+    .capacity = 1U,
     PN_BAG_TOKENS(net_marking_t, Supervisor_Install_Rivet_Advance_moving_1),
 };
 
@@ -1670,7 +1794,7 @@ PN_UNTIMED_PLACE(Supervisor_Install_Rivet_Advance_moving_1, net_marking_t, pn_un
 static const pn_bag_t s_at_Supervisor_Install_Rivet_Advance_there_1 = {
     .origin = "page `MoveBoth`, place `there 1` (ID1412310967)",
     .type = &s_UNIT,
-    .capacity = 64U,
+    .capacity = 1U,
     PN_BAG_TOKENS(net_marking_t, Supervisor_Install_Rivet_Advance_there_1),
 };
 
@@ -1681,7 +1805,7 @@ PN_UNTIMED_PLACE(Supervisor_Install_Rivet_Advance_there_1, net_marking_t, pn_uni
 static const pn_bag_t s_at_Supervisor_Install_Rivet_Advance_moving_2 = {
     .origin = "page `MoveBoth`, place `moving 2` (ID1412310996)",
     .type = &s_UNIT,
-    .capacity = 64U,
+    .capacity = 1U,
     PN_BAG_TOKENS(net_marking_t, Supervisor_Install_Rivet_Advance_moving_2),
 };
 
@@ -1692,7 +1816,7 @@ PN_UNTIMED_PLACE(Supervisor_Install_Rivet_Advance_moving_2, net_marking_t, pn_un
 static const pn_bag_t s_at_Supervisor_Install_Rivet_Advance_there_2 = {
     .origin = "page `MoveBoth`, place `there 2` (ID1412311004)",
     .type = &s_UNIT,
-    .capacity = 64U,
+    .capacity = 1U,
     PN_BAG_TOKENS(net_marking_t, Supervisor_Install_Rivet_Advance_there_2),
 };
 
@@ -1703,7 +1827,7 @@ PN_UNTIMED_PLACE(Supervisor_Install_Rivet_Advance_there_2, net_marking_t, pn_uni
 static const pn_bag_t s_at_Supervisor_Install_Rivet_Fasten_pressing = {
     .origin = "page `Fasten`, place `pressing` (ID1412310847)",
     .type = &s_UNIT,
-    .capacity = 64U,
+    .capacity = 1U,
     PN_BAG_TOKENS(net_marking_t, Supervisor_Install_Rivet_Fasten_pressing),
 };
 
@@ -1714,7 +1838,7 @@ PN_UNTIMED_PLACE(Supervisor_Install_Rivet_Fasten_pressing, net_marking_t, pn_uni
 static const pn_bag_t s_at_Supervisor_Install_Rivet_Fasten_drilling = {
     .origin = "page `Fasten`, place `drilling` (ID1412310855)",
     .type = &s_UNIT,
-    .capacity = 64U,
+    .capacity = 1U,
     PN_BAG_TOKENS(net_marking_t, Supervisor_Install_Rivet_Fasten_drilling),
 };
 
@@ -1725,7 +1849,7 @@ PN_UNTIMED_PLACE(Supervisor_Install_Rivet_Fasten_drilling, net_marking_t, pn_uni
 static const pn_bag_t s_at_Supervisor_Install_Rivet_Fasten_inserting = {
     .origin = "page `Fasten`, place `inserting` (ID1412310863)",
     .type = &s_UNIT,
-    .capacity = 64U,
+    .capacity = 1U,
     PN_BAG_TOKENS(net_marking_t, Supervisor_Install_Rivet_Fasten_inserting),
 };
 
@@ -1736,7 +1860,7 @@ PN_UNTIMED_PLACE(Supervisor_Install_Rivet_Fasten_inserting, net_marking_t, pn_un
 static const pn_bag_t s_at_Supervisor_Install_Rivet_Fasten_releasing = {
     .origin = "page `Fasten`, place `releasing` (ID1412310871)",
     .type = &s_UNIT,
-    .capacity = 64U,
+    .capacity = 1U,
     PN_BAG_TOKENS(net_marking_t, Supervisor_Install_Rivet_Fasten_releasing),
 };
 
@@ -1747,7 +1871,7 @@ PN_UNTIMED_PLACE(Supervisor_Install_Rivet_Fasten_releasing, net_marking_t, pn_un
 static const pn_bag_t s_at_Supervisor_Install_Rivet_Retract_moving_1 = {
     .origin = "page `MoveBoth`, place `moving 1` (ID1412310959)",
     .type = &s_UNIT,
-    .capacity = 64U,
+    .capacity = 1U,
     PN_BAG_TOKENS(net_marking_t, Supervisor_Install_Rivet_Retract_moving_1),
 };
 
@@ -1758,7 +1882,7 @@ PN_UNTIMED_PLACE(Supervisor_Install_Rivet_Retract_moving_1, net_marking_t, pn_un
 static const pn_bag_t s_at_Supervisor_Install_Rivet_Retract_there_1 = {
     .origin = "page `MoveBoth`, place `there 1` (ID1412310967)",
     .type = &s_UNIT,
-    .capacity = 64U,
+    .capacity = 1U,
     PN_BAG_TOKENS(net_marking_t, Supervisor_Install_Rivet_Retract_there_1),
 };
 
@@ -1769,7 +1893,7 @@ PN_UNTIMED_PLACE(Supervisor_Install_Rivet_Retract_there_1, net_marking_t, pn_uni
 static const pn_bag_t s_at_Supervisor_Install_Rivet_Retract_moving_2 = {
     .origin = "page `MoveBoth`, place `moving 2` (ID1412310996)",
     .type = &s_UNIT,
-    .capacity = 64U,
+    .capacity = 1U,
     PN_BAG_TOKENS(net_marking_t, Supervisor_Install_Rivet_Retract_moving_2),
 };
 
@@ -1780,7 +1904,7 @@ PN_UNTIMED_PLACE(Supervisor_Install_Rivet_Retract_moving_2, net_marking_t, pn_un
 static const pn_bag_t s_at_Supervisor_Install_Rivet_Retract_there_2 = {
     .origin = "page `MoveBoth`, place `there 2` (ID1412311004)",
     .type = &s_UNIT,
-    .capacity = 64U,
+    .capacity = 1U,
     PN_BAG_TOKENS(net_marking_t, Supervisor_Install_Rivet_Retract_there_2),
 };
 
@@ -1791,7 +1915,7 @@ PN_UNTIMED_PLACE(Supervisor_Install_Rivet_Retract_there_2, net_marking_t, pn_uni
 static const pn_bag_t s_at_Supervisor_Install_Return_moving_1 = {
     .origin = "page `MoveBoth`, place `moving 1` (ID1412310959)",
     .type = &s_UNIT,
-    .capacity = 64U,
+    .capacity = 1U,
     PN_BAG_TOKENS(net_marking_t, Supervisor_Install_Return_moving_1),
 };
 
@@ -1802,7 +1926,7 @@ PN_UNTIMED_PLACE(Supervisor_Install_Return_moving_1, net_marking_t, pn_unit_t, i
 static const pn_bag_t s_at_Supervisor_Install_Return_there_1 = {
     .origin = "page `MoveBoth`, place `there 1` (ID1412310967)",
     .type = &s_UNIT,
-    .capacity = 64U,
+    .capacity = 1U,
     PN_BAG_TOKENS(net_marking_t, Supervisor_Install_Return_there_1),
 };
 
@@ -1813,7 +1937,7 @@ PN_UNTIMED_PLACE(Supervisor_Install_Return_there_1, net_marking_t, pn_unit_t, is
 static const pn_bag_t s_at_Supervisor_Install_Return_moving_2 = {
     .origin = "page `MoveBoth`, place `moving 2` (ID1412310996)",
     .type = &s_UNIT,
-    .capacity = 64U,
+    .capacity = 1U,
     PN_BAG_TOKENS(net_marking_t, Supervisor_Install_Return_moving_2),
 };
 
@@ -1824,7 +1948,7 @@ PN_UNTIMED_PLACE(Supervisor_Install_Return_moving_2, net_marking_t, pn_unit_t, i
 static const pn_bag_t s_at_Supervisor_Install_Return_there_2 = {
     .origin = "page `MoveBoth`, place `there 2` (ID1412311004)",
     .type = &s_UNIT,
-    .capacity = 64U,
+    .capacity = 1U,
     PN_BAG_TOKENS(net_marking_t, Supervisor_Install_Return_there_2),
 };
 
@@ -1835,7 +1959,7 @@ PN_UNTIMED_PLACE(Supervisor_Install_Return_there_2, net_marking_t, pn_unit_t, is
 static const pn_bag_t s_at_Supervisor_Home_leaving_1 = {
     .origin = "page `Home`, place `leaving 1` (ID1412311057)",
     .type = &s_UNIT,
-    .capacity = 64U,
+    .capacity = 1U,
     PN_BAG_TOKENS(net_marking_t, Supervisor_Home_leaving_1),
 };
 
@@ -1846,7 +1970,7 @@ PN_UNTIMED_PLACE(Supervisor_Home_leaving_1, net_marking_t, pn_unit_t, is_before_
 static const pn_bag_t s_at_Supervisor_Home_home_1 = {
     .origin = "page `Home`, place `home 1` (ID1412311065)",
     .type = &s_UNIT,
-    .capacity = 64U,
+    .capacity = 1U,
     PN_BAG_TOKENS(net_marking_t, Supervisor_Home_home_1),
 };
 
@@ -1857,7 +1981,7 @@ PN_UNTIMED_PLACE(Supervisor_Home_home_1, net_marking_t, pn_unit_t, is_before_UNI
 static const pn_bag_t s_at_Supervisor_Home_leaving_2 = {
     .origin = "page `Home`, place `leaving 2` (ID1412311088)",
     .type = &s_UNIT,
-    .capacity = 64U,
+    .capacity = 1U,
     PN_BAG_TOKENS(net_marking_t, Supervisor_Home_leaving_2),
 };
 
@@ -1868,7 +1992,7 @@ PN_UNTIMED_PLACE(Supervisor_Home_leaving_2, net_marking_t, pn_unit_t, is_before_
 static const pn_bag_t s_at_Supervisor_Home_home_2 = {
     .origin = "page `Home`, place `home 2` (ID1412311096)",
     .type = &s_UNIT,
-    .capacity = 64U,
+    .capacity = 1U,
     PN_BAG_TOKENS(net_marking_t, Supervisor_Home_home_2),
 };
 
@@ -1879,7 +2003,7 @@ PN_UNTIMED_PLACE(Supervisor_Home_home_2, net_marking_t, pn_unit_t, is_before_UNI
 static const pn_bag_t s_at_Robot1_Waiting = {
     .origin = "page `Robot`, place `Waiting` (ID1412311130)",
     .type = &s_UNIT,
-    .capacity = 64U,
+    .capacity = 1U,
     PN_BAG_TOKENS(net_marking_t, Robot1_Waiting),
 };
 
@@ -1902,7 +2026,7 @@ static bool Robot1_Waiting_init(pn_ctx_t *cx, net_marking_t *m)
 static const pn_bag_t s_at_Robot1_Commanded = {
     .origin = "page `Robot`, place `Commanded` (ID1412311133)",
     .type = &s_COMMAND,
-    .capacity = 64U,
+    .capacity = 1U,
     PN_BAG_TOKENS(net_marking_t, Robot1_Commanded),
 };
 
@@ -1913,7 +2037,7 @@ PN_UNTIMED_PLACE(Robot1_Commanded, net_marking_t, int64_t, PN_LESS, s_at_Robot1_
 static const pn_bag_t s_at_Robot1_Done = {
     .origin = "page `Robot`, place `Done` (ID1412311142)",
     .type = &s_UNIT,
-    .capacity = 64U,
+    .capacity = 1U,
     PN_BAG_TOKENS(net_marking_t, Robot1_Done),
 };
 
@@ -1924,7 +2048,7 @@ PN_UNTIMED_PLACE(Robot1_Done, net_marking_t, pn_unit_t, is_before_UNIT, s_at_Rob
 static const pn_bag_t s_at_Robot2_Waiting = {
     .origin = "page `Robot`, place `Waiting` (ID1412311130)",
     .type = &s_UNIT,
-    .capacity = 64U,
+    .capacity = 1U,
     PN_BAG_TOKENS(net_marking_t, Robot2_Waiting),
 };
 
@@ -1947,7 +2071,7 @@ static bool Robot2_Waiting_init(pn_ctx_t *cx, net_marking_t *m)
 static const pn_bag_t s_at_Robot2_Commanded = {
     .origin = "page `Robot`, place `Commanded` (ID1412311133)",
     .type = &s_COMMAND,
-    .capacity = 64U,
+    .capacity = 1U,
     PN_BAG_TOKENS(net_marking_t, Robot2_Commanded),
 };
 
@@ -1958,7 +2082,7 @@ PN_UNTIMED_PLACE(Robot2_Commanded, net_marking_t, int64_t, PN_LESS, s_at_Robot2_
 static const pn_bag_t s_at_Robot2_Done = {
     .origin = "page `Robot`, place `Done` (ID1412311142)",
     .type = &s_UNIT,
-    .capacity = 64U,
+    .capacity = 1U,
     PN_BAG_TOKENS(net_marking_t, Robot2_Done),
 };
 
@@ -1969,7 +2093,7 @@ PN_UNTIMED_PLACE(Robot2_Done, net_marking_t, pn_unit_t, is_before_UNIT, s_at_Rob
 static const pn_bag_t s_at_Robot2_referencia = {
     .origin = "page `Robot`, place `referencia` (ID1412311236)",
     .type = &s_POSE,
-    .capacity = 64U,
+    .capacity = 1U,
     PN_BAG_TOKENS(net_marking_t, Robot2_referencia),
 };
 
@@ -1980,7 +2104,7 @@ PN_UNTIMED_PLACE(Robot2_referencia, net_marking_t, POSE_t, is_before_POSE, s_at_
 static const pn_bag_t s_at_Robot2_medida = {
     .origin = "page `Robot`, place `medida` (ID1412311240)",
     .type = &s_POSE,
-    .capacity = 64U,
+    .capacity = 1U,
     PN_BAG_TOKENS(net_marking_t, Robot2_medida),
 };
 
@@ -7498,7 +7622,7 @@ static const pn_place_t s_places[] = {
     {
         .name = "Cell.dadosrobo1", .colset = "POSE", .owner = -1,
         .origin = "page `Cell`, place `dadosrobo1` (ID1412310013)",
-        .capacity = 64U, .timed = false,
+        .capacity = 1U, .is_bounded = true, .bound = 1U, .timed = false,
         .count = dadosrobo1_count, .token = dadosrobo1_token, .put = dadosrobo1_put,
         .clear = dadosrobo1_clear, .json = dadosrobo1_json,
         .encode = dadosrobo1_encode, .decode = dadosrobo1_decode,
@@ -7509,7 +7633,7 @@ static const pn_place_t s_places[] = {
     {
         .name = "Cell.flag1_interno", .colset = "COMMAND", .owner = -1,
         .origin = "page `Cell`, place `flag1_interno` (ID1412310016)",
-        .capacity = 64U, .timed = false,
+        .capacity = 1U, .is_bounded = true, .bound = 1U, .timed = false,
         .count = flag1_interno_count, .token = flag1_interno_token, .put = flag1_interno_put,
         .clear = flag1_interno_clear, .json = flag1_interno_json,
         .encode = flag1_interno_encode, .decode = flag1_interno_decode,
@@ -7520,7 +7644,7 @@ static const pn_place_t s_places[] = {
     {
         .name = "Cell.flag1_externo", .colset = "REPLY", .owner = -1,
         .origin = "page `Cell`, place `flag1_externo` (ID1412310019)",
-        .capacity = 64U, .timed = false,
+        .capacity = 1U, .is_bounded = true, .bound = 1U, .timed = false,
         .count = flag1_externo_count, .token = flag1_externo_token, .put = flag1_externo_put,
         .clear = flag1_externo_clear, .json = flag1_externo_json,
         .encode = flag1_externo_encode, .decode = flag1_externo_decode,
@@ -7531,7 +7655,7 @@ static const pn_place_t s_places[] = {
     {
         .name = "Cell.referencia1", .colset = "POSE", .owner = -1,
         .origin = "page `Cell`, place `referencia1` (ID1412310022)",
-        .capacity = 64U, .timed = false,
+        .capacity = 1U, .is_bounded = true, .bound = 1U, .timed = false,
         .count = referencia1_count, .token = referencia1_token, .put = referencia1_put,
         .clear = referencia1_clear, .json = referencia1_json,
         .encode = referencia1_encode, .decode = referencia1_decode,
@@ -7542,7 +7666,7 @@ static const pn_place_t s_places[] = {
     {
         .name = "Cell.medida1", .colset = "POSE", .owner = -1,
         .origin = "page `Cell`, place `medida1` (ID1412310025)",
-        .capacity = 64U, .timed = false,
+        .capacity = 1U, .is_bounded = true, .bound = 1U, .timed = false,
         .count = medida1_count, .token = medida1_token, .put = medida1_put,
         .clear = medida1_clear, .json = medida1_json,
         .encode = medida1_encode, .decode = medida1_decode,
@@ -7553,7 +7677,7 @@ static const pn_place_t s_places[] = {
     {
         .name = "Cell.dadosrobo2", .colset = "POSE", .owner = -1,
         .origin = "page `Cell`, place `dadosrobo2` (ID1412310028)",
-        .capacity = 64U, .timed = false,
+        .capacity = 1U, .is_bounded = true, .bound = 1U, .timed = false,
         .count = dadosrobo2_count, .token = dadosrobo2_token, .put = dadosrobo2_put,
         .clear = dadosrobo2_clear, .json = dadosrobo2_json,
         .encode = dadosrobo2_encode, .decode = dadosrobo2_decode,
@@ -7564,7 +7688,7 @@ static const pn_place_t s_places[] = {
     {
         .name = "Cell.flag2_interno", .colset = "COMMAND", .owner = -1,
         .origin = "page `Cell`, place `flag2_interno` (ID1412310031)",
-        .capacity = 64U, .timed = false,
+        .capacity = 1U, .is_bounded = true, .bound = 1U, .timed = false,
         .count = flag2_interno_count, .token = flag2_interno_token, .put = flag2_interno_put,
         .clear = flag2_interno_clear, .json = flag2_interno_json,
         .encode = flag2_interno_encode, .decode = flag2_interno_decode,
@@ -7575,7 +7699,7 @@ static const pn_place_t s_places[] = {
     {
         .name = "Cell.flag2_externo", .colset = "REPLY", .owner = -1,
         .origin = "page `Cell`, place `flag2_externo` (ID1412310034)",
-        .capacity = 64U, .timed = false,
+        .capacity = 1U, .is_bounded = true, .bound = 1U, .timed = false,
         .count = flag2_externo_count, .token = flag2_externo_token, .put = flag2_externo_put,
         .clear = flag2_externo_clear, .json = flag2_externo_json,
         .encode = flag2_externo_encode, .decode = flag2_externo_decode,
@@ -7586,7 +7710,7 @@ static const pn_place_t s_places[] = {
     {
         .name = "Cell.Supervisor.coordenadas", .colset = "PLAN", .owner = 0,
         .origin = "page `Supervisor`, place `coordenadas` (ID1412310094)",
-        .capacity = 64U, .timed = false,
+        .capacity = 1U, .is_bounded = true, .bound = 1U, .timed = false,
         .count = Supervisor_coordenadas_count, .token = Supervisor_coordenadas_token, .put = Supervisor_coordenadas_put,
         .clear = Supervisor_coordenadas_clear, .json = Supervisor_coordenadas_json,
         .encode = Supervisor_coordenadas_encode, .decode = Supervisor_coordenadas_decode,
@@ -7597,7 +7721,7 @@ static const pn_place_t s_places[] = {
     {
         .name = "Cell.Supervisor.planned", .colset = "SEAM", .owner = 0,
         .origin = "page `Supervisor`, place `planned` (ID1412310097)",
-        .capacity = 64U, .timed = false,
+        .capacity = 1U, .is_bounded = true, .bound = 1U, .timed = false,
         .count = Supervisor_planned_count, .token = Supervisor_planned_token, .put = Supervisor_planned_put,
         .clear = Supervisor_planned_clear, .json = Supervisor_planned_json,
         .encode = Supervisor_planned_encode, .decode = Supervisor_planned_decode,
@@ -7608,7 +7732,7 @@ static const pn_place_t s_places[] = {
     {
         .name = "Cell.Supervisor.approached", .colset = "SEAM", .owner = 0,
         .origin = "page `Supervisor`, place `approached` (ID1412310100)",
-        .capacity = 64U, .timed = false,
+        .capacity = 1U, .is_bounded = true, .bound = 1U, .timed = false,
         .count = Supervisor_approached_count, .token = Supervisor_approached_token, .put = Supervisor_approached_put,
         .clear = Supervisor_approached_clear, .json = Supervisor_approached_json,
         .encode = Supervisor_approached_encode, .decode = Supervisor_approached_decode,
@@ -7619,7 +7743,7 @@ static const pn_place_t s_places[] = {
     {
         .name = "Cell.Supervisor.verified", .colset = "VERIFIED", .owner = 0,
         .origin = "page `Supervisor`, place `verified` (ID1412310103)",
-        .capacity = 64U, .timed = false,
+        .capacity = 1U, .is_bounded = true, .bound = 1U, .timed = false,
         .count = Supervisor_verified_count, .token = Supervisor_verified_token, .put = Supervisor_verified_put,
         .clear = Supervisor_verified_clear, .json = Supervisor_verified_json,
         .encode = Supervisor_verified_encode, .decode = Supervisor_verified_decode,
@@ -7630,7 +7754,7 @@ static const pn_place_t s_places[] = {
     {
         .name = "Cell.Supervisor.corrected", .colset = "RIVETING", .owner = 0,
         .origin = "page `Supervisor`, place `corrected` (ID1412310106)",
-        .capacity = 64U, .timed = false,
+        .capacity = 1U, .is_bounded = true, .bound = 1U, .timed = false,
         .count = Supervisor_corrected_count, .token = Supervisor_corrected_token, .put = Supervisor_corrected_put,
         .clear = Supervisor_corrected_clear, .json = Supervisor_corrected_json,
         .encode = Supervisor_corrected_encode, .decode = Supervisor_corrected_decode,
@@ -7641,7 +7765,7 @@ static const pn_place_t s_places[] = {
     {
         .name = "Cell.Supervisor.installed", .colset = "UNIT", .owner = 0,
         .origin = "page `Supervisor`, place `installed` (ID1412310109)",
-        .capacity = 64U, .timed = false,
+        .capacity = 1U, .is_bounded = true, .bound = 1U, .timed = false,
         .count = Supervisor_installed_count, .token = Supervisor_installed_token, .put = Supervisor_installed_put,
         .clear = Supervisor_installed_clear, .json = Supervisor_installed_json,
         .encode = Supervisor_installed_encode, .decode = Supervisor_installed_decode,
@@ -7652,7 +7776,7 @@ static const pn_place_t s_places[] = {
     {
         .name = "Cell.Supervisor.Finished", .colset = "UNIT", .owner = 0,
         .origin = "page `Supervisor`, place `Finished` (ID1412310112)",
-        .capacity = 64U, .timed = false,
+        .capacity = 1U, .is_bounded = true, .bound = 1U, .timed = false,
         .count = Supervisor_Finished_count, .token = Supervisor_Finished_token, .put = Supervisor_Finished_put,
         .clear = Supervisor_Finished_clear, .json = Supervisor_Finished_json,
         .encode = Supervisor_Finished_encode, .decode = Supervisor_Finished_decode,
@@ -7663,7 +7787,7 @@ static const pn_place_t s_places[] = {
     {
         .name = "Cell.Supervisor.Approach.order", .colset = "ORDER", .owner = 0,
         .origin = "page `Approach`, place `order` (ID1412310290)",
-        .capacity = 64U, .timed = false,
+        .capacity = 1U, .is_bounded = true, .bound = 1U, .timed = false,
         .count = Supervisor_Approach_order_count, .token = Supervisor_Approach_order_token, .put = Supervisor_Approach_order_put,
         .clear = Supervisor_Approach_order_clear, .json = Supervisor_Approach_order_json,
         .encode = Supervisor_Approach_order_encode, .decode = Supervisor_Approach_order_decode,
@@ -7674,7 +7798,7 @@ static const pn_place_t s_places[] = {
     {
         .name = "Cell.Supervisor.Approach.done", .colset = "UNIT", .owner = 0,
         .origin = "page `Approach`, place `done` (ID1412310293)",
-        .capacity = 64U, .timed = false,
+        .capacity = 1U, .is_bounded = true, .bound = 1U, .timed = false,
         .count = Supervisor_Approach_done_count, .token = Supervisor_Approach_done_token, .put = Supervisor_Approach_done_put,
         .clear = Supervisor_Approach_done_clear, .json = Supervisor_Approach_done_json,
         .encode = Supervisor_Approach_done_encode, .decode = Supervisor_Approach_done_decode,
@@ -7685,7 +7809,7 @@ static const pn_place_t s_places[] = {
     {
         .name = "Cell.Supervisor.Approach.seam", .colset = "SEAM", .owner = 0,
         .origin = "page `Approach`, place `seam` (ID1412310352)",
-        .capacity = 64U, .timed = false,
+        .capacity = 1U, .is_bounded = true, .bound = 1U, .timed = false,
         .count = Supervisor_Approach_seam_count, .token = Supervisor_Approach_seam_token, .put = Supervisor_Approach_seam_put,
         .clear = Supervisor_Approach_seam_clear, .json = Supervisor_Approach_seam_json,
         .encode = Supervisor_Approach_seam_encode, .decode = Supervisor_Approach_seam_decode,
@@ -7696,7 +7820,7 @@ static const pn_place_t s_places[] = {
     {
         .name = "Cell.Supervisor.Approach.Move both.moving 1", .colset = "UNIT", .owner = 0,
         .origin = "page `MoveBoth`, place `moving 1` (ID1412310959)",
-        .capacity = 64U, .timed = false,
+        .capacity = 1U, .is_bounded = true, .bound = 1U, .timed = false,
         .count = Supervisor_Approach_Move_both_moving_1_count, .token = Supervisor_Approach_Move_both_moving_1_token, .put = Supervisor_Approach_Move_both_moving_1_put,
         .clear = Supervisor_Approach_Move_both_moving_1_clear, .json = Supervisor_Approach_Move_both_moving_1_json,
         .encode = Supervisor_Approach_Move_both_moving_1_encode, .decode = Supervisor_Approach_Move_both_moving_1_decode,
@@ -7707,7 +7831,7 @@ static const pn_place_t s_places[] = {
     {
         .name = "Cell.Supervisor.Approach.Move both.there 1", .colset = "UNIT", .owner = 0,
         .origin = "page `MoveBoth`, place `there 1` (ID1412310967)",
-        .capacity = 64U, .timed = false,
+        .capacity = 1U, .is_bounded = true, .bound = 1U, .timed = false,
         .count = Supervisor_Approach_Move_both_there_1_count, .token = Supervisor_Approach_Move_both_there_1_token, .put = Supervisor_Approach_Move_both_there_1_put,
         .clear = Supervisor_Approach_Move_both_there_1_clear, .json = Supervisor_Approach_Move_both_there_1_json,
         .encode = Supervisor_Approach_Move_both_there_1_encode, .decode = Supervisor_Approach_Move_both_there_1_decode,
@@ -7718,7 +7842,7 @@ static const pn_place_t s_places[] = {
     {
         .name = "Cell.Supervisor.Approach.Move both.moving 2", .colset = "UNIT", .owner = 0,
         .origin = "page `MoveBoth`, place `moving 2` (ID1412310996)",
-        .capacity = 64U, .timed = false,
+        .capacity = 1U, .is_bounded = true, .bound = 1U, .timed = false,
         .count = Supervisor_Approach_Move_both_moving_2_count, .token = Supervisor_Approach_Move_both_moving_2_token, .put = Supervisor_Approach_Move_both_moving_2_put,
         .clear = Supervisor_Approach_Move_both_moving_2_clear, .json = Supervisor_Approach_Move_both_moving_2_json,
         .encode = Supervisor_Approach_Move_both_moving_2_encode, .decode = Supervisor_Approach_Move_both_moving_2_decode,
@@ -7729,7 +7853,7 @@ static const pn_place_t s_places[] = {
     {
         .name = "Cell.Supervisor.Approach.Move both.there 2", .colset = "UNIT", .owner = 0,
         .origin = "page `MoveBoth`, place `there 2` (ID1412311004)",
-        .capacity = 64U, .timed = false,
+        .capacity = 1U, .is_bounded = true, .bound = 1U, .timed = false,
         .count = Supervisor_Approach_Move_both_there_2_count, .token = Supervisor_Approach_Move_both_there_2_token, .put = Supervisor_Approach_Move_both_there_2_put,
         .clear = Supervisor_Approach_Move_both_there_2_clear, .json = Supervisor_Approach_Move_both_there_2_json,
         .encode = Supervisor_Approach_Move_both_there_2_encode, .decode = Supervisor_Approach_Move_both_there_2_decode,
@@ -7740,7 +7864,7 @@ static const pn_place_t s_places[] = {
     {
         .name = "Cell.Supervisor.Verify.first asked", .colset = "SEAM", .owner = 0,
         .origin = "page `Verify`, place `first asked` (ID1412310382)",
-        .capacity = 64U, .timed = false,
+        .capacity = 1U, .is_bounded = true, .bound = 1U, .timed = false,
         .count = Supervisor_Verify_first_asked_count, .token = Supervisor_Verify_first_asked_token, .put = Supervisor_Verify_first_asked_put,
         .clear = Supervisor_Verify_first_asked_clear, .json = Supervisor_Verify_first_asked_json,
         .encode = Supervisor_Verify_first_asked_encode, .decode = Supervisor_Verify_first_asked_decode,
@@ -7751,7 +7875,7 @@ static const pn_place_t s_places[] = {
     {
         .name = "Cell.Supervisor.Verify.last asked", .colset = "ASKED", .owner = 0,
         .origin = "page `Verify`, place `last asked` (ID1412310390)",
-        .capacity = 64U, .timed = false,
+        .capacity = 1U, .is_bounded = true, .bound = 1U, .timed = false,
         .count = Supervisor_Verify_last_asked_count, .token = Supervisor_Verify_last_asked_token, .put = Supervisor_Verify_last_asked_put,
         .clear = Supervisor_Verify_last_asked_clear, .json = Supervisor_Verify_last_asked_json,
         .encode = Supervisor_Verify_last_asked_encode, .decode = Supervisor_Verify_last_asked_decode,
@@ -7762,7 +7886,7 @@ static const pn_place_t s_places[] = {
     {
         .name = "Cell.Supervisor.Correct.offset", .colset = "VECTOR", .owner = 0,
         .origin = "page `Correct`, place `offset` (ID1412310458)",
-        .capacity = 64U, .timed = false,
+        .capacity = 1U, .is_bounded = true, .bound = 1U, .timed = false,
         .count = Supervisor_Correct_offset_count, .token = Supervisor_Correct_offset_token, .put = Supervisor_Correct_offset_put,
         .clear = Supervisor_Correct_offset_clear, .json = Supervisor_Correct_offset_json,
         .encode = Supervisor_Correct_offset_encode, .decode = Supervisor_Correct_offset_decode,
@@ -7773,7 +7897,7 @@ static const pn_place_t s_places[] = {
     {
         .name = "Cell.Supervisor.Correct.order", .colset = "ORDER", .owner = 0,
         .origin = "page `Correct`, place `order` (ID1412310466)",
-        .capacity = 64U, .timed = false,
+        .capacity = 1U, .is_bounded = true, .bound = 1U, .timed = false,
         .count = Supervisor_Correct_order_count, .token = Supervisor_Correct_order_token, .put = Supervisor_Correct_order_put,
         .clear = Supervisor_Correct_order_clear, .json = Supervisor_Correct_order_json,
         .encode = Supervisor_Correct_order_encode, .decode = Supervisor_Correct_order_decode,
@@ -7784,7 +7908,7 @@ static const pn_place_t s_places[] = {
     {
         .name = "Cell.Supervisor.Correct.done", .colset = "UNIT", .owner = 0,
         .origin = "page `Correct`, place `done` (ID1412310475)",
-        .capacity = 64U, .timed = false,
+        .capacity = 1U, .is_bounded = true, .bound = 1U, .timed = false,
         .count = Supervisor_Correct_done_count, .token = Supervisor_Correct_done_token, .put = Supervisor_Correct_done_put,
         .clear = Supervisor_Correct_done_clear, .json = Supervisor_Correct_done_json,
         .encode = Supervisor_Correct_done_encode, .decode = Supervisor_Correct_done_decode,
@@ -7795,7 +7919,7 @@ static const pn_place_t s_places[] = {
     {
         .name = "Cell.Supervisor.Correct.seam", .colset = "RIVETING", .owner = 0,
         .origin = "page `Correct`, place `seam` (ID1412310523)",
-        .capacity = 64U, .timed = false,
+        .capacity = 1U, .is_bounded = true, .bound = 1U, .timed = false,
         .count = Supervisor_Correct_seam_count, .token = Supervisor_Correct_seam_token, .put = Supervisor_Correct_seam_put,
         .clear = Supervisor_Correct_seam_clear, .json = Supervisor_Correct_seam_json,
         .encode = Supervisor_Correct_seam_encode, .decode = Supervisor_Correct_seam_decode,
@@ -7806,7 +7930,7 @@ static const pn_place_t s_places[] = {
     {
         .name = "Cell.Supervisor.Correct.Move both.moving 1", .colset = "UNIT", .owner = 0,
         .origin = "page `MoveBoth`, place `moving 1` (ID1412310959)",
-        .capacity = 64U, .timed = false,
+        .capacity = 1U, .is_bounded = true, .bound = 1U, .timed = false,
         .count = Supervisor_Correct_Move_both_moving_1_count, .token = Supervisor_Correct_Move_both_moving_1_token, .put = Supervisor_Correct_Move_both_moving_1_put,
         .clear = Supervisor_Correct_Move_both_moving_1_clear, .json = Supervisor_Correct_Move_both_moving_1_json,
         .encode = Supervisor_Correct_Move_both_moving_1_encode, .decode = Supervisor_Correct_Move_both_moving_1_decode,
@@ -7817,7 +7941,7 @@ static const pn_place_t s_places[] = {
     {
         .name = "Cell.Supervisor.Correct.Move both.there 1", .colset = "UNIT", .owner = 0,
         .origin = "page `MoveBoth`, place `there 1` (ID1412310967)",
-        .capacity = 64U, .timed = false,
+        .capacity = 1U, .is_bounded = true, .bound = 1U, .timed = false,
         .count = Supervisor_Correct_Move_both_there_1_count, .token = Supervisor_Correct_Move_both_there_1_token, .put = Supervisor_Correct_Move_both_there_1_put,
         .clear = Supervisor_Correct_Move_both_there_1_clear, .json = Supervisor_Correct_Move_both_there_1_json,
         .encode = Supervisor_Correct_Move_both_there_1_encode, .decode = Supervisor_Correct_Move_both_there_1_decode,
@@ -7828,7 +7952,7 @@ static const pn_place_t s_places[] = {
     {
         .name = "Cell.Supervisor.Correct.Move both.moving 2", .colset = "UNIT", .owner = 0,
         .origin = "page `MoveBoth`, place `moving 2` (ID1412310996)",
-        .capacity = 64U, .timed = false,
+        .capacity = 1U, .is_bounded = true, .bound = 1U, .timed = false,
         .count = Supervisor_Correct_Move_both_moving_2_count, .token = Supervisor_Correct_Move_both_moving_2_token, .put = Supervisor_Correct_Move_both_moving_2_put,
         .clear = Supervisor_Correct_Move_both_moving_2_clear, .json = Supervisor_Correct_Move_both_moving_2_json,
         .encode = Supervisor_Correct_Move_both_moving_2_encode, .decode = Supervisor_Correct_Move_both_moving_2_decode,
@@ -7839,7 +7963,7 @@ static const pn_place_t s_places[] = {
     {
         .name = "Cell.Supervisor.Correct.Move both.there 2", .colset = "UNIT", .owner = 0,
         .origin = "page `MoveBoth`, place `there 2` (ID1412311004)",
-        .capacity = 64U, .timed = false,
+        .capacity = 1U, .is_bounded = true, .bound = 1U, .timed = false,
         .count = Supervisor_Correct_Move_both_there_2_count, .token = Supervisor_Correct_Move_both_there_2_token, .put = Supervisor_Correct_Move_both_there_2_put,
         .clear = Supervisor_Correct_Move_both_there_2_clear, .json = Supervisor_Correct_Move_both_there_2_json,
         .encode = Supervisor_Correct_Move_both_there_2_encode, .decode = Supervisor_Correct_Move_both_there_2_decode,
@@ -7850,7 +7974,7 @@ static const pn_place_t s_places[] = {
     {
         .name = "Cell.Supervisor.Install.shift", .colset = "ORDER", .owner = 0,
         .origin = "page `Install`, place `shift` (ID1412310585)",
-        .capacity = 64U, .timed = false,
+        .capacity = 1U, .is_bounded = true, .bound = 1U, .timed = false,
         .count = Supervisor_Install_shift_count, .token = Supervisor_Install_shift_token, .put = Supervisor_Install_shift_put,
         .clear = Supervisor_Install_shift_clear, .json = Supervisor_Install_shift_json,
         .encode = Supervisor_Install_shift_encode, .decode = Supervisor_Install_shift_decode,
@@ -7861,7 +7985,7 @@ static const pn_place_t s_places[] = {
     {
         .name = "Cell.Supervisor.Install.ready", .colset = "UNIT", .owner = 0,
         .origin = "page `Install`, place `ready` (ID1412310588)",
-        .capacity = 64U, .timed = false,
+        .capacity = 1U, .is_bounded = true, .bound = 1U, .timed = false,
         .count = Supervisor_Install_ready_count, .token = Supervisor_Install_ready_token, .put = Supervisor_Install_ready_put,
         .clear = Supervisor_Install_ready_clear, .json = Supervisor_Install_ready_json,
         .encode = Supervisor_Install_ready_encode, .decode = Supervisor_Install_ready_decode,
@@ -7872,7 +7996,7 @@ static const pn_place_t s_places[] = {
     {
         .name = "Cell.Supervisor.Install.riveted", .colset = "UNIT", .owner = 0,
         .origin = "page `Install`, place `riveted` (ID1412310591)",
-        .capacity = 64U, .timed = false,
+        .capacity = 1U, .is_bounded = true, .bound = 1U, .timed = false,
         .count = Supervisor_Install_riveted_count, .token = Supervisor_Install_riveted_token, .put = Supervisor_Install_riveted_put,
         .clear = Supervisor_Install_riveted_clear, .json = Supervisor_Install_riveted_json,
         .encode = Supervisor_Install_riveted_encode, .decode = Supervisor_Install_riveted_decode,
@@ -7883,7 +8007,7 @@ static const pn_place_t s_places[] = {
     {
         .name = "Cell.Supervisor.Install.return", .colset = "ORDER", .owner = 0,
         .origin = "page `Install`, place `return` (ID1412310599)",
-        .capacity = 64U, .timed = false,
+        .capacity = 1U, .is_bounded = true, .bound = 1U, .timed = false,
         .count = Supervisor_Install_return_count, .token = Supervisor_Install_return_token, .put = Supervisor_Install_return_put,
         .clear = Supervisor_Install_return_clear, .json = Supervisor_Install_return_json,
         .encode = Supervisor_Install_return_encode, .decode = Supervisor_Install_return_decode,
@@ -7894,7 +8018,7 @@ static const pn_place_t s_places[] = {
     {
         .name = "Cell.Supervisor.Install.work", .colset = "WORK", .owner = 0,
         .origin = "page `Install`, place `work` (ID1412310629)",
-        .capacity = 64U, .timed = false,
+        .capacity = 1U, .is_bounded = true, .bound = 1U, .timed = false,
         .count = Supervisor_Install_work_count, .token = Supervisor_Install_work_token, .put = Supervisor_Install_work_put,
         .clear = Supervisor_Install_work_clear, .json = Supervisor_Install_work_json,
         .encode = Supervisor_Install_work_encode, .decode = Supervisor_Install_work_decode,
@@ -7905,7 +8029,7 @@ static const pn_place_t s_places[] = {
     {
         .name = "Cell.Supervisor.Install.Shift.moving 1", .colset = "UNIT", .owner = 0,
         .origin = "page `MoveBoth`, place `moving 1` (ID1412310959)",
-        .capacity = 64U, .timed = false,
+        .capacity = 1U, .is_bounded = true, .bound = 1U, .timed = false,
         .count = Supervisor_Install_Shift_moving_1_count, .token = Supervisor_Install_Shift_moving_1_token, .put = Supervisor_Install_Shift_moving_1_put,
         .clear = Supervisor_Install_Shift_moving_1_clear, .json = Supervisor_Install_Shift_moving_1_json,
         .encode = Supervisor_Install_Shift_moving_1_encode, .decode = Supervisor_Install_Shift_moving_1_decode,
@@ -7916,7 +8040,7 @@ static const pn_place_t s_places[] = {
     {
         .name = "Cell.Supervisor.Install.Shift.there 1", .colset = "UNIT", .owner = 0,
         .origin = "page `MoveBoth`, place `there 1` (ID1412310967)",
-        .capacity = 64U, .timed = false,
+        .capacity = 1U, .is_bounded = true, .bound = 1U, .timed = false,
         .count = Supervisor_Install_Shift_there_1_count, .token = Supervisor_Install_Shift_there_1_token, .put = Supervisor_Install_Shift_there_1_put,
         .clear = Supervisor_Install_Shift_there_1_clear, .json = Supervisor_Install_Shift_there_1_json,
         .encode = Supervisor_Install_Shift_there_1_encode, .decode = Supervisor_Install_Shift_there_1_decode,
@@ -7927,7 +8051,7 @@ static const pn_place_t s_places[] = {
     {
         .name = "Cell.Supervisor.Install.Shift.moving 2", .colset = "UNIT", .owner = 0,
         .origin = "page `MoveBoth`, place `moving 2` (ID1412310996)",
-        .capacity = 64U, .timed = false,
+        .capacity = 1U, .is_bounded = true, .bound = 1U, .timed = false,
         .count = Supervisor_Install_Shift_moving_2_count, .token = Supervisor_Install_Shift_moving_2_token, .put = Supervisor_Install_Shift_moving_2_put,
         .clear = Supervisor_Install_Shift_moving_2_clear, .json = Supervisor_Install_Shift_moving_2_json,
         .encode = Supervisor_Install_Shift_moving_2_encode, .decode = Supervisor_Install_Shift_moving_2_decode,
@@ -7938,7 +8062,7 @@ static const pn_place_t s_places[] = {
     {
         .name = "Cell.Supervisor.Install.Shift.there 2", .colset = "UNIT", .owner = 0,
         .origin = "page `MoveBoth`, place `there 2` (ID1412311004)",
-        .capacity = 64U, .timed = false,
+        .capacity = 1U, .is_bounded = true, .bound = 1U, .timed = false,
         .count = Supervisor_Install_Shift_there_2_count, .token = Supervisor_Install_Shift_there_2_token, .put = Supervisor_Install_Shift_there_2_put,
         .clear = Supervisor_Install_Shift_there_2_clear, .json = Supervisor_Install_Shift_there_2_json,
         .encode = Supervisor_Install_Shift_there_2_encode, .decode = Supervisor_Install_Shift_there_2_decode,
@@ -7949,7 +8073,7 @@ static const pn_place_t s_places[] = {
     {
         .name = "Cell.Supervisor.Install.Rivet.advance", .colset = "ORDER", .owner = 0,
         .origin = "page `Rivet`, place `advance` (ID1412310721)",
-        .capacity = 64U, .timed = false,
+        .capacity = 1U, .is_bounded = true, .bound = 1U, .timed = false,
         .count = Supervisor_Install_Rivet_advance_count, .token = Supervisor_Install_Rivet_advance_token, .put = Supervisor_Install_Rivet_advance_put,
         .clear = Supervisor_Install_Rivet_advance_clear, .json = Supervisor_Install_Rivet_advance_json,
         .encode = Supervisor_Install_Rivet_advance_encode, .decode = Supervisor_Install_Rivet_advance_decode,
@@ -7960,7 +8084,7 @@ static const pn_place_t s_places[] = {
     {
         .name = "Cell.Supervisor.Install.Rivet.contact", .colset = "UNIT", .owner = 0,
         .origin = "page `Rivet`, place `contact` (ID1412310730)",
-        .capacity = 64U, .timed = false,
+        .capacity = 1U, .is_bounded = true, .bound = 1U, .timed = false,
         .count = Supervisor_Install_Rivet_contact_count, .token = Supervisor_Install_Rivet_contact_token, .put = Supervisor_Install_Rivet_contact_put,
         .clear = Supervisor_Install_Rivet_contact_clear, .json = Supervisor_Install_Rivet_contact_json,
         .encode = Supervisor_Install_Rivet_contact_encode, .decode = Supervisor_Install_Rivet_contact_decode,
@@ -7971,7 +8095,7 @@ static const pn_place_t s_places[] = {
     {
         .name = "Cell.Supervisor.Install.Rivet.fastened", .colset = "UNIT", .owner = 0,
         .origin = "page `Rivet`, place `fastened` (ID1412310739)",
-        .capacity = 64U, .timed = false,
+        .capacity = 1U, .is_bounded = true, .bound = 1U, .timed = false,
         .count = Supervisor_Install_Rivet_fastened_count, .token = Supervisor_Install_Rivet_fastened_token, .put = Supervisor_Install_Rivet_fastened_put,
         .clear = Supervisor_Install_Rivet_fastened_clear, .json = Supervisor_Install_Rivet_fastened_json,
         .encode = Supervisor_Install_Rivet_fastened_encode, .decode = Supervisor_Install_Rivet_fastened_decode,
@@ -7982,7 +8106,7 @@ static const pn_place_t s_places[] = {
     {
         .name = "Cell.Supervisor.Install.Rivet.retract", .colset = "ORDER", .owner = 0,
         .origin = "page `Rivet`, place `retract` (ID1412310747)",
-        .capacity = 64U, .timed = false,
+        .capacity = 1U, .is_bounded = true, .bound = 1U, .timed = false,
         .count = Supervisor_Install_Rivet_retract_count, .token = Supervisor_Install_Rivet_retract_token, .put = Supervisor_Install_Rivet_retract_put,
         .clear = Supervisor_Install_Rivet_retract_clear, .json = Supervisor_Install_Rivet_retract_json,
         .encode = Supervisor_Install_Rivet_retract_encode, .decode = Supervisor_Install_Rivet_retract_decode,
@@ -7993,7 +8117,7 @@ static const pn_place_t s_places[] = {
     {
         .name = "Cell.Supervisor.Install.Rivet.Advance.moving 1", .colset = "UNIT", .owner = 0,
         .origin = "page `MoveBoth`, place `moving 1` (ID1412310959)",
-        .capacity = 64U, .timed = false,
+        .capacity = 1U, .is_bounded = true, .bound = 1U, .timed = false,
         .count = Supervisor_Install_Rivet_Advance_moving_1_count, .token = Supervisor_Install_Rivet_Advance_moving_1_token, .put = Supervisor_Install_Rivet_Advance_moving_1_put,
         .clear = Supervisor_Install_Rivet_Advance_moving_1_clear, .json = Supervisor_Install_Rivet_Advance_moving_1_json,
         .encode = Supervisor_Install_Rivet_Advance_moving_1_encode, .decode = Supervisor_Install_Rivet_Advance_moving_1_decode,
@@ -8004,7 +8128,7 @@ static const pn_place_t s_places[] = {
     {
         .name = "Cell.Supervisor.Install.Rivet.Advance.there 1", .colset = "UNIT", .owner = 0,
         .origin = "page `MoveBoth`, place `there 1` (ID1412310967)",
-        .capacity = 64U, .timed = false,
+        .capacity = 1U, .is_bounded = true, .bound = 1U, .timed = false,
         .count = Supervisor_Install_Rivet_Advance_there_1_count, .token = Supervisor_Install_Rivet_Advance_there_1_token, .put = Supervisor_Install_Rivet_Advance_there_1_put,
         .clear = Supervisor_Install_Rivet_Advance_there_1_clear, .json = Supervisor_Install_Rivet_Advance_there_1_json,
         .encode = Supervisor_Install_Rivet_Advance_there_1_encode, .decode = Supervisor_Install_Rivet_Advance_there_1_decode,
@@ -8015,7 +8139,7 @@ static const pn_place_t s_places[] = {
     {
         .name = "Cell.Supervisor.Install.Rivet.Advance.moving 2", .colset = "UNIT", .owner = 0,
         .origin = "page `MoveBoth`, place `moving 2` (ID1412310996)",
-        .capacity = 64U, .timed = false,
+        .capacity = 1U, .is_bounded = true, .bound = 1U, .timed = false,
         .count = Supervisor_Install_Rivet_Advance_moving_2_count, .token = Supervisor_Install_Rivet_Advance_moving_2_token, .put = Supervisor_Install_Rivet_Advance_moving_2_put,
         .clear = Supervisor_Install_Rivet_Advance_moving_2_clear, .json = Supervisor_Install_Rivet_Advance_moving_2_json,
         .encode = Supervisor_Install_Rivet_Advance_moving_2_encode, .decode = Supervisor_Install_Rivet_Advance_moving_2_decode,
@@ -8026,7 +8150,7 @@ static const pn_place_t s_places[] = {
     {
         .name = "Cell.Supervisor.Install.Rivet.Advance.there 2", .colset = "UNIT", .owner = 0,
         .origin = "page `MoveBoth`, place `there 2` (ID1412311004)",
-        .capacity = 64U, .timed = false,
+        .capacity = 1U, .is_bounded = true, .bound = 1U, .timed = false,
         .count = Supervisor_Install_Rivet_Advance_there_2_count, .token = Supervisor_Install_Rivet_Advance_there_2_token, .put = Supervisor_Install_Rivet_Advance_there_2_put,
         .clear = Supervisor_Install_Rivet_Advance_there_2_clear, .json = Supervisor_Install_Rivet_Advance_there_2_json,
         .encode = Supervisor_Install_Rivet_Advance_there_2_encode, .decode = Supervisor_Install_Rivet_Advance_there_2_decode,
@@ -8037,7 +8161,7 @@ static const pn_place_t s_places[] = {
     {
         .name = "Cell.Supervisor.Install.Rivet.Fasten.pressing", .colset = "UNIT", .owner = 0,
         .origin = "page `Fasten`, place `pressing` (ID1412310847)",
-        .capacity = 64U, .timed = false,
+        .capacity = 1U, .is_bounded = true, .bound = 1U, .timed = false,
         .count = Supervisor_Install_Rivet_Fasten_pressing_count, .token = Supervisor_Install_Rivet_Fasten_pressing_token, .put = Supervisor_Install_Rivet_Fasten_pressing_put,
         .clear = Supervisor_Install_Rivet_Fasten_pressing_clear, .json = Supervisor_Install_Rivet_Fasten_pressing_json,
         .encode = Supervisor_Install_Rivet_Fasten_pressing_encode, .decode = Supervisor_Install_Rivet_Fasten_pressing_decode,
@@ -8048,7 +8172,7 @@ static const pn_place_t s_places[] = {
     {
         .name = "Cell.Supervisor.Install.Rivet.Fasten.drilling", .colset = "UNIT", .owner = 0,
         .origin = "page `Fasten`, place `drilling` (ID1412310855)",
-        .capacity = 64U, .timed = false,
+        .capacity = 1U, .is_bounded = true, .bound = 1U, .timed = false,
         .count = Supervisor_Install_Rivet_Fasten_drilling_count, .token = Supervisor_Install_Rivet_Fasten_drilling_token, .put = Supervisor_Install_Rivet_Fasten_drilling_put,
         .clear = Supervisor_Install_Rivet_Fasten_drilling_clear, .json = Supervisor_Install_Rivet_Fasten_drilling_json,
         .encode = Supervisor_Install_Rivet_Fasten_drilling_encode, .decode = Supervisor_Install_Rivet_Fasten_drilling_decode,
@@ -8059,7 +8183,7 @@ static const pn_place_t s_places[] = {
     {
         .name = "Cell.Supervisor.Install.Rivet.Fasten.inserting", .colset = "UNIT", .owner = 0,
         .origin = "page `Fasten`, place `inserting` (ID1412310863)",
-        .capacity = 64U, .timed = false,
+        .capacity = 1U, .is_bounded = true, .bound = 1U, .timed = false,
         .count = Supervisor_Install_Rivet_Fasten_inserting_count, .token = Supervisor_Install_Rivet_Fasten_inserting_token, .put = Supervisor_Install_Rivet_Fasten_inserting_put,
         .clear = Supervisor_Install_Rivet_Fasten_inserting_clear, .json = Supervisor_Install_Rivet_Fasten_inserting_json,
         .encode = Supervisor_Install_Rivet_Fasten_inserting_encode, .decode = Supervisor_Install_Rivet_Fasten_inserting_decode,
@@ -8070,7 +8194,7 @@ static const pn_place_t s_places[] = {
     {
         .name = "Cell.Supervisor.Install.Rivet.Fasten.releasing", .colset = "UNIT", .owner = 0,
         .origin = "page `Fasten`, place `releasing` (ID1412310871)",
-        .capacity = 64U, .timed = false,
+        .capacity = 1U, .is_bounded = true, .bound = 1U, .timed = false,
         .count = Supervisor_Install_Rivet_Fasten_releasing_count, .token = Supervisor_Install_Rivet_Fasten_releasing_token, .put = Supervisor_Install_Rivet_Fasten_releasing_put,
         .clear = Supervisor_Install_Rivet_Fasten_releasing_clear, .json = Supervisor_Install_Rivet_Fasten_releasing_json,
         .encode = Supervisor_Install_Rivet_Fasten_releasing_encode, .decode = Supervisor_Install_Rivet_Fasten_releasing_decode,
@@ -8081,7 +8205,7 @@ static const pn_place_t s_places[] = {
     {
         .name = "Cell.Supervisor.Install.Rivet.Retract.moving 1", .colset = "UNIT", .owner = 0,
         .origin = "page `MoveBoth`, place `moving 1` (ID1412310959)",
-        .capacity = 64U, .timed = false,
+        .capacity = 1U, .is_bounded = true, .bound = 1U, .timed = false,
         .count = Supervisor_Install_Rivet_Retract_moving_1_count, .token = Supervisor_Install_Rivet_Retract_moving_1_token, .put = Supervisor_Install_Rivet_Retract_moving_1_put,
         .clear = Supervisor_Install_Rivet_Retract_moving_1_clear, .json = Supervisor_Install_Rivet_Retract_moving_1_json,
         .encode = Supervisor_Install_Rivet_Retract_moving_1_encode, .decode = Supervisor_Install_Rivet_Retract_moving_1_decode,
@@ -8092,7 +8216,7 @@ static const pn_place_t s_places[] = {
     {
         .name = "Cell.Supervisor.Install.Rivet.Retract.there 1", .colset = "UNIT", .owner = 0,
         .origin = "page `MoveBoth`, place `there 1` (ID1412310967)",
-        .capacity = 64U, .timed = false,
+        .capacity = 1U, .is_bounded = true, .bound = 1U, .timed = false,
         .count = Supervisor_Install_Rivet_Retract_there_1_count, .token = Supervisor_Install_Rivet_Retract_there_1_token, .put = Supervisor_Install_Rivet_Retract_there_1_put,
         .clear = Supervisor_Install_Rivet_Retract_there_1_clear, .json = Supervisor_Install_Rivet_Retract_there_1_json,
         .encode = Supervisor_Install_Rivet_Retract_there_1_encode, .decode = Supervisor_Install_Rivet_Retract_there_1_decode,
@@ -8103,7 +8227,7 @@ static const pn_place_t s_places[] = {
     {
         .name = "Cell.Supervisor.Install.Rivet.Retract.moving 2", .colset = "UNIT", .owner = 0,
         .origin = "page `MoveBoth`, place `moving 2` (ID1412310996)",
-        .capacity = 64U, .timed = false,
+        .capacity = 1U, .is_bounded = true, .bound = 1U, .timed = false,
         .count = Supervisor_Install_Rivet_Retract_moving_2_count, .token = Supervisor_Install_Rivet_Retract_moving_2_token, .put = Supervisor_Install_Rivet_Retract_moving_2_put,
         .clear = Supervisor_Install_Rivet_Retract_moving_2_clear, .json = Supervisor_Install_Rivet_Retract_moving_2_json,
         .encode = Supervisor_Install_Rivet_Retract_moving_2_encode, .decode = Supervisor_Install_Rivet_Retract_moving_2_decode,
@@ -8114,7 +8238,7 @@ static const pn_place_t s_places[] = {
     {
         .name = "Cell.Supervisor.Install.Rivet.Retract.there 2", .colset = "UNIT", .owner = 0,
         .origin = "page `MoveBoth`, place `there 2` (ID1412311004)",
-        .capacity = 64U, .timed = false,
+        .capacity = 1U, .is_bounded = true, .bound = 1U, .timed = false,
         .count = Supervisor_Install_Rivet_Retract_there_2_count, .token = Supervisor_Install_Rivet_Retract_there_2_token, .put = Supervisor_Install_Rivet_Retract_there_2_put,
         .clear = Supervisor_Install_Rivet_Retract_there_2_clear, .json = Supervisor_Install_Rivet_Retract_there_2_json,
         .encode = Supervisor_Install_Rivet_Retract_there_2_encode, .decode = Supervisor_Install_Rivet_Retract_there_2_decode,
@@ -8125,7 +8249,7 @@ static const pn_place_t s_places[] = {
     {
         .name = "Cell.Supervisor.Install.Return.moving 1", .colset = "UNIT", .owner = 0,
         .origin = "page `MoveBoth`, place `moving 1` (ID1412310959)",
-        .capacity = 64U, .timed = false,
+        .capacity = 1U, .is_bounded = true, .bound = 1U, .timed = false,
         .count = Supervisor_Install_Return_moving_1_count, .token = Supervisor_Install_Return_moving_1_token, .put = Supervisor_Install_Return_moving_1_put,
         .clear = Supervisor_Install_Return_moving_1_clear, .json = Supervisor_Install_Return_moving_1_json,
         .encode = Supervisor_Install_Return_moving_1_encode, .decode = Supervisor_Install_Return_moving_1_decode,
@@ -8136,7 +8260,7 @@ static const pn_place_t s_places[] = {
     {
         .name = "Cell.Supervisor.Install.Return.there 1", .colset = "UNIT", .owner = 0,
         .origin = "page `MoveBoth`, place `there 1` (ID1412310967)",
-        .capacity = 64U, .timed = false,
+        .capacity = 1U, .is_bounded = true, .bound = 1U, .timed = false,
         .count = Supervisor_Install_Return_there_1_count, .token = Supervisor_Install_Return_there_1_token, .put = Supervisor_Install_Return_there_1_put,
         .clear = Supervisor_Install_Return_there_1_clear, .json = Supervisor_Install_Return_there_1_json,
         .encode = Supervisor_Install_Return_there_1_encode, .decode = Supervisor_Install_Return_there_1_decode,
@@ -8147,7 +8271,7 @@ static const pn_place_t s_places[] = {
     {
         .name = "Cell.Supervisor.Install.Return.moving 2", .colset = "UNIT", .owner = 0,
         .origin = "page `MoveBoth`, place `moving 2` (ID1412310996)",
-        .capacity = 64U, .timed = false,
+        .capacity = 1U, .is_bounded = true, .bound = 1U, .timed = false,
         .count = Supervisor_Install_Return_moving_2_count, .token = Supervisor_Install_Return_moving_2_token, .put = Supervisor_Install_Return_moving_2_put,
         .clear = Supervisor_Install_Return_moving_2_clear, .json = Supervisor_Install_Return_moving_2_json,
         .encode = Supervisor_Install_Return_moving_2_encode, .decode = Supervisor_Install_Return_moving_2_decode,
@@ -8158,7 +8282,7 @@ static const pn_place_t s_places[] = {
     {
         .name = "Cell.Supervisor.Install.Return.there 2", .colset = "UNIT", .owner = 0,
         .origin = "page `MoveBoth`, place `there 2` (ID1412311004)",
-        .capacity = 64U, .timed = false,
+        .capacity = 1U, .is_bounded = true, .bound = 1U, .timed = false,
         .count = Supervisor_Install_Return_there_2_count, .token = Supervisor_Install_Return_there_2_token, .put = Supervisor_Install_Return_there_2_put,
         .clear = Supervisor_Install_Return_there_2_clear, .json = Supervisor_Install_Return_there_2_json,
         .encode = Supervisor_Install_Return_there_2_encode, .decode = Supervisor_Install_Return_there_2_decode,
@@ -8169,7 +8293,7 @@ static const pn_place_t s_places[] = {
     {
         .name = "Cell.Supervisor.Home.leaving 1", .colset = "UNIT", .owner = 0,
         .origin = "page `Home`, place `leaving 1` (ID1412311057)",
-        .capacity = 64U, .timed = false,
+        .capacity = 1U, .is_bounded = true, .bound = 1U, .timed = false,
         .count = Supervisor_Home_leaving_1_count, .token = Supervisor_Home_leaving_1_token, .put = Supervisor_Home_leaving_1_put,
         .clear = Supervisor_Home_leaving_1_clear, .json = Supervisor_Home_leaving_1_json,
         .encode = Supervisor_Home_leaving_1_encode, .decode = Supervisor_Home_leaving_1_decode,
@@ -8180,7 +8304,7 @@ static const pn_place_t s_places[] = {
     {
         .name = "Cell.Supervisor.Home.home 1", .colset = "UNIT", .owner = 0,
         .origin = "page `Home`, place `home 1` (ID1412311065)",
-        .capacity = 64U, .timed = false,
+        .capacity = 1U, .is_bounded = true, .bound = 1U, .timed = false,
         .count = Supervisor_Home_home_1_count, .token = Supervisor_Home_home_1_token, .put = Supervisor_Home_home_1_put,
         .clear = Supervisor_Home_home_1_clear, .json = Supervisor_Home_home_1_json,
         .encode = Supervisor_Home_home_1_encode, .decode = Supervisor_Home_home_1_decode,
@@ -8191,7 +8315,7 @@ static const pn_place_t s_places[] = {
     {
         .name = "Cell.Supervisor.Home.leaving 2", .colset = "UNIT", .owner = 0,
         .origin = "page `Home`, place `leaving 2` (ID1412311088)",
-        .capacity = 64U, .timed = false,
+        .capacity = 1U, .is_bounded = true, .bound = 1U, .timed = false,
         .count = Supervisor_Home_leaving_2_count, .token = Supervisor_Home_leaving_2_token, .put = Supervisor_Home_leaving_2_put,
         .clear = Supervisor_Home_leaving_2_clear, .json = Supervisor_Home_leaving_2_json,
         .encode = Supervisor_Home_leaving_2_encode, .decode = Supervisor_Home_leaving_2_decode,
@@ -8202,7 +8326,7 @@ static const pn_place_t s_places[] = {
     {
         .name = "Cell.Supervisor.Home.home 2", .colset = "UNIT", .owner = 0,
         .origin = "page `Home`, place `home 2` (ID1412311096)",
-        .capacity = 64U, .timed = false,
+        .capacity = 1U, .is_bounded = true, .bound = 1U, .timed = false,
         .count = Supervisor_Home_home_2_count, .token = Supervisor_Home_home_2_token, .put = Supervisor_Home_home_2_put,
         .clear = Supervisor_Home_home_2_clear, .json = Supervisor_Home_home_2_json,
         .encode = Supervisor_Home_home_2_encode, .decode = Supervisor_Home_home_2_decode,
@@ -8213,7 +8337,7 @@ static const pn_place_t s_places[] = {
     {
         .name = "Cell.Robot1.Waiting", .colset = "UNIT", .owner = 1,
         .origin = "page `Robot`, place `Waiting` (ID1412311130)",
-        .capacity = 64U, .timed = false,
+        .capacity = 1U, .is_bounded = true, .bound = 1U, .timed = false,
         .count = Robot1_Waiting_count, .token = Robot1_Waiting_token, .put = Robot1_Waiting_put,
         .clear = Robot1_Waiting_clear, .json = Robot1_Waiting_json,
         .encode = Robot1_Waiting_encode, .decode = Robot1_Waiting_decode,
@@ -8224,7 +8348,7 @@ static const pn_place_t s_places[] = {
     {
         .name = "Cell.Robot1.Commanded", .colset = "COMMAND", .owner = 1,
         .origin = "page `Robot`, place `Commanded` (ID1412311133)",
-        .capacity = 64U, .timed = false,
+        .capacity = 1U, .is_bounded = true, .bound = 1U, .timed = false,
         .count = Robot1_Commanded_count, .token = Robot1_Commanded_token, .put = Robot1_Commanded_put,
         .clear = Robot1_Commanded_clear, .json = Robot1_Commanded_json,
         .encode = Robot1_Commanded_encode, .decode = Robot1_Commanded_decode,
@@ -8235,7 +8359,7 @@ static const pn_place_t s_places[] = {
     {
         .name = "Cell.Robot1.Done", .colset = "UNIT", .owner = 1,
         .origin = "page `Robot`, place `Done` (ID1412311142)",
-        .capacity = 64U, .timed = false,
+        .capacity = 1U, .is_bounded = true, .bound = 1U, .timed = false,
         .count = Robot1_Done_count, .token = Robot1_Done_token, .put = Robot1_Done_put,
         .clear = Robot1_Done_clear, .json = Robot1_Done_json,
         .encode = Robot1_Done_encode, .decode = Robot1_Done_decode,
@@ -8246,7 +8370,7 @@ static const pn_place_t s_places[] = {
     {
         .name = "Cell.Robot2.Waiting", .colset = "UNIT", .owner = 2,
         .origin = "page `Robot`, place `Waiting` (ID1412311130)",
-        .capacity = 64U, .timed = false,
+        .capacity = 1U, .is_bounded = true, .bound = 1U, .timed = false,
         .count = Robot2_Waiting_count, .token = Robot2_Waiting_token, .put = Robot2_Waiting_put,
         .clear = Robot2_Waiting_clear, .json = Robot2_Waiting_json,
         .encode = Robot2_Waiting_encode, .decode = Robot2_Waiting_decode,
@@ -8257,7 +8381,7 @@ static const pn_place_t s_places[] = {
     {
         .name = "Cell.Robot2.Commanded", .colset = "COMMAND", .owner = 2,
         .origin = "page `Robot`, place `Commanded` (ID1412311133)",
-        .capacity = 64U, .timed = false,
+        .capacity = 1U, .is_bounded = true, .bound = 1U, .timed = false,
         .count = Robot2_Commanded_count, .token = Robot2_Commanded_token, .put = Robot2_Commanded_put,
         .clear = Robot2_Commanded_clear, .json = Robot2_Commanded_json,
         .encode = Robot2_Commanded_encode, .decode = Robot2_Commanded_decode,
@@ -8268,7 +8392,7 @@ static const pn_place_t s_places[] = {
     {
         .name = "Cell.Robot2.Done", .colset = "UNIT", .owner = 2,
         .origin = "page `Robot`, place `Done` (ID1412311142)",
-        .capacity = 64U, .timed = false,
+        .capacity = 1U, .is_bounded = true, .bound = 1U, .timed = false,
         .count = Robot2_Done_count, .token = Robot2_Done_token, .put = Robot2_Done_put,
         .clear = Robot2_Done_clear, .json = Robot2_Done_json,
         .encode = Robot2_Done_encode, .decode = Robot2_Done_decode,
@@ -8279,7 +8403,7 @@ static const pn_place_t s_places[] = {
     {
         .name = "Cell.Robot2.referencia", .colset = "POSE", .owner = 2,
         .origin = "page `Robot`, place `referencia` (ID1412311236)",
-        .capacity = 64U, .timed = false,
+        .capacity = 1U, .is_bounded = true, .bound = 0U, .timed = false,
         .count = Robot2_referencia_count, .token = Robot2_referencia_token, .put = Robot2_referencia_put,
         .clear = Robot2_referencia_clear, .json = Robot2_referencia_json,
         .encode = Robot2_referencia_encode, .decode = Robot2_referencia_decode,
@@ -8290,7 +8414,7 @@ static const pn_place_t s_places[] = {
     {
         .name = "Cell.Robot2.medida", .colset = "POSE", .owner = 2,
         .origin = "page `Robot`, place `medida` (ID1412311240)",
-        .capacity = 64U, .timed = false,
+        .capacity = 1U, .is_bounded = true, .bound = 0U, .timed = false,
         .count = Robot2_medida_count, .token = Robot2_medida_token, .put = Robot2_medida_put,
         .clear = Robot2_medida_clear, .json = Robot2_medida_json,
         .encode = Robot2_medida_encode, .decode = Robot2_medida_decode,

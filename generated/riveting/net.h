@@ -96,7 +96,7 @@ typedef struct net_marking {
         struct {
             POSE_t value;
             uint32_t count;
-        } token[64 + 1];
+        } token[1 + 1];
     } dadosrobo1;
     /* Cell.flag1_interno: page `Cell`, place `flag1_interno` (ID1412310016) */
     struct {
@@ -104,7 +104,7 @@ typedef struct net_marking {
         struct {
             int64_t value;
             uint32_t count;
-        } token[64 + 1];
+        } token[1 + 1];
     } flag1_interno;
     /* Cell.flag1_externo: page `Cell`, place `flag1_externo` (ID1412310019) */
     struct {
@@ -112,7 +112,7 @@ typedef struct net_marking {
         struct {
             int64_t value;
             uint32_t count;
-        } token[64 + 1];
+        } token[1 + 1];
     } flag1_externo;
     /* Cell.referencia1: page `Cell`, place `referencia1` (ID1412310022) */
     struct {
@@ -120,7 +120,7 @@ typedef struct net_marking {
         struct {
             POSE_t value;
             uint32_t count;
-        } token[64 + 1];
+        } token[1 + 1];
     } referencia1;
     /* Cell.medida1: page `Cell`, place `medida1` (ID1412310025) */
     struct {
@@ -128,7 +128,7 @@ typedef struct net_marking {
         struct {
             POSE_t value;
             uint32_t count;
-        } token[64 + 1];
+        } token[1 + 1];
     } medida1;
     /* Cell.dadosrobo2: page `Cell`, place `dadosrobo2` (ID1412310028) */
     struct {
@@ -136,7 +136,7 @@ typedef struct net_marking {
         struct {
             POSE_t value;
             uint32_t count;
-        } token[64 + 1];
+        } token[1 + 1];
     } dadosrobo2;
     /* Cell.flag2_interno: page `Cell`, place `flag2_interno` (ID1412310031) */
     struct {
@@ -144,7 +144,7 @@ typedef struct net_marking {
         struct {
             int64_t value;
             uint32_t count;
-        } token[64 + 1];
+        } token[1 + 1];
     } flag2_interno;
     /* Cell.flag2_externo: page `Cell`, place `flag2_externo` (ID1412310034) */
     struct {
@@ -152,7 +152,7 @@ typedef struct net_marking {
         struct {
             int64_t value;
             uint32_t count;
-        } token[64 + 1];
+        } token[1 + 1];
     } flag2_externo;
     /* Cell.Supervisor.coordenadas: page `Supervisor`, place `coordenadas` (ID1412310094) */
     struct {
@@ -160,7 +160,7 @@ typedef struct net_marking {
         struct {
             PLAN_t value;
             uint32_t count;
-        } token[64];
+        } token[1 + 1];
     } Supervisor_coordenadas;
     /* Cell.Supervisor.planned: page `Supervisor`, place `planned` (ID1412310097) */
     struct {
@@ -168,7 +168,7 @@ typedef struct net_marking {
         struct {
             SEAM_t value;
             uint32_t count;
-        } token[64 + 1];
+        } token[1 + 1];
     } Supervisor_planned;
     /* Cell.Supervisor.approached: page `Supervisor`, place `approached` (ID1412310100) */
     struct {
@@ -176,7 +176,7 @@ typedef struct net_marking {
         struct {
             SEAM_t value;
             uint32_t count;
-        } token[64 + 1];
+        } token[1 + 1];
     } Supervisor_approached;
     /* Cell.Supervisor.verified: page `Supervisor`, place `verified` (ID1412310103) */
     struct {
@@ -184,7 +184,7 @@ typedef struct net_marking {
         struct {
             VERIFIED_t value;
             uint32_t count;
-        } token[64 + 1];
+        } token[1 + 1];
     } Supervisor_verified;
     /* Cell.Supervisor.corrected: page `Supervisor`, place `corrected` (ID1412310106) */
     struct {
@@ -192,7 +192,7 @@ typedef struct net_marking {
         struct {
             RIVETING_t value;
             uint32_t count;
-        } token[64 + 1];
+        } token[1 + 1];
     } Supervisor_corrected;
     /* Cell.Supervisor.installed: page `Supervisor`, place `installed` (ID1412310109) */
     struct {
@@ -200,7 +200,7 @@ typedef struct net_marking {
         struct {
             pn_unit_t value;
             uint32_t count;
-        } token[64 + 1];
+        } token[1 + 1];
     } Supervisor_installed;
     /* Cell.Supervisor.Finished: page `Supervisor`, place `Finished` (ID1412310112) */
     struct {
@@ -208,7 +208,7 @@ typedef struct net_marking {
         struct {
             pn_unit_t value;
             uint32_t count;
-        } token[64 + 1];
+        } token[1 + 1];
     } Supervisor_Finished;
     /* Cell.Supervisor.Approach.order: page `Approach`, place `order` (ID1412310290) */
     struct {
@@ -216,7 +216,7 @@ typedef struct net_marking {
         struct {
             PLAN_t value;
             uint32_t count;
-        } token[64 + 1];
+        } token[1 + 1];
     } Supervisor_Approach_order;
     /* Cell.Supervisor.Approach.done: page `Approach`, place `done` (ID1412310293) */
     struct {
@@ -224,7 +224,7 @@ typedef struct net_marking {
         struct {
             pn_unit_t value;
             uint32_t count;
-        } token[64 + 1];
+        } token[1 + 1];
     } Supervisor_Approach_done;
     /* Cell.Supervisor.Approach.seam: page `Approach`, place `seam` (ID1412310352) */
     struct {
@@ -232,7 +232,7 @@ typedef struct net_marking {
         struct {
             SEAM_t value;
             uint32_t count;
-        } token[64 + 1];
+        } token[1 + 1];
     } Supervisor_Approach_seam;
     /* Cell.Supervisor.Approach.Move both.moving 1: page `MoveBoth`, place `moving 1` (ID1412310959) */
     struct {
@@ -240,7 +240,7 @@ typedef struct net_marking {
         struct {
             pn_unit_t value;
             uint32_t count;
-        } token[64 + 1];
+        } token[1 + 1];
     } Supervisor_Approach_Move_both_moving_1;
     /* Cell.Supervisor.Approach.Move both.there 1: page `MoveBoth`, place `there 1` (ID1412310967) */
     struct {
@@ -248,7 +248,7 @@ typedef struct net_marking {
         struct {
             pn_unit_t value;
             uint32_t count;
-        } token[64 + 1];
+        } token[1 + 1];
     } Supervisor_Approach_Move_both_there_1;
     /* Cell.Supervisor.Approach.Move both.moving 2: page `MoveBoth`, place `moving 2` (ID1412310996) */
     struct {
@@ -256,7 +256,7 @@ typedef struct net_marking {
         struct {
             pn_unit_t value;
             uint32_t count;
-        } token[64 + 1];
+        } token[1 + 1];
     } Supervisor_Approach_Move_both_moving_2;
     /* Cell.Supervisor.Approach.Move both.there 2: page `MoveBoth`, place `there 2` (ID1412311004) */
     struct {
@@ -264,7 +264,7 @@ typedef struct net_marking {
         struct {
             pn_unit_t value;
             uint32_t count;
-        } token[64 + 1];
+        } token[1 + 1];
     } Supervisor_Approach_Move_both_there_2;
     /* Cell.Supervisor.Verify.first asked: page `Verify`, place `first asked` (ID1412310382) */
     struct {
@@ -272,7 +272,7 @@ typedef struct net_marking {
         struct {
             SEAM_t value;
             uint32_t count;
-        } token[64 + 1];
+        } token[1 + 1];
     } Supervisor_Verify_first_asked;
     /* Cell.Supervisor.Verify.last asked: page `Verify`, place `last asked` (ID1412310390) */
     struct {
@@ -280,7 +280,7 @@ typedef struct net_marking {
         struct {
             ASKED_t value;
             uint32_t count;
-        } token[64 + 1];
+        } token[1 + 1];
     } Supervisor_Verify_last_asked;
     /* Cell.Supervisor.Correct.offset: page `Correct`, place `offset` (ID1412310458) */
     struct {
@@ -288,7 +288,7 @@ typedef struct net_marking {
         struct {
             VECTOR_t value;
             uint32_t count;
-        } token[64 + 1];
+        } token[1 + 1];
     } Supervisor_Correct_offset;
     /* Cell.Supervisor.Correct.order: page `Correct`, place `order` (ID1412310466) */
     struct {
@@ -296,7 +296,7 @@ typedef struct net_marking {
         struct {
             PLAN_t value;
             uint32_t count;
-        } token[64 + 1];
+        } token[1 + 1];
     } Supervisor_Correct_order;
     /* Cell.Supervisor.Correct.done: page `Correct`, place `done` (ID1412310475) */
     struct {
@@ -304,7 +304,7 @@ typedef struct net_marking {
         struct {
             pn_unit_t value;
             uint32_t count;
-        } token[64 + 1];
+        } token[1 + 1];
     } Supervisor_Correct_done;
     /* Cell.Supervisor.Correct.seam: page `Correct`, place `seam` (ID1412310523) */
     struct {
@@ -312,7 +312,7 @@ typedef struct net_marking {
         struct {
             RIVETING_t value;
             uint32_t count;
-        } token[64 + 1];
+        } token[1 + 1];
     } Supervisor_Correct_seam;
     /* Cell.Supervisor.Correct.Move both.moving 1: page `MoveBoth`, place `moving 1` (ID1412310959) */
     struct {
@@ -320,7 +320,7 @@ typedef struct net_marking {
         struct {
             pn_unit_t value;
             uint32_t count;
-        } token[64 + 1];
+        } token[1 + 1];
     } Supervisor_Correct_Move_both_moving_1;
     /* Cell.Supervisor.Correct.Move both.there 1: page `MoveBoth`, place `there 1` (ID1412310967) */
     struct {
@@ -328,7 +328,7 @@ typedef struct net_marking {
         struct {
             pn_unit_t value;
             uint32_t count;
-        } token[64 + 1];
+        } token[1 + 1];
     } Supervisor_Correct_Move_both_there_1;
     /* Cell.Supervisor.Correct.Move both.moving 2: page `MoveBoth`, place `moving 2` (ID1412310996) */
     struct {
@@ -336,7 +336,7 @@ typedef struct net_marking {
         struct {
             pn_unit_t value;
             uint32_t count;
-        } token[64 + 1];
+        } token[1 + 1];
     } Supervisor_Correct_Move_both_moving_2;
     /* Cell.Supervisor.Correct.Move both.there 2: page `MoveBoth`, place `there 2` (ID1412311004) */
     struct {
@@ -344,7 +344,7 @@ typedef struct net_marking {
         struct {
             pn_unit_t value;
             uint32_t count;
-        } token[64 + 1];
+        } token[1 + 1];
     } Supervisor_Correct_Move_both_there_2;
     /* Cell.Supervisor.Install.shift: page `Install`, place `shift` (ID1412310585) */
     struct {
@@ -352,7 +352,7 @@ typedef struct net_marking {
         struct {
             PLAN_t value;
             uint32_t count;
-        } token[64 + 1];
+        } token[1 + 1];
     } Supervisor_Install_shift;
     /* Cell.Supervisor.Install.ready: page `Install`, place `ready` (ID1412310588) */
     struct {
@@ -360,7 +360,7 @@ typedef struct net_marking {
         struct {
             pn_unit_t value;
             uint32_t count;
-        } token[64 + 1];
+        } token[1 + 1];
     } Supervisor_Install_ready;
     /* Cell.Supervisor.Install.riveted: page `Install`, place `riveted` (ID1412310591) */
     struct {
@@ -368,7 +368,7 @@ typedef struct net_marking {
         struct {
             pn_unit_t value;
             uint32_t count;
-        } token[64 + 1];
+        } token[1 + 1];
     } Supervisor_Install_riveted;
     /* Cell.Supervisor.Install.return: page `Install`, place `return` (ID1412310599) */
     struct {
@@ -376,7 +376,7 @@ typedef struct net_marking {
         struct {
             PLAN_t value;
             uint32_t count;
-        } token[64 + 1];
+        } token[1 + 1];
     } Supervisor_Install_return;
     /* Cell.Supervisor.Install.work: page `Install`, place `work` (ID1412310629) */
     struct {
@@ -384,7 +384,7 @@ typedef struct net_marking {
         struct {
             WORK_t value;
             uint32_t count;
-        } token[64 + 1];
+        } token[1 + 1];
     } Supervisor_Install_work;
     /* Cell.Supervisor.Install.Shift.moving 1: page `MoveBoth`, place `moving 1` (ID1412310959) */
     struct {
@@ -392,7 +392,7 @@ typedef struct net_marking {
         struct {
             pn_unit_t value;
             uint32_t count;
-        } token[64 + 1];
+        } token[1 + 1];
     } Supervisor_Install_Shift_moving_1;
     /* Cell.Supervisor.Install.Shift.there 1: page `MoveBoth`, place `there 1` (ID1412310967) */
     struct {
@@ -400,7 +400,7 @@ typedef struct net_marking {
         struct {
             pn_unit_t value;
             uint32_t count;
-        } token[64 + 1];
+        } token[1 + 1];
     } Supervisor_Install_Shift_there_1;
     /* Cell.Supervisor.Install.Shift.moving 2: page `MoveBoth`, place `moving 2` (ID1412310996) */
     struct {
@@ -408,7 +408,7 @@ typedef struct net_marking {
         struct {
             pn_unit_t value;
             uint32_t count;
-        } token[64 + 1];
+        } token[1 + 1];
     } Supervisor_Install_Shift_moving_2;
     /* Cell.Supervisor.Install.Shift.there 2: page `MoveBoth`, place `there 2` (ID1412311004) */
     struct {
@@ -416,7 +416,7 @@ typedef struct net_marking {
         struct {
             pn_unit_t value;
             uint32_t count;
-        } token[64 + 1];
+        } token[1 + 1];
     } Supervisor_Install_Shift_there_2;
     /* Cell.Supervisor.Install.Rivet.advance: page `Rivet`, place `advance` (ID1412310721) */
     struct {
@@ -424,7 +424,7 @@ typedef struct net_marking {
         struct {
             PLAN_t value;
             uint32_t count;
-        } token[64 + 1];
+        } token[1 + 1];
     } Supervisor_Install_Rivet_advance;
     /* Cell.Supervisor.Install.Rivet.contact: page `Rivet`, place `contact` (ID1412310730) */
     struct {
@@ -432,7 +432,7 @@ typedef struct net_marking {
         struct {
             pn_unit_t value;
             uint32_t count;
-        } token[64 + 1];
+        } token[1 + 1];
     } Supervisor_Install_Rivet_contact;
     /* Cell.Supervisor.Install.Rivet.fastened: page `Rivet`, place `fastened` (ID1412310739) */
     struct {
@@ -440,7 +440,7 @@ typedef struct net_marking {
         struct {
             pn_unit_t value;
             uint32_t count;
-        } token[64 + 1];
+        } token[1 + 1];
     } Supervisor_Install_Rivet_fastened;
     /* Cell.Supervisor.Install.Rivet.retract: page `Rivet`, place `retract` (ID1412310747) */
     struct {
@@ -448,7 +448,7 @@ typedef struct net_marking {
         struct {
             PLAN_t value;
             uint32_t count;
-        } token[64 + 1];
+        } token[1 + 1];
     } Supervisor_Install_Rivet_retract;
     /* Cell.Supervisor.Install.Rivet.Advance.moving 1: page `MoveBoth`, place `moving 1` (ID1412310959) */
     struct {
@@ -456,7 +456,7 @@ typedef struct net_marking {
         struct {
             pn_unit_t value;
             uint32_t count;
-        } token[64 + 1];
+        } token[1 + 1];
     } Supervisor_Install_Rivet_Advance_moving_1;
     /* Cell.Supervisor.Install.Rivet.Advance.there 1: page `MoveBoth`, place `there 1` (ID1412310967) */
     struct {
@@ -464,7 +464,7 @@ typedef struct net_marking {
         struct {
             pn_unit_t value;
             uint32_t count;
-        } token[64 + 1];
+        } token[1 + 1];
     } Supervisor_Install_Rivet_Advance_there_1;
     /* Cell.Supervisor.Install.Rivet.Advance.moving 2: page `MoveBoth`, place `moving 2` (ID1412310996) */
     struct {
@@ -472,7 +472,7 @@ typedef struct net_marking {
         struct {
             pn_unit_t value;
             uint32_t count;
-        } token[64 + 1];
+        } token[1 + 1];
     } Supervisor_Install_Rivet_Advance_moving_2;
     /* Cell.Supervisor.Install.Rivet.Advance.there 2: page `MoveBoth`, place `there 2` (ID1412311004) */
     struct {
@@ -480,7 +480,7 @@ typedef struct net_marking {
         struct {
             pn_unit_t value;
             uint32_t count;
-        } token[64 + 1];
+        } token[1 + 1];
     } Supervisor_Install_Rivet_Advance_there_2;
     /* Cell.Supervisor.Install.Rivet.Fasten.pressing: page `Fasten`, place `pressing` (ID1412310847) */
     struct {
@@ -488,7 +488,7 @@ typedef struct net_marking {
         struct {
             pn_unit_t value;
             uint32_t count;
-        } token[64 + 1];
+        } token[1 + 1];
     } Supervisor_Install_Rivet_Fasten_pressing;
     /* Cell.Supervisor.Install.Rivet.Fasten.drilling: page `Fasten`, place `drilling` (ID1412310855) */
     struct {
@@ -496,7 +496,7 @@ typedef struct net_marking {
         struct {
             pn_unit_t value;
             uint32_t count;
-        } token[64 + 1];
+        } token[1 + 1];
     } Supervisor_Install_Rivet_Fasten_drilling;
     /* Cell.Supervisor.Install.Rivet.Fasten.inserting: page `Fasten`, place `inserting` (ID1412310863) */
     struct {
@@ -504,7 +504,7 @@ typedef struct net_marking {
         struct {
             pn_unit_t value;
             uint32_t count;
-        } token[64 + 1];
+        } token[1 + 1];
     } Supervisor_Install_Rivet_Fasten_inserting;
     /* Cell.Supervisor.Install.Rivet.Fasten.releasing: page `Fasten`, place `releasing` (ID1412310871) */
     struct {
@@ -512,7 +512,7 @@ typedef struct net_marking {
         struct {
             pn_unit_t value;
             uint32_t count;
-        } token[64 + 1];
+        } token[1 + 1];
     } Supervisor_Install_Rivet_Fasten_releasing;
     /* Cell.Supervisor.Install.Rivet.Retract.moving 1: page `MoveBoth`, place `moving 1` (ID1412310959) */
     struct {
@@ -520,7 +520,7 @@ typedef struct net_marking {
         struct {
             pn_unit_t value;
             uint32_t count;
-        } token[64 + 1];
+        } token[1 + 1];
     } Supervisor_Install_Rivet_Retract_moving_1;
     /* Cell.Supervisor.Install.Rivet.Retract.there 1: page `MoveBoth`, place `there 1` (ID1412310967) */
     struct {
@@ -528,7 +528,7 @@ typedef struct net_marking {
         struct {
             pn_unit_t value;
             uint32_t count;
-        } token[64 + 1];
+        } token[1 + 1];
     } Supervisor_Install_Rivet_Retract_there_1;
     /* Cell.Supervisor.Install.Rivet.Retract.moving 2: page `MoveBoth`, place `moving 2` (ID1412310996) */
     struct {
@@ -536,7 +536,7 @@ typedef struct net_marking {
         struct {
             pn_unit_t value;
             uint32_t count;
-        } token[64 + 1];
+        } token[1 + 1];
     } Supervisor_Install_Rivet_Retract_moving_2;
     /* Cell.Supervisor.Install.Rivet.Retract.there 2: page `MoveBoth`, place `there 2` (ID1412311004) */
     struct {
@@ -544,7 +544,7 @@ typedef struct net_marking {
         struct {
             pn_unit_t value;
             uint32_t count;
-        } token[64 + 1];
+        } token[1 + 1];
     } Supervisor_Install_Rivet_Retract_there_2;
     /* Cell.Supervisor.Install.Return.moving 1: page `MoveBoth`, place `moving 1` (ID1412310959) */
     struct {
@@ -552,7 +552,7 @@ typedef struct net_marking {
         struct {
             pn_unit_t value;
             uint32_t count;
-        } token[64 + 1];
+        } token[1 + 1];
     } Supervisor_Install_Return_moving_1;
     /* Cell.Supervisor.Install.Return.there 1: page `MoveBoth`, place `there 1` (ID1412310967) */
     struct {
@@ -560,7 +560,7 @@ typedef struct net_marking {
         struct {
             pn_unit_t value;
             uint32_t count;
-        } token[64 + 1];
+        } token[1 + 1];
     } Supervisor_Install_Return_there_1;
     /* Cell.Supervisor.Install.Return.moving 2: page `MoveBoth`, place `moving 2` (ID1412310996) */
     struct {
@@ -568,7 +568,7 @@ typedef struct net_marking {
         struct {
             pn_unit_t value;
             uint32_t count;
-        } token[64 + 1];
+        } token[1 + 1];
     } Supervisor_Install_Return_moving_2;
     /* Cell.Supervisor.Install.Return.there 2: page `MoveBoth`, place `there 2` (ID1412311004) */
     struct {
@@ -576,7 +576,7 @@ typedef struct net_marking {
         struct {
             pn_unit_t value;
             uint32_t count;
-        } token[64 + 1];
+        } token[1 + 1];
     } Supervisor_Install_Return_there_2;
     /* Cell.Supervisor.Home.leaving 1: page `Home`, place `leaving 1` (ID1412311057) */
     struct {
@@ -584,7 +584,7 @@ typedef struct net_marking {
         struct {
             pn_unit_t value;
             uint32_t count;
-        } token[64 + 1];
+        } token[1 + 1];
     } Supervisor_Home_leaving_1;
     /* Cell.Supervisor.Home.home 1: page `Home`, place `home 1` (ID1412311065) */
     struct {
@@ -592,7 +592,7 @@ typedef struct net_marking {
         struct {
             pn_unit_t value;
             uint32_t count;
-        } token[64 + 1];
+        } token[1 + 1];
     } Supervisor_Home_home_1;
     /* Cell.Supervisor.Home.leaving 2: page `Home`, place `leaving 2` (ID1412311088) */
     struct {
@@ -600,7 +600,7 @@ typedef struct net_marking {
         struct {
             pn_unit_t value;
             uint32_t count;
-        } token[64 + 1];
+        } token[1 + 1];
     } Supervisor_Home_leaving_2;
     /* Cell.Supervisor.Home.home 2: page `Home`, place `home 2` (ID1412311096) */
     struct {
@@ -608,7 +608,7 @@ typedef struct net_marking {
         struct {
             pn_unit_t value;
             uint32_t count;
-        } token[64 + 1];
+        } token[1 + 1];
     } Supervisor_Home_home_2;
     /* Cell.Robot1.Waiting: page `Robot`, place `Waiting` (ID1412311130) */
     struct {
@@ -616,7 +616,7 @@ typedef struct net_marking {
         struct {
             pn_unit_t value;
             uint32_t count;
-        } token[64 + 1];
+        } token[1 + 1];
     } Robot1_Waiting;
     /* Cell.Robot1.Commanded: page `Robot`, place `Commanded` (ID1412311133) */
     struct {
@@ -624,7 +624,7 @@ typedef struct net_marking {
         struct {
             int64_t value;
             uint32_t count;
-        } token[64 + 1];
+        } token[1 + 1];
     } Robot1_Commanded;
     /* Cell.Robot1.Done: page `Robot`, place `Done` (ID1412311142) */
     struct {
@@ -632,7 +632,7 @@ typedef struct net_marking {
         struct {
             pn_unit_t value;
             uint32_t count;
-        } token[64 + 1];
+        } token[1 + 1];
     } Robot1_Done;
     /* Cell.Robot2.Waiting: page `Robot`, place `Waiting` (ID1412311130) */
     struct {
@@ -640,7 +640,7 @@ typedef struct net_marking {
         struct {
             pn_unit_t value;
             uint32_t count;
-        } token[64 + 1];
+        } token[1 + 1];
     } Robot2_Waiting;
     /* Cell.Robot2.Commanded: page `Robot`, place `Commanded` (ID1412311133) */
     struct {
@@ -648,7 +648,7 @@ typedef struct net_marking {
         struct {
             int64_t value;
             uint32_t count;
-        } token[64 + 1];
+        } token[1 + 1];
     } Robot2_Commanded;
     /* Cell.Robot2.Done: page `Robot`, place `Done` (ID1412311142) */
     struct {
@@ -656,7 +656,7 @@ typedef struct net_marking {
         struct {
             pn_unit_t value;
             uint32_t count;
-        } token[64 + 1];
+        } token[1 + 1];
     } Robot2_Done;
     /* Cell.Robot2.referencia: page `Robot`, place `referencia` (ID1412311236) */
     struct {
@@ -664,7 +664,7 @@ typedef struct net_marking {
         struct {
             POSE_t value;
             uint32_t count;
-        } token[64];
+        } token[1 + 1];
     } Robot2_referencia;
     /* Cell.Robot2.medida: page `Robot`, place `medida` (ID1412311240) */
     struct {
@@ -672,7 +672,7 @@ typedef struct net_marking {
         struct {
             POSE_t value;
             uint32_t count;
-        } token[64 + 1];
+        } token[1 + 1];
     } Robot2_medida;
 } net_marking_t;
 

@@ -1,6 +1,6 @@
 """The compiler as a recipe: from a `.cpn` file (and the `cell.toml` beside it) to files in memory.
 
-    read -> link -> check -> flatten -> divide -> lower -> emit
+    read -> link -> check -> flatten -> divide -> lower -> prove -> emit
 
 Each stage is a function from one immutable value to the next; it reports into `Diagnostics`, and
 the driver stops between stages when there are errors. Every verb starts with `cell.locate` and `net.front`; `generate`
@@ -30,6 +30,8 @@ from pn2code.lowering import net as lower_net
 from pn2code.lowering import robot as lower_robot
 from pn2code.net import front
 from pn2code.net.flat import FlatNet
+from pn2code.verify.proofs import prove
+from pn2code.verify.rooms import with_rooms
 
 
 @dataclass(frozen=True, slots=True)
@@ -56,10 +58,14 @@ def generate(
     layout: str | None = None,
     values: Mapping[str, str] | None = None,
     int_bits: int = 31,
+    checked: bool = True,
 ) -> Generated | None:
     """Everything from files to files in memory; None when an error was reported.
 
     `values` replaces `val`s of the net (over those of cell.toml).
+
+    The supervisor of a cell is checked (docs/execution.md), and its places get room for what is proven to come; without
+    `checked` nothing is refused for that.
 
     What a net may have but cannot do here (sockets, processes) is an error: a supervisor must not stop there.
     """
@@ -78,22 +84,25 @@ def generate(
         return None
 
     storage = config.storage if config else {}
-    capacity = config.capacity if config else {}
     digest = _digest(net, config, replaced, int_bits)
-    ir = lower_net.lower(partition, storage, d, capacity=capacity, digest=digest)
+    ir = lower_net.lower(partition, storage, d, digest=digest)
     robots = lower_robot.lower_robots(partition, config, d) if config else ()
     if ir is None or robots is None or d.has_errors:
+        return None
+    proofs = prove(partition, config, d, checked=checked)
+    if proofs is None or d.has_errors:
         return None
 
     version = pn2code.__version__
     files = [
-        *emit_c.emit(ir, version),
+        *emit_c.emit(with_rooms(ir, proofs.rooms), version),
         *emit_supervisor.emit(
             partition,
             name=net.name,
             reply_timeout_s=config.supervisor.reply_timeout_s if config else 0.0,
             digest=digest,
             version=version,
+            verdicts=proofs.verdicts,
         ),
         *emit_tdl.emit(robots, source=Path(net.file).name, digest=digest, version=version),
         *runtime.emit("supervisor", "simulate"),

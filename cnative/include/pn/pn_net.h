@@ -88,6 +88,8 @@ typedef struct pn_place {
     int32_t owner;          /* index in pn_net_t.owner; -1: a channel */
     uint32_t capacity;      /* most tokens (or distinct colours) that fit */
     bool timed;
+    bool is_bounded;        /* more tokens than `bound` have been proven impossible, or declared to be */
+    uint32_t bound;
     /* Number of tokens. */
     uint64_t (*count)(const void *marking);
     /* Token i (0 <= i < distinct) as leaves, at most `capacity` of them; returns their number, 0 if there is no token i or

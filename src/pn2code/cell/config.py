@@ -106,6 +106,8 @@ class SupervisorConfig:
     final: tuple[str, ...]
     reply_timeout_s: float
     origin: Origin
+    order_decides: bool = False
+    """`order = "documented"`: where the order of firing matters, the documented one is meant"""
 
 
 @frozen
@@ -479,7 +481,7 @@ def _merge(base: Mapping[str, Any], over: Mapping[str, Any]) -> dict[str, Any]:
 def _supervisor(r: _Reader, data: dict[str, Any]) -> SupervisorConfig:
     at: tuple[str | int, ...] = ("supervisor",)
     table = r.table(data, "supervisor", required=True)
-    r.keys(table, at, {"instance", "final", "reply_timeout_s"})
+    r.keys(table, at, {"instance", "final", "reply_timeout_s", "order"})
     final = r.get(table, at, "final", list, "a list of places", [])
     timeout = r.get(table, at, "reply_timeout_s", (int, float), "a number of seconds", 120.0)
     if not 0 < timeout < 1e6:
@@ -488,11 +490,19 @@ def _supervisor(r: _Reader, data: dict[str, Any]) -> SupervisorConfig:
             f"`reply_timeout_s` is {timeout}, but must be above zero",
             r.at("supervisor", "reply_timeout_s"),
         )
+    order = r.get(table, at, "order", str, "`any` or `documented`", "any")
+    if order not in ("any", "documented"):
+        r.d.error(
+            codes.CELL_VALUE,
+            f"`order` is `{order}`, but `any` or `documented` is expected",
+            r.at("supervisor", "order"),
+        )
     return SupervisorConfig(
         instance=r.get(table, at, "instance", str, "a substitution transition", "", required=True),
         final=tuple(map(str, final)),
         reply_timeout_s=float(timeout),
         origin=r.at("supervisor", "instance"),
+        order_decides=order == "documented",
     )
 
 

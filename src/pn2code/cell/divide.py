@@ -36,7 +36,7 @@ def divide(net: FlatNet, config: CellConfig | None, d: Diagnostics) -> Partition
     if len(d.errors) != before:
         return None
     writers, readers = _touching(net, transition_owner)
-    find = _PlaceFinder(net, d)
+    find = PlaceFinder(net, d)
     channels = tuple(_channels(net, config, owners, writers, readers, find, d))
     _undeclared(net, channels, owners, writers, readers, config, d)
     inputs = tuple(_inputs(net, config, writers, readers, find, d))
@@ -149,7 +149,7 @@ def _touching(
     return writers, readers
 
 
-class _PlaceFinder:
+class PlaceFinder:
     """Resolves names of places in cell.toml: the name, or as much of the path as makes it unique."""
 
     def __init__(self, net: FlatNet, d: Diagnostics) -> None:
@@ -157,6 +157,7 @@ class _PlaceFinder:
         self._d = d
 
     def __call__(self, name: str, at: Origin, what: str) -> FlatPlace | None:
+        """The place; None after an error at `at`, which begins with `what`."""
         found = [p for p in self._net.places if p.name == name or p.name.endswith("." + name)]
         if len(found) > 1:
             depth = min(p.name.count(".") for p in found)

@@ -24,6 +24,8 @@ EPILOG = """Examples:
 
   pn2code generate examples/riveting/cell.cpn -o generated/riveting
 
+  pn2code generate examples/riveting --unchecked -o draft
+
   pn2code generate mynet.cpn && make -C generated/mynet && generated/mynet/supervisor
 """
 
@@ -37,15 +39,23 @@ def generate(
     check: Annotated[
         bool, typer.Option("--check", help="Write nothing; exit 1 if anything would change.")
     ] = False,
+    unchecked: Annotated[
+        bool,
+        typer.Option(
+            "--unchecked",
+            help="Generate a supervisor whatever its checks say, and without asking them.",
+        ),
+    ] = False,
     settings: SetOption = [],  # noqa: B006 - typer reads the default only
     form: FormatOption = Format.FULL,
 ) -> None:
     """Generate a C supervisor (and a script per robot, if there is a cell.toml) from a net.
 
-    Then `make && ./supervisor` in the output folder builds and runs it.
+    Then `make && ./supervisor` in the output folder builds and runs it. The supervisor of a cell is checked first: it
+    is refused when it does not keep to its execution scheme, or when nothing proves how much a place can hold.
     """
     d = Diagnostics()
-    result = pipeline.generate(net, d, values=parse_values(settings))
+    result = pipeline.generate(net, d, values=parse_values(settings), checked=not unchecked)
     if result is None:
         stop(d, form)
     print_diagnostics(d.sorted(), form)

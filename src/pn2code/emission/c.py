@@ -20,6 +20,7 @@ from pn2code.emission.c_expressions import (
     op_needs_table,
 )
 from pn2code.emission.c_firing import DirectFiring
+from pn2code.emission.c_proofs import proofs
 from pn2code.emission.c_statements import Statements, used_locals, uses_context, wrap
 from pn2code.emission.c_sums import Sum
 from pn2code.emission.environment import c_comment, c_float, c_string, render
@@ -244,7 +245,10 @@ class _Emitter:
                 for e in p.early
             ],
             "capacity": p.capacity,
-            "room": 0 if p.timed else self._rooms[p.index],
+            "bound": p.bound,
+            "proof": p.proof,
+            # gcc warns of loops that would go through an array of one, though they never do.
+            "room": 0 if p.timed else max(self._rooms[p.index], 2 - p.capacity),
             "order": "" if p.timed or p.packed else self._orders.name(p.table),
             "packed": p.packed,
             "shares": p.packed.shares if p.packed else (),
@@ -547,15 +551,14 @@ class _Emitter:
             "tables": [tables.print(k) for k in keys],
             "leaves": self._leaf_tables(),
             "places": [self._place(p) for p in net.places],
+            "proofs": list(proofs(net.places)),
             "orders": list(self._orders.functions.values()),
             "packed_words": (packed_bits(net.places) + 63) // 64,
             "packed_size": (packed_bits(net.places) + 31) // 32 * 4,
             "transitions": transitions,
             "has_words": self._has_words,
             "word_mask": self._word_mask(),
-            "inlined": "PN_INLINE"
-            if self._has_inlined
-            else "PN_NET_SEARCH static",
+            "inlined": "PN_INLINE" if self._has_inlined else "PN_NET_SEARCH static",
             "bag_places": ", ".join(f"{p.index}U" for p in net.places if not p.packed),
             "has_references": any(g.is_reference for g in net.globals),
             "has_arena_values": self._has_arena_values

@@ -112,7 +112,13 @@ def _blocks(text: str, elements: Sequence[tuple[str, Origin, str]]) -> tuple[Blo
 
 
 def emit(
-    partition: Partition, *, name: str, reply_timeout_s: float, digest: str, version: str
+    partition: Partition,
+    *,
+    name: str,
+    reply_timeout_s: float,
+    digest: str,
+    version: str,
+    verdicts: Sequence[str] = (),
 ) -> tuple[OutputFile, ...]:
     """`cell_config.c` and `Makefile`.
 
@@ -121,6 +127,7 @@ def emit(
         reply_timeout_s: a robot silent for longer than this stops the cell; 0: never.
         digest: of net and cell, the same as in net.c.
         version: of pn2code.
+        verdicts: lines about what was checked, for the head.
     """
     net = partition.net
     peers = [o for o in partition.owners if o.kind is not OwnerKind.SUPERVISOR]
@@ -167,6 +174,7 @@ def emit(
         digest=digest,
         name=name,
         side=SIDE,
+        verdicts=verdicts,
         owner=supervisor if is_cell else -1,
         reply_timeout_s=float(reply_timeout_s),
         tables=tables,

@@ -711,6 +711,9 @@ class Place:
     early: tuple[int | float, ...] = ()
     """constant delays of input arcs: tokens may be taken so much before their stamps"""
     packed: Packed | None = None
+    bound: int | None = None
+    """most tokens, where that is proven or declared; `proof` says how"""
+    proof: str = ""
 
 
 @frozen

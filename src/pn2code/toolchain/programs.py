@@ -165,6 +165,14 @@ def program(
         yield found
 
 
+def is_kept(host: Host, files: Sequence[OutputFile]) -> bool:
+    """Whether the program has been built and kept."""
+    kept, compiler = private_folder(), Compiler.find(host, Diagnostics())
+    if kept is None or compiler is None:
+        return False
+    return os.access(_Builder(kept / "programs", host, compiler, files, _never).program, os.X_OK)
+
+
 def _no_room(host: Host, problem: OSError, d: Diagnostics) -> None:
     d.error(
         BUILD_FAILED, f"there is no room to compile the net: {_reason(problem)}", Origin(host.name)

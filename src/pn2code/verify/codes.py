@@ -73,3 +73,37 @@ TRACE_UNWRITABLE = register(
     "The run to a dead marking is written into the current folder, or into that of `--traces`: there is no permission, "
     "or the disk is full. What was found is not affected. `--most-traces 0` wants no traces.",
 )
+CONTROL_FAILED = register(
+    "controller-check",
+    "the supervisor fails a check of its execution scheme",
+    "Before a supervisor is generated, the state space of the closed net is searched (docs/execution.md): it must come "
+    "to rest in each cycle, within a bounded number of firings, whatever the order; a final marking must stay within "
+    "reach; no channel may get two messages. `pn2code verify cell.toml` writes the run that shows what is wrong. "
+    "`pn2code generate --unchecked` generates it all the same, and says so in the generated files.",
+)
+CONTROL_OPEN = register(
+    "controller-unchecked",
+    "it is not known whether the supervisor keeps to its execution scheme",
+    "The state space of the closed net was not explored completely (its limits in `generate` are small), or there is "
+    "no C compiler. The programs are generated, and say that they are not checked. `pn2code verify cell.toml` has no "
+    "limits of its own.",
+)
+CAPACITY_UNPROVED = register(
+    "capacity-unproved",
+    "nothing proves how many tokens a place of the supervisor can hold",
+    "The arrays of the generated program are as large as a bound that is proven: by an invariant of the net's "
+    "structure, or by its complete state space. Of this place nothing is. Declare a bound in cell.toml, "
+    "`[capacity] place = n`: the supervisor stops safely when the place gets more; or limit the place in the net.",
+)
+CAPACITY_ASSUMED = register(
+    "capacity-assumed",
+    "nothing proves how many tokens a place can hold",
+    "The program was generated with room for some tokens, and stops safely, with the place's name, when there are "
+    "more. The head of net.c says which places these are. A cell.toml with `[capacity]` declares bounds.",
+)
+CAPACITY_EXCEEDED = register(
+    "capacity-exceeded",
+    "a place can get more tokens than cell.toml declares",
+    "A marking that can be reached has more tokens in the place than `[capacity]` declares. The supervisor would stop "
+    "safely there.",
+)

@@ -3,8 +3,8 @@
     control = examine(partition, Plan(), limits, d)
     [(c.name, c.answer) for c in control.checks]     # ("finite-response", "yes"), ...
 
-Which questions are asked, and what the answers mean; the graph is gone through by cnative/src/explore_control.c. That no
-owner touches what is not its own is seen in the net itself.
+Which questions are asked, and what the answers mean; the graph is gone through by cnative/src/explore_control.c. That
+no owner touches what is not its own is seen in the net itself.
 """
 
 from __future__ import annotations
@@ -20,9 +20,9 @@ from pn2code.cell.partition import OwnerKind, Partition
 from pn2code.diagnostics import Diagnostics
 from pn2code.net.flat import ArcKind
 from pn2code.net.predicate import Predicate
-from pn2code.structure.bounds import PlaceBound
 from pn2code.verify.explore import Progress, Wishes, explore
 from pn2code.verify.limits import Limits, Reduction
+from pn2code.verify.programs import Sizes
 from pn2code.verify.reductions import OBSTACLES
 from pn2code.verify.result import Exploration
 
@@ -146,7 +146,7 @@ class Plan:
         folder: where traces are kept; None: nowhere.
         stem: what the names of their files begin with.
         predicates: with which the net has been compiled already, so that it need not be once more.
-        known: bounds of places that are known.
+        sizes: as of `Wishes`; `quick` too.
         progress, interrupted: as of `Wishes`.
     """
 
@@ -156,7 +156,8 @@ class Plan:
     folder: Path | None = None
     stem: str = "net"
     predicates: tuple[Predicate, ...] = ()
-    known: Mapping[int, PlaceBound] | None = None
+    sizes: Sizes | None = None
+    quick: bool = False
     progress: Progress | None = None
     interrupted: Callable[[], bool] | None = None
 
@@ -235,6 +236,8 @@ def examine(partition: Partition, plan: Plan, limits: Limits, d: Diagnostics) ->
             evidence=Path(name),
             stem="run",
             predicates=plan.predicates,
+            sizes=plan.sizes,
+            quick=plan.quick,
         )
         if plan.progress is not None:
             wishes = replace(wishes, progress=plan.progress)
@@ -427,7 +430,8 @@ def ownership(partition: Partition) -> Check:
     return Check(OWNERSHIP, "yes", says, arcs)
 
 
-def not_looked(why: str) -> Control:
+def not_looked(why: str, partition: Partition) -> Control:
     """When there is no state space to look in."""
-    names = (FINITE, BOUNDED, CONFLUENT, BLOCKING, CHANNELS)
-    return Control(tuple(_open(name, {"why": why}) for name in names), None)
+    names = [FINITE, BOUNDED, CONFLUENT, BLOCKING, *([CHANNELS] if partition.channels else [])]
+    looked = tuple(_open(name, {"why": why}) for name in names)
+    return Control((*looked, ownership(partition)), None)

@@ -54,6 +54,8 @@ class Wishes:
             exploration is not complete, or has more than `graph_limit` nodes.
         questions: about the states and the runs (`properties.questions`), "" for none; `predicates`: the conditions
             that they mention. `evidence`: a folder for the runs that show the answers.
+        sizes: what the places of the compiled net hold at first; None: what their structure and initial marking say.
+        quick: rather compile quickly than explore quickly.
         pace: seconds between two tellings of progress.
         progress, interrupted: how the outside hears and says that it has been enough.
     """
@@ -65,6 +67,8 @@ class Wishes:
     questions: str = ""
     predicates: tuple[Predicate, ...] = ()
     evidence: Path | None = None
+    sizes: Sizes | None = None
+    quick: bool = False
     pace: float = 0.5
     progress: Progress = _nothing
     interrupted: Callable[[], bool] = _never
@@ -91,12 +95,18 @@ def explore(
     """
     wishes = wishes or Wishes()
     chosen = possible(net, limits.reductions, d, wishes.predicates)
-    sizes = Sizes.start(net, storage)
+    sizes = wishes.sizes or Sizes.start(net, storage)
     compiling = 0.0
     while True:
         began = time.perf_counter()
         compiled = programs.program(
-            net, storage, sizes, d, wishes.predicates, interrupted=wishes.interrupted
+            net,
+            storage,
+            sizes,
+            d,
+            wishes.predicates,
+            interrupted=wishes.interrupted,
+            quick=wishes.quick,
         )
         with compiled as program:
             compiling += time.perf_counter() - began

@@ -24,11 +24,14 @@ from pn2code.net.predicate import Predicate
 from pn2code.semantics.files import Files
 from pn2code.semantics.game import Game
 from pn2code.structure import bounds_and_sums
+from pn2code.structure.bounds import PlaceBound
 from pn2code.toolchain import programs
 from pn2code.toolchain.programs import Host
 
 HOST = Host("explore", flags=("-pthread", "-march=native"), libraries=("-pthread", "-lm"))
 """Explorers run where they are compiled, so they may use all that the processor has."""
+QUICK = replace(HOST, flags=(*HOST.flags, "-O0"))
+"""For small spaces: compiled in a third of the time, several times as slow."""
 ROOM = 16
 """Different tokens that a place can hold at first; what proves too little is made more, place by place."""
 MOST_ROOM = 1 << 20
@@ -59,8 +62,10 @@ class Sizes:
     enlarged: int = 0
 
     @staticmethod
-    def start(net: FlatNet, storage: Mapping[str, str]) -> Sizes:
-        """From what the places hold at first.
+    def start(
+        net: FlatNet, storage: Mapping[str, str], known: Mapping[int, PlaceBound] | None = None
+    ) -> Sizes:
+        """From what the places hold at first, and the bounds that the structure proves (unless they are `known`).
 
         Raises:
             GameError: a declaration or an initial marking raises an exception.
@@ -70,11 +75,13 @@ class Sizes:
         room = {
             p.name: max(ROOM, 2 * len(tokens)) for p, tokens in zip(net.places, counts, strict=True)
         }
-        bounds, sums = bounds_and_sums(net, storage=storage)
+        bounds, sums = (known, ()) if known else bounds_and_sums(net, storage=storage)
         proven = {k: b.per_colour for k, b in bounds.items() if b.per_colour is not None}
         more = {k: n for k, n in room.items() if n > ROOM}
         return Sizes(
-            choose(net, counts, proven, sums), more, proven=frozenset(net.places[i].name for i in proven)
+            choose(net, counts, proven, sums),
+            more,
+            proven=frozenset(net.places[i].name for i in proven),
         )
 
     def larger(self, place: str | None) -> Sizes | None:
@@ -128,6 +135,7 @@ def program(
     predicates: Sequence[Predicate] = (),
     *,
     interrupted: Callable[[], bool] = lambda: False,
+    quick: bool = False,
 ) -> Iterator[Path | None]:
     """The explorer of a net, as long as the block lasts; None after a diagnostic, or when it was interrupted.
 
@@ -138,10 +146,12 @@ def program(
         d: gets the errors.
         predicates: what can be asked of its markings.
         interrupted: asked while compilers run.
+        quick: rather compile quickly than run quickly, unless it has been compiled already.
     """
     files = generated(net, storage, sizes, d, predicates)
     if files is None:
         yield None
         return
-    with programs.program(HOST, files, d, interrupted=interrupted) as found:
+    host = QUICK if quick and not programs.is_kept(HOST, files) else HOST
+    with programs.program(host, files, d, interrupted=interrupted) as found:
         yield found

@@ -64,6 +64,24 @@ static bool keep_first(void *user, uint32_t transition, const void *binding)
     return false;
 }
 
+/* Whether no place has more tokens than its bound. Those of channels are looked at when they are published (I3). */
+static bool keeps_bounds(sup_t *sup, const pn_transition_t *fired)
+{
+    for (uint32_t k = 0U; k < fired->touched_count; k++) {
+        const pn_place_t *const place = &sup->net->place[fired->touched[k]];
+        if (!place->is_bounded || (place->owner < 0)) {
+            continue;
+        }
+        const uint64_t tokens = place->count(sup->marking);
+        if (tokens > (uint64_t)place->bound) {
+            return sup_stop(sup, SUP_EXIT_MODEL,
+                            "place `%s` is full: it would hold %" PRIu64 " tokens after `%s`, and its bound is %" PRIu32
+                            " (the head of net.c says why)", place->name, tokens, fired->name, place->bound);
+        }
+    }
+    return true;
+}
+
 int sup_fire_one(sup_t *sup, int32_t owner, uint32_t *transition)
 {
     const pn_net_t *const net = sup->net;
@@ -93,6 +111,9 @@ int sup_fire_one(sup_t *sup, int32_t owner, uint32_t *transition)
     if (!chosen->fire(&sup->cx, sup->marking, sup->binding)) {
         (void)snprintf(doing, sizeof doing, "firing `%s`", chosen->name);
         (void)sup_stop_error(sup, doing);
+        return -1;
+    }
+    if (!keeps_bounds(sup, chosen)) {
         return -1;
     }
     pn_trace_occurrence(&sup->trace, sup->t, chosen, sup->binding);

@@ -1,0 +1,205 @@
+"""What `generate` wants to know of a net before it becomes a program: is its supervisor fine, how large are its places.
+
+    found = prove(partition, config, d)      # None: the supervisor fails a check, or a place has no bound; reported
+    found.rooms                              # for `rooms.with_rooms`
+    found.verdicts                           # lines for the head of cell_config.c
+
+Of a net without a cell.toml only the structure is looked at: it takes no compiler and little time.
+"""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, replace
+
+from pn2code.cell.config import CellConfig
+from pn2code.cell.divide import PlaceFinder
+from pn2code.cell.partition import Partition
+from pn2code.diagnostics import Diagnostics, Note
+from pn2code.semantics.game import Game, GameError
+from pn2code.structure import bounds
+from pn2code.structure.bounds import PlaceBound
+from pn2code.toolchain.build import TOOL_MISSING
+from pn2code.verify import control, rooms
+from pn2code.verify.codes import BEYOND_ROOM, CONTROL_FAILED, CONTROL_OPEN
+from pn2code.verify.control import Check, Control, Plan
+from pn2code.verify.limits import Limits, cores
+from pn2code.verify.programs import Sizes
+
+MOST_STATES = 1_000_000
+MOST_SECONDS = 30.0
+"""A supervisor of a larger space is generated with a warning; `verify` takes as long as it takes."""
+UNCHECKED = "Not checked: it was generated with --unchecked."
+
+
+@dataclass(frozen=True, slots=True)
+class Proofs:
+    """What was found.
+
+    Args:
+        rooms: for each place.
+        verdicts: lines for people, the same whenever the same is generated.
+        control: the checks; None: they were not asked for.
+    """
+
+    rooms: tuple[rooms.Room, ...]
+    verdicts: tuple[str, ...]
+    control: Control | None
+
+
+def prove(
+    partition: Partition, config: CellConfig | None, d: Diagnostics, *, checked: bool = True
+) -> Proofs | None:
+    """Checks the supervisor of a cell, and finds the bounds of all places; None when an error was reported.
+
+    Args:
+        partition: the net and its owners.
+        config: the cell; None: a net that is one program, which is only warned about.
+        d: gets the errors.
+        checked: without, nothing is refused and the state space is not explored.
+    """
+    net = partition.net
+    storage = config.storage if config else {}
+    structural = bounds(net, storage=storage, given=_given(partition, storage))
+    declared = _declared(partition, config, d)
+    if declared is None:
+        return None
+    if config is None or not checked:
+        found = rooms.rooms(partition, declared, structural, None)
+        if config is None:
+            rooms.warn_assumed(net, found, d)
+        return Proofs(found, (UNCHECKED,) if config else (), None)
+    plan = Plan(
+        storage=storage,
+        order_decides=config.supervisor.order_decides,
+        quick=True,
+    )
+    looked = _look(partition, plan, structural, d)
+    if looked is None:
+        return None
+    for check in looked.failed:
+        _refuse(check, partition, config, d)
+    if looked.open and not looked.failed:
+        _warn_open(looked, config, d)
+    space = looked.found
+    rooms.warn_exceeded(net, declared.items(), space, d)
+    found = rooms.rooms(partition, declared, structural, space)
+    why = control.WHY.get(looked.open[0].why or "", "") if looked.open else ""
+    rooms.refuse(net, found, why, d)
+    if d.has_errors:
+        return None
+    return Proofs(found, tuple(_verdicts(looked)), looked)
+
+
+def _given(partition: Partition, storage: Mapping[str, str]) -> tuple[str, ...]:
+    """Places that do not begin with as many tokens as the net says: a file gives one token."""
+    names = [partition.net.places[i.place].name for i in partition.inputs]
+    if not names:
+        return ()
+    try:
+        marking = Game(partition.net, storage).marking
+    except GameError:
+        return tuple(names)
+    counts = Counter({i.place: len(tuple(marking.places[i.place])) for i in partition.inputs})
+    return tuple(partition.net.places[i].name for i, count in counts.items() if count != 1)
+
+
+def _declared(
+    partition: Partition, config: CellConfig | None, d: Diagnostics
+) -> dict[int, int] | None:
+    """`[capacity]` by place; None when it names what is not there."""
+    if config is None or not config.capacity:
+        return {}
+    assert config.locator is not None
+    find = PlaceFinder(partition.net, d)
+    found = {}
+    for name, bound in config.capacity.items():
+        place = find(name, config.locator.origin("capacity", name), "capacity")
+        if place is None:
+            return None
+        found[place.index] = bound
+    return found
+
+
+def _look(
+    partition: Partition, plan: Plan, structural: Mapping[int, PlaceBound], d: Diagnostics
+) -> Control | None:
+    """The checks; open ones where the state space cannot be had. None after an error that has nothing to do with it."""
+    own = Diagnostics()
+    limits = Limits(max_states=MOST_STATES, max_seconds=MOST_SECONDS, threads=cores(), traces=0)
+    try:
+        sizes = Sizes.start(partition.net, plan.storage, structural)
+        found = control.examine(partition, replace(plan, sizes=sizes), limits, own)
+    except GameError as error:
+        error.report(d)
+        return None
+    if found is None and any(i.code == TOOL_MISSING for i in own.errors):
+        return control.not_looked("compiler", partition)
+    # A place that grows without end is one without a bound, which is refused with a better hint.
+    d.items += [i for i in own.items if i.code != BEYOND_ROOM]
+    return found
+
+
+def _refuse(check: Check, partition: Partition, config: CellConfig, d: Diagnostics) -> None:
+    net = partition.net
+    places = {p.name: p.origins[0] for p in net.places}
+    transitions = {t.name: t.origin for t in net.transitions}
+    at = [transitions[t] for t in check.transitions if t in transitions]
+    if check.place is not None:
+        at.insert(0, places[check.place])
+    notes: list[str | Note] = [f"checked: {control.MEANINGS[check.name]}"]
+    notes += [
+        Note("the other transition is here", other)
+        for other in at[1:2]
+        if other.describe() != at[0].describe()
+    ]
+    for run in check.evidence[:1]:
+        notes.append(_last_steps(run))
+    d.error(
+        CONTROL_FAILED,
+        f"{check.name}: {check.says}",
+        at[0] if at else config.supervisor.origin,
+        notes=[n for n in notes if n],
+        hint=_HINTS.get(check.name, _HINT),
+    )
+
+
+_HINT = (
+    "`pn2code verify` on the cell writes the run that shows it; `--unchecked` generates it anyway"
+)
+_HINTS = {
+    control.CONFLUENT: "give the transitions different priorities, or say in cell.toml that the documented order is "
+    'meant: `order = "documented"` in [supervisor]; `--unchecked` generates it anyway',
+}
+_SHOWN = 4
+
+
+def _last_steps(run: control.Evidence) -> str:
+    last = run.transitions[-_SHOWN:]
+    if not last:
+        return ""
+    before = "... " if len(run.transitions) > len(last) else ""
+    return f"the run that shows it ends with {before}{', '.join(f'`{t}`' for t in last)}"
+
+
+def _warn_open(looked: Control, config: CellConfig, d: Diagnostics) -> None:
+    names = ", ".join(c.name for c in looked.open)
+    d.warning(
+        CONTROL_OPEN,
+        f"it is not known whether the supervisor keeps to its execution scheme: {looked.open[0].says}",
+        config.supervisor.origin,
+        notes=[f"not checked: {names}"],
+        hint="`pn2code verify` on the cell has no limits of its own; the generated files say `unchecked`",
+    )
+
+
+def _verdicts(looked: Control) -> Iterator[str]:
+    if looked.open:
+        yield "Not checked completely (docs/execution.md):"
+    else:
+        assert looked.found is not None
+        yield f"Checked in all {looked.found.nodes:,} markings of the closed net (docs/execution.md):"
+    for check in looked.checks:
+        answer = {"unknown": "unchecked"}.get(check.answer, check.answer)
+        yield f"  {check.name}: {answer}; {check.says}"
