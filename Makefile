@@ -1,10 +1,10 @@
 # What `make` users expect; ./dev does the work and says what else there is.
-.PHONY: thorough help test lint fuzz bench ml-suite conformance
+.PHONY: thorough help test lint fuzz bench ml-suite conformance mutation
 
 help:
 	@./dev help
 
-test lint bench ml-suite conformance:
+test lint bench ml-suite conformance mutation:
 	./dev $@
 
 # The tests with all of their long sweeps.

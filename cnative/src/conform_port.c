@@ -8,8 +8,9 @@
  *     pop               goes back to the state saved last: {"popped": true}
  *     write NAME HEX    another party publishes a file (its bytes in hexadecimal): {"written": true}
  *     time SECONDS      the clock shows so much since the start: {"time": true}
- *     go                one cycle: {"files": {NAME: TEXT, ...}, "marking": {PLACE: [[count, value], ...], ...}, "fired": N,
- *                       "ended": null | "finished" | "stopped"}; of a program that has ended, the state before is back then
+ *     go                one cycle: {"files": {NAME: TEXT, ...}, "published": [NAME, ...], "marking": {PLACE: [[count, value], ...],
+ *                       ...}, "fired": N, "ended": null | "finished" | "stopped"}; "published" has the files in the order in which
+ *                       they were replaced; of a program that has ended, the state before is back then
  *
  * At the start the first cycle has been done, and its answer is given unasked.
  */
@@ -49,6 +50,8 @@ static uint64_t s_now_ns = BEGIN_NS;
 static const sup_t *s_sup;              /* the program under test */
 static uint64_t s_fired_before;
 static char s_answer[ANSWER_SIZE];
+static char s_published[FILES_MAX][NAME_SIZE]; /* since the last answer */
+static uint32_t s_published_count;
 
 /* --- files ------------------------------------------------------------------------------------------------------------- */
 
@@ -88,6 +91,16 @@ static int put(memory_file_t *file, const char *data, size_t length)
     return 0;
 }
 
+/* Replaces a file by a whole one. */
+static int publish(const char *name, const char *data, size_t length)
+{
+    if (s_published_count < FILES_MAX) {
+        (void)snprintf(s_published[s_published_count], NAME_SIZE, "%s", name);
+        s_published_count++;
+    }
+    return put(make(name), data, length);
+}
+
 int pn_port_dir_open(const char *path, bool create, int *directory)
 {
     (void)path;
@@ -125,7 +138,7 @@ int pn_port_publish(int directory, const char *name, const char *temporary, cons
 {
     (void)directory;
     (void)temporary;
-    return put(make(name), data, length);
+    return publish(name, data, length);
 }
 
 int pn_port_prepare(int directory, const char *temporary, const char *data, size_t length, int *file)
@@ -150,7 +163,7 @@ int pn_port_publish_prepared(int directory, const char *name, const char *tempor
     }
     (void)memcpy(&made->data[made->length], data, length);
     made->length += length;
-    const int error = put(make(name), made->data, made->length);
+    const int error = publish(name, made->data, made->length);
     made->exists = false;
     return error;
 }
@@ -262,7 +275,15 @@ static void answer(const char *ended)
             between = ", ";
         }
     }
-    pn_text_str(&text, "}, \"marking\": {");
+    pn_text_str(&text, "}, \"published\": [");
+    between = "";
+    for (uint32_t i = 0U; i < s_published_count; i++) {
+        pn_text_str(&text, between);
+        pn_text_json_str(&text, s_published[i]);
+        between = ", ";
+    }
+    s_published_count = 0U;
+    pn_text_str(&text, "], \"marking\": {");
     between = "";
     for (uint32_t i = 0U; (s_sup != NULL) && (i < s_sup->net->place_count); i++) {
         const pn_place_t *const place = &s_sup->net->place[i];

@@ -1,1 +1,2 @@
-"""Proof that programs are the model: the compiled core against the token game, the supervisor in product with the net."""
+"""Proof that programs are the model: the compiled core against the token game, each program
+in product with the net."""

@@ -5,8 +5,9 @@ from pn2code.diagnostics.codes import register
 DEVIATION = register(
     "conform-deviation",
     "a program does something else than the net",
-    "In a state that can be reached the compiled program writes other messages, or comes to another marking, than the "
-    "net does by the rules of docs/execution.md. The report shows the way to that state, what was expected and what came. "
+    "In a state that can be reached the compiled program writes other messages, or comes to another marking, than "
+    "the net does by the rules of docs/execution.md. The report shows the way to that state, what was expected and "
+    "what came. "
     "This is a bug of pn2code, unless the generated files were edited: do not run the cell; report it with the net.",
 )
 PROBE_FAILED = register(
@@ -15,8 +16,9 @@ PROBE_FAILED = register(
     "The supervisor is compiled together with files in memory and asked state by state. It ended without an answer, or "
     "could not save its state (too many processes, too little memory).",
 )
-NO_CELL = register(
-    "conform-no-cell",
-    "there is no cell to compare",
-    "Only the compiled net was compared with the token game: a supervisor and robots are there for nets with a cell.toml.",
+GENERATED_UNREADABLE = register(
+    "conform-files",
+    "the generated files cannot be read",
+    "`--generated DIR` names a folder with the files of `pn2code generate`: net.c, net.h, cell_config.c, and a script "
+    "for each robot. One of them is missing or is no text.",
 )

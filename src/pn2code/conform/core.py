@@ -3,8 +3,8 @@
 report = compare(net, storage, d)      # CoreReport(nodes=754, arcs=1121, complete=True, deviation=None)
 
 The compiled explorer writes its whole graph; the token game then looks at each node by itself: what is enabled there,
-and what comes of it. Equal at the first node and at each that is reached, the two graphs are equal. Beyond a stated size
-runs of the compiled simulator are repeated step by step instead.
+and what comes of it. Equal at the first node and at each that is reached, the two graphs are equal. Beyond a stated
+size runs of the compiled simulator are repeated step by step instead.
 """
 
 from __future__ import annotations

@@ -1,15 +1,18 @@
-"""The supervisor under test: the deployed program over files in memory (`cnative/src/conform_port.c`), asked state by state.
+"""The supervisor under test: the deployed program over files in memory (`cnative/src/conform_port.c`), asked
+state by state.
 
 with Probe(program, inputs, trace) as probe:
     first = probe.first                   # the answer after the first cycle
     probe.push([("flag1_externo.robcad", "1\\n# 1 00000001 2b3c...\\n")])
-    after = probe.go()                    # Answer(files, marking, fired, ended, reason)
+    after = probe.go()                    # Answer(files, published, marking, fired, ended, reason)
     probe.pop()
 """
 
 from __future__ import annotations
 
 import json
+import os
+import signal
 import subprocess
 import tempfile
 from collections.abc import Mapping, Sequence
@@ -41,13 +44,15 @@ class Answer:
 
     Args:
         files: name -> text, of all files but temporary ones.
-        marking: place -> JSON of its tokens, all places of the net; those of other owners stay as they were at the start.
+        published: the files that were replaced in the cycle, in that order.
+        marking: place -> JSON of its tokens, all places of the net; those of others stay as they were at the start.
         fired: occurrences in the cycle.
         ended: None while the program goes on, else "finished" or "stopped".
         reason: why it has stopped.
     """
 
     files: Mapping[str, str]
+    published: tuple[str, ...]
     marking: Mapping[str, Any]
     fired: int
     ended: str | None
@@ -100,6 +105,11 @@ class Probe:
         self._process.stdout.close()
         self._process.wait()
         self._said.close()
+
+    def kill(self) -> None:
+        """Ends the program at once, with all its saved states; who waits for an answer gets a `ProbeError`."""
+        with suppress(ProcessLookupError):
+            os.killpg(self._process.pid, signal.SIGKILL)
 
     def push(self, files: Sequence[tuple[str, str]] = (), seconds: float | None = None) -> None:
         """Saves the state; then other parties publish files, and the clock shows so much since the start."""
@@ -156,11 +166,16 @@ class Probe:
                 raise ProbeError(f"the end of the program was followed by {after}")
             self.depth -= 1
         return Answer(
-            data["files"], data["marking"], data["fired"], ended, data.get("reason", "")
+            data["files"],
+            tuple(data["published"]),
+            data["marking"],
+            data["fired"],
+            ended,
+            data.get("reason", ""),
         )
 
     def _end(self) -> ProbeError:
-        self._process.kill()
+        self.kill()
         code = self._process.wait()
         self._said.seek(0)
         said = self._said.read().decode("utf-8", "replace").strip().splitlines()

@@ -138,6 +138,7 @@ class _Product:
         self.report = Report()
         self._ends = time.monotonic() + (limits.seconds or 0.0)
         self._way: list[str] = []
+        self._is_first = True  # before its first cycle the program makes the files
 
     def run(self) -> Report:
         try:
@@ -153,6 +154,7 @@ class _Product:
         first = self._compared(start, self._probe.first)
         if first is None:
             return
+        self._is_first = False
         seen = {first.key}
         stack = [(first, self._moves(first))]
         while stack and not self._is_over(len(seen)):
@@ -279,6 +281,8 @@ class _Product:
             )
         self._compare_places(expected.marking, answer.marking)
         sent = self._compare_files(state, expected.marking, answer.files)
+        if not self._is_first:
+            self._compare_order(state.marking, expected.marking, answer.published)
         is_final = any(
             len(list(expected.marking.places[p])) > 0 for p in self._partition.final_places
         )
@@ -310,6 +314,22 @@ class _Product:
                 )
                 raise _DeviationError(f"place `{p.name}` holds {is_}, by the net {should}")
 
+    def _compare_order(self, before: Marking, after: Marking, published: tuple[str, ...]) -> None:
+        """What was consumed is emptied first (I4), then data are published, then flags (I5)."""
+        emptied, written = [], []
+        for channel in self._partition.channels:
+            held, holds = (len(list(m.places[channel.place])) for m in (before, after))
+            if channel.reader == SUPERVISOR and held > holds:
+                emptied.append(channel.file)
+            elif channel.writer == SUPERVISOR and holds > held:
+                written.append(channel.file)
+        # The channels of a partition are in this order: data before flags.
+        if published != (expected := (*emptied, *written)):
+            raise _DeviationError(
+                f"files are replaced in the order {', '.join(published) or 'none'}; by docs/protocol.md "
+                f"{', '.join(expected) or 'none'}"
+            )
+
     def _compare_files(
         self, state: _State, expected: Marking, files: Mapping[str, str]
     ) -> tuple[int, ...]:
@@ -324,9 +344,7 @@ class _Product:
                 if text != EMPTY:
                     raise _DeviationError(f"{channel.file} holds {text!r}, by the net nothing")
                 continue
-            is_new = channel.writer == SUPERVISOR and not list(
-                state.marking.places[channel.place]
-            )
+            is_new = channel.writer == SUPERVISOR and not list(state.marking.places[channel.place])
             if is_new:
                 sent[i] += 1
                 self.report.sent += 1

@@ -149,6 +149,19 @@ def _ignore(event: Event) -> None:
     return None
 
 
+@dataclass(frozen=True, slots=True)
+class Saved:
+    """The state of a run between two requests; equal states go on alike."""
+
+    values: tuple[tuple[str, ScriptValue], ...]
+    at: tuple[tuple[str, int], ...]
+    speed: tuple[tuple[t.Motion, float | None], ...]
+    measuring: tuple[t.Measure, ScriptPose, commands.Pose] | None
+    sensing: t.Sense | None
+    end: Finished | Fault | None
+    started: bool
+
+
 class Interpreter:
     """One run of a script.
 
@@ -216,6 +229,28 @@ class Interpreter:
         except (ScriptError, FileError) as problem:
             self._end = Fault(str(problem), self._line)
             return self._end
+
+    def save(self) -> Saved:
+        """The state, to come back to."""
+        return Saved(
+            tuple(sorted(self._values.items())),
+            tuple(self._at),
+            tuple(self._speed.items()),
+            self._measuring,
+            self._sensing,
+            self._end,
+            self._started,
+        )
+
+    def restore(self, saved: Saved) -> None:
+        """Back to a state."""
+        self._values = dict(saved.values)
+        self._at = list(saved.at)
+        self._speed = dict(saved.speed)
+        self._measuring = saved.measuring
+        self._sensing = saved.sensing
+        self._end = saved.end
+        self._started = saved.started
 
     # Environment of expressions
 

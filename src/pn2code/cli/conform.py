@@ -1,0 +1,150 @@
+"""`pn2code conform`: do the compiled programs do what the net does, in every state that can be reached?"""
+
+from __future__ import annotations
+
+import json
+from dataclasses import asdict
+from pathlib import Path
+from typing import Annotated, Any
+
+import typer
+
+from pn2code.cli.options import (
+    DEFAULT_INT_BITS,
+    Exit,
+    Format,
+    FormatOption,
+    IntBitsOption,
+    JsonOption,
+    SetOption,
+    parse_values,
+    print_diagnostics,
+    stop,
+)
+from pn2code.conform.cell import Conformance, conform_cell
+from pn2code.conform.core import MOST_NODES, CoreReport
+from pn2code.conform.robot import RobotReport
+from pn2code.conform.supervisor import Report
+from pn2code.diagnostics import Diagnostics
+
+EPILOG = """Examples:
+
+  pn2code conform examples/riveting
+
+  pn2code conform net.cpn --most 100000 --json
+"""
+
+
+def conform(
+    net: Annotated[Path, typer.Argument(help="A net, a cell.toml, or a folder with one.")],
+    most: Annotated[
+        int,
+        typer.Option(
+            metavar="N", min=1, help="States up to which all are compared; beyond: samples."
+        ),
+    ] = MOST_NODES,
+    generated: Annotated[
+        Path | None,
+        typer.Option(
+            metavar="DIR",
+            exists=True,
+            file_okay=False,
+            help="Compare the files of this folder instead of freshly generated ones.",
+        ),
+    ] = None,
+    as_json: JsonOption = False,
+    settings: SetOption = [],  # noqa: B006 - typer reads the default only
+    int_bits: IntBitsOption = DEFAULT_INT_BITS,
+    form: FormatOption = Format.FULL,
+) -> None:
+    """Compare the compiled net, the supervisor and each robot program with the net, state by state.
+
+    Exit code 0: all that was compared is equal, and it was everything; 1: something differs; 3: a limit was hit.
+    """
+    d = Diagnostics()
+    found = conform_cell(
+        net, d, values=parse_values(settings), int_bits=int_bits, most=most, generated=generated
+    )
+    if found is None:
+        stop(d, form)
+    if as_json:
+        typer.echo(json.dumps(_row(found), indent=1))
+    else:
+        for line in _lines(found):
+            typer.echo(line)
+    print_diagnostics(d.sorted(), form)
+    if found.deviates:
+        raise typer.Exit(Exit.MODEL)
+    if not found.complete:
+        raise typer.Exit(Exit.INCONCLUSIVE)
+
+
+def _row(found: Conformance) -> dict[str, Any]:
+    return {
+        "ok": not found.deviates,
+        "complete": found.complete,
+        "core": asdict(found.core),
+        "supervisor": asdict(found.supervisor) if found.supervisor else None,
+        "robots": [asdict(r) for r in found.robots],
+    }
+
+
+def _lines(found: Conformance) -> list[str]:
+    lines = [_core(found.core)]
+    if found.supervisor is not None:
+        lines += _supervisor(found.supervisor)
+    for robot in found.robots:
+        lines += _robot(robot)
+    return lines
+
+
+def _core(core: CoreReport) -> str:
+    if core.deviation is not None:
+        return f"net.c         DIFFERS from the token game: {core.deviation}"
+    if core.complete:
+        return (
+            f"net.c         equals the token game in all {core.nodes:,} markings that can be reached, "
+            f"{core.arcs:,} occurrences"
+        )
+    return (
+        f"net.c         equals the token game in a sample: {core.walks} random runs, "
+        f"{core.steps:,} occurrences (the state space is larger than the limit)"
+    )
+
+
+def _supervisor(report: Report) -> list[str]:
+    counts = (
+        f"{report.states:,} states, {report.cycles:,} cycles, {report.firings:,} firings, "
+        f"{report.received:,} messages to it, {report.sent:,} from it"
+    )
+    if report.deviation is not None:
+        return [
+            f"supervisor    DIFFERS from the net: {report.deviation.what}",
+            *_way(report.deviation.way),
+        ]
+    some = "in all" if report.complete else f"in part ({report.why}):"
+    lines = [f"supervisor    equals the net {some} {counts}"]
+    if report.overruns:
+        lines.append(
+            "              in the net a message can come while the one before has not been taken:"
+        )
+        lines += _way(report.overruns[0])
+    return lines
+
+
+def _robot(report: RobotReport) -> list[str]:
+    name = f"{report.robot:<13}"
+    if report.deviation is not None:
+        return [f"{name} DIFFERS from its page: {report.deviation}", *_way(report.way)]
+    some = "in all" if report.complete else "in part (the limit):"
+    return [
+        f"{name} equals its page {some} {report.states:,} states, {report.marks:,} transitions "
+        f"({report.transitions} of {report.all_transitions} different ones), "
+        f"{report.commands:,} commands"
+    ]
+
+
+def _way(way: tuple[str, ...], most: int = 30) -> list[str]:
+    shown = [f"    {n:>4}  {text}" for n, text in enumerate(way, 1)]
+    cut = len(shown) - most
+    return [f"    ... {cut} before", *shown[-most:]] if cut > 0 else shown

@@ -1,0 +1,369 @@
+"""A robot's script in product with its page: same primitives, same arguments, same messages, on all branches.
+
+    report = explore(partition, config, owner, program, game)
+
+The script is interpreted step by step while all other owners do what the net lets them do, in every order. Where it
+announces a transition (`mark`), that transition must be enabled with that binding; the commands since the mark before
+must be the calls of primitives that the net makes there; the files that it reads, empties and writes must be the
+places. Where it waits or has ended, the page must have nothing to do. What the net leaves open to a sensor is tried
+with every value.
+"""
+
+from __future__ import annotations
+
+from collections import deque
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+
+from pn2code.cell.config import CellConfig
+from pn2code.cell.partition import Partition
+from pn2code.channels.message import specs_of
+from pn2code.conform.messages import scalars
+from pn2code.conform.primitives import Primitives
+from pn2code.robot import commands
+from pn2code.semantics.colour_json import to_json
+from pn2code.semantics.game import Game, GameError
+from pn2code.semantics.marking import (
+    BindingElement,
+    Marking,
+    binding_to_json,
+    element_text,
+)
+from pn2code.tdl.check import CheckedProgram
+from pn2code.tdl.interpret import (
+    AwaitFile,
+    Event,
+    Execute,
+    Fault,
+    Finished,
+    Interpreter,
+    Marked,
+    Request,
+    Saved,
+    Scalar,
+    Sense,
+)
+
+MOST_STATES = 50_000
+
+
+@dataclass(frozen=True, slots=True)
+class RobotReport:
+    """What was compared.
+
+    Args:
+        robot: its name.
+        states: markings of the net with states of the script.
+        marks: transitions that the script announced, each checked; `transitions` of `all_transitions` different ones.
+        commands: commands that were compared with calls of primitives.
+        complete: every state that can be reached was seen.
+        deviation: in words; None: there is none.
+        way: what happened before the deviation.
+    """
+
+    robot: str
+    states: int
+    marks: int
+    transitions: int
+    all_transitions: int
+    commands: int
+    complete: bool
+    deviation: str | None = None
+    way: tuple[str, ...] = ()
+
+
+class _DeviationError(Exception):
+    """The script does something else; the text says what."""
+
+
+@dataclass(frozen=True, slots=True)
+class _State:
+    """Args:
+    marking: of the closed net.
+    saved: the script.
+    request: what it has asked for, None at the start.
+    done: commands since the last mark.
+    until: model time at which a wait ends.
+    """
+
+    marking: Marking
+    saved: Saved
+    request: Request | None
+    done: tuple[commands.Command, ...] = ()
+    until: float | None = None
+
+
+class _PlacesAsFiles:
+    """The channels of a marking as the script sees its files; what it does is kept apart."""
+
+    def __init__(self) -> None:
+        self.view: dict[str, tuple[Scalar, ...]] = {}
+
+    def read(self, name: str) -> tuple[Scalar, ...] | None:
+        """The message, which stays."""
+        return self.view.get(name)
+
+    def clear(self, name: str) -> None:
+        """Takes it."""
+        self.view.pop(name, None)
+
+    def write(self, name: str, values: tuple[Scalar, ...]) -> None:
+        """Puts one."""
+        if name in self.view:
+            raise _DeviationError(f"a message is written to {name}, which holds one")
+        self.view[name] = values
+
+
+class _Product:
+    def __init__(
+        self,
+        partition: Partition,
+        config: CellConfig,
+        owner: int,
+        program: CheckedProgram,
+        game: Game,
+        most: int,
+    ) -> None:
+        self._partition = partition
+        self._net = partition.net
+        self._owner = owner
+        self._game = game
+        self._most = most
+        self._name = partition.owners[owner].name
+        self._channels = {
+            spec.file.rpartition(".")[0]: channel.place
+            for spec, channel in zip(specs_of(partition), partition.channels, strict=True)
+            if owner in (channel.writer, channel.reader)
+        }
+        self._files = _PlacesAsFiles()
+        self._primitives = Primitives(game, config.primitives)
+        self._wants_waits = any(p.command == "wait" for p in config.primitives.values())
+        self._names = {t.name: t for t in self._net.transitions}
+        order = sorted(self._net.transitions, key=lambda t: t.priority)
+        self._of = [
+            [t for t in order if partition.transition_owner[t.index] == o.index]
+            for o in partition.owners
+        ]
+        self._interpreter = Interpreter(program, self._files, self._heard)
+        self._marking = game.marking
+        self._done: list[commands.Command] = []
+        self._marked: set[str] = set()
+        self._marks = 0
+        self._commands = 0
+
+    def run(self) -> RobotReport:
+        first = _State(self._game.marking, self._interpreter.save(), None)
+        parent: dict[_State, tuple[_State, str] | None] = {first: None}
+        waiting = deque([first])
+        deviation: str | None = None
+        at = first
+        try:
+            while waiting and len(parent) <= self._most:
+                at = waiting.popleft()
+                for text, after in self._following(at):
+                    if after not in parent:
+                        parent[after] = (at, text)
+                        waiting.append(after)
+        except _DeviationError as found:
+            deviation = str(found)
+        own = self._of[self._owner]
+        return RobotReport(
+            self._name,
+            len(parent),
+            self._marks,
+            len(self._marked),
+            len(own),
+            self._commands,
+            not waiting and deviation is None,
+            deviation,
+            tuple(self._way(parent, at)) if deviation else (),
+        )
+
+    def _way(self, parent: dict[_State, tuple[_State, str] | None], at: _State) -> list[str]:
+        way = []
+        while (step := parent[at]) is not None:
+            at, text = step
+            way.append(text)
+        return way[::-1]
+
+    # --- what can happen ---------------------------------------------------------------------------
+
+    def _following(self, state: _State) -> Iterator[tuple[str, _State]]:
+        quiet = True
+        for owner in self._partition.owners:
+            if owner.index == self._owner:
+                continue
+            try:
+                for element in list(self._enabled(owner.index, state.marking)):
+                    quiet = False
+                    marking, _ = self._game.occur(state.marking, element)
+                    text = element_text(self._game.colours, self._net, element)
+                    yield text, replace(state, marking=marking)
+            except GameError:
+                quiet = False  # the owner stops there, and the cell with it
+        for text, after in self._resumed(state):
+            quiet = False
+            yield text, after
+        if quiet and self._net.timed:
+            later = self._later(state)
+            if later is not None:
+                yield f"time {later.marking.time}", later
+
+    def _later(self, state: _State) -> _State | None:
+        """Time goes on to where something can happen."""
+        now = state.marking.time
+        times = [t for t in (self._game.settle(state.marking).time, state.until) if t is not None]
+        ahead = [t for t in times if t > now]
+        if not ahead:
+            return None
+        time = min(ahead)
+        return replace(
+            state, marking=replace(state.marking, time=time if self._net.real_time else int(time))
+        )
+
+    def _enabled(self, owner: int, marking: Marking) -> Iterator[BindingElement]:
+        best: int | None = None
+        for t in self._of[owner]:
+            if best is not None and t.priority > best:
+                return
+            for binding in self._game.bindings(t, marking):
+                best = t.priority
+                yield BindingElement.make(t, binding)
+
+    def _resumed(self, state: _State) -> Iterator[tuple[str, _State]]:
+        """The script goes on, if it can."""
+        match state.request:
+            case Finished():
+                self._nothing_to_do(state, "the script has ended")
+            case Fault(message=message, line=line):
+                self._nothing_to_do(state, f"the script stops in line {line} ({message})")
+            case AwaitFile(names=names, line=line):
+                view = self._view(state.marking)
+                if any(name in view for name in names):
+                    yield self._go(state, None)
+                else:
+                    awaited = ", ".join(names)
+                    self._nothing_to_do(state, f"the script waits for {awaited} in line {line}")
+            case Execute(command=commands.Wait()) if state.until is not None:
+                if state.marking.time >= state.until:
+                    yield self._go(state, None)
+            case Execute(command=commands.Measure(nominal=nominal)):
+                yield self._go(state, nominal)
+            case Sense():
+                for value in self._said(state):
+                    yield self._go(state, value)
+            case _:
+                yield self._go(state, None)
+
+    def _nothing_to_do(self, state: _State, why: str) -> None:
+        for element in self._enabled(self._owner, state.marking):
+            text = element_text(self._game.colours, self._net, element)
+            raise _DeviationError(f"{why}, but by the net {text} is enabled")
+
+    def _said(self, state: _State) -> list[Scalar]:
+        """Every value that the net leaves open to the sensor here: those of variables of what is enabled."""
+        found: dict[Scalar, None] = {}
+        for element in self._enabled(self._owner, state.marking):
+            for symbol, value in element.values:
+                assert symbol.colset is not None, "a net variable has a colour set"
+                data = to_json(symbol.colset, value)
+                if isinstance(data, int | float | bool | str):
+                    found[data] = None
+        return list(found)
+
+    # --- the script --------------------------------------------------------------------------------
+
+    def _go(self, state: _State, result: commands.Pose | Scalar | None) -> tuple[str, _State]:
+        """Runs it to its next request. What is wrong raises `_DeviationError`."""
+        self._interpreter.restore(state.saved)
+        self._marking = state.marking
+        self._done = list(state.done)
+        self._files.view = self._view(state.marking)
+        before = self._interpreter.line
+        with self._primitives:
+            request = self._interpreter.resume(result)
+        self._compare_files()
+        until = None
+        if isinstance(request, Execute):
+            if isinstance(request.command, commands.Wait) and not self._wants_waits:
+                until = self._marking.time + request.command.duration
+            else:
+                self._done.append(request.command)
+        after = _State(self._marking, self._interpreter.save(), request, tuple(self._done), until)
+        return f"{self._name}: the script goes on after line {before}", after
+
+    def _heard(self, event: Event) -> None:
+        if not isinstance(event, Marked):
+            return
+        t = self._names.get(event.transition)
+        where = f"line {event.line} announces `{event.transition}`"
+        if t is None or self._partition.transition_owner[t.index] != self._owner:
+            raise _DeviationError(f"{where}, which is no transition of {self._name}")
+        for element in self._enabled(self._owner, self._marking):
+            if element.transition != t.index:
+                continue
+            try:
+                self._primitives.taken()
+                marking, occurred = self._game.occur(self._marking, element)
+            except GameError as error:
+                raise _DeviationError(
+                    f"{where}, where the net raises an exception: {error}"
+                ) from None
+            called = self._primitives.taken()
+            if binding_to_json(occurred) == event.binding:
+                self._compare_commands(where, called)
+                self._marking = marking
+                self._marks += 1
+                self._marked.add(t.name)
+                return
+        raise _DeviationError(f"{where} with {event.binding}, which is not enabled by the net")
+
+    def _compare_commands(self, where: str, called: tuple[commands.Command, ...]) -> None:
+        done = tuple(self._done)
+        self._done.clear()
+        self._commands += len(done)
+        if done != called:
+            raise _DeviationError(
+                f"{where}: the script has commanded {_list(done)}, the net calls {_list(called)}"
+            )
+
+    def _view(self, marking: Marking) -> dict[str, tuple[Scalar, ...]]:
+        found = {}
+        for name, place in self._channels.items():
+            tokens = list(marking.places[place])
+            if tokens:
+                found[name] = scalars(self._net.places[place].colset, tokens[0])
+        return found
+
+    def _compare_files(self) -> None:
+        expected = self._view(self._marking)
+        if self._files.view != expected:
+            raise _DeviationError(
+                f"after line {self._interpreter.line} the files hold {self._files.view}, by the net {expected}"
+            )
+
+
+def _list(found: tuple[commands.Command, ...]) -> str:
+    return ", ".join(map(str, found)) or "nothing"
+
+
+def explore(
+    partition: Partition,
+    config: CellConfig,
+    owner: int,
+    program: CheckedProgram,
+    game: Game,
+    *,
+    most: int = MOST_STATES,
+) -> RobotReport:
+    """Compares a script with its page in every state that can be reached.
+
+    Args:
+        partition: the net and its owners.
+        config: the cell: which functions of the net are primitives.
+        owner: of the page.
+        program: the script, checked.
+        game: a token game at the marking from which the cell starts.
+        most: states.
+    """
+    return _Product(partition, config, owner, program, game, most).run()

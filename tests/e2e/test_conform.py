@@ -1,0 +1,148 @@
+"""`pn2code conform`: programs that are the model are found equal, others are found out, with the way there."""
+
+from __future__ import annotations
+
+import json
+import shutil
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+from tests.mutation.judge import Judge
+from tests.mutation.mutants import Mutant
+from typer.testing import CliRunner, Result
+
+from helpers.netbuilder import cpn
+from helpers.small_cell import NET, write
+from pn2code.cli.main import app
+from pn2code.resources import cnative_folder
+
+pytestmark = pytest.mark.cc
+
+
+def run(*arguments: object) -> Result:
+    return CliRunner().invoke(app, [str(a) for a in arguments])
+
+
+@pytest.fixture(scope="module")
+def cell(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    folder = write(tmp_path_factory.mktemp("cell"))
+    done = run("generate", folder, "-o", folder / "generated")
+    assert done.exit_code == 0, done.output
+    return folder
+
+
+def test_all_programs_of_a_cell(cell: Path) -> None:
+    done = run("conform", cell, "--json")
+    assert done.exit_code == 0, done.output
+    found = json.loads(done.output)
+    assert found["ok"] and found["complete"]
+    assert found["core"]["nodes"] > 20 and found["core"]["complete"]
+    supervisor = found["supervisor"]
+    assert (supervisor["received"], supervisor["sent"], supervisor["firings"]) == (6, 9, 9)
+    (robot,) = found["robots"]
+    assert robot["transitions"] == robot["all_transitions"] == 5
+    assert robot["commands"] > 0
+
+
+SUPERVISOR = {
+    "another value is written": ("= val_DRILL;", "= val_HOME;", "flag.robcad"),
+    "a guard is dropped": ("if (b.n == 2) {", "if (false) {", "by the net"),
+    "a message is left out": ("bool fits = flag_add(cx, m, &flag_token, 1U);", "bool fits = true;", "flag.robcad"),
+    "a place is not touched": ("fits = data_add(cx, m, &token, 1U)", "fits = true", "data.robcad"),
+}  # fmt: skip
+ROBOT = {
+    "another command": ("tool drill for 1 s", "tool press for 1 s", "the script has commanded"),
+    "a command too few": ("      move $joint home\n", "", "the script has commanded nothing"),
+    "another branch": ("if k = MOVE then", "if k = HOME then", "line"),
+    "another answer": ("write done 1", "write done 2", "the files hold"),
+    "a message that is not taken": ("      clear data\n", "", "the files hold"),
+    "an announcement too few": ("    mark Top.Robot.Report\n", "", "the files hold"),
+    "the end too early": ("  end loop", "  exit\n  end loop", "the script has ended, but"),
+}
+
+
+@pytest.fixture(scope="module")
+def judge(cell: Path) -> Iterator[Judge]:
+    with Judge.of(cell) as found:
+        yield found
+
+
+def mutant(judge: Judge, name: str, old: str, new: str) -> Mutant:
+    """A file with a change at one place."""
+    text = judge.files[name]
+    assert old in text
+    return Mutant(name, 0, "", f"{old} -> {new}", text.replace(old, new, 1))
+
+
+@pytest.mark.parametrize("what", SUPERVISOR)
+def test_another_supervisor_is_found_out(what: str, judge: Judge) -> None:
+    old, new, said = SUPERVISOR[what]
+    verdict = judge.verdict(mutant(judge, "net.c", old, new))
+    assert verdict.result == "killed", verdict
+    assert said in verdict.why
+
+
+@pytest.mark.parametrize("what", ROBOT)
+def test_another_script_is_found_out(what: str, judge: Judge) -> None:
+    old, new, said = ROBOT[what]
+    verdict = judge.verdict(mutant(judge, "robot1.tdl", old, new))
+    assert verdict.result == "killed", verdict
+    assert said in verdict.why
+
+
+SCHEDULER = {
+    "flags before data": ("supervisor_cell.c", "(pass == 0U) ? PN_CHANNEL_DATA", "(pass == 1U) ? PN_CHANNEL_DATA"),
+    "answers are not emptied": ("supervisor_cell.c", "    if (!clear_consumed(sup)) {", "    if (false) {"),
+    "the transitions of others": ("supervisor_play.c", "candidate->owner != owner", "candidate->owner == owner"),
+    "one firing a cycle": ("supervisor_play.c", "while (result > 0) {", "for (int once = 0; once < 1; once++) {"),
+    "messages are not read": ("supervisor_cell.c", "good = accept_message(sup, i);", "good = true;"),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("what", SCHEDULER)
+def test_another_scheduler_is_found_out(what: str, judge: Judge) -> None:
+    name, old, new = SCHEDULER[what]
+    text = (cnative_folder() / "src" / name).read_text()
+    assert old in text
+    verdict = judge.verdict(Mutant(name, 0, "", what, text.replace(old, new, 1)))
+    assert verdict.result == "killed", verdict
+
+
+def test_edited_files(cell: Path, tmp_path: Path) -> None:
+    folder = tmp_path / "generated"
+    shutil.copytree(cell / "generated", folder)
+    net = folder / "net.c"
+    text = net.read_text()
+    assert "= val_DRILL;" in text
+    net.write_text(text.replace("= val_DRILL;", "= val_HOME;", 1))
+    done = run("conform", cell, "--generated", folder)
+    assert done.exit_code == 1, done.output
+    assert "supervisor    DIFFERS" in done.output
+    assert "flag.robcad holds (3,)" in done.output
+    assert "Top.Robot.Move" in done.output  # the way there
+
+
+def test_a_net_without_a_cell(tmp_path: Path) -> None:
+    net = tmp_path / "net.cpn"
+    net.write_bytes(cpn(NET))
+    done = run("conform", net)
+    assert done.exit_code == 0, done.output
+    assert "net.c" in done.output and "supervisor" not in done.output
+
+
+def test_beyond_the_limit_it_is_a_sample(tmp_path: Path) -> None:
+    net = tmp_path / "net.cpn"
+    net.write_bytes(cpn(NET))
+    done = run("conform", net, "--most", 10)
+    assert done.exit_code == 3, done.output
+    assert "in a sample: 20 random runs" in done.output
+
+
+def test_a_generated_file_is_missing(cell: Path, tmp_path: Path) -> None:
+    folder = tmp_path / "generated"
+    shutil.copytree(cell / "generated", folder)
+    (folder / "robot1.tdl").unlink()
+    done = run("conform", cell, "--generated", folder)
+    assert done.exit_code == 1
+    assert "conform-files" in done.output and "robot1.tdl" in done.output

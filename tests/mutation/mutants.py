@@ -1,0 +1,165 @@
+"""Small changes of C code and of robot scripts, each of which may change what a program does.
+
+for mutant in of_c(text, name="net.c", functions=is_supervisors): ...
+mutant.text       # the changed file
+mutant.what       # "net.c:431: `b.n == 2` -> `b.n != 2`"
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+
+
+@dataclass(frozen=True, slots=True)
+class Mutant:
+    """A changed file.
+
+    Args:
+        file: its name.
+        line: of the change.
+        kind: of the change, such as "condition negated".
+        what: the change in words.
+        text: the whole file.
+    """
+
+    file: str
+    line: int
+    kind: str
+    what: str
+    text: str
+
+
+Rule = tuple[str, re.Pattern[str], Callable[[re.Match[str]], str]]
+
+_COMMENT = re.compile(r"/\*.*?\*/|//.*$|\"(?:[^\"\\]|\\.)*\"")
+_PLACES = re.compile(r"\b(\w+)_(take|add)\(")
+
+
+def _other(pairs: dict[str, str]) -> Callable[[re.Match[str]], str]:
+    return lambda m: m[0].replace(m[1], pairs[m[1]], 1)
+
+
+_COMPARED = {"==": "!=", "!=": "==", "<": "<=", ">": ">=", "<=": "<", ">=": ">"}
+_EQUALS = {"=": "<>", "<>": "="}
+_ADDED = {"+": "-", "-": "+"}
+_JOINED = {"&&": "||", "||": "&&"}
+_SWITCHED = {"true": "false", "false": "true"}
+
+
+def _negated(m: re.Match[str]) -> str:
+    return m[0].replace(f"({m[1]})", f"(!({m[1]}))", 1)
+
+
+C_RULES: tuple[Rule, ...] = (
+    ("comparison", re.compile(r"(?<=[\w)\]] )(==|!=|<=|>=|<|>)(?= [\w(~-])"), lambda m: _COMPARED[m[1]]),
+    ("condition negated", re.compile(r"\b(?:if|while) \((?!!)(.*)\) \{$"), _negated),
+    ("arithmetic", re.compile(r"(?<=[\w)\]] )([+-])(?= [\w(])"), lambda m: _ADDED[m[1]]),
+    ("arithmetic", re.compile(r"\bpn_int_(add|sub)\("), _other({"add": "sub", "sub": "add"})),
+    ("logic", re.compile(r"(&&|\|\|)"), lambda m: _JOINED[m[1]]),
+    ("constant", re.compile(r"(?<![\w.])(\d+)(?=U?[;,)])"), lambda m: str(int(m[1]) + 1)),
+    ("constant", re.compile(r"\b(true|false)\b(?=[;,)])"), lambda m: _SWITCHED[m[1]]),
+    ("write skipped", re.compile(r"(?<== )\w+_add\(cx, m, [^;]*?\)(?=;| &&)"), lambda m: "true"),
+    ("token not taken", re.compile(r"(?<== )\w+_take\(m, [^;]*?\)(?=;| &&)"), lambda m: "true"),
+    ("call dropped", re.compile(r"^(\s*)(?:\(void\))?[\w.>-]+\([^=]*\);$"), lambda m: f"{m[1]};"),
+)  # fmt: skip
+SCRIPT_RULES: tuple[Rule, ...] = (
+    ("comparison", re.compile(r"(?<= )(=|<>|<=|>=|<|>)(?= .* then$)"), lambda m: _EQUALS.get(m[1]) or _COMPARED[m[1]]),
+    ("line dropped", re.compile(r"^(\s+)(?:clear|write|mark|move|tool|measure|sense|read) .*$"),
+     lambda m: f"{m[1]}-- dropped"),
+    ("constant", re.compile(r"(?<![\w.\"])(\d+)(?=$| |,)"), lambda m: str(int(m[1]) + 1)),
+    ("motion", re.compile(r"\$(joint|linear)"), _other({"joint": "linear", "linear": "joint"})),
+    ("frame", re.compile(r" in tool$"), lambda m: ""),
+    ("arithmetic", re.compile(r"(?<= )([+-])(?= [\w(])"), lambda m: _ADDED[m[1]]),
+    ("logic", re.compile(r"(?<= )(and|or)(?= )"), _other({"and": "or", "or": "and"})),
+)  # fmt: skip
+
+
+DEFENSIVE = re.compile(
+    r"error\b|sup_stop|sup_warn|sup_say|snprintf|verbosity|pn_trace|pn_text|binding_json|crowded|max_firings|stop_signal"
+    r"|fired_of|most_fired|!is_taken|!fits|!pn_ok|pn_raise|PN_ERR|->rounds|is_lost"
+)
+"""Lines, with the blocks that they begin, that nothing reaches in a cell that works: errors, reports, statistics. What
+they do has tests of its own (`tests/e2e/test_supervisor_host.py`, `test_compiled_core.py`)."""
+_KEPT = re.compile(r"^\s*(?:return (?:true|false);|(?:is_taken|fits) = .*(?:&&|\|\|).*)$")
+"""Answers of a search that nobody asks for, and the `&&` between moves that never fail."""
+
+
+def of_c(text: str, file: str, is_wanted: Callable[[str], bool]) -> Iterator[Mutant]:
+    """Mutants of the functions with wanted names, without what is defensive."""
+    lines = text.split("\n")
+    for start, end, name in functions(lines):
+        if not is_wanted(name):
+            continue
+        wanted = list(range(start + 1, end))
+        block = ""  # the indentation of a defensive block that has begun
+        for i in list(wanted):
+            indent = lines[i][: len(lines[i]) - len(lines[i].lstrip())]
+            if block:
+                wanted.remove(i)
+                if indent == block and lines[i].startswith(f"{indent}}}"):
+                    block = ""
+                    if lines[i].rstrip().endswith("{"):  # } else {
+                        block = indent if DEFENSIVE.search(lines[i]) else ""
+            elif DEFENSIVE.search(lines[i]):
+                wanted.remove(i)
+                block = indent if lines[i].rstrip().endswith("{") else ""
+        for i in wanted:
+            for mutant in _changed(lines, i, file, C_RULES):
+                is_kept = _KEPT.match(lines[i]) and mutant.kind in ("logic", "constant")
+                if not (is_kept and (mutant.kind == "logic" or "return" in lines[i])):
+                    yield mutant
+        yield from _swapped(lines, wanted, file)
+
+
+def functions(lines: list[str]) -> Iterator[tuple[int, int, str]]:
+    """First and last line of each function, and its name."""
+    start = 0
+    for i, line in enumerate(lines):
+        if line == "{" and i > 0:
+            start = i
+        elif line == "}" and start:
+            head = " ".join(lines[max(0, start - 3) : start])
+            names = re.findall(
+                r"(\w+)\([^()]*\)?[^()]*$", head.rsplit(";", 1)[-1].rsplit("}", 1)[-1]
+            )
+            found = re.findall(r"\b(\w+)\(", head.rsplit("}", 1)[-1].rsplit("*/", 1)[-1])
+            yield start, i, (found or names or [""])[0]
+            start = 0
+
+
+def of_script(text: str, file: str) -> Iterator[Mutant]:
+    """Mutants of a robot's script, of its statements and of the values in them."""
+    lines = text.split("\n")
+    for i, line in enumerate(lines):
+        if not line.lstrip().startswith(("--", "program", "input", "output", "var")):
+            yield from _changed(lines, i, file, SCRIPT_RULES)
+
+
+def _changed(lines: list[str], i: int, file: str, rules: tuple[Rule, ...]) -> Iterator[Mutant]:
+    line = lines[i]
+    hidden = [m.span() for m in _COMMENT.finditer(line)]
+    for kind, pattern, change in rules:
+        for match in pattern.finditer(line):
+            if any(a <= match.start() < b for a, b in hidden):
+                continue
+            new = line[: match.start()] + change(match) + line[match.end() :]
+            if new != line:
+                yield _mutant(lines, i, new, file, kind)
+
+
+def _swapped(lines: list[str], wanted: list[int], file: str) -> Iterator[Mutant]:
+    """A take or add at another place of the same function; that often does not compile, and is no mutant then."""
+    places = list(dict.fromkeys(m[1] for i in wanted for m in _PLACES.finditer(lines[i])))
+    for i in wanted:
+        match = _PLACES.search(lines[i])
+        for other in places if match else ():
+            if match and other != match[1]:
+                new = lines[i].replace(f"{match[1]}_{match[2]}(", f"{other}_{match[2]}(", 1)
+                yield _mutant(lines, i, new, file, "places swapped")
+
+
+def _mutant(lines: list[str], i: int, new: str, file: str, kind: str) -> Mutant:
+    what = f"{file}:{i + 1}: {kind}: `{lines[i].strip()}` -> `{new.strip()}`"
+    return Mutant(file, i + 1, kind, what, "\n".join([*lines[:i], new, *lines[i + 1 :]]))
