@@ -156,7 +156,7 @@ static void leave(walk_t *w)
     p->waiting = first;
 }
 
-/* All that can be reached from a state. False: no memory, or told to stop. */
+/* All active states that can be reached from one. False: no memory, or told to stop. */
 static bool walk_from(walk_t *w, uint32_t root)
 {
     ex_product_t *const p = w->p;
@@ -187,23 +187,20 @@ static bool walk_from(walk_t *w, uint32_t root)
     return true;
 }
 
-/* One round over the active states; in the first one those that can be reached from the start become active. */
-static bool walk_round(ex_product_t *p, bool is_first)
+/* One round over the active states. */
+static bool walk_round(ex_product_t *p)
 {
     walk_t w = { .p = p, .room = 1024U };
-    bool is_fine = true;
     w.at = ex_table(p->queries->run, w.room, sizeof *w.at);
+    bool is_fine = w.at != NULL;
     p->waiting = 0U;
     p->next = 1U;
     p->done = UINT32_MAX;
     p->is_changed = false;
     p->is_found = false;
     (void)memset(p->rank, 0, p->size * sizeof *p->rank);
-    is_fine = w.at != NULL;
-    if (is_first) {
-        is_fine = is_fine && walk_from(&w, p->start);
-    } else {
-        for (uint64_t state = 0U; is_fine && (state < p->size); state++) {
+    for (uint64_t word = 0U; is_fine && (word < ((p->size + 63U) / 64U)); word++) {
+        for (uint64_t state = word * 64U; is_fine && (p->active[word] != 0U) && (state < ((word + 1U) * 64U)); state++) {
             if ((EX_BIT(p->active, state) != 0U) && (p->rank[state] == 0U)) {
                 is_fine = walk_from(&w, (uint32_t)state);
             }
@@ -213,28 +210,112 @@ static bool walk_round(ex_product_t *p, bool is_first)
     return is_fine;
 }
 
-/* What cannot be reached is not active. */
-static void forget_unreached(ex_product_t *p)
+/* --- which states there are ------------------------------------------------------------------------------------------ */
+
+#define MOST_STATES 2048U /* of an automaton, of which all ways are looked at */
+
+/* Marks what can be reached from a state of the automaton by at least one arc. */
+static void spread(const ex_automaton_t *automaton, uint32_t from, bool *reached, uint32_t *stack)
 {
-    for (uint64_t state = 0U; state < p->size; state++) {
-        if (p->rank[state] == 0U) {
-            ex_take_out(p, state);
+    uint32_t waiting = 1U;
+    stack[0] = from;
+    while (waiting > 0U) {
+        waiting -= 1U;
+        const uint32_t state = stack[waiting];
+        for (uint32_t i = automaton->first[state]; i < automaton->first[state + 1U]; i++) {
+            const uint32_t to = automaton->edge[i].to;
+            if (!reached[to]) {
+                reached[to] = true;
+                stack[waiting] = to;
+                waiting += 1U;
+            }
         }
     }
 }
 
+/* The states of the automaton that lie on a cycle through an accepting one: no others come back for ever. NULL: no memory. */
+static bool *find_recurring(const ex_automaton_t *automaton)
+{
+    const size_t states = automaton->states;
+    const bool is_small = states <= MOST_STATES;
+    bool *const recurring = calloc(states, sizeof *recurring);
+    bool *const reached = is_small ? calloc(states * states, sizeof *reached) : NULL;
+    uint32_t *const stack = calloc(states + 1U, sizeof *stack);
+    const bool has_memory = (recurring != NULL) && (stack != NULL) && (!is_small || (reached != NULL));
+    for (uint32_t s = 0U; has_memory && is_small && (s < states); s++) {
+        spread(automaton, s, &reached[s * states], stack);
+    }
+    for (uint32_t s = 0U; has_memory && (s < states); s++) {
+        recurring[s] = !is_small;
+        for (uint32_t k = 0U; is_small && (k < states); k++) {
+            recurring[s] = recurring[s] || (automaton->is_accepting[k] && reached[(s * states) + k] && reached[(k * states) + s]);
+        }
+    }
+    free(reached);
+    free(stack);
+    if (!has_memory) {
+        free(recurring);
+        return NULL;
+    }
+    return recurring;
+}
+
+static inline void reach(ex_product_t *p, uint32_t state, uint64_t *used)
+{
+    if (EX_BIT(p->active, state) == 0U) {
+        EX_SET_BIT(p->active, state);
+        p->stack[*used] = state;
+        *used += 1U;
+    }
+}
+
+/* Makes the states active that can be reached from the start. */
+static bool find_reached(ex_product_t *p)
+{
+    const ex_graph_t *const graph = p->graph;
+    uint64_t used = 0U;
+    reach(p, p->start, &used);
+    for (uint64_t at = 0U; at < used; at++) { /* breadth first, as the nodes are numbered, so that neighbours come after each other */
+        const uint32_t node = p->stack[at] / p->states;
+        const uint32_t state = p->stack[at] % p->states;
+        const uint64_t end = graph->row[node + 1U];
+        for (uint32_t i = p->automaton->first[state]; i < p->automaton->first[state + 1U]; i++) {
+            const ex_edge_t *const edge = &p->automaton->edge[i];
+            if (!ex_is_readable(p, edge, node)) {
+                continue;
+            }
+            if ((graph->row[node] == end) && ex_is_allowed(edge, EX_NO_TRANSITION)) {
+                reach(p, (node * p->states) + edge->to, &used);
+            }
+            for (uint64_t arc = graph->row[node]; arc < end; arc++) {
+                if (ex_is_allowed(edge, graph->label[arc])) {
+                    reach(p, (graph->target[arc] * p->states) + edge->to, &used);
+                }
+            }
+        }
+        if (((at & 0xffffU) == 0U) && ex_is_stopping(p->queries->run)) {
+            return false;
+        }
+    }
+    return true;
+}
+
 static ex_answer_t find_components(ex_product_t *p)
 {
-    bool is_first = true;
+    bool *const recurring = find_recurring(p->automaton);
+    bool is_fine = (recurring != NULL) && find_reached(p);
+    for (uint64_t state = 0U; is_fine && (state < p->size); state++) {
+        if (!recurring[state % p->states]) {
+            ex_take_out(p, state);
+        }
+    }
+    free(recurring);
     do {
-        if (!walk_round(p, is_first)) {
-            return EX_UNKNOWN;
-        }
-        if (is_first) {
-            forget_unreached(p);
-        }
-        is_first = false;
-    } while (p->is_changed);
+        is_fine = is_fine && walk_round(p);
+    } while (is_fine && p->is_changed);
+    if (!is_fine) {
+        return EX_UNKNOWN;
+    }
     return p->is_found ? EX_YES : EX_NO;
 }
 
@@ -260,7 +341,6 @@ ex_answer_t ex_lasso(ex_queries_t *queries, const ex_automaton_t *automaton, uin
     p.is_disabled = calloc((size_t)automaton->fair_count + 1U, sizeof *p.is_disabled);
     if ((p.active != NULL) && (p.rank != NULL) && (p.stack != NULL) && (p.is_root != NULL) && (p.occurs != NULL) && (p.is_enabled != NULL) &&
         (p.is_disabled != NULL)) {
-        (void)memset(p.active, 0xff, words * sizeof *p.active);
         answer = find_components(&p);
     }
     ex_free_table(run, p.stack, p.size, sizeof *p.stack);

@@ -1,13 +1,12 @@
-"""Questions to the explorer: random graphs and random formulas against the definitions, and runs that prove the answers."""
+"""Questions to the explorer: random graphs and formulas against the definitions, and runs that prove the answers."""
 
 from __future__ import annotations
 
-from pathlib import Path
 from random import Random
 
 import pytest
 
-from helpers.explored import SANITIZERS, Explorers
+from helpers.explored import Explorers
 from helpers.questions import Asked, Automaton, Items, Lts, accepts, ask, is_run, longest_wait
 from helpers.thorough import amount
 
@@ -15,11 +14,7 @@ pytestmark = pytest.mark.cc
 
 LABELS = 4
 CONDITIONS = 4
-
-
-@pytest.fixture(scope="module")
-def explorers(tmp_path_factory: pytest.TempPathFactory) -> Explorers:
-    return Explorers.open(tmp_path_factory.mktemp("explorers") / "explorers")
+OPERATORS = ("not", "and", "or", "ex", "ax", "ef", "af", "eg", "ag", "eu", "au", "exa")
 
 
 def graph_net(random: Random, *, timed: bool) -> tuple[str, list[str]]:
@@ -69,7 +64,7 @@ def random_items(random: Random, count: int) -> list[str]:
     lines += [f"pred {i}" for i in range(CONDITIONS)] + [f"enabled {t}" for t in range(LABELS)]
     while len(lines) < count:
         a, b = random.randrange(len(lines)), random.randrange(len(lines))
-        word = random.choice("not and or ex ax ef af eg ag eu au exa".split())
+        word = random.choice(OPERATORS)
         match word:
             case "exa":
                 lines.append(f"exa {random.randrange(LABELS)} {a}")
@@ -126,7 +121,9 @@ def check_ctl(asked: Asked, conditions: list[str], random: Random) -> None:
         check_evidence(lts, items, line, 0 in items.sets[i], first)
 
 
-def check_evidence(lts: Lts, items: Items, line: str, holds: bool, answer: dict[str, object]) -> None:
+def check_evidence(
+    lts: Lts, items: Items, line: str, holds: bool, answer: dict[str, object]
+) -> None:
     """The run of an outermost operator that one run can show."""
     word, *numbers = line.split()
     shows = (word in ("ag", "af", "ax", "au") and not holds) or (
@@ -207,9 +204,7 @@ def check_waits(asked: Asked, conditions: list[str], random: Random, *, timed: b
             check_too_long(lts, items, f, g, nodes, labels, float(n), timed=timed)
 
 
-def happenings(
-    items: Items, e: str, nodes: list[int], labels: list[int]
-) -> set[tuple[int, int]]:
+def happenings(items: Items, e: str, nodes: list[int], labels: list[int]) -> set[tuple[int, int]]:
     """When an event happens in a run: (i, 1) at marking i, (i, 0) at firing i."""
     number = int(e[1:])
     if e[0] == "s":
@@ -227,7 +222,8 @@ def check_endless(
     ends = happenings(items, g, nodes, labels)
     same = 0 if f[0] == g[0] == "s" else 1
     assert any(
-        not any(y > x or (y == x and same == 0) for y in ends) for x in happenings(items, f, nodes, labels)
+        not any(y > x or (y == x and same == 0) for y in ends)
+        for x in happenings(items, f, nodes, labels)
     )
 
 
@@ -239,7 +235,9 @@ def check_too_long(
     same = f[0] == g[0] == "s"
     assert any(
         times[-1] - times[x[0]] > most
-        and not any((y > x or (same and y == x)) and times[y[0]] - times[x[0]] <= most for y in ends)
+        and not any(
+            (y > x or (same and y == x)) and times[y[0]] - times[x[0]] <= most for y in ends
+        )
         for x in happenings(items, f, nodes, labels)
     )
 

@@ -1,7 +1,8 @@
 """Questions to explorers in tests, and their answers by definition on small graphs.
 
-A `Lts` is what `--write-graph` says, as plain lists. `Items` works sets out as the definitions of CTL have it: by going over all nodes
-again and again until nothing changes. `accepts` and `is_run` look for runs of an automaton, and at a run; `longest_wait` tries all waits.
+A `Lts` is what `--write-graph` says, as plain lists. `Items` works sets out as the definitions of CTL have it: by going
+over all nodes again and again until nothing changes. `accepts` looks for a run of an automaton, `is_run` at a run;
+`longest_wait` tries all waits.
 """
 
 from __future__ import annotations
@@ -72,9 +73,7 @@ def _net(text: str) -> tuple[FlatNet, Elaborator]:
 
 def predicate(flat: FlatNet, elaborator: Elaborator, name: str, text: str) -> Predicate:
     """A condition in which places are variables."""
-    symbols = {
-        p.short: Symbol(FIRST_UID + p.index, p.short, marking_type(p)) for p in flat.places
-    }
+    symbols = {p.short: Symbol(FIRST_UID + p.index, p.short, marking_type(p)) for p in flat.places}
     d = Diagnostics()
     with elaborator.aside(d):
         found = elaborator.expression(
@@ -224,10 +223,8 @@ class Automaton:
     def reads(self, literals: tuple[str, ...], items: Items, node: int, label: int | None) -> bool:
         """Whether an arc can be taken."""
         for x in literals:
-            if x[1] == "f":
-                holds = label == int(x[2:])
-            else:
-                holds = node in items.sets[int(x[1:])]
+            by_node = x[1] != "f" and node in items.sets[int(x[1:])]
+            holds = label == int(x[2:]) if x[1] == "f" else by_node
             if holds != (x[0] == "+"):
                 return False
         return True
@@ -287,9 +284,7 @@ def _good(inside: set[State], arcs: Mapping[State, list[Any]], lts: Lts, a: Auto
             continue
         if any(t not in labels and all(enabled(t, v) for v, _ in part) for t in a.weak):
             continue
-        unfair = [
-            t for t in a.strong if t not in labels and any(enabled(t, v) for v, _ in part)
-        ]
+        unfair = [t for t in a.strong if t not in labels and any(enabled(t, v) for v, _ in part)]
         if not unfair:
             return True
         if _good({y for y in part if not enabled(unfair[0], y[0])}, arcs, lts, a):
@@ -303,7 +298,10 @@ def is_run(
     """Whether the run that repeats its steps from `loop` on (None: it ends at a dead node) is accepted and fair."""
     if loop is None:
         assert not lts.arcs[nodes[-1]]
-        letters: list[tuple[int, int | None]] = [*zip(nodes, labels, strict=False), (nodes[-1], None)]
+        letters: list[tuple[int, int | None]] = [
+            *zip(nodes, labels, strict=False),
+            (nodes[-1], None),
+        ]
         loop = len(nodes) - 1
     else:
         assert nodes[loop] == nodes[-1] and loop < len(labels)
@@ -329,7 +327,8 @@ def is_run(
     }
     seen = _reach((0, 0), set(arcs), arcs) | {(0, 0)}
     return any(
-        s in a.accepting and i >= loop and (i, s) in _reach((i, s), set(arcs), arcs) for i, s in seen
+        s in a.accepting and i >= loop and (i, s) in _reach((i, s), set(arcs), arcs)
+        for i, s in seen
     )
 
 
