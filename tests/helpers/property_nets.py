@@ -353,3 +353,79 @@ OWN: dict[str, tuple[str, list[Row]]] = {
     "belt": (BELT, BELT_ROWS),
     "reading": (LIBRARY_NET, LIBRARY_ROWS),
 }
+
+_MODELS = "corpus/nets/cpn-io+cpn-js/sample-cpn-models"
+SHARED: dict[str, list[Row]] = {
+    "mcc/DatabaseWithMutex-COL-02.pnml": [
+        ("deadlock free", True),
+        ("ctl AG EF initial", True),
+        ("bound Mutex <= 2", True, 2),
+        ("bound updating <= 1", False, 2),
+        ("every fires(Acquire) is followed by fires(Release)", True),
+        ("every fires(Acquire) is followed by fires(Release) within 1 firings", False),
+    ],
+    "mcc/LamportFastMutEx-COL-2.pnml": [
+        ("bound P_CS_21 <= 1", True, 1),
+        ("deadlock free", True),
+        ("reachable tokens(P_CS_21) = 2", False),
+        ("ctl AG EF tokens(P_CS_21) = 1", True),
+        ("ctl AG AF tokens(P_CS_21) = 1", False),
+        ("ltl G F tokens(P_CS_21) = 1", False),
+    ],
+    "mcc/Philosophers-COL-000005.pnml": [
+        ("deadlock free", False),
+        ("deadlock free except tokens(Catch1) = 5 || tokens(Catch2) = 5", True),
+        ("bound Eat <= 2", True, 2),
+        ("bound Eat <= 1", False),
+        (
+            "always { cf (Id1, Mark.Philosophers_COL_000005'Eat) + cf (Id2, Mark.Philosophers_COL_000005'Eat) <= 1 }",
+            True,
+        ),
+        ("ctl AG EF initial", False),
+        ("ltl F dead || G F fires(End)", True),
+    ],
+    "mcc/TokenRing-COL-005.pnml": [
+        ("deadlock free", True),
+        ("bound State <= 6", True, 6),
+        ("bound State <= 5", False),
+        ("ctl AG EF initial", False),
+    ],
+    f"{_MODELS}/DistributedDataBase/DistributedDataBase.cpn": [
+        ("always tokens(Passive) = 1 || tokens(Active) = 1", True),
+        ("mutex Passive, Active", True),
+        ("bound Waiting <= 1", True, 1),
+        ("deadlock free", True),
+        ("ctl AG EF initial", True),
+        ("every tokens(Waiting) = 1 is followed by tokens(Passive) = 1", True),
+        ("every fires(Update_and_Send_Messages) is followed by initial within 7 firings", True, 7),
+        ("every fires(Update_and_Send_Messages) is followed by initial within 6 firings", False, 7),
+        ("ltl G F { cf (d 1, Mark.Top'Waiting) = 1 }", False),
+        ("ltl G F { cf (d 1, Mark.Top'Waiting) = 1 } assuming strong all", False),
+    ],
+    f"{_MODELS}/ResourceAllocation/ResourceAllocation_OG.cpn": [
+        ("deadlock free", True),
+        ("bound R <= 1", True, 1),
+        ("bound B <= 1", False, 2),
+        ("ltl G F fires(T2)", True),
+        ("ltl G F fires(T1)", False),
+        ("ltl G F fires(T1) assuming weak T1", False),
+        ("ctl AG EF initial", False),
+    ],
+    f"{_MODELS}/SimpleProtocol/SimpleProtocol_OG.cpn": [
+        ("deadlock free", False),
+        ("reachable dead", True),
+        ("ctl AG EF dead", True),
+        ("ltl F dead", False),
+        ("always { hd (Mark.Top'NextSend) <= hd (Mark.Top'NextRec) }", True),
+        ("always { hd (Mark.Top'NextRec) <= hd (Mark.Top'NextSend) + 1 }", True),
+        ("every fires(Send_Packet) is followed by fires(Receive_Packet)", False),
+    ],
+    "corpus/nets/hglps+Petri-nets/atv/atv6.cpn": [
+        ("mutex E1, E2, E3, E4", True),
+        ("deadlock free", True),
+        ("ctl AG EF initial", True),
+        ("ltl G F fires(GO_TO_E2)", False),
+        ("bound E1 <= 0", False, 1),
+    ],
+}
+"""Nets by others, read where they are."""
