@@ -1,0 +1,182 @@
+"""The cells in examples/ beside riveting: checked, verified, generated, built and run on the `fake` backend.
+
+Nothing in the compiler knows any of them: what is particular to a cell is its folder.
+"""
+
+from __future__ import annotations
+
+import json
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import pytest
+from typer.testing import CliRunner
+
+from pn2code.cli.main import app
+from pn2code.diagnostics import Diagnostics
+from pn2code.net.front import load
+from pn2code.pipeline import Generated, generate
+from pn2code.run.cell import RunOptions, run_cell
+from pn2code.semantics.replay import replay
+
+pytest.importorskip("jinja2")
+
+
+@dataclass(frozen=True)
+class Expected:
+    """What an example must come to.
+
+    Args:
+        net: its name; picture: the page drawn and the file.
+        nodes, dead: of the state space.
+        properties: how many there are at least.
+        counts: part of the summary of a run.
+        final: the binding of the last occurrence of the supervisor, `Finish`.
+        owners: who runs a program, in order.
+    """
+
+    net: str
+    picture: tuple[str, str]
+    nodes: int
+    dead: int
+    counts: dict[str, int]
+    final: dict[str, Any]
+    owners: tuple[str, ...]
+    properties: int = 5
+
+
+EXAMPLES = {
+    "sorting": Expected(
+        "sorting", ("Supervisor", "supervisor.svg"), 3024, 28,
+        {"parts": 6, "picks": 9, "retries": 3, "calls": 1, "placed": 5},
+        {"t": {"pallet": 3, "bin": 2, "hand": 1}},
+        ("supervisor", "robot", "belt", "operator"),
+    ),
+    "shared-zone": Expected(
+        "zone", ("Station", "station.svg"), 8173, 1,
+        {"welds": 8, "grants1": 3, "grants2": 3, "grants3": 2},
+        {},
+        ("supervisor", "robot1", "robot2", "robot3"),
+    ),
+    "timed": Expected(
+        "timed", ("Supervisor", "supervisor.svg"), 31014, 1668,
+        {"beads": 3, "repairs": 2, "interruptions": 2, "answers": 2, "timeouts": 1, "late": 1},
+        {"t": {"good": 1, "bad": 1, "unknown": 1}},
+        ("supervisor", "robot", "gauge", "desk"),
+    ),
+}  # fmt: skip
+
+
+@pytest.fixture(scope="module", params=EXAMPLES)
+def example(request: pytest.FixtureRequest, root: Path) -> tuple[Path, Expected]:
+    return root / "examples" / request.param, EXAMPLES[request.param]
+
+
+@pytest.fixture(scope="module")
+def generated(example: tuple[Path, Expected]) -> Generated:
+    d = Diagnostics()
+    found = generate(example[0], d)
+    assert found is not None and not list(d), [x.message for x in d]
+    return found
+
+
+def test_generation_has_nothing_to_say_and_is_deterministic(
+    example: tuple[Path, Expected], generated: Generated
+) -> None:
+    again = generate(example[0], Diagnostics())
+    assert again is not None
+    assert again.files == generated.files
+    assert tuple(o.name for o in generated.partition.owners) == example[1].owners
+    paths = {f.path for f in generated.files}
+    assert {f"{name}.tdl" for name in example[1].owners[1:]} < paths
+
+
+def test_the_picture_is_that_of_the_net(example: tuple[Path, Expected], tmp_path: Path) -> None:
+    folder, expected = example
+    page, file = expected.picture
+    drawn = tmp_path / file
+    done = CliRunner().invoke(app, ["draw", str(folder), "--page", page, "-o", str(drawn)])
+    assert done.exit_code == 0, done.output
+    assert drawn.read_text() == (folder / file).read_text()
+    assert file in (folder / "README.md").read_text()
+
+
+@pytest.mark.cc
+def test_verify(example: tuple[Path, Expected], tmp_path: Path) -> None:
+    folder, expected = example
+    options = ["--json", "--traces", str(tmp_path), "--threads", "1"]
+    done = CliRunner().invoke(app, ["verify", str(folder), *options])
+    assert done.exit_code == 0, done.output
+    said = json.loads(done.stdout)
+    assert said["complete"] and not said["dead_transitions"]
+    assert (said["nodes"], said["dead_markings"]) == (expected.nodes, expected.dead)
+    assert len(said["properties"]) >= expected.properties
+    assert {p["name"]: p["answer"] for p in said["properties"] if p["answer"] != "yes"} == {}
+    assert all(p["says"] for p in said["properties"])
+
+
+@pytest.mark.cc
+def test_a_cell_that_goes_on_for_ever_is_verified_without_its_time(
+    root: Path, tmp_path: Path
+) -> None:
+    """Endless, the timed cell has infinitely many states with their times."""
+    options = [
+        "--reduce",
+        "time",
+        "--set",
+        "endless=true",
+        "--no-found",
+        "--threads",
+        "1",
+        "--json",
+    ]
+    asked = ["--property", "ctl AG EF initial", "--property", "deadlock free"]
+    folder = root / "examples/timed"
+    done = CliRunner().invoke(
+        app, ["verify", str(folder), *options, *asked, "--traces", str(tmp_path)]
+    )
+    said = json.loads(done.stdout)
+    assert said["complete"] and said["reductions"] == ["time"]
+    assert (said["nodes"], said["home_markings"]) == (3130, 3130)
+    assert [p["answer"] for p in said["properties"]] == ["yes", "yes"]
+
+
+@pytest.mark.cc
+def test_run(
+    example: tuple[Path, Expected], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Compiled supervisor, scripts, files and arms; what came of it is an occurrence sequence of the net.
+
+    (The Makefile makes warnings errors.)
+    """
+    folder, expected = example
+    monkeypatch.setenv("CFLAGS", "-O0")
+    d = Diagnostics()
+    result = run_cell(folder, RunOptions(out=tmp_path, backend="fake", looks=False), d)
+    assert result is not None and not list(d), [x.message for x in d]
+    assert (result.record.verdict, result.record.reason) == ("finished", "")
+    assert {k: result.summary[k] for k in expected.counts} == expected.counts
+    occurred = [e for e in result.record.events if "transition" in e]
+    assert occurred[-1]["transition"] == "Cell.Supervisor.Finish"
+    assert occurred[-1]["binding"] == expected.final
+    net = load(folder / f"{expected.net}.cpn", Diagnostics())
+    assert net is not None
+    found = replay(tmp_path / f"{expected.net}.trace.jsonl", net)
+    assert found.ok, found.message()
+    assert (found.steps, found.ended) == (len(occurred), "finished")
+
+
+@pytest.mark.cc
+def test_both_engines_simulate_the_same_run(root: Path, tmp_path: Path) -> None:
+    runs = []
+    for engine in ("compiled", "reference"):
+        trace = tmp_path / f"{engine}.trace.jsonl"
+        options = ["--steps", "500", "--seed", "5", "--engine", engine, "--quiet"]
+        done = CliRunner().invoke(
+            app, ["simulate", str(root / "examples/timed"), *options, "--trace", str(trace)]
+        )
+        assert done.exit_code == 0, done.output
+        runs.append([json.loads(line) for line in trace.read_text().splitlines()[1:]])
+    assert runs[0] == runs[1]
+    assert runs[0][-1]["why"] == "finished" and len(runs[0]) > 40
