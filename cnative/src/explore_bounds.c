@@ -319,8 +319,11 @@ static const char *value_end(const char *text)
     bool is_string = false;
     for (; *text != '\0'; text++) {
         if (is_string) {
-            text += ((*text == '\\') && (text[1] != '\0')) ? 1 : 0;
-            is_string = (*text != '"');
+            if ((*text == '\\') && (text[1] != '\0')) {
+                text += 1; /* a quote may be what it stands for */
+            } else {
+                is_string = (*text != '"');
+            }
         } else if (*text == '"') {
             is_string = true;
         } else if ((*text == '[') || (*text == '{')) {
