@@ -2,7 +2,7 @@
 
     python -m tests.fuzz [--seconds 600] [--cases N] [--seed 1] [--save FOLDER]
     python -m tests.fuzz --nets N       random nets are compiled and compared instead: see `walks`
-    python -m tests.fuzz --graphs N     their whole state spaces: see `graphs`
+    python -m tests.fuzz --graphs N     whole state spaces of random nets: see `graphs`
 
 A case is a number: case 17 is the same net wherever the base nets are the same. Nothing but diagnostics may come
 out: no exception, no more than 10 s of the processor, no more than 1 GB, and a net that is refused has an error that

@@ -1,9 +1,12 @@
 """`./dev fuzz --graphs N`: whole graphs of random nets, compiled and by the token game; failures are made small.
 
-    python -m tests.fuzz.graphs [--graphs 1000] [--seed 0] [--threads 1] [--sanitize] [--save FOLDER]
+    python -m tests.fuzz.graphs [--graphs 1000] [--seed 0] [--only NET] [--sanitize] [--save FOLDER]
+    python -m tests.fuzz.graphs --alone [--graphs 1000] [--seed 0] [--threads 1] [--sanitize] [--save FOLDER]
 
 Compared are all markings, all binding elements, and what is said of the graph: components, home and dead markings,
-liveness, fairness, bounds.
+liveness, fairness, bounds. About fifty nets are compiled together (`helpers.random_unions`), and `--seed` is the
+number of the first such file; `--only` looks at one of its nets, without the others. With `--alone` each net is larger
+and compiled by itself, and `--seed` is the number of the first net.
 """
 
 from __future__ import annotations
@@ -13,6 +16,7 @@ import re
 import sys
 import tempfile
 from collections import Counter
+from collections.abc import Callable
 from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).parents[1]))  # as pytest does: the tests' helpers
@@ -20,6 +24,8 @@ sys.path.insert(0, str(Path(__file__).parents[1]))  # as pytest does: the tests'
 from helpers.explored import QUICK, SANITIZERS, Explorers, agrees
 from helpers.netbuilder import flat
 from helpers.random_graphs import WIDTHS, numbered
+from helpers.random_unions import Union, union
+from helpers.unions import PER_UNION, Outcome, alone, check
 
 ROOT = Path(__file__).resolve().parents[2]
 
@@ -37,16 +43,16 @@ def kind(said: str) -> str:
     return re.sub(r"[`'\"(\[{].*?[`'\")\]}]|\d+", "#", " ".join(said.split()))[:80]
 
 
-def smaller(explorers: Explorers, text: str, width: int, options: tuple[object, ...]) -> str:
-    """The text with as few lines as possible for the same kind of failure."""
-    wanted = kind(verdict(explorers, text, width, options))
+def smaller(text: str, said: Callable[[str], str]) -> str:
+    """The text with as few lines as possible for the same kind of failure, which `said` tells."""
+    wanted = kind(said(text))
     lines = text.splitlines()
     size = max(1, len(lines) // 4)
     while size:
         start = 1
         while start < len(lines):
             fewer = lines[:start] + lines[start + size :]
-            if kind(verdict(explorers, "\n".join(fewer), width, options)) == wanted:
+            if kind(said("\n".join(fewer))) == wanted:
                 lines = fewer
             else:
                 start += size
@@ -54,11 +60,55 @@ def smaller(explorers: Explorers, text: str, width: int, options: tuple[object, 
     return "\n".join(lines)
 
 
+def unions(explorers: Explorers, given: argparse.Namespace) -> int:
+    """Compare nets that are compiled together; 1 when one differs."""
+    done = Outcome()
+    number, failures = given.seed, 0
+    while done.nets < given.graphs:
+        one = union(number, PER_UNION)
+        number += 1
+        if given.only is None:
+            try:
+                done.add(check(explorers, one))
+                continue
+            except AssertionError as difference:
+                print(f"graphs: {difference}", flush=True)
+        else:
+            done.nets = given.graphs
+        failures += small(explorers, one, given)
+    print(f"graphs: {done}; {failures} differ")
+    return int(failures > 0)
+
+
+def small(explorers: Explorers, one: Union, given: argparse.Namespace) -> int:
+    """The nets of a union that fail alone, made small; how many there are."""
+    failures = 0
+    for net in range(len(one.pages)) if given.only is None else [given.only]:
+        why = alone(explorers, one, net)
+        if not why:
+            continue
+        failures += 1
+        text = smaller(one.text(net), lambda t: alone_text(explorers, one, t))
+        given.save.mkdir(parents=True, exist_ok=True)
+        path = given.save / f"union{one.number}net{net}.txt"
+        path.write_text(f"{text}\n\n# {why}\n")
+        print(f"{text}\n  -> {why[:2000]}\n  saved as {path}", flush=True)
+        break  # others are likely to have the same cause
+    return max(failures, int(given.only is None))
+
+
+def alone_text(explorers: Explorers, one: Union, text: str) -> str:
+    """What is wrong with a text; "" for nothing."""
+    return alone(explorers, Union(one.number, one.style, text, ("",)), 0)
+
+
 def main() -> int:
     """Compare many graphs; 1 when one differs."""
     parser = argparse.ArgumentParser(prog="python -m tests.fuzz.graphs", description=__doc__)
     parser.add_argument("--graphs", type=int, default=1000)
     parser.add_argument("--seed", type=int, default=0, help="the first net; further ones follow")
+    parser.add_argument("--only", type=int, help="a net of the union --seed")
+    parser.add_argument("--alone", action="store_true", help="larger nets, each in its program")
     parser.add_argument("--threads", type=int, default=1)
     parser.add_argument("--sanitize", action="store_true", help="compile with sanitizers")
     parser.add_argument("--save", type=Path, default=ROOT / ".fuzz", help="where failures go")
@@ -68,6 +118,8 @@ def main() -> int:
     with tempfile.TemporaryDirectory(prefix="pn2code-graphs-") as folder:
         flags = SANITIZERS if given.sanitize else QUICK
         explorers = Explorers.open(Path(folder) / "explorers", flags)
+        if not given.alone:
+            return unions(explorers, given)
         for number in range(given.seed, given.seed + given.graphs):
             text, width = numbered(number), WIDTHS[number % len(WIDTHS)]
             said = verdict(explorers, text, width, options)
@@ -76,7 +128,7 @@ def main() -> int:
             if not said.startswith("differs") or counts[what] > 1:
                 continue
             print(f"graphs: net {number}: {what}", file=sys.stderr, flush=True)
-            text = smaller(explorers, text, width, options)
+            text = smaller(text, lambda t, w=width: verdict(explorers, t, w, options))  # type: ignore[misc]
             given.save.mkdir(parents=True, exist_ok=True)
             path = given.save / f"graph{number}.txt"
             path.write_text(f"{text}\n\n# {said}\n")

@@ -109,6 +109,7 @@ class Explorers:
         *options: object,
         name: str = "net",
         width: int = 1,
+        sizes: Sizes | None = None,
         reads: bool = True,
     ) -> Explored:
         """Explore a net, with more room where places turn out to hold more, as `pn2code verify` does.
@@ -118,10 +119,11 @@ class Explorers:
             options: of the explorer.
             name: of its folder.
             width: least width of the counters of packed places; 0: no place is packed.
+            sizes: what its places hold at first, if that is known.
             reads: whether the lines of the graph are read.
         """
         run = self.run if reads else self.said
-        sizes = wide(Sizes.start(flat, {}), width)
+        sizes = sizes or wide(Sizes.start(flat, {}), width)
         while True:
             found = run(self.build(flat, sizes, name), *options)
             error = found.report["error"]

@@ -1,9 +1,10 @@
 # ruff: noqa: E501 - rows of texts
 """Many small random nets in one file: the state space is the union of theirs, so one compilation checks all of them.
 
-All share the declarations; each has a page of its own, `N0`, `N1`, ..., and pages below. A place `Pick` that is fused over all
-pages has one token, and `Start` of a page takes it and puts the initial marking of that page. From then on only this page
-can do anything. Its place `On` is marked for ever, so no marking belongs to two pages.
+All share the declarations; each has a page of its own, `N0`, `N1`, ..., and pages below. Places are fused over all pages:
+`Pick` has one token, and `Start` of a page takes it and puts the initial marking of that page. `Fuel` gets the number of the
+page, perhaps several times, and without that nothing occurs; so from then on only this page can do anything, and other
+places may belong to many pages. The number that `On` gets remains, so no marking is of two pages.
 
 Union number 17 is the same on every machine, and so is each of its nets with and without the others.
 """
@@ -59,14 +60,24 @@ def union(number: int, size: int) -> Union:
     style = STYLES[number % len(STYLES)]
     kind = {"small": _Small, "symmetric": _Symmetric}.get(style, _Any)
     writer = kind(Random(number), style)
+    writer.has_priorities = style != "small" or number % (2 * len(STYLES)) == 1
     writer.declarations()
+    writer.lines.append(f"  colset WHO = int with 0..{size - 1};")
     head = "\n".join(writer.lines) + "\n"
     pages = []
     for i in range(size):
         writer.r, writer.lines = Random(number * 10_007 + i), []
         writer.page(i)
         pages.append("\n".join(writer.lines) + "\n")
-    return Union(number, style, head, tuple(pages))
+    made = Union(number, style, head, tuple(pages))
+    return _without_steps(made) if number % len(STYLES) == 0 else made
+
+
+def _without_steps(union: Union) -> Union:
+    """Nothing looks at the number of steps, which forbids to reduce by time."""
+    look = "IntInf.toInt (step ())"
+    pages = tuple(page.replace(look, "11") for page in union.pages)
+    return Union(union.number, union.style, union.head.replace(look, "11"), pages)
 
 
 class _Any(Writer):
@@ -79,6 +90,10 @@ class _Any(Writer):
         self.fuel = 0
         self.chosen: list[Kind] = []
         self.is_easy = False
+        self.number = 0
+        self.has_priorities = True
+        self.members: list[str] = []
+        """Fusion sets of all pages that the page has places of."""
 
     # --- declarations
 
@@ -127,26 +142,26 @@ class _Any(Writer):
 
     def page(self, number: int) -> None:
         r = self.r
+        self.number = number
         self.fuel = r.choice((0, 0, 3, 4, 4, 5))
+        self.members = []
         self.lines.append(f"  page N{number}")
         own = [k for k in self.kinds if k.name[0] in "CK"]
         self.chosen = r.sample(own, min(len(own), r.choice((1, 2, 2, 3))))
+        shared = [f"    place {name} fusion {name} : WHO" for name in ("On", "Fuel")]
         self.lines.append("    place Pick fusion Pick : UNIT = 1`()")
-        shared = [f"    place On fusion On{number} : UNIT"]
-        if self.fuel:
-            shared.append(f"    place Fuel fusion Fuel{number} : UNIT")
         self.lines += shared
-        places, start = [], ["in Pick : ()", "out On : ()"]
-        if self.fuel:
-            start.append(f"out Fuel : {self.fuel}`()")
+        start = ["in Pick : ()", f"out On : {number}", f"out Fuel : {self.fuel or 1}`{number}"]
+        places: list[Place] = []
         for i in range(r.randint(2, 4)):
             place = Place(f"P{i}", self.colours())
+            pool = self.pooled(place.kind)
             places.append(place)
-            self.place(place, "", start)
+            self.place(place, f" fusion {pool}" if pool else "", start)
         if self.chance(0.15):
             kind = self.colours()
-            own = self.place(Place("P8", kind), f" fusion Shared{number}", start)
-            self.lines.append(f"    place P9 fusion Shared{number} : {kind.name}{own}")
+            initial = self.place(Place("P8", kind), f" fusion Shared{number}", start)
+            self.lines.append(f"    place P9 fusion Shared{number} : {kind.name}{initial}")
             places += [Place("P8", kind), Place("P9", kind)]
         self.lines.append("    trans Start")
         self.lines += [f"      {arc}" for arc in start]
@@ -165,6 +180,14 @@ class _Any(Writer):
                 self.lines.append(f"    place Own : {inner[-1].kind.name}")
             self.occurring("U0", inner)
 
+    def pooled(self, kind: Kind) -> str:
+        """The fusion set of all pages that a place belongs to; "" if the place is the page's own."""
+        free = [i for i in range(2) if f"Q{kind.name}{i}" not in self.members]
+        if not free or self.chance(0.15):
+            return ""
+        self.members.append(f"Q{kind.name}{free[0]}")
+        return self.members[-1]
+
     def colours(self) -> Kind:
         """The colour set of a place: few on a page, so that tokens get around."""
         return self.r.choice(self.chosen) if self.chance(0.9) else self.r.choice(self.kinds)
@@ -172,7 +195,7 @@ class _Any(Writer):
     def place(self, place: Place, words: str, start: list[str]) -> str:
         """The place, and its tokens: from `Start`, or with fuel also of its own, which are given back."""
         tokens, own = self.tokens(place.kind), ""
-        if self.fuel and self.style != "symmetric" and self.chance(0.2):
+        if not words and self.style != "symmetric" and self.chance(0.2):
             tokens = self.plain(place.kind, Scope(), 0)  # cannot raise an exception
             own = f" = {self.r.randint(1, 2)}`{tokens}"
         self.lines.append(f"    place {place.name}{words} : {place.kind.name}{own}")
@@ -205,11 +228,11 @@ class _Any(Writer):
         before = len(self.lines)
         self.is_easy = self.chance(0.6)
         self.transition(name, places, "    ")
-        if self.fuel:
-            self.lines.append("      in Fuel : ()")
-        elif not any(t.startswith(("      in ", "      both ")) for t in self.lines[before:]):
-            self.lines.append("      both On : ()")
+        self.lines.append(f"      {'in' if self.fuel else 'both'} Fuel : {self.number}")
         self.balance(before)
+        if not self.has_priorities:
+            kept = [t for t in self.lines[before:] if not t.startswith("      priority ")]
+            self.lines[before:] = kept
 
     def balance(self, before: int) -> None:
         """Without fuel, no more tokens are put than taken, mostly."""
@@ -245,13 +268,20 @@ class _Small(_Any):
     def code(self, scope: Scope, clauses: list[str]) -> None:
         """None."""
 
+    def pooled(self, kind: Kind) -> str:
+        """None: what the nets do is to be independent."""
+        return ""
+
 
 class _Symmetric(_Small):
     """The colours of a colour set are all alike: inscriptions have variables, tuples of them, and `all()`."""
 
     def declarations(self) -> None:
         r = self.r
-        base = [Kind("C0", "range", size=r.randint(2, 3)), Kind("C1", "enum", names=("ea", "eb", "ec"), size=3)]
+        base = [
+            Kind("C0", "range", size=r.randint(2, 3)),
+            Kind("C1", "enum", names=("ea", "eb", "ec"), size=3),
+        ]
         self.lines.append(f"  colset C0 = int with 0..{base[0].size - 1};")
         self.lines.append("  colset C1 = with ea | eb | ec;")
         base.append(Kind("C2", "index", names=("ix",), size=2))
@@ -260,14 +290,20 @@ class _Symmetric(_Small):
         for i in range(3, 6):
             parts = [r.choice(base) for _ in range(2)]
             is_record = r.random() < 0.4
-            of = f"record a: {parts[0].name} * b: {parts[1].name}" if is_record else f"product {parts[0].name} * {parts[1].name}"
+            of = (
+                f"record a: {parts[0].name} * b: {parts[1].name}"
+                if is_record
+                else f"product {parts[0].name} * {parts[1].name}"
+            )
             labels = ("a", "b") if is_record else ("", "")
             self.lines.append(f"  colset C{i} = {of};")
             made = tuple(zip(labels, parts, strict=True))
             size = parts[0].size * parts[1].size
             self.kinds.append(Kind(f"C{i}", "record" if is_record else "product", made, (), size))
         for kind in self.kinds:
-            self.lines.append(f"  var {', '.join(f'{v}{kind.name}' for v in VARIABLES)}: {kind.name};")
+            self.lines.append(
+                f"  var {', '.join(f'{v}{kind.name}' for v in VARIABLES)}: {kind.name};"
+            )
 
     def colours(self) -> Kind:
         return self.r.choice(self.kinds) if self.chance(0.85) else UNIT
@@ -306,5 +342,7 @@ class _Symmetric(_Small):
         self.lines.append(f"{indent}trans {name}")
         if self.chance(0.25):
             kind = r.choice(self.kinds)
-            self.lines.append(f"{indent}  guard [v{kind.name} {r.choice(('=', '<>'))} w{kind.name}]")
+            self.lines.append(
+                f"{indent}  guard [v{kind.name} {r.choice(('=', '<>'))} w{kind.name}]"
+            )
         self.lines += [f"{indent}  {arc}" for arc in arcs]

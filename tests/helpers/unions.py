@@ -13,6 +13,8 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field, replace
 from typing import Any
 
+from tests.reduction_sweep import all_markings, dead_markings, generators
+
 from helpers.compiled import agrees
 from helpers.explored import Explored, Explorers, element_key, multiset, node_key, wide
 from helpers.graph_facts import Facts
@@ -20,6 +22,7 @@ from helpers.netbuilder import flat as flattened
 from helpers.quotient import aged
 from helpers.random_unions import Union, page_of
 from helpers.table_nets import orbits
+from pn2code.lowering.packing import choose
 from pn2code.net.flat import FlatNet
 from pn2code.semantics.files import Files
 from pn2code.semantics.game import Game, GameError
@@ -28,8 +31,9 @@ from pn2code.semantics.marking import Marking, PlaceMarking, binding_to_json, pl
 from pn2code.verify.elements import Elements, NotPossibleError, elements
 from pn2code.verify.programs import Sizes
 from pn2code.verify.time_reduction import obstacle
-from tests.reduction_sweep import all_markings, dead_markings, generators
 
+PER_UNION = 50
+"""Nets in a union; about forty of them have graphs that are compared."""
 NODES = 100
 ARCS = 400
 """Graphs of one net that are larger are left out."""
@@ -39,14 +43,71 @@ WALKS = ((1, 25), (2, 25))
 """Seeds and steps of the walks through a union; and one more for each net that is left out."""
 
 
-@dataclass(slots=True)
 class Part:
-    """What the token game says of one net: its graph from the marking after `Start` on."""
+    """What the token game says of one net alone: its graph from the marking after `Start` on.
 
-    number: int
-    space: StateSpace
-    nodes: list[str] = field(default_factory=list)
-    arcs: Counter[tuple[str, str, str]] = field(default_factory=Counter)
+    Attributes:
+        number: of the net.
+        space: the graph; None if an inscription raises an exception.
+    """
+
+    def __init__(self, flat: FlatNet, number: int, size: int = 1) -> None:
+        self.number = number
+        self.net = only(flat, [number])
+        self.game = Game(self.net, {}, files=Files(None))
+        self.root = self.game.marking
+        self.nodes: list[str] = []
+        self.arcs: Counter[tuple[str, str, str]] = Counter()
+        self._known: dict[tuple[int, object], Any] = {}
+        (start,) = self.game.enabled()
+        assert self.net.transitions[start.transition].name == f"N{number}.Start"
+        self.space: StateSpace | None
+        try:
+            self.game.marking, _ = self.game.occur(self.root, start)
+            self.space = state_space(self.game, max_nodes=size * NODES, max_arcs=size * ARCS)
+        except GameError:
+            self.space = None
+
+    @property
+    def graph(self) -> StateSpace:
+        """The graph, of which it is known that there is one."""
+        assert self.space is not None
+        return self.space
+
+    def rows(self, place: int, tokens: PlaceMarking) -> Any:
+        """What a place holds as JSON."""
+        known = self._known.get((place, tokens))
+        if known is None:
+            known = place_to_json(self.game.colours, self.net.places[place].colset, tokens)
+            self._known[place, tokens] = known
+        return known
+
+    def marked(self, marking: Marking) -> dict[str, Any]:
+        """The places that are not empty."""
+        held = zip(self.net.places, marking.places, strict=True)
+        return {p.name: self.rows(p.index, tokens) for p, tokens in held if tokens}
+
+    def describe(self, outside: Mapping[str, Any]) -> None:
+        """Fill in the keys of nodes and arcs.
+
+        Args:
+            outside: what the places of other nets hold.
+        """
+        space = self.graph
+        self.nodes = [node_key(m.time, {**outside, **self.marked(m)}) for m in space.nodes]
+        times = {a.source: self.game.settle(space.nodes[a.source]).time for a in space.arcs}
+        self.arcs = Counter(
+            (
+                self.nodes[a.source],
+                self.nodes[a.target],
+                element_key(
+                    times[a.source],
+                    self.net.transitions[a.element.transition].name,
+                    binding_to_json(a.element),
+                ),
+            )
+            for a in space.arcs
+        )
 
 
 @dataclass(slots=True)
@@ -68,7 +129,7 @@ class Outcome:
         self.reduced += other.reduced
 
 
-class Differs(AssertionError):
+class DiffersError(AssertionError):
     """Some of the nets differ.
 
     Args:
@@ -82,65 +143,9 @@ class Differs(AssertionError):
         super().__init__(why)
 
 
-class Reference:
-    """The token game's side of a union."""
-
-    def __init__(self, flat: FlatNet) -> None:
-        self.flat = flat
-        self.game = Game(flat, {}, files=Files(None))
-        self.root = self.game.marking
-        self.elements = self.game.enabled()
-        self._known: dict[tuple[int, object], Any] = {}
-
-    def parts(self) -> tuple[list[Part], list[int], list[int]]:
-        """Those that are small, the numbers of those that are not, and of those that raise an exception."""
-        parts, large, exceptions = [], [], []
-        for element in self.elements:
-            number = page_of(self.flat.transitions[element.transition].name)
-            try:
-                self.game.marking, _ = self.game.occur(self.root, element)
-                space = state_space(self.game, max_nodes=NODES, max_arcs=ARCS)
-            except GameError:
-                exceptions.append(number)
-                continue
-            if space.complete:
-                parts.append(Part(number, space))
-            else:
-                large.append(number)
-        return parts, large, exceptions
-
-    def rows(self, place: int, tokens: PlaceMarking) -> Any:
-        """What a place holds as JSON."""
-        known = self._known.get((place, tokens))
-        if known is None:
-            known = place_to_json(self.game.colours, self.flat.places[place].colset, tokens)
-            self._known[place, tokens] = known
-        return known
-
-    def key(self, marking: Marking) -> str:
-        """A marking as `node_key` gives it, without the empty places."""
-        held = zip(self.flat.places, marking.places, strict=True)
-        return node_key(
-            marking.time, {p.name: self.rows(p.index, tokens) for p, tokens in held if tokens}
-        )
-
-    def describe(self, part: Part) -> None:
-        """Fill in the keys of its nodes and arcs."""
-        space = part.space
-        part.nodes = [self.key(marking) for marking in space.nodes]
-        times = {a.source: self.game.settle(space.nodes[a.source]).time for a in space.arcs}
-        part.arcs = Counter(
-            (
-                part.nodes[a.source],
-                part.nodes[a.target],
-                element_key(
-                    times[a.source],
-                    self.flat.transitions[a.element.transition].name,
-                    binding_to_json(a.element),
-                ),
-            )
-            for a in space.arcs
-        )
+def numbers_of(flat: FlatNet) -> list[int]:
+    """The nets that a flat net has."""
+    return sorted({page_of(t.name) for t in flat.transitions})
 
 
 def only(flat: FlatNet, numbers: Iterable[int]) -> FlatNet:
@@ -154,9 +159,7 @@ def only(flat: FlatNet, numbers: Iterable[int]) -> FlatNet:
         flat,
         places=tuple(replace(p, index=i) for i, p in enumerate(places)),
         transitions=tuple(
-            replace(
-                t, index=i, arcs=tuple(replace(a, place=moved[a.place]) for a in t.arcs)
-            )
+            replace(t, index=i, arcs=tuple(replace(a, place=moved[a.place]) for a in t.arcs))
             for i, t in enumerate(transitions)
         ),
         place_instances=tuple(
@@ -198,11 +201,12 @@ def culprits(explorers: Explorers, union: Union, suspects: Iterable[int]) -> lis
 
 def _explained(explorers: Explorers, union: Union, failure: Exception) -> str:
     why = f"{type(failure).__name__}: {failure}"
-    named = failure.numbers if isinstance(failure, Differs) else ()
+    named = failure.numbers if isinstance(failure, DiffersError) else ()
     found = culprits(explorers, union, named or range(len(union.pages)))
     command = f"./dev fuzz --graphs {len(union.pages)} --seed {union.number}"
     if not found:
-        return f"union {union.number} ({union.style}), nets {named or 'unknown'} differ, but none alone: {why}\n{command}"
+        which = f"nets {named}" if named else "some nets"
+        return f"union {union.number} ({union.style}), {which} differ, but none alone: {why}\n{command}"
     number, own = found[0]
     return (
         f"union {union.number} ({union.style}), net {number}: {own}\n{union.text(number)}\n"
@@ -211,64 +215,81 @@ def _explained(explorers: Explorers, union: Union, failure: Exception) -> str:
 
 
 def _check(explorers: Explorers, union: Union, flat: FlatNet) -> Outcome:
-    reference = Reference(flat)
-    parts, large, exceptions = reference.parts()
+    size = 2 if union.style == "symmetric" else 1  # to have some at all
+    everything = [Part(flat, number, size) for number in numbers_of(flat)]
+    exceptions = [p.number for p in everything if p.space is None]
+    large = [p.number for p in everything if p.space is not None and not p.space.complete]
+    parts = [p for p in everything if p.space is not None and p.space.complete]
     outcome = Outcome(large=len(large), exceptions=len(exceptions))
     if union.style in ("small", "symmetric"):
-        parts = [p for p in parts if _table(only(flat, [p.number])) is not None]
+        parts = [p for p in parts if _table(p.net) is not None]
     if parts:
-        _compare(explorers, union, reference, parts, outcome)
+        _compare(explorers, union, flat, parts, outcome)
     rest = [*large, *exceptions]
     if rest and union.number % 2 == 0:
         net = only(flat, rest)
-        folder = explorers.build(net, wide(_sizes(net), 0), "rest")
+        folder = explorers.build(net, _sizes(net, 0), "rest")
         for seed in range(len(rest)):
             _walk(explorers, net, folder, seed, 12)
     return outcome
 
 
 def _compare(
-    explorers: Explorers, union: Union, reference: Reference, parts: list[Part], outcome: Outcome
+    explorers: Explorers, union: Union, flat: FlatNet, parts: list[Part], outcome: Outcome
 ) -> None:
-    net = only(reference.flat, [p.number for p in parts])
-    width = WIDTHS[union.number % len(WIDTHS)]
-    options = ("--max-states", 2 * sum(len(p.space.nodes) for p in parts) + 2)
-    found = explorers.explore(net, *options, name="union", width=width, reads=False)
-    assert found.report["complete"], (found.report["why"], found.report["error"])
+    net = only(flat, [p.number for p in parts])
+    root = {name: rows for p in parts for name, rows in p.marked(p.root).items()}
     for part in parts:
-        reference.describe(part)
-    compare_graphs(reference, parts, found)
-    compare_facts(net, reference, parts, found.report)
+        own = {p.name for p in part.net.places}
+        part.describe({name: rows for name, rows in root.items() if name not in own})
+    is_reduced = union.style in ("small", "symmetric")  # which needs packed places
+    width = 8 if is_reduced else WIDTHS[union.number % len(WIDTHS)]
+    sizes = _sizes(net, width) if union.number % 10 else None
+    nodes = 1 + sum(len(p.graph.nodes) for p in parts)
+    found = explorers.explore(
+        net, "--max-states", 2 * nodes, name="union", width=width, sizes=sizes, reads=False
+    )
+    assert found.report["complete"], (found.report["why"], found.report["error"])
+    compare_graphs(root, parts, found)
+    compare_facts(net, parts, found.report)
     folder = explorers.folder / "union"
     threads = explorers.said(folder, "--threads", 2)
     assert sorted(threads.lines) == sorted(found.lines), "with two threads the graph is another"
-    depth = explorers.said(folder, "--order", "dfs")
-    compare_graphs(reference, parts, depth)
+    compare_graphs(root, parts, explorers.said(folder, "--order", "dfs"))
     for seed, steps in WALKS:
         _walk(explorers, net, folder, seed, steps)
     outcome.nets += len(parts)
-    outcome.nodes += sum(len(p.space.nodes) for p in parts)
-    outcome.arcs += sum(len(p.space.arcs) for p in parts)
-    outcome.five += sum(len(p.space.nodes) >= 5 for p in parts)
+    outcome.nodes += nodes - 1
+    outcome.arcs += sum(len(p.graph.arcs) for p in parts)
+    outcome.five += sum(len(p.graph.nodes) >= 5 for p in parts)
     if union.style in ("timed", "untimed") and obstacle(net) is None:
-        compare_time(explorers, reference, parts, net)
+        compare_time(explorers, parts, net)
         outcome.reduced["time"] += 1
-    if union.style in ("small", "symmetric"):
-        compare_reductions(explorers, union, net, parts, outcome)
+    if is_reduced:
+        compare_reductions(explorers, net, parts, outcome)
 
 
-def _sizes(net: FlatNet) -> Sizes:
-    return Sizes.start(net, {})
+def _sizes(net: FlatNet, width: int) -> Sizes:
+    """Without what structural analysis proves, which takes longer than all the rest."""
+    marking = Game(net, {}, files=Files(None)).marking
+    counts = [Counter(tokens).values() for tokens in marking.places]
+    return wide(Sizes(choose(net, counts, {})), width)
 
 
 def _walk(explorers: Explorers, net: FlatNet, folder: Any, seed: int, steps: int) -> None:
-    agrees(net, explorers.host / "walk", seed=seed, steps=steps, environment={"LD_LIBRARY_PATH": str(folder)})
+    agrees(
+        net,
+        explorers.host / "walk",
+        seed=seed,
+        steps=steps,
+        environment={"LD_LIBRARY_PATH": str(folder)},
+    )
 
 
 # --- graphs --------------------------------------------------------------------------------------
 
 
-def compare_graphs(reference: Reference, parts: list[Part], found: Explored) -> None:
+def compare_graphs(root: Mapping[str, Any], parts: list[Part], found: Explored) -> None:
     """Markings and binding elements, net by net."""
     nodes: dict[int, str] = {}
     arcs: list[tuple[int, int, str, str]] = []
@@ -283,12 +304,12 @@ def compare_graphs(reference: Reference, parts: list[Part], found: Explored) -> 
             arcs.append((entry["from"], entry["to"], entry["transition"], element))
     theirs: dict[int, Counter[object]] = {p.number: Counter() for p in parts}
     owner: dict[int, int] = {}
-    root = reference.key(reference.root)
+    first = node_key(0, root)
     starts = 0
     for source, target, transition, element in arcs:
         number = page_of(transition)
         owner[target] = number
-        if nodes[source] == root:
+        if nodes[source] == first:
             assert transition == f"N{number}.Start", f"{transition} occurs first"
             starts += 1
             theirs[number]["first", nodes[target]] += 1
@@ -298,7 +319,7 @@ def compare_graphs(reference: Reference, parts: list[Part], found: Explored) -> 
         if node in owner:
             theirs[owner[node]][text] += 1
         else:
-            assert text == root, f"a marking that nothing leads to: {text}"
+            assert text == first, f"a marking that nothing leads to: {text}"
     bad = {}
     for part in parts:
         mine: Counter[object] = Counter(part.arcs)
@@ -306,9 +327,11 @@ def compare_graphs(reference: Reference, parts: list[Part], found: Explored) -> 
         mine["first", part.nodes[0]] += 1
         if mine != theirs[part.number]:
             more, less = theirs[part.number] - mine, mine - theirs[part.number]
-            bad[part.number] = f"only compiled: {_some(more)}; only in the token game: {_some(less)}"
+            bad[part.number] = (
+                f"only compiled: {_some(more)}; only in the token game: {_some(less)}"
+            )
     if bad:
-        raise Differs(bad, "\n".join(f"net {n}: {why}" for n, why in bad.items()))
+        raise DiffersError(bad, "\n".join(f"net {n}: {why}" for n, why in bad.items()))
     assert starts == len(parts)
 
 
@@ -316,35 +339,29 @@ def _some(items: Counter[object]) -> str:
     return f"{sum(items.values())}: {[str(item) for item in items][:3]}"
 
 
-def compare_facts(
-    net: FlatNet, reference: Reference, parts: list[Part], report: Mapping[str, Any]
-) -> None:
+def compare_facts(net: FlatNet, parts: list[Part], report: Mapping[str, Any]) -> None:
     """What is said of the graph."""
-    known = {t.name: t.index for t in net.transitions}
-    names = [t.name for t in reference.flat.transitions]
+    index = {t.name: t.index for t in net.transitions}
     fired = [0] * len(net.transitions)
     fair: list[str | None] = ["impartial"] * len(net.transitions)
     cyclic: set[int] = set()
     facts: dict[int, Facts] = {}
     scc_nodes, scc_arcs, depth, dead = 1, len(parts), 0, 0
     for part in parts:
-        own = {t.index: i for i, t in enumerate(net.transitions) if page_of(t.name) == part.number}
-        arcs = [
-            (a.source, a.target, own[known[names[a.element.transition]]]) for a in part.space.arcs
-        ]
-        order = {old: new for new, old in enumerate(own.values())}
-        arcs = [(a, b, order[t]) for a, b, t in arcs]
-        fact = facts[part.number] = Facts(len(part.space.nodes), len(order), arcs)
-        for t, count in zip(own.values(), fact.fired(), strict=True):
-            fired[t] = count + (net.transitions[t].name == f"N{part.number}.Start")
+        space = part.graph
+        own = [index[t.name] for t in part.net.transitions]
+        arcs = [(a.source, a.target, a.element.transition) for a in space.arcs]
+        fact = facts[part.number] = Facts(len(space.nodes), len(own), arcs)
+        for t, count in zip(own, fact.fired(), strict=True):
+            fired[t] = count + (net.transitions[t].short == "Start")
         components = fact.components()
         scc_nodes, scc_arcs = scc_nodes + components[0], scc_arcs + components[1]
         depth = max(depth, 1 + fact.depth())
-        dead += len(part.space.dead)
+        dead += len(space.dead)
         fairness = fact.fairness()
         if fairness is not None:
             cyclic.add(part.number)
-            for t, said in zip(own.values(), fairness, strict=True):
+            for t, said in zip(own, fairness, strict=True):
                 fair[t] = said
     graph = report["graph"]
     assert report["fired"] == fired
@@ -361,69 +378,72 @@ def compare_facts(
     else:
         home = facts[parts[0].number].home()
         assert graph["home_count"] == len(home)
-        live = facts[parts[0].number].live()
-        _same(net, graph["live"], live, "liveness")
-    compare_bounds(net, reference, parts, report)
+        _same(net, graph["live"], facts[parts[0].number].live(), "liveness")
+    compare_bounds(net, parts, report)
 
 
 def _same(net: FlatNet, theirs: Any, mine: Any, what: str) -> None:
     if theirs == mine:
         return
     if theirs is None or mine is None:
-        raise Differs((), f"{what}: {theirs} compiled, {mine} by definition")
+        raise DiffersError((), f"{what}: {theirs} compiled, {mine} by definition")
     bad = [t for t, a, b in zip(net.transitions, theirs, mine, strict=True) if a != b]
-    raise Differs(
+    raise DiffersError(
         {page_of(t.name) for t in bad},
         f"{what}: {[(t.name, theirs[t.index], mine[t.index]) for t in bad[:5]]}",
     )
 
 
-def compare_bounds(
-    net: FlatNet, reference: Reference, parts: list[Part], report: Mapping[str, Any]
-) -> None:
+def compare_bounds(net: FlatNet, parts: list[Part], report: Mapping[str, Any]) -> None:
     """Numbers of tokens, and of each colour."""
-    by_number = {p.number: p for p in parts}
-    indices = {p.name: p.index for p in reference.flat.places}
+    owners: dict[str, list[tuple[Part, int]]] = {}
+    for part in parts:
+        for p in part.net.places:
+            owners.setdefault(p.name, []).append((part, p.index))
     for place, said in zip(net.places, report["bounds"], strict=True):
-        index = indices[place.name]
-        # In the markings of other nets it holds what it holds at first.
-        part = by_number.get(page_of(place.name))
-        markings = [reference.root, *(part.space.nodes if part else ())]
-        if part is None:
-            markings += [m for p in parts for m in p.space.nodes]
-        counted = []
-        for tokens in {m.places[index] for m in markings}:
-            own: Counter[str] = Counter()
-            for row in reference.rows(index, tokens):
-                own[json.dumps(row[1])] += row[0]
-            counted.append(own)
+        found = owners[place.name]
+        counted: list[Counter[str]] = []
+        for part, index in found:
+            # In the markings of other nets it holds what it holds at first.
+            for tokens in {m.places[index] for m in (part.root, *part.graph.nodes)}:
+                own: Counter[str] = Counter()
+                for row in part.rows(index, tokens):
+                    own[json.dumps(row[1])] += row[0]
+                counted.append(own)
         totals = [own.total() for own in counted]
         most = {v: max(own[v] for own in counted) for own in counted for v in own}
         least = {v: n for v in most if (n := min(own[v] for own in counted))}
         mine = (min(totals), max(totals), least, most)
-        theirs = (said["lower"], said["upper"], multiset(said["lower_multiset"]), multiset(said["upper_multiset"]))
+        theirs = (
+            said["lower"],
+            said["upper"],
+            multiset(said["lower_multiset"]),
+            multiset(said["upper_multiset"]),
+        )
         if mine != theirs:
-            raise Differs([page_of(place.name)] if part else (), f"bounds of {place.name}: {theirs} compiled, {mine} by definition")
+            why = f"bounds of {place.name}: {theirs} compiled, {mine} by definition"
+            raise DiffersError([p.number for p, _ in found], why)
 
 
 # --- reductions ----------------------------------------------------------------------------------
 
 
-def compare_time(explorers: Explorers, reference: Reference, parts: list[Part], net: FlatNet) -> None:
+def compare_time(explorers: Explorers, parts: list[Part], net: FlatNet) -> None:
     """`--reduce time`: as many classes of markings as there are, the same transitions and bounds."""
     report = explorers.said(explorers.folder / "union", "--reduce", "time").report
     assert report["complete"], report
-    classes = [{reference.key(aged(m)) for m in p.space.nodes} for p in parts]
-    dead = [{reference.key(aged(p.space.nodes[i])) for i in p.space.dead} for p in parts]
+    classes = [{aged(m) for m in p.graph.nodes} for p in parts]
+    dead = [{aged(p.graph.nodes[i]) for i in p.graph.dead} for p in parts]
     assert report["nodes"] == 1 + sum(map(len, classes)), "classes"
     assert report["dead_count"] == sum(map(len, dead)), "dead classes"
-    fired = {page_of(t.name) for t, n in zip(net.transitions, report["fired"], strict=True) if n}
-    assert fired == {p.number for p in parts}
-    occurring = {a.element.transition for p in parts for a in p.space.arcs}
-    names = {reference.flat.transitions[t].name for t in occurring}
+    names = {
+        p.net.transitions[t].name
+        for p in parts
+        for t in {a.element.transition for a in p.graph.arcs}
+    }
     names |= {f"N{p.number}.Start" for p in parts}
     assert {t.name for t, n in zip(net.transitions, report["fired"], strict=True) if n} == names
-    compare_bounds(net, reference, parts, report)
+    compare_bounds(net, parts, report)
 
 
 def _table(net: FlatNet) -> Elements | None:
@@ -434,7 +454,7 @@ def _table(net: FlatNet) -> Elements | None:
 
 
 def compare_reductions(
-    explorers: Explorers, union: Union, net: FlatNet, parts: list[Part], outcome: Outcome
+    explorers: Explorers, net: FlatNet, parts: list[Part], outcome: Outcome
 ) -> None:
     """Partial order: the same dead markings. Symmetry: as many orbits as there are."""
     table = _table(net)
@@ -442,13 +462,15 @@ def compare_reductions(
     file = explorers.folder / "union.elements"
     file.write_text(table.text())
     folder = explorers.folder / "union"
-    dead = sum(len(p.space.dead) for p in parts)
-    nodes = 1 + sum(len(p.space.nodes) for p in parts)
+    dead = sum(len(p.graph.dead) for p in parts)
+    nodes = 1 + sum(len(p.graph.nodes) for p in parts)
     u = table.unfolding
     if not u.has_priorities:
         report = explorers.said(folder, "--reduce", "partial-order", "--elements", file).report
         assert report["complete"], report
-        assert report["dead_count"] == dead, f"partial order: {report['dead_count']} dead, {dead} are"
+        assert report["dead_count"] == dead, (
+            f"partial order: {report['dead_count']} dead, {dead} are"
+        )
         assert report["nodes"] <= nodes
         outcome.reduced["partial-order"] += 1
     if table.symmetries is None or not table.symmetries.names():

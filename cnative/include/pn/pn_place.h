@@ -21,10 +21,13 @@
 
 #if defined(__GNUC__)
 #define PN_MAYBE_UNUSED __attribute__((unused))
-#define PN_INLINE __attribute__((always_inline, unused)) static inline
 #else
 #define PN_MAYBE_UNUSED
-#define PN_INLINE static inline
+#endif
+#if defined(__GNUC__) && defined(__OPTIMIZE__)
+#define PN_INLINE __attribute__((always_inline, unused)) static inline
+#else
+#define PN_INLINE PN_MAYBE_UNUSED static inline /* without optimization copies cost the compiler time and save none */
 #endif
 
 /* Copies what an array place holds from one marking into another. */

@@ -39,9 +39,7 @@ class StateSpace:
     dead: tuple[int, ...]
 
 
-def state_space(
-    game: Game, *, max_nodes: int = 10_000, max_arcs: int | None = None
-) -> StateSpace:
+def state_space(game: Game, *, max_nodes: int = 10_000, max_arcs: int | None = None) -> StateSpace:
     """All markings that can be reached from the game's current one, at most `max_nodes` of them.
 
     Args:
