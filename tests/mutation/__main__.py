@@ -10,9 +10,9 @@ import argparse
 import random
 import sys
 import tempfile
-import time
 from collections import Counter
 from collections.abc import Iterator
+from contextlib import ExitStack
 from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).parents[1]))
@@ -27,30 +27,35 @@ ROOT = Path(__file__).parents[2]
 GOAL = 0.95
 SCHEDULER = {
     "supervisor_play.c": ("keep_first", "sup_fire_one", "sup_play", "sup_is_final"),
-    "supervisor_cell.c": ("accept_message", "read_channels", "clear_consumed", "publish_token", "publish", "cycle",
-                          "run_real_time"),
+    "supervisor_cell.c": ("accept_message", "read_channels", "clear_consumed", "publish_token", "publish", "cycle"),
 }  # fmt: skip
 """The functions that decide what happens when; what reports, waits and stops has tests of its own."""
 
 
-def candidates(judge: Judge) -> dict[str, list[Mutant]]:
-    """All mutants of a cell, by what is mutated."""
+def of_cell(judge: Judge) -> dict[str, list[Mutant]]:
+    """All mutants of a cell's own programs, by what is mutated."""
     owners = judge.made.partition.transition_owner
     net = judge.made.partition.net
     own = {re_name(t.name) for t in net.transitions if owners[t.index] == 0}
 
     def is_own(function: str) -> bool:
         stem = function.removesuffix("_enumerate").removesuffix("_fire")
-        return function.startswith("ml_") or (
-            stem != function and any(n.endswith(stem) for n in own)
-        )
+        is_one = stem != function and any(n.endswith(stem) for n in own)
+        return function.startswith("ml_") or is_one
 
-    found = {"net.c": list(of_c(judge.files["net.c"], "net.c", is_own)), "scheduler": []}
+    scripts = sorted(name for name in judge.files if name.endswith(".tdl"))
+    return {
+        "net.c": list(of_c(judge.files["net.c"], "net.c", is_own)),
+        "scripts": [m for name in scripts for m in of_script(judge.files[name], name)],
+    }
+
+
+def of_scheduler() -> list[Mutant]:
+    """All mutants of the scheduler, which all cells have in common."""
+    found: list[Mutant] = []
     for name, functions in SCHEDULER.items():
         text = (cnative_folder() / "src" / name).read_text(encoding="utf-8")
-        found["scheduler"] += of_c(text, name, lambda f, known=functions: f in known)  # type: ignore[misc]
-    scripts = sorted(name for name in judge.files if name.endswith(".tdl"))
-    found["scripts"] = [m for name in scripts for m in of_script(judge.files[name], name)]
+        found += of_c(text, name, lambda f, known=functions: f in known)  # type: ignore[misc]
     return found
 
 
@@ -69,46 +74,69 @@ def cells(folder: Path) -> Iterator[tuple[str, Path]]:
 def main() -> int:
     """The command."""
     parser = argparse.ArgumentParser(prog="./dev mutation", description=__doc__)
-    parser.add_argument("--each", type=int, default=35, help="mutants of each part of each cell")
+    parser.add_argument("--each", type=int, default=40, help="mutants of each part of each cell")
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--cells", nargs="*", help="names; default: all")
     options = parser.parse_args()
-    total: Counter[tuple[str, str, str]] = Counter()
-    survivors: list[tuple[str, str]] = []
-    with tempfile.TemporaryDirectory(prefix="pn2code-") as name:
-        for cell, path in cells(Path(name)):
-            if options.cells and cell not in options.cells:
-                continue
-            with Judge.of(path) as judge:
-                for part, mutants in candidates(judge).items():
-                    random.Random(f"{options.seed} {cell} {part}").shuffle(mutants)
-                    done = 0
-                    begin = time.monotonic()
-                    for mutant in mutants:
-                        if done == options.each:
-                            break
-                        verdict = quietly(judge, mutant)
-                        total[cell, part, verdict.result] += 1
-                        done += verdict.result != NONE
-                        if verdict.result == SURVIVED:
-                            survivors.append((cell, mutant.what))
-                            print(f"{cell}: survived: {mutant.what}", flush=True)
-                    seconds = time.monotonic() - begin
-                    print(f"{cell}: {part}: {done} mutants, {seconds:.0f} s", file=sys.stderr)
-    return report(total, survivors)
+    tally = Tally()
+    with tempfile.TemporaryDirectory(prefix="pn2code-") as name, ExitStack() as stack:
+        judges = {
+            cell: stack.enter_context(Judge.of(path))
+            for cell, path in cells(Path(name))
+            if not options.cells or cell in options.cells
+        }
+        for cell, judge in judges.items():
+            for part, mutants in of_cell(judge).items():
+                tally.take(cell, part, mutants, [judge], options)
+        # A mutant of the scheduler is one of every cell: one that finds it out is enough.
+        tally.take("all", "scheduler", of_scheduler(), list(judges.values()), options)
+    return tally.report()
 
 
-def report(total: Counter[tuple[str, str, str]], survivors: list[tuple[str, str]]) -> int:
-    """The table; the exit code."""
-    print("\n| cell | what is mutated | mutants | killed |\n|---|---|---|---|")
-    for cell, part in sorted({(c, p) for c, p, _ in total}):
-        killed, alive = total[cell, part, "killed"], total[cell, part, SURVIVED]
-        print(f"| {cell} | {part} | {killed + alive} | {killed} |")
-    killed = sum(n for (_, _, r), n in total.items() if r == "killed")
-    mutants = killed + len(survivors)
-    share = killed / mutants if mutants else 0.0
-    print(f"\n{killed} of {mutants} mutants killed, {share:.1%} (at least {GOAL:.0%} are wanted)")
-    return 0 if share >= GOAL else 1
+class Tally:
+    """Counts, and those that survive."""
+
+    def __init__(self) -> None:
+        self.count: Counter[tuple[str, str, str]] = Counter()
+        self.survivors: list[str] = []
+
+    def take(
+        self,
+        cell: str,
+        part: str,
+        mutants: list[Mutant],
+        judges: list[Judge],
+        options: argparse.Namespace,
+    ) -> None:
+        """A sample of mutants, each before all judges until one finds it out."""
+        random.Random(f"{options.seed} {cell} {part}").shuffle(mutants)
+        done = 0
+        for mutant in mutants:
+            if done == options.each:
+                break
+            result = SURVIVED
+            for judge in judges:
+                result = quietly(judge, mutant).result
+                if result != SURVIVED:
+                    break
+            self.count[cell, part, result] += 1
+            done += result != NONE
+            if result == SURVIVED:
+                self.survivors.append(f"{cell}: {mutant.what}")
+                print(f"{cell}: survived: {mutant.what}", flush=True)
+        print(f"{cell}: {part}: {done} mutants", file=sys.stderr)
+
+    def report(self) -> int:
+        """The table; the exit code."""
+        print("\n| cell | what is mutated | mutants | killed |\n|---|---|---|---|")
+        for cell, part in sorted({(c, p) for c, p, _ in self.count}):
+            killed, alive = self.count[cell, part, "killed"], self.count[cell, part, SURVIVED]
+            print(f"| {cell} | {part} | {killed + alive} | {killed} |")
+        killed = sum(n for (_, _, r), n in self.count.items() if r == "killed")
+        mutants = killed + len(self.survivors)
+        share = killed / mutants if mutants else 0.0
+        print(f"\n{killed} of {mutants} killed, {share:.1%} (at least {GOAL:.0%} are wanted)")
+        return 0 if share >= GOAL else 1
 
 
 if __name__ == "__main__":

@@ -9,7 +9,6 @@ from __future__ import annotations
 import json
 import subprocess
 import tempfile
-import threading
 from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
@@ -29,8 +28,8 @@ from pn2code.semantics.marking import PlaceMarking, place_from_json
 from pn2code.tdl.check import check
 from pn2code.tdl.parse import parse
 
-SECONDS = 60.0
-"""A mutant that takes longer does not come to an end."""
+SECONDS = 10.0
+"""A mutant that takes longer for one answer does not come to rest."""
 FLAGS = ("-std=c11", "-O0", "-w", "-ffp-contract=off")
 SURVIVED = "survived"
 NONE = "no mutant"
@@ -130,20 +129,14 @@ class Judge:
         assert self.made.config is not None
         trace = self._room / "trace.jsonl"
         options = ["--input", str(self.made.config.folder), "--trace", str(trace)]
-        timer: threading.Timer | None = None
         try:
-            with Probe(program, options) as probe:
-                timer = threading.Timer(SECONDS, probe.kill)
-                timer.start()
+            with Probe(program, options, SECONDS) as probe:
                 if not self._initial:
                     self._initial = self._read(trace)
                 game = self._game()
                 report = supervisor.explore(self.made.partition, game, probe)
         except ProbeError as problem:
             return Verdict("killed", str(problem))
-        finally:
-            if timer is not None:
-                timer.cancel()
         if report.deviation is not None:
             return Verdict("killed", report.deviation.what)
         return Verdict(SURVIVED) if report.complete else Verdict("killed", report.why)

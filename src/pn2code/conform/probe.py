@@ -12,6 +12,7 @@ from __future__ import annotations
 
 import json
 import os
+import select
 import signal
 import subprocess
 import tempfile
@@ -30,6 +31,7 @@ HOST = Host(
     also=("supervisor",),
     instead=("port_posix.c",),
 )
+PATIENCE_S = 60.0
 SESSION = "00000001"
 """The name of the only session that a program under test ever has."""
 
@@ -65,13 +67,18 @@ class Probe:
     Args:
         program: compiled with `HOST`.
         options: for the program, such as its input folder.
+        patience: seconds to wait for an answer; a program that takes longer does not come to rest.
 
     Attributes:
         first: what the first cycle has left.
         depth: states that are saved.
     """
 
-    def __init__(self, program: Path, options: Sequence[str] = ()) -> None:
+    def __init__(
+        self, program: Path, options: Sequence[str] = (), patience: float = PATIENCE_S
+    ) -> None:
+        self._patience = patience
+        self._rest = b""
         self._said = tempfile.TemporaryFile("w+b")  # noqa: SIM115 - closed at the end of the conversation
         self._process = subprocess.Popen(
             [str(program), "--quiet", "--reply-timeout", "0", *options],
@@ -81,7 +88,11 @@ class Probe:
             start_new_session=True,
         )
         self.depth = 0
-        self.first = self._answer()
+        try:
+            self.first = self._answer()
+        except ProbeError:
+            self.close()
+            raise
 
     def __enter__(self) -> Self:
         return self
@@ -95,13 +106,12 @@ class Probe:
         self.close()
 
     def close(self) -> None:
-        """Ends the program and all its saved states: each ends when nothing more is to be read."""
+        """Ends the program and all its saved states."""
         assert self._process.stdin is not None
         assert self._process.stdout is not None
+        self.kill()
         with suppress(BrokenPipeError):
             self._process.stdin.close()
-        while self._process.stdout.readline():
-            pass
         self._process.stdout.close()
         self._process.wait()
         self._said.close()
@@ -141,15 +151,27 @@ class Probe:
             raise self._end() from None
 
     def _line(self) -> dict[str, Any]:
-        assert self._process.stdout is not None
-        text = self._process.stdout.readline()
         try:
-            data: dict[str, Any] = json.loads(text.decode("utf-8", "surrogateescape"))
+            data: dict[str, Any] = json.loads(self._read().decode("utf-8", "surrogateescape"))
         except ValueError:
             raise self._end() from None
         if "error" in data:
             raise ProbeError(data["error"])
         return data
+
+    def _read(self) -> bytes:
+        """The next line, or what there is of it at the end."""
+        assert self._process.stdout is not None
+        pipe = self._process.stdout.fileno()
+        while b"\n" not in self._rest:
+            if not select.select([pipe], [], [], self._patience)[0]:
+                self.kill()
+                raise ProbeError(f"it does not come to rest within {self._patience:g} s")
+            if not (more := os.read(pipe, 1 << 16)):
+                return self._rest
+            self._rest += more
+        line, _, self._rest = self._rest.partition(b"\n")
+        return line
 
     def _asked(self, asked: Sequence[tuple[str, str]]) -> None:
         """All at once, and then all answers: each exchange costs two changes of processes."""
