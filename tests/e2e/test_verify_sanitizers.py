@@ -8,6 +8,7 @@ import pytest
 
 from helpers.explored import SANITIZERS, THREADS, Explored, Explorers, agrees
 from helpers.netbuilder import flat
+from helpers.questions import ask
 from helpers.random_graphs import numbered
 from helpers.thorough import amount
 
@@ -26,6 +27,13 @@ BAGS = """
         in Lists : l
         out Lists : n :: l
 """
+
+CONDITIONS = ("List.all (fn n => n > 0) Numbers", "length Lists > 1 andalso length Numbers > 2", "hd Numbers > 0")
+QUESTIONS = [
+    *("pred 0", "pred 1", "not 1", "pred 2", "eg 1", "au 1 2", "ex 2"),
+    *("? invariant 0", "? invariant 1", "? initially 4", "? initially 5", "? within-firings f0 s1 1"),
+    *("? lasso", "automaton 2 0", "accepting 1", "arc 0 1 +3 -f0", "arc 1 1", "strong 0", "weak 0", "end"),
+]
 
 
 def sorted_bounds(found: Explored) -> list[dict[str, object]]:
@@ -54,5 +62,11 @@ def test_sanitized(tmp_path: Path, flags: tuple[str, ...]) -> None:
     for kind in ("hash", "bitstate"):
         explorers.explore(bags, "--approximate", kind, "--threads", 2)
     explorers.explore(bags, "--max-states", 100)
+    asked = ask(explorers, BAGS, CONDITIONS, "asked")
+    whole, answers = asked.say(QUESTIONS, "--threads", 2)
+    assert whole.report["complete"]
+    assert [a["answer"] for a in answers] == ["yes", "no", "no", "yes", "no", "unknown"]
+    early, answers = asked.say([*QUESTIONS[:4], "? invariant 1", "? invariant 3"], "--threads", 2)
+    assert early.report["why"] == "decided" and [a["steps"] for a in answers] == [2, None]
     for number in (1, 5)[: amount(1, 2)]:
         agrees(explorers, flat(numbered(number)), "--threads", 2, width=number % 3)

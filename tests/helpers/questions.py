@@ -17,6 +17,7 @@ from typing import Any
 from helpers import netbuilder
 from helpers.explored import LIBRARY, Explored, Explorers, wide
 from pn2code.diagnostics import Diagnostics, Origin, SourceText
+from pn2code.emission.output import OutputFile
 from pn2code.ml.core import Symbol
 from pn2code.ml.elaborate import Elaborator
 from pn2code.ml.types import BOOL
@@ -49,17 +50,25 @@ def ask(
     explorers: Explorers, text: str, conditions: Sequence[str], name: str = "asked", width: int = 1
 ) -> Asked:
     """Compile a net with conditions."""
-    flat, elaborator = _net(text)
-    predicates = [predicate(flat, elaborator, f"p{i}", c) for i, c in enumerate(conditions)]
-    d = Diagnostics()
-    files = generated(flat, {}, wide(Sizes.start(flat, {}), width), d, predicates)
-    assert files is not None, [e.message for e in d.errors]
+    flat, files = sources(text, conditions, width)
     folder = explorers.folder / name
     folder.mkdir(exist_ok=True)
     for file in files:
         (folder / file.path).write_text(file.text)
     explorers._run(folder, "-shared", "net.c", "-o", LIBRARY)
     return Asked(explorers, folder, flat)
+
+
+def sources(
+    text: str, conditions: Sequence[str], width: int = 1
+) -> tuple[FlatNet, tuple[OutputFile, ...]]:
+    """A net, and what is generated for it with conditions."""
+    flat, elaborator = _net(text)
+    predicates = [predicate(flat, elaborator, f"p{i}", c) for i, c in enumerate(conditions)]
+    d = Diagnostics()
+    files = generated(flat, {}, wide(Sizes.start(flat, {}), width), d, predicates)
+    assert files is not None, [e.message for e in d.errors]
+    return flat, files
 
 
 def _net(text: str) -> tuple[FlatNet, Elaborator]:
