@@ -5,13 +5,14 @@ from __future__ import annotations
 import json
 import re
 from collections.abc import Sequence
+from dataclasses import replace
 from datetime import datetime
 from pathlib import Path
 from typing import Annotated
 
 import typer
 
-from pn2code.cli import properties
+from pn2code.cli import controller, properties
 from pn2code.cli.interrupts import Interrupts
 from pn2code.cli.nets import OpenNet, open_net, playing
 from pn2code.cli.options import (
@@ -29,13 +30,15 @@ from pn2code.cli.options import (
 from pn2code.diagnostics import Diagnostics, Origin
 from pn2code.semantics.game import GameError
 from pn2code.simulate.script import TraceRefusedError
-from pn2code.verify import chance
+from pn2code.verify import chance, control_text
 from pn2code.verify.answers import Answer, verdict
 from pn2code.verify.codes import REPORT_UNWRITABLE, STATE_ERROR, TRACE_UNWRITABLE
+from pn2code.verify.control import Control
 from pn2code.verify.explore import Wishes, explore
 from pn2code.verify.limits import Approximation, Limits, Order, Reduction, cores
 from pn2code.verify.path import steps, text
 from pn2code.verify.pictures import GRAPH_KINDS, PLOT_KINDS, Pictures
+from pn2code.verify.programs import Sizes
 from pn2code.verify.progress import ProgressLine
 from pn2code.verify.properties_text import told
 from pn2code.verify.report import error_text, report, why_partial
@@ -174,6 +177,13 @@ def verify(
             help="Ask what is written in NET.properties.toml and in cell.toml.",
         ),
     ] = True,
+    check_controller: Annotated[
+        bool,
+        typer.Option(
+            "--controller/--no-controller",
+            help="Check the supervisor of a cell against its execution scheme (docs/execution.md).",
+        ),
+    ] = True,
     as_json: JsonOption = False,
     quiet: Annotated[
         bool, typer.Option("--quiet", "-q", help="No progress, and nothing but errors.")
@@ -186,7 +196,8 @@ def verify(
 
     Counts of nodes and arcs, bounds of places, dead and home markings, dead and live transitions, fairness: the report
     of CPN Tools, complete. Exit code 0: everything was seen; 3: a limit was hit, which the report says.
-    With properties: 0: all are true, 1: one is false, 3: one is not known and none is false.
+    With properties: 0: all are true, 1: one is false, 3: one is not known and none is false. With a cell.toml the
+    checks of its supervisor count in the same way.
     """
     _check_kind(draw_to, GRAPH_KINDS, "--draw")
     _check_kind(plot_to, PLOT_KINDS, "--plot")
@@ -220,8 +231,24 @@ def verify(
                 progress=progress.update,
                 interrupted=interrupts.is_wanted,
             )
+            control: Control | None = None
             with playing(form):
+                sizes = Sizes.start(opened.flat, opened.storage)
+                wishes = replace(wishes, sizes=sizes)
                 found = explore(opened.flat, opened.storage, limits, d, pictures.wishes(wishes))
+                if found is not None and check_controller and opened.config is not None:
+                    control = controller.look(
+                        opened,
+                        found,
+                        limits,
+                        sizes,
+                        asked.properties.predicates,
+                        folder=_folder(traces),
+                        stem=_stem(opened),
+                        progress=progress.update,
+                        interrupted=interrupts.is_wanted,
+                        d=d,
+                    )
         if found is None:
             stop(d, form)
         pictures.write(opened.flat, found, d)
@@ -233,16 +260,19 @@ def verify(
     if found.error and found.error.get("node") and most_traces and found.error_trace is None:
         _unwritable("the marking in which an exception is raised", traces, d)
     if report_to is not None:
-        _write_report(opened, found, answers, report_to, d)
+        _write_report(opened, found, answers, control, report_to, d)
     if not as_json and not quiet:
-        typer.echo(_text(opened, found, answers))
+        typer.echo(_text(opened, found, answers, control))
     print_diagnostics(d.sorted(), form)
     if as_json:
         said = row(opened.flat, found)
         if answers:
             said["properties"] = [a.row() for a in answers]
+        if control is not None:
+            said["controller"] = [c.row() for c in control.checks]
         typer.echo(json.dumps(said, indent=1))
-    code = _code(found, answers, d)
+    codes = (_code(found, answers, d), controller.code(control))
+    code = Exit.MODEL if Exit.MODEL in codes else max(codes)
     if code:
         raise typer.Exit(code)
 
@@ -318,15 +348,16 @@ def _write_report(
     opened: OpenNet,
     found: Exploration,
     answers: Sequence[Answer],
+    control: Control | None,
     path: Path,
     d: Diagnostics,
 ) -> None:
     now = datetime.now().astimezone()
     page = path.suffix.lower() in (".html", ".htm")
     body = (
-        webpage(opened.flat, found, opened.storage, now, answers)
+        webpage(opened.flat, found, opened.storage, now, answers, control)
         if page
-        else report(opened.flat, found, now, answers)
+        else report(opened.flat, found, now, answers, control)
     )
     try:
         with whole_file(path) as beside:
@@ -336,8 +367,12 @@ def _write_report(
         d.error(REPORT_UNWRITABLE, f"cannot write `{path}`: {reason}", Origin(str(path)))
 
 
-def _text(opened: OpenNet, found: Exploration, answers: Sequence[Answer]) -> str:
-    parts = [report(opened.flat, found, None, answers).rstrip(), _figures(found)]
+def _text(
+    opened: OpenNet, found: Exploration, answers: Sequence[Answer], control: Control | None
+) -> str:
+    parts = [report(opened.flat, found, None, answers, control).rstrip(), _figures(found)]
+    if control is not None:
+        parts += control_text.told(opened.flat, opened.storage, control, most=SHOWN_STEPS)
     parts += [
         told(opened.flat, opened.storage, a, SHOWN_STEPS) for a in answers if a.evidence is not None
     ]

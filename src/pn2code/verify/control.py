@@ -275,14 +275,14 @@ class _Keeper:
         self._plan = plan
 
     def evidence(self, row: Mapping[str, Any], name: str) -> Evidence | None:
-        if row.get("trace") is None:
+        if row.get("trace") is None or row["answer"] != "no":
             return None
         path = Path(row["trace"])
         lines = path.read_text(encoding="utf-8", errors="surrogateescape").splitlines()
         named = [step["transition"] for line in lines if "transition" in (step := json.loads(line))]
         kept = None
         if self._plan.folder is not None:
-            kept = self._plan.folder / f"{self._plan.stem}.{name}.trace.jsonl"
+            kept = self._plan.folder / f"{self._plan.stem}.controller-{name}.trace.jsonl"
             try:
                 kept.write_text("".join(f"{line}\n" for line in lines), encoding="utf-8")
             except OSError:
@@ -343,12 +343,12 @@ def _confluent(
     says = f"{what}, {at} step{'s' * (at != 1)} after the start"
     if plan.order_decides:
         says += '; the documented order decides, as `order = "documented"` in cell.toml says'
+        return Check(CONFLUENT, "no", says, at, is_accepted=True, transitions=pair)
     return Check(
         CONFLUENT,
         "no",
         says,
         at,
-        is_accepted=plan.order_decides,
         evidence=runs,
         transitions=pair,
     )

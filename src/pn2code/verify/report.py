@@ -14,8 +14,9 @@ from datetime import datetime
 import pn2code
 from pn2code.net.engine_names import EngineNames
 from pn2code.net.flat import FlatNet, FlatPlace
-from pn2code.verify import properties_text
+from pn2code.verify import control_text, properties_text
 from pn2code.verify.answers import Answer
+from pn2code.verify.control import Control
 from pn2code.verify.result import Exploration, Graph, multiset_text
 
 _RULE = "-" * 72
@@ -38,6 +39,7 @@ def report(
     found: Exploration,
     written: datetime | None,
     answers: Sequence[Answer] = (),
+    control: Control | None = None,
 ) -> str:
     """The whole text.
 
@@ -46,6 +48,7 @@ def report(
         found: its state space.
         written: the date it carries; None: none, so that equal spaces give equal reports.
         answers: of properties that were asked.
+        control: the checks of a cell's supervisor.
     """
     parts = [_head(net, found, written), _statistics(found)]
     if found.bounds is not None:
@@ -57,6 +60,8 @@ def report(
         parts.append(_fairness(net, found.graph))
     if answers:
         parts.append(properties_text.section(answers))
+    if control is not None:
+        parts.append(control_text.section(control))
     return "\n\n\n".join(parts) + "\n"
 
 

@@ -15,8 +15,9 @@ from pn2code.net.flat import FlatNet
 from pn2code.resources import templates_folder
 from pn2code.semantics.game import GameError
 from pn2code.simulate.script import TraceRefusedError
-from pn2code.verify import properties_text
+from pn2code.verify import control_text, properties_text
 from pn2code.verify.answers import Answer
+from pn2code.verify.control import TITLES, Control
 from pn2code.verify.path import Step, steps
 from pn2code.verify.report import bounded_places, error_text, why_partial
 from pn2code.verify.result import Exploration, Trace, multiset_text
@@ -31,6 +32,7 @@ def webpage(
     storage: Mapping[str, str],
     written: datetime,
     answers: Sequence[Answer] = (),
+    control: Control | None = None,
 ) -> str:
     """The whole page.
 
@@ -40,6 +42,7 @@ def webpage(
         storage: as for `Game`, which repeats the traces.
         written: the date it carries.
         answers: of properties that were asked.
+        control: the checks of a cell's supervisor.
     """
     # Names and inscriptions are strangers' texts: all of them are escaped.
     env = Environment(
@@ -64,6 +67,8 @@ def webpage(
         transitions=_transitions(net, found),
         traces=_traces(net, found, storage),
         properties=[_property(net, storage, a) for a in answers],
+        controller=list(control_text.rows(control)) if control else [],
+        controller_runs=list(_controller_runs(net, storage, control)) if control else [],
         timed=net.timed,
     )
 
@@ -88,6 +93,19 @@ def _property(net: FlatNet, storage: Mapping[str, str], a: Answer) -> dict[str, 
             "loop": loop + 1 if is_lasso and loop is not None else None,
         }
     return found
+
+
+def _controller_runs(
+    net: FlatNet, storage: Mapping[str, str], control: Control
+) -> Iterator[dict[str, Any]]:
+    for check, run, heading in control_text.runs(control):
+        assert run.file is not None
+        shown = {
+            **_trace(net, storage, Trace(0, run.file, run.steps)),
+            "heading": heading,
+            "loop": None if run.loop is None else run.loop + 1,
+        }
+        yield {"name": TITLES[check.name], "run": shown}
 
 
 def _verdicts(net: FlatNet, found: Exploration) -> list[dict[str, str]]:

@@ -1,0 +1,86 @@
+"""The checks of a cell's supervisor in `pn2code verify`."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import replace
+from pathlib import Path
+
+from pn2code.cell.divide import divide
+from pn2code.cli.nets import OpenNet
+from pn2code.cli.options import Exit
+from pn2code.diagnostics import Diagnostics, Origin
+from pn2code.net.predicate import Predicate
+from pn2code.verify import control
+from pn2code.verify.codes import TRACE_UNWRITABLE
+from pn2code.verify.control import Control, Plan
+from pn2code.verify.explore import Progress
+from pn2code.verify.limits import Limits
+from pn2code.verify.programs import Sizes
+from pn2code.verify.result import Exploration
+
+
+def look(
+    opened: OpenNet,
+    found: Exploration,
+    limits: Limits,
+    sizes: Sizes,
+    predicates: tuple[Predicate, ...],
+    *,
+    folder: Path,
+    stem: str,
+    progress: Progress,
+    interrupted: Callable[[], bool],
+    d: Diagnostics,
+) -> Control | None:
+    """All checks; None for a net that is no cell, or after an error.
+
+    Args:
+        opened: the net.
+        found: its state space. Where that is too large, the one that the checks need is as well.
+        limits: of the exploration.
+        sizes, predicates: with which it was compiled.
+        folder, stem: where traces go, and what their names begin with.
+        progress, interrupted: as of `Wishes`.
+        d: gets the errors.
+    """
+    config = opened.config
+    if config is None:
+        return None
+    partition = divide(opened.flat, config, d)
+    if partition is None:
+        return None
+    is_hopeless = not found.complete and found.why != "decided"
+    if is_hopeless and (found.why in ("interrupted", "error") or not opened.flat.timed):
+        return control.not_looked(found.why, partition)
+    plan = Plan(
+        storage=opened.storage,
+        order_decides=config.supervisor.order_decides,
+        folder=folder,
+        stem=stem,
+        predicates=predicates,
+        sizes=sizes,
+        progress=progress,
+        interrupted=interrupted,
+    )
+    looked = control.examine(partition, plan, replace(limits, traces=0), d)
+    if looked is not None:
+        _check_written(looked, folder, d)
+    return looked
+
+
+def _check_written(looked: Control, folder: Path, d: Diagnostics) -> None:
+    if any(run.file is None for check in looked.checks for run in check.evidence):
+        d.warning(
+            TRACE_UNWRITABLE,
+            f"a run that shows what is wrong with the supervisor cannot be written into `{folder}`",
+            Origin(str(folder)),
+            hint="give another folder with `--traces DIR`",
+        )
+
+
+def code(looked: Control | None) -> int:
+    """What the checks add to the exit code."""
+    if looked is None:
+        return Exit.OK
+    return Exit.MODEL if looked.failed else Exit.INCONCLUSIVE if looked.open else Exit.OK
