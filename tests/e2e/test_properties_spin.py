@@ -15,7 +15,7 @@ from pathlib import Path
 import pytest
 
 from helpers.asked import Net
-from helpers.property_nets import DINNER, ENDING, LIBRARY_NET, MUTEX
+from helpers.property_nets import DINNER, ENDING, MUTEX
 from pn2code.convert import promela
 from pn2code.diagnostics import Diagnostics
 from pn2code.properties import meaning as m
@@ -60,16 +60,6 @@ FORMULAS: dict[str, tuple[str, list[str]]] = {
             "ltl G (fires(Down) -> X !dead)",
             "ltl G (fires(Stop) -> X tokens(Lost) = 1)",
             "ltl tokens(Count) = 1 R tokens(Done) = 0",
-        ],
-    ),
-    "reading": (
-        LIBRARY_NET,
-        [
-            "ltl G F tokens(Writes) = 1",
-            "ltl G (fires(Write) -> X (tokens(Writes) = 1 U tokens(Desk) = 2))",
-            "ltl G (fires(Come) -> X (tokens(Writes) = 0 U tokens(Reads) = 0))",
-            "ltl G F fires(Come) || G F fires(Write)",
-            "ltl G F enabled(Write) -> F tokens(Writes) = 1",
         ],
     ),
 }
