@@ -20,6 +20,7 @@
 #define EX_MOST_THREADS 64U
 #define EX_MOST_OWNERS 256U
 #define EX_NO_SLOT UINT64_MAX
+#define EX_CACHE_LINE 128 /* two: they are fetched in pairs */
 #define EX_SPARE_KEYS 1024U /* a store grows when less room than for so many is left below its limit */
 
 __extension__ typedef unsigned __int128 ex_wide_t;
@@ -363,7 +364,8 @@ typedef struct ex_store {
     uint32_t width[EX_KEY_WORDS]; /* bits of each word of a key that are kept */
     uint64_t low_mask;       /* the same as masks of ex_key_t */
     uint64_t high_mask;
-    _Atomic uint64_t used;   /* keys; exact while nobody inserts */
+    /* Written by all threads, in a cache line of its own: the rest is read with each insertion. */
+    _Alignas(EX_CACHE_LINE) _Atomic uint64_t used; /* keys; exact while nobody inserts */
 } ex_store_t;
 
 typedef enum ex_insertion {
@@ -452,7 +454,7 @@ static inline void ex_bits_prefetch(const ex_bits_t *bits, uint64_t hash)
 
 /* What one thread has. */
 typedef struct ex_worker {
-    struct ex_run *run;
+    _Alignas(EX_CACHE_LINE) struct ex_run *run; /* no line is shared with another one */
     uint32_t index;
     pn_ctx_t cx;
     void *marking;           /* of the state last loaded */
@@ -488,6 +490,12 @@ typedef struct ex_run {
     uint32_t at_work;        /* threads that may use the tables */
     uint32_t paused;         /* of them, in ex_pause */
     uint64_t pauses;         /* done */
+    bool is_growing;         /* one thread makes the tables grow */
+    void (*shared)(void *user, uint32_t part); /* what those that wait can help with; NULL: nothing */
+    void *shared_user;
+    uint32_t shared_parts;
+    uint32_t shared_taken;   /* parts that have been begun */
+    uint32_t shared_done;
     pthread_mutex_t error_lock;
     ex_error_t error;        /* where why is EX_ERROR or EX_CAPACITY, or EX_MEMORY with a kind that is not NULL */
     _Atomic uint64_t memory_used;
@@ -521,6 +529,10 @@ static inline bool ex_is_pausing(const ex_run_t *run)
 {
     return atomic_load_explicit(&run->is_pausing, memory_order_relaxed);
 }
+/* Does all parts of a work, which do not depend on each other: in a pause with the help of the threads that wait. */
+void ex_together(ex_run_t *run, uint32_t parts, void (*one)(void *user, uint32_t part), void *user);
+/* With the gate locked: waits until something changes that others broadcast, or helps while tables grow. */
+void ex_wait(ex_run_t *run);
 /* With the gate locked, when a thread has become idle: the pause may begin. */
 void ex_check_pause(ex_run_t *run);
 /* Notes why the run has to end, unless something more important is known, and makes all threads stop. */

@@ -11,7 +11,8 @@
 
 enum {
     FIRST_ENTRIES = 1 << 10,
-    BLOCK = 1 << 20 /* bytes that are counted at a time */
+    BLOCK = 1 << 20, /* bytes that are counted at a time */
+    SHARED_ENTRIES = 1 << 17 /* of an index that threads move together */
 };
 
 #define MOST_NUMBERS ((uint64_t)UINT32_MAX - 2U)
@@ -70,14 +71,16 @@ static bool index_make(ex_index_t *index, ex_run_t *run)
     return index->entry != NULL;
 }
 
-/* Enters a number while nobody else uses the index. */
+/* Enters a number that is not there, while others do the same and nobody looks for one. */
 static void index_put(ex_index_t *index, uint64_t hash, uint64_t number)
 {
     uint64_t at = home(index, hash);
-    while (atomic_load_explicit(&index->entry[at], memory_order_relaxed) != 0U) {
+    uint64_t expected = 0U;
+    while (!atomic_compare_exchange_strong_explicit(&index->entry[at], &expected, entry_of(hash, number), memory_order_relaxed,
+                                                    memory_order_relaxed)) {
         at = ((at + 1U) < index->entries) ? (at + 1U) : 0U;
+        expected = 0U;
     }
-    atomic_store_explicit(&index->entry[at], entry_of(hash, number), memory_order_relaxed);
 }
 
 /* A larger one, without its entries yet; the old ones, to be entered and freed, are in *old. False: there is no memory. */
@@ -111,6 +114,34 @@ static bool old_number(const ex_index_t *old, uint64_t at, uint64_t *number)
     const uint64_t entry = atomic_load_explicit(&old->entry[at], memory_order_relaxed);
     *number = (uint64_t)(uint32_t)entry - 1U;
     return entry != 0U;
+}
+
+/* All numbers of an old index are entered into the new one, in parts. */
+typedef struct move {
+    ex_index_t *index;
+    const ex_index_t *old;
+    const ex_tuples_t *tuples; /* or */
+    const ex_bytes_t *bytes;
+    uint32_t parts;
+} move_t;
+
+static uint64_t part_first(const move_t *move, uint32_t part)
+{
+    return (move->old->entries / move->parts) * part;
+}
+
+static uint64_t part_end(const move_t *move, uint32_t part)
+{
+    return ((part + 1U) == move->parts) ? move->old->entries : part_first(move, part + 1U);
+}
+
+static void enter_all(move_t *move, void (*part)(void *user, uint32_t part))
+{
+    ex_run_t *run = move->index->run;
+    const uint32_t threads = run->options.threads;
+    move->parts = ((threads > 1U) && (move->old->entries >= (uint64_t)SHARED_ENTRIES)) ? (4U * threads) : 1U;
+    ex_together(run, move->parts, part, move);
+    ex_free(run, move->old->entry, move->old->entries * sizeof *move->old->entry);
 }
 
 static bool is_crowded(const ex_index_t *index)
@@ -201,6 +232,19 @@ uint32_t ex_tuples_number(ex_tuples_t *tuples, const uint64_t lane[EX_TUPLE_LANE
     }
 }
 
+static void enter_tuples(void *user, uint32_t part)
+{
+    const move_t *move = user;
+    const ex_tuples_t *tuples = move->tuples;
+    const uint64_t end = part_end(move, part);
+    for (uint64_t at = part_first(move, part); at < end; at++) {
+        uint64_t number;
+        if (old_number(move->old, at, &number)) {
+            index_put(move->index, tuple_hash(&tuples->lane[number * tuples->lanes], tuples->lanes), number);
+        }
+    }
+}
+
 bool ex_tuples_grow(ex_tuples_t *tuples)
 {
     ex_index_t *index = &tuples->index;
@@ -211,13 +255,8 @@ bool ex_tuples_grow(ex_tuples_t *tuples)
     if (!index_enlarge(index, tuples->lanes * sizeof *tuples->lane, &old)) {
         return false;
     }
-    for (uint64_t at = 0U; at < old.entries; at++) {
-        uint64_t number;
-        if (old_number(&old, at, &number)) {
-            index_put(index, tuple_hash(&tuples->lane[number * tuples->lanes], tuples->lanes), number);
-        }
-    }
-    ex_free(index->run, old.entry, old.entries * sizeof *old.entry);
+    move_t move = { .index = index, .old = &old, .tuples = tuples };
+    enter_all(&move, enter_tuples);
     return true;
 }
 
@@ -314,6 +353,20 @@ uint32_t ex_bytes_number(ex_bytes_t *bytes, uint32_t place, const unsigned char 
     }
 }
 
+static void enter_bytes(void *user, uint32_t part)
+{
+    const move_t *move = user;
+    const ex_bytes_t *bytes = move->bytes;
+    const uint64_t end = part_end(move, part);
+    for (uint64_t at = part_first(move, part); at < end; at++) {
+        uint64_t number;
+        if (old_number(move->old, at, &number)) {
+            const ex_bytes_entry_t *of = &bytes->of[number];
+            index_put(move->index, bytes_hash(of->place, &bytes->byte[of->offset], of->length), number);
+        }
+    }
+}
+
 bool ex_bytes_grow(ex_bytes_t *bytes)
 {
     ex_index_t *index = &bytes->index;
@@ -326,14 +379,8 @@ bool ex_bytes_grow(ex_bytes_t *bytes)
     if (!index_enlarge(index, sizeof *bytes->of, &old)) {
         return false;
     }
-    for (uint64_t at = 0U; at < old.entries; at++) {
-        uint64_t number;
-        if (old_number(&old, at, &number)) {
-            const ex_bytes_entry_t *of = &bytes->of[number];
-            index_put(index, bytes_hash(of->place, &bytes->byte[of->offset], of->length), number);
-        }
-    }
-    ex_free(index->run, old.entry, old.entries * sizeof *old.entry);
+    move_t move = { .index = index, .old = &old, .bytes = bytes };
+    enter_all(&move, enter_bytes);
     return true;
 }
 

@@ -56,11 +56,63 @@ void ex_fail(ex_worker_t *worker, int64_t transition)
 
 /* --- pauses --------------------------------------------------------------------------------------------------------- */
 
-/* Whatever is nearly full grows; the others wait. */
+/* With the gate locked: one part of what is done together; false: all have been begun. */
+static bool do_part(ex_run_t *run)
+{
+    if ((run->shared == NULL) || (run->shared_taken == run->shared_parts)) {
+        return false;
+    }
+    void (*const one)(void *user, uint32_t part) = run->shared;
+    void *const user = run->shared_user;
+    const uint32_t part = run->shared_taken;
+    run->shared_taken++;
+    (void)pthread_mutex_unlock(&run->gate);
+    one(user, part);
+    (void)pthread_mutex_lock(&run->gate);
+    run->shared_done++;
+    if (run->shared_done == run->shared_parts) {
+        (void)pthread_cond_broadcast(&run->gate_changed);
+    }
+    return true;
+}
+
+void ex_together(ex_run_t *run, uint32_t parts, void (*one)(void *user, uint32_t part), void *user)
+{
+    if (!run->is_growing || (parts == 1U)) { /* nobody waits; the gate may be open */
+        for (uint32_t i = 0U; i < parts; i++) {
+            one(user, i);
+        }
+        return;
+    }
+    run->shared = one;
+    run->shared_user = user;
+    run->shared_parts = parts;
+    run->shared_taken = 0U;
+    run->shared_done = 0U;
+    (void)pthread_cond_broadcast(&run->gate_changed);
+    while (do_part(run)) {
+    }
+    while (run->shared_done < parts) {
+        (void)pthread_cond_wait(&run->gate_changed, &run->gate);
+    }
+    run->shared = NULL;
+}
+
+void ex_wait(ex_run_t *run)
+{
+    do {
+        if (!do_part(run)) {
+            (void)pthread_cond_wait(&run->gate_changed, &run->gate);
+        }
+    } while (run->is_growing);
+}
+
+/* Whatever is nearly full grows; the others wait, or help. */
 static void grow_all(ex_run_t *run)
 {
     ex_codec_t *codec = run->codec;
     uint32_t width[EX_KEY_WORDS];
+    run->is_growing = true;
     bool is_fine = ex_bytes_grow(&codec->bytes);
     for (uint32_t i = 0U; i < EX_TABLES; i++) {
         is_fine = is_fine && ((codec->tuple_words[i] == 0U) || ex_tuples_grow(&codec->tuples[i]));
@@ -74,6 +126,7 @@ static void grow_all(ex_run_t *run)
     if (!is_fine) {
         ex_stop(run, EX_MEMORY);
     }
+    run->is_growing = false;
     run->paused = 0U;
     run->pauses++;
     atomic_store(&run->is_pausing, false);
@@ -82,7 +135,7 @@ static void grow_all(ex_run_t *run)
 
 void ex_check_pause(ex_run_t *run)
 {
-    if (ex_is_pausing(run) && (run->paused > 0U) && (run->paused == run->at_work)) {
+    if (ex_is_pausing(run) && !run->is_growing && (run->paused > 0U) && (run->paused == run->at_work)) {
         grow_all(run);
     }
 }
@@ -96,7 +149,7 @@ bool ex_pause(ex_worker_t *worker)
     run->paused++;
     ex_check_pause(run);
     while (pauses == run->pauses) {
-        (void)pthread_cond_wait(&run->gate_changed, &run->gate);
+        ex_wait(run);
     }
     (void)pthread_mutex_unlock(&run->gate);
     return !ex_is_stopping(run);

@@ -292,7 +292,7 @@ static ex_chunk_t *take_chunk(ex_worker_t *worker, ex_chunk_t *used)
             run->at_work--;
             (void)atomic_fetch_add_explicit(&search->hungry, 1U, memory_order_relaxed);
             ex_check_pause(run);
-            (void)pthread_cond_wait(&run->gate_changed, &run->gate);
+            ex_wait(run);
             (void)atomic_fetch_sub_explicit(&search->hungry, 1U, memory_order_relaxed);
             run->at_work++;
             continue;

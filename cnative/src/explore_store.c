@@ -23,8 +23,11 @@ enum {
     FIRST_TAG = 2,
     LEAST_LENGTH = 4,
     MOST_SLOTS = 12,
-    STEP = 1 << 21 /* bytes that are given back at a time */
+    STEP = 1 << 21, /* bytes that are given back at a time */
+    SHARED_SIZE = 1 << 20 /* bytes of a table that threads move together */
 };
+
+#define PARTS 4U /* of such a table, for each thread */
 
 #define SLACK (2U * (uint64_t)STEP) /* bytes of both tables at the same time while one becomes the other */
 
@@ -357,15 +360,47 @@ static bool move_bucket(const ex_store_t *old, const unsigned char *bucket, ex_s
     return true;
 }
 
-/* The pass through both tables. What has been read is given back while the new table fills, so that not much more than one of them
- * takes room. */
-static bool move_all(const ex_store_t *old, ex_store_t *new)
+/* The same while others do so, too. */
+static bool share_bucket(const ex_store_t *old, const unsigned char *bucket, ex_store_t *new)
 {
-    uint64_t done = 0U;
-    for (uint64_t b = 0U; b < old->buckets; b++) {
-        const unsigned char *bucket = &old->bucket[b * (uint64_t)LINE];
-        if (!(old->is_word ? move_line((const uint64_t *)(const void *)bucket, new) : move_bucket(old, bucket, new))) {
+    for (uint32_t i = 0U; (i < old->slots) && (bucket[i] != (unsigned char)FREE); i++) {
+        ex_key_t key;
+        read_key(old, &bucket[old->slots + (i * old->length)], &key);
+        if (ex_store_insert(new, &key, ex_hash(&key), NULL) != EX_NEW) {
             return false;
+        }
+    }
+    return true;
+}
+
+/* The pass through both tables, in parts that threads take. What has been read is given back while the new table fills, so that not much
+ * more than one of them takes room. */
+typedef struct move {
+    const ex_store_t *old;
+    ex_store_t *new;
+    uint32_t parts;
+    _Atomic bool has_failed;
+} move_t;
+
+static void move_part(void *user, uint32_t part)
+{
+    move_t *const move = user;
+    const ex_store_t *old = move->old;
+    const uint64_t each = (old->buckets / move->parts) + 1U;
+    const uint64_t first = (each * part < old->buckets) ? (each * part) : old->buckets;
+    const uint64_t end = ((old->buckets - first) < each) ? old->buckets : (first + each);
+    uint64_t done = first * (uint64_t)LINE;
+    for (uint64_t b = first; b < end; b++) {
+        const unsigned char *bucket = &old->bucket[b * (uint64_t)LINE];
+        bool is_fine;
+        if (old->is_word) {
+            is_fine = move_line((const uint64_t *)(const void *)bucket, move->new);
+        } else {
+            is_fine = (move->parts > 1U) ? share_bucket(old, bucket, move->new) : move_bucket(old, bucket, move->new);
+        }
+        if (!is_fine) {
+            atomic_store(&move->has_failed, true);
+            return;
         }
         const uint64_t at = b * (uint64_t)LINE;
         if ((at - done) >= (uint64_t)STEP) {
@@ -373,7 +408,15 @@ static bool move_all(const ex_store_t *old, ex_store_t *new)
             done = at & ~((uint64_t)STEP - 1U);
         }
     }
-    return true;
+}
+
+static bool move_all(const ex_store_t *old, ex_store_t *new)
+{
+    const bool is_shared = (old->run->options.threads > 1U) && (ex_store_bytes(old) >= (uint64_t)SHARED_SIZE);
+    move_t move = { .old = old, .new = new, .parts = is_shared ? (PARTS * old->run->options.threads) : 1U };
+    atomic_init(&move.has_failed, false);
+    ex_together(old->run, move.parts, move_part, &move);
+    return !atomic_load(&move.has_failed);
 }
 
 /* Counts what the new table takes more than the old one, for which there must be room; false: there is none. */
