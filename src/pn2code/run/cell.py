@@ -238,7 +238,13 @@ def _start(
     trace_path = options.out / "supervisor.trace.jsonl"
     supervisor = stack.enter_context(
         SupervisorProcess(
-            prepared.program, shared, inputs, trace_path, lockstep=not options.realtime
+            prepared.program,
+            shared,
+            inputs,
+            trace_path,
+            lockstep=not options.realtime,
+            # Where the arms are faster than the wall clock, so is the time of the net.
+            time_scale=options.speed if options.realtime else None,
         )
     )
     cell = prepared.robot_cell

@@ -26,7 +26,7 @@ class RealtimeEngine(Engine):
     """Runs a cell in real time. `supervisor` was started without lock-step.
 
     Args:
-        speed: seconds of the arms per second of the wall clock; the supervisor knows nothing of it.
+        speed: seconds of the arms, and of model time, per second of the wall clock.
     """
 
     speed: float = 1.0
