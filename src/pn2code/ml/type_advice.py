@@ -78,7 +78,12 @@ def wrong_operand(what: str, found: Ty, text: str) -> str:
             return "integers are divided with `div`; convert with `real` for a real result"
         case "++" | "--" | "+++" | "@+" | "@++" | "^^" if kind == "string":
             return "strings are joined with `^`"
-        case "++" | "--" | "+++" | "@+" | "@++" if kind != "list":
+        case "@+" | "@++" if kind != "list":
+            return (
+                f"`{name}` binds as tightly as `*`, so a longer delay needs parentheses: `v {name} (a * b)`; "
+                "or else one token `v` as a multi-set is written 1`v"
+            )
+        case "++" | "--" | "+++" if kind != "list":
             return "one token `v` as a multi-set is written 1`v"
         case "@" if kind == "list":
             return "`@` adds a time stamp to a token; lists are joined with `^^`"
