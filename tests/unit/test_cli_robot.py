@@ -94,3 +94,25 @@ def test_script_of_another_cell(root: Path, tmp_path: Path, script: Path) -> Non
     )
     assert f"--> {script}:2:" in said
     assert "= help: generate the script from this cell again" in said
+
+
+def test_a_script_that_asks_sensors_needs_the_cell(tmp_path: Path, script: Path) -> None:
+    script.write_text(SCRIPT.replace("write", "sense gripper into c\n  write"))
+    said = refused(tmp_path, 2, script)
+    assert "`robot1.tdl` asks `gripper`: what sensors say is known from the cell" in said
+
+
+def test_a_device_of_a_cell(root: Path, tmp_path: Path) -> None:
+    script = tmp_path / "belt.tdl"
+    script.write_text(
+        "program belt\n"
+        'input next "next.robcad" : signal\noutput inspected "inspected.robcad" : string\n'
+        "var v : string\n"
+        "begin\n  wait until filled(next)\n  tool advance for 3 s\n  clear next\n"
+        "  sense verdict into v\n  write inspected v\nend program\n"
+    )
+    sorting = root / "examples" / "sorting"
+    said = refused(tmp_path, 3, script, "--cell", sorting)
+    assert said.startswith("pn2code: belt stopped: no supervisor has announced itself")
+    said = refused(tmp_path, 2, script, "--cell", sorting, "--name", "conveyor")
+    assert "choose one of `robot`, `belt`, `operator` with --name" in said

@@ -20,6 +20,7 @@ from pn2code.net import front
 from pn2code.robot.commands import Command
 from pn2code.run.robot import Arm, InstantArm, RobotPlayer, script_specs
 from pn2code.run.sensors import Sensors
+from pn2code.tdl import flow
 from pn2code.tdl import tree as t
 from pn2code.tdl.check import CheckedProgram, check
 from pn2code.tdl.parse import parse
@@ -94,6 +95,11 @@ def robot(
 
         arm = MovingArm(executor, speed)
         _check_files(program, specs, name, d)
+    elif asked := _sensors_of(program):
+        names = ", ".join(f"`{x}`" for x in asked)
+        _usage(
+            f"`{script.name}` asks {names}: what sensors say is known from the cell, give --cell"
+        )
     if d.has_errors:
         stop(d, form)
     print_diagnostics(d.sorted(), form)
@@ -121,6 +127,17 @@ def robot(
         typer.echo(f"pn2code: {name} stopped: {ended.reason}", err=True)
         raise typer.Exit(int(ended.code))
     typer.echo(f"{name}: finished")
+
+
+def _sensors_of(program: CheckedProgram) -> list[str]:
+    """The sensors that a script asks, each once."""
+    found = {
+        i.statement.sensor: None
+        for body in program.bodies.values()
+        for i in body.instructions
+        if isinstance(i, flow.Do) and isinstance(i.statement, t.Sense)
+    }
+    return list(found)
 
 
 def _in_cell(
