@@ -1,5 +1,5 @@
 # What `make` users expect; ./dev does the work and says what else there is.
-.PHONY: thorough help test lint fuzz bench ml-suite conformance mutation
+.PHONY: thorough database-15 help test lint fuzz bench ml-suite conformance mutation
 
 help:
 	@./dev help
@@ -10,6 +10,10 @@ test lint bench ml-suite conformance mutation:
 # The tests with all of their long sweeps.
 thorough:
 	PN2CODE_THOROUGH=1 ./dev test
+
+# The state space of the distributed database of 15 managers: minutes, and 1 to 2 GiB.
+database-15:
+	./dev bench --database-15
 
 # Ten minutes of changed nets and random CPN ML, then some random nets compiled and compared with the token game.
 fuzz:

@@ -126,7 +126,12 @@ def main() -> int:
     parser.add_argument("--firings", action="store_true", help="only firings per second")
     parser.add_argument("--repeat", type=int, default=9, help="of short measures (default 9)")
     parser.add_argument("--states", action="store_true", help="only state spaces, beside SPIN")
+    parser.add_argument(
+        "--database-15", action="store_true", help="only that: 71,744,536 states, minutes"
+    )
     options = parser.parse_args()
+    if options.database_15:
+        return states.measure_large(15, os.cpu_count() or 1)
     if options.states:
         return states.measure(min(options.repeat, 3), 1)
     cores = os.cpu_count() or 1

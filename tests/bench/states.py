@@ -3,8 +3,12 @@
     python -m tests.bench.states [--repeat 3] [--threads 1]
 
 Prints a table. Each model is explored by `pn2code verify` (from the coloured net) and by the peers that can have it:
-SPIN on the same net as Promela (`spin -a`, `gcc -O2 -DSAFETY -DNOREDUCE`, without partial order), SNAKES on a small
-size. Compilation counts for neither. The best of the repetitions of each counts: all else is other programs.
+SPIN on the same net as Promela (`spin -a`, `gcc -O2 -DSAFETY -DNOREDUCE`, without partial order), SNAKES and pm4py on
+small sizes (state_peers.py). Compilation counts for neither. The best of the repetitions of each counts: all else is
+other programs.
+
+`./dev bench --database-15` explores the distributed database of 15 managers once, completely: minutes, on all
+processors, within 20 GiB.
 """
 
 from __future__ import annotations
@@ -13,6 +17,7 @@ import argparse
 import json
 import os
 import re
+import resource
 import shutil
 import subprocess
 import sys
@@ -22,6 +27,8 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
+
+from tests.bench import state_peers
 
 ROOT = Path(__file__).resolve().parents[2]
 SHARED = Path(os.environ.get("PN2CODE_SHARED", ROOT.parent / "shared"))
@@ -66,17 +73,24 @@ MODELS = (
     Model("database 10", DATABASE, 196_831, 1_181_000, ("n=10",), "bench/db10.promela", 3.5),
     Model("database 12", DATABASE, 2_125_765, 15_588_960, ("n=12",)),
 )
+LARGE_MIB = 20 << 10
 
 
-def explore(model: Model, threads: int) -> dict[str, Any]:
-    """One exploration by pn2code; its figures."""
+def database(n: int) -> Model:
+    """Of n managers: its states and arcs are known from n."""
+    states, arcs = 1 + n * 3 ** (n - 1), 2 * n * (1 + (n - 1) * 3 ** (n - 2))
+    return Model(f"database {n}", DATABASE, states, arcs, (f"n={n}",))
+
+
+def explore(model: Model, threads: int, *more: str) -> dict[str, Any]:
+    """One exploration by pn2code, perhaps with further options; its figures."""
     command = [sys.executable, "-m", "pn2code", "verify", str(SHARED / model.net), "--json"]
-    command += ["--no-graph", "--most-traces", "0", "--threads", str(threads)]
+    command += ["--no-graph", "--most-traces", "0", "--threads", str(threads), *more]
     for setting in model.settings:
         command += ["--set", setting]
     done = subprocess.run(command, capture_output=True, text=True, check=False)
-    if done.returncode != 0:
-        raise SystemExit(f"bench: {model.name}: {done.stderr}")
+    if done.returncode != 0 or not done.stdout:
+        raise SystemExit(f"bench: {model.name}: code {done.returncode}: {done.stderr}")
     found: dict[str, Any] = json.loads(done.stdout)
     if (found["nodes"], found["arcs"]) != (model.states, model.arcs):
         raise SystemExit(
@@ -111,43 +125,6 @@ def run_spin(pan: Path, states: int) -> float:
     if stored is None or abs(float(stored[1]) - states) > max(2.0, states * 1e-3):
         raise SystemExit(f"bench: SPIN stored {stored and stored[1]} states, not {states}")
     return seconds
-
-
-def run_snakes(size: int) -> tuple[int, float]:
-    """States and seconds of philosophers in SNAKES."""
-    from snakes.nets import (  # type: ignore[import-untyped]
-        Expression,
-        MultiArc,
-        PetriNet,
-        Place,
-        StateGraph,
-        Transition,
-        Variable,
-    )
-
-    net = PetriNet("philosophers")
-    net.globals["n"] = size
-    for name in ("think", "fork", "c1", "c2", "eat"):
-        net.add_place(Place(name, list(range(size)) if name in ("think", "fork") else []))
-    p, after = Variable("p"), Expression("(p + 1) % n")
-    for name, source, fork, target in (
-        ("a1", "think", "q == p", "c1"),
-        ("b1", "think", "q == (p + 1) % n", "c2"),
-        ("a2", "c1", "q == (p + 1) % n", "eat"),
-        ("b2", "c2", "q == p", "eat"),
-    ):
-        net.add_transition(Transition(name, Expression(fork)))
-        net.add_input(source, name, p)
-        net.add_input("fork", name, Variable("q"))
-        net.add_output(target, name, p)
-    net.add_transition(Transition("fin"))
-    net.add_input("eat", "fin", p)
-    net.add_output("think", "fin", p)
-    net.add_output("fork", "fin", MultiArc([p, after]))
-    began = time.perf_counter()
-    graph = StateGraph(net)
-    graph.build()
-    return len(graph), time.perf_counter() - began
 
 
 def rows(repeat: int, threads: int) -> list[Sequence[str]]:
@@ -199,10 +176,46 @@ def measure(repeat: int, threads: int) -> int:
     table = rows(repeat, threads)
     for row in table:
         print("| " + " | ".join(row) + " |")
-    states, seconds = run_snakes(5)
-    print(f"\nSNAKES, philosophers 5: {states} states, {states / seconds:,.0f} states/s")
+    print("\n| peer | model | states | states/s |\n|---|---|---|---|")
+    for name, model_name, states, seconds in state_peers.all_of_them(SHARED):
+        print(f"| {name} | {model_name} | {states:,} | {states / seconds:,.0f} |")
     missed = [r for r in table if r[8] != "-" and r[9] != "-" and float(r[8]) < float(r[9])]
     return int(bool(missed) and load < (os.cpu_count() or 1) / 2)
+
+
+def measure_large(n: int, threads: int) -> int:
+    """The database of n managers, once, completely; prints its figures. 1 when it takes more memory than it may."""
+    model = database(n)
+    load, began = os.getloadavg()[0], time.perf_counter()
+    print(f"bench: {model.name}: {model.states:,} states, {model.arcs:,} arcs", file=sys.stderr)
+    found = explore(model, threads, "--memory", str(LARGE_MIB))
+    used = resource.getrusage(resource.RUSAGE_CHILDREN)
+    print(f"{os.cpu_count()} cores; load at the start {load:.1f}\n")
+    heads = (
+        "model",
+        "states / arcs",
+        "threads",
+        "s",
+        "processor seconds",
+        "M states/s",
+        "M arcs/s",
+    )
+    print("| " + " | ".join((*heads, "bytes a state", "MiB")) + " |")
+    print("|" + "---|" * (len(heads) + 2))
+    row = (
+        model.name,
+        f"{found['nodes']:,} / {found['arcs']:,}",
+        f"{found['threads']}",
+        f"{found['seconds']:.0f}",
+        f"{used.ru_utime + used.ru_stime:.0f}",
+        f"{found['states_per_second'] / 1e6:.2f}",
+        f"{found['arcs'] / found['seconds'] / 1e6:.1f}",
+        f"{found['bytes_per_state']:.1f}",
+        f"{found['peak_mib']:,.0f}",
+    )
+    print("| " + " | ".join(row) + " |")
+    print(f"bench: {time.perf_counter() - began:.0f} s in all", file=sys.stderr)
+    return int(found["peak_mib"] > LARGE_MIB)
 
 
 def main() -> int:
