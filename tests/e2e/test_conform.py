@@ -109,6 +109,41 @@ def test_another_scheduler_is_found_out(what: str, judge: Judge) -> None:
     assert verdict.result == "killed", verdict
 
 
+FAULTS = {
+    "memory is overwritten": (
+        "supervisor_cell.c", "    sup_set_time(sup, sup->t);\n",
+        "    sup_set_time(sup, sup->t);\n    sup->net->place[3].clear(sup->marking);\n", "place `Top.Supervisor.Pieces` has changed"),
+    "what is not enabled is fired": (
+        "supervisor_play.c", "(void)memcpy(first->binding, binding, first->size);",
+        "(void)memset(first->binding, 1, first->size);", "is not enabled with"),
+    "a transition of another": (
+        "supervisor_play.c", "(owner >= 0) && (candidate->owner != owner)", "false",
+        "`Top.Robot.Accept` is not a transition of this program"),
+    "another place": ("net.c", "flag_add(cx, m, &flag_token, 1U)", "Supervisor_Moving_add(cx, m, &flag_token, 1U)",
+                      "has changed place `Top.Supervisor.Moving`, with which it has no arc"),
+}  # fmt: skip
+
+
+@pytest.fixture(scope="module")
+def monitored(cell: Path) -> Iterator[Judge]:
+    with Judge.of(
+        cell, "-DPN_MONITOR"
+    ) as found:  # that it is equal without a fault is looked at there
+        yield found
+
+
+@pytest.mark.parametrize("what", FAULTS)
+def test_the_monitor_stops_the_supervisor(what: str, monitored: Judge) -> None:
+    name, old, new, said = FAULTS[what]
+    text = monitored.files.get(name) or (cnative_folder() / "src" / name).read_text()
+    assert old in text
+    i = text.rindex(old) if name == "net.c" else text.index(old)
+    verdict = monitored.verdict(Mutant(name, 0, "", what, text[:i] + new + text[i + len(old) :]))
+    assert verdict.result == "killed", verdict
+    assert "the supervisor stops: monitor: " in verdict.why
+    assert said in verdict.why
+
+
 def test_edited_files(cell: Path, tmp_path: Path) -> None:
     folder = tmp_path / "generated"
     shutil.copytree(cell / "generated", folder)

@@ -49,13 +49,15 @@ class Judge:
     Args:
         cell: its folder.
         made: what is generated from it.
+        flags: for the C compiler, added to `FLAGS`.
     """
 
-    def __init__(self, cell: Path, made: Generated) -> None:
+    def __init__(self, cell: Path, made: Generated, flags: tuple[str, ...] = ()) -> None:
         assert made.config is not None
         self.cell = cell
         self.made = made
         self.files = {f.path: f.text for f in made.files}
+        self._flags = (*FLAGS, *flags)
         self._folder = tempfile.TemporaryDirectory(prefix="pn2code-")
         self._room = Path(self._folder.name)
         self._build_all()
@@ -64,12 +66,12 @@ class Judge:
         assert first.result == SURVIVED, f"{cell}: without a mutation: {first}"
 
     @staticmethod
-    def of(cell: Path) -> Judge:
+    def of(cell: Path, *flags: str) -> Judge:
         """Generates the cell's programs and builds them."""
         d = Diagnostics()
         made = generate(cell, d)
         assert made is not None, [str(i) for i in d]
-        return Judge(cell, made)
+        return Judge(cell, made, flags)
 
     def __enter__(self) -> Self:
         return self
@@ -113,7 +115,15 @@ class Judge:
         assert self._linked(self._objects, "program")
 
     def _compiled(self, source: Path, name: str) -> bool:
-        command = ["cc", *FLAGS, "-Iruntime/include", "-Iruntime/src", "-I.", "-c", str(source)]
+        command = [
+            "cc",
+            *self._flags,
+            "-Iruntime/include",
+            "-Iruntime/src",
+            "-I.",
+            "-c",
+            str(source),
+        ]
         return self._run([*command, "-o", name])
 
     def _linked(self, objects: list[str], name: str) -> bool:
