@@ -459,6 +459,7 @@ static int explore(ex_run_t *run)
     start_watch(&watch);
     const bool is_explored = ex_reduction_make(run) && ex_explore(run);
     const bool is_exact = !run->options.is_bitstate && !run->options.is_hashed;
+    run->is_seen_whole = is_explored && is_exact && (atomic_load(&run->why) == (int)EX_COMPLETE);
     if (is_explored && run->options.has_graph && is_exact && (atomic_load(&run->why) == (int)EX_COMPLETE)) {
         atomic_store(&run->phase, "graph");
         (void)ex_graph(run);

@@ -518,6 +518,7 @@ typedef struct ex_run {
     _Atomic(const char *) phase; /* for the progress lines */
     const uint32_t *owner_of; /* by transition: whose it is; priorities count among those of one owner. NULL: among all */
     struct ex_graph *graph;  /* of explore_graph.c; NULL: none */
+    bool is_seen_whole;          /* all states have been expanded */
     struct ex_queries *queries;  /* of explore_query_read.c; NULL: nothing is asked */
     struct ex_raised *raised; /* of explore_error.c; NULL: the way to the exception is not known */
 } ex_run_t;

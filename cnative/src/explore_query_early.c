@@ -17,6 +17,7 @@ struct ex_early {
     bool *holds;        /* by item; of those that open questions may need */
     bool *raised;
     uint64_t *tokens;
+    uint64_t *most;     /* tokens in any state */
     uint64_t *fired;    /* by transition: worker->fired before the state was expanded */
     char (*message)[EX_RAISED_SIZE];
 };
@@ -39,6 +40,7 @@ bool ex_early_make(ex_worker_t *worker)
     early->holds = calloc(items, sizeof *early->holds);
     early->raised = calloc(items, sizeof *early->raised);
     early->tokens = calloc(items, sizeof *early->tokens);
+    early->most = calloc(items, sizeof *early->most);
     early->message = calloc(items, sizeof *early->message);
     early->fired = calloc((size_t)pn_net.transition_count + 1U, sizeof *early->fired);
     if (worker->index == 0U) {
@@ -58,7 +60,7 @@ bool ex_early_make(ex_worker_t *worker)
             queries->needs_enabled = queries->needs_enabled || (item->is_early && (item->kind == EX_ITEM_ENABLED));
         }
     }
-    return (early->holds != NULL) && (early->raised != NULL) && (early->tokens != NULL) && (early->message != NULL) && (early->fired != NULL);
+    return (early->holds != NULL) && (early->raised != NULL) && (early->tokens != NULL) && (early->most != NULL) && (early->message != NULL) && (early->fired != NULL);
 }
 
 /* Works out the items in the state of worker->marking. */
@@ -88,6 +90,7 @@ static void look(ex_worker_t *worker, bool is_initial, ex_found_t found)
         case EX_ITEM_PRED:
         case EX_ITEM_WITHIN:
             early->holds[i] = ex_leaf_holds(worker, item, &early->tokens[i], &early->raised[i]);
+            early->most[i] = (early->tokens[i] > early->most[i]) ? early->tokens[i] : early->most[i];
             if (early->raised[i]) {
                 (void)snprintf(early->message[i], EX_RAISED_SIZE, "%s", worker->cx.error_name);
             }
@@ -231,6 +234,17 @@ static void write_traces(ex_run_t *run, const ex_graph_t *graph)
     }
 }
 
+/* No state decided it, and all were seen. */
+static void confirm(const ex_run_t *run, ex_question_t *question)
+{
+    question->answer = EX_YES;
+    for (uint32_t i = 0U; (question->kind == EX_ASK_BOUND) && (i < run->options.threads); i++) {
+        const double most = (double)run->worker[i].early->most[question->a];
+        question->value_kind = EX_INTEGER;
+        question->value = (most > question->value) ? most : question->value;
+    }
+}
+
 /* Without the way there: what was seen. */
 static void answer_roughly(ex_run_t *run)
 {
@@ -246,6 +260,8 @@ static void answer_roughly(ex_run_t *run)
             question->answer = EX_NO;
         } else if (atomic_load(&question->is_raised)) {
             question->why = "exception";
+        } else if (run->is_seen_whole && is_early(queries, question)) {
+            confirm(run, question);
         } else if (atomic_load(&run->why) != (int)EX_COMPLETE) {
             ex_doubt(run, question);
         } else if (run->options.is_bitstate || run->options.is_hashed) {

@@ -154,7 +154,12 @@ def test_truncated(counter: Asked) -> None:
     assert [a["why"] for a in answers] == [None, "states", "states", "states"]
     assert answers[0]["steps"] == 10
     _, answers = counter.say(lines, "--no-graph")
-    assert [(a["answer"], a["why"]) for a in answers[1:]] == [("unknown", "no graph")] * 3
+    assert [(a["answer"], a["why"], a["value"]) for a in answers] == [
+        ("no", None, None),
+        ("yes", None, None),  # what a single state decides is known without the graph
+        ("unknown", "no graph", None),
+        ("yes", None, 1),
+    ]
     _, answers = counter.say(lines, "--approximate", "hash")
     assert [a["answer"] for a in answers] == ["no", "unknown", "unknown", "unknown"]
     assert (answers[0]["trace"], answers[1]["why"]) == (None, "approximation")
