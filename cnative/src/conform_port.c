@@ -184,6 +184,7 @@ int pn_port_lock(int directory, const char *name, int *file)
     if (made == NULL) {
         return ENOSPC;
     }
+    made->length = 0U; /* it is empty before it is locked */
     *file = FIRST_FILE + (int)(made - s_file);
     return 0;
 }

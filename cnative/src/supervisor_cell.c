@@ -115,37 +115,45 @@ static bool accept_message(sup_t *sup, uint32_t index)
     return true;
 }
 
+static bool read_channel(sup_t *sup, uint32_t i)
+{
+    channel_state_t *const state = &s_cell.channel[i];
+    bool good = true;
+    switch (s_cell.transport.read(s_cell.transport.self, i, &s_cell.message)) {
+    case PN_CHANNEL_UNCHANGED:
+        break;
+    case PN_CHANNEL_EMPTY:
+        state->refused = false;
+        break;
+    case PN_CHANNEL_MESSAGE:
+        good = accept_message(sup, i);
+        break;
+    case PN_CHANNEL_REFUSED:
+        good = refuse(sup, i);
+        break;
+    case PN_CHANNEL_BROKEN:
+    default:
+        good = stop_for_transport(sup);
+        break;
+    }
+    if (good && state->refused && (sup->options.lockstep || (wall_time() - state->refused_since >= GRACE_S))) {
+        good = sup_stop(sup, SUP_EXIT_CHANNEL, "%s: message of %s refused: %s", sup->cell->channel[i].file,
+                        sup->cell->peer[sup->cell->channel[i].peer].name, state->report);
+    }
+    return good;
+}
+
+/* Flags before data: what is published before a flag is there once the flag has been seen (I5). The other way round a flag
+ * could be taken whose data came between the two looks. */
 static bool read_channels(sup_t *sup)
 {
-    for (uint32_t i = 0U; i < sup->cell->channel_count; i++) {
-        channel_state_t *const state = &s_cell.channel[i];
-        bool good = true;
-        if (sup->cell->channel[i].direction != PN_CHANNEL_IN) {
-            continue;
-        }
-        switch (s_cell.transport.read(s_cell.transport.self, i, &s_cell.message)) {
-        case PN_CHANNEL_UNCHANGED:
-            break;
-        case PN_CHANNEL_EMPTY:
-            state->refused = false;
-            break;
-        case PN_CHANNEL_MESSAGE:
-            good = accept_message(sup, i);
-            break;
-        case PN_CHANNEL_REFUSED:
-            good = refuse(sup, i);
-            break;
-        case PN_CHANNEL_BROKEN:
-        default:
-            good = stop_for_transport(sup);
-            break;
-        }
-        if (!good) {
-            return false;
-        }
-        if (state->refused && (sup->options.lockstep || (wall_time() - state->refused_since >= GRACE_S))) {
-            return sup_stop(sup, SUP_EXIT_CHANNEL, "%s: message of %s refused: %s", sup->cell->channel[i].file,
-                            sup->cell->peer[sup->cell->channel[i].peer].name, state->report);
+    for (uint32_t pass = 0U; pass < 2U; pass++) {
+        const pn_channel_kind_t kind = (pass == 0U) ? PN_CHANNEL_FLAG : PN_CHANNEL_DATA;
+        for (uint32_t i = 0U; i < sup->cell->channel_count; i++) {
+            const pn_cell_channel_t *const channel = &sup->cell->channel[i];
+            if ((channel->direction == PN_CHANNEL_IN) && (channel->kind == kind) && !read_channel(sup, i)) {
+                return false;
+            }
         }
     }
     return true;
@@ -229,7 +237,7 @@ static bool cycle(sup_t *sup, double t, uint64_t *fired)
 {
     *fired = 0U;
     sup->t = (t > sup->t) ? t : sup->t;
-    if (!read_channels(sup)) {
+    if (!read_channels(sup) || !sup_monitor_messages(sup, PN_CHANNEL_IN)) {
         return false;
     }
     sup_set_time(sup, sup->t);
@@ -240,7 +248,7 @@ static bool cycle(sup_t *sup, double t, uint64_t *fired)
         s_cell.all_ended = false;
         s_cell.most_fired = (*fired > s_cell.most_fired) ? *fired : s_cell.most_fired;
     }
-    if (!publish(sup)) {
+    if (!publish(sup) || !sup_monitor_messages(sup, PN_CHANNEL_OUT)) {
         return false;
     }
     return !sup->trace.failed || sup_stop(sup, SUP_EXIT_IO, "cannot write the trace %s", sup->options.trace);

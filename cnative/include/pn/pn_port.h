@@ -69,7 +69,8 @@ void pn_port_remove(int directory, const char *name);
 
 /* --- status files (locked by the party that they are about, written in place) ----------------------------------------- */
 
-/* Opens (makes) a file and locks it; EWOULDBLOCK when another process holds the lock. */
+/* Opens (makes) a file, empties and locks it; EWOULDBLOCK when another process holds the lock. Nobody finds it locked before it
+ * is empty. */
 PN_PORT_CHECK int pn_port_lock(int directory, const char *name, int *file);
 
 /* Replaces the content of a locked file by one write. */

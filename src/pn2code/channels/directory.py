@@ -136,6 +136,8 @@ class SharedDirectory:
         self.path = path
         self.side = side
         self.session: str | None = None
+        self.was_here = False
+        """Whether another process has been this side in the session that runs."""
         self._supervisor = supervisor
         self._specs: dict[str, ChannelSpec] = {}
         self._state: dict[str, _ChannelState] = {}
@@ -163,23 +165,44 @@ class SharedDirectory:
     def await_supervisor(self, timeout: float) -> bool:
         """Waits until the supervisor runs, then joins its session: takes this side's lock and says `running`.
 
-        False when none has appeared after `timeout` seconds.
+        False when none has appeared after `timeout` seconds; `was_here` tells why. A session in which another process
+        has been this side is not joined: what that process has taken, and whether it was carried out, nobody knows.
         """
         end = time.monotonic() + timeout
         while True:
-            before = self._read_status(self._supervisor)
-            alive = self._is_locked(self._supervisor)
-            after = self._read_status(self._supervisor)
-            if alive and before == after and after is not None and after.state == "running":
-                self.session = after.session
-                for state in self._state.values():
-                    state.consumed = state.sent = 0
-                self._take_lock()
-                self.set_status(Status.RUNNING)
+            session = self._running_session()
+            if session is not None and self._join(session):
                 return True
             if time.monotonic() >= end:
                 return False
             time.sleep(_AWAIT_S)
+
+    def _running_session(self) -> str | None:
+        """The session of the supervisor that runs now."""
+        before = self._read_status(self._supervisor)
+        alive = self._is_locked(self._supervisor)
+        after = self._read_status(self._supervisor)
+        runs = alive and before == after and after is not None and after.state == "running"
+        return after.session if runs and after is not None else None
+
+    def _join(self, session: str) -> bool:
+        """Looks again once this side's lock is taken: a new supervisor asks for it before it touches the channels."""
+        if self._lock is None:
+            self._lock = self._open_locked()
+            old = self._read_status(self.side)
+            self.was_here = old is not None and old.session == session
+            if self.was_here:
+                self.close()  # and leave the status as it is: it tells the supervisor
+                return False
+            os.ftruncate(self._lock, 0)
+            if self._running_session() != session:
+                self.close()
+                return False
+        self.session = session
+        for state in self._state.values():
+            state.consumed = state.sent = 0
+        self.set_status(Status.RUNNING)
+        return True
 
     def peer(self, name: str | None = None) -> Peer:
         """What is known of another party (by default the supervisor)."""
@@ -313,21 +336,33 @@ class SharedDirectory:
             raise
 
     def _take_lock(self) -> None:
-        if self._lock is not None:
-            return
+        if self._lock is None:
+            self._lock = self._open_locked(empty=True)
+
+    def _open_locked(self, *, empty: bool = False) -> int:
+        """The status file of this side, locked. `empty`: nobody finds it locked before it is empty (I7).
+
+        Raises:
+            BlockingIOError: another process holds the lock.
+        """
         fd = os.open(self._status_path(self.side), os.O_RDWR | os.O_CREAT | os.O_CLOEXEC, 0o644)
-        for attempt in range(20):  # somebody may just be probing it
-            try:
-                fcntl.flock(fd, fcntl.LOCK_EX | fcntl.LOCK_NB)
-            except BlockingIOError:
-                if attempt == 19:
-                    os.close(fd)
-                    raise
-                time.sleep(_AWAIT_S)
-            else:
-                break
-        os.ftruncate(fd, 0)
-        self._lock = fd
+        try:
+            for attempt in range(20):  # somebody may just be probing it
+                try:
+                    if empty:  # whoever holds the exclusive lock denies us the shared one
+                        fcntl.flock(fd, fcntl.LOCK_SH | fcntl.LOCK_NB)
+                        os.ftruncate(fd, 0)
+                    fcntl.flock(fd, fcntl.LOCK_EX | fcntl.LOCK_NB)
+                except BlockingIOError:
+                    if attempt == 19:
+                        raise
+                    time.sleep(_AWAIT_S)
+                else:
+                    return fd
+        except BaseException:
+            os.close(fd)
+            raise
+        raise AssertionError
 
     def _status_path(self, side: str) -> Path:
         return self.path / f"{side}.status"

@@ -211,6 +211,12 @@ class RobotPlayer:
             while not self.shared.await_supervisor(min(JOIN_S, self.wait_s)):
                 if self.interrupted():
                     raise _StopError(Ended(RobotExit.INTERRUPTED, "interrupted"))
+                if time.monotonic() >= end and self.shared.was_here:
+                    why = (
+                        f"`{self.shared.side}` has been in the session of the supervisor in `{path}` before: "
+                        "start the supervisor again"
+                    )
+                    raise _StopError(Ended(RobotExit.SUPERVISOR, why))
                 if time.monotonic() >= end:
                     why = f"no supervisor has announced itself in `{path}` within {self.wait_s:g} s"
                     raise _StopError(Ended(RobotExit.SUPERVISOR, why))

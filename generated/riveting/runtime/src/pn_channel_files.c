@@ -478,11 +478,7 @@ static bool take_lock(void)
         return fail(true, "another %s (pid %" PRIu64 ") is running in %s; stop it, or choose another directory with --dir",
                     s_files.cell->side, other.pid, s_files.options.directory);
     }
-    if (error != 0) {
-        return fail_errno("write", name, error);
-    }
-    error = pn_port_rewrite(s_files.status, "", 0U); /* at once: an old `running` must not be taken for ours */
-    return (error == 0) || fail_errno("write", name, error);
+    return (error == 0) || fail_errno("write", name, error); /* it is empty now: an old `running` is not taken for ours */
 }
 
 /* Robots of an earlier run have to be gone: they might act on what we write. */

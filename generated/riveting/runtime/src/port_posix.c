@@ -243,7 +243,9 @@ int pn_port_lock(int directory, const char *name, int *file)
     if (fd < 0) {
         return errno;
     }
-    if (flock(fd, LOCK_EX | LOCK_NB) != 0) {
+    /* Emptied under a shared lock, which whoever holds the exclusive one denies us: those who probe never find the lock held
+     * while the file still says what its last owner said (I7). */
+    if ((flock(fd, LOCK_SH | LOCK_NB) != 0) || (ftruncate(fd, 0) != 0) || (flock(fd, LOCK_EX | LOCK_NB) != 0)) {
         return close_with(fd, errno);
     }
     *file = fd;

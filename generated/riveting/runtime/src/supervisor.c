@@ -299,7 +299,7 @@ static bool start(sup_t *sup)
         return sup_stop_error(sup, "making the initial marking");
     }
     pn_text_init(&initial, s_initial, sizeof s_initial);
-    if (!sup_read_inputs(sup, &initial)) {
+    if (!sup_read_inputs(sup, &initial) || !sup_monitor_start(sup)) {
         return false;
     }
     if (!pn_trace_open(&sup->trace, sup->options.trace, s_trace_line, sizeof s_trace_line)) {

@@ -5,6 +5,7 @@
  *   supervisor_play.c   firing: the documented order, errors, the bound
  *   supervisor_input.c  markings read from files
  *   supervisor_cell.c   the cell: channels, peers, real time and lock-step
+ *   supervisor_monitor.c  with -DPN_MONITOR: each step held against the rules of the net
  *   supervisor_alone.c  the whole net in memory: --dry-run, and nets without a cell
  */
 #ifndef SUPERVISOR_IMPL_H
@@ -101,6 +102,24 @@ const char *sup_token_text(const sup_t *sup, const pn_cell_channel_t *channel, c
 
 /* Replaces markings by what the input files hold. `json` receives the traces' object of these places. */
 bool sup_read_inputs(sup_t *sup, pn_text_t *json);
+
+/* --- supervisor_monitor.c --- */
+
+#ifdef PN_MONITOR
+/* Remembers the marking; before the first step. Each of these is false when the program has to stop. */
+bool sup_monitor_start(sup_t *sup);
+/* `sup->binding` of a transition of an owner (-1: anybody's) is about to occur. */
+bool sup_monitor_choice(sup_t *sup, int32_t owner, uint32_t transition);
+/* It has occurred. */
+bool sup_monitor_step(sup_t *sup, uint32_t transition);
+/* Messages in that direction have been exchanged. */
+bool sup_monitor_messages(sup_t *sup, pn_channel_direction_t direction);
+#else
+#define sup_monitor_start(sup) (true)
+#define sup_monitor_choice(sup, owner, transition) (true)
+#define sup_monitor_step(sup, transition) (true)
+#define sup_monitor_messages(sup, direction) (true)
+#endif
 
 /* --- supervisor_cell.c, supervisor_alone.c --- */
 

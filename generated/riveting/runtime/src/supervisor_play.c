@@ -108,12 +108,15 @@ int sup_fire_one(sup_t *sup, int32_t owner, uint32_t *transition)
         return 0;
     }
     const pn_transition_t *const chosen = &net->transition[index];
+    if (!sup_monitor_choice(sup, owner, index)) {
+        return -1;
+    }
     if (!chosen->fire(&sup->cx, sup->marking, sup->binding)) {
         (void)snprintf(doing, sizeof doing, "firing `%s`", chosen->name);
         (void)sup_stop_error(sup, doing);
         return -1;
     }
-    if (!keeps_bounds(sup, chosen)) {
+    if (!keeps_bounds(sup, chosen) || !sup_monitor_step(sup, index)) {
         return -1;
     }
     pn_trace_occurrence(&sup->trace, sup->t, chosen, sup->binding);
