@@ -11,55 +11,14 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "explore_again.h"
 #include "explore_reduce.h"
 #include "pn/pn_arena.h"
 #include "pn/pn_text.h"
 
 enum {
-    BATCH = 64,
     BINDING_SIZE = 1 << 20
 };
-
-/* Successors whose lines of the store are on their way. */
-typedef struct search {
-    ex_run_t *run;
-    ex_graph_t *graph; /* slots and parents alone */
-    uint64_t *seen;    /* a bit for each slot */
-    uint32_t node;     /* being expanded */
-    uint32_t pending;
-    ex_key_t key[BATCH];
-    uint64_t hash[BATCH];
-} search_t;
-
-static void look_up(search_t *search)
-{
-    ex_graph_t *const graph = search->graph;
-    for (uint32_t i = 0U; i < search->pending; i++) {
-        const uint64_t slot = ex_store_find(&search->run->store, &search->key[i], search->hash[i]);
-        if ((slot != EX_NO_SLOT) && (EX_BIT(search->seen, slot) == 0U) && (graph->nodes < graph->node_room)) {
-            EX_SET_BIT(search->seen, slot);
-            graph->slot[graph->nodes] = slot;
-            graph->parent[graph->nodes] = search->node;
-            graph->nodes += 1U;
-        }
-    }
-    search->pending = 0U;
-}
-
-static bool gather(void *user, uint32_t transition, const void *binding, const ex_key_t *key)
-{
-    search_t *const search = user;
-    (void)transition;
-    (void)binding;
-    search->key[search->pending] = *key;
-    search->hash[search->pending] = ex_hash(key);
-    ex_store_prefetch(&search->run->store, search->hash[search->pending]);
-    search->pending += 1U;
-    if (search->pending == (uint32_t)BATCH) {
-        look_up(search);
-    }
-    return true;
-}
 
 static bool ignore(void *user, uint32_t transition, const void *binding, const ex_key_t *key)
 {
@@ -96,52 +55,20 @@ static void clear(ex_run_t *run)
     atomic_store(&run->is_stopping, false);
 }
 
-/* The first node in which there is an exception; EX_NO_NODE: none was found. */
-static uint32_t find_node(search_t *search)
+static bool is_no_error(void *user, uint32_t node, const ex_key_t *key, ex_found_t found)
 {
-    ex_run_t *const run = search->run;
-    ex_graph_t *const graph = search->graph;
-    const uint64_t slot = ex_store_find(&run->store, &run->initial, ex_hash(&run->initial));
-    if (slot == EX_NO_SLOT) {
-        return EX_NO_NODE;
-    }
-    (void)memset(search->seen, 0, ((ex_store_slots(&run->store) / 64U) + 1U) * sizeof *search->seen);
-    EX_SET_BIT(search->seen, slot);
-    graph->slot[0] = slot;
-    graph->nodes = 1U;
-    for (uint32_t node = 0U; (node < graph->nodes) && !ex_is_stopping(run); node++) {
-        ex_key_t key;
-        search->node = node;
-        search->pending = 0U;
-        if (!ex_store_fetch(&run->store, graph->slot[node], &key)) {
-            return EX_NO_NODE;
-        }
-        if (ex_successors(&run->worker[0], &key, gather, search) == EX_FAILED) {
-            return (run->error.kind != NULL) ? node : EX_NO_NODE;
-        }
-        look_up(search);
-    }
-    return EX_NO_NODE;
+    (void)user;
+    (void)node;
+    (void)key;
+    return found != EX_FAILED;
 }
 
-/* The same; a table that has to grow moves the slots. */
-static uint32_t find(search_t *search)
+/* The first node in which there is an exception; EX_NO_NODE: none was found. */
+static uint32_t find(ex_run_t *run, ex_graph_t *graph)
 {
-    ex_run_t *const run = search->run;
-    for (;;) {
-        const uint64_t pauses = run->pauses;
-        const uint64_t words = (ex_store_slots(&run->store) / 64U) + 1U;
-        search->seen = ex_alloc(run, words * sizeof *search->seen);
-        if (search->seen == NULL) {
-            return EX_NO_NODE;
-        }
-        const uint32_t node = find_node(search);
-        ex_free(run, search->seen, words * sizeof *search->seen);
-        if (pauses == run->pauses) {
-            return node;
-        }
-        clear(run);
-    }
+    clear(run);
+    const uint32_t node = ex_again(run, graph, is_no_error, NULL);
+    return (run->error.kind != NULL) ? node : EX_NO_NODE;
 }
 
 /* --- the binding element ------------------------------------------------------------------------------------------------- */
@@ -219,22 +146,9 @@ static bool follow(ex_run_t *run, const ex_graph_t *graph, uint32_t node, ex_rai
 void ex_follow_error(ex_run_t *run)
 {
     const ex_error_t met = run->error;
-    const uint64_t nodes = run->nodes;
-    ex_graph_t graph = { .node_room = nodes };
-    search_t *const search = ex_alloc(run, sizeof *search);
+    ex_graph_t graph;
     ex_raised_t *const raised = ex_alloc(run, sizeof *raised);
-    if ((nodes == 0U) || (nodes >= (uint64_t)EX_NO_NODE) || (search == NULL) || (raised == NULL)) {
-        return;
-    }
-    search->run = run;
-    search->graph = &graph;
-    graph.slot = ex_alloc(run, nodes * sizeof *graph.slot);
-    graph.parent = ex_alloc(run, nodes * sizeof *graph.parent);
-    uint32_t node = EX_NO_NODE;
-    if ((graph.slot != NULL) && (graph.parent != NULL)) {
-        clear(run);
-        node = find(search);
-    }
+    const uint32_t node = ((raised != NULL) && ex_again_make(run, &graph)) ? find(run, &graph) : EX_NO_NODE;
     if ((node != EX_NO_NODE) && follow(run, &graph, node, raised)) {
         run->raised = raised;
     } else {
