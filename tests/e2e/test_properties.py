@@ -3,13 +3,16 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
 
 from helpers.asked import Net
 from helpers.explored import Explorers
-from helpers.property_nets import OWN, SHARED, Row
+from helpers.property_nets import MUTEX, OWN, SHARED, Row
+from pn2code.properties.meaning import TRUE, Bound, Fairness, Invariant, Linear, Op
+from pn2code.verify import confirm
 
 pytestmark = pytest.mark.cc
 
@@ -39,3 +42,33 @@ def test_known_answers_of_nets_by_others(explorers: Explorers, shared: Path, fil
     if not path.is_file():
         pytest.skip(f"the collection lacks {file}")
     check(explorers, Net.load(path), SHARED[file], path.stem)
+
+
+def test_runs_that_show_something_else(explorers: Explorers) -> None:
+    """What a run must show is looked at: each of these is refused."""
+    net = Net.of(MUTEX)
+    texts = ["never tokens(Want) = 2", "ltl G F tokens(Idle) = 2", "bound Want <= 1"]
+    found = net.ask(explorers, texts, "asked-wrongly")
+    invariant, lasso, bound = found.answers
+    assert [a.answer for a in found.answers] == ["no", "no", "no"]
+    assert lasso.evidence is not None and invariant.evidence is not None
+    assert lasso.evidence.loop is not None
+    short = replace(lasso.evidence, steps=lasso.evidence.steps + 1)
+    straight = replace(lasso.evidence, loop=None)
+    elsewhere = replace(lasso.evidence, loop=lasso.evidence.loop + 1)
+    eventually = replace(lasso.about, asked=Linear(Op("F", (TRUE,))))
+    fair = replace(lasso.about, asked=replace(lasso.about.asked, fair=(Fairness(True, 0),)))
+    for answer, expected in (
+        (replace(lasso, evidence=short), "steps, not"),
+        (replace(lasso, evidence=straight), "ends where something is enabled"),
+        (replace(lasso, evidence=elsewhere), "does not come back"),
+        (replace(lasso, about=eventually), "the formula is true on the run"),
+        (
+            replace(invariant, about=replace(invariant.about, asked=Invariant(TRUE))),
+            "decides nothing",
+        ),
+        (replace(bound, about=replace(bound.about, asked=Bound(1, 0, 9))), "has 2 tokens"),
+        (replace(lasso, about=fair), None),
+    ):
+        said = confirm.problem(net.flat, {}, found.properties, answer)
+        assert (said is None) if expected is None else expected in (said or ""), (said, expected)

@@ -21,6 +21,7 @@ from pn2code.properties.judge_ltl import (
 )
 from pn2code.properties.ltl import Automaton, TooLargeError, automaton
 from pn2code.properties.meaning import TRUE, Atom, Fairness, Formula, Op
+from pn2code.properties.questions import expanded
 
 P, Q, R = (Atom("pred", i) for i in range(3))
 S, T = Atom("fires", 0), Atom("fires", 1)
@@ -201,3 +202,18 @@ def test_lassos_by_definition() -> None:
         if R not in (formula.parts if isinstance(formula, Op) else ()):
             assert holds_on(graph, formula, path) == expected, formula
     assert all(a.target == b.node for a, b in pairwise(path.positions))
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_what_the_explorer_does_not_know_is_said_otherwise(seed: int) -> None:
+    """Weak until, release and implications by operators that it knows: at the same nodes, by the judge."""
+    r = Random(2000 + seed)
+    for _ in range(60):
+        graph = random_graph(r, r.randint(1, 6))
+        a, b = (
+            Op("EX", (r.choice([P, Q, R]),)) if r.random() < 0.3 else r.choice([P, Q, R])
+            for _ in "ab"
+        )
+        for operator in ("AW", "EW", "AR", "ER", "implies", "iff"):
+            formula = Op(operator, (a, b))
+            assert graph.nodes(expanded(formula)) == graph.nodes(formula), formula

@@ -85,7 +85,7 @@ class Questions:
         if isinstance(f, m.Atom):
             return self._add(f.kind if f.number < 0 else f"{f.kind} {f.number}")
         if f.operator not in ("not", "and", "or", *_UNARY, "EU", "AU"):
-            return self.item(_expanded(f))
+            return self.item(expanded(f))
         if f.step >= 0:
             if f.operator == "AX":
                 opposite = m.Op("EX", (m.negation(f.parts[0]),), f.step)
@@ -101,7 +101,7 @@ class Questions:
         return number
 
 
-def _expanded(f: m.Op) -> m.Formula:
+def expanded(f: m.Op) -> m.Formula:
     """By operators that the explorer knows."""
     a, b = f.parts
     no_a, no_b = m.negation(a), m.negation(b)

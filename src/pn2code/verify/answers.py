@@ -19,7 +19,9 @@ _WHY = {
     "interrupted": "it was interrupted",
     "error": "an inscription raised an exception",
     "truncated": "not all markings were seen",
-    "approximate": "markings may have been taken for others",
+    "approximation": "it is approximate: markings may have been taken for others",
+    "reduction": "the reduction of the state space does not keep it",
+    "exception": "an inscription raised an exception",
 }
 
 

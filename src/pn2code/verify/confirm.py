@@ -7,7 +7,7 @@ position; fairness is kept; the cycle is one.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from pathlib import Path
 
 from pn2code.net.flat import FlatNet
@@ -19,7 +19,7 @@ from pn2code.semantics.marking import Marking
 from pn2code.verify.answers import Answer
 from pn2code.verify.path import play
 
-MOST_STEPS = 5_000
+MOST_STEPS = 3_000
 """Longer runs take the token game too long; they are not looked at again."""
 
 
@@ -50,17 +50,18 @@ def problem(
     if len(steps) != evidence.steps:
         return f"the trace has {len(steps)} steps, not {evidence.steps}"
     asked = answer.about.asked
-    graph, nodes = _graph(game, markings, predicates)
-    last = nodes[-1]
     match asked:
         case m.Invariant(condition):
-            if last in graph.nodes(condition):
+            graph, nodes = _graph(game, [markings[0], markings[-1]], predicates, {condition})
+            if nodes[-1] in graph.nodes(condition):
                 return "the last marking of the trace decides nothing"
         case m.Bound(place, low, high):
             size = len(markings[-1].places[place])
             if size >= (low or 0) and (high is None or size <= high):
                 return f"the last marking of the trace has {size} tokens"
         case m.Linear(formula, fair):
+            looks = {formula, *(m.Atom("enabled", x.transition) for x in fair)}
+            graph, nodes = _graph(game, markings, predicates, looks)
             path = _lasso(graph, nodes, steps, evidence.loop, exact_times)
             if isinstance(path, str):
                 return path
@@ -85,20 +86,33 @@ def _played(
 
 
 def _graph(
-    game: Game, markings: list[Marking], properties: m.Properties
+    game: Game, markings: Sequence[Marking], properties: m.Properties, formulas: Iterable[m.Formula]
 ) -> tuple[Graph, list[int]]:
-    """The nodes of a run with what holds there, and which transitions are enabled; and the nodes in order."""
+    """The nodes of a run with what the formulas look at, the last one with all; and the nodes in order."""
+    atoms = set(_atoms(formulas))
+    wanted = {x.number for x in atoms if x.kind == "pred"}
+    needs_enabled = any(x.kind in ("dead", "enabled") for x in atoms)
     index: dict[Marking, int] = {}
     nodes = [index.setdefault(marking, len(index)) for marking in markings]
     arcs: list[tuple[int, int, int]] = []
     for marking, n in index.items():
+        if not needs_enabled and n != nodes[-1]:
+            continue
         # Where they lead does not matter: nothing is asked that looks farther than the run.
         arcs += ((n, t.index, n) for t in game.enabled_transitions(game.settle(marking)))
     holds = tuple(
-        frozenset(n for marking, n in index.items() if look(game, p, marking))
-        for p in properties.predicates
+        frozenset(n for marking, n in index.items() if i in wanted and look(game, p, marking))
+        for i, p in enumerate(properties.predicates)
     )
     return Graph(tuple(float(x.time) for x in index), tuple(arcs), holds, tuple(index)), nodes
+
+
+def _atoms(formulas: Iterable[m.Formula]) -> Iterator[m.Atom]:
+    for f in formulas:
+        if isinstance(f, m.Atom):
+            yield f
+        else:
+            yield from _atoms(f.parts)
 
 
 def _lasso(
