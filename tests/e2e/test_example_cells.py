@@ -6,6 +6,7 @@ Nothing in the compiler knows any of them: what is particular to a cell is its f
 from __future__ import annotations
 
 import json
+import tomllib
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -180,3 +181,24 @@ def test_both_engines_simulate_the_same_run(root: Path, tmp_path: Path) -> None:
         runs.append([json.loads(line) for line in trace.read_text().splitlines()[1:]])
     assert runs[0] == runs[1]
     assert runs[0][-1]["why"] == "finished" and len(runs[0]) > 40
+
+
+@pytest.mark.cc
+def test_the_riveting_cell_has_its_properties(root: Path, tmp_path: Path) -> None:
+    options = ["--json", "--traces", str(tmp_path), "--threads", "1"]
+    done = CliRunner().invoke(app, ["verify", str(root / "examples/riveting"), *options])
+    assert done.exit_code == 0, done.output
+    said = json.loads(done.stdout)
+    assert len(said["properties"]) >= 10
+    assert {p["answer"] for p in said["properties"]} == {"yes"}
+
+
+@pytest.mark.parametrize(
+    "file",
+    ["sorting/cell.toml", "shared-zone/cell.toml", "timed/cell.toml", "riveting/cell.properties.toml"],
+)  # fmt: skip
+def test_properties_are_told_in_plain_words(root: Path, file: str) -> None:
+    path = root / "examples" / file
+    readme = (path.parent / "README.md").read_text()
+    for each in tomllib.loads(path.read_text())["property"]:
+        assert f"| {each['name']} | {each['says']} |" in readme
