@@ -43,10 +43,11 @@ ALLOWED: dict[str, set[str]] = {
                "resources", "simulate", "drawing", "reading", "unfold", "properties"},
     "conform": {"diagnostics", "cell", "channels", "emission", "ml", "net", "pipeline", "robot", "semantics", "simulate",
                 "tdl", "toolchain", "verify"},
+    "medium": {"diagnostics", "ml", "net", "cell", "lowering", "semantics", "verify"},
     "__main__": {"cli"},
     "cli": {"diagnostics", "cell", "channels", "emission", "net", "pipeline", "run", "report", "semantics", "toolchain",
             "robot", "tdl", "ml", "lowering", "bytecode", "reading", "drawing", "simulate", "monitors", "structure",
-            "convert", "unfold", "verify", "properties", "conform"},
+            "convert", "unfold", "verify", "properties", "conform", "medium"},
 }  # fmt: skip
 EVERYWHERE = {"frozen", "private_folder"}
 

@@ -12,7 +12,7 @@ from typing import Annotated
 
 import typer
 
-from pn2code.cli import controller, properties
+from pn2code.cli import controller, medium, properties
 from pn2code.cli.interrupts import Interrupts
 from pn2code.cli.nets import OpenNet, open_net, playing
 from pn2code.cli.options import (
@@ -184,6 +184,13 @@ def verify(
             help="Check the supervisor of a cell against its execution scheme (docs/execution.md).",
         ),
     ] = True,
+    check_medium: Annotated[
+        bool,
+        typer.Option(
+            "--medium/--no-medium",
+            help="Check a cell with the shared files between its parties (docs/protocol.md).",
+        ),
+    ] = True,
     as_json: JsonOption = False,
     quiet: Annotated[
         bool, typer.Option("--quiet", "-q", help="No progress, and nothing but errors.")
@@ -249,6 +256,16 @@ def verify(
                         interrupted=interrupts.is_wanted,
                         d=d,
                     )
+                seen: medium.Answers = ()
+                if found is not None and check_medium:
+                    seen = medium.look(
+                        opened,
+                        found,
+                        limits,
+                        d,
+                        progress=progress.update,
+                        interrupted=interrupts.is_wanted,
+                    )
         if found is None:
             stop(d, form)
         pictures.write(opened.flat, found, d)
@@ -260,9 +277,11 @@ def verify(
     if found.error and found.error.get("node") and most_traces and found.error_trace is None:
         _unwritable("the marking in which an exception is raised", traces, d)
     if report_to is not None:
-        _write_report(opened, found, answers, control, report_to, d)
+        _write_report(opened, found, answers, control, seen, report_to, d)
     if not as_json and not quiet:
         typer.echo(_text(opened, found, answers, control))
+        if seen:
+            typer.echo(f"\n\n{medium.told(seen)}")
     print_diagnostics(d.sorted(), form)
     if as_json:
         said = row(opened.flat, found)
@@ -270,8 +289,10 @@ def verify(
             said["properties"] = [a.row() for a in answers]
         if control is not None:
             said["controller"] = [c.row() for c in control.checks]
+        if seen:
+            said["medium"] = [a.row() for a in seen]
         typer.echo(json.dumps(said, indent=1))
-    codes = (_code(found, answers, d), controller.code(control))
+    codes = (_code(found, answers, d), controller.code(control), medium.code(seen))
     code = Exit.MODEL if Exit.MODEL in codes else max(codes)
     if code:
         raise typer.Exit(code)
@@ -349,6 +370,7 @@ def _write_report(
     found: Exploration,
     answers: Sequence[Answer],
     control: Control | None,
+    seen: medium.Answers,
     path: Path,
     d: Diagnostics,
 ) -> None:
@@ -359,6 +381,7 @@ def _write_report(
         if page
         else report(opened.flat, found, now, answers, control)
     )
+    body = medium.added(body, page, seen)
     try:
         with whole_file(path) as beside:
             beside.write_text(body, encoding="utf-8")

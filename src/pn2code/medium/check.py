@@ -1,0 +1,307 @@
+"""The checks of a cell's medium: which net is explored for which question, and what the answer means.
+
+for answer in medium(partition, storage, Limits(), d): ...
+"""
+
+from __future__ import annotations
+
+import tempfile
+import time
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import replace
+from pathlib import Path
+from typing import Any, Literal
+
+from pn2code.cell.partition import Partition
+from pn2code.diagnostics import Diagnostics
+from pn2code.frozen import frozen
+from pn2code.lowering.packing import choose
+from pn2code.medium.compose import Crashes, MediumNet, compose, modelled
+from pn2code.medium.faults import SAYS, Fault
+from pn2code.medium.rules import Rules
+from pn2code.medium.skeleton import Skeleton, Topology, topology
+from pn2code.medium.tell import Teller
+from pn2code.verify.explore import Progress, Wishes, explore
+from pn2code.verify.limits import Limits
+from pn2code.verify.programs import Sizes
+from pn2code.verify.result import Exploration
+
+
+def _nothing(_: Mapping[str, Any]) -> None:
+    """For those who do not care."""
+
+
+def _never() -> bool:
+    return False
+
+
+Verdict = Literal["yes", "no", "inconclusive"]
+MOST_STATES = 2_000_000
+"""Of one exploration, if the user sets no limit."""
+MOST_TRACES = 16
+WHOLE = "the cell with its medium"
+CRASHES = Crashes(supervisor=1, robots=1)
+"""Of each side, in the exchange."""
+
+
+@frozen
+class Evidence:
+    """A run that shows a fault, or a deadlock (None): its lines in words, and how many steps it has in the net."""
+
+    fault: Fault | None
+    steps: int
+    lines: tuple[str, ...]
+
+
+@frozen
+class Answer:
+    """The answer to one question.
+
+    Args:
+        check: "medium of the cell", "exchange with robot1".
+        says: the question in words.
+        answer: yes (it holds), no, inconclusive.
+        why: why it is inconclusive; "" else.
+        nodes, arcs, seconds: of the exploration; `places`, `transitions`: of its net.
+        assumes: what the answer rests on.
+    """
+
+    check: str
+    says: str
+    answer: Verdict
+    why: str
+    nodes: int
+    arcs: int
+    places: int
+    transitions: int
+    seconds: float
+    assumes: str
+    evidence: tuple[Evidence, ...]
+
+    def row(self) -> dict[str, Any]:
+        """For programs."""
+        return {
+            "check": self.check,
+            "says": self.says,
+            "answer": self.answer,
+            "why": self.why or None,
+            "nodes": self.nodes,
+            "arcs": self.arcs,
+            "places": self.places,
+            "transitions": self.transitions,
+            "seconds": round(self.seconds, 3),
+            "assumes": self.assumes,
+            "evidence": [
+                {
+                    "fault": None if e.fault is None else e.fault.name.lower(),
+                    "says": "a deadlock" if e.fault is None else SAYS[e.fault],
+                    "steps": e.steps,
+                    "run": list(e.lines),
+                }
+                for e in self.evidence
+            ],
+        }
+
+
+@frozen
+class Run:
+    """How to explore: limits, who gets errors, and as of `Wishes`."""
+
+    limits: Limits
+    d: Diagnostics
+    progress: Progress = _nothing
+    interrupted: Callable[[], bool] = _never
+
+
+def medium(
+    partition: Partition,
+    storage: Mapping[str, str],
+    limits: Limits,
+    d: Diagnostics,
+    *,
+    rules: Rules | None = None,
+    crashes: Crashes = CRASHES,
+    with_cell: bool = True,
+    progress: Progress = _nothing,
+    interrupted: Callable[[], bool] = _never,
+) -> Iterator[Answer]:
+    """All checks of a cell; none if it has no channels.
+
+    Args:
+        partition: the cell.
+        storage: as for `Game`.
+        limits: of each exploration.
+        d: gets the errors.
+        rules: of the protocol; None: as it is implemented.
+        crashes: in the exchanges.
+        with_cell: whether the cell's own net is small enough to be explored with its medium.
+        progress, interrupted: as of `Wishes`.
+    """
+    rules = rules or Rules()
+    run = Run(limits, d, progress, interrupted)
+    own = modelled(partition)
+    if not own:
+        return
+    left_out = [c.file for c in partition.channels if c not in own]
+    if with_cell:
+        yield whole(partition, storage, run, rules, left_out)
+    else:
+        yield too_large()
+    seen: dict[Topology, str] = {}
+    for owner in partition.owners[1:]:
+        kind = topology(partition, owner.index)
+        if kind == Topology(0, 0, 0, 0) or kind in seen:
+            continue
+        seen[kind] = owner.name
+        yield exchange(partition, owner.index, run, rules, crashes)
+
+
+def whole(
+    partition: Partition,
+    storage: Mapping[str, str],
+    run: Run,
+    rules: Rules,
+    left_out: Sequence[str] = (),
+) -> Answer:
+    """The cell's own net with its medium; no side crashes."""
+    net = compose(partition, rules, Crashes(lives=False))
+    assumes = "no side crashes"
+    if net.net.timed:
+        assumes += "; messages take no model time"
+    if left_out:
+        assumes += f"; {', '.join(left_out)} between two robots: their messages arrive at once"
+    return _explored(
+        WHOLE,
+        "no message is lost, taken twice, torn, refused or overwritten, and the cell comes to its end",
+        net,
+        storage,
+        run,
+        assumes,
+        judged=bool(partition.final_places),
+    )
+
+
+def too_large() -> Answer:
+    """Of a cell that was not explored to the end by itself."""
+    why = "the cell's own state space was not seen to its end"
+    return Answer(WHOLE, "", "inconclusive", why, 0, 0, 0, 0, 0.0, "no side crashes", ())
+
+
+def exchange(
+    partition: Partition,
+    owner: int,
+    run: Run,
+    rules: Rules,
+    crashes: Crashes = CRASHES,
+) -> Answer:
+    """The exchange between the supervisor and a side, with crashes of both."""
+    skeleton = Skeleton(partition, owner)
+    net = compose(skeleton.partition, rules, crashes, skeleton.extra)
+    name = partition.owners[owner].name
+    assumes = (
+        f"commands and answers as far as {name}'s files allow them, {skeleton.rounds} exchanges a session, "
+        f"at most {crashes.supervisor} crash{'es' * (crashes.supervisor != 1)} of the supervisor and "
+        f"{crashes.robots} of {name}, {crashes.all_sessions} session{'s' * (crashes.all_sessions != 1)}"
+    )
+    return _explored(
+        f"the exchange with {name}",
+        "whoever crashes when, and is started again: no message is lost without a crash, none taken twice or in "
+        "another session, no flag without its own data; both sides end, or go on in the new session",
+        net,
+        {},
+        run,
+        assumes,
+        judged=True,
+    )
+
+
+def _explored(
+    check: str,
+    says: str,
+    net: MediumNet,
+    storage: Mapping[str, str],
+    run: Run,
+    assumes: str,
+    *,
+    judged: bool,
+) -> Answer:
+    began = time.perf_counter()
+    mine = replace(
+        run.limits,
+        max_states=run.limits.max_states or MOST_STATES,
+        graph=True,
+        traces=MOST_TRACES,
+        approximation=None,
+        reductions=(),
+    )
+    sizes = Sizes(choose(net.net, [[] for _ in net.net.places], {}))
+    with tempfile.TemporaryDirectory(prefix="pn2code-") as folder:
+        wishes = Wishes(
+            traces=Path(folder),
+            quick=True,
+            sizes=sizes,
+            questions=_question(net) if judged else "",
+            evidence=Path(folder),
+            progress=run.progress,
+            interrupted=run.interrupted,
+        )
+        found = explore(net.net, storage, mine, run.d, wishes)
+        runs = () if found is None else tuple(_evidence(net, storage, found, judged))
+    answer, why = _verdict(net, found, runs, judged)
+    return Answer(
+        check=check,
+        says=says,
+        answer=answer,
+        why=why,
+        nodes=found.nodes if found else 0,
+        arcs=found.arcs if found else 0,
+        places=len(net.net.places),
+        transitions=len(net.net.transitions),
+        seconds=time.perf_counter() - began,
+        assumes=assumes,
+        evidence=runs,
+    )
+
+
+def _question(net: MediumNet) -> str:
+    """Whether an end, or a verdict, can be reached from everywhere: AG EF."""
+    lines = ["dead", *(f"enabled {t}" for t in net.ends)]
+    last = 0
+    for i in range(1, len(net.ends) + 1):
+        lines.append(f"or {last} {i}")
+        last = len(lines) - 1
+    lines += [f"ef {last}", f"ag {last + 1}", f"? initially {last + 2}"]
+    return "\n".join(lines) + "\n"
+
+
+def _evidence(
+    net: MediumNet, storage: Mapping[str, str], found: Exploration, judged: bool
+) -> Iterator[Evidence]:
+    """The shortest run to each fault, and one to a deadlock, or to where no end can be reached from."""
+    teller = Teller(net, storage)
+    seen: set[Fault | None] = set() if judged else {None}
+    for trace in sorted(found.traces, key=lambda t: t.steps):
+        lines, fault = teller.told(trace.file)
+        if fault not in seen:
+            seen.add(fault)
+            yield Evidence(fault, trace.steps, lines)
+    for answer in found.answers:
+        if answer["answer"] == "no" and None not in seen and answer["trace"]:
+            lines, _ = teller.told(Path(answer["trace"]))
+            yield Evidence(
+                None, answer["steps"], (*lines[:-1], "and from here no end can be reached")
+            )
+
+
+def _verdict(
+    net: MediumNet, found: Exploration | None, runs: tuple[Evidence, ...], judged: bool
+) -> tuple[Verdict, str]:
+    if found is None or found.error is not None:
+        return "inconclusive", "it could not be explored"
+    if runs or found.fired[net.ending]:
+        return "no", ""
+    if not found.complete:
+        return "inconclusive", f"the exploration is not complete: {found.why}"
+    if judged and (found.dead_count or any(a["answer"] != "yes" for a in found.answers)):
+        return "no", ""
+    return "yes", ""
