@@ -34,6 +34,8 @@ MUTEX_ROWS: list[Row] = [
     ("always tokens(Crit) = 1 || tokens(Free) = 1", True),
     ("mutex { cf (a, Mark.Top'Crit 1) > 0 }, { cf (b, Mark.Top'Crit 1) > 0 }", True),
     ("mutex Want, Crit", False),
+    ("always tokens(Idle, Want, Crit) = 2", True),
+    ("always tokens(Want, Crit) < tokens(Idle, Free)", False),
     ("always { Mark.Top'Idle 1 ++ Mark.Top'Want 1 ++ Mark.Top'Crit 1 == 1`a ++ 1`b }", True),
     ("ctl AG ({ contains (Mark.Top'Want 1) [a] } -> EF { contains (Mark.Top'Crit 1) [a] })", True),
     ("ctl AG ({ contains (Mark.Top'Want 1) [a] } -> AF { contains (Mark.Top'Crit 1) [a] })", False),

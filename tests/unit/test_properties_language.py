@@ -183,6 +183,7 @@ WRONG = [
     ('bound "Top.Stok" <= 3', "the net has no place `Top.Stok`", 7, "`Top.Stock`"),
     ("bound 4 <= Stock <= 3", "no number is at least 4", 12),
     ("bound Stock <= 99999999999 ", "", 0),
+    ("always tokens(Stock, Bix) <= 9", "the net has no place `Bix`", 22, "`Top'Box`"),
     ("always tokens(Stock) <= 9999999999", "greater than any number of tokens", 8),
     ("always { Mark.Top'Stok 1 = [] }", "the net has no place `Top'Stok`", 10, "did you mean `Top'Stock`?"),
     ("always { Mark.Sub'Own = [] }", "place `Sub'Own` has 2 instances", 10),

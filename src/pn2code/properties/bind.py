@@ -226,7 +226,7 @@ class Binder:
             case t.Tokens():
                 return self._tokens(f)
             case t.Marked(name, span):
-                return self._tokens(t.Tokens(">=", name, 1, span))
+                return self._tokens(t.Tokens(">=", (name,), 1, span))
             case t.Enabled(name, _):
                 index = self.names.transition(name)
                 return None if index is None else m.Atom("enabled", index)
@@ -340,12 +340,17 @@ class Binder:
                 sides.append(core.Lit(side, INT, f.span))
                 texts.append(str(side))
                 continue
-            place = self.names.place(side)
-            if place is None:
+            found = [self.names.place(name) for name in side]
+            known = [place for place in found if place is not None]
+            if len(known) < len(found):
                 return None
-            places[place] = self._marks.symbol(place)
-            texts.append(f"tokens({self.names.place_text(place)})")
-            sides.append(_size(places[place], marking_type(self._net.places[place]), f.span))
+            places.update((place, self._marks.symbol(place)) for place in known)
+            texts.append(f"tokens({', '.join(map(self.names.place_text, known))})")
+            sizes = [
+                _size(places[place], marking_type(self._net.places[place]), f.span)
+                for place in known
+            ]
+            sides.append(_sum(sizes, f.span))
         exp = _compared(f.operator, sides[0], sides[1], f.span)
         text = f"{texts[0]} {f.operator} {texts[1]}"
         used = tuple((places[p], p) for p in sorted(places))
@@ -366,6 +371,15 @@ def _size(symbol: core.Symbol, marking: Type, span: Span) -> core.Exp:
     token = marking.args[0]  # type: ignore[union-attr]
     function = core.Builtin("List.length", TFun(marking, INT), span, (token,))
     return core.Apply(function, core.Var(symbol, marking, span), INT, span)
+
+
+def _sum(numbers: Sequence[core.Exp], span: Span) -> core.Exp:
+    total = numbers[0]
+    for number in numbers[1:]:
+        pair = core.RecordExp((("1", total), ("2", number)), tuple_of(INT, INT), span)
+        plus = core.Builtin("Int.+", TFun(pair.type, INT), span)
+        total = core.Apply(plus, pair, INT, span)
+    return total
 
 
 def _compared(operator: str, left: core.Exp, right: core.Exp, span: Span) -> core.Exp:

@@ -56,7 +56,7 @@ fair: (STRONG | WEAK)? (name | ALL)
      | operand "<" operand -> less
      | operand ">" operand -> more
      | ML -> ml
-operand: INT | "tokens" "(" name ")"
+operand: INT | "tokens" "(" name ("," name)* ")"
 name: NAME INT? | STRING
 
 STRONG: "strong"

@@ -349,8 +349,8 @@ class _Builder(Transformer[Token, Any]):
     def _compare(self, operator: str, left: Any, right: Any, meta: Meta) -> t.Formula:
         return t.Tokens(operator, left, right, self._span(meta))
 
-    def operand(self, _: Meta, c: list[Any]) -> int | t.Name:
-        return c[0] if isinstance(c[0], t.Name) else int(c[0])
+    def operand(self, _: Meta, c: list[Any]) -> int | tuple[t.Name, ...]:
+        return tuple(c) if isinstance(c[0], t.Name) else int(c[0])
 
     def ml(self, meta: Meta, c: list[Any]) -> t.Formula:
         inside = part(self._source, meta.start_pos + 1, meta.end_pos - 1)

@@ -42,11 +42,11 @@ class Ml:
 
 @frozen
 class Tokens:
-    """`tokens(..) <= 3`: numbers, or numbers of tokens, compared with a CPN ML operator."""
+    """`tokens(P, Q) <= 3`: numbers, or numbers of tokens in some places, compared with a CPN ML operator."""
 
     operator: str
-    left: int | Name
-    right: int | Name
+    left: int | tuple[Name, ...]
+    right: int | tuple[Name, ...]
     span: Span = field(compare=False, repr=False)
 
 
