@@ -23,7 +23,7 @@ from pn2code.net.flat import FlatNet
 from pn2code.net.predicate import Predicate
 from pn2code.semantics.files import Files
 from pn2code.semantics.game import Game
-from pn2code.structure import bounds_and_sums
+from pn2code.structure import Sum, bounds_and_sums
 from pn2code.structure.bounds import PlaceBound
 from pn2code.toolchain import programs
 from pn2code.toolchain.programs import Host
@@ -39,6 +39,8 @@ MEMORY = 1 << 26
 """Bytes for the lists and strings of one thread, at first."""
 MOST_MEMORY = 1 << 32
 GROWTH = 4
+Structure = tuple[Mapping[int, PlaceBound], tuple[Sum, ...]]
+"""What `bounds_and_sums` gives."""
 FEW = 2
 """Places that get more one by one, before all do that may need it."""
 
@@ -62,10 +64,8 @@ class Sizes:
     enlarged: int = 0
 
     @staticmethod
-    def start(
-        net: FlatNet, storage: Mapping[str, str], known: Mapping[int, PlaceBound] | None = None
-    ) -> Sizes:
-        """From what the places hold at first, and the bounds that the structure proves (unless they are `known`).
+    def start(net: FlatNet, storage: Mapping[str, str], known: Structure | None = None) -> Sizes:
+        """From what the places hold at first, and what the structure proves (unless that is `known`).
 
         Raises:
             GameError: a declaration or an initial marking raises an exception.
@@ -75,7 +75,7 @@ class Sizes:
         room = {
             p.name: max(ROOM, 2 * len(tokens)) for p, tokens in zip(net.places, counts, strict=True)
         }
-        bounds, sums = (known, ()) if known else bounds_and_sums(net, storage=storage)
+        bounds, sums = known or bounds_and_sums(net, storage=storage)
         proven = {k: b.per_colour for k, b in bounds.items() if b.per_colour is not None}
         more = {k: n for k, n in room.items() if n > ROOM}
         return Sizes(

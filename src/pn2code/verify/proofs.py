@@ -18,14 +18,13 @@ from pn2code.cell.divide import PlaceFinder
 from pn2code.cell.partition import Partition
 from pn2code.diagnostics import Diagnostics, Note
 from pn2code.semantics.game import Game, GameError
-from pn2code.structure import bounds
-from pn2code.structure.bounds import PlaceBound
+from pn2code.structure import bounds_and_sums
 from pn2code.toolchain.build import TOOL_MISSING
 from pn2code.verify import control, rooms
 from pn2code.verify.codes import BEYOND_ROOM, CONTROL_FAILED, CONTROL_OPEN
 from pn2code.verify.control import Check, Control, Plan
 from pn2code.verify.limits import Limits, cores
-from pn2code.verify.programs import Sizes
+from pn2code.verify.programs import Sizes, Structure
 
 MOST_STATES = 1_000_000
 MOST_SECONDS = 30.0
@@ -61,7 +60,8 @@ def prove(
     """
     net = partition.net
     storage = config.storage if config else {}
-    structural = bounds(net, storage=storage, given=_given(partition, storage))
+    structure = bounds_and_sums(net, storage=storage, given=_given(partition, storage))
+    structural = structure[0]
     declared = _declared(partition, config, d)
     if declared is None:
         return None
@@ -75,7 +75,7 @@ def prove(
         order_decides=config.supervisor.order_decides,
         quick=True,
     )
-    looked = _look(partition, plan, structural, d)
+    looked = _look(partition, plan, structure, d)
     if looked is None:
         return None
     for check in looked.failed:
@@ -122,14 +122,12 @@ def _declared(
     return found
 
 
-def _look(
-    partition: Partition, plan: Plan, structural: Mapping[int, PlaceBound], d: Diagnostics
-) -> Control | None:
+def _look(partition: Partition, plan: Plan, structure: Structure, d: Diagnostics) -> Control | None:
     """The checks; open ones where the state space cannot be had. None after an error that has nothing to do with it."""
     own = Diagnostics()
     limits = Limits(max_states=MOST_STATES, max_seconds=MOST_SECONDS, threads=cores(), traces=0)
     try:
-        sizes = Sizes.start(partition.net, plan.storage, structural)
+        sizes = Sizes.start(partition.net, plan.storage, structure)
         found = control.examine(partition, replace(plan, sizes=sizes), limits, own)
     except GameError as error:
         error.report(d)

@@ -26,6 +26,8 @@ DECLARED = "declared"
 SPACE = "state space"
 ASSUMED = "assumed"
 _LISTED = 5
+_MOST_ENTRIES = 1 << 16
+"""Of an array. More different tokens than that, and the program stops safely, whatever is proven."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -93,6 +95,7 @@ def with_rooms(net: ir.NetIR, found: Sequence[Room]) -> ir.NetIR:
         if room.bound is not None:
             few = 0 if place.timed else colours(descriptors, place.table)
             capacity = max(min(room.bound, few) if few else room.bound, 1)
+            capacity = min(capacity, max(place.capacity, _MOST_ENTRIES))
         places.append(replace(place, capacity=capacity, bound=room.bound, proof=room.proof))
     return replace(net, places=tuple(places))
 
