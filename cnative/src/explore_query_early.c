@@ -48,6 +48,7 @@ bool ex_early_make(ex_worker_t *worker)
         for (uint32_t i = 0U; i < queries->questions; i++) {
             if (is_early(queries, &queries->question[i])) {
                 queries->item[queries->question[i].a].is_early = true;
+                (void)atomic_fetch_add(&queries->open_early, 1U);
             }
         }
         for (uint32_t i = queries->items; i > 0U; i--) {
@@ -56,7 +57,6 @@ bool ex_early_make(ex_worker_t *worker)
                 queries->item[item->a].is_early = true;
                 queries->item[item->b].is_early = true;
             }
-            queries->needs_early = queries->needs_early || item->is_early;
             queries->needs_enabled = queries->needs_enabled || (item->is_early && (item->kind == EX_ITEM_ENABLED));
         }
     }
@@ -147,7 +147,7 @@ void ex_early_see(ex_worker_t *worker, const ex_key_t *key, ex_found_t found)
 {
     ex_run_t *const run = worker->run;
     ex_queries_t *const queries = run->queries;
-    if (!queries->needs_early || !load(worker, key)) {
+    if ((atomic_load_explicit(&queries->open_early, memory_order_relaxed) == 0U) || !load(worker, key)) {
         return;
     }
     look(worker, is_same(key, &run->initial), found);
@@ -159,8 +159,11 @@ void ex_early_see(ex_worker_t *worker, const ex_key_t *key, ex_found_t found)
         if (worker->early->raised[question->a]) {
             atomic_store(&question->is_raised, true);
         }
-        if (!atomic_exchange(&question->is_decided, true) && (atomic_fetch_sub(&queries->open, 1U) == 1U)) {
-            ex_stop(run, EX_DECIDED);
+        if (!atomic_exchange(&question->is_decided, true)) {
+            (void)atomic_fetch_sub(&queries->open_early, 1U);
+            if (atomic_fetch_sub(&queries->open, 1U) == 1U) {
+                ex_stop(run, EX_DECIDED);
+            }
         }
     }
 }

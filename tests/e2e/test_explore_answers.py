@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import subprocess
 from pathlib import Path
 
@@ -276,6 +277,46 @@ def test_reductions_that_do_not_keep_the_answer(explorers: Explorers) -> None:
         _, answers = asked.say(lines, "--reduce", reduction.value, "--elements", table)
         assert [a["answer"] for a in answers] == expected
         assert answers[0]["why"] == "reduction"
+
+
+CLOCK = """
+    net Clock
+      colset N = int with 0..2 timed;
+      place S : N = 1`0
+      trans T0
+        in S : 0
+        out S : 1@+2
+      trans T1
+        in S : 1
+        out S : 2@+3
+      trans T2
+        in S : 2
+        out S : 0
+      trans Skip
+        in S : 1
+        out S : 0
+"""
+
+
+def test_reduced_time(explorers: Explorers) -> None:
+    """Nodes have no time then; waits are added up."""
+    asked = ask(explorers, CLOCK, ["ms S = [0]", "ms S = [2]"], "clock")
+    lines = ["pred 0", "pred 1", "ef 1", "ag 2", "? initially 3", "? invariant 1"]
+    lines += [
+        "? within-time f0 s0 5",
+        "? within-time f0 s0 4",
+        "? within-time s1 f0 3",
+        "? within-firings f1 f0 2",
+    ]
+    lines += ["? within-time f0 f2 9", *lasso("-1")]
+    found, answers = asked.say(lines, "--reduce", "time")
+    assert found.report["complete"] and found.report["nodes"] < 10
+    assert [(a["answer"], a["value"]) for a in answers] == [
+        ("yes", None), ("no", None), ("yes", 5), ("no", 5), ("yes", 3), ("yes", 2), ("no", None), ("yes", None)
+    ]  # fmt: skip
+    assert answers[3]["steps"] == 3 and answers[6]["loop"] is not None
+    times = [json.loads(x)["t"] for x in Path(answers[3]["trace"]).read_text().splitlines()[1:]]
+    assert times == [0, 2, 5, 5]
 
 
 def test_the_net_is_the_same_with_conditions() -> None:

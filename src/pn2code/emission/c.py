@@ -395,7 +395,6 @@ class _Emitter:
             "text": p.text,
             "origin": f"property `{p.name}`",
             "lines": s.lines,
-            "uses_marking": _mentions("marking", "\n".join(s.lines)),
         }
 
     def _thresholds(self, t: ir.Transition, variables: tuple[str, ...]) -> list[str]:
