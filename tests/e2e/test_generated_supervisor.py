@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import shutil
 import subprocess
 import threading
 import time
@@ -21,7 +22,6 @@ from pn2code.channels import (
     specs_of,
 )
 from pn2code.diagnostics import Diagnostics
-from pn2code.emission.write import write
 from pn2code.pipeline import generate
 from pn2code.run.supervisor import SupervisorProcess
 
@@ -45,13 +45,12 @@ def specs(root: Path) -> tuple[ChannelSpec, ...]:
 
 
 @pytest.fixture(scope="module")
-def built(root: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
-    folder = tmp_path_factory.mktemp("riveting")
-    generated = generate(root / "examples/riveting", Diagnostics())
-    assert generated is not None
-    write(folder, generated.files)
+def built(riveting_program: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Also with sanitizers."""
+    folder = tmp_path_factory.mktemp("riveting") / "cell"
+    shutil.copytree(riveting_program, folder)
     done = subprocess.run(
-        ["make", "-C", folder, "all", "sanitize"], capture_output=True, text=True, check=False
+        ["make", "-C", folder, "sanitize"], capture_output=True, text=True, check=False
     )
     assert done.returncode == 0, done.stderr
     return folder

@@ -13,6 +13,8 @@ from pn2code.net.front import load
 from pn2code.run.cell import RunOptions, RunResult, run_cell
 from pn2code.semantics.replay import replay
 
+pytestmark = pytest.mark.usefixtures("quick_build")
+
 POSE = r"TCP pose \(-?[\d.]+, -?[\d.]+, -?[\d.]+ mm; -?[\d.]+, -?[\d.]+, -?[\d.]+ deg\)"
 
 

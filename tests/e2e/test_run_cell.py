@@ -21,6 +21,8 @@ from pn2code.run.cell import RunOptions, RunResult, run_cell
 from pn2code.run.engine import Engine
 from pn2code.semantics.replay import replay
 
+pytestmark = pytest.mark.usefixtures("quick_build")
+
 TOLERANCE_MM = 1e-6
 # Condition numbers of robot 2 at the seven rivets in the paper's place for it.
 PAPER_CONDITIONS = (13.9, 14.2, 15.2, 16.9, 20.0, 26.9, 102)

@@ -318,7 +318,24 @@ def test_a_trace_is_not_written_over_what_is_read(tmp_path: Path) -> None:
 
 
 def _environment(tmp_path: Path, **changes: str) -> dict[str, str]:
-    return {**os.environ, "XDG_CACHE_HOME": str(tmp_path / "cache"), **changes}
+    """With a cache of its own, for which everything is compiled anew: as fast as that can be done."""
+    return {
+        **os.environ,
+        "XDG_CACHE_HOME": str(tmp_path / "cache"),
+        "CC": str(_compiler(tmp_path / "quick-cc")),
+        **changes,
+    }
+
+
+def _compiler(path: Path, before: str = "", after: str = "") -> Path:
+    """A compiler that does not optimize, and what it does besides."""
+    real = shutil.which("gcc") or shutil.which("cc")
+    path.write_text(
+        f'#!/bin/sh\n{before}\nfor a; do shift; [ "$a" = -O2 ] && a=-O0; set -- "$@" "$a"; done\n'
+        f'{real} "$@" || exit 1\n{after}\nexit 0\n'
+    )
+    path.chmod(0o755)
+    return path
 
 
 def test_a_second_run_does_not_compile(tmp_path: Path) -> None:
@@ -328,10 +345,7 @@ def test_a_second_run_does_not_compile(tmp_path: Path) -> None:
     kept = sorted(p.name for p in folder.iterdir())
     assert [n.split("-")[0] for n in kept] == ["simulate", "simulate"]
     # A compiler that fails when it compiles, but still says its version.
-    fake = tmp_path / "cc"
-    real = shutil.which("gcc") or shutil.which("cc")
-    fake.write_text(f'#!/bin/sh\n[ "$1" = --version ] && exec {real} --version\nexit 1\n')
-    fake.chmod(0o755)
+    fake = _compiler(tmp_path / "cc", before='[ "$1" = --version ] || exit 1')
     environment = _environment(tmp_path, CC=str(fake))
     other = write(COUNTER.replace("1000", "999"), tmp_path / "other.cpn")
     assert "build-failed" in simulate(other, "--engine", "compiled", env=environment, code=1).stderr
@@ -378,13 +392,8 @@ def test_a_cache_that_cannot_be_written(tmp_path: Path) -> None:
 
 def test_a_program_that_comes_to_a_bad_end(tmp_path: Path) -> None:
     """As it happens when there is not enough memory."""
-    real = shutil.which("gcc") or shutil.which("cc")
-    fake = tmp_path / "cc"
-    fake.write_text(
-        f'#!/bin/sh\n{real} "$@" || exit 1\n'
-        'for a; do [ "$a" = program ] && printf "#!/bin/sh\\nkill -9 \\$\\$\\n" > program; done; exit 0\n'
-    )
-    fake.chmod(0o755)
+    killed = r'[ "$a" = program ] && printf "#!/bin/sh\nkill -9 \$\$\n" > program'
+    fake = _compiler(tmp_path / "cc", after=f"for a; do {killed}; done")
     net = write(COUNTER, tmp_path / "cell.cpn")
     environment = _environment(tmp_path, CC=str(fake))
     done = simulate(net, "--engine", "compiled", env=environment, code=1)

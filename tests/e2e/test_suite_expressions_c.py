@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from helpers.compiled import FAST, Workshop, lowered, run
+from helpers.compiled import Workshop, lowered, run
 from helpers.netbuilder import flat
 from pn2code.diagnostics import NOWHERE, Diagnostics, SourceText
 from pn2code.ml import core
@@ -83,7 +83,7 @@ def outcomes(program: core.Program, part: Typed, workshop: Workshop, name: str) 
 def test_values(shared: Path, tmp_path: Path) -> None:
     program, expressions = typed_expressions(shared / "semantics-suite")
     assert len(expressions) > 80
-    found = outcomes(program, expressions, Workshop.open(tmp_path, FAST), "expressions")
+    found = outcomes(program, expressions, Workshop.open(tmp_path, ("-O0",)), "expressions")
     wrong = [
         f"{text} gives {ours!r}, not {expected!r}"
         for (text, _, expected), ours in zip(expressions, found, strict=True)

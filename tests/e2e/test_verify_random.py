@@ -21,8 +21,8 @@ from helpers.unions import PER_UNION, Outcome, alone, check
 pytestmark = pytest.mark.cc
 
 NETS = amount(24, 400)
-UNIONS = amount(54, 600)
-GROUPS = 27
+UNIONS = amount(52, 600)
+GROUPS = 26
 SEED = int(os.environ.get("PN2CODE_SEED", "0"))
 
 
