@@ -113,6 +113,13 @@ def test_the_interpreter_asks_and_checks_the_answer() -> None:
         assert interpreter.resume(answer) == Fault(words, 1)
 
 
+def test_a_sensor_may_have_the_name_of_a_key_word(tmp_path: Path) -> None:
+    toml = '[sensors.tool]\nvariable = "g"\n'
+    cell = Cell(tmp_path, GRIPPER, ("x in INT", "y out INT"), extra=EXTRA, toml=toml)
+    assert 'sense "tool" into g' in cell.body
+    cell.checked()
+
+
 def test_a_sensor_gives_scalars_only() -> None:
     text = "program t\nvar p : pose begin sense grip into p stop p end program"
     assert diagnosed(text) == [

@@ -98,7 +98,7 @@ def _unasked(
     }
     names = {v.name for x in partition.net.transitions for v in x.variables}
     for sensor in config.sensors:
-        if identifier(sensor.name) not in asked:
+        if sensor.name not in asked:
             d.error(
                 CELL_VALUE,
                 f"sensor `{sensor.name}` is asked by nobody: no robot or device leaves variable "

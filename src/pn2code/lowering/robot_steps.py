@@ -209,8 +209,7 @@ class StepTranslator:
         """The commands of the code segment, and the environment with its outputs."""
         code = situation.step.transition.code
         asked: list[Node] = [
-            Line(t.Sense(identifier(sensor), t.Target(name)))
-            for _, sensor, name in situation.sensed
+            Line(t.Sense(sensor, t.Target(name))) for _, sensor, name in situation.sensed
         ]
         self._acts = False
         if code is None:

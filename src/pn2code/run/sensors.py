@@ -19,8 +19,6 @@ from pn2code.cell.config import CellConfig, SensorConfig
 from pn2code.cell.scalars import Scalar, ScalarKind, scalars_of
 from pn2code.channels.scalars import Malformed, parse_scalars
 from pn2code.diagnostics import Diagnostics, Origin
-from pn2code.lowering.robot_names import identifier
-from pn2code.ml.colsets import Colset
 from pn2code.net.flat import FlatNet
 
 Value = int | float | bool | str
@@ -77,10 +75,8 @@ def load(
         if colset is None or scalars is None or len(scalars) != 1:
             continue  # no program asks it: said when the programs were made
         script = _script(sensor, scalars, tuple(folders), d) if sensor.file else ()
-        choices = () if sensor.file else _choices(sensor, colset, scalars[0], d)
-        out[identifier(sensor.name)] = _Sensor(
-            sensor.seed if seed is None else seed, script, choices
-        )
+        choices = () if sensor.file else _choices(sensor, scalars[0], d)
+        out[sensor.name] = _Sensor(sensor.seed if seed is None else seed, script, choices)
     return Sensors(out) if len(d.errors) == before else None
 
 
@@ -127,9 +123,7 @@ def _script(
     return tuple(out)
 
 
-def _choices(
-    sensor: SensorConfig, colset: Colset, scalar: Scalar, d: Diagnostics
-) -> range | tuple[Value, ...]:
+def _choices(sensor: SensorConfig, scalar: Scalar, d: Diagnostics) -> range | tuple[Value, ...]:
     match scalar.kind:
         case ScalarKind.BOOL:
             return (False, True)
@@ -141,7 +135,7 @@ def _choices(
                 return range(low, high + 1)
     d.error(
         CELL_VALUE,
-        f"sensor `{sensor.name}`: colour set `{colset.name}` has too many values to draw one at random",
+        f"sensor `{sensor.name}`: colour set `{scalar.colset}` has too many values to draw one at random",
         sensor.origin,
         hint='add `file = "..."`, with one value a line',
     )

@@ -43,7 +43,7 @@ write: "write" NAME (SIGNAL | expression ("," expression)*)
 assign: NAME ":=" expression
 tool: TOOL (NAME | STRING) "for" expression
 measure: "measure" expression "into" NAME
-sense: "sense" NAME "into" NAME
+sense: "sense" (NAME | STRING) "into" NAME
 mark: "mark" (NAME ("." NAME)* | STRING) ("with" binding ("," binding)*)?
 binding: (NAME | STRING) "=" datum
 ?datum: expression | record | tuple | null

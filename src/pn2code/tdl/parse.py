@@ -354,7 +354,7 @@ class _Builder(Transformer[Token, Any]):
         return t.Measure(c[0], self._target(c[1]), self._span(meta))
 
     def sense(self, meta: Meta, c: list[Any]) -> t.Sense:
-        return t.Sense(str(c[0]), self._target(c[1]), self._span(meta))
+        return t.Sense(_word(c[0]), self._target(c[1]), self._span(meta))
 
     def mark(self, meta: Meta, c: list[Any]) -> t.Mark:
         names = [x for x in c if isinstance(x, Token)]

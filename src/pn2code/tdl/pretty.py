@@ -151,7 +151,7 @@ def simple(s: t.Simple) -> str:
         case t.Measure(nominal, target):
             return f"measure {expression(nominal)} into {target.name}"
         case t.Sense(sensor, target):
-            return f"sense {sensor} into {target.name}"
+            return f"sense {word(sensor)} into {target.name}"
         case t.Mark(name, binding):
             bound = f" with {', '.join(_binding(b) for b in binding)}" if binding else ""
             return f"mark {transition(name)}{bound}"
