@@ -66,6 +66,9 @@ def test_a_file_beside_the_net(net: Path, tmp_path: Path) -> None:
         assert done.returncode == 0, done.stderr
     drawn = pn2code("draw", net, "--trace", trace, "-o", tmp_path / "steps.html")
     assert drawn.returncode == 0, drawn.stderr
+    steps_page = (tmp_path / "steps.html").read_text()
+    assert f"From step {loop + 1} on the steps are repeated for ever" in steps_page
+    assert f'<a href="#step-{loop}">step {loop}</a> on again' in steps_page
     page = (tmp_path / "report.html").read_text()
     assert "from here on again and again" in page
     assert 'class="answer bad">no<' in page and 'class="answer good">yes<' in page

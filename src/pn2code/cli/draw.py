@@ -116,7 +116,7 @@ def draw(
         _check_instance(state, pages, instance, form)
     drawing = _Drawing(document, pages, _problems(d), state, instance)
     if kind == "html" and moments:
-        _write({Path(output): drawing.steps(path, moments, chosen, last)}, form)
+        _write({Path(output): drawing.steps(path, moments, chosen, last, trace)}, form)
     elif kind == "html":
         _write({Path(output): drawing.html(path)}, form)
     elif kind == "folder":
@@ -302,11 +302,15 @@ class _Drawing:
         shown = replace(self.document, pages=tuple(self.pages))
         return draw_net(shown, Facts(path.name, remark, self.base.problems), figures)
 
-    def steps(self, path: Path, moments: list[Moment], chosen: int, last: int) -> str:
+    def steps(
+        self, path: Path, moments: list[Moment], chosen: int, last: int, trace: Path | None
+    ) -> str:
         """One HTML file with the steps of a trace."""
+        from pn2code.verify.lasso import read_loop
         from pn2code.verify.steps_page import steps_page
 
-        return steps_page(self.document, self.pages, moments, chosen, last, path.name)
+        loop = None if trace is None else read_loop(trace)
+        return steps_page(self.document, self.pages, moments, chosen, last, path.name, loop)
 
     def note_arranged(self, d: Diagnostics) -> None:
         """A note for each page whose positions are ours."""

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import re
 from collections.abc import Sequence
 from contextlib import suppress
@@ -22,6 +21,7 @@ from pn2code.simulate.script import TraceRefusedError
 from pn2code.verify import confirm
 from pn2code.verify.answers import Answer, answers
 from pn2code.verify.codes import TRACE_UNWRITABLE
+from pn2code.verify.lasso import write_loop
 from pn2code.verify.limits import Reduction
 from pn2code.verify.result import Exploration
 
@@ -190,16 +190,6 @@ def _named(given: Sequence[Answer], stem: str) -> tuple[Answer, ...]:
             answer.evidence.trace.replace(trace)
             answer = replace(answer, evidence=replace(answer.evidence, trace=trace))
             if answer.evidence is not None and answer.evidence.loop is not None:
-                _write_loop(trace, answer.evidence.loop)
+                write_loop(trace, answer.evidence.loop)
         named.append(answer)
     return tuple(named)
-
-
-def _write_loop(trace: Path, loop: int) -> None:
-    """The last line of a trace says where its cycle begins."""
-    *lines, last = trace.read_text(encoding="utf-8", errors="surrogateescape").splitlines()
-    end = json.loads(last)
-    if end.get("event") == "end":
-        lines.append(json.dumps({**end, "loop": loop}))
-        text = "".join(f"{line}\n" for line in lines)
-        trace.write_text(text, encoding="utf-8", errors="surrogateescape")

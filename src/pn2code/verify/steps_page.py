@@ -30,6 +30,7 @@ def steps_page(
     chosen: int,
     last: int,
     title: str,
+    loop: int | None = None,
 ) -> str:
     """The HTML file.
 
@@ -39,6 +40,7 @@ def steps_page(
         chosen: the number of the step that is shown first, with all pages.
         last: the number of the last step.
         title: what stands above.
+        loop: so many steps come before those that are repeated for ever; None: none are.
     """
     scenes = {p.id: build(document, p) for p in pages}
     every = [_instances(pages, m) for m in moments]
@@ -77,6 +79,7 @@ def steps_page(
         sections=sections,
         chosen=chosen,
         last=last,
+        again=loop if loop is not None and loop < last else None,
         moments=moments,
         is_timed=any(m.step is not None and m.step.time for m in moments),
     )
