@@ -192,8 +192,6 @@ void ex_early_answer(ex_run_t *run);
 
 /* After the exploration: answers all questions, writes traces. */
 void ex_queries_answer(ex_run_t *run);
-/* Member of the report: ,"queries": [...]; nothing if there are none. */
-void ex_queries_json(const ex_run_t *run, FILE *out);
 /* Calls `visit` for each node, by all threads; false: it said so, or the run stops. */
 typedef bool (*ex_visit_t)(ex_worker_t *worker, void *user, uint32_t node, const ex_key_t *key);
 bool ex_each_node(ex_queries_t *queries, ex_visit_t visit, void *user);
@@ -204,6 +202,11 @@ bool ex_leaf_holds(ex_worker_t *worker, const ex_item_t *item, uint64_t *tokens,
 void ex_doubt(const ex_run_t *run, ex_question_t *question);
 /* Whether the reductions that are used keep the answer. */
 bool ex_is_kept(const ex_queries_t *queries, const ex_question_t *question);
+
+/* --- explore_query_report.c --- */
+
+/* Member of the report: ,"queries": [...]; nothing if there are none. */
+void ex_queries_json(const ex_run_t *run, FILE *out);
 
 /* --- explore_ctl.c --- */
 

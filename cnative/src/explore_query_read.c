@@ -23,33 +23,14 @@
  */
 #define _POSIX_C_SOURCE 200809L /* strtok_r */
 
-#include "explore_query.h"
+#include "explore_query_read.h"
 
 #include <errno.h>
 #include <inttypes.h>
 #include <math.h>
 #include <stdlib.h>
 
-enum {
-    MOST_WORDS = 4096,
-    MOST_NUMBER = 1 << 30
-};
-
-typedef struct reader {
-    ex_queries_t *queries;
-    const char *path;
-    char *rest;         /* of the text */
-    uint64_t line;
-    uint64_t item_room;
-    uint64_t question_room;
-    const char *word[MOST_WORDS];
-    uint32_t words;
-    ex_automaton_t *automaton; /* being read */
-    uint64_t edge_room;
-    bool is_wrong;      /* a line has too many words */
-} reader_t;
-
-static bool complain(const reader_t *r, const char *what, const char *word)
+bool ex_complain(const ex_reader_t *r, const char *what, const char *word)
 {
     (void)fprintf(stderr, "explore: %s:%" PRIu64 ": %s: `%s`\n", r->path, r->line, what, word);
     return false;
@@ -58,7 +39,7 @@ static bool complain(const reader_t *r, const char *what, const char *word)
 /* --- words ----------------------------------------------------------------------------------------------------------- */
 
 /* The next line that says something, in words; false at the end. */
-static bool next_line(reader_t *r)
+bool ex_next_line(ex_reader_t *r)
 {
     r->words = 0U;
     while ((*r->rest != '\0') && (r->words == 0U)) {
@@ -74,9 +55,9 @@ static bool next_line(reader_t *r)
         }
         char *kept = NULL;
         for (char *word = strtok_r(at, " \t\r", &kept); word != NULL; word = strtok_r(NULL, " \t\r", &kept)) {
-            if (r->words == (uint32_t)MOST_WORDS) {
+            if (r->words == EX_MOST_WORDS) {
                 r->is_wrong = true;
-                return complain(r, "too many words", word);
+                return ex_complain(r, "too many words", word);
             }
             r->word[r->words] = word;
             r->words += 1U;
@@ -86,30 +67,30 @@ static bool next_line(reader_t *r)
 }
 
 /* A number below `end`. */
-static bool read_number(const reader_t *r, const char *word, uint64_t end, const char *what, uint32_t *number)
+bool ex_read_number(const ex_reader_t *r, const char *word, uint64_t end, const char *what, uint32_t *number)
 {
     char *rest = NULL;
     errno = 0;
     const unsigned long long value = strtoull(word, &rest, 10);
     *number = (uint32_t)value;
     if ((word[0] < '0') || (word[0] > '9') || (*rest != '\0') || (errno != 0) || (value >= end)) {
-        return complain(r, what, word);
+        return ex_complain(r, what, word);
     }
     return true;
 }
 
-static bool read_item(const reader_t *r, const char *word, uint32_t *number)
+bool ex_read_item(const ex_reader_t *r, const char *word, uint32_t *number)
 {
-    return read_number(r, word, r->queries->items, "there is no such item", number);
+    return ex_read_number(r, word, r->queries->items, "there is no such item", number);
 }
 
-static bool read_transition(const reader_t *r, const char *word, uint32_t *number)
+bool ex_read_transition(const ex_reader_t *r, const char *word, uint32_t *number)
 {
-    return read_number(r, word, pn_net.transition_count, "there is no such transition", number);
+    return ex_read_number(r, word, pn_net.transition_count, "there is no such transition", number);
 }
 
 /* `-` or a number of tokens. */
-static bool read_limit(const reader_t *r, const char *word, uint64_t none, uint64_t *limit)
+static bool read_limit(const ex_reader_t *r, const char *word, uint64_t none, uint64_t *limit)
 {
     char *rest = NULL;
     errno = 0;
@@ -118,21 +99,21 @@ static bool read_limit(const reader_t *r, const char *word, uint64_t none, uint6
         return true;
     }
     *limit = strtoull(word, &rest, 10);
-    return ((word[0] >= '0') && (word[0] <= '9') && (*rest == '\0') && (errno == 0)) || complain(r, "not a number", word);
+    return ((word[0] >= '0') && (word[0] <= '9') && (*rest == '\0') && (errno == 0)) || ex_complain(r, "not a number", word);
 }
 
 /* `s3`: nodes of item 3; `f3`: arcs of transition 3. */
-static bool read_event(const reader_t *r, const char *word, ex_event_t *event)
+static bool read_event(const ex_reader_t *r, const char *word, ex_event_t *event)
 {
     event->is_transition = word[0] == 'f';
     if (event->is_transition) {
-        return read_transition(r, &word[1], &event->number);
+        return ex_read_transition(r, &word[1], &event->number);
     }
-    return (word[0] == 's') ? read_item(r, &word[1], &event->number) : complain(r, "not an event", word);
+    return (word[0] == 's') ? ex_read_item(r, &word[1], &event->number) : ex_complain(r, "not an event", word);
 }
 
 /* Room for one more in a table; NULL: no memory. */
-static void *with_room(void *table, uint64_t used, uint64_t *room, size_t size)
+void *ex_with_room(void *table, uint64_t used, uint64_t *room, size_t size)
 {
     if (used < *room) {
         return table;
@@ -161,12 +142,12 @@ static const form_t s_forms[] = {
     { "ag", EX_ITEM_AG, 1U }, { "eu", EX_ITEM_EU, 2U }, { "au", EX_ITEM_AU, 2U }, { "exa", EX_ITEM_EXA, 1U },
 };
 
-static bool add_item(reader_t *r, const ex_item_t *item)
+bool ex_add_item(ex_reader_t *r, const ex_item_t *item)
 {
     ex_queries_t *const queries = r->queries;
-    ex_item_t *const items = with_room(queries->item, queries->items, &r->item_room, sizeof *items);
+    ex_item_t *const items = ex_with_room(queries->item, queries->items, &r->item_room, sizeof *items);
     if (items == NULL) {
-        return complain(r, "not enough memory", r->path);
+        return ex_complain(r, "not enough memory", r->path);
     }
     queries->item = items;
     items[queries->items] = *item;
@@ -191,17 +172,17 @@ static void classify(const ex_queries_t *queries, ex_item_t *item, bool has_oper
 }
 
 /* The nodes in which a place has so many tokens. */
-static bool read_within(reader_t *r)
+static bool read_within(ex_reader_t *r)
 {
     ex_item_t item = { .kind = EX_ITEM_WITHIN, .is_local = true };
     if (r->words != 4U) {
-        return complain(r, "wrong number of operands", r->word[0]);
+        return ex_complain(r, "wrong number of operands", r->word[0]);
     }
-    return read_number(r, r->word[1], pn_net.place_count, "there is no such place", &item.number) &&
-           read_limit(r, r->word[2], 0U, &item.low) && read_limit(r, r->word[3], UINT64_MAX, &item.high) && add_item(r, &item);
+    return ex_read_number(r, r->word[1], pn_net.place_count, "there is no such place", &item.number) &&
+           read_limit(r, r->word[2], 0U, &item.low) && read_limit(r, r->word[3], UINT64_MAX, &item.high) && ex_add_item(r, &item);
 }
 
-static bool read_state_item(reader_t *r)
+static bool read_state_item(ex_reader_t *r)
 {
     const form_t *form = NULL;
     for (uint32_t i = 0U; i < (sizeof s_forms / sizeof s_forms[0]); i++) {
@@ -211,207 +192,40 @@ static bool read_state_item(reader_t *r)
         return read_within(r);
     }
     if (form == NULL) {
-        return complain(r, "no such item", r->word[0]);
+        return ex_complain(r, "no such item", r->word[0]);
     }
     const bool has_number = (form->kind == EX_ITEM_PRED) || (form->kind == EX_ITEM_ENABLED) || (form->kind == EX_ITEM_EXA);
     const uint32_t wanted = 1U + form->operands + (has_number ? 1U : 0U);
     if (r->words != wanted) {
-        return complain(r, "wrong number of operands", r->word[0]);
+        return ex_complain(r, "wrong number of operands", r->word[0]);
     }
     ex_item_t item = { .kind = form->kind };
     bool is_fine = true;
     if (form->kind == EX_ITEM_PRED) {
-        is_fine = read_number(r, r->word[1], pn_net.predicate_count, "the net has no such predicate", &item.number);
+        is_fine = ex_read_number(r, r->word[1], pn_net.predicate_count, "the net has no such predicate", &item.number);
     } else if (has_number) {
-        is_fine = read_transition(r, r->word[1], &item.number);
+        is_fine = ex_read_transition(r, r->word[1], &item.number);
     }
-    is_fine = is_fine && ((form->operands == 0U) || read_item(r, r->word[wanted - form->operands], &item.a)) &&
-              ((form->operands < 2U) || read_item(r, r->word[wanted - 1U], &item.b));
+    is_fine = is_fine && ((form->operands == 0U) || ex_read_item(r, r->word[wanted - form->operands], &item.a)) &&
+              ((form->operands < 2U) || ex_read_item(r, r->word[wanted - 1U], &item.b));
     if (!is_fine) {
         return false;
     }
     item.b = (form->operands < 2U) ? item.a : item.b;
     classify(r->queries, &item, form->operands > 0U);
-    return add_item(r, &item);
-}
-
-/* --- automata -------------------------------------------------------------------------------------------------------- */
-
-/* `+fT`: transition T is the next; `-fT`: it is not. */
-static bool read_firing(const reader_t *r, const char *word, ex_edge_t *edge)
-{
-    uint32_t transition = 0U;
-    const uint64_t words = ((uint64_t)pn_net.transition_count / 64U) + 1U; /* one bit more than there are transitions */
-    if (!read_transition(r, &word[2], &transition)) {
-        return false;
-    }
-    if (edge->allowed == NULL) {
-        edge->allowed = malloc(words * sizeof *edge->allowed);
-        if (edge->allowed == NULL) {
-            return complain(r, "not enough memory", word);
-        }
-        (void)memset(edge->allowed, 0xff, words * sizeof *edge->allowed);
-    }
-    const uint64_t bit = (uint64_t)1U << (transition % 64U);
-    const uint64_t kept = edge->allowed[transition / 64U];
-    if (word[0] == '+') {
-        (void)memset(edge->allowed, 0, words * sizeof *edge->allowed);
-        edge->allowed[transition / 64U] = kept & bit;
-    } else {
-        edge->allowed[transition / 64U] = kept & ~bit;
-    }
-    return true;
-}
-
-static bool read_literal(const reader_t *r, const char *word, ex_edge_t *edge)
-{
-    if ((word[0] != '+') && (word[0] != '-')) {
-        return complain(r, "not a condition", word);
-    }
-    if (word[1] == 'f') {
-        return read_firing(r, word, edge);
-    }
-    ex_literal_t *const literal = &edge->literal[edge->literals];
-    literal->is_positive = word[0] == '+';
-    edge->literals += 1U;
-    return read_item(r, &word[1], &literal->item);
-}
-
-static bool read_edge(reader_t *r)
-{
-    ex_automaton_t *const automaton = r->automaton;
-    ex_edge_t *const edges = with_room(automaton->edge, automaton->edges, &r->edge_room, sizeof *edges);
-    if ((edges == NULL) || (r->words < 3U)) {
-        return complain(r, "wrong number of operands", r->word[0]);
-    }
-    automaton->edge = edges;
-    ex_edge_t *const edge = &edges[automaton->edges];
-    edge->literal = calloc(r->words, sizeof *edge->literal);
-    bool is_fine = (edge->literal != NULL) && read_number(r, r->word[1], automaton->states, "there is no such state", &edge->from) &&
-                   read_number(r, r->word[2], automaton->states, "there is no such state", &edge->to);
-    for (uint32_t i = 3U; is_fine && (i < r->words); i++) {
-        is_fine = read_literal(r, r->word[i], edge);
-    }
-    automaton->edges += 1U;
-    return is_fine;
-}
-
-/* A transition for which fairness is assumed, and an item for the nodes where it is enabled. */
-static bool add_fair(reader_t *r, const char *word, bool is_strong)
-{
-    ex_automaton_t *const automaton = r->automaton;
-    uint32_t transition = 0U;
-    const size_t count = (size_t)automaton->fair_count + 1U;
-    if (!read_transition(r, word, &transition)) {
-        return false;
-    }
-    automaton->fair = realloc(automaton->fair, count * sizeof *automaton->fair);
-    automaton->is_strong = realloc(automaton->is_strong, count * sizeof *automaton->is_strong);
-    automaton->fair_item = realloc(automaton->fair_item, count * sizeof *automaton->fair_item);
-    if ((automaton->fair == NULL) || (automaton->is_strong == NULL) || (automaton->fair_item == NULL)) {
-        return complain(r, "not enough memory", word);
-    }
-    automaton->fair[count - 1U] = transition;
-    automaton->is_strong[count - 1U] = is_strong;
-    automaton->fair_count += 1U;
-    return true;
-}
-
-/* Fairness needs items, which must not get numbers that later lines count on: they are added at the end of the file. */
-static bool add_fair_items(reader_t *r, const ex_automaton_t *automaton)
-{
-    bool is_fine = true;
-    for (uint32_t i = 0U; is_fine && (i < automaton->fair_count); i++) {
-        const ex_item_t item = { .kind = EX_ITEM_ENABLED, .number = automaton->fair[i], .is_local = true };
-        automaton->fair_item[i] = r->queries->items;
-        is_fine = add_item(r, &item);
-    }
-    return is_fine;
-}
-
-static int by_state(const void *a, const void *b)
-{
-    const ex_edge_t *const first = a;
-    const ex_edge_t *const second = b;
-    return (first->from < second->from) ? -1 : ((first->from > second->from) ? 1 : 0);
-}
-
-static bool finish_automaton(reader_t *r)
-{
-    ex_automaton_t *const automaton = r->automaton;
-    if (automaton->edges > 0U) {
-        qsort(automaton->edge, automaton->edges, sizeof *automaton->edge, by_state);
-    }
-    automaton->first = calloc((size_t)automaton->states + 1U, sizeof *automaton->first);
-    if (automaton->first == NULL) {
-        return complain(r, "not enough memory", r->path);
-    }
-    for (uint32_t i = 0U; i < automaton->edges; i++) {
-        automaton->first[automaton->edge[i].from + 1U] += 1U;
-    }
-    for (uint32_t s = 0U; s < automaton->states; s++) {
-        automaton->first[s + 1U] += automaton->first[s];
-    }
-    r->automaton = NULL;
-    return true;
-}
-
-static bool begin_automaton(reader_t *r)
-{
-    if (!next_line(r) || (strcmp(r->word[0], "automaton") != 0) || (r->words != 3U)) {
-        return complain(r, "an automaton is missing", "lasso");
-    }
-    ex_automaton_t *const automaton = calloc(1U, sizeof *automaton);
-    if (automaton == NULL) {
-        return complain(r, "not enough memory", r->path);
-    }
-    r->automaton = automaton;
-    r->edge_room = 0U;
-    r->queries->question[r->queries->questions - 1U].automaton = automaton;
-    if (!read_number(r, r->word[1], (uint64_t)MOST_NUMBER, "not a number", &automaton->states) ||
-        !read_number(r, r->word[2], automaton->states, "there is no such state", &automaton->initial)) {
-        return false;
-    }
-    automaton->is_accepting = calloc(automaton->states, sizeof *automaton->is_accepting);
-    return (automaton->is_accepting != NULL) || complain(r, "not enough memory", r->path);
-}
-
-static bool read_automaton_line(reader_t *r)
-{
-    bool is_fine = true;
-    if (strcmp(r->word[0], "arc") == 0) {
-        return read_edge(r);
-    }
-    if (strcmp(r->word[0], "end") == 0) {
-        return finish_automaton(r);
-    }
-    const bool is_strong = strcmp(r->word[0], "strong") == 0;
-    const bool is_fairness = is_strong || (strcmp(r->word[0], "weak") == 0);
-    if (!is_fairness && (strcmp(r->word[0], "accepting") != 0)) {
-        return complain(r, "no part of an automaton", r->word[0]);
-    }
-    for (uint32_t i = 1U; is_fine && (i < r->words); i++) {
-        uint32_t state = 0U;
-        if (is_fairness) {
-            is_fine = add_fair(r, r->word[i], is_strong);
-        } else {
-            is_fine = read_number(r, r->word[i], r->automaton->states, "there is no such state", &state);
-            r->automaton->is_accepting[state] = is_fine || r->automaton->is_accepting[state];
-        }
-    }
-    return is_fine;
+    return ex_add_item(r, &item);
 }
 
 /* --- questions ------------------------------------------------------------------------------------------------------- */
 
-static bool read_bound(const reader_t *r, ex_question_t *question)
+static bool read_bound(const ex_reader_t *r, ex_question_t *question)
 {
     /* `a` is the place until all lines are read: its item comes at the end of the file. */
-    return read_number(r, r->word[2], pn_net.place_count, "there is no such place", &question->a) &&
+    return ex_read_number(r, r->word[2], pn_net.place_count, "there is no such place", &question->a) &&
            read_limit(r, r->word[3], 0U, &question->low) && read_limit(r, r->word[4], UINT64_MAX, &question->high);
 }
 
-static bool read_response(const reader_t *r, ex_question_t *question)
+static bool read_response(const ex_reader_t *r, ex_question_t *question)
 {
     char *rest = NULL;
     if (!read_event(r, r->word[2], &question->first) || !read_event(r, r->word[3], &question->second)) {
@@ -420,25 +234,25 @@ static bool read_response(const reader_t *r, ex_question_t *question)
     question->has_most = strcmp(r->word[4], "-") != 0;
     question->most = question->has_most ? strtod(r->word[4], &rest) : 0.0;
     if (question->has_most && ((rest == r->word[4]) || (*rest != '\0') || !isfinite(question->most))) {
-        return complain(r, "not a number", r->word[4]);
+        return ex_complain(r, "not a number", r->word[4]);
     }
-    return (question->kind == EX_ASK_FIRINGS) || pn_net.timed || complain(r, "the net has no time", r->word[1]);
+    return (question->kind == EX_ASK_FIRINGS) || pn_net.timed || ex_complain(r, "the net has no time", r->word[1]);
 }
 
 /* Of a supervisor. */
-static bool read_control(const reader_t *r, ex_question_t *question)
+static bool read_control(const ex_reader_t *r, ex_question_t *question)
 {
     uint32_t most = 0U;
-    bool is_fine = (r->queries->owner != NULL) || complain(r, "the owners of transitions are not told", r->word[1]);
+    bool is_fine = (r->queries->owner != NULL) || ex_complain(r, "the owners of transitions are not told", r->word[1]);
     if (question->kind == EX_ASK_BOUNDED) {
-        is_fine = is_fine && read_number(r, r->word[2], (uint64_t)UINT32_MAX, "not a number", &most);
+        is_fine = is_fine && ex_read_number(r, r->word[2], (uint64_t)UINT32_MAX, "not a number", &most);
         question->has_most = true;
         question->most = (double)most;
     } else if (question->kind == EX_ASK_CONFLUENT) {
-        is_fine = is_fine && read_number(r, r->word[2], 2U, "there is no such run", &question->a);
+        is_fine = is_fine && ex_read_number(r, r->word[2], 2U, "there is no such run", &question->a);
     } else if (question->kind == EX_ASK_BLOCKING) {
         question->has_item = strcmp(r->word[2], "-") != 0;
-        is_fine = is_fine && (!question->has_item || read_item(r, r->word[2], &question->a));
+        is_fine = is_fine && (!question->has_item || ex_read_item(r, r->word[2], &question->a));
     } else {
         /* there is nothing more to read */
     }
@@ -458,7 +272,7 @@ static const asking_t s_askings[] = {
     { "lasso", EX_ASK_LASSO, 2U }, { "within-firings", EX_ASK_FIRINGS, 5U }, { "within-time", EX_ASK_TIME, 5U },
 };
 
-static bool read_question(reader_t *r)
+static bool read_question(ex_reader_t *r)
 {
     ex_queries_t *const queries = r->queries;
     const asking_t *asking = NULL;
@@ -466,11 +280,11 @@ static bool read_question(reader_t *r)
         asking = (strcmp(r->word[1], s_askings[i].word) == 0) ? &s_askings[i] : asking;
     }
     if ((asking == NULL) || (r->words != asking->words)) {
-        return complain(r, "no such question, or the wrong number of operands", (r->words > 1U) ? r->word[1] : "?");
+        return ex_complain(r, "no such question, or the wrong number of operands", (r->words > 1U) ? r->word[1] : "?");
     }
-    ex_question_t *const questions = with_room(queries->question, queries->questions, &r->question_room, sizeof *questions);
+    ex_question_t *const questions = ex_with_room(queries->question, queries->questions, &r->question_room, sizeof *questions);
     if (questions == NULL) {
-        return complain(r, "not enough memory", r->path);
+        return ex_complain(r, "not enough memory", r->path);
     }
     queries->question = questions;
     ex_question_t *const question = &questions[queries->questions];
@@ -481,11 +295,11 @@ static bool read_question(reader_t *r)
     switch (asking->kind) {
     case EX_ASK_INVARIANT:
     case EX_ASK_INITIALLY:
-        return read_item(r, r->word[2], &question->a);
+        return ex_read_item(r, r->word[2], &question->a);
     case EX_ASK_BOUND:
         return read_bound(r, question);
     case EX_ASK_LASSO:
-        return begin_automaton(r);
+        return ex_begin_automaton(r);
     case EX_ASK_FINITE:
     case EX_ASK_BOUNDED:
     case EX_ASK_CONFLUENT:
@@ -501,7 +315,7 @@ static bool read_question(reader_t *r)
 /* --- the file -------------------------------------------------------------------------------------------------------- */
 
 /* What only the questions need gets items with numbers that no line mentions. */
-static bool add_hidden_items(reader_t *r)
+static bool add_hidden_items(ex_reader_t *r)
 {
     ex_queries_t *const queries = r->queries;
     bool is_fine = true;
@@ -511,9 +325,9 @@ static bool add_hidden_items(reader_t *r)
             const ex_item_t item = { .kind = EX_ITEM_WITHIN, .number = question->a, .low = question->low, .high = question->high,
                                      .is_local = true };
             question->a = queries->items;
-            is_fine = add_item(r, &item);
+            is_fine = ex_add_item(r, &item);
         } else if (question->automaton != NULL) {
-            is_fine = add_fair_items(r, question->automaton);
+            is_fine = ex_add_fair_items(r, question->automaton);
         }
     }
     return is_fine;
@@ -549,7 +363,7 @@ static char *read_file(const char *path)
 }
 
 /* `owner O T...`: whose transitions they are; all that are not mentioned are the supervisor's, who has the number 0. */
-static bool read_owner(reader_t *r)
+static bool read_owner(ex_reader_t *r)
 {
     ex_queries_t *const queries = r->queries;
     uint32_t owner = 0U;
@@ -558,11 +372,11 @@ static bool read_owner(reader_t *r)
         queries->owner = calloc((size_t)pn_net.transition_count + 1U, sizeof *queries->owner);
     }
     if (queries->owner == NULL) {
-        return complain(r, "not enough memory", r->path);
+        return ex_complain(r, "not enough memory", r->path);
     }
-    bool is_fine = (r->words > 1U) && read_number(r, r->word[1], (uint64_t)EX_MOST_OWNERS, "there are not so many owners", &owner);
+    bool is_fine = (r->words > 1U) && ex_read_number(r, r->word[1], (uint64_t)EX_MOST_OWNERS, "there are not so many owners", &owner);
     for (uint32_t i = 2U; is_fine && (i < r->words); i++) {
-        is_fine = read_transition(r, r->word[i], &transition);
+        is_fine = ex_read_transition(r, r->word[i], &transition);
         if (is_fine) {
             queries->owner[transition] = owner;
         }
@@ -570,32 +384,32 @@ static bool read_owner(reader_t *r)
     return is_fine;
 }
 
-static bool read_lines(reader_t *r)
+static bool read_lines(ex_reader_t *r)
 {
     bool is_fine = true;
-    while (is_fine && next_line(r)) {
+    while (is_fine && ex_next_line(r)) {
         if (r->automaton != NULL) {
-            is_fine = read_automaton_line(r);
+            is_fine = ex_read_automaton_line(r);
         } else if (strcmp(r->word[0], "?") == 0) {
             is_fine = read_question(r);
         } else if (strcmp(r->word[0], "owner") == 0) {
             is_fine = read_owner(r);
         } else if ((strcmp(r->word[0], "priorities") == 0) && (r->words == 2U) && (strcmp(r->word[1], "own") == 0)) {
-            is_fine = (r->queries->owner != NULL) || complain(r, "the owners of transitions are not told", r->word[0]);
+            is_fine = (r->queries->owner != NULL) || ex_complain(r, "the owners of transitions are not told", r->word[0]);
             r->queries->run->owner_of = r->queries->owner;
         } else {
             is_fine = read_state_item(r);
         }
     }
     is_fine = is_fine && !r->is_wrong;
-    return is_fine && ((r->automaton == NULL) || complain(r, "the automaton has no end", "lasso"));
+    return is_fine && ((r->automaton == NULL) || ex_complain(r, "the automaton has no end", "lasso"));
 }
 
 bool ex_queries_read(ex_run_t *run)
 {
     ex_queries_t *const queries = calloc(1U, sizeof *queries);
     char *const text = read_file(run->options.queries);
-    reader_t *const r = calloc(1U, sizeof *r);
+    ex_reader_t *const r = calloc(1U, sizeof *r);
     if ((queries == NULL) || (text == NULL) || (r == NULL)) {
         (void)fprintf(stderr, "explore: cannot read `%s`\n", run->options.queries);
         free(text);
