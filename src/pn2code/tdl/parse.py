@@ -75,7 +75,19 @@ _WORDS = {
     "GREATER_EQUAL": "`>=`", "PLUS": "`+`", "MINUS": "`-`", "AMPERSAND": "`&`", "TIMES": "`*`",
     "DIVIDE": "`/`",
 }  # fmt: skip
-_STATEMENTS = {"MOVE", "WAIT", "READ", "CLEAR", "WRITE", "MEASURE", "SENSE", "MARK", "STOP", "CALL", "GOTO"}
+_STATEMENTS = {
+    "MOVE",
+    "WAIT",
+    "READ",
+    "CLEAR",
+    "WRITE",
+    "MEASURE",
+    "SENSE",
+    "MARK",
+    "STOP",
+    "CALL",
+    "GOTO",
+}
 _OPERATORS = {
     "OR", "AND", "EQUAL", "NOT_EQUAL", "LESS", "LESS_EQUAL", "GREATER", "GREATER_EQUAL", "PLUS",
     "MINUS", "AMPERSAND", "TIMES", "DIVIDE", "DIV", "MOD", "DOT", "LPAR",
