@@ -5,12 +5,15 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
+from random import Random
 
 import pytest
 
 from helpers.asked import Net
 from helpers.explored import Explorers
 from helpers.property_nets import MUTEX, OWN, SHARED, Row
+from helpers.random_properties import Author
+from helpers.thorough import amount
 from pn2code.properties.meaning import TRUE, Bound, Fairness, Invariant, Linear, Op
 from pn2code.verify import confirm
 
@@ -72,3 +75,15 @@ def test_runs_that_show_something_else(explorers: Explorers) -> None:
     ):
         said = confirm.problem(net.flat, {}, found.properties, answer)
         assert (said is None) if expected is None else expected in (said or ""), (said, expected)
+
+
+@pytest.mark.parametrize("name", ["turns", "ending", "belt"])
+def test_random_properties(explorers: Explorers, name: str) -> None:
+    """Whatever is asked: the explorer and the judge agree, and runs show what they should."""
+    net = Net.of(OWN[name][0])
+    author = Author(Random(name), net.flat)
+    found = net.ask(
+        explorers, [author.property() for _ in range(amount(30, 300))], f"random-{name}"
+    )
+    net.judge(found)
+    assert {a.answer for a in found.answers} == {"yes", "no"}
