@@ -28,6 +28,8 @@ from helpers.random_unions import Union, union
 from helpers.unions import PER_UNION, Outcome, alone, check
 
 ROOT = Path(__file__).resolve().parents[2]
+MOST_FAILURES = 10
+"""Of unions, after which the rest is left."""
 
 
 def verdict(explorers: Explorers, text: str, width: int, options: tuple[object, ...]) -> str:
@@ -62,20 +64,22 @@ def smaller(text: str, said: Callable[[str], str]) -> str:
 
 def unions(explorers: Explorers, given: argparse.Namespace) -> int:
     """Compare nets that are compiled together; 1 when one differs."""
+    if given.only is not None:
+        failures = small(explorers, union(given.seed, PER_UNION), given)
+        print(
+            f"graphs: net {given.only} of union {given.seed}: {'differs' if failures else 'same'}"
+        )
+        return failures
     done = Outcome()
     number, failures = given.seed, 0
-    while done.nets < given.graphs:
+    while done.nets < given.graphs and failures < MOST_FAILURES:
         one = union(number, PER_UNION)
         number += 1
-        if given.only is None:
-            try:
-                done.add(check(explorers, one))
-                continue
-            except AssertionError as difference:
-                print(f"graphs: {difference}", flush=True)
-        else:
-            done.nets = given.graphs
-        failures += small(explorers, one, given)
+        try:
+            done.add(check(explorers, one))
+        except AssertionError as difference:
+            print(f"graphs: {difference}", flush=True)
+            failures += small(explorers, one, given)
     print(f"graphs: {done}; {failures} differ")
     return int(failures > 0)
 
