@@ -52,6 +52,9 @@ MUTEX_ROWS: list[Row] = [
     ("every fires(Enter) is followed by fires(Leave) within 2 firings", True, 2),
     ("every fires(Enter) is followed by fires(Leave) within 1 firings", False),
     ("every tokens(Crit) = 1 is followed by tokens(Free) = 1", True),
+    ("always tokens(Free) = 1", False),
+    ("ltl F G tokens(Crit) = 0", False),
+    ("never enabled(Leave)", False),
 ]
 
 # The same, each with a transition of its own, so that fairness can tell them apart.
@@ -91,6 +94,9 @@ TURNS_ROWS: list[Row] = [
     ("mutex Proc'Crit 1, Proc'Crit 2", True),
     ("mutex Proc'Crit 1, Proc'Want 2", False),
     ("reachable tokens(Proc'Crit 1) = 1 && tokens(Proc'Crit 2) = 1", False),
+    ("ltl F G fires(Proc'Enter 1)", False),
+    ("reachable dead", False),
+    ("bound Top'Free <= 0", False),
 ]
 
 # Philosophers who take the left stick first.
@@ -140,6 +146,9 @@ DINNER_ROWS: list[Row] = [
     ("ltl F dead assuming strong all", False),
     ("every fires(Right) is followed by fires(Down)", True),
     ("every fires(Left) is followed by fires(Right) within 3 firings", False),
+    ("ctl AX<Left> dead", False),
+    ("always enabled(Left)", False),
+    ("reachable enabled(Down) && dead", False),
 ]
 
 # A buffer of two, messages numbered modulo three.
@@ -182,6 +191,9 @@ BUFFER_ROWS: list[Row] = [
     ("ltl F G { Mark.Top'Queue 1 <> [[]] }", False),
     ("reachable { Mark.Top'Queue 1 = [[2, 0]] }", True),
     ("reachable { Mark.Top'Queue 1 = [[2, 1]] }", False),
+    ("reachable dead", False),
+    ("bound Next <= 0", False),
+    ("ltl G F { Mark.Top'Queue 1 = [[]] }", False),
 ]
 
 # It counts down and ends; a token may also be lost.
@@ -221,6 +233,9 @@ ENDING_ROWS: list[Row] = [
     ("every fires(Down) is followed by dead within 4 firings", True, 4),
     ("every fires(Down) is followed by fires(Stop) within 9 firings", False),
     ("always { List.all (fn n => n >= 0 andalso n <= 4) (Mark.Top'Count 1) }", True),
+    ("ctl EG !dead", False),
+    ("reachable tokens(Done) = 1 && tokens(Lost) = 1", False),
+    ("ltl G !fires(Lose)", False),
 ]
 
 # A lamp and a switch with priorities, inhibitor and reset arcs.
@@ -262,6 +277,9 @@ LAMP_ROWS: list[Row] = [
     ("ltl G F fires(Rest)", False),
     ("bound Calls <= 3", True, 3),
     ("bound Room <= 1", False),
+    ("never tokens(On) = 1 && tokens(Calls) = 2", False),
+    ("reachable dead", False),
+    ("mutex Calls, On", False),
 ]
 
 # A belt and a gate with delays.
@@ -297,6 +315,9 @@ BELT_ROWS: list[Row] = [
     ("reachable { time () > 13 }", False),
     ("ltl F tokens(Out) = 3", True),
     ("ltl G (tokens(Moving) >= 1 -> X tokens(Moving) = 0)", False),
+    ("reachable tokens(Moving) = 3", False),
+    ("never tokens(Out) = 3", False),
+    ("every fires(Pass) is followed by fires(Load) within 9 time", False),
 ]
 
 # Two readers or one writer.
@@ -343,6 +364,9 @@ LIBRARY_ROWS: list[Row] = [
     ("ctl E[tokens(Writes) = 0 W enabled(Finish)]", True),
     ("ctl A[tokens(Writes) = 0 R tokens(Reads) = 0]", True),
     ("ctl A[tokens(Writes) = 1 R tokens(Reads) = 0]", False),
+    ("reachable dead", False),
+    ("ctl AF tokens(Writes) = 1", False),
+    ("ltl G F fires(Come)", False),
 ]
 
 OWN: dict[str, tuple[str, list[Row]]] = {
