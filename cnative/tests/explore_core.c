@@ -62,7 +62,37 @@ static void make_run(ex_run_t *run, uint64_t memory)
 {
     (void)memset(run, 0, sizeof *run);
     run->options.memory = memory;
-    run->options.threads = 1U;
+    run->options.threads = 1U + (uint32_t)draw(3U); /* that make large tables grow */
+}
+
+typedef struct part {
+    void (*one)(void *user, uint32_t part);
+    void *user;
+    uint32_t number;
+} part_t;
+
+static void *do_part(void *user)
+{
+    const part_t *part = user;
+    part->one(part->user, part->number);
+    return NULL;
+}
+
+/* What the threads of an exploration do in a pause: here each part has one of its own. */
+void ex_together(ex_run_t *run, uint32_t parts, void (*one)(void *user, uint32_t part), void *user)
+{
+    enum { MOST = 16 };
+    pthread_t thread[MOST];
+    part_t part[MOST];
+    (void)run;
+    check(parts <= (uint32_t)MOST, "too many parts");
+    for (uint32_t i = 0U; i < parts; i++) {
+        part[i] = (part_t){ .one = one, .user = user, .number = i };
+        check(pthread_create(&thread[i], NULL, do_part, &part[i]) == 0, "no thread");
+    }
+    for (uint32_t i = 0U; i < parts; i++) {
+        (void)pthread_join(thread[i], NULL);
+    }
 }
 
 /* --- the store ------------------------------------------------------------------------------------------------------------ */

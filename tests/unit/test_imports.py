@@ -14,6 +14,7 @@ ALLOWED: dict[str, set[str]] = {
     "parser_cache": set(),
     "bytecode": set(),
     "frozen": set(),
+    "whole_file": set(),
     "ml": {"diagnostics"},
     "reading": {"diagnostics"},
     "pnml": {"diagnostics", "ml", "reading"},
@@ -49,7 +50,7 @@ ALLOWED: dict[str, set[str]] = {
             "robot", "tdl", "ml", "lowering", "bytecode", "reading", "drawing", "simulate", "monitors", "structure",
             "convert", "unfold", "verify", "properties", "conform", "medium"},
 }  # fmt: skip
-EVERYWHERE = {"frozen", "private_folder"}
+EVERYWHERE = {"frozen", "private_folder", "whole_file"}
 
 # Of `robot`, the script language may know the commands (plain values) only; of the reports, running only the data.
 ONLY = {("tdl", "robot"): {"pn2code.robot.commands"}}
