@@ -139,4 +139,4 @@ def test_wrong_properties(net: Path, tmp_path: Path) -> None:
     done = pn2code("verify", net, "--properties", wrong, "--format", "concise")
     assert done.returncode == 1
     assert "wrong.toml:3:19: error: this condition draws random numbers" in done.stderr
-    assert pn2code("verify", net, "--properties", tmp_path / "none.toml").returncode == 1
+    assert pn2code("verify", net, "--properties", tmp_path / "none.toml").returncode == 2

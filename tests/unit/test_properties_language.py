@@ -131,6 +131,24 @@ def test_equal_sentences(examined: front.Examined, left: str, right: str) -> Non
     assert asked(examined, left) == asked(examined, right)
 
 
+def test_large_properties(examined: front.Examined) -> None:
+    """Hundreds of parts, and items that exclude each other; nesting has a limit."""
+    many = " && ".join(f"tokens(Stock) <= {i}" for i in range(600))
+    assert asked(examined, f"always {many}").count("and ") == 599
+    assert asked(examined, f"ltl G ({many})").count("automaton 2 0") == 1
+    items = ", ".join(f"tokens(Stock) = {i}" for i in range(60))
+    assert asked(examined, f"mutex {items}").count("not ") == 60 * 59 // 2
+    for text in (
+        "always " + "!" * 400 + "dead",
+        "ltl " + "X " * 400 + "dead",
+        "always " + "(" * 5000,
+    ):
+        found, said = bound(examined, option(text))
+        assert not found.properties
+        assert said.count("error[property-syntax]") == 1
+    assert "X X X" in bound(examined, option("ltl " + "X " * 190 + "dead"))[0].properties[0].holds
+
+
 def test_conditions_know_the_places_they_look_at(examined: front.Examined) -> None:
     found, said = bound(
         examined,

@@ -166,6 +166,8 @@ def verify(
         typer.Option(
             "--properties",
             metavar="FILE",
+            exists=True,
+            dir_okay=False,
             help="Ask all of this file.  (default: NET.properties.toml beside the net, if there is one)",
             show_default=False,
         ),

@@ -39,8 +39,8 @@ fair: (STRONG | WEAK)? (name | ALL)
 
 ?formula: implication | implication "<->" formula -> iff
 ?implication: disjunction | disjunction "->" implication -> implies
-?disjunction: conjunction | disjunction ("||" | "or") conjunction -> disjunction
-?conjunction: binary | conjunction ("&&" | "and") binary -> conjunction
+?disjunction: conjunction | conjunction (("||" | "or") conjunction)+ -> disjunction
+?conjunction: binary | binary (("&&" | "and") binary)+ -> conjunction
 ?binary: unary | unary (U | R | W) binary -> until
 ?unary: atom
       | ("!" | "not") unary -> negation

@@ -53,18 +53,20 @@ def negation(f: Formula) -> Formula:
 
 def conjunction(*parts: Formula) -> Formula:
     """All of them."""
-    found = parts[0] if parts else TRUE
-    for part in parts[1:]:
-        found = Op("and", (found, part))
-    return found
+    return _joined("and", parts) if parts else TRUE
 
 
 def disjunction(*parts: Formula) -> Formula:
     """One of them."""
-    found = parts[0] if parts else Op("not", (TRUE,))
-    for part in parts[1:]:
-        found = Op("or", (found, part))
-    return found
+    return _joined("or", parts) if parts else Op("not", (TRUE,))
+
+
+def _joined(operator: str, parts: tuple[Formula, ...]) -> Formula:
+    """As a balanced tree, so that nobody has to recurse deeply."""
+    if len(parts) == 1:
+        return parts[0]
+    middle = len(parts) // 2
+    return Op(operator, (_joined(operator, parts[:middle]), _joined(operator, parts[middle:])))
 
 
 def looks_at_steps(f: Formula) -> bool:

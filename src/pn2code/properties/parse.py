@@ -295,10 +295,21 @@ class _Builder(Transformer[Token, Any]):
         return t.Operation("implies", tuple(c), None, self._span(meta))
 
     def disjunction(self, meta: Meta, c: list[Any]) -> t.Formula:
-        return t.Operation("or", tuple(c), None, self._span(meta))
+        return self._joined("or", c, self._span(meta))
 
     def conjunction(self, meta: Meta, c: list[Any]) -> t.Formula:
-        return t.Operation("and", tuple(c), None, self._span(meta))
+        return self._joined("and", c, self._span(meta))
+
+    def _joined(self, operator: str, parts: list[t.Formula], span: Span) -> t.Formula:
+        """As a balanced tree: hundreds of parts are no problem for those who recurse over it."""
+        if len(parts) == 1:
+            return parts[0]
+        middle = len(parts) // 2
+        halves = (
+            self._joined(operator, parts[:middle], span),
+            self._joined(operator, parts[middle:], span),
+        )
+        return t.Operation(operator, halves, None, span)
 
     def until(self, meta: Meta, c: list[Any]) -> t.Formula:
         return t.Operation(str(c[1]), (c[0], c[2]), None, self._span(meta))
