@@ -106,7 +106,7 @@ def test_the_picture_is_that_of_the_net(example: tuple[Path, Expected], tmp_path
 @pytest.mark.cc
 def test_verify(example: tuple[Path, Expected], tmp_path: Path) -> None:
     folder, expected = example
-    options = ["--json", "--traces", str(tmp_path), "--threads", "1"]
+    options = ["--json", "--no-medium", "--traces", str(tmp_path), "--threads", "1"]
     done = CliRunner().invoke(app, ["verify", str(folder), *options])
     assert done.exit_code == 0, done.output
     said = json.loads(done.stdout)
@@ -185,7 +185,7 @@ def test_both_engines_simulate_the_same_run(root: Path, tmp_path: Path) -> None:
 
 @pytest.mark.cc
 def test_the_riveting_cell_has_its_properties(root: Path, tmp_path: Path) -> None:
-    options = ["--json", "--traces", str(tmp_path), "--threads", "1"]
+    options = ["--json", "--no-medium", "--traces", str(tmp_path), "--threads", "1"]
     done = CliRunner().invoke(app, ["verify", str(root / "examples/riveting"), *options])
     assert done.exit_code == 0, done.output
     said = json.loads(done.stdout)
