@@ -156,17 +156,19 @@ bool ex_bounds_make(ex_worker_t *worker)
 
 /* --- packed places ------------------------------------------------------------------------------------------------- */
 
-/* The tokens of a place with counters of one bit. */
+/* The tokens of a place with counters of one bit: those of a large place begin with a unit, those of a small one lie in one. */
 static uint32_t count_bits(const uint64_t *word, uint32_t bit, uint32_t colours)
 {
+    const uint64_t *unit = &word[bit / (uint32_t)UNIT_BITS];
     uint32_t total = 0U;
-    for (uint32_t i = 0U; i < colours;) {
-        const uint32_t at = bit + i;
-        const uint32_t left = 64U - (at % 64U);
-        const uint32_t some = ((colours - i) < left) ? (colours - i) : left;
-        const uint64_t mask = (some < 64U) ? (((uint64_t)1U << some) - 1U) : UINT64_MAX;
-        total += (uint32_t)__builtin_popcountll((word[at / 64U] >> (at % 64U)) & mask);
-        i += some;
+    uint32_t left = colours;
+    for (; left >= (uint32_t)UNIT_BITS; left -= (uint32_t)UNIT_BITS) {
+        total += (uint32_t)__builtin_popcountll(*unit);
+        unit = &unit[1];
+    }
+    if (left > 0U) {
+        const uint64_t mask = ((uint64_t)1U << left) - 1U;
+        total += (uint32_t)__builtin_popcountll((*unit >> (bit % (uint32_t)UNIT_BITS)) & mask);
     }
     return total;
 }

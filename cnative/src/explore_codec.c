@@ -285,6 +285,20 @@ bool ex_encode_time(ex_worker_t *worker)
     return true;
 }
 
+/* A part of the key of a successor: a node over words that can be read as they lie there. */
+static inline bool encode_direct(ex_worker_t *worker, const ex_node_t *node, const void *next, uint32_t *number)
+{
+    const uint64_t *const unit = next;
+    const uint64_t *const old = worker->marking;
+    uint64_t lane[EX_TUPLE_LANES];
+    uint64_t difference = 0U;
+    for (uint32_t i = 0U; i < EX_TUPLE_LANES; i++) {
+        lane[i] = unit[node->unit[i]] & node->mask[i];
+        difference |= (unit[node->unit[i]] ^ old[node->unit[i]]) & node->mask[i];
+    }
+    return (difference == 0U) || number_lanes(worker, node->table, lane, number);
+}
+
 /* A part of the key of a successor: a node over words, of which those of bags are in the cells already. */
 static inline bool encode_part(ex_worker_t *worker, const ex_node_t *node, const void *next, bool is_different, uint32_t *number)
 {
@@ -330,7 +344,9 @@ static EX_APART bool encode_flat(ex_worker_t *worker, uint32_t transition, const
         if (c < codec->packed_words) {
             word[i] = slice_of(codec, next, c);
         } else if (c >= codec->words) {
-            is_fine = encode_part(worker, &codec->node[c - codec->words], next, scratch->undone > 0U, &word[i]);
+            const ex_node_t *node = &codec->node[c - codec->words];
+            is_fine = node->is_direct ? encode_direct(worker, node, next, &word[i])
+                                      : encode_part(worker, node, next, scratch->undone > 0U, &word[i]);
         }
     }
     key->low = word[0] | ((uint64_t)word[1] << 32U);

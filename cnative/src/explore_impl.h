@@ -190,6 +190,9 @@ typedef struct ex_node {
     uint32_t count;
     uint32_t parent;   /* node; UINT32_MAX: it is a part of the key */
     uint32_t table;    /* of numbers */
+    bool is_direct;    /* each lane of its tuple is some bits of a unit of the packed part, in their place */
+    uint32_t unit[EX_TUPLE_LANES];
+    uint64_t mask[EX_TUPLE_LANES];
 } ex_node_t;
 
 /* Counters within one unit of 64 bits of the packed part that follow from others: a constant less the terms. */

@@ -27,7 +27,7 @@ static uint64_t home(const ex_index_t *index, uint64_t hash)
     return ex_scaled(hash, index->entries);
 }
 
-static uint64_t tuple_hash(const uint64_t *lane, uint32_t lanes)
+static inline uint64_t tuple_hash(const uint64_t *lane, uint32_t lanes)
 {
     ex_key_t key = { lane[0], (lanes > 1U) ? lane[1] : 0U };
     if (lanes > 2U) {
@@ -39,24 +39,53 @@ static uint64_t tuple_hash(const uint64_t *lane, uint32_t lanes)
     return ex_hash(&key);
 }
 
-static uint64_t load(const unsigned char *byte, uint32_t length)
+static inline uint64_t load_8(const unsigned char *byte)
 {
-    uint64_t word = 0U;
-    (void)memcpy(&word, byte, length);
+    uint64_t word;
+    (void)memcpy(&word, byte, sizeof word);
     return word;
 }
 
+static inline uint64_t load_4(const unsigned char *byte)
+{
+    uint32_t word;
+    (void)memcpy(&word, byte, sizeof word);
+    return word;
+}
+
+static inline uint64_t folded(uint64_t a, uint64_t b)
+{
+    const ex_wide_t product = (ex_wide_t)a * b;
+    return (uint64_t)product ^ (uint64_t)(product >> 64U);
+}
+
+/* The words at the beginning and at the end may overlap: the length is part of the hash, too. */
 static uint64_t bytes_hash(uint32_t place, const unsigned char *byte, uint32_t length)
 {
-    ex_key_t key = { ((uint64_t)place << 32U) | length, 0x2545f4914f6cdd1dU };
+    uint64_t hash = ((((uint64_t)place << 32U) | length) ^ 0x2545f4914f6cdd1dU) * 0x9e3779b97f4a7c15U;
+    uint64_t first = 0U;
+    uint64_t last = 0U;
     uint32_t at = 0U;
-    for (; (length - at) >= 8U; at += 8U) {
-        key.high ^= load(&byte[at], 8U);
-        key.low = ex_hash(&key);
-        key.high = (key.high << 23U) | (key.high >> 41U);
+    for (; (length - at) > 16U; at += 16U) {
+        hash = folded(load_8(&byte[at]) ^ 0xa0761d6478bd642fU, load_8(&byte[at + 8U]) ^ hash);
     }
-    key.high ^= load(&byte[at], length - at);
-    return ex_hash(&key);
+    if (length >= 16U) {
+        first = load_8(&byte[length - 16U]);
+        last = load_8(&byte[length - 8U]);
+    } else if (length >= 8U) {
+        first = load_8(byte);
+        last = load_8(&byte[length - 8U]);
+    } else if (length >= 4U) {
+        first = load_4(byte);
+        last = load_4(&byte[length - 4U]);
+    } else if (length > 0U) {
+        first = byte[0];
+        last = byte[length / 2U] | ((uint64_t)byte[length - 1U] << 8U);
+    } else {
+        /* Nothing. */
+    }
+    hash = folded(first ^ 0xe7037ed1a0b428dbU, last ^ hash);
+    return folded(hash ^ 0x8ebc6af09c88c6e3U, 0x589965cc75374cc3U);
 }
 
 /* --- the index ----------------------------------------------------------------------------------------------------- */
@@ -185,7 +214,7 @@ void ex_tuples_free(ex_tuples_t *tuples)
     *tuples = (ex_tuples_t){ .lane = NULL };
 }
 
-static bool is_tuple(const ex_tuples_t *tuples, uint64_t number, const uint64_t *lane)
+static inline bool is_tuple(const ex_tuples_t *tuples, uint64_t number, const uint64_t *lane)
 {
     const uint64_t *found = &tuples->lane[number * tuples->lanes];
     uint64_t difference = 0U;

@@ -213,6 +213,27 @@ static void find_parts(ex_codec_t *codec)
     }
 }
 
+/* Whether a node's tuple can be read from the packed part as it lies there, two words at a time, and where. */
+static void find_lanes(const ex_codec_t *codec, ex_node_t *node)
+{
+    node->is_direct = true;
+    for (uint32_t i = 0U; i < EX_TUPLE_LANES; i++) {
+        node->unit[i] = 0U;
+        node->mask[i] = 0U;
+    }
+    for (uint32_t i = 0U; node->is_direct && (i < node->count); i++) {
+        const uint32_t c = node->child[i];
+        const uint32_t shift = (uint32_t)WORD_BITS * (i % 2U);
+        const bool is_there = (c < codec->packed_words) && ((codec->slice_bit[c] % (uint32_t)UNIT_BITS) == shift);
+        const uint32_t unit = is_there ? (codec->slice_bit[c] / (uint32_t)UNIT_BITS) : 0U;
+        node->is_direct = is_there && ((shift == 0U) || (node->unit[i / 2U] == unit));
+        if (node->is_direct) {
+            node->unit[i / 2U] = unit;
+            node->mask[i / 2U] |= (((uint64_t)1U << codec->slice_width[c]) - 1U) << shift;
+        }
+    }
+}
+
 void ex_codec_group(ex_codec_t *codec, uint32_t *word, const uint32_t end[EX_KEY_WORDS], uint32_t parts)
 {
     uint32_t from = 0U;
@@ -234,6 +255,7 @@ void ex_codec_group(ex_codec_t *codec, uint32_t *word, const uint32_t end[EX_KEY
     for (uint32_t n = 0U; n < codec->nodes; n++) {
         codec->is_flat = codec->is_flat && (codec->node[n].table < EX_KEY_WORDS);
         codec->node[n].parent = codec->parent[codec->words + n];
+        find_lanes(codec, &codec->node[n]);
         codec->tuple_words[codec->node[n].table] =
             (codec->node[n].table < EX_KEY_WORDS) ? codec->node[n].count : EX_TUPLE_WORDS;
     }

@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 from collections import Counter
+from dataclasses import replace
 
 from helpers.compiled import lowered
 from helpers.netbuilder import flat
 from pn2code.lowering import ir
-from pn2code.lowering.packing import Packing, bits, choose, packed_bits
+from pn2code.lowering.packing import Packing, bits, choose, key_bits, packed_bits
 from pn2code.semantics.game import Game
+from pn2code.verify.programs import Sizes
 
 NET = """
     net Cell
@@ -99,3 +101,64 @@ def test_no_counter_lies_across_words_and_none_on_another() -> None:
             if n * w <= 64:
                 assert first // 64 == (first + n * w - 1) // 64
         assert packed_bits(net.places) == max(taken) + 1
+
+
+RING = """
+    net Ring
+      standard
+      val n = {n};
+      colset ID = int with 1..n;
+      var i : ID;
+      fun next i = if i = n then 1 else i + 1;
+      place Idle : ID = ID.all ()
+      place Fork : ID = ID.all ()
+      place Busy : ID
+      place Done : ID = {more}
+      trans Start
+        in Idle : i
+        in Fork : 1`i ++ 1`(next i)
+        out Busy : i
+      trans End
+        in Busy : i
+        out Done : i
+        out Fork : 1`i ++ 1`(next i)
+      trans Again
+        in Done : i
+        out Idle : i
+"""
+
+
+def _shares(
+    n: int, more: str = "empty", width: dict[str, int] | None = None
+) -> dict[str, set[str]]:
+    net = flat(RING.format(n=n, more=more))
+    sizes = Sizes.start(net, {})
+    packing = replace(sizes.packing, width={**sizes.packing.width, **(width or {})})
+    compiled, d = lowered(net, packing=packing)
+    assert compiled is not None and not d.has_errors
+    packed = {p.name.removeprefix("Top."): p.packed for p in compiled.places}
+    names = list(packed)
+    kept = max(p.bit + n * p.width for p in packed.values() if p is not None and not p.shares)
+    found: dict[str, set[str]] = {}
+    for name, p in packed.items():
+        assert p is not None
+        if p.shares:
+            found[name] = {names[i] for i, weight in p.shares if weight == 1}
+            assert p.bit >= kept
+    assert key_bits(compiled.places) == kept
+    return found
+
+
+def test_places_that_follow_from_others() -> None:
+    assert _shares(15) == {}  # 60 bits: there is nothing to gain
+    of_ids = {"Idle", "Busy", "Done"}
+    for n in (20, 30, 100):
+        found = _shares(n)
+        assert len(found) == 1
+        ((place, others),) = found.items()
+        assert others | {place} == of_ids
+    # With two tokens of one colour the sum is more than a counter of one bit holds.
+    assert len(_shares(40, "1`1", dict.fromkeys(("Top.Idle", "Top.Busy", "Top.Done"), 2))) == 1
+    assert _shares(40, "1`1", dict.fromkeys(("Top.Idle", "Top.Busy", "Top.Done"), 1)) == {}
+    # Counters of different widths do not lie side by side.
+    assert _shares(40, width={"Top.Idle": 2}) == {}
