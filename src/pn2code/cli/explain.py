@@ -23,6 +23,7 @@ EPILOG = """Examples:
 REGISTERING = (
     "pn2code.cell.codes",
     "pn2code.cli.robot",
+    "pn2code.conform.codes",
     "pn2code.convert.codes",
     "pn2code.drawing.codes",
     "pn2code.lowering.codes",
@@ -40,6 +41,7 @@ REGISTERING = (
     "pn2code.toolchain.build",
     "pn2code.toolchain.programs",
     "pn2code.unfold.codes",
+    "pn2code.properties.codes",
     "pn2code.verify.codes",
 )
 """The modules that declare codes; a verb loads some of them only."""
