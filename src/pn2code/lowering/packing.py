@@ -13,6 +13,7 @@ from __future__ import annotations
 
 from collections.abc import Collection, Iterable, Mapping, Sequence
 from dataclasses import replace
+from typing import Protocol
 
 from pn2code.frozen import frozen
 from pn2code.lowering import ir
@@ -20,7 +21,26 @@ from pn2code.lowering.ir_types import Descriptor, Rep
 from pn2code.ml.colsets import Kind
 from pn2code.ml.types import UNIT
 from pn2code.net.flat import FlatNet
-from pn2code.structure import Sum
+
+
+class Sum(Protocol):
+    """What never changes: a sum of weight * marking of places (`structure.Sum`)."""
+
+    @property
+    def weights(self) -> Mapping[int, int]:
+        """Place -> weight, all positive."""
+        ...
+
+    @property
+    def most(self) -> int:
+        """Most tokens of one colour in it."""
+        ...
+
+    @property
+    def by_colour(self) -> bool:
+        """Whether it holds for each colour; else for the numbers of tokens."""
+        ...
+
 
 MOST_COLOURS = 4096
 MOST_BITS = 8192
@@ -175,7 +195,9 @@ def packed(
     bits_of = {i: n * w for i, (n, w) in sizes.items()}
     shares: dict[int, tuple[tuple[int, int], ...]] = {}
     if sum(bits_of.values()) > KEY_BITS:
-        shares = _shares({p.index: (p.table, *sizes[p.index]) for p in places if p.index in sizes}, packing.sums)
+        shares = _shares(
+            {p.index: (p.table, *sizes[p.index]) for p in places if p.index in sizes}, packing.sums
+        )
     first = _positions(bits_of, shares)
     return tuple(
         replace(
