@@ -335,7 +335,7 @@ def changed(*pairs: tuple[str, str]) -> str:
                 ("      out Idle : ()\n", "      out Idle : ()\n" + LIES),
             ),
             {control.BLOCKING: "no"},
-            "2 steps after the start a token in `Finished` can no more be reached, though the cell goes on",
+            "2 steps after the start a token in `Finished` can no longer be reached, though the cell goes on",
         ),
         (
             "twice",
@@ -428,7 +428,8 @@ def test_generate_refuses_a_supervisor_that_fails(tmp_path: Path) -> None:
     assert " * Not checked: it was generated with --unchecked." in text
 
     runner = CliRunner()
-    arguments = ["verify", str(tmp_path / "cell"), "--json", "--traces", str(tmp_path / "runs")]
+    arguments = ["verify", str(tmp_path / "cell"), "--json", "--no-medium"]
+    arguments += ["--traces", str(tmp_path / "runs")]
     said = runner.invoke(app, [*arguments, "--report", str(tmp_path / "report.html")])
     assert said.exit_code == 1, said.output
     rows = {row["check"]: row for row in json.loads(said.stdout)["controller"]}
@@ -437,8 +438,28 @@ def test_generate_refuses_a_supervisor_that_fails(tmp_path: Path) -> None:
     assert Path(rows["channels"]["evidence"][0]["trace"]).exists()
     assert rows["finite-response"]["answer"] == "yes"
     assert "One message in flight" in (tmp_path / "report.html").read_text()
-    said = runner.invoke(app, ["verify", str(tmp_path / "cell"), "--max-states", "2", "-q"])
+    said = runner.invoke(
+        app, ["verify", str(tmp_path / "cell"), "--max-states", "2", "-q", "--no-medium"]
+    )
     assert said.exit_code == 3, said.output
+
+
+@pytest.mark.parametrize(
+    ("toml", "message"),
+    [
+        (TOML + "[capacity]\nSpair = 3\n", "capacity: the net has no place `Spair`"),
+        (
+            TOML.replace("[[channel]]", 'order = "mine"\n[[channel]]', 1),
+            "`order` is `mine`, but `any` or `documented` is expected",
+        ),
+    ],
+)
+def test_what_is_misspelt_is_said(tmp_path: Path, toml: str, message: str) -> None:
+    (tmp_path / "cell.cpn").write_bytes(netbuilder.cpn(NET))
+    (tmp_path / "cell.toml").write_text(toml)
+    d = Diagnostics()
+    assert pipeline.generate(tmp_path, d) is None
+    assert [e.message for e in d.errors] == [message]
 
 
 STORE = """

@@ -128,6 +128,7 @@ def test_a_cell_that_goes_on_for_ever_is_verified_without_its_time(
         "--set",
         "endless=true",
         "--no-found",
+        "--no-medium",
         "--threads",
         "1",
         "--json",

@@ -47,7 +47,7 @@ def look(
         opened.storage,
         limits,
         d,
-        with_cell=is_small,
+        cell_states=found.nodes if is_small else None,
         progress=progress,
         interrupted=interrupted,
     )

@@ -22,7 +22,7 @@ from pn2code.medium.rules import Rules
 from pn2code.medium.skeleton import Skeleton, Topology, topology
 from pn2code.medium.tell import Teller
 from pn2code.verify.explore import Progress, Wishes, explore
-from pn2code.verify.limits import Limits
+from pn2code.verify.limits import Limits, Reduction
 from pn2code.verify.programs import Sizes
 from pn2code.verify.result import Exploration
 
@@ -39,6 +39,8 @@ Verdict = Literal["yes", "no", "inconclusive"]
 MOST_STATES = 2_000_000
 """Of one exploration, if the user sets no limit."""
 MOST_TRACES = 16
+QUICK_STATES = 2_000
+"""Of a cell: beyond that it pays to have the compiler work longer."""
 WHOLE = "the cell with its medium"
 CRASHES = Crashes(supervisor=1, robots=1)
 """Of each side, in the exchange."""
@@ -105,12 +107,13 @@ class Answer:
 
 @frozen
 class Run:
-    """How to explore: limits, who gets errors, and as of `Wishes`."""
+    """How to explore: limits, who gets errors, and as of `Wishes`. `quick`: rather compile than explore quickly."""
 
     limits: Limits
     d: Diagnostics
     progress: Progress = _nothing
     interrupted: Callable[[], bool] = _never
+    quick: bool = True
 
 
 def medium(
@@ -121,7 +124,7 @@ def medium(
     *,
     rules: Rules | None = None,
     crashes: Crashes = CRASHES,
-    with_cell: bool = True,
+    cell_states: int | None = 0,
     progress: Progress = _nothing,
     interrupted: Callable[[], bool] = _never,
 ) -> Iterator[Answer]:
@@ -134,7 +137,7 @@ def medium(
         d: gets the errors.
         rules: of the protocol; None: as it is implemented.
         crashes: in the exchanges.
-        with_cell: whether the cell's own net is small enough to be explored with its medium.
+        cell_states: of the cell's own net; None: too many to explore it with its medium.
         progress, interrupted: as of `Wishes`.
     """
     rules = rules or Rules()
@@ -143,8 +146,9 @@ def medium(
     if not own:
         return
     left_out = [c.file for c in partition.channels if c not in own]
-    if with_cell:
-        yield whole(partition, storage, run, rules, left_out)
+    if cell_states is not None:
+        quick = cell_states <= QUICK_STATES
+        yield whole(partition, storage, replace(run, quick=quick), rules, left_out)
     else:
         yield too_large()
     seen: dict[Topology, str] = {}
@@ -232,13 +236,13 @@ def _explored(
         graph=True,
         traces=MOST_TRACES,
         approximation=None,
-        reductions=(),
+        reductions=tuple(r for r in run.limits.reductions if r is Reduction.TIME),
     )
     sizes = Sizes(choose(net.net, [[] for _ in net.net.places], {}))
     with tempfile.TemporaryDirectory(prefix="pn2code-") as folder:
         wishes = Wishes(
             traces=Path(folder),
-            quick=True,
+            quick=run.quick,
             sizes=sizes,
             questions=_question(net) if judged else "",
             evidence=Path(folder),
@@ -274,6 +278,11 @@ def _question(net: MediumNet) -> str:
     return "\n".join(lines) + "\n"
 
 
+def _ends(net: MediumNet, found: Exploration) -> Sequence[Mapping[str, Any]]:
+    """The answer to the question; nothing for a cell that is made to go on for ever."""
+    return found.answers if any(found.fired[t] for t in net.ends) else ()
+
+
 def _evidence(
     net: MediumNet, storage: Mapping[str, str], found: Exploration, judged: bool
 ) -> Iterator[Evidence]:
@@ -285,7 +294,7 @@ def _evidence(
         if fault not in seen:
             seen.add(fault)
             yield Evidence(fault, trace.steps, lines)
-    for answer in found.answers:
+    for answer in _ends(net, found):
         if answer["answer"] == "no" and None not in seen and answer["trace"]:
             lines, _ = teller.told(Path(answer["trace"]))
             yield Evidence(
@@ -302,6 +311,6 @@ def _verdict(
         return "no", ""
     if not found.complete:
         return "inconclusive", f"the exploration is not complete: {found.why}"
-    if judged and (found.dead_count or any(a["answer"] != "yes" for a in found.answers)):
+    if judged and (found.dead_count or any(a["answer"] != "yes" for a in _ends(net, found))):
         return "no", ""
     return "yes", ""

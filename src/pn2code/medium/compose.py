@@ -155,6 +155,9 @@ class Composer:
         self.ghost = max(priorities) + 1
         self.local = max(priorities) + 2
         self.slow = max(priorities) + 3
+        # Nobody sees a temporary file, so it matters only to crashes when it is begun. Whether its place is empty is
+        # found out at the earliest: what is empty stays so until its one writer writes.
+        self.unseen = self.slow if crashes.lives else self.local
         self.says: dict[str, str] = {}
         self.fault_place = b.place("medium.fault", b.int)
         self.verdict = b.place("medium.verdict", b.int)
@@ -452,6 +455,7 @@ class Composer:
             self.off(here),
             self.off(f.consumed),
             self.on(half),
+            at=self.unseen,
         )
         done = [self.off(half), self.on(following), *counts]
         for arcs, lost in self._replaced(f):
@@ -504,7 +508,12 @@ class Composer:
             begin = [a for a in begin if a.place != f.zero]
             begin += [self.off(f.zero), self.on(f.half)]
             into = file
-        self.step(f"{name}.begins {file}", f"{name} begins to write a message to {into}", *begin)
+        self.step(
+            f"{name}.begins {file}",
+            f"{name} begins to write a message to {into}",
+            *begin,
+            at=self.unseen if self.rules.renames else None,
+        )
         q = self.number("q")
         counts = [b.take(f.next_out, q), b.put(f.next_out, self._next(q))]
         made = b.pair(v, self.number("s"), q, b.number(0))
