@@ -358,7 +358,7 @@ def _blocking(row: Mapping[str, Any], keep: _Keeper, partition: Partition) -> Ch
     if row["answer"] == "unknown":
         return _open(BLOCKING, row)
     names = [partition.net.places[p].short for p in partition.final_places]
-    final = "no final place" if not names else " or ".join(f"`{n}`" for n in names)
+    final = " or ".join(f"`{n}`" for n in names)
     size = int(row["value"])
     if row["answer"] == "yes":
         how = (
@@ -368,12 +368,13 @@ def _blocking(row: Mapping[str, Any], keep: _Keeper, partition: Partition) -> Ch
         )
         return Check(BLOCKING, "yes", how, size)
     evidence = keep.all(row, BLOCKING)
-    after = f"{evidence[0].steps} steps after the start" if evidence else ""
+    steps = evidence[0].steps if evidence else 0
+    after = f"{steps} step{'s' * (steps != 1)} after the start" if steps else "at the start"
     if row["why"] == "deadlock":
-        without = f" and {final} holds a token" if not names else f", without a token in {final}"
-        says = f"a deadlock {after}: nothing can happen{without if names else ''}"
+        without = f", without a token in {final}" if names else ""
+        says = f"a deadlock {after}: nothing can happen{without}"
     else:
-        says = f"{after} a token in {final} can no more be reached, though the cell goes on"
+        says = f"{after} a token in {final} can no longer be reached, though the cell goes on"
     return Check(BLOCKING, "no", says, size, row["why"], evidence=evidence)
 
 
