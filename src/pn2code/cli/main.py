@@ -133,6 +133,8 @@ def play() -> NoReturn:
     """
     for number in (signal.SIGINT, signal.SIGTERM):
         signal.signal(number, _interrupt)
+    if signal.getsignal(signal.SIGHUP) == signal.SIG_DFL:  # else: `nohup`
+        signal.signal(signal.SIGHUP, _interrupt)
     # Nets are trees: the search for cycles finds nothing, and took a third of the time of checking a large one.
     gc.set_threshold(50_000, 20, 20)
     # Accepted expressions nest up to some 250 levels, each worth several Python frames.
