@@ -462,6 +462,21 @@ def test_what_is_misspelt_is_said(tmp_path: Path, toml: str, message: str) -> No
     assert [e.message for e in d.errors] == [message]
 
 
+def test_without_a_compiler_it_is_not_checked(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    cell(tmp_path / "cell", changed(("place Ready = 1", "place Ready = 2")))
+    monkeypatch.setenv("PATH", str(tmp_path))
+    monkeypatch.delenv("CC", raising=False)
+    d = Diagnostics()
+    generated = pipeline.generate(tmp_path / "cell", d)
+    assert generated is not None, render.report(d)
+    assert [i.code for i in d.items] == ["controller-unchecked"]
+    assert "there is no C compiler" in d.items[0].message
+    (text,) = [f.text for f in generated.files if f.path == "cell_config.c"]
+    assert " * channels: unchecked; not known: there is no C compiler" in text
+
+
 STORE = """
     trans Fill guard [n < 5] priority 100
       in Ready : ()

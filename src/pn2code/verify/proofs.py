@@ -60,7 +60,8 @@ def prove(
     """
     net = partition.net
     storage = config.storage if config else {}
-    structure = bounds_and_sums(net, storage=storage, given=_given(partition, storage))
+    given = _given(partition, storage)
+    structure = bounds_and_sums(net, storage=storage, given=given)
     structural = structure[0]
     declared = _declared(partition, config, d)
     if declared is None:
@@ -84,9 +85,16 @@ def prove(
         _warn_open(looked, config, d)
     space = looked.found
     rooms.warn_exceeded(net, declared.items(), space, d)
-    found = rooms.rooms(partition, declared, structural, space)
-    why = control.WHY.get(looked.open[0].why or "", "") if looked.open else ""
-    rooms.refuse(net, found, why, d)
+    # From a marking that has other tokens than the net's own, more may be reached.
+    found = rooms.rooms(partition, declared, structural, None if given else space)
+    why = looked.open[0].why if looked.open else None
+    if why == "compiler":  # nobody can build it here, either: it will be checked where that is done
+        rooms.warn_assumed(net, found, d)
+    else:
+        other = (
+            f"the file of `{given[0]}` brings a token that the net does not have" if given else ""
+        )
+        rooms.refuse(net, found, other or control.WHY.get(why or "", ""), d)
     if d.has_errors:
         return None
     return Proofs(found, tuple(_verdicts(looked)), looked)
