@@ -197,6 +197,13 @@ static bool number_dirty(ex_worker_t *worker)
     return true;
 }
 
+/* The words were stored one by one: they are loaded so. */
+static inline void join_words(const uint32_t word[EX_KEY_WORDS], ex_key_t *key)
+{
+    key->low = ex_alone(word[0]) | (ex_alone(word[1]) << 32U);
+    key->high = ex_alone(word[2]) | (ex_alone(word[3]) << 32U);
+}
+
 /* The key of the cells. */
 static inline void root_key(const ex_codec_t *codec, const uint32_t *cell, ex_key_t *key)
 {
@@ -204,8 +211,7 @@ static inline void root_key(const ex_codec_t *codec, const uint32_t *cell, ex_ke
     for (uint32_t i = 0U; i < codec->roots; i++) {
         word[i] = cell[codec->root[i]];
     }
-    key->low = word[0] | ((uint64_t)word[1] << 32U);
-    key->high = word[2] | ((uint64_t)word[3] << 32U);
+    join_words(word, key);
 }
 
 /* A word of the vector from the packed part. */
@@ -349,8 +355,7 @@ static EX_APART bool encode_flat(ex_worker_t *worker, uint32_t transition, const
                                       : encode_part(worker, node, next, scratch->undone > 0U, &word[i]);
         }
     }
-    key->low = word[0] | ((uint64_t)word[1] << 32U);
-    key->high = word[2] | ((uint64_t)word[3] << 32U);
+    join_words(word, key);
     undo(scratch);
     return is_fine;
 }
