@@ -50,6 +50,9 @@ class Judge:
         cell: its folder.
         made: what is generated from it.
         flags: for the C compiler, added to `FLAGS`.
+
+    Attributes:
+        occurring: transitions of the supervisor that occur in states that can be reached.
     """
 
     def __init__(self, cell: Path, made: Generated, flags: tuple[str, ...] = ()) -> None:
@@ -62,6 +65,7 @@ class Judge:
         self._room = Path(self._folder.name)
         self._build_all()
         self._initial: dict[str, PlaceMarking] = {}
+        self.occurring: set[int] = set()
         first = self.verdict(None)
         assert first.result == SURVIVED, f"{cell}: without a mutation: {first}"
 
@@ -149,6 +153,7 @@ class Judge:
             return Verdict("killed", str(problem))
         if report.deviation is not None:
             return Verdict("killed", report.deviation.what)
+        self.occurring |= report.transitions
         return Verdict(SURVIVED) if report.complete else Verdict("killed", report.why)
 
     def _read(self, trace: Path) -> dict[str, PlaceMarking]:

@@ -84,9 +84,13 @@ def _row(found: Conformance) -> dict[str, Any]:
         "ok": not found.deviates,
         "complete": found.complete,
         "core": asdict(found.core),
-        "supervisor": asdict(found.supervisor) if found.supervisor else None,
+        "supervisor": _supervisor_row(found.supervisor) if found.supervisor else None,
         "robots": [asdict(r) for r in found.robots],
     }
+
+
+def _supervisor_row(report: Report) -> dict[str, Any]:
+    return {**asdict(report), "transitions": len(report.transitions)}
 
 
 def _lines(found: Conformance) -> list[str]:
@@ -114,7 +118,8 @@ def _core(core: CoreReport) -> str:
 
 def _supervisor(report: Report) -> list[str]:
     counts = (
-        f"{report.states:,} states, {report.cycles:,} cycles, {report.firings:,} firings, "
+        f"{report.states:,} states, {report.cycles:,} cycles, {report.firings:,} firings "
+        f"({len(report.transitions)} of {report.all_transitions} different transitions), "
         f"{report.received:,} messages to it, {report.sent:,} from it"
     )
     if report.deviation is not None:

@@ -62,6 +62,7 @@ class Report:
         states: markings with what was read of them.
         cycles: of the program, each compared.
         firings: of the supervisor in these.
+        transitions: indices of those that occurred in these, of the `all_transitions` that are the supervisor's.
         received, sent: messages to and from the supervisor.
         stops: cycles in which it had to stop, and did.
         complete: every state that can be reached was seen; otherwise `why` says what ended it.
@@ -71,6 +72,8 @@ class Report:
     states: int = 0
     cycles: int = 0
     firings: int = 0
+    transitions: set[int] = field(default_factory=set)
+    all_transitions: int = 0
     received: int = 0
     sent: int = 0
     stops: int = 0
@@ -135,7 +138,7 @@ class _Product:
             if partition.place_owner[p.index] == SUPERVISOR
             and all(c.place != p.index for c in partition.channels)
         ]
-        self.report = Report()
+        self.report = Report(all_transitions=partition.transition_owner.count(SUPERVISOR))
         self._ends = time.monotonic() + (limits.seconds or 0.0)
         self._way: list[str] = []
         self._is_first = True  # before its first cycle the program makes the files
@@ -267,6 +270,7 @@ class _Product:
         self.report.cycles += 1
         expected = self._scheme.cycle(state.marking)
         self.report.firings += len(expected.elements)
+        self.report.transitions.update(e.transition for e in expected.elements)
         stopped = expected.stopped or self._overrun(expected.marking)
         if stopped:
             if answer.ended != "stopped":
