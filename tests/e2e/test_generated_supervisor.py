@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import shutil
 import subprocess
 import threading
@@ -145,6 +146,34 @@ def test_a_run_in_lockstep_sends_the_rows(
             result = supervisor.step(t)
         assert supervisor.wait(DEADLINE_S).code == 0
     assert tuple([printed(row) for row in r.rows] for r in robots) == expected()
+
+
+def test_i5_flags_are_read_before_data(
+    built: Path, root: Path, shared: Path, robots: list[Robot]
+) -> None:
+    """What is published before a flag is there once the flag has been seen; the other way round it may not be."""
+    with SupervisorProcess(
+        built / "supervisor.sanitize",
+        shared,
+        root / "examples/riveting",
+        lockstep=True,
+        verbosity=2,
+    ) as supervisor:
+        join(robots)
+        t = 0.0
+        while sum(robot.obeyed for robot in robots) < 4:
+            supervisor.step(t)
+            for robot in robots:
+                robot.turn()
+            t += 1.0
+        supervisor.step(t)
+        supervisor.stop("enough")
+        said = supervisor.close().stderr
+    received: dict[str, list[str]] = {}
+    for when, name in re.findall(r"([0-9.]+) s  (flag1_externo|medida1)\.robcad: ", said):
+        received.setdefault(when, []).append(name)
+    together = [names for names in received.values() if "medida1" in names]
+    assert together and all(names == ["flag1_externo", "medida1"] for names in together), said
 
 
 def test_a_run_in_real_time_sends_the_rows(
