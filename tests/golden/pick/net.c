@@ -429,9 +429,10 @@ static const uint32_t s_order[] = {
     0U, /* Top.Pick */
 };
 
-/* For hosts that are compiled in one piece with the net: index and name of each transition. */
+/* For hosts that are compiled in one piece with the net: index and name of each transition, and whether each choice of tokens
+ * gives a binding, so that counting them costs nothing. */
 #define NET_TRANSITIONS(EACH) \
-    EACH(0U, Pick)
+    EACH(0U, Pick, false)
 
 typedef union any_binding {
     Pick_binding_t Pick;
