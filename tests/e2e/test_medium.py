@@ -14,8 +14,9 @@ from pn2code.cli.nets import open_net
 from pn2code.cli.options import Exit
 from pn2code.diagnostics import Diagnostics
 from pn2code.medium.check import CRASHES, Answer, Run, exchange, too_large
-from pn2code.medium.compose import Crashes, compose
+from pn2code.medium.compose import compose
 from pn2code.medium.faults import Fault
+from pn2code.medium.places import Crashes
 from pn2code.medium.rules import VARIANTS, Rules
 from pn2code.medium.skeleton import Skeleton, Topology, topology
 from pn2code.semantics.game import Game

@@ -16,8 +16,9 @@ from pn2code.cell.partition import Partition
 from pn2code.diagnostics import Diagnostics
 from pn2code.frozen import frozen
 from pn2code.lowering.packing import choose
-from pn2code.medium.compose import Crashes, MediumNet, compose, modelled
+from pn2code.medium.compose import compose
 from pn2code.medium.faults import SAYS, Fault
+from pn2code.medium.places import Crashes, MediumNet, modelled
 from pn2code.medium.rules import Rules
 from pn2code.medium.skeleton import Skeleton, Topology, topology
 from pn2code.medium.tell import Teller

@@ -13,8 +13,8 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
-from pn2code.medium.compose import ABSENT, FINISHED, RUNNING, STOPPED, MediumNet
 from pn2code.medium.faults import SAYS, Fault
+from pn2code.medium.places import ABSENT, FINISHED, RUNNING, STOPPED, MediumNet
 from pn2code.semantics.colours import TEXTS
 from pn2code.semantics.marking import Marking
 from pn2code.verify.path import play
