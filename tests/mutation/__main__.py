@@ -35,7 +35,8 @@ SCHEDULER = {
 
 
 def of_cell(judge: Judge) -> dict[str, list[Mutant]]:
-    """All mutants of a cell's own programs, by what is mutated: in C, of transitions that occur at all."""
+    """All mutants of a cell's own programs, by what is mutated: of transitions that occur
+    at all, and of lines that are carried out."""
     net = judge.made.partition.net
     own = [re_name(net.transitions[i].name) for i in judge.occurring]
 
@@ -46,7 +47,12 @@ def of_cell(judge: Judge) -> dict[str, list[Mutant]]:
     scripts = sorted(name for name in judge.files if name.endswith(".tdl"))
     return {
         "net.c": list(of_c(judge.files["net.c"], "net.c", is_own)),
-        "scripts": [m for name in scripts for m in of_script(judge.files[name], name)],
+        "scripts": [
+            m
+            for name in scripts
+            for m in of_script(judge.files[name], name)
+            if m.line in judge.lines[name]
+        ],
     }
 
 

@@ -14,6 +14,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from types import TracebackType
 from typing import Self
+from unittest.mock import patch
 
 from tests.mutation.mutants import Mutant
 
@@ -26,6 +27,7 @@ from pn2code.semantics.files import Files
 from pn2code.semantics.game import Game
 from pn2code.semantics.marking import PlaceMarking, place_from_json
 from pn2code.tdl.check import check
+from pn2code.tdl.interpret import Interpreter, Request
 from pn2code.tdl.parse import parse
 
 SECONDS = 10.0
@@ -53,6 +55,7 @@ class Judge:
 
     Attributes:
         occurring: transitions of the supervisor that occur in states that can be reached.
+        lines: of each script those that are carried out there.
     """
 
     def __init__(self, cell: Path, made: Generated, flags: tuple[str, ...] = ()) -> None:
@@ -68,6 +71,7 @@ class Judge:
         self.occurring: set[int] = set()
         first = self.verdict(None)
         assert first.result == SURVIVED, f"{cell}: without a mutation: {first}"
+        self.lines = {name: self._carried_out(name) for name in self.files if ".tdl" in name}
 
     @staticmethod
     def of(cell: Path, *flags: str) -> Judge:
@@ -104,6 +108,20 @@ class Judge:
             if not self._linked(objects, name):
                 return Verdict(NONE, "it does not link")
         return self._of_supervisor(self._room / name)
+
+    def _carried_out(self, name: str) -> frozenset[int]:
+        lines: set[int] = set()
+
+        class Noting(Interpreter):
+            def _step(self) -> Request | None:
+                request = super()._step()
+                lines.add(self.line)
+                return request
+
+        with patch.object(robot, "Interpreter", Noting):
+            own = self._of_script(Mutant(name, 0, "", "", self.files[name]))
+        assert own.result == SURVIVED, f"{self.cell}: {name} without a mutation: {own}"
+        return frozenset(lines)
 
     # --- building ----------------------------------------------------------------------------------
 
