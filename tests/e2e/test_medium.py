@@ -55,13 +55,11 @@ def test_the_protocol_holds_whoever_crashes(cell: Partition) -> None:
     ("variant", "owner", "crashes", "fault"),
     [
         ("flag-before-data", ROBOT2, CALM, Fault.BARE),
-        ("data-read-first", ROBOT1, CALM, Fault.BARE),
         ("not-emptied", ROBOT2, CALM, Fault.REFUSED),
         ("emptied-late", ROBOT2, CALM, Fault.OVERRUN),
         ("overwrites", ROBOT2, CALM, Fault.LOST),
         ("torn", ROBOT2, CALM, Fault.TORN),
         ("not-cleaned", ROBOT2, Crashes(1, 0), Fault.STALE),
-        ("lock-before-unsaid", ROBOT2, Crashes(1, 0), Fault.DEAD),
         ("joins-again", ROBOT2, Crashes(0, 1), Fault.TWICE),
     ],
 )
