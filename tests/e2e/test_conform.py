@@ -112,7 +112,8 @@ def test_another_scheduler_is_found_out(what: str, judge: Judge) -> None:
 FAULTS = {
     "memory is overwritten": (
         "supervisor_cell.c", "    sup_set_time(sup, sup->t);\n",
-        "    sup_set_time(sup, sup->t);\n    sup->net->place[3].clear(sup->marking);\n", "place `Top.Supervisor.Pieces` has changed"),
+        "    sup_set_time(sup, sup->t);\n    sup->net->place[3].clear(sup->marking);\n",
+        "place `Top.Supervisor.Pieces` has changed"),
     "what is not enabled is fired": (
         "supervisor_play.c", "(void)memcpy(first->binding, binding, first->size);",
         "(void)memset(first->binding, 1, first->size);", "is not enabled with"),
