@@ -28,11 +28,30 @@ BAGS = """
         out Lists : n :: l
 """
 
-CONDITIONS = ("List.all (fn n => n > 0) Numbers", "length Lists > 1 andalso length Numbers > 2", "hd Numbers > 0")
+CONDITIONS = (
+    "List.all (fn n => n > 0) Numbers",
+    "length Lists > 1 andalso length Numbers > 2",
+    "hd Numbers > 0",
+)
 QUESTIONS = [
     *("pred 0", "pred 1", "not 1", "pred 2", "eg 1", "au 1 2", "ex 2"),
-    *("? invariant 0", "? invariant 1", "? initially 4", "? initially 5", "? within-firings f0 s1 1"),
-    *("? lasso", "automaton 2 0", "accepting 1", "arc 0 1 +3 -f0", "arc 1 1", "strong 0", "weak 0", "end"),
+    *(
+        "? invariant 0",
+        "? invariant 1",
+        "? initially 4",
+        "? initially 5",
+        "? within-firings f0 s1 1",
+    ),
+    *(
+        "? lasso",
+        "automaton 2 0",
+        "accepting 1",
+        "arc 0 1 +3 -f0",
+        "arc 1 1",
+        "strong 0",
+        "weak 0",
+        "end",
+    ),
 ]
 
 
