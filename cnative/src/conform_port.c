@@ -8,9 +8,9 @@
  *     pop               goes back to the state saved last: {"popped": true}
  *     write NAME HEX    another party publishes a file (its bytes in hexadecimal): {"written": true}
  *     time SECONDS      the clock shows so much since the start: {"time": true}
- *     go                one cycle: {"files": {NAME: TEXT, ...}, "published": [NAME, ...], "marking": {PLACE: [[count, value], ...],
- *                       ...}, "fired": N, "ended": null | "finished" | "stopped"}; "published" has the files in the order in which
- *                       they were replaced; of a program that has ended, the state before is back then
+ *     go                one cycle: {"files": {NAME: TEXT, ...}, "read": [NAME, ...], "published": [NAME, ...], "marking":
+ *                       {PLACE: [[count, value], ...], ...}, "fired": N, "ended": null | "finished" | "stopped"}; "read" and "published"
+ *                       have files in the order in which they were read and replaced; of a program that has ended, the state before is back then
  *
  * At the start the first cycle has been done, and its answer is given unasked.
  */
@@ -50,8 +50,15 @@ static uint64_t s_now_ns = BEGIN_NS;
 static const sup_t *s_sup;              /* the program under test */
 static uint64_t s_fired_before;
 static char s_answer[ANSWER_SIZE];
-static char s_published[FILES_MAX][NAME_SIZE]; /* since the last answer */
-static uint32_t s_published_count;
+
+/* Names of files in the order in which something was done with them, since the last answer. */
+typedef struct names {
+    uint32_t count;
+    char name[FILES_MAX][NAME_SIZE];
+} names_t;
+
+static names_t s_published;
+static names_t s_read;
 
 /* --- files ------------------------------------------------------------------------------------------------------------- */
 
@@ -91,13 +98,31 @@ static int put(memory_file_t *file, const char *data, size_t length)
     return 0;
 }
 
+static void note(names_t *names, const char *name)
+{
+    if (names->count < FILES_MAX) {
+        (void)snprintf(names->name[names->count], NAME_SIZE, "%s", name);
+        names->count++;
+    }
+}
+
+/* Appends "member": [NAME, ...], and forgets them. */
+static void tell(pn_text_t *text, const char *member, names_t *names)
+{
+    pn_text_str(text, member);
+    pn_text_str(text, ": [");
+    for (uint32_t i = 0U; i < names->count; i++) {
+        pn_text_str(text, (i > 0U) ? ", " : "");
+        pn_text_json_str(text, names->name[i]);
+    }
+    pn_text_str(text, "], ");
+    names->count = 0U;
+}
+
 /* Replaces a file by a whole one. */
 static int publish(const char *name, const char *data, size_t length)
 {
-    if (s_published_count < FILES_MAX) {
-        (void)snprintf(s_published[s_published_count], NAME_SIZE, "%s", name);
-        s_published_count++;
-    }
+    note(&s_published, name);
     return put(make(name), data, length);
 }
 
@@ -123,6 +148,7 @@ int pn_port_read(int directory, const char *name, char *buffer, size_t capacity,
 {
     const memory_file_t *const file = find(name);
     (void)directory;
+    note(&s_read, name);
     if (held != NULL) {
         *held = -1;
     }
@@ -276,15 +302,10 @@ static void answer(const char *ended)
             between = ", ";
         }
     }
-    pn_text_str(&text, "}, \"published\": [");
-    between = "";
-    for (uint32_t i = 0U; i < s_published_count; i++) {
-        pn_text_str(&text, between);
-        pn_text_json_str(&text, s_published[i]);
-        between = ", ";
-    }
-    s_published_count = 0U;
-    pn_text_str(&text, "], \"marking\": {");
+    pn_text_str(&text, "}, ");
+    tell(&text, "\"read\"", &s_read);
+    tell(&text, "\"published\"", &s_published);
+    pn_text_str(&text, "\"marking\": {");
     between = "";
     for (uint32_t i = 0U; (s_sup != NULL) && (i < s_sup->net->place_count); i++) {
         const pn_place_t *const place = &s_sup->net->place[i];

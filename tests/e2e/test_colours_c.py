@@ -34,6 +34,16 @@ WRONG = {
 
 
 @pytest.mark.parametrize("engine", ["compiled", "reference"])
+@pytest.mark.parametrize("inscription", ["0`n", "(n - 7)`n"])
+def test_no_tokens_of_it_are_fine(inscription: str, engine: str, tmp_path: Path) -> None:
+    path = tmp_path / "net.cpn"
+    path.write_bytes(cpn(NET.format(colset="SMALL", code="", inscription=inscription)))
+    done = CliRunner().invoke(app, ["simulate", str(path), "--engine", engine])
+    assert done.exit_code == 0, done.output
+    assert "1 step" in done.output
+
+
+@pytest.mark.parametrize("engine", ["compiled", "reference"])
 @pytest.mark.parametrize("what", WRONG)
 def test_it_is_refused(what: str, engine: str, tmp_path: Path) -> None:
     colset, code, inscription = WRONG[what]

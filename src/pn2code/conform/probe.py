@@ -4,7 +4,7 @@ state by state.
 with Probe(program, inputs, trace) as probe:
     first = probe.first                   # the answer after the first cycle
     probe.push([("flag1_externo.robcad", "1\\n# 1 00000001 2b3c...\\n")])
-    after = probe.go()                    # Answer(files, published, marking, fired, ended, reason)
+    after = probe.go()                    # Answer(files, read, published, marking, fired, ended, reason)
     probe.pop()
 """
 
@@ -46,6 +46,7 @@ class Answer:
 
     Args:
         files: name -> text, of all files but temporary ones.
+        read: the files that were read in the cycle, in that order.
         published: the files that were replaced in the cycle, in that order.
         marking: place -> JSON of its tokens, all places of the net; those of others stay as they were at the start.
         fired: occurrences in the cycle.
@@ -54,6 +55,7 @@ class Answer:
     """
 
     files: Mapping[str, str]
+    read: tuple[str, ...]
     published: tuple[str, ...]
     marking: Mapping[str, Any]
     fired: int
@@ -189,6 +191,7 @@ class Probe:
             self.depth -= 1
         return Answer(
             data["files"],
+            tuple(data["read"]),
             tuple(data["published"]),
             data["marking"],
             data["fired"],

@@ -15,7 +15,7 @@ import time
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field, replace
 
-from pn2code.cell.partition import Partition
+from pn2code.cell.partition import ChannelKind, Partition
 from pn2code.channels.message import EMPTY, ChannelSpec, Message, compose, parse, specs_of
 from pn2code.conform.messages import scalars
 from pn2code.conform.probe import SESSION, Answer, Probe
@@ -287,6 +287,7 @@ class _Product:
         sent = self._compare_files(state, expected.marking, answer.files)
         if not self._is_first:
             self._compare_order(state.marking, expected.marking, answer.published)
+            self._compare_reading(answer.read)
         is_final = any(
             len(list(expected.marking.places[p])) > 0 for p in self._partition.final_places
         )
@@ -331,6 +332,18 @@ class _Product:
         if published != (expected := (*emptied, *written)):
             raise _DeviationError(
                 f"files are replaced in the order {', '.join(published) or 'none'}; by docs/protocol.md "
+                f"{', '.join(expected) or 'none'}"
+            )
+
+    def _compare_reading(self, read: tuple[str, ...]) -> None:
+        """Flags are read before data (I5)."""
+        incoming = [c for c in self._partition.channels if c.reader == SUPERVISOR]
+        expected = [c.file for c in incoming if c.kind is ChannelKind.FLAG]
+        expected += [c.file for c in incoming if c.kind is ChannelKind.DATA]
+        found = [name for name in read if name in expected]
+        if found != expected:
+            raise _DeviationError(
+                f"files are read in the order {', '.join(found) or 'none'}; by docs/protocol.md "
                 f"{', '.join(expected) or 'none'}"
             )
 

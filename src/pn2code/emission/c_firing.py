@@ -193,20 +193,27 @@ class DirectFiring(Statements):
                 constant = "" if must_check else "const "
                 self.line(f"{constant}{t} {fresh} = {self._x.text(s.value)};")
             value = f"&{fresh}"
+        count = self._count(s, key, place, is_nested)
         if must_check:
             self.has_checks = True
-            self._check(s, value)
-        count = self._count(s, key, place, is_nested)
+            self._check(s, value, count)
         self._moves_made.append(
             _Move(verb, place, value, count, s.note, self._packed(s.place) is not None)
         )
 
-    def _check(self, s: ir.Take | ir.Put, value: str) -> None:
+    def _check(self, s: ir.Take | ir.Put, value: str, count: str) -> None:
+        """Of no tokens at all (``0`v``) the value may be any."""
         packed = self._packed(s.place)
         if packed and packed.is_pure:
-            self.line(f"{self._x.place_names[s.place]}_check(cx, {value});")
+            check = f"{self._x.place_names[s.place]}_check(cx, {value});"
         else:
-            self.line(f"pn_bag_check(cx, &{self.bags[s.place]}, {value});")
+            check = f"pn_bag_check(cx, &{self.bags[s.place]}, {value});"
+        if is_count(s.count):
+            self.line(check)
+        else:
+            self.line(f"if ({count} > 0U) {{")
+            self.line(f"    {check}")
+            self.line("}")
 
     def _count(self, s: ir.Take | ir.Put, key: tuple[str, int], place: str, is_nested: bool) -> str:
         if is_count(s.count) and not is_nested:
