@@ -14,7 +14,7 @@ import pytest
 
 from helpers.compiled import Workshop, agrees, lowered, run
 from helpers.netbuilder import flat
-from pn2code.cell import config as cell_config
+from pn2code.cell.load import load as load_cell
 from pn2code.diagnostics import Diagnostics
 from pn2code.net import front
 
@@ -513,7 +513,7 @@ def test_static_analysis_finds_nothing(workshop: Workshop, tmp_path: Path) -> No
 
 def test_the_riveting_cell(workshop: Workshop, tmp_path: Path, root: Path) -> None:
     d = Diagnostics()
-    config = cell_config.load(root / "examples" / "riveting", d)
+    config = load_cell(root / "examples" / "riveting", d)
     assert config is not None
     net = front.load(config.net_path, d, config.values)
     assert net is not None

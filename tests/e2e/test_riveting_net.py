@@ -12,8 +12,8 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 from helpers.rivet_rows import Row, printed, rows
-from pn2code.cell import config as cell_config
 from pn2code.cell.divide import divide
+from pn2code.cell.load import load as load_cell
 from pn2code.diagnostics import Diagnostics
 from pn2code.net.flat import ArcKind, FlatNet, FlatPlace
 from pn2code.net.front import load
@@ -138,7 +138,7 @@ def same(ours: Sequence[Row], expected: Sequence[Row]) -> None:
 
 def test_it_divides_among_supervisor_and_robots(nets: dict[bool, FlatNet], root: Path) -> None:
     d = Diagnostics()
-    config = cell_config.load(root / "examples/riveting/cell.toml", d)
+    config = load_cell(root / "examples/riveting/cell.toml", d)
     partition = divide(nets[False], config, d)
     assert partition is not None
     assert not d.items

@@ -34,10 +34,10 @@ def arm_kinematics(model: str = "kr210_r2700", tool: str | None = "drill_riveter
 
 def geometry(layout: str = "good") -> dict[str, Any]:
     """The raw sections of the example's cell.toml with a layout applied."""
-    from pn2code.cell import config
+    from pn2code.cell.load import load
 
     d = Diagnostics()
-    found = config.load(EXAMPLE / "cell.toml", d, layout=layout)
+    found = load(EXAMPLE / "cell.toml", d, layout=layout)
     assert found is not None, list(d)
     return found.geometry
 

@@ -9,8 +9,8 @@ from typing import Any
 
 from helpers.netbuilder import load
 from helpers.scripts import MemoryFiles, source
-from pn2code.cell.config import load as load_cell
 from pn2code.cell.divide import divide
+from pn2code.cell.load import load as load_cell
 from pn2code.cell.partition import Partition
 from pn2code.diagnostics import Diagnostics
 from pn2code.diagnostics.render import report

@@ -6,7 +6,8 @@ from pathlib import Path
 
 import pytest
 
-from pn2code.cell.config import CellConfig, load, ml_literal
+from pn2code.cell.config import CellConfig
+from pn2code.cell.load import load, ml_literal
 from pn2code.cell.partition import ChannelKind
 from pn2code.diagnostics import Diagnostics
 
@@ -133,3 +134,24 @@ def test_missing_file(tmp_path: Path) -> None:
 )
 def test_ml_literals(value: object, text: str) -> None:
     assert ml_literal(value) == text
+
+
+def test_positions_are_those_of_keys_not_of_what_looks_like_them_in_texts(tmp_path: Path) -> None:
+    text = """
+[[property]]
+name = "empty"
+holds = '''always {
+  [] <> Mark.Cell'Buffer 1
+[supervisor]
+}'''
+
+[capacity]
+"Hold #1" = 0
+'Tray.a' = 0 # a = 1
+"""
+    _, d = read(tmp_path, GOOD + text)
+    start = GOOD.count("\n")
+    assert [(e.origin.line - start, e.message.partition(" is ")[0]) for e in d.sorted()] == [
+        (10, "capacity of `Hold #1`"),
+        (11, "capacity of `Tray.a`"),
+    ]

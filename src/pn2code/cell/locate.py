@@ -28,7 +28,7 @@ def locate(
     beside = path.parent / "cell.toml"
     if path.is_file() and path.suffix != ".toml" and not beside.is_file():
         return path, None
-    from pn2code.cell.config import load  # most nets have no cell
+    from pn2code.cell.load import load  # most nets have no cell
 
     if path.is_dir() or path.suffix == ".toml":
         config = load(path, d, layout=layout)
@@ -46,7 +46,6 @@ def _has_net(config: CellConfig, d: Diagnostics) -> bool:
     """Whether the file that `[net] file` names is there."""
     if config.net_path.exists():
         return True
-    assert config.locator is not None
     near = ", ".join(f"`{p.name}`" for p in sorted(config.folder.glob("*.cpn"))[:5])
     d.error(
         codes.CELL_MISSING,

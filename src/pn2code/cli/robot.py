@@ -153,7 +153,7 @@ def _in_cell(
     if found is None:
         return None
     path, config = found
-    if config is None or config.locator is None:
+    if config is None:
         _usage(f"`{cell}` has no cell.toml beside it; give the folder of a cell")
     if name not in {r.name for r in config.programs}:
         known = ", ".join(f"`{r.name}`" for r in config.programs)

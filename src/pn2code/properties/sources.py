@@ -5,13 +5,12 @@ written = [*from_option("deadlock free", 1), *from_file(Path("net.properties.tom
 
 from __future__ import annotations
 
-import re
-import tomllib
 from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
 from pn2code.cell.config import CellConfig
+from pn2code.cell.toml_file import Locator, read
 from pn2code.diagnostics import Diagnostics, Origin, SourceText
 from pn2code.diagnostics.near import did_you_mean
 from pn2code.ml.elaborate import Elaborator
@@ -19,7 +18,6 @@ from pn2code.net.flat import FlatNet
 from pn2code.properties import codes
 from pn2code.properties.bind import Binder, Written
 from pn2code.properties.meaning import Properties
-from pn2code.properties.toml_text import strings
 
 ENDING = ".properties.toml"
 """A file of properties beside `net.cpn` is called `net.properties.toml`."""
@@ -40,63 +38,45 @@ def from_option(text: str, number: int) -> Written:
 
 def from_file(path: Path, d: Diagnostics) -> list[Written]:
     """All of a file; what is wrong is reported."""
-    file = str(path)
-    try:
-        text = path.read_text(encoding="utf-8")
-    except (OSError, UnicodeDecodeError) as problem:
-        reason = (getattr(problem, "strerror", None) or "not UTF-8 text").lower()
-        d.error(
-            codes.FILE,
-            f"cannot read `{file}`: {reason}",
-            Origin(file),
-            hint="docs/properties.md shows what a file of properties looks like",
-        )
+    found = read(
+        path,
+        d,
+        codes.FILE,
+        hint="a text with `\"` in it is written between `'''` and `'''`",
+    )
+    if found is None:
         return []
-    try:
-        data = tomllib.loads(text)
-    except tomllib.TOMLDecodeError as problem:
-        found = re.search(r"\(at line (\d+), column (\d+)\)", str(problem))
-        line, column = (int(found[1]), int(found[2])) if found else (text.count("\n") + 1, 0)
-        message = re.sub(r" \(at .*\)$", "", str(problem))
-        d.error(
-            codes.FILE,
-            f"not a TOML file: {message[:1].lower()}{message[1:]}",
-            Origin(file, line, column),
-            hint="a text with `\"` in it is written between `'''` and `'''`",
-        )
-        return []
+    data, locator = found
     for key in data:
         if key != "property":
             d.error(
                 codes.FILE,
                 f"unknown key `{key}`",
-                Origin(file),
+                Origin(locator.file),
                 hint=did_you_mean(key, ["property"]) or "properties are tables `[[property]]`",
             )
-    return list(_tables(data.get("property", []), text, file, d))
+    return list(_tables(data.get("property", []), locator, d))
 
 
 def from_cell(config: CellConfig | None, d: Diagnostics) -> list[Written]:
     """The tables `[[property]]` of a cell."""
-    if config is None or "property" not in config.raw:
+    if config is None:
         return []
-    text = config.path.read_text(encoding="utf-8")
-    return list(_tables(config.raw["property"], text, str(config.path), d))
+    return list(_tables(config.raw.get("property", []), config.locator, d))
 
 
-def _tables(tables: Any, text: str, file: str, d: Diagnostics) -> Iterator[Written]:
+def _tables(tables: Any, locator: Locator, d: Diagnostics) -> Iterator[Written]:
     if not isinstance(tables, list) or not all(isinstance(t, dict) for t in tables):
         d.error(
             codes.FILE,
             "`property` is no array of tables",
-            Origin(file),
+            Origin(locator.file),
             hint='write each as a table: `[[property]]`, then `name = "..."`, `holds = "..."`',
         )
         return
-    found = strings(text, file)
     for number, table in enumerate(tables):
-        texts = {key: found.get(("property", number, key), []) for key in _KEYS}
-        written = _table(table, texts, file, number, d)
+        texts = {key: locator.strings("property", number, key) for key in _KEYS}
+        written = _table(table, texts, locator.file, number, d)
         if written is not None:
             yield written
 

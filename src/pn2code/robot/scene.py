@@ -27,7 +27,7 @@ from pn2code.robot.motion import MotionLimits
 from pn2code.robot.transforms import Array, matrix_of
 
 Locate = Callable[..., Origin]
-"""Origin of a key, given its path: `Locator.origin` of `pn2code.cell.config`."""
+"""Origin of a key, given its path: `Locator.origin` of `pn2code.cell.toml_file`."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -134,7 +134,6 @@ def prepare(path: Path, options: RunOptions, d: Diagnostics) -> Prepared | None:
             hint="give the folder of a cell, e.g. examples/riveting; docs/cell.md describes cell.toml",
         )
         return None
-    assert config.locator is not None
     robot_cell = scene.load(config.geometry, config.folder, config.locator.origin, d)
     scripts = _scripts(generated, config, d)
     _check_report(config, generated, d)
@@ -150,7 +149,6 @@ def prepare(path: Path, options: RunOptions, d: Diagnostics) -> Prepared | None:
 
 def _check_report(config: CellConfig, generated: pipeline.Generated, d: Diagnostics) -> None:
     """The transitions that are counted must exist."""
-    assert config.locator is not None
     names = [x.name for x in generated.partition.net.transitions]
     for label, name in config.report.occurrences:
         if not any(f".{x}".endswith(f".{name}") for x in names):

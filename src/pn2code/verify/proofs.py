@@ -119,7 +119,6 @@ def _declared(
     """`[capacity]` by place; None when it names what is not there."""
     if config is None or not config.capacity:
         return {}
-    assert config.locator is not None
     find = PlaceFinder(partition.net, d)
     found = {}
     for name, bound in config.capacity.items():

@@ -1,6 +1,8 @@
-"""Where the strings of a TOML file stand: the standard parser keeps no positions, and diagnostics need them.
+"""Where the keys and strings of a TOML file stand: the standard parser keeps no positions, and diagnostics need them.
 
-    strings(text, "x.toml")[("property", 0, "holds")]     # [SourceText("always {..}", Origin("x.toml", 4, 10))]
+    found = positions(text, "x.toml")
+    found.lines["property", "0", "holds"]     # 4
+    found.strings["property", "0", "holds"]   # [SourceText("always {..}", Origin("x.toml", 4, 10))]
 
 Values and mistakes are the parser's business (`tomllib`); here only well-formed files are scanned.
 """
@@ -8,10 +10,13 @@ Values and mistakes are the parser's business (`tomllib`); here only well-formed
 from __future__ import annotations
 
 import re
+from collections.abc import Mapping, Sequence
 
 from pn2code.diagnostics import Origin, SourceText
+from pn2code.frozen import frozen
 
-Path = tuple[str | int, ...]
+Path = tuple[str, ...]
+"""Of a key; tables of arrays are numbered from 0."""
 
 _BARE = r"[A-Za-z0-9_-]+"
 _PART = rf"""(?:{_BARE}|"(?:[^"\\\n]|\\.)*"|'[^'\n]*')"""
@@ -23,8 +28,21 @@ _SIMPLE = {"b": "\b", "t": "\t", "n": "\n", "f": "\f", "r": "\r", "e": "\x1b"}
 _PLAIN = re.compile(r"[^\s,\]}#]+")
 
 
-def strings(text: str, file: str) -> dict[Path, list[SourceText]]:
-    """All strings by the path of their key (tables of arrays by number); those of an array in order."""
+@frozen
+class Positions:
+    """What stands where, by the path of its key.
+
+    Args:
+        lines: of the keys and the tables, where they come first.
+        strings: of a key; those of an array in order.
+    """
+
+    lines: Mapping[Path, int]
+    strings: Mapping[Path, Sequence[SourceText]]
+
+
+def positions(text: str, file: str) -> Positions:
+    """Of all keys and strings of a file."""
     return _Scanner(text, file).run()
 
 
@@ -33,16 +51,17 @@ class _Scanner:
         self._text = text
         self._file = file
         self._at = 0
-        self._found: dict[Path, list[SourceText]] = {}
+        self._lines: dict[Path, int] = {}
+        self._strings: dict[Path, list[SourceText]] = {}
         self._line = 1
-        self._line_start = 0
         self._counted = 0
 
-    def run(self) -> dict[Path, list[SourceText]]:
+    def run(self) -> Positions:
         table: Path = ()
         counts: dict[Path, int] = {}
         while True:
             self._space()
+            line, _ = self._position(self._at)
             header = _HEADER.match(self._text, self._at)
             if header is not None:
                 self._at = header.end()
@@ -50,15 +69,19 @@ class _Scanner:
                 if header[1] == "[[":
                     number = counts.get(table, 0)
                     counts[table] = number + 1
-                    table = (*table, number)
+                    table = (*table, str(number))
+                for depth in range(1, len(table) + 1):  # `[robots.robot1]` also begins `robots`
+                    self._lines.setdefault(table[:depth], line)
                 continue
             key = _KEY.match(self._text, self._at)
             if key is None:
-                return self._found
+                return Positions(self._lines, self._strings)
+            path = (*table, *_parts(key[0]))
+            self._lines.setdefault(path, line)
             self._at = key.end()
             self._space()
             self._at += 1  # `=`
-            self._value((*table, *_parts(key[0])))
+            self._value(path)
 
     def _space(self) -> None:
         found = _SPACE.match(self._text, self._at)
@@ -78,7 +101,7 @@ class _Scanner:
                 depth -= 1
                 self._at += 1
             elif sign in ('"', "'"):
-                self._found.setdefault(path, []).append(self._string())
+                self._strings.setdefault(path, []).append(self._string())
             elif sign in (",", "="):
                 self._at += 1
             else:
@@ -91,8 +114,7 @@ class _Scanner:
         """Line and column of an offset; offsets do not go back."""
         self._line += self._text.count("\n", self._counted, at)
         self._counted = at
-        self._line_start = self._text.rfind("\n", 0, at) + 1
-        return self._line, at - self._line_start + 1
+        return self._line, at - self._text.rfind("\n", 0, at)
 
     def _string(self) -> SourceText:
         quote = self._text[self._at]

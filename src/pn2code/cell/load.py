@@ -1,0 +1,424 @@
+"""`cell.toml` -> `CellConfig`, or diagnostics.
+
+The geometry (`robots.*.base`, `[motion]`, `[scene]`) is kept raw and validated by `pn2code.robot.scene`, which is the
+one who understands it.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable, Mapping
+from dataclasses import replace
+from pathlib import Path
+from typing import Any, Literal, cast
+
+from pn2code.cell import codes
+from pn2code.cell.config import (
+    COMMANDS,
+    CellConfig,
+    ChannelConfig,
+    CommandName,
+    InputConfig,
+    Primitive,
+    ReportConfig,
+    RobotConfig,
+    SensorConfig,
+    SupervisorConfig,
+)
+from pn2code.cell.partition import ChannelKind
+from pn2code.cell.tables import Tables
+from pn2code.cell.toml_file import Locator, read
+from pn2code.diagnostics import Diagnostics, Origin
+from pn2code.diagnostics.near import did_you_mean
+
+_TOP = {
+    "net",
+    "supervisor",
+    "storage",
+    "values",
+    "capacity",
+    "input",
+    "channel",
+    "primitives",
+    "robots",
+    "devices",
+    "sensors",
+    "motion",
+    "scene",
+    "report",
+    "layouts",
+    "property",
+}
+
+
+def load(path: Path, d: Diagnostics, *, layout: str | None = None) -> CellConfig | None:
+    """Reads `cell.toml` (or the one in a folder), applies a layout (default: the first one, if any).
+
+    Returns None when something was reported as an error.
+    """
+    if path.is_dir():
+        path = path / "cell.toml"
+    if not path.exists():
+        d.error(
+            codes.CELL_MISSING,
+            f"there is no file `{path}`",
+            Origin(str(path)),
+            hint="give a folder with a cell.toml, or a .cpn file; docs/cell.md describes cell.toml",
+        )
+        return None
+    before = len(d.errors)
+    found = read(
+        path,
+        d,
+        codes.CELL_FILE,
+        hint="docs/cell.md shows how the sections and keys of a cell are written",
+    )
+    if found is None:
+        return None
+    data, locator = found
+    config = _config(path, data, locator, d, layout)
+    return config if len(d.errors) == before else None
+
+
+def _config(
+    path: Path, data: dict[str, Any], locator: Locator, d: Diagnostics, layout: str | None
+) -> CellConfig:
+    r = Tables(locator, d)
+    r.keys(data, (), _TOP)
+    net = r.table(data, "net", required=True)
+    r.keys(net, ("net",), {"file"})
+    net_file = r.get(net, ("net",), "file", str, "a file name", "", required=True)
+
+    layouts = r.table(data, "layouts")
+    chosen, merged = _apply_layout(data, layouts, layout, r)
+    robots = r.table(data, "robots")
+    config = CellConfig(
+        path=path,
+        net_file=net_file,
+        supervisor=_supervisor(r, data),
+        storage=_storage(r, data),
+        values=_values(r, data),
+        capacity=_capacity(r, data),
+        inputs=tuple(_inputs(r, data)),
+        channels=tuple(_channels(r, data)),
+        primitives=_primitives(r, data),
+        robots=tuple(_robots(r, robots)),
+        devices=tuple(_devices(r, data)),
+        sensors=tuple(_sensors(r, data)),
+        report=ReportConfig(),
+        geometry={
+            "robots": {
+                name: {k: v for k, v in table.items() if k != "instance"}
+                for name, table in merged.get("robots", {}).items()
+                if isinstance(table, dict)
+            },
+            "motion": merged.get("motion", {}),
+            "scene": merged.get("scene", {}),
+        },
+        layouts={
+            name: str(t.get("description", ""))
+            for name, t in layouts.items()
+            if isinstance(t, dict)
+        },
+        layout=chosen,
+        raw=data,
+        locator=locator.in_layout(chosen),
+    )
+    return replace(config, report=_report(r, data, config))
+
+
+def _apply_layout(
+    data: dict[str, Any], layouts: dict[str, Any], layout: str | None, r: Tables
+) -> tuple[str, dict[str, Any]]:
+    if layout is None:
+        layout = next(iter(layouts), "")
+    for name, table in layouts.items():
+        if not isinstance(table, dict):
+            r.d.error(codes.CELL_VALUE, f"layout `{name}` must be a table", r.at("layouts", name))
+            return "", data
+        r.keys(table, ("layouts", name), {"description", "robots", "motion", "scene"})
+        for robot in table.get("robots", {}):
+            if robot not in data.get("robots", {}):
+                r.d.error(
+                    codes.CELL_KEY,
+                    f"layout `{name}` places an unknown robot `{robot}`",
+                    r.at("layouts", name, "robots", robot),
+                    hint=did_you_mean(robot, data.get("robots", {})),
+                )
+    if not layout:
+        return "", data
+    if layout not in layouts:
+        r.d.error(
+            codes.CELL_UNKNOWN_LAYOUT,
+            f"there is no layout `{layout}`",
+            r.at("layouts"),
+            hint=did_you_mean(layout, layouts) or f"known layouts: {', '.join(layouts) or 'none'}",
+        )
+        return "", data
+    table = {k: v for k, v in layouts[layout].items() if k != "description"}
+    return layout, _merge(data, table)
+
+
+def _merge(base: Mapping[str, Any], over: Mapping[str, Any]) -> dict[str, Any]:
+    out = dict(base)
+    for key, value in over.items():
+        old = out.get(key)
+        out[key] = (
+            _merge(old, value) if isinstance(old, dict) and isinstance(value, dict) else value
+        )
+    return out
+
+
+def _supervisor(r: Tables, data: dict[str, Any]) -> SupervisorConfig:
+    at: tuple[str | int, ...] = ("supervisor",)
+    table = r.table(data, "supervisor", required=True)
+    r.keys(table, at, {"instance", "final", "reply_timeout_s", "order"})
+    final = r.get(table, at, "final", list, "a list of places", [])
+    timeout = r.get(table, at, "reply_timeout_s", (int, float), "a number of seconds", 120.0)
+    if not 0 < timeout < 1e6:
+        r.d.error(
+            codes.CELL_VALUE,
+            f"`reply_timeout_s` is {timeout}, but must be above zero",
+            r.at("supervisor", "reply_timeout_s"),
+        )
+    order = r.get(table, at, "order", str, "`any` or `documented`", "any")
+    if order not in ("any", "documented"):
+        r.d.error(
+            codes.CELL_VALUE,
+            f"`order` is `{order}`, but `any` or `documented` is expected",
+            r.at("supervisor", "order"),
+        )
+    return SupervisorConfig(
+        instance=r.get(table, at, "instance", str, "a substitution transition", "", required=True),
+        final=tuple(map(str, final)),
+        reply_timeout_s=float(timeout),
+        origin=r.at("supervisor", "instance"),
+        order_decides=order == "documented",
+    )
+
+
+def _storage(r: Tables, data: dict[str, Any]) -> dict[str, str]:
+    out = {}
+    for name, kind in r.table(data, "storage").items():
+        if kind not in ("float32", "float64"):
+            r.d.error(
+                codes.CELL_VALUE,
+                f"storage of `{name}` is `{kind}`, but `float32` or `float64` is expected",
+                r.at("storage", name),
+            )
+        elif kind == "float32":
+            out[name] = kind
+    return out
+
+
+def _values(r: Tables, data: dict[str, Any]) -> dict[str, str]:
+    out: dict[str, str] = {}
+    for name, value in r.table(data, "values").items():
+        text = ml_literal(value)
+        if text is None:
+            r.d.error(
+                codes.CELL_VALUE,
+                f"`{name}` is `{value}`, but a boolean, number or string is expected",
+                r.at("values", name),
+            )
+        else:
+            out[name] = text
+    return out
+
+
+def ml_literal(value: object) -> str | None:
+    """A TOML scalar as CPN ML text; None for what has no such form."""
+    if isinstance(value, bool):
+        return "true" if value else "false"
+    if isinstance(value, int | float):
+        return repr(value).replace("-", "~").replace("e+", "e")
+    if isinstance(value, str):
+        return '"' + value.replace("\\", "\\\\").replace('"', '\\"').replace("\n", "\\n") + '"'
+    return None
+
+
+def _capacity(r: Tables, data: dict[str, Any]) -> dict[str, int]:
+    out = {}
+    for name, bound in r.table(data, "capacity").items():
+        if not isinstance(bound, int) or isinstance(bound, bool) or not 1 <= bound <= 1_000_000:
+            r.d.error(
+                codes.CELL_VALUE,
+                f"capacity of `{name}` is `{bound}`, but a number from 1 to 1000000 is expected",
+                r.at("capacity", name),
+            )
+        else:
+            out[name] = bound
+    return out
+
+
+def _inputs(r: Tables, data: dict[str, Any]) -> Iterable[InputConfig]:
+    for i, table in enumerate(r.tables(data, "input")):
+        at: tuple[str | int, ...] = ("input", i)
+        r.keys(table, at, {"place", "file"})
+        place = r.get(table, at, "place", str, "a place", "", required=True)
+        yield InputConfig(place, r.file_name(table, at), r.at(*at, "place"))
+
+
+def _channels(r: Tables, data: dict[str, Any]) -> Iterable[ChannelConfig]:
+    files: dict[str, str] = {}
+    for i, table in enumerate(r.tables(data, "channel")):
+        at: tuple[str | int, ...] = ("channel", i)
+        r.keys(table, at, {"place", "file", "kind"})
+        place = r.get(table, at, "place", str, "a place", "", required=True)
+        file = r.file_name(table, at)
+        kind = r.get(table, at, "kind", str, "`data` or `flag`", "flag")
+        if kind not in ("data", "flag"):
+            r.d.error(
+                codes.CELL_VALUE,
+                f"`kind` is `{kind}`, but `data` or `flag` is expected",
+                r.at(*at, "kind"),
+            )
+            kind = "flag"
+        if file in files:
+            r.d.error(
+                codes.CELL_VALUE,
+                f"file `{file}` is used by two channels, `{files[file]}` and `{place}`",
+                r.at(*at, "file"),
+                hint="give each channel a file of its own",
+            )
+        files.setdefault(file, place)
+        yield ChannelConfig(place, file, ChannelKind(kind), r.at(*at, "place"))
+
+
+def _primitives(r: Tables, data: dict[str, Any]) -> dict[str, Primitive]:
+    out = {}
+    for name, table in r.table(data, "primitives").items():
+        at: tuple[str | int, ...] = ("primitives", name)
+        if not isinstance(table, dict):
+            r.d.error(codes.CELL_VALUE, f"`{name}` must be a table", r.at(*at))
+            continue
+        r.keys(table, at, {"command", "frame", "action", "duration_s"})
+        command = r.get(table, at, "command", str, "a robot command", "wait", required=True)
+        if command not in COMMANDS:
+            r.d.error(
+                codes.CELL_VALUE,
+                f"unknown robot command `{command}`",
+                r.at(*at, "command"),
+                hint=did_you_mean(command, COMMANDS) or f"known commands: {', '.join(COMMANDS)}",
+            )
+            command = "wait"
+        frame = r.get(table, at, "frame", str, "`world` or `tool`", "world")
+        if frame not in ("world", "tool"):
+            r.d.error(
+                codes.CELL_VALUE,
+                f"`frame` is `{frame}`, but `world` or `tool` is expected",
+                r.at(*at, "frame"),
+            )
+            frame = "world"
+        tool = command == "tool"
+        duration = r.get(
+            table, at, "duration_s", (int, float), "a number of seconds", 0.0, required=tool
+        )
+        if duration < 0:
+            r.d.error(codes.CELL_VALUE, "`duration_s` is negative", r.at(*at, "duration_s"))
+        action = r.get(table, at, "action", str, "a name", "", required=tool)
+        out[name] = Primitive(
+            name,
+            cast(CommandName, command),
+            cast(Literal["world", "tool"], frame),
+            action,
+            float(duration),
+        )
+    return out
+
+
+def _robots(r: Tables, robots: dict[str, Any]) -> Iterable[RobotConfig]:
+    for name, table in robots.items():
+        at: tuple[str | int, ...] = ("robots", name)
+        if not isinstance(table, dict):
+            r.d.error(codes.CELL_VALUE, f"`robots.{name}` must be a table", r.at(*at))
+            continue
+        _name(r, name, at, "a robot name")
+        instance = r.get(table, at, "instance", str, "a substitution transition", "", required=True)
+        yield RobotConfig(name, instance, r.at(*at, "instance"))
+
+
+def _name(r: Tables, name: str, at: tuple[str | int, ...], what: str) -> None:
+    if not re.fullmatch(r"[A-Za-z][A-Za-z0-9_]*", name) or name == "supervisor":
+        r.d.error(
+            codes.CELL_VALUE,
+            f"`{name}` is not {what}",
+            r.at(*at),
+            hint="a letter, then letters, digits and `_`; not `supervisor`",
+        )
+
+
+def _devices(r: Tables, data: dict[str, Any]) -> Iterable[RobotConfig]:
+    for name, table in r.table(data, "devices").items():
+        at: tuple[str | int, ...] = ("devices", name)
+        if not isinstance(table, dict):
+            r.d.error(codes.CELL_VALUE, f"`devices.{name}` must be a table", r.at(*at))
+            continue
+        r.keys(table, at, {"instance"})
+        _name(r, name, at, "a device name")
+        if name in data.get("robots", {}):
+            r.d.error(
+                codes.CELL_VALUE,
+                f"`{name}` is a robot and a device",
+                r.at(*at),
+                hint="give the device another name",
+            )
+        instance = r.get(table, at, "instance", str, "a substitution transition", "", required=True)
+        yield RobotConfig(name, instance, r.at(*at, "instance"))
+
+
+def _sensors(r: Tables, data: dict[str, Any]) -> Iterable[SensorConfig]:
+    variables: dict[str, str] = {}
+    for name, table in r.table(data, "sensors").items():
+        at: tuple[str | int, ...] = ("sensors", name)
+        if not isinstance(table, dict):
+            r.d.error(codes.CELL_VALUE, f"`sensors.{name}` must be a table", r.at(*at))
+            continue
+        r.keys(table, at, {"variable", "file", "seed"})
+        _name(r, name, at, "a sensor name")
+        variable = r.get(table, at, "variable", str, "a variable of the net", name)
+        if variable in variables:
+            r.d.error(
+                codes.CELL_VALUE,
+                f"variable `{variable}` is decided by two sensors, `{variables[variable]}` and `{name}`",
+                r.at(*at),
+                hint="remove one of them",
+            )
+        variables.setdefault(variable, name)
+        file = r.file_name(table, at) if "file" in table else ""
+        seed = r.get(table, at, "seed", int, "a whole number", 1)
+        yield SensorConfig(name, variable, file, seed, r.at(*at))
+
+
+def _report(r: Tables, data: dict[str, Any], config: CellConfig) -> ReportConfig:
+    table = r.table(data, "report")
+    at: tuple[str | int, ...] = ("report",)
+    r.keys(table, at, {"rows", "count", "occurrences", "warn_condition"})
+    rows = tuple(map(str, r.get(table, at, "rows", list, "a list of channels", [])))
+    known = [c.place for c in config.channels]
+    for name in rows:
+        if name not in known:
+            r.d.error(
+                codes.CELL_VALUE,
+                f"`rows` names `{name}`, which is not a channel",
+                r.at("report", "rows"),
+                hint=did_you_mean(name, known),
+            )
+    count = r.get(table, at, "count", dict, "a table label = action", {})
+    actions = [p.action for p in config.primitives.values() if p.command == "tool"]
+    for label, action in count.items():
+        if action not in actions:
+            r.d.error(
+                codes.CELL_VALUE,
+                f"`count.{label}` names `{action}`, which is not a tool action",
+                r.at("report", "count"),
+                hint=did_you_mean(str(action), actions),
+            )
+    occurrences = r.get(table, at, "occurrences", dict, "a table label = transition", {})
+    warn = r.get(table, at, "warn_condition", (int, float), "a number", 50.0)
+    return ReportConfig(
+        rows,
+        tuple((str(k), str(v)) for k, v in count.items()),
+        tuple((str(k), str(v)) for k, v in occurrences.items()),
+        float(warn),
+    )

@@ -1,0 +1,90 @@
+"""Typed access to the tables of `cell.toml`, which reports what is wrong with them."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any, cast
+
+from pn2code.cell import codes
+from pn2code.cell.toml_file import Locator
+from pn2code.diagnostics import Diagnostics
+from pn2code.diagnostics.near import did_you_mean
+
+
+class Tables:
+    """What the tables say; `at` gives the origin of a key, and `d` gets what is wrong."""
+
+    def __init__(self, locator: Locator, d: Diagnostics) -> None:
+        self.at = locator.origin
+        self.d = d
+
+    def keys(self, table: Mapping[str, Any], path: tuple[str | int, ...], known: set[str]) -> None:
+        """Reports the keys of a table that are not known."""
+        for key in table:
+            if key not in known:
+                self.d.error(
+                    codes.CELL_KEY,
+                    f"unknown key `{key}`" + (f" in `{'.'.join(map(str, path))}`" if path else ""),
+                    self.at(*path, key),
+                    hint=did_you_mean(key, known) or f"known keys: {', '.join(sorted(known))}",
+                )
+
+    def get(
+        self,
+        table: Mapping[str, Any],
+        path: tuple[str | int, ...],
+        key: str,
+        kind: type | tuple[type, ...],
+        words: str,
+        default: Any = None,
+        *,
+        required: bool = False,
+    ) -> Any:
+        """The value of a key of the table at a path; the default if it is missing, or is not what `words` says."""
+        if key not in table:
+            if required:
+                self.d.error(
+                    codes.CELL_KEY,
+                    f"`{'.'.join(map(str, (*path, key)))}` is missing",
+                    self.at(*path),
+                    hint=f"add `{key} = ...`: {words}",
+                )
+            return default
+        value = table[key]
+        if not isinstance(value, kind) or (isinstance(value, bool) and kind is not bool):
+            self.d.error(
+                codes.CELL_VALUE,
+                f"`{key}` is `{value}`, but {words} is expected",
+                self.at(*path, key),
+            )
+            return default
+        return value
+
+    def table(self, data: Mapping[str, Any], key: str, *, required: bool = False) -> dict[str, Any]:
+        """A section of the file; empty if it is missing."""
+        found = self.get(data, (), key, dict, "a table", {}, required=required)
+        return cast(dict[str, Any], found)
+
+    def tables(self, data: Mapping[str, Any], key: str) -> list[dict[str, Any]]:
+        """An array of tables of the file."""
+        found = self.get(data, (), key, list, f"an array of tables `[[{key}]]`", [])
+        good = [t for t in found if isinstance(t, dict)]
+        if len(good) != len(found):
+            self.d.error(
+                codes.CELL_VALUE, f"`{key}` must be an array of tables `[[{key}]]`", self.at(key)
+            )
+        return good
+
+    def file_name(self, table: Mapping[str, Any], path: tuple[str | int, ...]) -> str:
+        """The key `file` of a table: a name in the shared directory."""
+        name = self.get(table, path, "file", str, "a file name", "", required=True)
+        if name and (Path(name).name != name or name.startswith(".") or name.endswith(".tmp")):
+            self.d.error(
+                codes.CELL_VALUE,
+                f"`{name}` is not a plain file name",
+                self.at(*path, "file"),
+                hint="files lie directly in the shared directory: give a name without `/` and "
+                "without a leading dot",
+            )
+        return str(name)
