@@ -7,11 +7,11 @@ net is a `Block` of the file, so that a compiler message or a reader finds the w
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Iterable
+from collections.abc import Iterable
 
 from pn2code.diagnostics import Origin
 from pn2code.emission import c_packed, c_places, c_sums, c_tables
-from pn2code.emission.c_effects import Effects, reaches
+from pn2code.emission.c_effects import Effects
 from pn2code.emission.c_expressions import (
     Expressions,
     Types,
@@ -319,7 +319,7 @@ class _Emitter:
         search.keeps = uses_context(
             _without_wanted(t.enumerate), self._needs_context, self._definitions
         )
-        search.releases = not self._reaches(t.enumerate, _is_write)
+        search.releases = not self._effects.reaches(t.enumerate, _is_write)
         search.may_fail = search.keeps or any(
             isinstance(n, ir.Wanted | ir.UnlessLegal) for n in ir_nodes(t.enumerate)
         )
@@ -336,8 +336,8 @@ class _Emitter:
         return {
             "mark": self._block(f"transition {t.name}", t.name, "transition", t.origin),
             "index": t.index,
-            "search_draws": self._reaches(t.enumerate, _is_draw),
-            "fire_draws": self._reaches(t.fire, _is_draw),
+            "search_draws": self._effects.reaches(t.enumerate, _is_draw),
+            "fire_draws": self._effects.reaches(t.fire, _is_draw),
             "name": t.name,
             "stem": name,
             "id": t.id,
@@ -356,11 +356,11 @@ class _Emitter:
                 }
                 for v, m in zip(t.variables, variables, strict=True)
             ],
-            "is_plain": c_places.is_plain(t),
+            "is_plain": c_places.is_plain(t.enumerate),
             "keeps": search.keeps and search.releases,
             "search": search.lines,
             "thresholds": self._thresholds(t, variables),
-            "thresholds_draw": self._reaches(t.thresholds, _is_draw),
+            "thresholds_draw": self._effects.reaches(t.thresholds, _is_draw),
             "searches_marking": _mentions("m", "\n".join(search.lines)),
             "fire": fire.lines,
             "is_direct": is_direct,
@@ -459,10 +459,6 @@ class _Emitter:
         printer.variable_types = tuple(v.type for v in t.variables)
         printer.body(t.fire)
         return printer
-
-    def _reaches(self, statements: tuple[ir.Stmt, ...], what: Callable[[object], bool]) -> bool:
-        """Whether there is something of a kind, directly or in a function that is called."""
-        return reaches(self._functions, statements, what)
 
     # --- the whole -----------------------------------------------------------------------------
 

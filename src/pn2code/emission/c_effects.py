@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 
 from pn2code.emission.c_places import staying_pairs
 from pn2code.lowering import ir
@@ -23,7 +23,9 @@ class Effects:
     """
 
     def __init__(self, net: ir.NetIR) -> None:
-        self._functions: Mapping[str, ir.Function] = {f.key: f for f in net.functions}
+        self._functions = net.functions
+        self._calls = {f.key: called(f.body) for f in net.functions}
+        self._reaching: dict[Callable[[object], bool], set[str]] = {}
         self._references = {g.name for g in net.globals if g.is_reference}
         self._examined = [_places(t.enumerate, _EXAMINED) for t in net.transitions]
         self._changed = [self._changed_by(net, t) for t in net.transitions]
@@ -54,7 +56,29 @@ class Effects:
 
     def is_pure(self, item: object) -> bool:
         """Whether nothing but the binding and the marking decides: no references, random numbers, step()."""
-        return not reaches(self._functions, item, self._is_impure)
+        return not self.reaches(item, self._is_impure)
+
+    def reaches(self, item: object, what: Callable[[object], bool]) -> bool:
+        """Whether there is something of a kind in IR, directly or in a function that is called."""
+        reaching = self._functions_reaching(what)
+        return any(
+            what(n) or (isinstance(n, ir.FunCall) and n.function in reaching)
+            for n in ir_nodes(item)
+        )
+
+    def _functions_reaching(self, what: Callable[[object], bool]) -> set[str]:
+        if what not in self._reaching:
+            found = {f.key for f in self._functions if any(map(what, ir_nodes(f.body)))}
+            more = found
+            while more:
+                more = {
+                    key
+                    for key, calls in self._calls.items()
+                    if key not in found and not found.isdisjoint(calls)
+                }
+                found |= more
+            self._reaching[what] = found
+        return self._reaching[what]
 
     def _is_impure(self, node: object) -> bool:
         match node:
@@ -71,19 +95,3 @@ class Effects:
 
 def _places(statements: tuple[ir.Stmt, ...], kinds: tuple[type, ...]) -> frozenset[int]:
     return frozenset(n.place for n in ir_nodes(statements) if isinstance(n, kinds))  # type: ignore[attr-defined]
-
-
-def reaches(
-    functions: Mapping[str, ir.Function], item: object, what: Callable[[object], bool]
-) -> bool:
-    """Whether there is something of a kind in IR, directly or in a function that is called."""
-    waiting: list[object] = [item]
-    seen: set[str] = set()
-    while waiting:
-        body = waiting.pop()
-        if any(map(what, ir_nodes(body))):
-            return True
-        calls = [key for key in called(body) if key not in seen]  # type: ignore[arg-type]
-        seen.update(calls)
-        waiting += [functions[key].body for key in calls]
-    return False

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Container, Iterable, Mapping
 
 from pn2code.emission.c_expressions import Types
@@ -74,21 +75,21 @@ class Orders:
 
 def rooms(net: ir.NetIR) -> tuple[int, ...]:
     """For each place: the most entries that one occurrence may add before it is asked whether they fit."""
-    return tuple(
-        max((_puts(t.fire, place.index) for t in net.transitions), default=0)
-        for place in net.places
-    )
+    most: Counter[int] = Counter()
+    for t in net.transitions:
+        most |= _puts(t.fire)
+    return tuple(most[p.index] for p in net.places)
 
 
-def _puts(statements: Iterable[ir.Stmt], place: int) -> int:
-    """The most `Put`s to a place on any way through the statements."""
-    total = 0
+def _puts(statements: Iterable[ir.Stmt]) -> Counter[int]:
+    """By place, the most `Put`s on any way through the statements."""
+    total: Counter[int] = Counter()
     for s in statements:
         match s:
-            case ir.Put(place=p):
-                total += p == place
+            case ir.Put(place=place):
+                total[place] += 1
             case ir.If(then=then, otherwise=otherwise):
-                total += max(_puts(then, place), _puts(otherwise, place))
+                total += _puts(then) | _puts(otherwise)
             case _:
                 pass
     return total
@@ -125,19 +126,14 @@ def _ways(statements: Iterable[ir.Stmt]) -> Iterable[ir.Put]:
                 pass
 
 
-def is_plain(t: ir.Transition) -> bool:
-    """Whether each choice of tokens, one for each input arc, gives a binding: the search is loops and nothing else."""
+def is_plain(statements: Iterable[ir.Stmt]) -> bool:
+    """Whether each choice of tokens, one for each input arc, gives a binding: a search of loops and nothing else."""
     return all(
-        isinstance(n, ir.ForTokens | ir.Bind | ir.Yield | ir.Note) for n in _search(t.enumerate)
+        is_plain(s.body)
+        if isinstance(s, ir.ForTokens)
+        else isinstance(s, ir.Bind | ir.Yield | ir.Note)
+        for s in statements
     )
-
-
-def _search(statements: Iterable[ir.Stmt]) -> Iterable[ir.Stmt]:
-    """The statements, and those in loops over tokens."""
-    for s in statements:
-        yield s
-        if isinstance(s, ir.ForTokens):
-            yield from _search(s.body)
 
 
 def is_count(e: ir.Ir) -> bool:

@@ -9,7 +9,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Mapping
 
-from pn2code.emission.c_effects import Effects, reaches
+from pn2code.emission.c_effects import Effects
 from pn2code.emission.c_packed import Numbers
 from pn2code.frozen import frozen
 from pn2code.lowering import ir
@@ -63,7 +63,7 @@ def find(
         if not isinstance(node, ir.TakeAll | ir.PutAll) or (node.place, node.multiset) in found:
             continue
         packed = net.places[node.place].packed
-        if packed is None or not _is_function_of_binding(net, node.multiset, effects):
+        if packed is None or not _is_function_of_binding(node.multiset, effects):
             continue
         variables = _variables(t, node.multiset, descriptors)
         words = (packed.bit % 64 + packed.colours * packed.width + 63) // 64
@@ -84,13 +84,16 @@ def find(
     return found
 
 
-def _is_function_of_binding(net: ir.NetIR, multiset: ir.Ir, effects: Effects) -> bool:
-    functions = {f.key: f for f in net.functions}
+def _is_function_of_binding(multiset: ir.Ir, effects: Effects) -> bool:
     return (
         not any(isinstance(n, ir.Use | ir.TokenValue) for n in ir_nodes(multiset))
         and effects.is_pure(multiset)
-        and not reaches(functions, multiset, lambda n: isinstance(n, ir.Now))
+        and not effects.reaches(multiset, _is_now)
     )
+
+
+def _is_now(node: object) -> bool:
+    return isinstance(node, ir.Now)
 
 
 def _variables(

@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator, Sequence
+from functools import cache
+from operator import attrgetter
+from typing import Any
 
 from pn2code.lowering import ir
 from pn2code.lowering.ir import Stmt
@@ -19,14 +22,27 @@ def called(statements: tuple[Stmt, ...]) -> list[str]:
 
 def ir_nodes(item: object) -> Iterator[object]:
     """All IR nodes in a statement, expression or tuple of them."""
-    waiting = [item]
+    waiting: list[Any] = [item]
     while waiting:
-        item = waiting.pop()
-        if isinstance(item, tuple):
-            waiting.extend(reversed(item))
-        elif fields := getattr(item, "__dataclass_fields__", None):
-            yield item
-            waiting.extend(getattr(item, name) for name in reversed(fields))
+        node = waiting.pop()
+        if isinstance(node, tuple):
+            waiting += node[::-1]
+        elif (parts := _parts(node.__class__)) is not None:
+            yield node
+            waiting += parts(node)
+
+
+@cache
+def _parts(kind: type) -> Callable[[Any], Sequence[Any]] | None:
+    """What gives the fields of a node, from the last to the first; None for what is no node."""
+    fields = tuple(reversed(getattr(kind, "__dataclass_fields__", {})))
+    match fields:
+        case ():
+            return None
+        case (field,):
+            return lambda node: (getattr(node, field),)
+        case _:
+            return attrgetter(*fields)
 
 
 def order_functions(made: dict[str, ir.Function]) -> tuple[ir.Function, ...]:
