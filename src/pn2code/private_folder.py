@@ -8,16 +8,30 @@ from pathlib import Path
 
 def private_folder() -> Path | None:
     """A folder that only this user can write to, or None: what is loaded must not come from anyone else."""
+    return _found()[0]
+
+
+def without_folder() -> str:
+    """Why there is no such folder, the end of a sentence; "" when there is one."""
+    return _found()[1]
+
+
+def _found() -> tuple[Path | None, str]:
     try:
         base = Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache")
-        folder = base / "pn2code"
+    except RuntimeError:
+        return None, "the home folder is not known"
+    folder = base / "pn2code"
+    try:
         folder.mkdir(mode=0o700, parents=True, exist_ok=True)
         status = folder.stat()
-    except (OSError, RuntimeError):
-        return None
+    except OSError as problem:
+        return None, f"`{folder}` cannot be made: {(problem.strerror or str(problem)).lower()}"
     if not hasattr(os, "getuid") or status.st_uid != os.getuid() or status.st_mode & 0o022:
-        return None
-    return folder if os.access(folder, os.W_OK) else None
+        return None, f"`{folder}` is not this user's alone"
+    if not os.access(folder, os.W_OK):
+        return None, f"`{folder}` cannot be written to"
+    return folder, ""
 
 
 def write_whole(path: Path, data: bytes) -> None:

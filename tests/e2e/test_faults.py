@@ -7,7 +7,6 @@ transition has occurred, a message was read, consumed or written), so that each 
 
 from __future__ import annotations
 
-import ctypes
 import json
 import os
 import resource
@@ -22,7 +21,7 @@ from pathlib import Path
 
 import pytest
 
-from helpers.processes import Child, Command, pn2code
+from helpers.processes import Child, Command, obey_modes, pn2code
 from pn2code.channels import ChannelSpec, Refused, SharedDirectory
 from pn2code.channels.message import parse as parse_message
 from pn2code.diagnostics import Diagnostics, Origin, SourceText
@@ -543,22 +542,6 @@ def test_no_supervisor_and_two_robots_of_one_name(cell: Cell, children: list[Chi
         robot_fails(cell, cell.shared, 5, "another process is `robot1`")
         assert children[0].poll() is None
         assert supervisor.running
-
-
-def obey_modes() -> None:
-    """Makes file modes count for this process even if it is root's: gives up the capability to override them.
-
-    Unlike another user it can still import what lies in a private folder.
-    """
-    if os.getuid() != 0:
-        return
-    version_3, dac_override = 0x20080522, 1
-    header = (ctypes.c_uint32 * 2)(version_3, 0)
-    data = (ctypes.c_uint32 * 6)()  # effective, permitted, inheritable; twice 32 capabilities
-    libc = ctypes.CDLL(None, use_errno=True)
-    assert libc.capget(header, data) == 0
-    data[0] &= ~(1 << dac_override)
-    assert libc.capset(header, data) == 0
 
 
 def test_read_only_directory(cell: Cell) -> None:

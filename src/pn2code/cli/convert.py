@@ -19,6 +19,7 @@ from pn2code.cli.options import (
     stop,
 )
 from pn2code.diagnostics import Diagnostics, Origin
+from pn2code.whole_file import whole_file
 
 if TYPE_CHECKING:
     from pn2code.net.flat import FlatNet
@@ -81,7 +82,8 @@ def convert(
         stop(d, form)
     print_diagnostics(d.sorted(), form)
     try:
-        output.write_text(text, encoding="utf-8")
+        with whole_file(output) as beside:
+            beside.write_text(text, encoding="utf-8")
     except OSError as problem:
         typer.echo(f"pn2code: cannot write `{output}`: {problem.strerror}", err=True)
         raise typer.Exit(Exit.USAGE) from None

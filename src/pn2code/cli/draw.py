@@ -26,6 +26,7 @@ from pn2code.diagnostics.near import nearest
 from pn2code.drawing.codes import DRAW_ARRANGED, DRAW_OUTPUT, DRAW_PAGE, DRAW_TRACE
 from pn2code.net import front
 from pn2code.reading.document import Document, RawPage
+from pn2code.whole_file import whole_file
 
 if TYPE_CHECKING:
     from pn2code.drawing.state import State
@@ -330,7 +331,8 @@ def _write(files: dict[Path, str], form: Format) -> None:
     for path, text in files.items():
         try:
             path.parent.mkdir(parents=True, exist_ok=True)
-            path.write_bytes(text.encode("utf-8"))
+            with whole_file(path) as beside:
+                beside.write_bytes(text.encode("utf-8"))
         except OSError as problem:
             reason = (problem.strerror or str(problem)).lower()
             hint = "give another file or folder with -o"

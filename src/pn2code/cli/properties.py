@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Sequence
-from contextlib import suppress
+import tempfile
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
 from dataclasses import dataclass, replace
 from pathlib import Path
 
 from pn2code.cli.nets import OpenNet
-from pn2code.diagnostics import Diagnostics, Origin
+from pn2code.diagnostics import Diagnostics
 from pn2code.properties import codes, sources
 from pn2code.properties import meaning as m
 from pn2code.properties.ltl import TooLargeError
@@ -22,9 +23,9 @@ from pn2code.verify import confirm
 from pn2code.verify.answers import Answer, answers
 from pn2code.verify.codes import TRACE_UNWRITABLE
 from pn2code.verify.lasso import write_loop
-from pn2code.verify.limits import Reduction
 from pn2code.verify.result import Exploration
 
+_CALLED = {"yes": "true", "no": "false", "inconclusive": "not known"}
 _OUTSIDE = frozenset({Effect.DRAW, Effect.LOOK, Effect.WRITE, Effect.COUNT})
 
 
@@ -38,12 +39,6 @@ class Asked:
     def __bool__(self) -> bool:
         """Whether anything is asked."""
         return bool(self.properties.properties)
-
-    @property
-    def is_timed(self) -> bool:
-        """Whether an answer is in units of time."""
-        limits = (p.asked for p in self.properties.properties)
-        return any(isinstance(x, m.Response) and x.time is not None for x in limits)
 
 
 def asked(
@@ -105,37 +100,53 @@ def _check_effects(opened: OpenNet, properties: m.Properties, d: Diagnostics) ->
             )
 
 
-def kept(
-    asked: Asked, reductions: Sequence[Reduction], net: OpenNet, d: Diagnostics
-) -> tuple[Reduction, ...]:
-    """The reductions that were asked for without those that lose the answers."""
-    if asked.is_timed and Reduction.TIME in reductions:
-        d.warning(
-            codes.REDUCTION,
-            "the reduction `time` forgets how late it is, but a property asks for units of time",
-            Origin(net.flat.file),
-            hint="the net is explored without it",
-        )
-        return tuple(r for r in reductions if r is not Reduction.TIME)
-    return tuple(reductions)
+@contextmanager
+def unnamed_runs(asked: Asked, folder: Path) -> Iterator[Path | None]:
+    """A folder for runs as long as they have no name (`answered` gives them one); None: there will be no runs.
+
+    What is in it when the block ends, however it does, is removed.
+
+    Args:
+        asked: what is asked.
+        folder: where the runs are kept in the end.
+    """
+    if not asked:
+        yield None
+        return
+    try:
+        unnamed = tempfile.TemporaryDirectory(prefix=".pn2code-", dir=folder)
+    except OSError:
+        yield folder  # the explorer will find out, and `answered` says so
+        return
+    with unnamed as name:
+        yield Path(name)
 
 
 def answered(
-    asked: Asked, opened: OpenNet, found: Exploration, stem: str, d: Diagnostics
+    asked: Asked, opened: OpenNet, found: Exploration, folder: Path, stem: str, d: Diagnostics
 ) -> tuple[Answer, ...]:
     """The answers; runs have got readable names, and have been looked at again.
 
     A run that does not show what it should is an error: then either engine is wrong.
+
+    Args:
+        asked: what was asked.
+        opened: the net.
+        found: its state space.
+        folder, stem: where runs are kept, and what their names begin with.
+        d: gets the errors.
     """
     given = answers(asked.properties, found.answers, found)
-    named = _named(given, stem)
-    for answer in named:
+    named = _named(given, folder, stem)
+    for before, answer in zip(given, named, strict=True):
         if answer.evidence is not None:
             _confirm(answer, asked, opened, found, d)
-        elif answer.answer == "no" and _has_run(answer.about.asked):
+        elif before.evidence is not None or (
+            answer.answer == "no" and _has_run(answer.about.asked)
+        ):
             d.warning(
                 TRACE_UNWRITABLE,
-                f"the run that shows why `{answer.about.name}` is false cannot be written",
+                f"the run that shows why `{answer.about.name}` is {_CALLED[answer.answer]} cannot be written",
                 answer.about.origin,
                 hint="give another folder with `--traces DIR`",
             )
@@ -173,8 +184,8 @@ def _confirm(
         )
 
 
-def _named(given: Sequence[Answer], stem: str) -> tuple[Answer, ...]:
-    """With traces called by the names of the properties."""
+def _named(given: Sequence[Answer], folder: Path, stem: str) -> tuple[Answer, ...]:
+    """With traces called by the names of the properties; without those that cannot be called so."""
     used: set[str] = set()
     named = []
     for answer in given:
@@ -185,11 +196,13 @@ def _named(given: Sequence[Answer], stem: str) -> tuple[Answer, ...]:
         while slug.lower() in used:
             slug += "-2"
         used.add(slug.lower())
-        trace = answer.evidence.trace.with_name(f"{stem}.{slug}.trace.jsonl")
-        with suppress(OSError):
-            answer.evidence.trace.replace(trace)
-            answer = replace(answer, evidence=replace(answer.evidence, trace=trace))
-            if answer.evidence is not None and answer.evidence.loop is not None:
-                write_loop(trace, answer.evidence.loop)
-        named.append(answer)
+        trace = folder / f"{stem}.{slug}.trace.jsonl"
+        unnamed, loop = answer.evidence.trace, answer.evidence.loop
+        try:
+            if loop is not None:
+                write_loop(unnamed, loop)
+            unnamed.replace(trace)
+            named.append(replace(answer, evidence=replace(answer.evidence, trace=trace)))
+        except OSError:
+            named.append(replace(answer, evidence=None))
     return tuple(named)

@@ -226,17 +226,22 @@ def verify(
         spill=spill,
         graph=graph or bool(asked),
         traces=most_traces,
-        reductions=properties.kept(asked, wanted, opened, d),
+        reductions=wanted,
     )
     chance.warn(opened.flat, d)
-    with Pictures(draw_to, plot_to) as pictures:
+    is_cell = opened.config is not None and check_controller
+    folder = _folder(traces) if most_traces or asked or is_cell else Path()
+    with (
+        Pictures(draw_to, plot_to) as pictures,
+        properties.unnamed_runs(asked, folder) as unnamed,
+    ):
         with Interrupts() as interrupts, ProgressLine(shown=not (as_json or quiet)) as progress:
             wishes = Wishes(
-                traces=_folder(traces) if most_traces else None,
+                traces=folder if most_traces else None,
                 stem=_stem(opened),
                 questions=asked.questions,
                 predicates=asked.properties.predicates,
-                evidence=_folder(traces) if asked else None,
+                evidence=unnamed,
                 progress=progress.update,
                 interrupted=interrupts.is_wanted,
             )
@@ -252,7 +257,7 @@ def verify(
                         limits,
                         sizes,
                         asked.properties.predicates,
-                        folder=_folder(traces),
+                        folder=folder,
                         stem=_stem(opened),
                         progress=progress.update,
                         interrupted=interrupts.is_wanted,
@@ -271,7 +276,7 @@ def verify(
         if found is None:
             stop(d, form)
         pictures.write(opened.flat, found, d)
-    answers = properties.answered(asked, opened, found, _stem(opened), d)
+        answers = properties.answered(asked, opened, found, folder, _stem(opened), d)
     if found.error is not None and found.why == "error":
         _tell_error(opened, found, d)
     if found.graph is not None and len(found.traces) < min(most_traces, found.dead_count):

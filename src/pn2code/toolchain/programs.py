@@ -6,11 +6,12 @@
 A program is named by the SHA-256 of all that goes into it: the generated C, the C runtime, the compiler's own version,
 its flags. It is built beside and renamed, so that processes that build the same at the same time do each other no harm,
 and a full disk leaves nothing behind. The runtime is kept as a library of its own. Without a private cache folder, or
-without room in it, everything is built in a temporary folder for the one run.
+without room in it, everything is built in a temporary folder that goes with the process.
 """
 
 from __future__ import annotations
 
+import atexit
 import hashlib
 import os
 import shutil
@@ -22,20 +23,22 @@ from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import contextmanager, suppress
 from dataclasses import dataclass
+from functools import cache
 from pathlib import Path
 
 from pn2code.diagnostics import Diagnostics, Origin
 from pn2code.diagnostics.codes import register
 from pn2code.emission import runtime
 from pn2code.emission.output import OutputFile
-from pn2code.private_folder import private_folder
+from pn2code.private_folder import private_folder, without_folder
 from pn2code.toolchain.build import BUILD_FAILED, TOOL_MISSING, find_compiler, report_failure
 
 CACHE_UNUSABLE = register(
     "program-cache",
     "compiled nets cannot be kept",
     "Compiled nets are kept in `$XDG_CACHE_HOME/pn2code` or `~/.cache/pn2code`, so that a second run starts at once. "
-    "There is no room, or the folder is not yours alone: the net is compiled for this run only.",
+    "There is no room, the folder cannot be written to, or it is not yours alone: the net is compiled for this run "
+    "only. Set XDG_CACHE_HOME to a folder of your own.",
 )
 
 FLAGS = ("-std=c11", "-O2", "-pipe", "-ffp-contract=off")
@@ -148,21 +151,29 @@ def program(
         if found is not None or d.has_errors:
             yield found
             return
+    else:
+        _not_kept(without_folder(), Origin(host.name), d)
+    found = None
     try:
-        folder = tempfile.TemporaryDirectory(prefix="pn2code-")
+        builder = _Builder(_for_this_run(), host, compiler, files, interrupted)
+        found = builder.program if builder.is_there() else builder.built(d)
     except OSError as problem:
         _no_room(host, problem, d)
-        yield None
-        return
-    with folder as name:
-        try:
-            found = _Builder(Path(name), host, compiler, files, interrupted).built(d)
-        except OSError as problem:
-            _no_room(host, problem, d)
-            found = None
-        except _InterruptedError:
-            found = None
-        yield found
+    except _InterruptedError:
+        pass
+    yield found
+
+
+@cache
+def _for_this_run() -> Path:
+    """A folder that lasts as long as the process: many a command needs several programs, all with one runtime.
+
+    Raises:
+        OSError: there is no room for it.
+    """
+    folder = tempfile.TemporaryDirectory(prefix="pn2code-")
+    atexit.register(folder.cleanup)
+    return Path(folder.name)
 
 
 def is_kept(host: Host, files: Sequence[OutputFile]) -> bool:
@@ -170,7 +181,18 @@ def is_kept(host: Host, files: Sequence[OutputFile]) -> bool:
     kept, compiler = private_folder(), Compiler.find(host, Diagnostics())
     if kept is None or compiler is None:
         return False
-    return os.access(_Builder(kept / "programs", host, compiler, files, _never).program, os.X_OK)
+    return _Builder(kept / "programs", host, compiler, files, _never).is_there()
+
+
+def _not_kept(why: str, origin: Origin, d: Diagnostics) -> None:
+    """Said once, however many programs a command needs."""
+    if all(said.code != CACHE_UNUSABLE for said in d):
+        d.warning(
+            CACHE_UNUSABLE,
+            f"the compiled net cannot be kept: {why}",
+            origin,
+            hint="it is compiled for this run only; XDG_CACHE_HOME says where compiled nets are kept",
+        )
 
 
 def _no_room(host: Host, problem: OSError, d: Diagnostics) -> None:
@@ -201,11 +223,15 @@ class _Builder:
         self.library = folder / f"{host.name}-runtime-{_digest(tools, self.runtime)}.a"
         self.program = folder / f"{host.name}-{_digest(tools, [*self.runtime, *self.files])}"
 
+    def is_there(self) -> bool:
+        """Whether the program has been built."""
+        return os.access(self.program, os.X_OK)
+
     def kept(self, d: Diagnostics) -> Path | None:
         """The program from the cache, or built into it; None without room there, or after a diagnostic."""
         try:
             self.folder.mkdir(mode=0o700, exist_ok=True)
-            if os.access(self.program, os.X_OK):
+            if self.is_there():
                 os.utime(self.program)
                 return self.program
             found = self.built(d)
@@ -213,12 +239,7 @@ class _Builder:
                 self._prune()
             return found
         except OSError as problem:
-            d.warning(
-                CACHE_UNUSABLE,
-                f"the compiled net cannot be kept: {_reason(problem)}",
-                Origin(str(self.folder)),
-                hint="it is compiled for this run only",
-            )
+            _not_kept(_reason(problem), Origin(str(self.folder)), d)
             return None
 
     def built(self, d: Diagnostics) -> Path | None:

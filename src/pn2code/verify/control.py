@@ -25,6 +25,7 @@ from pn2code.verify.limits import Limits, Reduction
 from pn2code.verify.programs import Sizes
 from pn2code.verify.reductions import OBSTACLES
 from pn2code.verify.result import Exploration
+from pn2code.whole_file import whole_file
 
 FINITE = "finite-response"
 BOUNDED = "bounded-response"
@@ -278,13 +279,15 @@ class _Keeper:
         if row.get("trace") is None or row["answer"] != "no":
             return None
         path = Path(row["trace"])
-        lines = path.read_text(encoding="utf-8", errors="surrogateescape").splitlines()
-        named = [step["transition"] for line in lines if "transition" in (step := json.loads(line))]
+        trace = path.read_bytes()
+        steps = map(json.loads, trace.decode("utf-8", "surrogateescape").rstrip("\n").split("\n"))
+        named = [step["transition"] for step in steps if "transition" in step]
         kept = None
         if self._plan.folder is not None:
             kept = self._plan.folder / f"{self._plan.stem}.controller-{name}.trace.jsonl"
             try:
-                kept.write_text("".join(f"{line}\n" for line in lines), encoding="utf-8")
+                with whole_file(kept) as beside:
+                    beside.write_bytes(trace)
             except OSError:
                 kept = None
         return Evidence(row["steps"], row["loop"], row["node"], tuple(named), kept)

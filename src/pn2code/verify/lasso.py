@@ -8,6 +8,8 @@ from __future__ import annotations
 import json
 from pathlib import Path
 
+from pn2code.whole_file import whole_file
+
 _TAIL = 1 << 16
 """Bytes in which the last line is looked for."""
 
@@ -18,12 +20,12 @@ def write_loop(trace: Path, loop: int) -> None:
     Raises:
         OSError: it cannot be read or written.
     """
-    *lines, last = trace.read_text(encoding="utf-8", errors="surrogateescape").splitlines()
+    *lines, last = trace.read_bytes().rstrip(b"\n").split(b"\n")
     end = json.loads(last)
     if end.get("event") == "end":
-        lines.append(json.dumps({**end, "loop": loop}))
-        text = "".join(f"{line}\n" for line in lines)
-        trace.write_text(text, encoding="utf-8", errors="surrogateescape")
+        lines.append(json.dumps({**end, "loop": loop}).encode())
+        with whole_file(trace) as beside:
+            beside.write_bytes(b"".join(line + b"\n" for line in lines))
 
 
 def read_loop(trace: Path) -> int | None:
