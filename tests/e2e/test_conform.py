@@ -8,7 +8,7 @@ from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
-from tests.mutation.judge import Judge
+from tests.mutation.judge import Judge, judge_of
 from tests.mutation.mutants import Mutant
 from typer.testing import CliRunner, Result
 
@@ -45,6 +45,16 @@ def test_all_programs_of_a_cell(cell: Path) -> None:
     assert robot["commands"] > 0
 
 
+def test_ways_longer_than_states_can_be_saved(cell: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    whole = json.loads(run("conform", cell, "--json").output)["supervisor"]
+    monkeypatch.setattr("pn2code.conform.supervisor.MOST_DEPTH", 3)
+    parts = json.loads(run("conform", cell, "--json").output)["supervisor"]
+    assert parts["complete"]
+    same = ("states", "sights", "transitions", "why", "deviation", "overruns")
+    assert [parts[k] for k in same] == [whole[k] for k in same]
+    assert parts["cycles"] > whole["cycles"]  # ways are gone again
+
+
 SUPERVISOR = {
     "another value is written": ("= val_DRILL;", "= val_HOME;", "flag.robcad"),
     "a guard is dropped": ("if (b.n == 2) {", "if (false) {", "by the net"),
@@ -64,7 +74,7 @@ ROBOT = {
 
 @pytest.fixture(scope="module")
 def judge(cell: Path) -> Iterator[Judge]:
-    with Judge.of(cell) as found:
+    with judge_of(cell) as found:
         yield found
 
 
@@ -127,7 +137,7 @@ FAULTS = {
 
 @pytest.fixture(scope="module")
 def monitored(cell: Path) -> Iterator[Judge]:
-    with Judge.of(
+    with judge_of(
         cell, "-DPN_MONITOR"
     ) as found:  # that it is equal without a fault is looked at there
         yield found

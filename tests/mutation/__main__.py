@@ -17,7 +17,7 @@ from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).parents[1]))
 
-from tests.mutation.judge import NONE, SURVIVED, Judge, quietly
+from tests.mutation.judge import NONE, SURVIVED, Judge, judge_of
 from tests.mutation.mutants import Mutant, of_c, of_script
 
 from helpers.small_cell import write
@@ -87,7 +87,7 @@ def main() -> int:
     tally = Tally()
     with tempfile.TemporaryDirectory(prefix="pn2code-") as name, ExitStack() as stack:
         judges = {
-            cell: stack.enter_context(Judge.of(path))
+            cell: stack.enter_context(judge_of(path))
             for cell, path in cells(Path(name))
             if not options.cells or cell in options.cells
         }
@@ -122,7 +122,7 @@ class Tally:
                 break
             result = SURVIVED
             for judge in judges:
-                result = quietly(judge, mutant).result
+                result = judge.verdict(mutant).result
                 if result != SURVIVED:
                     break
             self.count[cell, part, result] += 1

@@ -1,34 +1,27 @@
 """One cell, ready to be mutated: its generated files, its runtime as object files, and the comparison.
 
-with Judge.of(folder) as judge:
+with judge_of(folder) as judge:
     judge.verdict(mutant)      # "killed: ...", "survived", "no mutant: it does not compile"
 """
 
 from __future__ import annotations
 
-import json
 import subprocess
 import tempfile
-from contextlib import suppress
+from collections.abc import Iterator
+from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
-from types import TracebackType
-from typing import Self
 from unittest.mock import patch
 
 from tests.mutation.mutants import Mutant
 
-from pn2code.conform import robot, supervisor
-from pn2code.conform.cell import PROGRAM
-from pn2code.conform.probe import HOST, Probe, ProbeError
-from pn2code.diagnostics import Diagnostics, Origin, SourceText
+from pn2code.conform import robot
+from pn2code.conform.cell import PROGRAM, ProgramComparison
+from pn2code.conform.probe import HOST, ProbeError
+from pn2code.diagnostics import Diagnostics
 from pn2code.pipeline import Generated, generate
-from pn2code.semantics.files import Files
-from pn2code.semantics.game import Game
-from pn2code.semantics.marking import PlaceMarking, place_from_json
-from pn2code.tdl.check import check
 from pn2code.tdl.interpret import Interpreter, Request
-from pn2code.tdl.parse import parse
 
 SECONDS = 10.0
 """A mutant that takes longer for one answer does not come to rest."""
@@ -45,52 +38,47 @@ class Verdict:
     why: str = ""
 
 
+@contextmanager
+def judge_of(cell: Path, *flags: str) -> Iterator[Judge]:
+    """Generates a cell's programs and builds them in a folder that is there as long as the block lasts.
+
+    Args:
+        cell: its folder.
+        flags: for the C compiler, added to `FLAGS`.
+    """
+    d = Diagnostics()
+    made = generate(cell, d)
+    assert made is not None, [str(i) for i in d]
+    with tempfile.TemporaryDirectory(prefix="pn2code-") as room:
+        yield Judge(cell, made, Path(room), (*FLAGS, *flags))
+
+
 class Judge:
-    """A cell and its programs in a temporary folder.
+    """A cell and its programs.
 
     Args:
         cell: its folder.
         made: what is generated from it.
-        flags: for the C compiler, added to `FLAGS`.
+        room: an empty folder.
+        flags: for the C compiler.
 
     Attributes:
         occurring: transitions of the supervisor that occur in states that can be reached.
         lines: of each script those that are carried out there.
     """
 
-    def __init__(self, cell: Path, made: Generated, flags: tuple[str, ...] = ()) -> None:
-        assert made.config is not None
+    def __init__(self, cell: Path, made: Generated, room: Path, flags: tuple[str, ...]) -> None:
         self.cell = cell
         self.made = made
         self.files = {f.path: f.text for f in made.files}
-        self._flags = (*FLAGS, *flags)
-        self._folder = tempfile.TemporaryDirectory(prefix="pn2code-")
-        self._room = Path(self._folder.name)
+        self._comparison = ProgramComparison(made)
+        self._flags = flags
+        self._room = room
         self._build_all()
-        self._initial: dict[str, PlaceMarking] = {}
         self.occurring: set[int] = set()
         first = self.verdict(None)
         assert first.result == SURVIVED, f"{cell}: without a mutation: {first}"
         self.lines = {name: self._carried_out(name) for name in self.files if ".tdl" in name}
-
-    @staticmethod
-    def of(cell: Path, *flags: str) -> Judge:
-        """Generates the cell's programs and builds them."""
-        d = Diagnostics()
-        made = generate(cell, d)
-        assert made is not None, [str(i) for i in d]
-        return Judge(cell, made, flags)
-
-    def __enter__(self) -> Self:
-        return self
-
-    def __exit__(
-        self,
-        kind: type[BaseException] | None,
-        error: BaseException | None,
-        trace: TracebackType | None,
-    ) -> None:
-        self._folder.cleanup()
 
     def verdict(self, mutant: Mutant | None) -> Verdict:
         """What `conform` says of the programs with one file changed; None: as they are."""
@@ -158,15 +146,8 @@ class Judge:
     # --- judging -----------------------------------------------------------------------------------
 
     def _of_supervisor(self, program: Path) -> Verdict:
-        assert self.made.config is not None
-        trace = self._room / "trace.jsonl"
-        options = ["--input", str(self.made.config.folder), "--trace", str(trace)]
         try:
-            with Probe(program, options, SECONDS) as probe:
-                if not self._initial:
-                    self._initial = self._read(trace)
-                game = self._game()
-                report = supervisor.explore(self.made.partition, game, probe)
+            report = self._comparison.supervisor(program, SECONDS)
         except ProbeError as problem:
             return Verdict("killed", str(problem))
         if report.deviation is not None:
@@ -174,33 +155,11 @@ class Judge:
         self.occurring |= report.transitions
         return Verdict(SURVIVED) if report.complete else Verdict("killed", report.why)
 
-    def _read(self, trace: Path) -> dict[str, PlaceMarking]:
-        header = json.loads(trace.read_text(encoding="utf-8").splitlines()[0])
-        colsets = {p.name: p.colset for p in self.made.partition.net.places}
-        return {k: place_from_json(colsets[k], v) for k, v in header.get("initial", {}).items()}
-
-    def _game(self) -> Game:
-        assert self.made.config is not None
-        storage = self.made.config.storage
-        return Game(self.made.partition.net, storage, self._initial, files=Files(None))
-
     def _of_script(self, mutant: Mutant) -> Verdict:
-        assert self.made.config is not None
-        d = Diagnostics()
-        parsed = parse(SourceText(mutant.text, Origin(mutant.file, 1, 1)), d)
-        checked = check(parsed, d) if parsed is not None else None
-        if checked is None:
-            return Verdict(NONE, "it is refused")
         owner = next(o for o in self.made.partition.owners if o.name == Path(mutant.file).stem)
-        partition, config = self.made.partition, self.made.config
-        report = robot.explore(partition, config, owner.index, checked, self._game())
+        report = self._comparison.script(owner, mutant.text, Diagnostics())
+        if report is None:
+            return Verdict(NONE, "it is refused")
         if report.deviation is not None:
             return Verdict("killed", report.deviation)
         return Verdict(SURVIVED) if report.complete else Verdict("killed", "it never ends")
-
-
-def quietly(judge: Judge, mutant: Mutant) -> Verdict:
-    """The verdict; a crash of the comparison itself is no kill but an error."""
-    with suppress(BrokenPipeError):
-        return judge.verdict(mutant)
-    return Verdict("killed", "the program ended")

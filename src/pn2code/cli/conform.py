@@ -22,8 +22,9 @@ from pn2code.cli.options import (
     stop,
 )
 from pn2code.conform.cell import Conformance, conform_cell
-from pn2code.conform.core import MOST_NODES, CoreReport
+from pn2code.conform.core import CoreReport
 from pn2code.conform.robot import RobotReport
+from pn2code.conform.scheme import MOST_STATES
 from pn2code.conform.supervisor import Report
 from pn2code.diagnostics import Diagnostics
 
@@ -42,7 +43,7 @@ def conform(
         typer.Option(
             metavar="N", min=1, help="States up to which all are compared; beyond: samples."
         ),
-    ] = MOST_NODES,
+    ] = MOST_STATES,
     generated: Annotated[
         Path | None,
         typer.Option(
@@ -118,7 +119,8 @@ def _core(core: CoreReport) -> str:
 
 def _supervisor(report: Report) -> list[str]:
     counts = (
-        f"{report.states:,} states, {report.cycles:,} cycles, {report.firings:,} firings "
+        f"{report.states:,} states ({report.sights:,} different ones for it), "
+        f"{report.cycles:,} cycles, {report.firings:,} firings "
         f"({len(report.transitions)} of {report.all_transitions} different transitions), "
         f"{report.received:,} messages to it, {report.sent:,} from it"
     )

@@ -8,12 +8,15 @@ from __future__ import annotations
 import json
 import tempfile
 from collections.abc import Mapping, Sequence
+from contextlib import closing
 from dataclasses import dataclass
 from pathlib import Path
 
+from pn2code.cell.partition import Owner
 from pn2code.conform import core, robot, supervisor
 from pn2code.conform.codes import GENERATED_UNREADABLE, PROBE_FAILED
-from pn2code.conform.probe import HOST, Probe, ProbeError
+from pn2code.conform.probe import HOST, PATIENCE_S, Probe, ProbeError
+from pn2code.conform.scheme import MOST_STATES
 from pn2code.diagnostics import Diagnostics, Origin, SourceText
 from pn2code.emission.output import OutputFile
 from pn2code.pipeline import Generated, generate
@@ -61,7 +64,7 @@ def conform_cell(
     *,
     values: Mapping[str, str] | None = None,
     int_bits: int = 31,
-    most: int = core.MOST_NODES,
+    most: int = MOST_STATES,
     generated: Path | None = None,
 ) -> Conformance | None:
     """Compares all programs of a cell, or the compiled net alone; None after an error that was reported.
@@ -80,23 +83,44 @@ def conform_cell(
     files = made.files if generated is None else _files(generated, made.files, d)
     if files is None:
         return None
-    net = made.partition.net
     storage = made.config.storage if made.config else {}
     try:
-        compared = core.compare(net, storage, d, most=most)
+        compared = core.compare(made.partition.net, storage, d, most=most)
         if compared is None:
             return None
         if made.config is None or not made.partition.channels:
             return Conformance(compared, None, ())
-        supervised = _supervisor(made, files, most, d)
-        if supervised is None:
-            return None
-        report, initial = supervised
-        robots = _robots(made, files, initial, most, d)
+        return _programs(ProgramComparison(made, most), files, compared, d)
     except GameError as error:
         error.report(d)
-        return None
-    return None if robots is None else Conformance(compared, report, robots)
+    except ProbeError as problem:
+        d.error(
+            PROBE_FAILED,
+            f"the program under test cannot be asked: {problem}",
+            Origin(made.partition.net.file),
+        )
+    return None
+
+
+def _programs(
+    comparison: ProgramComparison,
+    files: Sequence[OutputFile],
+    compared: core.CoreReport,
+    d: Diagnostics,
+) -> Conformance | None:
+    own = [f for f in files if f.path in PROGRAM]
+    with programs.program(HOST, own, d) as program:
+        if program is None:
+            return None
+        supervised = comparison.supervisor(program)
+    texts = {f.path: f.text for f in files}
+    robots = []
+    for owner in comparison.made.partition.owners[1:]:
+        report = comparison.script(owner, texts[f"{owner.name}.tdl"], d)
+        if report is None:
+            return None
+        robots.append(report)
+    return Conformance(compared, supervised, tuple(robots))
 
 
 def _files(
@@ -118,65 +142,52 @@ def _files(
         return None
 
 
-def _supervisor(
-    made: Generated, files: Sequence[OutputFile], most: int, d: Diagnostics
-) -> tuple[supervisor.Report, dict[str, PlaceMarking]] | None:
-    """The report, and the markings that the program has read from its input files."""
-    assert made.config is not None
-    own = [f for f in files if f.path in PROGRAM]
-    with programs.program(HOST, own, d) as program:
-        if program is None:
-            return None
+class ProgramComparison:
+    """Compares the programs of one cell with its net. The supervisor comes first: it reads the cell's input files.
+
+    Args:
+        made: what is generated from the cell.
+        most: states up to which all are compared.
+    """
+
+    def __init__(self, made: Generated, most: int = MOST_STATES) -> None:
+        assert made.config is not None, "only a cell has programs"
+        self.made = made
+        self._config = made.config
+        self._most = most
+        self._initial: dict[str, PlaceMarking] = {}
+
+    def supervisor(self, program: Path, patience: float = PATIENCE_S) -> supervisor.Report:
+        """Compares a supervisor that was compiled with `probe.HOST`.
+
+        Raises:
+            ProbeError: it does not answer, or takes longer than `patience` seconds for an answer.
+            GameError: a declaration or an initial marking raises an exception.
+        """
         with tempfile.TemporaryDirectory(prefix="pn2code-") as name:
             trace = Path(name) / "supervisor.trace.jsonl"
-            options = ["--input", str(made.config.folder), "--trace", str(trace)]
-            try:
-                with Probe(program, options) as probe:
-                    initial = _initial(made, trace)
-                    game = _game(made, initial)
-                    limits = supervisor.Limits(states=most)
-                    return supervisor.explore(made.partition, game, probe, limits), initial
-            except ProbeError as problem:
-                d.error(
-                    PROBE_FAILED,
-                    f"the program under test cannot be asked: {problem}",
-                    Origin(made.partition.net.file),
-                )
-                return None
+            options = ["--input", str(self._config.folder), "--trace", str(trace)]
+            with closing(Probe(program, options, patience)) as probe:
+                self._initial = self._read(trace)
+                return supervisor.explore(self.made.partition, self._game(), probe, self._most)
 
-
-def _initial(made: Generated, trace: Path) -> dict[str, PlaceMarking]:
-    """What the program has read from its input files, from the header of its trace."""
-    with trace.open(encoding="utf-8") as lines:
-        header = json.loads(lines.readline())
-    colsets = {p.name: p.colset for p in made.partition.net.places}
-    found = header.get("initial", {})
-    return {name: place_from_json(colsets[name], data) for name, data in found.items()}
-
-
-def _game(made: Generated, initial: Mapping[str, PlaceMarking]) -> Game:
-    assert made.config is not None
-    return Game(made.partition.net, made.config.storage, initial, files=Files(None))
-
-
-def _robots(
-    made: Generated,
-    files: Sequence[OutputFile],
-    initial: Mapping[str, PlaceMarking],
-    most: int,
-    d: Diagnostics,
-) -> tuple[robot.RobotReport, ...] | None:
-    assert made.config is not None
-    texts = {f.path: f.text for f in files}
-    reports = []
-    for owner in made.partition.owners[1:]:
-        name = f"{owner.name}.tdl"
-        parsed = parse(SourceText(texts[name], Origin(name, 1, 1)), d)
+    def script(self, owner: Owner, text: str, d: Diagnostics) -> robot.RobotReport | None:
+        """Compares the script of a robot or device; None after an error in it that was reported."""
+        parsed = parse(SourceText(text, Origin(f"{owner.name}.tdl", 1, 1)), d)
         checked = check(parsed, d) if parsed is not None else None
         if checked is None:
             return None
-        game = _game(made, initial)
-        reports.append(
-            robot.explore(made.partition, made.config, owner.index, checked, game, most=most)
-        )
-    return tuple(reports)
+        partition, game = self.made.partition, self._game()
+        return robot.explore(partition, self._config, owner.index, checked, game, most=self._most)
+
+    def _read(self, trace: Path) -> dict[str, PlaceMarking]:
+        """What the program has read from its input files, from the header of its trace."""
+        with trace.open(encoding="utf-8") as lines:
+            header = json.loads(lines.readline())
+        colsets = {p.name: p.colset for p in self.made.partition.net.places}
+        found = header.get("initial", {})
+        return {name: place_from_json(colsets[name], data) for name, data in found.items()}
+
+    def _game(self) -> Game:
+        net = self.made.partition.net
+        return Game(net, self._config.storage, self._initial, files=Files(None))

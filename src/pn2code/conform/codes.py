@@ -2,14 +2,6 @@
 
 from pn2code.diagnostics.codes import register
 
-DEVIATION = register(
-    "conform-deviation",
-    "a program does something else than the net",
-    "In a state that can be reached the compiled program writes other messages, or comes to another marking, than "
-    "the net does by the rules of docs/execution.md. The report shows the way to that state, what was expected and "
-    "what came. "
-    "This is a bug of pn2code, unless the generated files were edited: do not run the cell; report it with the net.",
-)
 PROBE_FAILED = register(
     "conform-probe",
     "the program under test cannot be asked",

@@ -12,12 +12,12 @@ from __future__ import annotations
 import json
 import subprocess
 import tempfile
-from collections import Counter
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+from pn2code.conform.scheme import MOST_STATES
 from pn2code.diagnostics import Diagnostics
 from pn2code.net.flat import FlatNet
 from pn2code.semantics.files import Files
@@ -33,7 +33,6 @@ from pn2code.simulate import programs
 from pn2code.verify.explore import Wishes, explore
 from pn2code.verify.limits import Limits
 
-MOST_NODES = 20_000
 WALKS = 20
 WALK_STEPS = 500
 
@@ -66,7 +65,7 @@ def compare(
     storage: Mapping[str, str],
     d: Diagnostics,
     *,
-    most: int = MOST_NODES,
+    most: int = MOST_STATES,
     walks: int = WALKS,
 ) -> CoreReport | None:
     """Compares the whole graph, or samples of it; None after an error that was reported.
@@ -95,19 +94,19 @@ def compare(
 
 def _whole(net: FlatNet, storage: Mapping[str, str], graph: Path) -> CoreReport:
     markings: list[tuple[float, Mapping[str, Any]]] = []
-    leaving: list[Counter[str]] = []
+    leaving: list[set[str]] = []
     rows: list[Mapping[str, Any]] = []
     with graph.open(encoding="utf-8", errors="surrogateescape") as lines:
         for line in lines:
             row = json.loads(line)
             if "node" in row:
                 markings.append((row["t"], row["marking"]))
-                leaving.append(Counter())
+                leaving.append(set())
             else:
                 rows.append(row)
     for row in rows:
         element = _key(row["t"], row["transition"], row["binding"])
-        leaving[row["from"] - 1][f"{element} -> {_marking_key(*markings[row['to'] - 1])}"] += 1
+        leaving[row["from"] - 1].add(f"{element} -> {_marking_key(*markings[row['to'] - 1])}")
     game = Game(net, storage, files=Files(None))
     try:
         _first(net, game, markings)
@@ -124,22 +123,19 @@ def _first(net: FlatNet, game: Game, markings: list[tuple[float, Mapping[str, An
         raise _Differs("the initial markings differ")
 
 
-def _node(
-    net: FlatNet, game: Game, time: float, places: Mapping[str, Any], arcs: Counter[str]
-) -> None:
+def _node(net: FlatNet, game: Game, time: float, places: Mapping[str, Any], arcs: set[str]) -> None:
     """Raises `_Differs` unless the node has the arcs that the token game gives it."""
     tokens = tuple(place_from_json(p.colset, places[p.name]) for p in net.places)
     marking = game.settle(Marking(time if net.real_time else int(time), tokens))
-    expected: Counter[str] = Counter()
+    expected: set[str] = set()  # one arc for each binding element: equal ones are one
     for element in game.enabled_in(marking):
         after, occurred = game.occur(marking, element)
         name = net.transitions[element.transition].name
         key = _key(marking.time, name, binding_to_json(occurred))
-        expected[f"{key} -> {_marking_key(after.time, _places(net, game, after))}"] += 1
-    # One arc for each binding element: equal ones are one.
-    for text in expected.keys() - arcs.keys():
+        expected.add(f"{key} -> {_marking_key(after.time, _places(net, game, after))}")
+    for text in expected - arcs:
         raise _Differs(f"only the token game has, at {_short(places)}: {text}")
-    for text in arcs.keys() - expected.keys():
+    for text in arcs - expected:
         raise _Differs(f"only the compiled net has, at {_short(places)}: {text}")
 
 

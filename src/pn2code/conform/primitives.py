@@ -1,16 +1,17 @@
 """What a transition of a robot tells the robot to do, by the net: the calls of its primitives, in order.
 
-with Primitives(game, config.primitives) as primitives:
+calls: list[Command] = []
+with noting(game, config.primitives, calls):
     marking, element = game.occur(marking, element)
-    primitives.taken()        # (MoveJoint(Pose(...)),)
+calls        # [MoveJoint(Pose(...))]
 """
 
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
-from types import TracebackType
-from typing import Any, Self
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
+from typing import Any
 
 from pn2code.cell.config import Primitive
 from pn2code.robot import commands
@@ -21,46 +22,32 @@ from pn2code.semantics.values import Native, Value
 _NAMES = ("x", "y", "z", "rx", "ry", "rz")
 
 
-class Primitives:
-    """Notes each call of a primitive, as long as the block lasts; what it gives stays the same."""
+Calls = list[commands.Command]
 
-    def __init__(self, game: Game, primitives: Mapping[str, Primitive]) -> None:
-        self._evaluator = game.evaluator
-        self._called: list[commands.Command] = []
-        self._own: dict[int, Value] = {}
-        self._noting: dict[int, Value] = {}
-        symbols = game.net.program.globals
-        for name, primitive in primitives.items():
-            symbol = symbols.get(name)
-            if symbol is not None and symbol.uid in self._evaluator.globals:
-                own = self._evaluator.globals[symbol.uid]
-                self._own[symbol.uid] = own
-                self._noting[symbol.uid] = Native(name, 1, self._noted(primitive, own))
 
-    def __enter__(self) -> Self:
-        self._evaluator.globals.update(self._noting)
-        return self
+@contextmanager
+def noting(game: Game, primitives: Mapping[str, Primitive], calls: Calls) -> Iterator[None]:
+    """Appends each call of a primitive, as long as the block lasts; what the primitives give stays the same."""
+    values = game.evaluator.globals
+    symbols = game.net.program.globals
+    own = {
+        symbols[name].uid: (primitive, values[symbols[name].uid])
+        for name, primitive in primitives.items()
+        if name in symbols and symbols[name].uid in values
+    }
 
-    def __exit__(
-        self,
-        kind: type[BaseException] | None,
-        error: BaseException | None,
-        trace: TracebackType | None,
-    ) -> None:
-        self._evaluator.globals.update(self._own)
+    def noted(primitive: Primitive, function: Value) -> Native:
+        def note(evaluator: Evaluator, argument: Value) -> Any:
+            calls.append(command(primitive, argument))
+            return evaluator.call(function, argument)
 
-    def taken(self) -> tuple[commands.Command, ...]:
-        """The calls since the last time that this was asked."""
-        called = tuple(self._called)
-        self._called.clear()
-        return called
+        return Native(primitive.function, 1, note)
 
-    def _noted(self, primitive: Primitive, own: Value) -> Any:
-        def noted(evaluator: Evaluator, argument: Value) -> Any:
-            self._called.append(command(primitive, argument))
-            return evaluator.call(own, argument)
-
-        return noted
+    values.update({uid: noted(*found) for uid, found in own.items()})
+    try:
+        yield
+    finally:
+        values.update({uid: function for uid, (_, function) in own.items()})
 
 
 def command(primitive: Primitive, argument: Any) -> commands.Command:

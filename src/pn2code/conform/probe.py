@@ -1,9 +1,10 @@
 """The supervisor under test: the deployed program over files in memory (`cnative/src/conform_port.c`), asked
 state by state.
 
-with Probe(program, inputs, trace) as probe:
+with closing(Probe(program, options)) as probe:
     first = probe.first                   # the answer after the first cycle
-    probe.push([("flag1_externo.robcad", "1\\n# 1 00000001 2b3c...\\n")])
+    probe.push()
+    probe.write([("flag1_externo.robcad", "1\\n# 1 00000001 2b3c...\\n")])
     after = probe.go()                    # Answer(files, read, published, marking, fired, ended, reason)
     probe.pop()
 """
@@ -20,8 +21,7 @@ from collections.abc import Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
-from types import TracebackType
-from typing import Any, Self
+from typing import Any
 
 from pn2code.toolchain.programs import Host
 
@@ -96,17 +96,6 @@ class Probe:
             self.close()
             raise
 
-    def __enter__(self) -> Self:
-        return self
-
-    def __exit__(
-        self,
-        kind: type[BaseException] | None,
-        error: BaseException | None,
-        trace: TracebackType | None,
-    ) -> None:
-        self.close()
-
     def close(self) -> None:
         """Ends the program and all its saved states."""
         assert self._process.stdin is not None
@@ -123,14 +112,17 @@ class Probe:
         with suppress(ProcessLookupError):
             os.killpg(self._process.pid, signal.SIGKILL)
 
-    def push(self, files: Sequence[tuple[str, str]] = (), seconds: float | None = None) -> None:
-        """Saves the state; then other parties publish files, and the clock shows so much since the start."""
-        asked = [("push", "pushed")]
-        asked += [(f"write {n} {x.encode('latin-1').hex()}", "written") for n, x in files]
+    def push(self) -> None:
+        """Saves the state."""
+        self._asked([("push", "pushed")])
+        self.depth += 1
+
+    def write(self, files: Sequence[tuple[str, str]], seconds: float | None = None) -> None:
+        """Other parties publish files, and the clock shows so much since the start; None: as before."""
+        asked = [(f"write {n} {x.encode('latin-1').hex()}", "written") for n, x in files]
         if seconds is not None:
             asked.append((f"time {seconds!r}", "time"))
         self._asked(asked)
-        self.depth += 1
 
     def pop(self) -> None:
         """Back to the state saved last."""
@@ -177,6 +169,8 @@ class Probe:
 
     def _asked(self, asked: Sequence[tuple[str, str]]) -> None:
         """All at once, and then all answers: each exchange costs two changes of processes."""
+        if not asked:
+            return
         self._send("\n".join(line for line, _ in asked))
         for line, expected in asked:
             if expected not in (data := self._line()):

@@ -19,12 +19,12 @@ from pn2code.cell.config import CellConfig
 from pn2code.cell.partition import Partition
 from pn2code.channels.message import specs_of
 from pn2code.conform.messages import scalars
-from pn2code.conform.primitives import Primitives
+from pn2code.conform.primitives import Calls, noting
+from pn2code.conform.scheme import MOST_STATES, Scheme
 from pn2code.robot import commands
 from pn2code.semantics.colour_json import to_json
 from pn2code.semantics.game import Game, GameError
 from pn2code.semantics.marking import (
-    BindingElement,
     Marking,
     binding_to_json,
     element_text,
@@ -43,8 +43,6 @@ from pn2code.tdl.interpret import (
     Scalar,
     Sense,
 )
-
-MOST_STATES = 50_000
 
 
 @dataclass(frozen=True, slots=True)
@@ -136,14 +134,11 @@ class _Product:
             if owner in (channel.writer, channel.reader)
         }
         self._files = _PlacesAsFiles()
-        self._primitives = Primitives(game, config.primitives)
+        self._primitives = config.primitives
+        self._called = Calls()
         self._wants_waits = any(p.command == "wait" for p in config.primitives.values())
         self._names = {t.name: t for t in self._net.transitions}
-        order = sorted(self._net.transitions, key=lambda t: t.priority)
-        self._of = [
-            [t for t in order if partition.transition_owner[t.index] == o.index]
-            for o in partition.owners
-        ]
+        self._scheme = Scheme(partition, game)
         self._interpreter = Interpreter(program, self._files, self._heard)
         self._marking = game.marking
         self._done: list[commands.Command] = []
@@ -166,13 +161,12 @@ class _Product:
                         waiting.append(after)
         except _DeviationError as found:
             deviation = str(found)
-        own = self._of[self._owner]
         return RobotReport(
             self._name,
             len(parent),
             self._marks,
             len(self._marked),
-            len(own),
+            self._partition.transition_owner.count(self._owner),
             self._commands,
             not waiting and deviation is None,
             deviation,
@@ -193,14 +187,13 @@ class _Product:
         for owner in self._partition.owners:
             if owner.index == self._owner:
                 continue
-            try:
-                for element in list(self._enabled(owner.index, state.marking)):
-                    quiet = False
-                    marking, _ = self._game.occur(state.marking, element)
-                    text = element_text(self._game.colours, self._net, element)
-                    yield text, replace(state, marking=marking)
-            except GameError:
-                quiet = False  # the owner stops there, and the cell with it
+            possible = self._scheme.steps(owner.index, state.marking)
+            if (
+                possible.steps or possible.raises
+            ):  # an owner that raises stops, and the cell with it
+                quiet = False
+            for step in possible.steps:
+                yield step.text, replace(state, marking=step.after(state.marking))
         for text, after in self._resumed(state):
             quiet = False
             yield text, after
@@ -220,15 +213,6 @@ class _Product:
         return replace(
             state, marking=replace(state.marking, time=time if self._net.real_time else int(time))
         )
-
-    def _enabled(self, owner: int, marking: Marking) -> Iterator[BindingElement]:
-        best: int | None = None
-        for t in self._of[owner]:
-            if best is not None and t.priority > best:
-                return
-            for binding in self._game.bindings(t, marking):
-                best = t.priority
-                yield BindingElement.make(t, binding)
 
     def _resumed(self, state: _State) -> Iterator[tuple[str, _State]]:
         """The script goes on, if it can."""
@@ -256,14 +240,14 @@ class _Product:
                 yield self._go(state, None)
 
     def _nothing_to_do(self, state: _State, why: str) -> None:
-        for element in self._enabled(self._owner, state.marking):
+        for element in self._scheme.enabled(self._owner, state.marking):
             text = element_text(self._game.colours, self._net, element)
             raise _DeviationError(f"{why}, but by the net {text} is enabled")
 
     def _said(self, state: _State) -> list[Scalar]:
         """Every value that the net leaves open to the sensor here: those of variables of what is enabled."""
         found: dict[Scalar, None] = {}
-        for element in self._enabled(self._owner, state.marking):
+        for element in self._scheme.enabled(self._owner, state.marking):
             for symbol, value in element.values:
                 assert symbol.colset is not None, "a net variable has a colour set"
                 data = to_json(symbol.colset, value)
@@ -280,7 +264,7 @@ class _Product:
         self._done = list(state.done)
         self._files.view = self._view(state.marking)
         before = self._interpreter.line
-        with self._primitives:
+        with noting(self._game, self._primitives, self._called):
             request = self._interpreter.resume(result)
         self._compare_files()
         until = None
@@ -299,19 +283,18 @@ class _Product:
         where = f"line {event.line} announces `{event.transition}`"
         if t is None or self._partition.transition_owner[t.index] != self._owner:
             raise _DeviationError(f"{where}, which is no transition of {self._name}")
-        for element in self._enabled(self._owner, self._marking):
+        for element in self._scheme.enabled(self._owner, self._marking):
             if element.transition != t.index:
                 continue
             try:
-                self._primitives.taken()
+                self._called.clear()
                 marking, occurred = self._game.occur(self._marking, element)
             except GameError as error:
                 raise _DeviationError(
                     f"{where}, where the net raises an exception: {error}"
                 ) from None
-            called = self._primitives.taken()
             if binding_to_json(occurred) == event.binding:
-                self._compare_commands(where, called)
+                self._compare_commands(where, tuple(self._called))
                 self._marking = marking
                 self._marks += 1
                 self._marked.add(t.name)

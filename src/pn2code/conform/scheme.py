@@ -1,21 +1,30 @@
-"""The supervisor's execution scheme (docs/execution.md) in the reference token game: what one cycle does to a marking.
+"""The supervisor's execution scheme (docs/execution.md) in the reference token game, owner by owner.
 
 scheme = Scheme(partition, game)
-done = scheme.cycle(marking)      # Cycle(marking, elements, stopped)
+done = scheme.cycle(marking)          # Cycle(marking, elements, stopped): what one cycle of the supervisor does
+for step in scheme.steps(1, marking).steps:
+    step.after(marking)               # what the first robot may do
+
+What an owner does depends on the places that it touches and on the time, so it is worked out once for each of
+those, however many markings they occur in.
 """
 
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from pn2code.cell.partition import Partition
 from pn2code.net.flat import FlatTransition
 from pn2code.semantics.game import Game, GameError
-from pn2code.semantics.marking import BindingElement, Marking
+from pn2code.semantics.marking import BindingElement, Marking, PlaceMarking, element_text
 
+MOST_STATES = 20_000
+"""Up to which a program is compared in all states, unless somebody says otherwise."""
 SUPERVISOR = 0
 """Its number among the owners of a partition."""
+Changes = tuple[tuple[int, PlaceMarking], ...]
+"""Places with what they hold from then on."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -31,6 +40,26 @@ class Cycle:
     marking: Marking
     elements: tuple[BindingElement, ...]
     stopped: str
+
+
+@dataclass(frozen=True, slots=True)
+class Step:
+    """An occurrence, in words, and the places that it changes."""
+
+    text: str
+    changes: Changes
+
+    def after(self, marking: Marking) -> Marking:
+        """The marking after it."""
+        return _changed(marking, self.changes)
+
+
+@dataclass(frozen=True, slots=True)
+class Steps:
+    """What an owner may do. `raises`: something of it raises an exception, which stops the owner."""
+
+    steps: tuple[Step, ...]
+    raises: bool
 
 
 class Scheme:
@@ -51,13 +80,59 @@ class Scheme:
             [t for t in order if partition.transition_owner[t.index] == owner.index]
             for owner in partition.owners
         ]
+        self._touched = [sorted({a.place for t in own for a in t.arcs}) for own in self._of]
+        self._steps: dict[tuple[object, ...], Steps] = {}
+        self._cycles: dict[tuple[object, ...], tuple[Changes, Cycle]] = {}
+
+    def touched(self, owner: int) -> list[int]:
+        """The places on which what the owner does depends."""
+        return self._touched[owner]
 
     def cycle(self, marking: Marking) -> Cycle:
         """Fires until nothing of the supervisor is enabled: best priority, documented order, first binding."""
+        seen = self._seen(SUPERVISOR, marking)
+        if seen not in self._cycles:
+            cycle = self._played(marking)
+            self._cycles[seen] = self._changes(SUPERVISOR, marking, cycle.marking), cycle
+        changes, cycle = self._cycles[seen]
+        return replace(cycle, marking=_changed(marking, changes))
+
+    def steps(self, owner: int, marking: Marking) -> Steps:
+        """What an owner may do now; priorities count within an owner."""
+        seen = self._seen(owner, marking)
+        if seen not in self._steps:
+            self._steps[seen] = self._possible(owner, marking)
+        return self._steps[seen]
+
+    def enabled(self, owner: int, marking: Marking) -> Iterator[BindingElement]:
+        """The same as binding elements, in the documented order.
+
+        Raises:
+            GameError: an inscription raises an exception.
+        """
+        best: int | None = None
+        for t in self._of[owner]:
+            if best is not None and t.priority > best:
+                return
+            for binding in self._game.bindings(t, marking):
+                best = t.priority
+                yield BindingElement.make(t, binding)
+
+    def _seen(self, owner: int, marking: Marking) -> tuple[object, ...]:
+        return owner, marking.time, *(marking.places[p] for p in self._touched[owner])
+
+    def _changes(self, owner: int, before: Marking, after: Marking) -> Changes:
+        return tuple(
+            (p, after.places[p])
+            for p in self._touched[owner]
+            if after.places[p] != before.places[p]
+        )
+
+    def _played(self, marking: Marking) -> Cycle:
         done: list[BindingElement] = []
         while True:
             try:
-                element = self._first(marking)
+                element = next(self.enabled(SUPERVISOR, marking), None)
                 if element is None:
                     return Cycle(marking, tuple(done), "")
                 if len(done) == self._most:
@@ -67,23 +142,25 @@ class Scheme:
                 return Cycle(marking, tuple(done), str(error))
             done.append(occurred)
 
-    def others(self, marking: Marking) -> Iterator[BindingElement]:
-        """What the other owners may do now; priorities count within an owner.
+    def _possible(self, owner: int, marking: Marking) -> Steps:
+        steps: list[Step] = []
+        raises = False
+        try:
+            for element in self.enabled(owner, marking):
+                try:
+                    after, _ = self._game.occur(marking, element)
+                except GameError:
+                    raises = True
+                    continue
+                text = element_text(self._game.colours, self.partition.net, element)
+                steps.append(Step(text, self._changes(owner, marking, after)))
+        except GameError:
+            raises = True
+        return Steps(tuple(steps), raises)
 
-        Raises:
-            GameError: an inscription raises an exception.
-        """
-        for owner in self.partition.owners[SUPERVISOR + 1 :]:
-            best: int | None = None
-            for t in self._of[owner.index]:
-                if best is not None and t.priority > best:
-                    break
-                for binding in self._game.bindings(t, marking):
-                    best = t.priority
-                    yield BindingElement.make(t, binding)
 
-    def _first(self, marking: Marking) -> BindingElement | None:
-        for t in self._of[SUPERVISOR]:
-            for binding in self._game.bindings(t, marking):
-                return BindingElement.make(t, binding)
-        return None
+def _changed(marking: Marking, changes: Changes) -> Marking:
+    places = list(marking.places)
+    for place, tokens in changes:
+        places[place] = tokens
+    return replace(marking, places=tuple(places))

@@ -1,44 +1,30 @@
-"""The supervisor program in product with the net: in every reachable state, for every message that may arrive, what it
-writes and the marking that it comes to are those of the net.
+"""The supervisor program beside the net: in every reachable state, for every message that may arrive, what it writes
+and the marking that it comes to are those of the net.
 
-    report = explore(partition, game, probe, Limits())
+    report = explore(partition, game, probe)
 
-A state is a marking of the closed net, with what the program has read so far. From each state the other owners do what
-the net lets them do (their messages are published as real ones are), or the supervisor goes round its cycle: the
-program itself, and beside it the scheme in the token game. Files are read as a robot reads them: with session, number
-and checksum. States are visited depth first, since the program's state is a process that waits to be continued.
+First the closed net is explored for what the supervisor may come to see (`sights.py`). Then the program is led through
+all of that. From each sight either the others' messages are published as real ones are, or the supervisor goes round
+its cycle: the program itself, and beside it the scheme in the token game. Files are read as a robot reads them: with
+session, number and checksum. Sights are visited depth first: the program's state is a process that waits.
 """
 
 from __future__ import annotations
 
-import time
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 
 from pn2code.cell.partition import ChannelKind, Partition
 from pn2code.channels.message import EMPTY, ChannelSpec, Message, compose, parse, specs_of
 from pn2code.conform.messages import scalars
 from pn2code.conform.probe import SESSION, Answer, Probe
-from pn2code.conform.scheme import SUPERVISOR, Scheme
-from pn2code.semantics.game import Game, GameError
-from pn2code.semantics.marking import (
-    BindingElement,
-    Marking,
-    element_text,
-    place_from_json,
-    place_text,
-)
+from pn2code.conform.scheme import MOST_STATES, SUPERVISOR, Scheme
+from pn2code.conform.sights import Sight, look
+from pn2code.semantics.game import Game
+from pn2code.semantics.marking import Marking, place_from_json, place_text
 
 MOST_DEPTH = 4000
-"""Saved states, each of which is a process."""
-
-
-@dataclass(frozen=True, slots=True)
-class Limits:
-    """How far. `seconds`: None means no limit."""
-
-    states: int = 20_000
-    seconds: float | None = None
+"""Saved states at a time, each of which is a process."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -59,7 +45,8 @@ class Report:
     """What was compared.
 
     Args:
-        states: markings with what was read of them.
+        states: of the closed net: markings, with what the program has read of them.
+        sights: what the supervisor can tell apart of these; it was led through each of them.
         cycles: of the program, each compared.
         firings: of the supervisor in these.
         transitions: indices of those that occurred in these, of the `all_transitions` that are the supervisor's.
@@ -70,6 +57,7 @@ class Report:
     """
 
     states: int = 0
+    sights: int = 0
     cycles: int = 0
     firings: int = 0
     transitions: set[int] = field(default_factory=set)
@@ -84,53 +72,38 @@ class Report:
     """Ways to messages that came while the one before had not been taken: a flaw of the net, not of the program."""
 
 
-@dataclass(frozen=True, slots=True)
-class _State:
-    """Args:
-    marking: of the closed net.
-    read: channels whose message the program has made a token.
-    sent: for each channel the number of messages so far, in the order of the partition.
-    """
-
-    marking: Marking
-    read: frozenset[int]
-    sent: tuple[int, ...]
-
-    @property
-    def key(self) -> tuple[Marking, frozenset[int]]:
-        """Numbers of messages are not told apart: what is done does not depend on them, and they never end."""
-        return self.marking, self.read
-
-
 class _DeviationError(Exception):
     """The program does something else; the text says what."""
 
 
 @dataclass(frozen=True, slots=True)
-class _Move:
-    """Something that can happen.
+class _State:
+    """What the program is in. `sent`: the number of messages so far in each channel, in the order of the partition;
+    what is done does not depend on it, and it never ends."""
 
-    Args:
-        text: in words.
-        after: the state that it leads to; None: the supervisor's cycle, whose state the program has to tell.
-        files: what other parties publish.
-        seconds: what the clock shows from then on, None: as before.
-    """
+    sight: Sight
+    sent: tuple[int, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class _Move:
+    """Something that can happen, in words. `sight`: what it leads to; None: it is the supervisor's cycle."""
 
     text: str
-    after: _State | None = None
-    files: tuple[tuple[str, str], ...] = ()
-    seconds: float | None = None
+    sight: Sight | None
+
+
+_CYCLE = _Move("the supervisor's cycle", None)
 
 
 class _Product:
-    def __init__(self, partition: Partition, game: Game, probe: Probe, limits: Limits) -> None:
+    def __init__(self, partition: Partition, game: Game, probe: Probe, most: int) -> None:
         self._partition = partition
         self._net = partition.net
         self._game = game
         self._probe = probe
-        self._limits = limits
         self._scheme = Scheme(partition, game)
+        self._sights = look(partition, game, self._scheme, most)
         self._specs: tuple[ChannelSpec, ...] = specs_of(partition)
         self._own = [
             p
@@ -138,137 +111,125 @@ class _Product:
             if partition.place_owner[p.index] == SUPERVISOR
             and all(c.place != p.index for c in partition.channels)
         ]
-        self.report = Report(all_transitions=partition.transition_owner.count(SUPERVISOR))
-        self._ends = time.monotonic() + (limits.seconds or 0.0)
-        self._way: list[str] = []
+        self.report = Report(
+            states=self._sights.states,
+            all_transitions=partition.transition_owner.count(SUPERVISOR),
+            complete=self._sights.complete,
+            why="" if self._sights.complete else f"more than {most} states",
+            overruns=self._sights.overruns,
+        )
         self._is_first = True  # before its first cycle the program makes the files
+        self._path: list[_Move] = []
+        self._seen: set[Sight] = set()
+        self._late: list[tuple[_Move, ...]] = []  # ways to sights that are too deep to go on from
 
     def run(self) -> Report:
         try:
             self._run()
         except _DeviationError as deviation:
-            self.report.deviation = Deviation(str(deviation), tuple(self._way))
+            self.report.deviation = Deviation(str(deviation), self._way())
             self.report.complete = False
             self.report.why = "deviation"
+        self.report.sights = len(self._seen)
         return self.report
 
     def _run(self) -> None:
-        start = _State(self._game.marking, frozenset(), (0,) * len(self._partition.channels))
+        none_sent = (0,) * len(self._partition.channels)
+        start = _State(Sight(self._game.marking, frozenset()), none_sent)
         first = self._compared(start, self._probe.first)
         if first is None:
             return
         self._is_first = False
-        seen = {first.key}
-        stack = [(first, self._moves(first))]
-        while stack and not self._is_over(len(seen)):
+        self._seen.add(first.sight)
+        self._visit(first)
+        while self._late:
+            moves = self._late.pop()
+            self._probe.push()
+            self._visit(self._led(first, moves))
+            self._probe.pop()
+            self._path.clear()
+
+    def _led(self, state: _State, moves: tuple[_Move, ...]) -> _State:
+        """Leads the program along a way on which it has been before, and saves nothing."""
+        for move in moves:
+            self._path.append(move)
+            after = self._made(state, move)
+            assert after is not None, "the way went on"
+            state = after
+        return state
+
+    def _visit(self, start: _State) -> None:
+        """All that can be reached from the state that the program is in; in the end it is in that again."""
+        stack = [(start, self._moves(start))]
+        while stack:
             state, moves = stack[-1]
             move = next(moves, None)
             if move is None:
                 stack.pop()
                 if stack:
                     self._probe.pop()
-                    self._way.pop()
-            elif move.after is None or move.after.key not in seen:
+                    self._path.pop()
+            elif move.sight not in self._seen:
+                depth = self._probe.depth
+                self._path.append(move)
+                self._probe.push()
                 after = self._made(state, move)
-                if after is None or after.key in seen or len(stack) >= MOST_DEPTH:
-                    if after is not None and after.key not in seen:
-                        self._stop(f"a way is longer than {MOST_DEPTH} moves")
-                    self._back(len(stack))
-                else:
-                    seen.add(after.key)
-                    stack.append((after, self._moves(after)))
+                if after is not None and after.sight not in self._seen:
+                    self._seen.add(after.sight)
+                    if len(stack) < MOST_DEPTH:
+                        stack.append((after, self._moves(after)))
+                        continue
+                    self._late.append(tuple(self._path))
+                self._path.pop()
+                if self._probe.depth > depth:  # a program that has ended is back already
+                    self._probe.pop()
+
+    def _moves(self, state: _State) -> Iterator[_Move]:
+        yield _CYCLE
+        for sight, text in self._sights.others.get(state.sight, {}).items():
+            yield _Move(text, sight)
 
     def _made(self, state: _State, move: _Move) -> _State | None:
         """Makes a move in the program; the state after it, None where the way ends."""
-        self._way.append(move.text)
-        self._probe.push(move.files, move.seconds)
-        return move.after or self._compared(state, self._probe.go())
+        if move.sight is None:
+            return self._compared(state, self._probe.go())
+        before, after = state.sight.marking, move.sight.marking
+        files, sent = self._published(state, after)
+        self._probe.write(files, float(after.time) if after.time != before.time else None)
+        return _State(move.sight, sent)
 
-    def _back(self, depth: int) -> None:
-        """Takes back the last move; a program that has ended in it is back already."""
-        self._way.pop()
-        if self._probe.depth == depth:
-            self._probe.pop()
-
-    def _is_over(self, states: int) -> bool:
-        self.report.states = states
-        if states >= self._limits.states:
-            self._stop(f"more than {self._limits.states} states")
-            return True
-        if self._limits.seconds is not None and time.monotonic() > self._ends:
-            self._stop(f"more than {self._limits.seconds:g} s")
-            return True
-        return False
-
-    def _stop(self, why: str) -> None:
-        self.report.complete = False
-        self.report.why = why
-
-    # --- moves -----------------------------------------------------------------------------------
-
-    def _moves(self, state: _State) -> Iterator[_Move]:
-        """What can happen in a state; a way ends where the net raises an exception."""
-        quiet = True
-        cycle = self._scheme.cycle(state.marking)
-        incoming = frozenset(self._incoming(state.marking))
-        try:
-            for element in self._scheme.others(state.marking):
-                quiet = False
-                move = self._other(state, element)
-                if move is not None:
-                    yield move
-        except GameError:
-            quiet = False
-        if cycle.elements or cycle.stopped:
-            quiet = False
-        if not quiet or incoming != state.read:
-            yield _Move("the supervisor's cycle")
-        if quiet and self._net.timed:
-            later = self._game.settle(state.marking)
-            if later != state.marking:
-                after = replace(state, marking=later)
-                yield _Move(f"time {later.time}", after, seconds=float(later.time))
-
-    def _other(self, state: _State, element: BindingElement) -> _Move | None:
-        """Another owner's occurrence; its messages are published, what it has taken is emptied."""
-        text = element_text(self._game.colours, self._net, element)
-        try:
-            marking, _ = self._game.occur(state.marking, element)
-        except GameError:
-            return None
-        sent = list(state.sent)
+    def _published(
+        self, state: _State, after: Marking
+    ) -> tuple[list[tuple[str, str]], tuple[int, ...]]:
+        """What the others have done to the files: messages that they have written, and those that they have taken."""
         files: list[tuple[str, str]] = []
+        sent = list(state.sent)
         for i, channel in enumerate(self._partition.channels):
-            before = list(state.marking.places[channel.place])
-            after = list(marking.places[channel.place])
-            if before == after:
+            tokens = list(after.places[channel.place])
+            if tokens == list(state.sight.marking.places[channel.place]):
                 continue
             if channel.writer == SUPERVISOR:
                 files.append((channel.file, EMPTY))
                 continue
-            if before or len(after) > 1:
-                self.report.overruns.append((*self._way, text))
-                return None
             sent[i] += 1
-            values = scalars(self._net.places[channel.place].colset, after[0])
+            values = scalars(self._net.places[channel.place].colset, tokens[0])
             content = compose(self._specs[i], values, seq=sent[i], session=SESSION)
             if content is None:
                 raise _DeviationError(f"the token {values} cannot be written to {channel.file}")
             files.append((channel.file, content))
             self.report.received += 1
-        return _Move(text, _State(marking, state.read, tuple(sent)), tuple(files))
+        return files, tuple(sent)
+
+    def _way(self) -> tuple[str, ...]:
+        return tuple(move.text for move in self._path)
 
     # --- comparison ------------------------------------------------------------------------------
 
-    def _incoming(self, marking: Marking) -> Iterator[int]:
-        for i, channel in enumerate(self._partition.channels):
-            if channel.reader == SUPERVISOR and len(list(marking.places[channel.place])) > 0:
-                yield i
-
     def _compared(self, state: _State, answer: Answer) -> _State | None:
         """The state after a cycle of which the program has said what it did; None where it ends."""
+        before = state.sight.marking
+        expected = self._scheme.cycle(before)
         self.report.cycles += 1
-        expected = self._scheme.cycle(state.marking)
         self.report.firings += len(expected.elements)
         self.report.transitions.update(e.transition for e in expected.elements)
         stopped = expected.stopped or self._overrun(expected.marking)
@@ -286,11 +247,9 @@ class _Product:
         self._compare_places(expected.marking, answer.marking)
         sent = self._compare_files(state, expected.marking, answer.files)
         if not self._is_first:
-            self._compare_order(state.marking, expected.marking, answer.published)
+            self._compare_order(before, expected.marking, answer.published)
             self._compare_reading(answer.read)
-        is_final = any(
-            len(list(expected.marking.places[p])) > 0 for p in self._partition.final_places
-        )
+        is_final = any(expected.marking.places[p] for p in self._partition.final_places)
         if is_final != (answer.ended == "finished"):
             raise _DeviationError(
                 "the supervisor ends, but no final place holds a token"
@@ -299,13 +258,18 @@ class _Product:
             )
         if answer.ended:
             return None
-        return _State(expected.marking, frozenset(self._incoming(expected.marking)), sent)
+        read = frozenset(
+            i
+            for i, channel in enumerate(self._partition.channels)
+            if channel.reader == SUPERVISOR and expected.marking.places[channel.place]
+        )
+        return _State(Sight(expected.marking, read), sent)
 
     def _overrun(self, marking: Marking) -> str:
         for channel in self._partition.channels:
-            tokens = len(list(marking.places[channel.place]))
+            tokens = len(marking.places[channel.place])
             if channel.writer == SUPERVISOR and tokens > 1:
-                self.report.overruns.append(tuple(self._way))
+                self.report.overruns.append(self._way())
                 return f"{tokens} messages for {channel.file}"
         return ""
 
@@ -323,7 +287,7 @@ class _Product:
         """What was consumed is emptied first (I4), then data are published, then flags (I5)."""
         emptied, written = [], []
         for channel in self._partition.channels:
-            held, holds = (len(list(m.places[channel.place])) for m in (before, after))
+            held, holds = (len(m.places[channel.place]) for m in (before, after))
             if channel.reader == SUPERVISOR and held > holds:
                 emptied.append(channel.file)
             elif channel.writer == SUPERVISOR and holds > held:
@@ -361,7 +325,7 @@ class _Product:
                 if text != EMPTY:
                     raise _DeviationError(f"{channel.file} holds {text!r}, by the net nothing")
                 continue
-            is_new = channel.writer == SUPERVISOR and not list(state.marking.places[channel.place])
+            is_new = channel.writer == SUPERVISOR and not state.sight.marking.places[channel.place]
             if is_new:
                 sent[i] += 1
                 self.report.sent += 1
@@ -379,16 +343,16 @@ class _Product:
         return tuple(sent)
 
 
-def explore(partition: Partition, game: Game, probe: Probe, limits: Limits | None = None) -> Report:
+def explore(partition: Partition, game: Game, probe: Probe, most: int = MOST_STATES) -> Report:
     """Compares the program with the net in every state that can be reached.
 
     Args:
         partition: the net and its owners.
         game: a token game at the marking from which the program started.
         probe: the program, after its first cycle.
-        limits: how far.
+        most: states at most.
 
     Raises:
         ProbeError: the program does not answer.
     """
-    return _Product(partition, game, probe, limits or Limits()).run()
+    return _Product(partition, game, probe, most).run()
