@@ -15,6 +15,7 @@ from lark.tree import Meta
 
 from pn2code.diagnostics import Diagnostics, SourceText, Span
 from pn2code.diagnostics.near import did_you_mean
+from pn2code.expected import listed, literal
 from pn2code.parser_cache import kept_lark
 from pn2code.properties import codes
 from pn2code.properties import tree as t
@@ -25,6 +26,8 @@ MAX_LENGTH = 100_000
 """Characters of a property."""
 MAX_DEPTH = 200
 """Nesting of its formula; the stages behind recurse over it."""
+MOST_DIGITS = 18
+"""Of a number before the point: whoever reads it does so with 64 bits."""
 _FIRST = ("deadlock", "bound", "always", "never", "reachable", "mutex", "every", "ctl", "ltl")
 
 
@@ -100,7 +103,7 @@ _FORMULA = {
     "ML", "TRUE", "FALSE", "DEAD", "INITIAL", "ENABLED", "FIRES", "TOKENS", "LPAR", "NOT", "BANG", "X", "F", "G",
     "AX", "EX", "AF", "EF", "AG", "EG", "A", "E", "INT",
 }  # fmt: skip
-_BETWEEN = {"U", "R", "W", "AND", "OR", "__ANON"}
+_BETWEEN = {"U", "R", "W", "AND", "OR"}
 _FOREIGN = {
     "andalso": "write `&&` or `and`", "orelse": "write `||` or `or`", "implies": "write `->`", "iff": "write `<->`",
     "GF": "write `G F`", "FG": "write `F G`", "next": "write `X`", "eventually": "write `F`", "globally": "write `G`",
@@ -117,20 +120,9 @@ def _expected(terminals: set[str]) -> str:
         words.append(_CONDITION)
     elif {"U", "R", "W"} & left:
         left = {x for x in left if x not in _BETWEEN and not x.startswith("__ANON")}
-        left -= {"AND", "OR"}
         words.append("an operator")
-    for name in sorted(left):
-        word = _WORDS.get(name) or _literal(name)
-        if word not in words:
-            words.append(word)
-    if len(words) > 6:
-        words = [*words[:6], "..."]
-    return words[0] if len(words) == 1 else ", ".join(words[:-1]) + " or " + words[-1]
-
-
-def _literal(terminal: str) -> str:
-    found = next((x for x in _parser().terminals if x.name == terminal), None)
-    return f"`{found.pattern.value}`" if found is not None else terminal.lower()
+    words += [_WORDS.get(name) or literal(_parser(), name) for name in sorted(left)]
+    return listed(words)
 
 
 def _unexpected_token(problem: UnexpectedToken, source: SourceText, d: Diagnostics) -> None:
@@ -231,19 +223,35 @@ class _Builder(Transformer[Token, Any]):
     def _span(self, meta: Meta) -> Span:
         return self._source.span(meta.start_pos, meta.end_pos)
 
+    def _digits(self, token: Token) -> str:
+        """A number as it is written, or (reported) 0."""
+        if len(token.partition(".")[0]) <= MOST_DIGITS:
+            return str(token)
+        start = token.start_pos or 0
+        self._d.error(
+            codes.SYNTAX,
+            f"`{_short(token)}` is too large",
+            self._source.span(start, start + len(token)),
+            hint=f"a number has at most {MOST_DIGITS} digits",
+        )
+        return "0"
+
+    def _number(self, token: Token) -> int:
+        return int(self._digits(token))
+
     # kinds
 
     def deadlock(self, _: Meta, c: list[Any]) -> t.Property:
         return t.DeadlockFree(c[0] if c else None)
 
     def upper(self, _: Meta, c: list[Any]) -> t.Property:
-        return t.Bound(c[0], None, int(c[1]))
+        return t.Bound(c[0], None, self._number(c[1]))
 
     def lower(self, _: Meta, c: list[Any]) -> t.Property:
-        return t.Bound(c[1], int(c[0]), None)
+        return t.Bound(c[1], self._number(c[0]), None)
 
     def both(self, _: Meta, c: list[Any]) -> t.Property:
-        return t.Bound(c[1], int(c[0]), int(c[2]))
+        return t.Bound(c[1], self._number(c[0]), self._number(c[2]))
 
     def always(self, _: Meta, c: list[Any]) -> t.Property:
         return t.Marking("always", c[0])
@@ -269,10 +277,10 @@ class _Builder(Transformer[Token, Any]):
         return t.Response(c[0], c[1], fair=value)
 
     def within_firings(self, _: Meta, c: list[Any]) -> tuple[str, Any]:
-        return "firings", c[0]
+        return "firings", self._digits(c[0])
 
     def within_time(self, _: Meta, c: list[Any]) -> tuple[str, Any]:
-        return "time", c[0]
+        return "time", self._digits(c[0])
 
     def assuming(self, _: Meta, c: list[Any]) -> tuple[str, Any]:
         return "assuming", tuple(c)
@@ -361,7 +369,7 @@ class _Builder(Transformer[Token, Any]):
         return t.Tokens(operator, left, right, self._span(meta))
 
     def operand(self, _: Meta, c: list[Any]) -> int | tuple[t.Name, ...]:
-        return tuple(c) if isinstance(c[0], t.Name) else int(c[0])
+        return tuple(c) if isinstance(c[0], t.Name) else self._number(c[0])
 
     def ml(self, meta: Meta, c: list[Any]) -> t.Formula:
         inside = part(self._source, meta.start_pos + 1, meta.end_pos - 1)
@@ -371,5 +379,5 @@ class _Builder(Transformer[Token, Any]):
         token = c[0]
         if token.type == "STRING":
             return t.Name(str(token)[1:-1], None, True, self._span(meta))
-        number = int(c[1]) if len(c) > 1 else None
+        number = self._number(c[1]) if len(c) > 1 else None
         return t.Name(str(token), number, False, self._span(meta))

@@ -16,6 +16,7 @@ from lark.exceptions import UnexpectedCharacters, UnexpectedToken, VisitError
 from lark.tree import Meta
 
 from pn2code.diagnostics import Diagnostics, Origin, SourceText, Span
+from pn2code.expected import listed, literal
 from pn2code.parser_cache import kept_lark
 from pn2code.tdl import codes
 from pn2code.tdl import tree as t
@@ -123,20 +124,8 @@ def _expected(terminals: set[str]) -> str:
     elif left >= {"PLUS", "TIMES"}:
         left -= _OPERATORS
         words.append("an operator")
-    for name in sorted(left):
-        text = _WORDS.get(name) or _literal(name)
-        if text not in words:
-            words.append(text)
-    if len(words) > 6:
-        words = [*words[:6], "..."]
-    return words[0] if len(words) == 1 else ", ".join(words[:-1]) + " or " + words[-1]
-
-
-def _literal(terminal: str) -> str:
-    for definition in _parser("basic").terminals:
-        if definition.name == terminal:
-            return f"`{definition.pattern.value}`"
-    return terminal.lower()
+    words += [_WORDS.get(name) or literal(_parser("basic"), name) for name in sorted(left)]
+    return listed(words)
 
 
 def _unexpected_token(problem: UnexpectedToken, source: SourceText, d: Diagnostics) -> None:
