@@ -13,7 +13,7 @@ enum {
 /* Successors whose lines of the store are on their way. */
 typedef struct search {
     ex_run_t *run;
-    ex_graph_t *graph; /* slots and parents alone */
+    ex_graph_t *graph; /* slots, parents and which are dead alone */
     uint64_t *seen;    /* a bit for each slot */
     uint32_t node;     /* being expanded */
     uint32_t pending;
@@ -84,6 +84,9 @@ static uint32_t walk(search_t *search, ex_again_t visit, void *user)
         }
         const ex_found_t found = ex_successors(&run->worker[0], &key, gather, search);
         look_up(search);
+        if (found == EX_DEAD) {
+            EX_SET_BIT(graph->dead, node);
+        }
         if (!visit(user, node, &key, found)) {
             return node;
         }
@@ -125,5 +128,6 @@ bool ex_again_make(ex_run_t *run, ex_graph_t *graph)
     }
     graph->slot = ex_alloc(run, run->nodes * sizeof *graph->slot);
     graph->parent = ex_alloc(run, run->nodes * sizeof *graph->parent);
-    return (graph->slot != NULL) && (graph->parent != NULL);
+    graph->dead = ex_alloc(run, ((run->nodes / 64U) + 1U) * sizeof *graph->dead);
+    return (graph->slot != NULL) && (graph->parent != NULL) && (graph->dead != NULL);
 }

@@ -78,7 +78,7 @@ bool ex_properties(ex_run_t *run, ex_graph_t *graph);
 
 /* A shortest run to a node as a file, which appears as a whole; steps < 0: it could not be written. worker[0].marking is then where it ends. */
 int64_t ex_write_trace(ex_run_t *run, const ex_graph_t *graph, uint32_t node, const char *path);
-/* The same; `why` it ends there. */
+/* The same; `why` it ends there (NULL: nothing is enabled there, or that is far enough). */
 int64_t ex_write_run(ex_run_t *run, const ex_graph_t *graph, uint32_t node, const char *path, const char *why);
 /* The same for the run through way[0] .. way[steps], by transition label[i] to way[i]; label NULL: by any. */
 int64_t ex_write_way(ex_run_t *run, const ex_graph_t *graph, const uint32_t *way, const uint16_t *label, uint64_t steps, const char *path,

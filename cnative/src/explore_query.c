@@ -458,7 +458,7 @@ static void write_trace(ex_run_t *run, ex_question_t *question, uint32_t number)
     if (way->node == NULL) {
         question->steps = (question->node != EX_NO_NODE) ? ex_write_trace(run, run->graph, question->node, path) : -1;
     } else if (!way->is_failed) {
-        question->steps = ex_write_way(run, run->graph, way->node, way->label, way->steps, path, "finished");
+        question->steps = ex_write_way(run, run->graph, way->node, way->label, way->steps, path, NULL);
     }
 }
 

@@ -134,7 +134,7 @@ bool ex_part_name(char name[EX_PATH_SIZE], const char *path)
 
 int64_t ex_write_trace(ex_run_t *run, const ex_graph_t *graph, uint32_t node, const char *path)
 {
-    return ex_write_run(run, graph, node, path, "finished");
+    return ex_write_run(run, graph, node, path, NULL);
 }
 
 int64_t ex_write_run(ex_run_t *run, const ex_graph_t *graph, uint32_t node, const char *path, const char *why)
@@ -179,7 +179,8 @@ int64_t ex_write_way(ex_run_t *run, const ex_graph_t *graph, const uint32_t *way
     ex_key_t last;
     is_fine = is_fine && (is_symmetric || (ex_store_fetch(&run->store, graph->slot[way[steps]], &last) && ex_load(worker, &last)));
     if (is_fine) {
-        pn_trace_model_end(&trace, time_of(worker, elapsed), pn_net.real_time, why);
+        const char *const usual = (EX_BIT(graph->dead, way[steps]) != 0U) ? "finished" : "steps";
+        pn_trace_model_end(&trace, time_of(worker, elapsed), pn_net.real_time, (why != NULL) ? why : usual);
     }
     is_fine = pn_trace_close(&trace) && is_fine;
     is_fine = is_fine && (rename(part, path) == 0);
