@@ -10,7 +10,7 @@ import pytest
 
 from helpers.netbuilder import write
 from helpers.processes import pn2code
-from helpers.property_nets import BELT, DINNER
+from helpers.property_nets import DINNER
 
 pytestmark = pytest.mark.cc
 
@@ -64,6 +64,9 @@ def test_a_file_beside_the_net(net: Path, tmp_path: Path) -> None:
     for engine in ("reference", "compiled"):
         done = pn2code("simulate", net, "--engine", engine, "--replay", trace, "--steps", steps)
         assert done.returncode == 0, done.stderr
+    for run, ended in ((trace, "steps"), (first["evidence"]["trace"], "finished")):
+        done = pn2code("replay", run, net)
+        assert done.returncode == 0 and f"ended: {ended}" in done.stdout, done.stdout
     drawn = pn2code("draw", net, "--trace", trace, "-o", tmp_path / "steps.html")
     assert drawn.returncode == 0, drawn.stderr
     steps_page = (tmp_path / "steps.html").read_text()
@@ -114,16 +117,41 @@ def test_not_known(net: Path, tmp_path: Path) -> None:
     assert "Empty" in said["properties"][0]["why"]
 
 
-def test_reductions(tmp_path: Path) -> None:
-    net = write(BELT, tmp_path / "belt.cpn")
-    within = "every fires(Load) is followed by fires(Pass) within 4 time"
-    code, said, stderr = asked(net, "--reduce", "time", "--traces", tmp_path, "--property", within)
-    assert (code, said["reductions"]) == (0, [])
-    assert "warning[property-reduction]" in stderr
-    code, said, stderr = asked(
-        net, "--reduce", "time", "--traces", tmp_path, "--property", "bound Moving <= 1"
-    )
-    assert (code, said["reductions"], said["properties"][0]["value"]) == (1, ["time"], 2)
+CLOCK = """
+    net Clock
+      standard
+      colset TU = unit timed;
+      place Ready : TU = 1`()
+      place Busy : TU
+      trans Start
+        in Ready : ()
+        out Busy : () @+ 3
+      trans Stop
+        in Busy : ()
+        out Ready : () @+ 2
+"""
+
+
+def test_time_that_never_ends(tmp_path: Path) -> None:
+    """Waits are measured where states that differ only in how late it is are one."""
+    net = write(CLOCK, tmp_path / "clock.cpn")
+    every = "every fires(Start) is followed by fires(Start) within {} time"
+    texts = [
+        every.format(5),
+        every.format(4),
+        "every tokens(Busy) = 1 is followed by fires(Stop) within 3 time",
+    ]
+    options = [x for text in texts for x in ("--property", text)]
+    code, said, _ = asked(net, "--reduce", "time", "--traces", tmp_path, *options)
+    assert (code, said["reductions"], said["nodes"]) == (1, ["time"], 3)
+    assert [(p["answer"], p["value"]) for p in said["properties"]] == [
+        ("yes", 5),
+        ("no", 5),
+        ("yes", 3),
+    ]
+    trace = said["properties"][1]["evidence"]["trace"]
+    done = pn2code("replay", trace, net)
+    assert done.returncode == 0 and "ended: steps, until time 5" in done.stdout, done.stdout
 
 
 def test_wrong_properties(net: Path, tmp_path: Path) -> None:

@@ -201,6 +201,12 @@ WRONG = [
     ('bound "Top.Stok" <= 3', "the net has no place `Top.Stok`", 7, "`Top.Stock`"),
     ("bound 4 <= Stock <= 3", "no number is at least 4", 12),
     ("bound Stock <= 99999999999 ", "", 0),
+    ("bound Stock <= 9999999999999999999", "is too large", 16, "at most 18 digits"),
+    (f"bound {'9' * 5000} <= Stock", "is too large", 7),
+    (f"always tokens(Stock) < {'9' * 5000}", "is too large", 24),
+    (f"always enabled(Sub'Sell {'9' * 5000})", "is too large", 25),
+    (f"every dead is followed by dead within {'9' * 500}.5 time", "is too large", 39),
+    (f"every dead is followed by dead within {'9' * 500} firings", "is too large", 39),
     ("always tokens(Stock, Bix) <= 9", "the net has no place `Bix`", 22, "`Top'Box`"),
     ("always tokens(Stock) <= 9999999999", "greater than any number of tokens", 8),
     ("always { Mark.Top'Stok 1 = [] }", "the net has no place `Top'Stok`", 10, "did you mean `Top'Stock`?"),
@@ -222,7 +228,7 @@ WRONG = [
 ]  # fmt: skip
 
 
-@pytest.mark.parametrize("case", WRONG, ids=lambda c: c[0])
+@pytest.mark.parametrize("case", WRONG, ids=lambda c: c[0][:80])
 def test_wrong(
     examined: front.Examined, case: tuple[str, str, int] | tuple[str, str, int, str]
 ) -> None:

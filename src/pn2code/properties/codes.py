@@ -38,12 +38,6 @@ OUTSIDE = register(
     "marking (and the model time) alone: it may not draw random numbers, read files, count steps, or look at or "
     "change references. Write it as a function of what the places hold.",
 )
-REDUCTION = register(
-    "property-reduction",
-    "a reduction that was asked for does not keep the properties",
-    "`--reduce time` takes markings for the same that differ in how late it is only, so no answer can be in units of "
-    "time. The properties are more important: the net is explored without the reduction.",
-)
 EVIDENCE = register(
     "property-evidence",
     "a run does not show what it should",
