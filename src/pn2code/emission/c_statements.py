@@ -98,7 +98,6 @@ class Statements:
         self.number_of: Callable[[str], str] = lambda key: ""  # "": not by number
         self.moves = "moves"
         self.variable_types: tuple[ir.IrType, ...] = ()
-        self.has_arena_values = True
         self.keeps = False
         self.may_fail = False
         self.releases = True

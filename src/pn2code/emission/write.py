@@ -20,7 +20,6 @@ class Written:
 
     changed: tuple[str, ...]
     removed: tuple[str, ...]
-    unchanged: int
 
 
 class OutputFolderError(Exception):
@@ -56,7 +55,7 @@ def write(folder: Path, files: Iterable[OutputFile], *, check: bool = False) -> 
         raise OutputFolderError(
             f"cannot write `{folder}`: {reason[:1].lower()}{reason[1:]}; nothing was changed"
         ) from problem
-    return Written(tuple(sorted(changed)), tuple(sorted(removed)), len(new) - len(changed))
+    return Written(tuple(sorted(changed)), tuple(sorted(removed)))
 
 
 def _differs(path: Path, data: bytes) -> bool:

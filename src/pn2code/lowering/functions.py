@@ -554,10 +554,6 @@ def has_refutable_binding(e: core.Exp) -> bool:
     )
 
 
-def _is_reference(t: Type) -> bool:
-    return isinstance(t, TCon) and t.name == "ref"
-
-
 def _is_builtin(e: core.Exp, name: str) -> bool:
     return isinstance(e, core.Builtin) and e.name == name
 

@@ -17,8 +17,6 @@ from pn2code.ml import core
 from pn2code.ml.core import Symbol
 from pn2code.ml.types import Type
 
-NIL_TAG = 0
-
 
 @dataclass(slots=True)
 class Match:

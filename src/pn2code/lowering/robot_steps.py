@@ -77,11 +77,6 @@ class Situation:
         return conjunction(list(self.local))
 
     @property
-    def message_condition(self) -> t.Expression:
-        """All conditions on messages."""
-        return conjunction(list(self.remote))
-
-    @property
     def condition(self) -> t.Expression:
         """All conditions."""
         return conjunction([*self.local, *self.remote])

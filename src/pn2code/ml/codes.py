@@ -193,11 +193,6 @@ UNSUPPORTED_COLSET = register(
     "a kind of colour set is not supported",
     "The message names the kind, or the way it is written.",
 )
-UNSUPPORTED_INSCRIPTION = register(
-    "unsupported-inscription",
-    "a form of inscription is not supported",
-    "The message names the form.",
-)
 MATCH_NOT_EXHAUSTIVE = register(
     "match-not-exhaustive",
     "a function, `case` or `val` does not cover all values",

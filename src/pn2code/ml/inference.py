@@ -96,7 +96,6 @@ Ty = ICon | IRec | IFun | IAbstract | IError | Quant | Meta
 ERROR = IError()
 I_UNIT = IRec()
 I_INT = ICon("int")
-I_INTINF = ICon("IntInf.int")
 I_REAL = ICon("real")
 I_BOOL = ICon("bool")
 I_STRING = ICon("string")

@@ -11,7 +11,7 @@ lengths in m. A `Pose` has fixed-axis XYZ angles, R = Rz(rz) Ry(ry) Rx(rx), in r
 from __future__ import annotations
 
 import math
-from typing import Any, TypeAlias
+from typing import TypeAlias
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -125,8 +125,3 @@ def describe(pose: Pose) -> str:
     mm = ", ".join(f"{1000.0 * v:.2f}" for v in (pose.x, pose.y, pose.z))
     deg = ", ".join(f"{math.degrees(v):.2f}" for v in (pose.rx, pose.ry, pose.rz))
     return f"({mm} mm; {deg} deg)"
-
-
-def as_floats(values: Any) -> tuple[float, ...]:
-    """A tuple of Python floats of any sequence of numbers."""
-    return tuple(float(v) for v in values)

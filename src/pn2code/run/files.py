@@ -99,7 +99,3 @@ def directory_error(path: Path, problem: OSError) -> DirectoryError:
     where = f" at `{problem.filename}`" if problem.filename else ""
     reason = problem.strerror or str(problem)
     return DirectoryError(f"the shared directory fails{where}: {reason[:1].lower()}{reason[1:]}")
-
-
-def _fatal(refusal: Refused) -> None:
-    raise FileError(f"{refusal.file}: {refusal.text}")

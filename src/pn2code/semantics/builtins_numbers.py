@@ -288,12 +288,6 @@ def read_real(text: str) -> tuple[float, int] | None:
     return (-number if found[1] in ("~", "-") else number), found.end()
 
 
-def real_from_string(text: str) -> float | None:
-    """After blanks, a number in SML's or C's way; the rest is ignored."""
-    found = read_real(text)
-    return None if found is None else found[0]
-
-
 def _read_real(e: Evaluator, text: str) -> tuple[Value, int] | None:
     return read_real(text)
 

@@ -33,7 +33,6 @@ from pn2code.tdl.evaluate import (
 from pn2code.tdl.types import POSE_FIELDS, Type
 
 DEFAULT_STEP_LIMIT: Final = 100_000
-MAX_CALL_DEPTH: Final = 100
 
 Scalar = int | float | bool | str
 

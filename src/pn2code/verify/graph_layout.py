@@ -65,7 +65,6 @@ class Layout:
     nodes: tuple[Placed, ...]
     edges: tuple[Drawn, ...]
     is_labelled: bool
-    is_full: bool
 
 
 def lay_out(graph: StateGraph) -> Layout:
@@ -134,7 +133,7 @@ def lay_out(graph: StateGraph) -> Layout:
         hangs = layer[a] == layer[b]
         drawn.append(Drawn(a, b, tuple(own), points, hangs, label, on, layer[b] <= layer[a]))
     nodes = tuple(Placed(n, placed[n.number], lines[n.number]) for n in graph.nodes)
-    return Layout(nodes, tuple(drawn), labelled, full)
+    return Layout(nodes, tuple(drawn), labelled)
 
 
 def _gap(

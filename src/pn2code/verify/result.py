@@ -97,7 +97,6 @@ class Exploration:
     arcs: int
     depth: int
     seconds: float
-    cpu_seconds: float
     bytes_per_state: float
     peak_mib: float
     compile_seconds: float
@@ -140,7 +139,6 @@ class Exploration:
             arcs=found["arcs"],
             depth=found["depth"],
             seconds=found["seconds"],
-            cpu_seconds=found.get("cpu_seconds", found["seconds"]),
             bytes_per_state=found["bytes_per_state"],
             peak_mib=found["peak_mib"],
             compile_seconds=compile_seconds,
