@@ -430,8 +430,8 @@ def test_messages_of_branches_that_exclude_each_other_share_a_variable(tmp_path:
 
 def test_the_riveting_cell(root: Path) -> None:
     """One loop with a chain for each robot; robot 2 has nothing to measure with."""
-    from pn2code.cell.load import load as load_cell
     from pn2code.cell.divide import divide
+    from pn2code.cell.load import load as load_cell
     from pn2code.diagnostics import Diagnostics
     from pn2code.lowering.robot import lower_robots
     from pn2code.lowering.robot_ir import program
