@@ -7,6 +7,7 @@ Prints each mutant that survives, and a table; exit code 1 when too many do. The
 from __future__ import annotations
 
 import argparse
+import json
 import random
 import sys
 import tempfile
@@ -18,7 +19,7 @@ from pathlib import Path
 sys.path.insert(0, str(Path(__file__).parents[1]))
 
 from tests.mutation.judge import NONE, SURVIVED, Judge, judge_of
-from tests.mutation.mutants import Mutant, of_c, of_script
+from tests.mutation.mutants import Function, Mutant, of_c, of_script
 
 from helpers.small_cell import write
 from pn2code.resources import cnative_folder
@@ -37,12 +38,18 @@ SCHEDULER = {
 def of_cell(judge: Judge) -> dict[str, list[Mutant]]:
     """All mutants of a cell's own programs, by what is mutated: of transitions that occur
     at all, and of lines that are carried out."""
-    net = judge.made.partition.net
-    own = [re_name(net.transitions[i].name) for i in judge.occurring]
+    names = {judge.made.partition.net.transitions[i].name for i in judge.occurring}
+    spans = [
+        (code["first"], code["last"])
+        for element in json.loads(judge.files["manifest.json"])["elements"]
+        for code in element["code"]
+        if element["element"] in names and code["file"] == "net.c"
+    ]
 
-    def is_own(function: str) -> bool:
-        stem = function.removesuffix("_enumerate").removesuffix("_fire")
-        return stem != function and any(n.endswith(stem) for n in own)
+    def is_own(function: Function) -> bool:
+        return function.name.endswith(("_enumerate", "_fire")) and any(
+            first <= function.first and function.last <= last for first, last in spans
+        )
 
     scripts = sorted(name for name in judge.files if name.endswith(".tdl"))
     return {
@@ -61,13 +68,8 @@ def of_scheduler() -> list[Mutant]:
     found: list[Mutant] = []
     for name, functions in SCHEDULER.items():
         text = (cnative_folder() / "src" / name).read_text(encoding="utf-8")
-        found += of_c(text, name, lambda f, known=functions: f in known)  # type: ignore[misc]
+        found += of_c(text, name, lambda f, known=functions: f.name in known)  # type: ignore[misc]
     return found
-
-
-def re_name(name: str) -> str:
-    """The stem of a transition's C functions ends like this."""
-    return "".join(c if c.isalnum() else "_" for c in name)
 
 
 def cells(folder: Path) -> Iterator[tuple[str, Path]]:

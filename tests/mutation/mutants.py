@@ -1,6 +1,6 @@
 """Small changes of C code and of robot scripts, each of which may change what a program does.
 
-for mutant in of_c(text, name="net.c", functions=is_supervisors): ...
+for mutant in of_c(text, "net.c", lambda function: function.name.endswith("_fire")): ...
 mutant.text       # the changed file
 mutant.what       # "net.c:431: `b.n == 2` -> `b.n != 2`"
 """
@@ -29,6 +29,15 @@ class Mutant:
     kind: str
     what: str
     text: str
+
+
+@dataclass(frozen=True, slots=True)
+class Function:
+    """A C function: its name, and the lines of its braces, counted from 1."""
+
+    name: str
+    first: int
+    last: int
 
 
 Rule = tuple[str, re.Pattern[str], Callable[[re.Match[str]], str]]
@@ -88,13 +97,13 @@ _KEPT = re.compile(r"^\s*(?:return (?:true|false);|(?:is_taken|fits) = .*(?:&&|\
 """Answers of a search that nobody asks for, and the `&&` between moves that never fail."""
 
 
-def of_c(text: str, file: str, is_wanted: Callable[[str], bool]) -> Iterator[Mutant]:
-    """Mutants of the functions with wanted names, without what is defensive."""
+def of_c(text: str, file: str, is_wanted: Callable[[Function], bool]) -> Iterator[Mutant]:
+    """Mutants of some functions, without what is defensive."""
     lines = text.split("\n")
-    for start, end, name in functions(lines):
-        if not is_wanted(name):
+    for function in functions(lines):
+        if not is_wanted(function):
             continue
-        wanted = list(range(start + 1, end))
+        wanted = list(range(function.first, function.last - 1))
         block = ""  # the indentation of a defensive block that has begun
         for i in list(wanted):
             indent = lines[i][: len(lines[i]) - len(lines[i].lstrip())]
@@ -115,19 +124,16 @@ def of_c(text: str, file: str, is_wanted: Callable[[str], bool]) -> Iterator[Mut
         yield from _swapped(lines, wanted, file)
 
 
-def functions(lines: list[str]) -> Iterator[tuple[int, int, str]]:
-    """First and last line of each function, and its name."""
+def functions(lines: list[str]) -> Iterator[Function]:
+    """The functions of a C file as our formatter leaves it."""
     start = 0
     for i, line in enumerate(lines):
         if line == "{" and i > 0:
             start = i
         elif line == "}" and start:
             head = " ".join(lines[max(0, start - 3) : start])
-            names = re.findall(
-                r"(\w+)\([^()]*\)?[^()]*$", head.rsplit(";", 1)[-1].rsplit("}", 1)[-1]
-            )
-            found = re.findall(r"\b(\w+)\(", head.rsplit("}", 1)[-1].rsplit("*/", 1)[-1])
-            yield start, i, (found or names or [""])[0]
+            (name, *_) = re.findall(r"\b(\w+)\(", head.rsplit("}", 1)[-1].rsplit("*/", 1)[-1])
+            yield Function(name, start + 1, i + 1)
             start = 0
 
 
