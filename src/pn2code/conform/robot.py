@@ -135,6 +135,7 @@ class _Product:
         }
         self._files = _PlacesAsFiles()
         self._primitives = config.primitives
+        self._sensors = {s.variable: s.name for s in config.sensors}
         self._called = Calls()
         self._wants_waits = any(p.command == "wait" for p in config.primitives.values())
         self._names = {t.name: t for t in self._net.transitions}
@@ -233,8 +234,8 @@ class _Product:
                     yield self._go(state, None)
             case Execute(command=commands.Measure(nominal=nominal)):
                 yield self._go(state, nominal)
-            case Sense():
-                for value in self._said(state):
+            case Sense(sensor=sensor):
+                for value in self._said(state, sensor):
                     yield self._go(state, value)
             case _:
                 yield self._go(state, None)
@@ -244,11 +245,13 @@ class _Product:
             text = element_text(self._game.colours, self._net, element)
             raise _DeviationError(f"{why}, but by the net {text} is enabled")
 
-    def _said(self, state: _State) -> list[Scalar]:
-        """Every value that the net leaves open to the sensor here: those of variables of what is enabled."""
+    def _said(self, state: _State, sensor: str) -> list[Scalar]:
+        """Every value that the net leaves open to the sensor here: those of its variable in what is enabled."""
         found: dict[Scalar, None] = {}
         for element in self._scheme.enabled(self._owner, state.marking):
             for symbol, value in element.values:
+                if self._sensors.get(symbol.name) != sensor:
+                    continue
                 assert symbol.colset is not None, "a net variable has a colour set"
                 data = to_json(symbol.colset, value)
                 if isinstance(data, int | float | bool | str):
