@@ -5,6 +5,8 @@ from __future__ import annotations
 import os
 from pathlib import Path
 
+from pn2code.os_reason import os_reason
+
 
 def private_folder() -> Path | None:
     """A folder that only this user can write to, or None: what is loaded must not come from anyone else."""
@@ -26,7 +28,7 @@ def _found() -> tuple[Path | None, str]:
         folder.mkdir(mode=0o700, parents=True, exist_ok=True)
         status = folder.stat()
     except OSError as problem:
-        return None, f"`{folder}` cannot be made: {(problem.strerror or str(problem)).lower()}"
+        return None, f"`{folder}` cannot be made: {os_reason(problem)}"
     if not hasattr(os, "getuid") or status.st_uid != os.getuid() or status.st_mode & 0o022:
         return None, f"`{folder}` is not this user's alone"
     if not os.access(folder, os.W_OK):

@@ -16,6 +16,7 @@ from typing import Any
 
 from pn2code.cell.toml_text import positions
 from pn2code.diagnostics import Diagnostics, Origin, SourceText
+from pn2code.os_reason import os_reason
 
 
 class Locator:
@@ -70,10 +71,9 @@ def read(
     try:
         text = path.read_text(encoding="utf-8")
     except (OSError, UnicodeDecodeError) as problem:
-        reason = getattr(problem, "strerror", None) or "not UTF-8 text"
         d.error(
             code,
-            f"cannot read `{file}`: {reason[:1].lower()}{reason[1:]}",
+            f"cannot read `{file}`: {os_reason(problem)}",
             Origin(file),
             hint="save it as a text file in UTF-8 that may be read",
         )

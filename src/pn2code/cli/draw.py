@@ -25,6 +25,7 @@ from pn2code.diagnostics import Diagnostics, Origin, Severity
 from pn2code.diagnostics.near import nearest
 from pn2code.drawing.codes import DRAW_ARRANGED, DRAW_OUTPUT, DRAW_PAGE, DRAW_TRACE
 from pn2code.net import front
+from pn2code.os_reason import os_reason
 from pn2code.reading.document import Document, RawPage
 from pn2code.whole_file import whole_file
 
@@ -223,8 +224,9 @@ def _moments(
     except TraceRefusedError as refused:
         _refuse(DRAW_TRACE, f"`{trace}`: {refused}", "it must be a trace of this net", form)
     except OSError as problem:
-        reason = (problem.strerror or str(problem)).lower()
-        _refuse(DRAW_TRACE, f"`{trace}`: {reason}", "give a file that can be read", form)
+        _refuse(
+            DRAW_TRACE, f"`{trace}`: {os_reason(problem)}", "give a file that can be read", form
+        )
     return found, chosen, last
 
 
@@ -334,9 +336,8 @@ def _write(files: dict[Path, str], form: Format) -> None:
             with whole_file(path) as beside:
                 beside.write_bytes(text.encode("utf-8"))
         except OSError as problem:
-            reason = (problem.strerror or str(problem)).lower()
             hint = "give another file or folder with -o"
-            _refuse(DRAW_OUTPUT, f"cannot write `{path}`: {reason}", hint, form)
+            _refuse(DRAW_OUTPUT, f"cannot write `{path}`: {os_reason(problem)}", hint, form)
 
 
 def _report(d: Diagnostics, kind: str, marking: bool, form: Format) -> None:

@@ -17,6 +17,7 @@ from pn2code.cli.options import Exit, Format, FormatOption, print_diagnostics, s
 from pn2code.diagnostics import Diagnostics, Origin, SourceText
 from pn2code.diagnostics.codes import register
 from pn2code.net import front
+from pn2code.os_reason import os_reason
 from pn2code.robot.commands import Command
 from pn2code.run.robot import Arm, InstantArm, RobotPlayer, script_specs
 from pn2code.run.sensors import Sensors
@@ -197,10 +198,9 @@ def _load(script: Path, d: Diagnostics) -> CheckedProgram | None:
     try:
         text = script.read_text(encoding="utf-8")
     except OSError as problem:
-        reason = problem.strerror or str(problem)
         d.error(
             CELL_MISSING,
-            f"cannot read `{script}`: {reason[:1].lower()}{reason[1:]}",
+            f"cannot read `{script}`: {os_reason(problem)}",
             Origin(str(script)),
             hint="check the path",
         )

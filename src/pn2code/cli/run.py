@@ -19,6 +19,7 @@ from pn2code.cli.options import (
 )
 from pn2code.diagnostics import Diagnostics
 from pn2code.emission.write import OutputFolderError
+from pn2code.os_reason import os_reason
 
 EPILOG = """Examples:
 
@@ -106,9 +107,8 @@ def run(
             typer.echo(f"pn2code: {problem}", err=True)
             raise typer.Exit(Exit.USAGE) from None
         except OSError as problem:
-            reason = (problem.strerror or str(problem)).lower()
             where = f" `{problem.filename}`" if problem.filename else f" `{out}`"
-            typer.echo(f"pn2code: cannot work with{where}: {reason}", err=True)
+            typer.echo(f"pn2code: cannot work with{where}: {os_reason(problem)}", err=True)
             raise typer.Exit(Exit.USAGE) from None
         if result is not None and pictures:
             progress.say("drawing charts")

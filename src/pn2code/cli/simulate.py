@@ -26,6 +26,7 @@ from pn2code.cli.options import (
     stop,
 )
 from pn2code.diagnostics import Diagnostics, Origin
+from pn2code.os_reason import os_reason
 from pn2code.semantics.codes import TRACE_REFUSED
 from pn2code.semantics.report import places
 from pn2code.simulate.choose import Wish, monitors_of
@@ -206,8 +207,7 @@ def _sentence(problem: Exception, request: Request) -> str:
         case TraceRefusedError():
             return f"`{request.replay}` cannot be repeated: {problem}"
         case OSError():
-            reason = (problem.strerror or str(problem)).lower()
-            return f"cannot read `{problem.filename or request.replay}`: {reason}"
+            return f"cannot read `{problem.filename or request.replay}`: {os_reason(problem)}"
         case _:
             raise AssertionError("no other problem is told in this way")
 

@@ -28,6 +28,7 @@ from pn2code.cli.options import (
     stop,
 )
 from pn2code.diagnostics import Diagnostics, Origin
+from pn2code.os_reason import os_reason
 from pn2code.semantics.game import GameError
 from pn2code.simulate.script import TraceRefusedError
 from pn2code.verify import chance, control_text
@@ -310,8 +311,9 @@ def _folder(traces: Path | None) -> Path:
     try:
         folder.mkdir(parents=True, exist_ok=True)
     except OSError as problem:
-        reason = (problem.strerror or str(problem)).lower()
-        raise typer.BadParameter(f"`{folder}`: {reason}", param_hint="--traces") from None
+        raise typer.BadParameter(
+            f"`{folder}`: {os_reason(problem)}", param_hint="--traces"
+        ) from None
     return folder
 
 
@@ -393,8 +395,9 @@ def _write_report(
         with whole_file(path) as beside:
             beside.write_text(body, encoding="utf-8")
     except OSError as problem:
-        reason = (problem.strerror or str(problem)).lower()
-        d.error(REPORT_UNWRITABLE, f"cannot write `{path}`: {reason}", Origin(str(path)))
+        d.error(
+            REPORT_UNWRITABLE, f"cannot write `{path}`: {os_reason(problem)}", Origin(str(path))
+        )
 
 
 def _text(

@@ -12,6 +12,7 @@ from pathlib import Path
 
 from pn2code.emission.manifest import NAME as MANIFEST
 from pn2code.emission.output import OutputFile
+from pn2code.os_reason import os_reason
 
 
 @dataclass(frozen=True, slots=True)
@@ -51,9 +52,8 @@ def write(folder: Path, files: Iterable[OutputFile], *, check: bool = False) -> 
         if not check:
             _replace(folder, {path: new[path] for path in changed}, removed)
     except OSError as problem:
-        reason = problem.strerror or str(problem)
         raise OutputFolderError(
-            f"cannot write `{folder}`: {reason[:1].lower()}{reason[1:]}; nothing was changed"
+            f"cannot write `{folder}`: {os_reason(problem)}; nothing was changed"
         ) from problem
     return Written(tuple(sorted(changed)), tuple(sorted(removed)))
 

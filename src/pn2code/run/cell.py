@@ -29,6 +29,7 @@ from pn2code.diagnostics.codes import register
 from pn2code.diagnostics.near import did_you_mean
 from pn2code.emission.output import OutputFile
 from pn2code.emission.write import OutputFolderError, write
+from pn2code.os_reason import os_reason
 from pn2code.report.rows import rows_tsv
 from pn2code.report.summary import summarise
 from pn2code.robot import scene
@@ -402,9 +403,8 @@ def _write_results(
         for file, path in partial.items():
             path.replace(out / file)
     except OSError as problem:
-        reason = problem.strerror or str(problem)
         raise OutputFolderError(
-            f"cannot write the results in `{out}`: {reason[:1].lower()}{reason[1:]}"
+            f"cannot write the results in `{out}`: {os_reason(problem)}"
         ) from problem
     finally:
         for path in partial.values():

@@ -17,6 +17,7 @@ from pn2code.channels import (
     SharedDirectory,
     Status,
 )
+from pn2code.os_reason import os_reason
 from pn2code.tdl.interpret import FileError
 
 T = TypeVar("T")
@@ -97,5 +98,4 @@ def directory_error(path: Path, problem: OSError) -> DirectoryError:
     if not path.is_dir():
         return DirectoryError(f"the shared directory `{path}` is gone")
     where = f" at `{problem.filename}`" if problem.filename else ""
-    reason = problem.strerror or str(problem)
-    return DirectoryError(f"the shared directory fails{where}: {reason[:1].lower()}{reason[1:]}")
+    return DirectoryError(f"the shared directory fails{where}: {os_reason(problem)}")

@@ -20,6 +20,7 @@ from pn2code.cell.scalars import Scalar, ScalarKind, scalars_of
 from pn2code.channels.scalars import Malformed, parse_scalars
 from pn2code.diagnostics import Diagnostics, Origin
 from pn2code.net.flat import FlatNet
+from pn2code.os_reason import os_reason
 
 Value = int | float | bool | str
 MOST_DRAWN = 1_000_000
@@ -95,10 +96,9 @@ def _script(
     try:
         lines = path.read_text(encoding="utf-8").splitlines()
     except (OSError, UnicodeDecodeError) as problem:
-        reason = getattr(problem, "strerror", None) or "not UTF-8 text"
         d.error(
             CELL_FILE,
-            f"cannot read `{path}`: {reason[:1].lower()}{reason[1:]}",
+            f"cannot read `{path}`: {os_reason(problem)}",
             sensor.origin,
             hint="save it as a text file in UTF-8 that may be read",
         )

@@ -10,6 +10,7 @@ import re
 from pathlib import Path
 from typing import Any
 
+from pn2code.os_reason import os_reason
 from pn2code.semantics import trace as lines
 from pn2code.semantics.game import Game
 from pn2code.semantics.marking import BindingElement
@@ -78,7 +79,7 @@ class TraceFile:
 
     def _unwritable(self, problem: OSError) -> TraceUnwritableError:
         assert self._path is not None
-        return TraceUnwritableError(self._path, (problem.strerror or str(problem)).lower())
+        return TraceUnwritableError(self._path, os_reason(problem))
 
     def header(self, game: Game, by: str, seed: int) -> None:
         """The first line; before the game begins."""

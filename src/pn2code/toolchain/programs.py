@@ -30,6 +30,7 @@ from pn2code.diagnostics import Diagnostics, Origin
 from pn2code.diagnostics.codes import register
 from pn2code.emission import runtime
 from pn2code.emission.output import OutputFile
+from pn2code.os_reason import os_reason
 from pn2code.private_folder import private_folder, without_folder
 from pn2code.toolchain.build import BUILD_FAILED, TOOL_MISSING, find_compiler, report_failure
 
@@ -197,7 +198,9 @@ def _not_kept(why: str, origin: Origin, d: Diagnostics) -> None:
 
 def _no_room(host: Host, problem: OSError, d: Diagnostics) -> None:
     d.error(
-        BUILD_FAILED, f"there is no room to compile the net: {_reason(problem)}", Origin(host.name)
+        BUILD_FAILED,
+        f"there is no room to compile the net: {os_reason(problem)}",
+        Origin(host.name),
     )
 
 
@@ -239,7 +242,7 @@ class _Builder:
                 self._prune()
             return found
         except OSError as problem:
-            _not_kept(_reason(problem), Origin(str(self.folder)), d)
+            _not_kept(os_reason(problem), Origin(str(self.folder)), d)
             return None
 
     def built(self, d: Diagnostics) -> Path | None:
@@ -400,7 +403,3 @@ def _run(
         process.communicate()
         raise
     return subprocess.CompletedProcess(command, process.returncode, said, errors)
-
-
-def _reason(problem: OSError) -> str:
-    return (problem.strerror or str(problem)).lower()

@@ -22,6 +22,7 @@ from typing import IO, Any
 from pn2code.diagnostics import Diagnostics, Origin
 from pn2code.net.flat import FlatNet
 from pn2code.net.predicate import Predicate
+from pn2code.os_reason import os_reason
 from pn2code.verify import programs
 from pn2code.verify.codes import BEYOND_ROOM, EXPLORER_FAILED, REDUCTION_MISMATCH, SPILL_FULL
 from pn2code.verify.limits import Limits, default_memory
@@ -215,11 +216,10 @@ def _run_with_tables(
                 made.append(Path(name))
                 made[-1].write_text(text, encoding="ascii")
             except OSError as problem:
-                reason = (problem.strerror or str(problem)).lower()
                 what = "binding elements" if option == "--elements" else "questions"
                 d.error(
                     EXPLORER_FAILED,
-                    f"there is no room for the table of {what}: {reason}",
+                    f"there is no room for the table of {what}: {os_reason(problem)}",
                     Origin(net.file),
                     hint="explore with `--no-reduction`, or set TMPDIR",
                 )

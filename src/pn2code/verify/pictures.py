@@ -17,6 +17,7 @@ from typing import Any, Self
 
 from pn2code.diagnostics import Diagnostics, Origin
 from pn2code.net.flat import FlatNet
+from pn2code.os_reason import os_reason
 from pn2code.verify.codes import GRAPH_NOT_DRAWN, REPORT_UNWRITABLE
 from pn2code.verify.explore import Wishes
 from pn2code.verify.result import Exploration
@@ -93,8 +94,11 @@ class Pictures:
             try:
                 write(path, net, found, d)
             except OSError as problem:
-                reason = (problem.strerror or str(problem)).lower()
-                d.error(REPORT_UNWRITABLE, f"cannot write `{path}`: {reason}", Origin(str(path)))
+                d.error(
+                    REPORT_UNWRITABLE,
+                    f"cannot write `{path}`: {os_reason(problem)}",
+                    Origin(str(path)),
+                )
 
     def _write_graph(self, path: Path, net: FlatNet, found: Exploration, d: Diagnostics) -> None:
         why, hint = self._obstacle(found)
