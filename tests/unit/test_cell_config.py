@@ -48,6 +48,16 @@ robots.r1.base = { x = 9.0 }
 """
 
 
+DEVICES = """
+[net]
+file = "cell.cpn"
+[supervisor]
+instance = "Supervisor"
+[devices.feeder]
+instance = "Feeder"
+"""
+
+
 def read(
     tmp_path: Path, text: str, layout: str | None = None
 ) -> tuple[CellConfig | None, Diagnostics]:
@@ -84,6 +94,13 @@ def test_logic_digest_changes_with_logic(tmp_path: Path) -> None:
     other, _ = read(tmp_path, GOOD.replace('command = "move_joint"', 'command = "move_linear"'))
     assert one is not None and other is not None
     assert one.logic_digest() != other.logic_digest()
+
+
+def test_a_cell_of_devices_alone(tmp_path: Path) -> None:
+    config, d = read(tmp_path, DEVICES)
+    assert config is not None and not d.items
+    assert [p.name for p in config.programs] == ["feeder"]
+    assert len(config.logic_digest()) == 64
 
 
 @pytest.mark.parametrize(

@@ -170,7 +170,8 @@ class CellConfig:
     def logic_digest(self) -> str:
         """SHA-256 of what this file contributes to the generated programs (geometry does not)."""
         robots = {
-            name: {"instance": table.get("instance")} for name, table in self.raw["robots"].items()
+            name: {"instance": table.get("instance")}
+            for name, table in self.raw.get("robots", {}).items()
         }
         logic = {
             key: self.raw.get(key)
