@@ -10,6 +10,7 @@ from collections.abc import Iterable
 
 from pn2code.diagnostics import Origin
 from pn2code.frozen import frozen
+from pn2code.net.flat import FlatPlace, FlatTransition
 from pn2code.tdl import tree as t
 
 
@@ -145,3 +146,13 @@ def program(ir: RobotIR) -> t.Program:
     declarations = tuple(d.declaration for d in (*ir.files, *ir.constants, *ir.variables))
     procedures = tuple(t.Procedure(name, statements(body)) for name, body in ir.procedures)
     return t.Program(ir.name, declarations, procedures, statements(ir.body))
+
+
+def place_element(p: FlatPlace, kind: str = "place") -> Element:
+    """What a place is called in comments; `kind`: "place" or "channel"."""
+    return Element(p.name, kind, p.origins[0], f"place {p.short} ({p.id})")
+
+
+def transition_element(x: FlatTransition) -> Element:
+    """What a transition is called in comments."""
+    return Element(x.name, "transition", x.origin, f"{x.short} ({x.id})")

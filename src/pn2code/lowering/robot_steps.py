@@ -87,7 +87,6 @@ class StepTranslator:
     """Translates transitions.
 
     Args:
-        place_values: what places and messages hold: script variables.
         place_names: the variables of a local place, in order of its leaves.
         shapes: shapes of places.
         file_names: names of the files of channel places.
