@@ -16,7 +16,7 @@ from helpers.compiled import lowered
 from helpers.netbuilder import flat
 from pn2code.emission.c import emit
 from pn2code.emission.c_expressions import c_bytes, c_integer
-from pn2code.emission.c_statements import wrap
+from pn2code.emission.c_lines import wrap
 from pn2code.emission.output import OutputFile
 
 PICK = """

@@ -20,10 +20,13 @@ from pn2code.emission.c_expressions import (
     op_needs_table,
 )
 from pn2code.emission.c_firing import DirectFiring
+from pn2code.emission.c_leaves import Leaves
+from pn2code.emission.c_lines import wrap
+from pn2code.emission.c_needs import used_locals, uses_context
 from pn2code.emission.c_proofs import proofs
-from pn2code.emission.c_statements import Statements, used_locals, uses_context, wrap
+from pn2code.emission.c_statements import Statements
 from pn2code.emission.c_sums import Sum
-from pn2code.emission.environment import c_comment, c_float, c_string, render
+from pn2code.emission.environment import c_comment, c_float, render
 from pn2code.emission.names import Members, Names, Scope, stem
 from pn2code.emission.output import Block, OutputFile
 from pn2code.lowering import ir
@@ -34,15 +37,6 @@ from pn2code.lowering.packing import KEY_BITS, key_bits, packed_bits
 _MARK = "\x01"
 _MOST_INLINED = 150
 """Transitions of a net for which the compiler is told to put searches where they are called."""
-_LEAVES = {
-    Rep.BOOL: "PN_LEAF_BOOL",
-    Rep.INT: "PN_LEAF_INT",
-    Rep.BIG: "PN_LEAF_INT",
-    Rep.REAL: "PN_LEAF_REAL",
-    Rep.STRING: "PN_LEAF_STRING",
-    Rep.ENUM: "PN_LEAF_ENUM",
-    Rep.UNIT: "PN_LEAF_ENUM",
-}
 
 
 def emit(net: NetIR, version: str) -> tuple[OutputFile, ...]:
@@ -59,6 +53,7 @@ class _Emitter:
         self._types = Types(self._names, self._definitions)
         self._descriptors = {d.name: d for d in net.descriptors}
         self._functions = {f.key: f for f in net.functions}
+        self._leaves = Leaves(self._names, self._descriptors)
         self._blocks: dict[str, tuple[str, str, Origin]] = {}
         self._place_names = tuple(self._names.place(p.index, p.name) for p in net.places)
         for t in net.transitions:
@@ -226,7 +221,7 @@ class _Emitter:
     def _place(self, p: ir.Place) -> dict[str, object]:
         s, _, _ = self._printer(p.initial)
         s.body(p.initial)
-        leaves = self._leaves(p.table)
+        leaves = self._leaves.of(p.table)
         return {
             "mark": self._block(f"place {p.name}", p.name, "place", p.origin),
             "name": p.name,
@@ -260,54 +255,8 @@ class _Emitter:
             "initial_text": _comment_lines(p.initial_text),
             "leaf_kinds": [kind for _, kind in leaves] if leaves else [],
             "leaf_names": [name for name, _ in leaves] if leaves else [],
-            "line_leaves": self._lines_of(p.table) if leaves else [],
+            "line_leaves": self._leaves.lines(p.table) if leaves else [],
         }
-
-    def _leaves(self, key: str) -> list[tuple[str, str]] | None:
-        """Name and kind of each scalar; None: no fixed number."""
-        d = self._descriptors[key]
-        if d.type.rep in _LEAVES:
-            return [("", "PN_LEAF_ENUM" if d.is_index else _LEAVES[d.type.rep])]
-        if d.type.rep is not Rep.STRUCT:
-            return None
-        leaves = []
-        for text, part in d.fields:
-            inner = self._leaves(part)
-            if inner is None:
-                return None
-            leaves += [(f"{text}.{name}" if name else text, kind) for name, kind in inner]
-        return leaves
-
-    def _leaf_tables(self) -> list[dict[str, list[str]]]:
-        """The arrays for each colour set of a place with a fixed number of scalars."""
-        tables = []
-        for key in dict.fromkeys(p.table for p in self._net.places):
-            leaves = self._leaves(key)
-            if not leaves:
-                continue
-            name = self._names.table(key)
-            kinds = ", ".join(kind for _, kind in leaves)
-            labels = ", ".join(c_string(x) for x, _ in leaves)
-            lines = ", ".join(f"{n}U" for n in self._lines_of(key))
-            tables.append(
-                {
-                    "lines": [
-                        *wrap(f"static const pn_leaf_kind_t {name}_kinds[] = {{ {kinds} }};"),
-                        *wrap(f"static const char *const {name}_leaves[] = {{ {labels} }};"),
-                        *wrap(f"static const uint32_t {name}_lines[] = {{ {lines} }};"),
-                    ]
-                }
-            )
-        return tables
-
-    def _lines_of(self, key: str) -> list[int]:
-        """Leaves per line of an input file: a line for each component that is itself composed; scalars alone
-        on one line each, unless all are scalars: then they share one line."""
-        d = self._descriptors[key]
-        if d.type.rep is not Rep.STRUCT:
-            return [1]
-        counts = [len(self._leaves(part) or []) for _, part in d.fields]
-        return [sum(counts)] if all(n == 1 for n in counts) else counts
 
     def _transition(self, t: ir.Transition) -> dict[str, object]:
         name = self._names.transition(t.index, t.name)
@@ -544,7 +493,7 @@ class _Emitter:
             ],
             "recursive_tables": [self._names.table(k) for k in recursive],
             "tables": [tables.print(k) for k in keys],
-            "leaves": self._leaf_tables(),
+            "leaves": self._leaves.tables(net.places),
             "places": [self._place(p) for p in net.places],
             "proofs": list(proofs(net.places)),
             "orders": list(self._orders.functions.values()),
@@ -647,9 +596,6 @@ def _initial(zero: str, rep: Rep) -> str:
     if rep is Rep.BIG:
         return c_big_initialiser(0)
     return "{ 0 }" if rep in (Rep.STRUCT, Rep.UNION) else zero
-
-
-__all__ = ["emit"]
 
 
 _APART = re.compile(r'"(?:[^"\\]|\\.)*"|/\*.*?\*/', re.S)

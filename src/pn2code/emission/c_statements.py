@@ -2,15 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Mapping
 
 from pn2code.emission.c_expressions import (
     Expressions,
     PackedPlace,
     Types,
     c_bytes,
-    op_needs_context,
 )
+from pn2code.emission.c_lines import WIDTH, wrap
+from pn2code.emission.c_needs import does_nothing
 from pn2code.emission.c_sums import Sum
 from pn2code.emission.environment import c_comment
 from pn2code.emission.names import Names, Scope
@@ -19,56 +20,7 @@ from pn2code.lowering.calls import ir_nodes
 from pn2code.lowering.ir import Ir, Rep, Stmt
 from pn2code.lowering.values import is_atomic
 
-_WIDTH = 100
 _INDENT = "    "
-
-
-def wrap(line: str, width: int = _WIDTH) -> list[str]:
-    """Break a long line of C, at the outermost commas and operators first; literals and comments stay whole."""
-    if len(line) <= width or line.lstrip().startswith(("/*", "#")):
-        return [line]
-    indent = len(line) - len(line.lstrip())
-    lines = [line]
-    while len(lines[-1]) > width:
-        at = _break_position(lines[-1], width)
-        if at is None:
-            break
-        last = lines.pop()
-        lines += [last[:at], " " * (indent + 4) + last[at + 1 :]]
-    return lines
-
-
-def _break_position(line: str, width: int) -> int | None:
-    """The blank at which to break: the last of the least nested ones that leaves a line of `width`."""
-    indent = len(line) - len(line.lstrip())
-    best: tuple[int, int] | None = None  # (nesting, -position)
-    depth, in_string, i = 0, False, indent
-    while i < len(line) and (i <= width or best is None):
-        c = line[i]
-        if in_string:
-            i += c == "\\"
-            in_string = c != '"'
-        elif c == '"':
-            in_string = True
-        elif c in "([{":
-            depth += 1
-        elif c in ")]}":
-            depth -= 1
-        elif c == " " and i > indent + 8:
-            cost = _cost(line[i - 1], line[i + 1 : i + 3])
-            if cost is not None and (best is None or (depth + cost, -i) < best):
-                best = (depth + cost, -i)
-        i += 1
-    return None if best is None else -best[1]
-
-
-def _cost(before: str, after: str) -> int | None:
-    """How much worse than a break at a comma of the same nesting; None: no break here."""
-    if before == "," or after in ("&&", "||", "? ", ": "):
-        return 0
-    if after in ("+ ", "- "):
-        return 1
-    return 3 if after in ("* ", "/ ") or before == "=" else None
 
 
 class Statements:
@@ -111,7 +63,7 @@ class Statements:
         """A comment line, shortened if it is very long."""
         clean = c_comment(text)
         if clean:
-            room = _WIDTH - 4 * self._depth - 6
+            room = WIDTH - 4 * self._depth - 6
             self.line(f"/* {clean if len(clean) <= room else clean[: room - 4] + ' ...'} */")
 
     def block(self, statements: tuple[Stmt, ...]) -> None:
@@ -573,84 +525,3 @@ _ERRORS = {
 
 def _error(name: str) -> str:
     return _ERRORS.get(name, "PN_ERR_RAISED")
-
-
-def does_nothing(value: Ir) -> bool:
-    """Whether a value need not be computed when nobody looks at it."""
-    return not any(
-        isinstance(n, (ir.FunCall, ir.NewRef)) or (isinstance(n, ir.Op) and n.name != "zero")
-        for n in ir_nodes(value)
-    )
-
-
-def used_locals(statements: tuple[Stmt, ...]) -> frozenset[int]:
-    """The locals whose values are looked at by what is printed."""
-    used: frozenset[int] | None = None
-    while True:
-        found = frozenset(_used(statements, used))
-        if found == used:
-            return found
-        used = found
-
-
-def _used(item: object, known: frozenset[int] | None) -> Iterator[int]:
-    """`known`: the locals that are used as far as is known; what goes to others is not looked at."""
-    waiting = [item]
-    while waiting:
-        item = waiting.pop()
-        match item:
-            case tuple():
-                waiting.extend(item)
-                continue
-            case ir.Use(local=local):
-                yield local.uid
-            case ir.Let(local=local, value=value) | ir.Assign(local=local, value=value) if (
-                known is not None and local.uid not in known and does_nothing(value)
-            ):
-                continue
-            case ir.Do(value=value) if does_nothing(value):
-                continue
-            case ir.Fill(local=local):
-                yield local.uid
-            case ir.ForList(until=until) if until is not None:
-                yield until.uid
-        waiting.extend(getattr(item, name) for name in getattr(item, "__dataclass_fields__", ()))
-
-
-def uses_context(
-    statements: tuple[Stmt, ...], callees: frozenset[str], definitions: dict[str, ir.Definition]
-) -> bool:
-    """Whether statements need the context: something may raise, allocate, or look at the time."""
-    for node in ir_nodes(statements):
-        match node:
-            case ir.Op() if op_needs_context(node):
-                return True
-            case ir.FunCall(function=f) if f in callees:
-                return True
-            case (
-                ir.UnlessBind()
-                | ir.Raise()
-                | ir.RaiseValue()
-                | ir.SetContents()
-                | ir.NewRef()
-                | ir.HasPacket()
-                | ir.Packet()
-                | ir.ClearError()
-                | ir.Ok()
-                | ir.HasError()
-                | ir.Now()
-                | ir.PlaceTokens()
-                | ir.Fill()
-                | ir.While()
-            ):
-                return True
-            case ir.ForList() | ir.ForCount():
-                return True
-            case ir.SetGlobal(is_reference=True):
-                return True
-            case ir.MakeUnion(tag=tag, type=t) if node.argument is not None:
-                definition = definitions[t.name]
-                assert isinstance(definition, ir.UnionDef)
-                if definition.constructors[tag][2]:
-                    return True
-    return False

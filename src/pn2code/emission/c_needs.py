@@ -1,0 +1,91 @@
+"""What IR statements need when they are printed as C: values that somebody looks at, the context."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from pn2code.emission.c_expressions import op_needs_context
+from pn2code.lowering import ir
+from pn2code.lowering.calls import ir_nodes
+from pn2code.lowering.ir import Ir, Stmt
+
+
+def does_nothing(value: Ir) -> bool:
+    """Whether a value need not be computed when nobody looks at it."""
+    return not any(
+        isinstance(n, (ir.FunCall, ir.NewRef)) or (isinstance(n, ir.Op) and n.name != "zero")
+        for n in ir_nodes(value)
+    )
+
+
+def used_locals(statements: tuple[Stmt, ...]) -> frozenset[int]:
+    """The locals whose values are looked at by what is printed."""
+    used: frozenset[int] | None = None
+    while True:
+        found = frozenset(_used(statements, used))
+        if found == used:
+            return found
+        used = found
+
+
+def _used(item: object, known: frozenset[int] | None) -> Iterator[int]:
+    """`known`: the locals that are used as far as is known; what goes to others is not looked at."""
+    waiting = [item]
+    while waiting:
+        item = waiting.pop()
+        match item:
+            case tuple():
+                waiting.extend(item)
+                continue
+            case ir.Use(local=local):
+                yield local.uid
+            case ir.Let(local=local, value=value) | ir.Assign(local=local, value=value) if (
+                known is not None and local.uid not in known and does_nothing(value)
+            ):
+                continue
+            case ir.Do(value=value) if does_nothing(value):
+                continue
+            case ir.Fill(local=local):
+                yield local.uid
+            case ir.ForList(until=until) if until is not None:
+                yield until.uid
+        waiting.extend(getattr(item, name) for name in getattr(item, "__dataclass_fields__", ()))
+
+
+def uses_context(
+    statements: tuple[Stmt, ...], callees: frozenset[str], definitions: dict[str, ir.Definition]
+) -> bool:
+    """Whether statements need the context: something may raise, allocate, or look at the time."""
+    for node in ir_nodes(statements):
+        match node:
+            case ir.Op() if op_needs_context(node):
+                return True
+            case ir.FunCall(function=f) if f in callees:
+                return True
+            case (
+                ir.UnlessBind()
+                | ir.Raise()
+                | ir.RaiseValue()
+                | ir.SetContents()
+                | ir.NewRef()
+                | ir.HasPacket()
+                | ir.Packet()
+                | ir.ClearError()
+                | ir.Ok()
+                | ir.HasError()
+                | ir.Now()
+                | ir.PlaceTokens()
+                | ir.Fill()
+                | ir.While()
+            ):
+                return True
+            case ir.ForList() | ir.ForCount():
+                return True
+            case ir.SetGlobal(is_reference=True):
+                return True
+            case ir.MakeUnion(tag=tag, type=t) if node.argument is not None:
+                definition = definitions[t.name]
+                assert isinstance(definition, ir.UnionDef)
+                if definition.constructors[tag][2]:
+                    return True
+    return False
