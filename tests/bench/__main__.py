@@ -19,7 +19,7 @@ from statistics import median
 sys.path.insert(0, str(Path(__file__).parents[1]))  # as pytest does: the tests' helpers
 
 from tests.bench import measures as m
-from tests.bench import snakes_peer, states
+from tests.bench import monitor, snakes_peer, states
 
 
 @dataclass(frozen=True, slots=True)
@@ -127,6 +127,9 @@ def main() -> int:
     parser.add_argument("--repeat", type=int, default=9, help="of short measures (default 9)")
     parser.add_argument("--states", action="store_true", help="only state spaces, beside SPIN")
     parser.add_argument(
+        "--monitor", action="store_true", help="only what the supervisor's monitor costs"
+    )
+    parser.add_argument(
         "--database-15", action="store_true", help="only that: 71,744,536 states, minutes"
     )
     options = parser.parse_args()
@@ -139,6 +142,8 @@ def main() -> int:
     is_busy = load > cores / 2
     with tempfile.TemporaryDirectory(prefix="pn2code-bench-") as name:
         bench = m.Bench(Path(name), options.repeat)
+        if options.monitor:
+            return monitor.measure(bench)
         table = firing_rows(bench) if options.firings else rows(bench)
     print(f"{cores} cores; load at the start {load:.1f}" + is_busy * ": busy")
     print("\n| what | median | spread | work | unit | at most | beside it, in the same run |")
