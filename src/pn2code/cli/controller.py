@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
 
@@ -10,13 +9,11 @@ from pn2code.cell.divide import divide
 from pn2code.cli.nets import OpenNet
 from pn2code.cli.options import Exit
 from pn2code.diagnostics import Diagnostics, Origin
-from pn2code.net.predicate import Predicate
 from pn2code.verify import control
 from pn2code.verify.codes import TRACE_UNWRITABLE
 from pn2code.verify.control import Control, Plan
-from pn2code.verify.explore import Progress
+from pn2code.verify.explore import Wishes
 from pn2code.verify.limits import Limits
-from pn2code.verify.programs import Sizes
 from pn2code.verify.result import Exploration
 
 
@@ -24,13 +21,8 @@ def look(
     opened: OpenNet,
     found: Exploration,
     limits: Limits,
-    sizes: Sizes,
-    predicates: tuple[Predicate, ...],
-    *,
+    wishes: Wishes,
     folder: Path,
-    stem: str,
-    progress: Progress,
-    interrupted: Callable[[], bool],
     d: Diagnostics,
 ) -> Control | None:
     """All checks; None for a net that is no cell, or after an error.
@@ -38,10 +30,8 @@ def look(
     Args:
         opened: the net.
         found: its state space. Where that is too large, the one that the checks need is as well.
-        limits: of the exploration.
-        sizes, predicates: with which it was compiled.
-        folder, stem: where traces go, and what their names begin with.
-        progress, interrupted: as of `Wishes`.
+        limits, wishes: of the exploration.
+        folder: where traces go.
         d: gets the errors.
     """
     config = opened.config
@@ -57,11 +47,8 @@ def look(
         storage=opened.storage,
         order_decides=config.supervisor.order_decides,
         folder=folder,
-        stem=stem,
-        predicates=predicates,
-        sizes=sizes,
-        progress=progress,
-        interrupted=interrupted,
+        stem=wishes.stem,
+        wishes=wishes,
     )
     looked = control.examine(partition, plan, replace(limits, traces=0), d)
     if looked is not None:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import html
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 
 from pn2code.cell.divide import divide
 from pn2code.cli.nets import OpenNet
@@ -11,7 +11,7 @@ from pn2code.cli.options import Exit
 from pn2code.diagnostics import Diagnostics
 from pn2code.medium.check import Answer, medium
 from pn2code.medium.faults import SAYS
-from pn2code.verify.explore import Progress
+from pn2code.verify.explore import Wishes
 from pn2code.verify.limits import Limits
 from pn2code.verify.result import Exploration
 
@@ -22,10 +22,8 @@ def look(
     opened: OpenNet,
     found: Exploration,
     limits: Limits,
+    wishes: Wishes,
     d: Diagnostics,
-    *,
-    progress: Progress,
-    interrupted: Callable[[], bool],
 ) -> Answers:
     """All checks; none for a net that is no cell, or that could not be explored to the end because of an error.
 
@@ -33,10 +31,10 @@ def look(
         opened: the net.
         found: its own state space. Where that is too large, that with the medium is as well.
         limits: of each exploration.
+        wishes: who is told of the progress, and who may interrupt.
         d: gets the errors.
-        progress, interrupted: as of `Wishes`.
     """
-    if opened.config is None or found.why in ("interrupted", "error") or interrupted():
+    if opened.config is None or found.why in ("interrupted", "error") or wishes.interrupted():
         return ()
     partition = divide(opened.flat, opened.config, d)
     if partition is None:
@@ -48,8 +46,7 @@ def look(
         limits,
         d,
         cell_states=found.nodes if is_small else None,
-        progress=progress,
-        interrupted=interrupted,
+        wishes=Wishes(progress=wishes.progress, interrupted=wishes.interrupted),
     )
     return tuple(answers)
 

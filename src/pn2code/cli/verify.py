@@ -248,32 +248,13 @@ def verify(
             )
             control: Control | None = None
             with playing(form):
-                sizes = Sizes.start(opened.flat, opened.storage)
-                wishes = replace(wishes, sizes=sizes)
+                wishes = replace(wishes, sizes=Sizes.start(opened.flat, opened.storage))
                 found = explore(opened.flat, opened.storage, limits, d, pictures.wishes(wishes))
-                if found is not None and check_controller and opened.config is not None:
-                    control = controller.look(
-                        opened,
-                        found,
-                        limits,
-                        sizes,
-                        asked.properties.predicates,
-                        folder=folder,
-                        stem=_stem(opened),
-                        progress=progress.update,
-                        interrupted=interrupts.is_wanted,
-                        d=d,
-                    )
+                if found is not None and check_controller:
+                    control = controller.look(opened, found, limits, wishes, folder, d)
                 seen: medium.Answers = ()
                 if found is not None and check_medium:
-                    seen = medium.look(
-                        opened,
-                        found,
-                        limits,
-                        d,
-                        progress=progress.update,
-                        interrupted=interrupts.is_wanted,
-                    )
+                    seen = medium.look(opened, found, limits, wishes, d)
         if found is None:
             stop(d, form)
         pictures.write(opened.flat, found, d)

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import tempfile
 import time
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
 from typing import Any, Literal
@@ -22,19 +22,10 @@ from pn2code.medium.places import Crashes, MediumNet, modelled
 from pn2code.medium.rules import Rules
 from pn2code.medium.skeleton import Skeleton, Topology, topology
 from pn2code.medium.tell import Teller
-from pn2code.verify.explore import Progress, Wishes, explore
+from pn2code.verify.explore import Wishes, explore
 from pn2code.verify.limits import Limits, Reduction
 from pn2code.verify.programs import Sizes
 from pn2code.verify.result import Exploration
-
-
-def _nothing(_: Mapping[str, Any]) -> None:
-    """For those who do not care."""
-
-
-def _never() -> bool:
-    return False
-
 
 Verdict = Literal["yes", "no", "inconclusive"]
 MOST_STATES = 2_000_000
@@ -108,13 +99,11 @@ class Answer:
 
 @frozen
 class Run:
-    """How to explore: limits, who gets errors, and as of `Wishes`. `quick`: rather compile than explore quickly."""
+    """How to explore: limits, who gets errors, what else is wished."""
 
     limits: Limits
     d: Diagnostics
-    progress: Progress = _nothing
-    interrupted: Callable[[], bool] = _never
-    quick: bool = True
+    wishes: Wishes = Wishes(quick=True)
 
 
 def medium(
@@ -126,8 +115,7 @@ def medium(
     rules: Rules | None = None,
     crashes: Crashes = CRASHES,
     cell_states: int | None = 0,
-    progress: Progress = _nothing,
-    interrupted: Callable[[], bool] = _never,
+    wishes: Wishes | None = None,
 ) -> Iterator[Answer]:
     """All checks of a cell; none if it has no channels.
 
@@ -139,17 +127,17 @@ def medium(
         rules: of the protocol; None: as it is implemented.
         crashes: in the exchanges.
         cell_states: of the cell's own net; None: too many to explore it with its medium.
-        progress, interrupted: as of `Wishes`.
+        wishes: who is told of the progress, and who may interrupt; None: nobody.
     """
     rules = rules or Rules()
-    run = Run(limits, d, progress, interrupted)
+    run = Run(limits, d, replace(wishes or Wishes(), quick=True))
     own = modelled(partition)
     if not own:
         return
     left_out = [c.file for c in partition.channels if c not in own]
     if cell_states is not None:
-        quick = cell_states <= QUICK_STATES
-        yield whole(partition, storage, replace(run, quick=quick), rules, left_out)
+        fitting = replace(run.wishes, quick=cell_states <= QUICK_STATES)
+        yield whole(partition, storage, replace(run, wishes=fitting), rules, left_out)
     else:
         yield too_large()
     seen: dict[Topology, str] = {}
@@ -241,14 +229,12 @@ def _explored(
     )
     sizes = Sizes(choose(net.net, [[] for _ in net.net.places], {}))
     with tempfile.TemporaryDirectory(prefix="pn2code-") as folder:
-        wishes = Wishes(
+        wishes = replace(
+            run.wishes,
             traces=Path(folder),
-            quick=run.quick,
             sizes=sizes,
             questions=_question(net) if judged else "",
             evidence=Path(folder),
-            progress=run.progress,
-            interrupted=run.interrupted,
         )
         found = explore(net.net, storage, mine, run.d, wishes)
         runs = () if found is None else tuple(_evidence(net, storage, found, judged))

@@ -11,7 +11,7 @@ from __future__ import annotations
 
 import json
 import tempfile
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
@@ -19,10 +19,8 @@ from typing import Any
 from pn2code.cell.partition import OwnerKind, Partition
 from pn2code.diagnostics import Diagnostics
 from pn2code.net.flat import ArcKind
-from pn2code.net.predicate import Predicate
-from pn2code.verify.explore import Progress, Wishes, explore
+from pn2code.verify.explore import Wishes, explore
 from pn2code.verify.limits import Limits, Reduction
-from pn2code.verify.programs import Sizes
 from pn2code.verify.reductions import OBSTACLES
 from pn2code.verify.result import Exploration
 from pn2code.whole_file import whole_file
@@ -146,9 +144,8 @@ class Plan:
         order_decides: cell.toml says that the documented order is meant to decide.
         folder: where traces are kept; None: nowhere.
         stem: what the names of their files begin with.
-        predicates: with which the net has been compiled already, so that it need not be once more.
-        sizes: as of `Wishes`; `quick` too.
-        progress, interrupted: as of `Wishes`.
+        wishes: of the exploration: with the predicates and sizes with which the net has been compiled already, it need
+            not be once more. What it is asked, and the files it writes, are ours.
     """
 
     storage: Mapping[str, str] = field(default_factory=dict)
@@ -156,11 +153,7 @@ class Plan:
     order_decides: bool = False
     folder: Path | None = None
     stem: str = "net"
-    predicates: tuple[Predicate, ...] = ()
-    sizes: Sizes | None = None
-    quick: bool = False
-    progress: Progress | None = None
-    interrupted: Callable[[], bool] | None = None
+    wishes: Wishes = Wishes()
 
 
 @dataclass(frozen=True, slots=True)
@@ -232,18 +225,14 @@ def examine(partition: Partition, plan: Plan, limits: Limits, d: Diagnostics) ->
         reductions=(Reduction.TIME,) if is_shorter else (),
     )
     with tempfile.TemporaryDirectory(prefix="pn2code-") as name:
-        wishes = Wishes(
+        wishes = replace(
+            plan.wishes,
+            traces=None,
+            graph=None,
             questions=questions(partition, plan.firings),
             evidence=Path(name),
             stem="run",
-            predicates=plan.predicates,
-            sizes=plan.sizes,
-            quick=plan.quick,
         )
-        if plan.progress is not None:
-            wishes = replace(wishes, progress=plan.progress)
-        if plan.interrupted is not None:
-            wishes = replace(wishes, interrupted=plan.interrupted)
         found = explore(net, plan.storage, limits, d, wishes)
         if found is None:
             return None

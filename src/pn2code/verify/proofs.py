@@ -23,6 +23,7 @@ from pn2code.toolchain.build import TOOL_MISSING
 from pn2code.verify import control, rooms
 from pn2code.verify.codes import BEYOND_ROOM, CONTROL_FAILED, CONTROL_OPEN
 from pn2code.verify.control import Check, Control, Plan
+from pn2code.verify.explore import Wishes
 from pn2code.verify.limits import Limits, cores
 from pn2code.verify.programs import Sizes, Structure
 
@@ -71,11 +72,7 @@ def prove(
         if config is None:
             rooms.warn_assumed(net, found, d)
         return Proofs(found, (UNCHECKED,) if config else (), None)
-    plan = Plan(
-        storage=storage,
-        order_decides=config.supervisor.order_decides,
-        quick=True,
-    )
+    plan = Plan(storage=storage, order_decides=config.supervisor.order_decides)
     looked = _look(partition, plan, structure, d)
     if looked is None:
         return None
@@ -134,8 +131,8 @@ def _look(partition: Partition, plan: Plan, structure: Structure, d: Diagnostics
     own = Diagnostics()
     limits = Limits(max_states=MOST_STATES, max_seconds=MOST_SECONDS, threads=cores(), traces=0)
     try:
-        sizes = Sizes.start(partition.net, plan.storage, structure)
-        found = control.examine(partition, replace(plan, sizes=sizes), limits, own)
+        wishes = Wishes(sizes=Sizes.start(partition.net, plan.storage, structure), quick=True)
+        found = control.examine(partition, replace(plan, wishes=wishes), limits, own)
     except GameError as error:
         error.report(d)
         return None
