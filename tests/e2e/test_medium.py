@@ -17,13 +17,45 @@ from pn2code.medium.check import CRASHES, Answer, Run, exchange, too_large
 from pn2code.medium.compose import compose
 from pn2code.medium.faults import Fault
 from pn2code.medium.places import Crashes
-from pn2code.medium.rules import VARIANTS, Rules
+from pn2code.medium.rules import Emptying, Rules
 from pn2code.medium.skeleton import Skeleton, Topology, topology
 from pn2code.semantics.game import Game
 from pn2code.verify.limits import Limits
 
 CALM = Crashes(lives=False)
-RULES = {v.name: v.rules for v in VARIANTS}
+RULES = {
+    # flags are published before their data
+    "flag-before-data": Rules(data_first=False),
+    # the supervisor looks at the data before it looks at the flags
+    "data-read-first": Rules(reads_flags_first=False),
+    # a message that was consumed stays in its file
+    "not-emptied": Rules(empties=Emptying.NEVER),
+    # a message that was consumed stays in its file, and nobody looks at its number
+    "not-emptied-no-seq": Rules(empties=Emptying.NEVER, checks_seq=False),
+    # a file is emptied after what follows has been written
+    "emptied-late": Rules(empties=Emptying.AFTER),
+    # a file is emptied late, and the writer writes without looking whether it is empty
+    "overwrites": Rules(checks_empty=False, empties=Emptying.AFTER),
+    # messages are written in place, not renamed
+    "in-place": Rules(renames=False),
+    # messages are written in place, and taken without being validated
+    "torn": Rules(renames=False, validates=False),
+    # a new supervisor does not empty the files of an earlier session
+    "not-cleaned": Rules(cleans=False),
+    # a new supervisor does not empty the files, and nobody looks at a message's session
+    "no-session": Rules(checks_session=False, cleans=False),
+    # a new supervisor does not wait until the robots of an earlier session are gone
+    "peers-alive": Rules(awaits_peers=False),
+    # a new supervisor takes its lock while its status still says that the earlier one is running
+    "lock-before-unsaid": Rules(unsays_first=False),
+    # a robot looks for the supervisor before it takes its own lock, and not again after it
+    "looks-once": Rules(looks_again=False),
+    # a robot that has died is started again in the same session
+    "joins-again": Rules(joins_once=False),
+    # no side looks at the other's lock and status
+    "blind": Rules(looks_after=False),
+}
+"""Protocols that are wrong."""
 ROBOT1, ROBOT2 = 1, 2
 
 

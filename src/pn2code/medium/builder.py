@@ -8,8 +8,9 @@ made = b.net()
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Container, Sequence
 from dataclasses import replace
+from itertools import count
 
 from pn2code.diagnostics import Diagnostics, Origin, SourceText, Span
 from pn2code.frozen import frozen
@@ -61,7 +62,7 @@ class Builder:
         self._base = base
         self.places: list[FlatPlace] = list(base.places)
         self.old: list[FlatTransition] = list(base.transitions)
-        self._wanted: list[_Wanted] = []
+        self._wanted: dict[str, _Wanted] = {}
         self._origin = Origin(base.file, page=PAGE)
         self._colsets = dict(base.program.colsets)
         self._variables = dict(base.program.variables)
@@ -80,10 +81,7 @@ class Builder:
     # --- colour sets, variables, expressions -----------------------------------------------------
 
     def _colset(self, c: Colset) -> Colset:
-        name, n = c.name, 1
-        while name in self._colsets:
-            n += 1
-            name = f"{c.name}{n}"
+        name = _unused(c.name, self._colsets)
         made = replace(c, name=name, origin=self._origin)
         self._colsets[name] = made
         return made
@@ -98,10 +96,7 @@ class Builder:
         symbol = self._made.get((name, colset.name))
         if symbol is None:
             self._uid += 1
-            shown, n = name, 1
-            while shown in self._variables:
-                n += 1
-                shown = f"{name}{n}"
+            shown = _unused(name, self._variables)
             symbol = Symbol(self._uid, shown, colset.type, colset=colset)
             self._made[name, colset.name] = symbol
             self._variables[shown] = symbol
@@ -199,12 +194,8 @@ class Builder:
         self, name: str, arcs: Sequence[Arc], *, priority: int, guards: Sequence[Exp] = ()
     ) -> str:
         """A new transition; its name, which is made unique."""
-        taken = {w.name for w in self._wanted}
-        shown, n = name, 1
-        while shown in taken:
-            n += 1
-            shown = f"{name} ({n})"
-        self._wanted.append(_Wanted(shown, tuple(arcs), tuple(guards), priority))
+        shown = _unused(name, self._wanted, "{} ({})")
+        self._wanted[shown] = _Wanted(shown, tuple(arcs), tuple(guards), priority)
         return shown
 
     def net(self) -> FlatNet:
@@ -215,7 +206,7 @@ class Builder:
         terms = TermReader(program, variables, d)
         planner = Planner(variables, terms, frozenset(), d)
         transitions = list(self.old)
-        for wanted in self._wanted:
+        for wanted in self._wanted.values():
             index = len(transitions)
             arcs = tuple(
                 self._arc(terms, wanted.name, f"{index}.{i}", arc)
@@ -286,3 +277,11 @@ class Builder:
                 )
             inscription = ArcInscription(arc.value, arc.form, found or (), origin)
         return FlatArc(f"medium-arc-{at}", arc.kind, arc.place, inscription, origin)
+
+
+def _unused(name: str, taken: Container[str], form: str = "{}{}") -> str:
+    """The name, or with the first number (from 2) that makes it another one than those that are taken."""
+    if name not in taken:
+        return name
+    numbered = (form.format(name, n) for n in count(2))
+    return next(x for x in numbered if x not in taken)

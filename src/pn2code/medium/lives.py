@@ -116,8 +116,8 @@ class Lives(Parts):
             guard=b.less(s, b.number(self.crashes.all_sessions)),
         )
 
-        def then(what: str, says: str, *arcs: Arc, stay: int | None = None) -> int:
-            after = stay or self.memory(0, what)
+        def then(what: str, says: str, *arcs: Arc, into: int | None = None) -> int:
+            after = self.memory(0, what) if into is None else into
             self.step(f"{name}.{what}", f"{name} {says}", self.off(here), *arcs, self.on(after))
             return after
 
@@ -159,16 +159,8 @@ class Lives(Parts):
                 *([] if self.rules.renames else [[self.off(f.half)]]),
             ]
             for arcs in contents:
-                here = (
-                    then(
-                        f"cleans {f.channel.file}",
-                        f"empties {f.channel.file}",
-                        *arcs,
-                        self.on(f.zero),
-                        stay=after,
-                    )
-                    and here
-                )
+                what, says = f"cleans {f.channel.file}", f"empties {f.channel.file}"
+                then(what, says, *arcs, self.on(f.zero), into=after)
             here = after
         self.step(
             f"{name}.announces itself",

@@ -1,7 +1,6 @@
-"""What the two sides do: the protocol as it is implemented, and ways of doing it wrong.
+"""What the two sides do: the protocol as it is implemented, and what a wrong one would do.
 
-Each rule is one clause of docs/protocol.md that a side could break. `VARIANTS` are protocols with one or two of them
-broken; the check of the medium has to find each of them out.
+Each rule is one clause of docs/protocol.md that a side could break; the check of the medium has to find that out.
 """
 
 from __future__ import annotations
@@ -54,80 +53,3 @@ class Rules:
     looks_again: bool = True
     joins_once: bool = True
     looks_after: bool = True
-
-
-@frozen
-class Variant:
-    """A protocol that is wrong: a name, what is wrong in words, and its rules."""
-
-    name: str
-    says: str
-    rules: Rules
-
-
-VARIANTS = (
-    Variant("flag-before-data", "flags are published before their data", Rules(data_first=False)),
-    Variant(
-        "data-read-first",
-        "the supervisor looks at the data before it looks at the flags",
-        Rules(reads_flags_first=False),
-    ),
-    Variant(
-        "not-emptied",
-        "a message that was consumed stays in its file",
-        Rules(empties=Emptying.NEVER),
-    ),
-    Variant(
-        "not-emptied-no-seq",
-        "a message that was consumed stays in its file, and nobody looks at its number",
-        Rules(empties=Emptying.NEVER, checks_seq=False),
-    ),
-    Variant(
-        "emptied-late",
-        "a file is emptied after what follows has been written",
-        Rules(empties=Emptying.AFTER),
-    ),
-    Variant(
-        "overwrites",
-        "a file is emptied late, and the writer writes without looking whether it is empty",
-        Rules(empties=Emptying.AFTER, checks_empty=False),
-    ),
-    Variant("in-place", "messages are written in place, not renamed", Rules(renames=False)),
-    Variant(
-        "torn",
-        "messages are written in place, and taken without being validated",
-        Rules(renames=False, validates=False),
-    ),
-    Variant(
-        "not-cleaned",
-        "a new supervisor does not empty the files of an earlier session",
-        Rules(cleans=False),
-    ),
-    Variant(
-        "no-session",
-        "a new supervisor does not empty the files, and nobody looks at a message's session",
-        Rules(cleans=False, checks_session=False),
-    ),
-    Variant(
-        "peers-alive",
-        "a new supervisor does not wait until the robots of an earlier session are gone",
-        Rules(awaits_peers=False),
-    ),
-    Variant(
-        "lock-before-unsaid",
-        "a new supervisor takes its lock while its status still says that the earlier one is running",
-        Rules(unsays_first=False),
-    ),
-    Variant(
-        "looks-once",
-        "a robot looks for the supervisor before it takes its own lock, and not again after it",
-        Rules(looks_again=False),
-    ),
-    Variant(
-        "joins-again",
-        "a robot that has died is started again in the same session",
-        Rules(joins_once=False),
-    ),
-    Variant("blind", "no side looks at the other's lock and status", Rules(looks_after=False)),
-)
-"""Protocols that are wrong."""

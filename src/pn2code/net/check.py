@@ -11,7 +11,7 @@ from dataclasses import replace
 from pathlib import Path
 
 from pn2code.diagnostics import Diagnostics, Note, SourceText
-from pn2code.diagnostics.near import nearest
+from pn2code.diagnostics.near import did_you_mean
 from pn2code.ml.colsets import Colset, Kind
 from pn2code.ml.core import Exp, Lit
 from pn2code.ml.elaborate import ColsetSpec, Elaborator, is_layered
@@ -224,8 +224,7 @@ class _Checker:
         colset = self.program.colsets.get(name)
         if colset is not None or name in self.broken:
             return colset
-        close = nearest(name, self.program.colsets)
-        hint = f"did you mean `{close}`?" if close else f"declare `colset {name} = ...;`"
+        hint = did_you_mean(name, self.program.colsets, f"declare `colset {name} = ...;`")
         if not name.isidentifier():
             hint = f"give it a name, `colset NAME = {name};`, and write the name here"
         if place.colset is None:
