@@ -6,7 +6,6 @@ once all types are known. It serves the top level and `let` alike.
 
 from __future__ import annotations
 
-import re
 from collections.abc import Callable, Sequence
 from dataclasses import replace
 from functools import partial
@@ -16,13 +15,12 @@ from pn2code.ml import codes, core, matches
 from pn2code.ml import syntax as s
 from pn2code.ml.annotations import Annotations
 from pn2code.ml.context import Context, Draft, suggestion
+from pn2code.ml.declared import declared_by, written_variables
 from pn2code.ml.environment import (
     Binding,
     BrokenEntry,
-    BrokenStructure,
     BrokenType,
     ConEntry,
-    Scope,
     TypeAbbreviation,
     TypeCon,
     constructor_entries,
@@ -38,13 +36,10 @@ from pn2code.ml.patterns import (
     Patterns,
     expand,
     is_irrefutable,
-    pattern_names,
 )
 from pn2code.ml.types import EXN, UNIT, TFun, Type, tuple_of
 
 Build = Callable[[], Sequence[core.Dec]]
-_TYVAR = re.compile(r"(?<![A-Za-z0-9_'])'")
-"""Where a type variable may begin."""
 _NO_BODY = core.RecordExp((), UNIT, Span(SourceText("", NOWHERE), 0, 0))
 
 
@@ -596,79 +591,3 @@ def _variable(p: s.Pat) -> str | None:
 
 def _value_of(bindings: Bindings) -> str:
     return f"value of `{next(iter(bindings))}`" if len(bindings) == 1 else "value"
-
-
-def declared_by(dec: s.Dec) -> set[str]:
-    """The values that a declaration makes, for the case that it has an error."""
-    match dec:
-        case s.ValDec():
-            return pattern_names([b.pattern for b in dec.bindings])
-        case s.FunDec():
-            return {b.name for b in dec.bindings if isinstance(b, s.FunBinding)}
-        case s.DatatypeDec():
-            return {c.name for b in dec.bindings for c in b.constructors}
-        case s.ExceptionDec():
-            return {b.name for b in dec.bindings}
-        case s.LocalDec():
-            return {n for x in dec.visible for n in declared_by(x)}
-        case s.AbstypeDec():
-            return {n for x in dec.declarations for n in declared_by(x)}
-        case _:
-            return set()
-
-
-def types_declared_by(dec: s.Dec) -> set[str]:
-    """The types that a declaration makes."""
-    match dec:
-        case s.TypeDec():
-            return {b.name for b in dec.bindings}
-        case s.DatatypeDec():
-            return {b.name for b in dec.bindings} | {b.name for b in dec.withtypes}
-        case s.DatatypeCopyDec():
-            return {dec.name}
-        case s.LocalDec():
-            return {n for x in dec.visible for n in types_declared_by(x)}
-        case s.AbstypeDec():
-            inside = {n for x in dec.declarations for n in types_declared_by(x)}
-            return types_declared_by(dec.datatypes) | inside
-        case _:
-            return set()
-
-
-def break_modules(dec: s.Dec, scope: Scope) -> None:
-    """Structures, signatures and functors of a declaration with an error are known as broken."""
-    match dec:
-        case s.StructureDec():
-            scope.structures.update({b.name: BrokenStructure() for b in dec.bindings})
-        case s.SignatureDec():
-            scope.signatures.update({name: BrokenStructure() for name, _ in dec.bindings})
-        case s.FunctorDec():
-            scope.functors.update({b.name: BrokenStructure() for b in dec.bindings})
-        case s.LocalDec():
-            for x in dec.visible:
-                break_modules(x, scope)
-        case _:
-            pass
-
-
-def written_variables(dec: s.ValDec | s.FunDec) -> list[str]:
-    """Type variables written in a declaration, but not in `val` and `fun` inside it."""
-    found: dict[str, None] = {}
-    source = dec.span.source.text
-    if not _TYVAR.search(source, dec.span.start, dec.span.end):
-        return []
-    stack: list[object] = [*reversed(dec.bindings)]
-    while stack:
-        node = stack.pop()
-        if isinstance(node, s.VarTy):
-            found[node.name] = None
-        elif isinstance(node, tuple):
-            stack.extend(reversed(node))
-        elif node is None or isinstance(
-            node, s.ValDec | s.FunDec | s.TypeDec | s.DatatypeDec | str | int | float | Span
-        ):
-            continue  # a type declaration binds its own
-        else:
-            names = getattr(node, "__slots__", ())
-            stack.extend(getattr(node, name) for name in reversed(names))
-    return list(found)

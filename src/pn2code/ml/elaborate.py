@@ -30,7 +30,8 @@ from pn2code.ml.computing import Computing
 from pn2code.ml.constants import Constant, fold
 from pn2code.ml.context import Context, TooDeepError, suggestion
 from pn2code.ml.core import Program, Symbol
-from pn2code.ml.declarations import Declarations, break_modules, declared_by, types_declared_by
+from pn2code.ml.declarations import Declarations
+from pn2code.ml.declared import break_modules, declared_by, types_declared_by
 from pn2code.ml.environment import Binding, BrokenEntry, BrokenType, Scope, UnsupportedEntry
 from pn2code.ml.expressions import Expressions
 from pn2code.ml.fixity import Fixities, resolve_declaration, resolve_expression, resolve_pattern
