@@ -9,11 +9,11 @@ import pytest
 
 from pn2code.cell.divide import divide
 from pn2code.cell.partition import Partition
-from pn2code.cli.medium import added, code, told
+from pn2code.cli.medium import code, rows, told
 from pn2code.cli.nets import open_net
 from pn2code.cli.options import Exit
 from pn2code.diagnostics import Diagnostics
-from pn2code.medium.check import CRASHES, Answer, Run, exchange, too_large
+from pn2code.medium.check import CRASHES, Answer, Evidence, Run, exchange, too_large
 from pn2code.medium.compose import compose
 from pn2code.medium.faults import Fault
 from pn2code.medium.places import Crashes
@@ -141,6 +141,9 @@ def test_answers_for_people_and_reports() -> None:
     assert code((yes, unknown, replace(yes, answer="no"))) == Exit.MODEL
     assert "the exchange: yes" in told((yes,))
     assert "12 markings" in told((yes,))
-    assert added("<body>x</body>", True, (yes,)).count("the exchange") == 1
-    assert added("text", False, ()) == "text"
+    torn = Evidence(Fault.TORN, 1, ("a", "so it is"))
+    shown = list(rows((yes, unknown, replace(yes, answer="no", evidence=(torn,)))))
+    assert [r["kind"] for r in shown] == ["good", "open", "bad"]
+    assert shown[0]["name"] == "The exchange" and "12 markings" in shown[0]["remarks"][0]
+    assert shown[2]["runs"] == [("shortest run in which half a message is taken", "a", "so it is")]
     assert yes.row()["evidence"] == []

@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-import html
-from collections.abc import Sequence
+from collections.abc import Iterator
 
 from pn2code.cell.divide import divide
 from pn2code.cli.nets import OpenNet
 from pn2code.cli.options import Exit
 from pn2code.diagnostics import Diagnostics
-from pn2code.medium.check import Answer, medium
+from pn2code.medium.check import Answer, Evidence, medium
 from pn2code.medium.faults import SAYS
 from pn2code.verify.explore import Wishes
 from pn2code.verify.limits import Limits
@@ -73,37 +72,41 @@ def _one(a: Answer) -> list[str]:
     why = f" ({a.why})" if a.why else ""
     lines = [f"  {a.check}: {a.answer}{why}", f"    {a.says}"]
     if a.nodes:
-        lines.append(
-            f"    {a.nodes:,} markings, {a.arcs:,} arcs of a net with {a.places} places and "
-            f"{a.transitions} transitions, {a.seconds:.1f} s"
-        )
+        lines.append(f"    {_counts(a)}")
     lines.append(f"    if {a.assumes}; and what docs/protocol.md says of the file system")
     for e in a.evidence:
-        what = "a deadlock" if e.fault is None else SAYS[e.fault]
-        lines.append(
-            f"    shortest run in which {what}:" if e.fault else f"    shortest run to {what}:"
-        )
+        lines.append(f"    {_run(e)}:")
         lines += [f"      {line}" for line in e.lines]
     return lines
 
 
-def added(body: str, page: bool, answers: Answers) -> str:
-    """A report with the answers at its end."""
-    text = told(answers)
-    if not text:
-        return body
-    if not page:
-        return f"{body.rstrip()}\n\n\n{text}\n"
-    part = f"<h2>Medium</h2>\n{_table(answers)}"
-    head, mark, tail = body.rpartition("</body>")
-    return f"{head}{part}\n{mark}{tail}" if mark else f"{body}\n{part}"
-
-
-def _table(answers: Sequence[Answer]) -> str:
-    """The answers in HTML."""
-    rows = ["<tr><th>check</th><th>answer</th><th>says</th><th>markings</th><th>assumes</th></tr>"]
+def rows(answers: Answers) -> Iterator[dict[str, object]]:
+    """For the page."""
     for a in answers:
-        cells = (a.check, a.answer, a.says, f"{a.nodes:,}", a.assumes)
-        rows.append("<tr>" + "".join(f"<td>{html.escape(c)}</td>" for c in cells) + "</tr>")
-    runs = [f"<pre>{html.escape(chr(10).join(e.lines))}</pre>" for a in answers for e in a.evidence]
-    return "<table>\n" + "\n".join(rows) + "\n</table>\n" + "\n".join(runs)
+        remarks = [f"not known: {a.why}"] if a.why else []
+        if a.nodes:
+            remarks.append(_counts(a))
+        yield {
+            "name": f"{a.check[:1].upper()}{a.check[1:]}",
+            "said": f"{a.says[:1].upper()}{a.says[1:]}.",
+            "remarks": [*remarks, f"if {a.assumes}"],
+            "answer": {"inconclusive": "not known"}.get(a.answer, a.answer),
+            "kind": {"yes": "good", "no": "bad"}.get(a.answer, "open"),
+            "runs": [(_run(e), *e.lines) for e in a.evidence],
+        }
+
+
+def _counts(a: Answer) -> str:
+    return (
+        f"{a.nodes:,} markings, {a.arcs:,} arcs of a net with {a.places} places and "
+        f"{a.transitions} transitions, {a.seconds:.1f} s"
+    )
+
+
+def _run(e: Evidence) -> str:
+    """What a run shows."""
+    return (
+        "shortest run to a deadlock"
+        if e.fault is None
+        else f"shortest run in which {SAYS[e.fault]}"
+    )

@@ -54,11 +54,8 @@ def asked(
         found: whether those of the file beside the net and of the cell count.
     """
     written = [sources.from_option(text, i) for i, text in enumerate(texts, 1)]
-    beside = sources.beside(Path(opened.flat.file))
-    if file is not None:
-        written += sources.from_file(file, d)
-    elif found and beside.is_file():
-        written += sources.from_file(beside, d)
+    for path in files(opened, file, found=found):
+        written += sources.from_file(path, d)
     if found:
         written += sources.from_cell(opened.config, d)
     typed = opened.examined.typed
@@ -78,6 +75,14 @@ def asked(
                 hint="write several properties instead of one",
             )
     return Asked(properties, questions.text())
+
+
+def files(opened: OpenNet, file: Path | None, *, found: bool) -> tuple[Path, ...]:
+    """The files of properties that are read: that one, or the one beside the net."""
+    beside = sources.beside(Path(opened.flat.file))
+    if file is not None:
+        return (file,)
+    return (beside,) if found and beside.is_file() else ()
 
 
 def _check_effects(opened: OpenNet, properties: m.Properties, d: Diagnostics) -> None:

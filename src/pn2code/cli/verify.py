@@ -27,6 +27,7 @@ from pn2code.cli.options import (
     print_diagnostics,
     stop,
 )
+from pn2code.cli.subject import Subject
 from pn2code.diagnostics import Diagnostics, Origin
 from pn2code.os_reason import os_reason
 from pn2code.semantics.game import GameError
@@ -266,7 +267,11 @@ def verify(
     if found.error and found.error.get("node") and most_traces and found.error_trace is None:
         _unwritable("the marking in which an exception is raised", traces, d)
     if report_to is not None:
-        _write_report(opened, found, answers, control, seen, report_to, d)
+        page = report_to.suffix.lower() in (".html", ".htm")
+        files = properties.files(opened, file, found=found_properties)
+        values = parse_values(settings)
+        subject = Subject.of(opened, net, values, files, int_bits=int_bits) if page else None
+        _write_report(opened, found, answers, control, seen, subject, report_to, d)
     if not as_json and not quiet:
         typer.echo(_text(opened, found, answers, control))
         if seen:
@@ -361,17 +366,28 @@ def _write_report(
     answers: Sequence[Answer],
     control: Control | None,
     seen: medium.Answers,
+    subject: Subject | None,
     path: Path,
     d: Diagnostics,
 ) -> None:
+    """As a page, if there is a subject, or as a text."""
     now = datetime.now().astimezone()
-    page = path.suffix.lower() in (".html", ".htm")
-    body = (
-        webpage(opened.flat, found, opened.storage, now, answers, control)
-        if page
-        else report(opened.flat, found, now, answers, control)
-    )
-    body = medium.added(body, page, seen)
+    if subject is not None:
+        body = webpage(
+            opened.flat,
+            found,
+            opened.storage,
+            now,
+            answers,
+            control,
+            medium=list(medium.rows(seen)),
+            subject=subject.rows,
+            remark=subject.remark,
+        )
+    else:
+        body = report(opened.flat, found, now, answers, control)
+        if seen:
+            body = f"{body.rstrip()}\n\n\n{medium.told(seen)}\n"
     try:
         with whole_file(path) as beside:
             beside.write_text(body, encoding="utf-8")

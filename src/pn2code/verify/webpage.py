@@ -17,6 +17,7 @@ from pn2code.semantics.game import GameError
 from pn2code.simulate.script import TraceRefusedError
 from pn2code.verify import control_text, properties_text
 from pn2code.verify.answers import Answer
+from pn2code.verify.assumptions import assumed
 from pn2code.verify.control import TITLES, Control
 from pn2code.verify.path import Step, steps
 from pn2code.verify.report import bounded_places, error_text, why_partial
@@ -33,6 +34,9 @@ def webpage(
     written: datetime,
     answers: Sequence[Answer] = (),
     control: Control | None = None,
+    medium: Sequence[Mapping[str, Any]] = (),
+    subject: Sequence[tuple[str, str, str]] = (),
+    remark: str = "",
 ) -> str:
     """The whole page.
 
@@ -43,7 +47,16 @@ def webpage(
         written: the date it carries.
         answers: of properties that were asked.
         control: the checks of a cell's supervisor.
+        medium: those of its shared files, as rows: `name`, `said`, `remarks`, `answer`, `kind`, `runs` (lines each).
+        subject: what was looked at: what it is, its name, its SHA-256 or value.
+        remark: why the subject lacks something; "": it does not.
     """
+    tables: dict[str, Sequence[Mapping[str, Any]]] = {
+        "Controller checks": list(control_text.rows(control)) if control else [],
+        "Medium": list(medium),
+        "Properties": [_property(net, storage, a) for a in answers],
+    }
+    fair = [f"`{a.about.name}`: {', '.join(a.about.fair)}" for a in answers if a.about.fair]
     # Names and inscriptions are strangers' texts: all of them are escaped.
     env = Environment(
         loader=FileSystemLoader(templates_folder() / "html"),
@@ -60,17 +73,40 @@ def webpage(
         version=pn2code.__version__,
         sha256=net.sha256,
         written=f"{written:%Y-%m-%d %H:%M}",
-        verdicts=list(_verdicts(net, found)),
+        what="Verification" if any(tables.values()) else "State space",
+        verdicts=[*_summary(tables), *_verdicts(net, found)],
+        tables=tables,
+        subject=list(subject),
+        remark=remark,
+        assumed=[
+            sentence.replace("`", "")
+            for sentence in assumed(
+                timed=net.timed, control=control is not None, medium=bool(medium), fair=fair
+            )
+        ],
         statistics=list(_statistics(found)),
         bounds=_bounds(net, found),
         markings=list(_markings(found)),
         transitions=_transitions(net, found),
         traces=_traces(net, found, storage),
-        properties=[_property(net, storage, a) for a in answers],
-        controller=list(control_text.rows(control)) if control else [],
         controller_runs=list(_controller_runs(net, storage, control)) if control else [],
         timed=net.timed,
     )
+
+
+def _summary(tables: Mapping[str, Sequence[Mapping[str, Any]]]) -> Iterator[dict[str, str]]:
+    """A line for each kind of question: how many are answered as they should be."""
+    for title, rows in tables.items():
+        if not rows:
+            continue
+        count = {kind: sum(row["kind"] == kind for row in rows) for kind in ("good", "bad", "open")}
+        kind = "bad" if count["bad"] else "open" if count["open"] else "good"
+        text = f"{title}: {count['good']} of {len(rows)} are as they should be"
+        if count["bad"]:
+            text += f", {count['bad']} {'are' if count['bad'] > 1 else 'is'} not"
+        if count["open"]:
+            text += f", {count['open']} {'are' if count['open'] > 1 else 'is'} open"
+        yield {"kind": kind, "text": f"{text}."}
 
 
 def _property(net: FlatNet, storage: Mapping[str, str], a: Answer) -> dict[str, Any]:
@@ -112,7 +148,10 @@ def _verdicts(net: FlatNet, found: Exploration) -> list[dict[str, str]]:
     said = []
     if found.complete:
         said.append(
-            {"kind": "good", "text": "Complete: every marking that can be reached was seen."}
+            {
+                "kind": "good",
+                "text": f"Complete: every marking that can be reached was seen, {found.nodes:,} in all.",
+            }
         )
     else:
         text = f"Partial: {why_partial(found)}. What follows is about the part that was seen."

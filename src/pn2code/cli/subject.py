@@ -1,0 +1,87 @@
+"""What a report of `verify` is about: files with their digests, so that a reader knows later whether they are these.
+
+subject = Subject.of(opened, path, {"n": "3"}, beside)
+subject.rows            # (("Net", "cell.cpn", "9f86d0.."), ...)
+"""
+
+from __future__ import annotations
+
+import hashlib
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+from pn2code import pipeline
+from pn2code.cli.nets import OpenNet
+from pn2code.diagnostics import Diagnostics
+from pn2code.emission.output import OutputFile
+
+RUNTIME = "runtime/"
+"""Generated files below it are the same for all nets."""
+
+
+@dataclass(frozen=True, slots=True)
+class Subject:
+    """What was looked at.
+
+    Args:
+        rows: what it is, its name, and its SHA-256 or value.
+        remark: why there are no generated files; "": there are, or the net is no cell.
+    """
+
+    rows: tuple[tuple[str, str, str], ...]
+    remark: str = ""
+
+    @staticmethod
+    def of(
+        opened: OpenNet,
+        path: Path,
+        values: Mapping[str, str],
+        properties: Sequence[Path],
+        *,
+        int_bits: int,
+    ) -> Subject:
+        """Of a net or cell; the programs of a cell are generated for it, in memory.
+
+        Args:
+            opened: the net.
+            path: as the user gave it.
+            values: replace `val`s of the net.
+            properties: files of properties.
+            int_bits: width of `int`.
+        """
+        rows = [("Net", opened.flat.file, opened.flat.sha256)]
+        if opened.config is not None:
+            rows.append(("Cell", str(opened.config.path), _file_digest(opened.config.path)))
+        rows += [("Properties", str(file), _file_digest(file)) for file in properties]
+        rows += [("Value", name, value) for name, value in sorted(values.items())]
+        rows.append(("Integers", "width of `int`", f"{int_bits} bits"))
+        if opened.config is None:
+            return Subject(tuple(rows))
+        d = Diagnostics()
+        made = pipeline.generate(path, d, values=values, int_bits=int_bits)
+        if made is None:
+            why = d.errors[0].message if d.errors else "it cannot be generated"
+            return Subject(tuple(rows), f"`generate` refuses the cell: {why}.")
+        rows.append(("Generated", "digest in the head of each file", made.digest))
+        return Subject((*rows, *_generated(made.files)))
+
+
+def _generated(files: Sequence[OutputFile]) -> Iterator[tuple[str, str, str]]:
+    for file in files:
+        if not file.path.startswith(RUNTIME):
+            yield "Generated", file.path, _digest(file.text)
+    common = [f for f in files if f.path.startswith(RUNTIME)]
+    lines = "".join(f"{_digest(f.text)}  {f.path}\n" for f in common)
+    yield "Generated", f"{RUNTIME} ({len(common)} files, as a list by sha256sum)", _digest(lines)
+
+
+def _digest(text: str) -> str:
+    return hashlib.sha256(text.encode("utf-8")).hexdigest()
+
+
+def _file_digest(file: Path) -> str:
+    try:
+        return hashlib.sha256(file.read_bytes()).hexdigest()
+    except OSError:
+        return ""
