@@ -16,13 +16,13 @@ from pn2code.ml import core
 from pn2code.ml.elaborate import Elaborator
 from pn2code.ml.types import BOOL, INT, TFun, Type, tuple_of
 from pn2code.net.flat import FlatNet
+from pn2code.net.predicate import Predicate, marking_type
 from pn2code.properties import codes
 from pn2code.properties import meaning as m
 from pn2code.properties import tree as t
 from pn2code.properties.marks import Marks
 from pn2code.properties.names import Names
 from pn2code.properties.parse import parse, parse_fair
-from pn2code.properties.predicate import Predicate, marking_type
 
 Mode = Literal["marking", "ctl", "ltl", "event"]
 """Where a formula stands: what it may say."""

@@ -15,9 +15,9 @@ from dataclasses import dataclass, field
 from functools import cached_property
 
 from pn2code.net.flat import FlatNet
+from pn2code.net.predicate import Predicate
 from pn2code.properties import judge_ltl
 from pn2code.properties import meaning as m
-from pn2code.properties.predicate import Predicate
 from pn2code.semantics.files import Files
 from pn2code.semantics.game import Game
 from pn2code.semantics.graph import state_space

@@ -15,8 +15,8 @@ from pn2code.ml import syntax as s
 from pn2code.ml.core import Exp, Symbol
 from pn2code.ml.elaborate import Elaborator
 from pn2code.net.flat import FlatNet
+from pn2code.net.predicate import marking_type
 from pn2code.properties.names import Names
-from pn2code.properties.predicate import marking_type
 
 _STRUCTURE = "Mark."
 

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from pn2code.diagnostics import Origin
 from pn2code.frozen import frozen
-from pn2code.properties.predicate import Predicate
+from pn2code.net.predicate import Predicate
 
 
 @frozen
