@@ -52,6 +52,7 @@ static void print_help(void)
                  "  --arena MIB         of each thread, for lists and strings (default 64)\n"
                  "  --no-graph          states and bounds alone: no components, no traces\n"
                  "  --approximate HOW   bitstate, hash: states may be missed; the report says how probably\n"
+                 "  --no-notes          work out in each state anew what transitions do; the same numbers, slower\n"
                  "  --reduce time       states that differ only in how late it is are one\n"
                  "  --reduce HOW        partial-order, symmetry: fewer states, the same answer whether there are dead ones\n"
                  "  --elements FILE     the table of binding elements that these two need\n"
@@ -172,12 +173,14 @@ static bool read_valued(const char *option, const char *value, ex_options_t *opt
 static bool read_options(int argc, char **argv, ex_options_t *options)
 {
     *options = (ex_options_t){ .threads = 1U, .max_states = UINT64_MAX, .memory = DEFAULT_MEMORY, .arena = DEFAULT_ARENA,
-                               .seed = 1U, .lay_again = DEFAULT_LAY_AGAIN, .has_graph = true, .dead_limit = (uint64_t)DEFAULT_DEAD,
+                               .seed = 1U, .lay_again = DEFAULT_LAY_AGAIN, .has_graph = true, .has_notes = true, .dead_limit = (uint64_t)DEFAULT_DEAD,
                                .traces = 1U, .write_limit = UINT64_MAX, .progress_every = 0.5 };
     for (int i = 1; i < argc; i++) {
         const char *option = argv[i];
         if (strcmp(option, "--no-graph") == 0) {
             options->has_graph = false;
+        } else if (strcmp(option, "--no-notes") == 0) {
+            options->has_notes = false;
         } else if (strcmp(option, "--progress") == 0) {
             options->shows_progress = true;
         } else if (strcmp(option, "--help") == 0) {

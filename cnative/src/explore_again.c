@@ -57,7 +57,7 @@ static void revive(ex_run_t *run)
     ex_worker_t *const worker = &run->worker[0];
     worker->cx.error = PN_OK;
     worker->failed = false;
-    worker->scratch->is_loaded = false;
+    ex_unload(worker);
     run->at_work = 1U;
     atomic_store(&run->is_stopping, false);
 }

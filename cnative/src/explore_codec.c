@@ -38,6 +38,7 @@ bool ex_scratch_make(ex_worker_t *worker)
     scratch->dirty = ex_table(run, (codec->words / 64U) + 1U, sizeof *scratch->dirty);
     scratch->undo_cell = ex_table(run, cells, sizeof *scratch->undo_cell);
     scratch->undo_value = ex_table(run, cells, sizeof *scratch->undo_value);
+    scratch->decoded = ex_table(run, codec->words - codec->packed_words, sizeof *scratch->decoded);
     scratch->buffer_size = 4096U;
     scratch->buffer = ex_alloc(run, scratch->buffer_size);
     /* What is never touched of the large ones costs nothing. */
@@ -45,7 +46,7 @@ bool ex_scratch_make(ex_worker_t *worker)
     scratch->next = ex_reserve(pn_net.marking_size + (size_t)UNIT);
     scratch->binding = ex_alloc(run, pn_net.binding_size);
     void *memory = ex_reserve(run->options.arena);
-    if ((scratch->cell == NULL) || (scratch->dirty == NULL) || (scratch->undo_cell == NULL) || (scratch->undo_value == NULL)
+    if ((scratch->cell == NULL) || (scratch->dirty == NULL) || (scratch->undo_cell == NULL) || (scratch->undo_value == NULL) || (scratch->decoded == NULL)
         || (scratch->buffer == NULL) || (worker->marking == NULL) || (scratch->next == NULL) || (scratch->binding == NULL)
         || (memory == NULL)) {
         return false;
@@ -53,6 +54,7 @@ bool ex_scratch_make(ex_worker_t *worker)
     pn_arena_init(&scratch->arena, memory, (size_t)run->options.arena);
     pn_arena_seal(&scratch->arena);
     pn_ctx_init(&worker->cx, &scratch->arena, run->options.seed);
+    ex_unload(worker);
     return true;
 }
 
@@ -89,7 +91,7 @@ static bool intern(ex_worker_t *worker, uint32_t place, size_t length, uint32_t 
     }
 }
 
-static bool intern_place(ex_worker_t *worker, uint32_t place, const void *marking, uint32_t *number)
+bool ex_number_place(ex_worker_t *worker, uint32_t place, uint32_t kind, const void *marking, uint32_t *number)
 {
     ex_scratch_t *scratch = worker->scratch;
     size_t length = pn_net.place[place].encode(marking, scratch->buffer, scratch->buffer_size);
@@ -99,7 +101,12 @@ static bool intern_place(ex_worker_t *worker, uint32_t place, const void *markin
         }
         length = pn_net.place[place].encode(marking, scratch->buffer, scratch->buffer_size);
     }
-    return intern(worker, place, length, number);
+    return intern(worker, kind, length, number);
+}
+
+static bool intern_place(ex_worker_t *worker, uint32_t place, const void *marking, uint32_t *number)
+{
+    return ex_number_place(worker, place, place, marking, number);
 }
 
 static bool intern_whole(ex_worker_t *worker, const void *marking, uint32_t *number)
@@ -223,6 +230,11 @@ static inline uint32_t slice_of(const ex_codec_t *codec, const void *marking, ui
     return (uint32_t)((unit >> (bit % (uint32_t)UNIT_BITS)) & (((uint64_t)1U << codec->slice_width[w]) - 1U));
 }
 
+uint32_t ex_packed_word(const ex_codec_t *codec, const void *marking, uint32_t w)
+{
+    return slice_of(codec, marking, w);
+}
+
 /* The other way round: the bits are 0 before. */
 static inline void put_slice(const ex_codec_t *codec, void *marking, uint32_t w, uint32_t value)
 {
@@ -242,7 +254,7 @@ bool ex_encode(ex_worker_t *worker, const void *marking, ex_key_t *key)
     ex_scratch_t *scratch = worker->scratch;
     uint32_t *cell = scratch->cell;
     bool is_fine = true;
-    scratch->is_loaded = false;
+    ex_unload(worker);
     if (codec->is_whole) {
         is_fine = intern_whole(worker, marking, &cell[0]);
         root_key(codec, cell, key);
@@ -283,6 +295,7 @@ bool ex_encode_time(ex_worker_t *worker)
             return false;
         }
         set_cell(worker, codec->time_word, number);
+        scratch->decoded[codec->time_word - codec->packed_words] = number;
     }
     if (!number_dirty(worker)) {
         return false;
@@ -389,6 +402,17 @@ static EX_APART bool encode_cells(ex_worker_t *worker, uint32_t transition, cons
     return is_fine;
 }
 
+bool ex_encode_changes(ex_worker_t *worker, const ex_change_t *change, uint32_t count, ex_key_t *key)
+{
+    for (uint32_t i = 0U; i < count; i++) {
+        set_cell(worker, change[i].cell, change[i].value);
+    }
+    const bool is_fine = number_dirty(worker);
+    root_key(worker->run->codec, worker->scratch->cell, key);
+    undo(worker->scratch);
+    return is_fine;
+}
+
 bool ex_encode_next(ex_worker_t *worker, uint32_t transition, const void *next, ex_key_t *key)
 {
     const ex_codec_t *codec = worker->run->codec;
@@ -443,11 +467,23 @@ bool ex_cells_key(ex_codec_t *codec, uint32_t *cell, ex_key_t *key)
     return true;
 }
 
-/* Decodes what is in a cell into the marking. */
-static bool decode_cell(ex_worker_t *worker, uint32_t w)
+void ex_unload(ex_worker_t *worker)
 {
     const ex_codec_t *codec = worker->run->codec;
-    const ex_bytes_entry_t *of = &codec->bytes.of[worker->scratch->cell[w]];
+    for (uint32_t i = 0U; i < (codec->words - codec->packed_words); i++) {
+        worker->scratch->decoded[i] = EX_NO_NUMBER;
+    }
+}
+
+/* Makes what a number stands for that which the marking holds for a word. */
+static bool decode_word(ex_worker_t *worker, uint32_t w, uint32_t number)
+{
+    const ex_codec_t *codec = worker->run->codec;
+    uint32_t *decoded = &worker->scratch->decoded[w - codec->packed_words];
+    if (*decoded == number) {
+        return true;
+    }
+    const ex_bytes_entry_t *of = &codec->bytes.of[number];
     const unsigned char *byte = &codec->bytes.byte[of->offset];
     bool is_fine = false;
     if (codec->is_whole) {
@@ -461,6 +497,7 @@ static bool decode_cell(ex_worker_t *worker, uint32_t w)
         const uint32_t place = codec->place_of[w - codec->packed_words];
         is_fine = pn_net.place[place].decode(&worker->cx, worker->marking, byte, of->length) != SIZE_MAX;
     }
+    *decoded = is_fine ? number : EX_NO_NUMBER;
     if (!is_fine) {
         ex_fail(worker, -1);
     }
@@ -468,20 +505,19 @@ static bool decode_cell(ex_worker_t *worker, uint32_t w)
 }
 
 /* Whether there is still enough room behind what was decoded. */
-static void tidy_arena(ex_scratch_t *scratch)
+static void tidy_arena(ex_worker_t *worker)
 {
-    const size_t most = scratch->arena.half / 4U;
-    if (scratch->arena.used > ((most < (size_t)DECODED_MOST) ? most : (size_t)DECODED_MOST)) {
-        pn_arena_release(&scratch->arena, 0U);
-        scratch->is_loaded = false;
+    pn_arena_t *arena = &worker->scratch->arena;
+    const size_t most = arena->half / 4U;
+    if (arena->used > ((most < (size_t)DECODED_MOST) ? most : (size_t)DECODED_MOST)) {
+        pn_arena_release(arena, 0U);
+        ex_unload(worker);
     }
 }
 
-bool ex_load(ex_worker_t *worker, const ex_key_t *key)
+bool ex_open(ex_worker_t *worker, const ex_key_t *key)
 {
     const ex_codec_t *codec = worker->run->codec;
-    ex_scratch_t *scratch = worker->scratch;
-    uint32_t *cell = scratch->cell;
     unsigned char *packed = worker->marking;
     if (codec->is_plain) {
         const uint64_t plain[2] = { key->low, key->high };
@@ -494,29 +530,48 @@ bool ex_load(ex_worker_t *worker, const ex_key_t *key)
         }
         return true;
     }
-    tidy_arena(scratch);
-    uint32_t *old = scratch->undo_value; /* nothing else uses it now */
-    (void)memcpy(old, &cell[codec->packed_words], (codec->words - codec->packed_words) * sizeof *old);
+    uint32_t *cell = worker->scratch->cell;
+    tidy_arena(worker);
     ex_key_cells(codec, key, cell);
     (void)memset(packed, 0, pn_net.packed_size);
     for (uint32_t w = 0U; w < codec->packed_words; w++) {
         put_slice(codec, packed, w, cell[w]);
     }
     ex_derive(codec, packed);
+    return (codec->time_word == NONE) || decode_word(worker, codec->time_word, cell[codec->time_word]);
+}
+
+bool ex_load_places(ex_worker_t *worker)
+{
+    const ex_codec_t *codec = worker->run->codec;
     bool is_fine = true;
     for (uint32_t w = codec->packed_words; is_fine && (w < codec->words); w++) {
-        if (!scratch->is_loaded || (cell[w] != old[w - codec->packed_words])) {
-            is_fine = decode_cell(worker, w);
-        }
+        is_fine = decode_word(worker, w, worker->scratch->cell[w]);
     }
-    scratch->is_loaded = is_fine;
     return is_fine;
+}
+
+bool ex_load_place(ex_worker_t *worker, uint32_t place, uint32_t number)
+{
+    return decode_word(worker, worker->run->codec->word_of[place], number);
+}
+
+void ex_clear_place(ex_worker_t *worker, uint32_t place)
+{
+    const ex_codec_t *codec = worker->run->codec;
+    pn_net.place[place].clear(worker->marking);
+    worker->scratch->decoded[codec->word_of[place] - codec->packed_words] = EX_NO_NUMBER;
+}
+
+bool ex_load(ex_worker_t *worker, const ex_key_t *key)
+{
+    return ex_open(worker, key) && (worker->run->codec->is_plain || ex_load_places(worker));
 }
 
 const ex_bytes_t *ex_interned(const ex_run_t *run)
 {
     for (uint32_t i = 0U; i < run->options.threads; i++) {
-        run->worker[i].scratch->is_loaded = false; /* the caller decodes into these markings */
+        ex_unload(&run->worker[i]); /* the caller decodes into these markings */
     }
     return run->codec->has_cells ? &run->codec->bytes : NULL;
 }

@@ -43,7 +43,7 @@ static void revive(ex_worker_t *worker)
 {
     worker->cx.error = PN_OK;
     worker->failed = false;
-    worker->scratch->is_loaded = false;
+    ex_unload(worker);
 }
 
 /* The same, and the error is forgotten. */

@@ -37,10 +37,12 @@ typedef struct block {
 typedef struct gathered {
     uint64_t used;
     uint64_t room;
+    uint64_t arcs;
     struct {
         ex_key_t key;
         uint64_t hash;
         uint32_t label;
+        uint32_t times;
     } *arc;
     const ex_store_t *store;
 } gathered_t;
@@ -56,10 +58,9 @@ typedef struct level {
     bool is_partial;          /* successors that are not in the store are passed over */
 } level_t;
 
-static bool gather(void *user, uint32_t transition, const void *binding, const ex_key_t *key)
+static bool gather(void *user, uint32_t transition, uint32_t times, const ex_key_t *key)
 {
     gathered_t *const g = user;
-    (void)binding;
     if (g->used == g->room) {
         const uint64_t room = (g->room == 0U) ? 64U : (g->room * 2U);
         void *const larger = realloc(g->arc, room * sizeof *g->arc);
@@ -72,6 +73,8 @@ static bool gather(void *user, uint32_t transition, const void *binding, const e
     g->arc[g->used].key = *key;
     g->arc[g->used].hash = ex_hash(key);
     g->arc[g->used].label = transition;
+    g->arc[g->used].times = times;
+    g->arcs += times;
     ex_store_prefetch(g->store, g->arc[g->used].hash);
     g->used += 1U;
     return true;
@@ -80,8 +83,8 @@ static bool gather(void *user, uint32_t transition, const void *binding, const e
 /* Appends what was gathered for a node of the block. */
 static bool look_up(const level_t *level, block_t *block, const gathered_t *g, uint32_t node)
 {
-    if ((block->used + g->used) > block->room) {
-        const uint64_t room = (block->used + g->used) * 2U;
+    if ((block->used + g->arcs) > block->room) {
+        const uint64_t room = (block->used + g->arcs) * 2U;
         void *const larger = realloc(block->arc, room * sizeof *block->arc);
         if (larger == NULL) {
             return false;
@@ -92,8 +95,10 @@ static bool look_up(const level_t *level, block_t *block, const gathered_t *g, u
     for (uint64_t i = 0U; i < g->used; i++) {
         const uint64_t slot = ex_store_find(g->store, &g->arc[i].key, g->arc[i].hash);
         if (slot != EX_NO_SLOT) {
-            block->arc[block->used] = (found_arc_t){ .slot = slot, .label = g->arc[i].label, .node = node };
-            block->used += 1U;
+            for (uint32_t k = 0U; k < g->arc[i].times; k++) {
+                block->arc[block->used] = (found_arc_t){ .slot = slot, .label = g->arc[i].label, .node = node };
+                block->used += 1U;
+            }
             __builtin_prefetch(&level->graph->number[slot], 0, 1);
         } else if (!level->is_partial) {
             return false; /* the net does not do the same twice */
@@ -119,8 +124,9 @@ static void expand_blocks(ex_worker_t *worker, void *user)
         for (uint32_t i = 0U; i < block->count; i++) {
             ex_key_t key;
             gathered.used = 0U;
+            gathered.arcs = 0U;
             const bool is_there = ex_store_fetch(gathered.store, graph->slot[first + i], &key);
-            const ex_found_t found = is_there ? ex_successors(worker, &key, gather, &gathered) : EX_FAILED;
+            const ex_found_t found = is_there ? ex_arcs(worker, &key, gather, &gathered) : EX_FAILED;
             block->is_dead[i] = (found == EX_DEAD) ? 1U : 0U;
             block->is_late[i] = worker->has_waited ? 1U : 0U;
             const bool is_known = (found == EX_SOME) || (found == EX_DEAD) || level->is_partial;

@@ -14,6 +14,7 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "explore_intern.h"
 #include "pn/pn_arena.h"
 #include "pn/pn_net.h"
 
@@ -35,6 +36,7 @@ typedef struct ex_options {
     uint64_t seed;
     uint64_t lay_again;    /* states after which the layout of keys is looked at once more */
     bool has_graph;        /* wanted */
+    bool has_notes;        /* what transitions do is remembered (explore_local.c) */
     bool is_bitstate;
     bool is_hashed;        /* hash compaction */
     bool is_time_reduced;  /* stamps count from the model time on, which is always 0; those that are not after it are equal */
@@ -128,59 +130,6 @@ void ex_discard(struct ex_run *run, void *memory, uint64_t size, uint64_t from, 
 void ex_unmap(void *memory, uint64_t size);
 /* Whether a block of that size lies in a file and does not count. */
 bool ex_is_spilled(const struct ex_run *run, uint64_t size);
-
-/* --- numbers of things (explore_intern.c) -------------------------------------------------------------------------- */
-
-#define EX_NO_NUMBER UINT32_MAX
-
-/* Gives equal things equal numbers, from 0 on nearly without holes. Threads may do it at the same time; it never moves what it has, but
- * has to grow now and then, while nobody uses it. */
-typedef struct ex_index {
-    struct ex_run *run;
-    _Atomic uint64_t *entry; /* low half: number + 1, 0: free; high half: of the hash */
-    uint64_t entries;
-    uint64_t limit;          /* numbers from which on it has to grow */
-    uint64_t most;           /* numbers for which addresses are reserved */
-    _Atomic uint64_t count;  /* numbers given */
-} ex_index_t;
-
-/* Up to eight words as one number: the inner nodes of trees. Words lie two and two in a lane, the first one in the lower half. */
-#define EX_TUPLE_WORDS 8U
-#define EX_TUPLE_LANES 4U
-
-typedef struct ex_tuples {
-    ex_index_t index;
-    uint64_t *lane;    /* `lanes` of each number */
-    uint32_t lanes;
-} ex_tuples_t;
-
-/* Strings of bytes, each with the place to which it belongs. */
-typedef struct ex_bytes_entry {
-    uint64_t offset;
-    uint32_t length;
-    uint32_t place; /* UINT32_MAX: a hole */
-} ex_bytes_entry_t;
-
-typedef struct ex_bytes {
-    ex_index_t index;
-    ex_bytes_entry_t *of;
-    unsigned char *byte;
-    uint64_t reserved;
-    _Atomic uint64_t used;    /* bytes */
-    _Atomic uint64_t counted;
-} ex_bytes_t;
-
-bool ex_tuples_make(ex_tuples_t *tuples, struct ex_run *run, uint32_t words);
-void ex_tuples_free(ex_tuples_t *tuples);
-bool ex_bytes_make(ex_bytes_t *bytes, struct ex_run *run);
-/* The number; EX_NO_NUMBER: it has to grow first. What is behind the last word is 0. */
-uint32_t ex_tuples_number(ex_tuples_t *tuples, const uint64_t lane[EX_TUPLE_LANES]);
-uint32_t ex_bytes_number(ex_bytes_t *bytes, uint32_t place, const unsigned char *byte, uint32_t length);
-/* Makes room if need be; false when there is no memory. */
-bool ex_tuples_grow(ex_tuples_t *tuples);
-bool ex_bytes_grow(ex_bytes_t *bytes);
-uint64_t ex_tuples_bytes(const ex_tuples_t *tuples);
-uint64_t ex_bytes_bytes(const ex_bytes_t *bytes);
 
 /* --- codec (explore_shape.c, explore_codec.c) ---------------------------------------------------------------------- */
 
@@ -283,7 +232,7 @@ static inline void ex_derive(const ex_codec_t *codec, void *marking)
 /* What a thread needs for it. */
 typedef struct ex_scratch {
     uint32_t *cell;          /* of the state that is loaded: words, then inner nodes */
-    bool is_loaded;          /* `cell` and worker->marking are those of a state */
+    uint32_t *decoded;       /* by word behind the packed part: the number of what worker->marking holds there; EX_NO_NUMBER: anything */
     uint64_t *dirty;         /* a bit for each inner node */
     uint32_t *undo_cell;
     uint32_t *undo_value;
@@ -327,6 +276,26 @@ const ex_bytes_t *ex_interned(const struct ex_run *run);
 bool ex_encode(struct ex_worker *worker, const void *marking, ex_key_t *key);
 /* Makes worker->marking that of the key, at the time at which the state was created. False after an error. */
 bool ex_load(struct ex_worker *worker, const ex_key_t *key);
+/* The same in two steps: its cells, packed places and time; then the other places, or one of them. */
+bool ex_open(struct ex_worker *worker, const ex_key_t *key);
+bool ex_load_places(struct ex_worker *worker);
+bool ex_load_place(struct ex_worker *worker, uint32_t place, uint32_t number);
+/* A place that is not packed holds nothing in worker->marking. */
+void ex_clear_place(struct ex_worker *worker, uint32_t place);
+/* Somebody else has written into worker->marking. */
+void ex_unload(struct ex_worker *worker);
+/* A place of `next` as the number of a multi-set of `kind`: a place, or EX_ADDED + a place for what is added to it. False: no memory. */
+#define EX_ADDED (pn_net.place_count + 1U)
+bool ex_number_place(struct ex_worker *worker, uint32_t place, uint32_t kind, const void *next, uint32_t *number);
+/* A word of the packed part. */
+uint32_t ex_packed_word(const ex_codec_t *codec, const void *marking, uint32_t w);
+/* A cell that is to become another one. */
+typedef struct ex_change {
+    uint32_t cell;
+    uint32_t value;
+} ex_change_t;
+/* The key of what becomes of the opened state when words change. False: no memory. */
+bool ex_encode_changes(struct ex_worker *worker, const ex_change_t *change, uint32_t count, ex_key_t *key);
 
 /* --- successors (explore_successors.c) ----------------------------------------------------------------------------- */
 
@@ -340,11 +309,18 @@ typedef enum ex_found {
     EX_FAILED   /* an inscription raised an exception, or memory is used up: worker->failed */
 } ex_found_t;
 
+/* Arcs from a state to one other by the same transition, so many at a time. False: stop. */
+typedef bool (*ex_times_sink_t)(void *user, uint32_t transition, uint32_t times, const ex_key_t *key);
+
 /* If the time is reduced: worker->marking, at the time 0, becomes the state that stands for all that are like it. */
 void ex_reduce_time(struct ex_worker *worker);
 /* All binding elements of the best priority that are enabled in the state, or at the next time at which there are any; in the
  * documented order. worker->marking is then the state at the time of these occurrences (pn_net.now). */
 ex_found_t ex_successors(struct ex_worker *worker, const ex_key_t *key, ex_arc_sink_t sink, void *user);
+
+/* The same for those who do not want to know the bindings, and faster (explore_local.c). Afterwards only packed places of
+ * worker->marking are worth something; for the others there is ex_load_places. */
+ex_found_t ex_arcs(struct ex_worker *worker, const ex_key_t *key, ex_times_sink_t sink, void *user);
 
 /* As ex_arc_sink_t, with the marking that follows. */
 typedef bool (*ex_marking_sink_t)(void *user, uint32_t transition, const void *binding, const void *next);
@@ -468,6 +444,7 @@ typedef struct ex_worker {
     struct ex_stubborn *stubborn; /* of explore_stubborn.c */
     struct ex_symmetry *symmetry; /* of explore_symmetry.c */
     struct ex_early *early;       /* of explore_query_early.c */
+    struct ex_local *local;       /* of explore_local.c; NULL: nothing is remembered */
     bool has_waited;         /* the time went on in ex_successors before something was enabled */
     int64_t elapsed;         /* when the time is reduced: how much of it went by in ex_successors before something was enabled */
     /* Counted during the exploration. */

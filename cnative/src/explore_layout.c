@@ -251,7 +251,7 @@ static void forget(ex_run_t *run)
     ex_worker_t *worker = &run->worker[0];
     const int why = atomic_load(&run->why);
     worker->failed = false;
-    worker->scratch->is_loaded = false;
+    ex_unload(worker);
     worker->scratch->undone = 0U;
     worker->cx.error = PN_OK;
     if ((why == (int)EX_ERROR) || (why == (int)EX_CAPACITY)) {

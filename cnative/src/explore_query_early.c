@@ -132,10 +132,10 @@ static bool is_same(const ex_key_t *a, const ex_key_t *b)
     return (a->low == b->low) && (a->high == b->high);
 }
 
-/* The state as it was before time went on. */
+/* The state as it was before time went on, with all its places. */
 static bool load(ex_worker_t *worker, const ex_key_t *key)
 {
-    return !pn_net.timed || ex_load(worker, key);
+    return (!pn_net.timed && (worker->local == NULL)) || ex_load(worker, key);
 }
 
 static bool is_decided(const ex_worker_t *worker, const ex_question_t *question)

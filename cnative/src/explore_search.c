@@ -8,6 +8,7 @@
  */
 #define _POSIX_C_SOURCE 200809L
 
+#include "explore_local.h"
 #include "explore_search.h"
 
 #include <math.h>
@@ -114,16 +115,15 @@ static bool flush(ex_worker_t *worker)
     return goes_on && !ex_is_stopping(run);
 }
 
-static bool on_arc(void *user, uint32_t transition, const void *binding, const ex_key_t *found)
+static bool on_arc(void *user, uint32_t transition, uint32_t times, const ex_key_t *found)
 {
     ex_worker_t *worker = user;
     ex_search_t *own = worker->search;
-    (void)binding;
     const ex_key_t key = { ex_alone(found->low), ex_alone(found->high) };
     const uint64_t hash = ex_hash(&key);
     ex_key_t *recent = &own->recent[hash % (uint64_t)EX_RECENT];
-    worker->fired[transition]++;
-    worker->arcs++;
+    worker->fired[transition] += times;
+    worker->arcs += times;
     if ((((recent->low ^ key.low) | (recent->high ^ key.high)) == 0U) && ((key.low | key.high) != 0U)) {
         return true;
     }
@@ -178,7 +178,7 @@ void ex_progress(ex_run_t *run, ex_progress_t *progress)
 /* False when the run stops. */
 static bool expand(ex_worker_t *worker, const ex_key_t *key)
 {
-    const ex_found_t found = (worker->search->words != NULL) ? ex_words_successors(worker, key->low) : ex_successors(worker, key, on_arc, worker);
+    const ex_found_t found = (worker->search->words != NULL) ? ex_words_successors(worker, key->low) : ex_arcs(worker, key, on_arc, worker);
     switch (found) {
     case EX_SOME:
         break;
@@ -260,7 +260,7 @@ static void lay_again(ex_run_t *run)
         ex_stop(run, EX_MEMORY);
     }
     for (uint32_t i = 0U; i < run->options.threads; i++) {
-        run->worker[i].scratch->is_loaded = false;
+        ex_unload(&run->worker[i]);
         (void)memset(run->worker[i].search->recent, 0, sizeof run->worker[i].search->recent);
     }
 }
@@ -520,7 +520,7 @@ bool ex_explore(ex_run_t *run)
         }
         run->worker[i].search->level = search;
         run->worker[i].search->is_exact = !run->options.is_bitstate && !run->options.is_hashed;
-        if (!ex_words_make(&run->worker[i])) {
+        if (!ex_words_make(&run->worker[i]) || !ex_local_make(&run->worker[i])) {
             ex_stop(run, EX_MEMORY);
             return false;
         }

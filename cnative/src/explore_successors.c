@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT
  * explore_successors.c - what is enabled in a state, and what becomes of it.
  */
+#include "explore_local.h"
 #include "explore_reduce.h"
 
 #include <string.h>
@@ -11,11 +12,13 @@
 typedef struct hunt {
     ex_worker_t *worker;
     ex_arc_sink_t sink;
+    ex_times_sink_t times; /* not NULL: instead of `sink` */
     ex_marking_sink_t all; /* not NULL: gets every successor, as it is */
     pn_successor_sink_t on_next; /* what is done with each */
     void *user;
     bool is_found;
     bool is_stopped; /* by the sink */
+    bool is_local;   /* explore_local.c is asked first; other places than packed ones may not be loaded */
     bool has_aged;   /* worker->marking is later than the cells of the codec */
 } hunt_t;
 
@@ -68,6 +71,11 @@ static bool encode(const hunt_t *hunt, uint32_t transition, const void *next, ex
     return ex_encode_next(hunt->worker, transition, next, key);
 }
 
+static bool pass_on(const hunt_t *hunt, uint32_t transition, const void *binding, const ex_key_t *key)
+{
+    return (hunt->times != NULL) ? hunt->times(hunt->user, transition, 1U, key) : hunt->sink(hunt->user, transition, binding, key);
+}
+
 static bool on_successor(void *user, uint32_t transition, const void *binding, const void *next)
 {
     hunt_t *hunt = user;
@@ -91,11 +99,8 @@ static bool on_successor(void *user, uint32_t transition, const void *binding, c
     if (!encode(hunt, transition, next, &key)) {
         return false;
     }
-    if (!hunt->sink(hunt->user, transition, binding, &key)) {
-        hunt->is_stopped = true;
-        return false;
-    }
-    return true;
+    hunt->is_stopped = !pass_on(hunt, transition, binding, &key);
+    return !hunt->is_stopped;
 }
 
 /* The same where nothing is reduced and the packed part of the marking is the key. */
@@ -105,11 +110,8 @@ static bool on_plain(void *user, uint32_t transition, const void *binding, const
     ex_key_t key;
     hunt->is_found = true;
     ex_plain_key(hunt->worker->run->codec, next, &key);
-    if (!hunt->sink(hunt->user, transition, binding, &key)) {
-        hunt->is_stopped = true;
-        return false;
-    }
-    return true;
+    hunt->is_stopped = !pass_on(hunt, transition, binding, &key);
+    return !hunt->is_stopped;
 }
 
 /* Of transitions that can only be enumerated and fired. */
@@ -127,10 +129,50 @@ static bool on_binding(void *user, uint32_t transition, const void *binding)
     return is_done;
 }
 
+static bool load_places(ex_worker_t *worker, const uint32_t *place, uint32_t count)
+{
+    bool is_fine = true;
+    for (uint32_t i = 0U; is_fine && (i < count); i++) {
+        if (!pn_net.place[place[i]].is_packed) {
+            is_fine = ex_load_place(worker, place[i], worker->scratch->cell[worker->run->codec->word_of[place[i]]]);
+        }
+    }
+    return is_fine;
+}
+
+/* All that a transition looks at. */
+static bool load_places_of(ex_worker_t *worker, uint32_t t)
+{
+    const pn_transition_t *transition = &pn_net.transition[t];
+    if (transition->read == NULL) {
+        return ex_load_places(worker);
+    }
+    return load_places(worker, transition->read, transition->read_count) && load_places(worker, transition->touched, transition->touched_count);
+}
+
+/* The same as hunt_transition from what is remembered; false: that has to be done itself. */
+static bool hunt_local(hunt_t *hunt, uint32_t t, bool *goes_on)
+{
+    const ex_local_found_t found = ex_local_successors(hunt->worker, t, hunt->times, hunt->user);
+    hunt->is_found = hunt->is_found || (found >= EX_LOCAL_SOME);
+    hunt->is_stopped = found == EX_LOCAL_STOPPED;
+    *goes_on = (found == EX_LOCAL_NONE) || (found == EX_LOCAL_SOME);
+    return found != EX_LOCAL_UNKNOWN;
+}
+
 /* All bindings of a transition; false when it is to go no further. */
 static bool hunt_transition(hunt_t *hunt, uint32_t t)
 {
     ex_worker_t *worker = hunt->worker;
+    bool goes_on = true;
+    if (hunt->is_local) {
+        if (hunt_local(hunt, t, &goes_on)) {
+            return goes_on;
+        }
+        if (!load_places_of(worker, t)) {
+            return false;
+        }
+    }
     const pn_transition_t *transition = &pn_net.transition[t];
     const size_t mark = pn_arena_mark(&worker->scratch->arena);
     if (transition->successors != NULL) {
@@ -207,42 +249,59 @@ static bool advance(hunt_t *hunt, pn_time_t next)
     return ex_encode_time(worker);
 }
 
-ex_found_t ex_successors(ex_worker_t *worker, const ex_key_t *key, ex_arc_sink_t sink, void *user)
+/* The opened state, which is loaded unless `is_local`. */
+static ex_found_t hunt_state(hunt_t *hunt)
 {
+    ex_worker_t *worker = hunt->worker;
     const ex_reduction_t *reduction = worker->run->reduction;
-    const bool is_plain = worker->run->codec->is_plain && (reduction == NULL); /* there is no time either */
-    hunt_t hunt = { .worker = worker, .sink = sink, .user = user, .on_next = is_plain ? on_plain : on_successor };
     worker->elapsed = 0;
     worker->has_waited = false;
-    if (!ex_load(worker, key)) {
-        return EX_FAILED;
-    }
     if ((reduction != NULL) && reduction->is_stubborn) {
         ex_stubborn_begin(worker);
     }
-    bool goes_on = hunt_now(&hunt);
+    bool goes_on = hunt_now(hunt);
     pn_time_t next = { 0 };
-    while (goes_on && !hunt.is_found && pn_net.timed && pn_net.next_time(&worker->cx, worker->marking, &next)) {
-        goes_on = advance(&hunt, next) && hunt_now(&hunt);
+    while (goes_on && !hunt->is_found && pn_net.timed && (!hunt->is_local || ex_load_places(worker))
+           && pn_net.next_time(&worker->cx, worker->marking, &next)) {
+        goes_on = advance(hunt, next) && hunt_now(hunt);
     }
-    if (goes_on && !hunt.is_found && (worker->cx.error != PN_OK)) {
+    if (goes_on && !hunt->is_found && (worker->cx.error != PN_OK)) {
         ex_fail(worker, -1); /* a delay could not be computed */
         goes_on = false;
     }
-    if (hunt.has_aged) {
-        worker->scratch->is_loaded = false;
+    if (hunt->has_aged) {
+        ex_unload(worker);
     }
-    if (hunt.is_stopped) {
+    if (hunt->is_stopped) {
         return EX_STOPPED;
     }
-    if (!goes_on) {
+    if (!goes_on || worker->failed) {
         return EX_FAILED;
     }
     if ((reduction != NULL) && reduction->is_stubborn && !ex_stubborn_is_even(worker)) {
         ex_differs(worker, UINT32_MAX, "a binding element of the table of elements does not occur");
         return EX_FAILED;
     }
-    return hunt.is_found ? EX_SOME : EX_DEAD;
+    return hunt->is_found ? EX_SOME : EX_DEAD;
+}
+
+/* Where the packed part of the marking is the key there is no time either. */
+static pn_successor_sink_t successor_sink(const ex_run_t *run)
+{
+    return (run->codec->is_plain && (run->reduction == NULL)) ? on_plain : on_successor;
+}
+
+ex_found_t ex_successors(ex_worker_t *worker, const ex_key_t *key, ex_arc_sink_t sink, void *user)
+{
+    hunt_t hunt = { .worker = worker, .sink = sink, .user = user, .on_next = successor_sink(worker->run) };
+    return ex_load(worker, key) ? hunt_state(&hunt) : EX_FAILED;
+}
+
+ex_found_t ex_arcs(ex_worker_t *worker, const ex_key_t *key, ex_times_sink_t sink, void *user)
+{
+    const bool is_local = worker->local != NULL;
+    hunt_t hunt = { .worker = worker, .times = sink, .user = user, .on_next = successor_sink(worker->run), .is_local = is_local };
+    return (is_local ? ex_open(worker, key) : ex_load(worker, key)) ? hunt_state(&hunt) : EX_FAILED;
 }
 
 ex_found_t ex_all_successors(ex_worker_t *worker, ex_marking_sink_t sink, void *user)

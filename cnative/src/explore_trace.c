@@ -112,14 +112,14 @@ static bool write_walk(ex_run_t *run, const ex_graph_t *graph, const uint32_t *w
         if (is_fine) {
             (void)memcpy(wanted, worker->marking, pn_net.packed_size);
             (void)memcpy(worker->marking, marking, pn_net.marking_size);
-            worker->scratch->is_loaded = false;
+            ex_unload(worker);
             walk.is_found = false;
             is_fine = (ex_all_successors(worker, walk_step, &walk) == EX_STOPPED) && walk.is_found;
         }
     }
     if (is_fine) { /* where the run is now */
         (void)memcpy(worker->marking, marking, pn_net.marking_size);
-        worker->scratch->is_loaded = false;
+        ex_unload(worker);
     }
     free(wanted);
     free(marking);

@@ -7625,7 +7625,7 @@ static const pn_place_t s_places[] = {
         .capacity = 1U, .is_bounded = true, .bound = 1U, .timed = false,
         .count = dadosrobo1_count, .token = dadosrobo1_token, .put = dadosrobo1_put,
         .clear = dadosrobo1_clear, .json = dadosrobo1_json,
-        .encode = dadosrobo1_encode, .decode = dadosrobo1_decode,
+        .encode = dadosrobo1_encode, .decode = dadosrobo1_decode, .add = dadosrobo1_add_bytes,
         .bit = UINT32_MAX,
         .leaf_count = 6U, .leaf_kind = s_POSE_kinds, .leaf_name = s_POSE_leaves,
         .line_count = 1U, .line_leaves = s_POSE_lines,
@@ -7636,7 +7636,7 @@ static const pn_place_t s_places[] = {
         .capacity = 1U, .is_bounded = true, .bound = 1U, .timed = false,
         .count = flag1_interno_count, .token = flag1_interno_token, .put = flag1_interno_put,
         .clear = flag1_interno_clear, .json = flag1_interno_json,
-        .encode = flag1_interno_encode, .decode = flag1_interno_decode,
+        .encode = flag1_interno_encode, .decode = flag1_interno_decode, .add = flag1_interno_add_bytes,
         .bit = UINT32_MAX,
         .leaf_count = 1U, .leaf_kind = s_COMMAND_kinds, .leaf_name = s_COMMAND_leaves,
         .line_count = 1U, .line_leaves = s_COMMAND_lines,
@@ -7647,7 +7647,7 @@ static const pn_place_t s_places[] = {
         .capacity = 1U, .is_bounded = true, .bound = 1U, .timed = false,
         .count = flag1_externo_count, .token = flag1_externo_token, .put = flag1_externo_put,
         .clear = flag1_externo_clear, .json = flag1_externo_json,
-        .encode = flag1_externo_encode, .decode = flag1_externo_decode,
+        .encode = flag1_externo_encode, .decode = flag1_externo_decode, .add = flag1_externo_add_bytes,
         .bit = UINT32_MAX,
         .leaf_count = 1U, .leaf_kind = s_REPLY_kinds, .leaf_name = s_REPLY_leaves,
         .line_count = 1U, .line_leaves = s_REPLY_lines,
@@ -7658,7 +7658,7 @@ static const pn_place_t s_places[] = {
         .capacity = 1U, .is_bounded = true, .bound = 1U, .timed = false,
         .count = referencia1_count, .token = referencia1_token, .put = referencia1_put,
         .clear = referencia1_clear, .json = referencia1_json,
-        .encode = referencia1_encode, .decode = referencia1_decode,
+        .encode = referencia1_encode, .decode = referencia1_decode, .add = referencia1_add_bytes,
         .bit = UINT32_MAX,
         .leaf_count = 6U, .leaf_kind = s_POSE_kinds, .leaf_name = s_POSE_leaves,
         .line_count = 1U, .line_leaves = s_POSE_lines,
@@ -7669,7 +7669,7 @@ static const pn_place_t s_places[] = {
         .capacity = 1U, .is_bounded = true, .bound = 1U, .timed = false,
         .count = medida1_count, .token = medida1_token, .put = medida1_put,
         .clear = medida1_clear, .json = medida1_json,
-        .encode = medida1_encode, .decode = medida1_decode,
+        .encode = medida1_encode, .decode = medida1_decode, .add = medida1_add_bytes,
         .bit = UINT32_MAX,
         .leaf_count = 6U, .leaf_kind = s_POSE_kinds, .leaf_name = s_POSE_leaves,
         .line_count = 1U, .line_leaves = s_POSE_lines,
@@ -7680,7 +7680,7 @@ static const pn_place_t s_places[] = {
         .capacity = 1U, .is_bounded = true, .bound = 1U, .timed = false,
         .count = dadosrobo2_count, .token = dadosrobo2_token, .put = dadosrobo2_put,
         .clear = dadosrobo2_clear, .json = dadosrobo2_json,
-        .encode = dadosrobo2_encode, .decode = dadosrobo2_decode,
+        .encode = dadosrobo2_encode, .decode = dadosrobo2_decode, .add = dadosrobo2_add_bytes,
         .bit = UINT32_MAX,
         .leaf_count = 6U, .leaf_kind = s_POSE_kinds, .leaf_name = s_POSE_leaves,
         .line_count = 1U, .line_leaves = s_POSE_lines,
@@ -7691,7 +7691,7 @@ static const pn_place_t s_places[] = {
         .capacity = 1U, .is_bounded = true, .bound = 1U, .timed = false,
         .count = flag2_interno_count, .token = flag2_interno_token, .put = flag2_interno_put,
         .clear = flag2_interno_clear, .json = flag2_interno_json,
-        .encode = flag2_interno_encode, .decode = flag2_interno_decode,
+        .encode = flag2_interno_encode, .decode = flag2_interno_decode, .add = flag2_interno_add_bytes,
         .bit = UINT32_MAX,
         .leaf_count = 1U, .leaf_kind = s_COMMAND_kinds, .leaf_name = s_COMMAND_leaves,
         .line_count = 1U, .line_leaves = s_COMMAND_lines,
@@ -7702,7 +7702,7 @@ static const pn_place_t s_places[] = {
         .capacity = 1U, .is_bounded = true, .bound = 1U, .timed = false,
         .count = flag2_externo_count, .token = flag2_externo_token, .put = flag2_externo_put,
         .clear = flag2_externo_clear, .json = flag2_externo_json,
-        .encode = flag2_externo_encode, .decode = flag2_externo_decode,
+        .encode = flag2_externo_encode, .decode = flag2_externo_decode, .add = flag2_externo_add_bytes,
         .bit = UINT32_MAX,
         .leaf_count = 1U, .leaf_kind = s_REPLY_kinds, .leaf_name = s_REPLY_leaves,
         .line_count = 1U, .line_leaves = s_REPLY_lines,
@@ -7713,7 +7713,7 @@ static const pn_place_t s_places[] = {
         .capacity = 1U, .is_bounded = true, .bound = 1U, .timed = false,
         .count = Supervisor_coordenadas_count, .token = Supervisor_coordenadas_token, .put = Supervisor_coordenadas_put,
         .clear = Supervisor_coordenadas_clear, .json = Supervisor_coordenadas_json,
-        .encode = Supervisor_coordenadas_encode, .decode = Supervisor_coordenadas_decode,
+        .encode = Supervisor_coordenadas_encode, .decode = Supervisor_coordenadas_decode, .add = Supervisor_coordenadas_add_bytes,
         .bit = UINT32_MAX,
         .leaf_count = 13U, .leaf_kind = s_PLAN_kinds, .leaf_name = s_PLAN_leaves,
         .line_count = 3U, .line_leaves = s_PLAN_lines,
@@ -7724,7 +7724,7 @@ static const pn_place_t s_places[] = {
         .capacity = 1U, .is_bounded = true, .bound = 1U, .timed = false,
         .count = Supervisor_planned_count, .token = Supervisor_planned_token, .put = Supervisor_planned_put,
         .clear = Supervisor_planned_clear, .json = Supervisor_planned_json,
-        .encode = Supervisor_planned_encode, .decode = Supervisor_planned_decode,
+        .encode = Supervisor_planned_encode, .decode = Supervisor_planned_decode, .add = Supervisor_planned_add_bytes,
         .bit = UINT32_MAX,
         .leaf_count = 13U, .leaf_kind = s_SEAM_kinds, .leaf_name = s_SEAM_leaves,
         .line_count = 3U, .line_leaves = s_SEAM_lines,
@@ -7735,7 +7735,7 @@ static const pn_place_t s_places[] = {
         .capacity = 1U, .is_bounded = true, .bound = 1U, .timed = false,
         .count = Supervisor_approached_count, .token = Supervisor_approached_token, .put = Supervisor_approached_put,
         .clear = Supervisor_approached_clear, .json = Supervisor_approached_json,
-        .encode = Supervisor_approached_encode, .decode = Supervisor_approached_decode,
+        .encode = Supervisor_approached_encode, .decode = Supervisor_approached_decode, .add = Supervisor_approached_add_bytes,
         .bit = UINT32_MAX,
         .leaf_count = 13U, .leaf_kind = s_SEAM_kinds, .leaf_name = s_SEAM_leaves,
         .line_count = 3U, .line_leaves = s_SEAM_lines,
@@ -7746,7 +7746,7 @@ static const pn_place_t s_places[] = {
         .capacity = 1U, .is_bounded = true, .bound = 1U, .timed = false,
         .count = Supervisor_verified_count, .token = Supervisor_verified_token, .put = Supervisor_verified_put,
         .clear = Supervisor_verified_clear, .json = Supervisor_verified_json,
-        .encode = Supervisor_verified_encode, .decode = Supervisor_verified_decode,
+        .encode = Supervisor_verified_encode, .decode = Supervisor_verified_decode, .add = Supervisor_verified_add_bytes,
         .bit = UINT32_MAX,
         .leaf_count = 25U, .leaf_kind = s_VERIFIED_kinds, .leaf_name = s_VERIFIED_leaves,
         .line_count = 3U, .line_leaves = s_VERIFIED_lines,
@@ -7757,7 +7757,7 @@ static const pn_place_t s_places[] = {
         .capacity = 1U, .is_bounded = true, .bound = 1U, .timed = false,
         .count = Supervisor_corrected_count, .token = Supervisor_corrected_token, .put = Supervisor_corrected_put,
         .clear = Supervisor_corrected_clear, .json = Supervisor_corrected_json,
-        .encode = Supervisor_corrected_encode, .decode = Supervisor_corrected_decode,
+        .encode = Supervisor_corrected_encode, .decode = Supervisor_corrected_decode, .add = Supervisor_corrected_add_bytes,
         .bit = UINT32_MAX,
         .leaf_count = 10U, .leaf_kind = s_RIVETING_kinds, .leaf_name = s_RIVETING_leaves,
         .line_count = 3U, .line_leaves = s_RIVETING_lines,
@@ -7768,7 +7768,7 @@ static const pn_place_t s_places[] = {
         .capacity = 1U, .is_bounded = true, .bound = 1U, .timed = false,
         .count = Supervisor_installed_count, .token = Supervisor_installed_token, .put = Supervisor_installed_put,
         .clear = Supervisor_installed_clear, .json = Supervisor_installed_json,
-        .encode = Supervisor_installed_encode, .decode = Supervisor_installed_decode,
+        .encode = Supervisor_installed_encode, .decode = Supervisor_installed_decode, .add = Supervisor_installed_add_bytes,
         .bit = UINT32_MAX,
         .leaf_count = 1U, .leaf_kind = s_UNIT_kinds, .leaf_name = s_UNIT_leaves,
         .line_count = 1U, .line_leaves = s_UNIT_lines,
@@ -7779,7 +7779,7 @@ static const pn_place_t s_places[] = {
         .capacity = 1U, .is_bounded = true, .bound = 1U, .timed = false,
         .count = Supervisor_Finished_count, .token = Supervisor_Finished_token, .put = Supervisor_Finished_put,
         .clear = Supervisor_Finished_clear, .json = Supervisor_Finished_json,
-        .encode = Supervisor_Finished_encode, .decode = Supervisor_Finished_decode,
+        .encode = Supervisor_Finished_encode, .decode = Supervisor_Finished_decode, .add = Supervisor_Finished_add_bytes,
         .bit = UINT32_MAX,
         .leaf_count = 1U, .leaf_kind = s_UNIT_kinds, .leaf_name = s_UNIT_leaves,
         .line_count = 1U, .line_leaves = s_UNIT_lines,
@@ -7790,7 +7790,7 @@ static const pn_place_t s_places[] = {
         .capacity = 1U, .is_bounded = true, .bound = 1U, .timed = false,
         .count = Supervisor_Approach_order_count, .token = Supervisor_Approach_order_token, .put = Supervisor_Approach_order_put,
         .clear = Supervisor_Approach_order_clear, .json = Supervisor_Approach_order_json,
-        .encode = Supervisor_Approach_order_encode, .decode = Supervisor_Approach_order_decode,
+        .encode = Supervisor_Approach_order_encode, .decode = Supervisor_Approach_order_decode, .add = Supervisor_Approach_order_add_bytes,
         .bit = UINT32_MAX,
         .leaf_count = 13U, .leaf_kind = s_ORDER_kinds, .leaf_name = s_ORDER_leaves,
         .line_count = 3U, .line_leaves = s_ORDER_lines,
@@ -7801,7 +7801,7 @@ static const pn_place_t s_places[] = {
         .capacity = 1U, .is_bounded = true, .bound = 1U, .timed = false,
         .count = Supervisor_Approach_done_count, .token = Supervisor_Approach_done_token, .put = Supervisor_Approach_done_put,
         .clear = Supervisor_Approach_done_clear, .json = Supervisor_Approach_done_json,
-        .encode = Supervisor_Approach_done_encode, .decode = Supervisor_Approach_done_decode,
+        .encode = Supervisor_Approach_done_encode, .decode = Supervisor_Approach_done_decode, .add = Supervisor_Approach_done_add_bytes,
         .bit = UINT32_MAX,
         .leaf_count = 1U, .leaf_kind = s_UNIT_kinds, .leaf_name = s_UNIT_leaves,
         .line_count = 1U, .line_leaves = s_UNIT_lines,
@@ -7812,7 +7812,7 @@ static const pn_place_t s_places[] = {
         .capacity = 1U, .is_bounded = true, .bound = 1U, .timed = false,
         .count = Supervisor_Approach_seam_count, .token = Supervisor_Approach_seam_token, .put = Supervisor_Approach_seam_put,
         .clear = Supervisor_Approach_seam_clear, .json = Supervisor_Approach_seam_json,
-        .encode = Supervisor_Approach_seam_encode, .decode = Supervisor_Approach_seam_decode,
+        .encode = Supervisor_Approach_seam_encode, .decode = Supervisor_Approach_seam_decode, .add = Supervisor_Approach_seam_add_bytes,
         .bit = UINT32_MAX,
         .leaf_count = 13U, .leaf_kind = s_SEAM_kinds, .leaf_name = s_SEAM_leaves,
         .line_count = 3U, .line_leaves = s_SEAM_lines,
@@ -7823,7 +7823,7 @@ static const pn_place_t s_places[] = {
         .capacity = 1U, .is_bounded = true, .bound = 1U, .timed = false,
         .count = Supervisor_Approach_Move_both_moving_1_count, .token = Supervisor_Approach_Move_both_moving_1_token, .put = Supervisor_Approach_Move_both_moving_1_put,
         .clear = Supervisor_Approach_Move_both_moving_1_clear, .json = Supervisor_Approach_Move_both_moving_1_json,
-        .encode = Supervisor_Approach_Move_both_moving_1_encode, .decode = Supervisor_Approach_Move_both_moving_1_decode,
+        .encode = Supervisor_Approach_Move_both_moving_1_encode, .decode = Supervisor_Approach_Move_both_moving_1_decode, .add = Supervisor_Approach_Move_both_moving_1_add_bytes,
         .bit = UINT32_MAX,
         .leaf_count = 1U, .leaf_kind = s_UNIT_kinds, .leaf_name = s_UNIT_leaves,
         .line_count = 1U, .line_leaves = s_UNIT_lines,
@@ -7834,7 +7834,7 @@ static const pn_place_t s_places[] = {
         .capacity = 1U, .is_bounded = true, .bound = 1U, .timed = false,
         .count = Supervisor_Approach_Move_both_there_1_count, .token = Supervisor_Approach_Move_both_there_1_token, .put = Supervisor_Approach_Move_both_there_1_put,
         .clear = Supervisor_Approach_Move_both_there_1_clear, .json = Supervisor_Approach_Move_both_there_1_json,
-        .encode = Supervisor_Approach_Move_both_there_1_encode, .decode = Supervisor_Approach_Move_both_there_1_decode,
+        .encode = Supervisor_Approach_Move_both_there_1_encode, .decode = Supervisor_Approach_Move_both_there_1_decode, .add = Supervisor_Approach_Move_both_there_1_add_bytes,
         .bit = UINT32_MAX,
         .leaf_count = 1U, .leaf_kind = s_UNIT_kinds, .leaf_name = s_UNIT_leaves,
         .line_count = 1U, .line_leaves = s_UNIT_lines,
@@ -7845,7 +7845,7 @@ static const pn_place_t s_places[] = {
         .capacity = 1U, .is_bounded = true, .bound = 1U, .timed = false,
         .count = Supervisor_Approach_Move_both_moving_2_count, .token = Supervisor_Approach_Move_both_moving_2_token, .put = Supervisor_Approach_Move_both_moving_2_put,
         .clear = Supervisor_Approach_Move_both_moving_2_clear, .json = Supervisor_Approach_Move_both_moving_2_json,
-        .encode = Supervisor_Approach_Move_both_moving_2_encode, .decode = Supervisor_Approach_Move_both_moving_2_decode,
+        .encode = Supervisor_Approach_Move_both_moving_2_encode, .decode = Supervisor_Approach_Move_both_moving_2_decode, .add = Supervisor_Approach_Move_both_moving_2_add_bytes,
         .bit = UINT32_MAX,
         .leaf_count = 1U, .leaf_kind = s_UNIT_kinds, .leaf_name = s_UNIT_leaves,
         .line_count = 1U, .line_leaves = s_UNIT_lines,
@@ -7856,7 +7856,7 @@ static const pn_place_t s_places[] = {
         .capacity = 1U, .is_bounded = true, .bound = 1U, .timed = false,
         .count = Supervisor_Approach_Move_both_there_2_count, .token = Supervisor_Approach_Move_both_there_2_token, .put = Supervisor_Approach_Move_both_there_2_put,
         .clear = Supervisor_Approach_Move_both_there_2_clear, .json = Supervisor_Approach_Move_both_there_2_json,
-        .encode = Supervisor_Approach_Move_both_there_2_encode, .decode = Supervisor_Approach_Move_both_there_2_decode,
+        .encode = Supervisor_Approach_Move_both_there_2_encode, .decode = Supervisor_Approach_Move_both_there_2_decode, .add = Supervisor_Approach_Move_both_there_2_add_bytes,
         .bit = UINT32_MAX,
         .leaf_count = 1U, .leaf_kind = s_UNIT_kinds, .leaf_name = s_UNIT_leaves,
         .line_count = 1U, .line_leaves = s_UNIT_lines,
@@ -7867,7 +7867,7 @@ static const pn_place_t s_places[] = {
         .capacity = 1U, .is_bounded = true, .bound = 1U, .timed = false,
         .count = Supervisor_Verify_first_asked_count, .token = Supervisor_Verify_first_asked_token, .put = Supervisor_Verify_first_asked_put,
         .clear = Supervisor_Verify_first_asked_clear, .json = Supervisor_Verify_first_asked_json,
-        .encode = Supervisor_Verify_first_asked_encode, .decode = Supervisor_Verify_first_asked_decode,
+        .encode = Supervisor_Verify_first_asked_encode, .decode = Supervisor_Verify_first_asked_decode, .add = Supervisor_Verify_first_asked_add_bytes,
         .bit = UINT32_MAX,
         .leaf_count = 13U, .leaf_kind = s_SEAM_kinds, .leaf_name = s_SEAM_leaves,
         .line_count = 3U, .line_leaves = s_SEAM_lines,
@@ -7878,7 +7878,7 @@ static const pn_place_t s_places[] = {
         .capacity = 1U, .is_bounded = true, .bound = 1U, .timed = false,
         .count = Supervisor_Verify_last_asked_count, .token = Supervisor_Verify_last_asked_token, .put = Supervisor_Verify_last_asked_put,
         .clear = Supervisor_Verify_last_asked_clear, .json = Supervisor_Verify_last_asked_json,
-        .encode = Supervisor_Verify_last_asked_encode, .decode = Supervisor_Verify_last_asked_decode,
+        .encode = Supervisor_Verify_last_asked_encode, .decode = Supervisor_Verify_last_asked_decode, .add = Supervisor_Verify_last_asked_add_bytes,
         .bit = UINT32_MAX,
         .leaf_count = 19U, .leaf_kind = s_ASKED_kinds, .leaf_name = s_ASKED_leaves,
         .line_count = 2U, .line_leaves = s_ASKED_lines,
@@ -7889,7 +7889,7 @@ static const pn_place_t s_places[] = {
         .capacity = 1U, .is_bounded = true, .bound = 1U, .timed = false,
         .count = Supervisor_Correct_offset_count, .token = Supervisor_Correct_offset_token, .put = Supervisor_Correct_offset_put,
         .clear = Supervisor_Correct_offset_clear, .json = Supervisor_Correct_offset_json,
-        .encode = Supervisor_Correct_offset_encode, .decode = Supervisor_Correct_offset_decode,
+        .encode = Supervisor_Correct_offset_encode, .decode = Supervisor_Correct_offset_decode, .add = Supervisor_Correct_offset_add_bytes,
         .bit = UINT32_MAX,
         .leaf_count = 3U, .leaf_kind = s_VECTOR_kinds, .leaf_name = s_VECTOR_leaves,
         .line_count = 1U, .line_leaves = s_VECTOR_lines,
@@ -7900,7 +7900,7 @@ static const pn_place_t s_places[] = {
         .capacity = 1U, .is_bounded = true, .bound = 1U, .timed = false,
         .count = Supervisor_Correct_order_count, .token = Supervisor_Correct_order_token, .put = Supervisor_Correct_order_put,
         .clear = Supervisor_Correct_order_clear, .json = Supervisor_Correct_order_json,
-        .encode = Supervisor_Correct_order_encode, .decode = Supervisor_Correct_order_decode,
+        .encode = Supervisor_Correct_order_encode, .decode = Supervisor_Correct_order_decode, .add = Supervisor_Correct_order_add_bytes,
         .bit = UINT32_MAX,
         .leaf_count = 13U, .leaf_kind = s_ORDER_kinds, .leaf_name = s_ORDER_leaves,
         .line_count = 3U, .line_leaves = s_ORDER_lines,
@@ -7911,7 +7911,7 @@ static const pn_place_t s_places[] = {
         .capacity = 1U, .is_bounded = true, .bound = 1U, .timed = false,
         .count = Supervisor_Correct_done_count, .token = Supervisor_Correct_done_token, .put = Supervisor_Correct_done_put,
         .clear = Supervisor_Correct_done_clear, .json = Supervisor_Correct_done_json,
-        .encode = Supervisor_Correct_done_encode, .decode = Supervisor_Correct_done_decode,
+        .encode = Supervisor_Correct_done_encode, .decode = Supervisor_Correct_done_decode, .add = Supervisor_Correct_done_add_bytes,
         .bit = UINT32_MAX,
         .leaf_count = 1U, .leaf_kind = s_UNIT_kinds, .leaf_name = s_UNIT_leaves,
         .line_count = 1U, .line_leaves = s_UNIT_lines,
@@ -7922,7 +7922,7 @@ static const pn_place_t s_places[] = {
         .capacity = 1U, .is_bounded = true, .bound = 1U, .timed = false,
         .count = Supervisor_Correct_seam_count, .token = Supervisor_Correct_seam_token, .put = Supervisor_Correct_seam_put,
         .clear = Supervisor_Correct_seam_clear, .json = Supervisor_Correct_seam_json,
-        .encode = Supervisor_Correct_seam_encode, .decode = Supervisor_Correct_seam_decode,
+        .encode = Supervisor_Correct_seam_encode, .decode = Supervisor_Correct_seam_decode, .add = Supervisor_Correct_seam_add_bytes,
         .bit = UINT32_MAX,
         .leaf_count = 10U, .leaf_kind = s_RIVETING_kinds, .leaf_name = s_RIVETING_leaves,
         .line_count = 3U, .line_leaves = s_RIVETING_lines,
@@ -7933,7 +7933,7 @@ static const pn_place_t s_places[] = {
         .capacity = 1U, .is_bounded = true, .bound = 1U, .timed = false,
         .count = Supervisor_Correct_Move_both_moving_1_count, .token = Supervisor_Correct_Move_both_moving_1_token, .put = Supervisor_Correct_Move_both_moving_1_put,
         .clear = Supervisor_Correct_Move_both_moving_1_clear, .json = Supervisor_Correct_Move_both_moving_1_json,
-        .encode = Supervisor_Correct_Move_both_moving_1_encode, .decode = Supervisor_Correct_Move_both_moving_1_decode,
+        .encode = Supervisor_Correct_Move_both_moving_1_encode, .decode = Supervisor_Correct_Move_both_moving_1_decode, .add = Supervisor_Correct_Move_both_moving_1_add_bytes,
         .bit = UINT32_MAX,
         .leaf_count = 1U, .leaf_kind = s_UNIT_kinds, .leaf_name = s_UNIT_leaves,
         .line_count = 1U, .line_leaves = s_UNIT_lines,
@@ -7944,7 +7944,7 @@ static const pn_place_t s_places[] = {
         .capacity = 1U, .is_bounded = true, .bound = 1U, .timed = false,
         .count = Supervisor_Correct_Move_both_there_1_count, .token = Supervisor_Correct_Move_both_there_1_token, .put = Supervisor_Correct_Move_both_there_1_put,
         .clear = Supervisor_Correct_Move_both_there_1_clear, .json = Supervisor_Correct_Move_both_there_1_json,
-        .encode = Supervisor_Correct_Move_both_there_1_encode, .decode = Supervisor_Correct_Move_both_there_1_decode,
+        .encode = Supervisor_Correct_Move_both_there_1_encode, .decode = Supervisor_Correct_Move_both_there_1_decode, .add = Supervisor_Correct_Move_both_there_1_add_bytes,
         .bit = UINT32_MAX,
         .leaf_count = 1U, .leaf_kind = s_UNIT_kinds, .leaf_name = s_UNIT_leaves,
         .line_count = 1U, .line_leaves = s_UNIT_lines,
@@ -7955,7 +7955,7 @@ static const pn_place_t s_places[] = {
         .capacity = 1U, .is_bounded = true, .bound = 1U, .timed = false,
         .count = Supervisor_Correct_Move_both_moving_2_count, .token = Supervisor_Correct_Move_both_moving_2_token, .put = Supervisor_Correct_Move_both_moving_2_put,
         .clear = Supervisor_Correct_Move_both_moving_2_clear, .json = Supervisor_Correct_Move_both_moving_2_json,
-        .encode = Supervisor_Correct_Move_both_moving_2_encode, .decode = Supervisor_Correct_Move_both_moving_2_decode,
+        .encode = Supervisor_Correct_Move_both_moving_2_encode, .decode = Supervisor_Correct_Move_both_moving_2_decode, .add = Supervisor_Correct_Move_both_moving_2_add_bytes,
         .bit = UINT32_MAX,
         .leaf_count = 1U, .leaf_kind = s_UNIT_kinds, .leaf_name = s_UNIT_leaves,
         .line_count = 1U, .line_leaves = s_UNIT_lines,
@@ -7966,7 +7966,7 @@ static const pn_place_t s_places[] = {
         .capacity = 1U, .is_bounded = true, .bound = 1U, .timed = false,
         .count = Supervisor_Correct_Move_both_there_2_count, .token = Supervisor_Correct_Move_both_there_2_token, .put = Supervisor_Correct_Move_both_there_2_put,
         .clear = Supervisor_Correct_Move_both_there_2_clear, .json = Supervisor_Correct_Move_both_there_2_json,
-        .encode = Supervisor_Correct_Move_both_there_2_encode, .decode = Supervisor_Correct_Move_both_there_2_decode,
+        .encode = Supervisor_Correct_Move_both_there_2_encode, .decode = Supervisor_Correct_Move_both_there_2_decode, .add = Supervisor_Correct_Move_both_there_2_add_bytes,
         .bit = UINT32_MAX,
         .leaf_count = 1U, .leaf_kind = s_UNIT_kinds, .leaf_name = s_UNIT_leaves,
         .line_count = 1U, .line_leaves = s_UNIT_lines,
@@ -7977,7 +7977,7 @@ static const pn_place_t s_places[] = {
         .capacity = 1U, .is_bounded = true, .bound = 1U, .timed = false,
         .count = Supervisor_Install_shift_count, .token = Supervisor_Install_shift_token, .put = Supervisor_Install_shift_put,
         .clear = Supervisor_Install_shift_clear, .json = Supervisor_Install_shift_json,
-        .encode = Supervisor_Install_shift_encode, .decode = Supervisor_Install_shift_decode,
+        .encode = Supervisor_Install_shift_encode, .decode = Supervisor_Install_shift_decode, .add = Supervisor_Install_shift_add_bytes,
         .bit = UINT32_MAX,
         .leaf_count = 13U, .leaf_kind = s_ORDER_kinds, .leaf_name = s_ORDER_leaves,
         .line_count = 3U, .line_leaves = s_ORDER_lines,
@@ -7988,7 +7988,7 @@ static const pn_place_t s_places[] = {
         .capacity = 1U, .is_bounded = true, .bound = 1U, .timed = false,
         .count = Supervisor_Install_ready_count, .token = Supervisor_Install_ready_token, .put = Supervisor_Install_ready_put,
         .clear = Supervisor_Install_ready_clear, .json = Supervisor_Install_ready_json,
-        .encode = Supervisor_Install_ready_encode, .decode = Supervisor_Install_ready_decode,
+        .encode = Supervisor_Install_ready_encode, .decode = Supervisor_Install_ready_decode, .add = Supervisor_Install_ready_add_bytes,
         .bit = UINT32_MAX,
         .leaf_count = 1U, .leaf_kind = s_UNIT_kinds, .leaf_name = s_UNIT_leaves,
         .line_count = 1U, .line_leaves = s_UNIT_lines,
@@ -7999,7 +7999,7 @@ static const pn_place_t s_places[] = {
         .capacity = 1U, .is_bounded = true, .bound = 1U, .timed = false,
         .count = Supervisor_Install_riveted_count, .token = Supervisor_Install_riveted_token, .put = Supervisor_Install_riveted_put,
         .clear = Supervisor_Install_riveted_clear, .json = Supervisor_Install_riveted_json,
-        .encode = Supervisor_Install_riveted_encode, .decode = Supervisor_Install_riveted_decode,
+        .encode = Supervisor_Install_riveted_encode, .decode = Supervisor_Install_riveted_decode, .add = Supervisor_Install_riveted_add_bytes,
         .bit = UINT32_MAX,
         .leaf_count = 1U, .leaf_kind = s_UNIT_kinds, .leaf_name = s_UNIT_leaves,
         .line_count = 1U, .line_leaves = s_UNIT_lines,
@@ -8010,7 +8010,7 @@ static const pn_place_t s_places[] = {
         .capacity = 1U, .is_bounded = true, .bound = 1U, .timed = false,
         .count = Supervisor_Install_return_count, .token = Supervisor_Install_return_token, .put = Supervisor_Install_return_put,
         .clear = Supervisor_Install_return_clear, .json = Supervisor_Install_return_json,
-        .encode = Supervisor_Install_return_encode, .decode = Supervisor_Install_return_decode,
+        .encode = Supervisor_Install_return_encode, .decode = Supervisor_Install_return_decode, .add = Supervisor_Install_return_add_bytes,
         .bit = UINT32_MAX,
         .leaf_count = 13U, .leaf_kind = s_ORDER_kinds, .leaf_name = s_ORDER_leaves,
         .line_count = 3U, .line_leaves = s_ORDER_lines,
@@ -8021,7 +8021,7 @@ static const pn_place_t s_places[] = {
         .capacity = 1U, .is_bounded = true, .bound = 1U, .timed = false,
         .count = Supervisor_Install_work_count, .token = Supervisor_Install_work_token, .put = Supervisor_Install_work_put,
         .clear = Supervisor_Install_work_clear, .json = Supervisor_Install_work_json,
-        .encode = Supervisor_Install_work_encode, .decode = Supervisor_Install_work_decode,
+        .encode = Supervisor_Install_work_encode, .decode = Supervisor_Install_work_decode, .add = Supervisor_Install_work_add_bytes,
         .bit = UINT32_MAX,
         .leaf_count = 11U, .leaf_kind = s_WORK_kinds, .leaf_name = s_WORK_leaves,
         .line_count = 4U, .line_leaves = s_WORK_lines,
@@ -8032,7 +8032,7 @@ static const pn_place_t s_places[] = {
         .capacity = 1U, .is_bounded = true, .bound = 1U, .timed = false,
         .count = Supervisor_Install_Shift_moving_1_count, .token = Supervisor_Install_Shift_moving_1_token, .put = Supervisor_Install_Shift_moving_1_put,
         .clear = Supervisor_Install_Shift_moving_1_clear, .json = Supervisor_Install_Shift_moving_1_json,
-        .encode = Supervisor_Install_Shift_moving_1_encode, .decode = Supervisor_Install_Shift_moving_1_decode,
+        .encode = Supervisor_Install_Shift_moving_1_encode, .decode = Supervisor_Install_Shift_moving_1_decode, .add = Supervisor_Install_Shift_moving_1_add_bytes,
         .bit = UINT32_MAX,
         .leaf_count = 1U, .leaf_kind = s_UNIT_kinds, .leaf_name = s_UNIT_leaves,
         .line_count = 1U, .line_leaves = s_UNIT_lines,
@@ -8043,7 +8043,7 @@ static const pn_place_t s_places[] = {
         .capacity = 1U, .is_bounded = true, .bound = 1U, .timed = false,
         .count = Supervisor_Install_Shift_there_1_count, .token = Supervisor_Install_Shift_there_1_token, .put = Supervisor_Install_Shift_there_1_put,
         .clear = Supervisor_Install_Shift_there_1_clear, .json = Supervisor_Install_Shift_there_1_json,
-        .encode = Supervisor_Install_Shift_there_1_encode, .decode = Supervisor_Install_Shift_there_1_decode,
+        .encode = Supervisor_Install_Shift_there_1_encode, .decode = Supervisor_Install_Shift_there_1_decode, .add = Supervisor_Install_Shift_there_1_add_bytes,
         .bit = UINT32_MAX,
         .leaf_count = 1U, .leaf_kind = s_UNIT_kinds, .leaf_name = s_UNIT_leaves,
         .line_count = 1U, .line_leaves = s_UNIT_lines,
@@ -8054,7 +8054,7 @@ static const pn_place_t s_places[] = {
         .capacity = 1U, .is_bounded = true, .bound = 1U, .timed = false,
         .count = Supervisor_Install_Shift_moving_2_count, .token = Supervisor_Install_Shift_moving_2_token, .put = Supervisor_Install_Shift_moving_2_put,
         .clear = Supervisor_Install_Shift_moving_2_clear, .json = Supervisor_Install_Shift_moving_2_json,
-        .encode = Supervisor_Install_Shift_moving_2_encode, .decode = Supervisor_Install_Shift_moving_2_decode,
+        .encode = Supervisor_Install_Shift_moving_2_encode, .decode = Supervisor_Install_Shift_moving_2_decode, .add = Supervisor_Install_Shift_moving_2_add_bytes,
         .bit = UINT32_MAX,
         .leaf_count = 1U, .leaf_kind = s_UNIT_kinds, .leaf_name = s_UNIT_leaves,
         .line_count = 1U, .line_leaves = s_UNIT_lines,
@@ -8065,7 +8065,7 @@ static const pn_place_t s_places[] = {
         .capacity = 1U, .is_bounded = true, .bound = 1U, .timed = false,
         .count = Supervisor_Install_Shift_there_2_count, .token = Supervisor_Install_Shift_there_2_token, .put = Supervisor_Install_Shift_there_2_put,
         .clear = Supervisor_Install_Shift_there_2_clear, .json = Supervisor_Install_Shift_there_2_json,
-        .encode = Supervisor_Install_Shift_there_2_encode, .decode = Supervisor_Install_Shift_there_2_decode,
+        .encode = Supervisor_Install_Shift_there_2_encode, .decode = Supervisor_Install_Shift_there_2_decode, .add = Supervisor_Install_Shift_there_2_add_bytes,
         .bit = UINT32_MAX,
         .leaf_count = 1U, .leaf_kind = s_UNIT_kinds, .leaf_name = s_UNIT_leaves,
         .line_count = 1U, .line_leaves = s_UNIT_lines,
@@ -8076,7 +8076,7 @@ static const pn_place_t s_places[] = {
         .capacity = 1U, .is_bounded = true, .bound = 1U, .timed = false,
         .count = Supervisor_Install_Rivet_advance_count, .token = Supervisor_Install_Rivet_advance_token, .put = Supervisor_Install_Rivet_advance_put,
         .clear = Supervisor_Install_Rivet_advance_clear, .json = Supervisor_Install_Rivet_advance_json,
-        .encode = Supervisor_Install_Rivet_advance_encode, .decode = Supervisor_Install_Rivet_advance_decode,
+        .encode = Supervisor_Install_Rivet_advance_encode, .decode = Supervisor_Install_Rivet_advance_decode, .add = Supervisor_Install_Rivet_advance_add_bytes,
         .bit = UINT32_MAX,
         .leaf_count = 13U, .leaf_kind = s_ORDER_kinds, .leaf_name = s_ORDER_leaves,
         .line_count = 3U, .line_leaves = s_ORDER_lines,
@@ -8087,7 +8087,7 @@ static const pn_place_t s_places[] = {
         .capacity = 1U, .is_bounded = true, .bound = 1U, .timed = false,
         .count = Supervisor_Install_Rivet_contact_count, .token = Supervisor_Install_Rivet_contact_token, .put = Supervisor_Install_Rivet_contact_put,
         .clear = Supervisor_Install_Rivet_contact_clear, .json = Supervisor_Install_Rivet_contact_json,
-        .encode = Supervisor_Install_Rivet_contact_encode, .decode = Supervisor_Install_Rivet_contact_decode,
+        .encode = Supervisor_Install_Rivet_contact_encode, .decode = Supervisor_Install_Rivet_contact_decode, .add = Supervisor_Install_Rivet_contact_add_bytes,
         .bit = UINT32_MAX,
         .leaf_count = 1U, .leaf_kind = s_UNIT_kinds, .leaf_name = s_UNIT_leaves,
         .line_count = 1U, .line_leaves = s_UNIT_lines,
@@ -8098,7 +8098,7 @@ static const pn_place_t s_places[] = {
         .capacity = 1U, .is_bounded = true, .bound = 1U, .timed = false,
         .count = Supervisor_Install_Rivet_fastened_count, .token = Supervisor_Install_Rivet_fastened_token, .put = Supervisor_Install_Rivet_fastened_put,
         .clear = Supervisor_Install_Rivet_fastened_clear, .json = Supervisor_Install_Rivet_fastened_json,
-        .encode = Supervisor_Install_Rivet_fastened_encode, .decode = Supervisor_Install_Rivet_fastened_decode,
+        .encode = Supervisor_Install_Rivet_fastened_encode, .decode = Supervisor_Install_Rivet_fastened_decode, .add = Supervisor_Install_Rivet_fastened_add_bytes,
         .bit = UINT32_MAX,
         .leaf_count = 1U, .leaf_kind = s_UNIT_kinds, .leaf_name = s_UNIT_leaves,
         .line_count = 1U, .line_leaves = s_UNIT_lines,
@@ -8109,7 +8109,7 @@ static const pn_place_t s_places[] = {
         .capacity = 1U, .is_bounded = true, .bound = 1U, .timed = false,
         .count = Supervisor_Install_Rivet_retract_count, .token = Supervisor_Install_Rivet_retract_token, .put = Supervisor_Install_Rivet_retract_put,
         .clear = Supervisor_Install_Rivet_retract_clear, .json = Supervisor_Install_Rivet_retract_json,
-        .encode = Supervisor_Install_Rivet_retract_encode, .decode = Supervisor_Install_Rivet_retract_decode,
+        .encode = Supervisor_Install_Rivet_retract_encode, .decode = Supervisor_Install_Rivet_retract_decode, .add = Supervisor_Install_Rivet_retract_add_bytes,
         .bit = UINT32_MAX,
         .leaf_count = 13U, .leaf_kind = s_ORDER_kinds, .leaf_name = s_ORDER_leaves,
         .line_count = 3U, .line_leaves = s_ORDER_lines,
@@ -8120,7 +8120,7 @@ static const pn_place_t s_places[] = {
         .capacity = 1U, .is_bounded = true, .bound = 1U, .timed = false,
         .count = Supervisor_Install_Rivet_Advance_moving_1_count, .token = Supervisor_Install_Rivet_Advance_moving_1_token, .put = Supervisor_Install_Rivet_Advance_moving_1_put,
         .clear = Supervisor_Install_Rivet_Advance_moving_1_clear, .json = Supervisor_Install_Rivet_Advance_moving_1_json,
-        .encode = Supervisor_Install_Rivet_Advance_moving_1_encode, .decode = Supervisor_Install_Rivet_Advance_moving_1_decode,
+        .encode = Supervisor_Install_Rivet_Advance_moving_1_encode, .decode = Supervisor_Install_Rivet_Advance_moving_1_decode, .add = Supervisor_Install_Rivet_Advance_moving_1_add_bytes,
         .bit = UINT32_MAX,
         .leaf_count = 1U, .leaf_kind = s_UNIT_kinds, .leaf_name = s_UNIT_leaves,
         .line_count = 1U, .line_leaves = s_UNIT_lines,
@@ -8131,7 +8131,7 @@ static const pn_place_t s_places[] = {
         .capacity = 1U, .is_bounded = true, .bound = 1U, .timed = false,
         .count = Supervisor_Install_Rivet_Advance_there_1_count, .token = Supervisor_Install_Rivet_Advance_there_1_token, .put = Supervisor_Install_Rivet_Advance_there_1_put,
         .clear = Supervisor_Install_Rivet_Advance_there_1_clear, .json = Supervisor_Install_Rivet_Advance_there_1_json,
-        .encode = Supervisor_Install_Rivet_Advance_there_1_encode, .decode = Supervisor_Install_Rivet_Advance_there_1_decode,
+        .encode = Supervisor_Install_Rivet_Advance_there_1_encode, .decode = Supervisor_Install_Rivet_Advance_there_1_decode, .add = Supervisor_Install_Rivet_Advance_there_1_add_bytes,
         .bit = UINT32_MAX,
         .leaf_count = 1U, .leaf_kind = s_UNIT_kinds, .leaf_name = s_UNIT_leaves,
         .line_count = 1U, .line_leaves = s_UNIT_lines,
@@ -8142,7 +8142,7 @@ static const pn_place_t s_places[] = {
         .capacity = 1U, .is_bounded = true, .bound = 1U, .timed = false,
         .count = Supervisor_Install_Rivet_Advance_moving_2_count, .token = Supervisor_Install_Rivet_Advance_moving_2_token, .put = Supervisor_Install_Rivet_Advance_moving_2_put,
         .clear = Supervisor_Install_Rivet_Advance_moving_2_clear, .json = Supervisor_Install_Rivet_Advance_moving_2_json,
-        .encode = Supervisor_Install_Rivet_Advance_moving_2_encode, .decode = Supervisor_Install_Rivet_Advance_moving_2_decode,
+        .encode = Supervisor_Install_Rivet_Advance_moving_2_encode, .decode = Supervisor_Install_Rivet_Advance_moving_2_decode, .add = Supervisor_Install_Rivet_Advance_moving_2_add_bytes,
         .bit = UINT32_MAX,
         .leaf_count = 1U, .leaf_kind = s_UNIT_kinds, .leaf_name = s_UNIT_leaves,
         .line_count = 1U, .line_leaves = s_UNIT_lines,
@@ -8153,7 +8153,7 @@ static const pn_place_t s_places[] = {
         .capacity = 1U, .is_bounded = true, .bound = 1U, .timed = false,
         .count = Supervisor_Install_Rivet_Advance_there_2_count, .token = Supervisor_Install_Rivet_Advance_there_2_token, .put = Supervisor_Install_Rivet_Advance_there_2_put,
         .clear = Supervisor_Install_Rivet_Advance_there_2_clear, .json = Supervisor_Install_Rivet_Advance_there_2_json,
-        .encode = Supervisor_Install_Rivet_Advance_there_2_encode, .decode = Supervisor_Install_Rivet_Advance_there_2_decode,
+        .encode = Supervisor_Install_Rivet_Advance_there_2_encode, .decode = Supervisor_Install_Rivet_Advance_there_2_decode, .add = Supervisor_Install_Rivet_Advance_there_2_add_bytes,
         .bit = UINT32_MAX,
         .leaf_count = 1U, .leaf_kind = s_UNIT_kinds, .leaf_name = s_UNIT_leaves,
         .line_count = 1U, .line_leaves = s_UNIT_lines,
@@ -8164,7 +8164,7 @@ static const pn_place_t s_places[] = {
         .capacity = 1U, .is_bounded = true, .bound = 1U, .timed = false,
         .count = Supervisor_Install_Rivet_Fasten_pressing_count, .token = Supervisor_Install_Rivet_Fasten_pressing_token, .put = Supervisor_Install_Rivet_Fasten_pressing_put,
         .clear = Supervisor_Install_Rivet_Fasten_pressing_clear, .json = Supervisor_Install_Rivet_Fasten_pressing_json,
-        .encode = Supervisor_Install_Rivet_Fasten_pressing_encode, .decode = Supervisor_Install_Rivet_Fasten_pressing_decode,
+        .encode = Supervisor_Install_Rivet_Fasten_pressing_encode, .decode = Supervisor_Install_Rivet_Fasten_pressing_decode, .add = Supervisor_Install_Rivet_Fasten_pressing_add_bytes,
         .bit = UINT32_MAX,
         .leaf_count = 1U, .leaf_kind = s_UNIT_kinds, .leaf_name = s_UNIT_leaves,
         .line_count = 1U, .line_leaves = s_UNIT_lines,
@@ -8175,7 +8175,7 @@ static const pn_place_t s_places[] = {
         .capacity = 1U, .is_bounded = true, .bound = 1U, .timed = false,
         .count = Supervisor_Install_Rivet_Fasten_drilling_count, .token = Supervisor_Install_Rivet_Fasten_drilling_token, .put = Supervisor_Install_Rivet_Fasten_drilling_put,
         .clear = Supervisor_Install_Rivet_Fasten_drilling_clear, .json = Supervisor_Install_Rivet_Fasten_drilling_json,
-        .encode = Supervisor_Install_Rivet_Fasten_drilling_encode, .decode = Supervisor_Install_Rivet_Fasten_drilling_decode,
+        .encode = Supervisor_Install_Rivet_Fasten_drilling_encode, .decode = Supervisor_Install_Rivet_Fasten_drilling_decode, .add = Supervisor_Install_Rivet_Fasten_drilling_add_bytes,
         .bit = UINT32_MAX,
         .leaf_count = 1U, .leaf_kind = s_UNIT_kinds, .leaf_name = s_UNIT_leaves,
         .line_count = 1U, .line_leaves = s_UNIT_lines,
@@ -8186,7 +8186,7 @@ static const pn_place_t s_places[] = {
         .capacity = 1U, .is_bounded = true, .bound = 1U, .timed = false,
         .count = Supervisor_Install_Rivet_Fasten_inserting_count, .token = Supervisor_Install_Rivet_Fasten_inserting_token, .put = Supervisor_Install_Rivet_Fasten_inserting_put,
         .clear = Supervisor_Install_Rivet_Fasten_inserting_clear, .json = Supervisor_Install_Rivet_Fasten_inserting_json,
-        .encode = Supervisor_Install_Rivet_Fasten_inserting_encode, .decode = Supervisor_Install_Rivet_Fasten_inserting_decode,
+        .encode = Supervisor_Install_Rivet_Fasten_inserting_encode, .decode = Supervisor_Install_Rivet_Fasten_inserting_decode, .add = Supervisor_Install_Rivet_Fasten_inserting_add_bytes,
         .bit = UINT32_MAX,
         .leaf_count = 1U, .leaf_kind = s_UNIT_kinds, .leaf_name = s_UNIT_leaves,
         .line_count = 1U, .line_leaves = s_UNIT_lines,
@@ -8197,7 +8197,7 @@ static const pn_place_t s_places[] = {
         .capacity = 1U, .is_bounded = true, .bound = 1U, .timed = false,
         .count = Supervisor_Install_Rivet_Fasten_releasing_count, .token = Supervisor_Install_Rivet_Fasten_releasing_token, .put = Supervisor_Install_Rivet_Fasten_releasing_put,
         .clear = Supervisor_Install_Rivet_Fasten_releasing_clear, .json = Supervisor_Install_Rivet_Fasten_releasing_json,
-        .encode = Supervisor_Install_Rivet_Fasten_releasing_encode, .decode = Supervisor_Install_Rivet_Fasten_releasing_decode,
+        .encode = Supervisor_Install_Rivet_Fasten_releasing_encode, .decode = Supervisor_Install_Rivet_Fasten_releasing_decode, .add = Supervisor_Install_Rivet_Fasten_releasing_add_bytes,
         .bit = UINT32_MAX,
         .leaf_count = 1U, .leaf_kind = s_UNIT_kinds, .leaf_name = s_UNIT_leaves,
         .line_count = 1U, .line_leaves = s_UNIT_lines,
@@ -8208,7 +8208,7 @@ static const pn_place_t s_places[] = {
         .capacity = 1U, .is_bounded = true, .bound = 1U, .timed = false,
         .count = Supervisor_Install_Rivet_Retract_moving_1_count, .token = Supervisor_Install_Rivet_Retract_moving_1_token, .put = Supervisor_Install_Rivet_Retract_moving_1_put,
         .clear = Supervisor_Install_Rivet_Retract_moving_1_clear, .json = Supervisor_Install_Rivet_Retract_moving_1_json,
-        .encode = Supervisor_Install_Rivet_Retract_moving_1_encode, .decode = Supervisor_Install_Rivet_Retract_moving_1_decode,
+        .encode = Supervisor_Install_Rivet_Retract_moving_1_encode, .decode = Supervisor_Install_Rivet_Retract_moving_1_decode, .add = Supervisor_Install_Rivet_Retract_moving_1_add_bytes,
         .bit = UINT32_MAX,
         .leaf_count = 1U, .leaf_kind = s_UNIT_kinds, .leaf_name = s_UNIT_leaves,
         .line_count = 1U, .line_leaves = s_UNIT_lines,
@@ -8219,7 +8219,7 @@ static const pn_place_t s_places[] = {
         .capacity = 1U, .is_bounded = true, .bound = 1U, .timed = false,
         .count = Supervisor_Install_Rivet_Retract_there_1_count, .token = Supervisor_Install_Rivet_Retract_there_1_token, .put = Supervisor_Install_Rivet_Retract_there_1_put,
         .clear = Supervisor_Install_Rivet_Retract_there_1_clear, .json = Supervisor_Install_Rivet_Retract_there_1_json,
-        .encode = Supervisor_Install_Rivet_Retract_there_1_encode, .decode = Supervisor_Install_Rivet_Retract_there_1_decode,
+        .encode = Supervisor_Install_Rivet_Retract_there_1_encode, .decode = Supervisor_Install_Rivet_Retract_there_1_decode, .add = Supervisor_Install_Rivet_Retract_there_1_add_bytes,
         .bit = UINT32_MAX,
         .leaf_count = 1U, .leaf_kind = s_UNIT_kinds, .leaf_name = s_UNIT_leaves,
         .line_count = 1U, .line_leaves = s_UNIT_lines,
@@ -8230,7 +8230,7 @@ static const pn_place_t s_places[] = {
         .capacity = 1U, .is_bounded = true, .bound = 1U, .timed = false,
         .count = Supervisor_Install_Rivet_Retract_moving_2_count, .token = Supervisor_Install_Rivet_Retract_moving_2_token, .put = Supervisor_Install_Rivet_Retract_moving_2_put,
         .clear = Supervisor_Install_Rivet_Retract_moving_2_clear, .json = Supervisor_Install_Rivet_Retract_moving_2_json,
-        .encode = Supervisor_Install_Rivet_Retract_moving_2_encode, .decode = Supervisor_Install_Rivet_Retract_moving_2_decode,
+        .encode = Supervisor_Install_Rivet_Retract_moving_2_encode, .decode = Supervisor_Install_Rivet_Retract_moving_2_decode, .add = Supervisor_Install_Rivet_Retract_moving_2_add_bytes,
         .bit = UINT32_MAX,
         .leaf_count = 1U, .leaf_kind = s_UNIT_kinds, .leaf_name = s_UNIT_leaves,
         .line_count = 1U, .line_leaves = s_UNIT_lines,
@@ -8241,7 +8241,7 @@ static const pn_place_t s_places[] = {
         .capacity = 1U, .is_bounded = true, .bound = 1U, .timed = false,
         .count = Supervisor_Install_Rivet_Retract_there_2_count, .token = Supervisor_Install_Rivet_Retract_there_2_token, .put = Supervisor_Install_Rivet_Retract_there_2_put,
         .clear = Supervisor_Install_Rivet_Retract_there_2_clear, .json = Supervisor_Install_Rivet_Retract_there_2_json,
-        .encode = Supervisor_Install_Rivet_Retract_there_2_encode, .decode = Supervisor_Install_Rivet_Retract_there_2_decode,
+        .encode = Supervisor_Install_Rivet_Retract_there_2_encode, .decode = Supervisor_Install_Rivet_Retract_there_2_decode, .add = Supervisor_Install_Rivet_Retract_there_2_add_bytes,
         .bit = UINT32_MAX,
         .leaf_count = 1U, .leaf_kind = s_UNIT_kinds, .leaf_name = s_UNIT_leaves,
         .line_count = 1U, .line_leaves = s_UNIT_lines,
@@ -8252,7 +8252,7 @@ static const pn_place_t s_places[] = {
         .capacity = 1U, .is_bounded = true, .bound = 1U, .timed = false,
         .count = Supervisor_Install_Return_moving_1_count, .token = Supervisor_Install_Return_moving_1_token, .put = Supervisor_Install_Return_moving_1_put,
         .clear = Supervisor_Install_Return_moving_1_clear, .json = Supervisor_Install_Return_moving_1_json,
-        .encode = Supervisor_Install_Return_moving_1_encode, .decode = Supervisor_Install_Return_moving_1_decode,
+        .encode = Supervisor_Install_Return_moving_1_encode, .decode = Supervisor_Install_Return_moving_1_decode, .add = Supervisor_Install_Return_moving_1_add_bytes,
         .bit = UINT32_MAX,
         .leaf_count = 1U, .leaf_kind = s_UNIT_kinds, .leaf_name = s_UNIT_leaves,
         .line_count = 1U, .line_leaves = s_UNIT_lines,
@@ -8263,7 +8263,7 @@ static const pn_place_t s_places[] = {
         .capacity = 1U, .is_bounded = true, .bound = 1U, .timed = false,
         .count = Supervisor_Install_Return_there_1_count, .token = Supervisor_Install_Return_there_1_token, .put = Supervisor_Install_Return_there_1_put,
         .clear = Supervisor_Install_Return_there_1_clear, .json = Supervisor_Install_Return_there_1_json,
-        .encode = Supervisor_Install_Return_there_1_encode, .decode = Supervisor_Install_Return_there_1_decode,
+        .encode = Supervisor_Install_Return_there_1_encode, .decode = Supervisor_Install_Return_there_1_decode, .add = Supervisor_Install_Return_there_1_add_bytes,
         .bit = UINT32_MAX,
         .leaf_count = 1U, .leaf_kind = s_UNIT_kinds, .leaf_name = s_UNIT_leaves,
         .line_count = 1U, .line_leaves = s_UNIT_lines,
@@ -8274,7 +8274,7 @@ static const pn_place_t s_places[] = {
         .capacity = 1U, .is_bounded = true, .bound = 1U, .timed = false,
         .count = Supervisor_Install_Return_moving_2_count, .token = Supervisor_Install_Return_moving_2_token, .put = Supervisor_Install_Return_moving_2_put,
         .clear = Supervisor_Install_Return_moving_2_clear, .json = Supervisor_Install_Return_moving_2_json,
-        .encode = Supervisor_Install_Return_moving_2_encode, .decode = Supervisor_Install_Return_moving_2_decode,
+        .encode = Supervisor_Install_Return_moving_2_encode, .decode = Supervisor_Install_Return_moving_2_decode, .add = Supervisor_Install_Return_moving_2_add_bytes,
         .bit = UINT32_MAX,
         .leaf_count = 1U, .leaf_kind = s_UNIT_kinds, .leaf_name = s_UNIT_leaves,
         .line_count = 1U, .line_leaves = s_UNIT_lines,
@@ -8285,7 +8285,7 @@ static const pn_place_t s_places[] = {
         .capacity = 1U, .is_bounded = true, .bound = 1U, .timed = false,
         .count = Supervisor_Install_Return_there_2_count, .token = Supervisor_Install_Return_there_2_token, .put = Supervisor_Install_Return_there_2_put,
         .clear = Supervisor_Install_Return_there_2_clear, .json = Supervisor_Install_Return_there_2_json,
-        .encode = Supervisor_Install_Return_there_2_encode, .decode = Supervisor_Install_Return_there_2_decode,
+        .encode = Supervisor_Install_Return_there_2_encode, .decode = Supervisor_Install_Return_there_2_decode, .add = Supervisor_Install_Return_there_2_add_bytes,
         .bit = UINT32_MAX,
         .leaf_count = 1U, .leaf_kind = s_UNIT_kinds, .leaf_name = s_UNIT_leaves,
         .line_count = 1U, .line_leaves = s_UNIT_lines,
@@ -8296,7 +8296,7 @@ static const pn_place_t s_places[] = {
         .capacity = 1U, .is_bounded = true, .bound = 1U, .timed = false,
         .count = Supervisor_Home_leaving_1_count, .token = Supervisor_Home_leaving_1_token, .put = Supervisor_Home_leaving_1_put,
         .clear = Supervisor_Home_leaving_1_clear, .json = Supervisor_Home_leaving_1_json,
-        .encode = Supervisor_Home_leaving_1_encode, .decode = Supervisor_Home_leaving_1_decode,
+        .encode = Supervisor_Home_leaving_1_encode, .decode = Supervisor_Home_leaving_1_decode, .add = Supervisor_Home_leaving_1_add_bytes,
         .bit = UINT32_MAX,
         .leaf_count = 1U, .leaf_kind = s_UNIT_kinds, .leaf_name = s_UNIT_leaves,
         .line_count = 1U, .line_leaves = s_UNIT_lines,
@@ -8307,7 +8307,7 @@ static const pn_place_t s_places[] = {
         .capacity = 1U, .is_bounded = true, .bound = 1U, .timed = false,
         .count = Supervisor_Home_home_1_count, .token = Supervisor_Home_home_1_token, .put = Supervisor_Home_home_1_put,
         .clear = Supervisor_Home_home_1_clear, .json = Supervisor_Home_home_1_json,
-        .encode = Supervisor_Home_home_1_encode, .decode = Supervisor_Home_home_1_decode,
+        .encode = Supervisor_Home_home_1_encode, .decode = Supervisor_Home_home_1_decode, .add = Supervisor_Home_home_1_add_bytes,
         .bit = UINT32_MAX,
         .leaf_count = 1U, .leaf_kind = s_UNIT_kinds, .leaf_name = s_UNIT_leaves,
         .line_count = 1U, .line_leaves = s_UNIT_lines,
@@ -8318,7 +8318,7 @@ static const pn_place_t s_places[] = {
         .capacity = 1U, .is_bounded = true, .bound = 1U, .timed = false,
         .count = Supervisor_Home_leaving_2_count, .token = Supervisor_Home_leaving_2_token, .put = Supervisor_Home_leaving_2_put,
         .clear = Supervisor_Home_leaving_2_clear, .json = Supervisor_Home_leaving_2_json,
-        .encode = Supervisor_Home_leaving_2_encode, .decode = Supervisor_Home_leaving_2_decode,
+        .encode = Supervisor_Home_leaving_2_encode, .decode = Supervisor_Home_leaving_2_decode, .add = Supervisor_Home_leaving_2_add_bytes,
         .bit = UINT32_MAX,
         .leaf_count = 1U, .leaf_kind = s_UNIT_kinds, .leaf_name = s_UNIT_leaves,
         .line_count = 1U, .line_leaves = s_UNIT_lines,
@@ -8329,7 +8329,7 @@ static const pn_place_t s_places[] = {
         .capacity = 1U, .is_bounded = true, .bound = 1U, .timed = false,
         .count = Supervisor_Home_home_2_count, .token = Supervisor_Home_home_2_token, .put = Supervisor_Home_home_2_put,
         .clear = Supervisor_Home_home_2_clear, .json = Supervisor_Home_home_2_json,
-        .encode = Supervisor_Home_home_2_encode, .decode = Supervisor_Home_home_2_decode,
+        .encode = Supervisor_Home_home_2_encode, .decode = Supervisor_Home_home_2_decode, .add = Supervisor_Home_home_2_add_bytes,
         .bit = UINT32_MAX,
         .leaf_count = 1U, .leaf_kind = s_UNIT_kinds, .leaf_name = s_UNIT_leaves,
         .line_count = 1U, .line_leaves = s_UNIT_lines,
@@ -8340,7 +8340,7 @@ static const pn_place_t s_places[] = {
         .capacity = 1U, .is_bounded = true, .bound = 1U, .timed = false,
         .count = Robot1_Waiting_count, .token = Robot1_Waiting_token, .put = Robot1_Waiting_put,
         .clear = Robot1_Waiting_clear, .json = Robot1_Waiting_json,
-        .encode = Robot1_Waiting_encode, .decode = Robot1_Waiting_decode,
+        .encode = Robot1_Waiting_encode, .decode = Robot1_Waiting_decode, .add = Robot1_Waiting_add_bytes,
         .bit = UINT32_MAX,
         .leaf_count = 1U, .leaf_kind = s_UNIT_kinds, .leaf_name = s_UNIT_leaves,
         .line_count = 1U, .line_leaves = s_UNIT_lines,
@@ -8351,7 +8351,7 @@ static const pn_place_t s_places[] = {
         .capacity = 1U, .is_bounded = true, .bound = 1U, .timed = false,
         .count = Robot1_Commanded_count, .token = Robot1_Commanded_token, .put = Robot1_Commanded_put,
         .clear = Robot1_Commanded_clear, .json = Robot1_Commanded_json,
-        .encode = Robot1_Commanded_encode, .decode = Robot1_Commanded_decode,
+        .encode = Robot1_Commanded_encode, .decode = Robot1_Commanded_decode, .add = Robot1_Commanded_add_bytes,
         .bit = UINT32_MAX,
         .leaf_count = 1U, .leaf_kind = s_COMMAND_kinds, .leaf_name = s_COMMAND_leaves,
         .line_count = 1U, .line_leaves = s_COMMAND_lines,
@@ -8362,7 +8362,7 @@ static const pn_place_t s_places[] = {
         .capacity = 1U, .is_bounded = true, .bound = 1U, .timed = false,
         .count = Robot1_Done_count, .token = Robot1_Done_token, .put = Robot1_Done_put,
         .clear = Robot1_Done_clear, .json = Robot1_Done_json,
-        .encode = Robot1_Done_encode, .decode = Robot1_Done_decode,
+        .encode = Robot1_Done_encode, .decode = Robot1_Done_decode, .add = Robot1_Done_add_bytes,
         .bit = UINT32_MAX,
         .leaf_count = 1U, .leaf_kind = s_UNIT_kinds, .leaf_name = s_UNIT_leaves,
         .line_count = 1U, .line_leaves = s_UNIT_lines,
@@ -8373,7 +8373,7 @@ static const pn_place_t s_places[] = {
         .capacity = 1U, .is_bounded = true, .bound = 1U, .timed = false,
         .count = Robot2_Waiting_count, .token = Robot2_Waiting_token, .put = Robot2_Waiting_put,
         .clear = Robot2_Waiting_clear, .json = Robot2_Waiting_json,
-        .encode = Robot2_Waiting_encode, .decode = Robot2_Waiting_decode,
+        .encode = Robot2_Waiting_encode, .decode = Robot2_Waiting_decode, .add = Robot2_Waiting_add_bytes,
         .bit = UINT32_MAX,
         .leaf_count = 1U, .leaf_kind = s_UNIT_kinds, .leaf_name = s_UNIT_leaves,
         .line_count = 1U, .line_leaves = s_UNIT_lines,
@@ -8384,7 +8384,7 @@ static const pn_place_t s_places[] = {
         .capacity = 1U, .is_bounded = true, .bound = 1U, .timed = false,
         .count = Robot2_Commanded_count, .token = Robot2_Commanded_token, .put = Robot2_Commanded_put,
         .clear = Robot2_Commanded_clear, .json = Robot2_Commanded_json,
-        .encode = Robot2_Commanded_encode, .decode = Robot2_Commanded_decode,
+        .encode = Robot2_Commanded_encode, .decode = Robot2_Commanded_decode, .add = Robot2_Commanded_add_bytes,
         .bit = UINT32_MAX,
         .leaf_count = 1U, .leaf_kind = s_COMMAND_kinds, .leaf_name = s_COMMAND_leaves,
         .line_count = 1U, .line_leaves = s_COMMAND_lines,
@@ -8395,7 +8395,7 @@ static const pn_place_t s_places[] = {
         .capacity = 1U, .is_bounded = true, .bound = 1U, .timed = false,
         .count = Robot2_Done_count, .token = Robot2_Done_token, .put = Robot2_Done_put,
         .clear = Robot2_Done_clear, .json = Robot2_Done_json,
-        .encode = Robot2_Done_encode, .decode = Robot2_Done_decode,
+        .encode = Robot2_Done_encode, .decode = Robot2_Done_decode, .add = Robot2_Done_add_bytes,
         .bit = UINT32_MAX,
         .leaf_count = 1U, .leaf_kind = s_UNIT_kinds, .leaf_name = s_UNIT_leaves,
         .line_count = 1U, .line_leaves = s_UNIT_lines,
@@ -8406,7 +8406,7 @@ static const pn_place_t s_places[] = {
         .capacity = 1U, .is_bounded = true, .bound = 0U, .timed = false,
         .count = Robot2_referencia_count, .token = Robot2_referencia_token, .put = Robot2_referencia_put,
         .clear = Robot2_referencia_clear, .json = Robot2_referencia_json,
-        .encode = Robot2_referencia_encode, .decode = Robot2_referencia_decode,
+        .encode = Robot2_referencia_encode, .decode = Robot2_referencia_decode, .add = Robot2_referencia_add_bytes,
         .bit = UINT32_MAX,
         .leaf_count = 6U, .leaf_kind = s_POSE_kinds, .leaf_name = s_POSE_leaves,
         .line_count = 1U, .line_leaves = s_POSE_lines,
@@ -8417,7 +8417,7 @@ static const pn_place_t s_places[] = {
         .capacity = 1U, .is_bounded = true, .bound = 0U, .timed = false,
         .count = Robot2_medida_count, .token = Robot2_medida_token, .put = Robot2_medida_put,
         .clear = Robot2_medida_clear, .json = Robot2_medida_json,
-        .encode = Robot2_medida_encode, .decode = Robot2_medida_decode,
+        .encode = Robot2_medida_encode, .decode = Robot2_medida_decode, .add = Robot2_medida_add_bytes,
         .bit = UINT32_MAX,
         .leaf_count = 6U, .leaf_kind = s_POSE_kinds, .leaf_name = s_POSE_leaves,
         .line_count = 1U, .line_leaves = s_POSE_lines,
@@ -8566,6 +8566,76 @@ static const uint32_t s_touched_by_Robot2_Insert[] = { 69U, 70U };
 static const uint32_t s_touched_by_Robot2_Press[] = { 69U, 70U };
 static const uint32_t s_touched_by_Robot2_Release[] = { 69U, 70U };
 
+/* And those that decide about it. */
+static const uint32_t s_read_by_Supervisor_Load_Load[] = { 8U };
+static const uint32_t s_read_by_Supervisor_Approach_Send[] = { 9U };
+static const uint32_t s_read_by_Supervisor_Approach_Arrived[] = { 16U, 17U };
+static const uint32_t s_read_by_Supervisor_Approach_Move_both_Command[] = { 15U };
+static const uint32_t s_read_by_Supervisor_Approach_Move_both_Both[] = { 19U, 21U };
+static const uint32_t s_read_by_Supervisor_Approach_Move_both_Reply_1[] = { 2U, 18U };
+static const uint32_t s_read_by_Supervisor_Approach_Move_both_Reply_2[] = { 7U, 20U };
+static const uint32_t s_read_by_Supervisor_Verify_Ask_first[] = { 10U };
+static const uint32_t s_read_by_Supervisor_Verify_Ask_last[] = { 2U, 4U, 22U };
+static const uint32_t s_read_by_Supervisor_Verify_Measured[] = { 2U, 4U, 23U };
+static const uint32_t s_read_by_Supervisor_Correct_Compare[] = { 11U };
+static const uint32_t s_read_by_Supervisor_Correct_Move_over[] = { 24U, 27U };
+static const uint32_t s_read_by_Supervisor_Correct_Moved[] = { 26U, 27U };
+static const uint32_t s_read_by_Supervisor_Correct_As_planned[] = { 24U, 27U };
+static const uint32_t s_read_by_Supervisor_Correct_Move_both_Command[] = { 25U };
+static const uint32_t s_read_by_Supervisor_Correct_Move_both_Both[] = { 29U, 31U };
+static const uint32_t s_read_by_Supervisor_Correct_Move_both_Reply_1[] = { 2U, 28U };
+static const uint32_t s_read_by_Supervisor_Correct_Move_both_Reply_2[] = { 7U, 30U };
+static const uint32_t s_read_by_Supervisor_Install_Go_back[] = { 34U, 36U };
+static const uint32_t s_read_by_Supervisor_Install_Next_rivet[] = { 34U, 36U };
+static const uint32_t s_read_by_Supervisor_Install_Start[] = { 12U };
+static const uint32_t s_read_by_Supervisor_Install_Shift_Command[] = { 32U };
+static const uint32_t s_read_by_Supervisor_Install_Shift_Both[] = { 38U, 40U };
+static const uint32_t s_read_by_Supervisor_Install_Shift_Reply_1[] = { 2U, 37U };
+static const uint32_t s_read_by_Supervisor_Install_Shift_Reply_2[] = { 7U, 39U };
+static const uint32_t s_read_by_Supervisor_Install_Rivet_Go_in[] = { 33U };
+static const uint32_t s_read_by_Supervisor_Install_Rivet_Go_out[] = { 43U };
+static const uint32_t s_read_by_Supervisor_Install_Rivet_Advance_Command[] = { 41U };
+static const uint32_t s_read_by_Supervisor_Install_Rivet_Advance_Both[] = { 46U, 48U };
+static const uint32_t s_read_by_Supervisor_Install_Rivet_Advance_Reply_1[] = { 2U, 45U };
+static const uint32_t s_read_by_Supervisor_Install_Rivet_Advance_Reply_2[] = { 7U, 47U };
+static const uint32_t s_read_by_Supervisor_Install_Rivet_Fasten_Press[] = { 42U };
+static const uint32_t s_read_by_Supervisor_Install_Rivet_Fasten_Drill[] = { 7U, 49U };
+static const uint32_t s_read_by_Supervisor_Install_Rivet_Fasten_Insert[] = { 2U, 50U };
+static const uint32_t s_read_by_Supervisor_Install_Rivet_Fasten_Release[] = { 2U, 51U };
+static const uint32_t s_read_by_Supervisor_Install_Rivet_Fasten_Finish[] = { 7U, 52U };
+static const uint32_t s_read_by_Supervisor_Install_Rivet_Retract_Command[] = { 44U };
+static const uint32_t s_read_by_Supervisor_Install_Rivet_Retract_Both[] = { 54U, 56U };
+static const uint32_t s_read_by_Supervisor_Install_Rivet_Retract_Reply_1[] = { 2U, 53U };
+static const uint32_t s_read_by_Supervisor_Install_Rivet_Retract_Reply_2[] = { 7U, 55U };
+static const uint32_t s_read_by_Supervisor_Install_Return_Command[] = { 35U };
+static const uint32_t s_read_by_Supervisor_Install_Return_Both[] = { 58U, 60U };
+static const uint32_t s_read_by_Supervisor_Install_Return_Reply_1[] = { 2U, 57U };
+static const uint32_t s_read_by_Supervisor_Install_Return_Reply_2[] = { 7U, 59U };
+static const uint32_t s_read_by_Supervisor_Home_Send_home[] = { 13U };
+static const uint32_t s_read_by_Supervisor_Home_Both[] = { 62U, 64U };
+static const uint32_t s_read_by_Supervisor_Home_Reply_1[] = { 2U, 61U };
+static const uint32_t s_read_by_Supervisor_Home_Reply_2[] = { 7U, 63U };
+static const uint32_t s_read_by_Robot1_Accept[] = { 1U, 65U };
+static const uint32_t s_read_by_Robot1_Report[] = { 67U };
+static const uint32_t s_read_by_Robot1_MoveJoint[] = { 0U, 66U };
+static const uint32_t s_read_by_Robot1_MoveLinear[] = { 0U, 66U };
+static const uint32_t s_read_by_Robot1_MoveHome[] = { 66U };
+static const uint32_t s_read_by_Robot1_Measure[] = { 3U, 66U };
+static const uint32_t s_read_by_Robot1_Drill[] = { 66U };
+static const uint32_t s_read_by_Robot1_Insert[] = { 66U };
+static const uint32_t s_read_by_Robot1_Press[] = { 66U };
+static const uint32_t s_read_by_Robot1_Release[] = { 66U };
+static const uint32_t s_read_by_Robot2_Accept[] = { 6U, 68U };
+static const uint32_t s_read_by_Robot2_Report[] = { 70U };
+static const uint32_t s_read_by_Robot2_MoveJoint[] = { 5U, 69U };
+static const uint32_t s_read_by_Robot2_MoveLinear[] = { 5U, 69U };
+static const uint32_t s_read_by_Robot2_MoveHome[] = { 69U };
+static const uint32_t s_read_by_Robot2_Measure[] = { 69U, 71U };
+static const uint32_t s_read_by_Robot2_Drill[] = { 69U };
+static const uint32_t s_read_by_Robot2_Insert[] = { 69U };
+static const uint32_t s_read_by_Robot2_Press[] = { 69U };
+static const uint32_t s_read_by_Robot2_Release[] = { 69U };
+
 static const pn_transition_t s_transitions[] = {
     {
         .name = "Cell.Supervisor.Load.Load", .id = "ID1412310271", .owner = 0, .priority = 1000,
@@ -8576,6 +8646,8 @@ static const pn_transition_t s_transitions[] = {
         .affected = s_affected_by_Supervisor_Load_Load,
         .touched_count = sizeof s_touched_by_Supervisor_Load_Load / sizeof s_touched_by_Supervisor_Load_Load[0],
         .touched = s_touched_by_Supervisor_Load_Load,
+        .read_count = sizeof s_read_by_Supervisor_Load_Load / sizeof s_read_by_Supervisor_Load_Load[0],
+        .read = s_read_by_Supervisor_Load_Load,
     },
     {
         .name = "Cell.Supervisor.Approach.Send", .id = "ID1412310300", .owner = 0, .priority = 1000,
@@ -8586,6 +8658,8 @@ static const pn_transition_t s_transitions[] = {
         .affected = s_affected_by_Supervisor_Approach_Send,
         .touched_count = sizeof s_touched_by_Supervisor_Approach_Send / sizeof s_touched_by_Supervisor_Approach_Send[0],
         .touched = s_touched_by_Supervisor_Approach_Send,
+        .read_count = sizeof s_read_by_Supervisor_Approach_Send / sizeof s_read_by_Supervisor_Approach_Send[0],
+        .read = s_read_by_Supervisor_Approach_Send,
     },
     {
         .name = "Cell.Supervisor.Approach.Arrived", .id = "ID1412310311", .owner = 0, .priority = 1000,
@@ -8596,6 +8670,8 @@ static const pn_transition_t s_transitions[] = {
         .affected = s_affected_by_Supervisor_Approach_Arrived,
         .touched_count = sizeof s_touched_by_Supervisor_Approach_Arrived / sizeof s_touched_by_Supervisor_Approach_Arrived[0],
         .touched = s_touched_by_Supervisor_Approach_Arrived,
+        .read_count = sizeof s_read_by_Supervisor_Approach_Arrived / sizeof s_read_by_Supervisor_Approach_Arrived[0],
+        .read = s_read_by_Supervisor_Approach_Arrived,
     },
     {
         .name = "Cell.Supervisor.Approach.Move both.Command", .id = "ID1412310941", .owner = 0, .priority = 1000,
@@ -8606,6 +8682,8 @@ static const pn_transition_t s_transitions[] = {
         .affected = s_affected_by_Supervisor_Approach_Move_both_Command,
         .touched_count = sizeof s_touched_by_Supervisor_Approach_Move_both_Command / sizeof s_touched_by_Supervisor_Approach_Move_both_Command[0],
         .touched = s_touched_by_Supervisor_Approach_Move_both_Command,
+        .read_count = sizeof s_read_by_Supervisor_Approach_Move_both_Command / sizeof s_read_by_Supervisor_Approach_Move_both_Command[0],
+        .read = s_read_by_Supervisor_Approach_Move_both_Command,
     },
     {
         .name = "Cell.Supervisor.Approach.Move both.Both", .id = "ID1412310948", .owner = 0, .priority = 1000,
@@ -8616,6 +8694,8 @@ static const pn_transition_t s_transitions[] = {
         .affected = s_affected_by_Supervisor_Approach_Move_both_Both,
         .touched_count = sizeof s_touched_by_Supervisor_Approach_Move_both_Both / sizeof s_touched_by_Supervisor_Approach_Move_both_Both[0],
         .touched = s_touched_by_Supervisor_Approach_Move_both_Both,
+        .read_count = sizeof s_read_by_Supervisor_Approach_Move_both_Both / sizeof s_read_by_Supervisor_Approach_Move_both_Both[0],
+        .read = s_read_by_Supervisor_Approach_Move_both_Both,
     },
     {
         .name = "Cell.Supervisor.Approach.Move both.Reply 1", .id = "ID1412310962", .owner = 0, .priority = 1000,
@@ -8626,6 +8706,8 @@ static const pn_transition_t s_transitions[] = {
         .affected = s_affected_by_Supervisor_Approach_Move_both_Reply_1,
         .touched_count = sizeof s_touched_by_Supervisor_Approach_Move_both_Reply_1 / sizeof s_touched_by_Supervisor_Approach_Move_both_Reply_1[0],
         .touched = s_touched_by_Supervisor_Approach_Move_both_Reply_1,
+        .read_count = sizeof s_read_by_Supervisor_Approach_Move_both_Reply_1 / sizeof s_read_by_Supervisor_Approach_Move_both_Reply_1[0],
+        .read = s_read_by_Supervisor_Approach_Move_both_Reply_1,
     },
     {
         .name = "Cell.Supervisor.Approach.Move both.Reply 2", .id = "ID1412310999", .owner = 0, .priority = 1000,
@@ -8636,6 +8718,8 @@ static const pn_transition_t s_transitions[] = {
         .affected = s_affected_by_Supervisor_Approach_Move_both_Reply_2,
         .touched_count = sizeof s_touched_by_Supervisor_Approach_Move_both_Reply_2 / sizeof s_touched_by_Supervisor_Approach_Move_both_Reply_2[0],
         .touched = s_touched_by_Supervisor_Approach_Move_both_Reply_2,
+        .read_count = sizeof s_read_by_Supervisor_Approach_Move_both_Reply_2 / sizeof s_read_by_Supervisor_Approach_Move_both_Reply_2[0],
+        .read = s_read_by_Supervisor_Approach_Move_both_Reply_2,
     },
     {
         .name = "Cell.Supervisor.Verify.Ask first", .id = "ID1412310377", .owner = 0, .priority = 1000,
@@ -8646,6 +8730,8 @@ static const pn_transition_t s_transitions[] = {
         .affected = s_affected_by_Supervisor_Verify_Ask_first,
         .touched_count = sizeof s_touched_by_Supervisor_Verify_Ask_first / sizeof s_touched_by_Supervisor_Verify_Ask_first[0],
         .touched = s_touched_by_Supervisor_Verify_Ask_first,
+        .read_count = sizeof s_read_by_Supervisor_Verify_Ask_first / sizeof s_read_by_Supervisor_Verify_Ask_first[0],
+        .read = s_read_by_Supervisor_Verify_Ask_first,
     },
     {
         .name = "Cell.Supervisor.Verify.Ask last", .id = "ID1412310385", .owner = 0, .priority = 1000,
@@ -8656,6 +8742,8 @@ static const pn_transition_t s_transitions[] = {
         .affected = s_affected_by_Supervisor_Verify_Ask_last,
         .touched_count = sizeof s_touched_by_Supervisor_Verify_Ask_last / sizeof s_touched_by_Supervisor_Verify_Ask_last[0],
         .touched = s_touched_by_Supervisor_Verify_Ask_last,
+        .read_count = sizeof s_read_by_Supervisor_Verify_Ask_last / sizeof s_read_by_Supervisor_Verify_Ask_last[0],
+        .read = s_read_by_Supervisor_Verify_Ask_last,
     },
     {
         .name = "Cell.Supervisor.Verify.Measured", .id = "ID1412310393", .owner = 0, .priority = 1000,
@@ -8666,6 +8754,8 @@ static const pn_transition_t s_transitions[] = {
         .affected = s_affected_by_Supervisor_Verify_Measured,
         .touched_count = sizeof s_touched_by_Supervisor_Verify_Measured / sizeof s_touched_by_Supervisor_Verify_Measured[0],
         .touched = s_touched_by_Supervisor_Verify_Measured,
+        .read_count = sizeof s_read_by_Supervisor_Verify_Measured / sizeof s_read_by_Supervisor_Verify_Measured[0],
+        .read = s_read_by_Supervisor_Verify_Measured,
     },
     {
         .name = "Cell.Supervisor.Correct.Compare", .id = "ID1412310453", .owner = 0, .priority = 1000,
@@ -8676,6 +8766,8 @@ static const pn_transition_t s_transitions[] = {
         .affected = s_affected_by_Supervisor_Correct_Compare,
         .touched_count = sizeof s_touched_by_Supervisor_Correct_Compare / sizeof s_touched_by_Supervisor_Correct_Compare[0],
         .touched = s_touched_by_Supervisor_Correct_Compare,
+        .read_count = sizeof s_read_by_Supervisor_Correct_Compare / sizeof s_read_by_Supervisor_Correct_Compare[0],
+        .read = s_read_by_Supervisor_Correct_Compare,
     },
     {
         .name = "Cell.Supervisor.Correct.Move over", .id = "ID1412310461", .owner = 0, .priority = 1000,
@@ -8686,6 +8778,8 @@ static const pn_transition_t s_transitions[] = {
         .affected = s_affected_by_Supervisor_Correct_Move_over,
         .touched_count = sizeof s_touched_by_Supervisor_Correct_Move_over / sizeof s_touched_by_Supervisor_Correct_Move_over[0],
         .touched = s_touched_by_Supervisor_Correct_Move_over,
+        .read_count = sizeof s_read_by_Supervisor_Correct_Move_over / sizeof s_read_by_Supervisor_Correct_Move_over[0],
+        .read = s_read_by_Supervisor_Correct_Move_over,
     },
     {
         .name = "Cell.Supervisor.Correct.Moved", .id = "ID1412310478", .owner = 0, .priority = 1000,
@@ -8696,6 +8790,8 @@ static const pn_transition_t s_transitions[] = {
         .affected = s_affected_by_Supervisor_Correct_Moved,
         .touched_count = sizeof s_touched_by_Supervisor_Correct_Moved / sizeof s_touched_by_Supervisor_Correct_Moved[0],
         .touched = s_touched_by_Supervisor_Correct_Moved,
+        .read_count = sizeof s_read_by_Supervisor_Correct_Moved / sizeof s_read_by_Supervisor_Correct_Moved[0],
+        .read = s_read_by_Supervisor_Correct_Moved,
     },
     {
         .name = "Cell.Supervisor.Correct.As planned", .id = "ID1412310526", .owner = 0, .priority = 1000,
@@ -8706,6 +8802,8 @@ static const pn_transition_t s_transitions[] = {
         .affected = s_affected_by_Supervisor_Correct_As_planned,
         .touched_count = sizeof s_touched_by_Supervisor_Correct_As_planned / sizeof s_touched_by_Supervisor_Correct_As_planned[0],
         .touched = s_touched_by_Supervisor_Correct_As_planned,
+        .read_count = sizeof s_read_by_Supervisor_Correct_As_planned / sizeof s_read_by_Supervisor_Correct_As_planned[0],
+        .read = s_read_by_Supervisor_Correct_As_planned,
     },
     {
         .name = "Cell.Supervisor.Correct.Move both.Command", .id = "ID1412310941", .owner = 0, .priority = 1000,
@@ -8716,6 +8814,8 @@ static const pn_transition_t s_transitions[] = {
         .affected = s_affected_by_Supervisor_Correct_Move_both_Command,
         .touched_count = sizeof s_touched_by_Supervisor_Correct_Move_both_Command / sizeof s_touched_by_Supervisor_Correct_Move_both_Command[0],
         .touched = s_touched_by_Supervisor_Correct_Move_both_Command,
+        .read_count = sizeof s_read_by_Supervisor_Correct_Move_both_Command / sizeof s_read_by_Supervisor_Correct_Move_both_Command[0],
+        .read = s_read_by_Supervisor_Correct_Move_both_Command,
     },
     {
         .name = "Cell.Supervisor.Correct.Move both.Both", .id = "ID1412310948", .owner = 0, .priority = 1000,
@@ -8726,6 +8826,8 @@ static const pn_transition_t s_transitions[] = {
         .affected = s_affected_by_Supervisor_Correct_Move_both_Both,
         .touched_count = sizeof s_touched_by_Supervisor_Correct_Move_both_Both / sizeof s_touched_by_Supervisor_Correct_Move_both_Both[0],
         .touched = s_touched_by_Supervisor_Correct_Move_both_Both,
+        .read_count = sizeof s_read_by_Supervisor_Correct_Move_both_Both / sizeof s_read_by_Supervisor_Correct_Move_both_Both[0],
+        .read = s_read_by_Supervisor_Correct_Move_both_Both,
     },
     {
         .name = "Cell.Supervisor.Correct.Move both.Reply 1", .id = "ID1412310962", .owner = 0, .priority = 1000,
@@ -8736,6 +8838,8 @@ static const pn_transition_t s_transitions[] = {
         .affected = s_affected_by_Supervisor_Correct_Move_both_Reply_1,
         .touched_count = sizeof s_touched_by_Supervisor_Correct_Move_both_Reply_1 / sizeof s_touched_by_Supervisor_Correct_Move_both_Reply_1[0],
         .touched = s_touched_by_Supervisor_Correct_Move_both_Reply_1,
+        .read_count = sizeof s_read_by_Supervisor_Correct_Move_both_Reply_1 / sizeof s_read_by_Supervisor_Correct_Move_both_Reply_1[0],
+        .read = s_read_by_Supervisor_Correct_Move_both_Reply_1,
     },
     {
         .name = "Cell.Supervisor.Correct.Move both.Reply 2", .id = "ID1412310999", .owner = 0, .priority = 1000,
@@ -8746,6 +8850,8 @@ static const pn_transition_t s_transitions[] = {
         .affected = s_affected_by_Supervisor_Correct_Move_both_Reply_2,
         .touched_count = sizeof s_touched_by_Supervisor_Correct_Move_both_Reply_2 / sizeof s_touched_by_Supervisor_Correct_Move_both_Reply_2[0],
         .touched = s_touched_by_Supervisor_Correct_Move_both_Reply_2,
+        .read_count = sizeof s_read_by_Supervisor_Correct_Move_both_Reply_2 / sizeof s_read_by_Supervisor_Correct_Move_both_Reply_2[0],
+        .read = s_read_by_Supervisor_Correct_Move_both_Reply_2,
     },
     {
         .name = "Cell.Supervisor.Install.Go back", .id = "ID1412310594", .owner = 0, .priority = 1000,
@@ -8756,6 +8862,8 @@ static const pn_transition_t s_transitions[] = {
         .affected = s_affected_by_Supervisor_Install_Go_back,
         .touched_count = sizeof s_touched_by_Supervisor_Install_Go_back / sizeof s_touched_by_Supervisor_Install_Go_back[0],
         .touched = s_touched_by_Supervisor_Install_Go_back,
+        .read_count = sizeof s_read_by_Supervisor_Install_Go_back / sizeof s_read_by_Supervisor_Install_Go_back[0],
+        .read = s_read_by_Supervisor_Install_Go_back,
     },
     {
         .name = "Cell.Supervisor.Install.Next rivet", .id = "ID1412310624", .owner = 0, .priority = 1000,
@@ -8766,6 +8874,8 @@ static const pn_transition_t s_transitions[] = {
         .affected = s_affected_by_Supervisor_Install_Next_rivet,
         .touched_count = sizeof s_touched_by_Supervisor_Install_Next_rivet / sizeof s_touched_by_Supervisor_Install_Next_rivet[0],
         .touched = s_touched_by_Supervisor_Install_Next_rivet,
+        .read_count = sizeof s_read_by_Supervisor_Install_Next_rivet / sizeof s_read_by_Supervisor_Install_Next_rivet[0],
+        .read = s_read_by_Supervisor_Install_Next_rivet,
     },
     {
         .name = "Cell.Supervisor.Install.Start", .id = "ID1412310632", .owner = 0, .priority = 1000,
@@ -8776,6 +8886,8 @@ static const pn_transition_t s_transitions[] = {
         .affected = s_affected_by_Supervisor_Install_Start,
         .touched_count = sizeof s_touched_by_Supervisor_Install_Start / sizeof s_touched_by_Supervisor_Install_Start[0],
         .touched = s_touched_by_Supervisor_Install_Start,
+        .read_count = sizeof s_read_by_Supervisor_Install_Start / sizeof s_read_by_Supervisor_Install_Start[0],
+        .read = s_read_by_Supervisor_Install_Start,
     },
     {
         .name = "Cell.Supervisor.Install.Shift.Command", .id = "ID1412310941", .owner = 0, .priority = 1000,
@@ -8786,6 +8898,8 @@ static const pn_transition_t s_transitions[] = {
         .affected = s_affected_by_Supervisor_Install_Shift_Command,
         .touched_count = sizeof s_touched_by_Supervisor_Install_Shift_Command / sizeof s_touched_by_Supervisor_Install_Shift_Command[0],
         .touched = s_touched_by_Supervisor_Install_Shift_Command,
+        .read_count = sizeof s_read_by_Supervisor_Install_Shift_Command / sizeof s_read_by_Supervisor_Install_Shift_Command[0],
+        .read = s_read_by_Supervisor_Install_Shift_Command,
     },
     {
         .name = "Cell.Supervisor.Install.Shift.Both", .id = "ID1412310948", .owner = 0, .priority = 1000,
@@ -8796,6 +8910,8 @@ static const pn_transition_t s_transitions[] = {
         .affected = s_affected_by_Supervisor_Install_Shift_Both,
         .touched_count = sizeof s_touched_by_Supervisor_Install_Shift_Both / sizeof s_touched_by_Supervisor_Install_Shift_Both[0],
         .touched = s_touched_by_Supervisor_Install_Shift_Both,
+        .read_count = sizeof s_read_by_Supervisor_Install_Shift_Both / sizeof s_read_by_Supervisor_Install_Shift_Both[0],
+        .read = s_read_by_Supervisor_Install_Shift_Both,
     },
     {
         .name = "Cell.Supervisor.Install.Shift.Reply 1", .id = "ID1412310962", .owner = 0, .priority = 1000,
@@ -8806,6 +8922,8 @@ static const pn_transition_t s_transitions[] = {
         .affected = s_affected_by_Supervisor_Install_Shift_Reply_1,
         .touched_count = sizeof s_touched_by_Supervisor_Install_Shift_Reply_1 / sizeof s_touched_by_Supervisor_Install_Shift_Reply_1[0],
         .touched = s_touched_by_Supervisor_Install_Shift_Reply_1,
+        .read_count = sizeof s_read_by_Supervisor_Install_Shift_Reply_1 / sizeof s_read_by_Supervisor_Install_Shift_Reply_1[0],
+        .read = s_read_by_Supervisor_Install_Shift_Reply_1,
     },
     {
         .name = "Cell.Supervisor.Install.Shift.Reply 2", .id = "ID1412310999", .owner = 0, .priority = 1000,
@@ -8816,6 +8934,8 @@ static const pn_transition_t s_transitions[] = {
         .affected = s_affected_by_Supervisor_Install_Shift_Reply_2,
         .touched_count = sizeof s_touched_by_Supervisor_Install_Shift_Reply_2 / sizeof s_touched_by_Supervisor_Install_Shift_Reply_2[0],
         .touched = s_touched_by_Supervisor_Install_Shift_Reply_2,
+        .read_count = sizeof s_read_by_Supervisor_Install_Shift_Reply_2 / sizeof s_read_by_Supervisor_Install_Shift_Reply_2[0],
+        .read = s_read_by_Supervisor_Install_Shift_Reply_2,
     },
     {
         .name = "Cell.Supervisor.Install.Rivet.Go in", .id = "ID1412310716", .owner = 0, .priority = 1000,
@@ -8826,6 +8946,8 @@ static const pn_transition_t s_transitions[] = {
         .affected = s_affected_by_Supervisor_Install_Rivet_Go_in,
         .touched_count = sizeof s_touched_by_Supervisor_Install_Rivet_Go_in / sizeof s_touched_by_Supervisor_Install_Rivet_Go_in[0],
         .touched = s_touched_by_Supervisor_Install_Rivet_Go_in,
+        .read_count = sizeof s_read_by_Supervisor_Install_Rivet_Go_in / sizeof s_read_by_Supervisor_Install_Rivet_Go_in[0],
+        .read = s_read_by_Supervisor_Install_Rivet_Go_in,
     },
     {
         .name = "Cell.Supervisor.Install.Rivet.Go out", .id = "ID1412310742", .owner = 0, .priority = 1000,
@@ -8836,6 +8958,8 @@ static const pn_transition_t s_transitions[] = {
         .affected = s_affected_by_Supervisor_Install_Rivet_Go_out,
         .touched_count = sizeof s_touched_by_Supervisor_Install_Rivet_Go_out / sizeof s_touched_by_Supervisor_Install_Rivet_Go_out[0],
         .touched = s_touched_by_Supervisor_Install_Rivet_Go_out,
+        .read_count = sizeof s_read_by_Supervisor_Install_Rivet_Go_out / sizeof s_read_by_Supervisor_Install_Rivet_Go_out[0],
+        .read = s_read_by_Supervisor_Install_Rivet_Go_out,
     },
     {
         .name = "Cell.Supervisor.Install.Rivet.Advance.Command", .id = "ID1412310941", .owner = 0, .priority = 1000,
@@ -8846,6 +8970,8 @@ static const pn_transition_t s_transitions[] = {
         .affected = s_affected_by_Supervisor_Install_Rivet_Advance_Command,
         .touched_count = sizeof s_touched_by_Supervisor_Install_Rivet_Advance_Command / sizeof s_touched_by_Supervisor_Install_Rivet_Advance_Command[0],
         .touched = s_touched_by_Supervisor_Install_Rivet_Advance_Command,
+        .read_count = sizeof s_read_by_Supervisor_Install_Rivet_Advance_Command / sizeof s_read_by_Supervisor_Install_Rivet_Advance_Command[0],
+        .read = s_read_by_Supervisor_Install_Rivet_Advance_Command,
     },
     {
         .name = "Cell.Supervisor.Install.Rivet.Advance.Both", .id = "ID1412310948", .owner = 0, .priority = 1000,
@@ -8856,6 +8982,8 @@ static const pn_transition_t s_transitions[] = {
         .affected = s_affected_by_Supervisor_Install_Rivet_Advance_Both,
         .touched_count = sizeof s_touched_by_Supervisor_Install_Rivet_Advance_Both / sizeof s_touched_by_Supervisor_Install_Rivet_Advance_Both[0],
         .touched = s_touched_by_Supervisor_Install_Rivet_Advance_Both,
+        .read_count = sizeof s_read_by_Supervisor_Install_Rivet_Advance_Both / sizeof s_read_by_Supervisor_Install_Rivet_Advance_Both[0],
+        .read = s_read_by_Supervisor_Install_Rivet_Advance_Both,
     },
     {
         .name = "Cell.Supervisor.Install.Rivet.Advance.Reply 1", .id = "ID1412310962", .owner = 0, .priority = 1000,
@@ -8866,6 +8994,8 @@ static const pn_transition_t s_transitions[] = {
         .affected = s_affected_by_Supervisor_Install_Rivet_Advance_Reply_1,
         .touched_count = sizeof s_touched_by_Supervisor_Install_Rivet_Advance_Reply_1 / sizeof s_touched_by_Supervisor_Install_Rivet_Advance_Reply_1[0],
         .touched = s_touched_by_Supervisor_Install_Rivet_Advance_Reply_1,
+        .read_count = sizeof s_read_by_Supervisor_Install_Rivet_Advance_Reply_1 / sizeof s_read_by_Supervisor_Install_Rivet_Advance_Reply_1[0],
+        .read = s_read_by_Supervisor_Install_Rivet_Advance_Reply_1,
     },
     {
         .name = "Cell.Supervisor.Install.Rivet.Advance.Reply 2", .id = "ID1412310999", .owner = 0, .priority = 1000,
@@ -8876,6 +9006,8 @@ static const pn_transition_t s_transitions[] = {
         .affected = s_affected_by_Supervisor_Install_Rivet_Advance_Reply_2,
         .touched_count = sizeof s_touched_by_Supervisor_Install_Rivet_Advance_Reply_2 / sizeof s_touched_by_Supervisor_Install_Rivet_Advance_Reply_2[0],
         .touched = s_touched_by_Supervisor_Install_Rivet_Advance_Reply_2,
+        .read_count = sizeof s_read_by_Supervisor_Install_Rivet_Advance_Reply_2 / sizeof s_read_by_Supervisor_Install_Rivet_Advance_Reply_2[0],
+        .read = s_read_by_Supervisor_Install_Rivet_Advance_Reply_2,
     },
     {
         .name = "Cell.Supervisor.Install.Rivet.Fasten.Press", .id = "ID1412310842", .owner = 0, .priority = 1000,
@@ -8886,6 +9018,8 @@ static const pn_transition_t s_transitions[] = {
         .affected = s_affected_by_Supervisor_Install_Rivet_Fasten_Press,
         .touched_count = sizeof s_touched_by_Supervisor_Install_Rivet_Fasten_Press / sizeof s_touched_by_Supervisor_Install_Rivet_Fasten_Press[0],
         .touched = s_touched_by_Supervisor_Install_Rivet_Fasten_Press,
+        .read_count = sizeof s_read_by_Supervisor_Install_Rivet_Fasten_Press / sizeof s_read_by_Supervisor_Install_Rivet_Fasten_Press[0],
+        .read = s_read_by_Supervisor_Install_Rivet_Fasten_Press,
     },
     {
         .name = "Cell.Supervisor.Install.Rivet.Fasten.Drill", .id = "ID1412310850", .owner = 0, .priority = 1000,
@@ -8896,6 +9030,8 @@ static const pn_transition_t s_transitions[] = {
         .affected = s_affected_by_Supervisor_Install_Rivet_Fasten_Drill,
         .touched_count = sizeof s_touched_by_Supervisor_Install_Rivet_Fasten_Drill / sizeof s_touched_by_Supervisor_Install_Rivet_Fasten_Drill[0],
         .touched = s_touched_by_Supervisor_Install_Rivet_Fasten_Drill,
+        .read_count = sizeof s_read_by_Supervisor_Install_Rivet_Fasten_Drill / sizeof s_read_by_Supervisor_Install_Rivet_Fasten_Drill[0],
+        .read = s_read_by_Supervisor_Install_Rivet_Fasten_Drill,
     },
     {
         .name = "Cell.Supervisor.Install.Rivet.Fasten.Insert", .id = "ID1412310858", .owner = 0, .priority = 1000,
@@ -8906,6 +9042,8 @@ static const pn_transition_t s_transitions[] = {
         .affected = s_affected_by_Supervisor_Install_Rivet_Fasten_Insert,
         .touched_count = sizeof s_touched_by_Supervisor_Install_Rivet_Fasten_Insert / sizeof s_touched_by_Supervisor_Install_Rivet_Fasten_Insert[0],
         .touched = s_touched_by_Supervisor_Install_Rivet_Fasten_Insert,
+        .read_count = sizeof s_read_by_Supervisor_Install_Rivet_Fasten_Insert / sizeof s_read_by_Supervisor_Install_Rivet_Fasten_Insert[0],
+        .read = s_read_by_Supervisor_Install_Rivet_Fasten_Insert,
     },
     {
         .name = "Cell.Supervisor.Install.Rivet.Fasten.Release", .id = "ID1412310866", .owner = 0, .priority = 1000,
@@ -8916,6 +9054,8 @@ static const pn_transition_t s_transitions[] = {
         .affected = s_affected_by_Supervisor_Install_Rivet_Fasten_Release,
         .touched_count = sizeof s_touched_by_Supervisor_Install_Rivet_Fasten_Release / sizeof s_touched_by_Supervisor_Install_Rivet_Fasten_Release[0],
         .touched = s_touched_by_Supervisor_Install_Rivet_Fasten_Release,
+        .read_count = sizeof s_read_by_Supervisor_Install_Rivet_Fasten_Release / sizeof s_read_by_Supervisor_Install_Rivet_Fasten_Release[0],
+        .read = s_read_by_Supervisor_Install_Rivet_Fasten_Release,
     },
     {
         .name = "Cell.Supervisor.Install.Rivet.Fasten.Finish", .id = "ID1412310874", .owner = 0, .priority = 1000,
@@ -8926,6 +9066,8 @@ static const pn_transition_t s_transitions[] = {
         .affected = s_affected_by_Supervisor_Install_Rivet_Fasten_Finish,
         .touched_count = sizeof s_touched_by_Supervisor_Install_Rivet_Fasten_Finish / sizeof s_touched_by_Supervisor_Install_Rivet_Fasten_Finish[0],
         .touched = s_touched_by_Supervisor_Install_Rivet_Fasten_Finish,
+        .read_count = sizeof s_read_by_Supervisor_Install_Rivet_Fasten_Finish / sizeof s_read_by_Supervisor_Install_Rivet_Fasten_Finish[0],
+        .read = s_read_by_Supervisor_Install_Rivet_Fasten_Finish,
     },
     {
         .name = "Cell.Supervisor.Install.Rivet.Retract.Command", .id = "ID1412310941", .owner = 0, .priority = 1000,
@@ -8936,6 +9078,8 @@ static const pn_transition_t s_transitions[] = {
         .affected = s_affected_by_Supervisor_Install_Rivet_Retract_Command,
         .touched_count = sizeof s_touched_by_Supervisor_Install_Rivet_Retract_Command / sizeof s_touched_by_Supervisor_Install_Rivet_Retract_Command[0],
         .touched = s_touched_by_Supervisor_Install_Rivet_Retract_Command,
+        .read_count = sizeof s_read_by_Supervisor_Install_Rivet_Retract_Command / sizeof s_read_by_Supervisor_Install_Rivet_Retract_Command[0],
+        .read = s_read_by_Supervisor_Install_Rivet_Retract_Command,
     },
     {
         .name = "Cell.Supervisor.Install.Rivet.Retract.Both", .id = "ID1412310948", .owner = 0, .priority = 1000,
@@ -8946,6 +9090,8 @@ static const pn_transition_t s_transitions[] = {
         .affected = s_affected_by_Supervisor_Install_Rivet_Retract_Both,
         .touched_count = sizeof s_touched_by_Supervisor_Install_Rivet_Retract_Both / sizeof s_touched_by_Supervisor_Install_Rivet_Retract_Both[0],
         .touched = s_touched_by_Supervisor_Install_Rivet_Retract_Both,
+        .read_count = sizeof s_read_by_Supervisor_Install_Rivet_Retract_Both / sizeof s_read_by_Supervisor_Install_Rivet_Retract_Both[0],
+        .read = s_read_by_Supervisor_Install_Rivet_Retract_Both,
     },
     {
         .name = "Cell.Supervisor.Install.Rivet.Retract.Reply 1", .id = "ID1412310962", .owner = 0, .priority = 1000,
@@ -8956,6 +9102,8 @@ static const pn_transition_t s_transitions[] = {
         .affected = s_affected_by_Supervisor_Install_Rivet_Retract_Reply_1,
         .touched_count = sizeof s_touched_by_Supervisor_Install_Rivet_Retract_Reply_1 / sizeof s_touched_by_Supervisor_Install_Rivet_Retract_Reply_1[0],
         .touched = s_touched_by_Supervisor_Install_Rivet_Retract_Reply_1,
+        .read_count = sizeof s_read_by_Supervisor_Install_Rivet_Retract_Reply_1 / sizeof s_read_by_Supervisor_Install_Rivet_Retract_Reply_1[0],
+        .read = s_read_by_Supervisor_Install_Rivet_Retract_Reply_1,
     },
     {
         .name = "Cell.Supervisor.Install.Rivet.Retract.Reply 2", .id = "ID1412310999", .owner = 0, .priority = 1000,
@@ -8966,6 +9114,8 @@ static const pn_transition_t s_transitions[] = {
         .affected = s_affected_by_Supervisor_Install_Rivet_Retract_Reply_2,
         .touched_count = sizeof s_touched_by_Supervisor_Install_Rivet_Retract_Reply_2 / sizeof s_touched_by_Supervisor_Install_Rivet_Retract_Reply_2[0],
         .touched = s_touched_by_Supervisor_Install_Rivet_Retract_Reply_2,
+        .read_count = sizeof s_read_by_Supervisor_Install_Rivet_Retract_Reply_2 / sizeof s_read_by_Supervisor_Install_Rivet_Retract_Reply_2[0],
+        .read = s_read_by_Supervisor_Install_Rivet_Retract_Reply_2,
     },
     {
         .name = "Cell.Supervisor.Install.Return.Command", .id = "ID1412310941", .owner = 0, .priority = 1000,
@@ -8976,6 +9126,8 @@ static const pn_transition_t s_transitions[] = {
         .affected = s_affected_by_Supervisor_Install_Return_Command,
         .touched_count = sizeof s_touched_by_Supervisor_Install_Return_Command / sizeof s_touched_by_Supervisor_Install_Return_Command[0],
         .touched = s_touched_by_Supervisor_Install_Return_Command,
+        .read_count = sizeof s_read_by_Supervisor_Install_Return_Command / sizeof s_read_by_Supervisor_Install_Return_Command[0],
+        .read = s_read_by_Supervisor_Install_Return_Command,
     },
     {
         .name = "Cell.Supervisor.Install.Return.Both", .id = "ID1412310948", .owner = 0, .priority = 1000,
@@ -8986,6 +9138,8 @@ static const pn_transition_t s_transitions[] = {
         .affected = s_affected_by_Supervisor_Install_Return_Both,
         .touched_count = sizeof s_touched_by_Supervisor_Install_Return_Both / sizeof s_touched_by_Supervisor_Install_Return_Both[0],
         .touched = s_touched_by_Supervisor_Install_Return_Both,
+        .read_count = sizeof s_read_by_Supervisor_Install_Return_Both / sizeof s_read_by_Supervisor_Install_Return_Both[0],
+        .read = s_read_by_Supervisor_Install_Return_Both,
     },
     {
         .name = "Cell.Supervisor.Install.Return.Reply 1", .id = "ID1412310962", .owner = 0, .priority = 1000,
@@ -8996,6 +9150,8 @@ static const pn_transition_t s_transitions[] = {
         .affected = s_affected_by_Supervisor_Install_Return_Reply_1,
         .touched_count = sizeof s_touched_by_Supervisor_Install_Return_Reply_1 / sizeof s_touched_by_Supervisor_Install_Return_Reply_1[0],
         .touched = s_touched_by_Supervisor_Install_Return_Reply_1,
+        .read_count = sizeof s_read_by_Supervisor_Install_Return_Reply_1 / sizeof s_read_by_Supervisor_Install_Return_Reply_1[0],
+        .read = s_read_by_Supervisor_Install_Return_Reply_1,
     },
     {
         .name = "Cell.Supervisor.Install.Return.Reply 2", .id = "ID1412310999", .owner = 0, .priority = 1000,
@@ -9006,6 +9162,8 @@ static const pn_transition_t s_transitions[] = {
         .affected = s_affected_by_Supervisor_Install_Return_Reply_2,
         .touched_count = sizeof s_touched_by_Supervisor_Install_Return_Reply_2 / sizeof s_touched_by_Supervisor_Install_Return_Reply_2[0],
         .touched = s_touched_by_Supervisor_Install_Return_Reply_2,
+        .read_count = sizeof s_read_by_Supervisor_Install_Return_Reply_2 / sizeof s_read_by_Supervisor_Install_Return_Reply_2[0],
+        .read = s_read_by_Supervisor_Install_Return_Reply_2,
     },
     {
         .name = "Cell.Supervisor.Home.Send home", .id = "ID1412311039", .owner = 0, .priority = 1000,
@@ -9016,6 +9174,8 @@ static const pn_transition_t s_transitions[] = {
         .affected = s_affected_by_Supervisor_Home_Send_home,
         .touched_count = sizeof s_touched_by_Supervisor_Home_Send_home / sizeof s_touched_by_Supervisor_Home_Send_home[0],
         .touched = s_touched_by_Supervisor_Home_Send_home,
+        .read_count = sizeof s_read_by_Supervisor_Home_Send_home / sizeof s_read_by_Supervisor_Home_Send_home[0],
+        .read = s_read_by_Supervisor_Home_Send_home,
     },
     {
         .name = "Cell.Supervisor.Home.Both", .id = "ID1412311046", .owner = 0, .priority = 1000,
@@ -9026,6 +9186,8 @@ static const pn_transition_t s_transitions[] = {
         .affected = s_affected_by_Supervisor_Home_Both,
         .touched_count = sizeof s_touched_by_Supervisor_Home_Both / sizeof s_touched_by_Supervisor_Home_Both[0],
         .touched = s_touched_by_Supervisor_Home_Both,
+        .read_count = sizeof s_read_by_Supervisor_Home_Both / sizeof s_read_by_Supervisor_Home_Both[0],
+        .read = s_read_by_Supervisor_Home_Both,
     },
     {
         .name = "Cell.Supervisor.Home.Reply 1", .id = "ID1412311060", .owner = 0, .priority = 1000,
@@ -9036,6 +9198,8 @@ static const pn_transition_t s_transitions[] = {
         .affected = s_affected_by_Supervisor_Home_Reply_1,
         .touched_count = sizeof s_touched_by_Supervisor_Home_Reply_1 / sizeof s_touched_by_Supervisor_Home_Reply_1[0],
         .touched = s_touched_by_Supervisor_Home_Reply_1,
+        .read_count = sizeof s_read_by_Supervisor_Home_Reply_1 / sizeof s_read_by_Supervisor_Home_Reply_1[0],
+        .read = s_read_by_Supervisor_Home_Reply_1,
     },
     {
         .name = "Cell.Supervisor.Home.Reply 2", .id = "ID1412311091", .owner = 0, .priority = 1000,
@@ -9046,6 +9210,8 @@ static const pn_transition_t s_transitions[] = {
         .affected = s_affected_by_Supervisor_Home_Reply_2,
         .touched_count = sizeof s_touched_by_Supervisor_Home_Reply_2 / sizeof s_touched_by_Supervisor_Home_Reply_2[0],
         .touched = s_touched_by_Supervisor_Home_Reply_2,
+        .read_count = sizeof s_read_by_Supervisor_Home_Reply_2 / sizeof s_read_by_Supervisor_Home_Reply_2[0],
+        .read = s_read_by_Supervisor_Home_Reply_2,
     },
     {
         .name = "Cell.Robot1.Accept", .id = "ID1412311125", .owner = 1, .priority = 1000,
@@ -9056,6 +9222,8 @@ static const pn_transition_t s_transitions[] = {
         .affected = s_affected_by_Robot1_Accept,
         .touched_count = sizeof s_touched_by_Robot1_Accept / sizeof s_touched_by_Robot1_Accept[0],
         .touched = s_touched_by_Robot1_Accept,
+        .read_count = sizeof s_read_by_Robot1_Accept / sizeof s_read_by_Robot1_Accept[0],
+        .read = s_read_by_Robot1_Accept,
     },
     {
         .name = "Cell.Robot1.Report", .id = "ID1412311145", .owner = 1, .priority = 1000,
@@ -9066,6 +9234,8 @@ static const pn_transition_t s_transitions[] = {
         .affected = s_affected_by_Robot1_Report,
         .touched_count = sizeof s_touched_by_Robot1_Report / sizeof s_touched_by_Robot1_Report[0],
         .touched = s_touched_by_Robot1_Report,
+        .read_count = sizeof s_read_by_Robot1_Report / sizeof s_read_by_Robot1_Report[0],
+        .read = s_read_by_Robot1_Report,
     },
     {
         .name = "Cell.Robot1.MoveJoint", .id = "ID1412311160", .owner = 1, .priority = 1000,
@@ -9076,6 +9246,8 @@ static const pn_transition_t s_transitions[] = {
         .affected = s_affected_by_Robot1_MoveJoint,
         .touched_count = sizeof s_touched_by_Robot1_MoveJoint / sizeof s_touched_by_Robot1_MoveJoint[0],
         .touched = s_touched_by_Robot1_MoveJoint,
+        .read_count = sizeof s_read_by_Robot1_MoveJoint / sizeof s_read_by_Robot1_MoveJoint[0],
+        .read = s_read_by_Robot1_MoveJoint,
     },
     {
         .name = "Cell.Robot1.MoveLinear", .id = "ID1412311169", .owner = 1, .priority = 1000,
@@ -9086,6 +9258,8 @@ static const pn_transition_t s_transitions[] = {
         .affected = s_affected_by_Robot1_MoveLinear,
         .touched_count = sizeof s_touched_by_Robot1_MoveLinear / sizeof s_touched_by_Robot1_MoveLinear[0],
         .touched = s_touched_by_Robot1_MoveLinear,
+        .read_count = sizeof s_read_by_Robot1_MoveLinear / sizeof s_read_by_Robot1_MoveLinear[0],
+        .read = s_read_by_Robot1_MoveLinear,
     },
     {
         .name = "Cell.Robot1.MoveHome", .id = "ID1412311178", .owner = 1, .priority = 1000,
@@ -9096,6 +9270,8 @@ static const pn_transition_t s_transitions[] = {
         .affected = s_affected_by_Robot1_MoveHome,
         .touched_count = sizeof s_touched_by_Robot1_MoveHome / sizeof s_touched_by_Robot1_MoveHome[0],
         .touched = s_touched_by_Robot1_MoveHome,
+        .read_count = sizeof s_read_by_Robot1_MoveHome / sizeof s_read_by_Robot1_MoveHome[0],
+        .read = s_read_by_Robot1_MoveHome,
     },
     {
         .name = "Cell.Robot1.Measure", .id = "ID1412311187", .owner = 1, .priority = 1000,
@@ -9106,6 +9282,8 @@ static const pn_transition_t s_transitions[] = {
         .affected = s_affected_by_Robot1_Measure,
         .touched_count = sizeof s_touched_by_Robot1_Measure / sizeof s_touched_by_Robot1_Measure[0],
         .touched = s_touched_by_Robot1_Measure,
+        .read_count = sizeof s_read_by_Robot1_Measure / sizeof s_read_by_Robot1_Measure[0],
+        .read = s_read_by_Robot1_Measure,
     },
     {
         .name = "Cell.Robot1.Drill", .id = "ID1412311196", .owner = 1, .priority = 1000,
@@ -9116,6 +9294,8 @@ static const pn_transition_t s_transitions[] = {
         .affected = s_affected_by_Robot1_Drill,
         .touched_count = sizeof s_touched_by_Robot1_Drill / sizeof s_touched_by_Robot1_Drill[0],
         .touched = s_touched_by_Robot1_Drill,
+        .read_count = sizeof s_read_by_Robot1_Drill / sizeof s_read_by_Robot1_Drill[0],
+        .read = s_read_by_Robot1_Drill,
     },
     {
         .name = "Cell.Robot1.Insert", .id = "ID1412311205", .owner = 1, .priority = 1000,
@@ -9126,6 +9306,8 @@ static const pn_transition_t s_transitions[] = {
         .affected = s_affected_by_Robot1_Insert,
         .touched_count = sizeof s_touched_by_Robot1_Insert / sizeof s_touched_by_Robot1_Insert[0],
         .touched = s_touched_by_Robot1_Insert,
+        .read_count = sizeof s_read_by_Robot1_Insert / sizeof s_read_by_Robot1_Insert[0],
+        .read = s_read_by_Robot1_Insert,
     },
     {
         .name = "Cell.Robot1.Press", .id = "ID1412311214", .owner = 1, .priority = 1000,
@@ -9136,6 +9318,8 @@ static const pn_transition_t s_transitions[] = {
         .affected = s_affected_by_Robot1_Press,
         .touched_count = sizeof s_touched_by_Robot1_Press / sizeof s_touched_by_Robot1_Press[0],
         .touched = s_touched_by_Robot1_Press,
+        .read_count = sizeof s_read_by_Robot1_Press / sizeof s_read_by_Robot1_Press[0],
+        .read = s_read_by_Robot1_Press,
     },
     {
         .name = "Cell.Robot1.Release", .id = "ID1412311223", .owner = 1, .priority = 1000,
@@ -9146,6 +9330,8 @@ static const pn_transition_t s_transitions[] = {
         .affected = s_affected_by_Robot1_Release,
         .touched_count = sizeof s_touched_by_Robot1_Release / sizeof s_touched_by_Robot1_Release[0],
         .touched = s_touched_by_Robot1_Release,
+        .read_count = sizeof s_read_by_Robot1_Release / sizeof s_read_by_Robot1_Release[0],
+        .read = s_read_by_Robot1_Release,
     },
     {
         .name = "Cell.Robot2.Accept", .id = "ID1412311125", .owner = 2, .priority = 1000,
@@ -9156,6 +9342,8 @@ static const pn_transition_t s_transitions[] = {
         .affected = s_affected_by_Robot2_Accept,
         .touched_count = sizeof s_touched_by_Robot2_Accept / sizeof s_touched_by_Robot2_Accept[0],
         .touched = s_touched_by_Robot2_Accept,
+        .read_count = sizeof s_read_by_Robot2_Accept / sizeof s_read_by_Robot2_Accept[0],
+        .read = s_read_by_Robot2_Accept,
     },
     {
         .name = "Cell.Robot2.Report", .id = "ID1412311145", .owner = 2, .priority = 1000,
@@ -9166,6 +9354,8 @@ static const pn_transition_t s_transitions[] = {
         .affected = s_affected_by_Robot2_Report,
         .touched_count = sizeof s_touched_by_Robot2_Report / sizeof s_touched_by_Robot2_Report[0],
         .touched = s_touched_by_Robot2_Report,
+        .read_count = sizeof s_read_by_Robot2_Report / sizeof s_read_by_Robot2_Report[0],
+        .read = s_read_by_Robot2_Report,
     },
     {
         .name = "Cell.Robot2.MoveJoint", .id = "ID1412311160", .owner = 2, .priority = 1000,
@@ -9176,6 +9366,8 @@ static const pn_transition_t s_transitions[] = {
         .affected = s_affected_by_Robot2_MoveJoint,
         .touched_count = sizeof s_touched_by_Robot2_MoveJoint / sizeof s_touched_by_Robot2_MoveJoint[0],
         .touched = s_touched_by_Robot2_MoveJoint,
+        .read_count = sizeof s_read_by_Robot2_MoveJoint / sizeof s_read_by_Robot2_MoveJoint[0],
+        .read = s_read_by_Robot2_MoveJoint,
     },
     {
         .name = "Cell.Robot2.MoveLinear", .id = "ID1412311169", .owner = 2, .priority = 1000,
@@ -9186,6 +9378,8 @@ static const pn_transition_t s_transitions[] = {
         .affected = s_affected_by_Robot2_MoveLinear,
         .touched_count = sizeof s_touched_by_Robot2_MoveLinear / sizeof s_touched_by_Robot2_MoveLinear[0],
         .touched = s_touched_by_Robot2_MoveLinear,
+        .read_count = sizeof s_read_by_Robot2_MoveLinear / sizeof s_read_by_Robot2_MoveLinear[0],
+        .read = s_read_by_Robot2_MoveLinear,
     },
     {
         .name = "Cell.Robot2.MoveHome", .id = "ID1412311178", .owner = 2, .priority = 1000,
@@ -9196,6 +9390,8 @@ static const pn_transition_t s_transitions[] = {
         .affected = s_affected_by_Robot2_MoveHome,
         .touched_count = sizeof s_touched_by_Robot2_MoveHome / sizeof s_touched_by_Robot2_MoveHome[0],
         .touched = s_touched_by_Robot2_MoveHome,
+        .read_count = sizeof s_read_by_Robot2_MoveHome / sizeof s_read_by_Robot2_MoveHome[0],
+        .read = s_read_by_Robot2_MoveHome,
     },
     {
         .name = "Cell.Robot2.Measure", .id = "ID1412311187", .owner = 2, .priority = 1000,
@@ -9206,6 +9402,8 @@ static const pn_transition_t s_transitions[] = {
         .affected = s_affected_by_Robot2_Measure,
         .touched_count = sizeof s_touched_by_Robot2_Measure / sizeof s_touched_by_Robot2_Measure[0],
         .touched = s_touched_by_Robot2_Measure,
+        .read_count = sizeof s_read_by_Robot2_Measure / sizeof s_read_by_Robot2_Measure[0],
+        .read = s_read_by_Robot2_Measure,
     },
     {
         .name = "Cell.Robot2.Drill", .id = "ID1412311196", .owner = 2, .priority = 1000,
@@ -9216,6 +9414,8 @@ static const pn_transition_t s_transitions[] = {
         .affected = s_affected_by_Robot2_Drill,
         .touched_count = sizeof s_touched_by_Robot2_Drill / sizeof s_touched_by_Robot2_Drill[0],
         .touched = s_touched_by_Robot2_Drill,
+        .read_count = sizeof s_read_by_Robot2_Drill / sizeof s_read_by_Robot2_Drill[0],
+        .read = s_read_by_Robot2_Drill,
     },
     {
         .name = "Cell.Robot2.Insert", .id = "ID1412311205", .owner = 2, .priority = 1000,
@@ -9226,6 +9426,8 @@ static const pn_transition_t s_transitions[] = {
         .affected = s_affected_by_Robot2_Insert,
         .touched_count = sizeof s_touched_by_Robot2_Insert / sizeof s_touched_by_Robot2_Insert[0],
         .touched = s_touched_by_Robot2_Insert,
+        .read_count = sizeof s_read_by_Robot2_Insert / sizeof s_read_by_Robot2_Insert[0],
+        .read = s_read_by_Robot2_Insert,
     },
     {
         .name = "Cell.Robot2.Press", .id = "ID1412311214", .owner = 2, .priority = 1000,
@@ -9236,6 +9438,8 @@ static const pn_transition_t s_transitions[] = {
         .affected = s_affected_by_Robot2_Press,
         .touched_count = sizeof s_touched_by_Robot2_Press / sizeof s_touched_by_Robot2_Press[0],
         .touched = s_touched_by_Robot2_Press,
+        .read_count = sizeof s_read_by_Robot2_Press / sizeof s_read_by_Robot2_Press[0],
+        .read = s_read_by_Robot2_Press,
     },
     {
         .name = "Cell.Robot2.Release", .id = "ID1412311223", .owner = 2, .priority = 1000,
@@ -9246,6 +9450,8 @@ static const pn_transition_t s_transitions[] = {
         .affected = s_affected_by_Robot2_Release,
         .touched_count = sizeof s_touched_by_Robot2_Release / sizeof s_touched_by_Robot2_Release[0],
         .touched = s_touched_by_Robot2_Release,
+        .read_count = sizeof s_read_by_Robot2_Release / sizeof s_read_by_Robot2_Release[0],
+        .read = s_read_by_Robot2_Release,
     },
 };
 

@@ -121,6 +121,8 @@ typedef struct pn_place {
     size_t (*encode)(const void *marking, uint8_t *out, size_t capacity);
     /* Reads them back into a marking. Returns the bytes used; SIZE_MAX when they are malformed or the place is full. */
     size_t (*decode)(pn_ctx_t *cx, void *marking, const uint8_t *in, size_t length);
+    /* The same, but the tokens come to those that are there. After a failure the place holds anything. */
+    size_t (*add)(pn_ctx_t *cx, void *marking, const uint8_t *in, size_t length);
     /* A colour of a packed place as JSON; false if there is no such one. NULL if the place is not packed. */
     bool (*colour_json)(uint32_t ordinal, pn_text_t *out);
     /* Of a timed place (integer time): stamps count from `by` on; those that are not after it become 0, and are the same then. NULL of
@@ -149,6 +151,10 @@ typedef struct pn_transition {
     /* The places whose marking an occurrence may change: not those from which it only takes what it puts there again. */
     uint32_t touched_count;
     const uint32_t *touched;
+    /* The places whose marking decides, with the time, which occurrences there are, and what each takes and puts: not those in which
+     * it only puts tokens. NULL: not known. */
+    uint32_t read_count;
+    const uint32_t *read;
     /* Random numbers, files or references decide about it: what is possible in a marking depends on more than the marking. */
     bool draws;
     /* For every enabled binding, in the order of `enumerate`: makes in *next the marking after its occurrence and calls the sink.

@@ -322,6 +322,7 @@ class _Emitter:
             "lists_use_binding": lists is not None and _mentions("b", "\n".join(lists.lines)),
             "uses_binding": _mentions("b", text),
             "touched": ", ".join(f"{i}U" for i in self._effects.touched(t.index)),
+            "read": ", ".join(f"{i}U" for i in self._effects.read(t.index)),
             "touched_bags": [
                 self._place_names[i]
                 for i in self._effects.touched(t.index)

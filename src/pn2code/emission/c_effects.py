@@ -13,6 +13,7 @@ _EXAMINED = (
     ir.ForTokens, ir.TokenValue, ir.UnlessAvailable, ir.UnlessHeld, ir.UnlessEmpty, ir.Take, ir.TakeAll,
 )  # fmt: skip
 _CHANGED = (ir.Take, ir.TakeAll, ir.Put, ir.PutAll, ir.Reset)
+_READ = (*_EXAMINED, ir.Reset)
 
 
 class Effects:
@@ -29,6 +30,7 @@ class Effects:
         self._references = {g.name for g in net.globals if g.is_reference}
         self._examined = [_places(t.enumerate, _EXAMINED) for t in net.transitions]
         self._changed = [self._changed_by(net, t) for t in net.transitions]
+        self._read = [_places((*t.enumerate, *t.fire), _READ) for t in net.transitions]
         self._volatile = [not self.is_pure(t.enumerate) for t in net.transitions]
 
     def affected(self, transition: int) -> tuple[int, ...]:
@@ -42,6 +44,11 @@ class Effects:
     def touched(self, transition: int) -> tuple[int, ...]:
         """The places whose tokens an occurrence of this transition may change, in order."""
         return tuple(sorted(self._changed[transition]))
+
+    def read(self, transition: int) -> tuple[int, ...]:
+        """The places whose tokens decide, with the time, which occurrences there are and what each takes and puts, in
+        order; places in which it only puts tokens are not among them."""
+        return tuple(sorted(self._read[transition]))
 
     def _changed_by(self, net: ir.NetIR, t: ir.Transition) -> frozenset[int]:
         """The places whose tokens are others after the occurrence: what stays where it is does not count."""

@@ -378,7 +378,7 @@ static const pn_place_t s_places[] = {
         .capacity = 64U, .timed = false,
         .count = Buffer_count, .token = Buffer_token, .put = Buffer_put,
         .clear = Buffer_clear, .json = Buffer_json,
-        .encode = Buffer_encode, .decode = Buffer_decode,
+        .encode = Buffer_encode, .decode = Buffer_decode, .add = Buffer_add_bytes,
         .bit = UINT32_MAX,
         .leaf_count = 2U, .leaf_kind = s_BOX_kinds, .leaf_name = s_BOX_leaves,
         .line_count = 1U, .line_leaves = s_BOX_lines,
@@ -389,7 +389,7 @@ static const pn_place_t s_places[] = {
         .capacity = 64U, .timed = false,
         .count = Count_count, .token = Count_token, .put = Count_put,
         .clear = Count_clear, .json = Count_json,
-        .encode = Count_encode, .decode = Count_decode,
+        .encode = Count_encode, .decode = Count_decode, .add = Count_add_bytes,
         .bit = UINT32_MAX,
         .leaf_count = 1U, .leaf_kind = s_INT_kinds, .leaf_name = s_INT_leaves,
         .line_count = 1U, .line_leaves = s_INT_lines,
@@ -400,7 +400,7 @@ static const pn_place_t s_places[] = {
         .capacity = 64U, .timed = false,
         .count = Out_count, .token = Out_token, .put = Out_put,
         .clear = Out_clear, .json = Out_json,
-        .encode = Out_encode, .decode = Out_decode,
+        .encode = Out_encode, .decode = Out_decode, .add = Out_add_bytes,
         .bit = UINT32_MAX,
         .leaf_count = 2U, .leaf_kind = s_BOX_kinds, .leaf_name = s_BOX_leaves,
         .line_count = 1U, .line_leaves = s_BOX_lines,
@@ -414,6 +414,9 @@ static const uint32_t s_bag_places[] = { 0U, 1U, 2U };
 /* For each transition the places that its occurrence may change. */
 static const uint32_t s_touched_by_Pick[] = { 0U, 1U, 2U };
 
+/* And those that decide about it. */
+static const uint32_t s_read_by_Pick[] = { 0U, 1U };
+
 static const pn_transition_t s_transitions[] = {
     {
         .name = "Top.Pick", .id = "ID25", .owner = 0, .priority = 1000,
@@ -422,6 +425,8 @@ static const pn_transition_t s_transitions[] = {
         .binding_size = sizeof(Pick_binding_t),
         .touched_count = sizeof s_touched_by_Pick / sizeof s_touched_by_Pick[0],
         .touched = s_touched_by_Pick,
+        .read_count = sizeof s_read_by_Pick / sizeof s_read_by_Pick[0],
+        .read = s_read_by_Pick,
     },
 };
 

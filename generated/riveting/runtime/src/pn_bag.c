@@ -488,37 +488,11 @@ size_t pn_bag_encode(const pn_bag_t *bag, const void *marking, uint8_t *out, siz
     return at;
 }
 
-static size_t packed_decode(pn_ctx_t *cx, const pn_bag_t *bag, void *marking, const uint8_t *in, size_t length)
-{
-    uint32_t used = 0U;
-    size_t at = sizeof used;
-    if (length < at) {
-        return SIZE_MAX;
-    }
-    (void)memcpy(&used, in, sizeof used);
-    packed_clear(bag, marking);
-    for (uint32_t i = 0U; i < used; i++) {
-        pn_colour_t colour;
-        uint32_t count = 0U;
-        if ((length - at) < sizeof count) {
-            return SIZE_MAX;
-        }
-        (void)memcpy(&count, &in[at], sizeof count);
-        at += sizeof count;
-        (void)memset(&colour, 0, bag->type->size);
-        const size_t size = pn_decode(cx, bag->type, &colour, &in[at], length - at);
-        if ((size == SIZE_MAX) || !packed_add(cx, bag, marking, &colour, count)) {
-            return SIZE_MAX;
-        }
-        at += size;
-    }
-    return at;
-}
-
 size_t pn_bag_decode(pn_ctx_t *cx, const pn_bag_t *bag, void *marking, const uint8_t *in, size_t length)
 {
     if (bag->is_packed) {
-        return packed_decode(cx, bag, marking, in, length);
+        packed_clear(bag, marking);
+        return pn_bag_add_bytes(cx, bag, marking, in, length);
     }
     const size_t stamp_size = bag->is_timed ? sizeof(pn_time_t) : 0U;
     uint32_t used = 0U;
@@ -550,6 +524,37 @@ size_t pn_bag_decode(pn_ctx_t *cx, const pn_bag_t *bag, void *marking, const uin
         }
         at += size;
         set_used(bag, marking, i + 1U);
+    }
+    return at;
+}
+
+size_t pn_bag_add_bytes(pn_ctx_t *cx, const pn_bag_t *bag, void *marking, const uint8_t *in, size_t length)
+{
+    const size_t stamp_size = bag->is_timed ? sizeof(pn_time_t) : 0U;
+    uint32_t used = 0U;
+    size_t at = sizeof used;
+    pn_colour_t small;
+    void *value = (bag->type->size <= sizeof small) ? &small : pn_arena_alloc(cx, bag->type->size);
+    if ((length < at) || (value == NULL)) {
+        return SIZE_MAX;
+    }
+    (void)memcpy(&used, in, sizeof used);
+    for (uint32_t i = 0U; i < used; i++) {
+        uint32_t count = 0U;
+        pn_time_t stamp = { 0 };
+        if ((length - at) < (sizeof count + stamp_size)) {
+            return SIZE_MAX;
+        }
+        (void)memcpy(&count, &in[at], sizeof count);
+        at += sizeof count;
+        (void)memcpy(&stamp, &in[at], stamp_size);
+        at += stamp_size;
+        (void)memset(value, 0, bag->type->size);
+        const size_t size = pn_decode(cx, bag->type, value, &in[at], length - at);
+        if ((size == SIZE_MAX) || !pn_bag_add(cx, bag, marking, value, count, stamp)) {
+            return SIZE_MAX;
+        }
+        at += size;
     }
     return at;
 }

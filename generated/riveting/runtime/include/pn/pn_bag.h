@@ -80,11 +80,13 @@ uint32_t pn_bag_token(const pn_bag_t *bag, const void *marking, uint32_t i, pn_l
 bool pn_bag_put(pn_ctx_t *cx, const pn_bag_t *bag, void *marking, const pn_leaf_t *leaf, uint32_t leaves);
 size_t pn_bag_encode(const pn_bag_t *bag, const void *marking, uint8_t *out, size_t room);
 size_t pn_bag_decode(pn_ctx_t *cx, const pn_bag_t *bag, void *marking, const uint8_t *in, size_t length);
+/* As pn_bag_decode, but what is there stays. */
+size_t pn_bag_add_bytes(pn_ctx_t *cx, const pn_bag_t *bag, void *marking, const uint8_t *in, size_t length);
 void pn_bag_relocate(pn_ctx_t *cx, const pn_bag_t *bag, void *marking);
 /* A colour of a packed place as JSON; false if there is no such one. */
 bool pn_bag_colour_json(const pn_bag_t *bag, uint32_t number, pn_text_t *out);
 
-/* The functions of one place for the table of the net: `stem`_count, _token, _put, _clear, _json, _encode, _decode over its bag. */
+/* The functions of one place for the table of the net: `stem`_count, _token, _put, _clear, _json, _encode, _decode, _add_bytes over its bag. */
 #define PN_PLACE_FUNCTIONS(stem, bag)                                                                               \
     static uint64_t stem##_count(const void *marking)                                                               \
     {                                                                                                               \
@@ -114,6 +116,10 @@ bool pn_bag_colour_json(const pn_bag_t *bag, uint32_t number, pn_text_t *out);
     static size_t stem##_decode(pn_ctx_t *cx, void *marking, const uint8_t *in, size_t length)                      \
     {                                                                                                               \
         return pn_bag_decode(cx, &(bag), marking, in, length);                                                      \
+    }                                                                                                               \
+    static size_t stem##_add_bytes(pn_ctx_t *cx, void *marking, const uint8_t *in, size_t length)                   \
+    {                                                                                                               \
+        return pn_bag_add_bytes(cx, &(bag), marking, in, length);                                                   \
     }
 
 /* Times as the context and the tokens hold them. */
