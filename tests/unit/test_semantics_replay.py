@@ -216,6 +216,16 @@ def test_the_end_must_be_the_end(net: FlatNet, timed: FlatNet) -> None:
     assert "but Top.Slow (t=1) is" in refused(timed, [later[0], later[-1]]).why
 
 
+def test_steps_come_in_order(net: FlatNet) -> None:
+    written = lines(net)
+    ahead = [*written[:2], changed(written[2], step=3), *written[3:]]
+    assert "it has number 3, but 2 is next" in refused(net, ahead).why
+    back = [written[0], changed(written[1], t=9.0), changed(written[2], t=3.0), *written[3:]]
+    assert "time goes back: 3.0 after 9.0" in refused(net, back).why
+    skewed = [written[0], changed(written[1], t=9.0), changed(written[2], t=8.5), *written[3:]]
+    assert replay_lines(skewed, net).ok  # of two parties whose clocks differ a little
+
+
 def test_refusals_are_diagnostics(net: FlatNet) -> None:
     written = lines(net)
     d = Diagnostics()

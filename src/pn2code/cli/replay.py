@@ -187,4 +187,6 @@ def _sentence(trace: Path, result: dict[str, Any]) -> str:
     text = f"{trace}: {steps}, each enabled when its turn came{ended}"
     if result["time"]:
         text += f", until time {time_text(result['time'])}"
+    if "ended" in result and not result["ended"]:
+        text += "; its last line is missing, the run may have gone on"
     return text + (f"\n{result['why']}" if result["why"] else "")

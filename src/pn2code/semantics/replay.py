@@ -42,6 +42,10 @@ DEFAULT_SEED = 1
 """Of the random numbers of a run whose header does not name another."""
 
 
+SKEW_S = 1.0
+"""So much may clocks of parties differ whose traces are one: messages say what came first, not times."""
+
+
 @dataclass(frozen=True, slots=True)
 class ReplayResult:
     """What became of a trace.
@@ -156,6 +160,7 @@ def replay_lines(
     game: Game | None = None
     steps, at, ended, transition, source = 0, 0, None, "", net.name
     names = {t.name: t for t in net.transitions}
+    latest = 0.0
     try:
         for number, text in enumerate(lines, 1):
             if not text.strip():
@@ -178,6 +183,7 @@ def replay_lines(
             elif "event" not in line:
                 assert rules is not None
                 _step(game, line, rules, names)
+                latest = _in_order(line, steps + 1, latest)
                 steps += 1
         if game is None:
             raise _Wrong("the trace is empty")
@@ -227,6 +233,21 @@ def _seed(header: dict[str, Any]) -> int:
     if isinstance(seed, bool) or not isinstance(seed, int):
         raise _Wrong("the `seed` of the header is not a number")
     return seed
+
+
+def _in_order(line: dict[str, Any], number: int, latest: float) -> float:
+    """Looks at what a line says of the order of steps; gives the latest time until then."""
+    said = line.get("step", number)
+    if said != number:
+        raise _Wrong(
+            f"it has number {said}, but {number} is next: steps are missing or out of order"
+        )
+    t = line.get("t")
+    if isinstance(t, bool) or not isinstance(t, int | float):
+        return latest
+    if t < latest - SKEW_S:
+        raise _Wrong(f"time goes back: {t} after {latest}")
+    return max(t, latest)
 
 
 def _step(
