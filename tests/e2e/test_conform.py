@@ -55,6 +55,85 @@ def test_ways_longer_than_states_can_be_saved(cell: Path, monkeypatch: pytest.Mo
     assert parts["cycles"] > whole["cycles"]  # ways are gone again
 
 
+FOR_EVER = """
+net rounds
+  standard
+  colset CLOCK = UNIT timed;
+  var k: INT;
+  fun drill () = ();
+  page Top
+    place flag : INT
+    place done : INT
+    subst Supervisor = Sup (flag -> flag, done -> done)
+    subst Robot = Rob (flag -> flag, done -> done)
+  page Sup
+    place flag port out : INT
+    place done port in : INT
+    place Ready : CLOCK = 1`()@0
+    place Busy : CLOCK
+    trans Begin
+      in Ready : ()
+      out flag : 1
+      out Busy : ()@+3
+    trans Done
+      in Busy : ()
+      in done : k
+      out Ready : ()@+5
+  page Rob
+    place flag port in : INT
+    place done port out : INT
+    place Waiting = 1
+    place Told : INT
+    trans Accept
+      in Waiting : ()
+      in flag : k
+      out Told : k
+    trans Drill code action drill ()
+      in Told : k
+      out done : k
+      out Waiting : ()
+"""
+TIMED_TOML = """
+[net]
+file = "cell.cpn"
+[supervisor]
+instance = "Supervisor"
+[[channel]]
+place = "flag"
+file = "flag.robcad"
+kind = "flag"
+[[channel]]
+place = "done"
+file = "done.robcad"
+kind = "flag"
+[primitives]
+drill = { command = "tool", action = "drill", duration_s = 1.0 }
+[robots.robot1]
+instance = "Robot"
+"""
+
+
+def test_a_cell_that_runs_for_ever(tmp_path: Path) -> None:
+    """Its markings are endless, since time goes on; those that differ in time alone are one."""
+    found = run("conform", write(tmp_path, FOR_EVER, TIMED_TOML), "--json")
+    assert found.exit_code == 0, found.output
+    data = json.loads(found.output)
+    assert data["complete"]
+    assert data["core"]["nodes"] < 20 and data["core"]["walks"] == 20
+    assert data["supervisor"]["transitions"] == 2 and data["supervisor"]["states"] < 30
+    assert data["robots"][0]["transitions"] == 2
+
+
+def test_a_supervisor_that_waits_too_short_is_found_out(tmp_path: Path) -> None:
+    cell = write(tmp_path / "cell", FOR_EVER, TIMED_TOML)
+    shorter = write(tmp_path / "shorter", FOR_EVER.replace("()@+5", "()@+4"), TIMED_TOML)
+    assert run("generate", shorter, "-o", tmp_path / "out").exit_code == 0
+    found = run("conform", cell, "--generated", tmp_path / "out")
+    assert found.exit_code == 1, found.output
+    assert "supervisor    DIFFERS" in found.output
+    assert "place `Top.Supervisor.Ready` holds" in found.output
+
+
 SUPERVISOR = {
     "another value is written": ("= val_DRILL;", "= val_HOME;", "flag.robcad"),
     "a guard is dropped": ("if (b.n == 2) {", "if (false) {", "by the net"),

@@ -13,10 +13,11 @@ import json
 import subprocess
 import tempfile
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
+from pn2code.conform.clock import Clock
 from pn2code.conform.scheme import MOST_STATES
 from pn2code.diagnostics import Diagnostics
 from pn2code.net.flat import FlatNet
@@ -31,7 +32,7 @@ from pn2code.semantics.marking import (
 from pn2code.semantics.replay import replay
 from pn2code.simulate import programs
 from pn2code.verify.explore import Wishes, explore
-from pn2code.verify.limits import Limits
+from pn2code.verify.limits import Limits, Reduction
 
 WALKS = 20
 WALK_STEPS = 500
@@ -44,7 +45,8 @@ class CoreReport:
     Args:
         nodes, arcs: of the state space, each looked at in both; 0 where it is larger than the limit.
         complete: whether that is the whole state space.
-        walks, steps: random runs of the compiled simulator that were repeated, and their steps, where it is not.
+        walks, steps: random runs of the compiled simulator that were repeated, and their steps, where it is not, or
+            where nodes that differ in time alone are one.
         deviation: in words; None: there is none.
     """
 
@@ -83,60 +85,82 @@ def compare(
     with tempfile.TemporaryDirectory(prefix="pn2code-") as name:
         graph = Path(name) / "graph.jsonl"
         wishes = Wishes(graph=graph, graph_limit=most)
-        limits = Limits(max_states=most, traces=0)
+        clock = Clock(net)
+        reductions = (Reduction.TIME,) if clock.is_relative else ()
+        limits = Limits(max_states=most, traces=0, reductions=reductions)
         found = explore(net, storage, limits, d, wishes)
         if found is None:
             return None
-        if found.complete and graph.exists():
-            return _whole(net, storage, graph)
-        return _sampled(net, storage, walks, Path(name), d)
+        if not found.complete or not graph.exists():
+            return _sampled(net, storage, walks, Path(name), d)
+        whole = _Whole(net, storage, clock).compared(graph)
+        if whole.deviation or not clock.is_relative:
+            return whole
+        # In relative time a graph does not say how long was waited: runs do.
+        sampled = _sampled(net, storage, walks, Path(name), d)
+        if sampled is None or sampled.deviation:
+            return sampled
+        return replace(whole, walks=sampled.walks, steps=sampled.steps)
 
 
-def _whole(net: FlatNet, storage: Mapping[str, str], graph: Path) -> CoreReport:
-    markings: list[tuple[float, Mapping[str, Any]]] = []
-    leaving: list[set[str]] = []
-    rows: list[Mapping[str, Any]] = []
-    with graph.open(encoding="utf-8", errors="surrogateescape") as lines:
-        for line in lines:
-            row = json.loads(line)
-            if "node" in row:
-                markings.append((row["t"], row["marking"]))
-                leaving.append(set())
-            else:
-                rows.append(row)
-    for row in rows:
-        element = _key(row["t"], row["transition"], row["binding"])
-        leaving[row["from"] - 1].add(f"{element} -> {_marking_key(*markings[row['to'] - 1])}")
-    game = Game(net, storage, files=Files(None))
-    try:
-        _first(net, game, markings)
-        for (time, places), arcs in zip(markings, leaving, strict=True):
-            _node(net, game, time, places, arcs)
-    except (_Differs, GameError) as difference:
-        return CoreReport(len(markings), len(rows), False, deviation=str(difference))
-    return CoreReport(len(markings), len(rows), True)
+class _Whole:
+    def __init__(self, net: FlatNet, storage: Mapping[str, str], clock: Clock) -> None:
+        self._net = net
+        self._game = Game(net, storage, files=Files(None))
+        self._clock = clock
 
+    def compared(self, graph: Path) -> CoreReport:
+        """The explorer's graph, node by node."""
+        markings: list[tuple[float, Mapping[str, Any]]] = []
+        leaving: list[set[str]] = []
+        rows: list[Mapping[str, Any]] = []
+        with graph.open(encoding="utf-8", errors="surrogateescape") as lines:
+            for line in lines:
+                row = json.loads(line)
+                if "node" in row:
+                    markings.append((row["t"], row["marking"]))
+                    leaving.append(set())
+                else:
+                    rows.append(row)
+        for row in rows:
+            element = self._element_key(row["t"], row["transition"], row["binding"])
+            leaving[row["from"] - 1].add(f"{element} -> {_marking_key(*markings[row['to'] - 1])}")
+        try:
+            if not markings or _marking_key(*markings[0]) != self._key(self._game.marking):
+                raise _Differs("the initial markings differ")
+            for (time, places), arcs in zip(markings, leaving, strict=True):
+                self._node(time, places, arcs)
+        except (_Differs, GameError) as difference:
+            return CoreReport(len(markings), len(rows), False, deviation=str(difference))
+        return CoreReport(len(markings), len(rows), True)
 
-def _first(net: FlatNet, game: Game, markings: list[tuple[float, Mapping[str, Any]]]) -> None:
-    own = _marking_key(game.marking.time, _places(net, game, game.marking))
-    if not markings or _marking_key(*markings[0]) != own:
-        raise _Differs("the initial markings differ")
+    def _node(self, time: float, places: Mapping[str, Any], arcs: set[str]) -> None:
+        """Raises `_Differs` unless the node has the arcs that the token game gives it."""
+        net, game = self._net, self._game
+        tokens = tuple(place_from_json(p.colset, places[p.name]) for p in net.places)
+        marking = game.settle(Marking(time if net.real_time else int(time), tokens))
+        expected: set[str] = set()  # one arc for each binding element: equal ones are one
+        for element in game.enabled_in(marking):
+            after, occurred = game.occur(marking, element)
+            name = net.transitions[element.transition].name
+            key = self._element_key(marking.time, name, binding_to_json(occurred))
+            expected.add(f"{key} -> {self._key(after)}")
+        for text in expected - arcs:
+            raise _Differs(f"only the token game has, at {_short(places)}: {text}")
+        for text in arcs - expected:
+            raise _Differs(f"only the compiled net has, at {_short(places)}: {text}")
 
+    def _element_key(self, time: float, transition: str, binding: Mapping[str, Any]) -> str:
+        shown = 0.0 if self._clock.is_relative else float(time)
+        return json.dumps([shown, transition, binding], sort_keys=True)
 
-def _node(net: FlatNet, game: Game, time: float, places: Mapping[str, Any], arcs: set[str]) -> None:
-    """Raises `_Differs` unless the node has the arcs that the token game gives it."""
-    tokens = tuple(place_from_json(p.colset, places[p.name]) for p in net.places)
-    marking = game.settle(Marking(time if net.real_time else int(time), tokens))
-    expected: set[str] = set()  # one arc for each binding element: equal ones are one
-    for element in game.enabled_in(marking):
-        after, occurred = game.occur(marking, element)
-        name = net.transitions[element.transition].name
-        key = _key(marking.time, name, binding_to_json(occurred))
-        expected.add(f"{key} -> {_marking_key(after.time, _places(net, game, after))}")
-    for text in expected - arcs:
-        raise _Differs(f"only the token game has, at {_short(places)}: {text}")
-    for text in arcs - expected:
-        raise _Differs(f"only the compiled net has, at {_short(places)}: {text}")
+    def _key(self, marking: Marking) -> str:
+        counted = self._clock.relative(marking)
+        places = {
+            p.name: place_to_json(self._game.colours, p.colset, counted.places[p.index])
+            for p in self._net.places
+        }
+        return _marking_key(counted.time, places)
 
 
 def _sampled(
@@ -164,19 +188,9 @@ def _runs(program: Path, walks: int, folder: Path) -> Iterator[tuple[int, Path]]
         yield seed, trace
 
 
-def _places(net: FlatNet, game: Game, marking: Marking) -> dict[str, Any]:
-    return {
-        p.name: place_to_json(game.colours, p.colset, marking.places[p.index]) for p in net.places
-    }
-
-
 def _marking_key(time: float, places: Mapping[str, Any]) -> str:
     held = {name: tokens for name, tokens in places.items() if tokens}
     return json.dumps([float(time), held], sort_keys=True)
-
-
-def _key(time: float, transition: str, binding: Mapping[str, Any]) -> str:
-    return json.dumps([float(time), transition, binding], sort_keys=True)
 
 
 def _short(places: Mapping[str, Any]) -> str:

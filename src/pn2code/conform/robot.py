@@ -18,6 +18,7 @@ from dataclasses import dataclass, replace
 from pn2code.cell.config import CellConfig
 from pn2code.cell.partition import Partition
 from pn2code.channels.message import specs_of
+from pn2code.conform.clock import Clock
 from pn2code.conform.messages import scalars
 from pn2code.conform.primitives import Calls, noting
 from pn2code.conform.scheme import MOST_STATES, Scheme
@@ -140,6 +141,7 @@ class _Product:
         self._wants_waits = any(p.command == "wait" for p in config.primitives.values())
         self._names = {t.name: t for t in self._net.transitions}
         self._scheme = Scheme(partition, game)
+        self._clock = Clock(partition.net)
         self._interpreter = Interpreter(program, self._files, self._heard)
         self._marking = game.marking
         self._done: list[commands.Command] = []
@@ -148,7 +150,7 @@ class _Product:
         self._commands = 0
 
     def run(self) -> RobotReport:
-        first = _State(self._game.marking, self._interpreter.save(), None)
+        first = self._timeless(_State(self._game.marking, self._interpreter.save(), None))
         parent: dict[_State, tuple[_State, str] | None] = {first: None}
         waiting = deque([first])
         deviation: str | None = None
@@ -156,7 +158,8 @@ class _Product:
         try:
             while waiting and len(parent) <= self._most:
                 at = waiting.popleft()
-                for text, after in self._following(at):
+                for text, following in self._following(at):
+                    after = self._timeless(following)
                     if after not in parent:
                         parent[after] = (at, text)
                         waiting.append(after)
@@ -201,7 +204,7 @@ class _Product:
         if quiet and self._net.timed:
             later = self._later(state)
             if later is not None:
-                yield f"time {later.marking.time}", later
+                yield f"time goes on by {later.marking.time - state.marking.time}", later
 
     def _later(self, state: _State) -> _State | None:
         """Time goes on to where something can happen."""
@@ -214,6 +217,13 @@ class _Product:
         return replace(
             state, marking=replace(state.marking, time=time if self._net.real_time else int(time))
         )
+
+    def _timeless(self, state: _State) -> _State:
+        """The same state with times from its own on, where only those count."""
+        if not self._clock.is_relative:
+            return state
+        until = None if state.until is None else max(state.until - state.marking.time, 0)
+        return replace(state, marking=self._clock.relative(state.marking), until=until)
 
     def _resumed(self, state: _State) -> Iterator[tuple[str, _State]]:
         """The script goes on, if it can."""

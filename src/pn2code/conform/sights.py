@@ -1,9 +1,8 @@
 """What can come before the supervisor's eyes: the closed net is explored, and of each of its states is kept what the
 supervisor can tell of it.
 
-found = look(partition, game, scheme, most=20_000)
-found.first                      # Sight(marking, read) after the first cycle
-found.others[sight]              # {Sight(...): "Robot1.Report {...}"}: what others do to it
+found = look(partition, game, scheme, clock, most=20_000)
+found.others[sight]              # {Sight(...): Turn("Robot1.Report {...}", 0)}: what others do to it
 
 A supervisor sees its own places, the channels that it writes and reads, and the time. What robots do in between,
 it does not see: many markings of the net are one sight, and a program that does the right thing in each sight does it
@@ -17,6 +16,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass, field, replace
 
 from pn2code.cell.partition import Partition
+from pn2code.conform.clock import Clock
 from pn2code.conform.scheme import SUPERVISOR, Scheme
 from pn2code.semantics.game import Game
 from pn2code.semantics.marking import Marking
@@ -33,18 +33,24 @@ class Sight:
     read: frozenset[int]
 
 
+@dataclass(frozen=True, slots=True)
+class Turn:
+    """How one sight turns into another: an occurrence in words, or time that goes on by `later`."""
+
+    text: str
+    later: float = 0
+
+
 @dataclass(slots=True)
 class Sights:
     """Args:
-    first: after the first cycle; None: that cycle stops the cell, or ends it.
     others: for each sight, those that it turns into without the supervisor, and by what.
     states: markings of the closed net with what has been read.
-    complete: these are all.
+    complete: these are all; without any, the first cycle stops the cell or ends it.
     overruns: ways to messages that come while the one before has not been taken.
     """
 
-    first: Sight | None
-    others: dict[Sight, dict[Sight, str]] = field(default_factory=dict)
+    others: dict[Sight, dict[Sight, Turn]] = field(default_factory=dict)
     states: int = 0
     complete: bool = True
     overruns: list[tuple[str, ...]] = field(default_factory=list)
@@ -56,38 +62,45 @@ class _State:
     read: frozenset[int]
 
 
+_CYCLE = Turn("the supervisor's cycle")
+
+
 class _Closed:
-    def __init__(self, partition: Partition, game: Game, scheme: Scheme, most: int) -> None:
+    def __init__(
+        self, partition: Partition, game: Game, scheme: Scheme, clock: Clock, most: int
+    ) -> None:
         self._partition = partition
         self._game = game
         self._scheme = scheme
+        self._clock = clock
+        self._start = clock.relative(game.marking)
         self._most = most
         self._incoming = [i for i, c in enumerate(partition.channels) if c.reader == SUPERVISOR]
         seen = {*scheme.touched(SUPERVISOR), *partition.final_places}
         channels = {c.place for c in partition.channels if SUPERVISOR in (c.writer, c.reader)}
         self._unseen = [p.index for p in partition.net.places if p.index not in seen | channels]
-        self._way: dict[_State, tuple[_State, str] | None] = {}
+        self._way: dict[_State, tuple[_State, Turn] | None] = {}
 
     def look(self) -> Sights:
-        start = self._after_cycle(self._game.marking)
+        found = Sights()
+        start = self._after_cycle(self._start)
         if start is None:
-            return Sights(None)
-        found = Sights(self._sight(start))
+            return found
         self._way = {start: None}
         waiting = deque([start])
         while waiting:
             state = waiting.popleft()
             own = self._sight(state)
             others = found.others.setdefault(own, {})
-            for text, after in self._following(state, found):
+            for turn, after in self._following(state, found):
                 if after not in self._way:
                     if len(self._way) >= self._most:
                         found.complete = False
                         continue
-                    self._way[after] = (state, text)
+                    self._way[after] = (state, turn)
                     waiting.append(after)
-                if text and (turned := self._sight(after)) != own:
-                    others.setdefault(turned, text)
+                if turn is not _CYCLE and (turned := self._sight(after)) != own:
+                    others.setdefault(turned, turn)
         found.states = len(self._way)
         # What was cut off is not gone into.
         for others in found.others.values():
@@ -95,8 +108,8 @@ class _Closed:
                 del others[sight]
         return found
 
-    def _following(self, state: _State, found: Sights) -> Iterator[tuple[str, _State]]:
-        """States with the words of what leads there, "" for the supervisor's cycle."""
+    def _following(self, state: _State, found: Sights) -> Iterator[tuple[Turn, _State]]:
+        """States with what leads there."""
         quiet = True
         for owner in self._partition.owners[SUPERVISOR + 1 :]:
             possible = self._scheme.steps(owner.index, state.marking)
@@ -106,17 +119,19 @@ class _Closed:
                 if self._is_overrun(state.marking, dict(step.changes)):
                     found.overruns.append((*self._way_to(state), step.text))
                 else:
-                    yield step.text, _State(step.after(state.marking), state.read)
+                    yield Turn(step.text), _State(step.after(state.marking), state.read)
         cycle = self._scheme.cycle(state.marking)
         if cycle.elements or cycle.stopped:
             quiet = False
         after = self._after_cycle(state.marking)
         if after is not None:
-            yield "", after
+            yield _CYCLE, after
         if quiet:
-            later = self._game.settle(state.marking)
-            if later != state.marking:
-                yield f"time {later.time}", _State(later, state.read)
+            marking = self._game.settle(state.marking)
+            if marking != state.marking:
+                later = marking.time - state.marking.time
+                after = _State(self._clock.relative(marking), state.read)
+                yield Turn(f"time goes on by {later}", later), after
 
     def _after_cycle(self, marking: Marking) -> _State | None:
         """None: the supervisor stops, or has finished."""
@@ -143,24 +158,25 @@ class _Closed:
     def _sight(self, state: _State) -> Sight:
         places = list(state.marking.places)
         for p in self._unseen:
-            places[p] = self._game.marking.places[p]
+            places[p] = self._start.places[p]
         return Sight(replace(state.marking, places=tuple(places)), state.read)
 
     def _way_to(self, state: _State) -> tuple[str, ...]:
         way = []
         while (step := self._way[state]) is not None:
-            state, text = step
-            way.append(text or "the supervisor's cycle")
+            state, turn = step
+            way.append(turn.text)
         return tuple(way[::-1])
 
 
-def look(partition: Partition, game: Game, scheme: Scheme, most: int) -> Sights:
+def look(partition: Partition, game: Game, scheme: Scheme, clock: Clock, most: int) -> Sights:
     """Explores the closed net as the cell runs it: the supervisor in cycles, the others step by step.
 
     Args:
         partition: the net and its owners.
         game: a token game at the marking from which the cell starts.
         scheme: of the two.
+        clock: of the net.
         most: states at most.
     """
-    return _Closed(partition, game, scheme, most).look()
+    return _Closed(partition, game, scheme, clock, most).look()

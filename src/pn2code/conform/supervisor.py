@@ -16,10 +16,11 @@ from dataclasses import dataclass, field
 
 from pn2code.cell.partition import ChannelKind, Partition
 from pn2code.channels.message import EMPTY, ChannelSpec, Message, compose, parse, specs_of
+from pn2code.conform.clock import Clock
 from pn2code.conform.messages import scalars
 from pn2code.conform.probe import SESSION, Answer, Probe
 from pn2code.conform.scheme import MOST_STATES, SUPERVISOR, Scheme
-from pn2code.conform.sights import Sight, look
+from pn2code.conform.sights import Sight, Turn, look
 from pn2code.semantics.game import Game
 from pn2code.semantics.marking import Marking, place_from_json, place_text
 
@@ -78,22 +79,28 @@ class _DeviationError(Exception):
 
 @dataclass(frozen=True, slots=True)
 class _State:
-    """What the program is in. `sent`: the number of messages so far in each channel, in the order of the partition;
-    what is done does not depend on it, and it never ends."""
+    """What the program is in. What it does depends on the sight alone.
+
+    Args:
+        sight: what it sees.
+        time: its clock.
+        sent: the number of messages so far in each channel, in the order of the partition.
+    """
 
     sight: Sight
+    time: float
     sent: tuple[int, ...]
 
 
 @dataclass(frozen=True, slots=True)
 class _Move:
-    """Something that can happen, in words. `sight`: what it leads to; None: it is the supervisor's cycle."""
+    """Something that can happen. `sight`: what it leads to; None: it is the supervisor's cycle."""
 
-    text: str
+    turn: Turn
     sight: Sight | None
 
 
-_CYCLE = _Move("the supervisor's cycle", None)
+_CYCLE = _Move(Turn("the supervisor's cycle"), None)
 
 
 class _Product:
@@ -103,7 +110,8 @@ class _Product:
         self._game = game
         self._probe = probe
         self._scheme = Scheme(partition, game)
-        self._sights = look(partition, game, self._scheme, most)
+        self._clock = Clock(partition.net)
+        self._sights = look(partition, game, self._scheme, self._clock, most)
         self._specs: tuple[ChannelSpec, ...] = specs_of(partition)
         self._own = [
             p
@@ -135,7 +143,9 @@ class _Product:
 
     def _run(self) -> None:
         none_sent = (0,) * len(self._partition.channels)
-        start = _State(Sight(self._game.marking, frozenset()), none_sent)
+        initial = self._game.marking
+        sight = Sight(self._clock.relative(initial), frozenset())
+        start = _State(sight, initial.time, none_sent)
         first = self._compared(start, self._probe.first)
         if first is None:
             return
@@ -186,17 +196,17 @@ class _Product:
 
     def _moves(self, state: _State) -> Iterator[_Move]:
         yield _CYCLE
-        for sight, text in self._sights.others.get(state.sight, {}).items():
-            yield _Move(text, sight)
+        for sight, turn in self._sights.others.get(state.sight, {}).items():
+            yield _Move(turn, sight)
 
     def _made(self, state: _State, move: _Move) -> _State | None:
         """Makes a move in the program; the state after it, None where the way ends."""
         if move.sight is None:
             return self._compared(state, self._probe.go())
-        before, after = state.sight.marking, move.sight.marking
-        files, sent = self._published(state, after)
-        self._probe.write(files, float(after.time) if after.time != before.time else None)
-        return _State(move.sight, sent)
+        files, sent = self._published(state, move.sight.marking)
+        time = state.time + move.turn.later
+        self._probe.write(files, float(time) if time != state.time else None)
+        return _State(move.sight, time, sent)
 
     def _published(
         self, state: _State, after: Marking
@@ -221,7 +231,7 @@ class _Product:
         return files, tuple(sent)
 
     def _way(self) -> tuple[str, ...]:
-        return tuple(move.text for move in self._path)
+        return tuple(move.turn.text for move in self._path)
 
     # --- comparison ------------------------------------------------------------------------------
 
@@ -244,7 +254,7 @@ class _Product:
             raise _DeviationError(
                 f"the supervisor fires {answer.fired} times, by the net {len(expected.elements)} times"
             )
-        self._compare_places(expected.marking, answer.marking)
+        self._compare_places(state.time, expected.marking, answer.marking)
         sent = self._compare_files(state, expected.marking, answer.files)
         if not self._is_first:
             self._compare_order(before, expected.marking, answer.published)
@@ -263,7 +273,7 @@ class _Product:
             for i, channel in enumerate(self._partition.channels)
             if channel.reader == SUPERVISOR and expected.marking.places[channel.place]
         )
-        return _State(Sight(expected.marking, read), sent)
+        return _State(Sight(self._clock.relative(expected.marking), read), state.time, sent)
 
     def _overrun(self, marking: Marking) -> str:
         for channel in self._partition.channels:
@@ -273,14 +283,12 @@ class _Product:
                 return f"{tokens} messages for {channel.file}"
         return ""
 
-    def _compare_places(self, expected: Marking, told: Mapping[str, object]) -> None:
+    def _compare_places(self, now: float, expected: Marking, told: Mapping[str, object]) -> None:
         for p in self._own:
-            found = place_from_json(p.colset, told[p.name])
-            if found != expected.places[p.index]:
-                is_, should = (
-                    place_text(self._game.colours, p.colset, x)
-                    for x in (found, expected.places[p.index])
-                )
+            found = self._clock.tokens(place_from_json(p.colset, told[p.name]), now)
+            wanted = self._clock.tokens(expected.places[p.index], expected.time)
+            if found != wanted:
+                is_, should = (place_text(self._game.colours, p.colset, x) for x in (found, wanted))
                 raise _DeviationError(f"place `{p.name}` holds {is_}, by the net {should}")
 
     def _compare_order(self, before: Marking, after: Marking, published: tuple[str, ...]) -> None:
