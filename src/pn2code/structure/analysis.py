@@ -18,7 +18,13 @@ from pn2code.semantics.evaluate import Evaluator
 from pn2code.semantics.game import Game, GameError
 from pn2code.semantics.multiset import MultiSet, TimedMultiSet
 from pn2code.structure import flows, siphons
-from pn2code.structure.bounds import MOST_PROGRAMS, PlaceBound, markable, place_bounds
+from pn2code.structure.bounds import (
+    MOST_PROGRAMS,
+    PlaceBound,
+    constant_of,
+    markable,
+    place_bounds,
+)
 from pn2code.structure.classes import Graph, classes, components, graph
 from pn2code.structure.coloured import (
     ColouredInvariant,
@@ -223,11 +229,11 @@ def analyse(
         marking=start.marking,
         initial=initial,
         unknown=start.unknown,
-        p_invariants=tuple(PInvariant(v, _constant(v, initial)) for v in p_flows.vectors),
+        p_invariants=tuple(PInvariant(v, constant_of(v, initial)) for v in p_flows.vectors),
         p_complete=p_flows.complete,
         p_basis=None
         if everything is None
-        else tuple(PInvariant(v, _constant(v, initial)) for v in everything),
+        else tuple(PInvariant(v, constant_of(v, initial)) for v in everything),
         uncovered={p.index: _why_not(p.index, skel) for p in net.places if p.index not in covered},
         t_invariants=tuple(TInvariant(v) for v in t_flows.vectors),
         t_complete=t_flows.complete,
@@ -305,7 +311,7 @@ def _coloured_sums(found: Sequence[ColouredInvariant]) -> Iterator[Sum]:
 
 def _sums(vectors: Sequence[Mapping[int, int]], initial: Sequence[int | None]) -> Iterator[Sum]:
     for weights in vectors:
-        constant = _constant(weights, initial)
+        constant = constant_of(weights, initial)
         if constant is not None and all(w > 0 for w in weights.values()):
             yield Sum(weights, constant, by_colour=False)
 
@@ -319,16 +325,6 @@ def _covers(covered: int, of: int, found: flows.Flows) -> bool | None:
     if covered == of:
         return True
     return False if found.complete else None
-
-
-def _constant(vector: Mapping[int, int], initial: Sequence[int | None]) -> int | None:
-    total = 0
-    for p, w in vector.items():
-        n = initial[p]
-        if n is None:
-            return None
-        total += w * n
-    return total
 
 
 # --- the initial marking ---------------------------------------------------------------------------

@@ -139,7 +139,7 @@ def place_bounds(
         if p not in marked:
             best[p] = Proof("never marked", {}, 0)
     for vector in invariants:
-        total = _total(vector, initial)
+        total = constant_of(vector, initial)
         if total is None or not all(w > 0 for w in vector.values()):
             continue
         for p in vector:
@@ -163,7 +163,7 @@ def _lower(
     """Fewest tokens: what is left of an invariant's sum when all its other places are full."""
     found: dict[int, int] = {}
     for vector in invariants:
-        total = _total(vector, initial)
+        total = constant_of(vector, initial)
         if total is None or not all(p in upper for p in vector):
             continue
         full = sum(w * upper[p] for p, w in vector.items())
@@ -178,7 +178,8 @@ def _bound(place: int, proof: Proof) -> int:
     return proof.initial // proof.weights[place] if proof.weights else 0
 
 
-def _total(vector: Mapping[int, int], initial: Sequence[int | None]) -> int | None:
+def constant_of(vector: Mapping[int, int], initial: Sequence[int | None]) -> int | None:
+    """The weighted number of tokens at first; None if a place of it has an unknown number."""
     total = 0
     for p, w in vector.items():
         n = initial[p]
@@ -217,7 +218,7 @@ def _by_programs(
         if vector is None:
             continue
         weights = {usable[i]: w for i, w in vector.items()}
-        total = _total(weights, initial)
+        total = constant_of(weights, initial)
         if total is not None:
             offer(p, Proof("sub-invariant", weights, total))
 
@@ -277,7 +278,7 @@ def check(skeleton: Skeleton, bound: PlaceBound, initial: Sequence[int | None]) 
     marked, live = markable(skeleton, initial)
     if not proof.weights:
         return bound.place not in marked and bound.bound == 0
-    total = _total(proof.weights, initial)
+    total = constant_of(proof.weights, initial)
     if total is None or bound.bound != total // proof.weights[bound.place]:
         return False
     if proof.kind in ("invariant", "constant"):
