@@ -18,47 +18,47 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, field
 
 Number = int | float
 
 
-@dataclass(slots=True)
-class Untimed:
+class _Collected:
+    """What both kinds keep of the values so far."""
+
+    def __init__(self, zero: Number) -> None:
+        self.zero = zero
+        self.clear()
+
+    def clear(self) -> None:
+        """Forgets all values."""
+        self.count = 0
+        self._min = self._max = self._first = self._last = self.zero
+        self._sum = self._squares = self.zero
+
+    def _keep(self, x: Number) -> None:
+        if self.count == 0:
+            self._min = self._max = self._first = x
+        self._min = min(self._min, x)
+        self._max = max(self._max, x)
+        self._last = x
+        self.count += 1
+
+
+class Untimed(_Collected):
     """Every value counts the same.
 
     Args:
         zero: 0, or 0.0 for a collector of reals: what is reported before the first value.
     """
 
-    zero: Number = 0
-    count: int = field(default=0, init=False)
-    _min: Number = field(default=0, init=False)
-    _max: Number = field(default=0, init=False)
-    _first: Number = field(default=0, init=False)
-    _last: Number = field(default=0, init=False)
-    _sum: Number = field(default=0, init=False)
-    _squares: Number = field(default=0, init=False)
-
-    def __post_init__(self) -> None:
-        """Starts with nothing."""
-        self.clear()
-
-    def clear(self) -> None:
-        """Forgets all values."""
-        self.count = 0
-        self._min = self._max = self._first = self._last = self._sum = self._squares = self.zero
+    def __init__(self, zero: Number = 0) -> None:
+        super().__init__(zero)
 
     def update(self, x: Number) -> None:
         """A further value."""
-        if self.count == 0:
-            self._min = self._max = self._first = x
-        self._min = min(self._min, x)
-        self._max = max(self._max, x)
-        self._last = x
+        self._keep(x)
         self._sum += x
         self._squares += x * x
-        self.count += 1
 
     def values(self) -> dict[str, Number]:
         """All statistics by name."""
@@ -82,8 +82,7 @@ class Untimed:
         }
 
 
-@dataclass(slots=True)
-class Timed:
+class Timed(_Collected):
     """Each value counts for as long as it held.
 
     Args:
@@ -91,40 +90,21 @@ class Timed:
         zero: 0, or 0.0 for a collector of reals.
     """
 
-    now: Callable[[], Number]
-    zero: Number = 0
-    count: int = field(default=0, init=False)
-    _min: Number = field(default=0, init=False)
-    _max: Number = field(default=0, init=False)
-    _first: Number = field(default=0, init=False)
-    _last: Number = field(default=0, init=False)
-    _sum: Number = field(default=0, init=False)
-    _squares: Number = field(default=0, init=False)
-    _start: Number = field(default=0, init=False)
-    _updated: Number = field(default=0, init=False)
-
-    def __post_init__(self) -> None:
-        """Starts with nothing."""
-        self.clear()
-
-    def clear(self) -> None:
-        """Forgets all values."""
-        self.count = 0
-        self._min = self._max = self._first = self._last = self._sum = self._squares = self.zero
+    def __init__(self, now: Callable[[], Number], zero: Number = 0) -> None:
+        super().__init__(zero)
+        self.now = now
+        self._start: Number = 0
+        self._updated: Number = 0
 
     def update(self, x: Number) -> None:
         """A further value, from now on."""
         now = self.now()
         if self.count == 0:
-            self._min = self._max = self._first = x
             self._start = now
         else:
             self._sum, self._squares = self._totals(now)
-        self._min = min(self._min, x)
-        self._max = max(self._max, x)
-        self._last = x
+        self._keep(x)
         self._updated = now
-        self.count += 1
 
     def _totals(self, now: Number) -> tuple[Number, Number]:
         """Sum and sum of squares up to now."""
