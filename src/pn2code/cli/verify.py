@@ -43,7 +43,8 @@ from pn2code.verify.pictures import GRAPH_KINDS, PLOT_KINDS, Pictures
 from pn2code.verify.programs import Sizes
 from pn2code.verify.progress import ProgressLine
 from pn2code.verify.properties_text import told
-from pn2code.verify.report import error_text, report, why_partial
+from pn2code.verify.reasons import clause
+from pn2code.verify.report import error_text, report
 from pn2code.verify.result import Exploration, Trace, row
 from pn2code.verify.webpage import webpage
 from pn2code.whole_file import whole_file
@@ -253,13 +254,16 @@ def verify(
                 found = explore(opened.flat, opened.storage, limits, d, pictures.wishes(wishes))
                 if found is not None and check_controller:
                     control = controller.look(opened, found, limits, wishes, folder, d)
+                more: Sequence[Answer] = ()
+                if found is not None:
+                    more = properties.of_bindings(asked, opened, found, limits, wishes, d)
                 seen: medium.Answers = ()
                 if found is not None and check_medium:
                     seen = medium.look(opened, found, limits, wishes, d)
         if found is None:
             stop(d, form)
         pictures.write(opened.flat, found, d)
-        answers = properties.answered(asked, opened, found, folder, _stem(opened), d)
+        answers = properties.answered(asked, opened, found, more, folder, _stem(opened), d)
     if found.error is not None and found.why == "error":
         _tell_error(opened, found, d)
     if found.graph is not None and len(found.traces) < min(most_traces, found.dead_count):
@@ -425,9 +429,9 @@ def _told(opened: OpenNet, trace: Trace, goal: str) -> str:
 
 
 def _figures(found: Exploration) -> str:
-    partial = "" if found.complete else f" TRUNCATED: {why_partial(found)}."
+    partial = "" if found.complete else f" TRUNCATED: {clause(found.why)}."
     if found.why == "decided":
-        partial = f" Ended early: {why_partial(found)}."
+        partial = f" Ended early: {clause(found.why)}."
     return (
         f"{found.nodes:,} markings and {found.arcs:,} arcs{' of the reduced space' * found.is_reduced} "
         f"in {found.seconds:.2f} s "

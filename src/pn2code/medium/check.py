@@ -10,7 +10,7 @@ import time
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
-from typing import Any, Literal
+from typing import Any
 
 from pn2code.cell.partition import Partition
 from pn2code.diagnostics import Diagnostics
@@ -22,12 +22,13 @@ from pn2code.medium.places import Crashes, MediumNet, modelled
 from pn2code.medium.rules import Rules
 from pn2code.medium.skeleton import Skeleton, Topology, topology
 from pn2code.medium.tell import Teller
+from pn2code.verify.answers import Verdict
 from pn2code.verify.explore import Wishes, explore
 from pn2code.verify.limits import Limits, Reduction
 from pn2code.verify.programs import Sizes
+from pn2code.verify.reasons import clause
 from pn2code.verify.result import Exploration
 
-Verdict = Literal["yes", "no", "inconclusive"]
 MOST_STATES = 2_000_000
 """Of one exploration, if the user sets no limit."""
 MOST_TRACES = 16
@@ -297,7 +298,7 @@ def _verdict(
     if runs or found.fired[net.ending]:
         return "no", ""
     if not found.complete:
-        return "inconclusive", f"the exploration is not complete: {found.why}"
+        return "inconclusive", f"the exploration is not complete: {clause(found.why)}"
     if judged and (found.dead_count or any(a["answer"] != "yes" for a in _ends(net, found))):
         return "no", ""
     return "yes", ""

@@ -8,21 +8,10 @@ from pathlib import Path
 from typing import Any, Literal
 
 from pn2code.properties import meaning as m
+from pn2code.verify.reasons import clause
 from pn2code.verify.result import Exploration
 
 Verdict = Literal["yes", "no", "inconclusive"]
-
-_WHY = {
-    "states": "the limit of states was reached",
-    "seconds": "the limit of time was reached",
-    "memory": "the limit of memory was reached",
-    "interrupted": "it was interrupted",
-    "error": "an inscription raised an exception",
-    "truncated": "not all markings were seen",
-    "approximation": "it is approximate: markings may have been taken for others",
-    "reduction": "the reduction of the state space does not keep it",
-    "exception": "an inscription raised an exception",
-}
 
 
 @dataclass(frozen=True, slots=True)
@@ -113,14 +102,14 @@ def _answer(p: m.Property, said: Mapping[str, Any]) -> Answer:
     return Answer(
         p,
         verdict,
-        _WHY.get(why, why) if verdict == "inconclusive" else "",
+        clause(why) if verdict == "inconclusive" else "",
         evidence,
         said.get("value"),
         said.get("node"),
     )
 
 
-def verdict(found: Sequence[Answer]) -> Literal["yes", "no", "inconclusive"]:
+def verdict(found: Sequence[Answer]) -> Verdict:
     """Of all together: "no" if one is not as expected, else "inconclusive" if one is not known."""
     if any(x.answer != "inconclusive" and not x.is_expected for x in found):
         return "no"

@@ -21,6 +21,7 @@ from pn2code.diagnostics import Diagnostics
 from pn2code.net.flat import ArcKind
 from pn2code.verify.explore import Wishes, explore
 from pn2code.verify.limits import Limits, Reduction
+from pn2code.verify.reasons import clause
 from pn2code.verify.reductions import OBSTACLES
 from pn2code.verify.result import Exploration
 from pn2code.whole_file import whole_file
@@ -52,17 +53,6 @@ MAX_FIRINGS = 100_000
 """What `./supervisor` permits in one cycle unless it is told another number."""
 _WAYS = 60
 """Transitions of a run that are named."""
-
-WHY = {
-    "states": "the limit of states was reached",
-    "seconds": "the limit of time was reached",
-    "memory": "the limit of memory was reached",
-    "interrupted": "it was interrupted",
-    "error": "an inscription raised an exception",
-    "endless": "the response is not finite",
-    "reduction": "a reduction does not keep it",
-    "compiler": "there is no C compiler",
-}
 
 
 @dataclass(frozen=True, slots=True)
@@ -97,7 +87,7 @@ class Check:
         answer: "yes", "no" or "unknown".
         says: one line for people.
         value: the number that belongs to it, if there is one.
-        why: of "unknown", as in `WHY`; of a blocked cell "deadlock" or "endless".
+        why: of "unknown", as in `reasons`; of a blocked cell "deadlock" or "endless".
         is_accepted: cell.toml says that it need not be so.
         evidence: the run; of confluence a second one, which goes on in another way.
         transitions: the two whose order matters; those that touch what is another's.
@@ -288,7 +278,7 @@ class _Keeper:
 
 def _open(name: str, row: Mapping[str, Any]) -> Check:
     why = row.get("why")
-    return Check(name, "unknown", f"not known: {WHY.get(why or '', why or 'not asked')}", why=why)
+    return Check(name, "unknown", f"not known: {clause(why or 'not asked')}", why=why)
 
 
 def _finite(row: Mapping[str, Any], keep: _Keeper) -> Check:

@@ -26,6 +26,7 @@ from pn2code.verify.control import Check, Control, Plan
 from pn2code.verify.explore import Wishes
 from pn2code.verify.limits import Limits, cores
 from pn2code.verify.programs import Sizes, Structure
+from pn2code.verify.reasons import clause
 
 MOST_STATES = 1_000_000
 MOST_SECONDS = 30.0
@@ -91,7 +92,7 @@ def prove(
         other = (
             f"the file of `{given[0]}` brings a token that the net does not have" if given else ""
         )
-        rooms.refuse(net, found, other or control.WHY.get(why or "", ""), d)
+        rooms.refuse(net, found, other or clause(why or ""), d)
     if d.has_errors:
         return None
     return Proofs(found, tuple(_verdicts(looked)), looked)

@@ -17,6 +17,7 @@ from pn2code.net.flat import FlatNet, FlatPlace
 from pn2code.verify import control_text, properties_text
 from pn2code.verify.answers import Answer
 from pn2code.verify.control import Control
+from pn2code.verify.reasons import clause
 from pn2code.verify.result import Exploration, Graph, multiset_text
 
 _RULE = "-" * 72
@@ -24,14 +25,6 @@ _NAME = 20
 """Columns of a name in the tables of bounds; a longer one has a line of its own."""
 _LISTED = 5
 """Of more nodes than that in a list only their number and the first are given."""
-_WHY = {
-    "states": "the limit of states was reached",
-    "seconds": "the limit of time was reached",
-    "memory": "the limit of memory was reached",
-    "interrupted": "it was interrupted",
-    "error": "an inscription raised an exception",
-    "decided": "all properties were decided by then",
-}
 
 
 def report(
@@ -65,11 +58,6 @@ def report(
     return "\n\n\n".join(parts) + "\n"
 
 
-def why_partial(found: Exploration) -> str:
-    """Why not everything was seen, as a clause."""
-    return _WHY.get(found.why, found.why)
-
-
 def error_text(net: FlatNet, found: Exploration) -> str:
     """What raises the exception of `found.error`: the transition, and the binding if it is an occurrence."""
     error = found.error
@@ -96,7 +84,7 @@ def _head(net: FlatNet, found: Exploration, written: datetime | None) -> str:
     ]
     if not found.complete:
         lines += [
-            f"PARTIAL: {why_partial(found)}. What follows is about the part that was seen: upper bounds may be",
+            f"PARTIAL: {clause(found.why)}. What follows is about the part that was seen: upper bounds may be",
             "greater, lower bounds smaller, dead transitions may occur, and there may be further dead markings.",
         ]
     if found.approximation is not None:

@@ -20,7 +20,8 @@ from pn2code.verify.answers import Answer
 from pn2code.verify.assumptions import assumed
 from pn2code.verify.control import TITLES, Control
 from pn2code.verify.path import Step, steps
-from pn2code.verify.report import bounded_places, error_text, why_partial
+from pn2code.verify.reasons import clause
+from pn2code.verify.report import bounded_places, error_text
 from pn2code.verify.result import Exploration, Trace, multiset_text
 
 MOST_STEPS = 200
@@ -154,7 +155,7 @@ def _verdicts(net: FlatNet, found: Exploration) -> list[dict[str, str]]:
             }
         )
     else:
-        text = f"Partial: {why_partial(found)}. What follows is about the part that was seen."
+        text = f"Partial: {clause(found.why)}. What follows is about the part that was seen."
         said.append({"kind": "open", "text": text})
     if found.approximation is not None:
         kind, omitted = found.approximation["kind"], found.approximation["omission_probability"]

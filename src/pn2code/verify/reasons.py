@@ -1,0 +1,23 @@
+"""Why something was not seen, or is not known: the explorer says it in one word, people want a clause."""
+
+from __future__ import annotations
+
+_CLAUSES = {
+    "states": "the limit of states was reached",
+    "seconds": "the limit of time was reached",
+    "memory": "the limit of memory was reached",
+    "interrupted": "it was interrupted",
+    "error": "an inscription raised an exception",
+    "exception": "an inscription raised an exception",
+    "decided": "all properties were decided by then",
+    "truncated": "not all markings were seen",
+    "approximation": "it is approximate: markings may have been taken for others",
+    "reduction": "the reduction of the state space does not keep it",
+    "endless": "the response is not finite",
+    "compiler": "there is no C compiler",
+}
+
+
+def clause(why: str) -> str:
+    """For a sentence; what is no such word stays as it is."""
+    return _CLAUSES.get(why, why)
