@@ -123,7 +123,7 @@ def _parse_scalar(scalar: Scalar, word: str) -> ScalarValue | str:
         case ScalarKind.STRING:
             if _STRING.fullmatch(word) is None:
                 return _Wrong(f"{quote(word)} is not a string in double quotes ({where})")
-            return _Text(_ESCAPE.sub(lambda m: m[1] or chr(int(m[2], 16)), word[1:-1]))
+            return _ESCAPE.sub(lambda m: m[1] or chr(int(m[2], 16)), word[1:-1])
         case ScalarKind.INT | ScalarKind.INDEX:
             if _INTEGER.fullmatch(word) is None:
                 return _Wrong(f"{quote(word)} is not an integer ({where})")
@@ -143,13 +143,7 @@ def _parse_scalar(scalar: Scalar, word: str) -> ScalarValue | str:
 
 
 class _Wrong(str):
-    """What is wrong with a word."""
-
-    __slots__ = ()
-
-
-class _Text(str):
-    """A decoded string; its own class only so that it is not taken for `_Wrong`."""
+    """What is wrong with a word: not the value of one, which may be a text, too."""
 
     __slots__ = ()
 
@@ -166,7 +160,7 @@ def parse_scalars(scalars: Sequence[Scalar], line: str) -> tuple[ScalarValue, ..
         value = _parse_scalar(scalars[i], match[0])
         if isinstance(value, _Wrong):
             return Malformed(str(value), match.start() + 1)
-        values.append(str(value) if isinstance(value, _Text) else value)
+        values.append(value)
     if len(values) < len(scalars):
         missing = scalars[len(values)]
         text = (
