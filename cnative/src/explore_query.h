@@ -53,10 +53,11 @@ typedef struct ex_item {
     char raised[EX_RAISED_SIZE];
 } ex_item_t;
 
-/* What happens in a run: a node of an item, or an arc of a transition. */
+/* What happens in a run: a node of an item, or an arc of some transitions. */
 typedef struct ex_event {
     bool is_transition;
-    uint32_t number;
+    uint32_t number; /* of the item */
+    uint64_t *of;    /* a bit for each transition */
 } ex_event_t;
 
 /* One condition of an arc of an automaton: whether the node is in an item. */

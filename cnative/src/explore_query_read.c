@@ -102,12 +102,32 @@ static bool read_limit(const ex_reader_t *r, const char *word, uint64_t none, ui
     return ((word[0] >= '0') && (word[0] <= '9') && (*rest == '\0') && (errno == 0)) || ex_complain(r, "not a number", word);
 }
 
-/* `s3`: nodes of item 3; `f3`: arcs of transition 3. */
+/* The numbers of transitions, `3,4`. */
+static bool read_transitions(const ex_reader_t *r, const char *word, ex_event_t *event)
+{
+    const char *at = word;
+    event->of = calloc(((size_t)pn_net.transition_count / 64U) + 1U, sizeof *event->of);
+    if (event->of == NULL) {
+        return ex_complain(r, "not enough memory", word);
+    }
+    while (at != NULL) {
+        char *rest = NULL;
+        const unsigned long long number = strtoull(at, &rest, 10);
+        if ((at[0] < '0') || (at[0] > '9') || (number >= pn_net.transition_count) || ((*rest != ',') && (*rest != '\0'))) {
+            return ex_complain(r, "there is no such transition", at);
+        }
+        EX_SET_BIT(event->of, number);
+        at = (*rest == ',') ? (rest + 1) : NULL;
+    }
+    return true;
+}
+
+/* `s3`: nodes of item 3; `f3,4`: arcs of transitions 3 and 4. */
 static bool read_event(const ex_reader_t *r, const char *word, ex_event_t *event)
 {
     event->is_transition = word[0] == 'f';
     if (event->is_transition) {
-        return ex_read_transition(r, &word[1], &event->number);
+        return read_transitions(r, &word[1], event);
     }
     return (word[0] == 's') ? ex_read_item(r, &word[1], &event->number) : ex_complain(r, "not an event", word);
 }

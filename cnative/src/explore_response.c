@@ -41,7 +41,7 @@ static bool is_event_node(const wait_t *w, const ex_event_t *event, uint32_t nod
 
 static bool is_event_arc(const wait_t *w, const ex_event_t *event, uint64_t arc)
 {
-    return event->is_transition && (w->graph->label[arc] == event->number);
+    return event->is_transition && (EX_BIT(event->of, w->graph->label[arc]) != 0U);
 }
 
 /* Whether a wait goes on along an arc. */
@@ -230,11 +230,9 @@ static void show_endless(const wait_t *w, ex_question_t *question)
         return;
     }
     (void)memset(other, 0xff, words * sizeof *other);
-    if (second->is_transition) {
-        other[second->number / 64U] &= ~((uint64_t)1U << (second->number % 64U));
-    }
-    if (first->is_transition) {
-        EX_SET_BIT(begin, first->number);
+    for (uint64_t i = 0U; i < words; i++) {
+        other[i] &= second->is_transition ? ~second->of[i] : UINT64_MAX;
+        begin[i] |= first->is_transition ? first->of[i] : 0U;
     }
     ex_literal_t no_end[2] = { { .item = second->number, .is_positive = false }, { .item = first->number, .is_positive = true } };
     const uint32_t ends = second->is_transition ? 0U : 1U;
@@ -269,6 +267,18 @@ static bool add_arc(const wait_t *w, uint32_t node, ex_way_t *way)
     return false;
 }
 
+/* Adds the arc with which the wait begins. */
+static void add_maker(const wait_t *w, uint32_t node, ex_way_t *way)
+{
+    const uint32_t from = ex_way_end(way);
+    for (uint64_t arc = w->graph->row[from]; arc < w->graph->row[from + 1U]; arc++) {
+        if ((w->graph->target[arc] == node) && is_event_arc(w, &w->question->first, arc)) {
+            ex_way_step(way, w->graph->label[arc], node);
+            return;
+        }
+    }
+}
+
 /* The way ends when the wait, which begins with step `first`, is too long. */
 static void cut(const wait_t *w, uint64_t first, ex_way_t *way)
 {
@@ -301,7 +311,7 @@ static void show_longest(const wait_t *w, ex_question_t *question)
         ex_way_from_start(w->graph, node, way);
     } else {
         ex_way_from_start(w->graph, w->maker[node], way);
-        (void)ex_way_arc(w->graph, question->first.number, node, way);
+        add_maker(w, node, way);
     }
     const uint64_t first = way->steps;
     bool is_fine = !way->is_failed;

@@ -5,16 +5,18 @@ from __future__ import annotations
 import re
 import tempfile
 from collections.abc import Iterator, Sequence
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from dataclasses import dataclass, replace
 from pathlib import Path
 
 from pn2code.cli.nets import OpenNet
 from pn2code.diagnostics import Diagnostics
+from pn2code.net.flat import FlatNet
 from pn2code.properties import codes, sources
 from pn2code.properties import meaning as m
 from pn2code.properties.ltl import TooLargeError
 from pn2code.properties.questions import Questions
+from pn2code.properties.split import NoSplitError, Split, groups, is_about_bindings
 from pn2code.semantics.effects import Effect, Effects
 from pn2code.semantics.game import GameError
 from pn2code.semantics.values import MlException, MlLimit
@@ -22,7 +24,10 @@ from pn2code.simulate.script import TraceRefusedError
 from pn2code.verify import confirm
 from pn2code.verify.answers import Answer, answers
 from pn2code.verify.codes import TRACE_UNWRITABLE
+from pn2code.verify.explore import Wishes, explore
 from pn2code.verify.lasso import write_loop
+from pn2code.verify.limits import Limits, Reduction
+from pn2code.verify.programs import Sizes
 from pn2code.verify.result import Exploration
 
 _CALLED = {"yes": "true", "no": "false", "inconclusive": "not known"}
@@ -35,10 +40,19 @@ class Asked:
 
     properties: m.Properties = m.Properties()
     questions: str = ""
+    """of all but those about bindings"""
+    splits: tuple[Split, ...] = ()
+    """nets for those about bindings"""
 
     def __bool__(self) -> bool:
         """Whether anything is asked."""
         return bool(self.properties.properties)
+
+    @property
+    def plain(self) -> m.Properties:
+        """Those that are asked of the net itself."""
+        plain = (p for p in self.properties.properties if not is_about_bindings(p))
+        return replace(self.properties, properties=tuple(plain))
 
 
 def asked(
@@ -63,6 +77,24 @@ def asked(
         return Asked()
     properties = sources.bind(written, opened.flat, typed.elaborator, d)
     _check_effects(opened, properties, d)
+    try:
+        splits = tuple(Split.of(opened.flat, properties, x) for x in groups(properties))
+    except NoSplitError as problem:
+        d.error(
+            codes.FORM,
+            str(problem),
+            problem.about.origin,
+            hint="write several properties, or join conditions in CPN ML: `{ n = 3 orelse n = 5 }`",
+        )
+        return Asked(properties)
+    made = Asked(properties, splits=splits)
+    for split in splits:
+        _questions(split.properties, d)
+    return replace(made, questions=_questions(made.plain, d))
+
+
+def _questions(properties: m.Properties, d: Diagnostics) -> str:
+    """As the explorer reads them; formulas that are too large are reported."""
     questions = Questions()
     for p in properties.properties:
         try:
@@ -74,7 +106,53 @@ def asked(
                 p.origin,
                 hint="write several properties instead of one",
             )
-    return Asked(properties, questions.text())
+    return questions.text()
+
+
+def of_bindings(
+    asked: Asked,
+    opened: OpenNet,
+    found: Exploration,
+    limits: Limits,
+    wishes: Wishes,
+    d: Diagnostics,
+) -> tuple[Answer, ...]:
+    """The answers to properties about bindings, each looked at again; their runs have no names yet.
+
+    Args:
+        asked: what is asked.
+        opened: the net.
+        found: its state space: if that was interrupted, nothing more is explored.
+        limits: of each exploration.
+        wishes: those for the net itself.
+        d: gets the errors.
+    """
+    # Reductions that look at binding elements keep nothing that is asked here.
+    kept = tuple(r for r in limits.reductions if r is Reduction.TIME)
+    given: list[Answer] = []
+    for number, split in enumerate(asked.splits):
+        of = {p.name: p for p in asked.properties.properties}
+        about = split.properties
+        seen: Exploration | None = None
+        if found.why not in ("interrupted", "error"):
+            own = replace(
+                wishes,
+                traces=None,
+                stem=f"bindings-{number}",
+                questions=_questions(about, d),
+                predicates=about.predicates,
+                sizes=Sizes.start(split.net, opened.storage),
+            )
+            seen = explore(
+                split.net, opened.storage, replace(limits, reductions=kept, graph=True), d, own
+            )
+        for answer in answers(about, seen.answers if seen else (), seen or found):
+            if answer.evidence is not None and seen is not None:
+                _confirm(answer, about, split.net, opened, seen, d)
+                with suppress(OSError):
+                    split.restore(answer.evidence.trace)
+            given.append(replace(answer, about=of[answer.about.name], node=None))
+    return tuple(given)
 
 
 def files(opened: OpenNet, file: Path | None, *, found: bool) -> tuple[Path, ...]:
@@ -93,14 +171,14 @@ def _check_effects(opened: OpenNet, properties: m.Properties, d: Diagnostics) ->
         or any(Effect.WRITE in effects.of(a.inscription.value) for a in t.arcs if a.inscription)
         for t in opened.flat.transitions
     )
-    for predicate in properties.predicates:
-        own = effects.of(predicate.exp)
+    for exp in (x.exp for x in (*properties.predicates, *properties.steps)):
+        own = effects.of(exp)
         wrong = [e for e in Effect if e in own and (e in _OUTSIDE or changes)]
         if wrong:
             d.error(
                 codes.OUTSIDE,
                 f"this condition {wrong[0].value}",
-                predicate.exp.span,
+                exp.span,
                 hint="say it of what the places hold: nothing else is the same whenever a marking is reached",
             )
 
@@ -128,7 +206,13 @@ def unnamed_runs(asked: Asked, folder: Path) -> Iterator[Path | None]:
 
 
 def answered(
-    asked: Asked, opened: OpenNet, found: Exploration, folder: Path, stem: str, d: Diagnostics
+    asked: Asked,
+    opened: OpenNet,
+    found: Exploration,
+    more: Sequence[Answer],
+    folder: Path,
+    stem: str,
+    d: Diagnostics,
 ) -> tuple[Answer, ...]:
     """The answers; runs have got readable names, and have been looked at again.
 
@@ -138,14 +222,18 @@ def answered(
         asked: what was asked.
         opened: the net.
         found: its state space.
+        more: what `of_bindings` has given.
         folder, stem: where runs are kept, and what their names begin with.
         d: gets the errors.
     """
-    given = answers(asked.properties, found.answers, found)
+    plain = answers(asked.plain, found.answers, found)
+    by_name = {answer.about.name: answer for answer in (*plain, *more)}
+    given = tuple(by_name[p.name] for p in asked.properties.properties)
     named = _named(given, folder, stem)
     for before, answer in zip(given, named, strict=True):
         if answer.evidence is not None:
-            _confirm(answer, asked, opened, found, d)
+            if not is_about_bindings(answer.about):  # those have been looked at
+                _confirm(answer, asked.properties, opened.flat, opened, found, d)
         elif before.evidence is not None or (
             answer.answer == "no" and _has_run(answer.about.asked)
         ):
@@ -166,14 +254,19 @@ def _has_run(asked: m.Asked) -> bool:
 
 
 def _confirm(
-    answer: Answer, asked: Asked, opened: OpenNet, found: Exploration, d: Diagnostics
+    answer: Answer,
+    asked: m.Properties,
+    net: FlatNet,
+    opened: OpenNet,
+    found: Exploration,
+    d: Diagnostics,
 ) -> None:
     assert answer.evidence is not None
     try:
         problem = confirm.problem(
-            opened.flat,
+            net,
             opened.storage,
-            asked.properties,
+            asked,
             answer,
             exact_times="time" not in found.reductions,
         )

@@ -61,11 +61,13 @@ class Binder:
         self._properties: list[m.Property] = []
         self._predicates: list[Predicate] = []
         self._numbers: dict[str, int] = {}
+        self._steps: list[m.StepCondition] = []
+        self._step_numbers: dict[tuple[int, str], int] = {}
         self._owner = ""
 
     def properties(self) -> m.Properties:
         """All that were added without an error."""
-        return m.Properties(tuple(self._properties), tuple(self._predicates))
+        return m.Properties(tuple(self._properties), tuple(self._predicates), tuple(self._steps))
 
     def add(self, written: Written) -> None:
         """Adds a property, or reports what is wrong with it."""
@@ -230,15 +232,36 @@ class Binder:
             case t.Enabled(name, _):
                 index = self.names.transition(name)
                 return None if index is None else m.Atom("enabled", index)
-            case t.Fires(name, span):
+            case t.Fires(name, so, span):
                 index = self.names.transition(name)
                 if index is None or not self._is_fires_allowed(mode, span):
                     return None
-                return m.Atom("fires", index)
+                return m.Atom("fires", index) if so is None else self._fires_so(index, so.text)
             case t.Operation():
                 return self._operation(f, mode)
             case _:
                 assert_never(f)
+
+    def _fires_so(self, transition: int, text: SourceText) -> m.Formula | None:
+        key = (transition, text.text.strip())
+        if not key[1]:
+            self._empty(text, "`fires(Page'Transition 1, { n = 3 })`")
+            return None
+        if key not in self._step_numbers:
+            exp = self._marks.of_binding(text, self._net.transitions[transition], self._d)
+            if exp is None:
+                return None
+            self._step_numbers[key] = len(self._steps)
+            self._steps.append(m.StepCondition(transition, key[1], exp))
+        return m.Atom("fires so", self._step_numbers[key])
+
+    def _empty(self, text: SourceText, example: str) -> None:
+        self._d.error(
+            codes.SYNTAX,
+            "this condition is empty",
+            text.span(0, 1),
+            hint=f"write a condition in CPN ML: {example}",
+        )
 
     def _is_fires_allowed(self, mode: Mode, span: Span) -> bool:
         if mode in ("ltl", "event"):
@@ -258,12 +281,12 @@ class Binder:
         if (linear and mode != "ltl") or (branching and mode != "ctl"):
             self._misplaced(f, mode)
             return None
-        if mode == "event" and any(isinstance(x, t.Fires) for x in _inside(f)):
+        if mode == "event" and not _is_event(f):
             self._d.error(
                 codes.FORM,
-                "an event with `within` is one `fires(..)`, or a condition on markings",
+                "an event with `within` is `fires(..)`, or several joined by `||`, or a condition on markings",
                 f.span,
-                hint="leave out `within`, or write a property for each transition",
+                hint="leave out `within`, or write a property for each",
             )
             return None
         step = -1
@@ -299,12 +322,7 @@ class Binder:
     def _ml(self, text: SourceText) -> m.Formula | None:
         key = text.text.strip()
         if not key:
-            self._d.error(
-                codes.SYNTAX,
-                "this condition is empty",
-                text.span(0, 1),
-                hint="write a condition in CPN ML: `{ size (Mark.Page'Place 1) <= 3 }`",
-            )
+            self._empty(text, "`{ size (Mark.Page'Place 1) <= 3 }`")
             return None
         if key in self._numbers:
             return m.Atom("pred", self._numbers[key])
@@ -355,6 +373,13 @@ class Binder:
         text = f"{texts[0]} {f.operator} {texts[1]}"
         used = tuple((places[p], p) for p in sorted(places))
         return self._predicate(text, exp, used)
+
+
+def _is_event(f: t.Formula) -> bool:
+    """Whether it is about markings alone, or about steps alone: one of them."""
+    parts = [x for x in _inside(f) if not (isinstance(x, t.Operation) and x.operator == "or")]
+    steps = [isinstance(x, t.Fires) for x in parts]
+    return not any(isinstance(x, t.Fires) for x in _inside(f)) or all(steps)
 
 
 def _inside(f: t.Formula) -> list[t.Formula]:

@@ -50,7 +50,7 @@ fair: (STRONG | WEAK)? (name | ALL)
      | (A | E) "[" formula "]" -> quantified
      | (TRUE | FALSE | DEAD | INITIAL) -> word
      | "enabled" "(" name ")" -> enabled
-     | "fires" "(" name ")" -> fires
+     | "fires" "(" name ("," ML)? ")" -> fires
      | operand COMPARISON operand -> comparison
      | operand "<=" operand -> at_most
      | operand "<" operand -> less

@@ -221,14 +221,16 @@ class Graph:
     def _responds(self, asked: m.Response) -> bool:
         """From each node after a first event: whether no path goes on too long without the second."""
         first = asked.first
-        if isinstance(first, m.Atom) and first.kind == "fires":
-            starts = {to for _, t, to in self.arcs if t == first.number}
+        if m.looks_at_steps(first):
+            begin = {a.number for a in m.atoms(first)}
+            starts = {to for _, t, to in self.arcs if t in begin}
         else:
             starts = set(self.nodes(first))
         second = asked.second
-        if isinstance(second, m.Atom) and second.kind == "fires":
+        if m.looks_at_steps(second):
             good: Nodes = frozenset()
-            arcs = [(s, to) for s, t, to in self.arcs if t != second.number]
+            end = {a.number for a in m.atoms(second)}
+            arcs = [(s, to) for s, t, to in self.arcs if t not in end]
         else:
             good = self.nodes(second)
             arcs = [(s, to) for s, _, to in self.arcs]

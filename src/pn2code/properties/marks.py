@@ -10,12 +10,14 @@ from collections.abc import Callable
 from dataclasses import dataclass, field, fields, is_dataclass, replace
 from typing import Any
 
-from pn2code.diagnostics import SourceText
+from pn2code.diagnostics import Diagnostics, SourceText
 from pn2code.ml import syntax as s
-from pn2code.ml.core import Exp, Symbol
+from pn2code.ml.core import Exp, Symbol, Var
 from pn2code.ml.elaborate import Elaborator
-from pn2code.net.flat import FlatNet
+from pn2code.net.flat import FlatNet, FlatTransition
 from pn2code.net.predicate import marking_type
+from pn2code.net.uses import walk
+from pn2code.properties import codes
 from pn2code.properties.names import Names
 
 _STRUCTURE = "Mark."
@@ -75,6 +77,24 @@ class Marks:
         if exp is None:
             return None
         return exp, tuple((used[place], place) for place in sorted(used))
+
+    def of_binding(self, text: SourceText, t: FlatTransition, d: Diagnostics) -> Exp | None:
+        """A typed condition on the variables of a transition; None after a diagnostic."""
+        declared = {symbol.name: symbol for symbol in t.variables}
+        exp = self.elaborator.condition(text, lambda parsed: (parsed, declared))
+        if exp is None:
+            return None
+        late = {symbol.uid for symbol in t.code.outputs} if t.code else set()
+        for part in walk(exp):
+            if isinstance(part, Var) and part.symbol.uid in late:
+                d.error(
+                    codes.FORM,
+                    f"`{part.symbol.name}` gets its value from the code segment, when `{t.short}` has been chosen",
+                    part.span,
+                    hint="say it of the place into which the value is put",
+                )
+                return None
+        return exp
 
 
 def _rewritten(node: Any, change: Callable[[Any], Any]) -> Any:

@@ -5,8 +5,11 @@ What is asked (`Invariant`, `Bound`, `Branching`, `Linear`, `Response`) is all t
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+
 from pn2code.diagnostics import Origin
 from pn2code.frozen import frozen
+from pn2code.ml import core
 from pn2code.net.predicate import Predicate
 
 
@@ -15,8 +18,9 @@ class Atom:
     """Something true or false of a node, or (`fires`) of the arc that is taken next.
 
     Args:
-        kind: "true", "dead", "initial", "pred", "enabled", "fires".
-        number: of "pred" in `Questions.predicates`, of "enabled" and "fires" in `FlatNet.transitions`.
+        kind: "true", "dead", "initial", "pred", "enabled", "fires", "fires so".
+        number: of "pred" in `Properties.predicates`, of "enabled" and "fires" in `FlatNet.transitions`, of "fires so"
+            (with a condition on the binding) in `Properties.steps`.
     """
 
     kind: str
@@ -72,8 +76,32 @@ def _joined(operator: str, parts: tuple[Formula, ...]) -> Formula:
 def looks_at_steps(f: Formula) -> bool:
     """Whether `fires` is in it: then it says something of a step, not of a node."""
     if isinstance(f, Atom):
-        return f.kind == "fires"
+        return f.kind in ("fires", "fires so")
     return any(map(looks_at_steps, f.parts))
+
+
+def atoms(f: Formula) -> Iterator[Atom]:
+    """All in a formula."""
+    if isinstance(f, Atom):
+        yield f
+        return
+    for part in f.parts:
+        yield from atoms(part)
+
+
+@frozen
+class StepCondition:
+    """A condition on the binding of a transition.
+
+    Args:
+        transition: its index.
+        text: as the author wrote it.
+        exp: of type bool; its free symbols are variables of the transition that its code segment does not give.
+    """
+
+    transition: int
+    text: str
+    exp: core.Exp
 
 
 @frozen
@@ -126,7 +154,8 @@ class Linear:
 class Response:
     """Each `first` is followed by a `second`, within so many firings, or units of time.
 
-    The events are `Atom("fires", t)`, the step that is taken, or conditions on nodes: that such a node is entered.
+    The events are `Atom("fires", t)`, the step that is taken, or one of several such; or conditions on nodes: that
+    such a node is entered.
     """
 
     first: Formula
@@ -136,6 +165,19 @@ class Response:
 
 
 Asked = Invariant | Bound | Branching | Linear | Response
+
+
+def formulas(asked: Asked) -> tuple[Formula, ...]:
+    """What a question is made of."""
+    match asked:
+        case Invariant(condition):
+            return (condition,)
+        case Branching(formula) | Linear(formula):
+            return (formula,)
+        case Response(first, second):
+            return (first, second)
+        case Bound():
+            return ()
 
 
 @frozen
@@ -165,7 +207,8 @@ class Property:
 
 @frozen
 class Properties:
-    """All that is asked about a net in one exploration; `predicates` by number."""
+    """All that is asked about a net; `predicates` and `steps`, conditions on markings and bindings, by number."""
 
     properties: tuple[Property, ...] = ()
     predicates: tuple[Predicate, ...] = ()
+    steps: tuple[StepCondition, ...] = ()

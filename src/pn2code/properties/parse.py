@@ -350,7 +350,8 @@ class _Builder(Transformer[Token, Any]):
         return t.Enabled(c[0], self._span(meta))
 
     def fires(self, meta: Meta, c: list[Any]) -> t.Formula:
-        return t.Fires(c[0], self._span(meta))
+        condition = self._ml(c[1]) if len(c) > 1 else None
+        return t.Fires(c[0], condition, self._span(meta))
 
     def comparison(self, meta: Meta, c: list[Any]) -> t.Formula:
         operator = str(c[1])
@@ -371,9 +372,13 @@ class _Builder(Transformer[Token, Any]):
     def operand(self, _: Meta, c: list[Any]) -> int | tuple[t.Name, ...]:
         return tuple(c) if isinstance(c[0], t.Name) else self._number(c[0])
 
-    def ml(self, meta: Meta, c: list[Any]) -> t.Formula:
-        inside = part(self._source, meta.start_pos + 1, meta.end_pos - 1)
-        return t.Ml(inside, self._span(meta))
+    def ml(self, _: Meta, c: list[Any]) -> t.Formula:
+        return self._ml(c[0])
+
+    def _ml(self, token: Token) -> t.Ml:
+        start = token.start_pos or 0
+        end = start + len(token)
+        return t.Ml(part(self._source, start + 1, end - 1), self._source.span(start, end))
 
     def name(self, meta: Meta, c: list[Any]) -> t.Name:
         token = c[0]

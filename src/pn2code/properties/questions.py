@@ -55,8 +55,8 @@ class Questions:
                 self.asked.append(f"? within-{word} {events} {value}")
 
     def _event(self, f: m.Formula) -> str:
-        if isinstance(f, m.Atom) and f.kind == "fires":
-            return f"f{f.number}"
+        if m.looks_at_steps(f):
+            return f"f{','.join(str(a.number) for a in m.atoms(f))}"
         return f"s{self.item(f)}"
 
     def _automaton(self, found: Automaton, fair: tuple[m.Fairness, ...]) -> list[str]:

@@ -68,9 +68,15 @@ class Enabled:
 
 @frozen
 class Fires:
-    """`fires(T)`."""
+    """`fires(T)`, `fires(T, { n = 3 })`.
+
+    Args:
+        name: the transition instance.
+        condition: what its binding must be; None: any.
+    """
 
     name: Name
+    condition: Ml | None
     span: Span = field(compare=False, repr=False)
 
 
