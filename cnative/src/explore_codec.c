@@ -288,6 +288,7 @@ bool ex_encode_time(ex_worker_t *worker)
                 return false;
             }
             set_cell(worker, codec->word_of[i], number);
+            scratch->decoded[codec->word_of[i] - codec->packed_words] = number;
         }
     }
     if (!is_reduced && (codec->time_word != NONE)) {
