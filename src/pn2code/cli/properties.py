@@ -171,7 +171,8 @@ def _check_effects(opened: OpenNet, properties: m.Properties, d: Diagnostics) ->
         or any(Effect.WRITE in effects.of(a.inscription.value) for a in t.arcs if a.inscription)
         for t in opened.flat.transitions
     )
-    for exp in (x.exp for x in (*properties.predicates, *properties.steps)):
+    conditions = [p.exp for p in properties.predicates] + [s.exp for s in properties.steps]
+    for exp in conditions:
         own = effects.of(exp)
         wrong = [e for e in Effect if e in own and (e in _OUTSIDE or changes)]
         if wrong:
