@@ -68,13 +68,16 @@ class SensorConfig:
 
     Args:
         variable: the net variable that it decides, wherever nothing in the net does.
-        file: in a run: what it says, one value a line, over and over; "": drawn at random.
+        file: in a run: what it says, one value a line, over and over.
+        default: what it says where there is no such file; None: the file must be there. With neither, it is drawn
+            at random.
         seed: of what is drawn at random.
     """
 
     name: str
     variable: str
     file: str
+    default: str | int | float | bool | None
     seed: int
     origin: Origin
 

@@ -374,7 +374,7 @@ def _sensors(r: Tables, data: dict[str, Any]) -> Iterable[SensorConfig]:
         if not isinstance(table, dict):
             r.d.error(codes.CELL_VALUE, f"`sensors.{name}` must be a table", r.at(*at))
             continue
-        r.keys(table, at, {"variable", "file", "seed"})
+        r.keys(table, at, {"variable", "file", "default", "seed"})
         _name(r, name, at, "a sensor name")
         variable = r.get(table, at, "variable", str, "a variable of the net", name)
         if variable in variables:
@@ -386,8 +386,16 @@ def _sensors(r: Tables, data: dict[str, Any]) -> Iterable[SensorConfig]:
             )
         variables.setdefault(variable, name)
         file = r.file_name(table, at) if "file" in table else ""
+        default = table.get("default")
+        if default is not None and not isinstance(default, str | int | float):
+            r.d.error(
+                codes.CELL_VALUE,
+                f"`default` is `{default}`, but a value of the variable is expected",
+                r.at(*at, "default"),
+            )
+            default = None
         seed = r.get(table, at, "seed", int, "a whole number", 1)
-        yield SensorConfig(name, variable, file, seed, r.at(*at))
+        yield SensorConfig(name, variable, file, default, seed, r.at(*at))
 
 
 def _report(r: Tables, data: dict[str, Any], config: CellConfig) -> ReportConfig:

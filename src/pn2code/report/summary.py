@@ -63,6 +63,7 @@ def summarise(record: RunRecord, report: ReportConfig, robots: tuple[str, ...]) 
         "backend": record.backend,
         "verdict": record.verdict,
         "reason": record.reason,
+        "final": list(record.final),
         "cycle_seconds": round(record.time, 6),
         "rows": len(merged_rows(record.messages, report.rows)) if report.rows else 0,
         **summary_counts(record, dict(report.count), dict(report.occurrences)),
@@ -128,6 +129,8 @@ def page(summary: dict[str, Any]) -> RenderableType:
     if summary["layout"]:
         head.append(f", layout {summary['layout']}")
     head.append(f", backend {summary['backend']}")
+    if summary["final"]:
+        head.append(f", ended in {', '.join(p.rpartition('.')[2] for p in summary['final'])}")
     if summary["reason"]:
         head.append(f"\n{summary['reason']}", "red")
 

@@ -217,14 +217,24 @@ class Engine:
     def _close(self) -> RunRecord:
         """The last lines of the record."""
         self.record.time = self.now
+        if self.record.verdict == "finished":
+            self.supervisor.close()  # its trace is complete then
+            self.record.final = self._final_places()
         end: dict[str, Any] = {"t": self.now, "event": "end", "why": self.record.verdict}
         if self.record.reason:
             end["reason"] = self.record.reason
+        if self.record.final:
+            end["final"] = list(self.record.final)
         self.record.events.append(end)
         self._close_activity(self.now)
         for observer in self.observers:
             observer.ended(self)
         return self.record
+
+    def _final_places(self) -> tuple[str, ...]:
+        """Where the supervisor has come to its end, as the last line of its trace says."""
+        self.supervisor_trace.complete_lines()
+        return tuple(self.supervisor_trace.end.get("final", ()))
 
     # --- one instant -------------------------------------------------------------------------
 

@@ -73,6 +73,7 @@ class RunRecord:
         verdict: "finished", "stopped" (somebody stopped the cell safely) or "failed" (a collision,
         an unreachable pose, ...).
         reason: why, when not finished.
+        final: the final places that hold a token at the end, when finished.
         time: simulated seconds.
         events: lines of the merged trace after the header.
         header: the header line of the merged trace.
@@ -86,6 +87,7 @@ class RunRecord:
     backend: str
     verdict: str = "failed"
     reason: str = ""
+    final: tuple[str, ...] = ()
     time: float = 0.0
     wall: float = 0.0
     header: dict[str, Any] = field(default_factory=dict)

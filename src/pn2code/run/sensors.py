@@ -1,4 +1,4 @@
-"""What sensors say in a run: the values of a file, over and over, or drawn at random from a seed.
+"""What sensors say in a run: the values of a file, over and over, a default, or drawn at random from a seed.
 
     sensors = load(config, partition.net, folders, seed, d)
     sensors.ask("robot1", "grip")       # -> "held"
@@ -17,7 +17,7 @@ from pathlib import Path
 from pn2code.cell.codes import CELL_FILE, CELL_MISSING, CELL_VALUE
 from pn2code.cell.config import CellConfig, SensorConfig
 from pn2code.cell.scalars import Scalar, ScalarKind, scalars_of
-from pn2code.channels.scalars import Malformed, parse_scalars
+from pn2code.channels.scalars import Malformed, format_scalars, parse_scalars
 from pn2code.diagnostics import Diagnostics, Origin
 from pn2code.net.flat import FlatNet
 from pn2code.os_reason import os_reason
@@ -75,8 +75,9 @@ def load(
         scalars = scalars_of(colset) if colset is not None else None
         if colset is None or scalars is None or len(scalars) != 1:
             continue  # no program asks it: said when the programs were made
-        script = _script(sensor, scalars, tuple(folders), d) if sensor.file else ()
-        choices = () if sensor.file else _choices(sensor, scalars[0], d)
+        script = _script(sensor, scalars, tuple(folders), d)
+        is_drawn = not sensor.file and sensor.default is None
+        choices = _choices(sensor, scalars[0], d) if is_drawn else ()
         out[sensor.name] = _Sensor(sensor.seed if seed is None else seed, script, choices)
     return Sensors(out) if len(d.errors) == before else None
 
@@ -84,13 +85,20 @@ def load(
 def _script(
     sensor: SensorConfig, scalars: tuple[Scalar, ...], folders: tuple[Path, ...], d: Diagnostics
 ) -> tuple[Value, ...]:
-    path = next((f / sensor.file for f in folders if (f / sensor.file).is_file()), None)
+    """What it says in turn: the lines of its file, or its default; empty: neither is given, or an error was reported."""
+    files = [f / sensor.file for f in folders if sensor.file and (f / sensor.file).is_file()]
+    path = next(iter(files), None)
+    if path is None and sensor.default is not None:
+        return _default(sensor, scalars, sensor.default, d)
+    if path is None and not sensor.file:
+        return ()
     if path is None:
         d.error(
             CELL_MISSING,
             f"sensor `{sensor.name}`: there is no file `{sensor.file}`",
             sensor.origin,
-            hint="write one value a line, or leave out `file` to have them drawn at random",
+            hint="write one value a line, or say what it says without one (`default`), or leave out `file` to "
+            "have them drawn at random",
         )
         return ()
     try:
@@ -121,6 +129,24 @@ def _script(
             hint="write one value a line",
         )
     return tuple(out)
+
+
+def _default(
+    sensor: SensorConfig, scalars: tuple[Scalar, ...], value: Value, d: Diagnostics
+) -> tuple[Value, ...]:
+    """Written in cell.toml as in a file: a text is a constructor's name, or the text itself."""
+    is_text = isinstance(value, str) and scalars[0].kind is not ScalarKind.STRING
+    text = str(value) if is_text else format_scalars(scalars, (value,))
+    found = Malformed(f"`{value}` is no value", 1) if text is None else parse_scalars(scalars, text)
+    if not isinstance(found, Malformed):
+        return found
+    d.error(
+        CELL_VALUE,
+        f"sensor `{sensor.name}`: default: {found.text}",
+        sensor.origin,
+        hint=f"a value of colour set `{scalars[0].colset}` is expected",
+    )
+    return ()
 
 
 def _choices(sensor: SensorConfig, scalar: Scalar, d: Diagnostics) -> range | tuple[Value, ...]:

@@ -12,11 +12,16 @@ class TraceError(Exception):
 
 
 class GrowingTrace:
-    """A trace file that another process writes, read line by line as it grows."""
+    """A trace file that another process writes, read line by line as it grows.
+
+    Attributes:
+        end: the last line of a complete trace, empty until it has been read.
+    """
 
     def __init__(self, path: Path) -> None:
         self._path = path
         self._stream = path.open(encoding="utf-8")
+        self.end: dict[str, Any] = {}
         self.header = self._line()
 
     def next_occurrence(self) -> dict[str, Any]:
@@ -51,6 +56,8 @@ class GrowingTrace:
             raise TraceError(f"{self._path}: not JSON: {text.rstrip()!r}") from problem
         if not isinstance(line, dict):
             raise TraceError(f"{self._path}: not an object: {text.rstrip()!r}")
+        if line.get("event") == "end":
+            self.end = line
         return line
 
     def close(self) -> None:
