@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import random
-from collections.abc import Callable, Sequence
+from collections import Counter
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 
@@ -26,6 +27,10 @@ LAST = (6750.0, 5898.8, 2135.05, -105.0, 0.0, 0.0)
 TOLERANCE_MM = 1e-9
 """The oracle multiplies matrices where the net has formulas: the last bits may differ."""
 
+READINGS = ("pressed", "drilled", "inserted", "released", "seen")
+"""The variables that nothing in the net decides: whether a tool or the camera has done its work."""
+DONE, FAILED = 1, 2
+
 Pose = Sequence[float]
 
 
@@ -46,11 +51,12 @@ def nets(root: Path) -> dict[bool, FlatNet]:
 
 @dataclass
 class Run:
-    """What a run has sent to each robot, and which transitions have occurred."""
+    """What a run has sent to each robot, which transitions have occurred, the final place that holds a token."""
 
     rows: tuple[list[Row], list[Row]]
     fired: list[str]
     game: Game
+    ended: str = ""
 
 
 def token(pose: Pose) -> Value:
@@ -77,8 +83,12 @@ def play(
     *,
     measured: tuple[Pose, Pose] | None = None,
     choose: Callable[[int], int] = lambda size: 0,
+    faults: Mapping[str, int] | None = None,
 ) -> Run:
-    """Plays to the end; `measured` replaces what robot 1's camera answers."""
+    """Plays to the end; `measured` replaces what robot 1's camera answers.
+
+    Nothing fails but what `faults` says: {"drilled": 3} is the drill at the third rivet.
+    """
     source = place(net, "coordenadas", "Cell/Supervisor")
     game = Game(
         net, {"FLOAT": "float32"}, {source.name: MultiSet.of([(n, token(first), token(last))])}
@@ -98,6 +108,7 @@ def play(
         p.index: [t for t in net.transitions if p.index in takes[t.index]] for p in net.places
     }
     enabled: dict[int, list[BindingElement]] = {}
+    failing, read = faults or {}, Counter[str]()
     asked = list(net.transitions)
     while True:
         for t in asked:
@@ -105,10 +116,19 @@ def play(
             if all(len(game.marking.places[i]) for i in takes[t.index]):
                 bindings = game.enabling.enabled(t, game.marking)
                 enabled[t.index] = [BindingElement.make(t, b) for b in bindings]
-        elements = [e for index in sorted(enabled) for e in enabled[index]]
+        elements = [
+            e
+            for index in sorted(enabled)
+            for e in enabled[index]
+            if all(
+                value == (FAILED if read[name] + 1 == failing.get(name) else DONE)
+                for name, value in readings(e)
+            )
+        ]
         if not elements:
             break
         element = elements[choose(len(elements))]
+        read.update(name for name, _ in readings(element))
         before = game.marking.places
         game.marking, _ = game.occur(game.marking, element)
         run.fired.append(net.transitions[element.transition].name)
@@ -124,10 +144,15 @@ def play(
             assert len(game.marking.places[p.index]) <= 1, f"`{p.name}` holds two messages"
         changed = [i for i, m in enumerate(game.marking.places) if m is not before[i]]
         asked = [t for i in changed for t in beside[i]]
-    assert game.marking_text(place(net, "Finished", "Cell/Supervisor").name) == "1`()"
     held = {p.short for p in net.places if len(game.marking.places[p.index])}
-    assert held == {"Finished", "Waiting"}
+    assert held in ({"Finished", "Waiting"}, {"Failed", "Waiting"})
+    run.ended = next(iter(held - {"Waiting"}))
+    assert game.marking_text(place(net, run.ended, "Cell/Supervisor").name) == "1`()"
     return run
+
+
+def readings(element: BindingElement) -> list[tuple[str, Value]]:
+    return [(s.name, value) for s, value in element.values if s.name in READINGS]
 
 
 def same(ours: Sequence[Row], expected: Sequence[Row]) -> None:
@@ -148,11 +173,15 @@ def test_it_divides_among_supervisor_and_robots(nets: dict[bool, FlatNet], root:
         "Cell/Robot2",
     ]
     assert len(partition.channels) == 8
-    assert [nets[False].places[i].short for i in partition.final_places] == ["Finished"]
+    assert [nets[False].places[i].short for i in partition.final_places] == [
+        "Finished",
+        "Failed",
+    ]
 
 
 def test_table_1_gives_the_rows_of_the_oracle(nets: dict[bool, FlatNet]) -> None:
     run = play(nets[False], 5, FIRST, LAST)
+    assert (run.ended, len(run.fired)) == ("Finished", 385)
     expected = rows(5, FIRST, LAST)
     for ours, theirs in zip(run.rows, expected, strict=True):
         assert len(ours) == 22
@@ -230,6 +259,64 @@ def test_the_order_of_firing_does_not_matter(nets: dict[bool, FlatNet], seed: in
     assert wild.rows == orderly.rows
     assert wild.game.marking == orderly.game.marking
     assert sorted(wild.fired) == sorted(orderly.fired)
+
+
+STEPS = ("Press", "Drill", "Insert", "Release")
+
+
+@pytest.mark.parametrize("rivet", [1, 3, 5])
+@pytest.mark.parametrize("reading", ["pressed", "drilled", "inserted", "released"])
+def test_after_a_fault_of_a_tool_both_robots_are_out_and_at_home(
+    nets: dict[bool, FlatNet], reading: str, rivet: int
+) -> None:
+    run = play(nets[False], 3, FIRST, LAST, faults={reading: rivet})
+    assert run.ended == "Failed"
+    done = [name.split(".", 2)[1:] for name in run.fired if name.startswith("Cell.Robot")]
+    commands = [f"{robot}.{step}" for robot, step in done if step not in ("Accept", "Report")]
+    # What was begun at the failing rivet, the release at any rate, then out and HOME.
+    last = 1 + READINGS.index(reading)
+    tools = [name.split(".")[1] for name in commands if name.split(".")[1] in STEPS]
+    begun = [*STEPS[:last], *([] if reading == "released" else ["Release"])]
+    assert tools == [*STEPS * (rivet - 1), *begun]
+    released = len(commands) - 1 - commands[::-1].index("Robot2.Release")
+    assert sorted(commands[released + 1 :]) == [
+        "Robot1.MoveHome",
+        "Robot1.MoveLinear",
+        "Robot2.MoveHome",
+        "Robot2.MoveLinear",
+    ]
+    for robot in ("Robot1", "Robot2"):
+        assert commands.index(f"{robot}.MoveHome") > commands.index(f"{robot}.MoveLinear", released)
+    for ours, theirs in zip(run.rows, rows(3, FIRST, LAST), strict=True):
+        same(ours, theirs[: 1 + 3 * rivet - 1])
+        assert ours[-1][2] == -100.0
+
+
+@pytest.mark.parametrize("which", [1, 2])
+def test_a_reference_that_is_not_found_ends_the_work(
+    nets: dict[bool, FlatNet], which: int
+) -> None:
+    run = play(nets[False], 3, FIRST, LAST, faults={"seen": which})
+    assert run.ended == "Failed"
+    assert [len(ours) for ours in run.rows] == [1, 1]  # the approach
+    assert sum(name.endswith(".MoveHome") for name in run.fired) == 2
+
+
+@pytest.mark.parametrize(("off", "ended"), [(49.9, "Finished"), (50.1, "Failed")])
+@pytest.mark.parametrize("which", [0, 1])
+def test_a_reference_too_far_off_ends_the_work(
+    nets: dict[bool, FlatNet], which: int, off: float, ended: str
+) -> None:
+    measured = [first_reference(nets[False]), LAST]
+    x, y, *others = measured[which]
+    measured[which] = (x + 0.6 * off, y - 0.8 * off, *others)
+    assert play(nets[False], 0, FIRST, LAST, measured=(measured[0], measured[1])).ended == ended
+
+
+def test_faults_can_be_switched_off(root: Path) -> None:
+    net = load(root / "examples/riveting/cell.cpn", Diagnostics(), {"faults": "false"})
+    assert net is not None
+    assert play(net, 0, FIRST, LAST, faults={"drilled": 1, "seen": 2}).ended == "Finished"
 
 
 coordinate = st.floats(-10_000, 10_000, width=32)

@@ -8,6 +8,7 @@ import pytest
 
 from helpers.robots import Cell
 from helpers.scripts import MemoryFiles, checked, diagnosed
+from pn2code.cell.load import load as load_cell
 from pn2code.diagnostics import Diagnostics
 from pn2code.robot.commands import MoveHome, ToolAction, Wait
 from pn2code.robot.motion import MotionFault
@@ -159,6 +160,42 @@ def test_a_sensor_without_file_draws_the_same_for_the_same_seed(tmp_path: Path) 
     assert drawn(None) == drawn(3)
     assert drawn(None) != drawn(4)
     assert set(drawn(None)) == {"held", "lost"}
+
+
+def test_a_sensor_says_its_default_where_there_is_no_file(tmp_path: Path) -> None:
+    toml = 'file = "grip.txt"\ndefault = "held"\n'
+    found, errors = loaded(tmp_path, toml, seed=7)
+    assert found is not None and not errors
+    assert [found.ask("robot1", "grip") for _ in range(3)] == ["held", "held", "held"]
+    (tmp_path / "grip.txt").write_text("lost\nheld\n")
+    found, errors = loaded(tmp_path, toml)
+    assert found is not None and not errors
+    assert [found.ask("robot1", "grip") for _ in range(3)] == ["lost", "held", "lost"]
+    found, errors = loaded(tmp_path, 'default = "lost"\n')
+    assert found is not None and found.ask("robot2", "grip") == "lost"
+
+
+@pytest.mark.parametrize(
+    ("default", "words"),
+    [
+        ('"hold"', "sensor `grip`: default: `hold` is not a value of `GRIP` of colour set `GRIP`"),
+        ("1", "sensor `grip`: default: `1` is no value"),
+        ("[1]", "`default` is `[1]`, but a value of the variable is expected"),
+    ],
+)
+def test_a_default_must_be_a_value_of_the_variable(
+    tmp_path: Path, default: str, words: str
+) -> None:
+    with_default = f"default = {default}\n"
+    if default == "[1]":
+        d = Diagnostics()
+        (tmp_path / "cell.toml").write_text(f'[sensors.grip]\n{with_default}')
+        load_cell(tmp_path / "cell.toml", d)
+        assert words in [e.message for e in d.errors]
+    else:
+        found, errors = loaded(tmp_path, with_default)
+        assert found is None
+        assert words in errors[0]
 
 
 @pytest.mark.parametrize(
