@@ -567,6 +567,6 @@ def test_the_riveting_cell(root: Path) -> None:
     generated = pipeline.generate(root / "examples" / "riveting", d)
     assert generated is not None, render.report(d)
     (text,) = [f.text for f in generated.files if f.path == "cell_config.c"]
-    assert " * Checked in all 754 markings of the closed net (docs/execution.md):" in text
+    assert " * Checked in all 1,079 markings of the closed net (docs/execution.md):" in text
     assert " * bounded-response: yes; at most 6 firings in one cycle" in text
     assert "unchecked" not in text

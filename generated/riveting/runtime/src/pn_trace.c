@@ -131,12 +131,7 @@ void pn_trace_note(pn_trace_t *trace, double t, const char *event, const char *m
     write_line(trace);
 }
 
-void pn_trace_end(pn_trace_t *trace, double t, const char *why)
-{
-    pn_trace_model_end(trace, (pn_time_t){ .real = t }, true, why);
-}
-
-void pn_trace_model_end(pn_trace_t *trace, pn_time_t now, bool is_real, const char *why)
+static void end_line(pn_trace_t *trace, pn_time_t now, bool is_real, const char *why, const char *members_json)
 {
     if (!is_writing(trace)) {
         return;
@@ -146,8 +141,22 @@ void pn_trace_model_end(pn_trace_t *trace, pn_time_t now, bool is_real, const ch
     text_time(line, now, is_real);
     pn_text_str(line, ", \"event\": \"end\", \"why\": ");
     pn_text_json_str(line, why);
+    if (members_json != NULL) {
+        pn_text_str(line, ", ");
+        pn_text_str(line, members_json);
+    }
     pn_text_char(line, '}');
     write_line(trace);
+}
+
+void pn_trace_end(pn_trace_t *trace, double t, const char *why, const char *members_json)
+{
+    end_line(trace, (pn_time_t){ .real = t }, true, why, members_json);
+}
+
+void pn_trace_model_end(pn_trace_t *trace, pn_time_t now, bool is_real, const char *why)
+{
+    end_line(trace, now, is_real, why, NULL);
 }
 
 bool pn_trace_close(pn_trace_t *trace)

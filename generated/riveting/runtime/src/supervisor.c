@@ -309,6 +309,22 @@ static bool start(sup_t *sup)
     return true;
 }
 
+/* Why it ended; when it has come to its end, also where. */
+static void end_trace(sup_t *sup)
+{
+    static char places[8192];
+    const char *members = NULL;
+    if (!sup->stopped && sup_is_final(sup)) {
+        pn_text_t text;
+        pn_text_init(&text, places, sizeof places);
+        pn_text_str(&text, "\"final\": [");
+        sup_final_places(sup, true, &text);
+        pn_text_char(&text, ']');
+        members = text.truncated ? NULL : places;
+    }
+    pn_trace_end(&sup->trace, sup->t, sup->stopped ? sup->reason : "finished", members);
+}
+
 int main(int argc, char **argv)
 {
     static sup_t sup;
@@ -335,7 +351,7 @@ int main(int argc, char **argv)
         } else {
             sup_run_cell(&sup);
         }
-        pn_trace_end(&sup.trace, sup.t, sup.stopped ? sup.reason : "finished");
+        end_trace(&sup);
     }
     if (!pn_trace_close(&sup.trace)) {
         (void)sup_stop(&sup, SUP_EXIT_IO, "cannot write the trace %s", sup.options.trace);

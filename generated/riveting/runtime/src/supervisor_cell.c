@@ -478,7 +478,14 @@ void sup_run_cell(sup_t *sup)
         (void)snprintf(text, sizeof text, "stopped %s", sup->reason);
         answer(text);
     }
-    sup_say(sup, 1, "%s after %.3f s: %" PRIu64 " firings (at most %" PRIu64 " in one cycle), %" PRIu64 " messages sent, %" PRIu64
-            " received", sup->stopped ? "stopped" : "finished", sup->t, sup->fired, s_cell.most_fired, s_cell.sent,
-            s_cell.received);
+    static char places[4096];
+    pn_text_t where;
+    pn_text_init(&where, places, sizeof places);
+    if (!sup->stopped && sup_is_final(sup)) {
+        pn_text_str(&where, " in ");
+        sup_final_places(sup, false, &where);
+    }
+    sup_say(sup, 1, "%s after %.3f s%s: %" PRIu64 " firings (at most %" PRIu64 " in one cycle), %" PRIu64
+            " messages sent, %" PRIu64 " received", sup->stopped ? "stopped" : "finished", sup->t, places, sup->fired,
+            s_cell.most_fired, s_cell.sent, s_cell.received);
 }

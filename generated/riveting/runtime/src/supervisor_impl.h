@@ -95,6 +95,9 @@ bool sup_next_time(sup_t *sup, double *t);
 /* Whether a final place holds a token. */
 bool sup_is_final(const sup_t *sup);
 
+/* The names of the final places that hold a token, with commas between: as JSON strings, or as they are. */
+void sup_final_places(const sup_t *sup, bool as_json, pn_text_t *text);
+
 /* The scalars of the token in a channel's place as text. */
 const char *sup_token_text(const sup_t *sup, const pn_cell_channel_t *channel, char *out, size_t capacity);
 

@@ -217,6 +217,26 @@ bool sup_is_final(const sup_t *sup)
     return false;
 }
 
+void sup_final_places(const sup_t *sup, bool as_json, pn_text_t *text)
+{
+    bool is_first = true;
+    for (uint32_t i = 0U; i < sup->cell->final_count; i++) {
+        const pn_place_t *const place = &sup->net->place[sup->cell->final_place[i]];
+        if (place->count(sup->marking) == 0U) {
+            continue;
+        }
+        if (!is_first) {
+            pn_text_str(text, ", ");
+        }
+        is_first = false;
+        if (as_json) {
+            pn_text_json_str(text, place->name);
+        } else {
+            pn_text_str(text, place->name);
+        }
+    }
+}
+
 const char *sup_token_text(const sup_t *sup, const pn_cell_channel_t *channel, char *out, size_t capacity)
 {
     pn_leaf_t leaf[PN_CHANNEL_SCALARS];

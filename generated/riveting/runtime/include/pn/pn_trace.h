@@ -44,8 +44,8 @@ void pn_trace_model_occurrence(pn_trace_t *trace, pn_time_t now, bool is_real, c
  * such as "\"robot\": \"robot1\"". */
 void pn_trace_note(pn_trace_t *trace, double t, const char *event, const char *members_json);
 
-/* The last line of a complete trace: {"t": t, "event": "end", "why": why}. */
-void pn_trace_end(pn_trace_t *trace, double t, const char *why);
+/* The last line of a complete trace: {"t": t, "event": "end", "why": why, MEMBERS}; `members_json` as of a note. */
+void pn_trace_end(pn_trace_t *trace, double t, const char *why, const char *members_json);
 void pn_trace_model_end(pn_trace_t *trace, pn_time_t now, bool is_real, const char *why);
 
 /* Closes the file. False when anything could not be written. */
