@@ -293,9 +293,7 @@ def test_after_a_fault_of_a_tool_both_robots_are_out_and_at_home(
 
 
 @pytest.mark.parametrize("which", [1, 2])
-def test_a_reference_that_is_not_found_ends_the_work(
-    nets: dict[bool, FlatNet], which: int
-) -> None:
+def test_a_reference_that_is_not_found_ends_the_work(nets: dict[bool, FlatNet], which: int) -> None:
     run = play(nets[False], 3, FIRST, LAST, faults={"seen": which})
     assert run.ended == "Failed"
     assert [len(ours) for ours in run.rows] == [1, 1]  # the approach

@@ -189,7 +189,7 @@ def test_a_default_must_be_a_value_of_the_variable(
     with_default = f"default = {default}\n"
     if default == "[1]":
         d = Diagnostics()
-        (tmp_path / "cell.toml").write_text(f'[sensors.grip]\n{with_default}')
+        (tmp_path / "cell.toml").write_text(f"[sensors.grip]\n{with_default}")
         load_cell(tmp_path / "cell.toml", d)
         assert words in [e.message for e in d.errors]
     else:

@@ -85,7 +85,7 @@ def load(
 def _script(
     sensor: SensorConfig, scalars: tuple[Scalar, ...], folders: tuple[Path, ...], d: Diagnostics
 ) -> tuple[Value, ...]:
-    """What it says in turn: the lines of its file, or its default; empty: neither is given, or an error was reported."""
+    """What it says in turn: the lines of its file, or its default; empty: neither, or an error was reported."""
     files = [f / sensor.file for f in folders if sensor.file and (f / sensor.file).is_file()]
     path = next(iter(files), None)
     if path is None and sensor.default is not None:
