@@ -75,7 +75,8 @@ NETS = {
         "cell.cpn", whole("<?xml version='1.0'?>\n<svg/>\n"), "not-cpn", ("`svg`",), "<svg/>", "workspaceElements"
     ),
     "truncated": Case(
-        "cell.cpn", lambda t: t[: len(t) // 2], "xml-truncated", ("ends too early", "`priority`"), "END", "cut off"
+        "cell.cpn", lambda t: t[: t.index("<priority", len(t) // 2) + 40], "xml-truncated",
+        ("ends too early", "`priority`"), "END", "cut off"
     ),
     "entity bomb": Case("cell.cpn", put(DOCTYPE, BOMB), "xml-entity", ("`ha`",), '<!ENTITY ha "ha">', "hostile"),
     "entity that reads a file": Case(
