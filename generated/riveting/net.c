@@ -8652,7 +8652,7 @@ static const pn_place_t s_places[] = {
         .capacity = 1U, .is_bounded = true, .bound = 1U, .timed = false,
         .count = Supervisor_ended_count, .token = Supervisor_ended_token, .put = Supervisor_ended_put,
         .clear = Supervisor_ended_clear, .json = Supervisor_ended_json,
-        .encode = Supervisor_ended_encode, .decode = Supervisor_ended_decode,
+        .encode = Supervisor_ended_encode, .decode = Supervisor_ended_decode, .add = Supervisor_ended_add_bytes,
         .bit = UINT32_MAX,
         .leaf_count = 1U, .leaf_kind = s_UNIT_kinds, .leaf_name = s_UNIT_leaves,
         .line_count = 1U, .line_leaves = s_UNIT_lines,
@@ -8674,7 +8674,7 @@ static const pn_place_t s_places[] = {
         .capacity = 1U, .is_bounded = true, .bound = 1U, .timed = false,
         .count = Supervisor_result_count, .token = Supervisor_result_token, .put = Supervisor_result_put,
         .clear = Supervisor_result_clear, .json = Supervisor_result_json,
-        .encode = Supervisor_result_encode, .decode = Supervisor_result_decode,
+        .encode = Supervisor_result_encode, .decode = Supervisor_result_decode, .add = Supervisor_result_add_bytes,
         .bit = UINT32_MAX,
         .leaf_count = 1U, .leaf_kind = s_REPLY_kinds, .leaf_name = s_REPLY_leaves,
         .line_count = 1U, .line_leaves = s_REPLY_lines,
@@ -8685,7 +8685,7 @@ static const pn_place_t s_places[] = {
         .capacity = 1U, .is_bounded = true, .bound = 1U, .timed = false,
         .count = Supervisor_Failed_count, .token = Supervisor_Failed_token, .put = Supervisor_Failed_put,
         .clear = Supervisor_Failed_clear, .json = Supervisor_Failed_json,
-        .encode = Supervisor_Failed_encode, .decode = Supervisor_Failed_decode,
+        .encode = Supervisor_Failed_encode, .decode = Supervisor_Failed_decode, .add = Supervisor_Failed_add_bytes,
         .bit = UINT32_MAX,
         .leaf_count = 1U, .leaf_kind = s_UNIT_kinds, .leaf_name = s_UNIT_leaves,
         .line_count = 1U, .line_leaves = s_UNIT_lines,
@@ -9485,72 +9485,77 @@ static const uint32_t s_touched_by_Robot2_Release[] = { 71U, 72U };
 /* And those that decide about it. */
 static const uint32_t s_read_by_Supervisor_Load_Load[] = { 8U };
 static const uint32_t s_read_by_Supervisor_Approach_Send[] = { 9U };
-static const uint32_t s_read_by_Supervisor_Approach_Arrived[] = { 16U, 17U };
-static const uint32_t s_read_by_Supervisor_Approach_Move_both_Command[] = { 15U };
-static const uint32_t s_read_by_Supervisor_Approach_Move_both_Both[] = { 19U, 21U };
-static const uint32_t s_read_by_Supervisor_Approach_Move_both_Reply_1[] = { 2U, 18U };
-static const uint32_t s_read_by_Supervisor_Approach_Move_both_Reply_2[] = { 7U, 20U };
+static const uint32_t s_read_by_Supervisor_Approach_Arrived[] = { 18U, 19U };
+static const uint32_t s_read_by_Supervisor_Approach_Move_both_Command[] = { 17U };
+static const uint32_t s_read_by_Supervisor_Approach_Move_both_Both[] = { 21U, 23U };
+static const uint32_t s_read_by_Supervisor_Approach_Move_both_Reply_1[] = { 2U, 20U };
+static const uint32_t s_read_by_Supervisor_Approach_Move_both_Reply_2[] = { 7U, 22U };
 static const uint32_t s_read_by_Supervisor_Verify_Ask_first[] = { 10U };
-static const uint32_t s_read_by_Supervisor_Verify_Ask_last[] = { 2U, 4U, 22U };
-static const uint32_t s_read_by_Supervisor_Verify_Measured[] = { 2U, 4U, 23U };
+static const uint32_t s_read_by_Supervisor_Verify_Ask_last[] = { 2U, 4U, 24U };
+static const uint32_t s_read_by_Supervisor_Verify_Measured[] = { 2U, 4U, 25U };
+static const uint32_t s_read_by_Supervisor_Verify_First_lost[] = { 2U, 4U, 24U };
+static const uint32_t s_read_by_Supervisor_Verify_Last_lost[] = { 2U, 4U, 25U };
 static const uint32_t s_read_by_Supervisor_Correct_Compare[] = { 11U };
-static const uint32_t s_read_by_Supervisor_Correct_Move_over[] = { 24U, 27U };
-static const uint32_t s_read_by_Supervisor_Correct_Moved[] = { 26U, 27U };
-static const uint32_t s_read_by_Supervisor_Correct_As_planned[] = { 24U, 27U };
-static const uint32_t s_read_by_Supervisor_Correct_Move_both_Command[] = { 25U };
-static const uint32_t s_read_by_Supervisor_Correct_Move_both_Both[] = { 29U, 31U };
-static const uint32_t s_read_by_Supervisor_Correct_Move_both_Reply_1[] = { 2U, 28U };
-static const uint32_t s_read_by_Supervisor_Correct_Move_both_Reply_2[] = { 7U, 30U };
-static const uint32_t s_read_by_Supervisor_Install_Go_back[] = { 34U, 36U };
-static const uint32_t s_read_by_Supervisor_Install_Next_rivet[] = { 34U, 36U };
+static const uint32_t s_read_by_Supervisor_Correct_Move_over[] = { 26U, 29U };
+static const uint32_t s_read_by_Supervisor_Correct_Moved[] = { 28U, 29U };
+static const uint32_t s_read_by_Supervisor_Correct_As_planned[] = { 26U, 29U };
+static const uint32_t s_read_by_Supervisor_Correct_Move_both_Command[] = { 27U };
+static const uint32_t s_read_by_Supervisor_Correct_Move_both_Both[] = { 31U, 33U };
+static const uint32_t s_read_by_Supervisor_Correct_Move_both_Reply_1[] = { 2U, 30U };
+static const uint32_t s_read_by_Supervisor_Correct_Move_both_Reply_2[] = { 7U, 32U };
+static const uint32_t s_read_by_Supervisor_Install_Go_back[] = { 15U, 36U, 38U };
+static const uint32_t s_read_by_Supervisor_Install_Next_rivet[] = { 15U, 36U, 38U };
 static const uint32_t s_read_by_Supervisor_Install_Start[] = { 12U };
-static const uint32_t s_read_by_Supervisor_Install_Shift_Command[] = { 32U };
-static const uint32_t s_read_by_Supervisor_Install_Shift_Both[] = { 38U, 40U };
-static const uint32_t s_read_by_Supervisor_Install_Shift_Reply_1[] = { 2U, 37U };
-static const uint32_t s_read_by_Supervisor_Install_Shift_Reply_2[] = { 7U, 39U };
-static const uint32_t s_read_by_Supervisor_Install_Rivet_Go_in[] = { 33U };
-static const uint32_t s_read_by_Supervisor_Install_Rivet_Go_out[] = { 43U };
-static const uint32_t s_read_by_Supervisor_Install_Rivet_Advance_Command[] = { 41U };
-static const uint32_t s_read_by_Supervisor_Install_Rivet_Advance_Both[] = { 46U, 48U };
-static const uint32_t s_read_by_Supervisor_Install_Rivet_Advance_Reply_1[] = { 2U, 45U };
-static const uint32_t s_read_by_Supervisor_Install_Rivet_Advance_Reply_2[] = { 7U, 47U };
-static const uint32_t s_read_by_Supervisor_Install_Rivet_Fasten_Press[] = { 42U };
-static const uint32_t s_read_by_Supervisor_Install_Rivet_Fasten_Drill[] = { 7U, 49U };
-static const uint32_t s_read_by_Supervisor_Install_Rivet_Fasten_Insert[] = { 2U, 50U };
-static const uint32_t s_read_by_Supervisor_Install_Rivet_Fasten_Release[] = { 2U, 51U };
-static const uint32_t s_read_by_Supervisor_Install_Rivet_Fasten_Finish[] = { 7U, 52U };
-static const uint32_t s_read_by_Supervisor_Install_Rivet_Retract_Command[] = { 44U };
-static const uint32_t s_read_by_Supervisor_Install_Rivet_Retract_Both[] = { 54U, 56U };
-static const uint32_t s_read_by_Supervisor_Install_Rivet_Retract_Reply_1[] = { 2U, 53U };
-static const uint32_t s_read_by_Supervisor_Install_Rivet_Retract_Reply_2[] = { 7U, 55U };
-static const uint32_t s_read_by_Supervisor_Install_Return_Command[] = { 35U };
-static const uint32_t s_read_by_Supervisor_Install_Return_Both[] = { 58U, 60U };
-static const uint32_t s_read_by_Supervisor_Install_Return_Reply_1[] = { 2U, 57U };
-static const uint32_t s_read_by_Supervisor_Install_Return_Reply_2[] = { 7U, 59U };
+static const uint32_t s_read_by_Supervisor_Install_Give_up[] = { 15U, 36U, 38U };
+static const uint32_t s_read_by_Supervisor_Install_Shift_Command[] = { 34U };
+static const uint32_t s_read_by_Supervisor_Install_Shift_Both[] = { 40U, 42U };
+static const uint32_t s_read_by_Supervisor_Install_Shift_Reply_1[] = { 2U, 39U };
+static const uint32_t s_read_by_Supervisor_Install_Shift_Reply_2[] = { 7U, 41U };
+static const uint32_t s_read_by_Supervisor_Install_Rivet_Go_in[] = { 35U };
+static const uint32_t s_read_by_Supervisor_Install_Rivet_Go_out[] = { 45U };
+static const uint32_t s_read_by_Supervisor_Install_Rivet_Advance_Command[] = { 43U };
+static const uint32_t s_read_by_Supervisor_Install_Rivet_Advance_Both[] = { 48U, 50U };
+static const uint32_t s_read_by_Supervisor_Install_Rivet_Advance_Reply_1[] = { 2U, 47U };
+static const uint32_t s_read_by_Supervisor_Install_Rivet_Advance_Reply_2[] = { 7U, 49U };
+static const uint32_t s_read_by_Supervisor_Install_Rivet_Fasten_Press[] = { 44U };
+static const uint32_t s_read_by_Supervisor_Install_Rivet_Fasten_Drill[] = { 7U, 51U };
+static const uint32_t s_read_by_Supervisor_Install_Rivet_Fasten_Insert[] = { 2U, 52U };
+static const uint32_t s_read_by_Supervisor_Install_Rivet_Fasten_Release[] = { 2U, 53U };
+static const uint32_t s_read_by_Supervisor_Install_Rivet_Fasten_Finish[] = { 7U, 54U };
+static const uint32_t s_read_by_Supervisor_Install_Rivet_Fasten_Press_failed[] = { 7U, 51U };
+static const uint32_t s_read_by_Supervisor_Install_Rivet_Fasten_Drill_failed[] = { 2U, 52U };
+static const uint32_t s_read_by_Supervisor_Install_Rivet_Retract_Command[] = { 46U };
+static const uint32_t s_read_by_Supervisor_Install_Rivet_Retract_Both[] = { 56U, 58U };
+static const uint32_t s_read_by_Supervisor_Install_Rivet_Retract_Reply_1[] = { 2U, 55U };
+static const uint32_t s_read_by_Supervisor_Install_Rivet_Retract_Reply_2[] = { 7U, 57U };
+static const uint32_t s_read_by_Supervisor_Install_Return_Command[] = { 37U };
+static const uint32_t s_read_by_Supervisor_Install_Return_Both[] = { 60U, 62U };
+static const uint32_t s_read_by_Supervisor_Install_Return_Reply_1[] = { 2U, 59U };
+static const uint32_t s_read_by_Supervisor_Install_Return_Reply_2[] = { 7U, 61U };
 static const uint32_t s_read_by_Supervisor_Home_Send_home[] = { 13U };
-static const uint32_t s_read_by_Supervisor_Home_Both[] = { 62U, 64U };
-static const uint32_t s_read_by_Supervisor_Home_Reply_1[] = { 2U, 61U };
-static const uint32_t s_read_by_Supervisor_Home_Reply_2[] = { 7U, 63U };
-static const uint32_t s_read_by_Robot1_Accept[] = { 1U, 65U };
-static const uint32_t s_read_by_Robot1_Report[] = { 67U };
-static const uint32_t s_read_by_Robot1_MoveJoint[] = { 0U, 66U };
-static const uint32_t s_read_by_Robot1_MoveLinear[] = { 0U, 66U };
-static const uint32_t s_read_by_Robot1_MoveHome[] = { 66U };
-static const uint32_t s_read_by_Robot1_Measure[] = { 3U, 66U };
-static const uint32_t s_read_by_Robot1_Drill[] = { 66U };
-static const uint32_t s_read_by_Robot1_Insert[] = { 66U };
-static const uint32_t s_read_by_Robot1_Press[] = { 66U };
-static const uint32_t s_read_by_Robot1_Release[] = { 66U };
-static const uint32_t s_read_by_Robot2_Accept[] = { 6U, 68U };
-static const uint32_t s_read_by_Robot2_Report[] = { 70U };
-static const uint32_t s_read_by_Robot2_MoveJoint[] = { 5U, 69U };
-static const uint32_t s_read_by_Robot2_MoveLinear[] = { 5U, 69U };
-static const uint32_t s_read_by_Robot2_MoveHome[] = { 69U };
-static const uint32_t s_read_by_Robot2_Measure[] = { 69U, 71U };
-static const uint32_t s_read_by_Robot2_Drill[] = { 69U };
-static const uint32_t s_read_by_Robot2_Insert[] = { 69U };
-static const uint32_t s_read_by_Robot2_Press[] = { 69U };
-static const uint32_t s_read_by_Robot2_Release[] = { 69U };
+static const uint32_t s_read_by_Supervisor_Home_Both[] = { 15U, 64U, 66U };
+static const uint32_t s_read_by_Supervisor_Home_Reply_1[] = { 2U, 63U };
+static const uint32_t s_read_by_Supervisor_Home_Reply_2[] = { 7U, 65U };
+static const uint32_t s_read_by_Robot1_Accept[] = { 1U, 67U };
+static const uint32_t s_read_by_Robot1_Report[] = { 69U };
+static const uint32_t s_read_by_Robot1_MoveJoint[] = { 0U, 68U };
+static const uint32_t s_read_by_Robot1_MoveLinear[] = { 0U, 68U };
+static const uint32_t s_read_by_Robot1_MoveHome[] = { 68U };
+static const uint32_t s_read_by_Robot1_Measure[] = { 3U, 68U };
+static const uint32_t s_read_by_Robot1_Drill[] = { 68U };
+static const uint32_t s_read_by_Robot1_Insert[] = { 68U };
+static const uint32_t s_read_by_Robot1_Press[] = { 68U };
+static const uint32_t s_read_by_Robot1_Release[] = { 68U };
+static const uint32_t s_read_by_Robot2_Accept[] = { 6U, 70U };
+static const uint32_t s_read_by_Robot2_Report[] = { 72U };
+static const uint32_t s_read_by_Robot2_MoveJoint[] = { 5U, 71U };
+static const uint32_t s_read_by_Robot2_MoveLinear[] = { 5U, 71U };
+static const uint32_t s_read_by_Robot2_MoveHome[] = { 71U };
+static const uint32_t s_read_by_Robot2_Measure[] = { 71U, 73U };
+static const uint32_t s_read_by_Robot2_Drill[] = { 71U };
+static const uint32_t s_read_by_Robot2_Insert[] = { 71U };
+static const uint32_t s_read_by_Robot2_Press[] = { 71U };
+static const uint32_t s_read_by_Robot2_Release[] = { 71U };
 
 static const pn_transition_t s_transitions[] = {
     {
@@ -9682,6 +9687,8 @@ static const pn_transition_t s_transitions[] = {
         .affected = s_affected_by_Supervisor_Verify_First_lost,
         .touched_count = sizeof s_touched_by_Supervisor_Verify_First_lost / sizeof s_touched_by_Supervisor_Verify_First_lost[0],
         .touched = s_touched_by_Supervisor_Verify_First_lost,
+        .read_count = sizeof s_read_by_Supervisor_Verify_First_lost / sizeof s_read_by_Supervisor_Verify_First_lost[0],
+        .read = s_read_by_Supervisor_Verify_First_lost,
     },
     {
         .name = "Cell.Supervisor.Verify.Last lost", .id = "ID1412320023", .owner = 0, .priority = 1000,
@@ -9692,6 +9699,8 @@ static const pn_transition_t s_transitions[] = {
         .affected = s_affected_by_Supervisor_Verify_Last_lost,
         .touched_count = sizeof s_touched_by_Supervisor_Verify_Last_lost / sizeof s_touched_by_Supervisor_Verify_Last_lost[0],
         .touched = s_touched_by_Supervisor_Verify_Last_lost,
+        .read_count = sizeof s_read_by_Supervisor_Verify_Last_lost / sizeof s_read_by_Supervisor_Verify_Last_lost[0],
+        .read = s_read_by_Supervisor_Verify_Last_lost,
     },
     {
         .name = "Cell.Supervisor.Correct.Compare", .id = "ID1412310453", .owner = 0, .priority = 1000,
@@ -9834,6 +9843,8 @@ static const pn_transition_t s_transitions[] = {
         .affected = s_affected_by_Supervisor_Install_Give_up,
         .touched_count = sizeof s_touched_by_Supervisor_Install_Give_up / sizeof s_touched_by_Supervisor_Install_Give_up[0],
         .touched = s_touched_by_Supervisor_Install_Give_up,
+        .read_count = sizeof s_read_by_Supervisor_Install_Give_up / sizeof s_read_by_Supervisor_Install_Give_up[0],
+        .read = s_read_by_Supervisor_Install_Give_up,
     },
     {
         .name = "Cell.Supervisor.Install.Shift.Command", .id = "ID1412310941", .owner = 0, .priority = 1000,
@@ -10024,6 +10035,8 @@ static const pn_transition_t s_transitions[] = {
         .affected = s_affected_by_Supervisor_Install_Rivet_Fasten_Press_failed,
         .touched_count = sizeof s_touched_by_Supervisor_Install_Rivet_Fasten_Press_failed / sizeof s_touched_by_Supervisor_Install_Rivet_Fasten_Press_failed[0],
         .touched = s_touched_by_Supervisor_Install_Rivet_Fasten_Press_failed,
+        .read_count = sizeof s_read_by_Supervisor_Install_Rivet_Fasten_Press_failed / sizeof s_read_by_Supervisor_Install_Rivet_Fasten_Press_failed[0],
+        .read = s_read_by_Supervisor_Install_Rivet_Fasten_Press_failed,
     },
     {
         .name = "Cell.Supervisor.Install.Rivet.Fasten.Drill failed", .id = "ID1412320092", .owner = 0, .priority = 1000,
@@ -10034,6 +10047,8 @@ static const pn_transition_t s_transitions[] = {
         .affected = s_affected_by_Supervisor_Install_Rivet_Fasten_Drill_failed,
         .touched_count = sizeof s_touched_by_Supervisor_Install_Rivet_Fasten_Drill_failed / sizeof s_touched_by_Supervisor_Install_Rivet_Fasten_Drill_failed[0],
         .touched = s_touched_by_Supervisor_Install_Rivet_Fasten_Drill_failed,
+        .read_count = sizeof s_read_by_Supervisor_Install_Rivet_Fasten_Drill_failed / sizeof s_read_by_Supervisor_Install_Rivet_Fasten_Drill_failed[0],
+        .read = s_read_by_Supervisor_Install_Rivet_Fasten_Drill_failed,
     },
     {
         .name = "Cell.Supervisor.Install.Rivet.Retract.Command", .id = "ID1412310941", .owner = 0, .priority = 1000,
