@@ -26,7 +26,7 @@ from pn2code.cell.config import (
     SupervisorConfig,
 )
 from pn2code.cell.partition import ChannelKind
-from pn2code.cell.tables import Tables
+from pn2code.cell.tables import KeyPath, Tables
 from pn2code.cell.toml_file import Locator, read
 from pn2code.diagnostics import Diagnostics, Origin
 from pn2code.diagnostics.near import did_you_mean
@@ -91,7 +91,6 @@ def _config(
 
     layouts = r.table(data, "layouts")
     chosen, merged = _apply_layout(data, layouts, layout, r)
-    robots = r.table(data, "robots")
     config = CellConfig(
         path=path,
         net_file=net_file,
@@ -102,7 +101,7 @@ def _config(
         inputs=tuple(_inputs(r, data)),
         channels=tuple(_channels(r, data)),
         primitives=_primitives(r, data),
-        robots=tuple(_robots(r, robots)),
+        robots=tuple(_robots(r, data)),
         devices=tuple(_devices(r, data)),
         sensors=tuple(_sensors(r, data)),
         report=ReportConfig(),
@@ -170,7 +169,7 @@ def _merge(base: Mapping[str, Any], over: Mapping[str, Any]) -> dict[str, Any]:
 
 
 def _supervisor(r: Tables, data: dict[str, Any]) -> SupervisorConfig:
-    at: tuple[str | int, ...] = ("supervisor",)
+    at: KeyPath = ("supervisor",)
     table = r.table(data, "supervisor", required=True)
     r.keys(table, at, {"instance", "final", "reply_timeout_s", "order"})
     final = r.get(table, at, "final", list, "a list of places", [])
@@ -181,13 +180,7 @@ def _supervisor(r: Tables, data: dict[str, Any]) -> SupervisorConfig:
             f"`reply_timeout_s` is {timeout}, but must be above zero",
             r.at("supervisor", "reply_timeout_s"),
         )
-    order = r.get(table, at, "order", str, "`any` or `documented`", "any")
-    if order not in ("any", "documented"):
-        r.d.error(
-            codes.CELL_VALUE,
-            f"`order` is `{order}`, but `any` or `documented` is expected",
-            r.at("supervisor", "order"),
-        )
+    order = r.choice(table, at, "order", ("any", "documented"), "any")
     return SupervisorConfig(
         instance=r.get(table, at, "instance", str, "a substitution transition", "", required=True),
         final=tuple(map(str, final)),
@@ -253,7 +246,7 @@ def _capacity(r: Tables, data: dict[str, Any]) -> dict[str, int]:
 
 def _inputs(r: Tables, data: dict[str, Any]) -> Iterable[InputConfig]:
     for i, table in enumerate(r.tables(data, "input")):
-        at: tuple[str | int, ...] = ("input", i)
+        at: KeyPath = ("input", i)
         r.keys(table, at, {"place", "file"})
         place = r.get(table, at, "place", str, "a place", "", required=True)
         yield InputConfig(place, r.file_name(table, at), r.at(*at, "place"))
@@ -262,18 +255,11 @@ def _inputs(r: Tables, data: dict[str, Any]) -> Iterable[InputConfig]:
 def _channels(r: Tables, data: dict[str, Any]) -> Iterable[ChannelConfig]:
     files: dict[str, str] = {}
     for i, table in enumerate(r.tables(data, "channel")):
-        at: tuple[str | int, ...] = ("channel", i)
+        at: KeyPath = ("channel", i)
         r.keys(table, at, {"place", "file", "kind"})
         place = r.get(table, at, "place", str, "a place", "", required=True)
         file = r.file_name(table, at)
-        kind = r.get(table, at, "kind", str, "`data` or `flag`", "flag")
-        if kind not in ("data", "flag"):
-            r.d.error(
-                codes.CELL_VALUE,
-                f"`kind` is `{kind}`, but `data` or `flag` is expected",
-                r.at(*at, "kind"),
-            )
-            kind = "flag"
+        kind = r.choice(table, at, "kind", ("data", "flag"), "flag")
         if file in files:
             r.d.error(
                 codes.CELL_VALUE,
@@ -287,11 +273,7 @@ def _channels(r: Tables, data: dict[str, Any]) -> Iterable[ChannelConfig]:
 
 def _primitives(r: Tables, data: dict[str, Any]) -> dict[str, Primitive]:
     out = {}
-    for name, table in r.table(data, "primitives").items():
-        at: tuple[str | int, ...] = ("primitives", name)
-        if not isinstance(table, dict):
-            r.d.error(codes.CELL_VALUE, f"`{name}` must be a table", r.at(*at))
-            continue
+    for name, at, table in r.named(data, "primitives"):
         r.keys(table, at, {"command", "frame", "action", "duration_s"})
         command = r.get(table, at, "command", str, "a robot command", "wait", required=True)
         if command not in COMMANDS:
@@ -302,14 +284,7 @@ def _primitives(r: Tables, data: dict[str, Any]) -> dict[str, Primitive]:
                 hint=did_you_mean(command, COMMANDS) or f"known commands: {', '.join(COMMANDS)}",
             )
             command = "wait"
-        frame = r.get(table, at, "frame", str, "`world` or `tool`", "world")
-        if frame not in ("world", "tool"):
-            r.d.error(
-                codes.CELL_VALUE,
-                f"`frame` is `{frame}`, but `world` or `tool` is expected",
-                r.at(*at, "frame"),
-            )
-            frame = "world"
+        frame = r.choice(table, at, "frame", ("world", "tool"), "world")
         tool = command == "tool"
         duration = r.get(
             table, at, "duration_s", (int, float), "a number of seconds", 0.0, required=tool
@@ -327,18 +302,14 @@ def _primitives(r: Tables, data: dict[str, Any]) -> dict[str, Primitive]:
     return out
 
 
-def _robots(r: Tables, robots: dict[str, Any]) -> Iterable[RobotConfig]:
-    for name, table in robots.items():
-        at: tuple[str | int, ...] = ("robots", name)
-        if not isinstance(table, dict):
-            r.d.error(codes.CELL_VALUE, f"`robots.{name}` must be a table", r.at(*at))
-            continue
+def _robots(r: Tables, data: dict[str, Any]) -> Iterable[RobotConfig]:
+    for name, at, table in r.named(data, "robots"):
         _name(r, name, at, "a robot name")
         instance = r.get(table, at, "instance", str, "a substitution transition", "", required=True)
         yield RobotConfig(name, instance, r.at(*at, "instance"))
 
 
-def _name(r: Tables, name: str, at: tuple[str | int, ...], what: str) -> None:
+def _name(r: Tables, name: str, at: KeyPath, what: str) -> None:
     if not re.fullmatch(r"[A-Za-z][A-Za-z0-9_]*", name) or name == "supervisor":
         r.d.error(
             codes.CELL_VALUE,
@@ -349,11 +320,7 @@ def _name(r: Tables, name: str, at: tuple[str | int, ...], what: str) -> None:
 
 
 def _devices(r: Tables, data: dict[str, Any]) -> Iterable[RobotConfig]:
-    for name, table in r.table(data, "devices").items():
-        at: tuple[str | int, ...] = ("devices", name)
-        if not isinstance(table, dict):
-            r.d.error(codes.CELL_VALUE, f"`devices.{name}` must be a table", r.at(*at))
-            continue
+    for name, at, table in r.named(data, "devices"):
         r.keys(table, at, {"instance"})
         _name(r, name, at, "a device name")
         if name in data.get("robots", {}):
@@ -369,11 +336,7 @@ def _devices(r: Tables, data: dict[str, Any]) -> Iterable[RobotConfig]:
 
 def _sensors(r: Tables, data: dict[str, Any]) -> Iterable[SensorConfig]:
     variables: dict[str, str] = {}
-    for name, table in r.table(data, "sensors").items():
-        at: tuple[str | int, ...] = ("sensors", name)
-        if not isinstance(table, dict):
-            r.d.error(codes.CELL_VALUE, f"`sensors.{name}` must be a table", r.at(*at))
-            continue
+    for name, at, table in r.named(data, "sensors"):
         r.keys(table, at, {"variable", "file", "default", "seed"})
         _name(r, name, at, "a sensor name")
         variable = r.get(table, at, "variable", str, "a variable of the net", name)
@@ -400,7 +363,7 @@ def _sensors(r: Tables, data: dict[str, Any]) -> Iterable[SensorConfig]:
 
 def _report(r: Tables, data: dict[str, Any], config: CellConfig) -> ReportConfig:
     table = r.table(data, "report")
-    at: tuple[str | int, ...] = ("report",)
+    at: KeyPath = ("report",)
     r.keys(table, at, {"rows", "count", "occurrences", "warn_condition"})
     rows = tuple(map(str, r.get(table, at, "rows", list, "a list of channels", [])))
     known = [c.place for c in config.channels]

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import Any, cast
 
@@ -10,6 +10,9 @@ from pn2code.cell import codes
 from pn2code.cell.toml_file import Locator
 from pn2code.diagnostics import Diagnostics
 from pn2code.diagnostics.near import did_you_mean
+
+KeyPath = tuple[str | int, ...]
+"""Of a table or key; tables of arrays are numbered from 0."""
 
 
 class Tables:
@@ -19,7 +22,7 @@ class Tables:
         self.at = locator.origin
         self.d = d
 
-    def keys(self, table: Mapping[str, Any], path: tuple[str | int, ...], known: set[str]) -> None:
+    def keys(self, table: Mapping[str, Any], path: KeyPath, known: set[str]) -> None:
         """Reports the keys of a table that are not known."""
         for key in table:
             if key not in known:
@@ -33,7 +36,7 @@ class Tables:
     def get(
         self,
         table: Mapping[str, Any],
-        path: tuple[str | int, ...],
+        path: KeyPath,
         key: str,
         kind: type | tuple[type, ...],
         words: str,
@@ -61,6 +64,26 @@ class Tables:
             return default
         return value
 
+    def choice(
+        self,
+        table: Mapping[str, Any],
+        path: KeyPath,
+        key: str,
+        words: tuple[str, ...],
+        default: str,
+    ) -> str:
+        """One of some words; the default if it is missing or another one."""
+        shown = " or ".join(f"`{word}`" for word in words)
+        value = str(self.get(table, path, key, str, shown, default))
+        if value in words:
+            return value
+        self.d.error(
+            codes.CELL_VALUE,
+            f"`{key}` is `{value}`, but {shown} is expected",
+            self.at(*path, key),
+        )
+        return default
+
     def table(self, data: Mapping[str, Any], key: str, *, required: bool = False) -> dict[str, Any]:
         """A section of the file; empty if it is missing."""
         found = self.get(data, (), key, dict, "a table", {}, required=required)
@@ -76,7 +99,19 @@ class Tables:
             )
         return good
 
-    def file_name(self, table: Mapping[str, Any], path: tuple[str | int, ...]) -> str:
+    def named(
+        self, data: Mapping[str, Any], key: str
+    ) -> Iterator[tuple[str, KeyPath, dict[str, Any]]]:
+        """The tables of a section, each with its name and its path."""
+        for name, table in self.table(data, key).items():
+            if isinstance(table, dict):
+                yield name, (key, name), table
+            else:
+                self.d.error(
+                    codes.CELL_VALUE, f"`{key}.{name}` must be a table", self.at(key, name)
+                )
+
+    def file_name(self, table: Mapping[str, Any], path: KeyPath) -> str:
         """The key `file` of a table: a name in the shared directory."""
         name = self.get(table, path, "file", str, "a file name", "", required=True)
         if name and (Path(name).name != name or name.startswith(".") or name.endswith(".tmp")):
