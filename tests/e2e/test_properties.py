@@ -77,6 +77,30 @@ def test_runs_that_show_something_else(explorers: Explorers) -> None:
         assert (said is None) if expected is None else expected in (said or ""), (said, expected)
 
 
+def test_waits_that_are_not_too_long(explorers: Explorers) -> None:
+    """Of runs for bounded responses the waits are measured."""
+    net = Net.of(MUTEX)
+    ask = "every {} is followed by {} within {}".format
+    texts = [
+        ask("fires(Enter)", "fires(Leave)", "1 firings"),
+        ask("tokens(Crit) = 1", "tokens(Free) = 1", "1 firings"),
+        ask("fires(Ask)", "{ cf (a, Mark.Top'Crit 1) = 1 }", "9 firings"),
+    ]
+    found = net.ask(explorers, texts, "asked-waits")
+    assert [a.answer for a in found.answers] == ["no"] * 3
+    assert found.answers[2].evidence is not None and found.answers[2].evidence.loop is not None
+    for answer in found.answers:
+        assert confirm.problem(net.flat, {}, found.properties, answer) is None
+    for answer in found.answers[:2]:
+        longer = replace(answer.about, asked=replace(answer.about.asked, firings=9))
+        said = confirm.problem(net.flat, {}, found.properties, replace(answer, about=longer))
+        assert said == "no wait in the run is too long"
+    endless = found.answers[2]
+    other = replace(endless.about, asked=replace(endless.about.asked, second=TRUE))
+    said = confirm.problem(net.flat, {}, found.properties, replace(endless, about=other))
+    assert said == "no wait in the run is too long"
+
+
 @pytest.mark.parametrize("name", ["turns", "ending", "belt"])
 def test_random_properties(explorers: Explorers, name: str) -> None:
     """Whatever is asked: the explorer and the judge agree, and runs show what they should."""

@@ -329,6 +329,13 @@ def test_wrong_files(examined: front.Examined, tmp_path: Path, text: str, messag
     assert "shop.properties.toml" in said
 
 
+def test_a_file_without_properties(tmp_path: Path) -> None:
+    d = Diagnostics()
+    (tmp_path / "a.toml").write_text("# nothing yet\n")
+    assert sources.from_file(tmp_path / "a.toml", d) == []
+    assert not d.has_errors and "there are no properties in this file" in report(d)
+
+
 def test_missing_file(tmp_path: Path) -> None:
     d = Diagnostics()
     assert sources.from_file(tmp_path / "none.toml", d) == []

@@ -47,6 +47,13 @@ def from_file(path: Path, d: Diagnostics) -> list[Written]:
     if found is None:
         return []
     data, locator = found
+    if not data:
+        d.warning(
+            codes.FILE,
+            "there are no properties in this file",
+            Origin(locator.file),
+            hint='write each as a table: `[[property]]`, then `name = "..."`, `holds = "..."`',
+        )
     for key in data:
         if key != "property":
             d.error(

@@ -69,9 +69,76 @@ def problem(
                 return "the formula is true on the run"
             if not judge_ltl.is_fair(graph, fair, path):
                 return "the run is not fair"
-        case _:
-            pass
+        case m.Response(first, second):
+            graph, nodes = _graph(game, markings, predicates, {first, second})
+            path = _lasso(graph, nodes, steps, evidence.loop, exact_times)
+            if isinstance(path, str) and evidence.loop is not None:
+                return path
+            goes_on = None if isinstance(path, str) else path.after(len(path.positions) - 1)
+            times = [float(marking.time) for marking in markings]
+            if not _Waits(graph, nodes, steps, times, asked, goes_on).is_too_long():
+                return "no wait in the run is too long"
+        case m.Branching():
+            pass  # what one run shows of a formula that branches is no proof of it
     return None
+
+
+class _Waits:
+    """The waits in a run for a bounded response.
+
+    Args:
+        graph: of its markings.
+        nodes: markings of the run.
+        steps: the transitions between them.
+        times: of the markings.
+        asked: the property.
+        goes_on: the step with which the run goes on for ever; as many as there are steps: it stands still; None: it may
+            go on anyhow.
+    """
+
+    def __init__(
+        self,
+        graph: Graph,
+        nodes: Sequence[int],
+        steps: Sequence[int],
+        times: Sequence[float],
+        asked: m.Response,
+        goes_on: int | None,
+    ) -> None:
+        self._graph = graph
+        self._nodes = nodes
+        self._steps = steps
+        self._times = times
+        self._asked = asked
+        self._goes_on = goes_on
+
+    def is_too_long(self) -> bool:
+        """Whether one is."""
+        first, second = self._asked.first, self._asked.second
+        starts = [i for i in range(len(self._nodes)) if self._happens(first, i)]
+        return any(self._is_late(i) for i in starts if not self._is_at(second, i))
+
+    def _is_at(self, f: m.Formula, i: int) -> bool:
+        return not m.looks_at_steps(f) and self._nodes[i] in self._graph.nodes(f)
+
+    def _happens(self, f: m.Formula, i: int) -> bool:
+        """Whether marking i, or the step to it, is an event."""
+        if not m.looks_at_steps(f):
+            return self._is_at(f, i)
+        return i > 0 and self._steps[i - 1] in {a.number for a in m.atoms(f)}
+
+    def _is_late(self, start: int) -> bool:
+        for i in range(start + 1, len(self._nodes)):
+            if self._asked.firings is not None:
+                is_over = i - start > self._asked.firings
+            else:
+                is_over = self._times[i] - self._times[start] > float(self._asked.time or 0)
+            if is_over or self._happens(self._asked.second, i):
+                return is_over
+        if self._goes_on is None:
+            return False
+        again = range(self._goes_on + 1, len(self._nodes))
+        return not any(self._happens(self._asked.second, i) for i in again)
 
 
 def _played(
