@@ -73,7 +73,7 @@ def elaborated(path: Path) -> tuple[Diagnostics, bool]:
             case RawMl():
                 e.declarations(item.text)
             case RawGlobref():
-                e.globref(item.name, item.text, item.origin)
+                e.globref(item.name, item.text)
             case RawOther():
                 plain = False
             case _:

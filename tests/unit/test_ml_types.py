@@ -6,7 +6,6 @@ from __future__ import annotations
 import pytest
 
 from helpers.ml import Ml, source
-from pn2code.diagnostics import Origin
 from pn2code.ml.core import RecBind, Symbol, ValBind, Var
 
 
@@ -365,7 +364,7 @@ def test_replaced_values_keep_their_type_and_must_exist() -> None:
 
 def test_references_of_the_net() -> None:
     m = Ml()
-    m.e.globref("count", source("0"), Origin("net.cpn"))
+    m.e.globref("count", source("0"))
     m.ml("fun next () = (count := !count + 1; inc count; !count)")
     assert m.type_of("count") == "int ref"
     assert m.dump("count") == "val count : int ref = Ref.ref(0)"

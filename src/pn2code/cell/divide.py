@@ -39,7 +39,7 @@ def divide(net: FlatNet, config: CellConfig | None, d: Diagnostics) -> Partition
     find = PlaceFinder(net, d)
     channels = tuple(_channels(net, config, owners, writers, readers, find, d))
     _undeclared(net, channels, owners, writers, readers, config, d)
-    inputs = tuple(_inputs(net, config, writers, readers, find, d))
+    inputs = tuple(_inputs(config, writers, readers, find, d))
     final = tuple(
         place.index
         for name in config.supervisor.final
@@ -313,7 +313,6 @@ def _undeclared(
 
 
 def _inputs(
-    net: FlatNet,
     config: CellConfig,
     writers: list[set[int]],
     readers: list[set[int]],

@@ -128,7 +128,7 @@ def draw(
     else:
         _write({Path(output): drawing.svg()}, form)
     drawing.note_arranged(d)
-    _report(d, kind, marking or trace is not None, form)
+    _report(d, marking or trace is not None, form)
 
 
 def _kind(output: str, form: Format) -> str:
@@ -340,7 +340,7 @@ def _write(files: dict[Path, str], form: Format) -> None:
             _refuse(DRAW_OUTPUT, f"cannot write `{path}`: {os_reason(problem)}", hint, form)
 
 
-def _report(d: Diagnostics, kind: str, marking: bool, form: Format) -> None:
+def _report(d: Diagnostics, marking: bool, form: Format) -> None:
     """What is said at the end; the marking of a net with errors is not known, which is an error then."""
     if marking and d.has_errors:
         print_diagnostics(d.sorted(), form)

@@ -76,7 +76,7 @@ def compare(corpus: Path, path: str, *, max_nodes: int) -> Compared:
     missing = _missing_files(d)
     findings = dict.fromkeys(QUESTIONS, NOTHING)
     findings["verdict"] = _verdict(accepted, net, d, missing)
-    findings["elements"] = _elements(expected, d, net)
+    findings["elements"] = _elements(expected, d)
     game: Game | None = None
     if net is not None and accepted:
         try:
@@ -123,7 +123,7 @@ def _verdict(
     return differs("accepted here")
 
 
-def _elements(expected: dict[str, Any], d: Diagnostics, net: FlatNet | None) -> Finding:
+def _elements(expected: dict[str, Any], d: Diagnostics) -> Finding:
     """The same elements must be wrong. After a wrong declaration errors elsewhere are its consequences."""
     theirs = set(_rejected(expected))
     ours = {e.origin.element_id for e in d.errors}

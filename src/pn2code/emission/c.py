@@ -166,7 +166,7 @@ class _Emitter:
             s.body(body)
         head = wrap(f"static {result} {name}({', '.join(parameters) or 'void'})")
         return {
-            "mark": self._block(f"function {f.key}", f.hint, "declaration", f.origin),
+            "mark": self._block(f.hint, "declaration", f.origin),
             "title": _where(f.origin),
             "source": _comment_lines(f.source),
             "head": head,
@@ -175,7 +175,7 @@ class _Emitter:
             "lines": s.lines,
         }
 
-    def _block(self, key: str, element: str, kind: str, origin: Origin) -> str:
+    def _block(self, element: str, kind: str, origin: Origin) -> str:
         number = str(len(self._blocks))
         self._blocks[number] = (element, kind, origin)
         return number
@@ -200,7 +200,7 @@ class _Emitter:
             ):
                 constant = c_big_initialiser(value.value)
         return {
-            "mark": self._block(f"val {g.name}", g.hint, "declaration", g.origin),
+            "mark": self._block(g.hint, "declaration", g.origin),
             "title": _where(g.origin),
             "source": _comment_lines(g.source),
             "type": self._types.name(g.type),
@@ -223,7 +223,7 @@ class _Emitter:
         s.body(p.initial)
         leaves = self._leaves.of(p.table)
         return {
-            "mark": self._block(f"place {p.name}", p.name, "place", p.origin),
+            "mark": self._block(p.name, "place", p.origin),
             "name": p.name,
             "member": self._names.place(p.index, p.name),
             "bag": self._names.bag(p.index, p.name),
@@ -283,7 +283,7 @@ class _Emitter:
         text = "\n".join(fire.lines)
         affected = self._effects.affected(t.index)
         return {
-            "mark": self._block(f"transition {t.name}", t.name, "transition", t.origin),
+            "mark": self._block(t.name, "transition", t.origin),
             "index": t.index,
             "search_draws": self._effects.reaches(t.enumerate, _is_draw),
             "fire_draws": self._effects.reaches(t.fire, _is_draw),
@@ -338,7 +338,7 @@ class _Emitter:
         s, _, _ = self._printer(p.body)
         s.body(p.body)
         return {
-            "mark": self._block(f"property {p.name}", p.name, "property", p.origin),
+            "mark": self._block(p.name, "property", p.origin),
             "function": f"predicate_{number}",
             "name": p.name,
             "source": _comment_lines(p.text),

@@ -473,7 +473,7 @@ def _firing(
         s.uid: ir.Bound(i, variables[i].type, s.name) for i, s in enumerate(t.variables)
     }
     if t.code is not None:
-        _code_segment(body, t, env, variables)
+        _code_segment(body, t, env)
     for arc in t.arcs:
         if arc.kind in _TAKING:
             take_terms(program, net, body, arc, env)
@@ -499,9 +499,7 @@ def _firing(
     return tuple(body.statements)
 
 
-def _code_segment(
-    body: Body, t: FlatTransition, env: dict[int, Binding], variables: tuple[ir.Variable, ...]
-) -> None:
+def _code_segment(body: Body, t: FlatTransition, env: dict[int, Binding]) -> None:
     code = t.code
     assert code is not None
     index = {s.uid: i for i, s in enumerate(t.variables)}

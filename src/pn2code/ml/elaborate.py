@@ -320,7 +320,7 @@ class Elaborator:
             else:
                 self._ctx.unread_files.append(name)
 
-    def globref(self, name: str, text: SourceText, origin: Origin) -> None:
+    def globref(self, name: str, text: SourceText) -> None:
         """`globref name = text`."""
         self._border(text, lambda: self._globref(name, text))
 

@@ -134,7 +134,7 @@ class _Checker:
             case RawMl():
                 e.declarations(declaration.text)
             case RawGlobref():
-                e.globref(declaration.name, declaration.text, declaration.origin)
+                e.globref(declaration.name, declaration.text)
             case RawUse():
                 e.use(declaration.text)
             case RawOther() if declaration.tag == "globref":

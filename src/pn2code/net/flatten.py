@@ -139,7 +139,7 @@ class _Flattener:
                     above = (instance.parent, instance.sockets[place.id])
                     # Parents come before their children, so the socket's own top is known.
                     top[key] = top[above]
-                    self.check_port(place, self.typed[above], instance)
+                    self.check_port(place, self.typed[above])
         first_of_fusion: dict[str, Key] = {}
         mismatched: set[str] = set()
         last_of_fusion = {place.fusion: key for key, place in self.typed.items() if place.fusion}
@@ -179,7 +179,7 @@ class _Flattener:
     def topmost_first(self, group: list[Key], top: dict[Key, Key]) -> list[Key]:
         return sorted(group, key=lambda k: (top[k] != k, self.order[k]))
 
-    def check_port(self, port: TypedPlace, socket: TypedPlace, instance: PageInstance) -> None:
+    def check_port(self, port: TypedPlace, socket: TypedPlace) -> None:
         if (
             port.colset.resolved != socket.colset.resolved
             or port.colset.timed != socket.colset.timed

@@ -100,7 +100,7 @@ class _Linker:
         transitions, substitutions = [], []
         for t in page.transitions:
             if t.substitution is not None:
-                found = self.substitution(page, t, arcs.get(t.id, []))
+                found = self.substitution(page, t)
                 if found is not None:
                     substitutions.append(found)
             else:
@@ -158,9 +158,7 @@ class _Linker:
             layout=t.layout,
         )
 
-    def substitution(
-        self, page: RawPage, t: RawTransition, arcs: list[RawArc]
-    ) -> SubstitutionTransition | None:
+    def substitution(self, page: RawPage, t: RawTransition) -> SubstitutionTransition | None:
         raw = t.substitution
         assert raw is not None
         for text in (
