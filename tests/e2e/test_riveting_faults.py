@@ -1,4 +1,4 @@
-"""A drill that breaks at the third rivet, end to end: both robots release, retract and go HOME; the cell ends in `Failed`."""
+"""A drill that breaks at the third rivet, end to end: both robots retract and go HOME, the cell ends in `Failed`."""
 
 from __future__ import annotations
 
