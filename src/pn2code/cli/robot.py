@@ -34,9 +34,9 @@ EPILOG = """Examples:
 
   ./supervisor --dir /dev/shm/cell --input examples/riveting
 
-  pn2code robot robot1.tdl --dir /dev/shm/cell
+  pn2code robot robot1.tdl --dir /dev/shm/cell --cell examples/riveting
 
-  pn2code robot robot2.tdl --dir /dev/shm/cell --cell examples/riveting
+  pn2code robot robot2.tdl --dir /dev/shm/cell --cell examples/riveting --speed 10
 """
 
 ROBOT_FILE = register(
@@ -75,7 +75,7 @@ def robot(
 ) -> None:
     """Run one robot's script in real time, as a process of its own.
 
-    Messages that are enumerations need --cell; numbers, poses and texts are known from the script. Exit codes are those
+    Messages that are enumerations, and sensors, need --cell; numbers, poses and texts are known from the script. Exit codes are those
     of the supervisor: 0 finished, 1 the script failed, 3 the supervisor stopped or died, 4 fault of a channel, 5
     input/output.
     """
