@@ -8652,7 +8652,7 @@ static const pn_place_t s_places[] = {
         .capacity = 1U, .is_bounded = true, .bound = 1U, .timed = false,
         .count = Supervisor_ended_count, .token = Supervisor_ended_token, .put = Supervisor_ended_put,
         .clear = Supervisor_ended_clear, .json = Supervisor_ended_json,
-        .encode = Supervisor_ended_encode, .decode = Supervisor_ended_decode,
+        .encode = Supervisor_ended_encode, .decode = Supervisor_ended_decode, .add = Supervisor_ended_add_bytes,
         .bit = UINT32_MAX,
         .leaf_count = 1U, .leaf_kind = s_UNIT_kinds, .leaf_name = s_UNIT_leaves,
         .line_count = 1U, .line_leaves = s_UNIT_lines,
@@ -8686,28 +8686,6 @@ static const pn_place_t s_places[] = {
         .count = Supervisor_Failed_count, .token = Supervisor_Failed_token, .put = Supervisor_Failed_put,
         .clear = Supervisor_Failed_clear, .json = Supervisor_Failed_json,
         .encode = Supervisor_Failed_encode, .decode = Supervisor_Failed_decode, .add = Supervisor_Failed_add_bytes,
-        .bit = UINT32_MAX,
-        .leaf_count = 1U, .leaf_kind = s_UNIT_kinds, .leaf_name = s_UNIT_leaves,
-        .line_count = 1U, .line_leaves = s_UNIT_lines,
-    },
-    {
-        .name = "Cell.Supervisor.result", .colset = "REPLY", .owner = 0,
-        .origin = "page `Supervisor`, place `result` (ID1412320001)",
-        .capacity = 1U, .is_bounded = true, .bound = 1U, .timed = false,
-        .count = Supervisor_result_count, .token = Supervisor_result_token, .put = Supervisor_result_put,
-        .clear = Supervisor_result_clear, .json = Supervisor_result_json,
-        .encode = Supervisor_result_encode, .decode = Supervisor_result_decode,
-        .bit = UINT32_MAX,
-        .leaf_count = 1U, .leaf_kind = s_REPLY_kinds, .leaf_name = s_REPLY_leaves,
-        .line_count = 1U, .line_leaves = s_REPLY_lines,
-    },
-    {
-        .name = "Cell.Supervisor.Failed", .colset = "UNIT", .owner = 0,
-        .origin = "page `Supervisor`, place `Failed` (ID1412320004)",
-        .capacity = 1U, .is_bounded = true, .bound = 1U, .timed = false,
-        .count = Supervisor_Failed_count, .token = Supervisor_Failed_token, .put = Supervisor_Failed_put,
-        .clear = Supervisor_Failed_clear, .json = Supervisor_Failed_json,
-        .encode = Supervisor_Failed_encode, .decode = Supervisor_Failed_decode,
         .bit = UINT32_MAX,
         .leaf_count = 1U, .leaf_kind = s_UNIT_kinds, .leaf_name = s_UNIT_leaves,
         .line_count = 1U, .line_leaves = s_UNIT_lines,
@@ -9504,6 +9482,81 @@ static const uint32_t s_touched_by_Robot2_Insert[] = { 71U, 72U };
 static const uint32_t s_touched_by_Robot2_Press[] = { 71U, 72U };
 static const uint32_t s_touched_by_Robot2_Release[] = { 71U, 72U };
 
+/* And those that decide about it. */
+static const uint32_t s_read_by_Supervisor_Load_Load[] = { 8U };
+static const uint32_t s_read_by_Supervisor_Approach_Send[] = { 9U };
+static const uint32_t s_read_by_Supervisor_Approach_Arrived[] = { 18U, 19U };
+static const uint32_t s_read_by_Supervisor_Approach_Move_both_Command[] = { 17U };
+static const uint32_t s_read_by_Supervisor_Approach_Move_both_Both[] = { 21U, 23U };
+static const uint32_t s_read_by_Supervisor_Approach_Move_both_Reply_1[] = { 2U, 20U };
+static const uint32_t s_read_by_Supervisor_Approach_Move_both_Reply_2[] = { 7U, 22U };
+static const uint32_t s_read_by_Supervisor_Verify_Ask_first[] = { 10U };
+static const uint32_t s_read_by_Supervisor_Verify_Ask_last[] = { 2U, 4U, 24U };
+static const uint32_t s_read_by_Supervisor_Verify_Measured[] = { 2U, 4U, 25U };
+static const uint32_t s_read_by_Supervisor_Verify_First_lost[] = { 2U, 4U, 24U };
+static const uint32_t s_read_by_Supervisor_Verify_Last_lost[] = { 2U, 4U, 25U };
+static const uint32_t s_read_by_Supervisor_Correct_Compare[] = { 11U };
+static const uint32_t s_read_by_Supervisor_Correct_Move_over[] = { 26U, 29U };
+static const uint32_t s_read_by_Supervisor_Correct_Moved[] = { 28U, 29U };
+static const uint32_t s_read_by_Supervisor_Correct_As_planned[] = { 26U, 29U };
+static const uint32_t s_read_by_Supervisor_Correct_Move_both_Command[] = { 27U };
+static const uint32_t s_read_by_Supervisor_Correct_Move_both_Both[] = { 31U, 33U };
+static const uint32_t s_read_by_Supervisor_Correct_Move_both_Reply_1[] = { 2U, 30U };
+static const uint32_t s_read_by_Supervisor_Correct_Move_both_Reply_2[] = { 7U, 32U };
+static const uint32_t s_read_by_Supervisor_Install_Go_back[] = { 15U, 36U, 38U };
+static const uint32_t s_read_by_Supervisor_Install_Next_rivet[] = { 15U, 36U, 38U };
+static const uint32_t s_read_by_Supervisor_Install_Start[] = { 12U };
+static const uint32_t s_read_by_Supervisor_Install_Give_up[] = { 15U, 36U, 38U };
+static const uint32_t s_read_by_Supervisor_Install_Shift_Command[] = { 34U };
+static const uint32_t s_read_by_Supervisor_Install_Shift_Both[] = { 40U, 42U };
+static const uint32_t s_read_by_Supervisor_Install_Shift_Reply_1[] = { 2U, 39U };
+static const uint32_t s_read_by_Supervisor_Install_Shift_Reply_2[] = { 7U, 41U };
+static const uint32_t s_read_by_Supervisor_Install_Rivet_Go_in[] = { 35U };
+static const uint32_t s_read_by_Supervisor_Install_Rivet_Go_out[] = { 45U };
+static const uint32_t s_read_by_Supervisor_Install_Rivet_Advance_Command[] = { 43U };
+static const uint32_t s_read_by_Supervisor_Install_Rivet_Advance_Both[] = { 48U, 50U };
+static const uint32_t s_read_by_Supervisor_Install_Rivet_Advance_Reply_1[] = { 2U, 47U };
+static const uint32_t s_read_by_Supervisor_Install_Rivet_Advance_Reply_2[] = { 7U, 49U };
+static const uint32_t s_read_by_Supervisor_Install_Rivet_Fasten_Press[] = { 44U };
+static const uint32_t s_read_by_Supervisor_Install_Rivet_Fasten_Drill[] = { 7U, 51U };
+static const uint32_t s_read_by_Supervisor_Install_Rivet_Fasten_Insert[] = { 2U, 52U };
+static const uint32_t s_read_by_Supervisor_Install_Rivet_Fasten_Release[] = { 2U, 53U };
+static const uint32_t s_read_by_Supervisor_Install_Rivet_Fasten_Finish[] = { 7U, 54U };
+static const uint32_t s_read_by_Supervisor_Install_Rivet_Fasten_Press_failed[] = { 7U, 51U };
+static const uint32_t s_read_by_Supervisor_Install_Rivet_Fasten_Drill_failed[] = { 2U, 52U };
+static const uint32_t s_read_by_Supervisor_Install_Rivet_Retract_Command[] = { 46U };
+static const uint32_t s_read_by_Supervisor_Install_Rivet_Retract_Both[] = { 56U, 58U };
+static const uint32_t s_read_by_Supervisor_Install_Rivet_Retract_Reply_1[] = { 2U, 55U };
+static const uint32_t s_read_by_Supervisor_Install_Rivet_Retract_Reply_2[] = { 7U, 57U };
+static const uint32_t s_read_by_Supervisor_Install_Return_Command[] = { 37U };
+static const uint32_t s_read_by_Supervisor_Install_Return_Both[] = { 60U, 62U };
+static const uint32_t s_read_by_Supervisor_Install_Return_Reply_1[] = { 2U, 59U };
+static const uint32_t s_read_by_Supervisor_Install_Return_Reply_2[] = { 7U, 61U };
+static const uint32_t s_read_by_Supervisor_Home_Send_home[] = { 13U };
+static const uint32_t s_read_by_Supervisor_Home_Both[] = { 15U, 64U, 66U };
+static const uint32_t s_read_by_Supervisor_Home_Reply_1[] = { 2U, 63U };
+static const uint32_t s_read_by_Supervisor_Home_Reply_2[] = { 7U, 65U };
+static const uint32_t s_read_by_Robot1_Accept[] = { 1U, 67U };
+static const uint32_t s_read_by_Robot1_Report[] = { 69U };
+static const uint32_t s_read_by_Robot1_MoveJoint[] = { 0U, 68U };
+static const uint32_t s_read_by_Robot1_MoveLinear[] = { 0U, 68U };
+static const uint32_t s_read_by_Robot1_MoveHome[] = { 68U };
+static const uint32_t s_read_by_Robot1_Measure[] = { 3U, 68U };
+static const uint32_t s_read_by_Robot1_Drill[] = { 68U };
+static const uint32_t s_read_by_Robot1_Insert[] = { 68U };
+static const uint32_t s_read_by_Robot1_Press[] = { 68U };
+static const uint32_t s_read_by_Robot1_Release[] = { 68U };
+static const uint32_t s_read_by_Robot2_Accept[] = { 6U, 70U };
+static const uint32_t s_read_by_Robot2_Report[] = { 72U };
+static const uint32_t s_read_by_Robot2_MoveJoint[] = { 5U, 71U };
+static const uint32_t s_read_by_Robot2_MoveLinear[] = { 5U, 71U };
+static const uint32_t s_read_by_Robot2_MoveHome[] = { 71U };
+static const uint32_t s_read_by_Robot2_Measure[] = { 71U, 73U };
+static const uint32_t s_read_by_Robot2_Drill[] = { 71U };
+static const uint32_t s_read_by_Robot2_Insert[] = { 71U };
+static const uint32_t s_read_by_Robot2_Press[] = { 71U };
+static const uint32_t s_read_by_Robot2_Release[] = { 71U };
+
 static const pn_transition_t s_transitions[] = {
     {
         .name = "Cell.Supervisor.Load.Load", .id = "ID1412310271", .owner = 0, .priority = 1000,
@@ -9650,26 +9703,6 @@ static const pn_transition_t s_transitions[] = {
         .read = s_read_by_Supervisor_Verify_Last_lost,
     },
     {
-        .name = "Cell.Supervisor.Verify.First lost", .id = "ID1412320018", .owner = 0, .priority = 1000,
-        .origin = "page `Verify`, transition `First lost` (ID1412320018)",
-        .enumerate = Supervisor_Verify_First_lost_enumerate, .fire = Supervisor_Verify_First_lost_fire, .binding_json = Supervisor_Verify_First_lost_json,
-        .binding_size = sizeof(Supervisor_Verify_First_lost_binding_t),
-        .affected_count = sizeof s_affected_by_Supervisor_Verify_First_lost / sizeof s_affected_by_Supervisor_Verify_First_lost[0],
-        .affected = s_affected_by_Supervisor_Verify_First_lost,
-        .touched_count = sizeof s_touched_by_Supervisor_Verify_First_lost / sizeof s_touched_by_Supervisor_Verify_First_lost[0],
-        .touched = s_touched_by_Supervisor_Verify_First_lost,
-    },
-    {
-        .name = "Cell.Supervisor.Verify.Last lost", .id = "ID1412320023", .owner = 0, .priority = 1000,
-        .origin = "page `Verify`, transition `Last lost` (ID1412320023)",
-        .enumerate = Supervisor_Verify_Last_lost_enumerate, .fire = Supervisor_Verify_Last_lost_fire, .binding_json = Supervisor_Verify_Last_lost_json,
-        .binding_size = sizeof(Supervisor_Verify_Last_lost_binding_t),
-        .affected_count = sizeof s_affected_by_Supervisor_Verify_Last_lost / sizeof s_affected_by_Supervisor_Verify_Last_lost[0],
-        .affected = s_affected_by_Supervisor_Verify_Last_lost,
-        .touched_count = sizeof s_touched_by_Supervisor_Verify_Last_lost / sizeof s_touched_by_Supervisor_Verify_Last_lost[0],
-        .touched = s_touched_by_Supervisor_Verify_Last_lost,
-    },
-    {
         .name = "Cell.Supervisor.Correct.Compare", .id = "ID1412310453", .owner = 0, .priority = 1000,
         .origin = "page `Correct`, transition `Compare` (ID1412310453)",
         .enumerate = Supervisor_Correct_Compare_enumerate, .fire = Supervisor_Correct_Compare_fire, .binding_json = Supervisor_Correct_Compare_json,
@@ -9812,16 +9845,6 @@ static const pn_transition_t s_transitions[] = {
         .touched = s_touched_by_Supervisor_Install_Give_up,
         .read_count = sizeof s_read_by_Supervisor_Install_Give_up / sizeof s_read_by_Supervisor_Install_Give_up[0],
         .read = s_read_by_Supervisor_Install_Give_up,
-    },
-    {
-        .name = "Cell.Supervisor.Install.Give up", .id = "ID1412320067", .owner = 0, .priority = 1000,
-        .origin = "page `Install`, transition `Give up` (ID1412320067)",
-        .enumerate = Supervisor_Install_Give_up_enumerate, .fire = Supervisor_Install_Give_up_fire, .binding_json = Supervisor_Install_Give_up_json,
-        .binding_size = sizeof(Supervisor_Install_Give_up_binding_t),
-        .affected_count = sizeof s_affected_by_Supervisor_Install_Give_up / sizeof s_affected_by_Supervisor_Install_Give_up[0],
-        .affected = s_affected_by_Supervisor_Install_Give_up,
-        .touched_count = sizeof s_touched_by_Supervisor_Install_Give_up / sizeof s_touched_by_Supervisor_Install_Give_up[0],
-        .touched = s_touched_by_Supervisor_Install_Give_up,
     },
     {
         .name = "Cell.Supervisor.Install.Shift.Command", .id = "ID1412310941", .owner = 0, .priority = 1000,
@@ -10026,26 +10049,6 @@ static const pn_transition_t s_transitions[] = {
         .touched = s_touched_by_Supervisor_Install_Rivet_Fasten_Drill_failed,
         .read_count = sizeof s_read_by_Supervisor_Install_Rivet_Fasten_Drill_failed / sizeof s_read_by_Supervisor_Install_Rivet_Fasten_Drill_failed[0],
         .read = s_read_by_Supervisor_Install_Rivet_Fasten_Drill_failed,
-    },
-    {
-        .name = "Cell.Supervisor.Install.Rivet.Fasten.Press failed", .id = "ID1412320087", .owner = 0, .priority = 1000,
-        .origin = "page `Fasten`, transition `Press failed` (ID1412320087)",
-        .enumerate = Supervisor_Install_Rivet_Fasten_Press_failed_enumerate, .fire = Supervisor_Install_Rivet_Fasten_Press_failed_fire, .binding_json = Supervisor_Install_Rivet_Fasten_Press_failed_json,
-        .binding_size = sizeof(Supervisor_Install_Rivet_Fasten_Press_failed_binding_t),
-        .affected_count = sizeof s_affected_by_Supervisor_Install_Rivet_Fasten_Press_failed / sizeof s_affected_by_Supervisor_Install_Rivet_Fasten_Press_failed[0],
-        .affected = s_affected_by_Supervisor_Install_Rivet_Fasten_Press_failed,
-        .touched_count = sizeof s_touched_by_Supervisor_Install_Rivet_Fasten_Press_failed / sizeof s_touched_by_Supervisor_Install_Rivet_Fasten_Press_failed[0],
-        .touched = s_touched_by_Supervisor_Install_Rivet_Fasten_Press_failed,
-    },
-    {
-        .name = "Cell.Supervisor.Install.Rivet.Fasten.Drill failed", .id = "ID1412320092", .owner = 0, .priority = 1000,
-        .origin = "page `Fasten`, transition `Drill failed` (ID1412320092)",
-        .enumerate = Supervisor_Install_Rivet_Fasten_Drill_failed_enumerate, .fire = Supervisor_Install_Rivet_Fasten_Drill_failed_fire, .binding_json = Supervisor_Install_Rivet_Fasten_Drill_failed_json,
-        .binding_size = sizeof(Supervisor_Install_Rivet_Fasten_Drill_failed_binding_t),
-        .affected_count = sizeof s_affected_by_Supervisor_Install_Rivet_Fasten_Drill_failed / sizeof s_affected_by_Supervisor_Install_Rivet_Fasten_Drill_failed[0],
-        .affected = s_affected_by_Supervisor_Install_Rivet_Fasten_Drill_failed,
-        .touched_count = sizeof s_touched_by_Supervisor_Install_Rivet_Fasten_Drill_failed / sizeof s_touched_by_Supervisor_Install_Rivet_Fasten_Drill_failed[0],
-        .touched = s_touched_by_Supervisor_Install_Rivet_Fasten_Drill_failed,
     },
     {
         .name = "Cell.Supervisor.Install.Rivet.Retract.Command", .id = "ID1412310941", .owner = 0, .priority = 1000,

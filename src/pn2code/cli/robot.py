@@ -75,9 +75,9 @@ def robot(
 ) -> None:
     """Run one robot's script in real time, as a process of its own.
 
-    Messages that are enumerations, and sensors, need --cell; numbers, poses and texts are known from the script. Exit codes are those
-    of the supervisor: 0 finished, 1 the script failed, 3 the supervisor stopped or died, 4 fault of a channel, 5
-    input/output.
+    Messages that are enumerations, and sensors, need --cell; numbers, poses and texts are known from the script. Exit
+    codes are those of the supervisor: 0 finished, 1 the script failed, 3 the supervisor stopped or died, 4 fault of a
+    channel, 5 input/output.
     """
     d = Diagnostics()
     program = _load(script, d)
