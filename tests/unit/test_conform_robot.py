@@ -53,9 +53,14 @@ def test_a_sensor_says_what_its_own_variable_may_be(tmp_path: Path) -> None:
 
 
 def test_what_a_sensor_says_is_not_made_up(tmp_path: Path) -> None:
+    """Not even if it may be so."""
     found = compared(tmp_path, ("sense gripper into grip", 'grip := "held"'))
-    assert found.deviation is None and found.complete  # only one of the things that may be
+    assert found.deviation is not None
+    assert "with grip = held, but has not asked the sensor `gripper`" in found.deviation
+    lie = 'sense gripper into grip\ngrip := "held"'
+    found = compared(tmp_path, ("sense gripper into grip", lie))
+    assert found.deviation is not None
+    assert "with grip = held, but the sensor `gripper` has said lost" in found.deviation
     found = compared(tmp_path, ("sense gripper into grip", 'grip := "red"'))
-    assert (
-        found.deviation is not None and "Grip` with {'e': 'red', 'grip': 'red'}" in found.deviation
-    )
+    assert found.deviation is not None
+    assert "Grip` with {'e': 'red', 'grip': 'red'}" in found.deviation

@@ -12,7 +12,7 @@ with every value.
 from __future__ import annotations
 
 from collections import deque
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
 
 from pn2code.cell.config import CellConfig
@@ -22,6 +22,7 @@ from pn2code.conform.clock import Clock
 from pn2code.conform.messages import scalars
 from pn2code.conform.primitives import Calls, noting
 from pn2code.conform.scheme import MOST_STATES, Scheme
+from pn2code.net.flat import BindAll, BindRandom, FlatTransition
 from pn2code.robot import commands
 from pn2code.semantics.colour_json import to_json
 from pn2code.semantics.game import Game, GameError
@@ -82,6 +83,7 @@ class _State:
     saved: the script.
     request: what it has asked for, None at the start.
     done: commands since the last mark.
+    said: what sensors were asked since then, and what they said.
     until: model time at which a wait ends.
     """
 
@@ -89,6 +91,7 @@ class _State:
     saved: Saved
     request: Request | None
     done: tuple[commands.Command, ...] = ()
+    said: tuple[tuple[str, Scalar], ...] = ()
     until: float | None = None
 
 
@@ -145,6 +148,7 @@ class _Product:
         self._interpreter = Interpreter(program, self._files, self._heard)
         self._marking = game.marking
         self._done: list[commands.Command] = []
+        self._heard_of: list[tuple[str, Scalar]] = []
         self._marked: set[str] = set()
         self._marks = 0
         self._commands = 0
@@ -275,6 +279,9 @@ class _Product:
         self._interpreter.restore(state.saved)
         self._marking = state.marking
         self._done = list(state.done)
+        self._heard_of = list(state.said)
+        if isinstance(state.request, Sense) and isinstance(result, int | float | bool | str):
+            self._heard_of.append((state.request.sensor, result))
         self._files.view = self._view(state.marking)
         before = self._interpreter.line
         with noting(self._game, self._primitives, self._called):
@@ -286,7 +293,14 @@ class _Product:
                 until = self._marking.time + request.command.duration
             else:
                 self._done.append(request.command)
-        after = _State(self._marking, self._interpreter.save(), request, tuple(self._done), until)
+        after = _State(
+            self._marking,
+            self._interpreter.save(),
+            request,
+            tuple(self._done),
+            tuple(self._heard_of),
+            until,
+        )
         return f"{self._name}: the script goes on after line {before}", after
 
     def _heard(self, event: Event) -> None:
@@ -308,11 +322,32 @@ class _Product:
                 ) from None
             if binding_to_json(occurred) == event.binding:
                 self._compare_commands(where, tuple(self._called))
+                self._compare_sensors(where, t, event.binding)
                 self._marking = marking
                 self._marks += 1
                 self._marked.add(t.name)
                 return
         raise _DeviationError(f"{where} with {event.binding}, which is not enabled by the net")
+
+    def _compare_sensors(
+        self, where: str, t: FlatTransition, binding: Mapping[str, object]
+    ) -> None:
+        """What the net leaves open is decided by a sensor, not by the script."""
+        said = dict(self._heard_of)
+        self._heard_of.clear()
+        for step in t.plan:
+            if not isinstance(step, BindAll | BindRandom):
+                continue
+            name = step.symbol.name
+            sensor = self._sensors.get(name)
+            if sensor is not None and sensor not in said:
+                raise _DeviationError(
+                    f"{where} with {name} = {binding[name]}, but has not asked the sensor `{sensor}`"
+                )
+            if sensor is not None and said[sensor] != binding[name]:
+                raise _DeviationError(
+                    f"{where} with {name} = {binding[name]}, but the sensor `{sensor}` has said {said[sensor]}"
+                )
 
     def _compare_commands(self, where: str, called: tuple[commands.Command, ...]) -> None:
         done = tuple(self._done)
