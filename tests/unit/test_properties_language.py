@@ -329,6 +329,18 @@ def test_wrong_files(examined: front.Examined, tmp_path: Path, text: str, messag
     assert "shop.properties.toml" in said
 
 
+def test_stamps_are_explained(examined: front.Examined) -> None:
+    found, said = bound(examined, option("always { List.all (fn v => v > 1) (Mark.Top'Go_on 1) }"))
+    assert not found.properties
+    assert (
+        "= note: the marking of a timed place has stamps: `ms (Mark.Page'Place 1)` leaves" in said
+    )
+    found, said = bound(
+        examined, option("always { List.all (fn v => v = true) (Mark.Top'Stock 1) }")
+    )
+    assert not found.properties and "stamps" not in said
+
+
 def test_a_file_without_properties(tmp_path: Path) -> None:
     d = Diagnostics()
     (tmp_path / "a.toml").write_text("# nothing yet\n")

@@ -8,11 +8,13 @@ binder.properties()
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 from typing import Literal, assert_never
 
-from pn2code.diagnostics import Diagnostics, SourceText, Span
+from pn2code.diagnostics import Diagnostics, Note, SourceText, Span
 from pn2code.frozen import frozen
 from pn2code.ml import core
+from pn2code.ml.codes import TYPE_MISMATCH
 from pn2code.ml.elaborate import Elaborator
 from pn2code.ml.types import BOOL, INT, TFun, Type, tuple_of
 from pn2code.net.flat import FlatNet
@@ -326,10 +328,19 @@ class Binder:
             return None
         if key in self._numbers:
             return m.Atom("pred", self._numbers[key])
+        before = len(self._d.items)
         found = self._marks.condition(text)
         if found is None:
+            self._explain_stamps(before)
             return None
         return self._predicate(key, *found)
+
+    def _explain_stamps(self, before: int) -> None:
+        """Markings of timed places have stamps in them: that is easily forgotten."""
+        for i, item in enumerate(self._d.items[before:], before):
+            if item.code == TYPE_MISMATCH and " timed" in item.message:
+                note = "the marking of a timed place has stamps: `ms (Mark.Page'Place 1)` leaves them away"
+                self._d.items[i] = replace(item, notes=(*item.notes, Note(note)))
 
     def _predicate(
         self, text: str, exp: core.Exp, places: tuple[tuple[core.Symbol, int], ...]
