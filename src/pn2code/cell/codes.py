@@ -62,6 +62,12 @@ CHANNEL_INITIAL = register(
     "a channel must be empty initially",
     "Channel files hold `0` when the cell starts, so the place must have no initial marking.",
 )
+CHANNEL_TIMED = register(
+    "channel-timed",
+    "the colour set of a channel is timed",
+    "A message is seen as soon as it is written, so it cannot carry a time stamp that lies ahead. Use an untimed "
+    "colour set for the channel, and put delays on the writer's or the reader's own places.",
+)
 UNSUPPORTED_CHANNEL_COLSET = register(
     "unsupported-channel-colset",
     "the colour set of a channel or input has no fixed number of scalars",

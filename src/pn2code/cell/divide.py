@@ -226,7 +226,16 @@ def _channels(
                 notes=[Note("it is a channel here", entry.origin)],
                 hint="let the writer's first transition put the token",
             )
-        if not _fixed(place.colset):
+        if place.colset.timed:
+            d.error(
+                codes.CHANNEL_TIMED,
+                f"channel `{place.name}` has the timed colour set `{place.colset.name}`, "
+                "and messages carry no time stamps",
+                place.origins[0],
+                notes=[Note("it is a channel here", entry.origin)],
+                hint="declare the channel's colour set without `timed`; let the writer delay on a place of its own",
+            )
+        elif not _fixed(place.colset):
             d.error(
                 codes.UNSUPPORTED_CHANNEL_COLSET,
                 f"channel `{place.name}` has colour set `{place.colset.name}`, which has no fixed number of scalars",
@@ -362,4 +371,4 @@ def _fixed(colset: Colset) -> bool:
     if c.kind is Kind.SUBSET:
         base = c.components[0]
         return base is not None and _fixed(base)
-    return c.kind in _SCALARS and not colset.timed
+    return c.kind in _SCALARS
