@@ -48,6 +48,13 @@ def test_a_cell_that_is_refused(tmp_path: Path) -> None:
     assert "net.c" not in page
 
 
+def test_a_part_of_a_cell(tmp_path: Path) -> None:
+    cell = write(tmp_path / "cell")
+    page = page_of(cell, tmp_path, "--no-medium", "--max-states", "5")
+    assert "No programs were generated: not all markings were seen." in page
+    assert "Controller checks: 1 of 6 are as they should be, 5 are open." in page
+
+
 def test_a_net(tmp_path: Path) -> None:
     net = write_net(MUTEX, tmp_path / "mutex.cpn")
     text = '[[property]]\nname = "fair"\nholds = "ltl G F fires(Enter)"\nfair = ["weak Enter"]\n'

@@ -40,6 +40,7 @@ class Subject:
         properties: Sequence[Path],
         *,
         int_bits: int,
+        complete: bool,
     ) -> Subject:
         """Of a net or cell; the programs of a cell are generated for it, in memory.
 
@@ -49,6 +50,7 @@ class Subject:
             values: replace `val`s of the net.
             properties: files of properties.
             int_bits: width of `int`.
+            complete: whether all markings were seen; if not, nothing is generated, for that would look at them again.
         """
         rows = [("Net", opened.flat.file, opened.flat.sha256)]
         if opened.config is not None:
@@ -58,6 +60,8 @@ class Subject:
         rows.append(("Integers", "width of `int`", f"{int_bits} bits"))
         if opened.config is None:
             return Subject(tuple(rows))
+        if not complete:
+            return Subject(tuple(rows), "No programs were generated: not all markings were seen.")
         d = Diagnostics()
         made = pipeline.generate(path, d, values=values, int_bits=int_bits)
         if made is None:

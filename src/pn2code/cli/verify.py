@@ -274,7 +274,10 @@ def verify(
         page = report_to.suffix.lower() in (".html", ".htm")
         files = properties.files(opened, file, found=found_properties)
         values = parse_values(settings)
-        subject = Subject.of(opened, net, values, files, int_bits=int_bits) if page else None
+        subject = None
+        if page:
+            complete = found.complete or found.why == "decided"
+            subject = Subject.of(opened, net, values, files, int_bits=int_bits, complete=complete)
         _write_report(opened, found, answers, control, seen, subject, report_to, d)
     if not as_json and not quiet:
         typer.echo(_text(opened, found, answers, control))
