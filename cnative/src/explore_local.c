@@ -76,8 +76,7 @@ struct ex_local {
     uint32_t most;
     sum_t *sum;
     ex_change_t *change; /* of one successor */
-    /* The note that is being written: of `transition`, at `words`. */
-    uint32_t transition;
+    /* The note that is being written, at `words`. */
     uint32_t end;
     uint32_t found;
     bool is_too_long;
@@ -126,70 +125,102 @@ static bool reads(const pn_transition_t *transition, uint32_t p)
     return is_read;
 }
 
-static bool make_form(ex_run_t *run, form_t *form, uint32_t t)
+/* The words that decide about a transition; their number. */
+static uint32_t list_reads(const ex_codec_t *codec, const pn_transition_t *transition, word_t *word)
 {
-    const ex_codec_t *codec = run->codec;
-    const pn_transition_t *transition = &pn_net.transition[t];
-    form->is_possible = !transition->draws && (transition->read != NULL) && (transition->successors != NULL);
-    if (!form->is_possible) {
-        return true;
-    }
-    form->read = ex_table(run, codec->words, sizeof *form->read);
-    form->changed = ex_table(run, codec->words, sizeof *form->changed);
-    if ((form->read == NULL) || (form->changed == NULL)) {
-        return false;
-    }
+    uint32_t count = 0U;
     for (uint32_t i = 0U; i < transition->read_count; i++) {
         const uint32_t p = transition->read[i];
         if (pn_net.place[p].is_packed) {
-            add_packed(codec, form->read, &form->reads, p, true);
+            add_packed(codec, word, &count, p, true);
         } else {
-            form->read[form->reads++] = (word_t){ .cell = codec->word_of[p], .mask = UINT32_MAX, .kind = WORD_PLACE, .place = p };
+            word[count++] = (word_t){ .cell = codec->word_of[p], .mask = UINT32_MAX, .kind = WORD_PLACE, .place = p };
         }
     }
     for (uint32_t i = 0U; i < transition->touched_count; i++) {
-        const uint32_t p = transition->touched[i];
-        if (pn_net.place[p].is_packed) {
-            add_packed(codec, form->changed, &form->changes, p, false);
-            add_packed(codec, form->read, &form->reads, p, false); /* what becomes of counters depends on them */
-        } else {
-            const word_kind_t kind = reads(transition, p) ? WORD_PLACE : WORD_ADDED;
-            form->changed[form->changes++] = (word_t){ .cell = codec->word_of[p], .kind = kind, .place = p };
+        if (pn_net.place[transition->touched[i]].is_packed) {
+            add_packed(codec, word, &count, transition->touched[i], false); /* what becomes of counters depends on them */
         }
     }
     if (codec->time_word != UINT32_MAX) {
-        form->read[form->reads++] = (word_t){ .cell = codec->time_word, .mask = UINT32_MAX, .kind = WORD_BITS };
+        word[count++] = (word_t){ .cell = codec->time_word, .mask = UINT32_MAX, .kind = WORD_BITS };
     }
-    return true;
+    return count;
+}
+
+/* The words that it may change; their number. */
+static uint32_t list_changes(const ex_codec_t *codec, const pn_transition_t *transition, word_t *word)
+{
+    uint32_t count = 0U;
+    for (uint32_t i = 0U; i < transition->touched_count; i++) {
+        const uint32_t p = transition->touched[i];
+        if (pn_net.place[p].is_packed) {
+            add_packed(codec, word, &count, p, false);
+        } else {
+            const word_kind_t kind = reads(transition, p) ? WORD_PLACE : WORD_ADDED;
+            word[count++] = (word_t){ .cell = codec->word_of[p], .kind = kind, .place = p };
+        }
+    }
+    return count;
+}
+
+/* Those of all transitions, one behind the other in `pool`; NULL: they are only counted, with `room` for those of one. */
+static uint64_t lay_forms(const ex_codec_t *codec, form_t *form, word_t *pool, word_t *room)
+{
+    uint64_t used = 0U;
+    for (uint32_t t = 0U; t < pn_net.transition_count; t++) {
+        const pn_transition_t *transition = &pn_net.transition[t];
+        form[t].is_possible = !transition->draws && (transition->read != NULL) && (transition->successors != NULL);
+        if (form[t].is_possible) {
+            form[t].read = (pool != NULL) ? &pool[used] : room;
+            form[t].reads = list_reads(codec, transition, form[t].read);
+            used += form[t].reads;
+            form[t].changed = (pool != NULL) ? &pool[used] : room;
+            form[t].changes = list_changes(codec, transition, form[t].changed);
+            used += form[t].changes;
+        }
+    }
+    return used;
+}
+
+static form_t *make_forms(ex_run_t *run)
+{
+    const ex_codec_t *codec = run->codec;
+    form_t *form = ex_table(run, pn_net.transition_count, sizeof *form);
+    word_t *room = ex_table(run, codec->words, sizeof *room);
+    word_t *pool = NULL;
+    if ((form != NULL) && (room != NULL)) {
+        pool = ex_table(run, lay_forms(codec, form, NULL, room), sizeof *pool);
+    }
+    if (pool != NULL) {
+        (void)lay_forms(codec, form, pool, NULL);
+    }
+    ex_free_table(run, room, codec->words, sizeof *room);
+    return (pool != NULL) ? form : NULL;
 }
 
 bool ex_local_make(ex_worker_t *worker)
 {
     ex_run_t *run = worker->run;
     const bool is_reduced = (run->reduction != NULL) || run->options.is_time_reduced;
-    if (!run->options.has_notes || is_reduced || (pn_net.bag_count == 0U) || run->codec->is_whole || pn_net.has_references) {
+    const uint64_t most = run->options.memory / ((uint64_t)SHARE_OF_MEMORY * run->options.threads * sizeof(uint32_t));
+    if (!run->options.has_notes || is_reduced || (pn_net.bag_count == 0U) || run->codec->is_whole || pn_net.has_references
+        || (most < (uint64_t)PAGE_WORDS)) {
         return true;
     }
     ex_local_t *own = ex_alloc(run, sizeof *own);
-    form_t *form = ex_table(run, pn_net.transition_count, sizeof *form);
-    if ((own == NULL) || (form == NULL)) {
+    if (own == NULL) {
         return false;
     }
-    for (uint32_t t = 0U; t < pn_net.transition_count; t++) {
-        if (!make_form(run, &form[t], t)) {
-            return false;
-        }
-    }
-    const uint64_t most = run->options.memory / ((uint64_t)SHARE_OF_MEMORY * run->options.threads * sizeof *own->word);
     own->worker = worker;
-    own->form = form;
+    own->form = make_forms(run);
     own->most = (most < (uint64_t)MOST_WORDS) ? (uint32_t)most : (uint32_t)MOST_WORDS;
     own->entries = (uint32_t)FIRST_ENTRIES;
     own->entry = ex_alloc(run, own->entries * sizeof *own->entry);
     own->word = ex_reserve(own->most * sizeof *own->word);
     own->sum = ex_alloc(run, (uint64_t)SUMS * sizeof *own->sum);
     own->change = ex_table(run, run->codec->words, sizeof *own->change);
-    if ((own->entry == NULL) || (own->word == NULL) || (own->sum == NULL) || (own->change == NULL)) {
+    if ((own->form == NULL) || (own->entry == NULL) || (own->word == NULL) || (own->sum == NULL) || (own->change == NULL)) {
         return false;
     }
     worker->local = own;
@@ -383,7 +414,6 @@ static const uint32_t *write_note(ex_local_t *own, uint64_t hash, uint32_t t)
     for (uint32_t i = 0U; i < form->reads; i++) {
         note[1U + i] = cell[form->read[i].cell] & form->read[i].mask;
     }
-    own->transition = t;
     own->end = own->words + 2U + form->reads;
     own->found = 0U;
     own->is_too_long = false;
