@@ -13,7 +13,9 @@ import json
 import subprocess
 import sys
 import time
-from collections.abc import Iterator
+from collections import Counter
+from collections.abc import Callable, Iterator
+from itertools import chain
 from pathlib import Path
 from typing import Any
 
@@ -23,7 +25,7 @@ from helpers.table_nets import Marking, Permutation, orbits
 from pn2code.cli.nets import open_net
 from pn2code.cli.options import Format
 from pn2code.semantics.game import GameError
-from pn2code.unfold.net import Unfolding
+from pn2code.unfold.net import UnfoldedTransition, Unfolding
 from pn2code.verify.elements import NotPossibleError, elements
 from pn2code.verify.symmetry import Symmetries
 
@@ -120,11 +122,12 @@ def _judge(
 
 def all_markings(u: Unfolding) -> set[Marking]:
     """All that can be reached."""
+    enabled_in = _enabled_in(u)
     seen = {u.initial}
     todo = [u.initial]
     while todo:
         marking = todo.pop()
-        enabled = [t for t in u.transitions if u.is_enabled(marking, t)]
+        enabled = list(enabled_in(marking))
         best = min((t.priority for t in enabled), default=0)
         for t in enabled:
             after = u.fire(marking, t)
@@ -136,7 +139,24 @@ def all_markings(u: Unfolding) -> set[Marking]:
 
 def dead_markings(u: Unfolding, space: set[Marking]) -> set[Marking]:
     """Those in which nothing is enabled."""
-    return {m for m in space if not any(u.is_enabled(m, t) for t in u.transitions)}
+    enabled_in = _enabled_in(u)
+    return {m for m in space if next(enabled_in(m), None) is None}
+
+
+def _enabled_in(u: Unfolding) -> Callable[[Marking], Iterator[UnfoldedTransition]]:
+    """What is enabled in a marking. Looked at are transitions of which one place is marked, or that need none."""
+    readers: dict[int, int] = Counter(p for t in u.transitions for p in t.pre)
+    free = [t for t in u.transitions if not t.pre]
+    waiting: dict[int, list[UnfoldedTransition]] = {}
+    for t in u.transitions:
+        if t.pre:
+            waiting.setdefault(min(t.pre, key=readers.__getitem__), []).append(t)
+
+    def enabled(marking: Marking) -> Iterator[UnfoldedTransition]:
+        own = (waiting.get(p, ()) for p, n in enumerate(marking) if n)
+        return (t for t in chain(free, *own) if u.is_enabled(marking, t))
+
+    return enabled
 
 
 def generators(symmetries: Symmetries) -> list[Permutation]:

@@ -10,10 +10,24 @@ from pathlib import Path
 import pytest
 
 from helpers.explored import Explorers
+from helpers.kept_compiler import kept
 from pn2code import pipeline
 from pn2code.diagnostics import Diagnostics, render
 from pn2code.emission.write import write
 from pn2code.toolchain import build
+
+
+def common_folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """One for all workers of a session."""
+    base = tmp_path_factory.getbasetemp()
+    return base.parent if "PYTEST_XDIST_WORKER" in os.environ else base
+
+
+@pytest.fixture(scope="session", autouse=True)
+def kept_objects(tmp_path_factory: pytest.TempPathFactory) -> Iterator[None]:
+    """What one test has compiled, with the same flags, no other compiles again."""
+    with kept(common_folder(tmp_path_factory) / "kept"):
+        yield
 
 
 @pytest.fixture(scope="module")
@@ -32,9 +46,7 @@ def riveting_program(root: Path, tmp_path_factory: pytest.TempPathFactory) -> Pa
     """
     if build.find_compiler() is None:
         pytest.skip("no C compiler")
-    base = tmp_path_factory.getbasetemp()
-    if "PYTEST_XDIST_WORKER" in os.environ:
-        base = base.parent
+    base = common_folder(tmp_path_factory)
     folder, done = base / "riveting-program", base / "riveting-program.done"
     with (base / "riveting-program.lock").open("w") as lock, pytest.MonkeyPatch.context() as patch:
         fcntl.flock(lock, fcntl.LOCK_EX)
@@ -54,9 +66,7 @@ def explorers(tmp_path_factory: pytest.TempPathFactory) -> Explorers:
     """The runtime of explorers, compiled once, also when several workers share it; nets in a folder of each."""
     if build.find_compiler() is None:
         pytest.skip("no C compiler")
-    base = tmp_path_factory.getbasetemp()
-    if "PYTEST_XDIST_WORKER" in os.environ:
-        base = base.parent
+    base = common_folder(tmp_path_factory)
     shared, done = base / "explorer", base / "explorer.done"
     with (base / "explorer.lock").open("w") as lock:
         fcntl.flock(lock, fcntl.LOCK_EX)

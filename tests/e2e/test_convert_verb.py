@@ -3,16 +3,15 @@
 from __future__ import annotations
 
 import subprocess
-import sys
 from pathlib import Path
 
 from helpers.netbuilder import write
 from helpers.pnml_nets import load, philosophers, size
+from helpers.processes import pn2code
 
 
 def convert(*arguments: str | Path) -> subprocess.CompletedProcess[str]:
-    command = [sys.executable, "-m", "pn2code", "convert", *map(str, arguments)]
-    return subprocess.run(command, capture_output=True, text=True, timeout=120, check=False)
+    return pn2code("convert", *arguments)
 
 
 def test_formats(tmp_path: Path) -> None:

@@ -17,6 +17,7 @@ import pytest
 
 from helpers.monitors import Spec, with_monitors
 from helpers.netbuilder import cpn
+from helpers.processes import pn2code
 
 pytestmark = pytest.mark.cc
 
@@ -67,10 +68,20 @@ def command(*arguments: object) -> list[str]:
     return [sys.executable, "-m", "pn2code", "simulate", *map(str, arguments)]
 
 
-def simulate(*arguments: object, code: int = 0, **options: Any) -> subprocess.CompletedProcess[str]:
-    done = subprocess.run(
-        command(*arguments), capture_output=True, text=True, check=False, timeout=300, **options
-    )
+def simulate(
+    *arguments: object,
+    code: int = 0,
+    env: dict[str, str] | None = None,
+    cwd: Path | None = None,
+) -> subprocess.CompletedProcess[str]:
+    def prepare() -> None:
+        if env is not None:
+            os.environ.clear()
+            os.environ.update(env)
+        if cwd is not None:
+            os.chdir(cwd)
+
+    done = pn2code("simulate", *map(str, arguments), prepare=prepare)
     assert done.returncode == code, done.stderr[-3000:]
     return done
 

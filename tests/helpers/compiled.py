@@ -39,7 +39,7 @@ WARNINGS = (
     "-Wswitch-enum", "-Wvla",
     "-Wno-tautological-compare",  # a net may well say `n < n`
 )  # fmt: skip
-SANITIZERS = ("-g", "-O0", "-fsanitize=address,undefined", "-fno-sanitize-recover=all")
+SANITIZERS = ("-g1", "-O0", "-fsanitize=address,undefined", "-fno-sanitize-recover=all")
 FAST = ("-O1",)
 RUNTIME = (
     "arena", "bag", "big", "codec", "file", "library", "list", "moves", "num", "random", "read", "stack",

@@ -28,8 +28,8 @@ from pn2code.semantics.marking import binding_to_json, place_to_json
 from pn2code.verify.programs import Sizes, generated
 
 QUICK = ("-O0",)
-SANITIZERS = ("-g", "-O0", "-fsanitize=address,undefined", "-fno-sanitize-recover=all")
-THREADS = ("-g", "-O0", "-fsanitize=thread")
+SANITIZERS = ("-g1", "-O0", "-fsanitize=address,undefined", "-fno-sanitize-recover=all")
+THREADS = ("-g1", "-O0", "-fsanitize=thread")
 SECONDS = 120
 LIBRARY = "libnet.so"
 OTHER_HOSTS = tuple(name for name in HOSTS if name != "explore")

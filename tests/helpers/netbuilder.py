@@ -37,6 +37,7 @@ from __future__ import annotations
 import re
 import tempfile
 import textwrap
+from collections import Counter
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -172,6 +173,7 @@ class _Builder:
         self.substitutions: list[tuple[etree._Element, etree._Element, str, str]] = []
         self.pages: dict[str, etree._Element] = {}
         self.places: dict[tuple[str, str], etree._Element] = {}
+        self.rows: Counter[tuple[etree._Element, str]] = Counter()
 
     def id(self) -> str:
         self.count += 1
@@ -310,8 +312,8 @@ class _Builder:
 
     def node(self, page: etree._Element, tag: str, name: str, identity: str) -> etree._Element:
         node = etree.SubElement(page, tag, id=identity or self.id())
-        row = len(page.findall(tag))
-        _drawing(node, 0.0 if tag == "place" else 200.0, -100.0 * row)
+        self.rows[page, tag] += 1
+        _drawing(node, 0.0 if tag == "place" else 200.0, -100.0 * self.rows[page, tag])
         etree.SubElement(node, "text").text = name
         shape = "ellipse" if tag == "place" else "box"
         etree.SubElement(node, shape, w="60.000000", h="40.000000")

@@ -9,6 +9,7 @@ It has its own arguments, exit code, signals and standard streams; killing it ki
 from __future__ import annotations
 
 import ctypes
+import importlib
 import os
 import signal
 import subprocess
@@ -20,9 +21,11 @@ from collections.abc import Callable
 from contextlib import suppress
 from pathlib import Path
 
-from pn2code.cli.main import play
+from pn2code.cli.main import VERBS, play
 
 DEADLINE_S = 60.0
+for _verb in VERBS:
+    importlib.import_module(f"pn2code.cli.{_verb}")  # once, and not in each process
 
 
 class Child:

@@ -222,7 +222,7 @@ def _check(explorers: Explorers, union: Union, flat: FlatNet) -> Outcome:
     parts = [p for p in everything if p.space is not None and p.space.complete]
     outcome = Outcome(large=len(large), exceptions=len(exceptions))
     if union.style in ("small", "symmetric"):
-        parts = [p for p in parts if _table(p.net) is not None]
+        parts = [p for p in parts if _table(p.net, wants_symmetry=False) is not None]
     if parts:
         _compare(explorers, union, flat, parts, outcome)
     rest = [*large, *exceptions]
@@ -446,9 +446,9 @@ def compare_time(explorers: Explorers, parts: list[Part], net: FlatNet) -> None:
     compare_bounds(net, parts, report)
 
 
-def _table(net: FlatNet) -> Elements | None:
+def _table(net: FlatNet, *, wants_symmetry: bool) -> Elements | None:
     try:
-        return elements(net, wants_symmetry=True)
+        return elements(net, wants_symmetry=wants_symmetry)
     except (NotPossibleError, GameError):
         return None
 
@@ -457,7 +457,7 @@ def compare_reductions(
     explorers: Explorers, net: FlatNet, parts: list[Part], outcome: Outcome
 ) -> None:
     """Partial order: the same dead markings. Symmetry: as many orbits as there are."""
-    table = _table(net)
+    table = _table(net, wants_symmetry=True)
     assert table is not None, "possible for each net, but not for all"
     file = explorers.folder / "union.elements"
     file.write_text(table.text())
