@@ -10,7 +10,6 @@ from pathlib import Path
 import pytest
 
 from helpers.explored import Explorers
-from helpers.kept_compiler import kept
 from pn2code import pipeline
 from pn2code.diagnostics import Diagnostics, render
 from pn2code.emission.write import write
@@ -21,13 +20,6 @@ def common_folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """One for all workers of a session."""
     base = tmp_path_factory.getbasetemp()
     return base.parent if "PYTEST_XDIST_WORKER" in os.environ else base
-
-
-@pytest.fixture(scope="session", autouse=True)
-def kept_objects(tmp_path_factory: pytest.TempPathFactory) -> Iterator[None]:
-    """What one test has compiled, with the same flags, no other compiles again."""
-    with kept(common_folder(tmp_path_factory) / "kept"):
-        yield
 
 
 @pytest.fixture(scope="module")
