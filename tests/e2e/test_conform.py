@@ -180,6 +180,15 @@ def test_another_script_is_found_out(what: str, judge: Judge) -> None:
     assert said in verdict.why
 
 
+def test_a_script_that_asks_another_sensor_is_found_out(root: Path) -> None:
+    with judge_of(root / "examples/sorting") as judge:
+        verdict = judge.verdict(
+            mutant(judge, "belt.tdl", "sense verdict into v", "sense gripper into v")
+        )
+    assert verdict.result == "killed", verdict
+    assert "asks sensor `gripper`, to which the net leaves nothing open there" in verdict.why
+
+
 SCHEDULER = {
     "flags before data": ("supervisor_cell.c", "(pass == 0U) ? PN_CHANNEL_DATA", "(pass == 1U) ? PN_CHANNEL_DATA"),
     "answers are not emptied": ("supervisor_cell.c", "    if (!clear_consumed(sup)) {", "    if (false) {"),

@@ -248,8 +248,13 @@ class _Product:
                     yield self._go(state, None)
             case Execute(command=commands.Measure(nominal=nominal)):
                 yield self._go(state, nominal)
-            case Sense(sensor=sensor):
-                for value in self._said(state, sensor):
+            case Sense(sensor=sensor, line=line):
+                said = self._said(state, sensor)
+                if not said:
+                    raise _DeviationError(
+                        f"line {line} asks sensor `{sensor}`, to which the net leaves nothing open there"
+                    )
+                for value in said:
                     yield self._go(state, value)
             case _:
                 yield self._go(state, None)
