@@ -4,8 +4,8 @@
 
 Prints a table. Each model is explored by `pn2code verify` (from the coloured net) and by the peers that can have it:
 SPIN on the same net as Promela (`spin -a`, `gcc -O2 -DSAFETY -DNOREDUCE`, without partial order), SNAKES and pm4py on
-small sizes (state_peers.py). Compilation counts for neither. The best of the repetitions of each counts: all else is
-other programs.
+small sizes (state_peers.py). Then comes what has no peer (state_rates.py). Compilation counts for neither. The best of
+the repetitions of each counts: all else is other programs.
 
 `./dev bench --database-15` explores the distributed database of 15 managers once, completely: minutes, on all
 processors, within 20 GiB.
@@ -28,7 +28,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from tests.bench import state_peers
+from tests.bench import state_peers, state_rates
 
 ROOT = Path(__file__).resolve().parents[2]
 SHARED = Path(os.environ.get("PN2CODE_SHARED", ROOT.parent / "shared"))
@@ -179,6 +179,7 @@ def measure(repeat: int, threads: int) -> int:
     print("\n| peer | model | states | states/s |\n|---|---|---|---|")
     for name, model_name, states, seconds in state_peers.all_of_them(SHARED):
         print(f"| {name} | {model_name} | {states:,} | {states / seconds:,.0f} |")
+    state_rates.tell(SHARED, repeat)
     missed = [r for r in table if r[8] != "-" and r[9] != "-" and float(r[8]) < float(r[9])]
     return int(bool(missed) and load < (os.cpu_count() or 1) / 2)
 
