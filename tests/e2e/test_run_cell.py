@@ -6,6 +6,7 @@ TCP on the commanded pose within 1e-6 mm.
 
 from __future__ import annotations
 
+import json
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -132,13 +133,21 @@ class TestWholeRun:
         _, out, result, _ = bullet_run
         lines = (out / "cell.trace.jsonl").read_text().splitlines(keepends=True)
         at = next(i for i, line in enumerate(lines) if "Robot1.Accept" in line)
+        step = json.loads(lines[at])["step"]
+        rest = [_earlier(line, step) for line in lines[at + 1 :]]
         broken = tmp_path / "broken.trace.jsonl"
-        broken.write_text("".join(lines[:at] + lines[at + 1 :]))
+        broken.write_text("".join(lines[:at] + rest))
         net = load(root / "examples/riveting/cell.cpn", Diagnostics())
         assert net is not None
         found = replay(broken, net, storage=result.prepared.config.storage)
         assert not found.ok
         assert "Robot1" in found.transition
+
+
+def _earlier(line: str, step: int) -> str:
+    """A line of a trace with its number lowered by one, if it is after a step: none seems to be missing."""
+    number = json.loads(line).get("step", 0)
+    return line.replace(f'"step": {number}', f'"step": {number - 1}') if number > step else line
 
 
 @pytest.mark.cc
