@@ -42,7 +42,7 @@ def test_random_graphs(explorers: Explorers, part: int) -> None:
 
 @pytest.mark.parametrize("group", range(GROUPS))
 def test_random_unions(explorers: Explorers, group: int) -> None:
-    """Two thousand nets, about forty in a program; also with two threads, depth first, reduced, and in walks."""
+    """Two thousand nets, about forty in a program; also with two threads or depth first, reduced, and in walks."""
     done = Outcome()
     numbers = range(SEED + group, SEED + UNIONS, GROUPS)
     for number in numbers:

@@ -253,9 +253,11 @@ def _compare(
     compare_graphs(root, parts, found)
     compare_facts(net, parts, found.report)
     folder = explorers.folder / "union"
-    threads = explorers.said(folder, "--threads", 2)
-    assert sorted(threads.lines) == sorted(found.lines), "with two threads the graph is another"
-    compare_graphs(root, parts, explorers.said(folder, "--order", "dfs"))
+    if union.number % 4 < 2:  # so that each style has both
+        threads = explorers.said(folder, "--threads", 2)
+        assert sorted(threads.lines) == sorted(found.lines), "with two threads the graph is another"
+    else:
+        compare_graphs(root, parts, explorers.said(folder, "--order", "dfs"))
     for seed, steps in WALKS:
         _walk(explorers, net, folder, seed, steps)
     outcome.nets += len(parts)
