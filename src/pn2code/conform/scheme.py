@@ -35,11 +35,13 @@ class Cycle:
         marking: after it; of a cycle that was stopped, before the occurrence that failed.
         elements: what occurred, in order.
         stopped: why the supervisor has to stop; "" if it need not.
+        is_overrun: because it has put a second message into a channel.
     """
 
     marking: Marking
     elements: tuple[BindingElement, ...]
     stopped: str
+    is_overrun: bool = False
 
 
 @dataclass(frozen=True, slots=True)
@@ -97,6 +99,18 @@ class Scheme:
         changes, cycle = self._cycles[seen]
         return replace(cycle, marking=_changed(marking, changes))
 
+    def unconsumed(self, marking: Marking) -> frozenset[int]:
+        """The channels with a message to the supervisor; after a cycle it has read these."""
+        return frozenset(
+            i
+            for i, channel in enumerate(self.partition.channels)
+            if channel.reader == SUPERVISOR and marking.places[channel.place]
+        )
+
+    def is_final(self, marking: Marking) -> bool:
+        """Whether the supervisor ends there."""
+        return any(marking.places[p] for p in self.partition.final_places)
+
     def steps(self, owner: int, marking: Marking) -> Steps:
         """What an owner may do now; priorities count within an owner."""
         seen = self._seen(owner, marking)
@@ -134,13 +148,22 @@ class Scheme:
             try:
                 element = next(self.enabled(SUPERVISOR, marking), None)
                 if element is None:
-                    return Cycle(marking, tuple(done), "")
+                    overrun = self._overrun(marking)
+                    return Cycle(marking, tuple(done), overrun, bool(overrun))
                 if len(done) == self._most:
                     return Cycle(marking, tuple(done), "no end of firing")
                 marking, occurred = self._game.occur(marking, element)
             except GameError as error:
                 return Cycle(marking, tuple(done), str(error))
             done.append(occurred)
+
+    def _overrun(self, marking: Marking) -> str:
+        """Says which channel of the supervisor holds more than one message; "" if none does."""
+        for channel in self.partition.channels:
+            tokens = len(marking.places[channel.place])
+            if channel.writer == SUPERVISOR and tokens > 1:
+                return f"{tokens} messages for {channel.file}"
+        return ""
 
     def _possible(self, owner: int, marking: Marking) -> Steps:
         steps: list[Step] = []

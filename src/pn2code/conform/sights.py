@@ -75,7 +75,6 @@ class _Closed:
         self._clock = clock
         self._start = clock.relative(game.marking)
         self._most = most
-        self._incoming = [i for i, c in enumerate(partition.channels) if c.reader == SUPERVISOR]
         seen = {*scheme.touched(SUPERVISOR), *partition.final_places}
         channels = {c.place for c in partition.channels if SUPERVISOR in (c.writer, c.reader)}
         self._unseen = [p.index for p in partition.net.places if p.index not in seen | channels]
@@ -136,14 +135,9 @@ class _Closed:
     def _after_cycle(self, marking: Marking) -> _State | None:
         """None: the supervisor stops, or has finished."""
         cycle = self._scheme.cycle(marking)
-        after = cycle.marking
-        if cycle.stopped or any(after.places[p] for p in self._partition.final_places):
+        if cycle.stopped or self._scheme.is_final(cycle.marking):
             return None
-        channels = self._partition.channels
-        if any(c.writer == SUPERVISOR and len(after.places[c.place]) > 1 for c in channels):
-            return None
-        read = frozenset(i for i in self._incoming if after.places[channels[i].place])
-        return _State(after, read)
+        return _State(cycle.marking, self._scheme.unconsumed(cycle.marking))
 
     def _is_overrun(self, before: Marking, changes: dict[int, object]) -> bool:
         """Whether somebody else writes a message where one is, or two at once."""

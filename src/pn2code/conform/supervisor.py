@@ -242,10 +242,13 @@ class _Product:
         self.report.cycles += 1
         self.report.firings += len(expected.elements)
         self.report.transitions.update(e.transition for e in expected.elements)
-        stopped = expected.stopped or self._overrun(expected.marking)
-        if stopped:
+        if expected.is_overrun:
+            self.report.overruns.append(self._way())
+        if expected.stopped:
             if answer.ended != "stopped":
-                raise _DeviationError(f"the supervisor has to stop ({stopped}), but it goes on")
+                raise _DeviationError(
+                    f"the supervisor has to stop ({expected.stopped}), but it goes on"
+                )
             self.report.stops += 1
             return None
         if answer.ended == "stopped":
@@ -259,7 +262,7 @@ class _Product:
         if not self._is_first:
             self._compare_order(before, expected.marking, answer.published)
             self._compare_reading(answer.read)
-        is_final = any(expected.marking.places[p] for p in self._partition.final_places)
+        is_final = self._scheme.is_final(expected.marking)
         if is_final != (answer.ended == "finished"):
             raise _DeviationError(
                 "the supervisor ends, but no final place holds a token"
@@ -268,20 +271,10 @@ class _Product:
             )
         if answer.ended:
             return None
-        read = frozenset(
-            i
-            for i, channel in enumerate(self._partition.channels)
-            if channel.reader == SUPERVISOR and expected.marking.places[channel.place]
+        sight = Sight(
+            self._clock.relative(expected.marking), self._scheme.unconsumed(expected.marking)
         )
-        return _State(Sight(self._clock.relative(expected.marking), read), state.time, sent)
-
-    def _overrun(self, marking: Marking) -> str:
-        for channel in self._partition.channels:
-            tokens = len(marking.places[channel.place])
-            if channel.writer == SUPERVISOR and tokens > 1:
-                self.report.overruns.append(self._way())
-                return f"{tokens} messages for {channel.file}"
-        return ""
+        return _State(sight, state.time, sent)
 
     def _compare_places(self, now: float, expected: Marking, told: Mapping[str, object]) -> None:
         for p in self._own:
