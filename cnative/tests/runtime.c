@@ -95,6 +95,9 @@ static void test_text(void)
     pn_text_json_bytes(&text, "a\"\\\n\x01\xC3\xA9\xE9", 8U);
     CHECK(is_text(wide, "\"a\\\"\\\\\\n\\u0001\xC3\xA9\xC3\xA9\""));
     pn_text_clear(&text);
+    pn_text_json_string(&text, "a\"\xC3\xA9\xE9", 5U); /* of CPN ML: one character a byte */
+    CHECK(is_text(wide, "\"a\\\"\xC3\x83\xC2\xA9\xC3\xA9\""));
+    pn_text_clear(&text);
     pn_text_fixed(&text, -0.00001, 4);
     pn_text_char(&text, ' ');
     pn_text_fixed(&text, -1.00006, 4);

@@ -78,6 +78,31 @@ def test_known_answers(tmp_path: Path) -> None:
             assert done.returncode == 0, done.stdout
 
 
+def test_tokens_with_odd_characters(tmp_path: Path) -> None:
+    net = write(
+        """
+        net Odd
+          standard
+          var s : STRING;
+          place A : STRING = 1`"a\\194\\133b" ++ 1`"\\226\\128\\168" ++ 1`"\\133\\r"
+          place B : STRING
+          trans Go
+            in A : s
+            out B : s
+        """,
+        tmp_path / "odd.cpn",
+    )
+    code, said = asked(net, tmp_path, "--property", "ltl G !fires(Go, { String.size s > 3 })")
+    evidence = said["properties"][0]["evidence"]
+    assert code == 1
+    done = pn2code("replay", evidence["trace"], net)
+    assert done.returncode == 0, done.stdout + done.stderr
+    text = Path(evidence["trace"]).read_text(encoding="utf-8", errors="surrogateescape")
+    fired = [x for x in map(json.loads, text.rstrip("\n").split("\n")) if "transition" in x]
+    assert {x["transition"] for x in fired} == {"Top.Go"}
+    assert "a\u00c2\u0085b" in [x["binding"]["s"] for x in fired]
+
+
 def test_the_parts_are_the_net(tmp_path: Path) -> None:
     net = Net.load(write(DRILLING, tmp_path / "drilling.cpn"))
     properties = net.meaning([text for text, _, _ in ROWS])

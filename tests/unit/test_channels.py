@@ -338,6 +338,9 @@ def test_i9_status_passes_on_the_reason(parties: tuple[SharedDirectory, SharedDi
     assert b.peer().state is PeerState.STOPPED
     assert b.peer().reason == "robot2 collided with the panel"
     assert not b.peer_alive()
+    status = b.path / "supervisor.status"
+    status.write_text(status.read_text().replace("with the", "with\u2028the"))
+    assert b.peer().reason == "robot2 collided with\u2028the panel"
     b.set_status(Status.FINISHED)
     assert a.peer("robot1").state is PeerState.FINISHED
     b.close()

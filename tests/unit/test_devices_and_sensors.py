@@ -203,6 +203,10 @@ def test_a_default_must_be_a_value_of_the_variable(
     [
         ("held\nhold\n", "2:1 `hold` is not a value of `GRIP` of colour set `GRIP`"),
         ("# nothing\n", "0:0 sensor `grip`: `"),
+        (
+            "held # as\u2028before\nhold\n",
+            "2:1 `hold` is not a value of `GRIP` of colour set `GRIP`",
+        ),
         (None, "sensor `grip`: there is no file `grip.txt`"),
     ],
 )

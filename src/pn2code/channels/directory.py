@@ -385,7 +385,7 @@ class SharedDirectory:
             text = self._status_path(side).read_text(encoding="utf-8", errors="replace")
         except FileNotFoundError:
             return None
-        lines = [*text.splitlines(), "", "", ""]
+        lines = [*text.split("\n"), "", "", ""]
         words = lines[1].split()
         if len(words) != 2:
             return None  # being written, or not ours

@@ -105,7 +105,7 @@ def robot(
         stop(d, form)
     print_diagnostics(d.sorted(), form)
 
-    lines = script.read_text(encoding="utf-8").splitlines()
+    lines = script.read_text(encoding="utf-8").split("\n")  # as its parser counts them
 
     def show(_command: Command, line: int) -> None:
         if verbose:

@@ -28,16 +28,15 @@ _SCALARS = {
 def c_bytes(text: str) -> str:
     """A string of CPN ML, whose characters are bytes, as a C string literal."""
     out = []
-    for c in text:
-        for byte in c.encode("latin-1") if ord(c) < 256 else c.encode():
-            if chr(byte) in '"\\?':
-                out.append(f"\\{chr(byte)}")
-            elif chr(byte) == "\n":
-                out.append("\\n")
-            elif 32 <= byte < 127:
-                out.append(chr(byte))
-            else:
-                out.append(f"\\{byte:03o}")
+    for byte in text.encode("latin-1"):
+        if chr(byte) in '"\\?':
+            out.append(f"\\{chr(byte)}")
+        elif chr(byte) == "\n":
+            out.append("\\n")
+        elif 32 <= byte < 127:
+            out.append(chr(byte))
+        else:
+            out.append(f"\\{byte:03o}")
     return '"' + "".join(out) + '"'
 
 

@@ -174,7 +174,8 @@ class _Lexer:
             if c == '"':
                 break
             if c != "\\":
-                out.append(c)
+                # Characters are bytes: what Latin-1 does not have is several, those of UTF-8.
+                out.append(c if c <= "\xff" else c.encode().decode("latin-1"))
                 at += 1
                 continue
             found = self._escape(at)

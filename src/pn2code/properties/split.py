@@ -126,7 +126,8 @@ class Split:
         """
         of = {t.name: name for t, name in zip(self.net.transitions, self.names, strict=True)}
         lines = []
-        for text in trace.read_text(encoding="utf-8", errors="surrogateescape").splitlines():
+        whole = trace.read_text(encoding="utf-8", errors="surrogateescape")
+        for text in whole.rstrip("\n").split("\n"):  # other ends of lines may stand in tokens
             line = json.loads(text)
             if line.get("transition") in of:
                 line["transition"] = of[line["transition"]]

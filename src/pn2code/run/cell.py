@@ -281,7 +281,7 @@ def _report_start(ended: Exit, inputs: Path, options: RunOptions, d: Diagnostics
             file = options.input  # the supervisor read a copy
         at = Origin(str(file), int(found["line"] or 0), int(found["column"] or 0))
         reason = found["what"]
-    others = (line for line in ended.stderr.splitlines() if line and ended.reason not in line)
+    others = (line for line in ended.stderr.split("\n") if line and ended.reason not in line)
     usage = ended.code == EXIT_USAGE
     d.error(
         RUN_INPUT if usage else RUN_START,

@@ -102,7 +102,7 @@ def _script(
         )
         return ()
     try:
-        lines = path.read_text(encoding="utf-8").splitlines()
+        lines = path.read_text(encoding="utf-8").split("\n")
     except (OSError, UnicodeDecodeError) as problem:
         d.error(
             CELL_FILE,

@@ -77,7 +77,7 @@ class Exit:
     @property
     def reason(self) -> str:
         """The supervisor's own last word, else the meaning of the code."""
-        for line in reversed(self.stderr.splitlines()):
+        for line in reversed(self.stderr.split("\n")):
             if line.startswith("error: "):
                 return line.removeprefix("error: ")
         return self.meaning

@@ -79,7 +79,7 @@ def from_json(c: Colset, data: Json) -> Value:
             return float(data)
         case Kind.REAL | Kind.TIME if isinstance(data, str) and data in _NOT_FINITE:
             return _NOT_FINITE[data]
-        case Kind.STRING if isinstance(data, str):
+        case Kind.STRING if isinstance(data, str) and (data.isascii() or max(data) <= "\xff"):
             return data
         case Kind.ENUM if isinstance(data, str) and data in c.names:
             return Data(data, c.names.index(data))
