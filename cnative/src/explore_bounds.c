@@ -401,7 +401,9 @@ static bool see_interned(ex_run_t *run, ex_bounds_t *bounds)
         const pn_place_t *const place = &pn_net.place[entry.place];
         const size_t mark = pn_arena_mark(worker->cx.arena);
         pn_text_init(&text, buffer, TEXT_SIZE);
-        is_fine = (place->decode(&worker->cx, worker->marking, &all->byte[entry.offset], entry.length) != SIZE_MAX);
+        size_t length = 0U;
+        const unsigned char *byte = ex_multiset_bytes(worker, (uint32_t)i, &length);
+        is_fine = (byte != NULL) && (place->decode(&worker->cx, worker->marking, byte, length) != SIZE_MAX);
         place->json(worker->marking, &text);
         pn_arena_release(worker->cx.arena, mark);
         is_fine = is_fine && !text.truncated && see_multiset(&bounds->place[entry.place], buffer);

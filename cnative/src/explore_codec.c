@@ -60,50 +60,6 @@ bool ex_scratch_make(ex_worker_t *worker)
 
 /* --- cells --------------------------------------------------------------------------------------------------------------- */
 
-static bool grow_buffer(ex_worker_t *worker, size_t size)
-{
-    ex_scratch_t *scratch = worker->scratch;
-    unsigned char *larger = ex_alloc(worker->run, size * 2U);
-    if (larger == NULL) {
-        ex_stop(worker->run, EX_MEMORY);
-        worker->failed = true;
-        return false;
-    }
-    ex_free(worker->run, scratch->buffer, scratch->buffer_size);
-    scratch->buffer = larger;
-    scratch->buffer_size = size * 2U;
-    return true;
-}
-
-/* The number of what is in the buffer. */
-static bool intern(ex_worker_t *worker, uint32_t place, size_t length, uint32_t *number)
-{
-    ex_bytes_t *bytes = &worker->run->codec->bytes;
-    for (;;) {
-        *number = ex_bytes_number(bytes, place, worker->scratch->buffer, (uint32_t)length);
-        if (*number != EX_NO_NUMBER) {
-            return true;
-        }
-        if (!ex_pause(worker)) {
-            worker->failed = true;
-            return false;
-        }
-    }
-}
-
-bool ex_number_place(ex_worker_t *worker, uint32_t place, uint32_t kind, const void *marking, uint32_t *number)
-{
-    ex_scratch_t *scratch = worker->scratch;
-    size_t length = pn_net.place[place].encode(marking, scratch->buffer, scratch->buffer_size);
-    while (length > scratch->buffer_size) {
-        if (!grow_buffer(worker, length)) {
-            return false;
-        }
-        length = pn_net.place[place].encode(marking, scratch->buffer, scratch->buffer_size);
-    }
-    return intern(worker, kind, length, number);
-}
-
 static bool intern_place(ex_worker_t *worker, uint32_t place, const void *marking, uint32_t *number)
 {
     return ex_number_place(worker, place, place, marking, number);
@@ -114,19 +70,20 @@ static bool intern_whole(ex_worker_t *worker, const void *marking, uint32_t *num
     ex_scratch_t *scratch = worker->scratch;
     size_t length = pn_net.encode(marking, scratch->buffer, scratch->buffer_size);
     while (length == 0U) {
-        if (!grow_buffer(worker, scratch->buffer_size)) {
+        if (!ex_buffer_grow(worker, scratch->buffer_size)) {
             return false;
         }
         length = pn_net.encode(marking, scratch->buffer, scratch->buffer_size);
     }
-    return intern(worker, pn_net.place_count, length, number);
+    return ex_intern(worker, pn_net.place_count, scratch->buffer, length, number);
 }
 
 static bool intern_time(ex_worker_t *worker, const void *marking, uint32_t *number)
 {
     const pn_time_t now = pn_net.now(marking);
-    (void)memcpy(worker->scratch->buffer, &now, sizeof now);
-    return intern(worker, pn_net.place_count, sizeof now, number);
+    unsigned char bytes[sizeof now];
+    (void)memcpy(bytes, &now, sizeof now);
+    return ex_intern(worker, pn_net.place_count, bytes, sizeof bytes, number);
 }
 
 /* Cell `c` becomes `value`; the old one is remembered. */
@@ -485,18 +442,20 @@ static bool decode_word(ex_worker_t *worker, uint32_t w, uint32_t number)
         return true;
     }
     const ex_bytes_entry_t *of = &codec->bytes.of[number];
-    const unsigned char *byte = &codec->bytes.byte[of->offset];
     bool is_fine = false;
     if (codec->is_whole) {
+        const unsigned char *byte = &codec->bytes.byte[of->offset];
         is_fine = pn_net.decode(&worker->cx, worker->marking, byte, of->length);
     } else if (w == codec->time_word) {
         pn_time_t now;
-        (void)memcpy(&now, byte, sizeof now);
+        (void)memcpy(&now, &codec->bytes.byte[of->offset], sizeof now);
         pn_net.set_now(worker->marking, now);
         is_fine = true;
     } else {
         const uint32_t place = codec->place_of[w - codec->packed_words];
-        is_fine = pn_net.place[place].decode(&worker->cx, worker->marking, byte, of->length) != SIZE_MAX;
+        size_t length = 0U;
+        const unsigned char *byte = ex_multiset_bytes(worker, number, &length);
+        is_fine = (byte != NULL) && (pn_net.place[place].decode(&worker->cx, worker->marking, byte, length) != SIZE_MAX);
     }
     *decoded = is_fine ? number : EX_NO_NUMBER;
     if (!is_fine) {

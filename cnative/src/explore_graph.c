@@ -248,13 +248,13 @@ static bool build(ex_run_t *run, ex_graph_t *graph)
 }
 
 /* Whether the net may do something else the second time. */
-static bool draws(void)
+static bool looks(void)
 {
-    bool is_random = pn_net.has_references;
+    bool is_fickle = pn_net.has_references;
     for (uint32_t t = 0U; t < pn_net.transition_count; t++) {
-        is_random = is_random || pn_net.transition[t].draws;
+        is_fickle = is_fickle || pn_net.transition[t].looks;
     }
-    return is_random;
+    return is_fickle;
 }
 
 bool ex_graph(ex_run_t *run)
@@ -295,7 +295,7 @@ bool ex_graph(ex_run_t *run)
     graph->seconds = ex_clock() - began;
     if (!is_fine) {
         run->graph = NULL; /* the process is about to end: its memory goes with it */
-        if (!draws()) {
+        if (!looks()) {
             ex_stop(run, EX_MEMORY); /* unless something else was in the way */
         }
     }

@@ -284,9 +284,6 @@ bool ex_load_place(struct ex_worker *worker, uint32_t place, uint32_t number);
 void ex_clear_place(struct ex_worker *worker, uint32_t place);
 /* Somebody else has written into worker->marking. */
 void ex_unload(struct ex_worker *worker);
-/* A place of `next` as the number of a multi-set of `kind`: a place, or EX_ADDED + a place for what is added to it. False: no memory. */
-#define EX_ADDED (pn_net.place_count + 1U)
-bool ex_number_place(struct ex_worker *worker, uint32_t place, uint32_t kind, const void *next, uint32_t *number);
 /* A word of the packed part. */
 uint32_t ex_packed_word(const ex_codec_t *codec, const void *marking, uint32_t w);
 /* A cell that is to become another one. */
@@ -296,6 +293,19 @@ typedef struct ex_change {
 } ex_change_t;
 /* The key of what becomes of the opened state when words change. False: no memory. */
 bool ex_encode_changes(struct ex_worker *worker, const ex_change_t *change, uint32_t count, ex_key_t *key);
+
+/* --- multi-sets (explore_multiset.c) ---------------------------------------------------------------------------------- */
+
+/* Room for `size` bytes in the scratch buffer, which is empty then. False: no memory. */
+bool ex_buffer_grow(struct ex_worker *worker, size_t size);
+/* The number of a string of bytes. False: no memory. */
+bool ex_intern(struct ex_worker *worker, uint32_t kind, const unsigned char *byte, size_t length, uint32_t *number);
+/* What a place of `next` holds as the number of a multi-set of `kind`: the place, or EX_ADDED + the place for what is added to it. False: no
+ * memory. */
+#define EX_ADDED (pn_net.place_count + 1U)
+bool ex_number_place(struct ex_worker *worker, uint32_t place, uint32_t kind, const void *next, uint32_t *number);
+/* The bytes of such a multi-set as its place decodes them, until the next one is numbered or looked at. NULL: no memory. */
+const unsigned char *ex_multiset_bytes(struct ex_worker *worker, uint32_t number, size_t *length);
 
 /* --- successors (explore_successors.c) ----------------------------------------------------------------------------- */
 

@@ -11,6 +11,7 @@
 
 enum {
     FIRST_ENTRIES = 1 << 10,
+    DOUBLED = 1 << 15, /* entries up to which an index grows to twice its size; then by a quarter */
     BLOCK = 1 << 20, /* bytes that are counted at a time */
     SHARED_ENTRIES = 1 << 17 /* of an index that threads move together */
 };
@@ -115,7 +116,7 @@ static void index_put(ex_index_t *index, uint64_t hash, uint64_t number)
 /* A larger one, without its entries yet; the old ones, to be entered and freed, are in *old. False: there is no memory. */
 static bool index_enlarge(ex_index_t *index, uint64_t payload, ex_index_t *old)
 {
-    const uint64_t step = (index->entries < ((uint64_t)1U << 20U)) ? index->entries : (index->entries / 2U);
+    const uint64_t step = (index->entries < (uint64_t)DOUBLED) ? index->entries : (index->entries / 4U);
     const uint64_t entries = index->entries + step;
     const uint64_t limit = (entries / 4U) * 3U;
     if (limit > index->most) {

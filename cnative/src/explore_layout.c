@@ -238,7 +238,7 @@ static void regroup(layout_t *layout, uint32_t *word)
 static bool is_harmless(void)
 {
     for (uint32_t t = 0U; t < pn_net.transition_count; t++) {
-        if (pn_net.transition[t].draws) {
+        if (pn_net.transition[t].looks) {
             return false;
         }
     }

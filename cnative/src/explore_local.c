@@ -170,7 +170,7 @@ static uint64_t lay_forms(const ex_codec_t *codec, form_t *form, word_t *pool, w
     uint64_t used = 0U;
     for (uint32_t t = 0U; t < pn_net.transition_count; t++) {
         const pn_transition_t *transition = &pn_net.transition[t];
-        form[t].is_possible = !transition->draws && (transition->read != NULL) && (transition->successors != NULL);
+        form[t].is_possible = !transition->looks && (transition->read != NULL) && (transition->successors != NULL);
         if (form[t].is_possible) {
             form[t].read = (pool != NULL) ? &pool[used] : room;
             form[t].reads = list_reads(codec, transition, form[t].read);
@@ -463,7 +463,6 @@ static const uint32_t *note_of(ex_local_t *own, uint32_t t)
 static bool add_up(ex_local_t *own, const word_t *word, uint32_t t, uint32_t added, uint32_t *value)
 {
     ex_worker_t *worker = own->worker;
-    const ex_bytes_t *bytes = &worker->run->codec->bytes;
     const uint32_t before = worker->scratch->cell[word->cell];
     const uint64_t parts = ((uint64_t)before << 32U) | added;
     sum_t *sum = &own->sum[mixed(0xa0761d6478bd642fU, parts) % (uint64_t)SUMS];
@@ -474,9 +473,13 @@ static bool add_up(ex_local_t *own, const word_t *word, uint32_t t, uint32_t add
     if (!ex_load_place(worker, word->place, before)) {
         return false;
     }
-    const ex_bytes_entry_t of = bytes->of[added];
+    size_t size = 0U;
+    const unsigned char *byte = ex_multiset_bytes(worker, added, &size);
+    if (byte == NULL) {
+        return false;
+    }
     const size_t mark = pn_arena_mark(&worker->scratch->arena);
-    const size_t length = pn_net.place[word->place].add(&worker->cx, worker->marking, &bytes->byte[of.offset], of.length);
+    const size_t length = pn_net.place[word->place].add(&worker->cx, worker->marking, byte, size);
     const bool is_fine = (length != SIZE_MAX) && ex_number_place(worker, word->place, word->place, worker->marking, value);
     ex_clear_place(worker, word->place);
     pn_arena_release(&worker->scratch->arena, mark);

@@ -462,7 +462,7 @@ static bool grow_to(ex_store_t *store, uint64_t buckets, const uint32_t width[EX
     return is_whole;
 }
 
-/* Twice as much while it is little, a quarter more when it is much; half as much where time is worth more. */
+/* Twice as much while it is little, then a quarter more; half as much where time is worth more. */
 static uint64_t larger(const ex_store_t *store)
 {
     const uint64_t keys = ex_store_slots(store);
@@ -470,7 +470,7 @@ static uint64_t larger(const ex_store_t *store)
     if (bytes < ((uint64_t)1U << 20U)) {
         return keys * 2U;
     }
-    return keys + ((store->is_word || (bytes < ((uint64_t)1U << 24U))) ? (keys / 2U) : (keys / 4U));
+    return keys + (store->is_word ? (keys / 2U) : (keys / 4U));
 }
 
 bool ex_store_grow(ex_store_t *store, const uint32_t width[EX_KEY_WORDS])

@@ -121,10 +121,12 @@ static bool on_binding(void *user, uint32_t transition, const void *binding)
     ex_worker_t *worker = hunt->worker;
     ex_scratch_t *scratch = worker->scratch;
     const size_t mark = pn_arena_mark(&scratch->arena);
+    const uint64_t random = worker->cx.random; /* the search goes on with its own numbers */
     (void)memcpy(scratch->binding, binding, pn_net.transition[transition].binding_size);
     (void)memcpy(scratch->next, worker->marking, pn_net.marking_size);
     const bool is_done = pn_net.transition[transition].fire(&worker->cx, scratch->next, scratch->binding)
                          && hunt->on_next(user, transition, scratch->binding, scratch->next);
+    worker->cx.random = random;
     pn_arena_release(&scratch->arena, mark);
     return is_done;
 }

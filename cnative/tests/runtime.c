@@ -15,6 +15,8 @@
 #include "pn/pn_text.h"
 #include "pn/pn_trace.h"
 
+#include "../src/pn_bytes_impl.h"
+
 static int s_failures = 0;
 
 static void check(bool holds, const char *what, int line)
@@ -248,6 +250,44 @@ static void test_moves(void)
     CHECK(cx.error == PN_ERR_COLOUR);
 }
 
+/* Numbers as bytes: what is read is what was written, in the shortest form, which is the only one that is read. */
+static void test_bytes(void)
+{
+    static const int64_t integers[] = { 0, -1, 1, 63, -64, 64, -65, 8191, 8192, INT64_MAX, INT64_MIN };
+    static const double reals[] = { 0.0, -0.0, 1.0, -2.5, 0.1, 1e-310, 1e300 };
+    uint8_t bytes[16];
+    for (size_t i = 0U; i < (sizeof integers / sizeof integers[0]); i++) {
+        const size_t length = put_integer(bytes, sizeof bytes, 0U, integers[i]);
+        int64_t back = 77;
+        size_t at = 0U;
+        CHECK(get_integer(bytes, length, &at, &back) && (back == integers[i]) && (at == length));
+        CHECK(put_integer(bytes, length - 1U, 0U, integers[i]) == length);
+        at = 0U;
+        CHECK(!get_integer(bytes, length - 1U, &at, &back));
+    }
+    for (size_t i = 0U; i < (sizeof reals / sizeof reals[0]); i++) {
+        const size_t length = put_real(bytes, sizeof bytes, 0U, reals[i]);
+        double back = 77.0;
+        size_t at = 0U;
+        CHECK(get_real(bytes, length, &at, &back) && (memcmp(&back, &reals[i], sizeof back) == 0) && (at == length));
+        at = 0U;
+        CHECK(!get_real(bytes, length - 1U, &at, &back));
+    }
+    CHECK(put_integer(bytes, sizeof bytes, 0U, -64) == 1U);
+    CHECK(put_real(bytes, sizeof bytes, 0U, -2.5) == 3U);
+    static const uint8_t longer[] = { 0x80U, 0x00U };
+    static const uint8_t beyond[] = { 0xffU, 0xffU, 0xffU, 0xffU, 0xffU, 0xffU, 0xffU, 0xffU, 0xffU, 0x02U };
+    static const uint8_t zero[] = { 2U, 0U, 0x40U };
+    uint64_t number = 0U;
+    double real = 0.0;
+    size_t at = 0U;
+    CHECK(!get_number(longer, sizeof longer, &at, &number));
+    at = 0U;
+    CHECK(!get_number(beyond, sizeof beyond, &at, &number));
+    at = 0U;
+    CHECK(!get_real(zero, sizeof zero, &at, &real));
+}
+
 static void test_trace(void)
 {
     char line[64];
@@ -284,6 +324,7 @@ int main(int argc, char **argv)
     test_numbers();
     test_arena();
     test_moves();
+    test_bytes();
     test_trace();
     (void)puts((s_failures == 0) ? "ok" : "failed");
     return (s_failures == 0) ? 0 : 1;

@@ -109,17 +109,20 @@ static bool note_successor(void *user, uint32_t transition, const void *binding,
 static bool note_fired(void *user, uint32_t transition, const void *binding)
 {
     pass_t *pass = user;
+    const uint64_t random = pass->cx->random; /* the search goes on with its own numbers */
     (void)memcpy(pass->binding, binding, pn_net.transition[transition].binding_size);
     (void)memcpy(pass->next, pass->marking, pn_net.marking_size);
-    return pn_net.transition[transition].fire(pass->cx, pass->next, pass->binding)
-           && note_successor(user, transition, pass->binding, pass->next);
+    const bool goes_on = pn_net.transition[transition].fire(pass->cx, pass->next, pass->binding)
+                         && note_successor(user, transition, pass->binding, pass->next);
+    pass->cx->random = random;
+    return goes_on;
 }
 
 static void check_successors(pn_ctx_t *cx, const void *marking, void *next, void *binding)
 {
     for (uint32_t t = 0U; t < pn_net.transition_count; t++) {
         const pn_transition_t *transition = &pn_net.transition[t];
-        if ((transition->successors == NULL) || transition->draws) {
+        if ((transition->successors == NULL) || transition->looks) {
             continue;
         }
         pass_t pass[2] = { { cx, marking, next, binding, 0U, 0U }, { cx, marking, next, binding, 0U, 0U } };

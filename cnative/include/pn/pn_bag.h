@@ -78,6 +78,8 @@ void pn_bag_json(const pn_bag_t *bag, const void *marking, pn_text_t *out);
 uint32_t pn_bag_token(const pn_bag_t *bag, const void *marking, uint32_t i, pn_leaf_t *leaf, uint32_t capacity);
 /* Adds one token made of leaves, stamped with the context's time. */
 bool pn_bag_put(pn_ctx_t *cx, const pn_bag_t *bag, void *marking, const pn_leaf_t *leaf, uint32_t leaves);
+/* Of a timed place they begin with the length of what comes before the stamps, as a uint32_t. */
+#define PN_STAMPS_AT sizeof(uint32_t)
 size_t pn_bag_encode(const pn_bag_t *bag, const void *marking, uint8_t *out, size_t room);
 size_t pn_bag_decode(pn_ctx_t *cx, const pn_bag_t *bag, void *marking, const uint8_t *in, size_t length);
 /* As pn_bag_decode, but what is there stays. */

@@ -11,7 +11,7 @@ from collections.abc import Iterable
 
 from pn2code.diagnostics import Origin
 from pn2code.emission import c_packed, c_places, c_sums, c_tables
-from pn2code.emission.c_effects import Effects
+from pn2code.emission.c_effects import Effects, is_draw
 from pn2code.emission.c_expressions import (
     Expressions,
     Types,
@@ -285,8 +285,8 @@ class _Emitter:
         return {
             "mark": self._block(t.name, "transition", t.origin),
             "index": t.index,
-            "search_draws": self._effects.reaches(t.enumerate, _is_draw),
-            "fire_draws": self._effects.reaches(t.fire, _is_draw),
+            "search_draws": self._effects.reaches(t.enumerate, is_draw),
+            "fire_draws": self._effects.reaches(t.fire, is_draw),
             "name": t.name,
             "stem": name,
             "id": t.id,
@@ -309,7 +309,7 @@ class _Emitter:
             "keeps": search.keeps and search.releases,
             "search": search.lines,
             "thresholds": self._thresholds(t, variables),
-            "thresholds_draw": self._effects.reaches(t.thresholds, _is_draw),
+            "thresholds_draw": self._effects.reaches(t.thresholds, is_draw),
             "searches_marking": _mentions("m", "\n".join(search.lines)),
             "fire": fire.lines,
             "is_direct": is_direct,
@@ -328,7 +328,7 @@ class _Emitter:
                 for i in self._effects.touched(t.index)
                 if not self._net.places[i].packed
             ],
-            "draws": not self._effects.is_pure((t.enumerate, t.fire)),
+            "looks": self._effects.looks((t.enumerate, t.fire)),
             "affected": ""
             if len(affected) == len(self._net.transitions)
             else ", ".join(f"{i}U" for i in affected),
@@ -562,12 +562,6 @@ def _is_write(node: object) -> bool:
     if isinstance(node, ir.SetGlobal):
         return node.is_reference
     return isinstance(node, ir.SetContents) and node.reference.type.rep is Rep.REF
-
-
-def _is_draw(node: object) -> bool:
-    if isinstance(node, ir.Op):
-        return node.name.startswith(("Random.", "prim.do_random")) or node.name == "Ms.random"
-    return isinstance(node, ir.Fill) and node.name == "ran"
 
 
 def _where(origin: Origin) -> str:

@@ -65,6 +65,10 @@ class Effects:
         """Whether nothing but the binding and the marking decides: no references, random numbers, step()."""
         return not self.reaches(item, self._is_impure)
 
+    def looks(self, item: object) -> bool:
+        """Whether more than the binding, the marking and the stream of random numbers decides."""
+        return self.reaches(item, self._is_look)
+
     def reaches(self, item: object, what: Callable[[object], bool]) -> bool:
         """Whether there is something of a kind in IR, directly or in a function that is called."""
         reaching = self._functions_reaching(what)
@@ -88,16 +92,25 @@ class Effects:
         return self._reaching[what]
 
     def _is_impure(self, node: object) -> bool:
+        is_step = isinstance(node, ir.Op) and node.name == "Time.step"
+        return is_step or is_draw(node) or self._is_look(node)
+
+    def _is_look(self, node: object) -> bool:
         match node:
             case ir.Op(name=name):
-                return is_impure_builtin(name) or name == "Time.step"
+                return is_impure_builtin(name) and not is_draw(node)
             case ir.Contents() | ir.AddressOf():
                 return True
             case ir.GlobalUse(name=name):
                 return name in self._references
-            case ir.Fill(name=name):
-                return name == "ran"
         return False
+
+
+def is_draw(node: object) -> bool:
+    """Whether a piece of IR takes numbers from the stream of random numbers."""
+    if isinstance(node, ir.Op):
+        return node.name.startswith(("Random.", "prim.do_random")) or node.name == "Ms.random"
+    return isinstance(node, ir.Fill) and node.name == "ran"
 
 
 def _places(statements: tuple[ir.Stmt, ...], kinds: tuple[type, ...]) -> frozenset[int]:

@@ -8,6 +8,7 @@
 #include "pn/pn_packed.h"
 #include "pn/pn_text.h"
 #include "pn_bag_impl.h"
+#include "pn_bytes_impl.h"
 #include "pn_type_impl.h"
 
 int pn_time_order(bool is_real_time, pn_time_t a, pn_time_t b)
@@ -441,30 +442,47 @@ bool pn_bag_put(pn_ctx_t *cx, const pn_bag_t *bag, void *marking, const pn_leaf_
 
 /* --- bytes and arena ----------------------------------------------------------------------------------------------- */
 
-static size_t put_bytes(uint8_t *out, size_t room, size_t at, const void *bytes, size_t length)
+/* How many multi-set entries there are, then of each how many tokens, and its value. In a timed place their stamps follow, in the same
+ * order, and before all there is the length of what is not stamps (PN_STAMPS_AT): stamps vary more than what they are of. */
+static size_t encode_entries(const pn_bag_t *bag, const void *marking, uint8_t *out, size_t room, size_t at)
 {
-    if ((at <= room) && (length <= (room - at))) {
-        (void)memcpy(&out[at], bytes, length);
+    const uint32_t used = pn_bag_used(bag, marking);
+    at = put_number(out, room, at, used);
+    for (uint32_t i = 0U; i < used; i++) {
+        const void *entry = pn_bag_entry(bag, marking, i);
+        at = put_number(out, room, at, pn_bag_count_of(bag, entry));
+        const size_t left = (at < room) ? (room - at) : 0U;
+        at += pn_encode(bag->type, part(entry, bag->value), &out[(at < room) ? at : 0U], left);
     }
-    return at + length;
+    return at;
 }
 
 /* The same bytes as those of a place that is not packed. */
 static size_t packed_encode(const pn_bag_t *bag, const void *marking, uint8_t *out, size_t room)
 {
     uint32_t used = 0U;
-    size_t at = sizeof used;
     for (uint32_t i = packed_next(bag, marking, 0U); i < bag->colours; i = packed_next(bag, marking, i + 1U)) {
-        pn_colour_t colour;
-        const uint32_t count = packed_count(bag, marking, i);
-        bag->colour_of(i, &colour);
-        at = put_bytes(out, room, at, &count, sizeof count);
-        const size_t left = (at < room) ? (room - at) : 0U;
-        at += pn_encode(bag->type, &colour, &out[(at < room) ? at : 0U], left);
         used++;
     }
-    (void)put_bytes(out, room, 0U, &used, sizeof used);
+    size_t at = put_number(out, room, 0U, used);
+    for (uint32_t i = packed_next(bag, marking, 0U); i < bag->colours; i = packed_next(bag, marking, i + 1U)) {
+        pn_colour_t colour;
+        bag->colour_of(i, &colour);
+        at = put_number(out, room, at, packed_count(bag, marking, i));
+        const size_t left = (at < room) ? (room - at) : 0U;
+        at += pn_encode(bag->type, &colour, &out[(at < room) ? at : 0U], left);
+    }
     return at;
+}
+
+static size_t put_stamp(const pn_bag_t *bag, uint8_t *out, size_t room, size_t at, pn_time_t stamp)
+{
+    return bag->is_real_time ? put_real(out, room, at, stamp.real) : put_integer(out, room, at, stamp.integer);
+}
+
+static bool get_stamp(const pn_bag_t *bag, const uint8_t *in, size_t length, size_t *at, pn_time_t *stamp)
+{
+    return bag->is_real_time ? get_real(in, length, at, &stamp->real) : get_integer(in, length, at, &stamp->integer);
 }
 
 size_t pn_bag_encode(const pn_bag_t *bag, const void *marking, uint8_t *out, size_t room)
@@ -472,20 +490,62 @@ size_t pn_bag_encode(const pn_bag_t *bag, const void *marking, uint8_t *out, siz
     if (bag->is_packed) {
         return packed_encode(bag, marking, out, room);
     }
-    const uint32_t used = pn_bag_used(bag, marking);
-    size_t at = put_bytes(out, room, 0U, &used, sizeof used);
-    for (uint32_t i = 0U; i < used; i++) {
-        const void *entry = pn_bag_entry(bag, marking, i);
-        const uint32_t count = pn_bag_count_of(bag, entry);
-        at = put_bytes(out, room, at, &count, sizeof count);
-        if (bag->is_timed) {
-            const pn_time_t stamp = pn_bag_stamp_of(bag, entry);
-            at = put_bytes(out, room, at, &stamp, sizeof stamp);
-        }
-        const size_t left = (at < room) ? (room - at) : 0U;
-        at += pn_encode(bag->type, part(entry, bag->value), &out[(at < room) ? at : 0U], left);
+    if (!bag->is_timed) {
+        return encode_entries(bag, marking, out, room, 0U);
+    }
+    size_t at = encode_entries(bag, marking, out, room, PN_STAMPS_AT);
+    const uint32_t first = (uint32_t)at;
+    (void)put_bytes(out, room, 0U, &first, sizeof first);
+    for (uint32_t i = 0U; i < pn_bag_used(bag, marking); i++) {
+        at = put_stamp(bag, out, room, at, pn_bag_stamp_of(bag, pn_bag_entry(bag, marking, i)));
     }
     return at;
+}
+
+/* The bytes of a multi-set while they are read: values in one place, stamps in another. */
+typedef struct source {
+    const uint8_t *in;
+    size_t length;
+    size_t at;
+    size_t stamp_at;
+    size_t end;     /* of the values */
+    uint64_t used;  /* entries */
+} source_t;
+
+static bool open_source(source_t *s, const pn_bag_t *bag, const uint8_t *in, size_t length)
+{
+    *s = (source_t){ .in = in, .length = length, .stamp_at = length, .end = length };
+    if (bag->is_timed) {
+        uint32_t first = 0U;
+        if (length < PN_STAMPS_AT) {
+            return false;
+        }
+        (void)memcpy(&first, in, sizeof first);
+        s->at = PN_STAMPS_AT;
+        s->end = first;
+        s->stamp_at = first;
+    }
+    return (s->end >= s->at) && (s->end <= length) && get_number(in, s->end, &s->at, &s->used);
+}
+
+/* The next entry. */
+static bool read_entry(pn_ctx_t *cx, const pn_bag_t *bag, source_t *s, void *value, uint32_t *count, pn_time_t *stamp)
+{
+    uint64_t number = 0U;
+    if (!get_number(s->in, s->end, &s->at, &number) || (number > UINT32_MAX)
+        || (bag->is_timed && !get_stamp(bag, s->in, s->length, &s->stamp_at, stamp))) {
+        return false;
+    }
+    const size_t size = pn_decode(cx, bag->type, value, &s->in[s->at], s->end - s->at);
+    *count = (uint32_t)number;
+    s->at += (size == SIZE_MAX) ? 0U : size;
+    return size != SIZE_MAX;
+}
+
+/* Where the bytes end. */
+static size_t source_end(const pn_bag_t *bag, const source_t *s)
+{
+    return !bag->is_timed ? s->at : ((s->at == s->end) ? s->stamp_at : SIZE_MAX);
 }
 
 size_t pn_bag_decode(pn_ctx_t *cx, const pn_bag_t *bag, void *marking, const uint8_t *in, size_t length)
@@ -494,69 +554,49 @@ size_t pn_bag_decode(pn_ctx_t *cx, const pn_bag_t *bag, void *marking, const uin
         packed_clear(bag, marking);
         return pn_bag_add_bytes(cx, bag, marking, in, length);
     }
-    const size_t stamp_size = bag->is_timed ? sizeof(pn_time_t) : 0U;
-    uint32_t used = 0U;
-    size_t at = sizeof used;
-    if (length < at) {
+    source_t source;
+    pn_bag_clear(bag, marking);
+    if (!open_source(&source, bag, in, length)) {
         return SIZE_MAX;
     }
-    (void)memcpy(&used, in, sizeof used);
-    pn_bag_clear(bag, marking);
-    if (used > bag->capacity) {
+    if (source.used > bag->capacity) {
         (void)pn_bag_fail_full(cx, bag);
         return SIZE_MAX;
     }
-    for (uint32_t i = 0U; i < used; i++) {
+    for (uint32_t i = 0U; i < source.used; i++) {
         void *entry = entry_of(bag, marking, i);
-        if ((length - at) < (sizeof(uint32_t) + stamp_size)) {
-            return SIZE_MAX;
-        }
+        uint32_t count = 0U;
+        pn_time_t stamp = { 0 };
         (void)memset(entry, 0, bag->stride);
-        (void)memcpy(part_of(entry, bag->count), &in[at], sizeof(uint32_t));
-        at += sizeof(uint32_t);
-        if (bag->is_timed) {
-            (void)memcpy(part_of(entry, bag->stamp), &in[at], stamp_size);
-            at += stamp_size;
-        }
-        const size_t size = pn_decode(cx, bag->type, part_of(entry, bag->value), &in[at], length - at);
-        if (size == SIZE_MAX) {
+        if (!read_entry(cx, bag, &source, part_of(entry, bag->value), &count, &stamp)) {
             return SIZE_MAX;
         }
-        at += size;
+        (void)memcpy(part_of(entry, bag->count), &count, sizeof count);
+        if (bag->is_timed) {
+            (void)memcpy(part_of(entry, bag->stamp), &stamp, sizeof stamp);
+        }
         set_used(bag, marking, i + 1U);
     }
-    return at;
+    return source_end(bag, &source);
 }
 
 size_t pn_bag_add_bytes(pn_ctx_t *cx, const pn_bag_t *bag, void *marking, const uint8_t *in, size_t length)
 {
-    const size_t stamp_size = bag->is_timed ? sizeof(pn_time_t) : 0U;
-    uint32_t used = 0U;
-    size_t at = sizeof used;
+    source_t source;
     pn_colour_t small;
     void *value = (bag->type->size <= sizeof small) ? &small : pn_arena_alloc(cx, bag->type->size);
-    if ((length < at) || (value == NULL)) {
+    if (!open_source(&source, bag, in, length) || (value == NULL)) {
         return SIZE_MAX;
     }
-    (void)memcpy(&used, in, sizeof used);
-    for (uint32_t i = 0U; i < used; i++) {
+    for (uint64_t i = 0U; i < source.used; i++) {
         uint32_t count = 0U;
         pn_time_t stamp = { 0 };
-        if ((length - at) < (sizeof count + stamp_size)) {
-            return SIZE_MAX;
-        }
-        (void)memcpy(&count, &in[at], sizeof count);
-        at += sizeof count;
-        (void)memcpy(&stamp, &in[at], stamp_size);
-        at += stamp_size;
         (void)memset(value, 0, bag->type->size);
-        const size_t size = pn_decode(cx, bag->type, value, &in[at], length - at);
-        if ((size == SIZE_MAX) || !pn_bag_add(cx, bag, marking, value, count, stamp)) {
+        if (!read_entry(cx, bag, &source, value, &count, &stamp) || !pn_bag_add(cx, bag, marking, value, count, stamp)) {
             return SIZE_MAX;
         }
-        at += size;
     }
-    return at;
+    return source_end(bag, &source);
 }
 
 void pn_bag_relocate(pn_ctx_t *cx, const pn_bag_t *bag, void *marking)

@@ -4,17 +4,10 @@
 #include "pn/pn_arena.h"
 #include "pn/pn_num.h"
 #include "pn/pn_type.h"
+#include "pn_bytes_impl.h"
 #include "pn_type_impl.h"
 
 /* --- bytes --------------------------------------------------------------------------------------------------------- */
-
-static size_t put_bytes(uint8_t *out, size_t room, size_t at, const void *bytes, size_t length)
-{
-    if ((length > 0U) && (at <= room) && (length <= (room - at))) {
-        (void)memcpy(&out[at], bytes, length);
-    }
-    return at + length;
-}
 
 static size_t encode_at(const pn_type_t *type, const void *value, uint8_t *out, size_t room, size_t at)
 {
@@ -25,22 +18,22 @@ static size_t encode_at(const pn_type_t *type, const void *value, uint8_t *out, 
         return put_bytes(out, room, at, &flag, 1U);
     }
     case PN_KIND_INT:
+        return put_integer(out, room, at, load_int(value));
     case PN_KIND_REAL:
+        return put_real(out, room, at, load_real(value));
     case PN_KIND_CHAR:
-    case PN_KIND_ENUM:
         return put_bytes(out, room, at, value, type->size);
+    case PN_KIND_ENUM:
+        return put_number(out, room, at, load_tag(value));
     case PN_KIND_BIG: {
         const pn_big_t number = load_big(value);
-        static const uint8_t none[4] = { 0U, 0U, 0U, 0U }; /* the header of what has up to 64 bits */
-        if (number.large != NULL) {
-            return put_bytes(out, room, at, number.large, pn_big_size(number.large));
-        }
-        end = put_bytes(out, room, at, none, sizeof none);
-        return put_bytes(out, room, end, &number.small, sizeof number.small);
+        const size_t size = (number.large == NULL) ? 0U : pn_big_size(number.large);
+        end = put_number(out, room, at, size);
+        return (size == 0U) ? put_integer(out, room, end, number.small) : put_bytes(out, room, end, number.large, size);
     }
     case PN_KIND_STRING: {
         const pn_string_t text = load_string(value);
-        end = put_bytes(out, room, at, &text.length, sizeof text.length);
+        end = put_number(out, room, at, text.length);
         return put_bytes(out, room, end, text.bytes, text.length);
     }
     case PN_KIND_RECORD:
@@ -50,8 +43,7 @@ static size_t encode_at(const pn_type_t *type, const void *value, uint8_t *out, 
         return end;
     case PN_KIND_LIST: {
         const void *list = load_pointer(value);
-        const uint32_t length = (uint32_t)pn_list_length(list);
-        end = put_bytes(out, room, at, &length, sizeof length);
+        end = put_number(out, room, at, (uint64_t)pn_list_length(list));
         for (const void *rest = list; rest != NULL; rest = pn_list_tail(rest)) {
             end = encode_at(type->element, pn_list_head(type, rest), out, room, end);
         }
@@ -60,8 +52,7 @@ static size_t encode_at(const pn_type_t *type, const void *value, uint8_t *out, 
     case PN_KIND_UNION: {
         const void *argument = NULL;
         const pn_field_t *constructor = constructor_of(type, value, &argument);
-        const uint32_t tag = load_tag(value);
-        end = put_bytes(out, room, at, &tag, sizeof tag);
+        end = put_number(out, room, at, load_tag(value));
         return (argument == NULL) ? end : encode_at(constructor->type, argument, out, room, end);
     }
     case PN_KIND_REF:
@@ -96,23 +87,45 @@ static void get_bytes(reader_t *r, void *out, size_t length)
     }
 }
 
-static uint32_t get_count(reader_t *r)
+static uint64_t read_number(reader_t *r)
 {
-    uint32_t count = 0U;
-    get_bytes(r, &count, sizeof count);
-    return count;
+    uint64_t number = 0U;
+    r->failed = r->failed || !get_number(r->in, r->length, &r->at, &number);
+    return r->failed ? 0U : number;
+}
+
+static int64_t read_integer(reader_t *r)
+{
+    int64_t value = 0;
+    r->failed = r->failed || !get_integer(r->in, r->length, &r->at, &value);
+    return r->failed ? 0 : value;
+}
+
+static double read_real(reader_t *r)
+{
+    double value = 0.0;
+    r->failed = r->failed || !get_real(r->in, r->length, &r->at, &value);
+    return r->failed ? 0.0 : value;
+}
+
+/* The number of a constructor. */
+static uint32_t read_tag(reader_t *r, const pn_type_t *type)
+{
+    const uint64_t tag = read_number(r);
+    r->failed = r->failed || (tag >= type->count);
+    return r->failed ? 0U : (uint32_t)tag;
 }
 
 static void decode_value(reader_t *r, const pn_type_t *type, void *value);
 
 static void decode_string(reader_t *r, void *value)
 {
-    const uint32_t length = get_count(r);
+    const uint64_t length = read_number(r);
     pn_string_t text = { "", 0U };
     if (r->failed || (length > (r->length - r->at))) {
         r->failed = true;
     } else {
-        text = pn_string_make(r->cx, (const char *)&r->in[r->at], length);
+        text = pn_string_make(r->cx, (const char *)&r->in[r->at], (uint32_t)length);
         r->at += length;
     }
     (void)memcpy(value, &text, sizeof text);
@@ -120,14 +133,14 @@ static void decode_string(reader_t *r, void *value)
 
 static void decode_big(reader_t *r, void *value)
 {
-    const uint8_t *start = &r->in[r->at];
     pn_big_t number = { 0, NULL };
-    if (get_count(r) == 0U) {
-        get_bytes(r, &number.small, sizeof number.small);
-    } else if (!r->failed && pn_big_is_valid(start, r->length - r->at + sizeof(uint32_t))) {
-        const size_t size = pn_big_size(start);
+    const uint64_t size = read_number(r);
+    const uint8_t *start = &r->in[r->failed ? 0U : r->at];
+    if (size == 0U) {
+        number.small = read_integer(r);
+    } else if (!r->failed && pn_big_is_valid(start, r->length - r->at) && (pn_big_size(start) == size)) {
         number = pn_big_copy(r->cx, PN_BIG_BYTES(start));
-        r->at += size - sizeof(uint32_t);
+        r->at += size;
     } else {
         r->failed = true;
     }
@@ -136,10 +149,10 @@ static void decode_big(reader_t *r, void *value)
 
 static void decode_list(reader_t *r, const pn_type_t *type, void *value)
 {
-    const uint32_t length = get_count(r);
+    const uint64_t length = read_number(r);
     const void *first = NULL;
     void *last = NULL;
-    for (uint32_t i = 0U; (i < length) && !r->failed; i++) {
+    for (uint64_t i = 0U; (i < length) && !r->failed; i++) {
         void *cell = pn_list_new(r->cx, type, NULL);
         if (cell == NULL) {
             r->failed = true;
@@ -158,11 +171,7 @@ static void decode_list(reader_t *r, const pn_type_t *type, void *value)
 
 static void decode_union(reader_t *r, const pn_type_t *type, void *value)
 {
-    uint32_t tag = get_count(r);
-    if (tag >= type->count) {
-        r->failed = true;
-        tag = 0U;
-    }
+    const uint32_t tag = read_tag(r, type);
     (void)memset(value, 0, type->size);
     (void)memcpy(value, &tag, sizeof tag);
     const pn_field_t *constructor = &type->field[tag];
@@ -193,15 +202,24 @@ static void decode_value(reader_t *r, const pn_type_t *type, void *value)
         (void)memcpy(value, &flag, sizeof flag);
         break;
     }
-    case PN_KIND_INT:
-    case PN_KIND_REAL:
+    case PN_KIND_INT: {
+        const int64_t number = read_integer(r);
+        (void)memcpy(value, &number, sizeof number);
+        break;
+    }
+    case PN_KIND_REAL: {
+        const double number = read_real(r);
+        (void)memcpy(value, &number, sizeof number);
+        break;
+    }
     case PN_KIND_CHAR:
         get_bytes(r, value, type->size);
         break;
-    case PN_KIND_ENUM:
-        get_bytes(r, value, type->size);
-        r->failed = r->failed || (load_tag(value) >= type->count);
+    case PN_KIND_ENUM: {
+        const uint32_t tag = read_tag(r, type);
+        (void)memcpy(value, &tag, sizeof tag);
         break;
+    }
     case PN_KIND_BIG:
         decode_big(r, value);
         break;

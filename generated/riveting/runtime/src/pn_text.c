@@ -110,36 +110,50 @@ static size_t utf8_length(const unsigned char *at, size_t left)
     return is_bad ? 0U : length;
 }
 
+/* One character of Latin-1 within a JSON string. */
+static void json_char(pn_text_t *text, unsigned char c)
+{
+    if ((c == (unsigned char)'"') || (c == (unsigned char)'\\')) {
+        pn_text_char(text, '\\');
+        pn_text_char(text, (char)c);
+    } else if (c == (unsigned char)'\n') {
+        pn_text_str(text, "\\n");
+    } else if (c == (unsigned char)'\r') {
+        pn_text_str(text, "\\r");
+    } else if (c == (unsigned char)'\t') {
+        pn_text_str(text, "\\t");
+    } else if ((c < 0x20U) || (c == 0x7FU)) {
+        char escape[8];
+        (void)snprintf(escape, sizeof escape, "\\u%04x", (unsigned int)c);
+        pn_text_str(text, escape);
+    } else if (c < 0x80U) {
+        pn_text_char(text, (char)c);
+    } else {
+        pn_text_char(text, (char)(0xC0U | (c >> 6U)));
+        pn_text_char(text, (char)(0x80U | (c & 0x3FU)));
+    }
+}
+
 void pn_text_json_bytes(pn_text_t *text, const char *bytes, size_t length)
 {
     pn_text_char(text, '"');
     for (size_t i = 0U; i < length; i++) {
-        const unsigned char c = (unsigned char)bytes[i];
-        if ((c == (unsigned char)'"') || (c == (unsigned char)'\\')) {
-            pn_text_char(text, '\\');
-            pn_text_char(text, (char)c);
-        } else if (c == (unsigned char)'\n') {
-            pn_text_str(text, "\\n");
-        } else if (c == (unsigned char)'\r') {
-            pn_text_str(text, "\\r");
-        } else if (c == (unsigned char)'\t') {
-            pn_text_str(text, "\\t");
-        } else if ((c < 0x20U) || (c == 0x7FU)) {
-            char escape[8];
-            (void)snprintf(escape, sizeof escape, "\\u%04x", (unsigned int)c);
-            pn_text_str(text, escape);
-        } else if (c < 0x80U) {
-            pn_text_char(text, (char)c);
+        const size_t n = utf8_length((const unsigned char *)&bytes[i], length - i);
+        if (n > 0U) {
+            pn_text_bytes(text, &bytes[i], n);
+            i += n - 1U;
         } else {
-            const size_t n = utf8_length((const unsigned char *)&bytes[i], length - i);
-            if (n > 0U) {
-                pn_text_bytes(text, &bytes[i], n);
-                i += n - 1U;
-            } else { /* Latin-1 */
-                pn_text_char(text, (char)(0xC0U | (c >> 6U)));
-                pn_text_char(text, (char)(0x80U | (c & 0x3FU)));
-            }
+            json_char(text, (unsigned char)bytes[i]);
         }
+    }
+    pn_text_char(text, '"');
+}
+
+void pn_text_json_string(pn_text_t *text, const char *bytes, size_t length)
+{
+    pn_text_char(text, '"');
+    for (size_t i = 0U; i < length; i++) {
+        json_char(text, (unsigned char)bytes[i]);
     }
     pn_text_char(text, '"');
 }
@@ -171,7 +185,7 @@ void pn_text_json_leaf(pn_text_t *text, const pn_leaf_t *leaf)
         pn_text_json_real(text, leaf->real);
         break;
     case PN_LEAF_STRING:
-        pn_text_json_str(text, leaf->text);
+        pn_text_json_string(text, leaf->text, strlen(leaf->text));
         break;
     case PN_LEAF_ENUM:
         if (leaf->text != NULL) {

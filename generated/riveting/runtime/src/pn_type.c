@@ -152,12 +152,12 @@ void pn_json(const pn_type_t *type, const void *value, pn_text_t *out)
         break;
     case PN_KIND_STRING: {
         const pn_string_t text = load_string(value);
-        pn_text_json_bytes(out, text.bytes, text.length);
+        pn_text_json_string(out, text.bytes, text.length);
         break;
     }
     case PN_KIND_CHAR: {
         const char c = (char)load_byte(value);
-        pn_text_json_bytes(out, &c, 1U);
+        pn_text_json_string(out, &c, 1U);
         break;
     }
     case PN_KIND_ENUM:

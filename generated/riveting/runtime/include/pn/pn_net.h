@@ -155,8 +155,9 @@ typedef struct pn_transition {
      * it only puts tokens. NULL: not known. */
     uint32_t read_count;
     const uint32_t *read;
-    /* Random numbers, files or references decide about it: what is possible in a marking depends on more than the marking. */
-    bool draws;
+    /* Files or references decide about it: what is possible in a marking depends on more than the marking. Not so for random numbers:
+     * their stream starts anew each time (pn_random.h), and is the same for the same seed and step. */
+    bool looks;
     /* For every enabled binding, in the order of `enumerate`: makes in *next the marking after its occurrence and calls the sink.
      * Returns false when the sink stopped it; errors are in the context. NULL: enumerate, copy and fire. */
     bool (*successors)(pn_ctx_t *cx, const void *marking, uint32_t self, void *next, pn_successor_sink_t sink, void *user);
