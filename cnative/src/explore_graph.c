@@ -290,13 +290,13 @@ bool ex_graph(ex_run_t *run)
         atomic_store(&run->phase, "components");
         is_fine = ex_components(run, graph);
         atomic_store(&run->phase, "properties");
-        is_fine = is_fine && ex_properties(run, graph);
+        is_fine = is_fine && ex_properties(run, graph) && (graph->is_acyclic || ex_fairness(run, graph));
     }
     graph->seconds = ex_clock() - began;
     if (!is_fine) {
         run->graph = NULL; /* the process is about to end: its memory goes with it */
-        if (!looks()) {
-            ex_stop(run, EX_MEMORY); /* unless something else was in the way */
+        if (!looks() && !ex_is_stopping(run)) {
+            ex_stop(run, EX_MEMORY); /* nothing else was in the way */
         }
     }
     return is_fine;

@@ -50,8 +50,18 @@ typedef enum ex_fairness {
 typedef struct ex_part {
     uint32_t without;      /* transition; EX_NO_NODE: all arcs */
     const uint64_t *only;  /* bit set of nodes; NULL: all of them */
-    bool within;           /* only arcs inside a component of the whole graph */
 } ex_part_t;
+
+/* Sweeps over all arcs: nodes that a thread takes at a time (whole words of a bit set), and when they are given up. Tests have others. */
+#ifndef EX_SWEEP_BLOCK
+#define EX_SWEEP_BLOCK 65536U
+#endif
+#ifndef EX_LEAST_SWEEPS
+#define EX_LEAST_SWEEPS 16U
+#endif
+#ifndef EX_MOST_SWEEPS
+#define EX_MOST_SWEEPS 256U
+#endif
 
 /* --- explore_scc.c --- */
 
@@ -69,8 +79,13 @@ ex_cycle_t ex_has_cycle(ex_run_t *run, const ex_graph_t *graph, const ex_part_t 
 
 /* --- explore_properties.c --- */
 
-/* Fills home, live and fairness. False: no memory, or told to stop. */
+/* Fills home and live. False: no memory. */
 bool ex_properties(ex_run_t *run, ex_graph_t *graph);
+
+/* --- explore_fairness.c --- */
+
+/* Fills fairness, of a graph that is not acyclic. False: no memory, or told to stop. */
+bool ex_fairness(ex_run_t *run, ex_graph_t *graph);
 
 /* --- explore_trace.c --- */
 

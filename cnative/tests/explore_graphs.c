@@ -1,0 +1,262 @@
+/* SPDX-License-Identifier: MIT
+ * explore_graphs.c - components, home, liveness and fairness of small random graphs against their definitions: `explore_graphs SEED COUNT`.
+ *
+ * Compiled with TRANSITIONS, so many labels. Prints `fine`, or what is wrong.
+ */
+#include <inttypes.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "explore_graph.h"
+
+enum {
+    NODES = 14,
+    ARCS = 64
+};
+
+const pn_net_t pn_net = { .transition_count = TRANSITIONS };
+
+static uint64_t s_random;
+
+static uint32_t draw(uint32_t below)
+{
+    s_random = (s_random * 6364136223846793005U) + 1442695040888963407U;
+    return (uint32_t)ex_scaled(s_random ^ (s_random << 29U), below);
+}
+
+/* --- what the sources under test call -------------------------------------------------------------------------------- */
+
+typedef struct job {
+    ex_worker_t *worker;
+    void (*work)(ex_worker_t *worker, void *user);
+    void *user;
+    pthread_t thread;
+} job_t;
+
+static void *start(void *user)
+{
+    const job_t *const job = user;
+    job->work(job->worker, job->user);
+    return NULL;
+}
+
+void ex_parallel(ex_run_t *run, void (*work)(ex_worker_t *worker, void *user), void *user)
+{
+    job_t job = { .worker = &run->worker[1], .work = work, .user = user };
+    const bool is_started = (run->options.threads > 1U) && (pthread_create(&job.thread, NULL, start, &job) == 0);
+    work(&run->worker[0], user);
+    if (is_started) {
+        (void)pthread_join(job.thread, NULL);
+    }
+}
+
+/* --- a graph, and what follows from the definitions ------------------------------------------------------------------- */
+
+typedef struct arc {
+    uint32_t from;
+    uint32_t to;
+    uint16_t label;
+} arc_t;
+
+static uint32_t s_nodes;
+static uint32_t s_arcs;
+static arc_t s_arc[ARCS];
+static uint64_t s_row[NODES + 1];
+static uint32_t s_target[ARCS];
+static uint16_t s_label[ARCS];
+
+/* Random arcs; then what can be reached from node 0, numbered breadth first. */
+static void make_graph(void)
+{
+    uint32_t number[NODES] = { 0U };
+    uint32_t order[NODES] = { 0U };
+    arc_t raw[ARCS];
+    const uint32_t wanted = 1U + draw((uint32_t)NODES);
+    const uint32_t count = draw((2U * wanted) + 6U);
+    const uint32_t labels = 1U + draw(3U);
+    const bool is_forward = draw(3U) == 0U;
+    for (uint32_t i = 0U; i < count; i++) {
+        raw[i] = (arc_t){ draw(wanted), draw(wanted), (uint16_t)(draw(labels) * (TRANSITIONS / labels)) };
+        if (is_forward && (raw[i].from > raw[i].to) && (draw(8U) > 0U)) {
+            raw[i] = (arc_t){ raw[i].to, raw[i].from, raw[i].label };
+        }
+    }
+    s_nodes = 1U;
+    s_arcs = 0U;
+    number[0] = 1U;
+    for (uint32_t node = 0U; node < s_nodes; node++) {
+        s_row[node] = s_arcs;
+        for (uint32_t i = 0U; i < count; i++) {
+            if (raw[i].from != order[node]) {
+                continue;
+            }
+            if (number[raw[i].to] == 0U) {
+                order[s_nodes] = raw[i].to;
+                s_nodes += 1U;
+                number[raw[i].to] = s_nodes;
+            }
+            s_arc[s_arcs] = (arc_t){ node, number[raw[i].to] - 1U, raw[i].label };
+            s_target[s_arcs] = s_arc[s_arcs].to;
+            s_label[s_arcs] = raw[i].label;
+            s_arcs += 1U;
+        }
+        s_row[node + 1U] = s_arcs;
+    }
+}
+
+static bool is_enabled(uint32_t node, uint32_t t)
+{
+    for (uint32_t i = 0U; i < s_arcs; i++) {
+        if ((s_arc[i].from == node) && (s_arc[i].label == t)) {
+            return true;
+        }
+    }
+    return false;
+}
+
+typedef bool relation_t[NODES][NODES];
+
+/* From where to where there is a way of at least one arc, without a transition, and, if so wished, only where it is enabled. */
+static void find_ways(relation_t way, uint32_t without, bool is_among_enabled)
+{
+    (void)memset(way, 0, sizeof(relation_t));
+    for (uint32_t i = 0U; i < s_arcs; i++) {
+        const bool is_inside = !is_among_enabled || (is_enabled(s_arc[i].from, without) && is_enabled(s_arc[i].to, without));
+        way[s_arc[i].from][s_arc[i].to] = way[s_arc[i].from][s_arc[i].to] || ((s_arc[i].label != without) && is_inside);
+    }
+    for (uint32_t k = 0U; k < s_nodes; k++) {
+        for (uint32_t i = 0U; i < s_nodes; i++) {
+            for (uint32_t j = 0U; j < s_nodes; j++) {
+                way[i][j] = way[i][j] || (way[i][k] && way[k][j]);
+            }
+        }
+    }
+}
+
+static bool has_cycle(relation_t way)
+{
+    bool is_found = false;
+    for (uint32_t i = 0U; i < s_nodes; i++) {
+        is_found = is_found || way[i][i];
+    }
+    return is_found;
+}
+
+static uint8_t fairness_of(uint32_t t)
+{
+    relation_t way;
+    find_ways(way, t, false);
+    bool is_fair = true;
+    for (uint32_t i = 0U; i < s_nodes; i++) {
+        is_fair = is_fair && !(way[i][i] && is_enabled(i, t));
+    }
+    if (!has_cycle(way)) {
+        return (uint8_t)EX_IMPARTIAL;
+    }
+    find_ways(way, t, true);
+    return (uint8_t)(is_fair ? EX_FAIR : (!has_cycle(way) ? EX_JUST : EX_UNFAIR));
+}
+
+static bool s_is_fine;
+
+static void check(bool is_fine, const char *what)
+{
+    if (!is_fine) {
+        (void)printf("%s\n", what);
+        s_is_fine = false;
+    }
+}
+
+static void check_components(const ex_graph_t *g, relation_t way)
+{
+    uint32_t home = 0U;
+    uint64_t between = 0U;
+    uint32_t most = 0U;
+    for (uint32_t i = 0U; i < s_nodes; i++) {
+        bool is_home = true;
+        for (uint32_t j = 0U; j < s_nodes; j++) {
+            const bool is_one = (i == j) || (way[i][j] && way[j][i]);
+            is_home = is_home && ((i == j) || way[j][i]);
+            check((g->component[i] == g->component[j]) == is_one, "components");
+            check(is_one || !way[i][j] || (g->component[i] > g->component[j]), "order of components");
+        }
+        check((g->component[i] == g->home_component) == is_home, "home component");
+        home += is_home ? 1U : 0U;
+        most = (g->component[i] > most) ? g->component[i] : most;
+    }
+    for (uint32_t i = 0U; i < s_arcs; i++) {
+        between += ((s_arc[i].from != s_arc[i].to) && !way[s_arc[i].to][s_arc[i].from]) ? 1U : 0U;
+    }
+    check(g->components == (most + 1U), "number of components");
+    check(g->component_arcs == between, "arcs between components");
+    check(g->home_count == home, "home markings");
+    check(g->is_acyclic == !has_cycle(way), "acyclic");
+}
+
+static void check_live(const ex_graph_t *g, relation_t way)
+{
+    for (uint32_t t = 0U; t < (uint32_t)TRANSITIONS; t++) {
+        bool is_live = true;
+        for (uint32_t i = 0U; i < s_nodes; i++) {
+            bool can_come = is_enabled(i, t);
+            for (uint32_t j = 0U; j < s_nodes; j++) {
+                can_come = can_come || (way[i][j] && is_enabled(j, t));
+            }
+            is_live = is_live && can_come;
+        }
+        check(g->is_live[t] == is_live, "live");
+    }
+}
+
+static void try_graph(ex_run_t *run)
+{
+    relation_t way;
+    uint64_t dead[1] = { 0U };
+    ex_graph_t g = { .row = s_row, .target = s_target, .label = s_label, .dead = dead, .is_whole = true, .home_component = EX_NO_NODE };
+    make_graph();
+    g.nodes = s_nodes;
+    g.arcs = s_arcs;
+    for (uint32_t node = 0U; node < s_nodes; node++) {
+        g.dead_count += (s_row[node] == s_row[node + 1U]) ? 1U : 0U;
+    }
+    find_ways(way, UINT32_MAX, false);
+    s_is_fine = true;
+    check(ex_components(run, &g) && ex_properties(run, &g) && (g.is_acyclic || ex_fairness(run, &g)), "no memory");
+    if (s_is_fine) {
+        check_components(&g, way);
+        check_live(&g, way);
+    }
+    for (uint32_t t = 0U; s_is_fine && !g.is_acyclic && (t < (uint32_t)TRANSITIONS); t++) {
+        check(g.fairness[t] == fairness_of(t), "fairness");
+    }
+    ex_free(run, g.component, (uint64_t)g.nodes * sizeof *g.component);
+    ex_free_table(run, g.is_live, TRANSITIONS, sizeof *g.is_live);
+    ex_free_table(run, g.fairness, TRANSITIONS, sizeof *g.fairness);
+    check(atomic_load(&run->memory_used) == 0U, "memory is kept");
+}
+
+int main(int argc, char **argv)
+{
+    static ex_run_t s_run;
+    static ex_worker_t s_worker[2];
+    s_random = (argc > 1) ? strtoull(argv[1], NULL, 10) : 1U;
+    const unsigned long count = (argc > 2) ? strtoul(argv[2], NULL, 10) : 1000U;
+    s_run.worker = s_worker;
+    s_worker[0].run = &s_run;
+    s_worker[1].run = &s_run;
+    s_run.options.memory = (uint64_t)1U << 30U;
+    for (unsigned long i = 0U; i < count; i++) {
+        s_run.options.threads = 1U + (uint32_t)(i % 2U);
+        try_graph(&s_run);
+        if (!s_is_fine) {
+            (void)printf("in graph %lu of %" PRIu32 " nodes:", i, s_nodes);
+            for (uint32_t k = 0U; k < s_arcs; k++) {
+                (void)printf(" %" PRIu32 "-%u->%" PRIu32, s_arc[k].from, s_label[k], s_arc[k].to);
+            }
+            (void)printf("\n");
+            return 1;
+        }
+    }
+    (void)printf("fine\n");
+    return 0;
+}
