@@ -16,9 +16,11 @@ from pathlib import Path
 
 import pytest
 
-from helpers.netbuilder import write
+from helpers.explored import Explorers, wide
+from helpers.netbuilder import flat, write
 from helpers.processes import Command, pn2code
 from pn2code.private_folder import private_folder
+from pn2code.verify.programs import Sizes
 
 pytestmark = [
     pytest.mark.cc,
@@ -196,6 +198,7 @@ def test_little_of_everything(net: Path, tmp_path: Path) -> None:
     """Of time, of memory: partial, and everything says so."""
     for options, why in (
         (("--max-seconds", "0.1"), "seconds"),
+        (("--max-seconds", "0"), "seconds"),
         (("--memory", "16", "--threads", "64"), "memory"),
     ):
         report = tmp_path / "r"
@@ -204,6 +207,17 @@ def test_little_of_everything(net: Path, tmp_path: Path) -> None:
         assert (done.returncode, said["complete"], said["why"]) == (3, False, why), options
         assert "PARTIAL: the limit of" in report.read_text()
         assert said["home_markings"] is said["live_transitions"] is None
+
+
+def test_no_time_for_the_graph(explorers: Explorers) -> None:
+    """Time that ends while components are sought is not memory."""
+    steps = flat(NET, {"last": "6"})
+    folder = explorers.build(steps, wide(Sizes.start(steps, {}), 4), "no_time")
+    seconds, said = 0.002, []
+    while "complete" not in said:
+        seconds *= 1.4
+        said.append(explorers.said(folder, "--max-seconds", seconds).report["why"])
+    assert set(said) == {"seconds", "complete"}
 
 
 @pytest.fixture(scope="module")

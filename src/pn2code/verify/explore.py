@@ -34,6 +34,8 @@ Progress = Callable[[Mapping[str, Any]], None]
 """Is told what the explorer says of itself twice a second: states, arcs, rate, frontier, depth, mib, phase."""
 KEPT_ERRORS = 20
 """Lines of what the explorer says that are no progress."""
+LEAST_SECONDS = 1e-6
+"""No time at all is a limit, too; the explorer wants a positive one."""
 
 
 def _nothing(_: Mapping[str, Any]) -> None:
@@ -168,12 +170,13 @@ def nothing(net: FlatNet, limits: Limits) -> dict[str, Any]:
 
 
 def _options(limits: Limits, chosen: Chosen, sizes: Sizes, wishes: Wishes) -> list[str]:
+    seconds = limits.max_seconds
     given: list[tuple[str, object]] = [
         ("--threads", limits.threads),
         ("--order", limits.order.value),
         ("--arena", sizes.memory >> 20),
         ("--max-states", limits.max_states),
-        ("--max-seconds", limits.max_seconds),
+        ("--max-seconds", None if seconds is None else max(seconds, LEAST_SECONDS)),
         ("--memory", limits.memory or default_memory()),
         ("--parent", os.getpid()),
         ("--approximate", limits.approximation.value if limits.approximation else None),
