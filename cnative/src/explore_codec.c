@@ -36,6 +36,7 @@ bool ex_scratch_make(ex_worker_t *worker)
     const uint64_t cells = 2U * ((uint64_t)codec->words + 1U); /* more inner nodes than words there never are */
     scratch->cell = ex_table(run, cells, sizeof *scratch->cell);
     scratch->dirty = ex_table(run, (codec->words / 64U) + 1U, sizeof *scratch->dirty);
+    scratch->stale = ex_table(run, (codec->words / 64U) + 1U, sizeof *scratch->stale);
     scratch->undo_cell = ex_table(run, cells, sizeof *scratch->undo_cell);
     scratch->undo_value = ex_table(run, cells, sizeof *scratch->undo_value);
     scratch->decoded = ex_table(run, codec->words - codec->packed_words, sizeof *scratch->decoded);
@@ -46,7 +47,7 @@ bool ex_scratch_make(ex_worker_t *worker)
     scratch->next = ex_reserve(pn_net.marking_size + (size_t)UNIT);
     scratch->binding = ex_alloc(run, pn_net.binding_size);
     void *memory = ex_reserve(run->options.arena);
-    if ((scratch->cell == NULL) || (scratch->dirty == NULL) || (scratch->undo_cell == NULL) || (scratch->undo_value == NULL) || (scratch->decoded == NULL)
+    if ((scratch->cell == NULL) || (scratch->dirty == NULL) || (scratch->stale == NULL) || (scratch->undo_cell == NULL) || (scratch->undo_value == NULL) || (scratch->decoded == NULL)
         || (scratch->buffer == NULL) || (worker->marking == NULL) || (scratch->next == NULL) || (scratch->binding == NULL)
         || (memory == NULL)) {
         return false;
@@ -148,6 +149,7 @@ static bool number_dirty(ex_worker_t *worker)
     const ex_codec_t *codec = worker->run->codec;
     ex_scratch_t *scratch = worker->scratch;
     for (uint32_t w = 0U; w <= (codec->nodes / 64U); w++) {
+        scratch->dirty[w] |= scratch->stale[w];
         while (scratch->dirty[w] != 0U) {
             const uint32_t n = (w * 64U) + (uint32_t)__builtin_ctzll(scratch->dirty[w]);
             uint32_t number;
@@ -203,6 +205,18 @@ static inline void put_slice(const ex_codec_t *codec, void *marking, uint32_t w,
     (void)memcpy(at, &unit, sizeof unit);
 }
 
+static void clear_stale(ex_worker_t *worker)
+{
+    for (uint32_t w = 0U; w <= (worker->run->codec->nodes / 64U); w++) {
+        worker->scratch->stale[w] = 0U;
+    }
+}
+
+static inline bool is_stale(const ex_scratch_t *scratch, uint32_t n)
+{
+    return ((scratch->stale[n / 64U] >> (n % 64U)) & 1U) != 0U;
+}
+
 /* --- encoding -------------------------------------------------------------------------------------------------------------- */
 
 bool ex_encode(ex_worker_t *worker, const void *marking, ex_key_t *key)
@@ -212,6 +226,7 @@ bool ex_encode(ex_worker_t *worker, const void *marking, ex_key_t *key)
     uint32_t *cell = scratch->cell;
     bool is_fine = true;
     ex_unload(worker);
+    clear_stale(worker);
     if (codec->is_whole) {
         is_fine = intern_whole(worker, marking, &cell[0]);
         root_key(codec, cell, key);
@@ -255,12 +270,15 @@ bool ex_encode_time(ex_worker_t *worker)
         set_cell(worker, codec->time_word, number);
         scratch->decoded[codec->time_word - codec->packed_words] = number;
     }
-    if (!number_dirty(worker)) {
-        return false;
+    /* The words stay. What is above them is looked up for each successor: only with what that changes is it part of a state. */
+    for (uint32_t w = 0U; w <= (codec->nodes / 64U); w++) {
+        scratch->stale[w] |= scratch->dirty[w];
+        scratch->dirty[w] = 0U;
     }
-    scratch->undone = 0U; /* it stays */
+    scratch->undone = 0U;
     return true;
 }
+
 
 /* A part of the key of a successor: a node over words that can be read as they lie there. */
 static inline bool encode_direct(ex_worker_t *worker, const ex_node_t *node, const void *next, uint32_t *number)
@@ -314,8 +332,9 @@ static EX_APART bool encode_flat(ex_worker_t *worker, uint32_t transition, const
     }
     for (uint32_t i = 0U; i < codec->roots; i++) {
         const uint32_t c = codec->root[i];
+        const bool is_late = (c >= codec->words) && is_stale(scratch, c - codec->words);
         word[i] = cell[c];
-        if (!is_fine || (((codec->touched_parts[transition] >> i) & 1U) == 0U)) {
+        if (!is_fine || (!is_late && (((codec->touched_parts[transition] >> i) & 1U) == 0U))) {
             continue;
         }
         if (c < codec->packed_words) {
@@ -323,7 +342,7 @@ static EX_APART bool encode_flat(ex_worker_t *worker, uint32_t transition, const
         } else if (c >= codec->words) {
             const ex_node_t *node = &codec->node[c - codec->words];
             is_fine = node->is_direct ? encode_direct(worker, node, next, &word[i])
-                                      : encode_part(worker, node, next, scratch->undone > 0U, &word[i]);
+                                      : encode_part(worker, node, next, is_late || (scratch->undone > 0U), &word[i]);
         }
     }
     join_words(word, key);
@@ -493,6 +512,7 @@ bool ex_open(ex_worker_t *worker, const ex_key_t *key)
     uint32_t *cell = worker->scratch->cell;
     tidy_arena(worker);
     ex_key_cells(codec, key, cell);
+    clear_stale(worker);
     (void)memset(packed, 0, pn_net.packed_size);
     for (uint32_t w = 0U; w < codec->packed_words; w++) {
         put_slice(codec, packed, w, cell[w]);

@@ -233,7 +233,8 @@ static inline void ex_derive(const ex_codec_t *codec, void *marking)
 typedef struct ex_scratch {
     uint32_t *cell;          /* of the state that is loaded: words, then inner nodes */
     uint32_t *decoded;       /* by word behind the packed part: the number of what worker->marking holds there; EX_NO_NUMBER: anything */
-    uint64_t *dirty;         /* a bit for each inner node */
+    uint64_t *dirty;         /* a bit for each inner node: its cell is to be found out */
+    uint64_t *stale;         /* the same for as long as the state is loaded: the time has gone on since */
     uint32_t *undo_cell;
     uint32_t *undo_value;
     uint32_t undone;

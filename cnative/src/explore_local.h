@@ -22,4 +22,10 @@ bool ex_local_make(ex_worker_t *worker);
  * of worker->marking are worth something afterwards. */
 ex_local_found_t ex_local_successors(ex_worker_t *worker, uint32_t t, ex_times_sink_t sink, void *user);
 
+/* Some transitions that are asked next: what is known of them is on its way then. To be called for all of them. */
+#define EX_AHEAD 8U
+void ex_local_ahead(ex_worker_t *worker, const uint32_t *t, uint32_t count);
+/* The earliest time after that of worker->marking at which a token becomes available. False: there is none, or an error. */
+bool ex_local_next_time(ex_worker_t *worker, pn_time_t *next);
+
 #endif /* EXPLORE_LOCAL_H */

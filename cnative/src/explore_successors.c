@@ -162,6 +162,15 @@ static bool hunt_local(hunt_t *hunt, uint32_t t, bool *goes_on)
     return found != EX_LOCAL_UNKNOWN;
 }
 
+/* The transition at position k of the order is next. */
+static void look_ahead(const hunt_t *hunt, uint32_t k)
+{
+    if (hunt->is_local && ((k % EX_AHEAD) == 0U)) {
+        const uint32_t left = pn_net.order_count - k;
+        ex_local_ahead(hunt->worker, &pn_net.order[k], (left < EX_AHEAD) ? left : EX_AHEAD);
+    }
+}
+
 /* All bindings of a transition; false when it is to go no further. */
 static bool hunt_transition(hunt_t *hunt, uint32_t t)
 {
@@ -200,6 +209,7 @@ static bool hunt_by_owner(hunt_t *hunt)
     bool goes_on = true;
     for (uint32_t k = 0U; goes_on && (k < pn_net.order_count); k++) {
         const uint32_t t = pn_net.order[k];
+        look_ahead(hunt, k);
         const uint32_t owner = owner_of[t];
         if (has_found[owner] && (pn_net.transition[t].priority != priority[owner])) {
             continue;
@@ -225,6 +235,7 @@ static bool hunt_now(hunt_t *hunt)
     }
     for (uint32_t k = 0U; k < pn_net.order_count; k++) {
         const uint32_t t = pn_net.order[k];
+        look_ahead(hunt, k);
         if (hunt->is_found && (pn_net.transition[t].priority != priority)) {
             break;
         }
@@ -234,6 +245,13 @@ static bool hunt_now(hunt_t *hunt)
         }
     }
     return true;
+}
+
+/* When something can be enabled that is not so now; false: never, or an error. */
+static bool next_time(const hunt_t *hunt, pn_time_t *next)
+{
+    ex_worker_t *worker = hunt->worker;
+    return hunt->is_local ? ex_local_next_time(worker, next) : pn_net.next_time(&worker->cx, worker->marking, next);
 }
 
 /* Lets the time go on. */
@@ -263,8 +281,7 @@ static ex_found_t hunt_state(hunt_t *hunt)
     }
     bool goes_on = hunt_now(hunt);
     pn_time_t next = { 0 };
-    while (goes_on && !hunt->is_found && pn_net.timed && (!hunt->is_local || ex_load_places(worker))
-           && pn_net.next_time(&worker->cx, worker->marking, &next)) {
+    while (goes_on && !hunt->is_found && pn_net.timed && next_time(hunt, &next)) {
         goes_on = advance(hunt, next) && hunt_now(hunt);
     }
     if (goes_on && !hunt->is_found && (worker->cx.error != PN_OK)) {

@@ -85,6 +85,56 @@ TIMED = """
         in Done : d ^ d
         guard [String.size d = 1]
 """
+LONG = """
+    net Long
+      %s
+      standard
+      colset TEXT = string timed;
+      colset WIDE = product INT * STRING timed;
+      colset TIMES = int timed;
+      var d, e : STRING;
+      var n : INT;
+      place In : WIDE = 1`(1, "a long text, many bytes")@%s ++ 1`(2, "another one, long, too")@%s ++ 2`(3, "x")@%s
+      place Busy : WIDE
+      place Log : TEXT = 1`"written before the beginning"
+      place Tick : TIMES = 1`0
+      trans Start
+        in In : (n, d)
+        out Busy : (n, d)@%s
+      trans End
+        in Busy : (n, d)@+1
+        in Log : e
+        out Log : e@+2
+        out Log : (d ^ ", at the end")@%s
+      trans Count
+        in Tick : n
+        guard [n < 3]
+        out Tick : (n + 1)@+1
+"""
+LUCKY = """
+    net Lucky
+      standard
+      colset TEXT = string timed;
+      var d : STRING;
+      var n : INT;
+      place In : TEXT = 1`"a"@0 ++ 1`"b"@2 ++ 1`"c"@3
+      place Busy : TEXT
+      place Left : INT = 1`4
+      place Got : STRING = 1`""
+      trans Start
+        in In : d
+        in Left : n
+        guard [n > 0 andalso discrete(0, 9) < 9]
+        out Left : n - 1
+        out Busy : d@+discrete(1, 50)
+      trans Again
+        in Busy : d
+        out In : d@+discrete(1, 3)
+      trans End
+        in Busy : d
+        guard [bernoulli(0.5) = 1]
+        out Got : d
+"""
 CHOICES = """
     net Choices
       standard
@@ -127,6 +177,35 @@ def test_as_the_token_game_has_it(explorers: Explorers, text: str, width: int) -
 def test_the_same_without_notes(explorers: Explorers, text: str) -> None:
     net = flat(text)
     plain = explorers.explore(net, "--no-notes")
+    assert plain.report["nodes"] > 20
+    for options in ([], ["--threads", 2], ["--order", "dfs"], ["--lay-again", 30]):
+        found = explorers.explore(net, *options)
+        assert _said(found) == _said(plain), options
+        assert (found.nodes, found.arcs) == (plain.nodes, plain.arcs)
+
+
+@pytest.mark.parametrize(
+    "filled",
+    [
+        ("", "0", "2", "1", "+3", "+1"),
+        ("option realtimestamp true", "0.1", "2.7", "0.4", "++0.3", "++0.7"),
+    ],
+    ids=["integers", "reals"],
+)
+def test_long_values_with_stamps(explorers: Explorers, filled: tuple[str, ...]) -> None:
+    """Their values are stored apart; tokens may be taken before their stamps."""
+    net = flat(LONG % filled)
+    assert agrees(explorers, net, width=2, nodes=3000, arcs=20000) == "same"
+    plain = explorers.explore(net, "--no-notes")
+    for options in ([], ["--threads", 2], ["--order", "dfs"], ["--lay-again", 30]):
+        assert _said(explorers.explore(net, *options)) == _said(plain), options
+
+
+def test_what_is_drawn_is_noted(explorers: Explorers) -> None:
+    """The stream starts anew each time, so in the same marking the same is drawn."""
+    net = flat(LUCKY)
+    plain = explorers.explore(net, "--no-notes")
+    assert plain.report["complete"]
     assert plain.report["nodes"] > 20
     for options in ([], ["--threads", 2], ["--order", "dfs"], ["--lay-again", 30]):
         found = explorers.explore(net, *options)

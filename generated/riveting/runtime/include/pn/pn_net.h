@@ -125,6 +125,10 @@ typedef struct pn_place {
     size_t (*add)(pn_ctx_t *cx, void *marking, const uint8_t *in, size_t length);
     /* A colour of a packed place as JSON; false if there is no such one. NULL if the place is not packed. */
     bool (*colour_json)(uint32_t ordinal, pn_text_t *out);
+    /* Of a timed place: lets *next be the earliest time after `now` at which one of its tokens becomes available, if it is before *next or
+     * *found is false. NULL: pn_net_t.next_time has to be asked (delays
+     * of input arcs are computed). */
+    void (*next_time)(const void *marking, pn_time_t now, bool *found, pn_time_t *next);
     /* Of a timed place (integer time): stamps count from `by` on; those that are not after it become 0, and are the same then. NULL of
      * an untimed place. */
     void (*age)(void *marking, pn_time_t by);
