@@ -456,6 +456,7 @@ typedef struct ex_worker {
     struct ex_symmetry *symmetry; /* of explore_symmetry.c */
     struct ex_early *early;       /* of explore_query_early.c */
     struct ex_local *local;       /* of explore_local.c; NULL: nothing is remembered */
+    struct ex_wake *wake;         /* of explore_wake.c; NULL: nothing is remembered */
     bool has_waited;         /* the time went on in ex_successors before something was enabled */
     int64_t elapsed;         /* when the time is reduced: how much of it went by in ex_successors before something was enabled */
     /* Counted during the exploration. */

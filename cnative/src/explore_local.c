@@ -20,7 +20,6 @@
 #include <string.h>
 
 #include "pn/pn_arena.h"
-#include "pn/pn_bag.h"
 
 enum {
     FIRST_ENTRIES = 1 << 12,
@@ -30,7 +29,6 @@ enum {
     MOST_NOTE = 1 << 14,      /* words of one note */
     MOST_COMPARED = 64,       /* successors of a note with which a further one is compared */
     SUMS = 1 << 15,
-    WAKES = 1 << 12,
     TRIALS = 1024,            /* after so many it is seen whether notes pay */
     ALONE = 1 << 16,          /* how often a transition is passed over when they do not */
     SHARE_OF_MEMORY = 16      /* most of it for all notes */
@@ -40,14 +38,6 @@ typedef struct sum {
     uint64_t parts; /* the multi-set, and what is added; 0: none, since nothing is not added */
     uint32_t sum;
 } sum_t;
-
-/* When tokens of a timed place become available: after each time in from .. next the next ones do at `next`. */
-typedef struct wake {
-    uint32_t multiset; /* its number + 1; 0: none */
-    bool is_some;      /* otherwise there are none after `from` */
-    pn_time_t from;
-    pn_time_t next;
-} wake_t;
 
 typedef enum word_kind {
     WORD_BITS,  /* of the packed part: those of `mask` */
@@ -86,7 +76,6 @@ struct ex_local {
     uint32_t most;
     uint64_t *hash;      /* by transition, of what it reads: see ex_local_ahead */
     sum_t *sum;
-    wake_t *wake;        /* NULL: not of this net */
     ex_change_t *change; /* of one successor */
     /* The note that is being written, at `words`. */
     uint32_t end;
@@ -211,16 +200,6 @@ static form_t *make_forms(ex_run_t *run)
     return (pool != NULL) ? form : NULL;
 }
 
-/* Whether each timed place can say for itself when its tokens become available. */
-static bool has_wakes(void)
-{
-    bool has_all = pn_net.timed;
-    for (uint32_t p = 0U; p < pn_net.place_count; p++) {
-        has_all = has_all && (!pn_net.place[p].timed || (pn_net.place[p].next_time != NULL));
-    }
-    return has_all;
-}
-
 bool ex_local_make(ex_worker_t *worker)
 {
     ex_run_t *run = worker->run;
@@ -243,13 +222,12 @@ bool ex_local_make(ex_worker_t *worker)
     own->sum = ex_alloc(run, (uint64_t)SUMS * sizeof *own->sum);
     own->change = ex_table(run, run->codec->words, sizeof *own->change);
     own->hash = ex_table(run, pn_net.transition_count, sizeof *own->hash);
-    own->wake = has_wakes() ? ex_alloc(run, (uint64_t)WAKES * sizeof *own->wake) : NULL;
     if ((own->form == NULL) || (own->entry == NULL) || (own->word == NULL) || (own->sum == NULL) || (own->change == NULL)
-        || (own->hash == NULL) || (has_wakes() && (own->wake == NULL))) {
+        || (own->hash == NULL)) {
         return false;
     }
     worker->local = own;
-    return true;
+    return ex_wakes_make(worker);
 }
 
 /* --- notes ------------------------------------------------------------------------------------------------------------- */
@@ -585,49 +563,4 @@ ex_local_found_t ex_local_successors(ex_worker_t *worker, uint32_t t, ex_times_s
         successor = &successor[length];
     }
     return (found > 0U) ? EX_LOCAL_SOME : EX_LOCAL_NONE;
-}
-
-/* --- time -------------------------------------------------------------------------------------------------------------- */
-
-/* What is known of a place's multi-set at a time, found out if need be. NULL: an error. */
-static const wake_t *wake_of(ex_local_t *own, uint32_t place, uint32_t number, pn_time_t now)
-{
-    ex_worker_t *worker = own->worker;
-    wake_t *wake = &own->wake[number % (uint32_t)WAKES];
-    if ((wake->multiset == (number + 1U)) && (pn_time_order(pn_net.real_time, wake->from, now) <= 0)
-        && (!wake->is_some || (pn_time_order(pn_net.real_time, now, wake->next) < 0))) {
-        return wake;
-    }
-    if (!ex_load_place(worker, place, number)) {
-        return NULL;
-    }
-    *wake = (wake_t){ .multiset = number + 1U, .from = now };
-    pn_net.place[place].next_time(worker->marking, now, &wake->is_some, &wake->next);
-    return wake;
-}
-
-bool ex_local_next_time(ex_worker_t *worker, pn_time_t *next)
-{
-    ex_local_t *own = worker->local;
-    const ex_codec_t *codec = worker->run->codec;
-    bool is_some = false;
-    if (own->wake == NULL) {
-        return ex_load_places(worker) && pn_net.next_time(&worker->cx, worker->marking, next);
-    }
-    const pn_time_t now = pn_net.now(worker->marking);
-    for (uint32_t w = codec->packed_words; w < codec->words; w++) {
-        const uint32_t place = (w == codec->time_word) ? 0U : codec->place_of[w - codec->packed_words];
-        if ((w == codec->time_word) || !pn_net.place[place].timed) {
-            continue;
-        }
-        const wake_t *wake = wake_of(own, place, worker->scratch->cell[w], now);
-        if (wake == NULL) {
-            return false;
-        }
-        if (wake->is_some && (!is_some || (pn_time_order(pn_net.real_time, wake->next, *next) < 0))) {
-            *next = wake->next;
-            is_some = true;
-        }
-    }
-    return is_some;
 }

@@ -7,6 +7,7 @@
 #include "explore_impl.h"
 
 typedef struct ex_local ex_local_t;
+typedef struct ex_wake ex_wake_t;
 
 typedef enum ex_local_found {
     EX_LOCAL_UNKNOWN, /* nothing has been done: the transition has to be asked itself */
@@ -25,7 +26,12 @@ ex_local_found_t ex_local_successors(ex_worker_t *worker, uint32_t t, ex_times_s
 /* Some transitions that are asked next: what is known of them is on its way then. To be called for all of them. */
 #define EX_AHEAD 8U
 void ex_local_ahead(ex_worker_t *worker, const uint32_t *t, uint32_t count);
-/* The earliest time after that of worker->marking at which a token becomes available. False: there is none, or an error. */
-bool ex_local_next_time(ex_worker_t *worker, pn_time_t *next);
+
+/* --- explore_wake.c --- */
+
+/* Where it is possible: worker->wake. False: no memory. */
+bool ex_wakes_make(ex_worker_t *worker);
+/* The earliest time after that of worker->marking at which a token of the opened state becomes available. False: there is none, or an error. */
+bool ex_next_time(ex_worker_t *worker, pn_time_t *next);
 
 #endif /* EXPLORE_LOCAL_H */

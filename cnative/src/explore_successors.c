@@ -251,7 +251,7 @@ static bool hunt_now(hunt_t *hunt)
 static bool next_time(const hunt_t *hunt, pn_time_t *next)
 {
     ex_worker_t *worker = hunt->worker;
-    return hunt->is_local ? ex_local_next_time(worker, next) : pn_net.next_time(&worker->cx, worker->marking, next);
+    return hunt->is_local ? ex_next_time(worker, next) : pn_net.next_time(&worker->cx, worker->marking, next);
 }
 
 /* Lets the time go on. */
