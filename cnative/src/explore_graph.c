@@ -2,10 +2,10 @@
  * explore_graph.c - the graph of a state space that has been explored: nodes are numbered breadth first, whatever the number of threads,
  * and the successors of each are made once more and looked up.
  *
- * Level by level: threads take blocks of nodes and find the slots of all successors; then the slots that are new get numbers, in the order
- * of the nodes and of their arcs.
+ * Threads take blocks of nodes and find the slots of all successors (explore_blocks.c); then the slots that are new get numbers, in the
+ * order of the nodes and of their arcs.
  */
-#include "explore_graph.h"
+#include "explore_blocks.h"
 
 #include <inttypes.h>
 #include <stdlib.h>
@@ -13,130 +13,34 @@
 
 #include "pn/pn_text.h"
 
-#define BLOCK_NODES 512U
 #define MOST_LISTED 1000U
 
-/* An arc before its target has a number. */
-typedef struct found_arc {
-    uint64_t slot;
-    uint32_t label;
-    uint32_t node; /* within the block */
-} found_arc_t;
-
-/* The nodes first .. first + count - 1 and their arcs. */
-typedef struct block {
-    uint32_t count;
-    uint64_t used;
-    uint64_t room;
-    found_arc_t *arc;
-    uint8_t is_dead[BLOCK_NODES];
-    uint8_t is_late[BLOCK_NODES];
-} block_t;
-
-/* Successors of one node, gathered so that their lines of the store are on their way when they are looked up. */
-typedef struct gathered {
-    uint64_t used;
-    uint64_t room;
-    uint64_t arcs;
-    struct {
-        ex_key_t key;
-        uint64_t hash;
-        uint32_t label;
-        uint32_t times;
-    } *arc;
-    const ex_store_t *store;
-} gathered_t;
-
+/* Some nodes in a row: their blocks. */
 typedef struct level {
     ex_graph_t *graph;
     uint32_t first;
     uint32_t end;
     _Atomic uint32_t next;    /* block */
-    block_t *block;
-    uint64_t block_count;
+    ex_block_t *block;
+    uint32_t block_count;
+    ex_expander_t *expander[EX_MOST_THREADS];
     _Atomic bool is_failed;
-    bool is_partial;          /* successors that are not in the store are passed over */
 } level_t;
-
-static bool gather(void *user, uint32_t transition, uint32_t times, const ex_key_t *key)
-{
-    gathered_t *const g = user;
-    if (g->used == g->room) {
-        const uint64_t room = (g->room == 0U) ? 64U : (g->room * 2U);
-        void *const larger = realloc(g->arc, room * sizeof *g->arc);
-        if (larger == NULL) {
-            return false;
-        }
-        g->arc = larger;
-        g->room = room;
-    }
-    g->arc[g->used].key = *key;
-    g->arc[g->used].hash = ex_hash(key);
-    g->arc[g->used].label = transition;
-    g->arc[g->used].times = times;
-    g->arcs += times;
-    ex_store_prefetch(g->store, g->arc[g->used].hash);
-    g->used += 1U;
-    return true;
-}
-
-/* Appends what was gathered for a node of the block. */
-static bool look_up(const level_t *level, block_t *block, const gathered_t *g, uint32_t node)
-{
-    if ((block->used + g->arcs) > block->room) {
-        const uint64_t room = (block->used + g->arcs) * 2U;
-        void *const larger = realloc(block->arc, room * sizeof *block->arc);
-        if (larger == NULL) {
-            return false;
-        }
-        block->arc = larger;
-        block->room = room;
-    }
-    for (uint64_t i = 0U; i < g->used; i++) {
-        const uint64_t slot = ex_store_find(g->store, &g->arc[i].key, g->arc[i].hash);
-        if (slot != EX_NO_SLOT) {
-            for (uint32_t k = 0U; k < g->arc[i].times; k++) {
-                block->arc[block->used] = (found_arc_t){ .slot = slot, .label = g->arc[i].label, .node = node };
-                block->used += 1U;
-            }
-            __builtin_prefetch(&level->graph->number[slot], 0, 1);
-        } else if (!level->is_partial) {
-            return false; /* the net does not do the same twice */
-        }
-    }
-    return true;
-}
 
 static void expand_blocks(ex_worker_t *worker, void *user)
 {
     level_t *const level = user;
-    ex_graph_t *const graph = level->graph;
-    gathered_t gathered = { .store = &worker->run->store };
     for (;;) {
         const uint32_t index = atomic_fetch_add(&level->next, 1U);
         if ((index >= level->block_count) || atomic_load(&level->is_failed) || ex_is_stopping(worker->run)) {
             break;
         }
-        block_t *const block = &level->block[index];
-        const uint32_t first = level->first + (index * BLOCK_NODES);
-        block->count = ((level->end - first) < BLOCK_NODES) ? (level->end - first) : BLOCK_NODES;
-        block->used = 0U;
-        for (uint32_t i = 0U; i < block->count; i++) {
-            ex_key_t key;
-            gathered.used = 0U;
-            gathered.arcs = 0U;
-            const bool is_there = ex_store_fetch(gathered.store, graph->slot[first + i], &key);
-            const ex_found_t found = is_there ? ex_arcs(worker, &key, gather, &gathered) : EX_FAILED;
-            block->is_dead[i] = (found == EX_DEAD) ? 1U : 0U;
-            block->is_late[i] = worker->has_waited ? 1U : 0U;
-            const bool is_known = (found == EX_SOME) || (found == EX_DEAD) || level->is_partial;
-            if (!is_known || !look_up(level, block, &gathered, i)) {
-                atomic_store(&level->is_failed, true);
-                break;
-            }
+        const uint32_t first = level->first + (index * EX_BLOCK_NODES);
+        const uint32_t count = ((level->end - first) < EX_BLOCK_NODES) ? (level->end - first) : EX_BLOCK_NODES;
+        if (!ex_expand(level->expander[worker->index], &level->block[index], first, count)) {
+            atomic_store(&level->is_failed, true);
         }
     }
-    free(gathered.arc);
 }
 
 /* Room for as many arcs more. */
@@ -166,9 +70,9 @@ static bool reserve_arcs(ex_run_t *run, ex_graph_t *graph, uint64_t more)
     return true;
 }
 
-static void number_block(ex_graph_t *graph, const block_t *block, uint32_t first)
+static void number_block(ex_graph_t *graph, const ex_block_t *block, uint32_t first)
 {
-    uint64_t at = 0U;
+    const uint64_t *found = block->arc;
     for (uint32_t i = 0U; i < block->count; i++) {
         const uint32_t node = first + i;
         graph->row[node] = graph->arcs;
@@ -179,69 +83,83 @@ static void number_block(ex_graph_t *graph, const block_t *block, uint32_t first
         if ((graph->late != NULL) && (block->is_late[i] != 0U)) {
             EX_SET_BIT(graph->late, node);
         }
-        for (; (at < block->used) && (block->arc[at].node == i); at++) {
-            const uint64_t slot = block->arc[at].slot;
-            if (graph->number[slot] == 0U) {
-                graph->slot[graph->nodes] = slot;
-                graph->parent[graph->nodes] = node;
-                graph->nodes += 1U;
-                graph->number[slot] = graph->nodes;
+        for (uint32_t k = 0U; k < block->arcs[i]; k++) {
+            const uint64_t target = (*found & ~EX_NUMBERED) >> EX_LABEL_BITS;
+            uint32_t number = (uint32_t)target;
+            if ((*found & EX_NUMBERED) == 0U) {
+                if (graph->number[target] == 0U) {
+                    graph->slot[graph->nodes] = target;
+                    graph->parent[graph->nodes] = node;
+                    graph->nodes += 1U;
+                    graph->number[target] = graph->nodes;
+                }
+                number = graph->number[target];
             }
-            graph->target[graph->arcs] = graph->number[slot] - 1U;
-            graph->label[graph->arcs] = (uint16_t)block->arc[at].label;
+            graph->target[graph->arcs] = number - 1U;
+            graph->label[graph->arcs] = (uint16_t)*found;
             graph->arcs += 1U;
+            found++;
         }
         graph->row[node + 1U] = graph->arcs;
     }
 }
 
-#define LEVEL_BLOCKS 256U
+/* Blocks that are made before their targets get numbers: few, so that what one needs is still near the processor then. */
+#define BLOCKS_OF_THREAD 16U
 
-/* Expands the nodes first .. end - 1, some blocks at a time. */
-static bool expand(ex_run_t *run, level_t *level, uint32_t end)
+/* Expands the nodes of which the numbers are known, or some of them. */
+static bool expand(ex_run_t *run, level_t *level, uint32_t blocks)
 {
-    while (level->first < end) {
-        const uint32_t most = LEVEL_BLOCKS * BLOCK_NODES;
-        level->end = ((end - level->first) < most) ? end : (level->first + most);
-        level->block_count = ((uint64_t)(level->end - level->first) + BLOCK_NODES - 1U) / BLOCK_NODES;
-        atomic_store(&level->next, 0U);
-        if (level->block_count > 1U) {
-            ex_parallel(run, expand_blocks, level);
-        } else {
-            expand_blocks(&run->worker[0], level);
-        }
-        if (atomic_load(&level->is_failed) || ex_is_stopping(run)) {
+    ex_graph_t *const graph = level->graph;
+    const uint32_t most = blocks * EX_BLOCK_NODES;
+    level->end = ((graph->nodes - level->first) < most) ? graph->nodes : (level->first + most);
+    level->block_count = ((level->end - level->first) + EX_BLOCK_NODES - 1U) / EX_BLOCK_NODES;
+    atomic_store(&level->next, 0U);
+    if (level->block_count > 1U) {
+        ex_parallel(run, expand_blocks, level);
+    } else {
+        expand_blocks(&run->worker[0], level);
+    }
+    if (atomic_load(&level->is_failed) || ex_is_stopping(run)) {
+        return false;
+    }
+    for (uint32_t i = 0U; i < level->block_count; i++) {
+        if (!reserve_arcs(run, graph, level->block[i].used)) {
             return false;
         }
-        for (uint64_t i = 0U; i < level->block_count; i++) {
-            if (!reserve_arcs(run, level->graph, level->block[i].used)) {
-                return false;
-            }
-            number_block(level->graph, &level->block[i], level->first + (uint32_t)(i * BLOCK_NODES));
-        }
-        level->first = level->end;
+        number_block(graph, &level->block[i], level->first + (i * EX_BLOCK_NODES));
     }
+    level->first = level->end;
     return true;
 }
 
 static bool build(ex_run_t *run, ex_graph_t *graph)
 {
-    level_t level = { .graph = graph, .is_partial = !graph->is_whole };
+    const uint32_t threads = run->options.threads;
+    const uint32_t blocks = (threads > 1U) ? (threads * BLOCKS_OF_THREAD) : 1U;
+    level_t level = { .graph = graph };
     atomic_init(&level.next, 0U);
     atomic_init(&level.is_failed, false);
-    level.block = calloc(LEVEL_BLOCKS, sizeof *level.block);
+    level.block = calloc(blocks, sizeof *level.block);
     const uint64_t slot = ex_store_find(&run->store, &run->initial, ex_hash(&run->initial));
     bool is_fine = (level.block != NULL) && (slot != EX_NO_SLOT);
+    for (uint32_t i = 0U; i < threads; i++) {
+        level.expander[i] = ex_expander_make(&run->worker[i], graph, !graph->is_whole);
+        is_fine = is_fine && (level.expander[i] != NULL);
+    }
     if (is_fine) {
         graph->slot[0] = slot;
         graph->number[slot] = 1U;
         graph->nodes = 1U;
     }
     while (is_fine && (level.first < graph->nodes)) {
-        is_fine = expand(run, &level, graph->nodes);
+        is_fine = expand(run, &level, blocks);
     }
-    for (uint32_t i = 0U; (level.block != NULL) && (i < LEVEL_BLOCKS); i++) {
+    for (uint32_t i = 0U; (level.block != NULL) && (i < blocks); i++) {
         free(level.block[i].arc);
+    }
+    for (uint32_t i = 0U; i < threads; i++) {
+        ex_expander_free(level.expander[i]);
     }
     free(level.block);
     return is_fine;
@@ -285,6 +203,10 @@ bool ex_graph(ex_run_t *run)
                    ((graph->late != NULL) || !pn_net.timed) && reserve_arcs(run, graph, run->arcs);
     atomic_store(&run->phase, "graph");
     is_fine = is_fine && build(run, graph) && (!is_whole || (graph->nodes == nodes));
+    if (run->options.write_graph == NULL) {
+        ex_free(run, graph->number, ex_store_slots(&run->store) * sizeof *graph->number);
+        graph->number = NULL;
+    }
     graph->is_reduced = run->reduction != NULL;
     if (is_fine && is_whole && !graph->is_reduced) {
         atomic_store(&run->phase, "components");

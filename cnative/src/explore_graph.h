@@ -15,7 +15,7 @@ typedef struct ex_graph {
     uint64_t arcs;
     uint64_t room;         /* arcs that `target` and `label` have room for */
     uint64_t *slot;        /* node -> slot of the store */
-    uint32_t *number;      /* slot -> node + 1; 0: not seen yet */
+    uint32_t *number;      /* slot -> node + 1; 0: not seen yet. NULL: nobody needs it any more */
     uint32_t *parent;      /* node -> the one it was first reached from; the initial marking's own */
     uint64_t *row;         /* nodes + 1 of them */
     uint32_t *target;
