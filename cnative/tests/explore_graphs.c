@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  * explore_graphs.c - components, home, liveness and fairness of small random graphs against their definitions: `explore_graphs SEED COUNT`.
  *
- * Compiled with TRANSITIONS, so many labels. Prints `fine`, or what is wrong.
+ * Compiled with TRANSITIONS, so many labels, and NODES, at most so many. Prints `fine`, or what is wrong.
  */
 #include <inttypes.h>
 #include <stdlib.h>
@@ -10,8 +10,8 @@
 #include "explore_graph.h"
 
 enum {
-    NODES = 14,
-    ARCS = 64
+    ARCS = (2 * NODES) + 6,
+    WORDS = (NODES / 64) + 1
 };
 
 const pn_net_t pn_net = { .transition_count = TRANSITIONS };
@@ -104,40 +104,56 @@ static void make_graph(void)
     }
 }
 
-static bool is_enabled(uint32_t node, uint32_t t)
+typedef uint64_t nodes_t[WORDS];    /* a set */
+typedef nodes_t relation_t[NODES];  /* of each node those that it is related to */
+
+/* Where a transition is enabled. */
+static void find_enabled(nodes_t enabled, uint32_t t)
 {
+    (void)memset(enabled, 0, sizeof(nodes_t));
     for (uint32_t i = 0U; i < s_arcs; i++) {
-        if ((s_arc[i].from == node) && (s_arc[i].label == t)) {
-            return true;
+        if (s_arc[i].label == t) {
+            EX_SET_BIT(enabled, s_arc[i].from);
         }
     }
-    return false;
 }
 
-typedef bool relation_t[NODES][NODES];
+static bool have_common(const nodes_t a, const nodes_t b)
+{
+    uint64_t common = 0U;
+    for (uint32_t w = 0U; w < (uint32_t)WORDS; w++) {
+        common |= a[w] & b[w];
+    }
+    return common != 0U;
+}
 
 /* From where to where there is a way of at least one arc, without a transition, and, if so wished, only where it is enabled. */
 static void find_ways(relation_t way, uint32_t without, bool is_among_enabled)
 {
+    nodes_t enabled;
+    find_enabled(enabled, without);
     (void)memset(way, 0, sizeof(relation_t));
     for (uint32_t i = 0U; i < s_arcs; i++) {
-        const bool is_inside = !is_among_enabled || (is_enabled(s_arc[i].from, without) && is_enabled(s_arc[i].to, without));
-        way[s_arc[i].from][s_arc[i].to] = way[s_arc[i].from][s_arc[i].to] || ((s_arc[i].label != without) && is_inside);
+        const bool is_inside = !is_among_enabled || ((EX_BIT(enabled, s_arc[i].from) & EX_BIT(enabled, s_arc[i].to)) != 0U);
+        if ((s_arc[i].label != without) && is_inside) {
+            EX_SET_BIT(way[s_arc[i].from], s_arc[i].to);
+        }
     }
     for (uint32_t k = 0U; k < s_nodes; k++) {
         for (uint32_t i = 0U; i < s_nodes; i++) {
-            for (uint32_t j = 0U; j < s_nodes; j++) {
-                way[i][j] = way[i][j] || (way[i][k] && way[k][j]);
+            for (uint32_t w = 0U; (EX_BIT(way[i], k) != 0U) && (w < (uint32_t)WORDS); w++) {
+                way[i][w] |= way[k][w];
             }
         }
     }
 }
 
-static bool has_cycle(relation_t way)
+/* Whether there is a cycle through one of those nodes; NULL: through any. */
+static bool has_cycle(relation_t way, const uint64_t *among)
 {
     bool is_found = false;
     for (uint32_t i = 0U; i < s_nodes; i++) {
-        is_found = is_found || way[i][i];
+        is_found = is_found || ((EX_BIT(way[i], i) != 0U) && ((among == NULL) || (EX_BIT(among, i) != 0U)));
     }
     return is_found;
 }
@@ -145,16 +161,17 @@ static bool has_cycle(relation_t way)
 static uint8_t fairness_of(uint32_t t)
 {
     relation_t way;
+    nodes_t enabled;
+    find_enabled(enabled, t);
     find_ways(way, t, false);
-    bool is_fair = true;
-    for (uint32_t i = 0U; i < s_nodes; i++) {
-        is_fair = is_fair && !(way[i][i] && is_enabled(i, t));
-    }
-    if (!has_cycle(way)) {
+    if (!has_cycle(way, NULL)) {
         return (uint8_t)EX_IMPARTIAL;
     }
+    if (!has_cycle(way, enabled)) {
+        return (uint8_t)EX_FAIR;
+    }
     find_ways(way, t, true);
-    return (uint8_t)(is_fair ? EX_FAIR : (!has_cycle(way) ? EX_JUST : EX_UNFAIR));
+    return (uint8_t)(!has_cycle(way, NULL) ? EX_JUST : EX_UNFAIR);
 }
 
 static bool s_is_fine;
@@ -175,34 +192,34 @@ static void check_components(const ex_graph_t *g, relation_t way)
     for (uint32_t i = 0U; i < s_nodes; i++) {
         bool is_home = true;
         for (uint32_t j = 0U; j < s_nodes; j++) {
-            const bool is_one = (i == j) || (way[i][j] && way[j][i]);
-            is_home = is_home && ((i == j) || way[j][i]);
+            const bool there = EX_BIT(way[i], j) != 0U;
+            const bool back = EX_BIT(way[j], i) != 0U;
+            const bool is_one = (i == j) || (there && back);
+            is_home = is_home && ((i == j) || back);
             check((g->component[i] == g->component[j]) == is_one, "components");
-            check(is_one || !way[i][j] || (g->component[i] > g->component[j]), "order of components");
+            check(is_one || !there || (g->component[i] > g->component[j]), "order of components");
         }
         check((g->component[i] == g->home_component) == is_home, "home component");
         home += is_home ? 1U : 0U;
         most = (g->component[i] > most) ? g->component[i] : most;
     }
     for (uint32_t i = 0U; i < s_arcs; i++) {
-        between += ((s_arc[i].from != s_arc[i].to) && !way[s_arc[i].to][s_arc[i].from]) ? 1U : 0U;
+        between += ((s_arc[i].from != s_arc[i].to) && (EX_BIT(way[s_arc[i].to], s_arc[i].from) == 0U)) ? 1U : 0U;
     }
     check(g->components == (most + 1U), "number of components");
     check(g->component_arcs == between, "arcs between components");
     check(g->home_count == home, "home markings");
-    check(g->is_acyclic == !has_cycle(way), "acyclic");
+    check(g->is_acyclic == !has_cycle(way, NULL), "acyclic");
 }
 
 static void check_live(const ex_graph_t *g, relation_t way)
 {
     for (uint32_t t = 0U; t < (uint32_t)TRANSITIONS; t++) {
         bool is_live = true;
+        nodes_t enabled;
+        find_enabled(enabled, t);
         for (uint32_t i = 0U; i < s_nodes; i++) {
-            bool can_come = is_enabled(i, t);
-            for (uint32_t j = 0U; j < s_nodes; j++) {
-                can_come = can_come || (way[i][j] && is_enabled(j, t));
-            }
-            is_live = is_live && can_come;
+            is_live = is_live && ((EX_BIT(enabled, i) != 0U) || have_common(way[i], enabled));
         }
         check(g->is_live[t] == is_live, "live");
     }
@@ -211,7 +228,7 @@ static void check_live(const ex_graph_t *g, relation_t way)
 static void try_graph(ex_run_t *run)
 {
     relation_t way;
-    uint64_t dead[1] = { 0U };
+    nodes_t dead = { 0U };
     ex_graph_t g = { .row = s_row, .target = s_target, .label = s_label, .dead = dead, .is_whole = true, .home_component = EX_NO_NODE };
     make_graph();
     g.nodes = s_nodes;

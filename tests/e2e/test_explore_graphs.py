@@ -14,31 +14,46 @@ from pn2code.resources import cnative_folder
 pytestmark = pytest.mark.cc
 
 PARTS = ("scc", "properties", "fairness", "memory")
-GRAPHS = 1000
-VARIANTS = {
-    "few": ("-DTRANSITIONS=3",),
-    "many": ("-DTRANSITIONS=46", "-DEX_SWEEP_BLOCK=64U", "-DEX_TRIED=1U"),
-    "no-sweeps": ("-DTRANSITIONS=40", "-DEX_LEAST_SWEEPS=1U", "-DEX_MOST_SWEEPS=1U"),
+ADDRESSES = ("-fsanitize=address,undefined", "-fno-sanitize-recover=all")
+THREADS = ("-fsanitize=thread",)
+VARIANTS: dict[str, tuple[int | str, ...]] = {
+    "few": (1500, "-DTRANSITIONS=3", "-DNODES=14", *ADDRESSES),
+    "many": (500, "-DTRANSITIONS=46", "-DNODES=14", "-DEX_TRIED=1U"),
+    "no-sweeps": (
+        500,
+        "-DTRANSITIONS=40",
+        "-DNODES=14",
+        "-DEX_LEAST_SWEEPS=1U",
+        "-DEX_MOST_SWEEPS=1U",
+    ),
+    "threads": (
+        100,
+        "-DTRANSITIONS=3",
+        "-DNODES=200",
+        "-DEX_SWEEP_BLOCK=64U",
+        "-DEX_TRIED=1U",
+        *THREADS,
+    ),
 }
-"""Bits of a node take one, two, four and eight bytes; sweeps do nearly all, or are given up soon."""
+"""Numbers of graphs. Bits of a node take one, two, four and eight bytes; sweeps do nearly all, or are given up soon."""
 
 
 @pytest.mark.parametrize("variant", VARIANTS)
 def test_against_definitions(tmp_path: Path, variant: str) -> None:
+    graphs, *flags = VARIANTS[variant]
     compiler = shutil.which("gcc") or shutil.which("cc")
     assert compiler is not None
     root = cnative_folder()
     sources = [root / "tests" / "explore_graphs.c"]
     sources += [root / "src" / f"explore_{part}.c" for part in PARTS]
     program = tmp_path / "explore_graphs"
-    command = [compiler, *WARNINGS, "-O1", "-pthread", *VARIANTS[variant]]
-    command += ["-fsanitize=address,undefined", "-fno-sanitize-recover=all"]
+    command = [compiler, *WARNINGS, "-O1", "-pthread", *map(str, flags)]
     command += [f"-I{root / 'include'}", f"-I{root / 'src'}", *map(str, sources)]
     done = subprocess.run(
         [*command, "-o", str(program)], capture_output=True, text=True, check=False
     )
     assert done.returncode == 0, done.stderr
     said = subprocess.run(
-        [program, "1", str(GRAPHS)], capture_output=True, text=True, check=False, timeout=120
+        [program, "1", str(graphs)], capture_output=True, text=True, check=False, timeout=120
     )
     assert said.stdout + said.stderr == "fine\n"
