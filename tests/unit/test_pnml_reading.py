@@ -385,6 +385,7 @@ WRONG = [
     ("<html/>", "1: not-pnml: not a PNML net: the root element is `html`"),
     ("<pnml/>", "1: not-pnml: not a PNML net: `pnml` has no `net`"),
     (net(place("p", "", "x")), "4: pnml-element: `x` is no number"),
+    (net(place("p", "", "4000000000")), "4: unsupported-pnml: `4000000000` is too large"),
     (
         net(place("p"), place("p")),
         "5: duplicate-id: place `p` has the id `p`, which is already used",

@@ -396,11 +396,15 @@ class _Reader:
         # Some tools write `Default,5`.
         digits = text.rpartition(",")[2].strip() if text.startswith("Default,") else text
         if not _DIGITS.fullmatch(digits) or int(digits) < least:
+            is_large = digits.isascii() and digits.isdigit() and int(digits[:40]) > 0
             self.d.error(
-                PNML_ELEMENT,
-                f"`{text[:40]}` is no {'positive ' if least else ''}number",
+                UNSUPPORTED_PNML if is_large else PNML_ELEMENT,
+                f"`{text[:40]}` is "
+                + ("too large" if is_large else f"no {'positive ' if least else ''}number"),
                 node.at(replace(base, part=part)),
-                hint="place/transition nets have numbers as markings and weights",
+                hint="numbers of more than nine digits are not supported"
+                if is_large
+                else "place/transition nets have numbers as markings and weights",
             )
             return None
         at = node.source(replace(base, part=part)).origin
