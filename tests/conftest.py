@@ -7,6 +7,10 @@ from pathlib import Path
 
 import pytest
 
+from helpers.compiled import FAST, SANITIZERS, Workshop
+from helpers.session import once
+from pn2code.toolchain import build
+
 ROOT = Path(__file__).resolve().parent.parent
 
 
@@ -23,3 +27,22 @@ def shared() -> Path:
     if not (path / "corpus").is_dir():
         pytest.skip(f"no collection of real nets at {path} (set PN2CODE_SHARED)")
     return path
+
+
+def _workshop(factory: pytest.TempPathFactory, name: str, flags: tuple[str, ...]) -> Workshop:
+    if build.find_compiler() is None:
+        pytest.skip("no C compiler")
+    runtime = once(factory, f"runtime-{name}", lambda folder: Workshop.open(folder, flags))
+    return Workshop.of(runtime, factory.mktemp(name), flags)
+
+
+@pytest.fixture(scope="session")
+def workshop(tmp_path_factory: pytest.TempPathFactory) -> Workshop:
+    """The runtime compiled with sanitizers, once a session; nets in a folder of each worker."""
+    return _workshop(tmp_path_factory, "sanitized", SANITIZERS)
+
+
+@pytest.fixture(scope="session")
+def fast_workshop(tmp_path_factory: pytest.TempPathFactory) -> Workshop:
+    """The same without sanitizers, optimized a little."""
+    return _workshop(tmp_path_factory, "fast", FAST)

@@ -2,24 +2,17 @@
 
 from __future__ import annotations
 
-import fcntl
-import os
 from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
 
 from helpers.explored import Explorers
+from helpers.session import once
 from pn2code import pipeline
 from pn2code.diagnostics import Diagnostics, render
 from pn2code.emission.write import write
 from pn2code.toolchain import build
-
-
-def common_folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """One for all workers of a session."""
-    base = tmp_path_factory.getbasetemp()
-    return base.parent if "PYTEST_XDIST_WORKER" in os.environ else base
 
 
 @pytest.fixture(scope="module")
@@ -38,19 +31,17 @@ def riveting_program(root: Path, tmp_path_factory: pytest.TempPathFactory) -> Pa
     """
     if build.find_compiler() is None:
         pytest.skip("no C compiler")
-    base = common_folder(tmp_path_factory)
-    folder, done = base / "riveting-program", base / "riveting-program.done"
-    with (base / "riveting-program.lock").open("w") as lock, pytest.MonkeyPatch.context() as patch:
-        fcntl.flock(lock, fcntl.LOCK_EX)
-        if not done.exists():
-            d = Diagnostics()
+
+    def make(folder: Path) -> None:
+        d = Diagnostics()
+        with pytest.MonkeyPatch.context() as patch:
             patch.delenv("CFLAGS", raising=False)
             generated = pipeline.generate(root / "examples" / "riveting", d)
             assert generated is not None, render.report(d)
             write(folder, generated.files)
             assert build.build(folder, generated.files, d) is not None, render.report(d)
-            done.touch()
-    return folder
+
+    return once(tmp_path_factory, "riveting-program", make)
 
 
 @pytest.fixture(scope="session")
@@ -58,11 +49,5 @@ def explorers(tmp_path_factory: pytest.TempPathFactory) -> Explorers:
     """The runtime of explorers, compiled once, also when several workers share it; nets in a folder of each."""
     if build.find_compiler() is None:
         pytest.skip("no C compiler")
-    base = common_folder(tmp_path_factory)
-    shared, done = base / "explorer", base / "explorer.done"
-    with (base / "explorer.lock").open("w") as lock:
-        fcntl.flock(lock, fcntl.LOCK_EX)
-        if not done.exists():
-            Explorers.open(shared)
-            done.touch()
-    return Explorers.of(shared, tmp_path_factory.mktemp("explorers"))
+    compiled = once(tmp_path_factory, "explorer", Explorers.open)
+    return Explorers.of(compiled, tmp_path_factory.mktemp("explorers"))

@@ -71,11 +71,10 @@ NET = """
 """
 
 
-def test_compiled_and_token_game_agree(tmp_path: Path) -> None:
+def test_compiled_and_token_game_agree(workshop: Workshop, tmp_path: Path) -> None:
     net = flat(NET)
     ir, d = lowered(net)
     assert ir is not None, [(e.code, e.message, e.origin.describe()) for e in d.errors]
-    workshop = Workshop.open(tmp_path)
     program = workshop.build(ir, tmp_path / "net")
     for seed in (1, 2, 3):
         assert agrees(net, program, seed=seed, steps=10) == 6

@@ -6,7 +6,6 @@ Everything is compiled with all warnings as errors, and runs under the address a
 from __future__ import annotations
 
 import json
-import shutil
 import subprocess
 from pathlib import Path
 
@@ -375,13 +374,6 @@ NETS: dict[str, str] = {
             out "*/ é" : m + b
     """,
 }
-
-
-@pytest.fixture(scope="session")
-def workshop(tmp_path_factory: pytest.TempPathFactory) -> Workshop:
-    if not (shutil.which("gcc") or shutil.which("cc")):
-        pytest.skip("no C compiler")
-    return Workshop.open(tmp_path_factory.mktemp("runtime"))
 
 
 @pytest.mark.parametrize("name", NETS)

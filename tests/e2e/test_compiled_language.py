@@ -6,7 +6,6 @@ with all warnings as errors, run under sanitizers.
 
 from __future__ import annotations
 
-import shutil
 from pathlib import Path
 
 import pytest
@@ -16,13 +15,6 @@ from helpers.ml_programs import INTS, PROGRAMS, net_of
 from helpers.netbuilder import flat
 
 pytestmark = pytest.mark.cc
-
-
-@pytest.fixture(scope="module")
-def workshop(tmp_path_factory: pytest.TempPathFactory) -> Workshop:
-    if shutil.which("gcc") is None and shutil.which("cc") is None:
-        pytest.skip("needs a C compiler")
-    return Workshop.open(tmp_path_factory.mktemp("runtime"))
 
 
 @pytest.mark.parametrize("name", PROGRAMS)

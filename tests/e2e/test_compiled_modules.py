@@ -64,9 +64,9 @@ net Modules
 """
 
 
-def test_compiled_modules(tmp_path: Path) -> None:
+def test_compiled_modules(workshop: Workshop, tmp_path: Path) -> None:
     net = flat(NET)
     compiled, d = lowered(net)
     assert compiled is not None, [x.message for x in d]
-    program = Workshop.open(tmp_path).build(compiled, tmp_path / "net")
+    program = workshop.build(compiled, tmp_path / "net")
     assert agrees(net, program, seed=1, steps=40) == 6

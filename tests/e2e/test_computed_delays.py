@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from helpers.compiled import SANITIZERS, Workshop
+from helpers.compiled import Workshop
 from helpers.netbuilder import write
 from helpers.walks import walk
 
@@ -71,11 +71,6 @@ REAL_CONSTANT = """
         in A : 2`t@++(0.3)
         out A : 1`t@++(1.1)
 """
-
-
-@pytest.fixture(scope="module")
-def workshop(tmp_path_factory: pytest.TempPathFactory) -> Workshop:
-    return Workshop.open(tmp_path_factory.mktemp("delays"), SANITIZERS)
 
 
 @pytest.mark.parametrize("text", [INTEGER, REAL, REAL_CONSTANT], ids=["integer", "real", "thirds"])

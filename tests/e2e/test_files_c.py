@@ -36,11 +36,10 @@ NET = """
 
 
 @pytest.fixture(scope="module")
-def program(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    workshop = Workshop.open(tmp_path_factory.mktemp("files"))
+def program(workshop: Workshop, tmp_path_factory: pytest.TempPathFactory) -> Path:
     ir, d = lowered(flat(NET))
     assert ir is not None, [(e.code, e.message) for e in d.errors]
-    return workshop.build(ir, workshop.folder / "net", "simulate")
+    return workshop.build(ir, tmp_path_factory.mktemp("files"), "simulate")
 
 
 def simulated(program: Path, *options: str) -> tuple[str, list[str]]:

@@ -149,11 +149,10 @@ CASES = list(zip(*[iter(VALUES.strip("\n").splitlines())] * 2, strict=True))
 
 
 @pytest.fixture(scope="module")
-def values(tmp_path_factory: pytest.TempPathFactory) -> dict[str, str]:
+def values(workshop: Workshop) -> dict[str, str]:
     """Expression -> its value, escaped as in ML."""
     places = [f"  place P{i} : STRING = String.toString ({e})" for i, (e, _) in enumerate(CASES)]
     net = flat(DECLARATIONS + "    " + "\n    ".join(places) + "\n")
-    workshop = Workshop.open(tmp_path_factory.mktemp("library"))
     ir, d = lowered(net)
     assert ir is not None, [(e.code, e.message, e.origin.describe()) for e in d.errors]
     [line] = run(workshop.build(ir, workshop.folder / "library"), 1, 0)

@@ -26,12 +26,11 @@ net Library
 EXPRESSIONS = Path(__file__).with_name("library_files.sml.txt").read_text().splitlines()
 
 
-def test_same_values(tmp_path: Path) -> None:
+def test_same_values(workshop: Workshop, tmp_path: Path) -> None:
     places = [f"  place P{i} : STRING = {e}" for i, e in enumerate(EXPRESSIONS)]
     net = flat(DECLARATIONS + "\n".join(places) + "\n")
     compiled, d = lowered(net)
     assert compiled is not None, [(e.code, e.message) for e in d.errors]
-    workshop = Workshop.open(tmp_path)
     program = workshop.build(compiled, tmp_path / "net", "simulate")
     folders = [tmp_path / "one" / "files", tmp_path / "two" / "files"]
     for folder in folders:

@@ -38,9 +38,9 @@ NET = f"""
 """
 
 
-def test_long_chains(tmp_path: Path) -> None:
+def test_long_chains(fast_workshop: Workshop, tmp_path: Path) -> None:
     net = flat(NET)
     ir, d = lowered(net)
     assert ir is not None, [(e.code, e.message) for e in d.errors]
-    program = Workshop.open(tmp_path, ("-O0",)).build(ir, tmp_path / "net")
+    program = fast_workshop.build(ir, tmp_path / "net", "walk", "-O0")
     assert agrees(net, program, seed=1, steps=0) == 0

@@ -9,7 +9,7 @@ from pathlib import Path
 
 import pytest
 
-from helpers.compiled import FAST, Workshop, lowered
+from helpers.compiled import Workshop, lowered
 from helpers.netbuilder import flat
 
 pytestmark = pytest.mark.cc
@@ -44,10 +44,10 @@ STEPS = 300_000
 MEGABYTES = 64
 
 
-def test_a_long_run(tmp_path: Path) -> None:
+def test_a_long_run(fast_workshop: Workshop, tmp_path: Path) -> None:
     net, d = lowered(flat(NET))
     assert net is not None, [(e.code, e.message) for e in d.errors]
-    program = Workshop.open(tmp_path, FAST).build(net, tmp_path / "net", "simulate")
+    program = fast_workshop.build(net, tmp_path / "net", "simulate")
 
     process = subprocess.Popen([str(program), "--steps", str(STEPS), "--trace", "/dev/null"])
     largest = 0
@@ -69,7 +69,7 @@ def resident(pid: int) -> int:
     return int(found[1]) if found and name and name[1] == "simulate" else 0
 
 
-def test_a_value_that_is_too_large_is_an_error(tmp_path: Path) -> None:
+def test_a_value_that_is_too_large_is_an_error(fast_workshop: Workshop, tmp_path: Path) -> None:
     net, _ = lowered(
         flat("""
         net Large
@@ -82,7 +82,7 @@ def test_a_value_that_is_too_large_is_an_error(tmp_path: Path) -> None:
     """)
     )
     assert net is not None
-    program = Workshop.open(tmp_path, FAST).build(net, tmp_path / "net", "simulate")
+    program = fast_workshop.build(net, tmp_path / "net", "simulate")
     done = subprocess.run([str(program)], capture_output=True, text=True, check=False, timeout=60)
     assert done.returncode == 1
     assert "memory for lists and strings is full" in done.stderr

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from helpers.compiled import FAST, Workshop, agrees, lowered
+from helpers.compiled import Workshop, agrees, lowered
 from helpers.netbuilder import flat
 from helpers.odd_corners import CASES, HEAD
 
@@ -26,10 +26,9 @@ def together() -> str:
     return HEAD + textwrap.indent("\n".join(pages), "  ")
 
 
-def test_compiled_nets_agree(tmp_path: Path) -> None:
+def test_compiled_nets_agree(fast_workshop: Workshop, tmp_path: Path) -> None:
     net = flat(together())
-    workshop = Workshop.open(tmp_path, FAST)
     ir, d = lowered(net)
     assert ir is not None, [e.message for e in d.errors]
-    program = workshop.build(ir, tmp_path / "net")
+    program = fast_workshop.build(ir, tmp_path / "net")
     assert agrees(net, program, seed=3, steps=150) > 100

@@ -3,12 +3,11 @@
 from __future__ import annotations
 
 import random
-import shutil
 from pathlib import Path
 
 import pytest
 
-from helpers.compiled import FAST, Workshop, agrees, lowered, run
+from helpers.compiled import Workshop, agrees, lowered, run
 from helpers.netbuilder import flat
 from pn2code.lowering.packing import Packing
 from pn2code.net.flat import FlatNet
@@ -180,14 +179,6 @@ NETS: dict[str, str] = {
 }  # fmt: skip
 
 
-@pytest.fixture(scope="session")
-def fast(tmp_path_factory: pytest.TempPathFactory) -> Workshop:
-    if not (shutil.which("gcc") or shutil.which("cc")):
-        pytest.skip("no C compiler")
-    flags = (*FAST, "-fsanitize=undefined", "-fno-sanitize-recover=all")
-    return Workshop.open(tmp_path_factory.mktemp("packed_runtime"), flags)
-
-
 def _program(net: FlatNet, packing: Packing, workshop: Workshop, folder: Path) -> Path:
     compiled, d = lowered(net, packing=packing)
     assert compiled is not None, [(e.code, e.message) for e in d.errors]
@@ -197,14 +188,14 @@ def _program(net: FlatNet, packing: Packing, workshop: Workshop, folder: Path) -
 
 
 @pytest.mark.parametrize("name", NETS)
-def test_packed_net_and_token_game_agree(name: str, fast: Workshop, tmp_path: Path) -> None:
+def test_packed_net_and_token_game_agree(name: str, workshop: Workshop, tmp_path: Path) -> None:
     net = flat(NETS[name])
     for width in (5, 32) if "sub" in NETS[name] or "mult" in NETS[name] else (32,):
-        program = _program(net, Packing({}, width), fast, tmp_path / str(width))
+        program = _program(net, Packing({}, width), workshop, tmp_path / str(width))
         assert max(agrees(net, program, seed=seed, steps=60) for seed in (1, 2, 3, 4)) > 0
 
 
-def test_a_counter_that_overflows_is_a_full_place(fast: Workshop, tmp_path: Path) -> None:
+def test_a_counter_that_overflows_is_a_full_place(workshop: Workshop, tmp_path: Path) -> None:
     net = flat(
         """
         net Cell
@@ -219,19 +210,19 @@ def test_a_counter_that_overflows_is_a_full_place(fast: Workshop, tmp_path: Path
         """
     )
     packing = Packing({"Top.A": 3, "Top.B": 2, "Top.C": 4})
-    lines = run(_program(net, packing, fast, tmp_path), 1, 20)
+    lines = run(_program(net, packing, workshop, tmp_path), 1, 20)
     assert [line["marking"]["Top.B"] for line in lines[:-1]] == [[], [[2, None]]]
     assert lines[-1]["error"] == "place is full" and "place `B`" in lines[-1]["where"]
     wider = packing.wider("Top.B").wider("Top.B")
     assert wider.of("Top.B") == 8
-    assert len(run(_program(net, wider, fast, tmp_path / "wider"), 1, 20)) == 8
+    assert len(run(_program(net, wider, workshop, tmp_path / "wider"), 1, 20)) == 8
 
 
-def test_random_nets_agree(fast: Workshop, tmp_path: Path) -> None:
+def test_random_nets_agree(workshop: Workshop, tmp_path: Path) -> None:
     rng = random.Random(2024)
     for i in range(4):
         net = flat(_random_net(rng))
-        program = _program(net, Packing({}, 16), fast, tmp_path / str(i))
+        program = _program(net, Packing({}, 16), workshop, tmp_path / str(i))
         for seed in (1, 2):
             agrees(net, program, seed=seed, steps=40)
 

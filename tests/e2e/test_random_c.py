@@ -103,11 +103,6 @@ NETS = {
 }
 
 
-@pytest.fixture(scope="module")
-def workshop(tmp_path_factory: pytest.TempPathFactory) -> Workshop:
-    return Workshop.open(tmp_path_factory.mktemp("random"))
-
-
 @pytest.mark.parametrize("name", NETS)
 def test_same_numbers(name: str, workshop: Workshop, tmp_path: Path) -> None:
     net = flat(NETS[name])

@@ -17,11 +17,8 @@ pytestmark = pytest.mark.cc
 
 
 @pytest.fixture(scope="module")
-def program(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    if not (shutil.which("gcc") or shutil.which("cc")):
-        pytest.skip("no C compiler")
+def program(workshop: Workshop, tmp_path_factory: pytest.TempPathFactory) -> Path:
     folder = tmp_path_factory.mktemp("runtime-tests")
-    workshop = Workshop.open(folder)
     source = cnative_folder() / "tests" / "runtime.c"
     workshop.compile(source, folder / "runtime.o", folder)
     return workshop.link(folder / "runtime", folder / "runtime.o")

@@ -94,11 +94,6 @@ def any_number(chance: random.Random) -> int:
     return number * chance.choice([1, -1])
 
 
-@pytest.fixture(scope="module")
-def workshop(tmp_path_factory: pytest.TempPathFactory) -> Workshop:
-    return Workshop.open(tmp_path_factory.mktemp("runtime"))
-
-
 def test_operations_agree_with_python(tmp_path: Path, workshop: Workshop) -> None:
     chance = random.Random(1)
     cases = [

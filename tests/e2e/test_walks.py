@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from helpers.compiled import FAST, SANITIZERS, Workshop
+from helpers.compiled import Workshop
 from helpers.walks import Walk, nets, walk
 
 pytestmark = pytest.mark.cc
@@ -34,11 +34,9 @@ def assert_agree(results: list[Walk]) -> None:
     assert sum(r.verdict == "agrees" for r in results) > len(results) // 2
 
 
-def test_nets_agree(shared: Path, tmp_path: Path) -> None:
-    workshop = Workshop.open(tmp_path, FAST)
-    assert_agree(walked(shared, workshop, sample(shared, EVERY, 3), 100))
+def test_nets_agree(shared: Path, fast_workshop: Workshop) -> None:
+    assert_agree(walked(shared, fast_workshop, sample(shared, EVERY, 3), 100))
 
 
-def test_nets_agree_with_sanitizers(shared: Path, tmp_path: Path) -> None:
-    workshop = Workshop.open(tmp_path, SANITIZERS)
+def test_nets_agree_with_sanitizers(shared: Path, workshop: Workshop) -> None:
     assert_agree(walked(shared, workshop, sample(shared, EVERY * 3, 5), 30))

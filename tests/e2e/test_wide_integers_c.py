@@ -32,17 +32,16 @@ def of_width(text: str, bits: int) -> FlatNet:
     return replace(net, program=replace(net.program, int_bits=bits))
 
 
-def texts(net: FlatNet, folder: Path) -> dict[str, int]:
+def texts(net: FlatNet, workshop: Workshop, folder: Path) -> dict[str, int]:
     ir, d = lowered(net)
     assert ir is not None, [(e.code, e.message) for e in d.errors]
-    workshop = Workshop.open(folder)
     [line] = run(workshop.build(ir, folder / "net"), 1, 0)
     assert "error" not in line, line
     return {value: n for n, value in line["marking"]["Top.A"]}
 
 
-def test_64_bits(tmp_path: Path) -> None:
-    assert texts(of_width(NET, 64), tmp_path) == {
+def test_64_bits(workshop: Workshop, tmp_path: Path) -> None:
+    assert texts(of_width(NET, 64), workshop, tmp_path) == {
         "1099511627776": 1,
         "Overflow": 1,
         "~1428571429": 1,
@@ -51,12 +50,12 @@ def test_64_bits(tmp_path: Path) -> None:
     }
 
 
-def test_31_bits(tmp_path: Path) -> None:
-    counts = texts(of_width(NET, 31), tmp_path)
+def test_31_bits(workshop: Workshop, tmp_path: Path) -> None:
+    counts = texts(of_width(NET, 31), workshop, tmp_path)
     assert counts == {"Overflow": 5, "1073741823": 1}
 
 
-def test_what_cannot_run_here_is_not_caught(tmp_path: Path) -> None:
+def test_what_cannot_run_here_is_not_caught(workshop: Workshop, tmp_path: Path) -> None:
     net = flat("""
         net Sockets
           standard
@@ -68,6 +67,5 @@ def test_what_cannot_run_here_is_not_caught(tmp_path: Path) -> None:
     """)
     ir, _ = lowered(net)
     assert ir is not None
-    workshop = Workshop.open(tmp_path)
     *_, last = run(workshop.build(ir, tmp_path / "net"), 1, 3)
     assert last["error"].startswith("`ConnManagementLayer.openConnection` is not available here")

@@ -1,4 +1,4 @@
-"""A minute of fuzzing, always the same cases; `make fuzz` goes on for ten."""
+"""Half a minute of fuzzing, always the same cases; `make fuzz` goes on for ten minutes, `make thorough` takes more."""
 
 from __future__ import annotations
 
@@ -12,10 +12,12 @@ sys.path.insert(0, str(Path(__file__).parents[2]))
 from tests.fuzz.__main__ import Worker, fuzz, make
 from tests.fuzz.nets import MIXED, TIMED, bases
 from tests.helpers.netbuilder import cpn
+from tests.helpers.thorough import amount
 
 ROOT = Path(__file__).resolve().parents[2]
 
 NOWHERE = Path("/nonexistent")
+CASES = amount(25, 400)
 
 
 def test_base_nets_are_accepted(tmp_path: Path) -> None:
@@ -45,13 +47,13 @@ def test_a_worker_survives_nothing_silently(tmp_path: Path) -> None:
 
 @pytest.mark.parametrize("first", [0, 1_000, 2_000])
 def test_changed_nets_are_diagnosed(first: int) -> None:
-    outcome = fuzz(bases(ROOT, NOWHERE), range(first, first + 40), seconds=600.0)
-    assert sum(outcome.counts.values()) == 40
+    outcome = fuzz(bases(ROOT, NOWHERE), range(first, first + CASES), seconds=600.0)
+    assert sum(outcome.counts.values()) == CASES
     assert not outcome.failures, "\n\n".join(f"case {f.case}: {f.why}" for f in outcome.failures)
 
 
 def test_changed_nets_of_strangers_are_diagnosed(shared: Path) -> None:
-    outcome = fuzz(bases(ROOT, shared), range(5_000, 5_040), seconds=600.0)
+    outcome = fuzz(bases(ROOT, shared), range(5_000, 5_000 + CASES), seconds=600.0)
     assert not outcome.failures, "\n\n".join(
         f"case {f.case} of {f.base}: {f.why}" for f in outcome.failures
     )

@@ -64,18 +64,25 @@ def lowered(
 
 @dataclass(frozen=True)
 class Workshop:
-    """A folder with the runtime's object files, and the compiler with the flags for all it compiles."""
+    """Folders with the runtime's object files and for nets, and the compiler with the flags for all it compiles."""
 
+    runtime: Path
     folder: Path
     compiler: str
-    flags: tuple[str, ...] = SANITIZERS
+    flags: tuple[str, ...]
+
+    @staticmethod
+    def of(runtime: Path, folder: Path, flags: tuple[str, ...] = SANITIZERS) -> Workshop:
+        """With a runtime that `open` compiled."""
+        compiler = shutil.which("gcc") or shutil.which("cc")
+        assert compiler is not None
+        return Workshop(runtime, folder, compiler, flags)
 
     @staticmethod
     def open(folder: Path, flags: tuple[str, ...] = SANITIZERS) -> Workshop:
         """Compile the runtime, with sanitizers unless other flags are given."""
-        compiler = shutil.which("gcc") or shutil.which("cc")
-        assert compiler is not None
-        workshop = Workshop(folder, compiler, flags)
+        folder.mkdir(parents=True, exist_ok=True)
+        workshop = Workshop.of(folder, folder, flags)
         source = cnative_folder() / "src"
         for name in RUNTIME:
             workshop.compile(source / f"pn_{name}.c", folder / f"pn_{name}.o", folder)
@@ -101,7 +108,7 @@ class Workshop:
 
     def link(self, program: Path, *objects: Path) -> Path:
         """A program of these object files and the runtime."""
-        runtime = [str(self.folder / f"pn_{name}.o") for name in RUNTIME]
+        runtime = [str(self.runtime / f"pn_{name}.o") for name in RUNTIME]
         command = [
             self.compiler,
             *self.flags,
@@ -121,7 +128,7 @@ class Workshop:
         for file in emit(net, "test"):
             (folder / file.path).write_text(file.text)
         self.compile(folder / "net.c", folder / "net.o", folder, *flags)
-        return self.link(folder / host, folder / "net.o", *sorted(self.folder.glob(f"{host}*.o")))
+        return self.link(folder / host, folder / "net.o", *sorted(self.runtime.glob(f"{host}*.o")))
 
 
 def run(

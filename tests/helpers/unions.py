@@ -22,6 +22,7 @@ from helpers.netbuilder import flat as flattened
 from helpers.quotient import aged
 from helpers.random_unions import Union, page_of
 from helpers.table_nets import orbits
+from helpers.thorough import amount
 from pn2code.lowering.packing import choose
 from pn2code.net.flat import FlatNet
 from pn2code.semantics.files import Files
@@ -34,8 +35,8 @@ from pn2code.verify.time_reduction import obstacle
 
 PER_UNION = 50
 """Nets in a union; about forty of them have graphs that are compared."""
-NODES = 100
-ARCS = 400
+NODES = amount(60, 100)
+ARCS = amount(240, 400)
 """Graphs of one net that are larger are left out."""
 WIDTHS = (8, 0, 4, 8, 0)
 """Of the counters of packed places, union by union; 0: no place is packed."""

@@ -5,45 +5,47 @@ Called as a program, it writes `not_compiled.txt` anew: every case that is not r
 
 from __future__ import annotations
 
-import subprocess
 import sys
 import tempfile
+from collections.abc import Sequence
+from dataclasses import replace
 from pathlib import Path
 
 if __name__ == "__main__":
     sys.path.insert(0, str(Path(__file__).parents[1]))
 
-import json
-
-from helpers.compiled import Workshop, lowered
-from helpers.netbuilder import write
-from ml_suite.suite import FOLDER, Case, NotShowable, Session, cases, declarations, topics
-from pn2code.diagnostics import Diagnostics
-from pn2code.net.front import load
+from helpers.compiled import Workshop, lowered, run
+from helpers.netbuilder import flat
+from ml_suite.suite import FOLDER, Case, NotShowable, Session, cases, topics
+from pn2code.ml import core
+from pn2code.ml.types import STRING, UNIT, TFun
+from pn2code.net.flat import FlatNet, Form
 
 FLAGS = ("-O0",)
+NET = 'net Suite\n  standard\n  place P : STRING = 1`""'
 
 
-def outcomes(found: list[Case], workshop: Workshop) -> dict[str, str]:
+def outcomes(found: Sequence[Case], workshop: Workshop, name: str) -> dict[str, str]:
     """Name -> result in compiled code, or what is wrong.
 
     Where something fails as a whole, the cases are divided until it is known which one it is.
     """
     session = Session()
-    texts: dict[str, str] = {}
     results: dict[str, str] = {}
+    good = []
     for case in found:
         try:
-            texts[case.name] = session.define(case)
+            session.define(case)
+            good.append(case)
         except NotShowable as problem:
             results[case.name] = f"refused: {problem}"
-    good = [case for case in found if case.name in texts]
     todo = [good] if good else []
     while todo:
         some = todo.pop()
-        made = _compiled(some, texts, workshop)
-        if isinstance(made, dict):
-            results.update(made)
+        folder = workshop.folder / f"{name}-{some[0].number}-{len(some)}"
+        made = _compiled(net_of(session, some), workshop, folder)
+        if not isinstance(made, str):
+            results |= {case.name: text for case, text in zip(some, made, strict=True)}
         elif len(some) == 1:
             results[some[0].name] = made
         else:
@@ -52,40 +54,41 @@ def outcomes(found: list[Case], workshop: Workshop) -> dict[str, str]:
     return results
 
 
-def _compiled(some: list[Case], texts: dict[str, str], workshop: Workshop) -> dict[str, str] | str:
-    """The results of cases in one net, or what is wrong with it."""
-    with tempfile.TemporaryDirectory(dir=workshop.folder) as name:
-        folder = Path(name)
-        lines = [declarations(), *(texts[case.name] for case in some)]
-        (folder / "cases.sml").write_text("\n".join(lines), encoding="ascii")
-        places = [f"  place P{i} : STRING = {case.function} ()" for i, case in enumerate(some)]
-        text = "\n".join(["net Suite", "  standard", '  use "cases.sml"', *places])
-        d = Diagnostics()
-        net = load(write(text, folder / "suite.cpn"), d)
-        if net is None:
-            return f"not accepted: {d.errors[0].message}"
-        try:
-            ir, d = lowered(net)
-        except Exception as problem:  # a bug of the compiler is a finding of this test
-            return f"the compiler fails: {type(problem).__name__} {problem}"
-        if ir is None:
-            return f"not compiled: {d.errors[0].message}"
-        try:
-            program = workshop.build(ir, folder / "program")
-        except Exception as problem:
-            error = next((x for x in str(problem).splitlines() if "error" in x), str(problem))
-            return f"C compiler: {error}"
-        run = subprocess.run(
-            [str(program), "1", "0"], capture_output=True, text=True, timeout=120, check=False
+def net_of(session: Session, some: Sequence[Case]) -> FlatNet:
+    """Each case is the initial marking of a place."""
+    base = flat(NET)
+    program = session.elaborator.program()
+    [place] = base.places
+    assert place.initial is not None
+    span = place.initial[0].span
+    places = []
+    for i, case in enumerate(some):
+        symbol = program.globals[case.function]
+        function = core.Var(symbol, TFun(UNIT, STRING), span)
+        value = core.Apply(function, core.RecordExp((), UNIT, span), STRING, span)
+        changed = replace(
+            place, index=i, name=f"Top.P{i}", short=f"P{i}", initial=(value, Form.TOKEN)
         )
-        if run.returncode or not run.stdout:
-            return f"the program stops with {run.returncode}: {run.stderr[-200:]}"
-        line = json.loads(run.stdout.splitlines()[0])
-        if "error" in line:
-            return f"the program stops: {line['error']}"
-        names = {p.short: p.name for p in net.places}
-        tokens = [line["marking"][names[f"P{i}"]] for i in range(len(some))]
-        return {case.name: t[0][1] if t else "" for case, t in zip(some, tokens, strict=True)}
+        places.append(changed)
+    return replace(base, program=program, places=tuple(places))
+
+
+def _compiled(net: FlatNet, workshop: Workshop, folder: Path) -> list[str] | str:
+    """The texts in all places, or why there are none."""
+    try:
+        ir, d = lowered(net, capacity={p.name: 1 for p in net.places})
+    except Exception as problem:  # a bug of the compiler is a finding of this test
+        return f"the compiler fails: {type(problem).__name__} {problem}"
+    if ir is None:
+        return f"not compiled: {d.errors[0].message}"
+    try:
+        [line] = run(workshop.build(ir, folder), 1, 0)
+    except AssertionError as problem:
+        error = next((x for x in str(problem).splitlines() if "error" in x), str(problem))
+        return f"C compiler: {error}"
+    if "error" in line:
+        return f"the program stops: {line['error']}"
+    return [line["marking"][p.name][0][1] for p in net.places]
 
 
 def main() -> None:
@@ -96,7 +99,7 @@ def main() -> None:
         workshop = Workshop.open(Path(name), FLAGS)
         for topic in sys.argv[1:] or topics():
             found = cases(topic)
-            results = outcomes(found, workshop)
+            results = outcomes(found, workshop, topic)
             total += len(found)
             for case in found:
                 result = results[case.name]

@@ -21,11 +21,6 @@ RELAXED = settings(
 )
 
 
-@pytest.fixture(scope="module")
-def workshop(tmp_path_factory: pytest.TempPathFactory) -> Workshop:
-    return Workshop.open(tmp_path_factory.mktemp("random_nets"))
-
-
 @given(st.randoms(use_true_random=False))
 @settings(RELAXED, max_examples=40)
 def test_random_nets_are_accepted(r: Random) -> None:

@@ -41,8 +41,8 @@ class Asked:
     properties: m.Properties = m.Properties()
     questions: str = ""
     """of all but those about bindings"""
-    splits: tuple[Split, ...] = ()
-    """nets for those about bindings"""
+    splits: tuple[tuple[Split, str], ...] = ()
+    """nets for those about bindings, each with its questions"""
 
     def __bool__(self) -> bool:
         """Whether anything is asked."""
@@ -87,9 +87,7 @@ def asked(
             hint="write several properties, or join conditions in CPN ML: `{ n = 3 orelse n = 5 }`",
         )
         return Asked(properties)
-    made = Asked(properties, splits=splits)
-    for split in splits:
-        _questions(split.properties, d)
+    made = Asked(properties, splits=tuple((s, _questions(s.properties, d)) for s in splits))
     return replace(made, questions=_questions(made.plain, d))
 
 
@@ -130,7 +128,7 @@ def of_bindings(
     # Reductions that look at binding elements keep nothing that is asked here.
     kept = tuple(r for r in limits.reductions if r is Reduction.TIME)
     given: list[Answer] = []
-    for number, split in enumerate(asked.splits):
+    for number, (split, questions) in enumerate(asked.splits):
         of = {p.name: p for p in asked.properties.properties}
         about = split.properties
         seen: Exploration | None = None
@@ -139,7 +137,7 @@ def of_bindings(
                 wishes,
                 traces=None,
                 stem=f"bindings-{number}",
-                questions=_questions(about, d),
+                questions=questions,
                 predicates=about.predicates,
                 sizes=Sizes.start(split.net, opened.storage),
             )

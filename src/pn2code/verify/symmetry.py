@@ -157,13 +157,16 @@ class _Search:
         self.u = u
         self.index = {(p.place, p.colour): p.index for p in u.places}
         self.elements = frozenset(map(self._key, u.transitions))
-        self.identity = range(len(u.places))
-        self.arcs = sum(len(t.pre) + len(t.post) + 1 for t in u.transitions)
+        self.inside = [{c.resolved for c in _parts(p.colset)} for p in u.net.places]
+        self.around: list[list[int]] = [[] for _ in u.places]
+        """Of each counter, the binding elements that have to do with it."""
+        for n, t in enumerate(u.transitions):
+            for i in {*t.pre, *t.post, *t.inhibitors, *t.resets}:
+                self.around[i].append(n)
         self.work = WORK
 
-    def _key(self, t: UnfoldedTransition, p: Sequence[int] | None = None) -> tuple[object, ...]:
-        if p is None:
-            p = self.identity if hasattr(self, "identity") else range(len(self.u.places))
+    def _key(self, t: UnfoldedTransition, image: Sequence[int] | None = None) -> tuple[object, ...]:
+        p = range(len(self.u.places)) if image is None else image
         return (
             t.transition,
             frozenset((p[i], n) for i, n in t.pre.items()),
@@ -182,19 +185,24 @@ class _Search:
             move = moves.get(c)
             return None if move is None else _at(c, move(position))
 
-        image: list[int] = []
+        has_moving = [not inside.isdisjoint(moves) for inside in self.inside]
+        image = list(range(len(u.places)))
         for p in u.places:
+            if not has_moving[p.place]:
+                continue
             to = self.index.get((p.place, mapped(u.net.places[p.place].colset, p.colour, change)))
             if to is None or u.places[to].initial != p.initial:
                 return None
-            image.append(to)
+            image[p.index] = to
         if self.work < 0:
             return None
-        for n, t in enumerate(u.transitions):
+        # Binding elements whose counters all stay are mapped to themselves.
+        changed = {n for i, to in enumerate(image) if i != to for n in self.around[i]}
+        for n in sorted(changed):
+            t = u.transitions[n]
+            self.work -= len(t.pre) + len(t.post) + 1
             if self._key(t, image) not in self.elements:
-                self.work -= n
                 return None
-        self.work -= self.arcs
         return tuple(image)
 
     # --- proposals -------------------------------------------------------------------------------
