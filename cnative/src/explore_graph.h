@@ -74,7 +74,7 @@ typedef enum ex_cycle {
     EX_CYCLE_UNKNOWN /* no memory, or told to stop */
 } ex_cycle_t;
 
-/* Whether the part has a cycle; with `through` (a bit set) whether it has one that goes through one of these nodes. */
+/* Whether the part has a cycle that goes through one of the nodes of a bit set. */
 ex_cycle_t ex_has_cycle(ex_run_t *run, const ex_graph_t *graph, const ex_part_t *part, const uint64_t *through);
 
 /* --- explore_properties.c --- */

@@ -26,6 +26,10 @@ typedef struct walk {
     uint64_t *is_root;   /* bit set */
     uint64_t waiting;    /* on the stack */
     uint64_t depth;      /* of the way */
+    const uint64_t *through; /* bit set of nodes; NULL: components are sought, else a cycle through one of these */
+    uint32_t *passed;    /* the ranks with which those of them that are on the way were entered, and before them 0 */
+    uint64_t passes;
+    bool is_found;
     uint32_t next;       /* rank */
     uint32_t done;       /* counts down: rank of the next complete component */
     uint64_t steps;
@@ -36,15 +40,16 @@ static uint64_t root_bytes(uint64_t nodes)
     return ((nodes / 64U) + 1U) * sizeof(uint64_t);
 }
 
-static bool walk_open(walk_t *w, ex_run_t *run, const ex_graph_t *graph, const ex_part_t *part)
+static bool walk_open(walk_t *w, ex_run_t *run, const ex_graph_t *graph, const ex_part_t *part, const uint64_t *through)
 {
     const uint64_t n = graph->nodes;
-    *w = (walk_t){ .run = run, .graph = graph, .part = part, .next = CORE_RANK + 1U, .done = COMPLETE_RANK - 1U };
+    *w = (walk_t){ .run = run, .graph = graph, .part = part, .through = through, .next = CORE_RANK + 1U, .done = COMPLETE_RANK - 1U };
     w->rank = ex_alloc(run, n * sizeof *w->rank);
     w->stack = ex_alloc(run, n * sizeof *w->stack);
     w->at = ex_alloc(run, n * sizeof *w->at);
     w->is_root = ex_alloc(run, root_bytes(n));
-    return (w->rank != NULL) && (w->stack != NULL) && (w->at != NULL) && (w->is_root != NULL);
+    w->passed = ex_alloc(run, ((through != NULL) ? (n + 1U) : 1U) * sizeof *w->passed);
+    return (w->rank != NULL) && (w->stack != NULL) && (w->at != NULL) && (w->is_root != NULL) && (w->passed != NULL);
 }
 
 static void walk_close(walk_t *w)
@@ -54,6 +59,7 @@ static void walk_close(walk_t *w)
     ex_free(w->run, w->stack, n * sizeof *w->stack);
     ex_free(w->run, w->at, n * sizeof *w->at);
     ex_free(w->run, w->is_root, root_bytes(n));
+    ex_free(w->run, w->passed, ((w->through != NULL) ? (n + 1U) : 1U) * sizeof *w->passed);
 }
 
 static inline bool is_inside(const walk_t *w, uint32_t node)
@@ -78,6 +84,10 @@ static void enter(walk_t *w, uint32_t node)
 {
     const uint64_t first = w->graph->row[node];
     const uint64_t end = w->graph->row[node + 1U];
+    if ((w->through != NULL) && (EX_BIT(w->through, node) != 0U)) {
+        w->passes += 1U;
+        w->passed[w->passes] = w->next;
+    }
     w->rank[node] = w->next++;
     EX_SET_BIT(w->is_root, node);
     *way(w, w->depth) = node;
@@ -98,6 +108,9 @@ static bool leave(walk_t *w, component_sink_t sink, void *user)
 {
     w->depth -= 1U;
     const uint32_t node = *way(w, w->depth);
+    if ((w->through != NULL) && (EX_BIT(w->through, node) != 0U)) {
+        w->passes -= 1U;
+    }
     if (EX_BIT(w->is_root, node) == 0U) {
         w->stack[w->waiting++] = node;
         if (w->depth > 0U) {
@@ -146,6 +159,8 @@ static void follow(walk_t *w)
             enter(w, target);
             return;
         } else {
+            /* The target reaches the node that was entered with its rank, or one before that on the way. */
+            w->is_found = w->is_found || (w->passed[w->passes] >= w->rank[target]);
             if (w->rank[target] < w->rank[node]) {
                 w->rank[node] = w->rank[target];
                 no_root(w, node);
@@ -170,6 +185,9 @@ static bool walk_all(walk_t *w, component_sink_t sink, void *user)
                 return false;
             }
             const uint32_t node = *way(w, w->depth - 1U);
+            if (w->is_found) {
+                return false;
+            }
             if (w->at[w->depth - 1U] < w->graph->row[node + 1U]) {
                 follow(w);
             } else if (!leave(w, sink, user)) {
@@ -316,7 +334,7 @@ static bool walk_rest(ex_run_t *run, sweep_t *sweep)
     const ex_part_t everything = { .without = EX_NO_NODE };
     ex_graph_t *const g = sweep->graph;
     walk_t w;
-    bool is_fine = walk_open(&w, run, g, &everything);
+    bool is_fine = walk_open(&w, run, g, &everything, NULL);
     for (uint32_t node = 0U; is_fine && (node < g->nodes); node++) {
         if (EX_BIT(sweep->core, node) != 0U) {
             w.rank[node] = CORE_RANK;
@@ -390,28 +408,22 @@ bool ex_components(ex_run_t *run, ex_graph_t *graph)
 
 /* --- cycles -------------------------------------------------------------------------------------------------------- */
 
-typedef struct cycle_search {
-    const uint64_t *through;
-    bool is_found;
-} cycle_search_t;
-
-static bool look_at_component(void *user, const uint32_t *member, uint64_t count, bool is_cyclic)
+static bool pass_over(void *user, const uint32_t *member, uint64_t count, bool is_cyclic)
 {
-    cycle_search_t *const search = user;
-    for (uint64_t i = 0U; is_cyclic && !search->is_found && (i < count); i++) {
-        search->is_found = (search->through == NULL) || (EX_BIT(search->through, member[i]) != 0U);
-    }
-    return !search->is_found;
+    (void)user;
+    (void)member;
+    (void)count;
+    (void)is_cyclic;
+    return true;
 }
 
 ex_cycle_t ex_has_cycle(ex_run_t *run, const ex_graph_t *graph, const ex_part_t *part, const uint64_t *through)
 {
-    cycle_search_t search = { .through = through };
     walk_t w;
-    const bool has_memory = walk_open(&w, run, graph, part);
-    const bool is_done = has_memory && walk_all(&w, look_at_component, &search);
+    const bool has_memory = walk_open(&w, run, graph, part, through);
+    const bool is_done = has_memory && walk_all(&w, pass_over, NULL);
     walk_close(&w);
-    if (search.is_found) {
+    if (w.is_found) {
         return EX_CYCLE;
     }
     return is_done ? EX_NO_CYCLE : EX_CYCLE_UNKNOWN;
