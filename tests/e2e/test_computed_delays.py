@@ -77,7 +77,7 @@ REAL_CONSTANT = """
 def test_walks_agree(workshop: Workshop, tmp_path: Path, text: str) -> None:
     path = write(text, tmp_path / "net.cpn")
     name = text.split()[1]
-    result = walk(path, name, workshop, steps=300, seed=3, seconds=8.0)
+    result = walk(path, name, workshop, steps=300, seed=3, seconds=60.0)
     assert (result.verdict, result.end) == ("agrees", "steps"), result
 
 
@@ -91,5 +91,5 @@ def test_an_exception_in_a_delay_is_one_of_the_net(workshop: Workshop, tmp_path:
           trans Go
             in A : t@+(7 div t)
     """
-    result = walk(write(text, tmp_path / "net.cpn"), "Wrong", workshop, steps=5, seconds=5.0)
+    result = walk(write(text, tmp_path / "net.cpn"), "Wrong", workshop, steps=5, seconds=60.0)
     assert (result.verdict, result.end) == ("agrees", "error"), result

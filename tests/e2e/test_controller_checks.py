@@ -425,7 +425,17 @@ def test_generate_refuses_a_supervisor_that_fails(tmp_path: Path) -> None:
     generated = pipeline.generate(tmp_path / "cell", d, checked=False)
     assert generated is not None and not d.items, render.report(d)
     (text,) = [f.text for f in generated.files if f.path == "cell_config.c"]
-    assert " * Not checked: it was generated with --unchecked." in text
+    head = text[text.index(" * Not checked") :].splitlines()
+    assert head[0] == " * Not checked, since it was generated with --unchecked (docs/execution.md):"
+    assert [line.partition(";")[0].partition(" (")[0] for line in head[1:7]] == [
+        " * finite-response: unchecked",
+        " * bounded-response: unchecked",
+        " * confluence: unchecked",
+        " * non-blocking: unchecked",
+        " * channels: unchecked",
+        " * ownership: yes",
+    ]
+    assert " * channels: unchecked (no channel ever holds two messages)" in head
 
     runner = CliRunner()
     arguments = ["verify", str(tmp_path / "cell"), "--json", "--no-medium"]

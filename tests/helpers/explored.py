@@ -170,7 +170,10 @@ class Explorers:
         found = [word for word in ("Sanitizer", "runtime error") if word in done.stderr]
         assert not found, done.stderr[-5000:]
         assert done.stdout, f"code {done.returncode}: {done.stderr[-3000:]}"
-        lines = graph.read_text(encoding="utf-8").splitlines() if graph.exists() else []
+        text = graph.read_text(encoding="utf-8") if graph.exists() else ""
+        lines = (
+            text.rstrip("\n").split("\n") if text else []
+        )  # in strings there are other line ends
         return Explored(json.loads(done.stdout), done.returncode, lines=tuple(lines))
 
 

@@ -31,7 +31,7 @@ from pn2code.verify.reasons import clause
 MOST_STATES = 1_000_000
 MOST_SECONDS = 30.0
 """A supervisor of a larger space is generated with a warning; `verify` takes as long as it takes."""
-UNCHECKED = "Not checked: it was generated with --unchecked."
+UNCHECKED = "Not checked, since it was generated with --unchecked (docs/execution.md):"
 
 
 @dataclass(frozen=True, slots=True)
@@ -72,7 +72,7 @@ def prove(
         found = rooms.rooms(partition, declared, structural, None)
         if config is None:
             rooms.warn_assumed(net, found, d)
-        return Proofs(found, (UNCHECKED,) if config else (), None)
+        return Proofs(found, tuple(_not_asked(partition)) if config else (), None)
     plan = Plan(storage=storage, order_decides=config.supervisor.order_decides)
     looked = _look(partition, plan, structure, d)
     if looked is None:
@@ -197,12 +197,26 @@ def _warn_open(looked: Control, config: CellConfig, d: Diagnostics) -> None:
     )
 
 
+def _not_asked(partition: Partition) -> Iterator[str]:
+    """What nothing is known of, and what is seen without exploring."""
+    yield UNCHECKED
+    for check in control.not_looked("", partition).checks:
+        yield (
+            f"  {check.name}: unchecked ({control.MEANINGS[check.name]})"
+            if check.answer == "unknown"
+            else _verdict(check)
+        )
+
+
 def _verdicts(looked: Control) -> Iterator[str]:
     if looked.open:
         yield "Not checked completely (docs/execution.md):"
     else:
         assert looked.found is not None
         yield f"Checked in all {looked.found.nodes:,} markings of the closed net (docs/execution.md):"
-    for check in looked.checks:
-        answer = {"unknown": "unchecked"}.get(check.answer, check.answer)
-        yield f"  {check.name}: {answer}; {check.says}"
+    yield from map(_verdict, looked.checks)
+
+
+def _verdict(check: Check) -> str:
+    answer = {"unknown": "unchecked"}.get(check.answer, check.answer)
+    return f"  {check.name}: {answer}; {check.says}"
