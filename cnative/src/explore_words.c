@@ -10,7 +10,7 @@
 #include "pn/pn_arena.h"
 
 enum {
-    FOUND = 256,
+    FOUND = EX_BATCH,
     RECENT = 1 << 15, /* a power of two: as many as a cache near the processor holds */
     BATCH = EX_BATCH,
     LATE = 24         /* of a batch that stay until the next time: their lines are still on the way */
@@ -27,7 +27,7 @@ typedef struct ex_words {
     uint64_t drained;   /* words that were taken out of `made` before */
     bool is_stopped;
     uint32_t pending;
-    late_t batch[BATCH];
+    late_t batch[BATCH + FOUND]; /* as many as a batch, and what was made until that was seen */
     uint64_t word[FOUND];
     uint64_t recent[RECENT]; /* words + 1 that are in the store, or in the batch; 0: none */
 } ex_words_t;
@@ -90,8 +90,43 @@ static bool insert_carefully(ex_worker_t *worker, uint32_t count)
     return true;
 }
 
+/* The first of the batch, with nobody else at it: without a branch on what is new. Gives how many are done: fewer than `count` when a
+ * line is full, or the chunk. */
+static uint32_t insert_alone(ex_worker_t *worker, uint32_t count, uint64_t *found)
+{
+    ex_words_t *const own = worker->search->words;
+    ex_search_t *const search = worker->search;
+    const ex_store_t *const store = &worker->run->store;
+    uint64_t *const lines = (uint64_t *)(void *)store->bucket;
+    ex_chunk_t *const out = search->out;
+    if ((out == NULL) || worker->run->options.is_depth_first) {
+        return 0U;
+    }
+    const uint32_t before = out->count;
+    uint32_t room = search->level->capacity - before;
+    uint32_t done = 0U;
+    for (; (done < count) && (room > 0U); done++) {
+        const late_t late = own->batch[done];
+        uint64_t *const line = &lines[ex_scaled(late.hash, store->buckets) * EX_LINE_WORDS];
+        const ex_line_view_t view = ex_line_look(line, late.word + 1U);
+        const uint32_t either = view.same | view.vacant;
+        if (either == 0U) {
+            break;
+        }
+        /* Words of a line are taken from the first on: the word itself comes before any that is free. */
+        line[(uint32_t)__builtin_ctz(either)] = late.word + 1U;
+        const ex_key_t key = { late.word, 0U };
+        ex_chunk_put(search->level, out, &key, 0U);
+        const uint32_t known = (view.same != 0U) ? 1U : 0U;
+        out->count -= known;
+        room -= 1U - known;
+    }
+    *found += out->count - before;
+    return done;
+}
+
 /* Inserts all of the batch but the last `kept` ones. */
-static bool insert(ex_worker_t *worker, uint32_t kept)
+static EX_APART bool insert(ex_worker_t *worker, uint32_t kept)
 {
     ex_words_t *const own = worker->search->words;
     if (!ex_batch_begin(worker)) {
@@ -103,6 +138,9 @@ static bool insert(ex_worker_t *worker, uint32_t kept)
     uint64_t found = 0U;
     bool goes_on = true;
     if (!ex_is_near_limit(worker->run)) {
+        if (worker->run->options.threads == 1U) {
+            done = insert_alone(worker, count, &found);
+        }
         for (; goes_on && (done < count); done++) {
             const late_t *late = &own->batch[done];
             const ex_key_t key = { late->word, 0U };
@@ -132,36 +170,37 @@ bool ex_words_flush(ex_worker_t *worker)
     return insert(worker, 0U);
 }
 
-/* Takes the words that have been made: those that were met a short while ago are passed over, of the others the lines of the store are
- * sent for. */
+/* Takes the words that have been made: those that were met a short while ago are passed over (whether that is so nobody can foretell:
+ * there is no branch on it), of the others the lines of the store are sent for. */
 static bool drain(pn_words_t *made)
 {
     ex_words_t *const own = made->user;
     const ex_store_t *store = &own->worker->run->store;
-    uint32_t pending = own->pending;
+    const uint32_t before = own->pending;
+    uint32_t pending = before;
+    uint64_t hashes[FOUND];
+    for (uint32_t i = 0U; i < made->count; i++) {
+        hashes[i] = ex_word_hash(made->word[i]);
+        __builtin_prefetch(&own->recent[hashes[i] % (uint64_t)RECENT], 1, 3);
+    }
     for (uint32_t i = 0U; i < made->count; i++) {
         const uint64_t word = made->word[i];
-        const uint64_t hash = ex_word_hash(word);
+        const uint64_t hash = hashes[i];
         uint64_t *const recent = &own->recent[hash % (uint64_t)RECENT];
-        if (*recent == (word + 1U)) {
-            continue;
-        }
-        *recent = word + 1U;
         own->batch[pending] = (late_t){ .word = word, .hash = hash };
-        ex_store_prefetch(store, hash);
-        pending++;
-        if (pending == (uint32_t)BATCH) {
-            own->pending = pending;
-            if (!insert(own->worker, (uint32_t)LATE)) {
-                own->is_stopped = true;
-                return false;
-            }
-            pending = own->pending;
-        }
+        pending += (*recent != (word + 1U)) ? 1U : 0U;
+        *recent = word + 1U;
+    }
+    for (uint32_t i = before; i < pending; i++) {
+        ex_store_prefetch(store, own->batch[i].hash);
     }
     own->pending = pending;
     own->drained += made->count;
     made->count = 0U;
+    if ((pending >= (uint32_t)BATCH) && !insert(own->worker, (uint32_t)LATE)) {
+        own->is_stopped = true;
+        return false;
+    }
     return true;
 }
 
