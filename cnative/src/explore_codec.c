@@ -123,8 +123,9 @@ static inline void lanes_of(const ex_node_t *node, const uint32_t *cell, uint64_
 static bool number_lanes(ex_worker_t *worker, uint32_t table, const uint64_t lane[EX_TUPLE_LANES], uint32_t *number)
 {
     ex_codec_t *codec = worker->run->codec;
+    const uint64_t hash = ex_tuple_hash(lane, codec->tuples[table].lanes);
     for (;;) {
-        *number = ex_tuples_number(&codec->tuples[table], lane);
+        *number = ex_tuples_number(&codec->tuples[table], lane, hash);
         if (*number != EX_NO_NUMBER) {
             return true;
         }
@@ -431,12 +432,13 @@ bool ex_cells_key(ex_codec_t *codec, uint32_t *cell, ex_key_t *key)
         ex_tuples_t *tuples = &codec->tuples[codec->node[n].table];
         uint64_t lane[EX_TUPLE_LANES];
         lanes_of(&codec->node[n], cell, lane);
-        uint32_t number = ex_tuples_number(tuples, lane);
+        const uint64_t hash = ex_tuple_hash(lane, tuples->lanes);
+        uint32_t number = ex_tuples_number(tuples, lane, hash);
         while (number == EX_NO_NUMBER) {
             if (!ex_tuples_grow(tuples)) {
                 return false;
             }
-            number = ex_tuples_number(tuples, lane);
+            number = ex_tuples_number(tuples, lane, hash);
         }
         cell[codec->words + n] = number;
     }

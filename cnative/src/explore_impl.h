@@ -335,6 +335,8 @@ ex_found_t ex_arcs(struct ex_worker *worker, const ex_key_t *key, ex_times_sink_
 
 /* As ex_arc_sink_t, with the marking that follows. */
 typedef bool (*ex_marking_sink_t)(void *user, uint32_t transition, const void *binding, const void *next);
+/* As ex_successors, of worker->marking, where nothing is reduced and there is no time. */
+ex_found_t ex_next_markings(struct ex_worker *worker, ex_marking_sink_t sink, void *user);
 /* All binding elements that are enabled in worker->marking now, whatever the reductions. */
 ex_found_t ex_all_successors(struct ex_worker *worker, ex_marking_sink_t sink, void *user);
 
@@ -395,6 +397,19 @@ static inline uint64_t ex_hash(const ex_key_t *key)
     return (uint64_t)second ^ (uint64_t)(second >> 64U);
 }
 
+/* Of a tuple of `lanes` lanes. */
+static inline uint64_t ex_tuple_hash(const uint64_t *lane, uint32_t lanes)
+{
+    ex_key_t key = { lane[0], (lanes > 1U) ? lane[1] : 0U };
+    if (lanes > 2U) {
+        const uint64_t last = (lanes > 3U) ? lane[3] : 0U;
+        const ex_wide_t more = (ex_wide_t)(lane[2] ^ 0x8ebc6af09c88c6e3U) * (last ^ 0x589965cc75374cc3U);
+        key.low ^= (uint64_t)more;
+        key.high += (uint64_t)(more >> 64U) ^ lane[2];
+    }
+    return ex_hash(&key);
+}
+
 /* A hash, scaled to 0 .. count - 1; in the same order. */
 static inline uint64_t ex_scaled(uint64_t hash, uint64_t count)
 {
@@ -404,6 +419,21 @@ static inline uint64_t ex_scaled(uint64_t hash, uint64_t count)
 static inline void ex_store_prefetch(const ex_store_t *store, uint64_t hash)
 {
     __builtin_prefetch(&store->bucket[ex_scaled(hash, store->buckets) * 64U], 1, 3);
+}
+
+/* For ex_tuples_number: its entry in the index is sent for; then, if it seems to be one, the tuple itself. */
+static inline void ex_tuples_prefetch(const ex_tuples_t *tuples, uint64_t hash)
+{
+    __builtin_prefetch((const void *)&tuples->index.entry[ex_scaled(hash, tuples->index.entries)], 0, 3);
+}
+
+static inline void ex_tuples_send(const ex_tuples_t *tuples, uint64_t hash)
+{
+    const ex_index_t *const index = &tuples->index;
+    const uint64_t entry = atomic_load_explicit(&index->entry[ex_scaled(hash, index->entries)], memory_order_relaxed);
+    if ((uint32_t)(entry >> 32U) == (uint32_t)hash) {
+        __builtin_prefetch(&tuples->lane[((uint64_t)(uint32_t)entry - 1U) * tuples->lanes], 0, 3);
+    }
 }
 
 /* `hash` is ex_hash of the key. Threads may insert at the same time. `slot`: where it is, NULL if that is of no interest. */

@@ -28,18 +28,6 @@ static uint64_t home(const ex_index_t *index, uint64_t hash)
     return ex_scaled(hash, index->entries);
 }
 
-static inline uint64_t tuple_hash(const uint64_t *lane, uint32_t lanes)
-{
-    ex_key_t key = { lane[0], (lanes > 1U) ? lane[1] : 0U };
-    if (lanes > 2U) {
-        const uint64_t last = (lanes > 3U) ? lane[3] : 0U;
-        const ex_wide_t more = (ex_wide_t)(lane[2] ^ 0x8ebc6af09c88c6e3U) * (last ^ 0x589965cc75374cc3U);
-        key.low ^= (uint64_t)more;
-        key.high += (uint64_t)(more >> 64U) ^ lane[2];
-    }
-    return ex_hash(&key);
-}
-
 static inline uint64_t load_8(const unsigned char *byte)
 {
     uint64_t word;
@@ -225,10 +213,9 @@ static inline bool is_tuple(const ex_tuples_t *tuples, uint64_t number, const ui
     return difference == 0U;
 }
 
-uint32_t ex_tuples_number(ex_tuples_t *tuples, const uint64_t lane[EX_TUPLE_LANES])
+uint32_t ex_tuples_number(ex_tuples_t *tuples, const uint64_t lane[EX_TUPLE_LANES], uint64_t hash)
 {
     ex_index_t *index = &tuples->index;
-    const uint64_t hash = tuple_hash(lane, tuples->lanes);
     const uint32_t wanted = (uint32_t)hash;
     uint64_t number = UINT64_MAX;
     uint64_t at = home(index, hash);
@@ -270,7 +257,7 @@ static void enter_tuples(void *user, uint32_t part)
     for (uint64_t at = part_first(move, part); at < end; at++) {
         uint64_t number;
         if (old_number(move->old, at, &number)) {
-            index_put(move->index, tuple_hash(&tuples->lane[number * tuples->lanes], tuples->lanes), number);
+            index_put(move->index, ex_tuple_hash(&tuples->lane[number * tuples->lanes], tuples->lanes), number);
         }
     }
 }

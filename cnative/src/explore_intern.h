@@ -52,8 +52,8 @@ typedef struct ex_bytes {
 bool ex_tuples_make(ex_tuples_t *tuples, struct ex_run *run, uint32_t words);
 void ex_tuples_free(ex_tuples_t *tuples);
 bool ex_bytes_make(ex_bytes_t *bytes, struct ex_run *run);
-/* The number; EX_NO_NUMBER: it has to grow first. What is behind the last word is 0. */
-uint32_t ex_tuples_number(ex_tuples_t *tuples, const uint64_t lane[EX_TUPLE_LANES]);
+/* The number; EX_NO_NUMBER: it has to grow first. What is behind the last word is 0. `hash`: ex_tuple_hash. */
+uint32_t ex_tuples_number(ex_tuples_t *tuples, const uint64_t lane[EX_TUPLE_LANES], uint64_t hash);
 uint32_t ex_bytes_number(ex_bytes_t *bytes, uint32_t place, const unsigned char *byte, uint32_t length);
 /* Makes room if need be; false when there is no memory. */
 bool ex_tuples_grow(ex_tuples_t *tuples);

@@ -115,21 +115,22 @@ static bool flush(ex_worker_t *worker)
     return goes_on && !ex_is_stopping(run);
 }
 
-static bool on_arc(void *user, uint32_t transition, uint32_t times, const ex_key_t *found)
+/* The same, and what has not come into the batch yet. */
+static bool flush_all(ex_worker_t *worker)
 {
-    ex_worker_t *worker = user;
+    return ((worker->search->flat == NULL) || ex_flat_finish(worker)) && flush(worker);
+}
+
+bool ex_take(ex_worker_t *worker, const ex_key_t *found, uint64_t hash)
+{
     ex_search_t *own = worker->search;
     const ex_key_t key = { ex_alone(found->low), ex_alone(found->high) };
-    const uint64_t hash = ex_hash(&key);
     ex_key_t *recent = &own->recent[hash % (uint64_t)EX_RECENT];
-    worker->fired[transition] += times;
-    worker->arcs += times;
-    if ((((recent->low ^ key.low) | (recent->high ^ key.high)) == 0U) && ((key.low | key.high) != 0U)) {
-        return true;
-    }
+    ex_pending_t *pending = &own->batch[own->pending];
+    const bool is_other = (((recent->low ^ key.low) | (recent->high ^ key.high)) != 0U);
+    const bool is_zero = (key.low | key.high) == 0U;
     recent->low = key.low;
     recent->high = key.high;
-    ex_pending_t *pending = &own->batch[own->pending];
     pending->key.low = key.low;
     pending->key.high = key.high;
     pending->stored.low = key.low;
@@ -140,8 +141,18 @@ static bool on_arc(void *user, uint32_t transition, uint32_t times, const ex_key
     } else {
         shorten(worker->run, pending);
     }
-    own->pending++;
+    /* Nobody can foretell it: there is no branch on it. */
+    own->pending += (uint32_t)is_other | (uint32_t)is_zero;
     return (own->pending < (uint32_t)EX_BATCH) || flush(worker);
+}
+
+static bool on_arc(void *user, uint32_t transition, uint32_t times, const ex_key_t *found)
+{
+    ex_worker_t *worker = user;
+    worker->fired[transition] += times;
+    worker->arcs += times;
+    const ex_key_t key = { ex_alone(found->low), ex_alone(found->high) };
+    return ex_take(worker, &key, ex_hash(&key));
 }
 
 /* --- the loop -------------------------------------------------------------------------------------------------------- */
@@ -178,7 +189,14 @@ void ex_progress(ex_run_t *run, ex_progress_t *progress)
 /* False when the run stops. */
 static bool expand(ex_worker_t *worker, const ex_key_t *key)
 {
-    const ex_found_t found = (worker->search->words != NULL) ? ex_words_successors(worker, key->low) : ex_arcs(worker, key, on_arc, worker);
+    ex_found_t found;
+    if (worker->search->words != NULL) {
+        found = ex_words_successors(worker, key->low);
+    } else if (ex_flat_is_ready(worker)) {
+        found = ex_flat_successors(worker, key);
+    } else {
+        found = ex_arcs(worker, key, on_arc, worker);
+    }
     switch (found) {
     case EX_SOME:
         break;
@@ -261,6 +279,7 @@ static void lay_again(ex_run_t *run)
     }
     for (uint32_t i = 0U; i < run->options.threads; i++) {
         ex_unload(&run->worker[i]);
+        ex_flat_lay(&run->worker[i]);
         (void)memset(run->worker[i].search->recent, 0, sizeof run->worker[i].search->recent);
     }
 }
@@ -337,7 +356,7 @@ static bool expand_chunk(ex_worker_t *worker, ex_chunk_t *chunk)
     if (goes_on) {
         own->expanding = NULL;
     }
-    return goes_on && flush(worker);
+    return goes_on && flush_all(worker);
 }
 
 /* Depth first: the top of the stack, until it is empty. */
@@ -358,7 +377,7 @@ static bool expand_stack(ex_worker_t *worker)
         }
         own->out->count--;
         own->depth = ex_chunk_get(search, own->out, own->out->count, &key) + 1U;
-        if (!expand(worker, &key) || !flush(worker)) {
+        if (!expand(worker, &key) || !flush_all(worker)) {
             return false;
         }
     }
@@ -426,6 +445,9 @@ static bool begin(ex_run_t *run, ex_level_t *search)
     ex_reduce_time(first);
     if (!ex_encode(first, first->marking, &run->initial)) {
         return false;
+    }
+    for (uint32_t i = 0U; i < run->options.threads; i++) {
+        ex_flat_lay(&run->worker[i]);
     }
     uint32_t width[EX_KEY_WORDS] = { 32U, 32U, 0U, 0U };
     const uint32_t length = run->codec->roots * (uint32_t)sizeof(uint32_t);
@@ -520,7 +542,7 @@ bool ex_explore(ex_run_t *run)
         }
         run->worker[i].search->level = search;
         run->worker[i].search->is_exact = !run->options.is_bitstate && !run->options.is_hashed;
-        if (!ex_words_make(&run->worker[i]) || !ex_local_make(&run->worker[i])) {
+        if (!ex_words_make(&run->worker[i]) || !ex_local_make(&run->worker[i]) || !ex_flat_make(&run->worker[i])) {
             ex_stop(run, EX_MEMORY);
             return false;
         }

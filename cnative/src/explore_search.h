@@ -55,6 +55,7 @@ typedef struct ex_search {
     uint32_t pending;
     bool is_exact;
     struct ex_words *words; /* of explore_words.c; NULL: states are not made that way */
+    struct ex_flat *flat;   /* of explore_flat.c; the same */
     uint64_t depth;     /* of the successors */
     uint64_t deepest;
     uint64_t reported_arcs;
@@ -81,6 +82,27 @@ bool ex_add_new(ex_search_t *own, const ex_key_t *key);
 bool ex_batch_begin(ex_worker_t *worker);
 /* Whether it may be that there are as many states as there may be before the batch is inserted. */
 bool ex_is_near_limit(const ex_run_t *run);
+
+/* A key that has been found, into the batch. False when the run stops. */
+bool ex_take(ex_worker_t *worker, const ex_key_t *key, uint64_t hash);
+/* A little before that. */
+static inline void ex_take_soon(const ex_search_t *own, uint64_t hash)
+{
+    __builtin_prefetch(&own->recent[hash % (uint64_t)EX_RECENT], 1, 3);
+}
+
+/* --- explore_flat.c ------------------------------------------------------------------------------------------------ */
+
+/* Where it is possible. False: no memory. */
+bool ex_flat_make(ex_worker_t *worker);
+/* When the codec has other parts of keys than before. */
+void ex_flat_lay(ex_worker_t *worker);
+/* Whether keys are such that states are made that way. */
+bool ex_flat_is_ready(const ex_worker_t *worker);
+/* As ex_successors, with the search for a sink; some successors stay until ex_flat_finish. */
+ex_found_t ex_flat_successors(ex_worker_t *worker, const ex_key_t *key);
+/* Gives the search all that has stayed. False when the run stops. */
+bool ex_flat_finish(ex_worker_t *worker);
 
 /* --- explore_words.c ----------------------------------------------------------------------------------------------- */
 

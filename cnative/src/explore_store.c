@@ -215,9 +215,19 @@ static uint64_t after(const ex_store_t *store, uint64_t b)
 
 static void read_key(const ex_store_t *store, const unsigned char *at, ex_key_t *key)
 {
-    uint64_t word[2] = { 0U, 0U };
-    (void)memcpy(word, at, store->length);
-    unpack(store, ((ex_wide_t)word[1] << 64U) | word[0], key);
+    if (store->length >= 8U) {
+        uint64_t first;
+        uint64_t last;
+        (void)memcpy(&first, at, sizeof first);
+        (void)memcpy(&last, &at[store->length - sizeof last], sizeof last);
+        unpack(store, ((ex_wide_t)last << ((store->length - sizeof last) * 8U)) | first, key);
+    } else {
+        uint32_t first;
+        uint32_t last;
+        (void)memcpy(&first, at, sizeof first);
+        (void)memcpy(&last, &at[store->length - sizeof last], sizeof last);
+        unpack(store, ((uint64_t)last << ((store->length - sizeof last) * 8U)) | first, key);
+    }
 }
 
 bool ex_store_fetch(const ex_store_t *store, uint64_t slot, ex_key_t *key)
@@ -324,12 +334,12 @@ static bool put(ex_store_t *store, const ex_key_t *key)
     uint64_t b = ex_scaled(hash, store->buckets);
     for (uint64_t probes = 0U; probes < store->buckets; probes++) {
         unsigned char *bucket = &store->bucket[b * (uint64_t)LINE];
-        for (uint32_t i = 0U; i < store->slots; i++) {
-            if (bucket[i] == (unsigned char)FREE) {
-                write_key(&bucket[store->slots + (i * store->length)], &probe);
-                bucket[i] = tag_of(hash);
-                return true;
-            }
+        const uint32_t vacant = look(bucket, 0U, store->slots).vacant;
+        if (vacant != 0U) {
+            const uint32_t i = (uint32_t)__builtin_ctz(vacant);
+            write_key(&bucket[store->slots + (i * store->length)], &probe);
+            bucket[i] = tag_of(hash);
+            return true;
         }
         b = after(store, b);
     }

@@ -323,6 +323,12 @@ ex_found_t ex_arcs(ex_worker_t *worker, const ex_key_t *key, ex_times_sink_t sin
     return (is_local ? ex_open(worker, key) : ex_load(worker, key)) ? hunt_state(&hunt) : EX_FAILED;
 }
 
+ex_found_t ex_next_markings(struct ex_worker *worker, ex_marking_sink_t sink, void *user)
+{
+    hunt_t hunt = { .worker = worker, .all = sink, .user = user, .on_next = on_successor };
+    return hunt_state(&hunt);
+}
+
 ex_found_t ex_all_successors(ex_worker_t *worker, ex_marking_sink_t sink, void *user)
 {
     hunt_t hunt = { .worker = worker, .all = sink, .user = user, .on_next = on_successor };
