@@ -424,7 +424,7 @@ static inline void ex_store_prefetch(const ex_store_t *store, uint64_t hash)
 /* For ex_tuples_number: its entry in the index is sent for; then, if it seems to be one, the tuple itself. */
 static inline void ex_tuples_prefetch(const ex_tuples_t *tuples, uint64_t hash)
 {
-    __builtin_prefetch((const void *)&tuples->index.entry[ex_scaled(hash, tuples->index.entries)], 0, 3);
+    __builtin_prefetch(&tuples->index.entry[ex_scaled(hash, tuples->index.entries)], 0, 3);
 }
 
 static inline void ex_tuples_send(const ex_tuples_t *tuples, uint64_t hash)
