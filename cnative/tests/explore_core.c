@@ -221,7 +221,7 @@ static void *insert_all(void *user)
         const uint64_t lane[EX_TUPLE_LANES] = { i * 3U, i << 20U, i ^ 5U, 0U };
         unsigned char text[64];
         const int length = snprintf((char *)text, sizeof text, "%0*llu", (int)(i % 40U) + 1, (unsigned long long)i);
-        job->number[i - 1U] = ex_tuples_number(job->tuples, lane);
+        job->number[i - 1U] = ex_tuples_number(job->tuples, lane, ex_tuple_hash(lane, job->tuples->lanes));
         job->name[i - 1U] = ex_bytes_number(job->bytes, (uint32_t)(i % 7U), text, (uint32_t)length);
     }
     return NULL;
@@ -309,11 +309,11 @@ static void try_numbers(void)
         unsigned char text[32] = { 0 };
         (void)memcpy(text, &i, sizeof i);
         const uint32_t length = (uint32_t)(i % 24U) + 8U;
-        uint32_t found = ex_tuples_number(&tuples, lane);
+        uint32_t found = ex_tuples_number(&tuples, lane, ex_tuple_hash(lane, tuples.lanes));
         uint32_t named = ex_bytes_number(&bytes, 3U, text, length);
         while (found == EX_NO_NUMBER) {
             check(ex_tuples_grow(&tuples), "it does not grow");
-            found = ex_tuples_number(&tuples, lane);
+            found = ex_tuples_number(&tuples, lane, ex_tuple_hash(lane, tuples.lanes));
         }
         while (named == EX_NO_NUMBER) {
             check(ex_bytes_grow(&bytes), "it does not grow");
