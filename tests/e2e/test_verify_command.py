@@ -90,6 +90,18 @@ def test_truncated(net: Path, tmp_path: Path) -> None:
     assert "Status: Partial" in text
 
 
+@pytest.mark.parametrize(
+    "arguments",
+    [("verify", "--max-seconds"), ("run", "--realtime", "--speed"), ("robot", "--wait")],
+    ids=" ".join,
+)
+def test_no_number(net: Path, arguments: tuple[str, ...]) -> None:
+    verb, *options = arguments
+    done = pn2code(verb, net, *options, "nan")
+    assert done.returncode == 2
+    assert "nan is not a finite number" in " ".join(done.stderr.split())
+
+
 def test_an_exception_in_a_marking(tmp_path: Path) -> None:
     done = pn2code("verify", write(RAISES, tmp_path / "raises.cpn"), "--json")
     said = json.loads(done.stdout)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import re
 import sys
 from collections.abc import Iterable
@@ -39,6 +40,13 @@ class Format(StrEnum):
 FormatOption = Annotated[
     Format, typer.Option("--format", help="How diagnostics are printed.", show_default=True)
 ]
+
+
+def finite(number: float | None) -> float | None:
+    """A number of the command line, checked: for Python `nan` and `inf` are numbers, and `nan` is in every range."""
+    if number is not None and not math.isfinite(number):
+        raise typer.BadParameter(f"{number} is not a finite number")
+    return number
 
 
 def parse_values(settings: list[str]) -> dict[str, str]:

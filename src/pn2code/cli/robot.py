@@ -13,7 +13,7 @@ from pn2code.cell.codes import CELL_MISSING
 from pn2code.cell.divide import divide
 from pn2code.cell.locate import locate
 from pn2code.channels import ChannelSpec, SharedDirectory, specs_of
-from pn2code.cli.options import Exit, Format, FormatOption, print_diagnostics, stop
+from pn2code.cli.options import Exit, Format, FormatOption, finite, print_diagnostics, stop
 from pn2code.diagnostics import Diagnostics, Origin, SourceText
 from pn2code.diagnostics.codes import register
 from pn2code.net import front
@@ -65,10 +65,14 @@ def robot(
         str | None, typer.Option(help="A layout of cell.toml (default: the first).")
     ] = None,
     speed: Annotated[
-        float, typer.Option(min=0.01, max=1000.0, help="With --cell: so many times faster.")
+        float,
+        typer.Option(
+            min=0.01, max=1000.0, callback=finite, help="With --cell: so many times faster."
+        ),
     ] = 1.0,
     wait: Annotated[
-        float, typer.Option(min=0.0, help="Seconds to wait for the supervisor.")
+        float,
+        typer.Option(min=0.0, callback=finite, help="Seconds to wait for the supervisor."),
     ] = 10.0,
     verbose: Annotated[bool, typer.Option("-v", "--verbose", help="Print each command.")] = False,
     form: FormatOption = Format.FULL,

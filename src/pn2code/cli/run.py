@@ -13,6 +13,7 @@ from pn2code.cli.options import (
     Format,
     FormatOption,
     SetOption,
+    finite,
     parse_values,
     print_diagnostics,
     stop,
@@ -59,7 +60,10 @@ def run(
         typer.Option("--realtime", help="On the wall clock, the supervisor woken by its files."),
     ] = False,
     speed: Annotated[
-        float, typer.Option(min=0.01, max=1000.0, help="With --realtime: so many times faster.")
+        float,
+        typer.Option(
+            min=0.01, max=1000.0, callback=finite, help="With --realtime: so many times faster."
+        ),
     ] = 1.0,
     seed: Annotated[
         int | None, typer.Option(metavar="K", help="Of what sensors draw at random.")

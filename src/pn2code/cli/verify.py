@@ -23,6 +23,7 @@ from pn2code.cli.options import (
     IntBitsOption,
     JsonOption,
     SetOption,
+    finite,
     parse_values,
     print_diagnostics,
     stop,
@@ -72,7 +73,8 @@ def verify(
         int | None, typer.Option(metavar="N", min=1, help="Stop after N markings.")
     ] = None,
     max_seconds: Annotated[
-        float | None, typer.Option(metavar="S", min=0.0, help="Stop after S seconds.")
+        float | None,
+        typer.Option(metavar="S", min=0.0, callback=finite, help="Stop after S seconds."),
     ] = None,
     memory: Annotated[
         int | None,
