@@ -1,5 +1,5 @@
 """`python -m pn2code` is the command `pn2code`."""
 
-from pn2code.cli.main import main
+from pn2code.start import main
 
 main()

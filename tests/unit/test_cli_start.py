@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ast
+import signal
 import subprocess
 import sys
 from pathlib import Path
@@ -69,3 +70,20 @@ def test_explain_knows_all_modules_that_declare_codes(root: Path) -> None:
             ):
                 found.add(".".join(path.relative_to(base).with_suffix("").parts))
     assert found == set(REGISTERING)
+
+
+def test_interrupted_while_it_is_loaded() -> None:
+    program = (
+        "import os, signal, sys\n"
+        "class Interrupting:\n"
+        "    def find_spec(self, name, *_):\n"
+        "        if name == 'pn2code.cli': os.kill(os.getpid(), signal.SIGINT)\n"
+        "sys.meta_path.insert(0, Interrupting())\n"
+        "sys.argv = ['pn2code', '--version']\n"
+        "from pn2code.start import main\n"
+        "main()"
+    )
+    done = subprocess.run(
+        [sys.executable, "-c", program], capture_output=True, text=True, check=False
+    )
+    assert (done.returncode, done.stdout, done.stderr) == (-signal.SIGINT, "", "")
