@@ -120,8 +120,8 @@ bool sup_monitor_choice(sup_t *sup, int32_t owner, uint32_t index)
     if ((owner >= 0) && (t->owner != owner)) {
         return sup_stop(sup, SUP_EXIT_INTERNAL, "monitor: `%s` is not a transition of this program", t->name);
     }
-    if (t->draws) {
-        return true; /* a second search would draw other numbers */
+    if (t->looks) {
+        return true; /* a second search may find something else */
     }
     pn_text_init(&text, s_monitor.wanted, TEXT_SIZE);
     t->binding_json(sup->binding, &text);
@@ -131,7 +131,7 @@ bool sup_monitor_choice(sup_t *sup, int32_t owner, uint32_t index)
     for (uint32_t k = 0U; k < sup->net->order_count; k++) {
         const pn_transition_t *const other = &sup->net->transition[sup->net->order[k]];
         const bool is_mine = (owner < 0) || (other->owner == owner);
-        if (is_mine && (other->priority < t->priority) && !other->draws && has_binding(sup, sup->net->order[k], is_any)) {
+        if (is_mine && (other->priority < t->priority) && !other->looks && has_binding(sup, sup->net->order[k], is_any)) {
             return sup_stop(sup, SUP_EXIT_INTERNAL, "monitor: `%s` is enabled and has a higher priority than `%s`", other->name,
                             t->name);
         }
