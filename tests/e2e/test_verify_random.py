@@ -21,7 +21,7 @@ from helpers.unions import PER_UNION, Outcome, alone, check
 pytestmark = pytest.mark.cc
 
 NETS = amount(24, 400)
-UNIONS = amount(52, 600)
+UNIONS = amount(56, 600)
 GROUPS = 26
 SEED = int(os.environ.get("PN2CODE_SEED", "0"))
 
