@@ -10,7 +10,6 @@
 
 #include "explore_search.h"
 #include "explore_words.h"
-#include "pn/pn_arena.h"
 
 enum {
     GATHERED = 256,  /* arcs that are looked up together, at least when so many are there */
@@ -129,11 +128,7 @@ static ex_found_t make_words(ex_expander_t *x, const ex_key_t *key)
         }
         priority = transition->priority;
         x->label = (uint16_t)t;
-        const size_t mark = pn_arena_mark(worker->cx.arena);
-        (void)transition->words(&x->made, t);
-        pn_arena_release(worker->cx.arena, mark);
-        if (worker->cx.error != PN_OK) {
-            ex_fail(worker, (int64_t)t);
+        if (!ex_add_words(worker, t, &x->made)) {
             return EX_FAILED;
         }
         if (!drain(&x->made)) {

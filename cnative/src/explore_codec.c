@@ -120,12 +120,10 @@ static inline void lanes_of(const ex_node_t *node, const uint32_t *cell, uint64_
     }
 }
 
-static bool number_lanes(ex_worker_t *worker, uint32_t table, const uint64_t lane[EX_TUPLE_LANES], uint32_t *number)
+bool ex_number_tuple(ex_worker_t *worker, ex_tuples_t *tuples, const uint64_t lane[EX_TUPLE_LANES], uint64_t hash, uint32_t *number)
 {
-    ex_codec_t *codec = worker->run->codec;
-    const uint64_t hash = ex_tuple_hash(lane, codec->tuples[table].lanes);
     for (;;) {
-        *number = ex_tuples_number(&codec->tuples[table], lane, hash);
+        *number = ex_tuples_number(tuples, lane, hash);
         if (*number != EX_NO_NUMBER) {
             return true;
         }
@@ -134,6 +132,12 @@ static bool number_lanes(ex_worker_t *worker, uint32_t table, const uint64_t lan
             return false;
         }
     }
+}
+
+static bool number_lanes(ex_worker_t *worker, uint32_t table, const uint64_t lane[EX_TUPLE_LANES], uint32_t *number)
+{
+    ex_tuples_t *tuples = &worker->run->codec->tuples[table];
+    return ex_number_tuple(worker, tuples, lane, ex_tuple_hash(lane, tuples->lanes), number);
 }
 
 static bool number_node(ex_worker_t *worker, uint32_t n, uint32_t *number)

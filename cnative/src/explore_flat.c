@@ -174,20 +174,6 @@ static void open(ex_worker_t *worker, const ex_key_t *key)
     ex_derive(codec, unit);
 }
 
-static bool number(ex_worker_t *worker, const part_t *part, const uint64_t *lane, uint64_t hash, uint32_t *found)
-{
-    for (;;) {
-        *found = ex_tuples_number(part->tuples, lane, hash);
-        if (*found != EX_NO_NUMBER) {
-            return true;
-        }
-        if (!ex_pause(worker)) {
-            worker->failed = true;
-            return false;
-        }
-    }
-}
-
 /* All parts are known. */
 static inline void make_key(const ex_worker_t *worker, kept_t *successor)
 {
@@ -217,7 +203,7 @@ static EX_APART bool complete(ex_worker_t *worker)
         for (uint32_t rest = successor->missing; rest != 0U; rest &= rest - 1U) {
             const uint32_t i = (uint32_t)__builtin_ctz(rest);
             const part_t *const part = &own->part[i];
-            if (!number(worker, part, successor->lane[i], successor->tuple_hash[i], &successor->word[i])) {
+            if (!ex_number_tuple(worker, part->tuples, successor->lane[i], successor->tuple_hash[i], &successor->word[i])) {
                 return false;
             }
             remember(part, successor->lane[i], successor->word[i]);

@@ -165,16 +165,6 @@ static bool build(ex_run_t *run, ex_graph_t *graph)
     return is_fine;
 }
 
-/* Whether the net may do something else the second time. */
-static bool looks(void)
-{
-    bool is_fickle = pn_net.has_references;
-    for (uint32_t t = 0U; t < pn_net.transition_count; t++) {
-        is_fickle = is_fickle || pn_net.transition[t].looks;
-    }
-    return is_fickle;
-}
-
 bool ex_graph(ex_run_t *run)
 {
     const double began = ex_clock();
@@ -217,7 +207,7 @@ bool ex_graph(ex_run_t *run)
     graph->seconds = ex_clock() - began;
     if (!is_fine) {
         run->graph = NULL; /* the process is about to end: its memory goes with it */
-        if (!looks() && !ex_is_stopping(run)) {
+        if (ex_is_repeatable() && !ex_is_stopping(run)) {
             ex_stop(run, EX_MEMORY); /* nothing else was in the way */
         }
     }

@@ -287,6 +287,8 @@ void ex_clear_place(struct ex_worker *worker, uint32_t place);
 void ex_unload(struct ex_worker *worker);
 /* A word of the packed part. */
 uint32_t ex_packed_word(const ex_codec_t *codec, const void *marking, uint32_t w);
+/* The number of a tuple, of which the hash is known (ex_tuple_hash). False: no memory. */
+bool ex_number_tuple(struct ex_worker *worker, ex_tuples_t *tuples, const uint64_t lane[EX_TUPLE_LANES], uint64_t hash, uint32_t *number);
 /* A cell that is to become another one. */
 typedef struct ex_change {
     uint32_t cell;
@@ -310,6 +312,8 @@ const unsigned char *ex_multiset_bytes(struct ex_worker *worker, uint32_t number
 
 /* --- successors (explore_successors.c) ----------------------------------------------------------------------------- */
 
+/* Whether the net always does the same in a marking: no files, no references. */
+bool ex_is_repeatable(void);
 /* An arc: the binding, outputs of the code segment included, lives until the call returns. False: stop. */
 typedef bool (*ex_arc_sink_t)(void *user, uint32_t transition, const void *binding, const ex_key_t *key);
 

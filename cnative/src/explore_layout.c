@@ -234,17 +234,6 @@ static void regroup(layout_t *layout, uint32_t *word)
     ex_codec_group(layout->run->codec, word, end, parts);
 }
 
-/* Whether looking at some states beforehand changes nothing. */
-static bool is_harmless(void)
-{
-    for (uint32_t t = 0U; t < pn_net.transition_count; t++) {
-        if (pn_net.transition[t].looks) {
-            return false;
-        }
-    }
-    return !pn_net.has_references;
-}
-
 /* What went wrong on the way goes wrong again when the exploration comes there. */
 static void forget(ex_run_t *run)
 {
@@ -269,7 +258,7 @@ static uint64_t value_bytes(uint32_t samples)
 bool ex_layout(ex_run_t *run)
 {
     const ex_codec_t *codec = run->codec;
-    if ((codec->words <= EX_KEY_WORDS) || !is_harmless()) {
+    if ((codec->words <= EX_KEY_WORDS) || !ex_is_repeatable()) { /* else looking at some states beforehand would change something */
         return true;
     }
     const uint64_t values = value_bytes((uint32_t)SAMPLES);

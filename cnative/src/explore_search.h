@@ -6,6 +6,7 @@
 #define EXPLORE_SEARCH_H
 
 #include "explore_impl.h"
+#include "pn/pn_arena.h"
 
 enum {
     EX_CHUNK_SIZE = 1 << 14,
@@ -112,5 +113,18 @@ bool ex_words_make(ex_worker_t *worker);
 ex_found_t ex_words_successors(ex_worker_t *worker, uint64_t word);
 /* Inserts all that has been collected. False when the run stops. */
 bool ex_words_flush(ex_worker_t *worker);
+
+/* Adds the words of all successors by a transition, of the loaded state. False after an error. */
+static inline bool ex_add_words(ex_worker_t *worker, uint32_t t, pn_words_t *made)
+{
+    const size_t mark = pn_arena_mark(worker->cx.arena);
+    (void)pn_net.transition[t].words(made, t);
+    pn_arena_release(worker->cx.arena, mark);
+    if (worker->cx.error != PN_OK) {
+        ex_fail(worker, (int64_t)t);
+        return false;
+    }
+    return true;
+}
 
 #endif /* EXPLORE_SEARCH_H */

@@ -22,6 +22,15 @@ typedef struct hunt {
     bool has_aged;   /* worker->marking is later than the cells of the codec */
 } hunt_t;
 
+bool ex_is_repeatable(void)
+{
+    bool is_repeatable = !pn_net.has_references;
+    for (uint32_t t = 0U; t < pn_net.transition_count; t++) {
+        is_repeatable = is_repeatable && !pn_net.transition[t].looks;
+    }
+    return is_repeatable;
+}
+
 /* Makes all stamps count from `by` on. */
 static void age(void *marking, pn_time_t by)
 {

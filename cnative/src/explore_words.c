@@ -7,7 +7,6 @@
 
 #include <string.h>
 
-#include "pn/pn_arena.h"
 
 enum {
     FOUND = EX_BATCH,
@@ -222,12 +221,9 @@ ex_found_t ex_words_successors(ex_worker_t *worker, uint64_t word)
             break;
         }
         priority = transition->priority;
-        const size_t mark = pn_arena_mark(worker->cx.arena);
-        (void)transition->words(&own->made, t);
-        pn_arena_release(worker->cx.arena, mark);
+        const bool is_fine = ex_add_words(worker, t, &own->made);
         worker->fired[t] += (own->drained + own->made.count) - before;
-        if (worker->cx.error != PN_OK) {
-            ex_fail(worker, (int64_t)t);
+        if (!is_fine) {
             return EX_FAILED;
         }
         if (own->is_stopped) {

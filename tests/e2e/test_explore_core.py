@@ -2,17 +2,14 @@
 
 from __future__ import annotations
 
-import shutil
 import subprocess
 from pathlib import Path
 
 import pytest
 
-from helpers.compiled import WARNINGS
-from helpers.explored import Explorers, agrees
+from helpers.explored import Explorers, agrees, explorer_test
 from helpers.netbuilder import flat
 from helpers.random_graphs import numbered
-from pn2code.resources import cnative_folder
 
 pytestmark = pytest.mark.cc
 
@@ -20,23 +17,7 @@ PARTS = ("memory", "intern", "store")
 
 
 def _built(folder: Path, *sanitizers: str) -> Path:
-    compiler = shutil.which("gcc") or shutil.which("cc")
-    assert compiler is not None
-    root = cnative_folder()
-    sources = [root / "tests" / "explore_core.c"]
-    sources += [root / "src" / f"explore_{part}.c" for part in PARTS]
-    program = folder / "explore_core"
-    command = [compiler, *WARNINGS, "-O1", "-g", *sanitizers, "-pthread"]
-    command += [
-        f"-I{root / 'include'}",
-        f"-I{root / 'src'}",
-        *map(str, sources),
-        "-o",
-        str(program),
-    ]
-    done = subprocess.run(command, capture_output=True, text=True, check=False)
-    assert done.returncode == 0, done.stderr
-    return program
+    return explorer_test(folder, "explore_core", PARTS, "-g", *sanitizers)
 
 
 @pytest.fixture(scope="module")

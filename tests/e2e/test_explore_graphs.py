@@ -2,14 +2,12 @@
 
 from __future__ import annotations
 
-import shutil
 import subprocess
 from pathlib import Path
 
 import pytest
 
-from helpers.compiled import WARNINGS
-from pn2code.resources import cnative_folder
+from helpers.explored import explorer_test
 
 pytestmark = pytest.mark.cc
 
@@ -41,18 +39,7 @@ VARIANTS: dict[str, tuple[int | str, ...]] = {
 @pytest.mark.parametrize("variant", VARIANTS)
 def test_against_definitions(tmp_path: Path, variant: str) -> None:
     graphs, *flags = VARIANTS[variant]
-    compiler = shutil.which("gcc") or shutil.which("cc")
-    assert compiler is not None
-    root = cnative_folder()
-    sources = [root / "tests" / "explore_graphs.c"]
-    sources += [root / "src" / f"explore_{part}.c" for part in PARTS]
-    program = tmp_path / "explore_graphs"
-    command = [compiler, *WARNINGS, "-O1", "-pthread", *map(str, flags)]
-    command += [f"-I{root / 'include'}", f"-I{root / 'src'}", *map(str, sources)]
-    done = subprocess.run(
-        [*command, "-o", str(program)], capture_output=True, text=True, check=False
-    )
-    assert done.returncode == 0, done.stderr
+    program = explorer_test(tmp_path, "explore_graphs", PARTS, *map(str, flags))
     said = subprocess.run(
         [program, "1", str(graphs)], capture_output=True, text=True, check=False, timeout=120
     )

@@ -11,11 +11,12 @@ import os
 import shutil
 import subprocess
 from collections import Counter
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
+from helpers.compiled import WARNINGS
 from helpers.graph_facts import Facts
 from pn2code.diagnostics import Diagnostics
 from pn2code.emission.runtime import HOSTS
@@ -33,6 +34,27 @@ THREADS = ("-g1", "-O0", "-fsanitize=thread")
 SECONDS = 120
 LIBRARY = "libnet.so"
 OTHER_HOSTS = tuple(name for name in HOSTS if name != "explore")
+
+
+def explorer_test(folder: Path, name: str, parts: Sequence[str], *flags: str) -> Path:
+    """A program of `cnative/tests` with some sources of the explorer, and nothing else of it.
+
+    Args:
+        folder: where it is put.
+        name: of its own source.
+        parts: `store` is `explore_store.c`.
+        flags: more of them for the compiler.
+    """
+    compiler = shutil.which("gcc") or shutil.which("cc")
+    assert compiler is not None
+    root = cnative_folder()
+    sources = [root / "tests" / f"{name}.c", *(root / "src" / f"explore_{p}.c" for p in parts)]
+    command = [compiler, *WARNINGS, "-O1", "-pthread", *flags]
+    command += [f"-I{root / 'include'}", f"-I{root / 'src'}", *map(str, sources)]
+    program = folder / name
+    done = subprocess.run([*command, "-o", program], capture_output=True, text=True, check=False)
+    assert done.returncode == 0, done.stderr
+    return program
 
 
 @dataclass(frozen=True, slots=True)

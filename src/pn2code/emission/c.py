@@ -282,11 +282,14 @@ class _Emitter:
         lists = self._firing(t, False, variables) if has_lists else None
         text = "\n".join(fire.lines)
         affected = self._effects.affected(t.index)
+        search_draws = self._effects.reaches(t.enumerate, is_draw)
+        fire_draws = self._effects.reaches(t.fire, is_draw)
         return {
             "mark": self._block(t.name, "transition", t.origin),
             "index": t.index,
-            "search_draws": self._effects.reaches(t.enumerate, is_draw),
-            "fire_draws": self._effects.reaches(t.fire, is_draw),
+            "search_draws": search_draws,
+            "fire_draws": fire_draws,
+            "draws_between": search_draws and fire_draws,
             "name": t.name,
             "stem": name,
             "id": t.id,
@@ -501,6 +504,7 @@ class _Emitter:
             "packed_words": (packed_bits(net.places) + 63) // 64,
             "packed_size": (packed_bits(net.places) + 31) // 32 * 4,
             "transitions": transitions,
+            "has_thresholds": any(t["thresholds"] for t in transitions),
             "has_words": self._has_words,
             "word_mask": self._word_mask(),
             "inlined": "PN_INLINE" if self._has_inlined else "PN_NET_SEARCH static",
