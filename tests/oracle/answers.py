@@ -45,7 +45,7 @@ class Said:
 
 _TOKEN = re.compile(r"\s*(->|[A-Za-z?][\w'?]*(?:\.[\w'?]+)*|'+\w+|[*(){},:]|\d+)")
 _NAMES = {
-    "LargeInt.int": "IntInf.int", "intinf": "IntInf.int", "time": "IntInf.int", "CPN'Time.time": "IntInf.int",
+    "?.intinf": "IntInf.int", "LargeInt.int": "IntInf.int", "intinf": "IntInf.int", "time": "IntInf.int", "CPN'Time.time": "IntInf.int",
     "Int.int": "int", "Real.real": "real", "String.string": "string", "Word.word": "word", "CPN'timed": "timed",
     "Word31.word": "word", "Position.int": "int", "Substring.substring": "substring", "IEEEReal.real_order": "order",
 }  # fmt: skip
@@ -160,7 +160,7 @@ def normal(t: Type) -> str:
             case TRecord():
                 return "{" + ",".join(f"{k}:{text(x)}" for k, x in t.fields) + "}"
             case TCon():
-                if t.name.startswith("?."):
+                if t.name.startswith("?.X"):
                     return "{}"  # what nothing decides: SML/NJ makes a new type, pn2code takes unit
                 return " ".join([*map(text, t.args), t.name])
 

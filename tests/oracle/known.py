@@ -11,6 +11,9 @@ _RULES: tuple[tuple[str, str], ...] = (
     (r"\bReal\.nextAfter\b", "`Real.nextAfter` works; SML/NJ has not got it and raises `Fail`"),
     (r"\bSubstring\.all\b|\b(Int31|Real64|CharArray)\.|Vector\.maxLen", "there only in other versions of the library"),
     (r"\b(?:null)\b", "`null` tests lists; in the engine it is the time 0 after `open`"),
+    (r"^\w+\.set_\w+$", "the types of `set_..` are more general in the engine"),
+    (r"\bfromCString\b", "`String.fromCString` reads up to what it cannot read"),
+    (r"\bpad(Left|Right)\b", "an Overflow in padding to a number below zero"),
     (r"\binteger(De|En)code\b", "another exception of a function of Comms/CPN"),
     (r"\b(Char|Int|Real|IntInf|Bool|Word|StringCvt)\.(scan|scanString|splitl|takel|dropl|skipWS)\b",
      "a stream without end is read to its end"),
@@ -19,8 +22,10 @@ _RULES: tuple[tuple[str, str], ...] = (
 
 def reason_of(text: str, ours: Said, theirs: Said) -> str:
     """Why the answers may differ; "" if no reason is known."""
-    if theirs.kind == "refused" and "unbound structure: Vector" in theirs.detail:
-        return "the engine has lost the structure Vector, as after any expression that was ended"
+    if theirs.kind == "refused" and re.search(
+        "unbound structure: (Vector|IEEEReal)", theirs.detail
+    ):
+        return "the engine has lost a structure of the library, as it does after some errors"
     if ours.kind in ("limit", "unavailable") and theirs.kind in ("timeout", "crash", "raised"):
         return "given up by both, or for lack of something"
     if ours.kind == "limit":
