@@ -45,7 +45,8 @@ class Said:
 
 _TOKEN = re.compile(r"\s*(->|[A-Za-z?][\w'?]*(?:\.[\w'?]+)*|'+\w+|[*(){},:]|\d+)")
 _NAMES = {
-    "?.intinf": "IntInf.int", "LargeInt.int": "IntInf.int", "intinf": "IntInf.int", "time": "IntInf.int", "CPN'Time.time": "IntInf.int",
+    "?.intinf": "IntInf.int",
+    "LargeInt.int": "IntInf.int", "intinf": "IntInf.int", "time": "IntInf.int", "CPN'Time.time": "IntInf.int",
     "Int.int": "int", "Real.real": "real", "String.string": "string", "Word.word": "word", "CPN'timed": "timed",
     "Word31.word": "word", "Position.int": "int", "Substring.substring": "substring", "IEEEReal.real_order": "order",
 }  # fmt: skip

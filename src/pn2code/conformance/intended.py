@@ -1,3 +1,4 @@
+# ruff: noqa: E501 - a text
 """Where pn2code does not follow the engine of CPN Tools, and why: the part of the report that is written by hand."""
 
 TEXT = """\
