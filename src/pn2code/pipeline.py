@@ -84,7 +84,7 @@ def generate(
         return None
 
     storage = config.storage if config else {}
-    digest = _digest(net, config, replaced, int_bits)
+    digest = program_digest(net, config, replaced, int_bits)
     ir = lower_net.lower(partition, storage, d, digest=digest)
     robots = lower_robot.lower_robots(partition, config, d) if config else ()
     if ir is None or robots is None or d.has_errors:
@@ -133,10 +133,11 @@ def _inputs(config: CellConfig | None) -> Iterator[OutputFile]:
             yield OutputFile(entry.file, (config.folder / entry.file).read_text(encoding="utf-8"))
 
 
-def _digest(
-    net: FlatNet, config: CellConfig | None, values: Mapping[str, str], int_bits: int
+def program_digest(
+    net: FlatNet, config: CellConfig | None, values: Mapping[str, str], int_bits: int = 31
 ) -> str:
-    """What the programs depend on: the net's bytes, the logic of the cell, replaced values, other integers."""
+    """What the generated programs depend on, as their heads and traces say: the net's bytes, the logic of the cell,
+    replaced values, other integers."""
     parts = [net.sha256, config.logic_digest() if config else "", repr(sorted(values.items()))]
     if int_bits != 31:
         parts.append(f"int {int_bits}")
