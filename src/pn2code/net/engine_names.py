@@ -55,7 +55,7 @@ def engine_name(name: str) -> str:
 
 
 def sent_name(name: str) -> str:
-    """A name as the editor sends it to the engine: cut at the first sign that no name may have; "" if that is the first one."""
+    """A name as the editor sends it to the engine: cut at the first sign that it refuses, "" if none is left."""
     found = re.match(r"[A-Za-z][A-Za-z0-9'_\s]*", name.strip())
     return re.sub(r"\s+", "_", found.group().strip()) if found else ""
 

@@ -5,7 +5,7 @@
      "final_time": "7", "final_marking": [{"id": "ID4", "instance": 1, "marking": "1`3@7"}, ...]}
 
 Names are as the engine writes them: blanks and the like are `_`, a second transition of one name has `_u1` behind it, a
-name that begins with a digit an `N` before it. The XML id of the transition may be left out; where it is given, it decides.
+name that begins with a digit an `N` before it. The XML id of the transition may be left out; if given, it decides.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ class NotARecording(ValueError):  # noqa: N818
 
 @dataclass(frozen=True, slots=True)
 class RecordedStep:
-    """An occurrence: all as text but the number of the page instance (0: not given); `id` is "" where it is not given."""
+    """An occurrence: all as text but the number of the page instance (0: not given); `id` is "" if not given."""
 
     time: str
     page: str
