@@ -164,7 +164,7 @@ typedef struct ex_derived {
 /* The shape of the vectors: found once, from the tables of the net.
  *
  * A vector consists of cells: slices of the packed part (of one long place, or of several short ones), a word for each bag (the number
- * of its bytes), one for the time if the net is timed. Where places cannot be encoded one by one, there is one word for the whole marking. */
+ * of its bytes), one for the time if the net is timed, one for what its references hold if it changes them. Where places cannot be encoded one by one, there is one word for the whole marking. */
 typedef struct ex_codec {
     bool is_whole;
     bool is_plain;           /* the key is the beginning of the packed part; all else follows from it */
@@ -178,6 +178,7 @@ typedef struct ex_codec {
     uint32_t packed_words;
     uint32_t words;          /* cells, without those of the inner nodes */
     uint32_t time_word;      /* UINT32_MAX: none */
+    uint32_t root_word;      /* of what references hold (explore_roots.c); UINT32_MAX: there are none that change */
     uint32_t zero_cell;      /* a cell that is always 0 */
     uint32_t *slice_bit;     /* of the packed part, by word of the vector: its first bit there */
     uint32_t *slice_width;   /* and the number of bits, at most 32 */
@@ -243,6 +244,7 @@ typedef struct ex_scratch {
     void *next;              /* marking */
     void *binding;
     pn_arena_t arena;
+    pn_arena_t roots;        /* what references hold, and nothing else */
 } ex_scratch_t;
 
 bool ex_codec_make(struct ex_run *run);
@@ -297,6 +299,16 @@ typedef struct ex_change {
 /* The key of what becomes of the opened state when words change. False: no memory. */
 bool ex_encode_changes(struct ex_worker *worker, const ex_change_t *change, uint32_t count, ex_key_t *key);
 
+/* --- references (explore_roots.c) ------------------------------------------------------------------------------------ */
+
+bool ex_roots_make(struct ex_worker *worker);
+/* The number of what they hold now. False: no memory. */
+bool ex_roots_number(struct ex_worker *worker, uint32_t *number);
+/* Lets them hold what has that number; false after an error (the context has it). */
+bool ex_roots_load(struct ex_worker *worker, uint32_t number);
+/* After an occurrence in the loaded state: they hold again what they hold there. False: the worker has failed. */
+bool ex_roots_restore(struct ex_worker *worker);
+
 /* --- multi-sets (explore_multiset.c) ---------------------------------------------------------------------------------- */
 
 /* Room for `size` bytes in the scratch buffer, which is empty then. False: no memory. */
@@ -312,7 +324,7 @@ const unsigned char *ex_multiset_bytes(struct ex_worker *worker, uint32_t number
 
 /* --- successors (explore_successors.c) ----------------------------------------------------------------------------- */
 
-/* Whether the net always does the same in a marking: no files, no references. */
+/* Whether the net always does the same in a state: no files. */
 bool ex_is_repeatable(void);
 /* An arc: the binding, outputs of the code segment included, lives until the call returns. False: stop. */
 typedef bool (*ex_arc_sink_t)(void *user, uint32_t transition, const void *binding, const ex_key_t *key);

@@ -23,7 +23,7 @@ from pn2code.diagnostics import Diagnostics, Origin
 from pn2code.net.flat import FlatNet
 from pn2code.net.predicate import Predicate
 from pn2code.os_reason import os_reason
-from pn2code.verify import programs
+from pn2code.verify import chance, programs
 from pn2code.verify.codes import BEYOND_ROOM, EXPLORER_FAILED, REDUCTION_MISMATCH, SPILL_FULL
 from pn2code.verify.limits import Limits, default_memory
 from pn2code.verify.programs import Sizes
@@ -97,6 +97,8 @@ def explore(
         GameError: a declaration or an initial marking raises an exception.
     """
     wishes = wishes or Wishes()
+    if chance.refuse(net, d):
+        return None
     chosen = possible(net, limits.reductions, d, wishes.predicates)
     sizes = wishes.sizes or Sizes.start(net, storage)
     compiling = 0.0
