@@ -13,7 +13,7 @@ from pathlib import PurePath
 
 from pn2code.cell import codes
 from pn2code.cell.config import CellConfig, ChannelConfig
-from pn2code.cell.partition import Channel, Input, Owner, OwnerKind, Partition
+from pn2code.cell.partition import Channel, ChannelKind, Input, Owner, OwnerKind, Partition
 from pn2code.cell.scalars import scalars_of
 from pn2code.diagnostics import Diagnostics, Note, Origin
 from pn2code.diagnostics.near import did_you_mean
@@ -40,11 +40,7 @@ def divide(net: FlatNet, config: CellConfig | None, d: Diagnostics) -> Partition
     channels = tuple(_channels(net, config, owners, writers, readers, find, d))
     _undeclared(net, channels, owners, writers, readers, config, d)
     inputs = tuple(_inputs(config, writers, readers, find, d))
-    final = tuple(
-        place.index
-        for name in config.supervisor.final
-        if (place := find(name, config.supervisor.origin, "final")) is not None
-    )
+    final = _final(net, config, owners, transition_owner, find, d)
     if len(d.errors) != before:
         return None
     shared = {c.place for c in channels}
@@ -182,6 +178,55 @@ class PlaceFinder:
         return None
 
 
+def _final(
+    net: FlatNet,
+    config: CellConfig,
+    owners: tuple[Owner, ...],
+    transition_owner: tuple[int, ...],
+    find: Callable[[str, Origin, str], FlatPlace | None],
+    d: Diagnostics,
+) -> tuple[int, ...]:
+    """The places whose tokens say that the supervisor has finished: its own, and it puts tokens there."""
+    writers, readers = _touching(net, transition_owner)
+    out: list[int] = []
+    supervisor = config.supervisor
+    for name, at in zip(supervisor.final, supervisor.final_origins, strict=True):
+        place = find(name, at, "final")
+        if place is None:
+            continue
+        others = sorted((writers[place.index] | readers[place.index]) - {0})
+        if place.index in out:
+            d.error(
+                codes.CELL_VALUE,
+                f"`final` names place `{place.name}` twice",
+                at,
+                hint="remove one of the names",
+            )
+        elif others:
+            who = " and ".join(owners[i].phrase for i in others)
+            shared = 0 in writers[place.index] | readers[place.index] or len(others) > 1
+            d.error(
+                codes.CELL_FINAL,
+                f"final: place `{place.name}` "
+                + (f"is shared with {who}" if shared else f"belongs to {who}")
+                + ", and a final place belongs to the supervisor alone",
+                at,
+                notes=[Note("the place is here", place.origins[0])],
+                hint="let a transition of the supervisor put a token into a place of its own when the cell has "
+                "finished, and name that place",
+            )
+        elif 0 not in writers[place.index] and place.initial is None:
+            d.error(
+                codes.CELL_FINAL,
+                f"final: no transition of the supervisor puts a token into place `{place.name}`",
+                at,
+                notes=[Note("the place is here", place.origins[0])],
+                hint="name a place that the supervisor marks when the cell has finished",
+            )
+        out.append(place.index)
+    return tuple(out)
+
+
 def _channels(
     net: FlatNet,
     config: CellConfig,
@@ -191,12 +236,10 @@ def _channels(
     find: Callable[[str, Origin, str], FlatPlace | None],
     d: Diagnostics,
 ) -> Iterable[Channel]:
-    ordered = sorted(config.channels, key=lambda c: c.kind.value != "data")
+    found = [(c, find(c.place, c.origin, "channel")) for c in config.channels]
+    known = [(c, place, _kind(c, place)) for c, place in found if place is not None]
     seen: dict[int, ChannelConfig] = {}
-    for entry in ordered:
-        place = find(entry.place, entry.origin, "channel")
-        if place is None:
-            continue
+    for entry, place, kind in sorted(known, key=lambda x: x[2] is not ChannelKind.DATA):
         if place.index in seen:
             d.error(
                 codes.CELL_VALUE,
@@ -249,8 +292,15 @@ def _channels(
             place.index,
             next(iter(w)),
             next(iter(r)),
-            entry.kind,
+            kind,
         )
+
+
+def _kind(entry: ChannelConfig, place: FlatPlace) -> ChannelKind:
+    """As written; where it is not, several scalars are data, and one is a flag."""
+    if entry.is_kind_given:
+        return entry.kind
+    return ChannelKind.FLAG if len(scalars_of(place.colset) or ()) == 1 else ChannelKind.DATA
 
 
 def _directed(
@@ -328,10 +378,20 @@ def _inputs(
     find: Callable[[str, Origin, str], FlatPlace | None],
     d: Diagnostics,
 ) -> Iterable[Input]:
+    seen: set[int] = set()
     for entry in config.inputs:
         place = find(entry.place, entry.origin, "input")
         if place is None:
             continue
+        if place.index in seen:
+            d.error(
+                codes.CELL_VALUE,
+                f"place `{place.name}` has two inputs",
+                entry.origin,
+                hint="remove one of them",
+            )
+            continue
+        seen.add(place.index)
         if (writers[place.index] | readers[place.index]) - {0}:
             d.error(
                 codes.CELL_OWNER,

@@ -40,18 +40,17 @@ COUNTED = ("pages", "places", "transitions", "arcs")
 
 
 def _cell(config: CellConfig, flat: FlatNet | None, d: Diagnostics) -> None:
-    """What cell.toml says of the net; the robots and the scene, in all layouts."""
+    """What cell.toml says of the net; the robots' programs; the robots and the scene, in all layouts."""
     # Most nets have no cell, and these load NumPy and the like.
-    from pn2code.cell.divide import divide
-    from pn2code.cell.load import load as load_cell
-    from pn2code.robot import scene
+    from pn2code.lowering.robot import lower_robots
+    from pn2code.pipeline import check_geometry, divided
 
-    if flat is not None and not d.has_errors:
-        divide(flat, config, d)
-    for layout in config.layouts or {"": ""}:
-        cell = config if layout == config.layout else load_cell(config.path, d, layout=layout)
-        if cell is not None:
-            scene.load(cell.geometry, cell.folder, cell.locator.origin, d)
+    if flat is None or d.has_errors:
+        check_geometry(config, d, to_run=True)
+        return
+    partition = divided(flat, config, d, to_run=True)
+    if partition is not None:
+        lower_robots(partition, config, d)
 
 
 def check(

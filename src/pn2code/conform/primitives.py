@@ -56,6 +56,7 @@ def command(primitive: Primitive, argument: Any) -> commands.Command:
         case "move_joint":
             return commands.MoveJoint(_pose(argument))
         case "move_linear":
+            assert primitive.frame is not None, "an entry without a frame is an error"
             return commands.MoveLinear(_pose(argument), primitive.frame)
         case "move_home":
             return commands.MoveHome()

@@ -120,6 +120,7 @@ class _Flattener:
                 "colour_sets": len(self.net.program.colsets),
                 "variables": len(self.net.program.variables),
             },
+            blocks=self.net.net.blocks,
         )
 
     def fusions(self, group_of: dict[Key, int]) -> Iterator[FlatFusion]:
