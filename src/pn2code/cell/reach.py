@@ -22,6 +22,12 @@ class Reach:
         for declaration in program.declarations:
             self._add(declaration)
         self._reached: dict[int, frozenset[int]] = {}
+        self._functions = [
+            symbol
+            for declaration in program.declarations
+            if isinstance(declaration, core.RecBind)
+            for symbol, _ in declaration.bindings
+        ]
 
     def _add(self, declaration: core.Dec) -> None:
         """A declaration and those inside it."""
@@ -37,6 +43,10 @@ class Reach:
                     for declaration in x.declarations:
                         for symbol, value in bound(declaration):
                             self._bodies[symbol.uid] = value
+
+    def functions(self) -> list[core.Symbol]:
+        """The functions of the declarations, in order."""
+        return list(self._functions)
 
     def body(self, symbol: core.Symbol) -> core.Exp | None:
         """What a symbol stands for; None for variables of the net and of patterns."""
