@@ -6,11 +6,13 @@ from pathlib import Path
 
 import pytest
 from test_cell_primitives import changed, said
+from typer.testing import CliRunner
 
 from helpers.small_cell import NET, TOML, write
 from pn2code.cell.divide import divide
 from pn2code.cell.load import load
 from pn2code.cell.partition import ChannelKind
+from pn2code.cli.main import app
 from pn2code.diagnostics import Diagnostics
 from pn2code.net import front
 
@@ -98,3 +100,38 @@ def test_the_kind_of_a_channel_follows_from_its_scalars(tmp_path: Path) -> None:
         ("flag", ChannelKind.FLAG),
         ("done", ChannelKind.FLAG),
     ]
+
+
+LOST = changed(NET, "(data -> data, flag -> flag, done -> done)", "(data -> data, flag -> flag)")
+
+
+def test_a_port_without_a_socket_is_the_cause(tmp_path: Path) -> None:
+    """The advice is to assign the port, not to remove the channel."""
+    (found,) = (x for x in said(tmp_path, LOST) if x.code == "channel-not-shared")
+    assert "`Top.done` is used by robot `robot1` alone" in found.message
+    assert "port `done` of page `Sup` (`Top/Supervisor`) is not assigned" in found.notes[0].message
+    assert (
+        found.hint == "assign port `done` of page `Sup` to place `done` of page `Top` in CPN Tools"
+    )
+
+
+def test_the_cause_is_shown_to_people(tmp_path: Path) -> None:
+    """A note about a port is shown where the page of the port, or the page around it, has an error."""
+    done = CliRunner().invoke(app, ["check", str(write(tmp_path, LOST))])
+    assert done.exit_code == 1
+    assert (
+        "note[port-unassigned]: port `done` of page `Sup` has no socket at `Supervisor`"
+        in done.stderr
+    )
+    assert "remove the entry" not in done.stderr
+
+
+def test_a_place_that_nobody_uses_is_no_channel(tmp_path: Path) -> None:
+    net = changed(NET, "    place flag : INT\n", "    place flag : INT\n    place idle : INT\n")
+    toml = changed(
+        TOML,
+        '[[channel]]\nplace = "data"',
+        '[[channel]]\nplace = "idle"\nfile = "i.x"\n[[channel]]\nplace = "data"',
+    )
+    (found,) = said(tmp_path, net, toml)
+    assert "`Top.idle` is used by no owner" in found.message

@@ -251,13 +251,7 @@ def _channels(
         seen[place.index] = entry
         w, r = writers[place.index], readers[place.index]
         if len(w | r) < 2:
-            owner = owners[next(iter(w | r))].name if w | r else "nobody"
-            d.error(
-                codes.CHANNEL_NOT_SHARED,
-                f"place `{place.name}` is used by {owner} only",
-                entry.origin,
-                hint="a place inside one program needs no file: remove the entry, or connect the place",
-            )
+            _not_shared(net, place, [owners[i] for i in w | r], entry, d)
             continue
         if not _directed(net, place, owners, w, r, entry.origin, d):
             continue
@@ -294,6 +288,40 @@ def _channels(
             next(iter(r)),
             kind,
         )
+
+
+def _not_shared(
+    net: FlatNet, place: FlatPlace, users: list[Owner], entry: ChannelConfig, d: Diagnostics
+) -> None:
+    """A channel that lacks a side. A port that has lost its socket is the usual reason."""
+    lost = [
+        p
+        for p in net.place_instances
+        if p.is_port
+        and not p.is_assigned
+        and p.place != place.index
+        and net.places[p.place].colset.resolved == place.colset.resolved
+        and not any(_overlap(o.instance, p.instance) for o in users)
+    ]
+    lost = [p for p in lost if p.name == place.short] or lost
+    who = f"by {users[0].phrase} alone" if users else "by no owner"
+    place_named = f"`{place.short}` of page `{place.page}`"
+    d.error(
+        codes.CHANNEL_NOT_SHARED,
+        f"place `{place.name}` is used {who}, but a channel is shared by two owners",
+        entry.origin,
+        notes=[
+            Note(
+                f"port `{p.name}` of page `{p.page}` (`{p.instance}`) is not assigned to any place",
+                net.places[p.place].origins[0],
+            )
+            for p in lost[:3]
+        ],
+        hint=f"assign port `{lost[0].name}` of page `{lost[0].page}` to place {place_named} in CPN Tools"
+        if lost
+        else f"connect place {place_named} to the page of the other owner, with a port; an entry for a place inside "
+        "one program is not needed",
+    )
 
 
 def _kind(entry: ChannelConfig, place: FlatPlace) -> ChannelKind:

@@ -183,6 +183,7 @@ class PlaceInstance:
         place: index in `FlatNet.places`.
         caption: the name exactly as it is written, with line breaks; "" if it has none.
         is_assigned: whether it is a port that has a socket.
+        is_port: whether it is a port.
     """
 
     id: str
@@ -193,6 +194,7 @@ class PlaceInstance:
     place: int
     caption: str = ""
     is_assigned: bool = False
+    is_port: bool = False
 
 
 @frozen

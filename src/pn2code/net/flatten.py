@@ -104,6 +104,7 @@ class _Flattener:
                     place=group_of[(instance.index, place.id)],
                     caption=captions.get(place.id, place.name),
                     is_assigned=self.has_socket(instance, place),
+                    is_port=bool(place.port),
                 )
                 for instance in self.instances
                 for place in instance.page.places
