@@ -12,6 +12,7 @@ from typing import Annotated
 
 import typer
 
+from pn2code import pipeline
 from pn2code.cli import controller, medium, properties
 from pn2code.cli.interrupts import Interrupts
 from pn2code.cli.nets import OpenNet, open_net, playing
@@ -217,6 +218,7 @@ def verify(
     _check_kind(plot_to, PLOT_KINDS, "--plot")
     opened = open_net(net, parse_values(settings), form, int_bits=int_bits)
     d = Diagnostics()
+    pipeline.divided(opened.flat, opened.config, d)
     asked = properties.asked(opened, texts, file, d, found=found_properties)
     if d.has_errors:
         stop(d, form)
