@@ -55,6 +55,8 @@ typedef struct ex_options {
     const char *queries;        /* file of questions; NULL: none */
     const char *query_trace_to; /* what the names of traces that prove their answers begin with */
     const char *error_trace_to; /* the same for the trace to an exception */
+    const char *ends_in;     /* phase in which the time ends as soon as it begins, whatever the clock says; NULL: none */
+    uint64_t multiset_limit; /* colours of a multi-set bound that are printed */
     uint64_t parent;         /* process that started it, and without which it is to end; 0: none */
 } ex_options_t;
 
@@ -62,6 +64,7 @@ typedef struct ex_options {
 typedef enum ex_why {
     EX_COMPLETE,
     EX_DECIDED,  /* all questions have been answered before that */
+    EX_APPROXIMATE, /* nothing was in the way, but states may have been taken for others: it is never complete */
     EX_STATES,
     EX_SECONDS,
     EX_MEMORY,
@@ -556,7 +559,9 @@ typedef struct ex_run {
     _Atomic(const char *) phase; /* for the progress lines */
     const uint32_t *owner_of; /* by transition: whose it is; priorities count among those of one owner. NULL: among all */
     struct ex_graph *graph;  /* of explore_graph.c; NULL: none */
-    bool is_seen_whole;          /* all states have been expanded */
+    bool is_seen_whole;          /* all states have been expanded, and none was taken for another one */
+    bool has_arcs;               /* the graph of them has been made, with all arcs */
+    bool has_components;         /* and gone through: components, home, liveness, fairness */
     struct ex_queries *queries;  /* of explore_query_read.c; NULL: nothing is asked */
     struct ex_raised *raised; /* of explore_error.c; NULL: the way to the exception is not known */
 } ex_run_t;
@@ -578,6 +583,13 @@ void ex_check_pause(ex_run_t *run);
 void ex_stop(ex_run_t *run, ex_why_t why);
 /* The same for the error in the worker's context. */
 void ex_fail(ex_worker_t *worker, int64_t transition);
+/* Another part of the work begins; the name is for the progress lines. */
+void ex_phase(ex_run_t *run, const char *phase);
+/* Whether the states are stored as they are. */
+static inline bool ex_is_exact(const ex_run_t *run)
+{
+    return !run->options.is_bitstate && !run->options.is_hashed;
+}
 /* As the report has it. */
 const char *ex_why_text(ex_why_t why);
 /* Whether to stop: asked often (once in a few states or arcs), it looks at signals and, now and then, at the clock. */

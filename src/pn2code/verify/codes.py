@@ -10,6 +10,14 @@ EXPLORER_FAILED = register(
     "The compiled explorer was killed or did not say how it ended. When the system ended it (not enough memory), give "
     "it a limit with `--memory`, so that it stops in time and tells what it has seen; else this is a bug in pn2code.",
 )
+TIME_OVER = register(
+    "time-over",
+    "the time of `--max-seconds` was over before the work was done",
+    "`--max-seconds` limits the whole command: reading and checking the net, translating it to C, compiling, "
+    "exploring, answering and printing. What was running when the time was over has been ended, the C compiler "
+    "included; what is not known because of that is reported as not known (exit code 3). Give it more time. A net that "
+    "has been compiled once is kept, so that the second run needs less.",
+)
 STATE_ERROR = register(
     "state-error",
     "an inscription raises an exception in a marking that can be reached",
