@@ -31,7 +31,8 @@ from pn2code.verify.programs import Sizes, generated
 QUICK = ("-O0",)
 SANITIZERS = ("-g1", "-O0", "-fsanitize=address,undefined", "-fno-sanitize-recover=all")
 THREADS = ("-g1", "-O0", "-fsanitize=thread")
-SECONDS = 120
+SECONDS = 600
+"""Ends what hangs."""
 LIBRARY = "libnet.so"
 OTHER_HOSTS = tuple(name for name in HOSTS if name != "explore")
 
@@ -112,6 +113,13 @@ class Explorers:
         command += [f"-I{cnative_folder() / 'include'}", f"-I{folder}", *arguments]
         done = subprocess.run(command, cwd=folder, capture_output=True, text=True, check=False)
         assert done.returncode == 0, done.stderr[-3000:]
+
+    def library(self, name: str, folder: Path) -> Path:
+        """A source of `cnative/tests` as a shared library, for `LD_PRELOAD`."""
+        made = folder / f"{name}.so"
+        source = cnative_folder() / "tests" / f"{name}.c"
+        self._run(folder, "-shared", "-D_GNU_SOURCE", str(source), "-ldl", "-o", str(made))
+        return made
 
     def build(self, flat: FlatNet, sizes: Sizes, name: str) -> Path:
         """A folder with a compiled net."""
