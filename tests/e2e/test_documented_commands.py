@@ -100,7 +100,7 @@ holds = "always {{ size (Mark.Top'Buffer 1) <= n }}"
 
 
 def lay_out(desk: Desk) -> None:
-    """What the documents call the reader's own: net.cpn, mynet.cpn, net.pnml, cell.toml, and what is made of it in DIR."""
+    """What the documents call the reader's own: net.cpn, mynet.cpn, net.pnml, cell.toml, and what it gives in DIR."""
     at = desk.project
     for name in ("net", "mynet"):
         write(NET, at / f"{name}.cpn")
