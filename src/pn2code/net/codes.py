@@ -147,6 +147,13 @@ ARC_IGNORED = register(
     "Inhibitor arcs test that a place has no tokens and reset arcs empty it; an inscription means "
     "nothing there.",
 )
+ARC_AS = register(
+    "arc-as-pattern",
+    "an arc inscription has a pattern with `as`",
+    "pn2code understands `x as pattern` on an input arc of an untimed place, where x is bound to the whole token. "
+    "CPN Tools 4.0.0 says `syntax error` and refuses the net. Write the pattern without `x as` and `_`, with a "
+    "variable for each part, and on output arcs the pattern again; or write `x` and take it apart in the guard.",
+)
 UNBOUND_VARIABLE = register(
     "unbound-variable",
     "a variable of a transition gets no value",

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from pn2code.diagnostics import Diagnostics, Note
+from pn2code.diagnostics import Diagnostics, Note, Origin
 from pn2code.net import editor
 from pn2code.net.codes import (
     FUSION_MEMBER,
@@ -39,6 +39,7 @@ from pn2code.reading.document import (
     RawBlock,
     RawDeclaration,
     RawFusion,
+    RawMl,
     RawPage,
     RawPlace,
     RawTransition,
@@ -101,6 +102,7 @@ class _Linker:
             prime_pages=tuple(p.id for p in pages if p.id not in used),
             fusions=fusions,
             real_time=options.get("realtimestamp", "").lower() == "true",
+            blocks=dict(_blocks(self.document.globbox)),
         )
 
     def page(self, page: RawPage, fusion_of: dict[str, str]) -> Page:
@@ -357,6 +359,14 @@ def _flatten(block: RawBlock) -> Iterator[RawDeclaration]:
             yield from _flatten(item)
         else:
             yield item
+
+
+def _blocks(block: RawBlock, outer: str = "") -> Iterator[tuple[Origin, str]]:
+    for item in block.items:
+        if isinstance(item, RawBlock):
+            yield from _blocks(item, "/".join(filter(None, (outer, item.name))))
+        elif isinstance(item, RawMl) and outer:
+            yield item.origin, outer
 
 
 def _unless(inscription: Inscription | None, defaults: set[str]) -> Inscription | None:
