@@ -3,7 +3,8 @@
     seen = Seen(path)                          # the net, read and checked here
     seen.verdict(answer)                       # of `engine.check`, or of any other verb
     seen.marking(answer); seen.run(answer); seen.space(answer)
-        -> a Verdict: "agrees", "differs", "random", or "" when there is nothing to compare; and a note
+        -> a Verdict and a note: "agrees", "differs", "random" (the net draws, or leaves a choice to the engine),
+           "engine" (it fails with an internal error), "unsupported" (and said so), "" (nothing to compare)
 
 An exception of pn2code that is no diagnostic comes out: it is a bug whatever the engine says.
 """
@@ -50,6 +51,9 @@ class Verdict:
 
 AGREES = Verdict("agrees")
 NOTHING = Verdict("")
+ENGINE = Verdict("engine", "the engine fails with an internal error")
+BROKEN = "InternalError"
+"""So the engine names what is wrong with itself."""
 
 
 def differs(note: str) -> Verdict:
@@ -80,6 +84,8 @@ class Seen:
         if failure is not None and failure["kind"] in ("timeout", "crash", "file"):
             return NOTHING
         wrong = [e for e in answer["errors"] if not self._warns(e)]
+        if any(BROKEN in e["message"] for e in wrong):
+            return ENGINE
         if failure is not None and failure["stage"] == "check" and failure["kind"] != "rejected":
             return NOTHING
         if self.raised and self._says_error(answer):
@@ -158,6 +164,8 @@ class Seen:
         if found.error is not None and not answer["stopped_by_error"] and answer["entire"]:
             return differs(f"here the exploration ends with {found.error['message']}")
         if answer["stopped_by_error"]:
+            if BROKEN in answer["stopped_by_error"]:
+                return ENGINE
             if found.error is None and found.complete:
                 return differs(f"the engine ends with {answer['stopped_by_error']}")
             return AGREES
