@@ -1,5 +1,5 @@
 # What `make` users expect; ./dev does the work and says what else there is.
-.PHONY: thorough database-15 help test lint fuzz bench ml-suite conformance mutation oracle
+.PHONY: thorough database-15 help test lint fuzz bench ml-suite conformance mutation oracle misspell
 
 help:
 	@./dev help
