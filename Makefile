@@ -4,7 +4,7 @@
 help:
 	@./dev help
 
-test lint bench ml-suite conformance mutation oracle:
+test lint bench ml-suite conformance mutation oracle misspell:
 	./dev $@
 
 # The tests with all of their long sweeps.
