@@ -85,7 +85,11 @@ class Effects:
         Those that transitions assign; and if they assign any, or the contents of any cell, all through which cells are
         reached, and all of which the address is known to others.
         """
-        nodes = [n for t in self._net.transitions for n in self._reached((t.enumerate, t.fire, t.thresholds))]
+        nodes = [
+            n
+            for t in self._net.transitions
+            for n in self._reached((t.enumerate, t.fire, t.thresholds))
+        ]
         if not any(map(is_assignment, nodes)):
             return ()
         assigned = {n.name for n in nodes if isinstance(n, ir.SetGlobal) and n.is_reference}

@@ -96,7 +96,9 @@ class Game:
         self._remembered = Remembered(net, self.enabling)
         self._by_priority = sorted(net.transitions, key=lambda t: t.priority)
         self._references, self._assigning = tracked(net, self.evaluator)
-        self._present: Held = NOTHING  # what the references hold, as far as occurrences are concerned
+        self._present: Held = (
+            NOTHING  # what the references hold, as far as occurrences are concerned
+        )
         self.start: int | float = 0.0 if net.real_time else 0
         own = Marking(self.start, tuple(map(self._initial, net.places)))
         self.own_initial_marking = self.with_references(own)
