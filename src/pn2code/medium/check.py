@@ -277,7 +277,9 @@ def _evidence(
         if fault not in seen:
             seen.add(fault)
             yield Evidence(fault, trace.steps, lines)
-    for answer in found.answers:  # nothing is asked of a cell without final places: it is made to go on for ever
+    for answer in (
+        found.answers
+    ):  # nothing is asked of a cell without final places: it is made to go on for ever
         if answer["answer"] == "no" and None not in seen and answer["trace"]:
             lines, _ = teller.told(Path(answer["trace"]))
             yield Evidence(

@@ -33,6 +33,14 @@ def warn(net: FlatNet, d: Diagnostics) -> None:
         )
 
 
+def draws(net: FlatNet) -> bool:
+    """Whether random numbers or files decide anything."""
+    effects = Effects(net.program)
+    return any(
+        e in effects.of(*_texts(t)) for t in net.transitions for e in (Effect.DRAW, Effect.LOOK)
+    )
+
+
 def _texts(t: FlatTransition) -> Iterator[Any]:
     yield from (t.guards, t.delay, t.code.action if t.code else None)
     yield from (a.inscription.value for a in t.arcs if a.inscription)

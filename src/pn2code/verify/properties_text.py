@@ -45,6 +45,8 @@ def remarks(a: Answer) -> list[str]:
         found.append(f"{_VALUES.get(a.about.kind, 'value')}: {number(a.value)}")
     if a.answer == "inconclusive" and a.why:
         found.append(f"not known: {a.why}")
+    if a.net is not None:
+        found.append(f"net: {a.net}. {a.net_why}")
     if not a.about.expect and a.answer != "inconclusive":
         found.append("as expected" if a.is_expected else "expected to be false")
     return found
