@@ -22,6 +22,7 @@ from pn2code.medium.places import Crashes, MediumNet, modelled
 from pn2code.medium.rules import Rules
 from pn2code.medium.skeleton import Skeleton, Topology, topology
 from pn2code.medium.tell import Teller
+from pn2code.verify import basis
 from pn2code.verify.answers import Verdict
 from pn2code.verify.explore import Wishes, explore
 from pn2code.verify.limits import Limits, Reduction
@@ -73,6 +74,11 @@ class Answer:
     assumes: str
     evidence: tuple[Evidence, ...]
 
+    @property
+    def rests_on(self) -> str | None:
+        """What has to be seen for this answer: a word of `basis`; None: there is no answer."""
+        return {"yes": basis.ARCS, "no": basis.RUN}.get(self.answer)
+
     def row(self) -> dict[str, Any]:
         """For programs."""
         return {
@@ -86,6 +92,7 @@ class Answer:
             "transitions": self.transitions,
             "seconds": round(self.seconds, 3),
             "assumes": self.assumes,
+            "rests_on": self.rests_on,
             "evidence": [
                 {
                     "fault": None if e.fault is None else e.fault.name.lower(),

@@ -24,7 +24,7 @@ from pn2code.diagnostics import Diagnostics
 from pn2code.net.flat import ArcKind
 from pn2code.properties import meaning as m
 from pn2code.properties.questions import Questions
-from pn2code.verify import chance
+from pn2code.verify import basis, chance
 from pn2code.verify.explore import Wishes, explore
 from pn2code.verify.limits import Limits, Reduction
 from pn2code.verify.programs import Sizes
@@ -117,6 +117,11 @@ class Check:
     place: str | None = None
 
     @property
+    def rests_on(self) -> str | None:
+        """What has to be seen for this answer: a word of `basis`; None: there is no answer."""
+        return basis.of_check(self.name, self.answer, self.why, has_run=bool(self.evidence))
+
+    @property
     def fails(self) -> bool:
         """Whether the supervisor is wrong."""
         return self.answer == "no" and not self.is_accepted
@@ -131,6 +136,7 @@ class Check:
             "why": self.why,
             "accepted": self.is_accepted,
             "kept": self.name in KEPT,
+            "rests_on": self.rests_on,
             "transitions": list(self.transitions),
             "place": self.place,
             "evidence": [e.row() for e in self.evidence],
@@ -417,7 +423,7 @@ def _finite(row: Mapping[str, Any], keep: _Keeper) -> Check:
         return Check(FINITE, "yes", "the supervisor always comes to rest")
     evidence = keep.all(row, FINITE)
     round_ = evidence[0].transitions[evidence[0].loop :] if evidence else ()
-    ways = f": {_named(round_)}, over and over" if round_ else ""
+    ways = f" by repeating {_named(round_)}" if round_ else ""
     says = f"the supervisor can fire for ever{ways}"
     return Check(FINITE, "no", says, evidence=evidence, transitions=tuple(dict.fromkeys(round_)))
 

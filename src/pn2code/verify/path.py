@@ -74,7 +74,7 @@ def play(
     Raises:
         TraceRefusedError, GameError, OSError: as for `steps`, now or later.
     """
-    opened = Trace.open(trace, net)
+    opened = Trace.open(trace, net, is_shown=True)
     game = Game(
         net,
         storage,

@@ -38,6 +38,7 @@ from pn2code.frozen import frozen
 from pn2code.ml import core
 from pn2code.net.builder import Arc, Builder
 from pn2code.net.flat import ArcKind, FlatArc, FlatNet, FlatTransition
+from pn2code.semantics.parties import VERIFY
 from pn2code.verify import time_reduction
 from pn2code.whole_file import whole_file
 
@@ -138,8 +139,10 @@ class Running:
                 row["step"] = steps
             elif not kept:
                 row["by"] = (
-                    "verify"  # priorities count among the transitions of an owner, and time goes on
+                    VERIFY  # priorities count among the transitions of an owner, and time goes on
                 )
+            elif row.get("event") == "end":
+                row["why"] = "evidence"
             kept.append(json.dumps(row, ensure_ascii=False) + "\n")
         if loop is not None and begins is None:
             begins = steps
