@@ -103,10 +103,12 @@ class Header:
     Args:
         seed: of the random numbers of the run, None if it does not say.
         initial: markings that replace initial markings, by name of the place.
+        by: who wrote it.
     """
 
     seed: int | None
     initial: Mapping[str, PlaceMarking]
+    by: str
 
 
 class Trace:
@@ -159,7 +161,7 @@ class Trace:
                 found[name] = place_from_json(places[name].colset, data)
             except JsonError as error:
                 raise TraceRefusedError(f"initial marking of `{name}`: {error}", 1) from None
-        return Header(seed, found)
+        return Header(seed, found, str(line["by"]))
 
     def steps(self) -> Iterator[Step]:
         """The occurrences, in order; notes and the end are passed over.
