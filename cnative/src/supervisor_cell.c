@@ -235,13 +235,16 @@ static bool publish(sup_t *sup)
 
 /* --- the cycle -------------------------------------------------------------------------------------------------------- */
 
-/* One cycle at `t` seconds. False when the program has to stop. */
+/* One cycle at `t` seconds, or in real time. False when the program has to stop. */
 static bool cycle(sup_t *sup, double t, uint64_t *fired)
 {
     *fired = 0U;
     sup->t = (t > sup->t) ? t : sup->t;
     if (!read_channels(sup) || !sup_monitor_messages(sup, PN_CHANNEL_IN)) {
         return false;
+    }
+    if (!sup->options.lockstep) { /* a message that has been seen is not later than the time at which it is acted upon */
+        sup->t = fmax(sup->t, wall_time());
     }
     sup_set_time(sup, sup->t);
     if (!sup_play(sup, sup->cell->owner, NULL, NULL, fired)) {
