@@ -17,7 +17,9 @@ def main() -> int:
     parser.add_argument("--cells", type=int, default=1000, help="how many (default: %(default)s)")
     parser.add_argument("--seed", type=int, default=1, help="of the first (default: %(default)s)")
     parser.add_argument("--runs", type=int, default=12, help="of each cell (default: %(default)s)")
-    parser.add_argument("--keep", type=Path, default=Path(".adversary"), help="where those go that are wrong")
+    parser.add_argument(
+        "--keep", type=Path, default=Path(".adversary"), help="where those go that are wrong"
+    )
     options = parser.parse_args()
     count: Counter[str] = Counter()
     for seed in range(options.seed, options.seed + options.cells):

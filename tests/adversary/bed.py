@@ -7,11 +7,12 @@ from dataclasses import dataclass
 from pathlib import Path
 from random import Random
 
-from helpers.netbuilder import cpn
-from pn2code.diagnostics import Diagnostics
 from tests.adversary import wander
 from tests.adversary.cells import Cell, random_cell
 from tests.adversary.judge import ask, claims_text, contradictions
+
+from helpers.netbuilder import cpn
+from pn2code.diagnostics import Diagnostics
 
 
 @dataclass(frozen=True)
@@ -53,6 +54,10 @@ def judge(seed: int, folder: Path, runs: int) -> Verdict:
     counts.update(f"claim {answer}" for answer in said.claims)
     counts.update(f"medium {m['answer']}" for m in said.medium[:1])
     made = [wander.run(built, k) for k in range(runs)]
+    r = Random(seed)
+    for k in range(max(1, runs // 4)):
+        who = r.choice([o.name for o in built.generated.partition.owners])
+        made += wander.run_again(built, 1000 + 2 * k, wander.Crash(who, r.randint(1, 12)))
     counts.update(f"run {r.end}" for r in made)
     wrong = tuple(contradictions(cell, said, made, built.generated.partition.net))
     counts["wrong"] += bool(wrong)

@@ -13,7 +13,12 @@ from collections.abc import Iterator
 from dataclasses import dataclass, field
 from random import Random
 
-TYPES = {"INT": ["1", "2", "0"], "B": ["true", "false"], "COL": ["red", "green"], "SMALL": ["1", "2"]}
+TYPES = {
+    "INT": ["1", "2", "0"],
+    "B": ["true", "false"],
+    "COL": ["red", "green"],
+    "SMALL": ["1", "2"],
+}
 PRIORITIES = ["", "", "", " priority P_HIGH", " priority P_LOW"]
 
 
@@ -64,7 +69,9 @@ class _Page:
         return name
 
     def transition(self, name: str, arcs: list[str], head: str = "") -> None:
-        self.transitions.append("\n".join([f"    trans {name}{head}", *(f"      {a}" for a in arcs)]))
+        self.transitions.append(
+            "\n".join([f"    trans {name}{head}", *(f"      {a}" for a in arcs)])
+        )
 
     def text(self) -> str:
         return "\n".join([f"  page {self.name}", *self.ports, *self.places, *self.transitions])
@@ -79,6 +86,7 @@ class _Maker:
         self.pages: list[_Page] = []
         self.toml: list[str] = []
         self.has_sensors = False
+        self.may_fail = False
         self.looked_at: list[str] = []
 
     # --- devices -------------------------------------------------------------------------------
@@ -195,7 +203,8 @@ class _Maker:
             other = r.randint(1, devices)
             arcs = [f"in Have{k} : ()", "in Tick : n", "out Tick : n + 1", f"out Idle{other} : ()"]
             page.transition("More", arcs, f"{r.choice(PRIORITIES)} guard [n < {r.randint(1, 2)}]")
-        if r.random() < 0.4:
+        self.may_fail = r.random() < 0.5
+        if self.may_fail:
             page.transition("GiveUp", ["in Alarm : ()", "out Failed : ()"], r.choice(PRIORITIES))
         if devices > 1 and r.random() < 0.5:
             a, b = r.sample(range(1, devices + 1), 2)
@@ -217,13 +226,15 @@ class _Maker:
                 self.top.place(name, colset)
                 sockets.append(f"{name} -> {name}")
                 sort = "data" if name.startswith("d") else "flag"
-                self.toml.append(f'[[channel]]\nplace = "{name}"\nfile = "{name}.txt"\nkind = "{sort}"')
+                self.toml.append(
+                    f'[[channel]]\nplace = "{name}"\nfile = "{name}.txt"\nkind = "{sort}"'
+                )
             data = f", dat -> d{k}" if has_data else ""
             self.top.transitions.append(f"    subst D{k} = Dev{k} (cmd -> c{k}, ans -> a{k}{data})")
             self.toml.append(f'[devices.dev{k}]\ninstance = "D{k}"')
         self.ends(devices)
         self.top.transitions.insert(0, f"    subst Supervisor = Sup ({', '.join(sockets)})")
-        final = ["Finished"] + (["Failed"] if r.random() < 0.5 else [])
+        final = ["Finished"] + (["Failed"] if self.may_fail and r.random() < 0.7 else [])
         claims = tuple(self.claims())
         return Cell(self.net(), self.config(final), claims, self.has_sensors)
 
@@ -246,7 +257,11 @@ class _Maker:
             'order = "documented"',
         ]
         act = f'[primitives]\nact = {{ command = "tool", action = "act", duration_s = {r.choice([0.5, 2.0, 4.0])} }}'
-        sensors = ['[sensors.verdict]\ndefault = "green"'] if self.has_sensors and r.random() < 0.3 else []
+        sensors = (
+            ['[sensors.verdict]\ndefault = "green"']
+            if self.has_sensors and r.random() < 0.3
+            else []
+        )
         if self.has_sensors and not sensors:
             sensors = ["[sensors.verdict]\nseed = 3"]
         return "\n".join([*head, *self.toml, act, *sensors]) + "\n"

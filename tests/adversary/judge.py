@@ -8,6 +8,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+from tests.adversary.cells import Cell, Claim
+from tests.adversary.wander import Run
 from typer.testing import CliRunner
 
 from pn2code.cli.main import app
@@ -16,8 +18,6 @@ from pn2code.net.flat import FlatNet
 from pn2code.semantics.colour_json import from_json
 from pn2code.semantics.game import Game
 from pn2code.semantics.marking import BindingElement
-from tests.adversary.cells import Cell, Claim
-from tests.adversary.wander import Run
 
 
 @dataclass(frozen=True)
@@ -38,7 +38,16 @@ def ask(folder: Path, cell: Cell, seconds: float = 60.0) -> Said | str:
     traces.mkdir(exist_ok=True)
     done = CliRunner().invoke(
         app,
-        ["verify", str(folder), "--json", "--traces", str(traces), "--max-seconds", str(seconds), *options],
+        [
+            "verify",
+            str(folder),
+            "--json",
+            "--traces",
+            str(traces),
+            "--max-seconds",
+            str(seconds),
+            *options,
+        ],
     )
     if done.exception is not None and not isinstance(done.exception, SystemExit):
         raise done.exception
@@ -87,10 +96,13 @@ def _tokens(game: Game) -> dict[str, int]:
 
 def contradictions(cell: Cell, said: Said, runs: Sequence[Run], net: FlatNet) -> Iterator[str]:
     """Each thing that was said and is not so."""
+    told: set[str] = set()
     for i, run in enumerate(runs):
         for text in _of_run(cell, said, run, net):
-            yield f"run {i} ({run.end} {run.why}): {text}"
-    ends = [r.end for r in runs]
+            if text not in told:
+                yield f"run {i} ({run.end} {run.why}): {text}"
+            told.add(text)
+    ends = [r.end for r in runs if r.end != "crashed"]
     if not cell.has_sensors and _answer(said, "non-blocking") == "yes" and set(ends) == {"endless"}:
         yield "non-blocking is yes, but no run comes to an end"
 
@@ -109,6 +121,8 @@ def _of_run(cell: Cell, said: Said, run: Run, net: FlatNet) -> Iterator[str]:
         if answer == "yes" and broken:
             yield f"`{claim.text}` is yes, but not after {broken[0]} steps"
     whole = [m["answer"] for m in said.medium[:1]]
+    if run.end == "crashed" and not any(w in run.why for w in ("died", "dead", "ended", "gone")):
+        yield "a side died, but nobody says so"
     if run.end == "stuck":
         if _answer(said, "non-blocking") == "yes":
             yield "non-blocking is yes"

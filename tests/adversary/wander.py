@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import os
+import signal
 from contextlib import ExitStack
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -71,6 +73,14 @@ def prepare(folder: Path, d: Diagnostics) -> Built | None:
     return None if program is None else Built(generated, scripts, program, robot_cell, folder)
 
 
+@dataclass(frozen=True)
+class Crash:
+    """A side dies without a word after so many events: `who` is the supervisor, or a device by name."""
+
+    who: str
+    after: int
+
+
 class _Endless(Exception):  # noqa: N818
     """There have been enough events."""
 
@@ -81,8 +91,11 @@ class _Wanderer(Engine):
     random: Random
     held: dict[str, float]
     most_firings: int
+    crash: Crash | None
+    has_crashed: bool
 
     def _supervisor_cycle(self) -> bool:
+        self._perhaps_crash()
         if self._is_held(SUPERVISOR):
             return False
         before = len(self.record.events)
@@ -92,7 +105,7 @@ class _Wanderer(Engine):
         return moved
 
     def _robot_turn(self, robot: RobotRunner) -> bool:
-        if self._is_held(robot.name):
+        if self._is_held(robot.name) or (self.has_crashed and self._is_dead(robot.name)):
             return False
         moved = super()._robot_turn(robot)
         self._hold(robot.name, moved)
@@ -105,6 +118,20 @@ class _Wanderer(Engine):
         factors = [1.0, 1.0, 1.5, 3.0] if isinstance(command, Wait) else [0.2, 1.0, 1.0, 3.0]
         seconds = robot.motion.duration * self.random.choice(factors)
         robot.motion = replace(robot.motion, trajectory=Still(np.zeros(0), seconds))
+
+    def _is_dead(self, who: str) -> bool:
+        return self.crash is not None and self.crash.who == who
+
+    def _perhaps_crash(self) -> None:
+        if self.crash is None or self.has_crashed or len(self.record.events) < self.crash.after:
+            return
+        self.has_crashed = True
+        if self.crash.who == SUPERVISOR:
+            os.kill(self.supervisor.pid, signal.SIGKILL)
+            return
+        (dead,) = (r for r in self.robots if r.name == self.crash.who)
+        dead.motion = None
+        dead.files.shared.close()  # as the system does for a process that has died
 
     def _is_held(self, who: str) -> bool:
         return self.held.get(who, 0.0) > self.now
@@ -126,14 +153,21 @@ class _Wanderer(Engine):
         return max(self.now, min(times))
 
 
-def run(built: Built, seed: int) -> Run:
-    """One run; the same seed gives the same."""
+def run(built: Built, seed: int, shared: Path | None = None, crash: Crash | None = None) -> Run:
+    """One run; the same seed gives the same.
+
+    Args:
+        built: the programs.
+        seed: of all that is drawn.
+        shared: the shared directory, with whatever an earlier run has left there; None: a fresh one.
+        crash: who dies, and when.
+    """
     generated = built.generated
     config, partition = generated.config, generated.partition
     assert config is not None
     d = Diagnostics()
     with ExitStack() as stack:
-        shared = stack.enter_context(shared_directory(partition.net.name))
+        shared = shared or stack.enter_context(shared_directory(partition.net.name))
         trace_path = built.folder / "supervisor.trace.jsonl"
         supervisor = stack.enter_context(
             SupervisorProcess(built.program, shared, built.folder, trace_path, lockstep=True)
@@ -160,6 +194,7 @@ def run(built: Built, seed: int) -> Run:
             monitor=Monitor(built.cell, backend),
         )
         engine.random, engine.held, engine.most_firings = Random(seed), {}, 0
+        engine.crash, engine.has_crashed = crash, False
         sensors = load_sensors(config, partition.net, (built.folder,), seed, d)
         assert sensors is not None
         engine.sensors = sensors
@@ -171,13 +206,17 @@ def run(built: Built, seed: int) -> Run:
         except _Endless:
             supervisor.stop("enough")
             return Run("endless", f"more than {MOST_EVENTS} events", record, engine.most_firings)
-        record.header = {**trace.header, "by": "run"}
-    return Run(_end(record), record.reason, record, engine.most_firings)
+        end = "crashed" if engine.has_crashed else _end(record)
+    return Run(end, record.reason, record, engine.most_firings)
+
+
+def run_again(built: Built, seed: int, crash: Crash) -> tuple[Run, Run]:
+    """A run in which a side dies, and the run of a new session in the same directory."""
+    with shared_directory(built.generated.partition.net.name) as shared:
+        return run(built, seed, shared, crash), run(built, seed + 1, shared)
 
 
 def _end(record: RunRecord) -> str:
     if record.verdict == "finished":
         return "finished"
     return "stuck" if "the cell is stuck" in record.reason else "stopped"
-
-
