@@ -437,7 +437,7 @@ static bool make(ex_run_t *run)
     (void)pthread_mutex_init(&run->error_lock, NULL);
     (void)pthread_mutex_init(&run->gate, NULL);
     (void)pthread_cond_init(&run->gate_changed, NULL);
-    if (pn_net.has_references) {
+    if ((pn_net.root_count > 0U)) {
         run->options.threads = 1U; /* they are shared by all evaluations */
     }
     run->fired = ex_alloc(run, ((uint64_t)pn_net.transition_count + 1U) * sizeof *run->fired);

@@ -37,7 +37,7 @@ ALLOWED: dict[str, set[str]] = {
     "run": {"diagnostics", "cell", "channels", "emission", "net", "robot", "semantics", "tdl", "toolchain", "report",
             "pipeline"},
     "report": {"cell", "run", "robot", "diagnostics"},
-    "pipeline": {"diagnostics", "cell", "emission", "lowering", "net", "reading", "tdl", "verify"},
+    "pipeline": {"diagnostics", "cell", "emission", "lowering", "net", "reading", "robot", "tdl", "verify"},
     "unfold": {"diagnostics", "ml", "net", "semantics"},
     "convert": {"diagnostics", "ml", "net", "reading", "semantics", "unfold", "pnml"},
     "monitors": {"diagnostics", "ml", "net", "reading", "semantics"},

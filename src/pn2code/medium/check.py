@@ -273,11 +273,6 @@ def _question(net: MediumNet) -> str:
     return "\n".join(lines) + "\n"
 
 
-def _ends(net: MediumNet, found: Exploration) -> Sequence[Mapping[str, Any]]:
-    """The answer to the question; nothing for a cell that is made to go on for ever."""
-    return found.answers if any(found.fired[t] for t in net.ends) else ()
-
-
 def _evidence(
     net: MediumNet, storage: Mapping[str, str], found: Exploration, judged: bool
 ) -> Iterator[Evidence]:
@@ -289,7 +284,9 @@ def _evidence(
         if fault not in seen:
             seen.add(fault)
             yield Evidence(fault, trace.steps, lines)
-    for answer in _ends(net, found):
+    for answer in (
+        found.answers
+    ):  # nothing is asked of a cell without final places: it is made to go on for ever
         if answer["answer"] == "no" and None not in seen and answer["trace"]:
             lines, _ = teller.told(Path(answer["trace"]))
             yield Evidence(
@@ -306,6 +303,6 @@ def _verdict(
         return "no", ""
     if not found.complete:
         return "inconclusive", f"the exploration is not complete: {clause(found.why)}"
-    if judged and (found.dead_count or any(a["answer"] != "yes" for a in _ends(net, found))):
+    if judged and (found.dead_count or any(a["answer"] != "yes" for a in found.answers)):
         return "no", ""
     return "yes", ""

@@ -24,7 +24,7 @@ from pn2code.diagnostics import Diagnostics, Origin
 from pn2code.net.flat import FlatNet
 from pn2code.net.predicate import Predicate
 from pn2code.os_reason import os_reason
-from pn2code.verify import programs
+from pn2code.verify import chance, programs
 from pn2code.verify.codes import (
     BEYOND_ROOM,
     EXPLORER_FAILED,
@@ -112,6 +112,8 @@ def explore(
     began = time.perf_counter()
     try:
         with deadline.enforced():
+            if chance.refuse(net, d):
+                return None
             chosen = possible(net, limits.reductions, d, wishes.predicates)
             sizes = wishes.sizes or Sizes.start(net, storage)
     except TimeIsOverError:
