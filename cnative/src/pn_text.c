@@ -185,7 +185,7 @@ void pn_text_json_leaf(pn_text_t *text, const pn_leaf_t *leaf)
         pn_text_json_real(text, leaf->real);
         break;
     case PN_LEAF_STRING:
-        pn_text_json_string(text, leaf->text, strlen(leaf->text));
+        pn_text_json_string(text, leaf->text, leaf->length);
         break;
     case PN_LEAF_ENUM:
         if (leaf->text != NULL) {

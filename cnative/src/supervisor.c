@@ -233,6 +233,9 @@ static bool check_generated(sup_t *sup)
     if (strcmp(pn_net.digest, pn_cell.digest) != 0) {
         return sup_stop(sup, SUP_EXIT_INTERNAL, "net.c and cell_config.c are of different nets: generate again");
     }
+    if ((pn_cell.channel_count > PN_CELL_CHANNELS_MAX) || (pn_cell.peer_count > PN_CELL_PEERS_MAX)) {
+        return sup_stop(sup, SUP_EXIT_INTERNAL, "more than %u channels or %u robots", PN_CELL_CHANNELS_MAX, PN_CELL_PEERS_MAX);
+    }
     for (uint32_t i = 0U; i < pn_cell.channel_count; i++) {
         const pn_cell_channel_t *const channel = &pn_cell.channel[i];
         if ((channel->place >= pn_net.place_count) || (channel->peer >= pn_cell.peer_count) ||

@@ -14,6 +14,8 @@ extern "C" {
 #endif
 
 #define PN_CELL_ABI 1U
+#define PN_CELL_CHANNELS_MAX 128U
+#define PN_CELL_PEERS_MAX 64U
 
 /* One scalar of a token, as it is written in a file. The place's leaves (pn_place_t.leaf_kind) are the same scalars seen
  * from the net; here is what a reader needs besides: names of constructors and ranges. */

@@ -41,6 +41,7 @@ typedef struct pn_leaf {
     int64_t integer;   /* BOOL, INT, ENUM */
     double real;       /* REAL */
     const char *text;  /* STRING, and the constructor's name for ENUM; valid until the next firing */
+    uint32_t length;   /* of a STRING's text, in which any byte may be */
 } pn_leaf_t;
 
 /* Called for each enabled binding element; returns false to stop the enumeration. The binding lives until the call returns. */

@@ -51,9 +51,12 @@ def format_real(value: float) -> str:
     return f"{v:.{most}g}"
 
 
-def _format_string(value: str) -> str:
+def _format_string(value: str) -> str | None:
+    """None: it has characters beyond those of CPN ML, which are bytes."""
     out = []
-    for byte in value.encode("latin-1", errors="replace"):
+    if any(ord(c) > 0xFF for c in value):
+        return None
+    for byte in value.encode("latin-1"):
         if byte in b'"\\':
             out.append("\\" + chr(byte))
         elif 0x20 <= byte < 0x7F:
@@ -63,6 +66,13 @@ def _format_string(value: str) -> str:
     return '"' + "".join(out) + '"'
 
 
+def _in_range(scalar: Scalar, value: float) -> bool:
+    """Whether a number is in the range of its colour set, and an integer in 64 bits."""
+    low, high = scalar.low, scalar.high
+    fits = scalar.kind is ScalarKind.REAL or -(2**63) <= value < 2**63
+    return fits and (low is None or value >= low) and (high is None or value <= high)
+
+
 def _format_scalar(scalar: Scalar, value: ScalarValue) -> str | None:
     match scalar.kind:
         case ScalarKind.UNIT:
@@ -70,9 +80,10 @@ def _format_scalar(scalar: Scalar, value: ScalarValue) -> str | None:
         case ScalarKind.BOOL:
             return "1" if value else "0"
         case ScalarKind.INT | ScalarKind.INDEX:
-            return None if isinstance(value, (str, float)) else str(int(value))
+            fits = not isinstance(value, (str, float)) and _in_range(scalar, int(value))
+            return str(int(value)) if fits else None
         case ScalarKind.REAL:
-            if isinstance(value, str) or not math.isfinite(value):
+            if isinstance(value, str) or not math.isfinite(value) or not _in_range(scalar, value):
                 return None
             return format_real(float(value))
         case ScalarKind.STRING:
@@ -92,6 +103,8 @@ def format_scalars(scalars: Sequence[Scalar], values: Sequence[ScalarValue]) -> 
 _WORD = re.compile(r'(?:"(?:\\.|[^"\\])*"?|[^ \t\r"])+')
 _INTEGER = re.compile(r"[-+]?[0-9]+")
 _NUMBER = re.compile(r"[-+]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][-+]?[0-9]+)?")
+_MAX_NUMBER = 512
+"""No number's text is as long."""
 _ESCAPE = re.compile(r'\\(?:(["\\])|x([0-9a-f]{2}))')
 _STRING = re.compile(r'"(?:[^"\\]|\\["\\]|\\x[0-9a-f]{2})*"')
 
@@ -127,18 +140,22 @@ def _parse_scalar(scalar: Scalar, word: str) -> ScalarValue | str:
         case ScalarKind.INT | ScalarKind.INDEX:
             if _INTEGER.fullmatch(word) is None:
                 return _Wrong(f"{quote(word)} is not an integer ({where})")
+            if len(word) >= _MAX_NUMBER:
+                return _Wrong(f"{quote(word)} is too long for a number ({where})")
             value = int(word)
             if not -(2**63) <= value < 2**63:
                 return _Wrong(f"{quote(word)} is too large for an integer ({where})")
         case ScalarKind.REAL:
             if _NUMBER.fullmatch(word) is None:
                 return _Wrong(f"{quote(word)} is not a number ({where})")
+            if len(word) >= _MAX_NUMBER:
+                return _Wrong(f"{quote(word)} is too long for a number ({where})")
             value = float(word)
             if not math.isfinite(value):
                 return _Wrong(f"{quote(word)} is too large for a real number ({where})")
-    low, high = scalar.low, scalar.high
-    if (low is not None and value < low) or (high is not None and value > high):
-        return _Wrong(f"{quote(word)} is out of {where}, which goes from {low} to {high}")
+    if not _in_range(scalar, value):
+        text = f"{quote(word)} is out of {where}, which goes from {scalar.low} to {scalar.high}"
+        return _Wrong(text)
     return value
 
 
