@@ -135,6 +135,9 @@ static bool answer(char *line)
         return false;
     }
     const pn_cell_channel_t *const channel = &pn_cell.channel[strtoul(index, NULL, 10)];
+    if (channel->scalar_count > PN_CHANNEL_SCALARS) {
+        return false;
+    }
     return (strcmp(verb, "write") == 0) ? answer_write(channel, number, &rest) : answer_read(channel, number, &rest);
 }
 

@@ -459,8 +459,8 @@ static bool scalar_parse(const pn_scalar_t *scalar, const pn_word_t *word, pn_le
     return good;
 }
 
-/* The next word from `*at`; blanks inside double quotes belong to it. False at the end of the line. */
-static bool next_word(const char *line, size_t length, size_t *at, pn_word_t *word)
+/* The next word from `*at`; with `strings` blanks inside double quotes belong to it. False at the end of the line. */
+static bool next_word(const char *line, size_t length, bool strings, size_t *at, pn_word_t *word)
 {
     size_t i = *at;
     bool quoted = false;
@@ -473,7 +473,7 @@ static bool next_word(const char *line, size_t length, size_t *at, pn_word_t *wo
     while ((i < length) && (quoted || !is_blank(line[i]))) {
         if ((line[i] == '\\') && quoted && (i + 1U < length)) {
             i++;
-        } else if (line[i] == '"') {
+        } else if (strings && (line[i] == '"')) {
             quoted = !quoted;
         } else {
             /* a plain byte */
@@ -491,7 +491,7 @@ bool pn_scalars_parse(const pn_scalar_t *scalar, uint32_t count, const char *lin
     pn_word_t word = {line, 0U, 1U};
     size_t at = 0U;
     uint32_t i = 0U;
-    while (next_word(line, length, &at, &word)) {
+    while (next_word(line, length, true, &at, &word)) {
         if (i == count) {
             refuse(out, PN_REFUSAL_COUNT, word.column, "found %s after the %" PRIu32 " value%s that belong here",
                    pn_quote(word.text, word.length, shown, sizeof shown), count, (count == 1U) ? "" : "s");
@@ -530,9 +530,9 @@ static bool trailer_parse(const char *payload, size_t payload_length, const char
     pn_word_t crc;
     pn_word_t more;
     size_t at = 0U;
-    const bool shaped = next_word(line, length, &at, &hash) && next_word(line, length, &at, &seq) &&
-                        next_word(line, length, &at, &run) && next_word(line, length, &at, &crc) &&
-                        !next_word(line, length, &at, &more) && (hash.length == 1U) && (hash.text[0] == '#') &&
+    const bool shaped = next_word(line, length, false, &at, &hash) && next_word(line, length, false, &at, &seq) &&
+                        next_word(line, length, false, &at, &run) && next_word(line, length, false, &at, &crc) &&
+                        !next_word(line, length, false, &at, &more) && (hash.length == 1U) && (hash.text[0] == '#') &&
                         (seq.length <= 18U) && is_digit(seq.text[0]) && is_number(seq.text, seq.length, false) &&
                         (run.length < sizeof found_session) && (crc.length == 8U);
     uint32_t found_crc = 0U;

@@ -18,7 +18,6 @@
 #define MAX_FIRINGS_CELL 100000U
 #define MAX_FIRINGS_ALONE 1000000U
 
-static max_align_t s_arena_memory[PN_ARENA_DEFAULT_SIZE / sizeof(max_align_t)];
 static char s_trace_line[TRACE_LINE];
 static char s_initial[TRACE_LINE / 2U];
 static char s_directory[512];
@@ -268,7 +267,7 @@ static bool get_memory(sup_t *sup)
     if ((sup->options.files != NULL) && !pn_file_allow(sup->options.files)) {
         return sup_stop(sup, SUP_EXIT_USAGE, "there is no folder `%s`", sup->options.files);
     }
-    pn_arena_init(&sup->arena, s_arena_memory, sizeof s_arena_memory);
+    pn_arena_init(&sup->arena, pn_cell.arena, pn_cell.arena_size);
     pn_ctx_init(&sup->cx, &sup->arena, 1U);
     return true;
 }

@@ -103,6 +103,7 @@ def generate(
             digest=digest,
             version=version,
             verdicts=proofs.verdicts,
+            arena=proofs.arena,
         ),
         *emit_tdl.emit(robots, source=Path(net.file).name, digest=digest, version=version),
         *runtime.emit("supervisor", "simulate"),

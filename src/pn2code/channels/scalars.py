@@ -11,8 +11,9 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+from typing import Any
 
 from pn2code.cell.scalars import Scalar, ScalarKind
 
@@ -27,6 +28,21 @@ class Malformed:
     text: str
     column: int
     wrong_count: bool = False
+
+
+def scalars_of_json(data: Any) -> Iterator[ScalarValue]:
+    """The scalars of a token in the form of traces, in the declared order of its colour set."""
+    match data:
+        case list():
+            for item in data:
+                yield from scalars_of_json(item)
+        case dict():
+            for item in data.values():
+                yield from scalars_of_json(item)
+        case None:
+            yield 1  # unit
+        case _:
+            yield data
 
 
 def format_real(value: float) -> str:
@@ -73,6 +89,11 @@ def _in_range(scalar: Scalar, value: float) -> bool:
     return fits and (low is None or value >= low) and (high is None or value <= high)
 
 
+def _is_constructor(scalar: Scalar, word: str) -> bool:
+    """Of those that are known; else anything that CPN ML takes for a name."""
+    return word in scalar.names if scalar.names else _NAME.fullmatch(word) is not None
+
+
 def _format_scalar(scalar: Scalar, value: ScalarValue) -> str | None:
     match scalar.kind:
         case ScalarKind.UNIT:
@@ -89,7 +110,7 @@ def _format_scalar(scalar: Scalar, value: ScalarValue) -> str | None:
         case ScalarKind.STRING:
             return _format_string(value) if isinstance(value, str) else None
         case ScalarKind.ENUM:
-            return value if isinstance(value, str) and value in scalar.names else None
+            return value if isinstance(value, str) and _is_constructor(scalar, value) else None
 
 
 def format_scalars(scalars: Sequence[Scalar], values: Sequence[ScalarValue]) -> str | None:
@@ -103,6 +124,7 @@ def format_scalars(scalars: Sequence[Scalar], values: Sequence[ScalarValue]) -> 
 _WORD = re.compile(r'(?:"(?:\\.|[^"\\])*"?|[^ \t\r"])+')
 _INTEGER = re.compile(r"[-+]?[0-9]+")
 _NUMBER = re.compile(r"[-+]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][-+]?[0-9]+)?")
+_NAME = re.compile(r"[A-Za-z][A-Za-z0-9_']*")
 _MAX_NUMBER = 512
 """No number's text is as long."""
 _ESCAPE = re.compile(r'\\(?:(["\\])|x([0-9a-f]{2}))')
@@ -130,9 +152,8 @@ def _parse_scalar(scalar: Scalar, word: str) -> ScalarValue | str:
                 return _Wrong(f"{quote(word)} is neither `0` nor `1` ({where})")
             return word == "1"
         case ScalarKind.ENUM:
-            return (
-                word if word in scalar.names else _Wrong(f"{quote(word)} is not a value of {where}")
-            )
+            is_one = _is_constructor(scalar, word)
+            return word if is_one else _Wrong(f"{quote(word)} is not a value of {where}")
         case ScalarKind.STRING:
             if _STRING.fullmatch(word) is None:
                 return _Wrong(f"{quote(word)} is not a string in double quotes ({where})")

@@ -119,7 +119,9 @@ class Probe:
 
     def write(self, files: Sequence[tuple[str, str]], seconds: float | None = None) -> None:
         """Other parties publish files, and the clock shows so much since the start; None: as before."""
-        asked = [(f"write {n} {x.encode('latin-1').hex()}", "written") for n, x in files]
+        asked = [
+            (f"write {n.encode().hex()} {x.encode('latin-1').hex()}", "written") for n, x in files
+        ]
         if seconds is not None:
             asked.append((f"time {seconds!r}", "time"))
         self._asked(asked)

@@ -17,7 +17,6 @@ from dataclasses import dataclass, replace
 
 from pn2code.cell.config import CellConfig
 from pn2code.cell.partition import Partition
-from pn2code.channels.message import specs_of
 from pn2code.conform.clock import Clock
 from pn2code.conform.messages import scalars
 from pn2code.conform.primitives import Calls, noting
@@ -133,8 +132,8 @@ class _Product:
         self._most = most
         self._name = partition.owners[owner].name
         self._channels = {
-            spec.file.rpartition(".")[0]: channel.place
-            for spec, channel in zip(specs_of(partition), partition.channels, strict=True)
+            channel.name: channel.place
+            for channel in partition.channels
             if owner in (channel.writer, channel.reader)
         }
         self._files = _PlacesAsFiles()

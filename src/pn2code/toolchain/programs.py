@@ -287,7 +287,7 @@ class _Builder:
         objects = [f"{Path(s).stem}.o" for s in sources]
         # Large ones first, so that all processors are busy to the end.
         sources.sort(key=lambda name: -(room / name).stat().st_size)
-        groups = [sources[i::GROUPS] for i in range(GROUPS)]
+        groups = [sources[i::GROUPS] for i in range(min(GROUPS, len(sources)))]
 
         def compiled(group: Sequence[str]) -> bool:
             return self._compiler(room, "-Iruntime/include", "-c", *group, d=d)

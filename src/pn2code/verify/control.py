@@ -19,11 +19,13 @@ from typing import Any
 from pn2code.cell.partition import OwnerKind, Partition
 from pn2code.diagnostics import Diagnostics
 from pn2code.net.flat import ArcKind
+from pn2code.verify import arena, messages
 from pn2code.verify.explore import Wishes, explore
 from pn2code.verify.limits import Limits, Reduction
 from pn2code.verify.reasons import clause
 from pn2code.verify.reductions import OBSTACLES
 from pn2code.verify.result import Exploration
+from pn2code.verify.token_run import token_run
 from pn2code.whole_file import whole_file
 
 FINITE = "finite-response"
@@ -31,6 +33,8 @@ BOUNDED = "bounded-response"
 CONFLUENT = "confluence"
 BLOCKING = "non-blocking"
 CHANNELS = "channels"
+MESSAGES = "messages"
+MEMORY = "memory"
 OWNERSHIP = "ownership"
 
 TITLES = {
@@ -39,6 +43,8 @@ TITLES = {
     CONFLUENT: "Confluence",
     BLOCKING: "Non-blocking under control",
     CHANNELS: "One message in flight",
+    MESSAGES: "Every message can be sent",
+    MEMORY: "Room for lists and strings",
     OWNERSHIP: "Nothing touched that is another's",
 }
 MEANINGS = {
@@ -47,6 +53,8 @@ MEANINGS = {
     CONFLUENT: "the order in which the supervisor fires within a cycle does not matter",
     BLOCKING: "wherever the controlled cell gets, it can still reach a final marking",
     CHANNELS: "no channel ever holds two messages",
+    MESSAGES: "every message can be written into its file, and is read as it was written",
+    MEMORY: "the lists and strings of every marking and every firing have room in the supervisor",
     OWNERSHIP: "transitions touch places of their owner, and channels in their direction",
 }
 MAX_FIRINGS = 100_000
@@ -226,7 +234,9 @@ def examine(partition: Partition, plan: Plan, limits: Limits, d: Diagnostics) ->
         found = explore(net, plan.storage, limits, d, wishes)
         if found is None:
             return None
-        return Control((*answers(partition, found, plan), ownership(partition)), found)
+        sent = formats(partition, found, plan, d)
+        own = (*sent, memory(found), ownership(partition))
+        return Control((*answers(partition, found, plan), *own), found)
 
 
 # --- answers -------------------------------------------------------------------------------------
@@ -379,6 +389,44 @@ def _channels(partition: Partition, rows: Sequence[Mapping[str, Any]], keep: _Ke
     return Check(CHANNELS, "yes", says, most)
 
 
+def formats(
+    partition: Partition, found: Exploration, plan: Plan, d: Diagnostics
+) -> tuple[Check, ...]:
+    """Whether every message can be sent; nothing of a cell without channels."""
+    if not partition.channels:
+        return ()
+    sent = messages.examine(partition, found, d)
+    if sent.answer == "unknown":
+        return (_open(MESSAGES, {"why": found.why}),)
+    if sent.channel is None:
+        return (Check(MESSAGES, sent.answer, sent.says, sent.count),)
+    place = partition.net.places[sent.channel.place]
+    asked = questions(partition, plan.firings)
+    with tempfile.TemporaryDirectory(prefix="pn2code-") as name:
+        to = (plan.folder or Path(name)) / f"{plan.stem}.controller-{MESSAGES}.trace.jsonl"
+        run = token_run(partition.net, plan.storage, asked, place.index, sent.value, to, d)
+    evidence: tuple[Evidence, ...] = ()
+    if run is not None:
+        kept = None if plan.folder is None else run.file
+        evidence = (Evidence(run.steps, None, run.node, run.transitions, kept),)
+    return (Check(MESSAGES, "no", sent.says, sent.count, evidence=evidence, place=place.name),)
+
+
+def memory(found: Exploration) -> Check:
+    """Whether the supervisor's lists and strings have room; its arena is made as large as the state space says."""
+    size = arena.size(found)
+    if size is None or found.arena is None:
+        return _open(MEMORY, {"why": found.why})
+    firing, marking = found.arena["firing"], found.arena["marking"]
+    needs = f"at most {marking:,} bytes in a marking and {firing:,} in one firing"
+    if size > arena.MOST:
+        return Check(MEMORY, "no", f"lists and strings take {needs}, which is too much", firing)
+    says = f"lists and strings take {needs}; the supervisor has {size:,} bytes for them"
+    if firing == marking == 0:
+        says = "there are no lists and strings that need any"
+    return Check(MEMORY, "yes", says, firing)
+
+
 def _named(transitions: Sequence[str]) -> str:
     some = [f"`{t}`" for t in transitions[:_WAYS]]
     return ", ".join(some) + (", ..." if len(transitions) > _WAYS else "")
@@ -415,6 +463,7 @@ def ownership(partition: Partition) -> Check:
 
 def not_looked(why: str, partition: Partition) -> Control:
     """When there is no state space to look in."""
-    names = [FINITE, BOUNDED, CONFLUENT, BLOCKING, *([CHANNELS] if partition.channels else [])]
+    names = [FINITE, BOUNDED, CONFLUENT, BLOCKING]
+    names += [CHANNELS, MESSAGES, MEMORY] if partition.channels else [MEMORY]
     looked = tuple(_open(name, {"why": why}) for name in names)
     return Control((*looked, ownership(partition)), None)

@@ -88,6 +88,8 @@ class Exploration:
             how many; with "symmetry" a node stands for all markings that are symmetric to it.
         symmetries: for people, of "symmetry".
         answers: what the explorer says of each question, in order.
+        arena: bytes for lists and strings: "start" (before the first marking), "firing" (one occurrence), "marking";
+            None where bounds are not known.
     """
 
     complete: bool
@@ -111,6 +113,7 @@ class Exploration:
     reductions: tuple[str, ...]
     symmetries: tuple[str, ...] = ()
     answers: tuple[Mapping[str, Any], ...] = ()
+    arena: Mapping[str, int] | None = None
 
     @property
     def is_reduced(self) -> bool:
@@ -152,6 +155,7 @@ class Exploration:
             approximation=found.get("approximate"),
             reductions=tuple(found.get("reductions") or ()),
             answers=tuple(found.get("queries") or ()),
+            arena=found.get("arena"),
         )
 
     @property
