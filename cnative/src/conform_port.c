@@ -12,7 +12,8 @@
  *                       {PLACE: [[count, value], ...], ...}, "fired": N, "ended": null | "finished" | "stopped"}; "read" and "published"
  *                       have files in the order in which they were read and replaced; of a program that has ended, the state before is back then
  *
- * At the start the first cycle has been done, and its answer is given unasked.
+ * At the start the tables of the program (pn_cell, and what pn_net says of places and transitions) are told, then the first cycle is
+ * done, and its answer is given unasked.
  */
 #define _POSIX_C_SOURCE 200809L
 
@@ -27,6 +28,7 @@
 
 #include "pn/pn_port.h"
 #include "pn/pn_text.h"
+#include "conform_tables.h"
 #include "supervisor_impl.h"
 
 #define FILES_MAX 512U
@@ -330,6 +332,14 @@ static void answer(const char *ended)
     s_fired_before = (s_sup != NULL) ? s_sup->fired : 0U;
 }
 
+static void tables(void)
+{
+    pn_text_t text;
+    pn_text_init(&text, s_answer, sizeof s_answer);
+    conform_tables(&text);
+    say(text.truncated ? "{\"error\": \"the tables are too large to be told\"}" : s_answer);
+}
+
 /* A line of standard input, byte by byte: nothing may be read ahead, as what comes next may be for a copy of this process. */
 static bool command(char *line, size_t capacity)
 {
@@ -426,6 +436,7 @@ void __real_sup_run_cell(sup_t *sup);
 void __wrap_sup_run_cell(sup_t *sup);
 void __wrap_sup_run_cell(sup_t *sup)
 {
+    tables();
     s_sup = sup;
     __real_sup_run_cell(sup);
     answer(sup->stopped ? "stopped" : "finished");

@@ -13,7 +13,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from pn2code.cell.partition import Owner
-from pn2code.conform import core, robot, supervisor
+from pn2code.conform import core, data, declared, robot, supervisor
 from pn2code.conform.codes import GENERATED_UNREADABLE, PROBE_FAILED
 from pn2code.conform.probe import HOST, PATIENCE_S, Probe, ProbeError
 from pn2code.conform.scheme import MOST_STATES
@@ -168,6 +168,10 @@ class ProgramComparison:
             trace = Path(name) / "supervisor.trace.jsonl"
             options = ["--input", str(self._config.folder), "--trace", str(trace)]
             with closing(Probe(program, options, patience)) as probe:
+                difference = data.compare(self.made, probe.tables)
+                if difference is not None:
+                    deviation = supervisor.Deviation(difference, ())
+                    return supervisor.Report(complete=False, why="deviation", deviation=deviation)
                 self._initial = self._read(trace)
                 return supervisor.explore(self.made.partition, self._game(), probe, self._most)
 
@@ -178,6 +182,11 @@ class ProgramComparison:
         if checked is None:
             return None
         partition, game = self.made.partition, self._game()
+        difference = declared.compare(partition, self._config, owner.index, checked)
+        if difference is not None:
+            return robot.RobotReport(
+                owner.name, 0, 0, 0, 0, 0, complete=False, deviation=difference
+            )
         return robot.explore(partition, self._config, owner.index, checked, game, most=self._most)
 
     def _read(self, trace: Path) -> dict[str, PlaceMarking]:

@@ -72,6 +72,7 @@ class Probe:
         patience: seconds to wait for an answer; a program that takes longer does not come to rest.
 
     Attributes:
+        tables: what the program says of itself (cell_config.c, and the tables of net.c).
         first: what the first cycle has left.
         depth: states that are saved.
     """
@@ -91,6 +92,7 @@ class Probe:
         )
         self.depth = 0
         try:
+            self.tables = self._line()
             self.first = self._answer()
         except ProbeError:
             self.close()
