@@ -19,7 +19,14 @@ from pathlib import Path
 sys.path.insert(0, str(Path(__file__).parents[1]))
 
 from tests.mutation.judge import NONE, SURVIVED, Judge, judge_of
-from tests.mutation.mutants import Function, Mutant, of_c, of_script
+from tests.mutation.mutants import (
+    Function,
+    Mutant,
+    of_c,
+    of_declarations,
+    of_script,
+    of_tables,
+)
 
 from helpers.small_cell import write
 from pn2code.resources import cnative_folder
@@ -60,6 +67,8 @@ def of_cell(judge: Judge) -> dict[str, list[Mutant]]:
             for m in of_script(judge.files[name], name)
             if m.line in judge.lines[name]
         ],
+        "declarations": [m for name in scripts for m in of_declarations(judge.files[name], name)],
+        "tables": list(of_tables(judge.files["cell_config.c"], "cell_config.c")),
     }
 
 
@@ -82,8 +91,11 @@ def cells(folder: Path) -> Iterator[tuple[str, Path]]:
 def main() -> int:
     """The command."""
     parser = argparse.ArgumentParser(prog="./dev mutation", description=__doc__)
-    parser.add_argument("--each", type=int, default=60, help="mutants of each part of each cell")
+    parser.add_argument(
+        "--each", type=int, default=60, help="mutants of each part of each cell; 0: all"
+    )
     parser.add_argument("--seed", type=int, default=1)
+    parser.add_argument("--parts", nargs="*", help="names as in the table; default: all")
     parser.add_argument("--cells", nargs="*", help="names; default: all")
     options = parser.parse_args()
     tally = Tally()
@@ -95,9 +107,12 @@ def main() -> int:
         }
         for cell, judge in judges.items():
             for part, mutants in of_cell(judge).items():
+                if options.parts and part not in options.parts:
+                    continue
                 tally.take(cell, part, mutants, [judge], options)
         # A mutant of the scheduler is one of every cell: one that finds it out is enough.
-        tally.take("all", "scheduler", of_scheduler(), list(judges.values()), options)
+        if not options.parts or "scheduler" in options.parts:
+            tally.take("all", "scheduler", of_scheduler(), list(judges.values()), options)
     return tally.report()
 
 
@@ -120,7 +135,7 @@ class Tally:
         random.Random(f"{options.seed} {cell} {part}").shuffle(mutants)
         done = 0
         for mutant in mutants:
-            if done == options.each:
+            if options.each and done == options.each:
                 break
             result = SURVIVED
             for judge in judges:

@@ -157,8 +157,15 @@ class ProgramComparison:
         self._most = most
         self._initial: dict[str, PlaceMarking] = {}
 
-    def supervisor(self, program: Path, patience: float = PATIENCE_S) -> supervisor.Report:
-        """Compares a supervisor that was compiled with `probe.HOST`.
+    def supervisor(
+        self, program: Path, patience: float = PATIENCE_S, *, tables_first: bool = False
+    ) -> supervisor.Report:
+        """Compares a supervisor that was compiled with `probe.HOST`: in all states, then its tables.
+
+        Args:
+            program: the supervisor.
+            patience: seconds that it may take for an answer.
+            tables_first: where these differ, no state is looked at.
 
         Raises:
             ProbeError: it does not answer, or takes longer than `patience` seconds for an answer.
@@ -169,11 +176,15 @@ class ProgramComparison:
             options = ["--input", str(self._config.folder), "--trace", str(trace)]
             with closing(Probe(program, options, patience)) as probe:
                 difference = data.compare(self.made, probe.tables)
-                if difference is not None:
-                    deviation = supervisor.Deviation(difference, ())
-                    return supervisor.Report(complete=False, why="deviation", deviation=deviation)
-                self._initial = self._read(trace)
-                return supervisor.explore(self.made.partition, self._game(), probe, self._most)
+                report = supervisor.Report()
+                if difference is None or not tables_first:
+                    self._initial = self._read(trace)
+                    partition, game = self.made.partition, self._game()
+                    report = supervisor.explore(partition, game, probe, self._most)
+                if report.deviation is None and difference is not None:
+                    report.deviation = supervisor.Deviation(difference, ())
+                    report.complete, report.why = False, "deviation"
+                return report
 
     def script(self, owner: Owner, text: str, d: Diagnostics) -> robot.RobotReport | None:
         """Compares the script of a robot or device; None after an error in it that was reported."""

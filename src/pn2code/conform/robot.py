@@ -362,7 +362,7 @@ class _Product:
                 raise _DeviationError(
                     f"{where}, where the net raises an exception: {error}"
                 ) from None
-            if binding_to_json(occurred) == event.binding:
+            if _is_same(binding_to_json(occurred), event.binding):
                 self._compare_commands(where, tuple(self._called))
                 self._compare_sensors(where, t, event.binding)
                 self._owed = self._delay(self._marking, marking)
@@ -411,10 +411,19 @@ class _Product:
 
     def _compare_files(self) -> None:
         expected = self._view(self._marking)
-        if self._files.view != expected:
+        if not _is_same(self._files.view, expected):
             raise _DeviationError(
                 f"after line {self._interpreter.line} the files hold {self._files.view}, by the net {expected}"
             )
+
+
+def _is_same(a: object, b: object) -> bool:
+    """Whether two values are equal, and of one type: 1 is not 1.0, and neither is true."""
+    if isinstance(a, Mapping) and isinstance(b, Mapping):
+        return a.keys() == b.keys() and all(_is_same(a[k], b[k]) for k in a)
+    if isinstance(a, list | tuple) and isinstance(b, list | tuple):
+        return len(a) == len(b) and all(map(_is_same, a, b))
+    return type(a) is type(b) and a == b
 
 
 def _is_nothing(seconds: float, among: float) -> bool:
