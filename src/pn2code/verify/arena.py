@@ -24,7 +24,7 @@ def size(found: Exploration | None) -> int | None:
     Args:
         found: a state space with at least all markings that the cell can reach.
     """
-    if found is None or not found.complete or found.arena is None:
+    if found is None or not found.seen.markings or found.arena is None:
         return None
     start, firing, marking = (int(found.arena[part]) for part in ("start", "firing", "marking"))
     half = 2 * max(2 * firing, firing + marking)

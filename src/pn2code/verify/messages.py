@@ -73,12 +73,12 @@ def _is_unlimited(colset: Colset) -> bool:
     return colset.resolved.kind is Kind.INTINF or any(map(_is_unlimited, parts))
 
 
-def examine(partition: Partition, found: Exploration, d: Diagnostics) -> Format:
+def examine(partition: Partition, found: Exploration | None, d: Diagnostics) -> Format:
     """The answer.
 
     Args:
         partition: the cell.
-        found: a state space with at least all markings that the cell can reach.
+        found: a state space with at least all markings that the cell can reach; None: there is none.
         d: gets the errors.
     """
     net = partition.net
@@ -88,16 +88,18 @@ def examine(partition: Partition, found: Exploration, d: Diagnostics) -> Format:
         most = longest(net.places[channel.place].colset)
         if most is not None and most <= MAX_PAYLOAD:
             continue
-        multiset = found.bounds[channel.place].upper_multiset if found.bounds else None
-        is_open = is_open or multiset is None or not found.complete
+        bounds = found.bounds if found is not None else None
+        multiset = bounds[channel.place].upper_multiset if bounds else None
+        is_open = is_open or multiset is None or found is None or not found.seen.markings
         asked += [(index, value) for _, value in multiset or ()]
+    errors = len(d.errors)
     wrong = next(_wrong(partition, asked, d), None) if asked else None
     if wrong is not None:
         channel, value, why = wrong
         text = _shown(net.places[channel.place].colset, value)
         says = f"the message {text} of channel `{channel.name}` cannot be sent: {why}"
         return Format("no", says, len(asked), channel, value)
-    if is_open:
+    if is_open or len(d.errors) > errors:  # no C compiler
         return Format("unknown", "", len(asked))
     own = f"each of the {len(asked):,} values that come into channels" if asked else "every value"
     why = "" if asked else ", by the colour sets of the channels"

@@ -129,7 +129,7 @@ def _played(net: FlatNet, storage: Mapping[str, str], graph: _Graph, path: Path)
                 }
                 if arc["t"] > game.marking.time:
                     game.set_time(arc["t"])
-                file.occurrence(game, game.fire(BindingElement.make(t, bound)))
+                file.occurrence(game, game.fire(BindingElement.make(t, bound), checked=False))
                 named.append(t.name)
             file.end(game.marking.time, "steps")
     except TraceUnwritableError:
