@@ -430,7 +430,7 @@ def test_generate_refuses_a_supervisor_that_fails(tmp_path: Path) -> None:
         " * confluence: unchecked",
         " * non-blocking: unchecked",
         " * channels: unchecked",
-        " * messages: unchecked",
+        " * messages: yes",
         " * memory: unchecked",
         " * ownership: yes",
     ]

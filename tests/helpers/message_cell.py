@@ -12,7 +12,7 @@ net cell
   colset COLOUR = with red | green;
   colset KEPT = product INT * BOOL * STRING * COLOUR;
   val odd = "a\000b\"c\\ \255\n";
-  var k: INT;
+  var k, n: INT;
   var b: BOOL;
   var s: STRING;
   var c: COLOUR;
@@ -23,10 +23,9 @@ net cell
     place colour : COLOUR
     place back : INT
     place lie : BOOL
-    place echo : STRING
-    place tint : COLOUR
-    subst Supervisor = Sup (number -> number, truth -> truth, text -> text, colour -> colour, back -> back, lie -> lie, echo -> echo, tint -> tint)
-    subst Device = Dev (number -> number, truth -> truth, text -> text, colour -> colour, back -> back, lie -> lie, echo -> echo, tint -> tint)
+    place echo : KEPT
+    subst Supervisor = Sup (number -> number, truth -> truth, text -> text, colour -> colour, back -> back, lie -> lie, echo -> echo)
+    subst Device = Dev (number -> number, truth -> truth, text -> text, colour -> colour, back -> back, lie -> lie, echo -> echo)
   page Sup
     place number port out : INT
     place truth port out : BOOL
@@ -34,8 +33,7 @@ net cell
     place colour port out : COLOUR
     place back port in : INT
     place lie port in : BOOL
-    place echo port in : STRING
-    place tint port in : COLOUR
+    place echo port in : KEPT
     place Rounds : INT = 1`0
     place Armed : INT
     place Finished : KEPT
@@ -50,15 +48,13 @@ net cell
       in Armed : k
       in back : k * 5
       in lie : b
-      in echo : s
-      in tint : c
+      in echo : (n, b, s, c)
       out Rounds : k + 1
     trans Finish guard [k >= 1]
       in Armed : k
       in back : k * 5
       in lie : b
-      in echo : s
-      in tint : c
+      in echo : (n, b, s, c)
       out Finished : (k, b, s, c)
   page Dev
     place number port in : INT
@@ -67,8 +63,7 @@ net cell
     place colour port in : COLOUR
     place back port out : INT
     place lie port out : BOOL
-    place echo port out : STRING
-    place tint port out : COLOUR
+    place echo port out : KEPT
     place Waiting = 1
     place Told : KEPT
     trans Accept
@@ -78,18 +73,21 @@ net cell
       in text : s
       in colour : c
       out Told : (k, b, s, c)
+    place Half : BOOL
     trans Report
       in Told : (k, b, s, c)
-      out Waiting : ()
+      out echo : (k, b, s, c)
       out back : k
+      out Half : b
+    trans Rest
+      in Half : b
       out lie : b
-      out echo : s
-      out tint : c
+      out Waiting : ()
 """  # noqa: E501
 
-PLACES = ("number", "truth", "text", "colour", "back", "lie", "echo", "tint")
+PLACES = ("number", "truth", "text", "colour", "back", "lie", "echo")
 ODD_NAMES = (
-    "a number.txt", "it's \"true\".txt", "-text", "#1 ü 漢字.txt", "b\\ack??", "l$(i)e;.x.y", "[echo]*{}", "tint%20&",
+    "a number.txt", "it's \"true\".txt", "-text", "#1 ü 漢字.txt", "b\\ack??", "l$(i)e;.x.y", "[echo]*{}"
 )  # fmt: skip
 
 
@@ -98,7 +96,9 @@ def toml(files: tuple[str, ...] = PLACES) -> str:
     lines = ["[net]", 'file = "cell.cpn"', "[supervisor]", 'instance = "Supervisor"']
     lines += ['final = ["Finished"]', "[devices.echoer]", 'instance = "Device"']
     for place, file in zip(PLACES, files, strict=True):
+        kind = "data" if place == "echo" else "flag"
         lines += ["[[channel]]", f'place = "{place}"', f"file = '''{file}'''"]
+        lines.append(f'kind = "{kind}"')
     return "\n".join(lines) + "\n"
 
 
