@@ -19,7 +19,7 @@
 #define MAX_FIRINGS_ALONE 1000000U
 
 static char s_trace_line[TRACE_LINE];
-static char s_initial[TRACE_LINE / 2U];
+static char s_initial[(size_t)1U << 20U]; /* tokens of input files, as JSON */
 static char s_directory[512];
 
 bool sup_stop(sup_t *sup, sup_exit_t exit_code, const char *format, ...)
@@ -302,6 +302,9 @@ static bool start(sup_t *sup)
     pn_text_init(&initial, s_initial, sizeof s_initial);
     if (!sup_read_inputs(sup, &initial) || !sup_monitor_start(sup)) {
         return false;
+    }
+    if (initial.truncated) {
+        return sup_stop(sup, SUP_EXIT_USAGE, "the tokens of the input files are too long for the trace");
     }
     if (!pn_trace_open(&sup->trace, sup->options.trace, s_trace_line, sizeof s_trace_line)) {
         return sup_stop(sup, SUP_EXIT_IO, "cannot write the trace %s: %s", sup->options.trace, strerror(errno));

@@ -46,8 +46,8 @@ def test_verify_says_yes_of_zeros(tmp_path: Path) -> None:
     checks = {c["check"]: c for c in json.loads(done.stdout)["controller"]}
     assert (checks["messages"]["answer"], checks["messages"]["value"]) == (
         "yes",
-        2,
-    )  # the strings, there and back
+        3,
+    )  # texts there and back
 
 
 # --- what cannot be sent ---

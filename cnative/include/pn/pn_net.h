@@ -56,6 +56,8 @@ typedef struct pn_text {
     size_t capacity;  /* bytes, terminator included */
     size_t length;    /* bytes used; > capacity - 1 never; `truncated` says that something was cut */
     bool truncated;
+    void (*flush)(struct pn_text *text); /* called when the buffer is full: writes it somewhere and empties it; NULL: the rest is cut */
+    void *user;
 } pn_text_t;
 
 /* Markings after a marking, of each only the first word of its packed part, from which all else follows (pn_transition_t.words). */

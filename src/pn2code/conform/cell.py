@@ -193,7 +193,7 @@ class ProgramComparison:
         if checked is None:
             return None
         partition, game = self.made.partition, self._game()
-        difference = declared.compare(partition, self._config, owner.index, checked)
+        difference = declared.compare(partition, self._config, owner.index, checked, game)
         if difference is not None:
             return robot.RobotReport(
                 owner.name, 0, 0, 0, 0, 0, complete=False, deviation=difference

@@ -1,18 +1,21 @@
-"""What a script declares beside what its cell says: its name, its files, their directions and what their messages hold.
+"""What a script declares beside what its cell says: its name, its files, their directions and what their messages hold,
+the values that have names in the net.
 
-found = compare(partition, config, owner, program)      # in words what differs; None: nothing does
+found = compare(partition, config, owner, program, game)      # in words what differs; None: nothing does
 
 It is worked out from the colour sets and cell.toml, not from what the generator has made of them.
 """
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator, Mapping
 
 from pn2code.cell.config import CellConfig
 from pn2code.cell.partition import Partition
 from pn2code.cell.scalars import ScalarKind, scalars_of
 from pn2code.ml.colsets import Colset, Kind
+from pn2code.semantics.game import Game
 from pn2code.tdl import tree as t
 from pn2code.tdl.check import CheckedProgram
 from pn2code.tdl.types import POSE_FIELDS, Type
@@ -30,10 +33,23 @@ _Held = tuple[tuple[ScalarKind, bool], ...]
 
 
 def compare(
-    partition: Partition, config: CellConfig, owner: int, program: CheckedProgram
+    partition: Partition, config: CellConfig, owner: int, program: CheckedProgram, game: Game
 ) -> str | None:
     """What differs first; None: nothing."""
-    return next(_differences(partition, config, owner, program), None)
+    found = (*_differences(partition, config, owner, program), *_constants(program, game))
+    return next(iter(found), None)
+
+
+def _constants(program: CheckedProgram, game: Game) -> Iterator[str]:
+    """Constants of the script have the names of values of the net, perhaps with something behind them."""
+    symbols = game.net.program.globals
+    for name, value in program.constants.items():
+        symbol = symbols.get(name) or symbols.get(re.sub(r"_\d*$", "", name))
+        own = game.evaluator.globals.get(symbol.uid) if symbol is not None else None
+        if isinstance(own, bool | int | float | str) and (
+            type(own) is not type(value) or own != value
+        ):
+            yield f"`{name}` is {value!r} in the script, by the net {own!r}"
 
 
 def _differences(

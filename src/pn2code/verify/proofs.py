@@ -73,6 +73,9 @@ def prove(
         found = rooms.rooms(partition, capacities, structural, None)
         if config is None:
             rooms.warn_assumed(net, found, d)
+        rooms.refuse_large(net, found, d)
+        if d.has_errors:
+            return None
         return Proofs(found, tuple(_not_asked(partition)) if config else (), None)
     plan = Plan(
         storage=storage, order_decides=config.supervisor.order_decides, capacities=capacities
@@ -95,6 +98,7 @@ def prove(
             f"the file of `{given[0]}` brings a token that the net does not have" if given else ""
         )
         rooms.refuse(net, found, other or clause(why or ""), d)
+    rooms.refuse_large(net, found, d)
     if d.has_errors:
         return None
     return Proofs(found, tuple(_verdicts(looked)), looked, None if given else arena.size(space))
