@@ -98,6 +98,12 @@ CHANNEL_TIMED = register(
     "A message is seen as soon as it is written, so it cannot carry a time stamp that lies ahead. Use an untimed "
     "colour set for the channel, and put delays on the writer's or the reader's own places.",
 )
+CHANNEL_LIMIT = register(
+    "channel-limit",
+    "a cell has more channels, robots or values in a message than a supervisor can carry",
+    "A supervisor has room for 128 channels and 64 robots and devices, a message for 64 scalars. Divide a large "
+    "message among two channels, or a large cell between two supervisors.",
+)
 UNSUPPORTED_CHANNEL_COLSET = register(
     "unsupported-channel-colset",
     "the colour set of a channel or input has no fixed number of scalars",

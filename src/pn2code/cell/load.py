@@ -25,6 +25,7 @@ from pn2code.cell.config import (
     SensorConfig,
     SupervisorConfig,
 )
+from pn2code.cell.files import check_files
 from pn2code.cell.partition import ChannelKind
 from pn2code.cell.tables import KeyPath, Tables
 from pn2code.cell.toml_file import Locator, read
@@ -77,6 +78,7 @@ def load(path: Path, d: Diagnostics, *, layout: str | None = None) -> CellConfig
         return None
     data, locator = found
     config = _config(path, data, locator, d, layout)
+    check_files(config, d)
     return config if len(d.errors) == before else None
 
 
