@@ -33,10 +33,10 @@ from pn2code.verify.limits import Limits
 SMALL = 150
 """Nodes up to which whole graphs are compared."""
 WARNED = {
-    "not unique": "name-not-unique",
-    "is not assigned to a port": "socket-unassigned",
-    "has type": "socket-arcs",
-    "which is not a port": "port-assignment",
+    "not unique": {"name-not-unique"},
+    "is not assigned to a port": {"socket-unassigned"},
+    "has type": {"socket-arcs", "port-assignment"},
+    "which is not a port": {"port-assignment"},
 }
 """What the editor says, and the warning of pn2code that says it: such nets are not refused here."""
 
@@ -52,6 +52,8 @@ class Verdict:
 AGREES = Verdict("agrees")
 NOTHING = Verdict("")
 ENGINE = Verdict("engine", "the engine fails with an internal error")
+LATE = {"literal-too-large"}
+"""What is found wrong here by checking, and by the engine only when it makes code of the net."""
 BROKEN = "InternalError"
 """So the engine names what is wrong with itself."""
 
@@ -94,19 +96,21 @@ class Seen:
             unsaid = [
                 e["message"]
                 for e in answer["errors"]
-                if (code := self._warning(e)) and code not in self.codes
+                if (codes := self._warning(e)) and codes.isdisjoint(self.codes)
             ]
             return differs(f"not warned of: {unsaid[0]}") if unsaid else AGREES
         if self.net is None:
+            if {e.code for e in self.d.errors} <= LATE:
+                return Verdict("engine", "it accepts the net, and fails when it is to run it")
             return differs("refused here: " + "; ".join(e.message for e in self.d.errors[:3]))
         where = "; ".join(f"{e['what']}: {e['message']}" for e in wrong[:2])
         return differs(f"accepted here; the engine: {where}")
 
     @staticmethod
-    def _warning(error: dict[str, Any]) -> str:
+    def _warning(error: dict[str, Any]) -> set[str]:
         if error["by"] != "editor":
-            return ""
-        return next((code for words, code in WARNED.items() if words in error["message"]), "")
+            return set()
+        return next((codes for words, codes in WARNED.items() if words in error["message"]), set())
 
     def _warns(self, error: dict[str, Any]) -> bool:
         return bool(self._warning(error))
