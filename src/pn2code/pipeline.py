@@ -147,9 +147,7 @@ def check_geometry(config: CellConfig, d: Diagnostics, *, to_run: bool) -> None:
         cell = config if layout == config.layout else load_cell(config.path, d, layout=layout)
         if cell is None:
             continue
-        robots = {n: t for n, t in cell.geometry["robots"].items() if t or to_run}
-        geometry = {**cell.geometry, "robots": robots}
-        scene.load(geometry, cell.folder, cell.locator.origin, d)
+        scene.load(cell.geometry, cell.folder, cell.locator.origin, d, partial=not to_run)
 
 
 def _refuse_unsupported(d: Diagnostics) -> None:

@@ -120,7 +120,31 @@ MISTAKES = [
         "robot-value",
         "three numbers above 0",
     ),
-    (put("scene", "contacts", value=[{"a": "x"}]), "robot-key", "`scene.contacts.0.b` is missing"),
+    (
+        put("scene", "contacts", value=[{"a": "panel/ribs"}]),
+        "robot-key",
+        "`scene.contacts.0.b` is missing",
+    ),
+    (
+        put("scene", "contacts", value=[{"a": "robt1/tool_tip", "b": "panel/ribs"}]),
+        "robot-value",
+        "did you mean `robot1`?",
+    ),
+    (
+        put("scene", "objects", value=[{"name": "a"}]),
+        "robot-key",
+        "`scene.objects.0.size` is missing",
+    ),
+    (
+        put("scene", "objects", value=[{"name": "a", "size": [1, 1, 1]}] * 2),
+        "robot-value",
+        "two objects of the scene are called `a`",
+    ),
+    (
+        put("scene", "objects", value=[{"name": "a", "size": [1, 1, 1], "colour": [1, 1]}]),
+        "robot-value",
+        "three or four numbers from 0 to 1",
+    ),
 ]
 
 

@@ -203,10 +203,14 @@ class RobotPlayer:
     def _join(self) -> None:
         """I7: nothing is touched before the supervisor has announced itself."""
         path = self.shared.path
-        if not path.is_dir():
-            what = "is not a directory" if path.exists() else "does not exist"
-            raise _StopError(Ended(RobotExit.SYSTEM, f"the shared directory `{path}` {what}"))
         end = time.monotonic() + self.wait_s
+        while not path.is_dir():  # the supervisor may be about to make it
+            if path.exists() or time.monotonic() >= end:
+                what = "is not a directory" if path.exists() else "does not exist"
+                raise _StopError(Ended(RobotExit.SYSTEM, f"the shared directory `{path}` {what}"))
+            if self.interrupted():
+                raise _StopError(Ended(RobotExit.INTERRUPTED, "interrupted"))
+            time.sleep(PAUSE_S)
         try:
             while not self.shared.await_supervisor(min(JOIN_S, self.wait_s)):
                 if self.interrupted():

@@ -63,6 +63,7 @@ class Host:
     Args:
         name: the beginning of its sources' names, of its programs', and what diagnostics call it.
         flags: for the C compiler, added to `FLAGS`.
+        net: those for the net alone, after the others; the runtime is compiled without them.
         libraries: for the linker.
         without: what to do without a C compiler, the end of a sentence.
         whole: a source of the host that can have the net as a part of itself (PN_NET_SOURCE); "" if there is none.
@@ -72,6 +73,7 @@ class Host:
 
     name: str
     flags: tuple[str, ...] = ()
+    net: tuple[str, ...] = ()
     libraries: tuple[str, ...] = ("-lm",)
     without: str = ""
     whole: str = ""
@@ -224,6 +226,7 @@ class _Builder:
         self.runtime = host.runtime()
         tools = [*compiler.command, compiler.version, *self.flags, *host.libraries]
         self.library = folder / f"{host.name}-runtime-{_digest(tools, self.runtime)}.a"
+        tools += ["net", *host.net] if host.net else []
         self.program = folder / f"{host.name}-{_digest(tools, [*self.runtime, *self.files])}"
 
     def is_there(self) -> bool:
@@ -309,7 +312,7 @@ class _Builder:
         In one piece it is several times as fast, and takes longer to compile. Should a name of the net be one that the
         host has too, they are compiled apart: the library has that source as well.
         """
-        includes = ("-Iruntime/include", "-I.")
+        includes = (*self.host.net, "-Iruntime/include", "-I.")
         others = [f.path for f in self._sources() if f.path != "net.c"]
         if others and not self._compiler(room, *includes, "-c", *others, d=d):
             return False

@@ -126,9 +126,3 @@ CAPACITY_ASSUMED = register(
     "The program was generated with room for some tokens, and stops safely, with the place's name, when there are "
     "more. The head of net.c says which places these are. A cell.toml with `[capacity]` declares bounds.",
 )
-CAPACITY_EXCEEDED = register(
-    "capacity-exceeded",
-    "a place can get more tokens than cell.toml declares",
-    "A marking that can be reached has more tokens in the place than `[capacity]` declares. The supervisor would stop "
-    "safely there.",
-)

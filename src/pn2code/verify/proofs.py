@@ -25,7 +25,6 @@ from pn2code.verify.codes import BEYOND_ROOM, CONTROL_FAILED, CONTROL_OPEN
 from pn2code.verify.control import Check, Control, Plan
 from pn2code.verify.explore import Wishes
 from pn2code.verify.limits import Limits, cores
-from pn2code.verify.programs import Sizes, Structure
 from pn2code.verify.reasons import clause
 
 MOST_STATES = 1_000_000
@@ -65,16 +64,18 @@ def prove(
     given = _given(partition, storage)
     structure = bounds_and_sums(net, storage=storage, given=given)
     structural = structure[0]
-    declared = _declared(partition, config, d)
-    if declared is None:
+    capacities = declared(partition, config, d)
+    if capacities is None:
         return None
     if config is None or not checked:
-        found = rooms.rooms(partition, declared, structural, None)
+        found = rooms.rooms(partition, capacities, structural, None)
         if config is None:
             rooms.warn_assumed(net, found, d)
         return Proofs(found, tuple(_not_asked(partition)) if config else (), None)
-    plan = Plan(storage=storage, order_decides=config.supervisor.order_decides)
-    looked = _look(partition, plan, structure, d)
+    plan = Plan(
+        storage=storage, order_decides=config.supervisor.order_decides, capacities=capacities
+    )
+    looked = _look(partition, plan, d)
     if looked is None:
         return None
     for check in looked.failed:
@@ -82,9 +83,8 @@ def prove(
     if looked.open and not looked.failed:
         _warn_open(looked, config, d)
     space = looked.found
-    rooms.warn_exceeded(net, declared.items(), space, d)
     # From a marking that has other tokens than the net's own, more may be reached.
-    found = rooms.rooms(partition, declared, structural, None if given else space)
+    found = rooms.rooms(partition, capacities, structural, None if given else space)
     why = looked.open[0].why if looked.open else None
     if why == "compiler":  # nobody can build it here, either: it will be checked where that is done
         rooms.warn_assumed(net, found, d)
@@ -111,7 +111,7 @@ def _given(partition: Partition, storage: Mapping[str, str]) -> tuple[str, ...]:
     return tuple(partition.net.places[i].name for i, count in counts.items() if count != 1)
 
 
-def _declared(
+def declared(
     partition: Partition, config: CellConfig | None, d: Diagnostics
 ) -> dict[int, int] | None:
     """`[capacity]` by place; None when it names what is not there."""
@@ -127,18 +127,17 @@ def _declared(
     return found
 
 
-def _look(partition: Partition, plan: Plan, structure: Structure, d: Diagnostics) -> Control | None:
+def _look(partition: Partition, plan: Plan, d: Diagnostics) -> Control | None:
     """The checks; open ones where the state space cannot be had. None after an error that has nothing to do with it."""
     own = Diagnostics()
     limits = Limits(max_states=MOST_STATES, max_seconds=MOST_SECONDS, threads=cores(), traces=0)
     try:
-        wishes = Wishes(sizes=Sizes.start(partition.net, plan.storage, structure), quick=True)
-        found = control.examine(partition, replace(plan, wishes=wishes), limits, own)
+        found = control.examine(partition, replace(plan, wishes=Wishes(quick=True)), limits, own)
     except GameError as error:
         error.report(d)
         return None
     if found is None and any(i.code == TOOL_MISSING for i in own.errors):
-        return control.not_looked("compiler", partition)
+        return control.not_looked("compiler", partition, plan.capacities)
     # A place that grows without end is one without a bound, which is refused with a better hint.
     d.items += [i for i in own.items if i.code != BEYOND_ROOM]
     return found
@@ -213,7 +212,7 @@ def _verdicts(looked: Control) -> Iterator[str]:
         yield "Not checked completely (docs/execution.md):"
     else:
         assert looked.found is not None
-        yield f"Checked in all {looked.found.nodes:,} markings of the closed net (docs/execution.md):"
+        yield f"Checked in all {looked.found.nodes:,} states of the cell as it runs (docs/execution.md):"
     yield from map(_verdict, looked.checks)
 
 

@@ -9,7 +9,7 @@ complete state space of the closed net, unless cell.toml declares the bound. A r
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
 from pn2code.cell.partition import Partition
@@ -19,7 +19,7 @@ from pn2code.lowering.packing import colours
 from pn2code.net.flat import FlatNet
 from pn2code.structure.bounds import PlaceBound
 from pn2code.structure.report import Names, weighted
-from pn2code.verify.codes import CAPACITY_ASSUMED, CAPACITY_EXCEEDED, CAPACITY_UNPROVED
+from pn2code.verify.codes import CAPACITY_ASSUMED, CAPACITY_UNPROVED
 from pn2code.verify.result import Exploration
 
 DECLARED = "declared"
@@ -57,7 +57,7 @@ def rooms(
         partition: the net and its owners.
         declared: place index -> what cell.toml says.
         structural: what the structure of the net proves.
-        found: the state space of the closed net, if it was explored.
+        found: the state space of the cell as it runs, if it was explored.
     """
     net = partition.net
     names = Names(net)
@@ -75,7 +75,7 @@ def rooms(
             result.append(Room(own.bound, kind, text))
         elif counts is not None:
             assert found is not None
-            text = f"the state space, all {found.nodes:,} markings of the closed net"
+            text = f"the state space, all {found.nodes:,} states of the cell as it runs"
             result.append(Room(counts[place.index].upper, SPACE, text))
         else:
             result.append(Room(None, ASSUMED, "nothing: assumed"))
@@ -138,20 +138,3 @@ def warn_assumed(net: FlatNet, found: Sequence[Room], d: Diagnostics) -> None:
             Origin(net.file),
             hint="the program stops safely when there is no room left; `[capacity]` in a cell.toml declares bounds",
         )
-
-
-def warn_exceeded(
-    net: FlatNet, declared: Iterable[tuple[int, int]], found: Exploration | None, d: Diagnostics
-) -> None:
-    """Warns of declared bounds that the state space shows to be too small."""
-    if found is None or found.bounds is None:
-        return
-    for index, bound in declared:
-        upper = found.bounds[index].upper
-        if upper > bound:
-            d.warning(
-                CAPACITY_EXCEEDED,
-                f"place `{net.places[index].name}` can hold {upper} tokens, but `[capacity]` declares {bound}",
-                net.places[index].origins[0],
-                hint="the supervisor stops safely there: declare more, or change the net",
-            )
