@@ -184,3 +184,10 @@ SUMMANDS_SHARE = register(
     "the shared variable has its value from another arc or a guard, the arc is accepted, and so is "
     "1`(a, b) ++ 1`(b, a), whose second summand has nothing of its own.",
 )
+SPACE_NAME = register(
+    "state-space-name",
+    "a name of the net hides one that the state-space tool of CPN Tools uses",
+    "CPN Tools compiles the sources of its state-space tool after the declarations of the net. A constant, function, "
+    "value or colour set of a name that these sources use keeps them from compiling: `Exception raised entering state "
+    "space tool`. The simulator is not affected, and neither is pn2code.",
+)
