@@ -82,7 +82,7 @@ def random_nets() -> None:
     print(f"{len(kept)} random nets")
 
 
-def main(arguments: Sequence[str]) -> int:
+def record(arguments: Sequence[str]) -> int:
     """The exit code: 0 when all nets have an answer."""
     try:
         if arguments == ["--random"]:
@@ -106,4 +106,4 @@ def main(arguments: Sequence[str]) -> int:
 
 
 if __name__ == "__main__":
-    sys.exit(main(sys.argv[1:]))
+    sys.exit(record(sys.argv[1:]))

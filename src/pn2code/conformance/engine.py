@@ -1,3 +1,4 @@
+# ruff: noqa: E501 - rows of texts
 """The part of docs/conformance.md about where the engine itself is wrong, or differs from its editor."""
 
 ENGINE = """## Where the engine is wrong
