@@ -74,6 +74,22 @@ def test_a_final_place_is_reported_where_it_stands(tmp_path: Path) -> None:
     assert (found.origin.line, found.origin.column) == (line, 4)
 
 
+@pytest.mark.parametrize(
+    ("value", "code"), [("MOV = 2", "unknown-value"), ('MOVE = "x"', "type-mismatch")]
+)
+def test_a_value_is_reported_where_it_stands(value: str, code: str, tmp_path: Path) -> None:
+    cell = write(tmp_path, toml=f"{TOML}[values]\nDRILL = 7\n{value}\n")
+    d = Diagnostics()
+    config = load(cell, d)
+    assert config is not None
+    front.load(config.net_path, d, config.values)
+    (found,) = d.errors
+    assert found.code == code
+    line = f"{TOML}[values]\nDRILL = 7\n".count("\n") + 1
+    assert (found.origin.file, found.origin.line) == (str(cell / "cell.toml"), line)
+    assert found.origin.part in ("key `values.MOV`", "declaration")
+
+
 def test_a_final_place_that_the_supervisor_never_marks(tmp_path: Path) -> None:
     net = changed(
         NET, "    place Finished : INT\n", "    place Finished : INT\n    place Ended : INT\n"
