@@ -383,6 +383,14 @@ static bool see_multiset(place_bounds_t *own, const char *text)
 }
 
 #define TEXT_SIZE ((size_t)1U << 22)
+#define LOOK 1024U /* multi-sets between two looks at the clock */
+
+/* The time was over some time ago: what is left to look at may be as much as all that was explored. */
+static bool is_late(const ex_run_t *run)
+{
+    const double most = run->options.max_seconds;
+    return (most > 0.0) && ((ex_clock() - run->started) > ((most * 1.1) + 1.0));
+}
 
 /* All multi-sets that the places which are not packed ever held. */
 static bool see_interned(ex_run_t *run, ex_bounds_t *bounds)
@@ -395,6 +403,10 @@ static bool see_interned(ex_run_t *run, ex_bounds_t *bounds)
     for (uint64_t i = 0U; is_fine && (i < count); i++) {
         const ex_bytes_entry_t entry = all->of[i];
         pn_text_t text;
+        if (((i % LOOK) == (LOOK - 1U)) && is_late(run)) {
+            is_fine = false;
+            break;
+        }
         if (entry.place >= pn_net.place_count) { /* a hole, or a time */
             continue;
         }
@@ -414,18 +426,39 @@ static bool see_interned(ex_run_t *run, ex_bounds_t *bounds)
 
 /* --- the report ---------------------------------------------------------------------------------------------------- */
 
-static void list_item(FILE *out, bool *is_first, uint64_t count, const char *colour)
+/* A list of which no more than a number of items is printed. */
+typedef struct list {
+    FILE *out;
+    uint64_t most;
+    uint64_t items; /* that belong to it */
+} list_t;
+
+static bool list_takes(const list_t *list)
 {
-    if (count > 0U) {
-        (void)fprintf(out, "%s[%" PRIu64 ", %s]", *is_first ? "" : ", ", count, colour);
-        *is_first = false;
-    }
+    return list->items < list->most;
 }
 
-static void packed_json(const ex_bounds_t *bounds, const pn_place_t *place, const place_bounds_t *own, bool is_upper, FILE *out,
+static void list_item(list_t *list, uint64_t count, const char *colour)
+{
+    if (list_takes(list)) {
+        (void)fprintf(list->out, "%s[%" PRIu64 ", %s]", (list->items == 0U) ? "" : ", ", count, colour);
+    }
+    list->items += 1U;
+}
+
+/* Shorter ones first, then by their texts: which ones are printed must not depend on the order in which threads came upon them. */
+static int by_text(const void *a, const void *b)
+{
+    const colour_t *const left = a;
+    const colour_t *const right = b;
+    const size_t length = strlen(left->text);
+    const size_t other = strlen(right->text);
+    return (length != other) ? ((length < other) ? -1 : 1) : strcmp(left->text, right->text);
+}
+
+static void packed_json(const ex_bounds_t *bounds, const pn_place_t *place, const place_bounds_t *own, bool is_upper, list_t *list,
                         char *buffer)
 {
-    bool is_first = true;
     for (uint32_t i = 0U; i < place->colours; i++) {
         pn_text_t text;
         pn_text_init(&text, buffer, TEXT_SIZE);
@@ -436,19 +469,23 @@ static void packed_json(const ex_bounds_t *bounds, const pn_place_t *place, cons
             count = is_upper ? own->counter_most[i] : own->counter_least[i];
         }
         if (count > 0U) {
-            place->colour_json(i, &text);
-            list_item(out, &is_first, count, buffer);
+            if (list_takes(list)) {
+                place->colour_json(i, &text);
+            }
+            list_item(list, count, buffer);
         }
     }
 }
 
-static void colours_json(const place_bounds_t *own, bool is_upper, FILE *out)
+static void colours_json(const place_bounds_t *own, bool is_upper, list_t *list)
 {
-    bool is_first = true;
     for (uint32_t i = 0U; i < own->colours.count; i++) {
         const colour_t *const colour = &own->colours.colour[i];
         const uint64_t least = (colour->seen == own->multisets) ? colour->least : 0U;
-        list_item(out, &is_first, is_upper ? colour->most : least, colour->text);
+        const uint64_t count = is_upper ? colour->most : least;
+        if (count > 0U) {
+            list_item(list, count, colour->text);
+        }
     }
 }
 
@@ -470,13 +507,18 @@ void ex_bounds_json(ex_run_t *run, FILE *out)
         const place_bounds_t *const own = &bounds->place[p];
         (void)fprintf(out, "%s{\"lower\": %" PRIu64 ", \"upper\": %" PRIu64, (p > 0U) ? ", " : "", own->least, own->most);
         for (int is_upper = 0; is_upper <= 1; is_upper++) {
-            (void)fprintf(out, ", \"%s_multiset\": [", (is_upper == 1) ? "upper" : "lower");
-            if (place->is_packed) {
-                packed_json(bounds, place, own, is_upper == 1, out, buffer);
-            } else {
-                colours_json(own, is_upper == 1, out);
+            const char *const which = (is_upper == 1) ? "upper" : "lower";
+            if (!place->is_packed && (own->colours.count > run->options.multiset_limit)) {
+                qsort(own->colours.colour, own->colours.count, sizeof *own->colours.colour, by_text); /* found by place from here on */
             }
-            (void)fprintf(out, "]");
+            list_t list = { .out = out, .most = run->options.multiset_limit };
+            (void)fprintf(out, ", \"%s_multiset\": [", which);
+            if (place->is_packed) {
+                packed_json(bounds, place, own, is_upper == 1, &list, buffer);
+            } else {
+                colours_json(own, is_upper == 1, &list);
+            }
+            (void)fprintf(out, "], \"%s_colours\": %" PRIu64, which, list.items);
         }
         (void)fprintf(out, "}");
     }

@@ -205,7 +205,7 @@ bool ex_local_make(ex_worker_t *worker)
     ex_run_t *run = worker->run;
     const bool is_reduced = (run->reduction != NULL) || run->options.is_time_reduced;
     const uint64_t most = run->options.memory / ((uint64_t)SHARE_OF_MEMORY * run->options.threads * sizeof(uint32_t));
-    if (!run->options.has_notes || is_reduced || (pn_net.bag_count == 0U) || run->codec->is_whole || pn_net.has_references
+    if (!run->options.has_notes || is_reduced || (pn_net.bag_count == 0U) || run->codec->is_whole || (pn_net.root_count > 0U)
         || (most < (uint64_t)PAGE_WORDS)) {
         return true;
     }

@@ -188,6 +188,8 @@ bool ex_queries_read(ex_run_t *run);
 bool ex_early_make(ex_worker_t *worker);
 /* Without the whole graph: what has been decided, with the way there. */
 void ex_early_answer(ex_run_t *run);
+/* After the graph has left a question open (there was no time, or no memory): what was seen of the states while they were explored. */
+void ex_early_settle(const ex_run_t *run, ex_question_t *question);
 
 /* --- explore_query.c --- */
 

@@ -24,9 +24,9 @@ typedef struct hunt {
 
 bool ex_is_repeatable(void)
 {
-    bool is_repeatable = !pn_net.has_references;
+    bool is_repeatable = true;
     for (uint32_t t = 0U; t < pn_net.transition_count; t++) {
-        is_repeatable = is_repeatable && !pn_net.transition[t].looks;
+        is_repeatable = is_repeatable && !pn_net.transition[t].looks_outside;
     }
     return is_repeatable;
 }
@@ -121,6 +121,14 @@ static bool on_plain(void *user, uint32_t transition, const void *binding, const
     ex_plain_key(hunt->worker->run->codec, next, &key);
     hunt->is_stopped = !pass_on(hunt, transition, binding, &key);
     return !hunt->is_stopped;
+}
+
+/* The same where occurrences may change references: they are as before afterwards. */
+static bool on_assigning(void *user, uint32_t transition, const void *binding, const void *next)
+{
+    hunt_t *hunt = user;
+    const bool goes_on = on_successor(user, transition, binding, next);
+    return (!pn_net.transition[transition].assigns || ex_roots_restore(hunt->worker)) && goes_on;
 }
 
 /* Of transitions that can only be enumerated and fired. */
@@ -316,6 +324,9 @@ static ex_found_t hunt_state(hunt_t *hunt)
 /* Where the packed part of the marking is the key there is no time either. */
 static pn_successor_sink_t successor_sink(const ex_run_t *run)
 {
+    if (pn_net.root_count > 0U) {
+        return on_assigning;
+    }
     return (run->codec->is_plain && (run->reduction == NULL)) ? on_plain : on_successor;
 }
 
@@ -334,13 +345,13 @@ ex_found_t ex_arcs(ex_worker_t *worker, const ex_key_t *key, ex_times_sink_t sin
 
 ex_found_t ex_next_markings(struct ex_worker *worker, ex_marking_sink_t sink, void *user)
 {
-    hunt_t hunt = { .worker = worker, .all = sink, .user = user, .on_next = on_successor };
+    hunt_t hunt = { .worker = worker, .all = sink, .user = user, .on_next = (pn_net.root_count > 0U) ? on_assigning : on_successor };
     return hunt_state(&hunt);
 }
 
 ex_found_t ex_all_successors(ex_worker_t *worker, ex_marking_sink_t sink, void *user)
 {
-    hunt_t hunt = { .worker = worker, .all = sink, .user = user, .on_next = on_successor };
+    hunt_t hunt = { .worker = worker, .all = sink, .user = user, .on_next = (pn_net.root_count > 0U) ? on_assigning : on_successor };
     const bool goes_on = hunt_now(&hunt);
     if (hunt.is_stopped) {
         return EX_STOPPED;

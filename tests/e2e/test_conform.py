@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import shutil
 from collections.abc import Iterator
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
@@ -181,6 +182,33 @@ def test_another_script_is_found_out(what: str, judge: Judge) -> None:
     verdict = judge.verdict(mutant(judge, "robot1.tdl", old, new))
     assert verdict.result == "killed", verdict
     assert said in verdict.why
+
+
+def test_a_command_at_the_end_too_many_is_found_out(judge: Judge) -> None:
+    """Nothing is announced after it, so nothing else would show it."""
+    old = "    write done 1\n"
+    new = f"{old}    if k = HOME then\n      move $joint home\n    end if\n"
+    verdict = judge.verdict(mutant(judge, "robot1.tdl", old, new))
+    assert verdict.result == "killed", verdict
+    assert "but has commanded MoveHome" in verdict.why
+
+
+def test_calls_that_no_entry_names_are_found_out(cell: Path) -> None:
+    """Both sides leave out what `[primitives]` does not name: what counts is what the net calls."""
+    d = Diagnostics()
+    made = generate(cell, d, checked=False)
+    assert made is not None and made.config is not None, [str(i) for i in d]
+    less = {n: p for n, p in made.config.primitives.items() if n != "moveHome"}
+    (text,) = (f.text for f in made.files if f.path == "robot1.tdl")
+    home = "      move $joint home\n"
+    assert home in text
+    comparison = ProgramComparison(
+        replace(made, config=replace(made.config, primitives=less))  # as if nobody had looked
+    )
+    report = comparison.script(made.partition.owners[1], text.replace(home, "", 1), d)
+    assert report is not None
+    assert report.deviation is not None
+    assert "the net calls `moveHome`, which is no command" in report.deviation
 
 
 def test_a_script_that_asks_another_sensor_is_found_out(root: Path) -> None:

@@ -300,7 +300,7 @@ def changed(*pairs: tuple[str, str]) -> str:
             "spin",
             changed(("\n  page Rob", SPIN)),
             {control.FINITE: "no", control.BOUNDED: "unknown", control.CONFLUENT: "unknown"},
-            "the supervisor can fire for ever: `Cell.Supervisor.Away`, `Cell.Supervisor.Back`, over and over",
+            "the supervisor can fire for ever by repeating `Cell.Supervisor.Away`, `Cell.Supervisor.Back`",
         ),
         (
             "long",

@@ -75,13 +75,13 @@ def test_truncated(net: Path, tmp_path: Path) -> None:
     """Of a space without end: so many states, so many seconds, so much memory."""
     for option, value, why in (
         ("--max-states", "100", "states"),
-        ("--max-seconds", "0.2", "seconds"),
+        ("--max-seconds", "4", "seconds"),  # with what comes before the exploration
         ("--memory", "16", "memory"),
     ):
         done = pn2code("verify", net, option, value, "--json", "--most-traces", "0")
         said = json.loads(done.stdout)
         assert (done.returncode, said["complete"], said["why"]) == (3, False, why), option
-        assert said["nodes"] >= 100
+        assert said["nodes"] >= 100 or why == "seconds"
         assert said["home_markings"] is None
         assert said["live_transitions"] is None
     done = pn2code("verify", net, "--max-states", "100", "--quiet", "--report", tmp_path / "r")
@@ -129,7 +129,7 @@ def test_approximation(net: Path, tmp_path: Path) -> None:
         said = pn2code(
             "verify", net, "--set", "last=4", "--approximate", kind, "--report", tmp_path / kind
         )
-        assert said.returncode == 0
+        assert said.returncode == 3
         text = (tmp_path / kind).read_text()
         assert f"APPROXIMATE ({kind})" in text
         assert "the probability" in text

@@ -43,7 +43,10 @@ def test_random_graphs(explorers: Explorers, part: int) -> None:
 
 @pytest.mark.parametrize("group", range(GROUPS))
 def test_random_unions(explorers: Explorers, group: int) -> None:
-    """Forty nets in a program (thousands of them with `make thorough`); also with two threads or depth first, reduced, and in walks."""
+    """About forty nets in a program; also with two threads or depth first, reduced, and in walks.
+
+    `make thorough` takes more than twenty thousand.
+    """
     done = Outcome()
     numbers = range(SEED + group, SEED + UNIONS, GROUPS)
     for number in numbers:

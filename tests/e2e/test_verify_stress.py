@@ -197,11 +197,7 @@ def test_two_at_once(net: Path, tmp_path: Path) -> None:
 
 def test_little_of_everything(net: Path, tmp_path: Path) -> None:
     """Of time, of memory: partial, and everything says so."""
-    for options, why in (
-        (("--max-seconds", "0.1"), "seconds"),
-        (("--max-seconds", "0"), "seconds"),
-        (("--memory", "16", "--threads", "64"), "memory"),
-    ):
+    for options, why in ((("--memory", "16", "--threads", "64"), "memory"),):
         report = tmp_path / "r"
         done = pn2code("verify", net, "--json", *options, "--report", report, *ENDLESS[:2])
         said = json.loads(done.stdout)
@@ -210,23 +206,27 @@ def test_little_of_everything(net: Path, tmp_path: Path) -> None:
         assert said["home_markings"] is said["live_transitions"] is None
 
 
-def test_no_time_for_the_graph(explorers: Explorers, monkeypatch: pytest.MonkeyPatch) -> None:
-    """Time that ends while components are sought is not memory.
+def test_no_time_at_all(net: Path, tmp_path: Path) -> None:
+    """Reading the net counts, too: then nothing is known, and that is what is said."""
+    done = pn2code("verify", net, "--json", "--max-seconds", "0", "--report", tmp_path / "r")
+    said = json.loads(done.stdout)
+    assert (done.returncode, said["complete"], said["why"], said["nodes"]) == (
+        3,
+        False,
+        "seconds",
+        0,
+    )
+    assert "warning[time-over]" in done.stderr
+    assert not (tmp_path / "r").exists()
 
-    It ends when the explorer looks at its clock for the nth time.
-    """
+
+def test_no_time_for_the_graph(explorers: Explorers) -> None:
+    """Time that ends while components are sought is not memory."""
     steps = flat(NET, {"last": "6"})
     folder = explorers.build(steps, wide(Sizes.start(steps, {}), 4), "no_time")
-    ends = explorers.library("time_ends", folder)
-    monkeypatch.setenv("LD_PRELOAD", str(ends))
-    said = []
-    for look in range(2, 9):
-        monkeypatch.setenv("TIME_ENDS_AT", str(look))
-        options = ("--max-seconds", "600", "--threads", "1")
-        said.append(explorers.said(folder, *options).report["why"])
-    assert said[:3] == ["seconds"] * 3, "it begins to explore, has explored, begins with the graph"
-    assert said[-1] == "complete", "it does not look so often"
-    assert set(said) == {"seconds", "complete"}
+    for phase in ("explore", "graph", "components"):
+        assert explorers.said(folder, "--ends-in", phase).report["why"] == "seconds"
+    assert explorers.said(folder).report["why"] == "complete"
 
 
 @pytest.fixture(scope="module")

@@ -114,13 +114,6 @@ class Explorers:
         done = subprocess.run(command, cwd=folder, capture_output=True, text=True, check=False)
         assert done.returncode == 0, done.stderr[-3000:]
 
-    def library(self, name: str, folder: Path) -> Path:
-        """A source of `cnative/tests` as a shared library, for `LD_PRELOAD`."""
-        made = folder / f"{name}.so"
-        source = cnative_folder() / "tests" / f"{name}.c"
-        self._run(folder, "-shared", "-D_GNU_SOURCE", str(source), "-ldl", "-o", str(made))
-        return made
-
     def build(self, flat: FlatNet, sizes: Sizes, name: str) -> Path:
         """A folder with a compiled net."""
         d = Diagnostics()

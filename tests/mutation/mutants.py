@@ -73,10 +73,12 @@ C_RULES: tuple[Rule, ...] = (
     ("token not taken", re.compile(r"(?<== )\w+_take\(m, [^;]*?\)(?=;| &&)"), lambda m: "true"),
     ("call dropped", re.compile(r"^(\s*)(?:\(void\))?[\w.>-]+\([^=]*\);$"), lambda m: f"{m[1]};"),
 )  # fmt: skip
+COMMAND = re.compile(r"^(\s+)(?:move|tool|measure|wait(?! until)) .*$")
 SCRIPT_RULES: tuple[Rule, ...] = (
     ("comparison", re.compile(r"(?<= )(=|<>|<=|>=|<|>)(?= .* then$)"), lambda m: _EQUALS.get(m[1]) or _COMPARED[m[1]]),
-    ("line dropped", re.compile(r"^(\s+)(?:clear|write|mark|move|tool|measure|sense|read) .*$"),
-     lambda m: f"{m[1]}-- dropped"),
+    ("line dropped", re.compile(r"^(\s+)(?:clear|write|mark|sense|read) .*$"), lambda m: f"{m[1]}-- dropped"),
+    ("command dropped", COMMAND, lambda m: f"{m[1]}-- dropped"),
+    ("command repeated", COMMAND, lambda m: f"{m[0]}\n{m[0]}"),
     ("constant", re.compile(r"(?<![\w.\"])(\d+)(?=$| |,)"), lambda m: str(int(m[1]) + 1)),
     ("motion", re.compile(r"\$(joint|linear)"), _other({"joint": "linear", "linear": "joint"})),
     ("frame", re.compile(r" in tool$"), lambda m: ""),

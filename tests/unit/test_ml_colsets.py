@@ -186,13 +186,14 @@ def test_members_list_of_a_subset_is_core() -> None:
     assert dump_exp(colset.members) == "[1, Int.+(2, 3)]"
 
 
-def test_a_value_hides_the_variable_of_its_name() -> None:
+def test_of_a_variable_and_a_value_of_one_name_the_first_counts() -> None:
     m = Ml()
     m.ml("fun ok x = x val n = 3")
     m.e.variables(["ok"], "INT", Origin("net.cpn"))
+    both = "is both a variable of the net and a value or function: inscriptions mean the"
     assert m.messages() == [
-        "variable-named-as-value | `n` is both a variable of the net and a value or function: inscriptions mean the value | val n = 3",
-        "variable-named-as-value | `ok` is both a variable of the net and a value or function: inscriptions mean the value | ",
+        f"variable-named-as-value | `n` {both} variable, which was declared first; initial markings and declarations mean the value | val n = 3",
+        f"variable-named-as-value | `ok` {both} value, which was declared first | ",
     ]
     assert not m.d.has_errors
     assert m.inscription("1`n", "INT") is not None

@@ -89,3 +89,11 @@ def test_a_guard_may_compute_a_list(tmp_path: Path) -> None:
     flat, said = loaded(tmp_path, guard)
     assert flat is not None, said
     assert len(flat.transitions[0].guards) == 1
+
+
+def test_cpn_tools_refuses_as_on_arcs(tmp_path: Path) -> None:
+    net, said = loaded(tmp_path, "in A : x as (n, _)")
+    assert net is not None
+    assert [x for x in said if x.startswith("arc-as-pattern")] == [
+        "arc-as-pattern | CPN Tools refuses `as` on an arc: arc `A` -> `T` is accepted by pn2code only"
+    ]

@@ -352,3 +352,20 @@ def test_a_precedence_is_a_digit(digit: str) -> None:
     assert [(e.code, e.message) for e in d.errors] == [
         ("fixity-error", "the precedence of an infix operator is a digit, 0 to 9")
     ]
+
+
+@pytest.mark.parametrize(
+    "text", ["List .map f", "List. map f", "List (* (* a *) *) . (* b *)\n map f", "List\n.map f"]
+)
+def test_white_space_and_comments_inside_long_names(text: str) -> None:
+    d = Diagnostics()
+    tokens = tokenize(source(text), d)
+    assert tokens is not None
+    assert [t.text for t in tokens] == ["List.map", "f"]
+
+
+@pytest.mark.parametrize("text", ["f . val", "1 . map", "f .", "val . x", "f . (* "])
+def test_a_point_that_continues_no_name(text: str) -> None:
+    d = Diagnostics()
+    assert tokenize(source(text), d) is None
+    assert {e.code for e in d.errors} == {"lexical-error"}

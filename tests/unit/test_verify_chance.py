@@ -29,7 +29,7 @@ net Chance
             "m",
             "asks for the number of steps",
         ),
-        (" code input (n); action count := n", "!count", "reads a reference"),
+        (" code input (n); action count := n", "!count", ""),
         ("", "n + 1", ""),
         ("", "!count", ""),  # never changed
         (" code input (n); output (m); action n + 1", "m", ""),

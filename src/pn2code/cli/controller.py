@@ -40,9 +40,10 @@ def look(
     partition = divide(opened.flat, config, d)
     if partition is None:
         return None
-    is_hopeless = not found.complete and found.why != "decided"
+    # An approximate exploration came to its end; the checks make an exact one of their own.
+    is_hopeless = not found.complete and found.why not in ("decided", "approximation")
     if is_hopeless and (found.why in ("interrupted", "error") or not opened.flat.timed):
-        return control.not_looked(found.why, partition)
+        return control.not_looked(found.why, partition, found)
     plan = Plan(
         storage=opened.storage,
         order_decides=config.supervisor.order_decides,

@@ -10,6 +10,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 
 from pn2code.cli.nets import OpenNet
+from pn2code.deadline import Deadline, TimeIsOverError
 from pn2code.diagnostics import Diagnostics
 from pn2code.net.flat import FlatNet
 from pn2code.properties import codes, sources
@@ -31,6 +32,8 @@ from pn2code.verify.programs import Sizes
 from pn2code.verify.result import Exploration
 
 _CALLED = {"yes": "true", "no": "false", "inconclusive": "not known"}
+_WITH_RUNS = ("complete", "decided", "states", "memory", "error")
+"""Ends of an exploration after which there was time to look for the runs, and the way to each marking is known."""
 _OUTSIDE = frozenset({Effect.DRAW, Effect.LOOK, Effect.WRITE, Effect.COUNT})
 
 
@@ -146,7 +149,8 @@ def of_bindings(
             )
         for answer in answers(about, seen.answers if seen else (), seen or found):
             if answer.evidence is not None and seen is not None:
-                _confirm(answer, about, split.net, opened, seen, d)
+                answer = _confirmed(answer, about, split.net, opened, seen, limits.deadline, d)
+                assert answer.evidence is not None
                 with suppress(OSError):
                     split.restore(answer.evidence.trace)
             given.append(replace(answer, about=of[answer.about.name], node=None))
@@ -211,6 +215,7 @@ def answered(
     more: Sequence[Answer],
     folder: Path,
     stem: str,
+    deadline: Deadline,
     d: Diagnostics,
 ) -> tuple[Answer, ...]:
     """The answers; runs have got readable names, and have been looked at again.
@@ -223,18 +228,28 @@ def answered(
         found: its state space.
         more: what `of_bindings` has given.
         folder, stem: where runs are kept, and what their names begin with.
+        deadline: when it is over no run is looked at again.
         d: gets the errors.
     """
     plain = answers(asked.plain, found.answers, found)
     by_name = {answer.about.name: answer for answer in (*plain, *more)}
     given = tuple(by_name[p.name] for p in asked.properties.properties)
     named = _named(given, folder, stem)
+    looked = []
     for before, answer in zip(given, named, strict=True):
+        if answer.evidence is not None and not is_about_bindings(answer.about):
+            looked.append(
+                _confirmed(answer, asked.properties, opened.flat, opened, found, deadline, d)
+            )
+            continue
+        looked.append(answer)
         if answer.evidence is not None:
-            if not is_about_bindings(answer.about):  # those have been looked at
-                _confirm(answer, asked.properties, opened.flat, opened, found, d)
-        elif before.evidence is not None or (
-            answer.answer == "no" and _has_run(answer.about.asked)
+            continue  # it has been looked at
+        if before.evidence is not None or (
+            answer.answer == "no"
+            and _has_run(answer.about.asked)
+            and found.approximation is None
+            and found.why in _WITH_RUNS
         ):
             d.warning(
                 TRACE_UNWRITABLE,
@@ -242,7 +257,7 @@ def answered(
                 answer.about.origin,
                 hint="give another folder with `--traces DIR`",
             )
-    return named
+    return tuple(looked)
 
 
 def _has_run(asked: m.Asked) -> bool:
@@ -252,23 +267,30 @@ def _has_run(asked: m.Asked) -> bool:
     )
 
 
-def _confirm(
+def _confirmed(
     answer: Answer,
     asked: m.Properties,
     net: FlatNet,
     opened: OpenNet,
     found: Exploration,
+    deadline: Deadline,
     d: Diagnostics,
-) -> None:
+) -> Answer:
+    """The answer, of which it is known whether its run has been looked at again."""
     assert answer.evidence is not None
+    if answer.evidence.steps > confirm.MOST_STEPS:
+        return answer
     try:
-        problem = confirm.problem(
-            net,
-            opened.storage,
-            asked,
-            answer,
-            exact_times="time" not in found.reductions,
-        )
+        with deadline.enforced():
+            problem = confirm.problem(
+                net,
+                opened.storage,
+                asked,
+                answer,
+                exact_times="time" not in found.reductions,
+            )
+    except TimeIsOverError:
+        return answer
     except (TraceRefusedError, GameError, OSError, ValueError, MlException, MlLimit) as error:
         problem = str(error)
     if problem is not None:
@@ -279,6 +301,8 @@ def _confirm(
             notes=[f"the run is {answer.evidence.trace}"],
             hint="the explorer and the token game differ: this is a bug in pn2code",
         )
+        return answer
+    return replace(answer, evidence=replace(answer.evidence, confirmed=True))
 
 
 def _named(given: Sequence[Answer], folder: Path, stem: str) -> tuple[Answer, ...]:

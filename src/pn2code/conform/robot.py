@@ -20,7 +20,7 @@ from pn2code.cell.partition import Partition
 from pn2code.channels.message import specs_of
 from pn2code.conform.clock import Clock
 from pn2code.conform.messages import scalars
-from pn2code.conform.primitives import Calls, noting
+from pn2code.conform.primitives import Calls, Listener, Unknown
 from pn2code.conform.scheme import MOST_STATES, Scheme
 from pn2code.net.flat import BindAll, BindRandom, FlatTransition
 from pn2code.robot import commands
@@ -138,7 +138,7 @@ class _Product:
             if owner in (channel.writer, channel.reader)
         }
         self._files = _PlacesAsFiles()
-        self._primitives = config.primitives
+        self._listener = Listener(game, config.primitives)
         self._sensors = {s.variable: s.name for s in config.sensors}
         self._called = Calls()
         self._wants_waits = any(p.command == "wait" for p in config.primitives.values())
@@ -263,6 +263,12 @@ class _Product:
         for element in self._scheme.enabled(self._owner, state.marking):
             text = element_text(self._game.colours, self._net, element)
             raise _DeviationError(f"{why}, but by the net {text} is enabled")
+        # A command belongs to a transition, which is announced after it.
+        moved = tuple(c for c in state.done if not isinstance(c, commands.Wait))
+        if moved:
+            raise _DeviationError(
+                f"{why}, but has commanded {_list(moved)}, which the net does not call"
+            )
 
     def _said(self, state: _State, sensor: str) -> list[Scalar]:
         """Every value that the net leaves open to the sensor here: those of its variable in what is enabled."""
@@ -289,7 +295,7 @@ class _Product:
             self._heard_of.append((state.request.sensor, result))
         self._files.view = self._view(state.marking)
         before = self._interpreter.line
-        with noting(self._game, self._primitives, self._called):
+        with self._listener.noting(self._called):
             request = self._interpreter.resume(result)
         self._compare_files()
         until = None
@@ -354,7 +360,7 @@ class _Product:
                     f"{where} with {name} = {binding[name]}, but the sensor `{sensor}` has said {said[sensor]}"
                 )
 
-    def _compare_commands(self, where: str, called: tuple[commands.Command, ...]) -> None:
+    def _compare_commands(self, where: str, called: tuple[commands.Command | Unknown, ...]) -> None:
         done = tuple(self._done)
         self._done.clear()
         self._commands += len(done)
@@ -379,7 +385,7 @@ class _Product:
             )
 
 
-def _list(found: tuple[commands.Command, ...]) -> str:
+def _list(found: tuple[commands.Command | Unknown, ...]) -> str:
     return ", ".join(map(str, found)) or "nothing"
 
 

@@ -20,10 +20,12 @@ from pn2code.ml.types import Type
 
 @dataclass(slots=True)
 class Match:
-    """The result: `conditions` in order, `bindings` from left to right (a variable may occur more than once)."""
+    """The result: `conditions` in order, `bindings` from left to right (a variable may occur more than once), and
+    parts that must be `equals` to the values of expressions; the latter only in patterns of a net's inscriptions."""
 
     conditions: list[Ir] = field(default_factory=list)
     bindings: list[tuple[Symbol, Val]] = field(default_factory=list)
+    equals: list[tuple[core.Exp, Val]] = field(default_factory=list)
 
 
 def conjunction(conditions: list[Ir]) -> Ir | None:
@@ -69,6 +71,8 @@ class Matcher:
                 self._owner.representation(t) == ir.INT
             ):
                 out.conditions.append(ir.Const(False, ir.BOOL))
+            case core.PEqual(value=named):
+                out.equals.append((named, value))
             case core.PLit():
                 code = self._owner.code(value)
                 literal = self._owner.literal(pattern.value, pattern.type, pattern.span)

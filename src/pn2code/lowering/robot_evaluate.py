@@ -274,6 +274,8 @@ class Evaluator:
                         f"values of type `{type_}` cannot be used in a robot script", pattern.span
                     )
                 return [equal(value, Scalar(t.Value(literal), shape.type), pattern.span)]
+            case core.PEqual(named):
+                return [equal(self.evaluate(named, env), value, pattern.span)]
             case core.PRecord(fields):
                 out = []
                 for label, inner in fields:

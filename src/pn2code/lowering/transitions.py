@@ -276,6 +276,10 @@ class _Enumeration:
             else:
                 first[symbol.uid] = code
                 fresh.append((symbol, code))
+        for named, part in match.equals:
+            conditions.append(
+                equal(self._body, self._body.code(part), self._body.ir(named, self._env))
+            )
         condition = conjunction(conditions)
         if condition is not None:
             self._body.emit(ir.Unless(condition, note))

@@ -22,6 +22,7 @@ from pn2code.medium.places import Crashes, MediumNet, modelled
 from pn2code.medium.rules import Rules
 from pn2code.medium.skeleton import Skeleton, Topology, topology
 from pn2code.medium.tell import Teller
+from pn2code.verify import basis
 from pn2code.verify.answers import Verdict
 from pn2code.verify.explore import Wishes, explore
 from pn2code.verify.limits import Limits, Reduction
@@ -73,6 +74,11 @@ class Answer:
     assumes: str
     evidence: tuple[Evidence, ...]
 
+    @property
+    def rests_on(self) -> str | None:
+        """What has to be seen for this answer: a word of `basis`; None: there is no answer."""
+        return {"yes": basis.ARCS, "no": basis.RUN}.get(self.answer)
+
     def row(self) -> dict[str, Any]:
         """For programs."""
         return {
@@ -86,6 +92,7 @@ class Answer:
             "transitions": self.transitions,
             "seconds": round(self.seconds, 3),
             "assumes": self.assumes,
+            "rests_on": self.rests_on,
             "evidence": [
                 {
                     "fault": None if e.fault is None else e.fault.name.lower(),
@@ -266,11 +273,6 @@ def _question(net: MediumNet) -> str:
     return "\n".join(lines) + "\n"
 
 
-def _ends(net: MediumNet, found: Exploration) -> Sequence[Mapping[str, Any]]:
-    """The answer to the question; nothing for a cell that is made to go on for ever."""
-    return found.answers if any(found.fired[t] for t in net.ends) else ()
-
-
 def _evidence(
     net: MediumNet, storage: Mapping[str, str], found: Exploration, judged: bool
 ) -> Iterator[Evidence]:
@@ -282,7 +284,9 @@ def _evidence(
         if fault not in seen:
             seen.add(fault)
             yield Evidence(fault, trace.steps, lines)
-    for answer in _ends(net, found):
+    for answer in (
+        found.answers
+    ):  # nothing is asked of a cell without final places: it is made to go on for ever
         if answer["answer"] == "no" and None not in seen and answer["trace"]:
             lines, _ = teller.told(Path(answer["trace"]))
             yield Evidence(
@@ -299,6 +303,6 @@ def _verdict(
         return "no", ""
     if not found.complete:
         return "inconclusive", f"the exploration is not complete: {clause(found.why)}"
-    if judged and (found.dead_count or any(a["answer"] != "yes" for a in _ends(net, found))):
+    if judged and (found.dead_count or any(a["answer"] != "yes" for a in found.answers)):
         return "no", ""
     return "yes", ""

@@ -145,8 +145,8 @@ VARIABLE_CLASH = register(
 VALUE_CLASH = register(
     "variable-named-as-value",
     "a net variable has the name of a value or function",
-    "CPN Tools takes the value where a net variable and a `val` or `fun` have one name, which is hardly what was "
-    "meant. Rename one of them.",
+    "Where a net variable and a `val`, `fun` or constructor have one name, CPN Tools takes in arcs, guards and code "
+    "segments what was declared first, and in initial markings and declarations the value. Rename one of them.",
 )
 GUARD_TYPE = register(
     "guard-not-boolean",
@@ -162,7 +162,13 @@ CODE_SEGMENT = register(
 PRIORITY = register(
     "priority-not-constant",
     "a priority is not a constant integer",
-    "A priority is an integer or a `val` that is one, such as `P_HIGH`; it is not below zero.",
+    "A priority is an integer or a `val` that is one, such as `P_HIGH`.",
+)
+PRIORITY_BELOW_ZERO = register(
+    "priority-below-zero",
+    "a priority is below zero",
+    "The smaller number goes first, also below zero. CPN Tools accepts the inscription, but its simulator ends with "
+    "`subscript out of bounds` when it starts: add the same number to all priorities.",
 )
 DELAY = register(
     "delay-form",

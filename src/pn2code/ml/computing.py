@@ -148,6 +148,8 @@ def _fits(pattern: core.Pat, value: Value, bound: dict[int, Value]) -> bool:
             return _fits(pattern.pattern, value, bound)
         case core.PCon():
             return _fits_constructor(pattern, value, bound)
+        case core.PEqual():
+            raise _UnknownError  # occurs in inscriptions only
 
 
 def _fits_constructor(pattern: core.PCon, value: Value, bound: dict[int, Value]) -> bool:

@@ -282,6 +282,15 @@ class PLit:
 
 
 @frozen
+class PEqual:
+    """In a pattern of a net inscription: the name of a declared value, which is compared."""
+
+    value: Var
+    type: Type
+    span: Span = field(compare=False, repr=False)
+
+
+@frozen
 class PRecord:
     """Record, tuple, unit; complete, fields sorted as in the type."""
 
@@ -310,7 +319,7 @@ class PAs:
     span: Span = field(compare=False, repr=False)
 
 
-Pat = PWild | PVar | PLit | PRecord | PCon | PAs
+Pat = PWild | PVar | PLit | PEqual | PRecord | PCon | PAs
 
 
 # --- declarations ------------------------------------------------------------------------------

@@ -139,6 +139,8 @@ def dump_pat(p: core.Pat) -> str:
             return p.symbol.name
         case core.PLit():
             return _literal(p.value, p.type)
+        case core.PEqual():
+            return f"={p.value.symbol.name}"
         case core.PRecord():
             if _is_tuple([n for n, _ in p.fields]):
                 return "(" + ", ".join(dump_pat(x) for _, x in p.fields) + ")"

@@ -32,7 +32,14 @@ from pn2code.ml.context import Context, TooDeepError, suggestion
 from pn2code.ml.core import Program, Symbol
 from pn2code.ml.declarations import Declarations
 from pn2code.ml.declared import break_modules, declared_by, types_declared_by
-from pn2code.ml.environment import Binding, BrokenEntry, BrokenType, Scope, UnsupportedEntry
+from pn2code.ml.environment import (
+    Binding,
+    BrokenEntry,
+    BrokenType,
+    ConEntry,
+    Scope,
+    UnsupportedEntry,
+)
 from pn2code.ml.expressions import Expressions
 from pn2code.ml.fixity import Fixities, resolve_declaration, resolve_expression, resolve_pattern
 from pn2code.ml.inference import ICon, TypeTooLargeError, from_type
@@ -147,8 +154,9 @@ class Elaborator:
                 self._variable_scope.values[name] = BrokenEntry()
                 self._variables.pop(name, None)
                 continue
-            if isinstance(self._ctx.top.values.get(name), Binding):
-                self._clash(name, origin)
+            declared = self._ctx.top.values.get(name)
+            if isinstance(declared, Binding | ConEntry) and name not in self._variables:
+                self._clash(name, origin, "inscriptions mean the value, which was declared first")
                 continue
             old = self._variables.get(name)
             if old is not None and old.colset is not None and old.colset != colset:
@@ -165,16 +173,14 @@ class Elaborator:
                 name, from_type(colset.type, []), symbol=symbol, colset=colset
             )
 
-    def _clash(self, name: str, at: Origin | Span) -> None:
-        """A value hides the variable of its name, whichever is declared first, as in CPN Tools."""
+    def _clash(self, name: str, at: Origin | Span, meaning: str) -> None:
+        """What is declared first counts in arcs, guards and code segments, as in CPN Tools."""
         self._d.warning(
             codes.VALUE_CLASH,
-            f"`{name}` is both a variable of the net and a value or function: inscriptions mean the value",
+            f"`{name}` is both a variable of the net and a value or function: {meaning}",
             at,
             hint="rename one of them",
         )
-        self._variable_scope.values.pop(name, None)
-        self._variables.pop(name, None)
 
     def declarations(self, text: SourceText) -> None:
         """An `ml` element: any number of CPN ML declarations."""
@@ -216,7 +222,12 @@ class Elaborator:
             return
         for name in sorted(declared_by(changed) & self._variables.keys()):
             if isinstance(self._ctx.top.values.get(name), Binding):
-                self._clash(name, dec.span)
+                self._clash(
+                    name,
+                    dec.span,
+                    "inscriptions mean the variable, which was declared first; "
+                    "initial markings and declarations mean the value",
+                )
         made = build()
         self._made += made
         for weak in self._ctx.weak:

@@ -128,8 +128,9 @@ class Inscriptions:
             bindings = Bindings()
             pattern = self._patterns.check(written, wanted, bindings)
             variables: dict[str, Symbol] = {}
+            constants: dict[Symbol, core.Var] = {}
             for own in bindings.values():
-                known = self._variables.values.get(own.name)
+                known = self._variables.value(own.name)
                 if isinstance(known, BrokenEntry):
                     self._ctx.tainted = True
                 elif not isinstance(known, Binding) or known.symbol is None:
@@ -141,6 +142,10 @@ class Inscriptions:
                     )
                 elif self._ctx.unify(own.type, known.type, written.span, f"`{own.name}`"):
                     variables[own.name] = known.symbol
+                    if own.name not in self._variables.values:
+                        constants[known.symbol] = core.Var(
+                            known.symbol, known.symbol.type, written.span
+                        )
 
             def build() -> tuple[core.Exp, core.Pat, core.Exp] | None:
                 whole = draft.build()
@@ -155,7 +160,8 @@ class Inscriptions:
                 test = _matches(whole, own, variables)
                 for binding in bindings.values():
                     binding.symbol = variables[binding.name]
-                bound = core.PAs(whole.symbol, pattern(), t, written.span)
+                inner = _comparing(pattern(), constants)
+                bound = core.PAs(whole.symbol, inner, t, written.span)
                 return whole, bound, test
 
             return self._finish(before, build)
@@ -436,16 +442,21 @@ class Inscriptions:
         if built is None:
             return None
         value = self._computed(built)
-        if not isinstance(value, int) or value < 0:
+        if not isinstance(value, int):
             self._ctx.error(
                 codes.PRIORITY,
-                "priority is below zero"
-                if isinstance(value, int)
-                else "priority is not a constant that can be computed here",
+                "priority is not a constant that can be computed here",
                 exp.span,
                 hint="use a number, or a `val` such as `P_HIGH`; smaller numbers go first",
             )
             return None
+        if value < 0:
+            self._ctx.d.warning(
+                codes.PRIORITY_BELOW_ZERO,
+                f"the priority is {value}: pn2code takes it as it is, CPN Tools cannot start such a net",
+                exp.span,
+                hint="use numbers from 0 on; smaller numbers go first",
+            )
         return value
 
     # --- code segments
@@ -559,6 +570,21 @@ def _matches(whole: core.Var, pattern: core.Pat, variables: Mapping[str, Symbol]
         test = core.If(core.Apply(equals, pair, BOOL, span), test, false, BOOL, span)
     rules = [core.Rule(pattern, test, span), core.Rule(core.PWild(whole.type, span), false, span)]
     return core.Case(whole, tuple(rules), BOOL, span)
+
+
+def _comparing(pattern: core.Pat, constants: Mapping[Symbol, core.Var]) -> core.Pat:
+    """The pattern, which compares with declared values instead of binding their names."""
+    match pattern:
+        case core.PVar(symbol, t, span) if symbol in constants:
+            return core.PEqual(constants[symbol], t, span)
+        case core.PAs(pattern=inner):
+            return replace(pattern, pattern=_comparing(inner, constants))
+        case core.PRecord(fields):
+            return replace(pattern, fields=tuple((k, _comparing(p, constants)) for k, p in fields))
+        case core.PCon(argument=inner) if inner is not None:
+            return replace(pattern, argument=_comparing(inner, constants))
+        case _:
+            return pattern
 
 
 def _symbols(pattern: core.Pat) -> list[Symbol]:

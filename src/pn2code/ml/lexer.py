@@ -53,7 +53,7 @@ class Lexeme(NamedTuple):
     Args:
         kind: terminal name of the grammar.
         start, end: character offsets.
-        text: as written.
+        text: as written, but for white space and comments inside a long name.
         value: of a literal.
     """
 
@@ -131,6 +131,8 @@ class _Lexer:
         if m := _NAME.match(text, at):
             word = m.group()
             return self._add(word.upper() if word in self._words else "ID", m.end())
+        if text[at] == "." and (rest := self._rest_of_name()):
+            return rest
         if text[at] == '"':
             return self._string(at, "STRING")
         if text.startswith('#"', at):
@@ -142,6 +144,29 @@ class _Lexer:
         if m := _SYMBOLIC.match(text, at):
             return self._add(RESERVED_SYMBOLS.get(m.group(), "ID"), m.end())
         return self._error(at, at + 1, *advice.unknown_character(text[at], text[:at]))
+
+    def _rest_of_name(self) -> bool:
+        """White space and comments may stand beside the points of a long name: `INT (* c *) . mkstr`."""
+        if (
+            not self._tokens
+            or self._tokens[-1].kind != "ID"
+            or not _NAME.match(self._tokens[-1].text)
+        ):
+            return False
+        first, point = self._tokens[-1], self._at
+        self._at += 1
+        while m := _SPACE.match(self._text, self._at) or self._text.startswith("(*", self._at):
+            if isinstance(m, re.Match):
+                self._at = m.end()
+            elif not self._comment():
+                break
+        rest = _NAME.match(self._text, self._at) or _SYMBOLIC.match(self._text, self._at)
+        if rest is None or rest.group() in self._words:
+            self._at = point
+            return False
+        self._tokens[-1] = Lexeme("ID", first.start, rest.end(), f"{first.text}.{rest.group()}")
+        self._at = rest.end()
+        return True
 
     def _number(self, m: re.Match[str]) -> bool:
         word, end = m.group(), m.end()

@@ -19,6 +19,7 @@ from pn2code.ml.parser import declared_names
 from pn2code.ml.types import INT, Type, list_of, timed_of
 from pn2code.net.binding import Parts, Planner
 from pn2code.net.codes import (
+    ARC_AS,
     ARC_EMPTY,
     ARC_IGNORED,
     DECLARATION_EMPTY,
@@ -370,6 +371,12 @@ class _Checker:
         found = self.elaborator.layered(text, colset.type)
         if found is None:
             return None
+        self.d.warning(
+            ARC_AS,
+            f"CPN Tools refuses `as` on an arc: {arc.origin.element} is accepted by pn2code only",
+            text.span(),
+            hint="write the pattern alone, with a variable for each part",
+        )
         value, pattern, test = found
         self.tests.append(test)
         term = Term(_one(value), pattern, value, None, False, text.origin)

@@ -17,7 +17,30 @@ PORT_UNASSIGNED = register(
     "port-unassigned",
     "a port has no socket",
     "A port place of a page is not assigned to a place next to the substitution transition. As in "
-    "CPN Tools it is then an ordinary place of its own, which is rarely what was meant.",
+    "CPN Tools it is then an ordinary place of its own, which is rarely what was meant. Where the port has a socket "
+    "at another substitution transition of the page, this is a warning: the engine of CPN Tools cannot give the "
+    "marking of such a net (`Exception Subscript raised when checking marking`), stops its simulation after a few "
+    "steps, and does not enter the state-space tool.",
+)
+SOCKET_UNASSIGNED = register(
+    "socket-unassigned",
+    "a place beside a substitution transition is no socket",
+    "A place that has an arc to a substitution transition should be assigned to a port of the page that the "
+    "transition stands for. The editor of CPN Tools refuses the net otherwise; in pn2code the arc has no meaning.",
+)
+SOCKET_ARCS = register(
+    "socket-arcs",
+    "the arcs of a socket do not suit the type of its port",
+    "A socket of an input port has an arc to the substitution transition, that of an output port an arc from it, that "
+    "of an I/O port both (or one with two heads). The editor of CPN Tools refuses the net otherwise; in pn2code only "
+    "the assignment of the port counts.",
+)
+NAME_NOT_UNIQUE = register(
+    "name-not-unique",
+    "two nodes of a page, or two pages, have one name",
+    "The editor of CPN Tools refuses a net in which two places or two transitions of a page, or two pages, have "
+    "one name (`name not unique`). It compares the names as it sends them to its engine: cut at the first sign that "
+    "is no letter, digit, blank, `_` or `'`. pn2code tells such nodes apart by a number behind the name.",
 )
 PORT_ASSIGNMENT = register(
     "port-assignment",
@@ -45,8 +68,9 @@ FUSION_MISMATCH = register(
 FUSION_MEMBER = register(
     "fusion-member",
     "a fusion set and its places do not agree",
-    "A fusion set lists a place that does not exist, or a place names a fusion set that does not "
-    "list it.",
+    "A fusion set lists a place that does not exist or that does not name the set, or a place names a fusion set "
+    "that does not list it or does not exist. As in CPN Tools, what the place says decides: it belongs to the set that "
+    "it names, if that exists, and to no other.",
 )
 SUBSTITUTION_INSCRIPTION = register(
     "substitution-inscription",
@@ -114,13 +138,21 @@ ARC_EMPTY = register(
     "arc-empty",
     "an arc has no inscription",
     "Arcs need an inscription that says which tokens they move; only at places of colour set UNIT "
-    "does an empty one mean 1`().",
+    "does an empty one mean 1`(). The editor of CPN Tools never has a transition with such an arc checked, so the "
+    "net cannot run there, and it says nothing.",
 )
 ARC_IGNORED = register(
     "arc-inscription-ignored",
     "the inscription of an inhibitor or reset arc has no effect",
     "Inhibitor arcs test that a place has no tokens and reset arcs empty it; an inscription means "
     "nothing there.",
+)
+ARC_AS = register(
+    "arc-as-pattern",
+    "an arc inscription has a pattern with `as`",
+    "pn2code understands `x as pattern` on an input arc of an untimed place, where x is bound to the whole token. "
+    "CPN Tools 4.0.0 says `syntax error` and refuses the net. Write the pattern without `x as` and `_`, with a "
+    "variable for each part, and on output arcs the pattern again; or write `x` and take it apart in the guard.",
 )
 UNBOUND_VARIABLE = register(
     "unbound-variable",

@@ -22,6 +22,7 @@ from pn2code.ml.core import (
     Lit,
     Pat,
     PCon,
+    PEqual,
     PLit,
     PRecord,
     Program,
@@ -51,6 +52,7 @@ class TermReader:
 
     def __init__(self, program: Program, variables: NetVariables, d: Diagnostics) -> None:
         self.variables = variables
+        self.values = {s.uid for s in program.globals.values()}
         self.d = d
         constructors: dict[str, Constructor] = {}
         if "list" in program.datatypes:
@@ -110,12 +112,17 @@ class TermReader:
         return Term(coefficient, pattern, value, delay, whole, at.span.origin)
 
     def pattern(self, e: Exp, depth: int = 0) -> Pat | None:
-        """The expression as a pattern; None when it is none: a call, arithmetic, a constant's name."""
+        """The expression as a pattern; None when it is none: a call, arithmetic, a name `S.n`.
+
+        Like CPN Tools: a declared value is a constant of the pattern if it is named, and nothing if it is computed.
+        """
         if depth > MAX_PATTERN_DEPTH:
             return None
         match e:
             case Var(symbol) if self.variables.is_net_variable(symbol):
                 return PVar(symbol, e.type, e.span)
+            case Var(symbol) if symbol.uid in self.values and "." not in e.span.text:
+                return PEqual(e, e.type, e.span)
             case Lit(value):
                 return PLit(value, e.type, e.span)
             case Con(constructor) if not constructor.has_argument:

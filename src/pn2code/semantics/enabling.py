@@ -128,12 +128,23 @@ Found = dict[int, Value]
 
 
 class Enabling:
-    """Enabling of the transitions of a net."""
+    """Enabling of the transitions of a net.
+
+    Attributes:
+        constants: the declared values that patterns of the net name, by symbol; each search begins with them.
+    """
 
     def __init__(self, net: FlatNet, evaluator: Evaluator) -> None:
         self.net = net
         self.evaluator = evaluator
         self.colours = evaluator.colours
+        self.constants: Found = {
+            s.uid: evaluator.globals[s.uid]
+            for t in net.transitions
+            for pattern in _patterns(t)
+            for s in variables(pattern)
+            if s.uid in evaluator.globals
+        }
         self._guards: dict[int, list[list[int]]] = {}
         self._in_order: dict[int, tuple[PlaceMarking, list[Value]]] = {}
 
@@ -163,7 +174,7 @@ class Enabling:
         self.evaluator.now = marking.time
         self.evaluator.random.start(self.evaluator.steps, bindings_of(t.index))
         seen: set[BindingElement] = set()
-        for found in self._search(t, marking, 0, {}, ignore_stamps, accept):
+        for found in self._search(t, marking, 0, self.constants, ignore_stamps, accept):
             binding = {s: found[s.uid] for s in t.variables if s.uid in found}
             element = BindingElement.make(t, binding)
             if element not in seen:
@@ -381,7 +392,8 @@ class Enabling:
         if reason is not None:
             return reason
         outputs = t.code.outputs if t.code else ()
-        found: Found = {s.uid: binding[s] for s in t.variables if s not in outputs}
+        own_values = {s.uid: binding[s] for s in t.variables if s not in outputs}
+        found: Found = {**self.constants, **own_values}
         own = {s: value for s, value in binding.items() if s not in outputs}
         demands = self.demands(t, own)
         missing = self.take(marking, demands)
@@ -459,6 +471,17 @@ class Enabling:
             self._early(arc, term, {s.uid: value for s, value in binding.items()})
             for binding in self.bindings(t, marking, ignore_stamps=True)
         }
+
+
+def _patterns(t: FlatTransition) -> Iterator[Pat]:
+    """All patterns of a transition's inscriptions."""
+    for step in t.plan:
+        if isinstance(step, BindEquation):
+            yield step.pattern
+    for arc in t.arcs:
+        for term in arc.inscription.terms if arc.inscription is not None else ():
+            if term.pattern is not None:
+                yield term.pattern
 
 
 def available(tokens: PlaceMarking, now: float) -> list[Value] | list[Timed]:

@@ -469,7 +469,8 @@ def _construct(constructor: core.Constructor) -> Value:
 def match(pattern: core.Pat, value: Any, bound: dict[int, Value]) -> bool:
     """Matches a value, adding to `bound` what the variables stand for.
 
-    A variable that is in `bound` already must have an equal value: net variables may occur again.
+    A variable that is in `bound` already must have an equal value: net variables may occur again. So have declared
+    values that a pattern names: `bound` begins with those of `Enabling.constants`.
     What was added before a mismatch stays, so a caller who goes on copies `bound` first.
     """
     return _MATCHES[type(pattern)](pattern, value, bound)
@@ -510,6 +511,7 @@ def _bind(symbol: Symbol, value: Value, bound: dict[int, Value]) -> bool:
 _MATCHES: dict[type, Callable[[Any, Any, dict[int, Value]], bool]] = {
     core.PVar: lambda pattern, value, bound: _bind(pattern.symbol, value, bound),
     core.PWild: lambda pattern, value, bound: True,
+    core.PEqual: lambda pattern, value, bound: v.equal(bound[pattern.value.symbol.uid], value),
     core.PRecord: _match_record,
     core.PLit: lambda pattern, value, bound: bool(value == pattern.value),
     core.PAs: lambda pattern, value, bound: (

@@ -16,10 +16,10 @@ from pn2code.ml.core import Symbol
 from pn2code.net.flat import FlatNet, FlatTransition
 from pn2code.semantics.colour_json import JsonError, from_json, to_json
 from pn2code.semantics.marking import PlaceMarking, place_from_json
+from pn2code.semantics.parties import SIMULATORS
+from pn2code.semantics.trace_lines import is_number, order_problem, origin_problem, unknown_variable
 from pn2code.semantics.values import Value
 from pn2code.simulate.trace import json_text
-
-SIMULATORS = frozenset({"simulate", "reference"})
 
 
 class TraceRefusedError(Exception):
@@ -34,6 +34,11 @@ class TraceRefusedError(Exception):
         super().__init__(f"line {line}: {why}" if line else why)
         self.why = why
         self.line = line
+
+
+def _refuse(problem: str | None, line: int) -> None:
+    if problem is not None:
+        raise TraceRefusedError(problem, line)
 
 
 def _lines(path: Path) -> Iterator[str]:
@@ -160,9 +165,17 @@ class Trace:
         Raises:
             TraceRefusedError: a line has another form.
         """
+        latest, count, is_over = 0.0, 0, False
         for number, line in self._lines:
-            if "event" not in line:
-                yield self._step(number, line)
+            if "event" in line:
+                is_over = is_over or line["event"] == "end"
+                continue
+            if is_over:
+                raise TraceRefusedError("it comes after the end of the run", number)
+            count += 1
+            _refuse(order_problem(line, count, latest), number)
+            yield self._step(number, line)
+            latest = max(latest, float(line["t"])) if is_number(line.get("t")) else latest
 
     def _step(self, number: int, line: Mapping[str, Any]) -> Step:
         t = self._transitions.get(str(line.get("transition")))
@@ -176,6 +189,7 @@ class Trace:
         given = line.get("binding")
         if not isinstance(given, dict):
             raise TraceRefusedError("the binding is not a JSON object", number)
+        _refuse(origin_problem(line, t) or unknown_variable(given, t), number)
         return Step(number, t, time, dict(self._values(number, t, given)))
 
     def _values(

@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import Any, Literal
 
 from pn2code.properties import meaning as m
+from pn2code.verify import basis
 from pn2code.verify.reasons import clause
 from pn2code.verify.result import Exploration
 
@@ -22,11 +23,13 @@ class Evidence:
         trace: its file.
         steps: how many.
         loop: so many steps are before the cycle that the run goes round for ever; None: it has none.
+        confirmed: whether the token game has played it, and it shows what it should.
     """
 
     trace: Path
     steps: int
     loop: int | None
+    confirmed: bool = False
 
 
 @dataclass(frozen=True, slots=True)
@@ -54,9 +57,22 @@ class Answer:
         """Whether the answer is the one that the author expects."""
         return self.answer == ("yes" if self.about.expect else "no")
 
+    @property
+    def rests_on(self) -> str | None:
+        """What has to be seen for this answer: a word of `basis`; None: there is no answer."""
+        return basis.of_property(self.about, self.answer, has_run=self.evidence is not None)
+
     def row(self) -> dict[str, Any]:
         """For `--json`."""
         e = self.evidence
+        run = None
+        if e is not None:
+            run = {
+                "trace": str(e.trace),
+                "steps": e.steps,
+                "loop": e.loop,
+                "confirmed": e.confirmed,
+            }
         return {
             "name": self.about.name,
             "says": self.about.says,
@@ -68,7 +84,8 @@ class Answer:
             "why": self.why or None,
             "value": self.value,
             "node": self.node,
-            "evidence": {"trace": str(e.trace), "steps": e.steps, "loop": e.loop} if e else None,
+            "evidence": run,
+            "rests_on": self.rests_on,
         }
 
 

@@ -19,6 +19,7 @@ from typing import Any
 from pn2code.cell.partition import OwnerKind, Partition
 from pn2code.diagnostics import Diagnostics
 from pn2code.net.flat import ArcKind
+from pn2code.verify import basis
 from pn2code.verify.explore import Wishes, explore
 from pn2code.verify.limits import Limits, Reduction
 from pn2code.verify.reasons import clause
@@ -45,7 +46,7 @@ MEANINGS = {
     FINITE: "the supervisor, left alone, always comes to rest",
     BOUNDED: "the most firings in one cycle",
     CONFLUENT: "the order in which the supervisor fires within a cycle does not matter",
-    BLOCKING: "wherever the controlled cell gets, it can still reach a final marking",
+    BLOCKING: "from every marking that the controlled cell can reach, a final marking can still be reached",
     CHANNELS: "no channel ever holds two messages",
     OWNERSHIP: "transitions touch places of their owner, and channels in their direction",
 }
@@ -105,6 +106,11 @@ class Check:
     place: str | None = None
 
     @property
+    def rests_on(self) -> str | None:
+        """What has to be seen for this answer: a word of `basis`; None: there is no answer."""
+        return basis.of_check(self.name, self.answer, self.why, has_run=bool(self.evidence))
+
+    @property
     def fails(self) -> bool:
         """Whether the supervisor is wrong."""
         return self.answer == "no" and not self.is_accepted
@@ -118,6 +124,7 @@ class Check:
             "says": self.says,
             "why": self.why,
             "accepted": self.is_accepted,
+            "rests_on": self.rests_on,
             "transitions": list(self.transitions),
             "place": self.place,
             "evidence": [e.row() for e in self.evidence],
@@ -288,7 +295,7 @@ def _finite(row: Mapping[str, Any], keep: _Keeper) -> Check:
         return Check(FINITE, "yes", "the supervisor always comes to rest")
     evidence = keep.all(row, FINITE)
     round_ = evidence[0].transitions[evidence[0].loop :] if evidence else ()
-    ways = f": {_named(round_)}, over and over" if round_ else ""
+    ways = f" by repeating {_named(round_)}" if round_ else ""
     says = f"the supervisor can fire for ever{ways}"
     return Check(FINITE, "no", says, evidence=evidence, transitions=tuple(dict.fromkeys(round_)))
 
@@ -413,8 +420,21 @@ def ownership(partition: Partition) -> Check:
     return Check(OWNERSHIP, "yes", says, arcs)
 
 
-def not_looked(why: str, partition: Partition) -> Control:
-    """When there is no state space to look in."""
-    names = [FINITE, BOUNDED, CONFLUENT, BLOCKING, *([CHANNELS] if partition.channels else [])]
-    looked = tuple(_open(name, {"why": why}) for name in names)
+def not_looked(why: str, partition: Partition, found: Exploration | None = None) -> Control:
+    """When there is no graph to look in.
+
+    Args:
+        why: the reason, as in `reasons`.
+        partition: the cell.
+        found: what was explored. Where all its markings were seen, and the cell has no others (its priorities are
+            those of the net), they say what the channels hold.
+    """
+    looked = [_open(name, {"why": why}) for name in (FINITE, BOUNDED, CONFLUENT, BLOCKING)]
+    bounds = found.bounds if found is not None and found.seen.markings else None
+    if partition.channels and bounds is not None and not has_own_priorities(partition):
+        most = [bounds[c.place].upper for c in partition.channels]
+        rows = [{"answer": "yes" if n <= 1 else "no", "value": n} for n in most]
+        looked.append(_channels(partition, rows, _Keeper(Plan())))
+    elif partition.channels:
+        looked.append(_open(CHANNELS, {"why": why}))
     return Control((*looked, ownership(partition)), None)

@@ -11,7 +11,7 @@ _CLAUSES = {
     "exception": "an inscription raised an exception",
     "decided": "all properties were decided by then",
     "truncated": "not all markings were seen",
-    "approximation": "it is approximate: markings may have been taken for others",
+    "approximation": "the exploration is approximate, so markings may have been taken for others and missed",
     "reduction": "the reduction of the state space does not keep it",
     "endless": "the response is not finite",
     "compiler": "there is no C compiler",
