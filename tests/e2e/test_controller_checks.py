@@ -281,6 +281,8 @@ def test_a_cell_that_is_fine(tmp_path: Path) -> None:
         control.CONFLUENT: ("yes", None),
         control.BLOCKING: ("yes", 10),
         control.CHANNELS: ("yes", 1),
+        control.MESSAGES: ("yes", 0),
+        control.MEMORY: ("yes", 0),
         control.OWNERSHIP: ("yes", 10),
     }
 
@@ -424,12 +426,14 @@ def test_generate_refuses_a_supervisor_that_fails(tmp_path: Path) -> None:
     (text,) = [f.text for f in generated.files if f.path == "cell_config.c"]
     head = text[text.index(" * Not checked") :].splitlines()
     assert head[0] == " * Not checked, since it was generated with --unchecked (docs/execution.md):"
-    assert [line.partition(";")[0].partition(" (")[0] for line in head[1:7]] == [
+    assert [line.partition(";")[0].partition(" (")[0] for line in head[1:9]] == [
         " * finite-response: unchecked",
         " * bounded-response: unchecked",
         " * confluence: unchecked",
         " * non-blocking: unchecked",
         " * channels: unchecked",
+        " * messages: yes",
+        " * memory: unchecked",
         " * ownership: yes",
     ]
     assert " * channels: unchecked (no channel ever holds two messages)" in head

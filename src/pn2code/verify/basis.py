@@ -30,6 +30,8 @@ SAYS: Final = {
     RUN: "a run that shows it was found",
     NET: "the net itself was looked at, not its state space",
 }
+_OF_MARKINGS = frozenset({"channels", "capacity", "messages", "memory"})
+"""Checks of a supervisor that look at one marking after the other."""
 
 
 def of_property(p: m.Property, answer: str, *, has_run: bool) -> str | None:
@@ -55,7 +57,7 @@ def of_check(name: str, answer: str, why: str | None, *, has_run: bool) -> str |
         return None
     if name == "ownership":
         return NET
-    if name == "channels":
+    if name in ("channels", "messages", "memory"):
         return MARKINGS if answer == "yes" else RUN if has_run else MARKING
     # That an end can no longer be reached is seen in the graph; the run only shows how to get there.
     is_shown = answer == "no" and has_run and not (name == "non-blocking" and why != "deadlock")
