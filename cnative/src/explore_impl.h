@@ -513,7 +513,43 @@ typedef struct ex_worker {
     uint64_t arcs;
     uint64_t dead;
     uint64_t *fired;         /* by transition */
+    uint64_t arena_most;     /* bytes that a transition's bindings and one occurrence of it needed of the arena */
 } ex_worker_t;
+
+/* Around all that is done for the bindings and occurrences of a transition: what it leaves in the arena is forgotten, how much that was
+ * is not. */
+static inline size_t ex_arena_begin(ex_worker_t *worker)
+{
+    pn_arena_t *const arena = worker->cx.arena;
+    arena->peak = arena->used;
+    return pn_arena_mark(arena);
+}
+
+static inline void ex_arena_end(ex_worker_t *worker, size_t mark)
+{
+    const uint64_t most = worker->cx.arena->peak - mark;
+    worker->arena_most = (most > worker->arena_most) ? most : worker->arena_most;
+    pn_arena_release(worker->cx.arena, mark);
+}
+
+/* What is known of programs that carry out transitions (explore_query_read.c reads it): each may do less than the net. */
+typedef enum ex_choice {
+    EX_ANY,             /* whatever is enabled */
+    EX_FIRST_BINDING,   /* of a group, in the documented order, the first binding element */
+    EX_FIRST_TRANSITION /* of a group the first transition that is enabled, with all its bindings */
+} ex_choice_t;
+
+#define EX_MOST_GROUPS 256U
+
+typedef struct ex_programs {
+    uint32_t *group;      /* by transition: one in which only the first is done; 0: none */
+    ex_choice_t choice[EX_MOST_GROUPS];
+    uint32_t *kin;        /* by transition: the one of which it is a part, which counts as the same in its group */
+    bool *is_meek;        /* by transition: that it is enabled holds no other one back */
+    bool *is_silent;      /* by transition: a step that is no occurrence in the net */
+    bool *is_clock;       /* by transition: it occurs one unit of time later, if something is waited for; with reduced time only */
+    bool has_clock;
+} ex_programs_t;
 
 typedef struct ex_run {
     ex_options_t options;
@@ -558,6 +594,7 @@ typedef struct ex_run {
     struct ex_reduction *reduction; /* of explore_elements.c; NULL: none that needs a table */
     _Atomic(const char *) phase; /* for the progress lines */
     const uint32_t *owner_of; /* by transition: whose it is; priorities count among those of one owner. NULL: among all */
+    struct ex_programs *programs; /* how programs choose among what is enabled; NULL: nobody chooses */
     struct ex_graph *graph;  /* of explore_graph.c; NULL: none */
     bool is_seen_whole;          /* all states have been expanded, and none was taken for another one */
     bool has_arcs;               /* the graph of them has been made, with all arcs */

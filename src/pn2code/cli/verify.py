@@ -287,11 +287,11 @@ def verify(
                 with suppress(TimeIsOverError), deadline.enforced():
                     wishes = replace(wishes, sizes=Sizes.start(opened.flat, opened.storage))
                 found = explore(opened.flat, opened.storage, limits, d, pictures.wishes(wishes))
-                if found is not None and check_controller:
-                    control = controller.look(opened, found, limits, wishes, folder, d)
+                if found is not None and (check_controller or asked):
+                    control = controller.look(opened, found, limits, wishes, folder, d, asked.plain)
                 more: Sequence[Answer] = ()
                 if found is not None:
-                    more = properties.of_bindings(asked, opened, found, limits, wishes, d)
+                    more = properties.of_bindings(asked, opened, found, limits, wishes, d, control)
                 seen: medium.Answers = ()
                 if found is not None and check_medium:
                     seen = medium.look(opened, found, limits, wishes, d)
@@ -308,8 +308,10 @@ def verify(
                 hint="give it more time with `--max-seconds`",
             )
         answers = properties.answered(
-            asked, opened, found, more, folder, _stem(opened), deadline, d
+            asked, opened, found, more, folder, _stem(opened), deadline, d, control
         )
+        if not check_controller:  # it was looked at for properties only
+            control = None
         if found.error is not None and found.why == "error":
             _tell_error(opened, found, d)
         if found.graph is not None and len(found.traces) < min(most_traces, found.dead_count):

@@ -13,6 +13,8 @@ from pn2code.net.flat import ArcKind, FlatNet, FlatTransition
 
 SIMULATORS = frozenset({"simulate", "reference"})
 """`by` of traces in which one clock and one scheduler rule the whole net."""
+VERIFY = "verify"
+"""`by` of a run of a cell that `verify` has found: like one of all parties, but in units of model time."""
 RUN = "run"
 """`by` of a trace in which all parties are merged."""
 SUPERVISOR = "supervisor"
@@ -53,7 +55,7 @@ class Parties:
 
     def stranger(self, by: str) -> str | None:
         """What is wrong with the writer of a trace; None: nothing."""
-        known = (*sorted(SIMULATORS), RUN, *self.names)
+        known = (*sorted(SIMULATORS), VERIFY, RUN, *self.names)
         if not by or by in known or not self.is_cell:
             return None
         return f'it is `by` "{by}", but only these write traces of this cell: {", ".join(known)}'

@@ -43,6 +43,9 @@ class Answer:
         evidence: a run, where one shows it.
         value: the number that decides: most tokens of a place, or the longest wait; None: there is none.
         node: of the marking that decides, in the numbering of the report.
+        kept: whether a "yes" is kept when the programs of a cell do less than what was looked at.
+        cell: the answer is about a cell as it runs.
+        net: then what is so of the closed net, where that is known and differs; `net_why` says why it differs.
     """
 
     about: m.Property
@@ -51,6 +54,10 @@ class Answer:
     evidence: Evidence | None = None
     value: float | None = None
     node: int | None = None
+    kept: bool = False
+    cell: bool = False
+    net: Verdict | None = None
+    net_why: str = ""
 
     @property
     def is_expected(self) -> bool:
@@ -84,6 +91,9 @@ class Answer:
             "why": self.why or None,
             "value": self.value,
             "node": self.node,
+            "kept": self.kept,
+            "about": "cell" if self.cell else "net",
+            "net": {"answer": self.net, "why": self.net_why} if self.net else None,
             "evidence": run,
             "rests_on": self.rests_on,
         }

@@ -47,6 +47,14 @@ def warn(net: FlatNet, d: Diagnostics) -> None:
         )
 
 
+def draws(net: FlatNet) -> bool:
+    """Whether random numbers or files decide anything."""
+    effects = Effects(net.program)
+    return any(
+        e in effects.of(*_texts(t)) for t in net.transitions for e in (Effect.DRAW, Effect.LOOK)
+    )
+
+
 def refuse(net: FlatNet, d: Diagnostics) -> bool:
     """Refuses nets that change references while bindings are searched for; whether it did."""
     found = searching(net)

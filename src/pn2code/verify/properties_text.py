@@ -46,6 +46,8 @@ def remarks(a: Answer) -> list[str]:
         found.append(f"{_VALUES.get(a.about.kind, 'value')}: {number(a.value)}")
     if a.answer == "inconclusive" and a.why:
         found.append(f"not known: {a.why}")
+    if a.net is not None:
+        found.append(f"net: {a.net}. {a.net_why}")
     if a.rests_on is not None:
         played = ", and the token game has played it" if a.evidence and a.evidence.confirmed else ""
         found.append(f"rests on this: {basis.SAYS[a.rests_on]}{played * (a.rests_on == basis.RUN)}")

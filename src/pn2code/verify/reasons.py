@@ -14,6 +14,8 @@ _CLAUSES = {
     "approximation": "the exploration is approximate, so markings may have been taken for others and missed",
     "reduction": "the reduction of the state space does not keep it",
     "endless": "the response is not finite",
+    "speeds": "the order of events decides, and durations decide that",
+    "chance": "random numbers or files decide: other ones than those that were drawn may lead elsewhere",
     "compiler": "there is no C compiler",
 }
 
