@@ -1,4 +1,4 @@
-"""What of a net depends on more than its marking: of such a net a state space is one of many, or not that of CPN Tools."""
+"""What of a net depends on more than its marking: its state space is one of many, or not that of CPN Tools."""
 
 from __future__ import annotations
 
