@@ -3,6 +3,7 @@
     python -m tests.fuzz [--seconds 600] [--cases N] [--seed 1] [--save FOLDER]
     python -m tests.fuzz --nets N       random nets are compiled and compared instead: see `walks`
     python -m tests.fuzz --graphs N     whole state spaces of random nets: see `graphs`
+    python -m tests.fuzz --hosts N      random nets with references in all hosts: see `hosts`
     python -m tests.fuzz --declarations N   every type at every position: see `declarations`
 
 A case is a number: case 17 is the same net wherever the base nets are the same. Nothing but diagnostics may come
@@ -177,6 +178,10 @@ def main() -> int:
         from tests.fuzz import graphs
 
         return graphs.main()
+    if any(o.startswith("--hosts") for o in others):
+        from tests.fuzz import hosts
+
+        return hosts.main()
     if any(o.startswith("--declarations") for o in others):
         from tests.fuzz import declarations
 
