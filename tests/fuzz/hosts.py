@@ -40,7 +40,9 @@ def main() -> int:
                 failures += 1
                 print(f"hosts: file {number}: {type(failure).__name__}: {failure}", flush=True)
             number += 1
-    print(f"hosts: files {given.seed} to {number - 1}: {done}; {failures} differ")
+    print(
+        f"hosts: files {given.seed} to {number - 1}: {done}; steps {dict(hosts.steps)}; {failures} differ"
+    )
     return int(failures > 0)
 
 

@@ -1,21 +1,23 @@
-"""All hosts on the same random nets: explorer, walks, simulator, supervisor and its monitor, each next to the token game.
+"""All hosts on the same random nets, each next to the token game: explorer, walks, simulator, supervisor, monitor.
 
 The nets are those of `helpers.random_references`: references of all forms, exceptions, strings, lists, time. `check`
-compares whole graphs net by net, as `helpers.unions` does; then all nets of the union play together (there are as many
-picks as nets), and the traces of the other hosts must be occurrence sequences for the token game.
+compares whole graphs net by net, as `helpers.unions` does; then the nets of the union that raise no exception alone
+play together (there are as many picks as nets), and the traces of the other hosts must be occurrence sequences for the
+token game.
 """
 
 from __future__ import annotations
 
 import re
 import subprocess
-from dataclasses import dataclass
+from collections import Counter
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 
-from helpers.explored import LIBRARY, Explorers
+from helpers.explored import LIBRARY, Explorers, wide
 from helpers.netbuilder import flat
 from helpers.random_references import referring
-from helpers.unions import Outcome, check
+from helpers.unions import Outcome, Part, check
 from pn2code.cell.divide import divide
 from pn2code.diagnostics import Diagnostics
 from pn2code.emission.supervisor import emit
@@ -26,6 +28,8 @@ from pn2code.verify.programs import Sizes
 
 HOSTS = {"simulate": (), "supervisor": (), "monitor": ("-DPN_MONITOR",)}
 FIRINGS = 150
+ROOM = 512
+"""Different tokens that a place can hold."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -33,6 +37,7 @@ class Hosts:
     """The explorer and the other hosts, compiled once; each finds a net in a shared library when it starts."""
 
     explorers: Explorers
+    steps: Counter[str] = field(default_factory=Counter)
 
     @staticmethod
     def open(folder: Path, flags: tuple[str, ...]) -> Hosts:
@@ -66,13 +71,19 @@ class Hosts:
         """
         union = referring(number, size)
         done = check(self.explorers, union)
-        together = re.sub(r"(fusion Pick : UNIT = )1`", rf"\g<1>{size}`", union.text())
-        self._play(together, number)
+        whole = flat(union.text())
+        fine = [i for i in range(size) if Part(whole, i).space is not None]
+        together = re.sub(r"(fusion Pick : UNIT = )1`", rf"\g<1>{size}`", union.text(*fine))
+        self.steps.update(self._play(together, number))
         return done
 
-    def _play(self, text: str, number: int) -> None:
+    def _play(self, text: str, number: int) -> dict[str, int]:
+        """The steps that each host made, which have been repeated."""
+        steps: dict[str, int] = {}
         net = flat(text)
-        folder = self.explorers.build(net, Sizes.start(net, {}), "together")
+        start = wide(Sizes.start(net, {}), 0)
+        rooms = {p.name: ROOM for p in net.places}
+        folder = self.explorers.build(net, replace(start, room=rooms), "together")
         d = Diagnostics()
         partition = divide(net, None, d)
         assert partition is not None
@@ -106,3 +117,5 @@ class Hosts:
             ), said
             result = replay(trace, net, {}, files=Files(None))
             assert result.ok, f"{said}\nreplay: step {result.steps + 1}: {result.why}"
+            steps[name] = result.steps
+        return steps
