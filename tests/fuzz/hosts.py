@@ -2,7 +2,7 @@
 
     python -m tests.fuzz.hosts [--hosts 2000] [--seed 0] [--sanitize]
 
-About 25 nets are compiled together (`helpers.hosts`), and `--seed` is the number of the first such file. Explorer, walks,
+About 25 nets are compiled together (`helpers.hosts`); `--seed` is the number of the first such file. Explorer, walks,
 simulator, supervisor (`--dry-run`) and its monitor must do what the token game does.
 """
 
