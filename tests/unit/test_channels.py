@@ -136,7 +136,22 @@ def test_a_message_written_by_hand_needs_no_seal() -> None:
 def test_zero_is_the_empty_channel() -> None:
     for text in ("0\n", "0", "0 \r\n"):
         assert parse(SPECS[1], text, session=SESSION, consumed=0) is None
-    assert compose(SPECS[1], (0,), seq=1, session=SESSION) is None  # could not be told from empty
+
+
+def test_a_zero_with_line_2_is_a_message() -> None:
+    text = compose(SPECS[1], (0,), seq=1, session=SESSION)
+    assert text is not None and text.startswith("0\n# 1 ")
+    assert parse(SPECS[1], text, session=SESSION, consumed=0) == Message("command", (0,), 1)
+    again = parse(SPECS[1], text, session=SESSION, consumed=1)
+    assert isinstance(again, Refused) and again.reason is Reason.REPEATED
+    torn = parse(SPECS[1], text[:-4], session=SESSION, consumed=0)
+    assert isinstance(torn, Refused) and torn.reason is Reason.TRAILER
+    pair = parse(
+        SPECS[0], compose(SPECS[1], (0,), seq=1, session=SESSION) or "", session=SESSION, consumed=0
+    )
+    assert (
+        isinstance(pair, Refused) and pair.reason is Reason.COUNT
+    )  # `0` with a line 2 is never an empty channel
 
 
 GOOD = compose(SPECS[0], (1.5, -2.0), seq=7, session=SESSION) or ""

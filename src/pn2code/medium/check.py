@@ -22,7 +22,7 @@ from pn2code.medium.places import Crashes, MediumNet, modelled
 from pn2code.medium.rules import Rules
 from pn2code.medium.skeleton import Skeleton, Topology, topology
 from pn2code.medium.tell import Teller
-from pn2code.verify import basis
+from pn2code.verify import basis, messages
 from pn2code.verify.answers import Verdict
 from pn2code.verify.explore import Wishes, explore
 from pn2code.verify.limits import Limits, Reduction
@@ -179,6 +179,7 @@ def whole(
         run,
         assumes,
         judged=bool(partition.final_places),
+        carried=partition,
     )
 
 
@@ -225,7 +226,9 @@ def _explored(
     assumes: str,
     *,
     judged: bool,
+    carried: Partition | None = None,
 ) -> Answer:
+    """`carried`: the cell whose messages have to have a form that the codecs can write and read."""
     began = time.perf_counter()
     mine = replace(
         run.limits,
@@ -247,6 +250,12 @@ def _explored(
         found = explore(net.net, storage, mine, run.d, wishes)
         runs = () if found is None else tuple(_evidence(net, storage, found, judged))
     answer, why = _verdict(net, found, runs, judged)
+    if carried is not None and found is not None and answer == "yes":
+        sent = messages.examine(carried, found, run.d)  # the writer's place has kept its index
+        if sent.answer == "no":
+            answer, why = "no", sent.says
+        elif sent.answer == "unknown":
+            answer, why = "inconclusive", "the values of its messages are not known"
     return Answer(
         check=check,
         says=says,

@@ -69,6 +69,7 @@ class Host:
         whole: a source of the host that can have the net as a part of itself (PN_NET_SOURCE); "" if there is none.
         also: hosts whose sources it has, too.
         instead: names of sources that are left out, since the host has others in their place.
+        only: names of all sources that it needs, if it does without most; () for all.
     """
 
     name: str
@@ -79,11 +80,16 @@ class Host:
     whole: str = ""
     also: tuple[str, ...] = ()
     instead: tuple[str, ...] = ()
+    only: tuple[str, ...] = ()
 
     def runtime(self) -> tuple[OutputFile, ...]:
         """The C runtime as this host needs it."""
         found = runtime.emit(self.name, *self.also)
-        return tuple(f for f in found if Path(f.path).name not in self.instead)
+        return tuple(f for f in found if self._needs(Path(f.path).name))
+
+    def _needs(self, name: str) -> bool:
+        is_wanted = not self.only or name in self.only or name.endswith(".h")
+        return is_wanted and name not in self.instead
 
 
 @dataclass(frozen=True, slots=True)
@@ -136,7 +142,7 @@ def program(
 
     Args:
         host: what is linked with the net.
-        files: net.c and net.h.
+        files: net.c and net.h, or whatever else is generated for the host.
         d: gets the errors.
         interrupted: asked while compilers run: they are ended when it says so.
     """
@@ -284,7 +290,7 @@ class _Builder:
         objects = [f"{Path(s).stem}.o" for s in sources]
         # Large ones first, so that all processors are busy to the end.
         sources.sort(key=lambda name: -(room / name).stat().st_size)
-        groups = [sources[i::GROUPS] for i in range(GROUPS)]
+        groups = [sources[i::GROUPS] for i in range(min(GROUPS, len(sources)))]
 
         def compiled(group: Sequence[str]) -> bool:
             return self._compiler(room, "-Iruntime/include", "-c", *group, d=d)
@@ -316,6 +322,8 @@ class _Builder:
         others = [f.path for f in self._sources() if f.path != "net.c"]
         if others and not self._compiler(room, *includes, "-c", *others, d=d):
             return False
+        if len(others) == len(self._sources()):
+            return True  # a host that needs no net
         if self.host.whole and sum(len(f.text) for f in self.files) <= LARGE:
             source = f"runtime/src/{self.host.whole}"
             whole = ('-DPN_NET_SOURCE="net.c"', "-c", source, "-o", "net.o")

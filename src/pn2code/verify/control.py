@@ -24,13 +24,14 @@ from pn2code.diagnostics import Diagnostics
 from pn2code.net.flat import ArcKind
 from pn2code.properties import meaning as m
 from pn2code.properties.questions import Questions
-from pn2code.verify import basis, chance
+from pn2code.verify import arena, basis, chance, messages
 from pn2code.verify.explore import Wishes, explore
 from pn2code.verify.limits import Limits, Reduction
 from pn2code.verify.programs import Sizes
 from pn2code.verify.reasons import clause
 from pn2code.verify.result import Exploration
-from pn2code.verify.running import NotModelledError, Running
+from pn2code.verify.running import NotModelledError, Running, chunks
+from pn2code.verify.token_run import token_run
 from pn2code.whole_file import whole_file
 
 FINITE = "finite-response"
@@ -39,6 +40,8 @@ CONFLUENT = "confluence"
 BLOCKING = "non-blocking"
 CHANNELS = "channels"
 CAPACITY = "capacity"
+MESSAGES = "messages"
+MEMORY = "memory"
 OWNERSHIP = "ownership"
 
 TITLES = {
@@ -48,6 +51,8 @@ TITLES = {
     BLOCKING: "Non-blocking under control",
     CHANNELS: "One message in flight",
     CAPACITY: "Declared capacities",
+    MESSAGES: "Every message can be sent",
+    MEMORY: "Room for lists and strings",
     OWNERSHIP: "Nothing touched that is another's",
 }
 MEANINGS = {
@@ -57,9 +62,11 @@ MEANINGS = {
     BLOCKING: "wherever the cell gets, it comes to its end, whichever of its programs are slow",
     CHANNELS: "no channel ever holds two messages",
     CAPACITY: "no place ever holds more tokens than `[capacity]` declares",
+    MESSAGES: "every message can be written into its file, and is read as it was written",
+    MEMORY: "the lists and strings of every marking and every firing have room in the supervisor",
     OWNERSHIP: "transitions touch places of their owner, and channels in their direction",
 }
-KEPT = frozenset({FINITE, BOUNDED, CHANNELS, CAPACITY, OWNERSHIP})
+KEPT = frozenset({FINITE, BOUNDED, CHANNELS, CAPACITY, MESSAGES, MEMORY, OWNERSHIP})
 """Checks whose "yes" is kept when the programs do less than what was looked at."""
 MAX_FIRINGS = 100_000
 """What `./supervisor` permits in one cycle unless it is told another number."""
@@ -291,6 +298,8 @@ def examine(
         checks = (
             *order_answers(partition, orders, asked, plan, keep),
             *cell_answers(partition, found, found.answers[count:], plan, keep, closed),
+            *formats(partition, found, plan, d),
+            memory(found),
             ownership(partition),
         )
         if chance.draws(partition.net):
@@ -352,9 +361,7 @@ def _known(
 ) -> Iterator[Mapping[str, Any]]:
     """Bounds that are not known of the cell follow from those of a closed net that can do all that the cell can."""
     most = [*((c.place, 1) for c in partition.channels), *capacities.items()]
-    bounds = (
-        closed.bounds if closed is not None and closed.complete and can_more(partition) else None
-    )
+    bounds = closed.bounds if closed and closed.seen.markings and can_more(partition) else None
     for row, (place, limit) in zip(rows, most, strict=True):
         if row["answer"] == "unknown" and bounds is not None and bounds[place].upper <= limit:
             yield {"answer": "yes", "value": bounds[place].upper, "trace": None}
@@ -521,6 +528,52 @@ def _channels(partition: Partition, rows: Sequence[Mapping[str, Any]], keep: _Ke
     return Check(CHANNELS, "yes", says, most)
 
 
+def formats(
+    partition: Partition, found: Exploration | None, plan: Plan, d: Diagnostics, why: str = ""
+) -> list[Check]:
+    """Whether every message can be sent; nothing of a cell without channels. `why` there is no space to look in."""
+    if not partition.channels:
+        return []
+    sent = messages.examine(partition, found, d)
+    if sent.answer == "unknown":
+        return [_open(MESSAGES, {"why": why if found is None else found.why})]
+    if sent.channel is None:
+        return [Check(MESSAGES, sent.answer, sent.says, sent.count)]
+    place = partition.net.places[sent.channel.place]
+    asked = "".join(f"{line}\n" for line in own_priorities(partition))
+    with tempfile.TemporaryDirectory(prefix="pn2code-") as name:
+        to = (plan.folder or Path(name)) / f"{plan.stem}.controller-{MESSAGES}.trace.jsonl"
+        run = token_run(partition.net, plan.storage, asked, place.index, sent.value, to, d)
+    evidence: tuple[Evidence, ...] = ()
+    if run is not None:
+        kept = None if plan.folder is None else run.file
+        evidence = (Evidence(run.steps, None, run.node, run.transitions, kept),)
+    return [Check(MESSAGES, "no", sent.says, sent.count, evidence=evidence, place=place.name)]
+
+
+def own_priorities(partition: Partition) -> Iterator[str]:
+    """For the explorer of the closed net: priorities count among the transitions of one owner."""
+    for owner in partition.owners:
+        own = [i for i, o in enumerate(partition.transition_owner) if o == owner.index]
+        yield from chunks(f"owner {owner.index}", own)
+    yield "priorities own"
+
+
+def memory(found: Exploration | None, why: str = "") -> Check:
+    """Whether the supervisor's lists and strings have room; its arena is made as large as the state space says."""
+    size = arena.size(found)
+    if found is None or size is None or found.arena is None:
+        return _open(MEMORY, {"why": why if found is None else found.why})
+    firing, marking = found.arena["firing"], found.arena["marking"]
+    needs = f"at most {marking:,} bytes in a marking and {firing:,} in one firing"
+    if size > arena.MOST:
+        return Check(MEMORY, "no", f"lists and strings take {needs}, which is too much", firing)
+    says = f"lists and strings take {needs}; the supervisor has {size:,} bytes for them"
+    if firing == marking == 0:
+        says = "there are no lists and strings that need any"
+    return Check(MEMORY, "yes", says, firing)
+
+
 def _capacities(
     partition: Partition,
     capacities: Mapping[int, int],
@@ -599,4 +652,7 @@ def not_looked(
         checks.append(_channels(partition, rows[: len(partition.channels)], keep))
     if declared:
         checks.append(_capacities(partition, declared, rows[len(partition.channels) :], keep))
+    seen = closed if closed is not None and can_more(partition) else None
+    checks += formats(partition, seen, Plan(), Diagnostics(), why)
+    checks.append(memory(seen, why))
     return Control((*checks, ownership(partition)), None, why=why)
