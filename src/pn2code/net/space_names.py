@@ -43,19 +43,19 @@ UpperMultiSet UpperTimedMultiSet abs allNodes allOGrecs allPredecessorEdges allS
 arccountstr arcinfo arcinfos arcs arcsflat assigned bf bindings bindlimit_reached calcstat cands
 code code1 code2 code_storage code_storage2 code_temp code_temp2 concat copy_code_list count
 creationtime cur_elem curtod decl declerr destnoderef div dstinfo dstnode edgeStmts elements elm
-elms empty errmsg errstr exn exnName explode extpat false fid fieldlist fieldname fieldsref first
-firstBTT firstinst firstmlno firsttri flatten foldr freq from fullid func funname funpostfix fusgrid
-fusion hd hdvar i2 implode inarcs included init_code_list innerrec innodes input insertstaterec
-inst_conns instlist instmlno instno int internalid intpat is_port istimed it item key kind left
-length lst map maxfunpatterns mem mkst_Arc mkst_BE mkst_Node mkst_PI mkst_TI mkstr_ms mlnoslist
-msreflist mymlno n1 n2 name newDFI newarc newarccount newarcnum newcand newnodelist newnodenum
-next_time nil no_bindings no_of_tokens nodecountstr nodeinfos noderef nodes nodesWithoutPredecessors
-nodesWithoutSuccessors nodesflat nonlocalfus not num_of_insts o ogpath outarcs outnodes output
-outtimed page pagename partfuncount patterncount patternetc pgglobfuschng pgmlno pgname pgno pgstr
-place place_id places pldescrs pli plidescr plitype pllist plmlno plmlnostr plname pltree port
-portinstances portmlid prime print ps real recname recreflist ref refstore remdupl rest rev right
-root root1 root2 root_bf root_key root_left root_left_bf root_left_right root_left_right_bf
-root_right root_right_bf root_right_left root_right_left_bf rootrec scc scc'comp
+elms empty emptybind errmsg errstr exn exnName explode extpat false fid fieldlist fieldname
+fieldsref first firstBTT firstinst firstmlno firstnoderef firsttri flatten foldr freq from fullid
+func funname funpostfix fusgrid fusion hd hdvar i2 implode inarcs included init_code_list innerrec
+innodes input insertstaterec inst_conns instlist instmlno instno int internalid intpat is_port
+istimed it item key kind left length lst map maxfunpatterns mem mkst_Arc mkst_BE mkst_Node mkst_PI
+mkst_TI mkstr_ms mlnoslist msreflist mymlno n1 n2 name newDFI newarc newarccount newarcnum newcand
+newnodelist newnodenum next_time nil no_bindings no_of_tokens nodecountstr nodeinfos noderef nodes
+nodesWithoutPredecessors nodesWithoutSuccessors nodesflat nonlocalfus not num_of_insts o ogpath
+outarcs outnodes output outtimed page pagename partfuncount patterncount patternetc pgglobfuschng
+pgmlno pgname pgno pgstr place place_id places pldescrs pli plidescr plitype pllist plmlno plmlnostr
+plname pltree port portinstances portmlid prime print ps real recname recreflist ref refstore
+remdupl rest rev right root root1 root2 root_bf root_key root_left root_left_bf root_left_right
+root_left_right_bf root_right root_right_bf root_right_left root_right_left_bf rootrec scc scc'comp
 sccsWithoutSuccessors secs siminst simplace socketid socketinst srcinfo srcnode srcnoderef st_Arc
 st_ArcDescrRef st_BE st_Node st_NodeDescrRef st_PI st_PI0 st_PI1 st_TI st_TI0 st_TI1 staterec stlst
 stmt stopcritsatisfied stringreparcref stringrepberef stringrepmarkref stringrepnoderef
