@@ -151,3 +151,23 @@ def test_a_cell_whose_checks_fail_is_run_where_that_is_wanted(tmp_path: Path) ->
     summary = json.loads((tmp_path / "out" / "summary.json").read_text())
     # Nothing tells that it has finished, so it stands still in the end.
     assert summary["verdict"] != "finished" and done.exit_code == 1
+
+
+def test_a_robot_whose_port_has_no_socket(tmp_path: Path) -> None:
+    """The cause stands beside what it leads to, in the text too."""
+    net = changed(
+        NET,
+        "subst Robot = Rob (data -> data, flag -> flag, done -> done)",
+        "subst Robot = Rob (data -> data, done -> done)",
+    )
+    toml = changed(TOML, '[[channel]]\nplace = "flag"\nfile = "flag.robcad"\nkind = "flag"\n', "")
+    done = run("check", write(tmp_path, net, toml + ROBOT))
+    assert done.exit_code == 1
+    assert (
+        "error[robot-not-sequential]: robot `robot1` has no transition that can occur"
+        in done.stderr
+    )
+    assert "`Accept` takes from place `flag`, which can never hold a token" in done.stderr
+    assert (
+        "note[port-unassigned]: port `flag` of page `Rob` has no socket at `Robot`" in done.stderr
+    )

@@ -15,7 +15,7 @@ from typer.testing import CliRunner
 
 from helpers import netbuilder
 from helpers.controlled import Scheme
-from helpers.explored import Explorers
+from helpers.explored import Explorers, wide
 from helpers.questions import Lts, ask
 from helpers.thorough import amount
 from pn2code import pipeline
@@ -31,6 +31,8 @@ from pn2code.verify import control, proofs
 from pn2code.verify.control import Check, Plan, has_own_priorities, ownership
 from pn2code.verify.explore import Wishes
 from pn2code.verify.limits import Limits
+from pn2code.verify.programs import Sizes
+from pn2code.verify.result import Exploration
 from pn2code.verify.running import Running
 
 pytestmark = pytest.mark.cc
@@ -586,3 +588,21 @@ def test_the_riveting_cell(root: Path) -> None:
     assert " * Checked in all 3,343 states of the cell as it runs (docs/execution.md):" in text
     assert " * bounded-response: yes; at most 6 firings in one cycle" in text
     assert "unchecked" not in text
+
+
+def test_channels_need_no_graph(explorers: Explorers, tmp_path: Path) -> None:
+    """All markings were seen, and there was no time for the graph: what a channel holds is known, the rest is not."""
+    partition, _ = cell(tmp_path / "fine", NET, TOML)
+    net = partition.net
+    folder = explorers.build(net, wide(Sizes.start(net, {}), 4), "no_graph")
+    for phase, answer in (("graph", "yes"), ("explore", "unknown")):
+        found = Exploration.of(net, explorers.said(folder, "--ends-in", phase).report, 0.0)
+        looked = control.not_looked("seconds", partition, None, found)
+        said = {c.name: c.answer for c in looked.checks}
+        assert said == {
+            **dict.fromkeys(said, "unknown"),
+            control.OWNERSHIP: "yes",
+            control.CHANNELS: answer,
+        }
+        rests = {c.name: c.rests_on for c in looked.checks}
+        assert rests[control.CHANNELS] == ("markings" if answer == "yes" else None)

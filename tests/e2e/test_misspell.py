@@ -10,6 +10,9 @@ from tests.misspell.judge import Judge
 from tests.misspell.mutants import as_it_is, mistakes
 
 from helpers.small_cell import TOML, write
+from pn2code.cell.load import load
+from pn2code.diagnostics import Diagnostics
+from pn2code.robot import scene
 
 pytestmark = pytest.mark.cc
 
@@ -80,3 +83,21 @@ def test_mistakes_are_written_as_toml() -> None:
     assert tomllib.loads(as_it_is(text)) == tomllib.loads(text)
     kinds = {m.kind for m in mistakes(text)}
     assert kinds == {"key misspelt", "name misspelt", "deleted", "duplicated", "wrong type"}
+
+
+def test_no_mistake_of_geometry_is_a_traceback(root: Path, tmp_path: Path) -> None:
+    """The richest scene of the examples, without its arms, which take long to read."""
+    folder = root / "examples" / "riveting"
+    text = (folder / "cell.toml").read_text(encoding="utf-8")
+    wanted = [m for m in mistakes(text) if m.path[0] in ("motion", "scene")]
+    accepted = []
+    for mistake in [m for m in wanted if m.kind == "wrong type"]:
+        d = Diagnostics()
+        (tmp_path / "cell.toml").write_text(mistake.text, encoding="utf-8")
+        config = load(tmp_path, d)
+        if config is not None:
+            geometry = {**config.geometry, "robots": {}}
+            scene.load(geometry, folder, config.locator.origin, d)
+        if not d.has_errors:
+            accepted.append(mistake.what)
+    assert not accepted

@@ -20,6 +20,7 @@ from pathlib import Path
 
 import pytest
 
+from helpers.session import once
 from pn2code.cell.partition import ChannelKind
 from pn2code.cell.scalars import Scalar, ScalarKind
 from pn2code.channels import (
@@ -106,8 +107,12 @@ def built(root: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
     """
     if shutil.which("gcc") is None:
         pytest.skip("no gcc")
-    folder = tmp_path_factory.mktemp("supervisor")
-    # Each object once.
+    return once(tmp_path_factory, "supervisors", lambda folder: build_supervisors(root, folder))
+
+
+def build_supervisors(root: Path, folder: Path) -> None:
+    """Each object once."""
+    folder.mkdir()
     objects = [
         compile_c(root, folder / f"{source.stem}.o", [source], *SANITIZE, "-c")
         for source in host_sources(root)
@@ -124,7 +129,6 @@ def built(root: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
     compile_c(root, folder / "patient", [*others, cell, *hand], *SANITIZE, *patient)
     compile_c(root, folder / "alone", [*objects, *hand], *SANITIZE, "-DHAND_ALONE")
     compile_c(root, folder / "scalars", [*common, tests / "scalars.c"], *SANITIZE)
-    return folder
 
 
 @pytest.fixture

@@ -50,6 +50,7 @@ def net(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return write(NET, tmp_path_factory.mktemp("steps") / "steps.cpn")
 
 
+@pytest.mark.usefixtures("as_delivered")
 def test_complete(net: Path, tmp_path: Path) -> None:
     done = pn2code(
         "verify", net, "--set", "last=4", "--json", "--traces", tmp_path, "--report", tmp_path / "r"

@@ -101,6 +101,7 @@ MISTAKES = [
         "robot-value",
         "a number above `x_from` is expected",
     ),
+    (put("scene", "panel", "x_to", value="5.0"), "robot-value", "`scene.panel.x_to` is `5.0`"),
     (put("scene", "panel", "ribs", value=["a"]), "robot-value", "a list of numbers is expected"),
     (put("scene", "floor", value=1), "robot-value", "`true` or `false` is expected"),
     (remove("scene", "panel", "axis_y"), "robot-key", "`scene.panel.axis_y` is missing"),

@@ -45,7 +45,8 @@ CELL_FINAL = register(
     "a final place cannot tell that the supervisor has finished",
     "`final` of [supervisor] lists places of the supervisor: the cell has finished when one of them holds a token. The "
     "supervisor sees neither the places of a robot nor what lies in a channel, so a place of a robot or a channel "
-    "cannot be one, nor can a place that no transition of the supervisor puts a token into.",
+    "cannot be one. A place that no transition of the supervisor puts a token into is warned of: the cell never ends "
+    "there.",
 )
 PRIMITIVE_ENTRY = register(
     "primitive-entry",

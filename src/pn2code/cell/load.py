@@ -29,7 +29,7 @@ from pn2code.cell.files import check_files
 from pn2code.cell.partition import ChannelKind
 from pn2code.cell.tables import KeyPath, Tables
 from pn2code.cell.toml_file import Locator, read
-from pn2code.diagnostics import Diagnostics, Origin
+from pn2code.diagnostics import Diagnostics, Origin, PlacedText
 from pn2code.diagnostics.near import did_you_mean
 
 _TOP = {
@@ -235,7 +235,7 @@ def _values(r: Tables, data: dict[str, Any]) -> dict[str, str]:
                 r.at("values", name),
             )
         else:
-            out[name] = text
+            out[name] = PlacedText(text, r.at("values", name))
     return out
 
 

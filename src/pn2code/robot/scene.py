@@ -464,7 +464,8 @@ def _panel(t: _Table) -> PanelConfig:
     )
     t.done()
     for low, high in (("x_from", "x_to"), ("arc_from", "arc_to")):
-        if low in t.data and high in t.data and not t.data[low] < t.data[high]:
+        both = (t.data.get(low), t.data.get(high))
+        if all(map(_is_number, both)) and not getattr(out, low) < getattr(out, high):
             t.wrong(high, f"a number above `{low}`")
     return out
 

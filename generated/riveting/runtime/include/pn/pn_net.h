@@ -2,8 +2,13 @@
  * pn_net.h - the contract between a generated net (net.c) and the hosts that run it.
  *
  * A generated net is one constant table, `const pn_net_t pn_net`, and a marking type whose size the table
- * gives. Hosts (supervisor, simulate, explore) know nets only through this table: the same object file net.o is verified,
- * simulated and deployed.
+ * gives. Hosts (supervisor, simulate, explore, the program under test of `conform`) know nets only through this table.
+ *
+ * In a generated folder one object file, net.o, is linked with the supervisor, its monitor and the simulator. The explorer of
+ * `pn2code verify` has another one: the same generator makes it from the same net, but with packed places where that is possible, with
+ * arrays of other sizes, and with flags for the processor at hand. What is proved is proved of that one. `pn2code conform` shows that
+ * both do the same: it compares the explorer's graph, and the generated net.c in the deployed supervisor, with the token game in every
+ * state that can be reached (docs/conform.md).
  *
  * Errors: a net's expressions may raise (integer overflow, division by zero, no matching rule, a colour out of range, an
  * array that is full). The first error of a context is kept in it (pn_ctx_t.error) and is sticky: from then on every operation
