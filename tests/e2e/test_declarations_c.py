@@ -56,4 +56,4 @@ def test_units_and_constants(tmp_path: Path) -> None:
     program, _ = lowered(net)
     assert program is not None
     workshop = Workshop.open(tmp_path, OPTIMIZED)
-    assert agrees(net, workshop.build(program, tmp_path / "units"), seed=1, steps=9) == 2
+    assert agrees(net, workshop.build(program, tmp_path / "units"), seed=1, steps=9) == 1
