@@ -58,6 +58,10 @@ LATE = {"literal-too-large"}
 GROUPS = Verdict("engine", "it loses count of variables where several arcs come from one place")
 UNBOUND = ("No complete binding sequence", "Cannot bind", "IllegalBit")
 TAKING = (ArcKind.INPUT, ArcKind.BOTH)
+CLOCK = Verdict(
+    "engine", "where nothing can occur any more it goes on to a time noted for tokens that are gone"
+)
+DEAD = "No more enabled transitions!"
 LOOSE = Verdict(
     "engine", "it confuses the instances of a page that has a socket for a port only in some"
 )
@@ -172,6 +176,12 @@ class Seen:
         if self.loose:
             return LOOSE
         followed = follow(recording(answer), self.game)
+        if followed.why.startswith("in the end the time is") and answer["stop"] == DEAD:
+            return (
+                CLOCK
+                if float(str(answer["final_time"]).replace("~", "-")) > followed.time
+                else differs(followed.why)
+            )
         if not followed.ok:
             return differs(f"step {followed.steps + 1}: {followed.why}")
         return Verdict("random") if followed.random else AGREES

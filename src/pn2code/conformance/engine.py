@@ -15,6 +15,7 @@ before pn2code. What follows is found again and again; pn2code does what is writ
 | an integer literal of more than 31 bits | accepts it, then cannot compile the code that it made | `literal-too-large` |
 | a port that has a socket at one substitution transition of the page and none at another | gives the wrong socket, or `Exception Subscript` | a place of its own, with a warning |
 | equal tokens with different time stamps | takes one at random, in state spaces, too | all of them |
+| a timed net in which nothing can occur any more | its clock may go on to a time that it has noted for tokens that are gone | the time of the last step |
 | state spaces of timed nets, 4.0.0 | restores time stamps relative to the time of the node (those of 3.0.3 are right) | restores them |
 | top-level names that its state-space sources use | the tool cannot be entered | a warning (`state-space-name`) |
 
