@@ -68,11 +68,13 @@ static void print_help(void)
                  "  --queries FILE      questions about the states and runs; see explore_query_read.c\n"
                  "  --query-trace-to NAME  runs that prove the answers, as NAMEn.trace.jsonl with the number n of the question\n"
                  "  --seed N            of random numbers (default 1)\n"
+                 "  --multiset-limit N  colours of a multi-set bound that are printed (default: all)\n"
+                 "  --ends-in PHASE     for tests: the time is over when explore, graph, components, properties or questions begins\n"
                  "  --parent PID        end at once when this process, which started it, has ended\n"
                  "  --lay-again N       after N states see once more how they are stored best (default 262144)\n"
                  "  --help              this text\n\n"
                  "The report is one JSON object on the standard output.\n\n"
-                 "exit codes: 0 complete, 1 an inscription raised an exception, 2 wrong usage, 3 truncated\n",
+                 "exit codes: 0 complete, 1 an inscription raised an exception, 2 wrong usage, 3 truncated or approximate\n",
                  pn_net.name, pn_net.source);
 }
 
@@ -167,6 +169,8 @@ static bool read_valued(const char *option, const char *value, ex_options_t *opt
            || ((strcmp(option, "--queries") == 0) && read_text(value, &options->queries))
            || ((strcmp(option, "--query-trace-to") == 0) && read_text(value, &options->query_trace_to))
            || ((strcmp(option, "--lay-again") == 0) && read_number(value, UINT64_MAX, &options->lay_again))
+           || ((strcmp(option, "--ends-in") == 0) && read_text(value, &options->ends_in))
+           || ((strcmp(option, "--multiset-limit") == 0) && read_number(value, UINT64_MAX, &options->multiset_limit))
            || ((strcmp(option, "--seed") == 0) && read_number(value, UINT64_MAX, &options->seed));
 }
 
@@ -174,7 +178,7 @@ static bool read_options(int argc, char **argv, ex_options_t *options)
 {
     *options = (ex_options_t){ .threads = 1U, .max_states = UINT64_MAX, .memory = DEFAULT_MEMORY, .arena = DEFAULT_ARENA,
                                .seed = 1U, .lay_again = DEFAULT_LAY_AGAIN, .has_graph = true, .has_notes = true, .dead_limit = (uint64_t)DEFAULT_DEAD,
-                               .traces = 1U, .write_limit = UINT64_MAX, .progress_every = 0.5 };
+                               .traces = 1U, .write_limit = UINT64_MAX, .multiset_limit = UINT64_MAX, .progress_every = 0.5 };
     for (int i = 1; i < argc; i++) {
         const char *option = argv[i];
         if (strcmp(option, "--no-graph") == 0) {
@@ -314,7 +318,7 @@ static void end_watch(watch_t *watch)
 const char *ex_why_text(ex_why_t why)
 {
     static const char *const s_texts[] = {
-        [EX_COMPLETE] = "complete", [EX_DECIDED] = "decided", [EX_STATES] = "states",           [EX_SECONDS] = "seconds", [EX_MEMORY] = "memory",
+        [EX_COMPLETE] = "complete", [EX_DECIDED] = "decided", [EX_APPROXIMATE] = "approximation", [EX_STATES] = "states",           [EX_SECONDS] = "seconds", [EX_MEMORY] = "memory",
         [EX_INTERRUPTED] = "interrupted", [EX_CAPACITY] = "capacity", [EX_ERROR] = "error",
     };
     return s_texts[why];
@@ -388,6 +392,8 @@ static void print_report(ex_run_t *run)
                                  + (run->has_bounds ? ex_codec_bytes(run) : 0U); /* that is: all was made */
     (void)printf("{\"complete\": %s, \"why\": \"%s\", \"error\": ", (why == EX_COMPLETE) ? "true" : "false", ex_why_text(why));
     print_error(run);
+    (void)printf(",\n \"seen\": {\"markings\": %s, \"arcs\": %s, \"components\": %s}", run->is_seen_whole ? "true" : "false",
+                 run->has_arcs ? "true" : "false", run->has_components ? "true" : "false");
     (void)printf(",\n \"nodes\": %" PRIu64 ", \"arcs\": %" PRIu64 ", \"depth\": %" PRIu64 ", \"expanded\": %" PRIu64,
                  run->nodes, run->arcs, run->depth, run->expanded);
     (void)printf(",\n \"seconds\": %.6f, \"cpu_seconds\": %.6f, \"states_per_second\": %.0f", run->seconds, run->cpu_seconds,
@@ -397,7 +403,7 @@ static void print_report(ex_run_t *run)
                  (run->nodes > 0U) ? ((double)store_bytes / (double)run->nodes) : 0.0, store_bytes, peak_mib(), options->threads,
                  options->is_depth_first ? "dfs" : "bfs");
     (void)printf(",\n \"approximate\": ");
-    if (options->is_bitstate || options->is_hashed) {
+    if (!ex_is_exact(run)) {
         (void)printf("{\"kind\": \"%s\", \"omission_probability\": %.6g}", options->is_bitstate ? "bitstate" : "hash",
                      run->omission_probability);
     } else {
@@ -431,7 +437,7 @@ static bool make(ex_run_t *run)
     (void)pthread_mutex_init(&run->error_lock, NULL);
     (void)pthread_mutex_init(&run->gate, NULL);
     (void)pthread_cond_init(&run->gate_changed, NULL);
-    if (pn_net.has_references) {
+    if ((pn_net.root_count > 0U)) {
         run->options.threads = 1U; /* they are shared by all evaluations */
     }
     run->fired = ex_alloc(run, ((uint64_t)pn_net.transition_count + 1U) * sizeof *run->fired);
@@ -458,21 +464,23 @@ static int explore(ex_run_t *run)
     watch_t watch;
     (void)memset(&watch, 0, sizeof watch);
     run->started = ex_clock();
-    atomic_store(&run->phase, "explore");
     start_watch(&watch);
+    ex_phase(run, "explore");
     const bool is_explored = ex_reduction_make(run) && ex_explore(run);
-    const bool is_exact = !run->options.is_bitstate && !run->options.is_hashed;
-    run->is_seen_whole = is_explored && is_exact && (atomic_load(&run->why) == (int)EX_COMPLETE);
-    if (is_explored && run->options.has_graph && is_exact && (atomic_load(&run->why) == (int)EX_COMPLETE)) {
-        atomic_store(&run->phase, "graph");
+    const bool is_exact = ex_is_exact(run);
+    if (is_explored && !is_exact && (atomic_load(&run->why) == (int)EX_COMPLETE)) {
+        atomic_store(&run->why, (int)EX_APPROXIMATE);
+    }
+    run->is_seen_whole = is_explored && (atomic_load(&run->why) == (int)EX_COMPLETE);
+    if (run->is_seen_whole && run->options.has_graph) {
         (void)ex_graph(run);
     }
     if (is_explored && is_exact && (atomic_load(&run->why) == (int)EX_ERROR) && (strcmp(run->error.kind, "exception") == 0)) {
-        atomic_store(&run->phase, "trace");
+        ex_phase(run, "trace");
         ex_follow_error(run);
     }
     if (is_explored && (run->queries != NULL)) {
-        atomic_store(&run->phase, "properties");
+        ex_phase(run, "questions");
         ex_queries_answer(run);
     }
     end_watch(&watch);
@@ -485,6 +493,7 @@ static int explore(ex_run_t *run)
     case EX_ERROR:
     case EX_CAPACITY:
         return EXIT_MODEL;
+    case EX_APPROXIMATE:
     case EX_STATES:
     case EX_SECONDS:
     case EX_MEMORY:

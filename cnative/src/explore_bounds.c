@@ -38,6 +38,7 @@ typedef struct place_bounds {
     uint64_t least;
     uint64_t most;
     uint64_t multisets; /* looked at */
+    uint64_t arena;     /* bytes of the lists and strings of one of them, at most */
     uint32_t *counter_least; /* packed, more than one bit: by colour */
     uint32_t *counter_most;
     colours_t colours;
@@ -383,6 +384,14 @@ static bool see_multiset(place_bounds_t *own, const char *text)
 }
 
 #define TEXT_SIZE ((size_t)1U << 22)
+#define LOOK 1024U /* multi-sets between two looks at the clock */
+
+/* The time was over some time ago: what is left to look at may be as much as all that was explored. */
+static bool is_late(const ex_run_t *run)
+{
+    const double most = run->options.max_seconds;
+    return (most > 0.0) && ((ex_clock() - run->started) > ((most * 1.1) + 1.0));
+}
 
 /* All multi-sets that the places which are not packed ever held. */
 static bool see_interned(ex_run_t *run, ex_bounds_t *bounds)
@@ -395,6 +404,10 @@ static bool see_interned(ex_run_t *run, ex_bounds_t *bounds)
     for (uint64_t i = 0U; is_fine && (i < count); i++) {
         const ex_bytes_entry_t entry = all->of[i];
         pn_text_t text;
+        if (((i % LOOK) == (LOOK - 1U)) && is_late(run)) {
+            is_fine = false;
+            break;
+        }
         if (entry.place >= pn_net.place_count) { /* a hole, or a time */
             continue;
         }
@@ -405,8 +418,11 @@ static bool see_interned(ex_run_t *run, ex_bounds_t *bounds)
         const unsigned char *byte = ex_multiset_bytes(worker, (uint32_t)i, &length);
         is_fine = (byte != NULL) && (place->decode(&worker->cx, worker->marking, byte, length) != SIZE_MAX);
         place->json(worker->marking, &text);
+        place_bounds_t *const own = &bounds->place[entry.place];
+        const uint64_t bytes = pn_arena_mark(worker->cx.arena) - mark;
+        own->arena = (bytes > own->arena) ? bytes : own->arena;
         pn_arena_release(worker->cx.arena, mark);
-        is_fine = is_fine && !text.truncated && see_multiset(&bounds->place[entry.place], buffer);
+        is_fine = is_fine && !text.truncated && see_multiset(own, buffer);
     }
     free(buffer);
     return is_fine;
@@ -414,18 +430,39 @@ static bool see_interned(ex_run_t *run, ex_bounds_t *bounds)
 
 /* --- the report ---------------------------------------------------------------------------------------------------- */
 
-static void list_item(FILE *out, bool *is_first, uint64_t count, const char *colour)
+/* A list of which no more than a number of items is printed. */
+typedef struct list {
+    FILE *out;
+    uint64_t most;
+    uint64_t items; /* that belong to it */
+} list_t;
+
+static bool list_takes(const list_t *list)
 {
-    if (count > 0U) {
-        (void)fprintf(out, "%s[%" PRIu64 ", %s]", *is_first ? "" : ", ", count, colour);
-        *is_first = false;
-    }
+    return list->items < list->most;
 }
 
-static void packed_json(const ex_bounds_t *bounds, const pn_place_t *place, const place_bounds_t *own, bool is_upper, FILE *out,
+static void list_item(list_t *list, uint64_t count, const char *colour)
+{
+    if (list_takes(list)) {
+        (void)fprintf(list->out, "%s[%" PRIu64 ", %s]", (list->items == 0U) ? "" : ", ", count, colour);
+    }
+    list->items += 1U;
+}
+
+/* Shorter ones first, then by their texts: which ones are printed must not depend on the order in which threads came upon them. */
+static int by_text(const void *a, const void *b)
+{
+    const colour_t *const left = a;
+    const colour_t *const right = b;
+    const size_t length = strlen(left->text);
+    const size_t other = strlen(right->text);
+    return (length != other) ? ((length < other) ? -1 : 1) : strcmp(left->text, right->text);
+}
+
+static void packed_json(const ex_bounds_t *bounds, const pn_place_t *place, const place_bounds_t *own, bool is_upper, list_t *list,
                         char *buffer)
 {
-    bool is_first = true;
     for (uint32_t i = 0U; i < place->colours; i++) {
         pn_text_t text;
         pn_text_init(&text, buffer, TEXT_SIZE);
@@ -436,19 +473,41 @@ static void packed_json(const ex_bounds_t *bounds, const pn_place_t *place, cons
             count = is_upper ? own->counter_most[i] : own->counter_least[i];
         }
         if (count > 0U) {
-            place->colour_json(i, &text);
-            list_item(out, &is_first, count, buffer);
+            if (list_takes(list)) {
+                place->colour_json(i, &text);
+            }
+            list_item(list, count, buffer);
         }
     }
 }
 
-static void colours_json(const place_bounds_t *own, bool is_upper, FILE *out)
+static void colours_json(const place_bounds_t *own, bool is_upper, list_t *list)
 {
-    bool is_first = true;
     for (uint32_t i = 0U; i < own->colours.count; i++) {
         const colour_t *const colour = &own->colours.colour[i];
         const uint64_t least = (colour->seen == own->multisets) ? colour->least : 0U;
-        list_item(out, &is_first, is_upper ? colour->most : least, colour->text);
+        const uint64_t count = is_upper ? colour->most : least;
+        if (count > 0U) {
+            list_item(list, count, colour->text);
+        }
+    }
+}
+
+/* What the supervisor's arena has to hold: bytes at the start and of the values of declarations, of one occurrence, of one marking (a sum
+ * over places, so that it may be too large). */
+static void arena_json(const ex_run_t *run, const ex_bounds_t *bounds, FILE *out)
+{
+    uint64_t firing = 0U;
+    uint64_t marking = 0U;
+    for (uint32_t i = 0U; i < run->options.threads; i++) {
+        firing = (run->worker[i].arena_most > firing) ? run->worker[i].arena_most : firing;
+    }
+    for (uint32_t p = 0U; (bounds != NULL) && (p < pn_net.place_count); p++) {
+        marking += bounds->place[p].arena;
+    }
+    const pn_arena_t *const first = run->worker[0].cx.arena;
+    if (bounds != NULL) {
+        (void)fprintf(out, ",\n \"arena\": {\"start\": %zu, \"firing\": %" PRIu64 ", \"marking\": %" PRIu64 "}", first->start, firing, marking);
     }
 }
 
@@ -470,16 +529,22 @@ void ex_bounds_json(ex_run_t *run, FILE *out)
         const place_bounds_t *const own = &bounds->place[p];
         (void)fprintf(out, "%s{\"lower\": %" PRIu64 ", \"upper\": %" PRIu64, (p > 0U) ? ", " : "", own->least, own->most);
         for (int is_upper = 0; is_upper <= 1; is_upper++) {
-            (void)fprintf(out, ", \"%s_multiset\": [", (is_upper == 1) ? "upper" : "lower");
-            if (place->is_packed) {
-                packed_json(bounds, place, own, is_upper == 1, out, buffer);
-            } else {
-                colours_json(own, is_upper == 1, out);
+            const char *const which = (is_upper == 1) ? "upper" : "lower";
+            if (!place->is_packed && (own->colours.count > run->options.multiset_limit)) {
+                qsort(own->colours.colour, own->colours.count, sizeof *own->colours.colour, by_text); /* found by place from here on */
             }
-            (void)fprintf(out, "]");
+            list_t list = { .out = out, .most = run->options.multiset_limit };
+            (void)fprintf(out, ", \"%s_multiset\": [", which);
+            if (place->is_packed) {
+                packed_json(bounds, place, own, is_upper == 1, &list, buffer);
+            } else {
+                colours_json(own, is_upper == 1, &list);
+            }
+            (void)fprintf(out, "], \"%s_colours\": %" PRIu64, which, list.items);
         }
         (void)fprintf(out, "}");
     }
     (void)fprintf(out, "%s", is_known ? "]" : "");
     free(buffer);
+    arena_json(run, is_known ? bounds : NULL, out);
 }

@@ -33,6 +33,9 @@ bool ex_scratch_make(ex_worker_t *worker)
         return false;
     }
     worker->scratch = scratch;
+    if (!ex_roots_make(worker)) {
+        return false;
+    }
     const uint64_t cells = 2U * ((uint64_t)codec->words + 1U); /* more inner nodes than words there never are */
     scratch->cell = ex_table(run, cells, sizeof *scratch->cell);
     scratch->dirty = ex_table(run, (codec->words / 64U) + 1U, sizeof *scratch->dirty);
@@ -234,8 +237,6 @@ bool ex_encode(ex_worker_t *worker, const void *marking, ex_key_t *key)
     clear_stale(worker);
     if (codec->is_whole) {
         is_fine = intern_whole(worker, marking, &cell[0]);
-        root_key(codec, cell, key);
-        return is_fine;
     }
     for (uint32_t w = 0U; w < codec->packed_words; w++) {
         cell[w] = slice_of(codec, marking, w);
@@ -245,6 +246,9 @@ bool ex_encode(ex_worker_t *worker, const void *marking, ex_key_t *key)
     }
     if (is_fine && (codec->time_word != NONE)) {
         is_fine = intern_time(worker, marking, &cell[codec->time_word]);
+    }
+    if (is_fine && (codec->root_word != NONE)) {
+        is_fine = ex_roots_number(worker, &cell[codec->root_word]);
     }
     for (uint32_t n = 0U; is_fine && (n < codec->nodes); n++) {
         is_fine = number_node(worker, n, &cell[codec->words + n]);
@@ -374,6 +378,12 @@ static EX_APART bool encode_cells(ex_worker_t *worker, uint32_t transition, cons
             set_cell(worker, codec->word_of[place], number);
         }
     }
+    if (is_fine && (codec->root_word != NONE) && pn_net.transition[transition].assigns) {
+        is_fine = ex_roots_number(worker, &number);
+        if (is_fine) {
+            set_cell(worker, codec->root_word, number);
+        }
+    }
     for (uint32_t k = 0U; k < codec->touched_count[transition]; k++) {
         const uint32_t w = codec->touched_words[transition][k];
         set_cell(worker, w, slice_of(codec, next, w));
@@ -468,7 +478,9 @@ static bool decode_word(ex_worker_t *worker, uint32_t w, uint32_t number)
     }
     const ex_bytes_entry_t *of = &codec->bytes.of[number];
     bool is_fine = false;
-    if (codec->is_whole) {
+    if (w == codec->root_word) {
+        is_fine = ex_roots_load(worker, number);
+    } else if (codec->is_whole) {
         const unsigned char *byte = &codec->bytes.byte[of->offset];
         is_fine = pn_net.decode(&worker->cx, worker->marking, byte, of->length);
     } else if (w == codec->time_word) {

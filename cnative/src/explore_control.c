@@ -25,7 +25,9 @@ typedef struct ex_control {
 
 static bool is_supervisor(const control_t *c, uint64_t arc)
 {
-    return c->queries->owner[c->graph->label[arc]] == 0U;
+    const ex_programs_t *const programs = c->queries->run->programs;
+    const uint16_t transition = c->graph->label[arc];
+    return (c->queries->owner[transition] == 0U) && ((programs == NULL) || !programs->is_silent[transition]);
 }
 
 static bool is_late(const control_t *c, uint32_t node)

@@ -52,7 +52,7 @@ static bool read_places(reader_t *r)
     if (number(r, UINT32_MAX) != pn_net.place_count) {
         return refuse(r, "the table of elements has other places");
     }
-    if ((pn_net.bag_count > 0U) || pn_net.timed || pn_net.has_references) {
+    if ((pn_net.bag_count > 0U) || pn_net.timed || (pn_net.root_count > 0U)) {
         return refuse(r, "a place is not packed");
     }
     for (uint32_t i = 0U; i < pn_net.place_count; i++) {

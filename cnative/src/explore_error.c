@@ -94,6 +94,9 @@ static bool on_binding(void *user, uint32_t transition, const void *binding)
         trial->is_found = true;
     }
     pn_arena_release(&scratch->arena, mark);
+    if (pn_net.root_count > 0U) {
+        return is_fired && ex_roots_restore(worker); /* where the exception is raised, nobody goes on */
+    }
     return is_fired;
 }
 

@@ -191,18 +191,20 @@ bool ex_graph(ex_run_t *run)
     graph->late = pn_net.timed ? ex_alloc(run, ((nodes / 64U) + 1U) * sizeof *graph->late) : NULL;
     bool is_fine = (graph->slot != NULL) && (graph->number != NULL) && (graph->parent != NULL) && (graph->row != NULL) && (graph->dead != NULL) &&
                    ((graph->late != NULL) || !pn_net.timed) && reserve_arcs(run, graph, run->arcs);
-    atomic_store(&run->phase, "graph");
+    ex_phase(run, "graph");
     is_fine = is_fine && build(run, graph) && (!is_whole || (graph->nodes == nodes));
     if (run->options.write_graph == NULL) {
         ex_free(run, graph->number, ex_store_slots(&run->store) * sizeof *graph->number);
         graph->number = NULL;
     }
     graph->is_reduced = run->reduction != NULL;
-    if (is_fine && is_whole && !graph->is_reduced) {
-        atomic_store(&run->phase, "components");
+    run->has_arcs = is_fine && is_whole;
+    if (run->has_arcs && !graph->is_reduced) {
+        ex_phase(run, "components");
         is_fine = ex_components(run, graph);
-        atomic_store(&run->phase, "properties");
+        ex_phase(run, "properties");
         is_fine = is_fine && ex_properties(run, graph) && (graph->is_acyclic || ex_fairness(run, graph));
+        run->has_components = is_fine;
     }
     graph->seconds = ex_clock() - began;
     if (!is_fine) {

@@ -55,6 +55,8 @@ typedef struct ex_options {
     const char *queries;        /* file of questions; NULL: none */
     const char *query_trace_to; /* what the names of traces that prove their answers begin with */
     const char *error_trace_to; /* the same for the trace to an exception */
+    const char *ends_in;     /* phase in which the time ends as soon as it begins, whatever the clock says; NULL: none */
+    uint64_t multiset_limit; /* colours of a multi-set bound that are printed */
     uint64_t parent;         /* process that started it, and without which it is to end; 0: none */
 } ex_options_t;
 
@@ -62,6 +64,7 @@ typedef struct ex_options {
 typedef enum ex_why {
     EX_COMPLETE,
     EX_DECIDED,  /* all questions have been answered before that */
+    EX_APPROXIMATE, /* nothing was in the way, but states may have been taken for others: it is never complete */
     EX_STATES,
     EX_SECONDS,
     EX_MEMORY,
@@ -164,7 +167,7 @@ typedef struct ex_derived {
 /* The shape of the vectors: found once, from the tables of the net.
  *
  * A vector consists of cells: slices of the packed part (of one long place, or of several short ones), a word for each bag (the number
- * of its bytes), one for the time if the net is timed. Where places cannot be encoded one by one, there is one word for the whole marking. */
+ * of its bytes), one for the time if the net is timed, one for what its references hold if it changes them. Where places cannot be encoded one by one, there is one word for the whole marking. */
 typedef struct ex_codec {
     bool is_whole;
     bool is_plain;           /* the key is the beginning of the packed part; all else follows from it */
@@ -178,6 +181,7 @@ typedef struct ex_codec {
     uint32_t packed_words;
     uint32_t words;          /* cells, without those of the inner nodes */
     uint32_t time_word;      /* UINT32_MAX: none */
+    uint32_t root_word;      /* of what references hold (explore_roots.c); UINT32_MAX: there are none that change */
     uint32_t zero_cell;      /* a cell that is always 0 */
     uint32_t *slice_bit;     /* of the packed part, by word of the vector: its first bit there */
     uint32_t *slice_width;   /* and the number of bits, at most 32 */
@@ -243,6 +247,7 @@ typedef struct ex_scratch {
     void *next;              /* marking */
     void *binding;
     pn_arena_t arena;
+    pn_arena_t roots;        /* what references hold, and nothing else */
 } ex_scratch_t;
 
 bool ex_codec_make(struct ex_run *run);
@@ -297,6 +302,16 @@ typedef struct ex_change {
 /* The key of what becomes of the opened state when words change. False: no memory. */
 bool ex_encode_changes(struct ex_worker *worker, const ex_change_t *change, uint32_t count, ex_key_t *key);
 
+/* --- references (explore_roots.c) ------------------------------------------------------------------------------------ */
+
+bool ex_roots_make(struct ex_worker *worker);
+/* The number of what they hold now. False: no memory. */
+bool ex_roots_number(struct ex_worker *worker, uint32_t *number);
+/* Lets them hold what has that number; false after an error (the context has it). */
+bool ex_roots_load(struct ex_worker *worker, uint32_t number);
+/* After an occurrence in the loaded state: they hold again what they hold there. False: the worker has failed. */
+bool ex_roots_restore(struct ex_worker *worker);
+
 /* --- multi-sets (explore_multiset.c) ---------------------------------------------------------------------------------- */
 
 /* Room for `size` bytes in the scratch buffer, which is empty then. False: no memory. */
@@ -312,7 +327,7 @@ const unsigned char *ex_multiset_bytes(struct ex_worker *worker, uint32_t number
 
 /* --- successors (explore_successors.c) ----------------------------------------------------------------------------- */
 
-/* Whether the net always does the same in a marking: no files, no references. */
+/* Whether the net always does the same in a state: no files. */
 bool ex_is_repeatable(void);
 /* An arc: the binding, outputs of the code segment included, lives until the call returns. False: stop. */
 typedef bool (*ex_arc_sink_t)(void *user, uint32_t transition, const void *binding, const ex_key_t *key);
@@ -498,7 +513,43 @@ typedef struct ex_worker {
     uint64_t arcs;
     uint64_t dead;
     uint64_t *fired;         /* by transition */
+    uint64_t arena_most;     /* bytes that a transition's bindings and one occurrence of it needed of the arena */
 } ex_worker_t;
+
+/* Around all that is done for the bindings and occurrences of a transition: what it leaves in the arena is forgotten, how much that was
+ * is not. */
+static inline size_t ex_arena_begin(ex_worker_t *worker)
+{
+    pn_arena_t *const arena = worker->cx.arena;
+    arena->peak = arena->used;
+    return pn_arena_mark(arena);
+}
+
+static inline void ex_arena_end(ex_worker_t *worker, size_t mark)
+{
+    const uint64_t most = worker->cx.arena->peak - mark;
+    worker->arena_most = (most > worker->arena_most) ? most : worker->arena_most;
+    pn_arena_release(worker->cx.arena, mark);
+}
+
+/* What is known of programs that carry out transitions (explore_query_read.c reads it): each may do less than the net. */
+typedef enum ex_choice {
+    EX_ANY,             /* whatever is enabled */
+    EX_FIRST_BINDING,   /* of a group, in the documented order, the first binding element */
+    EX_FIRST_TRANSITION /* of a group the first transition that is enabled, with all its bindings */
+} ex_choice_t;
+
+#define EX_MOST_GROUPS 256U
+
+typedef struct ex_programs {
+    uint32_t *group;      /* by transition: one in which only the first is done; 0: none */
+    ex_choice_t choice[EX_MOST_GROUPS];
+    uint32_t *kin;        /* by transition: the one of which it is a part, which counts as the same in its group */
+    bool *is_meek;        /* by transition: that it is enabled holds no other one back */
+    bool *is_silent;      /* by transition: a step that is no occurrence in the net */
+    bool *is_clock;       /* by transition: it occurs one unit of time later, if something is waited for; with reduced time only */
+    bool has_clock;
+} ex_programs_t;
 
 typedef struct ex_run {
     ex_options_t options;
@@ -543,8 +594,11 @@ typedef struct ex_run {
     struct ex_reduction *reduction; /* of explore_elements.c; NULL: none that needs a table */
     _Atomic(const char *) phase; /* for the progress lines */
     const uint32_t *owner_of; /* by transition: whose it is; priorities count among those of one owner. NULL: among all */
+    struct ex_programs *programs; /* how programs choose among what is enabled; NULL: nobody chooses */
     struct ex_graph *graph;  /* of explore_graph.c; NULL: none */
-    bool is_seen_whole;          /* all states have been expanded */
+    bool is_seen_whole;          /* all states have been expanded, and none was taken for another one */
+    bool has_arcs;               /* the graph of them has been made, with all arcs */
+    bool has_components;         /* and gone through: components, home, liveness, fairness */
     struct ex_queries *queries;  /* of explore_query_read.c; NULL: nothing is asked */
     struct ex_raised *raised; /* of explore_error.c; NULL: the way to the exception is not known */
 } ex_run_t;
@@ -566,6 +620,13 @@ void ex_check_pause(ex_run_t *run);
 void ex_stop(ex_run_t *run, ex_why_t why);
 /* The same for the error in the worker's context. */
 void ex_fail(ex_worker_t *worker, int64_t transition);
+/* Another part of the work begins; the name is for the progress lines. */
+void ex_phase(ex_run_t *run, const char *phase);
+/* Whether the states are stored as they are. */
+static inline bool ex_is_exact(const ex_run_t *run)
+{
+    return !run->options.is_bitstate && !run->options.is_hashed;
+}
 /* As the report has it. */
 const char *ex_why_text(ex_why_t why);
 /* Whether to stop: asked often (once in a few states or arcs), it looks at signals and, now and then, at the clock. */

@@ -150,6 +150,7 @@ static void mark_needed(ex_queries_t *queries)
             mark_event(queries, &question->second);
             break;
         case EX_ASK_BLOCKING:
+        case EX_ASK_ENDS:
             if (question->has_item) {
                 queries->item[question->a].is_needed = true;
             }
@@ -429,6 +430,11 @@ static void answer(ex_queries_t *queries, ex_question_t *question)
             ex_doubt(queries->run, question);
         }
         break;
+    case EX_ASK_ENDS:
+        if ((!question->has_item || is_ready(queries, question->a, question)) && !ex_running(queries, question)) {
+            ex_doubt(queries->run, question);
+        }
+        break;
     case EX_ASK_INITIALLY:
         if (is_ready(queries, question->a, question)) {
             answer_initially(queries, question);
@@ -448,10 +454,11 @@ static void write_trace(ex_run_t *run, ex_question_t *question, uint32_t number)
 {
     char path[EX_PATH_SIZE];
     ex_way_t *const way = &question->way;
+    const bool is_shown = (question->answer != EX_UNKNOWN) || ((question->kind == EX_ASK_ENDS) && (question->node != EX_NO_NODE));
     if ((way->node != NULL) && !way->is_failed && (question->answer != EX_UNKNOWN)) {
         question->node = ex_way_end(way);
     }
-    if ((run->options.query_trace_to == NULL) || (question->answer == EX_UNKNOWN)) {
+    if ((run->options.query_trace_to == NULL) || !is_shown) {
         return;
     }
     (void)snprintf(path, sizeof path, "%s%" PRIu32 ".trace.jsonl", run->options.query_trace_to, number);
@@ -472,6 +479,7 @@ void ex_queries_answer(ex_run_t *run)
     find_sets(queries);
     for (uint32_t i = 0U; i < queries->questions; i++) {
         answer(queries, &queries->question[i]);
+        ex_early_settle(run, &queries->question[i]);
         write_trace(run, &queries->question[i], i);
     }
 }

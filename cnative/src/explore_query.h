@@ -108,7 +108,8 @@ typedef enum ex_question_kind {
     EX_ASK_FINITE,      /* of a supervisor: explore_control.c */
     EX_ASK_BOUNDED,
     EX_ASK_CONFLUENT,   /* `a`: 0 the run of the documented order, 1 another one */
-    EX_ASK_BLOCKING
+    EX_ASK_BLOCKING,
+    EX_ASK_ENDS         /* of a cell as it runs: explore_running.c */
 } ex_question_kind_t;
 
 typedef enum ex_answer {
@@ -188,6 +189,8 @@ bool ex_queries_read(ex_run_t *run);
 bool ex_early_make(ex_worker_t *worker);
 /* Without the whole graph: what has been decided, with the way there. */
 void ex_early_answer(ex_run_t *run);
+/* After the graph has left a question open (there was no time, or no memory): what was seen of the states while they were explored. */
+void ex_early_settle(const ex_run_t *run, ex_question_t *question);
 
 /* --- explore_query.c --- */
 
@@ -229,6 +232,11 @@ void ex_response(ex_queries_t *queries, ex_question_t *question);
 
 /* Answers a question about a supervisor. False: no memory, or told to stop. */
 bool ex_control(ex_queries_t *queries, ex_question_t *question);
+
+/* --- explore_running.c --- */
+
+/* Whether a cell comes to its end. False: no memory, or told to stop. */
+bool ex_running(ex_queries_t *queries, ex_question_t *question);
 
 /* --- explore_way.c --- */
 

@@ -248,27 +248,43 @@ static void confirm(const ex_run_t *run, ex_question_t *question)
     }
 }
 
-/* Without the way there: what was seen. */
+/* What the states alone say, without the way there. False: nothing. */
+static bool answer_by_states(const ex_run_t *run, ex_question_t *question)
+{
+    if (!is_early(run->queries, question)) {
+        return false;
+    }
+    if (atomic_load(&question->is_raised)) {
+        question->why = "exception";
+    } else if (atomic_load(&question->is_decided)) {
+        question->answer = EX_NO;
+    } else if (run->is_seen_whole) {
+        confirm(run, question);
+    } else {
+        return false;
+    }
+    return true;
+}
+
+void ex_early_settle(const ex_run_t *run, ex_question_t *question)
+{
+    if ((question->answer == EX_UNKNOWN) && (question->node == EX_NO_NODE) && answer_by_states(run, question)) {
+        question->why = (question->answer == EX_UNKNOWN) ? question->why : NULL;
+    }
+}
+
 static void answer_roughly(ex_run_t *run)
 {
     ex_queries_t *const queries = run->queries;
     for (uint32_t i = 0U; i < queries->questions; i++) {
         ex_question_t *const question = &queries->question[i];
-        if (question->node != EX_NO_NODE) {
+        if ((question->node != EX_NO_NODE) || answer_by_states(run, question)) {
             continue;
         }
         if (!ex_is_kept(queries, question)) {
             question->why = "reduction";
-        } else if (atomic_load(&question->is_decided) && !atomic_load(&question->is_raised)) {
-            question->answer = EX_NO;
-        } else if (atomic_load(&question->is_raised)) {
-            question->why = "exception";
-        } else if (run->is_seen_whole && is_early(queries, question)) {
-            confirm(run, question);
         } else if (atomic_load(&run->why) != (int)EX_COMPLETE) {
             ex_doubt(run, question);
-        } else if (run->options.is_bitstate || run->options.is_hashed) {
-            question->why = "approximation";
         } else {
             question->why = run->options.has_graph ? "memory" : "no graph";
         }
@@ -277,7 +293,7 @@ static void answer_roughly(ex_run_t *run)
 
 void ex_early_answer(ex_run_t *run)
 {
-    const bool is_exact = !run->options.is_bitstate && !run->options.is_hashed;
+    const bool is_exact = ex_is_exact(run);
     const int why = atomic_load(&run->why);
     finding_t finding = { .run = run };
     ex_graph_t graph;

@@ -16,6 +16,13 @@
  *     end
  *     owner 0 2 5 7                   transitions of the supervisor; other numbers are robots and devices (explore_control.c)
  *     priorities own                  priorities count among the transitions of one owner only
+ *     first 1 5 7                     of these (group 1) only the first binding element in the documented order occurs
+ *     choose 2 8 9                    of these (group 2) only the first enabled transition occurs, with all its bindings
+ *     kin 8 9                         count as one transition in their group
+ *     meek 8                          though enabled it holds no other one back
+ *     silent 10 11                    steps that are no occurrences of the net
+ *     clock 11                        occurs a unit of time later, where something is waited for
+ *     ? ends 4                        item 4 is `ef` of the ends, which are reached whoever is slow (explore_running.c); `-`: as below
  *     ? finite-response
  *     ? bounded-response 100
  *     ? confluence 0                  0: with a run of the documented order, 1: with one that comes to another end
@@ -270,9 +277,12 @@ static bool read_control(const ex_reader_t *r, ex_question_t *question)
         question->most = (double)most;
     } else if (question->kind == EX_ASK_CONFLUENT) {
         is_fine = is_fine && ex_read_number(r, r->word[2], 2U, "there is no such run", &question->a);
-    } else if (question->kind == EX_ASK_BLOCKING) {
+    } else if ((question->kind == EX_ASK_BLOCKING) || (question->kind == EX_ASK_ENDS)) {
         question->has_item = strcmp(r->word[2], "-") != 0;
         is_fine = is_fine && (!question->has_item || ex_read_item(r, r->word[2], &question->a));
+        if (is_fine && question->has_item && (question->kind == EX_ASK_ENDS)) {
+            is_fine = (r->queries->item[question->a].kind == EX_ITEM_EF) || ex_complain(r, "not an `ef`", r->word[2]);
+        }
     } else {
         /* there is nothing more to read */
     }
@@ -288,7 +298,7 @@ typedef struct asking {
 static const asking_t s_askings[] = {
     { "invariant", EX_ASK_INVARIANT, 3U }, { "initially", EX_ASK_INITIALLY, 3U }, { "bound", EX_ASK_BOUND, 5U },
     { "finite-response", EX_ASK_FINITE, 2U }, { "bounded-response", EX_ASK_BOUNDED, 3U }, { "confluence", EX_ASK_CONFLUENT, 3U },
-    { "non-blocking", EX_ASK_BLOCKING, 3U },
+    { "non-blocking", EX_ASK_BLOCKING, 3U }, { "ends", EX_ASK_ENDS, 3U },
     { "lasso", EX_ASK_LASSO, 2U }, { "within-firings", EX_ASK_FIRINGS, 5U }, { "within-time", EX_ASK_TIME, 5U },
 };
 
@@ -324,6 +334,7 @@ static bool read_question(ex_reader_t *r)
     case EX_ASK_BOUNDED:
     case EX_ASK_CONFLUENT:
     case EX_ASK_BLOCKING:
+    case EX_ASK_ENDS:
         return read_control(r, question);
     case EX_ASK_FIRINGS:
     case EX_ASK_TIME:
@@ -404,6 +415,85 @@ static bool read_owner(ex_reader_t *r)
     return is_fine;
 }
 
+/* What is known of programs; NULL: no memory. */
+static ex_programs_t *programs_of(const ex_reader_t *r)
+{
+    ex_run_t *const run = r->queries->run;
+    const size_t count = (size_t)pn_net.transition_count + 1U;
+    if (run->programs == NULL) {
+        ex_programs_t *const programs = calloc(1U, sizeof *programs);
+        if (programs == NULL) {
+            return NULL;
+        }
+        programs->group = calloc(count, sizeof *programs->group);
+        programs->kin = calloc(count, sizeof *programs->kin);
+        for (uint32_t t = 0U; (programs->kin != NULL) && (t < pn_net.transition_count); t++) {
+            programs->kin[t] = t;
+        }
+        programs->is_meek = calloc(count, sizeof *programs->is_meek);
+        programs->is_silent = calloc(count, sizeof *programs->is_silent);
+        programs->is_clock = calloc(count, sizeof *programs->is_clock);
+        run->programs = programs;
+    }
+    const ex_programs_t *const made = run->programs;
+    const bool is_made = (made->group != NULL) && (made->kin != NULL) && (made->is_meek != NULL) && (made->is_silent != NULL) && (made->is_clock != NULL);
+    return is_made ? run->programs : NULL;
+}
+
+/* `first G T...`, `choose G T...`: of the transitions of a group only some are done. */
+static bool read_group(ex_reader_t *r, ex_choice_t choice)
+{
+    ex_programs_t *const programs = programs_of(r);
+    uint32_t group = 0U;
+    uint32_t transition = 0U;
+    if (programs == NULL) {
+        return ex_complain(r, "not enough memory", r->path);
+    }
+    bool is_fine = (r->words > 1U) && ex_read_number(r, r->word[1], (uint64_t)EX_MOST_GROUPS, "there are not so many groups", &group);
+    is_fine = is_fine && ((group > 0U) || ex_complain(r, "groups are counted from 1", r->word[1]));
+    for (uint32_t i = 2U; is_fine && (i < r->words); i++) {
+        is_fine = ex_read_transition(r, r->word[i], &transition);
+        if (is_fine) {
+            programs->group[transition] = group;
+            programs->choice[group] = choice;
+        }
+    }
+    return is_fine;
+}
+
+/* `meek T...` and the like. */
+static bool read_kind(ex_reader_t *r)
+{
+    ex_programs_t *const programs = programs_of(r);
+    uint32_t transition = 0U;
+    uint32_t first = 0U;
+    bool is_fine = (programs != NULL) || ex_complain(r, "not enough memory", r->path);
+    for (uint32_t i = 1U; is_fine && (i < r->words); i++) {
+        is_fine = ex_read_transition(r, r->word[i], &transition);
+        if (!is_fine) {
+            break;
+        }
+        first = (i == 1U) ? transition : first;
+        if (strcmp(r->word[0], "kin") == 0) {
+            programs->kin[transition] = first;
+        } else if (strcmp(r->word[0], "meek") == 0) {
+            programs->is_meek[transition] = true;
+        } else if (strcmp(r->word[0], "silent") == 0) {
+            programs->is_silent[transition] = true;
+        } else {
+            programs->is_clock[transition] = true;
+            programs->has_clock = true;
+            is_fine = r->queries->run->options.is_time_reduced || ex_complain(r, "the time is not reduced", r->word[0]);
+        }
+    }
+    return is_fine;
+}
+
+static bool is_kind(const char *word)
+{
+    return (strcmp(word, "kin") == 0) || (strcmp(word, "meek") == 0) || (strcmp(word, "silent") == 0) || (strcmp(word, "clock") == 0);
+}
+
 static bool read_lines(ex_reader_t *r)
 {
     bool is_fine = true;
@@ -414,6 +504,12 @@ static bool read_lines(ex_reader_t *r)
             is_fine = read_question(r);
         } else if (strcmp(r->word[0], "owner") == 0) {
             is_fine = read_owner(r);
+        } else if (strcmp(r->word[0], "first") == 0) {
+            is_fine = read_group(r, EX_FIRST_BINDING);
+        } else if (strcmp(r->word[0], "choose") == 0) {
+            is_fine = read_group(r, EX_FIRST_TRANSITION);
+        } else if (is_kind(r->word[0])) {
+            is_fine = read_kind(r);
         } else if ((strcmp(r->word[0], "priorities") == 0) && (r->words == 2U) && (strcmp(r->word[1], "own") == 0)) {
             is_fine = (r->queries->owner != NULL) || ex_complain(r, "the owners of transitions are not told", r->word[0]);
             r->queries->run->owner_of = r->queries->owner;

@@ -56,9 +56,12 @@ static double now_of(const wait_t *w, uint32_t node)
     return (w->now != NULL) ? w->now[node] : 0.0;
 }
 
-static double shift_of(const wait_t *w, uint32_t node)
+/* What an arc adds: firings are those of the net alone. */
+static double shift_of(const wait_t *w, uint32_t node, uint16_t label)
 {
-    return (w->shift != NULL) ? w->shift[node] : w->step;
+    const ex_programs_t *const programs = w->queries->run->programs;
+    const bool is_silent = (programs != NULL) && programs->is_silent[label];
+    return (w->shift != NULL) ? w->shift[node] : (is_silent ? 0.0 : w->step);
 }
 
 /* --- which nodes wait ------------------------------------------------------------------------------------------------ */
@@ -126,9 +129,9 @@ static bool spread(wait_t *w)
 /* All waits at a node are known: they go on, or end. */
 static void pass_on(wait_t *w, uint32_t node, uint64_t *used)
 {
-    const double since = w->since[node] - shift_of(w, node);
     for (uint64_t arc = w->graph->row[node]; arc < w->graph->row[node + 1U]; arc++) {
         const uint32_t target = w->graph->target[arc];
+        const double since = w->since[node] - shift_of(w, node, w->graph->label[arc]);
         if (!goes_on(w, arc)) {
             const double length = now_of(w, target) - since;
             if ((w->last == EX_NO_NODE) || (length > w->longest)) {
@@ -284,7 +287,7 @@ static void cut(const wait_t *w, uint64_t first, ex_way_t *way)
 {
     double shifted = 0.0;
     for (uint64_t i = first; i < way->steps; i++) {
-        shifted += shift_of(w, way->node[i]);
+        shifted += shift_of(w, way->node[i], way->label[i + 1U]);
         if ((now_of(w, way->node[i + 1U]) - now_of(w, way->node[first]) + shifted) > w->question->most) {
             way->steps = i + 1U;
         }

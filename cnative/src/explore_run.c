@@ -25,6 +25,14 @@ void ex_stop(ex_run_t *run, ex_why_t why)
     atomic_store(&run->is_stopping, true);
 }
 
+void ex_phase(ex_run_t *run, const char *phase)
+{
+    atomic_store(&run->phase, phase);
+    if ((run->options.ends_in != NULL) && (strcmp(run->options.ends_in, phase) == 0)) {
+        ex_stop(run, EX_SECONDS);
+    }
+}
+
 static int64_t place_at(const char *origin)
 {
     for (uint32_t i = 0U; i < pn_net.place_count; i++) {

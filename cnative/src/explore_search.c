@@ -541,7 +541,7 @@ bool ex_explore(ex_run_t *run)
             return false;
         }
         run->worker[i].search->level = search;
-        run->worker[i].search->is_exact = !run->options.is_bitstate && !run->options.is_hashed;
+        run->worker[i].search->is_exact = ex_is_exact(run);
         if (!ex_words_make(&run->worker[i]) || !ex_local_make(&run->worker[i]) || !ex_flat_make(&run->worker[i])) {
             ex_stop(run, EX_MEMORY);
             return false;

@@ -140,6 +140,7 @@ static void lay_words(ex_codec_t *codec)
 {
     uint32_t word = codec->packed_words;
     codec->time_word = NONE;
+    codec->root_word = NONE;
     for (uint32_t i = 0U; i < pn_net.place_count; i++) {
         codec->word_of[i] = NONE;
         if (!codec->is_whole && !pn_net.place[i].is_packed) {
@@ -151,6 +152,9 @@ static void lay_words(ex_codec_t *codec)
         word++;
     } else if (pn_net.timed) {
         codec->time_word = word++;
+    }
+    if (pn_net.root_count > 0U) {
+        codec->root_word = word++;
     }
     codec->words = word;
     codec->has_cells = word > codec->packed_words;
@@ -251,7 +255,7 @@ void ex_codec_group(ex_codec_t *codec, uint32_t *word, const uint32_t end[EX_KEY
         from = end[part];
     }
     find_parts(codec);
-    codec->is_flat = !codec->is_whole;
+    codec->is_flat = !codec->is_whole && (codec->root_word == NONE);
     for (uint32_t n = 0U; n < codec->nodes; n++) {
         codec->is_flat = codec->is_flat && (codec->node[n].table < EX_KEY_WORDS);
         codec->node[n].parent = codec->parent[codec->words + n];
@@ -314,7 +318,7 @@ bool ex_codec_make(ex_run_t *run)
     codec->is_whole = !has_places();
     const uint32_t packed = codec->is_whole ? 0U : (uint32_t)pn_net.packed_size;
     const uint32_t packed_words = rounded_up(packed, 4U);
-    const uint64_t most = (2U * (uint64_t)packed_words) + (2U * (uint64_t)pn_net.place_count) + 2U;
+    const uint64_t most = (2U * (uint64_t)packed_words) + (2U * (uint64_t)pn_net.place_count) + 3U;
     codec->slice_bit = ex_table(run, most, sizeof(uint32_t));
     codec->slice_width = ex_table(run, most, sizeof(uint32_t));
     codec->word_of = ex_table(run, pn_net.place_count, sizeof(uint32_t));
@@ -337,7 +341,7 @@ bool ex_codec_make(ex_run_t *run)
         return false;
     }
     const uint32_t kept_words = rounded_up(kept_end(), (uint32_t)WORD_BITS);
-    codec->is_plain = !codec->is_whole && !pn_net.timed && (pn_net.bag_count == 0U) && (kept_words > 0U) && (kept_words <= EX_KEY_WORDS);
+    codec->is_plain = !codec->is_whole && !pn_net.timed && (pn_net.root_count == 0U) && (pn_net.bag_count == 0U) && (kept_words > 0U) && (kept_words <= EX_KEY_WORDS);
     if (codec->is_plain) {
         lay_plain(codec, kept_words);
     } else if (!codec->is_whole) {

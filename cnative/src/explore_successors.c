@@ -19,14 +19,15 @@ typedef struct hunt {
     bool is_found;
     bool is_stopped; /* by the sink */
     bool is_local;   /* explore_local.c is asked first; other places than packed ones may not be loaded */
+    bool is_single;  /* one successor of the transition at hand is enough */
     bool has_aged;   /* worker->marking is later than the cells of the codec */
 } hunt_t;
 
 bool ex_is_repeatable(void)
 {
-    bool is_repeatable = !pn_net.has_references;
+    bool is_repeatable = true;
     for (uint32_t t = 0U; t < pn_net.transition_count; t++) {
-        is_repeatable = is_repeatable && !pn_net.transition[t].looks;
+        is_repeatable = is_repeatable && !pn_net.transition[t].looks_outside;
     }
     return is_repeatable;
 }
@@ -93,7 +94,7 @@ static bool on_successor(void *user, uint32_t transition, const void *binding, c
     hunt->is_found = true;
     if (hunt->all != NULL) {
         hunt->is_stopped = !hunt->all(hunt->user, transition, binding, next);
-        return !hunt->is_stopped;
+        return !hunt->is_stopped && !hunt->is_single;
     }
     if ((reduction != NULL) && reduction->is_stubborn && !is_taken(hunt, transition, next)) {
         return !hunt->worker->failed;
@@ -109,7 +110,7 @@ static bool on_successor(void *user, uint32_t transition, const void *binding, c
         return false;
     }
     hunt->is_stopped = !pass_on(hunt, transition, binding, &key);
-    return !hunt->is_stopped;
+    return !hunt->is_stopped && !hunt->is_single;
 }
 
 /* The same where nothing is reduced and the packed part of the marking is the key. */
@@ -120,7 +121,15 @@ static bool on_plain(void *user, uint32_t transition, const void *binding, const
     hunt->is_found = true;
     ex_plain_key(hunt->worker->run->codec, next, &key);
     hunt->is_stopped = !pass_on(hunt, transition, binding, &key);
-    return !hunt->is_stopped;
+    return !hunt->is_stopped && !hunt->is_single;
+}
+
+/* The same where occurrences may change references: they are as before afterwards. */
+static bool on_assigning(void *user, uint32_t transition, const void *binding, const void *next)
+{
+    hunt_t *hunt = user;
+    const bool goes_on = on_successor(user, transition, binding, next);
+    return (!pn_net.transition[transition].assigns || ex_roots_restore(hunt->worker)) && goes_on;
 }
 
 /* Of transitions that can only be enumerated and fired. */
@@ -186,7 +195,7 @@ static bool hunt_transition(hunt_t *hunt, uint32_t t)
     ex_worker_t *worker = hunt->worker;
     bool goes_on = true;
     if (hunt->is_local) {
-        if (hunt_local(hunt, t, &goes_on)) {
+        if (!hunt->is_single && hunt_local(hunt, t, &goes_on)) {
             return goes_on;
         }
         if (!load_places_of(worker, t)) {
@@ -194,13 +203,13 @@ static bool hunt_transition(hunt_t *hunt, uint32_t t)
         }
     }
     const pn_transition_t *transition = &pn_net.transition[t];
-    const size_t mark = pn_arena_mark(&worker->scratch->arena);
+    const size_t mark = ex_arena_begin(worker);
     if (transition->successors != NULL) {
         (void)transition->successors(&worker->cx, worker->marking, t, worker->scratch->next, hunt->on_next, hunt);
     } else {
         (void)transition->enumerate(&worker->cx, worker->marking, t, on_binding, hunt);
     }
-    pn_arena_release(&worker->scratch->arena, mark);
+    ex_arena_end(worker, mark);
     if (worker->cx.error != PN_OK) {
         ex_fail(worker, (int64_t)t);
         return false;
@@ -208,30 +217,60 @@ static bool hunt_transition(hunt_t *hunt, uint32_t t)
     return !worker->failed && !hunt->is_stopped;
 }
 
+/* Whether a transition is tried at all: it is no step of the clock, and nothing before it in its group has been chosen. `chosen` is by
+ * group the transition, + 1; 0: none. */
+static bool is_tried(const hunt_t *hunt, uint32_t t, const uint32_t *chosen)
+{
+    const ex_programs_t *const programs = hunt->worker->run->programs;
+    if (programs == NULL) {
+        return true;
+    }
+    const uint32_t group = programs->group[t];
+    const bool is_same = (chosen[group] == (programs->kin[t] + 1U)) && (programs->choice[group] == EX_FIRST_TRANSITION);
+    return !programs->is_clock[t] && ((chosen[group] == 0U) || is_same);
+}
+
+/* All of a transition that the program of its owner can do. Whether it is enabled is *is_enabled. */
+static bool hunt_choice(hunt_t *hunt, uint32_t t, uint32_t *chosen, bool *is_enabled)
+{
+    const ex_programs_t *const programs = hunt->worker->run->programs;
+    const uint32_t group = (programs != NULL) ? programs->group[t] : 0U;
+    const bool was_found = hunt->is_found;
+    hunt->is_found = false;
+    hunt->is_single = (group != 0U) && (programs->choice[group] == EX_FIRST_BINDING);
+    const bool goes_on = hunt_transition(hunt, t);
+    hunt->is_single = false;
+    *is_enabled = hunt->is_found;
+    if ((group != 0U) && hunt->is_found && !programs->is_meek[t]) {
+        chosen[group] = programs->kin[t] + 1U;
+    }
+    hunt->is_found = hunt->is_found || was_found;
+    return goes_on;
+}
+
 /* The same where priorities count among the transitions of an owner only. */
 static bool hunt_by_owner(hunt_t *hunt)
 {
     const uint32_t *const owner_of = hunt->worker->run->owner_of;
+    const ex_programs_t *const programs = hunt->worker->run->programs;
     int32_t priority[EX_MOST_OWNERS];
     bool has_found[EX_MOST_OWNERS] = { false };
-    bool is_found = false;
+    uint32_t chosen[EX_MOST_GROUPS] = { 0U };
     bool goes_on = true;
     for (uint32_t k = 0U; goes_on && (k < pn_net.order_count); k++) {
         const uint32_t t = pn_net.order[k];
         look_ahead(hunt, k);
         const uint32_t owner = owner_of[t];
-        if (has_found[owner] && (pn_net.transition[t].priority != priority[owner])) {
+        bool is_enabled = false;
+        if (!is_tried(hunt, t, chosen) || (has_found[owner] && (pn_net.transition[t].priority != priority[owner]))) {
             continue;
         }
-        hunt->is_found = false;
-        goes_on = hunt_transition(hunt, t);
-        if (hunt->is_found) {
+        goes_on = hunt_choice(hunt, t, chosen, &is_enabled);
+        if (is_enabled && ((programs == NULL) || !programs->is_meek[t])) {
             has_found[owner] = true;
             priority[owner] = pn_net.transition[t].priority;
-            is_found = true;
         }
     }
-    hunt->is_found = is_found;
     return goes_on;
 }
 
@@ -239,17 +278,22 @@ static bool hunt_by_owner(hunt_t *hunt)
 static bool hunt_now(hunt_t *hunt)
 {
     int32_t priority = 0;
+    uint32_t chosen[EX_MOST_GROUPS] = { 0U };
     if (hunt->worker->run->owner_of != NULL) {
         return hunt_by_owner(hunt);
     }
     for (uint32_t k = 0U; k < pn_net.order_count; k++) {
         const uint32_t t = pn_net.order[k];
+        bool is_enabled = false;
         look_ahead(hunt, k);
         if (hunt->is_found && (pn_net.transition[t].priority != priority)) {
             break;
         }
+        if (!is_tried(hunt, t, chosen)) {
+            continue;
+        }
         priority = pn_net.transition[t].priority;
-        if (!hunt_transition(hunt, t)) {
+        if (!hunt_choice(hunt, t, chosen, &is_enabled)) {
             return false;
         }
     }
@@ -278,9 +322,31 @@ static bool advance(hunt_t *hunt, pn_time_t next)
     return ex_encode_time(worker);
 }
 
+/* With a clock that goes on by itself: one unit later, if something is waited for, its steps occur. False: it is to go no further. */
+static bool hunt_clock(hunt_t *hunt)
+{
+    ex_worker_t *worker = hunt->worker;
+    const ex_programs_t *const programs = worker->run->programs;
+    const pn_time_t unit = { .integer = 1 };
+    pn_time_t next = { 0 };
+    if (!next_time(hunt, &next)) {
+        return worker->cx.error == PN_OK;
+    }
+    bool goes_on = advance(hunt, unit);
+    for (uint32_t k = 0U; goes_on && (k < pn_net.order_count); k++) {
+        if (programs->is_clock[pn_net.order[k]]) {
+            goes_on = hunt_transition(hunt, pn_net.order[k]);
+        }
+    }
+    worker->has_waited = false; /* it is a step of its own */
+    return goes_on;
+}
+
 /* The opened state, which is loaded unless `is_local`. */
 static ex_found_t hunt_state(hunt_t *hunt)
 {
+    const ex_programs_t *const programs = hunt->worker->run->programs;
+    const bool has_clock = (programs != NULL) && programs->has_clock;
     ex_worker_t *worker = hunt->worker;
     const ex_reduction_t *reduction = worker->run->reduction;
     worker->elapsed = 0;
@@ -290,7 +356,10 @@ static ex_found_t hunt_state(hunt_t *hunt)
     }
     bool goes_on = hunt_now(hunt);
     pn_time_t next = { 0 };
-    while (goes_on && !hunt->is_found && pn_net.timed && next_time(hunt, &next)) {
+    if (goes_on && has_clock) {
+        goes_on = hunt_clock(hunt);
+    }
+    while (goes_on && !hunt->is_found && pn_net.timed && !has_clock && next_time(hunt, &next)) {
         goes_on = advance(hunt, next) && hunt_now(hunt);
     }
     if (goes_on && !hunt->is_found && (worker->cx.error != PN_OK)) {
@@ -316,6 +385,9 @@ static ex_found_t hunt_state(hunt_t *hunt)
 /* Where the packed part of the marking is the key there is no time either. */
 static pn_successor_sink_t successor_sink(const ex_run_t *run)
 {
+    if (pn_net.root_count > 0U) {
+        return on_assigning;
+    }
     return (run->codec->is_plain && (run->reduction == NULL)) ? on_plain : on_successor;
 }
 
@@ -334,13 +406,13 @@ ex_found_t ex_arcs(ex_worker_t *worker, const ex_key_t *key, ex_times_sink_t sin
 
 ex_found_t ex_next_markings(struct ex_worker *worker, ex_marking_sink_t sink, void *user)
 {
-    hunt_t hunt = { .worker = worker, .all = sink, .user = user, .on_next = on_successor };
+    hunt_t hunt = { .worker = worker, .all = sink, .user = user, .on_next = (pn_net.root_count > 0U) ? on_assigning : on_successor };
     return hunt_state(&hunt);
 }
 
 ex_found_t ex_all_successors(ex_worker_t *worker, ex_marking_sink_t sink, void *user)
 {
-    hunt_t hunt = { .worker = worker, .all = sink, .user = user, .on_next = on_successor };
+    hunt_t hunt = { .worker = worker, .all = sink, .user = user, .on_next = (pn_net.root_count > 0U) ? on_assigning : on_successor };
     const bool goes_on = hunt_now(&hunt);
     if (hunt.is_stopped) {
         return EX_STOPPED;

@@ -64,8 +64,9 @@ bool ex_next_time(ex_worker_t *worker, pn_time_t *next)
     }
     const pn_time_t now = pn_net.now(worker->marking);
     for (uint32_t w = codec->packed_words; w < codec->words; w++) {
-        const uint32_t place = (w == codec->time_word) ? 0U : codec->place_of[w - codec->packed_words];
-        if ((w == codec->time_word) || !pn_net.place[place].timed) {
+        const bool is_place = (w != codec->time_word) && (w != codec->root_word);
+        const uint32_t place = is_place ? codec->place_of[w - codec->packed_words] : 0U;
+        if (!is_place || !pn_net.place[place].timed) {
             continue;
         }
         const ex_wake_t *wake = wake_of(worker, place, worker->scratch->cell[w], now);

@@ -489,6 +489,28 @@ static SIM_INLINE bool sim_step(sim_t *sim)
     }
 }
 
+/* The run was to be no longer; whether anything is left to occur, now or later. */
+static void end_at_limit(sim_t *sim)
+{
+    const pn_time_t now = pn_net.now(sim->marking);
+    sim->cx.step = sim->steps;
+    switch (sim_settle_here(sim)) {
+    case SIM_FINISHED:
+        sim->why = "finished";
+        break;
+    case SIM_FOUND:
+    case SIM_BEYOND:
+        if (pn_net.timed) {
+            pn_net.set_now(sim->marking, now); /* the time goes on with the next occurrence only */
+            sim_forget(sim);
+        }
+        break;
+    case SIM_FAILED:
+    default:
+        break;
+    }
+}
+
 void sim_play(sim_t *sim)
 {
     sim->why = "steps";
@@ -503,5 +525,8 @@ void sim_play(sim_t *sim)
         if (sim_progress_due != 0) {
             sim_report_progress(sim);
         }
+    }
+    if (sim->options.steps > 0U) {
+        end_at_limit(sim);
     }
 }

@@ -18,8 +18,11 @@ from pathlib import Path
 import pn2code
 from pn2code.cell.config import CellConfig
 from pn2code.cell.divide import divide
+from pn2code.cell.load import load as load_cell
 from pn2code.cell.locate import locate
+from pn2code.cell.names import check_names
 from pn2code.cell.partition import Partition
+from pn2code.cell.primitives import check_primitives
 from pn2code.diagnostics import Diagnostics, Severity
 from pn2code.emission import c as emit_c
 from pn2code.emission import manifest, runtime
@@ -31,8 +34,9 @@ from pn2code.lowering import robot as lower_robot
 from pn2code.net import front
 from pn2code.net.flat import FlatNet
 from pn2code.net.reached import unused_functions
+from pn2code.verify import arena
 from pn2code.verify.proofs import prove
-from pn2code.verify.rooms import with_rooms
+from pn2code.verify.rooms import Room, with_rooms
 
 
 @dataclass(frozen=True, slots=True)
@@ -44,12 +48,16 @@ class Generated:
         partition: the net and its owners.
         config: the cell, None for a net without one.
         digest: SHA-256 of the net and of what the cell contributes to the programs.
+        rooms: how many tokens each place can hold, and why.
+        arena: bytes that the supervisor has for lists and strings.
     """
 
     files: tuple[OutputFile, ...]
     partition: Partition
     config: CellConfig | None
     digest: str
+    rooms: tuple[Room, ...]
+    arena: int
 
 
 def generate(
@@ -80,12 +88,12 @@ def generate(
     _refuse_unsupported(d, net)
     if net is None or d.has_errors:
         return None
-    partition = divide(net, config, d)
+    partition = divided(net, config, d)
     if partition is None or d.has_errors:
         return None
 
     storage = config.storage if config else {}
-    digest = _digest(net, config, replaced, int_bits)
+    digest = program_digest(net, config, replaced, int_bits)
     ir = lower_net.lower(partition, storage, d, digest=digest)
     robots = lower_robot.lower_robots(partition, config, d) if config else ()
     if ir is None or robots is None or d.has_errors:
@@ -104,13 +112,56 @@ def generate(
             digest=digest,
             version=version,
             verdicts=proofs.verdicts,
+            arena=proofs.arena,
         ),
         *emit_tdl.emit(robots, source=Path(net.file).name, digest=digest, version=version),
         *runtime.emit("supervisor", "simulate"),
         *_inputs(config),
     ]
     files.append(manifest.emit(partition, files, digest=digest, version=version))
-    return Generated(tuple(sorted(files, key=lambda f: f.path)), partition, config, digest)
+    return Generated(
+        files=tuple(sorted(files, key=lambda f: f.path)),
+        partition=partition,
+        config=config,
+        digest=digest,
+        rooms=proofs.rooms,
+        arena=proofs.arena or arena.LEAST,
+    )
+
+
+def divided(
+    net: FlatNet, config: CellConfig | None, d: Diagnostics, *, to_run: bool = False
+) -> Partition | None:
+    """The net and its owners, with everything that cell.toml says compared with it; None after an error.
+
+    This takes no time, so it comes before anything is explored.
+
+    Args:
+        net: the net.
+        config: the cell; None: a net that is one program.
+        d: gets the errors.
+        to_run: whether each robot must say where it stands; without, a robot that says nothing of its arm is left out.
+    """
+    before = len(d.errors)
+    partition = divide(net, config, d)
+    if config is None:
+        return partition
+    if partition is not None:
+        check_primitives(partition, config, d)
+    check_names(net, config, d)
+    check_geometry(config, d, to_run=to_run)
+    return partition if len(d.errors) == before else None
+
+
+def check_geometry(config: CellConfig, d: Diagnostics, *, to_run: bool) -> None:
+    """Reports what is wrong with the robots and the scene, in all layouts."""
+    from pn2code.robot import scene  # loads NumPy, which nets without a cell do not need
+
+    for layout in config.layouts or {"": ""}:
+        cell = config if layout == config.layout else load_cell(config.path, d, layout=layout)
+        if cell is None:
+            continue
+        scene.load(cell.geometry, cell.folder, cell.locator.origin, d, partial=not to_run)
 
 
 def _refuse_unsupported(d: Diagnostics, net: FlatNet | None) -> None:
@@ -135,10 +186,11 @@ def _inputs(config: CellConfig | None) -> Iterator[OutputFile]:
             yield OutputFile(entry.file, (config.folder / entry.file).read_text(encoding="utf-8"))
 
 
-def _digest(
-    net: FlatNet, config: CellConfig | None, values: Mapping[str, str], int_bits: int
+def program_digest(
+    net: FlatNet, config: CellConfig | None, values: Mapping[str, str], int_bits: int = 31
 ) -> str:
-    """What the programs depend on: the net's bytes, the logic of the cell, replaced values, other integers."""
+    """What the generated programs depend on, as their heads and traces say: the net's bytes, the logic of the cell,
+    replaced values, other integers."""
     parts = [net.sha256, config.logic_digest() if config else "", repr(sorted(values.items()))]
     if int_bits != 31:
         parts.append(f"int {int_bits}")

@@ -15,7 +15,7 @@ from typer.testing import CliRunner
 
 from helpers import netbuilder
 from helpers.controlled import Scheme
-from helpers.explored import Explorers
+from helpers.explored import Explorers, wide
 from helpers.questions import Lts, ask
 from helpers.thorough import amount
 from pn2code import pipeline
@@ -28,8 +28,12 @@ from pn2code.diagnostics import Diagnostics, render
 from pn2code.emission.write import write
 from pn2code.net import front
 from pn2code.verify import control, proofs
-from pn2code.verify.control import Check, Plan, answers, has_own_priorities, ownership, questions
+from pn2code.verify.control import Check, Plan, has_own_priorities, ownership
+from pn2code.verify.explore import Wishes
+from pn2code.verify.limits import Limits
+from pn2code.verify.programs import Sizes
 from pn2code.verify.result import Exploration
+from pn2code.verify.running import Running
 
 pytestmark = pytest.mark.cc
 
@@ -232,6 +236,7 @@ LIES = """
       in go : n
       out done : 0
       out Idle : ()
+    trans Work
 """
 FOR_EVER = """
     trans Again guard [n = 0]
@@ -258,28 +263,26 @@ def cell(folder: Path, net: str = NET, toml: str = TOML) -> tuple[Partition, Cel
     return partition, config
 
 
-def checks(
-    explorers: Explorers, folder: Path, net: str, plan: Plan, toml: str = TOML
-) -> dict[str, Check]:
+def checks(folder: Path, net: str, plan: Plan, toml: str = TOML) -> dict[str, Check]:
     """The answers, by name."""
     partition, config = cell(folder, net, toml)
-    file = folder / "questions"
-    file.write_text(questions(partition, plan.firings))
-    options = ["--queries", file, "--query-trace-to", folder / "run-"]
-    found = explorers.explore(partition.net, *options, name=folder.name, reads=False)
-    plan = replace(plan, order_decides=config.supervisor.order_decides)
-    exploration = Exploration.of(partition.net, found.report, 0.0)
-    return {c.name: c for c in (*answers(partition, exploration, plan), ownership(partition))}
+    plan = replace(plan, order_decides=config.supervisor.order_decides, wishes=Wishes(quick=True))
+    d = Diagnostics()
+    looked = control.examine(partition, plan, Limits(threads=2), d)
+    assert looked is not None, render.report(d)
+    return {c.name: c for c in looked.checks}
 
 
-def test_a_cell_that_is_fine(explorers: Explorers, tmp_path: Path) -> None:
-    found = checks(explorers, tmp_path / "fine", NET, Plan())
+def test_a_cell_that_is_fine(tmp_path: Path) -> None:
+    found = checks(tmp_path / "fine", NET, Plan())
     assert {c.name: (c.answer, c.value) for c in found.values()} == {
         control.FINITE: ("yes", None),
         control.BOUNDED: ("yes", 1),
         control.CONFLUENT: ("yes", None),
-        control.BLOCKING: ("yes", 4),
+        control.BLOCKING: ("yes", 10),
         control.CHANNELS: ("yes", 1),
+        control.MESSAGES: ("yes", 0),
+        control.MEMORY: ("yes", 0),
         control.OWNERSHIP: ("yes", 10),
     }
 
@@ -300,7 +303,7 @@ def changed(*pairs: tuple[str, str]) -> str:
             "spin",
             changed(("\n  page Rob", SPIN)),
             {control.FINITE: "no", control.BOUNDED: "unknown", control.CONFLUENT: "unknown"},
-            "the supervisor can fire for ever: `Cell.Supervisor.Away`, `Cell.Supervisor.Back`, over and over",
+            "the supervisor can fire for ever by repeating `Cell.Supervisor.Away`, `Cell.Supervisor.Back`",
         ),
         (
             "long",
@@ -322,7 +325,7 @@ def changed(*pairs: tuple[str, str]) -> str:
             "dead",
             changed(
                 ("    trans Stop\n", "    trans Stop guard [n = 1]\n"),
-                ("      out Idle : ()\n", "      out Idle : ()\n" + LIES),
+                ("    trans Work\n", LIES.lstrip("\n")),
             ),
             {control.BLOCKING: "no"},
             "a deadlock 2 steps after the start: nothing can happen, without a token in `Finished`",
@@ -332,10 +335,10 @@ def changed(*pairs: tuple[str, str]) -> str:
             changed(
                 ("    trans Stop\n", "    trans Stop guard [n = 1]\n"),
                 ("\n  page Rob", FOR_EVER),
-                ("      out Idle : ()\n", "      out Idle : ()\n" + LIES),
+                ("    trans Work\n", LIES.lstrip("\n")),
             ),
             {control.BLOCKING: "no"},
-            "2 steps after the start a token in `Finished` can no longer be reached, though the cell goes on",
+            "at the start a token in `Finished` can no longer be reached, though the cell goes on",
         ),
         (
             "twice",
@@ -346,11 +349,11 @@ def changed(*pairs: tuple[str, str]) -> str:
     ],
 )
 def test_cells_that_fail_one_check(
-    explorers: Explorers, tmp_path: Path, name: str, net: str, answers: dict[str, str], says: str
+    tmp_path: Path, name: str, net: str, answers: dict[str, str], says: str
 ) -> None:
     plan = Plan(firings=1 if name == "long" else 10, folder=tmp_path, stem="x")
-    found = checks(explorers, tmp_path / name, net, plan)
-    others = {n: "yes" for n in control.TITLES if n not in answers}
+    found = checks(tmp_path / name, net, plan)
+    others = {n: "yes" for n in control.TITLES if n not in (*answers, control.CAPACITY)}
     assert {c.name: c.answer for c in found.values()} == {**others, **answers}
     (wrong,) = [c for c in found.values() if c.fails]
     assert wrong.says == says
@@ -361,14 +364,14 @@ def test_cells_that_fail_one_check(
     assert len(wrong.evidence) == (2 if name == "choice" else 1)
 
 
-def test_the_documented_order_may_be_meant(explorers: Explorers, tmp_path: Path) -> None:
+def test_the_documented_order_may_be_meant(tmp_path: Path) -> None:
     toml = TOML.replace("[[channel]]", 'order = "documented"\n[[channel]]', 1)
-    found = checks(explorers, tmp_path / "order", changed(("\n  page Rob", CHOICE)), Plan(), toml)
+    found = checks(tmp_path / "order", changed(("\n  page Rob", CHOICE)), Plan(), toml)
     check = found[control.CONFLUENT]
     assert (check.answer, check.is_accepted, check.fails) == ("no", True, False)
 
 
-def test_a_clock_is_no_endless_response(explorers: Explorers, tmp_path: Path) -> None:
+def test_a_clock_is_no_endless_response(tmp_path: Path) -> None:
     """What comes later is another cycle."""
     net = changed(
         ("var n: INT;", "colset T = unit timed;\n  var n: INT;"),
@@ -378,12 +381,8 @@ def test_a_clock_is_no_endless_response(explorers: Explorers, tmp_path: Path) ->
             "\n    trans Tick\n      in Clock : ()\n      out Clock : () @+ 2\n  page Rob",
         ),
     )
-    partition, _ = cell(tmp_path / "clock", net)
-    (tmp_path / "asked").write_text(questions(partition))
-    options = ["--queries", tmp_path / "asked", "--reduce", "time"]
-    found = explorers.explore(partition.net, *options, name="clock", reads=False)
-    finite, bounded, *_ = found.report["queries"]
-    assert (finite["answer"], bounded["value"]) == ("yes", 2)
+    found = checks(tmp_path / "clock", net, Plan())
+    assert (found[control.FINITE].answer, found[control.BOUNDED].value) == ("yes", 2)
 
 
 def test_priorities_of_several_owners_are_asked_for(tmp_path: Path) -> None:
@@ -393,7 +392,7 @@ def test_priorities_of_several_owners_are_asked_for(tmp_path: Path) -> None:
         tmp_path / "other", changed(("    trans Work\n", "    trans Work priority 5\n"))
     )
     assert has_own_priorities(partition)
-    assert "priorities own\n" in questions(partition)
+    assert "priorities own" in Running.of(partition).lines(first=True)
 
 
 def test_what_is_anothers_is_not_touched(tmp_path: Path) -> None:
@@ -427,12 +426,14 @@ def test_generate_refuses_a_supervisor_that_fails(tmp_path: Path) -> None:
     (text,) = [f.text for f in generated.files if f.path == "cell_config.c"]
     head = text[text.index(" * Not checked") :].splitlines()
     assert head[0] == " * Not checked, since it was generated with --unchecked (docs/execution.md):"
-    assert [line.partition(";")[0].partition(" (")[0] for line in head[1:7]] == [
+    assert [line.partition(";")[0].partition(" (")[0] for line in head[1:9]] == [
         " * finite-response: unchecked",
         " * bounded-response: unchecked",
         " * confluence: unchecked",
         " * non-blocking: unchecked",
         " * channels: unchecked",
+        " * messages: yes",
+        " * memory: unchecked",
         " * ownership: yes",
     ]
     assert " * channels: unchecked (no channel ever holds two messages)" in head
@@ -519,16 +520,23 @@ def test_a_place_without_a_bound_is_refused(
     assert " *     Cell.Supervisor.Spare: 5, Cell.Supervisor.Other: 5" in text
     assert " *     Cell.Supervisor.Ready: 1" in text  # of an invariant
 
-    with_bound = toml + "[capacity]\nSpare = 3\nOther = 9\n"
-    cell(tmp_path / "cell", net, with_bound)
+    cell(tmp_path / "cell", net, toml + "[capacity]\nSpare = 3\nOther = 9\n")
+    d = Diagnostics()
+    assert pipeline.generate(tmp_path / "cell", d) is None
+    (error,) = d.errors
+    assert error.code == "controller-check"
+    assert "capacity: place `Spare` gets 4 tokens, 4 steps after the start, but" in error.message
+    cell(tmp_path / "cell", net, toml + "[capacity]\nSpare = 5\nOther = 9\n")
     d = Diagnostics()
     generated = pipeline.generate(tmp_path / "cell", d)
-    assert generated is not None, render.report(d)
-    assert [i.code for i in d.items] == ["capacity-exceeded"]
+    assert generated is not None and not d.items, render.report(d)
     (text,) = [f.text for f in generated.files if f.path == "net.c"]
     assert (
-        " *   nothing: declared in cell.toml\n *     Cell.Supervisor.Spare: 3, Cell.Supervisor.Other: 9"
+        " *   nothing: declared in cell.toml\n *     Cell.Supervisor.Spare: 5, Cell.Supervisor.Other: 9"
         in text
+    )
+    assert " * capacity: yes; all 2 declared capacities are enough" in next(
+        f.text for f in generated.files if f.path == "cell_config.c"
     )
 
     endless = net.replace("guard [n < 5]", "guard [n >= 0]")
@@ -577,6 +585,24 @@ def test_the_riveting_cell(root: Path) -> None:
     generated = pipeline.generate(root / "examples" / "riveting", d)
     assert generated is not None, render.report(d)
     (text,) = [f.text for f in generated.files if f.path == "cell_config.c"]
-    assert " * Checked in all 1,079 markings of the closed net (docs/execution.md):" in text
+    assert " * Checked in all 3,343 states of the cell as it runs (docs/execution.md):" in text
     assert " * bounded-response: yes; at most 6 firings in one cycle" in text
     assert "unchecked" not in text
+
+
+def test_channels_need_no_graph(explorers: Explorers, tmp_path: Path) -> None:
+    """All markings were seen, and there was no time for the graph: what a channel holds is known, the rest is not."""
+    partition, _ = cell(tmp_path / "fine", NET, TOML)
+    net = partition.net
+    folder = explorers.build(net, wide(Sizes.start(net, {}), 4), "no_graph")
+    for phase, answer in (("graph", "yes"), ("explore", "unknown")):
+        found = Exploration.of(net, explorers.said(folder, "--ends-in", phase).report, 0.0)
+        looked = control.not_looked("seconds", partition, None, found)
+        said = {c.name: c.answer for c in looked.checks}
+        assert said == {
+            **dict.fromkeys(said, "unknown"),
+            control.OWNERSHIP: "yes",
+            control.CHANNELS: answer,
+        }
+        rests = {c.name: c.rests_on for c in looked.checks}
+        assert rests[control.CHANNELS] == ("markings" if answer == "yes" else None)

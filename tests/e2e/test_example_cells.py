@@ -167,6 +167,32 @@ def test_run(
     found = replay(tmp_path / f"{expected.net}.trace.jsonl", net)
     assert found.ok, found.message()
     assert (found.steps, found.ended) == (len(occurred), "finished")
+    _replay_believes_nothing(tmp_path / f"{expected.net}.trace.jsonl", folder)
+
+
+def _replay_believes_nothing(trace: Path, folder: Path) -> None:
+    """The verb accepts the run, and none in which something is claimed that is not so."""
+    header, *between, end = trace.read_text(encoding="utf-8").splitlines()
+    at = next(i for i, line in enumerate(between) if "transition" in line)
+    step = json.loads(between[at])
+
+    def replayed(head: str, first: dict[str, Any], last: str) -> int:
+        lines = [head, *between[:at], json.dumps(first), *between[at + 1 :], last]
+        trace.write_text("\n".join(lines) + "\n", encoding="utf-8")
+        return CliRunner().invoke(app, ["replay", str(trace), str(folder)]).exit_code
+
+    assert replayed(header, step, end) == 0
+    wrong = [
+        (json.dumps({**json.loads(header), "digest": "0" * 64}), step, end),
+        (json.dumps({**json.loads(header), "by": "nobody"}), step, end),
+        (json.dumps({**json.loads(header), "by": "supervisor"}), step, end),
+        (header, {**step, "origin": "ID0"}, end),
+        (header, {**step, "binding": {**step["binding"], "other": 1}}, end),
+        (header, step, json.dumps({**json.loads(end), "final": []})),
+        (header, step, json.dumps({**json.loads(end), "why": "steps"})),
+    ]
+    for claim in wrong:
+        assert replayed(*claim) == 1
 
 
 @pytest.mark.cc

@@ -79,7 +79,7 @@ def test_a_file_beside_the_net(net: Path, tmp_path: Path) -> None:
 
 def test_of_the_command_line_alone(net: Path, tmp_path: Path) -> None:
     done = pn2code(
-        "verify", net, "--no-found", "--traces", tmp_path, "--report", tmp_path / "report.txt",
+        "verify", net, "--full", "--no-found", "--traces", tmp_path, "--report", tmp_path / "report.txt",
         "--property", "mutex { cf (ph 1, Mark.Top'Eat) = 1 }, { cf (ph 2, Mark.Top'Eat) = 1 }",
         "--property", "reachable tokens(Half) = 3",
         "--property", "ctl EG !dead",

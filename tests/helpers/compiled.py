@@ -42,7 +42,7 @@ WARNINGS = (
 SANITIZERS = ("-g1", "-O0", "-fsanitize=address,undefined", "-fno-sanitize-recover=all")
 FAST = ("-O1",)
 RUNTIME = (
-    "arena", "bag", "big", "codec", "file", "library", "list", "moves", "num", "random", "read", "stack",
+    "arena", "bag", "big", "codec", "file", "library", "list", "moves", "num", "random", "read", "root", "stack",
     "string", "text", "trace", "type",
 )  # fmt: skip
 
@@ -140,7 +140,7 @@ def run(
         capture_output=True,
         text=True,
         check=False,
-        timeout=300,
+        timeout=600,
         env={**os.environ, **(environment or {})},
     )
     assert done.returncode == 0, f"{program}: {done.stderr[-3000:]}"

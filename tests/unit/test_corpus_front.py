@@ -17,7 +17,7 @@ from pn2code.diagnostics import Diagnostics
 from pn2code.net.check import check
 from pn2code.net.flat import FlatNet
 from pn2code.net.flatten import flatten
-from pn2code.net.front import load
+from pn2code.net.front import examine, load
 from pn2code.net.instances import expand
 from pn2code.net.link import link
 from pn2code.reading import codes
@@ -170,3 +170,18 @@ def test_damaged_real_nets_never_raise(shared: Path) -> None:
             typed = check(net, d) if net else None
             flat = flatten(typed, d) if typed else None
             assert (flat is None) == bool(d.errors)
+
+
+def test_page_instances_are_numbered_as_by_the_real_tool(shared: Path) -> None:
+    asked = json.loads((shared / "corpus" / "instances.json").read_text())
+    assert len(asked) > 5
+    for name, rows in asked.items():
+        net = examine(shared / "corpus" / "nets" / name, Diagnostics()).typed
+        assert net is not None, name
+        found = expand(net)
+        numbers = {
+            (i.page.name, i.number, found[i.parent].page.name, found[i.parent].number, i.path.split("/")[-1])
+            for i in found
+            if i.parent >= 0
+        }  # fmt: skip
+        assert numbers == {tuple(row) for row in rows}, name

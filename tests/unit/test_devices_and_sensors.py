@@ -95,7 +95,7 @@ def test_a_sensor_that_nobody_asks_is_a_mistake(tmp_path: Path) -> None:
     cell = Cell(tmp_path, GRIPPER, ("x in INT", "y out INT"), extra=EXTRA, toml=toml)
     assert cell.ir is None
     assert cell.messages == [
-        "error[cell-value] sensor `other` is asked by nobody: no robot or device leaves variable "
+        "error[cell-value] no robot or device asks sensor `other`: none of them leaves variable "
         "`dd` open"
     ]
 
@@ -218,6 +218,36 @@ def test_mistakes_in_a_sensors_file_are_shown_at_their_line(
     found, errors = loaded(tmp_path, 'file = "grip.txt"\n')
     assert found is None
     assert words in errors[0]
+
+
+def test_a_truth_value_is_written_as_in_the_net_or_as_in_a_message(tmp_path: Path) -> None:
+    """Of a colour set of kind `bool`."""
+    page = GRIPPER.replace(": GRIP", ": BOOL").replace("held", "true").replace("lost", "false")
+
+    def of(toml: str, text: str) -> tuple[list[object], list[str]]:
+        (tmp_path / "grip.txt").write_text(text)
+        cell = Cell(
+            tmp_path,
+            page,
+            ONE,
+            extra=EXTRA.replace("var g : GRIP", "var g : BOOL"),
+            toml='[sensors.grip]\nvariable = "g"\n' + toml,
+        )
+        assert cell.config is not None, cell.messages
+        d = Diagnostics()
+        found = load_sensors(cell.config, cell.partition.net, (tmp_path,), None, d)
+        said = [] if found is None else [found.ask("robot1", "grip") for _ in range(4)]
+        return said, [e.message for e in d.errors]
+
+    assert of('file = "grip.txt"\n', "true\n0\n false # no\n1\n") == (
+        [True, False, False, True],
+        [],
+    )
+    assert of("default = true\n", "")[0] == [True] * 4
+    assert of('default = "false"\n', "")[0] == [False] * 4
+    assert "`yes` is neither" in of('file = "grip.txt"\n', "yes\n")[1][0]
+    # A default is looked at even where the file is there.
+    assert "`maybe` is neither" in of('file = "grip.txt"\ndefault = "maybe"\n', "true\n")[1][0]
 
 
 # --- devices and delays ------------------------------------------------------------------------

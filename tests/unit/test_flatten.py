@@ -58,18 +58,20 @@ def test_instances_and_names() -> None:
     assert net.transitions[3].origin.instance == "Top/S2"
 
 
-def test_instances_below_a_page_that_is_not_prime_count_backwards() -> None:
-    """CPN Tools numbers them so, found by experiment; the order of the flat net stays that of the file."""
+def test_instances_are_numbered_by_the_names_of_the_transitions_that_lead_to_their_page() -> None:
+    """So does CPN Tools, asked; the order of the flat net stays that of the file."""
     net = flat(
         """
         net N
           standard
           page Top
-            subst A = Sub ()
             subst B = Sub ()
-          page Sub
+            subst A = Sub ()
+            subst Z = Leaf ()
             subst C = Leaf ()
+          page Sub
             subst D = Leaf ()
+            subst C = Leaf ()
             place P : UNIT = 1
           page Leaf
             place L : UNIT = 1
@@ -77,7 +79,39 @@ def test_instances_below_a_page_that_is_not_prime_count_backwards() -> None:
     )
     numbers = [(p.instance, p.instance_number) for p in net.places]
     assert numbers == [
-        ("Top/A", 1), ("Top/A/C", 2), ("Top/A/D", 1), ("Top/B", 2), ("Top/B/C", 4), ("Top/B/D", 3),
+        ("Top/B", 2), ("Top/B/D", 5), ("Top/B/C", 3), ("Top/A", 1), ("Top/A/D", 4), ("Top/A/C", 2),
+        ("Top/Z", 6), ("Top/C", 1),
+    ]  # fmt: skip
+
+
+def test_names_of_substitution_transitions_are_compared_as_the_engine_gets_them() -> None:
+    """Recorded from the engine; those of equal names (here: none at all) come by the hash of their ids."""
+    names = (
+        "b",
+        "B",
+        "a",
+        "Z",
+        "aa",
+        "a1",
+        "a 1",
+        "A b",
+        "A1",
+        "a_2",
+        "a2",
+        "Ab",
+        "a'x",
+        "1b",
+        "2",
+        "-",
+    )
+    net = flat(
+        "net N\n  standard\n  page Top\n"
+        + "".join(f'    subst "{n}" = Leaf ()\n' for n in names)
+        + "  page Leaf\n    place L : UNIT = 1\n"
+    )
+    numbered = sorted((p.instance_number, p.instance.removeprefix("Top/")) for p in net.places)
+    assert [name for _, name in numbered] == [
+        "1b", "2", "-", "A1", "A b", "Ab", "B", "Z", "a", "a'x", "a1", "a2", "a 1", "a_2", "aa", "b",
     ]  # fmt: skip
 
 

@@ -16,6 +16,7 @@ ALLOWED: dict[str, set[str]] = {
     "bytecode": set(),
     "frozen": set(),
     "whole_file": set(),
+    "deadline": set(),
     "os_reason": set(),
     "ml": {"diagnostics"},
     "reading": {"diagnostics"},
@@ -36,14 +37,14 @@ ALLOWED: dict[str, set[str]] = {
     "run": {"diagnostics", "cell", "channels", "emission", "net", "robot", "semantics", "tdl", "toolchain", "report",
             "pipeline"},
     "report": {"cell", "run", "robot", "diagnostics"},
-    "pipeline": {"diagnostics", "cell", "emission", "lowering", "net", "reading", "tdl", "verify"},
+    "pipeline": {"diagnostics", "cell", "emission", "lowering", "net", "reading", "robot", "tdl", "verify"},
     "unfold": {"diagnostics", "ml", "net", "semantics"},
     "convert": {"diagnostics", "ml", "net", "reading", "semantics", "unfold", "pnml"},
     "monitors": {"diagnostics", "ml", "net", "reading", "semantics"},
     "simulate": {"diagnostics", "ml", "net", "semantics", "monitors", "cell", "lowering", "emission", "toolchain",
                  "parser_cache"},
     "verify": {"diagnostics", "ml", "net", "semantics", "structure", "cell", "lowering", "emission", "toolchain",
-               "resources", "simulate", "drawing", "reading", "unfold", "properties"},
+               "resources", "simulate", "drawing", "reading", "unfold", "properties", "channels"},
     "conform": {"diagnostics", "cell", "channels", "emission", "ml", "net", "pipeline", "robot", "semantics",
                 "simulate", "tdl", "toolchain", "verify"},
     "medium": {"diagnostics", "ml", "net", "cell", "lowering", "semantics", "verify"},
@@ -53,7 +54,7 @@ ALLOWED: dict[str, set[str]] = {
             "robot", "tdl", "ml", "lowering", "bytecode", "reading", "drawing", "simulate", "monitors", "structure",
             "convert", "unfold", "verify", "properties", "conform", "medium"},
 }  # fmt: skip
-EVERYWHERE = {"frozen", "os_reason", "private_folder", "whole_file"}
+EVERYWHERE = {"deadline", "frozen", "os_reason", "private_folder", "whole_file"}
 
 # Of `robot`, the script language may know the commands (plain values) only; of the reports, running only the data.
 ONLY = {("tdl", "robot"): {"pn2code.robot.commands"}}

@@ -13,6 +13,7 @@ from pn2code.diagnostics import Diagnostics
 from pn2code.net.flat import FlatNet
 from pn2code.semantics.game import Game
 from pn2code.semantics.multiset import MultiSet
+from pn2code.semantics.parties import Parties
 from pn2code.semantics.replay import ReplayResult, Rules, replay, replay_lines
 from pn2code.semantics.trace import trace
 
@@ -192,11 +193,19 @@ def test_a_run_has_its_own_clock(timed: FlatNet) -> None:
     assert "time goes back" in refused(timed, back).why
 
 
-def test_priorities_bind_a_simulator_only(timed: FlatNet) -> None:
+def test_priorities_bind_the_transitions_of_one_program(timed: FlatNet) -> None:
     written = lines(timed)
     slow = changed(written[1], t=5, binding={"t": 2})
     by_run = [changed(written[0], by="run"), slow]
-    assert replay_lines(by_run, timed).ok
+    assert replay_lines(by_run, timed).ok  # nobody says whose they are
+    one = refused(timed, by_run, parties=Parties.one(timed))
+    assert "Top.Fast () of the same program has a higher priority" in one.why
+    two = Parties(("supervisor", "r"), (0, 1), frozenset(), (), frozenset())
+    assert replay_lines(by_run, timed, parties=two).ok
+    overlooked = Parties(("supervisor",), (0, 0), frozenset({0}), (), frozenset())
+    assert replay_lines(
+        by_run, timed, parties=overlooked
+    ).ok  # it takes a message, which comes unseen
     strict = refused(timed, by_run, rules=Rules(own_clock=False, priorities=True))
     assert "Top.Fast () has a higher priority and is enabled" in strict.why
 
@@ -212,6 +221,12 @@ def test_the_end_must_be_the_end(net: FlatNet, timed: FlatNet) -> None:
     assert "but Top.Move (n=1, p=" in refused(net, [*written[:2], written[-1]]).why
     stopped = changed(written[-1], why="steps")
     assert replay_lines([*written[:2], stopped], net).ended == "steps"
+    assert "nothing is enabled any more" in refused(net, [*written[:-1], stopped]).why
+    raised = changed(written[-1], why="error")
+    assert "but none does" in refused(net, [*written[:-1], raised]).why
+    assert replay_lines([*written[:-1], raised], net, may_fail_outside=True).ok
+    assert "no reason for a run" in refused(net, [*written[:-1], changed(written[-1], why="x")]).why
+    assert "comes after the end" in refused(net, [*written[:2], stopped, written[2]]).why
     later = lines(timed)
     assert "but Top.Slow (t=1) is" in refused(timed, [later[0], later[-1]]).why
 
@@ -243,3 +258,69 @@ def test_an_error_of_the_net_is_the_reason(net: FlatNet) -> None:
     broken = flat(NET.replace("out Count : m", "out Count : m div 0"))
     result = refused(broken, lines(net)[:2])
     assert "raised the exception `Div`" in result.why
+
+
+def test_a_step_names_its_own_element(net: FlatNet) -> None:
+    written = lines(net)
+    other = [written[0], changed(written[1], origin="ID0")]
+    assert "its `origin` is `ID0`, but the transition is element" in refused(net, other).why
+
+
+LOOP = """
+    net Loop
+      standard
+      var n: INT;
+      page Top
+        place P : INT = 1`0
+        trans Step
+          in P : n
+          out P : (n + 1) mod 3
+"""
+
+
+@pytest.mark.parametrize(("loop", "ok"), [(1, True), (4, True), (0, False), (2, False), (9, False)])
+def test_a_lasso_comes_back(loop: int, ok: bool) -> None:
+    net = flat(LOOP)
+    written = list(trace(Game(net), steps=4))
+    written[-1] = changed(written[-1], loop=loop)
+    assert replay_lines(written, net).ok is ok
+
+
+def cell(net: FlatNet) -> Parties:
+    """One program runs the whole net and has finished when there is a token in `Top.Done`."""
+    (final,) = (p.index for p in net.places if p.name == "Top.Done")
+    return Parties(("supervisor",), (0,), frozenset(), (final,), frozenset({"d"}))
+
+
+@pytest.mark.parametrize(
+    ("steps", "end", "why"),
+    [
+        (1, {"why": "finished", "final": ["Top.Done"]}, ""),
+        (1, {"why": "stopped"}, ""),
+        (1, {"why": "finished"}, "does not name the final places"),
+        (1, {"why": "finished", "final": ["Top.Jobs"]}, "its `final` is"),
+        (1, {"why": "stopped", "final": []}, "its `final` is"),
+        (0, {"why": "finished"}, "there is no token in `Top.Done`"),
+        (0, {"why": "finished", "final": ["Top.Done"]}, "its `final` is"),
+        (0, {"why": 3}, "does not say why"),
+    ],
+)
+def test_the_end_of_a_cell(net: FlatNet, steps: int, end: dict[str, Any], why: str) -> None:
+    written = lines(net)
+    last = json.dumps({"t": 9.0, "event": "end", **end})
+    run = [changed(written[0], by="run", digest="d"), *written[1 : 1 + steps], last]
+    result = replay_lines(run, net, parties=cell(net), check_digest=True)
+    assert result.ok is (why == "") and why in result.why
+
+
+def test_the_writer_and_the_digest_of_a_cell(net: FlatNet) -> None:
+    written = lines(net)
+    parties = cell(net)
+    other = [changed(written[0], by="run", digest="0"), *written[1:2]]
+    assert "digest differs" in refused(net, other, parties=parties, check_digest=True).why
+    assert replay_lines(other, net, parties=parties).ok
+    nobody = [changed(written[0], by="somebody"), *written[1:2]]
+    assert 'it is `by` "somebody"' in refused(net, nobody, parties=parties).why
+    two = Parties(("supervisor", "robot"), (1,), frozenset(), (), frozenset())
+    theirs = [changed(written[0], by="supervisor"), *written[1:2]]
+    assert "`robot` runs this transition" in refused(net, theirs, parties=two).why

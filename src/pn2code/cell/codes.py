@@ -40,6 +40,37 @@ CELL_OWNER = register(
     "a transition has no owner, or two",
     "Every transition of the net must lie on the page instance of exactly one owner: the supervisor or one robot.",
 )
+CELL_FINAL = register(
+    "cell-final",
+    "a final place cannot tell that the supervisor has finished",
+    "`final` of [supervisor] lists places of the supervisor: the cell has finished when one of them holds a token. The "
+    "supervisor sees neither the places of a robot nor what lies in a channel, so a place of a robot or a channel "
+    "cannot be one. A place that no transition of the supervisor puts a token into is warned of: the cell never ends "
+    "there.",
+)
+PRIMITIVE_ENTRY = register(
+    "primitive-entry",
+    "an entry of [primitives] does not fit the net",
+    "Each entry of [primitives] names a function of the net whose type is that of its command, see the table in "
+    "docs/cell.md. An entry that names no function is an error, because the calls of the function that was meant "
+    "would be missing from the scripts.",
+)
+PRIMITIVE_UNNAMED = register(
+    "primitive-unnamed",
+    "a call in a robot's code segment is no command and has no effect",
+    "A script carries out the primitives that the code segments of its page call, and computes values with pure "
+    "functions. A call of a function that no entry of [primitives] names, and whose value nobody uses, would vanish "
+    "from the script without a word. So would that of a function that is declared among the primitives: in a block "
+    "of declarations with `primitive` in its name. Such a function that nobody calls is a warning only, because "
+    "nothing is missing from any script.",
+)
+PRIMITIVE_MISPLACED = register(
+    "primitive-misplaced",
+    "a primitive is used where no robot carries it out",
+    "The functions of [primitives] are commands: a robot or device carries them out where a code segment of its own "
+    "page calls them. In a transition of the supervisor, a guard, an arc inscription, a delay, an initial marking or "
+    "a constant they do nothing.",
+)
 CHANNEL_DIRECTION = register(
     "channel-direction",
     "a channel needs exactly one writer and one reader",
@@ -67,6 +98,12 @@ CHANNEL_TIMED = register(
     "the colour set of a channel is timed",
     "A message is seen as soon as it is written, so it cannot carry a time stamp that lies ahead. Use an untimed "
     "colour set for the channel, and put delays on the writer's or the reader's own places.",
+)
+CHANNEL_LIMIT = register(
+    "channel-limit",
+    "a cell has more channels, robots or values in a message than a supervisor can carry",
+    "A supervisor has room for 128 channels and 64 robots and devices, a message for 64 scalars. Divide a large "
+    "message among two channels, or a large cell between two supervisors.",
 )
 UNSUPPORTED_CHANNEL_COLSET = register(
     "unsupported-channel-colset",

@@ -31,26 +31,27 @@ class Primitive:
     Args:
         function: its name in the net.
         command: what the robot does.
-        frame: of move_linear: "world" (absolute) or "tool" (incremental).
+        frame: of move_linear: "world" (absolute) or "tool" (incremental); None: of the others.
         action: of tool: its name.
         duration_s: of tool: seconds.
     """
 
     function: str
     command: CommandName
-    frame: Literal["world", "tool"] = "world"
+    frame: Literal["world", "tool"] | None = None
     action: str = ""
     duration_s: float = 0.0
 
 
 @frozen
 class ChannelConfig:
-    """A `[[channel]]` entry."""
+    """A `[[channel]]` entry; `is_kind_given`: its kind is written there."""
 
     place: str
     file: str
     kind: ChannelKind
     origin: Origin
+    is_kind_given: bool = True
 
 
 @frozen
@@ -93,12 +94,13 @@ class RobotConfig:
 
 @frozen
 class SupervisorConfig:
-    """The supervisor: its page instance, the places that end the run, and its patience."""
+    """The supervisor: its page instance, the places that end the run (each with where it stands), and its patience."""
 
     instance: str
     final: tuple[str, ...]
     reply_timeout_s: float
     origin: Origin
+    final_origins: tuple[Origin, ...] = ()
     order_decides: bool = False
     """`order = "documented"`: where the order of firing matters, the documented one is meant"""
 

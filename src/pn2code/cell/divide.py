@@ -13,7 +13,7 @@ from pathlib import PurePath
 
 from pn2code.cell import codes
 from pn2code.cell.config import CellConfig, ChannelConfig
-from pn2code.cell.partition import Channel, Input, Owner, OwnerKind, Partition
+from pn2code.cell.partition import Channel, ChannelKind, Input, Owner, OwnerKind, Partition
 from pn2code.cell.scalars import scalars_of
 from pn2code.diagnostics import Diagnostics, Note, Origin
 from pn2code.diagnostics.near import did_you_mean
@@ -40,11 +40,10 @@ def divide(net: FlatNet, config: CellConfig | None, d: Diagnostics) -> Partition
     channels = tuple(_channels(net, config, owners, writers, readers, find, d))
     _undeclared(net, channels, owners, writers, readers, config, d)
     inputs = tuple(_inputs(config, writers, readers, find, d))
-    final = tuple(
-        place.index
-        for name in config.supervisor.final
-        if (place := find(name, config.supervisor.origin, "final")) is not None
-    )
+    final = _final(net, config, owners, transition_owner, find, d)
+    if len(d.errors) != before:
+        return None
+    _limits(net, channels, inputs, config, d)
     if len(d.errors) != before:
         return None
     shared = {c.place for c in channels}
@@ -182,6 +181,56 @@ class PlaceFinder:
         return None
 
 
+def _final(
+    net: FlatNet,
+    config: CellConfig,
+    owners: tuple[Owner, ...],
+    transition_owner: tuple[int, ...],
+    find: Callable[[str, Origin, str], FlatPlace | None],
+    d: Diagnostics,
+) -> tuple[int, ...]:
+    """The places whose tokens say that the supervisor has finished: its own, and it puts tokens there."""
+    writers, readers = _touching(net, transition_owner)
+    out: list[int] = []
+    supervisor = config.supervisor
+    for name, at in zip(supervisor.final, supervisor.final_origins, strict=True):
+        place = find(name, at, "final")
+        if place is None:
+            continue
+        others = sorted((writers[place.index] | readers[place.index]) - {0})
+        if place.index in out:
+            d.error(
+                codes.CELL_VALUE,
+                f"`final` names place `{place.name}` twice",
+                at,
+                hint="remove one of the names",
+            )
+        elif others:
+            who = " and ".join(owners[i].phrase for i in others)
+            shared = 0 in writers[place.index] | readers[place.index] or len(others) > 1
+            d.error(
+                codes.CELL_FINAL,
+                f"final: place `{place.name}` "
+                + (f"is shared with {who}" if shared else f"belongs to {who}")
+                + ", and a final place belongs to the supervisor alone",
+                at,
+                notes=[Note("the place is here", place.origins[0])],
+                hint="let a transition of the supervisor put a token into a place of its own when the cell has "
+                "finished, and name that place",
+            )
+        elif 0 not in writers[place.index] and place.initial is None:
+            # The cell is as it is drawn; what is proved about its end will say so as well.
+            d.warning(
+                codes.CELL_FINAL,
+                f"final: no transition of the supervisor puts a token into place `{place.name}`",
+                at,
+                notes=[Note("the place is here", place.origins[0])],
+                hint="name a place that the supervisor marks when the cell has finished",
+            )
+        out.append(place.index)
+    return tuple(out)
+
+
 def _channels(
     net: FlatNet,
     config: CellConfig,
@@ -191,12 +240,10 @@ def _channels(
     find: Callable[[str, Origin, str], FlatPlace | None],
     d: Diagnostics,
 ) -> Iterable[Channel]:
-    ordered = sorted(config.channels, key=lambda c: c.kind.value != "data")
+    found = [(c, find(c.place, c.origin, "channel")) for c in config.channels]
+    known = [(c, place, _kind(c, place)) for c, place in found if place is not None]
     seen: dict[int, ChannelConfig] = {}
-    for entry in ordered:
-        place = find(entry.place, entry.origin, "channel")
-        if place is None:
-            continue
+    for entry, place, kind in sorted(known, key=lambda x: x[2] is not ChannelKind.DATA):
         if place.index in seen:
             d.error(
                 codes.CELL_VALUE,
@@ -208,13 +255,7 @@ def _channels(
         seen[place.index] = entry
         w, r = writers[place.index], readers[place.index]
         if len(w | r) < 2:
-            owner = owners[next(iter(w | r))].name if w | r else "nobody"
-            d.error(
-                codes.CHANNEL_NOT_SHARED,
-                f"place `{place.name}` is used by {owner} only",
-                entry.origin,
-                hint="a place inside one program needs no file: remove the entry, or connect the place",
-            )
+            _not_shared(net, place, [owners[i] for i in w | r], entry, d)
             continue
         if not _directed(net, place, owners, w, r, entry.origin, d):
             continue
@@ -249,8 +290,49 @@ def _channels(
             place.index,
             next(iter(w)),
             next(iter(r)),
-            entry.kind,
+            kind,
         )
+
+
+def _not_shared(
+    net: FlatNet, place: FlatPlace, users: list[Owner], entry: ChannelConfig, d: Diagnostics
+) -> None:
+    """A channel that lacks a side. A port that has lost its socket is the usual reason."""
+    lost = [
+        p
+        for p in net.place_instances
+        if p.is_port
+        and not p.is_assigned
+        and p.place != place.index
+        and net.places[p.place].colset.resolved == place.colset.resolved
+        and not any(_overlap(o.instance, p.instance) for o in users)
+    ]
+    lost = [p for p in lost if p.name == place.short] or lost
+    who = f"by {users[0].phrase} alone" if users else "by no owner"
+    place_named = f"`{place.short}` of page `{place.page}`"
+    d.error(
+        codes.CHANNEL_NOT_SHARED,
+        f"place `{place.name}` is used {who}, but a channel is shared by two owners",
+        entry.origin,
+        notes=[
+            Note(
+                f"port `{p.name}` of page `{p.page}` (`{p.instance}`) is not assigned to any place",
+                net.places[p.place].origins[0],
+            )
+            for p in lost[:3]
+        ],
+        hint=f"assign port `{lost[0].name}` of page `{lost[0].page}` to place {place_named} in CPN Tools"
+        if lost
+        else f"connect place {place_named} to the page of the other owner, with a port; an entry for a place inside "
+        "one program is not needed",
+    )
+
+
+def _kind(entry: ChannelConfig, place: FlatPlace) -> ChannelKind:
+    """As written; where it is not, several scalars are data, and one is a flag."""
+    if entry.is_kind_given:
+        return entry.kind
+    return ChannelKind.FLAG if len(scalars_of(place.colset) or ()) == 1 else ChannelKind.DATA
 
 
 def _directed(
@@ -265,7 +347,7 @@ def _directed(
     """Whether exactly one owner puts and exactly one other takes, with plain arcs only."""
 
     def names(which: set[int]) -> str:
-        return ", ".join(f"`{owners[i].name}`" for i in sorted(which)) or "nobody"
+        return ", ".join(f"`{owners[i].name}`" for i in sorted(which)) or "no owner"
 
     if len(writers) == 1 and len(readers) == 1 and writers != readers:
         odd = [
@@ -328,10 +410,20 @@ def _inputs(
     find: Callable[[str, Origin, str], FlatPlace | None],
     d: Diagnostics,
 ) -> Iterable[Input]:
+    seen: set[int] = set()
     for entry in config.inputs:
         place = find(entry.place, entry.origin, "input")
         if place is None:
             continue
+        if place.index in seen:
+            d.error(
+                codes.CELL_VALUE,
+                f"place `{place.name}` has two inputs",
+                entry.origin,
+                hint="remove one of them",
+            )
+            continue
+        seen.add(place.index)
         if (writers[place.index] | readers[place.index]) - {0}:
             d.error(
                 codes.CELL_OWNER,
@@ -349,6 +441,45 @@ def _inputs(
             )
         else:
             yield Input(PurePath(entry.file).stem, entry.file, place.index)
+
+
+MOST_CHANNELS = 128
+MOST_PEERS = 64
+MOST_SCALARS = 64
+"""What cnative/include/pn/pn_cell.h and pn_channel.h have room for."""
+
+
+def _limits(
+    net: FlatNet,
+    channels: tuple[Channel, ...],
+    inputs: tuple[Input, ...],
+    config: CellConfig,
+    d: Diagnostics,
+) -> None:
+    """What a supervisor has no room for."""
+    at = config.supervisor.origin
+    if len(channels) > MOST_CHANNELS:
+        text = (
+            f"the cell has {len(channels)} channels, and a supervisor has room for {MOST_CHANNELS}"
+        )
+        d.error(codes.CHANNEL_LIMIT, text, at, hint="send several values in one message")
+    if len(config.programs) > MOST_PEERS:
+        many = len(config.programs)
+        text = f"the cell has {many} robots and devices, and a supervisor has room for {MOST_PEERS}"
+        d.error(codes.CHANNEL_LIMIT, text, at, hint="let one program be several small devices")
+    for name, place in (
+        *((c.name, c.place) for c in channels),
+        *((i.name, i.place) for i in inputs),
+    ):
+        flat = net.places[place]
+        count = len(scalars_of(flat.colset) or ())
+        if count > MOST_SCALARS:
+            d.error(
+                codes.CHANNEL_LIMIT,
+                f"a message of `{name}` has {count} values, and {MOST_SCALARS} are the most",
+                flat.origins[0],
+                hint=f"divide colour set `{flat.colset.name}` among several places",
+            )
 
 
 _SCALARS = {

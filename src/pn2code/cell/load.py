@@ -9,7 +9,7 @@ from __future__ import annotations
 import re
 from collections.abc import Iterable, Mapping
 from dataclasses import replace
-from pathlib import Path
+from pathlib import Path, PurePath
 from typing import Any, Literal, cast
 
 from pn2code.cell import codes
@@ -25,10 +25,11 @@ from pn2code.cell.config import (
     SensorConfig,
     SupervisorConfig,
 )
+from pn2code.cell.files import check_files
 from pn2code.cell.partition import ChannelKind
 from pn2code.cell.tables import KeyPath, Tables
 from pn2code.cell.toml_file import Locator, read
-from pn2code.diagnostics import Diagnostics, Origin
+from pn2code.diagnostics import Diagnostics, Origin, PlacedText
 from pn2code.diagnostics.near import did_you_mean
 
 _TOP = {
@@ -77,6 +78,7 @@ def load(path: Path, d: Diagnostics, *, layout: str | None = None) -> CellConfig
         return None
     data, locator = found
     config = _config(path, data, locator, d, layout)
+    check_files(config, d)
     return config if len(d.errors) == before else None
 
 
@@ -108,7 +110,7 @@ def _config(
         geometry={
             "robots": {
                 name: {k: v for k, v in table.items() if k != "instance"}
-                for name, table in merged.get("robots", {}).items()
+                for name, table in _table(merged.get("robots")).items()
                 if isinstance(table, dict)
             },
             "motion": merged.get("motion", {}),
@@ -135,14 +137,28 @@ def _apply_layout(
         if not isinstance(table, dict):
             r.d.error(codes.CELL_VALUE, f"layout `{name}` must be a table", r.at("layouts", name))
             return "", data
-        r.keys(table, ("layouts", name), {"description", "robots", "motion", "scene"})
-        for robot in table.get("robots", {}):
-            if robot not in data.get("robots", {}):
+        at: KeyPath = ("layouts", name)
+        r.keys(table, at, {"description", "robots", "motion", "scene"})
+        r.get(table, at, "description", str, "a text", "")
+        known = _table(data.get("robots"))
+        for key in ("robots", "motion", "scene"):
+            r.get(table, at, key, dict, "a table", {})
+        robots = _table(table.get("robots"))
+        for robot in robots:
+            changed = r.get(robots, (*at, "robots"), robot, dict, "a table", {})
+            if robot not in known:
                 r.d.error(
                     codes.CELL_KEY,
                     f"layout `{name}` places an unknown robot `{robot}`",
-                    r.at("layouts", name, "robots", robot),
-                    hint=did_you_mean(robot, data.get("robots", {})),
+                    r.at(*at, "robots", robot),
+                    hint=did_you_mean(robot, known),
+                )
+            elif "instance" in changed:
+                r.d.error(
+                    codes.CELL_KEY,
+                    f"unknown key `instance` in `{'.'.join((*map(str, at), 'robots', robot))}`",
+                    r.at(*at, "robots", robot, "instance"),
+                    hint="a layout says where a robot stands; its page is the same in all layouts",
                 )
     if not layout:
         return "", data
@@ -156,6 +172,11 @@ def _apply_layout(
         return "", data
     table = {k: v for k, v in layouts[layout].items() if k != "description"}
     return layout, _merge(data, table)
+
+
+def _table(value: object) -> dict[str, Any]:
+    """A table; empty where something else stands, which is reported elsewhere."""
+    return value if isinstance(value, dict) else {}
 
 
 def _merge(base: Mapping[str, Any], over: Mapping[str, Any]) -> dict[str, Any]:
@@ -172,7 +193,7 @@ def _supervisor(r: Tables, data: dict[str, Any]) -> SupervisorConfig:
     at: KeyPath = ("supervisor",)
     table = r.table(data, "supervisor", required=True)
     r.keys(table, at, {"instance", "final", "reply_timeout_s", "order"})
-    final = r.get(table, at, "final", list, "a list of places", [])
+    final = r.texts(table, at, "final", "a list of places")
     timeout = r.get(table, at, "reply_timeout_s", (int, float), "a number of seconds", 120.0)
     if not 0 < timeout < 1e6:
         r.d.error(
@@ -183,9 +204,10 @@ def _supervisor(r: Tables, data: dict[str, Any]) -> SupervisorConfig:
     order = r.choice(table, at, "order", ("any", "documented"), "any")
     return SupervisorConfig(
         instance=r.get(table, at, "instance", str, "a substitution transition", "", required=True),
-        final=tuple(map(str, final)),
+        final=tuple(name for name, _ in final),
         reply_timeout_s=float(timeout),
         origin=r.at("supervisor", "instance"),
+        final_origins=tuple(origin for _, origin in final),
         order_decides=order == "documented",
     )
 
@@ -215,7 +237,7 @@ def _values(r: Tables, data: dict[str, Any]) -> dict[str, str]:
                 r.at("values", name),
             )
         else:
-            out[name] = text
+            out[name] = PlacedText(text, r.at("values", name))
     return out
 
 
@@ -245,11 +267,27 @@ def _capacity(r: Tables, data: dict[str, Any]) -> dict[str, int]:
 
 
 def _inputs(r: Tables, data: dict[str, Any]) -> Iterable[InputConfig]:
+    files: dict[str, str] = {}
     for i, table in enumerate(r.tables(data, "input")):
         at: KeyPath = ("input", i)
         r.keys(table, at, {"place", "file"})
         place = r.get(table, at, "place", str, "a place", "", required=True)
-        yield InputConfig(place, r.file_name(table, at), r.at(*at, "place"))
+        file = r.file_name(table, at)
+        _once(r, files, file, place, at, "inputs")
+        yield InputConfig(place, file, r.at(*at, "place"))
+
+
+def _once(r: Tables, files: dict[str, str], file: str, place: str, at: KeyPath, what: str) -> None:
+    """Each file is used once; those of channels are told apart by their names without what follows the dot."""
+    stem = PurePath(file).stem
+    if stem and stem in files:
+        r.d.error(
+            codes.CELL_VALUE,
+            f"file `{file}` is used by two {what}, `{files[stem]}` and `{place}`",
+            r.at(*at, "file"),
+            hint="give each a file of its own, whose name differs before the dot",
+        )
+    files.setdefault(stem, place)
 
 
 def _channels(r: Tables, data: dict[str, Any]) -> Iterable[ChannelConfig]:
@@ -260,44 +298,42 @@ def _channels(r: Tables, data: dict[str, Any]) -> Iterable[ChannelConfig]:
         place = r.get(table, at, "place", str, "a place", "", required=True)
         file = r.file_name(table, at)
         kind = r.choice(table, at, "kind", ("data", "flag"), "flag")
-        if file in files:
-            r.d.error(
-                codes.CELL_VALUE,
-                f"file `{file}` is used by two channels, `{files[file]}` and `{place}`",
-                r.at(*at, "file"),
-                hint="give each channel a file of its own",
-            )
-        files.setdefault(file, place)
-        yield ChannelConfig(place, file, ChannelKind(kind), r.at(*at, "place"))
+        _once(r, files, file, place, at, "channels")
+        yield ChannelConfig(
+            place, file, ChannelKind(kind), r.at(*at, "place"), is_kind_given="kind" in table
+        )
 
 
 def _primitives(r: Tables, data: dict[str, Any]) -> dict[str, Primitive]:
     out = {}
     for name, at, table in r.named(data, "primitives"):
-        r.keys(table, at, {"command", "frame", "action", "duration_s"})
-        command = r.get(table, at, "command", str, "a robot command", "wait", required=True)
-        if command not in COMMANDS:
+        command = r.get(table, at, "command", str, "a robot command", "", required=True)
+        if command and command not in COMMANDS:
             r.d.error(
                 codes.CELL_VALUE,
                 f"unknown robot command `{command}`",
                 r.at(*at, "command"),
-                hint=did_you_mean(command, COMMANDS) or f"known commands: {', '.join(COMMANDS)}",
+                hint=did_you_mean(command, COMMANDS, f"known commands: {', '.join(COMMANDS)}"),
             )
-            command = "wait"
-        frame = r.choice(table, at, "frame", ("world", "tool"), "world")
+        if command not in COMMANDS:
+            continue
+        own = {
+            "move_linear": {"frame"},
+            "tool": {"action", "duration_s"},
+            "wait": {"duration_s"},
+        }.get(command, set())
+        r.keys(table, at, {"command", *own})
         tool = command == "tool"
-        duration = r.get(
-            table, at, "duration_s", (int, float), "a number of seconds", 0.0, required=tool
-        )
-        if duration < 0:
-            r.d.error(codes.CELL_VALUE, "`duration_s` is negative", r.at(*at, "duration_s"))
+        frame = r.choice(table, at, "frame", ("world", "tool"), "") if "frame" in own else ""
         action = r.get(table, at, "action", str, "a name", "", required=tool)
+        if tool and not action and "action" in table:
+            r.d.error(codes.CELL_VALUE, "`action` is empty", r.at(*at, "action"))
         out[name] = Primitive(
             name,
             cast(CommandName, command),
-            cast(Literal["world", "tool"], frame),
+            cast(Literal["world", "tool"], frame) if frame else None,
             action,
-            float(duration),
+            r.number(table, at, "duration_s", 0.0, required=tool),
         )
     return out
 
@@ -323,7 +359,7 @@ def _devices(r: Tables, data: dict[str, Any]) -> Iterable[RobotConfig]:
     for name, at, table in r.named(data, "devices"):
         r.keys(table, at, {"instance"})
         _name(r, name, at, "a device name")
-        if name in data.get("robots", {}):
+        if name in _table(data.get("robots")):
             r.d.error(
                 codes.CELL_VALUE,
                 f"`{name}` is a robot and a device",
@@ -365,7 +401,7 @@ def _report(r: Tables, data: dict[str, Any], config: CellConfig) -> ReportConfig
     table = r.table(data, "report")
     at: KeyPath = ("report",)
     r.keys(table, at, {"rows", "count", "occurrences", "warn_condition"})
-    rows = tuple(map(str, r.get(table, at, "rows", list, "a list of channels", [])))
+    rows = tuple(name for name, _ in r.texts(table, at, "rows", "a list of channels"))
     known = [c.place for c in config.channels]
     for name in rows:
         if name not in known:
@@ -386,10 +422,16 @@ def _report(r: Tables, data: dict[str, Any], config: CellConfig) -> ReportConfig
                 hint=did_you_mean(str(action), actions),
             )
     occurrences = r.get(table, at, "occurrences", dict, "a table label = transition", {})
-    warn = r.get(table, at, "warn_condition", (int, float), "a number", 50.0)
+    for label, transition in occurrences.items():
+        if not isinstance(transition, str):
+            r.d.error(
+                codes.CELL_VALUE,
+                f"`occurrences.{label}` is `{transition}`, but a transition is expected",
+                r.at("report", "occurrences", label),
+            )
     return ReportConfig(
         rows,
         tuple((str(k), str(v)) for k, v in count.items()),
         tuple((str(k), str(v)) for k, v in occurrences.items()),
-        float(warn),
+        r.number(table, at, "warn_condition", 50.0, above=0.0),
     )

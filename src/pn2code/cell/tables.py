@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator, Mapping
+from dataclasses import replace
 from pathlib import Path
 from typing import Any, cast
 
 from pn2code.cell import codes
 from pn2code.cell.toml_file import Locator
-from pn2code.diagnostics import Diagnostics
+from pn2code.diagnostics import Diagnostics, Origin
 from pn2code.diagnostics.near import did_you_mean
 
 KeyPath = tuple[str | int, ...]
@@ -20,6 +22,7 @@ class Tables:
 
     def __init__(self, locator: Locator, d: Diagnostics) -> None:
         self.at = locator.origin
+        self.strings = locator.strings
         self.d = d
 
     def keys(self, table: Mapping[str, Any], path: KeyPath, known: set[str]) -> None:
@@ -74,13 +77,14 @@ class Tables:
     ) -> str:
         """One of some words; the default if it is missing or another one."""
         shown = " or ".join(f"`{word}`" for word in words)
-        value = str(self.get(table, path, key, str, shown, default))
-        if value in words:
-            return value
+        value = self.get(table, path, key, str, shown, default)
+        if value in words or value == default:
+            return str(value)
         self.d.error(
             codes.CELL_VALUE,
             f"`{key}` is `{value}`, but {shown} is expected",
             self.at(*path, key),
+            hint=did_you_mean(value, words),
         )
         return default
 
@@ -123,3 +127,53 @@ class Tables:
                 "without a leading dot",
             )
         return str(name)
+
+    def texts(
+        self, table: Mapping[str, Any], path: KeyPath, key: str, words: str
+    ) -> list[tuple[str, Origin]]:
+        """The texts of a list, each with where it stands; none twice."""
+        found = self.get(table, path, key, list, words, [])
+        at = self.strings(*path, key)
+        out: dict[str, Origin] = {}
+        for i, value in enumerate(found):
+            origin = self.at(*path, key)
+            if len(at) == len(found):
+                origin = replace(at[i].origin, part=origin.part)
+            if not isinstance(value, str) or not value:
+                self.d.error(
+                    codes.CELL_VALUE, f"`{key}` holds `{value}`, but {words} is expected", origin
+                )
+            elif value in out:
+                self.d.error(
+                    codes.CELL_VALUE,
+                    f"`{key}` names `{value}` twice",
+                    origin,
+                    hint="remove one of them",
+                )
+            else:
+                out[value] = origin
+        return list(out.items())
+
+    def number(
+        self,
+        table: Mapping[str, Any],
+        path: KeyPath,
+        key: str,
+        default: float,
+        *,
+        above: float | None = None,
+        required: bool = False,
+    ) -> float:
+        """A finite number, not negative; or above a bound."""
+        words = "a number of seconds" if key.endswith("_s") else "a number"
+        value = self.get(table, path, key, (int, float), words, default, required=required)
+        bound = 0.0 if above is None else above
+        if math.isfinite(value) and (value > bound if above is not None else value >= bound):
+            return float(value)
+        least = "above zero" if above is not None else "zero or more"
+        self.d.error(
+            codes.CELL_VALUE,
+            f"`{key}` is {value}, but must be {least}, and finite",
+            self.at(*path, key),
+        )
+        return default

@@ -26,7 +26,6 @@ from pn2code.net.front import Examined
 
 if TYPE_CHECKING:
     from pn2code.cell.config import CellConfig
-    from pn2code.net.flat import FlatNet
 
 EPILOG = """Examples:
 
@@ -39,19 +38,43 @@ COUNTED = ("pages", "places", "transitions", "arcs")
 """What is counted, as the file has it: substitution transitions are transitions, a page counts once."""
 
 
-def _cell(config: CellConfig, flat: FlatNet | None, d: Diagnostics) -> None:
-    """What cell.toml says of the net; the robots and the scene, in all layouts."""
-    # Most nets have no cell, and these load NumPy and the like.
-    from pn2code.cell.divide import divide
-    from pn2code.cell.load import load as load_cell
-    from pn2code.robot import scene
+def examine_cell(
+    net: Path, config: CellConfig, result: Examined, d: Diagnostics, *, ahead: bool = True
+) -> None:
+    """What cell.toml says of the net; the robots' programs; the robots and the scene, in all layouts; properties.
 
-    if flat is not None and not d.has_errors:
-        divide(flat, config, d)
-    for layout in config.layouts or {"": ""}:
-        cell = config if layout == config.layout else load_cell(config.path, d, layout=layout)
-        if cell is not None:
-            scene.load(cell.geometry, cell.folder, cell.locator.origin, d)
+    Args:
+        net: the file of the net.
+        config: the cell.
+        result: what the front end made of the net.
+        d: gets the errors.
+        ahead: whether files beside the cell and the robots' places are looked at, which takes longer.
+    """
+    # Most nets have no cell, and these load NumPy and the like.
+    from pn2code.lowering.robot import lower_robots
+    from pn2code.pipeline import check_geometry, divided
+
+    if result.flat is None or d.has_errors:
+        check_geometry(config, d, to_run=True)
+        return
+    partition = divided(result.flat, config, d, to_run=True)
+    programs = lower_robots(partition, config, d) if partition is not None else None
+    _properties(net, config, result, d)
+    if ahead and partition is not None and programs is not None and not d.has_errors:
+        from pn2code.cli.ahead import look_ahead
+
+        look_ahead(partition, config, programs, d)
+
+
+def _properties(net: Path, config: CellConfig | None, result: Examined, d: Diagnostics) -> None:
+    """Whether what is asked about the net can be understood; it is not answered."""
+    beside = net.with_suffix(".properties.toml").is_file()
+    if result.flat is None or not (beside or (config is not None and "property" in config.raw)):
+        return
+    from pn2code.cli import properties  # loads what verifies nets
+    from pn2code.cli.nets import OpenNet
+
+    properties.asked(OpenNet(result.flat, config, result), (), None, d, found=True)
 
 
 def check(
@@ -71,7 +94,9 @@ def check(
         values = {**(config.values if config else {}), **parse_values(settings)}
         result = front.examine(where, d, values, int_bits=int_bits)
         if config is not None:
-            _cell(config, result.flat, d)
+            examine_cell(where, config, result, d)
+        else:
+            _properties(where, None, result, d)
     ok = result.flat is not None and not d.has_errors
     elements = result.document.elements if result.document else {}
     numbers = {key: elements.get(key, 0) for key in COUNTED}

@@ -9,12 +9,17 @@ from pn2code.cell.divide import divide
 from pn2code.cli.nets import OpenNet
 from pn2code.cli.options import Exit
 from pn2code.diagnostics import Diagnostics, Origin
+from pn2code.properties import meaning as m
 from pn2code.verify import control
 from pn2code.verify.codes import TRACE_UNWRITABLE
 from pn2code.verify.control import Control, Plan
 from pn2code.verify.explore import Wishes
 from pn2code.verify.limits import Limits
+from pn2code.verify.proofs import declared
 from pn2code.verify.result import Exploration
+
+QUICK_STATES = 5_000
+"""Of the net: beyond that it pays to have the compiler work longer."""
 
 
 def look(
@@ -24,8 +29,9 @@ def look(
     wishes: Wishes,
     folder: Path,
     d: Diagnostics,
+    asked: m.Properties = m.Properties(),  # noqa: B008 - frozen
 ) -> Control | None:
-    """All checks; None for a net that is no cell, or after an error.
+    """All checks, and what the explorer says of properties; None for a net that is no cell, or after an error.
 
     Args:
         opened: the net.
@@ -33,6 +39,7 @@ def look(
         limits, wishes: of the exploration.
         folder: where traces go.
         d: gets the errors.
+        asked: the properties.
     """
     config = opened.config
     if config is None:
@@ -40,17 +47,24 @@ def look(
     partition = divide(opened.flat, config, d)
     if partition is None:
         return None
-    is_hopeless = not found.complete and found.why != "decided"
+    # An approximate exploration came to its end; the checks make an exact one of their own.
+    is_hopeless = not found.complete and found.why not in ("decided", "approximation")
     if is_hopeless and (found.why in ("interrupted", "error") or not opened.flat.timed):
-        return control.not_looked(found.why, partition)
+        return control.not_looked(found.why, partition, declared(partition, config, d), found)
+    capacities = declared(partition, config, d)
+    if capacities is None:
+        return None
     plan = Plan(
         storage=opened.storage,
         order_decides=config.supervisor.order_decides,
         folder=folder,
         stem=wishes.stem,
-        wishes=wishes,
+        capacities=capacities,
+        properties=asked,
+        evidence=wishes.evidence,
+        wishes=replace(wishes, quick=found.nodes <= QUICK_STATES),
     )
-    looked = control.examine(partition, plan, replace(limits, traces=0), d)
+    looked = control.examine(partition, plan, replace(limits, traces=0), d, found)
     if looked is not None:
         _check_written(looked, folder, d)
     return looked

@@ -214,7 +214,7 @@ def _moments(
     from pn2code.verify.moments import follow
 
     try:
-        last = sum(1 for _ in Trace.open(trace, flat).steps())
+        last = sum(1 for _ in Trace.open(trace, flat, is_shown=True).steps())
         chosen = last if step is None else step
         if chosen > last:
             hint = f"its steps are numbered from 1 to {last}; 0 is the start"

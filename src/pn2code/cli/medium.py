@@ -10,6 +10,7 @@ from pn2code.cli.options import Exit
 from pn2code.diagnostics import Diagnostics
 from pn2code.medium.check import Answer, Evidence, medium
 from pn2code.medium.faults import SAYS
+from pn2code.verify import basis
 from pn2code.verify.explore import Wishes
 from pn2code.verify.limits import Limits
 from pn2code.verify.result import Exploration
@@ -38,7 +39,7 @@ def look(
     partition = divide(opened.flat, opened.config, d)
     if partition is None:
         return ()
-    is_small = found.complete or found.why == "decided"
+    is_small = found.complete or found.why in ("decided", "approximation")
     answers = medium(
         partition,
         opened.storage,
@@ -73,6 +74,7 @@ def _one(a: Answer) -> list[str]:
     lines = [f"  {a.check}: {a.answer}{why}", f"    {a.says}"]
     if a.nodes:
         lines.append(f"    {_counts(a)}")
+    lines += (f"    {more}" for more in _rests(a))
     lines.append(f"    if {a.assumes}; and what docs/protocol.md says of the file system")
     for e in a.evidence:
         lines.append(f"    {_run(e)}:")
@@ -89,11 +91,16 @@ def rows(answers: Answers) -> Iterator[dict[str, object]]:
         yield {
             "name": f"{a.check[:1].upper()}{a.check[1:]}",
             "said": f"{a.says[:1].upper()}{a.says[1:]}.",
-            "remarks": [*remarks, f"if {a.assumes}"],
+            "remarks": [*remarks, *_rests(a), f"if {a.assumes}"],
             "answer": {"inconclusive": "not known"}.get(a.answer, a.answer),
             "kind": {"yes": "good", "no": "bad"}.get(a.answer, "open"),
             "runs": [(_run(e), *e.lines) for e in a.evidence],
         }
+
+
+def _rests(a: Answer) -> Iterator[str]:
+    if a.rests_on is not None:
+        yield f"rests on this: {basis.SAYS[a.rests_on]}"
 
 
 def _counts(a: Answer) -> str:

@@ -133,20 +133,26 @@ MOST_SHOWN = 60
 def print_diagnostics(items: Iterable[Diagnostic], form: Format = Format.FULL) -> None:
     """Print them to stderr, in colour on a terminal.
 
-    Notes are for programs, and for people when something is wrong on the same page. Of very many, people get the
-    first, errors before warnings.
+    Notes are for programs, and for people when something is wrong on a page that they are about: they may be its
+    cause. Of very many, people get the first, errors before warnings.
     """
     items = list(items)
     omitted = ""
     if form is Format.FULL:
-        wrong = {i.origin.page for i in items if i.severity is Severity.ERROR} - {""}
-        items = [i for i in items if i.severity is not Severity.NOTE or i.origin.page in wrong]
+        wrong = {p for i in items if i.severity is Severity.ERROR for p in _pages(i)}
+        items = [i for i in items if i.severity is not Severity.NOTE or wrong & _pages(i)]
         items, omitted = _first(items)
     text = render.report(
         items, form.value, render.coloured if sys.stderr.isatty() else render.plain
     )
     if text:
         print(text + omitted, file=sys.stderr)
+
+
+def _pages(item: Diagnostic) -> set[str]:
+    """The pages that a diagnostic and its notes are about."""
+    origins = (item.origin, *(n.origin for n in item.notes if n.origin is not None))
+    return {o.page for o in origins} - {""}
 
 
 def _first(items: list[Diagnostic]) -> tuple[list[Diagnostic], str]:

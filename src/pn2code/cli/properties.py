@@ -4,12 +4,16 @@ from __future__ import annotations
 
 import re
 import tempfile
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager, suppress
 from dataclasses import dataclass, replace
 from pathlib import Path
+from typing import Any
 
+from pn2code.cell.divide import divide
+from pn2code.cell.partition import Partition
 from pn2code.cli.nets import OpenNet
+from pn2code.deadline import Deadline, TimeIsOverError
 from pn2code.diagnostics import Diagnostics
 from pn2code.net.flat import FlatNet
 from pn2code.properties import codes, sources
@@ -23,7 +27,9 @@ from pn2code.semantics.values import MlException, MlLimit
 from pn2code.simulate.script import TraceRefusedError
 from pn2code.verify import confirm
 from pn2code.verify.answers import Answer, answers
+from pn2code.verify.cell_answers import of_cell
 from pn2code.verify.codes import TRACE_UNWRITABLE
+from pn2code.verify.control import Control
 from pn2code.verify.explore import Wishes, explore
 from pn2code.verify.lasso import write_loop
 from pn2code.verify.limits import Limits, Reduction
@@ -31,6 +37,8 @@ from pn2code.verify.programs import Sizes
 from pn2code.verify.result import Exploration
 
 _CALLED = {"yes": "true", "no": "false", "inconclusive": "not known"}
+_WITH_RUNS = ("complete", "decided", "states", "memory", "error")
+"""Ends of an exploration after which there was time to look for the runs, and the way to each marking is known."""
 _OUTSIDE = frozenset({Effect.DRAW, Effect.LOOK, Effect.WRITE, Effect.COUNT})
 
 
@@ -114,6 +122,7 @@ def of_bindings(
     limits: Limits,
     wishes: Wishes,
     d: Diagnostics,
+    control: Control | None = None,
 ) -> tuple[Answer, ...]:
     """The answers to properties about bindings, each looked at again; their runs have no names yet.
 
@@ -124,6 +133,7 @@ def of_bindings(
         limits: of each exploration.
         wishes: those for the net itself.
         d: gets the errors.
+        control: what a cell was looked at in; None: the net is no cell.
     """
     # Reductions that look at binding elements keep nothing that is asked here.
     kept = tuple(r for r in limits.reductions if r is Reduction.TIME)
@@ -144,13 +154,75 @@ def of_bindings(
             seen = explore(
                 split.net, opened.storage, replace(limits, reductions=kept, graph=True), d, own
             )
+        closed = []
         for answer in answers(about, seen.answers if seen else (), seen or found):
             if answer.evidence is not None and seen is not None:
-                _confirm(answer, about, split.net, opened, seen, d)
+                answer = _confirmed(answer, about, split.net, opened, seen, limits.deadline, d)
+                assert answer.evidence is not None
                 with suppress(OSError):
                     split.restore(answer.evidence.trace)
-            given.append(replace(answer, about=of[answer.about.name], node=None))
+            closed.append(replace(answer, about=of[answer.about.name], node=None))
+        group = tuple(of[p.name] for p in about.properties)
+        given += _bindings_of_cell(asked, group, opened, control, closed, number, limits, wishes, d)
     return tuple(given)
+
+
+def _bindings_of_cell(
+    asked: Asked,
+    group: tuple[m.Property, ...],
+    opened: OpenNet,
+    control: Control | None,
+    closed: Sequence[Answer],
+    number: int,
+    limits: Limits,
+    wishes: Wishes,
+    d: Diagnostics,
+) -> Sequence[Answer]:
+    """Those of a cell as it runs: its net is made of the parts of the transitions."""
+    if control is None:
+        return closed
+    partition = divided(opened, d)
+    if partition is None:
+        return closed
+    running = control.running
+    said: Sequence[Mapping[str, Any]] = ()
+    seen = control.found
+    is_choosing = False
+    about = replace(asked.properties, properties=group)
+    if running is not None and seen is not None and (seen.complete or seen.why == "decided"):
+        split = Split.of(running.net, asked.properties, group)
+        # Of parts of a transition of the supervisor it is not seen which binding comes first.
+        is_choosing = any(
+            split.names.count(t.name) > 1
+            for t, owner in zip(partition.net.transitions, partition.transition_owner, strict=True)
+            if owner == 0
+        )
+        lines = running.lines(first=not is_choosing, names=split.names)
+        own = replace(
+            wishes,
+            traces=None,
+            stem=f"cell-bindings-{number}",
+            questions="".join(f"{x}\n" for x in lines) + _questions(split.properties, d),
+            predicates=split.properties.predicates,
+            sizes=Sizes.start(split.net, opened.storage),
+            quick=True,
+        )
+        kept = (Reduction.TIME,) if opened.flat.timed else ()
+        limits = replace(limits, reductions=kept, graph=True, approximation=None)
+        seen = explore(split.net, opened.storage, limits, d, own)
+        said = seen.answers if seen is not None else ()
+        for row in said:
+            if row.get("trace"):
+                with suppress(OSError):
+                    split.restore(Path(row["trace"]))
+        about = split.properties
+    looked = replace(control, found=seen)
+    return tuple(of_cell(about, said, looked, partition, closed, all_orders=is_choosing))
+
+
+def divided(opened: OpenNet, d: Diagnostics) -> Partition | None:
+    """The owners of a cell; None: it is none, or an error was reported."""
+    return None if opened.config is None else divide(opened.flat, opened.config, d)
 
 
 def files(opened: OpenNet, file: Path | None, *, found: bool) -> tuple[Path, ...]:
@@ -211,7 +283,9 @@ def answered(
     more: Sequence[Answer],
     folder: Path,
     stem: str,
+    deadline: Deadline,
     d: Diagnostics,
+    control: Control | None = None,
 ) -> tuple[Answer, ...]:
     """The answers; runs have got readable names, and have been looked at again.
 
@@ -223,18 +297,31 @@ def answered(
         found: its state space.
         more: what `of_bindings` has given.
         folder, stem: where runs are kept, and what their names begin with.
+        deadline: when it is over no run is looked at again.
         d: gets the errors.
+        control: what a cell was looked at in; None: the net is no cell.
     """
     plain = answers(asked.plain, found.answers, found)
+    if control is not None and (partition := divided(opened, d)) is not None:
+        plain = tuple(of_cell(asked.plain, control.answers, control, partition, plain))
     by_name = {answer.about.name: answer for answer in (*plain, *more)}
     given = tuple(by_name[p.name] for p in asked.properties.properties)
     named = _named(given, folder, stem)
+    looked = []
     for before, answer in zip(given, named, strict=True):
+        if answer.evidence is not None and not is_about_bindings(answer.about):
+            looked.append(
+                _confirmed(answer, asked.properties, opened.flat, opened, found, deadline, d)
+            )
+            continue
+        looked.append(answer)
         if answer.evidence is not None:
-            if not is_about_bindings(answer.about):  # those have been looked at
-                _confirm(answer, asked.properties, opened.flat, opened, found, d)
-        elif before.evidence is not None or (
-            answer.answer == "no" and _has_run(answer.about.asked)
+            continue  # it has been looked at
+        if before.evidence is not None or (
+            answer.answer == "no"
+            and _has_run(answer.about.asked)
+            and found.approximation is None
+            and found.why in _WITH_RUNS
         ):
             d.warning(
                 TRACE_UNWRITABLE,
@@ -242,7 +329,7 @@ def answered(
                 answer.about.origin,
                 hint="give another folder with `--traces DIR`",
             )
-    return named
+    return tuple(looked)
 
 
 def _has_run(asked: m.Asked) -> bool:
@@ -252,23 +339,30 @@ def _has_run(asked: m.Asked) -> bool:
     )
 
 
-def _confirm(
+def _confirmed(
     answer: Answer,
     asked: m.Properties,
     net: FlatNet,
     opened: OpenNet,
     found: Exploration,
+    deadline: Deadline,
     d: Diagnostics,
-) -> None:
+) -> Answer:
+    """The answer, of which it is known whether its run has been looked at again."""
     assert answer.evidence is not None
+    if answer.evidence.steps > confirm.MOST_STEPS:
+        return answer
     try:
-        problem = confirm.problem(
-            net,
-            opened.storage,
-            asked,
-            answer,
-            exact_times="time" not in found.reductions,
-        )
+        with deadline.enforced():
+            problem = confirm.problem(
+                net,
+                opened.storage,
+                asked,
+                answer,
+                exact_times="time" not in found.reductions,
+            )
+    except TimeIsOverError:
+        return answer
     except (TraceRefusedError, GameError, OSError, ValueError, MlException, MlLimit) as error:
         problem = str(error)
     if problem is not None:
@@ -279,6 +373,8 @@ def _confirm(
             notes=[f"the run is {answer.evidence.trace}"],
             hint="the explorer and the token game differ: this is a bug in pn2code",
         )
+        return answer
+    return replace(answer, evidence=replace(answer.evidence, confirmed=True))
 
 
 def _named(given: Sequence[Answer], folder: Path, stem: str) -> tuple[Answer, ...]:

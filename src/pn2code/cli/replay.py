@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import json
+from collections.abc import Mapping
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Annotated, Any, NoReturn
 
@@ -22,10 +24,13 @@ from pn2code.cli.options import (
     JsonOption,
     SetOption,
     parse_values,
+    stop,
 )
+from pn2code.diagnostics import Diagnostics
 from pn2code.semantics import replay as own
 from pn2code.semantics.files import Files
 from pn2code.semantics.json_text import BadJson, parse_json
+from pn2code.semantics.parties import Parties
 from pn2code.semantics.recording import NotARecording, Recording, recording
 from pn2code.semantics.replay_recording import follow
 from pn2code.semantics.report import places, time_text
@@ -49,25 +54,34 @@ def replay(
     settings: SetOption = [],  # noqa: B006 - typer reads the default only
     files: FilesOption = None,
     int_bits: IntBitsOption = DEFAULT_INT_BITS,
+    any_digest: Annotated[
+        bool,
+        typer.Option("--any-digest", help="The trace may be of another version of the net."),
+    ] = False,
     form: FormatOption = Format.FULL,
 ) -> None:
     """Repeat a recorded run step by step: is each step enabled when its turn comes?
+
+    What else the trace claims is looked at as well: net, elements, numbers, times, priorities, why and where it ended.
 
     What the net draws at random is not in a recording of CPN Tools; such a run is followed as far as it is determined,
     and that is said.
     """
     what = kind(trace)
     try:
-        opened = open_net(net, parse_values(settings), form, int_bits=int_bits)
+        values = parse_values(settings)
+        opened = open_net(net, values, form, int_bits=int_bits)
         with playing(form):
             if isinstance(what, Recording):
                 result = _recording(what, opened, files, engine, form)
             elif engine is Engine.COMPILED:
                 from pn2code.cli.replay_compiled import repeat_own  # loads the compiler
 
-                result = repeat_own(trace, opened, files, form)
+                claims = _claims(opened, values, int_bits, any_digest, form)
+                result = repeat_own(trace, opened, files, claims, form)
             else:
-                result = _own(trace, opened, files)
+                claims = _claims(opened, values, int_bits, any_digest, form)
+                result = _own(trace, opened, files, claims)
     except typer.Exit as left:
         if as_json and left.exit_code == Exit.MODEL:
             typer.echo(json.dumps(_NOT_PLAYED, indent=1))
@@ -156,9 +170,54 @@ _NOT_COMPILED = (
 )
 
 
-def _own(trace: Path, opened: OpenNet, files: Path | None) -> dict[str, Any]:
+@dataclass(frozen=True, slots=True)
+class Claims:
+    """What the claims of a trace are compared with; see `semantics.replay.replay`."""
+
+    parties: Parties
+    check_digest: bool
+    may_fail_outside: bool
+
+
+def _claims(
+    opened: OpenNet, values: Mapping[str, str], int_bits: int, any_digest: bool, form: Format
+) -> Claims:
+    """Who runs what, and which digests the traces of these programs have."""
+    from pn2code.cell.divide import divide
+    from pn2code.pipeline import program_digest
+    from pn2code.simulate.choose import monitors_of
+
+    d = Diagnostics()
+    config = opened.config
+    replaced = {**(config.values if config else {}), **values}
+    digests = frozenset({program_digest(opened.flat, config, replaced, int_bits)})
+    may_fail = monitors_of(opened.examined, d) is not None
+    if config is None:
+        return Claims(Parties.one(opened.flat, digests), not any_digest, may_fail)
+    partition = divide(opened.flat, config, d)
+    if partition is None:
+        stop(d, form)
+    parties = Parties(
+        names=tuple(o.name for o in partition.owners),
+        owner=partition.transition_owner,
+        messages=frozenset(c.place for c in partition.channels),
+        final=partition.final_places,
+        digests=digests,
+    )
+    return Claims(parties, not any_digest, may_fail)
+
+
+def _own(trace: Path, opened: OpenNet, files: Path | None, claims: Claims) -> dict[str, Any]:
     """A trace of our own, by the token game."""
-    result = own.replay(trace, opened.flat, opened.storage, files=Files(files))
+    result = own.replay(
+        trace,
+        opened.flat,
+        opened.storage,
+        parties=claims.parties,
+        check_digest=claims.check_digest,
+        may_fail_outside=claims.may_fail_outside,
+        files=Files(files),
+    )
     game = result.game
     return {
         "ok": result.ok,

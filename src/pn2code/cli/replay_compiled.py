@@ -8,20 +8,63 @@ from typing import Any
 
 from pn2code.cli.nets import OpenNet
 from pn2code.cli.options import DEFAULT_SEED, Engine, Format, stop
-from pn2code.cli.replay import refuse
+from pn2code.cli.replay import Claims, refuse
 from pn2code.diagnostics import Diagnostics
 from pn2code.semantics.game import NotEnabled
+from pn2code.semantics.json_text import parse_json
+from pn2code.semantics.replay_end import Ending, end_problem
 from pn2code.semantics.replay_recording import Followed
 from pn2code.semantics.report import PlaceRow, places
+from pn2code.semantics.trace_lines import digest_problem
 from pn2code.simulate.recorded import repeat, repeat_occurrences
 from pn2code.simulate.run import Outcome
 from pn2code.simulate.script import TraceRefusedError
 
 
-def repeat_own(trace: Path, opened: OpenNet, files: Path | None, form: Format) -> dict[str, Any]:
+def repeat_own(
+    trace: Path, opened: OpenNet, files: Path | None, claims: Claims, form: Format
+) -> dict[str, Any]:
     """A trace of our own: the JSON answer."""
     outcome = _run(lambda d: repeat(opened.flat, opened.storage, trace, files, d), form)
-    return _answer(outcome, opened)
+    answer = _answer(outcome, opened)
+    wrong = _claimed(trace, opened, files, claims, outcome) if answer["ok"] else None
+    if wrong is not None:
+        return {**answer, "ok": False, "failed_step": outcome.replayed + 1, "why": wrong}
+    return answer
+
+
+def _claimed(
+    trace: Path, opened: OpenNet, files: Path | None, claims: Claims, outcome: Outcome
+) -> str | None:
+    """What is wrong with the first and the last line of a trace, whose steps the compiled net has repeated.
+
+    What the marking permits is asked of the token game; a lasso is its business as well.
+    """
+    header, end = _ends(trace)
+    problem = (
+        digest_problem(header, opened.flat, claims.parties) if claims.check_digest else None
+    ) or claims.parties.stranger(str(header.get("by", "")))
+    if problem is not None or end is None or outcome.final is None:
+        return problem
+    if "loop" in end:
+        refuse("whether a lasso closes is seen by the token game: leave out `--engine compiled`")
+    seed = header.get("seed")
+    game = opened.game(seed=DEFAULT_SEED if seed is None else seed, files=files)
+    game.marking, game.steps = outcome.final, outcome.replayed
+    many = (outcome.final,) * (2 if outcome.replayed else 1)
+    by = str(header.get("by", ""))
+    return end_problem(game, end, Ending(by, True, claims.parties, many, claims.may_fail_outside))
+
+
+def _ends(trace: Path) -> tuple[dict[str, Any], dict[str, Any] | None]:
+    """The first line of a trace, and its last one if that says that the run ended."""
+    with trace.open(encoding="utf-8", errors="surrogateescape") as lines:
+        texts = (text for text in lines if text.strip())
+        first = last = next(texts)
+        for text in texts:
+            last = text
+    end = parse_json(last)
+    return parse_json(first), end if end.get("event") == "end" else None
 
 
 def repeat_recorded(

@@ -27,6 +27,8 @@ EPILOG = """Examples:
   pn2code run examples/riveting
 
   pn2code run examples/riveting --layout paper --backend fake --out /tmp/run
+
+  pn2code run examples/riveting --unchecked
 """
 
 
@@ -68,6 +70,13 @@ def run(
     seed: Annotated[
         int | None, typer.Option(metavar="K", help="Of what sensors draw at random.")
     ] = None,
+    unchecked: Annotated[
+        bool,
+        typer.Option(
+            "--unchecked",
+            help="Run the supervisor whatever its checks say, and without asking them.",
+        ),
+    ] = False,
     settings: SetOption = [],  # noqa: B006 - typer reads the default only
     form: FormatOption = Format.FULL,
 ) -> None:
@@ -98,6 +107,7 @@ def run(
         speed=speed,
         looks=pictures or video,
         seed=seed,
+        checked=not unchecked,
     )
     album = Album(out, pictures=pictures, video=video)
     with Progress(console) as progress:
@@ -118,7 +128,12 @@ def run(
             progress.say("drawing charts")
             from pn2code.report import charts
 
-            charts.draw(result.record, tuple(r.name for r in result.prepared.config.programs), out)
+            prepared = result.prepared
+            limits = charts.Limits(
+                prepared.robot_cell.scene.warning_clearance, prepared.config.report.warn_condition
+            )
+            names = tuple(r.name for r in prepared.config.programs)
+            charts.draw(result.record, names, limits, out)
     if result is None:
         stop(d, form)
     print_diagnostics(d.sorted(), form)

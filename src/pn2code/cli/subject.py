@@ -13,6 +13,7 @@ from pathlib import Path
 
 from pn2code import pipeline
 from pn2code.cli.nets import OpenNet
+from pn2code.deadline import NEVER, Deadline, TimeIsOverError
 from pn2code.diagnostics import Diagnostics
 from pn2code.emission.output import OutputFile
 
@@ -41,6 +42,7 @@ class Subject:
         *,
         int_bits: int,
         complete: bool,
+        deadline: Deadline = NEVER,
     ) -> Subject:
         """Of a net or cell; the programs of a cell are generated for it, in memory.
 
@@ -51,6 +53,7 @@ class Subject:
             properties: files of properties.
             int_bits: width of `int`.
             complete: whether all markings were seen; if not, nothing is generated, for that would look at them again.
+            deadline: when generating has to be over.
         """
         rows = [("Net", opened.flat.file, opened.flat.sha256)]
         if opened.config is not None:
@@ -63,7 +66,11 @@ class Subject:
         if not complete:
             return Subject(tuple(rows), "No programs were generated: not all markings were seen.")
         d = Diagnostics()
-        made = pipeline.generate(path, d, values=values, int_bits=int_bits)
+        try:
+            with deadline.enforced():
+                made = pipeline.generate(path, d, values=values, int_bits=int_bits)
+        except TimeIsOverError:
+            return Subject(tuple(rows), "No programs were generated: the time was over.")
         if made is None:
             why = d.errors[0].message if d.errors else "it cannot be generated"
             return Subject(tuple(rows), f"`generate` refuses the cell: {why}.")

@@ -4,14 +4,16 @@ from __future__ import annotations
 
 import json
 import re
-from collections.abc import Sequence
-from dataclasses import replace
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager, nullcontext, suppress
+from dataclasses import asdict, replace
 from datetime import datetime
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, Any
 
 import typer
 
+from pn2code import pipeline
 from pn2code.cli import controller, medium, properties
 from pn2code.cli.interrupts import Interrupts
 from pn2code.cli.nets import OpenNet, open_net, playing
@@ -29,24 +31,22 @@ from pn2code.cli.options import (
     stop,
 )
 from pn2code.cli.subject import Subject
+from pn2code.cli.verify_screen import Said, closing, full, screen
+from pn2code.deadline import Deadline, TimeIsOverError
 from pn2code.diagnostics import Diagnostics, Origin
 from pn2code.os_reason import os_reason
-from pn2code.semantics.game import GameError
-from pn2code.simulate.script import TraceRefusedError
-from pn2code.verify import chance, control_text
+from pn2code.verify import chance
 from pn2code.verify.answers import Answer, verdict
-from pn2code.verify.codes import REPORT_UNWRITABLE, STATE_ERROR, TRACE_UNWRITABLE
+from pn2code.verify.codes import REPORT_UNWRITABLE, STATE_ERROR, TIME_OVER, TRACE_UNWRITABLE
 from pn2code.verify.control import Control
 from pn2code.verify.explore import Wishes, explore
 from pn2code.verify.limits import Approximation, Limits, Order, Reduction, cores
-from pn2code.verify.path import steps, text
 from pn2code.verify.pictures import GRAPH_KINDS, PLOT_KINDS, Pictures
 from pn2code.verify.programs import Sizes
 from pn2code.verify.progress import ProgressLine
-from pn2code.verify.properties_text import told
-from pn2code.verify.reasons import clause
-from pn2code.verify.report import error_text, report
-from pn2code.verify.result import Exploration, Trace, row
+from pn2code.verify.report import report
+from pn2code.verify.result import Exploration, Seen
+from pn2code.verify.result import row as exploration_row
 from pn2code.verify.webpage import webpage
 from pn2code.whole_file import whole_file
 
@@ -63,8 +63,8 @@ EPILOG = """Examples:
   pn2code verify net.cpn --property "deadlock free" --property "always { size (Mark.Top'Buffer 1) <= 4 }"
 """
 
-SHOWN_STEPS = 40
-"""Of a longer trace only the first steps are printed."""
+MOST_COLOURS = 200
+"""Of a multi-set bound, unless all is wanted: a place with a colour for each marking has millions."""
 
 
 def verify(
@@ -74,7 +74,12 @@ def verify(
     ] = None,
     max_seconds: Annotated[
         float | None,
-        typer.Option(metavar="S", min=0.0, callback=finite, help="Stop after S seconds."),
+        typer.Option(
+            metavar="S",
+            min=0.0,
+            callback=finite,
+            help="Stop after S seconds of all together: reading, compiling, exploring, answering.",
+        ),
     ] = None,
     memory: Annotated[
         int | None,
@@ -142,8 +147,9 @@ def verify(
         Path | None,
         typer.Option(
             "--traces",
+            "-o",
             metavar="DIR",
-            help="Where traces to dead markings are written (default: here).",
+            help="Where runs are written.  (default: NET.traces)",
             show_default=False,
         ),
     ] = None,
@@ -199,6 +205,13 @@ def verify(
         ),
     ] = True,
     as_json: JsonOption = False,
+    in_full: Annotated[
+        bool,
+        typer.Option(
+            "--full",
+            help="Print the whole report with all runs, and list all colours of multi-set bounds.",
+        ),
+    ] = False,
     quiet: Annotated[
         bool, typer.Option("--quiet", "-q", help="No progress, and nothing but errors.")
     ] = False,
@@ -208,22 +221,40 @@ def verify(
 ) -> None:
     """Explore the whole state space of a net, and report what it says.
 
-    Counts of nodes and arcs, bounds of places, dead and home markings, dead and live transitions, fairness: the report
-    of CPN Tools, complete. Exit code 0: everything was seen; 3: a limit was hit, which the report says.
+    Printed are the sizes, what is wrong and the way there, and the verdict; with `--full` the report of CPN Tools:
+    bounds of places, dead and home markings, dead and live transitions, fairness, and all runs step by step.
+    Exit code 0: everything was seen; 3: a limit was hit, or it was approximate, which the report says.
     With properties: 0: all are true, 1: one is false, 3: one is not known and none is false. With a cell.toml the
     checks of its supervisor count in the same way.
     """
+    deadline = Deadline.after(max_seconds)
     _check_kind(draw_to, GRAPH_KINDS, "--draw")
     _check_kind(plot_to, PLOT_KINDS, "--plot")
-    opened = open_net(net, parse_values(settings), form, int_bits=int_bits)
     d = Diagnostics()
-    asked = properties.asked(opened, texts, file, d, found=found_properties)
+    try:
+        with deadline.enforced():
+            opened = open_net(net, parse_values(settings), form, int_bits=int_bits)
+            pipeline.divided(opened.flat, opened.config, d)
+            asked = properties.asked(opened, texts, file, d, found=found_properties)
+            chance.warn(opened.flat, d)
+    except TimeIsOverError:
+        d.warning(
+            TIME_OVER,
+            "the time was over before the net was read and checked",
+            Origin(str(net)),
+            hint="give it more time with `--max-seconds`",
+        )
+        print_diagnostics(d.sorted(), form)
+        if as_json:
+            none = {"complete": False, "why": "seconds", "seen": asdict(Seen()), "nodes": 0}
+            typer.echo(json.dumps(none, indent=1))
+        raise typer.Exit(Exit.INCONCLUSIVE) from None
     if d.has_errors:
         stop(d, form)
     wanted = () if no_reduction else tuple(dict.fromkeys(reduce))
     limits = Limits(
         max_states=max_states,
-        max_seconds=max_seconds,
+        deadline=deadline,
         memory=memory,
         threads=threads or cores(),
         order=order,
@@ -233,10 +264,9 @@ def verify(
         traces=most_traces,
         reductions=wanted,
     )
-    chance.warn(opened.flat, d)
     is_cell = opened.config is not None and check_controller
-    folder = _folder(traces) if most_traces or asked or is_cell else Path()
     with (
+        _folder(traces, _stem(opened), wanted=bool(most_traces or asked or is_cell)) as folder,
         Pictures(draw_to, plot_to) as pictures,
         properties.unnamed_runs(asked, folder) as unnamed,
     ):
@@ -244,6 +274,7 @@ def verify(
             wishes = Wishes(
                 traces=folder if most_traces else None,
                 stem=_stem(opened),
+                colours=None if in_full else MOST_COLOURS,
                 questions=asked.questions,
                 predicates=asked.properties.predicates,
                 evidence=unnamed,
@@ -252,64 +283,103 @@ def verify(
             )
             control: Control | None = None
             with playing(form):
-                wishes = replace(wishes, sizes=Sizes.start(opened.flat, opened.storage))
+                # What the places hold is worked out once for all explorations of the net.
+                with suppress(TimeIsOverError), deadline.enforced():
+                    wishes = replace(wishes, sizes=Sizes.start(opened.flat, opened.storage))
                 found = explore(opened.flat, opened.storage, limits, d, pictures.wishes(wishes))
-                if found is not None and check_controller:
-                    control = controller.look(opened, found, limits, wishes, folder, d)
+                if found is not None and (check_controller or asked):
+                    control = controller.look(opened, found, limits, wishes, folder, d, asked.plain)
                 more: Sequence[Answer] = ()
                 if found is not None:
-                    more = properties.of_bindings(asked, opened, found, limits, wishes, d)
+                    more = properties.of_bindings(asked, opened, found, limits, wishes, d, control)
                 seen: medium.Answers = ()
                 if found is not None and check_medium:
                     seen = medium.look(opened, found, limits, wishes, d)
         if found is None:
             stop(d, form)
-        pictures.write(opened.flat, found, d)
-        answers = properties.answered(asked, opened, found, more, folder, _stem(opened), d)
-    if found.error is not None and found.why == "error":
-        _tell_error(opened, found, d)
-    if found.graph is not None and len(found.traces) < min(most_traces, found.dead_count):
-        _unwritable("a dead marking", traces, d)
-    if found.error and found.error.get("node") and most_traces and found.error_trace is None:
-        _unwritable("the marking in which an exception is raised", traces, d)
-    if report_to is not None:
-        page = report_to.suffix.lower() in (".html", ".htm")
-        files = properties.files(opened, file, found=found_properties)
-        values = parse_values(settings)
-        subject = None
-        if page:
-            complete = found.complete or found.why == "decided"
-            subject = Subject.of(opened, net, values, files, int_bits=int_bits, complete=complete)
-        _write_report(opened, found, answers, control, seen, subject, report_to, d)
-    if not as_json and not quiet:
-        typer.echo(_text(opened, found, answers, control))
-        if seen:
-            typer.echo(f"\n\n{medium.told(seen)}")
-    print_diagnostics(d.sorted(), form)
-    if as_json:
-        said = row(opened.flat, found)
-        if answers:
-            said["properties"] = [a.row() for a in answers]
-        if control is not None:
-            said["controller"] = [c.row() for c in control.checks]
-        if seen:
-            said["medium"] = [a.row() for a in seen]
-        typer.echo(json.dumps(said, indent=1))
+        try:
+            with deadline.enforced() if draw_to or plot_to else nullcontext():
+                pictures.write(opened.flat, found, d)
+        except TimeIsOverError:
+            d.warning(
+                TIME_OVER,
+                "the time was over before all pictures were drawn",
+                Origin(opened.flat.file),
+                hint="give it more time with `--max-seconds`",
+            )
+        answers = properties.answered(
+            asked, opened, found, more, folder, _stem(opened), deadline, d, control
+        )
+        if not check_controller:  # it was looked at for properties only
+            control = None
+        if found.error is not None and found.why == "error":
+            _tell_error(opened, found, d)
+        if found.graph is not None and len(found.traces) < min(most_traces, found.dead_count):
+            _unwritable("a dead marking", folder, d)
+        if found.error and found.error.get("node") and most_traces and found.error_trace is None:
+            _unwritable("the marking in which an exception is raised", folder, d)
+        said = Said(
+            opened.flat, opened.storage, found, answers, control, seen, len(d.errors), deadline
+        )
+        if report_to is not None:
+            subject = None
+            if report_to.suffix.lower() in (".html", ".htm"):
+                subject = Subject.of(
+                    opened,
+                    net,
+                    parse_values(settings),
+                    properties.files(opened, file, found=found_properties),
+                    int_bits=int_bits,
+                    complete=found.seen.markings or found.why == "decided",
+                    deadline=deadline,
+                )
+            _write_report(said, subject, report_to, d)
+        if not as_json and not quiet:
+            typer.echo(full(said) if in_full else screen(said))
+        print_diagnostics(d.sorted(), form)
+        if as_json:
+            typer.echo(json.dumps(_json(said), indent=1))
     codes = (_code(found, answers, d), controller.code(control), medium.code(seen))
     code = Exit.MODEL if Exit.MODEL in codes else max(codes)
     if code:
         raise typer.Exit(code)
 
 
-def _folder(traces: Path | None) -> Path:
-    folder = traces or Path()
+def _json(said: Said) -> dict[str, Any]:
+    row = exploration_row(said.net, said.found)
+    if said.answers:
+        row["properties"] = [a.row() for a in said.answers]
+    if said.control is not None:
+        row["controller"] = [c.row() for c in said.control.checks]
+    if said.medium:
+        row["medium"] = [a.row() for a in said.medium]
+    return row
+
+
+@contextmanager
+def _folder(traces: Path | None, stem: str, *, wanted: bool) -> Iterator[Path]:
+    """Where traces go: the folder that was named, or one that is named after the net; an empty one is not left.
+
+    Args:
+        traces: the folder that was named.
+        stem: the name of the net, as in the names of its files.
+        wanted: whether there may be any; if not, no folder is made.
+    """
+    folder = traces or Path(f"{stem}.traces")
+    is_new = wanted and not folder.exists()
+    if wanted:
+        try:
+            folder.mkdir(parents=True, exist_ok=True)
+        except OSError as problem:
+            raise typer.BadParameter(
+                f"`{folder}`: {os_reason(problem)}", param_hint="--traces"
+            ) from None
     try:
-        folder.mkdir(parents=True, exist_ok=True)
-    except OSError as problem:
-        raise typer.BadParameter(
-            f"`{folder}`: {os_reason(problem)}", param_hint="--traces"
-        ) from None
-    return folder
+        yield folder
+    finally:
+        if is_new:
+            with suppress(OSError):  # there are traces in it
+                folder.rmdir()
 
 
 def _check_kind(path: Path | None, kinds: tuple[str, ...], option: str) -> None:
@@ -359,8 +429,7 @@ def _tell_error(opened: OpenNet, found: Exploration, d: Diagnostics) -> None:
     )
 
 
-def _unwritable(goal: str, traces: Path | None, d: Diagnostics) -> None:
-    folder = traces or Path()
+def _unwritable(goal: str, folder: Path, d: Diagnostics) -> None:
     d.warning(
         TRACE_UNWRITABLE,
         f"a trace to {goal} cannot be written into `{folder}`",
@@ -369,34 +438,27 @@ def _unwritable(goal: str, traces: Path | None, d: Diagnostics) -> None:
     )
 
 
-def _write_report(
-    opened: OpenNet,
-    found: Exploration,
-    answers: Sequence[Answer],
-    control: Control | None,
-    seen: medium.Answers,
-    subject: Subject | None,
-    path: Path,
-    d: Diagnostics,
-) -> None:
+def _write_report(said: Said, subject: Subject | None, path: Path, d: Diagnostics) -> None:
     """As a page, if there is a subject, or as a text."""
     now = datetime.now().astimezone()
     if subject is not None:
         body = webpage(
-            opened.flat,
-            found,
-            opened.storage,
+            said.net,
+            said.found,
+            said.storage,
             now,
-            answers,
-            control,
-            medium=list(medium.rows(seen)),
+            said.answers,
+            said.control,
+            medium=list(medium.rows(said.medium)),
             subject=subject.rows,
             remark=subject.remark,
+            deadline=said.deadline,
         )
     else:
-        body = report(opened.flat, found, now, answers, control)
-        if seen:
-            body = f"{body.rstrip()}\n\n\n{medium.told(seen)}\n"
+        body = report(said.net, said.found, now, said.answers, said.control)
+        if said.medium:
+            body = f"{body.rstrip()}\n\n\n{medium.told(said.medium)}\n"
+        body = f"{body.rstrip()}\n\n\n{closing(said)}\n"
     try:
         with whole_file(path) as beside:
             beside.write_text(body, encoding="utf-8")
@@ -404,43 +466,3 @@ def _write_report(
         d.error(
             REPORT_UNWRITABLE, f"cannot write `{path}`: {os_reason(problem)}", Origin(str(path))
         )
-
-
-def _text(
-    opened: OpenNet, found: Exploration, answers: Sequence[Answer], control: Control | None
-) -> str:
-    parts = [report(opened.flat, found, None, answers, control).rstrip(), _figures(found)]
-    if control is not None:
-        parts += control_text.told(opened.flat, opened.storage, control, most=SHOWN_STEPS)
-    parts += [
-        told(opened.flat, opened.storage, a, SHOWN_STEPS) for a in answers if a.evidence is not None
-    ]
-    for trace in found.traces:
-        parts.append(_told(opened, trace, f"the dead marking {trace.node}"))
-    if found.error_trace is not None:
-        goal = f"marking {found.error_trace.node}, in which an exception is raised"
-        way = _told(opened, found.error_trace, goal)
-        parts.append(f"{way}\n  then {error_text(opened.flat, found)}")
-    return "\n\n\n".join(parts)
-
-
-def _told(opened: OpenNet, trace: Trace, goal: str) -> str:
-    head = f"Shortest run to {goal}: {trace.steps} steps, {trace.file}"
-    try:
-        shown = steps(opened.flat, opened.storage, trace.file, most=SHOWN_STEPS)
-    except (TraceRefusedError, GameError, OSError) as problem:
-        return f"{head}\n  (it cannot be shown: {problem})"
-    return f"{head}\n{text(shown, trace.steps)}" if trace.steps else head
-
-
-def _figures(found: Exploration) -> str:
-    partial = "" if found.complete else f" TRUNCATED: {clause(found.why)}."
-    if found.why == "decided":
-        partial = f" Ended early: {clause(found.why)}."
-    return (
-        f"{found.nodes:,} markings and {found.arcs:,} arcs{' of the reduced space' * found.is_reduced} "
-        f"in {found.seconds:.2f} s "
-        f"({found.states_per_second:,.0f} markings/s, {found.threads} thread{'s' * (found.threads > 1)}), "
-        f"{found.bytes_per_state:.1f} bytes a marking, {found.peak_mib:.0f} MiB at most; "
-        f"compiled in {found.compile_seconds:.1f} s.{partial}"
-    )

@@ -29,6 +29,7 @@ from pn2code.semantics.marking import (
     place_from_json,
     place_to_json,
 )
+from pn2code.semantics.references import Held
 from pn2code.semantics.replay import replay
 from pn2code.simulate import programs
 from pn2code.verify.explore import Wishes, explore
@@ -108,47 +109,61 @@ class _Whole:
         self._net = net
         self._game = Game(net, storage, files=Files(None))
         self._clock = clock
+        self._references: dict[int, Held] = {}
 
     def compared(self, graph: Path) -> CoreReport:
         """The explorer's graph, node by node."""
         markings: list[tuple[float, Mapping[str, Any]]] = []
-        leaving: list[set[str]] = []
+        leaving: list[dict[str, int]] = []
         rows: list[Mapping[str, Any]] = []
         with graph.open(encoding="utf-8", errors="surrogateescape") as lines:
             for line in lines:
                 row = json.loads(line)
                 if "node" in row:
                     markings.append((row["t"], row["marking"]))
-                    leaving.append(set())
+                    leaving.append({})
                 else:
                     rows.append(row)
         for row in rows:
             element = self._element_key(row["t"], row["transition"], row["binding"])
-            leaving[row["from"] - 1].add(f"{element} -> {_marking_key(*markings[row['to'] - 1])}")
+            text = f"{element} -> {_marking_key(*markings[row['to'] - 1])}"
+            leaving[row["from"] - 1][text] = row["to"] - 1
         try:
             if not markings or _marking_key(*markings[0]) != self._key(self._game.marking):
                 raise _Differs("the initial markings differ")
-            for (time, places), arcs in zip(markings, leaving, strict=True):
-                self._node(time, places, arcs)
+            self._references = {0: self._game.marking.references}
+            for node, ((time, places), arcs) in enumerate(zip(markings, leaving, strict=True)):
+                self._node(node, time, places, arcs)
         except (_Differs, GameError) as difference:
             return CoreReport(len(markings), len(rows), False, deviation=str(difference))
         return CoreReport(len(markings), len(rows), True)
 
-    def _node(self, time: float, places: Mapping[str, Any], arcs: set[str]) -> None:
-        """Raises `_Differs` unless the node has the arcs that the token game gives it."""
+    def _node(
+        self, node: int, time: float, places: Mapping[str, Any], arcs: Mapping[str, int]
+    ) -> None:
+        """Raises `_Differs` unless the node has the arcs that the token game gives it.
+
+        The graph does not say what references hold: from the initial marking on the token game finds it out.
+        """
         net, game = self._net, self._game
         tokens = tuple(place_from_json(p.colset, places[p.name]) for p in net.places)
-        marking = game.settle(Marking(time if net.real_time else int(time), tokens))
-        expected: set[str] = set()  # one arc for each binding element: equal ones are one
+        if node not in self._references:
+            raise _Differs(f"no node before it leads to {_short(places)}")
+        at = time if net.real_time else int(time)
+        marking = game.settle(Marking(at, tokens, self._references[node]))
+        expected: dict[str, Held] = {}  # one arc for each binding element: equal ones are one
         for element in game.enabled_in(marking):
             after, occurred = game.occur(marking, element)
             name = net.transitions[element.transition].name
             key = self._element_key(marking.time, name, binding_to_json(occurred))
-            expected.add(f"{key} -> {self._key(after)}")
-        for text in expected - arcs:
+            expected[f"{key} -> {self._key(after)}"] = after.references
+        for text in expected.keys() - arcs.keys():
             raise _Differs(f"only the token game has, at {_short(places)}: {text}")
-        for text in arcs - expected:
+        for text in arcs.keys() - expected.keys():
             raise _Differs(f"only the compiled net has, at {_short(places)}: {text}")
+        for text, held in expected.items():
+            if self._references.setdefault(arcs[text], held) != held:
+                raise _Differs(f"references hold something else, at {_short(places)} after: {text}")
 
     def _element_key(self, time: float, transition: str, binding: Mapping[str, Any]) -> str:
         shown = 0.0 if self._clock.is_relative else float(time)

@@ -1,19 +1,28 @@
 """What a transition of a robot tells the robot to do, by the net: the calls of its primitives, in order.
 
-calls: list[Command] = []
-with noting(game, config.primitives, calls):
+calls = Calls()
+listener = Listener(game, config.primitives)
+with listener.noting(calls):
     marking, element = game.occur(marking, element)
 calls        # [MoveJoint(Pose(...))]
+
+What counts is what the net calls, not what `[primitives]` names: a function that gives no value and is not made of
+primitives can be called for no other reason than to be carried out. Such a call is an `Unknown`, which no script
+commands.
 """
 
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
+from dataclasses import dataclass
+from functools import partial
 from typing import Any
 
 from pn2code.cell.config import Primitive
+from pn2code.cell.reach import Reach
+from pn2code.ml.types import UNIT, TFun
 from pn2code.robot import commands
 from pn2code.semantics.evaluate import Evaluator
 from pn2code.semantics.game import Game
@@ -22,32 +31,66 @@ from pn2code.semantics.values import Native, Value
 _NAMES = ("x", "y", "z", "rx", "ry", "rz")
 
 
-Calls = list[commands.Command]
+@dataclass(frozen=True, slots=True)
+class Unknown:
+    """A call of a function that is no command, and does nothing else."""
+
+    function: str
+
+    def __str__(self) -> str:
+        """For people."""
+        return f"`{self.function}`, which is no command"
 
 
-@contextmanager
-def noting(game: Game, primitives: Mapping[str, Primitive], calls: Calls) -> Iterator[None]:
-    """Appends each call of a primitive, as long as the block lasts; what the primitives give stays the same."""
-    values = game.evaluator.globals
-    symbols = game.net.program.globals
-    own = {
-        symbols[name].uid: (primitive, values[symbols[name].uid])
-        for name, primitive in primitives.items()
-        if name in symbols and symbols[name].uid in values
-    }
+Calls = list[commands.Command | Unknown]
 
-    def noted(primitive: Primitive, function: Value) -> Native:
+
+class Listener:
+    """Hears the calls of a token game; what the functions give stays the same.
+
+    Args:
+        game: the token game.
+        primitives: the functions that are commands, by name.
+    """
+
+    def __init__(self, game: Game, primitives: Mapping[str, Primitive]) -> None:
+        self._values = game.evaluator.globals
+        self._calls = Calls()
+        symbols = game.net.program.globals
+        own = {symbols[name].uid: primitive for name, primitive in primitives.items()}
+        self._listening = {uid: self._noted(uid, partial(command, p)) for uid, p in own.items()}
+        reach = Reach(game.net.program)
+        for symbol in reach.functions():
+            is_idle = isinstance(symbol.type, TFun) and symbol.type.result == UNIT
+            acts = any(s.uid in own for s in reach.from_symbol(symbol))
+            if is_idle and not acts and symbol.uid in self._values:
+                self._listening[symbol.uid] = self._noted(
+                    symbol.uid, partial(_unknown, symbol.name)
+                )
+
+    def _noted(self, uid: int, heard: Callable[[Any], commands.Command | Unknown]) -> Native:
+        function = self._values[uid]
+
         def note(evaluator: Evaluator, argument: Value) -> Any:
-            calls.append(command(primitive, argument))
+            self._calls.append(heard(argument))
             return evaluator.call(function, argument)
 
-        return Native(primitive.function, 1, note)
+        return Native("", 1, note)
 
-    values.update({uid: noted(*found) for uid, found in own.items()})
-    try:
-        yield
-    finally:
-        values.update({uid: function for uid, (_, function) in own.items()})
+    @contextmanager
+    def noting(self, calls: Calls) -> Iterator[None]:
+        """Appends each call, as long as the block lasts."""
+        kept = {uid: self._values[uid] for uid in self._listening}
+        self._calls = calls
+        self._values.update(self._listening)
+        try:
+            yield
+        finally:
+            self._values.update(kept)
+
+
+def _unknown(function: str, _argument: Any) -> Unknown:
+    return Unknown(function)
 
 
 def command(primitive: Primitive, argument: Any) -> commands.Command:
@@ -56,6 +99,7 @@ def command(primitive: Primitive, argument: Any) -> commands.Command:
         case "move_joint":
             return commands.MoveJoint(_pose(argument))
         case "move_linear":
+            assert primitive.frame is not None, "an entry without a frame is an error"
             return commands.MoveLinear(_pose(argument), primitive.frame)
         case "move_home":
             return commands.MoveHome()

@@ -6,6 +6,7 @@ from collections.abc import Iterable, Mapping, Sequence
 
 from pn2code.conformance import intended
 from pn2code.conformance.compare import QUESTIONS, Compared
+from pn2code.conformance.engine import ENGINE
 from pn2code.conformance.finding import NOTHING, Finding, State
 
 HEAD = """# Conformance
@@ -59,7 +60,7 @@ def document(
         or _worse(spaces.get(n.path, NOTHING))
     ]
     parts += ["## What does not simply agree\n", *_notes(notes, walks, spaces), ""]
-    parts.append(intended.TEXT)
+    parts += [ENGINE, intended.TEXT]
     parts += ["## Net by net\n", *_table(nets, walks, spaces), ""]
     parts += ["## The semantics suite\n", *_suite(suite, walks), ""]
     parts += ["## Expressions\n", *_expressions(expressions), ""]

@@ -2,9 +2,7 @@
 """Where pn2code does not follow the engine of CPN Tools, and why: the part of the report that is written by hand."""
 
 TEXT = """\
-## Where the engine is not followed
-
-Found by asking it (`./dev oracle`), each kept on purpose:
+Of inscriptions and expressions also, each kept on purpose:
 
 * **A constant inside a list, a nested tuple or a union in an input inscription** (`four :: x :: nil`): the engine binds the name
   anew and then ends with `Subtract`; here it is compared, as at the top of a tuple.

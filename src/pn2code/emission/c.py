@@ -11,7 +11,7 @@ from collections.abc import Iterable
 
 from pn2code.diagnostics import Origin
 from pn2code.emission import c_packed, c_places, c_sums, c_tables
-from pn2code.emission.c_effects import Effects, is_draw
+from pn2code.emission.c_effects import Effects, is_assignment, is_draw
 from pn2code.emission.c_expressions import (
     Expressions,
     Types,
@@ -64,7 +64,7 @@ class _Emitter:
         self._tables = tuple(self._names.table(p.table) for p in net.places)
         self._timed = tuple(p.timed for p in net.places)
         self._needs_context = self._context_users()
-        self._effects = Effects(net)
+        self._effects = Effects(net, self._types.holds_reference)
         self._orders = c_places.Orders(self._types, self._names, self._descriptors)
         self._rooms = c_places.rooms(net)
         self._numbers = c_packed.Numbers(self._types, self._names, self._descriptors)
@@ -268,7 +268,7 @@ class _Emitter:
         search.keeps = uses_context(
             _without_wanted(t.enumerate), self._needs_context, self._definitions
         )
-        search.releases = not self._effects.reaches(t.enumerate, _is_write)
+        search.releases = not self._effects.reaches(t.enumerate, is_assignment)
         search.may_fail = search.keeps or any(
             isinstance(n, ir.Wanted | ir.UnlessLegal) for n in ir_nodes(t.enumerate)
         )
@@ -332,6 +332,8 @@ class _Emitter:
                 if not self._net.places[i].packed
             ],
             "looks": self._effects.looks((t.enumerate, t.fire)),
+            "looks_outside": self._effects.looks_outside((t.enumerate, t.fire)),
+            "assigns": self._effects.reaches(t.fire, is_assignment),
             "affected": ""
             if len(affected) == len(self._net.transitions)
             else ", ".join(f"{i}U" for i in affected),
@@ -509,7 +511,10 @@ class _Emitter:
             "word_mask": self._word_mask(),
             "inlined": "PN_INLINE" if self._has_inlined else "PN_NET_SEARCH static",
             "bag_places": ", ".join(f"{p.index}U" for p in net.places if not p.packed),
-            "has_references": any(g.is_reference for g in net.globals),
+            "roots": [
+                (self._names.table(g.table), self._names.value(g.name, g.hint))
+                for g in self._effects.roots()
+            ],
             "has_arena_values": self._has_arena_values
             or any(g.is_reference or self._types.holds_reference(g.type) for g in net.globals),
         }
@@ -560,12 +565,6 @@ def _without_wanted(statements: tuple[ir.Stmt, ...]) -> tuple[ir.Stmt, ...]:
         else:
             out.append(s)
     return tuple(out)
-
-
-def _is_write(node: object) -> bool:
-    if isinstance(node, ir.SetGlobal):
-        return node.is_reference
-    return isinstance(node, ir.SetContents) and node.reference.type.rep is Rep.REF
 
 
 def _where(origin: Origin) -> str:

@@ -8,6 +8,7 @@ from pn2code.emission.c_places import staying_pairs
 from pn2code.lowering import ir
 from pn2code.lowering.calls import called, ir_nodes
 from pn2code.lowering.functions import is_impure_builtin
+from pn2code.lowering.ir import Rep
 
 _EXAMINED = (
     ir.ForTokens, ir.TokenValue, ir.UnlessAvailable, ir.UnlessHeld, ir.UnlessEmpty, ir.Take, ir.TakeAll,
@@ -21,9 +22,14 @@ class Effects:
 
     Args:
         net: the net.
+        holds_reference: whether there may be cells of references in a value of the type.
     """
 
-    def __init__(self, net: ir.NetIR) -> None:
+    def __init__(
+        self, net: ir.NetIR, holds_reference: Callable[[ir.IrType], bool] = lambda t: False
+    ) -> None:
+        self._net = net
+        self._holds_reference = holds_reference
         self._functions = net.functions
         self._calls = {f.key: called(f.body) for f in net.functions}
         self._reaching: dict[Callable[[object], bool], set[str]] = {}
@@ -69,6 +75,44 @@ class Effects:
         """Whether more than the binding, the marking and the stream of random numbers decides."""
         return self.reaches(item, self._is_look)
 
+    def looks_outside(self, item: object) -> bool:
+        """The same without references: whether it may be another time what it is now, in the same state."""
+        return self.reaches(item, is_outside)
+
+    def roots(self) -> tuple[ir.Global, ...]:
+        """The variables that are state besides the marking, in order.
+
+        Those that transitions assign; and if they assign any, or the contents of any cell, all through which cells are
+        reached, and all of which the address is known to others.
+        """
+        nodes = [
+            n
+            for t in self._net.transitions
+            for n in self._reached((t.enumerate, t.fire, t.thresholds))
+        ]
+        if not any(map(is_assignment, nodes)):
+            return ()
+        assigned = {n.name for n in nodes if isinstance(n, ir.SetGlobal) and n.is_reference}
+        everywhere = (self._net.functions, self._net.globals, self._net.transitions)
+        assigned |= {n.name for n in ir_nodes(everywhere) if isinstance(n, ir.AddressOf)}
+        return tuple(
+            g for g in self._net.globals if g.name in assigned or self._holds_reference(g.type)
+        )
+
+    def _reached(self, item: object) -> list[object]:
+        """All pieces of IR in it and in the functions that it calls."""
+        bodies = {f.key: f.body for f in self._functions}
+        found: list[object] = list(ir_nodes(item))
+        waiting = [n.function for n in found if isinstance(n, ir.FunCall)]
+        known: set[str] = set()
+        while waiting:
+            key = waiting.pop()
+            if key not in known:
+                known.add(key)
+                found += ir_nodes(bodies[key])
+                waiting += self._calls[key]
+        return found
+
     def reaches(self, item: object, what: Callable[[object], bool]) -> bool:
         """Whether there is something of a kind in IR, directly or in a function that is called."""
         reaching = self._functions_reaching(what)
@@ -97,13 +141,25 @@ class Effects:
 
     def _is_look(self, node: object) -> bool:
         match node:
-            case ir.Op(name=name):
-                return is_impure_builtin(name) and not is_draw(node)
+            case ir.Op():
+                return is_outside(node)
             case ir.Contents() | ir.AddressOf():
                 return True
             case ir.GlobalUse(name=name):
                 return name in self._references
         return False
+
+
+def is_outside(node: object) -> bool:
+    """Whether a piece of IR looks at files or clocks."""
+    return isinstance(node, ir.Op) and is_impure_builtin(node.name) and not is_draw(node)
+
+
+def is_assignment(node: object) -> bool:
+    """Whether a piece of IR changes what a reference holds that may outlive the evaluation."""
+    if isinstance(node, ir.SetGlobal):
+        return node.is_reference
+    return isinstance(node, ir.SetContents) and node.reference.type.rep is Rep.REF
 
 
 def is_draw(node: object) -> bool:

@@ -279,8 +279,7 @@ class StepTranslator:
                 self._nodes.append(Line(t.Measure(argument.exp, t.Target(target))))
                 return Scalar(t.Name(target), tdl.Type.POSE)
             motion = t.Motion.JOINT if command == "move_joint" else t.Motion.LINEAR
-            frame = primitive.frame if command == "move_linear" else None
-            self._nodes.append(Line(t.Move(motion, argument.exp, frame)))
+            self._nodes.append(Line(t.Move(motion, argument.exp, primitive.frame)))
         elif command == "move_home":
             self._nodes.append(Line(t.Move(t.Motion.JOINT, None)))
         elif command == "tool":

@@ -22,6 +22,7 @@ from pn2code.medium.places import Crashes, MediumNet, modelled
 from pn2code.medium.rules import Rules
 from pn2code.medium.skeleton import Skeleton, Topology, topology
 from pn2code.medium.tell import Teller
+from pn2code.verify import basis, messages
 from pn2code.verify.answers import Verdict
 from pn2code.verify.explore import Wishes, explore
 from pn2code.verify.limits import Limits, Reduction
@@ -73,6 +74,11 @@ class Answer:
     assumes: str
     evidence: tuple[Evidence, ...]
 
+    @property
+    def rests_on(self) -> str | None:
+        """What has to be seen for this answer: a word of `basis`; None: there is no answer."""
+        return {"yes": basis.ARCS, "no": basis.RUN}.get(self.answer)
+
     def row(self) -> dict[str, Any]:
         """For programs."""
         return {
@@ -86,6 +92,7 @@ class Answer:
             "transitions": self.transitions,
             "seconds": round(self.seconds, 3),
             "assumes": self.assumes,
+            "rests_on": self.rests_on,
             "evidence": [
                 {
                     "fault": None if e.fault is None else e.fault.name.lower(),
@@ -172,6 +179,7 @@ def whole(
         run,
         assumes,
         judged=bool(partition.final_places),
+        carried=partition,
     )
 
 
@@ -218,7 +226,9 @@ def _explored(
     assumes: str,
     *,
     judged: bool,
+    carried: Partition | None = None,
 ) -> Answer:
+    """`carried`: the cell whose messages have to have a form that the codecs can write and read."""
     began = time.perf_counter()
     mine = replace(
         run.limits,
@@ -240,6 +250,12 @@ def _explored(
         found = explore(net.net, storage, mine, run.d, wishes)
         runs = () if found is None else tuple(_evidence(net, storage, found, judged))
     answer, why = _verdict(net, found, runs, judged)
+    if carried is not None and found is not None and answer == "yes":
+        sent = messages.examine(carried, found, run.d)  # the writer's place has kept its index
+        if sent.answer == "no":
+            answer, why = "no", sent.says
+        elif sent.answer == "unknown":
+            answer, why = "inconclusive", "the values of its messages are not known"
     return Answer(
         check=check,
         says=says,
@@ -266,11 +282,6 @@ def _question(net: MediumNet) -> str:
     return "\n".join(lines) + "\n"
 
 
-def _ends(net: MediumNet, found: Exploration) -> Sequence[Mapping[str, Any]]:
-    """The answer to the question; nothing for a cell that is made to go on for ever."""
-    return found.answers if any(found.fired[t] for t in net.ends) else ()
-
-
 def _evidence(
     net: MediumNet, storage: Mapping[str, str], found: Exploration, judged: bool
 ) -> Iterator[Evidence]:
@@ -282,7 +293,9 @@ def _evidence(
         if fault not in seen:
             seen.add(fault)
             yield Evidence(fault, trace.steps, lines)
-    for answer in _ends(net, found):
+    for answer in (
+        found.answers
+    ):  # nothing is asked of a cell without final places: it is made to go on for ever
         if answer["answer"] == "no" and None not in seen and answer["trace"]:
             lines, _ = teller.told(Path(answer["trace"]))
             yield Evidence(
@@ -299,6 +312,6 @@ def _verdict(
         return "no", ""
     if not found.complete:
         return "inconclusive", f"the exploration is not complete: {clause(found.why)}"
-    if judged and (found.dead_count or any(a["answer"] != "yes" for a in _ends(net, found))):
+    if judged and (found.dead_count or any(a["answer"] != "yes" for a in found.answers)):
         return "no", ""
     return "yes", ""

@@ -20,12 +20,12 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator
 
 from pn2code.cell.partition import ChannelKind, Partition
-from pn2code.medium.builder import Arc
 from pn2code.medium.faults import Fault
 from pn2code.medium.lives import Lives
 from pn2code.medium.places import Crashes, Files, MediumNet
 from pn2code.medium.rules import Emptying, Rules
 from pn2code.ml.core import Exp
+from pn2code.net.builder import Arc
 
 Extra = Callable[["Composer"], None]
 """Adds transitions when the composition is done."""

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from pn2code.medium.builder import Arc
 from pn2code.medium.faults import Fault
 from pn2code.medium.places import ABSENT, FINISHED, RUNNING, STOPPED, Parts
 from pn2code.ml.core import Exp
+from pn2code.net.builder import Arc
 
 
 class Lives(Parts):

@@ -7,10 +7,10 @@ from dataclasses import dataclass, field
 
 from pn2code.cell.partition import Channel, Partition
 from pn2code.frozen import frozen
-from pn2code.medium.builder import Arc, Builder
 from pn2code.medium.faults import Fault
 from pn2code.medium.rules import Rules
 from pn2code.ml.core import Exp
+from pn2code.net.builder import Arc, Builder
 from pn2code.net.flat import FlatNet, Form
 
 ABSENT, RUNNING, FINISHED, STOPPED = range(4)

@@ -14,10 +14,10 @@ from collections.abc import Iterator, Sequence
 
 from pn2code.cell.partition import Channel, ChannelKind, OwnerKind, Partition
 from pn2code.frozen import frozen
-from pn2code.medium.builder import Arc, Builder
 from pn2code.medium.compose import Composer
 from pn2code.medium.faults import Fault
 from pn2code.ml.core import Exp
+from pn2code.net.builder import Arc, Builder
 
 ROUNDS = 2
 """Exchanges: the second one can meet what is left of the first."""

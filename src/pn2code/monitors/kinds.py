@@ -15,6 +15,7 @@ from enum import Enum
 from pn2code.diagnostics import Diagnostics, Origin, SourceText
 from pn2code.monitors.codes import MONITOR_ERROR, UNSUPPORTED_MONITOR
 from pn2code.net.flat import FlatNet, FlatTransition, PlaceInstance
+from pn2code.net.instances import unique_names
 from pn2code.reading.document import Document, RawInstance, RawMonitor
 
 
@@ -211,7 +212,10 @@ class _Nodes:
         for t in flat.transitions:
             self._transitions.setdefault(t.id, []).append(t)
         pages = {p.id: p.name for p in document.pages}
-        names = {t.id: t.name for p in document.pages for t in p.transitions}
+        names: dict[str, str] = {}
+        for page in document.pages:
+            leading = [(t.id, t.name) for t in page.transitions if t.substitution is not None]
+            names |= unique_names(leading)
         self._paths = dict(_paths(document.instances, "", pages, names))
 
     def place(self, identity: str, instance: str) -> PlaceInstance | None:
@@ -233,7 +237,7 @@ def _paths(
     pages: Mapping[str, str],
     transitions: Mapping[str, str],
 ) -> Iterator[tuple[str, str]]:
-    """Id and path of each page instance. (Paths of the flat net, but for repeated names, which get a number there.)"""
+    """Id and path of each page instance, as in the flat net (but that prime pages of one name get a number there)."""
     for i in instances:
         own = pages.get(i.page, "") if i.page else transitions.get(i.transition, "")
         segment = own.replace("/", "_")

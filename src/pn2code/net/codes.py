@@ -17,7 +17,30 @@ PORT_UNASSIGNED = register(
     "port-unassigned",
     "a port has no socket",
     "A port place of a page is not assigned to a place next to the substitution transition. As in "
-    "CPN Tools it is then an ordinary place of its own, which is rarely what was meant.",
+    "CPN Tools it is then an ordinary place of its own, which is rarely what was meant. Where the port has a socket "
+    "at another substitution transition of the page, this is a warning: the engine of CPN Tools cannot give the "
+    "marking of such a net (`Exception Subscript raised when checking marking`), stops its simulation after a few "
+    "steps, and does not enter the state-space tool.",
+)
+SOCKET_UNASSIGNED = register(
+    "socket-unassigned",
+    "a place beside a substitution transition is no socket",
+    "A place that has an arc to a substitution transition should be assigned to a port of the page that the "
+    "transition stands for. The editor of CPN Tools refuses the net otherwise; in pn2code the arc has no meaning.",
+)
+SOCKET_ARCS = register(
+    "socket-arcs",
+    "the arcs of a socket do not suit the type of its port",
+    "A socket of an input port has an arc to the substitution transition, that of an output port an arc from it, that "
+    "of an I/O port both (or one with two heads). The editor of CPN Tools refuses the net otherwise; in pn2code only "
+    "the assignment of the port counts.",
+)
+NAME_NOT_UNIQUE = register(
+    "name-not-unique",
+    "two nodes of a page, or two pages, have one name",
+    "The editor of CPN Tools refuses a net in which two places or two transitions of a page, or two pages, have "
+    "one name (`name not unique`). It compares the names as it sends them to its engine: cut at the first sign that "
+    "is no letter, digit, blank, `_` or `'`. pn2code tells such nodes apart by a number behind the name.",
 )
 PORT_ASSIGNMENT = register(
     "port-assignment",
@@ -45,8 +68,9 @@ FUSION_MISMATCH = register(
 FUSION_MEMBER = register(
     "fusion-member",
     "a fusion set and its places do not agree",
-    "A fusion set lists a place that does not exist, or a place names a fusion set that does not "
-    "list it.",
+    "A fusion set lists a place that does not exist or that does not name the set, or a place names a fusion set "
+    "that does not list it or does not exist. As in CPN Tools, what the place says decides: it belongs to the set that "
+    "it names, if that exists, and to no other.",
 )
 SUBSTITUTION_INSCRIPTION = register(
     "substitution-inscription",
@@ -114,7 +138,8 @@ ARC_EMPTY = register(
     "arc-empty",
     "an arc has no inscription",
     "Arcs need an inscription that says which tokens they move; only at places of colour set UNIT "
-    "does an empty one mean 1`().",
+    "does an empty one mean 1`(). The editor of CPN Tools never has a transition with such an arc checked, so the "
+    "net cannot run there, and it says nothing.",
 )
 ARC_IGNORED = register(
     "arc-inscription-ignored",
@@ -150,4 +175,19 @@ NET_TOO_LARGE = register(
     "Each substitution transition makes an instance of its page, and pages nest, so a small file "
     "can describe an enormous net. pn2code refuses nets with more elements than it could ever "
     "run.",
+)
+SUMMANDS_SHARE = register(
+    "summands-share-variables",
+    "summands of one arc share variables, and each has others of its own",
+    "CPN Tools binds the variables of an arc at one moment, and of summands that share a variable that has no value "
+    "yet it uses one only; the others test. For 1`(a, b) ++ 1`(a, c) it says `No complete binding sequence found`. If "
+    "the shared variable has its value from another arc or a guard, the arc is accepted, and so is "
+    "1`(a, b) ++ 1`(b, a), whose second summand has nothing of its own.",
+)
+SPACE_NAME = register(
+    "state-space-name",
+    "a name of the net hides one that the state-space tool of CPN Tools uses",
+    "CPN Tools compiles the sources of its state-space tool after the declarations of the net. A constant, function, "
+    "value or colour set of a name that these sources use keeps them from compiling: `Exception raised entering state "
+    "space tool`. The simulator is not affected, and neither is pn2code.",
 )

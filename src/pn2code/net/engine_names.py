@@ -54,6 +54,12 @@ def engine_name(name: str) -> str:
     return re.sub(r"[^A-Za-z'_0-9]", "_", cut.strip())
 
 
+def sent_name(name: str) -> str:
+    """A name as the editor sends it to the engine: cut at the first sign that it refuses, "" if none is left."""
+    found = re.match(r"[A-Za-z][A-Za-z0-9'_\s]*", name.strip())
+    return re.sub(r"\s+", "_", found.group().strip()) if found else ""
+
+
 def _legal(text: str) -> str:
     name = engine_name(text)
     return f"N{name}" if name[:1].isdigit() else name

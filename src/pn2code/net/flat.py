@@ -10,6 +10,7 @@ Example: in the riveting cell the page `Robot` is used twice, so its transition 
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import field
 from enum import Enum
 
@@ -182,6 +183,7 @@ class PlaceInstance:
         place: index in `FlatNet.places`.
         caption: the name exactly as it is written, with line breaks; "" if it has none.
         is_assigned: whether it is a port that has a socket.
+        is_port: whether it is a port.
     """
 
     id: str
@@ -192,6 +194,7 @@ class PlaceInstance:
     place: int
     caption: str = ""
     is_assigned: bool = False
+    is_port: bool = False
 
 
 @frozen
@@ -262,3 +265,5 @@ class FlatNet:
     place_instances: tuple[PlaceInstance, ...] = ()
     """all of them, by page instance in order of the hierarchy, then in order of the file"""
     fusions: tuple[FlatFusion, ...] = ()
+    blocks: Mapping[Origin, str] = field(default_factory=dict)
+    """of the ML declarations that stand in a named block of the file, by their origin: its name, `Outer/Inner`"""

@@ -104,6 +104,7 @@ class _Flattener:
                     place=group_of[(instance.index, place.id)],
                     caption=captions.get(place.id, place.name),
                     is_assigned=self.has_socket(instance, place),
+                    is_port=bool(place.port),
                 )
                 for instance in self.instances
                 for place in instance.page.places
@@ -120,6 +121,7 @@ class _Flattener:
                 "colour_sets": len(self.net.program.colsets),
                 "variables": len(self.net.program.variables),
             },
+            blocks=self.net.net.blocks,
         )
 
     def fusions(self, group_of: dict[Key, int]) -> Iterator[FlatFusion]:

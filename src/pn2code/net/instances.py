@@ -3,17 +3,18 @@
 Order: depth first from each prime page in order of the file; an instance comes before those below
 it, and these in the order of their substitution transitions.
 
-CPN Tools' numbers of the instances of one page (from 1) follow another order, found by experiment:
-depth first too, but below a page that is not a prime page the substitution transitions count from
-the last to the first. Example: Top has A = Sub and B = Sub; Sub has C = Leaf and D = Leaf. The
-instances of Sub are A: 1, B: 2; those of Leaf are A/C: 2, A/D: 1, B/C: 4, B/D: 3.
+CPN Tools' numbers of the instances of one page (from 1) follow another order, found by experiment: it takes the
+substitution transitions that lead to the page in the order of their names, and numbers all instances through the
+first one, in the order of the instances of its page, then all through the second, and so on. Example: Top has A = Sub
+and B = Sub; Sub has D = Leaf and C = Leaf. The instances of Leaf are A/C: 1, B/C: 2, A/D: 3, B/D: 4.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, replace
 
+from pn2code.net.engine_names import sent_name
 from pn2code.net.typed import TypedNet, TypedPage
 
 
@@ -27,6 +28,7 @@ class PageInstance:
         path: names from the prime page down, joined with "/": "Top/Robot1".
         number: CPN Tools' number among the instances of the page.
         parent: index of the instance with the substitution transition; -1 for prime pages.
+        through: id of that transition; "" for prime pages.
         sockets: port id -> socket id on the parent's page.
     """
 
@@ -35,6 +37,7 @@ class PageInstance:
     path: str
     number: int
     parent: int
+    through: str
     sockets: Mapping[str, str]
 
     def name(self, element: str) -> str:
@@ -77,38 +80,67 @@ def expand(net: TypedNet) -> list[PageInstance]:
     found: list[PageInstance] = []
     prime = [pages[i] for i in net.prime_pages]
     names = unique_names((p.id, _segment(p.name)) for p in prime)
-    stack = [(p.id, names[p.id], -1, dict[str, str]()) for p in reversed(prime)]
+    stack = [(p.id, names[p.id], -1, "", dict[str, str]()) for p in reversed(prime)]
     segments = {
         p.id: unique_names((s.id, _segment(s.name)) for s in p.substitutions) for p in net.pages
     }
     while stack:
-        identity, path, parent, sockets = stack.pop()
+        identity, path, parent, through, sockets = stack.pop()
         page = pages[identity]
         index = len(found)
-        found.append(PageInstance(index, page, path, 0, parent, sockets))
+        found.append(PageInstance(index, page, path, 0, parent, through, sockets))
         for s in reversed(page.substitutions):
             below = f"{path}/{segments[identity][s.id]}"
-            stack.append((s.subpage, below, index, {q.port: q.socket for q in s.ports}))
-    return [replace(i, number=n) for i, n in zip(found, _numbers(found), strict=True)]
+            stack.append((s.subpage, below, index, s.id, {q.port: q.socket for q in s.ports}))
+    numbers = _numbers(net, found)
+    return [replace(i, number=numbers[i.index]) for i in found]
 
 
-def _numbers(instances: Sequence[PageInstance]) -> list[int]:
-    """CPN Tools' number of each instance, in the order of `instances`."""
-    below: list[list[int]] = [[] for _ in instances]
+def _numbers(net: TypedNet, instances: Iterable[PageInstance]) -> dict[int, int]:
+    """CPN Tools' number of each instance, by its index."""
+    made: dict[tuple[str, int], int] = {}
+    of_page: dict[str, list[int]] = {p.id: [] for p in net.pages}
     for i in instances:
-        if i.parent >= 0:
-            below[i.parent].append(i.index)
-    counts: dict[str, int] = {}
-    numbers = [0] * len(instances)
-    stack = [i.index for i in reversed(instances) if i.parent < 0]
-    while stack:
-        index = stack.pop()
-        page = instances[index].page.id
-        counts[page] = numbers[index] = counts.get(page, 0) + 1
-        # The last one on the stack comes first.
-        prime = instances[index].parent < 0
-        stack.extend(reversed(below[index]) if prime else below[index])
-    return numbers
+        if i.parent < 0:
+            of_page[i.page.id].append(i.index)
+        else:
+            made[i.through, i.parent] = i.index
+    leading: dict[str, list[tuple[str, str]]] = {p.id: [] for p in net.pages}
+    for page in net.pages:
+        for s in page.substitutions:
+            leading[s.subpage].append((page.id, s.id))
+    captions = {t.id: t.caption for page in net.net.document.pages for t in page.transitions}
+    for page_id in _parents_first(leading):
+        ways = leading[page_id]
+        ways.sort(key=lambda way: (sent_name(captions[way[1]]), _slot(way[1], len(captions))))
+        for above, through in ways:
+            of_page[page_id].extend(made[through, i] for i in of_page[above])
+    return {i: n for listed in of_page.values() for n, i in enumerate(listed, 1)}
+
+
+def _parents_first(leading: Mapping[str, Iterable[tuple[str, str]]]) -> list[str]:
+    """The pages, each after those that lead to it."""
+    done: dict[str, None] = {}
+    for start in leading:
+        stack = [start]
+        while stack:
+            above = [p for p, _ in leading[stack[-1]] if p not in done]
+            if above:
+                stack.extend(above)
+            else:
+                done.setdefault(stack.pop())
+    return list(done)
+
+
+def _slot(identity: str, transitions: int) -> int:
+    """Where the engine keeps a transition in its hash table, which has room for more than there are.
+
+    Substitution transitions of one name, on different pages, are taken in this order.
+    """
+    hashed = 0
+    for byte in identity.encode():
+        hashed = 33 * hashed + 720 + byte
+    return hashed % max(32, 1 << transitions.bit_length())
 
 
 def _segment(name: str) -> str:

@@ -9,14 +9,14 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from pn2code.diagnostics import Diagnostics, Note
+from pn2code.diagnostics import Diagnostics, Note, Origin
+from pn2code.net import editor
 from pn2code.net.codes import (
     FUSION_MEMBER,
     MONITOR_NODE,
     PAGE_RECURSION,
     PORT_ASSIGNMENT,
     PORT_DIRECTION,
-    PORT_UNASSIGNED,
     SUBPAGE_UNKNOWN,
     SUBSTITUTION_INSCRIPTION,
     UNSUPPORTED_CHANNEL,
@@ -38,6 +38,8 @@ from pn2code.reading.document import (
     RawArc,
     RawBlock,
     RawDeclaration,
+    RawFusion,
+    RawMl,
     RawPage,
     RawPlace,
     RawTransition,
@@ -50,7 +52,15 @@ _KINDS = {
     "inhibitor": ArcKind.INHIBITOR,
     "reset": ArcKind.RESET,
 }
-_PORTS = {"in": "in", "out": "out", "i/o": "io", "io": "io", "inout": "io", "in/out": "io"}
+_PORTS = {
+    "in": "in",
+    "out": "out",
+    "i/o": "io",
+    "io": "io",
+    "inout": "io",
+    "in/out": "io",
+    "general": "io",
+}
 _EMPTY_GUARD = {"[]"}
 _EMPTY_DELAY = {"@+", "@++"}
 _EMPTY_CODE = {"input();output();action();", "input();output();action()"}
@@ -81,6 +91,7 @@ class _Linker:
         self.check_recursion(pages)
         for page in pages:
             self.check_directions(page)
+        editor.warn(self.document, pages, self.d)
         self.check_monitors()
         used = {s.subpage for p in pages for s in p.substitutions}
         options = {k.lower(): v for k, v in self.document.options.items()}
@@ -91,6 +102,7 @@ class _Linker:
             prime_pages=tuple(p.id for p in pages if p.id not in used),
             fusions=fusions,
             real_time=options.get("realtimestamp", "").lower() == "true",
+            blocks=dict(_blocks(self.document.globbox)),
         )
 
     def page(self, page: RawPage, fusion_of: dict[str, str]) -> Page:
@@ -209,15 +221,6 @@ class _Linker:
                     hint="remove one of the assignments",
                 )
             pairs[port] = socket
-        for port, place in ports.items():
-            if port not in pairs:
-                self.d.note(
-                    PORT_UNASSIGNED,
-                    f"port `{place.name}` of page `{target.name}` has no socket at `{t.name}`",
-                    raw.origin,
-                    notes=[Note("the port is declared here", place.origin)],
-                    hint="assign the port to a place beside the substitution transition",
-                )
         return SubstitutionTransition(
             id=t.id,
             name=t.name,
@@ -265,46 +268,61 @@ class _Linker:
                     )
 
     def fusions(self) -> tuple[tuple[FusionSet, ...], dict[str, str]]:
-        """The fusion sets, and the set's name for each place id. Sets of one name are one set."""
-        members: dict[str, list[str]] = {}
-        fusion_of: dict[str, str] = {}
+        """The fusion sets, and the set's name for each place id. Sets of one name are one set.
+
+        A place belongs to the set that it names itself, whatever the sets list: so does the engine get it.
+        """
+        listed: dict[str, list[str]] = {}
         for fusion in self.document.fusions:
-            known = members.setdefault(fusion.name, [])
+            known = listed.setdefault(fusion.name, [])
             for member in fusion.members:
-                if member not in self.places:
+                self.check_member(fusion, member)
+                if member in self.places and member not in known:
+                    known.append(member)
+        members: dict[str, list[str]] = {
+            name: [i for i in ids if self.places[i].fusion == name] for name, ids in listed.items()
+        }
+        for place in self.places.values():
+            if place.fusion in members:
+                if place.id not in listed[place.fusion]:
+                    members[place.fusion].append(place.id)
                     self.d.warning(
                         FUSION_MEMBER,
-                        f"fusion set `{fusion.name}` lists place `{member}`, which does not exist",
-                        fusion.origin,
-                        hint="it is passed over; remove it from the set",
+                        f"place `{place.name}` names fusion set `{place.fusion}`, which does not list it",
+                        place.origin,
+                        hint="it is taken as a member, as in CPN Tools",
                     )
-                elif member in fusion_of and fusion_of[member] != fusion.name:
-                    self.d.error(
-                        FUSION_MEMBER,
-                        f"place `{self.places[member].name}` is in two fusion sets, "
-                        f"`{fusion_of[member]}` and `{fusion.name}`",
-                        self.places[member].origin,
-                        hint="a place can be in one fusion set only",
-                    )
-                elif member not in known:
-                    known.append(member)
-                    fusion_of[member] = fusion.name
-        for place in self.places.values():
-            if place.fusion and place.id not in fusion_of:
+            elif place.fusion:
                 self.d.warning(
                     FUSION_MEMBER,
-                    f"place `{place.name}` names fusion set `{place.fusion}`, which does not list it",
+                    f"place `{place.name}` names fusion set `{place.fusion}`, which does not exist",
                     place.origin,
-                    hint="it is taken as a member",
+                    hint="it is taken as a place of its own, as in CPN Tools",
                 )
-                members.setdefault(place.fusion, []).append(place.id)
-                fusion_of[place.id] = place.fusion
+        fusion_of = {i: name for name, ids in members.items() for i in ids}
         raw = {f.name: f for f in reversed(self.document.fusions)}
-        sets = []
-        for name, ids in members.items():
-            origin = raw[name].origin if name in raw else self.places[ids[0]].origin
-            sets.append(FusionSet(raw[name].id if name in raw else "", name, tuple(ids), origin))
+        sets = (FusionSet(raw[n].id, n, tuple(ids), raw[n].origin) for n, ids in members.items())
         return tuple(sets), fusion_of
+
+    def check_member(self, fusion: RawFusion, member: str) -> None:
+        """Warn of a listed place that does not exist, or does not name the set."""
+        place = self.places.get(member)
+        if place is None:
+            self.d.warning(
+                FUSION_MEMBER,
+                f"fusion set `{fusion.name}` lists place `{member}`, which does not exist",
+                fusion.origin,
+                hint="it is passed over; remove it from the set",
+            )
+        elif place.fusion != fusion.name:
+            names = f"names fusion set `{place.fusion}`" if place.fusion else "names no fusion set"
+            self.d.warning(
+                FUSION_MEMBER,
+                f"fusion set `{fusion.name}` lists place `{place.name}`, which {names}",
+                place.origin,
+                notes=[Note("the set is here", fusion.origin)],
+                hint="it is not taken as a member, as in CPN Tools; if it should be one, put it into the set again",
+            )
 
     def check_recursion(self, pages: tuple[Page, ...]) -> None:
         """Refuse pages that contain themselves, naming the way around."""
@@ -341,6 +359,14 @@ def _flatten(block: RawBlock) -> Iterator[RawDeclaration]:
             yield from _flatten(item)
         else:
             yield item
+
+
+def _blocks(block: RawBlock, outer: str = "") -> Iterator[tuple[Origin, str]]:
+    for item in block.items:
+        if isinstance(item, RawBlock):
+            yield from _blocks(item, "/".join(filter(None, (outer, item.name))))
+        elif isinstance(item, RawMl) and outer:
+            yield item.origin, outer
 
 
 def _unless(inscription: Inscription | None, defaults: set[str]) -> Inscription | None:

@@ -5,6 +5,9 @@ Texts are still texts. Ids remain the keys, since instances of pages are made on
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+from dataclasses import field
+
 from pn2code.diagnostics import Origin
 from pn2code.frozen import frozen
 from pn2code.net.flat import ArcKind
@@ -105,6 +108,7 @@ class Net:
         prime_pages: ids of the pages that are nobody's subpage.
         fusions: in order of the file.
         real_time: the clock is real.
+        blocks: of the ML declarations that stand in a named block, by their origin: its name, "Outer/Inner".
     """
 
     document: Document
@@ -113,6 +117,7 @@ class Net:
     prime_pages: tuple[str, ...]
     fusions: tuple[FusionSet, ...]
     real_time: bool
+    blocks: Mapping[Origin, str] = field(default_factory=dict)
 
     def page(self, identity: str) -> Page:
         """A page by id."""

@@ -83,18 +83,19 @@ class Questions:
 
     def _item(self, f: m.Formula) -> int:
         if isinstance(f, m.Atom):
-            return self._add(f.kind if f.number < 0 else f"{f.kind} {f.number}")
+            return self.line(f.kind if f.number < 0 else f"{f.kind} {f.number}")
         if f.operator not in ("not", "and", "or", *_UNARY, "EU", "AU"):
             return self.item(expanded(f))
         if f.step >= 0:
             if f.operator == "AX":
                 opposite = m.Op("EX", (m.negation(f.parts[0]),), f.step)
                 return self.item(m.negation(opposite))
-            return self._add(f"exa {f.step} {self.item(f.parts[0])}")
+            return self.line(f"exa {f.step} {self.item(f.parts[0])}")
         parts = " ".join(str(self.item(x)) for x in f.parts)
-        return self._add(f"{_UNARY.get(f.operator, f.operator.lower())} {parts}")
+        return self.line(f"{_UNARY.get(f.operator, f.operator.lower())} {parts}")
 
-    def _add(self, line: str) -> int:
+    def line(self, line: str) -> int:
+        """The number of an item that is written already."""
         number = self._numbers.setdefault(line, len(self.lines))
         if number == len(self.lines):
             self.lines.append(line)

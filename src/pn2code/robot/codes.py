@@ -37,3 +37,15 @@ ROBOT_VALUE = register(
     "a value in `[robots]`, `[motion]` or `[scene]` has the wrong type or range",
     "Lengths are in metres, angles in degrees, speeds are above zero; the message says what was found.",
 )
+ROBOT_HOME = register(
+    "robot-home",
+    "an arm touches something at HOME",
+    "Each run begins with all robots at HOME. An arm that is in another one, in the scene or in itself there would "
+    "stop the run at once. Distances are measured with PyBullet; without it a note says that they are not checked.",
+)
+ROBOT_REACH = register(
+    "robot-reach",
+    "a robot cannot reach a constant pose",
+    "A script moves to a pose that is known before it runs, but no joint position within the limits of the arm puts "
+    "the tool there. Poses that come in messages are known only in a run.",
+)

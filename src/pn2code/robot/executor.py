@@ -148,14 +148,26 @@ class RobotExecutor:
             case _:
                 assert_never(command)
 
-    def _to_pose(self, command: MoveJoint, now: float) -> Motion:
+    def reach(self, pose: Pose) -> None:
+        """Raises MotionFault when no joint position puts the TCP there, with robot and pose in the message."""
+        command = MoveJoint(pose)
+        try:
+            self._found(command)
+        except MotionFault as fault:
+            raise self._named(fault, command) from None
+
+    def _found(self, command: MoveJoint) -> tuple[Array, Array]:
+        """The joint position nearest to where it is, and the target in the base frame."""
         target = self._T_base_world @ self._checked(command.target)
-        k = self.robot.kinematics
-        found = k.nearest(target, self.q, self.robot.branch)
+        found = self.robot.kinematics.nearest(target, self.q, self.robot.branch)
         if found is None:
             raise self._unreachable(target)
-        path = plan_ptp(k, self.q, found.q, self._limits, command.speed)
-        return self._moving(command, "ptp", now, path, found.q, target)
+        return found.q, target
+
+    def _to_pose(self, command: MoveJoint, now: float) -> Motion:
+        q, target = self._found(command)
+        path = plan_ptp(self.robot.kinematics, self.q, q, self._limits, command.speed)
+        return self._moving(command, "ptp", now, path, q, target)
 
     def _linear(self, command: MoveLinear, now: float) -> Motion:
         goal = self._checked(command.target)

@@ -21,12 +21,11 @@ from pathlib import Path
 from typing import Any
 
 from pn2code import pipeline
-from pn2code.cell.codes import CELL_MISSING, CELL_VALUE
+from pn2code.cell.codes import CELL_MISSING
 from pn2code.cell.config import CellConfig
 from pn2code.channels import GRACE_S, SharedDirectory, specs_of
 from pn2code.diagnostics import Diagnostics, Origin, SourceText
 from pn2code.diagnostics.codes import register
-from pn2code.diagnostics.near import did_you_mean
 from pn2code.emission.output import OutputFile
 from pn2code.emission.write import OutputFolderError, write
 from pn2code.os_reason import os_reason
@@ -86,6 +85,7 @@ class RunOptions:
         gui: PyBullet's window.
         looks: pictures are wanted, of the run or later.
         seed: of what sensors draw at random; None: that of cell.toml.
+        checked: whether the supervisor is checked, as `pipeline.generate` does.
         realtime: on the wall clock instead of in lock-step; speed: how many times faster than that.
     """
 
@@ -99,6 +99,7 @@ class RunOptions:
     speed: float = 1.0
     looks: bool = True
     seed: int | None = None
+    checked: bool = True
 
 
 @dataclass(frozen=True, slots=True)
@@ -123,7 +124,9 @@ class RunResult:
 
 def prepare(path: Path, options: RunOptions, d: Diagnostics) -> Prepared | None:
     """Generates and builds the programs of a cell, reads its geometry. None when there are errors."""
-    generated = pipeline.generate(path, d, layout=options.layout, values=options.values)
+    generated = pipeline.generate(
+        path, d, layout=options.layout, values=options.values, checked=options.checked
+    )
     if generated is None:
         return None
     config = generated.config
@@ -137,7 +140,6 @@ def prepare(path: Path, options: RunOptions, d: Diagnostics) -> Prepared | None:
         return None
     robot_cell = scene.load(config.geometry, config.folder, config.locator.origin, d)
     scripts = _scripts(generated, config, d)
-    _check_report(config, generated, d)
     if robot_cell is None or scripts is None or d.has_errors:
         return None
     folder = options.out / "program"
@@ -146,20 +148,6 @@ def prepare(path: Path, options: RunOptions, d: Diagnostics) -> Prepared | None:
     if program is None:
         return None
     return Prepared(generated, config, robot_cell, scripts, program)
-
-
-def _check_report(config: CellConfig, generated: pipeline.Generated, d: Diagnostics) -> None:
-    """The transitions that are counted must exist."""
-    names = [x.name for x in generated.partition.net.transitions]
-    for label, name in config.report.occurrences:
-        if not any(f".{x}".endswith(f".{name}") for x in names):
-            short = [x.rpartition(".")[2] for x in names]
-            d.error(
-                CELL_VALUE,
-                f"`occurrences.{label}` names `{name}`, which is not a transition of the net",
-                config.locator.origin("report", "occurrences", label),
-                hint=did_you_mean(name, [*short, *names]),
-            )
 
 
 def _scripts(

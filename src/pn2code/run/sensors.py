@@ -18,7 +18,7 @@ from pn2code.cell.codes import CELL_FILE, CELL_MISSING, CELL_VALUE
 from pn2code.cell.config import CellConfig, SensorConfig
 from pn2code.cell.scalars import Scalar, ScalarKind, scalars_of
 from pn2code.channels.scalars import Malformed, format_scalars, parse_scalars
-from pn2code.diagnostics import Diagnostics, Origin
+from pn2code.diagnostics import Diagnostics, Note, Origin
 from pn2code.net.flat import FlatNet
 from pn2code.os_reason import os_reason
 
@@ -88,8 +88,9 @@ def _script(
     """What it says in turn: the lines of its file, or its default; empty: neither, or an error was reported."""
     files = [f / sensor.file for f in folders if sensor.file and (f / sensor.file).is_file()]
     path = next(iter(files), None)
+    default = () if sensor.default is None else _default(sensor, scalars, sensor.default, d)
     if path is None and sensor.default is not None:
-        return _default(sensor, scalars, sensor.default, d)
+        return default
     if path is None and not sensor.file:
         return ()
     if path is None:
@@ -111,17 +112,24 @@ def _script(
             hint="save it as a text file in UTF-8 that may be read",
         )
         return ()
+    before = len(d.errors)
     out: list[Value] = []
     for number, line in enumerate(lines, 1):
         text = line.partition("#")[0].rstrip()
         if not text.strip():
             continue
-        found = parse_scalars(scalars, text)
+        found = _parsed(scalars, text)
         if isinstance(found, Malformed):
-            d.error(CELL_VALUE, found.text, Origin(str(path), number, found.column))
+            d.error(
+                CELL_VALUE,
+                found.text,
+                Origin(str(path), number, found.column),
+                notes=[Note(f"sensor `{sensor.name}` reads this file", sensor.origin)],
+                hint=f"write one value of colour set `{scalars[0].colset}` a line",
+            )
         else:
             out += found
-    if not out and not d.has_errors:
+    if not out and len(d.errors) == before:
         d.error(
             CELL_VALUE,
             f"sensor `{sensor.name}`: `{path}` holds no value",
@@ -131,13 +139,24 @@ def _script(
     return tuple(out)
 
 
+def _parsed(scalars: tuple[Scalar, ...], text: str) -> tuple[Value, ...] | Malformed:
+    """A value as in a message; a truth value may also be written as in the net."""
+    word = text.strip()
+    if scalars[0].kind is ScalarKind.BOOL and word in ("true", "false"):
+        return (word == "true",)
+    return parse_scalars(scalars, text)
+
+
 def _default(
     sensor: SensorConfig, scalars: tuple[Scalar, ...], value: Value, d: Diagnostics
 ) -> tuple[Value, ...]:
     """Written in cell.toml as in a file: a text is a constructor's name, or the text itself."""
-    is_text = isinstance(value, str) and scalars[0].kind is not ScalarKind.STRING
+    kind = scalars[0].kind
+    is_text = isinstance(value, str) and kind is not ScalarKind.STRING
     text = str(value) if is_text else format_scalars(scalars, (value,))
-    found = Malformed(f"`{value}` is no value", 1) if text is None else parse_scalars(scalars, text)
+    if isinstance(value, bool) and kind is not ScalarKind.BOOL:
+        text = None
+    found = Malformed(f"`{value}` is no value", 1) if text is None else _parsed(scalars, text)
     if not isinstance(found, Malformed):
         return found
     d.error(

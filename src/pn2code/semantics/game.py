@@ -5,7 +5,9 @@
         game.fire(elements[0])
 
 `Game` keeps the current marking, and gives the same as functions from markings to markings (`enabled_in`, `occur`,
-`settle`), from which state spaces are made. References of the net and its random source are not part of a marking.
+`settle`), from which state spaces are made. What references hold that occurrences change is part of a marking; the
+random source is not. Nets that change references while they search for bindings are the exception: how often that
+happens is not determined, so there they are part of nothing.
 
 Documented order of `enabled()`: transitions of the best priority in the order of `FlatNet.transitions`, the bindings of
 each in the order of `enabling`.
@@ -36,6 +38,7 @@ from pn2code.semantics.marking import (
 )
 from pn2code.semantics.multiset import MultiSet, TimedMultiSet
 from pn2code.semantics.random import occurrence_of
+from pn2code.semantics.references import NOTHING, Held, tracked
 from pn2code.semantics.remembered import Remembered
 from pn2code.semantics.values import Timed, Value
 
@@ -92,8 +95,13 @@ class Game:
         self.enabling = Enabling(net, self.evaluator)
         self._remembered = Remembered(net, self.enabling)
         self._by_priority = sorted(net.transitions, key=lambda t: t.priority)
+        self._references, self._assigning = tracked(net, self.evaluator)
+        self._present: Held = (
+            NOTHING  # what the references hold, as far as occurrences are concerned
+        )
         self.start: int | float = 0.0 if net.real_time else 0
-        self.own_initial_marking = Marking(self.start, tuple(map(self._initial, net.places)))
+        own = Marking(self.start, tuple(map(self._initial, net.places)))
+        self.own_initial_marking = self.with_references(own)
         self.marking = self._with_overrides(self.own_initial_marking, initial or {})
         self.steps = 0
 
@@ -153,6 +161,7 @@ class Game:
 
     def enabled_in(self, marking: Marking) -> list[BindingElement]:
         """What is enabled at the marking's time, priorities respected, in the documented order."""
+        self._enter(marking)
         elements: list[BindingElement] = []
         best: int | None = None
         for t in self._by_priority:
@@ -165,10 +174,12 @@ class Game:
 
     def bindings(self, t: FlatTransition, marking: Marking) -> Iterator[Binding]:
         """The bindings with which a transition is enabled at the marking's time, whatever other transitions are."""
+        self._enter(marking)
         return iter(self._remembered.enabled(t, marking))
 
     def enabled_transitions(self, marking: Marking) -> list[FlatTransition]:
         """The transitions of which `enabled_in` lists elements; no more than one binding of each is looked for."""
+        self._enter(marking)
         found: list[FlatTransition] = []
         for t in self._by_priority:
             if found and t.priority > found[0].priority:
@@ -181,6 +192,7 @@ class Game:
         self, marking: Marking, element: BindingElement, *, priorities: bool = True
     ) -> str | None:
         """Why an element is not enabled in a marking at its time; None if it is."""
+        self._enter(marking)
         t = self.net.transitions[element.transition]
         reason = self.enabling.obstacle(t, marking, element.binding)
         if reason is not None or not priorities:
@@ -200,6 +212,7 @@ class Game:
         """
         if not self.net.timed or self.enabled_transitions(marking):
             return marking
+        self._enter(marking)
         times: set[int | float] = set()
         for t in self.net.transitions:
             times |= self.enabling.thresholds(t, marking)
@@ -218,9 +231,12 @@ class Game:
             GameError: an inscription raises an exception, or gives a token that is not legal; or the tokens are
                 not there (an inscription has another value the second time).
         """
+        self._enter(marking)
         t = self.net.transitions[element.transition]
         self.evaluator.now = marking.time
         self.evaluator.random.start(self.evaluator.steps, occurrence_of(t.index))
+        if t.index in self._assigning:
+            self._present = Held(())  # anything, should an exception end this
         binding = {**element.binding, **self.action(t, element.binding)}
         left = self.enabling.take(marking, self.enabling.demands(t, element.binding))
         if isinstance(left, Demand):
@@ -234,7 +250,28 @@ class Game:
         for arc in t.arcs:
             if arc.kind is ArcKind.RESET:
                 places[arc.place] = reset(places[arc.place], marking.time)
-        return replace(left, places=tuple(places)), BindingElement.make(t, binding)
+        after = replace(left, places=tuple(places))
+        if t.index in self._assigning:
+            after = self.with_references(after)
+        return after, BindingElement.make(t, binding)
+
+    # --- references --------------------------------------------------------------------------------
+
+    def with_references(self, marking: Marking) -> Marking:
+        """The same tokens with what the references hold now."""
+        if self._references is None:
+            return marking
+        self._present = self._references.contents()
+        return replace(marking, references=self._present)
+
+    def _enter(self, marking: Marking) -> None:
+        """The references hold what they hold in a marking.
+
+        What somebody else (a monitor) has put into them since the last occurrence stays as long as one goes on from it.
+        """
+        if self._references is not None and marking.references is not self._present:
+            self._references.restore(marking.references)
+            self._present = marking.references
 
     # --- the parts of an occurrence ----------------------------------------------------------------
 

@@ -11,6 +11,7 @@ from pn2code.net.flat import FlatNet, FlatPlace, FlatTransition
 from pn2code.semantics.colour_json import Json, JsonError, from_json, to_json
 from pn2code.semantics.colours import Colours
 from pn2code.semantics.multiset import MultiSet, TimedMultiSet
+from pn2code.semantics.references import NOTHING, Held
 from pn2code.semantics.values import Timed, Value
 
 PlaceMarking = MultiSet | TimedMultiSet
@@ -22,10 +23,14 @@ Binding = Mapping[Symbol, Value]
 
 @dataclass(frozen=True, slots=True)
 class Marking:
-    """The state of a net: model time, and what each place holds, in the order of `FlatNet.places`."""
+    """The state of a net: model time, and what each place holds, in the order of `FlatNet.places`.
+
+    Where transitions change references, what these hold belongs to it.
+    """
 
     time: int | float
     places: tuple[PlaceMarking, ...]
+    references: Held = NOTHING
 
 
 @dataclass(frozen=True, slots=True)

@@ -1,11 +1,11 @@
 """Recordings of runs by the real CPN Tools engine: what such a file says.
 
-    {"steps": [{"step": 1, "time": "0", "page": "Top", "instance": 1, "transition": "Send_Packet",
+    {"steps": [{"step": 1, "time": "0", "page": "Top", "instance": 1, "transition": "Send_Packet", "id": "ID7",
                 "binding": {"n": "1", "p": "\\"Modellin\\""}}, ...],
      "final_time": "7", "final_marking": [{"id": "ID4", "instance": 1, "marking": "1`3@7"}, ...]}
 
 Names are as the engine writes them: blanks and the like are `_`, a second transition of one name has `_u1` behind it, a
-name that begins with a digit an `N` before it.
+name that begins with a digit an `N` before it. The XML id of the transition may be left out; if given, it decides.
 """
 
 from __future__ import annotations
@@ -25,13 +25,14 @@ class NotARecording(ValueError):  # noqa: N818
 
 @dataclass(frozen=True, slots=True)
 class RecordedStep:
-    """An occurrence: all as text but the number of the page instance (0: not given)."""
+    """An occurrence: all as text but the number of the page instance (0: not given); `id` is "" if not given."""
 
     time: str
     page: str
     instance: int
     transition: str
     binding: Mapping[str, str]
+    id: str = ""
 
 
 @dataclass(frozen=True, slots=True)
@@ -90,6 +91,7 @@ def _step(number: int, data: Any) -> RecordedStep:
         instance=int(instance),
         transition=data["transition"],
         binding=binding,
+        id=_text(data.get("id")),
     )
 
 
@@ -120,12 +122,16 @@ class TransitionNames:
 
     def __init__(self, net: FlatNet) -> None:
         self._found: dict[str, list[FlatTransition]] = {}
+        self._by_id: dict[str, list[FlatTransition]] = {}
         for t in net.transitions:
+            self._by_id.setdefault(t.id, []).append(t)
             for name in dict.fromkeys((_bare(engine_name(t.short)), t.short, t.id)):
                 self._found.setdefault(name, []).append(t)
 
     def candidates(self, step: RecordedStep) -> list[FlatTransition]:
-        """All with that name on that page and instance."""
+        """All with that id, or else that name on that page, and on that instance."""
+        if step.id in self._by_id:
+            return [t for t in self._by_id[step.id] if step.instance in (0, t.instance_number)]
         named = self._found.get(_bare(step.transition)) or self._found.get(step.transition, [])
         page = _bare(step.page)
         there = [

@@ -7,15 +7,18 @@ Each line that names a transition must be enabled with that binding when its tur
 are compared exactly. Lines with an `event` are passed over.
 
 Time: the simulators (`by` is `simulate` or `reference`) write model times, and the clock must do exactly what the
-rules say. All others write seconds of the run; there the clock follows the trace (`t` divided by `time_unit`), tokens
-must be available by then, and priorities are not enforced: they order what one controller does, and a run has several.
+rules say. All others write seconds of the run; there the clock follows the trace (`t` divided by `time_unit`), and
+tokens must be available by then. Their priorities hold among the transitions of one party (`Parties`).
+
+What else a trace claims is looked at as well: the net's digest, the element that each step names, the numbers and times
+of steps, who made them, why the run ended, and in which final places, and where a lasso goes back to.
 """
 
 from __future__ import annotations
 
 import json
-from collections.abc import Iterable, Mapping
-from dataclasses import dataclass
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
@@ -35,15 +38,19 @@ from pn2code.semantics.marking import (
     element_text,
     place_from_json,
 )
+from pn2code.semantics.parties import SIMULATORS, Parties
+from pn2code.semantics.replay_end import Ending, end_problem
+from pn2code.semantics.trace_lines import (
+    digest_problem,
+    is_number,
+    order_problem,
+    origin_problem,
+    unknown_variable,
+)
 from pn2code.semantics.values import Value
 
-SIMULATORS = frozenset({"simulate", "reference"})
 DEFAULT_SEED = 1
 """Of the random numbers of a run whose header does not name another."""
-
-
-SKEW_S = 1.0
-"""So much may clocks of parties differ whose traces are one: messages say what came first, not times."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -99,7 +106,8 @@ class Rules:
 
     Args:
         own_clock: the clock follows the rules of the net and `t` must agree; else it follows `t`.
-        priorities: whether no transition of higher priority may be enabled.
+        priorities: whether no transition of higher priority may be enabled, whoever's it is; else none of the same
+            party.
         time_unit: seconds in a unit of model time, where the clock follows `t`.
     """
 
@@ -115,7 +123,9 @@ def replay(
     *,
     rules: Rules | None = None,
     time_unit: float = 1.0,
+    parties: Parties | None = None,
     check_digest: bool = False,
+    may_fail_outside: bool = False,
     limits: Limits | None = None,
     files: Files | None = None,
 ) -> ReplayResult:
@@ -127,8 +137,9 @@ def replay(
         storage: as for `Game`.
         rules: overrides what the header's `by` decides.
         time_unit: seconds in a unit of model time.
-        check_digest: whether the header's digest must be the SHA-256 of the net's file. (Compilers hash the
-            configuration of the cell with it.)
+        parties: who runs what; None: that is not known, and what only they could have done wrong is not looked at.
+        check_digest: whether the header's digest must be one of the net's or of the parties' programs.
+        may_fail_outside: whether something beside the net (a monitor) may have ended the run by an exception.
         limits: of each evaluation.
         files: what the net can do with files; nothing by default.
     """
@@ -139,7 +150,9 @@ def replay(
             storage,
             rules=rules,
             time_unit=time_unit,
+            parties=parties,
             check_digest=check_digest,
+            may_fail_outside=may_fail_outside,
             limits=limits,
             files=files,
         )
@@ -152,14 +165,18 @@ def replay_lines(
     *,
     rules: Rules | None = None,
     time_unit: float = 1.0,
+    parties: Parties | None = None,
     check_digest: bool = False,
+    may_fail_outside: bool = False,
     limits: Limits | None = None,
     files: Files | None = None,
 ) -> ReplayResult:
     """Replays the lines of a trace; see `replay`."""
     game: Game | None = None
-    steps, at, ended, transition, source = 0, 0, None, "", net.name
+    who = parties or Parties.unknown(net)
+    steps, at, ended, transition, source, by = 0, 0, None, "", net.name, ""
     names = {t.name: t for t in net.transitions}
+    markings: list[Marking] = []
     latest = 0.0
     try:
         for number, text in enumerate(lines, 1):
@@ -169,21 +186,26 @@ def replay_lines(
             line = _object(text)
             transition = str(line.get("transition", ""))
             if game is None:
-                if check_digest and line.get("digest") != net.sha256:
-                    raise _Wrong("the trace is of another net: its digest differs")
-                source = str(line.get("net", source))
-                game = Game(
-                    net, storage, _initial(net, line), seed=_seed(line), limits=limits, files=files
-                )
-                rules = rules or _rules_for(str(line.get("by", "")), time_unit)
+                by, source = str(line.get("by", "")), str(line.get("net", source))
+                _refuse(digest_problem(line, net, who) if check_digest else None)
+                initial = _initial(net, line)
+                _refuse(who.stranger(by))
+                game = Game(net, storage, initial, seed=_seed(line), limits=limits, files=files)
+                rules = rules or _rules_for(by, time_unit)
+                markings.append(game.marking)
+            elif ended is not None and "event" not in line:
+                raise _Wrong("it comes after the end of the run")
             elif line.get("event") == "end":
                 assert rules is not None
                 ended = str(line.get("why", ""))
-                _check_end(game, ended, rules)
+                ending = Ending(by, rules.own_clock, who, tuple(markings), may_fail_outside)
+                _refuse(end_problem(game, line, ending))
             elif "event" not in line:
                 assert rules is not None
-                _step(game, line, rules, names)
-                latest = _in_order(line, steps + 1, latest)
+                _step(game, line, rules, names, who, by)
+                _refuse(order_problem(line, steps + 1, latest))
+                latest = max(latest, _time_of(line))
+                markings.append(game.marking)
                 steps += 1
         if game is None:
             raise _Wrong("the trace is empty")
@@ -191,6 +213,11 @@ def replay_lines(
         why = str(wrong) if source == net.name else f"{wrong}; the trace is of net `{source}`"
         return ReplayResult(False, steps, why, at, transition, ended, game)
     return ReplayResult(True, steps, "", 0, "", ended, game)
+
+
+def _refuse(problem: str | None) -> None:
+    if problem is not None:
+        raise _Wrong(problem)
 
 
 def _rules_for(by: str, time_unit: float) -> Rules:
@@ -235,34 +262,34 @@ def _seed(header: dict[str, Any]) -> int:
     return seed
 
 
-def _in_order(line: dict[str, Any], number: int, latest: float) -> float:
-    """Looks at what a line says of the order of steps; gives the latest time until then."""
-    said = line.get("step", number)
-    if said != number:
-        raise _Wrong(
-            f"it has number {said}, but {number} is next: steps are missing or out of order"
-        )
+def _time_of(line: dict[str, Any]) -> float:
     t = line.get("t")
-    if isinstance(t, bool) or not isinstance(t, int | float):
-        return latest
-    if t < latest - SKEW_S:
-        raise _Wrong(f"time goes back: {t} after {latest}")
-    return max(t, latest)
+    return float(t) if is_number(t) else 0.0
 
 
 def _step(
-    game: Game, line: dict[str, Any], rules: Rules, names: Mapping[str, FlatTransition]
+    game: Game,
+    line: dict[str, Any],
+    rules: Rules,
+    names: Mapping[str, FlatTransition],
+    parties: Parties,
+    by: str,
 ) -> None:
     """Repeats one occurrence; raises _Wrong when that is not possible."""
     t = names.get(str(line.get("transition")))
     if t is None:
         raise _Wrong("the net has no such transition")
+    _refuse(origin_problem(line, t) or parties.not_by(by, t.index))
     given = _binding(t, line.get("binding", {}))
     element = BindingElement.make(t, {s: x for s, x in given.items() if s not in _outputs(t)})
     _set_clock(game, line, rules)
     obstacle = game.obstacle(game.marking, element, priorities=rules.priorities)
     if obstacle is not None:
         raise _Wrong(f"not enabled: {obstacle}")
+    if not rules.priorities:
+        _own_priorities(
+            game, element, parties.rivals(game.net, t.index), _moment(game, line, rules)
+        )
     game.evaluator.steps = game.steps + 1
     marking, occurred = game.occur(game.marking, element)
     for symbol in _outputs(t):
@@ -271,11 +298,28 @@ def _step(
     game.steps += 1
 
 
-def _check_end(game: Game, ended: str, rules: Rules) -> None:
-    """A simulator is finished when nothing is enabled any more."""
-    if rules.own_clock and ended == "finished" and game.advance():
-        text = element_text(game.colours, game.net, game.enabled()[0])
-        raise _Wrong(f"it says that nothing is enabled any more, but {text} is")
+def _moment(game: Game, line: dict[str, Any], rules: Rules) -> Marking:
+    """The marking at the time of the party that made the step: clocks of parties differ a little."""
+    t = line.get("t")
+    if not game.net.timed or rules.own_clock or not is_number(t):
+        return game.marking
+    time = t / rules.time_unit
+    return replace(
+        game.marking, time=min(game.marking.time, time if game.net.real_time else int(time))
+    )
+
+
+def _own_priorities(
+    game: Game, element: BindingElement, rivals: Sequence[FlatTransition], moment: Marking
+) -> None:
+    """No transition that its party has to prefer is enabled."""
+    for other in rivals:
+        binding = next(game.enabling.enabled(other, moment), None)
+        if binding is not None:
+            text = element_text(game.colours, game.net, BindingElement.make(other, binding))
+            raise _Wrong(
+                f"not enabled: {text} of the same program has a higher priority and is enabled"
+            )
 
 
 def _outputs(t: FlatTransition) -> tuple[Symbol, ...]:
@@ -285,10 +329,7 @@ def _outputs(t: FlatTransition) -> tuple[Symbol, ...]:
 def _binding(t: FlatTransition, data: Any) -> dict[Symbol, Value]:
     if not isinstance(data, dict):
         raise _Wrong("its binding is not a JSON object")
-    names = {s.name for s in t.variables}
-    unknown = sorted(set(data) - names)
-    if unknown:
-        raise _Wrong(f"its binding has `{unknown[0]}`, which is no variable of the transition")
+    _refuse(unknown_variable(data, t))
     found: dict[Symbol, Value] = {}
     for s in t.variables:
         if s.name not in data:

@@ -29,7 +29,7 @@ from pn2code.semantics.game import Game, reset
 from pn2code.semantics.marking import Binding, BindingElement, Marking, place_text, variable_text
 from pn2code.semantics.multiset import TimedMultiSet
 from pn2code.semantics.recording import RecordedStep, Recording, TransitionNames
-from pn2code.semantics.references import References
+from pn2code.semantics.references import Held, References
 from pn2code.semantics.report import PlaceRow, places, time_text
 from pn2code.semantics.unknown import (
     EXACT,
@@ -84,7 +84,7 @@ class State:
 
     marking: Marking
     unknown: Unknown
-    references: tuple[Value, ...]
+    references: Held
     path: Any = field(default=None, compare=False)
     """(what came before, the last occurrence), or None at the start"""
 
@@ -175,7 +175,7 @@ class _Follower:
         for p in self.net.places:
             if p.initial and self.vague(EXACT, p.initial[0]):
                 marking, unknown = unknown.forget(marking, p.index)
-        return State(marking, unknown, self.references.contents())
+        return State(self.game.with_references(marking), unknown, self.references.contents())
 
     # --- the run -------------------------------------------------------------------------------------
 
@@ -525,7 +525,7 @@ class _Follower:
                     unknown = unknown.opened(arc.place)
         after = replace(way.left, places=tuple(held))
         path = (state.path, (now, BindingElement.make(t, full)))
-        return State(after, unknown, self.references.contents(), path)
+        return State(self.game.with_references(after), unknown, self.references.contents(), path)
 
     def remember(self, unknown: Unknown, drawn: bool, *parts: Any) -> Unknown:
         """Evaluating something that is drawn may have put drawn values into references."""

@@ -39,5 +39,5 @@ def trace(game: Game, steps: int | None = None) -> Iterator[str]:
     yield json.dumps(header(game), ensure_ascii=False)
     for occurred in game.run(steps=steps):
         yield json.dumps(occurrence(game, occurred), ensure_ascii=False)
-    why = "steps" if game.enabled() else "finished"
+    why = "steps" if game.enabled_in(game.settle(game.marking)) else "finished"
     yield json.dumps({"t": game.marking.time, "event": "end", "why": why})

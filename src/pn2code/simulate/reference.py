@@ -94,7 +94,7 @@ class ReferenceRun:
         done = 0
         while not why:
             if limit is not None and done >= limit:
-                why = "steps"
+                why = self._at_limit(done)
             elif self.request.interrupted():
                 why = "interrupted"
             else:
@@ -103,6 +103,16 @@ class ReferenceRun:
                 assert self.game is not None
                 self.request.progress(self.game.steps, self.game.marking.time)
         return self.finish(why)
+
+    def _at_limit(self, done: int) -> str:
+        """Why a run ends that was to be no longer; one that only repeats a trace claims nothing more."""
+        game = self.game
+        assert game is not None
+        try:
+            is_over = done > 0 and not game.enabled_transitions(game.settle(game.marking))
+        except GameError as error:
+            return self._fail(error)
+        return "finished" if is_over else "steps"
 
     def begin(self, given: Trace | None = None) -> str:
         """Makes the game; gives why the run ends here, or ""."""

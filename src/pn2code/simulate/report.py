@@ -11,8 +11,8 @@ from pn2code.simulate.run import Outcome
 
 _WHY = {
     "finished": "nothing is enabled any more",
-    "steps": "as many steps as were wanted",
-    "until": "the next step would be later than wanted",
+    "steps": "the number of steps was reached",
+    "until": "the next step would be after the given time",
     "breakpoint": "a breakpoint was reached",
     "error": "the net raised an error",
     "interrupted": "interrupted",
@@ -45,6 +45,17 @@ def _head(net: FlatNet, outcome: Outcome) -> str:
     return (
         f"{net.file}: {steps}{time}: {why}\n"
         f"engine {outcome.engine}, seed {outcome.seed}, {outcome.seconds:.2f} s{rate}"
+        f"{_interpreted(outcome)}"
+    )
+
+
+def _interpreted(outcome: Outcome) -> str:
+    if not outcome.interpreted:
+        return ""
+    names = ", ".join(f"`{name}`" for name in outcome.interpreted)
+    return (
+        "\nThe net is compiled, but its monitors are interpreted: the reference token game repeats each step for "
+        f"them, which is slower ({names})."
     )
 
 

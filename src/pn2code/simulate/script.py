@@ -16,10 +16,10 @@ from pn2code.ml.core import Symbol
 from pn2code.net.flat import FlatNet, FlatTransition
 from pn2code.semantics.colour_json import JsonError, from_json, to_json
 from pn2code.semantics.marking import PlaceMarking, place_from_json
+from pn2code.semantics.parties import SIMULATORS, VERIFY
+from pn2code.semantics.trace_lines import is_number, order_problem, origin_problem, unknown_variable
 from pn2code.semantics.values import Value
 from pn2code.simulate.trace import json_text
-
-SIMULATORS = frozenset({"simulate", "reference"})
 
 
 class TraceRefusedError(Exception):
@@ -34,6 +34,11 @@ class TraceRefusedError(Exception):
         super().__init__(f"line {line}: {why}" if line else why)
         self.why = why
         self.line = line
+
+
+def _refuse(problem: str | None, line: int) -> None:
+    if problem is not None:
+        raise TraceRefusedError(problem, line)
 
 
 def _lines(path: Path) -> Iterator[str]:
@@ -98,10 +103,12 @@ class Header:
     Args:
         seed: of the random numbers of the run, None if it does not say.
         initial: markings that replace initial markings, by name of the place.
+        by: who wrote it.
     """
 
     seed: int | None
     initial: Mapping[str, PlaceMarking]
+    by: str
 
 
 class Trace:
@@ -110,14 +117,16 @@ class Trace:
     Args:
         lines: of the file.
         net: the net that it is of.
+        is_shown: whether it is only to be told or drawn: then runs of a cell that `verify` has found will do.
 
     Raises:
         OSError: it cannot be read.
         TraceRefusedError: it is no trace of a simulator, or has another form.
     """
 
-    def __init__(self, lines: Iterable[str], net: FlatNet) -> None:
+    def __init__(self, lines: Iterable[str], net: FlatNet, *, is_shown: bool = False) -> None:
         self._net = net
+        self._writers = {*SIMULATORS, VERIFY} if is_shown else SIMULATORS
         self._transitions = {t.name: t for t in net.transitions}
         self._lines = _objects(lines)
         first = next(self._lines, None)
@@ -126,14 +135,14 @@ class Trace:
         self.header = self._header(first[1])
 
     @staticmethod
-    def open(path: Path, net: FlatNet) -> Trace:
+    def open(path: Path, net: FlatNet, *, is_shown: bool = False) -> Trace:
         """From a file."""
-        return Trace(_lines(path), net)
+        return Trace(_lines(path), net, is_shown=is_shown)
 
     def _header(self, line: Mapping[str, Any]) -> Header:
         if line.get("trace") != 1:
             raise TraceRefusedError('the header of a trace is missing: `"trace": 1`', 1)
-        if line.get("by") not in SIMULATORS:
+        if line.get("by") not in self._writers:
             raise TraceRefusedError(
                 f"the trace is by `{line.get('by')}`; only runs of `simulate` can be continued", 1
             )
@@ -152,7 +161,7 @@ class Trace:
                 found[name] = place_from_json(places[name].colset, data)
             except JsonError as error:
                 raise TraceRefusedError(f"initial marking of `{name}`: {error}", 1) from None
-        return Header(seed, found)
+        return Header(seed, found, str(line["by"]))
 
     def steps(self) -> Iterator[Step]:
         """The occurrences, in order; notes and the end are passed over.
@@ -160,9 +169,17 @@ class Trace:
         Raises:
             TraceRefusedError: a line has another form.
         """
+        latest, count, is_over = 0.0, 0, False
         for number, line in self._lines:
-            if "event" not in line:
-                yield self._step(number, line)
+            if "event" in line:
+                is_over = is_over or line["event"] == "end"
+                continue
+            if is_over:
+                raise TraceRefusedError("it comes after the end of the run", number)
+            count += 1
+            _refuse(order_problem(line, count, latest), number)
+            yield self._step(number, line)
+            latest = max(latest, float(line["t"])) if is_number(line.get("t")) else latest
 
     def _step(self, number: int, line: Mapping[str, Any]) -> Step:
         t = self._transitions.get(str(line.get("transition")))
@@ -176,6 +193,7 @@ class Trace:
         given = line.get("binding")
         if not isinstance(given, dict):
             raise TraceRefusedError("the binding is not a JSON object", number)
+        _refuse(origin_problem(line, t) or unknown_variable(given, t), number)
         return Step(number, t, time, dict(self._values(number, t, given)))
 
     def _values(

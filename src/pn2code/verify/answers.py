@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import Any, Literal
 
 from pn2code.properties import meaning as m
+from pn2code.verify import basis
 from pn2code.verify.reasons import clause
 from pn2code.verify.result import Exploration
 
@@ -22,11 +23,13 @@ class Evidence:
         trace: its file.
         steps: how many.
         loop: so many steps are before the cycle that the run goes round for ever; None: it has none.
+        confirmed: whether the token game has played it, and it shows what it should.
     """
 
     trace: Path
     steps: int
     loop: int | None
+    confirmed: bool = False
 
 
 @dataclass(frozen=True, slots=True)
@@ -40,6 +43,9 @@ class Answer:
         evidence: a run, where one shows it.
         value: the number that decides: most tokens of a place, or the longest wait; None: there is none.
         node: of the marking that decides, in the numbering of the report.
+        kept: whether a "yes" is kept when the programs of a cell do less than what was looked at.
+        cell: the answer is about a cell as it runs.
+        net: then what is so of the closed net, where that is known and differs; `net_why` says why it differs.
     """
 
     about: m.Property
@@ -48,15 +54,32 @@ class Answer:
     evidence: Evidence | None = None
     value: float | None = None
     node: int | None = None
+    kept: bool = False
+    cell: bool = False
+    net: Verdict | None = None
+    net_why: str = ""
 
     @property
     def is_expected(self) -> bool:
         """Whether the answer is the one that the author expects."""
         return self.answer == ("yes" if self.about.expect else "no")
 
+    @property
+    def rests_on(self) -> str | None:
+        """What has to be seen for this answer: a word of `basis`; None: there is no answer."""
+        return basis.of_property(self.about, self.answer, has_run=self.evidence is not None)
+
     def row(self) -> dict[str, Any]:
         """For `--json`."""
         e = self.evidence
+        run = None
+        if e is not None:
+            run = {
+                "trace": str(e.trace),
+                "steps": e.steps,
+                "loop": e.loop,
+                "confirmed": e.confirmed,
+            }
         return {
             "name": self.about.name,
             "says": self.about.says,
@@ -68,7 +91,11 @@ class Answer:
             "why": self.why or None,
             "value": self.value,
             "node": self.node,
-            "evidence": {"trace": str(e.trace), "steps": e.steps, "loop": e.loop} if e else None,
+            "kept": self.kept,
+            "about": "cell" if self.cell else "net",
+            "net": {"answer": self.net, "why": self.net_why} if self.net else None,
+            "evidence": run,
+            "rests_on": self.rests_on,
         }
 
 

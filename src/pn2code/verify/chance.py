@@ -1,4 +1,4 @@
-"""What of a net depends on more than its marking: of such a net a state space is one of many."""
+"""What of a net depends on more than its marking: its state space is one of many, or not that of CPN Tools."""
 
 from __future__ import annotations
 
@@ -8,21 +8,35 @@ from typing import Any
 from pn2code.diagnostics import Diagnostics
 from pn2code.net.flat import FlatNet, FlatTransition
 from pn2code.semantics.effects import Effect, Effects
-from pn2code.verify.codes import DRAWS_RANDOM
+from pn2code.semantics.references import occurring, searching
+from pn2code.verify.codes import (
+    CHANGES_REFERENCES,
+    CHANGES_WHILE_SEARCHING,
+    DRAWS_RANDOM,
+)
 
 MOST_NAMED = 5
 """Transitions that get a warning of their own."""
-_ORDER = (Effect.DRAW, Effect.LOOK, Effect.COUNT, Effect.READ)
+_ORDER = (Effect.DRAW, Effect.LOOK, Effect.COUNT)
 
 
 def warn(net: FlatNet, d: Diagnostics) -> None:
-    """Warns of transitions that draw random numbers, look at files, count steps, or read references that change."""
+    """Warns of transitions that draw random numbers, look at files, count steps, or change references."""
     effects = Effects(net.program)
     found = [(t, effects.of(*_texts(t))) for t in net.transitions]
-    changes = any(Effect.WRITE in own for _, own in found)
+    changing = [t for t in net.transitions if Effect.WRITE in effects.of(*occurring(t))]
+    if changing:
+        names = ", ".join(f"`{t.name}`" for t in changing[:MOST_NAMED])
+        more = f" and {len(changing) - MOST_NAMED} more" if len(changing) > MOST_NAMED else ""
+        d.warning(
+            CHANGES_REFERENCES,
+            f"a node is a marking together with what the references hold: they are changed by {names}{more}",
+            changing[0].origin,
+            hint="CPN Tools does not restore references, so that its state space of this net may be another one",
+        )
     named = 0
     for t, own in found:
-        why = next((e for e in _ORDER if e in own and (e is not Effect.READ or changes)), None)
+        why = next((e for e in _ORDER if e in own), None)
         if why is None or named == MOST_NAMED:
             continue
         named += 1
@@ -31,6 +45,28 @@ def warn(net: FlatNet, d: Diagnostics) -> None:
             f"transition `{t.name}` {why.value}: what is found is one of many state spaces",
             t.origin,
         )
+
+
+def draws(net: FlatNet) -> bool:
+    """Whether random numbers or files decide anything."""
+    effects = Effects(net.program)
+    return any(
+        e in effects.of(*_texts(t)) for t in net.transitions for e in (Effect.DRAW, Effect.LOOK)
+    )
+
+
+def refuse(net: FlatNet, d: Diagnostics) -> bool:
+    """Refuses nets that change references while bindings are searched for; whether it did."""
+    found = searching(net)
+    for index in found[:MOST_NAMED]:
+        t = net.transitions[index]
+        d.error(
+            CHANGES_WHILE_SEARCHING,
+            f"a guard or an input arc of transition `{t.name}` assigns a reference: the net has no state space",
+            t.origin,
+            hint="assign it in the code segment; `pn2code simulate` runs the net as it is",
+        )
+    return bool(found)
 
 
 def _texts(t: FlatTransition) -> Iterator[Any]:

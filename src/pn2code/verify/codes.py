@@ -10,6 +10,14 @@ EXPLORER_FAILED = register(
     "The compiled explorer was killed or did not say how it ended. When the system ended it (not enough memory), give "
     "it a limit with `--memory`, so that it stops in time and tells what it has seen; else this is a bug in pn2code.",
 )
+TIME_OVER = register(
+    "time-over",
+    "the time of `--max-seconds` was over before the work was done",
+    "`--max-seconds` limits the whole command: reading and checking the net, translating it to C, compiling, "
+    "exploring, answering and printing. What was running when the time was over has been ended, the C compiler "
+    "included; what is not known because of that is reported as not known (exit code 3). Give it more time. A net that "
+    "has been compiled once is kept, so that the second run needs less.",
+)
 STATE_ERROR = register(
     "state-error",
     "an inscription raises an exception in a marking that can be reached",
@@ -27,10 +35,27 @@ BEYOND_ROOM = register(
 DRAWS_RANDOM = register(
     "state-space-random",
     "the state space of a net that draws random numbers is one of many",
-    "A guard, an arc or a code segment draws a random number, reads a file, or reads a reference that changes. The "
+    "A guard, an arc or a code segment draws a random number, reads a file, or asks for the number of steps. The "
     "state space then depends on the numbers drawn, and on the order of exploration: bounds and dead markings hold for "
     "this exploration only. In CPN Tools it is the same. Replace the random function by a free variable over a small "
     "colour set: all its values are then explored.",
+)
+CHANGES_REFERENCES = register(
+    "state-space-references",
+    "what references hold is a part of the state",
+    "Transitions of the net assign references, and what is possible may depend on them. For pn2code a node is then a "
+    "marking with its time and with what the references hold: two nodes may have the same marking, and every answer is "
+    "about what a run of the net can do. CPN Tools does not restore references when it goes from one node to another: "
+    "its state space of such a net depends on the order of its calculation, and may lack markings that a simulation "
+    "reaches, or have ones that no simulation reaches. Put what is to be remembered into a place, and both agree.",
+)
+CHANGES_WHILE_SEARCHING = register(
+    "state-space-search-effect",
+    "references change while bindings are searched for",
+    "A guard or an input arc assigns a reference. How often such an inscription is evaluated is not determined: CPN "
+    "Tools does it whenever it wants to know whether the transition is enabled. So what the reference holds does not "
+    "follow from what has occurred, and the net has no state space. Assign references in code segments, or on "
+    "output arcs.",
 )
 REPORT_UNWRITABLE = register(
     "report-unwritable",
@@ -95,15 +120,16 @@ CAPACITY_UNPROVED = register(
     "structure, or by its complete state space. Of this place nothing is. Declare a bound in cell.toml, "
     "`[capacity] place = n`: the supervisor stops safely when the place gets more; or limit the place in the net.",
 )
+CAPACITY_LARGE = register(
+    "capacity-large",
+    "a place can hold more tokens than a program has room for",
+    "The arrays of the generated program are as large as a bound that is proven, up to 1,048,576 tokens in a place. "
+    "Limit the place in the net. If it never really holds so many, declare in cell.toml how many: the supervisor stops "
+    "safely when there are more.",
+)
 CAPACITY_ASSUMED = register(
     "capacity-assumed",
     "nothing proves how many tokens a place can hold",
     "The program was generated with room for some tokens, and stops safely, with the place's name, when there are "
     "more. The head of net.c says which places these are. A cell.toml with `[capacity]` declares bounds.",
-)
-CAPACITY_EXCEEDED = register(
-    "capacity-exceeded",
-    "a place can get more tokens than cell.toml declares",
-    "A marking that can be reached has more tokens in the place than `[capacity]` declares. The supervisor would stop "
-    "safely there.",
 )

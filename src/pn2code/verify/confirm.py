@@ -30,6 +30,7 @@ def problem(
     answer: Answer,
     *,
     exact_times: bool = True,
+    as_net: bool = True,
 ) -> str | None:
     """What is wrong with the evidence of an answer; None: nothing, or it cannot be looked at.
 
@@ -38,6 +39,8 @@ def problem(
         predicates: all that was asked: the conditions.
         answer: the answer.
         exact_times: whether nodes differ by their times; else a cycle may end later than it began.
+        as_net: whether the run is one of the closed net; else it is one of a cell, in which programs and not the net
+            decide what is enabled and when a run ends.
 
     Raises:
         TraceRefusedError, GameError, OSError: it cannot be played.
@@ -50,6 +53,8 @@ def problem(
     if len(steps) != evidence.steps:
         return f"the trace has {len(steps)} steps, not {evidence.steps}"
     asked = answer.about.asked
+    if not as_net and (isinstance(asked, m.Response) or _looks_at_enabled(asked)):
+        return None  # that it is a run is all that the net can say
     match asked:
         case m.Invariant(condition):
             graph, nodes = _graph(game, [markings[0], markings[-1]], predicates, {condition})
@@ -60,9 +65,10 @@ def problem(
             if size >= (low or 0) and (high is None or size <= high):
                 return f"the last marking of the trace has {size} tokens"
         case m.Linear(formula, fair):
+            fair = fair if as_net else ()  # of a cell that is not seen in the net
             looks = {formula, *(m.Atom("enabled", x.transition) for x in fair)}
             graph, nodes = _graph(game, markings, predicates, looks)
-            path = _lasso(graph, nodes, steps, evidence.loop, exact_times)
+            path = _lasso(graph, nodes, steps, evidence.loop, exact_times, as_net)
             if isinstance(path, str):
                 return path
             if judge_ltl.holds_on(graph, formula, path):
@@ -71,7 +77,7 @@ def problem(
                 return "the run is not fair"
         case m.Response(first, second):
             graph, nodes = _graph(game, markings, predicates, {first, second})
-            path = _lasso(graph, nodes, steps, evidence.loop, exact_times)
+            path = _lasso(graph, nodes, steps, evidence.loop, exact_times, as_net)
             if isinstance(path, str) and evidence.loop is not None:
                 return path
             goes_on = None if isinstance(path, str) else path.after(len(path.positions) - 1)
@@ -182,17 +188,26 @@ def _atoms(formulas: Iterable[m.Formula]) -> Iterator[m.Atom]:
             yield from _atoms(f.parts)
 
 
+def _looks_at_enabled(asked: m.Asked) -> bool:
+    return any(x.kind in ("dead", "enabled") for x in _atoms(m.formulas(asked)))
+
+
 def _lasso(
-    graph: Graph, nodes: list[int], steps: list[int], loop: int | None, exact_times: bool
+    graph: Graph,
+    nodes: list[int],
+    steps: list[int],
+    loop: int | None,
+    exact_times: bool,
+    as_net: bool,
 ) -> judge_ltl.Lasso | str:
     """The run as a lasso; a text if it is none."""
     positions = [judge_ltl.Position(nodes[i], step, nodes[i + 1]) for i, step in enumerate(steps)]
     last = nodes[-1]
     if loop is None or loop >= len(steps):
-        if last not in graph.dead:
+        if as_net and last not in graph.dead:
             return "the run ends where something is enabled"
         end = judge_ltl.Position(last, judge_ltl.NO_STEP, last)
         return judge_ltl.Lasso((*positions, end), len(positions))
-    if exact_times and nodes[loop] != last:
+    if as_net and exact_times and nodes[loop] != last:
         return "the cycle of the run does not come back to where it begins"
     return judge_ltl.Lasso(tuple(positions), loop)

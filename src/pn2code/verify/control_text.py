@@ -7,7 +7,7 @@ from collections.abc import Iterator, Mapping
 from pn2code.net.flat import FlatNet
 from pn2code.semantics.game import GameError
 from pn2code.simulate.script import TraceRefusedError
-from pn2code.verify import answers, properties_text
+from pn2code.verify import answers, basis, properties_text
 from pn2code.verify.control import CONFLUENT, MEANINGS, TITLES, Check, Control, Evidence
 from pn2code.verify.path import steps
 
@@ -23,6 +23,7 @@ def section(control: Control) -> str:
     for check in control.checks:
         mark = "no" if check.is_accepted else _MARKS[check.answer]
         lines.append(f"     {check.name.ljust(_NAME)}{mark:<4}{check.says}")
+        lines += (f"     {'':{_NAME}}    {more}" for more in _rests(check))
     return "\n".join(lines)
 
 
@@ -60,6 +61,11 @@ def told(net: FlatNet, storage: Mapping[str, str], control: Control, *, most: in
         yield "\n".join([head, *properties_text.lines(shown, evidence)])
 
 
+def _rests(check: Check) -> Iterator[str]:
+    if check.rests_on is not None:
+        yield f"rests on this: {basis.SAYS[check.rests_on]}"
+
+
 def rows(control: Control) -> Iterator[dict[str, object]]:
     """For the page."""
     for check in control.checks:
@@ -67,7 +73,7 @@ def rows(control: Control) -> Iterator[dict[str, object]]:
         yield {
             "name": TITLES[check.name],
             "said": f"{check.says[:1].upper()}{check.says[1:]}.".replace("`", ""),
-            "remarks": [MEANINGS[check.name]],
+            "remarks": [MEANINGS[check.name], *_rests(check)],
             "answer": {"unknown": "not known"}.get(check.answer, check.answer),
             "kind": "open"
             if check.answer == "unknown" or check.is_accepted

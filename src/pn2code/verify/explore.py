@@ -14,17 +14,24 @@ import tempfile
 import threading
 import time
 from collections.abc import Callable, Mapping, Sequence
-from contextlib import suppress
+from contextlib import ExitStack, suppress
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import IO, Any
 
+from pn2code.deadline import Deadline, TimeIsOverError
 from pn2code.diagnostics import Diagnostics, Origin
 from pn2code.net.flat import FlatNet
 from pn2code.net.predicate import Predicate
 from pn2code.os_reason import os_reason
-from pn2code.verify import programs
-from pn2code.verify.codes import BEYOND_ROOM, EXPLORER_FAILED, REDUCTION_MISMATCH, SPILL_FULL
+from pn2code.verify import chance, programs
+from pn2code.verify.codes import (
+    BEYOND_ROOM,
+    EXPLORER_FAILED,
+    REDUCTION_MISMATCH,
+    SPILL_FULL,
+    TIME_OVER,
+)
 from pn2code.verify.limits import Limits, default_memory
 from pn2code.verify.programs import Sizes
 from pn2code.verify.reductions import OF_ELEMENTS, Chosen, possible, refuse
@@ -34,6 +41,8 @@ Progress = Callable[[Mapping[str, Any]], None]
 """Is told what the explorer says of itself twice a second: states, arcs, rate, frontier, depth, mib, phase."""
 KEPT_ERRORS = 20
 """Lines of what the explorer says that are no progress."""
+TOO_DEEP = "recursion too deep"
+"""What the runtime says of it (pn_num.c)."""
 LEAST_SECONDS = 1e-6
 """No time at all is a limit, too; the explorer wants a positive one."""
 
@@ -55,6 +64,7 @@ class Wishes:
         stem: what the names of their files begin with.
         graph: a file for the whole graph, marking by marking; None: not wanted. It is not written when the
             exploration is not complete, or has more than `graph_limit` nodes.
+        colours: of each multi-set bound at most so many colours are told; None: all.
         questions: about the states and the runs (`properties.questions`), "" for none; `predicates`: the conditions
             that they mention. `evidence`: a folder for the runs that show the answers.
         sizes: what the places of the compiled net hold at first; None: what their structure and initial marking say.
@@ -67,6 +77,7 @@ class Wishes:
     stem: str = "net"
     graph: Path | None = None
     graph_limit: int | None = None
+    colours: int | None = None
     questions: str = ""
     predicates: tuple[Predicate, ...] = ()
     evidence: Path | None = None
@@ -97,30 +108,57 @@ def explore(
         GameError: a declaration or an initial marking raises an exception.
     """
     wishes = wishes or Wishes()
-    chosen = possible(net, limits.reductions, d, wishes.predicates)
-    sizes = wishes.sizes or Sizes.start(net, storage)
+    deadline = limits.deadline
+    began = time.perf_counter()
+    try:
+        with deadline.enforced():
+            if chance.refuse(net, d):
+                return None
+            chosen = possible(net, limits.reductions, d, wishes.predicates)
+            sizes = wishes.sizes or Sizes.start(net, storage)
+    except TimeIsOverError:
+        return _too_late(net, limits, time.perf_counter() - began, d)
+
+    def interrupted() -> bool:
+        return wishes.interrupted() or deadline.is_over()
+
+    # Most spaces of large nets are small: it does not pay to have the compiler work for long before that is known.
+    is_first = len(net.transitions) > programs.MANY and not wishes.quick
     compiling = 0.0
     while True:
         began = time.perf_counter()
-        compiled = programs.program(
-            net,
-            storage,
-            sizes,
-            d,
-            wishes.predicates,
-            interrupted=wishes.interrupted,
-            quick=wishes.quick,
-        )
-        with compiled as program:
+        with ExitStack() as stack:
+            compiled = programs.program(
+                net,
+                storage,
+                sizes,
+                d,
+                wishes.predicates,
+                interrupted=interrupted,
+                quick=wishes.quick or is_first,
+            )
+            program = None
+            with suppress(TimeIsOverError), deadline.enforced():
+                program = stack.enter_context(compiled)
             compiling += time.perf_counter() - began
             if program is None:
-                if d.has_errors or not wishes.interrupted():
+                if d.has_errors or not interrupted():
                     return None
+                if not wishes.interrupted():
+                    return _too_late(net, limits, compiling, d)
                 return Exploration.of(net, nothing(net, limits), compiling)
-            options = _options(limits, chosen, sizes, wishes)
-            found = _run_with_tables(net, program, options, chosen, wishes, d)
+            own = limits
+            if is_first:
+                most = limits.max_states or programs.FIRST_STATES
+                own = replace(limits, max_states=min(most, programs.FIRST_STATES))
+            options = _options(own, chosen, sizes, wishes)
+            telling = replace(wishes, progress=_nothing) if is_first else wishes
+            found = _run_with_tables(net, program, options, chosen, telling, deadline, d)
         if found is None:
             return None
+        if is_first and _is_too_much(found, own, limits):
+            is_first = False
+            continue
         if found.get("spill_error") and found["why"] == "memory":
             d.warning(
                 SPILL_FULL,
@@ -154,13 +192,35 @@ def explore(
         sizes = larger
 
 
-def nothing(net: FlatNet, limits: Limits) -> dict[str, Any]:
-    """What an explorer would have printed that was interrupted before it began."""
+def _is_too_much(found: Mapping[str, Any], own: Limits, limits: Limits) -> bool:
+    """Whether what was compiled quickly has come to an end of its own, not to one that the user has set.
+
+    A stack that is full is full later in what the compiler has worked at for longer.
+    """
+    said = [found["error"]["message"]] if found["error"] else []
+    said += [answer["why"] for answer in found.get("queries") or ()]
+    return TOO_DEEP in said or (found["why"] == "states" and own.max_states != limits.max_states)
+
+
+def _too_late(net: FlatNet, limits: Limits, compiling: float, d: Diagnostics) -> Exploration:
+    """Nothing has been explored, since the time was over before that."""
+    if all(i.code != TIME_OVER for i in d):
+        d.warning(
+            TIME_OVER,
+            "the time was over before the net was compiled, so nothing of it has been explored",
+            Origin(net.file),
+            hint="give it more time with `--max-seconds`; a net that has been compiled once is kept",
+        )
+    return Exploration.of(net, nothing(net, limits, "seconds"), compiling)
+
+
+def nothing(net: FlatNet, limits: Limits, why: str = "interrupted") -> dict[str, Any]:
+    """What an explorer would have printed that was ended before it began."""
     sizes = ("nodes", "arcs", "depth", "seconds", "bytes_per_state", "peak_mib", "dead_count")
     return {
         **dict.fromkeys(sizes, 0),
         "complete": False,
-        "why": "interrupted",
+        "why": why,
         "error": None,
         "threads": limits.threads,
         "fired": [0] * len(net.transitions),
@@ -170,7 +230,8 @@ def nothing(net: FlatNet, limits: Limits) -> dict[str, Any]:
 
 
 def _options(limits: Limits, chosen: Chosen, sizes: Sizes, wishes: Wishes) -> list[str]:
-    seconds = limits.max_seconds
+    ends = [s for s in (limits.max_seconds, limits.deadline.left) if s is not None]
+    seconds = min(ends, default=None)
     given: list[tuple[str, object]] = [
         ("--threads", limits.threads),
         ("--order", limits.order.value),
@@ -187,6 +248,7 @@ def _options(limits: Limits, chosen: Chosen, sizes: Sizes, wishes: Wishes) -> li
         ("--query-trace-to", wishes.evidence and wishes.evidence / f"{wishes.stem}.query-"),
         ("--write-graph", wishes.graph),
         ("--write-limit", wishes.graph_limit),
+        ("--multiset-limit", wishes.colours),
         ("--progress-every", wishes.pace),
         *(("--reduce", reduction.value) for reduction in chosen.reductions),
     ]
@@ -200,6 +262,7 @@ def _run_with_tables(
     options: Sequence[str],
     chosen: Chosen,
     wishes: Wishes,
+    deadline: Deadline,
     d: Diagnostics,
 ) -> dict[str, Any] | None:
     """Like `_run`, with files of binding elements (for reductions) and of questions as long as it runs."""
@@ -228,7 +291,7 @@ def _run_with_tables(
                 )
                 return None
             options += [option, name]
-        return _run(net, program, options, wishes, d)
+        return _run(net, program, options, wishes, deadline, d)
     finally:
         for table in made:
             table.unlink(missing_ok=True)
@@ -246,7 +309,12 @@ def _differs(net: FlatNet, error: Mapping[str, Any], d: Diagnostics) -> None:
 
 
 def _run(
-    net: FlatNet, program: Path, options: Sequence[str], wishes: Wishes, d: Diagnostics
+    net: FlatNet,
+    program: Path,
+    options: Sequence[str],
+    wishes: Wishes,
+    deadline: Deadline,
+    d: Diagnostics,
 ) -> dict[str, Any] | None:
     """One process from its start to its last word."""
     process = subprocess.Popen(
@@ -266,7 +334,7 @@ def _run(
     )
     for listener in listeners:
         listener.start()
-    told = False
+    told = is_late = False
     try:
         while True:
             with suppress(subprocess.TimeoutExpired):
@@ -275,6 +343,9 @@ def _run(
             if not told and wishes.interrupted():
                 told = True
                 process.send_signal(signal.SIGINT)
+            if deadline.is_long_over():  # in an inscription that takes too long, or for ever
+                is_late = True
+                process.kill()
     except BaseException:
         process.kill()
         process.wait()
@@ -288,6 +359,14 @@ def _run(
         _tidy(wishes, process.pid)
         if told and process.returncode == -signal.SIGINT:  # before it could listen
             return nothing(net, Limits())
+        if is_late:
+            d.warning(
+                TIME_OVER,
+                "the explorer did not end when its time was over, and was stopped; what it has seen is lost",
+                Origin(net.file),
+                hint="an inscription may take very long, or for ever; `--max-states` ends before that",
+            )
+            return nothing(net, Limits(), "seconds")
         _bad_end(net, process.returncode, said, d)
         return None
     return found

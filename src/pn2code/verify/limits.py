@@ -8,6 +8,8 @@ from dataclasses import dataclass
 from enum import StrEnum
 from pathlib import Path
 
+from pn2code.deadline import NEVER, Deadline
+
 _LEAST = 64
 _UNKNOWN = 2048
 """MiB, when the system does not say what is free."""
@@ -42,6 +44,7 @@ class Limits:
     Args:
         max_states: markings, None: no limit.
         max_seconds: of exploration, None: no limit.
+        deadline: when all has to be over: compiling, too, and whatever else is explored for the same command.
         memory: MiB of the explorer's tables, None: three quarters of what is free at the start.
         threads: at least 1.
         order: breadth first gives shortest traces.
@@ -54,6 +57,7 @@ class Limits:
 
     max_states: int | None = None
     max_seconds: float | None = None
+    deadline: Deadline = NEVER
     memory: int | None = None
     threads: int = 1
     order: Order = Order.BREADTH

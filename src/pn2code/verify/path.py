@@ -15,8 +15,9 @@ from pathlib import Path
 from pn2code.net.flat import FlatNet, FlatPlace, FlatTransition
 from pn2code.semantics.colours import TEXTS
 from pn2code.semantics.files import Files
-from pn2code.semantics.game import Game
-from pn2code.semantics.marking import BindingElement, Marking
+from pn2code.semantics.game import Game, NotEnabled
+from pn2code.semantics.marking import BindingElement, Marking, element_text
+from pn2code.semantics.parties import VERIFY
 from pn2code.semantics.report import element, time_text
 from pn2code.semantics.values import Value
 from pn2code.simulate.script import Trace
@@ -74,7 +75,7 @@ def play(
     Raises:
         TraceRefusedError, GameError, OSError: as for `steps`, now or later.
     """
-    opened = Trace.open(trace, net)
+    opened = Trace.open(trace, net, is_shown=True)
     game = Game(
         net,
         storage,
@@ -91,7 +92,13 @@ def _play(net: FlatNet, game: Game, trace: Trace) -> Iterator[tuple[Step, FlatTr
         if step.time is not None and step.time > before.time:
             game.set_time(step.time)
         played = BindingElement.make(step.transition, step.bound)
-        game.fire(played)
+        if (
+            trace.header.by == VERIFY
+        ):  # of a cell: each of its programs knows its own priorities only
+            obstacle = game.obstacle(game.marking, played, priorities=False)
+            if obstacle is not None:
+                raise NotEnabled(f"{element_text(game.colours, net, played)}: {obstacle}")
+        game.fire(played, checked=trace.header.by != VERIFY)
         time = time_text(game.marking.time) if net.timed else ""
         told = element(net, played)
         name = step.transition.name
@@ -123,7 +130,7 @@ def text(found: tuple[Step, ...], total: int) -> str:
     """For people."""
     lines = []
     for step in found:
-        values = ", ".join(f"{k} = {v}" for k, v in step.binding.items())
+        values = ", ".join(f"{k} = {_short(v)}" for k, v in step.binding.items())
         at = f"  @{step.time}" if step.time else ""
         lines.append(
             f"  {step.number:>3}  {step.transition}" + (f"  ({values})" if values else "") + at

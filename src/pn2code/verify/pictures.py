@@ -122,10 +122,10 @@ class Pictures:
     def _obstacle(self, found: Exploration) -> tuple[str, str]:
         """Why there is no picture, and what to do; "" when there is one."""
         smaller = "a smaller space: `--set NAME=VALUE`, `--reduce`; `--plot` draws how the exploration went"
-        if not found.complete:
-            return "the exploration is not complete", smaller
         if found.approximation is not None:
             return "the markings are not stored with `--approximate`", "leave it out"
+        if not found.complete:
+            return "the exploration is not complete", smaller
         if found.nodes > self._most or found.arcs > self._most * _MOST_ARCS:
             size = f"{found.nodes:,} nodes and {found.arcs:,} arcs"
             most = f"at most {self._most:,} nodes and {self._most * _MOST_ARCS:,} arcs can be seen"

@@ -20,12 +20,11 @@ from pn2code.diagnostics import Diagnostics, Note
 from pn2code.semantics.game import Game, GameError
 from pn2code.structure import bounds_and_sums
 from pn2code.toolchain.build import TOOL_MISSING
-from pn2code.verify import control, rooms
+from pn2code.verify import arena, control, rooms
 from pn2code.verify.codes import BEYOND_ROOM, CONTROL_FAILED, CONTROL_OPEN
 from pn2code.verify.control import Check, Control, Plan
 from pn2code.verify.explore import Wishes
 from pn2code.verify.limits import Limits, cores
-from pn2code.verify.programs import Sizes, Structure
 from pn2code.verify.reasons import clause
 
 MOST_STATES = 1_000_000
@@ -42,11 +41,13 @@ class Proofs:
         rooms: for each place.
         verdicts: lines for people, the same whenever the same is generated.
         control: the checks; None: they were not asked for.
+        arena: bytes for the lists and strings of the program; None: not known.
     """
 
     rooms: tuple[rooms.Room, ...]
     verdicts: tuple[str, ...]
     control: Control | None
+    arena: int | None = None
 
 
 def prove(
@@ -65,16 +66,21 @@ def prove(
     given = _given(partition, storage)
     structure = bounds_and_sums(net, storage=storage, given=given)
     structural = structure[0]
-    declared = _declared(partition, config, d)
-    if declared is None:
+    capacities = declared(partition, config, d)
+    if capacities is None:
         return None
     if config is None or not checked:
-        found = rooms.rooms(partition, declared, structural, None)
+        found = rooms.rooms(partition, capacities, structural, None)
         if config is None:
             rooms.warn_assumed(net, found, d)
+        rooms.refuse_large(net, found, d)
+        if d.has_errors:
+            return None
         return Proofs(found, tuple(_not_asked(partition)) if config else (), None)
-    plan = Plan(storage=storage, order_decides=config.supervisor.order_decides)
-    looked = _look(partition, plan, structure, d)
+    plan = Plan(
+        storage=storage, order_decides=config.supervisor.order_decides, capacities=capacities
+    )
+    looked = _look(partition, plan, d)
     if looked is None:
         return None
     for check in looked.failed:
@@ -82,9 +88,8 @@ def prove(
     if looked.open and not looked.failed:
         _warn_open(looked, config, d)
     space = looked.found
-    rooms.warn_exceeded(net, declared.items(), space, d)
     # From a marking that has other tokens than the net's own, more may be reached.
-    found = rooms.rooms(partition, declared, structural, None if given else space)
+    found = rooms.rooms(partition, capacities, structural, None if given else space)
     why = looked.open[0].why if looked.open else None
     if why == "compiler":  # nobody can build it here, either: it will be checked where that is done
         rooms.warn_assumed(net, found, d)
@@ -93,9 +98,10 @@ def prove(
             f"the file of `{given[0]}` brings a token that the net does not have" if given else ""
         )
         rooms.refuse(net, found, other or clause(why or ""), d)
+    rooms.refuse_large(net, found, d)
     if d.has_errors:
         return None
-    return Proofs(found, tuple(_verdicts(looked)), looked)
+    return Proofs(found, tuple(_verdicts(looked)), looked, None if given else arena.size(space))
 
 
 def _given(partition: Partition, storage: Mapping[str, str]) -> tuple[str, ...]:
@@ -111,7 +117,7 @@ def _given(partition: Partition, storage: Mapping[str, str]) -> tuple[str, ...]:
     return tuple(partition.net.places[i].name for i, count in counts.items() if count != 1)
 
 
-def _declared(
+def declared(
     partition: Partition, config: CellConfig | None, d: Diagnostics
 ) -> dict[int, int] | None:
     """`[capacity]` by place; None when it names what is not there."""
@@ -127,18 +133,17 @@ def _declared(
     return found
 
 
-def _look(partition: Partition, plan: Plan, structure: Structure, d: Diagnostics) -> Control | None:
+def _look(partition: Partition, plan: Plan, d: Diagnostics) -> Control | None:
     """The checks; open ones where the state space cannot be had. None after an error that has nothing to do with it."""
     own = Diagnostics()
     limits = Limits(max_states=MOST_STATES, max_seconds=MOST_SECONDS, threads=cores(), traces=0)
     try:
-        wishes = Wishes(sizes=Sizes.start(partition.net, plan.storage, structure), quick=True)
-        found = control.examine(partition, replace(plan, wishes=wishes), limits, own)
+        found = control.examine(partition, replace(plan, wishes=Wishes(quick=True)), limits, own)
     except GameError as error:
         error.report(d)
         return None
     if found is None and any(i.code == TOOL_MISSING for i in own.errors):
-        return control.not_looked("compiler", partition)
+        return control.not_looked("compiler", partition, plan.capacities)
     # A place that grows without end is one without a bound, which is refused with a better hint.
     d.items += [i for i in own.items if i.code != BEYOND_ROOM]
     return found
@@ -213,7 +218,7 @@ def _verdicts(looked: Control) -> Iterator[str]:
         yield "Not checked completely (docs/execution.md):"
     else:
         assert looked.found is not None
-        yield f"Checked in all {looked.found.nodes:,} markings of the closed net (docs/execution.md):"
+        yield f"Checked in all {looked.found.nodes:,} states of the cell as it runs (docs/execution.md):"
     yield from map(_verdict, looked.checks)
 
 

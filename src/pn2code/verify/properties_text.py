@@ -7,6 +7,7 @@ from collections.abc import Mapping, Sequence
 from pn2code.net.flat import FlatNet
 from pn2code.semantics.game import GameError
 from pn2code.simulate.script import TraceRefusedError
+from pn2code.verify import basis
 from pn2code.verify.answers import Answer, Evidence
 from pn2code.verify.path import Step, steps, summary
 
@@ -45,6 +46,11 @@ def remarks(a: Answer) -> list[str]:
         found.append(f"{_VALUES.get(a.about.kind, 'value')}: {number(a.value)}")
     if a.answer == "inconclusive" and a.why:
         found.append(f"not known: {a.why}")
+    if a.net is not None:
+        found.append(f"net: {a.net}. {a.net_why}")
+    if a.rests_on is not None:
+        played = ", and the token game has played it" if a.evidence and a.evidence.confirmed else ""
+        found.append(f"rests on this: {basis.SAYS[a.rests_on]}{played * (a.rests_on == basis.RUN)}")
     if not a.about.expect and a.answer != "inconclusive":
         found.append("as expected" if a.is_expected else "expected to be false")
     return found

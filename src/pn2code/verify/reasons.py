@@ -11,9 +11,11 @@ _CLAUSES = {
     "exception": "an inscription raised an exception",
     "decided": "all properties were decided by then",
     "truncated": "not all markings were seen",
-    "approximation": "it is approximate: markings may have been taken for others",
+    "approximation": "the exploration is approximate, so markings may have been taken for others and missed",
     "reduction": "the reduction of the state space does not keep it",
     "endless": "the response is not finite",
+    "speeds": "the order of events decides, and durations decide that",
+    "chance": "random numbers or files decide: other ones than those that were drawn may lead elsewhere",
     "compiler": "there is no C compiler",
 }
 

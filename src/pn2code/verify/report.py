@@ -8,19 +8,22 @@ approximations, reductions) stand in the head, so that a report says by itself w
 
 from __future__ import annotations
 
+import textwrap
 from collections.abc import Iterable, Sequence
 from datetime import datetime
 
 import pn2code
 from pn2code.net.engine_names import EngineNames
 from pn2code.net.flat import FlatNet, FlatPlace
-from pn2code.verify import control_text, properties_text
+from pn2code.verify import basis, control_text, properties_text
 from pn2code.verify.answers import Answer
 from pn2code.verify.control import Control
 from pn2code.verify.reasons import clause
-from pn2code.verify.result import Exploration, Graph, multiset_text
+from pn2code.verify.result import Exploration, Graph, cut, multiset_text
 
 _RULE = "-" * 72
+_WIDTH = 110
+"""Columns of sentences."""
 _NAME = 20
 """Columns of a name in the tables of bounds; a longer one has a line of its own."""
 _LISTED = 5
@@ -81,16 +84,17 @@ def _head(net: FlatNet, found: Exploration, written: datetime | None) -> str:
         "",
         f"Made by pn2code {pn2code.__version__} from the net with SHA-256",
         f"{net.sha256}.",
+        "Explored was the net as it is compiled for the explorer; `pn2code conform` compares that, and the generated",
+        "programs, with the net.",
     ]
     if not found.complete:
-        lines += [
-            f"PARTIAL: {clause(found.why)}. What follows is about the part that was seen: upper bounds may be",
-            "greater, lower bounds smaller, dead transitions may occur, and there may be further dead markings.",
-        ]
+        lines += textwrap.wrap(f"PARTIAL: {clause(found.why)}. {basis.partial(found)}", _WIDTH)
+    lines += [f"{name + ':':<12}{what}." for name, what in basis.complete(found)]
     if found.approximation is not None:
         lines.append(
             f"APPROXIMATE ({found.approximation['kind']}): a marking may have been taken for another one; the "
-            f"probability\nthat any was omitted is about {found.approximation['omission_probability']:.2g}."
+            f"probability\nthat any was omitted is about {found.approximation['omission_probability']:.2g}.\n"
+            "No answer that rests on what was not seen is given."
         )
     if found.reductions:
         lines.append(f"REDUCED by {', '.join(found.reductions)}.")
@@ -106,8 +110,9 @@ def _head(net: FlatNet, found: Exploration, written: datetime | None) -> str:
 
 
 def _statistics(found: Exploration) -> str:
-    status = "Full" if found.complete else "Partial"
-    status = "Reduced" if found.complete and found.is_reduced else status
+    status = "Full" if found.seen.markings else "Partial"
+    status = "Reduced" if found.seen.markings and found.is_reduced else status
+    status = "Approximate" if found.approximation is not None else status
     lines = [
         *_section("Statistics"),
         "",
@@ -142,7 +147,15 @@ def _boundedness(net: FlatNet, found: Exploration) -> str:
             own = found.bounds[place.index]
             multiset = (own.lower_multiset, own.upper_multiset)[pick]
             lines += _row(name, multiset_text(place.colset, multiset) or "not computed", _NAME)
+            colours = cut(multiset, (own.lower_colours, own.upper_colours)[pick])
+            if colours is not None and multiset is not None:
+                lines.append(f"     {'':{_NAME}}({left_out(len(multiset), colours)})")
     return "\n".join(lines)
+
+
+def left_out(shown: int, colours: int) -> str:
+    """Of a multi-set that was cut."""
+    return f"only {shown:,} of {colours:,} colours are listed; `--full` lists all"
 
 
 def bounded_places(net: FlatNet) -> list[tuple[str, FlatPlace]]:
@@ -183,11 +196,19 @@ def _nodes(first: Sequence[int], count: int) -> str:
 
 
 def _liveness(net: FlatNet, found: Exploration) -> str:
-    everything = found.dead_count == found.nodes and found.complete
+    is_whole = found.seen.markings
+    everything = found.dead_count == found.nodes and is_whole
     dead = "All" if everything else _nodes(found.dead, found.dead_count)
+    if not found.dead_count and not is_whole:
+        dead = "None was seen"
     lines = [*_section("Liveness Properties"), "", "  Dead Markings", f"     {dead}"]
     if found.knows_dead_transitions:
-        lines += ["", "  Dead Transition Instances", *_instances(net, found.dead_transitions())]
+        title = (
+            "Dead Transition Instances"
+            if is_whole
+            else "Transition Instances that were not seen to occur"
+        )
+        lines += ["", f"  {title}", *_instances(net, found.dead_transitions())]
     if found.graph is not None:
         lines += ["", "  Live Transition Instances", *_instances(net, found.live_transitions())]
     return "\n".join(lines)

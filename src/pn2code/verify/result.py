@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any
 
@@ -21,13 +21,31 @@ FAIRNESS = ("impartial", "fair", "just", "none")
 class Bounds:
     """Of one place: least and greatest number of tokens, and for each colour (JSON of the traces) the same.
 
-    `lower_multiset` and `upper_multiset` are [[count, value], ...] in the order of the colour set; None: not computed.
+    `lower_multiset` and `upper_multiset` are [[count, value], ...]; None: not computed. Of a multi-set with more
+    colours than were wanted they have only so many; `lower_colours` and `upper_colours` say how many there are.
     """
 
     lower: int
     upper: int
     lower_multiset: tuple[tuple[int, Any], ...] | None
     upper_multiset: tuple[tuple[int, Any], ...] | None
+    lower_colours: int = 0
+    upper_colours: int = 0
+
+
+@dataclass(frozen=True, slots=True)
+class Seen:
+    """What an answer may rest on.
+
+    Args:
+        markings: every marking that can be reached has been seen, and what occurs in it.
+        arcs: the graph has been made, with all of its arcs.
+        components: the graph has been gone through: components, home markings, liveness, fairness.
+    """
+
+    markings: bool = False
+    arcs: bool = False
+    components: bool = False
 
 
 @dataclass(frozen=True, slots=True)
@@ -72,8 +90,9 @@ class Exploration:
     """The state space, or the part of it that was seen.
 
     Args:
-        complete: whether everything was seen; else `why` says what was in the way: "states", "seconds", "memory",
-            "interrupted", "error".
+        complete: whether all that was wanted was done; else `why` says what was in the way: "states", "seconds",
+            "memory", "interrupted", "error", "approximation".
+        seen: what is complete, also where not all is.
         error: of "error": `message`, `where`, `transition` (index or None), `node` (None: not known),
             `binding` (texts, when it is an occurrence that raises it), `trace` (as those of `traces`, or None).
         nodes, arcs, depth: of the graph.
@@ -88,6 +107,8 @@ class Exploration:
             how many; with "symmetry" a node stands for all markings that are symmetric to it.
         symmetries: for people, of "symmetry".
         answers: what the explorer says of each question, in order.
+        arena: bytes for lists and strings: "start" (before the first marking), "firing" (one occurrence), "marking";
+            None where bounds are not known.
     """
 
     complete: bool
@@ -109,8 +130,10 @@ class Exploration:
     traces: tuple[Trace, ...]
     approximation: Mapping[str, Any] | None
     reductions: tuple[str, ...]
+    seen: Seen = Seen()
     symmetries: tuple[str, ...] = ()
     answers: tuple[Mapping[str, Any], ...] = ()
+    arena: Mapping[str, int] | None = None
 
     @property
     def is_reduced(self) -> bool:
@@ -151,7 +174,9 @@ class Exploration:
             traces=tuple(Trace.of(t) for t in found.get("traces") or ()),
             approximation=found.get("approximate"),
             reductions=tuple(found.get("reductions") or ()),
+            seen=Seen(**(found.get("seen") or {})),
             answers=tuple(found.get("queries") or ()),
+            arena=found.get("arena"),
         )
 
     @property
@@ -188,7 +213,12 @@ def _bounds(found: Sequence[Mapping[str, Any]] | None) -> tuple[Bounds, ...] | N
         return None
     return tuple(
         Bounds(
-            b["lower"], b["upper"], _multiset(b["lower_multiset"]), _multiset(b["upper_multiset"])
+            b["lower"],
+            b["upper"],
+            _multiset(b["lower_multiset"]),
+            _multiset(b["upper_multiset"]),
+            b["lower_colours"],
+            b["upper_colours"],
         )
         for b in found
     )
@@ -236,6 +266,7 @@ def row(net: FlatNet, found: Exploration) -> dict[str, Any]:
     return {
         "complete": found.complete,
         "why": found.why,
+        "seen": asdict(found.seen),
         "nodes": found.nodes,
         "arcs": None if found.is_reduced else found.arcs,
         "scc_nodes": graph.scc_nodes if graph else None,
@@ -286,9 +317,16 @@ def bounds_rows(net: FlatNet, found: Exploration) -> list[dict[str, Any]]:
                 "upper": own.upper,
                 "lower_multiset": multiset_text(colset, own.lower_multiset),
                 "upper_multiset": multiset_text(colset, own.upper_multiset),
+                "lower_cut": cut(own.lower_multiset, own.lower_colours),
+                "upper_cut": cut(own.upper_multiset, own.upper_colours),
             }
         )
     return rows
+
+
+def cut(found: Sequence[tuple[int, Any]] | None, colours: int) -> int | None:
+    """How many colours a multi-set has of which not all are there; None: all are, or it was not computed."""
+    return None if found is None or len(found) >= colours else colours
 
 
 def multiset_text(colset: Colset, found: Sequence[tuple[int, Any]] | None) -> str | None:

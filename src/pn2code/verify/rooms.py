@@ -9,7 +9,7 @@ complete state space of the closed net, unless cell.toml declares the bound. A r
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
 from pn2code.cell.partition import Partition
@@ -19,15 +19,15 @@ from pn2code.lowering.packing import colours
 from pn2code.net.flat import FlatNet
 from pn2code.structure.bounds import PlaceBound
 from pn2code.structure.report import Names, weighted
-from pn2code.verify.codes import CAPACITY_ASSUMED, CAPACITY_EXCEEDED, CAPACITY_UNPROVED
+from pn2code.verify.codes import CAPACITY_ASSUMED, CAPACITY_LARGE, CAPACITY_UNPROVED
 from pn2code.verify.result import Exploration
 
 DECLARED = "declared"
 SPACE = "state space"
 ASSUMED = "assumed"
 _LISTED = 5
-_MOST_ENTRIES = 1 << 16
-"""Of an array. More different tokens than that, and the program stops safely, whatever is proven."""
+MOST_TOKENS = 1 << 20
+"""Of a place: for more, no program is generated."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -57,7 +57,7 @@ def rooms(
         partition: the net and its owners.
         declared: place index -> what cell.toml says.
         structural: what the structure of the net proves.
-        found: the state space of the closed net, if it was explored.
+        found: the state space of the cell as it runs, if it was explored.
     """
     net = partition.net
     names = Names(net)
@@ -75,7 +75,7 @@ def rooms(
             result.append(Room(own.bound, kind, text))
         elif counts is not None:
             assert found is not None
-            text = f"the state space, all {found.nodes:,} markings of the closed net"
+            text = f"the state space, all {found.nodes:,} states of the cell as it runs"
             result.append(Room(counts[place.index].upper, SPACE, text))
         else:
             result.append(Room(None, ASSUMED, "nothing: assumed"))
@@ -95,7 +95,6 @@ def with_rooms(net: ir.NetIR, found: Sequence[Room]) -> ir.NetIR:
         if room.bound is not None:
             few = 0 if place.timed else colours(descriptors, place.table)
             capacity = max(min(room.bound, few) if few else room.bound, 1)
-            capacity = min(capacity, max(place.capacity, _MOST_ENTRIES))
         places.append(replace(place, capacity=capacity, bound=room.bound, proof=room.proof))
     return replace(net, places=tuple(places))
 
@@ -125,6 +124,20 @@ def refuse(net: FlatNet, found: Sequence[Room], why: str, d: Diagnostics) -> Non
             )
 
 
+def refuse_large(net: FlatNet, found: Sequence[Room], d: Diagnostics) -> None:
+    """Reports each place that can hold more tokens than a program has arrays for."""
+    for place, room in zip(net.places, found, strict=True):
+        if room.bound is not None and room.bound > MOST_TOKENS:
+            d.error(
+                CAPACITY_LARGE,
+                f"place `{place.name}` can hold {room.bound:,} tokens, and a program has room for {MOST_TOKENS:,}",
+                place.origins[0],
+                notes=[f"what proves it: {room.proof}"],
+                hint="limit the place in the net, or declare in cell.toml what it really holds: "
+                f'[capacity] "{place.short}" = N',
+            )
+
+
 def warn_assumed(net: FlatNet, found: Sequence[Room], d: Diagnostics) -> None:
     """One warning for all places whose room is assumed."""
     assumed = [p.name for p, room in zip(net.places, found, strict=True) if room.bound is None]
@@ -138,20 +151,3 @@ def warn_assumed(net: FlatNet, found: Sequence[Room], d: Diagnostics) -> None:
             Origin(net.file),
             hint="the program stops safely when there is no room left; `[capacity]` in a cell.toml declares bounds",
         )
-
-
-def warn_exceeded(
-    net: FlatNet, declared: Iterable[tuple[int, int]], found: Exploration | None, d: Diagnostics
-) -> None:
-    """Warns of declared bounds that the state space shows to be too small."""
-    if found is None or found.bounds is None:
-        return
-    for index, bound in declared:
-        upper = found.bounds[index].upper
-        if upper > bound:
-            d.warning(
-                CAPACITY_EXCEEDED,
-                f"place `{net.places[index].name}` can hold {upper} tokens, but `[capacity]` declares {bound}",
-                net.places[index].origins[0],
-                hint="the supervisor stops safely there: declare more, or change the net",
-            )

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
 from datetime import datetime
 from typing import Any
 
@@ -10,22 +11,52 @@ from jinja2 import Environment, FileSystemLoader, StrictUndefined
 from markupsafe import Markup
 
 import pn2code
+from pn2code.deadline import NEVER, Deadline, TimeIsOverError
 from pn2code.net.engine_names import EngineNames
-from pn2code.net.flat import FlatNet
+from pn2code.net.flat import FlatNet, FlatPlace
 from pn2code.resources import templates_folder
 from pn2code.semantics.game import GameError
 from pn2code.simulate.script import TraceRefusedError
-from pn2code.verify import control_text, properties_text
+from pn2code.verify import basis, control_text, properties_text
 from pn2code.verify.answers import Answer
 from pn2code.verify.assumptions import assumed
 from pn2code.verify.control import TITLES, Control
 from pn2code.verify.path import Step, steps
 from pn2code.verify.reasons import clause
-from pn2code.verify.report import bounded_places, error_text
-from pn2code.verify.result import Exploration, Trace, multiset_text
+from pn2code.verify.report import bounded_places, error_text, left_out
+from pn2code.verify.result import Exploration, Trace, cut, multiset_text
 
 MOST_STEPS = 200
 """Of a longer trace only the first steps are shown."""
+
+
+@dataclass(frozen=True, slots=True)
+class _Player:
+    """Plays runs once more, as long as there is time."""
+
+    net: FlatNet
+    storage: Mapping[str, str]
+    deadline: Deadline
+
+    def trace(self, trace: Trace) -> dict[str, Any]:
+        """A run as the page shows it."""
+        problem = ""
+        shown: tuple[Step, ...] = ()
+        try:
+            with self.deadline.enforced():
+                shown = steps(self.net, self.storage, trace.file, most=MOST_STEPS)
+        except TimeIsOverError:
+            problem = "The trace is not shown here: the time was over."
+        except (TraceRefusedError, GameError, OSError) as error:
+            problem = f"The trace cannot be shown: {error}"
+        return {
+            "node": trace.node,
+            "file": trace.file,
+            "steps": trace.steps,
+            "shown": shown,
+            "left": max(trace.steps - MOST_STEPS, 0) if not problem else 0,
+            "problem": problem,
+        }
 
 
 def webpage(
@@ -38,6 +69,7 @@ def webpage(
     medium: Sequence[Mapping[str, Any]] = (),
     subject: Sequence[tuple[str, str, str]] = (),
     remark: str = "",
+    deadline: Deadline = NEVER,
 ) -> str:
     """The whole page.
 
@@ -51,11 +83,13 @@ def webpage(
         medium: those of its shared files, as rows: `name`, `said`, `remarks`, `answer`, `kind`, `runs` (lines each).
         subject: what was looked at: what it is, its name, its SHA-256 or value.
         remark: why the subject lacks something; "": it does not.
+        deadline: when it is over no run is played any more.
     """
+    player = _Player(net, storage, deadline)
     tables: dict[str, Sequence[Mapping[str, Any]]] = {
         "Controller checks": list(control_text.rows(control)) if control else [],
         "Medium": list(medium),
-        "Properties": [_property(net, storage, a) for a in answers],
+        "Properties": [_property(player, a) for a in answers],
     }
     fair = [f"`{a.about.name}`: {', '.join(a.about.fair)}" for a in answers if a.about.fair]
     # Names and inscriptions are strangers' texts: all of them are escaped.
@@ -89,8 +123,8 @@ def webpage(
         bounds=_bounds(net, found),
         markings=list(_markings(found)),
         transitions=_transitions(net, found),
-        traces=_traces(net, found, storage),
-        controller_runs=list(_controller_runs(net, storage, control)) if control else [],
+        traces=list(_traces(player, found)),
+        controller_runs=list(_controller_runs(player, control)) if control else [],
         timed=net.timed,
     )
 
@@ -110,7 +144,7 @@ def _summary(tables: Mapping[str, Sequence[Mapping[str, Any]]]) -> Iterator[dict
         yield {"kind": kind, "text": f"{text}."}
 
 
-def _property(net: FlatNet, storage: Mapping[str, str], a: Answer) -> dict[str, Any]:
+def _property(player: _Player, a: Answer) -> dict[str, Any]:
     """A row of the table of properties, with the run that shows the answer."""
     found: dict[str, Any] = {
         "name": a.about.name,
@@ -125,20 +159,18 @@ def _property(net: FlatNet, storage: Mapping[str, str], a: Answer) -> dict[str, 
         is_lasso = loop is not None and loop < a.evidence.steps
         trace = Trace(0, a.evidence.trace, a.evidence.steps)
         found["run"] = {
-            **_trace(net, storage, trace),
+            **player.trace(trace),
             "heading": properties_text.heading(a),
             "loop": loop + 1 if is_lasso and loop is not None else None,
         }
     return found
 
 
-def _controller_runs(
-    net: FlatNet, storage: Mapping[str, str], control: Control
-) -> Iterator[dict[str, Any]]:
+def _controller_runs(player: _Player, control: Control) -> Iterator[dict[str, Any]]:
     for check, run, heading in control_text.runs(control):
         assert run.file is not None
         shown = {
-            **_trace(net, storage, Trace(0, run.file, run.steps)),
+            **player.trace(Trace(0, run.file, run.steps)),
             "heading": heading,
             "loop": None if run.loop is None else run.loop + 1,
         }
@@ -155,7 +187,7 @@ def _verdicts(net: FlatNet, found: Exploration) -> list[dict[str, str]]:
             }
         )
     else:
-        text = f"Partial: {clause(found.why)}. What follows is about the part that was seen."
+        text = f"Partial: {clause(found.why)}. {basis.partial(found)}"
         said.append({"kind": "open", "text": text})
     if found.approximation is not None:
         kind, omitted = found.approximation["kind"], found.approximation["omission_probability"]
@@ -175,7 +207,7 @@ def _verdicts(net: FlatNet, found: Exploration) -> list[dict[str, str]]:
     if found.dead_count:
         number = f"{found.dead_count:,} dead marking{'s' * (found.dead_count > 1)}"
         said.append({"kind": "open", "text": f"{number}: nothing is enabled there."})
-    elif found.complete:
+    elif found.seen.markings:
         said.append({"kind": "good", "text": "No dead marking: something can always occur."})
     return said
 
@@ -189,6 +221,7 @@ def _statistics(found: Exploration) -> list[tuple[str, str]]:
         rows.append(("Arcs between components", f"{found.graph.scc_arcs:,}"))
     return [
         *rows,
+        *((f"{name}: complete?", f"{what}.") for name, what in basis.complete(found)),
         ("Depth", f"{found.depth:,}"),
         ("Exploration", f"{found.seconds:.2f} s, {found.states_per_second:,.0f} markings/s"),
         ("Compilation", f"{found.compile_seconds:.1f} s"),
@@ -211,11 +244,18 @@ def _bounds(net: FlatNet, found: Exploration) -> list[dict[str, Any]]:
                 "name": name,
                 "lower": own.lower,
                 "upper": own.upper,
-                "lower_multiset": multiset_text(place.colset, own.lower_multiset) or "",
-                "upper_multiset": multiset_text(place.colset, own.upper_multiset) or "",
+                "lower_multiset": _multiset(place, own.lower_multiset, own.lower_colours),
+                "upper_multiset": _multiset(place, own.upper_multiset, own.upper_colours),
             }
         )
     return rows
+
+
+def _multiset(place: FlatPlace, found: Sequence[tuple[int, Any]] | None, colours: int) -> str:
+    text = multiset_text(place.colset, found) or ""
+    if found is not None and cut(found, colours) is not None:
+        text += f"\n({left_out(len(found), colours)})".replace("`", "")
+    return text
 
 
 def _markings(found: Exploration) -> list[tuple[str, str]]:
@@ -245,7 +285,7 @@ def _transitions(net: FlatNet, found: Exploration) -> list[dict[str, Any]]:
     for index, arcs in enumerate(found.fired):
         is_dead = arcs == 0 and found.knows_dead_transitions
         kind = (
-            ("dead" if found.complete else "not seen")
+            ("dead" if found.seen.markings else "not seen")
             if is_dead
             else "live"
             if index in live
@@ -266,29 +306,10 @@ def _transitions(net: FlatNet, found: Exploration) -> list[dict[str, Any]]:
     return sorted(rows, key=lambda row: str(row["name"]))
 
 
-def _traces(
-    net: FlatNet, found: Exploration, storage: Mapping[str, str]
-) -> Iterator[dict[str, Any]]:
+def _traces(player: _Player, found: Exploration) -> Iterator[dict[str, Any]]:
     for trace in found.traces:
-        yield {**_trace(net, storage, trace), "goal": f"the dead marking {trace.node}", "then": ""}
+        yield {**player.trace(trace), "goal": f"the dead marking {trace.node}", "then": ""}
     if found.error_trace is not None:
         goal = f"marking {found.error_trace.node}, in which an exception is raised"
-        then = f"Then {error_text(net, found).replace('`', '')}."
-        yield {**_trace(net, storage, found.error_trace), "goal": goal, "then": then}
-
-
-def _trace(net: FlatNet, storage: Mapping[str, str], trace: Trace) -> dict[str, Any]:
-    problem = ""
-    shown: tuple[Step, ...] = ()
-    try:
-        shown = steps(net, storage, trace.file, most=MOST_STEPS)
-    except (TraceRefusedError, GameError, OSError) as error:
-        problem = f"The trace cannot be shown: {error}"
-    return {
-        "node": trace.node,
-        "file": trace.file,
-        "steps": trace.steps,
-        "shown": shown,
-        "left": max(trace.steps - MOST_STEPS, 0) if not problem else 0,
-        "problem": problem,
-    }
+        then = f"Then {error_text(player.net, found).replace('`', '')}."
+        yield {**player.trace(found.error_trace), "goal": goal, "then": then}

@@ -161,7 +161,9 @@ void pn_json(const pn_type_t *type, const void *value, pn_text_t *out)
         break;
     }
     case PN_KIND_ENUM:
+        pn_text_str(out, type->is_tuple ? "[" : "");
         pn_text_json_str(out, type->name_of_value[load_tag(value)]);
+        pn_text_str(out, type->is_tuple ? "]" : "");
         break;
     case PN_KIND_RECORD:
         json_record(type, value, out);
@@ -314,8 +316,13 @@ void *pn_ref_new(pn_ctx_t *cx, const void *value, size_t size)
     if (cell == NULL) {
         return NULL;
     }
-    store_pointer(cell, NULL);
-    (void)memcpy(&cell[PN_REF_HEADER], value, size);
+    const pn_cell_t header = { NULL, 0U, 0U };
+    (void)memcpy(cell, &header, sizeof header);
+    if (value == NULL) {
+        (void)memset(&cell[PN_REF_HEADER], 0, size);
+    } else {
+        (void)memcpy(&cell[PN_REF_HEADER], value, size);
+    }
     return &cell[PN_REF_HEADER];
 }
 

@@ -1,0 +1,390 @@
+"""The functions that are commands of robots: every entry of `[primitives]` fits the net, every call is carried out.
+
+A script has the commands that the net's code segments call, and nothing else of them. So a call that is no command and
+gives no value would vanish from the script without a word: it is an error here. In a robot's or device's code segment
+
+* a primitive, called directly or by a function, is a command;
+* any other function is pure, and its result is used;
+* a function that is declared among the primitives, but that no entry names, is called by nobody.
+
+Elsewhere (guards, arcs, delays, initial markings, constants, and all pages of the supervisor) no primitive is called.
+
+    check_primitives(partition, config, d)
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass, field
+
+from pn2code.cell import codes
+from pn2code.cell.config import CellConfig, CommandName, Primitive
+from pn2code.cell.partition import Owner, Partition
+from pn2code.cell.reach import Reach
+from pn2code.diagnostics import Diagnostics, Span
+from pn2code.diagnostics.near import nearest
+from pn2code.ml import core
+from pn2code.ml.types import INT, REAL, UNIT, TFun, TRecord, TVar, Type
+from pn2code.net.flat import CodeSegment, FlatTransition
+from pn2code.net.uses import walk
+
+_POSE = {"x", "y", "z", "rx", "ry", "rz"}
+_TAKES: dict[CommandName, str] = {
+    "move_joint": "POSE -> unit",
+    "move_linear": "POSE -> unit",
+    "move_home": "unit -> unit",
+    "measure": "POSE -> POSE",
+    "tool": "unit -> unit",
+    "wait": "real -> unit",
+}
+"""Type of the function of each command; POSE is a record of six reals."""
+
+
+def check_primitives(partition: Partition, config: CellConfig, d: Diagnostics) -> None:
+    """Reports entries of `[primitives]` that do not fit the net, and calls that no script would carry out."""
+    checker = _Checker(partition, config, d)
+    checker.entries()
+    checker.calls()
+
+
+@dataclass(slots=True)
+class _Checker:
+    partition: Partition
+    config: CellConfig
+    d: Diagnostics
+    reach: Reach = field(init=False)
+    primitives: dict[int, Primitive] = field(default_factory=dict)
+    unnamed: dict[int, core.Symbol] = field(default_factory=dict)
+    """functions in a block of primitives that no entry names"""
+    idle: set[int] = field(default_factory=set)
+    """functions beside primitives that give back what they get, and that no entry names"""
+    called: set[int] = field(default_factory=set)
+
+    def __post_init__(self) -> None:
+        program = self.partition.net.program
+        self.reach = Reach(program)
+        for t in self.partition.net.transitions:
+            self.reach.add_locals(*(e for _, e in _expressions(t)))
+        for name, primitive in self.config.primitives.items():
+            symbol = program.globals.get(name)
+            if symbol is not None and isinstance(symbol.type, TFun):
+                self.primitives[symbol.uid] = primitive
+        self._blocks()
+
+    def _blocks(self) -> None:
+        """Looks for functions that stand among the primitives."""
+        net = self.partition.net
+        functions: list[tuple[str, core.Symbol, core.Lambda]] = []
+        for declaration in net.program.declarations:
+            if isinstance(declaration, core.RecBind):
+                block = net.blocks.get(declaration.span.source.origin, "")
+                functions += [(block, symbol, body) for symbol, body in declaration.bindings]
+        beside = {block for block, symbol, _ in functions if symbol.uid in self.primitives}
+        for block, symbol, body in functions:
+            if symbol.uid in self.primitives:
+                continue
+            if "primitive" in block.lower():
+                self.unnamed[symbol.uid] = symbol
+            elif block in beside and _gives_back(body):
+                self.idle.add(symbol.uid)
+
+    # --- entries -----------------------------------------------------------------------------------
+
+    def entries(self) -> None:
+        """Each entry names a function of the net, of the type that its command needs."""
+        program = self.partition.net.program
+        functions = [n for n, s in program.globals.items() if isinstance(s.type, TFun)]
+        missing = [s.name for s in self.unnamed.values()]
+        for name, primitive in self.config.primitives.items():
+            at = self.config.locator.origin("primitives", name)
+            symbol = program.globals.get(name)
+            if symbol is None:
+                near = nearest(name, missing, functions)
+                self.d.error(
+                    codes.PRIMITIVE_ENTRY,
+                    f"the net has no function `{name}`",
+                    at,
+                    hint=f"did you mean `{near}`?"
+                    if near
+                    else "declare it in the net, or remove the entry",
+                )
+            elif not _fits(symbol.type, primitive):
+                self.d.error(
+                    codes.PRIMITIVE_ENTRY,
+                    f"`{name}` has type `{symbol.type}`, but a function for `{primitive.command}` has type "
+                    f"`{_TAKES[primitive.command]}`",
+                    at,
+                    notes=["POSE is a record of six reals x y z rx ry rz"]
+                    if "POSE" in _TAKES[primitive.command]
+                    else [],
+                    hint=_other_commands(symbol.type),
+                )
+            elif primitive.command == "wait" and symbol.type.argument == UNIT:  # type: ignore[union-attr]
+                if not primitive.duration_s:
+                    self.d.error(
+                        codes.PRIMITIVE_ENTRY,
+                        f"`{name}` takes no number of seconds, and the entry has no `duration_s`",
+                        at,
+                        hint="add `duration_s = ...` to the entry, or let the function take the seconds",
+                    )
+            elif primitive.command == "move_linear" and not primitive.frame:
+                self.d.error(
+                    codes.PRIMITIVE_ENTRY,
+                    f"`primitives.{name}.frame` is missing",
+                    at,
+                    hint='add `frame = "world"` if the poses are absolute, `frame = "tool"` if they are increments '
+                    "in the tool frame",
+                )
+
+    # --- calls -------------------------------------------------------------------------------------
+
+    def calls(self) -> None:
+        """Whatever is called on the pages of the owners."""
+        net = self.partition.net
+        for t, index in zip(net.transitions, self.partition.transition_owner, strict=True):
+            owner = self.partition.owners[index]
+            for part, e in _expressions(t):
+                if index and part == "code segment":
+                    assert t.code is not None
+                    self._code(t, owner, t.code)
+                else:
+                    self._elsewhere(e, f"{part} of transition `{t.short}`", t, owner)
+        for place in net.places:
+            if place.initial is not None:
+                self._elsewhere(place.initial[0], f"initial marking of place `{place.short}`")
+        for declaration in net.program.declarations:
+            if isinstance(declaration, core.ValBind) and not isinstance(
+                declaration.value.type, TFun
+            ):
+                self._elsewhere(declaration.value, "declaration of a constant")
+        for symbol in self.unnamed.values():
+            if symbol.uid not in self.called:
+                # Nothing is lost as long as nobody calls it.
+                self.d.warning(
+                    codes.PRIMITIVE_UNNAMED,
+                    f"`{symbol.name}` is declared among the primitives, but [primitives] does not name it",
+                    self._declared(symbol),
+                    hint=f"add `{symbol.name} = {{ command = ... }}` to [primitives] of {self.config.path.name}, or "
+                    "move the declaration to another block",
+                )
+
+    def _declared(self, symbol: core.Symbol) -> Span:
+        body = self.reach.body(symbol)
+        assert body is not None, "a function has a body"
+        return body.span
+
+    def _elsewhere(
+        self,
+        e: core.Exp,
+        where: str,
+        t: FlatTransition | None = None,
+        owner: Owner | None = None,
+    ) -> None:
+        """No primitive is called here."""
+        for symbol, span in self.reach.everything(e).values():
+            if symbol.uid not in self.primitives and symbol.uid not in self.unnamed:
+                continue
+            self.called.add(symbol.uid)
+            through = "" if span.text == symbol.name else f", through `{span.text}`,"
+            on = f" on page `{t.page}`" if t is not None else ""
+            whose = f" of the {owner.phrase}" if owner is not None and owner.index else ""
+            if owner is not None and not owner.index:
+                whose = " of the supervisor"
+            what = (
+                "a primitive of the robots"
+                if symbol.uid in self.primitives
+                else "among the primitives"
+            )
+            self.d.error(
+                codes.PRIMITIVE_MISPLACED,
+                f"`{symbol.name}` is {what}, but is used{through} in the {where}{on}{whose}, where no robot "
+                "carries it out",
+                span,
+                hint=self._advice(symbol, owner),
+            )
+
+    def _advice(self, symbol: core.Symbol, owner: Owner | None) -> str:
+        pages = self._pages(symbol)
+        listed = " or ".join(f"`{p}`" for p in pages)
+        if owner is not None and owner.index:
+            return "call it in the code segment of a transition of this page"
+        belongs = f"call it in a code segment on page {listed}" if pages else "remove the call"
+        if symbol.uid in self.unnamed:
+            return f"move its declaration to another block if it is no command of a robot; if it is, {belongs}"
+        return f"{belongs}; let the supervisor send a message to the robot that carries it out"
+
+    def _pages(self, symbol: core.Symbol) -> list[str]:
+        """The robots' pages that call it; all pages of robots and devices where none does."""
+        calling: dict[str, None] = {}
+        every: dict[str, None] = {}
+        net = self.partition.net
+        for t, owner in zip(net.transitions, self.partition.transition_owner, strict=True):
+            if owner:
+                every[t.page] = None
+                if t.code is not None and symbol.uid in self.reach.everything(t.code.action):
+                    calling[t.page] = None
+        return list(calling or every)
+
+    def _code(self, t: FlatTransition, owner: Owner, code: CodeSegment) -> None:
+        """A code segment of a robot or device, with the functions that it calls."""
+        where = f"the code segment of transition `{t.short}` of {owner.phrase}"
+        self._lost(code.action, where, [] if code.outputs else [code.action])
+        for symbol, _ in self.reach.everything(code.action).values():
+            body = self.reach.body(symbol)
+            if symbol.uid not in self.primitives and body is not None:
+                self._lost(body, where, [])
+
+    def _lost(self, e: core.Exp, where: str, unused: list[core.Exp]) -> None:
+        """Reports what no script carries out; `unused`: expressions inside whose values nobody wants."""
+        self.called.update(s.uid for s, _ in self.reach.uses(e) if s.uid in self.unnamed)
+        for symbol, span in self.reach.uses(e):
+            if symbol.uid in self.primitives or self.reach.body(symbol) is None:
+                continue
+            if symbol.uid in self.unnamed:
+                problem = "is declared among the primitives, but [primitives] does not name it"
+            elif symbol.uid in self.idle:
+                problem = "stands beside the primitives and gives back what it gets, but [primitives] does not name it"
+            elif self._acts(symbol):
+                continue
+            elif isinstance(symbol.type, TFun) and _carries_nothing(_result(symbol.type)):
+                problem = "is no primitive, calls none, and gives no value"
+            else:
+                continue
+            near = nearest(symbol.name, self.config.primitives)
+            self.d.error(
+                codes.PRIMITIVE_UNNAMED,
+                f"`{symbol.name}` {problem}: its call would be missing from the script",
+                span,
+                notes=[f"it is called in {where}"],
+                hint=f"add `{symbol.name} = {{ command = ... }}` to [primitives] of {self.config.path.name}"
+                + (f" (there is an entry `{near}`)" if near else ""),
+            )
+        for x in [*unused, *_unused(e)]:
+            self._unused_value(x, where)
+
+    def _unused_value(self, e: core.Exp, where: str) -> None:
+        """A value that nobody wants: whatever was called for it must have been a command."""
+        for x in _values(e):
+            if (
+                isinstance(x, core.Apply)
+                and not _carries_nothing(x.type)
+                and not any(
+                    s.uid in self.primitives or s.uid in self.unnamed or s.uid in self.idle
+                    for s, _ in self.reach.everything(x).values()
+                )
+            ):
+                self.d.error(
+                    codes.PRIMITIVE_UNNAMED,
+                    "the result of this call is not used, and it is no command: it would be missing from the script",
+                    x.span,
+                    notes=[f"it is called in {where}"],
+                    hint="use its result, name the function in [primitives] if it is a command, or remove the call",
+                )
+
+    def _acts(self, symbol: core.Symbol) -> bool:
+        """Whether a function is made of primitives."""
+        return any(s.uid in self.primitives for s in self.reach.from_symbol(symbol))
+
+
+def _expressions(t: FlatTransition) -> Iterator[tuple[str, core.Exp]]:
+    """All expressions of a transition, with the part that each belongs to."""
+    for guard in t.guards:
+        yield "guard", guard
+    for arc in t.arcs:
+        if arc.inscription is not None:
+            yield "arc inscription", arc.inscription.value
+    if t.delay is not None:
+        yield "delay", t.delay
+    if t.code is not None:
+        yield "code segment", t.code.action
+
+
+def _unused(e: core.Exp) -> Iterator[core.Exp]:
+    """The expressions inside whose values nobody wants."""
+    for x in walk(e):
+        if isinstance(x, core.Sequence):
+            yield from x.items[:-1]
+        elif isinstance(x, core.While):
+            yield x.body
+        elif isinstance(x, core.Apply) and isinstance(x.function, core.Builtin):
+            if x.function.name in ("ignore", "General.ignore"):
+                yield x.argument
+        elif isinstance(x, core.Let):
+            used = {y.symbol.uid for y in walk(x) if isinstance(y, core.Var)}
+            for declaration in x.declarations:
+                if isinstance(declaration, core.ValBind):
+                    match declaration.pattern:
+                        case core.PWild():
+                            yield declaration.value
+                        case core.PVar(symbol) if symbol.uid not in used:
+                            yield declaration.value
+                        case _:
+                            pass
+
+
+def _values(e: core.Exp) -> Iterable[core.Exp]:
+    """The expressions one of which gives the value of `e`."""
+    match e:
+        case core.If(_, then, otherwise):
+            return [*_values(then), *_values(otherwise)]
+        case core.Case(_, rules):
+            return [x for rule in rules for x in _values(rule.body)]
+        case core.Let(body=body):
+            return _values(body)
+        case core.Sequence(items):
+            return _values(items[-1])
+        case core.RecordExp(fields):
+            return [x for _, value in fields for x in _values(value)]
+        case _:
+            return [e]
+
+
+def _gives_back(body: core.Lambda) -> bool:
+    """Whether a function does nothing: it gives back what it gets."""
+    match body.rules:
+        case (core.Rule(core.PVar(symbol), core.Var(given)),):
+            return symbol == given
+        case _:
+            return False
+
+
+def _result(t: Type) -> Type:
+    while isinstance(t, TFun):
+        t = t.result
+    return t
+
+
+def _carries_nothing(t: Type) -> bool:
+    return isinstance(t, TRecord) and all(_carries_nothing(x) for _, x in t.fields)
+
+
+def _is_pose(t: Type) -> bool:
+    return isinstance(t, TVar) or (
+        isinstance(t, TRecord)
+        and len(t.fields) == len(_POSE)
+        and {label.lower() for label, _ in t.fields} == _POSE
+        and all(x == REAL for _, x in t.fields)
+    )
+
+
+def _fits(t: Type, primitive: Primitive) -> bool:
+    if not isinstance(t, TFun):
+        return False
+    takes, gives = t.argument, t.result
+    match primitive.command:
+        case "move_joint" | "move_linear":
+            return _is_pose(takes) and gives == UNIT
+        case "measure":
+            return _is_pose(takes) and _is_pose(gives)
+        case "wait":
+            return takes in (REAL, INT, UNIT) and gives == UNIT
+        case "move_home" | "tool":
+            return (takes == UNIT or isinstance(takes, TVar)) and gives == UNIT
+
+
+def _other_commands(t: Type) -> str:
+    """Which commands a function of this type can be."""
+    known = [c for c in _TAKES if _fits(t, Primitive("", c))]
+    if not known:
+        return "change the function's declaration in the net"
+    return f"a function of this type can be {' or '.join(f'`{c}`' for c in known)}"

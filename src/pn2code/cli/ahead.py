@@ -1,0 +1,160 @@
+"""What a run of a cell would come upon, seen by `pn2code check` without running: what sensors say, where arms stand.
+
+look_ahead(partition, config, programs, d)
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import replace
+
+from pn2code.cell.codes import CELL_MISSING
+from pn2code.cell.config import CellConfig
+from pn2code.cell.load import load as load_cell
+from pn2code.cell.partition import Partition
+from pn2code.diagnostics import Diagnostics, Origin
+from pn2code.lowering.robot_ir import Chain, Line, Node, Region, Repeat, RobotIR
+from pn2code.robot import codes, scene
+from pn2code.robot.backend import BackendUnavailableError, open_backend
+from pn2code.robot.commands import Pose
+from pn2code.robot.executor import RobotExecutor
+from pn2code.robot.monitor import Monitor
+from pn2code.robot.motion import MotionFault
+from pn2code.robot.scene import RobotCell
+from pn2code.run.sensors import load as load_sensors
+from pn2code.tdl import tree as t
+from pn2code.tdl.evaluate import ScriptError, ScriptPose, ScriptValue, evaluate
+from pn2code.tdl.interpret import to_si
+
+
+def look_ahead(
+    partition: Partition, config: CellConfig, programs: Iterable[RobotIR], d: Diagnostics
+) -> None:
+    """Reports missing inputs, values of sensors that are none, arms that touch at HOME, constant poses out of reach.
+
+    Args:
+        partition: the net and its owners.
+        config: the cell, which is right as far as it can be seen without its robots moving.
+        programs: of its robots and devices.
+        d: gets the errors.
+    """
+    for entry in config.inputs:
+        if not (config.folder / entry.file).is_file():
+            d.error(
+                CELL_MISSING,
+                f"input: there is no file `{entry.file}` beside {config.path.name}",
+                entry.origin,
+                hint="write it, or correct `file`; the supervisor reads it when it starts",
+            )
+    load_sensors(config, partition.net, (config.folder,), None, d)
+    poses = {ir.name: list(_constant_poses(ir)) for ir in programs}
+    for layout in config.layouts or {"": ""}:
+        chosen = config if layout == config.layout else load_cell(config.path, d, layout=layout)
+        assert chosen is not None, "the layouts have been read before"
+        cell = scene.load(chosen.geometry, chosen.folder, chosen.locator.origin, d)
+        if cell is None:
+            return
+        where = f" in layout `{layout}`" if layout else ""
+        _home(cell, chosen, where, d)
+        for robot in cell.robots:
+            _reach(cell, robot.name, poses.get(robot.name, []), where, d)
+
+
+def _home(cell: RobotCell, config: CellConfig, where: str, d: Diagnostics) -> None:
+    """Arms that are in something, or in each other, where the run begins."""
+    if not cell.robots:
+        return
+    at = config.locator.origin("robots", cell.robots[0].name, "home")
+    try:
+        backend = open_backend("bullet", cell, looks=False)
+    except BackendUnavailableError as problem:
+        d.note(
+            codes.ROBOT_HOME,
+            f"whether arms touch at HOME is not checked: {problem}",
+            at,
+        )
+        return
+    try:
+        verdict = Monitor(cell, backend).check(
+            0.0, {r.name: RobotExecutor(r, cell.motion).q for r in cell.robots}
+        )
+    finally:
+        backend.close()
+    if verdict.fault is not None:
+        d.error(
+            codes.ROBOT_HOME,
+            f"at HOME{where}: {verdict.fault.message}",
+            config.locator.origin("robots", verdict.fault.robot, "home"),
+            hint="change `home` or `base` of the robot, or move what it touches",
+        )
+
+
+def _reach(
+    cell: RobotCell,
+    name: str,
+    poses: Iterable[tuple[Origin, Pose]],
+    where: str,
+    d: Diagnostics,
+) -> None:
+    robot = replace(cell.robot(name), branch=None)
+    for origin, pose in poses:
+        try:
+            RobotExecutor(robot, cell.motion).reach(pose)
+        except MotionFault as fault:
+            d.error(
+                codes.ROBOT_REACH,
+                f"a constant pose cannot be reached{where}: {fault.message}",
+                origin,
+                hint=f"change the pose, or `base` of robot `{name}`",
+            )
+
+
+def _constant_poses(ir: RobotIR) -> Iterator[tuple[Origin, Pose]]:
+    """The poses of a program that are known before it runs: those of moves to constants in the world's frame."""
+    declared = (c.declaration for c in ir.constants)
+    constants = _Constants({c.name: c.value for c in declared if isinstance(c, t.Const)})
+    bodies = (ir.body, *(body for _, body in ir.procedures))
+    for origin, move in (x for body in bodies for x in _moves(body, ir.origin)):
+        if move.target is None or move.frame == "tool":
+            continue
+        try:
+            value = evaluate(move.target, constants)
+        except ScriptError:
+            continue  # it depends on what the program is told, or cannot be computed: the run says so
+        if isinstance(value, ScriptPose):
+            yield origin, to_si(value)
+
+
+def _moves(nodes: Iterable[Node], origin: Origin) -> Iterator[tuple[Origin, t.Move]]:
+    """The moves, each with the net element that it comes from."""
+    for node in nodes:
+        match node:
+            case Line(t.Move() as move):
+                yield origin, move
+            case Region(body=body):
+                yield from _moves(body, node.origin)
+            case Repeat(body=body):
+                yield from _moves(body, origin)
+            case Chain(branches, otherwise):
+                for _, body in branches:
+                    yield from _moves(body, origin)
+                yield from _moves(otherwise or (), origin)
+            case _:
+                pass
+
+
+class _Constants:
+    """An environment in which only constants have values."""
+
+    def __init__(self, constants: Mapping[str, t.Expression]) -> None:
+        self._constants = constants
+
+    def value(self, name: str) -> ScriptValue:
+        """That of a constant."""
+        if name not in self._constants:
+            raise ScriptError(f"`{name}` is not known before the program runs")
+        return evaluate(self._constants[name], self)
+
+    def filled(self, name: str) -> bool:
+        """Nothing is known of files."""
+        raise ScriptError(f"whether `{name}` is filled is not known before the program runs")

@@ -1,0 +1,368 @@
+"""What `pn2code verify` prints: one screen with the verdict, or with `--full` all that is known.
+
+print(screen(said))      # at most about 40 lines: sizes, what failed and the way there, the verdict
+print(full(said))        # the report of CPN Tools, all answers, all runs step by step
+"""
+
+from __future__ import annotations
+
+import textwrap
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import suppress
+from dataclasses import dataclass
+from pathlib import Path
+
+from pn2code.cli import medium
+from pn2code.deadline import NEVER, Deadline, TimeIsOverError
+from pn2code.net.engine_names import EngineNames
+from pn2code.net.flat import FlatNet
+from pn2code.semantics.game import GameError
+from pn2code.simulate.script import TraceRefusedError
+from pn2code.verify import basis, control_text
+from pn2code.verify.answers import Answer
+from pn2code.verify.control import TITLES, Control
+from pn2code.verify.path import steps, text
+from pn2code.verify.properties_text import said as said_of
+from pn2code.verify.properties_text import told
+from pn2code.verify.reasons import clause
+from pn2code.verify.report import bounded_places, error_text, report
+from pn2code.verify.result import Exploration, Trace
+
+MOST_LINES = 40
+"""Of one screen."""
+SHOWN_STEPS = 40
+"""Of a longer run only the first steps are printed with `--full`."""
+LAST_STEPS = 8
+"""Of the run that is told on one screen the last ones: what they lead to is what matters."""
+MOST_STEPS = 3_000
+"""A longer run is not played again to show its last steps."""
+MOST_ITEMS = 8
+"""Failures and open questions that have lines of their own on one screen."""
+MOST_NAMES = 6
+_WIDTH = 110
+_NAME = 21
+
+
+@dataclass(frozen=True, slots=True)
+class Said:
+    """All that is known, to be printed.
+
+    Args:
+        net, storage: as for `Game`, which plays the runs again.
+        found: the state space.
+        answers: to properties.
+        control: the checks of a supervisor.
+        medium: those of the shared files.
+        errors: how many errors are said besides.
+        deadline: when it is over no run is played any more.
+    """
+
+    net: FlatNet
+    storage: Mapping[str, str]
+    found: Exploration
+    answers: Sequence[Answer]
+    control: Control | None
+    medium: medium.Answers
+    errors: int = 0
+    deadline: Deadline = NEVER
+
+
+@dataclass(frozen=True, slots=True)
+class _Item:
+    """One answer: what was asked, how it came out ("good", "bad", "open"), and what there is to say."""
+
+    name: str
+    kind: str
+    says: str
+    file: Path | None = None
+    lines: tuple[str, ...] = ()
+    loop: int | None = None
+
+
+# --- everything ----------------------------------------------------------------------------------
+
+
+def full(said: Said) -> str:
+    """The report, then all runs."""
+    net, found = said.net, said.found
+    parts = [report(net, found, None, said.answers, said.control).rstrip(), _figures(found)]
+    with suppress(TimeIsOverError), said.deadline.enforced():
+        if said.control is not None:
+            parts += control_text.told(net, said.storage, said.control, most=SHOWN_STEPS)
+        parts += [
+            told(net, said.storage, a, SHOWN_STEPS) for a in said.answers if a.evidence is not None
+        ]
+        for trace in found.traces:
+            parts.append(_told(said, trace, f"the dead marking {trace.node}"))
+        if found.error_trace is not None:
+            goal = f"marking {found.error_trace.node}, in which an exception is raised"
+            way = _told(said, found.error_trace, goal)
+            parts.append(f"{way}\n  then {error_text(net, found)}")
+    if said.medium:
+        parts.append(medium.told(said.medium))
+    return "\n\n\n".join([*parts, closing(said)])
+
+
+def _told(said: Said, trace: Trace, goal: str) -> str:
+    head = f"Shortest run to {goal}: {trace.steps} steps, {trace.file}"
+    try:
+        shown = steps(said.net, said.storage, trace.file, most=SHOWN_STEPS)
+    except (TraceRefusedError, GameError, OSError) as problem:
+        return f"{head}\n  (it cannot be shown: {problem})"
+    return f"{head}\n{text(shown, trace.steps)}" if trace.steps else head
+
+
+def _figures(found: Exploration) -> str:
+    partial = "" if found.complete else f" TRUNCATED: {clause(found.why)}."
+    if found.why == "decided":
+        partial = f" Ended early: {clause(found.why)}."
+    return (
+        f"{found.nodes:,} markings and {found.arcs:,} arcs{' of the reduced space' * found.is_reduced} "
+        f"in {found.seconds:.2f} s "
+        f"({found.states_per_second:,.0f} markings/s, {found.threads} thread{'s' * (found.threads > 1)}), "
+        f"{found.bytes_per_state:.1f} bytes a marking, {found.peak_mib:.0f} MiB at most; "
+        f"compiled in {found.compile_seconds:.1f} s.{partial}"
+    )
+
+
+# --- one screen ----------------------------------------------------------------------------------
+
+
+def screen(said: Said) -> str:
+    """The verdict, sizes, what failed, and the way there."""
+    lines = [f"State space of {said.net.file}", ""]
+    if not said.found.complete:
+        partial = f"PARTIAL: {clause(said.found.why)}. {basis.partial(said.found)}"
+        lines += [*textwrap.wrap(partial, _WIDTH), ""]
+    lines += _sizes(said)
+    items = tuple(_items(said))
+    wrong = sorted((i for i in items if i.kind != "good"), key=lambda i: i.kind != "bad")
+    if items:
+        lines += ["", *_counts(said)]
+    if wrong:
+        lines += ["", *_wrong(wrong)]
+    end = ["", *textwrap.wrap(_MORE, _WIDTH), *textwrap.wrap(closing(said), _WIDTH)]
+    room = MOST_LINES - len(lines) - len(end) - 1
+    way = _way(said, wrong, room)
+    if way:
+        lines += ["", *way]
+    return "\n".join([*lines, *end])
+
+
+_MORE = "`--full` prints the whole report, `--report FILE` writes it (.html or .txt)."
+
+
+def _row(name: str, what: str) -> Iterator[str]:
+    wrapped = textwrap.wrap(what, _WIDTH - _NAME - 2) or [""]
+    yield f"  {name:<{_NAME}}{wrapped[0]}"
+    yield from (f"  {'':{_NAME}}{line}" for line in wrapped[1:])
+
+
+def _sizes(said: Said) -> Iterator[str]:
+    net, found = said.net, said.found
+    for name, what in basis.complete(found):
+        more = ""
+        if name == "Markings":
+            more = f", in {found.seconds:.2f} s; compiled in {found.compile_seconds:.1f} s"
+        if name == "Components" and found.graph is not None:
+            more = f", {found.graph.scc_nodes:,}"
+        yield from _row(name, what + more)
+    if found.approximation is not None:
+        kind, omitted = found.approximation["kind"], found.approximation["omission_probability"]
+        yield from _row(
+            "Approximate",
+            f"{kind}: the probability that a marking was omitted is about {omitted:.2g}",
+        )
+    if found.reductions:
+        yield from _row("Reduced by", ", ".join(found.reductions))
+    yield from _row("Dead markings", _dead(found))
+    if found.graph is not None:
+        every = found.graph.home_count == found.nodes
+        yield from _row("Home markings", "all" if every else f"{found.graph.home_count:,}")
+    if found.knows_dead_transitions:
+        names = EngineNames(net)
+        dead = [names.transition(i) for i in found.dead_transitions()]
+        name = "Dead transitions" if found.seen.markings else "Transitions not seen"
+        yield from _row(name, _listed(dead, len(net.transitions)))
+    if found.graph is not None:
+        live = len(found.live_transitions())
+        yield from _row("Live transitions", f"{live} of {len(net.transitions)}")
+    if found.bounds is not None:
+        yield from _row("Bounds", _most(net, found))
+
+
+def _dead(found: Exploration) -> str:
+    if not found.dead_count:
+        return "none" if found.seen.markings else "none was seen"
+    first = ", ".join(map(str, found.dead[:MOST_NAMES]))
+    more = ", ..." if found.dead_count > len(found.dead[:MOST_NAMES]) else ""
+    return f"{found.dead_count:,}" + (f" (nodes {first}{more})" if first else "")
+
+
+def _listed(names: Sequence[str], of: int) -> str:
+    if not names:
+        return "none"
+    if len(names) == of:
+        return f"all {of}"
+    more = f", and {len(names) - MOST_NAMES} more" if len(names) > MOST_NAMES else ""
+    return f"{len(names)}: {', '.join(names[:MOST_NAMES])}{more}"
+
+
+def _most(net: FlatNet, found: Exploration) -> str:
+    """The places that hold most tokens at a time."""
+    assert found.bounds is not None
+    rows = [(name, found.bounds[place.index].upper) for name, place in bounded_places(net)]
+    most = max((upper for _, upper in rows), default=0)
+    names = [name for name, upper in rows if upper == most]
+    is_long = len(names) > MOST_NAMES // 2
+    where = f"{len(names)} of {len(rows)} places" if is_long else ", ".join(names)
+    seen = "" if found.seen.markings else "seen so far: "
+    return f"{seen}at most {most:,} token{'s' * (most != 1)} in a place (in {where})"
+
+
+def _items(said: Said) -> Iterator[_Item]:
+    for check in said.control.checks if said.control else ():
+        kind = "open" if check.answer == "unknown" else "bad" if check.fails else "good"
+        run = next((run for run in check.evidence if run.file is not None), None)
+        loop = None if run is None else run.loop
+        yield _Item(
+            TITLES[check.name], kind, check.says, None if run is None else run.file, loop=loop
+        )
+    for m in said.medium:
+        kind = {"yes": "good", "no": "bad"}.get(m.answer, "open")
+        lines = next((tuple(e.lines) for e in m.evidence), ())
+        says = f"not known: {m.why}" if kind == "open" else m.says
+        yield _Item(f"{m.check[:1].upper()}{m.check[1:]}", kind, says, None, lines)
+    for a in said.answers:
+        kind = "open" if a.answer == "inconclusive" else "good" if a.is_expected else "bad"
+        says = f"not known: {a.why}" if kind == "open" else said_of(a)
+        e = a.evidence
+        file, loop = (None, None) if e is None else (e.trace, e.loop)
+        yield _Item(a.about.name, kind, says, file, loop=loop)
+
+
+_TITLES = ("Controller checks", "Shared files", "Properties")
+
+
+def _groups(said: Said) -> tuple[tuple[str, Sequence[str], Sequence[str | None]], ...]:
+    """For each kind of question: its name, how the answers came out, what they rest on."""
+    items = list(_items(said))
+    checks = said.control.checks if said.control else ()
+    first, second = len(checks), len(checks) + len(said.medium)
+    kinds = [i.kind for i in items]
+    return (
+        (_TITLES[0], kinds[:first], [c.rests_on for c in checks]),
+        (_TITLES[1], kinds[first:second], [m.rests_on for m in said.medium]),
+        (_TITLES[2], kinds[second:], [a.rests_on for a in said.answers]),
+    )
+
+
+_RESTS = {
+    basis.MARKINGS: "all markings",
+    basis.ARCS: "all markings and arcs",
+    basis.COMPONENTS: "all components",
+    basis.MARKING: "a marking that was reached",
+    basis.RUN: "a run",
+    basis.NET: "the net itself",
+}
+
+
+def _counts(said: Said) -> Iterator[str]:
+    for title, kinds, rests in _groups(said):
+        if kinds:
+            yield from textwrap.wrap(
+                f"{title}: {_count(kinds)}{_rest(rests)}.", _WIDTH, subsequent_indent="  "
+            )
+
+
+def _count(kinds: Sequence[str]) -> str:
+    good, bad, is_open = (kinds.count(kind) for kind in ("good", "bad", "open"))
+    text = f"{good} of {len(kinds)} are as they should be"
+    text += f", {bad} {'are' if bad != 1 else 'is'} not" if bad else ""
+    return text + (f", {is_open} {'are' if is_open != 1 else 'is'} not known" if is_open else "")
+
+
+def _rest(rests: Sequence[str | None]) -> str:
+    counted = [f"{says} ({rests.count(word)})" for word, says in _RESTS.items() if word in rests]
+    return f"; the answers rest on {', '.join(counted)}" if counted else ""
+
+
+def _wrong(wrong: Sequence[_Item]) -> Iterator[str]:
+    for item in wrong[:MOST_ITEMS]:
+        mark = {"bad": "NO", "open": "?"}[item.kind]
+        run = f" (run: {item.file})" if item.file is not None else ""
+        yield from textwrap.wrap(
+            f"{mark:<3}{item.name}: {item.says}{run}",
+            _WIDTH,
+            subsequent_indent="   ",
+            break_long_words=False,
+            break_on_hyphens=False,
+        )[:3]
+    if len(wrong) > MOST_ITEMS:
+        yield f"   and {len(wrong) - MOST_ITEMS} more"
+
+
+def _way(said: Said, wrong: Sequence[_Item], room: int) -> list[str]:
+    """The last steps of one run: of the exception, of the first failure, or to the first dead marking."""
+    found = said.found
+    if room < 3:
+        return []
+    most = min(LAST_STEPS, room - 2)
+    if found.error_trace is not None:
+        lines = _last(said, found.error_trace.file, "the exception", most - 1)
+        return [*lines, f"  then {error_text(said.net, found)}"]
+    for item in wrong:
+        if item.file is not None:
+            return _last(said, item.file, f"`{item.name}`", most, item.loop)
+        if item.lines:
+            before = len(item.lines) - most
+            cut = [f"  ... {before} steps before"] if before > 0 else []
+            return [f"The way to `{item.name}`:", *cut, *(f"  {x}" for x in item.lines[-most:])]
+    if found.traces and not wrong and not said.answers and said.control is None:
+        trace = found.traces[0]
+        return _last(said, trace.file, f"the dead marking {trace.node}", most)
+    return []
+
+
+def _last(said: Said, file: Path, goal: str, most: int, loop: int | None = None) -> list[str]:
+    try:
+        with said.deadline.enforced():
+            shown = steps(said.net, said.storage, file, most=MOST_STEPS)
+    except TimeIsOverError:
+        return [f"The way to {goal} is in {file}; there was no time to show it."]
+    except (TraceRefusedError, GameError, OSError) as problem:
+        return [f"The way to {goal} is in {file}; it cannot be shown: {problem}"]
+    if len(shown) == MOST_STEPS:
+        return [f"The way to {goal} is in {file}; it is too long to be shown."]
+    head = f"The way to {goal}, {len(shown)} step{'s' * (len(shown) != 1)}, {file}:"
+    lines = [f"  ... {len(shown) - most} steps before"] if len(shown) > most else []
+    for step in shown[-most:] if most else ():
+        values = ", ".join(f"{k} = {v}" for k, v in step.binding.items())
+        line = f"  {step.number:>3}  {step.transition}" + (f"  ({values})" if values else "")
+        lines.append(line if len(line) <= _WIDTH else f"{line[: _WIDTH - 3]}...")
+    if loop is not None and loop < len(shown):
+        lines.append(f"  and from step {loop + 1} on again and again")
+    return [head, *lines] if lines else []
+
+
+# --- the verdict ---------------------------------------------------------------------------------
+
+
+def closing(said: Said) -> str:
+    """The last line."""
+    kinds = [i.kind for i in _items(said)]
+    bad, is_open = kinds.count("bad"), kinds.count("open")
+    found = said.found
+    if found.error is not None and found.why == "error":
+        return f"Verdict: NO. {error_text(said.net, found)} in a marking that can be reached."
+    if bad:
+        return f"Verdict: NO. {bad} of {len(kinds)} answers {'are' if bad != 1 else 'is'} not as it should be."
+    if said.errors:
+        return "Verdict: NO. There are errors, see below."
+    if is_open:
+        return f"Verdict: NOT KNOWN. {is_open} of {len(kinds)} answers {'are' if is_open != 1 else 'is'} not known."
+    if kinds:
+        return f"Verdict: YES. All {len(kinds)} answers are as they should be."
+    if found.complete:
+        return "Verdict: COMPLETE. Nothing was asked; all that can be reached was seen."
+    return f"Verdict: NOT COMPLETE. {clause(found.why)[:1].upper()}{clause(found.why)[1:]}."

@@ -1,0 +1,96 @@
+"""The time that a command may take, from its start to its last line.
+
+    deadline = Deadline.after(60.0)
+    with deadline.enforced():          # pure Python that nobody can ask to end: it is left by an exception
+        files = generate(net)
+    if deadline.is_over(): ...
+
+Whatever runs as a process of its own is asked to end, or is ended, when `is_over` says so.
+"""
+
+from __future__ import annotations
+
+import signal
+import threading
+import time
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass
+from types import FrameType
+
+_AGAIN_S = 0.1
+"""An exception that is raised in a destructor is lost: the alarm comes again and again until it has been heard."""
+_LEAST_S = 1e-6
+"""An alarm in no time at all would be none."""
+GRACE = 0.1
+"""A process that was told its limit, and does not end, is ended after so large a part of the limit ..."""
+GRACE_S = 2.0
+"""... and so many seconds more."""
+
+
+class TimeIsOverError(BaseException):
+    """The deadline came while pure Python was at work. It is no error of what was done, so nothing catches it."""
+
+
+@dataclass(frozen=True, slots=True)
+class Deadline:
+    """When the time is over.
+
+    Args:
+        seconds: how long there was from the start; None: for ever.
+        ends: the time of `clock` at which it is over.
+        clock: seconds, always forward.
+    """
+
+    seconds: float | None = None
+    ends: float = 0.0
+    clock: Callable[[], float] = time.monotonic
+
+    @staticmethod
+    def after(seconds: float | None, clock: Callable[[], float] = time.monotonic) -> Deadline:
+        """So many seconds from now on; None: never."""
+        return Deadline(seconds, clock() + (seconds or 0.0), clock)
+
+    @property
+    def left(self) -> float | None:
+        """Seconds, less than 0 when it has been over for some time; None: there is no end."""
+        return None if self.seconds is None else self.ends - self.clock()
+
+    def is_over(self) -> bool:
+        """Whether the time is over."""
+        left = self.left
+        return left is not None and left <= 0.0
+
+    def is_long_over(self) -> bool:
+        """Whether what was told to end by then, and has not, is to be ended."""
+        left = self.left
+        return left is not None and -left > GRACE * (self.seconds or 0.0) + GRACE_S
+
+    @contextmanager
+    def enforced(self) -> Iterator[None]:
+        """While the block lasts it is left with `TimeIsOverError` when the time is over (in the main thread only).
+
+        Raises:
+            TimeIsOverError: the time is over, perhaps before the block has begun.
+        """
+        left = self.left
+        if left is None or threading.current_thread() is not threading.main_thread():
+            yield
+            return
+        if left <= 0.0:
+            raise TimeIsOverError
+        before = signal.signal(signal.SIGALRM, self._ring)
+        try:
+            signal.setitimer(signal.ITIMER_REAL, max(left, _LEAST_S), _AGAIN_S)
+            yield
+        finally:
+            signal.setitimer(signal.ITIMER_REAL, 0.0)
+            signal.signal(signal.SIGALRM, before)
+
+    def _ring(self, number: int, frame: FrameType | None) -> None:
+        if self.is_over():
+            raise TimeIsOverError
+
+
+NEVER = Deadline()
+"""For those who have all the time."""

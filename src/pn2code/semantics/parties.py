@@ -1,0 +1,83 @@
+"""Who runs which transition in a recorded run, as far as a replay has to know it.
+
+A simulator plays the net as a whole. In a cell each program knows its own transitions only, and of the messages only
+what it has looked at: a transition that needs a message may have been overlooked, so it holds nobody back.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+from pn2code.net.flat import ArcKind, FlatNet, FlatTransition
+
+SIMULATORS = frozenset({"simulate", "reference"})
+"""`by` of traces in which one clock and one scheduler rule the whole net."""
+VERIFY = "verify"
+"""`by` of a run of a cell that `verify` has found: like one of all parties, but in units of model time."""
+RUN = "run"
+"""`by` of a trace in which all parties are merged."""
+SUPERVISOR = "supervisor"
+
+
+@dataclass(frozen=True, slots=True)
+class Parties:
+    """The parties of a cell.
+
+    Args:
+        names: of the parties, the supervisor's first.
+        owner: of each transition, as an index of `names`.
+        messages: places that are channels between parties.
+        final: places in which a token means that the cell has come to its end.
+        digests: what the heads of traces of these programs say, besides the net's own.
+        is_cell: whether a `cell.toml` says so; else one program runs the whole net.
+        is_known: whether who runs what is known at all.
+    """
+
+    names: tuple[str, ...]
+    owner: tuple[int, ...]
+    messages: frozenset[int]
+    final: tuple[int, ...]
+    digests: frozenset[str]
+    is_cell: bool = True
+    is_known: bool = True
+
+    @staticmethod
+    def one(net: FlatNet, digests: frozenset[str] = frozenset()) -> Parties:
+        """One program runs the whole net."""
+        owner = (0,) * len(net.transitions)
+        return Parties((SUPERVISOR,), owner, frozenset(), (), digests, is_cell=False)
+
+    @staticmethod
+    def unknown(net: FlatNet) -> Parties:
+        """Nobody says who runs what."""
+        return replace(Parties.one(net), is_known=False)
+
+    def stranger(self, by: str) -> str | None:
+        """What is wrong with the writer of a trace; None: nothing."""
+        known = (*sorted(SIMULATORS), VERIFY, RUN, *self.names)
+        if not by or by in known or not self.is_cell:
+            return None
+        return f'it is `by` "{by}", but only these write traces of this cell: {", ".join(known)}'
+
+    def not_by(self, by: str, transition: int) -> str | None:
+        """Why a writer cannot have made a step; None: it can."""
+        if not self.is_cell or by not in self.names or self.names[self.owner[transition]] == by:
+            return None
+        return f"the trace is by `{by}`, but `{self.names[self.owner[transition]]}` runs this transition"
+
+    def rivals(self, net: FlatNet, transition: int) -> Sequence[FlatTransition]:
+        """The transitions that the same party would have preferred, had they been enabled.
+
+        Those that take a message are left out: the party may not have seen it yet.
+        """
+        own = net.transitions[transition]
+        if not self.is_known:
+            return []
+        return [
+            t
+            for t in net.transitions
+            if t.priority < own.priority
+            and self.owner[t.index] == self.owner[transition]
+            and not any(a.place in self.messages and a.kind is not ArcKind.OUTPUT for a in t.arcs)
+        ]

@@ -1,0 +1,121 @@
+"""Properties of a cell: what is so of the cell as it runs, and where the closed net differs.
+
+    for answer in of_cell(properties, control, partition, answers): ...
+
+The answer is that of the cell (`verify.running`). Where it was not seen to its end, an invariant that holds in a closed
+net that can do more holds in the cell as well; nothing else does. What is so of the closed net is said beside, if it is
+something else.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import replace
+from typing import Any
+
+from pn2code.cell.partition import Partition
+from pn2code.properties import meaning as m
+from pn2code.properties.silent import means_the_same
+from pn2code.verify import chance
+from pn2code.verify.answers import Answer, Evidence, answers
+from pn2code.verify.control import Control, can_more, has_own_priorities
+from pn2code.verify.reasons import clause
+from pn2code.verify.running import Running
+
+_PRIORITIES = (
+    "In the closed net priorities are global: a transition waits while one of higher priority is enabled anywhere. In "
+    "the cell each program knows only its own, and only the messages that it has seen."
+)
+_TIME = (
+    "In the closed net no time goes by while something is enabled. In the cell the supervisor may come late, and moves "
+    "take time that the net does not know."
+)
+_CHOICES = (
+    "In the closed net everything that is enabled may occur, and messages are there at once. In the cell the "
+    "supervisor and the scripts choose in the documented order, and a message counts when it has been seen."
+)
+_NEXT = "it speaks of the very next step, and between two occurrences the programs take steps of their own"
+_WAITS = "the net does not know how long moves take, nor how late the supervisor is"
+
+
+def is_kept(p: m.Property) -> bool:
+    """Whether "yes" is kept when the programs do less."""
+    match p.asked:
+        case m.Bound():
+            return True
+        case m.Invariant(condition, wanted):
+            return wanted and all(a.kind in ("true", "pred") for a in m.atoms(condition))
+        case _:
+            return False
+
+
+def reason(partition: Partition) -> str:
+    """Why the closed net may differ from the cell."""
+    if has_own_priorities(partition):
+        return _PRIORITIES
+    return _TIME if partition.net.timed else _CHOICES
+
+
+def of_cell(
+    properties: m.Properties,
+    said: Sequence[Mapping[str, Any]],
+    control: Control,
+    partition: Partition,
+    closed: Sequence[Answer],
+    *,
+    all_orders: bool = False,
+) -> Iterator[Answer]:
+    """The answers; runs are those of the net, without steps of programs.
+
+    Args:
+        properties: what was asked.
+        said: what the explorer says of the cell.
+        control: what the cell was looked at in.
+        partition: the cell.
+        closed: the answers of the closed net.
+        all_orders: whether the supervisor was left its choice, so that it may do less.
+    """
+    found = control.found
+    if found is None:
+        looked: Sequence[Answer] = [
+            Answer(p, "inconclusive", clause(control.why)) for p in properties.properties
+        ]
+    else:
+        looked = answers(properties, said, found)
+    drawn = chance.draws(partition.net)
+    for of_net, answer in zip(closed, looked, strict=True):
+        yield _one(of_net, _certain(answer, control.running, drawn, all_orders), partition)
+
+
+def _certain(answer: Answer, running: Running | None, drawn: bool, all_orders: bool) -> Answer:
+    """Without what the cell's own steps, chance or durations leave open."""
+    asked = answer.about.asked
+    open_ = ""
+    if answer.answer == "inconclusive":
+        return replace(answer, node=None)
+    if isinstance(asked, m.Response) and asked.time is not None:
+        open_ = _WAITS
+    elif not means_the_same(asked):
+        is_all = isinstance(asked, m.Invariant) and asked.wanted and answer.answer == "yes"
+        open_ = "" if is_all else _NEXT
+    elif all_orders and answer.answer == "no":
+        open_ = "it was looked at in all orders in which the supervisor could fire"
+    if not open_ and drawn and answer.evidence is None:
+        open_ = clause("chance")
+    if open_:
+        return Answer(answer.about, "inconclusive", open_)
+    if answer.evidence is None or running is None:
+        return replace(answer, node=None)
+    e = answer.evidence
+    steps, loop = running.project(e.trace, e.loop)
+    return replace(answer, node=None, evidence=Evidence(e.trace, steps, loop))
+
+
+def _one(of_net: Answer, of_cell: Answer, partition: Partition) -> Answer:
+    kept = is_kept(of_net.about)
+    if of_cell.answer == "inconclusive" and kept and can_more(partition) and of_net.answer == "yes":
+        return replace(of_net, kept=True, cell=True)
+    found = replace(of_cell, about=of_net.about, kept=kept, cell=True)
+    if of_net.answer == found.answer or of_net.answer == "inconclusive":
+        return found
+    return replace(found, net=of_net.answer, net_why=reason(partition))

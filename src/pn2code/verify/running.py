@@ -1,0 +1,350 @@
+"""The cell as it runs, as a net: what each program sees and when, around the transitions of the closed net.
+
+    running = Running.of(partition)          # or NotModelledError
+    running.net                              # places and transitions of the net keep their numbers; steps are added
+    running.lines(first=True)                # for the explorer: owners, priorities, choices
+
+The places of the net mean what they mean in the net: a channel holds its token from the moment it is put until it is
+taken. Added are flags of which others know nothing:
+
+    supervisor   idle --sees c--> looks at the next file -- ... --> calm --fires--> calm --publishes c--> calm --> idle
+                 (or, with a token in a final place: over)
+    channel      `seen`: the supervisor has read the message; `out`: the supervisor has published it
+
+* A transition of the supervisor needs *calm*, and takes only messages that have been *seen*. A round of looks goes from
+  file to file, flags first; a look that finds nothing leaves no trace, so a round begins with the first file that holds
+  something: those before it were looked at earlier, and may have been filled since.
+* A robot takes only messages that are *out*. What it writes is there at once: nothing tells that from writing a little
+  later, unless one reader gets two messages of one kind (`NotModelledError`).
+* Emptying a file is no step: whoever writes a second message without having heard that the first one was taken may do
+  so before it is taken, too; then the place holds two.
+* Time: a step of the clock may come whenever something is waited for, whether or not something else is enabled: the
+  supervisor comes late, a move takes longer than its page says. Only within the supervisor's firing no time goes by.
+  Each step of the clock may wake the supervisor.
+
+So each run of the cell is a run of this net, and each run of this net, without the added steps, is an occurrence
+sequence of the closed net in which priorities count among the transitions of an owner.
+"""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterable, Iterator, Sequence
+from pathlib import Path
+from typing import Any
+
+from pn2code.cell.partition import Channel, ChannelKind, Partition
+from pn2code.frozen import frozen
+from pn2code.ml import core
+from pn2code.net.builder import Arc, Builder
+from pn2code.net.flat import ArcKind, FlatArc, FlatNet, FlatTransition
+from pn2code.semantics.parties import VERIFY
+from pn2code.verify import time_reduction
+from pn2code.whole_file import whole_file
+
+MOST_OWNERS = 250
+SUPERVISOR = 0
+_WORDS = 200
+"""Of a line."""
+
+
+class NotModelledError(Exception):
+    """The programs of a cell do something that this model does not have; the text is a clause that says what."""
+
+
+@frozen
+class Running:
+    """The net, and what is needed to ask about it.
+
+    Args:
+        net: with the added places and steps; those of the cell's net come first.
+        partition: the cell.
+        over: the place of the supervisor's end.
+        steps: by added transition, in order: whose step it is (the clock has the number after the last owner's).
+        clock: which of them are steps of the clock.
+        meek: transitions that hold no other one of their robot back: their messages may not have come yet.
+    """
+
+    net: FlatNet
+    partition: Partition
+    over: int
+    steps: tuple[int, ...]
+    clock: tuple[int, ...]
+    meek: tuple[int, ...]
+    names: frozenset[str]
+    """of the transitions of the cell's net"""
+
+    @staticmethod
+    def of(partition: Partition) -> Running:
+        """That of a cell.
+
+        Raises:
+            NotModelledError: not everything that its programs do can be said so.
+        """
+        _check(partition)
+        return _Composer(partition).made()
+
+    def lines(self, *, first: bool, names: Sequence[str] | None = None) -> list[str]:
+        """How the programs choose.
+
+        Args:
+            first: whether of the supervisor's binding elements only the first in the documented order occurs.
+            names: where transitions of the net were made several (`properties.split`): of each, that of the whole one.
+        """
+        whole = [t.name for t in self.net.transitions]
+        parts: dict[str, list[int]] = {}
+        for i, name in enumerate(names or whole):
+            parts.setdefault(name, []).append(i)
+
+        def now(old: Iterable[int]) -> Iterator[int]:
+            return (i for k in old for i in parts[whole[k]])
+
+        owners = [*self.partition.transition_owner, *self.steps]
+        count = len(self.partition.net.transitions)
+        lines: list[str] = []
+        for owner in sorted(set(owners)):
+            lines += chunks(f"owner {owner}", now(i for i, o in enumerate(owners) if o == owner))
+        lines.append("priorities own")
+        for owner in range(len(self.partition.owners)):
+            own = [i for i, o in enumerate(self.partition.transition_owner) if o == owner]
+            if owner != SUPERVISOR:
+                lines += chunks(f"choose {owner + 1}", now(own))
+            elif first:
+                lines += chunks("first 1", now(own))
+        lines += [" ".join(["kin", *map(str, own)]) for own in parts.values() if len(own) > 1]
+        lines += chunks("meek", now(self.meek))
+        lines += chunks("silent", now(range(count, count + len(self.steps))))
+        lines += chunks("clock", now(self.clock))
+        return lines
+
+    def project(self, trace: Path, loop: int | None = None) -> tuple[int, int | None]:
+        """Makes a run of this net one of the cell's net, in place; gives its length and where its cycle begins.
+
+        Raises:
+            OSError: it cannot be read or written.
+        """
+        kept: list[str] = []
+        steps = seen = 0
+        begins = None
+        text = trace.read_text(encoding="utf-8", errors="surrogateescape")
+        for line in text.rstrip("\n").split("\n"):  # other ends of lines may stand in tokens
+            row: dict[str, Any] = json.loads(line)
+            if "transition" in row:
+                if loop is not None and seen == loop:
+                    begins = steps
+                seen += 1
+                if row["transition"] not in self.names:
+                    continue
+                steps += 1
+                row["step"] = steps
+            elif not kept:
+                row["by"] = (
+                    VERIFY  # priorities count among the transitions of an owner, and time goes on
+                )
+            elif row.get("event") == "end":
+                row["why"] = "evidence"
+            kept.append(json.dumps(row, ensure_ascii=False) + "\n")
+        if loop is not None and begins is None:
+            begins = steps
+        with whole_file(trace) as beside:
+            beside.write_text("".join(kept), encoding="utf-8", errors="surrogateescape")
+        return steps, begins
+
+
+def chunks(head: str, numbers: Iterable[int]) -> Iterator[str]:
+    """Lines for the explorer, each with some of the numbers."""
+    words = [str(n) for n in numbers]
+    for i in range(0, len(words), _WORDS):
+        yield " ".join([head, *words[i : i + _WORDS]])
+
+
+# --- what is not modelled ------------------------------------------------------------------------
+
+
+def _check(partition: Partition) -> None:
+    net = partition.net
+    if len(partition.owners) > MOST_OWNERS:
+        raise NotModelledError(f"the cell has more than {MOST_OWNERS} programs")
+    if net.timed:
+        obstacle = time_reduction.obstacle(net)
+        if obstacle is not None:
+            raise NotModelledError(
+                f"steps may come later than in the net, and {obstacle.message}, so that there would be no end of states"
+            )
+    for place in partition.final_places:
+        if net.places[place].colset.timed:
+            raise NotModelledError(f"the final place `{net.places[place].name}` is timed")
+    channels = {c.place: c for c in partition.channels}
+    for t, owner in zip(net.transitions, partition.transition_owner, strict=True):
+        _check_transition(t, owner, channels, partition)
+
+
+def _check_transition(
+    t: FlatTransition, owner: int, channels: dict[int, Channel], partition: Partition
+) -> None:
+    taken: set[int] = set()
+    put: list[Channel] = []
+    for arc in t.arcs:
+        channel = channels.get(arc.place)
+        if channel is None:
+            if partition.place_owner[arc.place] not in (owner, None):
+                raise NotModelledError(f"`{t.name}` touches a place of another owner")
+            continue
+        name = channel.name
+        if arc.kind is ArcKind.OUTPUT and channel.writer == owner:
+            put.append(channel)
+        elif arc.kind is ArcKind.INPUT and channel.reader == owner:
+            if arc.place in taken or not _takes_one(arc):
+                raise NotModelledError(
+                    f"it is not seen in the net that `{t.name}` takes just one message of `{name}`"
+                )
+            taken.add(arc.place)
+        else:
+            raise NotModelledError(f"`{t.name}` does more with channel `{name}` than its direction")
+    if owner == SUPERVISOR:
+        return
+    for kind in ChannelKind:
+        readers = [c.reader for c in put if c.kind is kind]
+        if len(set(readers)) < len(readers):
+            raise NotModelledError(f"`{t.name}` writes two messages of one kind to the same reader")
+
+
+def _takes_one(arc: FlatArc) -> bool:
+    """Whether an input arc takes one token whatever happens."""
+    terms = arc.inscription.terms if arc.inscription is not None else ()
+    if len(terms) != 1 or terms[0].whole or terms[0].delay is not None:
+        return False
+    coefficient = terms[0].coefficient
+    return isinstance(coefficient, core.Lit) and coefficient.value == 1
+
+
+# --- the net -------------------------------------------------------------------------------------
+
+
+class _Composer:
+    def __init__(self, partition: Partition) -> None:
+        self.partition = partition
+        self.b = b = Builder(partition.net)
+        self.step_owner: list[int] = []
+        self.clock: list[int] = []
+        # Priorities count among the steps of an owner: firing comes before publishing, that before resting.
+        self.after = max([t.priority for t in partition.net.transitions] or [1000]) + 1
+        looked = [c for c in partition.channels if c.reader == SUPERVISOR]
+        looked.sort(key=lambda c: c.kind is not ChannelKind.FLAG)
+        self.looked = looked
+        self.seen = {c.place: b.place(f"cell.{c.name}.seen", b.unit) for c in looked}
+        written = [c for c in partition.channels if c.writer == SUPERVISOR]
+        self.out = {c.place: b.place(f"cell.{c.name}.out", b.unit) for c in written}
+        self.written = written
+        self.idle = b.place("cell.supervisor.idle", b.unit)
+        self.calm = b.place("cell.supervisor.calm", b.unit)
+        self.over = b.place("cell.supervisor.over", b.unit)
+        self.news = b.place("cell.supervisor.news", b.unit)
+        self.looks = [b.place(f"cell.supervisor.looks at {c.file}", b.unit) for c in looked]
+        b.begin(self.looks[0] if self.looks else self.calm, b.dot)
+        for t, owner in zip(partition.net.transitions, partition.transition_owner, strict=True):
+            self._transition(t, owner)
+        self._publishing()
+        self._reading()
+        if partition.net.timed:
+            self._time()
+
+    def made(self) -> Running:
+        """The whole."""
+        return Running(
+            net=self.b.net(),
+            partition=self.partition,
+            over=self.over,
+            steps=tuple(self.step_owner),
+            clock=tuple(self.clock),
+            meek=tuple(_meek(self.partition)),
+            names=frozenset(t.name for t in self.partition.net.transitions),
+        )
+
+    def _step(self, owner: int, name: str, priority: int, *arcs: Arc) -> int:
+        self.b.transition(f"cell.{name}", arcs, priority=priority)
+        self.step_owner.append(owner)
+        return len(self.partition.net.transitions) + len(self.step_owner) - 1
+
+    def _on(self, place: int) -> Arc:
+        return self.b.put(place, self.b.dot)
+
+    def _off(self, place: int) -> Arc:
+        return self.b.take(place, self.b.dot)
+
+    def _has(self, place: int) -> Arc:
+        return self.b.test(place, self.b.dot)
+
+    def _any(self, place: int) -> Arc:
+        """Tests that the place holds a token."""
+        return self.b.test(place, self.b.var("v", self.b.places[place].colset))
+
+    def _transition(self, t: FlatTransition, owner: int) -> None:
+        flags = self.seen if owner == SUPERVISOR else self.out
+        taken = [a.place for a in t.arcs if a.kind is ArcKind.INPUT and a.place in flags]
+        arcs = [self._off(flags[place]) for place in taken]
+        if owner == SUPERVISOR:
+            arcs.append(self._has(self.calm))
+        self.b.add_arcs(t.index, arcs, {})
+
+    def _publishing(self) -> None:
+        """What has been put is published in its order; then the supervisor rests, or has finished."""
+        at = self.after
+        for c in self.written:  # data come before flags
+            out = self.out[c.place]
+            arcs = [self._has(self.calm), self._any(c.place), self.b.absent(out), self._on(out)]
+            self._step(SUPERVISOR, f"publishes {c.file}", at, *arcs)
+            at += 1
+        for place in self.partition.final_places:
+            arcs = [self._off(self.calm), self._any(place), self._on(self.over)]
+            self._step(SUPERVISOR, "is over", at, *arcs)
+        self._step(SUPERVISOR, "rests", at + 1, self._off(self.calm), self._on(self.idle))
+
+    def _reading(self) -> None:
+        for i, c in enumerate(self.looked):
+            after = self.looks[i + 1] if i + 1 < len(self.looks) else self.calm
+            seen = self.seen[c.place]
+            found = [self._any(c.place), self.b.absent(seen), self._on(seen), self._on(after)]
+            self._step(SUPERVISOR, f"sees {c.file}", self.after, self._off(self.idle), *found)
+            here = self._off(self.looks[i])
+            self._step(SUPERVISOR, f"sees {c.file} as well", self.after, here, *found)
+            self._step(SUPERVISOR, f"passes {c.file}", self.after + 1, here, self._on(after))
+
+    def _time(self) -> None:
+        """The clock, whose steps the explorer takes one unit later; each of them may wake the supervisor."""
+        self._step(
+            SUPERVISOR,
+            "wakes",
+            self.after,
+            self._off(self.idle),
+            self._off(self.news),
+            self._on(self.calm),
+        )
+        clock = len(self.partition.owners)
+        quiet = self.b.absent(self.calm)
+        for name, news in (
+            ("waits", [self.b.absent(self.news), self._on(self.news)]),
+            ("waits on", [self._has(self.news)]),
+        ):
+            self.clock.append(self._step(clock, f"clock.{name}", self.after, quiet, *news))
+
+
+def _meek(partition: Partition) -> Iterator[int]:
+    """Transitions of robots that wait for a message which another one, that comes later in order, does not need."""
+    net = partition.net
+    channels = {c.place for c in partition.channels}
+
+    def inputs(t: FlatTransition, which: bool) -> set[int]:
+        return {
+            a.place
+            for a in t.arcs
+            if a.kind in (ArcKind.INPUT, ArcKind.BOTH) and (a.place in channels) is which
+        }
+
+    for owner in range(1, len(partition.owners)):
+        own = [t for t in net.transitions if partition.transition_owner[t.index] == owner]
+        own.sort(key=lambda t: (t.priority, t.index))
+        for i, t in enumerate(own):
+            rivals = (u for u in own[i + 1 :] if inputs(t, False) & inputs(u, False))
+            if any(inputs(t, True) - inputs(u, True) for u in rivals):
+                yield t.index

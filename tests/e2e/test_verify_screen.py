@@ -1,0 +1,113 @@
+"""What `verify` prints: one screen that ends with the verdict, all with `--full`; and where its runs go."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+from typer.testing import CliRunner
+
+from helpers.netbuilder import write as write_net
+from helpers.property_nets import MUTEX
+from helpers.small_cell import NET, write
+from pn2code.cli.main import app
+from pn2code.cli.verify_screen import MOST_LINES
+
+pytestmark = pytest.mark.cc
+
+
+def verify(*arguments: object) -> tuple[int, list[str], str]:
+    done = CliRunner().invoke(app, ["verify", *map(str, arguments)])
+    return done.exit_code, done.stdout.rstrip("\n").split("\n"), done.stderr
+
+
+@pytest.fixture
+def here(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    folder = tmp_path / "here"
+    folder.mkdir()
+    monkeypatch.chdir(folder)
+    return folder
+
+
+def test_the_riveting_cell_on_one_screen(root: Path, here: Path) -> None:
+    code, lines, _ = verify(root / "examples" / "riveting")
+    assert code == 0
+    assert len(lines) <= MOST_LINES
+    assert lines[-1].startswith("Verdict: YES. All ")
+    assert any(line.startswith("Controller checks: ") for line in lines)
+    assert sorted(path.name for path in here.iterdir()) == ["cell.traces"]
+    assert all(path.name.endswith(".trace.jsonl") for path in (here / "cell.traces").iterdir())
+
+
+def test_a_cell_with_a_fault(tmp_path: Path, here: Path) -> None:
+    cell = write(tmp_path / "cell", NET.replace("guard [n = 2]", "guard [n = 3]"))
+    code, lines, _ = verify(cell, "--no-medium")
+    text = "\n".join(lines)
+    assert code == 1
+    assert len(lines) <= MOST_LINES
+    assert "NO Non-blocking under control: a deadlock" in text
+    assert "The way to `Non-blocking under control`" in text
+    assert lines[-1] == "Verdict: NO. 1 of 6 answers is not as it should be."
+    assert [path.name for path in here.iterdir()] == ["cell.traces"]
+
+
+def test_many_failures_are_still_one_screen(tmp_path: Path, here: Path) -> None:
+    net = write_net(MUTEX, tmp_path / "mutex.cpn")
+    asked = [word for n in range(2, 40) for word in ("--property", f"bound {n} <= Free <= 99")]
+    code, lines, _ = verify(net, *asked)
+    assert code == 1
+    assert len(lines) <= MOST_LINES
+    assert "and 30 more" in "\n".join(lines)
+    assert lines[-1] == "Verdict: NO. 38 of 38 answers are not as it should be."
+    assert [path.name for path in here.iterdir()] == ["mutex.traces"]
+
+
+def test_in_full(tmp_path: Path, here: Path) -> None:
+    net = write_net(MUTEX, tmp_path / "mutex.cpn")
+    code, lines, _ = verify(
+        net, "--full", "--property", "bound Want <= 1", "--property", "ltl G F fires(Enter)"
+    )
+    text = "\n".join(lines)
+    assert code == 1
+    for words in (
+        "Best Integer Bounds",
+        "Fairness Properties",
+        "Properties",
+        "`property 1` is false: 2 steps",
+    ):
+        assert words in text
+    assert "rests on this: a run that shows it was found, and the token game has played it" in text
+    assert lines[-1] == "Verdict: NO. 1 of 2 answers is not as it should be."
+
+
+def test_where_runs_go(tmp_path: Path, here: Path) -> None:
+    net = write_net(MUTEX, tmp_path / "mutex.cpn")
+    code, lines, _ = verify(net)  # without a dead marking there is no run, and no folder
+    assert code == 0
+    assert lines[-1] == "Verdict: COMPLETE. Nothing was asked; all that can be reached was seen."
+    assert list(here.iterdir()) == []
+    for option in ("-o", "--traces"):
+        folder = tmp_path / f"runs{option}"
+        verify(net, "--property", "bound Want <= 1", option, folder)
+        assert [path.name for path in folder.iterdir()] == ["mutex.property-1.trace.jsonl"]
+    assert list(here.iterdir()) == []
+
+
+@pytest.mark.parametrize(
+    ("options", "words"),
+    [
+        (("--max-states", "2"), "Verdict: NOT COMPLETE. The limit of states was reached."),
+        (("--max-seconds", "0"), ""),
+        (
+            ("--max-states", "2", "--property", "deadlock free"),
+            "Verdict: NOT KNOWN. 1 of 1 answers is not known.",
+        ),
+    ],
+)
+def test_what_is_not_known(
+    tmp_path: Path, here: Path, options: tuple[str, ...], words: str
+) -> None:
+    code, lines, errors = verify(write_net(MUTEX, tmp_path / "mutex.cpn"), *options)
+    assert code == 3
+    assert lines[-1] == words
+    assert ("warning[time-over]" in errors) == ("0" in options)

@@ -1,0 +1,255 @@
+"""One net, what the engine of CPN Tools said of it, and what pn2code says: where do they differ?
+
+    seen = Seen(path)                          # the net, read and checked here
+    seen.verdict(answer)                       # of `engine.check`, or of any other verb
+    seen.marking(answer); seen.run(answer); seen.space(answer)
+        -> a Verdict and a note: "agrees", "differs", "random" (the net draws, or leaves a choice to the engine),
+           "engine" (it fails with an internal error), "unsupported" (and said so), "" (nothing to compare)
+
+An exception of pn2code that is no diagnostic comes out: it is a bug whatever the engine says.
+"""
+
+from __future__ import annotations
+
+from collections import Counter
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from pn2code.conformance.graphs import Arc, Node, engine_arcs, engine_nodes, our_arcs, our_nodes
+from pn2code.diagnostics import Diagnostics, Severity
+from pn2code.net import front
+from pn2code.net.flat import ArcKind
+from pn2code.semantics.effects import Effects, outside
+from pn2code.semantics.game import Game, GameError
+from pn2code.semantics.graph import StateSpace, state_space
+from pn2code.semantics.marking import Marking
+from pn2code.semantics.multiset import TimedMultiSet
+from pn2code.semantics.recording import recording
+from pn2code.semantics.replay_recording import follow
+from pn2code.semantics.report import places
+from pn2code.verify.explore import explore
+from pn2code.verify.limits import Limits
+
+SMALL = 150
+"""Nodes up to which whole graphs are compared."""
+WARNED = {
+    "not unique": {"name-not-unique"},
+    "is not assigned to a port": {"socket-unassigned"},
+    "has type": {"socket-arcs", "port-assignment"},
+    "which is not a port": {"port-assignment"},
+}
+"""What the editor says, and the warning of pn2code that says it: such nets are not refused here."""
+
+
+@dataclass(frozen=True, slots=True)
+class Verdict:
+    """Whether an answer is the same on both sides."""
+
+    state: str
+    note: str = ""
+
+
+AGREES = Verdict("agrees")
+NOTHING = Verdict("")
+ENGINE = Verdict("engine", "the engine fails with an internal error")
+LATE = {"literal-too-large"}
+"""What is found wrong here by checking, and by the engine only when it makes code of the net."""
+GROUPS = Verdict("engine", "it loses count of variables where several arcs come from one place")
+UNBOUND = ("No complete binding sequence", "Cannot bind", "IllegalBit")
+TAKING = (ArcKind.INPUT, ArcKind.BOTH)
+CLOCK = Verdict(
+    "engine", "where nothing can occur any more it goes on to a time noted for tokens that are gone"
+)
+DEAD = "No more enabled transitions!"
+LOOSE = Verdict(
+    "engine", "it confuses the instances of a page that has a socket for a port only in some"
+)
+BROKEN = "InternalError"
+"""So the engine names what is wrong with itself."""
+
+
+def differs(note: str) -> Verdict:
+    """The answers are different."""
+    return Verdict("differs", " ".join(note.split())[:600])
+
+
+class Seen:
+    """A net as pn2code sees it."""
+
+    def __init__(self, path: Path) -> None:
+        self.d = Diagnostics()
+        self.net = front.load(path, self.d)
+        self.codes = {x.code for x in self.d.items}
+        self.loose = any(
+            x.code == "port-unassigned" and x.severity is Severity.WARNING for x in self.d.items
+        )
+        self.game: Game | None = None
+        self.raised = ""
+        if self.net is not None:
+            try:
+                self.game = Game(self.net, seed=1)
+            except GameError as error:
+                self.raised = error.message
+
+    # --- verdict and marking
+
+    def verdict(self, answer: dict[str, Any]) -> Verdict:
+        """Whether both accept the net; what only the editor refuses has to be warned of."""
+        failure = answer.get("failure")
+        if failure is not None and failure["kind"] in ("timeout", "crash", "file"):
+            return NOTHING
+        wrong = [e for e in answer["errors"] if not self._warns(e)]
+        if any(BROKEN in e["message"] for e in wrong):
+            return ENGINE
+        if wrong and all(self._grouped(e) for e in wrong):
+            return GROUPS
+        if failure is not None and failure["stage"] == "check" and failure["kind"] != "rejected":
+            return NOTHING
+        if self.raised and self._says_error(answer):
+            return AGREES
+        if bool(wrong) == (self.net is None):
+            unsaid = [
+                e["message"]
+                for e in answer["errors"]
+                if (codes := self._warning(e)) and codes.isdisjoint(self.codes)
+            ]
+            return differs(f"not warned of: {unsaid[0]}") if unsaid else AGREES
+        if self.net is None:
+            if {e.code for e in self.d.errors} <= LATE:
+                return Verdict("engine", "it accepts the net, and fails when it is to run it")
+            return differs("refused here: " + "; ".join(e.message for e in self.d.errors[:3]))
+        where = "; ".join(f"{e['what']}: {e['message']}" for e in wrong[:2])
+        return differs(f"accepted here; the engine: {where}")
+
+    @staticmethod
+    def _warning(error: dict[str, Any]) -> set[str]:
+        if error["by"] != "editor":
+            return set()
+        return next((codes for words, codes in WARNED.items() if words in error["message"]), set())
+
+    def _warns(self, error: dict[str, Any]) -> bool:
+        return bool(self._warning(error))
+
+    def _grouped(self, error: dict[str, Any]) -> bool:
+        """Whether the engine finds no binding of a transition that takes from one place over several arcs."""
+        found = [t for t in self.net.transitions if t.id == error["id"]] if self.net else []
+        taking = Counter(a.place for t in found[:1] for a in t.arcs if a.kind in TAKING)
+        return any(n > 1 for n in taking.values()) and any(
+            words in error["message"] for words in UNBOUND
+        )
+
+    @staticmethod
+    def _says_error(answer: dict[str, Any]) -> bool:
+        return bool(answer["errors"]) or "failure" in answer
+
+    def marking(self, answer: dict[str, Any]) -> Verdict:
+        """The initial marking of every place instance, character for character."""
+        rows = answer.get("marking")
+        if self.net is None or rows is None:
+            return NOTHING
+        if self.loose:
+            return LOOSE
+        if self.game is None:
+            return differs(f"here the initial marking raises: {self.raised}")
+        ours = {(r["id"], r["instance"]): r["marking"] for r in places(self.net, self.game.marking)}
+        for row in rows:
+            found = ours.get((row["id"], row["instance"]), "no such place")
+            if "error" in row:
+                return differs(f"{row['name']}: the engine says {row['error']}")
+            if found != row["marking"]:
+                return self._or_random(f"{row['name']}: {found} instead of {row['marking']}")
+        return AGREES
+
+    def _or_random(self, note: str) -> Verdict:
+        assert self.net is not None
+        if outside(Effects(self.net.program), self.net):
+            return Verdict("random", note)
+        return differs(note)
+
+    # --- behaviour
+
+    def run(self, answer: dict[str, Any]) -> Verdict:
+        """A random run of the engine is possible here, with the same final marking."""
+        if self.game is None or "steps" not in answer:
+            return NOTHING
+        if self.loose:
+            return LOOSE
+        followed = follow(recording(answer), self.game)
+        if followed.why.startswith("in the end the time is") and answer["stop"] == DEAD:
+            return (
+                CLOCK
+                if float(str(answer["final_time"]).replace("~", "-")) > followed.time
+                else differs(followed.why)
+            )
+        if not followed.ok:
+            return differs(f"step {followed.steps + 1}: {followed.why}")
+        return Verdict("random") if followed.random else AGREES
+
+    def space(self, answer: dict[str, Any]) -> Verdict:
+        """Sizes, dead and home markings and components by the compiled explorer; small graphs node by node."""
+        if self.net is None or self.game is None or "nodes" not in answer:
+            return NOTHING
+        if self.loose:
+            return LOOSE
+        limits = Limits(max_states=20_000, max_seconds=60.0, traces=0)
+        d = Diagnostics()
+        found = explore(self.net, {}, limits, d)
+        if found is None:
+            unsupported = [e for e in d.errors if e.code.startswith("unsupported-")]
+            if unsupported:
+                return Verdict("unsupported", unsupported[0].message)
+            return differs("; ".join(e.message for e in d.errors[:2]))
+        if found.error is not None and not answer["stopped_by_error"] and answer["entire"]:
+            return differs(f"here the exploration ends with {found.error['message']}")
+        if answer["stopped_by_error"]:
+            if BROKEN in answer["stopped_by_error"]:
+                return ENGINE
+            if found.error is None and found.complete:
+                return differs(f"the engine ends with {answer['stopped_by_error']}")
+            return AGREES
+        if not answer["entire"] or found.error is not None:
+            return NOTHING
+        if not found.complete or found.graph is None:
+            return differs(f"more than {found.nodes} nodes instead of {answer['nodes']}")
+        theirs = {k: answer[k] for k in ("nodes", "arcs", "scc")} | {
+            k: len(answer[k]) for k in ("dead", "home")
+        }
+        ours = {
+            "nodes": found.nodes, "arcs": found.arcs, "scc": found.graph.scc_nodes,
+            "dead": found.dead_count, "home": found.graph.home_count,
+        }  # fmt: skip
+        space = None
+        if answer["nodes"] <= SMALL:
+            space = state_space(self.game, max_nodes=2 * SMALL)
+        if ours != theirs:
+            if self.net.timed and (space is None or _ties(space)):
+                return Verdict("random", f"{ours} instead of {theirs}")
+            return self._or_random(f"{ours} instead of {theirs}")
+        if space is None or "graph" not in answer:
+            return AGREES
+        return self._graph(space, answer["graph"])
+
+    def _graph(self, space: StateSpace, graph: dict[str, Any]) -> Verdict:
+        assert self.net is not None and self.game is not None
+        ours: Counter[Node | Arc] = Counter(our_nodes(self.game, space))
+        ours.update(our_arcs(self.game, space))
+        theirs: Counter[Node | Arc] = Counter(engine_nodes(self.net, graph).values())
+        theirs.update(engine_arcs(self.net, graph))
+        if ours == theirs:
+            return AGREES
+        if self.net.timed and _ties(space):
+            return Verdict("random", "equal tokens with different stamps")
+        return self._or_random(
+            f"only here: {list(ours - theirs)[:1]}; only there: {list(theirs - ours)[:1]}"
+        )
+
+
+def _ties(space: StateSpace) -> bool:
+    """Whether equal tokens with different stamps lie in one place somewhere: the engine takes any of them."""
+    return any(_tied(marking) for marking in space.nodes)
+
+
+def _tied(marking: Marking) -> bool:
+    timed = (held for held in marking.places if isinstance(held, TimedMultiSet))
+    return any(len(set(stamps)) > 1 for held in timed for stamps in held.stamps.values())
