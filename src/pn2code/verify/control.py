@@ -216,6 +216,7 @@ def of_cell(running: Running, plan: Plan) -> str:
         end = str(asked.line(f"ef {asked.line(f'within {running.over} 1 -')}"))
     asked.asked += [
         f"? ends {end}",
+        f"? bound {running.stopped} 0 0",
         *(f"? bound {c.place} 0 1" for c in running.partition.channels),
         *(f"? bound {place} 0 {most}" for place, most in plan.capacities.items()),
     ]
@@ -335,8 +336,8 @@ def cell_answers(
 ) -> Iterator[Check]:
     """The same of `of_cell`, without the properties."""
     channels = len(partition.channels)
-    ends, *bounds = _padded(found, rows, 1 + channels + len(plan.capacities))
-    yield _blocking(ends, keep, partition)
+    ends, stops, *bounds = _padded(found, rows, 2 + channels + len(plan.capacities))
+    yield _stopping(stops, keep) or _blocking(ends, keep, partition)
     bounds = [*_known(partition, plan.capacities, bounds, closed)]
     if partition.channels:
         yield _channels(partition, bounds[:channels], keep)
@@ -380,6 +381,12 @@ class _Keeper:
     def __init__(self, plan: Plan, running: Running | None) -> None:
         self._plan = plan
         self._running = running
+
+    def last_step(self, row: Mapping[str, Any]) -> str:
+        """The name of the last step of a trace, without its head; before it is read."""
+        lines = Path(row["trace"]).read_text(encoding="utf-8", errors="surrogateescape").split("\n")
+        steps = [x["transition"] for x in map(json.loads, filter(None, lines)) if "transition" in x]
+        return str(steps[-1]).removeprefix("cell.")
 
     def before(self, row: Mapping[str, Any]) -> int:
         """How many of the first steps of a trace, as many as its number says, are occurrences; before it is read."""
@@ -470,6 +477,18 @@ def _confluent(
         evidence=runs,
         transitions=pair,
     )
+
+
+def _stopping(row: Mapping[str, Any], keep: _Keeper) -> Check | None:
+    """Whether a robot's script stops, and the cell with it; None: it does not, as far as is known."""
+    if row["answer"] != "no":
+        return None
+    who = keep.last_step(row)
+    evidence = keep.all(row, BLOCKING)
+    steps = evidence[0].steps if evidence else 0
+    after = f"{steps} step{'s' * (steps != 1)} after the start" if steps else "at the start"
+    says = f"{after} {who}, where no transition fits: that stops the whole cell"
+    return Check(BLOCKING, "no", says, why="stopped", evidence=evidence)
 
 
 def _blocking(row: Mapping[str, Any], keep: _Keeper, partition: Partition) -> Check:
