@@ -13,8 +13,9 @@ NET: Final = (
 TIME: Final = "Time of the closed net goes by only where nothing is enabled; that of the cell whenever it likes."
 CONTROL: Final = (
     "Controller checks: the net starts with its own initial marking, without the tokens of an `[[input]]` file.",
-    "Controller checks and properties: the cell as it runs. Each program knows its own priorities, and the messages that "
-    "it has seen; the supervisor goes in cycles; of what it can do, each does what comes first in the documented order.",
+    "Controller checks and properties: the cell as it runs. Each program knows its own priorities, and the messages "
+    "that it has seen; the supervisor goes in cycles; of what it can do, each does what comes first in the documented "
+    "order.",
     "How quick a program is, is left open, and what sensors say; crashes are for the medium.",
 )
 MEDIUM: Final = (

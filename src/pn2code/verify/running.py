@@ -150,9 +150,7 @@ class Running:
                 steps += 1
                 row["step"] = steps
             elif not kept:
-                row["by"] = (
-                    VERIFY  # priorities count among the transitions of an owner, and time goes on
-                )
+                row["by"] = VERIFY
             elif row.get("event") == "end":
                 row["why"] = "evidence"
             kept.append(json.dumps(row, ensure_ascii=False) + "\n")
