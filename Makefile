@@ -1,10 +1,10 @@
 # What `make` users expect; ./dev does the work and says what else there is.
-.PHONY: thorough database-15 help test lint fuzz bench ml-suite conformance mutation oracle
+.PHONY: thorough database-15 help test lint fuzz bench ml-suite conformance mutation oracle misspell
 
 help:
 	@./dev help
 
-test lint bench ml-suite conformance mutation oracle:
+test lint bench ml-suite conformance mutation oracle misspell:
 	./dev $@
 
 # The tests with all of their long sweeps.

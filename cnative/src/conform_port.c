@@ -6,13 +6,14 @@
  *
  *     push              saves the state: {"pushed": true}. The state is the process: it waits while a copy of it goes on
  *     pop               goes back to the state saved last: {"popped": true}
- *     write NAME HEX    another party publishes a file (its bytes in hexadecimal): {"written": true}
+ *     write NAME BYTES  another party publishes a file (name and bytes in hexadecimal): {"written": true}
  *     time SECONDS      the clock shows so much since the start: {"time": true}
  *     go                one cycle: {"files": {NAME: TEXT, ...}, "read": [NAME, ...], "published": [NAME, ...], "marking":
  *                       {PLACE: [[count, value], ...], ...}, "fired": N, "ended": null | "finished" | "stopped"}; "read" and "published"
  *                       have files in the order in which they were read and replaced; of a program that has ended, the state before is back then
  *
- * At the start the first cycle has been done, and its answer is given unasked.
+ * At the start the tables of the program (pn_cell, and what pn_net says of places and transitions) are told, then the first cycle is
+ * done, and its answer is given unasked.
  */
 #define _POSIX_C_SOURCE 200809L
 
@@ -27,12 +28,13 @@
 
 #include "pn/pn_port.h"
 #include "pn/pn_text.h"
+#include "conform_tables.h"
 #include "supervisor_impl.h"
 
 #define FILES_MAX 512U
 #define FILE_SIZE 4200U /* of a message at most 4095 */
 #define NAME_SIZE 256U
-#define LINE_SIZE (2U * FILE_SIZE + NAME_SIZE + 32U)
+#define LINE_SIZE (2U * (FILE_SIZE + NAME_SIZE) + 32U)
 #define ANSWER_SIZE ((size_t)1U << 24U)
 
 enum { DIRECTORY = 1000, FIRST_FILE = 2000 }; /* descriptors: numbers that no real one has */
@@ -330,6 +332,14 @@ static void answer(const char *ended)
     s_fired_before = (s_sup != NULL) ? s_sup->fired : 0U;
 }
 
+static void tables(void)
+{
+    pn_text_t text;
+    pn_text_init(&text, s_answer, sizeof s_answer);
+    conform_tables(&text);
+    say(text.truncated ? "{\"error\": \"the tables are too large to be told\"}" : s_answer);
+}
+
 /* A line of standard input, byte by byte: nothing may be read ahead, as what comes next may be for a copy of this process. */
 static bool command(char *line, size_t capacity)
 {
@@ -375,19 +385,25 @@ static int digit(char c)
     return ((c >= '0') && (c <= '9')) ? (c - '0') : (c - 'a') + 10;
 }
 
-static void write_file(char *text)
+/* Bytes in hexadecimal, up to a blank; returns their number. */
+static size_t from_hex(const char *hex, char *out, size_t capacity)
 {
-    char data[FILE_SIZE];
     size_t length = 0U;
-    char *const space = strchr(text, ' ');
-    if (space != NULL) {
-        *space = '\0';
-        for (const char *at = space + 1; (at[0] != '\0') && (at[1] != '\0') && (length < FILE_SIZE); at += 2) {
-            data[length] = (char)((digit(at[0]) * 16) + digit(at[1]));
-            length++;
-        }
+    for (const char *at = hex; (at[0] != '\0') && (at[0] != ' ') && (at[1] != '\0') && (length < capacity); at += 2) {
+        out[length] = (char)((digit(at[0]) * 16) + digit(at[1]));
+        length++;
     }
-    say((put(make(text), data, length) == 0) ? "{\"written\": true}" : "{\"error\": \"there is no room for the file\"}");
+    return length;
+}
+
+static void write_file(const char *text)
+{
+    char name[NAME_SIZE] = "";
+    char data[FILE_SIZE];
+    const char *const space = strchr(text, ' ');
+    (void)from_hex(text, name, sizeof name - 1U);
+    const size_t length = (space != NULL) ? from_hex(space + 1, data, sizeof data) : 0U;
+    say((put(make(name), data, length) == 0) ? "{\"written\": true}" : "{\"error\": \"there is no room for the file\"}");
 }
 
 /* The program waits: here it is asked. Back when it is to go on. */
@@ -420,6 +436,7 @@ void __real_sup_run_cell(sup_t *sup);
 void __wrap_sup_run_cell(sup_t *sup);
 void __wrap_sup_run_cell(sup_t *sup)
 {
+    tables();
     s_sup = sup;
     __real_sup_run_cell(sup);
     answer(sup->stopped ? "stopped" : "finished");

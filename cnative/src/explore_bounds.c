@@ -38,6 +38,7 @@ typedef struct place_bounds {
     uint64_t least;
     uint64_t most;
     uint64_t multisets; /* looked at */
+    uint64_t arena;     /* bytes of the lists and strings of one of them, at most */
     uint32_t *counter_least; /* packed, more than one bit: by colour */
     uint32_t *counter_most;
     colours_t colours;
@@ -417,8 +418,11 @@ static bool see_interned(ex_run_t *run, ex_bounds_t *bounds)
         const unsigned char *byte = ex_multiset_bytes(worker, (uint32_t)i, &length);
         is_fine = (byte != NULL) && (place->decode(&worker->cx, worker->marking, byte, length) != SIZE_MAX);
         place->json(worker->marking, &text);
+        place_bounds_t *const own = &bounds->place[entry.place];
+        const uint64_t bytes = pn_arena_mark(worker->cx.arena) - mark;
+        own->arena = (bytes > own->arena) ? bytes : own->arena;
         pn_arena_release(worker->cx.arena, mark);
-        is_fine = is_fine && !text.truncated && see_multiset(&bounds->place[entry.place], buffer);
+        is_fine = is_fine && !text.truncated && see_multiset(own, buffer);
     }
     free(buffer);
     return is_fine;
@@ -489,6 +493,24 @@ static void colours_json(const place_bounds_t *own, bool is_upper, list_t *list)
     }
 }
 
+/* What the supervisor's arena has to hold: bytes at the start and of the values of declarations, of one occurrence, of one marking (a sum
+ * over places, so that it may be too large). */
+static void arena_json(const ex_run_t *run, const ex_bounds_t *bounds, FILE *out)
+{
+    uint64_t firing = 0U;
+    uint64_t marking = 0U;
+    for (uint32_t i = 0U; i < run->options.threads; i++) {
+        firing = (run->worker[i].arena_most > firing) ? run->worker[i].arena_most : firing;
+    }
+    for (uint32_t p = 0U; (bounds != NULL) && (p < pn_net.place_count); p++) {
+        marking += bounds->place[p].arena;
+    }
+    const pn_arena_t *const first = run->worker[0].cx.arena;
+    if (bounds != NULL) {
+        (void)fprintf(out, ",\n \"arena\": {\"start\": %zu, \"firing\": %" PRIu64 ", \"marking\": %" PRIu64 "}", first->start, firing, marking);
+    }
+}
+
 void ex_bounds_json(ex_run_t *run, FILE *out)
 {
     ex_bounds_t *const bounds = run->worker[0].bounds;
@@ -524,4 +546,5 @@ void ex_bounds_json(ex_run_t *run, FILE *out)
     }
     (void)fprintf(out, "%s", is_known ? "]" : "");
     free(buffer);
+    arena_json(run, is_known ? bounds : NULL, out);
 }

@@ -514,7 +514,24 @@ typedef struct ex_worker {
     uint64_t arcs;
     uint64_t dead;
     uint64_t *fired;         /* by transition */
+    uint64_t arena_most;     /* bytes that a transition's bindings and one occurrence of it needed of the arena */
 } ex_worker_t;
+
+/* Around all that is done for the bindings and occurrences of a transition: what it leaves in the arena is forgotten, how much that was
+ * is not. */
+static inline size_t ex_arena_begin(ex_worker_t *worker)
+{
+    pn_arena_t *const arena = worker->cx.arena;
+    arena->peak = arena->used;
+    return pn_arena_mark(arena);
+}
+
+static inline void ex_arena_end(ex_worker_t *worker, size_t mark)
+{
+    const uint64_t most = worker->cx.arena->peak - mark;
+    worker->arena_most = (most > worker->arena_most) ? most : worker->arena_most;
+    pn_arena_release(worker->cx.arena, mark);
+}
 
 typedef struct ex_run {
     ex_options_t options;

@@ -420,9 +420,9 @@ static const uint32_t *write_note(ex_local_t *own, uint64_t hash, uint32_t t)
     own->end = own->words + 2U + form->reads;
     own->found = 0U;
     own->is_too_long = false;
-    const size_t mark = pn_arena_mark(&worker->scratch->arena);
+    const size_t mark = ex_arena_begin(worker);
     (void)pn_net.transition[t].successors(&worker->cx, worker->marking, t, worker->scratch->next, on_next, own);
-    pn_arena_release(&worker->scratch->arena, mark);
+    ex_arena_end(worker, mark);
     if (worker->failed || own->is_too_long || (worker->cx.error != PN_OK)) {
         worker->cx.error = PN_OK; /* comes again where everything is as usual */
         return NULL;

@@ -117,9 +117,9 @@ bool ex_words_flush(ex_worker_t *worker);
 /* Adds the words of all successors by a transition, of the loaded state. False after an error. */
 static inline bool ex_add_words(ex_worker_t *worker, uint32_t t, pn_words_t *made)
 {
-    const size_t mark = pn_arena_mark(worker->cx.arena);
+    const size_t mark = ex_arena_begin(worker);
     (void)pn_net.transition[t].words(made, t);
-    pn_arena_release(worker->cx.arena, mark);
+    ex_arena_end(worker, mark);
     if (worker->cx.error != PN_OK) {
         ex_fail(worker, (int64_t)t);
         return false;

@@ -210,13 +210,13 @@ static bool hunt_transition(hunt_t *hunt, uint32_t t)
         }
     }
     const pn_transition_t *transition = &pn_net.transition[t];
-    const size_t mark = pn_arena_mark(&worker->scratch->arena);
+    const size_t mark = ex_arena_begin(worker);
     if (transition->successors != NULL) {
         (void)transition->successors(&worker->cx, worker->marking, t, worker->scratch->next, hunt->on_next, hunt);
     } else {
         (void)transition->enumerate(&worker->cx, worker->marking, t, on_binding, hunt);
     }
-    pn_arena_release(&worker->scratch->arena, mark);
+    ex_arena_end(worker, mark);
     if (worker->cx.error != PN_OK) {
         ex_fail(worker, (int64_t)t);
         return false;

@@ -32,7 +32,6 @@ typedef enum sup_exit {
 
 typedef struct sup_options {
     const char *directory;
-    bool own_directory;       /* the default one: made when it is missing */
     const char *input;
     const char *files; /* folder for the net's files; NULL: none */
     const char *trace;        /* NULL: none */

@@ -1,14 +1,18 @@
 /* SPDX-License-Identifier: MIT
  * hand_cell.c - the cell of hand_net.c, as cell_config.c would be generated. With -DHAND_ALONE a net without a cell.
  */
+#include "pn/pn_arena.h"
 #include "pn/pn_cell.h"
 
 #include <stddef.h>
+
+static max_align_t s_arena[PN_ARENA_DEFAULT_SIZE / sizeof(max_align_t)];
 
 #ifdef HAND_ALONE
 
 const pn_cell_t pn_cell = {
     .abi = PN_CELL_ABI, .name = "hand", .version = "0", .digest = "0000", .side = "supervisor", .owner = -1,
+    .arena = s_arena, .arena_size = sizeof s_arena,
 };
 
 #else
@@ -49,6 +53,8 @@ const pn_cell_t pn_cell = {
     .peer = PEER,
     .final_count = 1U,
     .final_place = FINAL,
+    .arena = s_arena,
+    .arena_size = sizeof s_arena,
 };
 
 #endif

@@ -5,7 +5,7 @@
  *
  * prints JSON lines {"t": now, "enabled": [[transition, binding], ...], "marking": {...}, "chosen": i}, `chosen` being -1 at the
  * end, or {"error": name}. Every marking is encoded, decoded and encoded again, and collected, on the way, and
- * its successors are made in both ways, if the net has two.
+ * its successors are made in both ways, if the net has two; what references hold is saved and restored, too.
  */
 #include <stdio.h>
 #include <stdlib.h>
@@ -15,13 +15,16 @@
 #include "pn/pn_net.h"
 #include "pn/pn_num.h"
 #include "pn/pn_random.h"
+#include "pn/pn_root.h"
 #include "pn/pn_text.h"
 
 #define MOST 4096U
 
 static max_align_t s_memory[PN_ARENA_DEFAULT_SIZE / sizeof(max_align_t)];
+static max_align_t s_apart[PN_ARENA_DEFAULT_SIZE / sizeof(max_align_t)];
 static char s_text[1U << 24U];
 static uint8_t s_bytes[2][1U << 22U];
+static uint8_t s_roots[2][1U << 22U];
 
 typedef struct list {
     pn_text_t *text;
@@ -65,8 +68,35 @@ static void enumerate(pn_ctx_t *cx, const void *marking, list_t *list)
     }
 }
 
+/* What references hold, as bytes; they may hold it again. */
+static size_t save_roots(uint8_t *bytes)
+{
+    const size_t length = pn_roots_encode(pn_net.root, pn_net.root_count, bytes, sizeof s_roots[0]);
+    return (length <= sizeof s_roots[0]) ? length : 0U;
+}
+
+static void restore_roots(pn_ctx_t *cx, size_t length)
+{
+    if ((pn_net.root_count > 0U) && !pn_roots_decode(cx, pn_net.root, pn_net.root_count, s_roots[0], length)) {
+        pn_raise(cx, PN_ERR_INTERNAL, "references cannot be restored");
+    }
+}
+
+/* The same in memory of their own, where everything has the same address each time. */
+static void restore_apart(pn_ctx_t *cx, size_t length)
+{
+    pn_arena_t apart;
+    pn_arena_t *const arena = cx->arena;
+    pn_arena_init(&apart, s_apart, sizeof s_apart);
+    cx->arena = &apart;
+    restore_roots(cx, length);
+    cx->arena = arena;
+}
+
 static void check_codec(pn_ctx_t *cx, void *marking, void *copy)
 {
+    const size_t held = save_roots(s_roots[0]);
+    restore_roots(cx, held);
     const size_t length = pn_net.encode(marking, s_bytes[0], sizeof s_bytes[0]);
     if ((length == 0U) || !pn_net.decode(cx, copy, s_bytes[0], length)
         || (pn_net.encode(copy, s_bytes[1], sizeof s_bytes[1]) != length)
@@ -77,6 +107,9 @@ static void check_codec(pn_ctx_t *cx, void *marking, void *copy)
     if ((pn_net.encode(marking, s_bytes[1], sizeof s_bytes[1]) != length) || (memcmp(s_bytes[0], s_bytes[1], length) != 0)) {
         pn_raise(cx, PN_ERR_INTERNAL, "collect changed the marking");
     }
+    if ((save_roots(s_roots[1]) != held) || (memcmp(s_roots[0], s_roots[1], held) != 0)) {
+        pn_raise(cx, PN_ERR_INTERNAL, "references hold something else when they are restored and collected");
+    }
 }
 
 /* --- successors: the same as those of enumerate and fire ------------------------------------------------------------ */
@@ -86,6 +119,7 @@ typedef struct pass {
     const void *marking;
     void *next;
     void *binding;
+    size_t held; /* by references */
     uint64_t count;
     uint64_t hash;
 } pass_t;
@@ -103,6 +137,7 @@ static bool note_successor(void *user, uint32_t transition, const void *binding,
     }
     pass->hash = (pass->hash ^ transition) * 0x100000001B3U;
     pass->count++;
+    restore_apart(pass->cx, pass->held);
     return true;
 }
 
@@ -120,16 +155,18 @@ static bool note_fired(void *user, uint32_t transition, const void *binding)
 
 static void check_successors(pn_ctx_t *cx, const void *marking, void *next, void *binding)
 {
+    const size_t held = save_roots(s_roots[0]);
     for (uint32_t t = 0U; t < pn_net.transition_count; t++) {
         const pn_transition_t *transition = &pn_net.transition[t];
-        if ((transition->successors == NULL) || transition->looks) {
+        if ((transition->successors == NULL) || transition->looks_outside) {
             continue;
         }
-        pass_t pass[2] = { { cx, marking, next, binding, 0U, 0U }, { cx, marking, next, binding, 0U, 0U } };
+        pass_t pass[2] = { { cx, marking, next, binding, held, 0U, 0U }, { cx, marking, next, binding, held, 0U, 0U } };
         pn_error_t error[2];
-        const pn_ctx_t before = *cx;
-        const pn_arena_t arena = *cx->arena;
         for (uint32_t k = 0U; k < 2U; k++) {
+            const pn_ctx_t before = *cx;
+            const pn_arena_t arena = *cx->arena;
+            restore_apart(cx, held);
             bool goes_on = false;
             if (k == 0U) {
                 goes_on = transition->successors(cx, marking, t, next, note_successor, &pass[k]);
@@ -144,6 +181,7 @@ static void check_successors(pn_ctx_t *cx, const void *marking, void *next, void
             pn_raise(cx, PN_ERR_INTERNAL, "successors are others than enumerate and fire make");
         }
     }
+    restore_roots(cx, held);
 }
 
 static void print_step(const void *marking, pn_text_t *text, int64_t chosen)

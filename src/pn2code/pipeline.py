@@ -33,8 +33,9 @@ from pn2code.lowering import net as lower_net
 from pn2code.lowering import robot as lower_robot
 from pn2code.net import front
 from pn2code.net.flat import FlatNet
+from pn2code.verify import arena
 from pn2code.verify.proofs import prove
-from pn2code.verify.rooms import with_rooms
+from pn2code.verify.rooms import Room, with_rooms
 
 
 @dataclass(frozen=True, slots=True)
@@ -46,12 +47,16 @@ class Generated:
         partition: the net and its owners.
         config: the cell, None for a net without one.
         digest: SHA-256 of the net and of what the cell contributes to the programs.
+        rooms: how many tokens each place can hold, and why.
+        arena: bytes that the supervisor has for lists and strings.
     """
 
     files: tuple[OutputFile, ...]
     partition: Partition
     config: CellConfig | None
     digest: str
+    rooms: tuple[Room, ...]
+    arena: int
 
 
 def generate(
@@ -106,13 +111,21 @@ def generate(
             digest=digest,
             version=version,
             verdicts=proofs.verdicts,
+            arena=proofs.arena,
         ),
         *emit_tdl.emit(robots, source=Path(net.file).name, digest=digest, version=version),
         *runtime.emit("supervisor", "simulate"),
         *_inputs(config),
     ]
     files.append(manifest.emit(partition, files, digest=digest, version=version))
-    return Generated(tuple(sorted(files, key=lambda f: f.path)), partition, config, digest)
+    return Generated(
+        files=tuple(sorted(files, key=lambda f: f.path)),
+        partition=partition,
+        config=config,
+        digest=digest,
+        rooms=proofs.rooms,
+        arena=proofs.arena or arena.LEAST,
+    )
 
 
 def divided(
@@ -147,9 +160,7 @@ def check_geometry(config: CellConfig, d: Diagnostics, *, to_run: bool) -> None:
         cell = config if layout == config.layout else load_cell(config.path, d, layout=layout)
         if cell is None:
             continue
-        robots = {n: t for n, t in cell.geometry["robots"].items() if t or to_run}
-        geometry = {**cell.geometry, "robots": robots}
-        scene.load(geometry, cell.folder, cell.locator.origin, d)
+        scene.load(cell.geometry, cell.folder, cell.locator.origin, d, partial=not to_run)
 
 
 def _refuse_unsupported(d: Diagnostics) -> None:

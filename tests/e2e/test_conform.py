@@ -211,6 +211,69 @@ def test_calls_that_no_entry_names_are_found_out(cell: Path) -> None:
     assert "the net calls `moveHome`, which is no command" in report.deviation
 
 
+TABLES = {
+    "its patience": (".reply_timeout_s = 120.0", ".reply_timeout_s = 0.5", "cell.reply_timeout_s is 0.5"),
+    "the kind of a channel": ("PN_CHANNEL_FLAG", "PN_CHANNEL_DATA", "kind"),
+    "the name of a robot": ('.name = "robot1", .owner', '.name = "robot2", .owner', "robot2"),
+    "the owner of a robot": (".owner = 1 }", ".owner = 0 }", "cell.peers[robot1].owner is 0"),
+    "a final place": ("static const uint32_t s_final[] = {\n", "static const uint32_t s_final[] = {\n    0U,\n", ""),
+    "a label": ('.label = "ry"', '.label = "rx"', "label is 'rx'"),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("what", TABLES)
+def test_other_tables_are_found_out(what: str, judge: Judge) -> None:
+    old, new, said = TABLES[what]
+    verdict = judge.verdict(mutant(judge, "cell_config.c", old, new))
+    assert verdict.result == "killed", verdict
+    assert said in verdict.why
+
+
+DECLARED = {
+    "another program": ("program robot1\n", "program robot2\n", "is the program `robot2`"),
+    "another file": ('"flag.robcad"', '"flab.robcad"', "no channel of robot1"),
+    "another type": ('"done.robcad" : int', '"done.robcad" : real', "not colour set `INT`"),
+    "a rounded type": ('"data.robcad" : pose', '"data.robcad" : pose single', "not colour set `POSE`"),
+    "a wait": ("      tool drill", "      wait 7 s\n      tool drill", "Wait"),
+    "a wait before a message": ("    wait until filled(flag)", "    wait 7 s\n    wait until filled(flag)", "Wait"),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("what", DECLARED)
+def test_other_declarations_and_waits_are_found_out(what: str, judge: Judge) -> None:
+    old, new, said = DECLARED[what]
+    verdict = judge.verdict(mutant(judge, "robot1.tdl", old, new))
+    assert verdict.result == "killed", verdict
+    assert said in verdict.why
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "said"),
+    [
+        ("wait 2 s", "wait 2000 s", "waits 2000 s; by the net 2 s are left"),
+        ("wait 2 s", "wait 1 s", "goes on in line"),
+        ("    wait 2 s\n", "", "without waiting 2 s"),
+        ("wait 2 s", "wait 2 s\n    wait 7 s", "Wait"),
+        ("wait 2 s", "wait 1 s\n    wait 1 s", ""),
+    ],
+)
+def test_other_waits_are_found_out(old: str, new: str, said: str, tmp_path: Path) -> None:
+    net = FOR_EVER.replace("  var k: INT;", "  colset LATE = int timed;\n  var k: INT;")
+    net = net.replace("place Told : INT", "place Told : LATE").replace(
+        "out Told : k", "out Told : k @+ 2"
+    )
+    d = Diagnostics()
+    made = generate(write(tmp_path, net, TIMED_TOML), d, checked=False)
+    assert made is not None, [str(i) for i in d]
+    (robot,) = (o for o in made.partition.owners if o.name == "robot1")
+    (text,) = (f.text for f in made.files if f.path == "robot1.tdl")
+    assert old in text, text
+    report = ProgramComparison(made).script(robot, text.replace(old, new, 1), d)
+    assert report is not None, [str(i) for i in d]
+    assert (report.deviation is None) == (not said)
+    assert said in (report.deviation or "")
+
+
 def test_a_script_that_asks_another_sensor_is_found_out(root: Path) -> None:
     d = Diagnostics()
     made = generate(root / "examples/sorting", d, checked=False)

@@ -15,7 +15,7 @@ from typer.testing import CliRunner
 
 from helpers import netbuilder
 from helpers.controlled import Scheme
-from helpers.explored import Explorers
+from helpers.explored import Explorers, wide
 from helpers.questions import Lts, ask
 from helpers.thorough import amount
 from pn2code import pipeline
@@ -33,6 +33,8 @@ from pn2code.verify.control_answers import has_own_priorities
 from pn2code.verify.control_types import Check, Plan
 from pn2code.verify.explore import Wishes
 from pn2code.verify.limits import Limits
+from pn2code.verify.programs import Sizes
+from pn2code.verify.result import Exploration
 from pn2code.verify.running import Running
 
 pytestmark = pytest.mark.cc
@@ -281,6 +283,8 @@ def test_a_cell_that_is_fine(tmp_path: Path) -> None:
         control_types.CONFLUENT: ("yes", None),
         control_types.BLOCKING: ("yes", 10),
         control_types.CHANNELS: ("yes", 1),
+        control_types.MESSAGES: ("yes", 0),
+        control_types.MEMORY: ("yes", 0),
         control_types.OWNERSHIP: ("yes", 10),
     }
 
@@ -428,12 +432,14 @@ def test_generate_refuses_a_supervisor_that_fails(tmp_path: Path) -> None:
     (text,) = [f.text for f in generated.files if f.path == "cell_config.c"]
     head = text[text.index(" * Not checked") :].splitlines()
     assert head[0] == " * Not checked, since it was generated with --unchecked (docs/execution.md):"
-    assert [line.partition(";")[0].partition(" (")[0] for line in head[1:7]] == [
+    assert [line.partition(";")[0].partition(" (")[0] for line in head[1:9]] == [
         " * finite-response: unchecked",
         " * bounded-response: unchecked",
         " * confluence: unchecked",
         " * non-blocking: unchecked",
         " * channels: unchecked",
+        " * messages: yes",
+        " * memory: unchecked",
         " * ownership: yes",
     ]
     assert " * channels: unchecked (no channel ever holds two messages)" in head
@@ -588,3 +594,21 @@ def test_the_riveting_cell(root: Path) -> None:
     assert " * Checked in all 3,343 states of the cell as it runs (docs/execution.md):" in text
     assert " * bounded-response: yes; at most 6 firings in one cycle" in text
     assert "unchecked" not in text
+
+
+def test_channels_need_no_graph(explorers: Explorers, tmp_path: Path) -> None:
+    """All markings were seen, and there was no time for the graph: what a channel holds is known, the rest is not."""
+    partition, _ = cell(tmp_path / "fine", NET, TOML)
+    net = partition.net
+    folder = explorers.build(net, wide(Sizes.start(net, {}), 4), "no_graph")
+    for phase, answer in (("graph", "yes"), ("explore", "unknown")):
+        found = Exploration.of(net, explorers.said(folder, "--ends-in", phase).report, 0.0)
+        looked = control.not_looked("seconds", partition, None, found)
+        said = {c.name: c.answer for c in looked.checks}
+        assert said == {
+            **dict.fromkeys(said, "unknown"),
+            control.OWNERSHIP: "yes",
+            control.CHANNELS: answer,
+        }
+        rests = {c.name: c.rests_on for c in looked.checks}
+        assert rests[control.CHANNELS] == ("markings" if answer == "yes" else None)

@@ -30,7 +30,7 @@ def checked(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 def _says(program: Path, part: str, seed: int) -> str:
     done = subprocess.run(
-        [program, part, str(seed)], capture_output=True, text=True, check=False, timeout=120
+        [program, part, str(seed)], capture_output=True, text=True, check=False, timeout=600
     )
     return done.stdout + done.stderr
 

@@ -41,6 +41,6 @@ def test_against_definitions(tmp_path: Path, variant: str) -> None:
     graphs, *flags = VARIANTS[variant]
     program = explorer_test(tmp_path, "explore_graphs", PARTS, *map(str, flags))
     said = subprocess.run(
-        [program, "1", str(graphs)], capture_output=True, text=True, check=False, timeout=120
+        [program, "1", str(graphs)], capture_output=True, text=True, check=False, timeout=600
     )
     assert said.stdout + said.stderr == "fine\n"

@@ -37,7 +37,7 @@ pytestmark = pytest.mark.cc
 ROBOTS = ("robot1", "robot2")
 MOMENTS = (1, 2, 3, 4, 5, 18, 40, 75, 110, 150)
 """Events of a robot: from its first message on, every step of its first command, and later ones. A run has some 180."""
-DEADLINE_S = 30.0
+DEADLINE_S = 600.0  # ends what hangs
 
 
 RIVETING = Path(__file__).parents[2] / "examples" / "riveting"
@@ -332,18 +332,17 @@ def test_i10_a_signal_to_a_robot_stops_the_cell(
 
 
 def test_i10_a_moving_robot_comes_to_rest_on_its_path(cell: Cell, children: list[Child]) -> None:
-    """With the cell's kinematics a move takes seconds; the supervisor dies meanwhile."""
+    """With the cell's kinematics, a hundred times as slow, a move takes minutes; the supervisor dies meanwhile."""
     with cell.supervisor() as supervisor:
         until(lambda: cell.holds("flag1_interno"), "the first command")
         command = Command(
-            "robot", cell.program / "robot1.tdl", "--dir", cell.shared, "--cell", cell.inputs, "-v"
+            "robot", cell.program / "robot1.tdl", "--dir", cell.shared, "--cell", cell.inputs, "-v", "--speed", "0.01"
         )  # fmt: skip
         children.append(command)
         until(
             lambda: not cell.holds("flag1_interno"),
             "the beginning of a move",
         )
-        time.sleep(0.05)
         supervisor.kill()
         done = command.done()
     assert done.returncode == RobotExit.SUPERVISOR
@@ -527,7 +526,7 @@ def test_directory_missing_or_below_a_file(cell: Cell) -> None:
     file = cell.shared / "file"
     file.write_text("mine")
     for directory, system in (
-        (cell.shared / "none", "does not exist; make it"),
+        (cell.shared / "none" / "x", "cannot be made"),
         (file, "Not a directory"),
         (file / "x", "Not a directory"),
     ):

@@ -49,7 +49,7 @@ def simulated(program: Path, *options: str) -> tuple[str, list[str]]:
         capture_output=True,
         text=True,
         check=True,
-        timeout=60,
+        timeout=600,
     )
     *printed, marking = done.stdout.splitlines()
     text = marking.split('"Top.B": [')[1].split("]}")[0]

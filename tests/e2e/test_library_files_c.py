@@ -36,7 +36,7 @@ def test_same_values(workshop: Workshop, tmp_path: Path) -> None:
     for folder in folders:
         folder.mkdir(parents=True)
     command = [str(program), "--marking", "--files", str(folders[0])]
-    done = subprocess.run(command, capture_output=True, text=True, check=False, timeout=60)
+    done = subprocess.run(command, capture_output=True, text=True, check=False, timeout=600)
     assert done.returncode == 0, done.stderr
     *printed, marking = done.stdout.splitlines()
     found = json.loads(marking)

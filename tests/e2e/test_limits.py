@@ -5,13 +5,16 @@ from __future__ import annotations
 import resource
 import signal
 import subprocess
-import sys
 import time
+from contextlib import nullcontext
 from pathlib import Path
 
 import pytest
 
+from helpers import processes
 from helpers.netbuilder import cpn
+from helpers.processes import Command
+from pn2code.simulate import compiled, programs
 
 GIGABYTE = 1 << 30
 
@@ -22,14 +25,7 @@ def bounded() -> None:
 
 def pn2code(*arguments: object) -> subprocess.CompletedProcess[str]:
     """The command with at most 1 GB."""
-    return subprocess.run(
-        [sys.executable, "-m", "pn2code", *map(str, arguments)],
-        capture_output=True,
-        text=True,
-        check=False,
-        timeout=300,
-        preexec_fn=bounded,
-    )
+    return processes.pn2code(*map(str, arguments), prepare=bounded)
 
 
 def check(folder: Path, data: bytes) -> subprocess.CompletedProcess[str]:
@@ -145,23 +141,46 @@ ENDLESS = """
 
 
 @pytest.mark.cc
-@pytest.mark.parametrize("is_told", [True, False])
-def test_an_endless_guard_in_a_compiled_net_is_given_up(tmp_path: Path, is_told: bool) -> None:
-    """Ctrl-C ends it, and so does time."""
+def test_an_endless_guard_in_a_compiled_net_is_an_error(tmp_path: Path) -> None:
     path = tmp_path / "net.cpn"
     path.write_bytes(cpn(ENDLESS))
-    program = (
-        "import sys\nfrom pn2code.simulate import compiled\nfrom pn2code.cli.main import main\n"
-        f"compiled.ENDLESS_S = {1000.0 if is_told else 0.5}\ncompiled.GRACE_S = 0.5\n"
-        "main()"
-    )
-    command = [sys.executable, "-c", program, "simulate", str(path), "--engine", "compiled"]
-    process = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
+    done = pn2code("simulate", path, "--engine", "compiled")
+    assert done.returncode == 1
+    assert "an evaluation without end" in done.stderr
+
+
+SILENT = """#!/bin/sh
+trap '' INT
+touch "$(dirname "$0")/has-begun"
+exec sleep 1000
+"""
+
+
+@pytest.mark.cc
+@pytest.mark.parametrize("is_told", [True, False])
+def test_a_compiled_net_that_says_nothing_is_given_up(tmp_path: Path, is_told: bool) -> None:
+    """Ctrl-C ends it, and so does time. A program that hears nothing and says nothing stands for the net's."""
+    path = tmp_path / "net.cpn"
+    path.write_bytes(cpn(ENDLESS))
+    silent = tmp_path / "silent"
+    silent.write_text(SILENT)
+    silent.chmod(0o755)
+
+    def prepare() -> None:
+        programs.program = lambda *_, **__: nullcontext(silent)
+        compiled.ENDLESS_S = 1000.0 if is_told else 0.0
+        compiled.GRACE_S = 0.0
+
+    command = Command("simulate", path, "--engine", "compiled", prepare=prepare)
     if is_told:
-        while process.poll() is None:
-            time.sleep(1.0)
-            process.send_signal(signal.SIGINT)
-    said, _ = process.communicate(timeout=120)
-    assert process.returncode != 0
-    if not is_told:
-        assert "does not come to an end" in said
+        while not (tmp_path / "has-begun").exists():
+            assert command.poll() is None
+            time.sleep(0.01)
+        command.signal(signal.SIGINT)
+    done = command.done()
+    if is_told:
+        assert (done.returncode, done.stderr) == (130, "pn2code: interrupted\n")
+    else:
+        assert done.returncode == 1
+        assert "error[simulator-failed]: the run was given up" in done.stderr
+        assert "does not come to an end" in done.stderr

@@ -156,7 +156,7 @@ class Model:
             ["gcc", "-O0", "-w", "-DNOREDUCE", "-o", "pan", "pan.c"],
         ):
             done = subprocess.run(
-                command, cwd=folder, capture_output=True, text=True, timeout=60, check=False
+                command, cwd=folder, capture_output=True, text=True, timeout=600, check=False
             )
             assert done.returncode == 0, done.stdout + done.stderr
 
@@ -164,7 +164,7 @@ class Model:
         """What SPIN says of a formula."""
         out = subprocess.run(
             ["./pan", "-a", "-m100000", "-w18", "-N", f"asked{number}"],
-            cwd=folder, capture_output=True, text=True, timeout=60, check=False,
+            cwd=folder, capture_output=True, text=True, timeout=600, check=False,
         ).stdout  # fmt: skip
         errors = re.search(r"errors: (\d+)", out)
         assert errors is not None and "max search depth too small" not in out, out

@@ -59,7 +59,7 @@ def spin(net: FlatNet, folder: Path) -> tuple[int, int]:
 
     def run(*command: str) -> str:
         done = subprocess.run(
-            command, cwd=folder, capture_output=True, text=True, timeout=120, check=False
+            command, cwd=folder, capture_output=True, text=True, timeout=600, check=False
         )
         assert done.returncode == 0, done.stdout + done.stderr
         return done.stdout

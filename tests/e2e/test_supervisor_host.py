@@ -20,6 +20,7 @@ from pathlib import Path
 
 import pytest
 
+from helpers.session import once
 from pn2code.cell.partition import ChannelKind
 from pn2code.cell.scalars import Scalar, ScalarKind
 from pn2code.channels import (
@@ -68,7 +69,7 @@ SPECS = (
     ChannelSpec("command", "command.robcad", FLAG, "supervisor", "robot1", ChannelKind.FLAG),
     ChannelSpec("answer", "answer.robcad", FLAG, "robot1", "supervisor", ChannelKind.FLAG),
 )
-DEADLINE_S = 20.0
+DEADLINE_S = 600.0  # ends what hangs
 
 
 # --- building and starting ---
@@ -100,11 +101,18 @@ def host_sources(root: Path) -> list[Path]:
 
 @pytest.fixture(scope="session")
 def built(root: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """A folder with `supervisor` (delay 2), `quick` (delay 0), `alone` (no cell), `scalars`."""
+    """Supervisors: `supervisor` (delay 2), `quick` (delay 0), `patient` (time for what is refused), `alone` (no cell).
+
+    And `scalars`.
+    """
     if shutil.which("gcc") is None:
         pytest.skip("no gcc")
-    folder = tmp_path_factory.mktemp("supervisor")
-    # Each object once.
+    return once(tmp_path_factory, "supervisors", lambda folder: build_supervisors(root, folder))
+
+
+def build_supervisors(root: Path, folder: Path) -> None:
+    """Each object once."""
+    folder.mkdir()
     objects = [
         compile_c(root, folder / f"{source.stem}.o", [source], *SANITIZE, "-c")
         for source in host_sources(root)
@@ -115,9 +123,12 @@ def built(root: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
     hand = [tests / "hand_net.c", tests / "hand_cell.c"]
     compile_c(root, folder / "supervisor", [*objects, *hand], *SANITIZE)
     compile_c(root, folder / "quick", [*objects, *hand], *SANITIZE, "-DHAND_DELAY=0")
+    cell = root / "cnative/src/supervisor_cell.c"
+    others = [o for o in objects if o.name != "supervisor_cell.o"]
+    patient = ("-DHAND_DELAY=0", "-DSUP_GRACE_S=600.0", f"-I{root / 'cnative/src'}")
+    compile_c(root, folder / "patient", [*others, cell, *hand], *SANITIZE, *patient)
     compile_c(root, folder / "alone", [*objects, *hand], *SANITIZE, "-DHAND_ALONE")
     compile_c(root, folder / "scalars", [*common, tests / "scalars.c"], *SANITIZE)
-    return folder
 
 
 @pytest.fixture
@@ -519,7 +530,7 @@ def test_i6_a_repeated_answer_fires_nothing(
 def test_i6_what_is_put_right_within_the_grace_is_taken(
     start: Callable[..., SupervisorProcess], robot: SharedDirectory, shared: Path
 ) -> None:
-    supervisor = start()
+    supervisor = start("patient")
     assert robot.await_supervisor(DEADLINE_S)
     await_message(robot, "command")
     robot.clear("command")
@@ -587,8 +598,8 @@ import sys, time
 from pathlib import Path
 from pn2code.channels import SharedDirectory
 s = SharedDirectory(Path(sys.argv[1]), "robot1", ())
-print(s.await_supervisor(20.0), flush=True)
-time.sleep(60)
+print(s.await_supervisor(600.0), flush=True)
+time.sleep(600)
 """
 
 
@@ -772,21 +783,31 @@ def run(
         [built / program, "--input", inputs, *arguments],
         capture_output=True,
         text=True,
-        timeout=60,
+        timeout=600,
         check=False,
         **options,
     )
 
 
 def test_directory_missing_or_no_directory(built: Path, inputs: Path, tmp_path: Path) -> None:
-    done = run(built, inputs, "--dir", str(tmp_path / "nowhere"))
+    done = run(built, inputs, "--dir", str(tmp_path / "nowhere" / "shared"))
     assert done.returncode == 5
-    assert "does not exist" in done.stderr
+    assert "cannot be made: the folder that should hold it does not exist" in done.stderr
     done = run(
         built, inputs, "--dir", str(inputs / "orders.txt")
     )  # also for root, who may write everywhere
     assert done.returncode == 5
     assert "Not a directory" in done.stderr
+
+
+def test_a_directory_is_made(start: Callable[..., SupervisorProcess], shared: Path) -> None:
+    shared.rmdir()
+    supervisor = start()
+    with SharedDirectory(shared, "robot1", SPECS) as robot:
+        assert robot.await_supervisor(DEADLINE_S)
+        assert shared.stat().st_mode & 0o777 == 0o700
+        assert [obey(robot) for _ in range(3)]
+        ended(supervisor, 0)
 
 
 @pytest.mark.skipif(not Path("/sys/kernel").is_dir(), reason="no /sys")
@@ -973,7 +994,7 @@ def test_the_latency_program_measures(
         [program, shared, built / "quick", "20", inputs],
         capture_output=True,
         text=True,
-        timeout=60,
+        timeout=600,
         check=False,
     )
     assert done.returncode == 0, done.stderr

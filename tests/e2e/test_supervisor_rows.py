@@ -29,7 +29,7 @@ def play(program: Path, folder: Path, n: int, first: Pose, last: Pose) -> list[l
     (folder / "coordenadas.robcad").write_text("\n".join(lines) + "\n")
     done = subprocess.run(
         [str(program), "--dry-run", "--input", str(folder)],
-        capture_output=True, text=True, timeout=60, check=False,
+        capture_output=True, text=True, timeout=600, check=False,
     )  # fmt: skip
     assert done.returncode == 0, done.stderr
     sent: list[list[list[float]]] = [[], []]
@@ -84,7 +84,7 @@ def test_no_negative_zero_is_ever_sent(riveting_program: Path, tmp_path: Path) -
     (tmp_path / "coordenadas.robcad").write_text("5\n0 0 0 0 0 0\n0 0 0 0 0 0\n")
     done = subprocess.run(
         [str(riveting_program / "supervisor"), "--dry-run", "--input", str(tmp_path)],
-        capture_output=True, text=True, timeout=60, check=True,
+        capture_output=True, text=True, timeout=600, check=True,
     )  # fmt: skip
     assert "dadosrobo" in done.stdout
     assert "-0.0" not in done.stdout

@@ -23,7 +23,7 @@ def unpacked(root: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
     )
     subprocess.run(
         [sys.executable, "-m", "hatchling", "build", "-t", "wheel", "-d", str(folder)],
-        cwd=source, check=True, capture_output=True, timeout=300,
+        cwd=source, check=True, capture_output=True, timeout=600,
     )  # fmt: skip
     (wheel,) = folder.glob("*.whl")
     with zipfile.ZipFile(wheel) as archive:
@@ -50,14 +50,14 @@ def test_the_installed_package_generates_and_builds(
     environment = {**os.environ, "PYTHONPATH": str(unpacked)}
     done = subprocess.run(
         [sys.executable, "-P", "-m", "pn2code", "generate", str(tmp_path / "cell"), "-o", "out"],
-        cwd=tmp_path, env=environment, capture_output=True, text=True, check=False, timeout=120,
+        cwd=tmp_path, env=environment, capture_output=True, text=True, check=False, timeout=600,
     )  # fmt: skip
     assert done.returncode == 0, done.stderr
     subprocess.run(
-        ["make", "-s", "supervisor", "CFLAGS=-O0"], cwd=tmp_path / "out", check=True, timeout=300
+        ["make", "-s", "supervisor", "CFLAGS=-O0"], cwd=tmp_path / "out", check=True, timeout=600
     )
     played = subprocess.run(
         ["./supervisor", "--dry-run"], cwd=tmp_path / "out",
-        capture_output=True, text=True, check=True, timeout=60,
+        capture_output=True, text=True, check=True, timeout=600,
     )  # fmt: skip
     assert "dadosrobo1.robcad: 5750.0000" in played.stdout

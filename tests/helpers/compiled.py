@@ -140,7 +140,7 @@ def run(
         capture_output=True,
         text=True,
         check=False,
-        timeout=300,
+        timeout=600,
         env={**os.environ, **(environment or {})},
     )
     assert done.returncode == 0, f"{program}: {done.stderr[-3000:]}"

@@ -31,7 +31,8 @@ from pn2code.verify.programs import Sizes, generated
 QUICK = ("-O0",)
 SANITIZERS = ("-g1", "-O0", "-fsanitize=address,undefined", "-fno-sanitize-recover=all")
 THREADS = ("-g1", "-O0", "-fsanitize=thread")
-SECONDS = 120
+SECONDS = 600
+"""Ends what hangs."""
 LIBRARY = "libnet.so"
 OTHER_HOSTS = tuple(name for name in HOSTS if name != "explore")
 

@@ -23,7 +23,8 @@ from pathlib import Path
 
 from pn2code.cli.main import VERBS, play
 
-DEADLINE_S = 60.0
+DEADLINE_S = 600.0
+"""Ends what hangs. Nothing takes that long, on however busy a machine."""
 for _verb in VERBS:
     importlib.import_module(f"pn2code.cli.{_verb}")  # once, and not in each process
 

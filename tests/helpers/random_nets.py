@@ -9,6 +9,7 @@ several times. Values stay small, so that a walk goes on; exceptions are rare, b
 
 from __future__ import annotations
 
+import re
 from dataclasses import dataclass, field
 from random import Random
 
@@ -481,7 +482,11 @@ class Writer:
             case 0:
                 return f"2`{inner}"
             case 1:
+                known = list(scope.bound)
                 second = self.pattern(kind, scope, 1)
+                if _clash(first, second):  # CPN Tools does not find out how to bind them
+                    scope.bound[:] = known
+                    return f"1`{inner}"
                 return f"1`{inner} ++ 1`({second})"
             case 2 if kind.timed:
                 return f"{inner} @+ {r.randint(1, 2)}"
@@ -606,6 +611,13 @@ class Writer:
             for i in range(r.randint(1, 2)):
                 self.transition(f"U{i}", inner, "    ")
         return "\n".join(self.lines) + "\n"
+
+
+def _clash(first: str, second: str) -> bool:
+    """Whether two patterns share a variable, and each has others that it does not share."""
+    names = re.compile(rf"\b(?:{'|'.join(VARIABLES)})(?:C\d+|[A-Z]+)\b")
+    a, b = set(names.findall(first)), set(names.findall(second))
+    return not (a.isdisjoint(b) or a <= b or b <= a)
 
 
 def _product(parts: list[tuple[str, Kind | None]]) -> int:

@@ -58,7 +58,7 @@ def page_of(name: str) -> int:
 def union(number: int, size: int) -> Union:
     """Union number so-and-so, with so many nets."""
     style = STYLES[number % len(STYLES)]
-    kind = {"small": _Small, "symmetric": _Symmetric}.get(style, _Any)
+    kind = {"small": _Small, "symmetric": _Symmetric}.get(style, Everything)
     writer = kind(Random(number), style)
     writer.has_priorities = style != "small" or number % (2 * len(STYLES)) == 1
     writer.declarations()
@@ -80,7 +80,7 @@ def _without_steps(union: Union) -> Union:
     return Union(union.number, union.style, union.head.replace(look, "11"), pages)
 
 
-class _Any(Writer):
+class Everything(Writer):
     """Colour sets of all kinds, and all that inscriptions can do."""
 
     def __init__(self, r: Random, style: str) -> None:
@@ -249,7 +249,7 @@ class _Any(Writer):
         self.lines[before:] = kept
 
 
-class _Small(_Any):
+class _Small(Everything):
     """Small finite colour sets, no clock, no effects."""
 
     def __init__(self, r: Random, style: str) -> None:

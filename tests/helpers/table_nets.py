@@ -290,7 +290,7 @@ class TableExplorer:
             capture_output=True,
             text=True,
             check=False,
-            timeout=60,
+            timeout=600,
             env={**os.environ, "PN_TABLE": str(table)},
         )
         assert done.stdout, done.stderr

@@ -43,7 +43,7 @@ fun sort less [] = []
 fun n ` x = if n <= 0 then [] else x :: ((n - 1) ` x);
 fun a ++ b = a ^^ b;
 fun a -- b = listsub a b;
-fun n ** ms = if n <= 0 then [] else ms ++ ((n - 1) ** ms);
+fun n ** ms = if n <= 0 then [] else List.concat (List.map (fn x => List.tabulate (n, fn _ => x)) ms);
 fun bs % x = if List.all (fn b => b) bs then [x] else [];
 fun bs // ms = if List.all (fn b => b) bs then ms else [];
 fun a <<= b = contains_all b a;

@@ -19,7 +19,14 @@ from pathlib import Path
 sys.path.insert(0, str(Path(__file__).parents[1]))
 
 from tests.mutation.judge import NONE, SURVIVED, Judge, judge_of
-from tests.mutation.mutants import Function, Mutant, of_c, of_script
+from tests.mutation.mutants import (
+    Function,
+    Mutant,
+    of_c,
+    of_declarations,
+    of_script,
+    of_tables,
+)
 
 from helpers.small_cell import write
 from pn2code.resources import cnative_folder
@@ -62,6 +69,8 @@ def of_cell(judge: Judge) -> dict[str, list[Mutant]]:
     ]
     return {
         "net.c": list(of_c(judge.files["net.c"], "net.c", is_own)),
+        "declarations": [m for name in scripts for m in of_declarations(judge.files[name], name)],
+        "tables": list(of_tables(judge.files["cell_config.c"], "cell_config.c")),
         "scripts": [m for m in of_scripts if m.kind not in COMMANDS],
         "commands": [m for m in of_scripts if m.kind in COMMANDS],
     }
@@ -86,8 +95,11 @@ def cells(folder: Path) -> Iterator[tuple[str, Path]]:
 def main() -> int:
     """The command."""
     parser = argparse.ArgumentParser(prog="./dev mutation", description=__doc__)
-    parser.add_argument("--each", type=int, default=60, help="mutants of each part of each cell")
+    parser.add_argument(
+        "--each", type=int, default=60, help="mutants of each part of each cell; 0: all"
+    )
     parser.add_argument("--seed", type=int, default=1)
+    parser.add_argument("--parts", nargs="*", help="names as in the table; default: all")
     parser.add_argument("--cells", nargs="*", help="names; default: all")
     options = parser.parse_args()
     tally = Tally()
@@ -99,11 +111,16 @@ def main() -> int:
         }
         for cell, judge in judges.items():
             for part, mutants in of_cell(judge).items():
-                most = len(mutants) if part == "commands" else options.each
+                if options.parts and part not in options.parts:
+                    continue
+                most = len(mutants) if part == "commands" or not options.each else options.each
                 tally.take(cell, part, mutants, [judge], most, options.seed)
         # A mutant of the scheduler is one of every cell: one that finds it out is enough.
         everywhere = list(judges.values())
-        tally.take("all", "scheduler", of_scheduler(), everywhere, options.each, options.seed)
+        if not options.parts or "scheduler" in options.parts:
+            found = of_scheduler()
+            most = options.each or len(found)
+            tally.take("all", "scheduler", found, everywhere, most, options.seed)
     return tally.report()
 
 

@@ -95,7 +95,8 @@ class Judge:
             objects = [o for o in self._objects if o != own] + ["mutant.o"]
             if not self._linked(objects, name):
                 return Verdict(NONE, "it does not link")
-        return self._of_supervisor(self._room / name)
+        is_table = mutant is not None and mutant.file == "cell_config.c"
+        return self._of_supervisor(self._room / name, tables_first=is_table)
 
     def _carried_out(self, name: str) -> frozenset[int]:
         lines: set[int] = set()
@@ -145,9 +146,9 @@ class Judge:
 
     # --- judging -----------------------------------------------------------------------------------
 
-    def _of_supervisor(self, program: Path) -> Verdict:
+    def _of_supervisor(self, program: Path, *, tables_first: bool) -> Verdict:
         try:
-            report = self._comparison.supervisor(program, SECONDS)
+            report = self._comparison.supervisor(program, SECONDS, tables_first=tables_first)
         except ProbeError as problem:
             return Verdict("killed", str(problem))
         if report.deviation is not None:

@@ -55,6 +55,24 @@ _EQUALS = {"=": "<>", "<>": "="}
 _ADDED = {"+": "-", "-": "+"}
 _JOINED = {"&&": "||", "||": "&&"}
 _SWITCHED = {"true": "false", "false": "true"}
+_TYPES = {
+    "int": "real",
+    "real": "int",
+    "string": "word",
+    "word": "string",
+    "bool": "int",
+    "pose": "real",
+}
+_SCALARS = {
+    "INT": "REAL",
+    "REAL": "STRING",
+    "BOOL": "INT",
+    "ENUM": "STRING",
+    "INDEX": "INT",
+    "UNIT": "BOOL",
+}
+SAID = re.compile(r"\.(?:version) = ")
+"""Members that only messages to people are made of."""
 
 
 def _negated(m: re.Match[str]) -> str:
@@ -84,6 +102,33 @@ SCRIPT_RULES: tuple[Rule, ...] = (
     ("frame", re.compile(r" in tool$"), lambda m: ""),
     ("arithmetic", re.compile(r"(?<= )([+-])(?= [\w(])"), lambda m: _ADDED[m[1]]),
     ("logic", re.compile(r"(?<= )(and|or)(?= )"), _other({"and": "or", "or": "and"})),
+    ("real", re.compile(r"(?<![\w.\"])(\d+\.\d+)"), lambda m: str(float(m[1]) + 0.5)),
+    ("longer wait", re.compile(r"(?<=wait )(?!until)(.*)$"), lambda m: f"({m[1]}) * 1000"),
+    ("line dropped", re.compile(r"^(\s+)(?:wait(?! until) .*|\w+ := .*)$"), lambda m: f"{m[1]}-- dropped"),
+    ("a wait more", re.compile(r"^(\s+)(?=(?:clear|write|mark|move|tool|measure|sense|read|wait|\w+ :=))"),
+     lambda m: f"{m[1]}wait 7 s\n{m[1]}"),
+)  # fmt: skip
+DECLARATION_RULES: tuple[Rule, ...] = (
+    ("name", re.compile(r"^(program) (\w+)$"), lambda m: f"{m[1]} {m[2]}x"),
+    ("direction", re.compile(r"^(input|output)"), _other({"input": "output", "output": "input"})),
+    ("file", re.compile(r'^((?:in|out)put +\w+ +)"(.*)" '), lambda m: f'{m[1]}"x{m[2]}" '),
+    ("type", re.compile(r"(?<= )(int|real|string|word|bool|pose)(?= |,|$)(?! single)"), lambda m: _TYPES[m[1]]),
+    ("single", re.compile(r"(?<= )(real|pose)(?= |,|$)(?! single)"), lambda m: f"{m[1]} single"),
+    ("single", re.compile(r"(?<= )single(?= |,|$)"), lambda m: ""),
+    ("constant", re.compile(r"(?<==) *(-?\d+)(?= |$)"), lambda m: f" {int(m[1]) + 1}"),
+)  # fmt: skip
+"""The lines of a script before its first statement."""
+TABLE_RULES: tuple[Rule, ...] = (
+    ("number", re.compile(r"(?<![\w.\"])(\d+)(?=U?[,)])"), lambda m: str(int(m[1]) + 1)),
+    ("number", re.compile(r"(?<![\w.\"])(\d+\.\d+)"), lambda m: str(float(m[1]) / 240.0 + 0.125)),
+    ("text", re.compile(r'"([^"]*)"(?=,| )'), lambda m: f'"x{m[1]}"'),
+    ("constant", re.compile(r"\b(true|false)\b"), lambda m: _SWITCHED[m[1]]),
+    ("kind", re.compile(r"PN_CHANNEL_(DATA|FLAG)"), _other({"DATA": "FLAG", "FLAG": "DATA"})),
+    ("direction", re.compile(r"PN_CHANNEL_(IN|OUT)"), _other({"IN": "OUT", "OUT": "IN"})),
+    ("scalar", re.compile(r"PN_SCALAR_(\w+)"), lambda m: f"PN_SCALAR_{_SCALARS.get(m[1], 'INT')}"),
+    ("table", re.compile(r"(?<= = )(s_\w+?)(\d+)(?=,)"), lambda m: f"{m[1]}{int(m[2]) + 1}"),
+    ("table", re.compile(r"(?<= = )(s_\w+)(?=,)"), lambda m: "NULL"),
+    ("row dropped", re.compile(r"^    (?:\{ .* \}|\d+U),.*$"), lambda m: ""),
 )  # fmt: skip
 
 
@@ -145,6 +190,43 @@ def of_script(text: str, file: str) -> Iterator[Mutant]:
     for i, line in enumerate(lines):
         if not line.lstrip().startswith(("--", "program", "input", "output", "var")):
             yield from _changed(lines, i, file, SCRIPT_RULES)
+
+
+def of_declarations(text: str, file: str) -> Iterator[Mutant]:
+    """Mutants of what a robot's script declares."""
+    lines = text.split("\n")
+    for i, line in enumerate(lines[: lines.index("begin")]):
+        if line.startswith(("program", "input", "output", "const", "var")):
+            yield from _changed(lines, i, file, DECLARATION_RULES)
+
+
+def of_tables(text: str, file: str) -> Iterator[Mutant]:
+    """Mutants of the tables of cell_config.c: each value of each line, rows dropped, neighbours exchanged."""
+    lines = text.split("\n")
+    first = next(i for i, line in enumerate(lines) if line.startswith("#include"))
+    bodies = dict(re.findall(r"(s_\w+)\[\] = \{\n(.*?)\n\};", text, re.DOTALL))
+    for i in range(first, len(lines)):
+        if SAID.search(lines[i]):
+            continue
+        for mutant in _changed(lines, i, file, TABLE_RULES):
+            names = [re.findall(r"= (s_\w+),", x) for x in (lines[i], mutant.text.split("\n")[i])]
+            old, new = ([bodies.get(n) for n in found] for found in names)
+            if (
+                old != new or None in old or not old
+            ):  # another table with the same rows is the same table
+                yield mutant
+    for i in range(first, len(lines) - 1):
+        a, b = lines[i], lines[i + 1]
+        row = re.compile(r"^    (?:\{ .* \}|\d+U),")
+        if row.match(a) and row.match(b) and a != b:
+            what = f"{file}:{i + 1}: rows exchanged: `{a.strip()}` and `{b.strip()}`"
+            new = [*lines[:i], b, a, *lines[i + 2 :]]
+            yield Mutant(file, i + 1, "rows exchanged", what, "\n".join(new))
+        name = re.compile(r'\.name = "(\w+)"')
+        if (x := name.search(a)) and (y := name.search(b)) and row.match(a) and row.match(b):
+            what = f"{file}:{i + 1}: names exchanged: `{x[1]}` and `{y[1]}`"
+            new = [*lines[:i], a.replace(x[1], y[1], 1), b.replace(y[1], x[1], 1), *lines[i + 2 :]]
+            yield Mutant(file, i + 1, "names exchanged", what, "\n".join(new))
 
 
 def _changed(lines: list[str], i: int, file: str, rules: tuple[Rule, ...]) -> Iterator[Mutant]:

@@ -3,7 +3,8 @@
     seen = Seen(path)                          # the net, read and checked here
     seen.verdict(answer)                       # of `engine.check`, or of any other verb
     seen.marking(answer); seen.run(answer); seen.space(answer)
-        -> a Verdict: "agrees", "differs", "random", or "" when there is nothing to compare; and a note
+        -> a Verdict and a note: "agrees", "differs", "random" (the net draws, or leaves a choice to the engine),
+           "engine" (it fails with an internal error), "unsupported" (and said so), "" (nothing to compare)
 
 An exception of pn2code that is no diagnostic comes out: it is a bug whatever the engine says.
 """
@@ -16,7 +17,7 @@ from pathlib import Path
 from typing import Any
 
 from pn2code.conformance.graphs import Arc, Node, engine_arcs, engine_nodes, our_arcs, our_nodes
-from pn2code.diagnostics import Diagnostics
+from pn2code.diagnostics import Diagnostics, Severity
 from pn2code.net import front
 from pn2code.semantics.effects import Effects, outside
 from pn2code.semantics.game import Game, GameError
@@ -32,10 +33,10 @@ from pn2code.verify.limits import Limits
 SMALL = 150
 """Nodes up to which whole graphs are compared."""
 WARNED = {
-    "not unique": "name-not-unique",
-    "is not assigned to a port": "socket-unassigned",
-    "has type": "socket-arcs",
-    "which is not a port": "port-assignment",
+    "not unique": {"name-not-unique"},
+    "is not assigned to a port": {"socket-unassigned"},
+    "has type": {"socket-arcs", "port-assignment"},
+    "which is not a port": {"port-assignment"},
 }
 """What the editor says, and the warning of pn2code that says it: such nets are not refused here."""
 
@@ -50,6 +51,14 @@ class Verdict:
 
 AGREES = Verdict("agrees")
 NOTHING = Verdict("")
+ENGINE = Verdict("engine", "the engine fails with an internal error")
+LATE = {"literal-too-large"}
+"""What is found wrong here by checking, and by the engine only when it makes code of the net."""
+LOOSE = Verdict(
+    "engine", "it confuses the instances of a page that has a socket for a port only in some"
+)
+BROKEN = "InternalError"
+"""So the engine names what is wrong with itself."""
 
 
 def differs(note: str) -> Verdict:
@@ -64,6 +73,9 @@ class Seen:
         self.d = Diagnostics()
         self.net = front.load(path, self.d)
         self.codes = {x.code for x in self.d.items}
+        self.loose = any(
+            x.code == "port-unassigned" and x.severity is Severity.WARNING for x in self.d.items
+        )
         self.game: Game | None = None
         self.raised = ""
         if self.net is not None:
@@ -80,6 +92,8 @@ class Seen:
         if failure is not None and failure["kind"] in ("timeout", "crash", "file"):
             return NOTHING
         wrong = [e for e in answer["errors"] if not self._warns(e)]
+        if any(BROKEN in e["message"] for e in wrong):
+            return ENGINE
         if failure is not None and failure["stage"] == "check" and failure["kind"] != "rejected":
             return NOTHING
         if self.raised and self._says_error(answer):
@@ -88,19 +102,21 @@ class Seen:
             unsaid = [
                 e["message"]
                 for e in answer["errors"]
-                if (code := self._warning(e)) and code not in self.codes
+                if (codes := self._warning(e)) and codes.isdisjoint(self.codes)
             ]
             return differs(f"not warned of: {unsaid[0]}") if unsaid else AGREES
         if self.net is None:
+            if {e.code for e in self.d.errors} <= LATE:
+                return Verdict("engine", "it accepts the net, and fails when it is to run it")
             return differs("refused here: " + "; ".join(e.message for e in self.d.errors[:3]))
         where = "; ".join(f"{e['what']}: {e['message']}" for e in wrong[:2])
         return differs(f"accepted here; the engine: {where}")
 
     @staticmethod
-    def _warning(error: dict[str, Any]) -> str:
+    def _warning(error: dict[str, Any]) -> set[str]:
         if error["by"] != "editor":
-            return ""
-        return next((code for words, code in WARNED.items() if words in error["message"]), "")
+            return set()
+        return next((codes for words, codes in WARNED.items() if words in error["message"]), set())
 
     def _warns(self, error: dict[str, Any]) -> bool:
         return bool(self._warning(error))
@@ -114,15 +130,16 @@ class Seen:
         rows = answer.get("marking")
         if self.net is None or rows is None:
             return NOTHING
+        if self.loose:
+            return LOOSE
         if self.game is None:
             return differs(f"here the initial marking raises: {self.raised}")
         ours = {(r["id"], r["instance"]): r["marking"] for r in places(self.net, self.game.marking)}
         for row in rows:
             found = ours.get((row["id"], row["instance"]), "no such place")
             if "error" in row:
-                if "port-unassigned" not in self.codes:
-                    return differs(f"{row['name']}: the engine says {row['error']}")
-            elif found != row["marking"]:
+                return differs(f"{row['name']}: the engine says {row['error']}")
+            if found != row["marking"]:
                 return self._or_random(f"{row['name']}: {found} instead of {row['marking']}")
         return AGREES
 
@@ -138,6 +155,8 @@ class Seen:
         """A random run of the engine is possible here, with the same final marking."""
         if self.game is None or "steps" not in answer:
             return NOTHING
+        if self.loose:
+            return LOOSE
         followed = follow(recording(answer), self.game)
         if not followed.ok:
             return differs(f"step {followed.steps + 1}: {followed.why}")
@@ -147,6 +166,8 @@ class Seen:
         """Sizes, dead and home markings and components by the compiled explorer; small graphs node by node."""
         if self.net is None or self.game is None or "nodes" not in answer:
             return NOTHING
+        if self.loose:
+            return LOOSE
         limits = Limits(max_states=20_000, max_seconds=60.0, traces=0)
         d = Diagnostics()
         found = explore(self.net, {}, limits, d)
@@ -158,6 +179,8 @@ class Seen:
         if found.error is not None and not answer["stopped_by_error"] and answer["entire"]:
             return differs(f"here the exploration ends with {found.error['message']}")
         if answer["stopped_by_error"]:
+            if BROKEN in answer["stopped_by_error"]:
+                return ENGINE
             if found.error is None and found.complete:
                 return differs(f"the engine ends with {answer['stopped_by_error']}")
             return AGREES

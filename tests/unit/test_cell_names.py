@@ -13,7 +13,7 @@ from pn2code.cell.divide import divide
 from pn2code.cell.load import load
 from pn2code.cell.partition import ChannelKind
 from pn2code.cli.main import app
-from pn2code.diagnostics import Diagnostics
+from pn2code.diagnostics import Diagnostics, Severity
 from pn2code.net import front
 
 FINAL = 'final = ["Finished"]'
@@ -74,12 +74,28 @@ def test_a_final_place_is_reported_where_it_stands(tmp_path: Path) -> None:
     assert (found.origin.line, found.origin.column) == (line, 4)
 
 
+@pytest.mark.parametrize(
+    ("value", "code"), [("MOV = 2", "unknown-value"), ('MOVE = "x"', "type-mismatch")]
+)
+def test_a_value_is_reported_where_it_stands(value: str, code: str, tmp_path: Path) -> None:
+    cell = write(tmp_path, toml=f"{TOML}[values]\nDRILL = 7\n{value}\n")
+    d = Diagnostics()
+    config = load(cell, d)
+    assert config is not None
+    front.load(config.net_path, d, config.values)
+    (found,) = d.errors
+    assert found.code == code
+    line = f"{TOML}[values]\nDRILL = 7\n".count("\n") + 1
+    assert (found.origin.file, found.origin.line) == (str(cell / "cell.toml"), line)
+    assert found.origin.part in ("key `values.MOV`", "declaration")
+
+
 def test_a_final_place_that_the_supervisor_never_marks(tmp_path: Path) -> None:
     net = changed(
         NET, "    place Finished : INT\n", "    place Finished : INT\n    place Ended : INT\n"
     )
     (found,) = said(tmp_path, net, changed(TOML, FINAL, 'final = ["Ended"]'))
-    assert found.code == "cell-final"
+    assert (found.severity, found.code) == (Severity.WARNING, "cell-final")
     assert "no transition of the supervisor puts a token" in found.message
 
 

@@ -160,6 +160,19 @@ def test_calls_that_scripts_carry_out(what: str, tmp_path: Path) -> None:
     assert not errors(tmp_path, net)
 
 
+def test_a_hidden_function_of_the_same_name_is_no_primitive(tmp_path: Path) -> None:
+    net = changed(
+        NET,
+        "  fun drill () = ();\n",
+        "  fun drill () = ();\n  fun first () = drill ();\n  fun drill () = ();\n",
+    )
+    assert not errors(tmp_path / "a", net)
+    found = errors(
+        tmp_path / "b", changed(net, "code action drill ()", "code action (first (); drill ())")
+    )
+    assert {c for c, _ in found} == {"primitive-unnamed"}
+
+
 def test_a_function_among_the_primitives(tmp_path: Path) -> None:
     """Where nobody calls it, nothing is missing from a script: a warning. Where somebody does, an error."""
     net = changed(NET, BLOCK, IN_BLOCK)

@@ -136,7 +136,22 @@ def test_a_message_written_by_hand_needs_no_seal() -> None:
 def test_zero_is_the_empty_channel() -> None:
     for text in ("0\n", "0", "0 \r\n"):
         assert parse(SPECS[1], text, session=SESSION, consumed=0) is None
-    assert compose(SPECS[1], (0,), seq=1, session=SESSION) is None  # could not be told from empty
+
+
+def test_a_zero_with_line_2_is_a_message() -> None:
+    text = compose(SPECS[1], (0,), seq=1, session=SESSION)
+    assert text is not None and text.startswith("0\n# 1 ")
+    assert parse(SPECS[1], text, session=SESSION, consumed=0) == Message("command", (0,), 1)
+    again = parse(SPECS[1], text, session=SESSION, consumed=1)
+    assert isinstance(again, Refused) and again.reason is Reason.REPEATED
+    torn = parse(SPECS[1], text[:-4], session=SESSION, consumed=0)
+    assert isinstance(torn, Refused) and torn.reason is Reason.TRAILER
+    pair = parse(
+        SPECS[0], compose(SPECS[1], (0,), seq=1, session=SESSION) or "", session=SESSION, consumed=0
+    )
+    assert (
+        isinstance(pair, Refused) and pair.reason is Reason.COUNT
+    )  # `0` with a line 2 is never an empty channel
 
 
 GOOD = compose(SPECS[0], (1.5, -2.0), seq=7, session=SESSION) or ""
@@ -194,7 +209,7 @@ def parties(tmp_path: Path) -> Iterator[tuple[SharedDirectory, SharedDirectory]]
         SharedDirectory(tmp_path, "robot1", SPECS) as b,
     ):
         a.announce()
-        assert b.await_supervisor(1.0)
+        assert b.await_supervisor(600.0)
         yield a, b
 
 
@@ -300,7 +315,7 @@ def test_i7_stale_message_of_an_earlier_session(tmp_path: Path) -> None:
         SharedDirectory(tmp_path, "robot1", SPECS) as robot,
     ):
         second.announce()
-        assert robot.await_supervisor(1.0)
+        assert robot.await_supervisor(600.0)
         assert robot.read("command") is None
 
 
@@ -316,7 +331,7 @@ def test_i8_a_killed_supervisor_is_noticed(tmp_path: Path) -> None:
     code = (
         "import sys, time; from pathlib import Path; from pn2code.channels import SharedDirectory\n"
         "s = SharedDirectory(Path(sys.argv[1]), 'supervisor', ())\n"
-        "s.announce(); print('up', flush=True); time.sleep(60)"
+        "s.announce(); print('up', flush=True); time.sleep(600)"
     )
     with subprocess.Popen(
         [sys.executable, "-c", code, str(tmp_path)], stdout=subprocess.PIPE
@@ -324,7 +339,7 @@ def test_i8_a_killed_supervisor_is_noticed(tmp_path: Path) -> None:
         assert process.stdout is not None
         process.stdout.readline()
         with SharedDirectory(tmp_path, "robot1", SPECS) as robot:
-            assert robot.await_supervisor(5.0)
+            assert robot.await_supervisor(600.0)
             assert robot.peer_alive()
             process.kill()
             process.wait()
@@ -353,7 +368,7 @@ def test_i8_a_new_supervisor_is_not_mistaken_for_the_old(tmp_path: Path) -> None
     with SharedDirectory(tmp_path, "robot1", SPECS) as robot:
         with SharedDirectory(tmp_path, "supervisor", SPECS) as first:
             first.announce()
-            assert robot.await_supervisor(1.0)
+            assert robot.await_supervisor(600.0)
         with SharedDirectory(tmp_path, "supervisor", SPECS) as second:
             second.announce()
             assert robot.peer().state is PeerState.REPLACED

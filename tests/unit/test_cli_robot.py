@@ -116,3 +116,16 @@ def test_a_device_of_a_cell(root: Path, tmp_path: Path) -> None:
     assert said.startswith("pn2code: belt stopped: no supervisor has announced itself")
     said = refused(tmp_path, 2, script, "--cell", sorting, "--name", "conveyor")
     assert "choose one of `robot`, `belt`, `operator` with --name" in said
+
+
+def test_the_directory_that_the_supervisor_chooses(tmp_path: Path, script: Path) -> None:
+    done = pn2code("robot", script, "--wait", "0")
+    assert done.returncode == 2
+    assert "there is no manifest.json beside" in done.stderr
+    assert "give its shared directory with --dir" in done.stderr
+    net = f"net-{tmp_path.parent.name}"  # of which nobody has a supervisor
+    (tmp_path / "manifest.json").write_text(f'{{"source": "{net}.cpn"}}')
+    done = pn2code("robot", script, "--wait", "0")
+    assert done.returncode == 5
+    chosen = f"/dev/shm/pn2code-{net}" if Path("/dev/shm").is_dir() else f"{tmp_path}/shared"
+    assert f"the shared directory `{chosen}` does not exist" in done.stderr

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import re
+import subprocess
+from pathlib import Path
 
 import pytest
 
@@ -14,6 +16,7 @@ from pn2code.ml.colsets import Colset, Kind
 from pn2code.ml.core import Program
 from pn2code.ml.types import INT, REAL, STRING
 from pn2code.net.flat import FlatNet, FlatPlace
+from pn2code.toolchain.programs import FLAGS
 
 COORD = Colset("COORD", Kind.REAL, REAL)
 COUNT = Colset("COUNT", Kind.INT, INT, low=0, high=9)
@@ -113,3 +116,21 @@ def test_c_literals() -> None:
     assert c_int(-(2**63)) == "INT64_MIN"
     with pytest.raises(ValueError, match="no C constant"):
         c_float(float("nan"))
+
+
+def test_sums_are_rounded_everywhere_alike(tmp_path: Path) -> None:
+    """Whatever the caller's CFLAGS say, the last word is that of the token game and the explorer."""
+    files = emit(partition(), name="cell", reply_timeout_s=1.0, digest="d" * 64, version="9.9")
+
+    (makefile,) = [f for f in files if f.path == "Makefile"]
+    (tmp_path / "Makefile").write_text(makefile.text)
+    for name in ("net.c", "net.h", "cell_config.c"):
+        (tmp_path / name).touch()
+    for target in ("net.o", "supervisor.monitor", "supervisor.sanitize"):
+        done = subprocess.run(
+            ["make", "-n", target, "CFLAGS=-O3 -ffp-contract=fast"],
+            cwd=tmp_path, capture_output=True, text=True, check=True,
+        )  # fmt: skip
+        commands = [line for line in done.stdout.splitlines() if "net.c" in line or "net.o" in line]
+        said = [word for word in commands[-1].split() if word.startswith("-ffp-contract")]
+        assert said[-1] == "-ffp-contract=off" and said[-1] in FLAGS

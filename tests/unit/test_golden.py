@@ -50,7 +50,7 @@ def test_the_same_bytes_in_another_process(
     """Nothing depends on hash seeds, the working directory, or the way the net is named."""
     subprocess.run(
         [sys.executable, "-m", "pn2code", "generate", "cell.cpn", "-o", str(tmp_path)],
-        cwd=root / "examples" / "riveting", check=True, capture_output=True, timeout=120,
+        cwd=root / "examples" / "riveting", check=True, capture_output=True, timeout=600,
         env={**os.environ, "PYTHONHASHSEED": "7"},
     )  # fmt: skip
     for file in files:

@@ -44,7 +44,7 @@ ALLOWED: dict[str, set[str]] = {
     "simulate": {"diagnostics", "ml", "net", "semantics", "monitors", "cell", "lowering", "emission", "toolchain",
                  "parser_cache"},
     "verify": {"diagnostics", "ml", "net", "semantics", "structure", "cell", "lowering", "emission", "toolchain",
-               "resources", "simulate", "drawing", "reading", "unfold", "properties"},
+               "resources", "simulate", "drawing", "reading", "unfold", "properties", "channels"},
     "conform": {"diagnostics", "cell", "channels", "emission", "ml", "net", "pipeline", "robot", "semantics",
                 "simulate", "tdl", "toolchain", "verify"},
     "medium": {"diagnostics", "ml", "net", "cell", "lowering", "semantics", "verify"},

@@ -111,9 +111,7 @@ def test_members_of_colour_sets() -> None:
     p, r, u = (m.e.program().colsets[n] for n in "PRU")
     assert "mult" in members_of(p) and "mult" not in members_of(u)
     assert str(member_type(p, "mult")) == "int list * string list -> (int * string) list"
-    assert str(member_type(r, "mult")) == (
-        "{a: string list, b: int list} -> {a: string, b: int} list"
-    )
+    assert str(member_type(r, "mult")) == "int list * string list -> {a: string, b: int} list"
     assert str(member_type(r, "set_a")) == "{a: string, b: int} -> string -> {a: string, b: int}"
     assert str(member_type(u, "of_Ack")) == "U -> bool"
     assert str(member_type(u, "cmp")) == "U * U -> order"

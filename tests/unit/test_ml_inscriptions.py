@@ -201,16 +201,13 @@ def test_errors_in_delays(text: str, expected: str) -> None:
 def test_priorities() -> None:
     m = Ml()
     m.ml("val P_HIGH = 100; fun f x = x div 0")
-    assert [m.e.priority(source(t, "priority")) for t in ("7", "P_HIGH", "P_HIGH + 1")] == [
-        7,
-        100,
-        101,
-    ]
-    assert not m.d.items
-    for text in ("~3", "f 3", "n", "true"):
+    texts = ("7", "P_HIGH", "P_HIGH + 1", "~3")
+    assert [m.e.priority(source(t, "priority")) for t in texts] == [7, 100, 101, -3]
+    assert [x.split(" | ")[0] for x in m.messages()] == ["priority-below-zero"]
+    for text in ("f 3", "n", "true"):
         assert m.e.priority(source(text, "priority")) is None
     assert [x.split(" | ")[0] for x in m.messages()] == [
-        "priority-not-constant", "priority-not-constant", "unbound-identifier", "type-mismatch",
+        "priority-below-zero", "priority-not-constant", "unbound-identifier", "type-mismatch",
     ]  # fmt: skip
 
 

@@ -454,7 +454,7 @@ def test_the_riveting_cell(root: Path) -> None:
         assert text.count("loop") == 2 and "goto" not in text and "while" not in text
         assert text.count("  if ") == 1 and "move $linear p in tool" in text
     assert [len(ir.left_out) for ir in irs] == [0, 1]
-    assert irs[1].left_out[0].reason == "place `referencia` can never hold a token"
+    assert irs[1].left_out[0].reason == "place `referencia2` can never hold a token"
 
 
 # --- the script does what the net does ---------------------------------------------------------

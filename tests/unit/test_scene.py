@@ -101,6 +101,7 @@ MISTAKES = [
         "robot-value",
         "a number above `x_from` is expected",
     ),
+    (put("scene", "panel", "x_to", value="5.0"), "robot-value", "`scene.panel.x_to` is `5.0`"),
     (put("scene", "panel", "ribs", value=["a"]), "robot-value", "a list of numbers is expected"),
     (put("scene", "floor", value=1), "robot-value", "`true` or `false` is expected"),
     (remove("scene", "panel", "axis_y"), "robot-key", "`scene.panel.axis_y` is missing"),
@@ -120,7 +121,31 @@ MISTAKES = [
         "robot-value",
         "three numbers above 0",
     ),
-    (put("scene", "contacts", value=[{"a": "x"}]), "robot-key", "`scene.contacts.0.b` is missing"),
+    (
+        put("scene", "contacts", value=[{"a": "panel/ribs"}]),
+        "robot-key",
+        "`scene.contacts.0.b` is missing",
+    ),
+    (
+        put("scene", "contacts", value=[{"a": "robt1/tool_tip", "b": "panel/ribs"}]),
+        "robot-value",
+        "did you mean `robot1`?",
+    ),
+    (
+        put("scene", "objects", value=[{"name": "a"}]),
+        "robot-key",
+        "`scene.objects.0.size` is missing",
+    ),
+    (
+        put("scene", "objects", value=[{"name": "a", "size": [1, 1, 1]}] * 2),
+        "robot-value",
+        "two objects of the scene are called `a`",
+    ),
+    (
+        put("scene", "objects", value=[{"name": "a", "size": [1, 1, 1], "colour": [1, 1]}]),
+        "robot-value",
+        "three or four numbers from 0 to 1",
+    ),
 ]
 
 

@@ -303,7 +303,7 @@ def timed(expression: str) -> Any:
     [
         ("TI'timed.mkstr_ms(1`3@+4+++1`3@+2)", "1`3@4+++\n1`3@2"),
         ("TI'timed.mkstr(3@7)", "3@7"),
-        ("TI'timed.lt(3@7, 3@8)", True),
+        ("TI'timed.lt(3@7, 3@8)", False),
         ("TI'timed.cmp(4@7, 3@8)", Data("GREATER", 2)),
         ("(TI'timed.size() handle CPN'Error _ => ~1)", -1),
         ("P.input (TextIO.openString \" ( (~2) ,\\\"a, b\\\") rest\")", (-2, "a, b")),

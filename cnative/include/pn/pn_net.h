@@ -2,8 +2,13 @@
  * pn_net.h - the contract between a generated net (net.c) and the hosts that run it.
  *
  * A generated net is one constant table, `const pn_net_t pn_net`, and a marking type whose size the table
- * gives. Hosts (supervisor, simulate, explore) know nets only through this table: the same object file net.o is verified,
- * simulated and deployed.
+ * gives. Hosts (supervisor, simulate, explore, the program under test of `conform`) know nets only through this table.
+ *
+ * In a generated folder one object file, net.o, is linked with the supervisor, its monitor and the simulator. The explorer of
+ * `pn2code verify` has another one: the same generator makes it from the same net, but with packed places where that is possible, with
+ * arrays of other sizes, and with flags for the processor at hand. What is proved is proved of that one. `pn2code conform` shows that
+ * both do the same: it compares the explorer's graph, and the generated net.c in the deployed supervisor, with the token game in every
+ * state that can be reached (docs/conform.md).
  *
  * Errors: a net's expressions may raise (integer overflow, division by zero, no matching rule, a colour out of range, an
  * array that is full). The first error of a context is kept in it (pn_ctx_t.error) and is sticky: from then on every operation
@@ -41,6 +46,7 @@ typedef struct pn_leaf {
     int64_t integer;   /* BOOL, INT, ENUM */
     double real;       /* REAL */
     const char *text;  /* STRING, and the constructor's name for ENUM; valid until the next firing */
+    uint32_t length;   /* of a STRING's text, in which any byte may be */
 } pn_leaf_t;
 
 /* Called for each enabled binding element; returns false to stop the enumeration. The binding lives until the call returns. */
@@ -55,6 +61,8 @@ typedef struct pn_text {
     size_t capacity;  /* bytes, terminator included */
     size_t length;    /* bytes used; > capacity - 1 never; `truncated` says that something was cut */
     bool truncated;
+    void (*flush)(struct pn_text *text); /* called when the buffer is full: writes it somewhere and empties it; NULL: the rest is cut */
+    void *user;
 } pn_text_t;
 
 /* Markings after a marking, of each only the first word of its packed part, from which all else follows (pn_transition_t.words). */

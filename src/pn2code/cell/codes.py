@@ -45,7 +45,8 @@ CELL_FINAL = register(
     "a final place cannot tell that the supervisor has finished",
     "`final` of [supervisor] lists places of the supervisor: the cell has finished when one of them holds a token. The "
     "supervisor sees neither the places of a robot nor what lies in a channel, so a place of a robot or a channel "
-    "cannot be one, nor can a place that no transition of the supervisor puts a token into.",
+    "cannot be one. A place that no transition of the supervisor puts a token into is warned of: the cell never ends "
+    "there.",
 )
 PRIMITIVE_ENTRY = register(
     "primitive-entry",
@@ -97,6 +98,12 @@ CHANNEL_TIMED = register(
     "the colour set of a channel is timed",
     "A message is seen as soon as it is written, so it cannot carry a time stamp that lies ahead. Use an untimed "
     "colour set for the channel, and put delays on the writer's or the reader's own places.",
+)
+CHANNEL_LIMIT = register(
+    "channel-limit",
+    "a cell has more channels, robots or values in a message than a supervisor can carry",
+    "A supervisor has room for 128 channels and 64 robots and devices, a message for 64 scalars. Divide a large "
+    "message among two channels, or a large cell between two supervisors.",
 )
 UNSUPPORTED_CHANNEL_COLSET = register(
     "unsupported-channel-colset",

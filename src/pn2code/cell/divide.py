@@ -43,6 +43,9 @@ def divide(net: FlatNet, config: CellConfig | None, d: Diagnostics) -> Partition
     final = _final(net, config, owners, transition_owner, find, d)
     if len(d.errors) != before:
         return None
+    _limits(net, channels, inputs, config, d)
+    if len(d.errors) != before:
+        return None
     shared = {c.place for c in channels}
     place_owner = tuple(
         None if i in shared else next(iter(sorted(writers[i] | readers[i])), 0)
@@ -216,7 +219,8 @@ def _final(
                 "finished, and name that place",
             )
         elif 0 not in writers[place.index] and place.initial is None:
-            d.error(
+            # The cell is as it is drawn; what is proved about its end will say so as well.
+            d.warning(
                 codes.CELL_FINAL,
                 f"final: no transition of the supervisor puts a token into place `{place.name}`",
                 at,
@@ -437,6 +441,45 @@ def _inputs(
             )
         else:
             yield Input(PurePath(entry.file).stem, entry.file, place.index)
+
+
+MOST_CHANNELS = 128
+MOST_PEERS = 64
+MOST_SCALARS = 64
+"""What cnative/include/pn/pn_cell.h and pn_channel.h have room for."""
+
+
+def _limits(
+    net: FlatNet,
+    channels: tuple[Channel, ...],
+    inputs: tuple[Input, ...],
+    config: CellConfig,
+    d: Diagnostics,
+) -> None:
+    """What a supervisor has no room for."""
+    at = config.supervisor.origin
+    if len(channels) > MOST_CHANNELS:
+        text = (
+            f"the cell has {len(channels)} channels, and a supervisor has room for {MOST_CHANNELS}"
+        )
+        d.error(codes.CHANNEL_LIMIT, text, at, hint="send several values in one message")
+    if len(config.programs) > MOST_PEERS:
+        many = len(config.programs)
+        text = f"the cell has {many} robots and devices, and a supervisor has room for {MOST_PEERS}"
+        d.error(codes.CHANNEL_LIMIT, text, at, hint="let one program be several small devices")
+    for name, place in (
+        *((c.name, c.place) for c in channels),
+        *((i.name, i.place) for i in inputs),
+    ):
+        flat = net.places[place]
+        count = len(scalars_of(flat.colset) or ())
+        if count > MOST_SCALARS:
+            d.error(
+                codes.CHANNEL_LIMIT,
+                f"a message of `{name}` has {count} values, and {MOST_SCALARS} are the most",
+                flat.origins[0],
+                hint=f"divide colour set `{flat.colset.name}` among several places",
+            )
 
 
 _SCALARS = {

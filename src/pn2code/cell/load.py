@@ -25,10 +25,11 @@ from pn2code.cell.config import (
     SensorConfig,
     SupervisorConfig,
 )
+from pn2code.cell.files import check_files
 from pn2code.cell.partition import ChannelKind
 from pn2code.cell.tables import KeyPath, Tables
 from pn2code.cell.toml_file import Locator, read
-from pn2code.diagnostics import Diagnostics, Origin
+from pn2code.diagnostics import Diagnostics, Origin, PlacedText
 from pn2code.diagnostics.near import did_you_mean
 
 _TOP = {
@@ -77,6 +78,7 @@ def load(path: Path, d: Diagnostics, *, layout: str | None = None) -> CellConfig
         return None
     data, locator = found
     config = _config(path, data, locator, d, layout)
+    check_files(config, d)
     return config if len(d.errors) == before else None
 
 
@@ -233,7 +235,7 @@ def _values(r: Tables, data: dict[str, Any]) -> dict[str, str]:
                 r.at("values", name),
             )
         else:
-            out[name] = text
+            out[name] = PlacedText(text, r.at("values", name))
     return out
 
 

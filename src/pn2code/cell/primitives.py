@@ -283,7 +283,7 @@ class _Checker:
 
     def _acts(self, symbol: core.Symbol) -> bool:
         """Whether a function is made of primitives."""
-        return any(uid in self.primitives for uid in self.reach.from_symbol(symbol))
+        return any(s.uid in self.primitives for s in self.reach.from_symbol(symbol))
 
 
 def _expressions(t: FlatTransition) -> Iterator[tuple[str, core.Exp]]:

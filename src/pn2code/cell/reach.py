@@ -21,7 +21,7 @@ class Reach:
         self._bodies: dict[int, core.Exp] = {}
         for declaration in program.declarations:
             self._add(declaration)
-        self._reached: dict[int, frozenset[int]] = {}
+        self._reached: dict[int, tuple[core.Symbol, ...]] = {}
         self._functions = [
             symbol
             for declaration in program.declarations
@@ -33,7 +33,7 @@ class Reach:
         """A declaration and those inside it."""
         for symbol, value in bound(declaration):
             self._bodies[symbol.uid] = value
-        self.add_locals(*(value for _, value in bound(declaration)))
+            self.add_locals(value)
 
     def add_locals(self, *expressions: core.Exp) -> None:
         """Takes note of what is declared inside expressions, with `let`."""
@@ -52,11 +52,11 @@ class Reach:
         """What a symbol stands for; None for variables of the net and of patterns."""
         return self._bodies.get(symbol.uid)
 
-    def from_symbol(self, symbol: core.Symbol) -> frozenset[int]:
-        """The declared symbols that its meaning depends on, itself included."""
+    def from_symbol(self, symbol: core.Symbol) -> tuple[core.Symbol, ...]:
+        """The declared symbols that its meaning depends on, itself first."""
         known = self._reached.get(symbol.uid)
         if known is None:
-            known = frozenset(s.uid for s, _ in self._closure([symbol]))
+            known = tuple(self._closure(symbol))
             self._reached[symbol.uid] = known
         return known
 
@@ -70,20 +70,20 @@ class Reach:
         """All declared symbols that the meaning of an expression depends on, each with where it is used first."""
         found: dict[int, tuple[core.Symbol, Span]] = {}
         for symbol, span in self.uses(e):
-            for inner, _ in self._closure([symbol]):
+            for inner in self.from_symbol(symbol):
                 found.setdefault(inner.uid, (inner, span))
         return found
 
-    def _closure(self, symbols: list[core.Symbol]) -> Iterator[tuple[core.Symbol, core.Exp]]:
+    def _closure(self, symbol: core.Symbol) -> Iterator[core.Symbol]:
         seen: set[int] = set()
-        todo = list(symbols)
+        todo = [symbol]
         while todo:
             symbol = todo.pop()
             value = self._bodies.get(symbol.uid)
             if value is None or symbol.uid in seen:
                 continue
             seen.add(symbol.uid)
-            yield symbol, value
+            yield symbol
             todo += [s for s, _ in self.uses(value)]
 
 

@@ -34,7 +34,7 @@ class Scalar:
     Args:
         label: path of its component, "#2.x", with labels of records and ML's selectors of products; for messages.
         colset: name of its colour set; for messages.
-        names: ENUM: the constructors. UNIT: its one name.
+        names: ENUM: the constructors, () if they are not known. UNIT: its one name.
         low, high: INT, INDEX, REAL: inclusive bounds, None: unbounded.
     """
 

@@ -28,11 +28,13 @@ from typing import Self
 
 from pn2code.channels.message import (
     EMPTY,
+    MAX_PAYLOAD,
     ChannelSpec,
     Message,
     Reason,
     Refused,
     compose,
+    is_empty,
     parse,
 )
 from pn2code.channels.scalars import ScalarValue, quote
@@ -286,12 +288,13 @@ class SharedDirectory:
         spec, state = self._channel(channel)
         content = self._content(spec)
         held = content.found if isinstance(content, Refused) else content
-        if held.rstrip() != "0":
+        if not is_empty(held):
             text = f"{spec.file} still holds {quote(held)}, which {spec.reader} has not taken"
             return NotWritten(spec.name, spec.file, "channel-overrun", text)
         message = compose(spec, scalars, seq=state.sent + 1, session=self.session or "-")
         if message is None:
-            text = f"{scalars!r} cannot be written to {spec.file}: not a token, not finite, or `0`"
+            why = f"no token of its colour set, not finite, or more than {MAX_PAYLOAD} bytes"
+            text = f"{quote(repr(scalars))} cannot be written to {spec.file}: {why}"
             return NotWritten(spec.name, spec.file, "channel-value", text)
         self._publish(spec.file, message)
         state.sent += 1
@@ -301,7 +304,7 @@ class SharedDirectory:
         """Whether the reader has emptied the channel."""
         spec, _ = self._channel(channel)
         content = self._content(spec)
-        return not isinstance(content, Refused) and content.rstrip() == "0"
+        return not isinstance(content, Refused) and is_empty(content)
 
     # --- files ---
 

@@ -26,7 +26,10 @@ EMPTY = "0\n"
 """The content of a channel without a message."""
 
 MAX_BYTES = 4096
-"""No message is longer."""
+"""No file is as long."""
+
+MAX_PAYLOAD = 4055
+"""Most bytes of line 1 that are written: line 2 fits behind it, however long its seq."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -112,16 +115,21 @@ def _seal(payload: str, seq: int, session: str) -> str:
 def compose(
     spec: ChannelSpec, values: Sequence[ScalarValue], *, seq: int, session: str
 ) -> str | None:
-    """The whole file; None when the values do not fit the channel, or cannot be told from an empty file."""
+    """The whole file; None when the values do not fit the channel."""
     payload = format_scalars(spec.scalars, values)
-    if payload is None or payload == "0":
+    if payload is None or not 0 < len(payload) <= MAX_PAYLOAD:
         return None
-    text = f"{payload}\n# {seq} {session} {_seal(payload, seq, session)}\n"
-    return text if len(text) < MAX_BYTES else None
+    return f"{payload}\n# {seq} {session} {_seal(payload, seq, session)}\n"
 
 
 _TRAILER = re.compile(r"#[ \t\r]+([0-9]{1,18})[ \t\r]+([^ \t\r]{1,15})[ \t\r]+([0-9a-f]{8})")
 _BLANK = " \t\r"
+
+
+def is_empty(text: str) -> bool:
+    """Whether a file holds no message: `0` on line 1, and no line 2. With a line 2 it is the message 0."""
+    first, _, rest = text.partition("\n")
+    return first.rstrip(_BLANK) == "0" and rest in ("", "\n")
 
 
 def parse(spec: ChannelSpec, text: str, *, session: str, consumed: int) -> Message | Refused | None:
@@ -150,7 +158,7 @@ def parse(spec: ChannelSpec, text: str, *, session: str, consumed: int) -> Messa
             return refused(Reason.CHECKSUM, f"{quote(payload)} is torn or altered: wrong checksum")
         if match[2] != session:
             return refused(Reason.SESSION, f"a message of session {match[2]}; {session} is running")
-    if payload == "0":
+    if is_empty(text):
         return None
     values = parse_scalars(spec.scalars, payload)
     if isinstance(values, Malformed):

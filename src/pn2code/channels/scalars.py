@@ -11,8 +11,9 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+from typing import Any
 
 from pn2code.cell.scalars import Scalar, ScalarKind
 
@@ -27,6 +28,21 @@ class Malformed:
     text: str
     column: int
     wrong_count: bool = False
+
+
+def scalars_of_json(data: Any) -> Iterator[ScalarValue]:
+    """The scalars of a token in the form of traces, in the declared order of its colour set."""
+    match data:
+        case list():
+            for item in data:
+                yield from scalars_of_json(item)
+        case dict():
+            for item in data.values():
+                yield from scalars_of_json(item)
+        case None:
+            yield 1  # unit
+        case _:
+            yield data
 
 
 def format_real(value: float) -> str:
@@ -51,9 +67,12 @@ def format_real(value: float) -> str:
     return f"{v:.{most}g}"
 
 
-def _format_string(value: str) -> str:
+def _format_string(value: str) -> str | None:
+    """None: it has characters beyond those of CPN ML, which are bytes."""
     out = []
-    for byte in value.encode("latin-1", errors="replace"):
+    if any(ord(c) > 0xFF for c in value):
+        return None
+    for byte in value.encode("latin-1"):
         if byte in b'"\\':
             out.append("\\" + chr(byte))
         elif 0x20 <= byte < 0x7F:
@@ -63,6 +82,18 @@ def _format_string(value: str) -> str:
     return '"' + "".join(out) + '"'
 
 
+def _in_range(scalar: Scalar, value: float) -> bool:
+    """Whether a number is in the range of its colour set, and an integer in 64 bits."""
+    low, high = scalar.low, scalar.high
+    fits = scalar.kind is ScalarKind.REAL or -(2**63) <= value < 2**63
+    return fits and (low is None or value >= low) and (high is None or value <= high)
+
+
+def _is_constructor(scalar: Scalar, word: str) -> bool:
+    """Of those that are known; else anything that CPN ML takes for a name."""
+    return word in scalar.names if scalar.names else _NAME.fullmatch(word) is not None
+
+
 def _format_scalar(scalar: Scalar, value: ScalarValue) -> str | None:
     match scalar.kind:
         case ScalarKind.UNIT:
@@ -70,15 +101,16 @@ def _format_scalar(scalar: Scalar, value: ScalarValue) -> str | None:
         case ScalarKind.BOOL:
             return "1" if value else "0"
         case ScalarKind.INT | ScalarKind.INDEX:
-            return None if isinstance(value, (str, float)) else str(int(value))
+            fits = not isinstance(value, (str, float)) and _in_range(scalar, int(value))
+            return str(int(value)) if fits else None
         case ScalarKind.REAL:
-            if isinstance(value, str) or not math.isfinite(value):
+            if isinstance(value, str) or not math.isfinite(value) or not _in_range(scalar, value):
                 return None
             return format_real(float(value))
         case ScalarKind.STRING:
             return _format_string(value) if isinstance(value, str) else None
         case ScalarKind.ENUM:
-            return value if isinstance(value, str) and value in scalar.names else None
+            return value if isinstance(value, str) and _is_constructor(scalar, value) else None
 
 
 def format_scalars(scalars: Sequence[Scalar], values: Sequence[ScalarValue]) -> str | None:
@@ -92,6 +124,9 @@ def format_scalars(scalars: Sequence[Scalar], values: Sequence[ScalarValue]) -> 
 _WORD = re.compile(r'(?:"(?:\\.|[^"\\])*"?|[^ \t\r"])+')
 _INTEGER = re.compile(r"[-+]?[0-9]+")
 _NUMBER = re.compile(r"[-+]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][-+]?[0-9]+)?")
+_NAME = re.compile(r"[A-Za-z][A-Za-z0-9_']*")
+_MAX_NUMBER = 512
+"""No number's text is as long."""
 _ESCAPE = re.compile(r'\\(?:(["\\])|x([0-9a-f]{2}))')
 _STRING = re.compile(r'"(?:[^"\\]|\\["\\]|\\x[0-9a-f]{2})*"')
 
@@ -117,9 +152,8 @@ def _parse_scalar(scalar: Scalar, word: str) -> ScalarValue | str:
                 return _Wrong(f"{quote(word)} is neither `0` nor `1` ({where})")
             return word == "1"
         case ScalarKind.ENUM:
-            return (
-                word if word in scalar.names else _Wrong(f"{quote(word)} is not a value of {where}")
-            )
+            is_one = _is_constructor(scalar, word)
+            return word if is_one else _Wrong(f"{quote(word)} is not a value of {where}")
         case ScalarKind.STRING:
             if _STRING.fullmatch(word) is None:
                 return _Wrong(f"{quote(word)} is not a string in double quotes ({where})")
@@ -127,18 +161,22 @@ def _parse_scalar(scalar: Scalar, word: str) -> ScalarValue | str:
         case ScalarKind.INT | ScalarKind.INDEX:
             if _INTEGER.fullmatch(word) is None:
                 return _Wrong(f"{quote(word)} is not an integer ({where})")
+            if len(word) >= _MAX_NUMBER:
+                return _Wrong(f"{quote(word)} is too long for a number ({where})")
             value = int(word)
             if not -(2**63) <= value < 2**63:
                 return _Wrong(f"{quote(word)} is too large for an integer ({where})")
         case ScalarKind.REAL:
             if _NUMBER.fullmatch(word) is None:
                 return _Wrong(f"{quote(word)} is not a number ({where})")
+            if len(word) >= _MAX_NUMBER:
+                return _Wrong(f"{quote(word)} is too long for a number ({where})")
             value = float(word)
             if not math.isfinite(value):
                 return _Wrong(f"{quote(word)} is too large for a real number ({where})")
-    low, high = scalar.low, scalar.high
-    if (low is not None and value < low) or (high is not None and value > high):
-        return _Wrong(f"{quote(word)} is out of {where}, which goes from {low} to {high}")
+    if not _in_range(scalar, value):
+        text = f"{quote(word)} is out of {where}, which goes from {scalar.low} to {scalar.high}"
+        return _Wrong(text)
     return value
 
 

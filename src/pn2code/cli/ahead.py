@@ -8,6 +8,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import replace
 
+from pn2code.cell.codes import CELL_MISSING
 from pn2code.cell.config import CellConfig
 from pn2code.cell.load import load as load_cell
 from pn2code.cell.partition import Partition
@@ -29,7 +30,7 @@ from pn2code.tdl.interpret import to_si
 def look_ahead(
     partition: Partition, config: CellConfig, programs: Iterable[RobotIR], d: Diagnostics
 ) -> None:
-    """Reports values of sensors that are none, arms that touch at HOME, constant poses out of reach, in all layouts.
+    """Reports missing inputs, values of sensors that are none, arms that touch at HOME, constant poses out of reach.
 
     Args:
         partition: the net and its owners.
@@ -37,6 +38,14 @@ def look_ahead(
         programs: of its robots and devices.
         d: gets the errors.
     """
+    for entry in config.inputs:
+        if not (config.folder / entry.file).is_file():
+            d.error(
+                CELL_MISSING,
+                f"input: there is no file `{entry.file}` beside {config.path.name}",
+                entry.origin,
+                hint="write it, or correct `file`; the supervisor reads it when it starts",
+            )
     load_sensors(config, partition.net, (config.folder,), None, d)
     poses = {ir.name: list(_constant_poses(ir)) for ir in programs}
     for layout in config.layouts or {"": ""}:

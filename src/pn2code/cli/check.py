@@ -38,10 +38,19 @@ COUNTED = ("pages", "places", "transitions", "arcs")
 """What is counted, as the file has it: substitution transitions are transitions, a page counts once."""
 
 
-def _cell(config: CellConfig, result: Examined, d: Diagnostics) -> None:
-    """What cell.toml says of the net; the robots' programs; the robots and the scene, in all layouts."""
+def examine_cell(
+    net: Path, config: CellConfig, result: Examined, d: Diagnostics, *, ahead: bool = True
+) -> None:
+    """What cell.toml says of the net; the robots' programs; the robots and the scene, in all layouts; properties.
+
+    Args:
+        net: the file of the net.
+        config: the cell.
+        result: what the front end made of the net.
+        d: gets the errors.
+        ahead: whether files beside the cell and the robots' places are looked at, which takes longer.
+    """
     # Most nets have no cell, and these load NumPy and the like.
-    from pn2code.cli.ahead import look_ahead
     from pn2code.lowering.robot import lower_robots
     from pn2code.pipeline import check_geometry, divided
 
@@ -50,16 +59,17 @@ def _cell(config: CellConfig, result: Examined, d: Diagnostics) -> None:
         return
     partition = divided(result.flat, config, d, to_run=True)
     programs = lower_robots(partition, config, d) if partition is not None else None
-    if partition is not None and not d.has_errors:
-        look_ahead(partition, config, programs or (), d)
+    _properties(net, config, result, d)
+    if ahead and partition is not None and programs is not None and not d.has_errors:
+        from pn2code.cli.ahead import look_ahead
+
+        look_ahead(partition, config, programs, d)
 
 
-def _properties(where: Path, config: CellConfig | None, result: Examined, d: Diagnostics) -> None:
+def _properties(net: Path, config: CellConfig | None, result: Examined, d: Diagnostics) -> None:
     """Whether what is asked about the net can be understood; it is not answered."""
-    if result.flat is None:
-        return
-    beside = where.with_suffix(".properties.toml").is_file()
-    if not beside and (config is None or "property" not in config.raw):
+    beside = net.with_suffix(".properties.toml").is_file()
+    if result.flat is None or not (beside or (config is not None and "property" in config.raw)):
         return
     from pn2code.cli import properties  # loads what verifies nets
     from pn2code.cli.nets import OpenNet
@@ -84,8 +94,9 @@ def check(
         values = {**(config.values if config else {}), **parse_values(settings)}
         result = front.examine(where, d, values, int_bits=int_bits)
         if config is not None:
-            _cell(config, result, d)
-        _properties(where, config, result, d)
+            examine_cell(where, config, result, d)
+        else:
+            _properties(where, None, result, d)
     ok = result.flat is not None and not d.has_errors
     elements = result.document.elements if result.document else {}
     numbers = {key: elements.get(key, 0) for key in COUNTED}

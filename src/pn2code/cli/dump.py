@@ -50,7 +50,6 @@ def stage_text(
     path: Path, stage: Stage, only: str, values: dict[str, str], d: Diagnostics
 ) -> str | None:
     """The dump; None after diagnostics."""
-    from pn2code.cell.divide import divide
     from pn2code.cell.dump import dump_partition
     from pn2code.cell.locate import locate
     from pn2code.emission.tdl import emit
@@ -60,6 +59,7 @@ def stage_text(
     from pn2code.net.dump import dump_document, dump_flat, dump_net
     from pn2code.net.link import link
     from pn2code.net.source import read
+    from pn2code.pipeline import divided
 
     found = locate(path, d)
     if found is None:
@@ -78,7 +78,7 @@ def stage_text(
         return dump_program(flat.program)
     if stage is Stage.FLAT:
         return dump_flat(flat, only)
-    partition = divide(flat, config, d)
+    partition = divided(flat, config, d)
     if partition is None:
         return None
     if stage is Stage.PARTITION:

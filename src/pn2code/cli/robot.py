@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import signal
 from pathlib import Path
 from types import FrameType
@@ -16,6 +17,7 @@ from pn2code.channels import ChannelSpec, SharedDirectory, specs_of
 from pn2code.cli.options import Exit, Format, FormatOption, finite, print_diagnostics, stop
 from pn2code.diagnostics import Diagnostics, Origin, SourceText
 from pn2code.diagnostics.codes import register
+from pn2code.emission.manifest import NAME as MANIFEST
 from pn2code.net import front
 from pn2code.os_reason import os_reason
 from pn2code.robot.commands import Command
@@ -32,11 +34,11 @@ if TYPE_CHECKING:
 
 EPILOG = """Examples:
 
-  ./supervisor --dir /dev/shm/cell --input examples/riveting
+  generated/riveting/supervisor --dir shared --input examples/riveting
 
-  pn2code robot robot1.tdl --dir /dev/shm/cell --cell examples/riveting
+  pn2code robot generated/riveting/robot1.tdl --dir shared --cell examples/riveting
 
-  pn2code robot robot2.tdl --dir /dev/shm/cell --cell examples/riveting --speed 10
+  pn2code robot generated/riveting/robot2.tdl --dir shared --cell examples/riveting --speed 10
 """
 
 ROBOT_FILE = register(
@@ -50,8 +52,12 @@ ROBOT_FILE = register(
 def robot(
     script: Annotated[Path, typer.Argument(help="The robot's script (.tdl).")],
     directory: Annotated[
-        Path, typer.Option("--dir", help="The shared directory of the supervisor.")
-    ],
+        Path | None,
+        typer.Option(
+            "--dir",
+            help="The shared directory of the supervisor (default: the one that it chooses itself).",
+        ),
+    ] = None,
     name: Annotated[
         str | None, typer.Option(help="The robot's name (default: the script's program).")
     ] = None,
@@ -115,6 +121,8 @@ def robot(
         if verbose:
             typer.echo(f"{script.name}:{line}: {lines[line - 1].strip()}")
 
+    if directory is None:
+        directory = _default_directory(script)
     stopping = _signals()
     with SharedDirectory(directory, name, specs) as shared:
         player = RobotPlayer(
@@ -132,6 +140,20 @@ def robot(
         typer.echo(f"pn2code: {name} stopped: {ended.reason}", err=True)
         raise typer.Exit(int(ended.code))
     typer.echo(f"{name}: finished")
+
+
+def _default_directory(script: Path) -> Path:
+    """Where the supervisor that was generated with the script has its files, unless it is told otherwise."""
+    try:
+        text = (script.parent / MANIFEST).read_text(encoding="utf-8")
+        source = json.loads(text)["source"]
+    except (OSError, ValueError, KeyError):
+        _usage(
+            f"there is no {MANIFEST} beside `{script}` that says where the supervisor has its files; "
+            "give its shared directory with --dir"
+        )
+    memory = Path("/dev/shm")
+    return memory / f"pn2code-{Path(source).stem}" if memory.is_dir() else script.parent / "shared"
 
 
 def _sensors_of(program: CheckedProgram) -> list[str]:

@@ -223,6 +223,7 @@ def _json(opened: OpenNet, outcome: Outcome) -> dict[str, Any]:
         "why": outcome.why,
         "places": places(opened.flat, final) if final else [],
         "monitors": list(outcome.monitors),
+        "interpreted": list(outcome.interpreted),
         "breakpoint": outcome.breakpoint,
         "error": outcome.failure.row() if outcome.failure else None,
         "refusal": outcome.refusal or None,

@@ -13,7 +13,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from pn2code.cell.partition import Owner
-from pn2code.conform import core, robot, supervisor
+from pn2code.conform import core, data, declared, robot, supervisor
 from pn2code.conform.codes import GENERATED_UNREADABLE, PROBE_FAILED
 from pn2code.conform.probe import HOST, PATIENCE_S, Probe, ProbeError
 from pn2code.conform.scheme import MOST_STATES
@@ -157,8 +157,15 @@ class ProgramComparison:
         self._most = most
         self._initial: dict[str, PlaceMarking] = {}
 
-    def supervisor(self, program: Path, patience: float = PATIENCE_S) -> supervisor.Report:
-        """Compares a supervisor that was compiled with `probe.HOST`.
+    def supervisor(
+        self, program: Path, patience: float = PATIENCE_S, *, tables_first: bool = False
+    ) -> supervisor.Report:
+        """Compares a supervisor that was compiled with `probe.HOST`: in all states, then its tables.
+
+        Args:
+            program: the supervisor.
+            patience: seconds that it may take for an answer.
+            tables_first: where these differ, no state is looked at.
 
         Raises:
             ProbeError: it does not answer, or takes longer than `patience` seconds for an answer.
@@ -168,8 +175,16 @@ class ProgramComparison:
             trace = Path(name) / "supervisor.trace.jsonl"
             options = ["--input", str(self._config.folder), "--trace", str(trace)]
             with closing(Probe(program, options, patience)) as probe:
-                self._initial = self._read(trace)
-                return supervisor.explore(self.made.partition, self._game(), probe, self._most)
+                difference = data.compare(self.made, probe.tables)
+                report = supervisor.Report()
+                if difference is None or not tables_first:
+                    self._initial = self._read(trace)
+                    partition, game = self.made.partition, self._game()
+                    report = supervisor.explore(partition, game, probe, self._most)
+                if report.deviation is None and difference is not None:
+                    report.deviation = supervisor.Deviation(difference, ())
+                    report.complete, report.why = False, "deviation"
+                return report
 
     def script(self, owner: Owner, text: str, d: Diagnostics) -> robot.RobotReport | None:
         """Compares the script of a robot or device; None after an error in it that was reported."""
@@ -178,6 +193,11 @@ class ProgramComparison:
         if checked is None:
             return None
         partition, game = self.made.partition, self._game()
+        difference = declared.compare(partition, self._config, owner.index, checked, game)
+        if difference is not None:
+            return robot.RobotReport(
+                owner.name, 0, 0, 0, 0, 0, complete=False, deviation=difference
+            )
         return robot.explore(partition, self._config, owner.index, checked, game, most=self._most)
 
     def _read(self, trace: Path) -> dict[str, PlaceMarking]:

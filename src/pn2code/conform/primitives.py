@@ -62,11 +62,8 @@ class Listener:
         reach = Reach(game.net.program)
         for symbol in reach.functions():
             is_idle = isinstance(symbol.type, TFun) and symbol.type.result == UNIT
-            if (
-                is_idle
-                and symbol.uid in self._values
-                and not reach.from_symbol(symbol) & own.keys()
-            ):
+            acts = any(s.uid in own for s in reach.from_symbol(symbol))
+            if is_idle and not acts and symbol.uid in self._values:
                 self._listening[symbol.uid] = self._noted(
                     symbol.uid, partial(_unknown, symbol.name)
                 )

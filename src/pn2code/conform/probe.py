@@ -72,6 +72,7 @@ class Probe:
         patience: seconds to wait for an answer; a program that takes longer does not come to rest.
 
     Attributes:
+        tables: what the program says of itself (cell_config.c, and the tables of net.c).
         first: what the first cycle has left.
         depth: states that are saved.
     """
@@ -91,6 +92,7 @@ class Probe:
         )
         self.depth = 0
         try:
+            self.tables = self._line()
             self.first = self._answer()
         except ProbeError:
             self.close()
@@ -119,7 +121,9 @@ class Probe:
 
     def write(self, files: Sequence[tuple[str, str]], seconds: float | None = None) -> None:
         """Other parties publish files, and the clock shows so much since the start; None: as before."""
-        asked = [(f"write {n} {x.encode('latin-1').hex()}", "written") for n, x in files]
+        asked = [
+            (f"write {n.encode().hex()} {x.encode('latin-1').hex()}", "written") for n, x in files
+        ]
         if seconds is not None:
             asked.append((f"time {seconds!r}", "time"))
         self._asked(asked)

@@ -11,13 +11,13 @@ with every value.
 
 from __future__ import annotations
 
-from collections import deque
+import math
+from collections import Counter, deque
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
 
 from pn2code.cell.config import CellConfig
 from pn2code.cell.partition import Partition
-from pn2code.channels.message import specs_of
 from pn2code.conform.clock import Clock
 from pn2code.conform.messages import scalars
 from pn2code.conform.primitives import Calls, Listener, Unknown
@@ -31,6 +31,7 @@ from pn2code.semantics.marking import (
     binding_to_json,
     element_text,
 )
+from pn2code.semantics.values import Timed
 from pn2code.tdl.check import CheckedProgram
 from pn2code.tdl.interpret import (
     AwaitFile,
@@ -85,6 +86,7 @@ class _State:
     done: commands since the last mark.
     said: what sensors were asked since then, and what they said.
     until: model time at which a wait ends.
+    owed: model time that the script still has to wait before it goes on: the delay of the last transition.
     """
 
     marking: Marking
@@ -93,6 +95,7 @@ class _State:
     done: tuple[commands.Command, ...] = ()
     said: tuple[tuple[str, Scalar], ...] = ()
     until: float | None = None
+    owed: float = 0.0
 
 
 class _PlacesAsFiles:
@@ -133,21 +136,21 @@ class _Product:
         self._most = most
         self._name = partition.owners[owner].name
         self._channels = {
-            spec.file.rpartition(".")[0]: channel.place
-            for spec, channel in zip(specs_of(partition), partition.channels, strict=True)
+            channel.name: channel.place
+            for channel in partition.channels
             if owner in (channel.writer, channel.reader)
         }
         self._files = _PlacesAsFiles()
         self._listener = Listener(game, config.primitives)
         self._sensors = {s.variable: s.name for s in config.sensors}
         self._called = Calls()
-        self._wants_waits = any(p.command == "wait" for p in config.primitives.values())
         self._names = {t.name: t for t in self._net.transitions}
         self._scheme = Scheme(partition, game)
         self._clock = Clock(partition.net)
         self._interpreter = Interpreter(program, self._files, self._heard)
         self._marking = game.marking
         self._done: list[commands.Command] = []
+        self._owed = 0.0
         self._heard_of: list[tuple[str, Scalar]] = []
         self._marked: set[str] = set()
         self._marks = 0
@@ -290,6 +293,7 @@ class _Product:
         self._interpreter.restore(state.saved)
         self._marking = state.marking
         self._done = list(state.done)
+        self._owed = state.owed
         self._heard_of = list(state.said)
         if isinstance(state.request, Sense) and isinstance(result, int | float | bool | str):
             self._heard_of.append((state.request.sensor, result))
@@ -298,12 +302,14 @@ class _Product:
         with self._listener.noting(self._called):
             request = self._interpreter.resume(result)
         self._compare_files()
-        until = None
-        if isinstance(request, Execute):
-            if isinstance(request.command, commands.Wait) and not self._wants_waits:
-                until = self._marking.time + request.command.duration
-            else:
-                self._done.append(request.command)
+        until = self._waited(request)
+        if isinstance(request, Execute) and until is None:
+            self._done.append(request.command)
+        if isinstance(request, AwaitFile | Finished) and self._done:
+            raise _DeviationError(
+                f"the script has commanded {_list(tuple(self._done))} after line {before} without announcing a "
+                "transition"
+            )
         after = _State(
             self._marking,
             self._interpreter.save(),
@@ -311,14 +317,45 @@ class _Product:
             tuple(self._done),
             tuple(self._heard_of),
             until,
+            self._owed,
         )
         return f"{self._name}: the script goes on after line {before}", after
+
+    def _waited(self, request: Request) -> float | None:
+        """When a wait ends that a delay of the net asks for; None: this is no such wait."""
+        wait = request.command if isinstance(request, Execute) else None
+        if isinstance(wait, commands.Wait) and (self._owed or not wait.duration):
+            left = self._owed - wait.duration
+            if left < 0 and not _is_nothing(left, self._owed):
+                raise _DeviationError(
+                    f"line {self._interpreter.line} waits {wait.duration:g} s; by the net {self._owed:g} s are left"
+                )
+            self._owed = 0.0 if _is_nothing(left, self._owed) else left
+            return self._marking.time + wait.duration
+        self._must_not_owe(f"the script goes on in line {self._interpreter.line}")
+        return None
+
+    def _must_not_owe(self, where: str) -> None:
+        if self._owed:
+            raise _DeviationError(f"{where} without waiting {self._owed:g} s, the delay of the net")
+
+    def _delay(self, before: Marking, after: Marking) -> float:
+        """How long it is until the program's new tokens are available."""
+        stamps = [
+            token.stamp
+            for p, owner in enumerate(self._partition.place_owner)
+            if owner == self._owner and before.places[p] != after.places[p]
+            for token in (Counter(after.places[p]) - Counter(before.places[p])).elements()
+            if isinstance(token, Timed)
+        ]
+        return max((float(s - after.time) for s in stamps if s > after.time), default=0.0)
 
     def _heard(self, event: Event) -> None:
         if not isinstance(event, Marked):
             return
         t = self._names.get(event.transition)
         where = f"line {event.line} announces `{event.transition}`"
+        self._must_not_owe(where)
         if t is None or self._partition.transition_owner[t.index] != self._owner:
             raise _DeviationError(f"{where}, which is no transition of {self._name}")
         for element in self._scheme.enabled(self._owner, self._marking):
@@ -331,9 +368,10 @@ class _Product:
                 raise _DeviationError(
                     f"{where}, where the net raises an exception: {error}"
                 ) from None
-            if binding_to_json(occurred) == event.binding:
+            if _is_same(binding_to_json(occurred), event.binding):
                 self._compare_commands(where, tuple(self._called))
                 self._compare_sensors(where, t, event.binding)
+                self._owed = self._delay(self._marking, marking)
                 self._marking = marking
                 self._marks += 1
                 self._marked.add(t.name)
@@ -379,10 +417,24 @@ class _Product:
 
     def _compare_files(self) -> None:
         expected = self._view(self._marking)
-        if self._files.view != expected:
+        if not _is_same(self._files.view, expected):
             raise _DeviationError(
                 f"after line {self._interpreter.line} the files hold {self._files.view}, by the net {expected}"
             )
+
+
+def _is_same(a: object, b: object) -> bool:
+    """Whether two values are equal, and of one type: 1 is not 1.0, and neither is true."""
+    if isinstance(a, Mapping) and isinstance(b, Mapping):
+        return a.keys() == b.keys() and all(_is_same(a[k], b[k]) for k in a)
+    if isinstance(a, list | tuple) and isinstance(b, list | tuple):
+        return len(a) == len(b) and all(map(_is_same, a, b))
+    return type(a) is type(b) and a == b
+
+
+def _is_nothing(seconds: float, among: float) -> bool:
+    """Whether what is left of a time is rounding alone."""
+    return math.isclose(seconds, 0.0, abs_tol=1e-9 * max(1.0, among))
 
 
 def _list(found: tuple[commands.Command | Unknown, ...]) -> str:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping, Sequence
 
 from pn2code.conformance.compare import QUESTIONS, Compared
+from pn2code.conformance.engine import ENGINE
 from pn2code.conformance.finding import NOTHING, Finding, State
 
 HEAD = """# Conformance
@@ -58,6 +59,7 @@ def document(
         or _worse(spaces.get(n.path, NOTHING))
     ]
     parts += ["## What does not simply agree\n", *_notes(notes, walks, spaces), ""]
+    parts += [ENGINE]
     parts += ["## Net by net\n", *_table(nets, walks, spaces), ""]
     parts += ["## The semantics suite\n", *_suite(suite, walks), ""]
     parts += ["## Expressions\n", *_expressions(expressions), ""]

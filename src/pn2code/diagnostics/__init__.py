@@ -7,7 +7,7 @@ from pn2code.diagnostics.diagnostic import (
     Severity,
     TooManyDiagnosticsError,
 )
-from pn2code.diagnostics.origin import NOWHERE, Origin, SourceText, Span
+from pn2code.diagnostics.origin import NOWHERE, Origin, PlacedText, SourceText, Span
 
 __all__ = [
     "NOWHERE",
@@ -15,6 +15,7 @@ __all__ = [
     "Diagnostics",
     "Note",
     "Origin",
+    "PlacedText",
     "Severity",
     "SourceText",
     "Span",

@@ -65,6 +65,18 @@ NOWHERE = Origin("<pn2code>")
 """Origin of things that pn2code itself defines: built-in functions, the standard colour sets."""
 
 
+class PlacedText(str):
+    """A text that knows where it stands, for what is given beside the net."""
+
+    origin: Origin
+
+    def __new__(cls, text: str, origin: Origin) -> PlacedText:
+        """The text, at its place."""
+        made = super().__new__(cls, text)
+        made.origin = origin
+        return made
+
+
 @frozen
 class SourceText:
     """A piece of text of the user's (an inscription, a declaration, a script) with its origin.

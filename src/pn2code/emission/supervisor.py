@@ -119,6 +119,7 @@ def emit(
     digest: str,
     version: str,
     verdicts: Sequence[str] = (),
+    arena: int | None = None,
 ) -> tuple[OutputFile, ...]:
     """`cell_config.c` and `Makefile`.
 
@@ -128,6 +129,7 @@ def emit(
         digest: of net and cell, the same as in net.c.
         version: of pn2code.
         verdicts: lines about what was checked, for the head.
+        arena: bytes for lists and strings; None: the usual number.
     """
     net = partition.net
     peers = [o for o in partition.owners if o.kind is not OwnerKind.SUPERVISOR]
@@ -177,6 +179,7 @@ def emit(
         verdicts=verdicts,
         owner=supervisor if is_cell else -1,
         reply_timeout_s=float(reply_timeout_s),
+        arena=f"{arena}U" if arena is not None else "PN_ARENA_DEFAULT_SIZE",
         tables=tables,
         channels=channel_rows,
         inputs=input_rows,

@@ -267,7 +267,7 @@ class Builtins:
             body.emit(ir.Fill(local, name, table, operands))
             return ir.Use(local)
         if name == "mult":
-            return _combinations(body, arguments[0], t)
+            return _combinations(body, arguments[0], t, colset.resolved.labels)
         if name.startswith("set_"):
             record, value = (body.code(v) for v in arguments)
             definition = types.definition(t)
@@ -290,18 +290,17 @@ class Builtins:
         )
 
 
-def _combinations(body: Body, multisets: Val, t: IrType) -> Ir:
-    """All combinations of the elements of multi-sets, one per component, the last component fastest."""
+def _combinations(body: Body, multisets: Val, t: IrType, declared: tuple[str, ...]) -> Ir:
+    """All combinations of the elements of multi-sets, a tuple of them as declared, the last component fastest.
+
+    `declared`: the labels of a record; none for a product.
+    """
     element = body.element(t)
     definition = body.program.types.definition(element)
     assert isinstance(definition, ir.StructDef)
-    lists: dict[str, Ir] = {}
-    for label, part in definition.fields:
-        if isinstance(multisets, RecordVal):
-            lists[label] = body.code(multisets.fields[label])
-        else:
-            whole = body.atomic(body.code(multisets), "multisets")
-            lists[label] = ir.Member(whole, label, body.list_type(part))
+    order = list(declared) or [label for label, _ in definition.fields]
+    parts = components(body, multisets, len(order))
+    lists = {label: body.code(part) for label, part in zip(order, parts, strict=True)}
 
     def combine(labels: list[str], chosen: dict[str, Ir], keep: Callable[[Ir], None]) -> None:
         if not labels:
@@ -313,9 +312,7 @@ def _combinations(body: Body, multisets: Val, t: IrType) -> Ir:
             body, lists[label], lambda x: combine(rest, {**chosen, label: x}, keep)
         )
 
-    return higher_order.collect(
-        body, t, lambda keep: combine([label for label, _ in definition.fields], {}, keep)
-    )
+    return higher_order.collect(body, t, lambda keep: combine(order, {}, keep))
 
 
 def components(body: Body, value: Val, n: int) -> list[Val]:

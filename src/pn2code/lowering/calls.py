@@ -8,13 +8,12 @@ from operator import attrgetter
 from typing import Any
 
 from pn2code.lowering import ir
-from pn2code.lowering.ir import Stmt
 
 
-def called(statements: tuple[Stmt, ...]) -> list[str]:
-    """The keys of the functions that statements call, in order of first use."""
+def called(item: object) -> list[str]:
+    """The keys of the functions that statements, or whatever else of the IR, call, in order of first use."""
     found: dict[str, None] = {}
-    for node in ir_nodes(statements):
+    for node in ir_nodes(item):
         if isinstance(node, ir.FunCall):
             found.setdefault(node.function)
     return list(found)

@@ -75,15 +75,13 @@ class ColsetFunctions:
             "timed.lt": ((cmp,), tuple_of(token, token), BOOL),
             "timed.cmp": ((cmp,), tuple_of(token, token), _ORDER),
             "timed.legal": ((legal,), token, BOOL),
+            "timed.illegal_msg": ((("illegal_msg", TFun(cs, STRING)),), token, STRING),
         }
-        own = ir.Const(self._colset.name, ir.STRING)
         if name in table:
             functions, argument, result = table[name]
             return self._call(name, functions, arguments[0], argument, result)
-        if name in ("illegal_msg", "timed.illegal_msg"):
-            part = token if name.startswith("timed.") else cs
-            pair = RecordVal({"1": arguments[0], "2": own}, tuple_of(part, STRING))
-            return self._call(name, (legal, mkstr), pair, tuple_of(part, STRING), STRING)
+        if name == "illegal_msg":
+            return self._illegal_message(arguments[0])
         results = {
             "timed.all": tms,
             "timed.size": INT,
@@ -92,14 +90,78 @@ class ColsetFunctions:
             "timed.ran": token,
         }
         if name in results:
+            own = ir.Const(self._colset.name, ir.STRING)
             return self._call("no_bounds", (), own, STRING, results[name])
         return None
+
+    def _illegal_message(self, value: Val) -> Val:
+        """What is wrong with a value, in the words of CPN Tools."""
+        c, cs = self._colset.resolved, self._colset.type
+        mkstr, legal = ("mkstr", TFun(cs, STRING)), ("legal", TFun(cs, BOOL))
+        low, high = c.length or (c.low, c.high)
+        first, last = (
+            (int(low), int(high)) if isinstance(high, int) and isinstance(low, int) else (0, -1)
+        )
+        match c.kind:
+            case Kind.SUBSET:
+                base = ("base.illegal_msg", TFun(cs, STRING))
+                return self._call("illegal_subset", (legal, mkstr, base), value, cs, STRING)
+            case Kind.INDEX:
+                return self._told(
+                    "illegal_index", (legal, mkstr), value, cs, c.names[0], f"{low}..{high}"
+                )
+            case Kind.STRING:
+                letters = f"{c.low}{c.high}" if c.low is not None else ""
+                return self._told("illegal_string", (legal, mkstr), value, cs, letters, first, last)
+            case Kind.LIST:
+                part = c.components[0]
+                assert part is not None
+                inner = (
+                    ("item.legal", TFun(part.type, BOOL)),
+                    ("item.mkstr", TFun(part.type, STRING)),
+                )
+                return self._told("illegal_list", inner, value, cs, first, last)
+            case Kind.PRODUCT | Kind.RECORD:
+                words = ("Illegal component in color: ", "")
+            case Kind.UNION:
+                words = ("Illegal union color: ", ".")
+            case _ if low is not None and high is not None:
+                t = prelude.representation(cs)
+                bounds = [ir.Const(x, self._body.representation(t)) for x in (low, high)]
+                fields: dict[str, Val] = dict(zip("123", (value, *bounds), strict=True))
+                numbers = tuple_of(cs, cs, cs)
+                return self._call(
+                    "illegal_number", (legal, mkstr), RecordVal(fields, numbers), numbers, STRING
+                )
+            case _:
+                words = ("", "")  # all are legal
+        return self._told("illegal", (legal, mkstr), value, cs, *words)
+
+    def _told(
+        self,
+        name: str,
+        functions: tuple[tuple[str, Type], ...],
+        value: Val,
+        t: Type,
+        *more: str | int,
+    ) -> Val:
+        """A function of the prelude that makes a text of a value and constants."""
+        types = [STRING if isinstance(x, str) else INT for x in more]
+        values = [ir.Const(x, ir.STRING if isinstance(x, str) else ir.INT) for x in more]
+        fields: dict[str, Val] = {"1": value, **{str(i): v for i, v in enumerate(values, 2)}}
+        whole = tuple_of(t, *types)
+        return self._call(name, functions, RecordVal(fields, whole), whole, STRING)
 
     def listed(self, name: str, arguments: tuple[Val, ...]) -> Val:
         """One of `LISTED`, for a colour set that the runtime cannot number."""
         cs = self._colset.type
-        if name == "base":
-            return base_value(self._body, self._colset, self._at)
+        match name:
+            case "base":
+                return base_value(self._body, self._colset, self._at)
+            case "size" if is_countable(self._colset):
+                return self._size()
+            case "ord" if is_countable(self._colset):
+                return self._ord(arguments[0])
         values = all_values(self._body, self._colset, self._at)
         ms = list_of(cs)
         match name:
@@ -108,13 +170,118 @@ class ColsetFunctions:
             case "size":
                 return self._call("size", (), values, ms, INT)
             case "ord":
-                pair = RecordVal({"1": values, "2": arguments[0]}, tuple_of(ms, cs))
-                cmp = ("cmp", TFun(tuple_of(cs, cs), _ORDER))
-                return self._call("ord", (cmp,), pair, tuple_of(ms, cs), INT)
+                return self._call("size", (), values, ms, INT)  # raises
             case "col":
-                pair = RecordVal({"1": values, "2": arguments[0]}, tuple_of(ms, INT))
-                return self._call("col", (), pair, tuple_of(ms, INT), cs)
+                return self._col(arguments[0])
         return self._call("ran", (), values, ms, cs)
+
+    def _size(self) -> Ir:
+        """The number of values as CPN Tools counts them: of a subset with a predicate those of its base."""
+        body, c = self._body, self._colset.resolved
+        match c.kind:
+            case Kind.SUBSET if c.members is not None:
+                values = all_values(body, c, self._at)
+                return body.code(self._call("size", (), values, list_of(c.type), INT))
+            case Kind.SUBSET:
+                return self._part_size(c.components[0])
+            case Kind.PRODUCT | Kind.RECORD:
+                return _folded("Int.*", [self._part_size(p) for p in c.components])
+            case Kind.UNION:
+                return _folded("Int.+", [self._part_size(p) for p in c.components])
+        fields = dict(zip("123", (self._letters(), *map(_number, _lengths(c))), strict=True))
+        whole = tuple_of(INT, INT, INT)
+        return body.code(self._call("sequences_size", (), RecordVal(fields, whole), whole, INT))
+
+    def _letters(self) -> Ir:
+        """How many different items a list, or letters a string may have."""
+        c = self._colset.resolved
+        if c.kind is Kind.STRING:
+            return _number(ord(str(c.high)) - ord(str(c.low)) + 1)
+        return self._part_size(c.components[0])
+
+    def _part_size(self, part: Colset | None) -> Ir:
+        if part is None:
+            return _number(1)
+        size = core.Builtin("Colset.size", TFun(UNIT, INT), self._at, (), part)
+        unit = core.RecordExp((), UNIT, self._at)
+        return self._body.ir(core.Apply(size, unit, INT, self._at), {})
+
+    def _part(self, name: str, part: Colset, argument: Val, t: Type, result: Type) -> Ir:
+        """A function of a component applied."""
+        function = TFun(t, result)
+        node = core.Builtin(f"Colset.{name}", function, self._at, (), part)
+        made = self._body.apply(
+            BuiltinFunction(node, function), argument, prelude.representation(result), self._at
+        )
+        return self._body.code(made)
+
+    def _ord(self, value: Val) -> Ir:
+        """The position of a value: CPN Tools has its own for lists and strings."""
+        body, c, cs = self._body, self._colset.resolved, self._colset.type
+        legal = ("legal", TFun(cs, BOOL))
+        match c.kind:
+            case Kind.PRODUCT | Kind.RECORD:
+                whole = body.atomic(body.code(value), "whole")
+                total: Ir = _number(0)
+                for label, part in _parts(c):
+                    inner = ir.Member(whole, label, body.representation(part.type))
+                    own = self._part("ord", part, inner, part.type, INT)
+                    total = _folded(
+                        "Int.+", [_folded("Int.*", [total, self._part_size(part)]), own]
+                    )
+                return total
+            case Kind.UNION:
+                return self._ord_of_union(body.addressable(body.code(value), "whole"))
+            case Kind.SUBSET:
+                values = all_values(body, c, self._at)
+                pair = tuple_of(list_of(cs), cs)
+                cmp = ("cmp", TFun(tuple_of(cs, cs), _ORDER))
+                both = RecordVal({"1": values, "2": value}, pair)
+                return body.code(self._call("ord", (cmp,), both, pair, INT))
+            case Kind.STRING:
+                first = _number(ord(str(c.low)))
+                given = (value, first, self._letters(), _number(_lengths(c)[0]))
+                whole_type = tuple_of(cs, INT, INT, INT)
+                fields = dict(zip("1234", given, strict=True))
+                made = self._call(
+                    "string_ord", (legal,), RecordVal(fields, whole_type), whole_type, INT
+                )
+            case _:
+                item = c.components[0]
+                assert item is not None
+                position = ("item.ord", TFun(item.type, INT))
+                whole_type = tuple_of(cs, INT, INT)
+                fields = dict(
+                    zip("123", (value, self._letters(), _number(_lengths(c)[0])), strict=True)
+                )
+                record = RecordVal(fields, whole_type)
+                made = self._call("sequence_ord", (legal, position), record, whole_type, INT)
+        return body.code(made)
+
+    def _ord_of_union(self, whole: Ir) -> Ir:
+        body, c = self._body, self._colset.resolved
+        result = body.local("position", ir.INT)
+        body.emit(ir.Declare(result))
+        body.emit(ir.Assign(result, _number(0)))
+        before: Ir = _number(0)
+        for tag, part in enumerate(c.components):
+            with body.block() as then:
+                own: Ir = _number(0)
+                if part is not None:
+                    inner = ir.Argument(whole, tag, body.representation(part.type))
+                    own = self._part("ord", part, inner, part.type, INT)
+                body.emit(ir.Assign(result, _folded("Int.+", [before, own])))
+            body.emit(ir.If(ir.IsTag(whole, tag), tuple(then), ()))
+            before = body.atomic(_folded("Int.+", [before, self._part_size(part)]), "before")
+        return ir.Use(result)
+
+    def _col(self, position: Val) -> Val:
+        """The value at a position."""
+        body, c, cs = self._body, self._colset.resolved, self._colset.type
+        values = all_values(body, c, self._at)
+        pair = tuple_of(list_of(cs), INT)
+        both = RecordVal({"1": values, "2": position}, pair)
+        return self._call("col", (), both, pair, cs)
 
     def _call(
         self,
@@ -144,7 +311,12 @@ class ColsetFunctions:
         if name == "stamp":
             operation = "number" if self._body.program.real_time else "integer"
             return BuiltinFunction(core.Builtin(f"prim.do_read_{operation}", t, self._at), t)
-        node = core.Builtin(f"Colset.{name}", t, self._at, (), self._colset)
+        colset = self._colset
+        if name.startswith(("base.", "item.")):
+            part = colset.resolved.components[0]
+            assert part is not None
+            colset, name = part, name[5:]
+        node = core.Builtin(f"Colset.{name}", t, self._at, (), colset)
         return BuiltinFunction(node, t)
 
 
@@ -158,6 +330,32 @@ def call(body: Body, name: str, t: Type, steps: list[tuple[Val, Type]], at: Span
     for argument, result in steps:
         value = body.apply(value, argument, prelude.representation(result), at)
     return value
+
+
+def _number(n: int) -> ir.Const:
+    return ir.Const(n, ir.INT)
+
+
+def _folded(operator: str, items: list[Ir]) -> Ir:
+    """Numbers joined by an operator."""
+    made, *rest = items
+    for item in rest:
+        made = ir.Op(operator, (made, item), ir.INT)
+    return made
+
+
+def _lengths(c: Colset) -> tuple[int, int]:
+    """The lengths of a list or string that has bounds."""
+    low, high = c.length or (c.low, c.high)
+    assert isinstance(low, int)
+    assert isinstance(high, int)
+    return low, high
+
+
+def _parts(c: Colset) -> list[tuple[str, Colset]]:
+    """Label and colour set of each component, in declared order."""
+    labels = c.labels or tuple(str(i) for i in range(1, len(c.components) + 1))
+    return [(x, p) for x, p in zip(labels, c.components, strict=True) if p is not None]
 
 
 # --- values ------------------------------------------------------------------------------------
@@ -249,11 +447,8 @@ def _subset(body: Body, c: Colset, t: ir.IrType, table: str, at: Span) -> Ir:
     """Those of the base that belong to it, or those it lists, in order."""
     base = c.components[0]
     assert base is not None
-    if c.members is None:
-        candidates = all_values(body, base, at)
-    else:
-        key = body.program.types.colset(base)
-        candidates = higher_order.sort_values(body, body.ir(c.members, {}), key)
+    own = c.members
+    candidates = all_values(body, base, at) if own is None else body.atomic(body.ir(own, {}), "all")
     return higher_order.filter_values(
         body, candidates, lambda v: ir.Op("Colset.legal", (v,), ir.BOOL, table)
     )
@@ -305,17 +500,12 @@ def base_value(body: Body, colset: Colset, at: Span) -> Ir:
     types = body.program.types
     t = types.lower(colset.type)
     match c.kind:
+        case Kind.REAL if isinstance(c.low, int | float):
+            return ir.Const(float(c.low), ir.REAL)
         case Kind.STRING:
-            letter = c.low if isinstance(c.low, str) else "a"
-            return ir.Const(letter * (c.length[0] if c.length else 0), ir.STRING)
+            return ir.Const("", ir.STRING)
         case Kind.LIST:
-            part = c.components[0]
-            assert part is not None
-            item = body.addressable(base_value(body, part, at), "item")
-            made: Ir = ir.Op("list.nil", (), t)
-            for _ in range(c.low if isinstance(c.low, int) else 0):
-                made = ir.Op("list.cons", (item, made), t, types.plain(t))
-            return made
+            return ir.Op("list.nil", (), t)
         case Kind.PRODUCT | Kind.RECORD:
             labels = c.labels or tuple(str(i) for i in range(1, len(c.components) + 1))
             parts = {
@@ -328,6 +518,8 @@ def base_value(body: Body, colset: Colset, at: Span) -> Ir:
             return ir.MakeStruct(t, tuple((x, parts[x]) for x, _ in definition.fields))
         case Kind.UNION if (part := c.components[0]) is not None:
             return ir.MakeUnion(0, base_value(body, part, at), t)
+        case Kind.SUBSET if c.members is None and c.components[0] is not None:
+            return base_value(body, c.components[0], at)
         case Kind.SUBSET:
             values = body.atomic(all_values(body, colset, at), "all")
             return ir.Select(ir.IsNil(values), body.zero(t), ir.Head(values, t), t)

@@ -12,6 +12,7 @@ from dataclasses import dataclass, field
 
 from pn2code.cell.config import CellConfig
 from pn2code.cell.partition import Partition
+from pn2code.cell.scalars import ScalarKind, scalars_of
 from pn2code.diagnostics import Diagnostics, Note, Origin
 from pn2code.lowering import robot_codes as codes
 from pn2code.lowering import robot_names
@@ -28,6 +29,7 @@ from pn2code.lowering.robot_values import (
     shape_of_colset,
 )
 from pn2code.ml import core
+from pn2code.ml.colsets import Colset
 from pn2code.tdl import tree as t
 
 
@@ -88,6 +90,16 @@ class Data:
                     "and records and products of these",
                 )
                 return False
+            if is_file and _has_unit(places[p].colset):
+                self.d.error(
+                    codes.UNSUPPORTED_COLSET,
+                    f"the messages of place `{places[p].short}` have a unit among other values, "
+                    "which robot scripts do not have",
+                    places[p].origins[0],
+                    notes=[f"{self.machine.owner.phrase} uses the place"],
+                    hint=f"leave the unit out of colour set `{places[p].colset.name}`",
+                )
+                return False
             self.shapes[p] = shape
         for p, channel in self.machine.channels.items():
             if p in used | put:
@@ -98,6 +110,7 @@ class Data:
                     channel.file,
                     direction,
                     self.shapes[p],
+                    scalars_of(places[p].colset) or (),
                     place_element(places[p], "channel"),
                 )
         # Variables first: their names are theirs alone.
@@ -205,6 +218,11 @@ class Data:
                 self.message_names[p] = names
                 found[p] = make(shape, iter(names))
         return found
+
+
+def _has_unit(colset: Colset) -> bool:
+    kinds = [s.kind for s in scalars_of(colset) or ()]
+    return len(kinds) > 1 and ScalarKind.UNIT in kinds
 
 
 def _names(pattern: core.Pat | None) -> set[str]:

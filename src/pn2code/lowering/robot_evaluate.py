@@ -138,7 +138,8 @@ class Evaluator:
     def _variable(self, symbol: core.Symbol, env: Env, span: Span) -> Value:
         if symbol.uid in env:
             return env[symbol.uid]
-        if symbol.name in self.primitives and symbol.is_global:
+        # Of functions of one name the last one is the primitive, as whoever wrote the entry sees it.
+        if symbol.name in self.primitives and self.program.globals.get(symbol.name) == symbol:
             return Primitive(symbol.name)
         if symbol.uid in self._globals:
             return self._globals[symbol.uid]

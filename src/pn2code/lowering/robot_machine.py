@@ -212,7 +212,18 @@ class _Analyser:
                 codes.NOT_SEQUENTIAL,
                 f"{self.owner.phrase} has no transition that can occur",
                 net.places[0].origins[0] if not dead else dead[0][0].origin,
-                notes=[f"its page instance is `{self.owner.instance}`"],
+                notes=[
+                    f"its page instance is `{self.owner.instance}`",
+                    *(
+                        Note(
+                            f"`{t.short}` takes from place `{p.short}`, which can never hold a token",
+                            p.origins[0],
+                        )
+                        for t, p in dead[:3]
+                    ),
+                ],
+                hint="put a token on the place where the program begins, and give its ports sockets: messages come "
+                "through them",
             )
             return None
         found = self.roles(known)

@@ -6,9 +6,11 @@ every transition takes them with; a message is read into the net variable of its
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field
 
+from pn2code.cell.scalars import Scalar as MessageScalar
+from pn2code.cell.scalars import ScalarKind
 from pn2code.diagnostics import Span
 from pn2code.lowering.robot_ir import Declared, Element
 from pn2code.lowering.robot_values import Fields, Leaf, Scalar, Shape, leaf_shapes
@@ -16,7 +18,7 @@ from pn2code.ml import core
 from pn2code.tdl import tree as t
 from pn2code.tdl.expressions import RESERVED
 from pn2code.tdl.grammar import KEYWORDS
-from pn2code.tdl.types import Type
+from pn2code.tdl.types import POSE_FIELDS, Type
 
 
 def identifier(text: str) -> str:
@@ -81,12 +83,22 @@ class Names:
         return candidate
 
     def file(
-        self, stem: str, path: str, direction: t.Direction, shape: Shape, element: Element
+        self,
+        stem: str,
+        path: str,
+        direction: t.Direction,
+        shape: Shape,
+        scalars: Sequence[MessageScalar],
+        element: Element,
     ) -> str:
-        """Declare a file."""
+        """Declare a file; `scalars`: of its messages, of which a pose has six."""
         name = self.unique(identifier(stem))
-        leaves = [leaf for _, leaf in leaf_shapes(shape)]
-        types = tuple(t.TypeName(leaf.type, leaf.single) for leaf in leaves)
+        types: tuple[t.TypeName, ...] = ()
+        rest = list(scalars)
+        for _, leaf in leaf_shapes(shape):
+            is_word = rest[0].kind is ScalarKind.ENUM
+            types += (t.TypeName(Type.WORD if is_word else leaf.type, leaf.single),)
+            del rest[: len(POSE_FIELDS) if leaf.type is Type.POSE else 1]
         if not types:
             types = (t.TypeName(Type.SIGNAL),)
         self.files[name] = Declared(t.File(direction, name, path, types), element)

@@ -22,7 +22,7 @@ from pn2code.medium.places import Crashes, MediumNet, modelled
 from pn2code.medium.rules import Rules
 from pn2code.medium.skeleton import Skeleton, Topology, topology
 from pn2code.medium.tell import Teller
-from pn2code.verify import basis
+from pn2code.verify import basis, messages
 from pn2code.verify.answers import Verdict
 from pn2code.verify.explore import Wishes, explore
 from pn2code.verify.limits import Limits, Reduction
@@ -182,6 +182,7 @@ def whole(
         assumes,
         judged=bool(partition.final_places),
         choices=_choices(partition),
+        carried=partition,
     )
 
 
@@ -238,7 +239,9 @@ def _explored(
     *,
     judged: bool,
     choices: str = "",
+    carried: Partition | None = None,
 ) -> Answer:
+    """`carried`: the cell whose messages have to have a form that the codecs can write and read."""
     began = time.perf_counter()
     mine = replace(
         run.limits,
@@ -260,6 +263,12 @@ def _explored(
         found = explore(net.net, storage, mine, run.d, wishes)
         runs = () if found is None else tuple(_evidence(net, storage, found, judged))
     answer, why = _verdict(net, found, runs, judged)
+    if carried is not None and found is not None and answer == "yes":
+        sent = messages.examine(carried, found, run.d)  # the writer's place has kept its index
+        if sent.answer == "no":
+            answer, why = "no", sent.says
+        elif sent.answer == "unknown":
+            answer, why = "inconclusive", "the values of its messages are not known"
     return Answer(
         check=check,
         says=says,

@@ -331,8 +331,8 @@ timed.size : unit -> int ; raises CPN'Error
 timed.ord : cs timed -> int ; raises CPN'Error
 timed.col : int -> cs timed ; raises CPN'Error
 timed.ran : unit -> cs timed ; raises CPN'Error
-timed.lt : cs timed * cs timed -> bool ; by colour, then by stamp
-timed.cmp : cs timed * cs timed -> order ; by colour, then by stamp
+timed.lt : cs timed * cs timed -> bool ; by colour, of one colour the later first
+timed.cmp : cs timed * cs timed -> order ; by colour, of one colour the later first
 timed.legal : cs timed -> bool ; whether the colour is legal
 timed.illegal_msg : cs timed -> string ; what is wrong with the colour
 timed.mkstr : cs timed -> string ; as CPN Tools prints a token, `v@7`

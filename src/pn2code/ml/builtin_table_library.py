@@ -81,7 +81,7 @@ Word.fmt : StringCvt.radix -> word -> string ; digits to a base
 Word.fromString : string -> word option ; hexadecimal
 
 -- strings
-String.maxSize : int ; 16777211
+String.maxSize : int ; 16777215
 String.collate : (char * char -> order) -> string * string -> order ; lexicographic by another order
 String.toString : string -> string ; escaped as in a literal
 String.fromString : string -> string option ; reads a text with escapes up to what is not one

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from pn2code.ml.builtins import COLSET_MEMBERS, scheme
 from pn2code.ml.colsets import Colset, Kind
-from pn2code.ml.types import BOOL, TFun, Type, list_of, record, tuple_of
+from pn2code.ml.types import BOOL, TFun, Type, list_of, tuple_of
 
 _MADE = ("mult", "set", "of")
 
@@ -32,8 +32,6 @@ def member_type(colset: Colset, member: str) -> Type:
     own = colset.resolved
     if member == "mult":
         lists = [list_of(c.type) for c in own.components if c is not None]
-        if own.kind is Kind.RECORD:
-            return TFun(record(dict(zip(own.labels, lists, strict=True))), list_of(own.type))
         return TFun(tuple_of(*lists), list_of(own.type))
     if member.startswith("set_"):
         component = own.components[_labels(own).index(member.removeprefix("set_"))]

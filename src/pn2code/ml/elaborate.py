@@ -19,7 +19,7 @@ from functools import partial
 from pathlib import Path
 from typing import TypeVar
 
-from pn2code.diagnostics import Diagnostics, Origin, Severity, SourceText, Span
+from pn2code.diagnostics import Diagnostics, Origin, PlacedText, Severity, SourceText, Span
 from pn2code.ml import codes, core
 from pn2code.ml import syntax as s
 from pn2code.ml.annotations import Annotations
@@ -265,12 +265,20 @@ class Elaborator:
             if isinstance(pattern, s.NamePat) and pattern.name in self._values:
                 name = pattern.name
                 self._replaced.add(name)
-                origin = Origin("command line", 1, 1, element=f"value `{name}`", part="declaration")
+                origin = replace(self._given_at(name), part="declaration")
+                if not origin.line:
+                    origin = replace(origin, line=1, column=1)
                 given = self._parse(SourceText(self._values[name], origin))
                 if given is not None and self._same_type(b.value, given, name):
                     b = replace(b, value=given)
             bindings.append(b)
         return replace(dec, bindings=tuple(bindings))
+
+    def _given_at(self, name: str) -> Origin:
+        """Where the value for `val NAME` stands."""
+        given = self._values[name]
+        file = given.origin if isinstance(given, PlacedText) else Origin("command line")
+        return replace(file, element=f"value `{name}`")
 
     def _same_type(self, old: s.Exp, new: s.Exp, name: str) -> bool:
         quiet, self._ctx.d = self._ctx.d, Diagnostics()
@@ -356,7 +364,7 @@ class Elaborator:
             self._d.error(
                 codes.UNKNOWN_VALUE,
                 f"the net declares no value `{name}` that could be replaced",
-                Origin("command line", element=f"value `{name}`"),
+                self._given_at(name),
                 hint=suggestion(name, known),
             )
         return Program(

@@ -12,7 +12,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 from pn2code.diagnostics import Diagnostic, Diagnostics, Severity, SourceText, Span
@@ -58,13 +58,18 @@ class Checked:
         monitor: it.
         symbols: its functions by name ("pred", "obs", "init", "stop", "action").
         observed: of a data collector: the type of its values.
-        constructors: tags in the datatype of its binding elements, by XML id of the transition.
+        constructors: tags in the datatype of its binding elements, by name.
+        stops: of a breakpoint that looks at no marking: for each of these names a function of the instance's number
+            and the binding, which gives one unit when the predicate is true, and nothing otherwise.
+        span: a piece of text of its functions.
     """
 
     monitor: Monitor
     symbols: Mapping[str, Symbol]
     observed: str = "int"
     constructors: Mapping[str, int] | None = None
+    stops: Mapping[str, Symbol] = field(default_factory=dict)
+    span: Span | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -184,7 +189,7 @@ class _Functions:
         self.flat = flat
         self.elaborator = elaborator
         self.d = d
-        names = {_constructor(t): t for t in reversed(m.transitions)}
+        names = {constructor(t): t for t in reversed(m.transitions)}
         self.transitions = [names[name] for name in sorted(names)]
 
     def check(self) -> tuple[Checked | None, tuple[Dec, ...]]:
@@ -205,11 +210,25 @@ class _Functions:
                 observed = self.observed()
                 for name, type_text in self.types(observed).items():
                     self.elaborator.declarations(self.constrained(name, type_text))
+                if m.kind is Kind.BREAKPOINT and not m.places:
+                    self.elaborator.declarations(self.generated(self.stops()))
         if self.d.has_errors or any(i.code.startswith("unsupported-") for i in self.d):
             return None, ()
         symbols = {name: inner.globals[f"CPN'{name}"] for name in self.types(observed)}
-        tags = {_constructor(t): tag for tag, t in enumerate(self.transitions)}
-        return Checked(m, symbols, observed, tags), inner.declarations
+        tags = {constructor(t): tag for tag, t in enumerate(self.transitions)}
+        stops = {}
+        if m.kind is Kind.BREAKPOINT and not m.places:
+            stops = {name: inner.globals[f"CPN'stops'{tag}"] for name, tag in tags.items()}
+        span = _span(inner.declarations)
+        return Checked(m, symbols, observed, tags, stops, span), inner.declarations
+
+    def stops(self) -> str:
+        """The functions of `Checked.stops`."""
+        return "\n".join(
+            f"fun CPN'stops'{tag} (CPN'i : int, CPN'b : {_variables(t)}) : unit list = "
+            f"if CPN'pred ({constructor(t)} (CPN'i, CPN'b)) then [()] else [];"
+            for tag, t in enumerate(self.transitions)
+        )
 
     def generated(self, text: str) -> SourceText:
         """A text of ours, at the position of the monitor."""
@@ -267,7 +286,7 @@ class _Functions:
         if not self.transitions:
             return "type BindElem = unit"
         return "datatype BindElem = " + " | ".join(
-            f"{_constructor(t)} of int * {_variables(t)}" for t in self.transitions
+            f"{constructor(t)} of int * {_variables(t)}" for t in self.transitions
         )
 
     def subnet(self) -> str:
@@ -288,7 +307,8 @@ def _order(name: str) -> int:
     return _ORDER.index(name) if name in _ORDER else 0
 
 
-def _constructor(t: FlatTransition) -> str:
+def constructor(t: FlatTransition) -> str:
+    """The name of a transition's binding elements."""
     return f"{ml_name(t.page)}'{ml_name(t.short)}"
 
 
@@ -341,7 +361,7 @@ def binding_element(checked: Checked, t: FlatTransition, binding: Mapping[Symbol
     labels = sorted(
         (s for s in t.variables if s.colset is not None), key=lambda s: label_key(s.name)
     )
-    name = _constructor(t)
+    name = constructor(t)
     fields = tuple(binding[s] for s in labels) if labels else UNIT
     assert checked.constructors is not None
     return Data(name, checked.constructors[name], (t.instance_number, fields))

@@ -8,7 +8,7 @@ simple.rows(report["watched"], time)                     # as Watch.results()
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any
 
 from pn2code.monitors.functions import MonitorProgram, is_timed
@@ -32,26 +32,45 @@ _SIMPLE = frozenset(
 
 @dataclass(frozen=True, slots=True)
 class Simple:
-    """The monitors of a net, all of them simple."""
+    """The monitors of a net, all of them simple.
+
+    Args:
+        monitors: those with predicates first, as they look first (`Watch.occurred`), then as in the file.
+        net: the net.
+        stops: by id of a breakpoint with a predicate the place that gets a token when it is reached (`stops.py`).
+        order: their numbers in order of the file.
+    """
 
     monitors: tuple[Monitor, ...]
     net: FlatNet
+    stops: Mapping[str, int] = field(default_factory=dict)
+    order: tuple[int, ...] = ()
 
     @staticmethod
-    def of(program: MonitorProgram, net: FlatNet, *, breakpoints: bool) -> Simple | None:
-        """The monitors at work, if all of them are simple."""
-        monitors = tuple(
+    def of(
+        program: MonitorProgram,
+        net: FlatNet,
+        *,
+        breakpoints: bool,
+        stops: Mapping[str, int] | None = None,
+    ) -> Simple | None:
+        """The monitors at work, if all of them are simple, or have a place in `stops`."""
+        of = stops or {}
+        given = [
             c.monitor for c in program.monitors if breakpoints or c.monitor.kind not in BREAKPOINTS
-        )
-        if len(monitors) > MOST or any(m.kind not in _SIMPLE for m in monitors):
+        ]
+        monitors = sorted(given, key=lambda m: m.id not in of)
+        if len(monitors) > MOST or any(m.kind not in _SIMPLE and m.id not in of for m in monitors):
             return None
-        return Simple(monitors, net)
+        return Simple(tuple(monitors), net, of, tuple(map(monitors.index, given)))
 
     def options(self) -> list[str]:
         """For the simulator's command line."""
         return [word for m in self.monitors for word in ("--watch", self._option(m))]
 
     def _option(self, m: Monitor) -> str:
+        if m.id in self.stops:
+            return f"f {self.stops[m.id]} *"
         match m.kind:
             case Kind.MARKING_SIZE | Kind.LIST_LENGTH:
                 letter = "s" if m.kind is Kind.MARKING_SIZE else "l"
@@ -73,10 +92,11 @@ class Simple:
         self, watched: Sequence[Mapping[str, Number]], time: Number
     ) -> tuple[dict[str, Any], ...]:
         """What each has collected."""
-        return tuple(
+        rows = [
             result_row(m, self._statistics(m, found, time) if m.kind in COLLECTORS else None)
             for m, found in zip(self.monitors, watched, strict=True)
-        )
+        ]
+        return tuple(rows[i] for i in self.order)
 
     def _statistics(self, m: Monitor, found: Mapping[str, Number], time: Number) -> Any:
         return restored(found, time if is_timed(m, self.net) else None)

@@ -18,7 +18,7 @@ from dataclasses import dataclass
 
 from pn2code.diagnostics import Diagnostics, Note, Span
 from pn2code.ml.core import Apply, Builtin, Exp, If, Pat, RecordExp, Symbol
-from pn2code.net.codes import CODE_OUTPUT_BOUND, UNBOUND_VARIABLE
+from pn2code.net.codes import CODE_OUTPUT_BOUND, SUMMANDS_SHARE, UNBOUND_VARIABLE
 from pn2code.net.enumerable import DECLARED, SMALL, size
 from pn2code.net.flat import (
     ArcInscription,
@@ -30,6 +30,7 @@ from pn2code.net.flat import (
     BindTerm,
     CodeSegment,
 )
+from pn2code.net.sequence import stuck
 from pn2code.net.terms import TermReader
 from pn2code.net.uses import NetVariables, Uses, merge, pattern_variables
 
@@ -106,7 +107,7 @@ class Planner:
         everything = merge([needed, *outputs, self.variables.of(parts.delay)])
         free = {s: at for s, at in everything.items() if s not in results}
         steps = self.steps(parts, needed, free)
-        if steps is None:
+        if steps is None or not self.check_sequence(parts, free):
             return None
         ordered = sorted(free, key=lambda s: (s.name, s.uid))
         return (*ordered, *results), steps
@@ -123,6 +124,31 @@ class Planner:
                 hint="give the code segment's result another variable",
             )
         return not clashes
+
+    def check_sequence(self, parts: Parts, free: Uses) -> bool:
+        """Refuse what the engine finds no order for: summands of one arc that share variables."""
+        arcs: dict[int, list[frozenset[Symbol]]] = {}
+        for b in self.binders(parts):
+            arcs.setdefault(b.arc, []).append(frozenset(b.variables))
+        if all(len(summands) < 2 for summands in arcs.values()):
+            return True
+        equations = [(frozenset(q.variables), q.needs) for q in self.equations(parts)]
+        known = frozenset(free).difference(*(s for summands in arcs.values() for s in summands))
+        missing = stuck(list(arcs.values()), equations, known)
+        for n, summands in arcs.items():
+            inscription = parts.arcs[n][1]
+            if inscription is not None and any(s & missing for s in summands):
+                names = ", ".join(f"`{s.name}`" for s in sorted(missing, key=lambda s: s.name))
+                self.d.error(
+                    SUMMANDS_SHARE,
+                    f"the summands of an arc of transition `{parts.name}` share variables, so that CPN Tools cannot "
+                    f"bind {names}: it finds no complete binding sequence",
+                    inscription.origin,
+                    hint="of summands that share a variable one must have all the variables of the others; or give the "
+                    "shared variable its value elsewhere, on another arc or by a guard",
+                )
+                return False
+        return True
 
     def steps(self, parts: Parts, needed: Uses, free: Uses) -> tuple[BindStep, ...] | None:
         """The steps that bind `free`; those of `needed` must have values before the transition is enabled."""

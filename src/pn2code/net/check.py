@@ -17,6 +17,7 @@ from pn2code.ml.core import Exp, Lit
 from pn2code.ml.elaborate import ColsetSpec, Elaborator, is_layered
 from pn2code.ml.parser import declared_names
 from pn2code.ml.types import INT, Type, list_of, timed_of
+from pn2code.net import space_names
 from pn2code.net.binding import Parts, Planner
 from pn2code.net.codes import (
     ARC_AS,
@@ -171,6 +172,9 @@ class _Checker:
 
     def typed(self) -> TypedNet:
         pages = tuple(self.page(p) for p in self.net.pages)
+        if self.net.document.tool != "PNML":
+            colsets = {c.name: c.origin for c in self.net.declarations if isinstance(c, RawColset)}
+            space_names.warn(self.program, colsets, self.d)
         return TypedNet(
             net=self.net,
             program=self.program,

@@ -176,3 +176,18 @@ NET_TOO_LARGE = register(
     "can describe an enormous net. pn2code refuses nets with more elements than it could ever "
     "run.",
 )
+SUMMANDS_SHARE = register(
+    "summands-share-variables",
+    "summands of one arc share variables, and each has others of its own",
+    "CPN Tools binds the variables of an arc at one moment, and of summands that share a variable that has no value "
+    "yet it uses one only; the others test. For 1`(a, b) ++ 1`(a, c) it says `No complete binding sequence found`. If "
+    "the shared variable has its value from another arc or a guard, the arc is accepted, and so is "
+    "1`(a, b) ++ 1`(b, a), whose second summand has nothing of its own.",
+)
+SPACE_NAME = register(
+    "state-space-name",
+    "a name of the net hides one that the state-space tool of CPN Tools uses",
+    "CPN Tools compiles the sources of its state-space tool after the declarations of the net. A constant, function, "
+    "value or colour set of a name that these sources use keeps them from compiling: `Exception raised entering state "
+    "space tool`. The simulator is not affected, and neither is pn2code.",
+)

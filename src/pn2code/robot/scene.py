@@ -9,6 +9,7 @@ beside boxes, cylinders and meshes; nothing here knows what the cell is for.
 
 from __future__ import annotations
 
+import fnmatch
 import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
@@ -190,21 +191,31 @@ class RobotCell:
         raise KeyError(name)
 
 
-def load(geometry: Mapping[str, Any], folder: Path, at: Locate, d: Diagnostics) -> RobotCell | None:
+def load(
+    geometry: Mapping[str, Any],
+    folder: Path,
+    at: Locate,
+    d: Diagnostics,
+    *,
+    partial: bool = False,
+) -> RobotCell | None:
     """The robot cell of the raw sections `robots`, `motion`, `scene`; None if there are mistakes.
 
     Args:
         folder: where relative paths of models and meshes start.
         at: gives the origin of a key path, for messages.
+        partial: robots of which nothing is said are left out; without, it is an error.
     """
     before = len(d.errors)
     motion = _motion(_Table(geometry.get("motion", {}), ("motion",), at, d))
     robots = tuple(
         robot
         for name, table in geometry.get("robots", {}).items()
-        if (robot := _robot(_Table(table, ("robots", name), at, d), name, folder)) is not None
+        if (table or not partial)
+        and (robot := _robot(_Table(table, ("robots", name), at, d), name, folder)) is not None
     )
-    scene = _scene(_Table(geometry.get("scene", {}), ("scene",), at, d), robots, folder)
+    names = tuple(geometry.get("robots", {}))
+    scene = _scene(_Table(geometry.get("scene", {}), ("scene",), at, d), robots, names, folder)
     return RobotCell(robots, motion, scene) if len(d.errors) == before else None
 
 
@@ -380,22 +391,38 @@ def _robot(t: _Table, name: str, folder: Path) -> CellRobot | None:
     return CellRobot(name, arm, tool, kinematics, base, home, BRANCH_NAMES.get(branch_name))
 
 
-def _scene(t: _Table, robots: tuple[CellRobot, ...], folder: Path) -> SceneConfig:
+def _scene(
+    t: _Table, robots: tuple[CellRobot, ...], names: tuple[str, ...], folder: Path
+) -> SceneConfig:
     panel = _panel(t.table("panel")) if t.has("panel", False, "") else None
     depth = t.number("tool_contact_depth", 0.0, low=0.0)
     contacts = _default_contacts(robots, depth) if depth > 0.0 else []
+    objects = tuple(o for e in t.tables("objects") if (o := _object(e, folder)) is not None)
+    _named_once(t, objects)
+    things = [*names, "panel", "floor", *(o.name for o in objects)]
     for c in t.tables("contacts"):
-        contacts.append(ContactRule(c.text("a"), c.text("b"), c.number("depth", 0.0, low=0.0)))
-        c.done()
+        contacts.append(_contact(c, things))
     out = SceneConfig(
         panel=panel,
-        objects=tuple(o for e in t.tables("objects") if (o := _object(e, folder)) is not None),
+        objects=objects,
         floor=t.flag("floor", True),
         contacts=tuple(contacts),
         warning_clearance=t.number("warning_clearance", 0.02, low=0.0),
     )
     t.done()
     return out
+
+
+def _contact(t: _Table, things: list[str]) -> ContactRule:
+    """A rule for parts of things that are there."""
+    rule = ContactRule(t.text("a"), t.text("b"), t.number("depth", 0.0, low=0.0))
+    t.done()
+    for key, name in (("a", rule.a), ("b", rule.b)):
+        thing = name.split("/")[0]
+        if name and not any(fnmatch.fnmatchcase(x, thing) for x in things):
+            near = did_you_mean(thing, things, f"known are {', '.join(f'`{x}`' for x in things)}")
+            t.wrong(key, "a part of a robot or of the scene", near)
+    return rule
 
 
 def _default_contacts(robots: tuple[CellRobot, ...], depth: float) -> list[ContactRule]:
@@ -437,19 +464,45 @@ def _panel(t: _Table) -> PanelConfig:
     )
     t.done()
     for low, high in (("x_from", "x_to"), ("arc_from", "arc_to")):
-        if low in t.data and high in t.data and not t.data[low] < t.data[high]:
+        both = (t.data.get(low), t.data.get(high))
+        if all(map(_is_number, both)) and not getattr(out, low) < getattr(out, high):
             t.wrong(high, f"a number above `{low}`")
     return out
+
+
+def _colour(t: _Table) -> Colour:
+    """Red, green, blue, and how opaque."""
+    grey = (0.6, 0.6, 0.62)
+    found = t.numbers("colour", None, grey)
+    if len(found) not in (3, 4) or not all(0.0 <= v <= 1.0 for v in found):
+        t.wrong("colour", "a list of three or four numbers from 0 to 1")
+        found = grey
+    r, g, b = found[:3]
+    return (r, g, b, found[3] if len(found) == 4 else 1.0)
+
+
+def _named_once(t: _Table, objects: tuple[SceneObject, ...]) -> None:
+    """Reports names that two objects have: messages and contact rules name them."""
+    seen: set[str] = set()
+    for o in objects:
+        if o.name in seen:
+            t.d.error(
+                codes.ROBOT_VALUE,
+                f"two objects of the scene are called `{o.name}`",
+                t.at("objects"),
+                hint="give each a name of its own",
+            )
+        seen.add(o.name)
 
 
 def _object(t: _Table, folder: Path) -> SceneObject | None:
     name = t.text("name")
     kind = t.text("kind", "box", "`box`, `cylinder` or `mesh`")
     pose = _pose(t, "pose")
-    r, g, b, *rest = t.numbers("colour", None, (0.6, 0.6, 0.62)) or (0.6, 0.6, 0.62)
-    colour = (r, g, b, rest[0] if rest else 1.0)
+    colour = _colour(t)
     out: SceneObject | None = None
     if kind == "box":
+        t.has("size", True, "three numbers: full lengths, m")
         x, y, z = t.numbers("size", 3, (1.0, 1.0, 1.0))
         if min(x, y, z) <= 0.0:
             t.wrong("size", "three numbers above 0")

@@ -13,6 +13,7 @@ import time
 from collections.abc import Callable
 from dataclasses import dataclass, field
 from enum import IntEnum
+from pathlib import PurePath
 from typing import NoReturn, Protocol
 
 from pn2code.cell.partition import ChannelKind
@@ -99,13 +100,13 @@ class InstantArm:
 
 
 def script_specs(program: CheckedProgram, robot: str) -> tuple[ChannelSpec, ...]:
-    """The channels that a script declares. Ranges and names of colour sets are known from the cell only."""
+    """The channels that a script declares. Ranges, colour sets and their constructors are known from the cell only."""
     specs = []
     for file in program.files.values():
         out = file.direction is t.Direction.OUTPUT
         specs.append(
             ChannelSpec(
-                name=file.path.rpartition(".")[0] or file.path,
+                name=PurePath(file.path).stem,
                 file=file.path,
                 scalars=tuple(s for kind in file.types for s in _scalars(kind.type)),
                 writer=robot if out else "supervisor",
@@ -126,6 +127,8 @@ def _scalars(kind: Type) -> tuple[Scalar, ...]:
             of = ScalarKind.BOOL
         case Type.STRING:
             of = ScalarKind.STRING
+        case Type.WORD:
+            of = ScalarKind.ENUM
         case Type.SIGNAL:
             of = ScalarKind.UNIT
         case _:
@@ -203,10 +206,14 @@ class RobotPlayer:
     def _join(self) -> None:
         """I7: nothing is touched before the supervisor has announced itself."""
         path = self.shared.path
-        if not path.is_dir():
-            what = "is not a directory" if path.exists() else "does not exist"
-            raise _StopError(Ended(RobotExit.SYSTEM, f"the shared directory `{path}` {what}"))
         end = time.monotonic() + self.wait_s
+        while not path.is_dir():  # the supervisor may be about to make it
+            if path.exists() or time.monotonic() >= end:
+                what = "is not a directory" if path.exists() else "does not exist"
+                raise _StopError(Ended(RobotExit.SYSTEM, f"the shared directory `{path}` {what}"))
+            if self.interrupted():
+                raise _StopError(Ended(RobotExit.INTERRUPTED, "interrupted"))
+            time.sleep(PAUSE_S)
         try:
             while not self.shared.await_supervisor(min(JOIN_S, self.wait_s)):
                 if self.interrupted():

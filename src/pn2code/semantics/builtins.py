@@ -255,7 +255,8 @@ def _no_bounds(c: Colset) -> Value:
 
 
 def _timed_key(e: Evaluator, c: Colset, token: Timed) -> Any:
-    return e.colours.key(c, token.value), token.stamp
+    """By colour; of one colour the later token comes first."""
+    return e.colours.key(c, token.value), -token.stamp
 
 
 def _setter(label: str) -> Function:

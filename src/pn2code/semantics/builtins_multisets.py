@@ -79,7 +79,7 @@ FUNCTIONS: dict[str, tuple[int, Function]] = {
     "Ms.`": (1, lambda e, p: (p[1],) * fitting(p[0])),
     "Ms.++": (1, lambda e, p: p[0] + p[1]),
     "Ms.--": (1, _subtract),
-    "Ms.**": (1, lambda e, p: p[1] * p[0]),
+    "Ms.**": (1, lambda e, p: tuple(x for x in p[1] for _ in range(p[0]))),
     "Ms.%": (1, lambda e, p: (p[1],) if all(p[0]) else ()),
     "Ms.//": (1, lambda e, p: p[1] if all(p[0]) else ()),
     "Ms.==": (1, lambda e, p: len(p[0]) == len(p[1]) and _contained(p[0], p[1])),

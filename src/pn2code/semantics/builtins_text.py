@@ -62,7 +62,7 @@ def _tokens(e: Evaluator, is_separator: Value, text: str) -> Task:
 _ESCAPES = {"\a": "a", "\b": "b", "\t": "t", "\n": "n", "\v": "v", "\f": "f", "\r": "r"}
 
 
-def _escaped(c: str) -> str:
+def escaped(c: str) -> str:
     """A character as in a literal of SML."""
     if c in ('"', "\\"):
         return "\\" + c
@@ -181,7 +181,7 @@ FUNCTIONS: dict[str, tuple[int, Function]] = {
     "String.isSuffix": (2, lambda e, part, s: s.endswith(part)),
     "String.isSubstring": (2, lambda e, part, s: part in s),
     "String.collate": (2, _collate),
-    "String.toString": (1, lambda e, s: "".join(map(_escaped, s))),
+    "String.toString": (1, lambda e, s: "".join(map(escaped, s))),
     "String.fromString": (1, lambda e, s: _unescape(s)),
     "String.toCString": (1, lambda e, s: "".join(map(c_escaped, s))),
     "String.fromCString": (1, lambda e, s: _unescape(s, c_style=True)),
@@ -197,7 +197,7 @@ FUNCTIONS: dict[str, tuple[int, Function]] = {
     "Char.fromCString": (1, from_string(_first_c_char)),
     "Char.ord": (1, lambda e, c: ord(c)),
     "Char.chr": (1, lambda e, code: _char(code)),
-    "Char.toString": (1, lambda e, c: _escaped(c)),
+    "Char.toString": (1, lambda e, c: escaped(c)),
     "Char.succ": (1, lambda e, c: _char(ord(c) + 1)),
     "Char.pred": (1, lambda e, c: _char(ord(c) - 1)),
     "Char.isDigit": _is_in(string.digits),

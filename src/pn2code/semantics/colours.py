@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, Any
 
 from pn2code.ml.colsets import Colset, Kind
 from pn2code.ml.types import label_key
+from pn2code.semantics import colour_messages
 from pn2code.semantics.values import (
     UNIT,
     Data,
@@ -146,28 +147,26 @@ class Colours:
                 if not isinstance(c.low, int) or not isinstance(c.high, int):
                     raise _unbounded(c)
                 items = self.all(component(c))
-                _enough(c, sum(len(items) ** n for n in range(c.low, c.high + 1)))
-                return self._sequences(items, c.low, c.high)
+                _enough(c, self.size(c))
+                lists = (itertools.product(items, repeat=n) for n in range(c.low, c.high + 1))
+                return [items[::-1] for items in itertools.chain.from_iterable(lists)]
             case Kind.STRING:
                 if c.length is None or not isinstance(c.low, str) or not isinstance(c.high, str):
                     raise _unbounded(c)
                 letters = [chr(code) for code in range(ord(c.low), ord(c.high) + 1)]
-                _enough(c, sum(len(letters) ** n for n in range(c.length[0], c.length[1] + 1)))
-                texts = self._sequences(letters, *c.length)
-                return ["".join(map(str, text)) for text in texts]
+                _enough(c, self.size(c))
+                low, high = c.length
+                words = (itertools.product(letters, repeat=n) for n in range(low, high + 1))
+                return ["".join(word) for word in itertools.chain.from_iterable(words)]
             case _:
                 raise _unbounded(c)
 
     def _candidates(self, c: Colset) -> tuple[Value, ...]:
-        """Values among which a subset's are."""
+        """Values among which a subset's are; those of a list in its order."""
         if c.members is None:
             return self.all(component(c))
         members: Any = self.evaluator.value(c.members)
-        distinct: list[Value] = []
-        for value in self.sorted(component(c), members):
-            if not distinct or not equal(distinct[-1], value):
-                distinct.append(value)
-        return tuple(distinct)
+        return tuple(members)
 
     def _enumerate_union(self, c: Colset) -> Iterable[Value]:
         for tag, (name, part) in enumerate(zip(c.names, c.components, strict=True)):
@@ -176,22 +175,11 @@ class Colours:
             else:
                 yield from (Data(name, tag, value) for value in self.all(part))
 
-    def _sequences(self, items: Sequence[Value], low: int, high: int) -> list[tuple[Value, ...]]:
-        """All sequences with `low` to `high` items in lexicographic order, prefixes first."""
-        found: list[tuple[Value, ...]] = []
-
-        def extend(prefix: tuple[Value, ...]) -> None:
-            if len(prefix) >= low:
-                found.append(prefix)
-            if len(prefix) < high:
-                for item in items:
-                    extend((*prefix, item))
-
-        extend(())
-        return found
-
     def size(self, c: Colset) -> int:
-        """Number of values; raises CPN'Error for a colour set without bounds."""
+        """Number of values; raises CPN'Error for a colour set without bounds.
+
+        As in CPN Tools the number of a subset with a predicate is that of its base.
+        """
         match c.kind:
             case Kind.ALIAS:
                 return self.size(component(c))
@@ -201,11 +189,28 @@ class Colours:
                 return sum(1 if part is None else self.size(part) for part in c.components)
             case Kind.INT | Kind.INTINF | Kind.INDEX:
                 return len(_numbers(c))
+            case Kind.SUBSET if c.members is None:
+                return self.size(component(c))
+            case Kind.LIST | Kind.STRING:
+                low, high = _lengths(c)
+                return _sequences(self._letters(c), low, high + 1)
             case _:
                 return len(self.all(c))
 
+    def _letters(self, c: Colset) -> int:
+        """How many different items a list, or letters a string may have."""
+        if c.kind is Kind.LIST:
+            return self.size(component(c))
+        assert isinstance(c.low, str) and isinstance(c.high, str)
+        return ord(c.high) - ord(c.low) + 1
+
     def ord(self, c: Colset, value: Any) -> int:
-        """Position of a value in the order, from 0; raises CPN'Error when it is not legal."""
+        """Position of a value in the order, from 0; raises CPN'Error when it is not legal.
+
+        CPN Tools has its own numbers for lists and strings: those of one length follow the shorter ones, but within
+        them an item counts as often as there are items from it on, so that several values have one number. The
+        numbers of an index are not checked.
+        """
         match c.kind:
             case Kind.ALIAS:
                 return self.ord(component(c), value)
@@ -218,11 +223,22 @@ class Colours:
                 before = sum(1 if p is None else self.size(p) for p in c.components[: value.tag])
                 own = c.components[value.tag]
                 return before if own is None else before + self.ord(own, value.argument)
-            case Kind.INT | Kind.INTINF | Kind.INDEX:
-                number = value.argument if c.kind is Kind.INDEX else value
-                if number not in _numbers(c):
+            case Kind.INDEX:
+                return int(value.argument - _numbers(c)[0])
+            case Kind.INT | Kind.INTINF:
+                if value not in _numbers(c):
                     raise _out_of_range()
-                return int(number - _numbers(c)[0])
+                return int(value - _numbers(c)[0])
+            case Kind.LIST | Kind.STRING:
+                low, _ = _lengths(c)
+                if not self.legal(c, value):
+                    raise _out_of_range()
+                places = [
+                    ord(x) - ord(str(c.low)) if c.kind is Kind.STRING else self.ord(component(c), x)
+                    for x in value
+                ]
+                shorter = _sequences(self._letters(c), low, len(value))
+                return shorter + sum(n * x for n, x in enumerate(reversed(places), 1))
             case _:
                 everything = self.all(c)
                 if value not in everything:
@@ -230,8 +246,8 @@ class Colours:
                 return everything.index(value)
 
     def col(self, c: Colset, position: int) -> Value:
-        """The value at a position; raises CPN'Error when there is none."""
-        if not 0 <= position < self.size(c):
+        """The value at a position; raises CPN'Error when there is none (but for an index, which is not checked)."""
+        if c.kind is not Kind.INDEX and not 0 <= position < self.size(c):
             raise _out_of_range()
         match c.kind:
             case Kind.ALIAS:
@@ -247,9 +263,12 @@ class Colours:
             case Kind.INT | Kind.INTINF:
                 return _numbers(c)[position]
             case Kind.INDEX:
-                return Data(c.names[0], 0, _numbers(c)[position])
+                return Data(c.names[0], 0, _numbers(c)[0] + position)
             case _:
-                return self.all(c)[position]
+                everything = self.all(c)
+                if position >= len(everything):
+                    raise _out_of_range()
+                return everything[position]
 
     def _col_of_union(self, c: Colset, position: int) -> Value:
         for tag, (name, part) in enumerate(zip(c.names, c.components, strict=True)):
@@ -261,19 +280,24 @@ class Colours:
 
     def ran(self, c: Colset) -> Value:
         """A value at random; raises CPN'Error for a colour set without bounds."""
-        return self.col(c, self.evaluator.random.below(self.size(c)))
+        if _is_numbered(c):
+            return self.col(c, self.evaluator.random.below(self.size(c)))
+        everything = self.all(c)
+        if not everything:
+            raise _out_of_range()
+        return everything[self.evaluator.random.below(len(everything))]
 
     def base(self, c: Colset) -> Value:
-        """Some value of the colour set: the first one, or the simplest of an unbounded one."""
+        """Some value of the type: the first or the simplest one; it need not be legal: of lists it is the empty one."""
         match c.kind:
             case Kind.INT | Kind.INTINF | Kind.TIME:
                 return c.low if isinstance(c.low, int) else 0
             case Kind.REAL:
                 return float(c.low) if isinstance(c.low, int | float) else 0.0
             case Kind.STRING:
-                return str(c.low or "a") * (c.length[0] if c.length else 0)
+                return ""
             case Kind.LIST:
-                return (self.base(component(c)),) * (c.low if isinstance(c.low, int) else 0)
+                return ()
             case Kind.INDEX:
                 return Data(c.names[0], 0, c.low if isinstance(c.low, int) else 0)
             case Kind.PRODUCT | Kind.RECORD:
@@ -282,6 +306,8 @@ class Colours:
                 part = c.components[0]
                 return Data(c.names[0], 0, None if part is None else self.base(part))
             case Kind.ALIAS:
+                return self.base(component(c))
+            case Kind.SUBSET if c.members is None:
                 return self.base(component(c))
             case _:
                 return self.all(c)[0]
@@ -330,15 +356,16 @@ class Colours:
         return bool(self.evaluator.apply(self.evaluator.value(c.predicate), value))
 
     def illegal_message(self, c: Colset, value: Value) -> str:
-        """What is wrong with a value; "" if it is legal."""
-        if self.legal(c, value):
-            return ""
-        return f"{self.text(c, value)} is not in the colour set {c.name}"
+        """What is wrong with a value, in the words of CPN Tools; "" if it is legal."""
+        return "" if self.legal(c, value) else colour_messages.illegal(self, c, value)
 
     # --- texts -----------------------------------------------------------------------------------
 
     def text(self, c: Colset, value: Any) -> str:
-        """As CPN Tools prints it: `(~2)`, `"a"` (not escaped), `{b=1,a=red}`."""
+        """As CPN Tools prints it: `(~2)`, `"a"` (not escaped), `{b=1,a=red}`.
+
+        Only negative integers of 31 bits have parentheses: reals, unlimited integers and times have none.
+        """
         match c.kind:
             case Kind.UNIT:
                 return c.names[0] if c.names else "()"
@@ -371,10 +398,12 @@ class Colours:
                 return self.text(component(c), value)
             case Kind.TIME if isinstance(value, float):
                 return real_text(value)
-            case Kind.REAL:
-                return f"({real_text(value)})" if value < 0 else real_text(value)
-            case _:
+            case Kind.INT:
                 return f"({int_text(value)})" if value < 0 else int_text(value)
+            case Kind.REAL:
+                return real_text(value)
+            case _:
+                return int_text(value)
 
     def token_text(self, c: Colset, token: Timed) -> str:
         """As CPN Tools prints a token: `v@7`."""
@@ -411,10 +440,9 @@ class Colours:
     # --- components ------------------------------------------------------------------------------
 
     def mult(self, c: Colset, multisets: tuple[Any, ...]) -> tuple[Value, ...]:
-        """All combinations of the elements of multi-sets, one for each component."""
-        c = c.resolved
-        ranges: list[Any] = [items for _, _, items in parts_of(c, multisets)]
-        return tuple(assemble(c, values) for values in itertools.product(*ranges))
+        """All combinations of the elements of multi-sets, one for each component as declared."""
+        own = c.resolved
+        return tuple(assemble(own, values) for values in itertools.product(*multisets))
 
     def with_component(self, c: Colset, label: str, value: Any, new: Value) -> tuple[Value, ...]:
         """A copy of a product or record with another value of one component."""
@@ -464,6 +492,27 @@ def _numbers(c: Colset) -> range:
     if not isinstance(c.low, int) or not isinstance(c.high, int):
         raise _unbounded(c)
     return range(c.low, c.high + 1)
+
+
+def _lengths(c: Colset) -> tuple[int, int]:
+    """The lengths of a list or string; raises CPN'Error when it has no bounds."""
+    if c.kind is Kind.LIST and isinstance(c.low, int) and isinstance(c.high, int):
+        return c.low, c.high
+    if c.kind is Kind.STRING and c.length is not None and isinstance(c.low, str):
+        return c.length
+    raise _unbounded(c)
+
+
+def _sequences(items: int, low: int, high: int) -> int:
+    """How many sequences there are with `low` to `high - 1` of so many items."""
+    return sum(items**n for n in range(low, high))
+
+
+def _is_numbered(c: Colset) -> bool:
+    """Whether each number below the size is that of a value: no list, string or subset is in it."""
+    if c.kind in (Kind.LIST, Kind.STRING, Kind.SUBSET):
+        return False
+    return all(part is None or _is_numbered(part) for part in c.components)
 
 
 def _enough(c: Colset, size: int) -> None:

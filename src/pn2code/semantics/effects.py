@@ -38,6 +38,12 @@ _LOOK = (
 _WRITTEN_ONLY = frozenset(
     {"TextIO.print", "TextIO.output", "TextIO.flushOut", "TextIO.stdOut", "TextIO.closeOut"}
 )
+_CREATING = frozenset(
+    {"Ref.ref", "Array.array", "Array.fromList", "Array.tabulate", "Array.maxLen"}
+)
+_ARRAY_WRITING = frozenset(
+    {"Array.update", "Array.copy", "Array.copyVec", "Array.modify", "Array.modifyi"}
+)
 _LEAVES = frozenset({"type", "span", "inst", "colset", "constructor"})
 OUTSIDE = frozenset({Effect.DRAW, Effect.LOOK})
 """What makes a value depend on more than the net."""
@@ -52,8 +58,12 @@ def _builtin(name: str) -> Found:
         return frozenset({Effect.LOOK})
     if name == "Time.step":
         return frozenset({Effect.COUNT})
-    if name.startswith(("Ref.", "Array.")) and name != "Ref.ref":
-        return frozenset({Effect.READ} if name == "Ref.!" else {Effect.READ, Effect.WRITE})
+    if name in _CREATING:
+        return NONE
+    if name == "Ref.!" or (name.startswith("Array.") and name not in _ARRAY_WRITING):
+        return frozenset({Effect.READ})
+    if name.startswith("Ref.") or name in _ARRAY_WRITING:
+        return frozenset({Effect.READ, Effect.WRITE})
     return NONE
 
 

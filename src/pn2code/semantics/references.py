@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Hashable, Iterable, Iterator
-from functools import cached_property
+from functools import cached_property, lru_cache
 from typing import Any
 
 from pn2code.ml import core
@@ -20,7 +20,7 @@ class Held:
 
     Args:
         held: each with what it holds.
-        roots: where one begins to look: those that were there after the declarations.
+        roots: where one begins to look: those that declared values hold, which are always there.
     """
 
     def __init__(
@@ -52,8 +52,9 @@ class Held:
                 case Timed(value=inner, stamp=stamp):
                     return "timed", plain(inner), stamp
                 case Closure(rules=rules, environment=environment):
-                    inner = tuple((uid, plain(v)) for uid, v in sorted(environment.items()))
-                    return "fn", id(rules), inner
+                    names = _mentioned(rules)
+                    used = sorted(uid for uid in environment if uid in names)
+                    return "fn", id(rules), tuple((uid, plain(environment[uid])) for uid in used)
                 case Native(name=name, arguments=arguments):
                     return "builtin", name, plain(arguments)
             return value  # type: ignore[no-any-return]
@@ -85,14 +86,14 @@ class References:
     """
 
     def __init__(self, evaluator: Evaluator, *, grows: bool = True) -> None:
-        self._roots = tuple(_reachable(evaluator.globals.values()))
+        declared = list(evaluator.globals.values())
+        self._roots = tuple(_reachable(declared, through=False))
+        self._all = tuple(_reachable(declared))
         self._grows = grows
 
     def contents(self) -> Held:
         """What they hold."""
-        cells: Iterable[Ref | Array] = self._roots
-        if self._grows:
-            cells = _reachable(self._roots)
+        cells = _reachable(self._roots) if self._grows else self._all
         return Held(tuple((c, _contents(c)) for c in cells), self._roots)
 
     @staticmethod
@@ -147,6 +148,12 @@ def _writes(effects: Effects, *texts: Any) -> bool:
     return Effect.WRITE in effects.of(*texts)
 
 
+@lru_cache(maxsize=1000)
+def _mentioned(rules: tuple[core.Rule, ...]) -> frozenset[int]:
+    """The variables that a function looks at: others around it do not tell it apart."""
+    return frozenset(n.symbol.uid for n in _nodes(rules) if isinstance(n, core.Var))
+
+
 def _contents(cell: Ref | Array) -> Value:
     return cell.contents if isinstance(cell, Ref) else tuple(cell.items)
 
@@ -162,7 +169,8 @@ def _nodes(start: Any) -> Iterator[Any]:
             todo.extend(getattr(item, name) for name in item.__slots__)
 
 
-def _reachable(start: Iterable[Any]) -> Iterator[Ref | Array]:
+def _reachable(start: Iterable[Any], *, through: bool = True) -> Iterator[Ref | Array]:
+    """References and arrays in values; `through`: and in what these hold."""
     seen: set[int] = set()
     todo: list[Any] = [start]
     while todo:
@@ -172,10 +180,12 @@ def _reachable(start: Iterable[Any]) -> Iterator[Ref | Array]:
         seen.add(id(item))
         if isinstance(item, Ref):
             yield item
-            todo.append(item.contents)
+            if through:
+                todo.append(item.contents)
         elif isinstance(item, Array):
             yield item
-            todo.extend(item.items)
+            if through:
+                todo.extend(item.items)
         elif isinstance(item, Data | Timed):
             todo.append(item.argument if isinstance(item, Data) else item.value)
         elif isinstance(item, Closure):

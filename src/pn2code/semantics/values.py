@@ -172,7 +172,7 @@ class MlLimit(Exception):  # noqa: N818
     """Evaluation went on for too long or too deep; CPN ML cannot handle it."""
 
 
-MAX_STRING = 16_777_211
+MAX_STRING = 16_777_215
 """`String.maxSize`."""
 MAX_ITEMS = 5_000_000
 """Elements of a list or a multi-set: evaluation gives up beyond, long before memory ends."""

@@ -13,6 +13,8 @@ from pn2code.diagnostics import Diagnostics, Origin, Severity
 from pn2code.monitors.functions import MonitorProgram, elaborate
 from pn2code.monitors.kinds import resolve
 from pn2code.monitors.sharing import shared_references
+from pn2code.monitors.simple import Simple
+from pn2code.monitors.stops import Stopping
 from pn2code.net.front import Examined
 from pn2code.simulate import compiled, programs, reference
 from pn2code.simulate.codes import ENGINE_CHANGED, SIMULATOR_FAILED
@@ -82,12 +84,24 @@ def simulate(request: Request, wish: Wish, d: Diagnostics) -> Outcome | None:
 def _compiled(request: Request, d: Diagnostics) -> tuple[Outcome | None, bool]:
     """The run, and whether there was a program for it. What proves to be too small is made larger, and the run anew."""
     room, memory = programs.ROOM, compiled.MEMORY
+    stopping = _stopping(request)
     while True:
-        with programs.program(request.net, request.storage, d, room=room) as program:
+        net = stopping.net if stopping else request.net
+        own = Diagnostics() if stopping else d
+        with programs.program(net, request.storage, own, room=room) as program:
             if program is None:
+                if stopping is not None and own.has_errors:
+                    stopping = None  # the net can perhaps be compiled without its breakpoints
+                    continue
                 return None, False
             try:
-                return compiled.run(request, program, d, memory=memory), True
+                outcome = compiled.run(request, program, d, memory=memory, stopping=stopping)
+                if stopping is not None and outcome is not None and outcome.why == "error":
+                    stopping = None  # a monitor's exception is told by who watches for it
+                    continue
+                if stopping is not None:
+                    d.items += own.items
+                return outcome, True
             except compiled.OutOfRoomError as full:
                 if full.limit == "room" and room < MOST_ROOM:
                     room *= GROWTH
@@ -109,6 +123,21 @@ def _compiled(request: Request, d: Diagnostics) -> tuple[Outcome | None, bool]:
                         hint="simulate fewer steps: something in the net grows without end",
                     )
                     return None, True
+
+
+def _stopping(request: Request) -> Stopping | None:
+    """The net with its breakpoints, where these can be compiled and nobody else has to watch.
+
+    A trace has the markings of the net, so with one the token game writes it.
+    """
+    program = request.monitors
+    if program is None or request.trace is not None or request.replay is not None:
+        return None
+    found = Stopping.of(request.net, program, breakpoints=request.breakpoints)
+    if found is None:
+        return None
+    simple = Simple.of(program, request.net, breakpoints=request.breakpoints, stops=found.stops)
+    return found if simple is not None else None
 
 
 def _instead(request: Request, why: str, d: Diagnostics) -> Outcome:

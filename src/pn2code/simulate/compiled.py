@@ -21,6 +21,7 @@ from typing import IO, Any
 
 from pn2code.diagnostics import Diagnostics, Origin
 from pn2code.monitors.simple import Simple
+from pn2code.monitors.stops import Stopping
 from pn2code.monitors.watch import not_one_list
 from pn2code.net.flat import FlatNet, FlatTransition
 from pn2code.semantics.colour_json import from_json
@@ -57,7 +58,14 @@ class OutOfRoomError(Exception):
         self.limit = limit
 
 
-def run(request: Request, program: Path, d: Diagnostics, *, memory: int = MEMORY) -> Outcome | None:
+def run(
+    request: Request,
+    program: Path,
+    d: Diagnostics,
+    *,
+    memory: int = MEMORY,
+    stopping: Stopping | None = None,
+) -> Outcome | None:
     """Plays the run; None when the program came to a bad end, which was reported.
 
     Args:
@@ -65,6 +73,7 @@ def run(request: Request, program: Path, d: Diagnostics, *, memory: int = MEMORY
         program: the simulator.
         d: gets the errors, and warnings of monitors.
         memory: bytes for lists and strings.
+        stopping: the net with its breakpoints, if that is what was compiled.
 
     Raises:
         OutOfRoomError: the program is too small for this run.
@@ -75,7 +84,12 @@ def run(request: Request, program: Path, d: Diagnostics, *, memory: int = MEMORY
     given = Trace.open(request.replay, request.net) if request.replay else None
     simple: Simple | None = None
     if request.monitors is not None and request.monitors.monitors:
-        simple = Simple.of(request.monitors, request.net, breakpoints=request.breakpoints)
+        simple = Simple.of(
+            request.monitors,
+            request.net,
+            breakpoints=request.breakpoints,
+            stops=stopping.stops if stopping else None,
+        )
     if simple is None and request.monitors is not None and request.monitors.monitors:
         return _followed(request, program, given, memory, d)
     return _alone(request, program, given, memory, simple, d)
@@ -392,7 +406,9 @@ def _followed(
         why = own.finish(why)
     finally:
         own.close()
-    return own.outcome("compiled", why, time.perf_counter() - began)
+    outcome = own.outcome("compiled", why, time.perf_counter() - began)
+    assert request.monitors is not None
+    return replace(outcome, interpreted=tuple(c.monitor.name for c in request.monitors.monitors))
 
 
 def _follow(own: ReferenceRun, process: _Process) -> str:

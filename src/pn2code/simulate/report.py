@@ -45,6 +45,17 @@ def _head(net: FlatNet, outcome: Outcome) -> str:
     return (
         f"{net.file}: {steps}{time}: {why}\n"
         f"engine {outcome.engine}, seed {outcome.seed}, {outcome.seconds:.2f} s{rate}"
+        f"{_interpreted(outcome)}"
+    )
+
+
+def _interpreted(outcome: Outcome) -> str:
+    if not outcome.interpreted:
+        return ""
+    names = ", ".join(f"`{name}`" for name in outcome.interpreted)
+    return (
+        "\nThe net is compiled, but its monitors are interpreted: the reference token game repeats each step for "
+        f"them, which is slower ({names})."
     )
 
 

@@ -130,6 +130,7 @@ class Outcome:
         monitors: see `Watch.results`.
         output: what the net printed.
         seconds: of the run alone.
+        interpreted: monitors of a compiled run that the token game has watched for, step by step.
     """
 
     engine: str
@@ -145,6 +146,7 @@ class Outcome:
     monitors: tuple[Mapping[str, Any], ...] = ()
     output: str = ""
     seconds: float = 0.0
+    interpreted: tuple[str, ...] = ()
 
 
 class Output:

@@ -9,7 +9,7 @@ reached, variables that may have no value, declarations that nothing uses.
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from pn2code.diagnostics import Diagnostics, Note, Span
 from pn2code.diagnostics.near import did_you_mean
@@ -157,12 +157,12 @@ class _Checker:
             )
 
     def variable(self, x: t.Variable) -> None:
-        if x.type.type is Type.SIGNAL:
+        if x.type.type in (Type.SIGNAL, Type.WORD):
             self.d.error(
                 codes.TYPE,
-                "only files can be of type `signal`",
+                f"only files can be of type `{x.type.type}`",
                 x.type.span,
-                hint="use `bool`",
+                hint="use `bool`" if x.type.type is Type.SIGNAL else "use `string`",
             )
             return
         if x.initial is not None:
@@ -511,8 +511,9 @@ class _Checker:
 
 
 def _values(file: t.File) -> tuple[t.TypeName, ...]:
-    """The types of a message's values; a signal has none."""
-    return tuple(k for k in file.types if k.type is not Type.SIGNAL)
+    """The types of a message's values inside the script: a word is a string, a signal has none."""
+    inside = (replace(k, type=Type.STRING) if k.type is Type.WORD else k for k in file.types)
+    return tuple(k for k in inside if k.type is not Type.SIGNAL)
 
 
 def _code(found: Type, wanted: Type) -> str:

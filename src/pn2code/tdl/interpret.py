@@ -527,7 +527,7 @@ def _typed(
 
 def _scalar(x: Scalar, kind: Type) -> Any:
     """One scalar as its type wants it; ValueError if it cannot be."""
-    if kind is Type.STRING:
+    if kind in (Type.STRING, Type.WORD):
         if isinstance(x, str):
             return x
     elif kind is Type.BOOL:

@@ -24,6 +24,8 @@ class Type(Enum):
     ANGLE = "angle"
     TIME = "time"
     SPEED = "speed"
+    WORD = "word"
+    """A constructor's name, in a message without quotes, in the script a string: only files can be of this type."""
     SIGNAL = "signal"
     """The message without content: only files can be of this type."""
 

@@ -63,25 +63,33 @@ class Host:
     Args:
         name: the beginning of its sources' names, of its programs', and what diagnostics call it.
         flags: for the C compiler, added to `FLAGS`.
+        net: those for the net alone, after the others; the runtime is compiled without them.
         libraries: for the linker.
         without: what to do without a C compiler, the end of a sentence.
         whole: a source of the host that can have the net as a part of itself (PN_NET_SOURCE); "" if there is none.
         also: hosts whose sources it has, too.
         instead: names of sources that are left out, since the host has others in their place.
+        only: names of all sources that it needs, if it does without most; () for all.
     """
 
     name: str
     flags: tuple[str, ...] = ()
+    net: tuple[str, ...] = ()
     libraries: tuple[str, ...] = ("-lm",)
     without: str = ""
     whole: str = ""
     also: tuple[str, ...] = ()
     instead: tuple[str, ...] = ()
+    only: tuple[str, ...] = ()
 
     def runtime(self) -> tuple[OutputFile, ...]:
         """The C runtime as this host needs it."""
         found = runtime.emit(self.name, *self.also)
-        return tuple(f for f in found if Path(f.path).name not in self.instead)
+        return tuple(f for f in found if self._needs(Path(f.path).name))
+
+    def _needs(self, name: str) -> bool:
+        is_wanted = not self.only or name in self.only or name.endswith(".h")
+        return is_wanted and name not in self.instead
 
 
 @dataclass(frozen=True, slots=True)
@@ -134,7 +142,7 @@ def program(
 
     Args:
         host: what is linked with the net.
-        files: net.c and net.h.
+        files: net.c and net.h, or whatever else is generated for the host.
         d: gets the errors.
         interrupted: asked while compilers run: they are ended when it says so.
     """
@@ -224,6 +232,7 @@ class _Builder:
         self.runtime = host.runtime()
         tools = [*compiler.command, compiler.version, *self.flags, *host.libraries]
         self.library = folder / f"{host.name}-runtime-{_digest(tools, self.runtime)}.a"
+        tools += ["net", *host.net] if host.net else []
         self.program = folder / f"{host.name}-{_digest(tools, [*self.runtime, *self.files])}"
 
     def is_there(self) -> bool:
@@ -281,7 +290,7 @@ class _Builder:
         objects = [f"{Path(s).stem}.o" for s in sources]
         # Large ones first, so that all processors are busy to the end.
         sources.sort(key=lambda name: -(room / name).stat().st_size)
-        groups = [sources[i::GROUPS] for i in range(GROUPS)]
+        groups = [sources[i::GROUPS] for i in range(min(GROUPS, len(sources)))]
 
         def compiled(group: Sequence[str]) -> bool:
             return self._compiler(room, "-Iruntime/include", "-c", *group, d=d)
@@ -309,10 +318,12 @@ class _Builder:
         In one piece it is several times as fast, and takes longer to compile. Should a name of the net be one that the
         host has too, they are compiled apart: the library has that source as well.
         """
-        includes = ("-Iruntime/include", "-I.")
+        includes = (*self.host.net, "-Iruntime/include", "-I.")
         others = [f.path for f in self._sources() if f.path != "net.c"]
         if others and not self._compiler(room, *includes, "-c", *others, d=d):
             return False
+        if len(others) == len(self._sources()):
+            return True  # a host that needs no net
         if self.host.whole and sum(len(f.text) for f in self.files) <= LARGE:
             source = f"runtime/src/{self.host.whole}"
             whole = ('-DPN_NET_SOURCE="net.c"', "-c", source, "-o", "net.o")

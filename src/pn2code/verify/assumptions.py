@@ -7,7 +7,10 @@ from typing import Final
 
 NET: Final = (
     "The answers are about the net as it stands: supervisor, robots, devices and people do what their pages say.",
-    "That the programs do what the net does is not shown here: `pn2code conform` compares them, state by state.",
+    "What was explored is the net as it was compiled for the explorer: packed places, arrays of other sizes and other "
+    "compiler flags than in the generated net.o, which the supervisor and the simulator run.",
+    "That net.o, the supervisor and the scripts do what the net does is not shown here: `pn2code conform` compares "
+    "them and the explorer's graph with the token game, state by state.",
     "Runs that are shown were played again by the reference token game, which shares no code with the explorer.",
 )
 TIME: Final = "Time of the closed net goes by only where nothing is enabled; that of the cell whenever it likes."

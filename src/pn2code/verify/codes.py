@@ -120,6 +120,13 @@ CAPACITY_UNPROVED = register(
     "structure, or by its complete state space. Of this place nothing is. Declare a bound in cell.toml, "
     "`[capacity] place = n`: the supervisor stops safely when the place gets more; or limit the place in the net.",
 )
+CAPACITY_LARGE = register(
+    "capacity-large",
+    "a place can hold more tokens than a program has room for",
+    "The arrays of the generated program are as large as a bound that is proven, up to 1,048,576 tokens in a place. "
+    "Limit the place in the net. If it never really holds so many, declare in cell.toml how many: the supervisor stops "
+    "safely when there are more.",
+)
 CAPACITY_ASSUMED = register(
     "capacity-assumed",
     "nothing proves how many tokens a place can hold",

@@ -24,6 +24,7 @@ from pn2code.properties.questions import Questions
 from pn2code.verify import chance
 from pn2code.verify.control_answers import (
     Keeper,
+    can_more,
     capacities_check,
     cell_answers,
     channels_check,
@@ -32,6 +33,7 @@ from pn2code.verify.control_answers import (
     order_answers,
     unknown,
 )
+from pn2code.verify.control_messages import formats, memory
 from pn2code.verify.control_types import (
     BLOCKING,
     BOUNDED,
@@ -138,6 +140,8 @@ def examine(
         checks = (
             *order_answers(partition, orders, asked, plan, keep),
             *cell_answers(partition, found, found.answers[count:], plan, keep, closed),
+            *formats(partition, found, plan, d),
+            memory(found),
             ownership(partition),
         )
         if chance.draws(partition.net):
@@ -191,4 +195,7 @@ def not_looked(
         checks.append(channels_check(partition, rows[: len(partition.channels)], keep))
     if declared:
         checks.append(capacities_check(partition, declared, rows[len(partition.channels) :], keep))
+    seen = closed if closed is not None and can_more(partition) else None
+    checks += formats(partition, seen, Plan(), Diagnostics(), why)
+    checks.append(memory(seen, why))
     return Control((*checks, ownership(partition)), None, why=why)

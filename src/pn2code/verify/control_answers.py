@@ -89,9 +89,7 @@ def known(
 ) -> Iterator[Mapping[str, Any]]:
     """Bounds that are not known of the cell follow from those of a closed net that can do all that the cell can."""
     most = [*((c.place, 1) for c in partition.channels), *capacities.items()]
-    bounds = (
-        closed.bounds if closed is not None and closed.complete and can_more(partition) else None
-    )
+    bounds = closed.bounds if closed and closed.seen.markings and can_more(partition) else None
     for row, (place, limit) in zip(rows, most, strict=True):
         if row["answer"] == "unknown" and bounds is not None and bounds[place].upper <= limit:
             yield {"answer": "yes", "value": bounds[place].upper, "trace": None}

@@ -19,6 +19,8 @@ CONFLUENT = "confluence"
 BLOCKING = "non-blocking"
 CHANNELS = "channels"
 CAPACITY = "capacity"
+MESSAGES = "messages"
+MEMORY = "memory"
 OWNERSHIP = "ownership"
 
 TITLES = {
@@ -28,6 +30,8 @@ TITLES = {
     BLOCKING: "Non-blocking under control",
     CHANNELS: "One message in flight",
     CAPACITY: "Declared capacities",
+    MESSAGES: "Every message can be sent",
+    MEMORY: "Room for lists and strings",
     OWNERSHIP: "Nothing touched that is another's",
 }
 MEANINGS = {
@@ -37,9 +41,11 @@ MEANINGS = {
     BLOCKING: "wherever the cell gets, it comes to its end, whichever of its programs are slow",
     CHANNELS: "no channel ever holds two messages",
     CAPACITY: "no place ever holds more tokens than `[capacity]` declares",
+    MESSAGES: "every message can be written into its file, and is read as it was written",
+    MEMORY: "the lists and strings of every marking and every firing have room in the supervisor",
     OWNERSHIP: "transitions touch places of their owner, and channels in their direction",
 }
-KEPT = frozenset({FINITE, BOUNDED, CHANNELS, CAPACITY, OWNERSHIP})
+KEPT = frozenset({FINITE, BOUNDED, CHANNELS, CAPACITY, MESSAGES, MEMORY, OWNERSHIP})
 """Checks whose "yes" is kept when the programs do less than what was looked at."""
 MAX_FIRINGS = 100_000
 """What `./supervisor` permits in one cycle unless it is told another number."""

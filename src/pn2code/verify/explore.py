@@ -41,6 +41,8 @@ Progress = Callable[[Mapping[str, Any]], None]
 """Is told what the explorer says of itself twice a second: states, arcs, rate, frontier, depth, mib, phase."""
 KEPT_ERRORS = 20
 """Lines of what the explorer says that are no progress."""
+TOO_DEEP = "recursion too deep"
+"""What the runtime says of it (pn_num.c)."""
 LEAST_SECONDS = 1e-6
 """No time at all is a limit, too; the explorer wants a positive one."""
 
@@ -120,6 +122,8 @@ def explore(
     def interrupted() -> bool:
         return wishes.interrupted() or deadline.is_over()
 
+    # Most spaces of large nets are small: it does not pay to have the compiler work for long before that is known.
+    is_first = len(net.transitions) > programs.MANY and not wishes.quick
     compiling = 0.0
     while True:
         began = time.perf_counter()
@@ -131,7 +135,7 @@ def explore(
                 d,
                 wishes.predicates,
                 interrupted=interrupted,
-                quick=wishes.quick,
+                quick=wishes.quick or is_first,
             )
             program = None
             with suppress(TimeIsOverError), deadline.enforced():
@@ -143,10 +147,18 @@ def explore(
                 if not wishes.interrupted():
                     return _too_late(net, limits, compiling, d)
                 return Exploration.of(net, nothing(net, limits), compiling)
-            options = _options(limits, chosen, sizes, wishes)
-            found = _run_with_tables(net, program, options, chosen, wishes, deadline, d)
+            own = limits
+            if is_first:
+                most = limits.max_states or programs.FIRST_STATES
+                own = replace(limits, max_states=min(most, programs.FIRST_STATES))
+            options = _options(own, chosen, sizes, wishes)
+            telling = replace(wishes, progress=_nothing) if is_first else wishes
+            found = _run_with_tables(net, program, options, chosen, telling, deadline, d)
         if found is None:
             return None
+        if is_first and _is_too_much(found, own, limits):
+            is_first = False
+            continue
         if found.get("spill_error") and found["why"] == "memory":
             d.warning(
                 SPILL_FULL,
@@ -178,6 +190,16 @@ def explore(
             )
             return Exploration.of(net, {**found, "why": "memory"}, compiling)
         sizes = larger
+
+
+def _is_too_much(found: Mapping[str, Any], own: Limits, limits: Limits) -> bool:
+    """Whether what was compiled quickly has come to an end of its own, not to one that the user has set.
+
+    A stack that is full is full later in what the compiler has worked at for longer.
+    """
+    said = [found["error"]["message"]] if found["error"] else []
+    said += [answer["why"] for answer in found.get("queries") or ()]
+    return TOO_DEEP in said or (found["why"] == "states" and own.max_states != limits.max_states)
 
 
 def _too_late(net: FlatNet, limits: Limits, compiling: float, d: Diagnostics) -> Exploration:

@@ -130,7 +130,7 @@ def text(found: tuple[Step, ...], total: int) -> str:
     """For people."""
     lines = []
     for step in found:
-        values = ", ".join(f"{k} = {v}" for k, v in step.binding.items())
+        values = ", ".join(f"{k} = {_short(v)}" for k, v in step.binding.items())
         at = f"  @{step.time}" if step.time else ""
         lines.append(
             f"  {step.number:>3}  {step.transition}" + (f"  ({values})" if values else "") + at

@@ -30,8 +30,14 @@ from pn2code.toolchain.programs import Host
 
 HOST = Host("explore", flags=("-pthread", "-march=native"), libraries=("-pthread", "-lm"))
 """Explorers run where they are compiled, so they may use all that the processor has."""
-QUICK = replace(HOST, flags=(*HOST.flags, "-O0"))
-"""For small spaces: compiled in a third of the time, several times as slow."""
+QUICK = replace(HOST, net=("-O0",))
+"""For small spaces: compiled in a fifth of the time. Only the net is slower, up to three times; the explorer is not."""
+LARGE = replace(HOST, net=("-DPN_MANY",))
+"""For nets of many transitions: the compiler decides itself what is worth having in several copies."""
+MANY = 40
+"""Transitions of a net that is worth to be compiled quickly first."""
+FIRST_STATES = 100_000
+"""So many states are soon seen also by what was compiled quickly."""
 ROOM = 16
 """Different tokens that a place can hold at first; what proves too little is made more, place by place."""
 MOST_ROOM = 1 << 20
@@ -152,6 +158,7 @@ def program(
     if files is None:
         yield None
         return
-    host = QUICK if quick and not programs.is_kept(HOST, files) else HOST
+    best = LARGE if len(net.transitions) > MANY else HOST
+    host = QUICK if quick and not programs.is_kept(best, files) else best
     with programs.program(host, files, d, interrupted=interrupted) as found:
         yield found

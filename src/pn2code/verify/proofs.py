@@ -20,7 +20,7 @@ from pn2code.diagnostics import Diagnostics, Note
 from pn2code.semantics.game import Game, GameError
 from pn2code.structure import bounds_and_sums
 from pn2code.toolchain.build import TOOL_MISSING
-from pn2code.verify import control, control_types, rooms
+from pn2code.verify import arena, control, control_types, rooms
 from pn2code.verify.codes import BEYOND_ROOM, CONTROL_FAILED, CONTROL_OPEN
 from pn2code.verify.control_types import Check, Control, Plan
 from pn2code.verify.explore import Wishes
@@ -41,11 +41,13 @@ class Proofs:
         rooms: for each place.
         verdicts: lines for people, the same whenever the same is generated.
         control: the checks; None: they were not asked for.
+        arena: bytes for the lists and strings of the program; None: not known.
     """
 
     rooms: tuple[rooms.Room, ...]
     verdicts: tuple[str, ...]
     control: Control | None
+    arena: int | None = None
 
 
 def prove(
@@ -71,6 +73,9 @@ def prove(
         found = rooms.rooms(partition, capacities, structural, None)
         if config is None:
             rooms.warn_assumed(net, found, d)
+        rooms.refuse_large(net, found, d)
+        if d.has_errors:
+            return None
         return Proofs(found, tuple(_not_asked(partition)) if config else (), None)
     plan = Plan(
         storage=storage, order_decides=config.supervisor.order_decides, capacities=capacities
@@ -93,9 +98,10 @@ def prove(
             f"the file of `{given[0]}` brings a token that the net does not have" if given else ""
         )
         rooms.refuse(net, found, other or clause(why or ""), d)
+    rooms.refuse_large(net, found, d)
     if d.has_errors:
         return None
-    return Proofs(found, tuple(_verdicts(looked)), looked)
+    return Proofs(found, tuple(_verdicts(looked)), looked, None if given else arena.size(space))
 
 
 def _given(partition: Partition, storage: Mapping[str, str]) -> tuple[str, ...]:

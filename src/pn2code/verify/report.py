@@ -84,6 +84,8 @@ def _head(net: FlatNet, found: Exploration, written: datetime | None) -> str:
         "",
         f"Made by pn2code {pn2code.__version__} from the net with SHA-256",
         f"{net.sha256}.",
+        "Explored was the net as it is compiled for the explorer; `pn2code conform` compares that, and the generated",
+        "programs, with the net.",
     ]
     if not found.complete:
         lines += textwrap.wrap(f"PARTIAL: {clause(found.why)}. {basis.partial(found)}", _WIDTH)

@@ -107,6 +107,8 @@ class Exploration:
             how many; with "symmetry" a node stands for all markings that are symmetric to it.
         symmetries: for people, of "symmetry".
         answers: what the explorer says of each question, in order.
+        arena: bytes for lists and strings: "start" (before the first marking), "firing" (one occurrence), "marking";
+            None where bounds are not known.
     """
 
     complete: bool
@@ -131,6 +133,7 @@ class Exploration:
     seen: Seen = Seen()
     symmetries: tuple[str, ...] = ()
     answers: tuple[Mapping[str, Any], ...] = ()
+    arena: Mapping[str, int] | None = None
 
     @property
     def is_reduced(self) -> bool:
@@ -173,6 +176,7 @@ class Exploration:
             reductions=tuple(found.get("reductions") or ()),
             seen=Seen(**(found.get("seen") or {})),
             answers=tuple(found.get("queries") or ()),
+            arena=found.get("arena"),
         )
 
     @property

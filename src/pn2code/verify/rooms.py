@@ -19,15 +19,15 @@ from pn2code.lowering.packing import colours
 from pn2code.net.flat import FlatNet
 from pn2code.structure.bounds import PlaceBound
 from pn2code.structure.report import Names, weighted
-from pn2code.verify.codes import CAPACITY_ASSUMED, CAPACITY_UNPROVED
+from pn2code.verify.codes import CAPACITY_ASSUMED, CAPACITY_LARGE, CAPACITY_UNPROVED
 from pn2code.verify.result import Exploration
 
 DECLARED = "declared"
 SPACE = "state space"
 ASSUMED = "assumed"
 _LISTED = 5
-_MOST_ENTRIES = 1 << 16
-"""Of an array. More different tokens than that, and the program stops safely, whatever is proven."""
+MOST_TOKENS = 1 << 20
+"""Of a place: for more, no program is generated."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -95,7 +95,6 @@ def with_rooms(net: ir.NetIR, found: Sequence[Room]) -> ir.NetIR:
         if room.bound is not None:
             few = 0 if place.timed else colours(descriptors, place.table)
             capacity = max(min(room.bound, few) if few else room.bound, 1)
-            capacity = min(capacity, max(place.capacity, _MOST_ENTRIES))
         places.append(replace(place, capacity=capacity, bound=room.bound, proof=room.proof))
     return replace(net, places=tuple(places))
 
@@ -122,6 +121,20 @@ def refuse(net: FlatNet, found: Sequence[Room], why: str, d: Diagnostics) -> Non
                 if why
                 else [],
                 hint=f'declare the most tokens in cell.toml: [capacity] "{place.short}" = N; or use `--unchecked`',
+            )
+
+
+def refuse_large(net: FlatNet, found: Sequence[Room], d: Diagnostics) -> None:
+    """Reports each place that can hold more tokens than a program has arrays for."""
+    for place, room in zip(net.places, found, strict=True):
+        if room.bound is not None and room.bound > MOST_TOKENS:
+            d.error(
+                CAPACITY_LARGE,
+                f"place `{place.name}` can hold {room.bound:,} tokens, and a program has room for {MOST_TOKENS:,}",
+                place.origins[0],
+                notes=[f"what proves it: {room.proof}"],
+                hint="limit the place in the net, or declare in cell.toml what it really holds: "
+                f'[capacity] "{place.short}" = N',
             )
 
 

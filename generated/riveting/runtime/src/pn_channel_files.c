@@ -543,7 +543,7 @@ static bool open_all(void)
 {
     int error = pn_port_dir_open(s_files.options.directory, s_files.options.create, &s_files.directory);
     if (error == ENOENT) {
-        return fail(true, "the shared directory %s does not exist; make it (mkdir -p), or leave --dir out",
+        return fail(true, "the shared directory %s cannot be made: the folder that should hold it does not exist",
                     s_files.options.directory);
     }
     if (error != 0) {

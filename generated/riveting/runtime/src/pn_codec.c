@@ -9,7 +9,40 @@
 
 /* --- bytes --------------------------------------------------------------------------------------------------------- */
 
-static size_t encode_at(const pn_type_t *type, const void *value, uint8_t *out, size_t room, size_t at)
+/* What a reference refers to: nothing, a root, a cell that comes with it, one that has come before. */
+enum {
+    CELL_NONE = 0,
+    CELL_ROOT = 1, /* and its number */
+    CELL_NEW = 2,  /* and its contents */
+    CELL_KNOWN = 3 /* and its number */
+};
+
+static size_t encode_at(pn_cells_t *cells, const pn_type_t *type, const void *value, uint8_t *out, size_t room, size_t at);
+
+static size_t encode_cell(pn_cells_t *cells, const pn_type_t *type, const void *contents, uint8_t *out, size_t room, size_t at)
+{
+    if (contents == NULL) {
+        return put_number(out, room, at, CELL_NONE);
+    }
+    for (uint32_t i = 0U; i < cells->roots; i++) {
+        if (cells->root[i].variable == contents) {
+            return put_number(out, room, put_number(out, room, at, CELL_ROOT), i);
+        }
+    }
+    unsigned char *const left = cell_of(contents);
+    pn_cell_t cell;
+    (void)memcpy(&cell, left, sizeof cell);
+    if (cell.pass == cells->pass) {
+        return put_number(out, room, put_number(out, room, at, CELL_KNOWN), cell.number);
+    }
+    cells->count++;
+    cell.pass = cells->pass;
+    cell.number = cells->count;
+    (void)memcpy(left, &cell, sizeof cell);
+    return encode_at(cells, type->element, contents, out, room, put_number(out, room, at, CELL_NEW));
+}
+
+static size_t encode_at(pn_cells_t *cells, const pn_type_t *type, const void *value, uint8_t *out, size_t room, size_t at)
 {
     size_t end = at;
     switch (type->kind) {
@@ -38,14 +71,14 @@ static size_t encode_at(const pn_type_t *type, const void *value, uint8_t *out, 
     }
     case PN_KIND_RECORD:
         for (uint32_t i = 0U; i < type->count; i++) {
-            end = encode_at(type->field[i].type, part(value, type->field[i].offset), out, room, end);
+            end = encode_at(cells, type->field[i].type, part(value, type->field[i].offset), out, room, end);
         }
         return end;
     case PN_KIND_LIST: {
         const void *list = load_pointer(value);
         end = put_number(out, room, at, (uint64_t)pn_list_length(list));
         for (const void *rest = list; rest != NULL; rest = pn_list_tail(rest)) {
-            end = encode_at(type->element, pn_list_head(type, rest), out, room, end);
+            end = encode_at(cells, type->element, pn_list_head(type, rest), out, room, end);
         }
         return end;
     }
@@ -53,18 +86,24 @@ static size_t encode_at(const pn_type_t *type, const void *value, uint8_t *out, 
         const void *argument = NULL;
         const pn_field_t *constructor = constructor_of(type, value, &argument);
         end = put_number(out, room, at, load_tag(value));
-        return (argument == NULL) ? end : encode_at(constructor->type, argument, out, room, end);
+        return (argument == NULL) ? end : encode_at(cells, constructor->type, argument, out, room, end);
     }
     case PN_KIND_REF:
+        return (cells != NULL) ? encode_cell(cells, type, load_pointer(value), out, room, at) : end;
     case PN_KIND_UNIT:
     default:
         return end;
     }
 }
 
+size_t pn_encode_with(pn_cells_t *cells, const pn_type_t *type, const void *value, uint8_t *out, size_t room, size_t at)
+{
+    return encode_at(cells, type, value, out, room, at);
+}
+
 size_t pn_encode(const pn_type_t *type, const void *value, uint8_t *out, size_t room)
 {
-    return encode_at(type, value, out, room, 0U);
+    return encode_at(NULL, type, value, out, room, 0U);
 }
 
 /* A reader that stays failed once something is missing. */
@@ -74,6 +113,7 @@ typedef struct reader {
     size_t length;
     size_t at;
     bool failed;
+    pn_cells_t *cells; /* NULL: there are no references */
 } reader_t;
 
 static void get_bytes(reader_t *r, void *out, size_t length)
@@ -191,6 +231,36 @@ static void decode_union(reader_t *r, const pn_type_t *type, void *value)
     }
 }
 
+/* A cell has its number before its contents, which may refer to it. */
+static void decode_cell(reader_t *r, const pn_type_t *type, void *value)
+{
+    const uint64_t what = (r->cells != NULL) ? read_number(r) : (uint64_t)CELL_NONE;
+    const void *contents = NULL;
+    if (what == (uint64_t)CELL_NEW) {
+        void *fresh = NULL;
+        r->failed = r->failed || (r->cells->count >= r->cells->most);
+        if (!r->failed) {
+            fresh = pn_ref_new(r->cx, NULL, type->element->size);
+            r->failed = fresh == NULL;
+        }
+        if (!r->failed) {
+            r->cells->contents[r->cells->count] = fresh;
+            r->cells->count++;
+            decode_value(r, type->element, fresh);
+        }
+        contents = fresh;
+    } else if (what != (uint64_t)CELL_NONE) {
+        const uint64_t number = read_number(r);
+        const uint64_t most = (what == (uint64_t)CELL_ROOT) ? r->cells->roots : r->cells->count;
+        const bool is_there = (what == (uint64_t)CELL_ROOT) ? (number < most) : ((number > 0U) && (number <= most));
+        r->failed = r->failed || (what > (uint64_t)CELL_KNOWN) || !is_there;
+        if (!r->failed) {
+            contents = (what == (uint64_t)CELL_ROOT) ? r->cells->root[number].variable : r->cells->contents[number - 1U];
+        }
+    }
+    store_pointer(value, contents);
+}
+
 static void decode_value(reader_t *r, const pn_type_t *type, void *value)
 {
     switch (type->kind) {
@@ -239,6 +309,8 @@ static void decode_value(reader_t *r, const pn_type_t *type, void *value)
         decode_union(r, type, value);
         break;
     case PN_KIND_REF:
+        decode_cell(r, type, value);
+        break;
     case PN_KIND_UNIT:
     default:
         (void)memset(value, 0, type->size);
@@ -248,7 +320,12 @@ static void decode_value(reader_t *r, const pn_type_t *type, void *value)
 
 size_t pn_decode(pn_ctx_t *cx, const pn_type_t *type, void *value, const uint8_t *in, size_t length)
 {
-    reader_t r = { cx, in, length, 0U, false };
+    return pn_decode_with(cx, NULL, type, value, in, length);
+}
+
+size_t pn_decode_with(pn_ctx_t *cx, pn_cells_t *cells, const pn_type_t *type, void *value, const uint8_t *in, size_t length)
+{
+    reader_t r = { cx, in, length, 0U, false, cells };
     decode_value(&r, type, value);
     /* A unit has no bytes: its callers ask for nothing and must not take 0 for a failure. */
     return (r.failed || !pn_ok(cx)) ? SIZE_MAX : r.at;

@@ -327,8 +327,13 @@ void *pn_ref_new(pn_ctx_t *cx, const void *value, size_t size)
     if (cell == NULL) {
         return NULL;
     }
-    store_pointer(cell, NULL);
-    (void)memcpy(&cell[PN_REF_HEADER], value, size);
+    const pn_cell_t header = { NULL, 0U, 0U };
+    (void)memcpy(cell, &header, sizeof header);
+    if (value == NULL) {
+        (void)memset(&cell[PN_REF_HEADER], 0, size);
+    } else {
+        (void)memcpy(&cell[PN_REF_HEADER], value, size);
+    }
     return &cell[PN_REF_HEADER];
 }
 

@@ -10,8 +10,14 @@
 
 #include "pn/pn_type.h"
 
-/* Before the contents of a cell of pn_ref_new: where it has been moved to. */
-#define PN_REF_HEADER sizeof(max_align_t)
+/* Before the contents of a cell of pn_ref_new. */
+typedef struct pn_cell {
+    const void *moved; /* where its contents have been moved to; NULL: nowhere */
+    uint64_t pass;     /* in which it was encoded last (pn_root.c), and its number then, from 1 on */
+    uint64_t number;
+} pn_cell_t;
+
+#define PN_REF_HEADER ((sizeof(pn_cell_t) + sizeof(max_align_t) - 1U) / sizeof(max_align_t) * sizeof(max_align_t))
 
 static inline const void *load_pointer(const void *at)
 {
@@ -96,6 +102,28 @@ static inline const pn_field_t *constructor_of(const pn_type_t *type, const void
     }
     return field;
 }
+
+/* The header of the cell with these contents. */
+static inline unsigned char *cell_of(const void *contents)
+{
+    unsigned char *at = NULL;
+    (void)memcpy(&at, &contents, sizeof at); /* cells are not constant */
+    return at - PN_REF_HEADER;
+}
+
+/* What is met on the way through references (pn_root.c). */
+typedef struct pn_cells {
+    const pn_root_t *root;
+    uint32_t roots;
+    uint64_t pass;         /* encoding: another one each time, never 0 */
+    uint64_t count;        /* cells so far */
+    uint64_t most;         /* decoding: cells that there are */
+    const void **contents; /* decoding: of each of them */
+} pn_cells_t;
+
+/* pn_encode and pn_decode of types in which there may be references; encoding begins at `at`. NULL: there are none. */
+size_t pn_encode_with(pn_cells_t *cells, const pn_type_t *type, const void *value, uint8_t *out, size_t room, size_t at);
+size_t pn_decode_with(pn_ctx_t *cx, pn_cells_t *cells, const pn_type_t *type, void *value, const uint8_t *in, size_t length);
 
 /* Enumerations and union tags are C enums, which gcc and clang store as unsigned int. */
 _Static_assert(sizeof(enum pn_kind_probe { PN_KIND_PROBE = 0 }) == sizeof(uint32_t), "enums must have 32 bits");

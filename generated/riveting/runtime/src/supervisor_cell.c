@@ -16,8 +16,11 @@
 #define CHANNELS_MAX 128U
 #define PEERS_MAX 64U
 
-static const double GRACE_S = 0.5;  /* I6: how long a refused file may stay as it is */
-static const double LOOK_S = 0.1;   /* I8: how often the peers are looked at */
+#ifndef SUP_GRACE_S
+#define SUP_GRACE_S 0.5 /* tests have more */
+#endif
+static const double GRACE_S = SUP_GRACE_S; /* I6: how long a refused file may stay as it is */
+static const double LOOK_S = 0.1;          /* I8: how often the peers are looked at */
 
 /* What the host knows of a channel. */
 typedef struct channel_state {
@@ -232,13 +235,16 @@ static bool publish(sup_t *sup)
 
 /* --- the cycle -------------------------------------------------------------------------------------------------------- */
 
-/* One cycle at `t` seconds. False when the program has to stop. */
+/* One cycle at `t` seconds, or in real time. False when the program has to stop. */
 static bool cycle(sup_t *sup, double t, uint64_t *fired)
 {
     *fired = 0U;
     sup->t = (t > sup->t) ? t : sup->t;
     if (!read_channels(sup) || !sup_monitor_messages(sup, PN_CHANNEL_IN)) {
         return false;
+    }
+    if (!sup->options.lockstep) { /* a message that has been seen is not later than the time at which it is acted upon */
+        sup->t = fmax(sup->t, wall_time());
     }
     sup_set_time(sup, sup->t);
     if (!sup_play(sup, sup->cell->owner, NULL, NULL, fired)) {
@@ -445,7 +451,7 @@ void sup_run_cell(sup_t *sup)
     }
     const pn_files_options_t options = {
         .directory = sup->options.directory,
-        .create = sup->options.own_directory,
+        .create = true,
         .watch = !sup->options.lockstep && (sup->options.poll_ns == 0U),
         .poll_ns = (sup->options.poll_ns != 0U) ? sup->options.poll_ns : 2000000U,
         .notice = on_notice,

@@ -7,8 +7,55 @@ fun prim_do_read_fail () : unit = ()
 fun prim_timed_value (token : 'a timed) : 'a = raise Empty
 fun prim_timed_stamp (token : 'a timed) : time = raise Empty
 
-fun Colour_illegal_msg (legal, mkstr) (x, name) =
-    if legal x then "" else mkstr x ^ " is not in the colour set " ^ name
+(* --- what is wrong with a value, in the words of CPN Tools --- *)
+
+fun Colour_illegal (legal, mkstr) (x, first, last) = if legal x then "" else first ^ mkstr x ^ last
+
+fun Colour_illegal_number (legal, mkstr) (x, low, high) =
+    if legal x then "" else " Illegal color: " ^ mkstr x ^ " not in range " ^ mkstr low ^ ".." ^ mkstr high ^ "."
+
+fun Colour_illegal_index (legal, mkstr) (x, stem, range) =
+    if legal x then ""
+    else
+        let val text = mkstr x
+            val first = String.size stem + 1
+            val number = String.substring (text, first, String.size text - first - 1)
+        in "Illegal color: " ^ text ^ ", index " ^ number ^ " not in range " ^ range ^ "." end
+
+fun Colour_illegal_subset (legal, mkstr, illegal_msg) x =
+    if legal x then ""
+    else
+        case illegal_msg x of
+            "" => "Illegal color: " ^ mkstr x ^ " is not in subset color set."
+          | other => other
+
+fun of_length (what, out_of, n, low, high) =
+    if n >= low andalso n <= high then ""
+    else what ^ " length " ^ out_of ^ Int.toString n ^ (if out_of = "" then " is" else "") ^ " out of range "
+         ^ Int.toString low ^ ".." ^ Int.toString high ^ "."
+
+(* `letters`: the first and the last one, or nothing; without bounds `high` is below zero. *)
+fun Colour_illegal_string (legal, mkstr) (x, letters, low, high) =
+    if legal x then ""
+    else
+        let fun wrong c = letters <> "" andalso (c < String.sub (letters, 0) orelse String.sub (letters, 1) < c)
+            val bad = List.filter wrong (explode x)
+            val first = "\"" ^ String.substring (letters, 0, if letters = "" then 0 else 1) ^ "\""
+            val last = if letters = "" then "" else "\"" ^ String.substring (letters, 1, 1) ^ "\""
+            val range =
+                if null bad then ""
+                else " Range " ^ first ^ ".." ^ last ^ " does not contain ["
+                     ^ String.concatWith "," (List.map (fn c => "\"" ^ Char.toString c ^ "\"") bad) ^ "]."
+        in "Illegal color: " ^ mkstr x ^ "." ^ range
+           ^ (if high < 0 then "" else of_length (" String", "", String.size x, low, high))
+        end
+
+fun Colour_illegal_list (legal, mkstr) (items, low, high) =
+    let val bad = List.filter (fn x => not (legal x)) items
+        val values =
+            if null bad then "" else " Illegal values in list: " ^ String.concatWith "," (List.map mkstr bad) ^ "."
+        val size = if high < 0 then "" else of_length (" List", "of ", length items, low, high)
+    in if values = "" andalso size = "" then "" else "Illegal color." ^ values ^ size end
 
 (* --- texts --- *)
 
@@ -95,12 +142,12 @@ fun Colour_timed_input_ms (read, stamp) (name : string, text, at, closed) =
 
 fun Colour_timed_cmp cmp (a, b) =
     case cmp (prim_timed_value a, prim_timed_value b) of
-        EQUAL => ModelTime.cmp (prim_timed_stamp a, prim_timed_stamp b)
+        EQUAL => ModelTime.cmp (prim_timed_stamp b, prim_timed_stamp a)
       | other => other
 
 fun Colour_timed_lt cmp pair = Colour_timed_cmp cmp pair = LESS
 fun Colour_timed_legal legal token = legal (prim_timed_value token)
-fun Colour_timed_illegal_msg (legal, mkstr) (token, name) = Colour_illegal_msg (legal, mkstr) (prim_timed_value token, name)
+fun Colour_timed_illegal_msg illegal_msg token = illegal_msg (prim_timed_value token)
 fun Colour_no_bounds name = raise CPN'Error ("colour set " ^ name ^ " has no bounds")
 
 (* --- colour sets whose values the runtime cannot number: their values are a list --- *)
@@ -118,15 +165,40 @@ fun Colour_col (values, i) = if i < 0 orelse i >= length values then out_of_rang
 
 fun Colour_ran values = if null values then out_of_range () else random values
 
-(* All sequences with `low` to `high` items in lexicographic order, prefixes first. *)
+(* All lists with `low` to `high` items, the shorter ones first, the first item fastest. *)
 fun Colour_sequences (items, low, high) =
-    let fun visit (prefix, n, out) =
-            let val out = if n >= low then rev prefix :: out else out
-            in if n < high then each (items, prefix, n + 1, out) else out end
-        and each (nil, _, _, out) = out
-          | each (x :: rest, prefix, n, out) = each (rest, prefix, n, visit (x :: prefix, n, out))
-    in rev (visit (nil, 0, nil)) end
+    let fun each (0, behind, out) = behind :: out
+          | each (n, behind, out) = List.foldl (fn (x, out) => each (n - 1, x :: behind, out)) out items
+        fun lengths (n, out) = if n > high then rev out else lengths (n + 1, each (n, nil, out))
+    in lengths (low, nil) end
 
-fun Colour_strings (letters, low, high) = List.map implode (Colour_sequences (letters, low, high))
+(* All strings, the shorter ones first, the last letter fastest. *)
+fun Colour_strings (letters, low, high) =
+    List.map (fn letters => implode (rev letters)) (Colour_sequences (letters, low, high))
+
+(* How many sequences with `low` to `high` of so many items there are. *)
+fun Colour_sequences_size (items, low, high) =
+    let fun power (0, out) = out
+          | power (n, out) = power (n - 1, out * items)
+        fun sum (n, out) = if n > high then out else sum (n + 1, out + power (n, 1))
+    in sum (low, 0) end
+
+(* CPN Tools has its own numbers: an item counts as often as there are items from it on. *)
+fun weighted (nil, _, out) = out
+  | weighted (x :: rest, n, out) = weighted (rest, n - 1, out + n * x)
+
+fun Colour_sequence_ord (legal, position) (items, size, low) =
+    if legal items then
+        let val n = length items
+            val own = List.map position items
+        in Colour_sequences_size (size, low, n - 1) + weighted (own, n, 0) end
+    else out_of_range ()
+
+fun Colour_string_ord legal (x, first, size, low) =
+    if legal x then
+        let val n = String.size x
+            val own = List.map (fn c => ord c - first) (explode x)
+        in Colour_sequences_size (size, low, n - 1) + weighted (own, n, 0) end
+    else out_of_range ()
 
 fun Colour_letters (low, high) = List.tabulate (high - low + 1, fn i => chr (low + i))

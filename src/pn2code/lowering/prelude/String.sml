@@ -34,7 +34,7 @@ fun String_toString s = concat (List.map Char.toString (explode s))
 
 fun String_toCString s = concat (List.map Char.toCString (explode s))
 
-val String_maxSize = 16777211
+val String_maxSize = 16777215
 
 (* Position of what follows a gap `\   \`, or of the backslash if it is none. *)
 fun after_gap (s, i) =

@@ -2,8 +2,13 @@
  * pn_net.h - the contract between a generated net (net.c) and the hosts that run it.
  *
  * A generated net is one constant table, `const pn_net_t pn_net`, and a marking type whose size the table
- * gives. Hosts (supervisor, simulate, explore) know nets only through this table: the same object file net.o is verified,
- * simulated and deployed.
+ * gives. Hosts (supervisor, simulate, explore, the program under test of `conform`) know nets only through this table.
+ *
+ * In a generated folder one object file, net.o, is linked with the supervisor, its monitor and the simulator. The explorer of
+ * `pn2code verify` has another one: the same generator makes it from the same net, but with packed places where that is possible, with
+ * arrays of other sizes, and with flags for the processor at hand. What is proved is proved of that one. `pn2code conform` shows that
+ * both do the same: it compares the explorer's graph, and the generated net.c in the deployed supervisor, with the token game in every
+ * state that can be reached (docs/conform.md).
  *
  * Errors: a net's expressions may raise (integer overflow, division by zero, no matching rule, a colour out of range, an
  * array that is full). The first error of a context is kept in it (pn_ctx_t.error) and is sticky: from then on every operation
@@ -162,6 +167,10 @@ typedef struct pn_transition {
     /* Files or references decide about it: what is possible in a marking depends on more than the marking. Not so for random numbers:
      * their stream starts anew each time (pn_random.h), and is the same for the same seed and step. */
     bool looks;
+    /* Files decide about it: in the same state it may do something else another time. */
+    bool looks_outside;
+    /* An occurrence may change references (pn_net_t.root). */
+    bool assigns;
     /* For every enabled binding, in the order of `enumerate`: makes in *next the marking after its occurrence and calls the sink.
      * Returns false when the sink stopped it; errors are in the context. NULL: enumerate, copy and fire. */
     bool (*successors)(pn_ctx_t *cx, const void *marking, uint32_t self, void *next, pn_successor_sink_t sink, void *user);
@@ -177,6 +186,12 @@ typedef struct pn_predicate {
     /* Errors are in the context. What it needs of the arena the host releases. */
     bool (*holds)(pn_ctx_t *cx, const void *marking);
 } pn_predicate_t;
+
+/* A variable outside the marking that the net changes, and through which it may reach cells of references (pn_root.h). */
+typedef struct pn_root {
+    const struct pn_type *type;
+    void *variable;
+} pn_root_t;
 
 typedef struct pn_owner {
     const char *name;   /* "supervisor", "robot1" */
@@ -216,7 +231,8 @@ typedef struct pn_net {
     size_t packed_size;       /* bytes of the packed part, with which a marking begins, a multiple of 4; equal markings, equal bytes */
     uint32_t bag_count;       /* the places that are not packed */
     const uint32_t *bags;
-    bool has_references;      /* `ref`s of the net are state outside the marking */
+    uint32_t root_count;      /* state outside the marking: the references that the net changes. 0: there is none */
+    const pn_root_t *root;
     uint32_t predicate_count; /* 0: none was generated with the net */
     const pn_predicate_t *predicate;
 } pn_net_t;

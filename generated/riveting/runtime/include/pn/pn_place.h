@@ -24,10 +24,12 @@
 #else
 #define PN_MAYBE_UNUSED
 #endif
-#if defined(__GNUC__) && defined(__OPTIMIZE__)
+/* Copies cost the compiler time. Without optimization they save none; in a net of many transitions (PN_MANY) the compiler decides
+ * itself which ones are worth it. */
+#if defined(__GNUC__) && defined(__OPTIMIZE__) && !defined(PN_MANY)
 #define PN_INLINE __attribute__((always_inline, unused)) static inline
 #else
-#define PN_INLINE PN_MAYBE_UNUSED static inline /* without optimization copies cost the compiler time and save none */
+#define PN_INLINE PN_MAYBE_UNUSED static inline
 #endif
 
 /* Copies what an array place holds from one marking into another. */

@@ -1,0 +1,104 @@
+"""What a script declares beside what its cell says: its name, its files, their directions and what their messages hold,
+the values that have names in the net.
+
+found = compare(partition, config, owner, program, game)      # in words what differs; None: nothing does
+
+It is worked out from the colour sets and cell.toml, not from what the generator has made of them.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator, Mapping
+
+from pn2code.cell.config import CellConfig
+from pn2code.cell.partition import Partition
+from pn2code.cell.scalars import ScalarKind, scalars_of
+from pn2code.ml.colsets import Colset, Kind
+from pn2code.semantics.game import Game
+from pn2code.tdl import tree as t
+from pn2code.tdl.check import CheckedProgram
+from pn2code.tdl.types import POSE_FIELDS, Type
+
+_KINDS = {
+    Type.INT: ScalarKind.INT,
+    Type.REAL: ScalarKind.REAL,
+    Type.BOOL: ScalarKind.BOOL,
+    Type.STRING: ScalarKind.STRING,
+    Type.WORD: ScalarKind.ENUM,
+    Type.SIGNAL: ScalarKind.UNIT,
+}
+_Held = tuple[tuple[ScalarKind, bool], ...]
+"""Of each scalar its kind, and whether it is stored in single precision."""
+
+
+def compare(
+    partition: Partition, config: CellConfig, owner: int, program: CheckedProgram, game: Game
+) -> str | None:
+    """What differs first; None: nothing."""
+    found = (*_differences(partition, config, owner, program), *_constants(program, game))
+    return next(iter(found), None)
+
+
+def _constants(program: CheckedProgram, game: Game) -> Iterator[str]:
+    """Constants of the script have the names of values of the net, perhaps with something behind them."""
+    symbols = game.net.program.globals
+    for name, value in program.constants.items():
+        symbol = symbols.get(name) or symbols.get(re.sub(r"_\d*$", "", name))
+        own = game.evaluator.globals.get(symbol.uid) if symbol is not None else None
+        if isinstance(own, bool | int | float | str) and (
+            type(own) is not type(value) or own != value
+        ):
+            yield f"`{name}` is {value!r} in the script, by the net {own!r}"
+
+
+def _differences(
+    partition: Partition, config: CellConfig, owner: int, program: CheckedProgram
+) -> Iterator[str]:
+    name = partition.owners[owner].name
+    if program.tree.name not in (
+        name,
+        f"{name}_",
+    ):  # a key word of the language gets a line behind it
+        yield f"the script is the program `{program.tree.name}`, not `{name}`"
+    places = {
+        c.file: (c.place, t.Direction.INPUT if c.reader == owner else t.Direction.OUTPUT)
+        for c in partition.channels
+        if owner in (c.writer, c.reader)
+    }
+    for file in program.files.values():
+        if file.path not in places:
+            yield f"the script declares the file `{file.path}`, which is no channel of {name}"
+            continue
+        place, direction = places[file.path]
+        if file.direction is not direction:
+            yield f"`{file.path}` is an {file.direction.value} of the script, but an {direction.value} of {name}"
+        colset = partition.net.places[place].colset
+        expected = tuple(_of_colset(colset, config.storage))
+        if _of_file(file) != expected:
+            found = ", ".join(f"{k.type}{' single' * k.single}" for k in file.types)
+            yield f"`{file.path}` holds {found} by the script, which is not colour set `{colset.name}`"
+
+
+def _of_file(file: t.File) -> _Held:
+    held: list[tuple[ScalarKind, bool]] = []
+    for kind in file.types:
+        if kind.type is Type.POSE:
+            held += [(ScalarKind.REAL, kind.single)] * len(POSE_FIELDS)
+        elif kind.type in _KINDS:
+            held.append((_KINDS[kind.type], kind.single))
+    return tuple(held)
+
+
+def _of_colset(
+    c: Colset, storage: Mapping[str, str], single: bool = False
+) -> Iterator[tuple[ScalarKind, bool]]:
+    single = single or storage.get(c.name) == "float32"
+    if c.kind in (Kind.ALIAS, Kind.SUBSET, Kind.PRODUCT, Kind.RECORD):
+        is_same = c.kind in (Kind.ALIAS, Kind.SUBSET)
+        for part in c.components:
+            assert part is not None
+            yield from _of_colset(part, storage, single and is_same)
+        return
+    (scalar,) = scalars_of(c) or ()
+    yield scalar.kind, single and scalar.kind is ScalarKind.REAL

@@ -1,0 +1,22 @@
+# ruff: noqa: E501 - rows of texts
+"""The part of docs/conformance.md about where the engine itself is wrong, or differs from its editor."""
+
+ENGINE = """## Where the engine is wrong
+
+`make oracle` puts random CPN ML (`--expressions`), random nets (`--nets`) and published nets with one text changed (`--mutants`) before the engine of CPN Tools and
+before pn2code. What follows is found again and again; pn2code does what is written on the right.
+
+| net | engine | pn2code |
+|---|---|---|
+| two arcs from one place with patterns that share variables, but not the first one: `(a, b)` and `(c, b)` | `InternalError: insert_transvar`, the page cannot be checked | accepts it: the shared variable has one value |
+| a variable twice in one pattern: `(x, x)` | takes a false binding, then `Internal Error: rm ...` | both parts are equal |
+| a variable in a delay that nothing binds: `@+m` | accepts it, then cannot compile the code that it made | `unbound-variable` |
+| an integer literal of more than 31 bits | accepts it, then cannot compile the code that it made | `literal-too-large` |
+| a port that has a socket at one substitution transition of the page and none at another | gives the wrong socket, or `Exception Subscript` | a place of its own, with a warning |
+| equal tokens with different time stamps | takes one at random, in state spaces, too | all of them |
+| state spaces of timed nets, 4.0.0 | restores time stamps relative to the time of the node (those of 3.0.3 are right) | restores them |
+| top-level names that its state-space sources use | the tool cannot be entered | a warning (`state-space-name`) |
+
+What its editor refuses before the engine is asked (two nodes of one name on a page, a place beside a substitution transition that is no socket, a socket whose arcs do
+not suit the type of the port) is accepted with a warning. An arc without inscription at a place that is not `UNIT` is refused, since the editor never lets the transition be checked.
+"""

@@ -1,0 +1,113 @@
+"""Top-level names of a net that keep the state-space tool of CPN Tools from loading.
+
+Its sources are compiled after the declarations of the net, and use names that these may have hidden: with a constant
+`left` of an enumeration, the variables `left` in its sources become that constant. The net simulates all the same. The
+names were found by experiment, each declared before each of the sources that has it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+
+from pn2code.diagnostics import Diagnostics, Origin
+from pn2code.ml.core import DatatypeDec, ExceptionDec, Program, RecBind, ValBind
+from pn2code.net.codes import SPACE_NAME
+from pn2code.net.uses import pattern_variables
+
+_CONSTRUCTORS = """
+Action AlreadyProcesed ArcCount ArcLimit BTT_st BindingLimit CalculateSccGraph CompTimeLimit
+DataRecFields DeadMarkings DeadMarkingsGen DeadTIs DeadTIsGen ExcAvlLookup FairnessGen
+FairnessProperties FirstConstructor FirstItem Freq FromTransSeq GenerateEntryF GenerateHeaderF
+GenerateHeadingF HomeMarkings HomeMarkingsGen IllegalName InitScc IntegerBounds IntegerBoundsGen
+InternalError LastTotalCalc LiveTIs LiveTIsGen Match MultiSetBounds MultiSetBoundsGen NONE Net
+NewCalcStat NextArcNum NextInspectTime NextNodeNum NextStopTime NoOfVarsToEncode NodeCount NodeLimit
+NodeNames NodeToScc Noderefs OGdatarec OGdatarecfield OUT OnlyThisList Option PageNames PlaceInsts
+Pred ProcNodePred SOME SccComptime SccDestNode SccGraphCalculated SccNoOfNodes SccNodesInPath
+SccOutArcs SccOutNodes SccSourceNode SccTerminal SccToArcs SccToNodes SccTrivial SearchReachableSccs
+SearchSccs SearchSubgraphCycles SearchSubgraphSccs SelectNextNode StandardInspectionReport
+StandardReport StartTime Statistics StatisticsGen StopCritSatisfied TerminationTime ToProcess
+TotalTime TransInstLimit TrivialSubgraphScc abs allNodes allOGrecs allPredecessorEdges
+allSuccessorEdges arc arccountstr arcinfo arcinfos arcs arcsflat assigned bf bindings
+bindlimit_reached calcstat cands code code1 code2 code_storage code_storage2 code_temp code_temp2
+concat copy_code_list count creationtime cur_elem curtod decl declerr destnoderef div dstinfo
+dstnode edgeStmts elements elm elms empty errmsg errstr exn exnName explode extpat false fid
+fieldlist fieldname fieldsref first firstBTT firstinst firstmlno firsttri flatten foldr freq from
+fullid func funname funpostfix fusgrid fusion hd hdvar i2 implode inarcs included init_code_list
+innerrec innodes input insertstaterec inst_conns instlist instmlno instno int internalid intpat
+is_port istimed item key kind left length lst map maxfunpatterns mem mkstr_ms mlnoslist msreflist
+mymlno n1 n2 name newDFI newarc newarccount newarcnum newcand newnodelist newnodenum next_time nil
+no_bindings no_of_tokens nodecountstr nodeinfos noderef nodes nodesWithoutPredecessors
+nodesWithoutSuccessors nodesflat nonlocalfus not num_of_insts o outarcs outnodes output outtimed
+page pagename partfuncount patterncount patternetc pgglobfuschng pgmlno pgname pgno pgstr place
+place_id places pldescrs pli plidescr plitype pllist plmlno plmlnostr plname pltree port
+portinstances portmlid prime print ps real recname recreflist ref refstore remdupl rest rev right
+root root1 root2 root_bf root_key root_left root_left_bf root_left_right root_left_right_bf
+root_right root_right_bf root_right_left root_right_left_bf rootrec scc scc'comp
+sccsWithoutSuccessors secs siminst simplace socketid socketinst srcinfo srcnode srcnoderef staterec
+stlst stmt stopcritsatisfied stringreparcref stringrepberef stringrepmarkref stringrepnoderef
+stringreppiref stringreptiref sub_pages super_pages surrpgglobfus surrports tab1 tab2 tabel
+targetinfo temp terminationtime text thistimestr thistree times tl tlvars to tod topOGdatarec
+topOGdatarecfield totalarccountstr totalnodecountstr totaltimestr trans_list transid transinsts
+transitions trlist trmlno trname trstr true tsurrpgglobfus tsurrports typeerr typestr unchngrecs use
+userArcFilter userNodeFilter useractionfun userfilterfun userpredfun userpredicate valOf varlist
+varlists vars wasthere withcode withtime
+"""
+CONSTRUCTORS = frozenset(_CONSTRUCTORS.split())
+"""As constants of enumerations, constructors of unions, index names, exceptions."""
+_VALUES = """
+abs concat div empty exnName explode flatten foldr hd implode length map mem mkstr_ms not o print
+real remdupl rev tl tod use valOf
+"""
+VALUES = frozenset(_VALUES.split())
+"""As values and functions, unless they can be used like those that they hide."""
+_STRUCTURES = """
+Char Date Int Int32 List ListUtils Misc OS Output
+"""
+STRUCTURES = frozenset(_STRUCTURES.split())
+"""As colour sets, each of which is a structure."""
+
+
+def warn(program: Program, origins: Mapping[str, Origin], d: Diagnostics) -> None:
+    """Warn of such names.
+
+    Args:
+        program: the declarations of the net.
+        origins: of the colour sets, by name.
+        d: gets the warnings.
+    """
+    for what, name, origin in _declared(program, origins):
+        d.warning(
+            SPACE_NAME,
+            f"the {what} `{name}` hides a name that the state-space tool of CPN Tools uses: the tool cannot be entered "
+            "with this net"
+            + (
+                ", unless it has the type of what it hides" if what in ("value", "function") else ""
+            ),
+            origin,
+            hint="give it another name if the net is to be analysed there, too",
+        )
+
+
+def _declared(program: Program, origins: Mapping[str, Origin]) -> Iterator[tuple[str, str, Origin]]:
+    """What is declared with such a name: the kind of thing, the name, where."""
+    for name, origin in origins.items():
+        if name in STRUCTURES:
+            yield "colour set", name, origin
+    for dec in program.declarations:
+        match dec:
+            case DatatypeDec(name, _, constructors):
+                at = dec.span.origin if dec.span is not None else origins.get(name)
+                for constructor, _ in constructors:
+                    if constructor.name in CONSTRUCTORS and at is not None:
+                        yield "constant", constructor.name, at
+            case ExceptionDec(constructor):
+                if constructor.name in CONSTRUCTORS:
+                    yield "exception", constructor.name, dec.span.origin
+            case ValBind(pattern):
+                for symbol in pattern_variables(pattern):
+                    if symbol.name in VALUES:
+                        yield "value", symbol.name, dec.span.origin
+            case RecBind(bindings):
+                for symbol, _ in bindings:
+                    if symbol.name in VALUES:
+                        yield "function", symbol.name, dec.span.origin

@@ -1,0 +1,98 @@
+"""Nets of many transitions are compiled quickly first, and for longer only where their state space is large."""
+
+from __future__ import annotations
+
+import pytest
+
+from helpers.netbuilder import flat
+from pn2code.diagnostics import Diagnostics
+from pn2code.net.flat import FlatNet
+from pn2code.verify import explore as explore_module
+from pn2code.verify import programs
+from pn2code.verify.explore import explore
+from pn2code.verify.limits import Limits
+from pn2code.verify.result import Exploration
+
+pytestmark = pytest.mark.cc
+
+TRANSITIONS = programs.MANY + 1
+NODES = 41 * 2
+LOOP = "  fun down n = if n > 0 then 1 + down (n - 1) else 0;\n"
+
+
+def ring(transitions: int, more: str = "", text: str = "n + 1") -> FlatNet:
+    """A token with a number that goes around once, and a switch."""
+    lines = ["net Ring", "  standard", "  colset N = int;", "  var n : N;", *more.splitlines()]
+    lines += [f"  place P{i} : N{' = 1`0' * (i == 0)}" for i in range(transitions)]
+    lines += ["  place Off = 1", "  place On"]
+    for i in range(transitions - 1):
+        lines += [f"  trans T{i}", f"    in P{i} : n", f"    out P{i + 1} : {text}"]
+    lines += ["  trans Switch", "    in Off : ()", "    out On : ()"]
+    return flat("\n".join(lines))
+
+
+@pytest.fixture
+def compiled(monkeypatch: pytest.MonkeyPatch) -> list[bool]:
+    """How each program was compiled, in order: whether quickly."""
+    said: list[bool] = []
+    program = programs.program
+
+    def told(*given: object, quick: bool, **more: object) -> object:
+        said.append(quick)
+        return program(*given, quick=True, **more)  # type: ignore[arg-type]
+
+    monkeypatch.setattr(explore_module.programs, "program", told)
+    return said
+
+
+def explored(net: FlatNet, **limits: int) -> Exploration:
+    d = Diagnostics()
+    found = explore(net, {}, Limits(**limits), d)  # type: ignore[arg-type]
+    assert found is not None, [i.message for i in d]
+    return found
+
+
+@pytest.mark.parametrize(
+    ("first", "limit", "ways", "why"),
+    [
+        (1000, None, [True], "complete"),
+        (50, None, [True, False], "complete"),
+        (50, 20, [True], "states"),
+        (50, 60, [True, False], "states"),
+    ],
+)
+def test_a_second_time_where_the_first_was_too_short(
+    compiled: list[bool],
+    monkeypatch: pytest.MonkeyPatch,
+    first: int,
+    limit: int | None,
+    ways: list[bool],
+    why: str,
+) -> None:
+    monkeypatch.setattr(programs, "FIRST_STATES", first)
+    found = explored(ring(TRANSITIONS), **({} if limit is None else {"max_states": limit}))
+    assert (compiled, found.why) == (ways, why)
+    if why == "complete":
+        assert (found.nodes, found.seen.components) == (NODES, True)
+
+
+def test_few_transitions_are_compiled_once(compiled: list[bool]) -> None:
+    assert explored(ring(3)).complete
+    assert compiled == [False]
+
+
+def test_a_stack_that_is_full(compiled: list[bool]) -> None:
+    """What needs a deep stack is tried once more with a program that needs less of it."""
+    found = explored(ring(TRANSITIONS, LOOP, "down 900000000"))
+    assert compiled == [True, False]
+    assert found.error is not None and found.error["message"] == explore_module.TOO_DEEP
+
+
+def test_all_ways_say_the_same(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Not optimized, optimized, and as large nets are."""
+    said = []
+    for host in (programs.QUICK, programs.HOST, programs.LARGE):
+        monkeypatch.setattr(programs, "QUICK", host)
+        found = explored(ring(TRANSITIONS))
+        said.append((found.nodes, found.arcs, found.dead, found.bounds, found.fired))
+    assert said[0] == said[1] == said[2]

@@ -1,0 +1,230 @@
+"""Every command line of README.md, docs and the examples' READMEs is typed as it is printed, and ends well."""
+
+from __future__ import annotations
+
+import re
+import shlex
+import shutil
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import pytest
+import typer
+
+from helpers.documents import Block, Desk, blocks, documents, mentions, without_comment
+from helpers.netbuilder import write
+from helpers.processes import pn2code
+from helpers.session import once
+from helpers.small_cell import write as write_cell
+from helpers.thorough import THOROUGH
+from pn2code.cli.main import VERBS, app
+from pn2code.toolchain import build
+
+ROOT = Path(__file__).resolve().parents[2]
+BLOCKS = [block for path in documents(ROOT) for block in blocks(path, ROOT)]
+
+CELLS = "test_example_cells does the same in each run of the tests"
+LONG = {
+    "./dev cell": "the riveting cell in PyBullet with all of its pictures: 20 seconds",
+    "pn2code run examples/riveting --layout paper": "the same in another layout",
+    "pn2code run examples/riveting": "the same",
+    "pn2code run examples/riveting --input examples/riveting/faults": "the same",
+    "pn2code replay run/cell.trace.jsonl examples/riveting": "needs the line before",
+    "pn2code verify examples/riveting --report report.html": CELLS,
+    "pn2code verify examples/riveting": CELLS,
+    "pn2code verify examples/sorting": CELLS,
+    "pn2code verify examples/shared-zone --no-medium": CELLS,
+    "pn2code verify examples/timed": "31,014 markings with their times, and the medium",
+    "pn2code conform examples/riveting": "10 seconds; test_riveting_net compares it",
+    "pn2code conform examples/sorting": "all states of a larger cell: a minute",
+    "pn2code conform examples/shared-zone --most 1500": "the same",
+    "pn2code conform examples/timed --set parts=1 --set orders=1": "the same",
+    "pn2code run examples/sorting --backend fake": CELLS,
+    "pn2code run examples/shared-zone --backend fake": CELLS,
+    "pn2code run examples/timed --backend fake": CELLS,
+    "pn2code generate examples/sorting -o out && make -C out": CELLS,
+    "pn2code generate examples/shared-zone -o out && make -C out": CELLS,
+    "pn2code generate examples/timed -o out && make -C out": CELLS,
+    "pn2code verify philosophers.cpn --set n=15 --plot plot.svg": "a large state space",
+    "pn2code simulate mynet.cpn --steps 1000000 --trace run.trace.jsonl": "a long trace",
+}
+"""Too long for each run of the tests; `make thorough` types them, too. With the reason."""
+
+NEVER = {
+    "./dev test": "these are the tests",
+    "./dev bench": "minutes of measuring on an idle machine; tests/bench has its own tests",
+    "./dev bench --firings": "the same",
+    "./dev bench --states": "the same",
+    "./dev bench --monitor": "the same",
+    "./dev bench --database-15": "the same, and gigabytes",
+    "make mutation": "twenty minutes; test_conform changes programs, too",
+    ". .venv/bin/activate": "the environment of the tests is one of another place",
+}
+"""Typed by people only, with the reason."""
+
+NEEDS = {"spin": "https://spinroot.com, for the export to it"}
+"""Programs that are not part of the project: where one is missing, its line is left out, and test_spin says so, too."""
+
+NET = """
+net Net
+  standard
+  val n = 3;
+  colset SEATS = index seat with 1..3;
+  colset LEVEL = int with 0..20;
+  var k : LEVEL;
+  var s : SEATS;
+  page Top
+    place Free : SEATS = SEATS.all ()
+    place Buffer : SEATS
+    place Work : LEVEL = 1`n
+    subst Sender = Sender (Free -> Free, Buffer -> Buffer)
+    trans Take
+      in Buffer : s
+      out Free : s
+      both Work : k
+  page Sender
+    place Free port in : SEATS
+    place Buffer port out : SEATS
+    trans Put
+      in Free : s
+      out Buffer : s
+"""
+PNML = """<?xml version="1.0"?>
+<pnml xmlns="http://www.pnml.org/version-2009/grammar/pnml">
+  <net id="net" type="http://www.pnml.org/version-2009/grammar/ptnet">
+    <page id="page">
+      <place id="p"><initialMarking><text>2</text></initialMarking></place>
+      <place id="q"/>
+      <transition id="there"/>
+      <transition id="back"/>
+      <arc id="a1" source="p" target="there"/>
+      <arc id="a2" source="there" target="q"/>
+      <arc id="a3" source="q" target="back"/>
+      <arc id="a4" source="back" target="p"/>
+    </page>
+  </net>
+</pnml>
+"""
+PROPERTY = """[[property]]
+name = "{name}"
+holds = "always {{ size (Mark.Top'Buffer 1) <= n }}"
+"""
+
+
+def lay_out(at: Path) -> None:
+    """What the documents call the reader's own: net.cpn, mynet.cpn, net.pnml, cell.toml, and what it gives in DIR."""
+    at.mkdir()
+    for name in ("net", "mynet"):
+        write(NET, at / f"{name}.cpn")
+    (at / "net.pnml").write_text(PNML)
+    trace = at / "net.dead-40.trace.jsonl"
+    for made in (
+        pn2code("simulate", at / "net.cpn", "--steps", "4", "--trace", trace),
+        pn2code("generate", write_cell(at), "-o", at / "DIR"),
+    ):
+        assert made.returncode == 0, made.stderr
+    shutil.copy(trace, at / "run.trace.jsonl")
+
+
+def in_folder(name: str) -> Callable[[Desk], None]:
+    """The document is about what lies there."""
+
+    def go(desk: Desk) -> None:
+        desk.at = desk.project / name
+
+    return go
+
+
+def with_properties(desk: Desk) -> None:
+    """net.cpn has files with properties beside it."""
+    for name in ("net.properties.toml", "other.toml"):
+        (desk.project / name).write_text(PROPERTY.format(name=name))
+
+
+PLACES: dict[str, Callable[[Desk], None]] = {
+    "docs/execution.md": in_folder("generated/riveting"),
+    "docs/properties.md": with_properties,
+    "examples/philosophers/README.md": in_folder("examples/philosophers"),
+}
+"""Where a document's reader is, if not in the project's folder, and what else there is."""
+
+
+@pytest.fixture
+def quick(monkeypatch: pytest.MonkeyPatch) -> None:
+    """What `make` builds need not be quick."""
+    monkeypatch.setenv("CFLAGS", "-O0")
+
+
+@pytest.mark.cc
+@pytest.mark.usefixtures("quick")
+@pytest.mark.parametrize("document", sorted({b.document for b in BLOCKS}))
+def test_as_printed(
+    document: str, tmp_path: Path, tmp_path_factory: pytest.TempPathFactory
+) -> None:
+    if build.find_compiler() is None:
+        pytest.skip("no C compiler")
+    desk = Desk(tmp_path, ROOT)
+    own = once(tmp_path_factory, "reader", lay_out)
+    shutil.copytree(own, desk.project, dirs_exist_ok=True)
+    PLACES.get(document, lambda _: None)(desk)
+    skipped = {**NEVER, **({} if THOROUGH else LONG)}
+    lacking = [word for word in NEEDS if shutil.which(word) is None]
+    for block in (b for b in BLOCKS if b.document == document):
+        lines = {x: "" for x in block.lines if any(re.search(rf"\b{w} ", x) for w in lacking)}
+        desk.go(block, {**skipped, **lines})
+
+
+def test_what_is_left_out_is_printed_somewhere() -> None:
+    printed = {line for block in BLOCKS for line in block.lines}
+    assert set(LONG) | set(NEVER) <= printed
+
+
+def options_of(verb: str) -> set[str]:
+    command: Any = typer.main.get_command(app).get_command(None, verb)  # type: ignore[attr-defined]
+    return {o for p in command.params for o in (*p.opts, *p.secondary_opts)} | {"--help"}
+
+
+@pytest.mark.parametrize("path", documents(ROOT), ids=lambda p: p.relative_to(ROOT).as_posix())
+def test_what_is_mentioned_exists(path: Path) -> None:
+    """Commands in the middle of a sentence: verbs and options."""
+    verbs = (ROOT / "dev").read_text()
+    for text in mentions(path):
+        words = [w.partition("=")[0] for w in shlex.split(text)]
+        if words[0] == "./dev":
+            assert re.search(rf"^    [\w |-]*\b{words[1]}\b[\w |-]*\)", verbs, re.MULTILINE), text
+            words = words[1:]
+        if words[0] != "pn2code" or words[1:2] in ([], ["VERB"], ["..."], ["--version"]):
+            continue
+        assert words[1] in VERBS, text
+        unknown = {w for w in words[2:] if w.startswith("-")} - options_of(words[1])
+        assert not unknown, text
+
+
+def test_reading_of_documents(tmp_path: Path) -> None:
+    text = """
+Text, `pn2code check --json` in it.
+
+```sh
+$ pn2code check net.cpn   # what is wrong
+cd out && make
+```
+
+    pn2code verify net.cpn --property "a # b"   # a comment
+    said by it
+
+```json
+{"pn2code": 1}
+```
+"""
+    path = tmp_path / "text.md"
+    path.write_text(text)
+    assert list(blocks(path, tmp_path)) == [
+        Block("text.md", 5, ("pn2code check net.cpn", "cd out && make")),
+        Block("text.md", 9, ('pn2code verify net.cpn --property "a # b"',)),
+    ]
+    assert list(mentions(path)) == ["pn2code check --json"]
+    assert without_comment("$ make # all") == "make"
+    path.write_text("```sh\nrm -rf everything\n```\n")
+    with pytest.raises(ValueError, match=r"text\.md:2: no command that is known"):
+        list(blocks(path, tmp_path))

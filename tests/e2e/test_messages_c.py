@@ -1,0 +1,228 @@
+"""The codecs of both sides on random colour sets: the compiled one of a generated cell_config.c, and the robots' one.
+
+They write the same bytes, read the same values, and refuse the same files for the same reasons.
+"""
+
+from __future__ import annotations
+
+import math
+import random
+import struct
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+
+from helpers.netbuilder import cpn
+from pn2code.cell.divide import MOST_SCALARS, divide
+from pn2code.cell.load import load
+from pn2code.cell.partition import Partition
+from pn2code.cell.scalars import Scalar, ScalarKind
+from pn2code.channels.message import MAX_PAYLOAD, Message, Refused, compose, parse, specs_of
+from pn2code.channels.scalars import ScalarValue
+from pn2code.diagnostics import Diagnostics
+from pn2code.net import front
+from pn2code.verify.codec import MOST_SEQ, SESSION, Codec, codec
+from pn2code.verify.messages import longest
+
+pytestmark = pytest.mark.cc
+
+CHANNELS = 60
+SIMPLE = (
+    "unit", "bool", "int", "int with ~3..4", "int with 0..0", "real", "real with ~1.5..2.5", "string",
+    "with red | green | blue | e1", "index ph with 0..5", "intinf", "int with 1..9",
+)  # fmt: skip
+
+
+def declarations(chance: random.Random) -> tuple[str, list[str]]:
+    """Colour sets of all kinds, and the names of those of the channels."""
+    lines, names = [], [f"S{i}" for i in range(len(SIMPLE))]
+    for name, kind in zip(names, SIMPLE, strict=True):
+        lines.append(f"colset {name} = {kind.replace('ph', 'p' + name)};")
+    size = dict.fromkeys(names, 1)
+    while len(names) < CHANNELS:
+        name, parts = f"C{len(names)}", chance.choices(names, k=chance.choice([1, 2, 3, 3, 6, 8]))
+        size[name] = sum(size[p] for p in parts)
+        if size[name] > MOST_SCALARS:
+            continue
+        text = (
+            "product " + " * ".join(parts)
+            if len(parts) > 1 and chance.random() < 0.5
+            else "record " + " * ".join(f"f{i} : {p}" for i, p in enumerate(parts))
+        )
+        lines.append(f"colset {name} = {text};")
+        names.append(name)
+    return "\n  ".join(lines), names
+
+
+def cell(folder: Path, chance: random.Random) -> Partition:
+    """A supervisor that passes a token of each colour set on to a robot."""
+    text, names = declarations(chance)
+    used = ["  page Top"]
+    sup, rob, toml = ["  page Sup"], ["  page Rob"], []
+    for i, name in enumerate(names):
+        used.append(f"    place p{i} : {name}")
+        sup += [f"    place p{i} port out : {name}", f"    place a{i} : {name}", f"    trans s{i}"]
+        sup += [f"      in a{i} : v{i}", f"      out p{i} : v{i}"]
+        rob += [f"    place p{i} port in : {name}", f"    place b{i} : {name}", f"    trans r{i}"]
+        rob += [f"      in p{i} : v{i}", f"      out b{i} : v{i}"]
+        toml.append(f'[[channel]]\nplace = "p{i}"\nfile = "p{i}.txt"\nkind = "flag"')
+    ports = ", ".join(f"p{i} -> p{i}" for i in range(len(names)))
+    used += [f"    subst Supervisor = Sup ({ports})", f"    subst Robot = Rob ({ports})"]
+    variables = "\n  ".join(f"var v{i} : {name};" for i, name in enumerate(names))
+    net = "\n".join(["net cell", "  standard", f"  {text}", f"  {variables}", *used, *sup, *rob])
+    (folder / "cell.cpn").write_bytes(cpn(net))
+    head = '[net]\nfile = "cell.cpn"\n[supervisor]\ninstance = "Supervisor"\n[devices.robot1]\ninstance = "Robot"\n'
+    (folder / "cell.toml").write_text(head + "\n".join(toml))
+    d = Diagnostics()
+    config, flat = load(folder / "cell.toml", d), front.load(folder / "cell.cpn", d)
+    assert config is not None and flat is not None, [str(i) for i in d]
+    partition = divide(flat, config, d)
+    assert partition is not None, [str(i) for i in d]
+    return partition
+
+
+@pytest.fixture(scope="module")
+def both(tmp_path_factory: pytest.TempPathFactory) -> Iterator[tuple[Partition, Codec]]:
+    d = Diagnostics()
+    partition = cell(tmp_path_factory.mktemp("cell"), random.Random(11))
+    with codec(partition, d) as compiled:
+        assert compiled is not None, [str(i) for i in d]
+        yield partition, compiled
+
+
+def number(scalar: Scalar, chance: random.Random) -> ScalarValue:
+    edges: list[float] = [0, 1, -1, 2**63 - 1, -(2**63), 2**31]
+    edges += [x + e for x in (scalar.low, scalar.high) if x is not None for e in (-1, 0, 0, 0, 1)]
+    if scalar.kind is not ScalarKind.REAL:
+        return max(-(2**63), min(2**63 - 1, int(chance.choice([*edges, chance.randrange(-9, 9)]))))
+    some = struct.unpack("<d", chance.randbytes(8))[0]
+    rounded = struct.unpack("<f", struct.pack("<f", chance.uniform(-2, 3)))[0]
+    odd = [math.inf, -math.inf, math.nan, 1.7976931348623157e308, 5e-324, 0.0]
+    return float(chance.choice([*edges, some, rounded, rounded, *odd, chance.uniform(-1e4, 1e4)]))
+
+
+def value(scalar: Scalar, chance: random.Random) -> ScalarValue:
+    """Mostly one of the colour set, sometimes one beyond its edge."""
+    match scalar.kind:
+        case ScalarKind.UNIT:
+            return 1
+        case ScalarKind.BOOL:
+            return chance.random() < 0.5
+        case ScalarKind.ENUM:
+            return chance.choice(scalar.names)
+        case ScalarKind.STRING:
+            size = chance.choice(
+                [0, 0, 1, 3, 3, 20, 600, MAX_PAYLOAD // 4, MAX_PAYLOAD - 2, MAX_PAYLOAD - 1]
+            )
+            plain = chance.random() < 0.5
+            return "".join(chr(120 if plain else chance.randrange(256)) for _ in range(size))
+        case _:
+            return number(scalar, chance)
+
+
+def test_both_sides_write_the_same(both: tuple[Partition, Codec]) -> None:
+    partition, compiled = both
+    specs, chance = specs_of(partition), random.Random(1)
+    messages = [
+        (i, chance.choice([1, 7, MOST_SEQ]), tuple(value(s, chance) for s in spec.scalars))
+        for i, spec in enumerate(specs)
+        for _ in range(40)
+    ]
+    expected = [compose(specs[i], v, seq=n, session=SESSION) for i, n, v in messages]
+    found = compiled.write(messages)
+    for message, file, text in zip(messages, found, expected, strict=True):
+        assert file == (None if text is None else text.encode("latin-1")), message[:2]
+    assert {f is None for f in found} == {True, False}
+    # What is written is read, by both sides, as it was written.
+    written = [(m, f) for m, f in zip(messages, found, strict=True) if f is not None]
+    reads = compiled.read([(i, n - 1, f) for (i, n, _), f in written])
+    for ((i, n, values), file), read in zip(written, reads, strict=True):
+        assert (read.what, read.seq, read.scalars) == ("message", n, values)
+        again = parse(specs[i], file.decode("latin-1"), session=SESSION, consumed=n - 1)
+        assert again == Message(specs[i].name, values, n)
+    assert any(values in ((0,), (False,)) for (_, _, values), _ in written)
+
+
+def test_both_sides_read_the_same(both: tuple[Partition, Codec]) -> None:
+    """Whole files, and files damaged in small ways."""
+    partition, compiled = both
+    specs, chance = specs_of(partition), random.Random(2)
+    files: list[tuple[int, int, bytes]] = []
+    while len(files) < 4000:
+        i = chance.randrange(len(specs))
+        values = tuple(value(s, chance) for s in specs[i].scalars)
+        text = compose(
+            specs[i],
+            values,
+            seq=chance.choice([6, 7, 7, 7, 8]),
+            session=chance.choice([SESSION] * 5 + ["9"]),
+        )
+        data = bytearray((text or "0\n").encode("latin-1"))
+        for _ in range(chance.choice([0, 1, 1, 2])):
+            at = chance.randrange(len(data)) if data else 0
+            match chance.randrange(5):
+                case 0:
+                    del data[at:]
+                case 1:
+                    data[at : at + 1] = bytes([chance.choice(b'0 1\n#.-e\x00\xff\t\rx"\\')])
+                case 2:
+                    data[at:at] = bytes([chance.choice(b'0 1\n#.-e+"\\')])
+                case 3:
+                    data = data[: data.find(b"\n") + 1]  # written by hand
+                case _:
+                    del data[at : at + 1]
+        files.append((i, 6, bytes(data)))
+    kinds: set[str] = set()
+    for (i, consumed, data), read in zip(files, compiled.read(files), strict=True):
+        found = parse(specs[i], data.decode("latin-1"), session=SESSION, consumed=consumed)
+        what = "empty" if found is None else "message"
+        if isinstance(found, Refused):
+            what = f"refused {found.reason.value}"
+        assert read.what == what, (data, found)
+        if isinstance(found, Message):
+            assert (read.seq, read.scalars) == (found.seq, found.scalars), data
+        kinds.add(what)
+    reasons = ("shape", "count", "scalar", "trailer", "checksum", "session", "repeated", "lost")
+    assert kinds == {"empty", "message", *(f"refused {r}" for r in reasons)}
+
+
+def test_a_bound_that_colour_sets_prove_is_one(both: tuple[Partition, Codec]) -> None:
+    partition, compiled = both
+    specs, chance = specs_of(partition), random.Random(3)
+    proven = 0
+    for i, (channel, spec) in enumerate(zip(partition.channels, specs, strict=True)):
+        most = longest(partition.net.places[channel.place].colset)
+        if most is None:
+            continue
+        proven += 1
+        for _ in range(20):
+            values = tuple(value(s, chance) for s in spec.scalars)
+            text = compose(spec, values, seq=1, session=SESSION)
+            legal = all(
+                s.kind is not ScalarKind.INT
+                and s.kind is not ScalarKind.INDEX
+                or ((s.low is None or v >= s.low) and (s.high is None or v <= s.high))  # type: ignore[operator]
+                for s, v in zip(spec.scalars, values, strict=True)
+            )
+            assert (text is not None) == legal
+            assert text is None or len(text.split("\n")[0]) <= most
+            assert compiled.write([(i, 1, values)]) == [None if text is None else text.encode()]
+    assert proven > 5
+
+
+@pytest.mark.parametrize("size", [MAX_PAYLOAD - 2, MAX_PAYLOAD - 1])
+def test_the_longest_message(both: tuple[Partition, Codec], size: int) -> None:
+    """With the largest number that line 2 can have, it still fits a file."""
+    partition, compiled = both
+    i = next(
+        k
+        for k, c in enumerate(partition.channels)
+        if partition.net.places[c.place].colset.name == "S7"
+    )
+    (file,) = compiled.write([(i, MOST_SEQ, ("x" * size,))])
+    assert (file is None) == (size > MAX_PAYLOAD - 2)
+    if file is not None:
+        assert len(file) == 4095
+        (read,) = compiled.read([(i, MOST_SEQ - 1, file)])
+        assert read.scalars == ("x" * size,)
