@@ -607,8 +607,10 @@ def test_channels_need_no_graph(explorers: Explorers, tmp_path: Path) -> None:
         said = {c.name: c.answer for c in looked.checks}
         assert said == {
             **dict.fromkeys(said, "unknown"),
-            control.OWNERSHIP: "yes",
-            control.CHANNELS: answer,
+            control_types.OWNERSHIP: "yes",
+            control_types.CHANNELS: answer,
+            control_types.MESSAGES: answer,
+            control_types.MEMORY: answer,
         }
         rests = {c.name: c.rests_on for c in looked.checks}
-        assert rests[control.CHANNELS] == ("markings" if answer == "yes" else None)
+        assert rests[control_types.CHANNELS] == ("markings" if answer == "yes" else None)
