@@ -27,6 +27,7 @@ void pn_arena_reset(pn_arena_t *arena)
     arena->active = 0U;
     arena->used = 0U;
     arena->peak = 0U;
+    arena->start = 0U;
 }
 
 void pn_ctx_init(pn_ctx_t *cx, pn_arena_t *arena, uint64_t seed)
@@ -73,6 +74,7 @@ const void *pn_arena_copy(pn_ctx_t *cx, const void *value, size_t size)
 void pn_arena_seal(pn_arena_t *arena)
 {
     arena->permanent = arena->used;
+    arena->start = arena->peak;
     arena->half = (arena->size - arena->permanent) / 2U / PN_ALIGNMENT * PN_ALIGNMENT;
     arena->active = 0U;
     arena->used = 0U;

@@ -14,7 +14,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define WORD_MAX 512U /* bytes of one scalar's text */
+#define NUMBER_MAX 512U /* no number's text is as long: 1e308 with four decimals has 314 bytes */
 
 static const char HEX[] = "0123456789abcdef";
 
@@ -118,14 +118,14 @@ size_t pn_real_format(double value, char *out, size_t capacity)
     return length;
 }
 
-static size_t string_format(const char *text, char *out, size_t capacity)
+static size_t string_format(const char *text, size_t length, char *out, size_t capacity)
 {
     size_t at = 0U;
     if (capacity < 3U) {
         return 0U;
     }
     out[at++] = '"';
-    for (size_t i = 0U; text[i] != '\0'; i++) {
+    for (size_t i = 0U; i < length; i++) {
         const uint8_t c = (uint8_t)text[i];
         if (at + 6U > capacity) {
             return 0U;
@@ -159,7 +159,9 @@ static size_t scalar_format(const pn_scalar_t *scalar, const pn_leaf_t *leaf, ch
         break;
     case PN_SCALAR_INT:
     case PN_SCALAR_INDEX:
-        length = snprintf(out, capacity, "%" PRId64, leaf->integer);
+        if (!scalar->bounded || ((leaf->integer >= scalar->low) && (leaf->integer <= scalar->high))) {
+            length = snprintf(out, capacity, "%" PRId64, leaf->integer);
+        }
         break;
     case PN_SCALAR_ENUM:
         if ((leaf->integer >= 0) && ((uint64_t)leaf->integer < scalar->name_count)) {
@@ -167,10 +169,12 @@ static size_t scalar_format(const pn_scalar_t *scalar, const pn_leaf_t *leaf, ch
         }
         break;
     case PN_SCALAR_REAL:
-        length = (int)pn_real_format(leaf->real, out, capacity);
+        if (!scalar->bounded || ((leaf->real >= scalar->real_low) && (leaf->real <= scalar->real_high))) {
+            length = (int)pn_real_format(leaf->real, out, capacity);
+        }
         break;
     case PN_SCALAR_STRING:
-        length = (int)string_format((leaf->text != NULL) ? leaf->text : "", out, capacity);
+        length = (int)string_format(leaf->text, (leaf->text != NULL) ? leaf->length : 0U, out, capacity);
         break;
     default:
         break;
@@ -209,7 +213,7 @@ size_t pn_channel_compose(const pn_cell_channel_t *channel, const pn_leaf_t *lea
                           char *out, size_t capacity)
 {
     const size_t payload = pn_scalars_format(channel->scalar, channel->scalar_count, leaf, out, capacity);
-    if (payload == 0U) {
+    if ((payload == 0U) || (payload > PN_CHANNEL_PAYLOAD)) {
         return 0U;
     }
     const uint32_t crc = seal(out, payload, seq, session);
@@ -271,10 +275,24 @@ typedef struct pn_word {
     size_t column; /* 1-based */
 } pn_word_t;
 
+/* A number's word as a string; false if it is too long for one. */
+static bool number_text(const pn_scalar_t *scalar, const pn_word_t *word, char *text, pn_message_t *out)
+{
+    char shown[160];
+    if (word->length >= NUMBER_MAX) {
+        refuse(out, PN_REFUSAL_SCALAR, word->column, "%s is too long for a number (`%s` of colour set `%s`)",
+               pn_quote(word->text, word->length, shown, sizeof shown), scalar->label, scalar->colset);
+        return false;
+    }
+    (void)memcpy(text, word->text, word->length);
+    text[word->length] = '\0';
+    return true;
+}
+
 static bool integer_parse(const pn_scalar_t *scalar, const pn_word_t *word, pn_leaf_t *leaf, pn_message_t *out)
 {
     char shown[160];
-    char text[WORD_MAX];
+    char text[NUMBER_MAX];
     if (!is_number(word->text, word->length, false)) {
         if (is_number(word->text, word->length, true)) {
             refuse(out, PN_REFUSAL_SCALAR, word->column, "found %s where `%s` of colour set `%s` should be an integer",
@@ -285,8 +303,9 @@ static bool integer_parse(const pn_scalar_t *scalar, const pn_word_t *word, pn_l
         }
         return false;
     }
-    (void)memcpy(text, word->text, word->length);
-    text[word->length] = '\0';
+    if (!number_text(scalar, word, text, out)) {
+        return false;
+    }
     errno = 0;
     const long long value = strtoll(text, NULL, 10);
     if (errno == ERANGE) {
@@ -307,14 +326,15 @@ static bool integer_parse(const pn_scalar_t *scalar, const pn_word_t *word, pn_l
 static bool real_parse(const pn_scalar_t *scalar, const pn_word_t *word, pn_leaf_t *leaf, pn_message_t *out)
 {
     char shown[160];
-    char text[WORD_MAX];
+    char text[NUMBER_MAX];
     if (!is_number(word->text, word->length, true)) {
         refuse(out, PN_REFUSAL_SCALAR, word->column, "%s is not a number; `%s` of colour set `%s` should be a real number",
                pn_quote(word->text, word->length, shown, sizeof shown), scalar->label, scalar->colset);
         return false;
     }
-    (void)memcpy(text, word->text, word->length);
-    text[word->length] = '\0';
+    if (!number_text(scalar, word, text, out)) {
+        return false;
+    }
     const double value = strtod(text, NULL);
     if (!isfinite(value)) {
         refuse(out, PN_REFUSAL_SCALAR, word->column, "%s is too large for a real number (`%s` of colour set `%s`)",
@@ -376,7 +396,6 @@ static bool string_parse(const pn_scalar_t *scalar, const pn_word_t *word, pn_le
                 good = false;
             }
         }
-        good = good && (c != '\0');
         if (good) {
             out->text[at++] = c;
         }
@@ -386,6 +405,7 @@ static bool string_parse(const pn_scalar_t *scalar, const pn_word_t *word, pn_le
                pn_quote(word->text, word->length, shown, sizeof shown), scalar->label, scalar->colset);
         return false;
     }
+    leaf->length = (uint32_t)(at - out->text_length);
     out->text[at++] = '\0';
     out->text_length = at;
     return true;
@@ -401,6 +421,7 @@ static bool scalar_parse(const pn_scalar_t *scalar, const pn_word_t *word, pn_le
     leaf->integer = 0;
     leaf->real = 0.0;
     leaf->text = NULL;
+    leaf->length = 0U;
     switch (scalar->kind) {
     case PN_SCALAR_UNIT:
         leaf->kind = PN_LEAF_ENUM;
@@ -438,8 +459,8 @@ static bool scalar_parse(const pn_scalar_t *scalar, const pn_word_t *word, pn_le
     return good;
 }
 
-/* The next word from `*at`; blanks inside double quotes belong to it. False at the end of the line. */
-static bool next_word(const char *line, size_t length, size_t *at, pn_word_t *word)
+/* The next word from `*at`; with `strings` blanks inside double quotes belong to it. False at the end of the line. */
+static bool next_word(const char *line, size_t length, bool strings, size_t *at, pn_word_t *word)
 {
     size_t i = *at;
     bool quoted = false;
@@ -452,7 +473,7 @@ static bool next_word(const char *line, size_t length, size_t *at, pn_word_t *wo
     while ((i < length) && (quoted || !is_blank(line[i]))) {
         if ((line[i] == '\\') && quoted && (i + 1U < length)) {
             i++;
-        } else if (line[i] == '"') {
+        } else if (strings && (line[i] == '"')) {
             quoted = !quoted;
         } else {
             /* a plain byte */
@@ -470,14 +491,14 @@ bool pn_scalars_parse(const pn_scalar_t *scalar, uint32_t count, const char *lin
     pn_word_t word = {line, 0U, 1U};
     size_t at = 0U;
     uint32_t i = 0U;
-    while (next_word(line, length, &at, &word)) {
+    while (next_word(line, length, true, &at, &word)) {
         if (i == count) {
             refuse(out, PN_REFUSAL_COUNT, word.column, "found %s after the %" PRIu32 " value%s that belong here",
                    pn_quote(word.text, word.length, shown, sizeof shown), count, (count == 1U) ? "" : "s");
             return false;
         }
-        if ((word.length >= WORD_MAX) || (out->count >= PN_CHANNEL_SCALARS)) {
-            refuse(out, PN_REFUSAL_SHAPE, word.column, "%s is too long",
+        if (out->count >= PN_CHANNEL_SCALARS) {
+            refuse(out, PN_REFUSAL_SHAPE, word.column, "%s is one value too many",
                    pn_quote(word.text, word.length, shown, sizeof shown));
             return false;
         }
@@ -509,9 +530,9 @@ static bool trailer_parse(const char *payload, size_t payload_length, const char
     pn_word_t crc;
     pn_word_t more;
     size_t at = 0U;
-    const bool shaped = next_word(line, length, &at, &hash) && next_word(line, length, &at, &seq) &&
-                        next_word(line, length, &at, &run) && next_word(line, length, &at, &crc) &&
-                        !next_word(line, length, &at, &more) && (hash.length == 1U) && (hash.text[0] == '#') &&
+    const bool shaped = next_word(line, length, false, &at, &hash) && next_word(line, length, false, &at, &seq) &&
+                        next_word(line, length, false, &at, &run) && next_word(line, length, false, &at, &crc) &&
+                        !next_word(line, length, false, &at, &more) && (hash.length == 1U) && (hash.text[0] == '#') &&
                         (seq.length <= 18U) && is_digit(seq.text[0]) && is_number(seq.text, seq.length, false) &&
                         (run.length < sizeof found_session) && (crc.length == 8U);
     uint32_t found_crc = 0U;
@@ -562,6 +583,14 @@ static size_t trimmed(const char *line, size_t length)
     return n;
 }
 
+bool pn_channel_is_empty(const char *text, size_t length)
+{
+    const size_t first = line_length(text, length);
+    const size_t rest = (first < length) ? first + 1U : length;
+    const bool is_last = (rest == length) || ((rest + 1U == length) && (text[rest] == '\n'));
+    return is_last && (trimmed(text, first) == 1U) && (text[0] == '0');
+}
+
 pn_channel_state_t pn_channel_parse(const pn_cell_channel_t *channel, const char *text, size_t length, const char *session,
                                     uint64_t consumed, pn_message_t *out)
 {
@@ -596,7 +625,7 @@ pn_channel_state_t pn_channel_parse(const pn_cell_channel_t *channel, const char
     if ((trailer > 0U) && !trailer_parse(text, payload, text + rest, trailer, session, out)) {
         return PN_CHANNEL_REFUSED;
     }
-    if ((payload == 1U) && (text[0] == '0')) {
+    if (pn_channel_is_empty(text, length)) {
         return PN_CHANNEL_EMPTY;
     }
     if (!pn_scalars_parse(channel->scalar, channel->scalar_count, text, payload, out)) {

@@ -14,7 +14,6 @@
 #include <stdio.h>
 #include <string.h>
 
-#define CHANNELS_MAX 128U
 #define NAME_SIZE 256U
 
 static const char EMPTY[] = "0\n"; /* the content of a channel without a message; all that is ever written to an incoming one */
@@ -46,7 +45,7 @@ static struct {
     char session[PN_CHANNEL_SESSION];
     char buffer[PN_CHANNEL_TEXT];
     pn_transport_fault_t fault;
-    file_channel_t channel[CHANNELS_MAX];
+    file_channel_t channel[PN_CELL_CHANNELS_MAX];
 } s_files;
 
 const char *pn_files_session(void)
@@ -217,11 +216,7 @@ static bool holds_nothing(uint32_t index, bool *empty)
     if (error != 0) {
         return fail_errno("read", channel->file, error);
     }
-    size_t end = length;
-    while ((end > 1U) && ((s_files.buffer[end - 1U] == '\n') || (s_files.buffer[end - 1U] == '\r') || (s_files.buffer[end - 1U] == ' '))) {
-        end--;
-    }
-    *empty = (end == 1U) && (s_files.buffer[0] == '0');
+    *empty = pn_channel_is_empty(s_files.buffer, length);
     s_files.buffer[(length < sizeof s_files.buffer) ? length : sizeof s_files.buffer - 1U] = '\0';
     return true;
 }
@@ -251,12 +246,8 @@ static bool files_write(void *self, uint32_t index, const pn_leaf_t *leaf)
     }
     const size_t length = pn_channel_compose(channel, leaf, state->seq + 1U, s_files.session, text, sizeof text);
     if (length == 0U) {
-        return fail(false, "the token of place `%s` cannot be written to %s: a value is not finite, or it is too long",
-                    channel->place_name, channel->file);
-    }
-    if ((text[0] == '0') && (text[1] == '\n')) {
-        return fail(false, "the token 0 of place `%s` cannot be told from the empty file %s", channel->place_name,
-                    channel->file);
+        return fail(false, "the token of place `%s` cannot be written to %s: a value is not finite or out of its range, or the message has "
+                    "more than %u bytes", channel->place_name, channel->file, PN_CHANNEL_PAYLOAD);
     }
     if (!put_file(index, text, length)) {
         return false;
@@ -519,8 +510,7 @@ static bool clean_channels(void)
         size_t length = 0U;
         const int error =
             pn_port_read(s_files.directory, channel->file, s_files.buffer, sizeof s_files.buffer, &length, NULL);
-        const bool empty = (error == ENOENT) || ((length >= 1U) && (s_files.buffer[0] == '0') &&
-                                                 ((length == 1U) || (s_files.buffer[1] == '\n')));
+        const bool empty = (error == ENOENT) || ((error == 0) && pn_channel_is_empty(s_files.buffer, length));
         if ((error != 0) && (error != ENOENT)) {
             return fail_errno("read", channel->file, error);
         }
@@ -584,10 +574,6 @@ bool pn_files_open(const pn_cell_t *cell, const pn_files_options_t *options, pn_
     out->wait = files_wait;
     out->close = files_close;
     (void)snprintf(s_files.session, sizeof s_files.session, "%08" PRIx32, pn_port_unique());
-    if (cell->channel_count > CHANNELS_MAX) {
-        return fail(true, "%" PRIu32 " channels, more than the %u that this transport can carry", cell->channel_count,
-                    CHANNELS_MAX);
-    }
     for (uint32_t i = 0U; i < cell->channel_count; i++) {
         const int length = snprintf(s_files.channel[i].temporary, NAME_SIZE, ".%s.%s.tmp", cell->channel[i].file, cell->side);
         if ((length < 0) || ((size_t)length >= NAME_SIZE) || (strchr(cell->channel[i].file, '/') != NULL)) {

@@ -430,7 +430,7 @@ static bool push_leaf(pn_leaf_t *leaf, uint32_t capacity, uint32_t *used, pn_lea
 
 static bool leaves_of(const pn_type_t *type, const void *value, pn_leaf_t *leaf, uint32_t capacity, uint32_t *used)
 {
-    pn_leaf_t one = { PN_LEAF_ENUM, 0, 0.0, NULL };
+    pn_leaf_t one = { PN_LEAF_ENUM, 0, 0.0, NULL, 0U };
     switch (type->kind) {
     case PN_KIND_BOOL:
         one.kind = PN_LEAF_BOOL;
@@ -451,6 +451,7 @@ static bool leaves_of(const pn_type_t *type, const void *value, pn_leaf_t *leaf,
     case PN_KIND_STRING:
         one.kind = PN_LEAF_STRING;
         one.text = load_string(value).bytes;
+        one.length = load_string(value).length;
         return push_leaf(leaf, capacity, used, one);
     case PN_KIND_ENUM:
         one.integer = (int64_t)load_tag(value);
@@ -535,7 +536,7 @@ static bool value_from(pn_ctx_t *cx, const pn_type_t *type, void *value, const p
         if ((one->kind != PN_LEAF_STRING) || (one->text == NULL)) {
             return false;
         }
-        const pn_string_t text = pn_string_make(cx, one->text, strlen(one->text));
+        const pn_string_t text = pn_string_make(cx, one->text, one->length);
         (void)memcpy(value, &text, sizeof text);
         return true;
     }

@@ -370,8 +370,10 @@ const void *pn_ms_subtract(pn_ctx_t *cx, const pn_type_t *type, const void *a, c
 const void *pn_ms_times(pn_ctx_t *cx, const pn_type_t *type, int64_t n, const void *multiset)
 {
     const void *result = NULL;
-    for (int64_t k = 0; (k < n) && pn_ok(cx); k++) {
-        result = pn_list_append(cx, type, multiset, result);
+    for (const void *rest = pn_list_reverse(cx, type, multiset); (rest != NULL) && pn_ok(cx); rest = pn_list_tail(rest)) {
+        for (int64_t k = 0; (k < n) && pn_ok(cx); k++) {
+            result = pn_list_cons(cx, type, pn_list_head(type, rest), result);
+        }
     }
     return result;
 }
@@ -414,14 +416,17 @@ int64_t pn_colset_size(pn_ctx_t *cx, const pn_type_t *type)
 
 int64_t pn_colset_ord(pn_ctx_t *cx, const pn_type_t *type, const void *value)
 {
-    return is_small(cx, type) ? (int64_t)pn_type_position(type, value) : 0;
+    if (is_small(cx, type) && !pn_type_has_position(type, value)) {
+        pn_raise(cx, PN_ERR_DOMAIN, "CPN'Error");
+    }
+    return pn_ok(cx) ? (int64_t)pn_type_position(type, value) : 0;
 }
 
 void pn_colset_col(pn_ctx_t *cx, const pn_type_t *type, void *value, int64_t position)
 {
     (void)memset(value, 0, type->size);
     if (is_small(cx, type)) {
-        if ((position < 0) || (position >= (int64_t)pn_type_size(type))) {
+        if (!type->is_index && ((position < 0) || (position >= (int64_t)pn_type_size(type)))) {
             pn_raise(cx, PN_ERR_DOMAIN, "CPN'Error");
         } else {
             pn_type_value(type, (uint64_t)position, value);

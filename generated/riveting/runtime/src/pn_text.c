@@ -11,6 +11,8 @@ void pn_text_init(pn_text_t *text, char *buffer, size_t capacity)
 {
     text->buffer = buffer;
     text->capacity = capacity;
+    text->flush = NULL;
+    text->user = NULL;
     pn_text_clear(text);
 }
 
@@ -23,15 +25,19 @@ void pn_text_clear(pn_text_t *text)
 
 void pn_text_bytes(pn_text_t *text, const char *bytes, size_t length)
 {
-    const size_t room = text->capacity - 1U - text->length;
-    size_t n = length;
-    if (n > room) {
-        n = room;
-        text->truncated = true;
-    }
-    if (n > 0U) {
-        (void)memcpy(&text->buffer[text->length], bytes, n);
+    size_t done = 0U;
+    while ((done < length) && !text->truncated) {
+        const size_t room = text->capacity - 1U - text->length;
+        const size_t left = length - done;
+        const size_t n = (left < room) ? left : room;
+        (void)memcpy(&text->buffer[text->length], &bytes[done], n);
         text->length += n;
+        done += n;
+        if ((done < length) && (text->flush != NULL)) {
+            text->flush(text);
+        } else {
+            text->truncated = done < length;
+        }
     }
     text->buffer[text->length] = '\0';
 }
@@ -185,7 +191,7 @@ void pn_text_json_leaf(pn_text_t *text, const pn_leaf_t *leaf)
         pn_text_json_real(text, leaf->real);
         break;
     case PN_LEAF_STRING:
-        pn_text_json_string(text, leaf->text, strlen(leaf->text));
+        pn_text_json_string(text, leaf->text, leaf->length);
         break;
     case PN_LEAF_ENUM:
         if (leaf->text != NULL) {

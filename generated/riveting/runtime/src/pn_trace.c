@@ -9,9 +9,22 @@
 
 #include "pn/pn_text.h"
 
+/* Writes what there is of a line, and empties the buffer. */
+static void write_part(pn_text_t *line)
+{
+    pn_trace_t *const trace = line->user;
+    const size_t written = fwrite(line->buffer, 1U, line->length, trace->file);
+    trace->failed = trace->failed || (written != line->length);
+    trace->part += written;
+    pn_text_clear(line);
+}
+
 bool pn_trace_open(pn_trace_t *trace, const char *path, char *buffer, size_t capacity)
 {
     pn_text_init(&trace->line, buffer, capacity);
+    trace->line.flush = write_part;
+    trace->line.user = trace;
+    trace->part = 0U;
     trace->file = NULL;
     trace->step = 0U;
     trace->failed = false;
@@ -28,17 +41,14 @@ bool pn_trace_open(pn_trace_t *trace, const char *path, char *buffer, size_t cap
 static void write_line(pn_trace_t *trace)
 {
     pn_text_char(&trace->line, '\n');
-    if (trace->line.truncated) {
-        trace->failed = true;
+    if (!trace->failed) {
+        write_part(&trace->line);
+        trace->failed = trace->failed || (fflush(trace->file) != 0);
     }
     if (!trace->failed) {
-        const size_t written = fwrite(trace->line.buffer, 1U, trace->line.length, trace->file);
-        if ((written != trace->line.length) || (fflush(trace->file) != 0)) {
-            trace->failed = true;
-        } else {
-            trace->good += written;
-        }
+        trace->good += trace->part;
     }
+    trace->part = 0U;
     pn_text_clear(&trace->line);
 }
 

@@ -191,14 +191,6 @@ static void mkstr_int(const pn_type_t *type, int64_t value, pn_text_t *out)
     pn_text_str(out, has_parentheses ? ")" : "");
 }
 
-static void mkstr_big(pn_big_t value, pn_text_t *out)
-{
-    const bool has_parentheses = pn_big_sign(value) < 0;
-    pn_text_str(out, has_parentheses ? "(" : "");
-    text_big(value, '~', out);
-    pn_text_str(out, has_parentheses ? ")" : "");
-}
-
 static void mkstr_record(const pn_type_t *type, const void *value, pn_text_t *out)
 {
     pn_text_char(out, type->is_tuple ? '(' : '{');
@@ -232,11 +224,9 @@ static void mkstr_union(const pn_type_t *type, const void *value, pn_text_t *out
     const pn_field_t *constructor = constructor_of(type, value, &argument);
     pn_text_str(out, constructor->label);
     if (argument != NULL) {
-        const pn_kind_t kind = constructor->type->kind;
-        const bool is_enclosed = (kind == PN_KIND_RECORD) && constructor->type->is_tuple;
-        pn_text_str(out, is_enclosed ? "" : "(");
+        pn_text_char(out, '(');
         pn_mkstr(constructor->type, argument, out);
-        pn_text_str(out, is_enclosed ? "" : ")");
+        pn_text_char(out, ')');
     }
 }
 
@@ -254,15 +244,12 @@ void pn_mkstr(const pn_type_t *type, const void *value, pn_text_t *out)
         mkstr_int(type, load_int(value), out);
         break;
     case PN_KIND_BIG:
-        mkstr_big(load_big(value), out);
+        text_big(load_big(value), '~', out);
         break;
     case PN_KIND_REAL: {
         char digits[40];
         (void)pn_real_sml(digits, sizeof digits, load_real(value));
-        const bool is_negative = digits[0] == '~';
-        pn_text_str(out, is_negative ? "(" : "");
         pn_text_str(out, digits);
-        pn_text_str(out, is_negative ? ")" : "");
         break;
     }
     case PN_KIND_STRING: {
@@ -584,6 +571,25 @@ void pn_type_value(const pn_type_t *type, uint64_t i, void *value)
             rest -= size;
         }
     }
+}
+
+bool pn_type_has_position(const pn_type_t *type, const void *value)
+{
+    bool has = true;
+    if (type->kind == PN_KIND_INT) {
+        has = type->is_index || ((load_int(value) >= type->low) && (load_int(value) <= type->high));
+    } else if (type->kind == PN_KIND_BIG) {
+        has = (pn_big_order(load_big(value), type->big_low) >= 0) && (pn_big_order(load_big(value), type->big_high) <= 0);
+    } else if (type->kind == PN_KIND_RECORD) {
+        for (uint32_t k = 0U; (k < type->count) && has; k++) {
+            has = pn_type_has_position(type->field[k].type, part(value, type->field[k].offset));
+        }
+    } else if (type->kind == PN_KIND_UNION) {
+        const void *argument = NULL;
+        const pn_field_t *constructor = constructor_of(type, value, &argument);
+        has = (argument == NULL) || pn_type_has_position(constructor->type, argument);
+    }
+    return has;
 }
 
 uint64_t pn_type_position(const pn_type_t *type, const void *value)

@@ -18,9 +18,8 @@
 #define MAX_FIRINGS_CELL 100000U
 #define MAX_FIRINGS_ALONE 1000000U
 
-static max_align_t s_arena_memory[PN_ARENA_DEFAULT_SIZE / sizeof(max_align_t)];
 static char s_trace_line[TRACE_LINE];
-static char s_initial[TRACE_LINE / 2U];
+static char s_initial[(size_t)1U << 20U]; /* tokens of input files, as JSON */
 static char s_directory[512];
 
 bool sup_stop(sup_t *sup, sup_exit_t exit_code, const char *format, ...)
@@ -233,6 +232,9 @@ static bool check_generated(sup_t *sup)
     if (strcmp(pn_net.digest, pn_cell.digest) != 0) {
         return sup_stop(sup, SUP_EXIT_INTERNAL, "net.c and cell_config.c are of different nets: generate again");
     }
+    if ((pn_cell.channel_count > PN_CELL_CHANNELS_MAX) || (pn_cell.peer_count > PN_CELL_PEERS_MAX)) {
+        return sup_stop(sup, SUP_EXIT_INTERNAL, "more than %u channels or %u robots", PN_CELL_CHANNELS_MAX, PN_CELL_PEERS_MAX);
+    }
     for (uint32_t i = 0U; i < pn_cell.channel_count; i++) {
         const pn_cell_channel_t *const channel = &pn_cell.channel[i];
         if ((channel->place >= pn_net.place_count) || (channel->peer >= pn_cell.peer_count) ||
@@ -265,7 +267,7 @@ static bool get_memory(sup_t *sup)
     if ((sup->options.files != NULL) && !pn_file_allow(sup->options.files)) {
         return sup_stop(sup, SUP_EXIT_USAGE, "there is no folder `%s`", sup->options.files);
     }
-    pn_arena_init(&sup->arena, s_arena_memory, sizeof s_arena_memory);
+    pn_arena_init(&sup->arena, pn_cell.arena, pn_cell.arena_size);
     pn_ctx_init(&sup->cx, &sup->arena, 1U);
     return true;
 }
@@ -300,6 +302,9 @@ static bool start(sup_t *sup)
     pn_text_init(&initial, s_initial, sizeof s_initial);
     if (!sup_read_inputs(sup, &initial) || !sup_monitor_start(sup)) {
         return false;
+    }
+    if (initial.truncated) {
+        return sup_stop(sup, SUP_EXIT_USAGE, "the tokens of the input files are too long for the trace");
     }
     if (!pn_trace_open(&sup->trace, sup->options.trace, s_trace_line, sizeof s_trace_line)) {
         return sup_stop(sup, SUP_EXIT_IO, "cannot write the trace %s: %s", sup->options.trace, strerror(errno));

@@ -11,9 +11,18 @@
 
 #include "pn/pn_port.h"
 
-static bool s_occupied[128]; /* channels that held a token when last looked at */
+static bool s_occupied[PN_CELL_CHANNELS_MAX]; /* channels that held a token when last looked at */
 
-/* After a firing: prints messages that appeared, and watches that no channel holds two. */
+/* Whether the token of a channel can be written. */
+static bool is_sendable(const sup_t *sup, const pn_cell_channel_t *channel)
+{
+    static char text[PN_CHANNEL_TEXT];
+    pn_leaf_t leaf[PN_CHANNEL_SCALARS];
+    const uint32_t count = sup->net->place[channel->place].token(sup->marking, 0U, leaf, PN_CHANNEL_SCALARS);
+    return (count == channel->scalar_count) && (pn_channel_compose(channel, leaf, 1U, "00000000", text, sizeof text) > 0U);
+}
+
+/* After a firing: prints messages that appeared, and watches that no channel holds two and that each can be written. */
 static bool note_messages(sup_t *sup)
 {
     for (uint32_t i = 0U; i < sup->cell->channel_count; i++) {
@@ -28,11 +37,12 @@ static bool note_messages(sup_t *sup)
         if ((tokens == 1U) && !s_occupied[i]) {
             char text[PN_CHANNEL_TEXT];
             const bool out = (channel->direction == PN_CHANNEL_OUT);
-            (void)sup_token_text(sup, channel, text, sizeof text);
-            if ((text[0] == '0') && (text[1] == '\0')) {
-                return sup_stop(sup, SUP_EXIT_MODEL, "the token 0 of place `%s` cannot be told from the empty file %s",
-                                channel->place_name, channel->file);
+            if (!is_sendable(sup, channel)) {
+                return sup_stop(sup, SUP_EXIT_MODEL,
+                                "the token of place `%s` cannot be written to %s: a value is not finite, out of its range or too large, or "
+                                "the message has more than %u bytes", channel->place_name, channel->file, PN_CHANNEL_PAYLOAD);
             }
+            (void)sup_token_text(sup, channel, text, sizeof text);
             sup_say(sup, 1, "%10.3f s  %s -> %s  %s: %s", sup->t, out ? sup->cell->side : peer,
                     out ? peer : sup->cell->side, channel->file, text);
         }

@@ -13,9 +13,6 @@
 
 #include "pn/pn_port.h"
 
-#define CHANNELS_MAX 128U
-#define PEERS_MAX 64U
-
 #ifndef SUP_GRACE_S
 #define SUP_GRACE_S 0.5 /* tests have more */
 #endif
@@ -46,8 +43,8 @@ static struct {
     bool all_ended;         /* all peers have finished, seen once */
     uint64_t sent, received;
     uint64_t most_fired;    /* in one cycle */
-    channel_state_t channel[CHANNELS_MAX];
-    peer_state_t peer[PEERS_MAX];
+    channel_state_t channel[PN_CELL_CHANNELS_MAX];
+    peer_state_t peer[PN_CELL_PEERS_MAX];
 } s_cell;
 
 static double wall_time(void)
@@ -194,8 +191,8 @@ static bool publish_token(sup_t *sup, uint32_t index)
                         tokens, channel->file);
     }
     if (place->token(sup->marking, 0U, leaf, PN_CHANNEL_SCALARS) != channel->scalar_count) {
-        return sup_stop(sup, SUP_EXIT_INTERNAL, "place `%s` does not give the values that cell_config.c describes",
-                        place->name);
+        return sup_stop(sup, SUP_EXIT_CHANNEL, "the token of place `%s` cannot be written to %s: an integer in it does not fit into 64 "
+                        "bits", place->name, channel->file);
     }
     if (!s_cell.transport.write(s_cell.transport.self, index, leaf)) {
         return stop_for_transport(sup);
@@ -445,10 +442,6 @@ static void on_notice(void *user, const char *text)
 
 void sup_run_cell(sup_t *sup)
 {
-    if ((sup->cell->channel_count > CHANNELS_MAX) || (sup->cell->peer_count > PEERS_MAX)) {
-        (void)sup_stop(sup, SUP_EXIT_INTERNAL, "more than %u channels or %u robots", CHANNELS_MAX, PEERS_MAX);
-        return;
-    }
     const pn_files_options_t options = {
         .directory = sup->options.directory,
         .create = true,

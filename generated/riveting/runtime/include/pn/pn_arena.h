@@ -26,7 +26,8 @@ typedef struct pn_arena {
     size_t half;           /* bytes of each half; 0 until pn_arena_seal: everything is permanent so far */
     size_t active;         /* 0 or 1 */
     size_t used;           /* bytes used of the active half */
-    size_t peak;           /* largest `used` so far, for reports */
+    size_t peak;           /* largest `used` since it was sealed */
+    size_t start;          /* largest `used` until then */
 } pn_arena_t;
 
 /* `memory` is aligned as max_align_t and lives as long as the arena. */

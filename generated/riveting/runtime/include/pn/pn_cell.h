@@ -13,7 +13,9 @@
 extern "C" {
 #endif
 
-#define PN_CELL_ABI 1U
+#define PN_CELL_ABI 2U
+#define PN_CELL_CHANNELS_MAX 128U
+#define PN_CELL_PEERS_MAX 64U
 
 /* One scalar of a token, as it is written in a file. The place's leaves (pn_place_t.leaf_kind) are the same scalars seen
  * from the net; here is what a reader needs besides: names of constructors and ranges. */
@@ -91,6 +93,8 @@ typedef struct pn_cell {
     const pn_cell_peer_t *peer;
     uint32_t final_count;
     const uint32_t *final_place;
+    void *arena;               /* memory for lists and strings (pn_arena.h), aligned as max_align_t; as much as was found to be enough */
+    size_t arena_size;
 } pn_cell_t;
 
 extern const pn_cell_t pn_cell;

@@ -16,7 +16,8 @@ extern "C" {
 #endif
 
 #define PN_CHANNEL_SCALARS 64U  /* most scalars of a message or of an input file */
-#define PN_CHANNEL_TEXT 4096U   /* most bytes of a channel's file */
+#define PN_CHANNEL_TEXT 4096U   /* more bytes than a channel's file may have */
+#define PN_CHANNEL_PAYLOAD 4055U /* most bytes of line 1 that we write: line 2 fits behind it, however long its seq */
 #define PN_CHANNEL_SESSION 16U  /* bytes of a session's name, terminator included */
 #define PN_CHANNEL_REPORT 512U  /* bytes of a report */
 
@@ -64,7 +65,8 @@ typedef struct pn_message {
  * length (without the terminator), 0 when it does not fit. */
 size_t pn_real_format(double value, char *out, size_t capacity);
 
-/* The scalars separated by one blank. Returns the length, 0 when it does not fit or a real is not finite. */
+/* The scalars separated by one blank. Returns the length; 0 when it does not fit, or when a reader would refuse a scalar: it is not
+ * finite, out of its range, no constructor. */
 size_t pn_scalars_format(const pn_scalar_t *scalar, uint32_t count, const pn_leaf_t *leaf, char *out, size_t capacity);
 
 /* Reads `count` scalars from the `length` bytes of one line and appends them to `out` (leaves, decoded strings).
@@ -72,7 +74,11 @@ size_t pn_scalars_format(const pn_scalar_t *scalar, uint32_t count, const pn_lea
 PN_NODISCARD bool pn_scalars_parse(const pn_scalar_t *scalar, uint32_t count, const char *line, size_t length,
                                    pn_message_t *out);
 
-/* The whole file of a message: payload, and the line `# seq session crc32`. Returns the length, 0 when it does not fit. */
+/* Whether a file holds no message: `0` on line 1, and no line 2. With a line 2 it is the message 0. */
+bool pn_channel_is_empty(const char *text, size_t length);
+
+/* The whole file of a message: payload, and the line `# seq session crc32`. Returns the length; 0 when pn_scalars_format gives nothing
+ * or more than PN_CHANNEL_PAYLOAD. */
 size_t pn_channel_compose(const pn_cell_channel_t *channel, const pn_leaf_t *leaf, uint64_t seq, const char *session,
                           char *out, size_t capacity);
 

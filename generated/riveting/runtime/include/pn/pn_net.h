@@ -46,6 +46,7 @@ typedef struct pn_leaf {
     int64_t integer;   /* BOOL, INT, ENUM */
     double real;       /* REAL */
     const char *text;  /* STRING, and the constructor's name for ENUM; valid until the next firing */
+    uint32_t length;   /* of a STRING's text, in which any byte may be */
 } pn_leaf_t;
 
 /* Called for each enabled binding element; returns false to stop the enumeration. The binding lives until the call returns. */
@@ -60,6 +61,8 @@ typedef struct pn_text {
     size_t capacity;  /* bytes, terminator included */
     size_t length;    /* bytes used; > capacity - 1 never; `truncated` says that something was cut */
     bool truncated;
+    void (*flush)(struct pn_text *text); /* called when the buffer is full: writes it somewhere and empties it; NULL: the rest is cut */
+    void *user;
 } pn_text_t;
 
 /* Markings after a marking, of each only the first word of its packed part, from which all else follows (pn_transition_t.words). */

@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: MIT
  * pn_trace.h - writes `*.trace.jsonl` files (docs/trace.md).
  *
- * A trace that is not open (path NULL) swallows everything, so that hosts need not ask. Each line is written whole and
- * flushed. A write error or a line that is longer than the buffer sets `failed`; nothing is written after that, and what was written
- * of a line that is not whole is cut off when the trace is closed.
+ * A trace that is not open (path NULL) swallows everything, so that hosts need not ask. Each line is flushed when it is whole; a line that
+ * is longer than the buffer is written part by part. A write error sets `failed`; nothing is written after that, and what was written of a
+ * line that is not whole is cut off when the trace is closed.
  */
 #ifndef PN_TRACE_H
 #define PN_TRACE_H
@@ -19,6 +19,7 @@ typedef struct pn_trace {
     bool failed;
     const char *path;
     uint64_t good;   /* bytes of the lines that were written whole */
+    uint64_t part;   /* bytes written of the line being made */
 } pn_trace_t;
 
 /* Opens `path` for writing ("-": standard output; NULL: no trace). `buffer` holds one line at a time and must live as long

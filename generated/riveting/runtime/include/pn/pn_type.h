@@ -110,6 +110,8 @@ uint64_t pn_type_size(const pn_type_t *type);
 void pn_type_value(const pn_type_t *type, uint64_t i, void *value);
 /* The number of a value: inverse of pn_type_value. */
 uint64_t pn_type_position(const pn_type_t *type, const void *value);
+/* Whether all numbers in a value of a small colour set are within their bounds; those of an index are not looked at. */
+bool pn_type_has_position(const pn_type_t *type, const void *value);
 
 /* Leaves: see pn_net.h. Number of leaves written, 0 if there are more than `capacity` or no fixed number. */
 uint32_t pn_to_leaves(const pn_type_t *type, const void *value, pn_leaf_t *leaf, uint32_t capacity);
