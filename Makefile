@@ -1,5 +1,5 @@
 # What `make` users expect; ./dev does the work and says what else there is.
-.PHONY: thorough database-15 help test lint fuzz bench ml-suite conformance mutation oracle misspell
+.PHONY: thorough database-15 help test lint fuzz hosts declarations bench ml-suite conformance mutation oracle misspell adversary
 
 help:
 	@./dev help
@@ -19,3 +19,15 @@ database-15:
 fuzz:
 	./dev fuzz --seconds 600
 	./dev fuzz --nets 50
+
+# Two thousand random nets with references, exceptions, strings, lists and time: all hosts do what the token game does.
+hosts:
+	./dev fuzz --hosts 2000
+
+# Every type at every position, three times over, with other expressions: all of it compiles without a warning, and agrees.
+declarations:
+	./dev fuzz --declarations 5445
+
+# A thousand random cells: what `verify` proves of them must hold in runs of their programs.
+adversary:
+	./dev adversary --cells 1000

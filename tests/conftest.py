@@ -7,11 +7,13 @@ from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
+from hypothesis import HealthCheck, settings
 
 from helpers.compiled import FAST, SANITIZERS, Workshop
 from helpers.session import once
 from helpers.thorough import THOROUGH
 from pn2code.toolchain import build, programs
+from pn2code.verify import proofs
 
 ROOT = Path(__file__).resolve().parent.parent
 
@@ -31,6 +33,10 @@ def shared() -> Path:
     return path
 
 
+settings.register_profile(
+    "any machine", deadline=None, suppress_health_check=[HealthCheck.too_slow]
+)
+settings.load_profile("any machine")
 _DELIVERED = programs.FLAGS
 
 
@@ -41,6 +47,7 @@ def quick_programs() -> Iterator[None]:
     Not so for those who use `as_delivered`, nor in `make thorough`.
     """
     with pytest.MonkeyPatch.context() as changed:
+        changed.setattr(proofs, "MOST_SECONDS", 3600.0)  # what is known does not depend on time
         if not THOROUGH:
             flags = tuple("-O0" if flag == "-O2" else flag for flag in _DELIVERED)
             changed.setattr(programs, "FLAGS", flags)

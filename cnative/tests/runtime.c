@@ -4,10 +4,13 @@
  *     runtime           all tests
  *     runtime --repr    reads bit patterns of doubles in hex, one a line, and writes the shortest decimal of each
  */
+#define _POSIX_C_SOURCE 200809L /* mkstemp */
+
 #include <inttypes.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
 
 #include "pn/pn_arena.h"
 #include "pn/pn_bag.h"
@@ -296,7 +299,21 @@ static void test_trace(void)
     pn_trace_note(&trace, 1.0, "tool", NULL);
     CHECK(pn_trace_close(&trace));
     CHECK(!pn_trace_open(&trace, "/nonexistent/folder/x", line, sizeof line));
-    CHECK(pn_trace_open(&trace, "/dev/null", line, sizeof line));
+    /* A line that is longer than the buffer is written part by part. */
+    char path[] = "/tmp/pn2code-trace-XXXXXX";
+    const int made = mkstemp(path);
+    CHECK(made >= 0);
+    CHECK(pn_trace_open(&trace, path, line, sizeof line));
+    pn_trace_note(&trace, 1.0, "a name that is too long for a buffer of sixty-four characters", NULL);
+    CHECK(pn_trace_close(&trace));
+    char whole[256] = "";
+    FILE *const file = fopen(path, "r");
+    CHECK((file != NULL) && (fgets(whole, (int)sizeof whole, file) != NULL));
+    CHECK(strcmp(whole, "{\"t\": 1.0, \"event\": \"a name that is too long for a buffer of sixty-four characters\"}\n") == 0);
+    (void)fclose(file);
+    (void)close(made);
+    (void)unlink(path);
+    CHECK(pn_trace_open(&trace, "/dev/full", line, sizeof line));
     pn_trace_note(&trace, 1.0, "a name that is too long for a buffer of sixty-four characters", NULL);
     CHECK(!pn_trace_close(&trace)); /* a line that was cut is a failure, not half a line */
 }

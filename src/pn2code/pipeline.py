@@ -33,6 +33,7 @@ from pn2code.lowering import net as lower_net
 from pn2code.lowering import robot as lower_robot
 from pn2code.net import front
 from pn2code.net.flat import FlatNet
+from pn2code.net.reached import unused_functions
 from pn2code.verify import arena
 from pn2code.verify.proofs import prove
 from pn2code.verify.rooms import Room, with_rooms
@@ -84,7 +85,7 @@ def generate(
     replaced = {**(config.values if config else {}), **(values or {})}
 
     net = front.load(net_path, d, replaced, int_bits=int_bits)
-    _refuse_unsupported(d)
+    _refuse_unsupported(d, net)
     if net is None or d.has_errors:
         return None
     partition = divided(net, config, d)
@@ -163,11 +164,12 @@ def check_geometry(config: CellConfig, d: Diagnostics, *, to_run: bool) -> None:
         scene.load(cell.geometry, cell.folder, cell.locator.origin, d, partial=not to_run)
 
 
-def _refuse_unsupported(d: Diagnostics) -> None:
-    """Make the warnings of unsupported things errors."""
+def _refuse_unsupported(d: Diagnostics, net: FlatNet | None) -> None:
+    """Make the warnings of unsupported things errors, but for functions that no run of the net comes to."""
+    is_unused = unused_functions(net) if net is not None else lambda warning: False
     d.items = [
         replace(i, severity=Severity.ERROR, hint="a supervisor must not stop there: remove it")
-        if i.severity is Severity.WARNING and i.code.startswith("unsupported-")
+        if i.severity is Severity.WARNING and i.code.startswith("unsupported-") and not is_unused(i)
         else i
         for i in d.items
     ]

@@ -75,7 +75,7 @@ MISTAKES = {
         NET, '[[property]]\nname = "p"\nholds = "never tokens(Sup\'Peces) > 1"\n',
         "property-unknown-name", "Sup'Peces"),
     "a sensor that nobody asks": (
-        NET, '[sensors.eye]\nvariable = "kk"\n', "cell-value", "sensor `eye` is asked by nobody"),
+        NET, '[sensors.eye]\nvariable = "kk"\n', "cell-value", "no robot or device asks sensor `eye`"),
 }  # fmt: skip
 
 

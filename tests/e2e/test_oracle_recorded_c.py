@@ -10,9 +10,10 @@ import pytest
 from tests.oracle.recorded import rows
 from tests.oracle.texts import NET
 
-from helpers.compiled import Workshop, lowered, run
-from helpers.netbuilder import flat
+from helpers.compiled import Workshop, agrees, lowered, run
+from helpers.netbuilder import flat, load
 from helpers.thorough import THOROUGH
+from pn2code.semantics.game import Game
 
 pytestmark = [
     pytest.mark.cc,
@@ -58,3 +59,52 @@ def test_compiled_nets_say_the_same(fast_workshop: Workshop, tmp_path: Path) -> 
     for i, some in enumerate(places):
         found = line["marking"][f"Top.P{i}"][0][1].split("|")
         assert list(zip([e for e, _ in some], found, strict=True)) == some
+
+
+LIBRARY = """
+net Library
+  standard
+  structure Names = RedBlackMapFn (struct type ord_key = string val compare = String.compare end);
+  structure Texts = SplaySetFn (struct type ord_key = string val compare = String.compare end);
+  var n: INT;
+  val known = List.foldl Names.insert' Names.empty [("b", 2), ("a", 1), ("c", 3)];
+  val day = Date.date {year = 2024, month = Date.Feb, day = 30, hour = 25, minute = 2, second = 3, offset = NONE};
+  place P : INT = 1`1++1`2++1`3
+  place Q : STRING
+  trans T
+    in P : n
+    out Q : String.concat (List.map (fn (k, x) => k ^ Int.toString (x * n)) (Names.listItemsi known))
+    out Q : String.concat (Texts.listItems (Texts.fromList ["z", "y", Int.toString n]))
+    out Q : Date.toString day ^ Int.toString (Date.yearDay day + n)
+    out Q : ListFormat.listToString Int.toString (ListMergeSort.sort Int.> [3, n, 2])
+    out Q : IntInf.toString (RealToIntInf n 3.14159) ^ Real.toString (IntInfToReal n 314)
+    out Q : Int.toString (IntBinaryMap.lookup (IntBinaryMap.singleton (2, 7), n) handle LibBase.NotFound => n)
+    out Q : Int.toString (Fifo.head (#1 (Fifo.dequeue (Fifo.enqueue (Fifo.enqueue (Fifo.empty, 1), n)))))
+"""
+
+
+def test_the_utility_library_is_compiled(fast_workshop: Workshop, tmp_path: Path) -> None:
+    net = flat(LIBRARY)
+    ir, d = lowered(net)
+    assert ir is not None, [e.message for e in d.errors]
+    program = fast_workshop.build(ir, tmp_path / "net")
+    assert agrees(net, program, seed=1, steps=5) == 3
+    game = Game(net)
+    game.fire(game.enabled()[0])
+    [found] = [game.marking_text(p.name) for p in net.places if p.short == "Q"]
+    wanted = ('"1yz"', '"3131.4"', '"Sat Mar 02 01:02:03 202462"', '"[1,2,3]"', '"a1b2c3"')
+    assert all(f"1`{text}" in found for text in wanted), found
+    assert '2`"1"' in found
+
+
+def test_what_is_not_there_is_named() -> None:
+    net, d = load(
+        "net N\n  standard\n  val t = fn () => HashTable.mkTable ();\n  place P : INT = 1`1"
+    )
+    assert net is not None
+    assert [(w.code, w.message) for w in d] == [
+        (
+            "unsupported-function",
+            "`HashTable.mkTable` is not available here: pn2code has not got this part of the library",
+        )
+    ]

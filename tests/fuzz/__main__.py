@@ -3,6 +3,8 @@
     python -m tests.fuzz [--seconds 600] [--cases N] [--seed 1] [--save FOLDER]
     python -m tests.fuzz --nets N       random nets are compiled and compared instead: see `walks`
     python -m tests.fuzz --graphs N     whole state spaces of random nets: see `graphs`
+    python -m tests.fuzz --hosts N      random nets with references in all hosts: see `hosts`
+    python -m tests.fuzz --declarations N   every type at every position: see `declarations`
 
 A case is a number: case 17 is the same net wherever the base nets are the same. Nothing but diagnostics may come
 out: no exception, no more than 10 s of the processor, no more than 1 GB, and a net that is refused has an error that
@@ -176,6 +178,14 @@ def main() -> int:
         from tests.fuzz import graphs
 
         return graphs.main()
+    if any(o.startswith("--hosts") for o in others):
+        from tests.fuzz import hosts
+
+        return hosts.main()
+    if any(o.startswith("--declarations") for o in others):
+        from tests.fuzz import declarations
+
+        return declarations.main()
     if others:
         parser.error(f"unrecognized arguments: {' '.join(others)}")
     shared = Path(os.environ.get("PN2CODE_SHARED", ROOT.parent / "shared"))

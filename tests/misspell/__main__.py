@@ -1,7 +1,8 @@
 """`./dev misspell`: each key and each name of the examples' cell.toml misspelt, deleted, duplicated, of a wrong type.
 
 Each mistake must be refused (by `check` or `generate`), or be without effect: the generated files are the same, or the
-same but for a name that is chosen there. Prints those that go unnoticed, and a table; exit code 1 if there is one.
+same but for a name that is chosen there. A wrong type must be refused in any case. Prints those that go unnoticed, and
+a table; exit code 1 if there is one.
 """
 
 from __future__ import annotations

@@ -57,6 +57,7 @@ _BASIC = {
     "Unit": "unit",
     "IntInf": "IntInf.int",
 }
+_INT_KEY = re.compile(r"Int\w+(?:Map\.Key\.ord_key|Set\.item)")
 _BASIC["Time"] = "IntInf.int"
 
 
@@ -122,7 +123,7 @@ class _TypeReader:
         return [self.named(token, ())]
 
     def named(self, name: str, arguments: tuple[Type, ...]) -> Type:
-        name = _NAMES.get(name, name)
+        name = "int" if _INT_KEY.fullmatch(name) else _NAMES.get(name, name)
         if name == "unit":
             return TRecord()
         if name in ("ms", "list"):
@@ -132,6 +133,8 @@ class _TypeReader:
         basic = re.fullmatch(r"CPN'ColorSets\.(\w+)CS\.cs", name)
         if basic:
             return self.named(_BASIC.get(basic[1], name), ())
+        if name.endswith("'timed.cs") and name[:-9] in self.colsets:
+            return TCon("timed", (self.colsets[name[:-9]].type,))
         colset = self.colsets.get(name.removesuffix(".cs"))
         return colset.type if colset is not None else TCon(name, arguments)
 
@@ -158,7 +161,7 @@ def normal(t: Type) -> str:
                 return "{" + ",".join(f"{k}:{text(x)}" for k, x in t.fields) + "}"
             case TCon():
                 if t.name.startswith("?."):
-                    return order.setdefault(t.name, f"'{len(order)}")
+                    return "{}"  # what nothing decides: SML/NJ makes a new type, pn2code takes unit
                 return " ".join([*map(text, t.args), t.name])
 
     return text(t)
@@ -287,7 +290,7 @@ class Here:
         """The answer to an expression; declarations may come before it."""
         d = Diagnostics()
         with self.elaborator.aside(d) as made:
-            self.elaborator.declarations(SourceText(f"val it'is = (\n{text}\n);", NOWHERE))
+            self.elaborator.declarations(SourceText(f"val it'is =\n{text}\n;", NOWHERE))
             program = self.elaborator.program()
         if d.has_errors:
             first = d.errors[0]

@@ -19,6 +19,7 @@ from typing import Any
 from pn2code.conformance.graphs import Arc, Node, engine_arcs, engine_nodes, our_arcs, our_nodes
 from pn2code.diagnostics import Diagnostics, Severity
 from pn2code.net import front
+from pn2code.net.flat import ArcKind
 from pn2code.semantics.effects import Effects, outside
 from pn2code.semantics.game import Game, GameError
 from pn2code.semantics.graph import StateSpace, state_space
@@ -54,6 +55,13 @@ NOTHING = Verdict("")
 ENGINE = Verdict("engine", "the engine fails with an internal error")
 LATE = {"literal-too-large"}
 """What is found wrong here by checking, and by the engine only when it makes code of the net."""
+GROUPS = Verdict("engine", "it loses count of variables where several arcs come from one place")
+UNBOUND = ("No complete binding sequence", "Cannot bind", "IllegalBit")
+TAKING = (ArcKind.INPUT, ArcKind.BOTH)
+CLOCK = Verdict(
+    "engine", "where nothing can occur any more it goes on to a time noted for tokens that are gone"
+)
+DEAD = "No more enabled transitions!"
 LOOSE = Verdict(
     "engine", "it confuses the instances of a page that has a socket for a port only in some"
 )
@@ -94,6 +102,8 @@ class Seen:
         wrong = [e for e in answer["errors"] if not self._warns(e)]
         if any(BROKEN in e["message"] for e in wrong):
             return ENGINE
+        if wrong and all(self._grouped(e) for e in wrong):
+            return GROUPS
         if failure is not None and failure["stage"] == "check" and failure["kind"] != "rejected":
             return NOTHING
         if self.raised and self._says_error(answer):
@@ -120,6 +130,14 @@ class Seen:
 
     def _warns(self, error: dict[str, Any]) -> bool:
         return bool(self._warning(error))
+
+    def _grouped(self, error: dict[str, Any]) -> bool:
+        """Whether the engine finds no binding of a transition that takes from one place over several arcs."""
+        found = [t for t in self.net.transitions if t.id == error["id"]] if self.net else []
+        taking = Counter(a.place for t in found[:1] for a in t.arcs if a.kind in TAKING)
+        return any(n > 1 for n in taking.values()) and any(
+            words in error["message"] for words in UNBOUND
+        )
 
     @staticmethod
     def _says_error(answer: dict[str, Any]) -> bool:
@@ -158,6 +176,12 @@ class Seen:
         if self.loose:
             return LOOSE
         followed = follow(recording(answer), self.game)
+        if followed.why.startswith("in the end the time is") and answer["stop"] == DEAD:
+            return (
+                CLOCK
+                if float(str(answer["final_time"]).replace("~", "-")) > followed.time
+                else differs(followed.why)
+            )
         if not followed.ok:
             return differs(f"step {followed.steps + 1}: {followed.why}")
         return Verdict("random") if followed.random else AGREES

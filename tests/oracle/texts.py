@@ -85,7 +85,7 @@ _OUTSIDE = re.compile(
     r"|Replications|Queue|Date\.(now|from|local)|Internal|ModelTime\.(model_time|time)|Rand|Misc|NetHostDB|NetServDB)"
 )
 _DRAWN = {"uniform", "discrete", "bernoulli", "binomial", "normal", "exponential", "poisson", "erlang", "chisq", "student",
-    "gamma", "beta", "weibull", "rayleigh", "random", "print", "inst", "use"}  # fmt: skip
+    "gamma", "beta", "weibull", "rayleigh", "random", "print", "inst", "use", "time_of_day"}  # fmt: skip
 NUMBERS = ("0", "1", "2", "3", "~1", "~2", "5", "7", "31", "100", "1073741823", "~1073741824")
 REALS = ("0.0", "1.0", "~1.5", "2.5", "0.5", "~0.5", "1E10", "1E~7", "123456.789", "3.0")
 TEXTS = (
@@ -108,7 +108,7 @@ WORD_LITERALS = ("0w0", "0w1", "0wxFF", "0w5", "0wx7FFFFFFF")
 OPERATORS = {
     "+": "n n n", "-": "n n n", "*": "n n n", "div": "i i i", "mod": "i i i", "/": "r r r", "^": "s s s", "<": "o o b", "<=": "o o b",
     ">": "o o b", ">=": "o o b", "=": "e e b", "<>": "e e b", "::": "a al al", "^^": "al al al", "++": "al al al", "--": "al al al",
-    "==": "al al b", "<><>": "al al b", "<<": "al al b", "<<=": "al al b", ">>": "al al b", ">>=": "al al b", "`": "i a al", "**": "i al al",
+    "==": "al al b", "<><>": "al al b", "<<": "al al b", "<<=": "al al b", ">>": "al al b", ">>=": "al al b", "`": "c a al", "**": "c al al",
     "andalso": "b b b", "orelse": "b b b",
 }  # fmt: skip
 
@@ -255,9 +255,10 @@ class Texts:
         return f"({text})"
 
     def operation(self, t: Type, depth: int) -> str | None:
+        small = self.r.choice(NUMBERS[:9])
         for op in self.r.sample(list(OPERATORS), len(OPERATORS)):
             left, right, result = OPERATORS[op].split()
-            free: dict[str, Type] = {"i": INT, "r": REAL, "s": STRING, "b": BOOL}
+            free: dict[str, Type] = {"i": INT, "c": INT, "r": REAL, "s": STRING, "b": BOOL}
             free["n"] = self.r.choice((INT, REAL, INTINF))
             free["o"] = self.r.choice((INT, REAL, STRING, CHAR))
             free["e"] = self.r.choice((INT, STRING, REAL, list_of(INT), tuple_of(INT, BOOL)))
@@ -272,7 +273,10 @@ class Texts:
             if result == "n" and t in (INT, REAL, INTINF):
                 free["n"] = t
             if free[result] == t:
-                return f"({self.of(free[left], depth - 1)} {op} {self.of(free[right], depth - 1)})"
+                first = (
+                    small if left == "c" else self.of(free[left], depth - 1)
+                )  # coefficients stay small
+                return f"({first} {op} {self.of(free[right], depth - 1)})"
         return None
 
     def block(self, t: Type, depth: int) -> str:

@@ -51,6 +51,8 @@ MISTAKES = {
     "warn_condition": ("[primitives]", "[report]\nwarn_condition = -1\n[primitives]", "cell-value", "above zero", ""),
     "duration": ("duration_s = 1.0", "duration_s = inf", "cell-value", "`duration_s` is inf", ""),
     "layout: no table": ("[primitives]", "[layouts.a]\nrobots = 3\n[primitives]", "cell-value", "`robots` is `3`", ""),
+    "layout: no robot": ("[primitives]", "[layouts.a.robots]\nrobot1 = 3\n[primitives]", "cell-value",
+                         "`robot1` is `3`", ""),
     "layout: a page": ("[primitives]", '[layouts.a.robots.robot1]\ninstance = "Supervisor"\n[primitives]',
                        "cell-key", "unknown key `instance`", "its page is the same in all layouts"),
     "layout: description": ("[primitives]", "[layouts.a]\ndescription = 3\n[primitives]", "cell-value", "a text", ""),

@@ -95,7 +95,7 @@ def test_a_sensor_that_nobody_asks_is_a_mistake(tmp_path: Path) -> None:
     cell = Cell(tmp_path, GRIPPER, ("x in INT", "y out INT"), extra=EXTRA, toml=toml)
     assert cell.ir is None
     assert cell.messages == [
-        "error[cell-value] sensor `other` is asked by nobody: no robot or device leaves variable "
+        "error[cell-value] no robot or device asks sensor `other`: none of them leaves variable "
         "`dd` open"
     ]
 

@@ -61,7 +61,7 @@ typedef struct pn_type {
     bool is_index;                /* INT: a value of an index colour set: `name_of_value[0] (number)` */
     bool is_float32;              /* REAL: stored in single precision */
     bool is_narrow;               /* something in it is stored in single precision */
-    bool is_tuple;                /* RECORD: printed as a JSON array */
+    bool is_tuple;                /* RECORD: printed as a JSON array; ENUM: a union of constants, printed as an array of one */
     int64_t low;
     int64_t high;
     pn_big_t big_low;

@@ -347,7 +347,7 @@ def _directed(
     """Whether exactly one owner puts and exactly one other takes, with plain arcs only."""
 
     def names(which: set[int]) -> str:
-        return ", ".join(f"`{owners[i].name}`" for i in sorted(which)) or "nobody"
+        return ", ".join(f"`{owners[i].name}`" for i in sorted(which)) or "no owner"
 
     if len(writers) == 1 and len(readers) == 1 and writers != readers:
         odd = [

@@ -143,7 +143,9 @@ def _apply_layout(
         known = _table(data.get("robots"))
         for key in ("robots", "motion", "scene"):
             r.get(table, at, key, dict, "a table", {})
-        for robot, changed in _table(table.get("robots")).items():
+        robots = _table(table.get("robots"))
+        for robot in robots:
+            changed = r.get(robots, (*at, "robots"), robot, dict, "a table", {})
             if robot not in known:
                 r.d.error(
                     codes.CELL_KEY,
@@ -151,7 +153,7 @@ def _apply_layout(
                     r.at(*at, "robots", robot),
                     hint=did_you_mean(robot, known),
                 )
-            elif "instance" in _table(changed):
+            elif "instance" in changed:
                 r.d.error(
                     codes.CELL_KEY,
                     f"unknown key `instance` in `{'.'.join((*map(str, at), 'robots', robot))}`",

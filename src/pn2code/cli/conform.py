@@ -60,7 +60,7 @@ def conform(
 ) -> None:
     """Compare the compiled net, the supervisor and each robot program with the net, state by state.
 
-    Exit code 0: all that was compared is equal, and it was everything; 1: something differs; 3: a limit was hit.
+    Exit code 0: everything was compared and agrees; 1: something differs; 3: only a part was compared.
     """
     d = Diagnostics()
     found = conform_cell(
@@ -108,32 +108,32 @@ def _core(core: CoreReport) -> str:
         return f"net.c         DIFFERS from the token game: {core.deviation}"
     if core.complete:
         return (
-            f"net.c         equals the token game in all {core.nodes:,} markings that can be reached, "
-            f"{core.arcs:,} occurrences"
+            f"net.c         agrees with the token game in all {core.nodes:,} reachable markings "
+            f"and {core.arcs:,} occurrences"
         )
     return (
-        f"net.c         equals the token game in a sample: {core.walks} random runs, "
+        f"net.c         agrees with the token game in a sample: {core.walks} random runs, "
         f"{core.steps:,} occurrences (the state space is larger than the limit)"
     )
 
 
 def _supervisor(report: Report) -> list[str]:
     counts = (
-        f"{report.states:,} states ({report.sights:,} different ones for it), "
-        f"{report.cycles:,} cycles, {report.firings:,} firings "
-        f"({len(report.transitions)} of {report.all_transitions} different transitions), "
-        f"{report.received:,} messages to it, {report.sent:,} from it"
+        f"{report.states:,} states (it can tell {report.sights:,} of them apart): "
+        f"{report.cycles:,} cycles, {report.firings:,} firings of "
+        f"{len(report.transitions)} of its {report.all_transitions} transitions, "
+        f"{report.received:,} messages received, {report.sent:,} sent"
     )
     if report.deviation is not None:
         return [
             f"supervisor    DIFFERS from the net: {report.deviation.what}",
             *_way(report.deviation.way),
         ]
-    some = "in all" if report.complete else f"in part ({report.why}):"
-    lines = [f"supervisor    equals the net {some} {counts}"]
+    some = "all" if report.complete else f"a part ({report.why}),"
+    lines = [f"supervisor    agrees with the net in {some} {counts}"]
     if report.overruns:
         lines.append(
-            "              in the net a message can come while the one before has not been taken:"
+            "              in the net a message can arrive before the previous one has been taken:"
         )
         lines += _way(report.overruns[0])
     return lines
@@ -143,10 +143,10 @@ def _robot(report: RobotReport) -> list[str]:
     name = f"{report.robot:<13}"
     if report.deviation is not None:
         return [f"{name} DIFFERS from its page: {report.deviation}", *_way(report.way)]
-    some = "in all" if report.complete else "in part (the limit):"
+    some = "all" if report.complete else "a part (a limit was reached),"
     return [
-        f"{name} equals its page {some} {report.states:,} states, {report.marks:,} transitions "
-        f"({report.transitions} of {report.all_transitions} different ones), "
+        f"{name} agrees with its page in {some} {report.states:,} states: {report.marks:,} firings of "
+        f"{report.transitions} of its {report.all_transitions} transitions, "
         f"{report.commands:,} commands"
     ]
 

@@ -128,7 +128,12 @@ def run(
             progress.say("drawing charts")
             from pn2code.report import charts
 
-            charts.draw(result.record, tuple(r.name for r in result.prepared.config.programs), out)
+            prepared = result.prepared
+            limits = charts.Limits(
+                prepared.robot_cell.scene.warning_clearance, prepared.config.report.warn_condition
+            )
+            names = tuple(r.name for r in prepared.config.programs)
+            charts.draw(result.record, names, limits, out)
     if result is None:
         stop(d, form)
     print_diagnostics(d.sorted(), form)

@@ -267,10 +267,9 @@ class _Product:
             text = element_text(self._game.colours, self._net, element)
             raise _DeviationError(f"{why}, but by the net {text} is enabled")
         # A command belongs to a transition, which is announced after it.
-        moved = tuple(c for c in state.done if not isinstance(c, commands.Wait))
-        if moved:
+        if state.done:
             raise _DeviationError(
-                f"{why}, but has commanded {_list(moved)}, which the net does not call"
+                f"{why}, but has commanded {_list(state.done)}, which the net does not call"
             )
 
     def _said(self, state: _State, sensor: str) -> list[Scalar]:
@@ -305,11 +304,6 @@ class _Product:
         until = self._waited(request)
         if isinstance(request, Execute) and until is None:
             self._done.append(request.command)
-        if isinstance(request, AwaitFile | Finished) and self._done:
-            raise _DeviationError(
-                f"the script has commanded {_list(tuple(self._done))} after line {before} without announcing a "
-                "transition"
-            )
         after = _State(
             self._marking,
             self._interpreter.save(),

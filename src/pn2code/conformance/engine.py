@@ -9,11 +9,13 @@ before pn2code. What follows is found again and again; pn2code does what is writ
 | net | engine | pn2code |
 |---|---|---|
 | two arcs from one place with patterns that share variables, but not the first one: `(a, b)` and `(c, b)` | `InternalError: insert_transvar`, the page cannot be checked | accepts it: the shared variable has one value |
+| several arcs from one place, one of which shares a variable with an arc that comes later in the file | `No complete binding sequence`, `Cannot bind`, `IllegalBit`; accepted when the arcs come in another order | accepts it |
 | a variable twice in one pattern: `(x, x)` | takes a false binding, then `Internal Error: rm ...` | both parts are equal |
 | a variable in a delay that nothing binds: `@+m` | accepts it, then cannot compile the code that it made | `unbound-variable` |
 | an integer literal of more than 31 bits | accepts it, then cannot compile the code that it made | `literal-too-large` |
 | a port that has a socket at one substitution transition of the page and none at another | gives the wrong socket, or `Exception Subscript` | a place of its own, with a warning |
 | equal tokens with different time stamps | takes one at random, in state spaces, too | all of them |
+| a timed net in which nothing can occur any more | its clock may go on to a time that it has noted for tokens that are gone | the time of the last step |
 | state spaces of timed nets, 4.0.0 | restores time stamps relative to the time of the node (those of 3.0.3 are right) | restores them |
 | top-level names that its state-space sources use | the tool cannot be entered | a warning (`state-space-name`) |
 

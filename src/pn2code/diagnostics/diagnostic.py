@@ -69,6 +69,7 @@ class Diagnostics:
 
     items: list[Diagnostic] = field(default_factory=list)
     _looked_at: list[Diagnostic] = field(default_factory=list, repr=False)
+    _list: list[Diagnostic] | None = field(default=None, repr=False)
     _errors: list[Diagnostic] = field(default_factory=list, repr=False)
     _known: set[Diagnostic] = field(default_factory=set, repr=False)
 
@@ -139,8 +140,14 @@ class Diagnostics:
     def _look(self) -> None:
         """Takes note of what is new in `items`: nets with thousands of errors must not take forever."""
         seen = len(self._looked_at)
-        if seen > len(self.items) or (seen and self.items[seen - 1] is not self._looked_at[-1]):
-            seen = 0  # somebody took items away
+        same_list = self._list is self.items
+        self._list = self.items
+        if (
+            not same_list
+            or seen > len(self.items)
+            or (seen and self.items[seen - 1] is not self._looked_at[-1])
+        ):
+            seen = 0  # somebody took items away, or has put others in their place
             self._looked_at.clear()
             self._errors.clear()
             self._known.clear()

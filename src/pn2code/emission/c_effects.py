@@ -102,7 +102,8 @@ class Effects:
     def _reached(self, item: object) -> list[object]:
         """All pieces of IR in it and in the functions that it calls."""
         bodies = {f.key: f.body for f in self._functions}
-        found, waiting = list(ir_nodes(item)), list(called(item))
+        found: list[object] = list(ir_nodes(item))
+        waiting = [n.function for n in found if isinstance(n, ir.FunCall)]
         known: set[str] = set()
         while waiting:
             key = waiting.pop()

@@ -197,7 +197,9 @@ class Expressions:
 
     def _is_object(self, e: Ir) -> bool:
         match e:
-            case ir.Use() | ir.GlobalUse() | ir.Bound() | ir.TokenValue():
+            case ir.GlobalUse(type=t):
+                return t.rep is not Rep.UNIT  # which has no variable
+            case ir.Use() | ir.Bound() | ir.TokenValue():
                 return True
             case ir.Member(record=inner):
                 return self._is_object(inner)

@@ -42,6 +42,8 @@ class Orders:
             lines += ["    (void)a;", "    (void)b;", "    return false;"]
         elif d.type.rep is Rep.STRUCT and d.fields:
             self._fields(key, "", lines)
+            if not lines:  # all its components are units
+                lines += ["    (void)a;", "    (void)b;"]
             lines.append("    return false;")
         else:
             lines.append(f"    return pn_compare(&{self._names.table(key)}, a, b) < 0;")

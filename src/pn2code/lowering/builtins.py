@@ -274,6 +274,15 @@ class Builtins:
             assert isinstance(definition, ir.StructDef)
             record = body.atomic(record, "record")
             label = name.removeprefix("set_")
+            own = colset.resolved
+            labels = own.labels or tuple(str(i) for i in range(1, len(own.components) + 1))
+            component = own.components[labels.index(label)]
+            assert component is not None
+            table = types.colset(component)
+            if types.is_restricted(table):
+                value = body.addressable(value, "component")
+                legal = ir.Op("Colset.legal", (value,), ir.BOOL, table)
+                body.emit(ir.If(legal, (), (ir.Raise("CPN'Error"),)))
             fields = tuple(
                 (x, value if x == label else ir.Member(record, x, part))
                 for x, part in definition.fields

@@ -80,7 +80,7 @@ def _unasked(
         if sensor.name not in asked:
             d.error(
                 CELL_VALUE,
-                f"sensor `{sensor.name}` is asked by nobody: no robot or device leaves variable "
+                f"no robot or device asks sensor `{sensor.name}`: none of them leaves variable "
                 f"`{sensor.variable}` open",
                 sensor.origin,
                 hint=did_you_mean(sensor.variable, names - {sensor.variable}),

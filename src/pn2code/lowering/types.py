@@ -470,6 +470,8 @@ class Types:
                 assert not isinstance(low, str)
                 assert not isinstance(high, str)
                 made = replace(made, element=self._part(colset.components[0]), low=low, high=high)
+            case Kind.UNION if t.rep is Rep.ENUM:  # all constructors are constants
+                made = replace(made, names=colset.names, is_tuple=True)
             case Kind.UNION:
                 pairs = zip(colset.names, colset.components, strict=True)
                 made = replace(made, fields=tuple((c, self._part(a)) for c, a in pairs))

@@ -195,9 +195,13 @@ def internal_function(name: str) -> str | None:
 
     What these structures have is not known here, so any member is taken for a function that is not available.
     """
-    if name.split(".")[0] not in _INTERNAL:
+    structure = name.split(".")[0]
+    if structure in _INTERNAL:
+        reason = "it belongs to the inner parts of CPN Tools"
+    elif structure in _UTILITIES:
+        reason = "pn2code has not got this part of the library"
+    else:
         return None
-    reason = "it belongs to the inner parts of CPN Tools"
     return BUILTINS.setdefault(name, BuiltinInfo(name, "'a -> 'b", "is not there", reason)).name
 
 
@@ -370,12 +374,22 @@ HIDDEN: frozenset[str] = frozenset(
 _OTHER_STRUCTURES = """
 Array2 BinIO CharVector CharArray ArraySlice VectorSlice CharVectorSlice CharArraySlice IEEEReal IO Int32 Int64
 LargeWord SMLofNJ StringCvt Unix Posix Socket Word32 Word64 Word8Array Word8VectorSlice CPN'Time CPN'Replications
-Replications Queue Comms CPN'Sim CPN'NetCapture CPN'Monitors CPN'Env CPN'Settings CPN'StreamIO Cpn
+Replications Comms CPN'Sim CPN'NetCapture CPN'Monitors CPN'Env CPN'Settings CPN'StreamIO Cpn
 """
+
+_UTILITIES = frozenset(
+    {
+        "ArrayQSort", "AtomTable", "Base64", "BitArray", "CharMap", "DynamicArray", "Format", "GetOpt", "HashString",
+        "HashTable", "IOUtil", "IntHashTable", "ParserComb", "PathUtil", "PrimeSizes", "PropList", "Rand",
+        "RealOrderStats", "Scan", "SplayTree", "TimeLimit", "URef", "UnivariateStats", "WordHashTable",
+    }
+)  # fmt: skip
+"""Structures of the utility library of SML/NJ that are not there; the others are in `library`."""
 
 STRUCTURES: frozenset[str] = frozenset(
     {
         *_OTHER_STRUCTURES.split(),
+        *_UTILITIES,
         *STRUCTURE_ALIASES,
         *(name.split(".")[0] for name in BUILTINS if "." in name and name not in HIDDEN),
         "General",
@@ -384,8 +398,7 @@ STRUCTURES: frozenset[str] = frozenset(
 """Structures of the library."""
 
 _INTERNAL = frozenset(
-    {s for s in STRUCTURES if s.startswith("CPN'")}
-    | {"Replications", "Queue", "Comms", "Cpn", "Output"}
+    {s for s in STRUCTURES if s.startswith("CPN'")} | {"Replications", "Comms", "Cpn", "Output"}
 )
 """Structures of CPN Tools itself, of which it is not known here what they have."""
 

@@ -20,7 +20,7 @@ from pathlib import Path
 from typing import TypeVar
 
 from pn2code.diagnostics import Diagnostics, Origin, PlacedText, Severity, SourceText, Span
-from pn2code.ml import codes, core
+from pn2code.ml import codes, core, library
 from pn2code.ml import syntax as s
 from pn2code.ml.annotations import Annotations
 from pn2code.ml.builtins import INFIX
@@ -119,6 +119,7 @@ class Elaborator:
             self._ctx, self._expressions, patterns, self._variable_scope, self._fold
         )
         self._repeats = Repeats()
+        self._library: set[str] = set()
         self._colsets = Colsets(self._ctx, self._declare, self._plain, self._fold)
 
     # --- declarations
@@ -387,7 +388,7 @@ class Elaborator:
         Errors go to `d`. Afterwards all names mean again what they meant before.
         """
         top, made, fixities = self._ctx.top, len(self._made), dict(self._fixities)
-        kept = top.kept()
+        kept, declared = top.kept(), set(self._library)
         before = self._d, self._ctx.d, self._ctx.errors
         result = Aside()
         self._d = self._ctx.d = d
@@ -404,7 +405,7 @@ class Elaborator:
             top.values, top.types, top.structures = kept.values, kept.types, kept.structures
             top.signatures, top.functors = kept.signatures, kept.functors
             self._d, self._ctx.d, self._ctx.errors = before
-            self._fixities = fixities
+            self._fixities, self._library = fixities, declared
             self._repeats.clear()
 
     # --- inscriptions
@@ -540,8 +541,20 @@ class Elaborator:
             self._repeats.keep(key, text, made)
         return made
 
+    def with_library(self, text: SourceText) -> None:
+        """Declares what the text mentions of the library of SML/NJ, unless the net has something of that name."""
+        top = self._ctx.top
+        for name in library.mentioned(text.text):
+            own = (top.structures, top.functors, top.signatures)
+            if name in self._library or any(name in known for known in own):
+                continue
+            self._library.add(name)
+            origin = Origin(f"library/{name}.sml", 1, 1)
+            self.declarations(SourceText(library.declaration(name), origin))
+
     def _border(self, text: SourceText, work: Callable[[], T]) -> T | None:
         """Runs one text's elaboration; leaves a clean state behind, and reports texts beyond Python's stack."""
+        self.with_library(text)
         limit = sys.getrecursionlimit()
         sys.setrecursionlimit(max(limit, _RECURSION_LIMIT))
         self._ctx.unifier.start()

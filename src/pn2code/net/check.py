@@ -6,7 +6,7 @@ All independent errors are reported; elements that depend on something broken ar
 from __future__ import annotations
 
 import re
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import replace
 from pathlib import Path
 
@@ -101,6 +101,8 @@ class _Checker:
         self.elaborator.announce(lambda: _declared(net))
         for declaration in net.declarations:
             self.declare(declaration)
+        for text in _texts(net):
+            self.elaborator.with_library(text)
         self.program = self.elaborator.program()
         self.variables = NetVariables(self.program.variables)
         self.terms = TermReader(self.program, self.variables, d)
@@ -386,6 +388,16 @@ class _Checker:
         term = Term(_one(value), pattern, value, None, False, text.origin)
         inscription = ArcInscription(value, Form.TOKEN, (term,), text.origin)
         return TypedArc(arc.id, arc.kind, arc.place, inscription, arc.origin)
+
+
+def _texts(net: Net) -> Iterator[SourceText]:
+    """All inscriptions of places, arcs and transitions."""
+    for page in net.pages:
+        for place in page.places:
+            yield from (x.text for x in (place.initial_marking,) if x)
+        for t in page.transitions:
+            yield from (x.text for x in (t.guard, t.delay, t.priority, t.code) if x)
+            yield from (a.inscription.text for a in t.arcs if a.inscription)
 
 
 def _one(value: Exp) -> Lit:

@@ -15,36 +15,50 @@ from pn2code.net.codes import SPACE_NAME
 from pn2code.net.uses import pattern_variables
 
 _CONSTRUCTORS = """
-Action AlreadyProcesed ArcCount ArcLimit BTT_st BindingLimit CalculateSccGraph CompTimeLimit
-DataRecFields DeadMarkings DeadMarkingsGen DeadTIs DeadTIsGen ExcAvlLookup FairnessGen
-FairnessProperties FirstConstructor FirstItem Freq FromTransSeq GenerateEntryF GenerateHeaderF
-GenerateHeadingF HomeMarkings HomeMarkingsGen IllegalName InitScc IntegerBounds IntegerBoundsGen
-InternalError LastTotalCalc LiveTIs LiveTIsGen Match MultiSetBounds MultiSetBoundsGen NONE Net
-NewCalcStat NextArcNum NextInspectTime NextNodeNum NextStopTime NoOfVarsToEncode NodeCount NodeLimit
-NodeNames NodeToScc Noderefs OGdatarec OGdatarecfield OUT OnlyThisList Option PageNames PlaceInsts
-Pred ProcNodePred SOME SccComptime SccDestNode SccGraphCalculated SccNoOfNodes SccNodesInPath
-SccOutArcs SccOutNodes SccSourceNode SccTerminal SccToArcs SccToNodes SccTrivial SearchReachableSccs
-SearchSccs SearchSubgraphCycles SearchSubgraphSccs SelectNextNode StandardInspectionReport
-StandardReport StartTime Statistics StatisticsGen StopCritSatisfied TerminationTime ToProcess
-TotalTime TransInstLimit TrivialSubgraphScc abs allNodes allOGrecs allPredecessorEdges
-allSuccessorEdges arc arccountstr arcinfo arcinfos arcs arcsflat assigned bf bindings
-bindlimit_reached calcstat cands code code1 code2 code_storage code_storage2 code_temp code_temp2
-concat copy_code_list count creationtime cur_elem curtod decl declerr destnoderef div dstinfo
-dstnode edgeStmts elements elm elms empty errmsg errstr exn exnName explode extpat false fid
-fieldlist fieldname fieldsref first firstBTT firstinst firstmlno firsttri flatten foldr freq from
-fullid func funname funpostfix fusgrid fusion hd hdvar i2 implode inarcs included init_code_list
-innerrec innodes input insertstaterec inst_conns instlist instmlno instno int internalid intpat
-is_port istimed item key kind left length lst map maxfunpatterns mem mkstr_ms mlnoslist msreflist
-mymlno n1 n2 name newDFI newarc newarccount newarcnum newcand newnodelist newnodenum next_time nil
-no_bindings no_of_tokens nodecountstr nodeinfos noderef nodes nodesWithoutPredecessors
-nodesWithoutSuccessors nodesflat nonlocalfus not num_of_insts o outarcs outnodes output outtimed
-page pagename partfuncount patterncount patternetc pgglobfuschng pgmlno pgname pgno pgstr place
-place_id places pldescrs pli plidescr plitype pllist plmlno plmlnostr plname pltree port
-portinstances portmlid prime print ps real recname recreflist ref refstore remdupl rest rev right
-root root1 root2 root_bf root_key root_left root_left_bf root_left_right root_left_right_bf
-root_right root_right_bf root_right_left root_right_left_bf rootrec scc scc'comp
-sccsWithoutSuccessors secs siminst simplace socketid socketinst srcinfo srcnode srcnoderef staterec
-stlst stmt stopcritsatisfied stringreparcref stringrepberef stringrepmarkref stringrepnoderef
+Action All AllReachable AlreadyProcesed ArcCount ArcDescriptor ArcFilterGen ArcLimit ArcToBE ArcToTI
+Arcs ArcsInPath BEToArc BEToTI BEsDead BEsDead' BEsFairness BEsLive BEsLive' BEsStrictlyLive BTT_st
+Bind BindingLimit CalculateOccGraph CalculateSccGraph ColorSearch CompTimeLimit CreationTime
+DataRecFields DeadMarking DeadMarkings DeadMarkingsGen DeadTIs DeadTIsGen DeleteStateSpace DestNode
+EntireGraph EntireGraphCalculated EqualUntimed EqualsUntimed EvalAllArcs EvalAllNodes EvalAllSccs
+EvalArcs EvalNodes EvalSccs ExcAvlLookup FairnessGen FairnessProperties FirstConstructor FirstItem
+Freq FromTransSeq FullProc FullyProcessed GenOG GenerateEntryF GenerateHeaderF GenerateHeadingF
+HomeMarking HomeMarking' HomeMarkingExists HomeMarkings HomeMarkingsGen HomePredicate HomeSpace
+HomeSpace' IllegalName InArcs InNodes InitNode InitScc InitialHomeMarking IntegerBounds
+IntegerBoundsGen InternalError LastTotalCalc ListDeadMarkings ListDeadTIs ListDeadlocks ListFairTIs
+ListHomeMarkings ListHomeScc ListImpartialTIs ListJustTIs ListLiveTIs ListProcDeadlocks LiveTIs
+LiveTIsGen LowerInteger LowerMultiSet LowerTimedMultiSet Match MaxEnab MinimalHomeSpace
+MultiSetBounds MultiSetBoundsGen NONE Net NewCalcStat NextArcNum NextInspectTime NextNodeNum
+NextStopTime NoLimit NoOfArcs NoOfNodes NoOfSecs NoOfVarsToEncode NoPathExists NodeCount
+NodeDescriptor NodeFilterGen NodeLimit NodeNames NodeToScc Noderefs NodesInPath OGSimStatetoOG
+OGStatetoSim OGdatarec OGdatarecfield OGrapgh OUT OccurrenceTime OnlyThisList Option OutArcs
+OutNodes PageNames PartProc PlaceInsts Pred PredAllArcs PredAllNodes PredAllSccs PredArcs PredNodes
+PredSccs ProcNodePred Processed Reachable Reachable' SOME SccComptime SccDestNode SccGraphCalculated
+SccListDeadMarkings SccNoOfNodes SccNodesInPath SccOutArcs SccOutNodes SccReachable SccReachable'
+SccSourceNode SccTerminal SccToArcs SccToNodes SccTrivial SearchAllArcs SearchAllNodes SearchAllSccs
+SearchArcs SearchNodes SearchReachableSccs SearchSccs SearchSubgraphCycles SearchSubgraphSccs
+SelectNextNode SourceNode StandardInspectionReport StandardReport StartTime StateCreationTime
+Statistics StatisticsGen StopCritSatisfied StripTime TIsDead TIsDead' TIsFairness TIsLive TIsLive'
+Terminal TerminationTime ToProcess TotalTime TransInstLimit TrivialSubgraphScc UnProc UpperInteger
+UpperMultiSet UpperTimedMultiSet abs allNodes allOGrecs allPredecessorEdges allSuccessorEdges arc
+arccountstr arcinfo arcinfos arcs arcsflat assigned bf bindings bindlimit_reached calcstat cands
+code code1 code2 code_storage code_storage2 code_temp code_temp2 concat copy_code_list count
+creationtime cur_elem curtod decl declerr destnoderef div dstinfo dstnode edgeStmts elements elm
+elms empty emptybind errmsg errstr exn exnName explode extpat false fid fieldlist fieldname
+fieldsref first firstBTT firstinst firstmlno firstnoderef firsttri flatten foldr freq from fullid
+func funname funpostfix fusgrid fusion hd hdvar i2 implode inarcs included init_code_list innerrec
+innodes input insertstaterec inst_conns instlist instmlno instno int internalid intpat is_port
+istimed it item key kind left length lst map maxfunpatterns mem mkst_Arc mkst_BE mkst_Node mkst_PI
+mkst_TI mkstr_ms mlnoslist msreflist mymlno n1 n2 name newDFI newarc newarccount newarcnum newcand
+newnodelist newnodenum next_time nil no_bindings no_of_tokens nodecountstr nodeinfos noderef nodes
+nodesWithoutPredecessors nodesWithoutSuccessors nodesflat nonlocalfus not num_of_insts o ogpath
+outarcs outnodes output outtimed page pagename partfuncount patterncount patternetc pgglobfuschng
+pgmlno pgname pgno pgstr place place_id places pldescrs pli plidescr plitype pllist plmlno plmlnostr
+plname pltree port portinstances portmlid prime print ps real recname recreflist ref refstore
+remdupl rest rev right root root1 root2 root_bf root_key root_left root_left_bf root_left_right
+root_left_right_bf root_right root_right_bf root_right_left root_right_left_bf rootrec scc scc'comp
+sccsWithoutSuccessors secs siminst simplace socketid socketinst srcinfo srcnode srcnoderef st_Arc
+st_ArcDescrRef st_BE st_Node st_NodeDescrRef st_PI st_PI0 st_PI1 st_TI st_TI0 st_TI1 staterec stlst
+stmt stopcritsatisfied stringreparcref stringrepberef stringrepmarkref stringrepnoderef
 stringreppiref stringreptiref sub_pages super_pages surrpgglobfus surrports tab1 tab2 tabel
 targetinfo temp terminationtime text thistimestr thistree times tl tlvars to tod topOGdatarec
 topOGdatarecfield totalarccountstr totalnodecountstr totaltimestr trans_list transid transinsts
@@ -61,7 +75,7 @@ real remdupl rev tl tod use valOf
 VALUES = frozenset(_VALUES.split())
 """As values and functions, unless they can be used like those that they hide."""
 _STRUCTURES = """
-Char Date Int Int32 List ListUtils Misc OS Output
+Char Date Int Int32 List ListUtils Misc OS Output String TMS TextIO Time
 """
 STRUCTURES = frozenset(_STRUCTURES.split())
 """As colour sets, each of which is a structure."""

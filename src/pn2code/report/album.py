@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import hashlib
 import re
 from collections.abc import Mapping
 from pathlib import Path
@@ -28,6 +29,8 @@ class Album:
     Args:
         out: folder for `picture-NN-<moment>.png` and `cell.mp4`.
         pictures, video: what to make.
+
+    What looks like an earlier picture is not written again; the record says which moments a picture shows.
     """
 
     def __init__(self, out: Path, *, pictures: bool = True, video: bool = False) -> None:
@@ -39,6 +42,7 @@ class Album:
         self._activity = ""
         self._actions: set[str] = set()
         self._number = 0
+        self._taken: dict[bytes, str] = {}
 
     def begun(self, engine: Engine) -> None:
         """The arms stand at HOME."""
@@ -82,7 +86,13 @@ class Album:
         if not self._pictures:
             return
         camera = next(c for c in cameras(engine.cell, engine.backend) if c.name == view)
-        self._number += 1
-        name = re.sub(r"[^a-z0-9]+", "-", moment.lower()).strip("-") or "moment"
         image = picture(engine.backend, camera, *SIZE)
-        save(image, self._out / f"picture-{self._number:02}-{name}.png")
+        if image is None:
+            return
+        seen = hashlib.sha256(image.tobytes()).digest()
+        if seen not in self._taken:
+            self._number += 1
+            name = re.sub(r"[^a-z0-9]+", "-", moment.lower()).strip("-") or "moment"
+            self._taken[seen] = f"picture-{self._number:02}-{name}.png"
+            save(image, self._out / self._taken[seen])
+        engine.record.pictures.setdefault(self._taken[seen], []).append(moment)

@@ -11,6 +11,7 @@ from rich.table import Table
 from rich.text import Text
 
 from pn2code.cell.config import ReportConfig
+from pn2code.report.activities import activities, busy_seconds
 from pn2code.run.record import RunRecord, merged_rows, summary_counts
 
 KINDS = ("joint", "home", "linear", "tool", "measure", "wait")
@@ -18,28 +19,18 @@ KINDS = ("joint", "home", "linear", "tool", "measure", "wait")
 
 def summarise(record: RunRecord, report: ReportConfig, robots: tuple[str, ...]) -> dict[str, Any]:
     """All the figures, as JSON-able data. Lengths in m, times in s, angles in degrees."""
-    activities = []
-    for activity in record.activities:
-        busy = {
-            robot: round(
-                sum(
-                    max(0.0, min(a.end, activity.end) - max(a.start, activity.start))
-                    for a in record.actions
-                    if a.robot == robot
-                ),
-                6,
-            )
-            for robot in robots
+    totals = [
+        {
+            "name": activity.name,
+            "times": activity.times,
+            "start": round(activity.intervals[0][0], 6),
+            "end": round(activity.intervals[-1][1], 6),
+            "seconds": round(activity.seconds, 6),
+            "busy": {robot: round(busy, 6) for robot, busy in activity.busy.items()},
+            "intervals": [[round(t, 6) for t in interval] for interval in activity.intervals],
         }
-        activities.append(
-            {
-                "name": activity.name,
-                "start": round(activity.start, 6),
-                "end": round(activity.end, 6),
-                "seconds": round(activity.end - activity.start, 6),
-                "busy": busy,
-            }
-        )
+        for activity in activities(record, robots)
+    ]
     per_robot = {
         robot: {
             **{
@@ -54,6 +45,8 @@ def summarise(record: RunRecord, report: ReportConfig, robots: tuple[str, ...]) 
                 for kind in KINDS
             },
             "commands": sum(a.robot == robot for a in record.actions),
+            "busy": round(busy_seconds(record, robot), 6),
+            "utilisation": round(busy_seconds(record, robot) / max(record.time, 1e-9), 4),
         }
         for robot in robots
     }
@@ -67,11 +60,12 @@ def summarise(record: RunRecord, report: ReportConfig, robots: tuple[str, ...]) 
         "cycle_seconds": round(record.time, 6),
         "rows": len(merged_rows(record.messages, report.rows)) if report.rows else 0,
         **summary_counts(record, dict(report.count), dict(report.occurrences)),
-        "activities": activities,
+        "activities": totals,
         "robots": per_robot,
         "clearances": _minima(record),
         "conditioning": _conditioning(record, robots, dict(report.count)),
         "accuracy": record.accuracy,
+        "pictures": record.pictures,
         "warnings": [
             {"t": round(w.t, 6), "robot": w.robot, "text": w.text} for w in record.warnings
         ],
@@ -158,6 +152,7 @@ def page(summary: dict[str, Any]) -> RenderableType:
 
     times = Table(box=box.SIMPLE_HEAD, pad_edge=False)
     times.add_column("activity")
+    times.add_column("times", justify="right")
     times.add_column("seconds", justify="right")
     robots = list(summary["robots"])
     for robot in robots:
@@ -165,9 +160,13 @@ def page(summary: dict[str, Any]) -> RenderableType:
     for entry in summary["activities"]:
         times.add_row(
             entry["name"],
+            str(entry["times"]),
             f"{entry['seconds']:.2f}",
             *(f"{entry['busy'][robot]:.2f}" for robot in robots),
         )
+    shares = [f"{100 * entry['utilisation']:.0f} %" for entry in summary["robots"].values()]
+    times.add_section()
+    times.add_row("utilisation", "", "", *shares)
     parts: list[RenderableType] = [head, "", facts, times]
     parts += [
         Text(f"warning: {w['text']} ({w['robot']}, {w['t']:.2f} s)", "yellow")

@@ -114,7 +114,8 @@ def open_backend(
         )
     if importlib.util.find_spec("pybullet") is None:
         raise BackendUnavailableError(
-            "PyBullet is not installed: `pip install pybullet` (Python 3.9 to 3.11), or use the backend `fake`"
+            "PyBullet is not installed; there are packages of it for Python 3.9 to 3.11 (`pip install pybullet`). "
+            "`--backend fake` needs none: it moves the arms exactly, without measuring clearances"
         )
     from pn2code.robot.bullet import BulletBackend
 

@@ -100,6 +100,7 @@ class RobotRunner:
     blocks: tuple[Block, ...] = ()
     motion: Motion | None = None
     line: int = 0
+    activity: str = ""
     waiting: AwaitFile | None = None
     finished: bool = False
 
@@ -169,10 +170,18 @@ class Engine:
     _finished: bool = False
     _activity_start: float = 0.0
     _ids: dict[str, str] = field(init=False)
+    _commanded: dict[str, tuple[str, ...]] = field(init=False)
+    _ordered_by: dict[str, str] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
-        """The XML id of each transition by name."""
-        self._ids = {t.name: t.id for t in self.partition.net.transitions}
+        """Of each transition by name: its XML id, and to whom it writes messages."""
+        parts = self.partition
+        readers = {c.place: parts.owners[c.reader].name for c in parts.channels}
+        self._ids = {t.name: t.id for t in parts.net.transitions}
+        self._commanded = {
+            t.name: tuple({readers[a.place] for a in t.arcs if a.place in readers})
+            for t in parts.net.transitions
+        }
 
     def add_robot(
         self,
@@ -277,6 +286,8 @@ class Engine:
             self._close_activity(t)
             self.activity = activity
             self._activity_start = t
+        for reader in self._commanded.get(event["transition"], ()):
+            self._ordered_by[reader] = self.activity
 
     def _close_activity(self, t: float) -> None:
         if self.activity:
@@ -338,6 +349,7 @@ class Engine:
             at = f" (net transition {where})" if where else ""
             raise CellStoppedError(f"{robot.script}:{line}{at}: {fault}") from None
         robot.motion, robot.line = motion, line
+        robot.activity = self._ordered_by.get(robot.name, self.activity)
         if isinstance(command, ToolAction):
             self.record.events.append(
                 {
@@ -438,7 +450,7 @@ class Engine:
                 end,
                 robot.line,
                 robot.element_at(robot.line),
-                self.activity,
+                robot.activity,
             )
         )
 

@@ -25,7 +25,7 @@ class ActionRecord:
         start, end: seconds.
         line: line of the script.
         transition: name of the net transition that the line implements, "" if none.
-        activity: the supervisor's activity at `start`, "" if none.
+        activity: the supervisor's activity that ordered it, "" if none.
     """
 
     robot: str
@@ -99,6 +99,8 @@ class RunRecord:
     sample_t: list[float] = field(default_factory=list)
     series: dict[str, list[float]] = field(default_factory=dict)
     accuracy: dict[str, float] = field(default_factory=dict)
+    pictures: dict[str, list[str]] = field(default_factory=dict)
+    """of each picture that was taken, by the name of its file: the moments that look like it"""
     near: dict[tuple[str, str], tuple[float, float]] = field(default_factory=dict)
     """pairs of parts that came closer than the scene's warning distance: least distance (m) and when"""
 

@@ -68,6 +68,13 @@ def _extend_multisets(e: Evaluator, function: Value, items: Items) -> Task:
     return tuple(item for ms in multisets for item in ms)
 
 
+def _times(n: int, items: Items) -> Items:
+    """Each element so often, one after the other."""
+    n = fitting(n)
+    fitting(n * len(items))
+    return tuple(x for x in items for _ in range(n))
+
+
 def _only(e: Evaluator, items: Items) -> Value:
     if len(items) != 1:
         raise MlException(exception("no_singleton"))
@@ -79,7 +86,7 @@ FUNCTIONS: dict[str, tuple[int, Function]] = {
     "Ms.`": (1, lambda e, p: (p[1],) * fitting(p[0])),
     "Ms.++": (1, lambda e, p: p[0] + p[1]),
     "Ms.--": (1, _subtract),
-    "Ms.**": (1, lambda e, p: tuple(x for x in p[1] for _ in range(p[0]))),
+    "Ms.**": (1, lambda e, p: _times(*p)),
     "Ms.%": (1, lambda e, p: (p[1],) if all(p[0]) else ()),
     "Ms.//": (1, lambda e, p: p[1] if all(p[0]) else ()),
     "Ms.==": (1, lambda e, p: len(p[0]) == len(p[1]) and _contained(p[0], p[1])),

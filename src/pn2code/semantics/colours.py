@@ -445,8 +445,11 @@ class Colours:
         return tuple(assemble(own, values) for values in itertools.product(*multisets))
 
     def with_component(self, c: Colset, label: str, value: Any, new: Value) -> tuple[Value, ...]:
-        """A copy of a product or record with another value of one component."""
+        """A copy of a product or record with another value of one component; CPN'Error if that is not legal."""
         c = c.resolved
+        part = next(part for name, part, _ in parts_of(c, value) if name == label)
+        if not self.legal(part, new):
+            raise MlException(exception("CPN'Error", self.illegal_message(part, new)))
         return assemble(c, [new if name == label else item for name, _, item in parts_of(c, value)])
 
     # --- storage ---------------------------------------------------------------------------------

@@ -11,8 +11,8 @@ from pn2code.simulate.run import Outcome
 
 _WHY = {
     "finished": "nothing is enabled any more",
-    "steps": "as many steps as were wanted",
-    "until": "the next step would be later than wanted",
+    "steps": "the number of steps was reached",
+    "until": "the next step would be after the given time",
     "breakpoint": "a breakpoint was reached",
     "error": "the net raised an error",
     "interrupted": "interrupted",

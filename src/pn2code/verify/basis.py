@@ -30,6 +30,8 @@ SAYS: Final = {
     RUN: "a run that shows it was found",
     NET: "the net itself was looked at, not its state space",
 }
+_OF_MARKINGS = frozenset({"channels", "capacity", "messages", "memory"})
+"""Checks of a supervisor that look at one marking after the other."""
 
 
 def of_property(p: m.Property, answer: str, *, has_run: bool) -> str | None:

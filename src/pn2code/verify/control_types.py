@@ -32,18 +32,18 @@ TITLES = {
     CAPACITY: "Declared capacities",
     MESSAGES: "Every message can be sent",
     MEMORY: "Room for lists and strings",
-    OWNERSHIP: "Nothing touched that is another's",
+    OWNERSHIP: "Owners use their own places only",
 }
 MEANINGS = {
     FINITE: "the supervisor, left alone, always comes to rest",
-    BOUNDED: "the most firings in one cycle",
+    BOUNDED: "the number of firings in one cycle of the supervisor has a limit",
     CONFLUENT: "the order in which the supervisor fires within a cycle does not matter",
-    BLOCKING: "wherever the cell gets, it comes to its end, whichever of its programs are slow",
+    BLOCKING: "from every state that the cell can reach it comes to its end, also when some of its programs are slow",
     CHANNELS: "no channel ever holds two messages",
     CAPACITY: "no place ever holds more tokens than `[capacity]` declares",
     MESSAGES: "every message can be written into its file, and is read as it was written",
     MEMORY: "the lists and strings of every marking and every firing have room in the supervisor",
-    OWNERSHIP: "transitions touch places of their owner, and channels in their direction",
+    OWNERSHIP: "each transition uses places of its owner only, and channels in their direction only",
 }
 KEPT = frozenset({FINITE, BOUNDED, CHANNELS, CAPACITY, MESSAGES, MEMORY, OWNERSHIP})
 """Checks whose "yes" is kept when the programs do less than what was looked at."""

@@ -161,7 +161,9 @@ void pn_json(const pn_type_t *type, const void *value, pn_text_t *out)
         break;
     }
     case PN_KIND_ENUM:
+        pn_text_str(out, type->is_tuple ? "[" : "");
         pn_text_json_str(out, type->name_of_value[load_tag(value)]);
+        pn_text_str(out, type->is_tuple ? "]" : "");
         break;
     case PN_KIND_RECORD:
         json_record(type, value, out);

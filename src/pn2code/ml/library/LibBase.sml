@@ -1,0 +1,5 @@
+structure LibBase = struct
+    exception NotFound
+    exception Impossible of string
+    exception Unimplemented of string
+end

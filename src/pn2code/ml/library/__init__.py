@@ -1,0 +1,69 @@
+"""The utility library of SML/NJ, as far as it can be written in CPN ML: structures and functors that a net may use.
+
+Each has a file `NAME.sml` here, or is made by a functor that has one (`MADE`). A net's text that mentions a name gets
+its declarations in front of it, and those of the names that they mention.
+"""
+
+from __future__ import annotations
+
+import re
+from functools import cache
+from pathlib import Path
+
+FOLDER = Path(__file__).resolve().parent
+
+_KEYS = {
+    "Int": "struct type ord_key = int val compare = Int.compare end",
+    "Word": "struct type ord_key = word val compare = Word.compare end",
+    "Atom": "struct type ord_key = Atom.atom val compare = Atom.lexCompare end",
+}
+_OTHER_FUNCTORS = {
+    f"{kind}{what}Fn": f"List{what}Fn"
+    for kind in ("Binary", "RedBlack", "Splay")
+    for what in ("Map", "Set")
+}
+_STRUCTURES = (
+    *(
+        "IntBinaryMap",
+        "IntListMap",
+        "IntRedBlackMap",
+        "IntBinarySet",
+        "IntListSet",
+        "IntRedBlackSet",
+    ),
+    *("WordRedBlackMap", "WordRedBlackSet", "AtomMap", "AtomBinaryMap", "AtomRedBlackMap"),
+    *("AtomSet", "AtomBinarySet", "AtomRedBlackSet"),
+)
+MADE: dict[str, str] = {
+    **{
+        name: f"functor {name} (K : ORD_KEY) = struct structure Made = {functor} (K) open Made end"
+        for name, functor in _OTHER_FUNCTORS.items()
+    },
+    **{
+        name: f"structure {name} = List{name[-3:]}Fn ({_KEYS[next(k for k in _KEYS if name.startswith(k))]})"
+        for name in _STRUCTURES
+    },
+}
+"""What is made of a functor: name -> its declaration."""
+
+
+@cache
+def names() -> frozenset[str]:
+    """All names of the library."""
+    return frozenset({*MADE, *(path.stem for path in FOLDER.glob("*.sml"))})
+
+
+@cache
+def _pattern() -> re.Pattern[str]:
+    return re.compile(rf"\b(?:{'|'.join(sorted(names(), key=len, reverse=True))})\b(?!')")
+
+
+def mentioned(text: str) -> list[str]:
+    """Names of the library in a text, each once, in order."""
+    return list(dict.fromkeys(_pattern().findall(text)))
+
+
+@cache
+def declaration(name: str) -> str:
+    """The declaration of a name."""
+    return MADE[name] if name in MADE else (FOLDER / f"{name}.sml").read_text(encoding="ascii")

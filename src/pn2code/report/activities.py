@@ -1,0 +1,66 @@
+"""The activities of a run, each once: when it was under way, and how long who worked for it.
+
+An activity is one of the supervisor's pages. It is under way from a firing on its page to the next one on another page,
+and while a robot or device carries out what it ordered. So several may be under way at a time, and each as often as
+the supervisor comes back to it.
+
+    activities(record, ("robot1", "mill"))[0].seconds
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+
+from pn2code.run.record import RunRecord
+
+
+@dataclass(frozen=True, slots=True)
+class Activity:
+    """An activity over the whole run.
+
+    Args:
+        name: of the supervisor's page.
+        times: how often it was under way.
+        intervals: from when to when, in order, none of them meeting another.
+        busy: by robot or device, seconds of the commands that it ordered.
+    """
+
+    name: str
+    times: int
+    intervals: tuple[tuple[float, float], ...]
+    busy: dict[str, float]
+
+    @property
+    def seconds(self) -> float:
+        """How long it was under way, altogether."""
+        return sum(end - start for start, end in self.intervals)
+
+
+def activities(record: RunRecord, robots: tuple[str, ...]) -> tuple[Activity, ...]:
+    """All of them, in the order in which they began."""
+    names = dict.fromkeys(a.name for a in record.activities)
+    found = []
+    for name in names:
+        own = [a for a in record.actions if a.activity == name]
+        spans = [(a.start, a.end) for a in record.activities if a.name == name]
+        intervals = _merged([*spans, *((a.start, a.end) for a in own)])
+        busy = {robot: sum(a.end - a.start for a in own if a.robot == robot) for robot in robots}
+        found.append(Activity(name, len(intervals), intervals, busy))
+    return tuple(found)
+
+
+def busy_seconds(record: RunRecord, robot: str) -> float:
+    """How long a robot or device carried out commands. It carries out one at a time."""
+    return sum(a.end - a.start for a in record.actions if a.robot == robot)
+
+
+def _merged(spans: Iterable[tuple[float, float]]) -> tuple[tuple[float, float], ...]:
+    """Spans that overlap or touch are one."""
+    merged: list[tuple[float, float]] = []
+    for start, end in sorted(spans):
+        if merged and start <= merged[-1][1]:
+            merged[-1] = (merged[-1][0], max(merged[-1][1], end))
+        else:
+            merged.append((start, end))
+    return tuple(merged)

@@ -1,0 +1,129 @@
+"""What a run leaves behind: activities that overlap and repeat, utilisation, charts, pictures."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from types import SimpleNamespace
+from typing import Any
+
+import numpy as np
+import pytest
+from matplotlib.figure import Figure
+
+from pn2code.cell.config import ReportConfig
+from pn2code.report import album, charts
+from pn2code.report.activities import activities, busy_seconds
+from pn2code.report.album import Album
+from pn2code.report.summary import summarise
+from pn2code.run.record import ActionRecord, ActivityRecord, RunRecord
+
+ROBOTS = ("arm", "mill")
+
+
+def action(robot: str, start: float, end: float, activity: str, kind: str = "tool") -> ActionRecord:
+    return ActionRecord(robot, kind, kind, start, end, 1, "", activity)
+
+
+@pytest.fixture
+def record() -> RunRecord:
+    """The supervisor goes to and fro between two pages; the mill works on while the arm loads."""
+    made = RunRecord("cell", "", "fake", verdict="finished", time=20.0)
+    for name, start, end in (
+        ("Load", 0.0, 4.0), ("Mill", 4.0, 4.0), ("Load", 4.0, 10.0), ("Mill", 10.0, 11.0), ("Load", 15.0, 20.0),
+    ):  # fmt: skip
+        made.activities.append(ActivityRecord(name, start, end))
+    made.actions += [
+        action("arm", 0.0, 4.0, "Load", "joint"),
+        action("mill", 4.0, 9.0, "Mill"),
+        action("arm", 5.0, 8.0, "Load", "linear"),
+        action("mill", 10.0, 14.0, "Mill"),
+    ]
+    made.sample_t = [0.0, 10.0, 20.0]
+    made.series = {
+        "clearance.robots": [0.5, 0.03, float("nan")],
+        "clearance.scene.arm": [0.0, 0.1, 0.2],
+        "condition.arm": [7.0, 12.0, 40.0],
+    }
+    return made
+
+
+def test_activities_that_overlap_and_repeat_are_totalled(record: RunRecord) -> None:
+    load, mill = activities(record, ROBOTS)
+    assert (load.name, load.times, load.intervals) == ("Load", 2, ((0.0, 10.0), (15.0, 20.0)))
+    assert (mill.name, mill.times, mill.intervals) == ("Mill", 2, ((4.0, 9.0), (10.0, 14.0)))
+    assert (load.seconds, mill.seconds) == (15.0, 9.0)
+    assert load.busy == {"arm": 7.0, "mill": 0.0}
+    assert mill.busy == {"arm": 0.0, "mill": 9.0}
+    assert [busy_seconds(record, r) for r in ROBOTS] == [7.0, 9.0]
+
+
+def test_the_summary_has_an_activity_once(record: RunRecord) -> None:
+    found = json.loads(json.dumps(summarise(record, ReportConfig(), ROBOTS)))
+    assert [(a["name"], a["times"], a["seconds"]) for a in found["activities"]] == [
+        ("Load", 2, 15.0),
+        ("Mill", 2, 9.0),
+    ]
+    assert found["activities"][1]["intervals"] == [[4.0, 9.0], [10.0, 14.0]]
+    assert {r: (e["busy"], e["utilisation"]) for r, e in found["robots"].items()} == {
+        "arm": (7.0, 0.35),
+        "mill": (9.0, 0.45),
+    }
+
+
+@pytest.fixture
+def figures(monkeypatch: pytest.MonkeyPatch) -> dict[str, Figure]:
+    """The charts as they are saved, by the name of the file."""
+    seen: dict[str, Figure] = {}
+    monkeypatch.setattr(charts, "_save", lambda figure, path: seen.update({path.name: figure}))
+    return seen
+
+
+def test_charts(record: RunRecord, figures: dict[str, Figure], tmp_path: Path) -> None:
+    charts.draw(record, ROBOTS, charts.Limits(0.02, 50.0), tmp_path)
+    (rows,) = figures["gantt.png"].axes
+    assert [t.get_text() for t in rows.get_yticklabels()] == ["Load", "Mill", "arm", "mill"]
+    said = [t.get_text() for t in rows.texts]
+    assert said == ["2 times, 15.0 s", "2 times, 9.0 s", "35 % busy", "45 % busy"]
+    upper, lower = figures["clearances.png"].axes
+    for axes, ticks, warning in (
+        (upper, ["0", "1", "2", "5", "10", "20", "50", "100", "200", "500", "1000"], "warning below 20 mm"),
+        (lower, ["5", "10", "20", "50", "100"], "warning above 50"),
+    ):  # fmt: skip
+        assert [t.get_text() for t in axes.get_yticklabels()] == ticks
+        (line,) = (x for x in axes.get_lines() if x.get_label() == warning)
+        bottom, top = axes.get_ylim()
+        assert bottom < float(np.asarray(line.get_ydata())[0]) < top
+
+
+def test_charts_of_a_run_in_which_nothing_happened(tmp_path: Path) -> None:
+    charts.draw(RunRecord("cell", "", "fake"), (), charts.Limits(0.02, 50.0), tmp_path)
+    assert {p.name for p in tmp_path.iterdir()} == {"gantt.png", "clearances.png"}
+
+
+def test_no_two_pictures_are_equal(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    seen: dict[str, Any] = {
+        "overview": np.zeros((2, 2, 3), np.uint8),
+        "tools": np.ones((2, 2, 3), np.uint8),
+    }
+    monkeypatch.setattr(album, "cameras", lambda *_: [SimpleNamespace(name=n) for n in seen])
+    monkeypatch.setattr(album, "picture", lambda _backend, camera, *_: seen[camera.name])
+    made = RunRecord("cell", "", "bullet", verdict="finished")
+    engine: Any = SimpleNamespace(
+        record=made, cell=None, backend=None, activity="", robots=[SimpleNamespace(tool_action=lambda: "drill")]
+    )  # fmt: skip
+    pictures = Album(tmp_path)
+    pictures.begun(engine)
+    pictures.sampled(engine, 0.0, {})
+    engine.activity = "Load"
+    pictures.advanced(engine)
+    seen["overview"] = np.full((2, 2, 3), 7, np.uint8)
+    engine.activity = "Home"
+    pictures.advanced(engine)
+    pictures.ended(engine)
+    assert made.pictures == {
+        "picture-01-start.png": ["start"],
+        "picture-02-drill.png": ["drill"],
+        "picture-03-load.png": ["Load", "end"],
+    }
+    assert sorted(p.name for p in tmp_path.iterdir()) == sorted(made.pictures)
