@@ -20,6 +20,7 @@
  *     choose 2 8 9                    of these (group 2) only the first enabled transition occurs, with all its bindings
  *     kin 8 9                         count as one transition in their group
  *     meek 8                          though enabled it holds no other one back
+ *     probe 9                         never occurs; while it is enabled it holds others of its owner back
  *     silent 10 11                    steps that are no occurrences of the net
  *     clock 11                        occurs a unit of time later, where something is waited for
  *     ? ends 4                        item 4 is `ef` of the ends, which are reached whoever is slow (explore_running.c); `-`: as below
@@ -431,12 +432,13 @@ static ex_programs_t *programs_of(const ex_reader_t *r)
             programs->kin[t] = t;
         }
         programs->is_meek = calloc(count, sizeof *programs->is_meek);
+        programs->is_probe = calloc(count, sizeof *programs->is_probe);
         programs->is_silent = calloc(count, sizeof *programs->is_silent);
         programs->is_clock = calloc(count, sizeof *programs->is_clock);
         run->programs = programs;
     }
     const ex_programs_t *const made = run->programs;
-    const bool is_made = (made->group != NULL) && (made->kin != NULL) && (made->is_meek != NULL) && (made->is_silent != NULL) && (made->is_clock != NULL);
+    const bool is_made = (made->group != NULL) && (made->kin != NULL) && (made->is_meek != NULL) && (made->is_probe != NULL) && (made->is_silent != NULL) && (made->is_clock != NULL);
     return is_made ? run->programs : NULL;
 }
 
@@ -478,6 +480,8 @@ static bool read_kind(ex_reader_t *r)
             programs->kin[transition] = first;
         } else if (strcmp(r->word[0], "meek") == 0) {
             programs->is_meek[transition] = true;
+        } else if (strcmp(r->word[0], "probe") == 0) {
+            programs->is_probe[transition] = true;
         } else if (strcmp(r->word[0], "silent") == 0) {
             programs->is_silent[transition] = true;
         } else {
@@ -491,7 +495,7 @@ static bool read_kind(ex_reader_t *r)
 
 static bool is_kind(const char *word)
 {
-    return (strcmp(word, "kin") == 0) || (strcmp(word, "meek") == 0) || (strcmp(word, "silent") == 0) || (strcmp(word, "clock") == 0);
+    return (strcmp(word, "probe") == 0) || (strcmp(word, "kin") == 0) || (strcmp(word, "meek") == 0) || (strcmp(word, "silent") == 0) || (strcmp(word, "clock") == 0);
 }
 
 static bool read_lines(ex_reader_t *r)

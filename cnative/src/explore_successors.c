@@ -20,6 +20,7 @@ typedef struct hunt {
     bool is_stopped; /* by the sink */
     bool is_local;   /* explore_local.c is asked first; other places than packed ones may not be loaded */
     bool is_single;  /* one successor of the transition at hand is enough */
+    bool is_probe;   /* it is enough that there is one */
     bool has_aged;   /* worker->marking is later than the cells of the codec */
 } hunt_t;
 
@@ -92,6 +93,9 @@ static bool on_successor(void *user, uint32_t transition, const void *binding, c
     const ex_reduction_t *reduction = hunt->worker->run->reduction;
     ex_key_t key;
     hunt->is_found = true;
+    if (hunt->is_probe) {
+        return false;
+    }
     if (hunt->all != NULL) {
         hunt->is_stopped = !hunt->all(hunt->user, transition, binding, next);
         return !hunt->is_stopped && !hunt->is_single;
@@ -119,6 +123,9 @@ static bool on_plain(void *user, uint32_t transition, const void *binding, const
     hunt_t *hunt = user;
     ex_key_t key;
     hunt->is_found = true;
+    if (hunt->is_probe) {
+        return false;
+    }
     ex_plain_key(hunt->worker->run->codec, next, &key);
     hunt->is_stopped = !pass_on(hunt, transition, binding, &key);
     return !hunt->is_stopped && !hunt->is_single;
@@ -195,7 +202,7 @@ static bool hunt_transition(hunt_t *hunt, uint32_t t)
     ex_worker_t *worker = hunt->worker;
     bool goes_on = true;
     if (hunt->is_local) {
-        if (!hunt->is_single && hunt_local(hunt, t, &goes_on)) {
+        if (!hunt->is_single && !hunt->is_probe && hunt_local(hunt, t, &goes_on)) {
             return goes_on;
         }
         if (!load_places_of(worker, t)) {
@@ -238,9 +245,12 @@ static bool hunt_choice(hunt_t *hunt, uint32_t t, uint32_t *chosen, bool *is_ena
     const bool was_found = hunt->is_found;
     hunt->is_found = false;
     hunt->is_single = (group != 0U) && (programs->choice[group] == EX_FIRST_BINDING);
+    hunt->is_probe = (programs != NULL) && programs->is_probe[t];
     const bool goes_on = hunt_transition(hunt, t);
-    hunt->is_single = false;
     *is_enabled = hunt->is_found;
+    hunt->is_found = hunt->is_found && !hunt->is_probe;
+    hunt->is_single = false;
+    hunt->is_probe = false;
     if ((group != 0U) && hunt->is_found && !programs->is_meek[t]) {
         chosen[group] = programs->kin[t] + 1U;
     }
@@ -254,21 +264,29 @@ static bool hunt_by_owner(hunt_t *hunt)
     const uint32_t *const owner_of = hunt->worker->run->owner_of;
     const ex_programs_t *const programs = hunt->worker->run->programs;
     int32_t priority[EX_MOST_OWNERS];
-    bool has_found[EX_MOST_OWNERS] = { false };
+    bool has_found[EX_MOST_OWNERS] = { false }; /* one that holds others back */
+    bool has_any[EX_MOST_OWNERS] = { false };   /* any: it holds back what is no occurrence, if that is less urgent */
+    int32_t last[EX_MOST_OWNERS];
     uint32_t chosen[EX_MOST_GROUPS] = { 0U };
     bool goes_on = true;
     for (uint32_t k = 0U; goes_on && (k < pn_net.order_count); k++) {
         const uint32_t t = pn_net.order[k];
         look_ahead(hunt, k);
         const uint32_t owner = owner_of[t];
+        const int32_t own = pn_net.transition[t].priority;
+        const bool is_step = (programs != NULL) && programs->is_silent[t];
         bool is_enabled = false;
-        if (!is_tried(hunt, t, chosen) || (has_found[owner] && (pn_net.transition[t].priority != priority[owner]))) {
+        if (!is_tried(hunt, t, chosen) || (has_found[owner] && (own != priority[owner])) || (is_step && has_any[owner] && (own != last[owner]))) {
             continue;
         }
         goes_on = hunt_choice(hunt, t, chosen, &is_enabled);
+        if (is_enabled) {
+            has_any[owner] = true;
+            last[owner] = own;
+        }
         if (is_enabled && ((programs == NULL) || !programs->is_meek[t])) {
             has_found[owner] = true;
-            priority[owner] = pn_net.transition[t].priority;
+            priority[owner] = own;
         }
     }
     return goes_on;

@@ -27,8 +27,10 @@ from pn2code.cli.main import app
 from pn2code.diagnostics import Diagnostics, render
 from pn2code.emission.write import write
 from pn2code.net import front
-from pn2code.verify import control, proofs
-from pn2code.verify.control import Check, Plan, has_own_priorities, ownership
+from pn2code.verify import control, control_types, proofs
+from pn2code.verify.control import ownership
+from pn2code.verify.control_answers import has_own_priorities
+from pn2code.verify.control_types import Check, Plan
 from pn2code.verify.explore import Wishes
 from pn2code.verify.limits import Limits
 from pn2code.verify.programs import Sizes
@@ -276,14 +278,14 @@ def checks(folder: Path, net: str, plan: Plan, toml: str = TOML) -> dict[str, Ch
 def test_a_cell_that_is_fine(tmp_path: Path) -> None:
     found = checks(tmp_path / "fine", NET, Plan())
     assert {c.name: (c.answer, c.value) for c in found.values()} == {
-        control.FINITE: ("yes", None),
-        control.BOUNDED: ("yes", 1),
-        control.CONFLUENT: ("yes", None),
-        control.BLOCKING: ("yes", 10),
-        control.CHANNELS: ("yes", 1),
-        control.MESSAGES: ("yes", 0),
-        control.MEMORY: ("yes", 0),
-        control.OWNERSHIP: ("yes", 10),
+        control_types.FINITE: ("yes", None),
+        control_types.BOUNDED: ("yes", 1),
+        control_types.CONFLUENT: ("yes", None),
+        control_types.BLOCKING: ("yes", 10),
+        control_types.CHANNELS: ("yes", 1),
+        control_types.MESSAGES: ("yes", 0),
+        control_types.MEMORY: ("yes", 0),
+        control_types.OWNERSHIP: ("yes", 10),
     }
 
 
@@ -302,7 +304,11 @@ def changed(*pairs: tuple[str, str]) -> str:
         (
             "spin",
             changed(("\n  page Rob", SPIN)),
-            {control.FINITE: "no", control.BOUNDED: "unknown", control.CONFLUENT: "unknown"},
+            {
+                control_types.FINITE: "no",
+                control_types.BOUNDED: "unknown",
+                control_types.CONFLUENT: "unknown",
+            },
             "the supervisor can fire for ever by repeating `Cell.Supervisor.Away`, `Cell.Supervisor.Back`",
         ),
         (
@@ -312,13 +318,13 @@ def changed(*pairs: tuple[str, str]) -> str:
                 ("place Spare", "place Spare = 1"),
                 ("\n  page Rob", SIMPLE_CHAIN),
             ),
-            {control.BOUNDED: "no"},
+            {control_types.BOUNDED: "no"},
             "at most 2 firings in one cycle, but no more than 1 are permitted",
         ),
         (
             "choice",
             changed(("\n  page Rob", CHOICE)),
-            {control.CONFLUENT: "no"},  # by the documented order it is never blocked
+            {control_types.CONFLUENT: "no"},  # by the documented order it is never blocked
             "whether `Cell.Supervisor.Start` or `Cell.Supervisor.Other` comes first matters, 0 steps after the start",
         ),
         (
@@ -327,7 +333,7 @@ def changed(*pairs: tuple[str, str]) -> str:
                 ("    trans Stop\n", "    trans Stop guard [n = 1]\n"),
                 ("    trans Work\n", LIES.lstrip("\n")),
             ),
-            {control.BLOCKING: "no"},
+            {control_types.BLOCKING: "no"},
             "a deadlock 2 steps after the start: nothing can happen, without a token in `Finished`",
         ),
         (
@@ -337,13 +343,13 @@ def changed(*pairs: tuple[str, str]) -> str:
                 ("\n  page Rob", FOR_EVER),
                 ("    trans Work\n", LIES.lstrip("\n")),
             ),
-            {control.BLOCKING: "no"},
+            {control_types.BLOCKING: "no"},
             "at the start a token in `Finished` can no longer be reached, though the cell goes on",
         ),
         (
             "twice",
             changed(("place Ready = 1", "place Ready = 2")),
-            {control.CHANNELS: "no", control.CONFLUENT: "yes"},
+            {control_types.CHANNELS: "no", control_types.CONFLUENT: "yes"},
             "channel `go` gets 2 messages at a time, 2 steps after the start",
         ),
     ],
@@ -353,7 +359,7 @@ def test_cells_that_fail_one_check(
 ) -> None:
     plan = Plan(firings=1 if name == "long" else 10, folder=tmp_path, stem="x")
     found = checks(tmp_path / name, net, plan)
-    others = {n: "yes" for n in control.TITLES if n not in (*answers, control.CAPACITY)}
+    others = {n: "yes" for n in control_types.TITLES if n not in (*answers, control_types.CAPACITY)}
     assert {c.name: c.answer for c in found.values()} == {**others, **answers}
     (wrong,) = [c for c in found.values() if c.fails]
     assert wrong.says == says
@@ -367,7 +373,7 @@ def test_cells_that_fail_one_check(
 def test_the_documented_order_may_be_meant(tmp_path: Path) -> None:
     toml = TOML.replace("[[channel]]", 'order = "documented"\n[[channel]]', 1)
     found = checks(tmp_path / "order", changed(("\n  page Rob", CHOICE)), Plan(), toml)
-    check = found[control.CONFLUENT]
+    check = found[control_types.CONFLUENT]
     assert (check.answer, check.is_accepted, check.fails) == ("no", True, False)
 
 
@@ -382,7 +388,7 @@ def test_a_clock_is_no_endless_response(tmp_path: Path) -> None:
         ),
     )
     found = checks(tmp_path / "clock", net, Plan())
-    assert (found[control.FINITE].answer, found[control.BOUNDED].value) == ("yes", 2)
+    assert (found[control_types.FINITE].answer, found[control_types.BOUNDED].value) == ("yes", 2)
 
 
 def test_priorities_of_several_owners_are_asked_for(tmp_path: Path) -> None:
@@ -601,8 +607,10 @@ def test_channels_need_no_graph(explorers: Explorers, tmp_path: Path) -> None:
         said = {c.name: c.answer for c in looked.checks}
         assert said == {
             **dict.fromkeys(said, "unknown"),
-            control.OWNERSHIP: "yes",
-            control.CHANNELS: answer,
+            control_types.OWNERSHIP: "yes",
+            control_types.CHANNELS: answer,
+            control_types.MESSAGES: "yes",  # by the colour sets of the channels
+            control_types.MEMORY: answer,
         }
         rests = {c.name: c.rests_on for c in looked.checks}
-        assert rests[control.CHANNELS] == ("markings" if answer == "yes" else None)
+        assert rests[control_types.CHANNELS] == ("markings" if answer == "yes" else None)

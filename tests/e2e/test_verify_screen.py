@@ -47,7 +47,7 @@ def test_a_cell_with_a_fault(tmp_path: Path, here: Path) -> None:
     assert len(lines) <= MOST_LINES
     assert "NO Non-blocking under control: a deadlock" in text
     assert "The way to `Non-blocking under control`" in text
-    assert lines[-1] == "Verdict: NO. 1 of 6 answers is not as it should be."
+    assert lines[-1] == "Verdict: NO. 1 of 8 answers is not as it should be."
     assert [path.name for path in here.iterdir()] == ["cell.traces"]
 
 

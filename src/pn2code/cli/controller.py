@@ -12,7 +12,7 @@ from pn2code.diagnostics import Diagnostics, Origin
 from pn2code.properties import meaning as m
 from pn2code.verify import control
 from pn2code.verify.codes import TRACE_UNWRITABLE
-from pn2code.verify.control import Control, Plan
+from pn2code.verify.control_types import Control, Plan
 from pn2code.verify.explore import Wishes
 from pn2code.verify.limits import Limits
 from pn2code.verify.proofs import declared

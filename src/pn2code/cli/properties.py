@@ -29,7 +29,7 @@ from pn2code.verify import confirm
 from pn2code.verify.answers import Answer, answers
 from pn2code.verify.cell_answers import of_cell
 from pn2code.verify.codes import TRACE_UNWRITABLE
-from pn2code.verify.control import Control
+from pn2code.verify.control_types import Control
 from pn2code.verify.explore import Wishes, explore
 from pn2code.verify.lasso import write_loop
 from pn2code.verify.limits import Limits, Reduction

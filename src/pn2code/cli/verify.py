@@ -38,7 +38,7 @@ from pn2code.os_reason import os_reason
 from pn2code.verify import chance
 from pn2code.verify.answers import Answer, verdict
 from pn2code.verify.codes import REPORT_UNWRITABLE, STATE_ERROR, TIME_OVER, TRACE_UNWRITABLE
-from pn2code.verify.control import Control
+from pn2code.verify.control_types import Control
 from pn2code.verify.explore import Wishes, explore
 from pn2code.verify.limits import Approximation, Limits, Order, Reduction, cores
 from pn2code.verify.pictures import GRAPH_KINDS, PLOT_KINDS, Pictures
@@ -351,6 +351,7 @@ def _json(said: Said) -> dict[str, Any]:
         row["properties"] = [a.row() for a in said.answers]
     if said.control is not None:
         row["controller"] = [c.row() for c in said.control.checks]
+        row["cell"] = said.control.row()
     if said.medium:
         row["medium"] = [a.row() for a in said.medium]
     return row

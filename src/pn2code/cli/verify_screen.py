@@ -20,7 +20,7 @@ from pn2code.semantics.game import GameError
 from pn2code.simulate.script import TraceRefusedError
 from pn2code.verify import basis, control_text
 from pn2code.verify.answers import Answer
-from pn2code.verify.control import TITLES, Control
+from pn2code.verify.control_types import TITLES, Control
 from pn2code.verify.path import steps, text
 from pn2code.verify.properties_text import said as said_of
 from pn2code.verify.properties_text import told

@@ -29,6 +29,7 @@ from pn2code.verify.limits import Limits, Reduction
 from pn2code.verify.programs import Sizes
 from pn2code.verify.reasons import clause
 from pn2code.verify.result import Exploration
+from pn2code.verify.running import chunks
 
 MOST_STATES = 2_000_000
 """Of one exploration, if the user sets no limit."""
@@ -168,19 +169,30 @@ def whole(
     net = compose(partition, rules, Crashes(lives=False))
     assumes = "no side crashes"
     if net.net.timed:
-        assumes += "; messages take no model time"
+        assumes += "; messages take no model time, and none goes by while something can happen"
     if left_out:
         assumes += f"; {', '.join(left_out)} between two robots: their messages arrive at once"
     return _explored(
         WHOLE,
-        "no message is lost, taken twice, torn, refused or overwritten, and the cell comes to its end",
+        "no message is lost, taken twice, torn, refused or overwritten, and from everywhere the cell can come to its "
+        "end",
         net,
         storage,
         run,
         assumes,
         judged=bool(partition.final_places),
+        choices=_choices(partition),
         carried=partition,
     )
+
+
+def _choices(partition: Partition) -> str:
+    """Lines for the explorer: of what is enabled, each program does what comes first in the documented order."""
+    lines: list[str] = []
+    for owner in range(len(partition.owners)):
+        own = (i for i, o in enumerate(partition.transition_owner) if o == owner)
+        lines += chunks(f"{'choose' if owner else 'first'} {owner + 1}", own)
+    return "".join(f"{line}\n" for line in lines)
 
 
 def too_large() -> Answer:
@@ -226,6 +238,7 @@ def _explored(
     assumes: str,
     *,
     judged: bool,
+    choices: str = "",
     carried: Partition | None = None,
 ) -> Answer:
     """`carried`: the cell whose messages have to have a form that the codecs can write and read."""
@@ -244,7 +257,7 @@ def _explored(
             run.wishes,
             traces=Path(folder),
             sizes=sizes,
-            questions=_question(net) if judged else "",
+            questions=choices + (_question(net) if judged else ""),
             evidence=Path(folder),
         )
         found = explore(net.net, storage, mine, run.d, wishes)

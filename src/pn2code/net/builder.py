@@ -199,7 +199,11 @@ class Builder:
         return shown
 
     def net(self) -> FlatNet:
-        """The net as it is now."""
+        """The net as it is now.
+
+        Raises:
+            ValueError: nothing binds a variable of a new transition.
+        """
         program = replace(self._base.program, colsets=self._colsets, variables=self._variables)
         variables = NetVariables(program.variables)
         d = Diagnostics()
@@ -217,7 +221,8 @@ class Builder:
                 name, [(a.kind, a.inscription) for a in arcs], wanted.guards, None, None, None
             )
             planned = planner.plan(parts)
-            assert planned is not None, [i.message for i in d.sorted()]
+            if planned is None:
+                raise ValueError("; ".join(i.message for i in d.sorted()))
             transitions.append(
                 FlatTransition(
                     index=index,

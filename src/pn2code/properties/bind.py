@@ -42,6 +42,7 @@ class Written:
         holds: the text.
         expect: whether it is expected to be true.
         fair: transitions whose fairness is assumed.
+        of_net: about the closed net alone.
     """
 
     name: str
@@ -49,6 +50,7 @@ class Written:
     holds: SourceText
     expect: bool = True
     fair: tuple[SourceText, ...] = ()
+    of_net: bool = False
 
 
 class Binder:
@@ -92,6 +94,7 @@ class Binder:
                 asked,
                 tuple(map(self._fair_text, fair)),
                 written.holds.origin,
+                written.of_net,
             )
         )
 

@@ -193,6 +193,7 @@ class Property:
         asked: its meaning.
         fair: the fairness that is assumed, as texts.
         origin: of the text.
+        of_net: whether it is about the closed net alone, also where that is the net of a cell.
     """
 
     name: str
@@ -203,6 +204,7 @@ class Property:
     asked: Asked
     fair: tuple[str, ...]
     origin: Origin
+    of_net: bool = False
 
 
 @frozen

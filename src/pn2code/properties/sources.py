@@ -21,7 +21,8 @@ from pn2code.properties.meaning import Properties
 
 ENDING = ".properties.toml"
 """A file of properties beside `net.cpn` is called `net.properties.toml`."""
-_KEYS = ("name", "says", "holds", "expect", "fair")
+_KEYS = ("name", "says", "holds", "expect", "fair", "about")
+_SUBJECTS = ("cell", "net")
 
 
 def beside(net: Path) -> Path:
@@ -120,6 +121,13 @@ def _table(
             at,
             hint="`expect = false`: the property is known to be false",
         )
+    if table.get("about", "cell") not in _SUBJECTS:
+        d.error(
+            codes.FILE,
+            f"`about` is `{table['about']}`, but `cell` or `net` is expected",
+            at,
+            hint='`about = "net"`: asked of the closed net alone, not of the programs of the cell',
+        )
     fair = table.get("fair", [])
     if not isinstance(fair, list) or not all(isinstance(x, str) for x in fair):
         d.error(
@@ -136,6 +144,7 @@ def _table(
         _located(table["holds"], texts["holds"], 0, at),
         table.get("expect", True),
         tuple(_located(x, texts["fair"], i, at) for i, x in enumerate(fair)),
+        table.get("about") == "net",
     )
 
 

@@ -13,11 +13,13 @@ NET: Final = (
     "them and the explorer's graph with the token game, state by state.",
     "Runs that are shown were played again by the reference token game, which shares no code with the explorer.",
 )
-TIME: Final = "Time is that of the net; nothing in it is slower or faster than its page says."
+TIME: Final = "Time of the closed net goes by only where nothing is enabled; that of the cell whenever it likes."
 CONTROL: Final = (
     "Controller checks: the net starts with its own initial marking, without the tokens of an `[[input]]` file.",
-    "Controller checks: priorities count among the transitions of one owner, as in the cell.",
-    "Controller checks: messages arrive at once and one by one; late ones and crashes are for the medium.",
+    "Controller checks and properties: the cell as it runs. Each program knows its own priorities, and the messages "
+    "that it has seen; the supervisor goes in cycles; of what it can do, each does what comes first in the documented "
+    "order.",
+    "How quick a program is, is left open, and what sensors say; crashes are for the medium.",
 )
 MEDIUM: Final = (
     "A rename is atomic: a name leads to the old or to the new file, never to none or to half of one",

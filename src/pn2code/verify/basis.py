@@ -57,7 +57,7 @@ def of_check(name: str, answer: str, why: str | None, *, has_run: bool) -> str |
         return None
     if name == "ownership":
         return NET
-    if name in ("channels", "messages", "memory"):
+    if name in ("channels", "capacity", "messages", "memory"):
         return MARKINGS if answer == "yes" else RUN if has_run else MARKING
     # That an end can no longer be reached is seen in the graph; the run only shows how to get there.
     is_shown = answer == "no" and has_run and not (name == "non-blocking" and why != "deadlock")

@@ -18,7 +18,8 @@ from pn2code.properties import meaning as m
 from pn2code.properties.silent import means_the_same
 from pn2code.verify import chance
 from pn2code.verify.answers import Answer, Evidence, answers
-from pn2code.verify.control import Control, can_more, has_own_priorities
+from pn2code.verify.control_answers import can_more, has_own_priorities
+from pn2code.verify.control_types import Control
 from pn2code.verify.reasons import clause
 from pn2code.verify.running import Running
 
@@ -84,6 +85,9 @@ def of_cell(
         looked = answers(properties, said, found)
     drawn = chance.draws(partition.net)
     for of_net, answer in zip(closed, looked, strict=True):
+        if of_net.about.of_net:
+            yield of_net
+            continue
         yield _one(of_net, _certain(answer, control.running, drawn, all_orders), partition)
 
 

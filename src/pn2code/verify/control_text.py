@@ -8,7 +8,7 @@ from pn2code.net.flat import FlatNet
 from pn2code.semantics.game import GameError
 from pn2code.simulate.script import TraceRefusedError
 from pn2code.verify import answers, basis, properties_text
-from pn2code.verify.control import CONFLUENT, MEANINGS, TITLES, Check, Control, Evidence
+from pn2code.verify.control_types import CONFLUENT, MEANINGS, TITLES, Check, Control, Evidence
 from pn2code.verify.path import steps
 
 TITLE = "Controller Checks"
@@ -24,7 +24,19 @@ def section(control: Control) -> str:
         mark = "no" if check.is_accepted else _MARKS[check.answer]
         lines.append(f"     {check.name.ljust(_NAME)}{mark:<4}{check.says}")
         lines += (f"     {'':{_NAME}}    {more}" for more in _rests(check))
+    lines += [f"     {line}" for line in looked_at(control)]
     return "\n".join(lines)
+
+
+def looked_at(control: Control) -> Iterator[str]:
+    """What the answers were looked up in, and what of it the closed net does not have."""
+    found = control.found
+    if control.why:
+        yield f"Looked up: {control.why}."
+    elif found is not None:
+        yield f"Looked up in the cell as it runs: {found.nodes:,} states, {found.arcs:,} arcs."
+    for name, own, other in control.other_bounds():
+        yield f"`{name}` holds at most {own} tokens in the cell, {other} in the closed net."
 
 
 def heading(check: Check, run: Evidence, number: int) -> str:

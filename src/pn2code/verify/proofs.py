@@ -20,9 +20,9 @@ from pn2code.diagnostics import Diagnostics, Note
 from pn2code.semantics.game import Game, GameError
 from pn2code.structure import bounds_and_sums
 from pn2code.toolchain.build import TOOL_MISSING
-from pn2code.verify import arena, control, rooms
+from pn2code.verify import arena, control, control_types, rooms
 from pn2code.verify.codes import BEYOND_ROOM, CONTROL_FAILED, CONTROL_OPEN
-from pn2code.verify.control import Check, Control, Plan
+from pn2code.verify.control_types import Check, Control, Plan
 from pn2code.verify.explore import Wishes
 from pn2code.verify.limits import Limits, cores
 from pn2code.verify.reasons import clause
@@ -156,7 +156,7 @@ def _refuse(check: Check, partition: Partition, config: CellConfig, d: Diagnosti
     at = [transitions[t] for t in check.transitions if t in transitions]
     if check.place is not None:
         at.insert(0, places[check.place])
-    notes: list[str | Note] = [f"checked: {control.MEANINGS[check.name]}"]
+    notes: list[str | Note] = [f"checked: {control_types.MEANINGS[check.name]}"]
     notes += [
         Note("the other transition is here", other)
         for other in at[1:2]
@@ -177,13 +177,13 @@ _HINT = (
     "`pn2code verify` on the cell writes the run that shows it; `--unchecked` generates it anyway"
 )
 _HINTS = {
-    control.CONFLUENT: "give the transitions different priorities, or say in cell.toml that the documented order is "
-    'meant: `order = "documented"` in [supervisor]; `--unchecked` generates it anyway',
+    control_types.CONFLUENT: "give the transitions different priorities, or say in cell.toml that the documented "
+    'order is meant: `order = "documented"` in [supervisor]; `--unchecked` generates it anyway',
 }
 _SHOWN = 4
 
 
-def _last_steps(run: control.Evidence) -> str:
+def _last_steps(run: control_types.Evidence) -> str:
     last = run.transitions[-_SHOWN:]
     if not last:
         return ""
@@ -207,7 +207,7 @@ def _not_asked(partition: Partition) -> Iterator[str]:
     yield UNCHECKED
     for check in control.not_looked("", partition).checks:
         yield (
-            f"  {check.name}: unchecked ({control.MEANINGS[check.name]})"
+            f"  {check.name}: unchecked ({control_types.MEANINGS[check.name]})"
             if check.answer == "unknown"
             else _verdict(check)
         )

@@ -46,6 +46,8 @@ def remarks(a: Answer) -> list[str]:
         found.append(f"{_VALUES.get(a.about.kind, 'value')}: {number(a.value)}")
     if a.answer == "inconclusive" and a.why:
         found.append(f"not known: {a.why}")
+    if a.about.of_net:
+        found.append("about the closed net alone")
     if a.net is not None:
         found.append(f"net: {a.net}. {a.net_why}")
     if a.rests_on is not None:

@@ -17,7 +17,7 @@ from pn2code.net.engine_names import EngineNames
 from pn2code.net.flat import FlatNet, FlatPlace
 from pn2code.verify import basis, control_text, properties_text
 from pn2code.verify.answers import Answer
-from pn2code.verify.control import Control
+from pn2code.verify.control_types import Control
 from pn2code.verify.reasons import clause
 from pn2code.verify.result import Exploration, Graph, cut, multiset_text
 

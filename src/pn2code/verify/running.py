@@ -40,6 +40,7 @@ from pn2code.net.builder import Arc, Builder
 from pn2code.net.flat import ArcKind, FlatArc, FlatNet, FlatTransition
 from pn2code.semantics.parties import VERIFY
 from pn2code.verify import time_reduction
+from pn2code.verify.stops import MOST_MESSAGES, NoProgramError, machine, waits
 from pn2code.whole_file import whole_file
 
 MOST_OWNERS = 250
@@ -60,16 +61,19 @@ class Running:
         net: with the added places and steps; those of the cell's net come first.
         partition: the cell.
         over: the place of the supervisor's end.
+        stopped: that of robots whose scripts have stopped; the cell stops then.
         steps: by added transition, in order: whose step it is (the clock has the number after the last owner's).
-        clock: which of them are steps of the clock.
+        clock: which of them are steps of the clock; `probes`: which never occur, and only hold others back.
         meek: transitions that hold no other one of their robot back: their messages may not have come yet.
     """
 
     net: FlatNet
     partition: Partition
     over: int
+    stopped: int
     steps: tuple[int, ...]
     clock: tuple[int, ...]
+    probes: tuple[int, ...]
     meek: tuple[int, ...]
     names: frozenset[str]
     """of the transitions of the cell's net"""
@@ -82,7 +86,14 @@ class Running:
             NotModelledError: not everything that its programs do can be said so.
         """
         _check(partition)
-        return _Composer(partition).made()
+        try:
+            return _Composer(partition).made()
+        except NoProgramError as problem:
+            raise NotModelledError(str(problem)) from None
+        except ValueError as problem:
+            raise NotModelledError(
+                f"when a script waits is not seen in the net: {problem}"
+            ) from None
 
     def lines(self, *, first: bool, names: Sequence[str] | None = None) -> list[str]:
         """How the programs choose.
@@ -115,6 +126,7 @@ class Running:
         lines += chunks("meek", now(self.meek))
         lines += chunks("silent", now(range(count, count + len(self.steps))))
         lines += chunks("clock", now(self.clock))
+        lines += chunks("probe", now(self.probes))
         return lines
 
     def project(self, trace: Path, loop: int | None = None) -> tuple[int, int | None]:
@@ -138,9 +150,7 @@ class Running:
                 steps += 1
                 row["step"] = steps
             elif not kept:
-                row["by"] = (
-                    VERIFY  # priorities count among the transitions of an owner, and time goes on
-                )
+                row["by"] = VERIFY
             elif row.get("event") == "end":
                 row["why"] = "evidence"
             kept.append(json.dumps(row, ensure_ascii=False) + "\n")
@@ -227,6 +237,7 @@ class _Composer:
         self.b = b = Builder(partition.net)
         self.step_owner: list[int] = []
         self.clock: list[int] = []
+        self.probes: list[int] = []
         # Priorities count among the steps of an owner: firing comes before publishing, that before resting.
         self.after = max([t.priority for t in partition.net.transitions] or [1000]) + 1
         looked = [c for c in partition.channels if c.reader == SUPERVISOR]
@@ -240,12 +251,15 @@ class _Composer:
         self.calm = b.place("cell.supervisor.calm", b.unit)
         self.over = b.place("cell.supervisor.over", b.unit)
         self.news = b.place("cell.supervisor.news", b.unit)
+        self.stopped = b.place("cell.stopped", b.unit)
         self.looks = [b.place(f"cell.supervisor.looks at {c.file}", b.unit) for c in looked]
         b.begin(self.looks[0] if self.looks else self.calm, b.dot)
         for t, owner in zip(partition.net.transitions, partition.transition_owner, strict=True):
             self._transition(t, owner)
         self._publishing()
         self._reading()
+        for owner in range(1, len(partition.owners)):
+            self._stopping(owner)
         if partition.net.timed:
             self._time()
 
@@ -255,14 +269,23 @@ class _Composer:
             net=self.b.net(),
             partition=self.partition,
             over=self.over,
+            stopped=self.stopped,
             steps=tuple(self.step_owner),
             clock=tuple(self.clock),
+            probes=tuple(self.probes),
             meek=tuple(_meek(self.partition)),
             names=frozenset(t.name for t in self.partition.net.transitions),
         )
 
-    def _step(self, owner: int, name: str, priority: int, *arcs: Arc) -> int:
-        self.b.transition(f"cell.{name}", arcs, priority=priority)
+    def _step(
+        self,
+        owner: int,
+        name: str,
+        priority: int,
+        *arcs: Arc,
+        guards: Sequence[core.Exp] = (),
+    ) -> int:
+        self.b.transition(f"cell.{name}", arcs, priority=priority, guards=guards)
         self.step_owner.append(owner)
         return len(self.partition.net.transitions) + len(self.step_owner) - 1
 
@@ -309,6 +332,31 @@ class _Composer:
             here = self._off(self.looks[i])
             self._step(SUPERVISOR, f"sees {c.file} as well", self.after, here, *found)
             self._step(SUPERVISOR, f"passes {c.file}", self.after + 1, here, self._on(after))
+
+    def _stopping(self, owner: int) -> None:
+        """A robot whose script finds no transition that fits, and none that waits, stops."""
+        program = machine(self.partition, owner)
+        name = self.partition.owners[owner].name
+        halted = self.b.place(f"cell.{name}.stopped", self.b.unit)
+        for step in program.steps:
+            t = step.transition
+            if sum(p in program.channels for p, *_ in step.takes) > MOST_MESSAGES:
+                raise NotModelledError(f"`{t.name}` takes more than {MOST_MESSAGES} messages")
+            for arcs, guards in waits(self.partition, t, self._is_there, self._is_missing):
+                made = self._step(owner, f"{name} waits", self.after, *arcs, guards=guards)
+                self.probes.append(made)
+        for place in program.control:
+            if program.steps_from(place):
+                short = self.partition.net.places[place].short
+                arcs = [self._any(place), self.b.absent(halted), self._on(halted)]
+                arcs.append(self._on(self.stopped))
+                self._step(owner, f"{name} stops at {short}", self.after + 1, *arcs)
+
+    def _is_there(self, place: int) -> list[Arc]:
+        return [self._has(self.out[place])] if place in self.out else []
+
+    def _is_missing(self, place: int) -> Arc:
+        return self.b.absent(self.out.get(place, place))
 
     def _time(self) -> None:
         """The clock, whose steps the explorer takes one unit later; each of them may wake the supervisor."""

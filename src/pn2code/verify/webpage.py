@@ -20,7 +20,7 @@ from pn2code.simulate.script import TraceRefusedError
 from pn2code.verify import basis, control_text, properties_text
 from pn2code.verify.answers import Answer
 from pn2code.verify.assumptions import assumed
-from pn2code.verify.control import TITLES, Control
+from pn2code.verify.control_types import TITLES, Control
 from pn2code.verify.path import Step, steps
 from pn2code.verify.reasons import clause
 from pn2code.verify.report import bounded_places, error_text, left_out

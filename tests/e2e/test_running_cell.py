@@ -1,0 +1,523 @@
+"""Cells as they run: what `verify` says of them, what really happens in a run, and the model against its definition."""
+
+from __future__ import annotations
+
+import json
+from dataclasses import dataclass
+from pathlib import Path
+from random import Random
+from typing import Any
+
+import pytest
+
+from helpers.netbuilder import cpn
+from helpers.programs import Programs, Step
+from helpers.random_cells import random_cell
+from helpers.thorough import amount
+from pn2code.cell.divide import divide
+from pn2code.cell.partition import Partition
+from pn2code.cli.controller import look
+from pn2code.cli.nets import OpenNet, open_net
+from pn2code.cli.properties import answered, asked
+from pn2code.deadline import Deadline
+from pn2code.diagnostics import Diagnostics, render
+from pn2code.run.cell import RunOptions, run_cell
+from pn2code.verify import control
+from pn2code.verify.control_types import Check, Control, Plan
+from pn2code.verify.explore import Wishes, explore
+from pn2code.verify.limits import Limits
+from pn2code.verify.running import NotModelledError, Running
+
+pytestmark = [pytest.mark.cc, pytest.mark.usefixtures("quick_build")]
+
+MOST = 3_000
+"""States; some random cells have no end of them."""
+TOOL = '[primitives]\nact = { command = "tool", action = "act", duration_s = 2.0 }\n'
+
+
+def toml(devices: list[str], more: str = "") -> str:
+    """A cell in which each device has a flag to it and one from it."""
+    text = '[net]\nfile = "cell.cpn"\n[supervisor]\ninstance = "Supervisor"\nfinal = ["Finished"]\n'
+    for x in devices:
+        for c in (f"to{x}", f"from{x}"):
+            text += f'[[channel]]\nplace = "{c}"\nfile = "{c}.robcad"\nkind = "flag"\n'
+    return text + more + "".join(f'[devices.{x}]\ninstance = "{x}"\n' for x in devices)
+
+
+def net(supervisor: str, devices: dict[str, str], head: str = "") -> str:
+    """A cell: the supervisor's page after its ports, and those of the devices."""
+    tops = "".join(f"    place to{x} : INT\n    place from{x} : INT\n" for x in devices)
+    ports = ", ".join(f"to{x} -> to{x}, from{x} -> from{x}" for x in devices)
+    text = f"net cell\n  standard\n  val P_HIGH = 100;\n{head}  var k: INT;\n  page Top\n{tops}"
+    text += f"    subst Supervisor = Sup ({ports})\n"
+    text += "".join(f"    subst {x} = P{x} (ask -> to{x}, say -> from{x})\n" for x in devices)
+    text += "  page Sup\n"
+    for x in devices:
+        text += f"    place to{x} port out : INT\n    place from{x} port in : INT\n"
+    text += supervisor
+    for x, page in devices.items():
+        text += f"  page P{x}\n    place ask port in : INT\n    place say port out : INT\n{page}"
+    return text
+
+
+ECHO = """    place Waiting = 1
+    place Told
+    trans Accept
+      in Waiting : ()
+      in ask : k
+      out Told : ()
+    trans Answer
+      in Told : ()
+      out Waiting : ()
+      out say : 1
+"""
+SLOW = ECHO.replace("trans Answer", "trans Answer code action act ()")
+URGENT = SLOW.replace("trans Accept", "trans Accept priority P_HIGH").replace(
+    "trans Answer", "trans Answer priority P_HIGH"
+)
+ACT = "  fun act () = ();\n"
+
+# B's answer counts twice where A has not answered yet. A is more urgent everywhere, and slow.
+RACE = net(
+    """    place Start = 1
+    place WaitA
+    place WaitB
+    place DoneA
+    place DoneB
+    place Coins
+    place Finished
+    trans Ask
+      in Start : ()
+      out toA : 1
+      out toB : 1
+      out WaitA : ()
+      out WaitB : ()
+    trans HearA priority P_HIGH
+      in WaitA : ()
+      in fromA : k
+      out DoneA : ()
+    trans HearB
+      in WaitB : ()
+      in fromB : k
+      both DoneA : ()
+      out DoneB : ()
+      out Coins : ()
+    trans Early
+      in WaitB : ()
+      in fromB : k
+      both WaitA : ()
+      out DoneB : ()
+      out Coins : 2`()
+    trans End
+      in DoneA : ()
+      in DoneB : ()
+      out Finished : ()
+""",
+    {"A": URGENT, "B": ECHO},
+    ACT,
+)
+# There is a final place, and nothing leads there.
+NO_END = net(
+    """    place Start = 1
+    place Armed
+    place Finished
+    trans Ask
+      in Start : ()
+      out toA : 1
+      out Armed : ()
+    trans Again
+      in Armed : ()
+      in fromA : k
+      out Start : ()
+    trans End guard [k = 2]
+      in Armed : ()
+      in fromA : k
+      out Finished : ()
+""",
+    {"A": ECHO},
+)
+# The supervisor takes the first value of `w`, which is never the one that it needs.
+FREE = net(
+    """    place Start = 1
+    place Armed : W
+    place Finished
+    trans Ask
+      in Start : ()
+      out toA : 1
+      out Armed : w
+    trans Again guard [w <> 3]
+      in Armed : w
+      in fromA : k
+      out Start : ()
+    trans End guard [w = 3]
+      in Armed : w
+      in fromA : k
+      out Finished : ()
+""",
+    {"A": ECHO},
+    "  colset W = int with 1..3;\n  var w: W;\n",
+)
+# The end needs the answer in the same cycle as the question.
+AT_ONCE = net(
+    """    place Start = 1
+    place Armed
+    place Missed
+    place Finished
+    trans End priority P_HIGH
+      in Armed : ()
+      in fromA : k
+      out Finished : ()
+    trans Ask
+      in Start : ()
+      out toA : 1
+      out Armed : ()
+    trans Miss
+      in Armed : ()
+      out Missed : ()
+    trans Again
+      in Missed : ()
+      in fromA : k
+      out Start : ()
+""",
+    {"A": ECHO},
+)
+# The script always takes its first branch.
+BRANCH = net(
+    """    place Start = 1
+    place Armed
+    place Finished
+    trans Ask
+      in Start : ()
+      out toA : 1
+      out Armed : ()
+    trans Again guard [k = 1]
+      in Armed : ()
+      in fromA : k
+      out Start : ()
+    trans End guard [k = 2]
+      in Armed : ()
+      in fromA : k
+      out Finished : ()
+""",
+    {
+        "A": ECHO
+        + """    trans Other
+      in Told : ()
+      out Waiting : ()
+      out say : 2
+"""
+    },
+)
+# A timer of one second watches a tool that needs two.
+WATCHED = net(
+    """    place Start = 1
+    place Armed
+    place Timer : T
+    place TooLate
+    place Finished
+    trans Ask
+      in Start : ()
+      out toA : 1
+      out Armed : ()
+      out Timer : ()@+1
+    trans End
+      in Armed : ()
+      in fromA : k
+      out Finished : ()
+    trans GiveUp
+      in Armed : ()
+      in Timer : ()
+      out TooLate : ()
+""",
+    {"A": SLOW},
+    "  colset T = unit timed;\n" + ACT,
+)
+# Whoever looks after the second timer has ended takes the other branch.
+LATE = net(
+    """    place Choice = 1
+    place One : T = 1`() @ 1
+    place Two : T = 1`() @ 2
+    place Lost
+    place Armed
+    place Finished
+    trans InTime
+      in One : ()
+      in Choice : ()
+      out toA : 1
+      out Armed : ()
+    trans TooLate priority P_HIGH
+      in Two : ()
+      in Choice : ()
+      out Lost : ()
+    trans End
+      in Armed : ()
+      in fromA : k
+      out Finished : ()
+""",
+    {"A": ECHO},
+    "  colset T = unit timed;\n",
+)
+# A command that the script does not know stops it, though nobody waits for its answer.
+UNKNOWN = net(
+    """    place Start = 1
+    place Armed
+    place Finished
+    trans Ask
+      in Start : ()
+      out toA : 1
+      out toB : 1
+      out Armed : ()
+    trans HearA
+      in Start : ()
+      in fromA : k
+      out Start : ()
+    trans End
+      in Armed : ()
+      in fromB : k
+      out Finished : ()
+""",
+    {
+        "A": """    place Waiting = 1
+    place Told : INT
+    trans Accept
+      in Waiting : ()
+      in ask : k
+      out Told : k
+    trans Answer guard [k = 2]
+      in Told : k
+      out Waiting : ()
+      out say : 1
+""",
+        "B": ECHO,
+    },
+)
+# Whether the end comes depends on who answers first, each time again.
+LUCK = net(
+    """    place Start = 1
+    place Armed
+    place LostA
+    place Finished
+    trans Ask
+      in Start : ()
+      out toA : 1
+      out toB : 1
+      out Armed : ()
+    trans First
+      in Armed : ()
+      in fromA : k
+      out LostA : ()
+    trans Again
+      in LostA : ()
+      in fromB : k
+      out Start : ()
+    trans End
+      in Armed : ()
+      in fromB : k
+      out Finished : ()
+""",
+    {"A": ECHO, "B": SLOW},
+    ACT,
+)
+
+
+def write(folder: Path, text: str, cell: str) -> Path:
+    """The cell as files."""
+    folder.mkdir(parents=True, exist_ok=True)
+    (folder / "cell.cpn").write_bytes(cpn(text))
+    (folder / "cell.toml").write_text(cell, encoding="utf-8")
+    return folder
+
+
+@dataclass(frozen=True)
+class Looked:
+    """What was found out about a cell."""
+
+    opened: OpenNet
+    partition: Partition
+    checks: dict[str, Check]
+    control: Control
+
+
+def examined(folder: Path) -> Looked:
+    """The checks of a cell."""
+    opened = open_net(folder, {})
+    d = Diagnostics()
+    partition = divide(opened.flat, opened.config, d)
+    assert partition is not None and opened.config is not None, render.report(d)
+    plan = Plan(storage=opened.storage, folder=folder, wishes=Wishes(quick=True))
+    found = control.examine(partition, plan, Limits(threads=2, max_states=MOST), d)
+    assert found is not None, render.report(d)
+    return Looked(opened, partition, {c.name: c for c in found.checks}, found)
+
+
+def ran(folder: Path) -> list[dict[str, Any]]:
+    """The lines of a run in lock-step, whether or not the checks are fine."""
+    d = Diagnostics()
+    out = folder / "run"
+    options = RunOptions(out=out, backend="fake", looks=False, checked=False)
+    result = run_cell(folder, options, d)
+    assert result is not None, render.report(d)
+    return [json.loads(x) for x in (out / "cell.trace.jsonl").read_text().splitlines()]
+
+
+def steps(lines: list[dict[str, Any]]) -> list[Step]:
+    """The occurrences of a trace."""
+    return [(x["transition"], x["binding"]) for x in lines if "transition" in x]
+
+
+CELLS = {
+    "no end": (NO_END, toml(["A"]), "no", "can no longer be reached"),
+    "free variable": (FREE, toml(["A"]), "no", "can no longer be reached"),
+    "at once": (AT_ONCE, toml(["A"]), "no", "can no longer be reached"),
+    "branch": (BRANCH, toml(["A"]), "no", "can no longer be reached"),
+    "watched": (WATCHED, toml(["A"], TOOL), "no", "a deadlock 4 steps after the start"),
+    "late": (LATE, toml(["A"]), "no", "a deadlock 1 step after the start"),
+    "unknown": (UNKNOWN, toml(["A", "B"]), "no", "A stops at Told, where no transition fits"),
+    "luck": (LUCK, toml(["A", "B"], TOOL), "unknown", "which durations decide"),
+}
+
+
+@pytest.mark.parametrize("name", CELLS)
+def test_a_cell_that_need_not_come_to_its_end(name: str, tmp_path: Path) -> None:
+    text, cell, answer, says = CELLS[name]
+    found = examined(write(tmp_path / "cell", text, cell)).checks["non-blocking"]
+    assert found.answer == answer
+    assert says in found.says
+    for run in found.evidence:
+        assert run.file is not None
+        lines = [json.loads(x) for x in run.file.read_text().splitlines()]
+        assert len(steps(lines)) == run.steps
+
+
+def test_the_watched_tool_is_given_up(tmp_path: Path) -> None:
+    names = [name for name, _ in steps(ran(write(tmp_path, WATCHED, toml(["A"], TOOL))))]
+    assert "Top.Supervisor.GiveUp" in names and "Top.Supervisor.End" not in names
+
+
+def test_the_script_that_knows_no_transition_stops_the_cell(tmp_path: Path) -> None:
+    lines = ran(write(tmp_path, UNKNOWN, toml(["A", "B"])))
+    assert lines[-1]["why"] not in ("finished", "")
+
+
+@pytest.mark.parametrize(
+    ("holds", "answer", "closed"),
+    [
+        ("bound Coins <= 1", "no", "yes"),
+        ("never tokens(DoneB) = 1 && tokens(WaitA) = 1", "no", "yes"),
+        ("reachable tokens(Coins) = 2", "yes", "no"),
+        ("ltl G !fires(Early)", "no", "yes"),
+        ("bound Coins <= 2", "yes", None),
+        ("ctl AF tokens(Finished) = 1", "yes", None),
+        ("every fires(Ask) is followed by fires(End) within 7 firings", "yes", None),
+        ("every fires(Ask) is followed by fires(End) within 6 firings", "no", None),
+        ('ltl G (fires(Ask) -> X fires("Top.B.Accept"))', "inconclusive", "no"),
+    ],
+)
+def test_properties_are_about_the_cell(
+    holds: str, answer: str, closed: str | None, tmp_path_factory: pytest.TempPathFactory
+) -> None:
+    folder = tmp_path_factory.mktemp("race")
+    opened = open_net(write(folder, RACE, toml(["A", "B"], TOOL)), {})
+    d = Diagnostics()
+    wanted = asked(opened, [holds], None, d, found=False)
+    limits, evidence = Limits(threads=2), folder / "runs"
+    evidence.mkdir()
+    wishes = Wishes(
+        questions=wanted.questions,
+        predicates=wanted.properties.predicates,
+        evidence=evidence,
+        quick=True,
+    )
+    found = explore(opened.flat, {}, limits, d, wishes)
+    assert found is not None, render.report(d)
+    looked = look(opened, found, limits, wishes, folder, d, wanted.plain)
+    never = Deadline.after(None)
+    (said,) = answered(wanted, opened, found, (), folder, "x", never, d, looked)
+    assert not d.items, render.report(d)
+    assert (said.answer, said.net, said.cell) == (answer, closed, True)
+    assert (said.net is None) == (said.net_why == "")
+    if said.evidence is not None:
+        lines = [json.loads(x) for x in said.evidence.trace.read_text().splitlines()]
+        running = Running.of(divide(opened.flat, opened.config, d))  # type: ignore[arg-type]
+        assert Programs(running).follow(steps(lines)) == said.evidence.steps
+
+
+def test_what_was_reached_in_the_race_is_run(tmp_path: Path) -> None:
+    """The run does what the closed net cannot do, and it is a run of the model."""
+    folder = write(tmp_path, RACE, toml(["A", "B"], TOOL))
+    taken = steps(ran(folder))
+    assert "Top.Supervisor.Early" in [name for name, _ in taken]
+    looked = examined(folder)
+    assert looked.control.running is not None
+    assert Programs(looked.control.running).follow(taken) == len(taken)
+    bounds = looked.control.row()["bounds"]
+    assert next(b["upper"] for b in bounds if b["place"] == "Top.Supervisor.Coins") == 2
+
+
+def test_a_declared_capacity_is_looked_at(tmp_path: Path) -> None:
+    opened = open_net(write(tmp_path, RACE, toml(["A", "B"], TOOL) + "[capacity]\nCoins = 1\n"), {})
+    d = Diagnostics()
+    found = explore(opened.flat, {}, Limits(), d, Wishes(quick=True))
+    assert found is not None
+    looked = look(opened, found, Limits(), Wishes(), tmp_path, d)
+    assert looked is not None
+    check = next(c for c in looked.checks if c.name == "capacity")
+    assert check.answer == "no" and check.fails
+    assert "place `Coins` gets 2 tokens" in check.says and "declares 1" in check.says
+    assert check.evidence[0].transitions[-1] == "Top.Supervisor.Early"
+
+
+def test_an_end_is_reached_in_the_medium_or_it_says_no(tmp_path: Path) -> None:
+    from pn2code.medium.check import WHOLE, medium
+
+    for name in ("no end", "free variable"):
+        text, cell, _, _ = CELLS[name]
+        opened = open_net(write(tmp_path / name.replace(" ", "-"), text, cell), {})
+        d = Diagnostics()
+        partition = divide(opened.flat, opened.config, d)
+        assert partition is not None
+        whole = next(a for a in medium(partition, {}, Limits(), d) if a.check == WHOLE)
+        assert whole.answer == "no", name
+
+
+# --- the model against its definition --------------------------------------------------------------
+
+
+def test_random_cells(tmp_path: Path) -> None:
+    """The explorer sees what the definition says, state by state; a recorded run is a run of the model."""
+    compared, followed, answers = 0, 0, set()
+    for seed in range(1_000):
+        folder = write(tmp_path / str(seed), *random_cell(Random(seed)))
+        opened = open_net(folder, {})
+        partition = divide(opened.flat, opened.config, Diagnostics())
+        assert partition is not None
+        programs = Programs(Running.of(partition))
+        space = programs.space(MOST)
+        if space is None:  # too many
+            continue
+        looked = examined(folder)
+        found = looked.control.found
+        assert found is not None and found.complete
+        assert (found.nodes, found.arcs, found.dead_count) == space, seed
+        answers.add(looked.checks["non-blocking"].answer)
+        compared += 1
+        if compared % 2:
+            taken = steps(ran(folder))[:60]
+            assert programs.follow(taken) == len(taken), seed
+            followed += len(taken)
+        if compared == amount(3, 100):
+            break
+    assert compared == amount(3, 100) and followed > 3
+    assert compared < 50 or {"yes", "no"} <= answers
+
+
+def test_what_is_not_modelled_is_said(tmp_path: Path) -> None:
+    text = RACE.replace(
+        "      in fromB : k\n      both DoneA", "      in fromB : 2`k\n      both DoneA"
+    )
+    looked = examined(write(tmp_path, text, toml(["A", "B"], TOOL)))
+    assert looked.control.running is None
+    assert "`Top.Supervisor.HearB` takes just one message of `fromB`" in looked.control.why
+    assert {c.answer for c in looked.checks.values()} == {"unknown", "yes"}
+    with pytest.raises(NotModelledError):
+        Running.of(looked.partition)
