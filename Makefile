@@ -1,10 +1,10 @@
 # What `make` users expect; ./dev does the work and says what else there is.
-.PHONY: thorough database-15 help test lint fuzz hosts declarations bench ml-suite conformance mutation oracle misspell adversary
+.PHONY: thorough database-15 help test lint fuzz hosts declarations bench ml-suite conformance mutation oracle misspell elements adversary
 
 help:
 	@./dev help
 
-test lint bench ml-suite conformance mutation oracle misspell:
+test lint bench ml-suite conformance mutation oracle misspell elements:
 	./dev $@
 
 # The tests with all of their long sweeps.
