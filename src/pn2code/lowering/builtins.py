@@ -293,7 +293,12 @@ class Builtins:
             return written
         if name.startswith("of_"):
             value = body.atomic(body.code(arguments[0]), "value")
-            return ir.IsTag(value, colset.names.index(name.removeprefix("of_")))
+            made = ir.IsTag(value, colset.names.index(name.removeprefix("of_")))
+            if not types.is_restricted(table):
+                return made
+            value = body.addressable(value, "value")
+            legal = ir.Op("Colset.legal", (value,), ir.BOOL, table)
+            return ir.Op("andalso", (made, legal), ir.BOOL)
         raise UnsupportedError(
             UNSUPPORTED_BUILTIN, f"`{colset.name}.{name}` is not supported in compiled code", at
         )

@@ -42,7 +42,6 @@ BinIO : setOutstream setPosOut
 OS.IO : compare hash infoToPollDesc isIn isOut isPri kind poll pollDesc pollIn pollOut pollPri pollToIODesc
 OS.FileSys : compare fileId hash readLink setTime tmpName
 == the clock of the computer is not read, so that runs can be repeated
-Date : fromString isDst localOffset offset scan
 Timer : checkCPUTimes checkGCTime
 == pn2code has not got this part of the library
 IEEEReal : fromString getRoundingMode scan setRoundingMode toString

@@ -362,21 +362,6 @@ OS.Process.atExit : (unit -> unit) -> unit ; for its effect at the end
 CPN'Replications.nreplications : int -> unit ; so many simulations
 
 == the clock of the computer is not read, so that runs can be repeated
-Date.year : Date.date -> int ; of a date
-Date.month : Date.date -> Date.month ; of a date
-Date.day : Date.date -> int ; of a date
-Date.hour : Date.date -> int ; of a date
-Date.minute : Date.date -> int ; of a date
-Date.second : Date.date -> int ; of a date
-Date.weekDay : Date.date -> Date.weekday ; of a date
-Date.yearDay : Date.date -> int ; of a date
-Date.fromTimeLocal : Time.time -> Date.date ; of a time
-Date.fromTimeUniv : Time.time -> Date.date ; of a time
-Date.toTime : Date.date -> Time.time ; of a date
-Date.toString : Date.date -> string ; of a date
-Date.fmt : string -> Date.date -> string ; formatted
-Date.compare : Date.date * Date.date -> order ; three-way comparison
-Date.date : {year : int, month : Date.month, day : int, hour : int, minute : int, second : int, offset : Time.time option} -> Date.date ; made
 OS.FileSys.modTime : string -> Time.time ; when a file was changed
 ==
 """

@@ -264,4 +264,4 @@ def _setter(label: str) -> Function:
 
 
 def _tester(constructor: str) -> Function:
-    return lambda e, c, a: a.name == constructor
+    return lambda e, c, a: a.name == constructor and e.colours.legal(c, a)

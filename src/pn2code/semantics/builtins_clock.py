@@ -6,7 +6,7 @@ import math
 from collections.abc import Callable
 from typing import TYPE_CHECKING, Any
 
-from pn2code.semantics.builtins_numbers import fail, read_integer, read_real
+from pn2code.semantics.builtins_numbers import read_integer, read_real
 from pn2code.semantics.values import (
     NONE,
     UNIT,
@@ -55,7 +55,8 @@ def _time_from_string(e: Evaluator, text: str) -> Data:
 def _make_time(e: Evaluator, text: str) -> Value:
     found = _time_from_string(e, text)
     if found.argument is None:
-        raise fail("Option")
+        kind = "a real" if e.real_time else "an IntInf"
+        raise MlException(exception("CPN'Error", f"maketime: not {kind} : {text}"))
     return found.argument
 
 

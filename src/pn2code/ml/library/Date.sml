@@ -119,4 +119,12 @@ structure Date = struct
                        offset = NONE})
         end
         handle Subscript => NONE | Option => NONE | Date => NONE
+    fun scan getc stream =
+        let fun take (0, rest, out) = SOME (implode (rev out), rest)
+              | take (n, rest, out) = (case getc rest of SOME (c, more) => take (n - 1, more, c :: out) | NONE => NONE)
+        in
+            case take (24, stream, nil) of
+                SOME (text, rest) => (case fromString text of SOME d => SOME (d, rest) | NONE => NONE)
+              | NONE => NONE
+        end
 end
