@@ -27,7 +27,7 @@ def test_a_cell(tmp_path: Path) -> None:
     cell = write(tmp_path / "cell")
     page = page_of(cell, tmp_path, "--no-medium", "--property", "always tokens(Finished) <= 1")
     assert "Verification report, 20" in page
-    assert "Controller checks: 6 of 6 are as they should be." in page
+    assert "Controller checks: 8 of 8 are as they should be." in page
     assert "Properties: 1 of 1 are as they should be." in page
     assert "Medium" not in page and "File system" not in page
     assert "without the tokens of an [[input]] file" in page
@@ -43,7 +43,7 @@ def test_a_cell(tmp_path: Path) -> None:
 def test_a_cell_that_is_refused(tmp_path: Path) -> None:
     cell = write(tmp_path / "cell", NET.replace("guard [n = 2]", "guard [n = 3]"))
     page = page_of(cell, tmp_path, "--no-medium")
-    assert "Controller checks: 5 of 6 are as they should be, 1 is not." in page
+    assert "Controller checks: 7 of 8 are as they should be, 1 is not." in page
     assert "`generate` refuses the cell: non-blocking: a deadlock" in page
     assert "net.c" not in page
 
@@ -52,7 +52,7 @@ def test_a_part_of_a_cell(tmp_path: Path) -> None:
     cell = write(tmp_path / "cell")
     page = page_of(cell, tmp_path, "--no-medium", "--max-states", "5")
     assert "No programs were generated: not all markings were seen." in page
-    assert "Controller checks: 1 of 6 are as they should be, 5 are open." in page
+    assert "Controller checks: 1 of 8 are as they should be, 7 are open." in page
 
 
 def test_a_net(tmp_path: Path) -> None:
