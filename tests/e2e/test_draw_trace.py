@@ -133,5 +133,8 @@ def test_pictures_of_a_state_space(
     html = graph.read_text(encoding="utf-8")
     assert html.count('class="node') == 6 and len(re.findall(r'<tr id="arc-', html)) == 7
     assert etree.parse(plot).getroot().tag == f"{SVG}svg"
-    assert run("draw", net, "--trace", "twice.dead-6.trace.jsonl", "-o", "steps.html") == 0
+    assert (
+        run("draw", net, "--trace", "twice.traces/twice.dead-6.trace.jsonl", "-o", "steps.html")
+        == 0
+    )
     assert run("verify", net, "--draw", "graph.pdf") == 2

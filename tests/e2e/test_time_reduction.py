@@ -258,7 +258,7 @@ def test_traces_have_the_true_times(tmp_path: Path, monkeypatch: pytest.MonkeyPa
     run = CliRunner().invoke(app, ["verify", str(net), "--reduce", "time", "--report", "r.txt"])
     assert run.exit_code == 0, run.output
     assert "REDUCED by time" in Path("r.txt").read_text()
-    (trace,) = tmp_path.glob("stuck.dead-*.trace.jsonl")
+    (trace,) = tmp_path.glob("stuck.traces/stuck.dead-*.trace.jsonl")
     assert any('"t": 1' in line for line in trace.read_text().splitlines())
     replay = ["replay", str(trace), str(net), "--json", "--engine", "reference"]
     answer = json.loads(CliRunner().invoke(app, replay).stdout)

@@ -325,18 +325,18 @@ LIBRARY_NET = """
     net Reading
       standard
       colset R = index r with 1..2;
-      var r : R;
+      var reader : R;
       place Away : R = R.all()
       place Reads : R
       place Writes : UNIT
       place Desk : UNIT = 2`()
       trans Come
-        in Away : r
+        in Away : reader
         in Desk : ()
-        out Reads : r
+        out Reads : reader
       trans Go
-        in Reads : r
-        out Away : r
+        in Reads : reader
+        out Away : reader
         out Desk : ()
       trans Write
         in Desk : 2`()

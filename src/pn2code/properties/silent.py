@@ -53,6 +53,8 @@ def sort(f: m.Formula, positive: bool = True) -> Sort:
     if isinstance(f, m.Atom):
         if f.kind in ("true", "pred"):
             return Sort.SAME
+        if f.kind == "initial":
+            return Sort.OTHER  # the programs stand elsewhere when the net has come back to its initial marking
         return Sort.LESS if positive else Sort.MORE
     match f.operator:
         case "not":

@@ -36,6 +36,7 @@ _CHOICES = (
     "supervisor and the scripts choose in the documented order, and a message counts when it has been seen."
 )
 _NEXT = "it speaks of the very next step, and between two occurrences the programs take steps of their own"
+_INITIAL = "when the net comes back to its initial marking, the programs stand elsewhere than at the start"
 _WAITS = "the net does not know how long moves take, nor how late the supervisor is"
 
 
@@ -101,7 +102,7 @@ def _certain(answer: Answer, running: Running | None, drawn: bool, all_orders: b
         open_ = _WAITS
     elif not means_the_same(asked):
         is_all = isinstance(asked, m.Invariant) and asked.wanted and answer.answer == "yes"
-        open_ = "" if is_all else _NEXT
+        open_ = "" if is_all else _INITIAL if _asks_initial(asked) else _NEXT
     elif all_orders and answer.answer == "no":
         open_ = "it was looked at in all orders in which the supervisor could fire"
     if not open_ and drawn and answer.evidence is None:
@@ -113,6 +114,14 @@ def _certain(answer: Answer, running: Running | None, drawn: bool, all_orders: b
     e = answer.evidence
     steps, loop = running.project(e.trace, e.loop)
     return replace(answer, node=None, evidence=Evidence(e.trace, steps, loop))
+
+
+def _asks_initial(asked: m.Asked) -> bool:
+    match asked:
+        case m.Invariant(formula) | m.Branching(formula) | m.Linear(formula):
+            return any(a.kind == "initial" for a in m.atoms(formula))
+        case _:
+            return False
 
 
 def _one(of_net: Answer, of_cell: Answer, partition: Partition) -> Answer:

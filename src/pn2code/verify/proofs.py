@@ -27,8 +27,8 @@ from pn2code.verify.explore import Wishes
 from pn2code.verify.limits import Limits, cores
 from pn2code.verify.reasons import clause
 
-MOST_STATES = 1_000_000
-MOST_SECONDS = 30.0
+MOST_STATES = 3_000_000
+MOST_SECONDS = 60.0
 """A supervisor of a larger space is generated with a warning; `verify` takes as long as it takes."""
 UNCHECKED = "Not checked, since it was generated with --unchecked (docs/execution.md):"
 
