@@ -13,7 +13,7 @@ import pytest
 from test_explore_queries import LABELS, graph_net, leaves_of
 from typer.testing import CliRunner
 
-from helpers import netbuilder
+from helpers import netbuilder, small_cell
 from helpers.controlled import Scheme
 from helpers.explored import Explorers, wide
 from helpers.questions import Lts, ask
@@ -368,6 +368,16 @@ def test_cells_that_fail_one_check(
         lines = [json.loads(x) for x in run.file.read_text().splitlines()]
         assert len([x for x in lines if "transition" in x]) == run.steps
     assert len(wrong.evidence) == (2 if name == "choice" else 1)
+
+
+def test_the_first_overrun_is_named(tmp_path: Path) -> None:
+    """The robot answers twice; that the supervisor then commands too early, in a channel before it, comes of that."""
+    before = "      in data : p\n      out Over : ()\n"
+    net = small_cell.NET.replace(before, f"{before}      out done : 1\n")
+    assert net != small_cell.NET
+    check = checks(tmp_path / "first", net, Plan(), small_cell.TOML)[control_types.CHANNELS]
+    assert check.says == "channel `done` gets 2 messages at a time, 4 steps after the start"
+    assert check.evidence[0].transitions[-1] == "Top.Robot.Report"
 
 
 def test_the_documented_order_may_be_meant(tmp_path: Path) -> None:

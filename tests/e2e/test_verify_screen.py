@@ -5,6 +5,8 @@ from __future__ import annotations
 from pathlib import Path
 
 import pytest
+from test_running_cell import RACE, TOOL, toml
+from test_running_cell import write as write_race
 from typer.testing import CliRunner
 
 from helpers.netbuilder import write as write_net
@@ -49,6 +51,19 @@ def test_a_cell_with_a_fault(tmp_path: Path, here: Path) -> None:
     assert "The way to `Non-blocking under control`" in text
     assert lines[-1] == "Verdict: NO. 1 of 8 answers is not as it should be."
     assert [path.name for path in here.iterdir()] == ["cell.traces"]
+
+
+def test_what_differs_in_the_closed_net_is_said(tmp_path: Path, here: Path) -> None:
+    """Sizes are those of the closed net, answers those of the cell; where they are at odds, both are there."""
+    folder = tmp_path / "race"
+    cell = write_race(folder, RACE, toml(["A", "B"], TOOL))
+    code, lines, _ = verify(cell, "--no-medium", "--property", "ltl G !fires(Early)")
+    assert code == 1
+    assert lines[0] == f"State space of {folder / 'cell.cpn'}, as a closed net"
+    assert "NO property 1: ltl G !fires(Early) [the closed net: yes] (run:" in " ".join(lines)
+    code, lines, _ = verify(cell, "--no-medium", "--full", "--property", "ltl G !fires(Early)")
+    (why,) = (line for line in lines if "net: yes. " in line)
+    assert "In the cell the supervisor and the scripts choose in the documented order" in why
 
 
 def test_many_failures_are_still_one_screen(tmp_path: Path, here: Path) -> None:

@@ -133,6 +133,14 @@ def test_a_port_without_a_socket_is_the_cause(tmp_path: Path) -> None:
     )
 
 
+def test_a_port_without_an_arc_is_the_cause(tmp_path: Path) -> None:
+    """The port is there and has its socket: it is the arc that was forgotten, here of the robot's answer."""
+    net = changed(NET, "      out Waiting : ()\n      out done : 1\n", "      out Waiting : ()\n")
+    (found,) = (x for x in said(tmp_path, net) if x.code == "channel-not-shared")
+    assert "`Top.done` is used by supervisor `supervisor` alone" in found.message
+    assert found.hint.startswith("port `done` of page `Rob` is connected to it, but no transition")
+
+
 def test_the_cause_is_shown_to_people(tmp_path: Path) -> None:
     """A note about a port is shown where the page of the port, or the page around it, has an error."""
     done = CliRunner().invoke(app, ["check", str(write(tmp_path, LOST))])

@@ -220,6 +220,22 @@ def test_mistakes_in_a_sensors_file_are_shown_at_their_line(
     assert words in errors[0]
 
 
+def test_the_values_of_an_enumeration_are_named(tmp_path: Path) -> None:
+    (tmp_path / "grip.txt").write_text("hold\n")
+    cell = Cell(
+        tmp_path,
+        GRIPPER,
+        ONE,
+        extra=EXTRA,
+        toml='[sensors.grip]\nvariable = "g"\nfile = "grip.txt"\n',
+    )
+    assert cell.config is not None
+    d = Diagnostics()
+    assert load_sensors(cell.config, cell.partition.net, (tmp_path,), None, d) is None
+    (error,) = d.errors
+    assert error.hint == "write one value of colour set `GRIP`, such as `held`, `lost`, a line"
+
+
 def test_a_truth_value_is_written_as_in_the_net_or_as_in_a_message(tmp_path: Path) -> None:
     """Of a colour set of kind `bool`."""
     page = GRIPPER.replace(": GRIP", ": BOOL").replace("held", "true").replace("lost", "false")

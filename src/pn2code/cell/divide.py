@@ -297,7 +297,7 @@ def _channels(
 def _not_shared(
     net: FlatNet, place: FlatPlace, users: list[Owner], entry: ChannelConfig, d: Diagnostics
 ) -> None:
-    """A channel that lacks a side. A port that has lost its socket is the usual reason."""
+    """A channel that lacks a side: a port has lost its socket, or nothing on the other page has an arc with it."""
     lost = [
         p
         for p in net.place_instances
@@ -308,8 +308,26 @@ def _not_shared(
         and not any(_overlap(o.instance, p.instance) for o in users)
     ]
     lost = [p for p in lost if p.name == place.short] or lost
+    bare = [
+        p
+        for p in net.place_instances
+        if p.is_port
+        and p.place == place.index
+        and not any(_overlap(o.instance, p.instance) for o in users)
+    ]
     who = f"by {users[0].phrase} alone" if users else "by no owner"
     place_named = f"`{place.short}` of page `{place.page}`"
+    hint = (
+        f"connect place {place_named} to the page of the other owner, with a port; an entry for a place inside "
+        "one program is not needed"
+    )
+    if lost:
+        hint = f"assign port `{lost[0].name}` of page `{lost[0].page}` to place {place_named} in CPN Tools"
+    elif bare:
+        hint = (
+            f"port `{bare[0].name}` of page `{bare[0].page}` is connected to it, but no transition there has an arc "
+            "with it: draw the arc that sends the message, or takes it"
+        )
     d.error(
         codes.CHANNEL_NOT_SHARED,
         f"place `{place.name}` is used {who}, but a channel is shared by two owners",
@@ -321,10 +339,7 @@ def _not_shared(
             )
             for p in lost[:3]
         ],
-        hint=f"assign port `{lost[0].name}` of page `{lost[0].page}` to place {place_named} in CPN Tools"
-        if lost
-        else f"connect place {place_named} to the page of the other owner, with a port; an entry for a place inside "
-        "one program is not needed",
+        hint=hint,
     )
 
 

@@ -130,7 +130,8 @@ def _figures(found: Exploration) -> str:
 
 def screen(said: Said) -> str:
     """The verdict, sizes, what failed, and the way there."""
-    lines = [f"State space of {said.net.file}", ""]
+    closed = ", as a closed net" if said.control is not None else ""
+    lines = [f"State space of {said.net.file}{closed}", ""]
     if not said.found.complete:
         partial = f"PARTIAL: {clause(said.found.why)}. {basis.partial(said.found)}"
         lines += [*textwrap.wrap(partial, _WIDTH), ""]
@@ -236,6 +237,7 @@ def _items(said: Said) -> Iterator[_Item]:
     for a in said.answers:
         kind = "open" if a.answer == "inconclusive" else "good" if a.is_expected else "bad"
         says = f"not known: {a.why}" if kind == "open" else said_of(a)
+        says += f" [the closed net: {a.net}]" if a.net is not None else ""
         e = a.evidence
         file, loop = (None, None) if e is None else (e.trace, e.loop)
         yield _Item(a.about.name, kind, says, file, loop=loop)
@@ -316,12 +318,16 @@ def _way(said: Said, wrong: Sequence[_Item], room: int) -> list[str]:
             return _last(said, item.file, f"`{item.name}`", most, item.loop)
         if item.lines:
             before = len(item.lines) - most
-            cut = [f"  ... {before} steps before"] if before > 0 else []
+            cut = _earlier(before)
             return [f"The way to `{item.name}`:", *cut, *(f"  {x}" for x in item.lines[-most:])]
     if found.traces and not wrong and not said.answers and said.control is None:
         trace = found.traces[0]
         return _last(said, trace.file, f"the dead marking {trace.node}", most)
     return []
+
+
+def _earlier(count: int) -> list[str]:
+    return [f"  ... {count} step{'s' * (count != 1)} before"] if count > 0 else []
 
 
 def _last(said: Said, file: Path, goal: str, most: int, loop: int | None = None) -> list[str]:
@@ -335,7 +341,7 @@ def _last(said: Said, file: Path, goal: str, most: int, loop: int | None = None)
     if len(shown) == MOST_STEPS:
         return [f"The way to {goal} is in {file}; it is too long to be shown."]
     head = f"The way to {goal}, {len(shown)} step{'s' * (len(shown) != 1)}, {file}:"
-    lines = [f"  ... {len(shown) - most} steps before"] if len(shown) > most else []
+    lines = _earlier(len(shown) - most)
     for step in shown[-most:] if most else ():
         values = ", ".join(f"{k} = {v}" for k, v in step.binding.items())
         line = f"  {step.number:>3}  {step.transition}" + (f"  ({values})" if values else "")

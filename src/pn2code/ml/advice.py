@@ -86,7 +86,7 @@ BY_CODE: dict[str, str] = {
     "not-an-exception": 'declare one, `exception Bad of string`, and write `raise Bad ".."`; or `raise Fail ".."`',
     "constructor-argument": "a constructor without argument stands alone",
     "function-clauses": "all clauses of a function have the same number of arguments",
-    "unknown-colour-set": "it must be declared before this place, e.g. `colset NAME = int;`",
+    "unknown-colour-set": "declare it above what uses it, e.g. `colset NAME = int;`",
     "unbound-identifier": "declare it before this place, or look whether it is misspelled",
     "no-such-operator": "both operands must be numbers of one type; comparisons also work on strings",
     "type-mismatch": "write a value of the expected type here, or convert this one",

@@ -221,7 +221,7 @@ class Names:
             if span.source.origin.part in ("initial marking", "priority"):
                 hint = f"declare it: `val {name} = ..`, or `fun {name} () = ..`"
             if span.source.origin.part == "declaration":
-                hint = "it must be declared before this place"
+                hint = "declare it above what uses it"
         self._ctx.error(codes.UNBOUND, f"{quoted(name)} is not declared", span, hint=hint)
         return BROKEN
 

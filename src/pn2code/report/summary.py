@@ -150,10 +150,12 @@ def page(summary: dict[str, Any]) -> RenderableType:
     for name, value in summary["accuracy"].items():
         facts.add_row(name, f"{value:.2e} mm")
 
+    # A supervisor of one page has no activities.
+    kinds = ("times", "seconds") if summary["activities"] else ()
     times = Table(box=box.SIMPLE_HEAD, pad_edge=False)
-    times.add_column("activity")
-    times.add_column("times", justify="right")
-    times.add_column("seconds", justify="right")
+    times.add_column("activity" if kinds else "")
+    for kind in kinds:
+        times.add_column(kind, justify="right")
     robots = list(summary["robots"])
     for robot in robots:
         times.add_column(f"{robot} busy", justify="right")
@@ -166,7 +168,7 @@ def page(summary: dict[str, Any]) -> RenderableType:
         )
     shares = [f"{100 * entry['utilisation']:.0f} %" for entry in summary["robots"].values()]
     times.add_section()
-    times.add_row("utilisation", "", "", *shares)
+    times.add_row("utilisation", *("" for _ in kinds), *shares)
     parts: list[RenderableType] = [head, "", facts, times]
     parts += [
         Text(f"warning: {w['text']} ({w['robot']}, {w['t']:.2f} s)", "yellow")

@@ -23,6 +23,8 @@ from pn2code.net.flat import FlatNet
 from pn2code.os_reason import os_reason
 
 Value = int | float | bool | str
+_NAMED = 5
+"""Values of an enumeration that are shown where something else is written."""
 MOST_DRAWN = 1_000_000
 """Colour sets with more values are not drawn from."""
 
@@ -113,6 +115,8 @@ def _script(
         )
         return ()
     before = len(d.errors)
+    names = scalars[0].names[:_NAMED]
+    some = f", such as {', '.join(f'`{name}`' for name in names)}," if names else ""
     out: list[Value] = []
     for number, line in enumerate(lines, 1):
         text = line.partition("#")[0].rstrip()
@@ -125,7 +129,7 @@ def _script(
                 found.text,
                 Origin(str(path), number, found.column),
                 notes=[Note(f"sensor `{sensor.name}` reads this file", sensor.origin)],
-                hint=f"write one value of colour set `{scalars[0].colset}` a line",
+                hint=f"write one value of colour set `{scalars[0].colset}`{some} a line",
             )
         else:
             out += found

@@ -52,10 +52,11 @@ def is_kept(p: m.Property) -> bool:
 
 
 def reason(partition: Partition) -> str:
-    """Why the closed net may differ from the cell."""
-    if has_own_priorities(partition):
-        return _PRIORITIES
-    return _TIME if partition.net.timed else _CHOICES
+    """Why the closed net may differ from the cell: all that there is, since which of it mattered is not known."""
+    found = [_PRIORITIES] if has_own_priorities(partition) else []
+    found += [_TIME] if partition.net.timed else []
+    found += [_CHOICES]
+    return " ".join(found)
 
 
 def of_cell(

@@ -101,15 +101,15 @@ TRACE_UNWRITABLE = register(
 CONTROL_FAILED = register(
     "controller-check",
     "the supervisor fails a check of its execution scheme",
-    "Before a supervisor is generated, the state space of the closed net is searched (docs/execution.md): it must come "
-    "to rest in each cycle, within a bounded number of firings, whatever the order; a final marking must stay within "
-    "reach; no channel may get two messages. `pn2code verify cell.toml` writes the run that shows what is wrong. "
-    "`pn2code generate --unchecked` generates it all the same, and says so in the generated files.",
+    "Before a supervisor is generated, the states of the cell as it runs are searched (docs/execution.md): it must "
+    "come to rest in each cycle, within a bounded number of firings, whatever the order; a final marking must stay "
+    "within reach; no channel may get two messages. `pn2code verify cell.toml` writes the run that shows what is "
+    "wrong. `pn2code generate --unchecked` generates it all the same, and says so in the generated files.",
 )
 CONTROL_OPEN = register(
     "controller-unchecked",
     "it is not known whether the supervisor keeps to its execution scheme",
-    "The state space of the closed net was not explored completely (its limits in `generate` are small), or there is "
+    "The states of the cell as it runs were not all seen (the limits of `generate` are small), or there is "
     "no C compiler. The programs are generated, and say that they are not checked. `pn2code verify cell.toml` has no "
     "limits of its own.",
 )

@@ -124,10 +124,18 @@ class Keeper:
 
     def before(self, row: Mapping[str, Any]) -> int:
         """How many of the first steps of a trace, as many as its number says, are occurrences; before it is read."""
+        return self._occurrences(row, int(row["value"]))
+
+    def length(self, row: Mapping[str, Any]) -> int:
+        """How many steps of a trace are occurrences, before it is read; 0 where there is no trace."""
+        is_there = row.get("trace") is not None and self._running is not None
+        return self._occurrences(row, None) if is_there else 0
+
+    def _occurrences(self, row: Mapping[str, Any], most: int | None) -> int:
         lines = Path(row["trace"]).read_text(encoding="utf-8", errors="surrogateescape").split("\n")
         steps = [x["transition"] for x in map(json.loads, filter(None, lines)) if "transition" in x]
         assert self._running is not None
-        return sum(step in self._running.names for step in steps[: int(row["value"])])
+        return sum(step in self._running.names for step in steps[:most])
 
     def evidence(self, row: Mapping[str, Any], name: str) -> Evidence | None:
         """The run of an answer; None: there is none."""
@@ -261,14 +269,16 @@ def _blocking(row: Mapping[str, Any], keep: Keeper, partition: Partition) -> Che
 def channels_check(partition: Partition, rows: Sequence[Mapping[str, Any]], keep: Keeper) -> Check:
     """Of the answers for each channel."""
     pairs = list(zip(partition.channels, rows, strict=True))
-    for channel, row in pairs:
-        if row["answer"] == "no":
-            place = partition.net.places[channel.place].name
-            most = int(row["value"])
-            evidence = keep.all(row, CHANNELS)
-            after = f", {evidence[0].steps} steps after the start" if evidence else ""
-            says = f"channel `{channel.name}` gets {most} messages at a time{after}"
-            return Check(CHANNELS, "no", says, most, evidence=evidence, place=place)
+    wrong = [pair for pair in pairs if pair[1]["answer"] == "no"]
+    if wrong:
+        # What happens first is the cause: after an overrun the cell would have stopped.
+        channel, row = min(wrong, key=lambda pair: keep.length(pair[1]))
+        place = partition.net.places[channel.place].name
+        most = int(row["value"])
+        evidence = keep.all(row, CHANNELS)
+        after = f", {_steps(evidence[0].steps)} after the start" if evidence else ""
+        says = f"channel `{channel.name}` gets {most} messages at a time{after}"
+        return Check(CHANNELS, "no", says, most, evidence=evidence, place=place)
     for _, row in pairs:
         if row["answer"] == "unknown":
             return unknown(CHANNELS, row)
@@ -290,7 +300,7 @@ def capacities_check(
         if row["answer"] == "no":
             most = int(row["value"])
             evidence = keep.all(row, CAPACITY)
-            after = f", {evidence[0].steps} steps after the start" if evidence else ""
+            after = f", {_steps(evidence[0].steps)} after the start" if evidence else ""
             says = f"place `{places[index].short}` gets {most} tokens{after}, but `[capacity]` declares {bound}"
             return Check(CAPACITY, "no", says, most, evidence=evidence, place=places[index].name)
     for row in rows:
@@ -304,6 +314,10 @@ def capacities_check(
         else "the declared capacity is enough"
     )
     return Check(CAPACITY, "yes", says, most)
+
+
+def _steps(count: int) -> str:
+    return f"{count} step{'s' * (count != 1)}"
 
 
 def _named(transitions: Sequence[str]) -> str:

@@ -156,6 +156,8 @@ def _refuse(check: Check, partition: Partition, config: CellConfig, d: Diagnosti
     at = [transitions[t] for t in check.transitions if t in transitions]
     if check.place is not None:
         at.insert(0, places[check.place])
+    final = config.locator.origin("supervisor", "final")
+    is_end = check.name == control_types.BLOCKING and bool(partition.final_places)
     notes: list[str | Note] = [f"checked: {control_types.MEANINGS[check.name]}"]
     notes += [
         Note("the other transition is here", other)
@@ -167,7 +169,7 @@ def _refuse(check: Check, partition: Partition, config: CellConfig, d: Diagnosti
     d.error(
         CONTROL_FAILED,
         f"{check.name}: {check.says}",
-        at[0] if at else config.supervisor.origin,
+        at[0] if at else final if is_end else config.supervisor.origin,
         notes=[n for n in notes if n],
         hint=_HINTS.get(check.name, _HINT),
     )
