@@ -4,6 +4,7 @@
  * A *step* is an arc of the supervisor that takes no time to wait for: one firing of its cycle. The supervisor *rests* where there is none.
  *
  *   finite response   no run of steps goes on for ever
+ *   restless          the same of the steps of scripts that neither wait nor take time
  *   bounded response  the longest run of steps
  *   confluence        from each node all runs of steps come to rest in the same node
  *   non-blocking      of its steps the supervisor does only the first in the documented order, all others do what they like: from each node
@@ -21,12 +22,16 @@ typedef struct ex_control {
     uint32_t *length;   /* by node: the longest run of steps from there; EX_NO_NODE: one without end */
     uint32_t *rest;     /* by node: where all runs of steps end; EX_NO_NODE: not in one node */
     uint64_t *left;     /* a bit for each node whose runs are known */
+    bool of_scripts;    /* steps are those of scripts that neither wait nor take time */
 } control_t;
 
 static bool is_supervisor(const control_t *c, uint64_t arc)
 {
     const ex_programs_t *const programs = c->queries->run->programs;
     const uint16_t transition = c->graph->label[arc];
+    if (c->of_scripts) {
+        return (programs != NULL) && programs->is_instant[transition];
+    }
     return (c->queries->owner[transition] == 0U) && ((programs == NULL) || !programs->is_silent[transition]);
 }
 
@@ -114,19 +119,26 @@ static bool walk(control_t *c, uint64_t *entered, uint32_t *stack, uint64_t *at)
     return true;
 }
 
-/* What is known of the steps, worked out once. NULL: no memory, or told to stop. */
-static control_t *known(ex_queries_t *queries)
+static void forget(control_t *c)
+{
+    ex_run_t *const run = c->queries->run;
+    const uint64_t nodes = c->graph->nodes;
+    ex_free_table(run, c->length, nodes, sizeof *c->length);
+    ex_free_table(run, c->rest, nodes, sizeof *c->rest);
+    ex_free(run, c->left, ex_set_words(c->graph) * sizeof *c->left);
+    ex_free(run, c, sizeof *c);
+}
+
+/* What is known of the steps. NULL: no memory, or told to stop. */
+static control_t *worked_out(ex_queries_t *queries, bool of_scripts)
 {
     ex_run_t *const run = queries->run;
     const uint64_t nodes = run->graph->nodes;
-    if (queries->control != NULL) {
-        return queries->control;
-    }
     control_t *const c = ex_alloc(run, sizeof *c);
     if (c == NULL) {
         return NULL;
     }
-    *c = (control_t){ .queries = queries, .graph = run->graph };
+    *c = (control_t){ .queries = queries, .graph = run->graph, .of_scripts = of_scripts };
     c->length = ex_table(run, nodes, sizeof *c->length);
     c->rest = ex_table(run, nodes, sizeof *c->rest);
     c->left = ex_set(queries);
@@ -139,14 +151,19 @@ static control_t *known(ex_queries_t *queries)
     ex_free_table(run, stack, nodes, sizeof *stack);
     ex_free_table(run, at, nodes, sizeof *at);
     if (!is_done) {
-        ex_free_table(run, c->length, nodes, sizeof *c->length);
-        ex_free_table(run, c->rest, nodes, sizeof *c->rest);
-        ex_free(run, c->left, ex_set_words(run->graph) * sizeof *c->left);
-        ex_free(run, c, sizeof *c);
+        forget(c);
         return NULL;
     }
-    queries->control = c;
     return c;
+}
+
+/* That of the supervisor's steps, worked out once. */
+static const control_t *known(ex_queries_t *queries)
+{
+    if (queries->control == NULL) {
+        queries->control = worked_out(queries, false);
+    }
+    return queries->control;
 }
 
 /* --- searches -------------------------------------------------------------------------------------------------------- */
@@ -550,8 +567,23 @@ static bool answer_blocking(const control_t *c, ex_question_t *question)
     return is_done;
 }
 
+/* False: no memory, or told to stop. */
+static bool answer_restless(ex_queries_t *queries, ex_question_t *question)
+{
+    control_t *const c = worked_out(queries, true);
+    if (c == NULL) {
+        return false;
+    }
+    answer_finite(c, question);
+    forget(c);
+    return true;
+}
+
 bool ex_control(ex_queries_t *queries, ex_question_t *question)
 {
+    if (question->kind == EX_ASK_RESTLESS) {
+        return answer_restless(queries, question);
+    }
     const control_t *const c = known(queries);
     if (c == NULL) {
         return false;

@@ -23,6 +23,7 @@ typedef struct ex_programs {
     bool *is_meek;        /* by transition: that it is enabled holds no other one back */
     bool *is_probe;       /* by transition: it only shows that something holds, and holds back others of its owner; it never occurs */
     bool *is_silent;      /* by transition: a step that is no occurrence in the net */
+    bool *is_instant;     /* by transition: its script neither waits for anything nor takes time for it */
     bool *is_clock;       /* by transition: it occurs one unit of time later, if something is waited for; with reduced time only */
     bool has_clock;
 } ex_programs_t;

@@ -156,6 +156,7 @@ static void mark_needed(ex_queries_t *queries)
             }
             break;
         case EX_ASK_FINITE:
+        case EX_ASK_RESTLESS:
         case EX_ASK_BOUNDED:
         case EX_ASK_CONFLUENT:
             break; /* they look at arcs alone */
@@ -423,6 +424,7 @@ static void answer(ex_queries_t *queries, ex_question_t *question)
         }
         break;
     case EX_ASK_FINITE:
+    case EX_ASK_RESTLESS:
     case EX_ASK_BOUNDED:
     case EX_ASK_CONFLUENT:
     case EX_ASK_BLOCKING:

@@ -106,6 +106,7 @@ typedef enum ex_question_kind {
     EX_ASK_FIRINGS,
     EX_ASK_TIME,
     EX_ASK_FINITE,      /* of a supervisor: explore_control.c */
+    EX_ASK_RESTLESS,    /* of scripts: the same of their steps that take no time */
     EX_ASK_BOUNDED,
     EX_ASK_CONFLUENT,   /* `a`: 0 the run of the documented order, 1 another one */
     EX_ASK_BLOCKING,

@@ -22,9 +22,11 @@
  *     meek 8                          though enabled it holds no other one back
  *     probe 9                         never occurs; while it is enabled it holds others of its owner back
  *     silent 10 11                    steps that are no occurrences of the net
+ *     instant 8 9                     steps of scripts that neither wait nor take time
  *     clock 11                        occurs a unit of time later, where something is waited for
  *     ? ends 4                        item 4 is `ef` of the ends, which are reached whoever is slow (explore_running.c); `-`: as below
  *     ? finite-response
+ *     ? restless                      no run of `instant` steps goes on for ever
  *     ? bounded-response 100
  *     ? confluence 0                  0: with a run of the documented order, 1: with one that comes to another end
  *     ? non-blocking 3                nodes of item 3 are final; `-`: none is
@@ -298,7 +300,8 @@ typedef struct asking {
 
 static const asking_t s_askings[] = {
     { "invariant", EX_ASK_INVARIANT, 3U }, { "initially", EX_ASK_INITIALLY, 3U }, { "bound", EX_ASK_BOUND, 5U },
-    { "finite-response", EX_ASK_FINITE, 2U }, { "bounded-response", EX_ASK_BOUNDED, 3U }, { "confluence", EX_ASK_CONFLUENT, 3U },
+    { "finite-response", EX_ASK_FINITE, 2U }, { "restless", EX_ASK_RESTLESS, 2U },
+    { "bounded-response", EX_ASK_BOUNDED, 3U }, { "confluence", EX_ASK_CONFLUENT, 3U },
     { "non-blocking", EX_ASK_BLOCKING, 3U }, { "ends", EX_ASK_ENDS, 3U },
     { "lasso", EX_ASK_LASSO, 2U }, { "within-firings", EX_ASK_FIRINGS, 5U }, { "within-time", EX_ASK_TIME, 5U },
 };
@@ -332,6 +335,7 @@ static bool read_question(ex_reader_t *r)
     case EX_ASK_LASSO:
         return ex_begin_automaton(r);
     case EX_ASK_FINITE:
+    case EX_ASK_RESTLESS:
     case EX_ASK_BOUNDED:
     case EX_ASK_CONFLUENT:
     case EX_ASK_BLOCKING:
@@ -434,11 +438,13 @@ static ex_programs_t *programs_of(const ex_reader_t *r)
         programs->is_meek = calloc(count, sizeof *programs->is_meek);
         programs->is_probe = calloc(count, sizeof *programs->is_probe);
         programs->is_silent = calloc(count, sizeof *programs->is_silent);
+        programs->is_instant = calloc(count, sizeof *programs->is_instant);
         programs->is_clock = calloc(count, sizeof *programs->is_clock);
         run->programs = programs;
     }
     const ex_programs_t *const made = run->programs;
-    const bool is_made = (made->group != NULL) && (made->kin != NULL) && (made->is_meek != NULL) && (made->is_probe != NULL) && (made->is_silent != NULL) && (made->is_clock != NULL);
+    const bool is_made = (made->group != NULL) && (made->kin != NULL) && (made->is_meek != NULL) && (made->is_probe != NULL) && (made->is_silent != NULL)
+                         && (made->is_instant != NULL) && (made->is_clock != NULL);
     return is_made ? run->programs : NULL;
 }
 
@@ -484,6 +490,8 @@ static bool read_kind(ex_reader_t *r)
             programs->is_probe[transition] = true;
         } else if (strcmp(r->word[0], "silent") == 0) {
             programs->is_silent[transition] = true;
+        } else if (strcmp(r->word[0], "instant") == 0) {
+            programs->is_instant[transition] = true;
         } else {
             programs->is_clock[transition] = true;
             programs->has_clock = true;
@@ -495,7 +503,8 @@ static bool read_kind(ex_reader_t *r)
 
 static bool is_kind(const char *word)
 {
-    return (strcmp(word, "probe") == 0) || (strcmp(word, "kin") == 0) || (strcmp(word, "meek") == 0) || (strcmp(word, "silent") == 0) || (strcmp(word, "clock") == 0);
+    return (strcmp(word, "probe") == 0) || (strcmp(word, "kin") == 0) || (strcmp(word, "meek") == 0) || (strcmp(word, "silent") == 0)
+           || (strcmp(word, "instant") == 0) || (strcmp(word, "clock") == 0);
 }
 
 static bool read_lines(ex_reader_t *r)

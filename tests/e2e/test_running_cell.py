@@ -9,6 +9,7 @@ from random import Random
 from typing import Any
 
 import pytest
+from typer.testing import CliRunner
 
 from helpers.netbuilder import cpn
 from helpers.programs import Programs, Step
@@ -17,6 +18,7 @@ from helpers.thorough import amount
 from pn2code.cell.divide import divide
 from pn2code.cell.partition import Partition
 from pn2code.cli.controller import look
+from pn2code.cli.main import app
 from pn2code.cli.nets import OpenNet, open_net
 from pn2code.cli.properties import answered, asked
 from pn2code.deadline import Deadline
@@ -320,6 +322,87 @@ LUCK = net(
 )
 
 
+# The first in the documented order wins each time, so `Finish` never occurs.
+FAIR = net(
+    """    place Start = 1
+    place Armed
+    place Finished
+    trans Ask
+      in Start : ()
+      out toA : 1
+      out Armed : ()
+    trans Again
+      in Armed : ()
+      in fromA : k
+      out Start : ()
+    trans Finish
+      in Armed : ()
+      in fromA : k
+      out Finished : ()
+""",
+    {"A": ECHO},
+)
+# B is told once, says nothing, and its script ends: a supervisor that waits for A sees one that owes an answer.
+QUIT = net(
+    """    place Start = 1
+    place Armed
+    place Finished
+    trans Ask
+      in Start : ()
+      out toA : 1
+      out toB : 1
+      out Armed : ()
+    trans End
+      in Armed : ()
+      in fromA : k
+      out Finished : ()
+    trans HearB
+      in Armed : ()
+      in fromB : k
+      out Armed : ()
+""",
+    {
+        "A": SLOW,
+        "B": """    place Waiting = 1
+    place Told
+    place Mute : INT
+    trans Accept
+      in Waiting : ()
+      in ask : k
+      out Told : ()
+    trans Answer
+      in Mute : k
+      out say : k
+""",
+    },
+    ACT,
+)
+# The same, but it says so, and ends then.
+BYE = QUIT.replace(
+    """      out Told : ()
+    trans Answer
+      in Mute : k
+      out say : k
+""",
+    """      out say : k
+      out Told : ()
+""",
+).replace("    place Mute : INT\n", "")
+# B goes round without waiting for anything: its script is stopped as an endless loop.
+DIZZY = QUIT.replace(
+    "    trans Answer\n",
+    """    place Back
+    trans There
+      in Told : ()
+      out Back : ()
+    trans Again
+      in Back : ()
+      out Told : ()
+    trans Answer
+""",
+)
+
+
 def write(folder: Path, text: str, cell: str) -> Path:
     """The cell as files."""
     folder.mkdir(parents=True, exist_ok=True)
@@ -374,6 +457,9 @@ CELLS = {
     "late": (LATE, toml(["A"]), "no", "a deadlock 1 step after the start"),
     "unknown": (UNKNOWN, toml(["A", "B"]), "no", "A stops at Told, where no transition fits"),
     "luck": (LUCK, toml(["A", "B"], TOOL), "unknown", "which durations decide"),
+    "quit": (QUIT, toml(["A", "B"], TOOL), "no", "B has finished, but it owes an answer"),
+    "bye": (BYE, toml(["A", "B"], TOOL), "yes", "whoever is slow"),
+    "dizzy": (DIZZY, toml(["A", "B"], TOOL), "no", "(`Top.B.There`, `Top.B.Again`)"),
 }
 
 
@@ -397,6 +483,11 @@ def test_the_watched_tool_is_given_up(tmp_path: Path) -> None:
 def test_the_script_that_knows_no_transition_stops_the_cell(tmp_path: Path) -> None:
     lines = ran(write(tmp_path, UNKNOWN, toml(["A", "B"])))
     assert lines[-1]["why"] not in ("finished", "")
+
+
+def test_the_script_that_goes_round_stops_the_cell(tmp_path: Path) -> None:
+    lines = ran(write(tmp_path, DIZZY, toml(["A", "B"], TOOL)))
+    assert lines[-1]["why"] == "failed"
 
 
 @pytest.mark.parametrize(
@@ -440,6 +531,20 @@ def test_properties_are_about_the_cell(
         lines = [json.loads(x) for x in said.evidence.trace.read_text().splitlines()]
         running = Running.of(divide(opened.flat, opened.config, d))  # type: ignore[arg-type]
         assert Programs(running).follow(steps(lines)) == said.evidence.steps
+
+
+def test_fairness_is_that_of_what_the_program_does(tmp_path: Path) -> None:
+    """`Finish` is never what the supervisor does next, whether it is asked of bindings or not."""
+    folder = write(tmp_path, FAIR, toml(["A"]))
+    texts = ["ltl F fires(Finish, {k = 1}) assuming strong Finish"]
+    texts.append("ltl F fires(Finish) assuming strong Finish")
+    options = [x for text in texts for x in ("--property", text)]
+    done = CliRunner().invoke(
+        app, ["verify", str(folder), "--json", "--no-medium", "--traces", str(tmp_path), *options]
+    )
+    assert "bug in pn2code" not in done.stderr
+    answers = [p["answer"] for p in json.loads(done.stdout)["properties"]]
+    assert answers == ["inconclusive", "no"]
 
 
 def test_what_was_reached_in_the_race_is_run(tmp_path: Path) -> None:

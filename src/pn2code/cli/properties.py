@@ -360,6 +360,7 @@ def _confirmed(
                 asked,
                 answer,
                 exact_times="time" not in found.reductions,
+                as_net=not answer.cell,
             )
     except TimeIsOverError:
         return answer

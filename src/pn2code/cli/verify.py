@@ -372,9 +372,11 @@ def _folder(traces: Path | None, stem: str, *, wanted: bool) -> Iterator[Path]:
         try:
             folder.mkdir(parents=True, exist_ok=True)
         except OSError as problem:
-            raise typer.BadParameter(
-                f"`{folder}`: {os_reason(problem)}", param_hint="--traces"
-            ) from None
+            if traces is not None:
+                raise typer.BadParameter(
+                    f"`{folder}`: {os_reason(problem)}", param_hint="--traces"
+                ) from None
+            is_new = False  # nobody has asked for it: what cannot be written into it will be said
     try:
         yield folder
     finally:

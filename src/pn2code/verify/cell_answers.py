@@ -90,11 +90,18 @@ def of_cell(
         if of_net.about.of_net:
             yield of_net
             continue
-        yield _one(of_net, _certain(answer, control.running, drawn, all_orders), partition)
+        asked = (
+            of_net.about.asked
+        )  # of parts of transitions, what is assumed is a part of the formula
+        is_fair = isinstance(asked, m.Linear) and bool(asked.fair)
+        certain = _certain(answer, control.running, drawn, all_orders, is_fair)
+        yield _one(of_net, certain, partition)
 
 
-def _certain(answer: Answer, running: Running | None, drawn: bool, all_orders: bool) -> Answer:
-    """Without what the cell's own steps, chance or durations leave open."""
+def _certain(
+    answer: Answer, running: Running | None, drawn: bool, all_orders: bool, is_fair: bool
+) -> Answer:
+    """Without what the cell's own steps, chance or durations leave open; `is_fair`: fairness is assumed."""
     asked = answer.about.asked
     open_ = ""
     if answer.answer == "inconclusive":
@@ -104,7 +111,8 @@ def _certain(answer: Answer, running: Running | None, drawn: bool, all_orders: b
     elif not means_the_same(asked):
         is_all = isinstance(asked, m.Invariant) and asked.wanted and answer.answer == "yes"
         open_ = "" if is_all else _INITIAL if _asks_initial(asked) else _NEXT
-    elif all_orders and answer.answer == "no":
+    elif all_orders and (answer.answer == "no" or is_fair):
+        # Where more is enabled, fewer paths are fair.
         open_ = "it was looked at in all orders in which the supervisor could fire"
     if not open_ and drawn and answer.evidence is None:
         open_ = clause("chance")

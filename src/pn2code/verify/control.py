@@ -65,6 +65,7 @@ def of_cell(running: Running, plan: Plan) -> str:
     asked.asked += [
         f"? ends {end}",
         f"? bound {running.stopped} 0 0",
+        "? restless",
         *(f"? bound {c.place} 0 1" for c in running.partition.channels),
         *(f"? bound {place} 0 {most}" for place, most in plan.capacities.items()),
     ]
@@ -103,7 +104,7 @@ def examine(
         GameError: a declaration or an initial marking raises an exception.
     """
     try:
-        running = Running.of(partition)
+        running = Running.of(partition, plan.properties.predicates)
     except NotModelledError as problem:
         why = f"the cell as it runs cannot be modelled: {problem}"
         return replace(not_looked(why, partition, plan.capacities, closed), why=why)

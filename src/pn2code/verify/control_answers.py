@@ -23,7 +23,7 @@ from pn2code.verify.control_types import (
 )
 from pn2code.verify.reasons import clause
 from pn2code.verify.result import Exploration
-from pn2code.verify.running import Running
+from pn2code.verify.running import OWING, Running
 from pn2code.whole_file import whole_file
 
 _WAYS = 60
@@ -72,8 +72,8 @@ def cell_answers(
 ) -> Iterator[Check]:
     """The same of `of_cell`, without the properties."""
     channels = len(partition.channels)
-    ends, stops, *bounds = _padded(found, rows, 2 + channels + len(plan.capacities))
-    yield _stopping(stops, keep) or _blocking(ends, keep, partition)
+    ends, stops, restless, *bounds = _padded(found, rows, 3 + channels + len(plan.capacities))
+    yield _stopping(stops, keep) or _restless(restless, keep) or _blocking(ends, keep, partition)
     bounds = [*known(partition, plan.capacities, bounds, closed)]
     if partition.channels:
         yield channels_check(partition, bounds[:channels], keep)
@@ -232,7 +232,21 @@ def _stopping(row: Mapping[str, Any], keep: Keeper) -> Check | None:
     evidence = keep.all(row, BLOCKING)
     steps = evidence[0].steps if evidence else 0
     after = f"{steps} step{'s' * (steps != 1)} after the start" if steps else "at the start"
-    says = f"{after} {who}, where no transition fits: that stops the whole cell"
+    fits = "" if who.endswith(OWING) else ", where no transition fits"
+    says = f"{after} {who}{fits}: that stops the whole cell"
+    return Check(BLOCKING, "no", says, why="stopped", evidence=evidence)
+
+
+def _restless(row: Mapping[str, Any], keep: Keeper) -> Check | None:
+    """Whether a script goes round for ever without waiting, which stops it and the cell; None: as `_stopping`."""
+    if row["answer"] != "no":
+        return None
+    evidence = keep.all(row, BLOCKING)
+    round_ = evidence[0].transitions[evidence[0].loop :] if evidence else ()
+    ways = f" ({_named(round_)})" if round_ else ""
+    says = (
+        f"a script goes round for ever without a command or a wait{ways}: that stops the whole cell"
+    )
     return Check(BLOCKING, "no", says, why="stopped", evidence=evidence)
 
 

@@ -38,12 +38,16 @@ from pn2code.frozen import frozen
 from pn2code.ml import core
 from pn2code.net.builder import Arc, Builder
 from pn2code.net.flat import ArcKind, FlatArc, FlatNet, FlatTransition
+from pn2code.net.predicate import Predicate
+from pn2code.net.uses import walk
 from pn2code.semantics.parties import VERIFY
 from pn2code.verify import time_reduction
 from pn2code.verify.stops import MOST_MESSAGES, NoProgramError, machine, waits
 from pn2code.whole_file import whole_file
 
 MOST_OWNERS = 250
+OWING = "has finished, but it owes an answer"
+"""A step that stops the cell."""
 SUPERVISOR = 0
 _WORDS = 200
 """Of a line."""
@@ -64,6 +68,7 @@ class Running:
         stopped: that of robots whose scripts have stopped; the cell stops then.
         steps: by added transition, in order: whose step it is (the clock has the number after the last owner's).
         clock: which of them are steps of the clock; `probes`: which never occur, and only hold others back.
+        instant: transitions for which a script neither waits nor takes time.
         meek: transitions that hold no other one of their robot back: their messages may not have come yet.
     """
 
@@ -75,17 +80,18 @@ class Running:
     clock: tuple[int, ...]
     probes: tuple[int, ...]
     meek: tuple[int, ...]
+    instant: tuple[int, ...]
     names: frozenset[str]
     """of the transitions of the cell's net"""
 
     @staticmethod
-    def of(partition: Partition) -> Running:
-        """That of a cell.
+    def of(partition: Partition, predicates: Sequence[Predicate] = ()) -> Running:
+        """That of a cell; `predicates` are asked of it.
 
         Raises:
             NotModelledError: not everything that its programs do can be said so.
         """
-        _check(partition)
+        _check(partition, predicates)
         try:
             return _Composer(partition).made()
         except NoProgramError as problem:
@@ -124,6 +130,7 @@ class Running:
                 lines += chunks("first 1", now(own))
         lines += [" ".join(["kin", *map(str, own)]) for own in parts.values() if len(own) > 1]
         lines += chunks("meek", now(self.meek))
+        lines += chunks("instant", now(self.instant))
         lines += chunks("silent", now(range(count, count + len(self.steps))))
         lines += chunks("clock", now(self.clock))
         lines += chunks("probe", now(self.probes))
@@ -171,12 +178,12 @@ def chunks(head: str, numbers: Iterable[int]) -> Iterator[str]:
 # --- what is not modelled ------------------------------------------------------------------------
 
 
-def _check(partition: Partition) -> None:
+def _check(partition: Partition, predicates: Sequence[Predicate]) -> None:
     net = partition.net
     if len(partition.owners) > MOST_OWNERS:
         raise NotModelledError(f"the cell has more than {MOST_OWNERS} programs")
     if net.timed:
-        obstacle = time_reduction.obstacle(net)
+        obstacle = time_reduction.obstacle(net, predicates)
         if obstacle is not None:
             raise NotModelledError(
                 f"steps may come later than in the net, and {obstacle.message}, so that there would be no end of states"
@@ -252,6 +259,8 @@ class _Composer:
         self.over = b.place("cell.supervisor.over", b.unit)
         self.news = b.place("cell.supervisor.news", b.unit)
         self.stopped = b.place("cell.stopped", b.unit)
+        self.machines = {i: machine(partition, i) for i in range(1, len(partition.owners))}
+        self.owes = dict(self._owing())
         self.looks = [b.place(f"cell.supervisor.looks at {c.file}", b.unit) for c in looked]
         b.begin(self.looks[0] if self.looks else self.calm, b.dot)
         for t, owner in zip(partition.net.transitions, partition.transition_owner, strict=True):
@@ -274,6 +283,7 @@ class _Composer:
             clock=tuple(self.clock),
             probes=tuple(self.probes),
             meek=tuple(_meek(self.partition)),
+            instant=tuple(_instant(self.partition)),
             names=frozenset(t.name for t in self.partition.net.transitions),
         )
 
@@ -310,13 +320,33 @@ class _Composer:
             arcs.append(self._has(self.calm))
         self.b.add_arcs(t.index, arcs, {})
 
+    def _owing(self) -> Iterator[tuple[int, int]]:
+        """By robot whose script can end: a place that is marked while it owes an answer (I8 of docs/protocol.md)."""
+        for owner, program in self.machines.items():
+            if not all(map(program.steps_from, program.control)):
+                name = self.partition.owners[owner].name
+                yield owner, self.b.place(f"cell.{name}.owes", self.b.unit)
+
+    def _asked(self, c: Channel) -> list[list[Arc]]:
+        """More arcs of the step that publishes a message: whoever gets a flag owes an answer."""
+        owes = self.owes.get(c.reader)
+        if owes is None or c.kind is not ChannelKind.FLAG:
+            return [[]]
+        return [[self.b.absent(owes), self._on(owes)], [self._has(owes)]]
+
+    def _answered(self, c: Channel) -> list[list[Arc]]:
+        """The same of the step that sees a message: any is an answer."""
+        owes = self.owes.get(c.writer)
+        return [[]] if owes is None else [[self._off(owes)], [self.b.absent(owes)]]
+
     def _publishing(self) -> None:
         """What has been put is published in its order; then the supervisor rests, or has finished."""
         at = self.after
         for c in self.written:  # data come before flags
             out = self.out[c.place]
             arcs = [self._has(self.calm), self._any(c.place), self.b.absent(out), self._on(out)]
-            self._step(SUPERVISOR, f"publishes {c.file}", at, *arcs)
+            for more in self._asked(c):
+                self._step(SUPERVISOR, f"publishes {c.file}", at, *arcs, *more)
             at += 1
         for place in self.partition.final_places:
             arcs = [self._off(self.calm), self._any(place), self._on(self.over)]
@@ -328,14 +358,16 @@ class _Composer:
             after = self.looks[i + 1] if i + 1 < len(self.looks) else self.calm
             seen = self.seen[c.place]
             found = [self._any(c.place), self.b.absent(seen), self._on(seen), self._on(after)]
-            self._step(SUPERVISOR, f"sees {c.file}", self.after, self._off(self.idle), *found)
             here = self._off(self.looks[i])
-            self._step(SUPERVISOR, f"sees {c.file} as well", self.after, here, *found)
+            for more in self._answered(c):
+                idle = self._off(self.idle)
+                self._step(SUPERVISOR, f"sees {c.file}", self.after, idle, *found, *more)
+                self._step(SUPERVISOR, f"sees {c.file} as well", self.after, here, *found, *more)
             self._step(SUPERVISOR, f"passes {c.file}", self.after + 1, here, self._on(after))
 
     def _stopping(self, owner: int) -> None:
-        """A robot whose script finds no transition that fits, and none that waits, stops."""
-        program = machine(self.partition, owner)
+        """A robot whose script finds no transition that fits, and none that waits, stops; or ends owing an answer."""
+        program = self.machines[owner]
         name = self.partition.owners[owner].name
         halted = self.b.place(f"cell.{name}.stopped", self.b.unit)
         for step in program.steps:
@@ -351,6 +383,16 @@ class _Composer:
                 arcs = [self._any(place), self.b.absent(halted), self._on(halted)]
                 arcs.append(self._on(self.stopped))
                 self._step(owner, f"{name} stops at {short}", self.after + 1, *arcs)
+            else:
+                arcs = [self._any(place), self._has(self.owes[owner]), self.b.absent(halted)]
+                arcs += [self.b.absent(self.calm), self.b.absent(self.over)]
+                arcs += [self._on(halted), self._on(self.stopped)]
+                self._step(owner, f"{name} {OWING}", self.after + 3, *arcs)
+        for c in self.looked if owner in self.owes else ():
+            if c.writer == owner:  # what is on its way may be the answer
+                arcs = [self._any(c.place), self.b.absent(self.seen[c.place])]
+                made = self._step(owner, f"{name} has answered", self.after + 2, *arcs)
+                self.probes.append(made)
 
     def _is_there(self, place: int) -> list[Arc]:
         return [self._has(self.out[place])] if place in self.out else []
@@ -375,6 +417,23 @@ class _Composer:
             ("waits on", [self._has(self.news)]),
         ):
             self.clock.append(self._step(clock, f"clock.{name}", self.after, quiet, *news))
+
+
+def _instant(partition: Partition) -> Iterator[int]:
+    """Transitions of robots for which their scripts neither wait nor carry out a command."""
+    channels = {c.place for c in partition.channels}
+    for t, owner in zip(partition.net.transitions, partition.transition_owner, strict=True):
+        waits_for = any(a.place in channels and a.kind is not ArcKind.OUTPUT for a in t.arcs)
+        terms = [x for a in t.arcs if a.inscription is not None for x in a.inscription.terms]
+        is_late = t.delay is not None or any(x.delay is not None for x in terms)
+        acts = t.code is not None and any(_calls(x) for x in walk(t.code.action))
+        if owner != SUPERVISOR and not (waits_for or is_late or acts):
+            yield t.index
+
+
+def _calls(e: core.Exp) -> bool:
+    """Whether an expression calls a function of the net, which may be a command."""
+    return isinstance(e, core.Apply) and not isinstance(e.function, core.Builtin)
 
 
 def _meek(partition: Partition) -> Iterator[int]:
