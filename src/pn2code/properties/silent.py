@@ -54,7 +54,9 @@ def sort(f: m.Formula, positive: bool = True) -> Sort:
         if f.kind in ("true", "pred"):
             return Sort.SAME
         if f.kind == "initial":
-            return Sort.OTHER  # the programs stand elsewhere when the net has come back to its initial marking
+            return (
+                Sort.OTHER
+            )  # the programs stand elsewhere when the net has come back to its initial marking
         return Sort.LESS if positive else Sort.MORE
     match f.operator:
         case "not":

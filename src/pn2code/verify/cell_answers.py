@@ -36,7 +36,9 @@ _CHOICES = (
     "supervisor and the scripts choose in the documented order, and a message counts when it has been seen."
 )
 _NEXT = "it speaks of the very next step, and between two occurrences the programs take steps of their own"
-_INITIAL = "when the net comes back to its initial marking, the programs stand elsewhere than at the start"
+_INITIAL = (
+    "when the net comes back to its initial marking, the programs stand elsewhere than at the start"
+)
 _WAITS = "the net does not know how long moves take, nor how late the supervisor is"
 
 
