@@ -323,7 +323,8 @@ class _Composer:
     def _owing(self) -> Iterator[tuple[int, int]]:
         """By robot whose script can end: a place that is marked while it owes an answer (I8 of docs/protocol.md)."""
         for owner, program in self.machines.items():
-            if not all(map(program.steps_from, program.control)):
+            is_asked = any(c.reader == owner and c.kind is ChannelKind.FLAG for c in self.written)
+            if is_asked and not all(map(program.steps_from, program.control)):
                 name = self.partition.owners[owner].name
                 yield owner, self.b.place(f"cell.{name}.owes", self.b.unit)
 
@@ -383,7 +384,7 @@ class _Composer:
                 arcs = [self._any(place), self.b.absent(halted), self._on(halted)]
                 arcs.append(self._on(self.stopped))
                 self._step(owner, f"{name} stops at {short}", self.after + 1, *arcs)
-            else:
+            elif owner in self.owes:
                 arcs = [self._any(place), self._has(self.owes[owner]), self.b.absent(halted)]
                 arcs += [self.b.absent(self.calm), self.b.absent(self.over)]
                 arcs += [self._on(halted), self._on(self.stopped)]
