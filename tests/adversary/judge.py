@@ -81,7 +81,9 @@ def markings(net: FlatNet, run: Run) -> list[dict[str, int]] | str:
         }
         element = BindingElement.make(t, given)
         if net.timed:
-            game.set_time(max(game.marking.time, line["t"]))
+            game.set_time(
+                max(game.marking.time, line["t"] + 1e-6)
+            )  # rounded as the supervisor does
         obstacle = game.obstacle(game.marking, element, priorities=False)
         if obstacle is not None:
             return f"{t.name}: {obstacle}"

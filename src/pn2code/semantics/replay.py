@@ -17,6 +17,7 @@ of steps, who made them, why the run ended, and in which final places, and where
 from __future__ import annotations
 
 import json
+import math
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -303,10 +304,14 @@ def _moment(game: Game, line: dict[str, Any], rules: Rules) -> Marking:
     t = line.get("t")
     if not game.net.timed or rules.own_clock or not is_number(t):
         return game.marking
-    time = t / rules.time_unit
-    return replace(
-        game.marking, time=min(game.marking.time, time if game.net.real_time else int(time))
-    )
+    return replace(game.marking, time=min(game.marking.time, _model_time(game, t, rules)))
+
+
+def _model_time(game: Game, t: float, rules: Rules) -> int | float:
+    """What the clock of a supervisor shows at a second of the run: whole units, but for the rounding of `t`
+    (cnative/src/supervisor_play.c)."""
+    scaled = t / rules.time_unit
+    return scaled if game.net.real_time else math.floor(scaled + 1e-9 * max(1.0, abs(scaled)))
 
 
 def _own_priorities(
@@ -354,7 +359,7 @@ def _set_clock(game: Game, line: dict[str, Any], rules: Rules) -> None:
         if t != game.marking.time:
             raise _Wrong(f"it says time {t}, but the clock shows {game.marking.time}")
         return
-    time = t / rules.time_unit
+    time = _model_time(game, t, rules)
     if time < game.marking.time - (0 if game.net.real_time else 1):
         raise _Wrong(f"time goes back: {time} after {game.marking.time}")
     game.set_time(max(game.marking.time, time))
