@@ -206,7 +206,9 @@ def run(built: Built, seed: int, shared: Path | None = None, crash: Crash | None
         except _Endless:
             supervisor.stop("enough")
             return Run("endless", f"more than {MOST_EVENTS} events", record, engine.most_firings)
-        end = "crashed" if engine.has_crashed else _end(record)
+        # The supervisor may have come to its end before it looked at the others again.
+        is_broken = engine.has_crashed and record.verdict != "finished"
+        end = "crashed" if is_broken else _end(record)
     return Run(end, record.reason, record, engine.most_firings)
 
 
