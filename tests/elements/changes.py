@@ -12,6 +12,8 @@ from dataclasses import dataclass
 
 from lxml import etree
 
+_COMMENT = re.compile(r"\(\*[\s\S]*?\*\)")
+_DECLARED = re.compile(r"\b(?:val|fun|and)\s+([A-Za-z][\w']*)")
 _NUMBER = re.compile(r"(?<![\w'.])\d+(?![\w'.])")
 Edit = Callable[[etree._Element], bool]
 """Changes an element in place; False: that does not apply."""
@@ -65,7 +67,7 @@ def changes(data: bytes) -> Iterator[Change]:
         for number, element in enumerate(tree.iter(tag)):
             if element.get("id") is None:  # a part of a declaration
                 continue
-            if tag in ("color", "var") and not _is_used(tree, element):
+            if tag in ("color", "var", "ml") and not _is_used(tree, element):
                 continue
             for what, edit in ways:
                 other = copy.deepcopy(tree)
@@ -80,6 +82,7 @@ def changes(data: bytes) -> Iterator[Change]:
 def _is_used(tree: etree._Element, declaration: etree._Element) -> bool:
     """Whether a name that it declares stands anywhere else."""
     names = {i.text for i in declaration.findall("id")}
+    names |= set(_DECLARED.findall(_COMMENT.sub("", declaration.text or "")))
     own = set(declaration.iter())
     for element in tree.iter("id", "text", "ml", "predicate"):
         if element not in own and names & set(re.findall(r"[\w']+", element.text or "")):
@@ -196,7 +199,10 @@ def _fusion(place: etree._Element) -> bool:
 
 
 def _value(ml: etree._Element) -> bool:
-    if ml.text is None or not _NUMBER.search(ml.text):
+    if ml.text is None:
+        return False
+    ml.text = _COMMENT.sub("", ml.text)
+    if not _NUMBER.search(ml.text):
         return False
     ml.text = _NUMBER.sub(lambda m: str(int(m.group()) + 1), ml.text, count=1)
     return True
