@@ -223,11 +223,25 @@ class Seen:
         if answer["nodes"] <= SMALL:
             space = state_space(self.game, max_nodes=2 * SMALL)
         if ours != theirs:
-            if self.net.timed and (space is None or _ties(space)):
+            if self.net.timed and (space is None or has_ties(space)):
                 return Verdict("random", f"{ours} instead of {theirs}")
             return self._or_random(f"{ours} instead of {theirs}")
         if space is None or "graph" not in answer:
             return AGREES
+        return self._graph(space, answer["graph"])
+
+    def graph(self, answer: dict[str, Any]) -> Verdict:
+        """A whole state space by the token game, node by node and arc by arc, whatever its size."""
+        if self.game is None or "graph" not in answer:
+            return NOTHING
+        if answer["stopped_by_error"] or not answer["entire"]:
+            return differs(f"no entire state space: {answer['stopped_by_error'] or 'too large'}")
+        try:
+            space = state_space(self.game, max_nodes=2 * answer["nodes"] + 1)
+        except GameError as error:
+            return differs(f"here the state space raises: {error.message}")
+        if len(answer["dead"]) != len(space.dead):
+            return differs(f"{len(space.dead)} dead markings instead of {len(answer['dead'])}")
         return self._graph(space, answer["graph"])
 
     def _graph(self, space: StateSpace, graph: dict[str, Any]) -> Verdict:
@@ -238,14 +252,14 @@ class Seen:
         theirs.update(engine_arcs(self.net, graph))
         if ours == theirs:
             return AGREES
-        if self.net.timed and _ties(space):
+        if self.net.timed and has_ties(space):
             return Verdict("random", "equal tokens with different stamps")
         return self._or_random(
             f"only here: {list(ours - theirs)[:1]}; only there: {list(theirs - ours)[:1]}"
         )
 
 
-def _ties(space: StateSpace) -> bool:
+def has_ties(space: StateSpace) -> bool:
     """Whether equal tokens with different stamps lie in one place somewhere: the engine takes any of them."""
     return any(_tied(marking) for marking in space.nodes)
 

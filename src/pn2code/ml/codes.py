@@ -146,7 +146,8 @@ VALUE_CLASH = register(
     "variable-named-as-value",
     "a net variable has the name of a value or function",
     "Where a net variable and a `val`, `fun` or constructor have one name, CPN Tools takes in arcs, guards and code "
-    "segments what was declared first, and in initial markings and declarations the value. Rename one of them.",
+    "segments what was declared first, and in initial markings and declarations the value. A variable whose name "
+    "becomes that of a constructor cannot be used any more. Rename one of them.",
 )
 GUARD_TYPE = register(
     "guard-not-boolean",

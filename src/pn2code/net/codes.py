@@ -191,3 +191,17 @@ SPACE_NAME = register(
     "value or colour set of a name that these sources use keeps them from compiling: `Exception raised entering state "
     "space tool`. The simulator is not affected, and neither is pn2code.",
 )
+RESERVED_WORD = register(
+    "reserved-word",
+    "a reserved word of CPN Tools is declared",
+    "CPN Tools keeps some names for itself besides the keywords of Standard ML: `size`, `time`, `ms`, `list`, `color`, "
+    "`input`, `Node`, ... A colour set, variable, value, function, type, constructor, label or exception of such a "
+    "name is refused: `Reserved word cannot be used as identifier`. Inside expressions and structures the names may be "
+    "used.",
+)
+NOT_IN_CPN_ML = register(
+    "not-in-cpn-ml",
+    "a declaration of Standard ML is not one of CPN ML",
+    "CPN Tools refuses `open` anywhere in a declaration, `signature`, `datatype a = datatype b`, and an expression "
+    "where a declaration is expected.",
+)
