@@ -53,8 +53,9 @@ class Verdict:
 AGREES = Verdict("agrees")
 NOTHING = Verdict("")
 ENGINE = Verdict("engine", "the engine fails with an internal error")
-LATE = {"literal-too-large"}
-"""What is found wrong here by checking, and by the engine only when it makes code of the net."""
+UNCOMPILED = "Compile error when generating code"
+"""So the engine refuses, when it is to run it, a net that it has accepted."""
+LATE = Verdict("engine", "it accepts the net, and cannot compile the code that it makes of it")
 GROUPS = Verdict("engine", "it loses count of variables where several arcs come from one place")
 UNBOUND = ("No complete binding sequence", "Cannot bind", "IllegalBit")
 TAKING = (ArcKind.INPUT, ArcKind.BOTH)
@@ -67,6 +68,8 @@ LOOSE = Verdict(
 )
 BROKEN = "InternalError"
 """So the engine names what is wrong with itself."""
+CONFUSED = "InternalError: insert_transvar"
+"""Where arcs from one place share variables: nothing is wrong with the net."""
 
 
 def differs(note: str) -> Verdict:
@@ -100,7 +103,7 @@ class Seen:
         if failure is not None and failure["kind"] in ("timeout", "crash", "file"):
             return NOTHING
         wrong = [e for e in answer["errors"] if not self._warns(e)]
-        if any(BROKEN in e["message"] for e in wrong):
+        if wrong and self.net is not None and all(CONFUSED in e["message"] for e in wrong):
             return ENGINE
         if wrong and all(self._grouped(e) for e in wrong):
             return GROUPS
@@ -116,8 +119,8 @@ class Seen:
             ]
             return differs(f"not warned of: {unsaid[0]}") if unsaid else AGREES
         if self.net is None:
-            if {e.code for e in self.d.errors} <= LATE:
-                return Verdict("engine", "it accepts the net, and fails when it is to run it")
+            if failure is not None and UNCOMPILED in failure["message"]:
+                return LATE
             return differs("refused here: " + "; ".join(e.message for e in self.d.errors[:3]))
         where = "; ".join(f"{e['what']}: {e['message']}" for e in wrong[:2])
         return differs(f"accepted here; the engine: {where}")
@@ -146,6 +149,8 @@ class Seen:
     def marking(self, answer: dict[str, Any]) -> Verdict:
         """The initial marking of every place instance, character for character."""
         rows = answer.get("marking")
+        if self.net is not None and UNCOMPILED in answer.get("failure", {}).get("message", ""):
+            return LATE
         if self.net is None or rows is None:
             return NOTHING
         if self.loose:

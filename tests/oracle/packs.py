@@ -13,7 +13,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from tests.oracle import engine
-from tests.oracle.compare import Seen, Verdict, differs
+from tests.oracle.compare import LATE, UNCOMPILED, Seen, Verdict, differs
 from tests.oracle.together import numbers_in, one_of, side_by_side
 
 from helpers.netbuilder import cpn
@@ -77,10 +77,12 @@ def asked(kind: Kind, nets: dict[int, str], folder: Path) -> Iterator[Result]:
     if len(nets) == 1 or (verdict.state == answer.state == "agrees"):
         if verdict.state == "agrees" and "failure" in said:
             failure = said["failure"]
-            answer = differs(f"the engine: {failure['kind']}: {failure['message']}")
+            said_so = differs(f"the engine: {failure['kind']}: {failure['message']}")
+            answer = LATE if UNCOMPILED in failure["message"] else said_so
         yield Result(numbers, path, {"verdict": verdict, kind.name: answer}, said)
         return
-    named = numbers_in(json.dumps(said.get("errors"))).intersection(nets)
+    blamed = json.dumps([said.get("errors"), said.get("failure")])
+    named = numbers_in(blamed).intersection(nets)
     if 0 < len(named) < len(nets):
         parts = [{n} for n in sorted(named)] + [set(numbers) - named]
     else:
