@@ -42,6 +42,10 @@ WARNED = {
 """What the editor says, and the warning of pn2code that says it: such nets are not refused here."""
 
 
+NO_DECLARATION = "Not a declaration"
+"""What the engine says of an empty one, too, of which pn2code warns."""
+
+
 @dataclass(frozen=True, slots=True)
 class Verdict:
     """Whether an answer is the same on both sides."""
@@ -132,7 +136,8 @@ class Seen:
         return next((codes for words, codes in WARNED.items() if words in error["message"]), set())
 
     def _warns(self, error: dict[str, Any]) -> bool:
-        return bool(self._warning(error))
+        is_empty = error["message"] == NO_DECLARATION and "declaration-empty" in self.codes
+        return is_empty or bool(self._warning(error))
 
     def _grouped(self, error: dict[str, Any]) -> bool:
         """Whether the engine finds no binding of a transition that takes from one place over several arcs."""

@@ -3,9 +3,13 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
 import pytest
 
-from helpers.netbuilder import diagnose
+from helpers.netbuilder import cpn, diagnose
+from pn2code.diagnostics import Diagnostics
+from pn2code.net.front import load
 
 
 def errors(declarations: str, rest: str = "") -> list[str]:
@@ -20,7 +24,7 @@ def errors(declarations: str, rest: str = "") -> list[str]:
     [
         "var ms: INT;", "var Node, n: INT;", "colset product = int;", "colset E = with a | time;",
         "colset I = index ms with 1..3;", "colset U = union ms: INT + b;", "colset R = record all: INT * b: INT;",
-        "colset B = bool with (no, time);", "colset U = unit with ms;", "val size = 3", "fun color x = x", "fun f x = x and time y = y",
+        "colset E = with col | red;", "colset B = bool with (no, time);", "colset U = unit with ms;", "val size = 3", "fun color x = x", "fun f x = x and time y = y",
         "val (size, x) = (1, 2)", "val x as time = 3", "val {a = time} = {a = 3}", "val SOME time = SOME 3", "val rec size = fn x => x + 1",
         "val op size = 3", "type ms = int", "datatype d = A of int | Node", "datatype time = A", "exception ms of int",
         "structure Node = struct val x = 1 end", "local val q = 3 in val ms = q end", "fun size 0 = 1 | size n = 2",
@@ -81,3 +85,33 @@ def test_a_variable_that_has_become_a_constructor(text: str) -> None:
 )
 def test_a_variable_beside_something_else_of_its_name(text: str) -> None:
     assert errors(f"var v: INT;\n{text}", "  trans T\n    in A : v\n    out A : v\n") == []
+
+
+@pytest.mark.parametrize(
+    ("text", "said"),
+    [
+        ("", ["declaration-empty"]),
+        ("(* nothing *)", ["declaration-empty"]),
+        ("(* a *) val x = 3", []),
+        ("val x = 3 (* b *)", []),
+    ],
+)
+def test_a_declaration_that_says_nothing(tmp_path: Path, text: str, said: list[str]) -> None:
+    path = tmp_path / "N.cpn"
+    net = cpn("net N\n  standard\n  val marked = 1\n  place A : INT = 1`1\n")
+    path.write_bytes(net.replace(b"val marked = 1", text.encode()))
+    d = Diagnostics()
+    assert load(path, d) is not None
+    assert [x.code for x in d] == said
+
+
+@pytest.mark.parametrize(
+    ("bounds", "said"),
+    [
+        ("1..3", ["intinf-bound", "intinf-bound"]),
+        ("(1 : IntInf.int)..(3 : IntInf.int)", []),
+    ],
+)
+def test_bounds_of_unlimited_integers(bounds: str, said: list[str]) -> None:
+    d = diagnose(f"net N\n  standard\n  colset I = intinf with {bounds};\n  place A : INT = 1`1\n")
+    assert [x.code for x in d] == said and not d.errors

@@ -12,6 +12,8 @@ before pn2code. What follows is found again and again; pn2code does what is writ
 | several arcs from one place, one of which shares a variable with an arc that comes later in the file | `No complete binding sequence`, `Cannot bind`, `IllegalBit`; accepted when the arcs come in another order | accepts it |
 | a variable twice in one pattern: `(x, x)` | takes a false binding, then `Internal Error: rm ...` | both parts are equal |
 | a variable in a delay that nothing binds: `@+m` | accepts it, then cannot compile the code that it made | `unbound-variable` |
+| several times a list that is taken apart, from a place with a clock: ``2`(h :: t)`` | writes it without the parentheses, then cannot compile the code that it made | takes the list as many times |
+| an expression without variables in the key of a tuple: `(x, 1 + 1)`; `(a + 1, b)` | accepts it, then cannot compile the code that it made | computes it; `unbound-variable` where something has no value |
 | an integer literal of more than 31 bits | accepts it, then cannot compile the code that it made | `literal-too-large` |
 | a port that has a socket at one substitution transition of the page and none at another | gives the wrong socket, or `Exception Subscript` | a place of its own, with a warning |
 | equal tokens with different time stamps | takes one at random, in state spaces, too | all of them |

@@ -123,6 +123,12 @@ COLSET_RANGE = register(
     "the bounds of a colour set are wrong",
     "Bounds are constants of the base type, the lower one not above the upper one.",
 )
+INTINF_BOUND = register(
+    "intinf-bound",
+    "a bound of an `intinf` colour set is a plain number",
+    "CPN Tools takes a plain number for an `int` and then refuses the colour set `intinf with 1..3`. With the type, "
+    "`intinf with (1 : IntInf.int)..(3 : IntInf.int)`, it accepts it. pn2code accepts both.",
+)
 COLSET_DEFINITION = register(
     "colour-set-definition",
     "a colour set is not defined completely",

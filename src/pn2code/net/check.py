@@ -142,6 +142,13 @@ class _Checker:
                 e.declarations(declaration.text)
             case RawMl():
                 e.declarations(declaration.text, reserved_words.refuse)
+                if reserved_words.says_nothing(declaration.text):
+                    self.d.warning(
+                        DECLARATION_EMPTY,
+                        "a declaration says nothing: CPN Tools refuses it (Not a declaration)",
+                        declaration.origin,
+                        hint="remove it, or put the comment before another declaration",
+                    )
             case RawGlobref():
                 e.globref(declaration.name, declaration.text)
             case RawUse():

@@ -87,9 +87,9 @@ UNSUPPORTED_CHANNEL = register(
 )
 DECLARATION_EMPTY = register(
     "declaration-empty",
-    "a reference declaration has no value",
+    "a declaration declares nothing",
     "`globref` declares a reference with a first value. One without value declares nothing, and "
-    "CPN Tools passes over it, too.",
+    "CPN Tools passes over it, too. A declaration in CPN ML that is empty, or only a comment, it refuses.",
 )
 DECLARATION_UNREAD = register(
     "declaration-not-read",

@@ -11,9 +11,10 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 
-from pn2code.diagnostics import Diagnostics, Origin, Span
+from pn2code.diagnostics import Diagnostics, Origin, SourceText, Span
 from pn2code.ml import syntax as s
 from pn2code.ml.declared import declared_by, types_declared_by
+from pn2code.ml.lexer import tokenize
 from pn2code.net.codes import NOT_IN_CPN_ML, RESERVED_WORD
 from pn2code.reading.document import RawColset, RawDeclaration, RawVar
 
@@ -27,6 +28,9 @@ WORDS = frozenset(_WORDS.split())
 _CONSTRUCTORS = frozenset({"NONE", "SOME", "true", "false", "ref"})
 """In a pattern they are not declared, but compared."""
 
+_OF_COLSETS = frozenset({"base", "cmp", "col", "legal", "lt", "mkstr", "mkstr_ms", "ord", "timed"})
+"""As constants of an enumeration: they hide the functions that the engine makes for its colour set."""
+
 
 def refuse_names(declaration: RawDeclaration, d: Diagnostics) -> None:
     """Reports the reserved words that a colour set or variables declare."""
@@ -35,6 +39,15 @@ def refuse_names(declaration: RawDeclaration, d: Diagnostics) -> None:
             names: Iterable[str] = declaration.names
         case RawColset(kind="unit" | "bool" | "enum"):
             names = (declaration.name, *declaration.ids)
+            if declaration.kind == "enum":
+                for name in sorted(_OF_COLSETS.intersection(declaration.ids)):
+                    d.error(
+                        RESERVED_WORD,
+                        f"`{name}` cannot be a constant of colour set `{declaration.name}`: "
+                        "CPN Tools has a function of that name for each colour set",
+                        declaration.origin,
+                        hint="give it another name",
+                    )
         case RawColset(kind="index"):
             names = (declaration.name, *declaration.ids[:1])
         case RawColset():
@@ -59,6 +72,12 @@ def refuse(dec: s.Dec, d: Diagnostics) -> None:
             hint="write the names of the structure in full: `Int.abs`",
         )
     _report(_declared(dec), dec.span, d)
+
+
+def says_nothing(text: SourceText) -> bool:
+    """Whether a text is empty, or has comments only."""
+    bare = not text.text.strip()
+    return bare or (text.text.lstrip().startswith("(*") and tokenize(text, Diagnostics()) == [])
 
 
 def _kind(dec: s.Dec) -> str:
