@@ -11,6 +11,7 @@ An exception of pn2code that is no diagnostic comes out: it is a bug whatever th
 
 from __future__ import annotations
 
+import re
 from collections import Counter
 from dataclasses import dataclass
 from pathlib import Path
@@ -70,6 +71,11 @@ DEAD = "No more enabled transitions!"
 LOOSE = Verdict(
     "engine", "it confuses the instances of a page that has a socket for a port only in some"
 )
+FUSED = Verdict(
+    "engine",
+    "it looks at each arc from places of one fusion set for itself, and takes too many tokens",
+)
+SUBTRACT = re.compile(r"Exception Subtract raised while executing .*\((\w+)\)")
 BROKEN = "InternalError"
 """So the engine names what is wrong with itself."""
 CONFUSED = "InternalError: insert_transvar"
@@ -139,11 +145,21 @@ class Seen:
         is_empty = error["message"] == NO_DECLARATION and "declaration-empty" in self.codes
         return is_empty or bool(self._warning(error))
 
+    def _takes_too_many(self, message: str) -> bool:
+        """Whether the engine ends in a transition with several arcs from what is one place here."""
+        found = SUBTRACT.search(message)
+        assert self.net is not None
+        return found is not None and any(self._twice(found.group(1)).values())
+
+    def _twice(self, transition: str) -> dict[int, bool]:
+        """The places that a transition takes from: whether over several arcs."""
+        found = [t for t in self.net.transitions if t.id == transition] if self.net else []
+        taking = Counter(a.place for t in found[:1] for a in t.arcs if a.kind in TAKING)
+        return {place: n > 1 for place, n in taking.items()}
+
     def _grouped(self, error: dict[str, Any]) -> bool:
         """Whether the engine finds no binding of a transition that takes from one place over several arcs."""
-        found = [t for t in self.net.transitions if t.id == error["id"]] if self.net else []
-        taking = Counter(a.place for t in found[:1] for a in t.arcs if a.kind in TAKING)
-        return any(n > 1 for n in taking.values()) and any(
+        return any(self._twice(error["id"]).values()) and any(
             words in error["message"] for words in UNBOUND
         )
 
@@ -244,6 +260,8 @@ class Seen:
         """A whole state space by the token game, node by node and arc by arc, whatever its size."""
         if self.game is None or "graph" not in answer:
             return NOTHING
+        if self._takes_too_many(answer["stopped_by_error"] or ""):
+            return FUSED
         if answer["stopped_by_error"] or not answer["entire"]:
             return differs(f"no entire state space: {answer['stopped_by_error'] or 'too large'}")
         try:

@@ -10,6 +10,7 @@ before pn2code. What follows is found again and again; pn2code does what is writ
 |---|---|---|
 | two arcs from one place with patterns that share variables, but not the first one: `(a, b)` and `(c, b)` | `InternalError: insert_transvar`, the page cannot be checked | accepts it: the shared variable has one value |
 | several arcs from one place, one of which shares a variable with an arc that comes later in the file | `No complete binding sequence`, `Cannot bind`, `IllegalBit`; accepted when the arcs come in another order | accepts it |
+| arcs from two places of one fusion set to one transition: ``2`()`` and `()` | looks at each for itself: enabled with 2 tokens, then `Subtract` | needs 3 tokens |
 | a variable twice in one pattern: `(x, x)` | takes a false binding, then `Internal Error: rm ...` | both parts are equal |
 | a variable in a delay that nothing binds: `@+m` | accepts it, then cannot compile the code that it made | `unbound-variable` |
 | several times a list that is taken apart, from a place with a clock: ``2`(h :: t)`` | writes it without the parentheses, then cannot compile the code that it made | takes the list as many times |
