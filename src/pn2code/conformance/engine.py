@@ -22,6 +22,10 @@ before pn2code. What follows is found again and again; pn2code does what is writ
 | state spaces of timed nets, 4.0.0 | restores time stamps relative to the time of the node (those of 3.0.3 are right) | restores them |
 | top-level names that its state-space sources use | the tool cannot be entered | a warning (`state-space-name`) |
 
+Of 1,000 published nets with one text changed, 157 were accepted by both, with the same initial markings; the verdicts differed for four, all mended since (reserved words,
+an empty declaration); 34 were put down to the engine. Of 120 random nets in packs (60 for their state spaces, 60 for runs) all verdicts were the same, 58 whole state spaces and
+56 runs; of the other six the engine cannot compile the code that it made for five, and takes too many tokens in one.
+
 What its editor refuses before the engine is asked (two nodes of one name on a page, a place beside a substitution transition that is no socket, a socket whose arcs do
 not suit the type of the port) is accepted with a warning. An arc without inscription at a place that is not `UNIT` is refused, since the editor never lets the transition be checked.
 """
