@@ -33,6 +33,8 @@ from pn2code.tdl.evaluate import (
 from pn2code.tdl.types import POSE_FIELDS, Type
 
 DEFAULT_STEP_LIMIT: Final = 100_000
+MOST_OCCURRENCES: Final = 100_000
+"""Transitions in a row for which a script neither waits, nor acts, nor takes a message."""
 
 Scalar = int | float | bool | str
 
@@ -168,7 +170,8 @@ class Interpreter:
         program: checked.
         files: the shared files.
         on_event: hears of marks and messages, in order.
-        step_limit: most instructions between two requests; more is an endless loop.
+        step_limit: most instructions between two requests, marks, or messages taken; more is an endless loop.
+        occurrences: most marks between two requests or messages taken; the same.
     """
 
     def __init__(
@@ -178,12 +181,15 @@ class Interpreter:
         on_event: Callable[[Event], None] = _ignore,
         *,
         step_limit: int = DEFAULT_STEP_LIMIT,
+        occurrences: int = MOST_OCCURRENCES,
     ) -> None:
         self._program = program
         self._files = files
         self._channel = {f.name: PurePath(f.path).stem for f in program.files.values()}
         self._tell = on_event
         self._limit = step_limit
+        self._occurrences = occurrences
+        self._statements = self._marks = 0
         self._values: dict[str, ScriptValue] = {}
         self._at: list[tuple[str, int]] = [("", 0)]
         self._speed: dict[t.Motion, float | None] = {t.Motion.JOINT: None, t.Motion.LINEAR: None}
@@ -218,16 +224,23 @@ class Interpreter:
                 self._finish_measure(result)
             if self._sensing is not None:
                 self._finish_sense(result)
-            for _ in range(self._limit):
+            self._statements = self._marks = 0
+            while self._statements < self._limit and self._marks <= self._occurrences:
+                self._statements += 1
                 request = self._step()
                 if request is not None:
                     if isinstance(request, Finished):
                         self._end = request
                     return request
-            raise ScriptError(f"endless loop: {self._limit} statements without a command or a wait")
+            raise ScriptError(f"endless loop: {self._rounds()} without a command or a wait")
         except (ScriptError, FileError) as problem:
             self._end = Fault(str(problem), self._line)
             return self._end
+
+    def _rounds(self) -> str:
+        if self._marks > self._occurrences:
+            return f"more than {self._occurrences} transitions"
+        return f"{self._limit} statements"
 
     def save(self) -> Saved:
         """The state, to come back to."""
@@ -317,6 +330,7 @@ class Interpreter:
                 if message is None:
                     raise ScriptError(f"file `{file.name}` is empty, there is nothing to consume")
                 self._files.clear(channel)
+                self._statements = self._marks = 0  # what comes next depends on others, too
                 self._tell(MessageConsumed(channel, message, self._line))
             case t.Write(file, values):
                 kinds = self._program.files[file.name].types
@@ -333,6 +347,8 @@ class Interpreter:
             case t.Mark(transition, binding):
                 data = {name: self._datum(x) for name, x in binding}
                 self._tell(Marked(transition, data, self._line))
+                self._statements = 0
+                self._marks += 1
             case t.Stop(message_parts):
                 raise ScriptError(" ".join(show(evaluate(m, self)) for m in message_parts))
             case t.Speed(motion, speed):

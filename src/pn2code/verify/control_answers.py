@@ -26,6 +26,8 @@ from pn2code.verify.result import Exploration
 from pn2code.verify.running import OWING, Running
 from pn2code.whole_file import whole_file
 
+ORDERS = 5
+"""Questions about all orders; the last one is that of `hesitating`."""
 _WAYS = 60
 """Transitions of a run that are named."""
 
@@ -56,7 +58,7 @@ def order_answers(
     keep: Keeper,
 ) -> Iterator[Check]:
     """What the explorer's answers to `of_orders` mean; traces that are wanted are moved to where they are kept."""
-    finite, bounded, usual, other = _padded(found, rows, 4)
+    finite, bounded, usual, other, _ = _padded(found, rows, ORDERS)
     yield _finite(finite, keep)
     yield _bounded(bounded, keep, plan)
     yield _confluent(usual, other, keep, plan)
@@ -107,6 +109,14 @@ def drawn(check: Check) -> Check:
     if check.answer != "yes" or check.name == OWNERSHIP:
         return check
     return replace(unknown(check.name, {"why": "chance"}), value=check.value)
+
+
+def hesitating(check: Check, found: Exploration, rows: Sequence[Mapping[str, Any]]) -> Check:
+    """The check of the end, where a script may go round for ever beside commands that stand on branches."""
+    if check.name != BLOCKING or check.answer != "yes":
+        return check
+    *_, restless = _padded(found, rows, ORDERS)
+    return check if restless["answer"] == "yes" else unknown(BLOCKING, {"why": "commands"})
 
 
 class Keeper:
@@ -238,15 +248,15 @@ def _stopping(row: Mapping[str, Any], keep: Keeper) -> Check | None:
 
 
 def _restless(row: Mapping[str, Any], keep: Keeper) -> Check | None:
-    """Whether a script goes round for ever without waiting, which stops it and the cell; None: as `_stopping`."""
+    """Whether a script goes round for long without waiting, which stops it and the cell; None: as `_stopping`."""
     if row["answer"] != "no":
         return None
     evidence = keep.all(row, BLOCKING)
-    round_ = evidence[0].transitions[evidence[0].loop :] if evidence else ()
+    loop = evidence[0].loop if evidence else None
+    round_ = evidence[0].transitions[loop:] if loop is not None else ()
     ways = f" ({_named(round_)})" if round_ else ""
-    says = (
-        f"a script goes round for ever without a command or a wait{ways}: that stops the whole cell"
-    )
+    how = "for ever" if row["value"] is None else f"for {int(row['value']):,} transitions"
+    says = f"a script goes round {how} without a command or a wait{ways}: that stops the whole cell"
     return Check(BLOCKING, "no", says, why="stopped", evidence=evidence)
 
 
