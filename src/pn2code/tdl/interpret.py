@@ -19,6 +19,7 @@ from pathlib import PurePath
 from typing import Any, Final, Protocol, assert_never, cast
 
 import pn2code.robot.commands as commands
+from pn2code.semantics.colour_json import real_to_json
 from pn2code.tdl import flow, paths
 from pn2code.tdl import tree as t
 from pn2code.tdl.check import CheckedProgram
@@ -403,8 +404,9 @@ class Interpreter:
             case _:
                 value = evaluate(x, self)
                 if isinstance(value, ScriptPose):
-                    return dict(zip(POSE_FIELDS, astuple(value), strict=True))
-                return value
+                    numbers = map(real_to_json, astuple(value))
+                    return dict(zip(POSE_FIELDS, numbers, strict=True))
+                return real_to_json(value) if isinstance(value, float) else value
 
     # Commands
 
@@ -436,14 +438,17 @@ class Interpreter:
                 return commands.ToolAction(action, self._duration(duration))
             case t.Measure(nominal):
                 pose = cast(ScriptPose, evaluate(nominal, self))
-                self._measuring = (s, pose, to_si(pose))
+                self._measuring = (s, pose, self._pose(nominal))
                 return commands.Measure(self._measuring[2])
 
     def _move_speed(self, s: t.Move) -> float | None:
         return self._speed[s.motion] if s.speed is None else self._number(s.speed)
 
     def _number(self, e: t.Expression) -> float:
-        return float(cast(float, evaluate(e, self)))
+        number = float(cast(float, evaluate(e, self)))
+        if not math.isfinite(number):
+            raise ScriptError(f"{number:g} is not a finite number")
+        return number
 
     def _duration(self, e: t.Expression) -> float:
         seconds = self._number(e)
@@ -452,7 +457,10 @@ class Interpreter:
         return seconds
 
     def _pose(self, e: t.Expression) -> commands.Pose:
-        return to_si(cast(ScriptPose, evaluate(e, self)))
+        pose = cast(ScriptPose, evaluate(e, self))
+        if not all(map(math.isfinite, astuple(pose))):
+            raise ScriptError(f"{show(pose)} is no pose: not all of its numbers are finite")
+        return to_si(pose)
 
     def _finish_sense(self, result: commands.Pose | Scalar | None) -> None:
         assert self._sensing is not None

@@ -33,6 +33,7 @@ from pn2code.verify.control_answers import (
     hesitating,
     known,
     order_answers,
+    refusal,
     unknown,
 )
 from pn2code.verify.control_messages import formats, memory
@@ -121,7 +122,7 @@ def examine(
         wishes = replace(
             plan.wishes,
             sizes=Sizes.start(running.net, plan.storage),
-            traces=None,
+            traces=Path(name),
             graph=None,
             questions=of_cell(running, plan),
             predicates=plan.properties.predicates,
@@ -150,6 +151,9 @@ def examine(
         )
         if running.idle != running.instant:
             checks = tuple(hesitating(c, orders, asked) for c in checks)
+        refused = refusal(partition, found, keep)
+        if refused is not None:
+            checks = tuple(refused if c.name == BLOCKING else c for c in checks)
         if chance.draws(partition.net):
             checks = tuple(drawn(c) for c in checks)
         return Control(checks, found, running, answers=found.answers[:count], closed=closed)

@@ -119,6 +119,23 @@ def hesitating(check: Check, found: Exploration, rows: Sequence[Mapping[str, Any
     return check if restless["answer"] == "yes" else unknown(BLOCKING, {"why": "commands"})
 
 
+def refusal(partition: Partition, found: Exploration, keep: Keeper) -> Check | None:
+    """Where a robot's transition raises an exception its script stops (`refusals`); None: none does."""
+    index = found.error.get("transition") if found.error else None
+    if found.error is None or index is None or partition.transition_owner[index] == 0:
+        return None
+    owner = partition.owners[partition.transition_owner[index]]
+    trace = found.error_trace
+    evidence = keep.all({"trace": trace and trace.file, "loop": None}, BLOCKING)
+    after = f", {_steps(evidence[0].steps)} after the start" if evidence else ""
+    where = f"`{partition.net.transitions[index].name}`{after}"
+    says = (
+        f"the script of {owner.phrase} stops in {where}: an exception, or what no robot can carry out (a time that is "
+        "negative, a number that is not finite); that stops the whole cell"
+    )
+    return Check(BLOCKING, "no", says, why="stopped", evidence=evidence)
+
+
 class Keeper:
     """Reads traces, makes them runs of the cell's net, and moves them to the folder where they are kept."""
 

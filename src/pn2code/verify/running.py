@@ -43,6 +43,7 @@ from pn2code.net.predicate import Predicate
 from pn2code.semantics.parties import VERIFY
 from pn2code.verify import time_reduction
 from pn2code.verify.commands import Commands
+from pn2code.verify.refusals import refusing
 from pn2code.verify.stops import MOST_MESSAGES, NoProgramError, machine, waits
 from pn2code.whole_file import whole_file
 
@@ -244,7 +245,7 @@ def _takes_one(arc: FlatArc) -> bool:
 class _Composer:
     def __init__(self, partition: Partition) -> None:
         self.partition = partition
-        self.b = b = Builder(partition.net)
+        self.b = b = Builder(refusing(partition))
         self.step_owner: list[int] = []
         self.clock: list[int] = []
         self.probes: list[int] = []
