@@ -8,15 +8,14 @@ reached, variables that may have no value, declarations that nothing uses.
 
 from __future__ import annotations
 
-import math
 from collections.abc import Iterable, Mapping
-from dataclasses import astuple, dataclass, replace
+from dataclasses import dataclass, replace
 
 from pn2code.diagnostics import Diagnostics, Note, Span
 from pn2code.diagnostics.near import did_you_mean
 from pn2code.tdl import codes, flow, paths
 from pn2code.tdl import tree as t
-from pn2code.tdl.evaluate import ScriptError, ScriptPose, ScriptValue, evaluate, show
+from pn2code.tdl.evaluate import ScriptError, ScriptValue, evaluate
 from pn2code.tdl.expressions import RESERVED, Scope, type_of
 from pn2code.tdl.types import NUMBERS, QUANTITIES, Type, fits
 
@@ -149,11 +148,7 @@ class _Checker:
             return
         self.scope.values[x.name] = found
         try:
-            value = evaluate(x.value, _ConstantsOnly(self.constants))
-            numbers = astuple(value) if isinstance(value, ScriptPose) else (value,)
-            if not all(isinstance(n, str) or math.isfinite(n) for n in numbers):
-                raise ScriptError(f"{show(value)} is not finite")
-            self.constants[x.name] = value
+            self.constants[x.name] = evaluate(x.value, _ConstantsOnly(self.constants))
         except ScriptError as problem:
             self.d.error(
                 codes.CONSTANT,

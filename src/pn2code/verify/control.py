@@ -123,6 +123,7 @@ def examine(
             plan.wishes,
             sizes=Sizes.start(running.net, plan.storage),
             traces=Path(name),
+            whole=tuple(c.place for c in partition.channels),
             graph=None,
             questions=of_cell(running, plan),
             predicates=plan.properties.predicates,
