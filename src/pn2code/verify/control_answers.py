@@ -9,6 +9,8 @@ from pathlib import Path
 from typing import Any
 
 from pn2code.cell.partition import Partition
+from pn2code.cell.reach import Reach
+from pn2code.net.flat import BindAll, BindRandom
 from pn2code.verify.control_types import (
     BLOCKING,
     BOUNDED,
@@ -284,8 +286,10 @@ def _blocking(row: Mapping[str, Any], keep: Keeper, partition: Partition) -> Che
     final = " or ".join(f"`{n}`" for n in names)
     size = int(row["value"])
     if row["answer"] == "yes":
+        given = " and ".join(_given(partition))
+        given = f", if {given}" if given else ""
         how = (
-            f"a token in {final} is reached from each of the {size:,} states of the cell, whoever is slow"
+            f"a token in {final} is reached from each of the {size:,} states of the cell, whoever is slow{given}"
             if names
             else f"something can always happen in the {size:,} states of the cell (no place is final)"
         )
@@ -305,6 +309,18 @@ def _blocking(row: Mapping[str, Any], keep: Keeper, partition: Partition) -> Che
     else:
         says = f"{after} a token in {final} can no longer be reached, though the cell goes on"
     return Check(BLOCKING, "no", says, size, row["why"], evidence=evidence)
+
+
+def _given(partition: Partition) -> Iterator[str]:
+    """What is taken for granted of the world, as clauses."""
+    pairs = zip(partition.net.transitions, partition.transition_owner, strict=True)
+    own = [t for t, owner in pairs if owner]
+    if any(isinstance(step, BindAll | BindRandom) for t in own for step in t.plan):
+        yield "each value of a sensor comes now and then"
+    reach = Reach(partition.net.program)
+    measures = {uid for uid, p in partition.primitives.items() if p.command == "measure"}
+    if any(t.code is not None and measures & reach.everything(t.code.action).keys() for t in own):
+        yield "what is measured is what the net says"
 
 
 def channels_check(partition: Partition, rows: Sequence[Mapping[str, Any]], keep: Keeper) -> Check:
