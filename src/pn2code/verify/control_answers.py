@@ -8,7 +8,7 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
-from pn2code.cell.partition import Partition
+from pn2code.cell.partition import ChannelKind, Partition
 from pn2code.cell.reach import Reach
 from pn2code.net.flat import BindAll, BindRandom
 from pn2code.verify.control_types import (
@@ -286,8 +286,8 @@ def _blocking(row: Mapping[str, Any], keep: Keeper, partition: Partition) -> Che
     final = " or ".join(f"`{n}`" for n in names)
     size = int(row["value"])
     if row["answer"] == "yes":
-        given = " and ".join(_given(partition))
-        given = f", if {given}" if given else ""
+        *most, last = [*_given(partition)] or [""]
+        given = f", if {' and '.join(filter(None, [', '.join(most), last]))}" * bool(last)
         how = (
             f"a token in {final} is reached from each of the {size:,} states of the cell, whoever is slow{given}"
             if names
@@ -315,6 +315,8 @@ def _given(partition: Partition) -> Iterator[str]:
     """What is taken for granted of the world, as clauses."""
     pairs = zip(partition.net.transitions, partition.transition_owner, strict=True)
     own = [t for t, owner in pairs if owner]
+    if any(c.writer == 0 and c.kind is ChannelKind.FLAG for c in partition.channels):
+        yield "flags are answered within `reply_timeout_s`"
     if any(isinstance(step, BindAll | BindRandom) for t in own for step in t.plan):
         yield "each value of a sensor comes now and then"
     reach = Reach(partition.net.program)
