@@ -107,7 +107,7 @@ def test_literal_values() -> None:
     assert values("~5 0x1F ~0x10 1.5 ~2.5e2 123456789012345678901234567890") == [
         -5, 31, -16, 1.5, -250.0, 123456789012345678901234567890,
     ]  # fmt: skip
-    assert values(r'"a\n\t\"\\\065\u0042\^A" #"x"') == ['a\n\t"\\AB\x01', "x"]
+    assert values(r'"a\n\t\"\\\065\066\^A" #"x"') == ['a\n\t"\\AB\x01', "x"]
     assert values('"one\\\n   \\two"') == ["onetwo"]
 
 

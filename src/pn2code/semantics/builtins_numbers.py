@@ -247,7 +247,7 @@ def _rounded_real(how: Callable[[float], int]) -> Function:
 
 def _compare_reals(e: Evaluator, p: tuple[float, float]) -> Data:
     if math.isnan(p[0]) or math.isnan(p[1]):
-        raise fail("Domain")
+        raise fail("Unordered")
     return order(p[0], p[1])
 
 
@@ -448,7 +448,9 @@ def _logarithm(function: Callable[[float], float]) -> Function:
 
 
 def power(a: float, b: float) -> float:
-    """C's `pow`."""
+    """C's `pow`, but where SML says that there is no number."""
+    if math.isnan(b) or (math.isinf(b) and abs(a) == 1):
+        return math.nan
     try:
         return math.pow(a, b)
     except OverflowError:
