@@ -318,6 +318,24 @@ class Here:
         value = self.evaluator.globals[symbol.uid]
         return Said("value", Printer(datatypes).text(symbol.type, value), normal(symbol.type))
 
+    def type_of(self, expression: str) -> Type | None:
+        """The type of an expression; None if it is wrong."""
+        d = Diagnostics()
+        with self.elaborator.aside(d) as made:
+            self.elaborator.declarations(SourceText(f"val it'is =\n{expression}\n;", NOWHERE))
+        return None if d.has_errors else made.globals["it'is"].type
+
+    def value_of(self, expression: str) -> str | None:
+        """The value of an expression of type string; None if there is none."""
+        d = Diagnostics()
+        try:
+            with self.elaborator.aside(d) as made:
+                self._declared(f"val it'is =\n{expression}\n;", d)
+        except (_RefusedError, MlException, MlUnavailable, MlLimit):
+            return None
+        value = self.evaluator.globals[made.globals["it'is"].uid]
+        return value if isinstance(value, str) else None
+
     def _declared(self, text: str, d: Diagnostics) -> None:
         """Enters and evaluates declarations.
 

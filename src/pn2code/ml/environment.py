@@ -26,6 +26,7 @@ from pn2code.ml.builtins import (
     internal_function,
 )
 from pn2code.ml.colsets import Colset
+from pn2code.ml.engine_names import ENGINE_MEMBERS, ENGINE_STRUCTURES, ENGINE_VALUES
 from pn2code.ml.core import Constructor, DatatypeDec, Symbol
 from pn2code.ml.inference import Quant, Ty
 from pn2code.ml.syntax import FunctorBinding, Sig
@@ -313,7 +314,7 @@ def library_value(structure: str, member: str) -> Entry | None:
     base = _library().values.get(member)
     if isinstance(base, ConEntry | EmptyEntry) and member in _CONSTRUCTORS_OF.get(structure, ()):
         return base
-    if name in ABSENT_VALUES:
+    if name in ABSENT_VALUES or name in ENGINE_MEMBERS or name.split(".")[0] in ENGINE_STRUCTURES:
         return UnsupportedEntry(name)
     internal = internal_function(name)
     return None if internal is None else BuiltinEntry(internal)
@@ -389,13 +390,13 @@ def _library() -> Scope:
     for name in sorted(TOP_LEVEL_EXCEPTIONS):
         scope.values[name] = _exception_entry(name)
     scope.values["empty"] = EmptyEntry()
-    for name in UNSUPPORTED_NAMES - scope.values.keys():
+    for name in (UNSUPPORTED_NAMES | ENGINE_VALUES) - scope.values.keys():
         scope.values[name] = UnsupportedEntry(name)
     for name, arity in TYPE_ARITY.items():
         scope.types[name] = TypeCon(name, arity)
     for name, text in TYPE_ABBREVIATIONS.items():
         scope.types[name] = BuiltinAbbreviation(text, ("'a" in text) + ("'b" in text))
-    for name in STRUCTURES:
+    for name in STRUCTURES | ENGINE_STRUCTURES:
         if "." not in name:
             scope.structures[name] = BuiltinStructure(name)
     return scope
