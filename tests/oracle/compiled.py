@@ -1,8 +1,8 @@
-"""`./dev oracle --compiled N`: random CPN ML in compiled nets gives what the token game gives, which `--expressions` and
-`--programs` compare with the engine.
+"""`./dev oracle --compiled N`: random CPN ML in compiled nets gives what the token game gives, which `--expressions`
+and `--programs` compare with the engine.
 
-A net has places whose initial markings are the texts of the values, hundreds of them, so that one call of the C compiler
-serves all; where a net cannot be compiled or stops, it is divided until it is known at which text.
+A net has places whose initial markings are the texts of the values, hundreds of them, so that one call of the C
+compiler serves all; where a net cannot be compiled or stops, it is divided until it is known at which text.
 """
 
 from __future__ import annotations
@@ -145,7 +145,10 @@ def main(arguments: list[str]) -> int:
                 for text, result in zip(some, found, strict=True):
                     kinds[SAME if result == wanted[text] else DIFFERS] += 1
                     if result != wanted[text]:
-                        print(f"{text}\n    evaluated {wanted[text]!r}\n    compiled  {result!r}", flush=True)
+                        print(
+                            f"{text}\n    evaluated {wanted[text]!r}\n    compiled  {result!r}",
+                            flush=True,
+                        )
     print(f"{len(wanted)} texts: {', '.join(f'{n} {k}' for k, n in kinds.most_common())}")
     for reason, n in reasons.most_common(20):
         print(f"  {n} {reason}")

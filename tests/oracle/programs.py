@@ -277,7 +277,9 @@ class Programs(Texts):
             if curried:
                 left += f" {self.pattern(other, 1, bound, True)}"
             kept, self.scope = self.scope, [*self.scope, *bound]
-            constraint = f" : {'int' if result == INT else 'string'}" if result in (INT, STRING) else ""
+            constraint = (
+                f" : {'int' if result == INT else 'string'}" if result in (INT, STRING) else ""
+            )
             lines.append(f"{left}{constraint} = {self.of(result, 2)}")
             self.scope = kept
         self.scope.append((name, TFun(parameter, TFun(other, result) if curried else result)))
@@ -309,7 +311,9 @@ class Programs(Texts):
     def datatype(self) -> str:
         """A data type of its own, a value and a function of it; they are seen through what they are made of."""
         name, f = self.name("t"), self.name("g")
-        parts = [self.type(1) if self.r.random() < 0.6 else None for _ in range(self.r.choice((1, 2, 3)))]
+        parts = [
+            self.type(1) if self.r.random() < 0.6 else None for _ in range(self.r.choice((1, 2, 3)))
+        ]
         cons = [f"{name.upper()}{'XYZ'[i]}" for i in range(len(parts))]
         lines = []
         result = self.type(0)
@@ -320,9 +324,13 @@ class Programs(Texts):
             lines.append(f"{f} {pattern} = {self.of(result, 1)}")
             self.scope = kept
         written = " | ".join(
-            con if part is None else f"{con} of {self.written(part)}" for con, part in zip(cons, parts, strict=True)
+            con if part is None else f"{con} of {self.written(part)}"
+            for con, part in zip(cons, parts, strict=True)
         )
-        self.scope += [(c, TCon(name) if p is None else TFun(p, TCon(name))) for c, p in zip(cons, parts, strict=True)]
+        self.scope += [
+            (c, TCon(name) if p is None else TFun(p, TCon(name)))
+            for c, p in zip(cons, parts, strict=True)
+        ]
         self.scope.append((f, TFun(TCon(name), result)))
         return f"datatype {name} = {written}\nfun {' | '.join(lines)}"
 
@@ -345,7 +353,9 @@ class Programs(Texts):
     def wrapped(self) -> str:
         """A declaration inside `local`, a structure or `let`."""
         before = len(self.scope)
-        inner = self.r.choice((self.value_declared, self.clauses, self.recursive, self.polymorphic))()
+        inner = self.r.choice(
+            (self.value_declared, self.clauses, self.recursive, self.polymorphic)
+        )()
         made = self.scope[before:]
         match self.r.randrange(4):
             case 0:
@@ -366,7 +376,9 @@ class Programs(Texts):
                     self.scope.append((outer, made[0][1]))
                 return f"val {outer} = let {inner} in {', '.join(names) if len(names) == 1 else '()'} end"
 
-    def pattern(self, t: Type, depth: int, bound: list[tuple[str, Type]], atomic: bool = False) -> str:
+    def pattern(
+        self, t: Type, depth: int, bound: list[tuple[str, Type]], atomic: bool = False
+    ) -> str:
         """A pattern of a type, often one that fits everything."""
         roll = self.r.random()
         if roll < 0.15:
@@ -387,10 +399,21 @@ class Programs(Texts):
                     return f"({', '.join(p for _, p in parts)})"
                 return "{" + ", ".join(f"{k} = {p}" for k, p in parts) + "}"
             case TCon("list", (inner,)):
-                head, rest = self.pattern(inner, depth - 1, bound), self.pattern(t, depth - 1, bound)
-                return self.r.choice((f"({head} :: {rest})", "nil", "[]"))if self.r.random() < 0.7 else "nil"
+                head, rest = (
+                    self.pattern(inner, depth - 1, bound),
+                    self.pattern(t, depth - 1, bound),
+                )
+                return (
+                    self.r.choice((f"({head} :: {rest})", "nil", "[]"))
+                    if self.r.random() < 0.7
+                    else "nil"
+                )
             case TCon("option", (inner,)):
-                return f"(SOME {self.pattern(inner, depth - 1, bound, True)})" if self.r.random() < 0.6 else "NONE"
+                return (
+                    f"(SOME {self.pattern(inner, depth - 1, bound, True)})"
+                    if self.r.random() < 0.6
+                    else "NONE"
+                )
             case TCon("int"):
                 return self.r.choice(("0", "1", "~1", "3"))
             case TCon("string"):
@@ -432,7 +455,9 @@ def _fits(t: Type, wanted: Type, chosen: dict[int, Type]) -> bool:
                 and all(_fits(x, y, chosen) for x, y in zip(t.args, wanted.args, strict=True))
             )
         case TFun(), TFun():
-            return _fits(t.argument, wanted.argument, chosen) and _fits(t.result, wanted.result, chosen)
+            return _fits(t.argument, wanted.argument, chosen) and _fits(
+                t.result, wanted.result, chosen
+            )
         case TRecord(), TRecord():
             return [k for k, _ in t.fields] == [k for k, _ in wanted.fields] and all(
                 _fits(x, y, chosen) for (_, x), (_, y) in zip(t.fields, wanted.fields, strict=True)

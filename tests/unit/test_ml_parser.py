@@ -380,9 +380,11 @@ def test_operators_to_different_sides_are_taken_from_the_left() -> None:
 @pytest.mark.parametrize(
     "text",
     [
-        "val x = {INT.a = 1}", "val x = {0 = 1}", "val x = {01 = 1}", "fun S.f x = 1", "datatype S.t = A", "datatype t = S.A",
+        "val x = {INT.a = 1}", "val x = {0 = 1}", "val x = {01 = 1}", "fun S.f x = 1", "datatype S.t = A",
+        "datatype t = S.A",
         "type S.t = int", "exception S.E", "structure A.B = struct end", "signature A.B = sig end", "infix S.f",
-        "functor F.G () = struct end", "val f = fn (S.x as y) => 1", 'val x = "\\u0041"', "val x = (1; 2;)", "val x = let in 1; end",
+        "functor F.G () = struct end", "val f = fn (S.x as y) => 1", 'val x = "\\u0041"',
+        "val x = (1; 2;)", "val x = let in 1; end",
     ],
 )  # fmt: skip
 def test_what_sml_does_not_read(text: str) -> None:

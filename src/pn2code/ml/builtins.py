@@ -332,7 +332,8 @@ TOP_LEVEL: dict[str, str] = {
     **{
         name: f"ModelTime.{name}"
         for name in (
-            "fromInt", "fromIntInf", "fromString", "toString", "toReal", "maketime", "add", "sub", "mult", "lt", "leq", "cmp",
+            "fromInt", "fromIntInf", "fromString", "toString", "toReal", "maketime", "add", "sub", "mult", "lt",
+            "leq", "cmp",
         )
     },
     **{
@@ -353,7 +354,7 @@ QUALIFIED: dict[str, str] = {
     "Char.str": "String.str",
     "ModelTime.time": "Time.time",
     "ModelTime.@": "Time.@",
-    "TMS.ms": "Time.ms",
+    **{f"TMS.{name}": f"Time.{name}" for name in ("ms", "+++", "@+", "@++")},
     **{f"ListUtils.{name}": f"List.{name}" for name in (
         "mem", "remdupl", "rm", "rmall", "pos", "contains", "contains_all", "intersect", "union", "listsub", "ins",
         "ins_new", "fmap", "mapfilter", "predlist",
@@ -401,7 +402,7 @@ Replications Comms CPN'Sim CPN'NetCapture CPN'Monitors CPN'Env CPN'Settings CPN'
 
 _UTILITIES = frozenset(
     {
-        "ArrayQSort", "AtomTable", "Base64", "BitArray", "CharMap", "DynamicArray", "Format", "GetOpt", 
+        "ArrayQSort", "AtomTable", "Base64", "BitArray", "CharMap", "DynamicArray", "Format", "GetOpt",
         "HashTable", "IOUtil", "IntHashTable", "ParserComb", "PathUtil", "PrimeSizes", "PropList", "Rand",
         "RealOrderStats", "Scan", "SplayTree", "TimeLimit", "URef", "UnivariateStats", "WordHashTable",
     }

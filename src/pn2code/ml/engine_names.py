@@ -1,7 +1,7 @@
 """What the engine of CPN Tools has in scope besides what pn2code knows: names only, so that a use is refused by name.
 
-Its own inner parts, the compiler of SML/NJ, the parts of the state-space tool; nobody needs them in a net, and a net may
-give their names to something of its own. `./dev oracle --library` finds what is missing here.
+Its own inner parts, the compiler of SML/NJ, the parts of the state-space tool; nobody needs them in a net, and a net
+may give their names to something of its own. `./dev oracle --library` finds what is missing here.
 """
 
 from __future__ import annotations
@@ -46,15 +46,22 @@ input_tms mkstr mkstr_tms model_time name null_str ogpath output_ms output_tms p
 rmipath sort_int_list sort_tms start_time tcf tlegal tleq tlt tod tsub
 """
 _MEMBERS = """
+BinIO.StreamIO : canInput closeIn closeOut endOfStream filePosIn filePosOut flushOut getBufferMode getPosOut
+BinIO.StreamIO : getReader getWriter input input1 inputAll inputN mkInstream mkOutstream output output1
+BinIO.StreamIO : setBufferMode setPosOut
 Byte : packString unpackString unpackStringVec
 CharVector : append prepend toList
 ConnManagementLayer : DupConnNameExn ElementMissingExn canreceive
 IO : TerminatedStream
 LargeReal : class compareReal fromDecimal toDecimal
+LargeWord : * + - < << <= > >= >> ~ ~>>
 LibBase : banner failure version
 ListUtils : sort_int_list
+Misc : ::=
 Misc.A : app fold map revapp revfold
+Misc.I : *= += -=
 Misc.I : app fold revapp revfold
+Misc.R : *= += -=
 Misc.S : left right
 ModelTime : col mkstr model_time name null null_str ready start_time
 OS : syserror
@@ -122,10 +129,15 @@ TextIO.StreamIO : getReader getWriter input input1 inputAll inputLine inputN mkI
 TextIO.StreamIO : output1 outputSubstr setBufferMode setPosOut
 Time : scan
 Word : fromLarge fromLargeWord scan toLarge toLargeWord toLargeWordX toLargeX
+Word : ~
 Word31 : fromLarge fromLargeWord scan toLarge toLargeWord toLargeWordX toLargeX
+Word31 : ~
+Word32 : * + - < << <= > >= >> ~ ~>>
+Word64 : * + - < << <= > >= >> ~ ~>>
 Word64 : andb compare div fmt fromInt fromLarge fromLargeInt fromLargeWord fromString max min mod notb orb
 Word64 : scan toInt toIntX toLarge toLargeInt toLargeIntX toLargeWord toLargeWordX toLargeX toString wordSize
 Word64 : xorb
+Word8 : * + - < << <= > >= >> ~ ~>>
 Word8Array : fromVector toList toVector
 Word8Vector : append prepend toList
 """

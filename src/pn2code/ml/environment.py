@@ -26,8 +26,8 @@ from pn2code.ml.builtins import (
     internal_function,
 )
 from pn2code.ml.colsets import Colset
-from pn2code.ml.engine_names import ENGINE_MEMBERS, ENGINE_STRUCTURES, ENGINE_VALUES
 from pn2code.ml.core import Constructor, DatatypeDec, Symbol
+from pn2code.ml.engine_names import ENGINE_MEMBERS, ENGINE_STRUCTURES, ENGINE_VALUES
 from pn2code.ml.inference import Quant, Ty
 from pn2code.ml.syntax import FunctorBinding, Sig
 from pn2code.ml.types import EXN, TCon, TFun, TVar, Type
@@ -230,7 +230,8 @@ class Scope:
             return next((s.values[last] for s in self._chain() if last in s.values), None)
         structure = self.structure(".".join(path))
         if isinstance(structure, Scope):
-            return structure.values.get(last)
+            own = structure.values.get(last)
+            return UnsupportedEntry(name) if own is None and name in ENGINE_MEMBERS else own
         if isinstance(structure, BrokenStructure):
             return BrokenEntry()
         return library_value(structure.name, last) if structure is not None else None

@@ -192,7 +192,9 @@ class _Resolver:
             case _:
                 raise self._error("a variable must stand before `as`", keyword.span)
         if is_long(name.name):
-            raise self._error(f"`{name.name}` cannot be declared here", name.span, "a name has no points")
+            raise self._error(
+                f"`{name.name}` cannot be declared here", name.span, "a name has no points"
+            )
         if not after:
             raise self._error("a pattern must stand after `as`", keyword.span)
         self._enter(span)
@@ -267,7 +269,9 @@ class _Resolver:
             while stack and stack[-1][2] >= precedence:
                 _, other, other_precedence, other_side = stack[-1]
                 if other_precedence == precedence:
-                    if other_side != side:  # the left one goes first, as in SML/NJ, which warns, too
+                    if (
+                        other_side != side
+                    ):  # the left one goes first, as in SML/NJ, which warns, too
                         self._d.warning(
                             codes.MIXED_OPERATORS,
                             f"`{other}` and `{name}` bind equally tightly, to different sides",
@@ -407,7 +411,9 @@ class _Resolver:
             items.pop()
         name, patterns = self._head(items, left.span)
         if is_long(name.name):
-            raise self._error(f"`{name.name}` cannot be declared here", name.span, "a name has no points")
+            raise self._error(
+                f"`{name.name}` cannot be declared here", name.span, "a name has no points"
+            )
         resolved = tuple(self.pat(p) for p in patterns)
         return name, s.Clause(resolved, result, self.exp(flat.body), flat.span)
 

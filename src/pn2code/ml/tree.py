@@ -181,7 +181,9 @@ class TreeBuilder:
     def label(self, children: Children) -> Group:
         token: Lexeme = children[0]
         if token.kind == "INT" and not re.fullmatch("[1-9][0-9]*", token.text):
-            raise NotANameError(self._of(token), f"`{token.text}` is not a label: they count from 1")
+            raise NotANameError(
+                self._of(token), f"`{token.text}` is not a label: they count from 1"
+            )
         return Group((self._name(token),), self._span(children))
 
     def selector(self, children: Children) -> s.SelectorExp:
@@ -373,7 +375,9 @@ class TreeBuilder:
 
     def datatype_copy(self, children: Children) -> s.DatatypeCopyDec:
         name, original = self._texts(children, "ID")
-        return s.DatatypeCopyDec(_short(name, self._of(children[1])), original, self._span(children))
+        return s.DatatypeCopyDec(
+            _short(name, self._of(children[1])), original, self._span(children)
+        )
 
     def exception_dec(self, children: Children) -> s.ExceptionDec:
         return s.ExceptionDec(self._nodes(children), self._span(children))
@@ -506,7 +510,9 @@ class TreeBuilder:
     def funcbind(self, children: Children) -> s.FunctorBinding:
         parameter, signature = children[2].items
         body = self._sealed(children[-1], children[4])
-        return s.FunctorBinding(self._name(children[0]), parameter, signature, body, self._span(children))
+        return s.FunctorBinding(
+            self._name(children[0]), parameter, signature, body, self._span(children)
+        )
 
     def funcparam(self, children: Children) -> Group:
         if len(children) == 3:
@@ -522,7 +528,10 @@ def _short(name: str, span: Span) -> str:
         NotANameError: it has points.
     """
     if is_long(name):
-        raise NotANameError(span, f"`{name}` is the name of something inside a structure, which cannot be declared here")
+        raise NotANameError(
+            span,
+            f"`{name}` is the name of something inside a structure, which cannot be declared here",
+        )
     return name
 
 
