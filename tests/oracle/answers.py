@@ -49,7 +49,7 @@ _NAMES = {
     "LargeInt.int": "IntInf.int", "time": "IntInf.int", "CPN'Time.time": "IntInf.int",
     "Int.int": "int", "Real.real": "real", "String.string": "string", "Word.word": "word", "CPN'timed": "timed",
     "Word31.word": "word", "Position.int": "int", "Substring.substring": "substring", "IEEEReal.real_order": "order",
-    "Order.order": "order",
+    "Order.order": "order", "Word8Vector.elem": "Word8.word",
 }  # fmt: skip
 _BASIC = {
     "Int": "int",
@@ -130,6 +130,9 @@ class _TypeReader:
         name = "int" if _INT_KEY.fullmatch(name) else _NAMES.get(name, name)
         if name == "unit":
             return TRecord()
+        if name == "StringCvt.reader":
+            item, stream = arguments
+            return TFun(stream, TCon("option", (_record(enumerate((item, stream), 1)),)))
         if name in ("ms", "list"):
             return TCon("list", arguments)
         if name == "tms":

@@ -102,6 +102,16 @@ def _plausible_in_number(c: str) -> bool:
     return c in "0123456789abcdefABCDEFxX~+- \t\n\v\f\r"
 
 
+def _written_in(structure: str) -> Function:
+    """`Int.fmt`, whose digits are capital letters, or `IntInf.fmt`, whose are small."""
+
+    def function(e: Evaluator, radix: Data, a: int) -> str:
+        text = digits_text(a, BASES[radix.name])
+        return text.lower() if structure == "IntInf" else text
+
+    return function
+
+
 def _integers(
     structure: str, fit: Callable[[Evaluator, int], int]
 ) -> dict[str, tuple[int, Function]]:
@@ -140,7 +150,7 @@ def _integers(
     }
     return {
         **{f"{structure}.{name}": (1, f) for name, f in operations.items()},
-        f"{structure}.fmt": (2, lambda e, radix, a: digits_text(a, BASES[radix.name])),
+        f"{structure}.fmt": (2, _written_in(structure)),
         f"{structure}.scan": (3, scan),
     }
 
