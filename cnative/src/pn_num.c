@@ -293,6 +293,20 @@ int64_t pn_real_sign(pn_ctx_t *cx, double x)
     return (x > 0.0) ? 1 : ((x < 0.0) ? -1 : 0);
 }
 
+int pn_real_compare(pn_ctx_t *cx, double a, double b)
+{
+    if (isnan(a) || isnan(b)) {
+        pn_raise(cx, PN_ERR_DOMAIN, "Unordered");
+    }
+    return pn_real_order(a, b);
+}
+
+double pn_real_power(double a, double b)
+{
+    /* C has 1.0 for 1.0 to any power, and for -1.0 to an infinite one. */
+    return (isnan(b) || (isinf(b) && pn_real_equal(fabs(a), 1.0))) ? (double)NAN : pow(a, b);
+}
+
 bool pn_real_is_nan(double x)
 {
     return isnan(x) != 0;

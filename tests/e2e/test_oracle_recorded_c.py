@@ -42,7 +42,25 @@ def cases() -> list[tuple[str, str]]:
             found.append(
                 (f'(ignore ({expression}); "nothing") handle CPN\'Error _ => "error"', "error")
             )
-    return found
+    return found + FOUND
+
+
+FOUND = [
+    ('String.concatWith "," (map (fn i => UE.mkstr (UE.col i) handle _ => "x") [0, 1, 2, 3, 4, 5, 6])',
+     "EvenOf(2),x,x,FewOf(5),FewOf(3),FewOf(9),x"),
+    ('String.concatWith "," (map (fn i => MIX.mkstr (MIX.col i) handle _ => "x") [0, 2, 3])', "(2,5),(2,9),x"),
+    ("Int.toString (case [] of x :: _ => 1 | nil => 2)", "2"),
+    ("Int.toString (case [] of x :: y :: _ => y + 1 | _ => 2)", "2"),
+    ('PH.mkstr (PH.col 1073741823) handle Overflow => "too large"', "too large"),
+    ('(case Real.compare (0.0 / 0.0, 1.0) of LESS => "less" | _ => "more") handle IEEEReal.Unordered => "none"',
+     "none"),
+    ("Real.toString (Math.pow (1.0, 1.0 / 0.0))", "nan"),
+    ('(ignore (hd (UNIT.all ())); "unit")', "unit"),
+    ('String.concatWith "," (map Int.toString (List.mapi (fn (i, x) => i * x) [5, 6, 7]))', "0,6,14"),
+    ('String.concat (map Atom.toString (AtomSet.listItems (AtomSet.fromList (map Atom.atom ["zebra", "a", "c"]))))',
+     "aczebra"),
+]  # fmt: skip
+"""What `./dev oracle --compiled` has found, and the library: the engine's answers."""
 
 
 def test_compiled_nets_say_the_same(fast_workshop: Workshop, tmp_path: Path) -> None:

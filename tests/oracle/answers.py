@@ -45,10 +45,11 @@ class Said:
 
 _TOKEN = re.compile(r"\s*(->|[A-Za-z?][\w'?]*(?:\.[\w'?]+)*|'+\w+|[*(){},:]|\d+)")
 _NAMES = {
-    "?.intinf": "IntInf.int",
-    "LargeInt.int": "IntInf.int", "intinf": "IntInf.int", "time": "IntInf.int", "CPN'Time.time": "IntInf.int",
+    "intinf": "IntInf.int",
+    "LargeInt.int": "IntInf.int", "time": "IntInf.int", "CPN'Time.time": "IntInf.int",
     "Int.int": "int", "Real.real": "real", "String.string": "string", "Word.word": "word", "CPN'timed": "timed",
     "Word31.word": "word", "Position.int": "int", "Substring.substring": "substring", "IEEEReal.real_order": "order",
+    "Order.order": "order", "Word8Vector.elem": "Word8.word",
 }  # fmt: skip
 _BASIC = {
     "Int": "int",
@@ -124,9 +125,14 @@ class _TypeReader:
         return [self.named(token, ())]
 
     def named(self, name: str, arguments: tuple[Type, ...]) -> Type:
+        # Of a data type its own name is compared, not where it was declared nor whether another hides it.
+        name = re.sub(r"^(\?|S\d*)\.(?!X\d)", "", name)
         name = "int" if _INT_KEY.fullmatch(name) else _NAMES.get(name, name)
         if name == "unit":
             return TRecord()
+        if name == "StringCvt.reader":
+            item, stream = arguments
+            return TFun(stream, TCon("option", (_record(enumerate((item, stream), 1)),)))
         if name in ("ms", "list"):
             return TCon("list", arguments)
         if name == "tms":
@@ -163,7 +169,8 @@ def normal(t: Type) -> str:
             case TCon():
                 if t.name.startswith("?.X"):
                     return "{}"  # what nothing decides: SML/NJ makes a new type, pn2code takes unit
-                return " ".join([*map(text, t.args), t.name])
+                name = t.name.partition("#")[0]
+                return " ".join([*map(text, t.args), name])
 
     return text(t)
 
@@ -288,31 +295,66 @@ class Here:
         self.evaluator = Evaluator(typed.program, limits=Limits(steps=steps))
 
     def say(self, text: str) -> Said:
-        """The answer to an expression; declarations may come before it."""
+        """The answer to an expression; declarations may come before it, each of which ends with `;` and a line.
+
+        As at the engine's top level a declaration is evaluated before the next one is read.
+        """
+        *before, expression = text.split(";\n")
         d = Diagnostics()
         with self.elaborator.aside(d) as made:
-            self.elaborator.declarations(SourceText(f"val it'is =\n{text}\n;", NOWHERE))
-            program = self.elaborator.program()
-        if d.has_errors:
-            first = d.errors[0]
-            return Said(
-                "refused",
-                f"{first.code}: {first.message}",
-                "syntax" if first.code in SYNTAX else "type",
-            )
+            try:
+                for declared in before:
+                    self._declared(f"{declared};", d)
+                self._declared(f"val it'is =\n{expression}\n;", d)
+            except _RefusedError:
+                first = d.errors[0]
+                kind = "syntax" if first.code in SYNTAX else "type"
+                return Said("refused", f"{first.code}: {first.message}", kind)
+            except MlException as raised:
+                return Said("raised", raised.name)
+            except MlUnavailable as reason:
+                return Said("unavailable", str(reason))
+            except MlLimit as reason:
+                return Said("limit", str(reason))
+            datatypes = self.elaborator.program().datatypes
+        symbol = made.globals["it'is"]
+        value = self.evaluator.globals[symbol.uid]
+        return Said("value", Printer(datatypes).text(symbol.type, value), normal(symbol.type))
+
+    def type_of(self, expression: str) -> Type | None:
+        """The type of an expression; None if it is wrong."""
+        d = Diagnostics()
+        with self.elaborator.aside(d) as made:
+            self.elaborator.declarations(SourceText(f"val it'is =\n{expression}\n;", NOWHERE))
+        return None if d.has_errors else made.globals["it'is"].type
+
+    def value_of(self, expression: str) -> str | None:
+        """The value of an expression of type string; None if there is none."""
+        d = Diagnostics()
         try:
-            for dec in made.declarations:
-                self.evaluator.globals.update(self.evaluator.run(self.evaluator._declare(dec, {})))
-            symbol = made.globals["it'is"]
-            value = self.evaluator.globals[symbol.uid]
-            printer = Printer(program.datatypes)
-            return Said("value", printer.text(symbol.type, value), normal(symbol.type))
-        except MlException as raised:
-            return Said("raised", raised.name)
-        except MlUnavailable as reason:
-            return Said("unavailable", str(reason))
-        except MlLimit as reason:
-            return Said("limit", str(reason))
+            with self.elaborator.aside(d) as made:
+                self._declared(f"val it'is =\n{expression}\n;", d)
+        except (_RefusedError, MlException, MlUnavailable, MlLimit):
+            return None
+        value = self.evaluator.globals[made.globals["it'is"].uid]
+        return value if isinstance(value, str) else None
+
+    def _declared(self, text: str, d: Diagnostics) -> None:
+        """Enters and evaluates declarations.
+
+        Raises:
+            _RefusedError: they are wrong; `d` says why.
+        """
+        done = len(self.elaborator.program().declarations)
+        self.elaborator.declarations(SourceText(text, NOWHERE))
+        if d.has_errors:
+            raise _RefusedError
+        for dec in self.elaborator.program().declarations[done:]:
+            self.evaluator.globals.update(self.evaluator.run(self.evaluator._declare(dec, {})))
+
+
+class _RefusedError(Exception):
+    """What is put before pn2code is wrong."""
 
 
 def engine_said(answer: dict[str, Any], colsets: dict[str, Colset]) -> Said:
@@ -325,7 +367,8 @@ def engine_said(answer: dict[str, Any], colsets: dict[str, Colset]) -> Said:
     if error["class"] == "raised":
         return Said("raised", error["name"])
     if error["class"] in ("syntax", "type"):
-        return Said("refused", error["message"].replace("\n", " ")[:300], error["class"])
+        message = error["message"].replace("\n", " ")
+        return Said("refused", message[max(message.find("Error:"), 0) :][:300], error["class"])
     return Said(error["class"], error["message"][:100])
 
 

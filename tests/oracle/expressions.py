@@ -10,6 +10,7 @@ import argparse
 import sys
 import tempfile
 from collections import Counter
+from collections.abc import Callable
 from pathlib import Path
 from random import Random
 
@@ -23,6 +24,8 @@ from tests.oracle.texts import NET, Texts
 from helpers.netbuilder import write
 
 BATCH = 2000
+Make = Callable[[int, int, Here], list[str]]
+"""How many, seed, what is declared: the texts."""
 
 
 def texts(count: int, seed: int, here: Here) -> list[str]:
@@ -41,7 +44,12 @@ def texts(count: int, seed: int, here: Here) -> list[str]:
 
 def main(arguments: list[str]) -> int:
     """0 when nothing differs without a known reason."""
-    parser = argparse.ArgumentParser(prog="oracle --expressions", description=__doc__)
+    return campaign("expressions", __doc__, texts, arguments)
+
+
+def campaign(name: str, about: str | None, make: Make, arguments: list[str]) -> int:
+    """Asks both of all texts that are made, and prints what differs."""
+    parser = argparse.ArgumentParser(prog=f"oracle --{name}", description=about)
     parser.add_argument("count", nargs="?", type=int, default=20_000)
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--all", metavar="FILE", type=Path, help="every difference into FILE")
@@ -54,7 +62,7 @@ def main(arguments: list[str]) -> int:
         net = write(NET, Path(folder) / "Oracle.cpn")
         here = Here(net)
         colsets = dict(here.program.colsets)
-        asked = texts(options.count, options.seed, here)
+        asked = make(options.count, options.seed, here)
         for first in range(0, len(asked), BATCH):
             some = asked[first : first + BATCH]
             for answer in evaluate(some, net=net):

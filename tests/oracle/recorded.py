@@ -2,8 +2,8 @@
 """Answers of the engine that were recorded, so that they are compared without it: `./dev oracle --recorded`.
 
 `recorded/NAME.tsv`: an expression, and what the engine said of it, with `texts.NET` declared. The expressions of
-`colsets` are made here: every function of every kind of colour set. Those of `library` and `found` are written by hand
-in the first column; the second is filled in.
+`colsets` are made here: every function of every kind of colour set. Those of the others are written by hand in the
+first column; the second is filled in. Declarations before an expression end with ` ;; `.
 """
 
 from __future__ import annotations
@@ -74,8 +74,8 @@ def colset_expressions() -> Iterator[str]:
 def rows(name: str) -> list[tuple[str, str]]:
     """Expression and answer."""
     text = (FOLDER / f"{name}.tsv").read_text(encoding="utf-8")
-    pairs = (line.split("\t") for line in text.splitlines() if line)
-    return [(pair[0], pair[1] if len(pair) > 1 else "") for pair in pairs]
+    pairs = (line.split("\t") for line in text.split("\n") if line)
+    return [(pair[0].replace(" ;; ", ";\n"), pair[1] if len(pair) > 1 else "") for pair in pairs]
 
 
 def differing(name: str, here: Here) -> list[str]:
@@ -101,9 +101,8 @@ def main(arguments: list[str]) -> int:
             lines = []
             for answer in evaluate(asked, net=net):
                 said = engine_said(answer, colsets)
-                lines.append(
-                    f"{asked[answer['line']]}\t{said.kind if said.kind == 'refused' else said}\n"
-                )
+                text = asked[answer["line"]].replace(";\n", " ;; ")
+                lines.append(f"{text}\t{said.kind if said.kind == 'refused' else said}\n")
             before = path.read_text(encoding="utf-8")
             path.write_text("".join(lines), encoding="utf-8")
             changed += before != "".join(lines)

@@ -59,7 +59,7 @@ def test_constructors_are_known_in_declarations_and_inscriptions() -> None:
     m.colset("PH", "index", "ph", texts=("1", "5"))
     m.ml("fun f (ph i) = if i = 1 then yes else no fun g e = 1 fun h yes = 1 | h no = 2")
     assert m.type_of("f") == "PH -> bool"
-    assert m.dump("g") == "fun g : unit -> int = fn () => 1"
+    assert m.dump("g") == "fun g : 'a -> int = fn e => 1"
     assert m.dump("h") == "fun h : bool -> int = fn true => 1 | false => 2"
     assert (
         m.inscription("1`ph 3 ++ 1`ph(n)", "PH")

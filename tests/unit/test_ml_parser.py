@@ -107,7 +107,7 @@ def test_literal_values() -> None:
     assert values("~5 0x1F ~0x10 1.5 ~2.5e2 123456789012345678901234567890") == [
         -5, 31, -16, 1.5, -250.0, 123456789012345678901234567890,
     ]  # fmt: skip
-    assert values(r'"a\n\t\"\\\065\u0042\^A" #"x"') == ['a\n\t"\\AB\x01', "x"]
+    assert values(r'"a\n\t\"\\\065\066\^A" #"x"') == ['a\n\t"\\AB\x01', "x"]
     assert values('"one\\\n   \\two"') == ["onetwo"]
 
 
@@ -210,10 +210,6 @@ def test_function_heads() -> None:
     [
         ("1`x ++", "fixity-error | operator `++` has no right operand | ++"),
         ("-5", "fixity-error | operator `-` has no left operand | -"),
-        (
-            "a :: b ^^ c",
-            "fixity-error | `::` and `^^` bind equally tightly, to different sides | ^^",
-        ),
         ("a andalso", "fixity-error | an expression is missing beside `andalso` | andalso"),
         (
             "1 + if a then 2 else 3",
@@ -369,3 +365,31 @@ def test_a_point_that_continues_no_name(text: str) -> None:
     d = Diagnostics()
     assert tokenize(source(text), d) is None
     assert {e.code for e in d.errors} == {"lexical-error"}
+
+
+def test_operators_to_different_sides_are_taken_from_the_left() -> None:
+    d = Diagnostics()
+    exp = parse_expression(source("a :: b ^^ c"), d)
+    assert exp is not None
+    resolved = resolve_expression(exp, INFIX, d)
+    assert isinstance(resolved, s.InfixExp)
+    assert resolved.operator.name == "^^"
+    assert [w.code for w in d] == ["mixed-operators"]
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "val x = {INT.a = 1}", "val x = {0 = 1}", "val x = {01 = 1}", "fun S.f x = 1", "datatype S.t = A",
+        "datatype t = S.A",
+        "type S.t = int", "exception S.E", "structure A.B = struct end", "signature A.B = sig end", "infix S.f",
+        "functor F.G () = struct end", "val f = fn (S.x as y) => 1", 'val x = "\\u0041"',
+        "val x = (1; 2;)", "val x = let in 1; end",
+    ],
+)  # fmt: skip
+def test_what_sml_does_not_read(text: str) -> None:
+    d = Diagnostics()
+    program = parse_program(source(text), d)
+    for dec in program or ():
+        resolve_declaration(dec, INFIX, d)
+    assert d.has_errors

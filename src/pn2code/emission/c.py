@@ -436,14 +436,26 @@ class _Emitter:
             roots += called(p.initial)
         for g in self._net.globals:
             roots += called(g.setup)
-        roots += [f.key for f in self._net.functions if f.key.startswith("member ")]
-        found: set[str] = set()
+        found = self._reached(roots)
+        while True:
+            # What tables need: whether a value belongs to a subset is a function that the table names.
+            functions = [f for f in self._net.functions if f.key in found]
+            tables = self._used_tables(functions, self._net.predicates)
+            members = [f"member {key}" for key in tables if f"member {key}" in self._functions]
+            more = self._reached(members) - found
+            if not more:
+                return functions
+            found |= more
+
+    def _reached(self, roots: list[str]) -> set[str]:
+        """The functions that are called, directly or through others."""
+        roots, found = list(roots), set[str]()
         while roots:
             key = roots.pop()
             if key not in found:
                 found.add(key)
                 roots += called(self._functions[key].body)
-        return [f for f in self._net.functions if f.key in found]
+        return found
 
     def _used_tables(
         self, functions: Iterable[ir.Function], predicates: Iterable[ir.Predicate] = ()

@@ -69,7 +69,7 @@ OPS: dict[str, Form] = {
     "Real.min": Call("pn_real_min"),
     "Real.max": Call("pn_real_max"),
     "Real.sign": Call("pn_real_sign", context=True),
-    "Real.compare": Call("pn_real_order", order=True),
+    "Real.compare": Call("pn_real_compare", context=True, order=True),
     "Real.==": Call("pn_real_equal"),
     "Real.!=": Call("!pn_real_equal"),
     "Real.rem": Call("fmod"),
@@ -190,13 +190,13 @@ for _name in (
     "atan",
     "atan2",
     "exp",
-    "pow",
     "log10",
     "sinh",
     "cosh",
     "tanh",
 ):
     OPS[f"Math.{_name}"] = Call(_name)
+OPS["Math.pow"] = Call("pn_real_power")
 for _name in ("floor", "ceil", "round", "trunc"):
     OPS[f"Real.{_name}"] = Call(f"pn_real_{_name}", context=True)
 for _name in ("isDigit", "isAlpha", "isAlphaNum", "isSpace", "isUpper", "isLower"):

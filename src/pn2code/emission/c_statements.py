@@ -168,7 +168,7 @@ class Statements:
         """Evaluate for what it does, if it can do anything."""
         if does_nothing(value):
             return
-        if value.type.rep is Rep.UNIT:
+        if value.type.rep is Rep.UNIT and isinstance(value, ir.FunCall | ir.Op):
             self.line(f"{self._x.text(value)};")
         else:
             self.line(f"(void){self._x.inside(value, 14)};")

@@ -119,8 +119,13 @@ class Matcher:
             out.conditions.append(ir.IsNil(value))
             return
         out.conditions.append(negation(ir.IsNil(value)))
-        head = ir.Head(value, self._owner.element(value.type))
-        pair = RecordVal({"1": head, "2": ir.Tail(value)}, pattern.argument.type)
+        element = self._owner.element(value.type)
+        if isinstance(value, ir.Op) and value.name == "list.nil":
+            # Nothing is in it: nobody comes to where its parts are used, but they are written.
+            parts = {"1": self._owner.zero(element), "2": value}
+        else:
+            parts = {"1": ir.Head(value, element), "2": ir.Tail(value)}
+        pair = RecordVal(parts, pattern.argument.type)
         self._match(pattern.argument, pair, out)
 
 
@@ -133,6 +138,10 @@ class TypeSource:
 
     def element(self, t: IrType) -> IrType:
         """The element type of a list type."""
+        raise NotImplementedError
+
+    def zero(self, t: IrType) -> Ir:
+        """Some value of a type, for what is never used."""
         raise NotImplementedError
 
     def code(self, value: Val) -> Ir:

@@ -328,6 +328,14 @@ TOP_LEVEL: dict[str, str] = {
     "ms": "Time.ms",
     "time": "Time.time",
     "step": "Time.step",
+    "revAppend": "List.revAppend",
+    **{
+        name: f"ModelTime.{name}"
+        for name in (
+            "fromInt", "fromIntInf", "fromString", "toString", "toReal", "maketime", "add", "sub", "mult", "lt",
+            "leq", "cmp",
+        )
+    },
     **{
         name: f"Random.{name}"
         for name in (
@@ -345,7 +353,19 @@ QUALIFIED: dict[str, str] = {
     "Real.real": "Real.fromInt",
     "Char.str": "String.str",
     "ModelTime.time": "Time.time",
-}
+    "ModelTime.@": "Time.@",
+    **{f"TMS.{name}": f"Time.{name}" for name in ("ms", "+++", "@+", "@++")},
+    **{f"ListUtils.{name}": f"List.{name}" for name in (
+        "mem", "remdupl", "rm", "rmall", "pos", "contains", "contains_all", "intersect", "union", "listsub", "ins",
+        "ins_new", "fmap", "mapfilter", "predlist",
+    )},
+    "ListUtils.split": "Misc.split",
+    "Misc.filter": "Ms.filter",
+    "Misc.flatten": "List.concat",
+    "Misc.sort": "List.sort",
+    "Misc.unique_sort": "List.unique_sort",
+    "Misc.isSubstring": "String.isSubstring",
+}  # fmt: skip
 """Qualified names that stand for another full name; all other qualified names stand for themselves."""
 
 STRUCTURE_ALIASES: dict[str, str] = {
@@ -356,6 +376,9 @@ STRUCTURE_ALIASES: dict[str, str] = {
     "Real64": "Real",
     "Word31": "Word",
     "SMLTime": "Time",
+    "Real.Math": "Math",
+    "LargeReal.Math": "Math",
+    "Real64.Math": "Math",
 }
 """Other names of structures."""
 
@@ -379,7 +402,7 @@ Replications Comms CPN'Sim CPN'NetCapture CPN'Monitors CPN'Env CPN'Settings CPN'
 
 _UTILITIES = frozenset(
     {
-        "ArrayQSort", "AtomTable", "Base64", "BitArray", "CharMap", "DynamicArray", "Format", "GetOpt", "HashString",
+        "ArrayQSort", "AtomTable", "Base64", "BitArray", "CharMap", "DynamicArray", "Format", "GetOpt",
         "HashTable", "IOUtil", "IntHashTable", "ParserComb", "PathUtil", "PrimeSizes", "PropList", "Rand",
         "RealOrderStats", "Scan", "SplayTree", "TimeLimit", "URef", "UnivariateStats", "WordHashTable",
     }
@@ -393,6 +416,8 @@ STRUCTURES: frozenset[str] = frozenset(
         *STRUCTURE_ALIASES,
         *(name.split(".")[0] for name in BUILTINS if "." in name and name not in HIDDEN),
         "General",
+        "ListUtils",
+        "TMS",
     }
 )
 """Structures of the library."""
@@ -561,6 +586,8 @@ TOP_LEVEL_EXCEPTIONS: frozenset[str] = frozenset(
     {
         "Match", "Bind", "Div", "Overflow", "Subscript", "Empty", "Size", "Chr", "Domain", "Option", "Span", "Fail",
         "Subtract", "no_singleton", "CPN'Error", "InternalError",
+        "Bernoulli", "Binomial", "Uniform", "Discrete", "Normal", "Exponential", "Poisson", "Erlang", "Chisq",
+        "Student", "Gamma", "Beta", "Weibull", "Rayleigh",
     }
 )  # fmt: skip
 """Exceptions that have a short name."""

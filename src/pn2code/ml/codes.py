@@ -23,8 +23,13 @@ TOO_DEEP = register(
 FIXITY_ERROR = register(
     "fixity-error",
     "operators are combined in a way that has no meaning",
-    "An infix operator lacks an operand, or two operators of the same precedence but of different "
-    "associativity stand side by side: `x :: y ^^ z`. Use parentheses, or `op` to name the operator.",
+    "An infix operator lacks an operand: `1 +`. Use `op` to name the operator itself.",
+)
+MIXED_OPERATORS = register(
+    "mixed-operators",
+    "two operators bind equally tightly, but to different sides",
+    "`x :: y ^^ z`: both have precedence 5, `::` binds to the right and `^^` to the left. CPN Tools takes the left "
+    "one first, as `(x :: y) ^^ z`. Write parentheses.",
 )
 TYPE_MISMATCH = register(
     "type-mismatch",

@@ -573,7 +573,7 @@ class Elaborator:
         top = self._ctx.top
         for name in library.mentioned(text.text):
             own = (top.structures, top.functors, top.signatures)
-            if name in self._library or any(name in known for known in own):
+            if name in self._library or any(name.removeprefix("more/") in known for known in own):
                 continue
             self._library.add(name)
             origin = Origin(f"library/{name}.sml", 1, 1)

@@ -27,6 +27,7 @@ from pn2code.ml.builtins import (
 )
 from pn2code.ml.colsets import Colset
 from pn2code.ml.core import Constructor, DatatypeDec, Symbol
+from pn2code.ml.engine_names import ENGINE_MEMBERS, ENGINE_STRUCTURES, ENGINE_VALUES
 from pn2code.ml.inference import Quant, Ty
 from pn2code.ml.syntax import FunctorBinding, Sig
 from pn2code.ml.types import EXN, TCon, TFun, TVar, Type
@@ -234,7 +235,8 @@ class Scope:
             return next((s.values[last] for s in self._chain() if last in s.values), None)
         structure = self.structure(".".join(path))
         if isinstance(structure, Scope):
-            return structure.values.get(last)
+            own = structure.values.get(last)
+            return UnsupportedEntry(name) if own is None and name in ENGINE_MEMBERS else own
         if isinstance(structure, BrokenStructure):
             return BrokenEntry()
         return library_value(structure.name, last) if structure is not None else None
@@ -318,7 +320,7 @@ def library_value(structure: str, member: str) -> Entry | None:
     base = _library().values.get(member)
     if isinstance(base, ConEntry | EmptyEntry) and member in _CONSTRUCTORS_OF.get(structure, ()):
         return base
-    if name in ABSENT_VALUES:
+    if name in ABSENT_VALUES or name in ENGINE_MEMBERS or name.split(".")[0] in ENGINE_STRUCTURES:
         return UnsupportedEntry(name)
     internal = internal_function(name)
     return None if internal is None else BuiltinEntry(internal)
@@ -394,13 +396,13 @@ def _library() -> Scope:
     for name in sorted(TOP_LEVEL_EXCEPTIONS):
         scope.values[name] = _exception_entry(name)
     scope.values["empty"] = EmptyEntry()
-    for name in UNSUPPORTED_NAMES - scope.values.keys():
+    for name in (UNSUPPORTED_NAMES | ENGINE_VALUES) - scope.values.keys():
         scope.values[name] = UnsupportedEntry(name)
     for name, arity in TYPE_ARITY.items():
         scope.types[name] = TypeCon(name, arity)
     for name, text in TYPE_ABBREVIATIONS.items():
         scope.types[name] = BuiltinAbbreviation(text, ("'a" in text) + ("'b" in text))
-    for name in STRUCTURES:
+    for name in STRUCTURES | ENGINE_STRUCTURES:
         if "." not in name:
             scope.structures[name] = BuiltinStructure(name)
     return scope

@@ -14,6 +14,7 @@ from typing import TypeGuard, TypeVar
 from pn2code.diagnostics import Diagnostics, Span
 from pn2code.ml import advice, codes
 from pn2code.ml import syntax as s
+from pn2code.ml.tree import is_long
 
 MAX_DEPTH = 200
 """Nesting of expressions and patterns that is followed; the later stages recurse over the same trees."""
@@ -190,6 +191,10 @@ class _Resolver:
                 annotation = constraint.type
             case _:
                 raise self._error("a variable must stand before `as`", keyword.span)
+        if is_long(name.name):
+            raise self._error(
+                f"`{name.name}` cannot be declared here", name.span, "a name has no points"
+            )
         if not after:
             raise self._error("a pattern must stand after `as`", keyword.span)
         self._enter(span)
@@ -264,13 +269,16 @@ class _Resolver:
             while stack and stack[-1][2] >= precedence:
                 _, other, other_precedence, other_side = stack[-1]
                 if other_precedence == precedence:
-                    if other_side != side:
-                        raise self._error(
+                    if (
+                        other_side != side
+                    ):  # the left one goes first, as in SML/NJ, which warns, too
+                        self._d.warning(
+                            codes.MIXED_OPERATORS,
                             f"`{other}` and `{name}` bind equally tightly, to different sides",
                             _span(item),
-                            "use parentheses",
+                            hint=f"`{other}` is taken first; write parentheses",
                         )
-                    if side == "right":
+                    elif side == "right":
                         break
                 reduce()
             stack.append((item, name, precedence, side))
@@ -402,6 +410,10 @@ class _Resolver:
             result = last.type
             items.pop()
         name, patterns = self._head(items, left.span)
+        if is_long(name.name):
+            raise self._error(
+                f"`{name.name}` cannot be declared here", name.span, "a name has no points"
+            )
         resolved = tuple(self.pat(p) for p in patterns)
         return name, s.Clause(resolved, result, self.exp(flat.body), flat.span)
 

@@ -126,7 +126,7 @@ class Inscriptions:
             wanted = from_type(t, [])
             draft = self._expressions.check(name, wanted, "inscription")
             bindings = Bindings()
-            pattern = self._patterns.check(written, wanted, bindings)
+            pattern = self._patterns.check_on_arc(written, wanted, bindings)
             variables: dict[str, Symbol] = {}
             constants: dict[Symbol, core.Var] = {}
             for own in bindings.values():

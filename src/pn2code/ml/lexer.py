@@ -207,7 +207,7 @@ class _Lexer:
             if found is None:
                 return self._error(
                     at, min(at + 2, len(text)), f"`{text[at : at + 2]}` is not an escape of CPN ML",
-                    'known: \\n \\t \\" \\\\ \\ddd (three digits), \\uxxxx, \\^c',
+                    'known: \\n \\t \\" \\\\ \\ddd (three digits), \\^c',
                 )  # fmt: skip
             value, at = found
             out.append(value)
@@ -228,8 +228,6 @@ class _Lexer:
             return chr(ord(rest[1]) - 64), at + 3
         if re.fullmatch(r"[0-9]{3}", rest[:3]) and int(rest[:3]) < 256:
             return chr(int(rest[:3])), at + 4
-        if re.fullmatch(r"u[0-9a-fA-F]{4}", rest[:5]) and int(rest[1:5], 16) < 256:
-            return chr(int(rest[1:5], 16)), at + 6
         if (m := _SPACE.match(text, at + 1)) and text.startswith("\\", m.end()):
             return "", m.end() + 1  # a gap: \ white space \
         return None

@@ -17,7 +17,7 @@ from pn2code.ml import advice, codes, syntax
 from pn2code.ml.lalr import Loop, SyntaxProblem
 from pn2code.ml.lexer import Lexeme, insert_delay_parentheses, tokenize
 from pn2code.ml.tables import tables
-from pn2code.ml.tree import Group, TreeBuilder
+from pn2code.ml.tree import Group, NotANameError, TreeBuilder
 
 _OLD_DECLARATIONS = frozenset({"colset", "color", "var", "globref", "pageref", "instref"})
 
@@ -134,6 +134,9 @@ def _parse(
     _BUILDER.source = source
     try:
         return _loop().parse(tokens, start)
+    except NotANameError as problem:
+        d.error(codes.SYNTAX_ERROR, problem.message, problem.span, hint="a name has no points")
+        return None
     except SyntaxProblem as problem:
         _report(source, tokens, problem, d, hint, start)
         return None

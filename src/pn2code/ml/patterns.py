@@ -71,6 +71,15 @@ class Patterns:
     def __init__(self, ctx: Context, annotations: Annotations) -> None:
         self._ctx = ctx
         self._annotations = annotations
+        self._on_arc = False
+
+    def check_on_arc(self, p: s.Pat, t: Ty, bindings: Bindings) -> PatternBuild:
+        """The same of an arc, where the value of a unit colour set and real numbers are compared."""
+        self._on_arc = True
+        try:
+            return self.check(p, t, bindings)
+        finally:
+            self._on_arc = False
 
     def check(self, p: s.Pat, t: Ty, bindings: Bindings) -> PatternBuild:
         """A pattern for values of a type; its variables are added to `bindings`."""
@@ -128,6 +137,13 @@ class Patterns:
             s.LitKind.CHAR: I_CHAR,
             s.LitKind.WORD: I_WORD,
         }
+        if p.kind is s.LitKind.REAL and not self._on_arc:
+            self._ctx.error(
+                codes.SYNTAX_ERROR,
+                "a real number cannot stand in a pattern",
+                p.span,
+                hint="compare: `if x = 1.5 then .. else ..`",
+            )
         own = kinds.get(p.kind)
         if own is None:
             own = self._ctx.unifier.fresh(among=[c.name for c in LITERAL_TYPES])
@@ -152,7 +168,7 @@ class Patterns:
                 hint="write `ref _` for any argument",
             )
             return lambda: core.PWild(to_type(t), p.span)
-        if isinstance(entry, UnitEntry):
+        if isinstance(entry, UnitEntry) and self._on_arc:
             self._unify(I_UNIT, t, p.span)
             return lambda: core.PRecord((), UNIT, p.span)
         if "." in p.name and p.name[0].isalpha():

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
@@ -38,6 +39,20 @@ _LITERALS = {
 Children = list[Any]
 
 
+class NotANameError(Exception):
+    """A word stands where something gets a name, or where a label is, that is neither.
+
+    Args:
+        span: of the word.
+        message: what is wrong.
+    """
+
+    def __init__(self, span: Span, message: str) -> None:
+        super().__init__(message)
+        self.span = span
+        self.message = message
+
+
 class TreeBuilder:
     """Used by the parser; `source` is set before each parse."""
 
@@ -63,6 +78,18 @@ class TreeBuilder:
     @staticmethod
     def _texts(children: Iterable[Any], *kinds: str) -> tuple[str, ...]:
         return tuple(c.text for c in children if isinstance(c, Lexeme) and c.kind in kinds)
+
+    def _name(self, token: Lexeme) -> str:
+        """A name that is declared: one without points.
+
+        Raises:
+            NotANameError: it has points.
+        """
+        return _short(token.text, self._of(token))
+
+    def _names(self, children: Children) -> tuple[str, ...]:
+        """The names among the parts, which are declared there."""
+        return tuple(self._name(c) for c in children if isinstance(c, Lexeme) and c.kind == "ID")
 
     def _group(self, children: Children) -> Group:
         return Group(self._nodes(children), self._span(children))
@@ -152,7 +179,12 @@ class TreeBuilder:
         return Group((children[0].items[0], children[2]), self._span(children))
 
     def label(self, children: Children) -> Group:
-        return Group((children[0].text,), self._span(children))
+        token: Lexeme = children[0]
+        if token.kind == "INT" and not re.fullmatch("[1-9][0-9]*", token.text):
+            raise NotANameError(
+                self._of(token), f"`{token.text}` is not a label: they count from 1"
+            )
+        return Group((self._name(token),), self._span(children))
 
     def selector(self, children: Children) -> s.SelectorExp:
         return s.SelectorExp(children[1].items[0], self._span(children))
@@ -305,7 +337,7 @@ class TreeBuilder:
         return s.FlatClause(children[0], children[2], self._span(children))
 
     def type_dec(self, children: Children) -> s.TypeDec:
-        return s.TypeDec(self._nodes(children), self._span(children))
+        return s.TypeDec(self._named_types(self._group(children)).items, self._span(children))
 
     def tybind(self, children: Children) -> s.TypeBinding:
         parameters = children[0].items if isinstance(children[0], Group) else ()
@@ -321,33 +353,43 @@ class TreeBuilder:
         )
 
     def withtypes(self, children: Children) -> Group:
-        return self._group(children)
+        return self._named_types(self._group(children))
+
+    @staticmethod
+    def _named_types(group: Group) -> Group:
+        """Type declarations, whose names have no points; those of `where type` may."""
+        for binding in group.items:
+            _short(binding.name, binding.span)
+        return group
 
     def datbind(self, children: Children) -> s.DatatypeBinding:
         parameters = children[0].items if isinstance(children[0], Group) else ()
-        (name,) = self._texts(children, "ID")
+        (name,) = self._names(children)
         constructors = self._only(children, s.ConBinding)
         return s.DatatypeBinding(parameters, name, constructors, self._span(children))
 
     def conbind(self, children: Children) -> s.ConBinding:
         types = self._nodes(children)
-        (name,) = self._texts(children, "ID")
+        (name,) = self._names(children)
         return s.ConBinding(name, types[0] if types else None, self._span(children))
 
     def datatype_copy(self, children: Children) -> s.DatatypeCopyDec:
         name, original = self._texts(children, "ID")
-        return s.DatatypeCopyDec(name, original, self._span(children))
+        return s.DatatypeCopyDec(
+            _short(name, self._of(children[1])), original, self._span(children)
+        )
 
     def exception_dec(self, children: Children) -> s.ExceptionDec:
         return s.ExceptionDec(self._nodes(children), self._span(children))
 
     def exbind(self, children: Children) -> s.ExceptionBinding:
         types = self._nodes(children)
-        (name,) = self._texts(children, "ID")
+        (name,) = self._names(children)
         return s.ExceptionBinding(name, types[0] if types else None, None, self._span(children))
 
     def exbind_copy(self, children: Children) -> s.ExceptionBinding:
         name, original = self._texts(children, "ID")
+        _short(name, self._span(children))
         return s.ExceptionBinding(name, None, original, self._span(children))
 
     def local_dec(self, children: Children) -> s.LocalDec:
@@ -365,7 +407,7 @@ class TreeBuilder:
         return s.InfixDec(kind, int(digits[0] or 0) if digits else 0, names, self._span(children))
 
     def opname(self, children: Children) -> Group:
-        return Group((children[0].text,), self._span(children))
+        return Group((self._name(children[0]),), self._span(children))
 
     def abstype_dec(self, children: Children) -> s.AbstypeDec:
         *withtypes, body = self._only(children, Group)
@@ -382,7 +424,7 @@ class TreeBuilder:
         return s.StructureDec(self._only(children, s.StructureBinding), self._span(children))
 
     def strbind(self, children: Children) -> s.StructureBinding:
-        (name,) = self._texts(children, "ID")
+        (name,) = self._names(children)
         body = self._sealed(children[-1], children[1])
         return s.StructureBinding(name, body, self._span(children))
 
@@ -418,7 +460,7 @@ class TreeBuilder:
         return s.SignatureDec(bindings, self._span(children))
 
     def sigbind(self, children: Children) -> Group:
-        return Group((children[0].text, children[2]), self._span(children))
+        return Group((self._name(children[0]), children[2]), self._span(children))
 
     def sig_sig(self, children: Children) -> s.SigSig:
         return s.SigSig(_spread(children[1].items), self._span(children))
@@ -433,7 +475,7 @@ class TreeBuilder:
         return s.ValSpec(children[0].items[0], children[2], self._span(children))
 
     def opid(self, children: Children) -> Group:
-        return Group((children[-1].text,), self._span(children))
+        return Group((self._name(children[-1]),), self._span(children))
 
     def type_spec(self, children: Children) -> Group:
         equality = children[0].kind == "EQTYPE"
@@ -442,16 +484,16 @@ class TreeBuilder:
 
     def tyspec(self, children: Children) -> s.TypeSpec:
         parameters = children[0].items if isinstance(children[0], Group) else ()
-        (name,) = self._texts(children, "ID")
+        (name,) = self._names(children)
         written = None if isinstance(children[-1], Lexeme) else children[-1]
         return s.TypeSpec(parameters, name, written, False, self._span(children))
 
     def exspec(self, children: Children) -> s.ExceptionSpec:
         argument = None if len(children) == 1 else children[2]
-        return s.ExceptionSpec(children[0].text, argument, self._span(children))
+        return s.ExceptionSpec(self._name(children[0]), argument, self._span(children))
 
     def strspec(self, children: Children) -> s.StructureSpec:
-        return s.StructureSpec(children[0].text, children[2], self._span(children))
+        return s.StructureSpec(self._name(children[0]), children[2], self._span(children))
 
     def include_spec(self, children: Children) -> s.IncludeSpec:
         signatures = tuple(
@@ -468,13 +510,34 @@ class TreeBuilder:
     def funcbind(self, children: Children) -> s.FunctorBinding:
         parameter, signature = children[2].items
         body = self._sealed(children[-1], children[4])
-        return s.FunctorBinding(children[0].text, parameter, signature, body, self._span(children))
+        return s.FunctorBinding(
+            self._name(children[0]), parameter, signature, body, self._span(children)
+        )
 
     def funcparam(self, children: Children) -> Group:
         if len(children) == 3:
-            return Group((children[0].text, children[2]), self._span(children))
+            return Group((self._name(children[0]), children[2]), self._span(children))
         specs: Group = children[0]
         return Group(("", s.SigSig(_spread(specs.items), specs.span)), self._span(children))
+
+
+def _short(name: str, span: Span) -> str:
+    """A name that is declared.
+
+    Raises:
+        NotANameError: it has points.
+    """
+    if is_long(name):
+        raise NotANameError(
+            span,
+            f"`{name}` is the name of something inside a structure, which cannot be declared here",
+        )
+    return name
+
+
+def is_long(name: str) -> bool:
+    """Whether a name says in which structure to look: `List.map`."""
+    return "." in name and name[0].isalpha()
 
 
 def _spread(items: Sequence[Any]) -> tuple[Any, ...]:

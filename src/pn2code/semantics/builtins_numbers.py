@@ -102,6 +102,16 @@ def _plausible_in_number(c: str) -> bool:
     return c in "0123456789abcdefABCDEFxX~+- \t\n\v\f\r"
 
 
+def _written_in(structure: str) -> Function:
+    """`Int.fmt`, whose digits are capital letters, or `IntInf.fmt`, whose are small."""
+
+    def function(e: Evaluator, radix: Data, a: int) -> str:
+        text = digits_text(a, BASES[radix.name])
+        return text.lower() if structure == "IntInf" else text
+
+    return function
+
+
 def _integers(
     structure: str, fit: Callable[[Evaluator, int], int]
 ) -> dict[str, tuple[int, Function]]:
@@ -140,7 +150,7 @@ def _integers(
     }
     return {
         **{f"{structure}.{name}": (1, f) for name, f in operations.items()},
-        f"{structure}.fmt": (2, lambda e, radix, a: digits_text(a, BASES[radix.name])),
+        f"{structure}.fmt": (2, _written_in(structure)),
         f"{structure}.scan": (3, scan),
     }
 
@@ -247,7 +257,7 @@ def _rounded_real(how: Callable[[float], int]) -> Function:
 
 def _compare_reals(e: Evaluator, p: tuple[float, float]) -> Data:
     if math.isnan(p[0]) or math.isnan(p[1]):
-        raise fail("Domain")
+        raise fail("Unordered")
     return order(p[0], p[1])
 
 
@@ -448,7 +458,9 @@ def _logarithm(function: Callable[[float], float]) -> Function:
 
 
 def power(a: float, b: float) -> float:
-    """C's `pow`."""
+    """C's `pow`, but where SML says that there is no number."""
+    if math.isnan(b) or (math.isinf(b) and abs(a) == 1):
+        return math.nan
     try:
         return math.pow(a, b)
     except OverflowError:

@@ -247,6 +247,10 @@ class Colours:
 
     def col(self, c: Colset, position: int) -> Value:
         """The value at a position; raises CPN'Error when there is none (but for an index, which is not checked)."""
+        if c.kind in (Kind.INT, Kind.INDEX) and isinstance(c.low, int):
+            found = c.low + position
+            if found < self.evaluator.min_int or found > self.evaluator.max_int:
+                raise MlException(exception("Overflow"))
         if c.kind is not Kind.INDEX and not 0 <= position < self.size(c):
             raise _out_of_range()
         match c.kind:

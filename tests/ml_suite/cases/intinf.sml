@@ -23,7 +23,7 @@ IntInf.andb (12, 10)
 IntInf.orb (12, 10)
 IntInf.xorb (12, 10)
 IntInf.notb 5
-IntInf.fmt StringCvt.HEX 255
+String.map Char.toUpper (IntInf.fmt StringCvt.HEX 255)
 fun fact (n : IntInf.int) = if n = 0 then 1 else n * fact (n - 1) ==> fact 25
 fun fib n = let fun go (0, a, _) = a | go (k, a, b) = go (k - 1, b, a + b) in go (n, 0 : IntInf.int, 1) end ==> fib 120
 IntInf.fromInt 1 div 0

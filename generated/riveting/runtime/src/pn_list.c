@@ -425,7 +425,10 @@ int64_t pn_colset_ord(pn_ctx_t *cx, const pn_type_t *type, const void *value)
 void pn_colset_col(pn_ctx_t *cx, const pn_type_t *type, void *value, int64_t position)
 {
     (void)memset(value, 0, type->size);
-    if (is_small(cx, type)) {
+    if (is_small(cx, type) && (type->kind == PN_KIND_INT)) {
+        (void)pn_int_add(cx, type->low, position);
+    }
+    if (pn_ok(cx)) {
         if (!type->is_index && ((position < 0) || (position >= (int64_t)pn_type_size(type)))) {
             pn_raise(cx, PN_ERR_DOMAIN, "CPN'Error");
         } else {

@@ -1,6 +1,7 @@
 fun Int_sameSign (a, b) = Int.sign a = Int.sign b
 
-fun Int_fmt radix n = IntInf.fmt radix (Int.toLarge n)
+(* Of an `int` the digits are capital letters. *)
+fun Int_fmt radix n = String.map Char.toUpper (IntInf.fmt radix (Int.toLarge n))
 
 fun Int_scan radix getc stream =
     case IntInf.scan radix getc stream of

@@ -6,7 +6,7 @@ fun base StringCvt.BIN = 2
 val zero : IntInf.int = 0
 val one : IntInf.int = 1
 
-fun digit d = if d < 10 then chr (48 + d) else chr (55 + d)
+fun digit d = if d < 10 then chr (48 + d) else chr (87 + d)
 
 fun IntInf_fmt StringCvt.DEC n = IntInf.toString n
   | IntInf_fmt radix n =

@@ -39,8 +39,8 @@ fun Word_ge (a, b) = IntInf.>= (a, b)
 fun Word_compare (a, b) = IntInf.compare (a, b)
 fun Word_min (a, b) = IntInf.min (a, b)
 fun Word_max (a, b) = IntInf.max (a, b)
-fun Word_fmt radix w = IntInf.fmt radix w
-fun Word_toString w = IntInf.fmt StringCvt.HEX w
+fun Word_fmt radix w = String.map Char.toUpper (IntInf.fmt radix w)
+fun Word_toString w = Word_fmt StringCvt.HEX w
 
 fun is_hex c = Char.isHexDigit c
 

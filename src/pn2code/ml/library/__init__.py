@@ -1,7 +1,9 @@
 """The utility library of SML/NJ, as far as it can be written in CPN ML: structures and functors that a net may use.
 
 Each has a file `NAME.sml` here, or is made by a functor that has one (`MADE`). A net's text that mentions a name gets
-its declarations in front of it, and those of the names that they mention.
+its declarations in front of it, and those of the names that they mention. What SML/NJ has in structures of the Basis
+library besides is in `more/NAME.sml`, whose structure `NAME` opens the other; it comes when one of its own functions is
+mentioned: `List.mapi`.
 """
 
 from __future__ import annotations
@@ -15,7 +17,7 @@ FOLDER = Path(__file__).resolve().parent
 _KEYS = {
     "Int": "struct type ord_key = int val compare = Int.compare end",
     "Word": "struct type ord_key = word val compare = Word.compare end",
-    "Atom": "struct type ord_key = Atom.atom val compare = Atom.lexCompare end",
+    "Atom": "struct type ord_key = Atom.atom val compare = Atom.compare end",
 }
 _OTHER_FUNCTORS = {
     f"{kind}{what}Fn": f"List{what}Fn"
@@ -58,9 +60,21 @@ def _pattern() -> re.Pattern[str]:
     return re.compile(rf"\b(?:{'|'.join(sorted(names(), key=len, reverse=True))})\b(?!')")
 
 
+@cache
+def _more() -> dict[str, re.Pattern[str]]:
+    """Name of a structure that has more -> where a text mentions it."""
+    found = {}
+    for path in sorted((FOLDER / "more").glob("*.sml")):
+        own = re.findall(r"^    fun (\w+)", path.read_text(encoding="ascii"), re.MULTILINE)
+        members = "|".join(sorted(set(own), key=len, reverse=True))
+        found[path.stem] = re.compile(rf"\b{path.stem}\s*\.\s*(?:{members})\b(?!')")
+    return found
+
+
 def mentioned(text: str) -> list[str]:
-    """Names of the library in a text, each once, in order."""
-    return list(dict.fromkeys(_pattern().findall(text)))
+    """Names of the library in a text, each once, in order; structures that have more as `more/NAME`."""
+    more = [f"more/{name}" for name, pattern in _more().items() if pattern.search(text)]
+    return [*more, *dict.fromkeys(_pattern().findall(text))]
 
 
 @cache

@@ -190,6 +190,10 @@ int64_t pn_wide_trunc(pn_ctx_t *cx, double x);
 /* Real.min and Real.max: the other argument if one is nan. */
 double pn_real_min(double a, double b);
 double pn_real_max(double a, double b);
+/* -1, 0, 1; Unordered for nan. */
+int pn_real_compare(pn_ctx_t *cx, double a, double b);
+/* Math.pow: not a number where the exponent is none, and for 1.0 and -1.0 to an infinite power. */
+double pn_real_power(double a, double b);
 /* -1, 0, 1; Domain for nan. */
 int64_t pn_real_sign(pn_ctx_t *cx, double x);
 /* IEEE comparisons; functions because -Wfloat-equal is on in some projects that take this code over. */
