@@ -17,7 +17,10 @@ from helpers.netbuilder import cpn
 from helpers.small_cell import NET, write
 from pn2code.cli.main import app
 from pn2code.conform.cell import ProgramComparison
+from pn2code.conform.folder import compare
+from pn2code.conform.supervisor import Report
 from pn2code.diagnostics import Diagnostics
+from pn2code.emission.output import OutputFile
 from pn2code.pipeline import generate
 from pn2code.resources import cnative_folder
 
@@ -354,6 +357,63 @@ def test_edited_files(cell: Path, tmp_path: Path) -> None:
     assert "supervisor    DIFFERS" in done.output
     assert "flag.robcad holds (3,)" in done.output
     assert "Top.Robot.Move" in done.output  # the way there
+
+
+def edited(cell: Path, folder: Path, **texts: str) -> Path:
+    """A copy of the generated folder with something added to some files, or other files."""
+    shutil.copytree(cell / "generated", folder)
+    for name, text in texts.items():
+        with (folder / name).open("a", encoding="utf-8") as file:
+            file.write(text)
+    return folder
+
+
+@pytest.mark.parametrize(
+    ("name", "said"),
+    [
+        ("runtime/src/supervisor_cell.c", "is another one"),
+        ("runtime/include/pn/pn_port.h", "is another one"),
+        ("Makefile", "is another one"),
+        ("manifest.json", "is another one"),
+        ("runtime/src/more.c", "is not generated"),
+        ("math.h", "is not generated"),
+        ("GNUmakefile", "is not generated"),
+    ],
+)
+def test_files_that_no_state_shows(
+    name: str, said: str, cell: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    folder = edited(cell, tmp_path / "generated", **{name: "\n"})
+    found = compare(folder, fresh(cell), Diagnostics())
+    assert found is not None
+    assert found[0].deviates
+    assert name in (*found[0].differing, *found[0].intruding)
+    monkeypatch.setattr("pn2code.conform.cell._programs", lambda *_: (Report(complete=True), ()))
+    done = run("conform", cell, "--generated", folder)
+    assert done.exit_code == 1, done.output
+    assert f"`{name}` {said}" in done.output
+
+
+def fresh(cell: Path) -> tuple[OutputFile, ...]:
+    made = generate(cell, Diagnostics())
+    assert made is not None
+    return made.files
+
+
+def test_what_nobody_generated_is_named(cell: Path, tmp_path: Path) -> None:
+    folder = edited(cell, tmp_path / "generated", **{"notes.txt": "", "robot1.tdl": "-- a remark\n"})
+    done = run("conform", cell, "--generated", folder)
+    assert done.exit_code == 0, done.output
+    assert "not generated, and not compared: notes.txt" in done.output
+    assert "compared by what they do: robot1.tdl" in done.output
+
+
+def test_an_edited_net_is_compared_in_part(cell: Path, tmp_path: Path) -> None:
+    """No supervisor shows what its copy of the robots' transitions does."""
+    folder = edited(cell, tmp_path / "generated", **{"net.c": "/* a remark */\n"})
+    done = run("conform", cell, "--generated", folder)
+    assert done.exit_code == 3, done.output
+    assert "not `./simulate`" in done.output
 
 
 def test_a_net_without_a_cell(tmp_path: Path) -> None:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 import shutil
+from collections import Counter
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -53,7 +54,7 @@ class Judge:
 
     def shown(self, change: Change) -> Shown:
         """Where it shows."""
-        self.net.write_bytes(change.data)
+        self.net.write_bytes(change.make())
         d = Diagnostics()
         try:
             made = pipeline.generate(self._room, d, checked=False)
@@ -66,8 +67,10 @@ class Judge:
         wanted = self._script_of.get(change.element)
         if wanted is None and other or wanted is not None and other & wanted:
             return Shown("program", min(other))
-        if _said(d) != self._said:
-            return Shown("check")
+        said = _said(d)
+        if said != self._said:
+            news = sorted((Counter(said) - Counter(self._said)).elements())
+            return Shown("check", "; ".join(news) or "nothing is said where something was")
         return Shown("nowhere", ", ".join(sorted(other)))
 
 

@@ -17,7 +17,8 @@ from unittest.mock import patch
 from tests.mutation.mutants import Mutant
 
 from pn2code.conform import robot
-from pn2code.conform.cell import PROGRAM, ProgramComparison
+from pn2code.conform.cell import ProgramComparison
+from pn2code.conform.folder import PROGRAM
 from pn2code.conform.probe import HOST, ProbeError
 from pn2code.diagnostics import Diagnostics
 from pn2code.pipeline import Generated, generate
