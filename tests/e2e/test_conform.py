@@ -153,7 +153,13 @@ ROBOT = {
     "another branch": ("if k = MOVE then", "if k = HOME then", "line"),
     "another answer": ("write done 1", "write done 2", "the files hold"),
     "a message that is not taken": ("      clear data\n", "", "the files hold"),
-    "an announcement too few": ("    mark Top.Robot.Report\n", "", "the files hold"),
+    "an announcement too few": ("    mark Top.Robot.Report\n", "", "done is written before"),
+    "an announcement too late": (
+        "      mark Top.Robot.Move with k = k, p = p\n      clear data\n",
+        "      clear data\n      mark Top.Robot.Move with k = k, p = p\n",
+        "data is emptied before",
+    ),
+    "a wait too few": ("      wait until filled(data)\n", "", "nobody has waited"),
     "the end too early": ("  end loop", "  exit\n  end loop", "the script has ended, but"),
 }
 
@@ -401,7 +407,9 @@ def fresh(cell: Path) -> tuple[OutputFile, ...]:
 
 
 def test_what_nobody_generated_is_named(cell: Path, tmp_path: Path) -> None:
-    folder = edited(cell, tmp_path / "generated", **{"notes.txt": "", "robot1.tdl": "-- a remark\n"})
+    folder = edited(
+        cell, tmp_path / "generated", **{"notes.txt": "", "robot1.tdl": "-- a remark\n"}
+    )
     done = run("conform", cell, "--generated", folder)
     assert done.exit_code == 0, done.output
     assert "not generated, and not compared: notes.txt" in done.output

@@ -13,7 +13,7 @@ from __future__ import annotations
 
 import math
 from collections import Counter, deque
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, replace
 
 from pn2code.cell.config import CellConfig
@@ -87,6 +87,7 @@ class _State:
     said: what sensors were asked since then, and what they said.
     until: model time at which a wait ends.
     owed: model time that the script still has to wait before it goes on: the delay of the last transition.
+    looked: files that it has seen to be filled and not emptied since.
     """
 
     marking: Marking
@@ -96,27 +97,70 @@ class _State:
     said: tuple[tuple[str, Scalar], ...] = ()
     until: float | None = None
     owed: float = 0.0
+    looked: frozenset[str] = frozenset()
 
 
 class _PlacesAsFiles:
-    """The channels of a marking as the script sees its files; what it does is kept apart."""
+    """The channels of a marking as the script sees its files; what it does is kept apart.
+
+    Here a message is seen at once, in a run perhaps later: so what is read must have been waited for. And what is
+    emptied or written must have been announced: else a trace may have it in another order.
+
+    Attributes:
+        view: the messages.
+        announced: those that there have to be after all transitions that were announced.
+        looked: files that were seen to be filled.
+    """
 
     def __init__(self) -> None:
         self.view: dict[str, tuple[Scalar, ...]] = {}
+        self.announced: dict[str, tuple[Scalar, ...]] = {}
+        self.looked: set[str] = set()
+
+    def is_filled(self, name: str) -> bool:
+        """Whether there is a message."""
+        if name in self.view:
+            self.looked.add(name)
+        return name in self.view
 
     def read(self, name: str) -> tuple[Scalar, ...] | None:
         """The message, which stays."""
+        if name in self.view and name not in self.looked:
+            raise _DeviationError(f"{name} is read, but nobody has waited until it is filled")
         return self.view.get(name)
 
     def clear(self, name: str) -> None:
         """Takes it."""
+        if name in self.view and name in self.announced:
+            raise _DeviationError(
+                f"{name} is emptied before a transition is announced that takes it"
+            )
+        self.looked.discard(name)
         self.view.pop(name, None)
 
     def write(self, name: str, values: tuple[Scalar, ...]) -> None:
         """Puts one."""
         if name in self.view:
             raise _DeviationError(f"a message is written to {name}, which holds one")
+        if name not in self.announced:
+            raise _DeviationError(
+                f"{name} is written before a transition is announced that puts it"
+            )
         self.view[name] = values
+
+
+class Script(Interpreter):
+    """A script whose questions after files are told from its reading them."""
+
+    def __init__(
+        self, program: CheckedProgram, files: _PlacesAsFiles, heard: Callable[[Event], None]
+    ) -> None:
+        super().__init__(program, files, heard)
+        self._asked = files
+
+    def filled(self, name: str) -> bool:
+        """Whether a file holds a message."""
+        return self._asked.is_filled(self._channel[name])
 
 
 class _Product:
@@ -147,7 +191,7 @@ class _Product:
         self._names = {t.name: t for t in self._net.transitions}
         self._scheme = Scheme(partition, game)
         self._clock = Clock(partition.net)
-        self._interpreter = Interpreter(program, self._files, self._heard)
+        self._interpreter = Script(program, self._files, self._heard)
         self._marking = game.marking
         self._done: list[commands.Command] = []
         self._owed = 0.0
@@ -297,6 +341,8 @@ class _Product:
         if isinstance(state.request, Sense) and isinstance(result, int | float | bool | str):
             self._heard_of.append((state.request.sensor, result))
         self._files.view = self._view(state.marking)
+        self._files.announced = dict(self._files.view)
+        self._files.looked = set(state.looked)
         before = self._interpreter.line
         with self._listener.noting(self._called):
             request = self._interpreter.resume(result)
@@ -312,6 +358,7 @@ class _Product:
             tuple(self._heard_of),
             until,
             self._owed,
+            frozenset(self._files.looked),
         )
         return f"{self._name}: the script goes on after line {before}", after
 
@@ -367,6 +414,7 @@ class _Product:
                 self._compare_sensors(where, t, event.binding)
                 self._owed = self._delay(self._marking, marking)
                 self._marking = marking
+                self._files.announced = self._view(marking)
                 self._marks += 1
                 self._marked.add(t.name)
                 return

@@ -213,10 +213,13 @@ def load(
         robot
         for name, table in geometry.get("robots", {}).items()
         if (table or not partial)
-        and (robot := _robot(_Table(table, ("robots", name), at, d, geometry), name, folder)) is not None
+        and (robot := _robot(_Table(table, ("robots", name), at, d, geometry), name, folder))
+        is not None
     )
     names = tuple(geometry.get("robots", {}))
-    scene = _scene(_Table(geometry.get("scene", {}), ("scene",), at, d, geometry), robots, names, folder)
+    scene = _scene(
+        _Table(geometry.get("scene", {}), ("scene",), at, d, geometry), robots, names, folder
+    )
     return RobotCell(robots, motion, scene) if len(d.errors) == before else None
 
 
