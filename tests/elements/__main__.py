@@ -21,7 +21,7 @@ from tests.elements.judge import Judge
 
 ROOT = Path(__file__).parents[2]
 EXAMPLES = ("riveting", "sorting", "shared-zone", "timed")
-WHERE = ("refused", "program", "check", "nowhere")
+WHERE = ("refused", "program", "drawing", "check", "nowhere")
 
 
 def main() -> int:

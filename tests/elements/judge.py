@@ -13,6 +13,7 @@ from tests.elements.changes import Change
 from pn2code import pipeline
 from pn2code.cell.partition import OwnerKind
 from pn2code.diagnostics import Diagnostics
+from pn2code.net.codes import SOCKET_ARCS
 
 _COMMENT = re.compile(r"/\*[\s\S]*?\*/|(?m:(^|\s)--[^\n]*$)")
 _DIGEST = re.compile(r"[0-9a-f]{64}")
@@ -21,7 +22,11 @@ _ID = re.compile(r"\bID\d+\b")
 
 @dataclass(frozen=True)
 class Shown:
-    """Where a change shows: `refused`, `program`, `check`, or `nowhere`."""
+    """Where a change shows: `refused`, `program`, `check` (by a warning alone), or `nowhere`.
+
+    `drawing`: an arc between a socket and a substitution transition. What such an arc means is said by the assignment
+    of ports; CPN Tools refuses a net where the two differ, and `check` warns of it.
+    """
 
     where: str
     detail: str = ""
@@ -70,7 +75,9 @@ class Judge:
         said = _said(d)
         if said != self._said:
             news = sorted((Counter(said) - Counter(self._said)).elements())
-            return Shown("check", "; ".join(news) or "nothing is said where something was")
+            drawn = news and all(text.split()[0] == SOCKET_ARCS for text in news)
+            why = "; ".join(news) or "nothing is said where something was"
+            return Shown("drawing" if drawn else "check", why)
         return Shown("nowhere", ", ".join(sorted(other)))
 
 
