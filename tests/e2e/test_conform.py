@@ -18,6 +18,7 @@ from helpers.small_cell import NET, write
 from pn2code.cli.main import app
 from pn2code.conform.cell import ProgramComparison
 from pn2code.conform.folder import compare
+from pn2code.conform.robot import DeviationError, PlacesAsFiles
 from pn2code.conform.supervisor import Report
 from pn2code.diagnostics import Diagnostics
 from pn2code.emission.output import OutputFile
@@ -162,6 +163,38 @@ ROBOT = {
     "a wait too few": ("      wait until filled(data)\n", "", "nobody has waited"),
     "the end too early": ("  end loop", "  exit\n  end loop", "the script has ended, but"),
 }
+
+
+FILES = {
+    "data waited for": ([("look", "data"), ("read", "data")], ""),
+    "data not waited for": ([("read", "data")], "data is read, but nobody has waited"),
+    "an answer after the command": ([("clear", "call"), ("write", "place"), ("write", "done")], ""),
+    "an answer before the command": ([("write", "done"), ("clear", "call")], "before call is emptied"),
+    "a flag before its data": ([("clear", "call"), ("write", "done")], "before the data place"),
+    "not announced": ([("clear", "data")], "data is emptied before"),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("what", FILES)
+def test_files_are_used_in_order(what: str) -> None:
+    """A script has taken `call`, and owes `place` (data) and `done`; nobody has taken `data`."""
+    steps, said = FILES[what]
+    files = PlacesAsFiles(frozenset({"data", "place"}))
+    files.view = {"call": (1,), "data": (2,)}
+    files.announced = {"data": (2,), "place": (3,), "done": (4,)}
+    uses = {
+        "look": files.is_filled,
+        "read": files.read,
+        "clear": files.clear,
+        "write": lambda name: files.write(name, (5,)),
+    }
+    if said:
+        with pytest.raises(DeviationError, match=said):
+            for verb, name in steps:
+                uses[verb](name)
+    else:
+        for verb, name in steps:
+            uses[verb](name)
 
 
 @pytest.fixture(scope="module")
