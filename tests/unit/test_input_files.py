@@ -5,6 +5,7 @@ from __future__ import annotations
 import pytest
 
 from helpers.netbuilder import cpn
+from pn2code.cell.scalars import lines_of
 from pn2code.channels.inputs import problem
 from pn2code.diagnostics import Diagnostics
 from pn2code.ml.colsets import Colset
@@ -52,5 +53,5 @@ def colsets(tmp_path_factory: pytest.TempPathFactory) -> dict[str, Colset]:
 def test_what_is_wrong_and_where(
     colsets: dict[str, Colset], colset: str, text: str, where: tuple[int, int] | None
 ) -> None:
-    found = problem(text, colsets[colset])
+    found = problem(text, lines_of(colsets[colset]))
     assert (None if found is None else (found.line, found.column)) == where

@@ -1,16 +1,15 @@
 """Input files: one token of a place, as `cnative/src/supervisor_input.c` reads it when the supervisor starts.
 
-problem("5\\n1 2 x\\n", colset)      # Mistake(2, 5, "`x` is not a number (...)"); None: the file is right
+problem("5\\n1 2 x\\n", lines_of(colset))      # Mistake(2, 5, "`x` is not a number (...)"); None: the file is right
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
-from pn2code.cell.scalars import Scalar, scalars_of
+from pn2code.cell.scalars import Scalar
 from pn2code.channels.scalars import Malformed, parse_scalars
-from pn2code.ml.colsets import Colset, Kind
 
 
 @dataclass(frozen=True, slots=True)
@@ -22,14 +21,13 @@ class Mistake:
     what: str
 
 
-def problem(text: str, colset: Colset) -> Mistake | None:
+def problem(text: str, wanted: Sequence[Sequence[Scalar]]) -> Mistake | None:
     """What is wrong with an input file.
 
     Args:
         text: of the file, a character a byte.
-        colset: of the place, made of scalars.
+        wanted: what each line holds (`cell.scalars.lines_of` the place's colour set).
     """
-    wanted = _lines(colset)
     found = list(_filled(text))
     for number, scalars in enumerate(wanted):
         if number == len(found):
@@ -53,18 +51,3 @@ def _filled(text: str) -> Iterator[tuple[int, str]]:
         shown = line.strip(" \t\r")
         if shown and not shown.startswith("#"):
             yield number, line
-
-
-def _lines(colset: Colset) -> list[tuple[Scalar, ...]]:
-    """A line for each component; one for all where all are scalars."""
-    scalars = scalars_of(colset) or ()
-    whole = colset
-    while whole.kind in (Kind.ALIAS, Kind.SUBSET) and whole.components[0] is not None:
-        whole = whole.components[0]
-    if whole.kind not in (Kind.PRODUCT, Kind.RECORD):
-        return [scalars]
-    counts = [len(scalars_of(part) or ()) for part in whole.components if part is not None]
-    if all(n == 1 for n in counts):
-        return [scalars]
-    starts = [sum(counts[:i]) for i in range(len(counts))]
-    return [scalars[i : i + n] for i, n in zip(starts, counts, strict=True)]

@@ -13,6 +13,7 @@ from pn2code.cell.codes import CELL_FILE, CELL_MISSING, CELL_VALUE
 from pn2code.cell.config import CellConfig, InputConfig
 from pn2code.cell.load import load as load_cell
 from pn2code.cell.partition import Partition
+from pn2code.cell.scalars import lines_of
 from pn2code.channels import inputs
 from pn2code.diagnostics import Diagnostics, Note, Origin
 from pn2code.lowering.robot_ir import Chain, Line, Node, Region, Repeat, RobotIR
@@ -71,7 +72,7 @@ def look_ahead(
 def _input(path: Path, colset: Colset, entry: InputConfig, d: Diagnostics) -> None:
     """An input file that the supervisor would not take."""
     try:
-        wrong = inputs.problem(path.read_bytes().decode("latin-1"), colset)
+        wrong = inputs.problem(path.read_bytes().decode("latin-1"), lines_of(colset))
     except OSError as problem:
         d.error(CELL_FILE, f"cannot read `{path}`: {os_reason(problem)}", entry.origin)
         return
