@@ -1,10 +1,10 @@
 # What `make` users expect; ./dev does the work and says what else there is.
-.PHONY: thorough database-15 help test lint fuzz hosts declarations bench ml-suite conformance mutation oracle misspell elements adversary
+.PHONY: thorough database-15 help test lint fuzz hosts declarations bench ml-suite conformance mutation oracle misspell elements forgery adversary
 
 help:
 	@./dev help
 
-test lint bench ml-suite conformance mutation oracle misspell elements:
+test lint bench ml-suite conformance mutation oracle misspell elements forgery:
 	./dev $@
 
 # The tests with all of their long sweeps.

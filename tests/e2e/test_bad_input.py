@@ -147,11 +147,11 @@ CELLS = {
     ),
     "file outside the directory": Case(
         "cell.toml", put('file = "medida1.robcad"', 'file = "../medida1.robcad"'), "cell-value",
-        ("`../medida1.robcad`", "channel.3.file"), "../medida1", "without `/`",
+        ("`../medida1.robcad`", "`file` of `medida1` in `channel`"), "../medida1", "without `/`",
     ),
     "file used twice": Case(
         "cell.toml", put('file = "medida1.robcad"', 'file = "referencia1.robcad"'), "cell-value",
-        ("`referencia1`", "`medida1`", "channel.3.file"), 'file = "referencia1.robcad"', "a file of its own",
+        ("`referencia1`", "`file` of `medida1` in `channel`"), 'file = "referencia1.robcad"', "a file of its own",
     ),
     "shared place that is no channel": Case(
         "cell.toml", put('[[channel]]\nplace = "medida1"\nfile = "medida1.robcad"\nkind = "data"\n', ""),

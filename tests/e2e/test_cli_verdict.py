@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import hashlib
 import json
 import re
 from pathlib import Path
@@ -12,6 +13,8 @@ import pytest
 from helpers.netbuilder import write
 from pn2code.cli import main
 from pn2code.conformance.compare import paths
+from pn2code.diagnostics import Diagnostics
+from pn2code.net.front import load
 
 NET = """
     net Cell
@@ -270,6 +273,19 @@ def recorded(net: Path, tmp_path: Path, *steps: dict[str, Any], **more: Any) -> 
     return path
 
 
+def head(net: Path) -> dict[str, Any]:
+    """The header of a trace."""
+    digest = hashlib.sha256(net.read_bytes()).hexdigest()
+    return {
+        "trace": 1,
+        "net": "cell",
+        "source": net.name,
+        "digest": digest,
+        "by": "simulate",
+        "initial": {},
+    }
+
+
 PICK = {"step": 1, "time": "0", "transition": "Pick", "page": "Top", "instance": 1,
         "binding": {"n": "1", "s": '"a"'}}  # fmt: skip
 MOVE = {"step": 2, "time": "0", "transition": "Move", "page": "Sub", "instance": 2,
@@ -300,8 +316,8 @@ def test_replay_says_which_step_fails(cli: Cli, net: Path, tmp_path: Path) -> No
 
 def test_replay_of_a_trace_of_another_net(cli: Cli, net: Path, tmp_path: Path) -> None:
     trace = tmp_path / "run.trace.jsonl"
-    header = {"trace": 1, "net": "other", "by": "simulate", "initial": {}}
-    step = {"step": 1, "t": 0, "transition": "Top.Nope", "binding": {}}
+    header = {**head(net), "net": "other"}
+    step = {"step": 1, "t": 0, "transition": "Top.Nope", "binding": {}, "origin": "ID1"}
     trace.write_text("\n".join(map(json.dumps, (header, step))))
     done = cli("replay", trace, net, "--json")
     assert done.code == 1
@@ -358,9 +374,17 @@ def test_the_compiled_net_repeats_runs(cli: Cli, net: Path, tmp_path: Path) -> N
     assert (data["ok"], data["steps"], data["engine"]) == (True, 2, "compiled")
     assert rows(data)["Sub", 2, "Own"] == "1`1"
     own = tmp_path / "own.trace.jsonl"
-    header = {"trace": 1, "net": "cell", "by": "simulate", "initial": {}}
-    step = {"step": 1, "t": 0, "transition": "Top.Pick", "binding": {"n": 1, "s": "a"}}
-    own.write_text("\n".join(map(json.dumps, (header, step, {**step, "step": 2}))))
+    flat = load(net, Diagnostics())
+    assert flat is not None
+    (origin,) = (t.id for t in flat.transitions if t.name == "Top.Pick")
+    step = {
+        "step": 1,
+        "t": 0,
+        "transition": "Top.Pick",
+        "binding": {"n": 1, "s": "a"},
+        "origin": origin,
+    }
+    own.write_text("\n".join(map(json.dumps, (head(net), step, {**step, "step": 2}))))
     for engine in ("compiled", "reference"):
         refused = cli("replay", own, net, "--engine", engine, "--json")
         assert refused.code == 1

@@ -17,7 +17,11 @@ from helpers.netbuilder import cpn
 from helpers.small_cell import NET, write
 from pn2code.cli.main import app
 from pn2code.conform.cell import ProgramComparison
+from pn2code.conform.folder import compare
+from pn2code.conform.robot import DeviationError, PlacesAsFiles
+from pn2code.conform.supervisor import Report
 from pn2code.diagnostics import Diagnostics
+from pn2code.emission.output import OutputFile
 from pn2code.pipeline import generate
 from pn2code.resources import cnative_folder
 
@@ -150,9 +154,47 @@ ROBOT = {
     "another branch": ("if k = MOVE then", "if k = HOME then", "line"),
     "another answer": ("write done 1", "write done 2", "the files hold"),
     "a message that is not taken": ("      clear data\n", "", "the files hold"),
-    "an announcement too few": ("    mark Top.Robot.Report\n", "", "the files hold"),
+    "an announcement too few": ("    mark Top.Robot.Report\n", "", "done is written before"),
+    "an announcement too late": (
+        "      mark Top.Robot.Move with k = k, p = p\n      clear data\n",
+        "      clear data\n      mark Top.Robot.Move with k = k, p = p\n",
+        "data is emptied before",
+    ),
+    "a wait too few": ("      wait until filled(data)\n", "", "nobody has waited"),
     "the end too early": ("  end loop", "  exit\n  end loop", "the script has ended, but"),
 }
+
+
+FILES = {
+    "data waited for": ([("look", "data"), ("read", "data")], ""),
+    "data not waited for": ([("read", "data")], "data is read, but nobody has waited"),
+    "an answer after the command": ([("clear", "call"), ("write", "place"), ("write", "done")], ""),
+    "an answer before the command": ([("write", "done"), ("clear", "call")], "before call is emptied"),
+    "a flag before its data": ([("clear", "call"), ("write", "done")], "before the data place"),
+    "not announced": ([("clear", "data")], "data is emptied before"),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("what", FILES)
+def test_files_are_used_in_order(what: str) -> None:
+    """A script has taken `call`, and owes `place` (data) and `done`; nobody has taken `data`."""
+    steps, said = FILES[what]
+    files = PlacesAsFiles(frozenset({"data", "place"}))
+    files.view = {"call": (1,), "data": (2,)}
+    files.announced = {"data": (2,), "place": (3,), "done": (4,)}
+    uses = {
+        "look": files.is_filled,
+        "read": files.read,
+        "clear": files.clear,
+        "write": lambda name: files.write(name, (5,)),
+    }
+    if said:
+        with pytest.raises(DeviationError, match=said):
+            for verb, name in steps:
+                uses[verb](name)
+    else:
+        for verb, name in steps:
+            uses[verb](name)
 
 
 @pytest.fixture(scope="module")
@@ -317,7 +359,8 @@ FAULTS = {
     "a transition of another": (
         "supervisor_play.c", "(owner >= 0) && (candidate->owner != owner)", "false",
         "`Top.Robot.Accept` is not a transition of this program"),
-    "another place": ("net.c", "    m->flag.full = true;\n", "    m->flag.full = true;\n    m->Supervisor_Moving.full = true;\n",
+    "another place": ("net.c", "    m->flag.full = true;\n",
+                      "    m->flag.full = true;\n    m->Supervisor_Moving.full = true;\n",
                       "has changed place `Top.Supervisor.Moving`, with which it has no arc"),
 }  # fmt: skip
 
@@ -354,6 +397,65 @@ def test_edited_files(cell: Path, tmp_path: Path) -> None:
     assert "supervisor    DIFFERS" in done.output
     assert "flag.robcad holds (3,)" in done.output
     assert "Top.Robot.Move" in done.output  # the way there
+
+
+def edited(cell: Path, folder: Path, **texts: str) -> Path:
+    """A copy of the generated folder with something added to some files, or other files."""
+    shutil.copytree(cell / "generated", folder)
+    for name, text in texts.items():
+        with (folder / name).open("a", encoding="utf-8") as file:
+            file.write(text)
+    return folder
+
+
+@pytest.mark.parametrize(
+    ("name", "said"),
+    [
+        ("runtime/src/supervisor_cell.c", "is another one"),
+        ("runtime/include/pn/pn_port.h", "is another one"),
+        ("Makefile", "is another one"),
+        ("manifest.json", "is another one"),
+        ("runtime/src/more.c", "is not generated"),
+        ("math.h", "is not generated"),
+        ("GNUmakefile", "is not generated"),
+    ],
+)
+def test_files_that_no_state_shows(
+    name: str, said: str, cell: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    folder = edited(cell, tmp_path / "generated", **{name: "\n"})
+    found = compare(folder, fresh(cell), Diagnostics())
+    assert found is not None
+    assert found[0].deviates
+    assert name in (*found[0].differing, *found[0].intruding)
+    monkeypatch.setattr("pn2code.conform.cell._programs", lambda *_: (Report(complete=True), ()))
+    done = run("conform", cell, "--generated", folder)
+    assert done.exit_code == 1, done.output
+    assert f"`{name}` {said}" in done.output
+
+
+def fresh(cell: Path) -> tuple[OutputFile, ...]:
+    made = generate(cell, Diagnostics())
+    assert made is not None
+    return made.files
+
+
+def test_what_nobody_generated_is_named(cell: Path, tmp_path: Path) -> None:
+    folder = edited(
+        cell, tmp_path / "generated", **{"notes.txt": "", "robot1.tdl": "-- a remark\n"}
+    )
+    done = run("conform", cell, "--generated", folder)
+    assert done.exit_code == 0, done.output
+    assert "not generated, and not compared: notes.txt" in done.output
+    assert "compared by what they do: robot1.tdl" in done.output
+
+
+def test_an_edited_net_is_compared_in_part(cell: Path, tmp_path: Path) -> None:
+    """No supervisor shows what its copy of the robots' transitions does."""
+    folder = edited(cell, tmp_path / "generated", **{"net.c": "/* a remark */\n"})
+    done = run("conform", cell, "--generated", folder)
+    assert done.exit_code == 3, done.output
+    assert "not `./simulate`" in done.output
 
 
 def test_a_net_without_a_cell(tmp_path: Path) -> None:

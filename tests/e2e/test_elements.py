@@ -25,4 +25,4 @@ def test_a_change_without_effect_shows_nowhere(tmp_path: Path) -> None:
     judge = Judge(write(tmp_path / "cell"), tmp_path / "room")
     change = next(changes(judge.data))
     same = judge.data.replace(b"<text>", b"<text> ")
-    assert judge.shown(type(change)("blanks", "", same)).where == "nowhere"
+    assert judge.shown(type(change)("blanks", "", lambda: same)).where == "nowhere"

@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 import tomllib
+from collections import Counter
 from pathlib import Path
 
 import pytest
+from tests.misspell.beside import beside, verdict
 from tests.misspell.judge import Judge
 from tests.misspell.mutants import as_it_is, mistakes
 
@@ -33,6 +35,14 @@ CHOSEN = ("file", "action", "robot1")
 """Names that are chosen in cell.toml: other programs are generated, which takes long."""
 
 
+PROPERTIES = """[[property]]
+name = "two"
+says = "there are never two pieces"
+holds = "never tokens(Sup'Pieces) > 1"
+expect = true
+"""
+
+
 @pytest.fixture(scope="module")
 def judge(tmp_path_factory: pytest.TempPathFactory) -> Judge:
     folder = tmp_path_factory.mktemp("cell")
@@ -46,12 +56,24 @@ def test_every_second_mistake_in_a_small_cell_is_noticed(judge: Judge) -> None:
         is_chosen = mistake.kind.endswith("misspelt") and mistake.path[-1] in CHOSEN
         if is_chosen or mistake.path[0] == "supervisor" and mistake.kind == "deleted":
             continue
-        verdict = judge.verdict(mistake)
+        found = judge.verdict(mistake)
         count += 1
-        if verdict.is_wrong or (verdict.result == "option" and mistake.kind != "deleted"):
-            wrong.append(f"{mistake.what}: {verdict}")
+        if found.is_wrong or (found.result == "option" and mistake.kind != "deleted"):
+            wrong.append(f"{mistake.what}: {found}")
     assert not wrong
     assert count > 200
+
+
+def test_mistakes_beside_a_cell_are_noticed(judge: Judge) -> None:
+    properties = judge.room / "cell.properties.toml"
+    properties.write_text(PROPERTIES, encoding="utf-8")
+    found = [(m, verdict(judge, file, m)) for file, m in beside(judge.room)]
+    properties.unlink()
+    assert not [f"{m.what}: {v}" for m, v in found if v.is_wrong]
+    count = Counter(v.result for _, v in found)
+    assert count["refused"] > 10
+    assert count["renamed"] > 2
+    assert count["option"] == 4  # the table, the property, what it says, what is expected
 
 
 def test_a_name_that_is_chosen_is_seen_as_one(judge: Judge) -> None:
@@ -74,8 +96,8 @@ def test_the_judge_sees_what_is_not_the_same(judge: Judge, tmp_path: Path) -> No
     text = as_it_is(judge.text).replace('"duration_s" = 1.0', '"duration_s" = 2.0')
     assert text != as_it_is(judge.text)
     other = type(mistake)(mistake.path, mistake.kind, "another number", text)
-    verdict = judge.verdict(other)
-    assert (verdict.result, verdict.is_wrong, verdict.why) == ("effect", True, "robot1.tdl")
+    found = judge.verdict(other)
+    assert (found.result, found.is_wrong, found.why) == ("effect", True, "robot1.tdl")
 
 
 def test_mistakes_are_written_as_toml() -> None:

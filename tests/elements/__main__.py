@@ -21,7 +21,7 @@ from tests.elements.judge import Judge
 
 ROOT = Path(__file__).parents[2]
 EXAMPLES = ("riveting", "sorting", "shared-zone", "timed")
-WHERE = ("refused", "program", "check", "nowhere")
+WHERE = ("refused", "program", "drawing", "check", "nowhere")
 
 
 def main() -> int:
@@ -31,6 +31,7 @@ def main() -> int:
     parser.add_argument(
         "--most", type=int, help="at most so many of each cell, drawn with a fixed seed"
     )
+    parser.add_argument("-v", "--verbose", action="store_true", help="print every change")
     options = parser.parse_args()
     count: Counter[tuple[str, str]] = Counter()
     with tempfile.TemporaryDirectory(prefix="pn2code-") as room:
@@ -43,8 +44,8 @@ def main() -> int:
             for change in found:
                 shown = judge.shown(change)
                 count[cell, shown.where] += 1
-                if shown.where == "nowhere":
-                    print(f"{cell}: {change.what}: shows nowhere {shown.detail}", flush=True)
+                if options.verbose or shown.where == "nowhere":
+                    print(f"{cell}: {change.what}: {shown.where} ({shown.detail})", flush=True)
     print(f"\n| cell | {' | '.join(WHERE)} |\n|---{'|---' * len(WHERE)}|")
     for cell in options.cells:
         print(f"| {cell} | {' | '.join(str(count[cell, w]) for w in WHERE)} |")

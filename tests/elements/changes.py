@@ -1,6 +1,6 @@
 """The changes: of each arc, guard, delay, priority, code segment, initial marking, port, socket, fusion, declaration.
 
-for change in changes(data): change.what, change.element, change.data     # the net with this one change
+for change in changes(data): change.what, change.element, change.make()     # the net with this one change
 """
 
 from __future__ import annotations
@@ -9,6 +9,7 @@ import copy
 import re
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
+from functools import partial
 
 from lxml import etree
 
@@ -26,12 +27,12 @@ class Change:
     Args:
         what: in words, with the XML id.
         element: the id of the transition or place that is concerned; "" for declarations.
-        data: the file.
+        make: gives the file; all of them at once are too much to keep.
     """
 
     what: str
     element: str
-    data: bytes
+    make: Callable[[], bytes]
 
 
 def changes(data: bytes) -> Iterator[Change]:
@@ -70,13 +71,22 @@ def changes(data: bytes) -> Iterator[Change]:
             if tag in ("color", "var", "ml") and not _is_used(tree, element):
                 continue
             for what, edit in ways:
-                other = copy.deepcopy(tree)
-                found = list(other.iter(tag))[number]
-                if edit(found):
+                if _applies(edit, element):
                     name = f"{tag} {element.get('id')} {_caption(element)}: {what}"
-                    yield Change(
-                        name, _concerned(element), etree.tostring(other, encoding="iso-8859-1")
-                    )
+                    yield Change(name, _concerned(element), partial(_made, tree, tag, number, edit))
+
+
+def _applies(edit: Edit, element: etree._Element) -> bool:
+    alone = etree.Element("alone")
+    alone.append(copy.deepcopy(element))
+    return edit(alone[0])
+
+
+def _made(tree: etree._Element, tag: str, number: int, edit: Edit) -> bytes:
+    """The file with one element edited."""
+    other = copy.deepcopy(tree)
+    edit(list(other.iter(tag))[number])
+    return etree.tostring(other, encoding="iso-8859-1")
 
 
 def _is_used(tree: etree._Element, declaration: etree._Element) -> bool:

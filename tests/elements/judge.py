@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 import shutil
+from collections import Counter
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -12,6 +13,7 @@ from tests.elements.changes import Change
 from pn2code import pipeline
 from pn2code.cell.partition import OwnerKind
 from pn2code.diagnostics import Diagnostics
+from pn2code.net.codes import SOCKET_ARCS
 
 _COMMENT = re.compile(r"/\*[\s\S]*?\*/|(?m:(^|\s)--[^\n]*$)")
 _DIGEST = re.compile(r"[0-9a-f]{64}")
@@ -20,7 +22,11 @@ _ID = re.compile(r"\bID\d+\b")
 
 @dataclass(frozen=True)
 class Shown:
-    """Where a change shows: `refused`, `program`, `check`, or `nowhere`."""
+    """Where a change shows: `refused`, `program`, `check` (by a warning alone), or `nowhere`.
+
+    `drawing`: an arc between a socket and a substitution transition. What such an arc means is said by the assignment
+    of ports; CPN Tools refuses a net where the two differ, and `check` warns of it.
+    """
 
     where: str
     detail: str = ""
@@ -53,7 +59,7 @@ class Judge:
 
     def shown(self, change: Change) -> Shown:
         """Where it shows."""
-        self.net.write_bytes(change.data)
+        self.net.write_bytes(change.make())
         d = Diagnostics()
         try:
             made = pipeline.generate(self._room, d, checked=False)
@@ -66,8 +72,12 @@ class Judge:
         wanted = self._script_of.get(change.element)
         if wanted is None and other or wanted is not None and other & wanted:
             return Shown("program", min(other))
-        if _said(d) != self._said:
-            return Shown("check")
+        said = _said(d)
+        if said != self._said:
+            news = sorted((Counter(said) - Counter(self._said)).elements())
+            drawn = news and all(text.split()[0] == SOCKET_ARCS for text in news)
+            why = "; ".join(news) or "nothing is said where something was"
+            return Shown("drawing" if drawn else "check", why)
         return Shown("nowhere", ", ".join(sorted(other)))
 
 

@@ -17,8 +17,8 @@ from pn2code.robot.scene import RobotCell, load
 EXAMPLE = Path(__file__).resolve().parents[2] / "examples" / "riveting"
 
 
-def nowhere(*path: str) -> Origin:
-    return Origin("cell.toml", part=".".join(path))
+def nowhere(*path: str | int) -> Origin:
+    return Origin("cell.toml", part=".".join(map(str, path)))
 
 
 @cache

@@ -1,4 +1,5 @@
-"""`./dev misspell`: each key and each name of the examples' cell.toml misspelt, deleted, duplicated, of a wrong type.
+"""`./dev misspell`: each key and each name of the examples' cell.toml misspelt, deleted, duplicated, of a wrong type;
+and of the files beside it: properties, inputs, what sensors say.
 
 Each mistake must be refused (by `check` or `generate`), or be without effect: the generated files are the same, or the
 same but for a name that is chosen there. A wrong type must be refused in any case. Prints those that go unnoticed, and
@@ -12,16 +13,37 @@ import random
 import sys
 import tempfile
 from collections import Counter
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).parents[1]))
 
-from tests.misspell.judge import Judge
+from tests.misspell.beside import beside, verdict
+from tests.misspell.judge import Judge, Verdict
 from tests.misspell.mutants import mistakes
 
 ROOT = Path(__file__).parents[2]
 EXAMPLES = ("riveting", "sorting", "shared-zone", "timed")
 RESULTS = ("refused", "no effect", "renamed", "option", "effect", "crash")
+
+
+@dataclass(frozen=True, slots=True)
+class Asked:
+    """A mistake in any file of a cell, and how its verdict is had."""
+
+    what: str
+    kind: str
+    verdict: Callable[[], Verdict]
+
+
+def all_of(judge: Judge, only_beside: bool) -> Iterator[Asked]:
+    """Those in cell.toml, then those in the files beside it."""
+    for m in () if only_beside else mistakes(judge.text):
+        yield Asked(m.what, m.kind, partial(judge.verdict, m))
+    for file, m in beside(judge.room):
+        yield Asked(f"{file.name}: {m.what}", m.kind, partial(verdict, judge, file, m))
 
 
 def main() -> int:
@@ -32,6 +54,7 @@ def main() -> int:
     parser.add_argument(
         "--most", type=int, help="at most so many of each cell, drawn with a fixed seed"
     )
+    parser.add_argument("--beside", action="store_true", help="only the files beside cell.toml")
     parser.add_argument("-v", "--verbose", action="store_true", help="print every verdict")
     options = parser.parse_args()
     count: Counter[tuple[str, str, str]] = Counter()
@@ -39,16 +62,17 @@ def main() -> int:
     with tempfile.TemporaryDirectory(prefix="pn2code-") as room:
         for cell in options.cells:
             judge = Judge(ROOT / "examples" / cell, Path(room) / cell)
-            found = [m for m in mistakes(judge.text) if options.only in m.what]
+            found = list(all_of(judge, options.beside))
+            found = [each for each in found if options.only in each.what]
             if options.most is not None and len(found) > options.most:
                 random.Random(cell).shuffle(found)
                 found = found[: options.most]
-            for mistake in found:
-                verdict = judge.verdict(mistake)
-                count[cell, mistake.kind, verdict.result] += 1
-                wrong += verdict.is_wrong
-                if verdict.is_wrong or options.verbose:
-                    print(f"{cell}: {mistake.what}: {verdict.result} ({verdict.why})", flush=True)
+            for each in found:
+                found_out = each.verdict()
+                count[cell, each.kind, found_out.result] += 1
+                wrong += found_out.is_wrong
+                if found_out.is_wrong or options.verbose:
+                    print(f"{cell}: {each.what}: {found_out.result} ({found_out.why})", flush=True)
             print(f"{cell}: {len(found)} mistakes", file=sys.stderr)
     print(f"\n| cell | mistake | {' | '.join(RESULTS)} |\n|---|---{'|---' * len(RESULTS)}|")
     for cell, kind in sorted({(c, k) for c, k, _ in count}):

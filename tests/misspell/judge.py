@@ -66,11 +66,15 @@ class Judge:
     Args:
         cell: its folder.
         room: a folder that does not exist yet.
+
+    Attributes:
+        room: gets a copy of the cell.
+        text: of cell.toml.
     """
 
     def __init__(self, cell: Path, room: Path) -> None:
         shutil.copytree(cell, room)
-        self._room = room
+        self.room = room
         self.text = (cell / "cell.toml").read_text(encoding="utf-8")
         self._nets: dict[tuple[object, ...], front.Examined] = {}
         self._made: dict[str, Mapping[str, str] | str] = {}
@@ -89,7 +93,7 @@ class Judge:
         self._write(mistake.text)
         d = Diagnostics()
         try:
-            config = load(self._room, d)
+            config = load(self.room, d)
             for whole in (False, True):
                 if config is not None and not d.has_errors:
                     self._examine(config, d, whole=whole)
@@ -102,8 +106,21 @@ class Judge:
             return Verdict("refused", made)
         return self._compared(mistake, made)
 
+    def checked(self, *, whole: bool) -> str | None:
+        """The first code that `check` reports of the cell as it is in its folder; None: nothing is wrong.
+
+        Args:
+            whole: whether files beside it are looked at, and robots.
+        """
+        self._write(as_it_is(self.text))
+        d = Diagnostics()
+        config = load(self.room, d)
+        if config is not None and not d.has_errors:
+            self._examine(config, d, whole=whole)
+        return d.errors[0].code if d.has_errors else None
+
     def _write(self, text: str) -> None:
-        (self._room / "cell.toml").write_text(text, encoding="utf-8")
+        (self.room / "cell.toml").write_text(text, encoding="utf-8")
 
     def _examine(self, config: CellConfig, d: Diagnostics, *, whole: bool) -> None:
         """As `pn2code check` does, but for reading the net again; at first without what takes long."""
@@ -120,7 +137,7 @@ class Judge:
         key = _logic(config)
         if key not in self._made:
             d = Diagnostics()
-            made = generate(self._room, d)
+            made = generate(self.room, d)
             if made is None:
                 self._made[key] = d.errors[0].code
             else:
@@ -150,7 +167,7 @@ class Judge:
     def _is_chosen(self, text: str) -> bool:
         """Whether a name is chosen in cell.toml: the files are the same but for what it has at its end."""
         self._write(text)
-        config = load(self._room, Diagnostics())
+        config = load(self.room, Diagnostics())
         made = self._generated(config) if config is not None else ""
         if isinstance(made, str):
             return False

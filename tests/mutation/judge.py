@@ -17,11 +17,12 @@ from unittest.mock import patch
 from tests.mutation.mutants import Mutant
 
 from pn2code.conform import robot
-from pn2code.conform.cell import PROGRAM, ProgramComparison
+from pn2code.conform.cell import ProgramComparison
+from pn2code.conform.folder import PROGRAM
 from pn2code.conform.probe import HOST, ProbeError
 from pn2code.diagnostics import Diagnostics
 from pn2code.pipeline import Generated, generate
-from pn2code.tdl.interpret import Interpreter, Request
+from pn2code.tdl.interpret import Request
 
 SECONDS = 10.0
 """A mutant that takes longer for one answer does not come to rest."""
@@ -101,15 +102,16 @@ class Judge:
     def _carried_out(self, name: str) -> frozenset[int]:
         lines: set[int] = set()
 
-        class Noting(Interpreter):
+        class Noting(robot.Script):
             def _step(self) -> Request | None:
                 request = super()._step()
                 lines.add(self.line)
                 return request
 
-        with patch.object(robot, "Interpreter", Noting):
+        with patch.object(robot, "Script", Noting):
             own = self._of_script(Mutant(name, 0, "", "", self.files[name]))
         assert own.result == SURVIVED, f"{self.cell}: {name} without a mutation: {own}"
+        assert lines, f"{self.cell}: no line of {name} is carried out"
         return frozenset(lines)
 
     # --- building ----------------------------------------------------------------------------------

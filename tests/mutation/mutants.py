@@ -8,7 +8,7 @@ mutant.what       # "net.c:431: `b.n == 2` -> `b.n != 2`"
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass
 
 
@@ -54,6 +54,7 @@ _COMPARED = {"==": "!=", "!=": "==", "<": "<=", ">": ">=", "<=": "<", ">=": ">"}
 _EQUALS = {"=": "<>", "<>": "="}
 _ADDED = {"+": "-", "-": "+"}
 _JOINED = {"&&": "||", "||": "&&"}
+_SPEED = {"j": "30 %", "l": "50 mm/s"}
 _SWITCHED = {"true": "false", "false": "true"}
 _TYPES = {
     "int": "real",
@@ -100,6 +101,10 @@ SCRIPT_RULES: tuple[Rule, ...] = (
     ("constant", re.compile(r"(?<![\w.\"])(\d+)(?=$| |,)"), lambda m: str(int(m[1]) + 1)),
     ("motion", re.compile(r"\$(joint|linear)"), _other({"joint": "linear", "linear": "joint"})),
     ("frame", re.compile(r" in tool$"), lambda m: ""),
+    ("frame", re.compile(r"(?<=move \$linear )(\w+)$"), lambda m: f"{m[1]} in tool"),
+    ("speed", re.compile(r"(?<=move )(\$joint .*|\$linear .*)$"), lambda m: f"{m[1]} at {_SPEED[m[1][1]]}"),
+    ("wait dropped", re.compile(r"^(\s+)wait until .*$"), lambda m: f"{m[1]}-- dropped"),
+    ("rounding", re.compile(r"(?<![\w.\"])(\d+\.\d*[1-9]\d*)"), lambda m: repr(round(float(m[1]), 1) + 1e-4)),
     ("arithmetic", re.compile(r"(?<= )([+-])(?= [\w(])"), lambda m: _ADDED[m[1]]),
     ("logic", re.compile(r"(?<= )(and|or)(?= )"), _other({"and": "or", "or": "and"})),
     ("real", re.compile(r"(?<![\w.\"])(\d+\.\d+)"), lambda m: str(float(m[1]) + 0.5)),
@@ -108,6 +113,17 @@ SCRIPT_RULES: tuple[Rule, ...] = (
     ("a wait more", re.compile(r"^(\s+)(?=(?:clear|write|mark|move|tool|measure|sense|read|wait|\w+ :=))"),
      lambda m: f"{m[1]}wait 7 s\n{m[1]}"),
 )  # fmt: skip
+NAMES = (
+    ("tool", re.compile(r"^\s+tool (\w+) for ")),
+    ("file", re.compile(r"^\s+(?:clear|write|read) (\w+)")),
+    ("file awaited", re.compile(r"(?:filled|empty)\((\w+)\)")),
+    ("sensor", re.compile(r"^\s+sense (\w+) into ")),
+    ("transition", re.compile(r"^\s+mark ([\w.]+)")),
+)
+"""Names in scripts, each to be exchanged for the others of its kind."""
+STATEMENT = re.compile(
+    r"^\s+(?:clear|write|mark|move|tool|measure|sense|read|wait|\w+ :=)(?: .*)?$"
+)
 DECLARATION_RULES: tuple[Rule, ...] = (
     ("name", re.compile(r"^(program) (\w+)$"), lambda m: f"{m[1]} {m[2]}x"),
     ("direction", re.compile(r"^(input|output)"), _other({"input": "output", "output": "input"})),
@@ -187,9 +203,35 @@ def functions(lines: list[str]) -> Iterator[Function]:
 def of_script(text: str, file: str) -> Iterator[Mutant]:
     """Mutants of a robot's script, of its statements and of the values in them."""
     lines = text.split("\n")
+    begin = lines.index("begin")
     for i, line in enumerate(lines):
         if not line.lstrip().startswith(("--", "program", "input", "output", "var")):
             yield from _changed(lines, i, file, SCRIPT_RULES)
+    for kind, name in NAMES:
+        yield from _renamed(lines, range(begin, len(lines)), file, kind, name)
+    for i in range(begin, len(lines) - 1):
+        a, b = lines[i], lines[i + 1]
+        if STATEMENT.match(a) and STATEMENT.match(b) and _indent(a) == _indent(b) and a != b:
+            what = f"{file}:{i + 1}: statements exchanged: `{a.strip()}` and `{b.strip()}`"
+            text = "\n".join([*lines[:i], b, a, *lines[i + 2 :]])
+            yield Mutant(file, i + 1, "statements exchanged", what, text)
+
+
+def _renamed(
+    lines: list[str], wanted: Iterable[int], file: str, kind: str, name: re.Pattern[str]
+) -> Iterator[Mutant]:
+    """Another name of the same kind, of those that stand anywhere."""
+    known = list(dict.fromkeys(m[1] for i in wanted for m in name.finditer(lines[i])))
+    for i in wanted:
+        for match in name.finditer(lines[i]):
+            for other in known:
+                if other != match[1]:
+                    new = lines[i][: match.start(1)] + other + lines[i][match.end(1) :]
+                    yield _mutant(lines, i, new, file, kind)
+
+
+def _indent(line: str) -> int:
+    return len(line) - len(line.lstrip())
 
 
 def of_declarations(text: str, file: str) -> Iterator[Mutant]:

@@ -124,7 +124,7 @@ MISTAKES = [
     (
         put("scene", "contacts", value=[{"a": "panel/ribs"}]),
         "robot-key",
-        "`scene.contacts.0.b` is missing",
+        "`b` of the 1st of `scene.contacts` is missing",
     ),
     (
         put("scene", "contacts", value=[{"a": "robt1/tool_tip", "b": "panel/ribs"}]),
@@ -134,7 +134,7 @@ MISTAKES = [
     (
         put("scene", "objects", value=[{"name": "a"}]),
         "robot-key",
-        "`scene.objects.0.size` is missing",
+        "`size` of `a` in `scene.objects` is missing",
     ),
     (
         put("scene", "objects", value=[{"name": "a", "size": [1, 1, 1]}] * 2),

@@ -235,9 +235,12 @@ def test_steps_come_in_order(net: FlatNet) -> None:
     written = lines(net)
     ahead = [*written[:2], changed(written[2], step=3), *written[3:]]
     assert "it has number 3, but 2 is next" in refused(net, ahead).why
-    back = [written[0], changed(written[1], t=9.0), changed(written[2], t=3.0), *written[3:]]
+    early = changed(written[1], t=9.0)
+    assert "says time 9.0" in refused(net, [written[0], early, *written[2:]]).why
+    run = changed(written[0], by="run")
+    back = [run, early, changed(written[2], t=3.0), *written[3:]]
     assert "time goes back: 3.0 after 9.0" in refused(net, back).why
-    skewed = [written[0], changed(written[1], t=9.0), changed(written[2], t=8.5), *written[3:]]
+    skewed = [run, early, changed(written[2], t=8.5), *written[3:-1], changed(written[-1], t=8.5)]
     assert replay_lines(skewed, net).ok  # of two parties whose clocks differ a little
 
 
@@ -324,3 +327,43 @@ def test_the_writer_and_the_digest_of_a_cell(net: FlatNet) -> None:
     two = Parties(("supervisor", "robot"), (1,), frozenset(), (), frozenset())
     theirs = [changed(written[0], by="supervisor"), *written[1:2]]
     assert "`robot` runs this transition" in refused(net, theirs, parties=two).why
+
+
+@pytest.mark.parametrize(
+    ("at", "change", "why"),
+    [
+        (0, {"more": 1}, "it has a `more`"),
+        (0, {"seed": True}, "its `seed` is True"),
+        (1, {"step": True}, "its `step` is True"),
+        (1, {"t": "0"}, "its `t` is '0'"),
+        (-1, {"event": "stop"}, "there is no event `stop`"),
+    ],
+)
+def test_lines_have_their_members_only(
+    net: FlatNet, at: int, change: dict[str, Any], why: str
+) -> None:
+    written = lines(net)
+    assert replay_lines(written, net, is_whole=True).ok
+    written[at] = changed(written[at], **change)
+    assert why in refused(net, written, is_whole=True).why
+
+
+@pytest.mark.parametrize("member", ["net", "digest", "by", "initial"])
+def test_nothing_is_missing_in_a_header(net: FlatNet, member: str) -> None:
+    written = lines(net)
+    header = json.loads(written[0])
+    del header[member]
+    less = [json.dumps(header), *written[1:]]
+    assert f"its `{member}` is missing" in refused(net, less, is_whole=True).why
+
+
+def test_no_member_counts_twice(net: FlatNet) -> None:
+    written = lines(net)
+    twice = [written[0].replace('"by"', '"by": "run", "by"'), *written[1:]]
+    assert "`by` is there twice" in refused(net, twice).why
+
+
+def test_the_end_has_the_time_of_the_clock(timed: FlatNet) -> None:
+    written = lines(timed)
+    later = changed(written[-1], t=json.loads(written[-1])["t"] + 1)
+    assert "but the clock shows" in refused(timed, [*written[:-1], later]).why

@@ -23,6 +23,7 @@ class Tables:
     def __init__(self, locator: Locator, d: Diagnostics) -> None:
         self.at = locator.origin
         self.strings = locator.strings
+        self._words = locator.words
         self.d = d
 
     def keys(self, table: Mapping[str, Any], path: KeyPath, known: set[str]) -> None:
@@ -31,7 +32,7 @@ class Tables:
             if key not in known:
                 self.d.error(
                     codes.CELL_KEY,
-                    f"unknown key `{key}`" + (f" in `{'.'.join(map(str, path))}`" if path else ""),
+                    f"unknown key `{key}`" + (f" in {self._words(*path)}" if path else ""),
                     self.at(*path, key),
                     hint=did_you_mean(key, known) or f"known keys: {', '.join(sorted(known))}",
                 )
@@ -52,7 +53,7 @@ class Tables:
             if required:
                 self.d.error(
                     codes.CELL_KEY,
-                    f"`{'.'.join(map(str, (*path, key)))}` is missing",
+                    f"{self._words(*path, key)} is missing",
                     self.at(*path),
                     hint=f"add `{key} = ...`: {words}",
                 )

@@ -1,7 +1,7 @@
 """TOML files: what they say, and where.
 
 data, locator = read(Path("cell.toml"), d, codes.CELL_FILE, hint="...")
-locator.origin("input", 0, "place")             # Origin("cell.toml", 12, part="key `input.0.place`")
+locator.origin("input", 0, "place")             # Origin("cell.toml", 12, part="key `place` of `shelf` in `input`")
 locator.strings("property", 0, "holds")         # [SourceText(..)]: with the place of each character
 """
 
@@ -9,21 +9,29 @@ from __future__ import annotations
 
 import re
 import tomllib
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from copy import copy
 from pathlib import Path
 from typing import Any
 
 from pn2code.cell.toml_text import positions
 from pn2code.diagnostics import Diagnostics, Origin, SourceText
+from pn2code.diagnostics.keys import in_words
 from pn2code.os_reason import os_reason
 
 
 class Locator:
-    """Where keys and strings stand in the text of a TOML file."""
+    """Where keys and strings stand in the text of a TOML file.
 
-    def __init__(self, file: str, text: str) -> None:
+    Args:
+        file: its name.
+        text: what stands in it.
+        data: what the parser makes of it.
+    """
+
+    def __init__(self, file: str, text: str, data: Mapping[str, Any]) -> None:
         self.file = file
+        self._data = data
         self._layout = ""
         self._positions = positions(text, file)
 
@@ -35,16 +43,20 @@ class Locator:
 
     def origin(self, *path: str | int) -> Origin:
         """Origin of a key, or of the nearest table around it; of a layout's key where that replaces it."""
-        key = tuple(map(str, path))
+        shown, key = path, tuple(map(str, path))
         over = self._nearest(("layouts", self._layout, *key)) if self._layout else ()
         found = self._nearest(key)
         if len(over) > 2 and len(over) - 2 >= len(found):
-            found, key = over, ("layouts", self._layout, *key)
+            found, shown = over, ("layouts", self._layout, *path)
         return Origin(
             self.file,
             self._positions.lines.get(found, 0),
-            part=f"key `{'.'.join(key)}`" if key else "",
+            part=f"key {in_words(shown, self._data)}" if path else "",
         )
+
+    def words(self, *path: str | int) -> str:
+        """A key as messages call it."""
+        return in_words(path, self._data)
 
     def strings(self, *path: str | int) -> Sequence[SourceText]:
         """The strings of a key, each at its place; none where the key stands in a table in one line."""
@@ -79,7 +91,8 @@ def read(
         )
         return None
     try:
-        return tomllib.loads(text), Locator(file, text)
+        data = tomllib.loads(text)
+        return data, Locator(file, text, data)
     except tomllib.TOMLDecodeError as problem:
         found = re.search(r"\(at line (\d+), column (\d+)\)", str(problem))
         line, column = (int(found[1]), int(found[2])) if found else (text.count("\n") + 1, 0)

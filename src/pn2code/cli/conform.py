@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from collections.abc import Iterator
 from dataclasses import asdict
 from pathlib import Path
 from typing import Annotated, Any
@@ -23,6 +24,7 @@ from pn2code.cli.options import (
 )
 from pn2code.conform.cell import Conformance, conform_cell
 from pn2code.conform.core import CoreReport
+from pn2code.conform.folder import Folder
 from pn2code.conform.robot import RobotReport
 from pn2code.conform.scheme import MOST_STATES
 from pn2code.conform.supervisor import Report
@@ -84,6 +86,7 @@ def _row(found: Conformance) -> dict[str, Any]:
     return {
         "ok": not found.deviates,
         "complete": found.complete,
+        "files": asdict(found.folder) if found.folder else None,
         "core": asdict(found.core),
         "supervisor": _supervisor_row(found.supervisor) if found.supervisor else None,
         "robots": [asdict(r) for r in found.robots],
@@ -95,12 +98,31 @@ def _supervisor_row(report: Report) -> dict[str, Any]:
 
 
 def _lines(found: Conformance) -> list[str]:
-    lines = [_core(found.core)]
+    lines = [] if found.folder is None else list(_files(found.folder))
+    lines.append(_core(found.core))
     if found.supervisor is not None:
         lines += _supervisor(found.supervisor)
     for robot in found.robots:
         lines += _robot(robot)
     return lines
+
+
+def _files(folder: Folder) -> Iterator[str]:
+    if folder.deviates:
+        yield "files         DIFFER from those that are generated now:"
+        for name in folder.differing:
+            yield f"              `{name}` is another one: generate it again"
+        for name in folder.intruding:
+            yield f"              `{name}` is not generated, but would become a part of the programs: remove it"
+    else:
+        same = folder.files - len(folder.edited)
+        yield f"files         {same} of {folder.files} are as they are generated now"
+    if folder.edited:
+        yield f"              edited, and compared by what they do: {', '.join(folder.edited)}"
+    if not folder.complete:
+        yield "              of net.c only the supervisor is compared as it was edited, not `./simulate`"
+    if folder.foreign:
+        yield f"              not generated, and not compared: {', '.join(folder.foreign)}"
 
 
 def _core(core: CoreReport) -> str:

@@ -77,11 +77,11 @@ def replay(
             elif engine is Engine.COMPILED:
                 from pn2code.cli.replay_compiled import repeat_own  # loads the compiler
 
-                claims = _claims(opened, values, int_bits, any_digest, form)
-                result = repeat_own(trace, opened, files, claims, form)
+                claimed = claims(opened, values, int_bits, any_digest=any_digest, form=form)
+                result = repeat_own(trace, opened, files, claimed, form)
             else:
-                claims = _claims(opened, values, int_bits, any_digest, form)
-                result = _own(trace, opened, files, claims)
+                claimed = claims(opened, values, int_bits, any_digest=any_digest, form=form)
+                result = _own(trace, opened, files, claimed)
     except typer.Exit as left:
         if as_json and left.exit_code == Exit.MODEL:
             typer.echo(json.dumps(_NOT_PLAYED, indent=1))
@@ -177,13 +177,20 @@ class Claims:
     parties: Parties
     check_digest: bool
     may_fail_outside: bool
+    notes: own.Notes | None = None
 
 
-def _claims(
-    opened: OpenNet, values: Mapping[str, str], int_bits: int, any_digest: bool, form: Format
+def claims(
+    opened: OpenNet,
+    values: Mapping[str, str],
+    int_bits: int,
+    *,
+    any_digest: bool,
+    form: Format = Format.FULL,
 ) -> Claims:
     """Who runs what, and which digests the traces of these programs have."""
     from pn2code.cell.divide import divide
+    from pn2code.conform.notes import RunNotes
     from pn2code.pipeline import program_digest
     from pn2code.simulate.choose import monitors_of
 
@@ -204,7 +211,7 @@ def _claims(
         final=partition.final_places,
         digests=digests,
     )
-    return Claims(parties, not any_digest, may_fail)
+    return Claims(parties, not any_digest, may_fail, RunNotes(config, partition))
 
 
 def _own(trace: Path, opened: OpenNet, files: Path | None, claims: Claims) -> dict[str, Any]:
@@ -216,6 +223,8 @@ def _own(trace: Path, opened: OpenNet, files: Path | None, claims: Claims) -> di
         parties=claims.parties,
         check_digest=claims.check_digest,
         may_fail_outside=claims.may_fail_outside,
+        notes=claims.notes,
+        is_whole=True,
         files=Files(files),
     )
     game = result.game

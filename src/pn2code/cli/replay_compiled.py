@@ -11,11 +11,11 @@ from pn2code.cli.options import DEFAULT_SEED, Engine, Format, stop
 from pn2code.cli.replay import Claims, refuse
 from pn2code.diagnostics import Diagnostics
 from pn2code.semantics.game import NotEnabled
-from pn2code.semantics.json_text import parse_json
+from pn2code.semantics.json_text import BadJson, parse_json
 from pn2code.semantics.replay_end import Ending, end_problem
 from pn2code.semantics.replay_recording import Followed
 from pn2code.semantics.report import PlaceRow, places
-from pn2code.semantics.trace_lines import digest_problem
+from pn2code.semantics.trace_lines import digest_problem, form_problem
 from pn2code.simulate.recorded import repeat, repeat_occurrences
 from pn2code.simulate.run import Outcome
 from pn2code.simulate.script import TraceRefusedError
@@ -25,12 +25,41 @@ def repeat_own(
     trace: Path, opened: OpenNet, files: Path | None, claims: Claims, form: Format
 ) -> dict[str, Any]:
     """A trace of our own: the JSON answer."""
-    outcome = _run(lambda d: repeat(opened.flat, opened.storage, trace, files, d), form)
+
+    def run(d: Diagnostics) -> Outcome | None:
+        _checked(trace)
+        return repeat(opened.flat, opened.storage, trace, files, d)
+
+    outcome = _run(run, form)
     answer = _answer(outcome, opened)
     wrong = _claimed(trace, opened, files, claims, outcome) if answer["ok"] else None
     if wrong is not None:
         return {**answer, "ok": False, "failed_step": outcome.replayed + 1, "why": wrong}
     return answer
+
+
+def _checked(trace: Path) -> None:
+    """Compares the members of each line with docs/trace.md.
+
+    Raises:
+        TraceRefusedError: a line has others.
+        OSError: it cannot be read.
+    """
+    is_first = True
+    with trace.open(encoding="utf-8", errors="surrogateescape") as lines:
+        for number, text in enumerate(lines, 1):
+            if not text.strip():
+                continue
+            try:
+                line = parse_json(text, once=True)
+            except BadJson as problem:
+                raise TraceRefusedError(f"this is not a line of JSON: {problem}", number) from None
+            if not isinstance(line, dict):
+                raise TraceRefusedError("this is not a JSON object", number)
+            wrong = form_problem(line, is_first=is_first)
+            if wrong is not None:
+                raise TraceRefusedError(wrong, number)
+            is_first = False
 
 
 def _claimed(

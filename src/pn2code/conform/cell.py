@@ -13,8 +13,9 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from pn2code.cell.partition import Owner
-from pn2code.conform import core, data, declared, robot, supervisor
-from pn2code.conform.codes import GENERATED_UNREADABLE, PROBE_FAILED
+from pn2code.conform import core, data, declared, folder, robot, supervisor
+from pn2code.conform.codes import PROBE_FAILED
+from pn2code.conform.folder import PROGRAM, Folder
 from pn2code.conform.probe import HOST, PATIENCE_S, Probe, ProbeError
 from pn2code.conform.scheme import MOST_STATES
 from pn2code.diagnostics import Diagnostics, Origin, SourceText
@@ -27,23 +28,29 @@ from pn2code.tdl.check import check
 from pn2code.tdl.parse import parse
 from pn2code.toolchain import programs
 
-PROGRAM = ("net.c", "net.h", "cell_config.c")
-"""The supervisor's own files."""
-
 
 @dataclass(frozen=True, slots=True)
 class Conformance:
-    """What was compared. `supervisor` is None for a net without a cell."""
+    """What was compared.
+
+    Args:
+        core: the compiled net.
+        supervisor: None for a net without a cell.
+        robots: the scripts.
+        folder: the files that were given; None: all are fresh.
+    """
 
     core: core.CoreReport
     supervisor: supervisor.Report | None
     robots: tuple[robot.RobotReport, ...]
+    folder: Folder | None = None
 
     @property
     def deviates(self) -> bool:
         """Whether anything differs."""
         return (
             self.core.deviation is not None
+            or (self.folder is not None and self.folder.deviates)
             or (self.supervisor is not None and self.supervisor.deviation is not None)
             or any(r.deviation is not None for r in self.robots)
         )
@@ -53,6 +60,7 @@ class Conformance:
         """Whether every state was compared."""
         return (
             self.core.complete
+            and (self.folder is None or self.folder.complete)
             and (self.supervisor is None or self.supervisor.complete)
             and all(r.complete for r in self.robots)
         )
@@ -80,17 +88,22 @@ def conform_cell(
     made = generate(path, d, values=values, int_bits=int_bits)
     if made is None:
         return None
-    files = made.files if generated is None else _files(generated, made.files, d)
-    if files is None:
-        return None
+    found: Folder | None = None
+    files: Sequence[OutputFile] = made.files
+    if generated is not None:
+        given = folder.compare(generated, made.files, d)
+        if given is None:
+            return None
+        found, files = given
     storage = made.config.storage if made.config else {}
     try:
         compared = core.compare(made.partition.net, storage, d, most=most)
         if compared is None:
             return None
         if made.config is None or not made.partition.channels:
-            return Conformance(compared, None, ())
-        return _programs(ProgramComparison(made, most), files, compared, d)
+            return Conformance(compared, None, (), found)
+        done = _programs(ProgramComparison(made, most), files, d)
+        return None if done is None else Conformance(compared, *done, found)
     except GameError as error:
         error.report(d)
     except ProbeError as problem:
@@ -105,9 +118,8 @@ def conform_cell(
 def _programs(
     comparison: ProgramComparison,
     files: Sequence[OutputFile],
-    compared: core.CoreReport,
     d: Diagnostics,
-) -> Conformance | None:
+) -> tuple[supervisor.Report, tuple[robot.RobotReport, ...]] | None:
     own = [f for f in files if f.path in PROGRAM]
     with programs.program(HOST, own, d) as program:
         if program is None:
@@ -120,26 +132,7 @@ def _programs(
         if report is None:
             return None
         robots.append(report)
-    return Conformance(compared, supervised, tuple(robots))
-
-
-def _files(
-    folder: Path, fresh: Sequence[OutputFile], d: Diagnostics
-) -> tuple[OutputFile, ...] | None:
-    """The same files as they are in a folder."""
-    wanted = [f for f in fresh if f.path in PROGRAM or f.path.endswith(".tdl")]
-    try:
-        return tuple(
-            OutputFile(f.path, (folder / f.path).read_text(encoding="utf-8")) for f in wanted
-        )
-    except (OSError, UnicodeDecodeError) as problem:
-        d.error(
-            GENERATED_UNREADABLE,
-            f"a generated file cannot be read: {problem}",
-            Origin(str(folder)),
-            hint="generate it again: `pn2code generate NET -o DIR`",
-        )
-        return None
+    return supervised, tuple(robots)
 
 
 class ProgramComparison:

@@ -11,6 +11,6 @@ PROBE_FAILED = register(
 GENERATED_UNREADABLE = register(
     "conform-files",
     "the generated files cannot be read",
-    "`--generated DIR` names a folder with the files of `pn2code generate`: net.c, net.h, cell_config.c, and a script "
-    "for each robot. One of them is missing or is no text.",
+    "`--generated DIR` names a folder with the files of `pn2code generate`: programs, runtime, Makefile, manifest. One "
+    "of them is missing, or a program is no text.",
 )

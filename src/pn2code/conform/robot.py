@@ -13,11 +13,11 @@ from __future__ import annotations
 
 import math
 from collections import Counter, deque
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, replace
 
 from pn2code.cell.config import CellConfig
-from pn2code.cell.partition import Partition
+from pn2code.cell.partition import ChannelKind, Partition
 from pn2code.conform.clock import Clock
 from pn2code.conform.messages import scalars
 from pn2code.conform.primitives import Calls, Listener, Unknown
@@ -73,7 +73,7 @@ class RobotReport:
     way: tuple[str, ...] = ()
 
 
-class _DeviationError(Exception):
+class DeviationError(Exception):
     """The script does something else; the text says what."""
 
 
@@ -87,6 +87,7 @@ class _State:
     said: what sensors were asked since then, and what they said.
     until: model time at which a wait ends.
     owed: model time that the script still has to wait before it goes on: the delay of the last transition.
+    looked: files that it has seen to be filled and not emptied since.
     """
 
     marking: Marking
@@ -96,27 +97,79 @@ class _State:
     said: tuple[tuple[str, Scalar], ...] = ()
     until: float | None = None
     owed: float = 0.0
+    looked: frozenset[str] = frozenset()
 
 
-class _PlacesAsFiles:
-    """The channels of a marking as the script sees its files; what it does is kept apart."""
+class PlacesAsFiles:
+    """The channels of a marking as the script sees its files; what it does is kept apart.
 
-    def __init__(self) -> None:
+    Here a message is seen at once, in a run perhaps later, and nobody comes between two statements. So what is read
+    must have been waited for; what is emptied or written must have been announced; what is taken is emptied before an
+    answer is given, or the next message could be emptied in its place; and data are written before flags.
+
+    Args:
+        data: channels of data.
+
+    Attributes:
+        view: the messages.
+        announced: those that there have to be after all transitions that were announced.
+        looked: files that were seen to be filled.
+    """
+
+    def __init__(self, data: frozenset[str]) -> None:
+        self._data = data
         self.view: dict[str, tuple[Scalar, ...]] = {}
+        self.announced: dict[str, tuple[Scalar, ...]] = {}
+        self.looked: set[str] = set()
+
+    def is_filled(self, name: str) -> bool:
+        """Whether there is a message."""
+        if name in self.view:
+            self.looked.add(name)
+        return name in self.view
 
     def read(self, name: str) -> tuple[Scalar, ...] | None:
         """The message, which stays."""
+        if name in self.view and name not in self.looked:
+            raise DeviationError(f"{name} is read, but nobody has waited until it is filled")
         return self.view.get(name)
 
     def clear(self, name: str) -> None:
         """Takes it."""
+        if name in self.view and name in self.announced:
+            raise DeviationError(
+                f"{name} is emptied before a transition is announced that takes it"
+            )
+        self.looked.discard(name)
         self.view.pop(name, None)
 
     def write(self, name: str, values: tuple[Scalar, ...]) -> None:
         """Puts one."""
         if name in self.view:
-            raise _DeviationError(f"a message is written to {name}, which holds one")
+            raise DeviationError(f"a message is written to {name}, which holds one")
+        if name not in self.announced:
+            raise DeviationError(f"{name} is written before a transition is announced that puts it")
+        for other in self.view:
+            if other not in self.announced:
+                raise DeviationError(f"{name} is written before {other} is emptied, which is taken")
+        for other in self._data - {name}:
+            if name not in self._data and other in self.announced and other not in self.view:
+                raise DeviationError(f"the flag {name} is written before the data {other}")
         self.view[name] = values
+
+
+class Script(Interpreter):
+    """A script whose questions after files are told from its reading them."""
+
+    def __init__(
+        self, program: CheckedProgram, files: PlacesAsFiles, heard: Callable[[Event], None]
+    ) -> None:
+        super().__init__(program, files, heard)
+        self._asked = files
+
+    def filled(self, name: str) -> bool:
+        """Whether a file holds a message."""
+        return self._asked.is_filled(self._channel[name])
 
 
 class _Product:
@@ -140,14 +193,15 @@ class _Product:
             for channel in partition.channels
             if owner in (channel.writer, channel.reader)
         }
-        self._files = _PlacesAsFiles()
+        data = {c.name for c in partition.channels if c.kind is ChannelKind.DATA}
+        self._files = PlacesAsFiles(frozenset(data & self._channels.keys()))
         self._listener = Listener(game, config.primitives)
         self._sensors = {s.variable: s.name for s in config.sensors}
         self._called = Calls()
         self._names = {t.name: t for t in self._net.transitions}
         self._scheme = Scheme(partition, game)
         self._clock = Clock(partition.net)
-        self._interpreter = Interpreter(program, self._files, self._heard)
+        self._interpreter = Script(program, self._files, self._heard)
         self._marking = game.marking
         self._done: list[commands.Command] = []
         self._owed = 0.0
@@ -170,7 +224,7 @@ class _Product:
                     if after not in parent:
                         parent[after] = (at, text)
                         waiting.append(after)
-        except _DeviationError as found:
+        except DeviationError as found:
             deviation = str(found)
         return RobotReport(
             self._name,
@@ -254,7 +308,7 @@ class _Product:
             case Sense(sensor=sensor, line=line):
                 said = self._said(state, sensor)
                 if not said:
-                    raise _DeviationError(
+                    raise DeviationError(
                         f"line {line} asks sensor `{sensor}`, to which the net leaves nothing open there"
                     )
                 for value in said:
@@ -265,10 +319,10 @@ class _Product:
     def _nothing_to_do(self, state: _State, why: str) -> None:
         for element in self._scheme.enabled(self._owner, state.marking):
             text = element_text(self._game.colours, self._net, element)
-            raise _DeviationError(f"{why}, but by the net {text} is enabled")
+            raise DeviationError(f"{why}, but by the net {text} is enabled")
         # A command belongs to a transition, which is announced after it.
         if state.done:
-            raise _DeviationError(
+            raise DeviationError(
                 f"{why}, but has commanded {_list(state.done)}, which the net does not call"
             )
 
@@ -288,7 +342,7 @@ class _Product:
     # --- the script --------------------------------------------------------------------------------
 
     def _go(self, state: _State, result: commands.Pose | Scalar | None) -> tuple[str, _State]:
-        """Runs it to its next request. What is wrong raises `_DeviationError`."""
+        """Runs it to its next request. What is wrong raises `DeviationError`."""
         self._interpreter.restore(state.saved)
         self._marking = state.marking
         self._done = list(state.done)
@@ -297,6 +351,8 @@ class _Product:
         if isinstance(state.request, Sense) and isinstance(result, int | float | bool | str):
             self._heard_of.append((state.request.sensor, result))
         self._files.view = self._view(state.marking)
+        self._files.announced = dict(self._files.view)
+        self._files.looked = set(state.looked)
         before = self._interpreter.line
         with self._listener.noting(self._called):
             request = self._interpreter.resume(result)
@@ -312,6 +368,7 @@ class _Product:
             tuple(self._heard_of),
             until,
             self._owed,
+            frozenset(self._files.looked),
         )
         return f"{self._name}: the script goes on after line {before}", after
 
@@ -321,7 +378,7 @@ class _Product:
         if isinstance(wait, commands.Wait) and (self._owed or not wait.duration):
             left = self._owed - wait.duration
             if left < 0 and not _is_nothing(left, self._owed):
-                raise _DeviationError(
+                raise DeviationError(
                     f"line {self._interpreter.line} waits {wait.duration:g} s; by the net {self._owed:g} s are left"
                 )
             self._owed = 0.0 if _is_nothing(left, self._owed) else left
@@ -331,7 +388,7 @@ class _Product:
 
     def _must_not_owe(self, where: str) -> None:
         if self._owed:
-            raise _DeviationError(f"{where} without waiting {self._owed:g} s, the delay of the net")
+            raise DeviationError(f"{where} without waiting {self._owed:g} s, the delay of the net")
 
     def _delay(self, before: Marking, after: Marking) -> float:
         """How long it is until the program's new tokens are available."""
@@ -351,7 +408,7 @@ class _Product:
         where = f"line {event.line} announces `{event.transition}`"
         self._must_not_owe(where)
         if t is None or self._partition.transition_owner[t.index] != self._owner:
-            raise _DeviationError(f"{where}, which is no transition of {self._name}")
+            raise DeviationError(f"{where}, which is no transition of {self._name}")
         for element in self._scheme.enabled(self._owner, self._marking):
             if element.transition != t.index:
                 continue
@@ -359,7 +416,7 @@ class _Product:
                 self._called.clear()
                 marking, occurred = self._game.occur(self._marking, element)
             except GameError as error:
-                raise _DeviationError(
+                raise DeviationError(
                     f"{where}, where the net raises an exception: {error}"
                 ) from None
             if _is_same(binding_to_json(occurred), event.binding):
@@ -367,10 +424,11 @@ class _Product:
                 self._compare_sensors(where, t, event.binding)
                 self._owed = self._delay(self._marking, marking)
                 self._marking = marking
+                self._files.announced = self._view(marking)
                 self._marks += 1
                 self._marked.add(t.name)
                 return
-        raise _DeviationError(f"{where} with {event.binding}, which is not enabled by the net")
+        raise DeviationError(f"{where} with {event.binding}, which is not enabled by the net")
 
     def _compare_sensors(
         self, where: str, t: FlatTransition, binding: Mapping[str, object]
@@ -384,11 +442,11 @@ class _Product:
             name = step.symbol.name
             sensor = self._sensors.get(name)
             if sensor is not None and sensor not in said:
-                raise _DeviationError(
+                raise DeviationError(
                     f"{where} with {name} = {binding[name]}, but has not asked the sensor `{sensor}`"
                 )
             if sensor is not None and said[sensor] != binding[name]:
-                raise _DeviationError(
+                raise DeviationError(
                     f"{where} with {name} = {binding[name]}, but the sensor `{sensor}` has said {said[sensor]}"
                 )
 
@@ -397,7 +455,7 @@ class _Product:
         self._done.clear()
         self._commands += len(done)
         if done != called:
-            raise _DeviationError(
+            raise DeviationError(
                 f"{where}: the script has commanded {_list(done)}, the net calls {_list(called)}"
             )
 
@@ -412,7 +470,7 @@ class _Product:
     def _compare_files(self) -> None:
         expected = self._view(self._marking)
         if not _is_same(self._files.view, expected):
-            raise _DeviationError(
+            raise DeviationError(
                 f"after line {self._interpreter.line} the files hold {self._files.view}, by the net {expected}"
             )
 

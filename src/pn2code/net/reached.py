@@ -30,7 +30,7 @@ def reached(net: FlatNet) -> Iterator[Exp]:
     for colset in net.program.colsets.values():
         todo += [e for e in (colset.members, colset.predicate) if e is not None]
     for t in net.transitions:
-        todo += _inscriptions(t)
+        todo += inscriptions(t)
     seen: set[int] = set()
     while todo:
         root = todo.pop()
@@ -43,7 +43,8 @@ def reached(net: FlatNet) -> Iterator[Exp]:
                 todo.append(declared[e.symbol])
 
 
-def _inscriptions(t: FlatTransition) -> Iterator[Exp]:
+def inscriptions(t: FlatTransition) -> Iterator[Exp]:
+    """All that is evaluated for a transition: whole inscriptions, the terms of those of arcs as their parts."""
     yield from t.guards
     if t.delay is not None:
         yield t.delay

@@ -19,6 +19,7 @@ from typing import Any, Literal
 import numpy as np
 
 from pn2code.diagnostics import Diagnostics, Origin
+from pn2code.diagnostics.keys import in_words
 from pn2code.diagnostics.near import did_you_mean
 from pn2code.robot import codes
 from pn2code.robot.commands import Pose
@@ -207,35 +208,43 @@ def load(
         partial: robots of which nothing is said are left out; without, it is an error.
     """
     before = len(d.errors)
-    motion = _motion(_Table(geometry.get("motion", {}), ("motion",), at, d))
+    motion = _motion(_Table(geometry.get("motion", {}), ("motion",), at, d, geometry))
     robots = tuple(
         robot
         for name, table in geometry.get("robots", {}).items()
         if (table or not partial)
-        and (robot := _robot(_Table(table, ("robots", name), at, d), name, folder)) is not None
+        and (robot := _robot(_Table(table, ("robots", name), at, d, geometry), name, folder))
+        is not None
     )
     names = tuple(geometry.get("robots", {}))
-    scene = _scene(_Table(geometry.get("scene", {}), ("scene",), at, d), robots, names, folder)
+    scene = _scene(
+        _Table(geometry.get("scene", {}), ("scene",), at, d, geometry), robots, names, folder
+    )
     return RobotCell(robots, motion, scene) if len(d.errors) == before else None
 
 
 class _Table:
     """Typed access to one table, reporting what is wrong; unknown keys by `done`."""
 
-    def __init__(self, data: Any, path: tuple[str, ...], at: Locate, d: Diagnostics) -> None:
-        self.path, self._at, self.d = path, at, d
+    def __init__(
+        self, data: Any, path: tuple[str | int, ...], at: Locate, d: Diagnostics, whole: object
+    ) -> None:
+        self.path, self._at, self.d, self._whole = path, at, d, whole
         self._used: list[str] = []
         self.data: Mapping[str, Any] = data if isinstance(data, Mapping) else {}
         if not isinstance(data, Mapping):
-            d.error(codes.ROBOT_VALUE, f"`{'.'.join(path)}` must be a table", at(*path))
+            d.error(codes.ROBOT_VALUE, f"{self._words()} must be a table", at(*path))
 
     def at(self, key: str = "") -> Origin:
         return self._at(*self.path, key) if key else self._at(*self.path)
 
+    def _words(self, *key: str) -> str:
+        return in_words((*self.path, *key), self._whole)
+
     def wrong(self, key: str, expected: str, hint: str = "") -> None:
         self.d.error(
             codes.ROBOT_VALUE,
-            f"`{'.'.join((*self.path, key))}` is `{self.data[key]}`, but {expected} is expected",
+            f"{self._words(key)} is `{self.data[key]}`, but {expected} is expected",
             self.at(key),
             hint=hint,
         )
@@ -245,7 +254,7 @@ class _Table:
         if key not in self.data and required:
             self.d.error(
                 codes.ROBOT_KEY,
-                f"`{'.'.join((*self.path, key))}` is missing",
+                f"{self._words(key)} is missing",
                 self.at(),
                 hint=f"add `{key} = ...`: {expected}",
             )
@@ -308,7 +317,7 @@ class _Table:
 
     def table(self, key: str) -> _Table:
         self._used.append(key)
-        return _Table(self.data[key], (*self.path, key), self._at, self.d)
+        return _Table(self.data[key], (*self.path, key), self._at, self.d, self._whole)
 
     def tables(self, key: str) -> list[_Table]:
         self._used.append(key)
@@ -316,14 +325,17 @@ class _Table:
         if not isinstance(value, list):
             self.wrong(key, "a list of tables")
             return []
-        return [_Table(v, (*self.path, key, str(i)), self._at, self.d) for i, v in enumerate(value)]
+        return [
+            _Table(v, (*self.path, key, i), self._at, self.d, self._whole)
+            for i, v in enumerate(value)
+        ]
 
     def done(self) -> None:
         for key in self.data:
             if key not in self._used:
                 self.d.error(
                     codes.ROBOT_KEY,
-                    f"unknown key `{key}` in `{'.'.join(self.path)}`",
+                    f"unknown key `{key}` in {self._words()}",
                     self.at(key),
                     hint=did_you_mean(
                         key, self._used, f"known keys: {', '.join(sorted(set(self._used)))}"

@@ -14,8 +14,12 @@ class BadJson(ValueError):  # noqa: N818
     """A text is no JSON; the message says why."""
 
 
-def parse_json(text: str) -> Any:
+def parse_json(text: str, *, once: bool = False) -> Any:
     """The value of a JSON text.
+
+    Args:
+        text: the text.
+        once: whether no object may have a member twice; else the last one counts.
 
     Raises:
         BadJson: it is none, or too deeply nested.
@@ -23,10 +27,18 @@ def parse_json(text: str) -> Any:
     limit = sys.getrecursionlimit()
     sys.setrecursionlimit(min(limit, _DEPTH))
     try:
-        return json.loads(text)
+        return json.loads(text, object_pairs_hook=_object if once else None)
     except json.JSONDecodeError as error:
         raise BadJson(str(error)) from None
     except RecursionError:
         raise BadJson("it is nested too deeply") from None
     finally:
         sys.setrecursionlimit(limit)
+
+
+def _object(members: list[tuple[str, Any]]) -> dict[str, Any]:
+    found = dict(members)
+    if len(found) != len(members):
+        name = next(n for i, (n, _) in enumerate(members) if n in dict(members[:i]))
+        raise BadJson(f"`{name}` is there twice")
+    return found

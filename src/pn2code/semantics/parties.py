@@ -56,9 +56,10 @@ class Parties:
     def stranger(self, by: str) -> str | None:
         """What is wrong with the writer of a trace; None: nothing."""
         known = (*sorted(SIMULATORS), VERIFY, RUN, *self.names)
-        if not by or by in known or not self.is_cell:
+        if not by or by in known or not self.is_known:
             return None
-        return f'it is `by` "{by}", but only these write traces of this cell: {", ".join(known)}'
+        what = "cell" if self.is_cell else "net"
+        return f'it is `by` "{by}", but only these write traces of this {what}: {", ".join(known)}'
 
     def not_by(self, by: str, transition: int) -> str | None:
         """Why a writer cannot have made a step; None: it can."""

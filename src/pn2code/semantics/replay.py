@@ -19,9 +19,10 @@ from __future__ import annotations
 import json
 import math
 from collections.abc import Iterable, Mapping, Sequence
+from contextlib import AbstractContextManager, nullcontext
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Any
+from typing import Any, Protocol
 
 from pn2code.diagnostics import Diagnostics, Origin
 from pn2code.ml.core import Symbol
@@ -43,9 +44,11 @@ from pn2code.semantics.parties import SIMULATORS, Parties
 from pn2code.semantics.replay_end import Ending, end_problem
 from pn2code.semantics.trace_lines import (
     digest_problem,
+    form_problem,
     is_number,
     order_problem,
     origin_problem,
+    time_problem,
     unknown_variable,
 )
 from pn2code.semantics.values import Value
@@ -97,6 +100,25 @@ class ReplayResult:
             d.error(TRACE_REFUSED, name + self.why, at)
 
 
+class Notes(Protocol):
+    """What a run notes of its robots, beside what the net makes them do. Each answer is what is wrong, or None."""
+
+    def begin(self, game: Game, by: str) -> None:
+        """Before the first step."""
+
+    def note(self, line: Mapping[str, Any]) -> str | None:
+        """A note that is not the end."""
+
+    def occurring(self) -> AbstractContextManager[None]:
+        """While a transition occurs."""
+
+    def step(self, line: Mapping[str, Any], t: FlatTransition) -> str | None:
+        """After it has occurred."""
+
+    def end(self, game: Game, why: str) -> str | None:
+        """The last line."""
+
+
 class _Wrong(Exception):  # noqa: N818
     """A line cannot be repeated; the message says why."""
 
@@ -127,6 +149,8 @@ def replay(
     parties: Parties | None = None,
     check_digest: bool = False,
     may_fail_outside: bool = False,
+    notes: Notes | None = None,
+    is_whole: bool = False,
     limits: Limits | None = None,
     files: Files | None = None,
 ) -> ReplayResult:
@@ -141,6 +165,8 @@ def replay(
         parties: who runs what; None: that is not known, and what only they could have done wrong is not looked at.
         check_digest: whether the header's digest must be one of the net's or of the parties' programs.
         may_fail_outside: whether something beside the net (a monitor) may have ended the run by an exception.
+        notes: compares what a run notes of its robots with what the net makes them do; None: notes are passed over.
+        is_whole: whether each line must have all the members that docs/trace.md says, and no others.
         limits: of each evaluation.
         files: what the net can do with files; nothing by default.
     """
@@ -154,6 +180,8 @@ def replay(
             parties=parties,
             check_digest=check_digest,
             may_fail_outside=may_fail_outside,
+            notes=notes,
+            is_whole=is_whole,
             limits=limits,
             files=files,
         )
@@ -169,6 +197,8 @@ def replay_lines(
     parties: Parties | None = None,
     check_digest: bool = False,
     may_fail_outside: bool = False,
+    notes: Notes | None = None,
+    is_whole: bool = False,
     limits: Limits | None = None,
     files: Files | None = None,
 ) -> ReplayResult:
@@ -186,6 +216,7 @@ def replay_lines(
             at = number
             line = _object(text)
             transition = str(line.get("transition", ""))
+            _refuse(form_problem(line, is_first=game is None) if is_whole else None)
             if game is None:
                 by, source = str(line.get("by", "")), str(line.get("net", source))
                 _refuse(digest_problem(line, net, who) if check_digest else None)
@@ -193,21 +224,27 @@ def replay_lines(
                 _refuse(who.stranger(by))
                 game = Game(net, storage, initial, seed=_seed(line), limits=limits, files=files)
                 rules = rules or _rules_for(by, time_unit)
+                if notes is not None:
+                    notes.begin(game, by)
                 markings.append(game.marking)
-            elif ended is not None and "event" not in line:
+            elif ended is not None and (is_whole or "event" not in line):
                 raise _Wrong("it comes after the end of the run")
             elif line.get("event") == "end":
                 assert rules is not None
                 ended = str(line.get("why", ""))
                 ending = Ending(by, rules.own_clock, who, tuple(markings), may_fail_outside)
-                _refuse(end_problem(game, line, ending))
+                _refuse(end_problem(game, line, ending) or time_problem(line, latest))
+                _refuse(notes.end(game, ended) if notes is not None else None)
             elif "event" not in line:
                 assert rules is not None
-                _step(game, line, rules, names, who, by)
+                _step(game, line, rules, names, who, by, notes)
                 _refuse(order_problem(line, steps + 1, latest))
                 latest = max(latest, _time_of(line))
                 markings.append(game.marking)
                 steps += 1
+            elif notes is not None:
+                _refuse(notes.note(line) or time_problem(line, latest))
+                latest = max(latest, _time_of(line))
         if game is None:
             raise _Wrong("the trace is empty")
     except (_Wrong, GameError) as wrong:
@@ -228,7 +265,7 @@ def _rules_for(by: str, time_unit: float) -> Rules:
 
 def _object(text: str) -> dict[str, Any]:
     try:
-        data = parse_json(text)
+        data = parse_json(text, once=True)
     except BadJson as error:
         raise _Wrong(f"not JSON: {error}") from None
     if not isinstance(data, dict):
@@ -275,6 +312,7 @@ def _step(
     names: Mapping[str, FlatTransition],
     parties: Parties,
     by: str,
+    notes: Notes | None,
 ) -> None:
     """Repeats one occurrence; raises _Wrong when that is not possible."""
     t = names.get(str(line.get("transition")))
@@ -292,9 +330,12 @@ def _step(
             game, element, parties.rivals(game.net, t.index), _moment(game, line, rules)
         )
     game.evaluator.steps = game.steps + 1
-    marking, occurred = game.occur(game.marking, element)
+    with nullcontext() if notes is None else notes.occurring():
+        marking, occurred = game.occur(game.marking, element)
     for symbol in _outputs(t):
         _compare(symbol, occurred.binding[symbol], given[symbol])
+    if notes is not None:
+        _refuse(notes.step(line, t))
     game.marking = marking
     game.steps += 1
 
@@ -348,9 +389,11 @@ def _binding(t: FlatTransition, data: Any) -> dict[Symbol, Value]:
 
 
 def _set_clock(game: Game, line: dict[str, Any], rules: Rules) -> None:
-    if not game.net.timed:
-        return
     t = line.get("t")
+    if not game.net.timed:
+        if rules.own_clock and is_number(t) and t != game.marking.time:
+            raise _Wrong(f"it says time {t}, but without time the clock shows {game.marking.time}")
+        return
     if isinstance(t, bool) or not isinstance(t, int | float):
         raise _Wrong("it has no time `t`")
     if rules.own_clock:

@@ -12,13 +12,16 @@ from typing import Any
 from pn2code.semantics.game import Game, GameError
 from pn2code.semantics.marking import Marking, PlaceMarking, element_text
 from pn2code.semantics.multiset import TimedMultiSet
-from pn2code.semantics.parties import Parties
+from pn2code.semantics.parties import RUN, Parties
+from pn2code.semantics.trace_lines import is_number
 from pn2code.semantics.values import Timed
 
 FINISHED = "finished"
 ERROR = "error"
 GOES_ON = ("steps", "until")
 """The run was to be no longer, though something was enabled, or will be at a later time."""
+RUN_ENDS = (FINISHED, "stopped", "failed")
+"""What may become of a whole cell (`run.record`)."""
 BROKEN_OFF = ("interrupted", "breakpoint", "trace", "replay")
 """Words of a simulator that claim nothing about the net."""
 
@@ -48,10 +51,22 @@ def end_problem(game: Game, line: Mapping[str, Any], ending: Ending) -> str | No
     if not isinstance(why, str):
         return "it does not say why the run ended"
     return _final_problem(game, line, ending) or (
-        _simulated(game, why, ending) or _loop_problem(line, ending)
+        _simulated(game, why, ending) or _loop_problem(line, ending) or _clock_problem(game, line)
         if ending.is_simulated
         else _run(game, why, ending)
     )
+
+
+def _clock_problem(game: Game, line: Mapping[str, Any]) -> str | None:
+    """A simulator's clock stands where its last step was, or where the next one is possible."""
+    t, shown = line.get("t"), game.marking.time
+    if not is_number(t) or t == shown:
+        return None
+    try:
+        later = game.settle(game.marking).time
+    except GameError:
+        return None
+    return None if t == later else f"it says time {t}, but the clock shows {shown}"
 
 
 def _simulated(game: Game, why: str, ending: Ending) -> str | None:
@@ -73,6 +88,8 @@ def _simulated(game: Game, why: str, ending: Ending) -> str | None:
 def _run(game: Game, why: str, ending: Ending) -> str | None:
     if why in (*GOES_ON, ERROR):
         return f'it says "{why}", which only simulators say'
+    if ending.by == RUN and why not in RUN_ENDS:
+        return f'it says "{why}", which is no reason for a run to end'
     if why != FINISHED or not ending.parties.is_known:
         return None
     if not ending.parties.final:

@@ -15,6 +15,51 @@ SKEW_S = 1.0
 """So much may clocks of parties differ whose traces are one: messages say what came first, not times."""
 
 
+_HEADER = {"trace": int, "net": str, "source": str, "digest": str, "by": str, "initial": dict}
+_STEP = {"step": int, "t": float, "transition": str, "binding": dict, "origin": str}
+_NOTES: Mapping[str, Mapping[str, type]] = {
+    "end": {"t": float, "event": str, "why": str},
+    "tool": {"t": float, "event": str, "robot": str, "action": str, "duration": float},
+    "sense": {"t": float, "event": str, "robot": str, "sensor": str, "value": object},
+}
+_MORE: Mapping[str, Mapping[str, type]] = {
+    "header": {"seed": int},
+    "end": {"final": list, "reason": str, "loop": int},
+}
+"""Members that a line may have; all others it must have."""
+
+
+def form_problem(line: Mapping[str, Any], *, is_first: bool) -> str | None:
+    """A line has the members of its kind, each of its type, and no others."""
+    kind = "header" if is_first else str(line["event"]) if "event" in line else "step"
+    if kind == "header":
+        own: Mapping[str, type] = _HEADER
+    elif kind == "step":
+        own = _STEP
+    elif kind in _NOTES:
+        own = _NOTES[kind]
+    else:
+        return f"there is no event `{kind}`"
+    more = _MORE.get(kind, {})
+    for name, wanted in own.items():
+        if name not in line:
+            return f"its `{name}` is missing"
+        if not _is_of(line[name], wanted):
+            return f"its `{name}` is {line[name]!r}"
+    for name, value in line.items():
+        if name not in own and name not in more:
+            return f"it has a `{name}`, which is no member of such a line"
+        if name in more and not _is_of(value, more[name]):
+            return f"its `{name}` is {value!r}"
+    return None
+
+
+def _is_of(value: object, wanted: type) -> bool:
+    if wanted is float:
+        return is_number(value)
+    return isinstance(value, wanted) and (wanted is object or not isinstance(value, bool))
+
+
 def is_number(t: object) -> TypeGuard[int | float]:
     """Whether a member is a number (JSON's true and false are none)."""
     return isinstance(t, int | float) and not isinstance(t, bool)
@@ -53,6 +98,11 @@ def order_problem(line: Mapping[str, Any], number: int, latest: float) -> str | 
     said = line.get("step", number)
     if said != number:
         return f"it has number {said}, but {number} is next: steps are missing or out of order"
+    return time_problem(line, latest)
+
+
+def time_problem(line: Mapping[str, Any], latest: float) -> str | None:
+    """Time does not go back."""
     t = line.get("t")
     if is_number(t) and t < latest - SKEW_S:
         return f"time goes back: {t} after {latest}"

@@ -25,6 +25,7 @@ from pn2code.ml.colsets import Kind
 from pn2code.ml.types import TCon, TFun, TRecord, Type
 from pn2code.net.flat import ArcKind, FlatNet, FlatTransition
 from pn2code.net.predicate import Predicate
+from pn2code.net.reached import inscriptions
 from pn2code.net.uses import walk
 
 _READS_TIME = frozenset({"Time.time", "Time.step"})
@@ -90,7 +91,7 @@ class _Look:
                     return Obstacle(
                         f"the delay of an input arc of `{t.name}` may be negative", term.delay.span
                     )
-        for e in _expressions(t):
+        for e in inscriptions(t):
             found = self.expression(e, f"`{t.name}` ")
             if found is not None:
                 return found
@@ -116,23 +117,6 @@ class _Look:
                     self._seen.add(x.symbol.uid)
                     waiting += self._declared.get(x.symbol.uid, ())
         return None
-
-
-def _expressions(t: FlatTransition) -> Iterator[core.Exp]:
-    """All that is evaluated for a transition."""
-    yield from t.guards
-    if t.delay is not None:
-        yield t.delay
-    if t.code is not None:
-        yield t.code.action
-    for arc in t.arcs:
-        if arc.inscription is not None:
-            yield arc.inscription.value
-            for term in arc.inscription.terms:
-                yield term.coefficient
-                yield term.value
-                if term.delay is not None:
-                    yield term.delay
 
 
 def _declared(program: core.Program) -> dict[int, tuple[core.Exp, ...]]:

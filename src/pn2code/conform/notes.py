@@ -1,0 +1,122 @@
+"""What a run notes of its robots and devices (docs/trace.md), beside what the net makes them do.
+
+notes = RunNotes(config, partition)
+replay(trace, net, parties=parties, notes=notes)
+
+Between two steps of a robot stand its tools' actions and what its sensors said. The actions have to be those that the
+net orders in the later step; of each variable that the net leaves open there, a sensor must have said the value.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
+from typing import Any
+
+from pn2code.cell.config import CellConfig
+from pn2code.cell.partition import Partition
+from pn2code.conform.primitives import Calls, Listener
+from pn2code.net.flat import BindAll, BindRandom, FlatTransition
+from pn2code.robot.commands import ToolAction
+from pn2code.semantics.game import Game, GameError
+from pn2code.semantics.parties import RUN
+
+_Action = tuple[str, float]
+
+
+class RunNotes:
+    """Follows the notes of one trace.
+
+    Args:
+        config: the cell.
+        partition: who runs what.
+    """
+
+    def __init__(self, config: CellConfig, partition: Partition) -> None:
+        self._primitives = config.primitives
+        self._variables = {s.name: s.variable for s in config.sensors}
+        self._owner = partition.transition_owner
+        self._names = [o.name for o in partition.owners]
+        self._actions: dict[str, list[_Action]] = {name: [] for name in self._names[1:]}
+        self._said: dict[str, dict[str, Any]] = {name: {} for name in self._names[1:]}
+        self._calls = Calls()
+        self._listener: Listener | None = None
+
+    def begin(self, game: Game, by: str) -> None:
+        """Only the traces of whole runs have notes."""
+        if by == RUN:
+            self._listener = Listener(game, self._primitives)
+
+    def note(self, line: Mapping[str, Any]) -> str | None:
+        """One more note; whose it is must be known."""
+        if self._listener is None:
+            return None
+        robot = str(line.get("robot"))
+        if robot not in self._actions:
+            return f"there is no robot or device `{robot}`"
+        if line["event"] == "tool":
+            self._actions[robot].append((str(line.get("action")), float(line["duration"])))
+            return None
+        variable = self._variables.get(str(line.get("sensor")))
+        if variable is None:
+            return f"there is no sensor `{line.get('sensor')}`"
+        if variable in self._said[robot]:
+            return f"sensor `{line['sensor']}` has spoken twice for one step of `{robot}`"
+        self._said[robot][variable] = line.get("value")
+        return None
+
+    @contextmanager
+    def occurring(self) -> Iterator[None]:
+        """Hears what is ordered."""
+        self._calls = Calls()
+        if self._listener is None:
+            yield
+            return
+        with self._listener.noting(self._calls):
+            yield
+
+    def step(self, line: Mapping[str, Any], t: FlatTransition) -> str | None:
+        """The notes since the last step of the same robot are those of this one."""
+        owner = self._owner[t.index]
+        if self._listener is None or owner == 0:
+            return None
+        robot = self._names[owner]
+        ordered = [(c.action, c.duration) for c in self._calls if isinstance(c, ToolAction)]
+        noted, self._actions[robot] = self._actions[robot], []
+        if noted != ordered:
+            return f"the net makes `{robot}` do {_text(ordered)}, the notes before it say {_text(noted)}"
+        said, self._said[robot] = self._said[robot], {}
+        binding = line["binding"]
+        chosen = {s.symbol.name for s in t.plan if isinstance(s, BindAll | BindRandom)}
+        for variable in sorted(chosen & {*self._variables.values()} | said.keys()):
+            if variable not in said:
+                return f"`{variable}` is left to a sensor, but none has said anything"
+            if variable not in binding:
+                return f"a sensor has spoken of `{variable}`, which is no variable of it"
+            if not _equal(said[variable], binding[variable]):
+                return f"a sensor has said {said[variable]!r}, but `{variable}` is {binding[variable]!r}"
+        return None
+
+    def end(self, game: Game, why: str) -> str | None:
+        """Nothing is left over when a run has finished, but of a robot that had not come to its end."""
+        if self._listener is None or why != "finished":
+            return None
+        for robot, owner in zip(self._names[1:], range(1, len(self._names)), strict=True):
+            if (self._actions[robot] or self._said[robot]) and not self._goes_on(game, owner):
+                return f"the notes of `{robot}` at the end belong to no step"
+        return None
+
+    def _goes_on(self, game: Game, owner: int) -> bool:
+        try:
+            enabled = game.enabled_in(game.settle(game.marking))
+            return any(self._owner[e.transition] == owner for e in enabled)
+        except GameError:
+            return True
+
+
+def _equal(a: object, b: object) -> bool:
+    return a == b and isinstance(a, bool) == isinstance(b, bool)
+
+
+def _text(actions: list[_Action]) -> str:
+    return ", ".join(f"`{name}` for {seconds:g} s" for name, seconds in actions) or "nothing"
