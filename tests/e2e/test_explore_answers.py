@@ -164,6 +164,8 @@ def test_truncated(counter: Asked) -> None:
     _, answers = counter.say(lines, "--approximate", "hash")
     assert [a["answer"] for a in answers] == ["no", "unknown", "unknown", "unknown"]
     assert (answers[0]["trace"], answers[1]["why"]) == (None, "approximation")
+    _, (broken,) = counter.say(["? bound 1 - 0"], "--approximate", "hash")
+    assert (broken["answer"], broken["value"], broken["trace"]) == ("no", 1, None)
 
 
 def test_bounds(counter: Asked) -> None:
