@@ -22,6 +22,7 @@ from pn2code.cell.partition import OwnerKind, Partition
 from pn2code.diagnostics import Diagnostics
 from pn2code.net.flat import ArcKind
 from pn2code.properties.questions import Questions
+from pn2code.tdl.interpret import MOST_OCCURRENCES
 from pn2code.verify import chance
 from pn2code.verify.control_answers import (
     Keeper,
@@ -30,8 +31,10 @@ from pn2code.verify.control_answers import (
     cell_answers,
     channels_check,
     drawn,
+    hesitating,
     known,
     order_answers,
+    refusal,
     settled,
     silent,
     unknown,
@@ -68,8 +71,8 @@ def of_cell(running: Running, plan: Plan) -> str:
     asked.asked += [
         f"? ends {end}",
         f"? bound {running.stopped} 0 0",
-        "? restless",
-        *(f"? invariant {_kept_silence(asked, s, running.idle)}" for s in running.silences),
+        f"? restless {MOST_OCCURRENCES - 1}",
+        *(f"? invariant {_kept_silence(asked, s, running.resting)}" for s in running.silences),
         *(f"? bound {c.place} 0 1" for c in running.partition.channels),
         *(f"? bound {place} 0 {most}" for place, most in plan.capacities.items()),
     ]
@@ -109,6 +112,7 @@ def of_orders(running: Running, firings: int = MAX_FIRINGS) -> str:
         f"? bounded-response {firings}",
         "? confluence 0",
         "? confluence 1",
+        f"? restless {MOST_OCCURRENCES - 1}",
     ]
     return "".join(f"{line}\n" for line in lines)
 
@@ -147,7 +151,8 @@ def examine(
         wishes = replace(
             plan.wishes,
             sizes=Sizes.start(running.net, plan.storage),
-            traces=None,
+            traces=Path(name),
+            whole=tuple(c.place for c in partition.channels),
             graph=None,
             questions=of_cell(running, plan),
             predicates=plan.properties.predicates,
@@ -174,6 +179,11 @@ def examine(
             memory(found),
             ownership(partition),
         )
+        if running.idle != running.instant:
+            checks = tuple(hesitating(c, orders, asked) for c in checks)
+        refused = refusal(partition, found, keep)
+        if refused is not None:
+            checks = tuple(refused if c.name == BLOCKING else c for c in checks)
         if chance.draws(partition.net):
             checks = tuple(drawn(c) for c in checks)
         late = plan.premises.replies.late or silent(running, found.answers[count:])
