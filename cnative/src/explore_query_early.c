@@ -237,10 +237,9 @@ static void write_traces(ex_run_t *run, const ex_graph_t *graph)
     }
 }
 
-/* No state decided it, and all were seen. */
-static void confirm(const ex_run_t *run, ex_question_t *question)
+/* The most tokens that were seen, of a question that asks for them. */
+static void give_most(const ex_run_t *run, ex_question_t *question)
 {
-    question->answer = EX_YES;
     for (uint32_t i = 0U; (question->kind == EX_ASK_BOUND) && (i < run->options.threads); i++) {
         const double most = (double)run->worker[i].early->most[question->a];
         question->value_kind = EX_INTEGER;
@@ -258,8 +257,10 @@ static bool answer_by_states(const ex_run_t *run, ex_question_t *question)
         question->why = "exception";
     } else if (atomic_load(&question->is_decided)) {
         question->answer = EX_NO;
-    } else if (run->is_seen_whole) {
-        confirm(run, question);
+        give_most(run, question);
+    } else if (run->is_seen_whole) { /* no state decided it */
+        question->answer = EX_YES;
+        give_most(run, question);
     } else {
         return false;
     }

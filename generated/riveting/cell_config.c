@@ -13,6 +13,12 @@
  * messages: yes; each of the 14 values that come into channels can be written into its file and read back
  * memory: yes; there are no lists and strings that need any
  * ownership: yes; all 255 arcs keep to places of their owner and channels in their direction
+ * Assumed:
+ * what is measured is what `measure` of the net gives
+ * `coordenadas` begins with the tokens of the net, not with those of its file
+ * nobody owes an answer for longer than `reply_timeout_s`, 120 s (tools, waits and delays take at most 3 s; how long moves and
+ * measurements take is not known)
+ * each value that a sensor can have comes now and then
  */
 #include "pn/pn_arena.h"
 #include "pn/pn_cell.h"

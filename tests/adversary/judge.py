@@ -118,10 +118,15 @@ def _of_run(cell: Cell, said: Said, run: Run, net: FlatNet) -> Iterator[str]:
     if isinstance(found, str):
         yield f"the run is none of the net: {found}"
         return
+    is_over = run.end in ("finished", "stuck")
     for claim, answer in zip(cell.claims, said.claims, strict=True):
-        broken = [i for i, tokens in enumerate(found) if claim.is_broken(tokens)]
-        if answer == "yes" and broken:
-            yield f"`{claim.text}` is yes, but not after {broken[0]} steps"
+        at = claim.broken(found, is_over=is_over) if answer == "yes" else None
+        if at is not None:
+            yield f"`{claim.text}` is yes, but not after {at} steps"
+    if _answer(said, "capacity") == "yes":
+        for claim in cell.capacities:
+            if claim.broken(found, is_over=is_over) is not None:
+                yield f"capacity is yes, but {claim.places[0]} holds more than {claim.most} tokens"
     whole = [m["answer"] for m in said.medium[:1]]
     if run.end == "crashed" and not any(w in run.why for w in ("died", "dead", "ended", "gone")):
         yield "a side died, but nobody says so"
@@ -131,24 +136,39 @@ def _of_run(cell: Cell, said: Said, run: Run, net: FlatNet) -> Iterator[str]:
         if whole == ["yes"]:
             yield "the cell with its medium is yes"
     if run.end == "stopped":
+        broken = _whose(run.why)
+        if _answer(said, broken) == "yes":
+            yield f"{broken} is yes, but the cell was stopped"
         if whole == ["yes"]:
             yield "the cell with its medium is yes"
-        if "overrun" in run.why and _answer(said, "channels") == "yes":
-            yield "channels is yes"
-        if "no end of firing" in run.why and _answer(said, "finite-response") == "yes":
-            yield "finite-response is yes"
     most = said.controller.get("bounded-response", {})
     if most.get("answer") == "yes" and run.most_firings > most["value"]:
         yield f"at most {most['value']} firings in a cycle, but there were {run.most_firings}"
     yield from _bounds(said, found)
 
 
+_CHECKS = {
+    "would be overwritten": "channels",
+    "overrun": "channels",
+    "no end of firing": "finite-response",
+    "is full": "capacity",
+    "memory": "memory",
+}
+"""What a stop says, and the check that is about it; `non-blocking` is about all others."""
+
+
+def _whose(why: str) -> str:
+    return next((check for words, check in _CHECKS.items() if words in why), "non-blocking")
+
+
 def _bounds(said: Said, found: Sequence[Mapping[str, int]]) -> Iterator[str]:
-    """What the generated program relies on: no place ever holds more."""
-    for row in said.whole.get("cell_bounds") or []:
-        most = max(tokens[row["place"]] for tokens in found)
-        if row["most"] is not None and most > row["most"]:
-            yield f"at most {row['most']} tokens in {row['place']}, but there were {most}"
+    """The numbers of tokens that places can have in the cell as it runs."""
+    for row in said.whole.get("cell", {}).get("bounds") or []:
+        place, held = row["place"], [tokens[row["place"]] for tokens in found]
+        if max(held) > row["upper"]:
+            yield f"at most {row['upper']} tokens in {place}, but there were {max(held)}"
+        if min(held) < row["lower"]:
+            yield f"at least {row['lower']} tokens in {place}, but there were {min(held)}"
 
 
 def claims_text(claims: Sequence[Claim]) -> str:

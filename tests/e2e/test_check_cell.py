@@ -89,6 +89,17 @@ def test_what_is_found_without_running(what: str, tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize(
+    "what", ["a forked page", "what the language lacks", "a sensor that nobody asks"]
+)
+def test_verify_says_nothing_of_a_cell_that_is_not_generated(what: str, tmp_path: Path) -> None:
+    net, toml, code, _ = MISTAKES[what]
+    cell = write(tmp_path, net, TOML + ROBOT + (toml or ""))
+    said = [run(verb, cell) for verb in ("generate", "verify")]
+    assert said[0].exit_code == said[1].exit_code == 1
+    assert code in said[0].stderr and said[1].stderr == said[0].stderr and said[1].stdout == ""
+
+
+@pytest.mark.parametrize(
     ("text", "words"),
     [
         ("true\nfalse\n1\n", ""),

@@ -308,6 +308,7 @@ def changed(*pairs: tuple[str, str]) -> str:
                 control_types.FINITE: "no",
                 control_types.BOUNDED: "unknown",
                 control_types.CONFLUENT: "unknown",
+                control_types.BLOCKING: "unknown",
             },
             "the supervisor can fire for ever by repeating `Cell.Supervisor.Away`, `Cell.Supervisor.Back`",
         ),
@@ -318,7 +319,7 @@ def changed(*pairs: tuple[str, str]) -> str:
                 ("place Spare", "place Spare = 1"),
                 ("\n  page Rob", SIMPLE_CHAIN),
             ),
-            {control_types.BOUNDED: "no"},
+            {control_types.BOUNDED: "no", control_types.BLOCKING: "unknown"},
             "at most 2 firings in one cycle, but no more than 1 are permitted",
         ),
         (
@@ -349,7 +350,7 @@ def changed(*pairs: tuple[str, str]) -> str:
         (
             "twice",
             changed(("place Ready = 1", "place Ready = 2")),
-            {control_types.CHANNELS: "no", control_types.CONFLUENT: "yes"},
+            {control_types.CHANNELS: "no", control_types.BLOCKING: "unknown"},
             "channel `go` gets 2 messages at a time, 2 steps after the start",
         ),
     ],

@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import json
 from pathlib import Path
 
 import pytest
+from typer.testing import CliRunner
 
 from helpers.compiled import SANITIZERS
 from helpers.explored import Explorers, agrees
@@ -12,6 +14,7 @@ from helpers.netbuilder import flat, write
 from helpers.random_references import referring
 from helpers.thorough import amount
 from helpers.unions import Outcome, check
+from pn2code.cli.main import app
 from pn2code.conform.core import compare
 from pn2code.diagnostics import Diagnostics
 from pn2code.net.front import load
@@ -110,3 +113,30 @@ def test_random_nets_with_references(sanitized: Explorers, number: int) -> None:
     """Also with two threads asked for, depth first, and in walks; `./dev fuzz --references N` takes more."""
     done: Outcome = check(sanitized, referring(number, 16))
     assert done.nets >= 8, done
+
+
+ASKED = {
+    "never { !n > 5 }": "yes",
+    "never { !n = 4 }": "no",
+    "always { !n = 3 } || tokens(B) = 0": "yes",
+    "reachable { !n = 5 }": "yes",
+    "ctl AG ({ !n = 0 } -> EF { !n = 5 } || tokens(B) = 1)": "yes",
+    "ltl G (fires(Up, { !n = 4 }) -> { !n = 5 })": "no",
+    "ltl G (fires(Up, { !n = 4 }) -> X { !n = 5 })": "yes",
+    "every { !n = 5 } is followed by { !n = 4 }": "yes",
+}
+
+
+def test_properties_read_what_references_hold(tmp_path: Path) -> None:
+    """They are a part of the state; the runs are looked at again by the token game, which has them there, too."""
+    net = write(COUNT, tmp_path / "count.cpn")
+    options = [x for text in ASKED for x in ("--property", text)]
+    traces = ("--traces", str(tmp_path))
+    done = CliRunner().invoke(app, ["verify", str(net), "--json", *traces, *options])
+    assert "bug in pn2code" not in done.stderr
+    rows = json.loads(done.stdout)["properties"]
+    assert [r["answer"] for r in rows] == list(ASKED.values())
+    changing = CliRunner().invoke(
+        app, ["verify", str(net), "--property", "never { (n := 2; true) }"]
+    )
+    assert changing.exit_code == 1 and "changes a reference" in changing.stderr

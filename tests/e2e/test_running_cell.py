@@ -28,6 +28,8 @@ from pn2code.verify import control
 from pn2code.verify.control_types import Check, Control, Plan
 from pn2code.verify.explore import Wishes, explore
 from pn2code.verify.limits import Limits
+from pn2code.verify.premises import Premises
+from pn2code.verify.replies import Replies
 from pn2code.verify.running import NotModelledError, Running
 
 pytestmark = [pytest.mark.cc, pytest.mark.usefixtures("quick_build")]
@@ -427,7 +429,12 @@ def examined(folder: Path) -> Looked:
     d = Diagnostics()
     partition = divide(opened.flat, opened.config, d)
     assert partition is not None and opened.config is not None, render.report(d)
-    plan = Plan(storage=opened.storage, folder=folder, wishes=Wishes(quick=True))
+    plan = Plan(
+        storage=opened.storage,
+        folder=folder,
+        wishes=Wishes(quick=True),
+        premises=Premises.of(partition, opened.config),
+    )
     found = control.examine(partition, plan, Limits(threads=2, max_states=MOST), d)
     assert found is not None, render.report(d)
     return Looked(opened, partition, {c.name: c for c in found.checks}, found)
@@ -570,6 +577,9 @@ def test_a_declared_capacity_is_looked_at(tmp_path: Path) -> None:
     assert check.answer == "no" and check.fails
     assert "place `Coins` gets 2 tokens" in check.says and "declares 1" in check.says
     assert check.evidence[0].transitions[-1] == "Top.Supervisor.Early"
+    ends = next(c for c in looked.checks if c.name == "non-blocking")
+    assert (ends.answer, ends.why) == ("unknown", "stops")
+    assert "the supervisor stops (`capacity`: place `Coins` gets 2 tokens" in ends.says
 
 
 def test_an_end_is_reached_in_the_medium_or_it_says_no(tmp_path: Path) -> None:
@@ -616,13 +626,199 @@ def test_random_cells(tmp_path: Path) -> None:
     assert compared < 50 or {"yes", "no"} <= answers
 
 
-def test_what_is_not_modelled_is_said(tmp_path: Path) -> None:
-    text = RACE.replace(
-        "      in fromB : k\n      both DoneA", "      in fromB : 2`k\n      both DoneA"
-    )
-    looked = examined(write(tmp_path, text, toml(["A", "B"], TOOL)))
-    assert looked.control.running is None
-    assert "`Top.Supervisor.HearB` takes just one message of `fromB`" in looked.control.why
-    assert {c.answer for c in looked.checks.values()} == {"unknown", "yes"}
+TOLD = "      in fromB : k\n      both DoneA"
+TIMED = "  colset T = unit timed;\n"
+TIMER = (
+    "    place Timer : T = 1`()\n    trans Strike\n      in Timer : ()\n      out Timer : ()@+1\n"
+)
+UNMODELLED = {
+    "two at once": (TOLD, TOLD.replace(": k", ": 2`k"), "takes just one message of `fromB`"),
+    "a condition": (
+        TOLD, TOLD.replace(": k", ": (if 1 < 2 then 1`1 else empty)"),
+        "takes just one message of `fromB`"),
+    "two of one kind": (
+        "      in Told : ()\n      out Waiting : ()\n      out say : 1\n",
+        "      in Told : ()\n      out Waiting : ()\n      out say : 1\n      out more : 1\n",
+        "writes two messages of one kind to the same reader"),
+    "reads the time": (
+        "    trans HearB\n", TIMER + "    trans HearB guard [IntInf.toInt (time ()) < 9]\n",
+        "steps may come later than in the net"),
+    "a real clock": (
+        "    trans HearB\n", TIMER.replace("@+1", "@++1.0") + "    trans HearB\n", "the clock is real"),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("what", UNMODELLED)
+def test_what_is_not_modelled_is_not_known(what: str, tmp_path: Path) -> None:
+    old, new, why = UNMODELLED[what]
+    assert old in RACE
+    text, cell = RACE.replace(old, new, 1), toml(["A", "B"], TOOL)
+    if what == "two of one kind":
+        text = text.replace("fromA : INT\n", "fromA : INT\n    place moreA : INT\n")
+        text = text.replace(
+            "port in : INT\n    place toB port",
+            "port in : INT\n    place moreA port in : INT\n    place toB port",
+        )
+        text = text.replace("fromA -> fromA,", "fromA -> fromA, moreA -> moreA,")
+        text = text.replace("say -> fromA)", "say -> fromA, more -> moreA)")
+        text = text.replace("  page PA\n", "  page PA\n    place more port out : INT\n")
+        text = text.replace("      in fromA : k\n", "      in fromA : k\n      in moreA : k\n", 1)
+        cell += '[[channel]]\nplace = "moreA"\nfile = "moreA.robcad"\nkind = "flag"\n'
+    if "clock" in what or "time" in what:
+        text = text.replace("  var k: INT;\n", f"  var k: INT;\n{TIMED}")
+    if "clock" in what:
+        text = text.replace("  standard\n", "  option realtimestamp true\n  standard\n")
+    looked = examined(write(tmp_path, text, cell))
+    assert looked.control.running is None and why in looked.control.why
+    known = {name for name, c in looked.checks.items() if c.answer != "unknown"}
+    assert known == {"messages", "ownership"}  # which are seen in the net itself
     with pytest.raises(NotModelledError):
         Running.of(looked.partition)
+
+
+# --- answers in time -------------------------------------------------------------------------------
+
+ONE = """    place Start = 1
+    place Armed
+    place Finished
+    trans Ask
+      in Start : ()
+      out toA : 1
+      out Armed : ()
+    trans End
+      in Armed : ()
+      in fromA : k
+      out Finished : ()
+"""
+ROUND = """    place Back
+    trans There code action act ()
+      in Told : ()
+      out Back : ()
+    trans Again
+      in Back : ()
+      out Told : ()
+"""
+ENDS = "every fires(Ask) is followed by fires(End)"
+# A is told something that it never answers; B takes its time.
+LAMP = net(
+    """    place Start = 1
+    place Armed
+    place Finished
+    trans Ask
+      in Start : ()
+      out toA : 1
+      out toB : 1
+      out Armed : ()
+    trans HearA
+      in Start : ()
+      in fromA : k
+      out Start : ()
+    place Turns = 2
+    trans Again
+      in Armed : ()
+      in Turns : ()
+      in fromB : k
+      out toB : 1
+      out Armed : ()
+    trans End
+      in Armed : ()
+      in fromB : k
+      out Finished : ()
+""",
+    {
+        "A": """    place Waiting = 1
+    place Told : INT
+    trans Accept
+      in Waiting : ()
+      in ask : k
+      out Told : k
+    trans Keep guard [k = 1]
+      in Told : k
+      out Waiting : ()
+    trans Answer guard [k <> 1]
+      in Told : k
+      out Waiting : ()
+      out say : 1
+""",
+        "B": SLOW,
+    },
+    ACT,
+)
+
+
+def said_of(folder: Path) -> dict[str, Any]:
+    """What `verify --json` says, with one property."""
+    arguments = ["verify", str(folder), "--json", "--traces", str(folder / "traces")]
+    done = CliRunner().invoke(app, [*arguments, "--property", ENDS])
+    assert "bug in pn2code" not in done.stderr
+    return json.loads(done.stdout)  # type: ignore[no-any-return]
+
+
+def test_a_tool_that_takes_longer_than_an_answer_may(tmp_path: Path) -> None:
+    cell = toml(["A", "B"], TOOL).replace("final =", "reply_timeout_s = 1\nfinal =")
+    said = said_of(write(tmp_path, RACE, cell))
+    ends = next(c for c in said["controller"] if c["check"] == "non-blocking")
+    assert (ends["answer"], ends["why"]) == ("unknown", "late")
+    assert "device `A` may need 2 s" in ends["says"]
+    assert said["medium"][0]["answer"] == said["properties"][0]["answer"] == "inconclusive"
+    assert "reply_timeout_s" in said["properties"][0]["why"]
+
+
+def test_an_answer_in_time_is_assumed(tmp_path: Path) -> None:
+    checks = examined(write(tmp_path, RACE, toml(["A", "B"], TOOL))).checks
+    assert checks["non-blocking"].answer == "yes" and not checks["channels"].assumes
+    assert checks["non-blocking"].assumes == (
+        "nobody owes an answer for longer than `reply_timeout_s`, 120 s "
+        "(tools, waits and delays take at most 2 s)",
+    )
+
+
+@pytest.mark.parametrize(
+    ("page", "needs"),
+    [
+        (SLOW.replace("act ()", "(act (); if 1 < 2 then act () else ())"), "4 s"),
+        (SLOW.replace("act ()", "twice ()"), "4 s"),
+        (SLOW + ROUND, "any time"),
+        (SLOW.replace("act ()", "pause 2.5"), "2.5 s"),
+    ],
+)
+def test_what_a_command_takes(page: str, needs: str, tmp_path: Path) -> None:
+    head = f"{ACT}  fun twice () = (act (); act ());\n  fun pause (s : real) = ();\n"
+    wait = TOOL + 'pause = { command = "wait" }\n'
+    cell = toml(["A"], wait).replace("final =", "reply_timeout_s = 1\nfinal =")
+    opened = open_net(write(tmp_path, net(ONE, {"A": page}, head), cell), {})
+    partition = divide(opened.flat, opened.config, Diagnostics())
+    assert partition is not None and opened.config is not None
+    assert f"device `A` may need {needs} for" in Replies.of(partition, opened.config).late
+
+
+def test_what_no_state_shows_is_assumed(root: Path) -> None:
+    opened = open_net(root / "examples" / "riveting", {})
+    partition = divide(opened.flat, opened.config, Diagnostics())
+    assert partition is not None and opened.config is not None
+    premises = Premises.of(partition, opened.config)
+    measured, given = premises.states
+    assert measured == "what is measured is what `measure` of the net gives"
+    assert given == "`coordenadas` begins with the tokens of the net, not with those of its file"
+    assert premises.of_check("messages", "yes") == premises.states
+    assert premises.of_check("ownership", "yes") == premises.of_check("messages", "no") == ()
+    late, sensors = premises.of_check("non-blocking", "yes")[2:]
+    assert "moves and measurements take is not known" in late and "sensor" in sensors
+
+
+def test_whoever_waits_for_others_may_owe_for_ever(tmp_path: Path) -> None:
+    cell = toml(["A", "B"], TOOL.replace("2.0", "25.0"))
+    folder = write(tmp_path, LAMP, cell.replace("final =", "reply_timeout_s = 30\nfinal ="))
+    looked = examined(folder)
+    ends = looked.checks["non-blocking"]
+    assert (ends.answer, ends.why) == ("unknown", "late")
+    assert "device `A` may have to wait for others while it owes an answer" in ends.says
+    assert ends.evidence[0].transitions[-1] == "Top.A.Keep"
+    assert "has not answered" in str(ran(folder)[-1]["reason"])
+
+
+def test_the_medium_says_no_where_a_program_stops(tmp_path: Path) -> None:
+    """The net with its files goes on where a script that ends owing an answer stops the cell."""
+    folder = write(tmp_path, QUIT, toml(["A", "B"], TOOL))
+    whole = said_of(folder)["medium"][0]
+    assert whole["answer"] == "no" and "owes an answer" in whole["why"]

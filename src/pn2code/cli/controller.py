@@ -15,6 +15,7 @@ from pn2code.verify.codes import TRACE_UNWRITABLE
 from pn2code.verify.control_types import Control, Plan
 from pn2code.verify.explore import Wishes
 from pn2code.verify.limits import Limits
+from pn2code.verify.premises import Premises
 from pn2code.verify.proofs import declared
 from pn2code.verify.result import Exploration
 
@@ -63,6 +64,7 @@ def look(
         properties=asked,
         evidence=wishes.evidence,
         wishes=replace(wishes, quick=found.nodes <= QUICK_STATES),
+        premises=Premises.of(partition, config),
     )
     looked = control.examine(partition, plan, replace(limits, traces=0), d, found)
     if looked is not None:

@@ -3,16 +3,20 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import replace
 
 from pn2code.cell.divide import divide
 from pn2code.cli.nets import OpenNet
 from pn2code.cli.options import Exit
 from pn2code.diagnostics import Diagnostics
-from pn2code.medium.check import Answer, Evidence, medium
+from pn2code.medium.check import WHOLE, Answer, Evidence, medium
 from pn2code.medium.faults import SAYS
 from pn2code.verify import basis
+from pn2code.verify.control_types import BLOCKING, Control
 from pn2code.verify.explore import Wishes
 from pn2code.verify.limits import Limits
+from pn2code.verify.premises import Premises
+from pn2code.verify.reasons import clause
 from pn2code.verify.result import Exploration
 
 Answers = tuple[Answer, ...]
@@ -24,6 +28,7 @@ def look(
     limits: Limits,
     wishes: Wishes,
     d: Diagnostics,
+    control: Control | None = None,
 ) -> Answers:
     """All checks; none for a net that is no cell, or that could not be explored to the end because of an error.
 
@@ -33,6 +38,7 @@ def look(
         limits: of each exploration.
         wishes: who is told of the progress, and who may interrupt.
         d: gets the errors.
+        control: the checks of its supervisor; None: they were not asked.
     """
     if opened.config is None or found.why in ("interrupted", "error") or wishes.interrupted():
         return ()
@@ -48,7 +54,25 @@ def look(
         cell_states=found.nodes if is_small else None,
         wishes=Wishes(progress=wishes.progress, interrupted=wishes.interrupted),
     )
-    return tuple(answers)
+    premise = Premises.of(partition, opened.config).replies.premise
+    return tuple(_ending(a, control, premise) if a.check == WHOLE else a for a in answers)
+
+
+def _ending(a: Answer, control: Control | None, premise: str) -> Answer:
+    """That the cell can come to its end is also for the checks of the supervisor: they know when programs stop."""
+    if control is None:
+        assumes = f"{a.assumes}; no program stops (that is looked at by the controller checks)"
+    else:
+        assumes = f"{a.assumes}; {premise}" if premise else a.assumes
+    a = replace(a, assumes=assumes)
+    if a.answer != "yes" or control is None:
+        return a
+    ends = next(c for c in control.checks if c.name == BLOCKING)
+    if ends.answer == "no":
+        return replace(a, answer="no", why=f"`{BLOCKING}`: {ends.says}")
+    if control.stops or (ends.answer == "unknown" and ends.why != "speeds"):
+        return replace(a, answer="inconclusive", why=control.stops or clause(ends.why or ""))
+    return a
 
 
 def code(answers: Answers) -> int:

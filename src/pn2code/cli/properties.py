@@ -234,23 +234,18 @@ def files(opened: OpenNet, file: Path | None, *, found: bool) -> tuple[Path, ...
 
 
 def _check_effects(opened: OpenNet, properties: m.Properties, d: Diagnostics) -> None:
-    """Conditions follow from the marking; references may be read if nothing in the net changes them."""
+    """Conditions follow from the state: the marking, and what references hold."""
     effects = Effects(opened.flat.program)
-    changes = any(
-        Effect.WRITE in effects.of(t.guards, t.delay, t.code.action if t.code else None)
-        or any(Effect.WRITE in effects.of(a.inscription.value) for a in t.arcs if a.inscription)
-        for t in opened.flat.transitions
-    )
     conditions = [p.exp for p in properties.predicates] + [s.exp for s in properties.steps]
     for exp in conditions:
         own = effects.of(exp)
-        wrong = [e for e in Effect if e in own and (e in _OUTSIDE or changes)]
+        wrong = [e for e in Effect if e in own and e in _OUTSIDE]
         if wrong:
             d.error(
                 codes.OUTSIDE,
                 f"this condition {wrong[0].value}",
                 exp.span,
-                hint="say it of what the places hold: nothing else is the same whenever a marking is reached",
+                hint="say it of what places and references hold: nothing else is the same in each state",
             )
 
 

@@ -34,6 +34,7 @@ from pn2code.cli.subject import Subject
 from pn2code.cli.verify_screen import Said, closing, full, screen
 from pn2code.deadline import Deadline, TimeIsOverError
 from pn2code.diagnostics import Diagnostics, Origin
+from pn2code.lowering.robot import lower_robots
 from pn2code.os_reason import os_reason
 from pn2code.verify import chance
 from pn2code.verify.answers import Answer, verdict
@@ -234,7 +235,10 @@ def verify(
     try:
         with deadline.enforced():
             opened = open_net(net, parse_values(settings), form, int_bits=int_bits)
-            pipeline.divided(opened.flat, opened.config, d)
+            partition = pipeline.divided(opened.flat, opened.config, d)
+            if partition is not None and opened.config is not None:
+                # What is said of a cell is said of its programs: without them there is nothing to say.
+                lower_robots(partition, opened.config, d)
             asked = properties.asked(opened, texts, file, d, found=found_properties)
             chance.warn(opened.flat, d)
     except TimeIsOverError:
@@ -294,7 +298,8 @@ def verify(
                     more = properties.of_bindings(asked, opened, found, limits, wishes, d, control)
                 seen: medium.Answers = ()
                 if found is not None and check_medium:
-                    seen = medium.look(opened, found, limits, wishes, d)
+                    looked = control if check_controller else None
+                    seen = medium.look(opened, found, limits, wishes, d, looked)
         if found is None:
             stop(d, form)
         try:

@@ -139,7 +139,7 @@ def screen(said: Said) -> str:
     items = tuple(_items(said))
     wrong = sorted((i for i in items if i.kind != "good"), key=lambda i: i.kind != "bad")
     if items:
-        lines += ["", *_counts(said)]
+        lines += ["", *_counts(said), *_premises(said)]
     if wrong:
         lines += ["", *_wrong(wrong)]
     end = ["", *textwrap.wrap(_MORE, _WIDTH), *textwrap.wrap(closing(said), _WIDTH)]
@@ -233,6 +233,7 @@ def _items(said: Said) -> Iterator[_Item]:
         kind = {"yes": "good", "no": "bad"}.get(m.answer, "open")
         lines = next((tuple(e.lines) for e in m.evidence), ())
         says = f"not known: {m.why}" if kind == "open" else m.says
+        says += f" ({m.why})" if kind == "bad" and m.why else ""
         yield _Item(f"{m.check[:1].upper()}{m.check[1:]}", kind, says, None, lines)
     for a in said.answers:
         kind = "open" if a.answer == "inconclusive" else "good" if a.is_expected else "bad"
@@ -275,6 +276,16 @@ def _counts(said: Said) -> Iterator[str]:
             yield from textwrap.wrap(
                 f"{title}: {_count(kinds)}{_rest(rests)}.", _WIDTH, subsequent_indent="  "
             )
+
+
+def _premises(said: Said) -> Iterator[str]:
+    """What answers rest on that no state shows."""
+    checks = said.control.checks if said.control else ()
+    found = dict.fromkeys(
+        [*(x for c in checks for x in c.assumes), *(x for a in said.answers for x in a.assumes)]
+    )
+    if found:
+        yield from textwrap.wrap(f"Assumed: {'; '.join(found)}.", _WIDTH, subsequent_indent="  ")
 
 
 def _count(kinds: Sequence[str]) -> str:

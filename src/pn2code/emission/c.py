@@ -341,6 +341,7 @@ class _Emitter:
             "looks": self._effects.looks((t.enumerate, t.fire)),
             "looks_outside": self._effects.looks_outside((t.enumerate, t.fire)),
             "assigns": self._effects.reaches(t.fire, is_assignment),
+            "search_assigns": self._effects.reaches((t.enumerate, t.thresholds), is_assignment),
             "affected": ""
             if len(affected) == len(self._net.transitions)
             else ", ".join(f"{i}U" for i in affected),

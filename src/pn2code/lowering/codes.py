@@ -29,8 +29,8 @@ UNSUPPORTED_COLSET = register(
 OUTSIDE_MARKING = register(
     "unsupported-outside-marking",
     "a property looks at more than the marking",
-    "A property is asked of every marking that can be reached. References, random numbers, files and the number of "
-    "steps are in no marking: the answer would depend on the way to it.",
+    "A property is asked of every marking that can be reached. Random numbers, files and the number of steps are in "
+    "no marking: the answer would depend on the way to it.",
 )
 STORAGE_COLSET = register(
     "storage-colour-set",

@@ -37,7 +37,7 @@ def lower_predicate(program: Program, net: FlatNet, p: Predicate) -> ir.Predicat
             OUTSIDE_MARKING,
             f"property `{p.name}` looks at more than the marking",
             p.exp.span,
-            hint="do without references, random numbers, files and `step ()`",
+            hint="do without random numbers, files and `step ()`",
         )
     body = Body(program)
     env: dict[int, Binding] = {}
@@ -83,11 +83,7 @@ def _counted(node: T, lists: dict[int, ir.PlaceTokens]) -> T:
 
 
 def _is_outside(e: core.Exp) -> bool:
-    """Whether an expression, its parts not included, reads or changes what is in no marking. A reference that it makes
-    for itself does no harm."""
-    match e:
-        case core.Builtin(name=name):
-            return name in _OUTSIDE or name.startswith(_OUTSIDE_PREFIXES)
-        case core.Var(symbol=symbol) if symbol.is_global:
-            return "ref" in str(symbol.type).split()
-    return False
+    """Whether an expression, its parts not included, asks for what neither places nor references hold."""
+    return isinstance(e, core.Builtin) and (
+        e.name in _OUTSIDE or e.name.startswith(_OUTSIDE_PREFIXES)
+    )

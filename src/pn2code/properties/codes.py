@@ -35,8 +35,8 @@ OUTSIDE = register(
     "property-outside",
     "a condition depends on more than the marking",
     "A condition in braces is evaluated in every marking, in no particular order. What it says must follow from the "
-    "marking (and the model time) alone: it may not draw random numbers, read files, count steps, or look at or "
-    "change references. Write it as a function of what the places hold.",
+    "state alone (what places and references hold, and the model time): it may not draw random numbers, read files, "
+    "count steps, or change references. Write it as a function of what places and references hold.",
 )
 EVIDENCE = register(
     "property-evidence",

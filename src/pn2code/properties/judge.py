@@ -34,7 +34,7 @@ def look(game: Game, predicate: Predicate, marking: Marking) -> bool:
     Raises:
         MlException, MlLimit: evaluating it does.
     """
-    game.evaluator.now = marking.time
+    game.enter(marking)
     found = {symbol: tokens(game, marking, place) for symbol, place in predicate.places}
     return game.evaluator.value(predicate.exp, found) is True
 

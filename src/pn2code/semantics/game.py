@@ -264,6 +264,11 @@ class Game:
         self._present = self._references.contents()
         return replace(marking, references=self._present)
 
+    def enter(self, marking: Marking) -> None:
+        """For whoever evaluates expressions of their own: time and references are those of a marking."""
+        self._enter(marking)
+        self.evaluator.now = marking.time
+
     def _enter(self, marking: Marking) -> None:
         """The references hold what they hold in a marking.
 

@@ -58,6 +58,8 @@ class Answer:
     cell: bool = False
     net: Verdict | None = None
     net_why: str = ""
+    assumes: tuple[str, ...] = ()
+    """what a "yes" about a cell rests on that no state of it shows"""
 
     @property
     def is_expected(self) -> bool:
@@ -96,6 +98,7 @@ class Answer:
             "net": {"answer": self.net, "why": self.net_why} if self.net else None,
             "evidence": run,
             "rests_on": self.rests_on,
+            "assumes": list(self.assumes),
         }
 
 

@@ -21,7 +21,6 @@ from pn2code.verify.answers import Answer, Evidence, answers
 from pn2code.verify.control_answers import can_more, has_own_priorities
 from pn2code.verify.control_types import Control
 from pn2code.verify.reasons import clause
-from pn2code.verify.running import Running
 
 _PRIORITIES = (
     "In the closed net priorities are global: a transition waits while one of higher priority is enabled anywhere. In "
@@ -96,15 +95,17 @@ def of_cell(
             of_net.about.asked
         )  # of parts of transitions, what is assumed is a part of the formula
         is_fair = isinstance(asked, m.Linear) and bool(asked.fair)
-        certain = _certain(answer, control.running, drawn, all_orders, is_fair)
-        yield _one(of_net, certain, partition)
+        certain = _certain(answer, control, drawn, all_orders, is_fair)
+        found_one = _one(of_net, certain, partition)
+        assumes = control.premises.of_property(asked, found_one.answer, kept=found_one.kept)
+        yield replace(found_one, assumes=assumes)
 
 
 def _certain(
-    answer: Answer, running: Running | None, drawn: bool, all_orders: bool, is_fair: bool
+    answer: Answer, control: Control, drawn: bool, all_orders: bool, is_fair: bool
 ) -> Answer:
     """Without what the cell's own steps, chance or durations leave open; `is_fair`: fairness is assumed."""
-    asked = answer.about.asked
+    asked, running = answer.about.asked, control.running
     open_ = ""
     if answer.answer == "inconclusive":
         return replace(answer, node=None)
@@ -116,6 +117,9 @@ def _certain(
     elif all_orders and (answer.answer == "no" or is_fair):
         # Where more is enabled, fewer paths are fair.
         open_ = "it was looked at in all orders in which the supervisor could fire"
+    is_possible = isinstance(asked, m.Invariant) and not asked.wanted
+    if not open_ and answer.answer == "yes" and not (is_kept(answer.about) or is_possible):
+        open_ = control.stops
     if not open_ and drawn and answer.evidence is None:
         open_ = clause("chance")
     if open_:

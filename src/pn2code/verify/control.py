@@ -13,8 +13,9 @@ owner touches what is not its own is seen in the net itself.
 from __future__ import annotations
 
 import tempfile
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
+from functools import reduce
 from pathlib import Path
 
 from pn2code.cell.partition import OwnerKind, Partition
@@ -34,6 +35,8 @@ from pn2code.verify.control_answers import (
     known,
     order_answers,
     refusal,
+    settled,
+    silent,
     unknown,
 )
 from pn2code.verify.control_messages import formats, memory
@@ -52,7 +55,7 @@ from pn2code.verify.explore import explore
 from pn2code.verify.limits import Limits, Reduction
 from pn2code.verify.programs import Sizes
 from pn2code.verify.result import Exploration
-from pn2code.verify.running import NotModelledError, Running
+from pn2code.verify.running import NotModelledError, Running, Silence
 
 # --- questions -----------------------------------------------------------------------------------
 
@@ -69,10 +72,36 @@ def of_cell(running: Running, plan: Plan) -> str:
         f"? ends {end}",
         f"? bound {running.stopped} 0 0",
         f"? restless {MOST_OCCURRENCES - 1}",
+        *(f"? invariant {_kept_silence(asked, s, running.resting)}" for s in running.silences),
         *(f"? bound {c.place} 0 1" for c in running.partition.channels),
         *(f"? bound {place} 0 {most}" for place, most in plan.capacities.items()),
     ]
     return "".join(f"{line}\n" for line in running.lines(first=True)) + asked.text()
+
+
+def _kept_silence(asked: Questions, silence: Silence, idle: int) -> int:
+    """The item of the states in which it does *not* wait for others while it owes an answer."""
+
+    def marked(place: int) -> int:
+        return asked.line(f"within {place} 1 -")
+
+    def no(item: int) -> int:
+        return asked.line(f"not {item}")
+
+    def joined(operator: str, items: Sequence[int]) -> int:
+        return reduce(lambda a, b: asked.line(f"{operator} {a} {b}"), items)
+
+    waits = [
+        joined("and", [marked(place), *(no(joined("and", _flat(marked, x))) for x in needed)])
+        for place, needed in silence.states
+    ]
+    unseen = [joined("and", [marked(p), no(marked(seen))]) for p, seen in silence.answers]
+    others = [marked(silence.owes), marked(idle), *map(no, unseen)]
+    return no(joined("and", [*others, joined("or", waits)]))
+
+
+def _flat(marked: Callable[[int], int], messages: Sequence[Sequence[int]]) -> list[int]:
+    return [marked(place) for places in messages for place in places]
 
 
 def of_orders(running: Running, firings: int = MAX_FIRINGS) -> str:
@@ -157,7 +186,9 @@ def examine(
             checks = tuple(refused if c.name == BLOCKING else c for c in checks)
         if chance.draws(partition.net):
             checks = tuple(drawn(c) for c in checks)
-        return Control(checks, found, running, answers=found.answers[:count], closed=closed)
+        late = plan.premises.replies.late or silent(running, found.answers[count:])
+        control = Control(checks, found, running, answers=found.answers[:count], closed=closed)
+        return settled(replace(control, late=late, premises=plan.premises))
 
 
 # --- the net itself ------------------------------------------------------------------------------

@@ -20,6 +20,7 @@ from pn2code.verify.control_types import (
     FINITE,
     OWNERSHIP,
     Check,
+    Control,
     Evidence,
     Plan,
 )
@@ -76,8 +77,16 @@ def cell_answers(
 ) -> Iterator[Check]:
     """The same of `of_cell`, without the properties."""
     channels = len(partition.channels)
-    ends, stops, restless, *bounds = _padded(found, rows, 3 + channels + len(plan.capacities))
-    yield _stopping(stops, keep) or _restless(restless, keep) or _blocking(ends, keep, partition)
+    silences = len(keep.running.silences) if keep.running is not None else 0
+    count = 3 + silences + channels + len(plan.capacities)
+    ends, stops, restless, *bounds = _padded(found, rows, count)
+    silent_rows, bounds = bounds[:silences], bounds[silences:]
+    ending = _stopping(stops, keep) or _restless(restless, keep)
+    ending = ending or _blocking(ends, keep, partition)
+    shown = next((row for row in silent_rows if row["answer"] == "no"), None)
+    if ending.answer == "yes" and shown is not None:  # `settled` says what it means
+        ending = replace(ending, evidence=keep.all(shown, BLOCKING))
+    yield ending
     bounds = [*known(partition, plan.capacities, bounds, closed)]
     if partition.channels:
         yield channels_check(partition, bounds[:channels], keep)
@@ -104,6 +113,29 @@ def known(
 def can_more(partition: Partition) -> bool:
     """Whether the closed net can do all that the cell can: neither priorities nor time hold back what others may do."""
     return not has_own_priorities(partition) and not partition.net.timed
+
+
+def silent(running: Running, rows: Sequence[Mapping[str, Any]]) -> str:
+    """Why somebody may owe an answer for too long, by the answers to `of_cell`: it waits for others meanwhile."""
+    for silence, row in zip(running.silences, rows[3:], strict=False):
+        if row["answer"] == "no":
+            return (
+                f"{silence.who} may have to wait for others while it owes an answer, and whoever owes one for "
+                "longer than `reply_timeout_s` stops the cell"
+            )
+    return ""
+
+
+def settled(control: Control) -> Control:
+    """An end is no certainty where the supervisor stops; and each answer knows what it rests on besides."""
+    checks = []
+    for check in control.checks:
+        if check.name == BLOCKING and check.answer == "yes" and control.stops:
+            why = "late" if control.stops == control.late else "stops"
+            check = replace(check, answer="unknown", why=why, says=f"not known: {control.stops}")
+        assumes = control.premises.of_check(check.name, check.answer)
+        checks.append(replace(check, assumes=assumes))
+    return replace(control, checks=tuple(checks))
 
 
 def drawn(check: Check) -> Check:
@@ -143,7 +175,7 @@ class Keeper:
 
     def __init__(self, plan: Plan, running: Running | None) -> None:
         self._plan = plan
-        self._running = running
+        self.running = running
 
     def last_step(self, row: Mapping[str, Any]) -> str:
         """The name of the last step of a trace, without its head; before it is read."""
@@ -157,21 +189,21 @@ class Keeper:
 
     def length(self, row: Mapping[str, Any]) -> int:
         """How many steps of a trace are occurrences, before it is read; 0 where there is no trace."""
-        is_there = row.get("trace") is not None and self._running is not None
+        is_there = row.get("trace") is not None and self.running is not None
         return self._occurrences(row, None) if is_there else 0
 
     def _occurrences(self, row: Mapping[str, Any], most: int | None) -> int:
         lines = Path(row["trace"]).read_text(encoding="utf-8", errors="surrogateescape").split("\n")
         steps = [x["transition"] for x in map(json.loads, filter(None, lines)) if "transition" in x]
-        assert self._running is not None
-        return sum(step in self._running.names for step in steps[:most])
+        assert self.running is not None
+        return sum(step in self.running.names for step in steps[:most])
 
     def evidence(self, row: Mapping[str, Any], name: str) -> Evidence | None:
         """The run of an answer; None: there is none."""
-        if row.get("trace") is None or self._running is None:
+        if row.get("trace") is None or self.running is None:
             return None
         path = Path(row["trace"])
-        length, loop = self._running.project(path, row["loop"])
+        length, loop = self.running.project(path, row["loop"])
         trace = path.read_bytes()
         steps = map(json.loads, trace.decode("utf-8", "surrogateescape").rstrip("\n").split("\n"))
         named = [step["transition"] for step in steps if "transition" in step]

@@ -53,10 +53,13 @@ def memory(found: Exploration | None, why: str = "") -> Check:
     if found is None or size is None or found.arena is None:
         return unknown(MEMORY, {"why": why if found is None else found.why})
     firing, marking = found.arena["firing"], found.arena["marking"]
-    needs = f"at most {marking:,} bytes in a marking and {firing:,} in one firing"
+    held = f"lists and strings take at most {marking:,} bytes in a marking"
+    if marking == 0:
+        held = "no marking has lists or strings that take any"
+    needs = f"{held}, and what is worked out on the way {firing:,} in one firing"
     if size > arena.MOST:
-        return Check(MEMORY, "no", f"lists and strings take {needs}, which is too much", firing)
-    says = f"lists and strings take {needs}; the supervisor has {size:,} bytes for them"
+        return Check(MEMORY, "no", f"{needs}, which is too much", firing)
+    says = f"{needs}; the supervisor has {size:,} bytes"
     if firing == marking == 0:
         says = "there are no lists and strings that need any"
     return Check(MEMORY, "yes", says, firing)

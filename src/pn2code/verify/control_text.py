@@ -75,7 +75,7 @@ def told(net: FlatNet, storage: Mapping[str, str], control: Control, *, most: in
 
 def _rests(check: Check) -> Iterator[str]:
     if check.rests_on is not None:
-        yield f"rests on this: {basis.SAYS[check.rests_on]}"
+        yield f"rests on this: {'; '.join((basis.SAYS[check.rests_on], *check.assumes))}"
 
 
 def rows(control: Control) -> Iterator[dict[str, object]]:

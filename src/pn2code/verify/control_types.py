@@ -10,6 +10,7 @@ from typing import Any
 from pn2code.properties import meaning as m
 from pn2code.verify import basis
 from pn2code.verify.explore import Wishes
+from pn2code.verify.premises import Premises
 from pn2code.verify.result import Exploration
 from pn2code.verify.running import Running
 
@@ -42,11 +43,13 @@ MEANINGS = {
     CHANNELS: "no channel ever holds two messages",
     CAPACITY: "no place ever holds more tokens than `[capacity]` declares",
     MESSAGES: "every message can be written into its file, and is read as it was written",
-    MEMORY: "the lists and strings of every marking and every firing have room in the supervisor",
+    MEMORY: "the lists and strings of every marking, and what a firing works out, have room in the supervisor",
     OWNERSHIP: "each transition uses places of its owner only, and channels in their direction only",
 }
 KEPT = frozenset({FINITE, BOUNDED, CHANNELS, CAPACITY, MESSAGES, MEMORY, OWNERSHIP})
 """Checks whose "yes" is kept when the programs do less than what was looked at."""
+STOPPING = (FINITE, BOUNDED, CHANNELS, CAPACITY, MESSAGES, MEMORY)
+"""Checks where a "no" means that the supervisor stops."""
 MAX_FIRINGS = 100_000
 """What `./supervisor` permits in one cycle unless it is told another number."""
 
@@ -88,6 +91,7 @@ class Check:
         evidence: the run; of confluence a second one, which goes on in another way.
         transitions: the two whose order matters; those that touch what is another's.
         place: the channel, or the place with a capacity, by name.
+        assumes: what a "yes" rests on that no state of the cell shows.
     """
 
     name: str
@@ -99,6 +103,7 @@ class Check:
     evidence: tuple[Evidence, ...] = ()
     transitions: tuple[str, ...] = ()
     place: str | None = None
+    assumes: tuple[str, ...] = ()
 
     @property
     def rests_on(self) -> str | None:
@@ -121,6 +126,7 @@ class Check:
             "accepted": self.is_accepted,
             "kept": self.name in KEPT,
             "rests_on": self.rests_on,
+            "assumes": list(self.assumes),
             "transitions": list(self.transitions),
             "place": self.place,
             "evidence": [e.row() for e in self.evidence],
@@ -141,6 +147,7 @@ class Plan:
         properties: what is asked about the cell besides.
         evidence: a folder for the runs that answer these; None: they are not kept.
         wishes: of the exploration. What it is asked, and the files it writes, are ours.
+        premises: what answers rest on besides.
     """
 
     storage: Mapping[str, str] = field(default_factory=dict)
@@ -152,6 +159,7 @@ class Plan:
     properties: m.Properties = m.Properties()
     evidence: Path | None = None
     wishes: Wishes = Wishes()
+    premises: Premises = Premises()
 
 
 @dataclass(frozen=True, slots=True)
@@ -164,6 +172,8 @@ class Control:
         running: its net; None: the cell cannot be modelled so, and `why` says why.
         answers: what the explorer says of each property.
         closed: the state space of the closed net, if it is known.
+        late: why somebody may owe an answer for too long; "": that is not known of anybody.
+        premises: what answers rest on besides.
     """
 
     checks: tuple[Check, ...]
@@ -172,6 +182,14 @@ class Control:
     why: str = ""
     answers: tuple[Mapping[str, Any], ...] = ()
     closed: Exploration | None = None
+    late: str = ""
+    premises: Premises = Premises()
+
+    @property
+    def stops(self) -> str:
+        """Why the supervisor may stop where the model of the cell goes on; "": that is not known."""
+        broken = (c for c in self.checks if c.name in STOPPING and c.answer == "no")
+        return next((f"the supervisor stops (`{c.name}`: {c.says})" for c in broken), self.late)
 
     @property
     def failed(self) -> tuple[Check, ...]:

@@ -26,6 +26,7 @@ from pn2code.verify.codes import BEYOND_ROOM, CONTROL_FAILED, CONTROL_OPEN
 from pn2code.verify.control_types import Check, Control, Plan
 from pn2code.verify.explore import Wishes
 from pn2code.verify.limits import Limits, cores
+from pn2code.verify.premises import Premises
 from pn2code.verify.reasons import clause
 
 MOST_STATES = 3_000_000
@@ -81,7 +82,10 @@ def prove(
             return None
         return Proofs(found, tuple(_not_asked(partition)) if config else (), None)
     plan = Plan(
-        storage=storage, order_decides=config.supervisor.order_decides, capacities=capacities
+        storage=storage,
+        order_decides=config.supervisor.order_decides,
+        capacities=capacities,
+        premises=Premises.of(partition, config),
     )
     looked = _look(partition, plan, d)
     if looked is None:
@@ -203,8 +207,17 @@ def _warn_open(looked: Control, config: CellConfig, d: Diagnostics) -> None:
         f"it is not known whether the supervisor keeps to its execution scheme: {looked.open[0].says}",
         config.supervisor.origin,
         notes=[f"not checked: {names}"],
-        hint="`pn2code verify` on the cell has no limits of its own; the generated files say `unchecked`",
+        hint=_OPEN_HINTS.get(looked.open[0].why or "", _OPEN_HINT),
     )
+
+
+_OPEN_HINT = (
+    "`pn2code verify` on the cell has no limits of its own; the generated files say `unchecked`"
+)
+_OPEN_HINTS = {
+    "late": "make `reply_timeout_s` longer; what is never answered is `data`, not a flag (docs/protocol.md, I8)",
+    "speeds": "`pn2code verify` writes the run; the generated files say `unchecked`",
+}
 
 
 def _not_asked(partition: Partition) -> Iterator[str]:
@@ -226,6 +239,11 @@ def _verdicts(looked: Control) -> Iterator[str]:
         yield f"Checked in all {looked.found.nodes:,} states of the cell as it runs (docs/execution.md):"
     for check in looked.checks:
         yield from textwrap.wrap(_verdict(check), _WIDTH, subsequent_indent="    ")
+    assumed = dict.fromkeys(x for check in looked.checks for x in check.assumes)
+    if assumed:
+        yield "Assumed:"
+    for premise in assumed:
+        yield from textwrap.wrap(f"  {premise}", _WIDTH, subsequent_indent="    ")
 
 
 def _verdict(check: Check) -> str:

@@ -52,7 +52,8 @@ def remarks(a: Answer) -> list[str]:
         found.append(f"net: {a.net}. {a.net_why}")
     if a.rests_on is not None:
         played = ", and the token game has played it" if a.evidence and a.evidence.confirmed else ""
-        found.append(f"rests on this: {basis.SAYS[a.rests_on]}{played * (a.rests_on == basis.RUN)}")
+        seen = f"{basis.SAYS[a.rests_on]}{played * (a.rests_on == basis.RUN)}"
+        found.append(f"rests on this: {'; '.join((seen, *a.assumes))}")
     if not a.about.expect and a.answer != "inconclusive":
         found.append("as expected" if a.is_expected else "expected to be false")
     return found

@@ -15,6 +15,8 @@ _CLAUSES = {
     "reduction": "the reduction of the state space does not keep it",
     "endless": "the response is not finite",
     "speeds": "the order of events decides, and durations decide that",
+    "late": "an answer may be owed for longer than `reply_timeout_s`, and that stops the cell",
+    "stops": "another check says that the supervisor stops",
     "commands": "a script may go round without a command or a wait, if it never takes the branches with commands",
     "chance": "random numbers or files decide: other ones than those that were drawn may lead elsewhere",
     "compiler": "there is no C compiler",

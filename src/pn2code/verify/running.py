@@ -60,6 +60,23 @@ class NotModelledError(Exception):
 
 
 @frozen
+class Silence:
+    """When somebody waits for others while it owes an answer (I8 of docs/protocol.md): for how long, nobody knows.
+
+    Args:
+        owes: the place that is marked while it does.
+        states: the control places at which all transitions need messages; of each transition, for each of its
+            messages, the places that are marked if it is there.
+        answers: of each channel to the supervisor, its place and that of what the supervisor has seen.
+    """
+
+    who: str
+    owes: int
+    states: tuple[tuple[int, tuple[tuple[tuple[int, ...], ...], ...]], ...]
+    answers: tuple[tuple[int, int], ...]
+
+
+@frozen
 class Running:
     """The net, and what is needed to ask about it.
 
@@ -86,6 +103,9 @@ class Running:
     idle: tuple[int, ...]
     names: frozenset[str]
     """of the transitions of the cell's net"""
+    resting: int
+    """the place of a supervisor that rests"""
+    silences: tuple[Silence, ...] = ()
 
     @staticmethod
     def of(partition: Partition, predicates: Sequence[Predicate] = ()) -> Running:
@@ -294,6 +314,8 @@ class _Composer:
             instant=tuple(_instant(self.partition, surely=True)),
             idle=tuple(_instant(self.partition, surely=False)),
             names=frozenset(t.name for t in self.partition.net.transitions),
+            resting=self.idle,
+            silences=tuple(self._silences()),
         )
 
     def _step(
@@ -330,12 +352,30 @@ class _Composer:
         self.b.add_arcs(t.index, arcs, {})
 
     def _owing(self) -> Iterator[tuple[int, int]]:
-        """By robot whose script can end: a place that is marked while it owes an answer (I8 of docs/protocol.md)."""
-        for owner, program in self.machines.items():
-            is_asked = any(c.reader == owner and c.kind is ChannelKind.FLAG for c in self.written)
-            if is_asked and not all(map(program.steps_from, program.control)):
+        """By robot that gets flags: a place that is marked while it owes an answer (I8 of docs/protocol.md)."""
+        for owner in self.machines:
+            if any(c.reader == owner and c.kind is ChannelKind.FLAG for c in self.written):
                 name = self.partition.owners[owner].name
                 yield owner, self.b.place(f"cell.{name}.owes", self.b.unit)
+
+    def _silences(self) -> Iterator[Silence]:
+        """Of each robot that may wait for others while it owes an answer."""
+        for owner, owes in self.owes.items():
+            program = self.machines[owner]
+            states = []
+            for place in program.control:
+                steps = program.steps_from(place)
+                needed = [[p for p, *_ in s.takes if p in program.channels] for s in steps]
+                if needed and all(needed):
+                    there = (tuple((p, *self._shown(p)) for p in places) for places in needed)
+                    states.append((place, tuple(there)))
+            mine = [c.place for c in self.looked if c.writer == owner]
+            if states:
+                answers = tuple((place, self.seen[place]) for place in mine)
+                yield Silence(self.partition.owners[owner].phrase, owes, tuple(states), answers)
+
+    def _shown(self, place: int) -> tuple[int, ...]:
+        return (self.out[place],) if place in self.out else ()
 
     def _asked(self, c: Channel) -> list[list[Arc]]:
         """More arcs of the step that publishes a message: whoever gets a flag owes an answer."""
@@ -408,7 +448,8 @@ class _Composer:
                 arcs += [self.b.absent(self.calm), self.b.absent(self.over)]
                 arcs += [self._on(halted), self._on(self.stopped)]
                 self._step(owner, f"{name} {OWING}", self.after + 3, *arcs)
-        for c in self.looked if owner in self.owes else ():
+        can_end = not all(map(program.steps_from, program.control))
+        for c in self.looked if owner in self.owes and can_end else ():
             if c.writer == owner:  # what is on its way may be the answer
                 arcs = [self._any(c.place), self.b.absent(self.seen[c.place])]
                 made = self._step(owner, f"{name} has answered", self.after + 2, *arcs)

@@ -4,13 +4,15 @@
  *
  * Rules that are checked:
  *
- *   before an occurrence   no place has changed since the step before; the transition is one of this program's; it is enabled with
- *                          this binding; nothing of this program with a higher priority is enabled
- *   after it               only places that the transition touches have changed (that none holds more than it may is always checked)
- *   after messages         only channels of that direction have changed; none holds more than one token
+ *   before an occurrence   no place and no reference has changed since the step before; the transition is one of this program's; it is
+ *                          enabled with this binding; nothing of this program with a higher priority is enabled
+ *   after it               only places that the transition touches have changed (that none holds more than it may is always checked),
+ *                          references only if it assigns some
+ *   after messages         only channels of that direction have changed; none holds more than one token; no reference has changed
  *
  * They hold in a program that is compiled right, on a machine that works: what the monitor finds is memory that something has overwritten, a
- * compiler that is wrong, a file of the net that was edited. It remembers a checksum of each place.
+ * compiler that is wrong, a file of the net that was edited. It remembers a checksum of each place, and one of all that
+ * the references hold which the net assigns.
  */
 #include "supervisor_impl.h"
 
@@ -19,11 +21,15 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "pn/pn_root.h"
+
 #define PLACE_SIZE ((size_t)1U << 20U) /* bytes of the canonical form of a place */
 #define TEXT_SIZE ((size_t)1U << 16U)  /* bytes of a binding as text */
 
 static struct {
     uint64_t *checksum; /* for each place */
+    uint64_t references; /* the checksum of what they hold */
+    bool has_references; /* which only occurrences assign */
     pn_time_t now;
     uint8_t bytes[PLACE_SIZE];
     char wanted[TEXT_SIZE];
@@ -54,9 +60,39 @@ static bool look(sup_t *sup, uint32_t index, bool *changed)
     return true;
 }
 
+/* The same of what references hold. */
+static bool look_at_references(sup_t *sup, bool *changed)
+{
+    *changed = false;
+    if (!s_monitor.has_references) {
+        return true;
+    }
+    const size_t length = pn_roots_encode(sup->net->root, sup->net->root_count, s_monitor.bytes, PLACE_SIZE);
+    if (length > PLACE_SIZE) {
+        return sup_stop(sup, SUP_EXIT_MODEL, "monitor: what the references hold is too large to be looked at");
+    }
+    const uint64_t sum = checksum_of(s_monitor.bytes, length);
+    *changed = (sum != s_monitor.references);
+    s_monitor.references = sum;
+    return true;
+}
+
+/* Whether references are as they were before; `what` has changed them if they are not. */
+static bool keeps_references(sup_t *sup, const char *what, const char *name)
+{
+    bool changed = false;
+    return look_at_references(sup, &changed)
+           && (!changed || sup_stop(sup, SUP_EXIT_INTERNAL, "monitor: what references hold has changed %s%s", what, name));
+}
+
 bool sup_monitor_start(sup_t *sup)
 {
     bool is_fine = true;
+    bool is_assigned_in_search = false;
+    for (uint32_t i = 0U; i < sup->net->transition_count; i++) {
+        is_assigned_in_search = is_assigned_in_search || sup->net->transition[i].search_assigns;
+    }
+    s_monitor.has_references = (sup->net->root_count > 0U) && !is_assigned_in_search;
     s_monitor.checksum = calloc((size_t)sup->net->place_count + 1U, sizeof *s_monitor.checksum);
     if (s_monitor.checksum == NULL) {
         return sup_stop(sup, SUP_EXIT_IO, "not enough memory");
@@ -65,6 +101,8 @@ bool sup_monitor_start(sup_t *sup)
         bool changed = false;
         is_fine = look(sup, i, &changed);
     }
+    bool changed = false;
+    is_fine = is_fine && look_at_references(sup, &changed);
     sup_say(sup, 1, "monitor: every step is held against the rules of the net");
     return is_fine;
 }
@@ -117,6 +155,9 @@ bool sup_monitor_choice(sup_t *sup, int32_t owner, uint32_t index)
             return sup_stop(sup, SUP_EXIT_INTERNAL, "monitor: place `%s` has changed between two steps", sup->net->place[i].name);
         }
     }
+    if (!keeps_references(sup, "between two steps", "")) {
+        return false;
+    }
     if ((owner >= 0) && (t->owner != owner)) {
         return sup_stop(sup, SUP_EXIT_INTERNAL, "monitor: `%s` is not a transition of this program", t->name);
     }
@@ -164,7 +205,8 @@ bool sup_monitor_step(sup_t *sup, uint32_t index)
                             sup->net->place[i].name);
         }
     }
-    return true;
+    bool changed = false;
+    return t->assigns ? look_at_references(sup, &changed) : keeps_references(sup, "although nothing assigns any in ", t->name);
 }
 
 /* --- messages ---------------------------------------------------------------------------------------------------------- */
@@ -194,7 +236,7 @@ bool sup_monitor_messages(sup_t *sup, pn_channel_direction_t direction)
             return sup_stop(sup, SUP_EXIT_INTERNAL, "monitor: channel `%s` holds more than one message", place->name);
         }
     }
-    return true;
+    return keeps_references(sup, "while messages were exchanged", "");
 }
 
 #endif /* PN_MONITOR */

@@ -144,6 +144,8 @@ typedef struct pn_transition {
     bool looks_outside;
     /* An occurrence may change references (pn_net_t.root). */
     bool assigns;
+    /* The search for bindings may: when, is not determined. */
+    bool search_assigns;
     /* For every enabled binding, in the order of `enumerate`: makes in *next the marking after its occurrence and calls the sink.
      * Returns false when the sink stopped it; errors are in the context. NULL: enumerate, copy and fire. */
     bool (*successors)(pn_ctx_t *cx, const void *marking, uint32_t self, void *next, pn_successor_sink_t sink, void *user);
