@@ -250,7 +250,7 @@ def test_other_declarations_and_waits_are_found_out(what: str, judge: Judge) -> 
 @pytest.mark.parametrize(
     ("old", "new", "said"),
     [
-        ("wait 2 s", "wait 2000 s", "waits 2000 s; by the net 2 s are left"),
+        ("wait 2 s", "wait 2000 s", "waits 2000 s; according to the net 2 s are left"),
         ("wait 2 s", "wait 1 s", "goes on in line"),
         ("    wait 2 s\n", "", "without waiting 2 s"),
         ("wait 2 s", "wait 2 s\n    wait 7 s", "Wait"),

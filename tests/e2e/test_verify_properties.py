@@ -87,7 +87,7 @@ def test_of_the_command_line_alone(net: Path, tmp_path: Path) -> None:
     assert done.returncode == 0, done.stderr
     assert "     property 1                  yes mutex { cf" in done.stdout
     assert "`property 2` is true: 3 steps, " in done.stdout
-    assert "  >>>  from here on again and again\n    1  Top.Left" in done.stdout
+    assert "  >>>  the following steps are repeated for ever\n    1  Top.Left" in done.stdout
     assert "  <<<  and from step 1 on again" in done.stdout
     assert (
         "     property 3                  yes ctl EG !dead" in (tmp_path / "report.txt").read_text()

@@ -55,8 +55,8 @@ def memory(found: Exploration | None, why: str = "") -> Check:
     firing, marking = found.arena["firing"], found.arena["marking"]
     needs = f"at most {marking:,} bytes in a marking and {firing:,} in one firing"
     if size > arena.MOST:
-        return Check(MEMORY, "no", f"lists and strings take {needs}, which is too much", firing)
+        return Check(MEMORY, "no", f"lists and strings need {needs}, which is too much", firing)
     says = f"lists and strings take {needs}; the supervisor has {size:,} bytes for them"
     if firing == marking == 0:
-        says = "there are no lists and strings that need any"
+        says = "there are no lists and strings"
     return Check(MEMORY, "yes", says, firing)

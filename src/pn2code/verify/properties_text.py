@@ -101,7 +101,7 @@ def lines(shown: Sequence[Step], evidence: Evidence) -> list[str]:
     loop = evidence.loop if evidence.loop is not None else evidence.steps
     for step in shown:
         if step.number == loop + 1:
-            found.append("  >>>  from here on again and again")
+            found.append("  >>>  the following steps are repeated for ever")
         values = ", ".join(f"{k} = {v}" for k, v in step.binding.items())
         at = f"  @{step.time}" if step.time else ""
         found.append(

@@ -9,13 +9,13 @@ _CLAUSES = {
     "interrupted": "it was interrupted",
     "error": "an inscription raised an exception",
     "exception": "an inscription raised an exception",
-    "decided": "all properties were decided by then",
+    "decided": "all properties were decided before the end",
     "truncated": "not all markings were seen",
     "approximation": "the exploration is approximate, so markings may have been taken for others and missed",
-    "reduction": "the reduction of the state space does not keep it",
+    "reduction": "the reduction of the state space does not preserve it",
     "endless": "the response is not finite",
-    "speeds": "the order of events decides, and durations decide that",
-    "chance": "random numbers or files decide: other ones than those that were drawn may lead elsewhere",
+    "speeds": "it depends on the order of events, and so on their durations",
+    "chance": "it depends on random numbers or files, and others than those that were drawn may lead to another answer",
     "compiler": "there is no C compiler",
 }
 
