@@ -27,6 +27,9 @@ GRACE = 0.1
 GRACE_S = 0.1
 """... and so many seconds more."""
 
+_LOADER = "<frozen importlib._bootstrap>"
+"""Where Python loads modules."""
+
 _started: float | None = None
 
 
@@ -102,8 +105,20 @@ class Deadline:
             signal.signal(signal.SIGALRM, before)
 
     def _ring(self, number: int, frame: FrameType | None) -> None:
-        if self.is_over():
+        if self.is_over() and not _is_importing(frame):
             raise TimeIsOverError
+
+
+def _is_importing(frame: FrameType | None) -> bool:
+    """Whether a module is being loaded, which is not broken off.
+
+    The loader of a compiled module turns every exception into an ImportError, and the module could not be loaded again.
+    """
+    while frame is not None:
+        if frame.f_code.co_filename == _LOADER:
+            return True
+        frame = frame.f_back
+    return False
 
 
 NEVER = Deadline()

@@ -334,7 +334,7 @@ def changed(*pairs: tuple[str, str]) -> str:
                 ("    trans Work\n", LIES.lstrip("\n")),
             ),
             {control_types.BLOCKING: "no"},
-            "a deadlock 2 steps after the start: nothing can happen, without a token in `Finished`",
+            "there is a deadlock 2 steps after the start: nothing can happen, and there is no token in `Finished`",
         ),
         (
             "livelock",
@@ -344,13 +344,13 @@ def changed(*pairs: tuple[str, str]) -> str:
                 ("    trans Work\n", LIES.lstrip("\n")),
             ),
             {control_types.BLOCKING: "no"},
-            "at the start a token in `Finished` can no longer be reached, though the cell goes on",
+            "at the start a token in `Finished` can no longer be reached, although the cell goes on",
         ),
         (
             "twice",
             changed(("place Ready = 1", "place Ready = 2")),
             {control_types.CHANNELS: "no", control_types.CONFLUENT: "yes"},
-            "channel `go` gets 2 messages at a time, 2 steps after the start",
+            "channel `go` holds 2 messages 2 steps after the start",
         ),
     ],
 )
@@ -376,7 +376,7 @@ def test_the_first_overrun_is_named(tmp_path: Path) -> None:
     net = small_cell.NET.replace(before, f"{before}      out done : 1\n")
     assert net != small_cell.NET
     check = checks(tmp_path / "first", net, Plan(), small_cell.TOML)[control_types.CHANNELS]
-    assert check.says == "channel `done` gets 2 messages at a time, 4 steps after the start"
+    assert check.says == "channel `done` holds 2 messages 4 steps after the start"
     assert check.evidence[0].transitions[-1] == "Top.Robot.Report"
 
 
@@ -432,9 +432,7 @@ def test_generate_refuses_a_supervisor_that_fails(tmp_path: Path) -> None:
     assert pipeline.generate(tmp_path / "cell", d) is None
     (error,) = d.errors
     assert error.code == "controller-check"
-    assert (
-        error.message == "channels: channel `go` gets 2 messages at a time, 2 steps after the start"
-    )
+    assert error.message == "channels: channel `go` holds 2 messages 2 steps after the start"
     assert "`--unchecked`" in (error.hint or "")
     d = Diagnostics()
     generated = pipeline.generate(tmp_path / "cell", d, checked=False)

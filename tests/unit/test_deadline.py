@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import importlib
 import os
 import sys
 import time
@@ -81,6 +82,18 @@ def test_python_is_left_when_the_time_is_over() -> None:
         sum(range(1_000_000))
     with pytest.raises(TimeIsOverError), Deadline.after(0.0, clock).enforced():
         raise AssertionError("it does not begin")
+
+
+def test_a_module_is_loaded_to_its_end(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """The alarm that rings in an import is not heard; it comes again after it."""
+    (tmp_path / "rings_in_import.py").write_text(
+        "import sys\nfrom pn2code.deadline import Deadline\n"
+        "Deadline.after(0.0)._ring(14, sys._getframe())\nloaded = True\n"
+    )
+    monkeypatch.syspath_prepend(str(tmp_path))
+    assert importlib.import_module("rings_in_import").loaded
+    with pytest.raises(TimeIsOverError):
+        Deadline.after(0.0)._ring(14, sys._getframe())
 
 
 def test_nothing_rings_after_the_block() -> None:

@@ -158,7 +158,10 @@ def play() -> NoReturn:
         sys.exit(Exit.OK)
     except Exception as problem:
         if isinstance(problem, OSError) and problem.errno in _FULL:
-            typer.echo(f"pn2code: cannot write: {os.strerror(problem.errno).lower()}", err=True)
+            where = f" `{problem.filename}`" if problem.filename else ""
+            typer.echo(
+                f"pn2code: cannot write{where}: {os.strerror(problem.errno).lower()}", err=True
+            )
             os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
             sys.exit(Exit.USAGE)
         if os.environ.get("PN2CODE_DEBUG"):

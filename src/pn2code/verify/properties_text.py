@@ -111,5 +111,5 @@ def lines(shown: Sequence[Step], evidence: Evidence) -> list[str]:
     if evidence.steps > len(shown):
         found.append(f"  ... {evidence.steps - len(shown)} more steps in the trace")
     elif loop < evidence.steps:
-        found.append(f"  <<<  and from step {loop + 1} on again")
+        found.append(f"  <<<  and so on from step {loop + 1}")
     return found
