@@ -140,7 +140,7 @@ def test_a_supervisor_that_waits_too_short_is_found_out(tmp_path: Path) -> None:
 
 SUPERVISOR = {
     "another value is written": ("= val_DRILL;", "= val_HOME;", "flag.robcad"),
-    "a guard is dropped": ("if (b.n == 2) {", "if (false) {", "by the net"),
+    "a guard is dropped": ("if (b.n == 2) {", "if (false) {", "according to the net"),
     "a message is left out": ("bool fits = flag_add(cx, m, &flag_token, 1U);", "bool fits = true;", "flag.robcad"),
     "a place is not touched": ("fits = data_add(cx, m, &token, 1U)", "fits = true", "data.robcad"),
 }  # fmt: skip

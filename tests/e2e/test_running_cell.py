@@ -463,7 +463,7 @@ CELLS = {
     ),
     "luck": (LUCK, toml(["A", "B"], TOOL), "unknown", "depends on durations"),
     "quit": (QUIT, toml(["A", "B"], TOOL), "no", "B has finished, but it owes an answer"),
-    "bye": (BYE, toml(["A", "B"], TOOL), "yes", "whoever is slow"),
+    "bye": (BYE, toml(["A", "B"], TOOL), "yes", "however slow its programs are"),
     "dizzy": (DIZZY, toml(["A", "B"], TOOL), "no", "(`Top.B.There`, `Top.B.Again`)"),
 }
 
