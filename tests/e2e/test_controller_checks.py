@@ -325,7 +325,7 @@ def changed(*pairs: tuple[str, str]) -> str:
             "choice",
             changed(("\n  page Rob", CHOICE)),
             {control_types.CONFLUENT: "no"},  # by the documented order it is never blocked
-            "whether `Cell.Supervisor.Start` or `Cell.Supervisor.Other` comes first matters, 0 steps after the start",
+            "whether `Cell.Supervisor.Start` or `Cell.Supervisor.Other` comes first matters 0 steps after the start",
         ),
         (
             "dead",
@@ -539,7 +539,7 @@ def test_a_place_without_a_bound_is_refused(
     assert pipeline.generate(tmp_path / "cell", d) is None
     (error,) = d.errors
     assert error.code == "controller-check"
-    assert "capacity: place `Spare` gets 4 tokens, 4 steps after the start, but" in error.message
+    assert "capacity: place `Spare` holds 4 tokens 4 steps after the start, but" in error.message
     cell(tmp_path / "cell", net, toml + "[capacity]\nSpare = 5\nOther = 9\n")
     d = Diagnostics()
     generated = pipeline.generate(tmp_path / "cell", d)

@@ -76,7 +76,7 @@ def test_many_failures_are_still_one_screen(tmp_path: Path, here: Path) -> None:
     assert code == 1
     assert len(lines) <= MOST_LINES
     assert "and 30 more" in "\n".join(lines)
-    assert lines[-1] == "Verdict: NO. 38 of 38 answers are not as it should be."
+    assert lines[-1] == "Verdict: NO. 38 of 38 answers are not as they should be."
     assert [path.name for path in here.iterdir()] == ["mutex.traces"]
 
 
