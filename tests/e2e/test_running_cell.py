@@ -573,7 +573,7 @@ def test_a_declared_capacity_is_looked_at(tmp_path: Path) -> None:
     assert looked is not None
     check = next(c for c in looked.checks if c.name == "capacity")
     assert check.answer == "no" and check.fails
-    assert "place `Coins` gets 2 tokens" in check.says and "declares 1" in check.says
+    assert "place `Coins` holds 2 tokens" in check.says and "declares 1" in check.says
     assert check.evidence[0].transitions[-1] == "Top.Supervisor.Early"
 
 
