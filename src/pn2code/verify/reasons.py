@@ -15,6 +15,7 @@ _CLAUSES = {
     "reduction": "the reduction of the state space does not preserve it",
     "endless": "the response is not finite",
     "speeds": "it depends on the order of events, and so on their durations",
+    "commands": "a script may go round without a command or a wait, if it never takes the branches with commands",
     "chance": "it depends on random numbers or files, and others than those that were drawn may lead to another answer",
     "compiler": "there is no C compiler",
 }
