@@ -53,7 +53,7 @@ static void print_help(void)
                  "  --report FILE  write how the run ended, as JSON (src/simulate_report.c)\n"
                  "  --progress S   with --report: a line every S seconds\n"
                  "  --help         this text\n\n"
-                 "exit codes: 0 fine, 1 the net raised an error or a replay was refused, 2 wrong usage or a file that cannot be\n"
+                 "exit codes: 0 fine, 1 an inscription of the net raised an error or a replay was refused, 2 wrong usage or a file that cannot be\n"
                  "written, 130 interrupted\n\n"
                  "examples:\n"
                  "  ./simulate --steps 100 --seed 7 --trace run.trace.jsonl\n"

@@ -24,8 +24,19 @@ _LEAST_S = 1e-6
 """An alarm in no time at all would be none."""
 GRACE = 0.1
 """A process that was told its limit, and does not end, is ended after so large a part of the limit ..."""
-GRACE_S = 2.0
+GRACE_S = 0.1
 """... and so many seconds more."""
+
+_LOADER = "<frozen importlib._bootstrap>"
+"""Where Python loads modules."""
+
+_started: float | None = None
+
+
+def note_start() -> None:
+    """Notes that the command begins now; loading the modules of a verb takes some tenths of a second."""
+    global _started
+    _started = time.monotonic()
 
 
 class TimeIsOverError(BaseException):
@@ -50,6 +61,12 @@ class Deadline:
     def after(seconds: float | None, clock: Callable[[], float] = time.monotonic) -> Deadline:
         """So many seconds from now on; None: never."""
         return Deadline(seconds, clock() + (seconds or 0.0), clock)
+
+    @staticmethod
+    def of_command(seconds: float | None) -> Deadline:
+        """So many seconds from the start of the command on; None: never."""
+        began = time.monotonic() if _started is None else _started
+        return Deadline(seconds, began + (seconds or 0.0))
 
     @property
     def left(self) -> float | None:
@@ -88,8 +105,20 @@ class Deadline:
             signal.signal(signal.SIGALRM, before)
 
     def _ring(self, number: int, frame: FrameType | None) -> None:
-        if self.is_over():
+        if self.is_over() and not _is_importing(frame):
             raise TimeIsOverError
+
+
+def _is_importing(frame: FrameType | None) -> bool:
+    """Whether a module is being loaded, which is not broken off.
+
+    The loader of a compiled module turns every exception into an ImportError, and the module could not be loaded again.
+    """
+    while frame is not None:
+        if frame.f_code.co_filename == _LOADER:
+            return True
+        frame = frame.f_back
+    return False
 
 
 NEVER = Deadline()

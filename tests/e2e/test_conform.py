@@ -144,7 +144,7 @@ def test_a_supervisor_that_waits_too_short_is_found_out(tmp_path: Path) -> None:
 
 SUPERVISOR = {
     "another value is written": ("= val_DRILL;", "= val_HOME;", "flag.robcad"),
-    "a guard is dropped": ("if (b.n == 2) {", "if (false) {", "by the net"),
+    "a guard is dropped": ("if (b.n == 2) {", "if (false) {", "according to the net"),
     "a message is left out": ("    m->flag.full = true;\n", "", "flag.robcad"),
     "a place is not touched": ("    m->data.full = true;\n", "", "data.robcad"),
 }  # fmt: skip
@@ -292,7 +292,7 @@ def test_other_declarations_and_waits_are_found_out(what: str, judge: Judge) -> 
 @pytest.mark.parametrize(
     ("old", "new", "said"),
     [
-        ("wait 2 s", "wait 2000 s", "waits 2000 s; by the net 2 s are left"),
+        ("wait 2 s", "wait 2000 s", "waits 2000 s; according to the net 2 s are left"),
         ("wait 2 s", "wait 1 s", "goes on in line"),
         ("    wait 2 s\n", "", "without waiting 2 s"),
         ("wait 2 s", "wait 2 s\n    wait 7 s", "Wait"),
@@ -359,9 +359,10 @@ FAULTS = {
     "a transition of another": (
         "supervisor_play.c", "(owner >= 0) && (candidate->owner != owner)", "false",
         "`Top.Robot.Accept` is not a transition of this program"),
-    "another place": ("net.c", "    m->flag.full = true;\n",
-                      "    m->flag.full = true;\n    m->Supervisor_Moving.full = true;\n",
-                      "has changed place `Top.Supervisor.Moving`, with which it has no arc"),
+    "another place": (
+        "net.c", "    m->flag.full = true;\n",
+        "    m->flag.full = true;\n    m->Supervisor_Moving.full = true;\n",
+        "has changed place `Top.Supervisor.Moving`, with which it has no arc"),
 }  # fmt: skip
 
 

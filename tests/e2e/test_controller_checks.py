@@ -326,7 +326,7 @@ def changed(*pairs: tuple[str, str]) -> str:
             "choice",
             changed(("\n  page Rob", CHOICE)),
             {control_types.CONFLUENT: "no"},  # by the documented order it is never blocked
-            "whether `Cell.Supervisor.Start` or `Cell.Supervisor.Other` comes first matters, 0 steps after the start",
+            "whether `Cell.Supervisor.Start` or `Cell.Supervisor.Other` comes first matters 0 steps after the start",
         ),
         (
             "dead",
@@ -335,7 +335,7 @@ def changed(*pairs: tuple[str, str]) -> str:
                 ("    trans Work\n", LIES.lstrip("\n")),
             ),
             {control_types.BLOCKING: "no"},
-            "a deadlock 2 steps after the start: nothing can happen, without a token in `Finished`",
+            "there is a deadlock 2 steps after the start: nothing can happen, and there is no token in `Finished`",
         ),
         (
             "livelock",
@@ -345,13 +345,13 @@ def changed(*pairs: tuple[str, str]) -> str:
                 ("    trans Work\n", LIES.lstrip("\n")),
             ),
             {control_types.BLOCKING: "no"},
-            "at the start a token in `Finished` can no longer be reached, though the cell goes on",
+            "at the start a token in `Finished` can no longer be reached, although the cell goes on",
         ),
         (
             "twice",
             changed(("place Ready = 1", "place Ready = 2")),
             {control_types.CHANNELS: "no", control_types.BLOCKING: "unknown"},
-            "channel `go` gets 2 messages at a time, 2 steps after the start",
+            "channel `go` holds 2 messages 2 steps after the start",
         ),
     ],
 )
@@ -377,7 +377,7 @@ def test_the_first_overrun_is_named(tmp_path: Path) -> None:
     net = small_cell.NET.replace(before, f"{before}      out done : 1\n")
     assert net != small_cell.NET
     check = checks(tmp_path / "first", net, Plan(), small_cell.TOML)[control_types.CHANNELS]
-    assert check.says == "channel `done` gets 2 messages at a time, 4 steps after the start"
+    assert check.says == "channel `done` holds 2 messages 4 steps after the start"
     assert check.evidence[0].transitions[-1] == "Top.Robot.Report"
 
 
@@ -433,9 +433,7 @@ def test_generate_refuses_a_supervisor_that_fails(tmp_path: Path) -> None:
     assert pipeline.generate(tmp_path / "cell", d) is None
     (error,) = d.errors
     assert error.code == "controller-check"
-    assert (
-        error.message == "channels: channel `go` gets 2 messages at a time, 2 steps after the start"
-    )
+    assert error.message == "channels: channel `go` holds 2 messages 2 steps after the start"
     assert "`--unchecked`" in (error.hint or "")
     d = Diagnostics()
     generated = pipeline.generate(tmp_path / "cell", d, checked=False)
@@ -542,7 +540,7 @@ def test_a_place_without_a_bound_is_refused(
     assert pipeline.generate(tmp_path / "cell", d) is None
     (error,) = d.errors
     assert error.code == "controller-check"
-    assert "capacity: place `Spare` gets 4 tokens, 4 steps after the start, but" in error.message
+    assert "capacity: place `Spare` holds 4 tokens 4 steps after the start, but" in error.message
     cell(tmp_path / "cell", net, toml + "[capacity]\nSpare = 5\nOther = 9\n")
     d = Diagnostics()
     generated = pipeline.generate(tmp_path / "cell", d)

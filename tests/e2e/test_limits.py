@@ -182,5 +182,5 @@ def test_a_compiled_net_that_says_nothing_is_given_up(tmp_path: Path, is_told: b
         assert (done.returncode, done.stderr) == (130, "pn2code: interrupted\n")
     else:
         assert done.returncode == 1
-        assert "error[simulator-failed]: the run was given up" in done.stderr
-        assert "does not come to an end" in done.stderr
+        assert "error[simulator-failed]: the run was stopped" in done.stderr
+        assert "does not end" in done.stderr

@@ -462,10 +462,15 @@ CELLS = {
     "branch": (BRANCH, toml(["A"]), "no", "can no longer be reached"),
     "watched": (WATCHED, toml(["A"], TOOL), "no", "a deadlock 4 steps after the start"),
     "late": (LATE, toml(["A"]), "no", "a deadlock 1 step after the start"),
-    "unknown": (UNKNOWN, toml(["A", "B"]), "no", "A stops at Told, where no transition fits"),
-    "luck": (LUCK, toml(["A", "B"], TOOL), "unknown", "which durations decide"),
+    "unknown": (
+        UNKNOWN,
+        toml(["A", "B"]),
+        "no",
+        "A stops at Told, because none of its transitions is possible there",
+    ),
+    "luck": (LUCK, toml(["A", "B"], TOOL), "unknown", "depends on durations"),
     "quit": (QUIT, toml(["A", "B"], TOOL), "no", "B has finished, but it owes an answer"),
-    "bye": (BYE, toml(["A", "B"], TOOL), "yes", "whoever is slow"),
+    "bye": (BYE, toml(["A", "B"], TOOL), "yes", "however slow its programs are"),
     "dizzy": (DIZZY, toml(["A", "B"], TOOL), "no", "(`Top.B.There`, `Top.B.Again`)"),
 }
 
@@ -575,7 +580,7 @@ def test_a_declared_capacity_is_looked_at(tmp_path: Path) -> None:
     assert looked is not None
     check = next(c for c in looked.checks if c.name == "capacity")
     assert check.answer == "no" and check.fails
-    assert "place `Coins` gets 2 tokens" in check.says and "declares 1" in check.says
+    assert "place `Coins` holds 2 tokens" in check.says and "declares 1" in check.says
     assert check.evidence[0].transitions[-1] == "Top.Supervisor.Early"
     ends = next(c for c in looked.checks if c.name == "non-blocking")
     assert (ends.answer, ends.why) == ("unknown", "stops")

@@ -1,4 +1,4 @@
-"""An exception in a marking that can be reached: the shortest way there, and what raises it, by two implementations."""
+"""An exception in a reachable marking: the shortest way there, and what raises it, by two implementations."""
 
 from __future__ import annotations
 

@@ -75,7 +75,7 @@ def test_a_file_beside_the_net(net: Path, tmp_path: Path) -> None:
     assert f"From step {loop + 1} on the steps are repeated for ever" in steps_page
     assert f'<a href="#step-{loop}">step {loop}</a> on again' in steps_page
     page = (tmp_path / "report.html").read_text()
-    assert "from here on again and again" in page
+    assert "the following steps are repeated for ever" in page
     assert 'class="answer bad">no<' in page and 'class="answer good">yes<' in page
 
 
@@ -89,8 +89,8 @@ def test_of_the_command_line_alone(net: Path, tmp_path: Path) -> None:
     assert done.returncode == 0, done.stderr
     assert "     property 1                  yes mutex { cf" in done.stdout
     assert "`property 2` is true: 3 steps, " in done.stdout
-    assert "  >>>  from here on again and again\n    1  Top.Left" in done.stdout
-    assert "  <<<  and from step 1 on again" in done.stdout
+    assert "  >>>  the following steps are repeated for ever\n    1  Top.Left" in done.stdout
+    assert "  <<<  and so on from step 1" in done.stdout
     assert (
         "     property 3                  yes ctl EG !dead" in (tmp_path / "report.txt").read_text()
     )

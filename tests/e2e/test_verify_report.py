@@ -44,7 +44,7 @@ def test_a_cell_that_is_refused(tmp_path: Path) -> None:
     cell = write(tmp_path / "cell", NET.replace("guard [n = 2]", "guard [n = 3]"))
     page = page_of(cell, tmp_path, "--no-medium")
     assert "Controller checks: 7 of 8 are as they should be, 1 is not." in page
-    assert "`generate` refuses the cell: non-blocking: a deadlock" in page
+    assert "`generate` refuses the cell: non-blocking: there is a deadlock" in page
     assert "net.c" not in page
 
 

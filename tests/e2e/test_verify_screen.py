@@ -47,8 +47,11 @@ def test_a_cell_with_a_fault(tmp_path: Path, here: Path) -> None:
     text = "\n".join(lines)
     assert code == 1
     assert len(lines) <= MOST_LINES
-    assert "NO Non-blocking under control: a deadlock" in text
+    assert "NO Non-blocking under control: there is a deadlock" in text
     assert "The way to `Non-blocking under control`" in text
+    assert (
+        "`Skipped` cannot occur: its guard `n = 3` is false for the tokens that are there." in text
+    )
     assert lines[-1] == "Verdict: NO. 1 of 8 answers is not as it should be."
     assert [path.name for path in here.iterdir()] == ["cell.traces"]
 
@@ -73,7 +76,7 @@ def test_many_failures_are_still_one_screen(tmp_path: Path, here: Path) -> None:
     assert code == 1
     assert len(lines) <= MOST_LINES
     assert "and 30 more" in "\n".join(lines)
-    assert lines[-1] == "Verdict: NO. 38 of 38 answers are not as it should be."
+    assert lines[-1] == "Verdict: NO. 38 of 38 answers are not as they should be."
     assert [path.name for path in here.iterdir()] == ["mutex.traces"]
 
 
@@ -91,7 +94,10 @@ def test_in_full(tmp_path: Path, here: Path) -> None:
         "`property 1` is false: 2 steps",
     ):
         assert words in text
-    assert "rests on this: a run that shows it was found, and the token game has played it" in text
+    assert (
+        "rests on this: a run was found that shows the answer, and the token game has played it"
+        in text
+    )
     assert lines[-1] == "Verdict: NO. 1 of 2 answers is not as it should be."
 
 
@@ -99,7 +105,10 @@ def test_where_runs_go(tmp_path: Path, here: Path) -> None:
     net = write_net(MUTEX, tmp_path / "mutex.cpn")
     code, lines, _ = verify(net)  # without a dead marking there is no run, and no folder
     assert code == 0
-    assert lines[-1] == "Verdict: COMPLETE. Nothing was asked; all that can be reached was seen."
+    assert (
+        lines[-1]
+        == "Verdict: COMPLETE. All reachable markings were seen, and there are no properties to check."
+    )
     assert list(here.iterdir()) == []
     for option in ("-o", "--traces"):
         folder = tmp_path / f"runs{option}"

@@ -127,7 +127,7 @@ LOST = {
     "it gives back what it gets": (
         "  fun measure (p : POSE) = p;\n",
         "code action moveJoint (measure (at 3))",
-        "`measure` stands beside the primitives",
+        "`measure` stands among the primitives",
     ),
 }
 

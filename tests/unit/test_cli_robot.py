@@ -99,7 +99,7 @@ def test_script_of_another_cell(root: Path, tmp_path: Path, script: Path) -> Non
 def test_a_script_that_asks_sensors_needs_the_cell(tmp_path: Path, script: Path) -> None:
     script.write_text(SCRIPT.replace("write", "sense gripper into c\n  write"))
     said = refused(tmp_path, 2, script)
-    assert "`robot1.tdl` asks `gripper`: what sensors say is known from the cell" in said
+    assert "`robot1.tdl` asks `gripper`: the values of sensors are given in the cell" in said
 
 
 def test_a_device_of_a_cell(root: Path, tmp_path: Path) -> None:

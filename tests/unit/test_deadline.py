@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import importlib
 import os
 import sys
+import time
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from pathlib import Path
@@ -11,6 +13,7 @@ from pathlib import Path
 import pytest
 
 from helpers.netbuilder import flat
+from pn2code import deadline as deadline_module
 from pn2code.deadline import NEVER, Deadline, TimeIsOverError
 from pn2code.diagnostics import Diagnostics
 from pn2code.verify import explore as explore_module
@@ -49,10 +52,23 @@ def test_a_deadline() -> None:
     assert (deadline.left, deadline.is_over(), deadline.is_long_over()) == (10.0, False, False)
     clock.now += 10.0
     assert (deadline.left, deadline.is_over(), deadline.is_long_over()) == (0.0, True, False)
-    clock.now += 3.5
+    clock.now += 1.0
+    assert not deadline.is_long_over()
+    clock.now += 0.5
     assert deadline.is_long_over()
     assert (NEVER.left, NEVER.is_over(), NEVER.is_long_over()) == (None, False, False)
     assert Deadline.after(None, clock).left is None
+
+
+def test_the_time_of_a_command_begins_with_it(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Loading the modules counts, and nothing is forgotten when a verb makes its deadline late."""
+    monkeypatch.setattr(deadline_module, "_started", time.monotonic() - 50.0)
+    deadline = Deadline.of_command(40.0)
+    assert deadline.is_over() and deadline.is_long_over()
+    assert not Deadline.of_command(1000.0).is_over()
+    assert Deadline.of_command(None).left is None
+    monkeypatch.setattr(deadline_module, "_started", None)  # not started as a command
+    assert not Deadline.of_command(1000.0).is_over()
 
 
 def test_python_is_left_when_the_time_is_over() -> None:
@@ -66,6 +82,18 @@ def test_python_is_left_when_the_time_is_over() -> None:
         sum(range(1_000_000))
     with pytest.raises(TimeIsOverError), Deadline.after(0.0, clock).enforced():
         raise AssertionError("it does not begin")
+
+
+def test_a_module_is_loaded_to_its_end(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """The alarm that rings in an import is not heard; it comes again after it."""
+    (tmp_path / "rings_in_import.py").write_text(
+        "import sys\nfrom pn2code.deadline import Deadline\n"
+        "Deadline.after(0.0)._ring(14, sys._getframe())\nloaded = True\n"
+    )
+    monkeypatch.syspath_prepend(str(tmp_path))
+    assert importlib.import_module("rings_in_import").loaded
+    with pytest.raises(TimeIsOverError):
+        Deadline.after(0.0)._ring(14, sys._getframe())
 
 
 def test_nothing_rings_after_the_block() -> None:

@@ -300,7 +300,7 @@ def test_a_device_waits_and_acts_but_does_not_move() -> None:
     assert executor.motion is None
     with pytest.raises(MotionFault, match="device `belt` has no arm"):
         executor.begin(MoveHome(), 8.0)
-    with pytest.raises(MotionFault, match="makes no sense"):
+    with pytest.raises(MotionFault, match="is not possible"):
         executor.begin(Wait(-1.0), 8.0)
 
 

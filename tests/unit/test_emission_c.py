@@ -6,14 +6,17 @@ before you commit.
 
 from __future__ import annotations
 
+import errno
 import os
 import re
 from pathlib import Path
 
+import jinja2
 import pytest
 
 from helpers.compiled import lowered
 from helpers.netbuilder import flat
+from pn2code.emission import environment
 from pn2code.emission.c import emit
 from pn2code.emission.c_expressions import c_bytes, c_integer
 from pn2code.emission.c_lines import wrap
@@ -127,3 +130,17 @@ def test_long_lines_are_broken_where_it_reads_well() -> None:
     assert all(part.startswith("        ") for part in broken[1:])
     quoted = '    f("' + "a b " * 40 + '");'
     assert wrap(quoted, 80) == [quoted]
+
+
+def test_a_full_disk_keeps_no_template_from_being_rendered(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """What cannot be kept is compiled again by the next command."""
+
+    def full(*_: object) -> None:
+        raise OSError(errno.ENOSPC, "No space left on device")
+
+    monkeypatch.setattr(jinja2.FileSystemBytecodeCache, "dump_bytecode", full)
+    monkeypatch.setattr(environment, "private_folder", lambda: tmp_path)
+    made = environment.environment.__wrapped__()  # not the one that is remembered
+    assert made.get_template("c/net.c.j2").name == "c/net.c.j2"

@@ -322,6 +322,14 @@ def _not_shared(
         and p.place == place.index
         and not any(_overlap(o.instance, p.instance) for o in users)
     ]
+    alike = [
+        p
+        for p in net.place_instances
+        if p.name == place.short
+        and not p.is_port
+        and p.place != place.index
+        and not any(_overlap(o.instance, p.instance) for o in users)
+    ]
     who = f"by {users[0].phrase} alone" if users else "by no owner"
     place_named = f"`{place.short}` of page `{place.page}`"
     hint = (
@@ -334,6 +342,11 @@ def _not_shared(
         hint = (
             f"port `{bare[0].name}` of page `{bare[0].page}` is connected to it, but no transition there has an arc "
             "with it: draw the arc that sends the message, or takes it"
+        )
+    elif alike:
+        hint = (
+            f"if place `{alike[0].name}` of page `{alike[0].page}` is the other side, make it a port and assign it to "
+            f"place {place_named} in CPN Tools; an entry for a place inside one program is not needed"
         )
     d.error(
         codes.CHANNEL_NOT_SHARED,

@@ -63,7 +63,7 @@ def check_files(config: CellConfig, d: Diagnostics) -> None:
 
 def _one(name: str, at: Origin, d: Diagnostics) -> None:
     for text, hint in _obstacles(name):
-        d.error(codes.CELL_VALUE, f"`{name}` is no name for a file: {text}", at, hint=hint)
+        d.error(codes.CELL_VALUE, f"`{name}` cannot be the name of a file: {text}", at, hint=hint)
 
 
 def _obstacles(name: str) -> Iterator[tuple[str, str]]:

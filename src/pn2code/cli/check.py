@@ -84,7 +84,7 @@ def check(
     int_bits: IntBitsOption = DEFAULT_INT_BITS,
     form: FormatOption = Format.FULL,
 ) -> None:
-    """Check a net: syntax, types, whether every variable gets a value, hierarchy; and its cell."""
+    """Check the syntax, types, bindings and hierarchy of a net, and the cell beside it."""
     d = Diagnostics()
     result = Examined(None, None)
     where = net

@@ -39,11 +39,13 @@ EPILOG = """Examples:
 
 
 def conform(
-    net: Annotated[Path, typer.Argument(help="A net, a cell.toml, or a folder with one.")],
+    net: Annotated[Path, typer.Argument(help="A .cpn or .pnml file, a cell.toml, or a folder.")],
     most: Annotated[
         int,
         typer.Option(
-            metavar="N", min=1, help="States up to which all are compared; beyond: samples."
+            metavar="N",
+            min=1,
+            help="Compare all states if there are at most N, otherwise samples of them.",
         ),
     ] = MOST_STATES,
     generated: Annotated[
@@ -52,7 +54,7 @@ def conform(
             metavar="DIR",
             exists=True,
             file_okay=False,
-            help="Compare the files of this folder instead of freshly generated ones.",
+            help="Compare the generated files in this folder instead of newly generated ones.",
         ),
     ] = None,
     as_json: JsonOption = False,
@@ -62,7 +64,7 @@ def conform(
 ) -> None:
     """Compare the compiled net, the supervisor and each robot program with the net, state by state.
 
-    Exit code 0: everything was compared and agrees; 1: something differs; 3: only a part was compared.
+    The exit code is 0 if everything was compared and agrees, 1 if something differs, and 3 if only a part was compared.
     """
     d = Diagnostics()
     found = conform_cell(
@@ -130,7 +132,7 @@ def _core(core: CoreReport) -> str:
         return f"net.c         DIFFERS from the token game: {core.deviation}"
     if core.complete:
         # Random runs besides a complete space compare the times, see `CoreReport`.
-        apart = ", those that differ in how late it is counted once" if core.walks else ""
+        apart = ", where markings that differ only in the time count once" if core.walks else ""
         return (
             f"net.c         agrees with the token game in all {core.nodes:,} reachable markings "
             f"and {core.arcs:,} occurrences{apart}"
@@ -143,7 +145,7 @@ def _core(core: CoreReport) -> str:
 
 def _supervisor(report: Report) -> list[str]:
     counts = (
-        f"{report.states:,} states (it can tell {report.sights:,} of them apart): "
+        f"{report.states:,} states (it can distinguish {report.sights:,} of them): "
         f"{report.cycles:,} cycles, {report.firings:,} firings of "
         f"{len(report.transitions)} of its {report.all_transitions} transitions, "
         f"{report.received:,} messages received, {report.sent:,} sent"

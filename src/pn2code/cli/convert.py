@@ -42,17 +42,22 @@ def convert(
     output: Annotated[
         Path,
         typer.Option(
-            "-o", "--output", metavar="FILE", help="FILE.pnml, FILE.pml (SPIN) or FILE.cpn."
+            "-o",
+            "--output",
+            metavar="FILE",
+            help="The file to write: FILE.pnml, FILE.pml (SPIN) or FILE.cpn.",
         ),
     ],
     unfold: Annotated[
         bool,
-        typer.Option("--unfold", help="Write a place/transition net: each colour its own place."),
+        typer.Option(
+            "--unfold", help="Write a place/transition net, with a place for each colour."
+        ),
     ] = False,
     settings: SetOption = [],  # noqa: B006 - typer reads the default only
     form: FormatOption = Format.FULL,
 ) -> None:
-    """Write a net as PNML, as a Promela model for SPIN, or (from PNML) as a net of CPN Tools."""
+    """Convert a net to PNML or to a Promela model for SPIN, or a PNML net to a net of CPN Tools."""
     from pn2code.convert.codes import CONVERT_FORMAT, UNSUPPORTED_IN_CPN
 
     d = Diagnostics()

@@ -60,35 +60,45 @@ def draw(
             "-o",
             "--output",
             metavar="FILE|DIR|-",
-            help="FILE.svg, FILE.html (all pages, linked), DIR/ (one SVG a page), - for stdout.",
+            help="Where to write: FILE.svg, FILE.html (all pages, linked), DIR/ (an SVG for each page), "
+            "or - (an SVG on stdout).",
         ),
     ],
     page: Annotated[
-        str | None, typer.Option("--page", metavar="P", help="Only this page (name or id).")
+        str | None, typer.Option("--page", metavar="P", help="Draw only this page (name or id).")
     ] = None,
     marking: Annotated[
         bool,
-        typer.Option("--marking", help="With the initial marking and what is enabled in it."),
+        typer.Option(
+            "--marking", help="Show the initial marking, and which transitions are enabled in it."
+        ),
     ] = False,
     trace: Annotated[
         Path | None,
         typer.Option(
-            "--trace", metavar="FILE", help="With the marking after the steps of a trace.jsonl."
+            "--trace", metavar="FILE", help="Show the marking after the steps of this trace."
         ),
     ] = None,
     step: Annotated[
         int | None,
-        typer.Option("--step", metavar="N", min=0, help="Of the trace; default: the last."),
+        typer.Option(
+            "--step",
+            metavar="N",
+            min=0,
+            help="Show the marking after this step of the trace (default: the last step).",
+        ),
     ] = None,
     instance: Annotated[
         int | None,
-        typer.Option("--instance", metavar="N", min=1, help="Which instance's marking is shown."),
+        typer.Option(
+            "--instance", metavar="N", min=1, help="Show the marking of this instance of the page."
+        ),
     ] = None,
     settings: SetOption = [],  # noqa: B006 - typer reads the default only
     seed: SeedOption = DEFAULT_SEED,
     form: FormatOption = Format.FULL,
 ) -> None:
-    """Draw the pages of a net; elements with errors are red."""
+    """Draw the pages of a net. Elements with errors are red."""
     d = Diagnostics()
     kind = _kind(output, form)
     found = locate(net, d)

@@ -33,12 +33,16 @@ class Stage(StrEnum):
 
 def dump(
     net: Annotated[Path, typer.Argument(help="A .cpn or .pnml file, a cell.toml, or a folder.")],
-    stage: Annotated[Stage, typer.Option(help="After which stage.")] = Stage.FLAT,
-    only: Annotated[str, typer.Option(help="Only elements whose name contains this.")] = "",
+    stage: Annotated[
+        Stage, typer.Option(help="The stage after which the net is printed.")
+    ] = Stage.FLAT,
+    only: Annotated[
+        str, typer.Option(help="Print only elements whose name contains this text.")
+    ] = "",
     settings: SetOption = [],  # noqa: B006 - typer reads the default only
     form: FormatOption = Format.FULL,
 ) -> None:
-    """Print what a net is after a stage of the pipeline."""
+    """Print the net as it is after a stage of the pipeline."""
     d = Diagnostics()
     text = stage_text(net, stage, only, parse_values(settings), d)
     if text is None:

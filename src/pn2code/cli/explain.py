@@ -48,7 +48,9 @@ REGISTERING = (
 
 
 def explain(
-    code: Annotated[str, typer.Argument(help="A diagnostic code; none: list them all.")] = "",
+    code: Annotated[
+        str, typer.Argument(help="A diagnostic code. Without it, all codes are listed.")
+    ] = "",
 ) -> None:
     """Explain a diagnostic code."""
     for module in REGISTERING:

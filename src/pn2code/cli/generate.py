@@ -34,25 +34,27 @@ def generate(
     net: Annotated[Path, typer.Argument(help="A .cpn or .pnml file, a cell.toml, or a folder.")],
     output: Annotated[
         Path | None,
-        typer.Option("-o", "--output", help="Output folder (default: generated/<net>)."),
+        typer.Option("-o", "--output", help="The output folder (default: generated/<net>)."),
     ] = None,
     check: Annotated[
-        bool, typer.Option("--check", help="Write nothing; exit 1 if anything would change.")
+        bool,
+        typer.Option("--check", help="Write nothing, and exit with code 1 if a file would change."),
     ] = False,
     unchecked: Annotated[
         bool,
         typer.Option(
             "--unchecked",
-            help="Generate a supervisor whatever its checks say, and without asking them.",
+            help="Generate the supervisor without checking it.",
         ),
     ] = False,
     settings: SetOption = [],  # noqa: B006 - typer reads the default only
     form: FormatOption = Format.FULL,
 ) -> None:
-    """Generate a C supervisor (and a script per robot, if there is a cell.toml) from a net.
+    """Generate a C supervisor and, if there is a cell.toml, a script for each robot.
 
-    Then `make && ./supervisor` in the output folder builds and runs it. The supervisor of a cell is checked first: it
-    is refused when it does not keep to its execution scheme, or when nothing proves how much a place can hold.
+    `make && ./supervisor` in the output folder builds and runs the supervisor. The supervisor of a cell is checked
+    first. It is not generated if it does not keep to its execution scheme, or if nothing proves how many tokens a place
+    can hold.
     """
     d = Diagnostics()
     result = pipeline.generate(net, d, values=parse_values(settings), checked=not unchecked)

@@ -6,6 +6,7 @@ import atexit
 import errno
 import gc
 import importlib
+import inspect
 import os
 import signal
 import sys
@@ -58,8 +59,15 @@ class _Verbs(TyperGroup):
 def _command(verb: str) -> Any:
     module = importlib.import_module(f"pn2code.cli.{verb}")
     single = typer.Typer(add_completion=False)
-    single.command(verb, epilog=module.EPILOG)(getattr(module, verb))
+    function = getattr(module, verb)
+    single.command(verb, help=_flowing(function.__doc__), epilog=module.EPILOG)(function)
     return typer.main.get_command(single)
+
+
+def _flowing(text: str) -> str:
+    """Each paragraph on one line: it is the terminal's width that breaks the lines of a help text."""
+    paragraphs = inspect.cleandoc(text).split("\n\n")
+    return "\n\n".join(" ".join(paragraph.split()) for paragraph in paragraphs)
 
 
 app = typer.Typer(
@@ -150,7 +158,10 @@ def play() -> NoReturn:
         sys.exit(Exit.OK)
     except Exception as problem:
         if isinstance(problem, OSError) and problem.errno in _FULL:
-            typer.echo(f"pn2code: cannot write: {os.strerror(problem.errno).lower()}", err=True)
+            where = f" `{problem.filename}`" if problem.filename else ""
+            typer.echo(
+                f"pn2code: cannot write{where}: {os.strerror(problem.errno).lower()}", err=True
+            )
             os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
             sys.exit(Exit.USAGE)
         if os.environ.get("PN2CODE_DEBUG"):

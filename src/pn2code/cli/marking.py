@@ -30,7 +30,7 @@ EPILOG = """Examples:
   pn2code marking net.cpn --json
 """
 
-EmptyOption = Annotated[bool, typer.Option("--empty", help="Show empty places, too.")]
+EmptyOption = Annotated[bool, typer.Option("--empty", help="Print empty places as well.")]
 
 
 def marking(
@@ -43,7 +43,7 @@ def marking(
     int_bits: IntBitsOption = DEFAULT_INT_BITS,
     form: FormatOption = Format.FULL,
 ) -> None:
-    """Print the initial marking of each place, as CPN Tools does."""
+    """Print the initial marking of each place in the form of CPN Tools."""
     opened = open_net(net, parse_values(settings), form, int_bits=int_bits)
     with playing(form):
         game = opened.game(seed=seed, files=files)

@@ -134,10 +134,19 @@ def _counts(a: Answer) -> str:
     )
 
 
+_NO_END = "a state can be reached from which the cell cannot come to its end"
+
+
+def shown(a: Answer) -> str:
+    """What goes wrong, by the runs of an answer that is no."""
+    found = [_NO_END if e.fault is None else SAYS[e.fault] for e in a.evidence]
+    return "; ".join(dict.fromkeys(found)) or f"it is not true that {a.says}"
+
+
 def _run(e: Evidence) -> str:
     """What a run shows."""
     return (
-        "shortest run to a deadlock"
+        "shortest run to a state from which the end cannot be reached"
         if e.fault is None
         else f"shortest run in which {SAYS[e.fault]}"
     )

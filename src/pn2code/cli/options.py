@@ -38,7 +38,8 @@ class Format(StrEnum):
 
 
 FormatOption = Annotated[
-    Format, typer.Option("--format", help="How diagnostics are printed.", show_default=True)
+    Format,
+    typer.Option("--format", help="The form in which diagnostics are printed.", show_default=True),
 ]
 
 
@@ -67,7 +68,9 @@ def parse_values(settings: list[str]) -> dict[str, str]:
 SetOption = Annotated[
     list[str],
     typer.Option(
-        "--set", metavar="NAME=VALUE", help="Replace a `val` of the net (may be repeated)."
+        "--set",
+        metavar="NAME=VALUE",
+        help="Replace the value of a `val` of the net. This option may be given several times.",
     ),
 ]
 
@@ -78,7 +81,7 @@ FilesOption = Annotated[
         metavar="DIR",
         exists=True,
         file_okay=False,
-        help="The net may read and write files below this folder (without it: none at all).",
+        help="The folder below which the net may read and write files. Without this option it has no files.",
     ),
 ]
 
@@ -99,12 +102,12 @@ IntBitsOption = Annotated[
         "--int-bits",
         metavar="31|64",
         parser=_int_bits,
-        help="How wide integers are; beyond, they overflow. [default: 31, as in CPN Tools]",
+        help="The number of bits of an integer; larger numbers raise Overflow. [default: 31, as in CPN Tools]",
         show_default=False,
     ),
 ]
 SeedOption = Annotated[
-    int, typer.Option("--seed", metavar="K", help="Start of all random numbers.", min=0)
+    int, typer.Option("--seed", metavar="K", help="The seed of all random numbers.", min=0)
 ]
 DEFAULT_SEED = 1
 """What verbs with random numbers start from."""
@@ -120,10 +123,12 @@ class Engine(StrEnum):
 EngineOption = Annotated[
     Engine,
     typer.Option(
-        "--engine", help="The compiled net, or the reference token game.", show_default=True
+        "--engine",
+        help="Use the compiled net or the reference token game.",
+        show_default=True,
     ),
 ]
-JsonOption = Annotated[bool, typer.Option("--json", help="For programs.")]
+JsonOption = Annotated[bool, typer.Option("--json", help="Print one JSON object, for programs.")]
 
 
 MOST_SHOWN = 60
@@ -163,7 +168,7 @@ def _first(items: list[Diagnostic]) -> tuple[list[Diagnostic], str]:
     urgent = sorted(range(len(items)), key=lambda n: (order.index(items[n].severity), n))
     shown = [items[n] for n in sorted(urgent[:MOST_SHOWN])]
     left = len(items) - MOST_SHOWN
-    return shown, f"\n\nand {left} more: `--format concise` shows all, one line each"
+    return shown, f"\n\nThere are {left} more; `--format concise` shows all of them, one line each."
 
 
 def stop(d: Diagnostics, form: Format = Format.FULL) -> NoReturn:

@@ -47,7 +47,9 @@ LARGEST = 500_000_000
 
 
 def replay(
-    trace: Annotated[Path, typer.Argument(help="A *.trace.jsonl, or a recording by CPN Tools.")],
+    trace: Annotated[
+        Path, typer.Argument(help="A trace (*.trace.jsonl), or a recording by CPN Tools.")
+    ],
     net: Annotated[Path, typer.Argument(help="A .cpn or .pnml file, a cell.toml, or a folder.")],
     as_json: JsonOption = False,
     engine: EngineOption = Engine.REFERENCE,
@@ -56,16 +58,17 @@ def replay(
     int_bits: IntBitsOption = DEFAULT_INT_BITS,
     any_digest: Annotated[
         bool,
-        typer.Option("--any-digest", help="The trace may be of another version of the net."),
+        typer.Option("--any-digest", help="Accept a trace of another version of the net."),
     ] = False,
     form: FormatOption = Format.FULL,
 ) -> None:
-    """Repeat a recorded run step by step: is each step enabled when its turn comes?
+    """Repeat a recorded run, and check that each step is enabled when its turn comes.
 
-    What else the trace claims is looked at as well: net, elements, numbers, times, priorities, why and where it ended.
+    The other statements of the trace are checked as well: the net, elements, numbers, times, priorities, and why and
+    where the run ended.
 
-    What the net draws at random is not in a recording of CPN Tools; such a run is followed as far as it is determined,
-    and that is said.
+    A recording of CPN Tools does not say which random numbers were drawn. Such a run is compared as far as it is
+    determined, and the output says so.
     """
     what = kind(trace)
     try:
@@ -166,7 +169,7 @@ def _recording(
 
 
 _NOT_COMPILED = (
-    "the compiled net cannot be told what was drawn, so the token game alone followed it"
+    "the compiled net cannot repeat what was drawn, so only the token game repeated the run"
 )
 
 

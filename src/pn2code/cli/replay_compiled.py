@@ -76,7 +76,7 @@ def _claimed(
     if problem is not None or end is None or outcome.final is None:
         return problem
     if "loop" in end:
-        refuse("whether a lasso closes is seen by the token game: leave out `--engine compiled`")
+        refuse("only the token game checks whether a lasso closes: leave out `--engine compiled`")
     seed = header.get("seed")
     game = opened.game(seed=DEFAULT_SEED if seed is None else seed, files=files)
     game.marking, game.steps = outcome.final, outcome.replayed
@@ -113,8 +113,8 @@ def repeat_recorded(
     if ours == _markings(followed.rows):
         return {**compiled, "time": followed.time}
     if ours == _usual(opened, followed, files):
-        why = "of equal tokens with different stamps the recorded run took others than the compiled net does"
-        return {**result, "why": f"{why}, so the token game alone followed it"}
+        why = "where equal tokens have different stamps, the recorded run took other tokens than the compiled net does"
+        return {**result, "why": f"{why}, so only the token game repeated the run"}
     if compiled["ok"]:
         why = "in the end the compiled net has another marking than the token game"
         return {**compiled, "ok": False, "failed_step": compiled["steps"] + 1, "why": why}

@@ -55,39 +55,44 @@ def robot(
         Path | None,
         typer.Option(
             "--dir",
-            help="The shared directory of the supervisor (default: the one that it chooses itself).",
+            help="The shared directory of the supervisor (default: the directory that the supervisor uses by default).",
         ),
     ] = None,
     name: Annotated[
-        str | None, typer.Option(help="The robot's name (default: the script's program).")
+        str | None,
+        typer.Option(help="The robot's name (default: the name of the script's program)."),
     ] = None,
     cell: Annotated[
         Path | None,
         typer.Option(
-            help="The cell: moves take their time and are checked. Else all is done at once."
+            help="The cell. With it, moves take the time that they need and are checked; without it, they take no time."
         ),
     ] = None,
     layout: Annotated[
-        str | None, typer.Option(help="A layout of cell.toml (default: the first).")
+        str | None, typer.Option(help="The layout of cell.toml to use (default: the first).")
     ] = None,
     speed: Annotated[
         float,
         typer.Option(
-            min=0.01, max=1000.0, callback=finite, help="With --cell: so many times faster."
+            min=0.01,
+            max=1000.0,
+            callback=finite,
+            help="With --cell, move so many times faster than a real robot.",
         ),
     ] = 1.0,
     wait: Annotated[
         float,
-        typer.Option(min=0.0, callback=finite, help="Seconds to wait for the supervisor."),
+        typer.Option(min=0.0, callback=finite, help="How many seconds to wait for the supervisor."),
     ] = 10.0,
     verbose: Annotated[bool, typer.Option("-v", "--verbose", help="Print each command.")] = False,
     form: FormatOption = Format.FULL,
 ) -> None:
     """Run one robot's script in real time, as a process of its own.
 
-    Messages that are enumerations, and sensors, need --cell; numbers, poses and texts are known from the script. Exit
-    codes are those of the supervisor: 0 finished, 1 the script failed, 3 the supervisor stopped or died, 4 fault of a
-    channel, 5 input/output.
+    A script that uses sensors, or messages that are enumerations, needs --cell.
+
+    The exit code is 0 if the cell has finished, 1 if the script failed, 3 if the supervisor stopped or died, 4 after a
+    fault of a channel, and 5 after an error of input or output.
     """
     d = Diagnostics()
     program = _load(script, d)
@@ -109,7 +114,7 @@ def robot(
     elif asked := _sensors_of(program):
         names = ", ".join(f"`{x}`" for x in asked)
         _usage(
-            f"`{script.name}` asks {names}: what sensors say is known from the cell, give --cell"
+            f"`{script.name}` asks {names}: the values of sensors are given in the cell, so --cell is needed"
         )
     if d.has_errors:
         stop(d, form)

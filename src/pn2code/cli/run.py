@@ -42,47 +42,58 @@ class BackendChoice(StrEnum):
 def run(
     cell: Annotated[Path, typer.Argument(help="The folder of a cell (with cell.toml).")],
     layout: Annotated[
-        str | None, typer.Option(help="A layout of cell.toml (default: the first).")
+        str | None, typer.Option(help="The layout of cell.toml to use (default: the first).")
     ] = None,
     input_file: Annotated[
-        Path | None, typer.Option("--input", help="Another input file, or a folder of them.")
+        Path | None,
+        typer.Option(
+            "--input",
+            help="Use this input file instead of the cell's, or the input files in this folder.",
+        ),
     ] = None,
     backend: Annotated[
         BackendChoice,
-        typer.Option(help="bullet: PyBullet, with clearances; fake: kinematics only."),
+        typer.Option(
+            help="`bullet` uses PyBullet and measures clearances; `fake` computes only the kinematics."
+        ),
     ] = BackendChoice.BULLET,
-    out: Annotated[Path, typer.Option(help="Where the results go.")] = Path("run"),
+    out: Annotated[Path, typer.Option(help="The folder for the results.")] = Path("run"),
     pictures: Annotated[
-        bool, typer.Option("--pictures/--no-pictures", help="Pictures and charts.")
+        bool, typer.Option("--pictures/--no-pictures", help="Make pictures and charts.")
     ] = True,
     video: Annotated[bool, typer.Option("--video", help="Also record cell.mp4.")] = False,
     gui: Annotated[bool, typer.Option("--gui", help="Show PyBullet's window.")] = False,
     realtime: Annotated[
         bool,
-        typer.Option("--realtime", help="On the wall clock, the supervisor woken by its files."),
+        typer.Option(
+            "--realtime", help="Run in real time; the supervisor is woken when its files change."
+        ),
     ] = False,
     speed: Annotated[
         float,
         typer.Option(
-            min=0.01, max=1000.0, callback=finite, help="With --realtime: so many times faster."
+            min=0.01,
+            max=1000.0,
+            callback=finite,
+            help="With --realtime, run so many times faster than real time.",
         ),
     ] = 1.0,
     seed: Annotated[
-        int | None, typer.Option(metavar="K", help="Of what sensors draw at random.")
+        int | None, typer.Option(metavar="K", help="The seed of what sensors draw at random.")
     ] = None,
     unchecked: Annotated[
         bool,
         typer.Option(
             "--unchecked",
-            help="Run the supervisor whatever its checks say, and without asking them.",
+            help="Run the supervisor without checking it.",
         ),
     ] = False,
     settings: SetOption = [],  # noqa: B006 - typer reads the default only
     form: FormatOption = Format.FULL,
 ) -> None:
-    """Run a cell: build the supervisor, start it and the robots' interpreters, watch both, report.
+    """Run a cell: build the supervisor, run it together with the robots' programs, and report.
 
-    Simulated time runs as fast as it can, in lock-step: two runs give the same trace.
+    All programs run in lock-step, as fast as possible, so that two runs give the same trace.
     """
     # PyBullet, SciPy and the like take half a second to load: only this verb needs them.
     from rich.console import Console

@@ -57,7 +57,7 @@ def simulate(
         typer.Option(
             metavar="N",
             min=0,
-            help="At most N steps (default 1000; with --until no limit).",
+            help="Stop after N steps (default: 1000; with --until there is no limit).",
             show_default=False,
         ),
     ] = None,
@@ -67,52 +67,54 @@ def simulate(
             metavar="K",
             min=0,
             max=2**64 - 1,
-            help="Start of all random numbers (default 1).",
+            help="The seed of all random numbers (default: 1).",
             show_default=False,
         ),
     ] = None,
     until: Annotated[
-        str | None, typer.Option(metavar="T", help="No step after model time T.")
+        str | None, typer.Option(metavar="T", help="Stop before the first step after model time T.")
     ] = None,
     trace: Annotated[
-        Path | None, typer.Option(metavar="FILE", help="Write the run (docs/trace.md).")
+        Path | None,
+        typer.Option(metavar="FILE", help="Write the run to this file (docs/trace.md)."),
     ] = None,
     replay: Annotated[
         Path | None,
         typer.Option(
             metavar="TRACE",
-            help="First repeat this trace, then go on. Its steps do not count for --steps.",
+            help="Repeat this trace first, then go on. Its steps do not count for --steps.",
         ),
     ] = None,
     engine: Annotated[
         Engine | None,
         typer.Option(
-            help="The compiled net, or the reference token game: the same run.  "
+            help="Use the compiled net or the reference token game. Both make the same run.  "
             "(default: compiled, where that is possible)",
             show_default=False,
         ),
     ] = None,
     monitors: Annotated[
-        bool, typer.Option("--monitors/--no-monitors", help="Let the net's monitors work.")
+        bool, typer.Option("--monitors/--no-monitors", help="Use the monitors of the net.")
     ] = True,
     breakpoints: Annotated[
-        bool, typer.Option("--breakpoints/--no-breakpoints", help="Let breakpoints stop the run.")
+        bool, typer.Option("--breakpoints/--no-breakpoints", help="Stop the run at breakpoints.")
     ] = True,
     everything: Annotated[
-        bool, typer.Option("--all", help="Show all places, not only those that changed.")
+        bool,
+        typer.Option("--all", help="Show all places, not only those whose marking has changed."),
     ] = False,
     as_json: JsonOption = False,
     quiet: Annotated[
-        bool, typer.Option("--quiet", "-q", help="No progress, and no report but of errors.")
+        bool, typer.Option("--quiet", "-q", help="Print no progress and no report, only errors.")
     ] = False,
     settings: SetOption = [],  # noqa: B006 - typer reads the default only
     files: FilesOption = None,
     int_bits: IntBitsOption = DEFAULT_INT_BITS,
     form: FormatOption = Format.FULL,
 ) -> None:
-    """Simulate a net: draw an enabled binding element, let it occur, and so on.
+    """Simulate a net: choose an enabled binding element at random, let it occur, and repeat this.
 
-    The same seed gives the same run, in both engines. Ctrl-C ends the run and shows what there is so far.
+    The same seed gives the same run in both engines. Ctrl-C ends the run and prints the results so far.
     """
     opened = open_net(net, parse_values(settings), form, int_bits=int_bits)
     limit = _time(until, opened)

@@ -29,14 +29,14 @@ EPILOG = """Examples:
 
 
 def structure(
-    net: Annotated[Path, typer.Argument(help="A net, a cell.toml, or a folder with one.")],
+    net: Annotated[Path, typer.Argument(help="A .cpn or .pnml file, a cell.toml, or a folder.")],
     as_json: JsonOption = False,
-    everything: Annotated[bool, typer.Option("--all", help="Long lists are not cut.")] = False,
+    everything: Annotated[bool, typer.Option("--all", help="Print long lists completely.")] = False,
     settings: SetOption = [],  # noqa: B006 - typer reads the default only
     int_bits: IntBitsOption = DEFAULT_INT_BITS,
     form: FormatOption = Format.FULL,
 ) -> None:
-    """Invariants, siphons, traps, bounds and classes of a net, from its structure alone."""
+    """Compute invariants, siphons, traps, bounds and classes of a net from its structure alone."""
     opened = open_net(net, parse_values(settings), form, int_bits=int_bits)
     analysis = analyse(opened.flat, storage=opened.storage)
     if as_json:

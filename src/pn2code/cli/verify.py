@@ -71,7 +71,7 @@ MOST_COLOURS = 200
 def verify(
     net: Annotated[Path, typer.Argument(help="A .cpn or .pnml file, a cell.toml, or a folder.")],
     max_states: Annotated[
-        int | None, typer.Option(metavar="N", min=1, help="Stop after N markings.")
+        int | None, typer.Option(metavar="N", min=1, help="Stop after N markings are found.")
     ] = None,
     max_seconds: Annotated[
         float | None,
@@ -79,7 +79,7 @@ def verify(
             metavar="S",
             min=0.0,
             callback=finite,
-            help="Stop after S seconds of all together: reading, compiling, exploring, answering.",
+            help="Stop after S seconds. Reading, compiling, exploring and answering count together.",
         ),
     ] = None,
     memory: Annotated[
@@ -87,53 +87,64 @@ def verify(
         typer.Option(
             metavar="MIB",
             min=16,
-            help="Most memory for the tables.  (default: three quarters of what is free)",
+            help="The most memory for the tables.  (default: three quarters of what is free)",
             show_default=False,
         ),
     ] = None,
     threads: Annotated[
         int | None,
         typer.Option(
-            metavar="N", min=1, max=64, help="Default: all processors.", show_default=False
+            metavar="N",
+            min=1,
+            max=64,
+            help="The number of threads.  (default: the number of processors)",
+            show_default=False,
         ),
     ] = None,
     order: Annotated[
-        Order, typer.Option(help="Breadth first (shortest traces) or depth first.")
+        Order,
+        typer.Option(help="Search breadth first, which finds shortest traces, or depth first."),
     ] = Order.BREADTH,
     approximate: Annotated[
         Approximation | None,
         typer.Option(
-            help="Store less than the markings; some may be missed, and it is said how many."
+            help="Store less than the whole markings. Some may be missed; the report says how many are expected to be."
         ),
     ] = None,
     reduce: Annotated[
         list[Reduction],
         typer.Option(
-            help="See less than the whole space; may be given several times.", show_default=False
+            help="Explore a reduced state space (docs/reductions.md). This option may be given several times.",
+            show_default=False,
         ),
     ] = [],  # noqa: B006 - typer reads the default only
     no_reduction: Annotated[
         bool,
-        typer.Option(
-            "--no-reduction", help="Count the full space (the default), whatever `--reduce` says."
-        ),
+        typer.Option("--no-reduction", help="Explore the full state space, even with `--reduce`."),
     ] = False,
     spill: Annotated[
         Path | None,
         typer.Option(
-            metavar="DIR", exists=True, file_okay=False, help="Keep large tables in this folder."
+            metavar="DIR",
+            exists=True,
+            file_okay=False,
+            help="Keep tables that are larger than the memory in this folder.",
         ),
     ] = None,
     report_to: Annotated[
         Path | None,
         typer.Option(
-            "--report", metavar="FILE", help="Write the report; as HTML if its name ends so."
+            "--report",
+            metavar="FILE",
+            help="Write the report to this file, as HTML if its name ends in .html.",
         ),
     ] = None,
     draw_to: Annotated[
         Path | None,
         typer.Option(
-            "--draw", metavar="FILE", help="Draw the graph of a small space: .svg or .html."
+            "--draw",
+            metavar="FILE",
+            help="Draw the graph of a small state space to this file (.svg or .html).",
         ),
     ] = None,
     plot_to: Annotated[
@@ -141,7 +152,7 @@ def verify(
         typer.Option(
             "--plot",
             metavar="FILE",
-            help="Plot states, rate and memory over time and depth: .svg or .png.",
+            help="Plot states, rate and memory over time and depth to this file (.svg or .png).",
         ),
     ] = None,
     traces: Annotated[
@@ -150,7 +161,7 @@ def verify(
             "--traces",
             "-o",
             metavar="DIR",
-            help="Where runs are written.  (default: NET.traces)",
+            help="The folder for the traces.  (default: NET.traces)",
             show_default=False,
         ),
     ] = None,
@@ -161,7 +172,7 @@ def verify(
         bool,
         typer.Option(
             "--graph/--no-graph",
-            help="Components, home markings, liveness, fairness; they need all arcs once more.",
+            help="Compute components, home markings, liveness and fairness, which takes another pass over all arcs.",
         ),
     ] = True,
     texts: Annotated[
@@ -169,7 +180,8 @@ def verify(
         typer.Option(
             "--property",
             metavar="TEXT",
-            help="Ask this, e.g. `deadlock free` (docs/properties.md); may be given several times.",
+            help="Check this property, e.g. `deadlock free` (docs/properties.md). "
+            "This option may be given several times.",
             show_default=False,
         ),
     ] = [],  # noqa: B006 - typer reads the default only
@@ -180,7 +192,7 @@ def verify(
             metavar="FILE",
             exists=True,
             dir_okay=False,
-            help="Ask all of this file.  (default: NET.properties.toml beside the net, if there is one)",
+            help="Check the properties in this file.  (default: NET.properties.toml beside the net, if there is one)",
             show_default=False,
         ),
     ] = None,
@@ -188,7 +200,7 @@ def verify(
         bool,
         typer.Option(
             "--found/--no-found",
-            help="Ask what is written in NET.properties.toml and in cell.toml.",
+            help="Check the properties in NET.properties.toml and in cell.toml.",
         ),
     ] = True,
     check_controller: Annotated[
@@ -202,7 +214,7 @@ def verify(
         bool,
         typer.Option(
             "--medium/--no-medium",
-            help="Check a cell with the shared files between its parties (docs/protocol.md).",
+            help="Check a cell together with its shared files (docs/protocol.md).",
         ),
     ] = True,
     as_json: JsonOption = False,
@@ -210,25 +222,26 @@ def verify(
         bool,
         typer.Option(
             "--full",
-            help="Print the whole report with all runs, and list all colours of multi-set bounds.",
+            help="Print the whole report with all runs, and all colours of multi-set bounds.",
         ),
     ] = False,
     quiet: Annotated[
-        bool, typer.Option("--quiet", "-q", help="No progress, and nothing but errors.")
+        bool, typer.Option("--quiet", "-q", help="Print no progress and no report, only errors.")
     ] = False,
     settings: SetOption = [],  # noqa: B006 - typer reads the default only
     int_bits: IntBitsOption = DEFAULT_INT_BITS,
     form: FormatOption = Format.FULL,
 ) -> None:
-    """Explore the whole state space of a net, and report what it says.
+    """Explore the whole state space of a net, and report its properties.
 
-    Printed are the sizes, what is wrong and the way there, and the verdict; with `--full` the report of CPN Tools:
-    bounds of places, dead and home markings, dead and live transitions, fairness, and all runs step by step.
-    Exit code 0: everything was seen; 3: a limit was hit, or it was approximate, which the report says.
-    With properties: 0: all are true, 1: one is false, 3: one is not known and none is false. With a cell.toml the
-    checks of its supervisor count in the same way.
+    It prints the sizes, what is wrong, a run that leads there, and the verdict. With `--full` it prints the report of
+    CPN Tools: bounds, dead and home markings, dead and live transitions, fairness, and all runs step by step.
+
+    The exit code is 0 if everything was seen, and 3 if a limit was hit or the exploration was approximate. With
+    properties it is 0 if all are true, 1 if one is false, and 3 if one is not known and none is false. With a
+    cell.toml the checks of its supervisor count in the same way.
     """
-    deadline = Deadline.after(max_seconds)
+    deadline = Deadline.of_command(max_seconds)
     _check_kind(draw_to, GRAPH_KINDS, "--draw")
     _check_kind(plot_to, PLOT_KINDS, "--plot")
     d = Diagnostics()
@@ -430,7 +443,7 @@ def _tell_error(opened: OpenNet, found: Exploration, d: Diagnostics) -> None:
         notes.append(f"{trace.steps} steps lead to that marking: {trace.file}")
     d.error(
         STATE_ERROR,
-        f"{where} raises `{error['message']}` in a marking that can be reached",
+        f"{where} raises `{error['message']}` in a reachable marking",
         t.origin if t is not None else Origin(opened.flat.file),
         notes=notes,
         hint="`pn2code simulate` comes there too; guard the inscription, or handle the exception",

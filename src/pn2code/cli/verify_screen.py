@@ -10,6 +10,7 @@ import textwrap
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass
+from itertools import islice
 from pathlib import Path
 
 from pn2code.cli import medium
@@ -18,10 +19,10 @@ from pn2code.net.engine_names import EngineNames
 from pn2code.net.flat import FlatNet
 from pn2code.semantics.game import GameError
 from pn2code.simulate.script import TraceRefusedError
-from pn2code.verify import basis, control_text
+from pn2code.verify import basis, control_text, standstill
 from pn2code.verify.answers import Answer
 from pn2code.verify.control_types import TITLES, Control
-from pn2code.verify.path import steps, text
+from pn2code.verify.path import play, steps, text
 from pn2code.verify.properties_text import said as said_of
 from pn2code.verify.properties_text import told
 from pn2code.verify.reasons import clause
@@ -166,7 +167,7 @@ def _sizes(said: Said) -> Iterator[str]:
         if name == "Markings":
             more = f", in {found.seconds:.2f} s; compiled in {found.compile_seconds:.1f} s"
         if name == "Components" and found.graph is not None:
-            more = f", {found.graph.scc_nodes:,}"
+            more = f": {found.graph.scc_nodes:,}"
         yield from _row(name, what + more)
     if found.approximation is not None:
         kind, omitted = found.approximation["kind"], found.approximation["omission_probability"]
@@ -197,7 +198,9 @@ def _dead(found: Exploration) -> str:
         return "none" if found.seen.markings else "none was seen"
     first = ", ".join(map(str, found.dead[:MOST_NAMES]))
     more = ", ..." if found.dead_count > len(found.dead[:MOST_NAMES]) else ""
-    return f"{found.dead_count:,}" + (f" (nodes {first}{more})" if first else "")
+    return f"{found.dead_count:,}" + (
+        f" (node{'s' * (found.dead_count != 1)} {first}{more})" if first else ""
+    )
 
 
 def _listed(names: Sequence[str], of: int) -> str:
@@ -232,8 +235,7 @@ def _items(said: Said) -> Iterator[_Item]:
     for m in said.medium:
         kind = {"yes": "good", "no": "bad"}.get(m.answer, "open")
         lines = next((tuple(e.lines) for e in m.evidence), ())
-        says = f"not known: {m.why}" if kind == "open" else m.says
-        says += f" ({m.why})" if kind == "bad" and m.why else ""
+        says = {"open": f"not known: {m.why}", "bad": medium.shown(m)}.get(kind, m.says)
         yield _Item(f"{m.check[:1].upper()}{m.check[1:]}", kind, says, None, lines)
     for a in said.answers:
         kind = "open" if a.answer == "inconclusive" else "good" if a.is_expected else "bad"
@@ -342,9 +344,14 @@ def _earlier(count: int) -> list[str]:
 
 
 def _last(said: Said, file: Path, goal: str, most: int, loop: int | None = None) -> list[str]:
+    why: list[str] = []
     try:
         with said.deadline.enforced():
-            shown = steps(said.net, said.storage, file, most=MOST_STEPS)
+            game, played = play(said.net, said.storage, file)
+            shown = [step for step, _ in islice(played, MOST_STEPS)]
+            if loop is None and len(shown) < MOST_STEPS:
+                with suppress(GameError):  # an inscription raises an exception there
+                    why = standstill.reasons(game)
     except TimeIsOverError:
         return [f"The way to {goal} is in {file}; there was no time to show it."]
     except (TraceRefusedError, GameError, OSError) as problem:
@@ -352,14 +359,23 @@ def _last(said: Said, file: Path, goal: str, most: int, loop: int | None = None)
     if len(shown) == MOST_STEPS:
         return [f"The way to {goal} is in {file}; it is too long to be shown."]
     head = f"The way to {goal}, {len(shown)} step{'s' * (len(shown) != 1)}, {file}:"
+    why = why[: max(most - 1, 0)]
+    rest = ["  After that nothing can occur:", *(f"    {_cut(x, 4)}" for x in why)] if why else []
+    most -= len(rest)
     lines = _earlier(len(shown) - most)
     for step in shown[-most:] if most else ():
         values = ", ".join(f"{k} = {v}" for k, v in step.binding.items())
         line = f"  {step.number:>3}  {step.transition}" + (f"  ({values})" if values else "")
-        lines.append(line if len(line) <= _WIDTH else f"{line[: _WIDTH - 3]}...")
+        lines.append(_cut(line))
+    lines += rest
     if loop is not None and loop < len(shown):
-        lines.append(f"  and from step {loop + 1} on again and again")
+        lines.append(f"  The steps from step {loop + 1} on are repeated for ever.")
     return [head, *lines] if lines else []
+
+
+def _cut(line: str, indented: int = 0) -> str:
+    width = _WIDTH - indented
+    return line if len(line) <= width else f"{line[: width - 3]}..."
 
 
 # --- the verdict ---------------------------------------------------------------------------------
@@ -371,9 +387,10 @@ def closing(said: Said) -> str:
     bad, is_open = kinds.count("bad"), kinds.count("open")
     found = said.found
     if found.error is not None and found.why == "error":
-        return f"Verdict: NO. {error_text(said.net, found)} in a marking that can be reached."
+        return f"Verdict: NO. {error_text(said.net, found)} in a reachable marking."
     if bad:
-        return f"Verdict: NO. {bad} of {len(kinds)} answers {'are' if bad != 1 else 'is'} not as it should be."
+        are = "are not as they" if bad != 1 else "is not as it"
+        return f"Verdict: NO. {bad} of {len(kinds)} answers {are} should be."
     if said.errors:
         return "Verdict: NO. There are errors, see below."
     if is_open:
@@ -381,5 +398,5 @@ def closing(said: Said) -> str:
     if kinds:
         return f"Verdict: YES. All {len(kinds)} answers are as they should be."
     if found.complete:
-        return "Verdict: COMPLETE. Nothing was asked; all that can be reached was seen."
+        return "Verdict: COMPLETE. All reachable markings were seen, and there are no properties to check."
     return f"Verdict: NOT COMPLETE. {clause(found.why)[:1].upper()}{clause(found.why)[1:]}."

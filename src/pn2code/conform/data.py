@@ -63,7 +63,7 @@ def _differences(where: str, expected: Any, found: Any) -> Iterator[str]:
                 yield from _differences(f"{where}[{name}]", a, b)
         case _:
             if expected != found or isinstance(expected, bool) != isinstance(found, bool):
-                yield f"{where} is {found!r} in the program, by cell.toml and the net {expected!r}"
+                yield f"{where} is {found!r} in the program, but according to cell.toml and the net {expected!r}"
 
 
 # --- cell_config.c -------------------------------------------------------------------------------

@@ -49,7 +49,7 @@ def _constants(program: CheckedProgram, game: Game) -> Iterator[str]:
         if isinstance(own, bool | int | float | str) and (
             type(own) is not type(value) or own != value
         ):
-            yield f"`{name}` is {value!r} in the script, by the net {own!r}"
+            yield f"`{name}` is {value!r} in the script, but {own!r} according to the net"
 
 
 def _differences(
@@ -77,7 +77,7 @@ def _differences(
         expected = tuple(_of_colset(colset, config.storage))
         if _of_file(file) != expected:
             found = ", ".join(f"{k.type}{' single' * k.single}" for k in file.types)
-            yield f"`{file.path}` holds {found} by the script, which is not colour set `{colset.name}`"
+            yield f"`{file.path}` holds {found} according to the script, which is not colour set `{colset.name}`"
 
 
 def _of_file(file: t.File) -> _Held:

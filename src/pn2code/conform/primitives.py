@@ -1,4 +1,4 @@
-"""What a transition of a robot tells the robot to do, by the net: the calls of its primitives, in order.
+"""What a transition of a robot tells the robot to do, according to the net: the calls of its primitives, in order.
 
 calls = Calls()
 listener = Listener(game, config.primitives)

@@ -319,7 +319,7 @@ class _Product:
     def _nothing_to_do(self, state: _State, why: str) -> None:
         for element in self._scheme.enabled(self._owner, state.marking):
             text = element_text(self._game.colours, self._net, element)
-            raise DeviationError(f"{why}, but by the net {text} is enabled")
+            raise DeviationError(f"{why}, but according to the net {text} is enabled")
         # A command belongs to a transition, which is announced after it.
         if state.done:
             raise DeviationError(
@@ -379,7 +379,8 @@ class _Product:
             left = self._owed - wait.duration
             if left < 0 and not _is_nothing(left, self._owed):
                 raise DeviationError(
-                    f"line {self._interpreter.line} waits {wait.duration:g} s; by the net {self._owed:g} s are left"
+                    f"line {self._interpreter.line} waits {wait.duration:g} s; "
+                    f"according to the net {self._owed:g} s are left"
                 )
             self._owed = 0.0 if _is_nothing(left, self._owed) else left
             return self._marking.time + wait.duration
@@ -428,7 +429,9 @@ class _Product:
                 self._marks += 1
                 self._marked.add(t.name)
                 return
-        raise DeviationError(f"{where} with {event.binding}, which is not enabled by the net")
+        raise DeviationError(
+            f"{where} with {event.binding}, which is not enabled according to the net"
+        )
 
     def _compare_sensors(
         self, where: str, t: FlatTransition, binding: Mapping[str, object]
@@ -471,7 +474,8 @@ class _Product:
         expected = self._view(self._marking)
         if not _is_same(self._files.view, expected):
             raise DeviationError(
-                f"after line {self._interpreter.line} the files hold {self._files.view}, by the net {expected}"
+                f"after line {self._interpreter.line} the files hold {self._files.view}, "
+                f"but {expected} according to the net"
             )
 
 

@@ -255,7 +255,7 @@ class _Product:
             raise _DeviationError(f"the supervisor stops: {answer.reason}; the net goes on")
         if answer.fired != len(expected.elements):
             raise _DeviationError(
-                f"the supervisor fires {answer.fired} times, by the net {len(expected.elements)} times"
+                f"the supervisor fires {answer.fired} times, but {len(expected.elements)} times according to the net"
             )
         self._compare_places(state.time, expected.marking, answer.marking)
         sent = self._compare_files(state, expected.marking, answer.files)
@@ -282,7 +282,9 @@ class _Product:
             wanted = self._clock.tokens(expected.places[p.index], expected.time)
             if found != wanted:
                 is_, should = (place_text(self._game.colours, p.colset, x) for x in (found, wanted))
-                raise _DeviationError(f"place `{p.name}` holds {is_}, by the net {should}")
+                raise _DeviationError(
+                    f"place `{p.name}` holds {is_}, but {should} according to the net"
+                )
 
     def _compare_order(self, before: Marking, after: Marking, published: tuple[str, ...]) -> None:
         """What was consumed is emptied first (I4), then data are published, then flags (I5)."""
@@ -296,7 +298,7 @@ class _Product:
         # The channels of a partition are in this order: data before flags.
         if published != (expected := (*emptied, *written)):
             raise _DeviationError(
-                f"files are replaced in the order {', '.join(published) or 'none'}; by docs/protocol.md "
+                f"files are replaced in the order {', '.join(published) or 'none'}; according to docs/protocol.md "
                 f"{', '.join(expected) or 'none'}"
             )
 
@@ -308,7 +310,7 @@ class _Product:
         found = [name for name in read if name in expected]
         if found != expected:
             raise _DeviationError(
-                f"files are read in the order {', '.join(found) or 'none'}; by docs/protocol.md "
+                f"files are read in the order {', '.join(found) or 'none'}; according to docs/protocol.md "
                 f"{', '.join(expected) or 'none'}"
             )
 
@@ -324,7 +326,9 @@ class _Product:
                 raise _DeviationError(f"the file {channel.file} is missing")
             if not tokens:
                 if text != EMPTY:
-                    raise _DeviationError(f"{channel.file} holds {text!r}, by the net nothing")
+                    raise _DeviationError(
+                        f"{channel.file} holds {text!r}, but nothing according to the net"
+                    )
                 continue
             is_new = channel.writer == SUPERVISOR and not state.sight.marking.places[channel.place]
             if is_new:
@@ -335,10 +339,10 @@ class _Product:
             found = parse(self._specs[i], text, session=SESSION, consumed=sent[i] - 1)
             if not isinstance(found, Message):
                 said = "nothing" if found is None else found.text
-                raise _DeviationError(f"{channel.file}: {said}; by the net {values}")
+                raise _DeviationError(f"{channel.file}: {said}; according to the net {values}")
             if found.scalars != values or found.seq != sent[i]:
                 raise _DeviationError(
-                    f"{channel.file} holds {found.scalars}, number {found.seq}; by the net {values}, "
+                    f"{channel.file} holds {found.scalars}, number {found.seq}; according to the net {values}, "
                     f"number {sent[i]}"
                 )
         return tuple(sent)

@@ -8,9 +8,11 @@
 from __future__ import annotations
 
 import math
+from contextlib import suppress
 from functools import cache
 
 from jinja2 import Environment, FileSystemBytecodeCache, FileSystemLoader, StrictUndefined
+from jinja2.bccache import Bucket
 
 from pn2code.private_folder import private_folder
 from pn2code.resources import templates_folder
@@ -59,6 +61,15 @@ def c_bool(value: bool) -> str:
     return "true" if value else "false"
 
 
+class _Cache(FileSystemBytecodeCache):
+    """Keeps compiled templates, where there is room for them."""
+
+    def dump_bytecode(self, bucket: Bucket) -> None:
+        """Without room, or where others may not write, the template is compiled again by the next command."""
+        with suppress(OSError):
+            super().dump_bytecode(bucket)
+
+
 @cache
 def environment() -> Environment:
     """Strict: an unknown name in a template is an error, not an empty string."""
@@ -70,7 +81,7 @@ def environment() -> Environment:
         lstrip_blocks=True,
         keep_trailing_newline=True,
         autoescape=False,
-        bytecode_cache=FileSystemBytecodeCache(str(folder), "%s.template") if folder else None,
+        bytecode_cache=_Cache(str(folder), "%s.template") if folder else None,
     )
     for function in (c_comment, c_string, c_float, c_int, c_bool):
         env.filters[function.__name__] = function

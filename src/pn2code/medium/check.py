@@ -169,13 +169,15 @@ def whole(
     net = compose(partition, rules, Crashes(lives=False))
     assumes = "no side crashes"
     if net.net.timed:
-        assumes += "; messages take no model time, and none goes by while something can happen"
+        assumes += (
+            "; messages take no model time, and time does not advance while something can happen"
+        )
     if left_out:
-        assumes += f"; {', '.join(left_out)} between two robots: their messages arrive at once"
+        assumes += f"; messages of {', '.join(left_out)}, between two robots, arrive at once"
     return _explored(
         WHOLE,
-        "no message is lost, taken twice, torn, refused or overwritten, and from everywhere the cell can come to its "
-        "end",
+        "no message is lost, taken twice, torn, refused or overwritten, and the cell can come to its end from every "
+        "state",
         net,
         storage,
         run,
@@ -197,7 +199,7 @@ def _choices(partition: Partition) -> str:
 
 def too_large() -> Answer:
     """Of a cell that was not explored to the end by itself."""
-    why = "the cell's own state space was not seen to its end"
+    why = "the state space of the cell itself was not explored completely"
     return Answer(WHOLE, "", "inconclusive", why, 0, 0, 0, 0, 0.0, "no side crashes", ())
 
 
@@ -219,8 +221,9 @@ def exchange(
     )
     return _explored(
         f"the exchange with {name}",
-        "whoever crashes when, and is started again: no message is lost without a crash, none taken twice or in "
-        "another session, no flag without its own data; both sides end, or go on in the new session",
+        "whichever side crashes and is started again, at whatever time: no message is lost without a crash, none is "
+        "taken twice or in another session, no flag is taken without its own data, and both sides end or go on in the "
+        "new session",
         net,
         {},
         run,

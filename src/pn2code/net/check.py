@@ -231,7 +231,7 @@ class _Checker:
         if place is not None:
             self.d.note(
                 NEIGHBOUR_WRONG,
-                f"transition `{t.name}` waits for place `{place.name}`, which has an error",
+                f"transition `{t.name}` cannot be checked completely, because place `{place.name}` has an error",
                 t.origin,
                 notes=[Note("the place is here", place.origin)],
                 hint="correct the place first",

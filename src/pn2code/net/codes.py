@@ -24,7 +24,7 @@ PORT_UNASSIGNED = register(
 )
 SOCKET_UNASSIGNED = register(
     "socket-unassigned",
-    "a place beside a substitution transition is no socket",
+    "a place that is connected to a substitution transition is not a socket",
     "A place that has an arc to a substitution transition should be assigned to a port of the page that the "
     "transition stands for. The editor of CPN Tools refuses the net otherwise; in pn2code the arc has no meaning.",
 )
@@ -130,7 +130,7 @@ PLACE_COLSET = register(
 )
 NEIGHBOUR_WRONG = register(
     "neighbour-wrong",
-    "a transition stands beside a place with an error",
+    "a transition is connected to a place with an error",
     "What the arcs between a transition and a place may say depends on the place. CPN Tools does not check "
     "a transition before the places beside it are right; pn2code checks what it can.",
 )

@@ -92,8 +92,8 @@ def _sockets(
         if place not in assigned:
             d.warning(
                 SOCKET_UNASSIGNED,
-                f"place `{own[place].name}` stands beside substitution transition `{t.name}`, "
-                "but is not assigned to a port of its page: CPN Tools refuses the net",
+                f"place `{own[place].name}` is connected to substitution transition `{t.name}`, "
+                "but is not assigned to a port of its page; CPN Tools refuses the net",
                 origin,
                 notes=[Note("the place is here", own[place].origin)],
                 hint="assign it to a port of the page",

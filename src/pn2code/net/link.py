@@ -196,12 +196,19 @@ class _Linker:
             )
             return None
         ports = {p.id: p for p in target.places if p.port}
+        plain = {p.id for p in target.places if not p.port}
         own = {p.id: p for p in page.places}
         pairs: dict[str, str] = {}
         for port, socket in raw.portsock:
             wrong = ""
+            hint = "assign the ports of this substitution transition again"
             if port not in ports:
                 wrong = f"`{self.name(port)}` is not a port of page `{target.name}`"
+                if port in plain:
+                    hint = (
+                        f"make place `{self.name(port)}` of page `{target.name}` a port (In, Out or I/O), or remove "
+                        "the assignment"
+                    )
             elif socket not in own:
                 wrong = f"`{self.name(socket)}` is not a place of page `{page.name}`"
             if wrong:
@@ -209,7 +216,7 @@ class _Linker:
                     PORT_ASSIGNMENT,
                     f"a port assignment of `{t.name}` is ignored: {wrong}",
                     raw.origin,
-                    hint="assign the ports of this substitution transition again",
+                    hint=hint,
                 )
                 continue
             if pairs.get(port, socket) != socket:

@@ -22,7 +22,7 @@ FILE_TOO_LARGE = register(
 )
 TOO_MANY = register(
     "too-many-messages",
-    "there is more to say than anybody reads",
+    "there are too many messages",
     "After ten thousand messages about one file pn2code gives up: it is not what it should be, or one mistake "
     "in a declaration has to be corrected first.",
 )

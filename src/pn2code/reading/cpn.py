@@ -76,7 +76,7 @@ def give_up(file: str, d: Diagnostics) -> None:
         TOO_MANY,
         f"more than {len(d.items):,} messages: the rest is not looked at",
         Origin(file),
-        "correct what is said first",
+        "correct the first errors, then check again",
     )
 
 

@@ -225,7 +225,7 @@ class RobotExecutor:
         result: Pose | None = None,
     ) -> Motion:
         if not (seconds >= 0.0 and math.isfinite(seconds)):
-            raise MotionFault("bad-command", f"a duration of {seconds:g} s makes no sense")
+            raise MotionFault("bad-command", f"a duration of {seconds:g} s is not possible")
         path = Still(self.q, seconds)
         return self._moving(command, kind, now, path, self.q, self._T_base_tcp, result)
 

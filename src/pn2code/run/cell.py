@@ -177,7 +177,7 @@ def run_cell(
             CELL_MISSING,
             f"there is no file or folder `{options.input}`",
             at,
-            hint="correct what follows --input",
+            hint="correct the path after --input",
         )
         return None
     prepared = prepare(path, options, d)

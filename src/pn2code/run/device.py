@@ -27,7 +27,7 @@ class DeviceExecutor:
         seconds = command.duration
         if not (seconds >= 0.0 and math.isfinite(seconds)):
             raise MotionFault(
-                "bad-command", f"device `{self.name}`: a duration of {seconds:g} s makes no sense"
+                "bad-command", f"device `{self.name}`: a duration of {seconds:g} s is not possible"
             )
         kind: MotionKind = "tool" if isinstance(command, ToolAction) else "wait"
         self.motion = Motion(

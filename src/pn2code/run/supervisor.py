@@ -202,7 +202,7 @@ class SupervisorProcess:
             return StepResult(int(words[1]), next_time, words[3] == "finished", None)
         if line:
             return StepResult(
-                0, None, False, f"the supervisor gave an answer of no sense: {line!r}"
+                0, None, False, f"the supervisor gave an answer that cannot be understood: {line!r}"
             )
         if self.running:
             self._process.kill()

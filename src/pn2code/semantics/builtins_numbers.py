@@ -306,7 +306,7 @@ def format_real(how: Data, x: float) -> str:
     """`Real.fmt`.
 
     Raises:
-        MlException: Size, for a number of digits that makes no sense.
+        MlException: Size, for a number of digits that is not possible.
     """
     wanted: Any = how.argument
     digits: Any = wanted.argument if isinstance(wanted, Data) else None

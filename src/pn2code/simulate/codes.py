@@ -13,7 +13,7 @@ TRACE_UNWRITABLE = register(
 )
 SIMULATOR_FAILED = register(
     "simulator-failed",
-    "the compiled simulator came to a bad end",
+    "the compiled simulator failed",
     "The compiled net was killed, or did not say how its run ended. When the system ended it (not enough memory), try "
     "a shorter run; when a function of the net never returns, it is ended after two minutes without a step, or some "
     "seconds after Ctrl-C; else this is a bug in pn2code. `--engine reference` simulates the same run without C, and "

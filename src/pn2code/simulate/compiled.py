@@ -314,7 +314,7 @@ def _bad_end(process: _Process, code: int, d: Diagnostics) -> None:
     if process.endless:
         d.error(
             SIMULATOR_FAILED,
-            "the run was given up: an expression of the net does not come to an end",
+            "the run was stopped, because an expression of the net does not end",
             Origin(process.request.net.file),
             hint="`--engine reference` stops such an expression and says which one it is",
         )

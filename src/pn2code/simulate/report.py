@@ -14,7 +14,7 @@ _WHY = {
     "steps": "the number of steps was reached",
     "until": "the next step would be after the given time",
     "breakpoint": "a breakpoint was reached",
-    "error": "the net raised an error",
+    "error": "an inscription of the net raised an error",
     "interrupted": "interrupted",
     "replay": "the trace cannot be repeated",
 }

@@ -7,29 +7,29 @@ from typing import Final
 
 NET: Final = (
     "The answers are about the net as it stands: supervisor, robots, devices and people do what their pages say.",
-    "What was explored is the net as it was compiled for the explorer: packed places, arrays of other sizes and other "
-    "compiler flags than in the generated net.o, which the supervisor and the simulator run.",
-    "That net.o, the supervisor and the scripts do what the net does is not shown here: `pn2code conform` compares "
-    "them and the explorer's graph with the token game, state by state.",
-    "Runs that are shown were played again by the reference token game, which shares no code with the explorer.",
+    "The explorer has the net in a form of its own: with packed places, arrays of other sizes and other compiler flags "
+    "than the generated net.o, which the supervisor and the simulator run.",
+    "This report does not show that net.o, the supervisor and the scripts do what the net does. `pn2code conform` "
+    "compares them and the explorer's graph with the token game, state by state.",
+    "The reference token game, which shares no code with the explorer, has replayed the runs that are shown.",
 )
-TIME: Final = "Time of the closed net goes by only where nothing is enabled; that of the cell whenever it likes."
+TIME: Final = "In the closed net time advances only where nothing is enabled; in the cell it may advance at any moment."
 CONTROL: Final = (
     "Controller checks: the net starts with its own initial marking, without the tokens of an `[[input]]` file.",
-    "Controller checks and properties: the cell as it runs. Each program knows its own priorities, and the messages "
-    "that it has seen; the supervisor goes in cycles; of what it can do, each does what comes first in the documented "
-    "order.",
-    "How quick a program is, is left open, and what sensors say; crashes are for the medium.",
+    "Controller checks and properties are about the cell as it runs. Each program knows its own priorities and the "
+    "messages that it has seen. The supervisor works in cycles. Of the transitions that are enabled, each program "
+    "takes the first one in the documented order.",
+    "Programs may be slow or quick, and sensors may say anything. Crashes are looked at only with the medium.",
 )
 MEDIUM: Final = (
     "A rename is atomic: a name leads to the old or to the new file, never to none or to half of one",
-    "Who has opened a file reads it whole, also if another is renamed over it meanwhile",
+    "A process that has opened a file reads all of it, even if another file is renamed over it meanwhile",
     "What was renamed first is seen first by whoever looks at the *later* one first: a reader that sees the flag finds "
     "the data. Nothing is assumed of a reader that looks at the data first, so none does",
     "What was renamed is seen by the next look: looks may come late, but none shows what was replaced before it",
-    "Files outlive the process that wrote them, with whole contents",
+    "Files stay, with all of their contents, when the process that wrote them ends",
     "The lock of a process that has died is free, and its status file says what it said",
-    "Of a shared and an exclusive lock on a file one is denied",
+    "A file cannot have a shared and an exclusive lock at the same time",
 )
 """Of the file system, as in the table of docs/protocol.md."""
 

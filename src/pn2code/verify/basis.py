@@ -23,12 +23,12 @@ RUN: Final = "run"
 NET: Final = "net"
 
 SAYS: Final = {
-    MARKINGS: "all markings that can be reached were seen",
-    ARCS: "all markings that can be reached and all arcs between them were seen",
+    MARKINGS: "all reachable markings were seen",
+    ARCS: "all reachable markings and all arcs between them were seen",
     COMPONENTS: "all markings, all arcs and the components of the graph were seen",
-    MARKING: "a marking that shows it was reached",
-    RUN: "a run that shows it was found",
-    NET: "the net itself was looked at, not its state space",
+    MARKING: "a marking was reached that shows the answer",
+    RUN: "a run was found that shows the answer",
+    NET: "the net itself was examined, not its state space",
 }
 _OF_MARKINGS = frozenset({"channels", "capacity", "messages", "memory"})
 """Checks of a supervisor that look at one marking after the other."""
@@ -69,12 +69,12 @@ def complete(found: Exploration) -> Iterator[tuple[str, str]]:
     seen, of = found.seen, " of the reduced space" * found.is_reduced
     yield (
         "Markings",
-        f"complete, all {found.nodes:,}{of} were seen"
+        f"complete: {found.nodes:,}{of}"
         if seen.markings
-        else f"not complete, {found.nodes:,}{of} were seen",
+        else f"not complete: {found.nodes:,}{of} were seen",
     )
     missing = "not asked for" if found.complete else "not complete"
-    yield "Arcs", f"complete, all {found.arcs:,}{of} were seen" if seen.arcs else missing
+    yield "Arcs", f"complete: {found.arcs:,}{of}" if seen.arcs else missing
     missing = "not kept by the reduction" if seen.arcs and found.is_reduced else missing
     yield "Components", "complete" if seen.components else missing
 
@@ -83,10 +83,10 @@ def partial(found: Exploration) -> str:
     """One sentence for the head of a report that is not complete, without the reason."""
     if found.seen.markings:
         return (
-            "All markings were seen: bounds, dead markings and dead transitions are those of the whole space. What "
-            "needs all arcs is not known: components, home markings, live transitions, fairness."
+            "All markings were seen, so bounds, dead markings and dead transitions are those of the whole state space. "
+            "Components, home markings, live transitions and fairness need all arcs and are not known."
         )
     return (
-        "What follows is about the part that was seen: upper bounds may be greater, lower bounds smaller, "
+        "The report is about the part that was seen: upper bounds may be greater, lower bounds may be smaller, "
         "transitions that were not seen to occur may occur, and there may be further dead markings."
     )

@@ -24,21 +24,19 @@ from pn2code.verify.reasons import clause
 
 _PRIORITIES = (
     "In the closed net priorities are global: a transition waits while one of higher priority is enabled anywhere. In "
-    "the cell each program knows only its own, and only the messages that it has seen."
+    "the cell each program knows only its own transitions and the messages that it has seen."
 )
 _TIME = (
-    "In the closed net no time goes by while something is enabled. In the cell the supervisor may come late, and moves "
-    "take time that the net does not know."
+    "In the closed net time does not advance while something is enabled. In the cell the supervisor may be late, and "
+    "moves take time that the net does not know."
 )
 _CHOICES = (
-    "In the closed net everything that is enabled may occur, and messages are there at once. In the cell the "
-    "supervisor and the scripts choose in the documented order, and a message counts when it has been seen."
+    "In the closed net everything that is enabled may occur, and messages arrive at once. In the cell the supervisor "
+    "and the scripts choose in the documented order, and a message has an effect only after it has been seen."
 )
-_NEXT = "it speaks of the very next step, and between two occurrences the programs take steps of their own"
-_INITIAL = (
-    "when the net comes back to its initial marking, the programs stand elsewhere than at the start"
-)
-_WAITS = "the net does not know how long moves take, nor how late the supervisor is"
+_NEXT = "it is about the very next step, but between two occurrences the programs take steps of their own"
+_INITIAL = "when the net returns to its initial marking, the programs are not at their start again"
+_WAITS = "the net knows neither how long moves take nor how late the supervisor is"
 
 
 def is_kept(p: m.Property) -> bool:
@@ -116,7 +114,7 @@ def _certain(
         open_ = "" if is_all else _INITIAL if _asks_initial(asked) else _NEXT
     elif all_orders and (answer.answer == "no" or is_fair):
         # Where more is enabled, fewer paths are fair.
-        open_ = "it was looked at in all orders in which the supervisor could fire"
+        open_ = "this covers all orders in which the supervisor could fire"
     is_possible = isinstance(asked, m.Invariant) and not asked.wanted
     if not open_ and answer.answer == "yes" and not (is_kept(answer.about) or is_possible):
         open_ = control.stops

@@ -6,7 +6,7 @@ from pn2code.diagnostics.codes import register
 
 EXPLORER_FAILED = register(
     "explorer-failed",
-    "the explorer came to a bad end",
+    "the explorer failed",
     "The compiled explorer was killed or did not say how it ended. When the system ended it (not enough memory), give "
     "it a limit with `--memory`, so that it stops in time and tells what it has seen; else this is a bug in pn2code.",
 )
@@ -20,7 +20,7 @@ TIME_OVER = register(
 )
 STATE_ERROR = register(
     "state-error",
-    "an inscription raises an exception in a marking that can be reached",
+    "an inscription raises an exception in a reachable marking",
     "While the state space was computed, an arc inscription, a guard, a delay or a code segment raised an exception "
     "(Overflow, Div, a value outside its colour set, ...), as in a simulation that comes there. CPN Tools stops its "
     "calculation likewise. What was seen until then is reported as partial.",
@@ -88,7 +88,7 @@ REDUCTION_MISMATCH = register(
 )
 SPILL_FULL = register(
     "spill-full",
-    "the folder of `--spill` takes no more",
+    "the folder of `--spill` is full, or cannot be written",
     "Tables that are larger than memory lie in files of the folder that `--spill` names. It is full, or cannot be "
     "written: the exploration stops, and what was seen until then is reported as partial.",
 )
@@ -117,7 +117,7 @@ CAPACITY_UNPROVED = register(
     "capacity-unproved",
     "nothing proves how many tokens a place of the supervisor can hold",
     "The arrays of the generated program are as large as a bound that is proven: by an invariant of the net's "
-    "structure, or by its complete state space. Of this place nothing is. Declare a bound in cell.toml, "
+    "structure, or by its complete state space. No bound of this place is proven. Declare a bound in cell.toml, "
     "`[capacity] place = n`: the supervisor stops safely when the place gets more; or limit the place in the net.",
 )
 CAPACITY_LARGE = register(

@@ -165,7 +165,7 @@ def refusal(partition: Partition, found: Exploration, keep: Keeper) -> Check | N
     where = f"`{partition.net.transitions[index].name}`{after}"
     says = (
         f"the script of {owner.phrase} stops in {where}: an exception, or what no robot can carry out (a time that is "
-        "negative, a number that is not finite); that stops the whole cell"
+        "negative, a number that is not finite); this stops the whole cell"
     )
     return Check(BLOCKING, "no", says, why="stopped", evidence=evidence)
 
@@ -271,9 +271,9 @@ def _confluent(
         what = f"whether `{pair[0]}` or `{pair[1]}` comes first matters"
     else:
         what = "the order of firing matters"
-    says = f"{what}, {at} step{'s' * (at != 1)} after the start"
+    says = f"{what} {at} step{'s' * (at != 1)} after the start"
     if plan.order_decides:
-        says += '; the documented order decides, as `order = "documented"` in cell.toml says'
+        says += ', but the documented order is meant, since cell.toml has `order = "documented"`'
         return Check(CONFLUENT, "no", says, at, is_accepted=True, transitions=pair)
     return Check(
         CONFLUENT,
@@ -293,8 +293,8 @@ def _stopping(row: Mapping[str, Any], keep: Keeper) -> Check | None:
     evidence = keep.all(row, BLOCKING)
     steps = evidence[0].steps if evidence else 0
     after = f"{steps} step{'s' * (steps != 1)} after the start" if steps else "at the start"
-    fits = "" if who.endswith(OWING) else ", where no transition fits"
-    says = f"{after} {who}{fits}: that stops the whole cell"
+    fits = "" if who.endswith(OWING) else ", because none of its transitions is possible there"
+    says = f"{after} {who}{fits}; this stops the whole cell"
     return Check(BLOCKING, "no", says, why="stopped", evidence=evidence)
 
 
@@ -307,7 +307,7 @@ def _restless(row: Mapping[str, Any], keep: Keeper) -> Check | None:
     round_ = evidence[0].transitions[loop:] if loop is not None else ()
     ways = f" ({_named(round_)})" if round_ else ""
     how = "for ever" if row["value"] is None else f"for {int(row['value']):,} transitions"
-    says = f"a script goes round {how} without a command or a wait{ways}: that stops the whole cell"
+    says = f"a script goes round {how} without a command or a wait{ways}; this stops the whole cell"
     return Check(BLOCKING, "no", says, why="stopped", evidence=evidence)
 
 
@@ -321,7 +321,8 @@ def _blocking(row: Mapping[str, Any], keep: Keeper, partition: Partition) -> Che
         *most, last = [*_given(partition)] or [""]
         given = f", if {' and '.join(filter(None, [', '.join(most), last]))}" * bool(last)
         how = (
-            f"a token in {final} is reached from each of the {size:,} states of the cell, whoever is slow{given}"
+            f"a token in {final} is reached from each of the {size:,} states of the cell, however slow its programs "
+            f"are{given}"
             if names
             else f"something can always happen in the {size:,} states of the cell (no place is final)"
         )
@@ -331,15 +332,15 @@ def _blocking(row: Mapping[str, Any], keep: Keeper, partition: Partition) -> Che
     after = f"{steps} step{'s' * (steps != 1)} after the start" if steps else "at the start"
     if row["why"] == "speeds":
         says = (
-            f"not known: a token in {final} can be reached from each of the {size:,} states of the cell, but {after} "
-            "the order of events, which durations decide, can keep the cell from it for ever"
+            f"not known: a token in {final} can be reached from each of the {size:,} states of the cell, but from the "
+            f"state {after} on, an order of events that depends on durations can keep the cell from it for ever"
         )
         return Check(BLOCKING, "unknown", says, size, "speeds", evidence=evidence)
     if row["why"] == "deadlock":
-        without = f", without a token in {final}" if names else ""
-        says = f"a deadlock {after}: nothing can happen{without}"
+        without = f", and there is no token in {final}" if names else ""
+        says = f"there is a deadlock {after}: nothing can happen{without}"
     else:
-        says = f"{after} a token in {final} can no longer be reached, though the cell goes on"
+        says = f"{after} a token in {final} can no longer be reached, although the cell goes on"
     return Check(BLOCKING, "no", says, size, row["why"], evidence=evidence)
 
 
@@ -367,8 +368,8 @@ def channels_check(partition: Partition, rows: Sequence[Mapping[str, Any]], keep
         place = partition.net.places[channel.place].name
         most = int(row["value"])
         evidence = keep.all(row, CHANNELS)
-        after = f", {_steps(evidence[0].steps)} after the start" if evidence else ""
-        says = f"channel `{channel.name}` gets {most} messages at a time{after}"
+        after = f" {_steps(evidence[0].steps)} after the start" if evidence else ""
+        says = f"channel `{channel.name}` holds {most} messages{after}"
         return Check(CHANNELS, "no", says, most, evidence=evidence, place=place)
     for _, row in pairs:
         if row["answer"] == "unknown":
@@ -391,8 +392,8 @@ def capacities_check(
         if row["answer"] == "no":
             most = int(row["value"])
             evidence = keep.all(row, CAPACITY)
-            after = f", {_steps(evidence[0].steps)} after the start" if evidence else ""
-            says = f"place `{places[index].short}` gets {most} tokens{after}, but `[capacity]` declares {bound}"
+            after = f" {_steps(evidence[0].steps)} after the start" if evidence else ""
+            says = f"place `{places[index].short}` holds {most} tokens{after}, but `[capacity]` declares {bound}"
             return Check(CAPACITY, "no", says, most, evidence=evidence, place=places[index].name)
     for row in rows:
         if row["answer"] == "unknown":

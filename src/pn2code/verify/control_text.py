@@ -34,7 +34,7 @@ def looked_at(control: Control) -> Iterator[str]:
     if control.why:
         yield f"Looked up: {control.why}."
     elif found is not None:
-        yield f"Looked up in the cell as it runs: {found.nodes:,} states, {found.arcs:,} arcs."
+        yield f"Checked in the cell as it runs: {found.nodes:,} states, {found.arcs:,} arcs."
     for name, own, other in control.other_bounds():
         yield f"`{name}` holds at most {own} tokens in the cell, {other} in the closed net."
 

@@ -36,10 +36,10 @@ TITLES = {
     OWNERSHIP: "Owners use their own places only",
 }
 MEANINGS = {
-    FINITE: "the supervisor, left alone, always comes to rest",
+    FINITE: "the supervisor always comes to rest when no message arrives",
     BOUNDED: "the number of firings in one cycle of the supervisor has a limit",
-    CONFLUENT: "the order in which the supervisor fires within a cycle does not matter",
-    BLOCKING: "from every state that the cell can reach it comes to its end, also when some of its programs are slow",
+    CONFLUENT: "the order of the supervisor's firings within a cycle does not matter",
+    BLOCKING: "the cell comes to its end from every state that it can reach, even when some of its programs are slow",
     CHANNELS: "no channel ever holds two messages",
     CAPACITY: "no place ever holds more tokens than `[capacity]` declares",
     MESSAGES: "every message can be written into its file, and is read as it was written",

@@ -185,9 +185,9 @@ def explore(
             what = f"place `{place.name}`" if place else "one marking's lists and strings"
             d.error(
                 BEYOND_ROOM,
-                f"{what} takes more room than can be explored",
+                f"{what} needs more memory than the explorer can give it",
                 place.origins[0] if place else Origin(net.file),
-                hint="look at it with `pn2code simulate`; limit the place in the net, or the exploration",
+                hint="run the net with `pn2code simulate`, limit the place in the net, or limit the exploration",
             )
             return Exploration.of(net, {**found, "why": "memory"}, compiling)
         sizes = larger
@@ -208,7 +208,7 @@ def _too_late(net: FlatNet, limits: Limits, compiling: float, d: Diagnostics) ->
     if all(i.code != TIME_OVER for i in d):
         d.warning(
             TIME_OVER,
-            "the time was over before the net was compiled, so nothing of it has been explored",
+            "the time was over before the net was compiled, so no marking has been explored",
             Origin(net.file),
             hint="give it more time with `--max-seconds`; a net that has been compiled once is kept",
         )
@@ -364,9 +364,9 @@ def _run(
         if is_late:
             d.warning(
                 TIME_OVER,
-                "the explorer did not end when its time was over, and was stopped; what it has seen is lost",
+                "the explorer did not end when its time was over, and was stopped; what it had found is lost",
                 Origin(net.file),
-                hint="an inscription may take very long, or for ever; `--max-states` ends before that",
+                hint="an inscription may compute for very long, or for ever; `--max-states` ends it earlier",
             )
             return nothing(net, Limits(), "seconds")
         _bad_end(net, process.returncode, said, d)
@@ -405,7 +405,7 @@ def _bad_end(net: FlatNet, code: int, said: Sequence[str], d: Diagnostics) -> No
     how = f"was ended by signal {-code}" if code < 0 else f"ended with code {code}"
     d.error(
         EXPLORER_FAILED,
-        f"the explorer {how} and said nothing of what it has seen",
+        f"the explorer {how} without a report",
         Origin(net.file),
         notes=said[-3:],
         hint="give it a limit: `--memory MIB` or `--max-states N`",

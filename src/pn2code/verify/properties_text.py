@@ -102,7 +102,7 @@ def lines(shown: Sequence[Step], evidence: Evidence) -> list[str]:
     loop = evidence.loop if evidence.loop is not None else evidence.steps
     for step in shown:
         if step.number == loop + 1:
-            found.append("  >>>  from here on again and again")
+            found.append("  >>>  the following steps are repeated for ever")
         values = ", ".join(f"{k} = {v}" for k, v in step.binding.items())
         at = f"  @{step.time}" if step.time else ""
         found.append(
@@ -112,5 +112,5 @@ def lines(shown: Sequence[Step], evidence: Evidence) -> list[str]:
     if evidence.steps > len(shown):
         found.append(f"  ... {evidence.steps - len(shown)} more steps in the trace")
     elif loop < evidence.steps:
-        found.append(f"  <<<  and from step {loop + 1} on again")
+        found.append(f"  <<<  and so on from step {loop + 1}")
     return found

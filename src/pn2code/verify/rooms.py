@@ -117,7 +117,7 @@ def refuse(net: FlatNet, found: Sequence[Room], why: str, d: Diagnostics) -> Non
                 CAPACITY_UNPROVED,
                 f"nothing proves how many tokens place `{place.name}` can hold",
                 place.origins[0],
-                notes=[f"its structure proves no bound, and of the state space: {why}"]
+                notes=[f"its structure proves no bound, and neither does the state space: {why}"]
                 if why
                 else [],
                 hint=f'declare the most tokens in cell.toml: [capacity] "{place.short}" = N; or use `--unchecked`',
