@@ -427,14 +427,18 @@ class _Emitter:
             roots += called(p.initial)
         for g in self._net.globals:
             roots += called(g.setup)
-        roots += [f.key for f in self._net.functions if f.key.startswith("member ")]
         found: set[str] = set()
-        while roots:
-            key = roots.pop()
-            if key not in found:
-                found.add(key)
-                roots += called(self._functions[key].body)
-        return [f for f in self._net.functions if f.key in found]
+        while True:
+            while roots:
+                key = roots.pop()
+                if key not in found:
+                    found.add(key)
+                    roots += called(self._functions[key].body)
+            functions = [f for f in self._net.functions if f.key in found]
+            tables = self._used_tables(functions, self._net.predicates if with_predicates else ())
+            roots = [m for key in tables if (m := self._descriptors[key].member) and m not in found]
+            if not roots:
+                return functions
 
     def _used_tables(
         self, functions: Iterable[ir.Function], predicates: Iterable[ir.Predicate] = ()

@@ -90,6 +90,8 @@ class ColsetFunctions:
             "timed.ran": token,
         }
         if name in results:
+            for argument in arguments:
+                self._body.discard(argument)  # which may raise first
             own = ir.Const(self._colset.name, ir.STRING)
             return self._call("no_bounds", (), own, STRING, results[name])
         return None
@@ -155,6 +157,7 @@ class ColsetFunctions:
     def listed(self, name: str, arguments: tuple[Val, ...]) -> Val:
         """One of `LISTED`, for a colour set that the runtime cannot number."""
         cs = self._colset.type
+        arguments = tuple(self._body.settle(a, "given") for a in arguments)  # which may raise first
         match name:
             case "base":
                 return base_value(self._body, self._colset, self._at)
