@@ -1,6 +1,6 @@
 """`./dev sanitized`: every net at hand in the explorer under the sanitizers for addresses and undefined behaviour.
 
-    python -m tests.sanitized [--states 300] [--seconds 5] [--only TEXT] [--references N]
+    python -m tests.sanitized [--states 300] [--seconds 5] [--only TEXT] [--every N] [--first N] [--references N]
 
 The nets of the collections and the shipped examples, then as many random nets with references (about 30 in a file).
 Each is explored with its places packed into counters and with none packed, breadth first and depth first, with one and
@@ -39,7 +39,7 @@ ROOT = Path(__file__).resolve().parents[1]
 COMPARED = 100
 """Markings of a graph that is compared with the token game's."""
 PER_FILE = 30
-ENDINGS = ("complete", "states", "seconds", "error", "memory")
+ENDINGS = ("complete", "approximation", "states", "seconds", "error", "memory")
 """Why an exploration may end; anything else is a bug."""
 
 
@@ -49,6 +49,8 @@ def main() -> int:
     parser.add_argument("--states", type=int, default=300, help="markings of each net")
     parser.add_argument("--seconds", type=float, default=5.0, help="of each exploration")
     parser.add_argument("--only", default="", help="nets whose path contains this text")
+    parser.add_argument("--every", type=int, default=1, help="one net of so many")
+    parser.add_argument("--first", type=int, default=0, help="the number of the first one")
     parser.add_argument("--references", type=int, default=300, help="random nets with references")
     given = parser.parse_args()
     shared = Path(os.environ.get("PN2CODE_SHARED", ROOT.parent / "shared"))
@@ -57,9 +59,7 @@ def main() -> int:
     began = time.monotonic()
     with tempfile.TemporaryDirectory(prefix="pn2code-sanitized-") as folder:
         explorers = Explorers.open(Path(folder) / "explorers", SANITIZERS)
-        for path in paths:
-            if given.only not in str(path):
-                continue
+        for path in [p for p in paths if given.only in str(p)][given.first :: given.every]:
             verdict, detail = look(explorers, path, given.states, given.seconds)
             counts[verdict] += 1
             print(f"{verdict:12}{path.name}  {detail[:1500]}", file=sys.stderr, flush=True)

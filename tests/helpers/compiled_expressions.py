@@ -1,8 +1,8 @@
 """Random CPN ML in compiled code and in the reference evaluator: the same text of the value, or the same exception.
 
-The texts are those of `tests.oracle.texts`, over all kinds of colour sets and the whole library. Each that is accepted is
-a function from unit to the text of its value, which is written by functions that its type decides. Some forty are the
-initial markings of as many places of one net.
+The texts are those of `tests.oracle.texts`, over all kinds of colour sets and the whole library. Each that is accepted
+is a function from unit to the text of its value, which is written by functions that its type decides. Some forty are
+the initial markings of as many places of one net.
 """
 
 from __future__ import annotations
@@ -12,13 +12,13 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from random import Random
 
-from ml_suite.suite import NotShowable
-from ml_suite.suite import show as show_simple
 from tests.oracle.answers import Here
 from tests.oracle.texts import NET, Texts
 
 from helpers.compiled import Workshop, lowered, run
 from helpers.netbuilder import load, write
+from ml_suite.suite import NotShowable
+from ml_suite.suite import show as show_simple
 from pn2code.diagnostics import NOWHERE, Diagnostics, SourceText
 from pn2code.ml import core
 from pn2code.ml.types import STRING, UNIT, TCon, TFun, TRecord, Type
@@ -52,7 +52,12 @@ _CONTAINERS = {
     "vector": "show_vector",
     "array": "show_array",
 }
-_MORE = {"exn": "exnName", "Word8.word": "show_word8", "Word8Vector.vector": "show_bytes", "time": "ModelTime.toString"}
+_MORE = {
+    "exn": "exnName",
+    "Word8.word": "show_word8",
+    "Word8Vector.vector": "show_bytes",
+    "time": "ModelTime.toString",
+}
 
 
 @dataclass(frozen=True, slots=True)
@@ -124,9 +129,7 @@ class Expressions:
             function = core.Var(program.globals[one.function], TFun(UNIT, STRING), span)
             value = core.Apply(function, core.RecordExp((), UNIT, span), STRING, span)
             initial = (value, Form.TOKEN)
-            places.append(
-                replace(place, index=i, name=f"Top.P{i}", short=f"P{i}", initial=initial)
-            )
+            places.append(replace(place, index=i, name=f"Top.P{i}", short=f"P{i}", initial=initial))
         return replace(self.net, program=program, places=tuple(places))
 
 
@@ -204,4 +207,3 @@ def compiled(made: Expressions, some: Sequence[Expression], workshop: Workshop) 
     if "error" in line:
         return f"the program stops: {line['error']}"
     return [line["marking"][p.name][0][1] for p in net.places]
-

@@ -175,6 +175,16 @@ class _Emitter:
             "lines": s.lines,
         }
 
+    def _member(self, f: ir.Function, wrappers: dict[str, str]) -> dict[str, object]:
+        """A function that decides membership of a subset, and its wrapper for the subset's table."""
+        return {
+            **self._function(f),
+            "wrapper": wrappers[f.key],
+            "call": self._names.function(f.key, f.hint),
+            "has_context": f.key in self._needs_context,
+            "type": self._types.name(f.parameters[0].type),
+        }
+
     def _block(self, element: str, kind: str, origin: Origin) -> str:
         number = str(len(self._blocks))
         self._blocks[number] = (element, kind, origin)
@@ -471,11 +481,12 @@ class _Emitter:
         net = self._net
         functions = self._used_functions(with_predicates=False)
         keys = self._used_tables(functions)
-        wrappers = {f.key: f"is_{stem(f.hint)}" for f in functions if f.key.startswith("member ")}
+        wrappers = _wrappers(functions)
         tables = c_tables.Tables(self._types, self._descriptors, wrappers)
         recursive = tables.to_declare(keys)
         transitions = [self._transition(t) for t in net.transitions]  # what they call is known then
         further = [f for f in self._used_functions(with_predicates=True) if f not in functions]
+        wrappers |= _wrappers(further)
         further_keys = [
             k for k in self._used_tables([*functions, *further], net.predicates) if k not in keys
         ]
@@ -484,19 +495,8 @@ class _Emitter:
             "net": net,
             "stem": stem(net.name),
             "functions": [self._function(f) for f in functions if f.key not in wrappers],
-            "members": [
-                {
-                    **self._function(f),
-                    "wrapper": wrappers[f.key],
-                    "call": self._names.function(f.key, f.hint),
-                    "has_context": f.key in self._needs_context,
-                    "type": self._types.name(f.parameters[0].type),
-                    "table": self._names.table(f.key.removeprefix("member ")),
-                }
-                for f in functions
-                if f.key in wrappers
-            ],
-            "globals": [self._global(g) for g in net.globals],
+            "members": [self._member(f, wrappers) for f in functions if f.key in wrappers],
+            "globals": (globals_ := [self._global(g) for g in net.globals]),
             "forwards": [x for d in net.definitions if (x := c_tables.forward(d, self._types))],
             "bodies": [
                 {"name": d.name, "lines": c_tables.body(d, self._types)} for d in net.definitions
@@ -523,12 +523,19 @@ class _Emitter:
             or any(g.is_reference or self._types.holds_reference(g.type) for g in net.globals),
         }
         # After all that belongs to the net, so that it looks the same with and without them.
-        values["further_functions"] = [self._function(f) for f in further]
+        values["further_functions"] = [self._function(f) for f in further if f.key not in wrappers]
+        values["further_members"] = [
+            self._member(f, wrappers) for f in further if f.key in wrappers
+        ]
         values["further_recursive_tables"] = [
             self._names.table(k) for k in tables.to_declare(further_keys)
         ]
         values["further_tables"] = [tables.print(k) for k in further_keys]
         values["predicates"] = [self._predicate(p, i) for i, p in enumerate(net.predicates)]
+        # Compilers warn of constants that nobody looks at.
+        values["globals"] = [
+            g for g in globals_ if not g["constant"] or g["name"] in self._names.read
+        ]
         # After the transitions, which want numbers of colours of their own.
         values["numbers"] = self._numbers.functions + [
             self._numbers.pointers(t)
@@ -554,6 +561,11 @@ class _Emitter:
             elif line.strip() or (lines and lines[-1].strip()):
                 lines.append(line.rstrip())
         return "\n".join(lines) + "\n", tuple(blocks)
+
+
+def _wrappers(functions: Iterable[ir.Function]) -> dict[str, str]:
+    """By key of the function that decides membership of a subset the name of what the subset's table points to."""
+    return {f.key: f"is_{stem(f.hint)}" for f in functions if f.key.startswith("member ")}
 
 
 def _without_wanted(statements: tuple[ir.Stmt, ...]) -> tuple[ir.Stmt, ...]:

@@ -252,7 +252,7 @@ class Expressions:
             case ir.GlobalUse(type=t) if t.rep is Rep.UNIT:
                 return "PN_UNIT", _PRIMARY
             case ir.GlobalUse(name=name):
-                return self._names.value(name, self.global_hints.get(name, name)), _PRIMARY
+                return self._names.value_read(name, self.global_hints.get(name, name)), _PRIMARY
             case ir.Bound(index=index):
                 return f"{self._binding}{self.variables[index]}", _POSTFIX
             case ir.TokenValue(place=place, index=index) if self.packed and self.packed[place]:
@@ -312,7 +312,7 @@ class Expressions:
                 size = self._types.name(inner.type)
                 return f"pn_ref_new(cx, {self.address(inner)}, sizeof({size}))", _POSTFIX
             case ir.AddressOf(name=name):
-                text = self._names.value(name, self.global_hints.get(name, name))
+                text = self._names.value_read(name, self.global_hints.get(name, name))
                 return f"&{text}", _UNARY
             case ir.Contents(reference=inner, type=t):
                 pointer, zero = self.inside(inner, _UNARY - 1), self._types.zero(t)

@@ -13,7 +13,8 @@ from pn2code.lowering.ir import Ir, Rep, Stmt
 def does_nothing(value: Ir) -> bool:
     """Whether a value need not be computed when nobody looks at it."""
     return not any(
-        isinstance(n, (ir.FunCall, ir.NewRef)) or (isinstance(n, ir.Op) and n.name not in ("zero", "list.nil"))
+        isinstance(n, (ir.FunCall, ir.NewRef))
+        or (isinstance(n, ir.Op) and n.name not in ("zero", "list.nil"))
         for n in ir_nodes(value)
     )
 
@@ -52,6 +53,8 @@ def _used(item: object, known: frozenset[int] | None) -> Iterator[int]:
             ):
                 continue
             case ir.Do(value=value) if does_nothing(value):
+                continue
+            case ir.If(then=(), otherwise=()):
                 continue
             case ir.SetContents(reference=ir.Use(local=local), value=value) if is_plain(item):
                 if known is None or local.uid in known or not does_nothing(value):
