@@ -122,7 +122,7 @@ def compared(explorers: Explorers, flat: FlatNet, seconds: float) -> str:
     """Whether the graph is that of the token game, in words."""
     try:
         Game(flat, {}, files=Files(None))
-        with Deadline.after(6 * seconds).enforced():
+        with Deadline.after(2 * seconds).enforced():
             return agrees(explorers, flat, "--max-seconds", seconds, nodes=COMPARED)
     except TimeIsOverError:
         return "too slow to be compared"

@@ -90,6 +90,9 @@ LARGE = r"""
 StringCvt.padLeft #"a" 1073741823 "b"
 Array.array (1073741823, 1)
 Array.copyVec {src = Vector.fromList [1], dst = Array.fromList [1, 2], di = 1073741823}
+String.extract ("abc", ~1073741824, NONE)
+Substring.slice (Substring.full "abc", ~1073741824, NONE)
+split (~1073741824, [1], [])
 Real.signBit (Real.realRound (~0.5))
 Real.signBit (Real.realCeil (~0.5))
 """

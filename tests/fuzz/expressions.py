@@ -29,7 +29,7 @@ def main() -> int:
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--sanitize", action="store_true", help="compile with sanitizers")
     given = parser.parse_args()
-    done = failures = 0
+    done = failures = full = 0
     with tempfile.TemporaryDirectory(prefix="pn2code-expressions-") as name:
         folder = Path(name)
         workshop = Workshop.open(folder, SANITIZERS if given.sanitize else QUICK)
@@ -45,7 +45,8 @@ def main() -> int:
                     flush=True,
                 )
             done += len(some)
-    print(f"expressions: {done} ({made.count} texts in the last part), {failures} differ")
+            full, made.full = full + made.full, 0
+    print(f"expressions: {done}, {full} without enough memory, {failures} differ")
     return int(failures > 0)
 
 

@@ -3,7 +3,8 @@
     python -m tests.fuzz.inscriptions [--inscriptions 400] [--seed 0] [--sanitize] [--save FOLDER]
 
 Twenty cases are one net (`helpers.random_inscriptions`); `--seed` is the number of the first net. Each case must
-compile without a warning and do what the token game does. What fails is saved alone.
+compile without a warning and do what the token game does, in walks and, as a net of a union, in the explorer with
+all of its graph. What fails is saved alone.
 """
 
 from __future__ import annotations
@@ -17,8 +18,9 @@ sys.path.insert(0, str(Path(__file__).parents[1]))  # as pytest does: the tests'
 
 from helpers.compiled import SANITIZERS, Workshop
 from helpers.declarations import culprits
-from helpers.explored import QUICK
+from helpers.explored import QUICK, Explorers
 from helpers.random_inscriptions import Inscriptions
+from helpers.unions import Outcome, check
 
 ROOT = Path(__file__).resolve().parents[2]
 SIZE = 20
@@ -32,10 +34,12 @@ def main() -> int:
     parser.add_argument("--sanitize", action="store_true", help="compile with sanitizers")
     parser.add_argument("--save", type=Path, default=ROOT / ".fuzz", help="where failures go")
     given = parser.parse_args()
-    failures = 0
+    failures, graphs = 0, Outcome()
     with tempfile.TemporaryDirectory(prefix="pn2code-inscriptions-") as name:
         folder = Path(name)
-        workshop = Workshop.open(folder, SANITIZERS if given.sanitize else QUICK)
+        flags = SANITIZERS if given.sanitize else QUICK
+        workshop = Workshop.open(folder, flags)
+        explorers = Explorers.open(folder / "explorers", flags)
         made = Inscriptions(folder)
         nets = (given.inscriptions + SIZE - 1) // SIZE
         for number in range(given.seed, given.seed + nets):
@@ -48,7 +52,12 @@ def main() -> int:
                 path.write_text(f"{text}\n\n# {why}\n")
                 what = f"case {case}" if case >= 0 else f"net {number}"
                 print(f"inscriptions: {what}: {why[:1500]}\n  saved as {path}", flush=True)
-    print(f"inscriptions: {nets * SIZE} cases, {failures} failed")
+            try:
+                graphs.add(check(explorers, made.union(number, SIZE)))
+            except AssertionError as difference:
+                failures += 1
+                print(f"inscriptions: net {number} in the explorer: {difference}", flush=True)
+    print(f"inscriptions: {nets * SIZE} cases; {graphs}; {failures} failed")
     return int(failures > 0)
 
 

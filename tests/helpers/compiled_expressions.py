@@ -1,3 +1,4 @@
+# ruff: noqa: E501 - rows of texts
 """Random CPN ML in compiled code and in the reference evaluator: the same text of the value, or the same exception.
 
 The texts are those of `tests.oracle.texts`, over all kinds of colour sets and the whole library. Each that is accepted
@@ -41,6 +42,28 @@ SHOW = r"""
   fun show_bytes v = show_string (Byte.bytesToString v);
   place Show : STRING = 1`""
 """
+_BIG = (
+    "9223372036854775807", "~9223372036854775808", "9223372036854775808", "4294967296", "~4294967297", "2147483648",
+    "340282366920938463463374607431768211456", "~170141183460469231731687303715884105729", "(IntInf.pow (10, 40))",
+    "(IntInf.pow (~7, 51))", "1073741824", "~1073741825", "(IntInf.~ (IntInf.pow (2, 62)))",
+)  # fmt: skip
+_WIDE = {
+    "IntInf.int": _BIG,
+    "int": ("1073741822", "~1073741823", "~65536", "~46341", "127", "255", "256"),
+    "real": (
+        "(1.0 / 0.0)", "(~1.0 / 0.0)", "(0.0 / 0.0)", "(~0.0)", "1E308", "5E~324", "1E~310", "0.1", "123456789012.0",
+        "1234567890123.0", "0.30000000000000004", "1E15", "1E16", "1073741824.0", "~1073741824.5", "4.5", "2147483648.0",
+        "1E22", "99999999999.95", "0.0001", "0.00001",
+    ),
+    "string": (
+        '"\\255"', '"\\000"', '"a\\000b"', '"\\128\\129"', '"\\^A"', '"\\127"', '"\\228\\246\\252"', '"\\\\\\""', '"\\r\\n"',
+        '"aaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaa"', '"??/"', '"%s%d"', '"{\\"a\\": 1}"', '"`"',
+        '"1E400"', '"~"', '"0x1F"', '"  12"', '"+5"', '"99999999999999999999"', '"~1073741825"', '".5"', '"nan"', '"inf"',
+    ),
+    "char": ('#"\\000"', '#"\\255"', '#"\\127"', '#"\\""', '#"\\\\"', '#"\\160"'),
+    "word": ("0wx7FFFFFFE", "0w31", "0w32", "0wx40000000"),
+}  # fmt: skip
+_FULL = "the program stops: memory for lists and strings is full"
 PER_NET = 40
 LONGEST = 400
 STEPS = 200_000
@@ -60,6 +83,15 @@ _MORE = {
 }
 
 
+class WideTexts(Texts):
+    """With numbers beyond all bounds, characters that are no letters, reals that are no numbers."""
+
+    def constructed(self, name: str, args: tuple[Type, ...], depth: int) -> str:
+        if name in _WIDE and self.r.random() < 0.3:
+            return self.r.choice(_WIDE[name])
+        return super().constructed(name, args, depth)
+
+
 @dataclass(frozen=True, slots=True)
 class Expression:
     """An expression that the reference evaluator has evaluated: its text, the function, and what that gave."""
@@ -70,14 +102,19 @@ class Expression:
 
 
 class Expressions:
-    """Random expressions of a seed, with what the evaluator says of them."""
+    """Random expressions of a seed, with what the evaluator says of them.
+
+    Attributes:
+        count: how many texts were tried.
+        full: how many need more memory than the compiled program has, and are not compared.
+    """
 
     def __init__(self, seed: int, folder: Path) -> None:
         self.net, d = load(NET + SHOW)
         assert self.net is not None, [e.message for e in d.errors]
         self.here = Here(write(NET + SHOW, folder / "Expressions.cpn"), STEPS)
-        self.texts = Texts(Random(seed), dict(self.here.program.colsets))
-        self.count = 0
+        self.texts = WideTexts(Random(seed), dict(self.here.program.colsets))
+        self.count = self.full = 0
 
     def some(self, number: int) -> list[Expression]:
         """So many that are accepted and come to an end."""
@@ -181,6 +218,8 @@ def differing(
         if not isinstance(said, str):
             pairs = zip(part, said, strict=True)
             found += [(one, text) for one, text in pairs if text != one.expected]
+        elif len(part) == 1 and said == _FULL:
+            made.full += 1
         elif len(part) == 1:
             found.append((part[0], said))
         else:

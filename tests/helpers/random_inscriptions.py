@@ -17,6 +17,7 @@ from tests.oracle.texts import NET, Texts
 
 from helpers.netbuilder import write
 from helpers.random_declarations import Case, Sheet
+from helpers.random_unions import Union
 from pn2code.ml.colsets import Colset
 from pn2code.ml.types import BOOL, INT, Type, list_of
 
@@ -51,9 +52,18 @@ class Inscriptions:
 
     def case(self, number: int) -> Case:
         """Case number so-and-so."""
+        return Case(number, "inscriptions", (), tuple(self._written(number).elements()))
+
+    def union(self, number: int, size: int) -> Union:
+        """The same cases as nets of a union (`helpers.random_unions`): each occurs alone, and twice at most."""
+        who = f"\n  colset WHO = int with 0..{size - 1};\n"
+        pages = [self._written(number * size + i).page(i) for i in range(size)]
+        return Union(number, "timed", self.head + who, tuple(pages))
+
+    def _written(self, number: int) -> _Writer:
         one = _Writer(Random(f"inscriptions {number}"), number, self)
         one.write()
-        return Case(number, "inscriptions", (), tuple(one.elements))
+        return one
 
 
 class _InscriptionSheet(Sheet):
@@ -100,8 +110,8 @@ class _Writer:
         self.here = made.here
         self.colsets = made.colsets
         self.texts = _Scoped(r, made.colsets)
-        self.elements: list[str] = []
-        self.places = 0
+        self.places: list[tuple[str, Colset, str]] = []
+        self.transition: list[str] = []
 
     def chance(self, p: float) -> bool:
         return self.r.random() < p
@@ -191,10 +201,35 @@ class _Writer:
     # --- elements
 
     def place(self, colset: Colset, initial: str = "") -> str:
-        self.places += 1
-        name = f"P{self.n}{'abcdefgh'[self.places - 1]}"
-        self.elements.append(f"place {name} : {colset.name}{f' = {initial}' if initial else ''}")
+        name = f"P{self.n}{'abcdefgh'[len(self.places)]}"
+        self.places.append((name, colset, initial))
         return name
+
+    def elements(self) -> list[str]:
+        """What is on the page, in the short form of `netbuilder`."""
+        places = [
+            f"place {name} : {colset.name}{f' = {initial}' if initial else ''}"
+            for name, colset, initial in self.places
+        ]
+        return [*places, f"trans T{self.n}", *(f"  {line}" for line in self.transition)]
+
+    def page(self, number: int) -> str:
+        """A page of its own in a union; its first transition puts the initial marking."""
+        lines = [
+            "place Pick fusion Pick : UNIT = 1`()",
+            *(f"place {name} fusion {name} : WHO" for name in ("On", "Fuel")),
+            *(f"place {name} : {colset.name}" for name, colset, _ in self.places),
+            "trans Start",
+            *(
+                f"  {arc}"
+                for arc in ("in Pick : ()", f"out On : {number}", f"out Fuel : 2`{number}")
+            ),
+            *(f"  out {name} : {initial}" for name, _, initial in self.places if initial),
+            f"trans T{self.n}",
+            *(f"  {line}" for line in self.transition),
+            f"  in Fuel : {number}",
+        ]
+        return "\n".join([f"  page N{number}", *(f"    {line}" for line in lines)]) + "\n"
 
     def write(self) -> None:
         r = self.r
@@ -216,7 +251,7 @@ class _Writer:
             colset = self.any()
             initial = "" if self.chance(0.6) else f"2`{self.literal(colset)}"
             lines.append(f"{r.choice(('inhibit', 'reset'))} {self.place(colset, initial)} :")
-        self.elements += [f"trans T{self.n}", *(f"  {line}" for line in [*clauses, *lines])]
+        self.transition = [*clauses, *lines]
 
     def any(self) -> Colset:
         return self.r.choice(list(self.colsets.values()))
