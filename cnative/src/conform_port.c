@@ -314,7 +314,7 @@ static void answer(const char *ended)
         pn_text_str(&text, between);
         pn_text_json_str(&text, place->name);
         pn_text_str(&text, ": ");
-        place->json(s_sup->marking, &text);
+        pn_bag_json(place->bag, s_sup->marking, &text);
         between = ", ";
     }
     pn_text_str(&text, "}, \"fired\": ");

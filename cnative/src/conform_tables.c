@@ -5,6 +5,7 @@
 #include "conform_tables.h"
 
 #include "pn/pn_cell.h"
+#include "pn/pn_marking.h"
 #include "pn/pn_net.h"
 
 static void member(pn_text_t *text, const char *name)
@@ -155,7 +156,7 @@ static void net_tables(pn_text_t *text)
         text_member(text, "name", own->name);
         text_member(text, "colset", own->colset);
         int_member(text, "owner", own->owner);
-        bool_member(text, "timed", own->timed);
+        bool_member(text, "timed", own->bag->is_timed);
         int_member(text, "bound", own->is_bounded ? (int64_t)own->bound : -1);
         pn_text_char(text, '}');
     }

@@ -73,14 +73,14 @@ static size_t packed_words(void)
 
 static uint32_t bits_in(const pn_place_t *place)
 {
-    return place->colours * place->width;
+    return place->bag->colours * place->bag->width;
 }
 
 static int by_bit(const void *a, const void *b)
 {
     const pn_place_t *const first = &pn_net.place[*(const uint32_t *)a];
     const pn_place_t *const second = &pn_net.place[*(const uint32_t *)b];
-    return (first->bit > second->bit) - (first->bit < second->bit);
+    return (first->bag->bit > second->bag->bit) - (first->bag->bit < second->bag->bit);
 }
 
 /* Groups of neighbours, as many in one as possible. */
@@ -93,15 +93,15 @@ static bool make_groups(ex_bounds_t *bounds)
         return false;
     }
     for (uint32_t p = 0U; p < pn_net.place_count; p++) {
-        if (pn_net.place[p].is_packed) {
+        if (pn_net.place[p].bag->is_packed) {
             bounds->order[count++] = p;
         }
     }
     qsort(bounds->order, count, sizeof *bounds->order, by_bit);
     for (uint32_t k = 0U; k < count; k++) {
         const pn_place_t *const place = &pn_net.place[bounds->order[k]];
-        const uint32_t unit = place->bit / (uint32_t)UNIT_BITS;
-        const uint32_t end = (place->bit % (uint32_t)UNIT_BITS) + bits_in(place);
+        const uint32_t unit = place->bag->bit / (uint32_t)UNIT_BITS;
+        const uint32_t end = (place->bag->bit % (uint32_t)UNIT_BITS) + bits_in(place);
         const bool is_small = bits_in(place) <= (uint32_t)SEEN_BITS; /* then it lies in one unit */
         group_t *const last = &bounds->group[(bounds->groups > 0U) ? (bounds->groups - 1U) : 0U];
         if (is_small && (bounds->groups > 0U) && (last->bits > 0U) && (last->unit == unit) && ((end - last->shift) <= (uint32_t)SEEN_BITS)) {
@@ -110,7 +110,7 @@ static bool make_groups(ex_bounds_t *bounds)
             continue;
         }
         bounds->group[bounds->groups] = (group_t){ .unit = unit,
-                                                   .shift = place->bit % (uint32_t)UNIT_BITS,
+                                                   .shift = place->bag->bit % (uint32_t)UNIT_BITS,
                                                    .bits = is_small ? bits_in(place) : 0U,
                                                    .first = k,
                                                    .places = 1U };
@@ -143,13 +143,13 @@ bool ex_bounds_make(ex_worker_t *worker)
         const pn_place_t *const place = &pn_net.place[p];
         place_bounds_t *const own = &bounds->place[p];
         own->least = UINT64_MAX;
-        if (place->is_packed && (place->width > 1U)) {
-            own->counter_least = calloc(place->colours, sizeof *own->counter_least);
-            own->counter_most = calloc(place->colours, sizeof *own->counter_most);
+        if (place->bag->is_packed && (place->bag->width > 1U)) {
+            own->counter_least = calloc(place->bag->colours, sizeof *own->counter_least);
+            own->counter_most = calloc(place->bag->colours, sizeof *own->counter_most);
             if ((own->counter_least == NULL) || (own->counter_most == NULL)) {
                 return false;
             }
-            (void)memset(own->counter_least, 0xff, place->colours * sizeof *own->counter_least);
+            (void)memset(own->counter_least, 0xff, place->bag->colours * sizeof *own->counter_least);
         }
     }
     return make_groups(bounds);
@@ -177,8 +177,8 @@ static uint32_t count_bits(const uint64_t *word, uint32_t bit, uint32_t colours)
 static uint64_t see_counters(place_bounds_t *own, const pn_place_t *place, const uint64_t *word)
 {
     uint64_t total = 0U;
-    for (uint32_t i = 0U; i < place->colours; i++) {
-        const uint32_t count = pn_counter(word, place->bit, place->width, i);
+    for (uint32_t i = 0U; i < place->bag->colours; i++) {
+        const uint32_t count = pn_counter(word, place->bag->bit, place->bag->width, i);
         total += count;
         own->counter_least[i] = (count < own->counter_least[i]) ? count : own->counter_least[i];
         own->counter_most[i] = (count > own->counter_most[i]) ? count : own->counter_most[i];
@@ -190,7 +190,7 @@ static void see_place(ex_bounds_t *bounds, uint32_t p, const uint64_t *word)
 {
     const pn_place_t *const place = &pn_net.place[p];
     place_bounds_t *const own = &bounds->place[p];
-    const uint64_t total = (place->width == 1U) ? count_bits(word, place->bit, place->colours) : see_counters(own, place, word);
+    const uint64_t total = (place->bag->width == 1U) ? count_bits(word, place->bag->bit, place->bag->colours) : see_counters(own, place, word);
     own->least = (total < own->least) ? total : own->least;
     own->most = (total > own->most) ? total : own->most;
 }
@@ -247,7 +247,7 @@ static void merge(ex_bounds_t *bounds, const ex_bounds_t *other)
         const place_bounds_t *const theirs = &other->place[p];
         own->least = (theirs->least < own->least) ? theirs->least : own->least;
         own->most = (theirs->most > own->most) ? theirs->most : own->most;
-        for (uint32_t i = 0U; (own->counter_least != NULL) && (i < place->colours); i++) {
+        for (uint32_t i = 0U; (own->counter_least != NULL) && (i < place->bag->colours); i++) {
             own->counter_least[i] = (theirs->counter_least[i] < own->counter_least[i]) ? theirs->counter_least[i] : own->counter_least[i];
             own->counter_most[i] = (theirs->counter_most[i] > own->counter_most[i]) ? theirs->counter_most[i] : own->counter_most[i];
         }
@@ -416,8 +416,8 @@ static bool see_interned(ex_run_t *run, ex_bounds_t *bounds)
         pn_text_init(&text, buffer, TEXT_SIZE);
         size_t length = 0U;
         const unsigned char *byte = ex_multiset_bytes(worker, (uint32_t)i, &length);
-        is_fine = (byte != NULL) && (place->decode(&worker->cx, worker->marking, byte, length) != SIZE_MAX);
-        place->json(worker->marking, &text);
+        is_fine = (byte != NULL) && (pn_bag_decode(&worker->cx, place->bag, worker->marking, byte, length) != SIZE_MAX);
+        pn_bag_json(place->bag, worker->marking, &text);
         place_bounds_t *const own = &bounds->place[entry.place];
         const uint64_t bytes = pn_arena_mark(worker->cx.arena) - mark;
         own->arena = (bytes > own->arena) ? bytes : own->arena;
@@ -463,18 +463,18 @@ static int by_text(const void *a, const void *b)
 static void packed_json(const ex_bounds_t *bounds, const pn_place_t *place, const place_bounds_t *own, bool is_upper, list_t *list,
                         char *buffer)
 {
-    for (uint32_t i = 0U; i < place->colours; i++) {
+    for (uint32_t i = 0U; i < place->bag->colours; i++) {
         pn_text_t text;
         pn_text_init(&text, buffer, TEXT_SIZE);
         uint64_t count = 0U;
-        if (place->width == 1U) {
-            count = pn_counter(is_upper ? bounds->any : bounds->all, place->bit, 1U, i);
+        if (place->bag->width == 1U) {
+            count = pn_counter(is_upper ? bounds->any : bounds->all, place->bag->bit, 1U, i);
         } else {
             count = is_upper ? own->counter_most[i] : own->counter_least[i];
         }
         if (count > 0U) {
             if (list_takes(list)) {
-                place->colour_json(i, &text);
+                pn_bag_colour_json(place->bag, i, &text);
             }
             list_item(list, count, buffer);
         }
@@ -530,12 +530,12 @@ void ex_bounds_json(ex_run_t *run, FILE *out)
         (void)fprintf(out, "%s{\"lower\": %" PRIu64 ", \"upper\": %" PRIu64, (p > 0U) ? ", " : "", own->least, own->most);
         for (int is_upper = 0; is_upper <= 1; is_upper++) {
             const char *const which = (is_upper == 1) ? "upper" : "lower";
-            if (!place->is_packed && (own->colours.count > run->options.multiset_limit)) {
+            if (!place->bag->is_packed && (own->colours.count > run->options.multiset_limit)) {
                 qsort(own->colours.colour, own->colours.count, sizeof *own->colours.colour, by_text); /* found by place from here on */
             }
             list_t list = { .out = out, .most = run->options.multiset_limit };
             (void)fprintf(out, ", \"%s_multiset\": [", which);
-            if (place->is_packed) {
+            if (place->bag->is_packed) {
                 packed_json(bounds, place, own, is_upper == 1, &list, buffer);
             } else {
                 colours_json(own, is_upper == 1, &list);

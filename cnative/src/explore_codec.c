@@ -72,19 +72,19 @@ static bool intern_place(ex_worker_t *worker, uint32_t place, const void *markin
 static bool intern_whole(ex_worker_t *worker, const void *marking, uint32_t *number)
 {
     ex_scratch_t *scratch = worker->scratch;
-    size_t length = pn_net.encode(marking, scratch->buffer, scratch->buffer_size);
+    size_t length = pn_marking_encode(&pn_net, marking, scratch->buffer, scratch->buffer_size);
     while (length == 0U) {
         if (!ex_buffer_grow(worker, scratch->buffer_size)) {
             return false;
         }
-        length = pn_net.encode(marking, scratch->buffer, scratch->buffer_size);
+        length = pn_marking_encode(&pn_net, marking, scratch->buffer, scratch->buffer_size);
     }
     return ex_intern(worker, pn_net.place_count, scratch->buffer, length, number);
 }
 
 static bool intern_time(ex_worker_t *worker, const void *marking, uint32_t *number)
 {
-    const pn_time_t now = pn_net.now(marking);
+    const pn_time_t now = pn_now(&pn_net, marking);
     unsigned char bytes[sizeof now];
     (void)memcpy(bytes, &now, sizeof now);
     return ex_intern(worker, pn_net.place_count, bytes, sizeof bytes, number);
@@ -264,7 +264,7 @@ bool ex_encode_time(ex_worker_t *worker)
     const bool is_reduced = worker->run->options.is_time_reduced;
     uint32_t number;
     for (uint32_t i = 0U; is_reduced && (i < pn_net.place_count); i++) {
-        if (pn_net.place[i].timed && (codec->word_of[i] != NONE)) {
+        if (pn_net.place[i].bag->is_timed && (codec->word_of[i] != NONE)) {
             if (!intern_place(worker, i, worker->marking, &number)) {
                 return false;
             }
@@ -482,17 +482,17 @@ static bool decode_word(ex_worker_t *worker, uint32_t w, uint32_t number)
         is_fine = ex_roots_load(worker, number);
     } else if (codec->is_whole) {
         const unsigned char *byte = &codec->bytes.byte[of->offset];
-        is_fine = pn_net.decode(&worker->cx, worker->marking, byte, of->length);
+        is_fine = pn_marking_decode(&pn_net, &worker->cx, worker->marking, byte, of->length);
     } else if (w == codec->time_word) {
         pn_time_t now;
         (void)memcpy(&now, &codec->bytes.byte[of->offset], sizeof now);
-        pn_net.set_now(worker->marking, now);
+        pn_set_now(&pn_net, worker->marking, now);
         is_fine = true;
     } else {
         const uint32_t place = codec->place_of[w - codec->packed_words];
         size_t length = 0U;
         const unsigned char *byte = ex_multiset_bytes(worker, number, &length);
-        is_fine = (byte != NULL) && (pn_net.place[place].decode(&worker->cx, worker->marking, byte, length) != SIZE_MAX);
+        is_fine = (byte != NULL) && (pn_bag_decode(&worker->cx, pn_net.place[place].bag, worker->marking, byte, length) != SIZE_MAX);
     }
     *decoded = is_fine ? number : EX_NO_NUMBER;
     if (!is_fine) {
@@ -557,7 +557,7 @@ bool ex_load_place(ex_worker_t *worker, uint32_t place, uint32_t number)
 void ex_clear_place(ex_worker_t *worker, uint32_t place)
 {
     const ex_codec_t *codec = worker->run->codec;
-    pn_net.place[place].clear(worker->marking);
+    pn_bag_clear(pn_net.place[place].bag, worker->marking);
     worker->scratch->decoded[codec->word_of[place] - codec->packed_words] = EX_NO_NUMBER;
 }
 

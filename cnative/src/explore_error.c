@@ -86,11 +86,11 @@ static bool on_binding(void *user, uint32_t transition, const void *binding)
     ex_worker_t *const worker = trial->worker;
     ex_scratch_t *const scratch = worker->scratch;
     const size_t mark = pn_arena_mark(&scratch->arena);
-    (void)memcpy(scratch->binding, binding, pn_net.transition[transition].binding_size);
+    (void)memcpy(scratch->binding, binding, pn_net.transition[transition].binding->size);
     (void)memcpy(scratch->next, worker->marking, pn_net.marking_size);
     const bool is_fired = pn_net.transition[transition].fire(&worker->cx, scratch->next, scratch->binding);
     if (!is_fired) {
-        pn_net.transition[transition].binding_json(binding, &trial->text);
+        pn_json(pn_net.transition[transition].binding, binding, &trial->text);
         trial->is_found = true;
     }
     pn_arena_release(&scratch->arena, mark);

@@ -17,6 +17,7 @@
 #include "explore_intern.h"
 #include "explore_programs.h"
 #include "pn/pn_arena.h"
+#include "pn/pn_marking.h"
 #include "pn/pn_net.h"
 
 #define EX_MOST_THREADS 64U

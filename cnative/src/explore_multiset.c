@@ -131,14 +131,14 @@ static bool intern_timed(ex_worker_t *worker, uint32_t place, uint32_t kind, siz
 bool ex_number_place(ex_worker_t *worker, uint32_t place, uint32_t kind, const void *marking, uint32_t *number)
 {
     ex_scratch_t *scratch = worker->scratch;
-    size_t length = pn_net.place[place].encode(marking, scratch->buffer, scratch->buffer_size);
+    size_t length = pn_bag_encode(pn_net.place[place].bag, marking, scratch->buffer, scratch->buffer_size);
     while (length > scratch->buffer_size) {
         if (!ex_buffer_grow(worker, length)) {
             return false;
         }
-        length = pn_net.place[place].encode(marking, scratch->buffer, scratch->buffer_size);
+        length = pn_bag_encode(pn_net.place[place].bag, marking, scratch->buffer, scratch->buffer_size);
     }
-    return pn_net.place[place].timed ? intern_timed(worker, place, kind, length, number)
+    return pn_net.place[place].bag->is_timed ? intern_timed(worker, place, kind, length, number)
                                      : ex_intern(worker, kind, scratch->buffer, length, number);
 }
 
@@ -151,7 +151,7 @@ const unsigned char *ex_multiset_bytes(ex_worker_t *worker, uint32_t number, siz
     const uint32_t place = (of->place >= EX_ADDED) ? (of->place - EX_ADDED) : of->place;
     uint32_t values = 0U;
     *length = of->length;
-    if (!pn_net.place[place].timed) {
+    if (!pn_net.place[place].bag->is_timed) {
         return byte;
     }
     (void)memcpy(&values, byte, sizeof values);

@@ -56,7 +56,7 @@ bool ex_leaf_holds(ex_worker_t *worker, const ex_item_t *item, uint64_t *tokens,
     pn_ctx_t *const cx = &worker->cx;
     *raised = false;
     if (item->kind == EX_ITEM_WITHIN) {
-        *tokens = pn_net.place[item->number].count(worker->marking);
+        *tokens = pn_bag_total(pn_net.place[item->number].bag, worker->marking);
         return (*tokens >= item->low) && (*tokens <= item->high);
     }
     const size_t mark = pn_arena_mark(&worker->scratch->arena);
@@ -344,7 +344,7 @@ static void answer_invariant(ex_queries_t *queries, ex_question_t *question)
         question->value_kind = EX_INTEGER;
         question->value = (double)item->most;
         if ((node != EX_NO_NODE) && ex_store_fetch(&queries->run->store, graph->slot[node], &key) && ex_load(worker, &key)) {
-            question->value = (double)pn_net.place[item->number].count(worker->marking);
+            question->value = (double)pn_bag_total(pn_net.place[item->number].bag, worker->marking);
         }
     }
 }

@@ -186,7 +186,7 @@ static bool note_time(ex_worker_t *worker, void *user, uint32_t node, const ex_k
     if (!ex_load(worker, key)) {
         return false;
     }
-    const pn_time_t now = pn_net.now(worker->marking);
+    const pn_time_t now = pn_now(&pn_net, worker->marking);
     w->now[node] = pn_net.real_time ? now.real : (double)now.integer;
     return true;
 }

@@ -432,13 +432,13 @@ static bool begin(ex_run_t *run, ex_level_t *search)
 {
     ex_worker_t *first = &run->worker[0];
     run->at_work = 1U; /* tables may grow already */
-    if (!pn_net.init(&first->cx, first->marking)) {
+    if (!pn_marking_init(&pn_net, &first->cx, first->marking)) {
         ex_fail(first, -1);
         return false;
     }
     ex_derived_start(run, first->marking);
     ex_reduce_time(first);
-    if (!ex_layout(run) || !pn_net.init(&first->cx, first->marking)) {
+    if (!ex_layout(run) || !pn_marking_init(&pn_net, &first->cx, first->marking)) {
         ex_stop(run, EX_MEMORY);
         return false;
     }

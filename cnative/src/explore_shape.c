@@ -19,20 +19,10 @@ static uint32_t rounded_up(uint32_t bits, uint32_t unit)
     return (bits + unit - 1U) / unit;
 }
 
-static bool has_places(void)
-{
-    for (uint32_t i = 0U; i < pn_net.place_count; i++) {
-        if ((pn_net.place[i].encode == NULL) || (pn_net.place[i].decode == NULL)) {
-            return false;
-        }
-    }
-    return pn_net.place_count > 0U;
-}
-
 /* Of what is part of a vector: not of what follows from it. */
 static uint32_t bits_in(const pn_place_t *place)
 {
-    return (place->is_packed && (place->share_count == 0U)) ? (place->colours * place->width) : 0U;
+    return (place->bag->is_packed && (place->share_count == 0U)) ? (place->bag->colours * place->bag->width) : 0U;
 }
 
 /* The end of the packed part without what follows from it. */
@@ -41,8 +31,8 @@ static uint32_t kept_end(void)
     uint32_t end = 0U;
     for (uint32_t i = 0U; i < pn_net.place_count; i++) {
         const pn_place_t *place = &pn_net.place[i];
-        if ((bits_in(place) > 0U) && ((place->bit + bits_in(place)) > end)) {
-            end = place->bit + bits_in(place);
+        if ((bits_in(place) > 0U) && ((place->bag->bit + bits_in(place)) > end)) {
+            end = place->bag->bit + bits_in(place);
         }
     }
     return end;
@@ -52,7 +42,7 @@ static int by_bit(const void *a, const void *b)
 {
     const pn_place_t *first = &pn_net.place[*(const uint32_t *)a];
     const pn_place_t *second = &pn_net.place[*(const uint32_t *)b];
-    return (first->bit > second->bit) - (first->bit < second->bit);
+    return (first->bag->bit > second->bag->bit) - (first->bag->bit < second->bag->bit);
 }
 
 static void add_slice(ex_codec_t *codec, uint32_t bit, uint32_t width)
@@ -65,8 +55,8 @@ static void add_slice(ex_codec_t *codec, uint32_t bit, uint32_t width)
 /* Whether a place goes into a slice: slices lie within one of the units in which generated code handles the packed part. */
 static bool is_short(const pn_place_t *place)
 {
-    const uint32_t last = place->bit + bits_in(place) - 1U;
-    return (bits_in(place) <= (uint32_t)WORD_BITS) && ((place->bit / (uint32_t)UNIT_BITS) == (last / (uint32_t)UNIT_BITS));
+    const uint32_t last = place->bag->bit + bits_in(place) - 1U;
+    return (bits_in(place) <= (uint32_t)WORD_BITS) && ((place->bag->bit / (uint32_t)UNIT_BITS) == (last / (uint32_t)UNIT_BITS));
 }
 
 /* Slices of the packed part: first those of short places, as many in one as possible, then those of long ones. `order` has room for the
@@ -82,7 +72,7 @@ static void lay_slices(ex_codec_t *codec, uint32_t *order)
     qsort(order, count, sizeof *order, by_bit);
     for (uint32_t k = 0U; k < count; k++) {
         const pn_place_t *place = &pn_net.place[order[k]];
-        const uint32_t end = place->bit + bits_in(place);
+        const uint32_t end = place->bag->bit + bits_in(place);
         const uint32_t last = codec->packed_words - 1U;
         if (!is_short(place)) {
             continue;
@@ -91,15 +81,15 @@ static void lay_slices(ex_codec_t *codec, uint32_t *order)
             && (((end - 1U) / (uint32_t)UNIT_BITS) == (codec->slice_bit[last] / (uint32_t)UNIT_BITS))) {
             codec->slice_width[last] = end - codec->slice_bit[last]; /* what lies between, if anything, belongs to nobody else */
         } else {
-            add_slice(codec, place->bit, bits_in(place));
+            add_slice(codec, place->bag->bit, bits_in(place));
         }
     }
     for (uint32_t k = 0U; k < count; k++) {
         const pn_place_t *place = &pn_net.place[order[k]];
-        const uint32_t end = place->bit + bits_in(place);
-        for (uint32_t at = place->bit; !is_short(place) && (at < end);) {
+        const uint32_t end = place->bag->bit + bits_in(place);
+        for (uint32_t at = place->bag->bit; !is_short(place) && (at < end);) {
             const uint32_t next = ((at / (uint32_t)WORD_BITS) + 1U) * (uint32_t)WORD_BITS;
-            codec->is_joined[codec->packed_words] = at > place->bit;
+            codec->is_joined[codec->packed_words] = at > place->bag->bit;
             add_slice(codec, at, ((end < next) ? end : next) - at);
             at = next;
         }
@@ -114,7 +104,7 @@ static void lay_plain(ex_codec_t *codec, uint32_t words)
     }
     for (uint32_t i = 0U; i < pn_net.place_count; i++) {
         const pn_place_t *place = &pn_net.place[i];
-        for (uint32_t k = place->bit; k < (place->bit + bits_in(place)); k++) {
+        for (uint32_t k = place->bag->bit; k < (place->bag->bit + bits_in(place)); k++) {
             uint32_t *width = &codec->slice_width[k / (uint32_t)WORD_BITS];
             const uint32_t needed = (k % (uint32_t)WORD_BITS) + 1U;
             *width = (needed > *width) ? needed : *width;
@@ -143,7 +133,7 @@ static void lay_words(ex_codec_t *codec)
     codec->root_word = NONE;
     for (uint32_t i = 0U; i < pn_net.place_count; i++) {
         codec->word_of[i] = NONE;
-        if (!codec->is_whole && !pn_net.place[i].is_packed) {
+        if (!codec->is_whole && !pn_net.place[i].bag->is_packed) {
             codec->place_of[word - codec->packed_words] = i;
             codec->word_of[i] = word++;
         }
@@ -290,7 +280,7 @@ static bool lay_touched(ex_run_t *run, ex_codec_t *codec, uint32_t t)
     }
     for (uint32_t k = 0U; k < transition->touched_count; k++) {
         const uint32_t p = transition->touched[k];
-        if (!pn_net.place[p].is_packed) {
+        if (!pn_net.place[p].bag->is_packed) {
             codec->touched_bags[t][codec->touched_bag_count[t]++] = p;
         }
     }
@@ -298,8 +288,8 @@ static bool lay_touched(ex_run_t *run, ex_codec_t *codec, uint32_t t)
         bool is_touched = false;
         for (uint32_t k = 0U; !is_touched && (k < transition->touched_count); k++) {
             const pn_place_t *place = &pn_net.place[transition->touched[k]];
-            is_touched = (place->bit < (codec->slice_bit[w] + codec->slice_width[w]))
-                         && (codec->slice_bit[w] < (place->bit + bits_in(place)));
+            is_touched = (place->bag->bit < (codec->slice_bit[w] + codec->slice_width[w]))
+                         && (codec->slice_bit[w] < (place->bag->bit + bits_in(place)));
         }
         if (is_touched) {
             codec->touched_words[t][codec->touched_count[t]++] = w;
@@ -315,7 +305,7 @@ bool ex_codec_make(ex_run_t *run)
         return false;
     }
     run->codec = codec;
-    codec->is_whole = !has_places();
+    codec->is_whole = pn_net.place_count == 0U;
     const uint32_t packed = codec->is_whole ? 0U : (uint32_t)pn_net.packed_size;
     const uint32_t packed_words = rounded_up(packed, 4U);
     const uint64_t most = (2U * (uint64_t)packed_words) + (2U * (uint64_t)pn_net.place_count) + 3U;

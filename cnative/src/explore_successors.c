@@ -37,9 +37,7 @@ bool ex_is_repeatable(void)
 static void age(void *marking, pn_time_t by)
 {
     for (uint32_t i = 0U; i < pn_net.place_count; i++) {
-        if (pn_net.place[i].age != NULL) {
-            pn_net.place[i].age(marking, by);
-        }
+        pn_bag_age(pn_net.place[i].bag, marking, by);
     }
 }
 
@@ -48,9 +46,7 @@ static void settle(void *next, uint32_t transition)
 {
     for (uint32_t k = 0U; k < pn_net.transition[transition].touched_count; k++) {
         const pn_place_t *place = &pn_net.place[pn_net.transition[transition].touched[k]];
-        if (place->age != NULL) {
-            place->age(next, (pn_time_t){ .integer = 0 });
-        }
+        pn_bag_age(place->bag, next, (pn_time_t){ .integer = 0 });
     }
 }
 
@@ -147,7 +143,7 @@ static bool on_binding(void *user, uint32_t transition, const void *binding)
     ex_scratch_t *scratch = worker->scratch;
     const size_t mark = pn_arena_mark(&scratch->arena);
     const uint64_t random = worker->cx.random; /* the search goes on with its own numbers */
-    (void)memcpy(scratch->binding, binding, pn_net.transition[transition].binding_size);
+    (void)memcpy(scratch->binding, binding, pn_net.transition[transition].binding->size);
     (void)memcpy(scratch->next, worker->marking, pn_net.marking_size);
     const bool is_done = pn_net.transition[transition].fire(&worker->cx, scratch->next, scratch->binding)
                          && hunt->on_next(user, transition, scratch->binding, scratch->next);
@@ -160,7 +156,7 @@ static bool load_places(ex_worker_t *worker, const uint32_t *place, uint32_t cou
 {
     bool is_fine = true;
     for (uint32_t i = 0U; is_fine && (i < count); i++) {
-        if (!pn_net.place[place[i]].is_packed) {
+        if (!pn_net.place[place[i]].bag->is_packed) {
             is_fine = ex_load_place(worker, place[i], worker->scratch->cell[worker->run->codec->word_of[place[i]]]);
         }
     }
@@ -322,7 +318,7 @@ static bool hunt_now(hunt_t *hunt)
 static bool next_time(const hunt_t *hunt, pn_time_t *next)
 {
     ex_worker_t *worker = hunt->worker;
-    return hunt->is_local ? ex_next_time(worker, next) : pn_net.next_time(&worker->cx, worker->marking, next);
+    return hunt->is_local ? ex_next_time(worker, next) : pn_next_time(&pn_net, &worker->cx, worker->marking, next);
 }
 
 /* Lets the time go on. */
@@ -336,7 +332,7 @@ static bool advance(hunt_t *hunt, pn_time_t next)
         hunt->has_aged = true;
         return true;
     }
-    pn_net.set_now(worker->marking, next);
+    pn_set_now(&pn_net, worker->marking, next);
     return ex_encode_time(worker);
 }
 

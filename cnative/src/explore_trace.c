@@ -31,7 +31,7 @@ typedef struct step_search {
 /* The time at which the worker's state is, on the way of a trace. */
 static pn_time_t time_of(const ex_worker_t *worker, int64_t before)
 {
-    pn_time_t now = pn_net.now(worker->marking);
+    pn_time_t now = pn_now(&pn_net, worker->marking);
     if (worker->run->options.is_time_reduced) {
         now.integer = before;
     }
@@ -92,7 +92,7 @@ static bool walk_step(void *user, uint32_t transition, const void *binding, cons
     }
     walk->is_found = true;
     (void)memcpy(walk->marking, next, pn_net.marking_size);
-    pn_trace_model_occurrence(walk->trace, pn_net.now(walk->worker->marking), pn_net.real_time, &pn_net.transition[transition], binding);
+    pn_trace_model_occurrence(walk->trace, pn_now(&pn_net, walk->worker->marking), pn_net.real_time, &pn_net.transition[transition], binding);
     return false;
 }
 
@@ -231,13 +231,13 @@ static bool write_arc(void *user, uint32_t transition, const void *binding, cons
     pn_text_str(&w->text, ", \"to\": ");
     pn_text_uint(&w->text, w->graph->number[slot]);
     pn_text_str(&w->text, ", \"t\": ");
-    time_json(&w->text, pn_net.now(w->worker->marking));
+    time_json(&w->text, pn_now(&pn_net, w->worker->marking));
     pn_text_str(&w->text, ", \"transition\": ");
     pn_text_json_str(&w->text, pn_net.transition[transition].name);
     pn_text_str(&w->text, ", \"index\": ");
     pn_text_uint(&w->text, transition);
     pn_text_str(&w->text, ", \"binding\": ");
-    pn_net.transition[transition].binding_json(binding, &w->text);
+    pn_json(pn_net.transition[transition].binding, binding, &w->text);
     pn_text_str(&w->text, "}\n");
     return write_text(w);
 }
@@ -251,13 +251,13 @@ static bool write_node(graph_writer_t *w, const ex_key_t *key)
     pn_text_str(&w->text, "{\"node\": ");
     pn_text_uint(&w->text, (uint64_t)w->node + 1U);
     pn_text_str(&w->text, ", \"t\": ");
-    time_json(&w->text, pn_net.now(w->worker->marking));
+    time_json(&w->text, pn_now(&pn_net, w->worker->marking));
     pn_text_str(&w->text, ", \"marking\": {");
     for (uint32_t i = 0U; i < pn_net.place_count; i++) {
         pn_text_str(&w->text, (i > 0U) ? ", " : "");
         pn_text_json_str(&w->text, pn_net.place[i].name);
         pn_text_str(&w->text, ": ");
-        pn_net.place[i].json(w->worker->marking, &w->text);
+        pn_bag_json(pn_net.place[i].bag, w->worker->marking, &w->text);
     }
     pn_text_str(&w->text, "}}\n");
     return write_text(w);

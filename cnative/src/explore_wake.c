@@ -23,11 +23,7 @@ struct ex_wake {
 /* Whether each timed place can say for itself when its tokens become available. */
 static bool has_wakes(void)
 {
-    bool has_all = pn_net.timed;
-    for (uint32_t p = 0U; p < pn_net.place_count; p++) {
-        has_all = has_all && (!pn_net.place[p].timed || (pn_net.place[p].next_time != NULL));
-    }
-    return has_all;
+    return pn_net.timed && (pn_net.thresholds == NULL);
 }
 
 bool ex_wakes_make(ex_worker_t *worker)
@@ -51,7 +47,7 @@ static const ex_wake_t *wake_of(ex_worker_t *worker, uint32_t place, uint32_t nu
         return NULL;
     }
     *wake = (ex_wake_t){ .multiset = number + 1U, .from = now };
-    pn_net.place[place].next_time(worker->marking, now, &wake->is_some, &wake->next);
+    pn_bag_next_time(pn_net.place[place].bag, worker->marking, now, &wake->is_some, &wake->next);
     return wake;
 }
 
@@ -60,13 +56,13 @@ bool ex_next_time(ex_worker_t *worker, pn_time_t *next)
     const ex_codec_t *codec = worker->run->codec;
     bool is_some = false;
     if (worker->wake == NULL) {
-        return ex_load_places(worker) && pn_net.next_time(&worker->cx, worker->marking, next);
+        return ex_load_places(worker) && pn_next_time(&pn_net, &worker->cx, worker->marking, next);
     }
-    const pn_time_t now = pn_net.now(worker->marking);
+    const pn_time_t now = pn_now(&pn_net, worker->marking);
     for (uint32_t w = codec->packed_words; w < codec->words; w++) {
         const bool is_place = (w != codec->time_word) && (w != codec->root_word);
         const uint32_t place = is_place ? codec->place_of[w - codec->packed_words] : 0U;
-        if (!is_place || !pn_net.place[place].timed) {
+        if (!is_place || !pn_net.place[place].bag->is_timed) {
             continue;
         }
         const ex_wake_t *wake = wake_of(worker, place, worker->scratch->cell[w], now);

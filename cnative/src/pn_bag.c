@@ -20,12 +20,26 @@ int pn_time_order(bool is_real_time, pn_time_t a, pn_time_t b)
 
 uint32_t pn_bag_used(const pn_bag_t *bag, const void *marking)
 {
+    if (bag->is_slot) {
+        return *(const bool *)part(marking, bag->used) ? 1U : 0U;
+    }
     return load_tag(part(marking, bag->used));
 }
 
 static void set_used(const pn_bag_t *bag, void *marking, uint32_t used)
 {
+    if (bag->is_slot) {
+        *(bool *)part_of(marking, bag->used) = used > 0U;
+        return;
+    }
     (void)memcpy(part_of(marking, bag->used), &used, sizeof used);
+}
+
+void pn_bag_begin(const pn_bag_t *bag, void *marking)
+{
+    if (!bag->is_packed) {
+        set_used(bag, marking, 0U);
+    }
 }
 
 const void *pn_bag_entry(const pn_bag_t *bag, const void *marking, uint32_t i)
@@ -40,11 +54,14 @@ static void *entry_of(const pn_bag_t *bag, void *marking, uint32_t i)
 
 uint32_t pn_bag_count_of(const pn_bag_t *bag, const void *entry)
 {
-    return load_tag(part(entry, bag->count));
+    return bag->is_slot ? 1U : load_tag(part(entry, bag->count));
 }
 
 static void set_count(const pn_bag_t *bag, void *entry, uint32_t count)
 {
+    if (bag->is_slot) {
+        return; /* one */
+    }
     (void)memcpy(part_of(entry, bag->count), &count, sizeof count);
 }
 
@@ -225,6 +242,9 @@ bool pn_bag_add(pn_ctx_t *cx, const pn_bag_t *bag, void *marking, const void *va
 {
     if (bag->is_packed) {
         return packed_add(cx, bag, marking, value, count);
+    }
+    if (bag->is_slot && ((count > 1U) || (pn_bag_used(bag, marking) > 0U))) {
+        return pn_bag_fail_full(cx, bag);
     }
     uint32_t i = pn_bag_lower_bound(bag, marking, value);
     bool is_there = pn_bag_is_at(bag, marking, i, value);
@@ -571,7 +591,11 @@ size_t pn_bag_decode(pn_ctx_t *cx, const pn_bag_t *bag, void *marking, const uin
         if (!read_entry(cx, bag, &source, part_of(entry, bag->value), &count, &stamp)) {
             return SIZE_MAX;
         }
-        (void)memcpy(part_of(entry, bag->count), &count, sizeof count);
+        if (bag->is_slot && (count != 1U)) {
+            (void)pn_bag_fail_full(cx, bag);
+            return SIZE_MAX;
+        }
+        set_count(bag, entry, count);
         if (bag->is_timed) {
             (void)memcpy(part_of(entry, bag->stamp), &stamp, sizeof stamp);
         }

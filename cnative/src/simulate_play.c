@@ -211,7 +211,7 @@ static bool sim_follow(sim_t *sim, uint32_t transition, const void *binding)
 {
     bool is_fine = (sim->options.trace == NULL) || sim_trace_step(sim, transition, binding);
     if (is_fine && pn_arena_is_crowded(sim->cx.arena)) {
-        pn_net.collect(&sim->cx, sim->marking);
+        pn_marking_collect(&pn_net, &sim->cx, sim->marking);
         if (!pn_ok(&sim->cx)) {
             sim_fail(sim, "room was made after it", (int64_t)transition, true);
             is_fine = false;
@@ -225,7 +225,7 @@ static bool sim_follow(sim_t *sim, uint32_t transition, const void *binding)
         is_fine = false;
     }
     if (!is_fine && (binding != sim->binding)) {
-        (void)memcpy(sim->binding, binding, pn_net.transition[transition].binding_size);
+        (void)memcpy(sim->binding, binding, pn_net.transition[transition].binding->size);
     }
     return is_fine;
 }
@@ -286,7 +286,7 @@ static SIM_INLINE bool sim_occur_plain(sim_t *sim, uint32_t transition, uint64_t
 bool sim_fire(sim_t *sim, uint32_t transition)
 {
     const pn_transition_t *t = &pn_net.transition[transition];
-    return sim_fire_with(sim, transition, t->fire, sim->binding, t->binding_size);
+    return sim_fire_with(sim, transition, t->fire, sim->binding, t->binding->size);
 }
 
 /* --- the net's own, or those of its table -------------------------------------------------------------------------- */
@@ -344,7 +344,7 @@ static SIM_INLINE bool sim_occur_at(sim_t *sim, uint32_t transition, uint64_t st
 
 static bool sim_keep(void *user, uint32_t transition, const void *binding)
 {
-    const size_t size = pn_net.transition[transition].binding_size;
+    const size_t size = pn_net.transition[transition].binding->size;
     void *const at = sim_next_kept(user, size);
     if (at != NULL) {
         (void)memcpy(at, binding, size);
@@ -360,7 +360,7 @@ static bool sim_look_at(sim_t *sim, uint32_t transition)
 static bool sim_occur_at(sim_t *sim, uint32_t transition, uint64_t state)
 {
     const pn_transition_t *t = &pn_net.transition[transition];
-    return sim_occur(sim, transition, state, t->enumerate, sim_keep, t->fire, t->binding_size);
+    return sim_occur(sim, transition, state, t->enumerate, sim_keep, t->fire, t->binding->size);
 }
 
 #endif
@@ -423,10 +423,10 @@ static bool sim_is_after(pn_time_t a, pn_time_t b)
 static sim_next_t sim_move_on(sim_t *sim)
 {
     bool is_fine = true;
-    const pn_time_t start = pn_net.now(sim->marking);
+    const pn_time_t start = pn_now(&pn_net, sim->marking);
     pn_time_t next = start;
-    while (is_fine && (sim->enabled_count == 0U) && pn_net.timed && pn_net.next_time(&sim->cx, sim->marking, &next)) {
-        pn_net.set_now(sim->marking, next);
+    while (is_fine && (sim->enabled_count == 0U) && pn_net.timed && pn_next_time(&pn_net, &sim->cx, sim->marking, &next)) {
+        pn_set_now(&pn_net, sim->marking, next);
         sim_forget(sim);
         is_fine = sim_find_enabled(sim);
         sim->time_grew = true;
@@ -439,13 +439,13 @@ static sim_next_t sim_move_on(sim_t *sim)
         return SIM_FAILED;
     }
     if (sim->enabled_count == 0U) {
-        pn_net.set_now(sim->marking, start);
+        pn_set_now(&pn_net, sim->marking, start);
         sim_forget(sim);
         return SIM_FINISHED;
     }
-    const bool is_beyond = sim->options.has_until && sim_is_after(pn_net.now(sim->marking), sim->options.until);
+    const bool is_beyond = sim->options.has_until && sim_is_after(pn_now(&pn_net, sim->marking), sim->options.until);
     if (is_beyond) {
-        pn_net.set_now(sim->marking, sim_is_after(start, sim->options.until) ? start : sim->options.until);
+        pn_set_now(&pn_net, sim->marking, sim_is_after(start, sim->options.until) ? start : sim->options.until);
         sim_forget(sim);
     }
     return is_beyond ? SIM_BEYOND : SIM_FOUND;
@@ -492,7 +492,7 @@ static SIM_INLINE bool sim_step(sim_t *sim)
 /* The run was to be no longer; whether anything is left to occur, now or later. */
 static void end_at_limit(sim_t *sim)
 {
-    const pn_time_t now = pn_net.now(sim->marking);
+    const pn_time_t now = pn_now(&pn_net, sim->marking);
     sim->cx.step = sim->steps;
     switch (sim_settle_here(sim)) {
     case SIM_FINISHED:
@@ -501,7 +501,7 @@ static void end_at_limit(sim_t *sim)
     case SIM_FOUND:
     case SIM_BEYOND:
         if (pn_net.timed) {
-            pn_net.set_now(sim->marking, now); /* the time goes on with the next occurrence only */
+            pn_set_now(&pn_net, sim->marking, now); /* the time goes on with the next occurrence only */
             sim_forget(sim);
         }
         break;

@@ -48,12 +48,12 @@ static bool compare(void *user, uint32_t transition, const void *binding)
     match_t *match = user;
     pn_text_t text;
     pn_text_init(&text, sim_text_buffer, sizeof sim_text_buffer);
-    pn_net.transition[transition].binding_json(binding, &text);
+    pn_json(pn_net.transition[transition].binding, binding, &text);
     const size_t length = strlen(match->prefix);
     const bool is_same = (strncmp(text.buffer, match->prefix, length) == 0)
                          && ((text.buffer[length] == '}') || (text.buffer[length] == ',') || (length <= 1U));
     if (is_same) {
-        (void)memcpy(match->sim->binding, binding, pn_net.transition[transition].binding_size);
+        (void)memcpy(match->sim->binding, binding, pn_net.transition[transition].binding->size);
         match->is_found = true;
     }
     return !is_same;
@@ -83,7 +83,7 @@ static bool check_time(sim_t *sim, const given_t *given)
     char now[PN_REAL_TEXT_SIZE];
     pn_text_t text;
     pn_text_init(&text, now, sizeof now);
-    sim_text_time(&text, pn_net.now(sim->marking));
+    sim_text_time(&text, pn_now(&pn_net, sim->marking));
     if ((given->time[0] == '\0') || (strcmp(given->time, now) == 0)) {
         return true;
     }
@@ -100,7 +100,7 @@ static bool check_outputs(sim_t *sim, const given_t *given)
     }
     pn_text_t text;
     pn_text_init(&text, sim_text_buffer, sizeof sim_text_buffer);
-    pn_net.transition[given->transition].binding_json(sim->binding, &text);
+    pn_json(pn_net.transition[given->transition].binding, sim->binding, &text);
     return (strcmp(text.buffer, given->binding) == 0) || refuse(sim, "the code segment gives ", text.buffer);
 }
 

@@ -296,7 +296,7 @@ static bool start(sup_t *sup)
     if (error != 0) {
         return sup_stop(sup, SUP_EXIT_IO, "cannot set up signals: %s", strerror(error));
     }
-    if (!pn_net.init(&sup->cx, sup->marking)) {
+    if (!pn_marking_init(&pn_net, &sup->cx, sup->marking)) {
         return sup_stop_error(sup, "making the initial marking");
     }
     pn_text_init(&initial, s_initial, sizeof s_initial);

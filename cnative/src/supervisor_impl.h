@@ -14,6 +14,7 @@
 #include "pn/pn_arena.h"
 #include "pn/pn_cell.h"
 #include "pn/pn_channel.h"
+#include "pn/pn_marking.h"
 #include "pn/pn_net.h"
 #include "pn/pn_text.h"
 #include "pn/pn_trace.h"

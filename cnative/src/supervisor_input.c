@@ -160,8 +160,8 @@ bool sup_read_inputs(sup_t *sup, pn_text_t *json)
         if (!read_file(sup, input, &text) || !parse(sup, input, &text, &token)) {
             return false;
         }
-        place->clear(sup->marking);
-        if (!place->put(&sup->cx, sup->marking, token.leaf, token.count)) {
+        pn_bag_clear(place->bag, sup->marking);
+        if (!pn_marking_put(sup->net, &sup->cx, sup->marking, input->place, token.leaf, token.count)) {
             const bool colour = (sup->cx.error == PN_ERR_COLOUR);
             if (!colour) {
                 return sup_stop_error(sup, "putting the token of an input file");
@@ -174,7 +174,7 @@ bool sup_read_inputs(sup_t *sup, pn_text_t *json)
         }
         pn_text_json_str(json, place->name);
         pn_text_str(json, ": ");
-        place->json(sup->marking, json);
+        pn_bag_json(place->bag, sup->marking, json);
     }
     pn_text_char(json, '}');
     return true;

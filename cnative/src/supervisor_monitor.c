@@ -44,7 +44,7 @@ static uint64_t checksum_of(const uint8_t *bytes, size_t length)
 static bool look(sup_t *sup, uint32_t index, bool *changed)
 {
     const pn_place_t *const place = &sup->net->place[index];
-    const size_t length = place->encode(sup->marking, s_monitor.bytes, PLACE_SIZE);
+    const size_t length = pn_bag_encode(place->bag, sup->marking, s_monitor.bytes, PLACE_SIZE);
     if (length > PLACE_SIZE) {
         return sup_stop(sup, SUP_EXIT_MODEL, "monitor: what place `%s` holds is too large to be looked at", place->name);
     }
@@ -82,7 +82,7 @@ static bool is_wanted(void *user, uint32_t index, const void *binding)
     pn_text_t text;
     (void)index;
     pn_text_init(&text, s_monitor.found, TEXT_SIZE);
-    search->transition->binding_json(binding, &text);
+    pn_json(search->transition->binding, binding, &text);
     search->is_found = (strcmp(s_monitor.found, s_monitor.wanted) == 0);
     return !search->is_found;
 }
@@ -124,7 +124,7 @@ bool sup_monitor_choice(sup_t *sup, int32_t owner, uint32_t index)
         return true; /* a second search may find something else */
     }
     pn_text_init(&text, s_monitor.wanted, TEXT_SIZE);
-    t->binding_json(sup->binding, &text);
+    pn_json(t->binding, sup->binding, &text);
     if (!has_binding(sup, index, is_wanted)) {
         return sup_stop(sup, SUP_EXIT_INTERNAL, "monitor: `%s` is not enabled with %s", t->name, s_monitor.wanted);
     }
@@ -190,7 +190,7 @@ bool sup_monitor_messages(sup_t *sup, pn_channel_direction_t direction)
         if (changed && !is_channel(sup, i, direction)) {
             return sup_stop(sup, SUP_EXIT_INTERNAL, "monitor: place `%s` has changed while messages were exchanged", place->name);
         }
-        if (changed && (place->count(sup->marking) > 1U)) {
+        if (changed && (pn_bag_total(place->bag, sup->marking) > 1U)) {
             return sup_stop(sup, SUP_EXIT_INTERNAL, "monitor: channel `%s` holds more than one message", place->name);
         }
     }

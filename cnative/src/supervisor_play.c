@@ -72,7 +72,7 @@ static bool keeps_bounds(sup_t *sup, const pn_transition_t *fired)
         if (!place->is_bounded || (place->owner < 0)) {
             continue;
         }
-        const uint64_t tokens = place->count(sup->marking);
+        const uint64_t tokens = pn_bag_total(place->bag, sup->marking);
         if (tokens > (uint64_t)place->bound) {
             return sup_stop(sup, SUP_EXIT_MODEL,
                             "place `%s` is full: it would hold %" PRIu64 " tokens after `%s`, and its bound is %" PRIu32
@@ -96,7 +96,7 @@ int sup_fire_one(sup_t *sup, int32_t owner, uint32_t *transition)
         if ((owner >= 0) && (candidate->owner != owner)) {
             continue;
         }
-        first.size = candidate->binding_size;
+        first.size = candidate->binding->size;
         (void)candidate->enumerate(&sup->cx, sup->marking, index, keep_first, &first);
         if (sup->cx.error != PN_OK) {
             (void)snprintf(doing, sizeof doing, "looking for bindings of `%s`", candidate->name);
@@ -124,11 +124,11 @@ int sup_fire_one(sup_t *sup, int32_t owner, uint32_t *transition)
         char text[1024];
         pn_text_t json;
         pn_text_init(&json, text, sizeof text);
-        chosen->binding_json(sup->binding, &json);
+        pn_json(chosen->binding, sup->binding, &json);
         sup_say(sup, 2, "%10.3f s  %s %s", sup->t, chosen->name, text);
     }
     if (pn_arena_is_crowded(&sup->arena)) {
-        net->collect(&sup->cx, sup->marking);
+        pn_marking_collect(net, &sup->cx, sup->marking);
         if (sup->cx.error != PN_OK) {
             (void)sup_stop_error(sup, "making room between firings");
             return -1;
@@ -180,7 +180,7 @@ void sup_set_time(sup_t *sup, double t)
     if (!sup->net->timed) {
         return;
     }
-    const pn_time_t now = sup->net->now(sup->marking);
+    const pn_time_t now = pn_now(sup->net, sup->marking);
     const double scaled = t * sup->options.time_scale;
     pn_time_t next = now;
     if (sup->net->real_time) {
@@ -191,13 +191,13 @@ void sup_set_time(sup_t *sup, double t)
         const int64_t integer = (whole < 9.0e18) ? (int64_t)whole : INT64_MAX;
         next.integer = (integer > now.integer) ? integer : now.integer;
     }
-    sup->net->set_now(sup->marking, next);
+    pn_set_now(sup->net, sup->marking, next);
 }
 
 bool sup_next_time(sup_t *sup, double *t)
 {
     pn_time_t next;
-    if (!sup->net->timed || !sup->net->next_time(&sup->cx, sup->marking, &next)) {
+    if (!sup->net->timed || !pn_next_time(sup->net, &sup->cx, sup->marking, &next)) {
         if (sup->cx.error != PN_OK) {
             (void)sup_stop_error(sup, "looking for the next time");
         }
@@ -210,7 +210,7 @@ bool sup_next_time(sup_t *sup, double *t)
 bool sup_is_final(const sup_t *sup)
 {
     for (uint32_t i = 0U; i < sup->cell->final_count; i++) {
-        if (sup->net->place[sup->cell->final_place[i]].count(sup->marking) > 0U) {
+        if (pn_bag_total(sup->net->place[sup->cell->final_place[i]].bag, sup->marking) > 0U) {
             return true;
         }
     }
@@ -222,7 +222,7 @@ void sup_final_places(const sup_t *sup, bool as_json, pn_text_t *text)
     bool is_first = true;
     for (uint32_t i = 0U; i < sup->cell->final_count; i++) {
         const pn_place_t *const place = &sup->net->place[sup->cell->final_place[i]];
-        if (place->count(sup->marking) == 0U) {
+        if (pn_bag_total(place->bag, sup->marking) == 0U) {
             continue;
         }
         if (!is_first) {
@@ -240,7 +240,7 @@ void sup_final_places(const sup_t *sup, bool as_json, pn_text_t *text)
 const char *sup_token_text(const sup_t *sup, const pn_cell_channel_t *channel, char *out, size_t capacity)
 {
     pn_leaf_t leaf[PN_CHANNEL_SCALARS];
-    const uint32_t count = sup->net->place[channel->place].token(sup->marking, 0U, leaf, PN_CHANNEL_SCALARS);
+    const uint32_t count = pn_bag_token(sup->net->place[channel->place].bag, sup->marking, 0U, leaf, PN_CHANNEL_SCALARS);
     if ((count != channel->scalar_count) ||
         (pn_scalars_format(channel->scalar, channel->scalar_count, leaf, out, capacity) == 0U)) {
         (void)snprintf(out, capacity, "?");

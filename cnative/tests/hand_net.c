@@ -8,126 +8,80 @@
  *
  * and for trouble: answer 2 raises Overflow, answer 3 sends the command again at once, answer 4 never comes to rest.
  */
-#include <stdio.h>
-#include <string.h>
+#include <stddef.h>
 
+#include "pn/pn_bag.h"
 #include "pn/pn_net.h"
-#include "pn/pn_text.h"
 
 #ifndef HAND_DELAY
 #define HAND_DELAY 2
 #endif
 
+typedef struct position {
+    double x, y;
+} position_t;
+
+typedef struct order {
+    int64_t n;
+    position_t at;
+} order_t;
+
+/* A place for one token. */
+#define PLACE_OF(value_t)         \
+    struct {                      \
+        uint32_t used;            \
+        struct {                  \
+            value_t value;        \
+            uint32_t count;       \
+            pn_time_t stamp;      \
+        } token[1];               \
+    }
+
 typedef struct marking {
-    int64_t now;
-    uint32_t orders, idle, waiting, done, pose, command, answer, spin; /* tokens in each place: 0 or 1, `command` up to 2 */
-    int64_t idle_stamp;
-    int64_t n, command_value, answer_value;
-    double x, y, pose_x, pose_y;
+    pn_time_t now;
+    PLACE_OF(order_t) orders;
+    PLACE_OF(uint8_t) idle;
+    PLACE_OF(uint8_t) waiting;
+    PLACE_OF(uint8_t) done;
+    PLACE_OF(position_t) pose;
+    PLACE_OF(int64_t) command;
+    PLACE_OF(int64_t) answer;
+    PLACE_OF(uint8_t) spin;
 } marking_t;
 
 typedef struct binding {
     int64_t n;
-    double x, y;
+    double x;
 } binding_t;
 
+/* --- colour sets ------------------------------------------------------------------------------------------------------ */
+
+static bool is_no_thirteen(pn_ctx_t *cx, const void *value)
+{
+    (void)cx;
+    return ((const order_t *)value)->n != 13;
+}
+
+static const pn_type_t UNIT = {.kind = PN_KIND_UNIT, .name = "UNIT", .size = sizeof(uint8_t)};
+static const pn_type_t REAL = {.kind = PN_KIND_REAL, .name = "REAL", .size = sizeof(double)};
+static const pn_type_t INT = {.kind = PN_KIND_INT, .name = "INT", .size = sizeof(int64_t)};
+static const pn_type_t ANSWER = {
+    .kind = PN_KIND_INT, .name = "ANSWER", .size = sizeof(int64_t), .has_range = true, .low = INT64_MIN, .high = 9};
+static const pn_field_t POSITION_FIELD[] = {
+    {"1", &REAL, offsetof(position_t, x), false}, {"2", &REAL, offsetof(position_t, y), false}};
+static const pn_type_t POSITION = {
+    .kind = PN_KIND_RECORD, .name = "POSITION", .size = sizeof(position_t), .is_tuple = true, .count = 2U, .field = POSITION_FIELD};
+static const pn_field_t ORDER_FIELD[] = {
+    {"1", &INT, offsetof(order_t, n), false}, {"2", &POSITION, offsetof(order_t, at), false}};
+static const pn_type_t ORDER_TYPE = {
+    .kind = PN_KIND_RECORD, .name = "ORDER", .size = sizeof(order_t), .is_tuple = true, .count = 2U, .field = ORDER_FIELD,
+    .member = is_no_thirteen};
+static const pn_field_t BINDING_FIELD[] = {
+    {"n", &INT, offsetof(binding_t, n), false}, {"x", &REAL, offsetof(binding_t, x), false}};
+static const pn_type_t BINDING = {
+    .kind = PN_KIND_RECORD, .name = "binding", .size = sizeof(binding_t), .count = 2U, .field = BINDING_FIELD};
+
 /* --- places ----------------------------------------------------------------------------------------------------------- */
-
-#define COUNT(field)                                     \
-    static uint64_t field##_count(const void *m)         \
-    {                                                    \
-        return ((const marking_t *)m)->field;            \
-    }                                                    \
-    static void field##_clear(void *m)                   \
-    {                                                    \
-        ((marking_t *)m)->field = 0U;                    \
-    }
-
-COUNT(orders) COUNT(idle) COUNT(waiting) COUNT(done) COUNT(pose) COUNT(command) COUNT(answer) COUNT(spin)
-
-static uint32_t no_token(const void *m, uint32_t i, pn_leaf_t *leaf, uint32_t capacity)
-{
-    (void)m, (void)i, (void)leaf, (void)capacity;
-    return 0U;
-}
-
-static bool no_put(pn_ctx_t *cx, void *m, const pn_leaf_t *leaf, uint32_t leaves)
-{
-    (void)m, (void)leaf, (void)leaves;
-    cx->error = PN_ERR_INTERNAL;
-    return false;
-}
-
-static void plain_json(const void *m, pn_text_t *out)
-{
-    (void)m;
-    pn_text_str(out, "[[1, null]]");
-}
-
-static bool orders_put(pn_ctx_t *cx, void *m, const pn_leaf_t *leaf, uint32_t leaves)
-{
-    marking_t *const marking = m;
-    if ((leaves != 3U) || (leaf[0].integer == 13)) { /* a colour set with a predicate: no thirteen */
-        cx->error = PN_ERR_COLOUR;
-        return false;
-    }
-    marking->orders = 1U;
-    marking->n = leaf[0].integer;
-    marking->x = leaf[1].real;
-    marking->y = leaf[2].real;
-    return true;
-}
-
-static void orders_json(const void *m, pn_text_t *out)
-{
-    const marking_t *const marking = m;
-    pn_text_str(out, "[[1, [");
-    pn_text_int(out, marking->n);
-    pn_text_str(out, ", [");
-    pn_text_json_real(out, marking->x);
-    pn_text_str(out, ", ");
-    pn_text_json_real(out, marking->y);
-    pn_text_str(out, "]]]]");
-}
-
-static uint32_t pose_token(const void *m, uint32_t i, pn_leaf_t *leaf, uint32_t capacity)
-{
-    const marking_t *const marking = m;
-    (void)i, (void)capacity;
-    leaf[0].kind = PN_LEAF_REAL;
-    leaf[0].real = marking->pose_x;
-    leaf[1].kind = PN_LEAF_REAL;
-    leaf[1].real = marking->pose_y;
-    return 2U;
-}
-
-static uint32_t command_token(const void *m, uint32_t i, pn_leaf_t *leaf, uint32_t capacity)
-{
-    (void)i, (void)capacity;
-    leaf[0].kind = PN_LEAF_INT;
-    leaf[0].integer = ((const marking_t *)m)->command_value;
-    return 1U;
-}
-
-static uint32_t answer_token(const void *m, uint32_t i, pn_leaf_t *leaf, uint32_t capacity)
-{
-    (void)i, (void)capacity;
-    leaf[0].kind = PN_LEAF_INT;
-    leaf[0].integer = ((const marking_t *)m)->answer_value;
-    return 1U;
-}
-
-static bool answer_put(pn_ctx_t *cx, void *m, const pn_leaf_t *leaf, uint32_t leaves)
-{
-    marking_t *const marking = m;
-    if ((leaves != 1U) || (leaf[0].integer > 9)) {
-        cx->error = PN_ERR_COLOUR;
-        return false;
-    }
-    marking->answer = 1U;
-    marking->answer_value = leaf[0].integer;
-    return true;
-}
 
 static const pn_leaf_kind_t ORDER_LEAF[] = {PN_LEAF_INT, PN_LEAF_REAL, PN_LEAF_REAL};
 static const char *const ORDER_NAME[] = {"n", "x", "y"};
@@ -137,31 +91,62 @@ static const char *const POSE_NAME[] = {"x", "y"};
 static const pn_leaf_kind_t INT_LEAF[] = {PN_LEAF_INT};
 static const char *const INT_NAME[] = {"1"};
 
-#define PLAIN(field, place_name, place_owner, token_fn, put_fn, json_fn)                                            \
-    .name = place_name, .colset = "UNIT", .origin = "page `Top`, place `" place_name "`", .owner = (place_owner),  \
-    .capacity = 1U, .count = field##_count, .clear = field##_clear, .token = (token_fn), .put = (put_fn),           \
-    .json = (json_fn)
+#define BAG(field, place_name, value_type, timed)                                                                 \
+    static const pn_bag_t field##_bag = {.origin = "page `Top`, place `" place_name "`", .type = &(value_type),   \
+                                         .capacity = 1U, .is_timed = (timed), PN_BAG_TOKENS(marking_t, field),    \
+                                         PN_BAG_STAMPS(marking_t, field)};
+
+BAG(orders, "Top.Orders", ORDER_TYPE, false)
+BAG(idle, "Top.Idle", UNIT, true)
+BAG(waiting, "Top.Waiting", UNIT, false)
+BAG(done, "Top.Done", UNIT, false)
+BAG(pose, "Top.pose1", POSITION, false)
+BAG(command, "Top.command", INT, false)
+BAG(answer, "Top.answer", ANSWER, false)
+BAG(spin, "Top.Spin", UNIT, false)
+
+/* A token in a place where there is none, or another one instead. */
+#define PUT(field, token_value)                                                        \
+    do {                                                                               \
+        m->field.used = 1U;                                                            \
+        m->field.token[0].value = (token_value);                                       \
+        m->field.token[0].count = 1U;                                                  \
+    } while (false)
+#define TAKE(field) (m->field.used = 0U)
+#define HAS(field) (m->field.used > 0U)
+#define VALUE(field) (m->field.token[0].value)
+
+static bool begin(pn_ctx_t *cx, void *marking)
+{
+    marking_t *const m = marking;
+    const order_t order = {2, {0.5, 7.0}};
+    (void)cx;
+    PUT(orders, order);
+    PUT(idle, 0U);
+    m->idle.token[0].stamp = (pn_time_t){.integer = 0};
+    return true;
+}
+
+#define PLAIN(field, place_name, place_owner) \
+    .name = place_name, .colset = "UNIT", .owner = (place_owner), .bag = &field##_bag
 
 static const pn_place_t PLACE[] = {
-    {PLAIN(orders, "Top.Orders", 0, no_token, orders_put, orders_json), .leaf_count = 3U, .leaf_kind = ORDER_LEAF,
-     .leaf_name = ORDER_NAME, .line_count = 2U, .line_leaves = ORDER_LINE},
-    {PLAIN(idle, "Top.Idle", 0, no_token, no_put, plain_json), .timed = true},
-    {PLAIN(waiting, "Top.Waiting", 0, no_token, no_put, plain_json)},
-    {PLAIN(done, "Top.Done", 0, no_token, no_put, plain_json)},
-    {PLAIN(pose, "Top.pose1", -1, pose_token, no_put, plain_json), .leaf_count = 2U, .leaf_kind = POSE_LEAF,
-     .leaf_name = POSE_NAME},
-    {PLAIN(command, "Top.command", -1, command_token, no_put, plain_json), .leaf_count = 1U, .leaf_kind = INT_LEAF,
-     .leaf_name = INT_NAME},
-    {PLAIN(answer, "Top.answer", -1, answer_token, answer_put, plain_json), .leaf_count = 1U, .leaf_kind = INT_LEAF,
-     .leaf_name = INT_NAME},
-    {PLAIN(spin, "Top.Spin", 0, no_token, no_put, plain_json)},
+    {PLAIN(orders, "Top.Orders", 0), .initial = begin, .leaf_count = 3U, .leaf_kind = ORDER_LEAF, .leaf_name = ORDER_NAME,
+     .line_count = 2U, .line_leaves = ORDER_LINE},
+    {PLAIN(idle, "Top.Idle", 0)},
+    {PLAIN(waiting, "Top.Waiting", 0)},
+    {PLAIN(done, "Top.Done", 0)},
+    {PLAIN(pose, "Top.pose1", -1), .leaf_count = 2U, .leaf_kind = POSE_LEAF, .leaf_name = POSE_NAME},
+    {PLAIN(command, "Top.command", -1), .leaf_count = 1U, .leaf_kind = INT_LEAF, .leaf_name = INT_NAME},
+    {PLAIN(answer, "Top.answer", -1), .leaf_count = 1U, .leaf_kind = INT_LEAF, .leaf_name = INT_NAME},
+    {PLAIN(spin, "Top.Spin", 0)},
 };
 
 /* --- transitions ------------------------------------------------------------------------------------------------------ */
 
 static bool offer(const marking_t *m, bool enabled, uint32_t self, pn_binding_sink_t sink, void *user)
 {
-    const binding_t binding = {m->n, m->x, m->y};
+    const binding_t binding = {VALUE(orders).n, VALUE(orders).at.x};
     return !enabled || sink(user, self, &binding);
 }
 
@@ -175,43 +160,39 @@ static bool offer(const marking_t *m, bool enabled, uint32_t self, pn_binding_si
 
 static bool is_idle(const marking_t *m)
 {
-    return (m->idle > 0U) && (m->idle_stamp <= m->now);
+    return HAS(idle) && (m->idle.token[0].stamp.integer <= m->now.integer);
 }
 
-ENUMERATE(send, (m->orders > 0U) && (m->n > 0) && is_idle(m))
-ENUMERATE(next, (m->waiting > 0U) && (m->answer > 0U) && (m->answer_value == 1))
-ENUMERATE(finish, (m->orders > 0U) && (m->n <= 0) && is_idle(m))
-ENUMERATE(overflow, (m->answer > 0U) && (m->answer_value == 2))
-ENUMERATE(again, (m->answer > 0U) && (m->answer_value == 3))
-ENUMERATE(spin, ((m->answer > 0U) && (m->answer_value == 4)) || (m->spin > 0U))
-ENUMERATE(work, (m->command > 0U) && (m->pose > 0U))
+ENUMERATE(send, HAS(orders) && (VALUE(orders).n > 0) && is_idle(m))
+ENUMERATE(next, HAS(waiting) && HAS(answer) && (VALUE(answer) == 1))
+ENUMERATE(finish, HAS(orders) && (VALUE(orders).n <= 0) && is_idle(m))
+ENUMERATE(overflow, HAS(answer) && (VALUE(answer) == 2))
+ENUMERATE(again, HAS(answer) && (VALUE(answer) == 3))
+ENUMERATE(spin, (HAS(answer) && (VALUE(answer) == 4)) || HAS(spin))
+ENUMERATE(work, HAS(command) && HAS(pose))
 
 static bool send_fire(pn_ctx_t *cx, void *marking, void *binding)
 {
     marking_t *const m = marking;
     (void)cx, (void)binding;
-    m->orders = 0U;
-    m->idle = 0U;
-    m->waiting = 1U;
-    m->pose = 1U;
-    m->pose_x = m->x;
-    m->pose_y = m->y;
-    m->command = 1U;
-    m->command_value = 1;
+    TAKE(orders);
+    TAKE(idle);
+    PUT(waiting, 0U);
+    PUT(pose, VALUE(orders).at);
+    PUT(command, 1);
     return true;
 }
 
 static bool next_fire(pn_ctx_t *cx, void *marking, void *binding)
 {
     marking_t *const m = marking;
+    const order_t rest = {VALUE(orders).n - 1, {VALUE(orders).at.x + 0.1, VALUE(orders).at.y}};
     (void)cx, (void)binding;
-    m->waiting = 0U;
-    m->answer = 0U;
-    m->n -= 1;
-    m->x += 0.1;
-    m->orders = 1U;
-    m->idle = 1U;
-    m->idle_stamp = m->now + HAND_DELAY;
+    TAKE(waiting);
+    TAKE(answer);
+    PUT(orders, rest);
+    PUT(idle, 0U);
+    m->idle.token[0].stamp.integer = m->now.integer + HAND_DELAY;
     return true;
 }
 
@@ -219,9 +200,9 @@ static bool finish_fire(pn_ctx_t *cx, void *marking, void *binding)
 {
     marking_t *const m = marking;
     (void)cx, (void)binding;
-    m->orders = 0U;
-    m->idle = 0U;
-    m->done = 1U;
+    TAKE(orders);
+    TAKE(idle);
+    PUT(done, 0U);
     return true;
 }
 
@@ -238,9 +219,8 @@ static bool again_fire(pn_ctx_t *cx, void *marking, void *binding)
 {
     marking_t *const m = marking;
     (void)cx, (void)binding;
-    m->answer = 0U;
-    m->command = 1U;
-    m->command_value = 3;
+    TAKE(answer);
+    PUT(command, 3);
     return true;
 }
 
@@ -248,8 +228,8 @@ static bool spin_fire(pn_ctx_t *cx, void *marking, void *binding)
 {
     marking_t *const m = marking;
     (void)cx, (void)binding;
-    m->answer = 0U;
-    m->spin = 1U;
+    TAKE(answer);
+    PUT(spin, 0U);
     return true;
 }
 
@@ -257,28 +237,16 @@ static bool work_fire(pn_ctx_t *cx, void *marking, void *binding)
 {
     marking_t *const m = marking;
     (void)cx, (void)binding;
-    m->command = 0U;
-    m->pose = 0U;
-    m->answer = 1U;
-    m->answer_value = 1;
+    TAKE(command);
+    TAKE(pose);
+    PUT(answer, 1);
     return true;
-}
-
-static void binding_json(const void *binding, pn_text_t *out)
-{
-    const binding_t *const b = binding;
-    pn_text_str(out, "{\"n\": ");
-    pn_text_int(out, b->n);
-    pn_text_str(out, ", \"x\": ");
-    pn_text_json_real(out, b->x);
-    pn_text_char(out, '}');
 }
 
 #define TRANSITION(fn, full, owned)                                                                         \
     {                                                                                                       \
         .name = (full), .id = "ID" #fn, .origin = "page `Top`, transition `" full "`", .owner = (owned),    \
-        .priority = 1000, .enumerate = fn##_enumerate, .fire = fn##_fire, .binding_json = binding_json,     \
-        .binding_size = sizeof(binding_t)                                                                   \
+        .priority = 1000, .enumerate = fn##_enumerate, .fire = fn##_fire, .binding = &BINDING               \
     }
 
 static const pn_transition_t TRANSITION_TABLE[] = {
@@ -288,57 +256,10 @@ static const pn_transition_t TRANSITION_TABLE[] = {
 };
 
 static const uint32_t ORDER[] = {0U, 1U, 2U, 3U, 4U, 5U, 6U};
+static const uint32_t BAGS[] = {0U, 1U, 2U, 3U, 4U, 5U, 6U, 7U};
 static const pn_owner_t OWNER[] = {{"supervisor"}, {"robot1"}};
 
 /* --- the net ---------------------------------------------------------------------------------------------------------- */
-
-static bool init(pn_ctx_t *cx, void *marking)
-{
-    marking_t *const m = marking;
-    (void)cx;
-    (void)memset(m, 0, sizeof *m);
-    m->orders = 1U;
-    m->n = 2;
-    m->x = 0.5;
-    m->y = 7.0;
-    m->idle = 1U;
-    return true;
-}
-
-static pn_time_t now(const void *marking)
-{
-    return (pn_time_t){.integer = ((const marking_t *)marking)->now};
-}
-
-static void set_now(void *marking, pn_time_t time)
-{
-    ((marking_t *)marking)->now = time.integer;
-}
-
-static bool next_time(pn_ctx_t *cx, const void *marking, pn_time_t *next)
-{
-    (void)cx;
-    const marking_t *const m = marking;
-    next->integer = m->idle_stamp;
-    return (m->idle > 0U) && (m->idle_stamp > m->now);
-}
-
-static size_t encode(const void *marking, uint8_t *out, size_t capacity)
-{
-    (void)marking, (void)out, (void)capacity;
-    return 0U;
-}
-
-static bool decode(pn_ctx_t *cx, void *marking, const uint8_t *in, size_t length)
-{
-    (void)cx, (void)marking, (void)in, (void)length;
-    return false;
-}
-
-static void collect(pn_ctx_t *cx, void *marking)
-{
-    (void)cx, (void)marking;
-}
 
 const pn_net_t pn_net = {
     .abi = PN_NET_ABI,
@@ -356,11 +277,7 @@ const pn_net_t pn_net = {
     .owner = OWNER,
     .order_count = sizeof ORDER / sizeof ORDER[0],
     .order = ORDER,
-    .init = init,
-    .now = now,
-    .set_now = set_now,
-    .next_time = next_time,
-    .encode = encode,
-    .decode = decode,
-    .collect = collect,
+    .now_at = offsetof(marking_t, now),
+    .bag_count = sizeof BAGS / sizeof BAGS[0],
+    .bags = BAGS,
 };

@@ -12,6 +12,7 @@
 #include <string.h>
 
 #include "pn/pn_arena.h"
+#include "pn/pn_marking.h"
 #include "pn/pn_net.h"
 #include "pn/pn_num.h"
 #include "pn/pn_random.h"
@@ -41,10 +42,10 @@ static bool list_one(void *user, uint32_t transition, const void *binding)
         pn_text_str(list->text, (list->count > 0U) ? ", [" : "[");
         pn_text_json_str(list->text, pn_net.transition[transition].name);
         pn_text_str(list->text, ", ");
-        pn_net.transition[transition].binding_json(binding, list->text);
+        pn_json(pn_net.transition[transition].binding, binding, list->text);
         pn_text_char(list->text, ']');
     } else if (list->count == list->wanted) {
-        (void)memcpy(list->binding, binding, pn_net.transition[transition].binding_size);
+        (void)memcpy(list->binding, binding, pn_net.transition[transition].binding->size);
         list->transition = transition;
         return false;
     }
@@ -97,14 +98,14 @@ static void check_codec(pn_ctx_t *cx, void *marking, void *copy)
 {
     const size_t held = save_roots(s_roots[0]);
     restore_roots(cx, held);
-    const size_t length = pn_net.encode(marking, s_bytes[0], sizeof s_bytes[0]);
-    if ((length == 0U) || !pn_net.decode(cx, copy, s_bytes[0], length)
-        || (pn_net.encode(copy, s_bytes[1], sizeof s_bytes[1]) != length)
+    const size_t length = pn_marking_encode(&pn_net, marking, s_bytes[0], sizeof s_bytes[0]);
+    if ((length == 0U) || !pn_marking_decode(&pn_net, cx, copy, s_bytes[0], length)
+        || (pn_marking_encode(&pn_net, copy, s_bytes[1], sizeof s_bytes[1]) != length)
         || (memcmp(s_bytes[0], s_bytes[1], length) != 0)) {
         pn_raise(cx, PN_ERR_INTERNAL, "encode and decode disagree");
     }
-    pn_net.collect(cx, marking);
-    if ((pn_net.encode(marking, s_bytes[1], sizeof s_bytes[1]) != length) || (memcmp(s_bytes[0], s_bytes[1], length) != 0)) {
+    pn_marking_collect(&pn_net, cx, marking);
+    if ((pn_marking_encode(&pn_net, marking, s_bytes[1], sizeof s_bytes[1]) != length) || (memcmp(s_bytes[0], s_bytes[1], length) != 0)) {
         pn_raise(cx, PN_ERR_INTERNAL, "collect changed the marking");
     }
     if ((save_roots(s_roots[1]) != held) || (memcmp(s_roots[0], s_roots[1], held) != 0)) {
@@ -130,8 +131,8 @@ static bool note_successor(void *user, uint32_t transition, const void *binding,
     static char text[1U << 16U];
     pn_text_t json;
     pn_text_init(&json, text, sizeof text);
-    pn_net.transition[transition].binding_json(binding, &json);
-    const size_t length = pn_net.encode(next, s_bytes[1], sizeof s_bytes[1]);
+    pn_json(pn_net.transition[transition].binding, binding, &json);
+    const size_t length = pn_marking_encode(&pn_net, next, s_bytes[1], sizeof s_bytes[1]);
     for (size_t i = 0U; i < (length + json.length); i++) {
         pass->hash = (pass->hash ^ ((i < length) ? s_bytes[1][i] : (uint8_t)text[i - length])) * 0x100000001B3U;
     }
@@ -145,7 +146,7 @@ static bool note_fired(void *user, uint32_t transition, const void *binding)
 {
     pass_t *pass = user;
     const uint64_t random = pass->cx->random; /* the search goes on with its own numbers */
-    (void)memcpy(pass->binding, binding, pn_net.transition[transition].binding_size);
+    (void)memcpy(pass->binding, binding, pn_net.transition[transition].binding->size);
     (void)memcpy(pass->next, pass->marking, pn_net.marking_size);
     const bool goes_on = pn_net.transition[transition].fire(pass->cx, pass->next, pass->binding)
                          && note_successor(user, transition, pass->binding, pass->next);
@@ -188,16 +189,16 @@ static void print_step(const void *marking, pn_text_t *text, int64_t chosen)
 {
     pn_text_str(text, "], \"t\": ");
     if (pn_net.real_time) {
-        pn_text_json_real(text, pn_net.now(marking).real);
+        pn_text_json_real(text, pn_now(&pn_net, marking).real);
     } else {
-        pn_text_int(text, pn_net.now(marking).integer);
+        pn_text_int(text, pn_now(&pn_net, marking).integer);
     }
     pn_text_str(text, ", \"marking\": {");
     for (uint32_t i = 0U; i < pn_net.place_count; i++) {
         pn_text_str(text, (i > 0U) ? ", " : "");
         pn_text_json_str(text, pn_net.place[i].name);
         pn_text_str(text, ": ");
-        pn_net.place[i].json(marking, text);
+        pn_bag_json(pn_net.place[i].bag, marking, text);
     }
     pn_text_str(text, "}, \"chosen\": ");
     pn_text_int(text, chosen);
@@ -207,7 +208,7 @@ static void print_step(const void *marking, pn_text_t *text, int64_t chosen)
 
 static bool step(pn_ctx_t *cx, void *marking, void *copy, void *binding)
 {
-    const pn_time_t start = pn_net.now(marking);
+    const pn_time_t start = pn_now(&pn_net, marking);
     pn_time_t next = start;
     pn_text_t text;
     list_t all = { &text, 0U, 0U, NULL, 0U };
@@ -215,13 +216,13 @@ static bool step(pn_ctx_t *cx, void *marking, void *copy, void *binding)
         pn_text_init(&text, s_text, sizeof s_text);
         pn_text_str(&text, "{\"enabled\": [");
         enumerate(cx, marking, &all);
-        more = (all.count == 0U) && pn_ok(cx) && pn_net.timed && pn_net.next_time(cx, marking, &next);
+        more = (all.count == 0U) && pn_ok(cx) && pn_net.timed && pn_next_time(&pn_net, cx, marking, &next);
         if (more) {
-            pn_net.set_now(marking, next);
+            pn_set_now(&pn_net, marking, next);
         }
     }
     if (all.count == 0U) {
-        pn_net.set_now(marking, start);
+        pn_set_now(&pn_net, marking, start);
     }
     if (!pn_ok(cx)) {
         return false;
@@ -257,7 +258,7 @@ int main(int argc, char **argv)
     pn_ctx_t cx;
     pn_arena_init(&arena, s_memory, sizeof s_memory);
     pn_ctx_init(&cx, &arena, seed);
-    if (pn_net.init(&cx, marking)) {
+    if (pn_marking_init(&pn_net, &cx, marking)) {
         for (uint64_t i = 0U; (i <= steps) && step(&cx, marking, copy, binding); i++) {
             /* everything is done by step */
         }

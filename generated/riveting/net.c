@@ -263,7 +263,7 @@
 #define PN_NET_SEARCH
 #endif
 
-#if PN_NET_ABI != 1U
+#if PN_NET_ABI != 2U
 #error "Generate this file again: runtime and generator disagree (PN_NET_ABI)."
 #endif
 
@@ -935,622 +935,93 @@ static const char *const s_WORK_leaves[] = { "1", "2", "3.x", "3.y", "3.z", "3.r
     "4.1", "4.2", "4.3" };
 static const uint32_t s_WORK_lines[] = { 1U, 1U, 6U, 3U };
 
-static inline bool is_before_POSE(const POSE_t *a, const POSE_t *b)
-{
-    const int x_order = pn_compare(&s_REAL, &a->x, &b->x);
-    if (x_order != 0) {
-        return x_order < 0;
-    }
-    const int y_order = pn_compare(&s_REAL, &a->y, &b->y);
-    if (y_order != 0) {
-        return y_order < 0;
-    }
-    const int z_order = pn_compare(&s_REAL, &a->z, &b->z);
-    if (z_order != 0) {
-        return z_order < 0;
-    }
-    const int rx_order = pn_compare(&s_REAL, &a->rx, &b->rx);
-    if (rx_order != 0) {
-        return rx_order < 0;
-    }
-    const int ry_order = pn_compare(&s_REAL, &a->ry, &b->ry);
-    if (ry_order != 0) {
-        return ry_order < 0;
-    }
-    const int rz_order = pn_compare(&s_REAL, &a->rz, &b->rz);
-    if (rz_order != 0) {
-        return rz_order < 0;
-    }
-    return false;
-}
-
-static inline bool is_before_PLAN(const PLAN_t *a, const PLAN_t *b)
-{
-    if (a->c1 != b->c1) {
-        return a->c1 < b->c1;
-    }
-    const int c2_x_order = pn_compare(&s_FLOAT, &a->c2.x, &b->c2.x);
-    if (c2_x_order != 0) {
-        return c2_x_order < 0;
-    }
-    const int c2_y_order = pn_compare(&s_FLOAT, &a->c2.y, &b->c2.y);
-    if (c2_y_order != 0) {
-        return c2_y_order < 0;
-    }
-    const int c2_z_order = pn_compare(&s_FLOAT, &a->c2.z, &b->c2.z);
-    if (c2_z_order != 0) {
-        return c2_z_order < 0;
-    }
-    const int c2_rx_order = pn_compare(&s_FLOAT, &a->c2.rx, &b->c2.rx);
-    if (c2_rx_order != 0) {
-        return c2_rx_order < 0;
-    }
-    const int c2_ry_order = pn_compare(&s_FLOAT, &a->c2.ry, &b->c2.ry);
-    if (c2_ry_order != 0) {
-        return c2_ry_order < 0;
-    }
-    const int c2_rz_order = pn_compare(&s_FLOAT, &a->c2.rz, &b->c2.rz);
-    if (c2_rz_order != 0) {
-        return c2_rz_order < 0;
-    }
-    const int c3_x_order = pn_compare(&s_FLOAT, &a->c3.x, &b->c3.x);
-    if (c3_x_order != 0) {
-        return c3_x_order < 0;
-    }
-    const int c3_y_order = pn_compare(&s_FLOAT, &a->c3.y, &b->c3.y);
-    if (c3_y_order != 0) {
-        return c3_y_order < 0;
-    }
-    const int c3_z_order = pn_compare(&s_FLOAT, &a->c3.z, &b->c3.z);
-    if (c3_z_order != 0) {
-        return c3_z_order < 0;
-    }
-    const int c3_rx_order = pn_compare(&s_FLOAT, &a->c3.rx, &b->c3.rx);
-    if (c3_rx_order != 0) {
-        return c3_rx_order < 0;
-    }
-    const int c3_ry_order = pn_compare(&s_FLOAT, &a->c3.ry, &b->c3.ry);
-    if (c3_ry_order != 0) {
-        return c3_ry_order < 0;
-    }
-    const int c3_rz_order = pn_compare(&s_FLOAT, &a->c3.rz, &b->c3.rz);
-    if (c3_rz_order != 0) {
-        return c3_rz_order < 0;
-    }
-    return false;
-}
-
-static inline bool is_before_SEAM(const SEAM_t *a, const SEAM_t *b)
-{
-    if (a->points != b->points) {
-        return a->points < b->points;
-    }
-    const int first_x_order = pn_compare(&s_FLOAT, &a->first.x, &b->first.x);
-    if (first_x_order != 0) {
-        return first_x_order < 0;
-    }
-    const int first_y_order = pn_compare(&s_FLOAT, &a->first.y, &b->first.y);
-    if (first_y_order != 0) {
-        return first_y_order < 0;
-    }
-    const int first_z_order = pn_compare(&s_FLOAT, &a->first.z, &b->first.z);
-    if (first_z_order != 0) {
-        return first_z_order < 0;
-    }
-    const int first_rx_order = pn_compare(&s_FLOAT, &a->first.rx, &b->first.rx);
-    if (first_rx_order != 0) {
-        return first_rx_order < 0;
-    }
-    const int first_ry_order = pn_compare(&s_FLOAT, &a->first.ry, &b->first.ry);
-    if (first_ry_order != 0) {
-        return first_ry_order < 0;
-    }
-    const int first_rz_order = pn_compare(&s_FLOAT, &a->first.rz, &b->first.rz);
-    if (first_rz_order != 0) {
-        return first_rz_order < 0;
-    }
-    const int last_x_order = pn_compare(&s_FLOAT, &a->last.x, &b->last.x);
-    if (last_x_order != 0) {
-        return last_x_order < 0;
-    }
-    const int last_y_order = pn_compare(&s_FLOAT, &a->last.y, &b->last.y);
-    if (last_y_order != 0) {
-        return last_y_order < 0;
-    }
-    const int last_z_order = pn_compare(&s_FLOAT, &a->last.z, &b->last.z);
-    if (last_z_order != 0) {
-        return last_z_order < 0;
-    }
-    const int last_rx_order = pn_compare(&s_FLOAT, &a->last.rx, &b->last.rx);
-    if (last_rx_order != 0) {
-        return last_rx_order < 0;
-    }
-    const int last_ry_order = pn_compare(&s_FLOAT, &a->last.ry, &b->last.ry);
-    if (last_ry_order != 0) {
-        return last_ry_order < 0;
-    }
-    const int last_rz_order = pn_compare(&s_FLOAT, &a->last.rz, &b->last.rz);
-    if (last_rz_order != 0) {
-        return last_rz_order < 0;
-    }
-    return false;
-}
-
-static inline bool is_before_VERIFIED(const VERIFIED_t *a, const VERIFIED_t *b)
-{
-    if (a->c1.points != b->c1.points) {
-        return a->c1.points < b->c1.points;
-    }
-    const int c1_first_x_order = pn_compare(&s_FLOAT, &a->c1.first.x, &b->c1.first.x);
-    if (c1_first_x_order != 0) {
-        return c1_first_x_order < 0;
-    }
-    const int c1_first_y_order = pn_compare(&s_FLOAT, &a->c1.first.y, &b->c1.first.y);
-    if (c1_first_y_order != 0) {
-        return c1_first_y_order < 0;
-    }
-    const int c1_first_z_order = pn_compare(&s_FLOAT, &a->c1.first.z, &b->c1.first.z);
-    if (c1_first_z_order != 0) {
-        return c1_first_z_order < 0;
-    }
-    const int c1_first_rx_order = pn_compare(&s_FLOAT, &a->c1.first.rx, &b->c1.first.rx);
-    if (c1_first_rx_order != 0) {
-        return c1_first_rx_order < 0;
-    }
-    const int c1_first_ry_order = pn_compare(&s_FLOAT, &a->c1.first.ry, &b->c1.first.ry);
-    if (c1_first_ry_order != 0) {
-        return c1_first_ry_order < 0;
-    }
-    const int c1_first_rz_order = pn_compare(&s_FLOAT, &a->c1.first.rz, &b->c1.first.rz);
-    if (c1_first_rz_order != 0) {
-        return c1_first_rz_order < 0;
-    }
-    const int c1_last_x_order = pn_compare(&s_FLOAT, &a->c1.last.x, &b->c1.last.x);
-    if (c1_last_x_order != 0) {
-        return c1_last_x_order < 0;
-    }
-    const int c1_last_y_order = pn_compare(&s_FLOAT, &a->c1.last.y, &b->c1.last.y);
-    if (c1_last_y_order != 0) {
-        return c1_last_y_order < 0;
-    }
-    const int c1_last_z_order = pn_compare(&s_FLOAT, &a->c1.last.z, &b->c1.last.z);
-    if (c1_last_z_order != 0) {
-        return c1_last_z_order < 0;
-    }
-    const int c1_last_rx_order = pn_compare(&s_FLOAT, &a->c1.last.rx, &b->c1.last.rx);
-    if (c1_last_rx_order != 0) {
-        return c1_last_rx_order < 0;
-    }
-    const int c1_last_ry_order = pn_compare(&s_FLOAT, &a->c1.last.ry, &b->c1.last.ry);
-    if (c1_last_ry_order != 0) {
-        return c1_last_ry_order < 0;
-    }
-    const int c1_last_rz_order = pn_compare(&s_FLOAT, &a->c1.last.rz, &b->c1.last.rz);
-    if (c1_last_rz_order != 0) {
-        return c1_last_rz_order < 0;
-    }
-    const int c2_x_order = pn_compare(&s_REAL, &a->c2.x, &b->c2.x);
-    if (c2_x_order != 0) {
-        return c2_x_order < 0;
-    }
-    const int c2_y_order = pn_compare(&s_REAL, &a->c2.y, &b->c2.y);
-    if (c2_y_order != 0) {
-        return c2_y_order < 0;
-    }
-    const int c2_z_order = pn_compare(&s_REAL, &a->c2.z, &b->c2.z);
-    if (c2_z_order != 0) {
-        return c2_z_order < 0;
-    }
-    const int c2_rx_order = pn_compare(&s_REAL, &a->c2.rx, &b->c2.rx);
-    if (c2_rx_order != 0) {
-        return c2_rx_order < 0;
-    }
-    const int c2_ry_order = pn_compare(&s_REAL, &a->c2.ry, &b->c2.ry);
-    if (c2_ry_order != 0) {
-        return c2_ry_order < 0;
-    }
-    const int c2_rz_order = pn_compare(&s_REAL, &a->c2.rz, &b->c2.rz);
-    if (c2_rz_order != 0) {
-        return c2_rz_order < 0;
-    }
-    const int c3_x_order = pn_compare(&s_REAL, &a->c3.x, &b->c3.x);
-    if (c3_x_order != 0) {
-        return c3_x_order < 0;
-    }
-    const int c3_y_order = pn_compare(&s_REAL, &a->c3.y, &b->c3.y);
-    if (c3_y_order != 0) {
-        return c3_y_order < 0;
-    }
-    const int c3_z_order = pn_compare(&s_REAL, &a->c3.z, &b->c3.z);
-    if (c3_z_order != 0) {
-        return c3_z_order < 0;
-    }
-    const int c3_rx_order = pn_compare(&s_REAL, &a->c3.rx, &b->c3.rx);
-    if (c3_rx_order != 0) {
-        return c3_rx_order < 0;
-    }
-    const int c3_ry_order = pn_compare(&s_REAL, &a->c3.ry, &b->c3.ry);
-    if (c3_ry_order != 0) {
-        return c3_ry_order < 0;
-    }
-    const int c3_rz_order = pn_compare(&s_REAL, &a->c3.rz, &b->c3.rz);
-    if (c3_rz_order != 0) {
-        return c3_rz_order < 0;
-    }
-    return false;
-}
-
-static inline bool is_before_RIVETING(const RIVETING_t *a, const RIVETING_t *b)
-{
-    if (a->c1 != b->c1) {
-        return a->c1 < b->c1;
-    }
-    const int c2_x_order = pn_compare(&s_FLOAT, &a->c2.x, &b->c2.x);
-    if (c2_x_order != 0) {
-        return c2_x_order < 0;
-    }
-    const int c2_y_order = pn_compare(&s_FLOAT, &a->c2.y, &b->c2.y);
-    if (c2_y_order != 0) {
-        return c2_y_order < 0;
-    }
-    const int c2_z_order = pn_compare(&s_FLOAT, &a->c2.z, &b->c2.z);
-    if (c2_z_order != 0) {
-        return c2_z_order < 0;
-    }
-    const int c2_rx_order = pn_compare(&s_FLOAT, &a->c2.rx, &b->c2.rx);
-    if (c2_rx_order != 0) {
-        return c2_rx_order < 0;
-    }
-    const int c2_ry_order = pn_compare(&s_FLOAT, &a->c2.ry, &b->c2.ry);
-    if (c2_ry_order != 0) {
-        return c2_ry_order < 0;
-    }
-    const int c2_rz_order = pn_compare(&s_FLOAT, &a->c2.rz, &b->c2.rz);
-    if (c2_rz_order != 0) {
-        return c2_rz_order < 0;
-    }
-    const int c3_c1_order = pn_compare(&s_FLOAT, &a->c3.c1, &b->c3.c1);
-    if (c3_c1_order != 0) {
-        return c3_c1_order < 0;
-    }
-    const int c3_c2_order = pn_compare(&s_FLOAT, &a->c3.c2, &b->c3.c2);
-    if (c3_c2_order != 0) {
-        return c3_c2_order < 0;
-    }
-    const int c3_c3_order = pn_compare(&s_FLOAT, &a->c3.c3, &b->c3.c3);
-    if (c3_c3_order != 0) {
-        return c3_c3_order < 0;
-    }
-    return false;
-}
-
-static inline bool is_before_UNIT(const pn_unit_t *a, const pn_unit_t *b)
-{
-    (void)a;
-    (void)b;
-    return false;
-}
-
-static inline bool is_before_ORDER(const PLAN_t *a, const PLAN_t *b)
-{
-    if (a->c1 != b->c1) {
-        return a->c1 < b->c1;
-    }
-    const int c2_x_order = pn_compare(&s_REAL, &a->c2.x, &b->c2.x);
-    if (c2_x_order != 0) {
-        return c2_x_order < 0;
-    }
-    const int c2_y_order = pn_compare(&s_REAL, &a->c2.y, &b->c2.y);
-    if (c2_y_order != 0) {
-        return c2_y_order < 0;
-    }
-    const int c2_z_order = pn_compare(&s_REAL, &a->c2.z, &b->c2.z);
-    if (c2_z_order != 0) {
-        return c2_z_order < 0;
-    }
-    const int c2_rx_order = pn_compare(&s_REAL, &a->c2.rx, &b->c2.rx);
-    if (c2_rx_order != 0) {
-        return c2_rx_order < 0;
-    }
-    const int c2_ry_order = pn_compare(&s_REAL, &a->c2.ry, &b->c2.ry);
-    if (c2_ry_order != 0) {
-        return c2_ry_order < 0;
-    }
-    const int c2_rz_order = pn_compare(&s_REAL, &a->c2.rz, &b->c2.rz);
-    if (c2_rz_order != 0) {
-        return c2_rz_order < 0;
-    }
-    const int c3_x_order = pn_compare(&s_REAL, &a->c3.x, &b->c3.x);
-    if (c3_x_order != 0) {
-        return c3_x_order < 0;
-    }
-    const int c3_y_order = pn_compare(&s_REAL, &a->c3.y, &b->c3.y);
-    if (c3_y_order != 0) {
-        return c3_y_order < 0;
-    }
-    const int c3_z_order = pn_compare(&s_REAL, &a->c3.z, &b->c3.z);
-    if (c3_z_order != 0) {
-        return c3_z_order < 0;
-    }
-    const int c3_rx_order = pn_compare(&s_REAL, &a->c3.rx, &b->c3.rx);
-    if (c3_rx_order != 0) {
-        return c3_rx_order < 0;
-    }
-    const int c3_ry_order = pn_compare(&s_REAL, &a->c3.ry, &b->c3.ry);
-    if (c3_ry_order != 0) {
-        return c3_ry_order < 0;
-    }
-    const int c3_rz_order = pn_compare(&s_REAL, &a->c3.rz, &b->c3.rz);
-    if (c3_rz_order != 0) {
-        return c3_rz_order < 0;
-    }
-    return false;
-}
-
-static inline bool is_before_ASKED(const ASKED_t *a, const ASKED_t *b)
-{
-    if (a->c1.points != b->c1.points) {
-        return a->c1.points < b->c1.points;
-    }
-    const int c1_first_x_order = pn_compare(&s_FLOAT, &a->c1.first.x, &b->c1.first.x);
-    if (c1_first_x_order != 0) {
-        return c1_first_x_order < 0;
-    }
-    const int c1_first_y_order = pn_compare(&s_FLOAT, &a->c1.first.y, &b->c1.first.y);
-    if (c1_first_y_order != 0) {
-        return c1_first_y_order < 0;
-    }
-    const int c1_first_z_order = pn_compare(&s_FLOAT, &a->c1.first.z, &b->c1.first.z);
-    if (c1_first_z_order != 0) {
-        return c1_first_z_order < 0;
-    }
-    const int c1_first_rx_order = pn_compare(&s_FLOAT, &a->c1.first.rx, &b->c1.first.rx);
-    if (c1_first_rx_order != 0) {
-        return c1_first_rx_order < 0;
-    }
-    const int c1_first_ry_order = pn_compare(&s_FLOAT, &a->c1.first.ry, &b->c1.first.ry);
-    if (c1_first_ry_order != 0) {
-        return c1_first_ry_order < 0;
-    }
-    const int c1_first_rz_order = pn_compare(&s_FLOAT, &a->c1.first.rz, &b->c1.first.rz);
-    if (c1_first_rz_order != 0) {
-        return c1_first_rz_order < 0;
-    }
-    const int c1_last_x_order = pn_compare(&s_FLOAT, &a->c1.last.x, &b->c1.last.x);
-    if (c1_last_x_order != 0) {
-        return c1_last_x_order < 0;
-    }
-    const int c1_last_y_order = pn_compare(&s_FLOAT, &a->c1.last.y, &b->c1.last.y);
-    if (c1_last_y_order != 0) {
-        return c1_last_y_order < 0;
-    }
-    const int c1_last_z_order = pn_compare(&s_FLOAT, &a->c1.last.z, &b->c1.last.z);
-    if (c1_last_z_order != 0) {
-        return c1_last_z_order < 0;
-    }
-    const int c1_last_rx_order = pn_compare(&s_FLOAT, &a->c1.last.rx, &b->c1.last.rx);
-    if (c1_last_rx_order != 0) {
-        return c1_last_rx_order < 0;
-    }
-    const int c1_last_ry_order = pn_compare(&s_FLOAT, &a->c1.last.ry, &b->c1.last.ry);
-    if (c1_last_ry_order != 0) {
-        return c1_last_ry_order < 0;
-    }
-    const int c1_last_rz_order = pn_compare(&s_FLOAT, &a->c1.last.rz, &b->c1.last.rz);
-    if (c1_last_rz_order != 0) {
-        return c1_last_rz_order < 0;
-    }
-    const int c2_x_order = pn_compare(&s_REAL, &a->c2.x, &b->c2.x);
-    if (c2_x_order != 0) {
-        return c2_x_order < 0;
-    }
-    const int c2_y_order = pn_compare(&s_REAL, &a->c2.y, &b->c2.y);
-    if (c2_y_order != 0) {
-        return c2_y_order < 0;
-    }
-    const int c2_z_order = pn_compare(&s_REAL, &a->c2.z, &b->c2.z);
-    if (c2_z_order != 0) {
-        return c2_z_order < 0;
-    }
-    const int c2_rx_order = pn_compare(&s_REAL, &a->c2.rx, &b->c2.rx);
-    if (c2_rx_order != 0) {
-        return c2_rx_order < 0;
-    }
-    const int c2_ry_order = pn_compare(&s_REAL, &a->c2.ry, &b->c2.ry);
-    if (c2_ry_order != 0) {
-        return c2_ry_order < 0;
-    }
-    const int c2_rz_order = pn_compare(&s_REAL, &a->c2.rz, &b->c2.rz);
-    if (c2_rz_order != 0) {
-        return c2_rz_order < 0;
-    }
-    return false;
-}
-
-static inline bool is_before_VECTOR(const VECTOR_t *a, const VECTOR_t *b)
-{
-    const int c1_order = pn_compare(&s_REAL, &a->c1, &b->c1);
-    if (c1_order != 0) {
-        return c1_order < 0;
-    }
-    const int c2_order = pn_compare(&s_REAL, &a->c2, &b->c2);
-    if (c2_order != 0) {
-        return c2_order < 0;
-    }
-    const int c3_order = pn_compare(&s_REAL, &a->c3, &b->c3);
-    if (c3_order != 0) {
-        return c3_order < 0;
-    }
-    return false;
-}
-
-static inline bool is_before_WORK(const WORK_t *a, const WORK_t *b)
-{
-    if (a->c1 != b->c1) {
-        return a->c1 < b->c1;
-    }
-    if (a->c2 != b->c2) {
-        return a->c2 < b->c2;
-    }
-    const int c3_x_order = pn_compare(&s_FLOAT, &a->c3.x, &b->c3.x);
-    if (c3_x_order != 0) {
-        return c3_x_order < 0;
-    }
-    const int c3_y_order = pn_compare(&s_FLOAT, &a->c3.y, &b->c3.y);
-    if (c3_y_order != 0) {
-        return c3_y_order < 0;
-    }
-    const int c3_z_order = pn_compare(&s_FLOAT, &a->c3.z, &b->c3.z);
-    if (c3_z_order != 0) {
-        return c3_z_order < 0;
-    }
-    const int c3_rx_order = pn_compare(&s_FLOAT, &a->c3.rx, &b->c3.rx);
-    if (c3_rx_order != 0) {
-        return c3_rx_order < 0;
-    }
-    const int c3_ry_order = pn_compare(&s_FLOAT, &a->c3.ry, &b->c3.ry);
-    if (c3_ry_order != 0) {
-        return c3_ry_order < 0;
-    }
-    const int c3_rz_order = pn_compare(&s_FLOAT, &a->c3.rz, &b->c3.rz);
-    if (c3_rz_order != 0) {
-        return c3_rz_order < 0;
-    }
-    const int c4_c1_order = pn_compare(&s_FLOAT, &a->c4.c1, &b->c4.c1);
-    if (c4_c1_order != 0) {
-        return c4_c1_order < 0;
-    }
-    const int c4_c2_order = pn_compare(&s_FLOAT, &a->c4.c2, &b->c4.c2);
-    if (c4_c2_order != 0) {
-        return c4_c2_order < 0;
-    }
-    const int c4_c3_order = pn_compare(&s_FLOAT, &a->c4.c3, &b->c4.c3);
-    if (c4_c3_order != 0) {
-        return c4_c3_order < 0;
-    }
-    return false;
-}
-
 /* place Cell.dadosrobo1, colour set POSE: page `Cell`, place `dadosrobo1` (ID1412310013) */
 static const pn_bag_t s_at_dadosrobo1 = {
     .origin = "page `Cell`, place `dadosrobo1` (ID1412310013)",
     .type = &s_POSE,
     .capacity = 1U,
-    PN_BAG_TOKENS(net_marking_t, dadosrobo1),
+    PN_BAG_SLOT(net_marking_t, dadosrobo1),
 };
-
-PN_PLACE_FUNCTIONS(dadosrobo1, s_at_dadosrobo1)
-PN_UNTIMED_PLACE(dadosrobo1, net_marking_t, POSE_t, is_before_POSE, s_at_dadosrobo1)
 
 /* place Cell.flag1_interno, colour set COMMAND: page `Cell`, place `flag1_interno` (ID1412310016) */
 static const pn_bag_t s_at_flag1_interno = {
     .origin = "page `Cell`, place `flag1_interno` (ID1412310016)",
     .type = &s_COMMAND,
     .capacity = 1U,
-    PN_BAG_TOKENS(net_marking_t, flag1_interno),
+    PN_BAG_SLOT(net_marking_t, flag1_interno),
 };
-
-PN_PLACE_FUNCTIONS(flag1_interno, s_at_flag1_interno)
-PN_UNTIMED_PLACE(flag1_interno, net_marking_t, int64_t, PN_LESS, s_at_flag1_interno)
 
 /* place Cell.flag1_externo, colour set REPLY: page `Cell`, place `flag1_externo` (ID1412310019) */
 static const pn_bag_t s_at_flag1_externo = {
     .origin = "page `Cell`, place `flag1_externo` (ID1412310019)",
     .type = &s_REPLY,
     .capacity = 1U,
-    PN_BAG_TOKENS(net_marking_t, flag1_externo),
+    PN_BAG_SLOT(net_marking_t, flag1_externo),
 };
-
-PN_PLACE_FUNCTIONS(flag1_externo, s_at_flag1_externo)
-PN_UNTIMED_PLACE(flag1_externo, net_marking_t, int64_t, PN_LESS, s_at_flag1_externo)
 
 /* place Cell.referencia1, colour set POSE: page `Cell`, place `referencia1` (ID1412310022) */
 static const pn_bag_t s_at_referencia1 = {
     .origin = "page `Cell`, place `referencia1` (ID1412310022)",
     .type = &s_POSE,
     .capacity = 1U,
-    PN_BAG_TOKENS(net_marking_t, referencia1),
+    PN_BAG_SLOT(net_marking_t, referencia1),
 };
-
-PN_PLACE_FUNCTIONS(referencia1, s_at_referencia1)
-PN_UNTIMED_PLACE(referencia1, net_marking_t, POSE_t, is_before_POSE, s_at_referencia1)
 
 /* place Cell.medida1, colour set POSE: page `Cell`, place `medida1` (ID1412310025) */
 static const pn_bag_t s_at_medida1 = {
     .origin = "page `Cell`, place `medida1` (ID1412310025)",
     .type = &s_POSE,
     .capacity = 1U,
-    PN_BAG_TOKENS(net_marking_t, medida1),
+    PN_BAG_SLOT(net_marking_t, medida1),
 };
-
-PN_PLACE_FUNCTIONS(medida1, s_at_medida1)
-PN_UNTIMED_PLACE(medida1, net_marking_t, POSE_t, is_before_POSE, s_at_medida1)
 
 /* place Cell.dadosrobo2, colour set POSE: page `Cell`, place `dadosrobo2` (ID1412310028) */
 static const pn_bag_t s_at_dadosrobo2 = {
     .origin = "page `Cell`, place `dadosrobo2` (ID1412310028)",
     .type = &s_POSE,
     .capacity = 1U,
-    PN_BAG_TOKENS(net_marking_t, dadosrobo2),
+    PN_BAG_SLOT(net_marking_t, dadosrobo2),
 };
-
-PN_PLACE_FUNCTIONS(dadosrobo2, s_at_dadosrobo2)
-PN_UNTIMED_PLACE(dadosrobo2, net_marking_t, POSE_t, is_before_POSE, s_at_dadosrobo2)
 
 /* place Cell.flag2_interno, colour set COMMAND: page `Cell`, place `flag2_interno` (ID1412310031) */
 static const pn_bag_t s_at_flag2_interno = {
     .origin = "page `Cell`, place `flag2_interno` (ID1412310031)",
     .type = &s_COMMAND,
     .capacity = 1U,
-    PN_BAG_TOKENS(net_marking_t, flag2_interno),
+    PN_BAG_SLOT(net_marking_t, flag2_interno),
 };
-
-PN_PLACE_FUNCTIONS(flag2_interno, s_at_flag2_interno)
-PN_UNTIMED_PLACE(flag2_interno, net_marking_t, int64_t, PN_LESS, s_at_flag2_interno)
 
 /* place Cell.flag2_externo, colour set REPLY: page `Cell`, place `flag2_externo` (ID1412310034) */
 static const pn_bag_t s_at_flag2_externo = {
     .origin = "page `Cell`, place `flag2_externo` (ID1412310034)",
     .type = &s_REPLY,
     .capacity = 1U,
-    PN_BAG_TOKENS(net_marking_t, flag2_externo),
+    PN_BAG_SLOT(net_marking_t, flag2_externo),
 };
-
-PN_PLACE_FUNCTIONS(flag2_externo, s_at_flag2_externo)
-PN_UNTIMED_PLACE(flag2_externo, net_marking_t, int64_t, PN_LESS, s_at_flag2_externo)
 
 /* place Cell.referencia2, colour set POSE: page `Cell`, place `referencia2` (ID1412330001) */
 static const pn_bag_t s_at_referencia2 = {
     .origin = "page `Cell`, place `referencia2` (ID1412330001)",
     .type = &s_POSE,
     .capacity = 1U,
-    PN_BAG_TOKENS(net_marking_t, referencia2),
+    PN_BAG_SLOT(net_marking_t, referencia2),
 };
-
-PN_PLACE_FUNCTIONS(referencia2, s_at_referencia2)
-PN_UNTIMED_PLACE(referencia2, net_marking_t, POSE_t, is_before_POSE, s_at_referencia2)
 
 /* place Cell.medida2, colour set POSE: page `Cell`, place `medida2` (ID1412330004) */
 static const pn_bag_t s_at_medida2 = {
     .origin = "page `Cell`, place `medida2` (ID1412330004)",
     .type = &s_POSE,
     .capacity = 1U,
-    PN_BAG_TOKENS(net_marking_t, medida2),
+    PN_BAG_SLOT(net_marking_t, medida2),
 };
-
-PN_PLACE_FUNCTIONS(medida2, s_at_medida2)
-PN_UNTIMED_PLACE(medida2, net_marking_t, POSE_t, is_before_POSE, s_at_medida2)
 
 /* place Cell.Supervisor.coordenadas, colour set PLAN: page `Supervisor`, place `coordenadas` (ID1412310094) */
 static const pn_bag_t s_at_Supervisor_coordenadas = {
     .origin = "page `Supervisor`, place `coordenadas` (ID1412310094)",
     .type = &s_PLAN,
     .capacity = 1U,
-    PN_BAG_TOKENS(net_marking_t, Supervisor_coordenadas),
+    PN_BAG_SLOT(net_marking_t, Supervisor_coordenadas),
 };
-
-PN_PLACE_FUNCTIONS(Supervisor_coordenadas, s_at_Supervisor_coordenadas)
-PN_UNTIMED_PLACE(Supervisor_coordenadas, net_marking_t, PLAN_t, is_before_PLAN, s_at_Supervisor_coordenadas)
 
 /* initial marking:
  *     (5,
@@ -1559,7 +1030,7 @@ PN_UNTIMED_PLACE(Supervisor_coordenadas, net_marking_t, PLAN_t, is_before_PLAN, 
  *      {x = 6750.0, y = 5898.8, z = 2135.05,
  *       rx = ~105.0, ry = 0.0, rz = 0.0})
  */
-static bool Supervisor_coordenadas_init(pn_ctx_t *cx, net_marking_t *m)
+static bool Supervisor_coordenadas_init(pn_ctx_t *cx, void *marking)
 {
     cx->origin = "page `Supervisor`, place `coordenadas` (ID1412310094), initial marking";
     pn_moves_t moves;
@@ -1570,7 +1041,7 @@ static bool Supervisor_coordenadas_init(pn_ctx_t *cx, net_marking_t *m)
         .rz = 0.0 },
         .c3 = (POSE_t){ .x = 6750.0, .y = 5898.8, .z = 2135.05, .rx = -105.0, .ry = 0.0,
         .rz = 0.0 } }, 1, PN_NO_TIME);
-    return pn_moves_commit(&moves, m);
+    return pn_moves_commit(&moves, marking);
 }
 
 /* place Cell.Supervisor.planned, colour set SEAM: page `Supervisor`, place `planned` (ID1412310097) */
@@ -1578,660 +1049,483 @@ static const pn_bag_t s_at_Supervisor_planned = {
     .origin = "page `Supervisor`, place `planned` (ID1412310097)",
     .type = &s_SEAM,
     .capacity = 1U,
-    PN_BAG_TOKENS(net_marking_t, Supervisor_planned),
+    PN_BAG_SLOT(net_marking_t, Supervisor_planned),
 };
-
-PN_PLACE_FUNCTIONS(Supervisor_planned, s_at_Supervisor_planned)
-PN_UNTIMED_PLACE(Supervisor_planned, net_marking_t, SEAM_t, is_before_SEAM, s_at_Supervisor_planned)
 
 /* place Cell.Supervisor.approached, colour set SEAM: page `Supervisor`, place `approached` (ID1412310100) */
 static const pn_bag_t s_at_Supervisor_approached = {
     .origin = "page `Supervisor`, place `approached` (ID1412310100)",
     .type = &s_SEAM,
     .capacity = 1U,
-    PN_BAG_TOKENS(net_marking_t, Supervisor_approached),
+    PN_BAG_SLOT(net_marking_t, Supervisor_approached),
 };
-
-PN_PLACE_FUNCTIONS(Supervisor_approached, s_at_Supervisor_approached)
-PN_UNTIMED_PLACE(Supervisor_approached, net_marking_t, SEAM_t, is_before_SEAM, s_at_Supervisor_approached)
 
 /* place Cell.Supervisor.verified, colour set VERIFIED: page `Supervisor`, place `verified` (ID1412310103) */
 static const pn_bag_t s_at_Supervisor_verified = {
     .origin = "page `Supervisor`, place `verified` (ID1412310103)",
     .type = &s_VERIFIED,
     .capacity = 1U,
-    PN_BAG_TOKENS(net_marking_t, Supervisor_verified),
+    PN_BAG_SLOT(net_marking_t, Supervisor_verified),
 };
-
-PN_PLACE_FUNCTIONS(Supervisor_verified, s_at_Supervisor_verified)
-PN_UNTIMED_PLACE(Supervisor_verified, net_marking_t, VERIFIED_t, is_before_VERIFIED, s_at_Supervisor_verified)
 
 /* place Cell.Supervisor.corrected, colour set RIVETING: page `Supervisor`, place `corrected` (ID1412310106) */
 static const pn_bag_t s_at_Supervisor_corrected = {
     .origin = "page `Supervisor`, place `corrected` (ID1412310106)",
     .type = &s_RIVETING,
     .capacity = 1U,
-    PN_BAG_TOKENS(net_marking_t, Supervisor_corrected),
+    PN_BAG_SLOT(net_marking_t, Supervisor_corrected),
 };
-
-PN_PLACE_FUNCTIONS(Supervisor_corrected, s_at_Supervisor_corrected)
-PN_UNTIMED_PLACE(Supervisor_corrected, net_marking_t, RIVETING_t, is_before_RIVETING, s_at_Supervisor_corrected)
 
 /* place Cell.Supervisor.ended, colour set UNIT: page `Supervisor`, place `ended` (ID1412310109) */
 static const pn_bag_t s_at_Supervisor_ended = {
     .origin = "page `Supervisor`, place `ended` (ID1412310109)",
     .type = &s_UNIT,
     .capacity = 1U,
-    PN_BAG_TOKENS(net_marking_t, Supervisor_ended),
+    PN_BAG_SLOT(net_marking_t, Supervisor_ended),
 };
-
-PN_PLACE_FUNCTIONS(Supervisor_ended, s_at_Supervisor_ended)
-PN_UNTIMED_PLACE(Supervisor_ended, net_marking_t, pn_unit_t, is_before_UNIT, s_at_Supervisor_ended)
 
 /* place Cell.Supervisor.Finished, colour set UNIT: page `Supervisor`, place `Finished` (ID1412310112) */
 static const pn_bag_t s_at_Supervisor_Finished = {
     .origin = "page `Supervisor`, place `Finished` (ID1412310112)",
     .type = &s_UNIT,
     .capacity = 1U,
-    PN_BAG_TOKENS(net_marking_t, Supervisor_Finished),
+    PN_BAG_SLOT(net_marking_t, Supervisor_Finished),
 };
-
-PN_PLACE_FUNCTIONS(Supervisor_Finished, s_at_Supervisor_Finished)
-PN_UNTIMED_PLACE(Supervisor_Finished, net_marking_t, pn_unit_t, is_before_UNIT, s_at_Supervisor_Finished)
 
 /* place Cell.Supervisor.result, colour set REPLY: page `Supervisor`, place `result` (ID1412320001) */
 static const pn_bag_t s_at_Supervisor_result = {
     .origin = "page `Supervisor`, place `result` (ID1412320001)",
     .type = &s_REPLY,
     .capacity = 1U,
-    PN_BAG_TOKENS(net_marking_t, Supervisor_result),
+    PN_BAG_SLOT(net_marking_t, Supervisor_result),
 };
-
-PN_PLACE_FUNCTIONS(Supervisor_result, s_at_Supervisor_result)
-PN_UNTIMED_PLACE(Supervisor_result, net_marking_t, int64_t, PN_LESS, s_at_Supervisor_result)
 
 /* place Cell.Supervisor.Failed, colour set UNIT: page `Supervisor`, place `Failed` (ID1412320004) */
 static const pn_bag_t s_at_Supervisor_Failed = {
     .origin = "page `Supervisor`, place `Failed` (ID1412320004)",
     .type = &s_UNIT,
     .capacity = 1U,
-    PN_BAG_TOKENS(net_marking_t, Supervisor_Failed),
+    PN_BAG_SLOT(net_marking_t, Supervisor_Failed),
 };
-
-PN_PLACE_FUNCTIONS(Supervisor_Failed, s_at_Supervisor_Failed)
-PN_UNTIMED_PLACE(Supervisor_Failed, net_marking_t, pn_unit_t, is_before_UNIT, s_at_Supervisor_Failed)
 
 /* place Cell.Supervisor.Approach.order, colour set ORDER: page `Approach`, place `order` (ID1412310290) */
 static const pn_bag_t s_at_Supervisor_Approach_order = {
     .origin = "page `Approach`, place `order` (ID1412310290)",
     .type = &s_ORDER,
     .capacity = 1U,
-    PN_BAG_TOKENS(net_marking_t, Supervisor_Approach_order),
+    PN_BAG_SLOT(net_marking_t, Supervisor_Approach_order),
 };
-
-PN_PLACE_FUNCTIONS(Supervisor_Approach_order, s_at_Supervisor_Approach_order)
-PN_UNTIMED_PLACE(Supervisor_Approach_order, net_marking_t, PLAN_t, is_before_ORDER, s_at_Supervisor_Approach_order)
 
 /* place Cell.Supervisor.Approach.done, colour set UNIT: page `Approach`, place `done` (ID1412310293) */
 static const pn_bag_t s_at_Supervisor_Approach_done = {
     .origin = "page `Approach`, place `done` (ID1412310293)",
     .type = &s_UNIT,
     .capacity = 1U,
-    PN_BAG_TOKENS(net_marking_t, Supervisor_Approach_done),
+    PN_BAG_SLOT(net_marking_t, Supervisor_Approach_done),
 };
-
-PN_PLACE_FUNCTIONS(Supervisor_Approach_done, s_at_Supervisor_Approach_done)
-PN_UNTIMED_PLACE(Supervisor_Approach_done, net_marking_t, pn_unit_t, is_before_UNIT, s_at_Supervisor_Approach_done)
 
 /* place Cell.Supervisor.Approach.seam, colour set SEAM: page `Approach`, place `seam` (ID1412310352) */
 static const pn_bag_t s_at_Supervisor_Approach_seam = {
     .origin = "page `Approach`, place `seam` (ID1412310352)",
     .type = &s_SEAM,
     .capacity = 1U,
-    PN_BAG_TOKENS(net_marking_t, Supervisor_Approach_seam),
+    PN_BAG_SLOT(net_marking_t, Supervisor_Approach_seam),
 };
-
-PN_PLACE_FUNCTIONS(Supervisor_Approach_seam, s_at_Supervisor_Approach_seam)
-PN_UNTIMED_PLACE(Supervisor_Approach_seam, net_marking_t, SEAM_t, is_before_SEAM, s_at_Supervisor_Approach_seam)
 
 /* place Cell.Supervisor.Approach.Move both.moving 1, colour set UNIT: page `MoveBoth`, place `moving 1` (ID1412310959) */
 static const pn_bag_t s_at_Supervisor_Approach_Move_both_moving_1 = {
     .origin = "page `MoveBoth`, place `moving 1` (ID1412310959)",
     .type = &s_UNIT,
     .capacity = 1U,
-    PN_BAG_TOKENS(net_marking_t, Supervisor_Approach_Move_both_moving_1),
+    PN_BAG_SLOT(net_marking_t, Supervisor_Approach_Move_both_moving_1),
 };
-
-PN_PLACE_FUNCTIONS(Supervisor_Approach_Move_both_moving_1, s_at_Supervisor_Approach_Move_both_moving_1)
-PN_UNTIMED_PLACE(Supervisor_Approach_Move_both_moving_1, net_marking_t, pn_unit_t, is_before_UNIT, s_at_Supervisor_Approach_Move_both_moving_1)
 
 /* place Cell.Supervisor.Approach.Move both.there 1, colour set UNIT: page `MoveBoth`, place `there 1` (ID1412310967) */
 static const pn_bag_t s_at_Supervisor_Approach_Move_both_there_1 = {
     .origin = "page `MoveBoth`, place `there 1` (ID1412310967)",
     .type = &s_UNIT,
     .capacity = 1U,
-    PN_BAG_TOKENS(net_marking_t, Supervisor_Approach_Move_both_there_1),
+    PN_BAG_SLOT(net_marking_t, Supervisor_Approach_Move_both_there_1),
 };
-
-PN_PLACE_FUNCTIONS(Supervisor_Approach_Move_both_there_1, s_at_Supervisor_Approach_Move_both_there_1)
-PN_UNTIMED_PLACE(Supervisor_Approach_Move_both_there_1, net_marking_t, pn_unit_t, is_before_UNIT, s_at_Supervisor_Approach_Move_both_there_1)
 
 /* place Cell.Supervisor.Approach.Move both.moving 2, colour set UNIT: page `MoveBoth`, place `moving 2` (ID1412310996) */
 static const pn_bag_t s_at_Supervisor_Approach_Move_both_moving_2 = {
     .origin = "page `MoveBoth`, place `moving 2` (ID1412310996)",
     .type = &s_UNIT,
     .capacity = 1U,
-    PN_BAG_TOKENS(net_marking_t, Supervisor_Approach_Move_both_moving_2),
+    PN_BAG_SLOT(net_marking_t, Supervisor_Approach_Move_both_moving_2),
 };
-
-PN_PLACE_FUNCTIONS(Supervisor_Approach_Move_both_moving_2, s_at_Supervisor_Approach_Move_both_moving_2)
-PN_UNTIMED_PLACE(Supervisor_Approach_Move_both_moving_2, net_marking_t, pn_unit_t, is_before_UNIT, s_at_Supervisor_Approach_Move_both_moving_2)
 
 /* place Cell.Supervisor.Approach.Move both.there 2, colour set UNIT: page `MoveBoth`, place `there 2` (ID1412311004) */
 static const pn_bag_t s_at_Supervisor_Approach_Move_both_there_2 = {
     .origin = "page `MoveBoth`, place `there 2` (ID1412311004)",
     .type = &s_UNIT,
     .capacity = 1U,
-    PN_BAG_TOKENS(net_marking_t, Supervisor_Approach_Move_both_there_2),
+    PN_BAG_SLOT(net_marking_t, Supervisor_Approach_Move_both_there_2),
 };
-
-PN_PLACE_FUNCTIONS(Supervisor_Approach_Move_both_there_2, s_at_Supervisor_Approach_Move_both_there_2)
-PN_UNTIMED_PLACE(Supervisor_Approach_Move_both_there_2, net_marking_t, pn_unit_t, is_before_UNIT, s_at_Supervisor_Approach_Move_both_there_2)
 
 /* place Cell.Supervisor.Verify.first asked, colour set SEAM: page `Verify`, place `first asked` (ID1412310382) */
 static const pn_bag_t s_at_Supervisor_Verify_first_asked = {
     .origin = "page `Verify`, place `first asked` (ID1412310382)",
     .type = &s_SEAM,
     .capacity = 1U,
-    PN_BAG_TOKENS(net_marking_t, Supervisor_Verify_first_asked),
+    PN_BAG_SLOT(net_marking_t, Supervisor_Verify_first_asked),
 };
-
-PN_PLACE_FUNCTIONS(Supervisor_Verify_first_asked, s_at_Supervisor_Verify_first_asked)
-PN_UNTIMED_PLACE(Supervisor_Verify_first_asked, net_marking_t, SEAM_t, is_before_SEAM, s_at_Supervisor_Verify_first_asked)
 
 /* place Cell.Supervisor.Verify.last asked, colour set ASKED: page `Verify`, place `last asked` (ID1412310390) */
 static const pn_bag_t s_at_Supervisor_Verify_last_asked = {
     .origin = "page `Verify`, place `last asked` (ID1412310390)",
     .type = &s_ASKED,
     .capacity = 1U,
-    PN_BAG_TOKENS(net_marking_t, Supervisor_Verify_last_asked),
+    PN_BAG_SLOT(net_marking_t, Supervisor_Verify_last_asked),
 };
-
-PN_PLACE_FUNCTIONS(Supervisor_Verify_last_asked, s_at_Supervisor_Verify_last_asked)
-PN_UNTIMED_PLACE(Supervisor_Verify_last_asked, net_marking_t, ASKED_t, is_before_ASKED, s_at_Supervisor_Verify_last_asked)
 
 /* place Cell.Supervisor.Correct.offset, colour set VECTOR: page `Correct`, place `offset` (ID1412310458) */
 static const pn_bag_t s_at_Supervisor_Correct_offset = {
     .origin = "page `Correct`, place `offset` (ID1412310458)",
     .type = &s_VECTOR,
     .capacity = 1U,
-    PN_BAG_TOKENS(net_marking_t, Supervisor_Correct_offset),
+    PN_BAG_SLOT(net_marking_t, Supervisor_Correct_offset),
 };
-
-PN_PLACE_FUNCTIONS(Supervisor_Correct_offset, s_at_Supervisor_Correct_offset)
-PN_UNTIMED_PLACE(Supervisor_Correct_offset, net_marking_t, VECTOR_t, is_before_VECTOR, s_at_Supervisor_Correct_offset)
 
 /* place Cell.Supervisor.Correct.order, colour set ORDER: page `Correct`, place `order` (ID1412310466) */
 static const pn_bag_t s_at_Supervisor_Correct_order = {
     .origin = "page `Correct`, place `order` (ID1412310466)",
     .type = &s_ORDER,
     .capacity = 1U,
-    PN_BAG_TOKENS(net_marking_t, Supervisor_Correct_order),
+    PN_BAG_SLOT(net_marking_t, Supervisor_Correct_order),
 };
-
-PN_PLACE_FUNCTIONS(Supervisor_Correct_order, s_at_Supervisor_Correct_order)
-PN_UNTIMED_PLACE(Supervisor_Correct_order, net_marking_t, PLAN_t, is_before_ORDER, s_at_Supervisor_Correct_order)
 
 /* place Cell.Supervisor.Correct.done, colour set UNIT: page `Correct`, place `done` (ID1412310475) */
 static const pn_bag_t s_at_Supervisor_Correct_done = {
     .origin = "page `Correct`, place `done` (ID1412310475)",
     .type = &s_UNIT,
     .capacity = 1U,
-    PN_BAG_TOKENS(net_marking_t, Supervisor_Correct_done),
+    PN_BAG_SLOT(net_marking_t, Supervisor_Correct_done),
 };
-
-PN_PLACE_FUNCTIONS(Supervisor_Correct_done, s_at_Supervisor_Correct_done)
-PN_UNTIMED_PLACE(Supervisor_Correct_done, net_marking_t, pn_unit_t, is_before_UNIT, s_at_Supervisor_Correct_done)
 
 /* place Cell.Supervisor.Correct.seam, colour set RIVETING: page `Correct`, place `seam` (ID1412310523) */
 static const pn_bag_t s_at_Supervisor_Correct_seam = {
     .origin = "page `Correct`, place `seam` (ID1412310523)",
     .type = &s_RIVETING,
     .capacity = 1U,
-    PN_BAG_TOKENS(net_marking_t, Supervisor_Correct_seam),
+    PN_BAG_SLOT(net_marking_t, Supervisor_Correct_seam),
 };
-
-PN_PLACE_FUNCTIONS(Supervisor_Correct_seam, s_at_Supervisor_Correct_seam)
-PN_UNTIMED_PLACE(Supervisor_Correct_seam, net_marking_t, RIVETING_t, is_before_RIVETING, s_at_Supervisor_Correct_seam)
 
 /* place Cell.Supervisor.Correct.Move both.moving 1, colour set UNIT: page `MoveBoth`, place `moving 1` (ID1412310959) */
 static const pn_bag_t s_at_Supervisor_Correct_Move_both_moving_1 = {
     .origin = "page `MoveBoth`, place `moving 1` (ID1412310959)",
     .type = &s_UNIT,
     .capacity = 1U,
-    PN_BAG_TOKENS(net_marking_t, Supervisor_Correct_Move_both_moving_1),
+    PN_BAG_SLOT(net_marking_t, Supervisor_Correct_Move_both_moving_1),
 };
-
-PN_PLACE_FUNCTIONS(Supervisor_Correct_Move_both_moving_1, s_at_Supervisor_Correct_Move_both_moving_1)
-PN_UNTIMED_PLACE(Supervisor_Correct_Move_both_moving_1, net_marking_t, pn_unit_t, is_before_UNIT, s_at_Supervisor_Correct_Move_both_moving_1)
 
 /* place Cell.Supervisor.Correct.Move both.there 1, colour set UNIT: page `MoveBoth`, place `there 1` (ID1412310967) */
 static const pn_bag_t s_at_Supervisor_Correct_Move_both_there_1 = {
     .origin = "page `MoveBoth`, place `there 1` (ID1412310967)",
     .type = &s_UNIT,
     .capacity = 1U,
-    PN_BAG_TOKENS(net_marking_t, Supervisor_Correct_Move_both_there_1),
+    PN_BAG_SLOT(net_marking_t, Supervisor_Correct_Move_both_there_1),
 };
-
-PN_PLACE_FUNCTIONS(Supervisor_Correct_Move_both_there_1, s_at_Supervisor_Correct_Move_both_there_1)
-PN_UNTIMED_PLACE(Supervisor_Correct_Move_both_there_1, net_marking_t, pn_unit_t, is_before_UNIT, s_at_Supervisor_Correct_Move_both_there_1)
 
 /* place Cell.Supervisor.Correct.Move both.moving 2, colour set UNIT: page `MoveBoth`, place `moving 2` (ID1412310996) */
 static const pn_bag_t s_at_Supervisor_Correct_Move_both_moving_2 = {
     .origin = "page `MoveBoth`, place `moving 2` (ID1412310996)",
     .type = &s_UNIT,
     .capacity = 1U,
-    PN_BAG_TOKENS(net_marking_t, Supervisor_Correct_Move_both_moving_2),
+    PN_BAG_SLOT(net_marking_t, Supervisor_Correct_Move_both_moving_2),
 };
-
-PN_PLACE_FUNCTIONS(Supervisor_Correct_Move_both_moving_2, s_at_Supervisor_Correct_Move_both_moving_2)
-PN_UNTIMED_PLACE(Supervisor_Correct_Move_both_moving_2, net_marking_t, pn_unit_t, is_before_UNIT, s_at_Supervisor_Correct_Move_both_moving_2)
 
 /* place Cell.Supervisor.Correct.Move both.there 2, colour set UNIT: page `MoveBoth`, place `there 2` (ID1412311004) */
 static const pn_bag_t s_at_Supervisor_Correct_Move_both_there_2 = {
     .origin = "page `MoveBoth`, place `there 2` (ID1412311004)",
     .type = &s_UNIT,
     .capacity = 1U,
-    PN_BAG_TOKENS(net_marking_t, Supervisor_Correct_Move_both_there_2),
+    PN_BAG_SLOT(net_marking_t, Supervisor_Correct_Move_both_there_2),
 };
-
-PN_PLACE_FUNCTIONS(Supervisor_Correct_Move_both_there_2, s_at_Supervisor_Correct_Move_both_there_2)
-PN_UNTIMED_PLACE(Supervisor_Correct_Move_both_there_2, net_marking_t, pn_unit_t, is_before_UNIT, s_at_Supervisor_Correct_Move_both_there_2)
 
 /* place Cell.Supervisor.Install.shift, colour set ORDER: page `Install`, place `shift` (ID1412310585) */
 static const pn_bag_t s_at_Supervisor_Install_shift = {
     .origin = "page `Install`, place `shift` (ID1412310585)",
     .type = &s_ORDER,
     .capacity = 1U,
-    PN_BAG_TOKENS(net_marking_t, Supervisor_Install_shift),
+    PN_BAG_SLOT(net_marking_t, Supervisor_Install_shift),
 };
-
-PN_PLACE_FUNCTIONS(Supervisor_Install_shift, s_at_Supervisor_Install_shift)
-PN_UNTIMED_PLACE(Supervisor_Install_shift, net_marking_t, PLAN_t, is_before_ORDER, s_at_Supervisor_Install_shift)
 
 /* place Cell.Supervisor.Install.ready, colour set UNIT: page `Install`, place `ready` (ID1412310588) */
 static const pn_bag_t s_at_Supervisor_Install_ready = {
     .origin = "page `Install`, place `ready` (ID1412310588)",
     .type = &s_UNIT,
     .capacity = 1U,
-    PN_BAG_TOKENS(net_marking_t, Supervisor_Install_ready),
+    PN_BAG_SLOT(net_marking_t, Supervisor_Install_ready),
 };
-
-PN_PLACE_FUNCTIONS(Supervisor_Install_ready, s_at_Supervisor_Install_ready)
-PN_UNTIMED_PLACE(Supervisor_Install_ready, net_marking_t, pn_unit_t, is_before_UNIT, s_at_Supervisor_Install_ready)
 
 /* place Cell.Supervisor.Install.riveted, colour set UNIT: page `Install`, place `riveted` (ID1412310591) */
 static const pn_bag_t s_at_Supervisor_Install_riveted = {
     .origin = "page `Install`, place `riveted` (ID1412310591)",
     .type = &s_UNIT,
     .capacity = 1U,
-    PN_BAG_TOKENS(net_marking_t, Supervisor_Install_riveted),
+    PN_BAG_SLOT(net_marking_t, Supervisor_Install_riveted),
 };
-
-PN_PLACE_FUNCTIONS(Supervisor_Install_riveted, s_at_Supervisor_Install_riveted)
-PN_UNTIMED_PLACE(Supervisor_Install_riveted, net_marking_t, pn_unit_t, is_before_UNIT, s_at_Supervisor_Install_riveted)
 
 /* place Cell.Supervisor.Install.return, colour set ORDER: page `Install`, place `return` (ID1412310599) */
 static const pn_bag_t s_at_Supervisor_Install_return = {
     .origin = "page `Install`, place `return` (ID1412310599)",
     .type = &s_ORDER,
     .capacity = 1U,
-    PN_BAG_TOKENS(net_marking_t, Supervisor_Install_return),
+    PN_BAG_SLOT(net_marking_t, Supervisor_Install_return),
 };
-
-PN_PLACE_FUNCTIONS(Supervisor_Install_return, s_at_Supervisor_Install_return)
-PN_UNTIMED_PLACE(Supervisor_Install_return, net_marking_t, PLAN_t, is_before_ORDER, s_at_Supervisor_Install_return)
 
 /* place Cell.Supervisor.Install.work, colour set WORK: page `Install`, place `work` (ID1412310629) */
 static const pn_bag_t s_at_Supervisor_Install_work = {
     .origin = "page `Install`, place `work` (ID1412310629)",
     .type = &s_WORK,
     .capacity = 1U,
-    PN_BAG_TOKENS(net_marking_t, Supervisor_Install_work),
+    PN_BAG_SLOT(net_marking_t, Supervisor_Install_work),
 };
-
-PN_PLACE_FUNCTIONS(Supervisor_Install_work, s_at_Supervisor_Install_work)
-PN_UNTIMED_PLACE(Supervisor_Install_work, net_marking_t, WORK_t, is_before_WORK, s_at_Supervisor_Install_work)
 
 /* place Cell.Supervisor.Install.Shift.moving 1, colour set UNIT: page `MoveBoth`, place `moving 1` (ID1412310959) */
 static const pn_bag_t s_at_Supervisor_Install_Shift_moving_1 = {
     .origin = "page `MoveBoth`, place `moving 1` (ID1412310959)",
     .type = &s_UNIT,
     .capacity = 1U,
-    PN_BAG_TOKENS(net_marking_t, Supervisor_Install_Shift_moving_1),
+    PN_BAG_SLOT(net_marking_t, Supervisor_Install_Shift_moving_1),
 };
-
-PN_PLACE_FUNCTIONS(Supervisor_Install_Shift_moving_1, s_at_Supervisor_Install_Shift_moving_1)
-PN_UNTIMED_PLACE(Supervisor_Install_Shift_moving_1, net_marking_t, pn_unit_t, is_before_UNIT, s_at_Supervisor_Install_Shift_moving_1)
 
 /* place Cell.Supervisor.Install.Shift.there 1, colour set UNIT: page `MoveBoth`, place `there 1` (ID1412310967) */
 static const pn_bag_t s_at_Supervisor_Install_Shift_there_1 = {
     .origin = "page `MoveBoth`, place `there 1` (ID1412310967)",
     .type = &s_UNIT,
     .capacity = 1U,
-    PN_BAG_TOKENS(net_marking_t, Supervisor_Install_Shift_there_1),
+    PN_BAG_SLOT(net_marking_t, Supervisor_Install_Shift_there_1),
 };
-
-PN_PLACE_FUNCTIONS(Supervisor_Install_Shift_there_1, s_at_Supervisor_Install_Shift_there_1)
-PN_UNTIMED_PLACE(Supervisor_Install_Shift_there_1, net_marking_t, pn_unit_t, is_before_UNIT, s_at_Supervisor_Install_Shift_there_1)
 
 /* place Cell.Supervisor.Install.Shift.moving 2, colour set UNIT: page `MoveBoth`, place `moving 2` (ID1412310996) */
 static const pn_bag_t s_at_Supervisor_Install_Shift_moving_2 = {
     .origin = "page `MoveBoth`, place `moving 2` (ID1412310996)",
     .type = &s_UNIT,
     .capacity = 1U,
-    PN_BAG_TOKENS(net_marking_t, Supervisor_Install_Shift_moving_2),
+    PN_BAG_SLOT(net_marking_t, Supervisor_Install_Shift_moving_2),
 };
-
-PN_PLACE_FUNCTIONS(Supervisor_Install_Shift_moving_2, s_at_Supervisor_Install_Shift_moving_2)
-PN_UNTIMED_PLACE(Supervisor_Install_Shift_moving_2, net_marking_t, pn_unit_t, is_before_UNIT, s_at_Supervisor_Install_Shift_moving_2)
 
 /* place Cell.Supervisor.Install.Shift.there 2, colour set UNIT: page `MoveBoth`, place `there 2` (ID1412311004) */
 static const pn_bag_t s_at_Supervisor_Install_Shift_there_2 = {
     .origin = "page `MoveBoth`, place `there 2` (ID1412311004)",
     .type = &s_UNIT,
     .capacity = 1U,
-    PN_BAG_TOKENS(net_marking_t, Supervisor_Install_Shift_there_2),
+    PN_BAG_SLOT(net_marking_t, Supervisor_Install_Shift_there_2),
 };
-
-PN_PLACE_FUNCTIONS(Supervisor_Install_Shift_there_2, s_at_Supervisor_Install_Shift_there_2)
-PN_UNTIMED_PLACE(Supervisor_Install_Shift_there_2, net_marking_t, pn_unit_t, is_before_UNIT, s_at_Supervisor_Install_Shift_there_2)
 
 /* place Cell.Supervisor.Install.Rivet.advance, colour set ORDER: page `Rivet`, place `advance` (ID1412310721) */
 static const pn_bag_t s_at_Supervisor_Install_Rivet_advance = {
     .origin = "page `Rivet`, place `advance` (ID1412310721)",
     .type = &s_ORDER,
     .capacity = 1U,
-    PN_BAG_TOKENS(net_marking_t, Supervisor_Install_Rivet_advance),
+    PN_BAG_SLOT(net_marking_t, Supervisor_Install_Rivet_advance),
 };
-
-PN_PLACE_FUNCTIONS(Supervisor_Install_Rivet_advance, s_at_Supervisor_Install_Rivet_advance)
-PN_UNTIMED_PLACE(Supervisor_Install_Rivet_advance, net_marking_t, PLAN_t, is_before_ORDER, s_at_Supervisor_Install_Rivet_advance)
 
 /* place Cell.Supervisor.Install.Rivet.contact, colour set UNIT: page `Rivet`, place `contact` (ID1412310730) */
 static const pn_bag_t s_at_Supervisor_Install_Rivet_contact = {
     .origin = "page `Rivet`, place `contact` (ID1412310730)",
     .type = &s_UNIT,
     .capacity = 1U,
-    PN_BAG_TOKENS(net_marking_t, Supervisor_Install_Rivet_contact),
+    PN_BAG_SLOT(net_marking_t, Supervisor_Install_Rivet_contact),
 };
-
-PN_PLACE_FUNCTIONS(Supervisor_Install_Rivet_contact, s_at_Supervisor_Install_Rivet_contact)
-PN_UNTIMED_PLACE(Supervisor_Install_Rivet_contact, net_marking_t, pn_unit_t, is_before_UNIT, s_at_Supervisor_Install_Rivet_contact)
 
 /* place Cell.Supervisor.Install.Rivet.fastened, colour set REPLY: page `Rivet`, place `fastened` (ID1412310739) */
 static const pn_bag_t s_at_Supervisor_Install_Rivet_fastened = {
     .origin = "page `Rivet`, place `fastened` (ID1412310739)",
     .type = &s_REPLY,
     .capacity = 1U,
-    PN_BAG_TOKENS(net_marking_t, Supervisor_Install_Rivet_fastened),
+    PN_BAG_SLOT(net_marking_t, Supervisor_Install_Rivet_fastened),
 };
-
-PN_PLACE_FUNCTIONS(Supervisor_Install_Rivet_fastened, s_at_Supervisor_Install_Rivet_fastened)
-PN_UNTIMED_PLACE(Supervisor_Install_Rivet_fastened, net_marking_t, int64_t, PN_LESS, s_at_Supervisor_Install_Rivet_fastened)
 
 /* place Cell.Supervisor.Install.Rivet.retract, colour set ORDER: page `Rivet`, place `retract` (ID1412310747) */
 static const pn_bag_t s_at_Supervisor_Install_Rivet_retract = {
     .origin = "page `Rivet`, place `retract` (ID1412310747)",
     .type = &s_ORDER,
     .capacity = 1U,
-    PN_BAG_TOKENS(net_marking_t, Supervisor_Install_Rivet_retract),
+    PN_BAG_SLOT(net_marking_t, Supervisor_Install_Rivet_retract),
 };
-
-PN_PLACE_FUNCTIONS(Supervisor_Install_Rivet_retract, s_at_Supervisor_Install_Rivet_retract)
-PN_UNTIMED_PLACE(Supervisor_Install_Rivet_retract, net_marking_t, PLAN_t, is_before_ORDER, s_at_Supervisor_Install_Rivet_retract)
 
 /* place Cell.Supervisor.Install.Rivet.Advance.moving 1, colour set UNIT: page `MoveBoth`, place `moving 1` (ID1412310959) */
 static const pn_bag_t s_at_Supervisor_Install_Rivet_Advance_moving_1 = {
     .origin = "page `MoveBoth`, place `moving 1` (ID1412310959)",
     .type = &s_UNIT,
     .capacity = 1U,
-    PN_BAG_TOKENS(net_marking_t, Supervisor_Install_Rivet_Advance_moving_1),
+    PN_BAG_SLOT(net_marking_t, Supervisor_Install_Rivet_Advance_moving_1),
 };
-
-PN_PLACE_FUNCTIONS(Supervisor_Install_Rivet_Advance_moving_1, s_at_Supervisor_Install_Rivet_Advance_moving_1)
-PN_UNTIMED_PLACE(Supervisor_Install_Rivet_Advance_moving_1, net_marking_t, pn_unit_t, is_before_UNIT, s_at_Supervisor_Install_Rivet_Advance_moving_1)
 
 /* place Cell.Supervisor.Install.Rivet.Advance.there 1, colour set UNIT: page `MoveBoth`, place `there 1` (ID1412310967) */
 static const pn_bag_t s_at_Supervisor_Install_Rivet_Advance_there_1 = {
     .origin = "page `MoveBoth`, place `there 1` (ID1412310967)",
     .type = &s_UNIT,
     .capacity = 1U,
-    PN_BAG_TOKENS(net_marking_t, Supervisor_Install_Rivet_Advance_there_1),
+    PN_BAG_SLOT(net_marking_t, Supervisor_Install_Rivet_Advance_there_1),
 };
-
-PN_PLACE_FUNCTIONS(Supervisor_Install_Rivet_Advance_there_1, s_at_Supervisor_Install_Rivet_Advance_there_1)
-PN_UNTIMED_PLACE(Supervisor_Install_Rivet_Advance_there_1, net_marking_t, pn_unit_t, is_before_UNIT, s_at_Supervisor_Install_Rivet_Advance_there_1)
 
 /* place Cell.Supervisor.Install.Rivet.Advance.moving 2, colour set UNIT: page `MoveBoth`, place `moving 2` (ID1412310996) */
 static const pn_bag_t s_at_Supervisor_Install_Rivet_Advance_moving_2 = {
     .origin = "page `MoveBoth`, place `moving 2` (ID1412310996)",
     .type = &s_UNIT,
     .capacity = 1U,
-    PN_BAG_TOKENS(net_marking_t, Supervisor_Install_Rivet_Advance_moving_2),
+    PN_BAG_SLOT(net_marking_t, Supervisor_Install_Rivet_Advance_moving_2),
 };
-
-PN_PLACE_FUNCTIONS(Supervisor_Install_Rivet_Advance_moving_2, s_at_Supervisor_Install_Rivet_Advance_moving_2)
-PN_UNTIMED_PLACE(Supervisor_Install_Rivet_Advance_moving_2, net_marking_t, pn_unit_t, is_before_UNIT, s_at_Supervisor_Install_Rivet_Advance_moving_2)
 
 /* place Cell.Supervisor.Install.Rivet.Advance.there 2, colour set UNIT: page `MoveBoth`, place `there 2` (ID1412311004) */
 static const pn_bag_t s_at_Supervisor_Install_Rivet_Advance_there_2 = {
     .origin = "page `MoveBoth`, place `there 2` (ID1412311004)",
     .type = &s_UNIT,
     .capacity = 1U,
-    PN_BAG_TOKENS(net_marking_t, Supervisor_Install_Rivet_Advance_there_2),
+    PN_BAG_SLOT(net_marking_t, Supervisor_Install_Rivet_Advance_there_2),
 };
-
-PN_PLACE_FUNCTIONS(Supervisor_Install_Rivet_Advance_there_2, s_at_Supervisor_Install_Rivet_Advance_there_2)
-PN_UNTIMED_PLACE(Supervisor_Install_Rivet_Advance_there_2, net_marking_t, pn_unit_t, is_before_UNIT, s_at_Supervisor_Install_Rivet_Advance_there_2)
 
 /* place Cell.Supervisor.Install.Rivet.Fasten.pressing, colour set UNIT: page `Fasten`, place `pressing` (ID1412310847) */
 static const pn_bag_t s_at_Supervisor_Install_Rivet_Fasten_pressing = {
     .origin = "page `Fasten`, place `pressing` (ID1412310847)",
     .type = &s_UNIT,
     .capacity = 1U,
-    PN_BAG_TOKENS(net_marking_t, Supervisor_Install_Rivet_Fasten_pressing),
+    PN_BAG_SLOT(net_marking_t, Supervisor_Install_Rivet_Fasten_pressing),
 };
-
-PN_PLACE_FUNCTIONS(Supervisor_Install_Rivet_Fasten_pressing, s_at_Supervisor_Install_Rivet_Fasten_pressing)
-PN_UNTIMED_PLACE(Supervisor_Install_Rivet_Fasten_pressing, net_marking_t, pn_unit_t, is_before_UNIT, s_at_Supervisor_Install_Rivet_Fasten_pressing)
 
 /* place Cell.Supervisor.Install.Rivet.Fasten.drilling, colour set UNIT: page `Fasten`, place `drilling` (ID1412310855) */
 static const pn_bag_t s_at_Supervisor_Install_Rivet_Fasten_drilling = {
     .origin = "page `Fasten`, place `drilling` (ID1412310855)",
     .type = &s_UNIT,
     .capacity = 1U,
-    PN_BAG_TOKENS(net_marking_t, Supervisor_Install_Rivet_Fasten_drilling),
+    PN_BAG_SLOT(net_marking_t, Supervisor_Install_Rivet_Fasten_drilling),
 };
-
-PN_PLACE_FUNCTIONS(Supervisor_Install_Rivet_Fasten_drilling, s_at_Supervisor_Install_Rivet_Fasten_drilling)
-PN_UNTIMED_PLACE(Supervisor_Install_Rivet_Fasten_drilling, net_marking_t, pn_unit_t, is_before_UNIT, s_at_Supervisor_Install_Rivet_Fasten_drilling)
 
 /* place Cell.Supervisor.Install.Rivet.Fasten.inserting, colour set UNIT: page `Fasten`, place `inserting` (ID1412310863) */
 static const pn_bag_t s_at_Supervisor_Install_Rivet_Fasten_inserting = {
     .origin = "page `Fasten`, place `inserting` (ID1412310863)",
     .type = &s_UNIT,
     .capacity = 1U,
-    PN_BAG_TOKENS(net_marking_t, Supervisor_Install_Rivet_Fasten_inserting),
+    PN_BAG_SLOT(net_marking_t, Supervisor_Install_Rivet_Fasten_inserting),
 };
-
-PN_PLACE_FUNCTIONS(Supervisor_Install_Rivet_Fasten_inserting, s_at_Supervisor_Install_Rivet_Fasten_inserting)
-PN_UNTIMED_PLACE(Supervisor_Install_Rivet_Fasten_inserting, net_marking_t, pn_unit_t, is_before_UNIT, s_at_Supervisor_Install_Rivet_Fasten_inserting)
 
 /* place Cell.Supervisor.Install.Rivet.Fasten.releasing, colour set REPLY: page `Fasten`, place `releasing` (ID1412310871) */
 static const pn_bag_t s_at_Supervisor_Install_Rivet_Fasten_releasing = {
     .origin = "page `Fasten`, place `releasing` (ID1412310871)",
     .type = &s_REPLY,
     .capacity = 1U,
-    PN_BAG_TOKENS(net_marking_t, Supervisor_Install_Rivet_Fasten_releasing),
+    PN_BAG_SLOT(net_marking_t, Supervisor_Install_Rivet_Fasten_releasing),
 };
-
-PN_PLACE_FUNCTIONS(Supervisor_Install_Rivet_Fasten_releasing, s_at_Supervisor_Install_Rivet_Fasten_releasing)
-PN_UNTIMED_PLACE(Supervisor_Install_Rivet_Fasten_releasing, net_marking_t, int64_t, PN_LESS, s_at_Supervisor_Install_Rivet_Fasten_releasing)
 
 /* place Cell.Supervisor.Install.Rivet.Retract.moving 1, colour set UNIT: page `MoveBoth`, place `moving 1` (ID1412310959) */
 static const pn_bag_t s_at_Supervisor_Install_Rivet_Retract_moving_1 = {
     .origin = "page `MoveBoth`, place `moving 1` (ID1412310959)",
     .type = &s_UNIT,
     .capacity = 1U,
-    PN_BAG_TOKENS(net_marking_t, Supervisor_Install_Rivet_Retract_moving_1),
+    PN_BAG_SLOT(net_marking_t, Supervisor_Install_Rivet_Retract_moving_1),
 };
-
-PN_PLACE_FUNCTIONS(Supervisor_Install_Rivet_Retract_moving_1, s_at_Supervisor_Install_Rivet_Retract_moving_1)
-PN_UNTIMED_PLACE(Supervisor_Install_Rivet_Retract_moving_1, net_marking_t, pn_unit_t, is_before_UNIT, s_at_Supervisor_Install_Rivet_Retract_moving_1)
 
 /* place Cell.Supervisor.Install.Rivet.Retract.there 1, colour set UNIT: page `MoveBoth`, place `there 1` (ID1412310967) */
 static const pn_bag_t s_at_Supervisor_Install_Rivet_Retract_there_1 = {
     .origin = "page `MoveBoth`, place `there 1` (ID1412310967)",
     .type = &s_UNIT,
     .capacity = 1U,
-    PN_BAG_TOKENS(net_marking_t, Supervisor_Install_Rivet_Retract_there_1),
+    PN_BAG_SLOT(net_marking_t, Supervisor_Install_Rivet_Retract_there_1),
 };
-
-PN_PLACE_FUNCTIONS(Supervisor_Install_Rivet_Retract_there_1, s_at_Supervisor_Install_Rivet_Retract_there_1)
-PN_UNTIMED_PLACE(Supervisor_Install_Rivet_Retract_there_1, net_marking_t, pn_unit_t, is_before_UNIT, s_at_Supervisor_Install_Rivet_Retract_there_1)
 
 /* place Cell.Supervisor.Install.Rivet.Retract.moving 2, colour set UNIT: page `MoveBoth`, place `moving 2` (ID1412310996) */
 static const pn_bag_t s_at_Supervisor_Install_Rivet_Retract_moving_2 = {
     .origin = "page `MoveBoth`, place `moving 2` (ID1412310996)",
     .type = &s_UNIT,
     .capacity = 1U,
-    PN_BAG_TOKENS(net_marking_t, Supervisor_Install_Rivet_Retract_moving_2),
+    PN_BAG_SLOT(net_marking_t, Supervisor_Install_Rivet_Retract_moving_2),
 };
-
-PN_PLACE_FUNCTIONS(Supervisor_Install_Rivet_Retract_moving_2, s_at_Supervisor_Install_Rivet_Retract_moving_2)
-PN_UNTIMED_PLACE(Supervisor_Install_Rivet_Retract_moving_2, net_marking_t, pn_unit_t, is_before_UNIT, s_at_Supervisor_Install_Rivet_Retract_moving_2)
 
 /* place Cell.Supervisor.Install.Rivet.Retract.there 2, colour set UNIT: page `MoveBoth`, place `there 2` (ID1412311004) */
 static const pn_bag_t s_at_Supervisor_Install_Rivet_Retract_there_2 = {
     .origin = "page `MoveBoth`, place `there 2` (ID1412311004)",
     .type = &s_UNIT,
     .capacity = 1U,
-    PN_BAG_TOKENS(net_marking_t, Supervisor_Install_Rivet_Retract_there_2),
+    PN_BAG_SLOT(net_marking_t, Supervisor_Install_Rivet_Retract_there_2),
 };
-
-PN_PLACE_FUNCTIONS(Supervisor_Install_Rivet_Retract_there_2, s_at_Supervisor_Install_Rivet_Retract_there_2)
-PN_UNTIMED_PLACE(Supervisor_Install_Rivet_Retract_there_2, net_marking_t, pn_unit_t, is_before_UNIT, s_at_Supervisor_Install_Rivet_Retract_there_2)
 
 /* place Cell.Supervisor.Install.Return.moving 1, colour set UNIT: page `MoveBoth`, place `moving 1` (ID1412310959) */
 static const pn_bag_t s_at_Supervisor_Install_Return_moving_1 = {
     .origin = "page `MoveBoth`, place `moving 1` (ID1412310959)",
     .type = &s_UNIT,
     .capacity = 1U,
-    PN_BAG_TOKENS(net_marking_t, Supervisor_Install_Return_moving_1),
+    PN_BAG_SLOT(net_marking_t, Supervisor_Install_Return_moving_1),
 };
-
-PN_PLACE_FUNCTIONS(Supervisor_Install_Return_moving_1, s_at_Supervisor_Install_Return_moving_1)
-PN_UNTIMED_PLACE(Supervisor_Install_Return_moving_1, net_marking_t, pn_unit_t, is_before_UNIT, s_at_Supervisor_Install_Return_moving_1)
 
 /* place Cell.Supervisor.Install.Return.there 1, colour set UNIT: page `MoveBoth`, place `there 1` (ID1412310967) */
 static const pn_bag_t s_at_Supervisor_Install_Return_there_1 = {
     .origin = "page `MoveBoth`, place `there 1` (ID1412310967)",
     .type = &s_UNIT,
     .capacity = 1U,
-    PN_BAG_TOKENS(net_marking_t, Supervisor_Install_Return_there_1),
+    PN_BAG_SLOT(net_marking_t, Supervisor_Install_Return_there_1),
 };
-
-PN_PLACE_FUNCTIONS(Supervisor_Install_Return_there_1, s_at_Supervisor_Install_Return_there_1)
-PN_UNTIMED_PLACE(Supervisor_Install_Return_there_1, net_marking_t, pn_unit_t, is_before_UNIT, s_at_Supervisor_Install_Return_there_1)
 
 /* place Cell.Supervisor.Install.Return.moving 2, colour set UNIT: page `MoveBoth`, place `moving 2` (ID1412310996) */
 static const pn_bag_t s_at_Supervisor_Install_Return_moving_2 = {
     .origin = "page `MoveBoth`, place `moving 2` (ID1412310996)",
     .type = &s_UNIT,
     .capacity = 1U,
-    PN_BAG_TOKENS(net_marking_t, Supervisor_Install_Return_moving_2),
+    PN_BAG_SLOT(net_marking_t, Supervisor_Install_Return_moving_2),
 };
-
-PN_PLACE_FUNCTIONS(Supervisor_Install_Return_moving_2, s_at_Supervisor_Install_Return_moving_2)
-PN_UNTIMED_PLACE(Supervisor_Install_Return_moving_2, net_marking_t, pn_unit_t, is_before_UNIT, s_at_Supervisor_Install_Return_moving_2)
 
 /* place Cell.Supervisor.Install.Return.there 2, colour set UNIT: page `MoveBoth`, place `there 2` (ID1412311004) */
 static const pn_bag_t s_at_Supervisor_Install_Return_there_2 = {
     .origin = "page `MoveBoth`, place `there 2` (ID1412311004)",
     .type = &s_UNIT,
     .capacity = 1U,
-    PN_BAG_TOKENS(net_marking_t, Supervisor_Install_Return_there_2),
+    PN_BAG_SLOT(net_marking_t, Supervisor_Install_Return_there_2),
 };
-
-PN_PLACE_FUNCTIONS(Supervisor_Install_Return_there_2, s_at_Supervisor_Install_Return_there_2)
-PN_UNTIMED_PLACE(Supervisor_Install_Return_there_2, net_marking_t, pn_unit_t, is_before_UNIT, s_at_Supervisor_Install_Return_there_2)
 
 /* place Cell.Supervisor.Home.leaving 1, colour set UNIT: page `Home`, place `leaving 1` (ID1412311057) */
 static const pn_bag_t s_at_Supervisor_Home_leaving_1 = {
     .origin = "page `Home`, place `leaving 1` (ID1412311057)",
     .type = &s_UNIT,
     .capacity = 1U,
-    PN_BAG_TOKENS(net_marking_t, Supervisor_Home_leaving_1),
+    PN_BAG_SLOT(net_marking_t, Supervisor_Home_leaving_1),
 };
-
-PN_PLACE_FUNCTIONS(Supervisor_Home_leaving_1, s_at_Supervisor_Home_leaving_1)
-PN_UNTIMED_PLACE(Supervisor_Home_leaving_1, net_marking_t, pn_unit_t, is_before_UNIT, s_at_Supervisor_Home_leaving_1)
 
 /* place Cell.Supervisor.Home.home 1, colour set UNIT: page `Home`, place `home 1` (ID1412311065) */
 static const pn_bag_t s_at_Supervisor_Home_home_1 = {
     .origin = "page `Home`, place `home 1` (ID1412311065)",
     .type = &s_UNIT,
     .capacity = 1U,
-    PN_BAG_TOKENS(net_marking_t, Supervisor_Home_home_1),
+    PN_BAG_SLOT(net_marking_t, Supervisor_Home_home_1),
 };
-
-PN_PLACE_FUNCTIONS(Supervisor_Home_home_1, s_at_Supervisor_Home_home_1)
-PN_UNTIMED_PLACE(Supervisor_Home_home_1, net_marking_t, pn_unit_t, is_before_UNIT, s_at_Supervisor_Home_home_1)
 
 /* place Cell.Supervisor.Home.leaving 2, colour set UNIT: page `Home`, place `leaving 2` (ID1412311088) */
 static const pn_bag_t s_at_Supervisor_Home_leaving_2 = {
     .origin = "page `Home`, place `leaving 2` (ID1412311088)",
     .type = &s_UNIT,
     .capacity = 1U,
-    PN_BAG_TOKENS(net_marking_t, Supervisor_Home_leaving_2),
+    PN_BAG_SLOT(net_marking_t, Supervisor_Home_leaving_2),
 };
-
-PN_PLACE_FUNCTIONS(Supervisor_Home_leaving_2, s_at_Supervisor_Home_leaving_2)
-PN_UNTIMED_PLACE(Supervisor_Home_leaving_2, net_marking_t, pn_unit_t, is_before_UNIT, s_at_Supervisor_Home_leaving_2)
 
 /* place Cell.Supervisor.Home.home 2, colour set UNIT: page `Home`, place `home 2` (ID1412311096) */
 static const pn_bag_t s_at_Supervisor_Home_home_2 = {
     .origin = "page `Home`, place `home 2` (ID1412311096)",
     .type = &s_UNIT,
     .capacity = 1U,
-    PN_BAG_TOKENS(net_marking_t, Supervisor_Home_home_2),
+    PN_BAG_SLOT(net_marking_t, Supervisor_Home_home_2),
 };
-
-PN_PLACE_FUNCTIONS(Supervisor_Home_home_2, s_at_Supervisor_Home_home_2)
-PN_UNTIMED_PLACE(Supervisor_Home_home_2, net_marking_t, pn_unit_t, is_before_UNIT, s_at_Supervisor_Home_home_2)
 
 /* place Cell.Robot1.Waiting, colour set UNIT: page `Robot`, place `Waiting` (ID1412311130) */
 static const pn_bag_t s_at_Robot1_Waiting = {
     .origin = "page `Robot`, place `Waiting` (ID1412311130)",
     .type = &s_UNIT,
     .capacity = 1U,
-    PN_BAG_TOKENS(net_marking_t, Robot1_Waiting),
+    PN_BAG_SLOT(net_marking_t, Robot1_Waiting),
 };
-
-PN_PLACE_FUNCTIONS(Robot1_Waiting, s_at_Robot1_Waiting)
-PN_UNTIMED_PLACE(Robot1_Waiting, net_marking_t, pn_unit_t, is_before_UNIT, s_at_Robot1_Waiting)
 
 /* initial marking:
  *     1`()
  */
-static bool Robot1_Waiting_init(pn_ctx_t *cx, net_marking_t *m)
+static bool Robot1_Waiting_init(pn_ctx_t *cx, void *marking)
 {
     cx->origin = "page `Robot`, place `Waiting` (ID1412311130), initial marking";
     pn_moves_t moves;
     pn_moves_init(&moves, cx);
     pn_moves_put(&moves, &s_at_Robot1_Waiting, (pn_unit_t[]){ PN_UNIT }, 1, PN_NO_TIME);
-    return pn_moves_commit(&moves, m);
+    return pn_moves_commit(&moves, marking);
 }
 
 /* place Cell.Robot1.Commanded, colour set COMMAND: page `Robot`, place `Commanded` (ID1412311133) */
@@ -2239,44 +1533,35 @@ static const pn_bag_t s_at_Robot1_Commanded = {
     .origin = "page `Robot`, place `Commanded` (ID1412311133)",
     .type = &s_COMMAND,
     .capacity = 1U,
-    PN_BAG_TOKENS(net_marking_t, Robot1_Commanded),
+    PN_BAG_SLOT(net_marking_t, Robot1_Commanded),
 };
-
-PN_PLACE_FUNCTIONS(Robot1_Commanded, s_at_Robot1_Commanded)
-PN_UNTIMED_PLACE(Robot1_Commanded, net_marking_t, int64_t, PN_LESS, s_at_Robot1_Commanded)
 
 /* place Cell.Robot1.Done, colour set REPLY: page `Robot`, place `Done` (ID1412311142) */
 static const pn_bag_t s_at_Robot1_Done = {
     .origin = "page `Robot`, place `Done` (ID1412311142)",
     .type = &s_REPLY,
     .capacity = 1U,
-    PN_BAG_TOKENS(net_marking_t, Robot1_Done),
+    PN_BAG_SLOT(net_marking_t, Robot1_Done),
 };
-
-PN_PLACE_FUNCTIONS(Robot1_Done, s_at_Robot1_Done)
-PN_UNTIMED_PLACE(Robot1_Done, net_marking_t, int64_t, PN_LESS, s_at_Robot1_Done)
 
 /* place Cell.Robot2.Waiting, colour set UNIT: page `Robot`, place `Waiting` (ID1412311130) */
 static const pn_bag_t s_at_Robot2_Waiting = {
     .origin = "page `Robot`, place `Waiting` (ID1412311130)",
     .type = &s_UNIT,
     .capacity = 1U,
-    PN_BAG_TOKENS(net_marking_t, Robot2_Waiting),
+    PN_BAG_SLOT(net_marking_t, Robot2_Waiting),
 };
-
-PN_PLACE_FUNCTIONS(Robot2_Waiting, s_at_Robot2_Waiting)
-PN_UNTIMED_PLACE(Robot2_Waiting, net_marking_t, pn_unit_t, is_before_UNIT, s_at_Robot2_Waiting)
 
 /* initial marking:
  *     1`()
  */
-static bool Robot2_Waiting_init(pn_ctx_t *cx, net_marking_t *m)
+static bool Robot2_Waiting_init(pn_ctx_t *cx, void *marking)
 {
     cx->origin = "page `Robot`, place `Waiting` (ID1412311130), initial marking";
     pn_moves_t moves;
     pn_moves_init(&moves, cx);
     pn_moves_put(&moves, &s_at_Robot2_Waiting, (pn_unit_t[]){ PN_UNIT }, 1, PN_NO_TIME);
-    return pn_moves_commit(&moves, m);
+    return pn_moves_commit(&moves, marking);
 }
 
 /* place Cell.Robot2.Commanded, colour set COMMAND: page `Robot`, place `Commanded` (ID1412311133) */
@@ -2284,99 +1569,15 @@ static const pn_bag_t s_at_Robot2_Commanded = {
     .origin = "page `Robot`, place `Commanded` (ID1412311133)",
     .type = &s_COMMAND,
     .capacity = 1U,
-    PN_BAG_TOKENS(net_marking_t, Robot2_Commanded),
+    PN_BAG_SLOT(net_marking_t, Robot2_Commanded),
 };
-
-PN_PLACE_FUNCTIONS(Robot2_Commanded, s_at_Robot2_Commanded)
-PN_UNTIMED_PLACE(Robot2_Commanded, net_marking_t, int64_t, PN_LESS, s_at_Robot2_Commanded)
 
 /* place Cell.Robot2.Done, colour set REPLY: page `Robot`, place `Done` (ID1412311142) */
 static const pn_bag_t s_at_Robot2_Done = {
     .origin = "page `Robot`, place `Done` (ID1412311142)",
     .type = &s_REPLY,
     .capacity = 1U,
-    PN_BAG_TOKENS(net_marking_t, Robot2_Done),
-};
-
-PN_PLACE_FUNCTIONS(Robot2_Done, s_at_Robot2_Done)
-PN_UNTIMED_PLACE(Robot2_Done, net_marking_t, int64_t, PN_LESS, s_at_Robot2_Done)
-
-static const pn_bag_t *const s_bags[] = {
-    &s_at_dadosrobo1,
-    &s_at_flag1_interno,
-    &s_at_flag1_externo,
-    &s_at_referencia1,
-    &s_at_medida1,
-    &s_at_dadosrobo2,
-    &s_at_flag2_interno,
-    &s_at_flag2_externo,
-    &s_at_referencia2,
-    &s_at_medida2,
-    &s_at_Supervisor_coordenadas,
-    &s_at_Supervisor_planned,
-    &s_at_Supervisor_approached,
-    &s_at_Supervisor_verified,
-    &s_at_Supervisor_corrected,
-    &s_at_Supervisor_ended,
-    &s_at_Supervisor_Finished,
-    &s_at_Supervisor_result,
-    &s_at_Supervisor_Failed,
-    &s_at_Supervisor_Approach_order,
-    &s_at_Supervisor_Approach_done,
-    &s_at_Supervisor_Approach_seam,
-    &s_at_Supervisor_Approach_Move_both_moving_1,
-    &s_at_Supervisor_Approach_Move_both_there_1,
-    &s_at_Supervisor_Approach_Move_both_moving_2,
-    &s_at_Supervisor_Approach_Move_both_there_2,
-    &s_at_Supervisor_Verify_first_asked,
-    &s_at_Supervisor_Verify_last_asked,
-    &s_at_Supervisor_Correct_offset,
-    &s_at_Supervisor_Correct_order,
-    &s_at_Supervisor_Correct_done,
-    &s_at_Supervisor_Correct_seam,
-    &s_at_Supervisor_Correct_Move_both_moving_1,
-    &s_at_Supervisor_Correct_Move_both_there_1,
-    &s_at_Supervisor_Correct_Move_both_moving_2,
-    &s_at_Supervisor_Correct_Move_both_there_2,
-    &s_at_Supervisor_Install_shift,
-    &s_at_Supervisor_Install_ready,
-    &s_at_Supervisor_Install_riveted,
-    &s_at_Supervisor_Install_return,
-    &s_at_Supervisor_Install_work,
-    &s_at_Supervisor_Install_Shift_moving_1,
-    &s_at_Supervisor_Install_Shift_there_1,
-    &s_at_Supervisor_Install_Shift_moving_2,
-    &s_at_Supervisor_Install_Shift_there_2,
-    &s_at_Supervisor_Install_Rivet_advance,
-    &s_at_Supervisor_Install_Rivet_contact,
-    &s_at_Supervisor_Install_Rivet_fastened,
-    &s_at_Supervisor_Install_Rivet_retract,
-    &s_at_Supervisor_Install_Rivet_Advance_moving_1,
-    &s_at_Supervisor_Install_Rivet_Advance_there_1,
-    &s_at_Supervisor_Install_Rivet_Advance_moving_2,
-    &s_at_Supervisor_Install_Rivet_Advance_there_2,
-    &s_at_Supervisor_Install_Rivet_Fasten_pressing,
-    &s_at_Supervisor_Install_Rivet_Fasten_drilling,
-    &s_at_Supervisor_Install_Rivet_Fasten_inserting,
-    &s_at_Supervisor_Install_Rivet_Fasten_releasing,
-    &s_at_Supervisor_Install_Rivet_Retract_moving_1,
-    &s_at_Supervisor_Install_Rivet_Retract_there_1,
-    &s_at_Supervisor_Install_Rivet_Retract_moving_2,
-    &s_at_Supervisor_Install_Rivet_Retract_there_2,
-    &s_at_Supervisor_Install_Return_moving_1,
-    &s_at_Supervisor_Install_Return_there_1,
-    &s_at_Supervisor_Install_Return_moving_2,
-    &s_at_Supervisor_Install_Return_there_2,
-    &s_at_Supervisor_Home_leaving_1,
-    &s_at_Supervisor_Home_home_1,
-    &s_at_Supervisor_Home_leaving_2,
-    &s_at_Supervisor_Home_home_2,
-    &s_at_Robot1_Waiting,
-    &s_at_Robot1_Commanded,
-    &s_at_Robot1_Done,
-    &s_at_Robot2_Waiting,
-    &s_at_Robot2_Commanded,
-    &s_at_Robot2_Done,
+    PN_BAG_SLOT(net_marking_t, Robot2_Done),
 };
 
 /* --- transitions ------------------------------------------------------------------------------- */
@@ -2411,13 +1612,14 @@ PN_NET_SEARCH static bool Supervisor_Load_Load_enumerate(pn_ctx_t *cx, const voi
     cx->now = m->now;
     cx->rounds = 0U;
     /* coordenadas: (n, p, q) (ID1412310280) */
-    for (uint32_t i = 0U; i < m->Supervisor_coordenadas.used; i++) {
-        b.n = m->Supervisor_coordenadas.token[i].value.c1;
-        b.p = m->Supervisor_coordenadas.token[i].value.c2;
-        b.q = m->Supervisor_coordenadas.token[i].value.c3;
-        if (!sink(user, self, &b)) {
-            return false;
-        }
+    if (!m->Supervisor_coordenadas.full) {
+        return true;
+    }
+    b.n = m->Supervisor_coordenadas.value.c1;
+    b.p = m->Supervisor_coordenadas.value.c2;
+    b.q = m->Supervisor_coordenadas.value.c3;
+    if (!sink(user, self, &b)) {
+        return false;
     }
     return true;
 }
@@ -2429,31 +1631,24 @@ PN_NET_SEARCH static bool Supervisor_Load_Load_fire(pn_ctx_t *cx, void *marking,
     cx->origin = "page `Load`, transition `Load` (ID1412310271)";
     cx->now = m->now;
     cx->rounds = 0U;
-    const PLAN_t Supervisor_coordenadas_token = (PLAN_t){ .c1 = b->n, .c2 = b->p, .c3 = b->q };
     SEAM_t Supervisor_planned_token = (SEAM_t){ .points = b->n, .first = b->p, .last = b->q };
     pn_bag_check(cx, &s_at_Supervisor_planned, &Supervisor_planned_token);
     if (!pn_ok(cx)) {
         return false;
     }
-    /* coordenadas: (n, p, q) (ID1412310280) */
-    bool is_taken = Supervisor_coordenadas_take(m, &Supervisor_coordenadas_token, 1U);
-    if (!is_taken) {
+    if (!m->Supervisor_coordenadas.full) {
         pn_raise(cx, PN_ERR_SUBTRACT, NULL);
         return false;
     }
-    /* planned: {points = n, first = p, last = q} (ID1412310282) */
-    bool fits = Supervisor_planned_add(cx, m, &Supervisor_planned_token, 1U);
-    if (!fits) {
-        /* a place is full: everything is put back */
-        (void)Supervisor_planned_take(m, &Supervisor_planned_token, 1U);
-        (void)Supervisor_coordenadas_add(cx, m, &Supervisor_coordenadas_token, 1U);
+    if (m->Supervisor_planned.full) {
+        return pn_bag_fail_full(cx, &s_at_Supervisor_planned);
     }
-    return fits;
-}
-
-static void Supervisor_Load_Load_json(const void *binding, pn_text_t *out)
-{
-    pn_json(&s_binding_Supervisor_Load_Load, binding, out);
+    /* coordenadas: (n, p, q) (ID1412310280) */
+    m->Supervisor_coordenadas.full = false;
+    /* planned: {points = n, first = p, last = q} (ID1412310282) */
+    m->Supervisor_planned.value = Supervisor_planned_token;
+    m->Supervisor_planned.full = true;
+    return true;
 }
 
 /* transition Cell.Supervisor.Approach.Send: page `Approach`, transition `Send` (ID1412310300), cell.cpn:6744 */
@@ -2482,11 +1677,12 @@ PN_NET_SEARCH static bool Supervisor_Approach_Send_enumerate(pn_ctx_t *cx, const
     cx->now = m->now;
     cx->rounds = 0U;
     /* planned: s (ID1412310355) */
-    for (uint32_t i = 0U; i < m->Supervisor_planned.used; i++) {
-        b.s = m->Supervisor_planned.token[i].value;
-        if (!sink(user, self, &b)) {
-            return false;
-        }
+    if (!m->Supervisor_planned.full) {
+        return true;
+    }
+    b.s = m->Supervisor_planned.value;
+    if (!sink(user, self, &b)) {
+        return false;
     }
     return true;
 }
@@ -2504,28 +1700,25 @@ PN_NET_SEARCH static bool Supervisor_Approach_Send_fire(pn_ctx_t *cx, void *mark
     if (!pn_ok(cx)) {
         return false;
     }
-    /* planned: s (ID1412310355) */
-    bool is_taken = Supervisor_planned_take(m, &b->s, 1U);
-    if (!is_taken) {
+    if (!m->Supervisor_planned.full) {
         pn_raise(cx, PN_ERR_SUBTRACT, NULL);
         return false;
     }
-    /* order: (JOINT, standoff (#first s), standoff (facing (#first s))) (ID1412310357) */
-    bool fits = Supervisor_Approach_order_add(cx, m, &Supervisor_Approach_order_token, 1U);
-    /* seam: s (ID1412310367) */
-    fits = Supervisor_Approach_seam_add(cx, m, &b->s, 1U) && fits;
-    if (!fits) {
-        /* a place is full: everything is put back */
-        (void)Supervisor_Approach_seam_take(m, &b->s, 1U);
-        (void)Supervisor_Approach_order_take(m, &Supervisor_Approach_order_token, 1U);
-        (void)Supervisor_planned_add(cx, m, &b->s, 1U);
+    if (m->Supervisor_Approach_order.full) {
+        return pn_bag_fail_full(cx, &s_at_Supervisor_Approach_order);
     }
-    return fits;
-}
-
-static void Supervisor_Approach_Send_json(const void *binding, pn_text_t *out)
-{
-    pn_json(&s_binding_Supervisor_Approach_Send, binding, out);
+    if (m->Supervisor_Approach_seam.full) {
+        return pn_bag_fail_full(cx, &s_at_Supervisor_Approach_seam);
+    }
+    /* planned: s (ID1412310355) */
+    m->Supervisor_planned.full = false;
+    /* order: (JOINT, standoff (#first s), standoff (facing (#first s))) (ID1412310357) */
+    m->Supervisor_Approach_order.value = Supervisor_Approach_order_token;
+    m->Supervisor_Approach_order.full = true;
+    /* seam: s (ID1412310367) */
+    m->Supervisor_Approach_seam.value = b->s;
+    m->Supervisor_Approach_seam.full = true;
+    return true;
 }
 
 /* transition Cell.Supervisor.Approach.Arrived: page `Approach`, transition `Arrived` (ID1412310311), cell.cpn:6908 */
@@ -2554,15 +1747,16 @@ PN_NET_SEARCH static bool Supervisor_Approach_Arrived_enumerate(pn_ctx_t *cx, co
     cx->now = m->now;
     cx->rounds = 0U;
     /* done: () (ID1412310363) */
-    if (Supervisor_Approach_done_held(m, (pn_unit_t[]){ PN_UNIT }) < 1U) {
+    if (!m->Supervisor_Approach_done.full) {
         return true;
     }
     /* seam: s (ID1412310369) */
-    for (uint32_t i = 0U; i < m->Supervisor_Approach_seam.used; i++) {
-        b.s = m->Supervisor_Approach_seam.token[i].value;
-        if (!sink(user, self, &b)) {
-            return false;
-        }
+    if (!m->Supervisor_Approach_seam.full) {
+        return true;
+    }
+    b.s = m->Supervisor_Approach_seam.value;
+    if (!sink(user, self, &b)) {
+        return false;
     }
     return true;
 }
@@ -2574,29 +1768,21 @@ PN_NET_SEARCH static bool Supervisor_Approach_Arrived_fire(pn_ctx_t *cx, void *m
     cx->origin = "page `Approach`, transition `Arrived` (ID1412310311)";
     cx->now = m->now;
     cx->rounds = 0U;
-    const pn_unit_t Supervisor_Approach_done_token = PN_UNIT;
-    /* done: () (ID1412310363) */
-    bool is_taken = Supervisor_Approach_done_take(m, &Supervisor_Approach_done_token, 1U);
-    /* seam: s (ID1412310369) */
-    is_taken = is_taken && Supervisor_Approach_seam_take(m, &b->s, 1U);
-    if (!is_taken) {
+    if (!m->Supervisor_Approach_done.full || !m->Supervisor_Approach_seam.full) {
         pn_raise(cx, PN_ERR_SUBTRACT, NULL);
         return false;
     }
-    /* approached: s (ID1412310365) */
-    bool fits = Supervisor_approached_add(cx, m, &b->s, 1U);
-    if (!fits) {
-        /* a place is full: everything is put back */
-        (void)Supervisor_approached_take(m, &b->s, 1U);
-        (void)Supervisor_Approach_seam_add(cx, m, &b->s, 1U);
-        (void)Supervisor_Approach_done_add(cx, m, &Supervisor_Approach_done_token, 1U);
+    if (m->Supervisor_approached.full) {
+        return pn_bag_fail_full(cx, &s_at_Supervisor_approached);
     }
-    return fits;
-}
-
-static void Supervisor_Approach_Arrived_json(const void *binding, pn_text_t *out)
-{
-    pn_json(&s_binding_Supervisor_Approach_Arrived, binding, out);
+    /* done: () (ID1412310363) */
+    m->Supervisor_Approach_done.full = false;
+    /* seam: s (ID1412310369) */
+    m->Supervisor_Approach_seam.full = false;
+    /* approached: s (ID1412310365) */
+    m->Supervisor_approached.value = b->s;
+    m->Supervisor_approached.full = true;
+    return true;
 }
 
 /* transition Cell.Supervisor.Approach.Move both.Command: page `MoveBoth`, transition `Command` (ID1412310941), cell.cpn:20061 */
@@ -2629,13 +1815,14 @@ PN_NET_SEARCH static bool Supervisor_Approach_Move_both_Command_enumerate(pn_ctx
     cx->now = m->now;
     cx->rounds = 0U;
     /* order: (c, p, q) (ID1412310946) */
-    for (uint32_t i = 0U; i < m->Supervisor_Approach_order.used; i++) {
-        b.c = m->Supervisor_Approach_order.token[i].value.c1;
-        b.p = m->Supervisor_Approach_order.token[i].value.c2;
-        b.q = m->Supervisor_Approach_order.token[i].value.c3;
-        if (!sink(user, self, &b)) {
-            return false;
-        }
+    if (!m->Supervisor_Approach_order.full) {
+        return true;
+    }
+    b.c = m->Supervisor_Approach_order.value.c1;
+    b.p = m->Supervisor_Approach_order.value.c2;
+    b.q = m->Supervisor_Approach_order.value.c3;
+    if (!sink(user, self, &b)) {
+        return false;
     }
     return true;
 }
@@ -2647,47 +1834,47 @@ PN_NET_SEARCH static bool Supervisor_Approach_Move_both_Command_fire(pn_ctx_t *c
     cx->origin = "page `MoveBoth`, transition `Command` (ID1412310941)";
     cx->now = m->now;
     cx->rounds = 0U;
-    const PLAN_t Supervisor_Approach_order_token = (PLAN_t){ .c1 = b->c, .c2 = b->p, .c3 = b->q };
-    const pn_unit_t Supervisor_Approach_Move_both_moving_1_token = PN_UNIT;
-    const pn_unit_t Supervisor_Approach_Move_both_moving_2_token = PN_UNIT;
-    /* order: (c, p, q) (ID1412310946) */
-    bool is_taken = Supervisor_Approach_order_take(m, &Supervisor_Approach_order_token, 1U);
-    if (!is_taken) {
+    if (!m->Supervisor_Approach_order.full) {
         pn_raise(cx, PN_ERR_SUBTRACT, NULL);
         return false;
     }
-    /* moving 1: () (ID1412310970) */
-    bool fits = Supervisor_Approach_Move_both_moving_1_add(cx, m,
-        &Supervisor_Approach_Move_both_moving_1_token, 1U);
-    /* dadosrobo1: p (ID1412310982) */
-    fits = dadosrobo1_add(cx, m, &b->p, 1U) && fits;
-    /* flag1_interno: c (ID1412310988) */
-    fits = flag1_interno_add(cx, m, &b->c, 1U) && fits;
-    /* moving 2: () (ID1412311007) */
-    fits = Supervisor_Approach_Move_both_moving_2_add(cx, m,
-        &Supervisor_Approach_Move_both_moving_2_token, 1U) && fits;
-    /* dadosrobo2: q (ID1412311019) */
-    fits = dadosrobo2_add(cx, m, &b->q, 1U) && fits;
-    /* flag2_interno: c (ID1412311025) */
-    fits = flag2_interno_add(cx, m, &b->c, 1U) && fits;
-    if (!fits) {
-        /* a place is full: everything is put back */
-        (void)flag2_interno_take(m, &b->c, 1U);
-        (void)dadosrobo2_take(m, &b->q, 1U);
-        (void)Supervisor_Approach_Move_both_moving_2_take(m,
-            &Supervisor_Approach_Move_both_moving_2_token, 1U);
-        (void)flag1_interno_take(m, &b->c, 1U);
-        (void)dadosrobo1_take(m, &b->p, 1U);
-        (void)Supervisor_Approach_Move_both_moving_1_take(m,
-            &Supervisor_Approach_Move_both_moving_1_token, 1U);
-        (void)Supervisor_Approach_order_add(cx, m, &Supervisor_Approach_order_token, 1U);
+    if (m->Supervisor_Approach_Move_both_moving_1.full) {
+        return pn_bag_fail_full(cx, &s_at_Supervisor_Approach_Move_both_moving_1);
     }
-    return fits;
-}
-
-static void Supervisor_Approach_Move_both_Command_json(const void *binding, pn_text_t *out)
-{
-    pn_json(&s_binding_Supervisor_Approach_Move_both_Command, binding, out);
+    if (m->dadosrobo1.full) {
+        return pn_bag_fail_full(cx, &s_at_dadosrobo1);
+    }
+    if (m->flag1_interno.full) {
+        return pn_bag_fail_full(cx, &s_at_flag1_interno);
+    }
+    if (m->Supervisor_Approach_Move_both_moving_2.full) {
+        return pn_bag_fail_full(cx, &s_at_Supervisor_Approach_Move_both_moving_2);
+    }
+    if (m->dadosrobo2.full) {
+        return pn_bag_fail_full(cx, &s_at_dadosrobo2);
+    }
+    if (m->flag2_interno.full) {
+        return pn_bag_fail_full(cx, &s_at_flag2_interno);
+    }
+    /* order: (c, p, q) (ID1412310946) */
+    m->Supervisor_Approach_order.full = false;
+    /* moving 1: () (ID1412310970) */
+    m->Supervisor_Approach_Move_both_moving_1.full = true;
+    /* dadosrobo1: p (ID1412310982) */
+    m->dadosrobo1.value = b->p;
+    m->dadosrobo1.full = true;
+    /* flag1_interno: c (ID1412310988) */
+    m->flag1_interno.value = b->c;
+    m->flag1_interno.full = true;
+    /* moving 2: () (ID1412311007) */
+    m->Supervisor_Approach_Move_both_moving_2.full = true;
+    /* dadosrobo2: q (ID1412311019) */
+    m->dadosrobo2.value = b->q;
+    m->dadosrobo2.full = true;
+    /* flag2_interno: c (ID1412311025) */
+    m->flag2_interno.value = b->c;
+    m->flag2_interno.full = true;
+    return true;
 }
 
 /* transition Cell.Supervisor.Approach.Move both.Both: page `MoveBoth`, transition `Both` (ID1412310948), cell.cpn:20135 */
@@ -2712,11 +1899,11 @@ PN_NET_SEARCH static bool Supervisor_Approach_Move_both_Both_enumerate(pn_ctx_t 
     cx->now = m->now;
     cx->rounds = 0U;
     /* there 1: () (ID1412310976) */
-    if (Supervisor_Approach_Move_both_there_1_held(m, (pn_unit_t[]){ PN_UNIT }) < 1U) {
+    if (!m->Supervisor_Approach_Move_both_there_1.full) {
         return true;
     }
     /* there 2: () (ID1412311013) */
-    if (Supervisor_Approach_Move_both_there_2_held(m, (pn_unit_t[]){ PN_UNIT }) < 1U) {
+    if (!m->Supervisor_Approach_Move_both_there_2.full) {
         return true;
     }
     if (!sink(user, self, &b)) {
@@ -2732,36 +1919,21 @@ PN_NET_SEARCH static bool Supervisor_Approach_Move_both_Both_fire(pn_ctx_t *cx, 
     cx->origin = "page `MoveBoth`, transition `Both` (ID1412310948)";
     cx->now = m->now;
     cx->rounds = 0U;
-    const pn_unit_t Supervisor_Approach_Move_both_there_1_token = PN_UNIT;
-    const pn_unit_t Supervisor_Approach_Move_both_there_2_token = PN_UNIT;
-    const pn_unit_t Supervisor_Approach_done_token = PN_UNIT;
-    /* there 1: () (ID1412310976) */
-    bool is_taken = Supervisor_Approach_Move_both_there_1_take(m,
-        &Supervisor_Approach_Move_both_there_1_token, 1U);
-    /* there 2: () (ID1412311013) */
-    is_taken = is_taken
-        && Supervisor_Approach_Move_both_there_2_take(m,
-        &Supervisor_Approach_Move_both_there_2_token, 1U);
-    if (!is_taken) {
+    if (!m->Supervisor_Approach_Move_both_there_1.full
+        || !m->Supervisor_Approach_Move_both_there_2.full) {
         pn_raise(cx, PN_ERR_SUBTRACT, NULL);
         return false;
     }
-    /* done: () (ID1412310957) */
-    bool fits = Supervisor_Approach_done_add(cx, m, &Supervisor_Approach_done_token, 1U);
-    if (!fits) {
-        /* a place is full: everything is put back */
-        (void)Supervisor_Approach_done_take(m, &Supervisor_Approach_done_token, 1U);
-        (void)Supervisor_Approach_Move_both_there_2_add(cx, m,
-            &Supervisor_Approach_Move_both_there_2_token, 1U);
-        (void)Supervisor_Approach_Move_both_there_1_add(cx, m,
-            &Supervisor_Approach_Move_both_there_1_token, 1U);
+    if (m->Supervisor_Approach_done.full) {
+        return pn_bag_fail_full(cx, &s_at_Supervisor_Approach_done);
     }
-    return fits;
-}
-
-static void Supervisor_Approach_Move_both_Both_json(const void *binding, pn_text_t *out)
-{
-    pn_json(&s_binding_Supervisor_Approach_Move_both_Both, binding, out);
+    /* there 1: () (ID1412310976) */
+    m->Supervisor_Approach_Move_both_there_1.full = false;
+    /* there 2: () (ID1412311013) */
+    m->Supervisor_Approach_Move_both_there_2.full = false;
+    /* done: () (ID1412310957) */
+    m->Supervisor_Approach_done.full = true;
+    return true;
 }
 
 /* transition Cell.Supervisor.Approach.Move both.Reply 1: page `MoveBoth`, transition `Reply 1` (ID1412310962), cell.cpn:20209 */
@@ -2786,11 +1958,11 @@ PN_NET_SEARCH static bool Supervisor_Approach_Move_both_Reply_1_enumerate(pn_ctx
     cx->now = m->now;
     cx->rounds = 0U;
     /* moving 1: () (ID1412310972) */
-    if (Supervisor_Approach_Move_both_moving_1_held(m, (pn_unit_t[]){ PN_UNIT }) < 1U) {
+    if (!m->Supervisor_Approach_Move_both_moving_1.full) {
         return true;
     }
     /* flag1_externo: DONE (ID1412310994) */
-    if (flag1_externo_held(m, &val_DONE) < 1U) {
+    if (!m->flag1_externo.full || (m->flag1_externo.value != val_DONE)) {
         return true;
     }
     if (!sink(user, self, &b)) {
@@ -2806,35 +1978,20 @@ PN_NET_SEARCH static bool Supervisor_Approach_Move_both_Reply_1_fire(pn_ctx_t *c
     cx->origin = "page `MoveBoth`, transition `Reply 1` (ID1412310962)";
     cx->now = m->now;
     cx->rounds = 0U;
-    const pn_unit_t Supervisor_Approach_Move_both_moving_1_token = PN_UNIT;
-    const int64_t flag1_externo_token = val_DONE;
-    const pn_unit_t Supervisor_Approach_Move_both_there_1_token = PN_UNIT;
-    /* moving 1: () (ID1412310972) */
-    bool is_taken = Supervisor_Approach_Move_both_moving_1_take(m,
-        &Supervisor_Approach_Move_both_moving_1_token, 1U);
-    /* flag1_externo: DONE (ID1412310994) */
-    is_taken = is_taken && flag1_externo_take(m, &flag1_externo_token, 1U);
-    if (!is_taken) {
+    if (!m->Supervisor_Approach_Move_both_moving_1.full || !m->flag1_externo.full) {
         pn_raise(cx, PN_ERR_SUBTRACT, NULL);
         return false;
     }
-    /* there 1: () (ID1412310974) */
-    bool fits = Supervisor_Approach_Move_both_there_1_add(cx, m,
-        &Supervisor_Approach_Move_both_there_1_token, 1U);
-    if (!fits) {
-        /* a place is full: everything is put back */
-        (void)Supervisor_Approach_Move_both_there_1_take(m,
-            &Supervisor_Approach_Move_both_there_1_token, 1U);
-        (void)flag1_externo_add(cx, m, &flag1_externo_token, 1U);
-        (void)Supervisor_Approach_Move_both_moving_1_add(cx, m,
-            &Supervisor_Approach_Move_both_moving_1_token, 1U);
+    if (m->Supervisor_Approach_Move_both_there_1.full) {
+        return pn_bag_fail_full(cx, &s_at_Supervisor_Approach_Move_both_there_1);
     }
-    return fits;
-}
-
-static void Supervisor_Approach_Move_both_Reply_1_json(const void *binding, pn_text_t *out)
-{
-    pn_json(&s_binding_Supervisor_Approach_Move_both_Reply_1, binding, out);
+    /* moving 1: () (ID1412310972) */
+    m->Supervisor_Approach_Move_both_moving_1.full = false;
+    /* flag1_externo: DONE (ID1412310994) */
+    m->flag1_externo.full = false;
+    /* there 1: () (ID1412310974) */
+    m->Supervisor_Approach_Move_both_there_1.full = true;
+    return true;
 }
 
 /* transition Cell.Supervisor.Approach.Move both.Reply 2: page `MoveBoth`, transition `Reply 2` (ID1412310999), cell.cpn:20283 */
@@ -2859,11 +2016,11 @@ PN_NET_SEARCH static bool Supervisor_Approach_Move_both_Reply_2_enumerate(pn_ctx
     cx->now = m->now;
     cx->rounds = 0U;
     /* moving 2: () (ID1412311009) */
-    if (Supervisor_Approach_Move_both_moving_2_held(m, (pn_unit_t[]){ PN_UNIT }) < 1U) {
+    if (!m->Supervisor_Approach_Move_both_moving_2.full) {
         return true;
     }
     /* flag2_externo: DONE (ID1412311031) */
-    if (flag2_externo_held(m, &val_DONE) < 1U) {
+    if (!m->flag2_externo.full || (m->flag2_externo.value != val_DONE)) {
         return true;
     }
     if (!sink(user, self, &b)) {
@@ -2879,35 +2036,20 @@ PN_NET_SEARCH static bool Supervisor_Approach_Move_both_Reply_2_fire(pn_ctx_t *c
     cx->origin = "page `MoveBoth`, transition `Reply 2` (ID1412310999)";
     cx->now = m->now;
     cx->rounds = 0U;
-    const pn_unit_t Supervisor_Approach_Move_both_moving_2_token = PN_UNIT;
-    const int64_t flag2_externo_token = val_DONE;
-    const pn_unit_t Supervisor_Approach_Move_both_there_2_token = PN_UNIT;
-    /* moving 2: () (ID1412311009) */
-    bool is_taken = Supervisor_Approach_Move_both_moving_2_take(m,
-        &Supervisor_Approach_Move_both_moving_2_token, 1U);
-    /* flag2_externo: DONE (ID1412311031) */
-    is_taken = is_taken && flag2_externo_take(m, &flag2_externo_token, 1U);
-    if (!is_taken) {
+    if (!m->Supervisor_Approach_Move_both_moving_2.full || !m->flag2_externo.full) {
         pn_raise(cx, PN_ERR_SUBTRACT, NULL);
         return false;
     }
-    /* there 2: () (ID1412311011) */
-    bool fits = Supervisor_Approach_Move_both_there_2_add(cx, m,
-        &Supervisor_Approach_Move_both_there_2_token, 1U);
-    if (!fits) {
-        /* a place is full: everything is put back */
-        (void)Supervisor_Approach_Move_both_there_2_take(m,
-            &Supervisor_Approach_Move_both_there_2_token, 1U);
-        (void)flag2_externo_add(cx, m, &flag2_externo_token, 1U);
-        (void)Supervisor_Approach_Move_both_moving_2_add(cx, m,
-            &Supervisor_Approach_Move_both_moving_2_token, 1U);
+    if (m->Supervisor_Approach_Move_both_there_2.full) {
+        return pn_bag_fail_full(cx, &s_at_Supervisor_Approach_Move_both_there_2);
     }
-    return fits;
-}
-
-static void Supervisor_Approach_Move_both_Reply_2_json(const void *binding, pn_text_t *out)
-{
-    pn_json(&s_binding_Supervisor_Approach_Move_both_Reply_2, binding, out);
+    /* moving 2: () (ID1412311009) */
+    m->Supervisor_Approach_Move_both_moving_2.full = false;
+    /* flag2_externo: DONE (ID1412311031) */
+    m->flag2_externo.full = false;
+    /* there 2: () (ID1412311011) */
+    m->Supervisor_Approach_Move_both_there_2.full = true;
+    return true;
 }
 
 /* transition Cell.Supervisor.Verify.Ask first: page `Verify`, transition `Ask first` (ID1412310377), cell.cpn:8193 */
@@ -2936,11 +2078,12 @@ PN_NET_SEARCH static bool Supervisor_Verify_Ask_first_enumerate(pn_ctx_t *cx, co
     cx->now = m->now;
     cx->rounds = 0U;
     /* approached: s (ID1412310418) */
-    for (uint32_t i = 0U; i < m->Supervisor_approached.used; i++) {
-        b.s = m->Supervisor_approached.token[i].value;
-        if (!sink(user, self, &b)) {
-            return false;
-        }
+    if (!m->Supervisor_approached.full) {
+        return true;
+    }
+    b.s = m->Supervisor_approached.value;
+    if (!sink(user, self, &b)) {
+        return false;
     }
     return true;
 }
@@ -2958,31 +2101,31 @@ PN_NET_SEARCH static bool Supervisor_Verify_Ask_first_fire(pn_ctx_t *cx, void *m
     if (!pn_ok(cx)) {
         return false;
     }
-    /* approached: s (ID1412310418) */
-    bool is_taken = Supervisor_approached_take(m, &b->s, 1U);
-    if (!is_taken) {
+    if (!m->Supervisor_approached.full) {
         pn_raise(cx, PN_ERR_SUBTRACT, NULL);
         return false;
     }
-    /* first asked: s (ID1412310420) */
-    bool fits = Supervisor_Verify_first_asked_add(cx, m, &b->s, 1U);
-    /* referencia1: #first s (ID1412310430) */
-    fits = referencia1_add(cx, m, &referencia1_token, 1U) && fits;
-    /* flag1_interno: MEASURE (ID1412310432) */
-    fits = flag1_interno_add(cx, m, &flag1_interno_token, 1U) && fits;
-    if (!fits) {
-        /* a place is full: everything is put back */
-        (void)flag1_interno_take(m, &flag1_interno_token, 1U);
-        (void)referencia1_take(m, &referencia1_token, 1U);
-        (void)Supervisor_Verify_first_asked_take(m, &b->s, 1U);
-        (void)Supervisor_approached_add(cx, m, &b->s, 1U);
+    if (m->Supervisor_Verify_first_asked.full) {
+        return pn_bag_fail_full(cx, &s_at_Supervisor_Verify_first_asked);
     }
-    return fits;
-}
-
-static void Supervisor_Verify_Ask_first_json(const void *binding, pn_text_t *out)
-{
-    pn_json(&s_binding_Supervisor_Verify_Ask_first, binding, out);
+    if (m->referencia1.full) {
+        return pn_bag_fail_full(cx, &s_at_referencia1);
+    }
+    if (m->flag1_interno.full) {
+        return pn_bag_fail_full(cx, &s_at_flag1_interno);
+    }
+    /* approached: s (ID1412310418) */
+    m->Supervisor_approached.full = false;
+    /* first asked: s (ID1412310420) */
+    m->Supervisor_Verify_first_asked.value = b->s;
+    m->Supervisor_Verify_first_asked.full = true;
+    /* referencia1: #first s (ID1412310430) */
+    m->referencia1.value = referencia1_token;
+    m->referencia1.full = true;
+    /* flag1_interno: MEASURE (ID1412310432) */
+    m->flag1_interno.value = flag1_interno_token;
+    m->flag1_interno.full = true;
+    return true;
 }
 
 /* transition Cell.Supervisor.Verify.Ask last: page `Verify`, transition `Ask last` (ID1412310385), cell.cpn:8267
@@ -3017,23 +2160,26 @@ PN_NET_SEARCH static bool Supervisor_Verify_Ask_last_enumerate(pn_ctx_t *cx, con
     cx->now = m->now;
     cx->rounds = 0U;
     /* first asked: s (ID1412310422) */
-    for (uint32_t i = 0U; i < m->Supervisor_Verify_first_asked.used; i++) {
-        b.s = m->Supervisor_Verify_first_asked.token[i].value;
-        /* medida1: a (ID1412310438) */
-        for (uint32_t i_2 = 0U; i_2 < m->medida1.used; i_2++) {
-            b.a = m->medida1.token[i_2].value;
-            /* flag1_externo: e (ID1412310440) */
-            for (uint32_t i_3 = 0U; i_3 < m->flag1_externo.used; i_3++) {
-                b.e = m->flag1_externo.token[i_3].value;
-                /* guard [usable (e, #first s, a)] */
-                if (!ml_usable(b.e, b.s.first, b.a)) {
-                    continue;
-                }
-                if (!sink(user, self, &b)) {
-                    return false;
-                }
-            }
-        }
+    if (!m->Supervisor_Verify_first_asked.full) {
+        return true;
+    }
+    b.s = m->Supervisor_Verify_first_asked.value;
+    /* medida1: a (ID1412310438) */
+    if (!m->medida1.full) {
+        return true;
+    }
+    b.a = m->medida1.value;
+    /* flag1_externo: e (ID1412310440) */
+    if (!m->flag1_externo.full) {
+        return true;
+    }
+    b.e = m->flag1_externo.value;
+    /* guard [usable (e, #first s, a)] */
+    if (!ml_usable(b.e, b.s.first, b.a)) {
+        return true;
+    }
+    if (!sink(user, self, &b)) {
+        return false;
     }
     return true;
 }
@@ -3052,37 +2198,35 @@ PN_NET_SEARCH static bool Supervisor_Verify_Ask_last_fire(pn_ctx_t *cx, void *ma
     if (!pn_ok(cx)) {
         return false;
     }
-    /* first asked: s (ID1412310422) */
-    bool is_taken = Supervisor_Verify_first_asked_take(m, &b->s, 1U);
-    /* medida1: a (ID1412310438) */
-    is_taken = is_taken && medida1_take(m, &b->a, 1U);
-    /* flag1_externo: e (ID1412310440) */
-    is_taken = is_taken && flag1_externo_take(m, &b->e, 1U);
-    if (!is_taken) {
+    if (!m->Supervisor_Verify_first_asked.full || !m->medida1.full || !m->flag1_externo.full) {
         pn_raise(cx, PN_ERR_SUBTRACT, NULL);
         return false;
     }
-    /* last asked: (s, a) (ID1412310424) */
-    bool fits = Supervisor_Verify_last_asked_add(cx, m, &Supervisor_Verify_last_asked_token, 1U);
-    /* referencia1: #last s (ID1412310434) */
-    fits = referencia1_add(cx, m, &referencia1_token, 1U) && fits;
-    /* flag1_interno: MEASURE (ID1412310436) */
-    fits = flag1_interno_add(cx, m, &flag1_interno_token, 1U) && fits;
-    if (!fits) {
-        /* a place is full: everything is put back */
-        (void)flag1_interno_take(m, &flag1_interno_token, 1U);
-        (void)referencia1_take(m, &referencia1_token, 1U);
-        (void)Supervisor_Verify_last_asked_take(m, &Supervisor_Verify_last_asked_token, 1U);
-        (void)flag1_externo_add(cx, m, &b->e, 1U);
-        (void)medida1_add(cx, m, &b->a, 1U);
-        (void)Supervisor_Verify_first_asked_add(cx, m, &b->s, 1U);
+    if (m->Supervisor_Verify_last_asked.full) {
+        return pn_bag_fail_full(cx, &s_at_Supervisor_Verify_last_asked);
     }
-    return fits;
-}
-
-static void Supervisor_Verify_Ask_last_json(const void *binding, pn_text_t *out)
-{
-    pn_json(&s_binding_Supervisor_Verify_Ask_last, binding, out);
+    if (m->referencia1.full) {
+        return pn_bag_fail_full(cx, &s_at_referencia1);
+    }
+    if (m->flag1_interno.full) {
+        return pn_bag_fail_full(cx, &s_at_flag1_interno);
+    }
+    /* first asked: s (ID1412310422) */
+    m->Supervisor_Verify_first_asked.full = false;
+    /* medida1: a (ID1412310438) */
+    m->medida1.full = false;
+    /* flag1_externo: e (ID1412310440) */
+    m->flag1_externo.full = false;
+    /* last asked: (s, a) (ID1412310424) */
+    m->Supervisor_Verify_last_asked.value = Supervisor_Verify_last_asked_token;
+    m->Supervisor_Verify_last_asked.full = true;
+    /* referencia1: #last s (ID1412310434) */
+    m->referencia1.value = referencia1_token;
+    m->referencia1.full = true;
+    /* flag1_interno: MEASURE (ID1412310436) */
+    m->flag1_interno.value = flag1_interno_token;
+    m->flag1_interno.full = true;
+    return true;
 }
 
 /* transition Cell.Supervisor.Verify.Measured: page `Verify`, transition `Measured` (ID1412310393), cell.cpn:8341
@@ -3119,24 +2263,27 @@ PN_NET_SEARCH static bool Supervisor_Verify_Measured_enumerate(pn_ctx_t *cx, con
     cx->now = m->now;
     cx->rounds = 0U;
     /* last asked: (s, a) (ID1412310426) */
-    for (uint32_t i = 0U; i < m->Supervisor_Verify_last_asked.used; i++) {
-        b.s = m->Supervisor_Verify_last_asked.token[i].value.c1;
-        b.a = m->Supervisor_Verify_last_asked.token[i].value.c2;
-        /* medida1: b (ID1412310442) */
-        for (uint32_t i_2 = 0U; i_2 < m->medida1.used; i_2++) {
-            b.b = m->medida1.token[i_2].value;
-            /* flag1_externo: e (ID1412310444) */
-            for (uint32_t i_3 = 0U; i_3 < m->flag1_externo.used; i_3++) {
-                b.e = m->flag1_externo.token[i_3].value;
-                /* guard [usable (e, #last s, b)] */
-                if (!ml_usable(b.e, b.s.last, b.b)) {
-                    continue;
-                }
-                if (!sink(user, self, &b)) {
-                    return false;
-                }
-            }
-        }
+    if (!m->Supervisor_Verify_last_asked.full) {
+        return true;
+    }
+    b.s = m->Supervisor_Verify_last_asked.value.c1;
+    b.a = m->Supervisor_Verify_last_asked.value.c2;
+    /* medida1: b (ID1412310442) */
+    if (!m->medida1.full) {
+        return true;
+    }
+    b.b = m->medida1.value;
+    /* flag1_externo: e (ID1412310444) */
+    if (!m->flag1_externo.full) {
+        return true;
+    }
+    b.e = m->flag1_externo.value;
+    /* guard [usable (e, #last s, b)] */
+    if (!ml_usable(b.e, b.s.last, b.b)) {
+        return true;
+    }
+    if (!sink(user, self, &b)) {
+        return false;
     }
     return true;
 }
@@ -3148,33 +2295,24 @@ PN_NET_SEARCH static bool Supervisor_Verify_Measured_fire(pn_ctx_t *cx, void *ma
     cx->origin = "page `Verify`, transition `Measured` (ID1412310393)";
     cx->now = m->now;
     cx->rounds = 0U;
-    const ASKED_t Supervisor_Verify_last_asked_token = (ASKED_t){ .c1 = b->s, .c2 = b->a };
     const VERIFIED_t Supervisor_verified_token = (VERIFIED_t){ .c1 = b->s, .c2 = b->a, .c3 = b->b };
-    /* last asked: (s, a) (ID1412310426) */
-    bool is_taken = Supervisor_Verify_last_asked_take(m, &Supervisor_Verify_last_asked_token, 1U);
-    /* medida1: b (ID1412310442) */
-    is_taken = is_taken && medida1_take(m, &b->b, 1U);
-    /* flag1_externo: e (ID1412310444) */
-    is_taken = is_taken && flag1_externo_take(m, &b->e, 1U);
-    if (!is_taken) {
+    if (!m->Supervisor_Verify_last_asked.full || !m->medida1.full || !m->flag1_externo.full) {
         pn_raise(cx, PN_ERR_SUBTRACT, NULL);
         return false;
     }
-    /* verified: (s, a, b) (ID1412310428) */
-    bool fits = Supervisor_verified_add(cx, m, &Supervisor_verified_token, 1U);
-    if (!fits) {
-        /* a place is full: everything is put back */
-        (void)Supervisor_verified_take(m, &Supervisor_verified_token, 1U);
-        (void)flag1_externo_add(cx, m, &b->e, 1U);
-        (void)medida1_add(cx, m, &b->b, 1U);
-        (void)Supervisor_Verify_last_asked_add(cx, m, &Supervisor_Verify_last_asked_token, 1U);
+    if (m->Supervisor_verified.full) {
+        return pn_bag_fail_full(cx, &s_at_Supervisor_verified);
     }
-    return fits;
-}
-
-static void Supervisor_Verify_Measured_json(const void *binding, pn_text_t *out)
-{
-    pn_json(&s_binding_Supervisor_Verify_Measured, binding, out);
+    /* last asked: (s, a) (ID1412310426) */
+    m->Supervisor_Verify_last_asked.full = false;
+    /* medida1: b (ID1412310442) */
+    m->medida1.full = false;
+    /* flag1_externo: e (ID1412310444) */
+    m->flag1_externo.full = false;
+    /* verified: (s, a, b) (ID1412310428) */
+    m->Supervisor_verified.value = Supervisor_verified_token;
+    m->Supervisor_verified.full = true;
+    return true;
 }
 
 /* transition Cell.Supervisor.Verify.First lost: page `Verify`, transition `First lost` (ID1412320018), cell.cpn:8415
@@ -3209,23 +2347,26 @@ PN_NET_SEARCH static bool Supervisor_Verify_First_lost_enumerate(pn_ctx_t *cx, c
     cx->now = m->now;
     cx->rounds = 0U;
     /* first asked: s (ID1412320036) */
-    for (uint32_t i = 0U; i < m->Supervisor_Verify_first_asked.used; i++) {
-        b.s = m->Supervisor_Verify_first_asked.token[i].value;
-        /* flag1_externo: e (ID1412320038) */
-        for (uint32_t i_2 = 0U; i_2 < m->flag1_externo.used; i_2++) {
-            b.e = m->flag1_externo.token[i_2].value;
-            /* medida1: a (ID1412320040) */
-            for (uint32_t i_3 = 0U; i_3 < m->medida1.used; i_3++) {
-                b.a = m->medida1.token[i_3].value;
-                /* guard [not (usable (e, #first s, a))] */
-                if (ml_usable(b.e, b.s.first, b.a)) {
-                    continue;
-                }
-                if (!sink(user, self, &b)) {
-                    return false;
-                }
-            }
-        }
+    if (!m->Supervisor_Verify_first_asked.full) {
+        return true;
+    }
+    b.s = m->Supervisor_Verify_first_asked.value;
+    /* flag1_externo: e (ID1412320038) */
+    if (!m->flag1_externo.full) {
+        return true;
+    }
+    b.e = m->flag1_externo.value;
+    /* medida1: a (ID1412320040) */
+    if (!m->medida1.full) {
+        return true;
+    }
+    b.a = m->medida1.value;
+    /* guard [not (usable (e, #first s, a))] */
+    if (ml_usable(b.e, b.s.first, b.a)) {
+        return true;
+    }
+    if (!sink(user, self, &b)) {
+        return false;
     }
     return true;
 }
@@ -3233,44 +2374,37 @@ PN_NET_SEARCH static bool Supervisor_Verify_First_lost_enumerate(pn_ctx_t *cx, c
 PN_NET_SEARCH static bool Supervisor_Verify_First_lost_fire(pn_ctx_t *cx, void *marking, void *binding)
 {
     net_marking_t *const m = marking;
-    Supervisor_Verify_First_lost_binding_t *const b = binding;
+    (void)binding;
     cx->origin = "page `Verify`, transition `First lost` (ID1412320018)";
     cx->now = m->now;
     cx->rounds = 0U;
     int64_t Supervisor_result_token = val_FAILED;
     pn_bag_check(cx, &s_at_Supervisor_result, &Supervisor_result_token);
-    const pn_unit_t Supervisor_ended_token = PN_UNIT;
     if (!pn_ok(cx)) {
         return false;
     }
-    /* first asked: s (ID1412320036) */
-    bool is_taken = Supervisor_Verify_first_asked_take(m, &b->s, 1U);
-    /* flag1_externo: e (ID1412320038) */
-    is_taken = is_taken && flag1_externo_take(m, &b->e, 1U);
-    /* medida1: a (ID1412320040) */
-    is_taken = is_taken && medida1_take(m, &b->a, 1U);
-    if (!is_taken) {
+    if (!m->Supervisor_Verify_first_asked.full || !m->flag1_externo.full || !m->medida1.full) {
         pn_raise(cx, PN_ERR_SUBTRACT, NULL);
         return false;
     }
-    /* result: FAILED (ID1412320052) */
-    bool fits = Supervisor_result_add(cx, m, &Supervisor_result_token, 1U);
-    /* ended: () (ID1412320054) */
-    fits = Supervisor_ended_add(cx, m, &Supervisor_ended_token, 1U) && fits;
-    if (!fits) {
-        /* a place is full: everything is put back */
-        (void)Supervisor_ended_take(m, &Supervisor_ended_token, 1U);
-        (void)Supervisor_result_take(m, &Supervisor_result_token, 1U);
-        (void)medida1_add(cx, m, &b->a, 1U);
-        (void)flag1_externo_add(cx, m, &b->e, 1U);
-        (void)Supervisor_Verify_first_asked_add(cx, m, &b->s, 1U);
+    if (m->Supervisor_result.full) {
+        return pn_bag_fail_full(cx, &s_at_Supervisor_result);
     }
-    return fits;
-}
-
-static void Supervisor_Verify_First_lost_json(const void *binding, pn_text_t *out)
-{
-    pn_json(&s_binding_Supervisor_Verify_First_lost, binding, out);
+    if (m->Supervisor_ended.full) {
+        return pn_bag_fail_full(cx, &s_at_Supervisor_ended);
+    }
+    /* first asked: s (ID1412320036) */
+    m->Supervisor_Verify_first_asked.full = false;
+    /* flag1_externo: e (ID1412320038) */
+    m->flag1_externo.full = false;
+    /* medida1: a (ID1412320040) */
+    m->medida1.full = false;
+    /* result: FAILED (ID1412320052) */
+    m->Supervisor_result.value = Supervisor_result_token;
+    m->Supervisor_result.full = true;
+    /* ended: () (ID1412320054) */
+    m->Supervisor_ended.full = true;
+    return true;
 }
 
 /* transition Cell.Supervisor.Verify.Last lost: page `Verify`, transition `Last lost` (ID1412320023), cell.cpn:8489
@@ -3307,24 +2441,27 @@ PN_NET_SEARCH static bool Supervisor_Verify_Last_lost_enumerate(pn_ctx_t *cx, co
     cx->now = m->now;
     cx->rounds = 0U;
     /* last asked: (s, a) (ID1412320042) */
-    for (uint32_t i = 0U; i < m->Supervisor_Verify_last_asked.used; i++) {
-        b.s = m->Supervisor_Verify_last_asked.token[i].value.c1;
-        b.a = m->Supervisor_Verify_last_asked.token[i].value.c2;
-        /* flag1_externo: e (ID1412320044) */
-        for (uint32_t i_2 = 0U; i_2 < m->flag1_externo.used; i_2++) {
-            b.e = m->flag1_externo.token[i_2].value;
-            /* medida1: b (ID1412320046) */
-            for (uint32_t i_3 = 0U; i_3 < m->medida1.used; i_3++) {
-                b.b = m->medida1.token[i_3].value;
-                /* guard [not (usable (e, #last s, b))] */
-                if (ml_usable(b.e, b.s.last, b.b)) {
-                    continue;
-                }
-                if (!sink(user, self, &b)) {
-                    return false;
-                }
-            }
-        }
+    if (!m->Supervisor_Verify_last_asked.full) {
+        return true;
+    }
+    b.s = m->Supervisor_Verify_last_asked.value.c1;
+    b.a = m->Supervisor_Verify_last_asked.value.c2;
+    /* flag1_externo: e (ID1412320044) */
+    if (!m->flag1_externo.full) {
+        return true;
+    }
+    b.e = m->flag1_externo.value;
+    /* medida1: b (ID1412320046) */
+    if (!m->medida1.full) {
+        return true;
+    }
+    b.b = m->medida1.value;
+    /* guard [not (usable (e, #last s, b))] */
+    if (ml_usable(b.e, b.s.last, b.b)) {
+        return true;
+    }
+    if (!sink(user, self, &b)) {
+        return false;
     }
     return true;
 }
@@ -3332,45 +2469,37 @@ PN_NET_SEARCH static bool Supervisor_Verify_Last_lost_enumerate(pn_ctx_t *cx, co
 PN_NET_SEARCH static bool Supervisor_Verify_Last_lost_fire(pn_ctx_t *cx, void *marking, void *binding)
 {
     net_marking_t *const m = marking;
-    Supervisor_Verify_Last_lost_binding_t *const b = binding;
+    (void)binding;
     cx->origin = "page `Verify`, transition `Last lost` (ID1412320023)";
     cx->now = m->now;
     cx->rounds = 0U;
-    const ASKED_t Supervisor_Verify_last_asked_token = (ASKED_t){ .c1 = b->s, .c2 = b->a };
     int64_t Supervisor_result_token = val_FAILED;
     pn_bag_check(cx, &s_at_Supervisor_result, &Supervisor_result_token);
-    const pn_unit_t Supervisor_ended_token = PN_UNIT;
     if (!pn_ok(cx)) {
         return false;
     }
-    /* last asked: (s, a) (ID1412320042) */
-    bool is_taken = Supervisor_Verify_last_asked_take(m, &Supervisor_Verify_last_asked_token, 1U);
-    /* flag1_externo: e (ID1412320044) */
-    is_taken = is_taken && flag1_externo_take(m, &b->e, 1U);
-    /* medida1: b (ID1412320046) */
-    is_taken = is_taken && medida1_take(m, &b->b, 1U);
-    if (!is_taken) {
+    if (!m->Supervisor_Verify_last_asked.full || !m->flag1_externo.full || !m->medida1.full) {
         pn_raise(cx, PN_ERR_SUBTRACT, NULL);
         return false;
     }
-    /* result: FAILED (ID1412320048) */
-    bool fits = Supervisor_result_add(cx, m, &Supervisor_result_token, 1U);
-    /* ended: () (ID1412320050) */
-    fits = Supervisor_ended_add(cx, m, &Supervisor_ended_token, 1U) && fits;
-    if (!fits) {
-        /* a place is full: everything is put back */
-        (void)Supervisor_ended_take(m, &Supervisor_ended_token, 1U);
-        (void)Supervisor_result_take(m, &Supervisor_result_token, 1U);
-        (void)medida1_add(cx, m, &b->b, 1U);
-        (void)flag1_externo_add(cx, m, &b->e, 1U);
-        (void)Supervisor_Verify_last_asked_add(cx, m, &Supervisor_Verify_last_asked_token, 1U);
+    if (m->Supervisor_result.full) {
+        return pn_bag_fail_full(cx, &s_at_Supervisor_result);
     }
-    return fits;
-}
-
-static void Supervisor_Verify_Last_lost_json(const void *binding, pn_text_t *out)
-{
-    pn_json(&s_binding_Supervisor_Verify_Last_lost, binding, out);
+    if (m->Supervisor_ended.full) {
+        return pn_bag_fail_full(cx, &s_at_Supervisor_ended);
+    }
+    /* last asked: (s, a) (ID1412320042) */
+    m->Supervisor_Verify_last_asked.full = false;
+    /* flag1_externo: e (ID1412320044) */
+    m->flag1_externo.full = false;
+    /* medida1: b (ID1412320046) */
+    m->medida1.full = false;
+    /* result: FAILED (ID1412320048) */
+    m->Supervisor_result.value = Supervisor_result_token;
+    m->Supervisor_result.full = true;
+    /* ended: () (ID1412320050) */
+    m->Supervisor_ended.full = true;
+    return true;
 }
 
 /* transition Cell.Supervisor.Correct.Compare: page `Correct`, transition `Compare` (ID1412310453), cell.cpn:10366 */
@@ -3407,15 +2536,16 @@ PN_NET_SEARCH static bool Supervisor_Correct_Compare_enumerate(pn_ctx_t *cx, con
     cx->now = m->now;
     cx->rounds = 0U;
     /* verified: ({points = n, first = p, last = q}, a, b) (ID1412310531) */
-    for (uint32_t i = 0U; i < m->Supervisor_verified.used; i++) {
-        b.p = m->Supervisor_verified.token[i].value.c1.first;
-        b.q = m->Supervisor_verified.token[i].value.c1.last;
-        b.n = m->Supervisor_verified.token[i].value.c1.points;
-        b.a = m->Supervisor_verified.token[i].value.c2;
-        b.b = m->Supervisor_verified.token[i].value.c3;
-        if (!sink(user, self, &b)) {
-            return false;
-        }
+    if (!m->Supervisor_verified.full) {
+        return true;
+    }
+    b.p = m->Supervisor_verified.value.c1.first;
+    b.q = m->Supervisor_verified.value.c1.last;
+    b.n = m->Supervisor_verified.value.c1.points;
+    b.a = m->Supervisor_verified.value.c2;
+    b.b = m->Supervisor_verified.value.c3;
+    if (!sink(user, self, &b)) {
+        return false;
     }
     return true;
 }
@@ -3427,8 +2557,6 @@ PN_NET_SEARCH static bool Supervisor_Correct_Compare_fire(pn_ctx_t *cx, void *ma
     cx->origin = "page `Correct`, transition `Compare` (ID1412310453)";
     cx->now = m->now;
     cx->rounds = 0U;
-    const VERIFIED_t Supervisor_verified_token = (VERIFIED_t){ .c1 = (SEAM_t){ .points = b->n,
-        .first = b->p, .last = b->q }, .c2 = b->a, .c3 = b->b };
     const VECTOR_t token = ml_difference(b->p, b->a);
     RIVETING_t Supervisor_Correct_seam_token = (RIVETING_t){ .c1 = b->n, .c2 = b->p,
         .c3 = ml_pitch(cx, b->n, ml_corrected(b->p, b->a), ml_corrected(b->q, b->b)) };
@@ -3436,28 +2564,25 @@ PN_NET_SEARCH static bool Supervisor_Correct_Compare_fire(pn_ctx_t *cx, void *ma
     if (!pn_ok(cx)) {
         return false;
     }
-    /* verified: ({points = n, first = p, last = q}, a, b) (ID1412310531) */
-    bool is_taken = Supervisor_verified_take(m, &Supervisor_verified_token, 1U);
-    if (!is_taken) {
+    if (!m->Supervisor_verified.full) {
         pn_raise(cx, PN_ERR_SUBTRACT, NULL);
         return false;
     }
-    /* offset: difference (p, a) (ID1412310533) */
-    bool fits = Supervisor_Correct_offset_add(cx, m, &token, 1U);
-    /* seam: (n, p, pitch (n, corrected (p, a), corrected (q, b))) (ID1412310535) */
-    fits = Supervisor_Correct_seam_add(cx, m, &Supervisor_Correct_seam_token, 1U) && fits;
-    if (!fits) {
-        /* a place is full: everything is put back */
-        (void)Supervisor_Correct_seam_take(m, &Supervisor_Correct_seam_token, 1U);
-        (void)Supervisor_Correct_offset_take(m, &token, 1U);
-        (void)Supervisor_verified_add(cx, m, &Supervisor_verified_token, 1U);
+    if (m->Supervisor_Correct_offset.full) {
+        return pn_bag_fail_full(cx, &s_at_Supervisor_Correct_offset);
     }
-    return fits;
-}
-
-static void Supervisor_Correct_Compare_json(const void *binding, pn_text_t *out)
-{
-    pn_json(&s_binding_Supervisor_Correct_Compare, binding, out);
+    if (m->Supervisor_Correct_seam.full) {
+        return pn_bag_fail_full(cx, &s_at_Supervisor_Correct_seam);
+    }
+    /* verified: ({points = n, first = p, last = q}, a, b) (ID1412310531) */
+    m->Supervisor_verified.full = false;
+    /* offset: difference (p, a) (ID1412310533) */
+    m->Supervisor_Correct_offset.value = token;
+    m->Supervisor_Correct_offset.full = true;
+    /* seam: (n, p, pitch (n, corrected (p, a), corrected (q, b))) (ID1412310535) */
+    m->Supervisor_Correct_seam.value = Supervisor_Correct_seam_token;
+    m->Supervisor_Correct_seam.full = true;
+    return true;
 }
 
 /* transition Cell.Supervisor.Correct.Move over: page `Correct`, transition `Move over` (ID1412310461), cell.cpn:10440
@@ -3494,21 +2619,23 @@ PN_NET_SEARCH static bool Supervisor_Correct_Move_over_enumerate(pn_ctx_t *cx, c
     cx->now = m->now;
     cx->rounds = 0U;
     /* offset: v (ID1412310537) */
-    for (uint32_t i = 0U; i < m->Supervisor_Correct_offset.used; i++) {
-        b.v = m->Supervisor_Correct_offset.token[i].value;
-        /* guard [moved v] */
-        if (!ml_moved(b.v.c1, b.v.c2, b.v.c3)) {
-            continue;
-        }
-        /* seam: (n, p, d) (ID1412310539) */
-        for (uint32_t i_2 = 0U; i_2 < m->Supervisor_Correct_seam.used; i_2++) {
-            b.n = m->Supervisor_Correct_seam.token[i_2].value.c1;
-            b.p = m->Supervisor_Correct_seam.token[i_2].value.c2;
-            b.d = m->Supervisor_Correct_seam.token[i_2].value.c3;
-            if (!sink(user, self, &b)) {
-                return false;
-            }
-        }
+    if (!m->Supervisor_Correct_offset.full) {
+        return true;
+    }
+    b.v = m->Supervisor_Correct_offset.value;
+    /* guard [moved v] */
+    if (!ml_moved(b.v.c1, b.v.c2, b.v.c3)) {
+        return true;
+    }
+    /* seam: (n, p, d) (ID1412310539) */
+    if (!m->Supervisor_Correct_seam.full) {
+        return true;
+    }
+    b.n = m->Supervisor_Correct_seam.value.c1;
+    b.p = m->Supervisor_Correct_seam.value.c2;
+    b.d = m->Supervisor_Correct_seam.value.c3;
+    if (!sink(user, self, &b)) {
+        return false;
     }
     return true;
 }
@@ -3527,25 +2654,19 @@ PN_NET_SEARCH static bool Supervisor_Correct_Move_over_fire(pn_ctx_t *cx, void *
         return false;
     }
     /* seam: (n, p, d) (ID1412310539): stays where it is */
-    /* offset: v (ID1412310537) */
-    bool is_taken = Supervisor_Correct_offset_take(m, &b->v, 1U);
-    if (!is_taken) {
+    if (!m->Supervisor_Correct_offset.full) {
         pn_raise(cx, PN_ERR_SUBTRACT, NULL);
         return false;
     }
-    /* order: (LINEAR, inTool (p, v), inTool (facing p, v)) (ID1412310541) */
-    bool fits = Supervisor_Correct_order_add(cx, m, &Supervisor_Correct_order_token, 1U);
-    if (!fits) {
-        /* a place is full: everything is put back */
-        (void)Supervisor_Correct_order_take(m, &Supervisor_Correct_order_token, 1U);
-        (void)Supervisor_Correct_offset_add(cx, m, &b->v, 1U);
+    if (m->Supervisor_Correct_order.full) {
+        return pn_bag_fail_full(cx, &s_at_Supervisor_Correct_order);
     }
-    return fits;
-}
-
-static void Supervisor_Correct_Move_over_json(const void *binding, pn_text_t *out)
-{
-    pn_json(&s_binding_Supervisor_Correct_Move_over, binding, out);
+    /* offset: v (ID1412310537) */
+    m->Supervisor_Correct_offset.full = false;
+    /* order: (LINEAR, inTool (p, v), inTool (facing p, v)) (ID1412310541) */
+    m->Supervisor_Correct_order.value = Supervisor_Correct_order_token;
+    m->Supervisor_Correct_order.full = true;
+    return true;
 }
 
 /* transition Cell.Supervisor.Correct.Moved: page `Correct`, transition `Moved` (ID1412310478), cell.cpn:10604 */
@@ -3578,17 +2699,18 @@ PN_NET_SEARCH static bool Supervisor_Correct_Moved_enumerate(pn_ctx_t *cx, const
     cx->now = m->now;
     cx->rounds = 0U;
     /* done: () (ID1412310547) */
-    if (Supervisor_Correct_done_held(m, (pn_unit_t[]){ PN_UNIT }) < 1U) {
+    if (!m->Supervisor_Correct_done.full) {
         return true;
     }
     /* seam: (n, p, d) (ID1412310549) */
-    for (uint32_t i = 0U; i < m->Supervisor_Correct_seam.used; i++) {
-        b.n = m->Supervisor_Correct_seam.token[i].value.c1;
-        b.p = m->Supervisor_Correct_seam.token[i].value.c2;
-        b.d = m->Supervisor_Correct_seam.token[i].value.c3;
-        if (!sink(user, self, &b)) {
-            return false;
-        }
+    if (!m->Supervisor_Correct_seam.full) {
+        return true;
+    }
+    b.n = m->Supervisor_Correct_seam.value.c1;
+    b.p = m->Supervisor_Correct_seam.value.c2;
+    b.d = m->Supervisor_Correct_seam.value.c3;
+    if (!sink(user, self, &b)) {
+        return false;
     }
     return true;
 }
@@ -3600,33 +2722,23 @@ PN_NET_SEARCH static bool Supervisor_Correct_Moved_fire(pn_ctx_t *cx, void *mark
     cx->origin = "page `Correct`, transition `Moved` (ID1412310478)";
     cx->now = m->now;
     cx->rounds = 0U;
-    const pn_unit_t Supervisor_Correct_done_token = PN_UNIT;
-    const RIVETING_t Supervisor_Correct_seam_token = (RIVETING_t){ .c1 = b->n, .c2 = b->p,
-        .c3 = b->d };
     const RIVETING_t Supervisor_corrected_token = (RIVETING_t){ .c1 = b->n, .c2 = b->p,
         .c3 = b->d };
-    /* done: () (ID1412310547) */
-    bool is_taken = Supervisor_Correct_done_take(m, &Supervisor_Correct_done_token, 1U);
-    /* seam: (n, p, d) (ID1412310549) */
-    is_taken = is_taken && Supervisor_Correct_seam_take(m, &Supervisor_Correct_seam_token, 1U);
-    if (!is_taken) {
+    if (!m->Supervisor_Correct_done.full || !m->Supervisor_Correct_seam.full) {
         pn_raise(cx, PN_ERR_SUBTRACT, NULL);
         return false;
     }
-    /* corrected: (n, p, d) (ID1412310551) */
-    bool fits = Supervisor_corrected_add(cx, m, &Supervisor_corrected_token, 1U);
-    if (!fits) {
-        /* a place is full: everything is put back */
-        (void)Supervisor_corrected_take(m, &Supervisor_corrected_token, 1U);
-        (void)Supervisor_Correct_seam_add(cx, m, &Supervisor_Correct_seam_token, 1U);
-        (void)Supervisor_Correct_done_add(cx, m, &Supervisor_Correct_done_token, 1U);
+    if (m->Supervisor_corrected.full) {
+        return pn_bag_fail_full(cx, &s_at_Supervisor_corrected);
     }
-    return fits;
-}
-
-static void Supervisor_Correct_Moved_json(const void *binding, pn_text_t *out)
-{
-    pn_json(&s_binding_Supervisor_Correct_Moved, binding, out);
+    /* done: () (ID1412310547) */
+    m->Supervisor_Correct_done.full = false;
+    /* seam: (n, p, d) (ID1412310549) */
+    m->Supervisor_Correct_seam.full = false;
+    /* corrected: (n, p, d) (ID1412310551) */
+    m->Supervisor_corrected.value = Supervisor_corrected_token;
+    m->Supervisor_corrected.full = true;
+    return true;
 }
 
 /* transition Cell.Supervisor.Correct.As planned: page `Correct`, transition `As planned` (ID1412310526), cell.cpn:10678
@@ -3663,21 +2775,23 @@ PN_NET_SEARCH static bool Supervisor_Correct_As_planned_enumerate(pn_ctx_t *cx, 
     cx->now = m->now;
     cx->rounds = 0U;
     /* offset: v (ID1412310553) */
-    for (uint32_t i = 0U; i < m->Supervisor_Correct_offset.used; i++) {
-        b.v = m->Supervisor_Correct_offset.token[i].value;
-        /* guard [not (moved v)] */
-        if (ml_moved(b.v.c1, b.v.c2, b.v.c3)) {
-            continue;
-        }
-        /* seam: (n, p, d) (ID1412310555) */
-        for (uint32_t i_2 = 0U; i_2 < m->Supervisor_Correct_seam.used; i_2++) {
-            b.n = m->Supervisor_Correct_seam.token[i_2].value.c1;
-            b.p = m->Supervisor_Correct_seam.token[i_2].value.c2;
-            b.d = m->Supervisor_Correct_seam.token[i_2].value.c3;
-            if (!sink(user, self, &b)) {
-                return false;
-            }
-        }
+    if (!m->Supervisor_Correct_offset.full) {
+        return true;
+    }
+    b.v = m->Supervisor_Correct_offset.value;
+    /* guard [not (moved v)] */
+    if (ml_moved(b.v.c1, b.v.c2, b.v.c3)) {
+        return true;
+    }
+    /* seam: (n, p, d) (ID1412310555) */
+    if (!m->Supervisor_Correct_seam.full) {
+        return true;
+    }
+    b.n = m->Supervisor_Correct_seam.value.c1;
+    b.p = m->Supervisor_Correct_seam.value.c2;
+    b.d = m->Supervisor_Correct_seam.value.c3;
+    if (!sink(user, self, &b)) {
+        return false;
     }
     return true;
 }
@@ -3689,32 +2803,23 @@ PN_NET_SEARCH static bool Supervisor_Correct_As_planned_fire(pn_ctx_t *cx, void 
     cx->origin = "page `Correct`, transition `As planned` (ID1412310526)";
     cx->now = m->now;
     cx->rounds = 0U;
-    const RIVETING_t Supervisor_Correct_seam_token = (RIVETING_t){ .c1 = b->n, .c2 = b->p,
-        .c3 = b->d };
     const RIVETING_t Supervisor_corrected_token = (RIVETING_t){ .c1 = b->n, .c2 = b->p,
         .c3 = b->d };
-    /* offset: v (ID1412310553) */
-    bool is_taken = Supervisor_Correct_offset_take(m, &b->v, 1U);
-    /* seam: (n, p, d) (ID1412310555) */
-    is_taken = is_taken && Supervisor_Correct_seam_take(m, &Supervisor_Correct_seam_token, 1U);
-    if (!is_taken) {
+    if (!m->Supervisor_Correct_offset.full || !m->Supervisor_Correct_seam.full) {
         pn_raise(cx, PN_ERR_SUBTRACT, NULL);
         return false;
     }
-    /* corrected: (n, p, d) (ID1412310557) */
-    bool fits = Supervisor_corrected_add(cx, m, &Supervisor_corrected_token, 1U);
-    if (!fits) {
-        /* a place is full: everything is put back */
-        (void)Supervisor_corrected_take(m, &Supervisor_corrected_token, 1U);
-        (void)Supervisor_Correct_seam_add(cx, m, &Supervisor_Correct_seam_token, 1U);
-        (void)Supervisor_Correct_offset_add(cx, m, &b->v, 1U);
+    if (m->Supervisor_corrected.full) {
+        return pn_bag_fail_full(cx, &s_at_Supervisor_corrected);
     }
-    return fits;
-}
-
-static void Supervisor_Correct_As_planned_json(const void *binding, pn_text_t *out)
-{
-    pn_json(&s_binding_Supervisor_Correct_As_planned, binding, out);
+    /* offset: v (ID1412310553) */
+    m->Supervisor_Correct_offset.full = false;
+    /* seam: (n, p, d) (ID1412310555) */
+    m->Supervisor_Correct_seam.full = false;
+    /* corrected: (n, p, d) (ID1412310557) */
+    m->Supervisor_corrected.value = Supervisor_corrected_token;
+    m->Supervisor_corrected.full = true;
+    return true;
 }
 
 /* transition Cell.Supervisor.Correct.Move both.Command: page `MoveBoth`, transition `Command` (ID1412310941), cell.cpn:20061 */
@@ -3747,13 +2852,14 @@ PN_NET_SEARCH static bool Supervisor_Correct_Move_both_Command_enumerate(pn_ctx_
     cx->now = m->now;
     cx->rounds = 0U;
     /* order: (c, p, q) (ID1412310946) */
-    for (uint32_t i = 0U; i < m->Supervisor_Correct_order.used; i++) {
-        b.c = m->Supervisor_Correct_order.token[i].value.c1;
-        b.p = m->Supervisor_Correct_order.token[i].value.c2;
-        b.q = m->Supervisor_Correct_order.token[i].value.c3;
-        if (!sink(user, self, &b)) {
-            return false;
-        }
+    if (!m->Supervisor_Correct_order.full) {
+        return true;
+    }
+    b.c = m->Supervisor_Correct_order.value.c1;
+    b.p = m->Supervisor_Correct_order.value.c2;
+    b.q = m->Supervisor_Correct_order.value.c3;
+    if (!sink(user, self, &b)) {
+        return false;
     }
     return true;
 }
@@ -3765,47 +2871,47 @@ PN_NET_SEARCH static bool Supervisor_Correct_Move_both_Command_fire(pn_ctx_t *cx
     cx->origin = "page `MoveBoth`, transition `Command` (ID1412310941)";
     cx->now = m->now;
     cx->rounds = 0U;
-    const PLAN_t Supervisor_Correct_order_token = (PLAN_t){ .c1 = b->c, .c2 = b->p, .c3 = b->q };
-    const pn_unit_t Supervisor_Correct_Move_both_moving_1_token = PN_UNIT;
-    const pn_unit_t Supervisor_Correct_Move_both_moving_2_token = PN_UNIT;
-    /* order: (c, p, q) (ID1412310946) */
-    bool is_taken = Supervisor_Correct_order_take(m, &Supervisor_Correct_order_token, 1U);
-    if (!is_taken) {
+    if (!m->Supervisor_Correct_order.full) {
         pn_raise(cx, PN_ERR_SUBTRACT, NULL);
         return false;
     }
-    /* moving 1: () (ID1412310970) */
-    bool fits = Supervisor_Correct_Move_both_moving_1_add(cx, m,
-        &Supervisor_Correct_Move_both_moving_1_token, 1U);
-    /* dadosrobo1: p (ID1412310982) */
-    fits = dadosrobo1_add(cx, m, &b->p, 1U) && fits;
-    /* flag1_interno: c (ID1412310988) */
-    fits = flag1_interno_add(cx, m, &b->c, 1U) && fits;
-    /* moving 2: () (ID1412311007) */
-    fits = Supervisor_Correct_Move_both_moving_2_add(cx, m,
-        &Supervisor_Correct_Move_both_moving_2_token, 1U) && fits;
-    /* dadosrobo2: q (ID1412311019) */
-    fits = dadosrobo2_add(cx, m, &b->q, 1U) && fits;
-    /* flag2_interno: c (ID1412311025) */
-    fits = flag2_interno_add(cx, m, &b->c, 1U) && fits;
-    if (!fits) {
-        /* a place is full: everything is put back */
-        (void)flag2_interno_take(m, &b->c, 1U);
-        (void)dadosrobo2_take(m, &b->q, 1U);
-        (void)Supervisor_Correct_Move_both_moving_2_take(m,
-            &Supervisor_Correct_Move_both_moving_2_token, 1U);
-        (void)flag1_interno_take(m, &b->c, 1U);
-        (void)dadosrobo1_take(m, &b->p, 1U);
-        (void)Supervisor_Correct_Move_both_moving_1_take(m,
-            &Supervisor_Correct_Move_both_moving_1_token, 1U);
-        (void)Supervisor_Correct_order_add(cx, m, &Supervisor_Correct_order_token, 1U);
+    if (m->Supervisor_Correct_Move_both_moving_1.full) {
+        return pn_bag_fail_full(cx, &s_at_Supervisor_Correct_Move_both_moving_1);
     }
-    return fits;
-}
-
-static void Supervisor_Correct_Move_both_Command_json(const void *binding, pn_text_t *out)
-{
-    pn_json(&s_binding_Supervisor_Correct_Move_both_Command, binding, out);
+    if (m->dadosrobo1.full) {
+        return pn_bag_fail_full(cx, &s_at_dadosrobo1);
+    }
+    if (m->flag1_interno.full) {
+        return pn_bag_fail_full(cx, &s_at_flag1_interno);
+    }
+    if (m->Supervisor_Correct_Move_both_moving_2.full) {
+        return pn_bag_fail_full(cx, &s_at_Supervisor_Correct_Move_both_moving_2);
+    }
+    if (m->dadosrobo2.full) {
+        return pn_bag_fail_full(cx, &s_at_dadosrobo2);
+    }
+    if (m->flag2_interno.full) {
+        return pn_bag_fail_full(cx, &s_at_flag2_interno);
+    }
+    /* order: (c, p, q) (ID1412310946) */
+    m->Supervisor_Correct_order.full = false;
+    /* moving 1: () (ID1412310970) */
+    m->Supervisor_Correct_Move_both_moving_1.full = true;
+    /* dadosrobo1: p (ID1412310982) */
+    m->dadosrobo1.value = b->p;
+    m->dadosrobo1.full = true;
+    /* flag1_interno: c (ID1412310988) */
+    m->flag1_interno.value = b->c;
+    m->flag1_interno.full = true;
+    /* moving 2: () (ID1412311007) */
+    m->Supervisor_Correct_Move_both_moving_2.full = true;
+    /* dadosrobo2: q (ID1412311019) */
+    m->dadosrobo2.value = b->q;
+    m->dadosrobo2.full = true;
+    /* flag2_interno: c (ID1412311025) */
+    m->flag2_interno.value = b->c;
+    m->flag2_interno.full = true;
+    return true;
 }
 
 /* transition Cell.Supervisor.Correct.Move both.Both: page `MoveBoth`, transition `Both` (ID1412310948), cell.cpn:20135 */
@@ -3830,11 +2936,11 @@ PN_NET_SEARCH static bool Supervisor_Correct_Move_both_Both_enumerate(pn_ctx_t *
     cx->now = m->now;
     cx->rounds = 0U;
     /* there 1: () (ID1412310976) */
-    if (Supervisor_Correct_Move_both_there_1_held(m, (pn_unit_t[]){ PN_UNIT }) < 1U) {
+    if (!m->Supervisor_Correct_Move_both_there_1.full) {
         return true;
     }
     /* there 2: () (ID1412311013) */
-    if (Supervisor_Correct_Move_both_there_2_held(m, (pn_unit_t[]){ PN_UNIT }) < 1U) {
+    if (!m->Supervisor_Correct_Move_both_there_2.full) {
         return true;
     }
     if (!sink(user, self, &b)) {
@@ -3850,36 +2956,21 @@ PN_NET_SEARCH static bool Supervisor_Correct_Move_both_Both_fire(pn_ctx_t *cx, v
     cx->origin = "page `MoveBoth`, transition `Both` (ID1412310948)";
     cx->now = m->now;
     cx->rounds = 0U;
-    const pn_unit_t Supervisor_Correct_Move_both_there_1_token = PN_UNIT;
-    const pn_unit_t Supervisor_Correct_Move_both_there_2_token = PN_UNIT;
-    const pn_unit_t Supervisor_Correct_done_token = PN_UNIT;
-    /* there 1: () (ID1412310976) */
-    bool is_taken = Supervisor_Correct_Move_both_there_1_take(m,
-        &Supervisor_Correct_Move_both_there_1_token, 1U);
-    /* there 2: () (ID1412311013) */
-    is_taken = is_taken
-        && Supervisor_Correct_Move_both_there_2_take(m, &Supervisor_Correct_Move_both_there_2_token,
-        1U);
-    if (!is_taken) {
+    if (!m->Supervisor_Correct_Move_both_there_1.full
+        || !m->Supervisor_Correct_Move_both_there_2.full) {
         pn_raise(cx, PN_ERR_SUBTRACT, NULL);
         return false;
     }
-    /* done: () (ID1412310957) */
-    bool fits = Supervisor_Correct_done_add(cx, m, &Supervisor_Correct_done_token, 1U);
-    if (!fits) {
-        /* a place is full: everything is put back */
-        (void)Supervisor_Correct_done_take(m, &Supervisor_Correct_done_token, 1U);
-        (void)Supervisor_Correct_Move_both_there_2_add(cx, m,
-            &Supervisor_Correct_Move_both_there_2_token, 1U);
-        (void)Supervisor_Correct_Move_both_there_1_add(cx, m,
-            &Supervisor_Correct_Move_both_there_1_token, 1U);
+    if (m->Supervisor_Correct_done.full) {
+        return pn_bag_fail_full(cx, &s_at_Supervisor_Correct_done);
     }
-    return fits;
-}
-
-static void Supervisor_Correct_Move_both_Both_json(const void *binding, pn_text_t *out)
-{
-    pn_json(&s_binding_Supervisor_Correct_Move_both_Both, binding, out);
+    /* there 1: () (ID1412310976) */
+    m->Supervisor_Correct_Move_both_there_1.full = false;
+    /* there 2: () (ID1412311013) */
+    m->Supervisor_Correct_Move_both_there_2.full = false;
+    /* done: () (ID1412310957) */
+    m->Supervisor_Correct_done.full = true;
+    return true;
 }
 
 /* transition Cell.Supervisor.Correct.Move both.Reply 1: page `MoveBoth`, transition `Reply 1` (ID1412310962), cell.cpn:20209 */
@@ -3904,11 +2995,11 @@ PN_NET_SEARCH static bool Supervisor_Correct_Move_both_Reply_1_enumerate(pn_ctx_
     cx->now = m->now;
     cx->rounds = 0U;
     /* moving 1: () (ID1412310972) */
-    if (Supervisor_Correct_Move_both_moving_1_held(m, (pn_unit_t[]){ PN_UNIT }) < 1U) {
+    if (!m->Supervisor_Correct_Move_both_moving_1.full) {
         return true;
     }
     /* flag1_externo: DONE (ID1412310994) */
-    if (flag1_externo_held(m, &val_DONE) < 1U) {
+    if (!m->flag1_externo.full || (m->flag1_externo.value != val_DONE)) {
         return true;
     }
     if (!sink(user, self, &b)) {
@@ -3924,35 +3015,20 @@ PN_NET_SEARCH static bool Supervisor_Correct_Move_both_Reply_1_fire(pn_ctx_t *cx
     cx->origin = "page `MoveBoth`, transition `Reply 1` (ID1412310962)";
     cx->now = m->now;
     cx->rounds = 0U;
-    const pn_unit_t Supervisor_Correct_Move_both_moving_1_token = PN_UNIT;
-    const int64_t flag1_externo_token = val_DONE;
-    const pn_unit_t Supervisor_Correct_Move_both_there_1_token = PN_UNIT;
-    /* moving 1: () (ID1412310972) */
-    bool is_taken = Supervisor_Correct_Move_both_moving_1_take(m,
-        &Supervisor_Correct_Move_both_moving_1_token, 1U);
-    /* flag1_externo: DONE (ID1412310994) */
-    is_taken = is_taken && flag1_externo_take(m, &flag1_externo_token, 1U);
-    if (!is_taken) {
+    if (!m->Supervisor_Correct_Move_both_moving_1.full || !m->flag1_externo.full) {
         pn_raise(cx, PN_ERR_SUBTRACT, NULL);
         return false;
     }
-    /* there 1: () (ID1412310974) */
-    bool fits = Supervisor_Correct_Move_both_there_1_add(cx, m,
-        &Supervisor_Correct_Move_both_there_1_token, 1U);
-    if (!fits) {
-        /* a place is full: everything is put back */
-        (void)Supervisor_Correct_Move_both_there_1_take(m,
-            &Supervisor_Correct_Move_both_there_1_token, 1U);
-        (void)flag1_externo_add(cx, m, &flag1_externo_token, 1U);
-        (void)Supervisor_Correct_Move_both_moving_1_add(cx, m,
-            &Supervisor_Correct_Move_both_moving_1_token, 1U);
+    if (m->Supervisor_Correct_Move_both_there_1.full) {
+        return pn_bag_fail_full(cx, &s_at_Supervisor_Correct_Move_both_there_1);
     }
-    return fits;
-}
-
-static void Supervisor_Correct_Move_both_Reply_1_json(const void *binding, pn_text_t *out)
-{
-    pn_json(&s_binding_Supervisor_Correct_Move_both_Reply_1, binding, out);
+    /* moving 1: () (ID1412310972) */
+    m->Supervisor_Correct_Move_both_moving_1.full = false;
+    /* flag1_externo: DONE (ID1412310994) */
+    m->flag1_externo.full = false;
+    /* there 1: () (ID1412310974) */
+    m->Supervisor_Correct_Move_both_there_1.full = true;
+    return true;
 }
 
 /* transition Cell.Supervisor.Correct.Move both.Reply 2: page `MoveBoth`, transition `Reply 2` (ID1412310999), cell.cpn:20283 */
@@ -3977,11 +3053,11 @@ PN_NET_SEARCH static bool Supervisor_Correct_Move_both_Reply_2_enumerate(pn_ctx_
     cx->now = m->now;
     cx->rounds = 0U;
     /* moving 2: () (ID1412311009) */
-    if (Supervisor_Correct_Move_both_moving_2_held(m, (pn_unit_t[]){ PN_UNIT }) < 1U) {
+    if (!m->Supervisor_Correct_Move_both_moving_2.full) {
         return true;
     }
     /* flag2_externo: DONE (ID1412311031) */
-    if (flag2_externo_held(m, &val_DONE) < 1U) {
+    if (!m->flag2_externo.full || (m->flag2_externo.value != val_DONE)) {
         return true;
     }
     if (!sink(user, self, &b)) {
@@ -3997,35 +3073,20 @@ PN_NET_SEARCH static bool Supervisor_Correct_Move_both_Reply_2_fire(pn_ctx_t *cx
     cx->origin = "page `MoveBoth`, transition `Reply 2` (ID1412310999)";
     cx->now = m->now;
     cx->rounds = 0U;
-    const pn_unit_t Supervisor_Correct_Move_both_moving_2_token = PN_UNIT;
-    const int64_t flag2_externo_token = val_DONE;
-    const pn_unit_t Supervisor_Correct_Move_both_there_2_token = PN_UNIT;
-    /* moving 2: () (ID1412311009) */
-    bool is_taken = Supervisor_Correct_Move_both_moving_2_take(m,
-        &Supervisor_Correct_Move_both_moving_2_token, 1U);
-    /* flag2_externo: DONE (ID1412311031) */
-    is_taken = is_taken && flag2_externo_take(m, &flag2_externo_token, 1U);
-    if (!is_taken) {
+    if (!m->Supervisor_Correct_Move_both_moving_2.full || !m->flag2_externo.full) {
         pn_raise(cx, PN_ERR_SUBTRACT, NULL);
         return false;
     }
-    /* there 2: () (ID1412311011) */
-    bool fits = Supervisor_Correct_Move_both_there_2_add(cx, m,
-        &Supervisor_Correct_Move_both_there_2_token, 1U);
-    if (!fits) {
-        /* a place is full: everything is put back */
-        (void)Supervisor_Correct_Move_both_there_2_take(m,
-            &Supervisor_Correct_Move_both_there_2_token, 1U);
-        (void)flag2_externo_add(cx, m, &flag2_externo_token, 1U);
-        (void)Supervisor_Correct_Move_both_moving_2_add(cx, m,
-            &Supervisor_Correct_Move_both_moving_2_token, 1U);
+    if (m->Supervisor_Correct_Move_both_there_2.full) {
+        return pn_bag_fail_full(cx, &s_at_Supervisor_Correct_Move_both_there_2);
     }
-    return fits;
-}
-
-static void Supervisor_Correct_Move_both_Reply_2_json(const void *binding, pn_text_t *out)
-{
-    pn_json(&s_binding_Supervisor_Correct_Move_both_Reply_2, binding, out);
+    /* moving 2: () (ID1412311009) */
+    m->Supervisor_Correct_Move_both_moving_2.full = false;
+    /* flag2_externo: DONE (ID1412311031) */
+    m->flag2_externo.full = false;
+    /* there 2: () (ID1412311011) */
+    m->Supervisor_Correct_Move_both_there_2.full = true;
+    return true;
 }
 
 /* transition Cell.Supervisor.Install.Go back: page `Install`, transition `Go back` (ID1412310594), cell.cpn:12441
@@ -4062,26 +3123,27 @@ PN_NET_SEARCH static bool Supervisor_Install_Go_back_enumerate(pn_ctx_t *cx, con
     cx->now = m->now;
     cx->rounds = 0U;
     /* riveted: () (ID1412310685) */
-    if (Supervisor_Install_riveted_held(m, (pn_unit_t[]){ PN_UNIT }) < 1U) {
+    if (!m->Supervisor_Install_riveted.full) {
         return true;
     }
     /* result: DONE (ID1412320065) */
-    if (Supervisor_result_held(m, &val_DONE) < 1U) {
+    if (!m->Supervisor_result.full || (m->Supervisor_result.value != val_DONE)) {
         return true;
     }
     /* work: (n, k, p, d) (ID1412310705) */
-    for (uint32_t i = 0U; i < m->Supervisor_Install_work.used; i++) {
-        b.n = m->Supervisor_Install_work.token[i].value.c1;
-        b.k = m->Supervisor_Install_work.token[i].value.c2;
-        b.p = m->Supervisor_Install_work.token[i].value.c3;
-        b.d = m->Supervisor_Install_work.token[i].value.c4;
-        /* guard [k = 1] */
-        if (b.k != 1) {
-            continue;
-        }
-        if (!sink(user, self, &b)) {
-            return false;
-        }
+    if (!m->Supervisor_Install_work.full) {
+        return true;
+    }
+    b.n = m->Supervisor_Install_work.value.c1;
+    b.k = m->Supervisor_Install_work.value.c2;
+    b.p = m->Supervisor_Install_work.value.c3;
+    b.d = m->Supervisor_Install_work.value.c4;
+    /* guard [k = 1] */
+    if (b.k != 1) {
+        return true;
+    }
+    if (!sink(user, self, &b)) {
+        return false;
     }
     return true;
 }
@@ -4093,9 +3155,6 @@ PN_NET_SEARCH static bool Supervisor_Install_Go_back_fire(pn_ctx_t *cx, void *ma
     cx->origin = "page `Install`, transition `Go back` (ID1412310594)";
     cx->now = m->now;
     cx->rounds = 0U;
-    const pn_unit_t Supervisor_Install_riveted_token = PN_UNIT;
-    const WORK_t Supervisor_Install_work_token = (WORK_t){ .c1 = b->n, .c2 = b->k, .c3 = b->p,
-        .c4 = b->d };
     PLAN_t Supervisor_Install_return_token = (PLAN_t){ .c1 = val_LINEAR,
         .c2 = ml_inTool(b->p, ml_wayBack(cx, b->n, b->d)),
         .c3 = ml_inTool(ml_facing(b->p), ml_wayBack(cx, b->n, b->d)) };
@@ -4104,28 +3163,21 @@ PN_NET_SEARCH static bool Supervisor_Install_Go_back_fire(pn_ctx_t *cx, void *ma
         return false;
     }
     /* result: DONE (ID1412320065): stays where it is */
-    /* riveted: () (ID1412310685) */
-    bool is_taken = Supervisor_Install_riveted_take(m, &Supervisor_Install_riveted_token, 1U);
-    /* work: (n, k, p, d) (ID1412310705) */
-    is_taken = is_taken && Supervisor_Install_work_take(m, &Supervisor_Install_work_token, 1U);
-    if (!is_taken) {
+    if (!m->Supervisor_Install_riveted.full || !m->Supervisor_Install_work.full) {
         pn_raise(cx, PN_ERR_SUBTRACT, NULL);
         return false;
     }
-    /* return: (LINEAR, inTool (p, wayBack (n, d)), inTool (facing p, wayBack (n, d))) (ID141 ... */
-    bool fits = Supervisor_Install_return_add(cx, m, &Supervisor_Install_return_token, 1U);
-    if (!fits) {
-        /* a place is full: everything is put back */
-        (void)Supervisor_Install_return_take(m, &Supervisor_Install_return_token, 1U);
-        (void)Supervisor_Install_work_add(cx, m, &Supervisor_Install_work_token, 1U);
-        (void)Supervisor_Install_riveted_add(cx, m, &Supervisor_Install_riveted_token, 1U);
+    if (m->Supervisor_Install_return.full) {
+        return pn_bag_fail_full(cx, &s_at_Supervisor_Install_return);
     }
-    return fits;
-}
-
-static void Supervisor_Install_Go_back_json(const void *binding, pn_text_t *out)
-{
-    pn_json(&s_binding_Supervisor_Install_Go_back, binding, out);
+    /* riveted: () (ID1412310685) */
+    m->Supervisor_Install_riveted.full = false;
+    /* work: (n, k, p, d) (ID1412310705) */
+    m->Supervisor_Install_work.full = false;
+    /* return: (LINEAR, inTool (p, wayBack (n, d)), inTool (facing p, wayBack (n, d))) (ID141 ... */
+    m->Supervisor_Install_return.value = Supervisor_Install_return_token;
+    m->Supervisor_Install_return.full = true;
+    return true;
 }
 
 /* transition Cell.Supervisor.Install.Next rivet: page `Install`, transition `Next rivet` (ID1412310624), cell.cpn:12785
@@ -4162,26 +3214,27 @@ PN_NET_SEARCH static bool Supervisor_Install_Next_rivet_enumerate(pn_ctx_t *cx, 
     cx->now = m->now;
     cx->rounds = 0U;
     /* riveted: () (ID1412310697) */
-    if (Supervisor_Install_riveted_held(m, (pn_unit_t[]){ PN_UNIT }) < 1U) {
+    if (!m->Supervisor_Install_riveted.full) {
         return true;
     }
     /* result: DONE (ID1412320063) */
-    if (Supervisor_result_held(m, &val_DONE) < 1U) {
+    if (!m->Supervisor_result.full || (m->Supervisor_result.value != val_DONE)) {
         return true;
     }
     /* work: (n, k, p, d) (ID1412310701) */
-    for (uint32_t i = 0U; i < m->Supervisor_Install_work.used; i++) {
-        b.n = m->Supervisor_Install_work.token[i].value.c1;
-        b.k = m->Supervisor_Install_work.token[i].value.c2;
-        b.p = m->Supervisor_Install_work.token[i].value.c3;
-        b.d = m->Supervisor_Install_work.token[i].value.c4;
-        /* guard [k > 1] */
-        if (!(b.k > 1)) {
-            continue;
-        }
-        if (!sink(user, self, &b)) {
-            return false;
-        }
+    if (!m->Supervisor_Install_work.full) {
+        return true;
+    }
+    b.n = m->Supervisor_Install_work.value.c1;
+    b.k = m->Supervisor_Install_work.value.c2;
+    b.p = m->Supervisor_Install_work.value.c3;
+    b.d = m->Supervisor_Install_work.value.c4;
+    /* guard [k > 1] */
+    if (!(b.k > 1)) {
+        return true;
+    }
+    if (!sink(user, self, &b)) {
+        return false;
     }
     return true;
 }
@@ -4193,47 +3246,36 @@ PN_NET_SEARCH static bool Supervisor_Install_Next_rivet_fire(pn_ctx_t *cx, void 
     cx->origin = "page `Install`, transition `Next rivet` (ID1412310624)";
     cx->now = m->now;
     cx->rounds = 0U;
-    const pn_unit_t Supervisor_Install_riveted_token = PN_UNIT;
-    const int64_t Supervisor_result_token = val_DONE;
-    const WORK_t Supervisor_Install_work_token = (WORK_t){ .c1 = b->n, .c2 = b->k, .c3 = b->p,
-        .c4 = b->d };
     PLAN_t Supervisor_Install_shift_token = (PLAN_t){ .c1 = val_LINEAR, .c2 = ml_inTool(b->p, b->d),
         .c3 = ml_inTool(ml_facing(b->p), b->d) };
     pn_bag_check(cx, &s_at_Supervisor_Install_shift, &Supervisor_Install_shift_token);
-    WORK_t Supervisor_Install_work_token_2 = (WORK_t){ .c1 = b->n, .c2 = pn_int_sub(cx, b->k, 1),
+    WORK_t Supervisor_Install_work_token = (WORK_t){ .c1 = b->n, .c2 = pn_int_sub(cx, b->k, 1),
         .c3 = b->p, .c4 = b->d };
-    pn_bag_check(cx, &s_at_Supervisor_Install_work, &Supervisor_Install_work_token_2);
+    pn_bag_check(cx, &s_at_Supervisor_Install_work, &Supervisor_Install_work_token);
     if (!pn_ok(cx)) {
         return false;
     }
-    /* riveted: () (ID1412310697) */
-    bool is_taken = Supervisor_Install_riveted_take(m, &Supervisor_Install_riveted_token, 1U);
-    /* result: DONE (ID1412320063) */
-    is_taken = is_taken && Supervisor_result_take(m, &Supervisor_result_token, 1U);
-    /* work: (n, k, p, d) (ID1412310701) */
-    is_taken = is_taken && Supervisor_Install_work_take(m, &Supervisor_Install_work_token, 1U);
-    if (!is_taken) {
+    if (!m->Supervisor_Install_riveted.full || !m->Supervisor_result.full
+        || !m->Supervisor_Install_work.full) {
         pn_raise(cx, PN_ERR_SUBTRACT, NULL);
         return false;
     }
-    /* shift: (LINEAR, inTool (p, d), inTool (facing p, d)) (ID1412310699) */
-    bool fits = Supervisor_Install_shift_add(cx, m, &Supervisor_Install_shift_token, 1U);
-    /* work: (n, k - 1, p, d) (ID1412310703) */
-    fits = Supervisor_Install_work_add(cx, m, &Supervisor_Install_work_token_2, 1U) && fits;
-    if (!fits) {
-        /* a place is full: everything is put back */
-        (void)Supervisor_Install_work_take(m, &Supervisor_Install_work_token_2, 1U);
-        (void)Supervisor_Install_shift_take(m, &Supervisor_Install_shift_token, 1U);
-        (void)Supervisor_Install_work_add(cx, m, &Supervisor_Install_work_token, 1U);
-        (void)Supervisor_result_add(cx, m, &Supervisor_result_token, 1U);
-        (void)Supervisor_Install_riveted_add(cx, m, &Supervisor_Install_riveted_token, 1U);
+    if (m->Supervisor_Install_shift.full) {
+        return pn_bag_fail_full(cx, &s_at_Supervisor_Install_shift);
     }
-    return fits;
-}
-
-static void Supervisor_Install_Next_rivet_json(const void *binding, pn_text_t *out)
-{
-    pn_json(&s_binding_Supervisor_Install_Next_rivet, binding, out);
+    /* riveted: () (ID1412310697) */
+    m->Supervisor_Install_riveted.full = false;
+    /* result: DONE (ID1412320063) */
+    m->Supervisor_result.full = false;
+    /* work: (n, k, p, d) (ID1412310701) */
+    m->Supervisor_Install_work.full = false;
+    /* shift: (LINEAR, inTool (p, d), inTool (facing p, d)) (ID1412310699) */
+    m->Supervisor_Install_shift.value = Supervisor_Install_shift_token;
+    m->Supervisor_Install_shift.full = true;
+    /* work: (n, k - 1, p, d) (ID1412310703) */
+    m->Supervisor_Install_work.value = Supervisor_Install_work_token;
+    m->Supervisor_Install_work.full = true;
+    return true;
 }
 
 /* transition Cell.Supervisor.Install.Start: page `Install`, transition `Start` (ID1412310632), cell.cpn:12859 */
@@ -4266,13 +3308,14 @@ PN_NET_SEARCH static bool Supervisor_Install_Start_enumerate(pn_ctx_t *cx, const
     cx->now = m->now;
     cx->rounds = 0U;
     /* corrected: (n, p, d) (ID1412310691) */
-    for (uint32_t i = 0U; i < m->Supervisor_corrected.used; i++) {
-        b.n = m->Supervisor_corrected.token[i].value.c1;
-        b.p = m->Supervisor_corrected.token[i].value.c2;
-        b.d = m->Supervisor_corrected.token[i].value.c3;
-        if (!sink(user, self, &b)) {
-            return false;
-        }
+    if (!m->Supervisor_corrected.full) {
+        return true;
+    }
+    b.n = m->Supervisor_corrected.value.c1;
+    b.p = m->Supervisor_corrected.value.c2;
+    b.d = m->Supervisor_corrected.value.c3;
+    if (!sink(user, self, &b)) {
+        return false;
     }
     return true;
 }
@@ -4284,37 +3327,30 @@ PN_NET_SEARCH static bool Supervisor_Install_Start_fire(pn_ctx_t *cx, void *mark
     cx->origin = "page `Install`, transition `Start` (ID1412310632)";
     cx->now = m->now;
     cx->rounds = 0U;
-    const RIVETING_t Supervisor_corrected_token = (RIVETING_t){ .c1 = b->n, .c2 = b->p,
-        .c3 = b->d };
-    const pn_unit_t Supervisor_Install_ready_token = PN_UNIT;
     WORK_t Supervisor_Install_work_token = (WORK_t){ .c1 = b->n, .c2 = pn_int_add(cx, b->n, 2),
         .c3 = b->p, .c4 = b->d };
     pn_bag_check(cx, &s_at_Supervisor_Install_work, &Supervisor_Install_work_token);
     if (!pn_ok(cx)) {
         return false;
     }
-    /* corrected: (n, p, d) (ID1412310691) */
-    bool is_taken = Supervisor_corrected_take(m, &Supervisor_corrected_token, 1U);
-    if (!is_taken) {
+    if (!m->Supervisor_corrected.full) {
         pn_raise(cx, PN_ERR_SUBTRACT, NULL);
         return false;
     }
-    /* ready: () (ID1412310693) */
-    bool fits = Supervisor_Install_ready_add(cx, m, &Supervisor_Install_ready_token, 1U);
-    /* work: (n, n + 2, p, d) (ID1412310695) */
-    fits = Supervisor_Install_work_add(cx, m, &Supervisor_Install_work_token, 1U) && fits;
-    if (!fits) {
-        /* a place is full: everything is put back */
-        (void)Supervisor_Install_work_take(m, &Supervisor_Install_work_token, 1U);
-        (void)Supervisor_Install_ready_take(m, &Supervisor_Install_ready_token, 1U);
-        (void)Supervisor_corrected_add(cx, m, &Supervisor_corrected_token, 1U);
+    if (m->Supervisor_Install_ready.full) {
+        return pn_bag_fail_full(cx, &s_at_Supervisor_Install_ready);
     }
-    return fits;
-}
-
-static void Supervisor_Install_Start_json(const void *binding, pn_text_t *out)
-{
-    pn_json(&s_binding_Supervisor_Install_Start, binding, out);
+    if (m->Supervisor_Install_work.full) {
+        return pn_bag_fail_full(cx, &s_at_Supervisor_Install_work);
+    }
+    /* corrected: (n, p, d) (ID1412310691) */
+    m->Supervisor_corrected.full = false;
+    /* ready: () (ID1412310693) */
+    m->Supervisor_Install_ready.full = true;
+    /* work: (n, n + 2, p, d) (ID1412310695) */
+    m->Supervisor_Install_work.value = Supervisor_Install_work_token;
+    m->Supervisor_Install_work.full = true;
+    return true;
 }
 
 /* transition Cell.Supervisor.Install.Give up: page `Install`, transition `Give up` (ID1412320067), cell.cpn:12933 */
@@ -4349,22 +3385,23 @@ PN_NET_SEARCH static bool Supervisor_Install_Give_up_enumerate(pn_ctx_t *cx, con
     cx->now = m->now;
     cx->rounds = 0U;
     /* riveted: () (ID1412320072) */
-    if (Supervisor_Install_riveted_held(m, (pn_unit_t[]){ PN_UNIT }) < 1U) {
+    if (!m->Supervisor_Install_riveted.full) {
         return true;
     }
     /* result: FAILED (ID1412320074) */
-    if (Supervisor_result_held(m, &val_FAILED) < 1U) {
+    if (!m->Supervisor_result.full || (m->Supervisor_result.value != val_FAILED)) {
         return true;
     }
     /* work: (n, k, p, d) (ID1412320076) */
-    for (uint32_t i = 0U; i < m->Supervisor_Install_work.used; i++) {
-        b.n = m->Supervisor_Install_work.token[i].value.c1;
-        b.k = m->Supervisor_Install_work.token[i].value.c2;
-        b.p = m->Supervisor_Install_work.token[i].value.c3;
-        b.d = m->Supervisor_Install_work.token[i].value.c4;
-        if (!sink(user, self, &b)) {
-            return false;
-        }
+    if (!m->Supervisor_Install_work.full) {
+        return true;
+    }
+    b.n = m->Supervisor_Install_work.value.c1;
+    b.k = m->Supervisor_Install_work.value.c2;
+    b.p = m->Supervisor_Install_work.value.c3;
+    b.d = m->Supervisor_Install_work.value.c4;
+    if (!sink(user, self, &b)) {
+        return false;
     }
     return true;
 }
@@ -4372,37 +3409,25 @@ PN_NET_SEARCH static bool Supervisor_Install_Give_up_enumerate(pn_ctx_t *cx, con
 PN_NET_SEARCH static bool Supervisor_Install_Give_up_fire(pn_ctx_t *cx, void *marking, void *binding)
 {
     net_marking_t *const m = marking;
-    Supervisor_Install_Give_up_binding_t *const b = binding;
+    (void)binding;
     cx->origin = "page `Install`, transition `Give up` (ID1412320067)";
     cx->now = m->now;
     cx->rounds = 0U;
-    const pn_unit_t Supervisor_Install_riveted_token = PN_UNIT;
-    const WORK_t Supervisor_Install_work_token = (WORK_t){ .c1 = b->n, .c2 = b->k, .c3 = b->p,
-        .c4 = b->d };
-    const pn_unit_t Supervisor_ended_token = PN_UNIT;
     /* result: FAILED (ID1412320074): stays where it is */
-    /* riveted: () (ID1412320072) */
-    bool is_taken = Supervisor_Install_riveted_take(m, &Supervisor_Install_riveted_token, 1U);
-    /* work: (n, k, p, d) (ID1412320076) */
-    is_taken = is_taken && Supervisor_Install_work_take(m, &Supervisor_Install_work_token, 1U);
-    if (!is_taken) {
+    if (!m->Supervisor_Install_riveted.full || !m->Supervisor_Install_work.full) {
         pn_raise(cx, PN_ERR_SUBTRACT, NULL);
         return false;
     }
-    /* ended: () (ID1412320078) */
-    bool fits = Supervisor_ended_add(cx, m, &Supervisor_ended_token, 1U);
-    if (!fits) {
-        /* a place is full: everything is put back */
-        (void)Supervisor_ended_take(m, &Supervisor_ended_token, 1U);
-        (void)Supervisor_Install_work_add(cx, m, &Supervisor_Install_work_token, 1U);
-        (void)Supervisor_Install_riveted_add(cx, m, &Supervisor_Install_riveted_token, 1U);
+    if (m->Supervisor_ended.full) {
+        return pn_bag_fail_full(cx, &s_at_Supervisor_ended);
     }
-    return fits;
-}
-
-static void Supervisor_Install_Give_up_json(const void *binding, pn_text_t *out)
-{
-    pn_json(&s_binding_Supervisor_Install_Give_up, binding, out);
+    /* riveted: () (ID1412320072) */
+    m->Supervisor_Install_riveted.full = false;
+    /* work: (n, k, p, d) (ID1412320076) */
+    m->Supervisor_Install_work.full = false;
+    /* ended: () (ID1412320078) */
+    m->Supervisor_ended.full = true;
+    return true;
 }
 
 /* transition Cell.Supervisor.Install.Shift.Command: page `MoveBoth`, transition `Command` (ID1412310941), cell.cpn:20061 */
@@ -4435,13 +3460,14 @@ PN_NET_SEARCH static bool Supervisor_Install_Shift_Command_enumerate(pn_ctx_t *c
     cx->now = m->now;
     cx->rounds = 0U;
     /* shift: (c, p, q) (ID1412310946) */
-    for (uint32_t i = 0U; i < m->Supervisor_Install_shift.used; i++) {
-        b.c = m->Supervisor_Install_shift.token[i].value.c1;
-        b.p = m->Supervisor_Install_shift.token[i].value.c2;
-        b.q = m->Supervisor_Install_shift.token[i].value.c3;
-        if (!sink(user, self, &b)) {
-            return false;
-        }
+    if (!m->Supervisor_Install_shift.full) {
+        return true;
+    }
+    b.c = m->Supervisor_Install_shift.value.c1;
+    b.p = m->Supervisor_Install_shift.value.c2;
+    b.q = m->Supervisor_Install_shift.value.c3;
+    if (!sink(user, self, &b)) {
+        return false;
     }
     return true;
 }
@@ -4453,47 +3479,47 @@ PN_NET_SEARCH static bool Supervisor_Install_Shift_Command_fire(pn_ctx_t *cx, vo
     cx->origin = "page `MoveBoth`, transition `Command` (ID1412310941)";
     cx->now = m->now;
     cx->rounds = 0U;
-    const PLAN_t Supervisor_Install_shift_token = (PLAN_t){ .c1 = b->c, .c2 = b->p, .c3 = b->q };
-    const pn_unit_t Supervisor_Install_Shift_moving_1_token = PN_UNIT;
-    const pn_unit_t Supervisor_Install_Shift_moving_2_token = PN_UNIT;
-    /* shift: (c, p, q) (ID1412310946) */
-    bool is_taken = Supervisor_Install_shift_take(m, &Supervisor_Install_shift_token, 1U);
-    if (!is_taken) {
+    if (!m->Supervisor_Install_shift.full) {
         pn_raise(cx, PN_ERR_SUBTRACT, NULL);
         return false;
     }
-    /* moving 1: () (ID1412310970) */
-    bool fits = Supervisor_Install_Shift_moving_1_add(cx, m,
-        &Supervisor_Install_Shift_moving_1_token, 1U);
-    /* dadosrobo1: p (ID1412310982) */
-    fits = dadosrobo1_add(cx, m, &b->p, 1U) && fits;
-    /* flag1_interno: c (ID1412310988) */
-    fits = flag1_interno_add(cx, m, &b->c, 1U) && fits;
-    /* moving 2: () (ID1412311007) */
-    fits = Supervisor_Install_Shift_moving_2_add(cx, m, &Supervisor_Install_Shift_moving_2_token,
-        1U) && fits;
-    /* dadosrobo2: q (ID1412311019) */
-    fits = dadosrobo2_add(cx, m, &b->q, 1U) && fits;
-    /* flag2_interno: c (ID1412311025) */
-    fits = flag2_interno_add(cx, m, &b->c, 1U) && fits;
-    if (!fits) {
-        /* a place is full: everything is put back */
-        (void)flag2_interno_take(m, &b->c, 1U);
-        (void)dadosrobo2_take(m, &b->q, 1U);
-        (void)Supervisor_Install_Shift_moving_2_take(m, &Supervisor_Install_Shift_moving_2_token,
-            1U);
-        (void)flag1_interno_take(m, &b->c, 1U);
-        (void)dadosrobo1_take(m, &b->p, 1U);
-        (void)Supervisor_Install_Shift_moving_1_take(m, &Supervisor_Install_Shift_moving_1_token,
-            1U);
-        (void)Supervisor_Install_shift_add(cx, m, &Supervisor_Install_shift_token, 1U);
+    if (m->Supervisor_Install_Shift_moving_1.full) {
+        return pn_bag_fail_full(cx, &s_at_Supervisor_Install_Shift_moving_1);
     }
-    return fits;
-}
-
-static void Supervisor_Install_Shift_Command_json(const void *binding, pn_text_t *out)
-{
-    pn_json(&s_binding_Supervisor_Install_Shift_Command, binding, out);
+    if (m->dadosrobo1.full) {
+        return pn_bag_fail_full(cx, &s_at_dadosrobo1);
+    }
+    if (m->flag1_interno.full) {
+        return pn_bag_fail_full(cx, &s_at_flag1_interno);
+    }
+    if (m->Supervisor_Install_Shift_moving_2.full) {
+        return pn_bag_fail_full(cx, &s_at_Supervisor_Install_Shift_moving_2);
+    }
+    if (m->dadosrobo2.full) {
+        return pn_bag_fail_full(cx, &s_at_dadosrobo2);
+    }
+    if (m->flag2_interno.full) {
+        return pn_bag_fail_full(cx, &s_at_flag2_interno);
+    }
+    /* shift: (c, p, q) (ID1412310946) */
+    m->Supervisor_Install_shift.full = false;
+    /* moving 1: () (ID1412310970) */
+    m->Supervisor_Install_Shift_moving_1.full = true;
+    /* dadosrobo1: p (ID1412310982) */
+    m->dadosrobo1.value = b->p;
+    m->dadosrobo1.full = true;
+    /* flag1_interno: c (ID1412310988) */
+    m->flag1_interno.value = b->c;
+    m->flag1_interno.full = true;
+    /* moving 2: () (ID1412311007) */
+    m->Supervisor_Install_Shift_moving_2.full = true;
+    /* dadosrobo2: q (ID1412311019) */
+    m->dadosrobo2.value = b->q;
+    m->dadosrobo2.full = true;
+    /* flag2_interno: c (ID1412311025) */
+    m->flag2_interno.value = b->c;
+    m->flag2_interno.full = true;
+    return true;
 }
 
 /* transition Cell.Supervisor.Install.Shift.Both: page `MoveBoth`, transition `Both` (ID1412310948), cell.cpn:20135 */
@@ -4518,11 +3544,11 @@ PN_NET_SEARCH static bool Supervisor_Install_Shift_Both_enumerate(pn_ctx_t *cx, 
     cx->now = m->now;
     cx->rounds = 0U;
     /* there 1: () (ID1412310976) */
-    if (Supervisor_Install_Shift_there_1_held(m, (pn_unit_t[]){ PN_UNIT }) < 1U) {
+    if (!m->Supervisor_Install_Shift_there_1.full) {
         return true;
     }
     /* there 2: () (ID1412311013) */
-    if (Supervisor_Install_Shift_there_2_held(m, (pn_unit_t[]){ PN_UNIT }) < 1U) {
+    if (!m->Supervisor_Install_Shift_there_2.full) {
         return true;
     }
     if (!sink(user, self, &b)) {
@@ -4538,35 +3564,20 @@ PN_NET_SEARCH static bool Supervisor_Install_Shift_Both_fire(pn_ctx_t *cx, void 
     cx->origin = "page `MoveBoth`, transition `Both` (ID1412310948)";
     cx->now = m->now;
     cx->rounds = 0U;
-    const pn_unit_t Supervisor_Install_Shift_there_1_token = PN_UNIT;
-    const pn_unit_t Supervisor_Install_Shift_there_2_token = PN_UNIT;
-    const pn_unit_t Supervisor_Install_ready_token = PN_UNIT;
-    /* there 1: () (ID1412310976) */
-    bool is_taken = Supervisor_Install_Shift_there_1_take(m,
-        &Supervisor_Install_Shift_there_1_token, 1U);
-    /* there 2: () (ID1412311013) */
-    is_taken = is_taken
-        && Supervisor_Install_Shift_there_2_take(m, &Supervisor_Install_Shift_there_2_token, 1U);
-    if (!is_taken) {
+    if (!m->Supervisor_Install_Shift_there_1.full || !m->Supervisor_Install_Shift_there_2.full) {
         pn_raise(cx, PN_ERR_SUBTRACT, NULL);
         return false;
     }
-    /* ready: () (ID1412310957) */
-    bool fits = Supervisor_Install_ready_add(cx, m, &Supervisor_Install_ready_token, 1U);
-    if (!fits) {
-        /* a place is full: everything is put back */
-        (void)Supervisor_Install_ready_take(m, &Supervisor_Install_ready_token, 1U);
-        (void)Supervisor_Install_Shift_there_2_add(cx, m, &Supervisor_Install_Shift_there_2_token,
-            1U);
-        (void)Supervisor_Install_Shift_there_1_add(cx, m, &Supervisor_Install_Shift_there_1_token,
-            1U);
+    if (m->Supervisor_Install_ready.full) {
+        return pn_bag_fail_full(cx, &s_at_Supervisor_Install_ready);
     }
-    return fits;
-}
-
-static void Supervisor_Install_Shift_Both_json(const void *binding, pn_text_t *out)
-{
-    pn_json(&s_binding_Supervisor_Install_Shift_Both, binding, out);
+    /* there 1: () (ID1412310976) */
+    m->Supervisor_Install_Shift_there_1.full = false;
+    /* there 2: () (ID1412311013) */
+    m->Supervisor_Install_Shift_there_2.full = false;
+    /* ready: () (ID1412310957) */
+    m->Supervisor_Install_ready.full = true;
+    return true;
 }
 
 /* transition Cell.Supervisor.Install.Shift.Reply 1: page `MoveBoth`, transition `Reply 1` (ID1412310962), cell.cpn:20209 */
@@ -4591,11 +3602,11 @@ PN_NET_SEARCH static bool Supervisor_Install_Shift_Reply_1_enumerate(pn_ctx_t *c
     cx->now = m->now;
     cx->rounds = 0U;
     /* moving 1: () (ID1412310972) */
-    if (Supervisor_Install_Shift_moving_1_held(m, (pn_unit_t[]){ PN_UNIT }) < 1U) {
+    if (!m->Supervisor_Install_Shift_moving_1.full) {
         return true;
     }
     /* flag1_externo: DONE (ID1412310994) */
-    if (flag1_externo_held(m, &val_DONE) < 1U) {
+    if (!m->flag1_externo.full || (m->flag1_externo.value != val_DONE)) {
         return true;
     }
     if (!sink(user, self, &b)) {
@@ -4611,34 +3622,20 @@ PN_NET_SEARCH static bool Supervisor_Install_Shift_Reply_1_fire(pn_ctx_t *cx, vo
     cx->origin = "page `MoveBoth`, transition `Reply 1` (ID1412310962)";
     cx->now = m->now;
     cx->rounds = 0U;
-    const pn_unit_t Supervisor_Install_Shift_moving_1_token = PN_UNIT;
-    const int64_t flag1_externo_token = val_DONE;
-    const pn_unit_t Supervisor_Install_Shift_there_1_token = PN_UNIT;
-    /* moving 1: () (ID1412310972) */
-    bool is_taken = Supervisor_Install_Shift_moving_1_take(m,
-        &Supervisor_Install_Shift_moving_1_token, 1U);
-    /* flag1_externo: DONE (ID1412310994) */
-    is_taken = is_taken && flag1_externo_take(m, &flag1_externo_token, 1U);
-    if (!is_taken) {
+    if (!m->Supervisor_Install_Shift_moving_1.full || !m->flag1_externo.full) {
         pn_raise(cx, PN_ERR_SUBTRACT, NULL);
         return false;
     }
-    /* there 1: () (ID1412310974) */
-    bool fits = Supervisor_Install_Shift_there_1_add(cx, m, &Supervisor_Install_Shift_there_1_token,
-        1U);
-    if (!fits) {
-        /* a place is full: everything is put back */
-        (void)Supervisor_Install_Shift_there_1_take(m, &Supervisor_Install_Shift_there_1_token, 1U);
-        (void)flag1_externo_add(cx, m, &flag1_externo_token, 1U);
-        (void)Supervisor_Install_Shift_moving_1_add(cx, m, &Supervisor_Install_Shift_moving_1_token,
-            1U);
+    if (m->Supervisor_Install_Shift_there_1.full) {
+        return pn_bag_fail_full(cx, &s_at_Supervisor_Install_Shift_there_1);
     }
-    return fits;
-}
-
-static void Supervisor_Install_Shift_Reply_1_json(const void *binding, pn_text_t *out)
-{
-    pn_json(&s_binding_Supervisor_Install_Shift_Reply_1, binding, out);
+    /* moving 1: () (ID1412310972) */
+    m->Supervisor_Install_Shift_moving_1.full = false;
+    /* flag1_externo: DONE (ID1412310994) */
+    m->flag1_externo.full = false;
+    /* there 1: () (ID1412310974) */
+    m->Supervisor_Install_Shift_there_1.full = true;
+    return true;
 }
 
 /* transition Cell.Supervisor.Install.Shift.Reply 2: page `MoveBoth`, transition `Reply 2` (ID1412310999), cell.cpn:20283 */
@@ -4663,11 +3660,11 @@ PN_NET_SEARCH static bool Supervisor_Install_Shift_Reply_2_enumerate(pn_ctx_t *c
     cx->now = m->now;
     cx->rounds = 0U;
     /* moving 2: () (ID1412311009) */
-    if (Supervisor_Install_Shift_moving_2_held(m, (pn_unit_t[]){ PN_UNIT }) < 1U) {
+    if (!m->Supervisor_Install_Shift_moving_2.full) {
         return true;
     }
     /* flag2_externo: DONE (ID1412311031) */
-    if (flag2_externo_held(m, &val_DONE) < 1U) {
+    if (!m->flag2_externo.full || (m->flag2_externo.value != val_DONE)) {
         return true;
     }
     if (!sink(user, self, &b)) {
@@ -4683,34 +3680,20 @@ PN_NET_SEARCH static bool Supervisor_Install_Shift_Reply_2_fire(pn_ctx_t *cx, vo
     cx->origin = "page `MoveBoth`, transition `Reply 2` (ID1412310999)";
     cx->now = m->now;
     cx->rounds = 0U;
-    const pn_unit_t Supervisor_Install_Shift_moving_2_token = PN_UNIT;
-    const int64_t flag2_externo_token = val_DONE;
-    const pn_unit_t Supervisor_Install_Shift_there_2_token = PN_UNIT;
-    /* moving 2: () (ID1412311009) */
-    bool is_taken = Supervisor_Install_Shift_moving_2_take(m,
-        &Supervisor_Install_Shift_moving_2_token, 1U);
-    /* flag2_externo: DONE (ID1412311031) */
-    is_taken = is_taken && flag2_externo_take(m, &flag2_externo_token, 1U);
-    if (!is_taken) {
+    if (!m->Supervisor_Install_Shift_moving_2.full || !m->flag2_externo.full) {
         pn_raise(cx, PN_ERR_SUBTRACT, NULL);
         return false;
     }
-    /* there 2: () (ID1412311011) */
-    bool fits = Supervisor_Install_Shift_there_2_add(cx, m, &Supervisor_Install_Shift_there_2_token,
-        1U);
-    if (!fits) {
-        /* a place is full: everything is put back */
-        (void)Supervisor_Install_Shift_there_2_take(m, &Supervisor_Install_Shift_there_2_token, 1U);
-        (void)flag2_externo_add(cx, m, &flag2_externo_token, 1U);
-        (void)Supervisor_Install_Shift_moving_2_add(cx, m, &Supervisor_Install_Shift_moving_2_token,
-            1U);
+    if (m->Supervisor_Install_Shift_there_2.full) {
+        return pn_bag_fail_full(cx, &s_at_Supervisor_Install_Shift_there_2);
     }
-    return fits;
-}
-
-static void Supervisor_Install_Shift_Reply_2_json(const void *binding, pn_text_t *out)
-{
-    pn_json(&s_binding_Supervisor_Install_Shift_Reply_2, binding, out);
+    /* moving 2: () (ID1412311009) */
+    m->Supervisor_Install_Shift_moving_2.full = false;
+    /* flag2_externo: DONE (ID1412311031) */
+    m->flag2_externo.full = false;
+    /* there 2: () (ID1412311011) */
+    m->Supervisor_Install_Shift_there_2.full = true;
+    return true;
 }
 
 /* transition Cell.Supervisor.Install.Rivet.Go in: page `Rivet`, transition `Go in` (ID1412310716), cell.cpn:15579 */
@@ -4735,7 +3718,7 @@ PN_NET_SEARCH static bool Supervisor_Install_Rivet_Go_in_enumerate(pn_ctx_t *cx,
     cx->now = m->now;
     cx->rounds = 0U;
     /* ready: () (ID1412310816) */
-    if (Supervisor_Install_ready_held(m, (pn_unit_t[]){ PN_UNIT }) < 1U) {
+    if (!m->Supervisor_Install_ready.full) {
         return true;
     }
     if (!sink(user, self, &b)) {
@@ -4751,7 +3734,6 @@ PN_NET_SEARCH static bool Supervisor_Install_Rivet_Go_in_fire(pn_ctx_t *cx, void
     cx->origin = "page `Rivet`, transition `Go in` (ID1412310716)";
     cx->now = m->now;
     cx->rounds = 0U;
-    const pn_unit_t Supervisor_Install_ready_token = PN_UNIT;
     PLAN_t Supervisor_Install_Rivet_advance_token = (PLAN_t){ .c1 = val_LINEAR,
         .c2 = ml_alongTool(val_approachDistance), .c3 = ml_alongTool(val_approachDistance) };
     pn_bag_check(cx, &s_at_Supervisor_Install_Rivet_advance,
@@ -4759,26 +3741,19 @@ PN_NET_SEARCH static bool Supervisor_Install_Rivet_Go_in_fire(pn_ctx_t *cx, void
     if (!pn_ok(cx)) {
         return false;
     }
-    /* ready: () (ID1412310816) */
-    bool is_taken = Supervisor_Install_ready_take(m, &Supervisor_Install_ready_token, 1U);
-    if (!is_taken) {
+    if (!m->Supervisor_Install_ready.full) {
         pn_raise(cx, PN_ERR_SUBTRACT, NULL);
         return false;
     }
-    /* advance: (LINEAR, alongTool approachDistance, alongTool approachDistance) (ID1412310818) */
-    bool fits = Supervisor_Install_Rivet_advance_add(cx, m, &Supervisor_Install_Rivet_advance_token,
-        1U);
-    if (!fits) {
-        /* a place is full: everything is put back */
-        (void)Supervisor_Install_Rivet_advance_take(m, &Supervisor_Install_Rivet_advance_token, 1U);
-        (void)Supervisor_Install_ready_add(cx, m, &Supervisor_Install_ready_token, 1U);
+    if (m->Supervisor_Install_Rivet_advance.full) {
+        return pn_bag_fail_full(cx, &s_at_Supervisor_Install_Rivet_advance);
     }
-    return fits;
-}
-
-static void Supervisor_Install_Rivet_Go_in_json(const void *binding, pn_text_t *out)
-{
-    pn_json(&s_binding_Supervisor_Install_Rivet_Go_in, binding, out);
+    /* ready: () (ID1412310816) */
+    m->Supervisor_Install_ready.full = false;
+    /* advance: (LINEAR, alongTool approachDistance, alongTool approachDistance) (ID1412310818) */
+    m->Supervisor_Install_Rivet_advance.value = Supervisor_Install_Rivet_advance_token;
+    m->Supervisor_Install_Rivet_advance.full = true;
+    return true;
 }
 
 /* transition Cell.Supervisor.Install.Rivet.Go out: page `Rivet`, transition `Go out` (ID1412310742), cell.cpn:15833 */
@@ -4807,11 +3782,12 @@ PN_NET_SEARCH static bool Supervisor_Install_Rivet_Go_out_enumerate(pn_ctx_t *cx
     cx->now = m->now;
     cx->rounds = 0U;
     /* fastened: e (ID1412310828) */
-    for (uint32_t i = 0U; i < m->Supervisor_Install_Rivet_fastened.used; i++) {
-        b.e = m->Supervisor_Install_Rivet_fastened.token[i].value;
-        if (!sink(user, self, &b)) {
-            return false;
-        }
+    if (!m->Supervisor_Install_Rivet_fastened.full) {
+        return true;
+    }
+    b.e = m->Supervisor_Install_Rivet_fastened.value;
+    if (!sink(user, self, &b)) {
+        return false;
     }
     return true;
 }
@@ -4830,29 +3806,25 @@ PN_NET_SEARCH static bool Supervisor_Install_Rivet_Go_out_fire(pn_ctx_t *cx, voi
     if (!pn_ok(cx)) {
         return false;
     }
-    /* fastened: e (ID1412310828) */
-    bool is_taken = Supervisor_Install_Rivet_fastened_take(m, &b->e, 1U);
-    if (!is_taken) {
+    if (!m->Supervisor_Install_Rivet_fastened.full) {
         pn_raise(cx, PN_ERR_SUBTRACT, NULL);
         return false;
     }
-    /* retract: (LINEAR, alongTool (~approachDistance), alongTool (~approachDistance)) (ID141 ... */
-    bool fits = Supervisor_Install_Rivet_retract_add(cx, m, &Supervisor_Install_Rivet_retract_token,
-        1U);
-    /* result: e (ID1412320085) */
-    fits = Supervisor_result_add(cx, m, &b->e, 1U) && fits;
-    if (!fits) {
-        /* a place is full: everything is put back */
-        (void)Supervisor_result_take(m, &b->e, 1U);
-        (void)Supervisor_Install_Rivet_retract_take(m, &Supervisor_Install_Rivet_retract_token, 1U);
-        (void)Supervisor_Install_Rivet_fastened_add(cx, m, &b->e, 1U);
+    if (m->Supervisor_Install_Rivet_retract.full) {
+        return pn_bag_fail_full(cx, &s_at_Supervisor_Install_Rivet_retract);
     }
-    return fits;
-}
-
-static void Supervisor_Install_Rivet_Go_out_json(const void *binding, pn_text_t *out)
-{
-    pn_json(&s_binding_Supervisor_Install_Rivet_Go_out, binding, out);
+    if (m->Supervisor_result.full) {
+        return pn_bag_fail_full(cx, &s_at_Supervisor_result);
+    }
+    /* fastened: e (ID1412310828) */
+    m->Supervisor_Install_Rivet_fastened.full = false;
+    /* retract: (LINEAR, alongTool (~approachDistance), alongTool (~approachDistance)) (ID141 ... */
+    m->Supervisor_Install_Rivet_retract.value = Supervisor_Install_Rivet_retract_token;
+    m->Supervisor_Install_Rivet_retract.full = true;
+    /* result: e (ID1412320085) */
+    m->Supervisor_result.value = b->e;
+    m->Supervisor_result.full = true;
+    return true;
 }
 
 /* transition Cell.Supervisor.Install.Rivet.Advance.Command: page `MoveBoth`, transition `Command` (ID1412310941), cell.cpn:20061 */
@@ -4885,13 +3857,14 @@ PN_NET_SEARCH static bool Supervisor_Install_Rivet_Advance_Command_enumerate(pn_
     cx->now = m->now;
     cx->rounds = 0U;
     /* advance: (c, p, q) (ID1412310946) */
-    for (uint32_t i = 0U; i < m->Supervisor_Install_Rivet_advance.used; i++) {
-        b.c = m->Supervisor_Install_Rivet_advance.token[i].value.c1;
-        b.p = m->Supervisor_Install_Rivet_advance.token[i].value.c2;
-        b.q = m->Supervisor_Install_Rivet_advance.token[i].value.c3;
-        if (!sink(user, self, &b)) {
-            return false;
-        }
+    if (!m->Supervisor_Install_Rivet_advance.full) {
+        return true;
+    }
+    b.c = m->Supervisor_Install_Rivet_advance.value.c1;
+    b.p = m->Supervisor_Install_Rivet_advance.value.c2;
+    b.q = m->Supervisor_Install_Rivet_advance.value.c3;
+    if (!sink(user, self, &b)) {
+        return false;
     }
     return true;
 }
@@ -4903,50 +3876,47 @@ PN_NET_SEARCH static bool Supervisor_Install_Rivet_Advance_Command_fire(pn_ctx_t
     cx->origin = "page `MoveBoth`, transition `Command` (ID1412310941)";
     cx->now = m->now;
     cx->rounds = 0U;
-    const PLAN_t Supervisor_Install_Rivet_advance_token = (PLAN_t){ .c1 = b->c, .c2 = b->p,
-        .c3 = b->q };
-    const pn_unit_t Supervisor_Install_Rivet_Advance_moving_1_token = PN_UNIT;
-    const pn_unit_t Supervisor_Install_Rivet_Advance_moving_2_token = PN_UNIT;
-    /* advance: (c, p, q) (ID1412310946) */
-    bool is_taken = Supervisor_Install_Rivet_advance_take(m,
-        &Supervisor_Install_Rivet_advance_token, 1U);
-    if (!is_taken) {
+    if (!m->Supervisor_Install_Rivet_advance.full) {
         pn_raise(cx, PN_ERR_SUBTRACT, NULL);
         return false;
     }
-    /* moving 1: () (ID1412310970) */
-    bool fits = Supervisor_Install_Rivet_Advance_moving_1_add(cx, m,
-        &Supervisor_Install_Rivet_Advance_moving_1_token, 1U);
-    /* dadosrobo1: p (ID1412310982) */
-    fits = dadosrobo1_add(cx, m, &b->p, 1U) && fits;
-    /* flag1_interno: c (ID1412310988) */
-    fits = flag1_interno_add(cx, m, &b->c, 1U) && fits;
-    /* moving 2: () (ID1412311007) */
-    fits = Supervisor_Install_Rivet_Advance_moving_2_add(cx, m,
-        &Supervisor_Install_Rivet_Advance_moving_2_token, 1U) && fits;
-    /* dadosrobo2: q (ID1412311019) */
-    fits = dadosrobo2_add(cx, m, &b->q, 1U) && fits;
-    /* flag2_interno: c (ID1412311025) */
-    fits = flag2_interno_add(cx, m, &b->c, 1U) && fits;
-    if (!fits) {
-        /* a place is full: everything is put back */
-        (void)flag2_interno_take(m, &b->c, 1U);
-        (void)dadosrobo2_take(m, &b->q, 1U);
-        (void)Supervisor_Install_Rivet_Advance_moving_2_take(m,
-            &Supervisor_Install_Rivet_Advance_moving_2_token, 1U);
-        (void)flag1_interno_take(m, &b->c, 1U);
-        (void)dadosrobo1_take(m, &b->p, 1U);
-        (void)Supervisor_Install_Rivet_Advance_moving_1_take(m,
-            &Supervisor_Install_Rivet_Advance_moving_1_token, 1U);
-        (void)Supervisor_Install_Rivet_advance_add(cx, m, &Supervisor_Install_Rivet_advance_token,
-            1U);
+    if (m->Supervisor_Install_Rivet_Advance_moving_1.full) {
+        return pn_bag_fail_full(cx, &s_at_Supervisor_Install_Rivet_Advance_moving_1);
     }
-    return fits;
-}
-
-static void Supervisor_Install_Rivet_Advance_Command_json(const void *binding, pn_text_t *out)
-{
-    pn_json(&s_binding_Supervisor_Install_Rivet_Advance_Command, binding, out);
+    if (m->dadosrobo1.full) {
+        return pn_bag_fail_full(cx, &s_at_dadosrobo1);
+    }
+    if (m->flag1_interno.full) {
+        return pn_bag_fail_full(cx, &s_at_flag1_interno);
+    }
+    if (m->Supervisor_Install_Rivet_Advance_moving_2.full) {
+        return pn_bag_fail_full(cx, &s_at_Supervisor_Install_Rivet_Advance_moving_2);
+    }
+    if (m->dadosrobo2.full) {
+        return pn_bag_fail_full(cx, &s_at_dadosrobo2);
+    }
+    if (m->flag2_interno.full) {
+        return pn_bag_fail_full(cx, &s_at_flag2_interno);
+    }
+    /* advance: (c, p, q) (ID1412310946) */
+    m->Supervisor_Install_Rivet_advance.full = false;
+    /* moving 1: () (ID1412310970) */
+    m->Supervisor_Install_Rivet_Advance_moving_1.full = true;
+    /* dadosrobo1: p (ID1412310982) */
+    m->dadosrobo1.value = b->p;
+    m->dadosrobo1.full = true;
+    /* flag1_interno: c (ID1412310988) */
+    m->flag1_interno.value = b->c;
+    m->flag1_interno.full = true;
+    /* moving 2: () (ID1412311007) */
+    m->Supervisor_Install_Rivet_Advance_moving_2.full = true;
+    /* dadosrobo2: q (ID1412311019) */
+    m->dadosrobo2.value = b->q;
+    m->dadosrobo2.full = true;
+    /* flag2_interno: c (ID1412311025) */
+    m->flag2_interno.value = b->c;
+    m->flag2_interno.full = true;
+    return true;
 }
 
 /* transition Cell.Supervisor.Install.Rivet.Advance.Both: page `MoveBoth`, transition `Both` (ID1412310948), cell.cpn:20135 */
@@ -4971,11 +3941,11 @@ PN_NET_SEARCH static bool Supervisor_Install_Rivet_Advance_Both_enumerate(pn_ctx
     cx->now = m->now;
     cx->rounds = 0U;
     /* there 1: () (ID1412310976) */
-    if (Supervisor_Install_Rivet_Advance_there_1_held(m, (pn_unit_t[]){ PN_UNIT }) < 1U) {
+    if (!m->Supervisor_Install_Rivet_Advance_there_1.full) {
         return true;
     }
     /* there 2: () (ID1412311013) */
-    if (Supervisor_Install_Rivet_Advance_there_2_held(m, (pn_unit_t[]){ PN_UNIT }) < 1U) {
+    if (!m->Supervisor_Install_Rivet_Advance_there_2.full) {
         return true;
     }
     if (!sink(user, self, &b)) {
@@ -4991,37 +3961,21 @@ PN_NET_SEARCH static bool Supervisor_Install_Rivet_Advance_Both_fire(pn_ctx_t *c
     cx->origin = "page `MoveBoth`, transition `Both` (ID1412310948)";
     cx->now = m->now;
     cx->rounds = 0U;
-    const pn_unit_t Supervisor_Install_Rivet_Advance_there_1_token = PN_UNIT;
-    const pn_unit_t Supervisor_Install_Rivet_Advance_there_2_token = PN_UNIT;
-    const pn_unit_t Supervisor_Install_Rivet_contact_token = PN_UNIT;
-    /* there 1: () (ID1412310976) */
-    bool is_taken = Supervisor_Install_Rivet_Advance_there_1_take(m,
-        &Supervisor_Install_Rivet_Advance_there_1_token, 1U);
-    /* there 2: () (ID1412311013) */
-    is_taken = is_taken
-        && Supervisor_Install_Rivet_Advance_there_2_take(m,
-        &Supervisor_Install_Rivet_Advance_there_2_token, 1U);
-    if (!is_taken) {
+    if (!m->Supervisor_Install_Rivet_Advance_there_1.full
+        || !m->Supervisor_Install_Rivet_Advance_there_2.full) {
         pn_raise(cx, PN_ERR_SUBTRACT, NULL);
         return false;
     }
-    /* contact: () (ID1412310957) */
-    bool fits = Supervisor_Install_Rivet_contact_add(cx, m, &Supervisor_Install_Rivet_contact_token,
-        1U);
-    if (!fits) {
-        /* a place is full: everything is put back */
-        (void)Supervisor_Install_Rivet_contact_take(m, &Supervisor_Install_Rivet_contact_token, 1U);
-        (void)Supervisor_Install_Rivet_Advance_there_2_add(cx, m,
-            &Supervisor_Install_Rivet_Advance_there_2_token, 1U);
-        (void)Supervisor_Install_Rivet_Advance_there_1_add(cx, m,
-            &Supervisor_Install_Rivet_Advance_there_1_token, 1U);
+    if (m->Supervisor_Install_Rivet_contact.full) {
+        return pn_bag_fail_full(cx, &s_at_Supervisor_Install_Rivet_contact);
     }
-    return fits;
-}
-
-static void Supervisor_Install_Rivet_Advance_Both_json(const void *binding, pn_text_t *out)
-{
-    pn_json(&s_binding_Supervisor_Install_Rivet_Advance_Both, binding, out);
+    /* there 1: () (ID1412310976) */
+    m->Supervisor_Install_Rivet_Advance_there_1.full = false;
+    /* there 2: () (ID1412311013) */
+    m->Supervisor_Install_Rivet_Advance_there_2.full = false;
+    /* contact: () (ID1412310957) */
+    m->Supervisor_Install_Rivet_contact.full = true;
+    return true;
 }
 
 /* transition Cell.Supervisor.Install.Rivet.Advance.Reply 1: page `MoveBoth`, transition `Reply 1` (ID1412310962), cell.cpn:20209 */
@@ -5046,11 +4000,11 @@ PN_NET_SEARCH static bool Supervisor_Install_Rivet_Advance_Reply_1_enumerate(pn_
     cx->now = m->now;
     cx->rounds = 0U;
     /* moving 1: () (ID1412310972) */
-    if (Supervisor_Install_Rivet_Advance_moving_1_held(m, (pn_unit_t[]){ PN_UNIT }) < 1U) {
+    if (!m->Supervisor_Install_Rivet_Advance_moving_1.full) {
         return true;
     }
     /* flag1_externo: DONE (ID1412310994) */
-    if (flag1_externo_held(m, &val_DONE) < 1U) {
+    if (!m->flag1_externo.full || (m->flag1_externo.value != val_DONE)) {
         return true;
     }
     if (!sink(user, self, &b)) {
@@ -5066,35 +4020,20 @@ PN_NET_SEARCH static bool Supervisor_Install_Rivet_Advance_Reply_1_fire(pn_ctx_t
     cx->origin = "page `MoveBoth`, transition `Reply 1` (ID1412310962)";
     cx->now = m->now;
     cx->rounds = 0U;
-    const pn_unit_t Supervisor_Install_Rivet_Advance_moving_1_token = PN_UNIT;
-    const int64_t flag1_externo_token = val_DONE;
-    const pn_unit_t Supervisor_Install_Rivet_Advance_there_1_token = PN_UNIT;
-    /* moving 1: () (ID1412310972) */
-    bool is_taken = Supervisor_Install_Rivet_Advance_moving_1_take(m,
-        &Supervisor_Install_Rivet_Advance_moving_1_token, 1U);
-    /* flag1_externo: DONE (ID1412310994) */
-    is_taken = is_taken && flag1_externo_take(m, &flag1_externo_token, 1U);
-    if (!is_taken) {
+    if (!m->Supervisor_Install_Rivet_Advance_moving_1.full || !m->flag1_externo.full) {
         pn_raise(cx, PN_ERR_SUBTRACT, NULL);
         return false;
     }
-    /* there 1: () (ID1412310974) */
-    bool fits = Supervisor_Install_Rivet_Advance_there_1_add(cx, m,
-        &Supervisor_Install_Rivet_Advance_there_1_token, 1U);
-    if (!fits) {
-        /* a place is full: everything is put back */
-        (void)Supervisor_Install_Rivet_Advance_there_1_take(m,
-            &Supervisor_Install_Rivet_Advance_there_1_token, 1U);
-        (void)flag1_externo_add(cx, m, &flag1_externo_token, 1U);
-        (void)Supervisor_Install_Rivet_Advance_moving_1_add(cx, m,
-            &Supervisor_Install_Rivet_Advance_moving_1_token, 1U);
+    if (m->Supervisor_Install_Rivet_Advance_there_1.full) {
+        return pn_bag_fail_full(cx, &s_at_Supervisor_Install_Rivet_Advance_there_1);
     }
-    return fits;
-}
-
-static void Supervisor_Install_Rivet_Advance_Reply_1_json(const void *binding, pn_text_t *out)
-{
-    pn_json(&s_binding_Supervisor_Install_Rivet_Advance_Reply_1, binding, out);
+    /* moving 1: () (ID1412310972) */
+    m->Supervisor_Install_Rivet_Advance_moving_1.full = false;
+    /* flag1_externo: DONE (ID1412310994) */
+    m->flag1_externo.full = false;
+    /* there 1: () (ID1412310974) */
+    m->Supervisor_Install_Rivet_Advance_there_1.full = true;
+    return true;
 }
 
 /* transition Cell.Supervisor.Install.Rivet.Advance.Reply 2: page `MoveBoth`, transition `Reply 2` (ID1412310999), cell.cpn:20283 */
@@ -5119,11 +4058,11 @@ PN_NET_SEARCH static bool Supervisor_Install_Rivet_Advance_Reply_2_enumerate(pn_
     cx->now = m->now;
     cx->rounds = 0U;
     /* moving 2: () (ID1412311009) */
-    if (Supervisor_Install_Rivet_Advance_moving_2_held(m, (pn_unit_t[]){ PN_UNIT }) < 1U) {
+    if (!m->Supervisor_Install_Rivet_Advance_moving_2.full) {
         return true;
     }
     /* flag2_externo: DONE (ID1412311031) */
-    if (flag2_externo_held(m, &val_DONE) < 1U) {
+    if (!m->flag2_externo.full || (m->flag2_externo.value != val_DONE)) {
         return true;
     }
     if (!sink(user, self, &b)) {
@@ -5139,35 +4078,20 @@ PN_NET_SEARCH static bool Supervisor_Install_Rivet_Advance_Reply_2_fire(pn_ctx_t
     cx->origin = "page `MoveBoth`, transition `Reply 2` (ID1412310999)";
     cx->now = m->now;
     cx->rounds = 0U;
-    const pn_unit_t Supervisor_Install_Rivet_Advance_moving_2_token = PN_UNIT;
-    const int64_t flag2_externo_token = val_DONE;
-    const pn_unit_t Supervisor_Install_Rivet_Advance_there_2_token = PN_UNIT;
-    /* moving 2: () (ID1412311009) */
-    bool is_taken = Supervisor_Install_Rivet_Advance_moving_2_take(m,
-        &Supervisor_Install_Rivet_Advance_moving_2_token, 1U);
-    /* flag2_externo: DONE (ID1412311031) */
-    is_taken = is_taken && flag2_externo_take(m, &flag2_externo_token, 1U);
-    if (!is_taken) {
+    if (!m->Supervisor_Install_Rivet_Advance_moving_2.full || !m->flag2_externo.full) {
         pn_raise(cx, PN_ERR_SUBTRACT, NULL);
         return false;
     }
-    /* there 2: () (ID1412311011) */
-    bool fits = Supervisor_Install_Rivet_Advance_there_2_add(cx, m,
-        &Supervisor_Install_Rivet_Advance_there_2_token, 1U);
-    if (!fits) {
-        /* a place is full: everything is put back */
-        (void)Supervisor_Install_Rivet_Advance_there_2_take(m,
-            &Supervisor_Install_Rivet_Advance_there_2_token, 1U);
-        (void)flag2_externo_add(cx, m, &flag2_externo_token, 1U);
-        (void)Supervisor_Install_Rivet_Advance_moving_2_add(cx, m,
-            &Supervisor_Install_Rivet_Advance_moving_2_token, 1U);
+    if (m->Supervisor_Install_Rivet_Advance_there_2.full) {
+        return pn_bag_fail_full(cx, &s_at_Supervisor_Install_Rivet_Advance_there_2);
     }
-    return fits;
-}
-
-static void Supervisor_Install_Rivet_Advance_Reply_2_json(const void *binding, pn_text_t *out)
-{
-    pn_json(&s_binding_Supervisor_Install_Rivet_Advance_Reply_2, binding, out);
+    /* moving 2: () (ID1412311009) */
+    m->Supervisor_Install_Rivet_Advance_moving_2.full = false;
+    /* flag2_externo: DONE (ID1412311031) */
+    m->flag2_externo.full = false;
+    /* there 2: () (ID1412311011) */
+    m->Supervisor_Install_Rivet_Advance_there_2.full = true;
+    return true;
 }
 
 /* transition Cell.Supervisor.Install.Rivet.Fasten.Press: page `Fasten`, transition `Press` (ID1412310842), cell.cpn:17716 */
@@ -5192,7 +4116,7 @@ PN_NET_SEARCH static bool Supervisor_Install_Rivet_Fasten_Press_enumerate(pn_ctx
     cx->now = m->now;
     cx->rounds = 0U;
     /* contact: () (ID1412310883) */
-    if (Supervisor_Install_Rivet_contact_held(m, (pn_unit_t[]){ PN_UNIT }) < 1U) {
+    if (!m->Supervisor_Install_Rivet_contact.full) {
         return true;
     }
     if (!sink(user, self, &b)) {
@@ -5208,39 +4132,29 @@ PN_NET_SEARCH static bool Supervisor_Install_Rivet_Fasten_Press_fire(pn_ctx_t *c
     cx->origin = "page `Fasten`, transition `Press` (ID1412310842)";
     cx->now = m->now;
     cx->rounds = 0U;
-    const pn_unit_t Supervisor_Install_Rivet_contact_token = PN_UNIT;
-    const pn_unit_t Supervisor_Install_Rivet_Fasten_pressing_token = PN_UNIT;
     int64_t flag2_interno_token = val_PRESS;
     pn_bag_check(cx, &s_at_flag2_interno, &flag2_interno_token);
     if (!pn_ok(cx)) {
         return false;
     }
-    /* contact: () (ID1412310883) */
-    bool is_taken = Supervisor_Install_Rivet_contact_take(m,
-        &Supervisor_Install_Rivet_contact_token, 1U);
-    if (!is_taken) {
+    if (!m->Supervisor_Install_Rivet_contact.full) {
         pn_raise(cx, PN_ERR_SUBTRACT, NULL);
         return false;
     }
-    /* pressing: () (ID1412310885) */
-    bool fits = Supervisor_Install_Rivet_Fasten_pressing_add(cx, m,
-        &Supervisor_Install_Rivet_Fasten_pressing_token, 1U);
-    /* flag2_interno: PRESS (ID1412310927) */
-    fits = flag2_interno_add(cx, m, &flag2_interno_token, 1U) && fits;
-    if (!fits) {
-        /* a place is full: everything is put back */
-        (void)flag2_interno_take(m, &flag2_interno_token, 1U);
-        (void)Supervisor_Install_Rivet_Fasten_pressing_take(m,
-            &Supervisor_Install_Rivet_Fasten_pressing_token, 1U);
-        (void)Supervisor_Install_Rivet_contact_add(cx, m, &Supervisor_Install_Rivet_contact_token,
-            1U);
+    if (m->Supervisor_Install_Rivet_Fasten_pressing.full) {
+        return pn_bag_fail_full(cx, &s_at_Supervisor_Install_Rivet_Fasten_pressing);
     }
-    return fits;
-}
-
-static void Supervisor_Install_Rivet_Fasten_Press_json(const void *binding, pn_text_t *out)
-{
-    pn_json(&s_binding_Supervisor_Install_Rivet_Fasten_Press, binding, out);
+    if (m->flag2_interno.full) {
+        return pn_bag_fail_full(cx, &s_at_flag2_interno);
+    }
+    /* contact: () (ID1412310883) */
+    m->Supervisor_Install_Rivet_contact.full = false;
+    /* pressing: () (ID1412310885) */
+    m->Supervisor_Install_Rivet_Fasten_pressing.full = true;
+    /* flag2_interno: PRESS (ID1412310927) */
+    m->flag2_interno.value = flag2_interno_token;
+    m->flag2_interno.full = true;
+    return true;
 }
 
 /* transition Cell.Supervisor.Install.Rivet.Fasten.Drill: page `Fasten`, transition `Drill` (ID1412310850), cell.cpn:17790 */
@@ -5265,11 +4179,11 @@ PN_NET_SEARCH static bool Supervisor_Install_Rivet_Fasten_Drill_enumerate(pn_ctx
     cx->now = m->now;
     cx->rounds = 0U;
     /* pressing: () (ID1412310887) */
-    if (Supervisor_Install_Rivet_Fasten_pressing_held(m, (pn_unit_t[]){ PN_UNIT }) < 1U) {
+    if (!m->Supervisor_Install_Rivet_Fasten_pressing.full) {
         return true;
     }
     /* flag2_externo: DONE (ID1412310931) */
-    if (flag2_externo_held(m, &val_DONE) < 1U) {
+    if (!m->flag2_externo.full || (m->flag2_externo.value != val_DONE)) {
         return true;
     }
     if (!sink(user, self, &b)) {
@@ -5285,43 +4199,31 @@ PN_NET_SEARCH static bool Supervisor_Install_Rivet_Fasten_Drill_fire(pn_ctx_t *c
     cx->origin = "page `Fasten`, transition `Drill` (ID1412310850)";
     cx->now = m->now;
     cx->rounds = 0U;
-    const pn_unit_t Supervisor_Install_Rivet_Fasten_pressing_token = PN_UNIT;
-    const int64_t flag2_externo_token = val_DONE;
-    const pn_unit_t Supervisor_Install_Rivet_Fasten_drilling_token = PN_UNIT;
     int64_t flag1_interno_token = val_DRILL;
     pn_bag_check(cx, &s_at_flag1_interno, &flag1_interno_token);
     if (!pn_ok(cx)) {
         return false;
     }
-    /* pressing: () (ID1412310887) */
-    bool is_taken = Supervisor_Install_Rivet_Fasten_pressing_take(m,
-        &Supervisor_Install_Rivet_Fasten_pressing_token, 1U);
-    /* flag2_externo: DONE (ID1412310931) */
-    is_taken = is_taken && flag2_externo_take(m, &flag2_externo_token, 1U);
-    if (!is_taken) {
+    if (!m->Supervisor_Install_Rivet_Fasten_pressing.full || !m->flag2_externo.full) {
         pn_raise(cx, PN_ERR_SUBTRACT, NULL);
         return false;
     }
-    /* drilling: () (ID1412310889) */
-    bool fits = Supervisor_Install_Rivet_Fasten_drilling_add(cx, m,
-        &Supervisor_Install_Rivet_Fasten_drilling_token, 1U);
-    /* flag1_interno: DRILL (ID1412310919) */
-    fits = flag1_interno_add(cx, m, &flag1_interno_token, 1U) && fits;
-    if (!fits) {
-        /* a place is full: everything is put back */
-        (void)flag1_interno_take(m, &flag1_interno_token, 1U);
-        (void)Supervisor_Install_Rivet_Fasten_drilling_take(m,
-            &Supervisor_Install_Rivet_Fasten_drilling_token, 1U);
-        (void)flag2_externo_add(cx, m, &flag2_externo_token, 1U);
-        (void)Supervisor_Install_Rivet_Fasten_pressing_add(cx, m,
-            &Supervisor_Install_Rivet_Fasten_pressing_token, 1U);
+    if (m->Supervisor_Install_Rivet_Fasten_drilling.full) {
+        return pn_bag_fail_full(cx, &s_at_Supervisor_Install_Rivet_Fasten_drilling);
     }
-    return fits;
-}
-
-static void Supervisor_Install_Rivet_Fasten_Drill_json(const void *binding, pn_text_t *out)
-{
-    pn_json(&s_binding_Supervisor_Install_Rivet_Fasten_Drill, binding, out);
+    if (m->flag1_interno.full) {
+        return pn_bag_fail_full(cx, &s_at_flag1_interno);
+    }
+    /* pressing: () (ID1412310887) */
+    m->Supervisor_Install_Rivet_Fasten_pressing.full = false;
+    /* flag2_externo: DONE (ID1412310931) */
+    m->flag2_externo.full = false;
+    /* drilling: () (ID1412310889) */
+    m->Supervisor_Install_Rivet_Fasten_drilling.full = true;
+    /* flag1_interno: DRILL (ID1412310919) */
+    m->flag1_interno.value = flag1_interno_token;
+    m->flag1_interno.full = true;
+    return true;
 }
 
 /* transition Cell.Supervisor.Install.Rivet.Fasten.Insert: page `Fasten`, transition `Insert` (ID1412310858), cell.cpn:17864 */
@@ -5346,11 +4248,11 @@ PN_NET_SEARCH static bool Supervisor_Install_Rivet_Fasten_Insert_enumerate(pn_ct
     cx->now = m->now;
     cx->rounds = 0U;
     /* drilling: () (ID1412310891) */
-    if (Supervisor_Install_Rivet_Fasten_drilling_held(m, (pn_unit_t[]){ PN_UNIT }) < 1U) {
+    if (!m->Supervisor_Install_Rivet_Fasten_drilling.full) {
         return true;
     }
     /* flag1_externo: DONE (ID1412310923) */
-    if (flag1_externo_held(m, &val_DONE) < 1U) {
+    if (!m->flag1_externo.full || (m->flag1_externo.value != val_DONE)) {
         return true;
     }
     if (!sink(user, self, &b)) {
@@ -5366,43 +4268,31 @@ PN_NET_SEARCH static bool Supervisor_Install_Rivet_Fasten_Insert_fire(pn_ctx_t *
     cx->origin = "page `Fasten`, transition `Insert` (ID1412310858)";
     cx->now = m->now;
     cx->rounds = 0U;
-    const pn_unit_t Supervisor_Install_Rivet_Fasten_drilling_token = PN_UNIT;
-    const int64_t flag1_externo_token = val_DONE;
-    const pn_unit_t Supervisor_Install_Rivet_Fasten_inserting_token = PN_UNIT;
     int64_t flag1_interno_token = val_INSERT;
     pn_bag_check(cx, &s_at_flag1_interno, &flag1_interno_token);
     if (!pn_ok(cx)) {
         return false;
     }
-    /* drilling: () (ID1412310891) */
-    bool is_taken = Supervisor_Install_Rivet_Fasten_drilling_take(m,
-        &Supervisor_Install_Rivet_Fasten_drilling_token, 1U);
-    /* flag1_externo: DONE (ID1412310923) */
-    is_taken = is_taken && flag1_externo_take(m, &flag1_externo_token, 1U);
-    if (!is_taken) {
+    if (!m->Supervisor_Install_Rivet_Fasten_drilling.full || !m->flag1_externo.full) {
         pn_raise(cx, PN_ERR_SUBTRACT, NULL);
         return false;
     }
-    /* inserting: () (ID1412310893) */
-    bool fits = Supervisor_Install_Rivet_Fasten_inserting_add(cx, m,
-        &Supervisor_Install_Rivet_Fasten_inserting_token, 1U);
-    /* flag1_interno: INSERT (ID1412310921) */
-    fits = flag1_interno_add(cx, m, &flag1_interno_token, 1U) && fits;
-    if (!fits) {
-        /* a place is full: everything is put back */
-        (void)flag1_interno_take(m, &flag1_interno_token, 1U);
-        (void)Supervisor_Install_Rivet_Fasten_inserting_take(m,
-            &Supervisor_Install_Rivet_Fasten_inserting_token, 1U);
-        (void)flag1_externo_add(cx, m, &flag1_externo_token, 1U);
-        (void)Supervisor_Install_Rivet_Fasten_drilling_add(cx, m,
-            &Supervisor_Install_Rivet_Fasten_drilling_token, 1U);
+    if (m->Supervisor_Install_Rivet_Fasten_inserting.full) {
+        return pn_bag_fail_full(cx, &s_at_Supervisor_Install_Rivet_Fasten_inserting);
     }
-    return fits;
-}
-
-static void Supervisor_Install_Rivet_Fasten_Insert_json(const void *binding, pn_text_t *out)
-{
-    pn_json(&s_binding_Supervisor_Install_Rivet_Fasten_Insert, binding, out);
+    if (m->flag1_interno.full) {
+        return pn_bag_fail_full(cx, &s_at_flag1_interno);
+    }
+    /* drilling: () (ID1412310891) */
+    m->Supervisor_Install_Rivet_Fasten_drilling.full = false;
+    /* flag1_externo: DONE (ID1412310923) */
+    m->flag1_externo.full = false;
+    /* inserting: () (ID1412310893) */
+    m->Supervisor_Install_Rivet_Fasten_inserting.full = true;
+    /* flag1_interno: INSERT (ID1412310921) */
+    m->flag1_interno.value = flag1_interno_token;
+    m->flag1_interno.full = true;
+    return true;
 }
 
 /* transition Cell.Supervisor.Install.Rivet.Fasten.Release: page `Fasten`, transition `Release` (ID1412310866), cell.cpn:17938 */
@@ -5431,15 +4321,16 @@ PN_NET_SEARCH static bool Supervisor_Install_Rivet_Fasten_Release_enumerate(pn_c
     cx->now = m->now;
     cx->rounds = 0U;
     /* inserting: () (ID1412310895) */
-    if (Supervisor_Install_Rivet_Fasten_inserting_held(m, (pn_unit_t[]){ PN_UNIT }) < 1U) {
+    if (!m->Supervisor_Install_Rivet_Fasten_inserting.full) {
         return true;
     }
     /* flag1_externo: e (ID1412310925) */
-    for (uint32_t i = 0U; i < m->flag1_externo.used; i++) {
-        b.e = m->flag1_externo.token[i].value;
-        if (!sink(user, self, &b)) {
-            return false;
-        }
+    if (!m->flag1_externo.full) {
+        return true;
+    }
+    b.e = m->flag1_externo.value;
+    if (!sink(user, self, &b)) {
+        return false;
     }
     return true;
 }
@@ -5451,39 +4342,32 @@ PN_NET_SEARCH static bool Supervisor_Install_Rivet_Fasten_Release_fire(pn_ctx_t 
     cx->origin = "page `Fasten`, transition `Release` (ID1412310866)";
     cx->now = m->now;
     cx->rounds = 0U;
-    const pn_unit_t Supervisor_Install_Rivet_Fasten_inserting_token = PN_UNIT;
     int64_t flag2_interno_token = val_RELEASE;
     pn_bag_check(cx, &s_at_flag2_interno, &flag2_interno_token);
     if (!pn_ok(cx)) {
         return false;
     }
-    /* inserting: () (ID1412310895) */
-    bool is_taken = Supervisor_Install_Rivet_Fasten_inserting_take(m,
-        &Supervisor_Install_Rivet_Fasten_inserting_token, 1U);
-    /* flag1_externo: e (ID1412310925) */
-    is_taken = is_taken && flag1_externo_take(m, &b->e, 1U);
-    if (!is_taken) {
+    if (!m->Supervisor_Install_Rivet_Fasten_inserting.full || !m->flag1_externo.full) {
         pn_raise(cx, PN_ERR_SUBTRACT, NULL);
         return false;
     }
-    /* releasing: e (ID1412310897) */
-    bool fits = Supervisor_Install_Rivet_Fasten_releasing_add(cx, m, &b->e, 1U);
-    /* flag2_interno: RELEASE (ID1412310929) */
-    fits = flag2_interno_add(cx, m, &flag2_interno_token, 1U) && fits;
-    if (!fits) {
-        /* a place is full: everything is put back */
-        (void)flag2_interno_take(m, &flag2_interno_token, 1U);
-        (void)Supervisor_Install_Rivet_Fasten_releasing_take(m, &b->e, 1U);
-        (void)flag1_externo_add(cx, m, &b->e, 1U);
-        (void)Supervisor_Install_Rivet_Fasten_inserting_add(cx, m,
-            &Supervisor_Install_Rivet_Fasten_inserting_token, 1U);
+    if (m->Supervisor_Install_Rivet_Fasten_releasing.full) {
+        return pn_bag_fail_full(cx, &s_at_Supervisor_Install_Rivet_Fasten_releasing);
     }
-    return fits;
-}
-
-static void Supervisor_Install_Rivet_Fasten_Release_json(const void *binding, pn_text_t *out)
-{
-    pn_json(&s_binding_Supervisor_Install_Rivet_Fasten_Release, binding, out);
+    if (m->flag2_interno.full) {
+        return pn_bag_fail_full(cx, &s_at_flag2_interno);
+    }
+    /* inserting: () (ID1412310895) */
+    m->Supervisor_Install_Rivet_Fasten_inserting.full = false;
+    /* flag1_externo: e (ID1412310925) */
+    m->flag1_externo.full = false;
+    /* releasing: e (ID1412310897) */
+    m->Supervisor_Install_Rivet_Fasten_releasing.value = b->e;
+    m->Supervisor_Install_Rivet_Fasten_releasing.full = true;
+    /* flag2_interno: RELEASE (ID1412310929) */
+    m->flag2_interno.value = flag2_interno_token;
+    m->flag2_interno.full = true;
+    return true;
 }
 
 /* transition Cell.Supervisor.Install.Rivet.Fasten.Finish: page `Fasten`, transition `Finish` (ID1412310874), cell.cpn:18012 */
@@ -5514,15 +4398,17 @@ PN_NET_SEARCH static bool Supervisor_Install_Rivet_Fasten_Finish_enumerate(pn_ct
     cx->now = m->now;
     cx->rounds = 0U;
     /* releasing: e (ID1412310899) */
-    for (uint32_t i = 0U; i < m->Supervisor_Install_Rivet_Fasten_releasing.used; i++) {
-        b.e = m->Supervisor_Install_Rivet_Fasten_releasing.token[i].value;
-        /* flag2_externo: f (ID1412310933) */
-        for (uint32_t i_2 = 0U; i_2 < m->flag2_externo.used; i_2++) {
-            b.f = m->flag2_externo.token[i_2].value;
-            if (!sink(user, self, &b)) {
-                return false;
-            }
-        }
+    if (!m->Supervisor_Install_Rivet_Fasten_releasing.full) {
+        return true;
+    }
+    b.e = m->Supervisor_Install_Rivet_Fasten_releasing.value;
+    /* flag2_externo: f (ID1412310933) */
+    if (!m->flag2_externo.full) {
+        return true;
+    }
+    b.f = m->flag2_externo.value;
+    if (!sink(user, self, &b)) {
+        return false;
     }
     return true;
 }
@@ -5540,30 +4426,21 @@ PN_NET_SEARCH static bool Supervisor_Install_Rivet_Fasten_Finish_fire(pn_ctx_t *
     if (!pn_ok(cx)) {
         return false;
     }
-    /* releasing: e (ID1412310899) */
-    bool is_taken = Supervisor_Install_Rivet_Fasten_releasing_take(m, &b->e, 1U);
-    /* flag2_externo: f (ID1412310933) */
-    is_taken = is_taken && flag2_externo_take(m, &b->f, 1U);
-    if (!is_taken) {
+    if (!m->Supervisor_Install_Rivet_Fasten_releasing.full || !m->flag2_externo.full) {
         pn_raise(cx, PN_ERR_SUBTRACT, NULL);
         return false;
     }
-    /* fastened: worse (e, f) (ID1412310901) */
-    bool fits = Supervisor_Install_Rivet_fastened_add(cx, m,
-        &Supervisor_Install_Rivet_fastened_token, 1U);
-    if (!fits) {
-        /* a place is full: everything is put back */
-        (void)Supervisor_Install_Rivet_fastened_take(m, &Supervisor_Install_Rivet_fastened_token,
-            1U);
-        (void)flag2_externo_add(cx, m, &b->f, 1U);
-        (void)Supervisor_Install_Rivet_Fasten_releasing_add(cx, m, &b->e, 1U);
+    if (m->Supervisor_Install_Rivet_fastened.full) {
+        return pn_bag_fail_full(cx, &s_at_Supervisor_Install_Rivet_fastened);
     }
-    return fits;
-}
-
-static void Supervisor_Install_Rivet_Fasten_Finish_json(const void *binding, pn_text_t *out)
-{
-    pn_json(&s_binding_Supervisor_Install_Rivet_Fasten_Finish, binding, out);
+    /* releasing: e (ID1412310899) */
+    m->Supervisor_Install_Rivet_Fasten_releasing.full = false;
+    /* flag2_externo: f (ID1412310933) */
+    m->flag2_externo.full = false;
+    /* fastened: worse (e, f) (ID1412310901) */
+    m->Supervisor_Install_Rivet_fastened.value = Supervisor_Install_Rivet_fastened_token;
+    m->Supervisor_Install_Rivet_fastened.full = true;
+    return true;
 }
 
 /* transition Cell.Supervisor.Install.Rivet.Fasten.Press failed: page `Fasten`, transition `Press failed` (ID1412320087), cell.cpn:18086 */
@@ -5588,11 +4465,11 @@ PN_NET_SEARCH static bool Supervisor_Install_Rivet_Fasten_Press_failed_enumerate
     cx->now = m->now;
     cx->rounds = 0U;
     /* pressing: () (ID1412320097) */
-    if (Supervisor_Install_Rivet_Fasten_pressing_held(m, (pn_unit_t[]){ PN_UNIT }) < 1U) {
+    if (!m->Supervisor_Install_Rivet_Fasten_pressing.full) {
         return true;
     }
     /* flag2_externo: FAILED (ID1412320101) */
-    if (flag2_externo_held(m, &val_FAILED) < 1U) {
+    if (!m->flag2_externo.full || (m->flag2_externo.value != val_FAILED)) {
         return true;
     }
     if (!sink(user, self, &b)) {
@@ -5608,43 +4485,34 @@ PN_NET_SEARCH static bool Supervisor_Install_Rivet_Fasten_Press_failed_fire(pn_c
     cx->origin = "page `Fasten`, transition `Press failed` (ID1412320087)";
     cx->now = m->now;
     cx->rounds = 0U;
-    const pn_unit_t Supervisor_Install_Rivet_Fasten_pressing_token = PN_UNIT;
-    const int64_t flag2_externo_token = val_FAILED;
     int64_t flag2_interno_token = val_RELEASE;
     pn_bag_check(cx, &s_at_flag2_interno, &flag2_interno_token);
     const int64_t Supervisor_Install_Rivet_Fasten_releasing_token = val_FAILED;
     if (!pn_ok(cx)) {
         return false;
     }
-    /* pressing: () (ID1412320097) */
-    bool is_taken = Supervisor_Install_Rivet_Fasten_pressing_take(m,
-        &Supervisor_Install_Rivet_Fasten_pressing_token, 1U);
-    /* flag2_externo: FAILED (ID1412320101) */
-    is_taken = is_taken && flag2_externo_take(m, &flag2_externo_token, 1U);
-    if (!is_taken) {
+    if (!m->Supervisor_Install_Rivet_Fasten_pressing.full || !m->flag2_externo.full) {
         pn_raise(cx, PN_ERR_SUBTRACT, NULL);
         return false;
     }
-    /* flag2_interno: RELEASE (ID1412320103) */
-    bool fits = flag2_interno_add(cx, m, &flag2_interno_token, 1U);
-    /* releasing: FAILED (ID1412320105) */
-    fits = Supervisor_Install_Rivet_Fasten_releasing_add(cx, m,
-        &Supervisor_Install_Rivet_Fasten_releasing_token, 1U) && fits;
-    if (!fits) {
-        /* a place is full: everything is put back */
-        (void)Supervisor_Install_Rivet_Fasten_releasing_take(m,
-            &Supervisor_Install_Rivet_Fasten_releasing_token, 1U);
-        (void)flag2_interno_take(m, &flag2_interno_token, 1U);
-        (void)flag2_externo_add(cx, m, &flag2_externo_token, 1U);
-        (void)Supervisor_Install_Rivet_Fasten_pressing_add(cx, m,
-            &Supervisor_Install_Rivet_Fasten_pressing_token, 1U);
+    if (m->flag2_interno.full) {
+        return pn_bag_fail_full(cx, &s_at_flag2_interno);
     }
-    return fits;
-}
-
-static void Supervisor_Install_Rivet_Fasten_Press_failed_json(const void *binding, pn_text_t *out)
-{
-    pn_json(&s_binding_Supervisor_Install_Rivet_Fasten_Press_failed, binding, out);
+    if (m->Supervisor_Install_Rivet_Fasten_releasing.full) {
+        return pn_bag_fail_full(cx, &s_at_Supervisor_Install_Rivet_Fasten_releasing);
+    }
+    /* pressing: () (ID1412320097) */
+    m->Supervisor_Install_Rivet_Fasten_pressing.full = false;
+    /* flag2_externo: FAILED (ID1412320101) */
+    m->flag2_externo.full = false;
+    /* flag2_interno: RELEASE (ID1412320103) */
+    m->flag2_interno.value = flag2_interno_token;
+    m->flag2_interno.full = true;
+    /* releasing: FAILED (ID1412320105) */
+    m->Supervisor_Install_Rivet_Fasten_releasing.value =
+        Supervisor_Install_Rivet_Fasten_releasing_token;
+    m->Supervisor_Install_Rivet_Fasten_releasing.full = true;
+    return true;
 }
 
 /* transition Cell.Supervisor.Install.Rivet.Fasten.Drill failed: page `Fasten`, transition `Drill failed` (ID1412320092), cell.cpn:18160 */
@@ -5669,11 +4537,11 @@ PN_NET_SEARCH static bool Supervisor_Install_Rivet_Fasten_Drill_failed_enumerate
     cx->now = m->now;
     cx->rounds = 0U;
     /* drilling: () (ID1412320099) */
-    if (Supervisor_Install_Rivet_Fasten_drilling_held(m, (pn_unit_t[]){ PN_UNIT }) < 1U) {
+    if (!m->Supervisor_Install_Rivet_Fasten_drilling.full) {
         return true;
     }
     /* flag1_externo: FAILED (ID1412320107) */
-    if (flag1_externo_held(m, &val_FAILED) < 1U) {
+    if (!m->flag1_externo.full || (m->flag1_externo.value != val_FAILED)) {
         return true;
     }
     if (!sink(user, self, &b)) {
@@ -5689,43 +4557,34 @@ PN_NET_SEARCH static bool Supervisor_Install_Rivet_Fasten_Drill_failed_fire(pn_c
     cx->origin = "page `Fasten`, transition `Drill failed` (ID1412320092)";
     cx->now = m->now;
     cx->rounds = 0U;
-    const pn_unit_t Supervisor_Install_Rivet_Fasten_drilling_token = PN_UNIT;
-    const int64_t flag1_externo_token = val_FAILED;
     int64_t flag2_interno_token = val_RELEASE;
     pn_bag_check(cx, &s_at_flag2_interno, &flag2_interno_token);
     const int64_t Supervisor_Install_Rivet_Fasten_releasing_token = val_FAILED;
     if (!pn_ok(cx)) {
         return false;
     }
-    /* drilling: () (ID1412320099) */
-    bool is_taken = Supervisor_Install_Rivet_Fasten_drilling_take(m,
-        &Supervisor_Install_Rivet_Fasten_drilling_token, 1U);
-    /* flag1_externo: FAILED (ID1412320107) */
-    is_taken = is_taken && flag1_externo_take(m, &flag1_externo_token, 1U);
-    if (!is_taken) {
+    if (!m->Supervisor_Install_Rivet_Fasten_drilling.full || !m->flag1_externo.full) {
         pn_raise(cx, PN_ERR_SUBTRACT, NULL);
         return false;
     }
-    /* flag2_interno: RELEASE (ID1412320109) */
-    bool fits = flag2_interno_add(cx, m, &flag2_interno_token, 1U);
-    /* releasing: FAILED (ID1412320111) */
-    fits = Supervisor_Install_Rivet_Fasten_releasing_add(cx, m,
-        &Supervisor_Install_Rivet_Fasten_releasing_token, 1U) && fits;
-    if (!fits) {
-        /* a place is full: everything is put back */
-        (void)Supervisor_Install_Rivet_Fasten_releasing_take(m,
-            &Supervisor_Install_Rivet_Fasten_releasing_token, 1U);
-        (void)flag2_interno_take(m, &flag2_interno_token, 1U);
-        (void)flag1_externo_add(cx, m, &flag1_externo_token, 1U);
-        (void)Supervisor_Install_Rivet_Fasten_drilling_add(cx, m,
-            &Supervisor_Install_Rivet_Fasten_drilling_token, 1U);
+    if (m->flag2_interno.full) {
+        return pn_bag_fail_full(cx, &s_at_flag2_interno);
     }
-    return fits;
-}
-
-static void Supervisor_Install_Rivet_Fasten_Drill_failed_json(const void *binding, pn_text_t *out)
-{
-    pn_json(&s_binding_Supervisor_Install_Rivet_Fasten_Drill_failed, binding, out);
+    if (m->Supervisor_Install_Rivet_Fasten_releasing.full) {
+        return pn_bag_fail_full(cx, &s_at_Supervisor_Install_Rivet_Fasten_releasing);
+    }
+    /* drilling: () (ID1412320099) */
+    m->Supervisor_Install_Rivet_Fasten_drilling.full = false;
+    /* flag1_externo: FAILED (ID1412320107) */
+    m->flag1_externo.full = false;
+    /* flag2_interno: RELEASE (ID1412320109) */
+    m->flag2_interno.value = flag2_interno_token;
+    m->flag2_interno.full = true;
+    /* releasing: FAILED (ID1412320111) */
+    m->Supervisor_Install_Rivet_Fasten_releasing.value =
+        Supervisor_Install_Rivet_Fasten_releasing_token;
+    m->Supervisor_Install_Rivet_Fasten_releasing.full = true;
+    return true;
 }
 
 /* transition Cell.Supervisor.Install.Rivet.Retract.Command: page `MoveBoth`, transition `Command` (ID1412310941), cell.cpn:20061 */
@@ -5758,13 +4617,14 @@ PN_NET_SEARCH static bool Supervisor_Install_Rivet_Retract_Command_enumerate(pn_
     cx->now = m->now;
     cx->rounds = 0U;
     /* retract: (c, p, q) (ID1412310946) */
-    for (uint32_t i = 0U; i < m->Supervisor_Install_Rivet_retract.used; i++) {
-        b.c = m->Supervisor_Install_Rivet_retract.token[i].value.c1;
-        b.p = m->Supervisor_Install_Rivet_retract.token[i].value.c2;
-        b.q = m->Supervisor_Install_Rivet_retract.token[i].value.c3;
-        if (!sink(user, self, &b)) {
-            return false;
-        }
+    if (!m->Supervisor_Install_Rivet_retract.full) {
+        return true;
+    }
+    b.c = m->Supervisor_Install_Rivet_retract.value.c1;
+    b.p = m->Supervisor_Install_Rivet_retract.value.c2;
+    b.q = m->Supervisor_Install_Rivet_retract.value.c3;
+    if (!sink(user, self, &b)) {
+        return false;
     }
     return true;
 }
@@ -5776,50 +4636,47 @@ PN_NET_SEARCH static bool Supervisor_Install_Rivet_Retract_Command_fire(pn_ctx_t
     cx->origin = "page `MoveBoth`, transition `Command` (ID1412310941)";
     cx->now = m->now;
     cx->rounds = 0U;
-    const PLAN_t Supervisor_Install_Rivet_retract_token = (PLAN_t){ .c1 = b->c, .c2 = b->p,
-        .c3 = b->q };
-    const pn_unit_t Supervisor_Install_Rivet_Retract_moving_1_token = PN_UNIT;
-    const pn_unit_t Supervisor_Install_Rivet_Retract_moving_2_token = PN_UNIT;
-    /* retract: (c, p, q) (ID1412310946) */
-    bool is_taken = Supervisor_Install_Rivet_retract_take(m,
-        &Supervisor_Install_Rivet_retract_token, 1U);
-    if (!is_taken) {
+    if (!m->Supervisor_Install_Rivet_retract.full) {
         pn_raise(cx, PN_ERR_SUBTRACT, NULL);
         return false;
     }
-    /* moving 1: () (ID1412310970) */
-    bool fits = Supervisor_Install_Rivet_Retract_moving_1_add(cx, m,
-        &Supervisor_Install_Rivet_Retract_moving_1_token, 1U);
-    /* dadosrobo1: p (ID1412310982) */
-    fits = dadosrobo1_add(cx, m, &b->p, 1U) && fits;
-    /* flag1_interno: c (ID1412310988) */
-    fits = flag1_interno_add(cx, m, &b->c, 1U) && fits;
-    /* moving 2: () (ID1412311007) */
-    fits = Supervisor_Install_Rivet_Retract_moving_2_add(cx, m,
-        &Supervisor_Install_Rivet_Retract_moving_2_token, 1U) && fits;
-    /* dadosrobo2: q (ID1412311019) */
-    fits = dadosrobo2_add(cx, m, &b->q, 1U) && fits;
-    /* flag2_interno: c (ID1412311025) */
-    fits = flag2_interno_add(cx, m, &b->c, 1U) && fits;
-    if (!fits) {
-        /* a place is full: everything is put back */
-        (void)flag2_interno_take(m, &b->c, 1U);
-        (void)dadosrobo2_take(m, &b->q, 1U);
-        (void)Supervisor_Install_Rivet_Retract_moving_2_take(m,
-            &Supervisor_Install_Rivet_Retract_moving_2_token, 1U);
-        (void)flag1_interno_take(m, &b->c, 1U);
-        (void)dadosrobo1_take(m, &b->p, 1U);
-        (void)Supervisor_Install_Rivet_Retract_moving_1_take(m,
-            &Supervisor_Install_Rivet_Retract_moving_1_token, 1U);
-        (void)Supervisor_Install_Rivet_retract_add(cx, m, &Supervisor_Install_Rivet_retract_token,
-            1U);
+    if (m->Supervisor_Install_Rivet_Retract_moving_1.full) {
+        return pn_bag_fail_full(cx, &s_at_Supervisor_Install_Rivet_Retract_moving_1);
     }
-    return fits;
-}
-
-static void Supervisor_Install_Rivet_Retract_Command_json(const void *binding, pn_text_t *out)
-{
-    pn_json(&s_binding_Supervisor_Install_Rivet_Retract_Command, binding, out);
+    if (m->dadosrobo1.full) {
+        return pn_bag_fail_full(cx, &s_at_dadosrobo1);
+    }
+    if (m->flag1_interno.full) {
+        return pn_bag_fail_full(cx, &s_at_flag1_interno);
+    }
+    if (m->Supervisor_Install_Rivet_Retract_moving_2.full) {
+        return pn_bag_fail_full(cx, &s_at_Supervisor_Install_Rivet_Retract_moving_2);
+    }
+    if (m->dadosrobo2.full) {
+        return pn_bag_fail_full(cx, &s_at_dadosrobo2);
+    }
+    if (m->flag2_interno.full) {
+        return pn_bag_fail_full(cx, &s_at_flag2_interno);
+    }
+    /* retract: (c, p, q) (ID1412310946) */
+    m->Supervisor_Install_Rivet_retract.full = false;
+    /* moving 1: () (ID1412310970) */
+    m->Supervisor_Install_Rivet_Retract_moving_1.full = true;
+    /* dadosrobo1: p (ID1412310982) */
+    m->dadosrobo1.value = b->p;
+    m->dadosrobo1.full = true;
+    /* flag1_interno: c (ID1412310988) */
+    m->flag1_interno.value = b->c;
+    m->flag1_interno.full = true;
+    /* moving 2: () (ID1412311007) */
+    m->Supervisor_Install_Rivet_Retract_moving_2.full = true;
+    /* dadosrobo2: q (ID1412311019) */
+    m->dadosrobo2.value = b->q;
+    m->dadosrobo2.full = true;
+    /* flag2_interno: c (ID1412311025) */
+    m->flag2_interno.value = b->c;
+    m->flag2_interno.full = true;
+    return true;
 }
 
 /* transition Cell.Supervisor.Install.Rivet.Retract.Both: page `MoveBoth`, transition `Both` (ID1412310948), cell.cpn:20135 */
@@ -5844,11 +4701,11 @@ PN_NET_SEARCH static bool Supervisor_Install_Rivet_Retract_Both_enumerate(pn_ctx
     cx->now = m->now;
     cx->rounds = 0U;
     /* there 1: () (ID1412310976) */
-    if (Supervisor_Install_Rivet_Retract_there_1_held(m, (pn_unit_t[]){ PN_UNIT }) < 1U) {
+    if (!m->Supervisor_Install_Rivet_Retract_there_1.full) {
         return true;
     }
     /* there 2: () (ID1412311013) */
-    if (Supervisor_Install_Rivet_Retract_there_2_held(m, (pn_unit_t[]){ PN_UNIT }) < 1U) {
+    if (!m->Supervisor_Install_Rivet_Retract_there_2.full) {
         return true;
     }
     if (!sink(user, self, &b)) {
@@ -5864,36 +4721,21 @@ PN_NET_SEARCH static bool Supervisor_Install_Rivet_Retract_Both_fire(pn_ctx_t *c
     cx->origin = "page `MoveBoth`, transition `Both` (ID1412310948)";
     cx->now = m->now;
     cx->rounds = 0U;
-    const pn_unit_t Supervisor_Install_Rivet_Retract_there_1_token = PN_UNIT;
-    const pn_unit_t Supervisor_Install_Rivet_Retract_there_2_token = PN_UNIT;
-    const pn_unit_t Supervisor_Install_riveted_token = PN_UNIT;
-    /* there 1: () (ID1412310976) */
-    bool is_taken = Supervisor_Install_Rivet_Retract_there_1_take(m,
-        &Supervisor_Install_Rivet_Retract_there_1_token, 1U);
-    /* there 2: () (ID1412311013) */
-    is_taken = is_taken
-        && Supervisor_Install_Rivet_Retract_there_2_take(m,
-        &Supervisor_Install_Rivet_Retract_there_2_token, 1U);
-    if (!is_taken) {
+    if (!m->Supervisor_Install_Rivet_Retract_there_1.full
+        || !m->Supervisor_Install_Rivet_Retract_there_2.full) {
         pn_raise(cx, PN_ERR_SUBTRACT, NULL);
         return false;
     }
-    /* riveted: () (ID1412310957) */
-    bool fits = Supervisor_Install_riveted_add(cx, m, &Supervisor_Install_riveted_token, 1U);
-    if (!fits) {
-        /* a place is full: everything is put back */
-        (void)Supervisor_Install_riveted_take(m, &Supervisor_Install_riveted_token, 1U);
-        (void)Supervisor_Install_Rivet_Retract_there_2_add(cx, m,
-            &Supervisor_Install_Rivet_Retract_there_2_token, 1U);
-        (void)Supervisor_Install_Rivet_Retract_there_1_add(cx, m,
-            &Supervisor_Install_Rivet_Retract_there_1_token, 1U);
+    if (m->Supervisor_Install_riveted.full) {
+        return pn_bag_fail_full(cx, &s_at_Supervisor_Install_riveted);
     }
-    return fits;
-}
-
-static void Supervisor_Install_Rivet_Retract_Both_json(const void *binding, pn_text_t *out)
-{
-    pn_json(&s_binding_Supervisor_Install_Rivet_Retract_Both, binding, out);
+    /* there 1: () (ID1412310976) */
+    m->Supervisor_Install_Rivet_Retract_there_1.full = false;
+    /* there 2: () (ID1412311013) */
+    m->Supervisor_Install_Rivet_Retract_there_2.full = false;
+    /* riveted: () (ID1412310957) */
+    m->Supervisor_Install_riveted.full = true;
+    return true;
 }
 
 /* transition Cell.Supervisor.Install.Rivet.Retract.Reply 1: page `MoveBoth`, transition `Reply 1` (ID1412310962), cell.cpn:20209 */
@@ -5918,11 +4760,11 @@ PN_NET_SEARCH static bool Supervisor_Install_Rivet_Retract_Reply_1_enumerate(pn_
     cx->now = m->now;
     cx->rounds = 0U;
     /* moving 1: () (ID1412310972) */
-    if (Supervisor_Install_Rivet_Retract_moving_1_held(m, (pn_unit_t[]){ PN_UNIT }) < 1U) {
+    if (!m->Supervisor_Install_Rivet_Retract_moving_1.full) {
         return true;
     }
     /* flag1_externo: DONE (ID1412310994) */
-    if (flag1_externo_held(m, &val_DONE) < 1U) {
+    if (!m->flag1_externo.full || (m->flag1_externo.value != val_DONE)) {
         return true;
     }
     if (!sink(user, self, &b)) {
@@ -5938,35 +4780,20 @@ PN_NET_SEARCH static bool Supervisor_Install_Rivet_Retract_Reply_1_fire(pn_ctx_t
     cx->origin = "page `MoveBoth`, transition `Reply 1` (ID1412310962)";
     cx->now = m->now;
     cx->rounds = 0U;
-    const pn_unit_t Supervisor_Install_Rivet_Retract_moving_1_token = PN_UNIT;
-    const int64_t flag1_externo_token = val_DONE;
-    const pn_unit_t Supervisor_Install_Rivet_Retract_there_1_token = PN_UNIT;
-    /* moving 1: () (ID1412310972) */
-    bool is_taken = Supervisor_Install_Rivet_Retract_moving_1_take(m,
-        &Supervisor_Install_Rivet_Retract_moving_1_token, 1U);
-    /* flag1_externo: DONE (ID1412310994) */
-    is_taken = is_taken && flag1_externo_take(m, &flag1_externo_token, 1U);
-    if (!is_taken) {
+    if (!m->Supervisor_Install_Rivet_Retract_moving_1.full || !m->flag1_externo.full) {
         pn_raise(cx, PN_ERR_SUBTRACT, NULL);
         return false;
     }
-    /* there 1: () (ID1412310974) */
-    bool fits = Supervisor_Install_Rivet_Retract_there_1_add(cx, m,
-        &Supervisor_Install_Rivet_Retract_there_1_token, 1U);
-    if (!fits) {
-        /* a place is full: everything is put back */
-        (void)Supervisor_Install_Rivet_Retract_there_1_take(m,
-            &Supervisor_Install_Rivet_Retract_there_1_token, 1U);
-        (void)flag1_externo_add(cx, m, &flag1_externo_token, 1U);
-        (void)Supervisor_Install_Rivet_Retract_moving_1_add(cx, m,
-            &Supervisor_Install_Rivet_Retract_moving_1_token, 1U);
+    if (m->Supervisor_Install_Rivet_Retract_there_1.full) {
+        return pn_bag_fail_full(cx, &s_at_Supervisor_Install_Rivet_Retract_there_1);
     }
-    return fits;
-}
-
-static void Supervisor_Install_Rivet_Retract_Reply_1_json(const void *binding, pn_text_t *out)
-{
-    pn_json(&s_binding_Supervisor_Install_Rivet_Retract_Reply_1, binding, out);
+    /* moving 1: () (ID1412310972) */
+    m->Supervisor_Install_Rivet_Retract_moving_1.full = false;
+    /* flag1_externo: DONE (ID1412310994) */
+    m->flag1_externo.full = false;
+    /* there 1: () (ID1412310974) */
+    m->Supervisor_Install_Rivet_Retract_there_1.full = true;
+    return true;
 }
 
 /* transition Cell.Supervisor.Install.Rivet.Retract.Reply 2: page `MoveBoth`, transition `Reply 2` (ID1412310999), cell.cpn:20283 */
@@ -5991,11 +4818,11 @@ PN_NET_SEARCH static bool Supervisor_Install_Rivet_Retract_Reply_2_enumerate(pn_
     cx->now = m->now;
     cx->rounds = 0U;
     /* moving 2: () (ID1412311009) */
-    if (Supervisor_Install_Rivet_Retract_moving_2_held(m, (pn_unit_t[]){ PN_UNIT }) < 1U) {
+    if (!m->Supervisor_Install_Rivet_Retract_moving_2.full) {
         return true;
     }
     /* flag2_externo: DONE (ID1412311031) */
-    if (flag2_externo_held(m, &val_DONE) < 1U) {
+    if (!m->flag2_externo.full || (m->flag2_externo.value != val_DONE)) {
         return true;
     }
     if (!sink(user, self, &b)) {
@@ -6011,35 +4838,20 @@ PN_NET_SEARCH static bool Supervisor_Install_Rivet_Retract_Reply_2_fire(pn_ctx_t
     cx->origin = "page `MoveBoth`, transition `Reply 2` (ID1412310999)";
     cx->now = m->now;
     cx->rounds = 0U;
-    const pn_unit_t Supervisor_Install_Rivet_Retract_moving_2_token = PN_UNIT;
-    const int64_t flag2_externo_token = val_DONE;
-    const pn_unit_t Supervisor_Install_Rivet_Retract_there_2_token = PN_UNIT;
-    /* moving 2: () (ID1412311009) */
-    bool is_taken = Supervisor_Install_Rivet_Retract_moving_2_take(m,
-        &Supervisor_Install_Rivet_Retract_moving_2_token, 1U);
-    /* flag2_externo: DONE (ID1412311031) */
-    is_taken = is_taken && flag2_externo_take(m, &flag2_externo_token, 1U);
-    if (!is_taken) {
+    if (!m->Supervisor_Install_Rivet_Retract_moving_2.full || !m->flag2_externo.full) {
         pn_raise(cx, PN_ERR_SUBTRACT, NULL);
         return false;
     }
-    /* there 2: () (ID1412311011) */
-    bool fits = Supervisor_Install_Rivet_Retract_there_2_add(cx, m,
-        &Supervisor_Install_Rivet_Retract_there_2_token, 1U);
-    if (!fits) {
-        /* a place is full: everything is put back */
-        (void)Supervisor_Install_Rivet_Retract_there_2_take(m,
-            &Supervisor_Install_Rivet_Retract_there_2_token, 1U);
-        (void)flag2_externo_add(cx, m, &flag2_externo_token, 1U);
-        (void)Supervisor_Install_Rivet_Retract_moving_2_add(cx, m,
-            &Supervisor_Install_Rivet_Retract_moving_2_token, 1U);
+    if (m->Supervisor_Install_Rivet_Retract_there_2.full) {
+        return pn_bag_fail_full(cx, &s_at_Supervisor_Install_Rivet_Retract_there_2);
     }
-    return fits;
-}
-
-static void Supervisor_Install_Rivet_Retract_Reply_2_json(const void *binding, pn_text_t *out)
-{
-    pn_json(&s_binding_Supervisor_Install_Rivet_Retract_Reply_2, binding, out);
+    /* moving 2: () (ID1412311009) */
+    m->Supervisor_Install_Rivet_Retract_moving_2.full = false;
+    /* flag2_externo: DONE (ID1412311031) */
+    m->flag2_externo.full = false;
+    /* there 2: () (ID1412311011) */
+    m->Supervisor_Install_Rivet_Retract_there_2.full = true;
+    return true;
 }
 
 /* transition Cell.Supervisor.Install.Return.Command: page `MoveBoth`, transition `Command` (ID1412310941), cell.cpn:20061 */
@@ -6072,13 +4884,14 @@ PN_NET_SEARCH static bool Supervisor_Install_Return_Command_enumerate(pn_ctx_t *
     cx->now = m->now;
     cx->rounds = 0U;
     /* return: (c, p, q) (ID1412310946) */
-    for (uint32_t i = 0U; i < m->Supervisor_Install_return.used; i++) {
-        b.c = m->Supervisor_Install_return.token[i].value.c1;
-        b.p = m->Supervisor_Install_return.token[i].value.c2;
-        b.q = m->Supervisor_Install_return.token[i].value.c3;
-        if (!sink(user, self, &b)) {
-            return false;
-        }
+    if (!m->Supervisor_Install_return.full) {
+        return true;
+    }
+    b.c = m->Supervisor_Install_return.value.c1;
+    b.p = m->Supervisor_Install_return.value.c2;
+    b.q = m->Supervisor_Install_return.value.c3;
+    if (!sink(user, self, &b)) {
+        return false;
     }
     return true;
 }
@@ -6090,47 +4903,47 @@ PN_NET_SEARCH static bool Supervisor_Install_Return_Command_fire(pn_ctx_t *cx, v
     cx->origin = "page `MoveBoth`, transition `Command` (ID1412310941)";
     cx->now = m->now;
     cx->rounds = 0U;
-    const PLAN_t Supervisor_Install_return_token = (PLAN_t){ .c1 = b->c, .c2 = b->p, .c3 = b->q };
-    const pn_unit_t Supervisor_Install_Return_moving_1_token = PN_UNIT;
-    const pn_unit_t Supervisor_Install_Return_moving_2_token = PN_UNIT;
-    /* return: (c, p, q) (ID1412310946) */
-    bool is_taken = Supervisor_Install_return_take(m, &Supervisor_Install_return_token, 1U);
-    if (!is_taken) {
+    if (!m->Supervisor_Install_return.full) {
         pn_raise(cx, PN_ERR_SUBTRACT, NULL);
         return false;
     }
-    /* moving 1: () (ID1412310970) */
-    bool fits = Supervisor_Install_Return_moving_1_add(cx, m,
-        &Supervisor_Install_Return_moving_1_token, 1U);
-    /* dadosrobo1: p (ID1412310982) */
-    fits = dadosrobo1_add(cx, m, &b->p, 1U) && fits;
-    /* flag1_interno: c (ID1412310988) */
-    fits = flag1_interno_add(cx, m, &b->c, 1U) && fits;
-    /* moving 2: () (ID1412311007) */
-    fits = Supervisor_Install_Return_moving_2_add(cx, m, &Supervisor_Install_Return_moving_2_token,
-        1U) && fits;
-    /* dadosrobo2: q (ID1412311019) */
-    fits = dadosrobo2_add(cx, m, &b->q, 1U) && fits;
-    /* flag2_interno: c (ID1412311025) */
-    fits = flag2_interno_add(cx, m, &b->c, 1U) && fits;
-    if (!fits) {
-        /* a place is full: everything is put back */
-        (void)flag2_interno_take(m, &b->c, 1U);
-        (void)dadosrobo2_take(m, &b->q, 1U);
-        (void)Supervisor_Install_Return_moving_2_take(m, &Supervisor_Install_Return_moving_2_token,
-            1U);
-        (void)flag1_interno_take(m, &b->c, 1U);
-        (void)dadosrobo1_take(m, &b->p, 1U);
-        (void)Supervisor_Install_Return_moving_1_take(m, &Supervisor_Install_Return_moving_1_token,
-            1U);
-        (void)Supervisor_Install_return_add(cx, m, &Supervisor_Install_return_token, 1U);
+    if (m->Supervisor_Install_Return_moving_1.full) {
+        return pn_bag_fail_full(cx, &s_at_Supervisor_Install_Return_moving_1);
     }
-    return fits;
-}
-
-static void Supervisor_Install_Return_Command_json(const void *binding, pn_text_t *out)
-{
-    pn_json(&s_binding_Supervisor_Install_Return_Command, binding, out);
+    if (m->dadosrobo1.full) {
+        return pn_bag_fail_full(cx, &s_at_dadosrobo1);
+    }
+    if (m->flag1_interno.full) {
+        return pn_bag_fail_full(cx, &s_at_flag1_interno);
+    }
+    if (m->Supervisor_Install_Return_moving_2.full) {
+        return pn_bag_fail_full(cx, &s_at_Supervisor_Install_Return_moving_2);
+    }
+    if (m->dadosrobo2.full) {
+        return pn_bag_fail_full(cx, &s_at_dadosrobo2);
+    }
+    if (m->flag2_interno.full) {
+        return pn_bag_fail_full(cx, &s_at_flag2_interno);
+    }
+    /* return: (c, p, q) (ID1412310946) */
+    m->Supervisor_Install_return.full = false;
+    /* moving 1: () (ID1412310970) */
+    m->Supervisor_Install_Return_moving_1.full = true;
+    /* dadosrobo1: p (ID1412310982) */
+    m->dadosrobo1.value = b->p;
+    m->dadosrobo1.full = true;
+    /* flag1_interno: c (ID1412310988) */
+    m->flag1_interno.value = b->c;
+    m->flag1_interno.full = true;
+    /* moving 2: () (ID1412311007) */
+    m->Supervisor_Install_Return_moving_2.full = true;
+    /* dadosrobo2: q (ID1412311019) */
+    m->dadosrobo2.value = b->q;
+    m->dadosrobo2.full = true;
+    /* flag2_interno: c (ID1412311025) */
+    m->flag2_interno.value = b->c;
+    m->flag2_interno.full = true;
+    return true;
 }
 
 /* transition Cell.Supervisor.Install.Return.Both: page `MoveBoth`, transition `Both` (ID1412310948), cell.cpn:20135 */
@@ -6155,11 +4968,11 @@ PN_NET_SEARCH static bool Supervisor_Install_Return_Both_enumerate(pn_ctx_t *cx,
     cx->now = m->now;
     cx->rounds = 0U;
     /* there 1: () (ID1412310976) */
-    if (Supervisor_Install_Return_there_1_held(m, (pn_unit_t[]){ PN_UNIT }) < 1U) {
+    if (!m->Supervisor_Install_Return_there_1.full) {
         return true;
     }
     /* there 2: () (ID1412311013) */
-    if (Supervisor_Install_Return_there_2_held(m, (pn_unit_t[]){ PN_UNIT }) < 1U) {
+    if (!m->Supervisor_Install_Return_there_2.full) {
         return true;
     }
     if (!sink(user, self, &b)) {
@@ -6175,35 +4988,20 @@ PN_NET_SEARCH static bool Supervisor_Install_Return_Both_fire(pn_ctx_t *cx, void
     cx->origin = "page `MoveBoth`, transition `Both` (ID1412310948)";
     cx->now = m->now;
     cx->rounds = 0U;
-    const pn_unit_t Supervisor_Install_Return_there_1_token = PN_UNIT;
-    const pn_unit_t Supervisor_Install_Return_there_2_token = PN_UNIT;
-    const pn_unit_t Supervisor_ended_token = PN_UNIT;
-    /* there 1: () (ID1412310976) */
-    bool is_taken = Supervisor_Install_Return_there_1_take(m,
-        &Supervisor_Install_Return_there_1_token, 1U);
-    /* there 2: () (ID1412311013) */
-    is_taken = is_taken
-        && Supervisor_Install_Return_there_2_take(m, &Supervisor_Install_Return_there_2_token, 1U);
-    if (!is_taken) {
+    if (!m->Supervisor_Install_Return_there_1.full || !m->Supervisor_Install_Return_there_2.full) {
         pn_raise(cx, PN_ERR_SUBTRACT, NULL);
         return false;
     }
-    /* ended: () (ID1412310957) */
-    bool fits = Supervisor_ended_add(cx, m, &Supervisor_ended_token, 1U);
-    if (!fits) {
-        /* a place is full: everything is put back */
-        (void)Supervisor_ended_take(m, &Supervisor_ended_token, 1U);
-        (void)Supervisor_Install_Return_there_2_add(cx, m, &Supervisor_Install_Return_there_2_token,
-            1U);
-        (void)Supervisor_Install_Return_there_1_add(cx, m, &Supervisor_Install_Return_there_1_token,
-            1U);
+    if (m->Supervisor_ended.full) {
+        return pn_bag_fail_full(cx, &s_at_Supervisor_ended);
     }
-    return fits;
-}
-
-static void Supervisor_Install_Return_Both_json(const void *binding, pn_text_t *out)
-{
-    pn_json(&s_binding_Supervisor_Install_Return_Both, binding, out);
+    /* there 1: () (ID1412310976) */
+    m->Supervisor_Install_Return_there_1.full = false;
+    /* there 2: () (ID1412311013) */
+    m->Supervisor_Install_Return_there_2.full = false;
+    /* ended: () (ID1412310957) */
+    m->Supervisor_ended.full = true;
+    return true;
 }
 
 /* transition Cell.Supervisor.Install.Return.Reply 1: page `MoveBoth`, transition `Reply 1` (ID1412310962), cell.cpn:20209 */
@@ -6228,11 +5026,11 @@ PN_NET_SEARCH static bool Supervisor_Install_Return_Reply_1_enumerate(pn_ctx_t *
     cx->now = m->now;
     cx->rounds = 0U;
     /* moving 1: () (ID1412310972) */
-    if (Supervisor_Install_Return_moving_1_held(m, (pn_unit_t[]){ PN_UNIT }) < 1U) {
+    if (!m->Supervisor_Install_Return_moving_1.full) {
         return true;
     }
     /* flag1_externo: DONE (ID1412310994) */
-    if (flag1_externo_held(m, &val_DONE) < 1U) {
+    if (!m->flag1_externo.full || (m->flag1_externo.value != val_DONE)) {
         return true;
     }
     if (!sink(user, self, &b)) {
@@ -6248,35 +5046,20 @@ PN_NET_SEARCH static bool Supervisor_Install_Return_Reply_1_fire(pn_ctx_t *cx, v
     cx->origin = "page `MoveBoth`, transition `Reply 1` (ID1412310962)";
     cx->now = m->now;
     cx->rounds = 0U;
-    const pn_unit_t Supervisor_Install_Return_moving_1_token = PN_UNIT;
-    const int64_t flag1_externo_token = val_DONE;
-    const pn_unit_t Supervisor_Install_Return_there_1_token = PN_UNIT;
-    /* moving 1: () (ID1412310972) */
-    bool is_taken = Supervisor_Install_Return_moving_1_take(m,
-        &Supervisor_Install_Return_moving_1_token, 1U);
-    /* flag1_externo: DONE (ID1412310994) */
-    is_taken = is_taken && flag1_externo_take(m, &flag1_externo_token, 1U);
-    if (!is_taken) {
+    if (!m->Supervisor_Install_Return_moving_1.full || !m->flag1_externo.full) {
         pn_raise(cx, PN_ERR_SUBTRACT, NULL);
         return false;
     }
-    /* there 1: () (ID1412310974) */
-    bool fits = Supervisor_Install_Return_there_1_add(cx, m,
-        &Supervisor_Install_Return_there_1_token, 1U);
-    if (!fits) {
-        /* a place is full: everything is put back */
-        (void)Supervisor_Install_Return_there_1_take(m, &Supervisor_Install_Return_there_1_token,
-            1U);
-        (void)flag1_externo_add(cx, m, &flag1_externo_token, 1U);
-        (void)Supervisor_Install_Return_moving_1_add(cx, m,
-            &Supervisor_Install_Return_moving_1_token, 1U);
+    if (m->Supervisor_Install_Return_there_1.full) {
+        return pn_bag_fail_full(cx, &s_at_Supervisor_Install_Return_there_1);
     }
-    return fits;
-}
-
-static void Supervisor_Install_Return_Reply_1_json(const void *binding, pn_text_t *out)
-{
-    pn_json(&s_binding_Supervisor_Install_Return_Reply_1, binding, out);
+    /* moving 1: () (ID1412310972) */
+    m->Supervisor_Install_Return_moving_1.full = false;
+    /* flag1_externo: DONE (ID1412310994) */
+    m->flag1_externo.full = false;
+    /* there 1: () (ID1412310974) */
+    m->Supervisor_Install_Return_there_1.full = true;
+    return true;
 }
 
 /* transition Cell.Supervisor.Install.Return.Reply 2: page `MoveBoth`, transition `Reply 2` (ID1412310999), cell.cpn:20283 */
@@ -6301,11 +5084,11 @@ PN_NET_SEARCH static bool Supervisor_Install_Return_Reply_2_enumerate(pn_ctx_t *
     cx->now = m->now;
     cx->rounds = 0U;
     /* moving 2: () (ID1412311009) */
-    if (Supervisor_Install_Return_moving_2_held(m, (pn_unit_t[]){ PN_UNIT }) < 1U) {
+    if (!m->Supervisor_Install_Return_moving_2.full) {
         return true;
     }
     /* flag2_externo: DONE (ID1412311031) */
-    if (flag2_externo_held(m, &val_DONE) < 1U) {
+    if (!m->flag2_externo.full || (m->flag2_externo.value != val_DONE)) {
         return true;
     }
     if (!sink(user, self, &b)) {
@@ -6321,35 +5104,20 @@ PN_NET_SEARCH static bool Supervisor_Install_Return_Reply_2_fire(pn_ctx_t *cx, v
     cx->origin = "page `MoveBoth`, transition `Reply 2` (ID1412310999)";
     cx->now = m->now;
     cx->rounds = 0U;
-    const pn_unit_t Supervisor_Install_Return_moving_2_token = PN_UNIT;
-    const int64_t flag2_externo_token = val_DONE;
-    const pn_unit_t Supervisor_Install_Return_there_2_token = PN_UNIT;
-    /* moving 2: () (ID1412311009) */
-    bool is_taken = Supervisor_Install_Return_moving_2_take(m,
-        &Supervisor_Install_Return_moving_2_token, 1U);
-    /* flag2_externo: DONE (ID1412311031) */
-    is_taken = is_taken && flag2_externo_take(m, &flag2_externo_token, 1U);
-    if (!is_taken) {
+    if (!m->Supervisor_Install_Return_moving_2.full || !m->flag2_externo.full) {
         pn_raise(cx, PN_ERR_SUBTRACT, NULL);
         return false;
     }
-    /* there 2: () (ID1412311011) */
-    bool fits = Supervisor_Install_Return_there_2_add(cx, m,
-        &Supervisor_Install_Return_there_2_token, 1U);
-    if (!fits) {
-        /* a place is full: everything is put back */
-        (void)Supervisor_Install_Return_there_2_take(m, &Supervisor_Install_Return_there_2_token,
-            1U);
-        (void)flag2_externo_add(cx, m, &flag2_externo_token, 1U);
-        (void)Supervisor_Install_Return_moving_2_add(cx, m,
-            &Supervisor_Install_Return_moving_2_token, 1U);
+    if (m->Supervisor_Install_Return_there_2.full) {
+        return pn_bag_fail_full(cx, &s_at_Supervisor_Install_Return_there_2);
     }
-    return fits;
-}
-
-static void Supervisor_Install_Return_Reply_2_json(const void *binding, pn_text_t *out)
-{
-    pn_json(&s_binding_Supervisor_Install_Return_Reply_2, binding, out);
+    /* moving 2: () (ID1412311009) */
+    m->Supervisor_Install_Return_moving_2.full = false;
+    /* flag2_externo: DONE (ID1412311031) */
+    m->flag2_externo.full = false;
+    /* there 2: () (ID1412311011) */
+    m->Supervisor_Install_Return_there_2.full = true;
+    return true;
 }
 
 /* transition Cell.Supervisor.Home.Send home: page `Home`, transition `Send home` (ID1412311039), cell.cpn:21759 */
@@ -6374,7 +5142,7 @@ PN_NET_SEARCH static bool Supervisor_Home_Send_home_enumerate(pn_ctx_t *cx, cons
     cx->now = m->now;
     cx->rounds = 0U;
     /* ended: () (ID1412311044) */
-    if (Supervisor_ended_held(m, (pn_unit_t[]){ PN_UNIT }) < 1U) {
+    if (!m->Supervisor_ended.full) {
         return true;
     }
     if (!sink(user, self, &b)) {
@@ -6390,44 +5158,42 @@ PN_NET_SEARCH static bool Supervisor_Home_Send_home_fire(pn_ctx_t *cx, void *mar
     cx->origin = "page `Home`, transition `Send home` (ID1412311039)";
     cx->now = m->now;
     cx->rounds = 0U;
-    const pn_unit_t Supervisor_ended_token = PN_UNIT;
-    const pn_unit_t Supervisor_Home_leaving_1_token = PN_UNIT;
     int64_t flag1_interno_token = val_HOME;
     pn_bag_check(cx, &s_at_flag1_interno, &flag1_interno_token);
-    const pn_unit_t Supervisor_Home_leaving_2_token = PN_UNIT;
     int64_t flag2_interno_token = val_HOME;
     pn_bag_check(cx, &s_at_flag2_interno, &flag2_interno_token);
     if (!pn_ok(cx)) {
         return false;
     }
-    /* ended: () (ID1412311044) */
-    bool is_taken = Supervisor_ended_take(m, &Supervisor_ended_token, 1U);
-    if (!is_taken) {
+    if (!m->Supervisor_ended.full) {
         pn_raise(cx, PN_ERR_SUBTRACT, NULL);
         return false;
     }
-    /* leaving 1: () (ID1412311068) */
-    bool fits = Supervisor_Home_leaving_1_add(cx, m, &Supervisor_Home_leaving_1_token, 1U);
-    /* flag1_interno: HOME (ID1412311080) */
-    fits = flag1_interno_add(cx, m, &flag1_interno_token, 1U) && fits;
-    /* leaving 2: () (ID1412311099) */
-    fits = Supervisor_Home_leaving_2_add(cx, m, &Supervisor_Home_leaving_2_token, 1U) && fits;
-    /* flag2_interno: HOME (ID1412311111) */
-    fits = flag2_interno_add(cx, m, &flag2_interno_token, 1U) && fits;
-    if (!fits) {
-        /* a place is full: everything is put back */
-        (void)flag2_interno_take(m, &flag2_interno_token, 1U);
-        (void)Supervisor_Home_leaving_2_take(m, &Supervisor_Home_leaving_2_token, 1U);
-        (void)flag1_interno_take(m, &flag1_interno_token, 1U);
-        (void)Supervisor_Home_leaving_1_take(m, &Supervisor_Home_leaving_1_token, 1U);
-        (void)Supervisor_ended_add(cx, m, &Supervisor_ended_token, 1U);
+    if (m->Supervisor_Home_leaving_1.full) {
+        return pn_bag_fail_full(cx, &s_at_Supervisor_Home_leaving_1);
     }
-    return fits;
-}
-
-static void Supervisor_Home_Send_home_json(const void *binding, pn_text_t *out)
-{
-    pn_json(&s_binding_Supervisor_Home_Send_home, binding, out);
+    if (m->flag1_interno.full) {
+        return pn_bag_fail_full(cx, &s_at_flag1_interno);
+    }
+    if (m->Supervisor_Home_leaving_2.full) {
+        return pn_bag_fail_full(cx, &s_at_Supervisor_Home_leaving_2);
+    }
+    if (m->flag2_interno.full) {
+        return pn_bag_fail_full(cx, &s_at_flag2_interno);
+    }
+    /* ended: () (ID1412311044) */
+    m->Supervisor_ended.full = false;
+    /* leaving 1: () (ID1412311068) */
+    m->Supervisor_Home_leaving_1.full = true;
+    /* flag1_interno: HOME (ID1412311080) */
+    m->flag1_interno.value = flag1_interno_token;
+    m->flag1_interno.full = true;
+    /* leaving 2: () (ID1412311099) */
+    m->Supervisor_Home_leaving_2.full = true;
+    /* flag2_interno: HOME (ID1412311111) */
+    m->flag2_interno.value = flag2_interno_token;
+    m->flag2_interno.full = true;
+    return true;
 }
 
 /* transition Cell.Supervisor.Home.Both: page `Home`, transition `Both` (ID1412311046), cell.cpn:21833 */
@@ -6456,19 +5222,20 @@ PN_NET_SEARCH static bool Supervisor_Home_Both_enumerate(pn_ctx_t *cx, const voi
     cx->now = m->now;
     cx->rounds = 0U;
     /* home 1: () (ID1412311074) */
-    if (Supervisor_Home_home_1_held(m, (pn_unit_t[]){ PN_UNIT }) < 1U) {
+    if (!m->Supervisor_Home_home_1.full) {
         return true;
     }
     /* home 2: () (ID1412311105) */
-    if (Supervisor_Home_home_2_held(m, (pn_unit_t[]){ PN_UNIT }) < 1U) {
+    if (!m->Supervisor_Home_home_2.full) {
         return true;
     }
     /* result: e (ID1412320124) */
-    for (uint32_t i = 0U; i < m->Supervisor_result.used; i++) {
-        b.e = m->Supervisor_result.token[i].value;
-        if (!sink(user, self, &b)) {
-            return false;
-        }
+    if (!m->Supervisor_result.full) {
+        return true;
+    }
+    b.e = m->Supervisor_result.value;
+    if (!sink(user, self, &b)) {
+        return false;
     }
     return true;
 }
@@ -6484,8 +5251,6 @@ PN_NET_SEARCH static bool Supervisor_Home_Both_fire(pn_ctx_t *cx, void *marking,
     uint32_t Supervisor_Finished_tokens = 0U;
     pn_unit_t Supervisor_Failed_token = PN_UNIT;
     uint32_t Supervisor_Failed_tokens = 0U;
-    const pn_unit_t Supervisor_Home_home_1_token = PN_UNIT;
-    const pn_unit_t Supervisor_Home_home_2_token = PN_UNIT;
     /* Finished: if e = DONE then 1`() else empty (ID1412311055) */
     if (b->e == val_DONE) {
         Supervisor_Finished_token = PN_UNIT;
@@ -6496,33 +5261,34 @@ PN_NET_SEARCH static bool Supervisor_Home_Both_fire(pn_ctx_t *cx, void *marking,
         Supervisor_Failed_token = PN_UNIT;
         Supervisor_Failed_tokens = 1U;
     }
-    /* result: e (ID1412320124) */
-    bool is_taken = Supervisor_result_take(m, &b->e, 1U);
-    /* home 1: () (ID1412311074) */
-    is_taken = is_taken && Supervisor_Home_home_1_take(m, &Supervisor_Home_home_1_token, 1U);
-    /* home 2: () (ID1412311105) */
-    is_taken = is_taken && Supervisor_Home_home_2_take(m, &Supervisor_Home_home_2_token, 1U);
-    if (!is_taken) {
+    if (!m->Supervisor_result.full || !m->Supervisor_Home_home_1.full
+        || !m->Supervisor_Home_home_2.full) {
         pn_raise(cx, PN_ERR_SUBTRACT, NULL);
         return false;
     }
-    bool fits = Supervisor_Finished_add(cx, m, &Supervisor_Finished_token,
-        Supervisor_Finished_tokens);
-    fits = Supervisor_Failed_add(cx, m, &Supervisor_Failed_token, Supervisor_Failed_tokens) && fits;
-    if (!fits) {
-        /* a place is full: everything is put back */
-        (void)Supervisor_Failed_take(m, &Supervisor_Failed_token, Supervisor_Failed_tokens);
-        (void)Supervisor_Finished_take(m, &Supervisor_Finished_token, Supervisor_Finished_tokens);
-        (void)Supervisor_Home_home_2_add(cx, m, &Supervisor_Home_home_2_token, 1U);
-        (void)Supervisor_Home_home_1_add(cx, m, &Supervisor_Home_home_1_token, 1U);
-        (void)Supervisor_result_add(cx, m, &b->e, 1U);
+    if ((Supervisor_Finished_tokens > 1U)
+        || ((Supervisor_Finished_tokens == 1U) && m->Supervisor_Finished.full)) {
+        return pn_bag_fail_full(cx, &s_at_Supervisor_Finished);
     }
-    return fits;
-}
-
-static void Supervisor_Home_Both_json(const void *binding, pn_text_t *out)
-{
-    pn_json(&s_binding_Supervisor_Home_Both, binding, out);
+    if ((Supervisor_Failed_tokens > 1U)
+        || ((Supervisor_Failed_tokens == 1U) && m->Supervisor_Failed.full)) {
+        return pn_bag_fail_full(cx, &s_at_Supervisor_Failed);
+    }
+    /* result: e (ID1412320124) */
+    m->Supervisor_result.full = false;
+    /* home 1: () (ID1412311074) */
+    m->Supervisor_Home_home_1.full = false;
+    /* home 2: () (ID1412311105) */
+    m->Supervisor_Home_home_2.full = false;
+    if (Supervisor_Finished_tokens > 0U) {
+        m->Supervisor_Finished.value = Supervisor_Finished_token;
+        m->Supervisor_Finished.full = true;
+    }
+    if (Supervisor_Failed_tokens > 0U) {
+        m->Supervisor_Failed.value = Supervisor_Failed_token;
+        m->Supervisor_Failed.full = true;
+    }
+    return true;
 }
 
 /* transition Cell.Supervisor.Home.Reply 1: page `Home`, transition `Reply 1` (ID1412311060), cell.cpn:21907 */
@@ -6547,11 +5313,11 @@ PN_NET_SEARCH static bool Supervisor_Home_Reply_1_enumerate(pn_ctx_t *cx, const 
     cx->now = m->now;
     cx->rounds = 0U;
     /* leaving 1: () (ID1412311070) */
-    if (Supervisor_Home_leaving_1_held(m, (pn_unit_t[]){ PN_UNIT }) < 1U) {
+    if (!m->Supervisor_Home_leaving_1.full) {
         return true;
     }
     /* flag1_externo: DONE (ID1412311086) */
-    if (flag1_externo_held(m, &val_DONE) < 1U) {
+    if (!m->flag1_externo.full || (m->flag1_externo.value != val_DONE)) {
         return true;
     }
     if (!sink(user, self, &b)) {
@@ -6567,31 +5333,20 @@ PN_NET_SEARCH static bool Supervisor_Home_Reply_1_fire(pn_ctx_t *cx, void *marki
     cx->origin = "page `Home`, transition `Reply 1` (ID1412311060)";
     cx->now = m->now;
     cx->rounds = 0U;
-    const pn_unit_t Supervisor_Home_leaving_1_token = PN_UNIT;
-    const int64_t flag1_externo_token = val_DONE;
-    const pn_unit_t Supervisor_Home_home_1_token = PN_UNIT;
-    /* leaving 1: () (ID1412311070) */
-    bool is_taken = Supervisor_Home_leaving_1_take(m, &Supervisor_Home_leaving_1_token, 1U);
-    /* flag1_externo: DONE (ID1412311086) */
-    is_taken = is_taken && flag1_externo_take(m, &flag1_externo_token, 1U);
-    if (!is_taken) {
+    if (!m->Supervisor_Home_leaving_1.full || !m->flag1_externo.full) {
         pn_raise(cx, PN_ERR_SUBTRACT, NULL);
         return false;
     }
-    /* home 1: () (ID1412311072) */
-    bool fits = Supervisor_Home_home_1_add(cx, m, &Supervisor_Home_home_1_token, 1U);
-    if (!fits) {
-        /* a place is full: everything is put back */
-        (void)Supervisor_Home_home_1_take(m, &Supervisor_Home_home_1_token, 1U);
-        (void)flag1_externo_add(cx, m, &flag1_externo_token, 1U);
-        (void)Supervisor_Home_leaving_1_add(cx, m, &Supervisor_Home_leaving_1_token, 1U);
+    if (m->Supervisor_Home_home_1.full) {
+        return pn_bag_fail_full(cx, &s_at_Supervisor_Home_home_1);
     }
-    return fits;
-}
-
-static void Supervisor_Home_Reply_1_json(const void *binding, pn_text_t *out)
-{
-    pn_json(&s_binding_Supervisor_Home_Reply_1, binding, out);
+    /* leaving 1: () (ID1412311070) */
+    m->Supervisor_Home_leaving_1.full = false;
+    /* flag1_externo: DONE (ID1412311086) */
+    m->flag1_externo.full = false;
+    /* home 1: () (ID1412311072) */
+    m->Supervisor_Home_home_1.full = true;
+    return true;
 }
 
 /* transition Cell.Supervisor.Home.Reply 2: page `Home`, transition `Reply 2` (ID1412311091), cell.cpn:21981 */
@@ -6616,11 +5371,11 @@ PN_NET_SEARCH static bool Supervisor_Home_Reply_2_enumerate(pn_ctx_t *cx, const 
     cx->now = m->now;
     cx->rounds = 0U;
     /* leaving 2: () (ID1412311101) */
-    if (Supervisor_Home_leaving_2_held(m, (pn_unit_t[]){ PN_UNIT }) < 1U) {
+    if (!m->Supervisor_Home_leaving_2.full) {
         return true;
     }
     /* flag2_externo: DONE (ID1412311117) */
-    if (flag2_externo_held(m, &val_DONE) < 1U) {
+    if (!m->flag2_externo.full || (m->flag2_externo.value != val_DONE)) {
         return true;
     }
     if (!sink(user, self, &b)) {
@@ -6636,31 +5391,20 @@ PN_NET_SEARCH static bool Supervisor_Home_Reply_2_fire(pn_ctx_t *cx, void *marki
     cx->origin = "page `Home`, transition `Reply 2` (ID1412311091)";
     cx->now = m->now;
     cx->rounds = 0U;
-    const pn_unit_t Supervisor_Home_leaving_2_token = PN_UNIT;
-    const int64_t flag2_externo_token = val_DONE;
-    const pn_unit_t Supervisor_Home_home_2_token = PN_UNIT;
-    /* leaving 2: () (ID1412311101) */
-    bool is_taken = Supervisor_Home_leaving_2_take(m, &Supervisor_Home_leaving_2_token, 1U);
-    /* flag2_externo: DONE (ID1412311117) */
-    is_taken = is_taken && flag2_externo_take(m, &flag2_externo_token, 1U);
-    if (!is_taken) {
+    if (!m->Supervisor_Home_leaving_2.full || !m->flag2_externo.full) {
         pn_raise(cx, PN_ERR_SUBTRACT, NULL);
         return false;
     }
-    /* home 2: () (ID1412311103) */
-    bool fits = Supervisor_Home_home_2_add(cx, m, &Supervisor_Home_home_2_token, 1U);
-    if (!fits) {
-        /* a place is full: everything is put back */
-        (void)Supervisor_Home_home_2_take(m, &Supervisor_Home_home_2_token, 1U);
-        (void)flag2_externo_add(cx, m, &flag2_externo_token, 1U);
-        (void)Supervisor_Home_leaving_2_add(cx, m, &Supervisor_Home_leaving_2_token, 1U);
+    if (m->Supervisor_Home_home_2.full) {
+        return pn_bag_fail_full(cx, &s_at_Supervisor_Home_home_2);
     }
-    return fits;
-}
-
-static void Supervisor_Home_Reply_2_json(const void *binding, pn_text_t *out)
-{
-    pn_json(&s_binding_Supervisor_Home_Reply_2, binding, out);
+    /* leaving 2: () (ID1412311101) */
+    m->Supervisor_Home_leaving_2.full = false;
+    /* flag2_externo: DONE (ID1412311117) */
+    m->flag2_externo.full = false;
+    /* home 2: () (ID1412311103) */
+    m->Supervisor_Home_home_2.full = true;
+    return true;
 }
 
 /* transition Cell.Robot1.Accept: page `Robot`, transition `Accept` (ID1412311125), cell.cpn:23214 */
@@ -6689,15 +5433,16 @@ PN_NET_SEARCH static bool Robot1_Accept_enumerate(pn_ctx_t *cx, const void *mark
     cx->now = m->now;
     cx->rounds = 0U;
     /* Waiting: () (ID1412311138) */
-    if (Robot1_Waiting_held(m, (pn_unit_t[]){ PN_UNIT }) < 1U) {
+    if (!m->Robot1_Waiting.full) {
         return true;
     }
     /* flag1_interno: c (ID1412311136) */
-    for (uint32_t i = 0U; i < m->flag1_interno.used; i++) {
-        b.c = m->flag1_interno.token[i].value;
-        if (!sink(user, self, &b)) {
-            return false;
-        }
+    if (!m->flag1_interno.full) {
+        return true;
+    }
+    b.c = m->flag1_interno.value;
+    if (!sink(user, self, &b)) {
+        return false;
     }
     return true;
 }
@@ -6709,29 +5454,21 @@ PN_NET_SEARCH static bool Robot1_Accept_fire(pn_ctx_t *cx, void *marking, void *
     cx->origin = "page `Robot`, transition `Accept` (ID1412311125)";
     cx->now = m->now;
     cx->rounds = 0U;
-    const pn_unit_t Robot1_Waiting_token = PN_UNIT;
-    /* flag1_interno: c (ID1412311136) */
-    bool is_taken = flag1_interno_take(m, &b->c, 1U);
-    /* Waiting: () (ID1412311138) */
-    is_taken = is_taken && Robot1_Waiting_take(m, &Robot1_Waiting_token, 1U);
-    if (!is_taken) {
+    if (!m->flag1_interno.full || !m->Robot1_Waiting.full) {
         pn_raise(cx, PN_ERR_SUBTRACT, NULL);
         return false;
     }
-    /* Commanded: c (ID1412311140) */
-    bool fits = Robot1_Commanded_add(cx, m, &b->c, 1U);
-    if (!fits) {
-        /* a place is full: everything is put back */
-        (void)Robot1_Commanded_take(m, &b->c, 1U);
-        (void)Robot1_Waiting_add(cx, m, &Robot1_Waiting_token, 1U);
-        (void)flag1_interno_add(cx, m, &b->c, 1U);
+    if (m->Robot1_Commanded.full) {
+        return pn_bag_fail_full(cx, &s_at_Robot1_Commanded);
     }
-    return fits;
-}
-
-static void Robot1_Accept_json(const void *binding, pn_text_t *out)
-{
-    pn_json(&s_binding_Robot1_Accept, binding, out);
+    /* flag1_interno: c (ID1412311136) */
+    m->flag1_interno.full = false;
+    /* Waiting: () (ID1412311138) */
+    m->Robot1_Waiting.full = false;
+    /* Commanded: c (ID1412311140) */
+    m->Robot1_Commanded.value = b->c;
+    m->Robot1_Commanded.full = true;
+    return true;
 }
 
 /* transition Cell.Robot1.Report: page `Robot`, transition `Report` (ID1412311145), cell.cpn:23288 */
@@ -6760,11 +5497,12 @@ PN_NET_SEARCH static bool Robot1_Report_enumerate(pn_ctx_t *cx, const void *mark
     cx->now = m->now;
     cx->rounds = 0U;
     /* Done: e (ID1412311154) */
-    for (uint32_t i = 0U; i < m->Robot1_Done.used; i++) {
-        b.e = m->Robot1_Done.token[i].value;
-        if (!sink(user, self, &b)) {
-            return false;
-        }
+    if (!m->Robot1_Done.full) {
+        return true;
+    }
+    b.e = m->Robot1_Done.value;
+    if (!sink(user, self, &b)) {
+        return false;
     }
     return true;
 }
@@ -6776,29 +5514,24 @@ PN_NET_SEARCH static bool Robot1_Report_fire(pn_ctx_t *cx, void *marking, void *
     cx->origin = "page `Robot`, transition `Report` (ID1412311145)";
     cx->now = m->now;
     cx->rounds = 0U;
-    const pn_unit_t Robot1_Waiting_token = PN_UNIT;
-    /* Done: e (ID1412311154) */
-    bool is_taken = Robot1_Done_take(m, &b->e, 1U);
-    if (!is_taken) {
+    if (!m->Robot1_Done.full) {
         pn_raise(cx, PN_ERR_SUBTRACT, NULL);
         return false;
     }
-    /* flag1_externo: e (ID1412311156) */
-    bool fits = flag1_externo_add(cx, m, &b->e, 1U);
-    /* Waiting: () (ID1412311158) */
-    fits = Robot1_Waiting_add(cx, m, &Robot1_Waiting_token, 1U) && fits;
-    if (!fits) {
-        /* a place is full: everything is put back */
-        (void)Robot1_Waiting_take(m, &Robot1_Waiting_token, 1U);
-        (void)flag1_externo_take(m, &b->e, 1U);
-        (void)Robot1_Done_add(cx, m, &b->e, 1U);
+    if (m->flag1_externo.full) {
+        return pn_bag_fail_full(cx, &s_at_flag1_externo);
     }
-    return fits;
-}
-
-static void Robot1_Report_json(const void *binding, pn_text_t *out)
-{
-    pn_json(&s_binding_Robot1_Report, binding, out);
+    if (m->Robot1_Waiting.full) {
+        return pn_bag_fail_full(cx, &s_at_Robot1_Waiting);
+    }
+    /* Done: e (ID1412311154) */
+    m->Robot1_Done.full = false;
+    /* flag1_externo: e (ID1412311156) */
+    m->flag1_externo.value = b->e;
+    m->flag1_externo.full = true;
+    /* Waiting: () (ID1412311158) */
+    m->Robot1_Waiting.full = true;
+    return true;
 }
 
 /* transition Cell.Robot1.MoveJoint: page `Robot`, transition `MoveJoint` (ID1412311160), cell.cpn:23362
@@ -6831,19 +5564,21 @@ PN_NET_SEARCH static bool Robot1_MoveJoint_enumerate(pn_ctx_t *cx, const void *m
     cx->now = m->now;
     cx->rounds = 0U;
     /* Commanded: c (ID1412311165) */
-    for (uint32_t i = 0U; i < m->Robot1_Commanded.used; i++) {
-        b.c = m->Robot1_Commanded.token[i].value;
-        /* guard [c = JOINT] */
-        if (b.c != val_JOINT) {
-            continue;
-        }
-        /* dadosrobo1: p (ID1412311244) */
-        for (uint32_t i_2 = 0U; i_2 < m->dadosrobo1.used; i_2++) {
-            b.p = m->dadosrobo1.token[i_2].value;
-            if (!sink(user, self, &b)) {
-                return false;
-            }
-        }
+    if (!m->Robot1_Commanded.full) {
+        return true;
+    }
+    b.c = m->Robot1_Commanded.value;
+    /* guard [c = JOINT] */
+    if (b.c != val_JOINT) {
+        return true;
+    }
+    /* dadosrobo1: p (ID1412311244) */
+    if (!m->dadosrobo1.full) {
+        return true;
+    }
+    b.p = m->dadosrobo1.value;
+    if (!sink(user, self, &b)) {
+        return false;
     }
     return true;
 }
@@ -6862,28 +5597,21 @@ PN_NET_SEARCH static bool Robot1_MoveJoint_fire(pn_ctx_t *cx, void *marking, voi
     if (!pn_ok(cx)) {
         return false;
     }
-    /* Commanded: c (ID1412311165) */
-    bool is_taken = Robot1_Commanded_take(m, &b->c, 1U);
-    /* dadosrobo1: p (ID1412311244) */
-    is_taken = is_taken && dadosrobo1_take(m, &b->p, 1U);
-    if (!is_taken) {
+    if (!m->Robot1_Commanded.full || !m->dadosrobo1.full) {
         pn_raise(cx, PN_ERR_SUBTRACT, NULL);
         return false;
     }
-    /* Done: DONE (ID1412311167) */
-    bool fits = Robot1_Done_add(cx, m, &Robot1_Done_token, 1U);
-    if (!fits) {
-        /* a place is full: everything is put back */
-        (void)Robot1_Done_take(m, &Robot1_Done_token, 1U);
-        (void)dadosrobo1_add(cx, m, &b->p, 1U);
-        (void)Robot1_Commanded_add(cx, m, &b->c, 1U);
+    if (m->Robot1_Done.full) {
+        return pn_bag_fail_full(cx, &s_at_Robot1_Done);
     }
-    return fits;
-}
-
-static void Robot1_MoveJoint_json(const void *binding, pn_text_t *out)
-{
-    pn_json(&s_binding_Robot1_MoveJoint, binding, out);
+    /* Commanded: c (ID1412311165) */
+    m->Robot1_Commanded.full = false;
+    /* dadosrobo1: p (ID1412311244) */
+    m->dadosrobo1.full = false;
+    /* Done: DONE (ID1412311167) */
+    m->Robot1_Done.value = Robot1_Done_token;
+    m->Robot1_Done.full = true;
+    return true;
 }
 
 /* transition Cell.Robot1.MoveLinear: page `Robot`, transition `MoveLinear` (ID1412311169), cell.cpn:23438
@@ -6916,19 +5644,21 @@ PN_NET_SEARCH static bool Robot1_MoveLinear_enumerate(pn_ctx_t *cx, const void *
     cx->now = m->now;
     cx->rounds = 0U;
     /* Commanded: c (ID1412311174) */
-    for (uint32_t i = 0U; i < m->Robot1_Commanded.used; i++) {
-        b.c = m->Robot1_Commanded.token[i].value;
-        /* guard [c = LINEAR] */
-        if (b.c != val_LINEAR) {
-            continue;
-        }
-        /* dadosrobo1: p (ID1412311246) */
-        for (uint32_t i_2 = 0U; i_2 < m->dadosrobo1.used; i_2++) {
-            b.p = m->dadosrobo1.token[i_2].value;
-            if (!sink(user, self, &b)) {
-                return false;
-            }
-        }
+    if (!m->Robot1_Commanded.full) {
+        return true;
+    }
+    b.c = m->Robot1_Commanded.value;
+    /* guard [c = LINEAR] */
+    if (b.c != val_LINEAR) {
+        return true;
+    }
+    /* dadosrobo1: p (ID1412311246) */
+    if (!m->dadosrobo1.full) {
+        return true;
+    }
+    b.p = m->dadosrobo1.value;
+    if (!sink(user, self, &b)) {
+        return false;
     }
     return true;
 }
@@ -6947,28 +5677,21 @@ PN_NET_SEARCH static bool Robot1_MoveLinear_fire(pn_ctx_t *cx, void *marking, vo
     if (!pn_ok(cx)) {
         return false;
     }
-    /* Commanded: c (ID1412311174) */
-    bool is_taken = Robot1_Commanded_take(m, &b->c, 1U);
-    /* dadosrobo1: p (ID1412311246) */
-    is_taken = is_taken && dadosrobo1_take(m, &b->p, 1U);
-    if (!is_taken) {
+    if (!m->Robot1_Commanded.full || !m->dadosrobo1.full) {
         pn_raise(cx, PN_ERR_SUBTRACT, NULL);
         return false;
     }
-    /* Done: DONE (ID1412311176) */
-    bool fits = Robot1_Done_add(cx, m, &Robot1_Done_token, 1U);
-    if (!fits) {
-        /* a place is full: everything is put back */
-        (void)Robot1_Done_take(m, &Robot1_Done_token, 1U);
-        (void)dadosrobo1_add(cx, m, &b->p, 1U);
-        (void)Robot1_Commanded_add(cx, m, &b->c, 1U);
+    if (m->Robot1_Done.full) {
+        return pn_bag_fail_full(cx, &s_at_Robot1_Done);
     }
-    return fits;
-}
-
-static void Robot1_MoveLinear_json(const void *binding, pn_text_t *out)
-{
-    pn_json(&s_binding_Robot1_MoveLinear, binding, out);
+    /* Commanded: c (ID1412311174) */
+    m->Robot1_Commanded.full = false;
+    /* dadosrobo1: p (ID1412311246) */
+    m->dadosrobo1.full = false;
+    /* Done: DONE (ID1412311176) */
+    m->Robot1_Done.value = Robot1_Done_token;
+    m->Robot1_Done.full = true;
+    return true;
 }
 
 /* transition Cell.Robot1.MoveHome: page `Robot`, transition `MoveHome` (ID1412311178), cell.cpn:23514
@@ -6999,15 +5722,16 @@ PN_NET_SEARCH static bool Robot1_MoveHome_enumerate(pn_ctx_t *cx, const void *ma
     cx->now = m->now;
     cx->rounds = 0U;
     /* Commanded: c (ID1412311183) */
-    for (uint32_t i = 0U; i < m->Robot1_Commanded.used; i++) {
-        b.c = m->Robot1_Commanded.token[i].value;
-        /* guard [c = HOME] */
-        if (b.c != val_HOME) {
-            continue;
-        }
-        if (!sink(user, self, &b)) {
-            return false;
-        }
+    if (!m->Robot1_Commanded.full) {
+        return true;
+    }
+    b.c = m->Robot1_Commanded.value;
+    /* guard [c = HOME] */
+    if (b.c != val_HOME) {
+        return true;
+    }
+    if (!sink(user, self, &b)) {
+        return false;
     }
     return true;
 }
@@ -7015,7 +5739,7 @@ PN_NET_SEARCH static bool Robot1_MoveHome_enumerate(pn_ctx_t *cx, const void *ma
 PN_NET_SEARCH static bool Robot1_MoveHome_fire(pn_ctx_t *cx, void *marking, void *binding)
 {
     net_marking_t *const m = marking;
-    Robot1_MoveHome_binding_t *const b = binding;
+    (void)binding;
     cx->origin = "page `Robot`, transition `MoveHome` (ID1412311178)";
     cx->now = m->now;
     cx->rounds = 0U;
@@ -7026,25 +5750,19 @@ PN_NET_SEARCH static bool Robot1_MoveHome_fire(pn_ctx_t *cx, void *marking, void
     if (!pn_ok(cx)) {
         return false;
     }
-    /* Commanded: c (ID1412311183) */
-    bool is_taken = Robot1_Commanded_take(m, &b->c, 1U);
-    if (!is_taken) {
+    if (!m->Robot1_Commanded.full) {
         pn_raise(cx, PN_ERR_SUBTRACT, NULL);
         return false;
     }
-    /* Done: DONE (ID1412311185) */
-    bool fits = Robot1_Done_add(cx, m, &Robot1_Done_token, 1U);
-    if (!fits) {
-        /* a place is full: everything is put back */
-        (void)Robot1_Done_take(m, &Robot1_Done_token, 1U);
-        (void)Robot1_Commanded_add(cx, m, &b->c, 1U);
+    if (m->Robot1_Done.full) {
+        return pn_bag_fail_full(cx, &s_at_Robot1_Done);
     }
-    return fits;
-}
-
-static void Robot1_MoveHome_json(const void *binding, pn_text_t *out)
-{
-    pn_json(&s_binding_Robot1_MoveHome, binding, out);
+    /* Commanded: c (ID1412311183) */
+    m->Robot1_Commanded.full = false;
+    /* Done: DONE (ID1412311185) */
+    m->Robot1_Done.value = Robot1_Done_token;
+    m->Robot1_Done.full = true;
+    return true;
 }
 
 /* transition Cell.Robot1.Measure: page `Robot`, transition `Measure` (ID1412311187), cell.cpn:23589
@@ -7081,28 +5799,30 @@ PN_NET_SEARCH static bool Robot1_Measure_enumerate(pn_ctx_t *cx, const void *mar
     cx->now = m->now;
     cx->rounds = 0U;
     /* Commanded: c (ID1412311192) */
-    for (uint32_t i = 0U; i < m->Robot1_Commanded.used; i++) {
-        b.c = m->Robot1_Commanded.token[i].value;
-        /* guard [c = MEASURE] */
-        if (b.c != val_MEASURE) {
+    if (!m->Robot1_Commanded.full) {
+        return true;
+    }
+    b.c = m->Robot1_Commanded.value;
+    /* guard [c = MEASURE] */
+    if (b.c != val_MEASURE) {
+        return true;
+    }
+    /* referencia1: r (ID1412311248) */
+    if (!m->referencia1.full) {
+        return true;
+    }
+    b.r = m->referencia1.value;
+    /* seen over all of REPLY */
+    for (uint64_t number = 0U; number < pn_type_size(&s_REPLY); number++) {
+        pn_type_value(&s_REPLY, number, &b.seen);
+        if (!pn_is_legal(cx, &s_REPLY, &b.seen)) {
             continue;
         }
-        /* referencia1: r (ID1412311248) */
-        for (uint32_t i_2 = 0U; i_2 < m->referencia1.used; i_2++) {
-            b.r = m->referencia1.token[i_2].value;
-            /* seen over all of REPLY */
-            for (uint64_t number = 0U; number < pn_type_size(&s_REPLY); number++) {
-                pn_type_value(&s_REPLY, number, &b.seen);
-                if (!pn_is_legal(cx, &s_REPLY, &b.seen)) {
-                    continue;
-                }
-                if (!pn_ok(cx)) {
-                    return true;
-                }
-                if (!sink(user, self, &b)) {
-                    return false;
-                }
-            }
+        if (!pn_ok(cx)) {
+            return true;
+        }
+        if (!sink(user, self, &b)) {
+            return false;
         }
     }
     return true;
@@ -7122,31 +5842,27 @@ PN_NET_SEARCH static bool Robot1_Measure_fire(pn_ctx_t *cx, void *marking, void 
     if (!pn_ok(cx)) {
         return false;
     }
-    /* Commanded: c (ID1412311192) */
-    bool is_taken = Robot1_Commanded_take(m, &b->c, 1U);
-    /* referencia1: r (ID1412311248) */
-    is_taken = is_taken && referencia1_take(m, &b->r, 1U);
-    if (!is_taken) {
+    if (!m->Robot1_Commanded.full || !m->referencia1.full) {
         pn_raise(cx, PN_ERR_SUBTRACT, NULL);
         return false;
     }
-    /* Done: outcome seen (ID1412311194) */
-    bool fits = Robot1_Done_add(cx, m, &Robot1_Done_token, 1U);
-    /* medida1: m (ID1412311250) */
-    fits = medida1_add(cx, m, &b->m, 1U) && fits;
-    if (!fits) {
-        /* a place is full: everything is put back */
-        (void)medida1_take(m, &b->m, 1U);
-        (void)Robot1_Done_take(m, &Robot1_Done_token, 1U);
-        (void)referencia1_add(cx, m, &b->r, 1U);
-        (void)Robot1_Commanded_add(cx, m, &b->c, 1U);
+    if (m->Robot1_Done.full) {
+        return pn_bag_fail_full(cx, &s_at_Robot1_Done);
     }
-    return fits;
-}
-
-static void Robot1_Measure_json(const void *binding, pn_text_t *out)
-{
-    pn_json(&s_binding_Robot1_Measure, binding, out);
+    if (m->medida1.full) {
+        return pn_bag_fail_full(cx, &s_at_medida1);
+    }
+    /* Commanded: c (ID1412311192) */
+    m->Robot1_Commanded.full = false;
+    /* referencia1: r (ID1412311248) */
+    m->referencia1.full = false;
+    /* Done: outcome seen (ID1412311194) */
+    m->Robot1_Done.value = Robot1_Done_token;
+    m->Robot1_Done.full = true;
+    /* medida1: m (ID1412311250) */
+    m->medida1.value = b->m;
+    m->medida1.full = true;
+    return true;
 }
 
 /* transition Cell.Robot1.Drill: page `Robot`, transition `Drill` (ID1412311196), cell.cpn:23666
@@ -7179,24 +5895,25 @@ PN_NET_SEARCH static bool Robot1_Drill_enumerate(pn_ctx_t *cx, const void *marki
     cx->now = m->now;
     cx->rounds = 0U;
     /* Commanded: c (ID1412311201) */
-    for (uint32_t i = 0U; i < m->Robot1_Commanded.used; i++) {
-        b.c = m->Robot1_Commanded.token[i].value;
-        /* guard [c = DRILL] */
-        if (b.c != val_DRILL) {
+    if (!m->Robot1_Commanded.full) {
+        return true;
+    }
+    b.c = m->Robot1_Commanded.value;
+    /* guard [c = DRILL] */
+    if (b.c != val_DRILL) {
+        return true;
+    }
+    /* drilled over all of REPLY */
+    for (uint64_t number = 0U; number < pn_type_size(&s_REPLY); number++) {
+        pn_type_value(&s_REPLY, number, &b.drilled);
+        if (!pn_is_legal(cx, &s_REPLY, &b.drilled)) {
             continue;
         }
-        /* drilled over all of REPLY */
-        for (uint64_t number = 0U; number < pn_type_size(&s_REPLY); number++) {
-            pn_type_value(&s_REPLY, number, &b.drilled);
-            if (!pn_is_legal(cx, &s_REPLY, &b.drilled)) {
-                continue;
-            }
-            if (!pn_ok(cx)) {
-                return true;
-            }
-            if (!sink(user, self, &b)) {
-                return false;
-            }
+        if (!pn_ok(cx)) {
+            return true;
+        }
+        if (!sink(user, self, &b)) {
+            return false;
         }
     }
     return true;
@@ -7216,25 +5933,19 @@ PN_NET_SEARCH static bool Robot1_Drill_fire(pn_ctx_t *cx, void *marking, void *b
     if (!pn_ok(cx)) {
         return false;
     }
-    /* Commanded: c (ID1412311201) */
-    bool is_taken = Robot1_Commanded_take(m, &b->c, 1U);
-    if (!is_taken) {
+    if (!m->Robot1_Commanded.full) {
         pn_raise(cx, PN_ERR_SUBTRACT, NULL);
         return false;
     }
-    /* Done: outcome drilled (ID1412311203) */
-    bool fits = Robot1_Done_add(cx, m, &Robot1_Done_token, 1U);
-    if (!fits) {
-        /* a place is full: everything is put back */
-        (void)Robot1_Done_take(m, &Robot1_Done_token, 1U);
-        (void)Robot1_Commanded_add(cx, m, &b->c, 1U);
+    if (m->Robot1_Done.full) {
+        return pn_bag_fail_full(cx, &s_at_Robot1_Done);
     }
-    return fits;
-}
-
-static void Robot1_Drill_json(const void *binding, pn_text_t *out)
-{
-    pn_json(&s_binding_Robot1_Drill, binding, out);
+    /* Commanded: c (ID1412311201) */
+    m->Robot1_Commanded.full = false;
+    /* Done: outcome drilled (ID1412311203) */
+    m->Robot1_Done.value = Robot1_Done_token;
+    m->Robot1_Done.full = true;
+    return true;
 }
 
 /* transition Cell.Robot1.Insert: page `Robot`, transition `Insert` (ID1412311205), cell.cpn:23741
@@ -7267,24 +5978,25 @@ PN_NET_SEARCH static bool Robot1_Insert_enumerate(pn_ctx_t *cx, const void *mark
     cx->now = m->now;
     cx->rounds = 0U;
     /* Commanded: c (ID1412311210) */
-    for (uint32_t i = 0U; i < m->Robot1_Commanded.used; i++) {
-        b.c = m->Robot1_Commanded.token[i].value;
-        /* guard [c = INSERT] */
-        if (b.c != val_INSERT) {
+    if (!m->Robot1_Commanded.full) {
+        return true;
+    }
+    b.c = m->Robot1_Commanded.value;
+    /* guard [c = INSERT] */
+    if (b.c != val_INSERT) {
+        return true;
+    }
+    /* inserted over all of REPLY */
+    for (uint64_t number = 0U; number < pn_type_size(&s_REPLY); number++) {
+        pn_type_value(&s_REPLY, number, &b.inserted);
+        if (!pn_is_legal(cx, &s_REPLY, &b.inserted)) {
             continue;
         }
-        /* inserted over all of REPLY */
-        for (uint64_t number = 0U; number < pn_type_size(&s_REPLY); number++) {
-            pn_type_value(&s_REPLY, number, &b.inserted);
-            if (!pn_is_legal(cx, &s_REPLY, &b.inserted)) {
-                continue;
-            }
-            if (!pn_ok(cx)) {
-                return true;
-            }
-            if (!sink(user, self, &b)) {
-                return false;
-            }
+        if (!pn_ok(cx)) {
+            return true;
+        }
+        if (!sink(user, self, &b)) {
+            return false;
         }
     }
     return true;
@@ -7304,25 +6016,19 @@ PN_NET_SEARCH static bool Robot1_Insert_fire(pn_ctx_t *cx, void *marking, void *
     if (!pn_ok(cx)) {
         return false;
     }
-    /* Commanded: c (ID1412311210) */
-    bool is_taken = Robot1_Commanded_take(m, &b->c, 1U);
-    if (!is_taken) {
+    if (!m->Robot1_Commanded.full) {
         pn_raise(cx, PN_ERR_SUBTRACT, NULL);
         return false;
     }
-    /* Done: outcome inserted (ID1412311212) */
-    bool fits = Robot1_Done_add(cx, m, &Robot1_Done_token, 1U);
-    if (!fits) {
-        /* a place is full: everything is put back */
-        (void)Robot1_Done_take(m, &Robot1_Done_token, 1U);
-        (void)Robot1_Commanded_add(cx, m, &b->c, 1U);
+    if (m->Robot1_Done.full) {
+        return pn_bag_fail_full(cx, &s_at_Robot1_Done);
     }
-    return fits;
-}
-
-static void Robot1_Insert_json(const void *binding, pn_text_t *out)
-{
-    pn_json(&s_binding_Robot1_Insert, binding, out);
+    /* Commanded: c (ID1412311210) */
+    m->Robot1_Commanded.full = false;
+    /* Done: outcome inserted (ID1412311212) */
+    m->Robot1_Done.value = Robot1_Done_token;
+    m->Robot1_Done.full = true;
+    return true;
 }
 
 /* transition Cell.Robot1.Press: page `Robot`, transition `Press` (ID1412311214), cell.cpn:23816
@@ -7355,24 +6061,25 @@ PN_NET_SEARCH static bool Robot1_Press_enumerate(pn_ctx_t *cx, const void *marki
     cx->now = m->now;
     cx->rounds = 0U;
     /* Commanded: c (ID1412311219) */
-    for (uint32_t i = 0U; i < m->Robot1_Commanded.used; i++) {
-        b.c = m->Robot1_Commanded.token[i].value;
-        /* guard [c = PRESS] */
-        if (b.c != val_PRESS) {
+    if (!m->Robot1_Commanded.full) {
+        return true;
+    }
+    b.c = m->Robot1_Commanded.value;
+    /* guard [c = PRESS] */
+    if (b.c != val_PRESS) {
+        return true;
+    }
+    /* pressed over all of REPLY */
+    for (uint64_t number = 0U; number < pn_type_size(&s_REPLY); number++) {
+        pn_type_value(&s_REPLY, number, &b.pressed);
+        if (!pn_is_legal(cx, &s_REPLY, &b.pressed)) {
             continue;
         }
-        /* pressed over all of REPLY */
-        for (uint64_t number = 0U; number < pn_type_size(&s_REPLY); number++) {
-            pn_type_value(&s_REPLY, number, &b.pressed);
-            if (!pn_is_legal(cx, &s_REPLY, &b.pressed)) {
-                continue;
-            }
-            if (!pn_ok(cx)) {
-                return true;
-            }
-            if (!sink(user, self, &b)) {
-                return false;
-            }
+        if (!pn_ok(cx)) {
+            return true;
+        }
+        if (!sink(user, self, &b)) {
+            return false;
         }
     }
     return true;
@@ -7392,25 +6099,19 @@ PN_NET_SEARCH static bool Robot1_Press_fire(pn_ctx_t *cx, void *marking, void *b
     if (!pn_ok(cx)) {
         return false;
     }
-    /* Commanded: c (ID1412311219) */
-    bool is_taken = Robot1_Commanded_take(m, &b->c, 1U);
-    if (!is_taken) {
+    if (!m->Robot1_Commanded.full) {
         pn_raise(cx, PN_ERR_SUBTRACT, NULL);
         return false;
     }
-    /* Done: outcome pressed (ID1412311221) */
-    bool fits = Robot1_Done_add(cx, m, &Robot1_Done_token, 1U);
-    if (!fits) {
-        /* a place is full: everything is put back */
-        (void)Robot1_Done_take(m, &Robot1_Done_token, 1U);
-        (void)Robot1_Commanded_add(cx, m, &b->c, 1U);
+    if (m->Robot1_Done.full) {
+        return pn_bag_fail_full(cx, &s_at_Robot1_Done);
     }
-    return fits;
-}
-
-static void Robot1_Press_json(const void *binding, pn_text_t *out)
-{
-    pn_json(&s_binding_Robot1_Press, binding, out);
+    /* Commanded: c (ID1412311219) */
+    m->Robot1_Commanded.full = false;
+    /* Done: outcome pressed (ID1412311221) */
+    m->Robot1_Done.value = Robot1_Done_token;
+    m->Robot1_Done.full = true;
+    return true;
 }
 
 /* transition Cell.Robot1.Release: page `Robot`, transition `Release` (ID1412311223), cell.cpn:23891
@@ -7443,24 +6144,25 @@ PN_NET_SEARCH static bool Robot1_Release_enumerate(pn_ctx_t *cx, const void *mar
     cx->now = m->now;
     cx->rounds = 0U;
     /* Commanded: c (ID1412311228) */
-    for (uint32_t i = 0U; i < m->Robot1_Commanded.used; i++) {
-        b.c = m->Robot1_Commanded.token[i].value;
-        /* guard [c = RELEASE] */
-        if (b.c != val_RELEASE) {
+    if (!m->Robot1_Commanded.full) {
+        return true;
+    }
+    b.c = m->Robot1_Commanded.value;
+    /* guard [c = RELEASE] */
+    if (b.c != val_RELEASE) {
+        return true;
+    }
+    /* released over all of REPLY */
+    for (uint64_t number = 0U; number < pn_type_size(&s_REPLY); number++) {
+        pn_type_value(&s_REPLY, number, &b.released);
+        if (!pn_is_legal(cx, &s_REPLY, &b.released)) {
             continue;
         }
-        /* released over all of REPLY */
-        for (uint64_t number = 0U; number < pn_type_size(&s_REPLY); number++) {
-            pn_type_value(&s_REPLY, number, &b.released);
-            if (!pn_is_legal(cx, &s_REPLY, &b.released)) {
-                continue;
-            }
-            if (!pn_ok(cx)) {
-                return true;
-            }
-            if (!sink(user, self, &b)) {
-                return false;
-            }
+        if (!pn_ok(cx)) {
+            return true;
+        }
+        if (!sink(user, self, &b)) {
+            return false;
         }
     }
     return true;
@@ -7480,25 +6182,19 @@ PN_NET_SEARCH static bool Robot1_Release_fire(pn_ctx_t *cx, void *marking, void 
     if (!pn_ok(cx)) {
         return false;
     }
-    /* Commanded: c (ID1412311228) */
-    bool is_taken = Robot1_Commanded_take(m, &b->c, 1U);
-    if (!is_taken) {
+    if (!m->Robot1_Commanded.full) {
         pn_raise(cx, PN_ERR_SUBTRACT, NULL);
         return false;
     }
-    /* Done: outcome released (ID1412311230) */
-    bool fits = Robot1_Done_add(cx, m, &Robot1_Done_token, 1U);
-    if (!fits) {
-        /* a place is full: everything is put back */
-        (void)Robot1_Done_take(m, &Robot1_Done_token, 1U);
-        (void)Robot1_Commanded_add(cx, m, &b->c, 1U);
+    if (m->Robot1_Done.full) {
+        return pn_bag_fail_full(cx, &s_at_Robot1_Done);
     }
-    return fits;
-}
-
-static void Robot1_Release_json(const void *binding, pn_text_t *out)
-{
-    pn_json(&s_binding_Robot1_Release, binding, out);
+    /* Commanded: c (ID1412311228) */
+    m->Robot1_Commanded.full = false;
+    /* Done: outcome released (ID1412311230) */
+    m->Robot1_Done.value = Robot1_Done_token;
+    m->Robot1_Done.full = true;
+    return true;
 }
 
 /* transition Cell.Robot2.Accept: page `Robot`, transition `Accept` (ID1412311125), cell.cpn:23214 */
@@ -7527,15 +6223,16 @@ PN_NET_SEARCH static bool Robot2_Accept_enumerate(pn_ctx_t *cx, const void *mark
     cx->now = m->now;
     cx->rounds = 0U;
     /* Waiting: () (ID1412311138) */
-    if (Robot2_Waiting_held(m, (pn_unit_t[]){ PN_UNIT }) < 1U) {
+    if (!m->Robot2_Waiting.full) {
         return true;
     }
     /* flag2_interno: c (ID1412311136) */
-    for (uint32_t i = 0U; i < m->flag2_interno.used; i++) {
-        b.c = m->flag2_interno.token[i].value;
-        if (!sink(user, self, &b)) {
-            return false;
-        }
+    if (!m->flag2_interno.full) {
+        return true;
+    }
+    b.c = m->flag2_interno.value;
+    if (!sink(user, self, &b)) {
+        return false;
     }
     return true;
 }
@@ -7547,29 +6244,21 @@ PN_NET_SEARCH static bool Robot2_Accept_fire(pn_ctx_t *cx, void *marking, void *
     cx->origin = "page `Robot`, transition `Accept` (ID1412311125)";
     cx->now = m->now;
     cx->rounds = 0U;
-    const pn_unit_t Robot2_Waiting_token = PN_UNIT;
-    /* flag2_interno: c (ID1412311136) */
-    bool is_taken = flag2_interno_take(m, &b->c, 1U);
-    /* Waiting: () (ID1412311138) */
-    is_taken = is_taken && Robot2_Waiting_take(m, &Robot2_Waiting_token, 1U);
-    if (!is_taken) {
+    if (!m->flag2_interno.full || !m->Robot2_Waiting.full) {
         pn_raise(cx, PN_ERR_SUBTRACT, NULL);
         return false;
     }
-    /* Commanded: c (ID1412311140) */
-    bool fits = Robot2_Commanded_add(cx, m, &b->c, 1U);
-    if (!fits) {
-        /* a place is full: everything is put back */
-        (void)Robot2_Commanded_take(m, &b->c, 1U);
-        (void)Robot2_Waiting_add(cx, m, &Robot2_Waiting_token, 1U);
-        (void)flag2_interno_add(cx, m, &b->c, 1U);
+    if (m->Robot2_Commanded.full) {
+        return pn_bag_fail_full(cx, &s_at_Robot2_Commanded);
     }
-    return fits;
-}
-
-static void Robot2_Accept_json(const void *binding, pn_text_t *out)
-{
-    pn_json(&s_binding_Robot2_Accept, binding, out);
+    /* flag2_interno: c (ID1412311136) */
+    m->flag2_interno.full = false;
+    /* Waiting: () (ID1412311138) */
+    m->Robot2_Waiting.full = false;
+    /* Commanded: c (ID1412311140) */
+    m->Robot2_Commanded.value = b->c;
+    m->Robot2_Commanded.full = true;
+    return true;
 }
 
 /* transition Cell.Robot2.Report: page `Robot`, transition `Report` (ID1412311145), cell.cpn:23288 */
@@ -7598,11 +6287,12 @@ PN_NET_SEARCH static bool Robot2_Report_enumerate(pn_ctx_t *cx, const void *mark
     cx->now = m->now;
     cx->rounds = 0U;
     /* Done: e (ID1412311154) */
-    for (uint32_t i = 0U; i < m->Robot2_Done.used; i++) {
-        b.e = m->Robot2_Done.token[i].value;
-        if (!sink(user, self, &b)) {
-            return false;
-        }
+    if (!m->Robot2_Done.full) {
+        return true;
+    }
+    b.e = m->Robot2_Done.value;
+    if (!sink(user, self, &b)) {
+        return false;
     }
     return true;
 }
@@ -7614,29 +6304,24 @@ PN_NET_SEARCH static bool Robot2_Report_fire(pn_ctx_t *cx, void *marking, void *
     cx->origin = "page `Robot`, transition `Report` (ID1412311145)";
     cx->now = m->now;
     cx->rounds = 0U;
-    const pn_unit_t Robot2_Waiting_token = PN_UNIT;
-    /* Done: e (ID1412311154) */
-    bool is_taken = Robot2_Done_take(m, &b->e, 1U);
-    if (!is_taken) {
+    if (!m->Robot2_Done.full) {
         pn_raise(cx, PN_ERR_SUBTRACT, NULL);
         return false;
     }
-    /* flag2_externo: e (ID1412311156) */
-    bool fits = flag2_externo_add(cx, m, &b->e, 1U);
-    /* Waiting: () (ID1412311158) */
-    fits = Robot2_Waiting_add(cx, m, &Robot2_Waiting_token, 1U) && fits;
-    if (!fits) {
-        /* a place is full: everything is put back */
-        (void)Robot2_Waiting_take(m, &Robot2_Waiting_token, 1U);
-        (void)flag2_externo_take(m, &b->e, 1U);
-        (void)Robot2_Done_add(cx, m, &b->e, 1U);
+    if (m->flag2_externo.full) {
+        return pn_bag_fail_full(cx, &s_at_flag2_externo);
     }
-    return fits;
-}
-
-static void Robot2_Report_json(const void *binding, pn_text_t *out)
-{
-    pn_json(&s_binding_Robot2_Report, binding, out);
+    if (m->Robot2_Waiting.full) {
+        return pn_bag_fail_full(cx, &s_at_Robot2_Waiting);
+    }
+    /* Done: e (ID1412311154) */
+    m->Robot2_Done.full = false;
+    /* flag2_externo: e (ID1412311156) */
+    m->flag2_externo.value = b->e;
+    m->flag2_externo.full = true;
+    /* Waiting: () (ID1412311158) */
+    m->Robot2_Waiting.full = true;
+    return true;
 }
 
 /* transition Cell.Robot2.MoveJoint: page `Robot`, transition `MoveJoint` (ID1412311160), cell.cpn:23362
@@ -7669,19 +6354,21 @@ PN_NET_SEARCH static bool Robot2_MoveJoint_enumerate(pn_ctx_t *cx, const void *m
     cx->now = m->now;
     cx->rounds = 0U;
     /* Commanded: c (ID1412311165) */
-    for (uint32_t i = 0U; i < m->Robot2_Commanded.used; i++) {
-        b.c = m->Robot2_Commanded.token[i].value;
-        /* guard [c = JOINT] */
-        if (b.c != val_JOINT) {
-            continue;
-        }
-        /* dadosrobo2: p (ID1412311244) */
-        for (uint32_t i_2 = 0U; i_2 < m->dadosrobo2.used; i_2++) {
-            b.p = m->dadosrobo2.token[i_2].value;
-            if (!sink(user, self, &b)) {
-                return false;
-            }
-        }
+    if (!m->Robot2_Commanded.full) {
+        return true;
+    }
+    b.c = m->Robot2_Commanded.value;
+    /* guard [c = JOINT] */
+    if (b.c != val_JOINT) {
+        return true;
+    }
+    /* dadosrobo2: p (ID1412311244) */
+    if (!m->dadosrobo2.full) {
+        return true;
+    }
+    b.p = m->dadosrobo2.value;
+    if (!sink(user, self, &b)) {
+        return false;
     }
     return true;
 }
@@ -7700,28 +6387,21 @@ PN_NET_SEARCH static bool Robot2_MoveJoint_fire(pn_ctx_t *cx, void *marking, voi
     if (!pn_ok(cx)) {
         return false;
     }
-    /* Commanded: c (ID1412311165) */
-    bool is_taken = Robot2_Commanded_take(m, &b->c, 1U);
-    /* dadosrobo2: p (ID1412311244) */
-    is_taken = is_taken && dadosrobo2_take(m, &b->p, 1U);
-    if (!is_taken) {
+    if (!m->Robot2_Commanded.full || !m->dadosrobo2.full) {
         pn_raise(cx, PN_ERR_SUBTRACT, NULL);
         return false;
     }
-    /* Done: DONE (ID1412311167) */
-    bool fits = Robot2_Done_add(cx, m, &Robot2_Done_token, 1U);
-    if (!fits) {
-        /* a place is full: everything is put back */
-        (void)Robot2_Done_take(m, &Robot2_Done_token, 1U);
-        (void)dadosrobo2_add(cx, m, &b->p, 1U);
-        (void)Robot2_Commanded_add(cx, m, &b->c, 1U);
+    if (m->Robot2_Done.full) {
+        return pn_bag_fail_full(cx, &s_at_Robot2_Done);
     }
-    return fits;
-}
-
-static void Robot2_MoveJoint_json(const void *binding, pn_text_t *out)
-{
-    pn_json(&s_binding_Robot2_MoveJoint, binding, out);
+    /* Commanded: c (ID1412311165) */
+    m->Robot2_Commanded.full = false;
+    /* dadosrobo2: p (ID1412311244) */
+    m->dadosrobo2.full = false;
+    /* Done: DONE (ID1412311167) */
+    m->Robot2_Done.value = Robot2_Done_token;
+    m->Robot2_Done.full = true;
+    return true;
 }
 
 /* transition Cell.Robot2.MoveLinear: page `Robot`, transition `MoveLinear` (ID1412311169), cell.cpn:23438
@@ -7754,19 +6434,21 @@ PN_NET_SEARCH static bool Robot2_MoveLinear_enumerate(pn_ctx_t *cx, const void *
     cx->now = m->now;
     cx->rounds = 0U;
     /* Commanded: c (ID1412311174) */
-    for (uint32_t i = 0U; i < m->Robot2_Commanded.used; i++) {
-        b.c = m->Robot2_Commanded.token[i].value;
-        /* guard [c = LINEAR] */
-        if (b.c != val_LINEAR) {
-            continue;
-        }
-        /* dadosrobo2: p (ID1412311246) */
-        for (uint32_t i_2 = 0U; i_2 < m->dadosrobo2.used; i_2++) {
-            b.p = m->dadosrobo2.token[i_2].value;
-            if (!sink(user, self, &b)) {
-                return false;
-            }
-        }
+    if (!m->Robot2_Commanded.full) {
+        return true;
+    }
+    b.c = m->Robot2_Commanded.value;
+    /* guard [c = LINEAR] */
+    if (b.c != val_LINEAR) {
+        return true;
+    }
+    /* dadosrobo2: p (ID1412311246) */
+    if (!m->dadosrobo2.full) {
+        return true;
+    }
+    b.p = m->dadosrobo2.value;
+    if (!sink(user, self, &b)) {
+        return false;
     }
     return true;
 }
@@ -7785,28 +6467,21 @@ PN_NET_SEARCH static bool Robot2_MoveLinear_fire(pn_ctx_t *cx, void *marking, vo
     if (!pn_ok(cx)) {
         return false;
     }
-    /* Commanded: c (ID1412311174) */
-    bool is_taken = Robot2_Commanded_take(m, &b->c, 1U);
-    /* dadosrobo2: p (ID1412311246) */
-    is_taken = is_taken && dadosrobo2_take(m, &b->p, 1U);
-    if (!is_taken) {
+    if (!m->Robot2_Commanded.full || !m->dadosrobo2.full) {
         pn_raise(cx, PN_ERR_SUBTRACT, NULL);
         return false;
     }
-    /* Done: DONE (ID1412311176) */
-    bool fits = Robot2_Done_add(cx, m, &Robot2_Done_token, 1U);
-    if (!fits) {
-        /* a place is full: everything is put back */
-        (void)Robot2_Done_take(m, &Robot2_Done_token, 1U);
-        (void)dadosrobo2_add(cx, m, &b->p, 1U);
-        (void)Robot2_Commanded_add(cx, m, &b->c, 1U);
+    if (m->Robot2_Done.full) {
+        return pn_bag_fail_full(cx, &s_at_Robot2_Done);
     }
-    return fits;
-}
-
-static void Robot2_MoveLinear_json(const void *binding, pn_text_t *out)
-{
-    pn_json(&s_binding_Robot2_MoveLinear, binding, out);
+    /* Commanded: c (ID1412311174) */
+    m->Robot2_Commanded.full = false;
+    /* dadosrobo2: p (ID1412311246) */
+    m->dadosrobo2.full = false;
+    /* Done: DONE (ID1412311176) */
+    m->Robot2_Done.value = Robot2_Done_token;
+    m->Robot2_Done.full = true;
+    return true;
 }
 
 /* transition Cell.Robot2.MoveHome: page `Robot`, transition `MoveHome` (ID1412311178), cell.cpn:23514
@@ -7837,15 +6512,16 @@ PN_NET_SEARCH static bool Robot2_MoveHome_enumerate(pn_ctx_t *cx, const void *ma
     cx->now = m->now;
     cx->rounds = 0U;
     /* Commanded: c (ID1412311183) */
-    for (uint32_t i = 0U; i < m->Robot2_Commanded.used; i++) {
-        b.c = m->Robot2_Commanded.token[i].value;
-        /* guard [c = HOME] */
-        if (b.c != val_HOME) {
-            continue;
-        }
-        if (!sink(user, self, &b)) {
-            return false;
-        }
+    if (!m->Robot2_Commanded.full) {
+        return true;
+    }
+    b.c = m->Robot2_Commanded.value;
+    /* guard [c = HOME] */
+    if (b.c != val_HOME) {
+        return true;
+    }
+    if (!sink(user, self, &b)) {
+        return false;
     }
     return true;
 }
@@ -7853,7 +6529,7 @@ PN_NET_SEARCH static bool Robot2_MoveHome_enumerate(pn_ctx_t *cx, const void *ma
 PN_NET_SEARCH static bool Robot2_MoveHome_fire(pn_ctx_t *cx, void *marking, void *binding)
 {
     net_marking_t *const m = marking;
-    Robot2_MoveHome_binding_t *const b = binding;
+    (void)binding;
     cx->origin = "page `Robot`, transition `MoveHome` (ID1412311178)";
     cx->now = m->now;
     cx->rounds = 0U;
@@ -7864,25 +6540,19 @@ PN_NET_SEARCH static bool Robot2_MoveHome_fire(pn_ctx_t *cx, void *marking, void
     if (!pn_ok(cx)) {
         return false;
     }
-    /* Commanded: c (ID1412311183) */
-    bool is_taken = Robot2_Commanded_take(m, &b->c, 1U);
-    if (!is_taken) {
+    if (!m->Robot2_Commanded.full) {
         pn_raise(cx, PN_ERR_SUBTRACT, NULL);
         return false;
     }
-    /* Done: DONE (ID1412311185) */
-    bool fits = Robot2_Done_add(cx, m, &Robot2_Done_token, 1U);
-    if (!fits) {
-        /* a place is full: everything is put back */
-        (void)Robot2_Done_take(m, &Robot2_Done_token, 1U);
-        (void)Robot2_Commanded_add(cx, m, &b->c, 1U);
+    if (m->Robot2_Done.full) {
+        return pn_bag_fail_full(cx, &s_at_Robot2_Done);
     }
-    return fits;
-}
-
-static void Robot2_MoveHome_json(const void *binding, pn_text_t *out)
-{
-    pn_json(&s_binding_Robot2_MoveHome, binding, out);
+    /* Commanded: c (ID1412311183) */
+    m->Robot2_Commanded.full = false;
+    /* Done: DONE (ID1412311185) */
+    m->Robot2_Done.value = Robot2_Done_token;
+    m->Robot2_Done.full = true;
+    return true;
 }
 
 /* transition Cell.Robot2.Measure: page `Robot`, transition `Measure` (ID1412311187), cell.cpn:23589
@@ -7919,28 +6589,30 @@ PN_NET_SEARCH static bool Robot2_Measure_enumerate(pn_ctx_t *cx, const void *mar
     cx->now = m->now;
     cx->rounds = 0U;
     /* Commanded: c (ID1412311192) */
-    for (uint32_t i = 0U; i < m->Robot2_Commanded.used; i++) {
-        b.c = m->Robot2_Commanded.token[i].value;
-        /* guard [c = MEASURE] */
-        if (b.c != val_MEASURE) {
+    if (!m->Robot2_Commanded.full) {
+        return true;
+    }
+    b.c = m->Robot2_Commanded.value;
+    /* guard [c = MEASURE] */
+    if (b.c != val_MEASURE) {
+        return true;
+    }
+    /* referencia2: r (ID1412311248) */
+    if (!m->referencia2.full) {
+        return true;
+    }
+    b.r = m->referencia2.value;
+    /* seen over all of REPLY */
+    for (uint64_t number = 0U; number < pn_type_size(&s_REPLY); number++) {
+        pn_type_value(&s_REPLY, number, &b.seen);
+        if (!pn_is_legal(cx, &s_REPLY, &b.seen)) {
             continue;
         }
-        /* referencia2: r (ID1412311248) */
-        for (uint32_t i_2 = 0U; i_2 < m->referencia2.used; i_2++) {
-            b.r = m->referencia2.token[i_2].value;
-            /* seen over all of REPLY */
-            for (uint64_t number = 0U; number < pn_type_size(&s_REPLY); number++) {
-                pn_type_value(&s_REPLY, number, &b.seen);
-                if (!pn_is_legal(cx, &s_REPLY, &b.seen)) {
-                    continue;
-                }
-                if (!pn_ok(cx)) {
-                    return true;
-                }
-                if (!sink(user, self, &b)) {
-                    return false;
-                }
-            }
+        if (!pn_ok(cx)) {
+            return true;
+        }
+        if (!sink(user, self, &b)) {
+            return false;
         }
     }
     return true;
@@ -7960,31 +6632,27 @@ PN_NET_SEARCH static bool Robot2_Measure_fire(pn_ctx_t *cx, void *marking, void 
     if (!pn_ok(cx)) {
         return false;
     }
-    /* Commanded: c (ID1412311192) */
-    bool is_taken = Robot2_Commanded_take(m, &b->c, 1U);
-    /* referencia2: r (ID1412311248) */
-    is_taken = is_taken && referencia2_take(m, &b->r, 1U);
-    if (!is_taken) {
+    if (!m->Robot2_Commanded.full || !m->referencia2.full) {
         pn_raise(cx, PN_ERR_SUBTRACT, NULL);
         return false;
     }
-    /* Done: outcome seen (ID1412311194) */
-    bool fits = Robot2_Done_add(cx, m, &Robot2_Done_token, 1U);
-    /* medida2: m (ID1412311250) */
-    fits = medida2_add(cx, m, &b->m, 1U) && fits;
-    if (!fits) {
-        /* a place is full: everything is put back */
-        (void)medida2_take(m, &b->m, 1U);
-        (void)Robot2_Done_take(m, &Robot2_Done_token, 1U);
-        (void)referencia2_add(cx, m, &b->r, 1U);
-        (void)Robot2_Commanded_add(cx, m, &b->c, 1U);
+    if (m->Robot2_Done.full) {
+        return pn_bag_fail_full(cx, &s_at_Robot2_Done);
     }
-    return fits;
-}
-
-static void Robot2_Measure_json(const void *binding, pn_text_t *out)
-{
-    pn_json(&s_binding_Robot2_Measure, binding, out);
+    if (m->medida2.full) {
+        return pn_bag_fail_full(cx, &s_at_medida2);
+    }
+    /* Commanded: c (ID1412311192) */
+    m->Robot2_Commanded.full = false;
+    /* referencia2: r (ID1412311248) */
+    m->referencia2.full = false;
+    /* Done: outcome seen (ID1412311194) */
+    m->Robot2_Done.value = Robot2_Done_token;
+    m->Robot2_Done.full = true;
+    /* medida2: m (ID1412311250) */
+    m->medida2.value = b->m;
+    m->medida2.full = true;
+    return true;
 }
 
 /* transition Cell.Robot2.Drill: page `Robot`, transition `Drill` (ID1412311196), cell.cpn:23666
@@ -8017,24 +6685,25 @@ PN_NET_SEARCH static bool Robot2_Drill_enumerate(pn_ctx_t *cx, const void *marki
     cx->now = m->now;
     cx->rounds = 0U;
     /* Commanded: c (ID1412311201) */
-    for (uint32_t i = 0U; i < m->Robot2_Commanded.used; i++) {
-        b.c = m->Robot2_Commanded.token[i].value;
-        /* guard [c = DRILL] */
-        if (b.c != val_DRILL) {
+    if (!m->Robot2_Commanded.full) {
+        return true;
+    }
+    b.c = m->Robot2_Commanded.value;
+    /* guard [c = DRILL] */
+    if (b.c != val_DRILL) {
+        return true;
+    }
+    /* drilled over all of REPLY */
+    for (uint64_t number = 0U; number < pn_type_size(&s_REPLY); number++) {
+        pn_type_value(&s_REPLY, number, &b.drilled);
+        if (!pn_is_legal(cx, &s_REPLY, &b.drilled)) {
             continue;
         }
-        /* drilled over all of REPLY */
-        for (uint64_t number = 0U; number < pn_type_size(&s_REPLY); number++) {
-            pn_type_value(&s_REPLY, number, &b.drilled);
-            if (!pn_is_legal(cx, &s_REPLY, &b.drilled)) {
-                continue;
-            }
-            if (!pn_ok(cx)) {
-                return true;
-            }
-            if (!sink(user, self, &b)) {
-                return false;
-            }
+        if (!pn_ok(cx)) {
+            return true;
+        }
+        if (!sink(user, self, &b)) {
+            return false;
         }
     }
     return true;
@@ -8054,25 +6723,19 @@ PN_NET_SEARCH static bool Robot2_Drill_fire(pn_ctx_t *cx, void *marking, void *b
     if (!pn_ok(cx)) {
         return false;
     }
-    /* Commanded: c (ID1412311201) */
-    bool is_taken = Robot2_Commanded_take(m, &b->c, 1U);
-    if (!is_taken) {
+    if (!m->Robot2_Commanded.full) {
         pn_raise(cx, PN_ERR_SUBTRACT, NULL);
         return false;
     }
-    /* Done: outcome drilled (ID1412311203) */
-    bool fits = Robot2_Done_add(cx, m, &Robot2_Done_token, 1U);
-    if (!fits) {
-        /* a place is full: everything is put back */
-        (void)Robot2_Done_take(m, &Robot2_Done_token, 1U);
-        (void)Robot2_Commanded_add(cx, m, &b->c, 1U);
+    if (m->Robot2_Done.full) {
+        return pn_bag_fail_full(cx, &s_at_Robot2_Done);
     }
-    return fits;
-}
-
-static void Robot2_Drill_json(const void *binding, pn_text_t *out)
-{
-    pn_json(&s_binding_Robot2_Drill, binding, out);
+    /* Commanded: c (ID1412311201) */
+    m->Robot2_Commanded.full = false;
+    /* Done: outcome drilled (ID1412311203) */
+    m->Robot2_Done.value = Robot2_Done_token;
+    m->Robot2_Done.full = true;
+    return true;
 }
 
 /* transition Cell.Robot2.Insert: page `Robot`, transition `Insert` (ID1412311205), cell.cpn:23741
@@ -8105,24 +6768,25 @@ PN_NET_SEARCH static bool Robot2_Insert_enumerate(pn_ctx_t *cx, const void *mark
     cx->now = m->now;
     cx->rounds = 0U;
     /* Commanded: c (ID1412311210) */
-    for (uint32_t i = 0U; i < m->Robot2_Commanded.used; i++) {
-        b.c = m->Robot2_Commanded.token[i].value;
-        /* guard [c = INSERT] */
-        if (b.c != val_INSERT) {
+    if (!m->Robot2_Commanded.full) {
+        return true;
+    }
+    b.c = m->Robot2_Commanded.value;
+    /* guard [c = INSERT] */
+    if (b.c != val_INSERT) {
+        return true;
+    }
+    /* inserted over all of REPLY */
+    for (uint64_t number = 0U; number < pn_type_size(&s_REPLY); number++) {
+        pn_type_value(&s_REPLY, number, &b.inserted);
+        if (!pn_is_legal(cx, &s_REPLY, &b.inserted)) {
             continue;
         }
-        /* inserted over all of REPLY */
-        for (uint64_t number = 0U; number < pn_type_size(&s_REPLY); number++) {
-            pn_type_value(&s_REPLY, number, &b.inserted);
-            if (!pn_is_legal(cx, &s_REPLY, &b.inserted)) {
-                continue;
-            }
-            if (!pn_ok(cx)) {
-                return true;
-            }
-            if (!sink(user, self, &b)) {
-                return false;
-            }
+        if (!pn_ok(cx)) {
+            return true;
+        }
+        if (!sink(user, self, &b)) {
+            return false;
         }
     }
     return true;
@@ -8142,25 +6806,19 @@ PN_NET_SEARCH static bool Robot2_Insert_fire(pn_ctx_t *cx, void *marking, void *
     if (!pn_ok(cx)) {
         return false;
     }
-    /* Commanded: c (ID1412311210) */
-    bool is_taken = Robot2_Commanded_take(m, &b->c, 1U);
-    if (!is_taken) {
+    if (!m->Robot2_Commanded.full) {
         pn_raise(cx, PN_ERR_SUBTRACT, NULL);
         return false;
     }
-    /* Done: outcome inserted (ID1412311212) */
-    bool fits = Robot2_Done_add(cx, m, &Robot2_Done_token, 1U);
-    if (!fits) {
-        /* a place is full: everything is put back */
-        (void)Robot2_Done_take(m, &Robot2_Done_token, 1U);
-        (void)Robot2_Commanded_add(cx, m, &b->c, 1U);
+    if (m->Robot2_Done.full) {
+        return pn_bag_fail_full(cx, &s_at_Robot2_Done);
     }
-    return fits;
-}
-
-static void Robot2_Insert_json(const void *binding, pn_text_t *out)
-{
-    pn_json(&s_binding_Robot2_Insert, binding, out);
+    /* Commanded: c (ID1412311210) */
+    m->Robot2_Commanded.full = false;
+    /* Done: outcome inserted (ID1412311212) */
+    m->Robot2_Done.value = Robot2_Done_token;
+    m->Robot2_Done.full = true;
+    return true;
 }
 
 /* transition Cell.Robot2.Press: page `Robot`, transition `Press` (ID1412311214), cell.cpn:23816
@@ -8193,24 +6851,25 @@ PN_NET_SEARCH static bool Robot2_Press_enumerate(pn_ctx_t *cx, const void *marki
     cx->now = m->now;
     cx->rounds = 0U;
     /* Commanded: c (ID1412311219) */
-    for (uint32_t i = 0U; i < m->Robot2_Commanded.used; i++) {
-        b.c = m->Robot2_Commanded.token[i].value;
-        /* guard [c = PRESS] */
-        if (b.c != val_PRESS) {
+    if (!m->Robot2_Commanded.full) {
+        return true;
+    }
+    b.c = m->Robot2_Commanded.value;
+    /* guard [c = PRESS] */
+    if (b.c != val_PRESS) {
+        return true;
+    }
+    /* pressed over all of REPLY */
+    for (uint64_t number = 0U; number < pn_type_size(&s_REPLY); number++) {
+        pn_type_value(&s_REPLY, number, &b.pressed);
+        if (!pn_is_legal(cx, &s_REPLY, &b.pressed)) {
             continue;
         }
-        /* pressed over all of REPLY */
-        for (uint64_t number = 0U; number < pn_type_size(&s_REPLY); number++) {
-            pn_type_value(&s_REPLY, number, &b.pressed);
-            if (!pn_is_legal(cx, &s_REPLY, &b.pressed)) {
-                continue;
-            }
-            if (!pn_ok(cx)) {
-                return true;
-            }
-            if (!sink(user, self, &b)) {
-                return false;
-            }
+        if (!pn_ok(cx)) {
+            return true;
+        }
+        if (!sink(user, self, &b)) {
+            return false;
         }
     }
     return true;
@@ -8230,25 +6889,19 @@ PN_NET_SEARCH static bool Robot2_Press_fire(pn_ctx_t *cx, void *marking, void *b
     if (!pn_ok(cx)) {
         return false;
     }
-    /* Commanded: c (ID1412311219) */
-    bool is_taken = Robot2_Commanded_take(m, &b->c, 1U);
-    if (!is_taken) {
+    if (!m->Robot2_Commanded.full) {
         pn_raise(cx, PN_ERR_SUBTRACT, NULL);
         return false;
     }
-    /* Done: outcome pressed (ID1412311221) */
-    bool fits = Robot2_Done_add(cx, m, &Robot2_Done_token, 1U);
-    if (!fits) {
-        /* a place is full: everything is put back */
-        (void)Robot2_Done_take(m, &Robot2_Done_token, 1U);
-        (void)Robot2_Commanded_add(cx, m, &b->c, 1U);
+    if (m->Robot2_Done.full) {
+        return pn_bag_fail_full(cx, &s_at_Robot2_Done);
     }
-    return fits;
-}
-
-static void Robot2_Press_json(const void *binding, pn_text_t *out)
-{
-    pn_json(&s_binding_Robot2_Press, binding, out);
+    /* Commanded: c (ID1412311219) */
+    m->Robot2_Commanded.full = false;
+    /* Done: outcome pressed (ID1412311221) */
+    m->Robot2_Done.value = Robot2_Done_token;
+    m->Robot2_Done.full = true;
+    return true;
 }
 
 /* transition Cell.Robot2.Release: page `Robot`, transition `Release` (ID1412311223), cell.cpn:23891
@@ -8281,24 +6934,25 @@ PN_NET_SEARCH static bool Robot2_Release_enumerate(pn_ctx_t *cx, const void *mar
     cx->now = m->now;
     cx->rounds = 0U;
     /* Commanded: c (ID1412311228) */
-    for (uint32_t i = 0U; i < m->Robot2_Commanded.used; i++) {
-        b.c = m->Robot2_Commanded.token[i].value;
-        /* guard [c = RELEASE] */
-        if (b.c != val_RELEASE) {
+    if (!m->Robot2_Commanded.full) {
+        return true;
+    }
+    b.c = m->Robot2_Commanded.value;
+    /* guard [c = RELEASE] */
+    if (b.c != val_RELEASE) {
+        return true;
+    }
+    /* released over all of REPLY */
+    for (uint64_t number = 0U; number < pn_type_size(&s_REPLY); number++) {
+        pn_type_value(&s_REPLY, number, &b.released);
+        if (!pn_is_legal(cx, &s_REPLY, &b.released)) {
             continue;
         }
-        /* released over all of REPLY */
-        for (uint64_t number = 0U; number < pn_type_size(&s_REPLY); number++) {
-            pn_type_value(&s_REPLY, number, &b.released);
-            if (!pn_is_legal(cx, &s_REPLY, &b.released)) {
-                continue;
-            }
-            if (!pn_ok(cx)) {
-                return true;
-            }
-            if (!sink(user, self, &b)) {
-                return false;
-            }
+        if (!pn_ok(cx)) {
+            return true;
+        }
+        if (!sink(user, self, &b)) {
+            return false;
         }
     }
     return true;
@@ -8318,1013 +6972,474 @@ PN_NET_SEARCH static bool Robot2_Release_fire(pn_ctx_t *cx, void *marking, void 
     if (!pn_ok(cx)) {
         return false;
     }
-    /* Commanded: c (ID1412311228) */
-    bool is_taken = Robot2_Commanded_take(m, &b->c, 1U);
-    if (!is_taken) {
+    if (!m->Robot2_Commanded.full) {
         pn_raise(cx, PN_ERR_SUBTRACT, NULL);
         return false;
     }
-    /* Done: outcome released (ID1412311230) */
-    bool fits = Robot2_Done_add(cx, m, &Robot2_Done_token, 1U);
-    if (!fits) {
-        /* a place is full: everything is put back */
-        (void)Robot2_Done_take(m, &Robot2_Done_token, 1U);
-        (void)Robot2_Commanded_add(cx, m, &b->c, 1U);
+    if (m->Robot2_Done.full) {
+        return pn_bag_fail_full(cx, &s_at_Robot2_Done);
     }
-    return fits;
-}
-
-static void Robot2_Release_json(const void *binding, pn_text_t *out)
-{
-    pn_json(&s_binding_Robot2_Release, binding, out);
+    /* Commanded: c (ID1412311228) */
+    m->Robot2_Commanded.full = false;
+    /* Done: outcome released (ID1412311230) */
+    m->Robot2_Done.value = Robot2_Done_token;
+    m->Robot2_Done.full = true;
+    return true;
 }
 
 /* --- the net as hosts see it ------------------------------------------------------------------- */
 
-static bool init(pn_ctx_t *cx, void *marking)
-{
-    net_marking_t *const m = marking;
-    m->now = (pn_time_t){ 0 };
-    m->dadosrobo1.used = 0U;
-    m->flag1_interno.used = 0U;
-    m->flag1_externo.used = 0U;
-    m->referencia1.used = 0U;
-    m->medida1.used = 0U;
-    m->dadosrobo2.used = 0U;
-    m->flag2_interno.used = 0U;
-    m->flag2_externo.used = 0U;
-    m->referencia2.used = 0U;
-    m->medida2.used = 0U;
-    m->Supervisor_coordenadas.used = 0U;
-    m->Supervisor_planned.used = 0U;
-    m->Supervisor_approached.used = 0U;
-    m->Supervisor_verified.used = 0U;
-    m->Supervisor_corrected.used = 0U;
-    m->Supervisor_ended.used = 0U;
-    m->Supervisor_Finished.used = 0U;
-    m->Supervisor_result.used = 0U;
-    m->Supervisor_Failed.used = 0U;
-    m->Supervisor_Approach_order.used = 0U;
-    m->Supervisor_Approach_done.used = 0U;
-    m->Supervisor_Approach_seam.used = 0U;
-    m->Supervisor_Approach_Move_both_moving_1.used = 0U;
-    m->Supervisor_Approach_Move_both_there_1.used = 0U;
-    m->Supervisor_Approach_Move_both_moving_2.used = 0U;
-    m->Supervisor_Approach_Move_both_there_2.used = 0U;
-    m->Supervisor_Verify_first_asked.used = 0U;
-    m->Supervisor_Verify_last_asked.used = 0U;
-    m->Supervisor_Correct_offset.used = 0U;
-    m->Supervisor_Correct_order.used = 0U;
-    m->Supervisor_Correct_done.used = 0U;
-    m->Supervisor_Correct_seam.used = 0U;
-    m->Supervisor_Correct_Move_both_moving_1.used = 0U;
-    m->Supervisor_Correct_Move_both_there_1.used = 0U;
-    m->Supervisor_Correct_Move_both_moving_2.used = 0U;
-    m->Supervisor_Correct_Move_both_there_2.used = 0U;
-    m->Supervisor_Install_shift.used = 0U;
-    m->Supervisor_Install_ready.used = 0U;
-    m->Supervisor_Install_riveted.used = 0U;
-    m->Supervisor_Install_return.used = 0U;
-    m->Supervisor_Install_work.used = 0U;
-    m->Supervisor_Install_Shift_moving_1.used = 0U;
-    m->Supervisor_Install_Shift_there_1.used = 0U;
-    m->Supervisor_Install_Shift_moving_2.used = 0U;
-    m->Supervisor_Install_Shift_there_2.used = 0U;
-    m->Supervisor_Install_Rivet_advance.used = 0U;
-    m->Supervisor_Install_Rivet_contact.used = 0U;
-    m->Supervisor_Install_Rivet_fastened.used = 0U;
-    m->Supervisor_Install_Rivet_retract.used = 0U;
-    m->Supervisor_Install_Rivet_Advance_moving_1.used = 0U;
-    m->Supervisor_Install_Rivet_Advance_there_1.used = 0U;
-    m->Supervisor_Install_Rivet_Advance_moving_2.used = 0U;
-    m->Supervisor_Install_Rivet_Advance_there_2.used = 0U;
-    m->Supervisor_Install_Rivet_Fasten_pressing.used = 0U;
-    m->Supervisor_Install_Rivet_Fasten_drilling.used = 0U;
-    m->Supervisor_Install_Rivet_Fasten_inserting.used = 0U;
-    m->Supervisor_Install_Rivet_Fasten_releasing.used = 0U;
-    m->Supervisor_Install_Rivet_Retract_moving_1.used = 0U;
-    m->Supervisor_Install_Rivet_Retract_there_1.used = 0U;
-    m->Supervisor_Install_Rivet_Retract_moving_2.used = 0U;
-    m->Supervisor_Install_Rivet_Retract_there_2.used = 0U;
-    m->Supervisor_Install_Return_moving_1.used = 0U;
-    m->Supervisor_Install_Return_there_1.used = 0U;
-    m->Supervisor_Install_Return_moving_2.used = 0U;
-    m->Supervisor_Install_Return_there_2.used = 0U;
-    m->Supervisor_Home_leaving_1.used = 0U;
-    m->Supervisor_Home_home_1.used = 0U;
-    m->Supervisor_Home_leaving_2.used = 0U;
-    m->Supervisor_Home_home_2.used = 0U;
-    m->Robot1_Waiting.used = 0U;
-    m->Robot1_Commanded.used = 0U;
-    m->Robot1_Done.used = 0U;
-    m->Robot2_Waiting.used = 0U;
-    m->Robot2_Commanded.used = 0U;
-    m->Robot2_Done.used = 0U;
-    pn_arena_reset(cx->arena);
-    cx->now = m->now;
-    cx->rounds = 0U;
-    cx->step = 0U;
-    pn_random_start(cx, PN_RANDOM_START);
-    pn_arena_seal(cx->arena);
-    if (!pn_ok(cx)) {
-        return false;
-    }
-    if (!Supervisor_coordenadas_init(cx, m)) {
-        return false;
-    }
-    if (!Robot1_Waiting_init(cx, m)) {
-        return false;
-    }
-    if (!Robot2_Waiting_init(cx, m)) {
-        return false;
-    }
-    return true;
-}
-
-static pn_time_t now(const void *marking)
-{
-    const net_marking_t *const m = marking;
-    return m->now;
-}
-
-static void set_now(void *marking, pn_time_t time)
-{
-    net_marking_t *const m = marking;
-    m->now = time;
-}
-
-static bool next_time(pn_ctx_t *cx, const void *marking, pn_time_t *next)
-{
-    bool found = false;
-    for (size_t i = 0U; i < (sizeof s_bags / sizeof s_bags[0]); i++) {
-        pn_bag_next_time(s_bags[i], marking, now(marking), &found, next);
-    }
-    return pn_ok(cx) && found;
-}
-
-static size_t encode(const void *marking, uint8_t *out, size_t capacity)
-{
-    const net_marking_t *const m = marking;
-    size_t at = sizeof m->now;
-    if (capacity < at) {
-        return 0U;
-    }
-    (void)memcpy(out, &m->now, at);
-    for (size_t i = 0U; i < (sizeof s_bags / sizeof s_bags[0]); i++) {
-        const size_t room = (at < capacity) ? (capacity - at) : 0U;
-        at += pn_bag_encode(s_bags[i], marking, &out[(room > 0U) ? at : 0U], room);
-    }
-    return (at <= capacity) ? at : 0U;
-}
-
-static bool decode(pn_ctx_t *cx, void *marking, const uint8_t *in, size_t length)
-{
-    net_marking_t *const m = marking;
-    size_t at = sizeof m->now;
-    if (length < at) {
-        return false;
-    }
-    (void)memset(m, 0, sizeof *m);
-    (void)memcpy(&m->now, in, at);
-    for (size_t i = 0U; i < (sizeof s_bags / sizeof s_bags[0]); i++) {
-        const size_t size = pn_bag_decode(cx, s_bags[i], marking, &in[at], length - at);
-        if (size == SIZE_MAX) {
-            return false;
-        }
-        at += size;
-    }
-    return at == length;
-}
-
-static void collect(pn_ctx_t *cx, void *marking)
-{
-    pn_arena_flip(cx->arena);
-    (void)marking;
-}
-
 static const pn_place_t s_places[] = {
     {
-        .name = "Cell.dadosrobo1", .colset = "POSE", .owner = -1,
-        .origin = "page `Cell`, place `dadosrobo1` (ID1412310013)",
-        .capacity = 1U, .is_bounded = true, .bound = 1U, .timed = false,
-        .count = dadosrobo1_count, .token = dadosrobo1_token, .put = dadosrobo1_put,
-        .clear = dadosrobo1_clear, .json = dadosrobo1_json,
-        .encode = dadosrobo1_encode, .decode = dadosrobo1_decode, .add = dadosrobo1_add_bytes,
-        .bit = UINT32_MAX,
+        .name = "Cell.dadosrobo1", .colset = "POSE", .owner = -1, .bag = &s_at_dadosrobo1,
+        .is_bounded = true, .bound = 1U,
         .leaf_count = 6U, .leaf_kind = s_POSE_kinds, .leaf_name = s_POSE_leaves,
         .line_count = 1U, .line_leaves = s_POSE_lines,
     },
     {
-        .name = "Cell.flag1_interno", .colset = "COMMAND", .owner = -1,
-        .origin = "page `Cell`, place `flag1_interno` (ID1412310016)",
-        .capacity = 1U, .is_bounded = true, .bound = 1U, .timed = false,
-        .count = flag1_interno_count, .token = flag1_interno_token, .put = flag1_interno_put,
-        .clear = flag1_interno_clear, .json = flag1_interno_json,
-        .encode = flag1_interno_encode, .decode = flag1_interno_decode, .add = flag1_interno_add_bytes,
-        .bit = UINT32_MAX,
+        .name = "Cell.flag1_interno", .colset = "COMMAND", .owner = -1, .bag = &s_at_flag1_interno,
+        .is_bounded = true, .bound = 1U,
         .leaf_count = 1U, .leaf_kind = s_COMMAND_kinds, .leaf_name = s_COMMAND_leaves,
         .line_count = 1U, .line_leaves = s_COMMAND_lines,
     },
     {
-        .name = "Cell.flag1_externo", .colset = "REPLY", .owner = -1,
-        .origin = "page `Cell`, place `flag1_externo` (ID1412310019)",
-        .capacity = 1U, .is_bounded = true, .bound = 1U, .timed = false,
-        .count = flag1_externo_count, .token = flag1_externo_token, .put = flag1_externo_put,
-        .clear = flag1_externo_clear, .json = flag1_externo_json,
-        .encode = flag1_externo_encode, .decode = flag1_externo_decode, .add = flag1_externo_add_bytes,
-        .bit = UINT32_MAX,
+        .name = "Cell.flag1_externo", .colset = "REPLY", .owner = -1, .bag = &s_at_flag1_externo,
+        .is_bounded = true, .bound = 1U,
         .leaf_count = 1U, .leaf_kind = s_REPLY_kinds, .leaf_name = s_REPLY_leaves,
         .line_count = 1U, .line_leaves = s_REPLY_lines,
     },
     {
-        .name = "Cell.referencia1", .colset = "POSE", .owner = -1,
-        .origin = "page `Cell`, place `referencia1` (ID1412310022)",
-        .capacity = 1U, .is_bounded = true, .bound = 1U, .timed = false,
-        .count = referencia1_count, .token = referencia1_token, .put = referencia1_put,
-        .clear = referencia1_clear, .json = referencia1_json,
-        .encode = referencia1_encode, .decode = referencia1_decode, .add = referencia1_add_bytes,
-        .bit = UINT32_MAX,
+        .name = "Cell.referencia1", .colset = "POSE", .owner = -1, .bag = &s_at_referencia1,
+        .is_bounded = true, .bound = 1U,
         .leaf_count = 6U, .leaf_kind = s_POSE_kinds, .leaf_name = s_POSE_leaves,
         .line_count = 1U, .line_leaves = s_POSE_lines,
     },
     {
-        .name = "Cell.medida1", .colset = "POSE", .owner = -1,
-        .origin = "page `Cell`, place `medida1` (ID1412310025)",
-        .capacity = 1U, .is_bounded = true, .bound = 1U, .timed = false,
-        .count = medida1_count, .token = medida1_token, .put = medida1_put,
-        .clear = medida1_clear, .json = medida1_json,
-        .encode = medida1_encode, .decode = medida1_decode, .add = medida1_add_bytes,
-        .bit = UINT32_MAX,
+        .name = "Cell.medida1", .colset = "POSE", .owner = -1, .bag = &s_at_medida1,
+        .is_bounded = true, .bound = 1U,
         .leaf_count = 6U, .leaf_kind = s_POSE_kinds, .leaf_name = s_POSE_leaves,
         .line_count = 1U, .line_leaves = s_POSE_lines,
     },
     {
-        .name = "Cell.dadosrobo2", .colset = "POSE", .owner = -1,
-        .origin = "page `Cell`, place `dadosrobo2` (ID1412310028)",
-        .capacity = 1U, .is_bounded = true, .bound = 1U, .timed = false,
-        .count = dadosrobo2_count, .token = dadosrobo2_token, .put = dadosrobo2_put,
-        .clear = dadosrobo2_clear, .json = dadosrobo2_json,
-        .encode = dadosrobo2_encode, .decode = dadosrobo2_decode, .add = dadosrobo2_add_bytes,
-        .bit = UINT32_MAX,
+        .name = "Cell.dadosrobo2", .colset = "POSE", .owner = -1, .bag = &s_at_dadosrobo2,
+        .is_bounded = true, .bound = 1U,
         .leaf_count = 6U, .leaf_kind = s_POSE_kinds, .leaf_name = s_POSE_leaves,
         .line_count = 1U, .line_leaves = s_POSE_lines,
     },
     {
-        .name = "Cell.flag2_interno", .colset = "COMMAND", .owner = -1,
-        .origin = "page `Cell`, place `flag2_interno` (ID1412310031)",
-        .capacity = 1U, .is_bounded = true, .bound = 1U, .timed = false,
-        .count = flag2_interno_count, .token = flag2_interno_token, .put = flag2_interno_put,
-        .clear = flag2_interno_clear, .json = flag2_interno_json,
-        .encode = flag2_interno_encode, .decode = flag2_interno_decode, .add = flag2_interno_add_bytes,
-        .bit = UINT32_MAX,
+        .name = "Cell.flag2_interno", .colset = "COMMAND", .owner = -1, .bag = &s_at_flag2_interno,
+        .is_bounded = true, .bound = 1U,
         .leaf_count = 1U, .leaf_kind = s_COMMAND_kinds, .leaf_name = s_COMMAND_leaves,
         .line_count = 1U, .line_leaves = s_COMMAND_lines,
     },
     {
-        .name = "Cell.flag2_externo", .colset = "REPLY", .owner = -1,
-        .origin = "page `Cell`, place `flag2_externo` (ID1412310034)",
-        .capacity = 1U, .is_bounded = true, .bound = 1U, .timed = false,
-        .count = flag2_externo_count, .token = flag2_externo_token, .put = flag2_externo_put,
-        .clear = flag2_externo_clear, .json = flag2_externo_json,
-        .encode = flag2_externo_encode, .decode = flag2_externo_decode, .add = flag2_externo_add_bytes,
-        .bit = UINT32_MAX,
+        .name = "Cell.flag2_externo", .colset = "REPLY", .owner = -1, .bag = &s_at_flag2_externo,
+        .is_bounded = true, .bound = 1U,
         .leaf_count = 1U, .leaf_kind = s_REPLY_kinds, .leaf_name = s_REPLY_leaves,
         .line_count = 1U, .line_leaves = s_REPLY_lines,
     },
     {
-        .name = "Cell.referencia2", .colset = "POSE", .owner = 2,
-        .origin = "page `Cell`, place `referencia2` (ID1412330001)",
-        .capacity = 1U, .is_bounded = true, .bound = 0U, .timed = false,
-        .count = referencia2_count, .token = referencia2_token, .put = referencia2_put,
-        .clear = referencia2_clear, .json = referencia2_json,
-        .encode = referencia2_encode, .decode = referencia2_decode, .add = referencia2_add_bytes,
-        .bit = UINT32_MAX,
+        .name = "Cell.referencia2", .colset = "POSE", .owner = 2, .bag = &s_at_referencia2,
+        .is_bounded = true, .bound = 0U,
         .leaf_count = 6U, .leaf_kind = s_POSE_kinds, .leaf_name = s_POSE_leaves,
         .line_count = 1U, .line_leaves = s_POSE_lines,
     },
     {
-        .name = "Cell.medida2", .colset = "POSE", .owner = 2,
-        .origin = "page `Cell`, place `medida2` (ID1412330004)",
-        .capacity = 1U, .is_bounded = true, .bound = 0U, .timed = false,
-        .count = medida2_count, .token = medida2_token, .put = medida2_put,
-        .clear = medida2_clear, .json = medida2_json,
-        .encode = medida2_encode, .decode = medida2_decode, .add = medida2_add_bytes,
-        .bit = UINT32_MAX,
+        .name = "Cell.medida2", .colset = "POSE", .owner = 2, .bag = &s_at_medida2,
+        .is_bounded = true, .bound = 0U,
         .leaf_count = 6U, .leaf_kind = s_POSE_kinds, .leaf_name = s_POSE_leaves,
         .line_count = 1U, .line_leaves = s_POSE_lines,
     },
     {
-        .name = "Cell.Supervisor.coordenadas", .colset = "PLAN", .owner = 0,
-        .origin = "page `Supervisor`, place `coordenadas` (ID1412310094)",
-        .capacity = 1U, .is_bounded = true, .bound = 1U, .timed = false,
-        .count = Supervisor_coordenadas_count, .token = Supervisor_coordenadas_token, .put = Supervisor_coordenadas_put,
-        .clear = Supervisor_coordenadas_clear, .json = Supervisor_coordenadas_json,
-        .encode = Supervisor_coordenadas_encode, .decode = Supervisor_coordenadas_decode, .add = Supervisor_coordenadas_add_bytes,
-        .bit = UINT32_MAX,
+        .name = "Cell.Supervisor.coordenadas", .colset = "PLAN", .owner = 0, .bag = &s_at_Supervisor_coordenadas,
+        .is_bounded = true, .bound = 1U,
+        .initial = Supervisor_coordenadas_init,
         .leaf_count = 13U, .leaf_kind = s_PLAN_kinds, .leaf_name = s_PLAN_leaves,
         .line_count = 3U, .line_leaves = s_PLAN_lines,
     },
     {
-        .name = "Cell.Supervisor.planned", .colset = "SEAM", .owner = 0,
-        .origin = "page `Supervisor`, place `planned` (ID1412310097)",
-        .capacity = 1U, .is_bounded = true, .bound = 1U, .timed = false,
-        .count = Supervisor_planned_count, .token = Supervisor_planned_token, .put = Supervisor_planned_put,
-        .clear = Supervisor_planned_clear, .json = Supervisor_planned_json,
-        .encode = Supervisor_planned_encode, .decode = Supervisor_planned_decode, .add = Supervisor_planned_add_bytes,
-        .bit = UINT32_MAX,
+        .name = "Cell.Supervisor.planned", .colset = "SEAM", .owner = 0, .bag = &s_at_Supervisor_planned,
+        .is_bounded = true, .bound = 1U,
         .leaf_count = 13U, .leaf_kind = s_SEAM_kinds, .leaf_name = s_SEAM_leaves,
         .line_count = 3U, .line_leaves = s_SEAM_lines,
     },
     {
-        .name = "Cell.Supervisor.approached", .colset = "SEAM", .owner = 0,
-        .origin = "page `Supervisor`, place `approached` (ID1412310100)",
-        .capacity = 1U, .is_bounded = true, .bound = 1U, .timed = false,
-        .count = Supervisor_approached_count, .token = Supervisor_approached_token, .put = Supervisor_approached_put,
-        .clear = Supervisor_approached_clear, .json = Supervisor_approached_json,
-        .encode = Supervisor_approached_encode, .decode = Supervisor_approached_decode, .add = Supervisor_approached_add_bytes,
-        .bit = UINT32_MAX,
+        .name = "Cell.Supervisor.approached", .colset = "SEAM", .owner = 0, .bag = &s_at_Supervisor_approached,
+        .is_bounded = true, .bound = 1U,
         .leaf_count = 13U, .leaf_kind = s_SEAM_kinds, .leaf_name = s_SEAM_leaves,
         .line_count = 3U, .line_leaves = s_SEAM_lines,
     },
     {
-        .name = "Cell.Supervisor.verified", .colset = "VERIFIED", .owner = 0,
-        .origin = "page `Supervisor`, place `verified` (ID1412310103)",
-        .capacity = 1U, .is_bounded = true, .bound = 1U, .timed = false,
-        .count = Supervisor_verified_count, .token = Supervisor_verified_token, .put = Supervisor_verified_put,
-        .clear = Supervisor_verified_clear, .json = Supervisor_verified_json,
-        .encode = Supervisor_verified_encode, .decode = Supervisor_verified_decode, .add = Supervisor_verified_add_bytes,
-        .bit = UINT32_MAX,
+        .name = "Cell.Supervisor.verified", .colset = "VERIFIED", .owner = 0, .bag = &s_at_Supervisor_verified,
+        .is_bounded = true, .bound = 1U,
         .leaf_count = 25U, .leaf_kind = s_VERIFIED_kinds, .leaf_name = s_VERIFIED_leaves,
         .line_count = 3U, .line_leaves = s_VERIFIED_lines,
     },
     {
-        .name = "Cell.Supervisor.corrected", .colset = "RIVETING", .owner = 0,
-        .origin = "page `Supervisor`, place `corrected` (ID1412310106)",
-        .capacity = 1U, .is_bounded = true, .bound = 1U, .timed = false,
-        .count = Supervisor_corrected_count, .token = Supervisor_corrected_token, .put = Supervisor_corrected_put,
-        .clear = Supervisor_corrected_clear, .json = Supervisor_corrected_json,
-        .encode = Supervisor_corrected_encode, .decode = Supervisor_corrected_decode, .add = Supervisor_corrected_add_bytes,
-        .bit = UINT32_MAX,
+        .name = "Cell.Supervisor.corrected", .colset = "RIVETING", .owner = 0, .bag = &s_at_Supervisor_corrected,
+        .is_bounded = true, .bound = 1U,
         .leaf_count = 10U, .leaf_kind = s_RIVETING_kinds, .leaf_name = s_RIVETING_leaves,
         .line_count = 3U, .line_leaves = s_RIVETING_lines,
     },
     {
-        .name = "Cell.Supervisor.ended", .colset = "UNIT", .owner = 0,
-        .origin = "page `Supervisor`, place `ended` (ID1412310109)",
-        .capacity = 1U, .is_bounded = true, .bound = 1U, .timed = false,
-        .count = Supervisor_ended_count, .token = Supervisor_ended_token, .put = Supervisor_ended_put,
-        .clear = Supervisor_ended_clear, .json = Supervisor_ended_json,
-        .encode = Supervisor_ended_encode, .decode = Supervisor_ended_decode, .add = Supervisor_ended_add_bytes,
-        .bit = UINT32_MAX,
+        .name = "Cell.Supervisor.ended", .colset = "UNIT", .owner = 0, .bag = &s_at_Supervisor_ended,
+        .is_bounded = true, .bound = 1U,
         .leaf_count = 1U, .leaf_kind = s_UNIT_kinds, .leaf_name = s_UNIT_leaves,
         .line_count = 1U, .line_leaves = s_UNIT_lines,
     },
     {
-        .name = "Cell.Supervisor.Finished", .colset = "UNIT", .owner = 0,
-        .origin = "page `Supervisor`, place `Finished` (ID1412310112)",
-        .capacity = 1U, .is_bounded = true, .bound = 1U, .timed = false,
-        .count = Supervisor_Finished_count, .token = Supervisor_Finished_token, .put = Supervisor_Finished_put,
-        .clear = Supervisor_Finished_clear, .json = Supervisor_Finished_json,
-        .encode = Supervisor_Finished_encode, .decode = Supervisor_Finished_decode, .add = Supervisor_Finished_add_bytes,
-        .bit = UINT32_MAX,
+        .name = "Cell.Supervisor.Finished", .colset = "UNIT", .owner = 0, .bag = &s_at_Supervisor_Finished,
+        .is_bounded = true, .bound = 1U,
         .leaf_count = 1U, .leaf_kind = s_UNIT_kinds, .leaf_name = s_UNIT_leaves,
         .line_count = 1U, .line_leaves = s_UNIT_lines,
     },
     {
-        .name = "Cell.Supervisor.result", .colset = "REPLY", .owner = 0,
-        .origin = "page `Supervisor`, place `result` (ID1412320001)",
-        .capacity = 1U, .is_bounded = true, .bound = 1U, .timed = false,
-        .count = Supervisor_result_count, .token = Supervisor_result_token, .put = Supervisor_result_put,
-        .clear = Supervisor_result_clear, .json = Supervisor_result_json,
-        .encode = Supervisor_result_encode, .decode = Supervisor_result_decode, .add = Supervisor_result_add_bytes,
-        .bit = UINT32_MAX,
+        .name = "Cell.Supervisor.result", .colset = "REPLY", .owner = 0, .bag = &s_at_Supervisor_result,
+        .is_bounded = true, .bound = 1U,
         .leaf_count = 1U, .leaf_kind = s_REPLY_kinds, .leaf_name = s_REPLY_leaves,
         .line_count = 1U, .line_leaves = s_REPLY_lines,
     },
     {
-        .name = "Cell.Supervisor.Failed", .colset = "UNIT", .owner = 0,
-        .origin = "page `Supervisor`, place `Failed` (ID1412320004)",
-        .capacity = 1U, .is_bounded = true, .bound = 1U, .timed = false,
-        .count = Supervisor_Failed_count, .token = Supervisor_Failed_token, .put = Supervisor_Failed_put,
-        .clear = Supervisor_Failed_clear, .json = Supervisor_Failed_json,
-        .encode = Supervisor_Failed_encode, .decode = Supervisor_Failed_decode, .add = Supervisor_Failed_add_bytes,
-        .bit = UINT32_MAX,
+        .name = "Cell.Supervisor.Failed", .colset = "UNIT", .owner = 0, .bag = &s_at_Supervisor_Failed,
+        .is_bounded = true, .bound = 1U,
         .leaf_count = 1U, .leaf_kind = s_UNIT_kinds, .leaf_name = s_UNIT_leaves,
         .line_count = 1U, .line_leaves = s_UNIT_lines,
     },
     {
-        .name = "Cell.Supervisor.Approach.order", .colset = "ORDER", .owner = 0,
-        .origin = "page `Approach`, place `order` (ID1412310290)",
-        .capacity = 1U, .is_bounded = true, .bound = 1U, .timed = false,
-        .count = Supervisor_Approach_order_count, .token = Supervisor_Approach_order_token, .put = Supervisor_Approach_order_put,
-        .clear = Supervisor_Approach_order_clear, .json = Supervisor_Approach_order_json,
-        .encode = Supervisor_Approach_order_encode, .decode = Supervisor_Approach_order_decode, .add = Supervisor_Approach_order_add_bytes,
-        .bit = UINT32_MAX,
+        .name = "Cell.Supervisor.Approach.order", .colset = "ORDER", .owner = 0, .bag = &s_at_Supervisor_Approach_order,
+        .is_bounded = true, .bound = 1U,
         .leaf_count = 13U, .leaf_kind = s_ORDER_kinds, .leaf_name = s_ORDER_leaves,
         .line_count = 3U, .line_leaves = s_ORDER_lines,
     },
     {
-        .name = "Cell.Supervisor.Approach.done", .colset = "UNIT", .owner = 0,
-        .origin = "page `Approach`, place `done` (ID1412310293)",
-        .capacity = 1U, .is_bounded = true, .bound = 1U, .timed = false,
-        .count = Supervisor_Approach_done_count, .token = Supervisor_Approach_done_token, .put = Supervisor_Approach_done_put,
-        .clear = Supervisor_Approach_done_clear, .json = Supervisor_Approach_done_json,
-        .encode = Supervisor_Approach_done_encode, .decode = Supervisor_Approach_done_decode, .add = Supervisor_Approach_done_add_bytes,
-        .bit = UINT32_MAX,
+        .name = "Cell.Supervisor.Approach.done", .colset = "UNIT", .owner = 0, .bag = &s_at_Supervisor_Approach_done,
+        .is_bounded = true, .bound = 1U,
         .leaf_count = 1U, .leaf_kind = s_UNIT_kinds, .leaf_name = s_UNIT_leaves,
         .line_count = 1U, .line_leaves = s_UNIT_lines,
     },
     {
-        .name = "Cell.Supervisor.Approach.seam", .colset = "SEAM", .owner = 0,
-        .origin = "page `Approach`, place `seam` (ID1412310352)",
-        .capacity = 1U, .is_bounded = true, .bound = 1U, .timed = false,
-        .count = Supervisor_Approach_seam_count, .token = Supervisor_Approach_seam_token, .put = Supervisor_Approach_seam_put,
-        .clear = Supervisor_Approach_seam_clear, .json = Supervisor_Approach_seam_json,
-        .encode = Supervisor_Approach_seam_encode, .decode = Supervisor_Approach_seam_decode, .add = Supervisor_Approach_seam_add_bytes,
-        .bit = UINT32_MAX,
+        .name = "Cell.Supervisor.Approach.seam", .colset = "SEAM", .owner = 0, .bag = &s_at_Supervisor_Approach_seam,
+        .is_bounded = true, .bound = 1U,
         .leaf_count = 13U, .leaf_kind = s_SEAM_kinds, .leaf_name = s_SEAM_leaves,
         .line_count = 3U, .line_leaves = s_SEAM_lines,
     },
     {
-        .name = "Cell.Supervisor.Approach.Move both.moving 1", .colset = "UNIT", .owner = 0,
-        .origin = "page `MoveBoth`, place `moving 1` (ID1412310959)",
-        .capacity = 1U, .is_bounded = true, .bound = 1U, .timed = false,
-        .count = Supervisor_Approach_Move_both_moving_1_count, .token = Supervisor_Approach_Move_both_moving_1_token, .put = Supervisor_Approach_Move_both_moving_1_put,
-        .clear = Supervisor_Approach_Move_both_moving_1_clear, .json = Supervisor_Approach_Move_both_moving_1_json,
-        .encode = Supervisor_Approach_Move_both_moving_1_encode, .decode = Supervisor_Approach_Move_both_moving_1_decode, .add = Supervisor_Approach_Move_both_moving_1_add_bytes,
-        .bit = UINT32_MAX,
+        .name = "Cell.Supervisor.Approach.Move both.moving 1", .colset = "UNIT", .owner = 0, .bag = &s_at_Supervisor_Approach_Move_both_moving_1,
+        .is_bounded = true, .bound = 1U,
         .leaf_count = 1U, .leaf_kind = s_UNIT_kinds, .leaf_name = s_UNIT_leaves,
         .line_count = 1U, .line_leaves = s_UNIT_lines,
     },
     {
-        .name = "Cell.Supervisor.Approach.Move both.there 1", .colset = "UNIT", .owner = 0,
-        .origin = "page `MoveBoth`, place `there 1` (ID1412310967)",
-        .capacity = 1U, .is_bounded = true, .bound = 1U, .timed = false,
-        .count = Supervisor_Approach_Move_both_there_1_count, .token = Supervisor_Approach_Move_both_there_1_token, .put = Supervisor_Approach_Move_both_there_1_put,
-        .clear = Supervisor_Approach_Move_both_there_1_clear, .json = Supervisor_Approach_Move_both_there_1_json,
-        .encode = Supervisor_Approach_Move_both_there_1_encode, .decode = Supervisor_Approach_Move_both_there_1_decode, .add = Supervisor_Approach_Move_both_there_1_add_bytes,
-        .bit = UINT32_MAX,
+        .name = "Cell.Supervisor.Approach.Move both.there 1", .colset = "UNIT", .owner = 0, .bag = &s_at_Supervisor_Approach_Move_both_there_1,
+        .is_bounded = true, .bound = 1U,
         .leaf_count = 1U, .leaf_kind = s_UNIT_kinds, .leaf_name = s_UNIT_leaves,
         .line_count = 1U, .line_leaves = s_UNIT_lines,
     },
     {
-        .name = "Cell.Supervisor.Approach.Move both.moving 2", .colset = "UNIT", .owner = 0,
-        .origin = "page `MoveBoth`, place `moving 2` (ID1412310996)",
-        .capacity = 1U, .is_bounded = true, .bound = 1U, .timed = false,
-        .count = Supervisor_Approach_Move_both_moving_2_count, .token = Supervisor_Approach_Move_both_moving_2_token, .put = Supervisor_Approach_Move_both_moving_2_put,
-        .clear = Supervisor_Approach_Move_both_moving_2_clear, .json = Supervisor_Approach_Move_both_moving_2_json,
-        .encode = Supervisor_Approach_Move_both_moving_2_encode, .decode = Supervisor_Approach_Move_both_moving_2_decode, .add = Supervisor_Approach_Move_both_moving_2_add_bytes,
-        .bit = UINT32_MAX,
+        .name = "Cell.Supervisor.Approach.Move both.moving 2", .colset = "UNIT", .owner = 0, .bag = &s_at_Supervisor_Approach_Move_both_moving_2,
+        .is_bounded = true, .bound = 1U,
         .leaf_count = 1U, .leaf_kind = s_UNIT_kinds, .leaf_name = s_UNIT_leaves,
         .line_count = 1U, .line_leaves = s_UNIT_lines,
     },
     {
-        .name = "Cell.Supervisor.Approach.Move both.there 2", .colset = "UNIT", .owner = 0,
-        .origin = "page `MoveBoth`, place `there 2` (ID1412311004)",
-        .capacity = 1U, .is_bounded = true, .bound = 1U, .timed = false,
-        .count = Supervisor_Approach_Move_both_there_2_count, .token = Supervisor_Approach_Move_both_there_2_token, .put = Supervisor_Approach_Move_both_there_2_put,
-        .clear = Supervisor_Approach_Move_both_there_2_clear, .json = Supervisor_Approach_Move_both_there_2_json,
-        .encode = Supervisor_Approach_Move_both_there_2_encode, .decode = Supervisor_Approach_Move_both_there_2_decode, .add = Supervisor_Approach_Move_both_there_2_add_bytes,
-        .bit = UINT32_MAX,
+        .name = "Cell.Supervisor.Approach.Move both.there 2", .colset = "UNIT", .owner = 0, .bag = &s_at_Supervisor_Approach_Move_both_there_2,
+        .is_bounded = true, .bound = 1U,
         .leaf_count = 1U, .leaf_kind = s_UNIT_kinds, .leaf_name = s_UNIT_leaves,
         .line_count = 1U, .line_leaves = s_UNIT_lines,
     },
     {
-        .name = "Cell.Supervisor.Verify.first asked", .colset = "SEAM", .owner = 0,
-        .origin = "page `Verify`, place `first asked` (ID1412310382)",
-        .capacity = 1U, .is_bounded = true, .bound = 1U, .timed = false,
-        .count = Supervisor_Verify_first_asked_count, .token = Supervisor_Verify_first_asked_token, .put = Supervisor_Verify_first_asked_put,
-        .clear = Supervisor_Verify_first_asked_clear, .json = Supervisor_Verify_first_asked_json,
-        .encode = Supervisor_Verify_first_asked_encode, .decode = Supervisor_Verify_first_asked_decode, .add = Supervisor_Verify_first_asked_add_bytes,
-        .bit = UINT32_MAX,
+        .name = "Cell.Supervisor.Verify.first asked", .colset = "SEAM", .owner = 0, .bag = &s_at_Supervisor_Verify_first_asked,
+        .is_bounded = true, .bound = 1U,
         .leaf_count = 13U, .leaf_kind = s_SEAM_kinds, .leaf_name = s_SEAM_leaves,
         .line_count = 3U, .line_leaves = s_SEAM_lines,
     },
     {
-        .name = "Cell.Supervisor.Verify.last asked", .colset = "ASKED", .owner = 0,
-        .origin = "page `Verify`, place `last asked` (ID1412310390)",
-        .capacity = 1U, .is_bounded = true, .bound = 1U, .timed = false,
-        .count = Supervisor_Verify_last_asked_count, .token = Supervisor_Verify_last_asked_token, .put = Supervisor_Verify_last_asked_put,
-        .clear = Supervisor_Verify_last_asked_clear, .json = Supervisor_Verify_last_asked_json,
-        .encode = Supervisor_Verify_last_asked_encode, .decode = Supervisor_Verify_last_asked_decode, .add = Supervisor_Verify_last_asked_add_bytes,
-        .bit = UINT32_MAX,
+        .name = "Cell.Supervisor.Verify.last asked", .colset = "ASKED", .owner = 0, .bag = &s_at_Supervisor_Verify_last_asked,
+        .is_bounded = true, .bound = 1U,
         .leaf_count = 19U, .leaf_kind = s_ASKED_kinds, .leaf_name = s_ASKED_leaves,
         .line_count = 2U, .line_leaves = s_ASKED_lines,
     },
     {
-        .name = "Cell.Supervisor.Correct.offset", .colset = "VECTOR", .owner = 0,
-        .origin = "page `Correct`, place `offset` (ID1412310458)",
-        .capacity = 1U, .is_bounded = true, .bound = 1U, .timed = false,
-        .count = Supervisor_Correct_offset_count, .token = Supervisor_Correct_offset_token, .put = Supervisor_Correct_offset_put,
-        .clear = Supervisor_Correct_offset_clear, .json = Supervisor_Correct_offset_json,
-        .encode = Supervisor_Correct_offset_encode, .decode = Supervisor_Correct_offset_decode, .add = Supervisor_Correct_offset_add_bytes,
-        .bit = UINT32_MAX,
+        .name = "Cell.Supervisor.Correct.offset", .colset = "VECTOR", .owner = 0, .bag = &s_at_Supervisor_Correct_offset,
+        .is_bounded = true, .bound = 1U,
         .leaf_count = 3U, .leaf_kind = s_VECTOR_kinds, .leaf_name = s_VECTOR_leaves,
         .line_count = 1U, .line_leaves = s_VECTOR_lines,
     },
     {
-        .name = "Cell.Supervisor.Correct.order", .colset = "ORDER", .owner = 0,
-        .origin = "page `Correct`, place `order` (ID1412310466)",
-        .capacity = 1U, .is_bounded = true, .bound = 1U, .timed = false,
-        .count = Supervisor_Correct_order_count, .token = Supervisor_Correct_order_token, .put = Supervisor_Correct_order_put,
-        .clear = Supervisor_Correct_order_clear, .json = Supervisor_Correct_order_json,
-        .encode = Supervisor_Correct_order_encode, .decode = Supervisor_Correct_order_decode, .add = Supervisor_Correct_order_add_bytes,
-        .bit = UINT32_MAX,
+        .name = "Cell.Supervisor.Correct.order", .colset = "ORDER", .owner = 0, .bag = &s_at_Supervisor_Correct_order,
+        .is_bounded = true, .bound = 1U,
         .leaf_count = 13U, .leaf_kind = s_ORDER_kinds, .leaf_name = s_ORDER_leaves,
         .line_count = 3U, .line_leaves = s_ORDER_lines,
     },
     {
-        .name = "Cell.Supervisor.Correct.done", .colset = "UNIT", .owner = 0,
-        .origin = "page `Correct`, place `done` (ID1412310475)",
-        .capacity = 1U, .is_bounded = true, .bound = 1U, .timed = false,
-        .count = Supervisor_Correct_done_count, .token = Supervisor_Correct_done_token, .put = Supervisor_Correct_done_put,
-        .clear = Supervisor_Correct_done_clear, .json = Supervisor_Correct_done_json,
-        .encode = Supervisor_Correct_done_encode, .decode = Supervisor_Correct_done_decode, .add = Supervisor_Correct_done_add_bytes,
-        .bit = UINT32_MAX,
+        .name = "Cell.Supervisor.Correct.done", .colset = "UNIT", .owner = 0, .bag = &s_at_Supervisor_Correct_done,
+        .is_bounded = true, .bound = 1U,
         .leaf_count = 1U, .leaf_kind = s_UNIT_kinds, .leaf_name = s_UNIT_leaves,
         .line_count = 1U, .line_leaves = s_UNIT_lines,
     },
     {
-        .name = "Cell.Supervisor.Correct.seam", .colset = "RIVETING", .owner = 0,
-        .origin = "page `Correct`, place `seam` (ID1412310523)",
-        .capacity = 1U, .is_bounded = true, .bound = 1U, .timed = false,
-        .count = Supervisor_Correct_seam_count, .token = Supervisor_Correct_seam_token, .put = Supervisor_Correct_seam_put,
-        .clear = Supervisor_Correct_seam_clear, .json = Supervisor_Correct_seam_json,
-        .encode = Supervisor_Correct_seam_encode, .decode = Supervisor_Correct_seam_decode, .add = Supervisor_Correct_seam_add_bytes,
-        .bit = UINT32_MAX,
+        .name = "Cell.Supervisor.Correct.seam", .colset = "RIVETING", .owner = 0, .bag = &s_at_Supervisor_Correct_seam,
+        .is_bounded = true, .bound = 1U,
         .leaf_count = 10U, .leaf_kind = s_RIVETING_kinds, .leaf_name = s_RIVETING_leaves,
         .line_count = 3U, .line_leaves = s_RIVETING_lines,
     },
     {
-        .name = "Cell.Supervisor.Correct.Move both.moving 1", .colset = "UNIT", .owner = 0,
-        .origin = "page `MoveBoth`, place `moving 1` (ID1412310959)",
-        .capacity = 1U, .is_bounded = true, .bound = 1U, .timed = false,
-        .count = Supervisor_Correct_Move_both_moving_1_count, .token = Supervisor_Correct_Move_both_moving_1_token, .put = Supervisor_Correct_Move_both_moving_1_put,
-        .clear = Supervisor_Correct_Move_both_moving_1_clear, .json = Supervisor_Correct_Move_both_moving_1_json,
-        .encode = Supervisor_Correct_Move_both_moving_1_encode, .decode = Supervisor_Correct_Move_both_moving_1_decode, .add = Supervisor_Correct_Move_both_moving_1_add_bytes,
-        .bit = UINT32_MAX,
+        .name = "Cell.Supervisor.Correct.Move both.moving 1", .colset = "UNIT", .owner = 0, .bag = &s_at_Supervisor_Correct_Move_both_moving_1,
+        .is_bounded = true, .bound = 1U,
         .leaf_count = 1U, .leaf_kind = s_UNIT_kinds, .leaf_name = s_UNIT_leaves,
         .line_count = 1U, .line_leaves = s_UNIT_lines,
     },
     {
-        .name = "Cell.Supervisor.Correct.Move both.there 1", .colset = "UNIT", .owner = 0,
-        .origin = "page `MoveBoth`, place `there 1` (ID1412310967)",
-        .capacity = 1U, .is_bounded = true, .bound = 1U, .timed = false,
-        .count = Supervisor_Correct_Move_both_there_1_count, .token = Supervisor_Correct_Move_both_there_1_token, .put = Supervisor_Correct_Move_both_there_1_put,
-        .clear = Supervisor_Correct_Move_both_there_1_clear, .json = Supervisor_Correct_Move_both_there_1_json,
-        .encode = Supervisor_Correct_Move_both_there_1_encode, .decode = Supervisor_Correct_Move_both_there_1_decode, .add = Supervisor_Correct_Move_both_there_1_add_bytes,
-        .bit = UINT32_MAX,
+        .name = "Cell.Supervisor.Correct.Move both.there 1", .colset = "UNIT", .owner = 0, .bag = &s_at_Supervisor_Correct_Move_both_there_1,
+        .is_bounded = true, .bound = 1U,
         .leaf_count = 1U, .leaf_kind = s_UNIT_kinds, .leaf_name = s_UNIT_leaves,
         .line_count = 1U, .line_leaves = s_UNIT_lines,
     },
     {
-        .name = "Cell.Supervisor.Correct.Move both.moving 2", .colset = "UNIT", .owner = 0,
-        .origin = "page `MoveBoth`, place `moving 2` (ID1412310996)",
-        .capacity = 1U, .is_bounded = true, .bound = 1U, .timed = false,
-        .count = Supervisor_Correct_Move_both_moving_2_count, .token = Supervisor_Correct_Move_both_moving_2_token, .put = Supervisor_Correct_Move_both_moving_2_put,
-        .clear = Supervisor_Correct_Move_both_moving_2_clear, .json = Supervisor_Correct_Move_both_moving_2_json,
-        .encode = Supervisor_Correct_Move_both_moving_2_encode, .decode = Supervisor_Correct_Move_both_moving_2_decode, .add = Supervisor_Correct_Move_both_moving_2_add_bytes,
-        .bit = UINT32_MAX,
+        .name = "Cell.Supervisor.Correct.Move both.moving 2", .colset = "UNIT", .owner = 0, .bag = &s_at_Supervisor_Correct_Move_both_moving_2,
+        .is_bounded = true, .bound = 1U,
         .leaf_count = 1U, .leaf_kind = s_UNIT_kinds, .leaf_name = s_UNIT_leaves,
         .line_count = 1U, .line_leaves = s_UNIT_lines,
     },
     {
-        .name = "Cell.Supervisor.Correct.Move both.there 2", .colset = "UNIT", .owner = 0,
-        .origin = "page `MoveBoth`, place `there 2` (ID1412311004)",
-        .capacity = 1U, .is_bounded = true, .bound = 1U, .timed = false,
-        .count = Supervisor_Correct_Move_both_there_2_count, .token = Supervisor_Correct_Move_both_there_2_token, .put = Supervisor_Correct_Move_both_there_2_put,
-        .clear = Supervisor_Correct_Move_both_there_2_clear, .json = Supervisor_Correct_Move_both_there_2_json,
-        .encode = Supervisor_Correct_Move_both_there_2_encode, .decode = Supervisor_Correct_Move_both_there_2_decode, .add = Supervisor_Correct_Move_both_there_2_add_bytes,
-        .bit = UINT32_MAX,
+        .name = "Cell.Supervisor.Correct.Move both.there 2", .colset = "UNIT", .owner = 0, .bag = &s_at_Supervisor_Correct_Move_both_there_2,
+        .is_bounded = true, .bound = 1U,
         .leaf_count = 1U, .leaf_kind = s_UNIT_kinds, .leaf_name = s_UNIT_leaves,
         .line_count = 1U, .line_leaves = s_UNIT_lines,
     },
     {
-        .name = "Cell.Supervisor.Install.shift", .colset = "ORDER", .owner = 0,
-        .origin = "page `Install`, place `shift` (ID1412310585)",
-        .capacity = 1U, .is_bounded = true, .bound = 1U, .timed = false,
-        .count = Supervisor_Install_shift_count, .token = Supervisor_Install_shift_token, .put = Supervisor_Install_shift_put,
-        .clear = Supervisor_Install_shift_clear, .json = Supervisor_Install_shift_json,
-        .encode = Supervisor_Install_shift_encode, .decode = Supervisor_Install_shift_decode, .add = Supervisor_Install_shift_add_bytes,
-        .bit = UINT32_MAX,
+        .name = "Cell.Supervisor.Install.shift", .colset = "ORDER", .owner = 0, .bag = &s_at_Supervisor_Install_shift,
+        .is_bounded = true, .bound = 1U,
         .leaf_count = 13U, .leaf_kind = s_ORDER_kinds, .leaf_name = s_ORDER_leaves,
         .line_count = 3U, .line_leaves = s_ORDER_lines,
     },
     {
-        .name = "Cell.Supervisor.Install.ready", .colset = "UNIT", .owner = 0,
-        .origin = "page `Install`, place `ready` (ID1412310588)",
-        .capacity = 1U, .is_bounded = true, .bound = 1U, .timed = false,
-        .count = Supervisor_Install_ready_count, .token = Supervisor_Install_ready_token, .put = Supervisor_Install_ready_put,
-        .clear = Supervisor_Install_ready_clear, .json = Supervisor_Install_ready_json,
-        .encode = Supervisor_Install_ready_encode, .decode = Supervisor_Install_ready_decode, .add = Supervisor_Install_ready_add_bytes,
-        .bit = UINT32_MAX,
+        .name = "Cell.Supervisor.Install.ready", .colset = "UNIT", .owner = 0, .bag = &s_at_Supervisor_Install_ready,
+        .is_bounded = true, .bound = 1U,
         .leaf_count = 1U, .leaf_kind = s_UNIT_kinds, .leaf_name = s_UNIT_leaves,
         .line_count = 1U, .line_leaves = s_UNIT_lines,
     },
     {
-        .name = "Cell.Supervisor.Install.riveted", .colset = "UNIT", .owner = 0,
-        .origin = "page `Install`, place `riveted` (ID1412310591)",
-        .capacity = 1U, .is_bounded = true, .bound = 1U, .timed = false,
-        .count = Supervisor_Install_riveted_count, .token = Supervisor_Install_riveted_token, .put = Supervisor_Install_riveted_put,
-        .clear = Supervisor_Install_riveted_clear, .json = Supervisor_Install_riveted_json,
-        .encode = Supervisor_Install_riveted_encode, .decode = Supervisor_Install_riveted_decode, .add = Supervisor_Install_riveted_add_bytes,
-        .bit = UINT32_MAX,
+        .name = "Cell.Supervisor.Install.riveted", .colset = "UNIT", .owner = 0, .bag = &s_at_Supervisor_Install_riveted,
+        .is_bounded = true, .bound = 1U,
         .leaf_count = 1U, .leaf_kind = s_UNIT_kinds, .leaf_name = s_UNIT_leaves,
         .line_count = 1U, .line_leaves = s_UNIT_lines,
     },
     {
-        .name = "Cell.Supervisor.Install.return", .colset = "ORDER", .owner = 0,
-        .origin = "page `Install`, place `return` (ID1412310599)",
-        .capacity = 1U, .is_bounded = true, .bound = 1U, .timed = false,
-        .count = Supervisor_Install_return_count, .token = Supervisor_Install_return_token, .put = Supervisor_Install_return_put,
-        .clear = Supervisor_Install_return_clear, .json = Supervisor_Install_return_json,
-        .encode = Supervisor_Install_return_encode, .decode = Supervisor_Install_return_decode, .add = Supervisor_Install_return_add_bytes,
-        .bit = UINT32_MAX,
+        .name = "Cell.Supervisor.Install.return", .colset = "ORDER", .owner = 0, .bag = &s_at_Supervisor_Install_return,
+        .is_bounded = true, .bound = 1U,
         .leaf_count = 13U, .leaf_kind = s_ORDER_kinds, .leaf_name = s_ORDER_leaves,
         .line_count = 3U, .line_leaves = s_ORDER_lines,
     },
     {
-        .name = "Cell.Supervisor.Install.work", .colset = "WORK", .owner = 0,
-        .origin = "page `Install`, place `work` (ID1412310629)",
-        .capacity = 1U, .is_bounded = true, .bound = 1U, .timed = false,
-        .count = Supervisor_Install_work_count, .token = Supervisor_Install_work_token, .put = Supervisor_Install_work_put,
-        .clear = Supervisor_Install_work_clear, .json = Supervisor_Install_work_json,
-        .encode = Supervisor_Install_work_encode, .decode = Supervisor_Install_work_decode, .add = Supervisor_Install_work_add_bytes,
-        .bit = UINT32_MAX,
+        .name = "Cell.Supervisor.Install.work", .colset = "WORK", .owner = 0, .bag = &s_at_Supervisor_Install_work,
+        .is_bounded = true, .bound = 1U,
         .leaf_count = 11U, .leaf_kind = s_WORK_kinds, .leaf_name = s_WORK_leaves,
         .line_count = 4U, .line_leaves = s_WORK_lines,
     },
     {
-        .name = "Cell.Supervisor.Install.Shift.moving 1", .colset = "UNIT", .owner = 0,
-        .origin = "page `MoveBoth`, place `moving 1` (ID1412310959)",
-        .capacity = 1U, .is_bounded = true, .bound = 1U, .timed = false,
-        .count = Supervisor_Install_Shift_moving_1_count, .token = Supervisor_Install_Shift_moving_1_token, .put = Supervisor_Install_Shift_moving_1_put,
-        .clear = Supervisor_Install_Shift_moving_1_clear, .json = Supervisor_Install_Shift_moving_1_json,
-        .encode = Supervisor_Install_Shift_moving_1_encode, .decode = Supervisor_Install_Shift_moving_1_decode, .add = Supervisor_Install_Shift_moving_1_add_bytes,
-        .bit = UINT32_MAX,
+        .name = "Cell.Supervisor.Install.Shift.moving 1", .colset = "UNIT", .owner = 0, .bag = &s_at_Supervisor_Install_Shift_moving_1,
+        .is_bounded = true, .bound = 1U,
         .leaf_count = 1U, .leaf_kind = s_UNIT_kinds, .leaf_name = s_UNIT_leaves,
         .line_count = 1U, .line_leaves = s_UNIT_lines,
     },
     {
-        .name = "Cell.Supervisor.Install.Shift.there 1", .colset = "UNIT", .owner = 0,
-        .origin = "page `MoveBoth`, place `there 1` (ID1412310967)",
-        .capacity = 1U, .is_bounded = true, .bound = 1U, .timed = false,
-        .count = Supervisor_Install_Shift_there_1_count, .token = Supervisor_Install_Shift_there_1_token, .put = Supervisor_Install_Shift_there_1_put,
-        .clear = Supervisor_Install_Shift_there_1_clear, .json = Supervisor_Install_Shift_there_1_json,
-        .encode = Supervisor_Install_Shift_there_1_encode, .decode = Supervisor_Install_Shift_there_1_decode, .add = Supervisor_Install_Shift_there_1_add_bytes,
-        .bit = UINT32_MAX,
+        .name = "Cell.Supervisor.Install.Shift.there 1", .colset = "UNIT", .owner = 0, .bag = &s_at_Supervisor_Install_Shift_there_1,
+        .is_bounded = true, .bound = 1U,
         .leaf_count = 1U, .leaf_kind = s_UNIT_kinds, .leaf_name = s_UNIT_leaves,
         .line_count = 1U, .line_leaves = s_UNIT_lines,
     },
     {
-        .name = "Cell.Supervisor.Install.Shift.moving 2", .colset = "UNIT", .owner = 0,
-        .origin = "page `MoveBoth`, place `moving 2` (ID1412310996)",
-        .capacity = 1U, .is_bounded = true, .bound = 1U, .timed = false,
-        .count = Supervisor_Install_Shift_moving_2_count, .token = Supervisor_Install_Shift_moving_2_token, .put = Supervisor_Install_Shift_moving_2_put,
-        .clear = Supervisor_Install_Shift_moving_2_clear, .json = Supervisor_Install_Shift_moving_2_json,
-        .encode = Supervisor_Install_Shift_moving_2_encode, .decode = Supervisor_Install_Shift_moving_2_decode, .add = Supervisor_Install_Shift_moving_2_add_bytes,
-        .bit = UINT32_MAX,
+        .name = "Cell.Supervisor.Install.Shift.moving 2", .colset = "UNIT", .owner = 0, .bag = &s_at_Supervisor_Install_Shift_moving_2,
+        .is_bounded = true, .bound = 1U,
         .leaf_count = 1U, .leaf_kind = s_UNIT_kinds, .leaf_name = s_UNIT_leaves,
         .line_count = 1U, .line_leaves = s_UNIT_lines,
     },
     {
-        .name = "Cell.Supervisor.Install.Shift.there 2", .colset = "UNIT", .owner = 0,
-        .origin = "page `MoveBoth`, place `there 2` (ID1412311004)",
-        .capacity = 1U, .is_bounded = true, .bound = 1U, .timed = false,
-        .count = Supervisor_Install_Shift_there_2_count, .token = Supervisor_Install_Shift_there_2_token, .put = Supervisor_Install_Shift_there_2_put,
-        .clear = Supervisor_Install_Shift_there_2_clear, .json = Supervisor_Install_Shift_there_2_json,
-        .encode = Supervisor_Install_Shift_there_2_encode, .decode = Supervisor_Install_Shift_there_2_decode, .add = Supervisor_Install_Shift_there_2_add_bytes,
-        .bit = UINT32_MAX,
+        .name = "Cell.Supervisor.Install.Shift.there 2", .colset = "UNIT", .owner = 0, .bag = &s_at_Supervisor_Install_Shift_there_2,
+        .is_bounded = true, .bound = 1U,
         .leaf_count = 1U, .leaf_kind = s_UNIT_kinds, .leaf_name = s_UNIT_leaves,
         .line_count = 1U, .line_leaves = s_UNIT_lines,
     },
     {
-        .name = "Cell.Supervisor.Install.Rivet.advance", .colset = "ORDER", .owner = 0,
-        .origin = "page `Rivet`, place `advance` (ID1412310721)",
-        .capacity = 1U, .is_bounded = true, .bound = 1U, .timed = false,
-        .count = Supervisor_Install_Rivet_advance_count, .token = Supervisor_Install_Rivet_advance_token, .put = Supervisor_Install_Rivet_advance_put,
-        .clear = Supervisor_Install_Rivet_advance_clear, .json = Supervisor_Install_Rivet_advance_json,
-        .encode = Supervisor_Install_Rivet_advance_encode, .decode = Supervisor_Install_Rivet_advance_decode, .add = Supervisor_Install_Rivet_advance_add_bytes,
-        .bit = UINT32_MAX,
+        .name = "Cell.Supervisor.Install.Rivet.advance", .colset = "ORDER", .owner = 0, .bag = &s_at_Supervisor_Install_Rivet_advance,
+        .is_bounded = true, .bound = 1U,
         .leaf_count = 13U, .leaf_kind = s_ORDER_kinds, .leaf_name = s_ORDER_leaves,
         .line_count = 3U, .line_leaves = s_ORDER_lines,
     },
     {
-        .name = "Cell.Supervisor.Install.Rivet.contact", .colset = "UNIT", .owner = 0,
-        .origin = "page `Rivet`, place `contact` (ID1412310730)",
-        .capacity = 1U, .is_bounded = true, .bound = 1U, .timed = false,
-        .count = Supervisor_Install_Rivet_contact_count, .token = Supervisor_Install_Rivet_contact_token, .put = Supervisor_Install_Rivet_contact_put,
-        .clear = Supervisor_Install_Rivet_contact_clear, .json = Supervisor_Install_Rivet_contact_json,
-        .encode = Supervisor_Install_Rivet_contact_encode, .decode = Supervisor_Install_Rivet_contact_decode, .add = Supervisor_Install_Rivet_contact_add_bytes,
-        .bit = UINT32_MAX,
+        .name = "Cell.Supervisor.Install.Rivet.contact", .colset = "UNIT", .owner = 0, .bag = &s_at_Supervisor_Install_Rivet_contact,
+        .is_bounded = true, .bound = 1U,
         .leaf_count = 1U, .leaf_kind = s_UNIT_kinds, .leaf_name = s_UNIT_leaves,
         .line_count = 1U, .line_leaves = s_UNIT_lines,
     },
     {
-        .name = "Cell.Supervisor.Install.Rivet.fastened", .colset = "REPLY", .owner = 0,
-        .origin = "page `Rivet`, place `fastened` (ID1412310739)",
-        .capacity = 1U, .is_bounded = true, .bound = 1U, .timed = false,
-        .count = Supervisor_Install_Rivet_fastened_count, .token = Supervisor_Install_Rivet_fastened_token, .put = Supervisor_Install_Rivet_fastened_put,
-        .clear = Supervisor_Install_Rivet_fastened_clear, .json = Supervisor_Install_Rivet_fastened_json,
-        .encode = Supervisor_Install_Rivet_fastened_encode, .decode = Supervisor_Install_Rivet_fastened_decode, .add = Supervisor_Install_Rivet_fastened_add_bytes,
-        .bit = UINT32_MAX,
+        .name = "Cell.Supervisor.Install.Rivet.fastened", .colset = "REPLY", .owner = 0, .bag = &s_at_Supervisor_Install_Rivet_fastened,
+        .is_bounded = true, .bound = 1U,
         .leaf_count = 1U, .leaf_kind = s_REPLY_kinds, .leaf_name = s_REPLY_leaves,
         .line_count = 1U, .line_leaves = s_REPLY_lines,
     },
     {
-        .name = "Cell.Supervisor.Install.Rivet.retract", .colset = "ORDER", .owner = 0,
-        .origin = "page `Rivet`, place `retract` (ID1412310747)",
-        .capacity = 1U, .is_bounded = true, .bound = 1U, .timed = false,
-        .count = Supervisor_Install_Rivet_retract_count, .token = Supervisor_Install_Rivet_retract_token, .put = Supervisor_Install_Rivet_retract_put,
-        .clear = Supervisor_Install_Rivet_retract_clear, .json = Supervisor_Install_Rivet_retract_json,
-        .encode = Supervisor_Install_Rivet_retract_encode, .decode = Supervisor_Install_Rivet_retract_decode, .add = Supervisor_Install_Rivet_retract_add_bytes,
-        .bit = UINT32_MAX,
+        .name = "Cell.Supervisor.Install.Rivet.retract", .colset = "ORDER", .owner = 0, .bag = &s_at_Supervisor_Install_Rivet_retract,
+        .is_bounded = true, .bound = 1U,
         .leaf_count = 13U, .leaf_kind = s_ORDER_kinds, .leaf_name = s_ORDER_leaves,
         .line_count = 3U, .line_leaves = s_ORDER_lines,
     },
     {
-        .name = "Cell.Supervisor.Install.Rivet.Advance.moving 1", .colset = "UNIT", .owner = 0,
-        .origin = "page `MoveBoth`, place `moving 1` (ID1412310959)",
-        .capacity = 1U, .is_bounded = true, .bound = 1U, .timed = false,
-        .count = Supervisor_Install_Rivet_Advance_moving_1_count, .token = Supervisor_Install_Rivet_Advance_moving_1_token, .put = Supervisor_Install_Rivet_Advance_moving_1_put,
-        .clear = Supervisor_Install_Rivet_Advance_moving_1_clear, .json = Supervisor_Install_Rivet_Advance_moving_1_json,
-        .encode = Supervisor_Install_Rivet_Advance_moving_1_encode, .decode = Supervisor_Install_Rivet_Advance_moving_1_decode, .add = Supervisor_Install_Rivet_Advance_moving_1_add_bytes,
-        .bit = UINT32_MAX,
+        .name = "Cell.Supervisor.Install.Rivet.Advance.moving 1", .colset = "UNIT", .owner = 0, .bag = &s_at_Supervisor_Install_Rivet_Advance_moving_1,
+        .is_bounded = true, .bound = 1U,
         .leaf_count = 1U, .leaf_kind = s_UNIT_kinds, .leaf_name = s_UNIT_leaves,
         .line_count = 1U, .line_leaves = s_UNIT_lines,
     },
     {
-        .name = "Cell.Supervisor.Install.Rivet.Advance.there 1", .colset = "UNIT", .owner = 0,
-        .origin = "page `MoveBoth`, place `there 1` (ID1412310967)",
-        .capacity = 1U, .is_bounded = true, .bound = 1U, .timed = false,
-        .count = Supervisor_Install_Rivet_Advance_there_1_count, .token = Supervisor_Install_Rivet_Advance_there_1_token, .put = Supervisor_Install_Rivet_Advance_there_1_put,
-        .clear = Supervisor_Install_Rivet_Advance_there_1_clear, .json = Supervisor_Install_Rivet_Advance_there_1_json,
-        .encode = Supervisor_Install_Rivet_Advance_there_1_encode, .decode = Supervisor_Install_Rivet_Advance_there_1_decode, .add = Supervisor_Install_Rivet_Advance_there_1_add_bytes,
-        .bit = UINT32_MAX,
+        .name = "Cell.Supervisor.Install.Rivet.Advance.there 1", .colset = "UNIT", .owner = 0, .bag = &s_at_Supervisor_Install_Rivet_Advance_there_1,
+        .is_bounded = true, .bound = 1U,
         .leaf_count = 1U, .leaf_kind = s_UNIT_kinds, .leaf_name = s_UNIT_leaves,
         .line_count = 1U, .line_leaves = s_UNIT_lines,
     },
     {
-        .name = "Cell.Supervisor.Install.Rivet.Advance.moving 2", .colset = "UNIT", .owner = 0,
-        .origin = "page `MoveBoth`, place `moving 2` (ID1412310996)",
-        .capacity = 1U, .is_bounded = true, .bound = 1U, .timed = false,
-        .count = Supervisor_Install_Rivet_Advance_moving_2_count, .token = Supervisor_Install_Rivet_Advance_moving_2_token, .put = Supervisor_Install_Rivet_Advance_moving_2_put,
-        .clear = Supervisor_Install_Rivet_Advance_moving_2_clear, .json = Supervisor_Install_Rivet_Advance_moving_2_json,
-        .encode = Supervisor_Install_Rivet_Advance_moving_2_encode, .decode = Supervisor_Install_Rivet_Advance_moving_2_decode, .add = Supervisor_Install_Rivet_Advance_moving_2_add_bytes,
-        .bit = UINT32_MAX,
+        .name = "Cell.Supervisor.Install.Rivet.Advance.moving 2", .colset = "UNIT", .owner = 0, .bag = &s_at_Supervisor_Install_Rivet_Advance_moving_2,
+        .is_bounded = true, .bound = 1U,
         .leaf_count = 1U, .leaf_kind = s_UNIT_kinds, .leaf_name = s_UNIT_leaves,
         .line_count = 1U, .line_leaves = s_UNIT_lines,
     },
     {
-        .name = "Cell.Supervisor.Install.Rivet.Advance.there 2", .colset = "UNIT", .owner = 0,
-        .origin = "page `MoveBoth`, place `there 2` (ID1412311004)",
-        .capacity = 1U, .is_bounded = true, .bound = 1U, .timed = false,
-        .count = Supervisor_Install_Rivet_Advance_there_2_count, .token = Supervisor_Install_Rivet_Advance_there_2_token, .put = Supervisor_Install_Rivet_Advance_there_2_put,
-        .clear = Supervisor_Install_Rivet_Advance_there_2_clear, .json = Supervisor_Install_Rivet_Advance_there_2_json,
-        .encode = Supervisor_Install_Rivet_Advance_there_2_encode, .decode = Supervisor_Install_Rivet_Advance_there_2_decode, .add = Supervisor_Install_Rivet_Advance_there_2_add_bytes,
-        .bit = UINT32_MAX,
+        .name = "Cell.Supervisor.Install.Rivet.Advance.there 2", .colset = "UNIT", .owner = 0, .bag = &s_at_Supervisor_Install_Rivet_Advance_there_2,
+        .is_bounded = true, .bound = 1U,
         .leaf_count = 1U, .leaf_kind = s_UNIT_kinds, .leaf_name = s_UNIT_leaves,
         .line_count = 1U, .line_leaves = s_UNIT_lines,
     },
     {
-        .name = "Cell.Supervisor.Install.Rivet.Fasten.pressing", .colset = "UNIT", .owner = 0,
-        .origin = "page `Fasten`, place `pressing` (ID1412310847)",
-        .capacity = 1U, .is_bounded = true, .bound = 1U, .timed = false,
-        .count = Supervisor_Install_Rivet_Fasten_pressing_count, .token = Supervisor_Install_Rivet_Fasten_pressing_token, .put = Supervisor_Install_Rivet_Fasten_pressing_put,
-        .clear = Supervisor_Install_Rivet_Fasten_pressing_clear, .json = Supervisor_Install_Rivet_Fasten_pressing_json,
-        .encode = Supervisor_Install_Rivet_Fasten_pressing_encode, .decode = Supervisor_Install_Rivet_Fasten_pressing_decode, .add = Supervisor_Install_Rivet_Fasten_pressing_add_bytes,
-        .bit = UINT32_MAX,
+        .name = "Cell.Supervisor.Install.Rivet.Fasten.pressing", .colset = "UNIT", .owner = 0, .bag = &s_at_Supervisor_Install_Rivet_Fasten_pressing,
+        .is_bounded = true, .bound = 1U,
         .leaf_count = 1U, .leaf_kind = s_UNIT_kinds, .leaf_name = s_UNIT_leaves,
         .line_count = 1U, .line_leaves = s_UNIT_lines,
     },
     {
-        .name = "Cell.Supervisor.Install.Rivet.Fasten.drilling", .colset = "UNIT", .owner = 0,
-        .origin = "page `Fasten`, place `drilling` (ID1412310855)",
-        .capacity = 1U, .is_bounded = true, .bound = 1U, .timed = false,
-        .count = Supervisor_Install_Rivet_Fasten_drilling_count, .token = Supervisor_Install_Rivet_Fasten_drilling_token, .put = Supervisor_Install_Rivet_Fasten_drilling_put,
-        .clear = Supervisor_Install_Rivet_Fasten_drilling_clear, .json = Supervisor_Install_Rivet_Fasten_drilling_json,
-        .encode = Supervisor_Install_Rivet_Fasten_drilling_encode, .decode = Supervisor_Install_Rivet_Fasten_drilling_decode, .add = Supervisor_Install_Rivet_Fasten_drilling_add_bytes,
-        .bit = UINT32_MAX,
+        .name = "Cell.Supervisor.Install.Rivet.Fasten.drilling", .colset = "UNIT", .owner = 0, .bag = &s_at_Supervisor_Install_Rivet_Fasten_drilling,
+        .is_bounded = true, .bound = 1U,
         .leaf_count = 1U, .leaf_kind = s_UNIT_kinds, .leaf_name = s_UNIT_leaves,
         .line_count = 1U, .line_leaves = s_UNIT_lines,
     },
     {
-        .name = "Cell.Supervisor.Install.Rivet.Fasten.inserting", .colset = "UNIT", .owner = 0,
-        .origin = "page `Fasten`, place `inserting` (ID1412310863)",
-        .capacity = 1U, .is_bounded = true, .bound = 1U, .timed = false,
-        .count = Supervisor_Install_Rivet_Fasten_inserting_count, .token = Supervisor_Install_Rivet_Fasten_inserting_token, .put = Supervisor_Install_Rivet_Fasten_inserting_put,
-        .clear = Supervisor_Install_Rivet_Fasten_inserting_clear, .json = Supervisor_Install_Rivet_Fasten_inserting_json,
-        .encode = Supervisor_Install_Rivet_Fasten_inserting_encode, .decode = Supervisor_Install_Rivet_Fasten_inserting_decode, .add = Supervisor_Install_Rivet_Fasten_inserting_add_bytes,
-        .bit = UINT32_MAX,
+        .name = "Cell.Supervisor.Install.Rivet.Fasten.inserting", .colset = "UNIT", .owner = 0, .bag = &s_at_Supervisor_Install_Rivet_Fasten_inserting,
+        .is_bounded = true, .bound = 1U,
         .leaf_count = 1U, .leaf_kind = s_UNIT_kinds, .leaf_name = s_UNIT_leaves,
         .line_count = 1U, .line_leaves = s_UNIT_lines,
     },
     {
-        .name = "Cell.Supervisor.Install.Rivet.Fasten.releasing", .colset = "REPLY", .owner = 0,
-        .origin = "page `Fasten`, place `releasing` (ID1412310871)",
-        .capacity = 1U, .is_bounded = true, .bound = 1U, .timed = false,
-        .count = Supervisor_Install_Rivet_Fasten_releasing_count, .token = Supervisor_Install_Rivet_Fasten_releasing_token, .put = Supervisor_Install_Rivet_Fasten_releasing_put,
-        .clear = Supervisor_Install_Rivet_Fasten_releasing_clear, .json = Supervisor_Install_Rivet_Fasten_releasing_json,
-        .encode = Supervisor_Install_Rivet_Fasten_releasing_encode, .decode = Supervisor_Install_Rivet_Fasten_releasing_decode, .add = Supervisor_Install_Rivet_Fasten_releasing_add_bytes,
-        .bit = UINT32_MAX,
+        .name = "Cell.Supervisor.Install.Rivet.Fasten.releasing", .colset = "REPLY", .owner = 0, .bag = &s_at_Supervisor_Install_Rivet_Fasten_releasing,
+        .is_bounded = true, .bound = 1U,
         .leaf_count = 1U, .leaf_kind = s_REPLY_kinds, .leaf_name = s_REPLY_leaves,
         .line_count = 1U, .line_leaves = s_REPLY_lines,
     },
     {
-        .name = "Cell.Supervisor.Install.Rivet.Retract.moving 1", .colset = "UNIT", .owner = 0,
-        .origin = "page `MoveBoth`, place `moving 1` (ID1412310959)",
-        .capacity = 1U, .is_bounded = true, .bound = 1U, .timed = false,
-        .count = Supervisor_Install_Rivet_Retract_moving_1_count, .token = Supervisor_Install_Rivet_Retract_moving_1_token, .put = Supervisor_Install_Rivet_Retract_moving_1_put,
-        .clear = Supervisor_Install_Rivet_Retract_moving_1_clear, .json = Supervisor_Install_Rivet_Retract_moving_1_json,
-        .encode = Supervisor_Install_Rivet_Retract_moving_1_encode, .decode = Supervisor_Install_Rivet_Retract_moving_1_decode, .add = Supervisor_Install_Rivet_Retract_moving_1_add_bytes,
-        .bit = UINT32_MAX,
+        .name = "Cell.Supervisor.Install.Rivet.Retract.moving 1", .colset = "UNIT", .owner = 0, .bag = &s_at_Supervisor_Install_Rivet_Retract_moving_1,
+        .is_bounded = true, .bound = 1U,
         .leaf_count = 1U, .leaf_kind = s_UNIT_kinds, .leaf_name = s_UNIT_leaves,
         .line_count = 1U, .line_leaves = s_UNIT_lines,
     },
     {
-        .name = "Cell.Supervisor.Install.Rivet.Retract.there 1", .colset = "UNIT", .owner = 0,
-        .origin = "page `MoveBoth`, place `there 1` (ID1412310967)",
-        .capacity = 1U, .is_bounded = true, .bound = 1U, .timed = false,
-        .count = Supervisor_Install_Rivet_Retract_there_1_count, .token = Supervisor_Install_Rivet_Retract_there_1_token, .put = Supervisor_Install_Rivet_Retract_there_1_put,
-        .clear = Supervisor_Install_Rivet_Retract_there_1_clear, .json = Supervisor_Install_Rivet_Retract_there_1_json,
-        .encode = Supervisor_Install_Rivet_Retract_there_1_encode, .decode = Supervisor_Install_Rivet_Retract_there_1_decode, .add = Supervisor_Install_Rivet_Retract_there_1_add_bytes,
-        .bit = UINT32_MAX,
+        .name = "Cell.Supervisor.Install.Rivet.Retract.there 1", .colset = "UNIT", .owner = 0, .bag = &s_at_Supervisor_Install_Rivet_Retract_there_1,
+        .is_bounded = true, .bound = 1U,
         .leaf_count = 1U, .leaf_kind = s_UNIT_kinds, .leaf_name = s_UNIT_leaves,
         .line_count = 1U, .line_leaves = s_UNIT_lines,
     },
     {
-        .name = "Cell.Supervisor.Install.Rivet.Retract.moving 2", .colset = "UNIT", .owner = 0,
-        .origin = "page `MoveBoth`, place `moving 2` (ID1412310996)",
-        .capacity = 1U, .is_bounded = true, .bound = 1U, .timed = false,
-        .count = Supervisor_Install_Rivet_Retract_moving_2_count, .token = Supervisor_Install_Rivet_Retract_moving_2_token, .put = Supervisor_Install_Rivet_Retract_moving_2_put,
-        .clear = Supervisor_Install_Rivet_Retract_moving_2_clear, .json = Supervisor_Install_Rivet_Retract_moving_2_json,
-        .encode = Supervisor_Install_Rivet_Retract_moving_2_encode, .decode = Supervisor_Install_Rivet_Retract_moving_2_decode, .add = Supervisor_Install_Rivet_Retract_moving_2_add_bytes,
-        .bit = UINT32_MAX,
+        .name = "Cell.Supervisor.Install.Rivet.Retract.moving 2", .colset = "UNIT", .owner = 0, .bag = &s_at_Supervisor_Install_Rivet_Retract_moving_2,
+        .is_bounded = true, .bound = 1U,
         .leaf_count = 1U, .leaf_kind = s_UNIT_kinds, .leaf_name = s_UNIT_leaves,
         .line_count = 1U, .line_leaves = s_UNIT_lines,
     },
     {
-        .name = "Cell.Supervisor.Install.Rivet.Retract.there 2", .colset = "UNIT", .owner = 0,
-        .origin = "page `MoveBoth`, place `there 2` (ID1412311004)",
-        .capacity = 1U, .is_bounded = true, .bound = 1U, .timed = false,
-        .count = Supervisor_Install_Rivet_Retract_there_2_count, .token = Supervisor_Install_Rivet_Retract_there_2_token, .put = Supervisor_Install_Rivet_Retract_there_2_put,
-        .clear = Supervisor_Install_Rivet_Retract_there_2_clear, .json = Supervisor_Install_Rivet_Retract_there_2_json,
-        .encode = Supervisor_Install_Rivet_Retract_there_2_encode, .decode = Supervisor_Install_Rivet_Retract_there_2_decode, .add = Supervisor_Install_Rivet_Retract_there_2_add_bytes,
-        .bit = UINT32_MAX,
+        .name = "Cell.Supervisor.Install.Rivet.Retract.there 2", .colset = "UNIT", .owner = 0, .bag = &s_at_Supervisor_Install_Rivet_Retract_there_2,
+        .is_bounded = true, .bound = 1U,
         .leaf_count = 1U, .leaf_kind = s_UNIT_kinds, .leaf_name = s_UNIT_leaves,
         .line_count = 1U, .line_leaves = s_UNIT_lines,
     },
     {
-        .name = "Cell.Supervisor.Install.Return.moving 1", .colset = "UNIT", .owner = 0,
-        .origin = "page `MoveBoth`, place `moving 1` (ID1412310959)",
-        .capacity = 1U, .is_bounded = true, .bound = 1U, .timed = false,
-        .count = Supervisor_Install_Return_moving_1_count, .token = Supervisor_Install_Return_moving_1_token, .put = Supervisor_Install_Return_moving_1_put,
-        .clear = Supervisor_Install_Return_moving_1_clear, .json = Supervisor_Install_Return_moving_1_json,
-        .encode = Supervisor_Install_Return_moving_1_encode, .decode = Supervisor_Install_Return_moving_1_decode, .add = Supervisor_Install_Return_moving_1_add_bytes,
-        .bit = UINT32_MAX,
+        .name = "Cell.Supervisor.Install.Return.moving 1", .colset = "UNIT", .owner = 0, .bag = &s_at_Supervisor_Install_Return_moving_1,
+        .is_bounded = true, .bound = 1U,
         .leaf_count = 1U, .leaf_kind = s_UNIT_kinds, .leaf_name = s_UNIT_leaves,
         .line_count = 1U, .line_leaves = s_UNIT_lines,
     },
     {
-        .name = "Cell.Supervisor.Install.Return.there 1", .colset = "UNIT", .owner = 0,
-        .origin = "page `MoveBoth`, place `there 1` (ID1412310967)",
-        .capacity = 1U, .is_bounded = true, .bound = 1U, .timed = false,
-        .count = Supervisor_Install_Return_there_1_count, .token = Supervisor_Install_Return_there_1_token, .put = Supervisor_Install_Return_there_1_put,
-        .clear = Supervisor_Install_Return_there_1_clear, .json = Supervisor_Install_Return_there_1_json,
-        .encode = Supervisor_Install_Return_there_1_encode, .decode = Supervisor_Install_Return_there_1_decode, .add = Supervisor_Install_Return_there_1_add_bytes,
-        .bit = UINT32_MAX,
+        .name = "Cell.Supervisor.Install.Return.there 1", .colset = "UNIT", .owner = 0, .bag = &s_at_Supervisor_Install_Return_there_1,
+        .is_bounded = true, .bound = 1U,
         .leaf_count = 1U, .leaf_kind = s_UNIT_kinds, .leaf_name = s_UNIT_leaves,
         .line_count = 1U, .line_leaves = s_UNIT_lines,
     },
     {
-        .name = "Cell.Supervisor.Install.Return.moving 2", .colset = "UNIT", .owner = 0,
-        .origin = "page `MoveBoth`, place `moving 2` (ID1412310996)",
-        .capacity = 1U, .is_bounded = true, .bound = 1U, .timed = false,
-        .count = Supervisor_Install_Return_moving_2_count, .token = Supervisor_Install_Return_moving_2_token, .put = Supervisor_Install_Return_moving_2_put,
-        .clear = Supervisor_Install_Return_moving_2_clear, .json = Supervisor_Install_Return_moving_2_json,
-        .encode = Supervisor_Install_Return_moving_2_encode, .decode = Supervisor_Install_Return_moving_2_decode, .add = Supervisor_Install_Return_moving_2_add_bytes,
-        .bit = UINT32_MAX,
+        .name = "Cell.Supervisor.Install.Return.moving 2", .colset = "UNIT", .owner = 0, .bag = &s_at_Supervisor_Install_Return_moving_2,
+        .is_bounded = true, .bound = 1U,
         .leaf_count = 1U, .leaf_kind = s_UNIT_kinds, .leaf_name = s_UNIT_leaves,
         .line_count = 1U, .line_leaves = s_UNIT_lines,
     },
     {
-        .name = "Cell.Supervisor.Install.Return.there 2", .colset = "UNIT", .owner = 0,
-        .origin = "page `MoveBoth`, place `there 2` (ID1412311004)",
-        .capacity = 1U, .is_bounded = true, .bound = 1U, .timed = false,
-        .count = Supervisor_Install_Return_there_2_count, .token = Supervisor_Install_Return_there_2_token, .put = Supervisor_Install_Return_there_2_put,
-        .clear = Supervisor_Install_Return_there_2_clear, .json = Supervisor_Install_Return_there_2_json,
-        .encode = Supervisor_Install_Return_there_2_encode, .decode = Supervisor_Install_Return_there_2_decode, .add = Supervisor_Install_Return_there_2_add_bytes,
-        .bit = UINT32_MAX,
+        .name = "Cell.Supervisor.Install.Return.there 2", .colset = "UNIT", .owner = 0, .bag = &s_at_Supervisor_Install_Return_there_2,
+        .is_bounded = true, .bound = 1U,
         .leaf_count = 1U, .leaf_kind = s_UNIT_kinds, .leaf_name = s_UNIT_leaves,
         .line_count = 1U, .line_leaves = s_UNIT_lines,
     },
     {
-        .name = "Cell.Supervisor.Home.leaving 1", .colset = "UNIT", .owner = 0,
-        .origin = "page `Home`, place `leaving 1` (ID1412311057)",
-        .capacity = 1U, .is_bounded = true, .bound = 1U, .timed = false,
-        .count = Supervisor_Home_leaving_1_count, .token = Supervisor_Home_leaving_1_token, .put = Supervisor_Home_leaving_1_put,
-        .clear = Supervisor_Home_leaving_1_clear, .json = Supervisor_Home_leaving_1_json,
-        .encode = Supervisor_Home_leaving_1_encode, .decode = Supervisor_Home_leaving_1_decode, .add = Supervisor_Home_leaving_1_add_bytes,
-        .bit = UINT32_MAX,
+        .name = "Cell.Supervisor.Home.leaving 1", .colset = "UNIT", .owner = 0, .bag = &s_at_Supervisor_Home_leaving_1,
+        .is_bounded = true, .bound = 1U,
         .leaf_count = 1U, .leaf_kind = s_UNIT_kinds, .leaf_name = s_UNIT_leaves,
         .line_count = 1U, .line_leaves = s_UNIT_lines,
     },
     {
-        .name = "Cell.Supervisor.Home.home 1", .colset = "UNIT", .owner = 0,
-        .origin = "page `Home`, place `home 1` (ID1412311065)",
-        .capacity = 1U, .is_bounded = true, .bound = 1U, .timed = false,
-        .count = Supervisor_Home_home_1_count, .token = Supervisor_Home_home_1_token, .put = Supervisor_Home_home_1_put,
-        .clear = Supervisor_Home_home_1_clear, .json = Supervisor_Home_home_1_json,
-        .encode = Supervisor_Home_home_1_encode, .decode = Supervisor_Home_home_1_decode, .add = Supervisor_Home_home_1_add_bytes,
-        .bit = UINT32_MAX,
+        .name = "Cell.Supervisor.Home.home 1", .colset = "UNIT", .owner = 0, .bag = &s_at_Supervisor_Home_home_1,
+        .is_bounded = true, .bound = 1U,
         .leaf_count = 1U, .leaf_kind = s_UNIT_kinds, .leaf_name = s_UNIT_leaves,
         .line_count = 1U, .line_leaves = s_UNIT_lines,
     },
     {
-        .name = "Cell.Supervisor.Home.leaving 2", .colset = "UNIT", .owner = 0,
-        .origin = "page `Home`, place `leaving 2` (ID1412311088)",
-        .capacity = 1U, .is_bounded = true, .bound = 1U, .timed = false,
-        .count = Supervisor_Home_leaving_2_count, .token = Supervisor_Home_leaving_2_token, .put = Supervisor_Home_leaving_2_put,
-        .clear = Supervisor_Home_leaving_2_clear, .json = Supervisor_Home_leaving_2_json,
-        .encode = Supervisor_Home_leaving_2_encode, .decode = Supervisor_Home_leaving_2_decode, .add = Supervisor_Home_leaving_2_add_bytes,
-        .bit = UINT32_MAX,
+        .name = "Cell.Supervisor.Home.leaving 2", .colset = "UNIT", .owner = 0, .bag = &s_at_Supervisor_Home_leaving_2,
+        .is_bounded = true, .bound = 1U,
         .leaf_count = 1U, .leaf_kind = s_UNIT_kinds, .leaf_name = s_UNIT_leaves,
         .line_count = 1U, .line_leaves = s_UNIT_lines,
     },
     {
-        .name = "Cell.Supervisor.Home.home 2", .colset = "UNIT", .owner = 0,
-        .origin = "page `Home`, place `home 2` (ID1412311096)",
-        .capacity = 1U, .is_bounded = true, .bound = 1U, .timed = false,
-        .count = Supervisor_Home_home_2_count, .token = Supervisor_Home_home_2_token, .put = Supervisor_Home_home_2_put,
-        .clear = Supervisor_Home_home_2_clear, .json = Supervisor_Home_home_2_json,
-        .encode = Supervisor_Home_home_2_encode, .decode = Supervisor_Home_home_2_decode, .add = Supervisor_Home_home_2_add_bytes,
-        .bit = UINT32_MAX,
+        .name = "Cell.Supervisor.Home.home 2", .colset = "UNIT", .owner = 0, .bag = &s_at_Supervisor_Home_home_2,
+        .is_bounded = true, .bound = 1U,
         .leaf_count = 1U, .leaf_kind = s_UNIT_kinds, .leaf_name = s_UNIT_leaves,
         .line_count = 1U, .line_leaves = s_UNIT_lines,
     },
     {
-        .name = "Cell.Robot1.Waiting", .colset = "UNIT", .owner = 1,
-        .origin = "page `Robot`, place `Waiting` (ID1412311130)",
-        .capacity = 1U, .is_bounded = true, .bound = 1U, .timed = false,
-        .count = Robot1_Waiting_count, .token = Robot1_Waiting_token, .put = Robot1_Waiting_put,
-        .clear = Robot1_Waiting_clear, .json = Robot1_Waiting_json,
-        .encode = Robot1_Waiting_encode, .decode = Robot1_Waiting_decode, .add = Robot1_Waiting_add_bytes,
-        .bit = UINT32_MAX,
+        .name = "Cell.Robot1.Waiting", .colset = "UNIT", .owner = 1, .bag = &s_at_Robot1_Waiting,
+        .is_bounded = true, .bound = 1U,
+        .initial = Robot1_Waiting_init,
         .leaf_count = 1U, .leaf_kind = s_UNIT_kinds, .leaf_name = s_UNIT_leaves,
         .line_count = 1U, .line_leaves = s_UNIT_lines,
     },
     {
-        .name = "Cell.Robot1.Commanded", .colset = "COMMAND", .owner = 1,
-        .origin = "page `Robot`, place `Commanded` (ID1412311133)",
-        .capacity = 1U, .is_bounded = true, .bound = 1U, .timed = false,
-        .count = Robot1_Commanded_count, .token = Robot1_Commanded_token, .put = Robot1_Commanded_put,
-        .clear = Robot1_Commanded_clear, .json = Robot1_Commanded_json,
-        .encode = Robot1_Commanded_encode, .decode = Robot1_Commanded_decode, .add = Robot1_Commanded_add_bytes,
-        .bit = UINT32_MAX,
+        .name = "Cell.Robot1.Commanded", .colset = "COMMAND", .owner = 1, .bag = &s_at_Robot1_Commanded,
+        .is_bounded = true, .bound = 1U,
         .leaf_count = 1U, .leaf_kind = s_COMMAND_kinds, .leaf_name = s_COMMAND_leaves,
         .line_count = 1U, .line_leaves = s_COMMAND_lines,
     },
     {
-        .name = "Cell.Robot1.Done", .colset = "REPLY", .owner = 1,
-        .origin = "page `Robot`, place `Done` (ID1412311142)",
-        .capacity = 1U, .is_bounded = true, .bound = 1U, .timed = false,
-        .count = Robot1_Done_count, .token = Robot1_Done_token, .put = Robot1_Done_put,
-        .clear = Robot1_Done_clear, .json = Robot1_Done_json,
-        .encode = Robot1_Done_encode, .decode = Robot1_Done_decode, .add = Robot1_Done_add_bytes,
-        .bit = UINT32_MAX,
+        .name = "Cell.Robot1.Done", .colset = "REPLY", .owner = 1, .bag = &s_at_Robot1_Done,
+        .is_bounded = true, .bound = 1U,
         .leaf_count = 1U, .leaf_kind = s_REPLY_kinds, .leaf_name = s_REPLY_leaves,
         .line_count = 1U, .line_leaves = s_REPLY_lines,
     },
     {
-        .name = "Cell.Robot2.Waiting", .colset = "UNIT", .owner = 2,
-        .origin = "page `Robot`, place `Waiting` (ID1412311130)",
-        .capacity = 1U, .is_bounded = true, .bound = 1U, .timed = false,
-        .count = Robot2_Waiting_count, .token = Robot2_Waiting_token, .put = Robot2_Waiting_put,
-        .clear = Robot2_Waiting_clear, .json = Robot2_Waiting_json,
-        .encode = Robot2_Waiting_encode, .decode = Robot2_Waiting_decode, .add = Robot2_Waiting_add_bytes,
-        .bit = UINT32_MAX,
+        .name = "Cell.Robot2.Waiting", .colset = "UNIT", .owner = 2, .bag = &s_at_Robot2_Waiting,
+        .is_bounded = true, .bound = 1U,
+        .initial = Robot2_Waiting_init,
         .leaf_count = 1U, .leaf_kind = s_UNIT_kinds, .leaf_name = s_UNIT_leaves,
         .line_count = 1U, .line_leaves = s_UNIT_lines,
     },
     {
-        .name = "Cell.Robot2.Commanded", .colset = "COMMAND", .owner = 2,
-        .origin = "page `Robot`, place `Commanded` (ID1412311133)",
-        .capacity = 1U, .is_bounded = true, .bound = 1U, .timed = false,
-        .count = Robot2_Commanded_count, .token = Robot2_Commanded_token, .put = Robot2_Commanded_put,
-        .clear = Robot2_Commanded_clear, .json = Robot2_Commanded_json,
-        .encode = Robot2_Commanded_encode, .decode = Robot2_Commanded_decode, .add = Robot2_Commanded_add_bytes,
-        .bit = UINT32_MAX,
+        .name = "Cell.Robot2.Commanded", .colset = "COMMAND", .owner = 2, .bag = &s_at_Robot2_Commanded,
+        .is_bounded = true, .bound = 1U,
         .leaf_count = 1U, .leaf_kind = s_COMMAND_kinds, .leaf_name = s_COMMAND_leaves,
         .line_count = 1U, .line_leaves = s_COMMAND_lines,
     },
     {
-        .name = "Cell.Robot2.Done", .colset = "REPLY", .owner = 2,
-        .origin = "page `Robot`, place `Done` (ID1412311142)",
-        .capacity = 1U, .is_bounded = true, .bound = 1U, .timed = false,
-        .count = Robot2_Done_count, .token = Robot2_Done_token, .put = Robot2_Done_put,
-        .clear = Robot2_Done_clear, .json = Robot2_Done_json,
-        .encode = Robot2_Done_encode, .decode = Robot2_Done_decode, .add = Robot2_Done_add_bytes,
-        .bit = UINT32_MAX,
+        .name = "Cell.Robot2.Done", .colset = "REPLY", .owner = 2, .bag = &s_at_Robot2_Done,
+        .is_bounded = true, .bound = 1U,
         .leaf_count = 1U, .leaf_kind = s_REPLY_kinds, .leaf_name = s_REPLY_leaves,
         .line_count = 1U, .line_leaves = s_REPLY_lines,
     },
@@ -9561,8 +7676,7 @@ static const pn_transition_t s_transitions[] = {
     {
         .name = "Cell.Supervisor.Load.Load", .id = "ID1412310271", .owner = 0, .priority = 1000,
         .origin = "page `Load`, transition `Load` (ID1412310271)",
-        .enumerate = Supervisor_Load_Load_enumerate, .fire = Supervisor_Load_Load_fire, .binding_json = Supervisor_Load_Load_json,
-        .binding_size = sizeof(Supervisor_Load_Load_binding_t),
+        .enumerate = Supervisor_Load_Load_enumerate, .fire = Supervisor_Load_Load_fire, .binding = &s_binding_Supervisor_Load_Load,
         .affected_count = sizeof s_affected_by_Supervisor_Load_Load / sizeof s_affected_by_Supervisor_Load_Load[0],
         .affected = s_affected_by_Supervisor_Load_Load,
         .touched_count = sizeof s_touched_by_Supervisor_Load_Load / sizeof s_touched_by_Supervisor_Load_Load[0],
@@ -9573,8 +7687,7 @@ static const pn_transition_t s_transitions[] = {
     {
         .name = "Cell.Supervisor.Approach.Send", .id = "ID1412310300", .owner = 0, .priority = 1000,
         .origin = "page `Approach`, transition `Send` (ID1412310300)",
-        .enumerate = Supervisor_Approach_Send_enumerate, .fire = Supervisor_Approach_Send_fire, .binding_json = Supervisor_Approach_Send_json,
-        .binding_size = sizeof(Supervisor_Approach_Send_binding_t),
+        .enumerate = Supervisor_Approach_Send_enumerate, .fire = Supervisor_Approach_Send_fire, .binding = &s_binding_Supervisor_Approach_Send,
         .affected_count = sizeof s_affected_by_Supervisor_Approach_Send / sizeof s_affected_by_Supervisor_Approach_Send[0],
         .affected = s_affected_by_Supervisor_Approach_Send,
         .touched_count = sizeof s_touched_by_Supervisor_Approach_Send / sizeof s_touched_by_Supervisor_Approach_Send[0],
@@ -9585,8 +7698,7 @@ static const pn_transition_t s_transitions[] = {
     {
         .name = "Cell.Supervisor.Approach.Arrived", .id = "ID1412310311", .owner = 0, .priority = 1000,
         .origin = "page `Approach`, transition `Arrived` (ID1412310311)",
-        .enumerate = Supervisor_Approach_Arrived_enumerate, .fire = Supervisor_Approach_Arrived_fire, .binding_json = Supervisor_Approach_Arrived_json,
-        .binding_size = sizeof(Supervisor_Approach_Arrived_binding_t),
+        .enumerate = Supervisor_Approach_Arrived_enumerate, .fire = Supervisor_Approach_Arrived_fire, .binding = &s_binding_Supervisor_Approach_Arrived,
         .affected_count = sizeof s_affected_by_Supervisor_Approach_Arrived / sizeof s_affected_by_Supervisor_Approach_Arrived[0],
         .affected = s_affected_by_Supervisor_Approach_Arrived,
         .touched_count = sizeof s_touched_by_Supervisor_Approach_Arrived / sizeof s_touched_by_Supervisor_Approach_Arrived[0],
@@ -9597,8 +7709,7 @@ static const pn_transition_t s_transitions[] = {
     {
         .name = "Cell.Supervisor.Approach.Move both.Command", .id = "ID1412310941", .owner = 0, .priority = 1000,
         .origin = "page `MoveBoth`, transition `Command` (ID1412310941)",
-        .enumerate = Supervisor_Approach_Move_both_Command_enumerate, .fire = Supervisor_Approach_Move_both_Command_fire, .binding_json = Supervisor_Approach_Move_both_Command_json,
-        .binding_size = sizeof(Supervisor_Approach_Move_both_Command_binding_t),
+        .enumerate = Supervisor_Approach_Move_both_Command_enumerate, .fire = Supervisor_Approach_Move_both_Command_fire, .binding = &s_binding_Supervisor_Approach_Move_both_Command,
         .affected_count = sizeof s_affected_by_Supervisor_Approach_Move_both_Command / sizeof s_affected_by_Supervisor_Approach_Move_both_Command[0],
         .affected = s_affected_by_Supervisor_Approach_Move_both_Command,
         .touched_count = sizeof s_touched_by_Supervisor_Approach_Move_both_Command / sizeof s_touched_by_Supervisor_Approach_Move_both_Command[0],
@@ -9609,8 +7720,7 @@ static const pn_transition_t s_transitions[] = {
     {
         .name = "Cell.Supervisor.Approach.Move both.Both", .id = "ID1412310948", .owner = 0, .priority = 1000,
         .origin = "page `MoveBoth`, transition `Both` (ID1412310948)",
-        .enumerate = Supervisor_Approach_Move_both_Both_enumerate, .fire = Supervisor_Approach_Move_both_Both_fire, .binding_json = Supervisor_Approach_Move_both_Both_json,
-        .binding_size = sizeof(Supervisor_Approach_Move_both_Both_binding_t),
+        .enumerate = Supervisor_Approach_Move_both_Both_enumerate, .fire = Supervisor_Approach_Move_both_Both_fire, .binding = &s_binding_Supervisor_Approach_Move_both_Both,
         .affected_count = sizeof s_affected_by_Supervisor_Approach_Move_both_Both / sizeof s_affected_by_Supervisor_Approach_Move_both_Both[0],
         .affected = s_affected_by_Supervisor_Approach_Move_both_Both,
         .touched_count = sizeof s_touched_by_Supervisor_Approach_Move_both_Both / sizeof s_touched_by_Supervisor_Approach_Move_both_Both[0],
@@ -9621,8 +7731,7 @@ static const pn_transition_t s_transitions[] = {
     {
         .name = "Cell.Supervisor.Approach.Move both.Reply 1", .id = "ID1412310962", .owner = 0, .priority = 1000,
         .origin = "page `MoveBoth`, transition `Reply 1` (ID1412310962)",
-        .enumerate = Supervisor_Approach_Move_both_Reply_1_enumerate, .fire = Supervisor_Approach_Move_both_Reply_1_fire, .binding_json = Supervisor_Approach_Move_both_Reply_1_json,
-        .binding_size = sizeof(Supervisor_Approach_Move_both_Reply_1_binding_t),
+        .enumerate = Supervisor_Approach_Move_both_Reply_1_enumerate, .fire = Supervisor_Approach_Move_both_Reply_1_fire, .binding = &s_binding_Supervisor_Approach_Move_both_Reply_1,
         .affected_count = sizeof s_affected_by_Supervisor_Approach_Move_both_Reply_1 / sizeof s_affected_by_Supervisor_Approach_Move_both_Reply_1[0],
         .affected = s_affected_by_Supervisor_Approach_Move_both_Reply_1,
         .touched_count = sizeof s_touched_by_Supervisor_Approach_Move_both_Reply_1 / sizeof s_touched_by_Supervisor_Approach_Move_both_Reply_1[0],
@@ -9633,8 +7742,7 @@ static const pn_transition_t s_transitions[] = {
     {
         .name = "Cell.Supervisor.Approach.Move both.Reply 2", .id = "ID1412310999", .owner = 0, .priority = 1000,
         .origin = "page `MoveBoth`, transition `Reply 2` (ID1412310999)",
-        .enumerate = Supervisor_Approach_Move_both_Reply_2_enumerate, .fire = Supervisor_Approach_Move_both_Reply_2_fire, .binding_json = Supervisor_Approach_Move_both_Reply_2_json,
-        .binding_size = sizeof(Supervisor_Approach_Move_both_Reply_2_binding_t),
+        .enumerate = Supervisor_Approach_Move_both_Reply_2_enumerate, .fire = Supervisor_Approach_Move_both_Reply_2_fire, .binding = &s_binding_Supervisor_Approach_Move_both_Reply_2,
         .affected_count = sizeof s_affected_by_Supervisor_Approach_Move_both_Reply_2 / sizeof s_affected_by_Supervisor_Approach_Move_both_Reply_2[0],
         .affected = s_affected_by_Supervisor_Approach_Move_both_Reply_2,
         .touched_count = sizeof s_touched_by_Supervisor_Approach_Move_both_Reply_2 / sizeof s_touched_by_Supervisor_Approach_Move_both_Reply_2[0],
@@ -9645,8 +7753,7 @@ static const pn_transition_t s_transitions[] = {
     {
         .name = "Cell.Supervisor.Verify.Ask first", .id = "ID1412310377", .owner = 0, .priority = 1000,
         .origin = "page `Verify`, transition `Ask first` (ID1412310377)",
-        .enumerate = Supervisor_Verify_Ask_first_enumerate, .fire = Supervisor_Verify_Ask_first_fire, .binding_json = Supervisor_Verify_Ask_first_json,
-        .binding_size = sizeof(Supervisor_Verify_Ask_first_binding_t),
+        .enumerate = Supervisor_Verify_Ask_first_enumerate, .fire = Supervisor_Verify_Ask_first_fire, .binding = &s_binding_Supervisor_Verify_Ask_first,
         .affected_count = sizeof s_affected_by_Supervisor_Verify_Ask_first / sizeof s_affected_by_Supervisor_Verify_Ask_first[0],
         .affected = s_affected_by_Supervisor_Verify_Ask_first,
         .touched_count = sizeof s_touched_by_Supervisor_Verify_Ask_first / sizeof s_touched_by_Supervisor_Verify_Ask_first[0],
@@ -9657,8 +7764,7 @@ static const pn_transition_t s_transitions[] = {
     {
         .name = "Cell.Supervisor.Verify.Ask last", .id = "ID1412310385", .owner = 0, .priority = 1000,
         .origin = "page `Verify`, transition `Ask last` (ID1412310385)",
-        .enumerate = Supervisor_Verify_Ask_last_enumerate, .fire = Supervisor_Verify_Ask_last_fire, .binding_json = Supervisor_Verify_Ask_last_json,
-        .binding_size = sizeof(Supervisor_Verify_Ask_last_binding_t),
+        .enumerate = Supervisor_Verify_Ask_last_enumerate, .fire = Supervisor_Verify_Ask_last_fire, .binding = &s_binding_Supervisor_Verify_Ask_last,
         .affected_count = sizeof s_affected_by_Supervisor_Verify_Ask_last / sizeof s_affected_by_Supervisor_Verify_Ask_last[0],
         .affected = s_affected_by_Supervisor_Verify_Ask_last,
         .touched_count = sizeof s_touched_by_Supervisor_Verify_Ask_last / sizeof s_touched_by_Supervisor_Verify_Ask_last[0],
@@ -9669,8 +7775,7 @@ static const pn_transition_t s_transitions[] = {
     {
         .name = "Cell.Supervisor.Verify.Measured", .id = "ID1412310393", .owner = 0, .priority = 1000,
         .origin = "page `Verify`, transition `Measured` (ID1412310393)",
-        .enumerate = Supervisor_Verify_Measured_enumerate, .fire = Supervisor_Verify_Measured_fire, .binding_json = Supervisor_Verify_Measured_json,
-        .binding_size = sizeof(Supervisor_Verify_Measured_binding_t),
+        .enumerate = Supervisor_Verify_Measured_enumerate, .fire = Supervisor_Verify_Measured_fire, .binding = &s_binding_Supervisor_Verify_Measured,
         .affected_count = sizeof s_affected_by_Supervisor_Verify_Measured / sizeof s_affected_by_Supervisor_Verify_Measured[0],
         .affected = s_affected_by_Supervisor_Verify_Measured,
         .touched_count = sizeof s_touched_by_Supervisor_Verify_Measured / sizeof s_touched_by_Supervisor_Verify_Measured[0],
@@ -9681,8 +7786,7 @@ static const pn_transition_t s_transitions[] = {
     {
         .name = "Cell.Supervisor.Verify.First lost", .id = "ID1412320018", .owner = 0, .priority = 1000,
         .origin = "page `Verify`, transition `First lost` (ID1412320018)",
-        .enumerate = Supervisor_Verify_First_lost_enumerate, .fire = Supervisor_Verify_First_lost_fire, .binding_json = Supervisor_Verify_First_lost_json,
-        .binding_size = sizeof(Supervisor_Verify_First_lost_binding_t),
+        .enumerate = Supervisor_Verify_First_lost_enumerate, .fire = Supervisor_Verify_First_lost_fire, .binding = &s_binding_Supervisor_Verify_First_lost,
         .affected_count = sizeof s_affected_by_Supervisor_Verify_First_lost / sizeof s_affected_by_Supervisor_Verify_First_lost[0],
         .affected = s_affected_by_Supervisor_Verify_First_lost,
         .touched_count = sizeof s_touched_by_Supervisor_Verify_First_lost / sizeof s_touched_by_Supervisor_Verify_First_lost[0],
@@ -9693,8 +7797,7 @@ static const pn_transition_t s_transitions[] = {
     {
         .name = "Cell.Supervisor.Verify.Last lost", .id = "ID1412320023", .owner = 0, .priority = 1000,
         .origin = "page `Verify`, transition `Last lost` (ID1412320023)",
-        .enumerate = Supervisor_Verify_Last_lost_enumerate, .fire = Supervisor_Verify_Last_lost_fire, .binding_json = Supervisor_Verify_Last_lost_json,
-        .binding_size = sizeof(Supervisor_Verify_Last_lost_binding_t),
+        .enumerate = Supervisor_Verify_Last_lost_enumerate, .fire = Supervisor_Verify_Last_lost_fire, .binding = &s_binding_Supervisor_Verify_Last_lost,
         .affected_count = sizeof s_affected_by_Supervisor_Verify_Last_lost / sizeof s_affected_by_Supervisor_Verify_Last_lost[0],
         .affected = s_affected_by_Supervisor_Verify_Last_lost,
         .touched_count = sizeof s_touched_by_Supervisor_Verify_Last_lost / sizeof s_touched_by_Supervisor_Verify_Last_lost[0],
@@ -9705,8 +7808,7 @@ static const pn_transition_t s_transitions[] = {
     {
         .name = "Cell.Supervisor.Correct.Compare", .id = "ID1412310453", .owner = 0, .priority = 1000,
         .origin = "page `Correct`, transition `Compare` (ID1412310453)",
-        .enumerate = Supervisor_Correct_Compare_enumerate, .fire = Supervisor_Correct_Compare_fire, .binding_json = Supervisor_Correct_Compare_json,
-        .binding_size = sizeof(Supervisor_Correct_Compare_binding_t),
+        .enumerate = Supervisor_Correct_Compare_enumerate, .fire = Supervisor_Correct_Compare_fire, .binding = &s_binding_Supervisor_Correct_Compare,
         .affected_count = sizeof s_affected_by_Supervisor_Correct_Compare / sizeof s_affected_by_Supervisor_Correct_Compare[0],
         .affected = s_affected_by_Supervisor_Correct_Compare,
         .touched_count = sizeof s_touched_by_Supervisor_Correct_Compare / sizeof s_touched_by_Supervisor_Correct_Compare[0],
@@ -9717,8 +7819,7 @@ static const pn_transition_t s_transitions[] = {
     {
         .name = "Cell.Supervisor.Correct.Move over", .id = "ID1412310461", .owner = 0, .priority = 1000,
         .origin = "page `Correct`, transition `Move over` (ID1412310461)",
-        .enumerate = Supervisor_Correct_Move_over_enumerate, .fire = Supervisor_Correct_Move_over_fire, .binding_json = Supervisor_Correct_Move_over_json,
-        .binding_size = sizeof(Supervisor_Correct_Move_over_binding_t),
+        .enumerate = Supervisor_Correct_Move_over_enumerate, .fire = Supervisor_Correct_Move_over_fire, .binding = &s_binding_Supervisor_Correct_Move_over,
         .affected_count = sizeof s_affected_by_Supervisor_Correct_Move_over / sizeof s_affected_by_Supervisor_Correct_Move_over[0],
         .affected = s_affected_by_Supervisor_Correct_Move_over,
         .touched_count = sizeof s_touched_by_Supervisor_Correct_Move_over / sizeof s_touched_by_Supervisor_Correct_Move_over[0],
@@ -9729,8 +7830,7 @@ static const pn_transition_t s_transitions[] = {
     {
         .name = "Cell.Supervisor.Correct.Moved", .id = "ID1412310478", .owner = 0, .priority = 1000,
         .origin = "page `Correct`, transition `Moved` (ID1412310478)",
-        .enumerate = Supervisor_Correct_Moved_enumerate, .fire = Supervisor_Correct_Moved_fire, .binding_json = Supervisor_Correct_Moved_json,
-        .binding_size = sizeof(Supervisor_Correct_Moved_binding_t),
+        .enumerate = Supervisor_Correct_Moved_enumerate, .fire = Supervisor_Correct_Moved_fire, .binding = &s_binding_Supervisor_Correct_Moved,
         .affected_count = sizeof s_affected_by_Supervisor_Correct_Moved / sizeof s_affected_by_Supervisor_Correct_Moved[0],
         .affected = s_affected_by_Supervisor_Correct_Moved,
         .touched_count = sizeof s_touched_by_Supervisor_Correct_Moved / sizeof s_touched_by_Supervisor_Correct_Moved[0],
@@ -9741,8 +7841,7 @@ static const pn_transition_t s_transitions[] = {
     {
         .name = "Cell.Supervisor.Correct.As planned", .id = "ID1412310526", .owner = 0, .priority = 1000,
         .origin = "page `Correct`, transition `As planned` (ID1412310526)",
-        .enumerate = Supervisor_Correct_As_planned_enumerate, .fire = Supervisor_Correct_As_planned_fire, .binding_json = Supervisor_Correct_As_planned_json,
-        .binding_size = sizeof(Supervisor_Correct_As_planned_binding_t),
+        .enumerate = Supervisor_Correct_As_planned_enumerate, .fire = Supervisor_Correct_As_planned_fire, .binding = &s_binding_Supervisor_Correct_As_planned,
         .affected_count = sizeof s_affected_by_Supervisor_Correct_As_planned / sizeof s_affected_by_Supervisor_Correct_As_planned[0],
         .affected = s_affected_by_Supervisor_Correct_As_planned,
         .touched_count = sizeof s_touched_by_Supervisor_Correct_As_planned / sizeof s_touched_by_Supervisor_Correct_As_planned[0],
@@ -9753,8 +7852,7 @@ static const pn_transition_t s_transitions[] = {
     {
         .name = "Cell.Supervisor.Correct.Move both.Command", .id = "ID1412310941", .owner = 0, .priority = 1000,
         .origin = "page `MoveBoth`, transition `Command` (ID1412310941)",
-        .enumerate = Supervisor_Correct_Move_both_Command_enumerate, .fire = Supervisor_Correct_Move_both_Command_fire, .binding_json = Supervisor_Correct_Move_both_Command_json,
-        .binding_size = sizeof(Supervisor_Correct_Move_both_Command_binding_t),
+        .enumerate = Supervisor_Correct_Move_both_Command_enumerate, .fire = Supervisor_Correct_Move_both_Command_fire, .binding = &s_binding_Supervisor_Correct_Move_both_Command,
         .affected_count = sizeof s_affected_by_Supervisor_Correct_Move_both_Command / sizeof s_affected_by_Supervisor_Correct_Move_both_Command[0],
         .affected = s_affected_by_Supervisor_Correct_Move_both_Command,
         .touched_count = sizeof s_touched_by_Supervisor_Correct_Move_both_Command / sizeof s_touched_by_Supervisor_Correct_Move_both_Command[0],
@@ -9765,8 +7863,7 @@ static const pn_transition_t s_transitions[] = {
     {
         .name = "Cell.Supervisor.Correct.Move both.Both", .id = "ID1412310948", .owner = 0, .priority = 1000,
         .origin = "page `MoveBoth`, transition `Both` (ID1412310948)",
-        .enumerate = Supervisor_Correct_Move_both_Both_enumerate, .fire = Supervisor_Correct_Move_both_Both_fire, .binding_json = Supervisor_Correct_Move_both_Both_json,
-        .binding_size = sizeof(Supervisor_Correct_Move_both_Both_binding_t),
+        .enumerate = Supervisor_Correct_Move_both_Both_enumerate, .fire = Supervisor_Correct_Move_both_Both_fire, .binding = &s_binding_Supervisor_Correct_Move_both_Both,
         .affected_count = sizeof s_affected_by_Supervisor_Correct_Move_both_Both / sizeof s_affected_by_Supervisor_Correct_Move_both_Both[0],
         .affected = s_affected_by_Supervisor_Correct_Move_both_Both,
         .touched_count = sizeof s_touched_by_Supervisor_Correct_Move_both_Both / sizeof s_touched_by_Supervisor_Correct_Move_both_Both[0],
@@ -9777,8 +7874,7 @@ static const pn_transition_t s_transitions[] = {
     {
         .name = "Cell.Supervisor.Correct.Move both.Reply 1", .id = "ID1412310962", .owner = 0, .priority = 1000,
         .origin = "page `MoveBoth`, transition `Reply 1` (ID1412310962)",
-        .enumerate = Supervisor_Correct_Move_both_Reply_1_enumerate, .fire = Supervisor_Correct_Move_both_Reply_1_fire, .binding_json = Supervisor_Correct_Move_both_Reply_1_json,
-        .binding_size = sizeof(Supervisor_Correct_Move_both_Reply_1_binding_t),
+        .enumerate = Supervisor_Correct_Move_both_Reply_1_enumerate, .fire = Supervisor_Correct_Move_both_Reply_1_fire, .binding = &s_binding_Supervisor_Correct_Move_both_Reply_1,
         .affected_count = sizeof s_affected_by_Supervisor_Correct_Move_both_Reply_1 / sizeof s_affected_by_Supervisor_Correct_Move_both_Reply_1[0],
         .affected = s_affected_by_Supervisor_Correct_Move_both_Reply_1,
         .touched_count = sizeof s_touched_by_Supervisor_Correct_Move_both_Reply_1 / sizeof s_touched_by_Supervisor_Correct_Move_both_Reply_1[0],
@@ -9789,8 +7885,7 @@ static const pn_transition_t s_transitions[] = {
     {
         .name = "Cell.Supervisor.Correct.Move both.Reply 2", .id = "ID1412310999", .owner = 0, .priority = 1000,
         .origin = "page `MoveBoth`, transition `Reply 2` (ID1412310999)",
-        .enumerate = Supervisor_Correct_Move_both_Reply_2_enumerate, .fire = Supervisor_Correct_Move_both_Reply_2_fire, .binding_json = Supervisor_Correct_Move_both_Reply_2_json,
-        .binding_size = sizeof(Supervisor_Correct_Move_both_Reply_2_binding_t),
+        .enumerate = Supervisor_Correct_Move_both_Reply_2_enumerate, .fire = Supervisor_Correct_Move_both_Reply_2_fire, .binding = &s_binding_Supervisor_Correct_Move_both_Reply_2,
         .affected_count = sizeof s_affected_by_Supervisor_Correct_Move_both_Reply_2 / sizeof s_affected_by_Supervisor_Correct_Move_both_Reply_2[0],
         .affected = s_affected_by_Supervisor_Correct_Move_both_Reply_2,
         .touched_count = sizeof s_touched_by_Supervisor_Correct_Move_both_Reply_2 / sizeof s_touched_by_Supervisor_Correct_Move_both_Reply_2[0],
@@ -9801,8 +7896,7 @@ static const pn_transition_t s_transitions[] = {
     {
         .name = "Cell.Supervisor.Install.Go back", .id = "ID1412310594", .owner = 0, .priority = 1000,
         .origin = "page `Install`, transition `Go back` (ID1412310594)",
-        .enumerate = Supervisor_Install_Go_back_enumerate, .fire = Supervisor_Install_Go_back_fire, .binding_json = Supervisor_Install_Go_back_json,
-        .binding_size = sizeof(Supervisor_Install_Go_back_binding_t),
+        .enumerate = Supervisor_Install_Go_back_enumerate, .fire = Supervisor_Install_Go_back_fire, .binding = &s_binding_Supervisor_Install_Go_back,
         .affected_count = sizeof s_affected_by_Supervisor_Install_Go_back / sizeof s_affected_by_Supervisor_Install_Go_back[0],
         .affected = s_affected_by_Supervisor_Install_Go_back,
         .touched_count = sizeof s_touched_by_Supervisor_Install_Go_back / sizeof s_touched_by_Supervisor_Install_Go_back[0],
@@ -9813,8 +7907,7 @@ static const pn_transition_t s_transitions[] = {
     {
         .name = "Cell.Supervisor.Install.Next rivet", .id = "ID1412310624", .owner = 0, .priority = 1000,
         .origin = "page `Install`, transition `Next rivet` (ID1412310624)",
-        .enumerate = Supervisor_Install_Next_rivet_enumerate, .fire = Supervisor_Install_Next_rivet_fire, .binding_json = Supervisor_Install_Next_rivet_json,
-        .binding_size = sizeof(Supervisor_Install_Next_rivet_binding_t),
+        .enumerate = Supervisor_Install_Next_rivet_enumerate, .fire = Supervisor_Install_Next_rivet_fire, .binding = &s_binding_Supervisor_Install_Next_rivet,
         .affected_count = sizeof s_affected_by_Supervisor_Install_Next_rivet / sizeof s_affected_by_Supervisor_Install_Next_rivet[0],
         .affected = s_affected_by_Supervisor_Install_Next_rivet,
         .touched_count = sizeof s_touched_by_Supervisor_Install_Next_rivet / sizeof s_touched_by_Supervisor_Install_Next_rivet[0],
@@ -9825,8 +7918,7 @@ static const pn_transition_t s_transitions[] = {
     {
         .name = "Cell.Supervisor.Install.Start", .id = "ID1412310632", .owner = 0, .priority = 1000,
         .origin = "page `Install`, transition `Start` (ID1412310632)",
-        .enumerate = Supervisor_Install_Start_enumerate, .fire = Supervisor_Install_Start_fire, .binding_json = Supervisor_Install_Start_json,
-        .binding_size = sizeof(Supervisor_Install_Start_binding_t),
+        .enumerate = Supervisor_Install_Start_enumerate, .fire = Supervisor_Install_Start_fire, .binding = &s_binding_Supervisor_Install_Start,
         .affected_count = sizeof s_affected_by_Supervisor_Install_Start / sizeof s_affected_by_Supervisor_Install_Start[0],
         .affected = s_affected_by_Supervisor_Install_Start,
         .touched_count = sizeof s_touched_by_Supervisor_Install_Start / sizeof s_touched_by_Supervisor_Install_Start[0],
@@ -9837,8 +7929,7 @@ static const pn_transition_t s_transitions[] = {
     {
         .name = "Cell.Supervisor.Install.Give up", .id = "ID1412320067", .owner = 0, .priority = 1000,
         .origin = "page `Install`, transition `Give up` (ID1412320067)",
-        .enumerate = Supervisor_Install_Give_up_enumerate, .fire = Supervisor_Install_Give_up_fire, .binding_json = Supervisor_Install_Give_up_json,
-        .binding_size = sizeof(Supervisor_Install_Give_up_binding_t),
+        .enumerate = Supervisor_Install_Give_up_enumerate, .fire = Supervisor_Install_Give_up_fire, .binding = &s_binding_Supervisor_Install_Give_up,
         .affected_count = sizeof s_affected_by_Supervisor_Install_Give_up / sizeof s_affected_by_Supervisor_Install_Give_up[0],
         .affected = s_affected_by_Supervisor_Install_Give_up,
         .touched_count = sizeof s_touched_by_Supervisor_Install_Give_up / sizeof s_touched_by_Supervisor_Install_Give_up[0],
@@ -9849,8 +7940,7 @@ static const pn_transition_t s_transitions[] = {
     {
         .name = "Cell.Supervisor.Install.Shift.Command", .id = "ID1412310941", .owner = 0, .priority = 1000,
         .origin = "page `MoveBoth`, transition `Command` (ID1412310941)",
-        .enumerate = Supervisor_Install_Shift_Command_enumerate, .fire = Supervisor_Install_Shift_Command_fire, .binding_json = Supervisor_Install_Shift_Command_json,
-        .binding_size = sizeof(Supervisor_Install_Shift_Command_binding_t),
+        .enumerate = Supervisor_Install_Shift_Command_enumerate, .fire = Supervisor_Install_Shift_Command_fire, .binding = &s_binding_Supervisor_Install_Shift_Command,
         .affected_count = sizeof s_affected_by_Supervisor_Install_Shift_Command / sizeof s_affected_by_Supervisor_Install_Shift_Command[0],
         .affected = s_affected_by_Supervisor_Install_Shift_Command,
         .touched_count = sizeof s_touched_by_Supervisor_Install_Shift_Command / sizeof s_touched_by_Supervisor_Install_Shift_Command[0],
@@ -9861,8 +7951,7 @@ static const pn_transition_t s_transitions[] = {
     {
         .name = "Cell.Supervisor.Install.Shift.Both", .id = "ID1412310948", .owner = 0, .priority = 1000,
         .origin = "page `MoveBoth`, transition `Both` (ID1412310948)",
-        .enumerate = Supervisor_Install_Shift_Both_enumerate, .fire = Supervisor_Install_Shift_Both_fire, .binding_json = Supervisor_Install_Shift_Both_json,
-        .binding_size = sizeof(Supervisor_Install_Shift_Both_binding_t),
+        .enumerate = Supervisor_Install_Shift_Both_enumerate, .fire = Supervisor_Install_Shift_Both_fire, .binding = &s_binding_Supervisor_Install_Shift_Both,
         .affected_count = sizeof s_affected_by_Supervisor_Install_Shift_Both / sizeof s_affected_by_Supervisor_Install_Shift_Both[0],
         .affected = s_affected_by_Supervisor_Install_Shift_Both,
         .touched_count = sizeof s_touched_by_Supervisor_Install_Shift_Both / sizeof s_touched_by_Supervisor_Install_Shift_Both[0],
@@ -9873,8 +7962,7 @@ static const pn_transition_t s_transitions[] = {
     {
         .name = "Cell.Supervisor.Install.Shift.Reply 1", .id = "ID1412310962", .owner = 0, .priority = 1000,
         .origin = "page `MoveBoth`, transition `Reply 1` (ID1412310962)",
-        .enumerate = Supervisor_Install_Shift_Reply_1_enumerate, .fire = Supervisor_Install_Shift_Reply_1_fire, .binding_json = Supervisor_Install_Shift_Reply_1_json,
-        .binding_size = sizeof(Supervisor_Install_Shift_Reply_1_binding_t),
+        .enumerate = Supervisor_Install_Shift_Reply_1_enumerate, .fire = Supervisor_Install_Shift_Reply_1_fire, .binding = &s_binding_Supervisor_Install_Shift_Reply_1,
         .affected_count = sizeof s_affected_by_Supervisor_Install_Shift_Reply_1 / sizeof s_affected_by_Supervisor_Install_Shift_Reply_1[0],
         .affected = s_affected_by_Supervisor_Install_Shift_Reply_1,
         .touched_count = sizeof s_touched_by_Supervisor_Install_Shift_Reply_1 / sizeof s_touched_by_Supervisor_Install_Shift_Reply_1[0],
@@ -9885,8 +7973,7 @@ static const pn_transition_t s_transitions[] = {
     {
         .name = "Cell.Supervisor.Install.Shift.Reply 2", .id = "ID1412310999", .owner = 0, .priority = 1000,
         .origin = "page `MoveBoth`, transition `Reply 2` (ID1412310999)",
-        .enumerate = Supervisor_Install_Shift_Reply_2_enumerate, .fire = Supervisor_Install_Shift_Reply_2_fire, .binding_json = Supervisor_Install_Shift_Reply_2_json,
-        .binding_size = sizeof(Supervisor_Install_Shift_Reply_2_binding_t),
+        .enumerate = Supervisor_Install_Shift_Reply_2_enumerate, .fire = Supervisor_Install_Shift_Reply_2_fire, .binding = &s_binding_Supervisor_Install_Shift_Reply_2,
         .affected_count = sizeof s_affected_by_Supervisor_Install_Shift_Reply_2 / sizeof s_affected_by_Supervisor_Install_Shift_Reply_2[0],
         .affected = s_affected_by_Supervisor_Install_Shift_Reply_2,
         .touched_count = sizeof s_touched_by_Supervisor_Install_Shift_Reply_2 / sizeof s_touched_by_Supervisor_Install_Shift_Reply_2[0],
@@ -9897,8 +7984,7 @@ static const pn_transition_t s_transitions[] = {
     {
         .name = "Cell.Supervisor.Install.Rivet.Go in", .id = "ID1412310716", .owner = 0, .priority = 1000,
         .origin = "page `Rivet`, transition `Go in` (ID1412310716)",
-        .enumerate = Supervisor_Install_Rivet_Go_in_enumerate, .fire = Supervisor_Install_Rivet_Go_in_fire, .binding_json = Supervisor_Install_Rivet_Go_in_json,
-        .binding_size = sizeof(Supervisor_Install_Rivet_Go_in_binding_t),
+        .enumerate = Supervisor_Install_Rivet_Go_in_enumerate, .fire = Supervisor_Install_Rivet_Go_in_fire, .binding = &s_binding_Supervisor_Install_Rivet_Go_in,
         .affected_count = sizeof s_affected_by_Supervisor_Install_Rivet_Go_in / sizeof s_affected_by_Supervisor_Install_Rivet_Go_in[0],
         .affected = s_affected_by_Supervisor_Install_Rivet_Go_in,
         .touched_count = sizeof s_touched_by_Supervisor_Install_Rivet_Go_in / sizeof s_touched_by_Supervisor_Install_Rivet_Go_in[0],
@@ -9909,8 +7995,7 @@ static const pn_transition_t s_transitions[] = {
     {
         .name = "Cell.Supervisor.Install.Rivet.Go out", .id = "ID1412310742", .owner = 0, .priority = 1000,
         .origin = "page `Rivet`, transition `Go out` (ID1412310742)",
-        .enumerate = Supervisor_Install_Rivet_Go_out_enumerate, .fire = Supervisor_Install_Rivet_Go_out_fire, .binding_json = Supervisor_Install_Rivet_Go_out_json,
-        .binding_size = sizeof(Supervisor_Install_Rivet_Go_out_binding_t),
+        .enumerate = Supervisor_Install_Rivet_Go_out_enumerate, .fire = Supervisor_Install_Rivet_Go_out_fire, .binding = &s_binding_Supervisor_Install_Rivet_Go_out,
         .affected_count = sizeof s_affected_by_Supervisor_Install_Rivet_Go_out / sizeof s_affected_by_Supervisor_Install_Rivet_Go_out[0],
         .affected = s_affected_by_Supervisor_Install_Rivet_Go_out,
         .touched_count = sizeof s_touched_by_Supervisor_Install_Rivet_Go_out / sizeof s_touched_by_Supervisor_Install_Rivet_Go_out[0],
@@ -9921,8 +8006,7 @@ static const pn_transition_t s_transitions[] = {
     {
         .name = "Cell.Supervisor.Install.Rivet.Advance.Command", .id = "ID1412310941", .owner = 0, .priority = 1000,
         .origin = "page `MoveBoth`, transition `Command` (ID1412310941)",
-        .enumerate = Supervisor_Install_Rivet_Advance_Command_enumerate, .fire = Supervisor_Install_Rivet_Advance_Command_fire, .binding_json = Supervisor_Install_Rivet_Advance_Command_json,
-        .binding_size = sizeof(Supervisor_Install_Rivet_Advance_Command_binding_t),
+        .enumerate = Supervisor_Install_Rivet_Advance_Command_enumerate, .fire = Supervisor_Install_Rivet_Advance_Command_fire, .binding = &s_binding_Supervisor_Install_Rivet_Advance_Command,
         .affected_count = sizeof s_affected_by_Supervisor_Install_Rivet_Advance_Command / sizeof s_affected_by_Supervisor_Install_Rivet_Advance_Command[0],
         .affected = s_affected_by_Supervisor_Install_Rivet_Advance_Command,
         .touched_count = sizeof s_touched_by_Supervisor_Install_Rivet_Advance_Command / sizeof s_touched_by_Supervisor_Install_Rivet_Advance_Command[0],
@@ -9933,8 +8017,7 @@ static const pn_transition_t s_transitions[] = {
     {
         .name = "Cell.Supervisor.Install.Rivet.Advance.Both", .id = "ID1412310948", .owner = 0, .priority = 1000,
         .origin = "page `MoveBoth`, transition `Both` (ID1412310948)",
-        .enumerate = Supervisor_Install_Rivet_Advance_Both_enumerate, .fire = Supervisor_Install_Rivet_Advance_Both_fire, .binding_json = Supervisor_Install_Rivet_Advance_Both_json,
-        .binding_size = sizeof(Supervisor_Install_Rivet_Advance_Both_binding_t),
+        .enumerate = Supervisor_Install_Rivet_Advance_Both_enumerate, .fire = Supervisor_Install_Rivet_Advance_Both_fire, .binding = &s_binding_Supervisor_Install_Rivet_Advance_Both,
         .affected_count = sizeof s_affected_by_Supervisor_Install_Rivet_Advance_Both / sizeof s_affected_by_Supervisor_Install_Rivet_Advance_Both[0],
         .affected = s_affected_by_Supervisor_Install_Rivet_Advance_Both,
         .touched_count = sizeof s_touched_by_Supervisor_Install_Rivet_Advance_Both / sizeof s_touched_by_Supervisor_Install_Rivet_Advance_Both[0],
@@ -9945,8 +8028,7 @@ static const pn_transition_t s_transitions[] = {
     {
         .name = "Cell.Supervisor.Install.Rivet.Advance.Reply 1", .id = "ID1412310962", .owner = 0, .priority = 1000,
         .origin = "page `MoveBoth`, transition `Reply 1` (ID1412310962)",
-        .enumerate = Supervisor_Install_Rivet_Advance_Reply_1_enumerate, .fire = Supervisor_Install_Rivet_Advance_Reply_1_fire, .binding_json = Supervisor_Install_Rivet_Advance_Reply_1_json,
-        .binding_size = sizeof(Supervisor_Install_Rivet_Advance_Reply_1_binding_t),
+        .enumerate = Supervisor_Install_Rivet_Advance_Reply_1_enumerate, .fire = Supervisor_Install_Rivet_Advance_Reply_1_fire, .binding = &s_binding_Supervisor_Install_Rivet_Advance_Reply_1,
         .affected_count = sizeof s_affected_by_Supervisor_Install_Rivet_Advance_Reply_1 / sizeof s_affected_by_Supervisor_Install_Rivet_Advance_Reply_1[0],
         .affected = s_affected_by_Supervisor_Install_Rivet_Advance_Reply_1,
         .touched_count = sizeof s_touched_by_Supervisor_Install_Rivet_Advance_Reply_1 / sizeof s_touched_by_Supervisor_Install_Rivet_Advance_Reply_1[0],
@@ -9957,8 +8039,7 @@ static const pn_transition_t s_transitions[] = {
     {
         .name = "Cell.Supervisor.Install.Rivet.Advance.Reply 2", .id = "ID1412310999", .owner = 0, .priority = 1000,
         .origin = "page `MoveBoth`, transition `Reply 2` (ID1412310999)",
-        .enumerate = Supervisor_Install_Rivet_Advance_Reply_2_enumerate, .fire = Supervisor_Install_Rivet_Advance_Reply_2_fire, .binding_json = Supervisor_Install_Rivet_Advance_Reply_2_json,
-        .binding_size = sizeof(Supervisor_Install_Rivet_Advance_Reply_2_binding_t),
+        .enumerate = Supervisor_Install_Rivet_Advance_Reply_2_enumerate, .fire = Supervisor_Install_Rivet_Advance_Reply_2_fire, .binding = &s_binding_Supervisor_Install_Rivet_Advance_Reply_2,
         .affected_count = sizeof s_affected_by_Supervisor_Install_Rivet_Advance_Reply_2 / sizeof s_affected_by_Supervisor_Install_Rivet_Advance_Reply_2[0],
         .affected = s_affected_by_Supervisor_Install_Rivet_Advance_Reply_2,
         .touched_count = sizeof s_touched_by_Supervisor_Install_Rivet_Advance_Reply_2 / sizeof s_touched_by_Supervisor_Install_Rivet_Advance_Reply_2[0],
@@ -9969,8 +8050,7 @@ static const pn_transition_t s_transitions[] = {
     {
         .name = "Cell.Supervisor.Install.Rivet.Fasten.Press", .id = "ID1412310842", .owner = 0, .priority = 1000,
         .origin = "page `Fasten`, transition `Press` (ID1412310842)",
-        .enumerate = Supervisor_Install_Rivet_Fasten_Press_enumerate, .fire = Supervisor_Install_Rivet_Fasten_Press_fire, .binding_json = Supervisor_Install_Rivet_Fasten_Press_json,
-        .binding_size = sizeof(Supervisor_Install_Rivet_Fasten_Press_binding_t),
+        .enumerate = Supervisor_Install_Rivet_Fasten_Press_enumerate, .fire = Supervisor_Install_Rivet_Fasten_Press_fire, .binding = &s_binding_Supervisor_Install_Rivet_Fasten_Press,
         .affected_count = sizeof s_affected_by_Supervisor_Install_Rivet_Fasten_Press / sizeof s_affected_by_Supervisor_Install_Rivet_Fasten_Press[0],
         .affected = s_affected_by_Supervisor_Install_Rivet_Fasten_Press,
         .touched_count = sizeof s_touched_by_Supervisor_Install_Rivet_Fasten_Press / sizeof s_touched_by_Supervisor_Install_Rivet_Fasten_Press[0],
@@ -9981,8 +8061,7 @@ static const pn_transition_t s_transitions[] = {
     {
         .name = "Cell.Supervisor.Install.Rivet.Fasten.Drill", .id = "ID1412310850", .owner = 0, .priority = 1000,
         .origin = "page `Fasten`, transition `Drill` (ID1412310850)",
-        .enumerate = Supervisor_Install_Rivet_Fasten_Drill_enumerate, .fire = Supervisor_Install_Rivet_Fasten_Drill_fire, .binding_json = Supervisor_Install_Rivet_Fasten_Drill_json,
-        .binding_size = sizeof(Supervisor_Install_Rivet_Fasten_Drill_binding_t),
+        .enumerate = Supervisor_Install_Rivet_Fasten_Drill_enumerate, .fire = Supervisor_Install_Rivet_Fasten_Drill_fire, .binding = &s_binding_Supervisor_Install_Rivet_Fasten_Drill,
         .affected_count = sizeof s_affected_by_Supervisor_Install_Rivet_Fasten_Drill / sizeof s_affected_by_Supervisor_Install_Rivet_Fasten_Drill[0],
         .affected = s_affected_by_Supervisor_Install_Rivet_Fasten_Drill,
         .touched_count = sizeof s_touched_by_Supervisor_Install_Rivet_Fasten_Drill / sizeof s_touched_by_Supervisor_Install_Rivet_Fasten_Drill[0],
@@ -9993,8 +8072,7 @@ static const pn_transition_t s_transitions[] = {
     {
         .name = "Cell.Supervisor.Install.Rivet.Fasten.Insert", .id = "ID1412310858", .owner = 0, .priority = 1000,
         .origin = "page `Fasten`, transition `Insert` (ID1412310858)",
-        .enumerate = Supervisor_Install_Rivet_Fasten_Insert_enumerate, .fire = Supervisor_Install_Rivet_Fasten_Insert_fire, .binding_json = Supervisor_Install_Rivet_Fasten_Insert_json,
-        .binding_size = sizeof(Supervisor_Install_Rivet_Fasten_Insert_binding_t),
+        .enumerate = Supervisor_Install_Rivet_Fasten_Insert_enumerate, .fire = Supervisor_Install_Rivet_Fasten_Insert_fire, .binding = &s_binding_Supervisor_Install_Rivet_Fasten_Insert,
         .affected_count = sizeof s_affected_by_Supervisor_Install_Rivet_Fasten_Insert / sizeof s_affected_by_Supervisor_Install_Rivet_Fasten_Insert[0],
         .affected = s_affected_by_Supervisor_Install_Rivet_Fasten_Insert,
         .touched_count = sizeof s_touched_by_Supervisor_Install_Rivet_Fasten_Insert / sizeof s_touched_by_Supervisor_Install_Rivet_Fasten_Insert[0],
@@ -10005,8 +8083,7 @@ static const pn_transition_t s_transitions[] = {
     {
         .name = "Cell.Supervisor.Install.Rivet.Fasten.Release", .id = "ID1412310866", .owner = 0, .priority = 1000,
         .origin = "page `Fasten`, transition `Release` (ID1412310866)",
-        .enumerate = Supervisor_Install_Rivet_Fasten_Release_enumerate, .fire = Supervisor_Install_Rivet_Fasten_Release_fire, .binding_json = Supervisor_Install_Rivet_Fasten_Release_json,
-        .binding_size = sizeof(Supervisor_Install_Rivet_Fasten_Release_binding_t),
+        .enumerate = Supervisor_Install_Rivet_Fasten_Release_enumerate, .fire = Supervisor_Install_Rivet_Fasten_Release_fire, .binding = &s_binding_Supervisor_Install_Rivet_Fasten_Release,
         .affected_count = sizeof s_affected_by_Supervisor_Install_Rivet_Fasten_Release / sizeof s_affected_by_Supervisor_Install_Rivet_Fasten_Release[0],
         .affected = s_affected_by_Supervisor_Install_Rivet_Fasten_Release,
         .touched_count = sizeof s_touched_by_Supervisor_Install_Rivet_Fasten_Release / sizeof s_touched_by_Supervisor_Install_Rivet_Fasten_Release[0],
@@ -10017,8 +8094,7 @@ static const pn_transition_t s_transitions[] = {
     {
         .name = "Cell.Supervisor.Install.Rivet.Fasten.Finish", .id = "ID1412310874", .owner = 0, .priority = 1000,
         .origin = "page `Fasten`, transition `Finish` (ID1412310874)",
-        .enumerate = Supervisor_Install_Rivet_Fasten_Finish_enumerate, .fire = Supervisor_Install_Rivet_Fasten_Finish_fire, .binding_json = Supervisor_Install_Rivet_Fasten_Finish_json,
-        .binding_size = sizeof(Supervisor_Install_Rivet_Fasten_Finish_binding_t),
+        .enumerate = Supervisor_Install_Rivet_Fasten_Finish_enumerate, .fire = Supervisor_Install_Rivet_Fasten_Finish_fire, .binding = &s_binding_Supervisor_Install_Rivet_Fasten_Finish,
         .affected_count = sizeof s_affected_by_Supervisor_Install_Rivet_Fasten_Finish / sizeof s_affected_by_Supervisor_Install_Rivet_Fasten_Finish[0],
         .affected = s_affected_by_Supervisor_Install_Rivet_Fasten_Finish,
         .touched_count = sizeof s_touched_by_Supervisor_Install_Rivet_Fasten_Finish / sizeof s_touched_by_Supervisor_Install_Rivet_Fasten_Finish[0],
@@ -10029,8 +8105,7 @@ static const pn_transition_t s_transitions[] = {
     {
         .name = "Cell.Supervisor.Install.Rivet.Fasten.Press failed", .id = "ID1412320087", .owner = 0, .priority = 1000,
         .origin = "page `Fasten`, transition `Press failed` (ID1412320087)",
-        .enumerate = Supervisor_Install_Rivet_Fasten_Press_failed_enumerate, .fire = Supervisor_Install_Rivet_Fasten_Press_failed_fire, .binding_json = Supervisor_Install_Rivet_Fasten_Press_failed_json,
-        .binding_size = sizeof(Supervisor_Install_Rivet_Fasten_Press_failed_binding_t),
+        .enumerate = Supervisor_Install_Rivet_Fasten_Press_failed_enumerate, .fire = Supervisor_Install_Rivet_Fasten_Press_failed_fire, .binding = &s_binding_Supervisor_Install_Rivet_Fasten_Press_failed,
         .affected_count = sizeof s_affected_by_Supervisor_Install_Rivet_Fasten_Press_failed / sizeof s_affected_by_Supervisor_Install_Rivet_Fasten_Press_failed[0],
         .affected = s_affected_by_Supervisor_Install_Rivet_Fasten_Press_failed,
         .touched_count = sizeof s_touched_by_Supervisor_Install_Rivet_Fasten_Press_failed / sizeof s_touched_by_Supervisor_Install_Rivet_Fasten_Press_failed[0],
@@ -10041,8 +8116,7 @@ static const pn_transition_t s_transitions[] = {
     {
         .name = "Cell.Supervisor.Install.Rivet.Fasten.Drill failed", .id = "ID1412320092", .owner = 0, .priority = 1000,
         .origin = "page `Fasten`, transition `Drill failed` (ID1412320092)",
-        .enumerate = Supervisor_Install_Rivet_Fasten_Drill_failed_enumerate, .fire = Supervisor_Install_Rivet_Fasten_Drill_failed_fire, .binding_json = Supervisor_Install_Rivet_Fasten_Drill_failed_json,
-        .binding_size = sizeof(Supervisor_Install_Rivet_Fasten_Drill_failed_binding_t),
+        .enumerate = Supervisor_Install_Rivet_Fasten_Drill_failed_enumerate, .fire = Supervisor_Install_Rivet_Fasten_Drill_failed_fire, .binding = &s_binding_Supervisor_Install_Rivet_Fasten_Drill_failed,
         .affected_count = sizeof s_affected_by_Supervisor_Install_Rivet_Fasten_Drill_failed / sizeof s_affected_by_Supervisor_Install_Rivet_Fasten_Drill_failed[0],
         .affected = s_affected_by_Supervisor_Install_Rivet_Fasten_Drill_failed,
         .touched_count = sizeof s_touched_by_Supervisor_Install_Rivet_Fasten_Drill_failed / sizeof s_touched_by_Supervisor_Install_Rivet_Fasten_Drill_failed[0],
@@ -10053,8 +8127,7 @@ static const pn_transition_t s_transitions[] = {
     {
         .name = "Cell.Supervisor.Install.Rivet.Retract.Command", .id = "ID1412310941", .owner = 0, .priority = 1000,
         .origin = "page `MoveBoth`, transition `Command` (ID1412310941)",
-        .enumerate = Supervisor_Install_Rivet_Retract_Command_enumerate, .fire = Supervisor_Install_Rivet_Retract_Command_fire, .binding_json = Supervisor_Install_Rivet_Retract_Command_json,
-        .binding_size = sizeof(Supervisor_Install_Rivet_Retract_Command_binding_t),
+        .enumerate = Supervisor_Install_Rivet_Retract_Command_enumerate, .fire = Supervisor_Install_Rivet_Retract_Command_fire, .binding = &s_binding_Supervisor_Install_Rivet_Retract_Command,
         .affected_count = sizeof s_affected_by_Supervisor_Install_Rivet_Retract_Command / sizeof s_affected_by_Supervisor_Install_Rivet_Retract_Command[0],
         .affected = s_affected_by_Supervisor_Install_Rivet_Retract_Command,
         .touched_count = sizeof s_touched_by_Supervisor_Install_Rivet_Retract_Command / sizeof s_touched_by_Supervisor_Install_Rivet_Retract_Command[0],
@@ -10065,8 +8138,7 @@ static const pn_transition_t s_transitions[] = {
     {
         .name = "Cell.Supervisor.Install.Rivet.Retract.Both", .id = "ID1412310948", .owner = 0, .priority = 1000,
         .origin = "page `MoveBoth`, transition `Both` (ID1412310948)",
-        .enumerate = Supervisor_Install_Rivet_Retract_Both_enumerate, .fire = Supervisor_Install_Rivet_Retract_Both_fire, .binding_json = Supervisor_Install_Rivet_Retract_Both_json,
-        .binding_size = sizeof(Supervisor_Install_Rivet_Retract_Both_binding_t),
+        .enumerate = Supervisor_Install_Rivet_Retract_Both_enumerate, .fire = Supervisor_Install_Rivet_Retract_Both_fire, .binding = &s_binding_Supervisor_Install_Rivet_Retract_Both,
         .affected_count = sizeof s_affected_by_Supervisor_Install_Rivet_Retract_Both / sizeof s_affected_by_Supervisor_Install_Rivet_Retract_Both[0],
         .affected = s_affected_by_Supervisor_Install_Rivet_Retract_Both,
         .touched_count = sizeof s_touched_by_Supervisor_Install_Rivet_Retract_Both / sizeof s_touched_by_Supervisor_Install_Rivet_Retract_Both[0],
@@ -10077,8 +8149,7 @@ static const pn_transition_t s_transitions[] = {
     {
         .name = "Cell.Supervisor.Install.Rivet.Retract.Reply 1", .id = "ID1412310962", .owner = 0, .priority = 1000,
         .origin = "page `MoveBoth`, transition `Reply 1` (ID1412310962)",
-        .enumerate = Supervisor_Install_Rivet_Retract_Reply_1_enumerate, .fire = Supervisor_Install_Rivet_Retract_Reply_1_fire, .binding_json = Supervisor_Install_Rivet_Retract_Reply_1_json,
-        .binding_size = sizeof(Supervisor_Install_Rivet_Retract_Reply_1_binding_t),
+        .enumerate = Supervisor_Install_Rivet_Retract_Reply_1_enumerate, .fire = Supervisor_Install_Rivet_Retract_Reply_1_fire, .binding = &s_binding_Supervisor_Install_Rivet_Retract_Reply_1,
         .affected_count = sizeof s_affected_by_Supervisor_Install_Rivet_Retract_Reply_1 / sizeof s_affected_by_Supervisor_Install_Rivet_Retract_Reply_1[0],
         .affected = s_affected_by_Supervisor_Install_Rivet_Retract_Reply_1,
         .touched_count = sizeof s_touched_by_Supervisor_Install_Rivet_Retract_Reply_1 / sizeof s_touched_by_Supervisor_Install_Rivet_Retract_Reply_1[0],
@@ -10089,8 +8160,7 @@ static const pn_transition_t s_transitions[] = {
     {
         .name = "Cell.Supervisor.Install.Rivet.Retract.Reply 2", .id = "ID1412310999", .owner = 0, .priority = 1000,
         .origin = "page `MoveBoth`, transition `Reply 2` (ID1412310999)",
-        .enumerate = Supervisor_Install_Rivet_Retract_Reply_2_enumerate, .fire = Supervisor_Install_Rivet_Retract_Reply_2_fire, .binding_json = Supervisor_Install_Rivet_Retract_Reply_2_json,
-        .binding_size = sizeof(Supervisor_Install_Rivet_Retract_Reply_2_binding_t),
+        .enumerate = Supervisor_Install_Rivet_Retract_Reply_2_enumerate, .fire = Supervisor_Install_Rivet_Retract_Reply_2_fire, .binding = &s_binding_Supervisor_Install_Rivet_Retract_Reply_2,
         .affected_count = sizeof s_affected_by_Supervisor_Install_Rivet_Retract_Reply_2 / sizeof s_affected_by_Supervisor_Install_Rivet_Retract_Reply_2[0],
         .affected = s_affected_by_Supervisor_Install_Rivet_Retract_Reply_2,
         .touched_count = sizeof s_touched_by_Supervisor_Install_Rivet_Retract_Reply_2 / sizeof s_touched_by_Supervisor_Install_Rivet_Retract_Reply_2[0],
@@ -10101,8 +8171,7 @@ static const pn_transition_t s_transitions[] = {
     {
         .name = "Cell.Supervisor.Install.Return.Command", .id = "ID1412310941", .owner = 0, .priority = 1000,
         .origin = "page `MoveBoth`, transition `Command` (ID1412310941)",
-        .enumerate = Supervisor_Install_Return_Command_enumerate, .fire = Supervisor_Install_Return_Command_fire, .binding_json = Supervisor_Install_Return_Command_json,
-        .binding_size = sizeof(Supervisor_Install_Return_Command_binding_t),
+        .enumerate = Supervisor_Install_Return_Command_enumerate, .fire = Supervisor_Install_Return_Command_fire, .binding = &s_binding_Supervisor_Install_Return_Command,
         .affected_count = sizeof s_affected_by_Supervisor_Install_Return_Command / sizeof s_affected_by_Supervisor_Install_Return_Command[0],
         .affected = s_affected_by_Supervisor_Install_Return_Command,
         .touched_count = sizeof s_touched_by_Supervisor_Install_Return_Command / sizeof s_touched_by_Supervisor_Install_Return_Command[0],
@@ -10113,8 +8182,7 @@ static const pn_transition_t s_transitions[] = {
     {
         .name = "Cell.Supervisor.Install.Return.Both", .id = "ID1412310948", .owner = 0, .priority = 1000,
         .origin = "page `MoveBoth`, transition `Both` (ID1412310948)",
-        .enumerate = Supervisor_Install_Return_Both_enumerate, .fire = Supervisor_Install_Return_Both_fire, .binding_json = Supervisor_Install_Return_Both_json,
-        .binding_size = sizeof(Supervisor_Install_Return_Both_binding_t),
+        .enumerate = Supervisor_Install_Return_Both_enumerate, .fire = Supervisor_Install_Return_Both_fire, .binding = &s_binding_Supervisor_Install_Return_Both,
         .affected_count = sizeof s_affected_by_Supervisor_Install_Return_Both / sizeof s_affected_by_Supervisor_Install_Return_Both[0],
         .affected = s_affected_by_Supervisor_Install_Return_Both,
         .touched_count = sizeof s_touched_by_Supervisor_Install_Return_Both / sizeof s_touched_by_Supervisor_Install_Return_Both[0],
@@ -10125,8 +8193,7 @@ static const pn_transition_t s_transitions[] = {
     {
         .name = "Cell.Supervisor.Install.Return.Reply 1", .id = "ID1412310962", .owner = 0, .priority = 1000,
         .origin = "page `MoveBoth`, transition `Reply 1` (ID1412310962)",
-        .enumerate = Supervisor_Install_Return_Reply_1_enumerate, .fire = Supervisor_Install_Return_Reply_1_fire, .binding_json = Supervisor_Install_Return_Reply_1_json,
-        .binding_size = sizeof(Supervisor_Install_Return_Reply_1_binding_t),
+        .enumerate = Supervisor_Install_Return_Reply_1_enumerate, .fire = Supervisor_Install_Return_Reply_1_fire, .binding = &s_binding_Supervisor_Install_Return_Reply_1,
         .affected_count = sizeof s_affected_by_Supervisor_Install_Return_Reply_1 / sizeof s_affected_by_Supervisor_Install_Return_Reply_1[0],
         .affected = s_affected_by_Supervisor_Install_Return_Reply_1,
         .touched_count = sizeof s_touched_by_Supervisor_Install_Return_Reply_1 / sizeof s_touched_by_Supervisor_Install_Return_Reply_1[0],
@@ -10137,8 +8204,7 @@ static const pn_transition_t s_transitions[] = {
     {
         .name = "Cell.Supervisor.Install.Return.Reply 2", .id = "ID1412310999", .owner = 0, .priority = 1000,
         .origin = "page `MoveBoth`, transition `Reply 2` (ID1412310999)",
-        .enumerate = Supervisor_Install_Return_Reply_2_enumerate, .fire = Supervisor_Install_Return_Reply_2_fire, .binding_json = Supervisor_Install_Return_Reply_2_json,
-        .binding_size = sizeof(Supervisor_Install_Return_Reply_2_binding_t),
+        .enumerate = Supervisor_Install_Return_Reply_2_enumerate, .fire = Supervisor_Install_Return_Reply_2_fire, .binding = &s_binding_Supervisor_Install_Return_Reply_2,
         .affected_count = sizeof s_affected_by_Supervisor_Install_Return_Reply_2 / sizeof s_affected_by_Supervisor_Install_Return_Reply_2[0],
         .affected = s_affected_by_Supervisor_Install_Return_Reply_2,
         .touched_count = sizeof s_touched_by_Supervisor_Install_Return_Reply_2 / sizeof s_touched_by_Supervisor_Install_Return_Reply_2[0],
@@ -10149,8 +8215,7 @@ static const pn_transition_t s_transitions[] = {
     {
         .name = "Cell.Supervisor.Home.Send home", .id = "ID1412311039", .owner = 0, .priority = 1000,
         .origin = "page `Home`, transition `Send home` (ID1412311039)",
-        .enumerate = Supervisor_Home_Send_home_enumerate, .fire = Supervisor_Home_Send_home_fire, .binding_json = Supervisor_Home_Send_home_json,
-        .binding_size = sizeof(Supervisor_Home_Send_home_binding_t),
+        .enumerate = Supervisor_Home_Send_home_enumerate, .fire = Supervisor_Home_Send_home_fire, .binding = &s_binding_Supervisor_Home_Send_home,
         .affected_count = sizeof s_affected_by_Supervisor_Home_Send_home / sizeof s_affected_by_Supervisor_Home_Send_home[0],
         .affected = s_affected_by_Supervisor_Home_Send_home,
         .touched_count = sizeof s_touched_by_Supervisor_Home_Send_home / sizeof s_touched_by_Supervisor_Home_Send_home[0],
@@ -10161,8 +8226,7 @@ static const pn_transition_t s_transitions[] = {
     {
         .name = "Cell.Supervisor.Home.Both", .id = "ID1412311046", .owner = 0, .priority = 1000,
         .origin = "page `Home`, transition `Both` (ID1412311046)",
-        .enumerate = Supervisor_Home_Both_enumerate, .fire = Supervisor_Home_Both_fire, .binding_json = Supervisor_Home_Both_json,
-        .binding_size = sizeof(Supervisor_Home_Both_binding_t),
+        .enumerate = Supervisor_Home_Both_enumerate, .fire = Supervisor_Home_Both_fire, .binding = &s_binding_Supervisor_Home_Both,
         .affected_count = sizeof s_affected_by_Supervisor_Home_Both / sizeof s_affected_by_Supervisor_Home_Both[0],
         .affected = s_affected_by_Supervisor_Home_Both,
         .touched_count = sizeof s_touched_by_Supervisor_Home_Both / sizeof s_touched_by_Supervisor_Home_Both[0],
@@ -10173,8 +8237,7 @@ static const pn_transition_t s_transitions[] = {
     {
         .name = "Cell.Supervisor.Home.Reply 1", .id = "ID1412311060", .owner = 0, .priority = 1000,
         .origin = "page `Home`, transition `Reply 1` (ID1412311060)",
-        .enumerate = Supervisor_Home_Reply_1_enumerate, .fire = Supervisor_Home_Reply_1_fire, .binding_json = Supervisor_Home_Reply_1_json,
-        .binding_size = sizeof(Supervisor_Home_Reply_1_binding_t),
+        .enumerate = Supervisor_Home_Reply_1_enumerate, .fire = Supervisor_Home_Reply_1_fire, .binding = &s_binding_Supervisor_Home_Reply_1,
         .affected_count = sizeof s_affected_by_Supervisor_Home_Reply_1 / sizeof s_affected_by_Supervisor_Home_Reply_1[0],
         .affected = s_affected_by_Supervisor_Home_Reply_1,
         .touched_count = sizeof s_touched_by_Supervisor_Home_Reply_1 / sizeof s_touched_by_Supervisor_Home_Reply_1[0],
@@ -10185,8 +8248,7 @@ static const pn_transition_t s_transitions[] = {
     {
         .name = "Cell.Supervisor.Home.Reply 2", .id = "ID1412311091", .owner = 0, .priority = 1000,
         .origin = "page `Home`, transition `Reply 2` (ID1412311091)",
-        .enumerate = Supervisor_Home_Reply_2_enumerate, .fire = Supervisor_Home_Reply_2_fire, .binding_json = Supervisor_Home_Reply_2_json,
-        .binding_size = sizeof(Supervisor_Home_Reply_2_binding_t),
+        .enumerate = Supervisor_Home_Reply_2_enumerate, .fire = Supervisor_Home_Reply_2_fire, .binding = &s_binding_Supervisor_Home_Reply_2,
         .affected_count = sizeof s_affected_by_Supervisor_Home_Reply_2 / sizeof s_affected_by_Supervisor_Home_Reply_2[0],
         .affected = s_affected_by_Supervisor_Home_Reply_2,
         .touched_count = sizeof s_touched_by_Supervisor_Home_Reply_2 / sizeof s_touched_by_Supervisor_Home_Reply_2[0],
@@ -10197,8 +8259,7 @@ static const pn_transition_t s_transitions[] = {
     {
         .name = "Cell.Robot1.Accept", .id = "ID1412311125", .owner = 1, .priority = 1000,
         .origin = "page `Robot`, transition `Accept` (ID1412311125)",
-        .enumerate = Robot1_Accept_enumerate, .fire = Robot1_Accept_fire, .binding_json = Robot1_Accept_json,
-        .binding_size = sizeof(Robot1_Accept_binding_t),
+        .enumerate = Robot1_Accept_enumerate, .fire = Robot1_Accept_fire, .binding = &s_binding_Robot1_Accept,
         .affected_count = sizeof s_affected_by_Robot1_Accept / sizeof s_affected_by_Robot1_Accept[0],
         .affected = s_affected_by_Robot1_Accept,
         .touched_count = sizeof s_touched_by_Robot1_Accept / sizeof s_touched_by_Robot1_Accept[0],
@@ -10209,8 +8270,7 @@ static const pn_transition_t s_transitions[] = {
     {
         .name = "Cell.Robot1.Report", .id = "ID1412311145", .owner = 1, .priority = 1000,
         .origin = "page `Robot`, transition `Report` (ID1412311145)",
-        .enumerate = Robot1_Report_enumerate, .fire = Robot1_Report_fire, .binding_json = Robot1_Report_json,
-        .binding_size = sizeof(Robot1_Report_binding_t),
+        .enumerate = Robot1_Report_enumerate, .fire = Robot1_Report_fire, .binding = &s_binding_Robot1_Report,
         .affected_count = sizeof s_affected_by_Robot1_Report / sizeof s_affected_by_Robot1_Report[0],
         .affected = s_affected_by_Robot1_Report,
         .touched_count = sizeof s_touched_by_Robot1_Report / sizeof s_touched_by_Robot1_Report[0],
@@ -10221,8 +8281,7 @@ static const pn_transition_t s_transitions[] = {
     {
         .name = "Cell.Robot1.MoveJoint", .id = "ID1412311160", .owner = 1, .priority = 1000,
         .origin = "page `Robot`, transition `MoveJoint` (ID1412311160)",
-        .enumerate = Robot1_MoveJoint_enumerate, .fire = Robot1_MoveJoint_fire, .binding_json = Robot1_MoveJoint_json,
-        .binding_size = sizeof(Robot1_MoveJoint_binding_t),
+        .enumerate = Robot1_MoveJoint_enumerate, .fire = Robot1_MoveJoint_fire, .binding = &s_binding_Robot1_MoveJoint,
         .affected_count = sizeof s_affected_by_Robot1_MoveJoint / sizeof s_affected_by_Robot1_MoveJoint[0],
         .affected = s_affected_by_Robot1_MoveJoint,
         .touched_count = sizeof s_touched_by_Robot1_MoveJoint / sizeof s_touched_by_Robot1_MoveJoint[0],
@@ -10233,8 +8292,7 @@ static const pn_transition_t s_transitions[] = {
     {
         .name = "Cell.Robot1.MoveLinear", .id = "ID1412311169", .owner = 1, .priority = 1000,
         .origin = "page `Robot`, transition `MoveLinear` (ID1412311169)",
-        .enumerate = Robot1_MoveLinear_enumerate, .fire = Robot1_MoveLinear_fire, .binding_json = Robot1_MoveLinear_json,
-        .binding_size = sizeof(Robot1_MoveLinear_binding_t),
+        .enumerate = Robot1_MoveLinear_enumerate, .fire = Robot1_MoveLinear_fire, .binding = &s_binding_Robot1_MoveLinear,
         .affected_count = sizeof s_affected_by_Robot1_MoveLinear / sizeof s_affected_by_Robot1_MoveLinear[0],
         .affected = s_affected_by_Robot1_MoveLinear,
         .touched_count = sizeof s_touched_by_Robot1_MoveLinear / sizeof s_touched_by_Robot1_MoveLinear[0],
@@ -10245,8 +8303,7 @@ static const pn_transition_t s_transitions[] = {
     {
         .name = "Cell.Robot1.MoveHome", .id = "ID1412311178", .owner = 1, .priority = 1000,
         .origin = "page `Robot`, transition `MoveHome` (ID1412311178)",
-        .enumerate = Robot1_MoveHome_enumerate, .fire = Robot1_MoveHome_fire, .binding_json = Robot1_MoveHome_json,
-        .binding_size = sizeof(Robot1_MoveHome_binding_t),
+        .enumerate = Robot1_MoveHome_enumerate, .fire = Robot1_MoveHome_fire, .binding = &s_binding_Robot1_MoveHome,
         .affected_count = sizeof s_affected_by_Robot1_MoveHome / sizeof s_affected_by_Robot1_MoveHome[0],
         .affected = s_affected_by_Robot1_MoveHome,
         .touched_count = sizeof s_touched_by_Robot1_MoveHome / sizeof s_touched_by_Robot1_MoveHome[0],
@@ -10257,8 +8314,7 @@ static const pn_transition_t s_transitions[] = {
     {
         .name = "Cell.Robot1.Measure", .id = "ID1412311187", .owner = 1, .priority = 1000,
         .origin = "page `Robot`, transition `Measure` (ID1412311187)",
-        .enumerate = Robot1_Measure_enumerate, .fire = Robot1_Measure_fire, .binding_json = Robot1_Measure_json,
-        .binding_size = sizeof(Robot1_Measure_binding_t),
+        .enumerate = Robot1_Measure_enumerate, .fire = Robot1_Measure_fire, .binding = &s_binding_Robot1_Measure,
         .affected_count = sizeof s_affected_by_Robot1_Measure / sizeof s_affected_by_Robot1_Measure[0],
         .affected = s_affected_by_Robot1_Measure,
         .touched_count = sizeof s_touched_by_Robot1_Measure / sizeof s_touched_by_Robot1_Measure[0],
@@ -10269,8 +8325,7 @@ static const pn_transition_t s_transitions[] = {
     {
         .name = "Cell.Robot1.Drill", .id = "ID1412311196", .owner = 1, .priority = 1000,
         .origin = "page `Robot`, transition `Drill` (ID1412311196)",
-        .enumerate = Robot1_Drill_enumerate, .fire = Robot1_Drill_fire, .binding_json = Robot1_Drill_json,
-        .binding_size = sizeof(Robot1_Drill_binding_t),
+        .enumerate = Robot1_Drill_enumerate, .fire = Robot1_Drill_fire, .binding = &s_binding_Robot1_Drill,
         .affected_count = sizeof s_affected_by_Robot1_Drill / sizeof s_affected_by_Robot1_Drill[0],
         .affected = s_affected_by_Robot1_Drill,
         .touched_count = sizeof s_touched_by_Robot1_Drill / sizeof s_touched_by_Robot1_Drill[0],
@@ -10281,8 +8336,7 @@ static const pn_transition_t s_transitions[] = {
     {
         .name = "Cell.Robot1.Insert", .id = "ID1412311205", .owner = 1, .priority = 1000,
         .origin = "page `Robot`, transition `Insert` (ID1412311205)",
-        .enumerate = Robot1_Insert_enumerate, .fire = Robot1_Insert_fire, .binding_json = Robot1_Insert_json,
-        .binding_size = sizeof(Robot1_Insert_binding_t),
+        .enumerate = Robot1_Insert_enumerate, .fire = Robot1_Insert_fire, .binding = &s_binding_Robot1_Insert,
         .affected_count = sizeof s_affected_by_Robot1_Insert / sizeof s_affected_by_Robot1_Insert[0],
         .affected = s_affected_by_Robot1_Insert,
         .touched_count = sizeof s_touched_by_Robot1_Insert / sizeof s_touched_by_Robot1_Insert[0],
@@ -10293,8 +8347,7 @@ static const pn_transition_t s_transitions[] = {
     {
         .name = "Cell.Robot1.Press", .id = "ID1412311214", .owner = 1, .priority = 1000,
         .origin = "page `Robot`, transition `Press` (ID1412311214)",
-        .enumerate = Robot1_Press_enumerate, .fire = Robot1_Press_fire, .binding_json = Robot1_Press_json,
-        .binding_size = sizeof(Robot1_Press_binding_t),
+        .enumerate = Robot1_Press_enumerate, .fire = Robot1_Press_fire, .binding = &s_binding_Robot1_Press,
         .affected_count = sizeof s_affected_by_Robot1_Press / sizeof s_affected_by_Robot1_Press[0],
         .affected = s_affected_by_Robot1_Press,
         .touched_count = sizeof s_touched_by_Robot1_Press / sizeof s_touched_by_Robot1_Press[0],
@@ -10305,8 +8358,7 @@ static const pn_transition_t s_transitions[] = {
     {
         .name = "Cell.Robot1.Release", .id = "ID1412311223", .owner = 1, .priority = 1000,
         .origin = "page `Robot`, transition `Release` (ID1412311223)",
-        .enumerate = Robot1_Release_enumerate, .fire = Robot1_Release_fire, .binding_json = Robot1_Release_json,
-        .binding_size = sizeof(Robot1_Release_binding_t),
+        .enumerate = Robot1_Release_enumerate, .fire = Robot1_Release_fire, .binding = &s_binding_Robot1_Release,
         .affected_count = sizeof s_affected_by_Robot1_Release / sizeof s_affected_by_Robot1_Release[0],
         .affected = s_affected_by_Robot1_Release,
         .touched_count = sizeof s_touched_by_Robot1_Release / sizeof s_touched_by_Robot1_Release[0],
@@ -10317,8 +8369,7 @@ static const pn_transition_t s_transitions[] = {
     {
         .name = "Cell.Robot2.Accept", .id = "ID1412311125", .owner = 2, .priority = 1000,
         .origin = "page `Robot`, transition `Accept` (ID1412311125)",
-        .enumerate = Robot2_Accept_enumerate, .fire = Robot2_Accept_fire, .binding_json = Robot2_Accept_json,
-        .binding_size = sizeof(Robot2_Accept_binding_t),
+        .enumerate = Robot2_Accept_enumerate, .fire = Robot2_Accept_fire, .binding = &s_binding_Robot2_Accept,
         .affected_count = sizeof s_affected_by_Robot2_Accept / sizeof s_affected_by_Robot2_Accept[0],
         .affected = s_affected_by_Robot2_Accept,
         .touched_count = sizeof s_touched_by_Robot2_Accept / sizeof s_touched_by_Robot2_Accept[0],
@@ -10329,8 +8380,7 @@ static const pn_transition_t s_transitions[] = {
     {
         .name = "Cell.Robot2.Report", .id = "ID1412311145", .owner = 2, .priority = 1000,
         .origin = "page `Robot`, transition `Report` (ID1412311145)",
-        .enumerate = Robot2_Report_enumerate, .fire = Robot2_Report_fire, .binding_json = Robot2_Report_json,
-        .binding_size = sizeof(Robot2_Report_binding_t),
+        .enumerate = Robot2_Report_enumerate, .fire = Robot2_Report_fire, .binding = &s_binding_Robot2_Report,
         .affected_count = sizeof s_affected_by_Robot2_Report / sizeof s_affected_by_Robot2_Report[0],
         .affected = s_affected_by_Robot2_Report,
         .touched_count = sizeof s_touched_by_Robot2_Report / sizeof s_touched_by_Robot2_Report[0],
@@ -10341,8 +8391,7 @@ static const pn_transition_t s_transitions[] = {
     {
         .name = "Cell.Robot2.MoveJoint", .id = "ID1412311160", .owner = 2, .priority = 1000,
         .origin = "page `Robot`, transition `MoveJoint` (ID1412311160)",
-        .enumerate = Robot2_MoveJoint_enumerate, .fire = Robot2_MoveJoint_fire, .binding_json = Robot2_MoveJoint_json,
-        .binding_size = sizeof(Robot2_MoveJoint_binding_t),
+        .enumerate = Robot2_MoveJoint_enumerate, .fire = Robot2_MoveJoint_fire, .binding = &s_binding_Robot2_MoveJoint,
         .affected_count = sizeof s_affected_by_Robot2_MoveJoint / sizeof s_affected_by_Robot2_MoveJoint[0],
         .affected = s_affected_by_Robot2_MoveJoint,
         .touched_count = sizeof s_touched_by_Robot2_MoveJoint / sizeof s_touched_by_Robot2_MoveJoint[0],
@@ -10353,8 +8402,7 @@ static const pn_transition_t s_transitions[] = {
     {
         .name = "Cell.Robot2.MoveLinear", .id = "ID1412311169", .owner = 2, .priority = 1000,
         .origin = "page `Robot`, transition `MoveLinear` (ID1412311169)",
-        .enumerate = Robot2_MoveLinear_enumerate, .fire = Robot2_MoveLinear_fire, .binding_json = Robot2_MoveLinear_json,
-        .binding_size = sizeof(Robot2_MoveLinear_binding_t),
+        .enumerate = Robot2_MoveLinear_enumerate, .fire = Robot2_MoveLinear_fire, .binding = &s_binding_Robot2_MoveLinear,
         .affected_count = sizeof s_affected_by_Robot2_MoveLinear / sizeof s_affected_by_Robot2_MoveLinear[0],
         .affected = s_affected_by_Robot2_MoveLinear,
         .touched_count = sizeof s_touched_by_Robot2_MoveLinear / sizeof s_touched_by_Robot2_MoveLinear[0],
@@ -10365,8 +8413,7 @@ static const pn_transition_t s_transitions[] = {
     {
         .name = "Cell.Robot2.MoveHome", .id = "ID1412311178", .owner = 2, .priority = 1000,
         .origin = "page `Robot`, transition `MoveHome` (ID1412311178)",
-        .enumerate = Robot2_MoveHome_enumerate, .fire = Robot2_MoveHome_fire, .binding_json = Robot2_MoveHome_json,
-        .binding_size = sizeof(Robot2_MoveHome_binding_t),
+        .enumerate = Robot2_MoveHome_enumerate, .fire = Robot2_MoveHome_fire, .binding = &s_binding_Robot2_MoveHome,
         .affected_count = sizeof s_affected_by_Robot2_MoveHome / sizeof s_affected_by_Robot2_MoveHome[0],
         .affected = s_affected_by_Robot2_MoveHome,
         .touched_count = sizeof s_touched_by_Robot2_MoveHome / sizeof s_touched_by_Robot2_MoveHome[0],
@@ -10377,8 +8424,7 @@ static const pn_transition_t s_transitions[] = {
     {
         .name = "Cell.Robot2.Measure", .id = "ID1412311187", .owner = 2, .priority = 1000,
         .origin = "page `Robot`, transition `Measure` (ID1412311187)",
-        .enumerate = Robot2_Measure_enumerate, .fire = Robot2_Measure_fire, .binding_json = Robot2_Measure_json,
-        .binding_size = sizeof(Robot2_Measure_binding_t),
+        .enumerate = Robot2_Measure_enumerate, .fire = Robot2_Measure_fire, .binding = &s_binding_Robot2_Measure,
         .affected_count = sizeof s_affected_by_Robot2_Measure / sizeof s_affected_by_Robot2_Measure[0],
         .affected = s_affected_by_Robot2_Measure,
         .touched_count = sizeof s_touched_by_Robot2_Measure / sizeof s_touched_by_Robot2_Measure[0],
@@ -10389,8 +8435,7 @@ static const pn_transition_t s_transitions[] = {
     {
         .name = "Cell.Robot2.Drill", .id = "ID1412311196", .owner = 2, .priority = 1000,
         .origin = "page `Robot`, transition `Drill` (ID1412311196)",
-        .enumerate = Robot2_Drill_enumerate, .fire = Robot2_Drill_fire, .binding_json = Robot2_Drill_json,
-        .binding_size = sizeof(Robot2_Drill_binding_t),
+        .enumerate = Robot2_Drill_enumerate, .fire = Robot2_Drill_fire, .binding = &s_binding_Robot2_Drill,
         .affected_count = sizeof s_affected_by_Robot2_Drill / sizeof s_affected_by_Robot2_Drill[0],
         .affected = s_affected_by_Robot2_Drill,
         .touched_count = sizeof s_touched_by_Robot2_Drill / sizeof s_touched_by_Robot2_Drill[0],
@@ -10401,8 +8446,7 @@ static const pn_transition_t s_transitions[] = {
     {
         .name = "Cell.Robot2.Insert", .id = "ID1412311205", .owner = 2, .priority = 1000,
         .origin = "page `Robot`, transition `Insert` (ID1412311205)",
-        .enumerate = Robot2_Insert_enumerate, .fire = Robot2_Insert_fire, .binding_json = Robot2_Insert_json,
-        .binding_size = sizeof(Robot2_Insert_binding_t),
+        .enumerate = Robot2_Insert_enumerate, .fire = Robot2_Insert_fire, .binding = &s_binding_Robot2_Insert,
         .affected_count = sizeof s_affected_by_Robot2_Insert / sizeof s_affected_by_Robot2_Insert[0],
         .affected = s_affected_by_Robot2_Insert,
         .touched_count = sizeof s_touched_by_Robot2_Insert / sizeof s_touched_by_Robot2_Insert[0],
@@ -10413,8 +8457,7 @@ static const pn_transition_t s_transitions[] = {
     {
         .name = "Cell.Robot2.Press", .id = "ID1412311214", .owner = 2, .priority = 1000,
         .origin = "page `Robot`, transition `Press` (ID1412311214)",
-        .enumerate = Robot2_Press_enumerate, .fire = Robot2_Press_fire, .binding_json = Robot2_Press_json,
-        .binding_size = sizeof(Robot2_Press_binding_t),
+        .enumerate = Robot2_Press_enumerate, .fire = Robot2_Press_fire, .binding = &s_binding_Robot2_Press,
         .affected_count = sizeof s_affected_by_Robot2_Press / sizeof s_affected_by_Robot2_Press[0],
         .affected = s_affected_by_Robot2_Press,
         .touched_count = sizeof s_touched_by_Robot2_Press / sizeof s_touched_by_Robot2_Press[0],
@@ -10425,8 +8468,7 @@ static const pn_transition_t s_transitions[] = {
     {
         .name = "Cell.Robot2.Release", .id = "ID1412311223", .owner = 2, .priority = 1000,
         .origin = "page `Robot`, transition `Release` (ID1412311223)",
-        .enumerate = Robot2_Release_enumerate, .fire = Robot2_Release_fire, .binding_json = Robot2_Release_json,
-        .binding_size = sizeof(Robot2_Release_binding_t),
+        .enumerate = Robot2_Release_enumerate, .fire = Robot2_Release_fire, .binding = &s_binding_Robot2_Release,
         .affected_count = sizeof s_affected_by_Robot2_Release / sizeof s_affected_by_Robot2_Release[0],
         .affected = s_affected_by_Robot2_Release,
         .touched_count = sizeof s_touched_by_Robot2_Release / sizeof s_touched_by_Robot2_Release[0],
@@ -10688,13 +8730,7 @@ const pn_net_t pn_net = {
     .owner = s_owners,
     .order_count = 73U,
     .order = s_order,
-    .init = init,
-    .now = now,
-    .set_now = set_now,
-    .next_time = next_time,
-    .encode = encode,
-    .decode = decode,
-    .collect = collect,
+    .now_at = offsetof(net_marking_t, now),
     .packed_size = 0U,
     .bag_count = sizeof s_bag_places / sizeof s_bag_places[0],
     .bags = s_bag_places,

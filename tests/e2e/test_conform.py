@@ -141,8 +141,8 @@ def test_a_supervisor_that_waits_too_short_is_found_out(tmp_path: Path) -> None:
 SUPERVISOR = {
     "another value is written": ("= val_DRILL;", "= val_HOME;", "flag.robcad"),
     "a guard is dropped": ("if (b.n == 2) {", "if (false) {", "by the net"),
-    "a message is left out": ("bool fits = flag_add(cx, m, &flag_token, 1U);", "bool fits = true;", "flag.robcad"),
-    "a place is not touched": ("fits = data_add(cx, m, &token, 1U)", "fits = true", "data.robcad"),
+    "a message is left out": ("    m->flag.full = true;\n", "", "flag.robcad"),
+    "a place is not touched": ("    m->data.full = true;\n", "", "data.robcad"),
 }  # fmt: skip
 ROBOT = {
     "another command": ("tool drill for 1 s", "tool press for 1 s", "the script has commanded"),
@@ -309,7 +309,7 @@ def test_another_scheduler_is_found_out(what: str, judge: Judge) -> None:
 FAULTS = {
     "memory is overwritten": (
         "supervisor_cell.c", "    sup_set_time(sup, sup->t);\n",
-        "    sup_set_time(sup, sup->t);\n    sup->net->place[3].clear(sup->marking);\n",
+        "    sup_set_time(sup, sup->t);\n    pn_bag_clear(sup->net->place[3].bag, sup->marking);\n",
         "place `Top.Supervisor.Pieces` has changed"),
     "what is not enabled is fired": (
         "supervisor_play.c", "(void)memcpy(first->binding, binding, first->size);",
@@ -317,7 +317,7 @@ FAULTS = {
     "a transition of another": (
         "supervisor_play.c", "(owner >= 0) && (candidate->owner != owner)", "false",
         "`Top.Robot.Accept` is not a transition of this program"),
-    "another place": ("net.c", "flag_add(cx, m, &flag_token, 1U)", "Supervisor_Moving_add(cx, m, &flag_token, 1U)",
+    "another place": ("net.c", "    m->flag.full = true;\n", "    m->flag.full = true;\n    m->Supervisor_Moving.full = true;\n",
                       "has changed place `Top.Supervisor.Moving`, with which it has no arc"),
 }  # fmt: skip
 

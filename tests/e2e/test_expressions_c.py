@@ -82,6 +82,8 @@ MIX.col 3
 REC.ord {b = ~1073741824 * ~2, a = "a"}
 PAIR.col (1073741823 + 1)
 UT'timed.col (raise Bare)
+Int.max (hd [], SMALL.col 9)
+StringCvt.padRight (String.sub ("", 2)) (SMALL.col 9) "a"
 TRIPLE.mult ([true], [ph 1], LONG.col (~1))
 let val r = ref 0 fun f () = (r := !r + 1; ["a"]) in (PAIR.mult ([1, 2, 3], f ()), !r) end
 let val r = ref 0 fun f () = (r := !r + 1; !r) in (SPAIR.set_1 (1, red) (f ()), !r) end

@@ -133,7 +133,7 @@ TABLE_RULES: tuple[Rule, ...] = (
 
 
 DEFENSIVE = re.compile(
-    r"error\b|sup_stop|sup_warn|sup_say|snprintf|verbosity|pn_trace|pn_text|binding_json|crowded|max_firings|stop_signal"
+    r"error\b|sup_stop|sup_warn|sup_say|snprintf|verbosity|pn_trace|pn_text|pn_json|crowded|max_firings|stop_signal"
     r"|fired_of|most_fired|!is_taken|!fits|!pn_ok|pn_raise|PN_ERR|->rounds|is_lost|all_ended|refused|owes"
     r"|sup_monitor|fired\(|\*count|\*fired|(?:transition|index) = 0U|first_binding_t first|result = -1|/\* I3"
     r"|return -?[12];|s_cell\.(?:sent|received)|scalars_format|->t = |\*fired = "

@@ -24,6 +24,7 @@ from pn2code.emission.c_leaves import Leaves
 from pn2code.emission.c_lines import wrap
 from pn2code.emission.c_needs import used_locals, uses_context
 from pn2code.emission.c_proofs import proofs
+from pn2code.emission.c_slots import slots
 from pn2code.emission.c_statements import Statements
 from pn2code.emission.c_sums import Sum
 from pn2code.emission.environment import c_comment, c_float, render
@@ -63,6 +64,7 @@ class _Emitter:
         self._bags = tuple(self._names.bag(p.index, p.name) for p in net.places)
         self._tables = tuple(self._names.table(p.table) for p in net.places)
         self._timed = tuple(p.timed for p in net.places)
+        self._slots = slots(net)
         self._needs_context = self._context_users()
         self._effects = Effects(net, self._types.holds_reference)
         self._orders = c_places.Orders(self._types, self._names, self._descriptors)
@@ -79,11 +81,12 @@ class _Emitter:
             and 0 < key_bits(net.places) <= KEY_BITS
         )
         self._sums_found: dict[int, dict[tuple[int, ir.Ir], Sum]] = {}
-        self._has_arena_values = any(
-            d.type.rep in (Rep.STRING, Rep.LIST, Rep.UNION)
-            for key in self._closure({p.table for p in net.places})
-            for d in [self._descriptors[key]]
-        )
+        self._referring = tuple(p.index for p in net.places if self._refers(p.table))
+
+    def _refers(self, table: str) -> bool:
+        """Whether values of a type refer into the arena."""
+        found = (self._descriptors[key].type.rep for key in self._closure({table}))
+        return any(rep in (Rep.STRING, Rep.LIST, Rep.UNION) for rep in found)
 
     def _word_mask(self) -> str:
         """What takes away what follows from the rest of the first word of the packed part."""
@@ -119,11 +122,13 @@ class _Emitter:
         x.place_names = self._place_names
         x.bags = self._bags
         x.packed = self._packed
+        x.slots = self._slots
         x.global_hints = {g.name: g.hint for g in self._net.globals}
         s = Statements(self._types, x, scope, self._net.real_time)
         s.used = used_locals(statements)
         s.bags = self._bags
         s.timed = self._timed
+        s.slots = self._slots
         if any(self._packed):
             s.number_of = self._numbers.if_whole
         s.token_types = tuple(p.type for p in self._net.places)
@@ -232,6 +237,7 @@ class _Emitter:
         s, _, _ = self._printer(p.initial)
         s.body(p.initial)
         leaves = self._leaves.of(p.table)
+        is_slot = p.index in self._slots
         return {
             "mark": self._block(p.name, "place", p.origin),
             "name": p.name,
@@ -253,8 +259,9 @@ class _Emitter:
             "bound": p.bound,
             "proof": p.proof,
             # gcc warns of loops that would go through an array of one, though they never do.
-            "room": 0 if p.timed else max(self._rooms[p.index], 2 - p.capacity),
-            "order": "" if p.timed or p.packed else self._orders.name(p.table),
+            "room": 0 if p.timed or is_slot else max(self._rooms[p.index], 2 - p.capacity),
+            "is_slot": is_slot,
+            "order": "" if p.timed or p.packed or is_slot else self._orders.name(p.table),
             "packed": p.packed,
             "shares": p.packed.shares if p.packed else (),
             "is_whole": not p.packed or not self._numbers.members(p.table),
@@ -416,6 +423,8 @@ class _Emitter:
             direct.used, direct.bags, direct.timed = printer.used, printer.bags, printer.timed
             direct.tables_of_places = printer.tables_of_places
             direct.token_types = printer.token_types
+            direct.slots = self._slots
+            direct.references = frozenset(g.name for g in self._net.globals if g.is_reference)
             direct.sums = self._sums(t)
             direct.otherwise = f"{self._names.transition(t.index, t.name)}_fire_lists(cx, m, b)"
             direct.variable_types = tuple(v.type for v in t.variables)
@@ -490,13 +499,14 @@ class _Emitter:
         further_keys = [
             k for k in self._used_tables([*functions, *further], net.predicates) if k not in keys
         ]
+        variables = [self._global(g) for g in net.globals]
         values = {
             "version": self._version,
             "net": net,
             "stem": stem(net.name),
             "functions": [self._function(f) for f in functions if f.key not in wrappers],
             "members": [self._member(f, wrappers) for f in functions if f.key in wrappers],
-            "globals": (globals_ := [self._global(g) for g in net.globals]),
+            "globals": variables,
             "forwards": [x for d in net.definitions if (x := c_tables.forward(d, self._types))],
             "bodies": [
                 {"name": d.name, "lines": c_tables.body(d, self._types)} for d in net.definitions
@@ -519,8 +529,10 @@ class _Emitter:
                 (self._names.table(g.table), self._names.value(g.name, g.hint))
                 for g in self._effects.roots()
             ],
-            "has_arena_values": self._has_arena_values
-            or any(g.is_reference or self._types.holds_reference(g.type) for g in net.globals),
+            "referring": ", ".join(f"{i}U" for i in self._referring),
+            "held": [v for v in variables if v["is_root"]],
+            "slot_members": frozenset(self._place_names[i] for i in self._slots),
+            "has_arena_values": bool(self._referring) or any(v["is_root"] for v in variables),
         }
         # After all that belongs to the net, so that it looks the same with and without them.
         values["further_functions"] = [self._function(f) for f in further if f.key not in wrappers]
@@ -534,7 +546,7 @@ class _Emitter:
         values["predicates"] = [self._predicate(p, i) for i, p in enumerate(net.predicates)]
         # Compilers warn of constants that nobody looks at.
         values["globals"] = [
-            g for g in globals_ if not g["constant"] or g["name"] in self._names.read
+            g for g in variables if not g["constant"] or g["name"] in self._names.read
         ]
         # After the transitions, which want numbers of colours of their own.
         values["numbers"] = self._numbers.functions + [

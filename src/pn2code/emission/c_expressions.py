@@ -171,6 +171,7 @@ class Expressions:
         self.variables: tuple[str, ...] = ()
         self.place_names: tuple[str, ...] = ()
         self.bags: tuple[str, ...] = ()
+        self.slots: frozenset[int] = frozenset()
         self.packed: tuple[PackedPlace | None, ...] = ()
         self.functions: dict[str, ir.Function] = {}
         self.int_bits = 31
@@ -257,6 +258,8 @@ class Expressions:
                 return f"{self._binding}{self.variables[index]}", _POSTFIX
             case ir.TokenValue(place=place, index=index) if self.packed and self.packed[place]:
                 return self.token(place, index), _PRIMARY
+            case ir.TokenValue(place=place) if place in self.slots:
+                return f"m->{self.place_names[place]}.value", _POSTFIX
             case ir.TokenValue(place=place, index=index):
                 return f"m->{self.place_names[place]}.token[{self.local(index)}].value", _POSTFIX
             case ir.PlaceTokens(place=place, table=table):

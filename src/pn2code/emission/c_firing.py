@@ -1,7 +1,8 @@
-"""An occurrence printed with the inline functions of its places (pn_place.h).
+"""An occurrence printed with the inline functions of its places (pn_place.h), and with slots (c_slots.py).
 
-First everything is worked out, so that whatever raises leaves the marking alone; then tokens are taken and put. If a
-place turns out to be full, all is put back.
+First everything is worked out, so that whatever raises leaves the marking alone. Then all slots are looked at, then
+tokens are taken from the other places and put there; if one of those turns out to be full, all is put back. The slots
+change last.
 """
 
 from __future__ import annotations
@@ -11,10 +12,11 @@ from dataclasses import dataclass
 
 from pn2code.emission.c_expressions import Expressions, Types
 from pn2code.emission.c_places import is_count, staying_pairs
+from pn2code.emission.c_slots import SCALARS, is_structural
 from pn2code.emission.c_statements import Statements
 from pn2code.emission.names import Scope
 from pn2code.lowering import ir
-from pn2code.lowering.ir import Descriptor, Stmt
+from pn2code.lowering.ir import Descriptor, Rep, Stmt
 from pn2code.lowering.ir_types import is_restricted
 
 
@@ -46,6 +48,29 @@ class _Move:
         return f"{self.place}_{verb or self.verb}({context}m, {self.value}, {self.count})"
 
 
+@dataclass(frozen=True, slots=True)
+class _SlotMove:
+    """A take from a slot or a put into it that is worked out.
+
+    Args:
+        is_take: or it is a put.
+        place: the member of the marking.
+        bag: the table of the place.
+        value: a put: the token as C, "" where values say nothing (`()`).
+        differs: a take: whether the token is not there, as C.
+        count: "" for one; otherwise the C variable that says how many tokens.
+        note: what it is in the net.
+    """
+
+    is_take: bool
+    place: str
+    bag: str
+    value: str
+    count: str
+    note: str
+    differs: str = ""
+
+
 class DirectFiring(Statements):
     """Prints the `fire` of a transition for which `c_places.is_direct` holds.
 
@@ -71,6 +96,8 @@ class DirectFiring(Statements):
         self._tables = tables
         self._place_tables = place_tables
         self._moves_made: list[_Move] = []
+        self._slot_moves: list[_SlotMove] = []
+        self.references: frozenset[str] = frozenset()
         self._declared: list[str] = []
         self._staying: set[int] = set()
         self._takes: list[ir.Take] = []
@@ -93,14 +120,20 @@ class DirectFiring(Statements):
         puts = [m for m in self._moves_made if m.verb == "add"]
         for take, _ in staying:
             self.note(f"{take.note or self._x.place_names[take.place]}: stays where it is")
+        self._look_at_slots()
         self._take(takes)
+        self._put_all(puts, takes)
+        self._change_slots()
+        self.line("return true;")
+
+    def _put_all(self, puts: list[_Move], takes: list[_Move]) -> None:
         if not puts:
-            self.line("return true;")
             return
         done = self._put(puts)
         self.line("if (!fits) {")
         self._depth += 1
-        self.note("a place is full: everything is put back")
+        if done or takes:
+            self.note("a place is full: everything is put back")
         for move, is_done in reversed(done):
             undo = f"(void){move.call('take')};"
             if is_done:
@@ -111,9 +144,50 @@ class DirectFiring(Statements):
                 self.line(undo)
         for move in reversed(takes):
             self.line(f"(void){move.call('add')};")
+        self.line("return false;")
         self._depth -= 1
         self.line("}")
-        self.line("return fits;")
+
+    def _look_at_slots(self) -> None:
+        """Whether the tokens are there, and whether there is room."""
+        taken = [m for m in self._slot_moves if m.is_take]
+        if taken:
+            tests = list(dict.fromkeys(m.differs for m in taken))
+            self.line(f"if ({' || '.join(tests)}) {{")
+            self.line("    pn_raise(cx, PN_ERR_SUBTRACT, NULL);")
+            self.line("    return false;")
+            self.line("}")
+        emptied = {m.place for m in taken}
+        for move in self._slot_moves:
+            if move.is_take or (move.place in emptied and not move.count):
+                continue
+            full = f"m->{move.place}.full"
+            if move.count and move.place in emptied:
+                test = f"{move.count} > 1U"
+            elif move.count:
+                test = f"({move.count} > 1U) || (({move.count} == 1U) && {full})"
+            else:
+                test = full
+            self.line(f"if ({test}) {{")
+            self.line(f"    return pn_bag_fail_full(cx, &{move.bag});")
+            self.line("}")
+
+    def _change_slots(self) -> None:
+        for move in (m for m in self._slot_moves if m.is_take):
+            self.note(move.note)
+            self.line(f"m->{move.place}.full = false;")
+        for move in (m for m in self._slot_moves if not m.is_take):
+            self.note(move.note)
+            lines = [f"m->{move.place}.full = true;"]
+            if move.value:
+                lines.insert(0, f"m->{move.place}.value = {move.value};")
+            if move.count:
+                self.line(f"if ({move.count} > 0U) {{")
+                lines = [f"    {line}" for line in lines]
+            for line in lines:
+                self.line(line)
+            if move.count:
+                self.line("}")
 
     def _put(self, puts: list[_Move]) -> list[tuple[_Move, str]]:
         """Puts, and says in `fits` whether all had room.
@@ -172,8 +246,65 @@ class DirectFiring(Statements):
         self.line("    return false;")
         self.line("}")
 
+    def _slot_move(self, s: ir.Take | ir.Put) -> None:
+        place, bag = self._x.place_names[s.place], self.bags[s.place]
+        if isinstance(s, ir.Take):
+            self._slot_moves.append(
+                _SlotMove(True, place, bag, "", "", s.note, self._is_missing(s))
+            )
+            return
+        key = ("add", id(s))
+        is_nested = self._depth > 1
+        must_check = not self._is_known(s)
+        value = ""
+        if is_nested or must_check or not isinstance(s.value, ir.Const | ir.Bound | ir.Use):
+            value = self._slot_value(s, key, place, is_nested)
+        elif s.value.type.rep is not Rep.UNIT:
+            value = self._x.text(s.value)
+        is_one = is_count(s.count) and isinstance(s.count, ir.Const) and s.count.value == 1
+        count = "" if is_one and not is_nested else self._count(s, key, place, is_nested)
+        if count.endswith("U"):  # a constant: more than one
+            number = self._scope.name((*key, "number"), f"{place}_tokens")
+            self.line(f"const uint32_t {number} = {count};")
+            count = number
+        if must_check:
+            self.has_checks = True
+            self._check(s, f"&{value}", count or "1U")
+        self._slot_moves.append(_SlotMove(False, place, bag, value, count, s.note))
+
+    def _slot_value(self, s: ir.Put, key: tuple[str, int], place: str, is_nested: bool) -> str:
+        """Declares what is put, and works it out."""
+        fresh = self._scope.name((*key, "value"), f"{place}_token")
+        t = self._types.name(s.value.type)
+        if is_nested:
+            self._declared.append(f"    {t} {fresh} = {self._types.zero(s.value.type)};")
+            self.line(f"{fresh} = {self._x.text(s.value)};")
+        else:
+            constant = "" if not self._is_known(s) else "const "
+            self.line(f"{constant}{t} {fresh} = {self._x.text(s.value)};")
+        return fresh
+
+    def _is_missing(self, s: ir.Take) -> str:
+        """Whether the token is not there, as C.
+
+        What the search has bound or compared is there if anything is; what is worked out anew may be something else
+        (random numbers, files, references).
+        """
+        slot = f"m->{self._x.place_names[s.place]}"
+        if is_structural(s.value, self.references) or s.value.type.rep is Rep.UNIT:
+            return f"!{slot}.full"
+        fresh = self._scope.name(("take", id(s), "value"), f"{self._x.place_names[s.place]}_token")
+        self.line(f"const {self._types.name(s.value.type)} {fresh} = {self._x.text(s.value)};")
+        if s.value.type.rep in SCALARS:
+            return f"!{slot}.full || ({slot}.value != {fresh})"
+        table = self.tables_of_places[s.place]
+        return f"!{slot}.full || !pn_equal(&{table}, &{slot}.value, &{fresh})"
+
     def _move(self, s: ir.Take | ir.Put) -> None:
         if id(s) in self._staying:
+            return
+        if s.place in self.slots:
+            self._slot_move(s)
             return
         place = self._x.place_names[s.place]
         verb = "take" if isinstance(s, ir.Take) else "add"

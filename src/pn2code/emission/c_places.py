@@ -79,11 +79,11 @@ def rooms(net: ir.NetIR) -> tuple[int, ...]:
     """For each place: the most entries that one occurrence may add before it is asked whether they fit."""
     most: Counter[int] = Counter()
     for t in net.transitions:
-        most |= _puts(t.fire)
+        most |= puts(t.fire)
     return tuple(most[p.index] for p in net.places)
 
 
-def _puts(statements: Iterable[ir.Stmt]) -> Counter[int]:
+def puts(statements: Iterable[ir.Stmt]) -> Counter[int]:
     """By place, the most `Put`s on any way through the statements."""
     total: Counter[int] = Counter()
     for s in statements:
@@ -91,7 +91,7 @@ def _puts(statements: Iterable[ir.Stmt]) -> Counter[int]:
             case ir.Put(place=place):
                 total[place] += 1
             case ir.If(then=then, otherwise=otherwise):
-                total += _puts(then) | _puts(otherwise)
+                total += puts(then) | puts(otherwise)
             case _:
                 pass
     return total

@@ -12,6 +12,7 @@ from pn2code.emission.c_expressions import (
 )
 from pn2code.emission.c_lines import WIDTH, wrap
 from pn2code.emission.c_needs import does_nothing
+from pn2code.emission.c_slots import SCALARS
 from pn2code.emission.c_sums import Sum
 from pn2code.emission.environment import c_comment
 from pn2code.emission.names import Names, Scope
@@ -45,6 +46,7 @@ class Statements:
         self.tables_of_places: tuple[str, ...] = ()
         self.bags: tuple[str, ...] = ()
         self.timed: tuple[bool, ...] = ()
+        self.slots: frozenset[int] = frozenset()
         self.token_types: tuple[ir.IrType, ...] = ()
         self.sums: Mapping[tuple[int, Ir], Sum] = {}
         self.number_of: Callable[[str], str] = lambda key: ""  # "": not by number
@@ -304,6 +306,10 @@ class Statements:
             case ir.UnlessHeld():
                 if s.note:
                     self.note(s.note)
+                if s.place in self.slots:
+                    self.line(f"if ({self._differs(s.place, s.value)}) {{")
+                    self._next()
+                    return
                 pointer = self._x.address(s.value)
                 if self.timed[s.place]:
                     bag = self.bags[s.place]
@@ -318,6 +324,8 @@ class Statements:
                     self.line(f"if (pn_bag_available(&{self.bags[place]}, m, cx->now) > 0U) {{")
                 elif self._packed(place):
                     self.line(f"if (!{self._x.place_names[place]}_is_empty(m)) {{")
+                elif place in self.slots:
+                    self.line(f"if (m->{self._x.place_names[place]}.full) {{")
                 else:
                     self.line(f"if (m->{self._x.place_names[place]}.used > 0U) {{")
                 self._next()
@@ -361,6 +369,12 @@ class Statements:
         if packed:
             self._for_colours(s, packed)
             return
+        if s.place in self.slots:
+            self.note(s.note)
+            self.line(f"if (!m->{self._x.place_names[s.place]}.full) {{")
+            self._next()
+            self.body(s.body)
+            return
         i = self._x.local(s.index)
         place = self._x.place_names[s.place]
         self.note(s.note)
@@ -394,7 +408,21 @@ class Statements:
         self._loops -= 1
         self.line("}")
 
+    def _differs(self, place: int, value: Ir) -> str:
+        """Whether a slot does not hold the value, as a C condition."""
+        slot = f"m->{self._x.place_names[place]}"
+        rep = self.token_types[place].rep
+        if rep is Rep.UNIT:
+            return f"!{slot}.full"
+        if rep in SCALARS:
+            return f"!{slot}.full || ({slot}.value != {self._x.inside(value, 10)})"
+        pointer = self._x.address(value)
+        table = self.tables_of_places[place]
+        return f"!{slot}.full || !pn_equal(&{table}, &{slot}.value, {pointer})"
+
     def _unless_available(self, s: ir.UnlessAvailable) -> None:
+        if s.place in self.slots:
+            return  # there is one
         if self._packed(s.place):
             count = f"{self._x.place_names[s.place]}_count_of(m, {self._x.local(s.index)})"
             self.line(f"if ({count} < {s.count}U) {{")
@@ -409,7 +437,9 @@ class Statements:
         self._next()
 
     def _wanted(self, takes: tuple[Stmt, ...]) -> None:
-        if is_pair(takes, self.timed):
+        if is_pair(takes, self.timed) and not any(
+            isinstance(s, ir.Take) and s.place in self.slots for s in takes
+        ):
             self._wanted_pair(takes)
             return
         holds = self._scope.name(("holds", id(takes)), "holds")

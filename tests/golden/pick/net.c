@@ -27,7 +27,7 @@
 #define PN_NET_SEARCH
 #endif
 
-#if PN_NET_ABI != 1U
+#if PN_NET_ABI != 2U
 #error "Generate this file again: runtime and generator disagree (PN_NET_ABI)."
 #endif
 
@@ -139,13 +139,12 @@ static const pn_bag_t s_at_Buffer = {
     PN_BAG_TOKENS(net_marking_t, Buffer),
 };
 
-PN_PLACE_FUNCTIONS(Buffer, s_at_Buffer)
 PN_UNTIMED_PLACE(Buffer, net_marking_t, BOX_t, is_before_BOX, s_at_Buffer)
 
 /* initial marking:
  *     1`{part = screw, weight = 3.0} ++ 2`{part = nut, weight = 0.1}
  */
-static bool Buffer_init(pn_ctx_t *cx, net_marking_t *m)
+static bool Buffer_init(pn_ctx_t *cx, void *marking)
 {
     cx->origin = "page `Top`, place `Buffer` (ID16), initial marking";
     pn_moves_t moves;
@@ -153,7 +152,7 @@ static bool Buffer_init(pn_ctx_t *cx, net_marking_t *m)
     pn_moves_put(&moves, &s_at_Buffer, &(BOX_t){ .part = PART_screw, .weight = 3.0 }, 1,
         PN_NO_TIME);
     pn_moves_put(&moves, &s_at_Buffer, &(BOX_t){ .part = PART_nut, .weight = 0.1 }, 2, PN_NO_TIME);
-    return pn_moves_commit(&moves, m);
+    return pn_moves_commit(&moves, marking);
 }
 
 /* place Top.Count, colour set INT: page `Top`, place `Count` (ID19) */
@@ -164,19 +163,18 @@ static const pn_bag_t s_at_Count = {
     PN_BAG_TOKENS(net_marking_t, Count),
 };
 
-PN_PLACE_FUNCTIONS(Count, s_at_Count)
 PN_UNTIMED_PLACE(Count, net_marking_t, int64_t, PN_LESS, s_at_Count)
 
 /* initial marking:
  *     0
  */
-static bool Count_init(pn_ctx_t *cx, net_marking_t *m)
+static bool Count_init(pn_ctx_t *cx, void *marking)
 {
     cx->origin = "page `Top`, place `Count` (ID19), initial marking";
     pn_moves_t moves;
     pn_moves_init(&moves, cx);
     pn_moves_put(&moves, &s_at_Count, (int64_t[]){ 0 }, 1, PN_NO_TIME);
-    return pn_moves_commit(&moves, m);
+    return pn_moves_commit(&moves, marking);
 }
 
 /* place Top.Out, colour set BOX: page `Top`, place `Out` (ID22) */
@@ -187,14 +185,7 @@ static const pn_bag_t s_at_Out = {
     PN_BAG_TOKENS(net_marking_t, Out),
 };
 
-PN_PLACE_FUNCTIONS(Out, s_at_Out)
 PN_UNTIMED_PLACE(Out, net_marking_t, BOX_t, is_before_BOX, s_at_Out)
-
-static const pn_bag_t *const s_bags[] = {
-    &s_at_Buffer,
-    &s_at_Count,
-    &s_at_Out,
-};
 
 /* --- transitions ------------------------------------------------------------------------------- */
 
@@ -274,134 +265,28 @@ PN_NET_SEARCH static bool Pick_fire(pn_ctx_t *cx, void *marking, void *binding)
         (void)Count_take(m, &Count_token, 1U);
         (void)Count_add(cx, m, &b->n, 1U);
         (void)Buffer_add(cx, m, &b->b, 1U);
-    }
-    return fits;
-}
-
-static void Pick_json(const void *binding, pn_text_t *out)
-{
-    pn_json(&s_binding_Pick, binding, out);
-}
-
-/* --- the net as hosts see it ------------------------------------------------------------------- */
-
-static bool init(pn_ctx_t *cx, void *marking)
-{
-    net_marking_t *const m = marking;
-    m->now = (pn_time_t){ 0 };
-    m->Buffer.used = 0U;
-    m->Count.used = 0U;
-    m->Out.used = 0U;
-    pn_arena_reset(cx->arena);
-    cx->now = m->now;
-    cx->rounds = 0U;
-    cx->step = 0U;
-    pn_random_start(cx, PN_RANDOM_START);
-    pn_arena_seal(cx->arena);
-    if (!pn_ok(cx)) {
-        return false;
-    }
-    if (!Buffer_init(cx, m)) {
-        return false;
-    }
-    if (!Count_init(cx, m)) {
         return false;
     }
     return true;
 }
 
-static pn_time_t now(const void *marking)
-{
-    const net_marking_t *const m = marking;
-    return m->now;
-}
-
-static void set_now(void *marking, pn_time_t time)
-{
-    net_marking_t *const m = marking;
-    m->now = time;
-}
-
-static bool next_time(pn_ctx_t *cx, const void *marking, pn_time_t *next)
-{
-    bool found = false;
-    for (size_t i = 0U; i < (sizeof s_bags / sizeof s_bags[0]); i++) {
-        pn_bag_next_time(s_bags[i], marking, now(marking), &found, next);
-    }
-    return pn_ok(cx) && found;
-}
-
-static size_t encode(const void *marking, uint8_t *out, size_t capacity)
-{
-    const net_marking_t *const m = marking;
-    size_t at = sizeof m->now;
-    if (capacity < at) {
-        return 0U;
-    }
-    (void)memcpy(out, &m->now, at);
-    for (size_t i = 0U; i < (sizeof s_bags / sizeof s_bags[0]); i++) {
-        const size_t room = (at < capacity) ? (capacity - at) : 0U;
-        at += pn_bag_encode(s_bags[i], marking, &out[(room > 0U) ? at : 0U], room);
-    }
-    return (at <= capacity) ? at : 0U;
-}
-
-static bool decode(pn_ctx_t *cx, void *marking, const uint8_t *in, size_t length)
-{
-    net_marking_t *const m = marking;
-    size_t at = sizeof m->now;
-    if (length < at) {
-        return false;
-    }
-    (void)memset(m, 0, sizeof *m);
-    (void)memcpy(&m->now, in, at);
-    for (size_t i = 0U; i < (sizeof s_bags / sizeof s_bags[0]); i++) {
-        const size_t size = pn_bag_decode(cx, s_bags[i], marking, &in[at], length - at);
-        if (size == SIZE_MAX) {
-            return false;
-        }
-        at += size;
-    }
-    return at == length;
-}
-
-static void collect(pn_ctx_t *cx, void *marking)
-{
-    pn_arena_flip(cx->arena);
-    (void)marking;
-}
+/* --- the net as hosts see it ------------------------------------------------------------------- */
 
 static const pn_place_t s_places[] = {
     {
-        .name = "Top.Buffer", .colset = "BOX", .owner = 0,
-        .origin = "page `Top`, place `Buffer` (ID16)",
-        .capacity = 64U, .timed = false,
-        .count = Buffer_count, .token = Buffer_token, .put = Buffer_put,
-        .clear = Buffer_clear, .json = Buffer_json,
-        .encode = Buffer_encode, .decode = Buffer_decode, .add = Buffer_add_bytes,
-        .bit = UINT32_MAX,
+        .name = "Top.Buffer", .colset = "BOX", .owner = 0, .bag = &s_at_Buffer,
+        .initial = Buffer_init,
         .leaf_count = 2U, .leaf_kind = s_BOX_kinds, .leaf_name = s_BOX_leaves,
         .line_count = 1U, .line_leaves = s_BOX_lines,
     },
     {
-        .name = "Top.Count", .colset = "INT", .owner = 0,
-        .origin = "page `Top`, place `Count` (ID19)",
-        .capacity = 64U, .timed = false,
-        .count = Count_count, .token = Count_token, .put = Count_put,
-        .clear = Count_clear, .json = Count_json,
-        .encode = Count_encode, .decode = Count_decode, .add = Count_add_bytes,
-        .bit = UINT32_MAX,
+        .name = "Top.Count", .colset = "INT", .owner = 0, .bag = &s_at_Count,
+        .initial = Count_init,
         .leaf_count = 1U, .leaf_kind = s_INT_kinds, .leaf_name = s_INT_leaves,
         .line_count = 1U, .line_leaves = s_INT_lines,
     },
     {
-        .name = "Top.Out", .colset = "BOX", .owner = 0,
-        .origin = "page `Top`, place `Out` (ID22)",
-        .capacity = 64U, .timed = false,
-        .count = Out_count, .token = Out_token, .put = Out_put,
-        .clear = Out_clear, .json = Out_json,
-        .encode = Out_encode, .decode = Out_decode, .add = Out_add_bytes,
-        .bit = UINT32_MAX,
+        .name = "Top.Out", .colset = "BOX", .owner = 0, .bag = &s_at_Out,
         .leaf_count = 2U, .leaf_kind = s_BOX_kinds, .leaf_name = s_BOX_leaves,
         .line_count = 1U, .line_leaves = s_BOX_lines,
     },
@@ -421,8 +306,7 @@ static const pn_transition_t s_transitions[] = {
     {
         .name = "Top.Pick", .id = "ID25", .owner = 0, .priority = 1000,
         .origin = "page `Top`, transition `Pick` (ID25)",
-        .enumerate = Pick_enumerate, .fire = Pick_fire, .binding_json = Pick_json,
-        .binding_size = sizeof(Pick_binding_t),
+        .enumerate = Pick_enumerate, .fire = Pick_fire, .binding = &s_binding_Pick,
         .touched_count = sizeof s_touched_by_Pick / sizeof s_touched_by_Pick[0],
         .touched = s_touched_by_Pick,
         .read_count = sizeof s_read_by_Pick / sizeof s_read_by_Pick[0],
@@ -464,13 +348,7 @@ const pn_net_t pn_net = {
     .owner = s_owners,
     .order_count = 1U,
     .order = s_order,
-    .init = init,
-    .now = now,
-    .set_now = set_now,
-    .next_time = next_time,
-    .encode = encode,
-    .decode = decode,
-    .collect = collect,
+    .now_at = offsetof(net_marking_t, now),
     .packed_size = 0U,
     .bag_count = sizeof s_bag_places / sizeof s_bag_places[0],
     .bags = s_bag_places,

@@ -8,6 +8,7 @@
 #include <unistd.h>
 
 #include "pn/pn_text.h"
+#include "pn/pn_type.h"
 
 /* Writes what there is of a line, and empties the buffer. */
 static void write_part(pn_text_t *line)
@@ -116,7 +117,7 @@ void pn_trace_model_occurrence(pn_trace_t *trace, pn_time_t now, bool is_real, c
     pn_text_str(line, ", \"transition\": ");
     pn_text_json_str(line, transition->name);
     pn_text_str(line, ", \"binding\": ");
-    transition->binding_json(binding, line);
+    pn_json(transition->binding, binding, line);
     pn_text_str(line, ", \"origin\": ");
     pn_text_json_str(line, transition->id);
     pn_text_char(line, '}');

@@ -153,7 +153,7 @@ static bool print_binding(void *user, uint32_t transition, const void *binding)
     pn_text_str(&text, "{\"transition\": ");
     pn_text_json_str(&text, pn_net.transition[transition].name);
     pn_text_str(&text, ", \"binding\": ");
-    pn_net.transition[transition].binding_json(binding, &text);
+    pn_json(pn_net.transition[transition].binding, binding, &text);
     pn_text_str(&text, "}");
     (void)puts(text.buffer);
     return true;
@@ -162,9 +162,9 @@ static bool print_binding(void *user, uint32_t transition, const void *binding)
 /* Prints every enabled binding element of the best priority, without going on in time. */
 static void print_enabled(sim_t *sim)
 {
-    const pn_time_t start = pn_net.now(sim->marking);
+    const pn_time_t start = pn_now(&pn_net, sim->marking);
     const sim_next_t next = sim_settle(sim);
-    const pn_time_t now = pn_net.now(sim->marking);
+    const pn_time_t now = pn_now(&pn_net, sim->marking);
     if ((next != SIM_FOUND) || (pn_net.real_time ? (now.real > start.real) : (now.integer > start.integer))) {
         return;
     }
@@ -189,7 +189,7 @@ static void play(sim_t *sim)
 
 bool sim_trace_step(sim_t *sim, uint32_t transition, const void *binding)
 {
-    pn_trace_model_occurrence(&sim->trace, pn_net.now(sim->marking), pn_net.real_time, &pn_net.transition[transition], binding);
+    pn_trace_model_occurrence(&sim->trace, pn_now(&pn_net, sim->marking), pn_net.real_time, &pn_net.transition[transition], binding);
     if (sim->trace.failed) {
         (void)snprintf(sim->message, sizeof sim->message, "%s", strerror(errno));
         sim->why = "trace";
@@ -214,7 +214,7 @@ static bool play_with_trace(sim_t *sim)
     } else {
         play(sim);
         sim_watch_stop(sim);
-        pn_trace_model_end(&sim->trace, pn_net.now(sim->marking), pn_net.real_time, sim->why);
+        pn_trace_model_end(&sim->trace, pn_now(&pn_net, sim->marking), pn_net.real_time, sim->why);
     }
     if (!pn_trace_close(&sim->trace)) {
         (void)fprintf(stderr, "simulate: `%s` could not be written completely\n", sim->options.trace);
@@ -247,7 +247,7 @@ static int run(sim_t *sim)
     if ((sim->report != NULL) && (sim->options.progress_s > 0.0)) {
         sim_time_progress(sim->options.progress_s);
     }
-    if (!pn_net.init(&sim->cx, sim->marking)) {
+    if (!pn_marking_init(&pn_net, &sim->cx, sim->marking)) {
         sim_fail(sim, "the declarations and the initial marking were made", -1, false);
     } else if (sim->options.shows_enabled) {
         sim->why = "steps";

@@ -7,6 +7,7 @@
 #include <signal.h>
 #include <stdio.h>
 
+#include "pn/pn_marking.h"
 #include "pn/pn_net.h"
 #include "pn/pn_trace.h"
 

@@ -48,7 +48,7 @@ void sim_report_progress(sim_t *sim)
     pn_text_str(&text, "{\"steps\": ");
     pn_text_uint(&text, sim->steps);
     pn_text_str(&text, ", \"t\": ");
-    sim_text_time(&text, pn_net.now(sim->marking));
+    sim_text_time(&text, pn_now(&pn_net, sim->marking));
     pn_text_str(&text, "}\n");
     (void)put(&text, sim->report);
     (void)fflush(sim->report);
@@ -64,7 +64,7 @@ bool sim_print_marking(const void *marking, FILE *out)
         pn_text_str(&text, (i > 0U) ? ", " : "");
         pn_text_json_str(&text, pn_net.place[i].name);
         pn_text_str(&text, ": ");
-        pn_net.place[i].json(marking, &text);
+        pn_bag_json(pn_net.place[i].bag, marking, &text);
         is_fine = put(&text, out) && is_fine;
     }
     pn_text_char(&text, '}');
@@ -98,7 +98,7 @@ static void text_error(pn_text_t *text, const sim_t *sim)
         pn_text_int(text, sim->transition);
         if (sim->has_binding) {
             pn_text_str(text, ", \"binding\": ");
-            pn_net.transition[sim->transition].binding_json(sim->binding, text);
+            pn_json(pn_net.transition[sim->transition].binding, sim->binding, text);
         }
     }
 }
@@ -127,7 +127,7 @@ bool sim_report_end(sim_t *sim)
     pn_text_str(&text, ", \"replayed\": ");
     pn_text_uint(&text, sim->replayed);
     pn_text_str(&text, ", \"t\": ");
-    sim_text_time(&text, pn_net.now(sim->marking));
+    sim_text_time(&text, pn_now(&pn_net, sim->marking));
     if (strcmp(sim->why, "error") == 0) {
         text_error(&text, sim);
     }

@@ -97,12 +97,12 @@ bool sim_watch_is_needed(void)
 /* The length of the only list in a place, from its JSON [[1, [...]]] or [[1, [...], stamp]]; -1 when it is not the only token. */
 static int64_t list_length(const sim_t *sim, uint32_t place)
 {
-    if (pn_net.place[place].count(sim->marking) != 1U) {
+    if (pn_bag_total(pn_net.place[place].bag, sim->marking) != 1U) {
         return -1;
     }
     pn_text_t text;
     pn_text_init(&text, sim_text_buffer, SIM_TEXT_SIZE);
-    pn_net.place[place].json(sim->marking, &text);
+    pn_bag_json(pn_net.place[place].bag, sim->marking, &text);
     int64_t length = 0;
     uint32_t depth = 0U;
     bool is_string = false;
@@ -178,12 +178,12 @@ static bool collect(sim_t *sim, watch_t *watch)
 {
     int64_t value = 1;
     if (watch->kind == 's') {
-        value = (int64_t)pn_net.place[watch->index].count(sim->marking);
+        value = (int64_t)pn_bag_total(pn_net.place[watch->index].bag, sim->marking);
     } else if (watch->kind == 'l') {
         value = list_length(sim, watch->index);
     }
     const bool is_list = value >= 0;
-    if (is_list && update(watch, value, pn_net.now(sim->marking))) {
+    if (is_list && update(watch, value, pn_now(&pn_net, sim->marking))) {
         return true;
     }
     sim->watch = (int64_t)(watch - s_watch);
@@ -201,7 +201,7 @@ static bool is_collector(const watch_t *watch)
 static bool is_reached(sim_t *sim, const watch_t *watch)
 {
     if ((watch->kind == 'e') || (watch->kind == 'f')) {
-        return (pn_net.place[watch->index].count(sim->marking) == 0U) == (watch->kind == 'e');
+        return (pn_bag_total(pn_net.place[watch->index].bag, sim->marking) == 0U) == (watch->kind == 'e');
     }
     bool is_enabled = false;
     for (uint32_t i = 0U; i < sim->enabled_count; i++) {

@@ -6,8 +6,12 @@
  *     struct { uint32_t used; struct { pose_t value; uint32_t count; } token[64]; } Waiting;           untimed
  *     struct { uint32_t used; struct { pose_t value; uint32_t count; pn_time_t stamp; } token[64]; }   timed
  *
- * sorted by value, then stamp, without equal neighbours; or, if it is packed, a counter for each colour (pn_packed.h). A pn_bag_t
- * tells where they are.
+ * sorted by value, then stamp, without equal neighbours; or, if it is packed, a counter for each colour (pn_packed.h); or, if it holds
+ * one token at most, a slot
+ *
+ *     struct { pose_t value; bool full; } Waiting;
+ *
+ * A pn_bag_t tells where they are.
  */
 #ifndef PN_BAG_H
 #define PN_BAG_H
@@ -17,9 +21,10 @@
 typedef struct pn_bag {
     const char *origin;      /* "page `Robot`, place `Waiting` (ID1407)" */
     const pn_type_t *type;   /* colour set */
-    uint32_t capacity;       /* entries */
+    uint32_t capacity;       /* entries: so many distinct colours, with so many stamps, fit */
     bool is_timed;
     bool is_real_time;       /* stamps are reals */
+    bool is_slot;            /* `used` is a bool, and there is one entry, of one token, which is a value and nothing else */
     size_t used;             /* offset of `used` in the marking */
     size_t first;            /* offset of token[0] in the marking */
     size_t stride;           /* size of a token */
@@ -28,11 +33,12 @@ typedef struct pn_bag {
     size_t stamp;
     uint32_t early_count;      /* of the constant delays of input arcs (`x@+3`), by which tokens may be taken before their stamps */
     const pn_time_t *early;
-    /* A packed place: its counters in the packed part of the marking, the number of a colour (PN_NO_COLOUR: it is none) and the
-     * colour of a number. */
+    /* A packed place holds, for each colour, a counter of `width` bits in the packed part of the marking. Counter i, of colour i in
+     * the order of the colour set, starts at bit `bit` + i * `width`; bit k of the packed part is bit k % 8 of byte k / 8. And the number
+     * of a colour (PN_NO_COLOUR: it is none), and the colour of a number. */
     bool is_packed;
     uint32_t bit;
-    uint32_t colours;
+    uint32_t colours;          /* number of counters; 0 if it is not packed */
     uint32_t width;
     uint32_t (*number_of)(const void *value);
     void (*colour_of)(uint32_t number, void *value);
@@ -52,6 +58,10 @@ typedef union pn_colour {
     .stride = sizeof(((const marking_type *)0)->member.token[0]),                                                  \
     .value = offsetof(marking_type, member.token[0].value) - offsetof(marking_type, member.token),                 \
     .count = offsetof(marking_type, member.token[0].count) - offsetof(marking_type, member.token)
+/* The same for a slot. */
+#define PN_BAG_SLOT(marking_type, member)                                                                          \
+    .is_slot = true, .used = offsetof(marking_type, member.full), .first = offsetof(marking_type, member.value),   \
+    .stride = sizeof(((const marking_type *)0)->member.value)
 #define PN_BAG_STAMPS(marking_type, member)                                                                        \
     .stamp = offsetof(marking_type, member.token[0].stamp) - offsetof(marking_type, member.token)
 
@@ -68,6 +78,8 @@ bool pn_bag_fail_full(pn_ctx_t *cx, const pn_bag_t *bag);
 /* Narrows a value and raises PN_ERR_COLOUR at the place if it is not in the colour set. */
 void pn_bag_check(pn_ctx_t *cx, const pn_bag_t *bag, void *value);
 void pn_bag_clear(const pn_bag_t *bag, void *marking);
+/* No tokens, in memory that may hold anything; a packed place has to be cleared with the packed part. */
+void pn_bag_begin(const pn_bag_t *bag, void *marking);
 /* Integer stamps count from `by` on, and those that are not after it are 0 and equal. */
 void pn_bag_age(const pn_bag_t *bag, void *marking, pn_time_t by);
 /* The earliest time after `now` at which a token becomes available to arcs with constant delays, if it is before *next or *found is
@@ -87,42 +99,6 @@ size_t pn_bag_add_bytes(pn_ctx_t *cx, const pn_bag_t *bag, void *marking, const 
 void pn_bag_relocate(pn_ctx_t *cx, const pn_bag_t *bag, void *marking);
 /* A colour of a packed place as JSON; false if there is no such one. */
 bool pn_bag_colour_json(const pn_bag_t *bag, uint32_t number, pn_text_t *out);
-
-/* The functions of one place for the table of the net: `stem`_count, _token, _put, _clear, _json, _encode, _decode, _add_bytes over its bag. */
-#define PN_PLACE_FUNCTIONS(stem, bag)                                                                               \
-    static uint64_t stem##_count(const void *marking)                                                               \
-    {                                                                                                               \
-        return pn_bag_total(&(bag), marking);                                                                       \
-    }                                                                                                               \
-    static uint32_t stem##_token(const void *marking, uint32_t i, pn_leaf_t *leaf, uint32_t capacity)               \
-    {                                                                                                               \
-        return pn_bag_token(&(bag), marking, i, leaf, capacity);                                                    \
-    }                                                                                                               \
-    static bool stem##_put(pn_ctx_t *cx, void *marking, const pn_leaf_t *leaf, uint32_t leaves)                     \
-    {                                                                                                               \
-        cx->now = pn_net.now(marking);                                                                              \
-        return pn_bag_put(cx, &(bag), marking, leaf, leaves);                                                       \
-    }                                                                                                               \
-    static void stem##_clear(void *marking)                                                                         \
-    {                                                                                                               \
-        pn_bag_clear(&(bag), marking);                                                                              \
-    }                                                                                                               \
-    static void stem##_json(const void *marking, pn_text_t *out)                                                    \
-    {                                                                                                               \
-        pn_bag_json(&(bag), marking, out);                                                                          \
-    }                                                                                                               \
-    static size_t stem##_encode(const void *marking, uint8_t *out, size_t room)                                     \
-    {                                                                                                               \
-        return pn_bag_encode(&(bag), marking, out, room);                                                           \
-    }                                                                                                               \
-    static size_t stem##_decode(pn_ctx_t *cx, void *marking, const uint8_t *in, size_t length)                      \
-    {                                                                                                               \
-        return pn_bag_decode(cx, &(bag), marking, in, length);                                                      \
-    }                                                                                                               \
-    static size_t stem##_add_bytes(pn_ctx_t *cx, void *marking, const uint8_t *in, size_t length)                   \
-    {                                                                                                               \
-        return pn_bag_add_bytes(cx, &(bag), marking, in, length);                                                   \
-    }
 
 /* Times as the context and the tokens hold them. */
 #define PN_NO_TIME ((pn_time_t){ .integer = 0 })

@@ -2,7 +2,8 @@
  * pn_net.h - the contract between a generated net (net.c) and the hosts that run it.
  *
  * A generated net is one constant table, `const pn_net_t pn_net`, and a marking type whose size the table
- * gives. Hosts (supervisor, simulate, explore, the program under test of `conform`) know nets only through this table.
+ * gives. Hosts (supervisor, simulate, explore, the program under test of `conform`) know nets only through this table. What is done
+ * with markings in the same way in every net is in pn_marking.h, and with the multi-set of one place in pn_bag.h.
  *
  * In a generated folder one object file, net.o, is linked with the supervisor, its monitor and the simulator. The explorer of
  * `pn2code verify` has another one: the same generator makes it from the same net, but with packed places where that is possible, with
@@ -24,7 +25,7 @@
 extern "C" {
 #endif
 
-#define PN_NET_ABI 1U
+#define PN_NET_ABI 2U
 
 #if defined(__GNUC__)
 #define PN_NODISCARD __attribute__((warn_unused_result))
@@ -89,57 +90,27 @@ typedef struct pn_share {
     uint32_t weight;
 } pn_share_t;
 
+struct pn_bag;
+struct pn_type;
+
 typedef struct pn_place {
     const char *name;       /* "Top.Robot1.Waiting" */
     const char *colset;     /* "POSE" */
-    const char *origin;     /* "page `Robot`, place `Waiting` (ID1407)" */
     int32_t owner;          /* index in pn_net_t.owner; -1: a channel */
-    uint32_t capacity;      /* most tokens (or distinct colours) that fit */
-    bool timed;
     bool is_bounded;        /* more tokens than `bound` have been proven impossible, or declared to be */
     uint32_t bound;
-    /* Number of tokens. */
-    uint64_t (*count)(const void *marking);
-    /* Token i (0 <= i < distinct) as leaves, at most `capacity` of them; returns their number, 0 if there is no token i or
-     * the colour set has no fixed leaves. */
-    uint32_t (*token)(const void *marking, uint32_t i, pn_leaf_t *leaf, uint32_t capacity);
-    /* Puts one token. Fails (false, context error set) when the leaves do not fit the colour set or the place is full. */
-    bool (*put)(pn_ctx_t *cx, void *marking, const pn_leaf_t *leaf, uint32_t leaves);
-    /* Takes all tokens away. */
-    void (*clear)(void *marking);
-    /* The marking of the place as JSON, the form of the traces: [[count, value], ...] or [[count, value, stamp], ...]. */
-    void (*json)(const void *marking, pn_text_t *out);
     uint32_t leaf_count;             /* 0: no fixed number of leaves (lists, unions) */
     const pn_leaf_kind_t *leaf_kind; /* leaf_count of them */
     const char *const *leaf_name;    /* "x", "y", ... or "1", "2" for components; for messages */
     uint32_t line_count;             /* how an input file is laid out: leaves per line, by top-level component */
     const uint32_t *line_leaves;
-    /* A packed place holds, for each colour, a counter of `width` bits in the packed part of the marking. Counter i, of colour i in
-     * the order of the colour set, starts at bit `bit` + i * `width`; bit k of the packed part is bit k % 8 of byte k / 8. */
-    bool is_packed;
-    uint32_t colours;                /* number of counters; 0 if it is not packed */
-    uint32_t width;
-    uint32_t bit;                    /* UINT32_MAX if it is not packed */
     /* Of a packed place that follows from others: its counters and those of these places, so often, are always the same in sum. All
      * of them have as many counters of as many bits, or one counter each; no sum is more than a counter of this place can hold. */
     uint32_t share_count;
     const pn_share_t *share;
-    /* Canonical bytes of the place alone, the same whether it is packed or not: equal multi-sets, equal bytes. Returns the length
-     * that is needed; when that is more than `capacity`, what has been written is worth nothing. */
-    size_t (*encode)(const void *marking, uint8_t *out, size_t capacity);
-    /* Reads them back into a marking. Returns the bytes used; SIZE_MAX when they are malformed or the place is full. */
-    size_t (*decode)(pn_ctx_t *cx, void *marking, const uint8_t *in, size_t length);
-    /* The same, but the tokens come to those that are there. After a failure the place holds anything. */
-    size_t (*add)(pn_ctx_t *cx, void *marking, const uint8_t *in, size_t length);
-    /* A colour of a packed place as JSON; false if there is no such one. NULL if the place is not packed. */
-    bool (*colour_json)(uint32_t ordinal, pn_text_t *out);
-    /* Of a timed place: lets *next be the earliest time after `now` at which one of its tokens becomes available, if it is before *next or
-     * *found is false. NULL: pn_net_t.next_time has to be asked (delays
-     * of input arcs are computed). */
-    void (*next_time)(const void *marking, pn_time_t now, bool *found, pn_time_t *next);
-    /* Of a timed place (integer time): stamps count from `by` on; those that are not after it become 0, and are the same then. NULL of
-     * an untimed place. */
-    void (*age)(void *marking, pn_time_t by);
+    const struct pn_bag *bag;        /* where its tokens are in a marking; what to do with them is in pn_bag.h */
+    /* Puts the tokens of the initial marking. False on error. NULL: it is empty. */
+    bool (*initial)(pn_ctx_t *cx, void *marking);
 } pn_place_t;
 
 typedef struct pn_transition {
@@ -154,9 +125,8 @@ typedef struct pn_transition {
     /* Fires an enabled binding and stores the code segment's outputs in it. On error (context error set, false) the marking
      * is unchanged. `binding` is the host's copy (binding_size bytes) of what the sink was given. */
     bool (*fire)(pn_ctx_t *cx, void *marking, void *binding);
-    /* The binding as a JSON object, values in the form of the traces. Code-segment outputs included after a fire. */
-    void (*binding_json)(const void *binding, pn_text_t *out);
-    size_t binding_size;
+    /* The type of a binding: a record of the variables. Outputs of the code segment are there after `fire`. */
+    const struct pn_type *binding;
     /* The transitions that may be enabled in another way after this one has occurred, model time being the same. NULL: all. */
     uint32_t affected_count;
     const uint32_t *affected;
@@ -217,20 +187,17 @@ typedef struct pn_net {
     const pn_owner_t *owner;
     uint32_t order_count;     /* transition indices by priority, then page and name: the documented order of trying */
     const uint32_t *order;
-    /* The initial marking. False on error. */
-    bool (*init)(pn_ctx_t *cx, void *marking);
-    /* Model time. Times are int64_t; in a real-time net microseconds-free doubles, bit-copied (pn_time_t in pn_types.h). */
-    pn_time_t (*now)(const void *marking);
-    void (*set_now)(void *marking, pn_time_t now);
-    /* The earliest time after `now` at which something may become enabled: a stamp ends, or the delay of an input arc lets a token be
-     * taken before that. False if there is none, or after an error (delays are computed). */
-    bool (*next_time)(pn_ctx_t *cx, const void *marking, pn_time_t *next);
-    /* Canonical bytes of a marking: equal markings, equal bytes. Returns the length, 0 when `capacity` is too small. */
-    size_t (*encode)(const void *marking, uint8_t *out, size_t capacity);
-    bool (*decode)(pn_ctx_t *cx, void *marking, const uint8_t *in, size_t length);
-    /* Between firings: moves what the marking refers to into the other half of the arena (see pn_arena.h). No-op for nets
-     * whose values need no arena. */
-    void (*collect)(pn_ctx_t *cx, void *marking);
+    size_t now_at;            /* offset in a marking of its model time */
+    /* Gives the variables outside the marking the values that they have at the start, before anything else is evaluated. NULL: there are
+     * none. Errors are in the context. */
+    void (*set_up)(pn_ctx_t *cx);
+    /* Of nets in which delays of input arcs are computed: lets *next be the earliest time after now at which a token becomes available to
+     * such an arc, if it is before *next or *found is false. NULL: stamps and constant delays (pn_bag_t.early) say it. */
+    void (*thresholds)(pn_ctx_t *cx, const void *marking, bool *found, pn_time_t *next);
+    uint32_t refer_count;     /* the places whose values refer into the arena */
+    const uint32_t *refer;
+    uint32_t held_count;      /* and the variables outside the marking that do */
+    const pn_root_t *held;
     size_t packed_size;       /* bytes of the packed part, with which a marking begins, a multiple of 4; equal markings, equal bytes */
     uint32_t bag_count;       /* the places that are not packed */
     const uint32_t *bags;

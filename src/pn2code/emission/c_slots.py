@@ -1,0 +1,76 @@
+"""Slots: untimed places that hold one token at most, kept as `{ value, full }` instead of as a sorted array.
+
+To take from a slot is a test and a read, to put is a test and a write. An occurrence looks whether all slots are as it
+needs them before it changes the first, so nothing has to be put back.
+"""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Container, Iterator
+
+from pn2code.emission.c_places import is_count, puts
+from pn2code.lowering import ir
+from pn2code.lowering.calls import ir_nodes
+from pn2code.lowering.ir import Rep
+
+SCALARS = frozenset({Rep.BOOL, Rep.INT, Rep.CHAR, Rep.ENUM})
+"""Representations whose values C compares with `==`."""
+
+
+def slots(net: ir.NetIR) -> frozenset[int]:
+    """The places that are slots: proven (or declared) to hold one token at most, and nobody moves more at a time."""
+    found = {p.index for p in net.places if _is_small(p)}
+    for t in net.transitions:
+        found.difference_update(_excluded(t))
+    return frozenset(found)
+
+
+def _is_small(p: ir.Place) -> bool:
+    return p.bound is not None and p.bound <= 1 and p.capacity == 1 and not p.timed and not p.packed
+
+
+def _excluded(t: ir.Transition) -> Iterator[int]:
+    """Places with which a transition does what a slot cannot: look for several tokens, or take or put several."""
+    for node in (*ir_nodes(t.enumerate), *ir_nodes(t.fire), *ir_nodes(t.thresholds)):
+        match node:
+            case (
+                ir.UnlessAvailable(place=place, count=count)
+                | ir.UnlessHeld(place=place, count=count)
+            ) if count != 1:
+                yield place
+            case ir.Take(place=place, count=count) if not _is_one(count):
+                yield place
+    yield from _followed(t.enumerate)
+    takes = Counter(s.place for s in t.fire if isinstance(s, ir.Take))
+    yield from (place for place, n in takes.items() if n > 1)
+    yield from (place for place, n in puts(t.fire).items() if n > 1)
+
+
+def _is_one(count: ir.Ir) -> bool:
+    return is_count(count) and isinstance(count, ir.Const) and count.value == 1
+
+
+def _followed(statements: tuple[ir.Stmt, ...]) -> Iterator[int]:
+    """Places of loops after which something follows in the same sequence."""
+    for i, s in enumerate(statements):
+        if isinstance(s, ir.ForTokens | ir.ForValues):
+            yield from _followed(s.body)
+        if isinstance(s, ir.ForTokens) and i + 1 < len(statements):
+            yield s.place
+
+
+def is_structural(value: ir.Ir, references: Container[str]) -> bool:
+    """Whether a value is put together from constants and variables alone: each evaluation gives the same."""
+    match value:
+        case ir.Const() | ir.EnumValue() | ir.Bound():
+            return True
+        case ir.GlobalUse(name=name):
+            return name not in references
+        case ir.MakeStruct(fields=fields):
+            return all(is_structural(part, references) for _, part in fields)
+        case ir.MakeUnion(argument=argument):
+            return argument is None or is_structural(argument, references)
+        case ir.Op(name="list.cons", arguments=arguments):
+            return all(is_structural(part, references) for part in arguments)
+    return False
