@@ -317,8 +317,9 @@ FAULTS = {
     "a transition of another": (
         "supervisor_play.c", "(owner >= 0) && (candidate->owner != owner)", "false",
         "`Top.Robot.Accept` is not a transition of this program"),
-    "another place": ("net.c", "    m->flag.full = true;\n", "    m->flag.full = true;\n    m->Supervisor_Moving.full = true;\n",
-                      "has changed place `Top.Supervisor.Moving`, with which it has no arc"),
+    "another place": (
+        "net.c", "    m->flag.full = true;\n", "    m->flag.full = true;\n    m->Supervisor_Moving.full = true;\n",
+        "has changed place `Top.Supervisor.Moving`, with which it has no arc"),
 }  # fmt: skip
 
 
