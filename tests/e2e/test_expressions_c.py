@@ -138,3 +138,28 @@ def test_datatypes_of_inscriptions(tmp_path: Path, fast_workshop: Workshop) -> N
     ir, d = lowered(net)
     assert ir is not None, [e.message for e in d.errors]
     assert agrees(net, fast_workshop.build(ir, tmp_path / "own"), seed=1, steps=3) == 1
+
+
+LARGE_ONLY = """
+net Large
+  standard
+  colset PAIR = product INTINF * BOOL;
+  var n : INTINF;
+  var b : BOOL;
+  place A : INTINF = 1`(IntInf.pow (10, 30))
+  place B : PAIR = 1`(IntInf.pow (7, 40), true)
+  trans T
+    in A : n
+    out A : n * 3
+  trans U
+    in B : (n, b)
+    out B : (n + IntInf.pow (2, 90), not b)
+"""
+
+
+def test_large_integers_stay(tmp_path: Path, workshop: Workshop) -> None:
+    """Where nothing else in the net lies in the arena, which is compacted between the steps."""
+    net = flat(LARGE_ONLY)
+    ir, _ = lowered(net)
+    assert ir is not None
+    assert agrees(net, workshop.build(ir, tmp_path / "large"), seed=1, steps=20) == 21

@@ -86,7 +86,7 @@ class _Emitter:
     def _refers(self, table: str) -> bool:
         """Whether values of a type refer into the arena."""
         found = (self._descriptors[key].type.rep for key in self._closure({table}))
-        return any(rep in (Rep.STRING, Rep.LIST, Rep.UNION) for rep in found)
+        return any(rep in (Rep.STRING, Rep.LIST, Rep.UNION, Rep.BIG) for rep in found)
 
     def _word_mask(self) -> str:
         """What takes away what follows from the rest of the first word of the packed part."""
