@@ -93,6 +93,13 @@ static void cell_tables(pn_text_t *text)
         pn_text_char(text, '}');
     }
     pn_text_char(text, ']');
+    member(text, "between");
+    pn_text_char(text, '[');
+    for (uint32_t i = 0U; i < pn_cell.between_count; i++) {
+        between(text, i);
+        pn_text_json_str(text, pn_cell.between[i]);
+    }
+    pn_text_char(text, ']');
     member(text, "inputs");
     pn_text_char(text, '[');
     for (uint32_t i = 0U; i < pn_cell.input_count; i++) {

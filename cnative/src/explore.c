@@ -69,6 +69,7 @@ static void print_help(void)
                  "  --query-trace-to NAME  runs that prove the answers, as NAMEn.trace.jsonl with the number n of the question\n"
                  "  --seed N            of random numbers (default 1)\n"
                  "  --multiset-limit N  colours of a multi-set bound that are printed (default: all)\n"
+                 "  --whole P,Q,..      places of which all colours are printed\n"
                  "  --ends-in PHASE     for tests: the time is over when explore, graph, components, properties or questions begins\n"
                  "  --parent PID        end at once when this process, which started it, has ended\n"
                  "  --lay-again N       after N states see once more how they are stored best (default 262144)\n"
@@ -171,6 +172,7 @@ static bool read_valued(const char *option, const char *value, ex_options_t *opt
            || ((strcmp(option, "--lay-again") == 0) && read_number(value, UINT64_MAX, &options->lay_again))
            || ((strcmp(option, "--ends-in") == 0) && read_text(value, &options->ends_in))
            || ((strcmp(option, "--multiset-limit") == 0) && read_number(value, UINT64_MAX, &options->multiset_limit))
+           || ((strcmp(option, "--whole") == 0) && read_text(value, &options->whole))
            || ((strcmp(option, "--seed") == 0) && read_number(value, UINT64_MAX, &options->seed));
 }
 

@@ -511,6 +511,20 @@ static void arena_json(const ex_run_t *run, const ex_bounds_t *bounds, FILE *out
     }
 }
 
+/* How many colours of a place's multi-set bounds are printed: all of those that `--whole` names. */
+static uint64_t most_printed(const ex_options_t *options, uint32_t place)
+{
+    const char *at = options->whole;
+    while ((at != NULL) && (*at != '\0')) {
+        char *end = NULL;
+        if (strtoul(at, &end, 10) == place) {
+            return UINT64_MAX;
+        }
+        at = (*end == ',') ? (end + 1) : NULL;
+    }
+    return options->multiset_limit;
+}
+
 void ex_bounds_json(ex_run_t *run, FILE *out)
 {
     ex_bounds_t *const bounds = run->worker[0].bounds;
@@ -527,13 +541,14 @@ void ex_bounds_json(ex_run_t *run, FILE *out)
     for (uint32_t p = 0U; is_known && (p < pn_net.place_count); p++) {
         const pn_place_t *const place = &pn_net.place[p];
         const place_bounds_t *const own = &bounds->place[p];
+        const uint64_t most = most_printed(&run->options, p);
         (void)fprintf(out, "%s{\"lower\": %" PRIu64 ", \"upper\": %" PRIu64, (p > 0U) ? ", " : "", own->least, own->most);
         for (int is_upper = 0; is_upper <= 1; is_upper++) {
             const char *const which = (is_upper == 1) ? "upper" : "lower";
-            if (!place->bag->is_packed && (own->colours.count > run->options.multiset_limit)) {
+            if (!place->bag->is_packed && (own->colours.count > most)) {
                 qsort(own->colours.colour, own->colours.count, sizeof *own->colours.colour, by_text); /* found by place from here on */
             }
-            list_t list = { .out = out, .most = run->options.multiset_limit };
+            list_t list = { .out = out, .most = most };
             (void)fprintf(out, ", \"%s_multiset\": [", which);
             if (place->bag->is_packed) {
                 packed_json(bounds, place, own, is_upper == 1, &list, buffer);

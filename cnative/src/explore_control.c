@@ -4,7 +4,7 @@
  * A *step* is an arc of the supervisor that takes no time to wait for: one firing of its cycle. The supervisor *rests* where there is none.
  *
  *   finite response   no run of steps goes on for ever
- *   restless          the same of the steps of scripts that neither wait nor take time
+ *   restless          the same of the steps of scripts that neither wait nor take time, and how long their runs are
  *   bounded response  the longest run of steps
  *   confluence        from each node all runs of steps come to rest in the same node
  *   non-blocking      of its steps the supervisor does only the first in the documented order, all others do what they like: from each node
@@ -575,6 +575,9 @@ static bool answer_restless(ex_queries_t *queries, ex_question_t *question)
         return false;
     }
     answer_finite(c, question);
+    if (question->answer == EX_YES) {
+        answer_bounded(c, question);
+    }
     forget(c);
     return true;
 }

@@ -59,6 +59,7 @@ typedef struct ex_options {
     const char *error_trace_to; /* the same for the trace to an exception */
     const char *ends_in;     /* phase in which the time ends as soon as it begins, whatever the clock says; NULL: none */
     uint64_t multiset_limit; /* colours of a multi-set bound that are printed */
+    const char *whole;       /* places of which all are, numbers with commas between; NULL: none */
     uint64_t parent;         /* process that started it, and without which it is to end; 0: none */
 } ex_options_t;
 

@@ -26,7 +26,7 @@
  *     clock 11                        occurs a unit of time later, where something is waited for
  *     ? ends 4                        item 4 is `ef` of the ends, which are reached whoever is slow (explore_running.c); `-`: as below
  *     ? finite-response
- *     ? restless                      no run of `instant` steps goes on for ever
+ *     ? restless 100                  no run of `instant` steps goes on for ever, nor is longer than that
  *     ? bounded-response 100
  *     ? confluence 0                  0: with a run of the documented order, 1: with one that comes to another end
  *     ? non-blocking 3                nodes of item 3 are final; `-`: none is
@@ -274,7 +274,7 @@ static bool read_control(const ex_reader_t *r, ex_question_t *question)
 {
     uint32_t most = 0U;
     bool is_fine = (r->queries->owner != NULL) || ex_complain(r, "the owners of transitions are not told", r->word[1]);
-    if (question->kind == EX_ASK_BOUNDED) {
+    if ((question->kind == EX_ASK_BOUNDED) || (question->kind == EX_ASK_RESTLESS)) {
         is_fine = is_fine && ex_read_number(r, r->word[2], (uint64_t)UINT32_MAX, "not a number", &most);
         question->has_most = true;
         question->most = (double)most;
@@ -300,7 +300,7 @@ typedef struct asking {
 
 static const asking_t s_askings[] = {
     { "invariant", EX_ASK_INVARIANT, 3U }, { "initially", EX_ASK_INITIALLY, 3U }, { "bound", EX_ASK_BOUND, 5U },
-    { "finite-response", EX_ASK_FINITE, 2U }, { "restless", EX_ASK_RESTLESS, 2U },
+    { "finite-response", EX_ASK_FINITE, 2U }, { "restless", EX_ASK_RESTLESS, 3U },
     { "bounded-response", EX_ASK_BOUNDED, 3U }, { "confluence", EX_ASK_CONFLUENT, 3U },
     { "non-blocking", EX_ASK_BLOCKING, 3U }, { "ends", EX_ASK_ENDS, 3U },
     { "lasso", EX_ASK_LASSO, 2U }, { "within-firings", EX_ASK_FIRINGS, 5U }, { "within-time", EX_ASK_TIME, 5U },

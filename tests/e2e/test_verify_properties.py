@@ -7,10 +7,12 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from typer.testing import CliRunner
 
 from helpers.netbuilder import write
 from helpers.processes import pn2code
 from helpers.property_nets import DINNER
+from pn2code.cli.main import app
 
 pytestmark = pytest.mark.cc
 
@@ -173,3 +175,26 @@ def test_wrong_properties(net: Path, tmp_path: Path) -> None:
     assert done.returncode == 1
     assert "wrong.toml:3:19: error: this condition draws random numbers" in done.stderr
     assert pn2code("verify", net, "--properties", tmp_path / "none.toml").returncode == 2
+
+
+@pytest.mark.parametrize("draws", ["initial", "arc"])
+def test_what_chance_decides_is_not_known(draws: str, tmp_path: Path) -> None:
+    """One seed was looked at; another one may draw the seven."""
+    drawn = "discrete (1, 100)"
+    first, later = ("1`" + f"({drawn})", "n") if draws == "initial" else ("1`1", drawn)
+    text = f"""
+        net chance
+          standard
+          var n : INT;
+          place P : INT = {first}
+          place Q : INT
+          trans T
+            in P : n
+            out Q : {later}
+    """
+    path = write(text, tmp_path / "chance.cpn")
+    never = "never { cf (7, Mark.Top'Q 1) > 0 }"
+    options = ["--property", never, "--property", "bound Q <= 0", "--traces", str(tmp_path)]
+    done = CliRunner().invoke(app, ["verify", str(path), "--json", *options])
+    assert [p["answer"] for p in json.loads(done.stdout)["properties"]] == ["inconclusive", "no"]
+    assert "state-space-random" in done.stderr

@@ -100,6 +100,7 @@ def run(
     arrivals: list[tuple[str, tuple[Scalar, ...]]] | None = None,
     measured: Pose | None = None,
     step_limit: int = 1000,
+    occurrences: int = 1000,
     requests: int = 1000,
 ) -> Run:
     """Run a script; each time it waits the next of `arrivals` is put into the files.
@@ -115,7 +116,9 @@ def run(
         if isinstance(event, Marked):
             out.marks.append((event.transition, event.binding))
 
-    interpreter = Interpreter(program, out.files, hear, step_limit=step_limit)
+    interpreter = Interpreter(
+        program, out.files, hear, step_limit=step_limit, occurrences=occurrences
+    )
     result: Pose | None = None
     for _ in range(requests):
         request = interpreter.resume(result)

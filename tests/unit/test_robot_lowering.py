@@ -589,6 +589,11 @@ REFUSED = {
         (),
         "error[unsupported-robot-time] transition `T` has both commands and a delay",
     ),
+    "negative delay": (
+        "place A : TUNIT = 1`()\ntrans T delay @+ (2 - 5)\n  both A : ()",
+        (),
+        "error[unsupported-robot-time] no robot can wait for -3 s",
+    ),
     "list": (
         "place A : INTS = 1`[1]\ntrans T\n  both A : l",
         (),

@@ -188,7 +188,7 @@ DECLARATIONS = [
         "var n : int := 1 const c = n",
         ["1:38 error[tdl-constant] the value of constant `c` is not known: `n` is not a constant declared before"],
     ),
-    ("const c = 1 / 0", ["1:21 error[tdl-constant] the value of constant `c` is not known: division by zero"]),
+    ("const c = 1 div 0", ["1:21 error[tdl-constant] the value of constant `c` is not known: division by zero"]),
     ("var n : int := 1 mm", ["1:26 error[tdl-unit] the value of `n` must be of type `int`, but this is `length`"]),
     ("procedure q call q end procedure",
      ["1:28 error[tdl-recursion] procedure `q` calls itself, directly or through others"]),

@@ -292,18 +292,37 @@ def test_expressions(expression: str, kind: str, expected: object) -> None:
     ("expression", "kind", "message"),
     [
         ("1 div zero", "int", "division by zero"),
-        ("1 / zero", "real", "division by zero"),
         ("1 mod zero", "int", "division by zero"),
         ("1073741823 + 1", "int", "the integer 1073741824 is out of range (31 bits)"),
         ("-1073741823 - 2", "int", "the integer -1073741825 is out of range (31 bits)"),
-        ("1e300 * 1e300", "real", "the result is not a finite number"),
-        ("sqrt(-1)", "real", "square root of a negative number"),
+        ("floor(1 / zero)", "int", "`floor` of inf, which is not a finite number"),
         ("single(1e300)", "real", "1e+300 is too large for single precision"),
     ],
 )
 def test_expressions_that_fail(expression: str, kind: str, message: str) -> None:
     end = fault(f"z := {expression} stop z, zero", f"var z : {kind} var zero : int := 0")
     assert end == Fault(message, 3)
+
+
+@pytest.mark.parametrize(
+    ("expression", "says"),
+    [
+        ("1 / zero", "inf"),
+        ("-1 / zero", "-inf"),
+        ("zero / zero", "nan"),
+        ("1e300 * 1e300", "inf"),
+        ("sqrt(-1)", "nan"),
+        ("min(zero / zero, 2.0)", "2"),
+        ("max(2.0, zero / zero)", "2"),
+    ],
+)
+def test_reals_are_those_of_nets(expression: str, says: str) -> None:
+    """A script goes on as the net does; only what is carried out has to be finite."""
+    declarations = "var z : real var zero : int := 0"
+    assert fault(f"z := {expression} stop z, zero", declarations).message == f"{says} 0"
+    if says != "2":
+        stopped = fault(f"z := {expression} wait z * 1 s", declarations)
+        assert stopped.message == f"{says} is not a finite number"
 
 
 # --- control -----------------------------------------------------------------------------------
@@ -340,6 +359,24 @@ def test_an_endless_loop_is_a_fault_naming_the_line() -> None:
     assert isinstance(end, Fault)
     assert end.message == "endless loop: 500 statements without a command or a wait"
     assert end.line in (4, 5)
+
+
+def test_long_rounds_are_those_of_many_transitions() -> None:
+    """As many transitions as are permitted, then one more; what they are made of does not count."""
+    text = """program t
+var n : int := 0
+begin
+  loop
+    mark Turn
+    n := n + 1
+    exit when n = {}
+  end loop
+  stop n
+end program"""
+    assert run(checked(text.format(7)), step_limit=9, occurrences=7).end == Fault("7", 9)
+    end = run(checked(text.format(8)), step_limit=9, occurrences=7).end
+    assert isinstance(end, Fault)
+    assert end.message == "endless loop: more than 7 transitions without a command or a wait"
 
 
 def test_a_loop_that_takes_time_is_not_endless() -> None:

@@ -13,7 +13,7 @@
 extern "C" {
 #endif
 
-#define PN_CELL_ABI 2U
+#define PN_CELL_ABI 3U
 #define PN_CELL_CHANNELS_MAX 128U
 #define PN_CELL_PEERS_MAX 64U
 
@@ -87,6 +87,8 @@ typedef struct pn_cell {
     double reply_timeout_s;    /* 0: none */
     uint32_t channel_count;    /* data before flags, each in the order of cell.toml */
     const pn_cell_channel_t *channel;
+    uint32_t between_count;    /* files of channels between two peers: this program only makes them, empty (I7) */
+    const char *const *between;
     uint32_t input_count;
     const pn_cell_input_t *input;
     uint32_t peer_count;

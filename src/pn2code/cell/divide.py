@@ -51,7 +51,14 @@ def divide(net: FlatNet, config: CellConfig | None, d: Diagnostics) -> Partition
         None if i in shared else next(iter(sorted(writers[i] | readers[i])), 0)
         for i in range(len(net.places))
     )
-    return Partition(net, owners, transition_owner, place_owner, channels, inputs, final)
+    primitives = {
+        net.program.globals[name].uid: primitive
+        for name, primitive in config.primitives.items()
+        if name in net.program.globals
+    }
+    return Partition(
+        net, owners, transition_owner, place_owner, channels, inputs, final, primitives
+    )
 
 
 def _owners(net: FlatNet, config: CellConfig, d: Diagnostics) -> tuple[Owner, ...]:

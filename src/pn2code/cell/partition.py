@@ -5,10 +5,16 @@ Made from a `FlatNet` and a cell's owners; see docs/architecture.md.
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+from dataclasses import field
 from enum import Enum
+from typing import TYPE_CHECKING
 
 from pn2code.frozen import frozen
 from pn2code.net.flat import FlatNet
+
+if TYPE_CHECKING:
+    from pn2code.cell.config import Primitive
 
 
 class OwnerKind(Enum):
@@ -83,6 +89,7 @@ class Partition:
         place_owner: owner index per place, None for channels (and for places that nobody touches: the supervisor's).
         channels: data before flags, each in the order of cell.toml.
         final_places: a token in any of them means that the supervisor has finished.
+        primitives: the functions that are commands of robots, by the number of their symbol.
     """
 
     net: FlatNet
@@ -92,3 +99,4 @@ class Partition:
     channels: tuple[Channel, ...]
     inputs: tuple[Input, ...]
     final_places: tuple[int, ...]
+    primitives: Mapping[int, Primitive] = field(default_factory=dict, compare=False)

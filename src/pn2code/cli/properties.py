@@ -25,8 +25,8 @@ from pn2code.semantics.effects import Effect, Effects
 from pn2code.semantics.game import GameError
 from pn2code.semantics.values import MlException, MlLimit
 from pn2code.simulate.script import TraceRefusedError
-from pn2code.verify import confirm
-from pn2code.verify.answers import Answer, answers
+from pn2code.verify import chance, confirm
+from pn2code.verify.answers import Answer, answers, drawn
 from pn2code.verify.cell_answers import of_cell
 from pn2code.verify.codes import TRACE_UNWRITABLE
 from pn2code.verify.control_types import Control
@@ -302,6 +302,8 @@ def answered(
         control: what a cell was looked at in; None: the net is no cell.
     """
     plain = answers(asked.plain, found.answers, found)
+    if chance.draws(opened.flat):
+        plain, more = tuple(map(drawn, plain)), tuple(map(drawn, more))
     if control is not None and (partition := divided(opened, d)) is not None:
         plain = tuple(of_cell(asked.plain, control.answers, control, partition, plain))
     by_name = {answer.about.name: answer for answer in (*plain, *more)}

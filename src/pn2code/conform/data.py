@@ -74,6 +74,7 @@ def _cell(made: Generated, config: CellConfig) -> dict[str, Any]:
     find = PlaceFinder(partition.net, Diagnostics())
     channels = sorted(config.channels, key=lambda c: c.kind.value != "data")  # I5
     rows = []
+    between = []
     for c in channels:
         place = find(c.place, c.origin, "channel")
         assert place is not None, "it was found when the net was divided"
@@ -91,6 +92,8 @@ def _cell(made: Generated, config: CellConfig) -> dict[str, Any]:
                     "scalars": _scalars(scalars_of(place.colset) or ()),
                 }
             )
+        else:
+            between.append(c.file)
     inputs = []
     for entry in config.inputs:
         place = find(entry.place, entry.origin, "input")
@@ -113,6 +116,7 @@ def _cell(made: Generated, config: CellConfig) -> dict[str, Any]:
         "reply_timeout_s": config.supervisor.reply_timeout_s,
         "arena": made.arena,
         "channels": rows,
+        "between": between,
         "inputs": inputs,
         "peers": [{"name": p.name, "owner": i} for i, p in enumerate(config.programs, 1)],
         "final": [place.index for place in final if place is not None],

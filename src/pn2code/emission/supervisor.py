@@ -135,8 +135,9 @@ def emit(
     peers = [o for o in partition.owners if o.kind is not OwnerKind.SUPERVISOR]
     peer_index = {owner.index: i for i, owner in enumerate(peers)}
     supervisor = next((o.index for o in partition.owners if o.kind is OwnerKind.SUPERVISOR), -1)
-    # Channels between two robots are none of the supervisor's business.
+    # Channels between two robots are none of the supervisor's business, but it makes their files.
     channels = [c for c in partition.channels if supervisor in (c.writer, c.reader)]
+    between = [c.file for c in partition.channels if c not in channels]
     tables = []
     channel_rows = []
     for number, channel in enumerate(channels):
@@ -182,6 +183,7 @@ def emit(
         arena=f"{arena}U" if arena is not None else "PN_ARENA_DEFAULT_SIZE",
         tables=tables,
         channels=channel_rows,
+        between=between,
         inputs=input_rows,
         peers=[{"name": p.name, "owner": p.index} for p in peers],
         finals=[{"place": p, "name": net.places[p].name} for p in partition.final_places],

@@ -50,6 +50,7 @@ from pn2code.ml.core import Symbol
 from pn2code.net.flat import BindAll, BindEquation, BindRandom
 from pn2code.tdl import tree as t
 from pn2code.tdl import types as tdl
+from pn2code.tdl.evaluate import ScriptError, ScriptValue, evaluate
 from pn2code.tdl.paths import all_names, children
 
 
@@ -80,6 +81,21 @@ class Situation:
     def condition(self) -> t.Expression:
         """All conditions."""
         return conjunction([*self.local, *self.remote])
+
+
+@dataclass(frozen=True, slots=True)
+class _Constants:
+    """What names mean where only the script's constants are known."""
+
+    values: Mapping[str, ScriptValue]
+
+    def value(self, name: str) -> ScriptValue:
+        """The value of a constant; KeyError: it is none."""
+        return self.values[name]
+
+    def filled(self, name: str) -> bool:
+        """No file is known."""
+        raise KeyError(name)
 
 
 @dataclass(slots=True)
@@ -289,11 +305,23 @@ class StepTranslator:
             if argument == Rec(()):
                 duration_exp: t.Expression = t.Quantity(primitive.duration_s, "s")
             elif isinstance(argument, Scalar) and argument.type in tdl.NUMBERS:
-                duration_exp = as_quantity(argument, tdl.Type.TIME).exp
+                duration_exp = self._lasting(as_quantity(argument, tdl.Type.TIME).exp, span)
             else:
                 raise UnsupportedError(f"`{name}` takes a number of seconds", span, codes.PRIMITIVE)
             self._nodes.append(Line(t.WaitTime(duration_exp)))
         return Rec(())
+
+    def _lasting(self, duration: t.Expression, span: Span) -> t.Expression:
+        """A duration that is not known to be negative."""
+        try:
+            known = evaluate(duration, _Constants(self.names.constant_values))
+        except (ScriptError, KeyError):
+            return duration
+        if isinstance(known, int | float) and known < 0:
+            raise UnsupportedError(
+                f"no robot can wait for {known:g} s", span, codes.UNSUPPORTED_TIME
+            )
+        return duration
 
     def occur(self, situation: Situation, env: Env) -> list[Node]:
         """The mark, and the emptying of files."""
@@ -386,7 +414,8 @@ class StepTranslator:
                 raise UnsupportedError("this delay is not a number", delay.span)
             if value.exp in (t.Value(0), t.Value(0.0)):
                 continue
-            out.append(Line(t.WaitTime(as_quantity(value, tdl.Type.TIME).exp)))
+            wait = self._lasting(as_quantity(value, tdl.Type.TIME).exp, delay.span)
+            out.append(Line(t.WaitTime(wait)))
         if out and self._acts:
             raise UnsupportedError(
                 f"transition `{transition.short}` has both commands and a delay",

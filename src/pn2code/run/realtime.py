@@ -13,7 +13,8 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from pn2code.channels import LOOK_S, PeerState
-from pn2code.run.engine import CellStoppedError, Engine
+from pn2code.robot.commands import Command
+from pn2code.run.engine import CellStoppedError, Engine, RobotRunner
 from pn2code.run.merge import merge
 from pn2code.run.record import RunRecord
 
@@ -31,16 +32,17 @@ class RealtimeEngine(Engine):
 
     speed: float = 1.0
     _looked: float = 0.0
+    _began: float = 0.0
     _sampled: float = 0.0
     _fired: list[dict[str, Any]] = field(default_factory=list)
 
     def run(self) -> RunRecord:
         """Until the supervisor has finished and the robots rest; or until something stops the cell."""
-        start = time.perf_counter()
+        self._began = time.perf_counter()
         try:
             self._begin_run()
             while True:
-                self.now = (time.perf_counter() - start) * self.speed
+                self._look_at_the_clock()
                 self._end_commands()
                 moved = [self._robot_turn(robot) for robot in self.robots]
                 if self._look_at_supervisor() and self._at_rest():
@@ -74,6 +76,14 @@ class RealtimeEngine(Engine):
                 t = float(line["t"]) * self.speed
                 self._fired.append({**line, "t": t})
                 self._enter_activity(line, t)
+
+    def _look_at_the_clock(self) -> None:
+        self.now = (time.perf_counter() - self._began) * self.speed
+
+    def _begin_command(self, robot: RobotRunner, command: Command, line: int) -> None:
+        """A wait is as long as it says after the messages before it, however late this turn is."""
+        self._look_at_the_clock()
+        Engine._begin_command(self, robot, command, line)
 
     def _end_commands(self) -> None:
         for robot in self.robots:

@@ -28,9 +28,9 @@ def to_json(c: Colset, value: Any) -> Json:
         case Kind.UNIT:
             return None
         case Kind.REAL:
-            return _real_to_json(value)
+            return real_to_json(value)
         case Kind.TIME if isinstance(value, float):
-            return _real_to_json(value)
+            return real_to_json(value)
         case Kind.ENUM:
             return value.name
         case Kind.INDEX:
@@ -50,7 +50,8 @@ def to_json(c: Colset, value: Any) -> Json:
             return value
 
 
-def _real_to_json(x: float) -> Json:
+def real_to_json(x: float) -> Json:
+    """The JSON form of a real."""
     if math.isnan(x):
         return "nan"
     if math.isinf(x):

@@ -2,7 +2,8 @@
 
 A value is an `int`, `float`, `bool`, `str` or `ScriptPose`; a quantity is a `float` in the base unit of
 its dimension (mm, deg, s, mm/s). The program has been checked, so types are right; what can still go
-wrong (division by zero, a number that is too large) raises `ScriptError`.
+wrong (a whole number divided by zero, or too large) raises `ScriptError`. Reals are those of IEEE 754, as in nets: what
+is no finite number may be computed with, but not said or carried out.
 """
 
 from __future__ import annotations
@@ -11,6 +12,7 @@ import math
 import struct
 from collections.abc import Callable
 from dataclasses import astuple, dataclass
+from functools import reduce
 from typing import Protocol, assert_never, cast
 
 from pn2code.tdl import tree as t
@@ -80,12 +82,25 @@ def evaluate(e: t.Expression, env: Environment) -> ScriptValue:
 def _checked(value: ScriptValue) -> ScriptValue:
     if isinstance(value, bool | str | ScriptPose):
         return value
-    if isinstance(value, int):
-        if not MIN_INT <= value <= MAX_INT:
-            raise ScriptError(f"the integer {value} is out of range (31 bits)")
-    elif not math.isfinite(value):
-        raise ScriptError("the result is not a finite number")
+    if isinstance(value, int) and not MIN_INT <= value <= MAX_INT:
+        raise ScriptError(f"the integer {value} is out of range (31 bits)")
     return value
+
+
+def _quotient(x: float, y: float) -> float:
+    if y != 0:
+        return x / y
+    if x == 0 or math.isnan(x):
+        return math.nan
+    return math.copysign(math.inf, x) * math.copysign(1.0, y)
+
+
+def _least(a: float, b: float) -> float:
+    return b if math.isnan(a) or b < a else a
+
+
+def _greatest(a: float, b: float) -> float:
+    return b if math.isnan(a) or b > a else a
 
 
 def _binary(operator: str, a: ScriptValue, b: ScriptValue) -> ScriptValue:
@@ -98,24 +113,21 @@ def _binary(operator: str, a: ScriptValue, b: ScriptValue) -> ScriptValue:
     if operator in ("<", "<=", ">", ">="):
         return _ordered(operator, a, b)
     x, y = cast(float, a), cast(float, b)
-    if operator in ("/", "div", "mod") and y == 0:
+    if operator in ("div", "mod") and y == 0:
         raise ScriptError("division by zero")
-    try:
-        match operator:
-            case "+":
-                return _checked(x + y)
-            case "-":
-                return _checked(x - y)
-            case "*":
-                return _checked(x * y)
-            case "/":
-                return _checked(x / y)
-            case "div":
-                return _checked(x // y)
-            case "mod":
-                return _checked(x % y)
-    except OverflowError:
-        raise ScriptError("the result is not a finite number") from None
+    match operator:
+        case "+":
+            return _checked(x + y)
+        case "-":
+            return _checked(x - y)
+        case "*":
+            return _checked(x * y)
+        case "/":
+            return _quotient(float(x), float(y))
+        case "div":
+            return _checked(x // y)
+        case "mod":
+            return _checked(x % y)
     raise ValueError(operator)
 
 
@@ -133,7 +145,7 @@ def _ordered(operator: str, a: ScriptValue, b: ScriptValue) -> bool:
 
 
 def single(value: ScriptValue) -> ScriptValue:
-    """Rounded to single precision, component by component; ScriptError if that is not finite."""
+    """Rounded to single precision, component by component; ScriptError if it is too large for that."""
     if isinstance(value, ScriptPose):
         return ScriptPose(*(cast(float, single(v)) for v in astuple(value)))
     if isinstance(value, float):
@@ -170,15 +182,15 @@ def _call(function: str, arguments: list[ScriptValue]) -> ScriptValue:
         case "abs":
             return _checked(abs(x))
         case "min":
-            return min(numbers)
+            return reduce(_least, numbers)
         case "max":
-            return max(numbers)
+            return reduce(_greatest, numbers)
         case "real":
             return float(x)
         case "sqrt":
-            if x < 0:
-                raise ScriptError("square root of a negative number")
-            return math.sqrt(x)
+            return math.nan if x < 0 else math.sqrt(x)
+        case "sin" | "cos" | "tan" | "floor" | "ceil" | "round" | "trunc" if not math.isfinite(x):
+            raise ScriptError(f"`{function}` of {x:g}, which is not a finite number")
         case "sin":
             return math.sin(math.radians(x))
         case "cos":

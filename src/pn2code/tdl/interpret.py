@@ -19,6 +19,7 @@ from pathlib import PurePath
 from typing import Any, Final, Protocol, assert_never, cast
 
 import pn2code.robot.commands as commands
+from pn2code.semantics.colour_json import real_to_json
 from pn2code.tdl import flow, paths
 from pn2code.tdl import tree as t
 from pn2code.tdl.check import CheckedProgram
@@ -33,6 +34,8 @@ from pn2code.tdl.evaluate import (
 from pn2code.tdl.types import POSE_FIELDS, Type
 
 DEFAULT_STEP_LIMIT: Final = 100_000
+MOST_OCCURRENCES: Final = 100_000
+"""Transitions in a row for which a script neither waits, nor acts, nor takes a message."""
 
 Scalar = int | float | bool | str
 
@@ -168,7 +171,8 @@ class Interpreter:
         program: checked.
         files: the shared files.
         on_event: hears of marks and messages, in order.
-        step_limit: most instructions between two requests; more is an endless loop.
+        step_limit: most instructions between two requests, marks, or messages taken; more is an endless loop.
+        occurrences: most marks between two requests or messages taken; the same.
     """
 
     def __init__(
@@ -178,12 +182,15 @@ class Interpreter:
         on_event: Callable[[Event], None] = _ignore,
         *,
         step_limit: int = DEFAULT_STEP_LIMIT,
+        occurrences: int = MOST_OCCURRENCES,
     ) -> None:
         self._program = program
         self._files = files
         self._channel = {f.name: PurePath(f.path).stem for f in program.files.values()}
         self._tell = on_event
         self._limit = step_limit
+        self._occurrences = occurrences
+        self._statements = self._marks = 0
         self._values: dict[str, ScriptValue] = {}
         self._at: list[tuple[str, int]] = [("", 0)]
         self._speed: dict[t.Motion, float | None] = {t.Motion.JOINT: None, t.Motion.LINEAR: None}
@@ -218,16 +225,23 @@ class Interpreter:
                 self._finish_measure(result)
             if self._sensing is not None:
                 self._finish_sense(result)
-            for _ in range(self._limit):
+            self._statements = self._marks = 0
+            while self._statements < self._limit and self._marks <= self._occurrences:
+                self._statements += 1
                 request = self._step()
                 if request is not None:
                     if isinstance(request, Finished):
                         self._end = request
                     return request
-            raise ScriptError(f"endless loop: {self._limit} statements without a command or a wait")
+            raise ScriptError(f"endless loop: {self._rounds()} without a command or a wait")
         except (ScriptError, FileError) as problem:
             self._end = Fault(str(problem), self._line)
             return self._end
+
+    def _rounds(self) -> str:
+        if self._marks > self._occurrences:
+            return f"more than {self._occurrences} transitions"
+        return f"{self._limit} statements"
 
     def save(self) -> Saved:
         """The state, to come back to."""
@@ -317,6 +331,7 @@ class Interpreter:
                 if message is None:
                     raise ScriptError(f"file `{file.name}` is empty, there is nothing to consume")
                 self._files.clear(channel)
+                self._statements = self._marks = 0  # what comes next depends on others, too
                 self._tell(MessageConsumed(channel, message, self._line))
             case t.Write(file, values):
                 kinds = self._program.files[file.name].types
@@ -333,6 +348,8 @@ class Interpreter:
             case t.Mark(transition, binding):
                 data = {name: self._datum(x) for name, x in binding}
                 self._tell(Marked(transition, data, self._line))
+                self._statements = 0
+                self._marks += 1
             case t.Stop(message_parts):
                 raise ScriptError(" ".join(show(evaluate(m, self)) for m in message_parts))
             case t.Speed(motion, speed):
@@ -387,8 +404,9 @@ class Interpreter:
             case _:
                 value = evaluate(x, self)
                 if isinstance(value, ScriptPose):
-                    return dict(zip(POSE_FIELDS, astuple(value), strict=True))
-                return value
+                    numbers = map(real_to_json, astuple(value))
+                    return dict(zip(POSE_FIELDS, numbers, strict=True))
+                return real_to_json(value) if isinstance(value, float) else value
 
     # Commands
 
@@ -420,14 +438,17 @@ class Interpreter:
                 return commands.ToolAction(action, self._duration(duration))
             case t.Measure(nominal):
                 pose = cast(ScriptPose, evaluate(nominal, self))
-                self._measuring = (s, pose, to_si(pose))
+                self._measuring = (s, pose, self._pose(nominal))
                 return commands.Measure(self._measuring[2])
 
     def _move_speed(self, s: t.Move) -> float | None:
         return self._speed[s.motion] if s.speed is None else self._number(s.speed)
 
     def _number(self, e: t.Expression) -> float:
-        return float(cast(float, evaluate(e, self)))
+        number = float(cast(float, evaluate(e, self)))
+        if not math.isfinite(number):
+            raise ScriptError(f"{number:g} is not a finite number")
+        return number
 
     def _duration(self, e: t.Expression) -> float:
         seconds = self._number(e)
@@ -436,7 +457,10 @@ class Interpreter:
         return seconds
 
     def _pose(self, e: t.Expression) -> commands.Pose:
-        return to_si(cast(ScriptPose, evaluate(e, self)))
+        pose = cast(ScriptPose, evaluate(e, self))
+        if not all(map(math.isfinite, astuple(pose))):
+            raise ScriptError(f"{show(pose)} is no pose: not all of its numbers are finite")
+        return to_si(pose)
 
     def _finish_sense(self, result: commands.Pose | Scalar | None) -> None:
         assert self._sensing is not None

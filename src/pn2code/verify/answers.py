@@ -136,6 +136,13 @@ def _answer(p: m.Property, said: Mapping[str, Any]) -> Answer:
     )
 
 
+def drawn(answer: Answer) -> Answer:
+    """What is known where chance decides: only what was found shows that it is possible."""
+    if answer.answer == "inconclusive" or answer.rests_on in (basis.MARKING, basis.RUN):
+        return answer
+    return Answer(answer.about, "inconclusive", clause("chance"))
+
+
 def verdict(found: Sequence[Answer]) -> Verdict:
     """Of all together: "no" if one is not as expected, else "inconclusive" if one is not known."""
     if any(x.answer != "inconclusive" and not x.is_expected for x in found):

@@ -7,7 +7,7 @@ from typing import Any
 
 from pn2code.diagnostics import Diagnostics
 from pn2code.net.flat import FlatNet, FlatTransition
-from pn2code.semantics.effects import Effect, Effects
+from pn2code.semantics.effects import Effect, Effects, outside
 from pn2code.semantics.references import occurring, searching
 from pn2code.verify.codes import (
     CHANGES_REFERENCES,
@@ -35,6 +35,16 @@ def warn(net: FlatNet, d: Diagnostics) -> None:
             hint="CPN Tools does not restore references, so that its state space of this net may be another one",
         )
     named = 0
+    for place in net.places:
+        own = effects.of(place.initial[0]) if place.initial else frozenset()
+        why = next((e for e in _ORDER if e in own), None)
+        if why is not None and named < MOST_NAMED:
+            named += 1
+            d.warning(
+                DRAWS_RANDOM,
+                f"the initial marking of place `{place.name}` {why.value}: what is found is one of many state spaces",
+                place.origins[0],
+            )
     for t, own in found:
         why = next((e for e in _ORDER if e in own), None)
         if why is None or named == MOST_NAMED:
@@ -48,11 +58,8 @@ def warn(net: FlatNet, d: Diagnostics) -> None:
 
 
 def draws(net: FlatNet) -> bool:
-    """Whether random numbers or files decide anything."""
-    effects = Effects(net.program)
-    return any(
-        e in effects.of(*_texts(t)) for t in net.transitions for e in (Effect.DRAW, Effect.LOOK)
-    )
+    """Whether random numbers or files decide anything, the initial marking included."""
+    return outside(Effects(net.program), net)
 
 
 def refuse(net: FlatNet, d: Diagnostics) -> bool:

@@ -21,6 +21,7 @@ from pn2code.cell.partition import OwnerKind, Partition
 from pn2code.diagnostics import Diagnostics
 from pn2code.net.flat import ArcKind
 from pn2code.properties.questions import Questions
+from pn2code.tdl.interpret import MOST_OCCURRENCES
 from pn2code.verify import chance
 from pn2code.verify.control_answers import (
     Keeper,
@@ -29,8 +30,10 @@ from pn2code.verify.control_answers import (
     cell_answers,
     channels_check,
     drawn,
+    hesitating,
     known,
     order_answers,
+    refusal,
     unknown,
 )
 from pn2code.verify.control_messages import formats, memory
@@ -65,7 +68,7 @@ def of_cell(running: Running, plan: Plan) -> str:
     asked.asked += [
         f"? ends {end}",
         f"? bound {running.stopped} 0 0",
-        "? restless",
+        f"? restless {MOST_OCCURRENCES - 1}",
         *(f"? bound {c.place} 0 1" for c in running.partition.channels),
         *(f"? bound {place} 0 {most}" for place, most in plan.capacities.items()),
     ]
@@ -80,6 +83,7 @@ def of_orders(running: Running, firings: int = MAX_FIRINGS) -> str:
         f"? bounded-response {firings}",
         "? confluence 0",
         "? confluence 1",
+        f"? restless {MOST_OCCURRENCES - 1}",
     ]
     return "".join(f"{line}\n" for line in lines)
 
@@ -118,7 +122,8 @@ def examine(
         wishes = replace(
             plan.wishes,
             sizes=Sizes.start(running.net, plan.storage),
-            traces=None,
+            traces=Path(name),
+            whole=tuple(c.place for c in partition.channels),
             graph=None,
             questions=of_cell(running, plan),
             predicates=plan.properties.predicates,
@@ -145,6 +150,11 @@ def examine(
             memory(found),
             ownership(partition),
         )
+        if running.idle != running.instant:
+            checks = tuple(hesitating(c, orders, asked) for c in checks)
+        refused = refusal(partition, found, keep)
+        if refused is not None:
+            checks = tuple(refused if c.name == BLOCKING else c for c in checks)
         if chance.draws(partition.net):
             checks = tuple(drawn(c) for c in checks)
         return Control(checks, found, running, answers=found.answers[:count], closed=closed)

@@ -8,7 +8,9 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
-from pn2code.cell.partition import Partition
+from pn2code.cell.partition import ChannelKind, Partition
+from pn2code.cell.reach import Reach
+from pn2code.net.flat import BindAll, BindRandom
 from pn2code.verify.control_types import (
     BLOCKING,
     BOUNDED,
@@ -26,6 +28,8 @@ from pn2code.verify.result import Exploration
 from pn2code.verify.running import OWING, Running
 from pn2code.whole_file import whole_file
 
+ORDERS = 5
+"""Questions about all orders; the last one is that of `hesitating`."""
 _WAYS = 60
 """Transitions of a run that are named."""
 
@@ -56,7 +60,7 @@ def order_answers(
     keep: Keeper,
 ) -> Iterator[Check]:
     """What the explorer's answers to `of_orders` mean; traces that are wanted are moved to where they are kept."""
-    finite, bounded, usual, other = _padded(found, rows, 4)
+    finite, bounded, usual, other, _ = _padded(found, rows, ORDERS)
     yield _finite(finite, keep)
     yield _bounded(bounded, keep, plan)
     yield _confluent(usual, other, keep, plan)
@@ -107,6 +111,31 @@ def drawn(check: Check) -> Check:
     if check.answer != "yes" or check.name == OWNERSHIP:
         return check
     return replace(unknown(check.name, {"why": "chance"}), value=check.value)
+
+
+def hesitating(check: Check, found: Exploration, rows: Sequence[Mapping[str, Any]]) -> Check:
+    """The check of the end, where a script may go round for ever beside commands that stand on branches."""
+    if check.name != BLOCKING or check.answer != "yes":
+        return check
+    *_, restless = _padded(found, rows, ORDERS)
+    return check if restless["answer"] == "yes" else unknown(BLOCKING, {"why": "commands"})
+
+
+def refusal(partition: Partition, found: Exploration, keep: Keeper) -> Check | None:
+    """Where a robot's transition raises an exception its script stops (`refusals`); None: none does."""
+    index = found.error.get("transition") if found.error else None
+    if found.error is None or index is None or partition.transition_owner[index] == 0:
+        return None
+    owner = partition.owners[partition.transition_owner[index]]
+    trace = found.error_trace
+    evidence = keep.all({"trace": trace and trace.file, "loop": None}, BLOCKING)
+    after = f", {_steps(evidence[0].steps)} after the start" if evidence else ""
+    where = f"`{partition.net.transitions[index].name}`{after}"
+    says = (
+        f"the script of {owner.phrase} stops in {where}: an exception, or what no robot can carry out (a time that is "
+        "negative, a number that is not finite); that stops the whole cell"
+    )
+    return Check(BLOCKING, "no", says, why="stopped", evidence=evidence)
 
 
 class Keeper:
@@ -238,15 +267,15 @@ def _stopping(row: Mapping[str, Any], keep: Keeper) -> Check | None:
 
 
 def _restless(row: Mapping[str, Any], keep: Keeper) -> Check | None:
-    """Whether a script goes round for ever without waiting, which stops it and the cell; None: as `_stopping`."""
+    """Whether a script goes round for long without waiting, which stops it and the cell; None: as `_stopping`."""
     if row["answer"] != "no":
         return None
     evidence = keep.all(row, BLOCKING)
-    round_ = evidence[0].transitions[evidence[0].loop :] if evidence else ()
+    loop = evidence[0].loop if evidence else None
+    round_ = evidence[0].transitions[loop:] if loop is not None else ()
     ways = f" ({_named(round_)})" if round_ else ""
-    says = (
-        f"a script goes round for ever without a command or a wait{ways}: that stops the whole cell"
-    )
+    how = "for ever" if row["value"] is None else f"for {int(row['value']):,} transitions"
+    says = f"a script goes round {how} without a command or a wait{ways}: that stops the whole cell"
     return Check(BLOCKING, "no", says, why="stopped", evidence=evidence)
 
 
@@ -257,8 +286,10 @@ def _blocking(row: Mapping[str, Any], keep: Keeper, partition: Partition) -> Che
     final = " or ".join(f"`{n}`" for n in names)
     size = int(row["value"])
     if row["answer"] == "yes":
+        *most, last = [*_given(partition)] or [""]
+        given = f", if {' and '.join(filter(None, [', '.join(most), last]))}" * bool(last)
         how = (
-            f"a token in {final} is reached from each of the {size:,} states of the cell, whoever is slow"
+            f"a token in {final} is reached from each of the {size:,} states of the cell, whoever is slow{given}"
             if names
             else f"something can always happen in the {size:,} states of the cell (no place is final)"
         )
@@ -278,6 +309,20 @@ def _blocking(row: Mapping[str, Any], keep: Keeper, partition: Partition) -> Che
     else:
         says = f"{after} a token in {final} can no longer be reached, though the cell goes on"
     return Check(BLOCKING, "no", says, size, row["why"], evidence=evidence)
+
+
+def _given(partition: Partition) -> Iterator[str]:
+    """What is taken for granted of the world, as clauses."""
+    pairs = zip(partition.net.transitions, partition.transition_owner, strict=True)
+    own = [t for t, owner in pairs if owner]
+    if any(c.writer == 0 and c.kind is ChannelKind.FLAG for c in partition.channels):
+        yield "flags are answered within `reply_timeout_s`"
+    if any(isinstance(step, BindAll | BindRandom) for t in own for step in t.plan):
+        yield "each value of a sensor comes now and then"
+    reach = Reach(partition.net.program)
+    measures = {uid for uid, p in partition.primitives.items() if p.command == "measure"}
+    if any(t.code is not None and measures & reach.everything(t.code.action).keys() for t in own):
+        yield "what is measured is what the net says"
 
 
 def channels_check(partition: Partition, rows: Sequence[Mapping[str, Any]], keep: Keeper) -> Check:

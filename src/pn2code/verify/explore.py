@@ -64,7 +64,7 @@ class Wishes:
         stem: what the names of their files begin with.
         graph: a file for the whole graph, marking by marking; None: not wanted. It is not written when the
             exploration is not complete, or has more than `graph_limit` nodes.
-        colours: of each multi-set bound at most so many colours are told; None: all.
+        colours: of each multi-set bound at most so many colours are told; None: all. `whole`: places of which all are.
         questions: about the states and the runs (`properties.questions`), "" for none; `predicates`: the conditions
             that they mention. `evidence`: a folder for the runs that show the answers.
         sizes: what the places of the compiled net hold at first; None: what their structure and initial marking say.
@@ -78,6 +78,7 @@ class Wishes:
     graph: Path | None = None
     graph_limit: int | None = None
     colours: int | None = None
+    whole: tuple[int, ...] = ()
     questions: str = ""
     predicates: tuple[Predicate, ...] = ()
     evidence: Path | None = None
@@ -249,6 +250,7 @@ def _options(limits: Limits, chosen: Chosen, sizes: Sizes, wishes: Wishes) -> li
         ("--write-graph", wishes.graph),
         ("--write-limit", wishes.graph_limit),
         ("--multiset-limit", wishes.colours),
+        ("--whole", ",".join(map(str, wishes.whole)) or None),
         ("--progress-every", wishes.pace),
         *(("--reduce", reduction.value) for reduction in chosen.reductions),
     ]

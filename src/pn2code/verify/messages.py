@@ -89,8 +89,10 @@ def examine(partition: Partition, found: Exploration | None, d: Diagnostics) -> 
         if most is not None and most <= MAX_PAYLOAD:
             continue
         bounds = found.bounds if found is not None else None
-        multiset = bounds[channel.place].upper_multiset if bounds else None
+        bound = bounds[channel.place] if bounds else None
+        multiset = bound.upper_multiset if bound is not None else None
         is_open = is_open or multiset is None or found is None or not found.seen.markings
+        is_open = is_open or (bound is not None and len(multiset or ()) < bound.upper_colours)
         asked += [(index, value) for _, value in multiset or ()]
     errors = len(d.errors)
     wrong = next(_wrong(partition, asked, d), None) if asked else None

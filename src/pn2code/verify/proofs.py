@@ -9,6 +9,7 @@ Of a net without a cell.toml only the structure is looked at: it takes no compil
 
 from __future__ import annotations
 
+import textwrap
 from collections import Counter
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
@@ -30,6 +31,8 @@ from pn2code.verify.reasons import clause
 MOST_STATES = 3_000_000
 MOST_SECONDS = 60.0
 """A supervisor of a larger space is generated with a warning; `verify` takes as long as it takes."""
+_WIDTH = 136
+"""Of a line in the head of a generated file."""
 UNCHECKED = "Not checked, since it was generated with --unchecked (docs/execution.md):"
 
 
@@ -221,7 +224,8 @@ def _verdicts(looked: Control) -> Iterator[str]:
     else:
         assert looked.found is not None
         yield f"Checked in all {looked.found.nodes:,} states of the cell as it runs (docs/execution.md):"
-    yield from map(_verdict, looked.checks)
+    for check in looked.checks:
+        yield from textwrap.wrap(_verdict(check), _WIDTH, subsequent_indent="    ")
 
 
 def _verdict(check: Check) -> str:

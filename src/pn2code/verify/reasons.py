@@ -15,6 +15,7 @@ _CLAUSES = {
     "reduction": "the reduction of the state space does not keep it",
     "endless": "the response is not finite",
     "speeds": "the order of events decides, and durations decide that",
+    "commands": "a script may go round without a command or a wait, if it never takes the branches with commands",
     "chance": "random numbers or files decide: other ones than those that were drawn may lead elsewhere",
     "compiler": "there is no C compiler",
 }

@@ -9,13 +9,14 @@ taken. Added are flags of which others know nothing:
 
     supervisor   idle --sees c--> looks at the next file -- ... --> calm --fires--> calm --publishes c--> calm --> idle
                  (or, with a token in a final place: over)
-    channel      `seen`: the supervisor has read the message; `out`: the supervisor has published it
+    channel      `seen`: the supervisor has read the message; `out`: it has been published
 
 * A transition of the supervisor needs *calm*, and takes only messages that have been *seen*. A round of looks goes from
   file to file, flags first; a look that finds nothing leaves no trace, so a round begins with the first file that holds
   something: those before it were looked at earlier, and may have been filled since.
-* A robot takes only messages that are *out*. What it writes is there at once: nothing tells that from writing a little
-  later, unless one reader gets two messages of one kind (`NotModelledError`).
+* A robot takes only messages that are *out*. What it writes is there at once, as nothing tells that from writing a
+  little later, unless one reader gets two messages of one kind (`NotModelledError`). Only where a transition writes to
+  several readers, its messages are *out* one after the other: the first reader may act before the next is written to.
 * Emptying a file is no step: whoever writes a second message without having heard that the first one was taken may do
   so before it is taken, too; then the place holds two.
 * Time: a step of the clock may come whenever something is waited for, whether or not something else is enabled: the
@@ -39,9 +40,10 @@ from pn2code.ml import core
 from pn2code.net.builder import Arc, Builder
 from pn2code.net.flat import ArcKind, FlatArc, FlatNet, FlatTransition
 from pn2code.net.predicate import Predicate
-from pn2code.net.uses import walk
 from pn2code.semantics.parties import VERIFY
 from pn2code.verify import time_reduction
+from pn2code.verify.commands import Commands
+from pn2code.verify.refusals import refusing
 from pn2code.verify.stops import MOST_MESSAGES, NoProgramError, machine, waits
 from pn2code.whole_file import whole_file
 
@@ -68,7 +70,7 @@ class Running:
         stopped: that of robots whose scripts have stopped; the cell stops then.
         steps: by added transition, in order: whose step it is (the clock has the number after the last owner's).
         clock: which of them are steps of the clock; `probes`: which never occur, and only hold others back.
-        instant: transitions for which a script neither waits nor takes time.
+        instant: transitions for which a script neither waits nor takes time; `idle`: for which it may not.
         meek: transitions that hold no other one of their robot back: their messages may not have come yet.
     """
 
@@ -81,6 +83,7 @@ class Running:
     probes: tuple[int, ...]
     meek: tuple[int, ...]
     instant: tuple[int, ...]
+    idle: tuple[int, ...]
     names: frozenset[str]
     """of the transitions of the cell's net"""
 
@@ -105,7 +108,8 @@ class Running:
         """How the programs choose.
 
         Args:
-            first: whether of the supervisor's binding elements only the first in the documented order occurs.
+            first: whether of the supervisor's binding elements only the first in the documented order occurs; else
+                transitions count as instant whose commands stand on branches.
             names: where transitions of the net were made several (`properties.split`): of each, that of the whole one.
         """
         whole = [t.name for t in self.net.transitions]
@@ -130,7 +134,7 @@ class Running:
                 lines += chunks("first 1", now(own))
         lines += [" ".join(["kin", *map(str, own)]) for own in parts.values() if len(own) > 1]
         lines += chunks("meek", now(self.meek))
-        lines += chunks("instant", now(self.instant))
+        lines += chunks("instant", now(self.instant if first else self.idle))
         lines += chunks("silent", now(range(count, count + len(self.steps))))
         lines += chunks("clock", now(self.clock))
         lines += chunks("probe", now(self.probes))
@@ -241,7 +245,7 @@ def _takes_one(arc: FlatArc) -> bool:
 class _Composer:
     def __init__(self, partition: Partition) -> None:
         self.partition = partition
-        self.b = b = Builder(partition.net)
+        self.b = b = Builder(refusing(partition))
         self.step_owner: list[int] = []
         self.clock: list[int] = []
         self.probes: list[int] = []
@@ -252,7 +256,10 @@ class _Composer:
         self.looked = looked
         self.seen = {c.place: b.place(f"cell.{c.name}.seen", b.unit) for c in looked}
         written = [c for c in partition.channels if c.writer == SUPERVISOR]
-        self.out = {c.place: b.place(f"cell.{c.name}.out", b.unit) for c in written}
+        self.staged = list(_staged(partition))
+        self.out = {
+            c.place: b.place(f"cell.{c.name}.out", b.unit) for c in (*written, *self.staged)
+        }
         self.written = written
         self.idle = b.place("cell.supervisor.idle", b.unit)
         self.calm = b.place("cell.supervisor.calm", b.unit)
@@ -266,6 +273,7 @@ class _Composer:
         for t, owner in zip(partition.net.transitions, partition.transition_owner, strict=True):
             self._transition(t, owner)
         self._publishing()
+        self._writing()
         self._reading()
         for owner in range(1, len(partition.owners)):
             self._stopping(owner)
@@ -283,7 +291,8 @@ class _Composer:
             clock=tuple(self.clock),
             probes=tuple(self.probes),
             meek=tuple(_meek(self.partition)),
-            instant=tuple(_instant(self.partition)),
+            instant=tuple(_instant(self.partition, surely=True)),
+            idle=tuple(_instant(self.partition, surely=False)),
             names=frozenset(t.name for t in self.partition.net.transitions),
         )
 
@@ -313,9 +322,9 @@ class _Composer:
         return self.b.test(place, self.b.var("v", self.b.places[place].colset))
 
     def _transition(self, t: FlatTransition, owner: int) -> None:
-        flags = self.seen if owner == SUPERVISOR else self.out
-        taken = [a.place for a in t.arcs if a.kind is ArcKind.INPUT and a.place in flags]
-        arcs = [self._off(flags[place]) for place in taken]
+        flags = [self.seen, self.out] if owner == SUPERVISOR else [self.out]
+        taken = [a.place for a in t.arcs if a.kind is ArcKind.INPUT]
+        arcs = [self._off(own[place]) for place in taken for own in flags if place in own]
         if owner == SUPERVISOR:
             arcs.append(self._has(self.calm))
         self.b.add_arcs(t.index, arcs, {})
@@ -354,11 +363,21 @@ class _Composer:
             self._step(SUPERVISOR, "is over", at, *arcs)
         self._step(SUPERVISOR, "rests", at + 1, self._off(self.calm), self._on(self.idle))
 
+    def _writing(self) -> None:
+        """What a robot writes to several readers goes out in its order, before the robot does anything else."""
+        first = min([t.priority for t in self.partition.net.transitions] or [0])
+        for i, c in enumerate(reversed(self.staged), 1):
+            out = self.out[c.place]
+            arcs = [self._any(c.place), self.b.absent(out), self._on(out)]
+            name = self.partition.owners[c.writer].name
+            self._step(c.writer, f"{name} publishes {c.file}", first - i, *arcs)
+
     def _reading(self) -> None:
         for i, c in enumerate(self.looked):
             after = self.looks[i + 1] if i + 1 < len(self.looks) else self.calm
             seen = self.seen[c.place]
             found = [self._any(c.place), self.b.absent(seen), self._on(seen), self._on(after)]
+            found += self._is_there(c.place)
             here = self._off(self.looks[i])
             for more in self._answered(c):
                 idle = self._off(self.idle)
@@ -420,21 +439,36 @@ class _Composer:
             self.clock.append(self._step(clock, f"clock.{name}", self.after, quiet, *news))
 
 
-def _instant(partition: Partition) -> Iterator[int]:
-    """Transitions of robots for which their scripts neither wait nor carry out a command."""
+def _staged(partition: Partition) -> Iterator[Channel]:
+    """Channels of robots whose messages come out in an order that somebody could notice, in that order."""
+    channels = {c.place: c for c in partition.channels}
+    found: set[int] = set()
+    for t, owner in zip(partition.net.transitions, partition.transition_owner, strict=True):
+        put = {a.place for a in t.arcs if a.kind is ArcKind.OUTPUT and a.place in channels}
+        if owner != SUPERVISOR and len({channels[place].reader for place in put}) > 1:
+            found |= put
+    return (c for c in partition.channels if c.place in found)
+
+
+def _instant(partition: Partition, *, surely: bool) -> Iterator[int]:
+    """Transitions of robots for which their scripts neither wait for a message nor carry out a command.
+
+    Those with a delay count: where it is not zero, a step of the clock comes before what follows.
+
+    Args:
+        partition: the cell.
+        surely: whether only those count of which that is certain: a command may stand on a branch.
+    """
     channels = {c.place for c in partition.channels}
+    commands = Commands(partition)
     for t, owner in zip(partition.net.transitions, partition.transition_owner, strict=True):
         waits_for = any(a.place in channels and a.kind is not ArcKind.OUTPUT for a in t.arcs)
-        terms = [x for a in t.arcs if a.inscription is not None for x in a.inscription.terms]
-        is_late = t.delay is not None or any(x.delay is not None for x in terms)
-        acts = t.code is not None and any(_calls(x) for x in walk(t.code.action))
-        if owner != SUPERVISOR and not (waits_for or is_late or acts):
+        action = None if t.code is None else t.code.action
+        acts = action is not None and (
+            commands.may_come(action) if surely else commands.must_come(action)
+        )
+        if owner != SUPERVISOR and not (waits_for or acts):
             yield t.index
-
-
-def _calls(e: core.Exp) -> bool:
-    """Whether an expression calls a function of the net, which may be a command."""
-    return isinstance(e, core.Apply) and not isinstance(e.function, core.Builtin)
 
 
 def _meek(partition: Partition) -> Iterator[int]:

@@ -137,6 +137,18 @@ static void files_accept(void *self, uint32_t index)
     s_files.channel[index].accepted = true;
 }
 
+/* Makes the file of a channel between two peers, empty. */
+static bool make_empty(const char *file)
+{
+    char temporary[NAME_SIZE];
+    const int length = snprintf(temporary, sizeof temporary, ".%s.%s.tmp", file, s_files.cell->side);
+    if ((length < 0) || ((size_t)length >= sizeof temporary) || (strchr(file, '/') != NULL)) {
+        return fail(true, "`%s` is no name for a channel's file", file);
+    }
+    const int error = pn_port_publish(s_files.directory, file, temporary, EMPTY, sizeof EMPTY - 1U);
+    return (error == 0) || fail_errno("write", file, error);
+}
+
 /* Publishes a content, by the prepared file where there is one (I2). */
 static bool put_file(uint32_t index, const char *data, size_t length)
 {
@@ -526,7 +538,11 @@ static bool clean_channels(void)
         }
         s_files.channel[i].empty = true;
     }
-    return true;
+    bool is_fine = true;
+    for (uint32_t i = 0U; is_fine && (i < s_files.cell->between_count); i++) {
+        is_fine = make_empty(s_files.cell->between[i]);
+    }
+    return is_fine;
 }
 
 static bool open_all(void)

@@ -1,0 +1,65 @@
+"""Whether a code segment of a robot comes to a command: certainly, perhaps, or never.
+
+commands = Commands(partition)
+commands.must_come(action)      # whatever the values are, a primitive is called
+commands.may_come(action)       # one is called somewhere, perhaps on a branch
+"""
+
+from __future__ import annotations
+
+from pn2code.cell.partition import Partition
+from pn2code.cell.reach import Reach
+from pn2code.ml import core
+
+
+class Commands:
+    """The primitives of a cell, and the functions that call them."""
+
+    def __init__(self, partition: Partition) -> None:
+        self._primitives = partition.primitives
+        self._reach = Reach(partition.net.program)
+        self._looked: dict[int, bool] = {}
+
+    def may_come(self, action: core.Exp) -> bool:
+        """Whether a primitive is mentioned, here or in a function that is used."""
+        self._reach.add_locals(action)
+        return any(uid in self._primitives for uid in self._reach.everything(action))
+
+    def must_come(self, e: core.Exp) -> bool:
+        """Whether a primitive is called whatever the values are; what is not understood may do without."""
+        match e:
+            case core.If(condition, then, otherwise):
+                return self.must_come(condition) or (
+                    self.must_come(then) and self.must_come(otherwise)
+                )
+            case core.Case(scrutinee, rules):
+                return self.must_come(scrutinee) or all(self.must_come(r.body) for r in rules)
+            case core.Apply(function, argument):
+                return self._applies(function) or self.must_come(argument)
+            case core.RecordExp(fields):
+                return any(self.must_come(x) for _, x in fields)
+            case core.Sequence(items):
+                return any(map(self.must_come, items))
+            case core.Let(declarations, body):
+                values = [d.value for d in declarations if isinstance(d, core.ValBind)]
+                return any(map(self.must_come, [*values, body]))
+            case _:
+                return False
+
+    def _applies(self, function: core.Exp) -> bool:
+        """Whether applying a function calls a primitive in each of its rules."""
+        match function:
+            case core.Lambda(rules):
+                return all(self.must_come(rule.body) for rule in rules)
+            case core.Var(symbol):
+                if symbol.uid in self._primitives:
+                    return True
+                body = self._reach.body(symbol)
+                if symbol.uid not in self._looked:
+                    self._looked[symbol.uid] = (
+                        False  # while it is looked at: a function may call itself
+                    )
+                    self._looked[symbol.uid] = body is not None and self._applies(body)
+                return self._looked[symbol.uid]
+            case _:
+                return False

@@ -1,0 +1,266 @@
+"""Scripts in the cell as it runs: where one stops, goes round for long, or writes to several readers."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+
+from e2e.test_running_cell import ACT, ECHO, SLOW, TOOL, examined, net, ran, steps, toml, write
+from pn2code.cell.divide import divide
+from pn2code.cli.nets import open_net
+from pn2code.diagnostics import Diagnostics
+from pn2code.verify import control
+from pn2code.verify.commands import Commands
+from pn2code.verify.control_types import Plan
+from pn2code.verify.explore import Wishes
+from pn2code.verify.limits import Limits
+from pn2code.verify.result import Exploration
+
+pytestmark = [pytest.mark.cc, pytest.mark.usefixtures("quick_build")]
+
+ONE = """    place Start = 1
+    place Armed
+    place Finished
+    trans Ask
+      in Start : ()
+      out toA : 1
+      out Armed : ()
+    trans End
+      in Armed : ()
+      in fromA : k
+      out Finished : ()
+"""
+TWO = ONE.replace("      out toA : 1\n", "      out toA : 1\n      out toB : 1\n") + (
+    """    trans HearB
+      in Armed : ()
+      in fromB : k
+      out Armed : ()
+"""
+)
+
+
+def turning(action: str, guard: str = "") -> str:
+    """A device that answers, and then goes round."""
+    return f"""    place Waiting = 1
+    place Told : INT
+    trans Accept
+      in Waiting : ()
+      in ask : k
+      out Told : k
+      out say : 1
+    trans Turn{guard} code input (k); output (n); action {action}
+      in Told : k
+      out Told : n
+"""
+
+
+N = "  var n: INT;\n"
+# A function of the net is no command, and what stands on a branch may never be done.
+PURE = net(TWO, {"A": SLOW, "B": turning("turned k")}, ACT + N + "  fun turned x = 1 - x;\n")
+BRANCH = net(TWO, {"A": SLOW, "B": turning("(if k > 5 then act () else (); 1 - k)")}, ACT + N)
+BOTH = net(TWO, {"A": SLOW, "B": turning("(if k > 5 then act () else act (); 1 - k)")}, ACT + N)
+COUNT = (
+    turning("k + 1", " guard [k < 40]")
+    + """    trans Rest guard [k >= 40]
+      in Told : k
+      out Waiting : ()
+"""
+)
+LONG = net(TWO, {"A": SLOW, "B": COUNT}, ACT + N)
+# What a robot cannot carry out: a wait of less than nothing, and one without end.
+DELAY = """    place Waiting : T = 1`()
+    place Told : T
+    trans Accept
+      in Waiting : ()
+      in ask : k
+      out Told : ()@+(k - 3)
+    trans Answer
+      in Told : ()
+      out Waiting : ()
+      out say : 1
+"""
+EARLY = net(ONE, {"A": DELAY}, "  colset T = unit timed;\n")
+PAUSE = '[primitives]\npause = { command = "wait" }\n'
+NEVER = net(
+    ONE,
+    {"A": SLOW.replace("act ()", "pause (1.0 / real (List.length []))")},
+    "  fun pause (s : real) = ();\n",
+)
+
+
+@pytest.mark.parametrize(
+    ("text", "cell", "answer", "says"),
+    [
+        (PURE, toml(["A", "B"], TOOL), "no", "goes round for ever without a command"),
+        (BRANCH, toml(["A", "B"], TOOL), "unknown", "never takes the branches with commands"),
+        (EARLY, toml(["A"]), "no", "the script of device `A` stops in `Top.A.Accept`, 1 step"),
+        (NEVER, toml(["A"], PAUSE), "no", "stops in `Top.A.Answer`, 2 steps after the start"),
+    ],
+    ids=["pure", "branch", "early", "never"],
+)
+def test_where_a_script_stops(text: str, cell: str, answer: str, says: str, tmp_path: Path) -> None:
+    found = examined(write(tmp_path / "cell", text, cell)).checks["non-blocking"]
+    assert (found.answer, says in found.says) == (answer, True), found.says
+
+
+@pytest.mark.parametrize(("text", "may", "must"), [(PURE, 0, 0), (BRANCH, 1, 0), (BOTH, 1, 1)])
+def test_whether_a_script_comes_to_a_command(
+    text: str, may: bool, must: bool, tmp_path: Path
+) -> None:
+    opened = open_net(write(tmp_path / "cell", text, toml(["A", "B"], TOOL)), {})
+    partition = divide(opened.flat, opened.config, Diagnostics())
+    assert partition is not None
+    commands = Commands(partition)
+    turn = next(t for t in opened.flat.transitions if t.name == "Top.B.Turn")
+    assert turn.code is not None
+    action = turn.code.action
+    assert (commands.may_come(action), commands.must_come(action)) == (may, must)
+
+
+def test_a_script_that_goes_round_for_long(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """It turns 39 times and rests: the run of forty transitions and the one before it are as many as are permitted."""
+    folder = write(tmp_path / "cell", LONG, toml(["A", "B"], TOOL))
+    for most, answer in ((41, "yes"), (40, "no")):
+        monkeypatch.setattr(control, "MOST_OCCURRENCES", most)
+        found = examined(folder).checks["non-blocking"]
+        assert found.answer == answer, found.says
+    assert "goes round for 40 transitions" in found.says
+
+
+# A tells the supervisor and B, who tells the supervisor; it looks at B's file first.
+CHAIN = """net cell
+  standard
+  val P_HIGH = 100;
+  var k: INT;
+  page Top
+    place toA : INT
+    place fromA : INT
+    place link : INT
+    place fromB : INT
+    subst Supervisor = Sup (toA -> toA, fromA -> fromA, fromB -> fromB)
+    subst A = PA (ask -> toA, say -> fromA, tell -> link)
+    subst B = PB (hear -> link, say -> fromB)
+  page Sup
+    place toA port out : INT
+    place fromA port in : INT
+    place fromB port in : INT
+    place Start = 1
+    place Armed
+    place Lost
+    place Finished
+    trans Ask
+      in Start : ()
+      out toA : 1
+      out Armed : ()
+    trans Both priority P_HIGH
+      in Armed : ()
+      in fromA : k
+      in fromB : k
+      out Finished : ()
+    trans Only
+      in Armed : ()
+      in fromB : k
+      out Lost : ()
+  page PA
+    place ask port in : INT
+    place say port out : INT
+    place tell port out : INT
+    place Waiting = 1
+    trans Accept
+      in Waiting : ()
+      in ask : k
+      out Waiting : ()
+      out say : k
+      out tell : k
+  page PB
+    place hear port in : INT
+    place say port out : INT
+    place Waiting = 1
+    trans Echo
+      in Waiting : ()
+      in hear : k
+      out Waiting : ()
+      out say : k
+"""
+
+
+def chain(*files: str) -> str:
+    """Its cell.toml, with the channels in this order."""
+    text = '[net]\nfile = "cell.cpn"\n[supervisor]\ninstance = "Supervisor"\nfinal = ["Finished"]\n'
+    for c in files:
+        text += f'[[channel]]\nplace = "{c}"\nfile = "{c}.robcad"\nkind = "flag"\n'
+    return text + '[devices.A]\ninstance = "A"\n[devices.B]\ninstance = "B"\n'
+
+
+@pytest.mark.parametrize(
+    ("files", "answer"),
+    [(("toA", "fromB", "link", "fromA"), "no"), (("toA", "fromB", "fromA", "link"), "yes")],
+)
+def test_messages_to_several_readers_come_one_after_the_other(
+    files: tuple[str, ...], answer: str, tmp_path: Path
+) -> None:
+    """Whether B can be heard before A depends on whom A writes to first."""
+    found = examined(write(tmp_path / "cell", CHAIN, chain(*files))).checks["non-blocking"]
+    assert found.answer == answer, found.says
+
+
+def test_devices_talk_to_each_other(tmp_path: Path) -> None:
+    """The supervisor makes the files of channels that are none of its own."""
+    folder = write(tmp_path / "cell", CHAIN, chain("toA", "fromB", "fromA", "link"))
+    names = [name for name, _ in steps(ran(folder))]
+    assert names == [
+        "Top.Supervisor.Ask",
+        "Top.A.Accept",
+        "Top.B.Echo",
+        "Top.Supervisor.Both",
+    ]
+
+
+# Three texts go to A, and the last of them in order is too long for a file.
+TEXTS = net(
+    """    place Start : INT = 1`0
+    place Armed : INT
+    place Finished
+    trans Ask guard [n < 3]
+      in Start : n
+      out toA : String.implode (List.tabulate (if n = 2 then 5000 else n, fn i => #"x"))
+      out Armed : n
+    trans Back
+      in Armed : n
+      in fromA : k
+      out Start : n + 1
+    trans End guard [n >= 3]
+      in Start : n
+      out Finished : ()
+""",
+    {"A": ECHO.replace("in ask : k", "in ask : s")},
+    N + "  var s: STRING;\n",
+)
+
+
+def test_all_messages_are_looked_at_however_few_are_listed(tmp_path: Path) -> None:
+    text = TEXTS
+    for place in ("toA :", "toA port out :", "ask port in :"):
+        text = text.replace(f"place {place} INT", f"place {place} STRING")
+    opened = open_net(write(tmp_path / "cell", text, toml(["A"])), {})
+    d = Diagnostics()
+    partition = divide(opened.flat, opened.config, d)
+    assert partition is not None
+    wishes = Wishes(quick=True, colours=1)
+    found = control.examine(partition, Plan(wishes=wishes), Limits(threads=2), d)
+    assert found is not None
+    (messages,) = [c for c in found.checks if c.name == "messages"]
+    assert messages.answer == "no" and "it has 5,002 bytes" in messages.says
+    closed = control.not_looked("a test", partition, closed=_cut(found.found))
+    assert {c.name: c.answer for c in closed.checks}["messages"] == "unknown"
+
+
+def _cut(found: Exploration | None) -> Exploration:
+    """The same state space, with one colour of each multi-set bound."""
+    assert found is not None and found.bounds is not None
+    return replace(
+        found,
+        bounds=tuple(replace(b, upper_multiset=(b.upper_multiset or ())[:1]) for b in found.bounds),
+    )
