@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from tests.oracle.nets import compared
+from tests.oracle.totals import compared
 
 from helpers.netbuilder import cpn
 from pn2code.diagnostics import Diagnostics

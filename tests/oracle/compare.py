@@ -11,6 +11,7 @@ An exception of pn2code that is no diagnostic comes out: it is a bug whatever th
 
 from __future__ import annotations
 
+import re
 from collections import Counter
 from dataclasses import dataclass
 from pathlib import Path
@@ -42,6 +43,10 @@ WARNED = {
 """What the editor says, and the warning of pn2code that says it: such nets are not refused here."""
 
 
+NO_DECLARATION = "Not a declaration"
+"""What the engine says of an empty one, too, of which pn2code warns."""
+
+
 @dataclass(frozen=True, slots=True)
 class Verdict:
     """Whether an answer is the same on both sides."""
@@ -53,8 +58,9 @@ class Verdict:
 AGREES = Verdict("agrees")
 NOTHING = Verdict("")
 ENGINE = Verdict("engine", "the engine fails with an internal error")
-LATE = {"literal-too-large"}
-"""What is found wrong here by checking, and by the engine only when it makes code of the net."""
+UNCOMPILED = "Compile error when generating code"
+"""So the engine refuses, when it is to run it, a net that it has accepted."""
+LATE = Verdict("engine", "it accepts the net, and cannot compile the code that it makes of it")
 GROUPS = Verdict("engine", "it loses count of variables where several arcs come from one place")
 UNBOUND = ("No complete binding sequence", "Cannot bind", "IllegalBit")
 TAKING = (ArcKind.INPUT, ArcKind.BOTH)
@@ -65,8 +71,15 @@ DEAD = "No more enabled transitions!"
 LOOSE = Verdict(
     "engine", "it confuses the instances of a page that has a socket for a port only in some"
 )
+FUSED = Verdict(
+    "engine",
+    "it looks at each arc from places of one fusion set for itself, and takes too many tokens",
+)
+SUBTRACT = re.compile(r"Exception Subtract raised while executing .*\((\w+)\)")
 BROKEN = "InternalError"
 """So the engine names what is wrong with itself."""
+CONFUSED = "InternalError: insert_transvar"
+"""Where arcs from one place share variables: nothing is wrong with the net."""
 
 
 def differs(note: str) -> Verdict:
@@ -100,7 +113,7 @@ class Seen:
         if failure is not None and failure["kind"] in ("timeout", "crash", "file"):
             return NOTHING
         wrong = [e for e in answer["errors"] if not self._warns(e)]
-        if any(BROKEN in e["message"] for e in wrong):
+        if wrong and self.net is not None and all(CONFUSED in e["message"] for e in wrong):
             return ENGINE
         if wrong and all(self._grouped(e) for e in wrong):
             return GROUPS
@@ -116,8 +129,8 @@ class Seen:
             ]
             return differs(f"not warned of: {unsaid[0]}") if unsaid else AGREES
         if self.net is None:
-            if {e.code for e in self.d.errors} <= LATE:
-                return Verdict("engine", "it accepts the net, and fails when it is to run it")
+            if failure is not None and UNCOMPILED in failure["message"]:
+                return LATE
             return differs("refused here: " + "; ".join(e.message for e in self.d.errors[:3]))
         where = "; ".join(f"{e['what']}: {e['message']}" for e in wrong[:2])
         return differs(f"accepted here; the engine: {where}")
@@ -129,13 +142,24 @@ class Seen:
         return next((codes for words, codes in WARNED.items() if words in error["message"]), set())
 
     def _warns(self, error: dict[str, Any]) -> bool:
-        return bool(self._warning(error))
+        is_empty = error["message"] == NO_DECLARATION and "declaration-empty" in self.codes
+        return is_empty or bool(self._warning(error))
+
+    def _takes_too_many(self, message: str) -> bool:
+        """Whether the engine ends in a transition with several arcs from what is one place here."""
+        found = SUBTRACT.search(message)
+        assert self.net is not None
+        return found is not None and any(self._twice(found.group(1)).values())
+
+    def _twice(self, transition: str) -> dict[int, bool]:
+        """The places that a transition takes from: whether over several arcs."""
+        found = [t for t in self.net.transitions if t.id == transition] if self.net else []
+        taking = Counter(a.place for t in found[:1] for a in t.arcs if a.kind in TAKING)
+        return {place: n > 1 for place, n in taking.items()}
 
     def _grouped(self, error: dict[str, Any]) -> bool:
         """Whether the engine finds no binding of a transition that takes from one place over several arcs."""
-        found = [t for t in self.net.transitions if t.id == error["id"]] if self.net else []
-        taking = Counter(a.place for t in found[:1] for a in t.arcs if a.kind in TAKING)
-        return any(n > 1 for n in taking.values()) and any(
+        return any(self._twice(error["id"]).values()) and any(
             words in error["message"] for words in UNBOUND
         )
 
@@ -146,6 +170,8 @@ class Seen:
     def marking(self, answer: dict[str, Any]) -> Verdict:
         """The initial marking of every place instance, character for character."""
         rows = answer.get("marking")
+        if self.net is not None and UNCOMPILED in answer.get("failure", {}).get("message", ""):
+            return LATE
         if self.net is None or rows is None:
             return NOTHING
         if self.loose:
@@ -223,11 +249,27 @@ class Seen:
         if answer["nodes"] <= SMALL:
             space = state_space(self.game, max_nodes=2 * SMALL)
         if ours != theirs:
-            if self.net.timed and (space is None or _ties(space)):
+            if self.net.timed and (space is None or has_ties(space)):
                 return Verdict("random", f"{ours} instead of {theirs}")
             return self._or_random(f"{ours} instead of {theirs}")
         if space is None or "graph" not in answer:
             return AGREES
+        return self._graph(space, answer["graph"])
+
+    def graph(self, answer: dict[str, Any]) -> Verdict:
+        """A whole state space by the token game, node by node and arc by arc, whatever its size."""
+        if self.game is None or "graph" not in answer:
+            return NOTHING
+        if self._takes_too_many(answer["stopped_by_error"] or ""):
+            return FUSED
+        if answer["stopped_by_error"] or not answer["entire"]:
+            return differs(f"no entire state space: {answer['stopped_by_error'] or 'too large'}")
+        try:
+            space = state_space(self.game, max_nodes=2 * answer["nodes"] + 1)
+        except GameError as error:
+            return differs(f"here the state space raises: {error.message}")
+        if len(answer["dead"]) != len(space.dead):
+            return differs(f"{len(space.dead)} dead markings instead of {len(answer['dead'])}")
         return self._graph(space, answer["graph"])
 
     def _graph(self, space: StateSpace, graph: dict[str, Any]) -> Verdict:
@@ -238,14 +280,14 @@ class Seen:
         theirs.update(engine_arcs(self.net, graph))
         if ours == theirs:
             return AGREES
-        if self.net.timed and _ties(space):
+        if self.net.timed and has_ties(space):
             return Verdict("random", "equal tokens with different stamps")
         return self._or_random(
             f"only here: {list(ours - theirs)[:1]}; only there: {list(theirs - ours)[:1]}"
         )
 
 
-def _ties(space: StateSpace) -> bool:
+def has_ties(space: StateSpace) -> bool:
     """Whether equal tokens with different stamps lie in one place somewhere: the engine takes any of them."""
     return any(_tied(marking) for marking in space.nodes)
 

@@ -3,7 +3,8 @@
     python -m tests.oracle --mutants [--count 1000] [--first 0] [--jobs 2] [--save FOLDER]
 
 The nets are those beside the repository that the engine accepts. Mutant 17 is the same change of the same net every
-time. Both have to give the same verdict; exit code 1 when they do not.
+time. Both have to give the same verdict and, where it is accepted, the same initial marking; exit code 1 when they
+do not.
 """
 
 from __future__ import annotations
@@ -18,7 +19,8 @@ from random import Random
 
 from lxml import etree
 from tests.oracle import engine
-from tests.oracle.nets import BATCH, Totals, compared
+from tests.oracle.alone import BATCH
+from tests.oracle.totals import Totals, compared
 
 LARGEST = 150_000
 """Bytes; larger nets cost much time and have nothing that smaller ones lack."""
@@ -96,6 +98,13 @@ def _number(r: Random, tokens: list[str], others: list[str]) -> None:
         tokens[at] = r.choice(("0", "7", "1.5", "~2", '"a"', "true", "()", "[]", "10000000000"))
 
 
+def _digit(r: Random, tokens: list[str], others: list[str]) -> None:
+    """Another number: mostly accepted, with another marking."""
+    at = _at(r, tokens, str.isdigit)
+    if at is not None:
+        tokens[at] = str(r.choice((int(tokens[at]) + 1, r.randint(0, 9), 0)))
+
+
 def _operator(r: Random, tokens: list[str], others: list[str]) -> None:
     found = [(i, b) for i, t in enumerate(tokens) for a, b in _OPERATORS if t == a]
     if found:
@@ -124,8 +133,8 @@ def _empty(r: Random, tokens: list[str], others: list[str]) -> None:
 
 
 _CHANGES: tuple[Change, ...] = (
-    _remove, _remove, _double, _swap, _rename, _rename, _rename, _misspell, _number, _operator, _operator, _parenthesis,
-    _other, _other, _type, _empty,
+    _remove, _remove, _double, _swap, _rename, _rename, _rename, _misspell, _number, _digit, _digit, _digit, _operator,
+    _operator, _parenthesis, _other, _other, _type, _empty,
 )  # fmt: skip
 
 
@@ -175,7 +184,7 @@ def main(arguments: Sequence[str]) -> int:
     totals = Totals(a.save)
     with tempfile.TemporaryDirectory() as folder:
         for paths in batches(range(a.first, a.first + a.count), Path(folder), nets):
-            for path, said in zip(paths, engine.check(paths, jobs=a.jobs), strict=True):
+            for path, said in zip(paths, engine.marking(paths, jobs=a.jobs), strict=True):
                 name = f"mutant{path.parent.name}"
                 totals.add(name, path, compared(path, said), [said])
     return totals.report()

@@ -20,8 +20,8 @@ from pathlib import Path
 sys.path.insert(0, str(Path(__file__).parents[1]))
 
 from tests.oracle import engine
+from tests.oracle.alone import text
 from tests.oracle.engine import ROOT, NoOracleError
-from tests.oracle.nets import text
 
 from helpers.netbuilder import cpn
 

@@ -513,12 +513,12 @@ def test_output_arcs_take_all_before_the_first_delay_together() -> None:
 
 def test_values_replace_declarations() -> None:
     body = """
-        val size = 3;
-        place A : INT = size`1
+        val most = 3;
+        place A : INT = most`1
     """
-    result, d = run(body, {"size": "5"})
+    result, d = run(body, {"most": "5"})
     assert result is not None and not list(d)
-    _, d = run(body, {"size": "true"})
+    _, d = run(body, {"most": "true"})
     assert d.errors
     _, d = run(body, {"nothing": "5"})
     assert d.errors

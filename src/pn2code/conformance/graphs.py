@@ -24,6 +24,8 @@ Node = tuple[str, tuple[tuple[str, str], ...]]
 """(time, ((place, marking), ...))"""
 Arc = tuple[Node, str, str, Node]
 """(source, transition, binding, target)"""
+_NEXT = re.compile(r"[A-Za-z_][A-Za-z0-9_']*=")
+"""How the next variable of a binding begins."""
 
 
 def our_nodes(game: Game, space: StateSpace) -> list[Node]:
@@ -115,6 +117,14 @@ def engine_arcs(net: FlatNet, graph: dict[str, Any]) -> set[Arc]:
 
 
 def _sorted_binding(text: str) -> str:
-    """Bindings by name of variable. (No value in the recorded graphs has a `name=` in it, but a lone record.)"""
-    parts = re.split(r",(?=[A-Za-z_][A-Za-z0-9_']*=)", text) if "{" not in text else [text]
+    """Bindings by name of variable: `b=2,a={x=1,y=2}` becomes `a={x=1,y=2},b=2`."""
+    parts, depth, in_string = [""], 0, False
+    for at, sign in enumerate(text):
+        in_string ^= sign == '"'
+        if not in_string:
+            depth += (sign in "([{") - (sign in ")]}")
+        if sign == "," and not depth and not in_string and _NEXT.match(text, at + 1):
+            parts.append("")
+        else:
+            parts[-1] += sign
     return ",".join(sorted(parts))

@@ -9,7 +9,8 @@ Of inscriptions and expressions also, each kept on purpose:
 * **A real constant in a pattern**: the engine cannot compile it; here it is compared.
 * **`x as pattern` on an arc** is a syntax error in the engine; here it is understood, with a warning.
 * **A priority below zero** is accepted by the engine's check, but its simulator cannot start; here it is taken, with a warning.
-* **`intinf with a..b`** is refused by the engine; here the bounds are taken.
+* **`intinf with 1..3`** is refused by the engine, which takes the bounds for `int`; here they are taken, with a warning.
+* **An `ml` declaration that is empty, or only a comment**, is refused by the engine; here it is warned of.
 * **A negative zero** is printed as `0.0`, by the engine as `~0.0`.
 * **`ListMergeSort.sort`** keeps the order of equal elements; the engine's may exchange them.
 * **`CS.col` of a union at positions below zero** may give the last constant constructor in the engine; here it raises `CPN'Error`.

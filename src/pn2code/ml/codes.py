@@ -123,6 +123,12 @@ COLSET_RANGE = register(
     "the bounds of a colour set are wrong",
     "Bounds are constants of the base type, the lower one not above the upper one.",
 )
+INTINF_BOUND = register(
+    "intinf-bound",
+    "a bound of an `intinf` colour set is a plain number",
+    "CPN Tools takes a plain number for an `int` and then refuses the colour set `intinf with 1..3`. With the type, "
+    "`intinf with (1 : IntInf.int)..(3 : IntInf.int)`, it accepts it. pn2code accepts both.",
+)
 COLSET_DEFINITION = register(
     "colour-set-definition",
     "a colour set is not defined completely",
@@ -146,7 +152,8 @@ VALUE_CLASH = register(
     "variable-named-as-value",
     "a net variable has the name of a value or function",
     "Where a net variable and a `val`, `fun` or constructor have one name, CPN Tools takes in arcs, guards and code "
-    "segments what was declared first, and in initial markings and declarations the value. Rename one of them.",
+    "segments what was declared first, and in initial markings and declarations the value. A variable whose name "
+    "becomes that of a constructor cannot be used any more. Rename one of them.",
 )
 GUARD_TYPE = register(
     "guard-not-boolean",

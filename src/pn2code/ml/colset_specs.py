@@ -245,6 +245,15 @@ class Colsets:
         if bounds is None:
             return None
         low, high = bounds
+        if kind is Kind.INTINF:
+            for text in spec.texts:
+                if not any(sign.isalpha() for sign in text.text):
+                    self._ctx.d.warning(
+                        codes.INTINF_BOUND,
+                        f"CPN Tools refuses `{text.text.strip()}` as a bound of colour set `{spec.name}`",
+                        text.span(),
+                        hint=f"say of what type it is: `({text.text.strip()} : IntInf.int)`",
+                    )
         return Colset(spec.name, kind, t, spec.timed, low=low, high=high, origin=spec.origin)
 
     def _string(self, spec: ColsetSpec) -> Colset | None:

@@ -12,7 +12,7 @@ Typical use (the `link` and `check` stages of `pn2code.net`):
 from __future__ import annotations
 
 import sys
-from collections.abc import Callable, Hashable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Hashable, Iterator, Mapping, Sequence, Set
 from contextlib import contextmanager
 from dataclasses import dataclass, field, replace
 from functools import partial
@@ -37,6 +37,7 @@ from pn2code.ml.environment import (
     BrokenEntry,
     BrokenType,
     ConEntry,
+    HiddenEntry,
     Scope,
     UnsupportedEntry,
 )
@@ -60,6 +61,8 @@ from pn2code.ml.used_files import UsedFiles
 __all__ = ["ColsetSpec", "Elaborator", "TypedCode", "is_layered"]
 
 T = TypeVar("T")
+Examine = Callable[[s.Dec, Diagnostics], None]
+"""Reports what is wrong with a declaration besides its types."""
 
 _RECURSION_LIMIT = 20_000
 """Python frames for one text: nesting is limited by `fixity.MAX_DEPTH`, chains of operators are not."""
@@ -130,6 +133,7 @@ class Elaborator:
         self._ctx.tainted = False
         colset, datatypes = self._colsets.declare(spec)
         self._made += datatypes
+        self._hide({*spec.ids, *(label for label, _ in spec.fields)}, spec.origin)
         return colset
 
     def announce(self, names: Callable[[], frozenset[str]]) -> None:
@@ -174,6 +178,13 @@ class Elaborator:
                 name, from_type(colset.type, []), symbol=symbol, colset=colset
             )
 
+    def _hide(self, names: Set[str], at: Origin | Span) -> None:
+        """Variables of the net that have become constructors: CPN Tools refuses the transitions that use them."""
+        for name in sorted(names & self._variables.keys()):
+            if isinstance(self._ctx.top.values.get(name), ConEntry):
+                self._variable_scope.values[name] = HiddenEntry()
+                self._clash(name, at, "the variable, which was declared first, cannot be used")
+
     def _clash(self, name: str, at: Origin | Span, meaning: str) -> None:
         """What is declared first counts in arcs, guards and code segments, as in CPN Tools."""
         self._d.warning(
@@ -183,21 +194,28 @@ class Elaborator:
             hint="rename one of them",
         )
 
-    def declarations(self, text: SourceText) -> None:
-        """An `ml` element: any number of CPN ML declarations."""
+    def declarations(self, text: SourceText, examine: Examine = lambda dec, d: None) -> None:
+        """An `ml` element: any number of CPN ML declarations.
+
+        Args:
+            text: the declarations.
+            examine: is given each of them that is well-typed, and reports what else is wrong with it.
+        """
         program = parse_program(text, self._d)
         if program is None:
             self._break(declared_names(text), ())
             return
         for dec in program:
             before = len(self._d.items)
-            self._border(text, partial(self._declaration, text, dec))
+            self._border(text, partial(self._declaration, text, dec, examine))
             if any(x.severity is Severity.ERROR for x in self._d.items[before:]):
                 names = declared_names(text, dec.span.start, dec.span.end)
                 self._break(names, types_declared_by(dec))
                 break_modules(dec, self._ctx.top)
 
-    def _declaration(self, text: SourceText, dec: s.Dec) -> None:
+    def _declaration(
+        self, text: SourceText, dec: s.Dec, examine: Examine = lambda dec, d: None
+    ) -> None:
         self._repeats.clear()
         resolved = resolve_declaration(dec, self._fixities, self._d)
         if resolved is None:
@@ -221,6 +239,14 @@ class Elaborator:
             self._break(declared_by(changed), types_declared_by(changed))
             break_modules(changed, self._ctx.top)
             return
+        examine(changed, self._d)
+        for name in sorted(declared_by(changed) | types_declared_by(changed)):
+            if "." in name and not isinstance(changed, s.ValDec):
+                self._d.error(
+                    codes.SYNTAX_ERROR,
+                    f"`{name}` cannot be declared: it would be a member of a structure",
+                    dec.span,
+                )
         for name in sorted(declared_by(changed) & self._variables.keys()):
             if isinstance(self._ctx.top.values.get(name), Binding):
                 self._clash(
@@ -229,6 +255,7 @@ class Elaborator:
                     "inscriptions mean the variable, which was declared first; "
                     "initial markings and declarations mean the value",
                 )
+        self._hide(declared_by(changed), dec.span)
         made = build()
         self._made += made
         for weak in self._ctx.weak:

@@ -126,9 +126,14 @@ class UnsupportedEntry:
     name: str
 
 
+@frozen
+class HiddenEntry:
+    """A variable of the net whose name has become that of a constructor: it cannot be used."""
+
+
 Entry = (
     Binding | BuiltinEntry | OverloadedEntry | ConEntry | EmptyEntry | UnitEntry | ColsetEntry | BrokenEntry
-    | UnsupportedEntry | SealedEntry
+    | UnsupportedEntry | HiddenEntry | SealedEntry
 )  # fmt: skip
 
 

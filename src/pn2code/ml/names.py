@@ -15,6 +15,7 @@ from pn2code.ml.environment import (
     ConEntry,
     EmptyEntry,
     Entry,
+    HiddenEntry,
     OverloadedEntry,
     SealedEntry,
     UnitEntry,
@@ -112,6 +113,13 @@ class Names:
                 )
             case BrokenEntry():
                 self._ctx.tainted = True
+                return BROKEN
+            case HiddenEntry():
+                self._ctx.error(
+                    codes.VALUE_CLASH,
+                    f"variable `{name}` cannot be used: a constructor of that name was declared after it",
+                    span,
+                )
                 return BROKEN
             case UnsupportedEntry():
                 self._ctx.error(

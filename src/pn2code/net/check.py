@@ -17,7 +17,7 @@ from pn2code.ml.core import Exp, Lit
 from pn2code.ml.elaborate import ColsetSpec, Elaborator, is_layered
 from pn2code.ml.parser import declared_names
 from pn2code.ml.types import INT, Type, list_of, timed_of
-from pn2code.net import space_names
+from pn2code.net import reserved_words, space_names
 from pn2code.net.binding import Parts, Planner
 from pn2code.net.codes import (
     ARC_AS,
@@ -91,6 +91,7 @@ class _Checker:
             int_bits=int_bits,
             folder=Path(net.document.file).parent,
         )
+        self.is_pnml = net.document.tool == "PNML"
         self.broken: set[str] = set()
         self.tests: list[Exp] = []  # of arcs `x as pattern` of the present transition
         declared = {
@@ -111,6 +112,8 @@ class _Checker:
     def declare(self, declaration: RawDeclaration) -> None:
         """Hand one declaration to the elaborator."""
         e = self.elaborator
+        if not self.is_pnml:
+            reserved_words.refuse_names(declaration, self.d)
         match declaration:
             case RawColset(kind="") | RawColset(name=""):
                 self.broken.add(declaration.name)  # reported when the file was read
@@ -135,8 +138,17 @@ class _Checker:
                     self.broken.discard(declaration.name)
             case RawVar():
                 e.variables(declaration.names, declaration.type, declaration.origin)
-            case RawMl():
+            case RawMl() if self.is_pnml:
                 e.declarations(declaration.text)
+            case RawMl():
+                e.declarations(declaration.text, reserved_words.refuse)
+                if reserved_words.says_nothing(declaration.text):
+                    self.d.warning(
+                        DECLARATION_EMPTY,
+                        "a declaration says nothing: CPN Tools refuses it (Not a declaration)",
+                        declaration.origin,
+                        hint="remove it, or put the comment before another declaration",
+                    )
             case RawGlobref():
                 e.globref(declaration.name, declaration.text)
             case RawUse():
@@ -174,7 +186,7 @@ class _Checker:
 
     def typed(self) -> TypedNet:
         pages = tuple(self.page(p) for p in self.net.pages)
-        if self.net.document.tool != "PNML":
+        if not self.is_pnml:
             colsets = {c.name: c.origin for c in self.net.declarations if isinstance(c, RawColset)}
             space_names.warn(self.program, colsets, self.d)
         return TypedNet(

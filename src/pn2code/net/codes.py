@@ -87,9 +87,9 @@ UNSUPPORTED_CHANNEL = register(
 )
 DECLARATION_EMPTY = register(
     "declaration-empty",
-    "a reference declaration has no value",
+    "a declaration declares nothing",
     "`globref` declares a reference with a first value. One without value declares nothing, and "
-    "CPN Tools passes over it, too.",
+    "CPN Tools passes over it, too. A declaration in CPN ML that is empty, or only a comment, it refuses.",
 )
 DECLARATION_UNREAD = register(
     "declaration-not-read",
@@ -190,4 +190,18 @@ SPACE_NAME = register(
     "CPN Tools compiles the sources of its state-space tool after the declarations of the net. A constant, function, "
     "value or colour set of a name that these sources use keeps them from compiling: `Exception raised entering state "
     "space tool`. The simulator is not affected, and neither is pn2code.",
+)
+RESERVED_WORD = register(
+    "reserved-word",
+    "a reserved word of CPN Tools is declared",
+    "CPN Tools keeps some names for itself besides the keywords of Standard ML: `size`, `time`, `ms`, `list`, `color`, "
+    "`input`, `Node`, ... A colour set, variable, value, function, type, constructor, label or exception of such a "
+    "name is refused: `Reserved word cannot be used as identifier`. Inside expressions and structures the names may be "
+    "used.",
+)
+NOT_IN_CPN_ML = register(
+    "not-in-cpn-ml",
+    "a declaration of Standard ML is not one of CPN ML",
+    "CPN Tools refuses `open` anywhere in a declaration, `signature`, `datatype a = datatype b`, and an expression "
+    "where a declaration is expected.",
 )

@@ -2,7 +2,8 @@
 
 Its sources are compiled after the declarations of the net, and use names that these may have hidden: with a constant
 `left` of an enumeration, the variables `left` in its sources become that constant. The net simulates all the same. The
-names were found by experiment, each declared before each of the sources that has it.
+names were found by experiment, each declared before each of the sources that has it; those that cannot be declared at
+all (`reserved_words`) are not among them.
 """
 
 from __future__ import annotations
@@ -19,58 +20,57 @@ Action All AllReachable AlreadyProcesed ArcCount ArcDescriptor ArcFilterGen ArcL
 Arcs ArcsInPath BEToArc BEToTI BEsDead BEsDead' BEsFairness BEsLive BEsLive' BEsStrictlyLive BTT_st
 Bind BindingLimit CalculateOccGraph CalculateSccGraph ColorSearch CompTimeLimit CreationTime
 DataRecFields DeadMarking DeadMarkings DeadMarkingsGen DeadTIs DeadTIsGen DeleteStateSpace DestNode
-EntireGraph EntireGraphCalculated EqualUntimed EqualsUntimed EvalAllArcs EvalAllNodes EvalAllSccs
-EvalArcs EvalNodes EvalSccs ExcAvlLookup FairnessGen FairnessProperties FirstConstructor FirstItem
-Freq FromTransSeq FullProc FullyProcessed GenOG GenerateEntryF GenerateHeaderF GenerateHeadingF
+EntireGraphCalculated EqualUntimed EqualsUntimed EvalAllArcs EvalAllNodes EvalAllSccs EvalArcs
+EvalNodes EvalSccs ExcAvlLookup FairnessGen FairnessProperties FirstConstructor FirstItem Freq
+FromTransSeq FullProc FullyProcessed GenOG GenerateEntryF GenerateHeaderF GenerateHeadingF
 HomeMarking HomeMarking' HomeMarkingExists HomeMarkings HomeMarkingsGen HomePredicate HomeSpace
 HomeSpace' IllegalName InArcs InNodes InitNode InitScc InitialHomeMarking IntegerBounds
 IntegerBoundsGen InternalError LastTotalCalc ListDeadMarkings ListDeadTIs ListDeadlocks ListFairTIs
 ListHomeMarkings ListHomeScc ListImpartialTIs ListJustTIs ListLiveTIs ListProcDeadlocks LiveTIs
 LiveTIsGen LowerInteger LowerMultiSet LowerTimedMultiSet Match MaxEnab MinimalHomeSpace
-MultiSetBounds MultiSetBoundsGen NONE Net NewCalcStat NextArcNum NextInspectTime NextNodeNum
-NextStopTime NoLimit NoOfArcs NoOfNodes NoOfSecs NoOfVarsToEncode NoPathExists NodeCount
-NodeDescriptor NodeFilterGen NodeLimit NodeNames NodeToScc Noderefs NodesInPath OGSimStatetoOG
-OGStatetoSim OGdatarec OGdatarecfield OGrapgh OUT OccurrenceTime OnlyThisList Option OutArcs
-OutNodes PageNames PartProc PlaceInsts Pred PredAllArcs PredAllNodes PredAllSccs PredArcs PredNodes
-PredSccs ProcNodePred Processed Reachable Reachable' SOME SccComptime SccDestNode SccGraphCalculated
-SccListDeadMarkings SccNoOfNodes SccNodesInPath SccOutArcs SccOutNodes SccReachable SccReachable'
-SccSourceNode SccTerminal SccToArcs SccToNodes SccTrivial SearchAllArcs SearchAllNodes SearchAllSccs
-SearchArcs SearchNodes SearchReachableSccs SearchSccs SearchSubgraphCycles SearchSubgraphSccs
-SelectNextNode SourceNode StandardInspectionReport StandardReport StartTime StateCreationTime
-Statistics StatisticsGen StopCritSatisfied StripTime TIsDead TIsDead' TIsFairness TIsLive TIsLive'
-Terminal TerminationTime ToProcess TotalTime TransInstLimit TrivialSubgraphScc UnProc UpperInteger
+MultiSetBounds MultiSetBoundsGen Net NewCalcStat NextArcNum NextInspectTime NextNodeNum NextStopTime
+NoOfArcs NoOfNodes NoOfSecs NoOfVarsToEncode NoPathExists NodeCount NodeDescriptor NodeFilterGen
+NodeLimit NodeNames NodeToScc Noderefs NodesInPath OGSimStatetoOG OGStatetoSim OGdatarec
+OGdatarecfield OGrapgh OUT OccurrenceTime OnlyThisList Option OutArcs OutNodes PageNames PartProc
+PlaceInsts Pred PredAllArcs PredAllNodes PredAllSccs PredArcs PredNodes PredSccs ProcNodePred
+Processed Reachable Reachable' SccComptime SccDestNode SccGraphCalculated SccListDeadMarkings
+SccNoOfNodes SccNodesInPath SccOutArcs SccOutNodes SccReachable SccReachable' SccSourceNode
+SccTerminal SccToArcs SccToNodes SccTrivial SearchAllArcs SearchAllNodes SearchAllSccs SearchArcs
+SearchNodes SearchReachableSccs SearchSccs SearchSubgraphCycles SearchSubgraphSccs SelectNextNode
+SourceNode StandardInspectionReport StandardReport StartTime StateCreationTime Statistics
+StatisticsGen StopCritSatisfied StripTime TIsDead TIsDead' TIsFairness TIsLive TIsLive' Terminal
+TerminationTime ToProcess TotalTime TransInstLimit TrivialSubgraphScc UnProc UpperInteger
 UpperMultiSet UpperTimedMultiSet abs allNodes allOGrecs allPredecessorEdges allSuccessorEdges arc
 arccountstr arcinfo arcinfos arcs arcsflat assigned bf bindings bindlimit_reached calcstat cands
 code code1 code2 code_storage code_storage2 code_temp code_temp2 concat copy_code_list count
 creationtime cur_elem curtod decl declerr destnoderef div dstinfo dstnode edgeStmts elements elm
-elms empty emptybind errmsg errstr exn exnName explode extpat false fid fieldlist fieldname
-fieldsref first firstBTT firstinst firstmlno firstnoderef firsttri flatten foldr freq from fullid
-func funname funpostfix fusgrid fusion hd hdvar i2 implode inarcs included init_code_list innerrec
-innodes input insertstaterec inst_conns instlist instmlno instno int internalid intpat is_port
-istimed it item key kind left length lst map maxfunpatterns mem mkst_Arc mkst_BE mkst_Node mkst_PI
-mkst_TI mkstr_ms mlnoslist msreflist mymlno n1 n2 name newDFI newarc newarccount newarcnum newcand
-newnodelist newnodenum next_time nil no_bindings no_of_tokens nodecountstr nodeinfos noderef nodes
-nodesWithoutPredecessors nodesWithoutSuccessors nodesflat nonlocalfus not num_of_insts o ogpath
-outarcs outnodes output outtimed page pagename partfuncount patterncount patternetc pgglobfuschng
-pgmlno pgname pgno pgstr place place_id places pldescrs pli plidescr plitype pllist plmlno plmlnostr
-plname pltree port portinstances portmlid prime print ps real recname recreflist ref refstore
-remdupl rest rev right root root1 root2 root_bf root_key root_left root_left_bf root_left_right
-root_left_right_bf root_right root_right_bf root_right_left root_right_left_bf rootrec scc scc'comp
-sccsWithoutSuccessors secs siminst simplace socketid socketinst srcinfo srcnode srcnoderef st_Arc
-st_ArcDescrRef st_BE st_Node st_NodeDescrRef st_PI st_PI0 st_PI1 st_TI st_TI0 st_TI1 staterec stlst
-stmt stopcritsatisfied stringreparcref stringrepberef stringrepmarkref stringrepnoderef
-stringreppiref stringreptiref sub_pages super_pages surrpgglobfus surrports tab1 tab2 tabel
-targetinfo temp terminationtime text thistimestr thistree times tl tlvars to tod topOGdatarec
-topOGdatarecfield totalarccountstr totalnodecountstr totaltimestr trans_list transid transinsts
-transitions trlist trmlno trname trstr true tsurrpgglobfus tsurrports typeerr typestr unchngrecs use
-userArcFilter userNodeFilter useractionfun userfilterfun userpredfun userpredicate valOf varlist
-varlists vars wasthere withcode withtime
+elms emptybind errmsg errstr exn exnName explode extpat fid fieldlist fieldname fieldsref first
+firstBTT firstinst firstmlno firstnoderef firsttri flatten foldr freq from fullid func funname
+funpostfix fusgrid fusion hd hdvar i2 implode inarcs included init_code_list innerrec innodes
+insertstaterec inst_conns instlist instmlno instno internalid intpat is_port istimed it item key
+kind left length lst map maxfunpatterns mem mkst_Arc mkst_BE mkst_Node mkst_PI mkst_TI mkstr_ms
+mlnoslist msreflist mymlno n1 n2 name newDFI newarc newarccount newarcnum newcand newnodelist
+newnodenum next_time nil no_bindings no_of_tokens nodecountstr nodeinfos noderef nodes
+nodesWithoutPredecessors nodesWithoutSuccessors nodesflat nonlocalfus num_of_insts o ogpath outarcs
+outnodes outtimed page pagename partfuncount patterncount patternetc pgglobfuschng pgmlno pgname
+pgno pgstr place place_id places pldescrs pli plidescr plitype pllist plmlno plmlnostr plname pltree
+port portinstances portmlid prime ps recname recreflist refstore remdupl rest rev right root root1
+root2 root_bf root_key root_left root_left_bf root_left_right root_left_right_bf root_right
+root_right_bf root_right_left root_right_left_bf rootrec scc scc'comp sccsWithoutSuccessors secs
+siminst simplace socketid socketinst srcinfo srcnode srcnoderef st_Arc st_ArcDescrRef st_BE st_Node
+st_NodeDescrRef st_PI st_PI0 st_PI1 st_TI st_TI0 st_TI1 staterec stlst stmt stopcritsatisfied
+stringreparcref stringrepberef stringrepmarkref stringrepnoderef stringreppiref stringreptiref
+sub_pages super_pages surrpgglobfus surrports tab1 tab2 tabel targetinfo temp terminationtime text
+thistimestr thistree times tl tlvars to tod topOGdatarec topOGdatarecfield totalarccountstr
+totalnodecountstr totaltimestr trans_list transid transinsts transitions trlist trmlno trname trstr
+tsurrpgglobfus tsurrports typeerr typestr unchngrecs use userArcFilter userNodeFilter useractionfun
+userfilterfun userpredfun userpredicate valOf varlist varlists vars wasthere withcode withtime
 """
 CONSTRUCTORS = frozenset(_CONSTRUCTORS.split())
 """As constants of enumerations, constructors of unions, index names, exceptions."""
 _VALUES = """
-abs concat div empty exnName explode flatten foldr hd implode length map mem mkstr_ms not o print
-real remdupl rev tl tod use valOf
+abs concat div exnName explode flatten foldr hd implode length map mem mkstr_ms o remdupl rev tl tod
+use valOf
 """
 VALUES = frozenset(_VALUES.split())
 """As values and functions, unless they can be used like those that they hide."""

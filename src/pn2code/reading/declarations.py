@@ -63,8 +63,7 @@ class DeclarationReader:
                     items.append(self.variable(child))
                 case "ml":
                     source = child.source(self.origin(child, "", "declaration"))
-                    if source.text:
-                        items.append(RawMl(child.get("id"), source, source.origin))
+                    items.append(RawMl(child.get("id"), source, source.origin))
                 case "globref":
                     items.append(self.globref(child))
                 case "use":
