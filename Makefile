@@ -1,10 +1,10 @@
 # What `make` users expect; ./dev does the work and says what else there is.
-.PHONY: thorough database-15 help test lint fuzz hosts declarations bench ml-suite conformance mutation oracle misspell elements forgery adversary
+.PHONY: thorough database-15 help test lint fuzz hosts declarations expressions sanitized bench ml-suite conformance mutation oracle misspell elements forgery adversary
 
 help:
 	@./dev help
 
-test lint bench ml-suite conformance mutation oracle misspell elements forgery:
+test lint bench ml-suite conformance mutation oracle misspell elements forgery sanitized:
 	./dev $@
 
 # The tests with all of their long sweeps.
@@ -27,6 +27,11 @@ hosts:
 # Every type at every position, three times over, with other expressions: all of it compiles without a warning, and agrees.
 declarations:
 	./dev fuzz --declarations 5445
+
+# Random CPN ML over the whole library: alone, and on arcs, in guards, delays and code segments.
+expressions:
+	./dev fuzz --expressions 20000
+	./dev fuzz --inscriptions 2000
 
 # A thousand random cells: what `verify` proves of them must hold in runs of their programs.
 adversary:

@@ -648,7 +648,7 @@ static void ml_drill(void)
  */
 static double ml_principal(double angle)
 {
-    return angle - 360.0 * ceil((angle - 180.0) / 360.0);
+    return angle - 360.0 * pn_ceil((angle - 180.0) / 360.0);
 }
 
 /* cell.cpn:440

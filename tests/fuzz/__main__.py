@@ -5,6 +5,8 @@
     python -m tests.fuzz --graphs N     whole state spaces of random nets: see `graphs`
     python -m tests.fuzz --hosts N      random nets with references in all hosts: see `hosts`
     python -m tests.fuzz --declarations N   every type at every position: see `declarations`
+    python -m tests.fuzz --expressions N    CPN ML over the whole library, compiled: see `expressions`
+    python -m tests.fuzz --inscriptions N   the same on arcs, in guards, delays and code segments: see `inscriptions`
 
 A case is a number: case 17 is the same net wherever the base nets are the same. Nothing but diagnostics may come
 out: no exception, no more than 10 s of the processor, no more than 1 GB, and a net that is refused has an error that
@@ -186,6 +188,14 @@ def main() -> int:
         from tests.fuzz import declarations
 
         return declarations.main()
+    if any(o.startswith("--expressions") for o in others):
+        from tests.fuzz import expressions
+
+        return expressions.main()
+    if any(o.startswith("--inscriptions") for o in others):
+        from tests.fuzz import inscriptions
+
+        return inscriptions.main()
     if others:
         parser.error(f"unrecognized arguments: {' '.join(others)}")
     shared = Path(os.environ.get("PN2CODE_SHARED", ROOT.parent / "shared"))

@@ -77,6 +77,7 @@ class Explorers:
     compiler: str
     flags: tuple[str, ...]
     host: Path
+    seconds: float = SECONDS
 
     @staticmethod
     def of(compiled: Path, folder: Path) -> Explorers:
@@ -182,7 +183,7 @@ class Explorers:
             capture_output=True,
             text=True,
             check=False,
-            timeout=SECONDS,
+            timeout=self.seconds,
             # What an explorer has goes with its process.
             env={
                 **os.environ,

@@ -181,6 +181,9 @@ int64_t pn_real_round(pn_ctx_t *cx, double x);
 int64_t pn_real_trunc(pn_ctx_t *cx, double x);
 /* Rounds a half to even, as a real. */
 double pn_real_round_even(double x);
+/* Rounds up and towards zero, as reals; a zero has the sign of `x` only if that is zero, too. */
+double pn_ceil(double x);
+double pn_trunc(double x);
 /* The same to 64-bit integers. */
 int64_t pn_wide_floor(pn_ctx_t *cx, double x);
 int64_t pn_wide_ceil(pn_ctx_t *cx, double x);

@@ -86,7 +86,7 @@ class _Emitter:
     def _refers(self, table: str) -> bool:
         """Whether values of a type refer into the arena."""
         found = (self._descriptors[key].type.rep for key in self._closure({table}))
-        return any(rep in (Rep.STRING, Rep.LIST, Rep.UNION) for rep in found)
+        return any(rep in (Rep.STRING, Rep.LIST, Rep.UNION, Rep.BIG) for rep in found)
 
     def _word_mask(self) -> str:
         """What takes away what follows from the rest of the first word of the packed part."""
@@ -178,6 +178,16 @@ class _Emitter:
             "prototype": "\n".join(head) + ";",
             "is_recursive": f.recursive,
             "lines": s.lines,
+        }
+
+    def _member(self, f: ir.Function, wrappers: dict[str, str]) -> dict[str, object]:
+        """A function that decides membership of a subset, and its wrapper for the subset's table."""
+        return {
+            **self._function(f),
+            "wrapper": wrappers[f.key],
+            "call": self._names.function(f.key, f.hint),
+            "has_context": f.key in self._needs_context,
+            "type": self._types.name(f.parameters[0].type),
         }
 
     def _block(self, element: str, kind: str, origin: Origin) -> str:
@@ -437,26 +447,18 @@ class _Emitter:
             roots += called(p.initial)
         for g in self._net.globals:
             roots += called(g.setup)
-        found = self._reached(roots)
+        found: set[str] = set()
         while True:
-            # What tables need: whether a value belongs to a subset is a function that the table names.
+            while roots:
+                key = roots.pop()
+                if key not in found:
+                    found.add(key)
+                    roots += called(self._functions[key].body)
             functions = [f for f in self._net.functions if f.key in found]
-            tables = self._used_tables(functions, self._net.predicates)
-            members = [f"member {key}" for key in tables if f"member {key}" in self._functions]
-            more = self._reached(members) - found
-            if not more:
+            tables = self._used_tables(functions, self._net.predicates if with_predicates else ())
+            roots = [m for key in tables if (m := self._descriptors[key].member) and m not in found]
+            if not roots:
                 return functions
-            found |= more
-
-    def _reached(self, roots: list[str]) -> set[str]:
-        """The functions that are called, directly or through others."""
-        roots, found = list(roots), set[str]()
-        while roots:
-            key = roots.pop()
-            if key not in found:
-                found.add(key)
-                roots += called(self._functions[key].body)
-        return found
 
     def _used_tables(
         self, functions: Iterable[ir.Function], predicates: Iterable[ir.Predicate] = ()
@@ -489,11 +491,12 @@ class _Emitter:
         net = self._net
         functions = self._used_functions(with_predicates=False)
         keys = self._used_tables(functions)
-        wrappers = {f.key: f"is_{stem(f.hint)}" for f in functions if f.key.startswith("member ")}
+        wrappers = _wrappers(functions)
         tables = c_tables.Tables(self._types, self._descriptors, wrappers)
         recursive = tables.to_declare(keys)
         transitions = [self._transition(t) for t in net.transitions]  # what they call is known then
         further = [f for f in self._used_functions(with_predicates=True) if f not in functions]
+        wrappers |= _wrappers(further)
         further_keys = [
             k for k in self._used_tables([*functions, *further], net.predicates) if k not in keys
         ]
@@ -503,18 +506,7 @@ class _Emitter:
             "net": net,
             "stem": stem(net.name),
             "functions": [self._function(f) for f in functions if f.key not in wrappers],
-            "members": [
-                {
-                    **self._function(f),
-                    "wrapper": wrappers[f.key],
-                    "call": self._names.function(f.key, f.hint),
-                    "has_context": f.key in self._needs_context,
-                    "type": self._types.name(f.parameters[0].type),
-                    "table": self._names.table(f.key.removeprefix("member ")),
-                }
-                for f in functions
-                if f.key in wrappers
-            ],
+            "members": [self._member(f, wrappers) for f in functions if f.key in wrappers],
             "globals": variables,
             "forwards": [x for d in net.definitions if (x := c_tables.forward(d, self._types))],
             "bodies": [
@@ -544,12 +536,19 @@ class _Emitter:
             "has_arena_values": bool(self._referring) or any(v["is_root"] for v in variables),
         }
         # After all that belongs to the net, so that it looks the same with and without them.
-        values["further_functions"] = [self._function(f) for f in further]
+        values["further_functions"] = [self._function(f) for f in further if f.key not in wrappers]
+        values["further_members"] = [
+            self._member(f, wrappers) for f in further if f.key in wrappers
+        ]
         values["further_recursive_tables"] = [
             self._names.table(k) for k in tables.to_declare(further_keys)
         ]
         values["further_tables"] = [tables.print(k) for k in further_keys]
         values["predicates"] = [self._predicate(p, i) for i, p in enumerate(net.predicates)]
+        # Compilers warn of constants that nobody looks at.
+        values["globals"] = [
+            g for g in variables if not g["constant"] or g["name"] in self._names.read
+        ]
         # After the transitions, which want numbers of colours of their own.
         values["numbers"] = self._numbers.functions + [
             self._numbers.pointers(t)
@@ -575,6 +574,11 @@ class _Emitter:
             elif line.strip() or (lines and lines[-1].strip()):
                 lines.append(line.rstrip())
         return "\n".join(lines) + "\n", tuple(blocks)
+
+
+def _wrappers(functions: Iterable[ir.Function]) -> dict[str, str]:
+    """By key of the function that decides membership of a subset the name of what the subset's table points to."""
+    return {f.key: f"is_{stem(f.hint)}" for f in functions if f.key.startswith("member ")}
 
 
 def _without_wanted(statements: tuple[ir.Stmt, ...]) -> tuple[ir.Stmt, ...]:

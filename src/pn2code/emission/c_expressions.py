@@ -68,6 +68,16 @@ def c_big_initialiser(value: int) -> str:
     return c_big(value).replace("PN_BIG", "PN_BIG_INIT", 1)
 
 
+def _is_nil(value: Ir) -> bool:
+    """Whether a list is known to be empty where the code is made; what would be behind it is, too."""
+    match value:
+        case ir.Op(name="list.nil" | "zero"):
+            return True
+        case ir.Head(list=inner) | ir.Tail(list=inner):
+            return _is_nil(inner)
+    return False
+
+
 @dataclass(frozen=True, slots=True)
 class Types:
     """C types by name: declarations live in net.h."""
@@ -198,9 +208,9 @@ class Expressions:
 
     def _is_object(self, e: Ir) -> bool:
         match e:
-            case ir.GlobalUse(type=t):
+            case ir.GlobalUse(type=t) | ir.Use(type=t):
                 return t.rep is not Rep.UNIT  # which has no variable
-            case ir.Use() | ir.Bound() | ir.TokenValue():
+            case ir.Bound() | ir.TokenValue():
                 return True
             case ir.Member(record=inner):
                 return self._is_object(inner)
@@ -208,8 +218,8 @@ class Expressions:
                 if self._is_unsafe(e):
                     return False
                 return self._is_boxed(e) or self._is_object(inner)
-            case ir.Head():
-                return True
+            case ir.Head(list=inner):
+                return not _is_nil(inner)
         return False
 
     def _is_boxed(self, e: ir.Argument) -> bool:
@@ -236,12 +246,14 @@ class Expressions:
         match e:
             case ir.Const():
                 return self._constant(e)
+            case ir.Use(type=t) if t.rep is Rep.UNIT:
+                return "PN_UNIT", _PRIMARY
             case ir.Use(local=local):
                 return self.local(local), _PRIMARY
             case ir.GlobalUse(type=t) if t.rep is Rep.UNIT:
                 return "PN_UNIT", _PRIMARY
             case ir.GlobalUse(name=name):
-                return self._names.value(name, self.global_hints.get(name, name)), _PRIMARY
+                return self._names.value_read(name, self.global_hints.get(name, name)), _PRIMARY
             case ir.Bound(index=index):
                 return f"{self._binding}{self.variables[index]}", _POSTFIX
             case ir.TokenValue(place=place, index=index) if self.packed and self.packed[place]:
@@ -284,10 +296,16 @@ class Expressions:
                 then, otherwise = (self.inside(x, _CONDITIONAL) for x in (e.then, e.otherwise))
                 return f"{self.condition(e.condition)} ? {then} : {otherwise}", _CONDITIONAL
             case ir.Head(list=inner):
+                if _is_nil(inner):  # nobody comes here
+                    return self._types.zero(e.type), _POSTFIX
                 return f"{self.inside(inner, _UNARY)}->head", _POSTFIX
             case ir.Tail(list=inner):
+                if _is_nil(inner):
+                    return "NULL", _PRIMARY
                 return f"{self.inside(inner, _UNARY)}->tail", _POSTFIX
             case ir.IsNil(list=inner):
+                if _is_nil(inner):
+                    return "true", _PRIMARY
                 return f"{self.inside(inner, c_ops.EQUALITY)} == NULL", c_ops.EQUALITY
             case ir.Ok():
                 return "pn_ok(cx)", _POSTFIX
@@ -297,7 +315,7 @@ class Expressions:
                 size = self._types.name(inner.type)
                 return f"pn_ref_new(cx, {self.address(inner)}, sizeof({size}))", _POSTFIX
             case ir.AddressOf(name=name):
-                text = self._names.value(name, self.global_hints.get(name, name))
+                text = self._names.value_read(name, self.global_hints.get(name, name))
                 return f"&{text}", _UNARY
             case ir.Contents(reference=inner, type=t):
                 pointer, zero = self.inside(inner, _UNARY - 1), self._types.zero(t)
@@ -464,7 +482,7 @@ class Expressions:
     def _negation(self, e: Ir) -> tuple[str, int]:
         """Not, put into the comparison where that is exact."""
         match e:
-            case ir.IsNil(list=inner):
+            case ir.IsNil(list=inner) if not _is_nil(inner):
                 return f"{self.inside(inner, c_ops.EQUALITY)} != NULL", c_ops.EQUALITY
             case ir.Op(name="="):
                 return self._equality(e, "!=")

@@ -7,14 +7,22 @@ from collections.abc import Iterator
 from pn2code.emission.c_expressions import op_needs_context
 from pn2code.lowering import ir
 from pn2code.lowering.calls import ir_nodes
-from pn2code.lowering.ir import Ir, Stmt
+from pn2code.lowering.ir import Ir, Rep, Stmt
 
 
 def does_nothing(value: Ir) -> bool:
     """Whether a value need not be computed when nobody looks at it."""
     return not any(
-        isinstance(n, (ir.FunCall, ir.NewRef)) or (isinstance(n, ir.Op) and n.name != "zero")
+        isinstance(n, (ir.FunCall, ir.NewRef))
+        or (isinstance(n, ir.Op) and n.name not in ("zero", "list.nil"))
         for n in ir_nodes(value)
+    )
+
+
+def is_plain(s: ir.SetContents) -> bool:
+    """Whether it assigns to a variable in C, not to what a pointer points to."""
+    return isinstance(s.reference, ir.Use) and (
+        s.reference.type.rep is not Rep.REF or s.value.type == s.reference.type
     )
 
 
@@ -38,12 +46,23 @@ def _used(item: object, known: frozenset[int] | None) -> Iterator[int]:
                 waiting.extend(item)
                 continue
             case ir.Use(local=local):
-                yield local.uid
+                if local.type.rep is not Rep.UNIT:  # which has no variable
+                    yield local.uid
             case ir.Let(local=local, value=value) | ir.Assign(local=local, value=value) if (
                 known is not None and local.uid not in known and does_nothing(value)
             ):
                 continue
             case ir.Do(value=value) if does_nothing(value):
+                continue
+            case ir.If(then=(), otherwise=()):
+                continue
+            case ir.SetContents(reference=ir.Use(local=local), value=value) if is_plain(item):
+                if known is None or local.uid in known or not does_nothing(value):
+                    waiting.append(value)
+                continue
+            case ir.SetContents(value=value) if value.type.rep is Rep.UNIT:
+                if not does_nothing(value):
+                    waiting.append(value)
                 continue
             case ir.Fill(local=local):
                 yield local.uid

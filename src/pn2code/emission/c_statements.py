@@ -168,10 +168,9 @@ class Statements:
         """Evaluate for what it does, if it can do anything."""
         if does_nothing(value):
             return
-        if value.type.rep is Rep.UNIT and isinstance(value, ir.FunCall | ir.Op):
-            self.line(f"{self._x.text(value)};")
-        else:
-            self.line(f"(void){self._x.inside(value, 14)};")
+        text = self._x.inside(value, 14)
+        is_call = value.type.rep is Rep.UNIT and text.endswith(")") and not text.startswith("(")
+        self.line(f"{text};" if is_call else f"(void){text};")
 
     def _set_global(self, s: ir.SetGlobal) -> None:
         if s.value.type.rep is Rep.UNIT:
@@ -190,6 +189,10 @@ class Statements:
         self.line("}")
 
     def _set_contents(self, s: ir.SetContents) -> None:
+        is_unseen = isinstance(s.reference, ir.Use) and s.reference.local.uid not in self.used
+        if s.value.type.rep is Rep.UNIT or is_unseen:
+            self._discard(s.value)
+            return
         star = "*" if s.reference.type.rep is Rep.REF and s.value.type != s.reference.type else ""
         target = f"{star}{self._x.inside(s.reference, 13)}"
         text = self._x.text(s.value)

@@ -102,9 +102,10 @@ class Members(Scope):
 
 
 class Names:
-    """The file-level names of one net."""
+    """The file-level names of one net. `read`: the values that printed code looks at."""
 
     def __init__(self) -> None:
+        self.read: set[str] = set()
         self._scope = Scope()
         self._scope.reserve(*_TYPES.split())
 
@@ -141,6 +142,12 @@ class Names:
     def value(self, key: str, hint: str) -> str:
         """`val_pitch`."""
         return self._scope.name(("value", key), hint, "val_{}")
+
+    def value_read(self, key: str, hint: str) -> str:
+        """The same, where code looks at it."""
+        name = self.value(key, hint)
+        self.read.add(name)
+        return name
 
     def transition(self, index: int, name: str) -> str:
         """`Robot1_Accept`: the instance path without the prime page."""

@@ -125,11 +125,7 @@ class Block(TypeSource):
 
     def atomic(self, value: Ir, hint: str) -> Ir:
         """The value in a form that may be used several times."""
-        if is_atomic(value):
-            return value
-        local = self.local(hint, value.type)
-        self.emit(ir.Let(local, value))
-        return ir.Use(local)
+        return value if is_atomic(value) else self.spill(value, hint)
 
     def addressable(self, value: Ir, hint: str) -> Ir:
         """The value in a form whose address can be taken in C: a struct that a function returns gets a name."""

@@ -79,6 +79,9 @@ SAME = frozenset(
 )
 """Built-in functions that give back their argument, as it is represented."""
 
+_LIST_LAST = frozenset(["List.rm", "List.rmall", "List.pos", "Ms.cf"])
+"""Those whose last operand is the list; the one before may be a list, too, which is looked for in a list of lists."""
+
 _COMPARISONS = {
     "cmp": "compare",
     "lt": "<",
@@ -147,7 +150,7 @@ class Builtins:
         if name in ("String.explode", "List.concat"):
             table = body.program.types.plain(t)
         elif lists and name.split(".")[0] in ("List", "Ms"):
-            table = body.program.types.plain(lists[0])
+            table = body.program.types.plain(lists[-1 if name in _LIST_LAST else 0])
         if table:
             operands = [body.addressable(o, "operand") for o in operands]
         op = ir.Op(name, tuple(operands), t, table)
@@ -280,7 +283,7 @@ class Builtins:
             assert component is not None
             table = types.colset(component)
             if types.is_restricted(table):
-                value = body.addressable(value, "component")
+                value = body.atomic(value, "component")
                 legal = ir.Op("Colset.legal", (value,), ir.BOOL, table)
                 body.emit(ir.If(legal, (), (ir.Raise("CPN'Error"),)))
             fields = tuple(
@@ -314,7 +317,10 @@ def _combinations(body: Body, multisets: Val, t: IrType, declared: tuple[str, ..
     assert isinstance(definition, ir.StructDef)
     order = list(declared) or [label for label, _ in definition.fields]
     parts = components(body, multisets, len(order))
-    lists = {label: body.code(part) for label, part in zip(order, parts, strict=True)}
+    lists = {
+        label: body.atomic(body.code(part), "items")
+        for label, part in zip(order, parts, strict=True)
+    }
 
     def combine(labels: list[str], chosen: dict[str, Ir], keep: Callable[[Ir], None]) -> None:
         if not labels:

@@ -90,6 +90,8 @@ class ColsetFunctions:
             "timed.ran": token,
         }
         if name in results:
+            for given in arguments:
+                self._body.discard(given)  # which may raise first
             own = ir.Const(self._colset.name, ir.STRING)
             return self._call("no_bounds", (), own, STRING, results[name])
         return None
@@ -155,6 +157,7 @@ class ColsetFunctions:
     def listed(self, name: str, arguments: tuple[Val, ...]) -> Val:
         """One of `LISTED`, for a colour set that the runtime cannot number."""
         cs = self._colset.type
+        arguments = tuple(self._body.settle(a, "given") for a in arguments)  # which may raise first
         match name:
             case "base":
                 return base_value(self._body, self._colset, self._at)
@@ -162,6 +165,10 @@ class ColsetFunctions:
                 return self._size()
             case "ord" if is_countable(self._colset):
                 return self._ord(arguments[0])
+            case "col" if self._colset.resolved.kind in (Kind.PRODUCT, Kind.RECORD):
+                return self._col_of_product(self._in_range(arguments[0]))
+            case "col" if self._colset.resolved.kind is Kind.UNION:
+                return self._col_of_union(self._in_range(arguments[0]))
         values = all_values(self._body, self._colset, self._at)
         ms = list_of(cs)
         match name:
@@ -275,8 +282,53 @@ class ColsetFunctions:
             before = body.atomic(_folded("Int.+", [before, self._part_size(part)]), "before")
         return ir.Use(result)
 
+    def _in_range(self, position: Val) -> Ir:
+        """The position, which is less than the size as CPN Tools counts."""
+        pair = tuple_of(INT, INT)
+        both = RecordVal({"1": position, "2": self._size()}, pair)
+        made = self._call("in_range", (), both, pair, INT)
+        return self._body.atomic(self._body.code(made), "position")
+
+    def _col_of_product(self, position: Ir) -> Ir:
+        """The value at a position: a digit for each component, to the base of its size."""
+        body, t = self._body, self._body.representation(self._colset.type)
+        values: dict[str, Ir] = {}
+        for label, part in reversed(_parts(self._colset.resolved)):
+            size = body.atomic(self._part_size(part), "size")
+            own = body.atomic(_folded("Int.mod", [position, size]), "own")
+            values[label] = body.atomic(self._part("col", part, own, INT, part.type), "component")
+            position = body.atomic(_folded("Int.div", [position, size]), "position")
+        definition = body.program.types.definition(t)
+        assert isinstance(definition, ir.StructDef)
+        return ir.MakeStruct(t, tuple((label, values[label]) for label, _ in definition.fields))
+
+    def _col_of_union(self, position: Ir) -> Ir:
+        """The value at a position: those of the first constructor come first."""
+        body, c = self._body, self._colset.resolved
+        t = body.representation(c.type)
+        result = body.local("value", t)
+        body.emit(ir.Declare(result))
+
+        def choose(tag: int, position: Ir) -> None:
+            part = c.components[tag]
+            with body.block() as here:
+                own = None if part is None else self._part("col", part, position, INT, part.type)
+                body.emit(ir.Assign(result, ir.MakeUnion(tag, own, t)))
+            if tag == len(c.components) - 1:
+                for statement in here:
+                    body.emit(statement)
+                return
+            size = body.atomic(self._part_size(part), "size")
+            with body.block() as behind:
+                choose(tag + 1, body.atomic(_folded("Int.-", [position, size]), "position"))
+            is_here = ir.Op("Int.<", (position, size), ir.BOOL)
+            body.emit(ir.If(is_here, tuple(here), tuple(behind)))
+
+        choose(0, position)
+        return ir.Use(result)
+
     def _col(self, position: Val) -> Val:
-        """The value at a position."""
+        """The value at a position in the list of all."""
         body, c, cs = self._body, self._colset.resolved, self._colset.type
         if c.kind in (Kind.PRODUCT, Kind.RECORD, Kind.UNION):
             return self._col_of_parts(position)

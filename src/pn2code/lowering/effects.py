@@ -37,7 +37,7 @@ def _is_total(name: str) -> bool:
 def code_may_raise(code: Ir | tuple[Stmt, ...]) -> bool:
     """Whether computing it may raise an exception."""
     return any(
-        isinstance(n, ir.FunCall | ir.Raise | ir.RaiseValue)
+        isinstance(n, ir.FunCall | ir.Raise | ir.RaiseValue | ir.Fill)
         or (isinstance(n, ir.Op) and not _is_total(n.name))
         for n in ir_nodes(code)
     )
@@ -61,7 +61,7 @@ def raises_only_overflow(value: Val | tuple[Stmt, ...]) -> bool:
     if not isinstance(value, tuple) and is_static(value):
         return True
     for node in ir_nodes(value):
-        if isinstance(node, ir.FunCall | ir.Raise | ir.RaiseValue):
+        if isinstance(node, ir.FunCall | ir.Raise | ir.RaiseValue | ir.Fill):
             return False
         if isinstance(node, ir.Op) and not _is_total(node.name) and node.name not in _OVERFLOWING:
             return False
@@ -72,7 +72,7 @@ def has_effect(statements: list[Stmt]) -> bool:
     """Whether statements change something, raise, or call what may."""
     for node in ir_nodes(tuple(statements)):
         match node:
-            case ir.SetContents() | ir.Raise() | ir.RaiseValue() | ir.FunCall():
+            case ir.SetContents() | ir.Raise() | ir.RaiseValue() | ir.FunCall() | ir.Fill():
                 return True
             case ir.SetGlobal(is_reference=True):
                 return True

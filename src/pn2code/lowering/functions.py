@@ -389,7 +389,7 @@ class Program:
             rebuilt.append(part.rebuild([ir.Use(p) for p in fresh]))
         self._pending.append((key, function, tuple(rebuilt), parameters))
 
-    def finish(self) -> tuple[ir.Function, ...]:
+    def make_pending(self) -> None:
         """Make all functions that are asked for, and those that they ask for."""
         for position, dec in enumerate(self.core.declarations):
             # What a declaration does is done, whether its value is used or not.
@@ -401,6 +401,10 @@ class Program:
             if self._pending:
                 key, function, rebuilt, parameters = self._pending.pop()
                 self._made[key] = self._make(key, function, rebuilt, parameters)
+
+    def finish(self) -> tuple[ir.Function, ...]:
+        """All functions, each behind those that it calls; nothing is asked for after this."""
+        self.make_pending()
         self._made.update(self.function_values.finish())
         self._made.update(self.exceptions.finish())
         self.types.close()

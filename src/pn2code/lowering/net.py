@@ -98,8 +98,7 @@ class _Lowering:
         predicates = [
             self._guarded(p.exp.span.origin, partial(self._predicate, p)) for p in self._predicates
         ]
-        members = self._members()
-        functions = self._guarded(Origin(self._net.file), self._program.finish) or ()
+        functions = self._guarded(Origin(self._net.file), self._functions) or ()
         if self._failed:
             return None
         room = self._room([p for p in places if p is not None])
@@ -116,7 +115,7 @@ class _Lowering:
             definitions=self._types.definitions(),
             descriptors=tuple(self._types.descriptors.values()),
             globals=self._program.globals(),
-            functions=(*functions, *members),
+            functions=functions,
             places=self._packed(
                 [replace(p, capacity=p.capacity or room) for p in places if p is not None]
             ),
@@ -224,14 +223,21 @@ class _Lowering:
         }
         return tuple(sorted(value for value in found if value))
 
-    def _members(self) -> tuple[ir.Function, ...]:
-        """The functions that decide membership of subsets."""
-        made: list[ir.Function] = []
-        for key, colset in self._types.subsets:
-            function = self._guarded(colset.origin, partial(self._member, key, colset))
-            if function is not None:
-                made.append(function)
-        return tuple(made)
+    def _functions(self) -> tuple[ir.Function, ...]:
+        """All functions, and those that decide membership of subsets: each of these may bring in others of both."""
+        members: list[ir.Function] = []
+        seen = 0
+        while True:
+            while seen < len(self._types.subsets):
+                key, colset = self._types.subsets[seen]
+                seen += 1
+                function = self._guarded(colset.origin, partial(self._member, key, colset))
+                if function is not None:
+                    members.append(function)
+            self._program.position = Origin(self._net.file)
+            self._program.make_pending()
+            if seen == len(self._types.subsets):
+                return (*self._program.finish(), *members)
 
     def _member(self, key: str, colset: Colset) -> ir.Function:
         t = self._types.lower(colset.type)

@@ -399,7 +399,7 @@ class Elaborator:
             declarations=tuple(self._made),
             colsets={n: c for n, c in self._ctx.colsets.items() if c is not None},
             variables=dict(self._variables),
-            datatypes=dict(self._ctx.datatypes),
+            datatypes=self.datatypes(),
             globals={
                 n: e.symbol
                 for n, e in self._ctx.top.values.items()
@@ -407,6 +407,10 @@ class Elaborator:
             },
             int_bits=self._ctx.int_bits,
         )
+
+    def datatypes(self) -> dict[str, core.DatatypeDec]:
+        """All datatypes so far, also those that inscriptions declare for themselves."""
+        return dict(self._ctx.datatypes)
 
     @contextmanager
     def aside(self, d: Diagnostics) -> Iterator[Aside]:

@@ -191,7 +191,7 @@ class _Checker:
             space_names.warn(self.program, colsets, self.d)
         return TypedNet(
             net=self.net,
-            program=self.program,
+            program=replace(self.program, datatypes=self.elaborator.datatypes()),
             pages=pages,
             prime_pages=self.net.prime_pages,
             fusions=self.net.fusions,

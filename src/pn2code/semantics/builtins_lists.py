@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable
 from typing import TYPE_CHECKING, Any
 
+from pn2code.semantics.builtins_numbers import checked
 from pn2code.semantics.values import (
     NONE,
     ORDER,
@@ -331,6 +332,7 @@ def _list_text(e: Evaluator, text: Value, items: Items) -> Task:
 
 def _split(e: Evaluator, p: tuple[int, Items, Items]) -> Value:
     n, rest, front = p
+    checked(e, n - len(rest))  # it counts down as long as there is something
     if not 0 <= n <= len(rest):
         raise MlException(exception("Match"))
     return rest[n:], (*front[::-1], *rest[:n])

@@ -250,7 +250,8 @@ def _rounded(how: Callable[[float], int]) -> Function:
 
 def _rounded_real(how: Callable[[float], int]) -> Function:
     def function(e: Evaluator, x: float) -> float:
-        return math.copysign(float(how(x)), x) if math.isfinite(x) else x
+        # What is rounded to zero has no sign there; a zero keeps its own.
+        return float(how(x)) if math.isfinite(x) and x != 0.0 else x
 
     return function
 

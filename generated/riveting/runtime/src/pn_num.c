@@ -224,6 +224,22 @@ double pn_real_round_even(double x)
     return is_up ? (below + 1.0) : below;
 }
 
+/* What C rounds to a negative zero is a zero without a sign. */
+static double unsigned_zero(double x, double whole)
+{
+    return (fabs(x) > 0.0) ? (whole + 0.0) : x;
+}
+
+double pn_ceil(double x)
+{
+    return unsigned_zero(x, ceil(x));
+}
+
+double pn_trunc(double x)
+{
+    return unsigned_zero(x, trunc(x));
+}
+
 static int64_t to_integer(pn_ctx_t *cx, double x)
 {
     if (isnan(x)) {

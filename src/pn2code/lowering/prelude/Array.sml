@@ -1,6 +1,6 @@
 (* An array is a reference to a list. *)
 val Array_maxLen = 16777215
-fun Array_array (n, x) = if n < 0 then raise Size else ref (List.tabulate (n, fn _ => x))
+fun Array_array (n, x) = if n < 0 orelse n > Array_maxLen then raise Size else ref (List.tabulate (n, fn _ => x))
 fun Array_fromList (xs : 'a list) = ref xs
 fun Array_tabulate (n, f) = ref (List.tabulate (n, f))
 fun Array_length a = length (!a)
@@ -38,7 +38,7 @@ fun put (xs, a, di) =
     let val n = length xs
         val old = !a
     in
-        if di < 0 orelse di + n > length old then raise Subscript
+        if di < 0 orelse di > length old - n then raise Subscript
         else a := List.take (old, di) ^^ xs ^^ List.drop (old, di + n)
     end
 

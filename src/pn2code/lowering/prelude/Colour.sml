@@ -161,6 +161,8 @@ fun Colour_ord cmp (values, x) =
           | find (y :: rest, i) = if cmp (x, y) = EQUAL then i else find (rest, i + 1)
     in find (values, 0) end
 
+fun Colour_in_range (i, size) = if i < 0 orelse i >= size then out_of_range () else i
+
 fun Colour_col (values, i) = if i < 0 orelse i >= length values then out_of_range () else List.nth (values, i)
 
 fun Colour_ran values = if null values then out_of_range () else random values

@@ -1,4 +1,5 @@
-fun String_extract (s, from, NONE) = substring (s, from, String.size s - from)
+fun String_extract (s, from, NONE) =
+    if from < 0 then raise Subscript else substring (s, from, String.size s - from)
   | String_extract (s, from, SOME n) = substring (s, from, n)
 
 fun String_concatWith separator nil = ""

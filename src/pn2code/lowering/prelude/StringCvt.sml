@@ -1,10 +1,18 @@
 fun StringCvt_padLeft c n s =
     let val m = n - String.size s
-    in if m > 0 then implode (List.tabulate (m, fn _ => c)) ^ s else s end
+    in
+        if n > String.maxSize then raise Size
+        else if m > 0 then implode (List.tabulate (m, fn _ => c)) ^ s
+        else s
+    end
 
 fun StringCvt_padRight c n s =
     let val m = n - String.size s
-    in if m > 0 then s ^ implode (List.tabulate (m, fn _ => c)) else s end
+    in
+        if n > String.maxSize then raise Size
+        else if m > 0 then s ^ implode (List.tabulate (m, fn _ => c))
+        else s
+    end
 
 fun StringCvt_splitl p getc stream =
     let fun loop (stream, out) =

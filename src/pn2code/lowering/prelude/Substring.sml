@@ -5,11 +5,12 @@ fun Substring_all s = Substring_full s
 fun Substring_substring (s, i, n) =
     if i < 0 orelse n < 0 orelse i > String.size s orelse n > String.size s - i then raise Subscript else (s, i, n)
 
-fun Substring_extract (s, i, NONE) = Substring_substring (s, i, String.size s - i)
+fun Substring_extract (s, i, NONE) =
+    if i < 0 then raise Subscript else Substring_substring (s, i, String.size s - i)
   | Substring_extract (s, i, SOME n) = Substring_substring (s, i, n)
 
 fun Substring_slice ((s, i, n), j, m) =
-    let val length = case m of SOME m => m | NONE => n - j
+    let val length = case m of SOME m => m | NONE => if j < 0 then 0 else n - j
     in if j < 0 orelse length < 0 orelse j > n orelse length > n - j then raise Subscript else (s, i + j, length) end
 
 fun Substring_string (s, i, n) = substring (s, i, n)
