@@ -16,6 +16,7 @@ ALLOWED: dict[str, set[str]] = {
     "bytecode": set(),
     "frozen": set(),
     "whole_file": set(),
+    "real_json": set(),
     "deadline": set(),
     "os_reason": set(),
     "ml": {"diagnostics"},
@@ -44,7 +45,7 @@ ALLOWED: dict[str, set[str]] = {
     "simulate": {"diagnostics", "ml", "net", "semantics", "monitors", "cell", "lowering", "emission", "toolchain",
                  "parser_cache"},
     "verify": {"diagnostics", "ml", "net", "semantics", "structure", "cell", "lowering", "emission", "toolchain",
-               "resources", "simulate", "drawing", "reading", "unfold", "properties", "channels"},
+               "resources", "simulate", "drawing", "reading", "unfold", "properties", "channels", "tdl"},
     "conform": {"diagnostics", "cell", "channels", "emission", "ml", "net", "pipeline", "robot", "semantics",
                 "simulate", "tdl", "toolchain", "verify"},
     "medium": {"diagnostics", "ml", "net", "cell", "lowering", "semantics", "verify"},
@@ -54,7 +55,7 @@ ALLOWED: dict[str, set[str]] = {
             "robot", "tdl", "ml", "lowering", "bytecode", "reading", "drawing", "simulate", "monitors", "structure",
             "convert", "unfold", "verify", "properties", "conform", "medium"},
 }  # fmt: skip
-EVERYWHERE = {"deadline", "frozen", "os_reason", "private_folder", "whole_file"}
+EVERYWHERE = {"deadline", "frozen", "os_reason", "private_folder", "real_json", "whole_file"}
 
 # Of `robot`, the script language may know the commands (plain values) only; of the reports, running only the data.
 ONLY = {("tdl", "robot"): {"pn2code.robot.commands"}}

@@ -330,58 +330,10 @@ class ColsetFunctions:
     def _col(self, position: Val) -> Val:
         """The value at a position in the list of all."""
         body, c, cs = self._body, self._colset.resolved, self._colset.type
-        if c.kind in (Kind.PRODUCT, Kind.RECORD, Kind.UNION):
-            return self._col_of_parts(position)
         values = all_values(body, c, self._at)
         pair = tuple_of(list_of(cs), INT)
         both = RecordVal({"1": values, "2": position}, pair)
         return self._call("col", (), both, pair, cs)
-
-    def _col_of_parts(self, position: Val) -> Ir:
-        """The same of what has components: CPN Tools counts positions by their sizes, not what is legal."""
-        body, c = self._body, self._colset.resolved
-        result = body.local("found", body.representation(self._colset.type))
-        body.emit(ir.Declare(result))
-        body.emit(ir.Assign(result, body.zero(result.type)))
-        at = body.atomic(body.code(position), "position")
-        size = body.atomic(self._size(), "size")
-        bounds = (ir.Op("Int.>=", (at, _number(0)), ir.BOOL), ir.Op("Int.<", (at, size), ir.BOOL))
-        with body.block() as then:
-            if c.kind is Kind.UNION:
-                self._col_of_union(0, at, result)
-            else:
-                self._col_of_product(at, result)
-        inside = ir.Op("andalso", bounds, ir.BOOL)
-        body.emit(ir.If(inside, tuple(then), (ir.Raise("CPN'Error"),)))
-        return ir.Use(result)
-
-    def _col_of_product(self, at: Ir, result: ir.Local) -> None:
-        body, c = self._body, self._colset.resolved
-        definition = body.program.types.definition(result.type)
-        assert isinstance(definition, ir.StructDef)
-        chosen: dict[str, Ir] = {}
-        for label, part in reversed(list(_parts(c))):
-            size = body.atomic(self._part_size(part), "size")
-            own = body.atomic(_folded("Int.mod", [at, size]), "own")
-            at = body.atomic(_folded("Int.div", [at, size]), "rest")
-            chosen[label] = body.atomic(self._part("col", part, own, INT, part.type), "part")
-        fields = tuple((label, chosen[label]) for label, _ in definition.fields)
-        body.emit(ir.Assign(result, ir.MakeStruct(result.type, fields)))
-
-    def _col_of_union(self, tag: int, at: Ir, result: ir.Local) -> None:
-        """From a constructor on: the positions of each come behind those of the one before."""
-        body, c = self._body, self._colset.resolved
-        part = c.components[tag]
-        size = body.atomic(self._part_size(part), "size")
-        with body.block() as then:
-            inner = None if part is None else self._part("col", part, at, INT, part.type)
-            body.emit(ir.Assign(result, ir.MakeUnion(tag, inner, result.type)))
-        with body.block() as otherwise:
-            if tag + 1 < len(c.components):
-                self._col_of_union(
-                    tag + 1, body.atomic(_folded("Int.-", [at, size]), "rest"), result
-                )
-        body.emit(ir.If(ir.Op("Int.<", (at, size), ir.BOOL), tuple(then), tuple(otherwise)))
 
     def _call(
         self,

@@ -9,6 +9,7 @@ import math
 from typing import Any
 
 from pn2code.ml.colsets import Colset, Kind
+from pn2code.real_json import real_to_json
 from pn2code.semantics.colours import assemble, component, parts_of
 from pn2code.semantics.values import UNIT, Data, Value
 
@@ -48,15 +49,6 @@ def to_json(c: Colset, value: Any) -> Json:
             return to_json(component(c), value)
         case _:
             return value
-
-
-def real_to_json(x: float) -> Json:
-    """The JSON form of a real."""
-    if math.isnan(x):
-        return "nan"
-    if math.isinf(x):
-        return "inf" if x > 0 else "-inf"
-    return x
 
 
 def from_json(c: Colset, data: Json) -> Value:
