@@ -8,8 +8,7 @@
  * bounded-response: yes; at most 6 firings in one cycle
  * confluence: yes; the order of firing does not matter
  * non-blocking: yes; a token in `Finished` or `Failed` is reached from each of the 3,343 states of the cell, however slow its programs
- * are, if flags are answered within `reply_timeout_s`, each value of a sensor comes now and then and what is measured is what the net
- * says
+ * are
  * channels: yes; at most 1 message in each of 8 channels
  * messages: yes; each of the 14 values that come into channels can be written into its file and read back
  * memory: yes; there are no lists and strings

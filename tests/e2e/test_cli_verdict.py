@@ -144,7 +144,7 @@ def test_a_terminal_gets_a_sensible_number(cli: Cli, tmp_path: Path) -> None:
     lines = "".join(f"\n        place P{i} : INT = x{i}" for i in range(200))
     write(f"net Many\n      standard\n      page Top{lines}", path)
     done = cli("check", path)
-    assert "and 140 more" in done.err
+    assert "There are 140 more" in done.err
     assert done.err.count("error[") == 60
     assert "200 errors" in done.out
     assert len(cli("check", path, "--json").data["diagnostics"]) == 200

@@ -175,13 +175,13 @@ NETS: dict[str, str] = {
           fun even n = n mod 2 = 0
           colset SMALL = int with 1..9;
           colset EVEN = subset SMALL by even;
-          colset SOME = subset INT with [30, 10, 20];
+          colset FEW = subset INT with [30, 10, 20];
           var e: EVEN;
-          var s: SOME;
+          var s: FEW;
           var n: INT;
           place P : INT = 1`4 ++ 1`5 ++ 1`6
           place Go = 2
-          place Q : SOME
+          place Q : FEW
           trans Pick
             in P : e
             in Go : ()
@@ -282,11 +282,11 @@ NETS: dict[str, str] = {
           standard
           colset NO = int with 0..9;
           colset MSG = union Data: STRING + Ack: NO + Stop;
-          datatype tree = Leaf | Node of tree * int * tree
-          fun insert (Leaf, x) = Node (Leaf, x, Leaf)
-            | insert (t as Node (a, y, b), x) =
-                if x < y then Node (insert (a, x), y, b) else if x > y then Node (a, y, insert (b, x)) else t
-          fun total Leaf = 0 | total (Node (a, x, b)) = total a + x + total b
+          datatype tree = Leaf | Knot of tree * int * tree
+          fun insert (Leaf, x) = Knot (Leaf, x, Leaf)
+            | insert (t as Knot (a, y, b), x) =
+                if x < y then Knot (insert (a, x), y, b) else if x > y then Knot (a, y, insert (b, x)) else t
+          fun total Leaf = 0 | total (Knot (a, x, b)) = total a + x + total b
           fun text (Data s) = s ^ "!" | text (Ack n) = "ack " ^ Int.toString (~ n) | text Stop = "stop"
           fun first l = case List.find (fn x => x > 2) l of SOME x => x | NONE => 0
           var m: MSG;

@@ -46,7 +46,7 @@ STATE = """
         | End => ()
       fun value () = case !ring of Link (x, r) => x | End => ~1
       fun trim l = if length l > 40 then List.take (l, 40) else l
-      fun step n = (a := trim (n :: !alias); same := Int.toString n ^ !same; same := substring (!same, 0, 2);
+      fun turned n = (a := trim (n :: !alias); same := Int.toString n ^ !same; same := substring (!same, 0, 2);
          #up counter ();
          hooks := (fn x => x + n) :: (if length (!hooks) > 5 then List.take (!hooks, 5) else !hooks);
          last := (if n mod 2 = 0 then Last (Int.toString n) else (raise !last) handle e => e);
@@ -59,7 +59,7 @@ STATE = """
       place Q : INT
       place S : STRING
       place L : LST = 1`[]
-      trans T code input (n); output (l); action step n
+      trans T code input (n); output (l); action turned n
         in P : n
         out P : (n * 7 + 3) mod 1000
         out L : l

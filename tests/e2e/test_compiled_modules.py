@@ -25,10 +25,8 @@ net Modules
   var s : STRING;
   var x : P;
   var u : U;
-  signature QUEUE = sig type 'a queue exception Empty val empty : 'a queue val add : 'a * 'a queue -> 'a queue val take : 'a queue -> 'a * 'a queue end
-  structure Q :> QUEUE = struct type 'a queue = 'a list * 'a list exception Empty val empty = ([], []) fun add (x, (f, b)) = (f, x :: b) fun take ([], []) = raise Empty | take (x :: f, b) = (x, (f, b)) | take ([], b) = take (rev b, []) end
-  signature ORD = sig type t val lt : t * t -> bool end
-  functor Sort (O : ORD) = struct fun insert (x, []) = [x] | insert (x, y :: ys) = if O.lt (x, y) then x :: y :: ys else y :: insert (x, ys) fun sort l = foldr insert [] l end
+  structure Q :> sig type 'a queue exception Empty val empty : 'a queue val add : 'a * 'a queue -> 'a queue val take : 'a queue -> 'a * 'a queue end = struct type 'a queue = 'a list * 'a list exception Empty val empty = ([], []) fun add (x, (f, b)) = (f, x :: b) fun take ([], []) = raise Empty | take (x :: f, b) = (x, (f, b)) | take ([], b) = take (rev b, []) end
+  functor Sort (O : sig type t val lt : t * t -> bool end) = struct fun insert (x, []) = [x] | insert (x, y :: ys) = if O.lt (x, y) then x :: y :: ys else y :: insert (x, ys) fun sort l = foldr insert [] l end
   structure Up = Sort (struct type t = int fun lt (a : t, b) = a < b end)
   structure Down = Sort (struct type t = string fun lt (a : t, b) = a > b end)
   abstype t = T of int | N with fun mk n = if n > 2 then T n else N fun get (T n) = n | get N = 0 end

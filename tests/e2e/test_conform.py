@@ -153,7 +153,11 @@ ROBOT = {
     "a command too few": ("      move $joint home\n", "", "the script has commanded nothing"),
     "another branch": ("if k = MOVE then", "if k = HOME then", "line"),
     "another answer": ("write done 1", "write done 2", "the files hold"),
-    "a message that is not taken": ("      clear data\n", "", "the files hold"),
+    "a message that is not taken": (
+        "      clear data\n",
+        "",
+        "done is written before data is emptied",
+    ),
     "an announcement too few": ("    mark Top.Robot.Report\n", "", "done is written before"),
     "an announcement too late": (
         "      mark Top.Robot.Move with k = k, p = p\n      clear data\n",

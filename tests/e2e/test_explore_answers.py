@@ -20,17 +20,17 @@ KINDS = """
     net Kinds
       standard
       colset NAME = string;
-      colset JOB = record name : NAME * size : INT;
+      colset JOB = record name : NAME * long : INT;
       colset JOBS = list JOB;
       colset KIND = with drill | weld | paint;
       colset PAIR = product KIND * BOOL;
       colset MSG = union ack : INT + stop;
       colset LATE = int timed;
-      fun total (js : JOBS) = List.foldl (fn (j, n) => #size j + n) 0 js
+      fun total (js : JOBS) = List.foldl (fn (j, n) => #long j + n) 0 js
       fun only f ms = List.all f ms andalso ms <> []
       var n : INT;
       place Names : NAME = 2`"a" ++ 1`"b\\"c"
-      place Jobs : JOBS = 1`[{name = "x", size = 3}, {name = "y", size = 4}] ++ 1`[]
+      place Jobs : JOBS = 1`[{name = "x", long = 3}, {name = "y", long = 4}] ++ 1`[]
       place Kinds : PAIR = 1`(weld, true) ++ 2`(paint, false)
       place Messages : MSG = 1`ack(7) ++ 1`stop
       place Late : LATE = 1`1@3 ++ 2`5@0 ++ 1`5@2

@@ -97,7 +97,7 @@ def test_the_judge_sees_what_is_not_the_same(judge: Judge, tmp_path: Path) -> No
     assert text != as_it_is(judge.text)
     other = type(mistake)(mistake.path, mistake.kind, "another number", text)
     found = judge.verdict(other)
-    assert (found.result, found.is_wrong, found.why) == ("effect", True, "robot1.tdl")
+    assert (found.result, found.is_wrong, found.why) == ("effect", True, "cell_config.c")
 
 
 def test_mistakes_are_written_as_toml() -> None:

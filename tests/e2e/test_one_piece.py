@@ -19,12 +19,12 @@ pytestmark = pytest.mark.cc
 AWKWARD = """
 net Awkward
   standard
-  colset size = int with 0..9;
-  colset sim = product size * size;
-  colset size_t = size;
-  var x: size;
+  colset count = int with 0..9;
+  colset sim = product count * count;
+  colset size_t = count;
+  var x: count;
   place sim : sim = 1`(1, 2)
-  place sim_found : size = 1`1
+  place sim_found : count = 1`1
   place P : size_t
   trans sim
     in sim_found : x

@@ -584,7 +584,7 @@ def test_a_declared_capacity_is_looked_at(tmp_path: Path) -> None:
     assert check.evidence[0].transitions[-1] == "Top.Supervisor.Early"
     ends = next(c for c in looked.checks if c.name == "non-blocking")
     assert (ends.answer, ends.why) == ("unknown", "stops")
-    assert "the supervisor stops (`capacity`: place `Coins` gets 2 tokens" in ends.says
+    assert "the supervisor stops (`capacity`: place `Coins` holds 2 tokens" in ends.says
 
 
 def test_an_end_is_reached_in_the_medium_or_it_says_no(tmp_path: Path) -> None:

@@ -75,7 +75,7 @@ def expected(a: int, b: int, n: int) -> Iterator[int | str]:
         yield a.bit_length() - 1
     if -(2**30) <= a < 2**30:
         yield a
-    yield from (format(a, "X"), format(b, "b"), format(a, "o"))
+    yield from (format(a, "x"), format(b, "b"), format(a, "o"))
     digits, exponent = format(float(a), ".16e").split("e")
     yield f"{digits}E{int(exponent)}"
 

@@ -121,7 +121,7 @@ def test_a_report_does_not_contradict_itself(explorers: Explorers) -> None:
     found = exploration(net, explorers, "--ends-in", "graph")
     text = " ".join(report(net, found, None).split())
     assert "PARTIAL: the limit of time was reached. All markings were seen" in text
-    assert f"Markings: complete, all {NODES} were seen." in text
+    assert f"Markings: complete: {NODES}." in text
     assert "Arcs: not complete." in text and "Components: not complete." in text
     assert "there may be further dead markings" not in text
     assert "Status: Full" in text

@@ -27,7 +27,7 @@ MIXED = """
       val P_HIGH = 100;
       fun put (x : ITEM, nil) = [x] | put (x, y :: r) = if #id x < #id y then x :: y :: r else y :: put (x, r)
       exception Empty
-      datatype 'a tree = Leaf | Node of 'a tree * 'a * 'a tree
+      datatype 'a tree = Leaf | Knot of 'a tree * 'a * 'a tree
       globref count = 0;
       val limit = 5
       page Top

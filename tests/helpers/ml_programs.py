@@ -66,9 +66,9 @@ PROGRAMS: dict[str, tuple[str, dict[str, list[str]]]] = {
         """
         fun fact 0 k = k 1 | fact n k = fact (n - 1) (fn r => k (n * r))
         fun fib 0 k = k 0 | fib 1 k = k 1 | fib n k = fib (n - 1) (fn a => fib (n - 2) (fn b => k (a + b)))
-        datatype tree = Leaf | Node of tree * int * tree
-        fun build 0 = Leaf | build n = Node (build (n - 1), n, build (n - 2 + (if n < 2 then 1 else 0)))
-        fun sum Leaf k = k 0 | sum (Node (l, x, r)) k = sum l (fn a => sum r (fn b => k (a + x + b)))
+        datatype tree = Leaf | Knot of tree * int * tree
+        fun build 0 = Leaf | build n = Knot (build (n - 1), n, build (n - 2 + (if n < 2 then 1 else 0)))
+        fun sum Leaf k = k 0 | sum (Knot (l, x, r)) k = sum l (fn a => sum r (fn b => k (a + x + b)))
         fun find p [] found none = none () | find p (x :: r) found none = if p x then found x else find p r found none
         """,
         {
@@ -214,7 +214,7 @@ PROGRAMS: dict[str, tuple[str, dict[str, list[str]]]] = {
         """
         exception A
         exception B of int
-        val all = [A, B 3, Div, Fail "f", B 4]
+        val every = [A, B 3, Div, Fail "f", B 4]
         fun weight A = 1 | weight (B n) = n | weight (Fail s) = String.size s | weight _ = 100
         val last = ref (NONE : exn option)
         fun tried f = f () handle e => (last := SOME e; 0)
@@ -224,11 +224,11 @@ PROGRAMS: dict[str, tuple[str, dict[str, list[str]]]] = {
         """,
         {
             INTS: [
-                "foldl (op +) 0 (List.map weight all)",
+                "foldl (op +) 0 (List.map weight every)",
                 "tried (fn () => if n > 5 then raise B n else if n > 2 then 1 div 0 else n)",
                 "weight (unwrap (Wrap (Wrap (B n))))",
                 "(raise Wrap (B n)) handle Wrap (B k) => k | Wrap _ => 0",
-                "(raise List.nth (all, n mod 5)) handle B k => k | Fail _ => 7 | Div => 8 | A => 9",
+                "(raise List.nth (every, n mod 5)) handle B k => k | Fail _ => 7 | Div => 8 | A => 9",
             ],
             STRINGS: ["how (!last)"],
         },
@@ -262,13 +262,13 @@ PROGRAMS: dict[str, tuple[str, dict[str, list[str]]]] = {
           | eval env (Neg a) = ~ (eval env a)
           | eval env (Let (x, a, b)) = eval ((x, eval env a) :: env) b
           | eval env (Var x) = lookup (x, env)
-        datatype 'a tree = Leaf | Node of 'a tree * 'a * 'a tree
-        fun insert less (x, Leaf) = Node (Leaf, x, Leaf)
-          | insert less (x, t as Node (l, y, r)) =
-              if less (x, y) then Node (insert less (x, l), y, r)
-              else if less (y, x) then Node (l, y, insert less (x, r)) else t
-        fun flat Leaf = [] | flat (Node (l, x, r)) = flat l ^^ (x :: flat r)
-        fun fold f z Leaf = z | fold f z (Node (l, x, r)) = fold f (f (x, fold f z l)) r
+        datatype 'a tree = Leaf | Knot of 'a tree * 'a * 'a tree
+        fun insert less (x, Leaf) = Knot (Leaf, x, Leaf)
+          | insert less (x, t as Knot (l, y, r)) =
+              if less (x, y) then Knot (insert less (x, l), y, r)
+              else if less (y, x) then Knot (l, y, insert less (x, r)) else t
+        fun flat Leaf = [] | flat (Knot (l, x, r)) = flat l ^^ (x :: flat r)
+        fun fold f z Leaf = z | fold f z (Knot (l, x, r)) = fold f (f (x, fold f z l)) r
         datatype a = A of b list | Stop and b = B of a * int
         fun deep Stop = 0 | deep (A bs) = foldl (fn (B (x, n), s) => s + n + deep x) 0 bs
         datatype ('k, 'v) map = Map of ('k * 'v) list
@@ -448,7 +448,7 @@ PROGRAMS: dict[str, tuple[str, dict[str, list[str]]]] = {
         fun fact n = if n = 0 then 1 else n * (!self) (n - 1)
         datatype 'a cell = Empty | Cell of {value: 'a, next: 'a cell ref}
         fun push r x = r := Cell {value = x, next = ref (!r)}
-        fun all r = case !r of Empty => [] | Cell {value, next} => value :: all next
+        fun every r = case !r of Empty => [] | Cell {value, next} => value :: every next
         val names = ref ["a"]
         val point = ref {x = 1, y = 2.5}
         val pp = ref (ref 3)
@@ -460,7 +460,7 @@ PROGRAMS: dict[str, tuple[str, dict[str, list[str]]]] = {
                 "f (ref n)",
                 "slow n + slow n + !calls",
                 "(self := fact; (!self) (n mod 7))",
-                "let val r = ref Empty in (push r n; push r 2; List.app (push r) [3, 4]; foldl (op +) 0 (all r)) end",
+                "let val r = ref Empty in (push r n; push r 2; List.app (push r) [3, 4]; foldl (op +) 0 (every r)) end",
                 "(point := {x = n + #x (!point), y = 1.0}; #x (!point))",
                 "(!pp := n + !(!pp); pp := ref (!(!pp) + 1); !(!pp))",
                 "let val a = ref n val b = ref 2 in (swap (a, b); !a * 10 + !b) end",
@@ -542,9 +542,9 @@ PROGRAMS: dict[str, tuple[str, dict[str, list[str]]]] = {
         """
         structure S = struct val base = 10 fun f x = x + base exception Bad of int val fs = [f,
             fn x => x * 2] structure T = struct fun g x = f (f x) end end
-        signature ORD = sig type t val less : t * t -> bool end
-        functor Sort (O : ORD) = struct fun insert (x, []) = [x] | insert (x, y :: r) = if O.less (x, y)
-            then x :: y :: r else y :: insert (x, r) fun sort l = foldl insert [] l end
+        functor Sort (O : sig type t val less : t * t -> bool end) = struct fun insert (x, []) = [x]
+            | insert (x, y :: r) = if O.less (x, y) then x :: y :: r else y :: insert (x, r)
+            fun sort l = foldl insert [] l end
         structure IntSort = Sort (struct type t = int val less = op < end)
         structure Back = Sort (struct type t = int fun less (a, b) = a > b end)
         local val hidden = ref 3 in fun peek () = !hidden fun poke x = hidden := x end
@@ -562,7 +562,7 @@ PROGRAMS: dict[str, tuple[str, dict[str, list[str]]]] = {
     ),
     "after errors": (
         """
-        datatype tree = Node of tree * int * tree | Leaf
+        datatype tree = Knot of tree * int * tree | Leaf
         datatype t = T of t option
         datatype u = U of v and v = V of u * int | W
         datatype box = Box of {f: int -> int, r: int ref, l: int list, s: string}
@@ -574,12 +574,12 @@ PROGRAMS: dict[str, tuple[str, dict[str, list[str]]]] = {
         fun badref s = if s = "" then ref 1 else raise Fail s
         fun badlist s = if s = "" then [1] else raise Fail s
         fun badopt s = if s = "" then SOME (fn x => x + 1) else raise Fail s
-        fun top t = case t of Leaf => 0 | Node (l, x, r) => x
+        fun top t = case t of Leaf => 0 | Knot (l, x, r) => x
         exception E of int * string
         """,
         {
             INTS: [
-                '(case bad "x" of Leaf => 0 | Node (l, x, r) => x) handle Fail s => String.size s',
+                '(case bad "x" of Leaf => 0 | Knot (l, x, r) => x) handle Fail s => String.size s',
                 '(case badt "x" of T NONE => 1 | T (SOME (T y)) => 2) handle Fail s => 7',
                 '(case badt "x" of T x => (case x of SOME (T y) => 3 | NONE => 4)) handle Fail s => 7',
                 '(case badu "x" of U (V (U z, n)) => n | U W => 0) handle Fail _ => 8',
@@ -590,7 +590,7 @@ PROGRAMS: dict[str, tuple[str, dict[str, list[str]]]] = {
                 '(hd (badlist "x") + length (tl (badlist "y"))) handle Fail s => String.size s | Empty => 100',
                 '((valOf (badopt "x")) n) handle Fail s => 5',
                 'top (bad "abc") handle Fail s => String.size s',
-                'top (Node (bad "", n, bad "zz")) handle Fail s => String.size s',
+                'top (Knot (bad "", n, bad "zz")) handle Fail s => String.size s',
                 '(raise E (1 div 0, "x")) handle Div => 3 | E (k, s) => k',
                 "(List.nth ([1, 2], n) + (1 div 0)) handle Div => 1 | Subscript => 2",
                 "((fn SOME x => x) (List.find (fn x => x > n) [6, 2])) handle Match => ~1 | Option => ~2",
@@ -716,7 +716,7 @@ PROGRAMS: dict[str, tuple[str, dict[str, list[str]]]] = {
         exception Type of string * value
         fun get x env = case env x of SOME v => v | NONE => raise Type ("unbound " ^ x, VErr x)
         fun extend env x v = fn y => if x = y then SOME v else env y
-        fun int (VInt n) = n | int v = raise Type ("not an int", v)
+        fun num (VInt n) = n | num v = raise Type ("not an int", v)
         fun prim "+" [VInt a, VInt b] = VInt (a + b) | prim "*" [VInt a, VInt b] = VInt (a * b) | prim "-"
             [VInt a, VInt b] = VInt (a - b) | prim p (v :: _) = raise Type (p, v) | prim p [] = VErr p
         fun ev env (Int n) = VInt n
@@ -724,11 +724,11 @@ PROGRAMS: dict[str, tuple[str, dict[str, list[str]]]] = {
           | ev env (Lam (x, b)) = VFun (fn v => ev (extend env x v) b)
           | ev env (App (f, a)) = (case ev env f of VFun g => g (ev env a) | v => raise Type ("not a function", v))
           | ev env (Prim (p, l)) = prim p (List.map (ev env) l)
-          | ev env (Cond (c, a, b)) = if int (ev env c) <> 0 then ev env a else ev env b
+          | ev env (Cond (c, a, b)) = if num (ev env c) <> 0 then ev env a else ev env b
           | ev env (Fix (f, b)) = let val r = ref (VErr f) val v = ev (fn y => if y = f then SOME (!r) else
               env y) b in (r := v; v) end
         fun empty_env (x : string) = NONE : value option
-        fun run t = int (ev empty_env t) handle Type (s, VInt k) => k * 1000 | Type (s, _) => ~ (String.size s)
+        fun run t = num (ev empty_env t) handle Type (s, VInt k) => k * 1000 | Type (s, _) => ~ (String.size s)
         fun fact n = App (Fix ("f", Lam ("n", Cond (Id "n", Prim ("*", [Id "n", App (Id "f", Prim ("-", [Id
             "n", Int 1]))]), Int 1))), Int n)
         """,

@@ -49,8 +49,8 @@ _HEAD = """
   fun twice x = (x, x);
   fun first (x, _) = x;
   fun apply f x = f x;
-  datatype 'a tree = Leaf | Node of 'a tree * 'a * 'a tree;
-  fun top Leaf d = d | top (Node (_, x, _)) _ = x;
+  datatype 'a tree = Leaf | Knot of 'a tree * 'a * 'a tree;
+  fun top Leaf d = d | top (Knot (_, x, _)) _ = x;
 """
 
 
@@ -435,7 +435,7 @@ def _positions() -> list[Callable[[_Cases], None]]:
         c.puts(
             c.r.choice(
                 (
-                    f"top (Node (Leaf, {c.e()}, Leaf)) {c.e()}",
+                    f"top (Knot (Leaf, {c.e()}, Leaf)) {c.e()}",
                     f"top Leaf {c.e()}",
                     f"getOpt (SOME {c.e()}, {c.e()})",
                     f"valOf (SOME {c.e()})",

@@ -127,7 +127,7 @@ def test_functions_passed_as_arguments_are_followed() -> None:
 def test_functions_as_values() -> None:
     """A list of functions: a union of them, with what they captured, and one function that applies."""
     text = function(
-        "fun all k = [fn x => x + k, Int.abs]", "foldl (fn (f, s) => f s) n (all 3)", ""
+        "fun every k = [fn x => x + k, Int.abs]", "foldl (fn (f, s) => f s) n (every 3)", ""
     )
     assert "union int_to_int = fn of @int | Int.abs" in text
     applied = text[text.index("function apply int_to_int(f: int_to_int, x: int): int") :]

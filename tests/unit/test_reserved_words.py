@@ -60,11 +60,14 @@ def test_what_is_no_declaration_of_cpn_ml(text: str) -> None:
 
 
 @pytest.mark.parametrize(
-    "text",
-    ["datatype d = INT.mkstr", "exception INT.x", "fun INT.x y = 3", "datatype d = A | INT.x"],
-)
-def test_members_of_structures_cannot_be_declared(text: str) -> None:
-    assert errors(text) == ["syntax-error"]
+    ("text", "code"),
+    [
+        ("datatype d = INT.mkstr", "syntax-error"), ("exception INT.x", "syntax-error"),
+        ("fun INT.x y = 3", "fixity-error"), ("datatype d = A | INT.x", "syntax-error"),
+    ],
+)  # fmt: skip
+def test_members_of_structures_cannot_be_declared(text: str, code: str) -> None:
+    assert errors(text) == [code]
 
 
 @pytest.mark.parametrize(

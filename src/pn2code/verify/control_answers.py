@@ -8,9 +8,7 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
-from pn2code.cell.partition import ChannelKind, Partition
-from pn2code.cell.reach import Reach
-from pn2code.net.flat import BindAll, BindRandom
+from pn2code.cell.partition import Partition
 from pn2code.verify.control_types import (
     BLOCKING,
     BOUNDED,
@@ -318,11 +316,8 @@ def _blocking(row: Mapping[str, Any], keep: Keeper, partition: Partition) -> Che
     final = " or ".join(f"`{n}`" for n in names)
     size = int(row["value"])
     if row["answer"] == "yes":
-        *most, last = [*_given(partition)] or [""]
-        given = f", if {' and '.join(filter(None, [', '.join(most), last]))}" * bool(last)
         how = (
-            f"a token in {final} is reached from each of the {size:,} states of the cell, however slow its programs "
-            f"are{given}"
+            f"a token in {final} is reached from each of the {size:,} states of the cell, however slow its programs are"
             if names
             else f"something can always happen in the {size:,} states of the cell (no place is final)"
         )
@@ -342,20 +337,6 @@ def _blocking(row: Mapping[str, Any], keep: Keeper, partition: Partition) -> Che
     else:
         says = f"{after} a token in {final} can no longer be reached, although the cell goes on"
     return Check(BLOCKING, "no", says, size, row["why"], evidence=evidence)
-
-
-def _given(partition: Partition) -> Iterator[str]:
-    """What is taken for granted of the world, as clauses."""
-    pairs = zip(partition.net.transitions, partition.transition_owner, strict=True)
-    own = [t for t, owner in pairs if owner]
-    if any(c.writer == 0 and c.kind is ChannelKind.FLAG for c in partition.channels):
-        yield "flags are answered within `reply_timeout_s`"
-    if any(isinstance(step, BindAll | BindRandom) for t in own for step in t.plan):
-        yield "each value of a sensor comes now and then"
-    reach = Reach(partition.net.program)
-    measures = {uid for uid, p in partition.primitives.items() if p.command == "measure"}
-    if any(t.code is not None and measures & reach.everything(t.code.action).keys() for t in own):
-        yield "what is measured is what the net says"
 
 
 def channels_check(partition: Partition, rows: Sequence[Mapping[str, Any]], keep: Keeper) -> Check:
