@@ -82,6 +82,7 @@ DELAY = """    place Waiting : T = 1`()
       out say : 1
 """
 EARLY = net(ONE, {"A": DELAY}, "  colset T = unit timed;\n")
+TIMELESS = TOOL.replace("2.0", "0.0")
 PAUSE = '[primitives]\npause = { command = "wait" }\n'
 NEVER = net(
     ONE,
@@ -94,11 +95,22 @@ NEVER = net(
     ("text", "cell", "answer", "says"),
     [
         (PURE, toml(["A", "B"], TOOL), "no", "goes round for ever without a command"),
-        (BRANCH, toml(["A", "B"], TOOL), "unknown", "never takes the branches with commands"),
+        (
+            BRANCH,
+            toml(["A", "B"], TOOL),
+            "unknown",
+            "never take the branches with commands that take time",
+        ),
+        (
+            BOTH,
+            toml(["A", "B"], TIMELESS),
+            "unknown",
+            "never take the branches with commands that take time",
+        ),
         (EARLY, toml(["A"]), "no", "the script of device `A` stops in `Top.A.Accept`, 1 step"),
         (NEVER, toml(["A"], PAUSE), "no", "stops in `Top.A.Answer`, 2 steps after the start"),
     ],
-    ids=["pure", "branch", "early", "never"],
+    ids=["pure", "branch", "timeless", "early", "never"],
 )
 def test_where_a_script_stops(text: str, cell: str, answer: str, says: str, tmp_path: Path) -> None:
     found = examined(write(tmp_path / "cell", text, cell)).checks["non-blocking"]
@@ -264,3 +276,17 @@ def _cut(found: Exploration | None) -> Exploration:
         found,
         bounds=tuple(replace(b, upper_multiset=(b.upper_multiset or ())[:1]) for b in found.bounds),
     )
+
+
+def test_a_script_that_repeats_commands_of_no_time_ends_a_run(tmp_path: Path) -> None:
+    other = turning("(if k > 5 then act () else act (); 1 - k)")
+    text = net(
+        TWO,
+        {"A": SLOW.replace("act ()", "pause 1.0"), "B": other},
+        ACT + N + "  fun pause (s : real) = ();\n",
+    )
+    cell = toml(["A", "B"], TIMELESS + 'pause = { command = "wait" }\n')
+    end = ran(write(tmp_path / "cell", text, cell))[-1]
+    assert end["why"] == "failed"
+    assert "B carried out 10,000 commands at" in end["reason"]
+    assert "without time passing" in end["reason"]

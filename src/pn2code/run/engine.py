@@ -19,7 +19,7 @@ import itertools
 import math
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
-from typing import Any, Protocol
+from typing import Any, NoReturn, Protocol
 
 import numpy as np
 
@@ -64,7 +64,7 @@ from pn2code.tdl.interpret import (
 )
 
 MAX_ROUNDS = 10_000
-"""Exchanges between supervisor and robots at one instant; more means that they chatter without end."""
+"""Exchanges between supervisor and robots at one instant, or commands; more means that they go on without end."""
 
 
 class Observer(Protocol):
@@ -201,15 +201,28 @@ class Engine:
         """Until the supervisor has finished and the robots rest; or until something stops the cell."""
         try:
             self._begin_run()
+            without_time = 0
             while True:
                 self._settle()
                 if self._finished and self._at_rest():
                     self.record.verdict = "finished"
                     break
+                before = self.now
                 self._advance(self._next_event())
+                without_time = without_time + 1 if self.now <= before else 0
+                if without_time > MAX_ROUNDS:
+                    self._repeats_without_time()
         except CellStoppedError as why:
             self._stop(str(why))
         return self._close()
+
+    def _repeats_without_time(self) -> NoReturn:
+        busy = [r for r in self.robots if r.waiting is None and not r.finished]
+        names = " and ".join(r.name for r in busy) or "a program"
+        raise CellStoppedError(
+            f"{names} carried out {MAX_ROUNDS:,} commands at {self.now:.3f} s without time passing: a script repeats "
+            "commands that take no time"
+        )
 
     def _at_rest(self) -> bool:
         """Whether no arm moves. Devices may go on: they have nothing to bring to rest."""

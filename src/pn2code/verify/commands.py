@@ -26,7 +26,10 @@ class Commands:
         return any(uid in self._primitives for uid in self._reach.everything(action))
 
     def must_come(self, e: core.Exp) -> bool:
-        """Whether a primitive is called whatever the values are; what is not understood may do without."""
+        """Whether a primitive is called whatever the values are; what is not understood may do without.
+
+        A tool that works for no time at all does not count: a script that repeats it stands still in time.
+        """
         match e:
             case core.If(condition, then, otherwise):
                 return self.must_come(condition) or (
@@ -52,8 +55,9 @@ class Commands:
             case core.Lambda(rules):
                 return all(self.must_come(rule.body) for rule in rules)
             case core.Var(symbol):
-                if symbol.uid in self._primitives:
-                    return True
+                primitive = self._primitives.get(symbol.uid)
+                if primitive is not None:
+                    return primitive.command != "tool" or primitive.duration_s > 0.0
                 body = self._reach.body(symbol)
                 if symbol.uid not in self._looked:
                     self._looked[symbol.uid] = (
