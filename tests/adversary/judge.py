@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -128,7 +129,10 @@ def _of_run(cell: Cell, said: Said, run: Run, net: FlatNet) -> Iterator[str]:
             if claim.broken(found, is_over=is_over) is not None:
                 yield f"capacity is yes, but {claim.places[0]} holds more than {claim.most} tokens"
     whole = [m["answer"] for m in said.medium[:1]]
-    if run.end == "crashed" and not any(w in run.why for w in ("died", "dead", "ended", "gone")):
+    # A script may stop by itself before anybody notices; only where non-blocking is yes that may not be.
+    is_own = _SCRIPT.search(run.why) and _answer(said, "non-blocking") != "yes"
+    is_said = any(w in run.why for w in ("died", "dead", "ended", "gone"))
+    if run.end == "crashed" and not (is_own or is_said):
         yield "a side died, but nobody says so"
     if run.end == "stuck":
         if _answer(said, "non-blocking") == "yes":
@@ -147,6 +151,8 @@ def _of_run(cell: Cell, said: Said, run: Run, net: FlatNet) -> Iterator[str]:
     yield from _bounds(said, found)
 
 
+_SCRIPT = re.compile(r"^\w+\.tdl:\d+: ")
+"""A reason that a script gives by itself: `dev1.tdl:46: dev1: nothing can happen`."""
 _CHECKS = {
     "would be overwritten": "channels",
     "overrun": "channels",
