@@ -18,7 +18,7 @@
  * `coordenadas` begins with the tokens of the net, not with those of its file
  * nobody owes an answer for longer than `reply_timeout_s`, 120 s (tools, waits and delays take at most 3 s; how long moves and
  * measurements take is not known)
- * each value that a sensor can have comes now and then
+ * each value that a sensor can have occurs from time to time
  */
 #include "pn/pn_arena.h"
 #include "pn/pn_cell.h"

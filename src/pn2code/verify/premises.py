@@ -17,7 +17,7 @@ _DURATIONS = (
     "it can happen for some durations of what programs do: known ones are not compared with timers"
 )
 
-_SENSORS = "each value that a sensor can have comes now and then"
+_SENSORS = "each value that a sensor can have occurs from time to time"
 
 
 @frozen
