@@ -360,3 +360,20 @@ def test_where_cpn_ml_ends() -> None:
     assert blanked("a } b") == ("a } b", None)
     assert blanked("a { } { (* } ") == ("", 6)
     assert blanked('"Top.{x" {y}') == ('"Top.{x" {\0}', None)
+
+
+def test_members_of_a_fusion_set_are_one_place(tmp_path: Path) -> None:
+    text = """
+    net Plant
+      standard
+      page Top
+        place Alarm fusion Alarms = 1
+        subst Left = Sub ()
+      page Sub
+        place Alarm fusion Alarms = 1
+        place Own = 1
+    """
+    d = Diagnostics()
+    found = front.examine(write(text, tmp_path / "plant.cpn"), d)
+    assert found.flat is not None, report(d)
+    assert asked(found, "bound Alarm <= 1") == asked(found, "bound Top'Alarm <= 1")

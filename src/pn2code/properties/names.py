@@ -82,6 +82,9 @@ class Names:
         full = name.text
         if full not in self._full[what]:
             own = self._bare[what].get(name.text, [])
+            meant = {x.index for text in own for x in self._full[what][text]}
+            if len(meant) == 1 and name.number is None:
+                return meant.pop()  # members of one fusion set, or a port and its socket
             if len(own) > 1:
                 self._d.error(
                     codes.UNKNOWN_NAME,
