@@ -75,6 +75,9 @@ FUSED = Verdict(
     "engine",
     "it looks at each arc from places of one fusion set for itself, and takes too many tokens",
 )
+RESETS = Verdict(
+    "engine", "its state space tool does not carry out reset arcs at ports and fused places"
+)
 SUBTRACT = re.compile(r"Exception Subtract raised while executing .*\((\w+)\)")
 BROKEN = "InternalError"
 """So the engine names what is wrong with itself."""
@@ -249,12 +252,15 @@ class Seen:
         if answer["nodes"] <= SMALL:
             space = state_space(self.game, max_nodes=2 * SMALL)
         if ours != theirs:
+            if self._resets_merged():
+                return RESETS
             if self.net.timed and (space is None or has_ties(space)):
                 return Verdict("random", f"{ours} instead of {theirs}")
             return self._or_random(f"{ours} instead of {theirs}")
         if space is None or "graph" not in answer:
             return AGREES
-        return self._graph(space, answer["graph"])
+        found = self._graph(space, answer["graph"])
+        return RESETS if found != AGREES and self._resets_merged() else found
 
     def graph(self, answer: dict[str, Any]) -> Verdict:
         """A whole state space by the token game, node by node and arc by arc, whatever its size."""
@@ -268,9 +274,21 @@ class Seen:
             space = state_space(self.game, max_nodes=2 * answer["nodes"] + 1)
         except GameError as error:
             return differs(f"here the state space raises: {error.message}")
+        if self._resets_merged() and self._graph(space, answer["graph"]) != AGREES:
+            return RESETS
         if len(answer["dead"]) != len(space.dead):
             return differs(f"{len(space.dead)} dead markings instead of {len(answer['dead'])}")
         return self._graph(space, answer["graph"])
+
+    def _resets_merged(self) -> bool:
+        """Whether a reset arc leads to a place that is several in the net: a port with its socket, or fused ones."""
+        assert self.net is not None
+        places = self.net.places
+        return any(
+            a.kind is ArcKind.RESET and len(places[a.place].member_ids) > 1
+            for t in self.net.transitions
+            for a in t.arcs
+        )
 
     def _graph(self, space: StateSpace, graph: dict[str, Any]) -> Verdict:
         assert self.net is not None and self.game is not None
