@@ -12,7 +12,7 @@ from dataclasses import dataclass
 
 from pn2code.emission.c_expressions import Expressions, Types
 from pn2code.emission.c_places import is_count, staying_pairs
-from pn2code.emission.c_slots import SCALARS, is_structural
+from pn2code.emission.c_slots import is_structural
 from pn2code.emission.c_statements import Statements
 from pn2code.emission.names import Scope
 from pn2code.lowering import ir
@@ -258,7 +258,7 @@ class DirectFiring(Statements):
         must_check = not self._is_known(s)
         value = ""
         if is_nested or must_check or not isinstance(s.value, ir.Const | ir.Bound | ir.Use):
-            value = self._slot_value(s, key, place, is_nested)
+            value = self._slot_value(s, key, place, is_nested, must_check)
         elif s.value.type.rep is not Rep.UNIT:
             value = self._x.text(s.value)
         is_one = is_count(s.count) and isinstance(s.count, ir.Const) and s.count.value == 1
@@ -272,7 +272,9 @@ class DirectFiring(Statements):
             self._check(s, f"&{value}", count or "1U")
         self._slot_moves.append(_SlotMove(False, place, bag, value, count, s.note))
 
-    def _slot_value(self, s: ir.Put, key: tuple[str, int], place: str, is_nested: bool) -> str:
+    def _slot_value(
+        self, s: ir.Put, key: tuple[str, int], place: str, is_nested: bool, must_check: bool
+    ) -> str:
         """Declares what is put, and works it out."""
         fresh = self._scope.name((*key, "value"), f"{place}_token")
         t = self._types.name(s.value.type)
@@ -280,7 +282,7 @@ class DirectFiring(Statements):
             self._declared.append(f"    {t} {fresh} = {self._types.zero(s.value.type)};")
             self.line(f"{fresh} = {self._x.text(s.value)};")
         else:
-            constant = "" if not self._is_known(s) else "const "
+            constant = "" if must_check else "const "
             self.line(f"{constant}{t} {fresh} = {self._x.text(s.value)};")
         return fresh
 
@@ -290,15 +292,12 @@ class DirectFiring(Statements):
         What the search has bound or compared is there if anything is; what is worked out anew may be something else
         (random numbers, files, references).
         """
-        slot = f"m->{self._x.place_names[s.place]}"
+        place = self._x.place_names[s.place]
         if is_structural(s.value, self.references) or s.value.type.rep is Rep.UNIT:
-            return f"!{slot}.full"
-        fresh = self._scope.name(("take", id(s), "value"), f"{self._x.place_names[s.place]}_token")
+            return f"!m->{place}.full"
+        fresh = self._scope.name(("take", id(s), "value"), f"{place}_token")
         self.line(f"const {self._types.name(s.value.type)} {fresh} = {self._x.text(s.value)};")
-        if s.value.type.rep in SCALARS:
-            return f"!{slot}.full || ({slot}.value != {fresh})"
-        table = self.tables_of_places[s.place]
-        return f"!{slot}.full || !pn_equal(&{table}, &{slot}.value, &{fresh})"
+        return self._differs(s.place, fresh, f"&{fresh}")
 
     def _move(self, s: ir.Take | ir.Put) -> None:
         if id(s) in self._staying:

@@ -307,7 +307,9 @@ class Statements:
                 if s.note:
                     self.note(s.note)
                 if s.place in self.slots:
-                    self.line(f"if ({self._differs(s.place, s.value)}) {{")
+                    self.line(
+                        f"if ({self._differs(s.place, self._x.inside(s.value, 10), self._x.address(s.value))}) {{"
+                    )
                     self._next()
                     return
                 pointer = self._x.address(s.value)
@@ -408,15 +410,14 @@ class Statements:
         self._loops -= 1
         self.line("}")
 
-    def _differs(self, place: int, value: Ir) -> str:
-        """Whether a slot does not hold the value, as a C condition."""
+    def _differs(self, place: int, value: str, pointer: str) -> str:
+        """Whether a slot does not hold a value, as a C condition: the value is given as C, and by its address."""
         slot = f"m->{self._x.place_names[place]}"
         rep = self.token_types[place].rep
         if rep is Rep.UNIT:
             return f"!{slot}.full"
         if rep in SCALARS:
-            return f"!{slot}.full || ({slot}.value != {self._x.inside(value, 10)})"
-        pointer = self._x.address(value)
+            return f"!{slot}.full || ({slot}.value != {value})"
         table = self.tables_of_places[place]
         return f"!{slot}.full || !pn_equal(&{table}, &{slot}.value, {pointer})"
 
