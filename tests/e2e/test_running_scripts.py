@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from e2e.test_running_cell import ACT, ECHO, SLOW, TOOL, examined, net, ran, steps, toml, write
+from e2e.test_running_cell import ACT, ECHO, ONE, SLOW, TOOL, examined, net, ran, steps, toml, write
 from pn2code.cell.divide import divide
 from pn2code.cli.nets import open_net
 from pn2code.diagnostics import Diagnostics
@@ -20,18 +20,6 @@ from pn2code.verify.result import Exploration
 
 pytestmark = [pytest.mark.cc, pytest.mark.usefixtures("quick_build")]
 
-ONE = """    place Start = 1
-    place Armed
-    place Finished
-    trans Ask
-      in Start : ()
-      out toA : 1
-      out Armed : ()
-    trans End
-      in Armed : ()
-      in fromA : k
-      out Finished : ()
-"""
 TWO = ONE.replace("      out toA : 1\n", "      out toA : 1\n      out toB : 1\n") + (
     """    trans HearB
       in Armed : ()
