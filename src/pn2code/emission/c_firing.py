@@ -258,7 +258,7 @@ class DirectFiring(Statements):
         must_check = not self._is_known(s)
         value = ""
         if is_nested or must_check or not isinstance(s.value, ir.Const | ir.Bound | ir.Use):
-            value = self._slot_value(s, key, place, is_nested, must_check)
+            value = self._worked_out(s, is_nested, must_check)
         elif s.value.type.rep is not Rep.UNIT:
             value = self._x.text(s.value)
         is_one = is_count(s.count) and isinstance(s.count, ir.Const) and s.count.value == 1
@@ -272,11 +272,10 @@ class DirectFiring(Statements):
             self._check(s, f"&{value}", count or "1U")
         self._slot_moves.append(_SlotMove(False, place, bag, value, count, s.note))
 
-    def _slot_value(
-        self, s: ir.Put, key: tuple[str, int], place: str, is_nested: bool, must_check: bool
-    ) -> str:
-        """Declares what is put, and works it out."""
-        fresh = self._scope.name((*key, "value"), f"{place}_token")
+    def _worked_out(self, s: ir.Take | ir.Put, is_nested: bool, must_check: bool) -> str:
+        """The variable that holds the value that is taken or put; a check may change it."""
+        verb = "take" if isinstance(s, ir.Take) else "add"
+        fresh = self._scope.name((verb, id(s), "value"), f"{self._x.place_names[s.place]}_token")
         t = self._types.name(s.value.type)
         if is_nested:
             self._declared.append(f"    {t} {fresh} = {self._types.zero(s.value.type)};")
@@ -295,8 +294,7 @@ class DirectFiring(Statements):
         place = self._x.place_names[s.place]
         if is_structural(s.value, self.references) or s.value.type.rep is Rep.UNIT:
             return f"!m->{place}.full"
-        fresh = self._scope.name(("take", id(s), "value"), f"{place}_token")
-        self.line(f"const {self._types.name(s.value.type)} {fresh} = {self._x.text(s.value)};")
+        fresh = self._worked_out(s, is_nested=False, must_check=False)
         return self._differs(s.place, fresh, f"&{fresh}")
 
     def _move(self, s: ir.Take | ir.Put) -> None:
@@ -314,15 +312,7 @@ class DirectFiring(Statements):
         if is_plain and not is_nested and not must_check:
             value = self._x.address(s.value)
         else:
-            fresh = self._scope.name((*key, "value"), f"{place}_token")
-            t = self._types.name(s.value.type)
-            if is_nested:
-                self._declared.append(f"    {t} {fresh} = {self._types.zero(s.value.type)};")
-                self.line(f"{fresh} = {self._x.text(s.value)};")
-            else:
-                constant = "" if must_check else "const "
-                self.line(f"{constant}{t} {fresh} = {self._x.text(s.value)};")
-            value = f"&{fresh}"
+            value = f"&{self._worked_out(s, is_nested, must_check)}"
         count = self._count(s, key, place, is_nested)
         if must_check:
             self.has_checks = True
