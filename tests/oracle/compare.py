@@ -83,6 +83,8 @@ BROKEN = "InternalError"
 """So the engine names what is wrong with itself."""
 CONFUSED = "InternalError: insert_transvar"
 """Where arcs from one place share variables: nothing is wrong with the net."""
+DECLARES = re.compile(r"InternalError: Illegal \S+Dec")
+"""Where an inscription declares something other than a value."""
 
 
 def differs(note: str) -> Verdict:
@@ -118,6 +120,9 @@ class Seen:
         wrong = [e for e in answer["errors"] if not self._warns(e)]
         if wrong and self.net is not None and all(CONFUSED in e["message"] for e in wrong):
             return ENGINE
+        if wrong and all(DECLARES.match(e["message"]) for e in wrong):
+            said = "declaration-in-inscription" in self.codes
+            return ENGINE if said else differs("not warned of: " + wrong[0]["message"])
         if wrong and all(self._grouped(e) for e in wrong):
             return GROUPS
         if failure is not None and failure["stage"] == "check" and failure["kind"] != "rejected":

@@ -14,7 +14,7 @@ from pathlib import Path
 from typing import Any
 
 from pn2code.conformance.finding import AGREES, NOTHING, Finding, State, differs
-from pn2code.diagnostics import Diagnostics
+from pn2code.diagnostics import Diagnostic, Diagnostics
 from pn2code.net import front
 from pn2code.net.flat import FlatNet
 from pn2code.semantics.effects import Effects, outside
@@ -124,9 +124,12 @@ def _verdict(
 
 
 def _elements(expected: dict[str, Any], d: Diagnostics) -> Finding:
-    """The same elements must be wrong. After a wrong declaration errors elsewhere are its consequences."""
+    """The same elements must be wrong. After a wrong declaration errors elsewhere are its consequences.
+
+    The engine refuses a transition for a variable on its arc: here the arc is wrong, and a note leads to the transition.
+    """
     theirs = set(_rejected(expected))
-    ours = {e.origin.element_id for e in d.errors}
+    ours = {i for e in d.errors for i in _about(e)}
     declarations = {str(x["id"]) for x in expected.get("rejected_declarations") or []}
     if not theirs and not ours:
         return AGREES
@@ -135,12 +138,18 @@ def _elements(expected: dict[str, Any], d: Diagnostics) -> Finding:
     if declarations:
         missing, extra = declarations - ours, set[str]()
     else:
-        missing, extra = theirs - ours, ours - theirs
+        missing = theirs - ours
+        extra = {e.origin.element_id for e in d.errors if theirs.isdisjoint(_about(e))}
     if not missing and not extra:
         return AGREES
     parts = [f"not found wrong here: {_some(sorted(missing))}"] if missing else []
     parts += [f"only here found wrong: {_some(sorted(extra))}"] if extra else []
     return differs("; ".join(parts))
+
+
+def _about(e: Diagnostic) -> set[str]:
+    """The elements that an error is about."""
+    return {o.element_id for o in (e.origin, *(n.origin for n in e.notes)) if o is not None}
 
 
 # --- behaviour -------------------------------------------------------------------------------------

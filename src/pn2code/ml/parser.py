@@ -75,6 +75,18 @@ def is_layered(source: SourceText) -> bool:
     return False
 
 
+def odd_declaration(source: SourceText) -> str:
+    """The word of the first declaration in an expression that is not `val`; "" if there is none."""
+    if "let" not in source.text:
+        return ""
+    tokens = tokenize(source, Diagnostics()) or []
+    return next((t.text for t in tokens if t.kind in _DECLARING), "")
+
+
+_DECLARING = frozenset(
+    "ABSTYPE DATATYPE EXCEPTION FUN INFIX INFIXR LOCAL NONFIX OPEN STRUCTURE TYPE".split()
+)
+"""Keywords that stand in an expression only where `let` declares something."""
 _OPENING = frozenset({"LPAREN", "LBRACK", "LBRACE", "LET", "CASE", "FN"})
 _CLOSING = frozenset({"RPAREN", "RBRACK", "RBRACE", "END"})
 

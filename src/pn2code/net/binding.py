@@ -16,9 +16,9 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from pn2code.diagnostics import Diagnostics, Note, Span
+from pn2code.diagnostics import Diagnostics, Note, Origin, Span
 from pn2code.ml.core import Apply, Builtin, Exp, If, Pat, RecordExp, Symbol
-from pn2code.net.codes import CODE_OUTPUT_BOUND, SUMMANDS_SHARE, UNBOUND_VARIABLE
+from pn2code.net.codes import CODE_OUTPUT_BOUND, LOCAL_NAME, SUMMANDS_SHARE, UNBOUND_VARIABLE
 from pn2code.net.enumerable import DECLARED, SMALL, size
 from pn2code.net.flat import (
     ArcInscription,
@@ -33,6 +33,9 @@ from pn2code.net.flat import (
 from pn2code.net.sequence import stuck
 from pn2code.net.terms import TermReader
 from pn2code.net.uses import NetVariables, Uses, merge, pattern_variables
+
+HERE = "the transition is here"
+RENAME = "use another name here, one that is no variable of the net"
 
 
 @dataclass(frozen=True, slots=True)
@@ -61,6 +64,7 @@ class Parts:
     """What of a transition matters for binding; arcs are (kind, inscription or None)."""
 
     name: str
+    origin: Origin
     arcs: Sequence[tuple[ArcKind, ArcInscription | None]]
     guards: tuple[Exp, ...]
     delay: Exp | None
@@ -94,9 +98,9 @@ class Planner:
         for kind, inscription in parts.arcs:
             if inscription is None:
                 continue
-            used = self.variables.of(inscription.value)
+            used = self.variables.seen(inscription.value)
             (outputs if kind is ArcKind.OUTPUT else inputs).append(used)
-        guards = [self.variables.of(g) for g in parts.guards]
+        guards = [self.variables.seen(g) for g in parts.guards]
         code = parts.code
         results = dict.fromkeys(code.outputs if code else ())
         needed = merge([*inputs, *guards])
@@ -109,8 +113,26 @@ class Planner:
         steps = self.steps(parts, needed, free)
         if steps is None or not self.check_sequence(parts, free):
             return None
+        self.warn_of_local_names(parts, steps, free)
         ordered = sorted(free, key=lambda s: (s.name, s.uid))
         return (*ordered, *results), steps
+
+    def used(self, parts: Parts) -> frozenset[Symbol]:
+        """The variables that have an effect; what CPN Tools sees besides are local names."""
+        texts = [*(i.value for _, i in parts.arcs if i is not None), *parts.guards, parts.delay]
+        return frozenset([*self.variables.of(*texts), *(parts.code.inputs if parts.code else ())])
+
+    def warn_of_local_names(self, parts: Parts, steps: Sequence[BindStep], free: Uses) -> None:
+        """Variables that only CPN Tools sees, of which it tries all values."""
+        tried = {x.symbol for x in steps if isinstance(x, BindAll | BindRandom)}
+        for s in sorted(tried - self.used(parts), key=lambda s: s.name):
+            self.d.warning(
+                LOCAL_NAME,
+                f"CPN Tools takes this local name for variable `{s.name}` of the net: transition `{parts.name}` has a "
+                "binding for each value of it",
+                free[s],
+                hint=RENAME,
+            )
 
     def check_outputs(self, parts: Parts, results: dict[Symbol, None], needed: Uses) -> bool:
         """Outputs of a code segment may not be bound otherwise."""
@@ -144,6 +166,7 @@ class Planner:
                     f"the summands of an arc of transition `{parts.name}` share variables, so that CPN Tools cannot "
                     f"bind {names}: it finds no complete binding sequence",
                     inscription.origin,
+                    notes=[Note(HERE, parts.origin)],
                     hint="of summands that share a variable one must have all the variables of the others; or give the "
                     "shared variable its value elsewhere, on another arc or by a guard",
                 )
@@ -194,7 +217,7 @@ class Planner:
             for j, term in enumerate(inscription.terms if inscription else ()):
                 names = pattern_variables(term.pattern)
                 if names:
-                    needs = frozenset(self.variables.of(term.delay)) - frozenset(names)
+                    needs = frozenset(self.variables.seen(term.delay)) - frozenset(names)
                     found.append(_Binder(i, j, names, needs))
         return found
 
@@ -211,7 +234,7 @@ class Planner:
                 pattern = self.terms.pattern(side)
                 names = pattern_variables(pattern)
                 if pattern is not None and names:
-                    needs = frozenset(self.variables.of(value))
+                    needs = frozenset(self.variables.seen(value))
                     if not needs & set(names):
                         found.append(_Equation(i, pattern, names, value, needs))
         return found
@@ -243,23 +266,36 @@ class Planner:
 
     def report(self, parts: Parts, s: Symbol, at: Span) -> None:
         """`unbound-variable`, with the summands that mention it but only test."""
+        is_elsewhere = at.origin.element_id != parts.origin.element_id
+        here = [Note(HERE, parts.origin)] if is_elsewhere else []
         notes: list[Note | str] = []
+        if s not in self.used(parts):
+            self.d.error(
+                UNBOUND_VARIABLE,
+                f"CPN Tools takes this local name for variable `{s.name}` of the net, which gets no value in transition "
+                f"`{parts.name}`",
+                at,
+                label="needs a value",
+                notes=here,
+                hint=RENAME,
+            )
+            return
         for kind, inscription in parts.arcs:
             if kind is ArcKind.OUTPUT or inscription is None:
                 continue
             for term in inscription.terms:
-                if s in self.variables.of(term.coefficient):
+                if s in self.variables.seen(term.coefficient):
                     notes.append(
                         Note(f"a coefficient does not bind `{s.name}`, it only counts", term.origin)
                     )
-                if term.pattern is not None or s not in self.variables.of(term.value):
+                if term.pattern is not None or s not in self.variables.seen(term.value):
                     continue
                 reason = "it is not a pattern, so it only tests"
-                if self.variables.of(term.coefficient):
+                if self.variables.seen(term.coefficient):
                     reason = "its coefficient has a variable, so it only tests"
                 notes.append(Note(f"this summand does not bind `{s.name}`: {reason}", term.origin))
         for guard in parts.guards:
-            if isinstance(guard, If) and s in self.variables.of(guard):
+            if isinstance(guard, If) and s in self.variables.seen(guard):
                 notes.append(
                     Note(
                         "a condition inside `andalso`, `orelse` or `if` binds nothing: separate conditions by commas",
@@ -273,7 +309,7 @@ class Planner:
             f"equation binds it, and `{colset}` is not a small colour set",
             at,
             label="needs a value",
-            notes=notes,
+            notes=[*notes, *here],
             hint=f"put `{s.name}` on an input arc as a pattern, or add a guard `{s.name} = ...`, or give it a "
             f"colour set with at most {SMALL} values",
         )

@@ -217,9 +217,9 @@ class Builder:
                 for i, arc in enumerate(wanted.arcs)
             )
             name = wanted.name
-            parts = Parts(
-                name, [(a.kind, a.inscription) for a in arcs], wanted.guards, None, None, None
-            )
+            origin = replace(self._origin, element=f"transition `{name}`")
+            taken = [(a.kind, a.inscription) for a in arcs]
+            parts = Parts(name, origin, taken, wanted.guards, None, None, None)
             planned = planner.plan(parts)
             if planned is None:
                 raise ValueError("; ".join(i.message for i in d.sorted()))
@@ -239,7 +239,7 @@ class Builder:
                     delay=None,
                     code=None,
                     priority=wanted.priority,
-                    origin=replace(self._origin, element=f"transition `{name}`"),
+                    origin=origin,
                     caption=name,
                 )
             )

@@ -15,7 +15,7 @@ from pn2code.diagnostics.near import did_you_mean
 from pn2code.ml.colsets import Colset, Kind
 from pn2code.ml.core import Exp, Lit
 from pn2code.ml.elaborate import ColsetSpec, Elaborator, is_layered
-from pn2code.ml.parser import declared_names
+from pn2code.ml.parser import declared_names, odd_declaration
 from pn2code.ml.types import INT, Type, list_of, timed_of
 from pn2code.net import reserved_words, space_names
 from pn2code.net.binding import Parts, Planner
@@ -23,6 +23,7 @@ from pn2code.net.codes import (
     ARC_AS,
     ARC_EMPTY,
     ARC_IGNORED,
+    DECLARATION_INSIDE,
     DECLARATION_EMPTY,
     DECLARATION_UNREAD,
     NEIGHBOUR_WRONG,
@@ -323,12 +324,14 @@ class _Checker:
         guards = (*guards, *self.tests)
         parts = Parts(
             name=t.name,
+            origin=t.origin,
             arcs=[(a.kind, a.inscription) for a in arcs],
             guards=guards,
             delay=delay,
             code=code,
             code_span=t.code.text.span() if t.code else None,
         )
+        self.warn_of_declarations(t)
         planned = self.planner.plan(parts)
         if planned is None:
             return None
@@ -345,6 +348,19 @@ class _Checker:
             priority=priority,
             origin=t.origin,
         )
+
+    def warn_of_declarations(self, t: Transition) -> None:
+        """Warn of inscriptions that keep CPN Tools from checking the page."""
+        inscriptions = [t.guard, t.priority, *(a.inscription for a in t.arcs)]
+        for text in (i.text for i in inscriptions if i is not None and not self.is_pnml):
+            word = odd_declaration(text)
+            if word:
+                self.d.warning(
+                    DECLARATION_INSIDE,
+                    f"CPN Tools cannot check a page with `{word}` in an inscription like this {text.origin.part}",
+                    text.span(),
+                    hint="declare it in the net, or write it with `val`",
+                )
 
     def arc(self, arc: Arc, place: Place, colset: Colset) -> TypedArc | None:
         if arc.kind in (ArcKind.INHIBITOR, ArcKind.RESET):

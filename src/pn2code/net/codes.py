@@ -163,6 +163,23 @@ UNBOUND_VARIABLE = register(
     "Function calls, arithmetic and `if` on an input arc only test, and so do summands whose "
     "coefficient contains a variable.",
 )
+DECLARATION_INSIDE = register(
+    "declaration-in-inscription",
+    "an inscription declares something other than a value",
+    "CPN Tools looks for the variables of an arc inscription, a guard or a priority by itself, and of declarations it "
+    "knows `val` only: at `let fun f x = x + 1 in f n end` it ends with `InternalError: Illegal FunDec`, and the page "
+    "cannot be checked. In declarations, code segments, time inscriptions of transitions and initial markings all "
+    "declarations are possible.",
+)
+LOCAL_NAME = register(
+    "local-name-of-variable",
+    "CPN Tools takes a local name for a variable of the net",
+    "CPN Tools goes by the names in an arc inscription or a guard: in `List.exists (fn n => n > 2) l` it sees the "
+    "variable `n` of the net, if there is one, although the `n` is that of `fn`. So it is with `case` and `handle`, with "
+    "an earlier `val` of the same `let`, and with the last part of `Int.max`. The transition then has that variable, "
+    "too: without a value from elsewhere CPN Tools tries all values of a small colour set, so that the transition has as "
+    "many bindings that do the same, and it refuses a large one (`unbound-variable`). pn2code does as CPN Tools does.",
+)
 CODE_OUTPUT_BOUND = register(
     "code-output-bound",
     "an output of a code segment is bound already",

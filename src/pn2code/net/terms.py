@@ -105,7 +105,7 @@ class TermReader:
     def term(self, coefficient: Exp, value: Exp, delay: Exp | None, whole: bool, at: Exp) -> Term:
         """One term; it binds if its value is a pattern with variables and its coefficient has none."""
         pattern = None
-        if not whole and not self.variables.of(coefficient):
+        if not whole and not self.variables.seen(coefficient):
             pattern = self.pattern(value)
             if not pattern_variables(pattern):
                 pattern = None

@@ -1,4 +1,9 @@
-"""Which net variables an expression uses, and where first."""
+"""Which net variables an expression uses, and where first.
+
+CPN Tools goes by the names in an arc inscription or a guard. It knows that `let val` hides a variable in the body; but
+what `fn`, `case`, `handle` or an earlier `val` of the same `let` hides counts as the variable, and so does the last
+part of `List.hd`. Such a variable has to be bound, too: `seen` finds it.
+"""
 
 from __future__ import annotations
 
@@ -7,7 +12,10 @@ from collections.abc import Iterable, Iterator, Mapping
 from pn2code.diagnostics import Span
 from pn2code.ml.core import (
     Apply,
+    Builtin,
     Case,
+    Con,
+    Dec,
     Exp,
     Handle,
     If,
@@ -88,6 +96,7 @@ class NetVariables:
 
     def __init__(self, variables: Mapping[str, Symbol]) -> None:
         self.uids = {s.uid for s in variables.values()}
+        self.names = dict(variables)
 
     def of(self, *expressions: Exp | None) -> Uses:
         """Net variables of the expressions (None is skipped)."""
@@ -100,9 +109,42 @@ class NetVariables:
                     found.setdefault(x.symbol, x.span)
         return found
 
+    def seen(self, *expressions: Exp | None) -> Uses:
+        """Net variables that CPN Tools sees in the expressions of an arc or a guard (None is skipped)."""
+        found: Uses = {}
+        stack = [(e, _NOTHING) for e in reversed(expressions) if e is not None]
+        while stack:
+            e, hidden = stack.pop()
+            if isinstance(e, Var | Builtin | Con):
+                name = e.span.text.rpartition(".")[2]
+                if name in self.names and name not in hidden:
+                    found.setdefault(self.names[name], e.span)
+            elif isinstance(e, Let):
+                own = {s.name for declaration in e.declarations for s in _declared(declaration)}
+                *values, body = children(e)
+                stack.append((body, hidden | own))
+                stack += [(value, hidden) for value in reversed(values)]
+            else:
+                stack += [(x, hidden) for x in reversed(list(children(e)))]
+        return found
+
     def is_net_variable(self, symbol: Symbol) -> bool:
         """Whether the symbol is a net variable (and not a local or global of that name)."""
         return symbol.uid in self.uids
+
+
+_NOTHING: frozenset[str] = frozenset()
+
+
+def _declared(declaration: Dec) -> tuple[Symbol, ...]:
+    """What a declaration gives names to."""
+    match declaration:
+        case ValBind(pattern):
+            return pattern_variables(pattern)
+        case RecBind(bindings):
+            return tuple(symbol for symbol, _ in bindings)
+        case _:
+            return ()
 
 
 def pattern_variables(pattern: Pat | None) -> tuple[Symbol, ...]:
