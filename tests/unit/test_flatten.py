@@ -196,7 +196,7 @@ def test_fusion_sets_are_global() -> None:
 def test_fusion_mismatch() -> None:
     d = diagnose(FUSION.replace("place R fusion F : INT =  1 ` 1", "place R fusion F : INT"))
     assert [x.code for x in d.errors] == ["fusion-mismatch"]
-    assert "different initial markings, `1`1` and none" in d.errors[0].message
+    assert "different initial markings, none and `1`1`" in d.errors[0].message
     d = diagnose(FUSION.replace("R fusion F : INT =  1 ` 1", "R fusion F : BOOL"))
     assert "different colour sets, `INT` and `BOOL`" in d.errors[0].message
 

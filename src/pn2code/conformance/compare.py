@@ -126,7 +126,8 @@ def _verdict(
 def _elements(expected: dict[str, Any], d: Diagnostics) -> Finding:
     """The same elements must be wrong. After a wrong declaration errors elsewhere are its consequences.
 
-    The engine refuses a transition for a variable on its arc: here the arc is wrong, and a note leads to the transition.
+    The engine refuses a transition for a variable on its arc; here the arc is wrong, and a note leads to the
+    transition.
     """
     theirs = set(_rejected(expected))
     ours = {i for e in d.errors for i in _about(e)}

@@ -2,14 +2,15 @@
 
     Computing(constants, bodies).value(exp)       # 3 for `length workers`, None when it cannot be said
 
-What `constants.fold` cannot say is computed here: user functions, lists, tuples, patterns, the library functions that
-such expressions use. It is no evaluator of nets: no exceptions, references, loops or files; it gives up after some
-thousands of steps. Integers are those of CPN Tools; beyond them there is no value.
+What `constants.fold` cannot say is computed here: user functions, lists, tuples, patterns, multi-sets, the library
+functions that such expressions use. It is no evaluator of nets: no exceptions, references, loops or files; it gives
+up after some thousands of steps. Integers are those of CPN Tools; beyond them there is no value.
 """
 
 from __future__ import annotations
 
 import functools
+from collections import Counter
 from collections.abc import Callable, Mapping
 from typing import Any
 
@@ -18,6 +19,7 @@ from pn2code.ml.constants import Constant, binary, fold, unary
 
 MOST_STEPS = 100_000
 MOST_INT = 2**30
+MOST_TOKENS = 10_000
 _NAMES = {"length": "List.length", "rev": "List.rev", "size": "String.size"}
 
 Value = Any
@@ -52,12 +54,25 @@ class Computing:
         folded = fold(e, self._constants)
         if folded is not None:
             return folded
+        found = self._computed(e)
+        return found if isinstance(found, int | float | str) else None
+
+    def tokens(self, e: core.Exp, is_token: bool) -> Counter[Value] | None:
+        """The tokens of an initial marking, which is one of them or a multi-set, if they can be said."""
+        found = self._computed(e)
+        if found is None or not (is_token or isinstance(found, tuple)):
+            return None
+        try:
+            return Counter([found] if is_token else found)
+        except TypeError:
+            return None  # functions: no colour set has them
+
+    def _computed(self, e: core.Exp) -> Value:
         self._steps = 0
         try:
-            found = self._value(e, {})
+            return self._value(e, {})
         except (_UnknownError, RecursionError):
             return None
-        return found if isinstance(found, int | float | str) else None
 
     def _value(self, e: core.Exp, local: Mapping[int, Value]) -> Value:
         self._steps += 1
@@ -202,6 +217,25 @@ def _nth(argument: Value) -> Value:
     return items[index] if 0 <= index < len(items) else None
 
 
+def _times(pair: Value) -> Value:
+    count, item = _pair(pair)
+    return (item,) * max(count, 0) if count <= MOST_TOKENS else None
+
+
+def _stamped(pair: Value) -> Value:
+    """A token with its delay, which is its stamp in an initial marking."""
+    return _record(*_pair(pair))
+
+
+def _all_stamped(pair: Value) -> Value:
+    items, delay = _pair(pair)
+    return tuple(_record(item, delay) for item in items)
+
+
+def _joined(pair: Value) -> Value:
+    return _pair(pair)[0] + _pair(pair)[1]
+
+
 _LIBRARY: dict[str, Callable[[Value], Value]] = {
     "List.length": len,
     "String.size": len,
@@ -210,7 +244,12 @@ _LIBRARY: dict[str, Callable[[Value], Value]] = {
     "List.tl": lambda items: items[1:] if items else None,
     "List.null": lambda items: not items,
     "List.nth": _nth,
-    "List.@": lambda pair: _pair(pair)[0] + _pair(pair)[1],
+    "List.@": _joined,
+    "Ms.`": _times,
+    "Ms.++": _joined,
+    "Time.+++": _joined,
+    "Time.@+": _all_stamped,
+    "Time.token@+": _stamped,
     "List.map": lambda f: lambda items: tuple(map(f, items)),
     "List.filter": lambda f: lambda items: tuple(filter(f, items)),
     "List.foldl": _fold_left,
@@ -228,6 +267,8 @@ def _library(name: str) -> Value:
 
 def _operator(name: str, argument: Value) -> Value:
     if isinstance(argument, frozenset):
+        if {label for label, _ in argument} != {"1", "2"}:
+            raise _UnknownError
         left, right = _pair(argument)
         if name in ("=", "<>"):
             return (left == right) is (name == "=")

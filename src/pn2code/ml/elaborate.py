@@ -12,12 +12,13 @@ Typical use (the `link` and `check` stages of `pn2code.net`):
 from __future__ import annotations
 
 import sys
+from collections import Counter
 from collections.abc import Callable, Hashable, Iterator, Mapping, Sequence, Set
 from contextlib import contextmanager
 from dataclasses import dataclass, field, replace
 from functools import partial
 from pathlib import Path
-from typing import TypeVar
+from typing import Any, TypeVar
 
 from pn2code.diagnostics import Diagnostics, Origin, PlacedText, Severity, SourceText, Span
 from pn2code.ml import codes, core, library
@@ -560,6 +561,10 @@ class Elaborator:
 
     def _fold(self, exp: core.Exp) -> Constant | None:
         return self._computing.value(exp)
+
+    def tokens(self, exp: core.Exp, is_token: bool) -> Counter[Any] | None:
+        """The tokens of an initial marking, which is one of them or a multi-set; None when they cannot be said."""
+        return self._computing.tokens(exp, is_token)
 
     def _once(self, key: Hashable, text: SourceText, work: Callable[[], T | None]) -> T | None:
         """What `work` makes of a text, or what it made of the same text elsewhere, if there was nothing to say."""

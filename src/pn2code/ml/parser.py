@@ -84,7 +84,19 @@ def odd_declaration(source: SourceText) -> str:
 
 
 _DECLARING = frozenset(
-    "ABSTYPE DATATYPE EXCEPTION FUN INFIX INFIXR LOCAL NONFIX OPEN STRUCTURE TYPE".split()
+    [
+        "ABSTYPE",
+        "DATATYPE",
+        "EXCEPTION",
+        "FUN",
+        "INFIX",
+        "INFIXR",
+        "LOCAL",
+        "NONFIX",
+        "OPEN",
+        "STRUCTURE",
+        "TYPE",
+    ]
 )
 """Keywords that stand in an expression only where `let` declares something."""
 _OPENING = frozenset({"LPAREN", "LBRACK", "LBRACE", "LET", "CASE", "FN"})

@@ -272,8 +272,8 @@ class Planner:
         if s not in self.used(parts):
             self.d.error(
                 UNBOUND_VARIABLE,
-                f"CPN Tools takes this local name for variable `{s.name}` of the net, which gets no value in transition "
-                f"`{parts.name}`",
+                f"CPN Tools takes this local name for variable `{s.name}` of the net, which gets no value in "
+                f"transition `{parts.name}`",
                 at,
                 label="needs a value",
                 notes=here,

@@ -63,7 +63,8 @@ FUSION_MISMATCH = register(
     "fusion-mismatch",
     "places of a fusion set differ",
     "All places of a fusion set are one place, so they need the same colour set and the same "
-    "initial marking.",
+    "initial marking. Like CPN Tools pn2code compares the tokens, not the texts; but `3` and 1`3, a token and a "
+    "multi-set, differ. Where it cannot say what an initial marking is, it warns.",
 )
 FUSION_MEMBER = register(
     "fusion-member",
@@ -175,10 +176,11 @@ LOCAL_NAME = register(
     "local-name-of-variable",
     "CPN Tools takes a local name for a variable of the net",
     "CPN Tools goes by the names in an arc inscription or a guard: in `List.exists (fn n => n > 2) l` it sees the "
-    "variable `n` of the net, if there is one, although the `n` is that of `fn`. So it is with `case` and `handle`, with "
-    "an earlier `val` of the same `let`, and with the last part of `Int.max`. The transition then has that variable, "
-    "too: without a value from elsewhere CPN Tools tries all values of a small colour set, so that the transition has as "
-    "many bindings that do the same, and it refuses a large one (`unbound-variable`). pn2code does as CPN Tools does.",
+    "variable `n` of the net, if there is one, although the `n` is that of `fn`. So it is with `case` and `handle`, "
+    "with an earlier `val` of the same `let`, and with the last part of `Int.max`. The transition then has that "
+    "variable, too: without a value from elsewhere CPN Tools tries all values of a small colour set, so that the "
+    "transition has as many bindings that do the same, and it refuses a large one (`unbound-variable`). pn2code does "
+    "as CPN Tools does.",
 )
 CODE_OUTPUT_BOUND = register(
     "code-output-bound",

@@ -10,9 +10,11 @@ place "Top.flag1" if that is its socket.
 from __future__ import annotations
 
 import re
+from collections import Counter
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 from pn2code.diagnostics import Diagnostics, Note, Origin
 from pn2code.net.codes import FUSION_MISMATCH, NET_TOO_LARGE, PORT_COLSET, PORT_INITIAL
@@ -22,6 +24,7 @@ from pn2code.net.flat import (
     FlatNet,
     FlatPlace,
     FlatTransition,
+    Form,
     PlaceInstance,
 )
 from pn2code.net.instances import PageInstance, expand, measure, unique_names
@@ -143,8 +146,8 @@ class _Flattener:
                     top[key] = top[above]
                     self.check_port(place, self.typed[above])
         first_of_fusion: dict[str, Key] = {}
-        mismatched: set[str] = set()
-        last_of_fusion = {place.fusion: key for key, place in self.typed.items() if place.fusion}
+        last_of_fusion = self.compared_with()
+        checked: set[str] = set()  # once, however often the page is used
         parent = {key: key for key in top}
 
         def root(key: Key) -> Key:
@@ -158,12 +161,10 @@ class _Flattener:
         for key, place in self.typed.items():
             if place.fusion:
                 first = first_of_fusion.setdefault(place.fusion, key)
-                # CPN Tools compares with the last one, and reports the others.
                 last = last_of_fusion[place.fusion]
-                if place.fusion not in mismatched and not self.check_fusion(
-                    place.fusion, self.typed[top[key]], self.typed[top[last]]
-                ):
-                    mismatched.add(place.fusion)
+                if place.id not in checked:
+                    self.check_fusion(place.fusion, self.typed[top[key]], self.typed[top[last]])
+                    checked.add(place.id)
                 a, b = root(first), root(key)
                 if a != b:
                     low, high = sorted((a, b), key=self.order.__getitem__)
@@ -173,6 +174,15 @@ class _Flattener:
             members.setdefault(root(key), []).append(key)
         groups = [self.topmost_first(g, top) for g in members.values()]
         return groups, {key: n for n, group in enumerate(groups) for key in group}
+
+    def compared_with(self) -> dict[str, Key]:
+        """Of each fusion set the place with which CPN Tools compares the others: the last one on its first page."""
+        found: dict[str, Key] = {}
+        for key, place in self.typed.items():
+            known = found.get(place.fusion)
+            if place.fusion and (known is None or known[0] == key[0]):
+                found[place.fusion] = key
+        return found
 
     def has_socket(self, instance: PageInstance, place: TypedPlace) -> bool:
         """Whether a place is a port that is assigned to a socket."""
@@ -205,23 +215,46 @@ class _Flattener:
                 hint="remove the port's initial marking, or write the same at both",
             )
 
-    def check_fusion(self, name: str, first: TypedPlace, other: TypedPlace) -> bool:
+    def check_fusion(self, name: str, first: TypedPlace, other: TypedPlace) -> None:
+        """A place of a fusion set must be as the other one is."""
         colsets = first.colset.name, other.colset.name
-        what = ""
+        what, is_certain = "", True
         if colsets[0] != colsets[1] and first.colset.resolved != other.colset.resolved:
             what = f"colour sets, `{colsets[0]}` and `{colsets[1]}`"
         elif _squeeze(first.initial_text) != _squeeze(other.initial_text):
+            is_same = self.have_same_tokens(first, other)
+            if is_same:
+                return
+            is_certain = is_same is not None
             texts = [f"`{t}`" if t else "none" for t in (first.initial_text, other.initial_text)]
             what = f"initial markings, {texts[0]} and {texts[1]}"
         if what:
-            self.d.error(
+            (self.d.error if is_certain else self.d.warning)(
                 FUSION_MISMATCH,
-                f"places `{first.name}` and `{other.name}` of fusion set `{name}` have different {what}",
+                f"places `{first.name}` and `{other.name}` of fusion set `{name}` {'' if is_certain else 'may '}have "
+                f"different {what}",
                 first.origin,
                 notes=[Note(f"`{other.name}` is declared here", other.origin)],
                 hint="the places of a fusion set are one place: make them equal",
             )
-        return not what
+
+    def have_same_tokens(self, first: TypedPlace, other: TypedPlace) -> bool | None:
+        """Whether initial markings of different texts are the same for CPN Tools; None when it cannot be said.
+
+        It compares tokens, but one token is not the multi-set of it.
+        """
+        forms = {p.initial[1] if p.initial else Form.MULTISET for p in (first, other)}
+        if len(forms) > 1:
+            return False
+        is_token = forms <= {Form.TOKEN, Form.TIMED_TOKEN}
+        a, b = (self.tokens(p, is_token) for p in (first, other))
+        return None if a is None or b is None else a == b
+
+    def tokens(self, place: TypedPlace, is_token: bool) -> Counter[Any] | None:
+        if place.initial is None:
+            return Counter()
+        elaborator = self.net.elaborator
+        return None if elaborator is None else elaborator.tokens(place.initial[0], is_token)
 
     def places(self, groups: list[list[Key]]) -> list[FlatPlace]:
         short = {p.id: unique_names((x.id, x.name) for x in p.places) for p in self.net.pages}
