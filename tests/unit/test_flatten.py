@@ -198,7 +198,7 @@ def test_fusion_mismatch() -> None:
     assert [x.code for x in d.errors] == ["fusion-mismatch"]
     assert "different initial markings, none and `1`1`" in d.errors[0].message
     d = diagnose(FUSION.replace("R fusion F : INT =  1 ` 1", "R fusion F : BOOL"))
-    assert "different colour sets, `INT` and `BOOL`" in d.errors[0].message
+    assert "different colour sets, `BOOL` and `INT`" in d.errors[0].message
 
 
 def test_equal_names_become_unique() -> None:

@@ -41,6 +41,7 @@ _HIDDEN = frozenset(
         "INITMARK",
         "expr",
         "input();output();action();",
+        "input();output();action",
         "",
     }
 )

@@ -169,7 +169,8 @@ CODE_SEGMENT = register(
     "code-segment",
     "a code segment is not of the form `input (..); output (..); action ..;`",
     "`input` and `output` are optional and list net variables; `action` gives a value for each output variable, "
-    "as a tuple in that order, or unit if there is none.",
+    "as a tuple in that order, or unit if there is none. Without `action` CPN Tools refuses the segment; it "
+    "reads comments only behind the word `action`, and not after the last `;`.",
 )
 PRIORITY = register(
     "priority-not-constant",

@@ -31,7 +31,13 @@ from pn2code.ml.inference import (
     to_type,
 )
 from pn2code.ml.lexer import tokenize
-from pn2code.ml.parser import parse_code, parse_expression, parse_expressions
+from pn2code.ml.parser import (
+    is_action_of_comments,
+    misplaced_comment,
+    parse_code,
+    parse_expression,
+    parse_expressions,
+)
 from pn2code.ml.patterns import Bindings, Patterns
 from pn2code.ml.types import BOOL, INTINF, REAL, TCon, TFun, Type, list_of, timed_of, tuple_of
 
@@ -471,18 +477,27 @@ class Inscriptions:
         outputs = self._code_variables(parsed.outputs, "output", fixities)
         if inputs is None or outputs is None:
             return None
-        if parsed.action is None and outputs:
+        action = parsed.action
+        if action is None and not outputs and is_action_of_comments(text):
+            action = s.RecordExp((), text.span())
+        if action is None:
             self._ctx.error(
                 codes.CODE_SEGMENT,
-                "code segment has `output`, but no `action` that gives the values",
+                "code segment has no `action`, which CPN Tools wants",
                 text.span(),
-                hint="write `action ..;` after it, with a value for each output variable",
+                hint="write `action ..;` after it, with a value for each output variable, or `action ();`",
             )
             return None
-        if parsed.action is None:
-            exp: s.Exp | None = s.RecordExp((), text.span())
-        else:
-            exp = resolve_expression(parsed.action, fixities, self._ctx.d)
+        comment = misplaced_comment(text)
+        if comment is not None:
+            self._ctx.error(
+                codes.CODE_SEGMENT,
+                "CPN Tools does not read a comment before `action`, or after the last `;`",
+                text.span(*comment),
+                hint="put it behind the word `action`, or remove the `;` before it",
+            )
+            return None
+        exp: s.Exp | None = resolve_expression(action, fixities, self._ctx.d)
         if exp is None:
             return None
         scope = Scope(self._ctx.top)

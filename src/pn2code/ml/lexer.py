@@ -33,8 +33,8 @@ RESERVED_SYMBOLS: dict[str, str] = {
 
 _SYMBOL = r"[!%&$#+\-/:<=>?@\\~`^|*]"
 _ALPHA = r"[A-Za-z][A-Za-z0-9_']*"
-_SPACE = re.compile(r"[ \t\r\n\f\v\u00a0]+")
-_SPACES = " \t\r\n\f\v\u00a0"
+_SPACE = re.compile(r"[ \t\r\n\f\v]+")
+_SPACES = " \t\r\n\f\v"
 _NUMBER = re.compile(
     r"~?0w(?:x[0-9a-fA-F]+|[0-9]+)|~?0x[0-9a-fA-F]+|~?[0-9]+(?:\.[0-9]+)?(?:[eE]~?[0-9]+)?"
 )

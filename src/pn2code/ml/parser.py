@@ -128,6 +128,27 @@ def parse_code(source: SourceText, d: Diagnostics) -> syntax.CodeSegment | None:
     return cast("syntax.CodeSegment | None", _parse(source, tokens, "code", d))
 
 
+def is_action_of_comments(source: SourceText) -> bool:
+    """Whether a code segment ends with `action` and a comment: an action that does nothing."""
+    tokens = tokenize(source, Diagnostics(), code_segment=True) or []
+    return (
+        bool(tokens) and tokens[-1].kind == "ACTION" and bool(source.text[tokens[-1].end :].strip())
+    )
+
+
+def misplaced_comment(source: SourceText) -> tuple[int, int] | None:
+    """Where a code segment has a comment that CPN Tools does not skip: before `action`, or after the last `;`."""
+    tokens = tokenize(source, Diagnostics(), code_segment=True) or []
+    action = next((t.start for t in tokens if t.kind == "ACTION"), len(source.text))
+    is_ended = bool(tokens) and tokens[-1].kind == "SEMI"
+    rest = tokens[-1].end if is_ended else len(source.text)
+    for start, end in ((0, action), (rest, len(source.text))):
+        at = source.text.find("(*", start, end)
+        if at >= 0:
+            return at, source.text.find("*)", at) + 2
+    return None
+
+
 def declared_names(source: SourceText, start: int = 0, end: int | None = None) -> tuple[str, ...]:
     """Names that a text with syntax errors seems to declare, so that their uses are not reported as well."""
     starts, ends, names = _declared(source.text)

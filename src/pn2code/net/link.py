@@ -63,7 +63,11 @@ _PORTS = {
 }
 _EMPTY_GUARD = {"[]"}
 _EMPTY_DELAY = {"@+", "@++"}
-_EMPTY_CODE = {"input();output();action();", "input();output();action()"}
+_EMPTY_CODE = {
+    "input();output();action();",
+    "input();output();action()",
+    "input();output();action",
+}
 
 
 def link(document: Document, d: Diagnostics, *, partial: bool = False) -> Net | None:

@@ -1,0 +1,66 @@
+"""The form of code segments: what the engine of CPN Tools was seen to accept and to refuse."""
+
+from __future__ import annotations
+
+import pytest
+
+from helpers.netbuilder import diagnose
+
+NET = """
+    net Form
+      standard
+      var n: INT;  var s: STRING;
+      page Top
+        place A : INT = 1`1
+        place S : STRING
+        trans T
+          in A : n
+          {out}
+          code {code}
+"""
+
+
+def codes(code: str) -> list[str]:
+    out = "out S : s" if "output (s" in code else ""
+    return [x.code for x in diagnose(NET.format(out=out, code=code)).items]
+
+
+@pytest.mark.parametrize(
+    "code",
+    [
+        "input (n); action (* c *) ();",
+        "input (n); action () (* c *)",
+        "input (n); action (* c *)",
+        'input (n); output (s); action (* c *) "(* q *)";;',
+        "input (); output (); action",
+        "input (); output (); action ();",
+    ],
+)
+def test_accepted(code: str) -> None:
+    assert not codes(code)
+
+
+@pytest.mark.parametrize(
+    "code",
+    [
+        "(* c *) input (n); action ();",
+        "input (n); (* c *) action ();",
+        "input (n) (* c *); action ();",
+        "input (n (* c *)); action ();",
+        "(* c *) action ();",
+        "input (n); action (); (* c *)",
+        "action",
+        "action;",
+        "input (n); output (); action",
+        "input (n);",
+        "(* input (n); *)",
+        "input (n); output (s);",
+    ],
+)
+def test_refused(code: str) -> None:
+    assert codes(code) == ["code-segment"]
+
+
+def test_a_space_that_does_not_break_is_no_space() -> None:
+    text = NET.replace("trans T", "trans T guard [n\u00a0< 3]").format(out="", code="action ()")
+    assert "lexical-error" in [x.code for x in diagnose(text).items]
