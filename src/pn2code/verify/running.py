@@ -36,8 +36,8 @@ from typing import Any
 
 from pn2code.cell.partition import Channel, ChannelKind, Partition
 from pn2code.frozen import frozen
-from pn2code.ml import core
 from pn2code.lowering.robot_machine import Machine, Step
+from pn2code.ml import core
 from pn2code.net.builder import Arc, Builder
 from pn2code.net.flat import ArcKind, FlatArc, FlatNet, FlatTransition
 from pn2code.net.predicate import Predicate
