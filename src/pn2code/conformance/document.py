@@ -11,8 +11,8 @@ from pn2code.conformance.finding import NOTHING, Finding, State
 
 HEAD = """# Conformance
 
-This page compares, net by net, what pn2code does with published nets and what the engine of CPN Tools does with them. It is made by
-`./dev conformance`; the nets themselves are not part of this project.
+This page compares, net by net, what pn2code does with published nets and what the engine of CPN Tools does with them.
+It is made by `./dev conformance`; the nets themselves are not part of this project.
 
 | column | question |
 |---|---|
@@ -21,12 +21,12 @@ This page compares, net by net, what pn2code does with published nets and what t
 | initial marking | is it the same for every place instance, character for character? |
 | run | is a recorded random run of the engine (up to 40 steps) possible here, with the same final marking? |
 | state space | are the numbers of nodes, arcs and dead markings the same, if the engine computed the whole space? |
-| explorer | is the report of `pn2code verify` the same as the engine's, line by line, from sizes and bounds to fairness? |
+| explorer | is the report of `pn2code verify` the engine's, line by line, from sizes and bounds to fairness? |
 | compiled | does the compiled net agree with the reference token game on random walks? |
 
-`yes`: agrees. `random`: the net draws random numbers (or reads files), which are not in a recording; everything that does
-not depend on them agrees. `intended`: the engine has a known bug, or leaves the choice to chance. `unsupported`: pn2code reports the net as unsupported.
-`NO`: differs. `–`: nothing to compare.
+`yes`: agrees. `random`: the net draws random numbers (or reads files), which are not in a recording; everything that
+does not depend on them agrees. `intended`: the engine has a known bug, or leaves the choice to chance. `unsupported`:
+pn2code reports that it does not support the net. `NO`: differs. `–`: nothing to compare.
 """
 
 
