@@ -85,5 +85,6 @@ def tell(shared: Path, repeat: int) -> None:
         one, two, both = threads(net, repeat)
         print(
             f"\nPhilosophers 14: one thread {one:.2f} s, two threads {two:.2f} s, {one / two:.2f} times as fast "
-            f"(target 1.7); two explorations at once {both:.2f} s each, {2 * one / both:.2f} times the throughput of one."
+            f"(target 1.7); two explorations at once {both:.2f} s each, {2 * one / both:.2f} times the throughput "
+            "of one."
         )

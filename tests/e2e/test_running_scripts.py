@@ -82,18 +82,18 @@ NEVER = net(
 @pytest.mark.parametrize(
     ("text", "cell", "answer", "says"),
     [
-        (PURE, toml(["A", "B"], TOOL), "no", "goes round for ever without a command"),
+        (PURE, toml(["A", "B"], TOOL), "no", "loops for ever without a command"),
         (
             BRANCH,
             toml(["A", "B"], TOOL),
             "unknown",
-            "never take the branches with commands that take time",
+            "never takes the branches with commands that take time",
         ),
         (
             BOTH,
             toml(["A", "B"], TIMELESS),
             "unknown",
-            "never take the branches with commands that take time",
+            "never takes the branches with commands that take time",
         ),
         (EARLY, toml(["A"]), "no", "the script of device `A` stops in `Top.A.Accept`, 1 step"),
         (NEVER, toml(["A"], PAUSE), "no", "stops in `Top.A.Answer`, 2 steps after the start"),
@@ -126,7 +126,7 @@ def test_a_script_that_goes_round_for_long(tmp_path: Path, monkeypatch: pytest.M
         monkeypatch.setattr(control, "MOST_OCCURRENCES", most)
         found = examined(folder).checks["non-blocking"]
         assert found.answer == answer, found.says
-    assert "goes round for 40 transitions" in found.says
+    assert "loops for 40 transitions" in found.says
 
 
 # A tells the supervisor and B, who tells the supervisor; it looks at B's file first.
