@@ -120,7 +120,7 @@ NEVER = net(
         ),
         (EARLY, toml(["A"]), "no", "the script of device `A` stops in `Top.A.Accept`, 1 step"),
         (NEVER, toml(["A"], PAUSE), "no", "stops in `Top.A.Answer`, 2 steps after the start"),
-        (pausing("", "0"), toml(["A"]), "no", "goes round for ever without a command or a wait"),
+        (pausing("", "0"), toml(["A"]), "no", "loops for ever without a command or a wait"),
         (pausing("", "zero"), toml(["A"]), "unknown", AT_ONCE),
         (pausing(" code action pause 0.0", "0"), toml(["A"], PAUSE), "unknown", AT_ONCE),
         (
