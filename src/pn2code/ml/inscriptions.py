@@ -477,10 +477,10 @@ class Inscriptions:
         outputs = self._code_variables(parsed.outputs, "output", fixities)
         if inputs is None or outputs is None:
             return None
-        action = parsed.action
-        if action is None and not outputs and is_action_of_comments(text):
-            action = s.RecordExp((), text.span())
-        if action is None:
+        written = parsed.action
+        if written is None and not outputs and is_action_of_comments(text):
+            written = s.RecordExp((), text.span())
+        if written is None:
             self._ctx.error(
                 codes.CODE_SEGMENT,
                 "code segment has no `action`, which CPN Tools wants",
@@ -497,7 +497,7 @@ class Inscriptions:
                 hint="put it behind the word `action`, or remove the `;` before it",
             )
             return None
-        exp: s.Exp | None = resolve_expression(action, fixities, self._ctx.d)
+        exp: s.Exp | None = resolve_expression(written, fixities, self._ctx.d)
         if exp is None:
             return None
         scope = Scope(self._ctx.top)
