@@ -9,7 +9,7 @@ before pn2code; `--compiled` puts random CPN ML into compiled nets. The last tim
 
 | net | engine | pn2code |
 |---|---|---|
-| two arcs from one place with patterns that share variables, but not the first one: `(a, b)` and `(c, b)` | `InternalError: insert_transvar`, the page cannot be checked | accepts it: the shared variable has one value |
+| two arcs from one place with patterns that share variables, but not the first one: `(a, b)` and `(c, b)` | `InternalError: insert_transvar`, the page cannot be checked | accepts it with a warning: the shared variable has one value |
 | several arcs from one place, one of which shares a variable with an arc that comes later in the file | `No complete binding sequence`, `Cannot bind`, `IllegalBit`; accepted when the arcs come in another order | accepts it |
 | arcs from two places of one fusion set to one transition: ``2`()`` and `()` | looks at each for itself: enabled with 2 tokens, then `Subtract` | needs 3 tokens |
 | a reset arc at an assigned port or a member of a fusion set | the simulator empties the place, the state space tool does not | empties it in both |
