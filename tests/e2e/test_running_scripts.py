@@ -92,7 +92,7 @@ def pausing(turn: str, delay: str) -> str:
     )
 
 
-AT_ONCE = "may go round without a command or a wait that takes time"
+AT_ONCE = "may loop without a command or a wait that takes time"
 TIMELESS = TOOL.replace("2.0", "0.0")
 PAUSE = '[primitives]\npause = { command = "wait" }\n'
 NEVER = net(
@@ -105,7 +105,7 @@ NEVER = net(
 @pytest.mark.parametrize(
     ("text", "cell", "answer", "says"),
     [
-        (PURE, toml(["A", "B"], TOOL), "no", "goes round for ever without a command"),
+        (PURE, toml(["A", "B"], TOOL), "no", "loops for ever without a command"),
         (
             BRANCH,
             toml(["A", "B"], TOOL),
@@ -120,7 +120,7 @@ NEVER = net(
         ),
         (EARLY, toml(["A"]), "no", "the script of device `A` stops in `Top.A.Accept`, 1 step"),
         (NEVER, toml(["A"], PAUSE), "no", "stops in `Top.A.Answer`, 2 steps after the start"),
-        (pausing("", "0"), toml(["A"]), "no", "goes round for ever without a command or a wait"),
+        (pausing("", "0"), toml(["A"]), "no", "loops for ever without a command or a wait"),
         (pausing("", "zero"), toml(["A"]), "unknown", AT_ONCE),
         (pausing(" code action pause 0.0", "0"), toml(["A"], PAUSE), "unknown", AT_ONCE),
         (
@@ -158,7 +158,7 @@ def test_a_script_that_goes_round_for_long(tmp_path: Path, monkeypatch: pytest.M
         monkeypatch.setattr(control, "MOST_OCCURRENCES", most)
         found = examined(folder).checks["non-blocking"]
         assert found.answer == answer, found.says
-    assert "goes round for 40 transitions" in found.says
+    assert "loops for 40 transitions" in found.says
 
 
 # A tells the supervisor and B, who tells the supervisor; it looks at B's file first.

@@ -518,7 +518,9 @@ def _limits(
     if len(config.programs) > MOST_PEERS:
         many = len(config.programs)
         text = f"the cell has {many} robots and devices, and a supervisor has room for {MOST_PEERS}"
-        d.error(codes.CHANNEL_LIMIT, text, at, hint="let one program be several small devices")
+        d.error(
+            codes.CHANNEL_LIMIT, text, at, hint="combine several small devices into one program"
+        )
     for name, place in (
         *((c.name, c.place) for c in channels),
         *((i.name, i.place) for i in inputs),
@@ -528,7 +530,7 @@ def _limits(
         if count > MOST_SCALARS:
             d.error(
                 codes.CHANNEL_LIMIT,
-                f"a message of `{name}` has {count} values, and {MOST_SCALARS} are the most",
+                f"a message of `{name}` has {count} values, but at most {MOST_SCALARS} are possible",
                 flat.origins[0],
                 hint=f"divide colour set `{flat.colset.name}` among several places",
             )

@@ -123,7 +123,7 @@ class Running:
             raise NotModelledError(str(problem)) from None
         except ValueError as problem:
             raise NotModelledError(
-                f"when a script waits is not seen in the net: {problem}"
+                f"the net does not show when a script waits: {problem}"
             ) from None
 
     def lines(self, *, first: bool, names: Sequence[str] | None = None) -> list[str]:
@@ -212,7 +212,8 @@ def _check(partition: Partition, predicates: Sequence[Predicate]) -> None:
         obstacle = time_reduction.obstacle(net, predicates)
         if obstacle is not None:
             raise NotModelledError(
-                f"steps may come later than in the net, and {obstacle.message}, so that there would be no end of states"
+                f"steps may come later than in the net, and {obstacle.message}, so that there would be infinitely many "
+                "states"
             )
     for place in partition.final_places:
         if net.places[place].colset.timed:
@@ -239,7 +240,7 @@ def _check_transition(
         elif arc.kind is ArcKind.INPUT and channel.reader == owner:
             if arc.place in taken or not _takes_one(arc):
                 raise NotModelledError(
-                    f"it is not seen in the net that `{t.name}` takes just one message of `{name}`"
+                    f"the net does not show that `{t.name}` takes only one message of `{name}`"
                 )
             taken.add(arc.place)
         else:
