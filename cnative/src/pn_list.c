@@ -337,7 +337,9 @@ bool pn_ms_contains(const pn_type_t *type, const void *larger, const void *small
 {
     for (const void *rest = smaller; rest != NULL; rest = pn_list_tail(rest)) {
         const void *value = pn_list_head(type, rest);
-        if (pn_list_count(type, smaller, value) > pn_list_count(type, larger, value)) {
+        const int64_t wanted = pn_list_count(type, smaller, value);
+        /* What is no number is not even like itself. */
+        if ((wanted == 0) || (wanted > pn_list_count(type, larger, value))) {
             return false;
         }
     }

@@ -127,7 +127,7 @@ void pn_moves_reset(pn_moves_t *moves, const pn_bag_t *bag, pn_time_t now)
 static bool is_rival(const pn_move_t *a, const pn_move_t *b)
 {
     return (b->kind == PN_MOVE_TAKE) && (a->bag == b->bag)
-           && ((a->value == b->value) || pn_equal(a->bag->type, a->value, b->value));
+           && ((a->value == b->value) || pn_same(a->bag->type, a->value, b->value));
 }
 
 bool pn_moves_are_possible(const pn_moves_t *moves, const void *marking)

@@ -88,7 +88,49 @@ TRIPLE.mult ([true], [ph 1], LONG.col (~1))
 let val r = ref 0 fun f () = (r := !r + 1; ["a"]) in (PAIR.mult ([1, 2, 3], f ()), !r) end
 let val r = ref 0 fun f () = (r := !r + 1; !r) in (SPAIR.set_1 (1, red) (f ()), !r) end
 """
+NOT_FINITE = r"""
+let val n = 0.0/0.0 in (n = n, n <> n, n < n, n >= n, [n] = [n], (1,n) = (1,n), SOME n = SOME n) end
+let val n = 0.0/0.0 in (mem [n] n, contains [n] [n], rm n [n], rmall n [n], cf (n, [n]), remdupl [n,n]) end
+let val n = 0.0/0.0 in ([n] == [n], [n] <<== [n], [n] <<= [n], size (1`n ++ 1`n)) end
+let val n = 0.0/0.0 in [n] -- [n] end
+let val n = 0.0/0.0 in 1`n ++ 1`1.0 ++ 1`n end
+let val n = 0.0/0.0 in (REAL.lt (n, 1.0), REAL.lt (1.0, n)) end
+let val n = 0.0/0.0 in REAL.legal n end
+let val n = 0.0/0.0 in Real.compare (n, 1.0) end
+let val n = 0.0/0.0 in Real.min (n, 1.0) end
+let val n = 0.0/0.0 in Real.max (1.0, n) end
+let val n = 0.0/0.0 in sort REAL.lt [3.0, n, 1.0] end
+let val n = 0.0/0.0 in (floor n) end
+let val n = 0.0/0.0 in (round n) end
+Real.copySign (1.0, 0.0/0.0)
+Real.sameSign (1.0, 0.0/0.0)
+Real.signBit (Math.sqrt ~1.0)
+Real.fromString "nan"
+Real.fromString "~inf"
+REALP.cmp ((1.0,1),(0.0/0.0,2))
+REAL.cmp (0.0/0.0, 1.0)
+let val n = 0.0/0.0 in (PART.lt (n, 1.0), PART.lt (1.0, n)) end
+let val n = 0.0/0.0 in sort REALP.lt [(n,2),(1.0,1),(n,1)] end
+"""
 LARGE = r"""
+Real.fmt (StringCvt.FIX (SOME 1110)) 5E~324
+Real.fmt (StringCvt.SCI (SOME 1110)) 1.5E~300
+Real.fmt (StringCvt.FIX (SOME 2000)) ~1.5
+Real.fmt (StringCvt.GEN (SOME 2000)) 0.1
+Real.fmt (StringCvt.FIX (SOME 1073741823)) 1.5
+Real.fmt (StringCvt.SCI (SOME 20000000)) 1.5
+StringCvt.padLeft #"x" ~1073741824 "a"
+StringCvt.padRight #"x" 16777216 "a"
+IntInf.pow (1, ~5)
+IntInf.pow (0, ~1)
+IntInf.pow (~1, ~3)
+Real.fromString "1e1073741824"
+Real.fromString "1e~1073741823"
+Real.fromString "1.e5"
+Vector.tabulate (16777216, fn i => (raise Empty) : int)
+Array.tabulate (16777216, fn i => (raise Empty) : int)
+Array.copy {src = Array.array (3, 0), dst = Array.array (3, 1), di = 1073741821}
+ignore (Time.fromReal (0.0 / 0.0))
 StringCvt.padLeft #"a" 1073741823 "b"
 Array.array (1073741823, 1)
 Array.copyVec {src = Vector.fromList [1], dst = Array.fromList [1, 2], di = 1073741823}
@@ -103,7 +145,9 @@ Real.signBit (Real.realCeil (~0.5))
 def test_corners(tmp_path: Path, fast_workshop: Workshop) -> None:
     """Units, what is known when code is made, what nobody reads, lists in lists, colour sets with subsets."""
     made = Expressions(1, tmp_path)
-    texts = [t for t in (UNITS + KNOWN + UNREAD + LISTS + COLOURS + LARGE).splitlines() if t]
+    texts = [
+        t for t in (UNITS + KNOWN + UNREAD + LISTS + COLOURS + NOT_FINITE + LARGE).splitlines() if t
+    ]
     found = [one for text in texts for one in made.defined(text)]
     assert [one.text for one in found] == texts
     assert differing(made, found, fast_workshop) == []

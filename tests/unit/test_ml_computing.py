@@ -31,6 +31,8 @@ net Bounds
         ("count workers", 3),
         ("twice (length workers)", 6),
         ("pick (2, 7)", 7),
+        ("IntInf.toInt (IntInf.fromInt 7)", 7),
+        ("Int.fromLarge (Int.toLarge (twice 2))", 4),
         ("power 10", 1024),
         ("List.length (List.filter (fn s => s = \"bob\") workers) + 1", 2),
         ("List.foldl (fn (x, y) => x + y) 0 [1, 2, 3]", 6),
@@ -53,3 +55,16 @@ def test_what_cannot_is_said(text: str) -> None:
     assert codes == {"colour-set-range"}
     codes = {e.code for e in diagnose(NET % ("5", text)).errors}
     assert codes == {"priority-not-constant"}
+
+
+def test_bounds_of_unlimited_integers() -> None:
+    """As CPN Tools wants them written."""
+    net = flat(
+        """
+        net N
+          standard
+          colset C = intinf with IntInf.fromInt ~1..IntInf.fromInt 5
+          place P : C = C.all ()
+        """
+    )
+    assert (net.program.colsets["C"].low, net.program.colsets["C"].high) == (-1, 5)

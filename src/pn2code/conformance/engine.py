@@ -9,7 +9,7 @@ expressions 1,030 agreed with the evaluator (each of the other two is either fix
 
 | net | engine | pn2code |
 |---|---|---|
-| two arcs from one place with patterns that share variables, but not the first one: `(a, b)` and `(c, b)` | `InternalError: insert_transvar`, the page cannot be checked | accepts it: the shared variable has one value |
+| two arcs from one place with patterns that share variables, but not the first one: `(a, b)` and `(c, b)` | `InternalError: insert_transvar`, the page cannot be checked | accepts it with a warning: the shared variable has one value |
 | a declaration other than `val` in an arc inscription, guard or priority: `let fun f x = x + 1 in f n end` | `InternalError: Illegal FunDec`, the page cannot be checked | accepts it, with a warning (`declaration-in-inscription`) |
 | several arcs from one place, one of which shares a variable with an arc that comes later in the file | `No complete binding sequence`, `Cannot bind`, `IllegalBit`; accepted when the arcs come in another order | accepts it |
 | arcs from two places of one fusion set to one transition: ``2`()`` and `()` | looks at each for itself: enabled with 2 tokens, then `Subtract` | needs 3 tokens |

@@ -421,7 +421,7 @@ class Expressions:
             return self._types.zero(e.type), _POSTFIX
         if e.name == "list.nil":
             return "NULL", _PRIMARY
-        if e.name == "=":
+        if e.name in ("=", "same"):
             return self._equality(e, "==")
         if e.name == "Colset.all":
             own, layout = (self._names.table(k) for k in (e.table, f"type {e.type}"))
@@ -484,7 +484,7 @@ class Expressions:
         match e:
             case ir.IsNil(list=inner) if not _is_nil(inner):
                 return f"{self.inside(inner, c_ops.EQUALITY)} != NULL", c_ops.EQUALITY
-            case ir.Op(name="="):
+            case ir.Op(name="=" | "same"):
                 return self._equality(e, "!=")
             case ir.IsTag() if e.value.type.rep is Rep.ENUM:
                 text, precedence = self._is_tag(e)
@@ -505,6 +505,9 @@ class Expressions:
                 # C reads `a == b < c` as intended, but compilers warn of it, and people stumble.
                 x, y = (self.inside(v, c_ops.RELATION) for v in (a, b))
                 return f"{x} {operator} {y}", c_ops.EQUALITY
+            case Rep.REAL if e.name == "same":
+                test = f"pn_real_order({self.text(a)}, {self.text(b)}) {operator} 0"
+                return test, c_ops.EQUALITY
             case Rep.REAL:
                 return f"{negation}pn_real_equal({self.text(a)}, {self.text(b)})", precedence
             case Rep.BIG:
@@ -515,7 +518,8 @@ class Expressions:
                 return ("false" if negation else "true"), _PRIMARY
             case _:
                 table = self._names.table(e.table)
-                text = f"{negation}pn_equal(&{table}, {self.address(a)}, {self.address(b)})"
+                function = "pn_same" if e.name == "same" else "pn_equal"
+                text = f"{negation}{function}(&{table}, {self.address(a)}, {self.address(b)})"
                 return text, precedence
 
 

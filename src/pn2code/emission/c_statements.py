@@ -390,7 +390,7 @@ class Statements:
             table = self.tables_of_places[s.place]
             token = f"m->{place}.token"
             self.line(
-                f"if (({i} > 0U) && pn_equal(&{table}, &{token}[{i}].value, &{token}[{i} - 1U].value)) {{"
+                f"if (({i} > 0U) && pn_same(&{table}, &{token}[{i}].value, &{token}[{i} - 1U].value)) {{"
             )
             self._next()
             self._depth -= 1
@@ -419,7 +419,7 @@ class Statements:
         if rep in SCALARS:
             return f"!{slot}.full || ({slot}.value != {value})"
         table = self.tables_of_places[place]
-        return f"!{slot}.full || !pn_equal(&{table}, &{slot}.value, {pointer})"
+        return f"!{slot}.full || !pn_same(&{table}, &{slot}.value, {pointer})"
 
     def _unless_available(self, s: ir.UnlessAvailable) -> None:
         if s.place in self.slots:

@@ -7,6 +7,7 @@ it is in `DIRECT` or has a method here or in `higher_order`.
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from pn2code.diagnostics import Span
@@ -247,6 +248,8 @@ class Builtins:
             a, b = (
                 body.addressable(body.code(v), "side") for v in components(body, arguments[0], 2)
             )
+            if name == "cmp" and a.type.rep is Rep.REAL:
+                return ir.Op("Real.compare", (a, b), t)
             return ir.Op(f"Colset.{name}", (a, b), t, table)
         if name in ("mkstr", "legal", "ord"):
             operand = body.addressable(body.code(arguments[0]), "value")
@@ -359,6 +362,13 @@ def equal(body: Body, a: Ir, b: Ir) -> Ir:
     """Structural equality."""
     a, b = body.addressable(a, "left"), body.addressable(b, "right")
     return ir.Op("=", (a, b), ir.BOOL, _table(body, a.type))
+
+
+def same(body: Body, a: Ir, b: Ir) -> Ir:
+    """Whether both are one token: as `equal`, but what is no number is like itself."""
+    test = equal(body, a, b)
+    assert isinstance(test, ir.Op)
+    return replace(test, name="same") if test.table or a.type.rep is Rep.REAL else test
 
 
 def _equality(body: Body, arguments: tuple[Val, ...], result: Type, at: Span) -> Val:

@@ -10,7 +10,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from pn2code.lowering import arc_lists, colset_functions, ir
-from pn2code.lowering.builtins import components, equal
+from pn2code.lowering.builtins import components, same
 from pn2code.lowering.clock import accepted, clock, in_clock, plus
 from pn2code.lowering.codes import UNSUPPORTED_COLSET, UnsupportedError
 from pn2code.lowering.expressions import Body
@@ -270,15 +270,15 @@ class _Enumeration:
         for symbol, part in match.bindings:
             code = self._body.code(part)
             if symbol.uid in self._bound:
-                conditions.append(equal(self._body, code, self._env[symbol.uid]))  # type: ignore[arg-type]
+                conditions.append(same(self._body, code, self._env[symbol.uid]))  # type: ignore[arg-type]
             elif symbol.uid in first:
-                conditions.append(equal(self._body, code, first[symbol.uid]))
+                conditions.append(same(self._body, code, first[symbol.uid]))
             else:
                 first[symbol.uid] = code
                 fresh.append((symbol, code))
         for named, part in match.equals:
             conditions.append(
-                equal(self._body, self._body.code(part), self._body.ir(named, self._env))
+                same(self._body, self._body.code(part), self._body.ir(named, self._env))
             )
         condition = conjunction(conditions)
         if condition is not None:

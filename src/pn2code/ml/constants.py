@@ -21,6 +21,8 @@ _INT: dict[str, Callable[[int, int], int]] = {
     "Int.min": min,
     "Int.max": max,
 }
+_WIDER, _NARROWER = ("IntInf.fromInt", "Int.toLarge"), ("IntInf.toInt", "Int.fromLarge")
+"""What is no `int` of 31 bits is not computed here: it may be an Overflow."""
 _COMPARE: dict[str, Callable[[int, int], bool]] = {
     "Int.<": operator.lt,
     "Int.<=": operator.le,
@@ -90,6 +92,9 @@ def unary(name: str, value: object) -> Constant | None:
     if name == "Int.abs" and _is_int(value):
         assert isinstance(value, int)
         return abs(value)
+    if name in (*_WIDER, *_NARROWER) and _is_int(value):
+        assert isinstance(value, int)
+        return value if name in _WIDER or -(2**30) <= value < 2**30 else None
     if name == "Real.fromInt" and _is_int(value):
         assert isinstance(value, int)
         return float(value)

@@ -10,7 +10,7 @@ from collections.abc import Iterator, Mapping
 from dataclasses import replace
 from pathlib import Path
 
-from pn2code.diagnostics import Diagnostics, Note, SourceText
+from pn2code.diagnostics import Diagnostics, Note, Origin, SourceText
 from pn2code.diagnostics.near import did_you_mean
 from pn2code.ml.colsets import Colset, Kind
 from pn2code.ml.core import Exp, Lit
@@ -23,6 +23,7 @@ from pn2code.net.codes import (
     ARC_AS,
     ARC_EMPTY,
     ARC_IGNORED,
+    ARCS_SHARE,
     DECLARATION_EMPTY,
     DECLARATION_INSIDE,
     DECLARATION_UNREAD,
@@ -31,6 +32,7 @@ from pn2code.net.codes import (
     UNSUPPORTED_CHANNEL,
     UNSUPPORTED_DECLARATION,
 )
+from pn2code.net.engine_groups import clashes
 from pn2code.net.flat import ArcInscription, ArcKind, CodeSegment, Form, Term
 from pn2code.net.linked import Arc, Net, Page, Place, Transition
 from pn2code.net.terms import TermReader
@@ -336,6 +338,7 @@ class _Checker:
         if planned is None:
             return None
         variables, plan = planned
+        self.warn_of_groups(t.name, arcs, colsets)
         return TypedTransition(
             id=t.id,
             name=t.name,
@@ -361,6 +364,24 @@ class _Checker:
                     text.span(),
                     hint="declare it in the net, or write it with `val`",
                 )
+
+    def warn_of_groups(
+        self, name: str, arcs: list[TypedArc], colsets: Mapping[str, Colset | None]
+    ) -> None:
+        """Of arcs whose variables CPN Tools cannot bring together."""
+        products = frozenset(
+            p for p, c in colsets.items() if c is not None and c.resolved.kind is Kind.PRODUCT
+        )
+        for earlier, later, shared in clashes(arcs, products, self.planner.variables):
+            self.d.warning(
+                ARCS_SHARE,
+                f"CPN Tools refuses transition `{name}`: two of its arcs come from one place and share "
+                f"`{shared.name}`, but not the first variable of the earlier one",
+                _written(later),
+                notes=[Note("the earlier arc is here", _written(earlier))],
+                hint=f"give this arc a variable of its own instead of `{shared.name}`, and say in the guard "
+                "that both are equal",
+            )
 
     def arc(self, arc: Arc, place: Place, colset: Colset) -> TypedArc | None:
         if arc.kind in (ArcKind.INHIBITOR, ArcKind.RESET):
@@ -471,3 +492,8 @@ def _unit_number(text: SourceText, colset: Colset) -> SourceText:
     if _is_unit(colset) and _NUMBER.fullmatch(text.text):
         return SourceText(text.text.strip() + "`()", text.origin, text.marks)
     return text
+
+
+def _written(arc: TypedArc) -> Origin:
+    """Where its inscription is, if it has one."""
+    return arc.origin if arc.inscription is None else arc.inscription.origin

@@ -199,6 +199,14 @@ SUMMANDS_SHARE = register(
     "binding sequence found`. If the shared variable gets its value from another arc or a guard, the arc is accepted, "
     "and so is 1`(a, b) ++ 1`(b, a), whose second summand has no variable of its own.",
 )
+ARCS_SHARE = register(
+    "arcs-share-variables",
+    "CPN Tools cannot bring together the variables of two arcs from one place",
+    "Its engine keeps the variables of the arcs from a place in groups. An arc that shares variables with an earlier "
+    "one in the file joins its group only if the first variable of the earlier one is among them. For (a, b) and "
+    "(c, b) it says `InternalError: insert_transvar`, whatever else binds the variables. pn2code accepts such a "
+    "net: the shared variable has one value.",
+)
 SPACE_NAME = register(
     "state-space-name",
     "a name of the net hides one that the state-space tool of CPN Tools uses",

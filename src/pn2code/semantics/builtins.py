@@ -6,6 +6,7 @@ task (see `evaluate`) when it calls functions of the net.
 
 from __future__ import annotations
 
+import math
 import re
 from collections.abc import Callable
 from functools import cache
@@ -36,6 +37,7 @@ from pn2code.semantics.colour_files import (
     read_token,
     read_value,
 )
+from pn2code.semantics.colours import ALIKE
 from pn2code.semantics.values import (
     UNIT,
     Data,
@@ -219,8 +221,8 @@ _COLSET_FUNCTIONS: dict[str, Function] = {
     "ord": lambda e, c, a: checked(e, e.colours.ord(c, a)),
     "col": lambda e, c, i: e.colours.col(c, i),
     "ran": lambda e, c, unit: e.colours.ran(c),
-    "lt": lambda e, c, p: e.colours.key(c, p[0]) < e.colours.key(c, p[1]),
-    "cmp": lambda e, c, p: order(e.colours.key(c, p[0]), e.colours.key(c, p[1])),
+    "lt": lambda e, c, p: _key(e, c, p[0]) < _key(e, c, p[1]),
+    "cmp": lambda e, c, p: _compared(e, c, p[0], p[1]),
     "legal": lambda e, c, a: e.colours.legal(c, a),
     "illegal_msg": lambda e, c, a: e.colours.illegal_message(c, a),
     "mkstr": lambda e, c, a: e.colours.text(c, a),
@@ -254,9 +256,20 @@ def _no_bounds(c: Colset) -> Value:
     raise MlException(exception("CPN'Error", f"the colour set {c.name}'timed has no bounds"))
 
 
+def _key(e: Evaluator, c: Colset, value: Value) -> Any:
+    return e.colours.key(c, value, ALIKE)
+
+
+def _compared(e: Evaluator, c: Colset, a: Value, b: Value) -> Data:
+    """As `Real.compare` where the values are reals."""
+    if math.nan in (a, b):
+        raise MlException(exception("Unordered"))
+    return order(_key(e, c, a), _key(e, c, b))
+
+
 def _timed_key(e: Evaluator, c: Colset, token: Timed) -> Any:
     """By colour; of one colour the later token comes first."""
-    return e.colours.key(c, token.value), -token.stamp
+    return _key(e, c, token.value), -token.stamp
 
 
 def _setter(label: str) -> Function:

@@ -76,7 +76,7 @@ def _toward_zero(number: int, unit: int) -> int:
 
 def _from_seconds(seconds: float) -> int:
     if not math.isfinite(seconds):
-        raise MlException(exception("Time"))
+        raise MlException(exception("Domain" if math.isnan(seconds) else "Overflow"))
     return round(seconds * _SECOND)
 
 

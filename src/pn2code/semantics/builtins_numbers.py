@@ -6,11 +6,13 @@ import math
 import re
 import sys
 from collections.abc import Callable
+from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
-from pn2code.semantics.builtins_scan import from_string, scanner
+from pn2code.semantics.builtins_scan import from_string, missing, scanner
 from pn2code.semantics.values import (
     MAX_BITS,
+    MOST_DIGITS,
     NONE,
     Data,
     MlException,
@@ -58,9 +60,8 @@ def _power(base: int, exponent: int) -> int:
     if exponent >= 0:
         _fitting_bits(base.bit_length() * exponent if abs(base) > 1 else 0)
         return int(base**exponent)
-    if base in (1, -1):
-        return int(base ** (-exponent))
-    return 1 // _nonzero(base) if base == 0 else 0
+    _nonzero(base)
+    return 0  # as SML/NJ has it, also for 1 and ~1
 
 
 def _fitting_bits(bits: int) -> None:
@@ -244,6 +245,16 @@ def divide(a: float, b: float) -> float:
     return math.copysign(math.inf, a) * math.copysign(1.0, b)
 
 
+def one_nan(function: Function) -> Function:
+    """The function, with `math.nan` for what is no number: tokens are found by identity, and this is the only one."""
+
+    def known(e: Evaluator, argument: Any) -> Any:
+        result = function(e, argument)
+        return math.nan if type(result) is float and math.isnan(result) else result
+
+    return known
+
+
 def _rounded(how: Callable[[float], int]) -> Function:
     return lambda e, x: checked(e, how(_whole(x)))
 
@@ -260,6 +271,11 @@ def _compare_reals(e: Evaluator, p: tuple[float, float]) -> Data:
     if math.isnan(p[0]) or math.isnan(p[1]):
         raise fail("Unordered")
     return order(p[0], p[1])
+
+
+def _is_negative(x: float) -> bool:
+    """By the sign bit, which what is no number has: processors make it so."""
+    return math.isnan(x) or math.copysign(1.0, x) < 0
 
 
 def _sign_of_real(e: Evaluator, x: float) -> int:
@@ -282,25 +298,37 @@ def _remainder(a: float, b: float) -> float:
     return math.fmod(a, b)
 
 
-_NUMBER = re.compile(
-    r"[ \t\n\v\f\r]*([~+-]?)(?:((?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][~+-]?[0-9]+)?)|(inf(?:inity)?)|(nan))",
+_BLANKS_AND_SIGN = r"[ \t\n\v\f\r]*([~+-]?)"
+_DIGITS = r"(?:[0-9]+(?:\.[0-9]+)?|\.[0-9]+)(?:[eE]([~+-]?[0-9]+))?"
+_ANY = re.compile(
+    rf"{_BLANKS_AND_SIGN}(?:({_DIGITS.replace('([~', '(?:[~')})|(inf(?:inity)?)|(nan))",
     re.IGNORECASE,
 )
+_FINITE = re.compile(_BLANKS_AND_SIGN + f"({_DIGITS})")
 
 
 def read_real(text: str) -> tuple[float, int] | None:
-    """A real at the start of a text, after blanks, in SML's or C's way: it and the number of characters."""
-    found = _NUMBER.match(text)
+    """A real at the start of a text, after blanks, in SML's or C's way, also what is not finite: it and the number
+    of characters."""
+    found = _ANY.match(text)
     if found is None:
         return None
-    number = math.inf if found[3] else math.nan
-    if found[2]:
-        number = float(found[2].replace("~", "-"))
+    if found[4]:
+        return math.nan, found.end()
+    number = float(found[2].replace("~", "-")) if found[2] else math.inf
     return (-number if found[1] in ("~", "-") else number), found.end()
 
 
 def _read_real(e: Evaluator, text: str) -> tuple[Value, int] | None:
-    return read_real(text)
+    """As `Real.scan`: what is not finite is not written there, and exponents are integers."""
+    found = _FINITE.match(text)
+    if found is None:
+        return None
+    digits = (found[3] or "").lstrip("+-~0")
+    if digits:
+        checked(e, 10**20 if len(digits) > 20 else int(digits))
+    number = float(found[2].replace("~", "-"))
+    return (-number if found[1] in ("~", "-") else number), found.end()
 
 
 def format_real(how: Data, x: float) -> str:
@@ -324,6 +352,18 @@ def format_real(how: Data, x: float) -> str:
         return f"{sign}{mantissa}E{int_text(int(exponent))}"
     mantissa, exponent = f"{x!r}e0".split("e")[:2] if "e" not in repr(x) else repr(x).split("e")
     return sign + _exact(mantissa, int(exponent))
+
+
+def _formatted(e: Evaluator, how: Data, x: float) -> str:
+    """Of very many digits those behind the last that a real can have are zeros, before the exponent."""
+    wanted: Any = how.argument
+    digits: Any = wanted.argument if isinstance(wanted, Data) else None
+    if how.name == "GEN" or digits is None or digits <= MOST_DIGITS or not math.isfinite(x):
+        return format_real(how, x)
+    shorter = replace(how, argument=replace(wanted, argument=MOST_DIGITS))
+    mantissa, mark, exponent = format_real(shorter, x).partition("E")
+    width = len(mantissa) + digits - MOST_DIGITS
+    return mantissa + missing(e, "0", checked(e, width), mantissa) + mark + exponent
 
 
 def _exact(mantissa: str, exponent: int) -> str:
@@ -420,9 +460,9 @@ REALS: dict[str, Function] = {
     "*-": lambda e, p: p[0] * p[1] - p[2],
     "?=": lambda e, p: p[0] == p[1] or math.isnan(p[0]) or math.isnan(p[1]),
     "unordered": lambda e, p: math.isnan(p[0]) or math.isnan(p[1]),
-    "signBit": lambda e, a: math.copysign(1.0, a) < 0,
-    "sameSign": lambda e, p: math.copysign(1.0, p[0]) == math.copysign(1.0, p[1]),
-    "copySign": lambda e, p: math.copysign(p[0], p[1]),
+    "signBit": lambda e, a: _is_negative(a),
+    "sameSign": lambda e, p: _is_negative(p[0]) == _is_negative(p[1]),
+    "copySign": lambda e, p: math.copysign(p[0], -1.0 if _is_negative(p[1]) else 1.0),
     "isNormal": lambda e, a: math.isfinite(a) and abs(a) >= sys.float_info.min,
     "toManExp": lambda e, a: _mantissa(a),
     "fromManExp": lambda e, p: _from_mantissa(p),
@@ -512,12 +552,12 @@ FUNCTIONS: dict[str, tuple[int, Function]] = {
     **{f"IntInf.{name}": (1, f) for name, f in UNBOUNDED.items()},
     **{f"Word.{name}": (1, f) for name, f in WORDS.items()},
     "Word.fmt": (2, lambda e, radix, w: digits_text(w, BASES[radix.name])),
-    **{f"Real.{name}": (1, f) for name, f in REALS.items()},
+    **{f"Real.{name}": (1, one_nan(f)) for name, f in REALS.items()},
     "Real.toInt": (2, lambda e, mode, x: checked(e, _MODES[mode.name](_whole(x)))),
     "Real.toLargeInt": (2, lambda e, mode, x: _MODES[mode.name](_whole(x))),
     "Real.fromLarge": (2, lambda e, mode, x: x),
-    "Real.fmt": (2, lambda e, how, x: format_real(how, x)),
+    "Real.fmt": (2, lambda e, how, x: _formatted(e, how, x)),
     "Real.scan": (2, scanner(_read_real, lambda c: c in "0123456789.~+-eEinfatyINFATY \t\n\v\f\r")),
-    **{f"Math.{name}": (1, f) for name, f in MATHEMATICS.items()},
+    **{f"Math.{name}": (1, one_nan(f)) for name, f in MATHEMATICS.items()},
 }
 """Full name -> number of curried arguments, function."""

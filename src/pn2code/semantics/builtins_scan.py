@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import TYPE_CHECKING, Any
 
-from pn2code.semantics.values import NONE, Data, Value, some
+from pn2code.semantics.values import MAX_STRING, NONE, Data, MlException, Value, exception, some
 
 if TYPE_CHECKING:
     from pn2code.semantics.evaluate import Evaluator, Task
@@ -93,9 +93,18 @@ def _scan_string(e: Evaluator, scan: Value, text: str) -> Task:
     return NONE if found.argument is None else some(found.argument[0])
 
 
+def missing(e: Evaluator, c: str, width: int, text: str) -> str:
+    """What is to be added for that width."""
+    if width - len(text) < e.min_int:
+        raise MlException(exception("Overflow"))
+    if width > MAX_STRING:
+        raise MlException(exception("Size"))
+    return c * (width - len(text))
+
+
 FUNCTIONS: dict[str, tuple[int, Function]] = {
-    "StringCvt.padLeft": (3, lambda e, c, n, text: text.rjust(n, c)),
-    "StringCvt.padRight": (3, lambda e, c, n, text: text.ljust(n, c)),
+    "StringCvt.padLeft": (3, lambda e, c, n, text: missing(e, c, n, text) + text),
+    "StringCvt.padRight": (3, lambda e, c, n, text: text + missing(e, c, n, text)),
     "StringCvt.skipWS": (2, skip_blanks),
     "StringCvt.splitl": (3, _split),
     "StringCvt.dropl": (3, _drop),

@@ -6,7 +6,17 @@ from collections.abc import Callable
 from typing import TYPE_CHECKING, Any
 
 from pn2code.semantics import builtins_lists, builtins_text
-from pn2code.semantics.values import NONE, Data, MlException, Slice, Value, exception, order, some
+from pn2code.semantics.values import (
+    NONE,
+    Data,
+    MlException,
+    Slice,
+    Value,
+    exception,
+    joined,
+    order,
+    some,
+)
 
 if TYPE_CHECKING:
     from pn2code.semantics.evaluate import Evaluator, Task
@@ -142,8 +152,11 @@ FUNCTIONS: dict[str, tuple[int, Function]] = {
     "Substring.first": (1, lambda e, s: some(str(s)[0]) if s.length else NONE),
     "Substring.triml": (2, _without_left),
     "Substring.trimr": (2, _without_right),
-    "Substring.concat": (1, lambda e, parts: "".join(map(str, parts))),
-    "Substring.concatWith": (2, lambda e, separator, parts: separator.join(map(str, parts))),
+    "Substring.concat": (1, lambda e, parts: joined("", list(map(str, parts)))),
+    "Substring.concatWith": (
+        2,
+        lambda e, separator, parts: joined(separator, list(map(str, parts))),
+    ),
     "Substring.explode": (1, lambda e, s: tuple(str(s))),
     "Substring.isPrefix": (2, lambda e, part, s: str(s).startswith(part)),
     "Substring.isSuffix": (2, lambda e, part, s: str(s).endswith(part)),

@@ -9,7 +9,16 @@ from typing import TYPE_CHECKING, Any
 
 from pn2code.semantics.builtins_lists import collate
 from pn2code.semantics.builtins_scan import from_string, scanner
-from pn2code.semantics.values import MAX_STRING, NONE, Data, MlException, Value, exception, some
+from pn2code.semantics.values import (
+    MAX_STRING,
+    NONE,
+    Data,
+    MlException,
+    Value,
+    exception,
+    joined,
+    some,
+)
 
 if TYPE_CHECKING:
     from pn2code.semantics.evaluate import Evaluator, Task
@@ -41,7 +50,7 @@ def _map(e: Evaluator, function: Value, text: str) -> Task:
     found: list[str] = []
     for c in text:
         found.append((yield e.call(function, c)))
-    return "".join(found)
+    return joined("", found)
 
 
 def _fields(e: Evaluator, is_separator: Value, text: str) -> Task:
@@ -168,8 +177,8 @@ FUNCTIONS: dict[str, tuple[int, Function]] = {
     "String.sub": (1, lambda e, p: _substring(p[0], p[1], 1)),
     "String.substring": (1, lambda e, p: _substring(p[0], p[1], p[2])),
     "String.extract": (1, _extract),
-    "String.concat": (1, lambda e, parts: "".join(parts)),
-    "String.concatWith": (2, lambda e, separator, parts: separator.join(parts)),
+    "String.concat": (1, lambda e, parts: joined("", parts)),
+    "String.concatWith": (2, lambda e, separator, parts: joined(separator, parts)),
     "String.str": (1, lambda e, c: c),
     "String.explode": (1, lambda e, s: tuple(s)),
     "String.implode": (1, lambda e, chars: "".join(chars)),

@@ -6,6 +6,7 @@ from collections.abc import Callable
 from typing import TYPE_CHECKING, Any
 
 from pn2code.semantics import builtins_lists
+from pn2code.semantics.builtins_numbers import checked
 from pn2code.semantics.values import UNIT, Array, MlException, Value, exception
 
 if TYPE_CHECKING:
@@ -80,7 +81,16 @@ def _make(e: Evaluator, p: tuple[int, Value]) -> Array:
 
 
 def _tabulate(e: Evaluator, p: tuple[int, Value]) -> Task:
-    return Array(list((yield _LISTS["List.tabulate"][1](e, p))))
+    """The first element comes before the array, which may be too large."""
+    if p[0] > MAX_LENGTH:
+        yield e.call(p[1], 0)
+    return Array(list((yield _tabulate_vector(e, p))))
+
+
+def _tabulate_vector(e: Evaluator, p: tuple[int, Value]) -> Task:
+    if p[0] > MAX_LENGTH:
+        raise MlException(exception("Size"))
+    return (yield _LISTS["List.tabulate"][1](e, p))
 
 
 def _update(e: Evaluator, p: tuple[Array, int, Value]) -> Value:
@@ -88,8 +98,8 @@ def _update(e: Evaluator, p: tuple[Array, int, Value]) -> Value:
     return UNIT
 
 
-def _copy(at: int, to: Array, items: list[Value]) -> Value:
-    if at < 0 or at + len(items) > len(to.items):
+def _copy(e: Evaluator, at: int, to: Array, items: list[Value]) -> Value:
+    if at < 0 or checked(e, at + len(items)) > len(to.items):
         raise MlException(exception("Subscript"))
     to.items[at : at + len(items)] = items
     return UNIT
@@ -112,7 +122,7 @@ CONSTANTS: dict[str, Value] = {"Vector.maxLen": MAX_LENGTH, "Array.maxLen": MAX_
 FUNCTIONS: dict[str, tuple[int, Function]] = {
     **{f"Vector.{name}": entry for name, entry in _SHARED.items()},
     "Vector.fromList": (1, lambda e, items: items),
-    "Vector.tabulate": _LISTS["List.tabulate"],
+    "Vector.tabulate": (1, _tabulate_vector),
     "Vector.update": (1, _changed),
     "Vector.concat": _LISTS["List.concat"],
     "Vector.map": _LISTS["List.map"],
@@ -124,8 +134,8 @@ FUNCTIONS: dict[str, tuple[int, Function]] = {
     "Array.update": (1, _update),
     "Array.vector": (1, lambda e, array: tuple(array.items)),
     # records in the order di, dst, src
-    "Array.copy": (1, lambda e, r: _copy(r[0], r[1], list(r[2].items))),
-    "Array.copyVec": (1, lambda e, r: _copy(r[0], r[1], list(r[2]))),
+    "Array.copy": (1, lambda e, r: _copy(e, r[0], r[1], list(r[2].items))),
+    "Array.copyVec": (1, lambda e, r: _copy(e, r[0], r[1], list(r[2]))),
     "Array.modify": (2, _modify),
     "Array.modifyi": (2, _modify_numbered),
 }

@@ -8,6 +8,7 @@ of one with a comma in it): the first that fits the colour set is given, strings
 
 from __future__ import annotations
 
+import math
 import re
 from collections.abc import Iterator, Mapping
 
@@ -100,7 +101,8 @@ class _Reader:
         found = (_REAL if real else _INT).match(self.text, at)
         if found:
             digits = (found["a"] or found["b"]).replace("~", "-")
-            yield (float(digits) if real else int(digits)), found.end()
+            number = math.nan if digits.endswith("nan") else float(digits) if real else int(digits)
+            yield number, found.end()
 
     def string(self, at: int) -> Reading:
         """Each quotation mark behind which something of the surroundings may follow can be the end."""

@@ -37,6 +37,35 @@ MOST_VALUES = 2_000_000
 """Most values of a colour set that are listed."""
 
 
+class _Least:
+    """Before all numbers."""
+
+    def __lt__(self, other: object) -> bool:
+        return other is not self
+
+    def __gt__(self, other: object) -> bool:
+        return False
+
+
+class _Alike:
+    """Neither before nor after any number, and so like each of them where one goes on with what comes next."""
+
+    def __eq__(self, other: object) -> bool:
+        return True
+
+    def __lt__(self, other: object) -> bool:
+        return False
+
+    def __gt__(self, other: object) -> bool:
+        return False
+
+    __hash__ = None  # type: ignore[assignment]
+
+
+LEAST, ALIKE = _Least(), _Alike()
+"""What is no number, in orders: that of tokens is one, so that markings have one text; that of `lt` is none."""
+
+
 class NotFinite(ValueError):  # noqa: N818
     """A real that has to be finite is not."""
 
@@ -83,24 +112,30 @@ class Colours:
 
     # --- order -----------------------------------------------------------------------------------
 
-    def key(self, c: Colset, value: Any) -> Any:
-        """A Python value that compares as the colour set orders its values."""
+    def key(self, c: Colset, value: Any, nan: Any = LEAST) -> Any:
+        """A Python value that compares as the colour set orders its values.
+
+        Args:
+            c: the colour set.
+            value: one of its values.
+            nan: in the place of what is no number: `LEAST` for the order of tokens, `ALIKE` for that of CPN ML's `lt`.
+        """
         match c.kind:
             case Kind.ALIAS | Kind.SUBSET:
-                return self.key(component(c), value)
+                return self.key(component(c), value, nan)
             case Kind.ENUM:
                 return value.tag
             case Kind.INDEX:
                 return value.argument
             case Kind.PRODUCT | Kind.RECORD:
-                return tuple(self.key(part, item) for _, part, item in parts_of(c, value))
+                return tuple(self.key(part, item, nan) for _, part, item in parts_of(c, value))
             case Kind.LIST:
-                return tuple(self.key(component(c), item) for item in value)
+                return tuple(self.key(component(c), item, nan) for item in value)
             case Kind.UNION:
                 part = c.components[value.tag]
-                return value.tag, () if part is None else self.key(part, value.argument)
+                return value.tag, () if part is None else self.key(part, value.argument, nan)
             case _:
-                return value
+                return nan if value is math.nan else value
 
     def sorted(self, c: Colset, values: Iterable[Value]) -> list[Value]:
         """In the colour set's order."""

@@ -503,7 +503,7 @@ def _match_constructor(pattern: core.PCon, value: Any, bound: dict[int, Value]) 
 
 def _bind(symbol: Symbol, value: Value, bound: dict[int, Value]) -> bool:
     if symbol.uid in bound:
-        return v.equal(bound[symbol.uid], value)
+        return v.same(bound[symbol.uid], value)
     bound[symbol.uid] = value
     return True
 
@@ -511,7 +511,7 @@ def _bind(symbol: Symbol, value: Value, bound: dict[int, Value]) -> bool:
 _MATCHES: dict[type, Callable[[Any, Any, dict[int, Value]], bool]] = {
     core.PVar: lambda pattern, value, bound: _bind(pattern.symbol, value, bound),
     core.PWild: lambda pattern, value, bound: True,
-    core.PEqual: lambda pattern, value, bound: v.equal(bound[pattern.value.symbol.uid], value),
+    core.PEqual: lambda pattern, value, bound: v.same(bound[pattern.value.symbol.uid], value),
     core.PRecord: _match_record,
     core.PLit: lambda pattern, value, bound: bool(value == pattern.value),
     core.PAs: lambda pattern, value, bound: (

@@ -24,7 +24,7 @@ from __future__ import annotations
 import math
 import struct
 import sys
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
@@ -194,10 +194,27 @@ def fitting(count: int) -> int:
     return count
 
 
+def joined(separator: str, parts: Sequence[str]) -> str:
+    """Texts as one.
+
+    Raises:
+        MlException: Size, where it would be longer than a string can be; it is not even made then.
+    """
+    length = sum(map(len, parts)) + len(separator) * max(len(parts) - 1, 0)
+    if length > MAX_STRING:
+        raise MlException(exception("Size"))
+    return separator.join(parts)
+
+
 def exception(name: str, argument: Value | None = None) -> Data:
     """The value of a built-in exception; of one that CPN ML has no name for when it is not in the table."""
     known = EXCEPTIONS.get(name)
     return Data(name, known[0].tag if known else -1, argument)
+
+
+def same(a: Value, b: Value) -> bool:
+    """Whether they are one token: as `equal`, but what is no number (always the one `math.nan`) is itself."""
+    return bool(a is b or a == b)
 
 
 def equal(a: Value, b: Value) -> bool:
@@ -247,6 +264,10 @@ def int_text(i: int) -> str:
     return f"~{-i}" if i < 0 else str(i)
 
 
+MOST_DIGITS = 1100
+"""No real has more, whatever is asked for."""
+
+
 def real_text(x: float, precision: int = 12) -> str:
     """SML's `Real.toString`: at most 12 significant digits, `0.333333333333`, `1E~05`, `~1.5`, `2.0`.
 
@@ -259,7 +280,7 @@ def real_text(x: float, precision: int = 12) -> str:
     if x == 0:
         return "0.0"  # also of minus zero
     sign = "~" if x < 0 else ""
-    mantissa, exponent_text = f"{abs(x):.{precision - 1}e}".split("e")
+    mantissa, exponent_text = f"{abs(x):.{min(precision - 1, MOST_DIGITS)}e}".split("e")
     digits, exponent = mantissa.replace(".", "").rstrip("0"), int(exponent_text)
     if exponent < -4 or exponent >= precision:
         # SML/NJ writes a two-digit exponent at least only for small numbers: 1E~05, but 1E20.

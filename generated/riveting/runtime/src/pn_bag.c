@@ -92,7 +92,7 @@ uint32_t pn_bag_lower_bound(const pn_bag_t *bag, const void *marking, const void
 
 bool pn_bag_is_at(const pn_bag_t *bag, const void *marking, uint32_t i, const void *value)
 {
-    return (i < pn_bag_used(bag, marking)) && pn_equal(bag->type, part(pn_bag_entry(bag, marking, i), bag->value), value);
+    return (i < pn_bag_used(bag, marking)) && pn_same(bag->type, part(pn_bag_entry(bag, marking, i), bag->value), value);
 }
 
 static bool is_after(const pn_bag_t *bag, const void *entry, pn_time_t limit)
@@ -323,7 +323,7 @@ void pn_bag_age(const pn_bag_t *bag, void *marking, pn_time_t by)
         const uint32_t count = pn_bag_count_of(bag, entry);
         /* Only what is available now can have become the same. */
         if ((before != NULL) && (stamp.integer == 0) && (pn_bag_stamp_of(bag, before).integer == 0)
-            && pn_equal(bag->type, part(before, bag->value), part(entry, bag->value))
+            && pn_same(bag->type, part(before, bag->value), part(entry, bag->value))
             && (count <= (UINT32_MAX - pn_bag_count_of(bag, before)))) {
             set_count(bag, entry_of(bag, marking, kept - 1U), pn_bag_count_of(bag, before) + count);
             continue;

@@ -41,12 +41,13 @@ double pn_real_fused(double a, double b, double c)
 
 bool pn_real_sign_bit(double x)
 {
-    return signbit(x) != 0;
+    /* What is no number has the bit, as processors make it; what folds constants may not. */
+    return (isnan(x) != 0) || (signbit(x) != 0);
 }
 
 double pn_real_copy_sign(double x, double sign)
 {
-    return copysign(x, sign);
+    return copysign(x, pn_real_sign_bit(sign) ? -1.0 : 1.0);
 }
 
 bool pn_real_is_normal(double x)
@@ -149,7 +150,7 @@ pn_string_t pn_real_styled(pn_ctx_t *cx, int64_t style, int64_t digits, double x
         return (x < 0.0) ? PN_STRING("~inf") : PN_STRING("inf");
     }
     char text[1600]; /* the largest number has 309 digits in front of the point */
-    const int64_t most = 1000;
+    const int64_t most = 1100; /* all further ones are zeros: Real.sml appends them */
     const int places = (int)((digits > most) ? most : digits);
     if (pn_real_equal(x, 0.0)) {
         x = 0.0; /* zero has no sign */

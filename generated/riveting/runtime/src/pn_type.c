@@ -10,12 +10,17 @@
 
 /* --- order --------------------------------------------------------------------------------------------------------- */
 
-static int compare_lists(const pn_type_t *type, const void *a, const void *b)
+/* -1, 0, 1 of two reals: what differs between the order of tokens, that of `lt`, and equality. */
+typedef int (*reals_t)(double, double);
+
+static int compare(const pn_type_t *type, const void *a, const void *b, reals_t reals);
+
+static int compare_lists(const pn_type_t *type, const void *a, const void *b, reals_t reals)
 {
     const void *rest_a = load_pointer(a);
     const void *rest_b = load_pointer(b);
     while ((rest_a != NULL) && (rest_b != NULL)) {
-        const int order = pn_compare(type->element, part(rest_a, type->head), part(rest_b, type->head));
+        const int order = compare(type->element, part(rest_a, type->head), part(rest_b, type->head), reals);
         if (order != 0) {
             return order;
         }
@@ -25,7 +30,7 @@ static int compare_lists(const pn_type_t *type, const void *a, const void *b)
     return (rest_a != NULL) - (rest_b != NULL);
 }
 
-static int compare_unions(const pn_type_t *type, const void *a, const void *b)
+static int compare_unions(const pn_type_t *type, const void *a, const void *b, reals_t reals)
 {
     const void *argument_a = NULL;
     const void *argument_b = NULL;
@@ -34,10 +39,10 @@ static int compare_unions(const pn_type_t *type, const void *a, const void *b)
     if (constructor_a != constructor_b) {
         return (constructor_a > constructor_b) ? 1 : -1;
     }
-    return (argument_a == NULL) ? 0 : pn_compare(constructor_a->type, argument_a, argument_b);
+    return (argument_a == NULL) ? 0 : compare(constructor_a->type, argument_a, argument_b, reals);
 }
 
-int pn_compare(const pn_type_t *type, const void *a, const void *b)
+static int compare(const pn_type_t *type, const void *a, const void *b, reals_t reals)
 {
     switch (type->kind) {
     case PN_KIND_BOOL:
@@ -47,7 +52,7 @@ int pn_compare(const pn_type_t *type, const void *a, const void *b)
     case PN_KIND_BIG:
         return pn_big_order(load_big(a), load_big(b));
     case PN_KIND_REAL:
-        return pn_real_order(load_real(a), load_real(b));
+        return reals(load_real(a), load_real(b));
     case PN_KIND_STRING:
         return pn_string_order(load_string(a), load_string(b));
     case PN_KIND_CHAR:
@@ -57,16 +62,16 @@ int pn_compare(const pn_type_t *type, const void *a, const void *b)
     case PN_KIND_RECORD:
         for (uint32_t i = 0U; i < type->count; i++) {
             const pn_field_t *field = &type->field[i];
-            const int order = pn_compare(field->type, part(a, field->offset), part(b, field->offset));
+            const int order = compare(field->type, part(a, field->offset), part(b, field->offset), reals);
             if (order != 0) {
                 return order;
             }
         }
         return 0;
     case PN_KIND_LIST:
-        return compare_lists(type, a, b);
+        return compare_lists(type, a, b, reals);
     case PN_KIND_UNION:
-        return compare_unions(type, a, b);
+        return compare_unions(type, a, b, reals);
     case PN_KIND_REF:
         /* Equality is all that matters, but it is an order as well. */
         return (load_pointer(a) == load_pointer(b)) ? 0 : 1;
@@ -76,9 +81,35 @@ int pn_compare(const pn_type_t *type, const void *a, const void *b)
     }
 }
 
-bool pn_equal(const pn_type_t *type, const void *a, const void *b)
+int pn_compare(const pn_type_t *type, const void *a, const void *b)
+{
+    return compare(type, a, b, pn_real_order);
+}
+
+bool pn_same(const pn_type_t *type, const void *a, const void *b)
 {
     return pn_compare(type, a, b) == 0;
+}
+
+/* What is no number is neither before nor after any. */
+static int real_order_of_lt(double a, double b)
+{
+    return (a > b) - (a < b);
+}
+
+int pn_order(const pn_type_t *type, const void *a, const void *b)
+{
+    return compare(type, a, b, real_order_of_lt);
+}
+
+static int real_differs(double a, double b)
+{
+    return pn_real_equal(a, b) ? 0 : 1;
+}
+
+bool pn_equal(const pn_type_t *type, const void *a, const void *b)
+{
+    return compare(type, a, b, real_differs) == 0;
 }
 
 /* --- text ---------------------------------------------------------------------------------------------------------- */

@@ -2,7 +2,9 @@
 val Array_maxLen = 16777215
 fun Array_array (n, x) = if n < 0 orelse n > Array_maxLen then raise Size else ref (List.tabulate (n, fn _ => x))
 fun Array_fromList (xs : 'a list) = ref xs
-fun Array_tabulate (n, f) = ref (List.tabulate (n, f))
+(* The first element comes before the array, which may be too large. *)
+fun Array_tabulate (n, f) =
+    if n > Array_maxLen then (f 0; raise Size) else ref (List.tabulate (n, f))
 fun Array_length a = length (!a)
 fun Array_sub (a, i) = List.nth (!a, i)
 
@@ -38,7 +40,7 @@ fun put (xs, a, di) =
     let val n = length xs
         val old = !a
     in
-        if di < 0 orelse di > length old - n then raise Subscript
+        if di < 0 orelse di + n > length old then raise Subscript
         else a := List.take (old, di) ^^ xs ^^ List.drop (old, di + n)
     end
 

@@ -91,9 +91,7 @@ fun IntInf_pow (x, n) =
     in
         if n >= 0 then power (x, n)
         else if x = zero then raise Div
-        else if x = one then one
-        else if x = IntInf.~ one then (if n mod 2 = 0 then one else x)
-        else zero
+        else zero (* as SML/NJ has it, also for 1 and ~1 *)
     end
 
 fun IntInf_log2 n =

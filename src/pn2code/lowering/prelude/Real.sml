@@ -63,8 +63,22 @@ fun Real_fromLarge (mode : IEEEReal.rounding_mode) (x : real) = x
 fun places (NONE, default) = default
   | places (SOME n, _) = if n < 0 then raise Size else n
 
-fun Real_fmt (StringCvt.SCI n) x = prim_real_format (0, places (n, 6), x)
-  | Real_fmt (StringCvt.FIX n) x = prim_real_format (1, places (n, 6), x)
+(* No real has more digits than that behind the point: the others are zeros, and come before the exponent. *)
+val most_digits = 1100
+
+fun format (style, n, x) =
+    if n <= most_digits orelse not (Real.isFinite x) then prim_real_format (style, n, x)
+    else
+        let val text = prim_real_format (style, most_digits, x)
+            val (digits, exponent) = Substring.splitl (fn c => c <> #"E") (Substring.full text)
+            val zeros = n - most_digits
+        in
+            StringCvt.padRight #"0" (Substring.size digits + zeros) (Substring.string digits)
+            ^ Substring.string exponent
+        end
+
+fun Real_fmt (StringCvt.SCI n) x = format (0, places (n, 6), x)
+  | Real_fmt (StringCvt.FIX n) x = format (1, places (n, 6), x)
   | Real_fmt (StringCvt.GEN n) x =
     (case places (n, 12) of 0 => raise Size | k => prim_real_format (2, k, x))
   | Real_fmt StringCvt.EXACT x = prim_real_format (3, 17, x)
@@ -75,11 +89,8 @@ fun digits (getc, stream, out) =
         SOME (c, rest) => if Char.isDigit c then digits (getc, rest, c :: out) else (out, stream)
       | NONE => (out, stream)
 
-fun word (getc, stream, nil) = SOME stream
-  | word (getc, stream, c :: rest) =
-    case getc stream of
-        SOME (d, next) => if Char.toLower d = c then word (getc, next, rest) else NONE
-      | NONE => NONE
+(* Digits, the last one first, are an integer. *)
+fun checked digits = foldr (fn (c, n) => 10 * n + (ord c - ord #"0")) 0 digits
 
 fun exponent (getc, stream, out) =
     case getc stream of
@@ -92,7 +103,7 @@ fun exponent (getc, stream, out) =
                       | SOME (#"+", rest) => (nil, rest)
                       | _ => (nil, after)
                 val (more, rest) = digits (getc, after, nil)
-            in if null more then (out, stream) else (more ^^ sign ^^ (#"e" :: out), rest) end
+            in if null more then (out, stream) else (checked more; (more ^^ sign ^^ (#"e" :: out), rest)) end
         else (out, stream)
       | NONE => (out, stream)
 
@@ -120,20 +131,10 @@ fun Real_scan getc stream =
               | SOME (#"+", rest) => (false, rest)
               | _ => (false, stream)
         fun signed (x, rest) = SOME (if minus then ~ x else x, rest)
-        fun infinite rest =
-            case word (getc, rest, explode "inity") of
-                SOME rest => signed (Real.posInf, rest)
-              | NONE => signed (Real.posInf, rest)
     in
         case number (getc, stream) of
             SOME found => signed found
-          | NONE =>
-            (case word (getc, stream, explode "inf") of
-                 SOME rest => infinite rest
-               | NONE =>
-                 (case word (getc, stream, explode "nan") of
-                      SOME rest => signed (Real.posInf - Real.posInf, rest)
-                    | NONE => NONE))
+          | NONE => NONE
     end
 
 fun Real_fromString s = StringCvt.scanString Real_scan s

@@ -1,7 +1,7 @@
 (* A vector is a list. *)
 val Vector_maxLen = 16777215
 fun Vector_fromList (xs : 'a list) = xs
-fun Vector_tabulate (n, f) = List.tabulate (n, f)
+fun Vector_tabulate (n, f) = if n > Vector_maxLen then raise Size else List.tabulate (n, f)
 fun Vector_length xs = length xs
 fun Vector_sub (xs, i) = List.nth (xs, i)
 

@@ -80,8 +80,12 @@ typedef struct pn_type {
     bool (*member)(pn_ctx_t *cx, const void *value); /* SUBSET: further condition; NULL: none */
 } pn_type_t;
 
-/* -1, 0, 1 in the order of the colour set. */
+/* -1, 0, 1 in the order of tokens: that of the colour set, where what is no number comes first and is like itself. */
 int pn_compare(const pn_type_t *type, const void *a, const void *b);
+/* Whether both are one token. */
+bool pn_same(const pn_type_t *type, const void *a, const void *b);
+/* As CPN ML compares: for `lt` what is no number is neither before nor after any; for `=` it is like nothing. */
+int pn_order(const pn_type_t *type, const void *a, const void *b);
 bool pn_equal(const pn_type_t *type, const void *a, const void *b);
 
 /* As docs/trace.md writes it. */
