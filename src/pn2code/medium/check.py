@@ -215,7 +215,7 @@ def exchange(
     net = compose(skeleton.partition, rules, crashes, skeleton.extra)
     name = partition.owners[owner].name
     assumes = (
-        f"commands and answers as far as {name}'s files allow them, {skeleton.rounds} exchanges a session, "
+        f"commands and answers as far as {name}'s files allow them, {skeleton.rounds} exchange{'s' * (skeleton.rounds != 1)} a session, "
         f"at most {crashes.supervisor} crash{'es' * (crashes.supervisor != 1)} of the supervisor and "
         f"{crashes.robots} of {name}, {crashes.all_sessions} session{'s' * (crashes.all_sessions != 1)}"
     )
