@@ -9,7 +9,7 @@ from typing import Any
 import pytest
 from typer.testing import CliRunner
 
-from e2e.test_running_cell import ACT, ECHO, LATE, SLOW, TOOL, UNKNOWN, net, ran, steps, toml, write
+from e2e.test_running_cell import ACT, LATE, SLOW, TOOL, UNKNOWN, net, ran, steps, toml, write
 from pn2code.cli.main import app
 
 pytestmark = [pytest.mark.cc, pytest.mark.usefixtures("quick_build")]
@@ -234,3 +234,11 @@ def test_the_medium_alone_does_not_promise_an_end(tmp_path: Path) -> None:
         "no",
         "inconclusive",
     ]
+
+
+@pytest.mark.parametrize("verb", ["verify", "conform"])
+def test_nothing_is_said_of_wide_integers(verb: str, tmp_path: Path) -> None:
+    """The programs that `generate` makes have integers of 31 bits."""
+    folder = write(tmp_path / "cell", LATE, toml(["A"]))
+    done = CliRunner().invoke(app, [verb, str(folder), "--int-bits", "64"])
+    assert done.exit_code == 2 and "31 bits" in done.stderr

@@ -16,7 +16,7 @@ import typer
 from pn2code import pipeline
 from pn2code.cli import controller, medium, properties
 from pn2code.cli.interrupts import Interrupts
-from pn2code.cli.nets import OpenNet, open_net, playing
+from pn2code.cli.nets import OpenNet, open_net, playing, refuse_wide
 from pn2code.cli.options import (
     DEFAULT_INT_BITS,
     Exit,
@@ -248,6 +248,7 @@ def verify(
     try:
         with deadline.enforced():
             opened = open_net(net, parse_values(settings), form, int_bits=int_bits)
+            refuse_wide(opened.config, int_bits)
             partition = pipeline.divided(opened.flat, opened.config, d)
             if partition is not None and opened.config is not None:
                 # What is said of a cell is said of its programs: without them there is nothing to say.
