@@ -1636,10 +1636,6 @@ PN_NET_SEARCH static bool Supervisor_Load_Load_fire(pn_ctx_t *cx, void *marking,
     if (!pn_ok(cx)) {
         return false;
     }
-    if (!m->Supervisor_coordenadas.full) {
-        pn_raise(cx, PN_ERR_SUBTRACT, NULL);
-        return false;
-    }
     if (m->Supervisor_planned.full) {
         return pn_bag_fail_full(cx, &s_at_Supervisor_planned);
     }
@@ -1698,10 +1694,6 @@ PN_NET_SEARCH static bool Supervisor_Approach_Send_fire(pn_ctx_t *cx, void *mark
         .c2 = ml_standoff(b->s.first), .c3 = ml_standoff(ml_facing(b->s.first)) };
     pn_bag_check(cx, &s_at_Supervisor_Approach_order, &Supervisor_Approach_order_token);
     if (!pn_ok(cx)) {
-        return false;
-    }
-    if (!m->Supervisor_planned.full) {
-        pn_raise(cx, PN_ERR_SUBTRACT, NULL);
         return false;
     }
     if (m->Supervisor_Approach_order.full) {
@@ -1768,10 +1760,6 @@ PN_NET_SEARCH static bool Supervisor_Approach_Arrived_fire(pn_ctx_t *cx, void *m
     cx->origin = "page `Approach`, transition `Arrived` (ID1412310311)";
     cx->now = m->now;
     cx->rounds = 0U;
-    if (!m->Supervisor_Approach_done.full || !m->Supervisor_Approach_seam.full) {
-        pn_raise(cx, PN_ERR_SUBTRACT, NULL);
-        return false;
-    }
     if (m->Supervisor_approached.full) {
         return pn_bag_fail_full(cx, &s_at_Supervisor_approached);
     }
@@ -1834,10 +1822,6 @@ PN_NET_SEARCH static bool Supervisor_Approach_Move_both_Command_fire(pn_ctx_t *c
     cx->origin = "page `MoveBoth`, transition `Command` (ID1412310941)";
     cx->now = m->now;
     cx->rounds = 0U;
-    if (!m->Supervisor_Approach_order.full) {
-        pn_raise(cx, PN_ERR_SUBTRACT, NULL);
-        return false;
-    }
     if (m->Supervisor_Approach_Move_both_moving_1.full) {
         return pn_bag_fail_full(cx, &s_at_Supervisor_Approach_Move_both_moving_1);
     }
@@ -1919,11 +1903,6 @@ PN_NET_SEARCH static bool Supervisor_Approach_Move_both_Both_fire(pn_ctx_t *cx, 
     cx->origin = "page `MoveBoth`, transition `Both` (ID1412310948)";
     cx->now = m->now;
     cx->rounds = 0U;
-    if (!m->Supervisor_Approach_Move_both_there_1.full
-        || !m->Supervisor_Approach_Move_both_there_2.full) {
-        pn_raise(cx, PN_ERR_SUBTRACT, NULL);
-        return false;
-    }
     if (m->Supervisor_Approach_done.full) {
         return pn_bag_fail_full(cx, &s_at_Supervisor_Approach_done);
     }
@@ -1978,10 +1957,6 @@ PN_NET_SEARCH static bool Supervisor_Approach_Move_both_Reply_1_fire(pn_ctx_t *c
     cx->origin = "page `MoveBoth`, transition `Reply 1` (ID1412310962)";
     cx->now = m->now;
     cx->rounds = 0U;
-    if (!m->Supervisor_Approach_Move_both_moving_1.full || !m->flag1_externo.full) {
-        pn_raise(cx, PN_ERR_SUBTRACT, NULL);
-        return false;
-    }
     if (m->Supervisor_Approach_Move_both_there_1.full) {
         return pn_bag_fail_full(cx, &s_at_Supervisor_Approach_Move_both_there_1);
     }
@@ -2036,10 +2011,6 @@ PN_NET_SEARCH static bool Supervisor_Approach_Move_both_Reply_2_fire(pn_ctx_t *c
     cx->origin = "page `MoveBoth`, transition `Reply 2` (ID1412310999)";
     cx->now = m->now;
     cx->rounds = 0U;
-    if (!m->Supervisor_Approach_Move_both_moving_2.full || !m->flag2_externo.full) {
-        pn_raise(cx, PN_ERR_SUBTRACT, NULL);
-        return false;
-    }
     if (m->Supervisor_Approach_Move_both_there_2.full) {
         return pn_bag_fail_full(cx, &s_at_Supervisor_Approach_Move_both_there_2);
     }
@@ -2099,10 +2070,6 @@ PN_NET_SEARCH static bool Supervisor_Verify_Ask_first_fire(pn_ctx_t *cx, void *m
     int64_t flag1_interno_token = val_MEASURE;
     pn_bag_check(cx, &s_at_flag1_interno, &flag1_interno_token);
     if (!pn_ok(cx)) {
-        return false;
-    }
-    if (!m->Supervisor_approached.full) {
-        pn_raise(cx, PN_ERR_SUBTRACT, NULL);
         return false;
     }
     if (m->Supervisor_Verify_first_asked.full) {
@@ -2196,10 +2163,6 @@ PN_NET_SEARCH static bool Supervisor_Verify_Ask_last_fire(pn_ctx_t *cx, void *ma
     int64_t flag1_interno_token = val_MEASURE;
     pn_bag_check(cx, &s_at_flag1_interno, &flag1_interno_token);
     if (!pn_ok(cx)) {
-        return false;
-    }
-    if (!m->Supervisor_Verify_first_asked.full || !m->medida1.full || !m->flag1_externo.full) {
-        pn_raise(cx, PN_ERR_SUBTRACT, NULL);
         return false;
     }
     if (m->Supervisor_Verify_last_asked.full) {
@@ -2296,10 +2259,6 @@ PN_NET_SEARCH static bool Supervisor_Verify_Measured_fire(pn_ctx_t *cx, void *ma
     cx->now = m->now;
     cx->rounds = 0U;
     const VERIFIED_t Supervisor_verified_token = (VERIFIED_t){ .c1 = b->s, .c2 = b->a, .c3 = b->b };
-    if (!m->Supervisor_Verify_last_asked.full || !m->medida1.full || !m->flag1_externo.full) {
-        pn_raise(cx, PN_ERR_SUBTRACT, NULL);
-        return false;
-    }
     if (m->Supervisor_verified.full) {
         return pn_bag_fail_full(cx, &s_at_Supervisor_verified);
     }
@@ -2381,10 +2340,6 @@ PN_NET_SEARCH static bool Supervisor_Verify_First_lost_fire(pn_ctx_t *cx, void *
     int64_t Supervisor_result_token = val_FAILED;
     pn_bag_check(cx, &s_at_Supervisor_result, &Supervisor_result_token);
     if (!pn_ok(cx)) {
-        return false;
-    }
-    if (!m->Supervisor_Verify_first_asked.full || !m->flag1_externo.full || !m->medida1.full) {
-        pn_raise(cx, PN_ERR_SUBTRACT, NULL);
         return false;
     }
     if (m->Supervisor_result.full) {
@@ -2478,10 +2433,6 @@ PN_NET_SEARCH static bool Supervisor_Verify_Last_lost_fire(pn_ctx_t *cx, void *m
     if (!pn_ok(cx)) {
         return false;
     }
-    if (!m->Supervisor_Verify_last_asked.full || !m->flag1_externo.full || !m->medida1.full) {
-        pn_raise(cx, PN_ERR_SUBTRACT, NULL);
-        return false;
-    }
     if (m->Supervisor_result.full) {
         return pn_bag_fail_full(cx, &s_at_Supervisor_result);
     }
@@ -2562,10 +2513,6 @@ PN_NET_SEARCH static bool Supervisor_Correct_Compare_fire(pn_ctx_t *cx, void *ma
         .c3 = ml_pitch(cx, b->n, ml_corrected(b->p, b->a), ml_corrected(b->q, b->b)) };
     pn_bag_check(cx, &s_at_Supervisor_Correct_seam, &Supervisor_Correct_seam_token);
     if (!pn_ok(cx)) {
-        return false;
-    }
-    if (!m->Supervisor_verified.full) {
-        pn_raise(cx, PN_ERR_SUBTRACT, NULL);
         return false;
     }
     if (m->Supervisor_Correct_offset.full) {
@@ -2654,10 +2601,6 @@ PN_NET_SEARCH static bool Supervisor_Correct_Move_over_fire(pn_ctx_t *cx, void *
         return false;
     }
     /* seam: (n, p, d) (ID1412310539): stays where it is */
-    if (!m->Supervisor_Correct_offset.full) {
-        pn_raise(cx, PN_ERR_SUBTRACT, NULL);
-        return false;
-    }
     if (m->Supervisor_Correct_order.full) {
         return pn_bag_fail_full(cx, &s_at_Supervisor_Correct_order);
     }
@@ -2724,10 +2667,6 @@ PN_NET_SEARCH static bool Supervisor_Correct_Moved_fire(pn_ctx_t *cx, void *mark
     cx->rounds = 0U;
     const RIVETING_t Supervisor_corrected_token = (RIVETING_t){ .c1 = b->n, .c2 = b->p,
         .c3 = b->d };
-    if (!m->Supervisor_Correct_done.full || !m->Supervisor_Correct_seam.full) {
-        pn_raise(cx, PN_ERR_SUBTRACT, NULL);
-        return false;
-    }
     if (m->Supervisor_corrected.full) {
         return pn_bag_fail_full(cx, &s_at_Supervisor_corrected);
     }
@@ -2805,10 +2744,6 @@ PN_NET_SEARCH static bool Supervisor_Correct_As_planned_fire(pn_ctx_t *cx, void 
     cx->rounds = 0U;
     const RIVETING_t Supervisor_corrected_token = (RIVETING_t){ .c1 = b->n, .c2 = b->p,
         .c3 = b->d };
-    if (!m->Supervisor_Correct_offset.full || !m->Supervisor_Correct_seam.full) {
-        pn_raise(cx, PN_ERR_SUBTRACT, NULL);
-        return false;
-    }
     if (m->Supervisor_corrected.full) {
         return pn_bag_fail_full(cx, &s_at_Supervisor_corrected);
     }
@@ -2871,10 +2806,6 @@ PN_NET_SEARCH static bool Supervisor_Correct_Move_both_Command_fire(pn_ctx_t *cx
     cx->origin = "page `MoveBoth`, transition `Command` (ID1412310941)";
     cx->now = m->now;
     cx->rounds = 0U;
-    if (!m->Supervisor_Correct_order.full) {
-        pn_raise(cx, PN_ERR_SUBTRACT, NULL);
-        return false;
-    }
     if (m->Supervisor_Correct_Move_both_moving_1.full) {
         return pn_bag_fail_full(cx, &s_at_Supervisor_Correct_Move_both_moving_1);
     }
@@ -2956,11 +2887,6 @@ PN_NET_SEARCH static bool Supervisor_Correct_Move_both_Both_fire(pn_ctx_t *cx, v
     cx->origin = "page `MoveBoth`, transition `Both` (ID1412310948)";
     cx->now = m->now;
     cx->rounds = 0U;
-    if (!m->Supervisor_Correct_Move_both_there_1.full
-        || !m->Supervisor_Correct_Move_both_there_2.full) {
-        pn_raise(cx, PN_ERR_SUBTRACT, NULL);
-        return false;
-    }
     if (m->Supervisor_Correct_done.full) {
         return pn_bag_fail_full(cx, &s_at_Supervisor_Correct_done);
     }
@@ -3015,10 +2941,6 @@ PN_NET_SEARCH static bool Supervisor_Correct_Move_both_Reply_1_fire(pn_ctx_t *cx
     cx->origin = "page `MoveBoth`, transition `Reply 1` (ID1412310962)";
     cx->now = m->now;
     cx->rounds = 0U;
-    if (!m->Supervisor_Correct_Move_both_moving_1.full || !m->flag1_externo.full) {
-        pn_raise(cx, PN_ERR_SUBTRACT, NULL);
-        return false;
-    }
     if (m->Supervisor_Correct_Move_both_there_1.full) {
         return pn_bag_fail_full(cx, &s_at_Supervisor_Correct_Move_both_there_1);
     }
@@ -3073,10 +2995,6 @@ PN_NET_SEARCH static bool Supervisor_Correct_Move_both_Reply_2_fire(pn_ctx_t *cx
     cx->origin = "page `MoveBoth`, transition `Reply 2` (ID1412310999)";
     cx->now = m->now;
     cx->rounds = 0U;
-    if (!m->Supervisor_Correct_Move_both_moving_2.full || !m->flag2_externo.full) {
-        pn_raise(cx, PN_ERR_SUBTRACT, NULL);
-        return false;
-    }
     if (m->Supervisor_Correct_Move_both_there_2.full) {
         return pn_bag_fail_full(cx, &s_at_Supervisor_Correct_Move_both_there_2);
     }
@@ -3163,10 +3081,6 @@ PN_NET_SEARCH static bool Supervisor_Install_Go_back_fire(pn_ctx_t *cx, void *ma
         return false;
     }
     /* result: DONE (ID1412320065): stays where it is */
-    if (!m->Supervisor_Install_riveted.full || !m->Supervisor_Install_work.full) {
-        pn_raise(cx, PN_ERR_SUBTRACT, NULL);
-        return false;
-    }
     if (m->Supervisor_Install_return.full) {
         return pn_bag_fail_full(cx, &s_at_Supervisor_Install_return);
     }
@@ -3255,11 +3169,6 @@ PN_NET_SEARCH static bool Supervisor_Install_Next_rivet_fire(pn_ctx_t *cx, void 
     if (!pn_ok(cx)) {
         return false;
     }
-    if (!m->Supervisor_Install_riveted.full || !m->Supervisor_result.full
-        || !m->Supervisor_Install_work.full) {
-        pn_raise(cx, PN_ERR_SUBTRACT, NULL);
-        return false;
-    }
     if (m->Supervisor_Install_shift.full) {
         return pn_bag_fail_full(cx, &s_at_Supervisor_Install_shift);
     }
@@ -3267,14 +3176,12 @@ PN_NET_SEARCH static bool Supervisor_Install_Next_rivet_fire(pn_ctx_t *cx, void 
     m->Supervisor_Install_riveted.full = false;
     /* result: DONE (ID1412320063) */
     m->Supervisor_result.full = false;
-    /* work: (n, k, p, d) (ID1412310701) */
-    m->Supervisor_Install_work.full = false;
+    /* work: (n, k, p, d) (ID1412310701): replaced below */
     /* shift: (LINEAR, inTool (p, d), inTool (facing p, d)) (ID1412310699) */
     m->Supervisor_Install_shift.value = Supervisor_Install_shift_token;
     m->Supervisor_Install_shift.full = true;
     /* work: (n, k - 1, p, d) (ID1412310703) */
     m->Supervisor_Install_work.value = Supervisor_Install_work_token;
-    m->Supervisor_Install_work.full = true;
     return true;
 }
 
@@ -3331,10 +3238,6 @@ PN_NET_SEARCH static bool Supervisor_Install_Start_fire(pn_ctx_t *cx, void *mark
         .c3 = b->p, .c4 = b->d };
     pn_bag_check(cx, &s_at_Supervisor_Install_work, &Supervisor_Install_work_token);
     if (!pn_ok(cx)) {
-        return false;
-    }
-    if (!m->Supervisor_corrected.full) {
-        pn_raise(cx, PN_ERR_SUBTRACT, NULL);
         return false;
     }
     if (m->Supervisor_Install_ready.full) {
@@ -3414,10 +3317,6 @@ PN_NET_SEARCH static bool Supervisor_Install_Give_up_fire(pn_ctx_t *cx, void *ma
     cx->now = m->now;
     cx->rounds = 0U;
     /* result: FAILED (ID1412320074): stays where it is */
-    if (!m->Supervisor_Install_riveted.full || !m->Supervisor_Install_work.full) {
-        pn_raise(cx, PN_ERR_SUBTRACT, NULL);
-        return false;
-    }
     if (m->Supervisor_ended.full) {
         return pn_bag_fail_full(cx, &s_at_Supervisor_ended);
     }
@@ -3479,10 +3378,6 @@ PN_NET_SEARCH static bool Supervisor_Install_Shift_Command_fire(pn_ctx_t *cx, vo
     cx->origin = "page `MoveBoth`, transition `Command` (ID1412310941)";
     cx->now = m->now;
     cx->rounds = 0U;
-    if (!m->Supervisor_Install_shift.full) {
-        pn_raise(cx, PN_ERR_SUBTRACT, NULL);
-        return false;
-    }
     if (m->Supervisor_Install_Shift_moving_1.full) {
         return pn_bag_fail_full(cx, &s_at_Supervisor_Install_Shift_moving_1);
     }
@@ -3564,10 +3459,6 @@ PN_NET_SEARCH static bool Supervisor_Install_Shift_Both_fire(pn_ctx_t *cx, void 
     cx->origin = "page `MoveBoth`, transition `Both` (ID1412310948)";
     cx->now = m->now;
     cx->rounds = 0U;
-    if (!m->Supervisor_Install_Shift_there_1.full || !m->Supervisor_Install_Shift_there_2.full) {
-        pn_raise(cx, PN_ERR_SUBTRACT, NULL);
-        return false;
-    }
     if (m->Supervisor_Install_ready.full) {
         return pn_bag_fail_full(cx, &s_at_Supervisor_Install_ready);
     }
@@ -3622,10 +3513,6 @@ PN_NET_SEARCH static bool Supervisor_Install_Shift_Reply_1_fire(pn_ctx_t *cx, vo
     cx->origin = "page `MoveBoth`, transition `Reply 1` (ID1412310962)";
     cx->now = m->now;
     cx->rounds = 0U;
-    if (!m->Supervisor_Install_Shift_moving_1.full || !m->flag1_externo.full) {
-        pn_raise(cx, PN_ERR_SUBTRACT, NULL);
-        return false;
-    }
     if (m->Supervisor_Install_Shift_there_1.full) {
         return pn_bag_fail_full(cx, &s_at_Supervisor_Install_Shift_there_1);
     }
@@ -3680,10 +3567,6 @@ PN_NET_SEARCH static bool Supervisor_Install_Shift_Reply_2_fire(pn_ctx_t *cx, vo
     cx->origin = "page `MoveBoth`, transition `Reply 2` (ID1412310999)";
     cx->now = m->now;
     cx->rounds = 0U;
-    if (!m->Supervisor_Install_Shift_moving_2.full || !m->flag2_externo.full) {
-        pn_raise(cx, PN_ERR_SUBTRACT, NULL);
-        return false;
-    }
     if (m->Supervisor_Install_Shift_there_2.full) {
         return pn_bag_fail_full(cx, &s_at_Supervisor_Install_Shift_there_2);
     }
@@ -3739,10 +3622,6 @@ PN_NET_SEARCH static bool Supervisor_Install_Rivet_Go_in_fire(pn_ctx_t *cx, void
     pn_bag_check(cx, &s_at_Supervisor_Install_Rivet_advance,
         &Supervisor_Install_Rivet_advance_token);
     if (!pn_ok(cx)) {
-        return false;
-    }
-    if (!m->Supervisor_Install_ready.full) {
-        pn_raise(cx, PN_ERR_SUBTRACT, NULL);
         return false;
     }
     if (m->Supervisor_Install_Rivet_advance.full) {
@@ -3804,10 +3683,6 @@ PN_NET_SEARCH static bool Supervisor_Install_Rivet_Go_out_fire(pn_ctx_t *cx, voi
     pn_bag_check(cx, &s_at_Supervisor_Install_Rivet_retract,
         &Supervisor_Install_Rivet_retract_token);
     if (!pn_ok(cx)) {
-        return false;
-    }
-    if (!m->Supervisor_Install_Rivet_fastened.full) {
-        pn_raise(cx, PN_ERR_SUBTRACT, NULL);
         return false;
     }
     if (m->Supervisor_Install_Rivet_retract.full) {
@@ -3876,10 +3751,6 @@ PN_NET_SEARCH static bool Supervisor_Install_Rivet_Advance_Command_fire(pn_ctx_t
     cx->origin = "page `MoveBoth`, transition `Command` (ID1412310941)";
     cx->now = m->now;
     cx->rounds = 0U;
-    if (!m->Supervisor_Install_Rivet_advance.full) {
-        pn_raise(cx, PN_ERR_SUBTRACT, NULL);
-        return false;
-    }
     if (m->Supervisor_Install_Rivet_Advance_moving_1.full) {
         return pn_bag_fail_full(cx, &s_at_Supervisor_Install_Rivet_Advance_moving_1);
     }
@@ -3961,11 +3832,6 @@ PN_NET_SEARCH static bool Supervisor_Install_Rivet_Advance_Both_fire(pn_ctx_t *c
     cx->origin = "page `MoveBoth`, transition `Both` (ID1412310948)";
     cx->now = m->now;
     cx->rounds = 0U;
-    if (!m->Supervisor_Install_Rivet_Advance_there_1.full
-        || !m->Supervisor_Install_Rivet_Advance_there_2.full) {
-        pn_raise(cx, PN_ERR_SUBTRACT, NULL);
-        return false;
-    }
     if (m->Supervisor_Install_Rivet_contact.full) {
         return pn_bag_fail_full(cx, &s_at_Supervisor_Install_Rivet_contact);
     }
@@ -4020,10 +3886,6 @@ PN_NET_SEARCH static bool Supervisor_Install_Rivet_Advance_Reply_1_fire(pn_ctx_t
     cx->origin = "page `MoveBoth`, transition `Reply 1` (ID1412310962)";
     cx->now = m->now;
     cx->rounds = 0U;
-    if (!m->Supervisor_Install_Rivet_Advance_moving_1.full || !m->flag1_externo.full) {
-        pn_raise(cx, PN_ERR_SUBTRACT, NULL);
-        return false;
-    }
     if (m->Supervisor_Install_Rivet_Advance_there_1.full) {
         return pn_bag_fail_full(cx, &s_at_Supervisor_Install_Rivet_Advance_there_1);
     }
@@ -4078,10 +3940,6 @@ PN_NET_SEARCH static bool Supervisor_Install_Rivet_Advance_Reply_2_fire(pn_ctx_t
     cx->origin = "page `MoveBoth`, transition `Reply 2` (ID1412310999)";
     cx->now = m->now;
     cx->rounds = 0U;
-    if (!m->Supervisor_Install_Rivet_Advance_moving_2.full || !m->flag2_externo.full) {
-        pn_raise(cx, PN_ERR_SUBTRACT, NULL);
-        return false;
-    }
     if (m->Supervisor_Install_Rivet_Advance_there_2.full) {
         return pn_bag_fail_full(cx, &s_at_Supervisor_Install_Rivet_Advance_there_2);
     }
@@ -4135,10 +3993,6 @@ PN_NET_SEARCH static bool Supervisor_Install_Rivet_Fasten_Press_fire(pn_ctx_t *c
     int64_t flag2_interno_token = val_PRESS;
     pn_bag_check(cx, &s_at_flag2_interno, &flag2_interno_token);
     if (!pn_ok(cx)) {
-        return false;
-    }
-    if (!m->Supervisor_Install_Rivet_contact.full) {
-        pn_raise(cx, PN_ERR_SUBTRACT, NULL);
         return false;
     }
     if (m->Supervisor_Install_Rivet_Fasten_pressing.full) {
@@ -4204,10 +4058,6 @@ PN_NET_SEARCH static bool Supervisor_Install_Rivet_Fasten_Drill_fire(pn_ctx_t *c
     if (!pn_ok(cx)) {
         return false;
     }
-    if (!m->Supervisor_Install_Rivet_Fasten_pressing.full || !m->flag2_externo.full) {
-        pn_raise(cx, PN_ERR_SUBTRACT, NULL);
-        return false;
-    }
     if (m->Supervisor_Install_Rivet_Fasten_drilling.full) {
         return pn_bag_fail_full(cx, &s_at_Supervisor_Install_Rivet_Fasten_drilling);
     }
@@ -4271,10 +4121,6 @@ PN_NET_SEARCH static bool Supervisor_Install_Rivet_Fasten_Insert_fire(pn_ctx_t *
     int64_t flag1_interno_token = val_INSERT;
     pn_bag_check(cx, &s_at_flag1_interno, &flag1_interno_token);
     if (!pn_ok(cx)) {
-        return false;
-    }
-    if (!m->Supervisor_Install_Rivet_Fasten_drilling.full || !m->flag1_externo.full) {
-        pn_raise(cx, PN_ERR_SUBTRACT, NULL);
         return false;
     }
     if (m->Supervisor_Install_Rivet_Fasten_inserting.full) {
@@ -4345,10 +4191,6 @@ PN_NET_SEARCH static bool Supervisor_Install_Rivet_Fasten_Release_fire(pn_ctx_t 
     int64_t flag2_interno_token = val_RELEASE;
     pn_bag_check(cx, &s_at_flag2_interno, &flag2_interno_token);
     if (!pn_ok(cx)) {
-        return false;
-    }
-    if (!m->Supervisor_Install_Rivet_Fasten_inserting.full || !m->flag1_externo.full) {
-        pn_raise(cx, PN_ERR_SUBTRACT, NULL);
         return false;
     }
     if (m->Supervisor_Install_Rivet_Fasten_releasing.full) {
@@ -4426,10 +4268,6 @@ PN_NET_SEARCH static bool Supervisor_Install_Rivet_Fasten_Finish_fire(pn_ctx_t *
     if (!pn_ok(cx)) {
         return false;
     }
-    if (!m->Supervisor_Install_Rivet_Fasten_releasing.full || !m->flag2_externo.full) {
-        pn_raise(cx, PN_ERR_SUBTRACT, NULL);
-        return false;
-    }
     if (m->Supervisor_Install_Rivet_fastened.full) {
         return pn_bag_fail_full(cx, &s_at_Supervisor_Install_Rivet_fastened);
     }
@@ -4489,10 +4327,6 @@ PN_NET_SEARCH static bool Supervisor_Install_Rivet_Fasten_Press_failed_fire(pn_c
     pn_bag_check(cx, &s_at_flag2_interno, &flag2_interno_token);
     const int64_t Supervisor_Install_Rivet_Fasten_releasing_token = val_FAILED;
     if (!pn_ok(cx)) {
-        return false;
-    }
-    if (!m->Supervisor_Install_Rivet_Fasten_pressing.full || !m->flag2_externo.full) {
-        pn_raise(cx, PN_ERR_SUBTRACT, NULL);
         return false;
     }
     if (m->flag2_interno.full) {
@@ -4561,10 +4395,6 @@ PN_NET_SEARCH static bool Supervisor_Install_Rivet_Fasten_Drill_failed_fire(pn_c
     pn_bag_check(cx, &s_at_flag2_interno, &flag2_interno_token);
     const int64_t Supervisor_Install_Rivet_Fasten_releasing_token = val_FAILED;
     if (!pn_ok(cx)) {
-        return false;
-    }
-    if (!m->Supervisor_Install_Rivet_Fasten_drilling.full || !m->flag1_externo.full) {
-        pn_raise(cx, PN_ERR_SUBTRACT, NULL);
         return false;
     }
     if (m->flag2_interno.full) {
@@ -4636,10 +4466,6 @@ PN_NET_SEARCH static bool Supervisor_Install_Rivet_Retract_Command_fire(pn_ctx_t
     cx->origin = "page `MoveBoth`, transition `Command` (ID1412310941)";
     cx->now = m->now;
     cx->rounds = 0U;
-    if (!m->Supervisor_Install_Rivet_retract.full) {
-        pn_raise(cx, PN_ERR_SUBTRACT, NULL);
-        return false;
-    }
     if (m->Supervisor_Install_Rivet_Retract_moving_1.full) {
         return pn_bag_fail_full(cx, &s_at_Supervisor_Install_Rivet_Retract_moving_1);
     }
@@ -4721,11 +4547,6 @@ PN_NET_SEARCH static bool Supervisor_Install_Rivet_Retract_Both_fire(pn_ctx_t *c
     cx->origin = "page `MoveBoth`, transition `Both` (ID1412310948)";
     cx->now = m->now;
     cx->rounds = 0U;
-    if (!m->Supervisor_Install_Rivet_Retract_there_1.full
-        || !m->Supervisor_Install_Rivet_Retract_there_2.full) {
-        pn_raise(cx, PN_ERR_SUBTRACT, NULL);
-        return false;
-    }
     if (m->Supervisor_Install_riveted.full) {
         return pn_bag_fail_full(cx, &s_at_Supervisor_Install_riveted);
     }
@@ -4780,10 +4601,6 @@ PN_NET_SEARCH static bool Supervisor_Install_Rivet_Retract_Reply_1_fire(pn_ctx_t
     cx->origin = "page `MoveBoth`, transition `Reply 1` (ID1412310962)";
     cx->now = m->now;
     cx->rounds = 0U;
-    if (!m->Supervisor_Install_Rivet_Retract_moving_1.full || !m->flag1_externo.full) {
-        pn_raise(cx, PN_ERR_SUBTRACT, NULL);
-        return false;
-    }
     if (m->Supervisor_Install_Rivet_Retract_there_1.full) {
         return pn_bag_fail_full(cx, &s_at_Supervisor_Install_Rivet_Retract_there_1);
     }
@@ -4838,10 +4655,6 @@ PN_NET_SEARCH static bool Supervisor_Install_Rivet_Retract_Reply_2_fire(pn_ctx_t
     cx->origin = "page `MoveBoth`, transition `Reply 2` (ID1412310999)";
     cx->now = m->now;
     cx->rounds = 0U;
-    if (!m->Supervisor_Install_Rivet_Retract_moving_2.full || !m->flag2_externo.full) {
-        pn_raise(cx, PN_ERR_SUBTRACT, NULL);
-        return false;
-    }
     if (m->Supervisor_Install_Rivet_Retract_there_2.full) {
         return pn_bag_fail_full(cx, &s_at_Supervisor_Install_Rivet_Retract_there_2);
     }
@@ -4903,10 +4716,6 @@ PN_NET_SEARCH static bool Supervisor_Install_Return_Command_fire(pn_ctx_t *cx, v
     cx->origin = "page `MoveBoth`, transition `Command` (ID1412310941)";
     cx->now = m->now;
     cx->rounds = 0U;
-    if (!m->Supervisor_Install_return.full) {
-        pn_raise(cx, PN_ERR_SUBTRACT, NULL);
-        return false;
-    }
     if (m->Supervisor_Install_Return_moving_1.full) {
         return pn_bag_fail_full(cx, &s_at_Supervisor_Install_Return_moving_1);
     }
@@ -4988,10 +4797,6 @@ PN_NET_SEARCH static bool Supervisor_Install_Return_Both_fire(pn_ctx_t *cx, void
     cx->origin = "page `MoveBoth`, transition `Both` (ID1412310948)";
     cx->now = m->now;
     cx->rounds = 0U;
-    if (!m->Supervisor_Install_Return_there_1.full || !m->Supervisor_Install_Return_there_2.full) {
-        pn_raise(cx, PN_ERR_SUBTRACT, NULL);
-        return false;
-    }
     if (m->Supervisor_ended.full) {
         return pn_bag_fail_full(cx, &s_at_Supervisor_ended);
     }
@@ -5046,10 +4851,6 @@ PN_NET_SEARCH static bool Supervisor_Install_Return_Reply_1_fire(pn_ctx_t *cx, v
     cx->origin = "page `MoveBoth`, transition `Reply 1` (ID1412310962)";
     cx->now = m->now;
     cx->rounds = 0U;
-    if (!m->Supervisor_Install_Return_moving_1.full || !m->flag1_externo.full) {
-        pn_raise(cx, PN_ERR_SUBTRACT, NULL);
-        return false;
-    }
     if (m->Supervisor_Install_Return_there_1.full) {
         return pn_bag_fail_full(cx, &s_at_Supervisor_Install_Return_there_1);
     }
@@ -5104,10 +4905,6 @@ PN_NET_SEARCH static bool Supervisor_Install_Return_Reply_2_fire(pn_ctx_t *cx, v
     cx->origin = "page `MoveBoth`, transition `Reply 2` (ID1412310999)";
     cx->now = m->now;
     cx->rounds = 0U;
-    if (!m->Supervisor_Install_Return_moving_2.full || !m->flag2_externo.full) {
-        pn_raise(cx, PN_ERR_SUBTRACT, NULL);
-        return false;
-    }
     if (m->Supervisor_Install_Return_there_2.full) {
         return pn_bag_fail_full(cx, &s_at_Supervisor_Install_Return_there_2);
     }
@@ -5163,10 +4960,6 @@ PN_NET_SEARCH static bool Supervisor_Home_Send_home_fire(pn_ctx_t *cx, void *mar
     int64_t flag2_interno_token = val_HOME;
     pn_bag_check(cx, &s_at_flag2_interno, &flag2_interno_token);
     if (!pn_ok(cx)) {
-        return false;
-    }
-    if (!m->Supervisor_ended.full) {
-        pn_raise(cx, PN_ERR_SUBTRACT, NULL);
         return false;
     }
     if (m->Supervisor_Home_leaving_1.full) {
@@ -5261,11 +5054,6 @@ PN_NET_SEARCH static bool Supervisor_Home_Both_fire(pn_ctx_t *cx, void *marking,
         Supervisor_Failed_token = PN_UNIT;
         Supervisor_Failed_tokens = 1U;
     }
-    if (!m->Supervisor_result.full || !m->Supervisor_Home_home_1.full
-        || !m->Supervisor_Home_home_2.full) {
-        pn_raise(cx, PN_ERR_SUBTRACT, NULL);
-        return false;
-    }
     if ((Supervisor_Finished_tokens > 1U)
         || ((Supervisor_Finished_tokens == 1U) && m->Supervisor_Finished.full)) {
         return pn_bag_fail_full(cx, &s_at_Supervisor_Finished);
@@ -5333,10 +5121,6 @@ PN_NET_SEARCH static bool Supervisor_Home_Reply_1_fire(pn_ctx_t *cx, void *marki
     cx->origin = "page `Home`, transition `Reply 1` (ID1412311060)";
     cx->now = m->now;
     cx->rounds = 0U;
-    if (!m->Supervisor_Home_leaving_1.full || !m->flag1_externo.full) {
-        pn_raise(cx, PN_ERR_SUBTRACT, NULL);
-        return false;
-    }
     if (m->Supervisor_Home_home_1.full) {
         return pn_bag_fail_full(cx, &s_at_Supervisor_Home_home_1);
     }
@@ -5391,10 +5175,6 @@ PN_NET_SEARCH static bool Supervisor_Home_Reply_2_fire(pn_ctx_t *cx, void *marki
     cx->origin = "page `Home`, transition `Reply 2` (ID1412311091)";
     cx->now = m->now;
     cx->rounds = 0U;
-    if (!m->Supervisor_Home_leaving_2.full || !m->flag2_externo.full) {
-        pn_raise(cx, PN_ERR_SUBTRACT, NULL);
-        return false;
-    }
     if (m->Supervisor_Home_home_2.full) {
         return pn_bag_fail_full(cx, &s_at_Supervisor_Home_home_2);
     }
@@ -5454,10 +5234,6 @@ PN_NET_SEARCH static bool Robot1_Accept_fire(pn_ctx_t *cx, void *marking, void *
     cx->origin = "page `Robot`, transition `Accept` (ID1412311125)";
     cx->now = m->now;
     cx->rounds = 0U;
-    if (!m->flag1_interno.full || !m->Robot1_Waiting.full) {
-        pn_raise(cx, PN_ERR_SUBTRACT, NULL);
-        return false;
-    }
     if (m->Robot1_Commanded.full) {
         return pn_bag_fail_full(cx, &s_at_Robot1_Commanded);
     }
@@ -5514,10 +5290,6 @@ PN_NET_SEARCH static bool Robot1_Report_fire(pn_ctx_t *cx, void *marking, void *
     cx->origin = "page `Robot`, transition `Report` (ID1412311145)";
     cx->now = m->now;
     cx->rounds = 0U;
-    if (!m->Robot1_Done.full) {
-        pn_raise(cx, PN_ERR_SUBTRACT, NULL);
-        return false;
-    }
     if (m->flag1_externo.full) {
         return pn_bag_fail_full(cx, &s_at_flag1_externo);
     }
@@ -5597,10 +5369,6 @@ PN_NET_SEARCH static bool Robot1_MoveJoint_fire(pn_ctx_t *cx, void *marking, voi
     if (!pn_ok(cx)) {
         return false;
     }
-    if (!m->Robot1_Commanded.full || !m->dadosrobo1.full) {
-        pn_raise(cx, PN_ERR_SUBTRACT, NULL);
-        return false;
-    }
     if (m->Robot1_Done.full) {
         return pn_bag_fail_full(cx, &s_at_Robot1_Done);
     }
@@ -5677,10 +5445,6 @@ PN_NET_SEARCH static bool Robot1_MoveLinear_fire(pn_ctx_t *cx, void *marking, vo
     if (!pn_ok(cx)) {
         return false;
     }
-    if (!m->Robot1_Commanded.full || !m->dadosrobo1.full) {
-        pn_raise(cx, PN_ERR_SUBTRACT, NULL);
-        return false;
-    }
     if (m->Robot1_Done.full) {
         return pn_bag_fail_full(cx, &s_at_Robot1_Done);
     }
@@ -5748,10 +5512,6 @@ PN_NET_SEARCH static bool Robot1_MoveHome_fire(pn_ctx_t *cx, void *marking, void
     int64_t Robot1_Done_token = val_DONE;
     pn_bag_check(cx, &s_at_Robot1_Done, &Robot1_Done_token);
     if (!pn_ok(cx)) {
-        return false;
-    }
-    if (!m->Robot1_Commanded.full) {
-        pn_raise(cx, PN_ERR_SUBTRACT, NULL);
         return false;
     }
     if (m->Robot1_Done.full) {
@@ -5842,10 +5602,6 @@ PN_NET_SEARCH static bool Robot1_Measure_fire(pn_ctx_t *cx, void *marking, void 
     if (!pn_ok(cx)) {
         return false;
     }
-    if (!m->Robot1_Commanded.full || !m->referencia1.full) {
-        pn_raise(cx, PN_ERR_SUBTRACT, NULL);
-        return false;
-    }
     if (m->Robot1_Done.full) {
         return pn_bag_fail_full(cx, &s_at_Robot1_Done);
     }
@@ -5933,10 +5689,6 @@ PN_NET_SEARCH static bool Robot1_Drill_fire(pn_ctx_t *cx, void *marking, void *b
     if (!pn_ok(cx)) {
         return false;
     }
-    if (!m->Robot1_Commanded.full) {
-        pn_raise(cx, PN_ERR_SUBTRACT, NULL);
-        return false;
-    }
     if (m->Robot1_Done.full) {
         return pn_bag_fail_full(cx, &s_at_Robot1_Done);
     }
@@ -6014,10 +5766,6 @@ PN_NET_SEARCH static bool Robot1_Insert_fire(pn_ctx_t *cx, void *marking, void *
     int64_t Robot1_Done_token = ml_outcome(b->inserted);
     pn_bag_check(cx, &s_at_Robot1_Done, &Robot1_Done_token);
     if (!pn_ok(cx)) {
-        return false;
-    }
-    if (!m->Robot1_Commanded.full) {
-        pn_raise(cx, PN_ERR_SUBTRACT, NULL);
         return false;
     }
     if (m->Robot1_Done.full) {
@@ -6099,10 +5847,6 @@ PN_NET_SEARCH static bool Robot1_Press_fire(pn_ctx_t *cx, void *marking, void *b
     if (!pn_ok(cx)) {
         return false;
     }
-    if (!m->Robot1_Commanded.full) {
-        pn_raise(cx, PN_ERR_SUBTRACT, NULL);
-        return false;
-    }
     if (m->Robot1_Done.full) {
         return pn_bag_fail_full(cx, &s_at_Robot1_Done);
     }
@@ -6182,10 +5926,6 @@ PN_NET_SEARCH static bool Robot1_Release_fire(pn_ctx_t *cx, void *marking, void 
     if (!pn_ok(cx)) {
         return false;
     }
-    if (!m->Robot1_Commanded.full) {
-        pn_raise(cx, PN_ERR_SUBTRACT, NULL);
-        return false;
-    }
     if (m->Robot1_Done.full) {
         return pn_bag_fail_full(cx, &s_at_Robot1_Done);
     }
@@ -6244,10 +5984,6 @@ PN_NET_SEARCH static bool Robot2_Accept_fire(pn_ctx_t *cx, void *marking, void *
     cx->origin = "page `Robot`, transition `Accept` (ID1412311125)";
     cx->now = m->now;
     cx->rounds = 0U;
-    if (!m->flag2_interno.full || !m->Robot2_Waiting.full) {
-        pn_raise(cx, PN_ERR_SUBTRACT, NULL);
-        return false;
-    }
     if (m->Robot2_Commanded.full) {
         return pn_bag_fail_full(cx, &s_at_Robot2_Commanded);
     }
@@ -6304,10 +6040,6 @@ PN_NET_SEARCH static bool Robot2_Report_fire(pn_ctx_t *cx, void *marking, void *
     cx->origin = "page `Robot`, transition `Report` (ID1412311145)";
     cx->now = m->now;
     cx->rounds = 0U;
-    if (!m->Robot2_Done.full) {
-        pn_raise(cx, PN_ERR_SUBTRACT, NULL);
-        return false;
-    }
     if (m->flag2_externo.full) {
         return pn_bag_fail_full(cx, &s_at_flag2_externo);
     }
@@ -6387,10 +6119,6 @@ PN_NET_SEARCH static bool Robot2_MoveJoint_fire(pn_ctx_t *cx, void *marking, voi
     if (!pn_ok(cx)) {
         return false;
     }
-    if (!m->Robot2_Commanded.full || !m->dadosrobo2.full) {
-        pn_raise(cx, PN_ERR_SUBTRACT, NULL);
-        return false;
-    }
     if (m->Robot2_Done.full) {
         return pn_bag_fail_full(cx, &s_at_Robot2_Done);
     }
@@ -6467,10 +6195,6 @@ PN_NET_SEARCH static bool Robot2_MoveLinear_fire(pn_ctx_t *cx, void *marking, vo
     if (!pn_ok(cx)) {
         return false;
     }
-    if (!m->Robot2_Commanded.full || !m->dadosrobo2.full) {
-        pn_raise(cx, PN_ERR_SUBTRACT, NULL);
-        return false;
-    }
     if (m->Robot2_Done.full) {
         return pn_bag_fail_full(cx, &s_at_Robot2_Done);
     }
@@ -6538,10 +6262,6 @@ PN_NET_SEARCH static bool Robot2_MoveHome_fire(pn_ctx_t *cx, void *marking, void
     int64_t Robot2_Done_token = val_DONE;
     pn_bag_check(cx, &s_at_Robot2_Done, &Robot2_Done_token);
     if (!pn_ok(cx)) {
-        return false;
-    }
-    if (!m->Robot2_Commanded.full) {
-        pn_raise(cx, PN_ERR_SUBTRACT, NULL);
         return false;
     }
     if (m->Robot2_Done.full) {
@@ -6632,10 +6352,6 @@ PN_NET_SEARCH static bool Robot2_Measure_fire(pn_ctx_t *cx, void *marking, void 
     if (!pn_ok(cx)) {
         return false;
     }
-    if (!m->Robot2_Commanded.full || !m->referencia2.full) {
-        pn_raise(cx, PN_ERR_SUBTRACT, NULL);
-        return false;
-    }
     if (m->Robot2_Done.full) {
         return pn_bag_fail_full(cx, &s_at_Robot2_Done);
     }
@@ -6723,10 +6439,6 @@ PN_NET_SEARCH static bool Robot2_Drill_fire(pn_ctx_t *cx, void *marking, void *b
     if (!pn_ok(cx)) {
         return false;
     }
-    if (!m->Robot2_Commanded.full) {
-        pn_raise(cx, PN_ERR_SUBTRACT, NULL);
-        return false;
-    }
     if (m->Robot2_Done.full) {
         return pn_bag_fail_full(cx, &s_at_Robot2_Done);
     }
@@ -6804,10 +6516,6 @@ PN_NET_SEARCH static bool Robot2_Insert_fire(pn_ctx_t *cx, void *marking, void *
     int64_t Robot2_Done_token = ml_outcome(b->inserted);
     pn_bag_check(cx, &s_at_Robot2_Done, &Robot2_Done_token);
     if (!pn_ok(cx)) {
-        return false;
-    }
-    if (!m->Robot2_Commanded.full) {
-        pn_raise(cx, PN_ERR_SUBTRACT, NULL);
         return false;
     }
     if (m->Robot2_Done.full) {
@@ -6889,10 +6597,6 @@ PN_NET_SEARCH static bool Robot2_Press_fire(pn_ctx_t *cx, void *marking, void *b
     if (!pn_ok(cx)) {
         return false;
     }
-    if (!m->Robot2_Commanded.full) {
-        pn_raise(cx, PN_ERR_SUBTRACT, NULL);
-        return false;
-    }
     if (m->Robot2_Done.full) {
         return pn_bag_fail_full(cx, &s_at_Robot2_Done);
     }
@@ -6970,10 +6674,6 @@ PN_NET_SEARCH static bool Robot2_Release_fire(pn_ctx_t *cx, void *marking, void 
     int64_t Robot2_Done_token = ml_outcome(b->released);
     pn_bag_check(cx, &s_at_Robot2_Done, &Robot2_Done_token);
     if (!pn_ok(cx)) {
-        return false;
-    }
-    if (!m->Robot2_Commanded.full) {
-        pn_raise(cx, PN_ERR_SUBTRACT, NULL);
         return false;
     }
     if (m->Robot2_Done.full) {

@@ -17,13 +17,14 @@ from helpers.random_cells import random_cell
 from helpers.thorough import amount
 from pn2code.cell.divide import divide
 from pn2code.cell.partition import Partition
-from pn2code.cli.controller import look
 from pn2code.cli.main import app
-from pn2code.cli.nets import OpenNet, open_net
-from pn2code.cli.properties import answered, asked
+from pn2code.cli.nets import open_net
 from pn2code.deadline import Deadline
 from pn2code.diagnostics import Diagnostics, render
 from pn2code.run.cell import RunOptions, run_cell
+from pn2code.verdict.controller import look
+from pn2code.verdict.opened import OpenNet
+from pn2code.verdict.properties import answered, asked
 from pn2code.verify import control
 from pn2code.verify.control_types import Check, Control, Plan
 from pn2code.verify.explore import Wishes, explore

@@ -7,21 +7,21 @@ print(full(said))        # the report of CPN Tools, all answers, all runs step b
 from __future__ import annotations
 
 import textwrap
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Sequence
 from contextlib import suppress
 from dataclasses import dataclass
 from itertools import islice
 from pathlib import Path
 
-from pn2code.cli import medium
-from pn2code.deadline import NEVER, Deadline, TimeIsOverError
+from pn2code.deadline import TimeIsOverError
 from pn2code.net.engine_names import EngineNames
 from pn2code.net.flat import FlatNet
 from pn2code.semantics.game import GameError
 from pn2code.simulate.script import TraceRefusedError
+from pn2code.verdict import medium
+from pn2code.verdict.whole import Said
 from pn2code.verify import basis, control_text, standstill
-from pn2code.verify.answers import Answer
-from pn2code.verify.control_types import TITLES, Control
+from pn2code.verify.control_types import TITLES
 from pn2code.verify.path import play, steps, text
 from pn2code.verify.properties_text import said as said_of
 from pn2code.verify.properties_text import told
@@ -42,30 +42,6 @@ MOST_ITEMS = 8
 MOST_NAMES = 6
 _WIDTH = 110
 _NAME = 21
-
-
-@dataclass(frozen=True, slots=True)
-class Said:
-    """All that is known, to be printed.
-
-    Args:
-        net, storage: as for `Game`, which plays the runs again.
-        found: the state space.
-        answers: to properties.
-        control: the checks of a supervisor.
-        medium: those of the shared files.
-        errors: how many errors are said besides.
-        deadline: when it is over no run is played any more.
-    """
-
-    net: FlatNet
-    storage: Mapping[str, str]
-    found: Exploration
-    answers: Sequence[Answer]
-    control: Control | None
-    medium: medium.Answers
-    errors: int = 0
-    deadline: Deadline = NEVER
 
 
 @dataclass(frozen=True, slots=True)

@@ -1,8 +1,8 @@
 """An occurrence printed with the inline functions of its places (pn_place.h), and with slots (c_slots.py).
 
-First everything is worked out, so that whatever raises leaves the marking alone. Then all slots are looked at, then
-tokens are taken from the other places and put there; if one of those turns out to be full, all is put back. The slots
-change last.
+First everything is worked out, so that whatever raises leaves the marking alone. Then it is looked whether the slots
+have room, then tokens are taken from the other places and put there; if one of those turns out to be full, all is put
+back. The slots change last. What the search has found in a slot is not looked at again: only enabled bindings occur.
 """
 
 from __future__ import annotations
@@ -57,7 +57,7 @@ class _SlotMove:
         place: the member of the marking.
         bag: the table of the place.
         value: a put: the token as C, "" where values say nothing (`()`).
-        differs: a take: whether the token is not there, as C.
+        differs: a take: whether the token is not there, as C; "": the search has found it.
         count: "" for one; otherwise the C variable that says how many tokens.
         note: what it is in the net.
     """
@@ -151,8 +151,8 @@ class DirectFiring(Statements):
     def _look_at_slots(self) -> None:
         """Whether the tokens are there, and whether there is room."""
         taken = [m for m in self._slot_moves if m.is_take]
-        if taken:
-            tests = list(dict.fromkeys(m.differs for m in taken))
+        tests = list(dict.fromkeys(m.differs for m in taken if m.differs))
+        if tests:
             self.line(f"if ({' || '.join(tests)}) {{")
             self.line("    pn_raise(cx, PN_ERR_SUBTRACT, NULL);")
             self.line("    return false;")
@@ -173,12 +173,17 @@ class DirectFiring(Statements):
             self.line("}")
 
     def _change_slots(self) -> None:
+        """Takes, then puts; a slot from which a token is taken and into which one is put stays full."""
+        taken = {m.place for m in self._slot_moves if m.is_take}
+        filled = {m.place for m in self._slot_moves if not (m.is_take or m.count)}
         for move in (m for m in self._slot_moves if m.is_take):
-            self.note(move.note)
-            self.line(f"m->{move.place}.full = false;")
+            self.note(move.note if move.place not in filled else f"{move.note}: replaced below")
+            if move.place not in filled:
+                self.line(f"m->{move.place}.full = false;")
         for move in (m for m in self._slot_moves if not m.is_take):
             self.note(move.note)
-            lines = [f"m->{move.place}.full = true;"]
+            is_full = move.place in taken and not move.count
+            lines = [] if is_full else [f"m->{move.place}.full = true;"]
             if move.value:
                 lines.insert(0, f"m->{move.place}.value = {move.value};")
             if move.count:
@@ -288,12 +293,11 @@ class DirectFiring(Statements):
     def _is_missing(self, s: ir.Take) -> str:
         """Whether the token is not there, as C.
 
-        What the search has bound or compared is there if anything is; what is worked out anew may be something else
-        (random numbers, files, references).
+        What the search has bound or compared is there; what is worked out anew may be something else (random numbers,
+        files, references).
         """
-        place = self._x.place_names[s.place]
         if is_structural(s.value, self.references) or s.value.type.rep is Rep.UNIT:
-            return f"!m->{place}.full"
+            return ""
         fresh = self._worked_out(s, is_nested=False, must_check=False)
         return self._differs(s.place, fresh, f"&{fresh}")
 
