@@ -164,7 +164,7 @@ bool sup_play(sup_t *sup, int32_t owner, sup_fired_t fired, void *user, uint64_t
                 if (result > 0) {
                     (void)sup_stop(sup, SUP_EXIT_MODEL,
                                    "no end of firing: after %" PRIu64 " firings in one cycle `%s` is still enabled; "
-                                   "a supervisor has to come to rest (--max-firings N allows more)",
+                                   "a supervisor must come to rest (--max-firings N allows more)",
                                    *count, sup->net->transition[transition].name);
                     result = -1;
                 }

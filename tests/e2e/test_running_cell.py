@@ -638,10 +638,10 @@ TIMER = (
     "    place Timer : T = 1`()\n    trans Strike\n      in Timer : ()\n      out Timer : ()@+1\n"
 )
 UNMODELLED = {
-    "two at once": (TOLD, TOLD.replace(": k", ": 2`k"), "takes just one message of `fromB`"),
+    "two at once": (TOLD, TOLD.replace(": k", ": 2`k"), "takes only one message of `fromB`"),
     "a condition": (
         TOLD, TOLD.replace(": k", ": (if 1 < 2 then 1`1 else empty)"),
-        "takes just one message of `fromB`"),
+        "takes only one message of `fromB`"),
     "two of one kind": (
         "      in Told : ()\n      out Waiting : ()\n      out say : 1\n",
         "      in Told : ()\n      out Waiting : ()\n      out say : 1\n      out more : 1\n",
@@ -804,7 +804,7 @@ def test_what_no_state_shows_is_assumed(root: Path) -> None:
     assert partition is not None and opened.config is not None
     premises = Premises.of(partition, opened.config)
     measured, given = premises.states
-    assert measured == "what is measured is what `measure` of the net gives"
+    assert measured == "a measurement gives the result of `measure` in the net"
     assert given == "`coordenadas` begins with the tokens of the net, not with those of its file"
     assert premises.of_check("messages", "yes") == premises.states
     assert premises.of_check("ownership", "yes") == premises.of_check("messages", "no") == ()

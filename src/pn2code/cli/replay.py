@@ -260,5 +260,5 @@ def _sentence(trace: Path, result: dict[str, Any]) -> str:
     if result["time"]:
         text += f", until time {time_text(result['time'])}"
     if "ended" in result and not result["ended"]:
-        text += "; its last line is missing, the run may have gone on"
+        text += "; its last line is missing, the run may have continued"
     return text + (f"\n{result['why']}" if result["why"] else "")

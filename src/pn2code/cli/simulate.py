@@ -83,7 +83,7 @@ def simulate(
         Path | None,
         typer.Option(
             metavar="TRACE",
-            help="Repeat this trace first, then go on. Its steps do not count for --steps.",
+            help="Repeat this trace first, then continue. Its steps do not count towards --steps.",
         ),
     ] = None,
     engine: Annotated[

@@ -70,7 +70,7 @@ class Subject:
             with deadline.enforced():
                 made = pipeline.generate(path, d, values=values, int_bits=int_bits)
         except TimeIsOverError:
-            return Subject(tuple(rows), "No programs were generated: the time was over.")
+            return Subject(tuple(rows), "No programs were generated: the time was up.")
         if made is None:
             why = d.errors[0].message if d.errors else "it cannot be generated"
             return Subject(tuple(rows), f"`generate` refuses the cell: {why}.")

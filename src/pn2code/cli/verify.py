@@ -322,7 +322,7 @@ def _stop_unread(net: Path, d: Diagnostics, as_json: bool, form: Format) -> NoRe
     """Leaves, because the time was over before anything was known."""
     d.warning(
         TIME_OVER,
-        "the time was over before the net was read and checked",
+        "the time was up before the net was read and checked",
         Origin(str(net)),
         hint="give it more time with `--max-seconds`",
     )
@@ -349,7 +349,7 @@ def _draw(
     except TimeIsOverError:
         d.warning(
             TIME_OVER,
-            "the time was over before all pictures were drawn",
+            "the time was up before all pictures were drawn",
             Origin(opened.flat.file),
             hint="give it more time with `--max-seconds`",
         )

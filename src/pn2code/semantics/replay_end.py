@@ -190,7 +190,7 @@ def _loop_problem(line: Mapping[str, Any], ending: Ending) -> str | None:
         return f"its `loop` is {loop}, but the run has {last} steps"
     if _relative(ending.markings[loop]) != _relative(ending.markings[last]):
         return (
-            f"it says that the run goes round from step {loop} on, but the marking there is another"
+            f"it says that the run repeats from step {loop} on, but the marking there is different"
         )
     return None
 

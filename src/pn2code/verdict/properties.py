@@ -245,7 +245,7 @@ def _check_effects(opened: OpenNet, properties: m.Properties, d: Diagnostics) ->
                 codes.OUTSIDE,
                 f"this condition {wrong[0].value}",
                 exp.span,
-                hint="say it of what places and references hold: nothing else is the same in each state",
+                hint="write it about the contents of places and references: nothing else is determined by the state",
             )
 
 

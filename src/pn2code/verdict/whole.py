@@ -251,7 +251,7 @@ def _tell_error(opened: OpenNet, found: Exploration, d: Diagnostics) -> None:
         values = ", ".join(f"{name} = {value}" for name, value in error["binding"].items())
         notes.append(f"the occurrence with {values}")
     if error.get("node") is None:
-        notes.append("the way there is not known: it takes memory, and markings that are stored")
+        notes.append("the run to it is not known: that needs memory, and stored markings")
     if trace is not None:
         notes.append(f"{trace.steps} steps lead to that marking: {trace.file}")
     d.error(
@@ -259,7 +259,7 @@ def _tell_error(opened: OpenNet, found: Exploration, d: Diagnostics) -> None:
         f"{where} raises `{error['message']}` in a reachable marking",
         t.origin if t is not None else Origin(opened.flat.file),
         notes=notes,
-        hint="`pn2code simulate` comes there too; guard the inscription, or handle the exception",
+        hint="`pn2code simulate` can reach it, too; guard the inscription, or handle the exception",
     )
 
 
@@ -268,5 +268,5 @@ def _unwritable(goal: str, folder: Path, d: Diagnostics) -> None:
         TRACE_UNWRITABLE,
         f"a trace to {goal} cannot be written into `{folder}`",
         Origin(str(folder)),
-        hint="give another folder with `--traces DIR`, or none are wanted with `--most-traces 0`",
+        hint="give another folder with `--traces DIR`, or write none with `--most-traces 0`",
     )
