@@ -3,11 +3,11 @@
  *
  * What the supervisor exchanges with whom, through which files; see runtime/include/pn/pn_cell.h.
  *
- * Checked in all 3,343 states of the cell as it runs (docs/execution.md):
+ * Checked in all 3,345 states of the cell as it runs (docs/execution.md):
  * finite-response: yes; the supervisor always comes to rest
  * bounded-response: yes; at most 6 firings in one cycle
  * confluence: yes; the order of firing does not matter
- * non-blocking: yes; a token in `Finished` or `Failed` is reached from each of the 3,343 states of the cell, however slow its programs
+ * non-blocking: yes; a token in `Finished` or `Failed` is reached from each of the 3,345 states of the cell, however slow its programs
  * are
  * channels: yes; at most 1 message in each of 8 channels
  * messages: yes; each of the 14 values that come into channels can be written into its file and read back

@@ -6,7 +6,7 @@
  *
  * The most tokens that each place can hold, under what proves it:
  *
- *   the state space, all 3,343 states of the cell as it runs
+ *   the state space, all 3,345 states of the cell as it runs
  *     Cell.dadosrobo1: 1, Cell.dadosrobo2: 1
  *   sub-invariant flag1_interno + flag1_externo + coordenadas + planned + approached + verified +
  *   corrected + ended + Cell.Supervisor.Approach.order + Cell.Supervisor.Approach.done +

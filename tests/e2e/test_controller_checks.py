@@ -281,7 +281,7 @@ def test_a_cell_that_is_fine(tmp_path: Path) -> None:
         control_types.FINITE: ("yes", None),
         control_types.BOUNDED: ("yes", 1),
         control_types.CONFLUENT: ("yes", None),
-        control_types.BLOCKING: ("yes", 10),
+        control_types.BLOCKING: ("yes", 11),
         control_types.CHANNELS: ("yes", 1),
         control_types.MESSAGES: ("yes", 0),
         control_types.MEMORY: ("yes", 0),
@@ -600,7 +600,7 @@ def test_the_riveting_cell(root: Path) -> None:
     generated = pipeline.generate(root / "examples" / "riveting", d)
     assert generated is not None, render.report(d)
     (text,) = [f.text for f in generated.files if f.path == "cell_config.c"]
-    assert " * Checked in all 3,343 states of the cell as it runs (docs/execution.md):" in text
+    assert " * Checked in all 3,345 states of the cell as it runs (docs/execution.md):" in text
     assert " * bounded-response: yes; at most 6 firings in one cycle" in text
     assert "unchecked" not in text
 

@@ -10,6 +10,8 @@ from typing import Annotated, Any
 
 import typer
 
+from pn2code.cell.locate import locate
+from pn2code.cli.nets import refuse_wide
 from pn2code.cli.options import (
     DEFAULT_INT_BITS,
     Exit,
@@ -67,6 +69,9 @@ def conform(
     The exit code is 0 if everything was compared and agrees, 1 if something differs, and 3 if only a part was compared.
     """
     d = Diagnostics()
+    if int_bits != DEFAULT_INT_BITS:
+        where = locate(net, Diagnostics())  # what is wrong there is said below
+        refuse_wide(None if where is None else where[1], int_bits)
     found = conform_cell(
         net, d, values=parse_values(settings), int_bits=int_bits, most=most, generated=generated
     )

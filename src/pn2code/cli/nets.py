@@ -6,7 +6,10 @@ from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from pathlib import Path
 
-from pn2code.cli.options import Format, print_diagnostics, stop
+import typer
+
+from pn2code.cell.config import CellConfig
+from pn2code.cli.options import DEFAULT_INT_BITS, Format, print_diagnostics, stop
 from pn2code.diagnostics import Diagnostics, Severity
 from pn2code.semantics.game import GameError
 from pn2code.verdict.opened import OpenNet, read
@@ -26,6 +29,16 @@ def open_net(
     unsupported = [i for i in d.sorted() if i.code.startswith("unsupported-")]
     print_diagnostics((i for i in unsupported if i.severity is Severity.WARNING), form)
     return opened
+
+
+def refuse_wide(config: CellConfig | None, int_bits: int) -> None:
+    """Leaves when the programs of a cell are asked about with integers that they do not have."""
+    if config is not None and int_bits != DEFAULT_INT_BITS:
+        raise typer.BadParameter(
+            f"the programs of a cell have integers of {DEFAULT_INT_BITS} bits, so nothing can be said of them "
+            f"with {int_bits}; colour set `intinf` has larger ones",
+            param_hint="--int-bits",
+        )
 
 
 @contextmanager

@@ -13,7 +13,7 @@ from typing import Annotated, NoReturn
 import typer
 
 from pn2code.cli.interrupts import Interrupts
-from pn2code.cli.nets import open_net, playing
+from pn2code.cli.nets import open_net, playing, refuse_wide
 from pn2code.cli.options import (
     DEFAULT_INT_BITS,
     Exit,
@@ -250,6 +250,7 @@ def verify(
     try:
         with deadline.enforced():
             opened = open_net(net, parse_values(settings), form, int_bits=int_bits)
+            refuse_wide(opened.config, int_bits)
             asked = question(opened, texts, file, d, found=found_properties)
     except TimeIsOverError:
         _stop_unread(net, d, as_json, form)

@@ -214,8 +214,9 @@ def exchange(
     skeleton = Skeleton(partition, owner)
     net = compose(skeleton.partition, rules, crashes, skeleton.extra)
     name = partition.owners[owner].name
+    rounds = f"{skeleton.rounds} exchange{'s' * (skeleton.rounds != 1)}"
     assumes = (
-        f"commands and answers as far as {name}'s files allow them, {skeleton.rounds} exchanges a session, "
+        f"commands and answers as far as {name}'s files allow them, {rounds} a session, "
         f"at most {crashes.supervisor} crash{'es' * (crashes.supervisor != 1)} of the supervisor and "
         f"{crashes.robots} of {name}, {crashes.all_sessions} session{'s' * (crashes.all_sessions != 1)}"
     )

@@ -56,7 +56,6 @@ class Skeleton:
     """The net of an exchange, its partition, and what is wrong with it once the medium is there."""
 
     def __init__(self, partition: Partition, owner: int, rounds: int = ROUNDS) -> None:
-        self.rounds = rounds
         self._b = b = Builder.empty("exchange", partition.net.file)
         self._slots: list[tuple[int, int, int]] = []
         owners = (partition.owners[0], partition.owners[owner])
@@ -71,6 +70,8 @@ class Skeleton:
         self._owned: list[int] = []
         self.transitions: list[int] = []
         out, back = (self._end(channels, o) for o in (0, 1))
+        # Whoever is told nothing does not know when its message has been taken, so it says something once.
+        self.rounds = rounds = rounds if out.flags else 1
         todo = self._local(0, "to do", b.number(1))
         asked, done = self._local(0, "asked"), self._local(0, "finished")
         ready = self._local(1, "ready", b.number(1))

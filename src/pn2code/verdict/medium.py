@@ -58,15 +58,16 @@ def look(
     return tuple(_ending(a, control, premise) if a.check == WHOLE else a for a in answers)
 
 
+_NOT_LOOKED = "whether programs stop or come too late is for the checks of the supervisor, which were left out"
+
+
 def _ending(a: Answer, control: Control | None, premise: str) -> Answer:
     """That the cell can come to its end is also for the checks of the supervisor: they know when programs stop."""
-    if control is None:
-        assumes = f"{a.assumes}; no program stops (that is looked at by the controller checks)"
-    else:
-        assumes = f"{a.assumes}; {premise}" if premise else a.assumes
-    a = replace(a, assumes=assumes)
-    if a.answer != "yes" or control is None:
+    a = replace(a, assumes=f"{a.assumes}; {premise}" if premise else a.assumes)
+    if a.answer != "yes":
         return a
+    if control is None:
+        return replace(a, answer="inconclusive", why=_NOT_LOOKED)
     ends = next(c for c in control.checks if c.name == BLOCKING)
     if ends.answer == "no":
         return replace(a, answer="no", why=f"`{BLOCKING}`: {ends.says}")

@@ -8,7 +8,7 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
-from pn2code.cell.partition import Partition
+from pn2code.cell.partition import OwnerKind, Partition
 from pn2code.verify.control_types import (
     BLOCKING,
     BOUNDED,
@@ -152,19 +152,24 @@ def hesitating(check: Check, found: Exploration, rows: Sequence[Mapping[str, Any
 
 
 def refusal(partition: Partition, found: Exploration, keep: Keeper) -> Check | None:
-    """Where a robot's transition raises an exception its script stops (`refusals`); None: none does."""
+    """Where a transition raises an exception its program stops (of robots: `refusals`); None: none is known to."""
     index = found.error.get("transition") if found.error else None
-    if found.error is None or index is None or partition.transition_owner[index] == 0:
+    # What holds a robot back (`stops.waits`) may be worked out in the model before the script comes to it.
+    if found.error is None or index is None or index >= len(partition.transition_owner):
         return None
     owner = partition.owners[partition.transition_owner[index]]
     trace = found.error_trace
     evidence = keep.all({"trace": trace and trace.file, "loop": None}, BLOCKING)
     after = f", {_steps(evidence[0].steps)} after the start" if evidence else ""
     where = f"`{partition.net.transitions[index].name}`{after}"
-    says = (
-        f"the script of {owner.phrase} stops in {where}: an exception, or what no robot can carry out (a time that is "
-        "negative, a number that is not finite); this stops the whole cell"
-    )
+    if owner.kind is OwnerKind.SUPERVISOR:
+        says = f"the supervisor stops in {where}: `{found.error.get('message')}` is raised there"
+    else:
+        says = (
+            f"the script of {owner.phrase} stops in {where}: an exception, or what no robot can carry out (a time "
+            "that is negative, a number that is not finite)"
+        )
+    says += "; this stops the whole cell"
     return Check(BLOCKING, "no", says, why="stopped", evidence=evidence)
 
 

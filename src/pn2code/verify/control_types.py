@@ -133,6 +133,12 @@ class Check:
         }
 
 
+def _is_script(check: Check) -> bool:
+    """Whether it says that a script stops, or that nobody knows whether one does."""
+    reason = {"no": "stopped", "unknown": "commands"}.get(check.answer)
+    return check.name == BLOCKING and reason is not None and check.why == reason
+
+
 @dataclass(frozen=True, slots=True)
 class Plan:
     """How to look.
@@ -189,7 +195,8 @@ class Control:
     def stops(self) -> str:
         """Why the supervisor may stop where the model of the cell goes on; "": that is not known."""
         broken = (c for c in self.checks if c.name in STOPPING and c.answer == "no")
-        return next((f"the supervisor stops (`{c.name}`: {c.says})" for c in broken), self.late)
+        found = next((f"the supervisor stops (`{c.name}`: {c.says})" for c in broken), self.late)
+        return found or next((c.says for c in self.checks if _is_script(c)), "")
 
     @property
     def failed(self) -> tuple[Check, ...]:

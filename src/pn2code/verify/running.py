@@ -17,6 +17,8 @@ taken. Added are flags of which others know nothing:
 * A robot takes only messages that are *out*. What it writes is there at once, as nothing tells that from writing a
   little later, unless one reader gets two messages of one kind (`NotModelledError`). Only where a transition writes to
   several readers, its messages are *out* one after the other: the first reader may act before the next is written to.
+* When the supervisor has finished, a robot ends where it notices that (docs/protocol.md, I9): as likely before its next
+  message as after it. One step ends them all, since any of them may have been slow until then.
 * Emptying a file is no step: whoever writes a second message without having heard that the first one was taken may do
   so before it is taken, too; then the place holds two.
 * Time: a step of the clock may come whenever something is waited for, whether or not something else is enabled: the
@@ -289,6 +291,10 @@ class _Composer:
         self.over = b.place("cell.supervisor.over", b.unit)
         self.news = b.place("cell.supervisor.news", b.unit)
         self.stopped = b.place("cell.stopped", b.unit)
+        self.going: int | None = None
+        if partition.final_places and len(partition.owners) > 1:
+            self.going = b.place("cell.robots.go on", b.unit)
+            b.begin(self.going, b.dot)
         self.machines = {i: machine(partition, i) for i in range(1, len(partition.owners))}
         self.owes = dict(self._owing())
         self.looks = [b.place(f"cell.supervisor.looks at {c.file}", b.unit) for c in looked]
@@ -342,6 +348,10 @@ class _Composer:
     def _has(self, place: int) -> Arc:
         return self.b.test(place, self.b.dot)
 
+    def _goes_on(self) -> list[Arc]:
+        """More arcs of what a robot does: it may have ended with the supervisor."""
+        return [] if self.going is None else [self._has(self.going)]
+
     def _any(self, place: int) -> Arc:
         """Tests that the place holds a token."""
         return self.b.test(place, self.b.var("v", self.b.places[place].colset))
@@ -350,8 +360,7 @@ class _Composer:
         flags = [self.seen, self.out] if owner == SUPERVISOR else [self.out]
         taken = [a.place for a in t.arcs if a.kind is ArcKind.INPUT]
         arcs = [self._off(own[place]) for place in taken for own in flags if place in own]
-        if owner == SUPERVISOR:
-            arcs.append(self._has(self.calm))
+        arcs += [self._has(self.calm)] if owner == SUPERVISOR else self._goes_on()
         self.b.add_arcs(t.index, arcs, {})
 
     def _owing(self) -> Iterator[tuple[int, int]]:
@@ -405,6 +414,9 @@ class _Composer:
             arcs = [self._off(self.calm), self._any(place), self._on(self.over)]
             self._step(SUPERVISOR, "is over", at, *arcs)
         self._step(SUPERVISOR, "rests", at + 1, self._off(self.calm), self._on(self.idle))
+        if self.going is not None:
+            arcs = [self._has(self.over), self._off(self.going)]
+            self._step(SUPERVISOR, "ends the robots", at + 1, *arcs)
 
     def _writing(self) -> None:
         """What a robot writes to several readers goes out in its order, before the robot does anything else."""
@@ -444,7 +456,7 @@ class _Composer:
             if program.steps_from(place):
                 short = self.partition.net.places[place].short
                 arcs = [self._any(place), self.b.absent(halted), self._on(halted)]
-                arcs.append(self._on(self.stopped))
+                arcs += [self._on(self.stopped), *self._goes_on()]
                 self._step(owner, f"{name} stops at {short}", self.after + 1, *arcs)
             elif owner in self.owes:
                 arcs = [self._any(place), self._has(self.owes[owner]), self.b.absent(halted)]
