@@ -50,6 +50,8 @@ def test_the_library_is_loaded_when_it_is_asked_for() -> None:
 
 def test_a_cell_gets_the_answers_of_the_command(tmp_path: Path) -> None:
     folder = write_cell(tmp_path / "cell")
+    with pytest.raises(ValueError, match="31 bits"):
+        pn2code.load(folder, int_bits=64).verify()
     net = pn2code.load(folder)
     assert net.is_cell and not net.is_timed
     found = net.verify("deadlock free", traces=tmp_path / "runs")

@@ -176,6 +176,7 @@ class Net:
 
         Raises:
             NetError: the net has no state space, or a property is wrong.
+            ValueError: it is a cell, and was loaded with other integers than its programs have.
         """
         return verify(
             self._opened,

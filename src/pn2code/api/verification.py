@@ -19,6 +19,9 @@ from pn2code.verify.answers import Answer, Verdict
 from pn2code.verify.explore import Wishes
 from pn2code.verify.limits import Limits, cores
 
+INT_BITS = 31
+"""Of `int` in the programs of a cell."""
+
 
 @dataclass(frozen=True, slots=True)
 class PropertyAnswer:
@@ -94,6 +97,10 @@ def verify(
     traces: Path | None,
 ) -> Verification:
     """Explores and answers; see `Net.verify`."""
+    if opened.config is not None and opened.flat.program.int_bits != INT_BITS:
+        raise ValueError(
+            f"the programs of a cell have integers of {INT_BITS} bits: load it without `int_bits`"
+        )
     d = Diagnostics()
     asked = question(opened, texts, None, d, found=found)
     if d.has_errors:
