@@ -61,7 +61,7 @@ class _Emitter:
             self._names.transition(t.index, t.name)
         for definition in net.definitions:
             self._names.type(definition.name)
-        self._bags = tuple(self._names.bag(p.index, p.name) for p in net.places)
+        self._bags = tuple(f"&{self._names.bag(p.index, p.name)}" for p in net.places)
         self._tables = tuple(self._names.table(p.table) for p in net.places)
         self._timed = tuple(p.timed for p in net.places)
         self._slots = slots(net)
@@ -120,6 +120,7 @@ class _Emitter:
         x.int_bits = self._net.int_bits
         x.needs_context = self._needs_context
         x.place_names = self._place_names
+        x.tokens = tuple(f"m->{name}." for name in self._place_names)
         x.bags = self._bags
         x.packed = self._packed
         x.slots = self._slots

@@ -170,6 +170,7 @@ class Expressions:
         self._binding = binding
         self.variables: tuple[str, ...] = ()
         self.place_names: tuple[str, ...] = ()
+        self.tokens: tuple[str, ...] = ()
         self.bags: tuple[str, ...] = ()
         self.slots: frozenset[int] = frozenset()
         self.packed: tuple[PackedPlace | None, ...] = ()
@@ -259,16 +260,16 @@ class Expressions:
             case ir.TokenValue(place=place, index=index) if self.packed and self.packed[place]:
                 return self.token(place, index), _PRIMARY
             case ir.TokenValue(place=place) if place in self.slots:
-                return f"m->{self.place_names[place]}.value", _POSTFIX
+                return f"{self.tokens[place]}value", _POSTFIX
             case ir.TokenValue(place=place, index=index):
-                return f"m->{self.place_names[place]}.token[{self.local(index)}].value", _POSTFIX
+                return f"{self.tokens[place]}token[{self.local(index)}].value", _POSTFIX
             case ir.PlaceTokens(place=place, table=table):
                 text = (
-                    f"explore_tokens(cx, &{self.bags[place]}, &{self._names.table(table)}, marking)"
+                    f"explore_tokens(cx, {self.bags[place]}, &{self._names.table(table)}, marking)"
                 )
                 return text, _POSTFIX
             case ir.PlaceTotal(place=place):
-                return f"(int64_t)pn_bag_total(&{self.bags[place]}, marking)", _UNARY
+                return f"(int64_t)pn_bag_total({self.bags[place]}, marking)", _UNARY
             case ir.Now(type=t):
                 return ("cx->now.real" if t.rep is Rep.REAL else "cx->now.integer"), _POSTFIX
             case ir.FunCall():

@@ -54,8 +54,8 @@ class _SlotMove:
 
     Args:
         is_take: or it is a put.
-        place: the member of the marking.
-        bag: the table of the place.
+        tokens: the place, with what leads to its members.
+        bag: a pointer to its table.
         value: a put: the token as C, "" where values say nothing (`()`).
         differs: a take: whether the token is not there, as C.
         count: "" for one; otherwise the C variable that says how many tokens.
@@ -63,7 +63,7 @@ class _SlotMove:
     """
 
     is_take: bool
-    place: str
+    tokens: str
     bag: str
     value: str
     count: str
@@ -157,30 +157,30 @@ class DirectFiring(Statements):
             self.line("    pn_raise(cx, PN_ERR_SUBTRACT, NULL);")
             self.line("    return false;")
             self.line("}")
-        emptied = {m.place for m in taken}
+        emptied = {m.tokens for m in taken}
         for move in self._slot_moves:
-            if move.is_take or (move.place in emptied and not move.count):
+            if move.is_take or (move.tokens in emptied and not move.count):
                 continue
-            full = f"m->{move.place}.full"
-            if move.count and move.place in emptied:
+            full = f"{move.tokens}full"
+            if move.count and move.tokens in emptied:
                 test = f"{move.count} > 1U"
             elif move.count:
                 test = f"({move.count} > 1U) || (({move.count} == 1U) && {full})"
             else:
                 test = full
             self.line(f"if ({test}) {{")
-            self.line(f"    return pn_bag_fail_full(cx, &{move.bag});")
+            self.line(f"    return pn_bag_fail_full(cx, {move.bag});")
             self.line("}")
 
     def _change_slots(self) -> None:
         for move in (m for m in self._slot_moves if m.is_take):
             self.note(move.note)
-            self.line(f"m->{move.place}.full = false;")
+            self.line(f"{move.tokens}full = false;")
         for move in (m for m in self._slot_moves if not m.is_take):
             self.note(move.note)
-            lines = [f"m->{move.place}.full = true;"]
+            lines = [f"{move.tokens}full = true;"]
             if move.value:
-                lines.insert(0, f"m->{move.place}.value = {move.value};")
+                lines.insert(0, f"{move.tokens}value = {move.value};")
             if move.count:
                 self.line(f"if ({move.count} > 0U) {{")
                 lines = [f"    {line}" for line in lines]
@@ -247,10 +247,12 @@ class DirectFiring(Statements):
         self.line("}")
 
     def _slot_move(self, s: ir.Take | ir.Put) -> None:
-        place, bag = self._x.place_names[s.place], self.bags[s.place]
+        place, tokens, bag = (
+            texts[s.place] for texts in (self._x.place_names, self._x.tokens, self.bags)
+        )
         if isinstance(s, ir.Take):
             self._slot_moves.append(
-                _SlotMove(True, place, bag, "", "", s.note, self._is_missing(s))
+                _SlotMove(True, tokens, bag, "", "", s.note, self._is_missing(s))
             )
             return
         key = ("add", id(s))
@@ -270,7 +272,7 @@ class DirectFiring(Statements):
         if must_check:
             self.has_checks = True
             self._check(s, f"&{value}", count or "1U")
-        self._slot_moves.append(_SlotMove(False, place, bag, value, count, s.note))
+        self._slot_moves.append(_SlotMove(False, tokens, bag, value, count, s.note))
 
     def _worked_out(self, s: ir.Take | ir.Put, is_nested: bool, must_check: bool) -> str:
         """The variable that holds the value that is taken or put; a check may change it."""
@@ -291,9 +293,8 @@ class DirectFiring(Statements):
         What the search has bound or compared is there if anything is; what is worked out anew may be something else
         (random numbers, files, references).
         """
-        place = self._x.place_names[s.place]
         if is_structural(s.value, self.references) or s.value.type.rep is Rep.UNIT:
-            return f"!m->{place}.full"
+            return f"!{self._x.tokens[s.place]}full"
         fresh = self._worked_out(s, is_nested=False, must_check=False)
         return self._differs(s.place, fresh, f"&{fresh}")
 
@@ -327,7 +328,7 @@ class DirectFiring(Statements):
         if packed and packed.is_pure:
             check = f"{self._x.place_names[s.place]}_check(cx, {value});"
         else:
-            check = f"pn_bag_check(cx, &{self.bags[s.place]}, {value});"
+            check = f"pn_bag_check(cx, {self.bags[s.place]}, {value});"
         if is_count(s.count):
             self.line(check)
         else:

@@ -315,7 +315,7 @@ class Statements:
                 pointer = self._x.address(s.value)
                 if self.timed[s.place]:
                     bag = self.bags[s.place]
-                    held = f"pn_bag_count(&{bag}, m, {pointer}, {self._x.time(s.limit)})"
+                    held = f"pn_bag_count({bag}, m, {pointer}, {self._x.time(s.limit)})"
                 else:
                     held = f"{self._x.place_names[s.place]}_held(m, {pointer})"
                 self.line(f"if ({held} < {s.count}U) {{")
@@ -323,13 +323,13 @@ class Statements:
             case ir.UnlessEmpty(place=place, note=note):
                 self.note(note)
                 if self.timed[place]:
-                    self.line(f"if (pn_bag_available(&{self.bags[place]}, m, cx->now) > 0U) {{")
+                    self.line(f"if (pn_bag_available({self.bags[place]}, m, cx->now) > 0U) {{")
                 elif self._packed(place):
                     self.line(f"if (!{self._x.place_names[place]}_is_empty(m)) {{")
                 elif place in self.slots:
-                    self.line(f"if (m->{self._x.place_names[place]}.full) {{")
+                    self.line(f"if ({self._x.tokens[place]}full) {{")
                 else:
-                    self.line(f"if (m->{self._x.place_names[place]}.used > 0U) {{")
+                    self.line(f"if ({self._x.tokens[place]}used > 0U) {{")
                 self._next()
             case ir.Wanted(takes=takes):
                 self._wanted(takes)
@@ -342,10 +342,10 @@ class Statements:
             case ir.Threshold(place=place, delay=delay, note=note):
                 self.note(note)
                 bag, time = self.bags[place], self._x.time(delay)
-                self.line(f"pn_bag_threshold(&{bag}, m, cx->now, {time}, found, next);")
+                self.line(f"pn_bag_threshold({bag}, m, cx->now, {time}, found, next);")
             case ir.Reset(place=place, note=note):
                 self.note(note)
-                self.line(f"pn_moves_reset(&{self.moves}, &{self.bags[place]}, cx->now);")
+                self.line(f"pn_moves_reset(&{self.moves}, {self.bags[place]}, cx->now);")
 
     def _packed(self, place: int) -> PackedPlace | None:
         return self._x.packed[place] if self._x.packed else None
@@ -373,14 +373,14 @@ class Statements:
             return
         if s.place in self.slots:
             self.note(s.note)
-            self.line(f"if (!m->{self._x.place_names[s.place]}.full) {{")
+            self.line(f"if (!{self._x.tokens[s.place]}full) {{")
             self._next()
             self.body(s.body)
             return
         i = self._x.local(s.index)
-        place = self._x.place_names[s.place]
+        tokens = self._x.tokens[s.place]
         self.note(s.note)
-        self.line(f"for (uint32_t {i} = 0U; {i} < m->{place}.used; {i}++) {{")
+        self.line(f"for (uint32_t {i} = 0U; {i} < {tokens}used; {i}++) {{")
         self._loops += 1
         if self.timed[s.place]:
             self._depth += 1
@@ -388,7 +388,7 @@ class Statements:
                 "tokens of one value lie together, the earliest first: look at each value once"
             )
             table = self.tables_of_places[s.place]
-            token = f"m->{place}.token"
+            token = f"{tokens}token"
             self.line(
                 f"if (({i} > 0U) && pn_equal(&{table}, &{token}[{i}].value, &{token}[{i} - 1U].value)) {{"
             )
@@ -412,14 +412,14 @@ class Statements:
 
     def _differs(self, place: int, value: str, pointer: str) -> str:
         """Whether a slot does not hold a value, as a C condition: the value is given as C, and by its address."""
-        slot = f"m->{self._x.place_names[place]}"
+        slot = self._x.tokens[place]
         rep = self.token_types[place].rep
         if rep is Rep.UNIT:
-            return f"!{slot}.full"
+            return f"!{slot}full"
         if rep in SCALARS:
-            return f"!{slot}.full || ({slot}.value != {value})"
+            return f"!{slot}full || ({slot}value != {value})"
         table = self.tables_of_places[place]
-        return f"!{slot}.full || !pn_equal(&{table}, &{slot}.value, {pointer})"
+        return f"!{slot}full || !pn_equal(&{table}, &{slot}value, {pointer})"
 
     def _unless_available(self, s: ir.UnlessAvailable) -> None:
         if s.place in self.slots:
@@ -429,7 +429,7 @@ class Statements:
             self.line(f"if ({count} < {s.count}U) {{")
             self._next()
             return
-        token = f"m->{self._x.place_names[s.place]}.token[{self._x.local(s.index)}]"
+        token = f"{self._x.tokens[s.place]}token[{self._x.local(s.index)}]"
         if s.limit is None:
             self.line(f"if ({token}.count < {s.count}U) {{")
         else:
@@ -512,7 +512,7 @@ class Statements:
             self.note(s.note)
         verb, time = ("take", s.limit) if isinstance(s, ir.Take) else ("put", s.stamp)
         parts = [
-            f"&{self.moves}", f"&{self.bags[s.place]}", self._x.address(s.value), self._x.text(s.count),
+            f"&{self.moves}", f"{self.bags[s.place]}", self._x.address(s.value), self._x.text(s.count),
             self._x.time(time),
         ]  # fmt: skip
         self.line(f"pn_moves_{verb}({', '.join(parts)});")
@@ -525,7 +525,7 @@ class Statements:
         else:
             verb, time = ("put_timed" if s.timed else "put_list"), s.stamp
         parts = [
-            f"&{self.moves}", f"&{self.bags[s.place]}", f"&{self._names.table(s.table)}",
+            f"&{self.moves}", f"{self.bags[s.place]}", f"&{self._names.table(s.table)}",
             self._x.text(s.multiset), self._x.time(time),
         ]  # fmt: skip
         self.line(f"pn_moves_{verb}({', '.join(parts)});")
