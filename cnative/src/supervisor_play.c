@@ -111,7 +111,7 @@ int sup_fire_one(sup_t *sup, int32_t owner, uint32_t *transition)
     if (!sup_monitor_choice(sup, owner, index)) {
         return -1;
     }
-    if (!chosen->fire(&sup->cx, sup->marking, sup->binding)) {
+    if (!chosen->fire(&sup->cx, sup->marking, index, sup->binding)) {
         (void)snprintf(doing, sizeof doing, "firing `%s`", chosen->name);
         (void)sup_stop_error(sup, doing);
         return -1;

@@ -171,10 +171,10 @@ ENUMERATE(again, HAS(answer) && (VALUE(answer) == 3))
 ENUMERATE(spin, (HAS(answer) && (VALUE(answer) == 4)) || HAS(spin))
 ENUMERATE(work, HAS(command) && HAS(pose))
 
-static bool send_fire(pn_ctx_t *cx, void *marking, void *binding)
+static bool send_fire(pn_ctx_t *cx, void *marking, uint32_t self, void *binding)
 {
     marking_t *const m = marking;
-    (void)cx, (void)binding;
+    (void)cx, (void)self, (void)binding;
     TAKE(orders);
     TAKE(idle);
     PUT(waiting, 0U);
@@ -183,11 +183,11 @@ static bool send_fire(pn_ctx_t *cx, void *marking, void *binding)
     return true;
 }
 
-static bool next_fire(pn_ctx_t *cx, void *marking, void *binding)
+static bool next_fire(pn_ctx_t *cx, void *marking, uint32_t self, void *binding)
 {
     marking_t *const m = marking;
     const order_t rest = {VALUE(orders).n - 1, {VALUE(orders).at.x + 0.1, VALUE(orders).at.y}};
-    (void)cx, (void)binding;
+    (void)cx, (void)self, (void)binding;
     TAKE(waiting);
     TAKE(answer);
     PUT(orders, rest);
@@ -196,47 +196,47 @@ static bool next_fire(pn_ctx_t *cx, void *marking, void *binding)
     return true;
 }
 
-static bool finish_fire(pn_ctx_t *cx, void *marking, void *binding)
+static bool finish_fire(pn_ctx_t *cx, void *marking, uint32_t self, void *binding)
 {
     marking_t *const m = marking;
-    (void)cx, (void)binding;
+    (void)cx, (void)self, (void)binding;
     TAKE(orders);
     TAKE(idle);
     PUT(done, 0U);
     return true;
 }
 
-static bool overflow_fire(pn_ctx_t *cx, void *marking, void *binding)
+static bool overflow_fire(pn_ctx_t *cx, void *marking, uint32_t self, void *binding)
 {
-    (void)marking, (void)binding;
+    (void)marking, (void)self, (void)binding;
     cx->error = PN_ERR_OVERFLOW;
     cx->error_name = "Overflow";
     cx->error_origin = "page `Top`, transition `Trouble` (ID77)";
     return false;
 }
 
-static bool again_fire(pn_ctx_t *cx, void *marking, void *binding)
+static bool again_fire(pn_ctx_t *cx, void *marking, uint32_t self, void *binding)
 {
     marking_t *const m = marking;
-    (void)cx, (void)binding;
+    (void)cx, (void)self, (void)binding;
     TAKE(answer);
     PUT(command, 3);
     return true;
 }
 
-static bool spin_fire(pn_ctx_t *cx, void *marking, void *binding)
+static bool spin_fire(pn_ctx_t *cx, void *marking, uint32_t self, void *binding)
 {
     marking_t *const m = marking;
-    (void)cx, (void)binding;
+    (void)cx, (void)self, (void)binding;
     TAKE(answer);
     PUT(spin, 0U);
     return true;
 }
 
-static bool work_fire(pn_ctx_t *cx, void *marking, void *binding)
+static bool work_fire(pn_ctx_t *cx, void *marking, uint32_t self, void *binding)
 {
     marking_t *const m = marking;
-    (void)cx, (void)binding;
+    (void)cx, (void)self, (void)binding;
     TAKE(command);
     TAKE(pose);
     PUT(answer, 1);

@@ -263,7 +263,7 @@
 #define PN_NET_SEARCH
 #endif
 
-#if PN_NET_ABI != 2U
+#if PN_NET_ABI != 3U
 #error "Generate this file again: runtime and generator disagree (PN_NET_ABI)."
 #endif
 
@@ -1582,6 +1582,106 @@ static const pn_bag_t s_at_Robot2_Done = {
 
 /* --- transitions ------------------------------------------------------------------------------- */
 
+/* page MoveBoth: the places that each of its instances has for its own */
+typedef struct MoveBoth_places {
+    const pn_bag_t *order;
+    const pn_bag_t *done;
+    const pn_bag_t *moving_1;
+    const pn_bag_t *there_1;
+    const pn_bag_t *moving_2;
+    const pn_bag_t *there_2;
+} MoveBoth_places_t;
+
+/* Cell.Supervisor.Approach.Move both */
+static const MoveBoth_places_t s_in_Supervisor_Approach_Move_both = {
+    .order = &s_at_Supervisor_Approach_order,
+    .done = &s_at_Supervisor_Approach_done,
+    .moving_1 = &s_at_Supervisor_Approach_Move_both_moving_1,
+    .there_1 = &s_at_Supervisor_Approach_Move_both_there_1,
+    .moving_2 = &s_at_Supervisor_Approach_Move_both_moving_2,
+    .there_2 = &s_at_Supervisor_Approach_Move_both_there_2,
+};
+/* Cell.Supervisor.Correct.Move both */
+static const MoveBoth_places_t s_in_Supervisor_Correct_Move_both = {
+    .order = &s_at_Supervisor_Correct_order,
+    .done = &s_at_Supervisor_Correct_done,
+    .moving_1 = &s_at_Supervisor_Correct_Move_both_moving_1,
+    .there_1 = &s_at_Supervisor_Correct_Move_both_there_1,
+    .moving_2 = &s_at_Supervisor_Correct_Move_both_moving_2,
+    .there_2 = &s_at_Supervisor_Correct_Move_both_there_2,
+};
+/* Cell.Supervisor.Install.Shift */
+static const MoveBoth_places_t s_in_Supervisor_Install_Shift = {
+    .order = &s_at_Supervisor_Install_shift,
+    .done = &s_at_Supervisor_Install_ready,
+    .moving_1 = &s_at_Supervisor_Install_Shift_moving_1,
+    .there_1 = &s_at_Supervisor_Install_Shift_there_1,
+    .moving_2 = &s_at_Supervisor_Install_Shift_moving_2,
+    .there_2 = &s_at_Supervisor_Install_Shift_there_2,
+};
+/* Cell.Supervisor.Install.Rivet.Advance */
+static const MoveBoth_places_t s_in_Supervisor_Install_Rivet_Advance = {
+    .order = &s_at_Supervisor_Install_Rivet_advance,
+    .done = &s_at_Supervisor_Install_Rivet_contact,
+    .moving_1 = &s_at_Supervisor_Install_Rivet_Advance_moving_1,
+    .there_1 = &s_at_Supervisor_Install_Rivet_Advance_there_1,
+    .moving_2 = &s_at_Supervisor_Install_Rivet_Advance_moving_2,
+    .there_2 = &s_at_Supervisor_Install_Rivet_Advance_there_2,
+};
+/* Cell.Supervisor.Install.Rivet.Retract */
+static const MoveBoth_places_t s_in_Supervisor_Install_Rivet_Retract = {
+    .order = &s_at_Supervisor_Install_Rivet_retract,
+    .done = &s_at_Supervisor_Install_riveted,
+    .moving_1 = &s_at_Supervisor_Install_Rivet_Retract_moving_1,
+    .there_1 = &s_at_Supervisor_Install_Rivet_Retract_there_1,
+    .moving_2 = &s_at_Supervisor_Install_Rivet_Retract_moving_2,
+    .there_2 = &s_at_Supervisor_Install_Rivet_Retract_there_2,
+};
+/* Cell.Supervisor.Install.Return */
+static const MoveBoth_places_t s_in_Supervisor_Install_Return = {
+    .order = &s_at_Supervisor_Install_return,
+    .done = &s_at_Supervisor_ended,
+    .moving_1 = &s_at_Supervisor_Install_Return_moving_1,
+    .there_1 = &s_at_Supervisor_Install_Return_there_1,
+    .moving_2 = &s_at_Supervisor_Install_Return_moving_2,
+    .there_2 = &s_at_Supervisor_Install_Return_there_2,
+};
+
+/* page Robot: the places that each of its instances has for its own */
+typedef struct Robot_places {
+    const pn_bag_t *dadosrobo;
+    const pn_bag_t *flag_interno;
+    const pn_bag_t *flag_externo;
+    const pn_bag_t *referencia;
+    const pn_bag_t *medida;
+    const pn_bag_t *Waiting;
+    const pn_bag_t *Commanded;
+    const pn_bag_t *Done;
+} Robot_places_t;
+
+/* Cell.Robot1 */
+static const Robot_places_t s_in_Robot1 = {
+    .dadosrobo = &s_at_dadosrobo1,
+    .flag_interno = &s_at_flag1_interno,
+    .flag_externo = &s_at_flag1_externo,
+    .referencia = &s_at_referencia1,
+    .medida = &s_at_medida1,
+    .Waiting = &s_at_Robot1_Waiting,
+    .Commanded = &s_at_Robot1_Commanded,
+    .Done = &s_at_Robot1_Done,
+};
+/* Cell.Robot2 */
+static const Robot_places_t s_in_Robot2 = {
+    .dadosrobo = &s_at_dadosrobo2,
+    .flag_interno = &s_at_flag2_interno,
+    .flag_externo = &s_at_flag2_externo,
+    .referencia = &s_at_referencia2,
+    .medida = &s_at_medida2,
+    .Waiting = &s_at_Robot2_Waiting,
+    .Commanded = &s_at_Robot2_Commanded,
+    .Done = &s_at_Robot2_Done,
+};
+
 /* transition Cell.Supervisor.Load.Load: page `Load`, transition `Load` (ID1412310271), cell.cpn:5897 */
 typedef struct Supervisor_Load_Load_binding {
     int64_t n;
@@ -1608,9 +1708,7 @@ PN_NET_SEARCH static bool Supervisor_Load_Load_enumerate(pn_ctx_t *cx, const voi
 {
     const net_marking_t *const m = marking;
     Supervisor_Load_Load_binding_t b = { 0 };
-    cx->origin = "page `Load`, transition `Load` (ID1412310271)";
-    cx->now = m->now;
-    cx->rounds = 0U;
+    pn_begin(cx, "page `Load`, transition `Load` (ID1412310271)", m->now);
     /* coordenadas: (n, p, q) (ID1412310280) */
     if (!m->Supervisor_coordenadas.full) {
         return true;
@@ -1624,13 +1722,12 @@ PN_NET_SEARCH static bool Supervisor_Load_Load_enumerate(pn_ctx_t *cx, const voi
     return true;
 }
 
-PN_NET_SEARCH static bool Supervisor_Load_Load_fire(pn_ctx_t *cx, void *marking, void *binding)
+PN_NET_SEARCH static bool Supervisor_Load_Load_fire(pn_ctx_t *cx, void *marking, uint32_t self, void *binding)
 {
     net_marking_t *const m = marking;
+    (void)self;
     Supervisor_Load_Load_binding_t *const b = binding;
-    cx->origin = "page `Load`, transition `Load` (ID1412310271)";
-    cx->now = m->now;
-    cx->rounds = 0U;
+    pn_begin(cx, "page `Load`, transition `Load` (ID1412310271)", m->now);
     SEAM_t Supervisor_planned_token = (SEAM_t){ .points = b->n, .first = b->p, .last = b->q };
     pn_bag_check(cx, &s_at_Supervisor_planned, &Supervisor_planned_token);
     if (!pn_ok(cx)) {
@@ -1673,9 +1770,7 @@ PN_NET_SEARCH static bool Supervisor_Approach_Send_enumerate(pn_ctx_t *cx, const
 {
     const net_marking_t *const m = marking;
     Supervisor_Approach_Send_binding_t b = { 0 };
-    cx->origin = "page `Approach`, transition `Send` (ID1412310300)";
-    cx->now = m->now;
-    cx->rounds = 0U;
+    pn_begin(cx, "page `Approach`, transition `Send` (ID1412310300)", m->now);
     /* planned: s (ID1412310355) */
     if (!m->Supervisor_planned.full) {
         return true;
@@ -1687,13 +1782,12 @@ PN_NET_SEARCH static bool Supervisor_Approach_Send_enumerate(pn_ctx_t *cx, const
     return true;
 }
 
-PN_NET_SEARCH static bool Supervisor_Approach_Send_fire(pn_ctx_t *cx, void *marking, void *binding)
+PN_NET_SEARCH static bool Supervisor_Approach_Send_fire(pn_ctx_t *cx, void *marking, uint32_t self, void *binding)
 {
     net_marking_t *const m = marking;
+    (void)self;
     Supervisor_Approach_Send_binding_t *const b = binding;
-    cx->origin = "page `Approach`, transition `Send` (ID1412310300)";
-    cx->now = m->now;
-    cx->rounds = 0U;
+    pn_begin(cx, "page `Approach`, transition `Send` (ID1412310300)", m->now);
     PLAN_t Supervisor_Approach_order_token = (PLAN_t){ .c1 = val_JOINT,
         .c2 = ml_standoff(b->s.first), .c3 = ml_standoff(ml_facing(b->s.first)) };
     pn_bag_check(cx, &s_at_Supervisor_Approach_order, &Supervisor_Approach_order_token);
@@ -1743,9 +1837,7 @@ PN_NET_SEARCH static bool Supervisor_Approach_Arrived_enumerate(pn_ctx_t *cx, co
 {
     const net_marking_t *const m = marking;
     Supervisor_Approach_Arrived_binding_t b = { 0 };
-    cx->origin = "page `Approach`, transition `Arrived` (ID1412310311)";
-    cx->now = m->now;
-    cx->rounds = 0U;
+    pn_begin(cx, "page `Approach`, transition `Arrived` (ID1412310311)", m->now);
     /* done: () (ID1412310363) */
     if (!m->Supervisor_Approach_done.full) {
         return true;
@@ -1761,13 +1853,12 @@ PN_NET_SEARCH static bool Supervisor_Approach_Arrived_enumerate(pn_ctx_t *cx, co
     return true;
 }
 
-PN_NET_SEARCH static bool Supervisor_Approach_Arrived_fire(pn_ctx_t *cx, void *marking, void *binding)
+PN_NET_SEARCH static bool Supervisor_Approach_Arrived_fire(pn_ctx_t *cx, void *marking, uint32_t self, void *binding)
 {
     net_marking_t *const m = marking;
+    (void)self;
     Supervisor_Approach_Arrived_binding_t *const b = binding;
-    cx->origin = "page `Approach`, transition `Arrived` (ID1412310311)";
-    cx->now = m->now;
-    cx->rounds = 0U;
+    pn_begin(cx, "page `Approach`, transition `Arrived` (ID1412310311)", m->now);
     if (!m->Supervisor_Approach_done.full || !m->Supervisor_Approach_seam.full) {
         pn_raise(cx, PN_ERR_SUBTRACT, NULL);
         return false;
@@ -1785,61 +1876,70 @@ PN_NET_SEARCH static bool Supervisor_Approach_Arrived_fire(pn_ctx_t *cx, void *m
     return true;
 }
 
-/* transition Cell.Supervisor.Approach.Move both.Command: page `MoveBoth`, transition `Command` (ID1412310941), cell.cpn:20061 */
-typedef struct Supervisor_Approach_Move_both_Command_binding {
+/* transition: page `MoveBoth`, transition `Command` (ID1412310941), cell.cpn:20061, at all of these:
+ *     Cell.Supervisor.Approach.Move both.Command
+ *     Cell.Supervisor.Correct.Move both.Command
+ *     Cell.Supervisor.Install.Shift.Command
+ *     Cell.Supervisor.Install.Rivet.Advance.Command
+ *     Cell.Supervisor.Install.Rivet.Retract.Command
+ *     Cell.Supervisor.Install.Return.Command
+ */
+typedef struct MoveBoth_Command_binding {
     int64_t c;
     POSE_t p;
     POSE_t q;
-} Supervisor_Approach_Move_both_Command_binding_t;
+} MoveBoth_Command_binding_t;
 
-static const pn_field_t s_variables_Supervisor_Approach_Move_both_Command[] = {
-    { "c", &s_COMMAND, offsetof(Supervisor_Approach_Move_both_Command_binding_t, c), false },
-    { "p", &s_POSE, offsetof(Supervisor_Approach_Move_both_Command_binding_t, p), false },
-    { "q", &s_POSE, offsetof(Supervisor_Approach_Move_both_Command_binding_t, q), false },
+static const pn_field_t s_variables_MoveBoth_Command[] = {
+    { "c", &s_COMMAND, offsetof(MoveBoth_Command_binding_t, c), false },
+    { "p", &s_POSE, offsetof(MoveBoth_Command_binding_t, p), false },
+    { "q", &s_POSE, offsetof(MoveBoth_Command_binding_t, q), false },
 };
 
-static const pn_type_t s_binding_Supervisor_Approach_Move_both_Command = {
+static const pn_type_t s_binding_MoveBoth_Command = {
     .kind = PN_KIND_RECORD,
     .name = "Cell.Supervisor.Approach.Move both.Command",
-    .size = sizeof(Supervisor_Approach_Move_both_Command_binding_t),
+    .size = sizeof(MoveBoth_Command_binding_t),
     .count = 3U,
-    .field = s_variables_Supervisor_Approach_Move_both_Command,
+    .field = s_variables_MoveBoth_Command,
 };
 
-PN_NET_SEARCH static bool Supervisor_Approach_Move_both_Command_enumerate(pn_ctx_t *cx, const void *marking,
+PN_NET_SEARCH static bool MoveBoth_Command_enumerate(pn_ctx_t *cx, const void *marking,
     uint32_t self, pn_binding_sink_t sink, void *user)
 {
     const net_marking_t *const m = marking;
-    Supervisor_Approach_Move_both_Command_binding_t b = { 0 };
-    cx->origin = "page `MoveBoth`, transition `Command` (ID1412310941)";
-    cx->now = m->now;
-    cx->rounds = 0U;
+    MoveBoth_Command_binding_t b = { 0 };
+    pn_begin(cx, "page `MoveBoth`, transition `Command` (ID1412310941)", m->now);
+    const MoveBoth_places_t *const own = pn_net.transition[self].places;
+    const PLAN_slot_t *const at_order = pn_bag_look(own->order, m);
     /* order: (c, p, q) (ID1412310946) */
-    if (!m->Supervisor_Approach_order.full) {
+    if (!at_order->full) {
         return true;
     }
-    b.c = m->Supervisor_Approach_order.value.c1;
-    b.p = m->Supervisor_Approach_order.value.c2;
-    b.q = m->Supervisor_Approach_order.value.c3;
+    b.c = at_order->value.c1;
+    b.p = at_order->value.c2;
+    b.q = at_order->value.c3;
     if (!sink(user, self, &b)) {
         return false;
     }
     return true;
 }
 
-PN_NET_SEARCH static bool Supervisor_Approach_Move_both_Command_fire(pn_ctx_t *cx, void *marking, void *binding)
+PN_NET_SEARCH static bool MoveBoth_Command_fire(pn_ctx_t *cx, void *marking, uint32_t self, void *binding)
 {
     net_marking_t *const m = marking;
-    Supervisor_Approach_Move_both_Command_binding_t *const b = binding;
-    cx->origin = "page `MoveBoth`, transition `Command` (ID1412310941)";
-    cx->now = m->now;
-    cx->rounds = 0U;
-    if (!m->Supervisor_Approach_order.full) {
+    MoveBoth_Command_binding_t *const b = binding;
+    pn_begin(cx, "page `MoveBoth`, transition `Command` (ID1412310941)", m->now);
+    const MoveBoth_places_t *const own = pn_net.transition[self].places;
+    PLAN_slot_t *const at_order = pn_bag_reach(own->order, m);
+    unit_slot_t *const at_moving_1 = pn_bag_reach(own->moving_1, m);
+    unit_slot_t *const at_moving_2 = pn_bag_reach(own->moving_2, m);
+    if (!at_order->full) {
         pn_raise(cx, PN_ERR_SUBTRACT, NULL);
         return false;
     }
-    if (m->Supervisor_Approach_Move_both_moving_1.full) {
-        return pn_bag_fail_full(cx, &s_at_Supervisor_Approach_Move_both_moving_1);
+    if (at_moving_1->full) {
+        return pn_bag_fail_full(cx, own->moving_1);
     }
     if (m->dadosrobo1.full) {
         return pn_bag_fail_full(cx, &s_at_dadosrobo1);
@@ -1847,8 +1947,8 @@ PN_NET_SEARCH static bool Supervisor_Approach_Move_both_Command_fire(pn_ctx_t *c
     if (m->flag1_interno.full) {
         return pn_bag_fail_full(cx, &s_at_flag1_interno);
     }
-    if (m->Supervisor_Approach_Move_both_moving_2.full) {
-        return pn_bag_fail_full(cx, &s_at_Supervisor_Approach_Move_both_moving_2);
+    if (at_moving_2->full) {
+        return pn_bag_fail_full(cx, own->moving_2);
     }
     if (m->dadosrobo2.full) {
         return pn_bag_fail_full(cx, &s_at_dadosrobo2);
@@ -1857,9 +1957,9 @@ PN_NET_SEARCH static bool Supervisor_Approach_Move_both_Command_fire(pn_ctx_t *c
         return pn_bag_fail_full(cx, &s_at_flag2_interno);
     }
     /* order: (c, p, q) (ID1412310946) */
-    m->Supervisor_Approach_order.full = false;
+    at_order->full = false;
     /* moving 1: () (ID1412310970) */
-    m->Supervisor_Approach_Move_both_moving_1.full = true;
+    at_moving_1->full = true;
     /* dadosrobo1: p (ID1412310982) */
     m->dadosrobo1.value = b->p;
     m->dadosrobo1.full = true;
@@ -1867,7 +1967,7 @@ PN_NET_SEARCH static bool Supervisor_Approach_Move_both_Command_fire(pn_ctx_t *c
     m->flag1_interno.value = b->c;
     m->flag1_interno.full = true;
     /* moving 2: () (ID1412311007) */
-    m->Supervisor_Approach_Move_both_moving_2.full = true;
+    at_moving_2->full = true;
     /* dadosrobo2: q (ID1412311019) */
     m->dadosrobo2.value = b->q;
     m->dadosrobo2.full = true;
@@ -1877,33 +1977,41 @@ PN_NET_SEARCH static bool Supervisor_Approach_Move_both_Command_fire(pn_ctx_t *c
     return true;
 }
 
-/* transition Cell.Supervisor.Approach.Move both.Both: page `MoveBoth`, transition `Both` (ID1412310948), cell.cpn:20135 */
-typedef struct Supervisor_Approach_Move_both_Both_binding {
+/* transition: page `MoveBoth`, transition `Both` (ID1412310948), cell.cpn:20135, at all of these:
+ *     Cell.Supervisor.Approach.Move both.Both
+ *     Cell.Supervisor.Correct.Move both.Both
+ *     Cell.Supervisor.Install.Shift.Both
+ *     Cell.Supervisor.Install.Rivet.Advance.Both
+ *     Cell.Supervisor.Install.Rivet.Retract.Both
+ *     Cell.Supervisor.Install.Return.Both
+ */
+typedef struct MoveBoth_Both_binding {
     uint8_t none; /* no variables */
-} Supervisor_Approach_Move_both_Both_binding_t;
+} MoveBoth_Both_binding_t;
 
-static const pn_type_t s_binding_Supervisor_Approach_Move_both_Both = {
+static const pn_type_t s_binding_MoveBoth_Both = {
     .kind = PN_KIND_RECORD,
     .name = "Cell.Supervisor.Approach.Move both.Both",
-    .size = sizeof(Supervisor_Approach_Move_both_Both_binding_t),
+    .size = sizeof(MoveBoth_Both_binding_t),
     .count = 0U,
     .field = NULL,
 };
 
-PN_NET_SEARCH static bool Supervisor_Approach_Move_both_Both_enumerate(pn_ctx_t *cx, const void *marking,
+PN_NET_SEARCH static bool MoveBoth_Both_enumerate(pn_ctx_t *cx, const void *marking,
     uint32_t self, pn_binding_sink_t sink, void *user)
 {
     const net_marking_t *const m = marking;
-    Supervisor_Approach_Move_both_Both_binding_t b = { 0 };
-    cx->origin = "page `MoveBoth`, transition `Both` (ID1412310948)";
-    cx->now = m->now;
-    cx->rounds = 0U;
+    MoveBoth_Both_binding_t b = { 0 };
+    pn_begin(cx, "page `MoveBoth`, transition `Both` (ID1412310948)", m->now);
+    const MoveBoth_places_t *const own = pn_net.transition[self].places;
+    const unit_slot_t *const at_there_1 = pn_bag_look(own->there_1, m);
+    const unit_slot_t *const at_there_2 = pn_bag_look(own->there_2, m);
     /* there 1: () (ID1412310976) */
-    if (!m->Supervisor_Approach_Move_both_there_1.full) {
+    if (!at_there_1->full) {
         return true;
     }
     /* there 2: () (ID1412311013) */
-    if (!m->Supervisor_Approach_Move_both_there_2.full) {
+    if (!at_there_2->full) {
         return true;
     }
     if (!sink(user, self, &b)) {
@@ -1912,53 +2020,61 @@ PN_NET_SEARCH static bool Supervisor_Approach_Move_both_Both_enumerate(pn_ctx_t 
     return true;
 }
 
-PN_NET_SEARCH static bool Supervisor_Approach_Move_both_Both_fire(pn_ctx_t *cx, void *marking, void *binding)
+PN_NET_SEARCH static bool MoveBoth_Both_fire(pn_ctx_t *cx, void *marking, uint32_t self, void *binding)
 {
     net_marking_t *const m = marking;
     (void)binding;
-    cx->origin = "page `MoveBoth`, transition `Both` (ID1412310948)";
-    cx->now = m->now;
-    cx->rounds = 0U;
-    if (!m->Supervisor_Approach_Move_both_there_1.full
-        || !m->Supervisor_Approach_Move_both_there_2.full) {
+    pn_begin(cx, "page `MoveBoth`, transition `Both` (ID1412310948)", m->now);
+    const MoveBoth_places_t *const own = pn_net.transition[self].places;
+    unit_slot_t *const at_done = pn_bag_reach(own->done, m);
+    unit_slot_t *const at_there_1 = pn_bag_reach(own->there_1, m);
+    unit_slot_t *const at_there_2 = pn_bag_reach(own->there_2, m);
+    if (!at_there_1->full || !at_there_2->full) {
         pn_raise(cx, PN_ERR_SUBTRACT, NULL);
         return false;
     }
-    if (m->Supervisor_Approach_done.full) {
-        return pn_bag_fail_full(cx, &s_at_Supervisor_Approach_done);
+    if (at_done->full) {
+        return pn_bag_fail_full(cx, own->done);
     }
     /* there 1: () (ID1412310976) */
-    m->Supervisor_Approach_Move_both_there_1.full = false;
+    at_there_1->full = false;
     /* there 2: () (ID1412311013) */
-    m->Supervisor_Approach_Move_both_there_2.full = false;
+    at_there_2->full = false;
     /* done: () (ID1412310957) */
-    m->Supervisor_Approach_done.full = true;
+    at_done->full = true;
     return true;
 }
 
-/* transition Cell.Supervisor.Approach.Move both.Reply 1: page `MoveBoth`, transition `Reply 1` (ID1412310962), cell.cpn:20209 */
-typedef struct Supervisor_Approach_Move_both_Reply_1_binding {
+/* transition: page `MoveBoth`, transition `Reply 1` (ID1412310962), cell.cpn:20209, at all of these:
+ *     Cell.Supervisor.Approach.Move both.Reply 1
+ *     Cell.Supervisor.Correct.Move both.Reply 1
+ *     Cell.Supervisor.Install.Shift.Reply 1
+ *     Cell.Supervisor.Install.Rivet.Advance.Reply 1
+ *     Cell.Supervisor.Install.Rivet.Retract.Reply 1
+ *     Cell.Supervisor.Install.Return.Reply 1
+ */
+typedef struct MoveBoth_Reply_1_binding {
     uint8_t none; /* no variables */
-} Supervisor_Approach_Move_both_Reply_1_binding_t;
+} MoveBoth_Reply_1_binding_t;
 
-static const pn_type_t s_binding_Supervisor_Approach_Move_both_Reply_1 = {
+static const pn_type_t s_binding_MoveBoth_Reply_1 = {
     .kind = PN_KIND_RECORD,
     .name = "Cell.Supervisor.Approach.Move both.Reply 1",
-    .size = sizeof(Supervisor_Approach_Move_both_Reply_1_binding_t),
+    .size = sizeof(MoveBoth_Reply_1_binding_t),
     .count = 0U,
     .field = NULL,
 };
 
-PN_NET_SEARCH static bool Supervisor_Approach_Move_both_Reply_1_enumerate(pn_ctx_t *cx, const void *marking,
+PN_NET_SEARCH static bool MoveBoth_Reply_1_enumerate(pn_ctx_t *cx, const void *marking,
     uint32_t self, pn_binding_sink_t sink, void *user)
 {
     const net_marking_t *const m = marking;
-    Supervisor_Approach_Move_both_Reply_1_binding_t b = { 0 };
-    cx->origin = "page `MoveBoth`, transition `Reply 1` (ID1412310962)";
-    cx->now = m->now;
-    cx->rounds = 0U;
+    MoveBoth_Reply_1_binding_t b = { 0 };
+    pn_begin(cx, "page `MoveBoth`, transition `Reply 1` (ID1412310962)", m->now);
+    const MoveBoth_places_t *const own = pn_net.transition[self].places;
+    const unit_slot_t *const at_moving_1 = pn_bag_look(own->moving_1, m);
     /* moving 1: () (ID1412310972) */
-    if (!m->Supervisor_Approach_Move_both_moving_1.full) {
+    if (!at_moving_1->full) {
         return true;
     }
     /* flag1_externo: DONE (ID1412310994) */
@@ -1971,52 +2087,60 @@ PN_NET_SEARCH static bool Supervisor_Approach_Move_both_Reply_1_enumerate(pn_ctx
     return true;
 }
 
-PN_NET_SEARCH static bool Supervisor_Approach_Move_both_Reply_1_fire(pn_ctx_t *cx, void *marking, void *binding)
+PN_NET_SEARCH static bool MoveBoth_Reply_1_fire(pn_ctx_t *cx, void *marking, uint32_t self, void *binding)
 {
     net_marking_t *const m = marking;
     (void)binding;
-    cx->origin = "page `MoveBoth`, transition `Reply 1` (ID1412310962)";
-    cx->now = m->now;
-    cx->rounds = 0U;
-    if (!m->Supervisor_Approach_Move_both_moving_1.full || !m->flag1_externo.full) {
+    pn_begin(cx, "page `MoveBoth`, transition `Reply 1` (ID1412310962)", m->now);
+    const MoveBoth_places_t *const own = pn_net.transition[self].places;
+    unit_slot_t *const at_moving_1 = pn_bag_reach(own->moving_1, m);
+    unit_slot_t *const at_there_1 = pn_bag_reach(own->there_1, m);
+    if (!at_moving_1->full || !m->flag1_externo.full) {
         pn_raise(cx, PN_ERR_SUBTRACT, NULL);
         return false;
     }
-    if (m->Supervisor_Approach_Move_both_there_1.full) {
-        return pn_bag_fail_full(cx, &s_at_Supervisor_Approach_Move_both_there_1);
+    if (at_there_1->full) {
+        return pn_bag_fail_full(cx, own->there_1);
     }
     /* moving 1: () (ID1412310972) */
-    m->Supervisor_Approach_Move_both_moving_1.full = false;
+    at_moving_1->full = false;
     /* flag1_externo: DONE (ID1412310994) */
     m->flag1_externo.full = false;
     /* there 1: () (ID1412310974) */
-    m->Supervisor_Approach_Move_both_there_1.full = true;
+    at_there_1->full = true;
     return true;
 }
 
-/* transition Cell.Supervisor.Approach.Move both.Reply 2: page `MoveBoth`, transition `Reply 2` (ID1412310999), cell.cpn:20283 */
-typedef struct Supervisor_Approach_Move_both_Reply_2_binding {
+/* transition: page `MoveBoth`, transition `Reply 2` (ID1412310999), cell.cpn:20283, at all of these:
+ *     Cell.Supervisor.Approach.Move both.Reply 2
+ *     Cell.Supervisor.Correct.Move both.Reply 2
+ *     Cell.Supervisor.Install.Shift.Reply 2
+ *     Cell.Supervisor.Install.Rivet.Advance.Reply 2
+ *     Cell.Supervisor.Install.Rivet.Retract.Reply 2
+ *     Cell.Supervisor.Install.Return.Reply 2
+ */
+typedef struct MoveBoth_Reply_2_binding {
     uint8_t none; /* no variables */
-} Supervisor_Approach_Move_both_Reply_2_binding_t;
+} MoveBoth_Reply_2_binding_t;
 
-static const pn_type_t s_binding_Supervisor_Approach_Move_both_Reply_2 = {
+static const pn_type_t s_binding_MoveBoth_Reply_2 = {
     .kind = PN_KIND_RECORD,
     .name = "Cell.Supervisor.Approach.Move both.Reply 2",
-    .size = sizeof(Supervisor_Approach_Move_both_Reply_2_binding_t),
+    .size = sizeof(MoveBoth_Reply_2_binding_t),
     .count = 0U,
     .field = NULL,
 };
 
-PN_NET_SEARCH static bool Supervisor_Approach_Move_both_Reply_2_enumerate(pn_ctx_t *cx, const void *marking,
+PN_NET_SEARCH static bool MoveBoth_Reply_2_enumerate(pn_ctx_t *cx, const void *marking,
     uint32_t self, pn_binding_sink_t sink, void *user)
 {
     const net_marking_t *const m = marking;
-    Supervisor_Approach_Move_both_Reply_2_binding_t b = { 0 };
-    cx->origin = "page `MoveBoth`, transition `Reply 2` (ID1412310999)";
-    cx->now = m->now;
-    cx->rounds = 0U;
+    MoveBoth_Reply_2_binding_t b = { 0 };
+    pn_begin(cx, "page `MoveBoth`, transition `Reply 2` (ID1412310999)", m->now);
+    const MoveBoth_places_t *const own = pn_net.transition[self].places;
+    const unit_slot_t *const at_moving_2 = pn_bag_look(own->moving_2, m);
     /* moving 2: () (ID1412311009) */
-    if (!m->Supervisor_Approach_Move_both_moving_2.full) {
+    if (!at_moving_2->full) {
         return true;
     }
     /* flag2_externo: DONE (ID1412311031) */
@@ -2029,26 +2153,27 @@ PN_NET_SEARCH static bool Supervisor_Approach_Move_both_Reply_2_enumerate(pn_ctx
     return true;
 }
 
-PN_NET_SEARCH static bool Supervisor_Approach_Move_both_Reply_2_fire(pn_ctx_t *cx, void *marking, void *binding)
+PN_NET_SEARCH static bool MoveBoth_Reply_2_fire(pn_ctx_t *cx, void *marking, uint32_t self, void *binding)
 {
     net_marking_t *const m = marking;
     (void)binding;
-    cx->origin = "page `MoveBoth`, transition `Reply 2` (ID1412310999)";
-    cx->now = m->now;
-    cx->rounds = 0U;
-    if (!m->Supervisor_Approach_Move_both_moving_2.full || !m->flag2_externo.full) {
+    pn_begin(cx, "page `MoveBoth`, transition `Reply 2` (ID1412310999)", m->now);
+    const MoveBoth_places_t *const own = pn_net.transition[self].places;
+    unit_slot_t *const at_moving_2 = pn_bag_reach(own->moving_2, m);
+    unit_slot_t *const at_there_2 = pn_bag_reach(own->there_2, m);
+    if (!at_moving_2->full || !m->flag2_externo.full) {
         pn_raise(cx, PN_ERR_SUBTRACT, NULL);
         return false;
     }
-    if (m->Supervisor_Approach_Move_both_there_2.full) {
-        return pn_bag_fail_full(cx, &s_at_Supervisor_Approach_Move_both_there_2);
+    if (at_there_2->full) {
+        return pn_bag_fail_full(cx, own->there_2);
     }
     /* moving 2: () (ID1412311009) */
-    m->Supervisor_Approach_Move_both_moving_2.full = false;
+    at_moving_2->full = false;
     /* flag2_externo: DONE (ID1412311031) */
     m->flag2_externo.full = false;
     /* there 2: () (ID1412311011) */
-    m->Supervisor_Approach_Move_both_there_2.full = true;
+    at_there_2->full = true;
     return true;
 }
 
@@ -2074,9 +2199,7 @@ PN_NET_SEARCH static bool Supervisor_Verify_Ask_first_enumerate(pn_ctx_t *cx, co
 {
     const net_marking_t *const m = marking;
     Supervisor_Verify_Ask_first_binding_t b = { 0 };
-    cx->origin = "page `Verify`, transition `Ask first` (ID1412310377)";
-    cx->now = m->now;
-    cx->rounds = 0U;
+    pn_begin(cx, "page `Verify`, transition `Ask first` (ID1412310377)", m->now);
     /* approached: s (ID1412310418) */
     if (!m->Supervisor_approached.full) {
         return true;
@@ -2088,13 +2211,12 @@ PN_NET_SEARCH static bool Supervisor_Verify_Ask_first_enumerate(pn_ctx_t *cx, co
     return true;
 }
 
-PN_NET_SEARCH static bool Supervisor_Verify_Ask_first_fire(pn_ctx_t *cx, void *marking, void *binding)
+PN_NET_SEARCH static bool Supervisor_Verify_Ask_first_fire(pn_ctx_t *cx, void *marking, uint32_t self, void *binding)
 {
     net_marking_t *const m = marking;
+    (void)self;
     Supervisor_Verify_Ask_first_binding_t *const b = binding;
-    cx->origin = "page `Verify`, transition `Ask first` (ID1412310377)";
-    cx->now = m->now;
-    cx->rounds = 0U;
+    pn_begin(cx, "page `Verify`, transition `Ask first` (ID1412310377)", m->now);
     const POSE_t referencia1_token = b->s.first;
     int64_t flag1_interno_token = val_MEASURE;
     pn_bag_check(cx, &s_at_flag1_interno, &flag1_interno_token);
@@ -2156,9 +2278,7 @@ PN_NET_SEARCH static bool Supervisor_Verify_Ask_last_enumerate(pn_ctx_t *cx, con
 {
     const net_marking_t *const m = marking;
     Supervisor_Verify_Ask_last_binding_t b = { 0 };
-    cx->origin = "page `Verify`, transition `Ask last` (ID1412310385)";
-    cx->now = m->now;
-    cx->rounds = 0U;
+    pn_begin(cx, "page `Verify`, transition `Ask last` (ID1412310385)", m->now);
     /* first asked: s (ID1412310422) */
     if (!m->Supervisor_Verify_first_asked.full) {
         return true;
@@ -2184,13 +2304,12 @@ PN_NET_SEARCH static bool Supervisor_Verify_Ask_last_enumerate(pn_ctx_t *cx, con
     return true;
 }
 
-PN_NET_SEARCH static bool Supervisor_Verify_Ask_last_fire(pn_ctx_t *cx, void *marking, void *binding)
+PN_NET_SEARCH static bool Supervisor_Verify_Ask_last_fire(pn_ctx_t *cx, void *marking, uint32_t self, void *binding)
 {
     net_marking_t *const m = marking;
+    (void)self;
     Supervisor_Verify_Ask_last_binding_t *const b = binding;
-    cx->origin = "page `Verify`, transition `Ask last` (ID1412310385)";
-    cx->now = m->now;
-    cx->rounds = 0U;
+    pn_begin(cx, "page `Verify`, transition `Ask last` (ID1412310385)", m->now);
     const ASKED_t Supervisor_Verify_last_asked_token = (ASKED_t){ .c1 = b->s, .c2 = b->a };
     const POSE_t referencia1_token = b->s.last;
     int64_t flag1_interno_token = val_MEASURE;
@@ -2259,9 +2378,7 @@ PN_NET_SEARCH static bool Supervisor_Verify_Measured_enumerate(pn_ctx_t *cx, con
 {
     const net_marking_t *const m = marking;
     Supervisor_Verify_Measured_binding_t b = { 0 };
-    cx->origin = "page `Verify`, transition `Measured` (ID1412310393)";
-    cx->now = m->now;
-    cx->rounds = 0U;
+    pn_begin(cx, "page `Verify`, transition `Measured` (ID1412310393)", m->now);
     /* last asked: (s, a) (ID1412310426) */
     if (!m->Supervisor_Verify_last_asked.full) {
         return true;
@@ -2288,13 +2405,12 @@ PN_NET_SEARCH static bool Supervisor_Verify_Measured_enumerate(pn_ctx_t *cx, con
     return true;
 }
 
-PN_NET_SEARCH static bool Supervisor_Verify_Measured_fire(pn_ctx_t *cx, void *marking, void *binding)
+PN_NET_SEARCH static bool Supervisor_Verify_Measured_fire(pn_ctx_t *cx, void *marking, uint32_t self, void *binding)
 {
     net_marking_t *const m = marking;
+    (void)self;
     Supervisor_Verify_Measured_binding_t *const b = binding;
-    cx->origin = "page `Verify`, transition `Measured` (ID1412310393)";
-    cx->now = m->now;
-    cx->rounds = 0U;
+    pn_begin(cx, "page `Verify`, transition `Measured` (ID1412310393)", m->now);
     const VERIFIED_t Supervisor_verified_token = (VERIFIED_t){ .c1 = b->s, .c2 = b->a, .c3 = b->b };
     if (!m->Supervisor_Verify_last_asked.full || !m->medida1.full || !m->flag1_externo.full) {
         pn_raise(cx, PN_ERR_SUBTRACT, NULL);
@@ -2343,9 +2459,7 @@ PN_NET_SEARCH static bool Supervisor_Verify_First_lost_enumerate(pn_ctx_t *cx, c
 {
     const net_marking_t *const m = marking;
     Supervisor_Verify_First_lost_binding_t b = { 0 };
-    cx->origin = "page `Verify`, transition `First lost` (ID1412320018)";
-    cx->now = m->now;
-    cx->rounds = 0U;
+    pn_begin(cx, "page `Verify`, transition `First lost` (ID1412320018)", m->now);
     /* first asked: s (ID1412320036) */
     if (!m->Supervisor_Verify_first_asked.full) {
         return true;
@@ -2371,13 +2485,12 @@ PN_NET_SEARCH static bool Supervisor_Verify_First_lost_enumerate(pn_ctx_t *cx, c
     return true;
 }
 
-PN_NET_SEARCH static bool Supervisor_Verify_First_lost_fire(pn_ctx_t *cx, void *marking, void *binding)
+PN_NET_SEARCH static bool Supervisor_Verify_First_lost_fire(pn_ctx_t *cx, void *marking, uint32_t self, void *binding)
 {
     net_marking_t *const m = marking;
+    (void)self;
     (void)binding;
-    cx->origin = "page `Verify`, transition `First lost` (ID1412320018)";
-    cx->now = m->now;
-    cx->rounds = 0U;
+    pn_begin(cx, "page `Verify`, transition `First lost` (ID1412320018)", m->now);
     int64_t Supervisor_result_token = val_FAILED;
     pn_bag_check(cx, &s_at_Supervisor_result, &Supervisor_result_token);
     if (!pn_ok(cx)) {
@@ -2437,9 +2550,7 @@ PN_NET_SEARCH static bool Supervisor_Verify_Last_lost_enumerate(pn_ctx_t *cx, co
 {
     const net_marking_t *const m = marking;
     Supervisor_Verify_Last_lost_binding_t b = { 0 };
-    cx->origin = "page `Verify`, transition `Last lost` (ID1412320023)";
-    cx->now = m->now;
-    cx->rounds = 0U;
+    pn_begin(cx, "page `Verify`, transition `Last lost` (ID1412320023)", m->now);
     /* last asked: (s, a) (ID1412320042) */
     if (!m->Supervisor_Verify_last_asked.full) {
         return true;
@@ -2466,13 +2577,12 @@ PN_NET_SEARCH static bool Supervisor_Verify_Last_lost_enumerate(pn_ctx_t *cx, co
     return true;
 }
 
-PN_NET_SEARCH static bool Supervisor_Verify_Last_lost_fire(pn_ctx_t *cx, void *marking, void *binding)
+PN_NET_SEARCH static bool Supervisor_Verify_Last_lost_fire(pn_ctx_t *cx, void *marking, uint32_t self, void *binding)
 {
     net_marking_t *const m = marking;
+    (void)self;
     (void)binding;
-    cx->origin = "page `Verify`, transition `Last lost` (ID1412320023)";
-    cx->now = m->now;
-    cx->rounds = 0U;
+    pn_begin(cx, "page `Verify`, transition `Last lost` (ID1412320023)", m->now);
     int64_t Supervisor_result_token = val_FAILED;
     pn_bag_check(cx, &s_at_Supervisor_result, &Supervisor_result_token);
     if (!pn_ok(cx)) {
@@ -2532,9 +2642,7 @@ PN_NET_SEARCH static bool Supervisor_Correct_Compare_enumerate(pn_ctx_t *cx, con
 {
     const net_marking_t *const m = marking;
     Supervisor_Correct_Compare_binding_t b = { 0 };
-    cx->origin = "page `Correct`, transition `Compare` (ID1412310453)";
-    cx->now = m->now;
-    cx->rounds = 0U;
+    pn_begin(cx, "page `Correct`, transition `Compare` (ID1412310453)", m->now);
     /* verified: ({points = n, first = p, last = q}, a, b) (ID1412310531) */
     if (!m->Supervisor_verified.full) {
         return true;
@@ -2550,13 +2658,12 @@ PN_NET_SEARCH static bool Supervisor_Correct_Compare_enumerate(pn_ctx_t *cx, con
     return true;
 }
 
-PN_NET_SEARCH static bool Supervisor_Correct_Compare_fire(pn_ctx_t *cx, void *marking, void *binding)
+PN_NET_SEARCH static bool Supervisor_Correct_Compare_fire(pn_ctx_t *cx, void *marking, uint32_t self, void *binding)
 {
     net_marking_t *const m = marking;
+    (void)self;
     Supervisor_Correct_Compare_binding_t *const b = binding;
-    cx->origin = "page `Correct`, transition `Compare` (ID1412310453)";
-    cx->now = m->now;
-    cx->rounds = 0U;
+    pn_begin(cx, "page `Correct`, transition `Compare` (ID1412310453)", m->now);
     const VECTOR_t token = ml_difference(b->p, b->a);
     RIVETING_t Supervisor_Correct_seam_token = (RIVETING_t){ .c1 = b->n, .c2 = b->p,
         .c3 = ml_pitch(cx, b->n, ml_corrected(b->p, b->a), ml_corrected(b->q, b->b)) };
@@ -2615,9 +2722,7 @@ PN_NET_SEARCH static bool Supervisor_Correct_Move_over_enumerate(pn_ctx_t *cx, c
 {
     const net_marking_t *const m = marking;
     Supervisor_Correct_Move_over_binding_t b = { 0 };
-    cx->origin = "page `Correct`, transition `Move over` (ID1412310461)";
-    cx->now = m->now;
-    cx->rounds = 0U;
+    pn_begin(cx, "page `Correct`, transition `Move over` (ID1412310461)", m->now);
     /* offset: v (ID1412310537) */
     if (!m->Supervisor_Correct_offset.full) {
         return true;
@@ -2640,13 +2745,12 @@ PN_NET_SEARCH static bool Supervisor_Correct_Move_over_enumerate(pn_ctx_t *cx, c
     return true;
 }
 
-PN_NET_SEARCH static bool Supervisor_Correct_Move_over_fire(pn_ctx_t *cx, void *marking, void *binding)
+PN_NET_SEARCH static bool Supervisor_Correct_Move_over_fire(pn_ctx_t *cx, void *marking, uint32_t self, void *binding)
 {
     net_marking_t *const m = marking;
+    (void)self;
     Supervisor_Correct_Move_over_binding_t *const b = binding;
-    cx->origin = "page `Correct`, transition `Move over` (ID1412310461)";
-    cx->now = m->now;
-    cx->rounds = 0U;
+    pn_begin(cx, "page `Correct`, transition `Move over` (ID1412310461)", m->now);
     PLAN_t Supervisor_Correct_order_token = (PLAN_t){ .c1 = val_LINEAR, .c2 = ml_inTool(b->p, b->v),
         .c3 = ml_inTool(ml_facing(b->p), b->v) };
     pn_bag_check(cx, &s_at_Supervisor_Correct_order, &Supervisor_Correct_order_token);
@@ -2695,9 +2799,7 @@ PN_NET_SEARCH static bool Supervisor_Correct_Moved_enumerate(pn_ctx_t *cx, const
 {
     const net_marking_t *const m = marking;
     Supervisor_Correct_Moved_binding_t b = { 0 };
-    cx->origin = "page `Correct`, transition `Moved` (ID1412310478)";
-    cx->now = m->now;
-    cx->rounds = 0U;
+    pn_begin(cx, "page `Correct`, transition `Moved` (ID1412310478)", m->now);
     /* done: () (ID1412310547) */
     if (!m->Supervisor_Correct_done.full) {
         return true;
@@ -2715,13 +2817,12 @@ PN_NET_SEARCH static bool Supervisor_Correct_Moved_enumerate(pn_ctx_t *cx, const
     return true;
 }
 
-PN_NET_SEARCH static bool Supervisor_Correct_Moved_fire(pn_ctx_t *cx, void *marking, void *binding)
+PN_NET_SEARCH static bool Supervisor_Correct_Moved_fire(pn_ctx_t *cx, void *marking, uint32_t self, void *binding)
 {
     net_marking_t *const m = marking;
+    (void)self;
     Supervisor_Correct_Moved_binding_t *const b = binding;
-    cx->origin = "page `Correct`, transition `Moved` (ID1412310478)";
-    cx->now = m->now;
-    cx->rounds = 0U;
+    pn_begin(cx, "page `Correct`, transition `Moved` (ID1412310478)", m->now);
     const RIVETING_t Supervisor_corrected_token = (RIVETING_t){ .c1 = b->n, .c2 = b->p,
         .c3 = b->d };
     if (!m->Supervisor_Correct_done.full || !m->Supervisor_Correct_seam.full) {
@@ -2771,9 +2872,7 @@ PN_NET_SEARCH static bool Supervisor_Correct_As_planned_enumerate(pn_ctx_t *cx, 
 {
     const net_marking_t *const m = marking;
     Supervisor_Correct_As_planned_binding_t b = { 0 };
-    cx->origin = "page `Correct`, transition `As planned` (ID1412310526)";
-    cx->now = m->now;
-    cx->rounds = 0U;
+    pn_begin(cx, "page `Correct`, transition `As planned` (ID1412310526)", m->now);
     /* offset: v (ID1412310553) */
     if (!m->Supervisor_Correct_offset.full) {
         return true;
@@ -2796,13 +2895,12 @@ PN_NET_SEARCH static bool Supervisor_Correct_As_planned_enumerate(pn_ctx_t *cx, 
     return true;
 }
 
-PN_NET_SEARCH static bool Supervisor_Correct_As_planned_fire(pn_ctx_t *cx, void *marking, void *binding)
+PN_NET_SEARCH static bool Supervisor_Correct_As_planned_fire(pn_ctx_t *cx, void *marking, uint32_t self, void *binding)
 {
     net_marking_t *const m = marking;
+    (void)self;
     Supervisor_Correct_As_planned_binding_t *const b = binding;
-    cx->origin = "page `Correct`, transition `As planned` (ID1412310526)";
-    cx->now = m->now;
-    cx->rounds = 0U;
+    pn_begin(cx, "page `Correct`, transition `As planned` (ID1412310526)", m->now);
     const RIVETING_t Supervisor_corrected_token = (RIVETING_t){ .c1 = b->n, .c2 = b->p,
         .c3 = b->d };
     if (!m->Supervisor_Correct_offset.full || !m->Supervisor_Correct_seam.full) {
@@ -2819,273 +2917,6 @@ PN_NET_SEARCH static bool Supervisor_Correct_As_planned_fire(pn_ctx_t *cx, void 
     /* corrected: (n, p, d) (ID1412310557) */
     m->Supervisor_corrected.value = Supervisor_corrected_token;
     m->Supervisor_corrected.full = true;
-    return true;
-}
-
-/* transition Cell.Supervisor.Correct.Move both.Command: page `MoveBoth`, transition `Command` (ID1412310941), cell.cpn:20061 */
-typedef struct Supervisor_Correct_Move_both_Command_binding {
-    int64_t c;
-    POSE_t p;
-    POSE_t q;
-} Supervisor_Correct_Move_both_Command_binding_t;
-
-static const pn_field_t s_variables_Supervisor_Correct_Move_both_Command[] = {
-    { "c", &s_COMMAND, offsetof(Supervisor_Correct_Move_both_Command_binding_t, c), false },
-    { "p", &s_POSE, offsetof(Supervisor_Correct_Move_both_Command_binding_t, p), false },
-    { "q", &s_POSE, offsetof(Supervisor_Correct_Move_both_Command_binding_t, q), false },
-};
-
-static const pn_type_t s_binding_Supervisor_Correct_Move_both_Command = {
-    .kind = PN_KIND_RECORD,
-    .name = "Cell.Supervisor.Correct.Move both.Command",
-    .size = sizeof(Supervisor_Correct_Move_both_Command_binding_t),
-    .count = 3U,
-    .field = s_variables_Supervisor_Correct_Move_both_Command,
-};
-
-PN_NET_SEARCH static bool Supervisor_Correct_Move_both_Command_enumerate(pn_ctx_t *cx, const void *marking,
-    uint32_t self, pn_binding_sink_t sink, void *user)
-{
-    const net_marking_t *const m = marking;
-    Supervisor_Correct_Move_both_Command_binding_t b = { 0 };
-    cx->origin = "page `MoveBoth`, transition `Command` (ID1412310941)";
-    cx->now = m->now;
-    cx->rounds = 0U;
-    /* order: (c, p, q) (ID1412310946) */
-    if (!m->Supervisor_Correct_order.full) {
-        return true;
-    }
-    b.c = m->Supervisor_Correct_order.value.c1;
-    b.p = m->Supervisor_Correct_order.value.c2;
-    b.q = m->Supervisor_Correct_order.value.c3;
-    if (!sink(user, self, &b)) {
-        return false;
-    }
-    return true;
-}
-
-PN_NET_SEARCH static bool Supervisor_Correct_Move_both_Command_fire(pn_ctx_t *cx, void *marking, void *binding)
-{
-    net_marking_t *const m = marking;
-    Supervisor_Correct_Move_both_Command_binding_t *const b = binding;
-    cx->origin = "page `MoveBoth`, transition `Command` (ID1412310941)";
-    cx->now = m->now;
-    cx->rounds = 0U;
-    if (!m->Supervisor_Correct_order.full) {
-        pn_raise(cx, PN_ERR_SUBTRACT, NULL);
-        return false;
-    }
-    if (m->Supervisor_Correct_Move_both_moving_1.full) {
-        return pn_bag_fail_full(cx, &s_at_Supervisor_Correct_Move_both_moving_1);
-    }
-    if (m->dadosrobo1.full) {
-        return pn_bag_fail_full(cx, &s_at_dadosrobo1);
-    }
-    if (m->flag1_interno.full) {
-        return pn_bag_fail_full(cx, &s_at_flag1_interno);
-    }
-    if (m->Supervisor_Correct_Move_both_moving_2.full) {
-        return pn_bag_fail_full(cx, &s_at_Supervisor_Correct_Move_both_moving_2);
-    }
-    if (m->dadosrobo2.full) {
-        return pn_bag_fail_full(cx, &s_at_dadosrobo2);
-    }
-    if (m->flag2_interno.full) {
-        return pn_bag_fail_full(cx, &s_at_flag2_interno);
-    }
-    /* order: (c, p, q) (ID1412310946) */
-    m->Supervisor_Correct_order.full = false;
-    /* moving 1: () (ID1412310970) */
-    m->Supervisor_Correct_Move_both_moving_1.full = true;
-    /* dadosrobo1: p (ID1412310982) */
-    m->dadosrobo1.value = b->p;
-    m->dadosrobo1.full = true;
-    /* flag1_interno: c (ID1412310988) */
-    m->flag1_interno.value = b->c;
-    m->flag1_interno.full = true;
-    /* moving 2: () (ID1412311007) */
-    m->Supervisor_Correct_Move_both_moving_2.full = true;
-    /* dadosrobo2: q (ID1412311019) */
-    m->dadosrobo2.value = b->q;
-    m->dadosrobo2.full = true;
-    /* flag2_interno: c (ID1412311025) */
-    m->flag2_interno.value = b->c;
-    m->flag2_interno.full = true;
-    return true;
-}
-
-/* transition Cell.Supervisor.Correct.Move both.Both: page `MoveBoth`, transition `Both` (ID1412310948), cell.cpn:20135 */
-typedef struct Supervisor_Correct_Move_both_Both_binding {
-    uint8_t none; /* no variables */
-} Supervisor_Correct_Move_both_Both_binding_t;
-
-static const pn_type_t s_binding_Supervisor_Correct_Move_both_Both = {
-    .kind = PN_KIND_RECORD,
-    .name = "Cell.Supervisor.Correct.Move both.Both",
-    .size = sizeof(Supervisor_Correct_Move_both_Both_binding_t),
-    .count = 0U,
-    .field = NULL,
-};
-
-PN_NET_SEARCH static bool Supervisor_Correct_Move_both_Both_enumerate(pn_ctx_t *cx, const void *marking,
-    uint32_t self, pn_binding_sink_t sink, void *user)
-{
-    const net_marking_t *const m = marking;
-    Supervisor_Correct_Move_both_Both_binding_t b = { 0 };
-    cx->origin = "page `MoveBoth`, transition `Both` (ID1412310948)";
-    cx->now = m->now;
-    cx->rounds = 0U;
-    /* there 1: () (ID1412310976) */
-    if (!m->Supervisor_Correct_Move_both_there_1.full) {
-        return true;
-    }
-    /* there 2: () (ID1412311013) */
-    if (!m->Supervisor_Correct_Move_both_there_2.full) {
-        return true;
-    }
-    if (!sink(user, self, &b)) {
-        return false;
-    }
-    return true;
-}
-
-PN_NET_SEARCH static bool Supervisor_Correct_Move_both_Both_fire(pn_ctx_t *cx, void *marking, void *binding)
-{
-    net_marking_t *const m = marking;
-    (void)binding;
-    cx->origin = "page `MoveBoth`, transition `Both` (ID1412310948)";
-    cx->now = m->now;
-    cx->rounds = 0U;
-    if (!m->Supervisor_Correct_Move_both_there_1.full
-        || !m->Supervisor_Correct_Move_both_there_2.full) {
-        pn_raise(cx, PN_ERR_SUBTRACT, NULL);
-        return false;
-    }
-    if (m->Supervisor_Correct_done.full) {
-        return pn_bag_fail_full(cx, &s_at_Supervisor_Correct_done);
-    }
-    /* there 1: () (ID1412310976) */
-    m->Supervisor_Correct_Move_both_there_1.full = false;
-    /* there 2: () (ID1412311013) */
-    m->Supervisor_Correct_Move_both_there_2.full = false;
-    /* done: () (ID1412310957) */
-    m->Supervisor_Correct_done.full = true;
-    return true;
-}
-
-/* transition Cell.Supervisor.Correct.Move both.Reply 1: page `MoveBoth`, transition `Reply 1` (ID1412310962), cell.cpn:20209 */
-typedef struct Supervisor_Correct_Move_both_Reply_1_binding {
-    uint8_t none; /* no variables */
-} Supervisor_Correct_Move_both_Reply_1_binding_t;
-
-static const pn_type_t s_binding_Supervisor_Correct_Move_both_Reply_1 = {
-    .kind = PN_KIND_RECORD,
-    .name = "Cell.Supervisor.Correct.Move both.Reply 1",
-    .size = sizeof(Supervisor_Correct_Move_both_Reply_1_binding_t),
-    .count = 0U,
-    .field = NULL,
-};
-
-PN_NET_SEARCH static bool Supervisor_Correct_Move_both_Reply_1_enumerate(pn_ctx_t *cx, const void *marking,
-    uint32_t self, pn_binding_sink_t sink, void *user)
-{
-    const net_marking_t *const m = marking;
-    Supervisor_Correct_Move_both_Reply_1_binding_t b = { 0 };
-    cx->origin = "page `MoveBoth`, transition `Reply 1` (ID1412310962)";
-    cx->now = m->now;
-    cx->rounds = 0U;
-    /* moving 1: () (ID1412310972) */
-    if (!m->Supervisor_Correct_Move_both_moving_1.full) {
-        return true;
-    }
-    /* flag1_externo: DONE (ID1412310994) */
-    if (!m->flag1_externo.full || (m->flag1_externo.value != val_DONE)) {
-        return true;
-    }
-    if (!sink(user, self, &b)) {
-        return false;
-    }
-    return true;
-}
-
-PN_NET_SEARCH static bool Supervisor_Correct_Move_both_Reply_1_fire(pn_ctx_t *cx, void *marking, void *binding)
-{
-    net_marking_t *const m = marking;
-    (void)binding;
-    cx->origin = "page `MoveBoth`, transition `Reply 1` (ID1412310962)";
-    cx->now = m->now;
-    cx->rounds = 0U;
-    if (!m->Supervisor_Correct_Move_both_moving_1.full || !m->flag1_externo.full) {
-        pn_raise(cx, PN_ERR_SUBTRACT, NULL);
-        return false;
-    }
-    if (m->Supervisor_Correct_Move_both_there_1.full) {
-        return pn_bag_fail_full(cx, &s_at_Supervisor_Correct_Move_both_there_1);
-    }
-    /* moving 1: () (ID1412310972) */
-    m->Supervisor_Correct_Move_both_moving_1.full = false;
-    /* flag1_externo: DONE (ID1412310994) */
-    m->flag1_externo.full = false;
-    /* there 1: () (ID1412310974) */
-    m->Supervisor_Correct_Move_both_there_1.full = true;
-    return true;
-}
-
-/* transition Cell.Supervisor.Correct.Move both.Reply 2: page `MoveBoth`, transition `Reply 2` (ID1412310999), cell.cpn:20283 */
-typedef struct Supervisor_Correct_Move_both_Reply_2_binding {
-    uint8_t none; /* no variables */
-} Supervisor_Correct_Move_both_Reply_2_binding_t;
-
-static const pn_type_t s_binding_Supervisor_Correct_Move_both_Reply_2 = {
-    .kind = PN_KIND_RECORD,
-    .name = "Cell.Supervisor.Correct.Move both.Reply 2",
-    .size = sizeof(Supervisor_Correct_Move_both_Reply_2_binding_t),
-    .count = 0U,
-    .field = NULL,
-};
-
-PN_NET_SEARCH static bool Supervisor_Correct_Move_both_Reply_2_enumerate(pn_ctx_t *cx, const void *marking,
-    uint32_t self, pn_binding_sink_t sink, void *user)
-{
-    const net_marking_t *const m = marking;
-    Supervisor_Correct_Move_both_Reply_2_binding_t b = { 0 };
-    cx->origin = "page `MoveBoth`, transition `Reply 2` (ID1412310999)";
-    cx->now = m->now;
-    cx->rounds = 0U;
-    /* moving 2: () (ID1412311009) */
-    if (!m->Supervisor_Correct_Move_both_moving_2.full) {
-        return true;
-    }
-    /* flag2_externo: DONE (ID1412311031) */
-    if (!m->flag2_externo.full || (m->flag2_externo.value != val_DONE)) {
-        return true;
-    }
-    if (!sink(user, self, &b)) {
-        return false;
-    }
-    return true;
-}
-
-PN_NET_SEARCH static bool Supervisor_Correct_Move_both_Reply_2_fire(pn_ctx_t *cx, void *marking, void *binding)
-{
-    net_marking_t *const m = marking;
-    (void)binding;
-    cx->origin = "page `MoveBoth`, transition `Reply 2` (ID1412310999)";
-    cx->now = m->now;
-    cx->rounds = 0U;
-    if (!m->Supervisor_Correct_Move_both_moving_2.full || !m->flag2_externo.full) {
-        pn_raise(cx, PN_ERR_SUBTRACT, NULL);
-        return false;
-    }
-    if (m->Supervisor_Correct_Move_both_there_2.full) {
-        return pn_bag_fail_full(cx, &s_at_Supervisor_Correct_Move_both_there_2);
-    }
-    /* moving 2: () (ID1412311009) */
-    m->Supervisor_Correct_Move_both_moving_2.full = false;
-    /* flag2_externo: DONE (ID1412311031) */
-    m->flag2_externo.full = false;
-    /* there 2: () (ID1412311011) */
-    m->Supervisor_Correct_Move_both_there_2.full = true;
     return true;
 }
 
@@ -3119,9 +2950,7 @@ PN_NET_SEARCH static bool Supervisor_Install_Go_back_enumerate(pn_ctx_t *cx, con
 {
     const net_marking_t *const m = marking;
     Supervisor_Install_Go_back_binding_t b = { 0 };
-    cx->origin = "page `Install`, transition `Go back` (ID1412310594)";
-    cx->now = m->now;
-    cx->rounds = 0U;
+    pn_begin(cx, "page `Install`, transition `Go back` (ID1412310594)", m->now);
     /* riveted: () (ID1412310685) */
     if (!m->Supervisor_Install_riveted.full) {
         return true;
@@ -3148,13 +2977,12 @@ PN_NET_SEARCH static bool Supervisor_Install_Go_back_enumerate(pn_ctx_t *cx, con
     return true;
 }
 
-PN_NET_SEARCH static bool Supervisor_Install_Go_back_fire(pn_ctx_t *cx, void *marking, void *binding)
+PN_NET_SEARCH static bool Supervisor_Install_Go_back_fire(pn_ctx_t *cx, void *marking, uint32_t self, void *binding)
 {
     net_marking_t *const m = marking;
+    (void)self;
     Supervisor_Install_Go_back_binding_t *const b = binding;
-    cx->origin = "page `Install`, transition `Go back` (ID1412310594)";
-    cx->now = m->now;
-    cx->rounds = 0U;
+    pn_begin(cx, "page `Install`, transition `Go back` (ID1412310594)", m->now);
     PLAN_t Supervisor_Install_return_token = (PLAN_t){ .c1 = val_LINEAR,
         .c2 = ml_inTool(b->p, ml_wayBack(cx, b->n, b->d)),
         .c3 = ml_inTool(ml_facing(b->p), ml_wayBack(cx, b->n, b->d)) };
@@ -3210,9 +3038,7 @@ PN_NET_SEARCH static bool Supervisor_Install_Next_rivet_enumerate(pn_ctx_t *cx, 
 {
     const net_marking_t *const m = marking;
     Supervisor_Install_Next_rivet_binding_t b = { 0 };
-    cx->origin = "page `Install`, transition `Next rivet` (ID1412310624)";
-    cx->now = m->now;
-    cx->rounds = 0U;
+    pn_begin(cx, "page `Install`, transition `Next rivet` (ID1412310624)", m->now);
     /* riveted: () (ID1412310697) */
     if (!m->Supervisor_Install_riveted.full) {
         return true;
@@ -3239,13 +3065,12 @@ PN_NET_SEARCH static bool Supervisor_Install_Next_rivet_enumerate(pn_ctx_t *cx, 
     return true;
 }
 
-PN_NET_SEARCH static bool Supervisor_Install_Next_rivet_fire(pn_ctx_t *cx, void *marking, void *binding)
+PN_NET_SEARCH static bool Supervisor_Install_Next_rivet_fire(pn_ctx_t *cx, void *marking, uint32_t self, void *binding)
 {
     net_marking_t *const m = marking;
+    (void)self;
     Supervisor_Install_Next_rivet_binding_t *const b = binding;
-    cx->origin = "page `Install`, transition `Next rivet` (ID1412310624)";
-    cx->now = m->now;
-    cx->rounds = 0U;
+    pn_begin(cx, "page `Install`, transition `Next rivet` (ID1412310624)", m->now);
     PLAN_t Supervisor_Install_shift_token = (PLAN_t){ .c1 = val_LINEAR, .c2 = ml_inTool(b->p, b->d),
         .c3 = ml_inTool(ml_facing(b->p), b->d) };
     pn_bag_check(cx, &s_at_Supervisor_Install_shift, &Supervisor_Install_shift_token);
@@ -3304,9 +3129,7 @@ PN_NET_SEARCH static bool Supervisor_Install_Start_enumerate(pn_ctx_t *cx, const
 {
     const net_marking_t *const m = marking;
     Supervisor_Install_Start_binding_t b = { 0 };
-    cx->origin = "page `Install`, transition `Start` (ID1412310632)";
-    cx->now = m->now;
-    cx->rounds = 0U;
+    pn_begin(cx, "page `Install`, transition `Start` (ID1412310632)", m->now);
     /* corrected: (n, p, d) (ID1412310691) */
     if (!m->Supervisor_corrected.full) {
         return true;
@@ -3320,13 +3143,12 @@ PN_NET_SEARCH static bool Supervisor_Install_Start_enumerate(pn_ctx_t *cx, const
     return true;
 }
 
-PN_NET_SEARCH static bool Supervisor_Install_Start_fire(pn_ctx_t *cx, void *marking, void *binding)
+PN_NET_SEARCH static bool Supervisor_Install_Start_fire(pn_ctx_t *cx, void *marking, uint32_t self, void *binding)
 {
     net_marking_t *const m = marking;
+    (void)self;
     Supervisor_Install_Start_binding_t *const b = binding;
-    cx->origin = "page `Install`, transition `Start` (ID1412310632)";
-    cx->now = m->now;
-    cx->rounds = 0U;
+    pn_begin(cx, "page `Install`, transition `Start` (ID1412310632)", m->now);
     WORK_t Supervisor_Install_work_token = (WORK_t){ .c1 = b->n, .c2 = pn_int_add(cx, b->n, 2),
         .c3 = b->p, .c4 = b->d };
     pn_bag_check(cx, &s_at_Supervisor_Install_work, &Supervisor_Install_work_token);
@@ -3381,9 +3203,7 @@ PN_NET_SEARCH static bool Supervisor_Install_Give_up_enumerate(pn_ctx_t *cx, con
 {
     const net_marking_t *const m = marking;
     Supervisor_Install_Give_up_binding_t b = { 0 };
-    cx->origin = "page `Install`, transition `Give up` (ID1412320067)";
-    cx->now = m->now;
-    cx->rounds = 0U;
+    pn_begin(cx, "page `Install`, transition `Give up` (ID1412320067)", m->now);
     /* riveted: () (ID1412320072) */
     if (!m->Supervisor_Install_riveted.full) {
         return true;
@@ -3406,13 +3226,12 @@ PN_NET_SEARCH static bool Supervisor_Install_Give_up_enumerate(pn_ctx_t *cx, con
     return true;
 }
 
-PN_NET_SEARCH static bool Supervisor_Install_Give_up_fire(pn_ctx_t *cx, void *marking, void *binding)
+PN_NET_SEARCH static bool Supervisor_Install_Give_up_fire(pn_ctx_t *cx, void *marking, uint32_t self, void *binding)
 {
     net_marking_t *const m = marking;
+    (void)self;
     (void)binding;
-    cx->origin = "page `Install`, transition `Give up` (ID1412320067)";
-    cx->now = m->now;
-    cx->rounds = 0U;
+    pn_begin(cx, "page `Install`, transition `Give up` (ID1412320067)", m->now);
     /* result: FAILED (ID1412320074): stays where it is */
     if (!m->Supervisor_Install_riveted.full || !m->Supervisor_Install_work.full) {
         pn_raise(cx, PN_ERR_SUBTRACT, NULL);
@@ -3427,272 +3246,6 @@ PN_NET_SEARCH static bool Supervisor_Install_Give_up_fire(pn_ctx_t *cx, void *ma
     m->Supervisor_Install_work.full = false;
     /* ended: () (ID1412320078) */
     m->Supervisor_ended.full = true;
-    return true;
-}
-
-/* transition Cell.Supervisor.Install.Shift.Command: page `MoveBoth`, transition `Command` (ID1412310941), cell.cpn:20061 */
-typedef struct Supervisor_Install_Shift_Command_binding {
-    int64_t c;
-    POSE_t p;
-    POSE_t q;
-} Supervisor_Install_Shift_Command_binding_t;
-
-static const pn_field_t s_variables_Supervisor_Install_Shift_Command[] = {
-    { "c", &s_COMMAND, offsetof(Supervisor_Install_Shift_Command_binding_t, c), false },
-    { "p", &s_POSE, offsetof(Supervisor_Install_Shift_Command_binding_t, p), false },
-    { "q", &s_POSE, offsetof(Supervisor_Install_Shift_Command_binding_t, q), false },
-};
-
-static const pn_type_t s_binding_Supervisor_Install_Shift_Command = {
-    .kind = PN_KIND_RECORD,
-    .name = "Cell.Supervisor.Install.Shift.Command",
-    .size = sizeof(Supervisor_Install_Shift_Command_binding_t),
-    .count = 3U,
-    .field = s_variables_Supervisor_Install_Shift_Command,
-};
-
-PN_NET_SEARCH static bool Supervisor_Install_Shift_Command_enumerate(pn_ctx_t *cx, const void *marking,
-    uint32_t self, pn_binding_sink_t sink, void *user)
-{
-    const net_marking_t *const m = marking;
-    Supervisor_Install_Shift_Command_binding_t b = { 0 };
-    cx->origin = "page `MoveBoth`, transition `Command` (ID1412310941)";
-    cx->now = m->now;
-    cx->rounds = 0U;
-    /* shift: (c, p, q) (ID1412310946) */
-    if (!m->Supervisor_Install_shift.full) {
-        return true;
-    }
-    b.c = m->Supervisor_Install_shift.value.c1;
-    b.p = m->Supervisor_Install_shift.value.c2;
-    b.q = m->Supervisor_Install_shift.value.c3;
-    if (!sink(user, self, &b)) {
-        return false;
-    }
-    return true;
-}
-
-PN_NET_SEARCH static bool Supervisor_Install_Shift_Command_fire(pn_ctx_t *cx, void *marking, void *binding)
-{
-    net_marking_t *const m = marking;
-    Supervisor_Install_Shift_Command_binding_t *const b = binding;
-    cx->origin = "page `MoveBoth`, transition `Command` (ID1412310941)";
-    cx->now = m->now;
-    cx->rounds = 0U;
-    if (!m->Supervisor_Install_shift.full) {
-        pn_raise(cx, PN_ERR_SUBTRACT, NULL);
-        return false;
-    }
-    if (m->Supervisor_Install_Shift_moving_1.full) {
-        return pn_bag_fail_full(cx, &s_at_Supervisor_Install_Shift_moving_1);
-    }
-    if (m->dadosrobo1.full) {
-        return pn_bag_fail_full(cx, &s_at_dadosrobo1);
-    }
-    if (m->flag1_interno.full) {
-        return pn_bag_fail_full(cx, &s_at_flag1_interno);
-    }
-    if (m->Supervisor_Install_Shift_moving_2.full) {
-        return pn_bag_fail_full(cx, &s_at_Supervisor_Install_Shift_moving_2);
-    }
-    if (m->dadosrobo2.full) {
-        return pn_bag_fail_full(cx, &s_at_dadosrobo2);
-    }
-    if (m->flag2_interno.full) {
-        return pn_bag_fail_full(cx, &s_at_flag2_interno);
-    }
-    /* shift: (c, p, q) (ID1412310946) */
-    m->Supervisor_Install_shift.full = false;
-    /* moving 1: () (ID1412310970) */
-    m->Supervisor_Install_Shift_moving_1.full = true;
-    /* dadosrobo1: p (ID1412310982) */
-    m->dadosrobo1.value = b->p;
-    m->dadosrobo1.full = true;
-    /* flag1_interno: c (ID1412310988) */
-    m->flag1_interno.value = b->c;
-    m->flag1_interno.full = true;
-    /* moving 2: () (ID1412311007) */
-    m->Supervisor_Install_Shift_moving_2.full = true;
-    /* dadosrobo2: q (ID1412311019) */
-    m->dadosrobo2.value = b->q;
-    m->dadosrobo2.full = true;
-    /* flag2_interno: c (ID1412311025) */
-    m->flag2_interno.value = b->c;
-    m->flag2_interno.full = true;
-    return true;
-}
-
-/* transition Cell.Supervisor.Install.Shift.Both: page `MoveBoth`, transition `Both` (ID1412310948), cell.cpn:20135 */
-typedef struct Supervisor_Install_Shift_Both_binding {
-    uint8_t none; /* no variables */
-} Supervisor_Install_Shift_Both_binding_t;
-
-static const pn_type_t s_binding_Supervisor_Install_Shift_Both = {
-    .kind = PN_KIND_RECORD,
-    .name = "Cell.Supervisor.Install.Shift.Both",
-    .size = sizeof(Supervisor_Install_Shift_Both_binding_t),
-    .count = 0U,
-    .field = NULL,
-};
-
-PN_NET_SEARCH static bool Supervisor_Install_Shift_Both_enumerate(pn_ctx_t *cx, const void *marking,
-    uint32_t self, pn_binding_sink_t sink, void *user)
-{
-    const net_marking_t *const m = marking;
-    Supervisor_Install_Shift_Both_binding_t b = { 0 };
-    cx->origin = "page `MoveBoth`, transition `Both` (ID1412310948)";
-    cx->now = m->now;
-    cx->rounds = 0U;
-    /* there 1: () (ID1412310976) */
-    if (!m->Supervisor_Install_Shift_there_1.full) {
-        return true;
-    }
-    /* there 2: () (ID1412311013) */
-    if (!m->Supervisor_Install_Shift_there_2.full) {
-        return true;
-    }
-    if (!sink(user, self, &b)) {
-        return false;
-    }
-    return true;
-}
-
-PN_NET_SEARCH static bool Supervisor_Install_Shift_Both_fire(pn_ctx_t *cx, void *marking, void *binding)
-{
-    net_marking_t *const m = marking;
-    (void)binding;
-    cx->origin = "page `MoveBoth`, transition `Both` (ID1412310948)";
-    cx->now = m->now;
-    cx->rounds = 0U;
-    if (!m->Supervisor_Install_Shift_there_1.full || !m->Supervisor_Install_Shift_there_2.full) {
-        pn_raise(cx, PN_ERR_SUBTRACT, NULL);
-        return false;
-    }
-    if (m->Supervisor_Install_ready.full) {
-        return pn_bag_fail_full(cx, &s_at_Supervisor_Install_ready);
-    }
-    /* there 1: () (ID1412310976) */
-    m->Supervisor_Install_Shift_there_1.full = false;
-    /* there 2: () (ID1412311013) */
-    m->Supervisor_Install_Shift_there_2.full = false;
-    /* ready: () (ID1412310957) */
-    m->Supervisor_Install_ready.full = true;
-    return true;
-}
-
-/* transition Cell.Supervisor.Install.Shift.Reply 1: page `MoveBoth`, transition `Reply 1` (ID1412310962), cell.cpn:20209 */
-typedef struct Supervisor_Install_Shift_Reply_1_binding {
-    uint8_t none; /* no variables */
-} Supervisor_Install_Shift_Reply_1_binding_t;
-
-static const pn_type_t s_binding_Supervisor_Install_Shift_Reply_1 = {
-    .kind = PN_KIND_RECORD,
-    .name = "Cell.Supervisor.Install.Shift.Reply 1",
-    .size = sizeof(Supervisor_Install_Shift_Reply_1_binding_t),
-    .count = 0U,
-    .field = NULL,
-};
-
-PN_NET_SEARCH static bool Supervisor_Install_Shift_Reply_1_enumerate(pn_ctx_t *cx, const void *marking,
-    uint32_t self, pn_binding_sink_t sink, void *user)
-{
-    const net_marking_t *const m = marking;
-    Supervisor_Install_Shift_Reply_1_binding_t b = { 0 };
-    cx->origin = "page `MoveBoth`, transition `Reply 1` (ID1412310962)";
-    cx->now = m->now;
-    cx->rounds = 0U;
-    /* moving 1: () (ID1412310972) */
-    if (!m->Supervisor_Install_Shift_moving_1.full) {
-        return true;
-    }
-    /* flag1_externo: DONE (ID1412310994) */
-    if (!m->flag1_externo.full || (m->flag1_externo.value != val_DONE)) {
-        return true;
-    }
-    if (!sink(user, self, &b)) {
-        return false;
-    }
-    return true;
-}
-
-PN_NET_SEARCH static bool Supervisor_Install_Shift_Reply_1_fire(pn_ctx_t *cx, void *marking, void *binding)
-{
-    net_marking_t *const m = marking;
-    (void)binding;
-    cx->origin = "page `MoveBoth`, transition `Reply 1` (ID1412310962)";
-    cx->now = m->now;
-    cx->rounds = 0U;
-    if (!m->Supervisor_Install_Shift_moving_1.full || !m->flag1_externo.full) {
-        pn_raise(cx, PN_ERR_SUBTRACT, NULL);
-        return false;
-    }
-    if (m->Supervisor_Install_Shift_there_1.full) {
-        return pn_bag_fail_full(cx, &s_at_Supervisor_Install_Shift_there_1);
-    }
-    /* moving 1: () (ID1412310972) */
-    m->Supervisor_Install_Shift_moving_1.full = false;
-    /* flag1_externo: DONE (ID1412310994) */
-    m->flag1_externo.full = false;
-    /* there 1: () (ID1412310974) */
-    m->Supervisor_Install_Shift_there_1.full = true;
-    return true;
-}
-
-/* transition Cell.Supervisor.Install.Shift.Reply 2: page `MoveBoth`, transition `Reply 2` (ID1412310999), cell.cpn:20283 */
-typedef struct Supervisor_Install_Shift_Reply_2_binding {
-    uint8_t none; /* no variables */
-} Supervisor_Install_Shift_Reply_2_binding_t;
-
-static const pn_type_t s_binding_Supervisor_Install_Shift_Reply_2 = {
-    .kind = PN_KIND_RECORD,
-    .name = "Cell.Supervisor.Install.Shift.Reply 2",
-    .size = sizeof(Supervisor_Install_Shift_Reply_2_binding_t),
-    .count = 0U,
-    .field = NULL,
-};
-
-PN_NET_SEARCH static bool Supervisor_Install_Shift_Reply_2_enumerate(pn_ctx_t *cx, const void *marking,
-    uint32_t self, pn_binding_sink_t sink, void *user)
-{
-    const net_marking_t *const m = marking;
-    Supervisor_Install_Shift_Reply_2_binding_t b = { 0 };
-    cx->origin = "page `MoveBoth`, transition `Reply 2` (ID1412310999)";
-    cx->now = m->now;
-    cx->rounds = 0U;
-    /* moving 2: () (ID1412311009) */
-    if (!m->Supervisor_Install_Shift_moving_2.full) {
-        return true;
-    }
-    /* flag2_externo: DONE (ID1412311031) */
-    if (!m->flag2_externo.full || (m->flag2_externo.value != val_DONE)) {
-        return true;
-    }
-    if (!sink(user, self, &b)) {
-        return false;
-    }
-    return true;
-}
-
-PN_NET_SEARCH static bool Supervisor_Install_Shift_Reply_2_fire(pn_ctx_t *cx, void *marking, void *binding)
-{
-    net_marking_t *const m = marking;
-    (void)binding;
-    cx->origin = "page `MoveBoth`, transition `Reply 2` (ID1412310999)";
-    cx->now = m->now;
-    cx->rounds = 0U;
-    if (!m->Supervisor_Install_Shift_moving_2.full || !m->flag2_externo.full) {
-        pn_raise(cx, PN_ERR_SUBTRACT, NULL);
-        return false;
-    }
-    if (m->Supervisor_Install_Shift_there_2.full) {
-        return pn_bag_fail_full(cx, &s_at_Supervisor_Install_Shift_there_2);
-    }
-    /* moving 2: () (ID1412311009) */
-    m->Supervisor_Install_Shift_moving_2.full = false;
-    /* flag2_externo: DONE (ID1412311031) */
-    m->flag2_externo.full = false;
-    /* there 2: () (ID1412311011) */
-    m->Supervisor_Install_Shift_there_2.full = true;
     return true;
 }
 
@@ -3714,9 +3267,7 @@ PN_NET_SEARCH static bool Supervisor_Install_Rivet_Go_in_enumerate(pn_ctx_t *cx,
 {
     const net_marking_t *const m = marking;
     Supervisor_Install_Rivet_Go_in_binding_t b = { 0 };
-    cx->origin = "page `Rivet`, transition `Go in` (ID1412310716)";
-    cx->now = m->now;
-    cx->rounds = 0U;
+    pn_begin(cx, "page `Rivet`, transition `Go in` (ID1412310716)", m->now);
     /* ready: () (ID1412310816) */
     if (!m->Supervisor_Install_ready.full) {
         return true;
@@ -3727,13 +3278,12 @@ PN_NET_SEARCH static bool Supervisor_Install_Rivet_Go_in_enumerate(pn_ctx_t *cx,
     return true;
 }
 
-PN_NET_SEARCH static bool Supervisor_Install_Rivet_Go_in_fire(pn_ctx_t *cx, void *marking, void *binding)
+PN_NET_SEARCH static bool Supervisor_Install_Rivet_Go_in_fire(pn_ctx_t *cx, void *marking, uint32_t self, void *binding)
 {
     net_marking_t *const m = marking;
+    (void)self;
     (void)binding;
-    cx->origin = "page `Rivet`, transition `Go in` (ID1412310716)";
-    cx->now = m->now;
-    cx->rounds = 0U;
+    pn_begin(cx, "page `Rivet`, transition `Go in` (ID1412310716)", m->now);
     PLAN_t Supervisor_Install_Rivet_advance_token = (PLAN_t){ .c1 = val_LINEAR,
         .c2 = ml_alongTool(val_approachDistance), .c3 = ml_alongTool(val_approachDistance) };
     pn_bag_check(cx, &s_at_Supervisor_Install_Rivet_advance,
@@ -3778,9 +3328,7 @@ PN_NET_SEARCH static bool Supervisor_Install_Rivet_Go_out_enumerate(pn_ctx_t *cx
 {
     const net_marking_t *const m = marking;
     Supervisor_Install_Rivet_Go_out_binding_t b = { 0 };
-    cx->origin = "page `Rivet`, transition `Go out` (ID1412310742)";
-    cx->now = m->now;
-    cx->rounds = 0U;
+    pn_begin(cx, "page `Rivet`, transition `Go out` (ID1412310742)", m->now);
     /* fastened: e (ID1412310828) */
     if (!m->Supervisor_Install_Rivet_fastened.full) {
         return true;
@@ -3792,13 +3340,12 @@ PN_NET_SEARCH static bool Supervisor_Install_Rivet_Go_out_enumerate(pn_ctx_t *cx
     return true;
 }
 
-PN_NET_SEARCH static bool Supervisor_Install_Rivet_Go_out_fire(pn_ctx_t *cx, void *marking, void *binding)
+PN_NET_SEARCH static bool Supervisor_Install_Rivet_Go_out_fire(pn_ctx_t *cx, void *marking, uint32_t self, void *binding)
 {
     net_marking_t *const m = marking;
+    (void)self;
     Supervisor_Install_Rivet_Go_out_binding_t *const b = binding;
-    cx->origin = "page `Rivet`, transition `Go out` (ID1412310742)";
-    cx->now = m->now;
-    cx->rounds = 0U;
+    pn_begin(cx, "page `Rivet`, transition `Go out` (ID1412310742)", m->now);
     PLAN_t Supervisor_Install_Rivet_retract_token = (PLAN_t){ .c1 = val_LINEAR,
         .c2 = ml_alongTool(-val_approachDistance), .c3 = ml_alongTool(-val_approachDistance) };
     pn_bag_check(cx, &s_at_Supervisor_Install_Rivet_retract,
@@ -3827,273 +3374,6 @@ PN_NET_SEARCH static bool Supervisor_Install_Rivet_Go_out_fire(pn_ctx_t *cx, voi
     return true;
 }
 
-/* transition Cell.Supervisor.Install.Rivet.Advance.Command: page `MoveBoth`, transition `Command` (ID1412310941), cell.cpn:20061 */
-typedef struct Supervisor_Install_Rivet_Advance_Command_binding {
-    int64_t c;
-    POSE_t p;
-    POSE_t q;
-} Supervisor_Install_Rivet_Advance_Command_binding_t;
-
-static const pn_field_t s_variables_Supervisor_Install_Rivet_Advance_Command[] = {
-    { "c", &s_COMMAND, offsetof(Supervisor_Install_Rivet_Advance_Command_binding_t, c), false },
-    { "p", &s_POSE, offsetof(Supervisor_Install_Rivet_Advance_Command_binding_t, p), false },
-    { "q", &s_POSE, offsetof(Supervisor_Install_Rivet_Advance_Command_binding_t, q), false },
-};
-
-static const pn_type_t s_binding_Supervisor_Install_Rivet_Advance_Command = {
-    .kind = PN_KIND_RECORD,
-    .name = "Cell.Supervisor.Install.Rivet.Advance.Command",
-    .size = sizeof(Supervisor_Install_Rivet_Advance_Command_binding_t),
-    .count = 3U,
-    .field = s_variables_Supervisor_Install_Rivet_Advance_Command,
-};
-
-PN_NET_SEARCH static bool Supervisor_Install_Rivet_Advance_Command_enumerate(pn_ctx_t *cx, const void *marking,
-    uint32_t self, pn_binding_sink_t sink, void *user)
-{
-    const net_marking_t *const m = marking;
-    Supervisor_Install_Rivet_Advance_Command_binding_t b = { 0 };
-    cx->origin = "page `MoveBoth`, transition `Command` (ID1412310941)";
-    cx->now = m->now;
-    cx->rounds = 0U;
-    /* advance: (c, p, q) (ID1412310946) */
-    if (!m->Supervisor_Install_Rivet_advance.full) {
-        return true;
-    }
-    b.c = m->Supervisor_Install_Rivet_advance.value.c1;
-    b.p = m->Supervisor_Install_Rivet_advance.value.c2;
-    b.q = m->Supervisor_Install_Rivet_advance.value.c3;
-    if (!sink(user, self, &b)) {
-        return false;
-    }
-    return true;
-}
-
-PN_NET_SEARCH static bool Supervisor_Install_Rivet_Advance_Command_fire(pn_ctx_t *cx, void *marking, void *binding)
-{
-    net_marking_t *const m = marking;
-    Supervisor_Install_Rivet_Advance_Command_binding_t *const b = binding;
-    cx->origin = "page `MoveBoth`, transition `Command` (ID1412310941)";
-    cx->now = m->now;
-    cx->rounds = 0U;
-    if (!m->Supervisor_Install_Rivet_advance.full) {
-        pn_raise(cx, PN_ERR_SUBTRACT, NULL);
-        return false;
-    }
-    if (m->Supervisor_Install_Rivet_Advance_moving_1.full) {
-        return pn_bag_fail_full(cx, &s_at_Supervisor_Install_Rivet_Advance_moving_1);
-    }
-    if (m->dadosrobo1.full) {
-        return pn_bag_fail_full(cx, &s_at_dadosrobo1);
-    }
-    if (m->flag1_interno.full) {
-        return pn_bag_fail_full(cx, &s_at_flag1_interno);
-    }
-    if (m->Supervisor_Install_Rivet_Advance_moving_2.full) {
-        return pn_bag_fail_full(cx, &s_at_Supervisor_Install_Rivet_Advance_moving_2);
-    }
-    if (m->dadosrobo2.full) {
-        return pn_bag_fail_full(cx, &s_at_dadosrobo2);
-    }
-    if (m->flag2_interno.full) {
-        return pn_bag_fail_full(cx, &s_at_flag2_interno);
-    }
-    /* advance: (c, p, q) (ID1412310946) */
-    m->Supervisor_Install_Rivet_advance.full = false;
-    /* moving 1: () (ID1412310970) */
-    m->Supervisor_Install_Rivet_Advance_moving_1.full = true;
-    /* dadosrobo1: p (ID1412310982) */
-    m->dadosrobo1.value = b->p;
-    m->dadosrobo1.full = true;
-    /* flag1_interno: c (ID1412310988) */
-    m->flag1_interno.value = b->c;
-    m->flag1_interno.full = true;
-    /* moving 2: () (ID1412311007) */
-    m->Supervisor_Install_Rivet_Advance_moving_2.full = true;
-    /* dadosrobo2: q (ID1412311019) */
-    m->dadosrobo2.value = b->q;
-    m->dadosrobo2.full = true;
-    /* flag2_interno: c (ID1412311025) */
-    m->flag2_interno.value = b->c;
-    m->flag2_interno.full = true;
-    return true;
-}
-
-/* transition Cell.Supervisor.Install.Rivet.Advance.Both: page `MoveBoth`, transition `Both` (ID1412310948), cell.cpn:20135 */
-typedef struct Supervisor_Install_Rivet_Advance_Both_binding {
-    uint8_t none; /* no variables */
-} Supervisor_Install_Rivet_Advance_Both_binding_t;
-
-static const pn_type_t s_binding_Supervisor_Install_Rivet_Advance_Both = {
-    .kind = PN_KIND_RECORD,
-    .name = "Cell.Supervisor.Install.Rivet.Advance.Both",
-    .size = sizeof(Supervisor_Install_Rivet_Advance_Both_binding_t),
-    .count = 0U,
-    .field = NULL,
-};
-
-PN_NET_SEARCH static bool Supervisor_Install_Rivet_Advance_Both_enumerate(pn_ctx_t *cx, const void *marking,
-    uint32_t self, pn_binding_sink_t sink, void *user)
-{
-    const net_marking_t *const m = marking;
-    Supervisor_Install_Rivet_Advance_Both_binding_t b = { 0 };
-    cx->origin = "page `MoveBoth`, transition `Both` (ID1412310948)";
-    cx->now = m->now;
-    cx->rounds = 0U;
-    /* there 1: () (ID1412310976) */
-    if (!m->Supervisor_Install_Rivet_Advance_there_1.full) {
-        return true;
-    }
-    /* there 2: () (ID1412311013) */
-    if (!m->Supervisor_Install_Rivet_Advance_there_2.full) {
-        return true;
-    }
-    if (!sink(user, self, &b)) {
-        return false;
-    }
-    return true;
-}
-
-PN_NET_SEARCH static bool Supervisor_Install_Rivet_Advance_Both_fire(pn_ctx_t *cx, void *marking, void *binding)
-{
-    net_marking_t *const m = marking;
-    (void)binding;
-    cx->origin = "page `MoveBoth`, transition `Both` (ID1412310948)";
-    cx->now = m->now;
-    cx->rounds = 0U;
-    if (!m->Supervisor_Install_Rivet_Advance_there_1.full
-        || !m->Supervisor_Install_Rivet_Advance_there_2.full) {
-        pn_raise(cx, PN_ERR_SUBTRACT, NULL);
-        return false;
-    }
-    if (m->Supervisor_Install_Rivet_contact.full) {
-        return pn_bag_fail_full(cx, &s_at_Supervisor_Install_Rivet_contact);
-    }
-    /* there 1: () (ID1412310976) */
-    m->Supervisor_Install_Rivet_Advance_there_1.full = false;
-    /* there 2: () (ID1412311013) */
-    m->Supervisor_Install_Rivet_Advance_there_2.full = false;
-    /* contact: () (ID1412310957) */
-    m->Supervisor_Install_Rivet_contact.full = true;
-    return true;
-}
-
-/* transition Cell.Supervisor.Install.Rivet.Advance.Reply 1: page `MoveBoth`, transition `Reply 1` (ID1412310962), cell.cpn:20209 */
-typedef struct Supervisor_Install_Rivet_Advance_Reply_1_binding {
-    uint8_t none; /* no variables */
-} Supervisor_Install_Rivet_Advance_Reply_1_binding_t;
-
-static const pn_type_t s_binding_Supervisor_Install_Rivet_Advance_Reply_1 = {
-    .kind = PN_KIND_RECORD,
-    .name = "Cell.Supervisor.Install.Rivet.Advance.Reply 1",
-    .size = sizeof(Supervisor_Install_Rivet_Advance_Reply_1_binding_t),
-    .count = 0U,
-    .field = NULL,
-};
-
-PN_NET_SEARCH static bool Supervisor_Install_Rivet_Advance_Reply_1_enumerate(pn_ctx_t *cx, const void *marking,
-    uint32_t self, pn_binding_sink_t sink, void *user)
-{
-    const net_marking_t *const m = marking;
-    Supervisor_Install_Rivet_Advance_Reply_1_binding_t b = { 0 };
-    cx->origin = "page `MoveBoth`, transition `Reply 1` (ID1412310962)";
-    cx->now = m->now;
-    cx->rounds = 0U;
-    /* moving 1: () (ID1412310972) */
-    if (!m->Supervisor_Install_Rivet_Advance_moving_1.full) {
-        return true;
-    }
-    /* flag1_externo: DONE (ID1412310994) */
-    if (!m->flag1_externo.full || (m->flag1_externo.value != val_DONE)) {
-        return true;
-    }
-    if (!sink(user, self, &b)) {
-        return false;
-    }
-    return true;
-}
-
-PN_NET_SEARCH static bool Supervisor_Install_Rivet_Advance_Reply_1_fire(pn_ctx_t *cx, void *marking, void *binding)
-{
-    net_marking_t *const m = marking;
-    (void)binding;
-    cx->origin = "page `MoveBoth`, transition `Reply 1` (ID1412310962)";
-    cx->now = m->now;
-    cx->rounds = 0U;
-    if (!m->Supervisor_Install_Rivet_Advance_moving_1.full || !m->flag1_externo.full) {
-        pn_raise(cx, PN_ERR_SUBTRACT, NULL);
-        return false;
-    }
-    if (m->Supervisor_Install_Rivet_Advance_there_1.full) {
-        return pn_bag_fail_full(cx, &s_at_Supervisor_Install_Rivet_Advance_there_1);
-    }
-    /* moving 1: () (ID1412310972) */
-    m->Supervisor_Install_Rivet_Advance_moving_1.full = false;
-    /* flag1_externo: DONE (ID1412310994) */
-    m->flag1_externo.full = false;
-    /* there 1: () (ID1412310974) */
-    m->Supervisor_Install_Rivet_Advance_there_1.full = true;
-    return true;
-}
-
-/* transition Cell.Supervisor.Install.Rivet.Advance.Reply 2: page `MoveBoth`, transition `Reply 2` (ID1412310999), cell.cpn:20283 */
-typedef struct Supervisor_Install_Rivet_Advance_Reply_2_binding {
-    uint8_t none; /* no variables */
-} Supervisor_Install_Rivet_Advance_Reply_2_binding_t;
-
-static const pn_type_t s_binding_Supervisor_Install_Rivet_Advance_Reply_2 = {
-    .kind = PN_KIND_RECORD,
-    .name = "Cell.Supervisor.Install.Rivet.Advance.Reply 2",
-    .size = sizeof(Supervisor_Install_Rivet_Advance_Reply_2_binding_t),
-    .count = 0U,
-    .field = NULL,
-};
-
-PN_NET_SEARCH static bool Supervisor_Install_Rivet_Advance_Reply_2_enumerate(pn_ctx_t *cx, const void *marking,
-    uint32_t self, pn_binding_sink_t sink, void *user)
-{
-    const net_marking_t *const m = marking;
-    Supervisor_Install_Rivet_Advance_Reply_2_binding_t b = { 0 };
-    cx->origin = "page `MoveBoth`, transition `Reply 2` (ID1412310999)";
-    cx->now = m->now;
-    cx->rounds = 0U;
-    /* moving 2: () (ID1412311009) */
-    if (!m->Supervisor_Install_Rivet_Advance_moving_2.full) {
-        return true;
-    }
-    /* flag2_externo: DONE (ID1412311031) */
-    if (!m->flag2_externo.full || (m->flag2_externo.value != val_DONE)) {
-        return true;
-    }
-    if (!sink(user, self, &b)) {
-        return false;
-    }
-    return true;
-}
-
-PN_NET_SEARCH static bool Supervisor_Install_Rivet_Advance_Reply_2_fire(pn_ctx_t *cx, void *marking, void *binding)
-{
-    net_marking_t *const m = marking;
-    (void)binding;
-    cx->origin = "page `MoveBoth`, transition `Reply 2` (ID1412310999)";
-    cx->now = m->now;
-    cx->rounds = 0U;
-    if (!m->Supervisor_Install_Rivet_Advance_moving_2.full || !m->flag2_externo.full) {
-        pn_raise(cx, PN_ERR_SUBTRACT, NULL);
-        return false;
-    }
-    if (m->Supervisor_Install_Rivet_Advance_there_2.full) {
-        return pn_bag_fail_full(cx, &s_at_Supervisor_Install_Rivet_Advance_there_2);
-    }
-    /* moving 2: () (ID1412311009) */
-    m->Supervisor_Install_Rivet_Advance_moving_2.full = false;
-    /* flag2_externo: DONE (ID1412311031) */
-    m->flag2_externo.full = false;
-    /* there 2: () (ID1412311011) */
-    m->Supervisor_Install_Rivet_Advance_there_2.full = true;
-    return true;
-}
-
 /* transition Cell.Supervisor.Install.Rivet.Fasten.Press: page `Fasten`, transition `Press` (ID1412310842), cell.cpn:17716 */
 typedef struct Supervisor_Install_Rivet_Fasten_Press_binding {
     uint8_t none; /* no variables */
@@ -4112,9 +3392,7 @@ PN_NET_SEARCH static bool Supervisor_Install_Rivet_Fasten_Press_enumerate(pn_ctx
 {
     const net_marking_t *const m = marking;
     Supervisor_Install_Rivet_Fasten_Press_binding_t b = { 0 };
-    cx->origin = "page `Fasten`, transition `Press` (ID1412310842)";
-    cx->now = m->now;
-    cx->rounds = 0U;
+    pn_begin(cx, "page `Fasten`, transition `Press` (ID1412310842)", m->now);
     /* contact: () (ID1412310883) */
     if (!m->Supervisor_Install_Rivet_contact.full) {
         return true;
@@ -4125,13 +3403,12 @@ PN_NET_SEARCH static bool Supervisor_Install_Rivet_Fasten_Press_enumerate(pn_ctx
     return true;
 }
 
-PN_NET_SEARCH static bool Supervisor_Install_Rivet_Fasten_Press_fire(pn_ctx_t *cx, void *marking, void *binding)
+PN_NET_SEARCH static bool Supervisor_Install_Rivet_Fasten_Press_fire(pn_ctx_t *cx, void *marking, uint32_t self, void *binding)
 {
     net_marking_t *const m = marking;
+    (void)self;
     (void)binding;
-    cx->origin = "page `Fasten`, transition `Press` (ID1412310842)";
-    cx->now = m->now;
-    cx->rounds = 0U;
+    pn_begin(cx, "page `Fasten`, transition `Press` (ID1412310842)", m->now);
     int64_t flag2_interno_token = val_PRESS;
     pn_bag_check(cx, &s_at_flag2_interno, &flag2_interno_token);
     if (!pn_ok(cx)) {
@@ -4175,9 +3452,7 @@ PN_NET_SEARCH static bool Supervisor_Install_Rivet_Fasten_Drill_enumerate(pn_ctx
 {
     const net_marking_t *const m = marking;
     Supervisor_Install_Rivet_Fasten_Drill_binding_t b = { 0 };
-    cx->origin = "page `Fasten`, transition `Drill` (ID1412310850)";
-    cx->now = m->now;
-    cx->rounds = 0U;
+    pn_begin(cx, "page `Fasten`, transition `Drill` (ID1412310850)", m->now);
     /* pressing: () (ID1412310887) */
     if (!m->Supervisor_Install_Rivet_Fasten_pressing.full) {
         return true;
@@ -4192,13 +3467,12 @@ PN_NET_SEARCH static bool Supervisor_Install_Rivet_Fasten_Drill_enumerate(pn_ctx
     return true;
 }
 
-PN_NET_SEARCH static bool Supervisor_Install_Rivet_Fasten_Drill_fire(pn_ctx_t *cx, void *marking, void *binding)
+PN_NET_SEARCH static bool Supervisor_Install_Rivet_Fasten_Drill_fire(pn_ctx_t *cx, void *marking, uint32_t self, void *binding)
 {
     net_marking_t *const m = marking;
+    (void)self;
     (void)binding;
-    cx->origin = "page `Fasten`, transition `Drill` (ID1412310850)";
-    cx->now = m->now;
-    cx->rounds = 0U;
+    pn_begin(cx, "page `Fasten`, transition `Drill` (ID1412310850)", m->now);
     int64_t flag1_interno_token = val_DRILL;
     pn_bag_check(cx, &s_at_flag1_interno, &flag1_interno_token);
     if (!pn_ok(cx)) {
@@ -4244,9 +3518,7 @@ PN_NET_SEARCH static bool Supervisor_Install_Rivet_Fasten_Insert_enumerate(pn_ct
 {
     const net_marking_t *const m = marking;
     Supervisor_Install_Rivet_Fasten_Insert_binding_t b = { 0 };
-    cx->origin = "page `Fasten`, transition `Insert` (ID1412310858)";
-    cx->now = m->now;
-    cx->rounds = 0U;
+    pn_begin(cx, "page `Fasten`, transition `Insert` (ID1412310858)", m->now);
     /* drilling: () (ID1412310891) */
     if (!m->Supervisor_Install_Rivet_Fasten_drilling.full) {
         return true;
@@ -4261,13 +3533,12 @@ PN_NET_SEARCH static bool Supervisor_Install_Rivet_Fasten_Insert_enumerate(pn_ct
     return true;
 }
 
-PN_NET_SEARCH static bool Supervisor_Install_Rivet_Fasten_Insert_fire(pn_ctx_t *cx, void *marking, void *binding)
+PN_NET_SEARCH static bool Supervisor_Install_Rivet_Fasten_Insert_fire(pn_ctx_t *cx, void *marking, uint32_t self, void *binding)
 {
     net_marking_t *const m = marking;
+    (void)self;
     (void)binding;
-    cx->origin = "page `Fasten`, transition `Insert` (ID1412310858)";
-    cx->now = m->now;
-    cx->rounds = 0U;
+    pn_begin(cx, "page `Fasten`, transition `Insert` (ID1412310858)", m->now);
     int64_t flag1_interno_token = val_INSERT;
     pn_bag_check(cx, &s_at_flag1_interno, &flag1_interno_token);
     if (!pn_ok(cx)) {
@@ -4317,9 +3588,7 @@ PN_NET_SEARCH static bool Supervisor_Install_Rivet_Fasten_Release_enumerate(pn_c
 {
     const net_marking_t *const m = marking;
     Supervisor_Install_Rivet_Fasten_Release_binding_t b = { 0 };
-    cx->origin = "page `Fasten`, transition `Release` (ID1412310866)";
-    cx->now = m->now;
-    cx->rounds = 0U;
+    pn_begin(cx, "page `Fasten`, transition `Release` (ID1412310866)", m->now);
     /* inserting: () (ID1412310895) */
     if (!m->Supervisor_Install_Rivet_Fasten_inserting.full) {
         return true;
@@ -4335,13 +3604,12 @@ PN_NET_SEARCH static bool Supervisor_Install_Rivet_Fasten_Release_enumerate(pn_c
     return true;
 }
 
-PN_NET_SEARCH static bool Supervisor_Install_Rivet_Fasten_Release_fire(pn_ctx_t *cx, void *marking, void *binding)
+PN_NET_SEARCH static bool Supervisor_Install_Rivet_Fasten_Release_fire(pn_ctx_t *cx, void *marking, uint32_t self, void *binding)
 {
     net_marking_t *const m = marking;
+    (void)self;
     Supervisor_Install_Rivet_Fasten_Release_binding_t *const b = binding;
-    cx->origin = "page `Fasten`, transition `Release` (ID1412310866)";
-    cx->now = m->now;
-    cx->rounds = 0U;
+    pn_begin(cx, "page `Fasten`, transition `Release` (ID1412310866)", m->now);
     int64_t flag2_interno_token = val_RELEASE;
     pn_bag_check(cx, &s_at_flag2_interno, &flag2_interno_token);
     if (!pn_ok(cx)) {
@@ -4394,9 +3662,7 @@ PN_NET_SEARCH static bool Supervisor_Install_Rivet_Fasten_Finish_enumerate(pn_ct
 {
     const net_marking_t *const m = marking;
     Supervisor_Install_Rivet_Fasten_Finish_binding_t b = { 0 };
-    cx->origin = "page `Fasten`, transition `Finish` (ID1412310874)";
-    cx->now = m->now;
-    cx->rounds = 0U;
+    pn_begin(cx, "page `Fasten`, transition `Finish` (ID1412310874)", m->now);
     /* releasing: e (ID1412310899) */
     if (!m->Supervisor_Install_Rivet_Fasten_releasing.full) {
         return true;
@@ -4413,13 +3679,12 @@ PN_NET_SEARCH static bool Supervisor_Install_Rivet_Fasten_Finish_enumerate(pn_ct
     return true;
 }
 
-PN_NET_SEARCH static bool Supervisor_Install_Rivet_Fasten_Finish_fire(pn_ctx_t *cx, void *marking, void *binding)
+PN_NET_SEARCH static bool Supervisor_Install_Rivet_Fasten_Finish_fire(pn_ctx_t *cx, void *marking, uint32_t self, void *binding)
 {
     net_marking_t *const m = marking;
+    (void)self;
     Supervisor_Install_Rivet_Fasten_Finish_binding_t *const b = binding;
-    cx->origin = "page `Fasten`, transition `Finish` (ID1412310874)";
-    cx->now = m->now;
-    cx->rounds = 0U;
+    pn_begin(cx, "page `Fasten`, transition `Finish` (ID1412310874)", m->now);
     int64_t Supervisor_Install_Rivet_fastened_token = ml_worse(b->e, b->f);
     pn_bag_check(cx, &s_at_Supervisor_Install_Rivet_fastened,
         &Supervisor_Install_Rivet_fastened_token);
@@ -4461,9 +3726,7 @@ PN_NET_SEARCH static bool Supervisor_Install_Rivet_Fasten_Press_failed_enumerate
 {
     const net_marking_t *const m = marking;
     Supervisor_Install_Rivet_Fasten_Press_failed_binding_t b = { 0 };
-    cx->origin = "page `Fasten`, transition `Press failed` (ID1412320087)";
-    cx->now = m->now;
-    cx->rounds = 0U;
+    pn_begin(cx, "page `Fasten`, transition `Press failed` (ID1412320087)", m->now);
     /* pressing: () (ID1412320097) */
     if (!m->Supervisor_Install_Rivet_Fasten_pressing.full) {
         return true;
@@ -4478,13 +3741,12 @@ PN_NET_SEARCH static bool Supervisor_Install_Rivet_Fasten_Press_failed_enumerate
     return true;
 }
 
-PN_NET_SEARCH static bool Supervisor_Install_Rivet_Fasten_Press_failed_fire(pn_ctx_t *cx, void *marking, void *binding)
+PN_NET_SEARCH static bool Supervisor_Install_Rivet_Fasten_Press_failed_fire(pn_ctx_t *cx, void *marking, uint32_t self, void *binding)
 {
     net_marking_t *const m = marking;
+    (void)self;
     (void)binding;
-    cx->origin = "page `Fasten`, transition `Press failed` (ID1412320087)";
-    cx->now = m->now;
-    cx->rounds = 0U;
+    pn_begin(cx, "page `Fasten`, transition `Press failed` (ID1412320087)", m->now);
     int64_t flag2_interno_token = val_RELEASE;
     pn_bag_check(cx, &s_at_flag2_interno, &flag2_interno_token);
     const int64_t Supervisor_Install_Rivet_Fasten_releasing_token = val_FAILED;
@@ -4533,9 +3795,7 @@ PN_NET_SEARCH static bool Supervisor_Install_Rivet_Fasten_Drill_failed_enumerate
 {
     const net_marking_t *const m = marking;
     Supervisor_Install_Rivet_Fasten_Drill_failed_binding_t b = { 0 };
-    cx->origin = "page `Fasten`, transition `Drill failed` (ID1412320092)";
-    cx->now = m->now;
-    cx->rounds = 0U;
+    pn_begin(cx, "page `Fasten`, transition `Drill failed` (ID1412320092)", m->now);
     /* drilling: () (ID1412320099) */
     if (!m->Supervisor_Install_Rivet_Fasten_drilling.full) {
         return true;
@@ -4550,13 +3810,12 @@ PN_NET_SEARCH static bool Supervisor_Install_Rivet_Fasten_Drill_failed_enumerate
     return true;
 }
 
-PN_NET_SEARCH static bool Supervisor_Install_Rivet_Fasten_Drill_failed_fire(pn_ctx_t *cx, void *marking, void *binding)
+PN_NET_SEARCH static bool Supervisor_Install_Rivet_Fasten_Drill_failed_fire(pn_ctx_t *cx, void *marking, uint32_t self, void *binding)
 {
     net_marking_t *const m = marking;
+    (void)self;
     (void)binding;
-    cx->origin = "page `Fasten`, transition `Drill failed` (ID1412320092)";
-    cx->now = m->now;
-    cx->rounds = 0U;
+    pn_begin(cx, "page `Fasten`, transition `Drill failed` (ID1412320092)", m->now);
     int64_t flag2_interno_token = val_RELEASE;
     pn_bag_check(cx, &s_at_flag2_interno, &flag2_interno_token);
     const int64_t Supervisor_Install_Rivet_Fasten_releasing_token = val_FAILED;
@@ -4587,539 +3846,6 @@ PN_NET_SEARCH static bool Supervisor_Install_Rivet_Fasten_Drill_failed_fire(pn_c
     return true;
 }
 
-/* transition Cell.Supervisor.Install.Rivet.Retract.Command: page `MoveBoth`, transition `Command` (ID1412310941), cell.cpn:20061 */
-typedef struct Supervisor_Install_Rivet_Retract_Command_binding {
-    int64_t c;
-    POSE_t p;
-    POSE_t q;
-} Supervisor_Install_Rivet_Retract_Command_binding_t;
-
-static const pn_field_t s_variables_Supervisor_Install_Rivet_Retract_Command[] = {
-    { "c", &s_COMMAND, offsetof(Supervisor_Install_Rivet_Retract_Command_binding_t, c), false },
-    { "p", &s_POSE, offsetof(Supervisor_Install_Rivet_Retract_Command_binding_t, p), false },
-    { "q", &s_POSE, offsetof(Supervisor_Install_Rivet_Retract_Command_binding_t, q), false },
-};
-
-static const pn_type_t s_binding_Supervisor_Install_Rivet_Retract_Command = {
-    .kind = PN_KIND_RECORD,
-    .name = "Cell.Supervisor.Install.Rivet.Retract.Command",
-    .size = sizeof(Supervisor_Install_Rivet_Retract_Command_binding_t),
-    .count = 3U,
-    .field = s_variables_Supervisor_Install_Rivet_Retract_Command,
-};
-
-PN_NET_SEARCH static bool Supervisor_Install_Rivet_Retract_Command_enumerate(pn_ctx_t *cx, const void *marking,
-    uint32_t self, pn_binding_sink_t sink, void *user)
-{
-    const net_marking_t *const m = marking;
-    Supervisor_Install_Rivet_Retract_Command_binding_t b = { 0 };
-    cx->origin = "page `MoveBoth`, transition `Command` (ID1412310941)";
-    cx->now = m->now;
-    cx->rounds = 0U;
-    /* retract: (c, p, q) (ID1412310946) */
-    if (!m->Supervisor_Install_Rivet_retract.full) {
-        return true;
-    }
-    b.c = m->Supervisor_Install_Rivet_retract.value.c1;
-    b.p = m->Supervisor_Install_Rivet_retract.value.c2;
-    b.q = m->Supervisor_Install_Rivet_retract.value.c3;
-    if (!sink(user, self, &b)) {
-        return false;
-    }
-    return true;
-}
-
-PN_NET_SEARCH static bool Supervisor_Install_Rivet_Retract_Command_fire(pn_ctx_t *cx, void *marking, void *binding)
-{
-    net_marking_t *const m = marking;
-    Supervisor_Install_Rivet_Retract_Command_binding_t *const b = binding;
-    cx->origin = "page `MoveBoth`, transition `Command` (ID1412310941)";
-    cx->now = m->now;
-    cx->rounds = 0U;
-    if (!m->Supervisor_Install_Rivet_retract.full) {
-        pn_raise(cx, PN_ERR_SUBTRACT, NULL);
-        return false;
-    }
-    if (m->Supervisor_Install_Rivet_Retract_moving_1.full) {
-        return pn_bag_fail_full(cx, &s_at_Supervisor_Install_Rivet_Retract_moving_1);
-    }
-    if (m->dadosrobo1.full) {
-        return pn_bag_fail_full(cx, &s_at_dadosrobo1);
-    }
-    if (m->flag1_interno.full) {
-        return pn_bag_fail_full(cx, &s_at_flag1_interno);
-    }
-    if (m->Supervisor_Install_Rivet_Retract_moving_2.full) {
-        return pn_bag_fail_full(cx, &s_at_Supervisor_Install_Rivet_Retract_moving_2);
-    }
-    if (m->dadosrobo2.full) {
-        return pn_bag_fail_full(cx, &s_at_dadosrobo2);
-    }
-    if (m->flag2_interno.full) {
-        return pn_bag_fail_full(cx, &s_at_flag2_interno);
-    }
-    /* retract: (c, p, q) (ID1412310946) */
-    m->Supervisor_Install_Rivet_retract.full = false;
-    /* moving 1: () (ID1412310970) */
-    m->Supervisor_Install_Rivet_Retract_moving_1.full = true;
-    /* dadosrobo1: p (ID1412310982) */
-    m->dadosrobo1.value = b->p;
-    m->dadosrobo1.full = true;
-    /* flag1_interno: c (ID1412310988) */
-    m->flag1_interno.value = b->c;
-    m->flag1_interno.full = true;
-    /* moving 2: () (ID1412311007) */
-    m->Supervisor_Install_Rivet_Retract_moving_2.full = true;
-    /* dadosrobo2: q (ID1412311019) */
-    m->dadosrobo2.value = b->q;
-    m->dadosrobo2.full = true;
-    /* flag2_interno: c (ID1412311025) */
-    m->flag2_interno.value = b->c;
-    m->flag2_interno.full = true;
-    return true;
-}
-
-/* transition Cell.Supervisor.Install.Rivet.Retract.Both: page `MoveBoth`, transition `Both` (ID1412310948), cell.cpn:20135 */
-typedef struct Supervisor_Install_Rivet_Retract_Both_binding {
-    uint8_t none; /* no variables */
-} Supervisor_Install_Rivet_Retract_Both_binding_t;
-
-static const pn_type_t s_binding_Supervisor_Install_Rivet_Retract_Both = {
-    .kind = PN_KIND_RECORD,
-    .name = "Cell.Supervisor.Install.Rivet.Retract.Both",
-    .size = sizeof(Supervisor_Install_Rivet_Retract_Both_binding_t),
-    .count = 0U,
-    .field = NULL,
-};
-
-PN_NET_SEARCH static bool Supervisor_Install_Rivet_Retract_Both_enumerate(pn_ctx_t *cx, const void *marking,
-    uint32_t self, pn_binding_sink_t sink, void *user)
-{
-    const net_marking_t *const m = marking;
-    Supervisor_Install_Rivet_Retract_Both_binding_t b = { 0 };
-    cx->origin = "page `MoveBoth`, transition `Both` (ID1412310948)";
-    cx->now = m->now;
-    cx->rounds = 0U;
-    /* there 1: () (ID1412310976) */
-    if (!m->Supervisor_Install_Rivet_Retract_there_1.full) {
-        return true;
-    }
-    /* there 2: () (ID1412311013) */
-    if (!m->Supervisor_Install_Rivet_Retract_there_2.full) {
-        return true;
-    }
-    if (!sink(user, self, &b)) {
-        return false;
-    }
-    return true;
-}
-
-PN_NET_SEARCH static bool Supervisor_Install_Rivet_Retract_Both_fire(pn_ctx_t *cx, void *marking, void *binding)
-{
-    net_marking_t *const m = marking;
-    (void)binding;
-    cx->origin = "page `MoveBoth`, transition `Both` (ID1412310948)";
-    cx->now = m->now;
-    cx->rounds = 0U;
-    if (!m->Supervisor_Install_Rivet_Retract_there_1.full
-        || !m->Supervisor_Install_Rivet_Retract_there_2.full) {
-        pn_raise(cx, PN_ERR_SUBTRACT, NULL);
-        return false;
-    }
-    if (m->Supervisor_Install_riveted.full) {
-        return pn_bag_fail_full(cx, &s_at_Supervisor_Install_riveted);
-    }
-    /* there 1: () (ID1412310976) */
-    m->Supervisor_Install_Rivet_Retract_there_1.full = false;
-    /* there 2: () (ID1412311013) */
-    m->Supervisor_Install_Rivet_Retract_there_2.full = false;
-    /* riveted: () (ID1412310957) */
-    m->Supervisor_Install_riveted.full = true;
-    return true;
-}
-
-/* transition Cell.Supervisor.Install.Rivet.Retract.Reply 1: page `MoveBoth`, transition `Reply 1` (ID1412310962), cell.cpn:20209 */
-typedef struct Supervisor_Install_Rivet_Retract_Reply_1_binding {
-    uint8_t none; /* no variables */
-} Supervisor_Install_Rivet_Retract_Reply_1_binding_t;
-
-static const pn_type_t s_binding_Supervisor_Install_Rivet_Retract_Reply_1 = {
-    .kind = PN_KIND_RECORD,
-    .name = "Cell.Supervisor.Install.Rivet.Retract.Reply 1",
-    .size = sizeof(Supervisor_Install_Rivet_Retract_Reply_1_binding_t),
-    .count = 0U,
-    .field = NULL,
-};
-
-PN_NET_SEARCH static bool Supervisor_Install_Rivet_Retract_Reply_1_enumerate(pn_ctx_t *cx, const void *marking,
-    uint32_t self, pn_binding_sink_t sink, void *user)
-{
-    const net_marking_t *const m = marking;
-    Supervisor_Install_Rivet_Retract_Reply_1_binding_t b = { 0 };
-    cx->origin = "page `MoveBoth`, transition `Reply 1` (ID1412310962)";
-    cx->now = m->now;
-    cx->rounds = 0U;
-    /* moving 1: () (ID1412310972) */
-    if (!m->Supervisor_Install_Rivet_Retract_moving_1.full) {
-        return true;
-    }
-    /* flag1_externo: DONE (ID1412310994) */
-    if (!m->flag1_externo.full || (m->flag1_externo.value != val_DONE)) {
-        return true;
-    }
-    if (!sink(user, self, &b)) {
-        return false;
-    }
-    return true;
-}
-
-PN_NET_SEARCH static bool Supervisor_Install_Rivet_Retract_Reply_1_fire(pn_ctx_t *cx, void *marking, void *binding)
-{
-    net_marking_t *const m = marking;
-    (void)binding;
-    cx->origin = "page `MoveBoth`, transition `Reply 1` (ID1412310962)";
-    cx->now = m->now;
-    cx->rounds = 0U;
-    if (!m->Supervisor_Install_Rivet_Retract_moving_1.full || !m->flag1_externo.full) {
-        pn_raise(cx, PN_ERR_SUBTRACT, NULL);
-        return false;
-    }
-    if (m->Supervisor_Install_Rivet_Retract_there_1.full) {
-        return pn_bag_fail_full(cx, &s_at_Supervisor_Install_Rivet_Retract_there_1);
-    }
-    /* moving 1: () (ID1412310972) */
-    m->Supervisor_Install_Rivet_Retract_moving_1.full = false;
-    /* flag1_externo: DONE (ID1412310994) */
-    m->flag1_externo.full = false;
-    /* there 1: () (ID1412310974) */
-    m->Supervisor_Install_Rivet_Retract_there_1.full = true;
-    return true;
-}
-
-/* transition Cell.Supervisor.Install.Rivet.Retract.Reply 2: page `MoveBoth`, transition `Reply 2` (ID1412310999), cell.cpn:20283 */
-typedef struct Supervisor_Install_Rivet_Retract_Reply_2_binding {
-    uint8_t none; /* no variables */
-} Supervisor_Install_Rivet_Retract_Reply_2_binding_t;
-
-static const pn_type_t s_binding_Supervisor_Install_Rivet_Retract_Reply_2 = {
-    .kind = PN_KIND_RECORD,
-    .name = "Cell.Supervisor.Install.Rivet.Retract.Reply 2",
-    .size = sizeof(Supervisor_Install_Rivet_Retract_Reply_2_binding_t),
-    .count = 0U,
-    .field = NULL,
-};
-
-PN_NET_SEARCH static bool Supervisor_Install_Rivet_Retract_Reply_2_enumerate(pn_ctx_t *cx, const void *marking,
-    uint32_t self, pn_binding_sink_t sink, void *user)
-{
-    const net_marking_t *const m = marking;
-    Supervisor_Install_Rivet_Retract_Reply_2_binding_t b = { 0 };
-    cx->origin = "page `MoveBoth`, transition `Reply 2` (ID1412310999)";
-    cx->now = m->now;
-    cx->rounds = 0U;
-    /* moving 2: () (ID1412311009) */
-    if (!m->Supervisor_Install_Rivet_Retract_moving_2.full) {
-        return true;
-    }
-    /* flag2_externo: DONE (ID1412311031) */
-    if (!m->flag2_externo.full || (m->flag2_externo.value != val_DONE)) {
-        return true;
-    }
-    if (!sink(user, self, &b)) {
-        return false;
-    }
-    return true;
-}
-
-PN_NET_SEARCH static bool Supervisor_Install_Rivet_Retract_Reply_2_fire(pn_ctx_t *cx, void *marking, void *binding)
-{
-    net_marking_t *const m = marking;
-    (void)binding;
-    cx->origin = "page `MoveBoth`, transition `Reply 2` (ID1412310999)";
-    cx->now = m->now;
-    cx->rounds = 0U;
-    if (!m->Supervisor_Install_Rivet_Retract_moving_2.full || !m->flag2_externo.full) {
-        pn_raise(cx, PN_ERR_SUBTRACT, NULL);
-        return false;
-    }
-    if (m->Supervisor_Install_Rivet_Retract_there_2.full) {
-        return pn_bag_fail_full(cx, &s_at_Supervisor_Install_Rivet_Retract_there_2);
-    }
-    /* moving 2: () (ID1412311009) */
-    m->Supervisor_Install_Rivet_Retract_moving_2.full = false;
-    /* flag2_externo: DONE (ID1412311031) */
-    m->flag2_externo.full = false;
-    /* there 2: () (ID1412311011) */
-    m->Supervisor_Install_Rivet_Retract_there_2.full = true;
-    return true;
-}
-
-/* transition Cell.Supervisor.Install.Return.Command: page `MoveBoth`, transition `Command` (ID1412310941), cell.cpn:20061 */
-typedef struct Supervisor_Install_Return_Command_binding {
-    int64_t c;
-    POSE_t p;
-    POSE_t q;
-} Supervisor_Install_Return_Command_binding_t;
-
-static const pn_field_t s_variables_Supervisor_Install_Return_Command[] = {
-    { "c", &s_COMMAND, offsetof(Supervisor_Install_Return_Command_binding_t, c), false },
-    { "p", &s_POSE, offsetof(Supervisor_Install_Return_Command_binding_t, p), false },
-    { "q", &s_POSE, offsetof(Supervisor_Install_Return_Command_binding_t, q), false },
-};
-
-static const pn_type_t s_binding_Supervisor_Install_Return_Command = {
-    .kind = PN_KIND_RECORD,
-    .name = "Cell.Supervisor.Install.Return.Command",
-    .size = sizeof(Supervisor_Install_Return_Command_binding_t),
-    .count = 3U,
-    .field = s_variables_Supervisor_Install_Return_Command,
-};
-
-PN_NET_SEARCH static bool Supervisor_Install_Return_Command_enumerate(pn_ctx_t *cx, const void *marking,
-    uint32_t self, pn_binding_sink_t sink, void *user)
-{
-    const net_marking_t *const m = marking;
-    Supervisor_Install_Return_Command_binding_t b = { 0 };
-    cx->origin = "page `MoveBoth`, transition `Command` (ID1412310941)";
-    cx->now = m->now;
-    cx->rounds = 0U;
-    /* return: (c, p, q) (ID1412310946) */
-    if (!m->Supervisor_Install_return.full) {
-        return true;
-    }
-    b.c = m->Supervisor_Install_return.value.c1;
-    b.p = m->Supervisor_Install_return.value.c2;
-    b.q = m->Supervisor_Install_return.value.c3;
-    if (!sink(user, self, &b)) {
-        return false;
-    }
-    return true;
-}
-
-PN_NET_SEARCH static bool Supervisor_Install_Return_Command_fire(pn_ctx_t *cx, void *marking, void *binding)
-{
-    net_marking_t *const m = marking;
-    Supervisor_Install_Return_Command_binding_t *const b = binding;
-    cx->origin = "page `MoveBoth`, transition `Command` (ID1412310941)";
-    cx->now = m->now;
-    cx->rounds = 0U;
-    if (!m->Supervisor_Install_return.full) {
-        pn_raise(cx, PN_ERR_SUBTRACT, NULL);
-        return false;
-    }
-    if (m->Supervisor_Install_Return_moving_1.full) {
-        return pn_bag_fail_full(cx, &s_at_Supervisor_Install_Return_moving_1);
-    }
-    if (m->dadosrobo1.full) {
-        return pn_bag_fail_full(cx, &s_at_dadosrobo1);
-    }
-    if (m->flag1_interno.full) {
-        return pn_bag_fail_full(cx, &s_at_flag1_interno);
-    }
-    if (m->Supervisor_Install_Return_moving_2.full) {
-        return pn_bag_fail_full(cx, &s_at_Supervisor_Install_Return_moving_2);
-    }
-    if (m->dadosrobo2.full) {
-        return pn_bag_fail_full(cx, &s_at_dadosrobo2);
-    }
-    if (m->flag2_interno.full) {
-        return pn_bag_fail_full(cx, &s_at_flag2_interno);
-    }
-    /* return: (c, p, q) (ID1412310946) */
-    m->Supervisor_Install_return.full = false;
-    /* moving 1: () (ID1412310970) */
-    m->Supervisor_Install_Return_moving_1.full = true;
-    /* dadosrobo1: p (ID1412310982) */
-    m->dadosrobo1.value = b->p;
-    m->dadosrobo1.full = true;
-    /* flag1_interno: c (ID1412310988) */
-    m->flag1_interno.value = b->c;
-    m->flag1_interno.full = true;
-    /* moving 2: () (ID1412311007) */
-    m->Supervisor_Install_Return_moving_2.full = true;
-    /* dadosrobo2: q (ID1412311019) */
-    m->dadosrobo2.value = b->q;
-    m->dadosrobo2.full = true;
-    /* flag2_interno: c (ID1412311025) */
-    m->flag2_interno.value = b->c;
-    m->flag2_interno.full = true;
-    return true;
-}
-
-/* transition Cell.Supervisor.Install.Return.Both: page `MoveBoth`, transition `Both` (ID1412310948), cell.cpn:20135 */
-typedef struct Supervisor_Install_Return_Both_binding {
-    uint8_t none; /* no variables */
-} Supervisor_Install_Return_Both_binding_t;
-
-static const pn_type_t s_binding_Supervisor_Install_Return_Both = {
-    .kind = PN_KIND_RECORD,
-    .name = "Cell.Supervisor.Install.Return.Both",
-    .size = sizeof(Supervisor_Install_Return_Both_binding_t),
-    .count = 0U,
-    .field = NULL,
-};
-
-PN_NET_SEARCH static bool Supervisor_Install_Return_Both_enumerate(pn_ctx_t *cx, const void *marking,
-    uint32_t self, pn_binding_sink_t sink, void *user)
-{
-    const net_marking_t *const m = marking;
-    Supervisor_Install_Return_Both_binding_t b = { 0 };
-    cx->origin = "page `MoveBoth`, transition `Both` (ID1412310948)";
-    cx->now = m->now;
-    cx->rounds = 0U;
-    /* there 1: () (ID1412310976) */
-    if (!m->Supervisor_Install_Return_there_1.full) {
-        return true;
-    }
-    /* there 2: () (ID1412311013) */
-    if (!m->Supervisor_Install_Return_there_2.full) {
-        return true;
-    }
-    if (!sink(user, self, &b)) {
-        return false;
-    }
-    return true;
-}
-
-PN_NET_SEARCH static bool Supervisor_Install_Return_Both_fire(pn_ctx_t *cx, void *marking, void *binding)
-{
-    net_marking_t *const m = marking;
-    (void)binding;
-    cx->origin = "page `MoveBoth`, transition `Both` (ID1412310948)";
-    cx->now = m->now;
-    cx->rounds = 0U;
-    if (!m->Supervisor_Install_Return_there_1.full || !m->Supervisor_Install_Return_there_2.full) {
-        pn_raise(cx, PN_ERR_SUBTRACT, NULL);
-        return false;
-    }
-    if (m->Supervisor_ended.full) {
-        return pn_bag_fail_full(cx, &s_at_Supervisor_ended);
-    }
-    /* there 1: () (ID1412310976) */
-    m->Supervisor_Install_Return_there_1.full = false;
-    /* there 2: () (ID1412311013) */
-    m->Supervisor_Install_Return_there_2.full = false;
-    /* ended: () (ID1412310957) */
-    m->Supervisor_ended.full = true;
-    return true;
-}
-
-/* transition Cell.Supervisor.Install.Return.Reply 1: page `MoveBoth`, transition `Reply 1` (ID1412310962), cell.cpn:20209 */
-typedef struct Supervisor_Install_Return_Reply_1_binding {
-    uint8_t none; /* no variables */
-} Supervisor_Install_Return_Reply_1_binding_t;
-
-static const pn_type_t s_binding_Supervisor_Install_Return_Reply_1 = {
-    .kind = PN_KIND_RECORD,
-    .name = "Cell.Supervisor.Install.Return.Reply 1",
-    .size = sizeof(Supervisor_Install_Return_Reply_1_binding_t),
-    .count = 0U,
-    .field = NULL,
-};
-
-PN_NET_SEARCH static bool Supervisor_Install_Return_Reply_1_enumerate(pn_ctx_t *cx, const void *marking,
-    uint32_t self, pn_binding_sink_t sink, void *user)
-{
-    const net_marking_t *const m = marking;
-    Supervisor_Install_Return_Reply_1_binding_t b = { 0 };
-    cx->origin = "page `MoveBoth`, transition `Reply 1` (ID1412310962)";
-    cx->now = m->now;
-    cx->rounds = 0U;
-    /* moving 1: () (ID1412310972) */
-    if (!m->Supervisor_Install_Return_moving_1.full) {
-        return true;
-    }
-    /* flag1_externo: DONE (ID1412310994) */
-    if (!m->flag1_externo.full || (m->flag1_externo.value != val_DONE)) {
-        return true;
-    }
-    if (!sink(user, self, &b)) {
-        return false;
-    }
-    return true;
-}
-
-PN_NET_SEARCH static bool Supervisor_Install_Return_Reply_1_fire(pn_ctx_t *cx, void *marking, void *binding)
-{
-    net_marking_t *const m = marking;
-    (void)binding;
-    cx->origin = "page `MoveBoth`, transition `Reply 1` (ID1412310962)";
-    cx->now = m->now;
-    cx->rounds = 0U;
-    if (!m->Supervisor_Install_Return_moving_1.full || !m->flag1_externo.full) {
-        pn_raise(cx, PN_ERR_SUBTRACT, NULL);
-        return false;
-    }
-    if (m->Supervisor_Install_Return_there_1.full) {
-        return pn_bag_fail_full(cx, &s_at_Supervisor_Install_Return_there_1);
-    }
-    /* moving 1: () (ID1412310972) */
-    m->Supervisor_Install_Return_moving_1.full = false;
-    /* flag1_externo: DONE (ID1412310994) */
-    m->flag1_externo.full = false;
-    /* there 1: () (ID1412310974) */
-    m->Supervisor_Install_Return_there_1.full = true;
-    return true;
-}
-
-/* transition Cell.Supervisor.Install.Return.Reply 2: page `MoveBoth`, transition `Reply 2` (ID1412310999), cell.cpn:20283 */
-typedef struct Supervisor_Install_Return_Reply_2_binding {
-    uint8_t none; /* no variables */
-} Supervisor_Install_Return_Reply_2_binding_t;
-
-static const pn_type_t s_binding_Supervisor_Install_Return_Reply_2 = {
-    .kind = PN_KIND_RECORD,
-    .name = "Cell.Supervisor.Install.Return.Reply 2",
-    .size = sizeof(Supervisor_Install_Return_Reply_2_binding_t),
-    .count = 0U,
-    .field = NULL,
-};
-
-PN_NET_SEARCH static bool Supervisor_Install_Return_Reply_2_enumerate(pn_ctx_t *cx, const void *marking,
-    uint32_t self, pn_binding_sink_t sink, void *user)
-{
-    const net_marking_t *const m = marking;
-    Supervisor_Install_Return_Reply_2_binding_t b = { 0 };
-    cx->origin = "page `MoveBoth`, transition `Reply 2` (ID1412310999)";
-    cx->now = m->now;
-    cx->rounds = 0U;
-    /* moving 2: () (ID1412311009) */
-    if (!m->Supervisor_Install_Return_moving_2.full) {
-        return true;
-    }
-    /* flag2_externo: DONE (ID1412311031) */
-    if (!m->flag2_externo.full || (m->flag2_externo.value != val_DONE)) {
-        return true;
-    }
-    if (!sink(user, self, &b)) {
-        return false;
-    }
-    return true;
-}
-
-PN_NET_SEARCH static bool Supervisor_Install_Return_Reply_2_fire(pn_ctx_t *cx, void *marking, void *binding)
-{
-    net_marking_t *const m = marking;
-    (void)binding;
-    cx->origin = "page `MoveBoth`, transition `Reply 2` (ID1412310999)";
-    cx->now = m->now;
-    cx->rounds = 0U;
-    if (!m->Supervisor_Install_Return_moving_2.full || !m->flag2_externo.full) {
-        pn_raise(cx, PN_ERR_SUBTRACT, NULL);
-        return false;
-    }
-    if (m->Supervisor_Install_Return_there_2.full) {
-        return pn_bag_fail_full(cx, &s_at_Supervisor_Install_Return_there_2);
-    }
-    /* moving 2: () (ID1412311009) */
-    m->Supervisor_Install_Return_moving_2.full = false;
-    /* flag2_externo: DONE (ID1412311031) */
-    m->flag2_externo.full = false;
-    /* there 2: () (ID1412311011) */
-    m->Supervisor_Install_Return_there_2.full = true;
-    return true;
-}
-
 /* transition Cell.Supervisor.Home.Send home: page `Home`, transition `Send home` (ID1412311039), cell.cpn:21759 */
 typedef struct Supervisor_Home_Send_home_binding {
     uint8_t none; /* no variables */
@@ -5138,9 +3864,7 @@ PN_NET_SEARCH static bool Supervisor_Home_Send_home_enumerate(pn_ctx_t *cx, cons
 {
     const net_marking_t *const m = marking;
     Supervisor_Home_Send_home_binding_t b = { 0 };
-    cx->origin = "page `Home`, transition `Send home` (ID1412311039)";
-    cx->now = m->now;
-    cx->rounds = 0U;
+    pn_begin(cx, "page `Home`, transition `Send home` (ID1412311039)", m->now);
     /* ended: () (ID1412311044) */
     if (!m->Supervisor_ended.full) {
         return true;
@@ -5151,13 +3875,12 @@ PN_NET_SEARCH static bool Supervisor_Home_Send_home_enumerate(pn_ctx_t *cx, cons
     return true;
 }
 
-PN_NET_SEARCH static bool Supervisor_Home_Send_home_fire(pn_ctx_t *cx, void *marking, void *binding)
+PN_NET_SEARCH static bool Supervisor_Home_Send_home_fire(pn_ctx_t *cx, void *marking, uint32_t self, void *binding)
 {
     net_marking_t *const m = marking;
+    (void)self;
     (void)binding;
-    cx->origin = "page `Home`, transition `Send home` (ID1412311039)";
-    cx->now = m->now;
-    cx->rounds = 0U;
+    pn_begin(cx, "page `Home`, transition `Send home` (ID1412311039)", m->now);
     int64_t flag1_interno_token = val_HOME;
     pn_bag_check(cx, &s_at_flag1_interno, &flag1_interno_token);
     int64_t flag2_interno_token = val_HOME;
@@ -5218,9 +3941,7 @@ PN_NET_SEARCH static bool Supervisor_Home_Both_enumerate(pn_ctx_t *cx, const voi
 {
     const net_marking_t *const m = marking;
     Supervisor_Home_Both_binding_t b = { 0 };
-    cx->origin = "page `Home`, transition `Both` (ID1412311046)";
-    cx->now = m->now;
-    cx->rounds = 0U;
+    pn_begin(cx, "page `Home`, transition `Both` (ID1412311046)", m->now);
     /* home 1: () (ID1412311074) */
     if (!m->Supervisor_Home_home_1.full) {
         return true;
@@ -5240,13 +3961,12 @@ PN_NET_SEARCH static bool Supervisor_Home_Both_enumerate(pn_ctx_t *cx, const voi
     return true;
 }
 
-PN_NET_SEARCH static bool Supervisor_Home_Both_fire(pn_ctx_t *cx, void *marking, void *binding)
+PN_NET_SEARCH static bool Supervisor_Home_Both_fire(pn_ctx_t *cx, void *marking, uint32_t self, void *binding)
 {
     net_marking_t *const m = marking;
+    (void)self;
     Supervisor_Home_Both_binding_t *const b = binding;
-    cx->origin = "page `Home`, transition `Both` (ID1412311046)";
-    cx->now = m->now;
-    cx->rounds = 0U;
+    pn_begin(cx, "page `Home`, transition `Both` (ID1412311046)", m->now);
     pn_unit_t Supervisor_Finished_token = PN_UNIT;
     uint32_t Supervisor_Finished_tokens = 0U;
     pn_unit_t Supervisor_Failed_token = PN_UNIT;
@@ -5309,9 +4029,7 @@ PN_NET_SEARCH static bool Supervisor_Home_Reply_1_enumerate(pn_ctx_t *cx, const 
 {
     const net_marking_t *const m = marking;
     Supervisor_Home_Reply_1_binding_t b = { 0 };
-    cx->origin = "page `Home`, transition `Reply 1` (ID1412311060)";
-    cx->now = m->now;
-    cx->rounds = 0U;
+    pn_begin(cx, "page `Home`, transition `Reply 1` (ID1412311060)", m->now);
     /* leaving 1: () (ID1412311070) */
     if (!m->Supervisor_Home_leaving_1.full) {
         return true;
@@ -5326,13 +4044,12 @@ PN_NET_SEARCH static bool Supervisor_Home_Reply_1_enumerate(pn_ctx_t *cx, const 
     return true;
 }
 
-PN_NET_SEARCH static bool Supervisor_Home_Reply_1_fire(pn_ctx_t *cx, void *marking, void *binding)
+PN_NET_SEARCH static bool Supervisor_Home_Reply_1_fire(pn_ctx_t *cx, void *marking, uint32_t self, void *binding)
 {
     net_marking_t *const m = marking;
+    (void)self;
     (void)binding;
-    cx->origin = "page `Home`, transition `Reply 1` (ID1412311060)";
-    cx->now = m->now;
-    cx->rounds = 0U;
+    pn_begin(cx, "page `Home`, transition `Reply 1` (ID1412311060)", m->now);
     if (!m->Supervisor_Home_leaving_1.full || !m->flag1_externo.full) {
         pn_raise(cx, PN_ERR_SUBTRACT, NULL);
         return false;
@@ -5367,9 +4084,7 @@ PN_NET_SEARCH static bool Supervisor_Home_Reply_2_enumerate(pn_ctx_t *cx, const 
 {
     const net_marking_t *const m = marking;
     Supervisor_Home_Reply_2_binding_t b = { 0 };
-    cx->origin = "page `Home`, transition `Reply 2` (ID1412311091)";
-    cx->now = m->now;
-    cx->rounds = 0U;
+    pn_begin(cx, "page `Home`, transition `Reply 2` (ID1412311091)", m->now);
     /* leaving 2: () (ID1412311101) */
     if (!m->Supervisor_Home_leaving_2.full) {
         return true;
@@ -5384,13 +4099,12 @@ PN_NET_SEARCH static bool Supervisor_Home_Reply_2_enumerate(pn_ctx_t *cx, const 
     return true;
 }
 
-PN_NET_SEARCH static bool Supervisor_Home_Reply_2_fire(pn_ctx_t *cx, void *marking, void *binding)
+PN_NET_SEARCH static bool Supervisor_Home_Reply_2_fire(pn_ctx_t *cx, void *marking, uint32_t self, void *binding)
 {
     net_marking_t *const m = marking;
+    (void)self;
     (void)binding;
-    cx->origin = "page `Home`, transition `Reply 2` (ID1412311091)";
-    cx->now = m->now;
-    cx->rounds = 0U;
+    pn_begin(cx, "page `Home`, transition `Reply 2` (ID1412311091)", m->now);
     if (!m->Supervisor_Home_leaving_2.full || !m->flag2_externo.full) {
         pn_raise(cx, PN_ERR_SUBTRACT, NULL);
         return false;
@@ -5407,325 +4121,348 @@ PN_NET_SEARCH static bool Supervisor_Home_Reply_2_fire(pn_ctx_t *cx, void *marki
     return true;
 }
 
-/* transition Cell.Robot1.Accept: page `Robot`, transition `Accept` (ID1412311125), cell.cpn:23214 */
-typedef struct Robot1_Accept_binding {
+/* transition: page `Robot`, transition `Accept` (ID1412311125), cell.cpn:23214, at all of these:
+ *     Cell.Robot1.Accept
+ *     Cell.Robot2.Accept
+ */
+typedef struct Robot_Accept_binding {
     int64_t c;
-} Robot1_Accept_binding_t;
+} Robot_Accept_binding_t;
 
-static const pn_field_t s_variables_Robot1_Accept[] = {
-    { "c", &s_COMMAND, offsetof(Robot1_Accept_binding_t, c), false },
+static const pn_field_t s_variables_Robot_Accept[] = {
+    { "c", &s_COMMAND, offsetof(Robot_Accept_binding_t, c), false },
 };
 
-static const pn_type_t s_binding_Robot1_Accept = {
+static const pn_type_t s_binding_Robot_Accept = {
     .kind = PN_KIND_RECORD,
     .name = "Cell.Robot1.Accept",
-    .size = sizeof(Robot1_Accept_binding_t),
+    .size = sizeof(Robot_Accept_binding_t),
     .count = 1U,
-    .field = s_variables_Robot1_Accept,
+    .field = s_variables_Robot_Accept,
 };
 
-PN_NET_SEARCH static bool Robot1_Accept_enumerate(pn_ctx_t *cx, const void *marking,
+PN_NET_SEARCH static bool Robot_Accept_enumerate(pn_ctx_t *cx, const void *marking,
     uint32_t self, pn_binding_sink_t sink, void *user)
 {
     const net_marking_t *const m = marking;
-    Robot1_Accept_binding_t b = { 0 };
-    cx->origin = "page `Robot`, transition `Accept` (ID1412311125)";
-    cx->now = m->now;
-    cx->rounds = 0U;
+    Robot_Accept_binding_t b = { 0 };
+    pn_begin(cx, "page `Robot`, transition `Accept` (ID1412311125)", m->now);
+    const Robot_places_t *const own = pn_net.transition[self].places;
+    const int64_slot_t *const at_flag_interno = pn_bag_look(own->flag_interno, m);
+    const unit_slot_t *const at_Waiting = pn_bag_look(own->Waiting, m);
     /* Waiting: () (ID1412311138) */
-    if (!m->Robot1_Waiting.full) {
+    if (!at_Waiting->full) {
         return true;
     }
-    /* flag1_interno: c (ID1412311136) */
-    if (!m->flag1_interno.full) {
+    /* flag_interno: c (ID1412311136) */
+    if (!at_flag_interno->full) {
         return true;
     }
-    b.c = m->flag1_interno.value;
+    b.c = at_flag_interno->value;
     if (!sink(user, self, &b)) {
         return false;
     }
     return true;
 }
 
-PN_NET_SEARCH static bool Robot1_Accept_fire(pn_ctx_t *cx, void *marking, void *binding)
+PN_NET_SEARCH static bool Robot_Accept_fire(pn_ctx_t *cx, void *marking, uint32_t self, void *binding)
 {
     net_marking_t *const m = marking;
-    Robot1_Accept_binding_t *const b = binding;
-    cx->origin = "page `Robot`, transition `Accept` (ID1412311125)";
-    cx->now = m->now;
-    cx->rounds = 0U;
-    if (!m->flag1_interno.full || !m->Robot1_Waiting.full) {
+    Robot_Accept_binding_t *const b = binding;
+    pn_begin(cx, "page `Robot`, transition `Accept` (ID1412311125)", m->now);
+    const Robot_places_t *const own = pn_net.transition[self].places;
+    int64_slot_t *const at_flag_interno = pn_bag_reach(own->flag_interno, m);
+    unit_slot_t *const at_Waiting = pn_bag_reach(own->Waiting, m);
+    int64_slot_t *const at_Commanded = pn_bag_reach(own->Commanded, m);
+    if (!at_flag_interno->full || !at_Waiting->full) {
         pn_raise(cx, PN_ERR_SUBTRACT, NULL);
         return false;
     }
-    if (m->Robot1_Commanded.full) {
-        return pn_bag_fail_full(cx, &s_at_Robot1_Commanded);
+    if (at_Commanded->full) {
+        return pn_bag_fail_full(cx, own->Commanded);
     }
-    /* flag1_interno: c (ID1412311136) */
-    m->flag1_interno.full = false;
+    /* flag_interno: c (ID1412311136) */
+    at_flag_interno->full = false;
     /* Waiting: () (ID1412311138) */
-    m->Robot1_Waiting.full = false;
+    at_Waiting->full = false;
     /* Commanded: c (ID1412311140) */
-    m->Robot1_Commanded.value = b->c;
-    m->Robot1_Commanded.full = true;
+    at_Commanded->value = b->c;
+    at_Commanded->full = true;
     return true;
 }
 
-/* transition Cell.Robot1.Report: page `Robot`, transition `Report` (ID1412311145), cell.cpn:23288 */
-typedef struct Robot1_Report_binding {
+/* transition: page `Robot`, transition `Report` (ID1412311145), cell.cpn:23288, at all of these:
+ *     Cell.Robot1.Report
+ *     Cell.Robot2.Report
+ */
+typedef struct Robot_Report_binding {
     int64_t e;
-} Robot1_Report_binding_t;
+} Robot_Report_binding_t;
 
-static const pn_field_t s_variables_Robot1_Report[] = {
-    { "e", &s_REPLY, offsetof(Robot1_Report_binding_t, e), false },
+static const pn_field_t s_variables_Robot_Report[] = {
+    { "e", &s_REPLY, offsetof(Robot_Report_binding_t, e), false },
 };
 
-static const pn_type_t s_binding_Robot1_Report = {
+static const pn_type_t s_binding_Robot_Report = {
     .kind = PN_KIND_RECORD,
     .name = "Cell.Robot1.Report",
-    .size = sizeof(Robot1_Report_binding_t),
+    .size = sizeof(Robot_Report_binding_t),
     .count = 1U,
-    .field = s_variables_Robot1_Report,
+    .field = s_variables_Robot_Report,
 };
 
-PN_NET_SEARCH static bool Robot1_Report_enumerate(pn_ctx_t *cx, const void *marking,
+PN_NET_SEARCH static bool Robot_Report_enumerate(pn_ctx_t *cx, const void *marking,
     uint32_t self, pn_binding_sink_t sink, void *user)
 {
     const net_marking_t *const m = marking;
-    Robot1_Report_binding_t b = { 0 };
-    cx->origin = "page `Robot`, transition `Report` (ID1412311145)";
-    cx->now = m->now;
-    cx->rounds = 0U;
+    Robot_Report_binding_t b = { 0 };
+    pn_begin(cx, "page `Robot`, transition `Report` (ID1412311145)", m->now);
+    const Robot_places_t *const own = pn_net.transition[self].places;
+    const int64_slot_t *const at_Done = pn_bag_look(own->Done, m);
     /* Done: e (ID1412311154) */
-    if (!m->Robot1_Done.full) {
+    if (!at_Done->full) {
         return true;
     }
-    b.e = m->Robot1_Done.value;
+    b.e = at_Done->value;
     if (!sink(user, self, &b)) {
         return false;
     }
     return true;
 }
 
-PN_NET_SEARCH static bool Robot1_Report_fire(pn_ctx_t *cx, void *marking, void *binding)
+PN_NET_SEARCH static bool Robot_Report_fire(pn_ctx_t *cx, void *marking, uint32_t self, void *binding)
 {
     net_marking_t *const m = marking;
-    Robot1_Report_binding_t *const b = binding;
-    cx->origin = "page `Robot`, transition `Report` (ID1412311145)";
-    cx->now = m->now;
-    cx->rounds = 0U;
-    if (!m->Robot1_Done.full) {
+    Robot_Report_binding_t *const b = binding;
+    pn_begin(cx, "page `Robot`, transition `Report` (ID1412311145)", m->now);
+    const Robot_places_t *const own = pn_net.transition[self].places;
+    int64_slot_t *const at_flag_externo = pn_bag_reach(own->flag_externo, m);
+    unit_slot_t *const at_Waiting = pn_bag_reach(own->Waiting, m);
+    int64_slot_t *const at_Done = pn_bag_reach(own->Done, m);
+    if (!at_Done->full) {
         pn_raise(cx, PN_ERR_SUBTRACT, NULL);
         return false;
     }
-    if (m->flag1_externo.full) {
-        return pn_bag_fail_full(cx, &s_at_flag1_externo);
+    if (at_flag_externo->full) {
+        return pn_bag_fail_full(cx, own->flag_externo);
     }
-    if (m->Robot1_Waiting.full) {
-        return pn_bag_fail_full(cx, &s_at_Robot1_Waiting);
+    if (at_Waiting->full) {
+        return pn_bag_fail_full(cx, own->Waiting);
     }
     /* Done: e (ID1412311154) */
-    m->Robot1_Done.full = false;
-    /* flag1_externo: e (ID1412311156) */
-    m->flag1_externo.value = b->e;
-    m->flag1_externo.full = true;
+    at_Done->full = false;
+    /* flag_externo: e (ID1412311156) */
+    at_flag_externo->value = b->e;
+    at_flag_externo->full = true;
     /* Waiting: () (ID1412311158) */
-    m->Robot1_Waiting.full = true;
+    at_Waiting->full = true;
     return true;
 }
 
-/* transition Cell.Robot1.MoveJoint: page `Robot`, transition `MoveJoint` (ID1412311160), cell.cpn:23362
+/* transition: page `Robot`, transition `MoveJoint` (ID1412311160), cell.cpn:23362, at all of these:
+ *     Cell.Robot1.MoveJoint
+ *     Cell.Robot2.MoveJoint
  * guard [c = JOINT]
  */
-typedef struct Robot1_MoveJoint_binding {
+typedef struct Robot_MoveJoint_binding {
     int64_t c;
     POSE_t p;
-} Robot1_MoveJoint_binding_t;
+} Robot_MoveJoint_binding_t;
 
-static const pn_field_t s_variables_Robot1_MoveJoint[] = {
-    { "c", &s_COMMAND, offsetof(Robot1_MoveJoint_binding_t, c), false },
-    { "p", &s_POSE, offsetof(Robot1_MoveJoint_binding_t, p), false },
+static const pn_field_t s_variables_Robot_MoveJoint[] = {
+    { "c", &s_COMMAND, offsetof(Robot_MoveJoint_binding_t, c), false },
+    { "p", &s_POSE, offsetof(Robot_MoveJoint_binding_t, p), false },
 };
 
-static const pn_type_t s_binding_Robot1_MoveJoint = {
+static const pn_type_t s_binding_Robot_MoveJoint = {
     .kind = PN_KIND_RECORD,
     .name = "Cell.Robot1.MoveJoint",
-    .size = sizeof(Robot1_MoveJoint_binding_t),
+    .size = sizeof(Robot_MoveJoint_binding_t),
     .count = 2U,
-    .field = s_variables_Robot1_MoveJoint,
+    .field = s_variables_Robot_MoveJoint,
 };
 
-PN_NET_SEARCH static bool Robot1_MoveJoint_enumerate(pn_ctx_t *cx, const void *marking,
+PN_NET_SEARCH static bool Robot_MoveJoint_enumerate(pn_ctx_t *cx, const void *marking,
     uint32_t self, pn_binding_sink_t sink, void *user)
 {
     const net_marking_t *const m = marking;
-    Robot1_MoveJoint_binding_t b = { 0 };
-    cx->origin = "page `Robot`, transition `MoveJoint` (ID1412311160)";
-    cx->now = m->now;
-    cx->rounds = 0U;
+    Robot_MoveJoint_binding_t b = { 0 };
+    pn_begin(cx, "page `Robot`, transition `MoveJoint` (ID1412311160)", m->now);
+    const Robot_places_t *const own = pn_net.transition[self].places;
+    const POSE_slot_t *const at_dadosrobo = pn_bag_look(own->dadosrobo, m);
+    const int64_slot_t *const at_Commanded = pn_bag_look(own->Commanded, m);
     /* Commanded: c (ID1412311165) */
-    if (!m->Robot1_Commanded.full) {
+    if (!at_Commanded->full) {
         return true;
     }
-    b.c = m->Robot1_Commanded.value;
+    b.c = at_Commanded->value;
     /* guard [c = JOINT] */
     if (b.c != val_JOINT) {
         return true;
     }
-    /* dadosrobo1: p (ID1412311244) */
-    if (!m->dadosrobo1.full) {
+    /* dadosrobo: p (ID1412311244) */
+    if (!at_dadosrobo->full) {
         return true;
     }
-    b.p = m->dadosrobo1.value;
+    b.p = at_dadosrobo->value;
     if (!sink(user, self, &b)) {
         return false;
     }
     return true;
 }
 
-PN_NET_SEARCH static bool Robot1_MoveJoint_fire(pn_ctx_t *cx, void *marking, void *binding)
+PN_NET_SEARCH static bool Robot_MoveJoint_fire(pn_ctx_t *cx, void *marking, uint32_t self, void *binding)
 {
     net_marking_t *const m = marking;
-    Robot1_MoveJoint_binding_t *const b = binding;
-    cx->origin = "page `Robot`, transition `MoveJoint` (ID1412311160)";
-    cx->now = m->now;
-    cx->rounds = 0U;
+    Robot_MoveJoint_binding_t *const b = binding;
+    pn_begin(cx, "page `Robot`, transition `MoveJoint` (ID1412311160)", m->now);
+    const Robot_places_t *const own = pn_net.transition[self].places;
+    POSE_slot_t *const at_dadosrobo = pn_bag_reach(own->dadosrobo, m);
+    int64_slot_t *const at_Commanded = pn_bag_reach(own->Commanded, m);
+    int64_slot_t *const at_Done = pn_bag_reach(own->Done, m);
     /* code segment: action moveJoint p */
     ml_moveJoint(b->p);
-    int64_t Robot1_Done_token = val_DONE;
-    pn_bag_check(cx, &s_at_Robot1_Done, &Robot1_Done_token);
+    int64_t Done_token = val_DONE;
+    pn_bag_check(cx, own->Done, &Done_token);
     if (!pn_ok(cx)) {
         return false;
     }
-    if (!m->Robot1_Commanded.full || !m->dadosrobo1.full) {
+    if (!at_Commanded->full || !at_dadosrobo->full) {
         pn_raise(cx, PN_ERR_SUBTRACT, NULL);
         return false;
     }
-    if (m->Robot1_Done.full) {
-        return pn_bag_fail_full(cx, &s_at_Robot1_Done);
+    if (at_Done->full) {
+        return pn_bag_fail_full(cx, own->Done);
     }
     /* Commanded: c (ID1412311165) */
-    m->Robot1_Commanded.full = false;
-    /* dadosrobo1: p (ID1412311244) */
-    m->dadosrobo1.full = false;
+    at_Commanded->full = false;
+    /* dadosrobo: p (ID1412311244) */
+    at_dadosrobo->full = false;
     /* Done: DONE (ID1412311167) */
-    m->Robot1_Done.value = Robot1_Done_token;
-    m->Robot1_Done.full = true;
+    at_Done->value = Done_token;
+    at_Done->full = true;
     return true;
 }
 
-/* transition Cell.Robot1.MoveLinear: page `Robot`, transition `MoveLinear` (ID1412311169), cell.cpn:23438
+/* transition: page `Robot`, transition `MoveLinear` (ID1412311169), cell.cpn:23438, at all of these:
+ *     Cell.Robot1.MoveLinear
+ *     Cell.Robot2.MoveLinear
  * guard [c = LINEAR]
  */
-typedef struct Robot1_MoveLinear_binding {
+typedef struct Robot_MoveLinear_binding {
     int64_t c;
     POSE_t p;
-} Robot1_MoveLinear_binding_t;
+} Robot_MoveLinear_binding_t;
 
-static const pn_field_t s_variables_Robot1_MoveLinear[] = {
-    { "c", &s_COMMAND, offsetof(Robot1_MoveLinear_binding_t, c), false },
-    { "p", &s_POSE, offsetof(Robot1_MoveLinear_binding_t, p), false },
+static const pn_field_t s_variables_Robot_MoveLinear[] = {
+    { "c", &s_COMMAND, offsetof(Robot_MoveLinear_binding_t, c), false },
+    { "p", &s_POSE, offsetof(Robot_MoveLinear_binding_t, p), false },
 };
 
-static const pn_type_t s_binding_Robot1_MoveLinear = {
+static const pn_type_t s_binding_Robot_MoveLinear = {
     .kind = PN_KIND_RECORD,
     .name = "Cell.Robot1.MoveLinear",
-    .size = sizeof(Robot1_MoveLinear_binding_t),
+    .size = sizeof(Robot_MoveLinear_binding_t),
     .count = 2U,
-    .field = s_variables_Robot1_MoveLinear,
+    .field = s_variables_Robot_MoveLinear,
 };
 
-PN_NET_SEARCH static bool Robot1_MoveLinear_enumerate(pn_ctx_t *cx, const void *marking,
+PN_NET_SEARCH static bool Robot_MoveLinear_enumerate(pn_ctx_t *cx, const void *marking,
     uint32_t self, pn_binding_sink_t sink, void *user)
 {
     const net_marking_t *const m = marking;
-    Robot1_MoveLinear_binding_t b = { 0 };
-    cx->origin = "page `Robot`, transition `MoveLinear` (ID1412311169)";
-    cx->now = m->now;
-    cx->rounds = 0U;
+    Robot_MoveLinear_binding_t b = { 0 };
+    pn_begin(cx, "page `Robot`, transition `MoveLinear` (ID1412311169)", m->now);
+    const Robot_places_t *const own = pn_net.transition[self].places;
+    const POSE_slot_t *const at_dadosrobo = pn_bag_look(own->dadosrobo, m);
+    const int64_slot_t *const at_Commanded = pn_bag_look(own->Commanded, m);
     /* Commanded: c (ID1412311174) */
-    if (!m->Robot1_Commanded.full) {
+    if (!at_Commanded->full) {
         return true;
     }
-    b.c = m->Robot1_Commanded.value;
+    b.c = at_Commanded->value;
     /* guard [c = LINEAR] */
     if (b.c != val_LINEAR) {
         return true;
     }
-    /* dadosrobo1: p (ID1412311246) */
-    if (!m->dadosrobo1.full) {
+    /* dadosrobo: p (ID1412311246) */
+    if (!at_dadosrobo->full) {
         return true;
     }
-    b.p = m->dadosrobo1.value;
+    b.p = at_dadosrobo->value;
     if (!sink(user, self, &b)) {
         return false;
     }
     return true;
 }
 
-PN_NET_SEARCH static bool Robot1_MoveLinear_fire(pn_ctx_t *cx, void *marking, void *binding)
+PN_NET_SEARCH static bool Robot_MoveLinear_fire(pn_ctx_t *cx, void *marking, uint32_t self, void *binding)
 {
     net_marking_t *const m = marking;
-    Robot1_MoveLinear_binding_t *const b = binding;
-    cx->origin = "page `Robot`, transition `MoveLinear` (ID1412311169)";
-    cx->now = m->now;
-    cx->rounds = 0U;
+    Robot_MoveLinear_binding_t *const b = binding;
+    pn_begin(cx, "page `Robot`, transition `MoveLinear` (ID1412311169)", m->now);
+    const Robot_places_t *const own = pn_net.transition[self].places;
+    POSE_slot_t *const at_dadosrobo = pn_bag_reach(own->dadosrobo, m);
+    int64_slot_t *const at_Commanded = pn_bag_reach(own->Commanded, m);
+    int64_slot_t *const at_Done = pn_bag_reach(own->Done, m);
     /* code segment: action moveLinear p */
     ml_moveLinear(b->p);
-    int64_t Robot1_Done_token = val_DONE;
-    pn_bag_check(cx, &s_at_Robot1_Done, &Robot1_Done_token);
+    int64_t Done_token = val_DONE;
+    pn_bag_check(cx, own->Done, &Done_token);
     if (!pn_ok(cx)) {
         return false;
     }
-    if (!m->Robot1_Commanded.full || !m->dadosrobo1.full) {
+    if (!at_Commanded->full || !at_dadosrobo->full) {
         pn_raise(cx, PN_ERR_SUBTRACT, NULL);
         return false;
     }
-    if (m->Robot1_Done.full) {
-        return pn_bag_fail_full(cx, &s_at_Robot1_Done);
+    if (at_Done->full) {
+        return pn_bag_fail_full(cx, own->Done);
     }
     /* Commanded: c (ID1412311174) */
-    m->Robot1_Commanded.full = false;
-    /* dadosrobo1: p (ID1412311246) */
-    m->dadosrobo1.full = false;
+    at_Commanded->full = false;
+    /* dadosrobo: p (ID1412311246) */
+    at_dadosrobo->full = false;
     /* Done: DONE (ID1412311176) */
-    m->Robot1_Done.value = Robot1_Done_token;
-    m->Robot1_Done.full = true;
+    at_Done->value = Done_token;
+    at_Done->full = true;
     return true;
 }
 
-/* transition Cell.Robot1.MoveHome: page `Robot`, transition `MoveHome` (ID1412311178), cell.cpn:23514
+/* transition: page `Robot`, transition `MoveHome` (ID1412311178), cell.cpn:23514, at all of these:
+ *     Cell.Robot1.MoveHome
+ *     Cell.Robot2.MoveHome
  * guard [c = HOME]
  */
-typedef struct Robot1_MoveHome_binding {
+typedef struct Robot_MoveHome_binding {
     int64_t c;
-} Robot1_MoveHome_binding_t;
+} Robot_MoveHome_binding_t;
 
-static const pn_field_t s_variables_Robot1_MoveHome[] = {
-    { "c", &s_COMMAND, offsetof(Robot1_MoveHome_binding_t, c), false },
+static const pn_field_t s_variables_Robot_MoveHome[] = {
+    { "c", &s_COMMAND, offsetof(Robot_MoveHome_binding_t, c), false },
 };
 
-static const pn_type_t s_binding_Robot1_MoveHome = {
+static const pn_type_t s_binding_Robot_MoveHome = {
     .kind = PN_KIND_RECORD,
     .name = "Cell.Robot1.MoveHome",
-    .size = sizeof(Robot1_MoveHome_binding_t),
+    .size = sizeof(Robot_MoveHome_binding_t),
     .count = 1U,
-    .field = s_variables_Robot1_MoveHome,
+    .field = s_variables_Robot_MoveHome,
 };
 
-PN_NET_SEARCH static bool Robot1_MoveHome_enumerate(pn_ctx_t *cx, const void *marking,
+PN_NET_SEARCH static bool Robot_MoveHome_enumerate(pn_ctx_t *cx, const void *marking,
     uint32_t self, pn_binding_sink_t sink, void *user)
 {
     const net_marking_t *const m = marking;
-    Robot1_MoveHome_binding_t b = { 0 };
-    cx->origin = "page `Robot`, transition `MoveHome` (ID1412311178)";
-    cx->now = m->now;
-    cx->rounds = 0U;
+    Robot_MoveHome_binding_t b = { 0 };
+    pn_begin(cx, "page `Robot`, transition `MoveHome` (ID1412311178)", m->now);
+    const Robot_places_t *const own = pn_net.transition[self].places;
+    const int64_slot_t *const at_Commanded = pn_bag_look(own->Commanded, m);
     /* Commanded: c (ID1412311183) */
-    if (!m->Robot1_Commanded.full) {
+    if (!at_Commanded->full) {
         return true;
     }
-    b.c = m->Robot1_Commanded.value;
+    b.c = at_Commanded->value;
     /* guard [c = HOME] */
     if (b.c != val_HOME) {
         return true;
@@ -5736,82 +4473,86 @@ PN_NET_SEARCH static bool Robot1_MoveHome_enumerate(pn_ctx_t *cx, const void *ma
     return true;
 }
 
-PN_NET_SEARCH static bool Robot1_MoveHome_fire(pn_ctx_t *cx, void *marking, void *binding)
+PN_NET_SEARCH static bool Robot_MoveHome_fire(pn_ctx_t *cx, void *marking, uint32_t self, void *binding)
 {
     net_marking_t *const m = marking;
     (void)binding;
-    cx->origin = "page `Robot`, transition `MoveHome` (ID1412311178)";
-    cx->now = m->now;
-    cx->rounds = 0U;
+    pn_begin(cx, "page `Robot`, transition `MoveHome` (ID1412311178)", m->now);
+    const Robot_places_t *const own = pn_net.transition[self].places;
+    int64_slot_t *const at_Commanded = pn_bag_reach(own->Commanded, m);
+    int64_slot_t *const at_Done = pn_bag_reach(own->Done, m);
     /* code segment: action moveHome () */
     ml_moveHome();
-    int64_t Robot1_Done_token = val_DONE;
-    pn_bag_check(cx, &s_at_Robot1_Done, &Robot1_Done_token);
+    int64_t Done_token = val_DONE;
+    pn_bag_check(cx, own->Done, &Done_token);
     if (!pn_ok(cx)) {
         return false;
     }
-    if (!m->Robot1_Commanded.full) {
+    if (!at_Commanded->full) {
         pn_raise(cx, PN_ERR_SUBTRACT, NULL);
         return false;
     }
-    if (m->Robot1_Done.full) {
-        return pn_bag_fail_full(cx, &s_at_Robot1_Done);
+    if (at_Done->full) {
+        return pn_bag_fail_full(cx, own->Done);
     }
     /* Commanded: c (ID1412311183) */
-    m->Robot1_Commanded.full = false;
+    at_Commanded->full = false;
     /* Done: DONE (ID1412311185) */
-    m->Robot1_Done.value = Robot1_Done_token;
-    m->Robot1_Done.full = true;
+    at_Done->value = Done_token;
+    at_Done->full = true;
     return true;
 }
 
-/* transition Cell.Robot1.Measure: page `Robot`, transition `Measure` (ID1412311187), cell.cpn:23589
+/* transition: page `Robot`, transition `Measure` (ID1412311187), cell.cpn:23589, at all of these:
+ *     Cell.Robot1.Measure
+ *     Cell.Robot2.Measure
  * guard [c = MEASURE]
  */
-typedef struct Robot1_Measure_binding {
+typedef struct Robot_Measure_binding {
     int64_t c;
     POSE_t r;
     int64_t seen;
     POSE_t m; /* output of the code segment */
-} Robot1_Measure_binding_t;
+} Robot_Measure_binding_t;
 
-static const pn_field_t s_variables_Robot1_Measure[] = {
-    { "c", &s_COMMAND, offsetof(Robot1_Measure_binding_t, c), false },
-    { "r", &s_POSE, offsetof(Robot1_Measure_binding_t, r), false },
-    { "seen", &s_REPLY, offsetof(Robot1_Measure_binding_t, seen), false },
-    { "m", &s_POSE, offsetof(Robot1_Measure_binding_t, m), false },
+static const pn_field_t s_variables_Robot_Measure[] = {
+    { "c", &s_COMMAND, offsetof(Robot_Measure_binding_t, c), false },
+    { "r", &s_POSE, offsetof(Robot_Measure_binding_t, r), false },
+    { "seen", &s_REPLY, offsetof(Robot_Measure_binding_t, seen), false },
+    { "m", &s_POSE, offsetof(Robot_Measure_binding_t, m), false },
 };
 
-static const pn_type_t s_binding_Robot1_Measure = {
+static const pn_type_t s_binding_Robot_Measure = {
     .kind = PN_KIND_RECORD,
     .name = "Cell.Robot1.Measure",
-    .size = sizeof(Robot1_Measure_binding_t),
+    .size = sizeof(Robot_Measure_binding_t),
     .count = 4U,
-    .field = s_variables_Robot1_Measure,
+    .field = s_variables_Robot_Measure,
 };
 
-PN_NET_SEARCH static bool Robot1_Measure_enumerate(pn_ctx_t *cx, const void *marking,
+PN_NET_SEARCH static bool Robot_Measure_enumerate(pn_ctx_t *cx, const void *marking,
     uint32_t self, pn_binding_sink_t sink, void *user)
 {
     const net_marking_t *const m = marking;
-    Robot1_Measure_binding_t b = { 0 };
-    cx->origin = "page `Robot`, transition `Measure` (ID1412311187)";
-    cx->now = m->now;
-    cx->rounds = 0U;
+    Robot_Measure_binding_t b = { 0 };
+    pn_begin(cx, "page `Robot`, transition `Measure` (ID1412311187)", m->now);
+    const Robot_places_t *const own = pn_net.transition[self].places;
+    const POSE_slot_t *const at_referencia = pn_bag_look(own->referencia, m);
+    const int64_slot_t *const at_Commanded = pn_bag_look(own->Commanded, m);
     /* Commanded: c (ID1412311192) */
-    if (!m->Robot1_Commanded.full) {
+    if (!at_Commanded->full) {
         return true;
     }
-    b.c = m->Robot1_Commanded.value;
+    b.c = at_Commanded->value;
     /* guard [c = MEASURE] */
     if (b.c != val_MEASURE) {
         return true;
     }
-    /* referencia1: r (ID1412311248) */
-    if (!m->referencia1.full) {
+    /* referencia: r (ID1412311248) */
+    if (!at_referencia->full) {
         return true;
     }
-    b.r = m->referencia1.value;
+    b.r = at_referencia->value;
     /* seen over all of REPLY */
     for (uint64_t number = 0U; number < pn_type_size(&s_REPLY); number++) {
         pn_type_value(&s_REPLY, number, &b.seen);
@@ -5828,77 +4569,82 @@ PN_NET_SEARCH static bool Robot1_Measure_enumerate(pn_ctx_t *cx, const void *mar
     return true;
 }
 
-PN_NET_SEARCH static bool Robot1_Measure_fire(pn_ctx_t *cx, void *marking, void *binding)
+PN_NET_SEARCH static bool Robot_Measure_fire(pn_ctx_t *cx, void *marking, uint32_t self, void *binding)
 {
     net_marking_t *const m = marking;
-    Robot1_Measure_binding_t *const b = binding;
-    cx->origin = "page `Robot`, transition `Measure` (ID1412311187)";
-    cx->now = m->now;
-    cx->rounds = 0U;
+    Robot_Measure_binding_t *const b = binding;
+    pn_begin(cx, "page `Robot`, transition `Measure` (ID1412311187)", m->now);
+    const Robot_places_t *const own = pn_net.transition[self].places;
+    POSE_slot_t *const at_referencia = pn_bag_reach(own->referencia, m);
+    POSE_slot_t *const at_medida = pn_bag_reach(own->medida, m);
+    int64_slot_t *const at_Commanded = pn_bag_reach(own->Commanded, m);
+    int64_slot_t *const at_Done = pn_bag_reach(own->Done, m);
     /* code segment: action measure r */
     b->m = ml_measure(b->r);
-    int64_t Robot1_Done_token = ml_outcome(b->seen);
-    pn_bag_check(cx, &s_at_Robot1_Done, &Robot1_Done_token);
+    int64_t Done_token = ml_outcome(b->seen);
+    pn_bag_check(cx, own->Done, &Done_token);
     if (!pn_ok(cx)) {
         return false;
     }
-    if (!m->Robot1_Commanded.full || !m->referencia1.full) {
+    if (!at_Commanded->full || !at_referencia->full) {
         pn_raise(cx, PN_ERR_SUBTRACT, NULL);
         return false;
     }
-    if (m->Robot1_Done.full) {
-        return pn_bag_fail_full(cx, &s_at_Robot1_Done);
+    if (at_Done->full) {
+        return pn_bag_fail_full(cx, own->Done);
     }
-    if (m->medida1.full) {
-        return pn_bag_fail_full(cx, &s_at_medida1);
+    if (at_medida->full) {
+        return pn_bag_fail_full(cx, own->medida);
     }
     /* Commanded: c (ID1412311192) */
-    m->Robot1_Commanded.full = false;
-    /* referencia1: r (ID1412311248) */
-    m->referencia1.full = false;
+    at_Commanded->full = false;
+    /* referencia: r (ID1412311248) */
+    at_referencia->full = false;
     /* Done: outcome seen (ID1412311194) */
-    m->Robot1_Done.value = Robot1_Done_token;
-    m->Robot1_Done.full = true;
-    /* medida1: m (ID1412311250) */
-    m->medida1.value = b->m;
-    m->medida1.full = true;
+    at_Done->value = Done_token;
+    at_Done->full = true;
+    /* medida: m (ID1412311250) */
+    at_medida->value = b->m;
+    at_medida->full = true;
     return true;
 }
 
-/* transition Cell.Robot1.Drill: page `Robot`, transition `Drill` (ID1412311196), cell.cpn:23666
+/* transition: page `Robot`, transition `Drill` (ID1412311196), cell.cpn:23666, at all of these:
+ *     Cell.Robot1.Drill
+ *     Cell.Robot2.Drill
  * guard [c = DRILL]
  */
-typedef struct Robot1_Drill_binding {
+typedef struct Robot_Drill_binding {
     int64_t c;
     int64_t drilled;
-} Robot1_Drill_binding_t;
+} Robot_Drill_binding_t;
 
-static const pn_field_t s_variables_Robot1_Drill[] = {
-    { "c", &s_COMMAND, offsetof(Robot1_Drill_binding_t, c), false },
-    { "drilled", &s_REPLY, offsetof(Robot1_Drill_binding_t, drilled), false },
+static const pn_field_t s_variables_Robot_Drill[] = {
+    { "c", &s_COMMAND, offsetof(Robot_Drill_binding_t, c), false },
+    { "drilled", &s_REPLY, offsetof(Robot_Drill_binding_t, drilled), false },
 };
 
-static const pn_type_t s_binding_Robot1_Drill = {
+static const pn_type_t s_binding_Robot_Drill = {
     .kind = PN_KIND_RECORD,
     .name = "Cell.Robot1.Drill",
-    .size = sizeof(Robot1_Drill_binding_t),
+    .size = sizeof(Robot_Drill_binding_t),
     .count = 2U,
-    .field = s_variables_Robot1_Drill,
+    .field = s_variables_Robot_Drill,
 };
 
-PN_NET_SEARCH static bool Robot1_Drill_enumerate(pn_ctx_t *cx, const void *marking,
+PN_NET_SEARCH static bool Robot_Drill_enumerate(pn_ctx_t *cx, const void *marking,
     uint32_t self, pn_binding_sink_t sink, void *user)
 {
     const net_marking_t *const m = marking;
-    Robot1_Drill_binding_t b = { 0 };
-    cx->origin = "page `Robot`, transition `Drill` (ID1412311196)";
-    cx->now = m->now;
-    cx->rounds = 0U;
+    Robot_Drill_binding_t b = { 0 };
+    pn_begin(cx, "page `Robot`, transition `Drill` (ID1412311196)", m->now);
+    const Robot_places_t *const own = pn_net.transition[self].places;
+    const int64_slot_t *const at_Commanded = pn_bag_look(own->Commanded, m);
     /* Commanded: c (ID1412311201) */
-    if (!m->Robot1_Commanded.full) {
+    if (!at_Commanded->full) {
         return true;
     }
-    b.c = m->Robot1_Commanded.value;
+    b.c = at_Commanded->value;
     /* guard [c = DRILL] */
     if (b.c != val_DRILL) {
         return true;
@@ -5919,69 +4665,72 @@ PN_NET_SEARCH static bool Robot1_Drill_enumerate(pn_ctx_t *cx, const void *marki
     return true;
 }
 
-PN_NET_SEARCH static bool Robot1_Drill_fire(pn_ctx_t *cx, void *marking, void *binding)
+PN_NET_SEARCH static bool Robot_Drill_fire(pn_ctx_t *cx, void *marking, uint32_t self, void *binding)
 {
     net_marking_t *const m = marking;
-    Robot1_Drill_binding_t *const b = binding;
-    cx->origin = "page `Robot`, transition `Drill` (ID1412311196)";
-    cx->now = m->now;
-    cx->rounds = 0U;
+    Robot_Drill_binding_t *const b = binding;
+    pn_begin(cx, "page `Robot`, transition `Drill` (ID1412311196)", m->now);
+    const Robot_places_t *const own = pn_net.transition[self].places;
+    int64_slot_t *const at_Commanded = pn_bag_reach(own->Commanded, m);
+    int64_slot_t *const at_Done = pn_bag_reach(own->Done, m);
     /* code segment: action drill () */
     ml_drill();
-    int64_t Robot1_Done_token = ml_outcome(b->drilled);
-    pn_bag_check(cx, &s_at_Robot1_Done, &Robot1_Done_token);
+    int64_t Done_token = ml_outcome(b->drilled);
+    pn_bag_check(cx, own->Done, &Done_token);
     if (!pn_ok(cx)) {
         return false;
     }
-    if (!m->Robot1_Commanded.full) {
+    if (!at_Commanded->full) {
         pn_raise(cx, PN_ERR_SUBTRACT, NULL);
         return false;
     }
-    if (m->Robot1_Done.full) {
-        return pn_bag_fail_full(cx, &s_at_Robot1_Done);
+    if (at_Done->full) {
+        return pn_bag_fail_full(cx, own->Done);
     }
     /* Commanded: c (ID1412311201) */
-    m->Robot1_Commanded.full = false;
+    at_Commanded->full = false;
     /* Done: outcome drilled (ID1412311203) */
-    m->Robot1_Done.value = Robot1_Done_token;
-    m->Robot1_Done.full = true;
+    at_Done->value = Done_token;
+    at_Done->full = true;
     return true;
 }
 
-/* transition Cell.Robot1.Insert: page `Robot`, transition `Insert` (ID1412311205), cell.cpn:23741
+/* transition: page `Robot`, transition `Insert` (ID1412311205), cell.cpn:23741, at all of these:
+ *     Cell.Robot1.Insert
+ *     Cell.Robot2.Insert
  * guard [c = INSERT]
  */
-typedef struct Robot1_Insert_binding {
+typedef struct Robot_Insert_binding {
     int64_t c;
     int64_t inserted;
-} Robot1_Insert_binding_t;
+} Robot_Insert_binding_t;
 
-static const pn_field_t s_variables_Robot1_Insert[] = {
-    { "c", &s_COMMAND, offsetof(Robot1_Insert_binding_t, c), false },
-    { "inserted", &s_REPLY, offsetof(Robot1_Insert_binding_t, inserted), false },
+static const pn_field_t s_variables_Robot_Insert[] = {
+    { "c", &s_COMMAND, offsetof(Robot_Insert_binding_t, c), false },
+    { "inserted", &s_REPLY, offsetof(Robot_Insert_binding_t, inserted), false },
 };
 
-static const pn_type_t s_binding_Robot1_Insert = {
+static const pn_type_t s_binding_Robot_Insert = {
     .kind = PN_KIND_RECORD,
     .name = "Cell.Robot1.Insert",
-    .size = sizeof(Robot1_Insert_binding_t),
+    .size = sizeof(Robot_Insert_binding_t),
     .count = 2U,
-    .field = s_variables_Robot1_Insert,
+    .field = s_variables_Robot_Insert,
 };
 
-PN_NET_SEARCH static bool Robot1_Insert_enumerate(pn_ctx_t *cx, const void *marking,
+PN_NET_SEARCH static bool Robot_Insert_enumerate(pn_ctx_t *cx, const void *marking,
     uint32_t self, pn_binding_sink_t sink, void *user)
 {
     const net_marking_t *const m = marking;
-    Robot1_Insert_binding_t b = { 0 };
-    cx->origin = "page `Robot`, transition `Insert` (ID1412311205)";
-    cx->now = m->now;
-    cx->rounds = 0U;
+    Robot_Insert_binding_t b = { 0 };
+    pn_begin(cx, "page `Robot`, transition `Insert` (ID1412311205)", m->now);
+    const Robot_places_t *const own = pn_net.transition[self].places;
+    const int64_slot_t *const at_Commanded = pn_bag_look(own->Commanded, m);
     /* Commanded: c (ID1412311210) */
-    if (!m->Robot1_Commanded.full) {
+    if (!at_Commanded->full) {
         return true;
     }
-    b.c = m->Robot1_Commanded.value;
+    b.c = at_Commanded->value;
     /* guard [c = INSERT] */
     if (b.c != val_INSERT) {
         return true;
@@ -6002,69 +4751,72 @@ PN_NET_SEARCH static bool Robot1_Insert_enumerate(pn_ctx_t *cx, const void *mark
     return true;
 }
 
-PN_NET_SEARCH static bool Robot1_Insert_fire(pn_ctx_t *cx, void *marking, void *binding)
+PN_NET_SEARCH static bool Robot_Insert_fire(pn_ctx_t *cx, void *marking, uint32_t self, void *binding)
 {
     net_marking_t *const m = marking;
-    Robot1_Insert_binding_t *const b = binding;
-    cx->origin = "page `Robot`, transition `Insert` (ID1412311205)";
-    cx->now = m->now;
-    cx->rounds = 0U;
+    Robot_Insert_binding_t *const b = binding;
+    pn_begin(cx, "page `Robot`, transition `Insert` (ID1412311205)", m->now);
+    const Robot_places_t *const own = pn_net.transition[self].places;
+    int64_slot_t *const at_Commanded = pn_bag_reach(own->Commanded, m);
+    int64_slot_t *const at_Done = pn_bag_reach(own->Done, m);
     /* code segment: action insert () */
     ml_insert();
-    int64_t Robot1_Done_token = ml_outcome(b->inserted);
-    pn_bag_check(cx, &s_at_Robot1_Done, &Robot1_Done_token);
+    int64_t Done_token = ml_outcome(b->inserted);
+    pn_bag_check(cx, own->Done, &Done_token);
     if (!pn_ok(cx)) {
         return false;
     }
-    if (!m->Robot1_Commanded.full) {
+    if (!at_Commanded->full) {
         pn_raise(cx, PN_ERR_SUBTRACT, NULL);
         return false;
     }
-    if (m->Robot1_Done.full) {
-        return pn_bag_fail_full(cx, &s_at_Robot1_Done);
+    if (at_Done->full) {
+        return pn_bag_fail_full(cx, own->Done);
     }
     /* Commanded: c (ID1412311210) */
-    m->Robot1_Commanded.full = false;
+    at_Commanded->full = false;
     /* Done: outcome inserted (ID1412311212) */
-    m->Robot1_Done.value = Robot1_Done_token;
-    m->Robot1_Done.full = true;
+    at_Done->value = Done_token;
+    at_Done->full = true;
     return true;
 }
 
-/* transition Cell.Robot1.Press: page `Robot`, transition `Press` (ID1412311214), cell.cpn:23816
+/* transition: page `Robot`, transition `Press` (ID1412311214), cell.cpn:23816, at all of these:
+ *     Cell.Robot1.Press
+ *     Cell.Robot2.Press
  * guard [c = PRESS]
  */
-typedef struct Robot1_Press_binding {
+typedef struct Robot_Press_binding {
     int64_t c;
     int64_t pressed;
-} Robot1_Press_binding_t;
+} Robot_Press_binding_t;
 
-static const pn_field_t s_variables_Robot1_Press[] = {
-    { "c", &s_COMMAND, offsetof(Robot1_Press_binding_t, c), false },
-    { "pressed", &s_REPLY, offsetof(Robot1_Press_binding_t, pressed), false },
+static const pn_field_t s_variables_Robot_Press[] = {
+    { "c", &s_COMMAND, offsetof(Robot_Press_binding_t, c), false },
+    { "pressed", &s_REPLY, offsetof(Robot_Press_binding_t, pressed), false },
 };
 
-static const pn_type_t s_binding_Robot1_Press = {
+static const pn_type_t s_binding_Robot_Press = {
     .kind = PN_KIND_RECORD,
     .name = "Cell.Robot1.Press",
-    .size = sizeof(Robot1_Press_binding_t),
+    .size = sizeof(Robot_Press_binding_t),
     .count = 2U,
-    .field = s_variables_Robot1_Press,
+    .field = s_variables_Robot_Press,
 };
 
-PN_NET_SEARCH static bool Robot1_Press_enumerate(pn_ctx_t *cx, const void *marking,
+PN_NET_SEARCH static bool Robot_Press_enumerate(pn_ctx_t *cx, const void *marking,
     uint32_t self, pn_binding_sink_t sink, void *user)
 {
     const net_marking_t *const m = marking;
-    Robot1_Press_binding_t b = { 0 };
-    cx->origin = "page `Robot`, transition `Press` (ID1412311214)";
-    cx->now = m->now;
-    cx->rounds = 0U;
+    Robot_Press_binding_t b = { 0 };
+    pn_begin(cx, "page `Robot`, transition `Press` (ID1412311214)", m->now);
+    const Robot_places_t *const own = pn_net.transition[self].places;
+    const int64_slot_t *const at_Commanded = pn_bag_look(own->Commanded, m);
     /* Commanded: c (ID1412311219) */
-    if (!m->Robot1_Commanded.full) {
+    if (!at_Commanded->full) {
         return true;
     }
-    b.c = m->Robot1_Commanded.value;
+    b.c = at_Commanded->value;
     /* guard [c = PRESS] */
     if (b.c != val_PRESS) {
         return true;
@@ -6085,69 +4837,72 @@ PN_NET_SEARCH static bool Robot1_Press_enumerate(pn_ctx_t *cx, const void *marki
     return true;
 }
 
-PN_NET_SEARCH static bool Robot1_Press_fire(pn_ctx_t *cx, void *marking, void *binding)
+PN_NET_SEARCH static bool Robot_Press_fire(pn_ctx_t *cx, void *marking, uint32_t self, void *binding)
 {
     net_marking_t *const m = marking;
-    Robot1_Press_binding_t *const b = binding;
-    cx->origin = "page `Robot`, transition `Press` (ID1412311214)";
-    cx->now = m->now;
-    cx->rounds = 0U;
+    Robot_Press_binding_t *const b = binding;
+    pn_begin(cx, "page `Robot`, transition `Press` (ID1412311214)", m->now);
+    const Robot_places_t *const own = pn_net.transition[self].places;
+    int64_slot_t *const at_Commanded = pn_bag_reach(own->Commanded, m);
+    int64_slot_t *const at_Done = pn_bag_reach(own->Done, m);
     /* code segment: action press () */
     ml_press();
-    int64_t Robot1_Done_token = ml_outcome(b->pressed);
-    pn_bag_check(cx, &s_at_Robot1_Done, &Robot1_Done_token);
+    int64_t Done_token = ml_outcome(b->pressed);
+    pn_bag_check(cx, own->Done, &Done_token);
     if (!pn_ok(cx)) {
         return false;
     }
-    if (!m->Robot1_Commanded.full) {
+    if (!at_Commanded->full) {
         pn_raise(cx, PN_ERR_SUBTRACT, NULL);
         return false;
     }
-    if (m->Robot1_Done.full) {
-        return pn_bag_fail_full(cx, &s_at_Robot1_Done);
+    if (at_Done->full) {
+        return pn_bag_fail_full(cx, own->Done);
     }
     /* Commanded: c (ID1412311219) */
-    m->Robot1_Commanded.full = false;
+    at_Commanded->full = false;
     /* Done: outcome pressed (ID1412311221) */
-    m->Robot1_Done.value = Robot1_Done_token;
-    m->Robot1_Done.full = true;
+    at_Done->value = Done_token;
+    at_Done->full = true;
     return true;
 }
 
-/* transition Cell.Robot1.Release: page `Robot`, transition `Release` (ID1412311223), cell.cpn:23891
+/* transition: page `Robot`, transition `Release` (ID1412311223), cell.cpn:23891, at all of these:
+ *     Cell.Robot1.Release
+ *     Cell.Robot2.Release
  * guard [c = RELEASE]
  */
-typedef struct Robot1_Release_binding {
+typedef struct Robot_Release_binding {
     int64_t c;
     int64_t released;
-} Robot1_Release_binding_t;
+} Robot_Release_binding_t;
 
-static const pn_field_t s_variables_Robot1_Release[] = {
-    { "c", &s_COMMAND, offsetof(Robot1_Release_binding_t, c), false },
-    { "released", &s_REPLY, offsetof(Robot1_Release_binding_t, released), false },
+static const pn_field_t s_variables_Robot_Release[] = {
+    { "c", &s_COMMAND, offsetof(Robot_Release_binding_t, c), false },
+    { "released", &s_REPLY, offsetof(Robot_Release_binding_t, released), false },
 };
 
-static const pn_type_t s_binding_Robot1_Release = {
+static const pn_type_t s_binding_Robot_Release = {
     .kind = PN_KIND_RECORD,
     .name = "Cell.Robot1.Release",
-    .size = sizeof(Robot1_Release_binding_t),
+    .size = sizeof(Robot_Release_binding_t),
     .count = 2U,
-    .field = s_variables_Robot1_Release,
+    .field = s_variables_Robot_Release,
 };
 
-PN_NET_SEARCH static bool Robot1_Release_enumerate(pn_ctx_t *cx, const void *marking,
+PN_NET_SEARCH static bool Robot_Release_enumerate(pn_ctx_t *cx, const void *marking,
     uint32_t self, pn_binding_sink_t sink, void *user)
 {
     const net_marking_t *const m = marking;
-    Robot1_Release_binding_t b = { 0 };
-    cx->origin = "page `Robot`, transition `Release` (ID1412311223)";
-    cx->now = m->now;
-    cx->rounds = 0U;
+    Robot_Release_binding_t b = { 0 };
+    pn_begin(cx, "page `Robot`, transition `Release` (ID1412311223)", m->now);
+    const Robot_places_t *const own = pn_net.transition[self].places;
+    const int64_slot_t *const at_Commanded = pn_bag_look(own->Commanded, m);
     /* Commanded: c (ID1412311228) */
-    if (!m->Robot1_Commanded.full) {
+    if (!at_Commanded->full) {
         return true;
     }
-    b.c = m->Robot1_Commanded.value;
+    b.c = at_Commanded->value;
     /* guard [c = RELEASE] */
     if (b.c != val_RELEASE) {
         return true;
@@ -6168,822 +4923,33 @@ PN_NET_SEARCH static bool Robot1_Release_enumerate(pn_ctx_t *cx, const void *mar
     return true;
 }
 
-PN_NET_SEARCH static bool Robot1_Release_fire(pn_ctx_t *cx, void *marking, void *binding)
+PN_NET_SEARCH static bool Robot_Release_fire(pn_ctx_t *cx, void *marking, uint32_t self, void *binding)
 {
     net_marking_t *const m = marking;
-    Robot1_Release_binding_t *const b = binding;
-    cx->origin = "page `Robot`, transition `Release` (ID1412311223)";
-    cx->now = m->now;
-    cx->rounds = 0U;
+    Robot_Release_binding_t *const b = binding;
+    pn_begin(cx, "page `Robot`, transition `Release` (ID1412311223)", m->now);
+    const Robot_places_t *const own = pn_net.transition[self].places;
+    int64_slot_t *const at_Commanded = pn_bag_reach(own->Commanded, m);
+    int64_slot_t *const at_Done = pn_bag_reach(own->Done, m);
     /* code segment: action release () */
     ml_release();
-    int64_t Robot1_Done_token = ml_outcome(b->released);
-    pn_bag_check(cx, &s_at_Robot1_Done, &Robot1_Done_token);
+    int64_t Done_token = ml_outcome(b->released);
+    pn_bag_check(cx, own->Done, &Done_token);
     if (!pn_ok(cx)) {
         return false;
     }
-    if (!m->Robot1_Commanded.full) {
+    if (!at_Commanded->full) {
         pn_raise(cx, PN_ERR_SUBTRACT, NULL);
         return false;
     }
-    if (m->Robot1_Done.full) {
-        return pn_bag_fail_full(cx, &s_at_Robot1_Done);
+    if (at_Done->full) {
+        return pn_bag_fail_full(cx, own->Done);
     }
     /* Commanded: c (ID1412311228) */
-    m->Robot1_Commanded.full = false;
+    at_Commanded->full = false;
     /* Done: outcome released (ID1412311230) */
-    m->Robot1_Done.value = Robot1_Done_token;
-    m->Robot1_Done.full = true;
-    return true;
-}
-
-/* transition Cell.Robot2.Accept: page `Robot`, transition `Accept` (ID1412311125), cell.cpn:23214 */
-typedef struct Robot2_Accept_binding {
-    int64_t c;
-} Robot2_Accept_binding_t;
-
-static const pn_field_t s_variables_Robot2_Accept[] = {
-    { "c", &s_COMMAND, offsetof(Robot2_Accept_binding_t, c), false },
-};
-
-static const pn_type_t s_binding_Robot2_Accept = {
-    .kind = PN_KIND_RECORD,
-    .name = "Cell.Robot2.Accept",
-    .size = sizeof(Robot2_Accept_binding_t),
-    .count = 1U,
-    .field = s_variables_Robot2_Accept,
-};
-
-PN_NET_SEARCH static bool Robot2_Accept_enumerate(pn_ctx_t *cx, const void *marking,
-    uint32_t self, pn_binding_sink_t sink, void *user)
-{
-    const net_marking_t *const m = marking;
-    Robot2_Accept_binding_t b = { 0 };
-    cx->origin = "page `Robot`, transition `Accept` (ID1412311125)";
-    cx->now = m->now;
-    cx->rounds = 0U;
-    /* Waiting: () (ID1412311138) */
-    if (!m->Robot2_Waiting.full) {
-        return true;
-    }
-    /* flag2_interno: c (ID1412311136) */
-    if (!m->flag2_interno.full) {
-        return true;
-    }
-    b.c = m->flag2_interno.value;
-    if (!sink(user, self, &b)) {
-        return false;
-    }
-    return true;
-}
-
-PN_NET_SEARCH static bool Robot2_Accept_fire(pn_ctx_t *cx, void *marking, void *binding)
-{
-    net_marking_t *const m = marking;
-    Robot2_Accept_binding_t *const b = binding;
-    cx->origin = "page `Robot`, transition `Accept` (ID1412311125)";
-    cx->now = m->now;
-    cx->rounds = 0U;
-    if (!m->flag2_interno.full || !m->Robot2_Waiting.full) {
-        pn_raise(cx, PN_ERR_SUBTRACT, NULL);
-        return false;
-    }
-    if (m->Robot2_Commanded.full) {
-        return pn_bag_fail_full(cx, &s_at_Robot2_Commanded);
-    }
-    /* flag2_interno: c (ID1412311136) */
-    m->flag2_interno.full = false;
-    /* Waiting: () (ID1412311138) */
-    m->Robot2_Waiting.full = false;
-    /* Commanded: c (ID1412311140) */
-    m->Robot2_Commanded.value = b->c;
-    m->Robot2_Commanded.full = true;
-    return true;
-}
-
-/* transition Cell.Robot2.Report: page `Robot`, transition `Report` (ID1412311145), cell.cpn:23288 */
-typedef struct Robot2_Report_binding {
-    int64_t e;
-} Robot2_Report_binding_t;
-
-static const pn_field_t s_variables_Robot2_Report[] = {
-    { "e", &s_REPLY, offsetof(Robot2_Report_binding_t, e), false },
-};
-
-static const pn_type_t s_binding_Robot2_Report = {
-    .kind = PN_KIND_RECORD,
-    .name = "Cell.Robot2.Report",
-    .size = sizeof(Robot2_Report_binding_t),
-    .count = 1U,
-    .field = s_variables_Robot2_Report,
-};
-
-PN_NET_SEARCH static bool Robot2_Report_enumerate(pn_ctx_t *cx, const void *marking,
-    uint32_t self, pn_binding_sink_t sink, void *user)
-{
-    const net_marking_t *const m = marking;
-    Robot2_Report_binding_t b = { 0 };
-    cx->origin = "page `Robot`, transition `Report` (ID1412311145)";
-    cx->now = m->now;
-    cx->rounds = 0U;
-    /* Done: e (ID1412311154) */
-    if (!m->Robot2_Done.full) {
-        return true;
-    }
-    b.e = m->Robot2_Done.value;
-    if (!sink(user, self, &b)) {
-        return false;
-    }
-    return true;
-}
-
-PN_NET_SEARCH static bool Robot2_Report_fire(pn_ctx_t *cx, void *marking, void *binding)
-{
-    net_marking_t *const m = marking;
-    Robot2_Report_binding_t *const b = binding;
-    cx->origin = "page `Robot`, transition `Report` (ID1412311145)";
-    cx->now = m->now;
-    cx->rounds = 0U;
-    if (!m->Robot2_Done.full) {
-        pn_raise(cx, PN_ERR_SUBTRACT, NULL);
-        return false;
-    }
-    if (m->flag2_externo.full) {
-        return pn_bag_fail_full(cx, &s_at_flag2_externo);
-    }
-    if (m->Robot2_Waiting.full) {
-        return pn_bag_fail_full(cx, &s_at_Robot2_Waiting);
-    }
-    /* Done: e (ID1412311154) */
-    m->Robot2_Done.full = false;
-    /* flag2_externo: e (ID1412311156) */
-    m->flag2_externo.value = b->e;
-    m->flag2_externo.full = true;
-    /* Waiting: () (ID1412311158) */
-    m->Robot2_Waiting.full = true;
-    return true;
-}
-
-/* transition Cell.Robot2.MoveJoint: page `Robot`, transition `MoveJoint` (ID1412311160), cell.cpn:23362
- * guard [c = JOINT]
- */
-typedef struct Robot2_MoveJoint_binding {
-    int64_t c;
-    POSE_t p;
-} Robot2_MoveJoint_binding_t;
-
-static const pn_field_t s_variables_Robot2_MoveJoint[] = {
-    { "c", &s_COMMAND, offsetof(Robot2_MoveJoint_binding_t, c), false },
-    { "p", &s_POSE, offsetof(Robot2_MoveJoint_binding_t, p), false },
-};
-
-static const pn_type_t s_binding_Robot2_MoveJoint = {
-    .kind = PN_KIND_RECORD,
-    .name = "Cell.Robot2.MoveJoint",
-    .size = sizeof(Robot2_MoveJoint_binding_t),
-    .count = 2U,
-    .field = s_variables_Robot2_MoveJoint,
-};
-
-PN_NET_SEARCH static bool Robot2_MoveJoint_enumerate(pn_ctx_t *cx, const void *marking,
-    uint32_t self, pn_binding_sink_t sink, void *user)
-{
-    const net_marking_t *const m = marking;
-    Robot2_MoveJoint_binding_t b = { 0 };
-    cx->origin = "page `Robot`, transition `MoveJoint` (ID1412311160)";
-    cx->now = m->now;
-    cx->rounds = 0U;
-    /* Commanded: c (ID1412311165) */
-    if (!m->Robot2_Commanded.full) {
-        return true;
-    }
-    b.c = m->Robot2_Commanded.value;
-    /* guard [c = JOINT] */
-    if (b.c != val_JOINT) {
-        return true;
-    }
-    /* dadosrobo2: p (ID1412311244) */
-    if (!m->dadosrobo2.full) {
-        return true;
-    }
-    b.p = m->dadosrobo2.value;
-    if (!sink(user, self, &b)) {
-        return false;
-    }
-    return true;
-}
-
-PN_NET_SEARCH static bool Robot2_MoveJoint_fire(pn_ctx_t *cx, void *marking, void *binding)
-{
-    net_marking_t *const m = marking;
-    Robot2_MoveJoint_binding_t *const b = binding;
-    cx->origin = "page `Robot`, transition `MoveJoint` (ID1412311160)";
-    cx->now = m->now;
-    cx->rounds = 0U;
-    /* code segment: action moveJoint p */
-    ml_moveJoint(b->p);
-    int64_t Robot2_Done_token = val_DONE;
-    pn_bag_check(cx, &s_at_Robot2_Done, &Robot2_Done_token);
-    if (!pn_ok(cx)) {
-        return false;
-    }
-    if (!m->Robot2_Commanded.full || !m->dadosrobo2.full) {
-        pn_raise(cx, PN_ERR_SUBTRACT, NULL);
-        return false;
-    }
-    if (m->Robot2_Done.full) {
-        return pn_bag_fail_full(cx, &s_at_Robot2_Done);
-    }
-    /* Commanded: c (ID1412311165) */
-    m->Robot2_Commanded.full = false;
-    /* dadosrobo2: p (ID1412311244) */
-    m->dadosrobo2.full = false;
-    /* Done: DONE (ID1412311167) */
-    m->Robot2_Done.value = Robot2_Done_token;
-    m->Robot2_Done.full = true;
-    return true;
-}
-
-/* transition Cell.Robot2.MoveLinear: page `Robot`, transition `MoveLinear` (ID1412311169), cell.cpn:23438
- * guard [c = LINEAR]
- */
-typedef struct Robot2_MoveLinear_binding {
-    int64_t c;
-    POSE_t p;
-} Robot2_MoveLinear_binding_t;
-
-static const pn_field_t s_variables_Robot2_MoveLinear[] = {
-    { "c", &s_COMMAND, offsetof(Robot2_MoveLinear_binding_t, c), false },
-    { "p", &s_POSE, offsetof(Robot2_MoveLinear_binding_t, p), false },
-};
-
-static const pn_type_t s_binding_Robot2_MoveLinear = {
-    .kind = PN_KIND_RECORD,
-    .name = "Cell.Robot2.MoveLinear",
-    .size = sizeof(Robot2_MoveLinear_binding_t),
-    .count = 2U,
-    .field = s_variables_Robot2_MoveLinear,
-};
-
-PN_NET_SEARCH static bool Robot2_MoveLinear_enumerate(pn_ctx_t *cx, const void *marking,
-    uint32_t self, pn_binding_sink_t sink, void *user)
-{
-    const net_marking_t *const m = marking;
-    Robot2_MoveLinear_binding_t b = { 0 };
-    cx->origin = "page `Robot`, transition `MoveLinear` (ID1412311169)";
-    cx->now = m->now;
-    cx->rounds = 0U;
-    /* Commanded: c (ID1412311174) */
-    if (!m->Robot2_Commanded.full) {
-        return true;
-    }
-    b.c = m->Robot2_Commanded.value;
-    /* guard [c = LINEAR] */
-    if (b.c != val_LINEAR) {
-        return true;
-    }
-    /* dadosrobo2: p (ID1412311246) */
-    if (!m->dadosrobo2.full) {
-        return true;
-    }
-    b.p = m->dadosrobo2.value;
-    if (!sink(user, self, &b)) {
-        return false;
-    }
-    return true;
-}
-
-PN_NET_SEARCH static bool Robot2_MoveLinear_fire(pn_ctx_t *cx, void *marking, void *binding)
-{
-    net_marking_t *const m = marking;
-    Robot2_MoveLinear_binding_t *const b = binding;
-    cx->origin = "page `Robot`, transition `MoveLinear` (ID1412311169)";
-    cx->now = m->now;
-    cx->rounds = 0U;
-    /* code segment: action moveLinear p */
-    ml_moveLinear(b->p);
-    int64_t Robot2_Done_token = val_DONE;
-    pn_bag_check(cx, &s_at_Robot2_Done, &Robot2_Done_token);
-    if (!pn_ok(cx)) {
-        return false;
-    }
-    if (!m->Robot2_Commanded.full || !m->dadosrobo2.full) {
-        pn_raise(cx, PN_ERR_SUBTRACT, NULL);
-        return false;
-    }
-    if (m->Robot2_Done.full) {
-        return pn_bag_fail_full(cx, &s_at_Robot2_Done);
-    }
-    /* Commanded: c (ID1412311174) */
-    m->Robot2_Commanded.full = false;
-    /* dadosrobo2: p (ID1412311246) */
-    m->dadosrobo2.full = false;
-    /* Done: DONE (ID1412311176) */
-    m->Robot2_Done.value = Robot2_Done_token;
-    m->Robot2_Done.full = true;
-    return true;
-}
-
-/* transition Cell.Robot2.MoveHome: page `Robot`, transition `MoveHome` (ID1412311178), cell.cpn:23514
- * guard [c = HOME]
- */
-typedef struct Robot2_MoveHome_binding {
-    int64_t c;
-} Robot2_MoveHome_binding_t;
-
-static const pn_field_t s_variables_Robot2_MoveHome[] = {
-    { "c", &s_COMMAND, offsetof(Robot2_MoveHome_binding_t, c), false },
-};
-
-static const pn_type_t s_binding_Robot2_MoveHome = {
-    .kind = PN_KIND_RECORD,
-    .name = "Cell.Robot2.MoveHome",
-    .size = sizeof(Robot2_MoveHome_binding_t),
-    .count = 1U,
-    .field = s_variables_Robot2_MoveHome,
-};
-
-PN_NET_SEARCH static bool Robot2_MoveHome_enumerate(pn_ctx_t *cx, const void *marking,
-    uint32_t self, pn_binding_sink_t sink, void *user)
-{
-    const net_marking_t *const m = marking;
-    Robot2_MoveHome_binding_t b = { 0 };
-    cx->origin = "page `Robot`, transition `MoveHome` (ID1412311178)";
-    cx->now = m->now;
-    cx->rounds = 0U;
-    /* Commanded: c (ID1412311183) */
-    if (!m->Robot2_Commanded.full) {
-        return true;
-    }
-    b.c = m->Robot2_Commanded.value;
-    /* guard [c = HOME] */
-    if (b.c != val_HOME) {
-        return true;
-    }
-    if (!sink(user, self, &b)) {
-        return false;
-    }
-    return true;
-}
-
-PN_NET_SEARCH static bool Robot2_MoveHome_fire(pn_ctx_t *cx, void *marking, void *binding)
-{
-    net_marking_t *const m = marking;
-    (void)binding;
-    cx->origin = "page `Robot`, transition `MoveHome` (ID1412311178)";
-    cx->now = m->now;
-    cx->rounds = 0U;
-    /* code segment: action moveHome () */
-    ml_moveHome();
-    int64_t Robot2_Done_token = val_DONE;
-    pn_bag_check(cx, &s_at_Robot2_Done, &Robot2_Done_token);
-    if (!pn_ok(cx)) {
-        return false;
-    }
-    if (!m->Robot2_Commanded.full) {
-        pn_raise(cx, PN_ERR_SUBTRACT, NULL);
-        return false;
-    }
-    if (m->Robot2_Done.full) {
-        return pn_bag_fail_full(cx, &s_at_Robot2_Done);
-    }
-    /* Commanded: c (ID1412311183) */
-    m->Robot2_Commanded.full = false;
-    /* Done: DONE (ID1412311185) */
-    m->Robot2_Done.value = Robot2_Done_token;
-    m->Robot2_Done.full = true;
-    return true;
-}
-
-/* transition Cell.Robot2.Measure: page `Robot`, transition `Measure` (ID1412311187), cell.cpn:23589
- * guard [c = MEASURE]
- */
-typedef struct Robot2_Measure_binding {
-    int64_t c;
-    POSE_t r;
-    int64_t seen;
-    POSE_t m; /* output of the code segment */
-} Robot2_Measure_binding_t;
-
-static const pn_field_t s_variables_Robot2_Measure[] = {
-    { "c", &s_COMMAND, offsetof(Robot2_Measure_binding_t, c), false },
-    { "r", &s_POSE, offsetof(Robot2_Measure_binding_t, r), false },
-    { "seen", &s_REPLY, offsetof(Robot2_Measure_binding_t, seen), false },
-    { "m", &s_POSE, offsetof(Robot2_Measure_binding_t, m), false },
-};
-
-static const pn_type_t s_binding_Robot2_Measure = {
-    .kind = PN_KIND_RECORD,
-    .name = "Cell.Robot2.Measure",
-    .size = sizeof(Robot2_Measure_binding_t),
-    .count = 4U,
-    .field = s_variables_Robot2_Measure,
-};
-
-PN_NET_SEARCH static bool Robot2_Measure_enumerate(pn_ctx_t *cx, const void *marking,
-    uint32_t self, pn_binding_sink_t sink, void *user)
-{
-    const net_marking_t *const m = marking;
-    Robot2_Measure_binding_t b = { 0 };
-    cx->origin = "page `Robot`, transition `Measure` (ID1412311187)";
-    cx->now = m->now;
-    cx->rounds = 0U;
-    /* Commanded: c (ID1412311192) */
-    if (!m->Robot2_Commanded.full) {
-        return true;
-    }
-    b.c = m->Robot2_Commanded.value;
-    /* guard [c = MEASURE] */
-    if (b.c != val_MEASURE) {
-        return true;
-    }
-    /* referencia2: r (ID1412311248) */
-    if (!m->referencia2.full) {
-        return true;
-    }
-    b.r = m->referencia2.value;
-    /* seen over all of REPLY */
-    for (uint64_t number = 0U; number < pn_type_size(&s_REPLY); number++) {
-        pn_type_value(&s_REPLY, number, &b.seen);
-        if (!pn_is_legal(cx, &s_REPLY, &b.seen)) {
-            continue;
-        }
-        if (!pn_ok(cx)) {
-            return true;
-        }
-        if (!sink(user, self, &b)) {
-            return false;
-        }
-    }
-    return true;
-}
-
-PN_NET_SEARCH static bool Robot2_Measure_fire(pn_ctx_t *cx, void *marking, void *binding)
-{
-    net_marking_t *const m = marking;
-    Robot2_Measure_binding_t *const b = binding;
-    cx->origin = "page `Robot`, transition `Measure` (ID1412311187)";
-    cx->now = m->now;
-    cx->rounds = 0U;
-    /* code segment: action measure r */
-    b->m = ml_measure(b->r);
-    int64_t Robot2_Done_token = ml_outcome(b->seen);
-    pn_bag_check(cx, &s_at_Robot2_Done, &Robot2_Done_token);
-    if (!pn_ok(cx)) {
-        return false;
-    }
-    if (!m->Robot2_Commanded.full || !m->referencia2.full) {
-        pn_raise(cx, PN_ERR_SUBTRACT, NULL);
-        return false;
-    }
-    if (m->Robot2_Done.full) {
-        return pn_bag_fail_full(cx, &s_at_Robot2_Done);
-    }
-    if (m->medida2.full) {
-        return pn_bag_fail_full(cx, &s_at_medida2);
-    }
-    /* Commanded: c (ID1412311192) */
-    m->Robot2_Commanded.full = false;
-    /* referencia2: r (ID1412311248) */
-    m->referencia2.full = false;
-    /* Done: outcome seen (ID1412311194) */
-    m->Robot2_Done.value = Robot2_Done_token;
-    m->Robot2_Done.full = true;
-    /* medida2: m (ID1412311250) */
-    m->medida2.value = b->m;
-    m->medida2.full = true;
-    return true;
-}
-
-/* transition Cell.Robot2.Drill: page `Robot`, transition `Drill` (ID1412311196), cell.cpn:23666
- * guard [c = DRILL]
- */
-typedef struct Robot2_Drill_binding {
-    int64_t c;
-    int64_t drilled;
-} Robot2_Drill_binding_t;
-
-static const pn_field_t s_variables_Robot2_Drill[] = {
-    { "c", &s_COMMAND, offsetof(Robot2_Drill_binding_t, c), false },
-    { "drilled", &s_REPLY, offsetof(Robot2_Drill_binding_t, drilled), false },
-};
-
-static const pn_type_t s_binding_Robot2_Drill = {
-    .kind = PN_KIND_RECORD,
-    .name = "Cell.Robot2.Drill",
-    .size = sizeof(Robot2_Drill_binding_t),
-    .count = 2U,
-    .field = s_variables_Robot2_Drill,
-};
-
-PN_NET_SEARCH static bool Robot2_Drill_enumerate(pn_ctx_t *cx, const void *marking,
-    uint32_t self, pn_binding_sink_t sink, void *user)
-{
-    const net_marking_t *const m = marking;
-    Robot2_Drill_binding_t b = { 0 };
-    cx->origin = "page `Robot`, transition `Drill` (ID1412311196)";
-    cx->now = m->now;
-    cx->rounds = 0U;
-    /* Commanded: c (ID1412311201) */
-    if (!m->Robot2_Commanded.full) {
-        return true;
-    }
-    b.c = m->Robot2_Commanded.value;
-    /* guard [c = DRILL] */
-    if (b.c != val_DRILL) {
-        return true;
-    }
-    /* drilled over all of REPLY */
-    for (uint64_t number = 0U; number < pn_type_size(&s_REPLY); number++) {
-        pn_type_value(&s_REPLY, number, &b.drilled);
-        if (!pn_is_legal(cx, &s_REPLY, &b.drilled)) {
-            continue;
-        }
-        if (!pn_ok(cx)) {
-            return true;
-        }
-        if (!sink(user, self, &b)) {
-            return false;
-        }
-    }
-    return true;
-}
-
-PN_NET_SEARCH static bool Robot2_Drill_fire(pn_ctx_t *cx, void *marking, void *binding)
-{
-    net_marking_t *const m = marking;
-    Robot2_Drill_binding_t *const b = binding;
-    cx->origin = "page `Robot`, transition `Drill` (ID1412311196)";
-    cx->now = m->now;
-    cx->rounds = 0U;
-    /* code segment: action drill () */
-    ml_drill();
-    int64_t Robot2_Done_token = ml_outcome(b->drilled);
-    pn_bag_check(cx, &s_at_Robot2_Done, &Robot2_Done_token);
-    if (!pn_ok(cx)) {
-        return false;
-    }
-    if (!m->Robot2_Commanded.full) {
-        pn_raise(cx, PN_ERR_SUBTRACT, NULL);
-        return false;
-    }
-    if (m->Robot2_Done.full) {
-        return pn_bag_fail_full(cx, &s_at_Robot2_Done);
-    }
-    /* Commanded: c (ID1412311201) */
-    m->Robot2_Commanded.full = false;
-    /* Done: outcome drilled (ID1412311203) */
-    m->Robot2_Done.value = Robot2_Done_token;
-    m->Robot2_Done.full = true;
-    return true;
-}
-
-/* transition Cell.Robot2.Insert: page `Robot`, transition `Insert` (ID1412311205), cell.cpn:23741
- * guard [c = INSERT]
- */
-typedef struct Robot2_Insert_binding {
-    int64_t c;
-    int64_t inserted;
-} Robot2_Insert_binding_t;
-
-static const pn_field_t s_variables_Robot2_Insert[] = {
-    { "c", &s_COMMAND, offsetof(Robot2_Insert_binding_t, c), false },
-    { "inserted", &s_REPLY, offsetof(Robot2_Insert_binding_t, inserted), false },
-};
-
-static const pn_type_t s_binding_Robot2_Insert = {
-    .kind = PN_KIND_RECORD,
-    .name = "Cell.Robot2.Insert",
-    .size = sizeof(Robot2_Insert_binding_t),
-    .count = 2U,
-    .field = s_variables_Robot2_Insert,
-};
-
-PN_NET_SEARCH static bool Robot2_Insert_enumerate(pn_ctx_t *cx, const void *marking,
-    uint32_t self, pn_binding_sink_t sink, void *user)
-{
-    const net_marking_t *const m = marking;
-    Robot2_Insert_binding_t b = { 0 };
-    cx->origin = "page `Robot`, transition `Insert` (ID1412311205)";
-    cx->now = m->now;
-    cx->rounds = 0U;
-    /* Commanded: c (ID1412311210) */
-    if (!m->Robot2_Commanded.full) {
-        return true;
-    }
-    b.c = m->Robot2_Commanded.value;
-    /* guard [c = INSERT] */
-    if (b.c != val_INSERT) {
-        return true;
-    }
-    /* inserted over all of REPLY */
-    for (uint64_t number = 0U; number < pn_type_size(&s_REPLY); number++) {
-        pn_type_value(&s_REPLY, number, &b.inserted);
-        if (!pn_is_legal(cx, &s_REPLY, &b.inserted)) {
-            continue;
-        }
-        if (!pn_ok(cx)) {
-            return true;
-        }
-        if (!sink(user, self, &b)) {
-            return false;
-        }
-    }
-    return true;
-}
-
-PN_NET_SEARCH static bool Robot2_Insert_fire(pn_ctx_t *cx, void *marking, void *binding)
-{
-    net_marking_t *const m = marking;
-    Robot2_Insert_binding_t *const b = binding;
-    cx->origin = "page `Robot`, transition `Insert` (ID1412311205)";
-    cx->now = m->now;
-    cx->rounds = 0U;
-    /* code segment: action insert () */
-    ml_insert();
-    int64_t Robot2_Done_token = ml_outcome(b->inserted);
-    pn_bag_check(cx, &s_at_Robot2_Done, &Robot2_Done_token);
-    if (!pn_ok(cx)) {
-        return false;
-    }
-    if (!m->Robot2_Commanded.full) {
-        pn_raise(cx, PN_ERR_SUBTRACT, NULL);
-        return false;
-    }
-    if (m->Robot2_Done.full) {
-        return pn_bag_fail_full(cx, &s_at_Robot2_Done);
-    }
-    /* Commanded: c (ID1412311210) */
-    m->Robot2_Commanded.full = false;
-    /* Done: outcome inserted (ID1412311212) */
-    m->Robot2_Done.value = Robot2_Done_token;
-    m->Robot2_Done.full = true;
-    return true;
-}
-
-/* transition Cell.Robot2.Press: page `Robot`, transition `Press` (ID1412311214), cell.cpn:23816
- * guard [c = PRESS]
- */
-typedef struct Robot2_Press_binding {
-    int64_t c;
-    int64_t pressed;
-} Robot2_Press_binding_t;
-
-static const pn_field_t s_variables_Robot2_Press[] = {
-    { "c", &s_COMMAND, offsetof(Robot2_Press_binding_t, c), false },
-    { "pressed", &s_REPLY, offsetof(Robot2_Press_binding_t, pressed), false },
-};
-
-static const pn_type_t s_binding_Robot2_Press = {
-    .kind = PN_KIND_RECORD,
-    .name = "Cell.Robot2.Press",
-    .size = sizeof(Robot2_Press_binding_t),
-    .count = 2U,
-    .field = s_variables_Robot2_Press,
-};
-
-PN_NET_SEARCH static bool Robot2_Press_enumerate(pn_ctx_t *cx, const void *marking,
-    uint32_t self, pn_binding_sink_t sink, void *user)
-{
-    const net_marking_t *const m = marking;
-    Robot2_Press_binding_t b = { 0 };
-    cx->origin = "page `Robot`, transition `Press` (ID1412311214)";
-    cx->now = m->now;
-    cx->rounds = 0U;
-    /* Commanded: c (ID1412311219) */
-    if (!m->Robot2_Commanded.full) {
-        return true;
-    }
-    b.c = m->Robot2_Commanded.value;
-    /* guard [c = PRESS] */
-    if (b.c != val_PRESS) {
-        return true;
-    }
-    /* pressed over all of REPLY */
-    for (uint64_t number = 0U; number < pn_type_size(&s_REPLY); number++) {
-        pn_type_value(&s_REPLY, number, &b.pressed);
-        if (!pn_is_legal(cx, &s_REPLY, &b.pressed)) {
-            continue;
-        }
-        if (!pn_ok(cx)) {
-            return true;
-        }
-        if (!sink(user, self, &b)) {
-            return false;
-        }
-    }
-    return true;
-}
-
-PN_NET_SEARCH static bool Robot2_Press_fire(pn_ctx_t *cx, void *marking, void *binding)
-{
-    net_marking_t *const m = marking;
-    Robot2_Press_binding_t *const b = binding;
-    cx->origin = "page `Robot`, transition `Press` (ID1412311214)";
-    cx->now = m->now;
-    cx->rounds = 0U;
-    /* code segment: action press () */
-    ml_press();
-    int64_t Robot2_Done_token = ml_outcome(b->pressed);
-    pn_bag_check(cx, &s_at_Robot2_Done, &Robot2_Done_token);
-    if (!pn_ok(cx)) {
-        return false;
-    }
-    if (!m->Robot2_Commanded.full) {
-        pn_raise(cx, PN_ERR_SUBTRACT, NULL);
-        return false;
-    }
-    if (m->Robot2_Done.full) {
-        return pn_bag_fail_full(cx, &s_at_Robot2_Done);
-    }
-    /* Commanded: c (ID1412311219) */
-    m->Robot2_Commanded.full = false;
-    /* Done: outcome pressed (ID1412311221) */
-    m->Robot2_Done.value = Robot2_Done_token;
-    m->Robot2_Done.full = true;
-    return true;
-}
-
-/* transition Cell.Robot2.Release: page `Robot`, transition `Release` (ID1412311223), cell.cpn:23891
- * guard [c = RELEASE]
- */
-typedef struct Robot2_Release_binding {
-    int64_t c;
-    int64_t released;
-} Robot2_Release_binding_t;
-
-static const pn_field_t s_variables_Robot2_Release[] = {
-    { "c", &s_COMMAND, offsetof(Robot2_Release_binding_t, c), false },
-    { "released", &s_REPLY, offsetof(Robot2_Release_binding_t, released), false },
-};
-
-static const pn_type_t s_binding_Robot2_Release = {
-    .kind = PN_KIND_RECORD,
-    .name = "Cell.Robot2.Release",
-    .size = sizeof(Robot2_Release_binding_t),
-    .count = 2U,
-    .field = s_variables_Robot2_Release,
-};
-
-PN_NET_SEARCH static bool Robot2_Release_enumerate(pn_ctx_t *cx, const void *marking,
-    uint32_t self, pn_binding_sink_t sink, void *user)
-{
-    const net_marking_t *const m = marking;
-    Robot2_Release_binding_t b = { 0 };
-    cx->origin = "page `Robot`, transition `Release` (ID1412311223)";
-    cx->now = m->now;
-    cx->rounds = 0U;
-    /* Commanded: c (ID1412311228) */
-    if (!m->Robot2_Commanded.full) {
-        return true;
-    }
-    b.c = m->Robot2_Commanded.value;
-    /* guard [c = RELEASE] */
-    if (b.c != val_RELEASE) {
-        return true;
-    }
-    /* released over all of REPLY */
-    for (uint64_t number = 0U; number < pn_type_size(&s_REPLY); number++) {
-        pn_type_value(&s_REPLY, number, &b.released);
-        if (!pn_is_legal(cx, &s_REPLY, &b.released)) {
-            continue;
-        }
-        if (!pn_ok(cx)) {
-            return true;
-        }
-        if (!sink(user, self, &b)) {
-            return false;
-        }
-    }
-    return true;
-}
-
-PN_NET_SEARCH static bool Robot2_Release_fire(pn_ctx_t *cx, void *marking, void *binding)
-{
-    net_marking_t *const m = marking;
-    Robot2_Release_binding_t *const b = binding;
-    cx->origin = "page `Robot`, transition `Release` (ID1412311223)";
-    cx->now = m->now;
-    cx->rounds = 0U;
-    /* code segment: action release () */
-    ml_release();
-    int64_t Robot2_Done_token = ml_outcome(b->released);
-    pn_bag_check(cx, &s_at_Robot2_Done, &Robot2_Done_token);
-    if (!pn_ok(cx)) {
-        return false;
-    }
-    if (!m->Robot2_Commanded.full) {
-        pn_raise(cx, PN_ERR_SUBTRACT, NULL);
-        return false;
-    }
-    if (m->Robot2_Done.full) {
-        return pn_bag_fail_full(cx, &s_at_Robot2_Done);
-    }
-    /* Commanded: c (ID1412311228) */
-    m->Robot2_Commanded.full = false;
-    /* Done: outcome released (ID1412311230) */
-    m->Robot2_Done.value = Robot2_Done_token;
-    m->Robot2_Done.full = true;
+    at_Done->value = Done_token;
+    at_Done->full = true;
     return true;
 }
 
@@ -7709,7 +5675,8 @@ static const pn_transition_t s_transitions[] = {
     {
         .name = "Cell.Supervisor.Approach.Move both.Command", .id = "ID1412310941", .owner = 0, .priority = 1000,
         .origin = "page `MoveBoth`, transition `Command` (ID1412310941)",
-        .enumerate = Supervisor_Approach_Move_both_Command_enumerate, .fire = Supervisor_Approach_Move_both_Command_fire, .binding = &s_binding_Supervisor_Approach_Move_both_Command,
+        .enumerate = MoveBoth_Command_enumerate, .fire = MoveBoth_Command_fire, .binding = &s_binding_MoveBoth_Command,
+        .places = &s_in_Supervisor_Approach_Move_both,
         .affected_count = sizeof s_affected_by_Supervisor_Approach_Move_both_Command / sizeof s_affected_by_Supervisor_Approach_Move_both_Command[0],
         .affected = s_affected_by_Supervisor_Approach_Move_both_Command,
         .touched_count = sizeof s_touched_by_Supervisor_Approach_Move_both_Command / sizeof s_touched_by_Supervisor_Approach_Move_both_Command[0],
@@ -7720,7 +5687,8 @@ static const pn_transition_t s_transitions[] = {
     {
         .name = "Cell.Supervisor.Approach.Move both.Both", .id = "ID1412310948", .owner = 0, .priority = 1000,
         .origin = "page `MoveBoth`, transition `Both` (ID1412310948)",
-        .enumerate = Supervisor_Approach_Move_both_Both_enumerate, .fire = Supervisor_Approach_Move_both_Both_fire, .binding = &s_binding_Supervisor_Approach_Move_both_Both,
+        .enumerate = MoveBoth_Both_enumerate, .fire = MoveBoth_Both_fire, .binding = &s_binding_MoveBoth_Both,
+        .places = &s_in_Supervisor_Approach_Move_both,
         .affected_count = sizeof s_affected_by_Supervisor_Approach_Move_both_Both / sizeof s_affected_by_Supervisor_Approach_Move_both_Both[0],
         .affected = s_affected_by_Supervisor_Approach_Move_both_Both,
         .touched_count = sizeof s_touched_by_Supervisor_Approach_Move_both_Both / sizeof s_touched_by_Supervisor_Approach_Move_both_Both[0],
@@ -7731,7 +5699,8 @@ static const pn_transition_t s_transitions[] = {
     {
         .name = "Cell.Supervisor.Approach.Move both.Reply 1", .id = "ID1412310962", .owner = 0, .priority = 1000,
         .origin = "page `MoveBoth`, transition `Reply 1` (ID1412310962)",
-        .enumerate = Supervisor_Approach_Move_both_Reply_1_enumerate, .fire = Supervisor_Approach_Move_both_Reply_1_fire, .binding = &s_binding_Supervisor_Approach_Move_both_Reply_1,
+        .enumerate = MoveBoth_Reply_1_enumerate, .fire = MoveBoth_Reply_1_fire, .binding = &s_binding_MoveBoth_Reply_1,
+        .places = &s_in_Supervisor_Approach_Move_both,
         .affected_count = sizeof s_affected_by_Supervisor_Approach_Move_both_Reply_1 / sizeof s_affected_by_Supervisor_Approach_Move_both_Reply_1[0],
         .affected = s_affected_by_Supervisor_Approach_Move_both_Reply_1,
         .touched_count = sizeof s_touched_by_Supervisor_Approach_Move_both_Reply_1 / sizeof s_touched_by_Supervisor_Approach_Move_both_Reply_1[0],
@@ -7742,7 +5711,8 @@ static const pn_transition_t s_transitions[] = {
     {
         .name = "Cell.Supervisor.Approach.Move both.Reply 2", .id = "ID1412310999", .owner = 0, .priority = 1000,
         .origin = "page `MoveBoth`, transition `Reply 2` (ID1412310999)",
-        .enumerate = Supervisor_Approach_Move_both_Reply_2_enumerate, .fire = Supervisor_Approach_Move_both_Reply_2_fire, .binding = &s_binding_Supervisor_Approach_Move_both_Reply_2,
+        .enumerate = MoveBoth_Reply_2_enumerate, .fire = MoveBoth_Reply_2_fire, .binding = &s_binding_MoveBoth_Reply_2,
+        .places = &s_in_Supervisor_Approach_Move_both,
         .affected_count = sizeof s_affected_by_Supervisor_Approach_Move_both_Reply_2 / sizeof s_affected_by_Supervisor_Approach_Move_both_Reply_2[0],
         .affected = s_affected_by_Supervisor_Approach_Move_both_Reply_2,
         .touched_count = sizeof s_touched_by_Supervisor_Approach_Move_both_Reply_2 / sizeof s_touched_by_Supervisor_Approach_Move_both_Reply_2[0],
@@ -7852,7 +5822,8 @@ static const pn_transition_t s_transitions[] = {
     {
         .name = "Cell.Supervisor.Correct.Move both.Command", .id = "ID1412310941", .owner = 0, .priority = 1000,
         .origin = "page `MoveBoth`, transition `Command` (ID1412310941)",
-        .enumerate = Supervisor_Correct_Move_both_Command_enumerate, .fire = Supervisor_Correct_Move_both_Command_fire, .binding = &s_binding_Supervisor_Correct_Move_both_Command,
+        .enumerate = MoveBoth_Command_enumerate, .fire = MoveBoth_Command_fire, .binding = &s_binding_MoveBoth_Command,
+        .places = &s_in_Supervisor_Correct_Move_both,
         .affected_count = sizeof s_affected_by_Supervisor_Correct_Move_both_Command / sizeof s_affected_by_Supervisor_Correct_Move_both_Command[0],
         .affected = s_affected_by_Supervisor_Correct_Move_both_Command,
         .touched_count = sizeof s_touched_by_Supervisor_Correct_Move_both_Command / sizeof s_touched_by_Supervisor_Correct_Move_both_Command[0],
@@ -7863,7 +5834,8 @@ static const pn_transition_t s_transitions[] = {
     {
         .name = "Cell.Supervisor.Correct.Move both.Both", .id = "ID1412310948", .owner = 0, .priority = 1000,
         .origin = "page `MoveBoth`, transition `Both` (ID1412310948)",
-        .enumerate = Supervisor_Correct_Move_both_Both_enumerate, .fire = Supervisor_Correct_Move_both_Both_fire, .binding = &s_binding_Supervisor_Correct_Move_both_Both,
+        .enumerate = MoveBoth_Both_enumerate, .fire = MoveBoth_Both_fire, .binding = &s_binding_MoveBoth_Both,
+        .places = &s_in_Supervisor_Correct_Move_both,
         .affected_count = sizeof s_affected_by_Supervisor_Correct_Move_both_Both / sizeof s_affected_by_Supervisor_Correct_Move_both_Both[0],
         .affected = s_affected_by_Supervisor_Correct_Move_both_Both,
         .touched_count = sizeof s_touched_by_Supervisor_Correct_Move_both_Both / sizeof s_touched_by_Supervisor_Correct_Move_both_Both[0],
@@ -7874,7 +5846,8 @@ static const pn_transition_t s_transitions[] = {
     {
         .name = "Cell.Supervisor.Correct.Move both.Reply 1", .id = "ID1412310962", .owner = 0, .priority = 1000,
         .origin = "page `MoveBoth`, transition `Reply 1` (ID1412310962)",
-        .enumerate = Supervisor_Correct_Move_both_Reply_1_enumerate, .fire = Supervisor_Correct_Move_both_Reply_1_fire, .binding = &s_binding_Supervisor_Correct_Move_both_Reply_1,
+        .enumerate = MoveBoth_Reply_1_enumerate, .fire = MoveBoth_Reply_1_fire, .binding = &s_binding_MoveBoth_Reply_1,
+        .places = &s_in_Supervisor_Correct_Move_both,
         .affected_count = sizeof s_affected_by_Supervisor_Correct_Move_both_Reply_1 / sizeof s_affected_by_Supervisor_Correct_Move_both_Reply_1[0],
         .affected = s_affected_by_Supervisor_Correct_Move_both_Reply_1,
         .touched_count = sizeof s_touched_by_Supervisor_Correct_Move_both_Reply_1 / sizeof s_touched_by_Supervisor_Correct_Move_both_Reply_1[0],
@@ -7885,7 +5858,8 @@ static const pn_transition_t s_transitions[] = {
     {
         .name = "Cell.Supervisor.Correct.Move both.Reply 2", .id = "ID1412310999", .owner = 0, .priority = 1000,
         .origin = "page `MoveBoth`, transition `Reply 2` (ID1412310999)",
-        .enumerate = Supervisor_Correct_Move_both_Reply_2_enumerate, .fire = Supervisor_Correct_Move_both_Reply_2_fire, .binding = &s_binding_Supervisor_Correct_Move_both_Reply_2,
+        .enumerate = MoveBoth_Reply_2_enumerate, .fire = MoveBoth_Reply_2_fire, .binding = &s_binding_MoveBoth_Reply_2,
+        .places = &s_in_Supervisor_Correct_Move_both,
         .affected_count = sizeof s_affected_by_Supervisor_Correct_Move_both_Reply_2 / sizeof s_affected_by_Supervisor_Correct_Move_both_Reply_2[0],
         .affected = s_affected_by_Supervisor_Correct_Move_both_Reply_2,
         .touched_count = sizeof s_touched_by_Supervisor_Correct_Move_both_Reply_2 / sizeof s_touched_by_Supervisor_Correct_Move_both_Reply_2[0],
@@ -7940,7 +5914,8 @@ static const pn_transition_t s_transitions[] = {
     {
         .name = "Cell.Supervisor.Install.Shift.Command", .id = "ID1412310941", .owner = 0, .priority = 1000,
         .origin = "page `MoveBoth`, transition `Command` (ID1412310941)",
-        .enumerate = Supervisor_Install_Shift_Command_enumerate, .fire = Supervisor_Install_Shift_Command_fire, .binding = &s_binding_Supervisor_Install_Shift_Command,
+        .enumerate = MoveBoth_Command_enumerate, .fire = MoveBoth_Command_fire, .binding = &s_binding_MoveBoth_Command,
+        .places = &s_in_Supervisor_Install_Shift,
         .affected_count = sizeof s_affected_by_Supervisor_Install_Shift_Command / sizeof s_affected_by_Supervisor_Install_Shift_Command[0],
         .affected = s_affected_by_Supervisor_Install_Shift_Command,
         .touched_count = sizeof s_touched_by_Supervisor_Install_Shift_Command / sizeof s_touched_by_Supervisor_Install_Shift_Command[0],
@@ -7951,7 +5926,8 @@ static const pn_transition_t s_transitions[] = {
     {
         .name = "Cell.Supervisor.Install.Shift.Both", .id = "ID1412310948", .owner = 0, .priority = 1000,
         .origin = "page `MoveBoth`, transition `Both` (ID1412310948)",
-        .enumerate = Supervisor_Install_Shift_Both_enumerate, .fire = Supervisor_Install_Shift_Both_fire, .binding = &s_binding_Supervisor_Install_Shift_Both,
+        .enumerate = MoveBoth_Both_enumerate, .fire = MoveBoth_Both_fire, .binding = &s_binding_MoveBoth_Both,
+        .places = &s_in_Supervisor_Install_Shift,
         .affected_count = sizeof s_affected_by_Supervisor_Install_Shift_Both / sizeof s_affected_by_Supervisor_Install_Shift_Both[0],
         .affected = s_affected_by_Supervisor_Install_Shift_Both,
         .touched_count = sizeof s_touched_by_Supervisor_Install_Shift_Both / sizeof s_touched_by_Supervisor_Install_Shift_Both[0],
@@ -7962,7 +5938,8 @@ static const pn_transition_t s_transitions[] = {
     {
         .name = "Cell.Supervisor.Install.Shift.Reply 1", .id = "ID1412310962", .owner = 0, .priority = 1000,
         .origin = "page `MoveBoth`, transition `Reply 1` (ID1412310962)",
-        .enumerate = Supervisor_Install_Shift_Reply_1_enumerate, .fire = Supervisor_Install_Shift_Reply_1_fire, .binding = &s_binding_Supervisor_Install_Shift_Reply_1,
+        .enumerate = MoveBoth_Reply_1_enumerate, .fire = MoveBoth_Reply_1_fire, .binding = &s_binding_MoveBoth_Reply_1,
+        .places = &s_in_Supervisor_Install_Shift,
         .affected_count = sizeof s_affected_by_Supervisor_Install_Shift_Reply_1 / sizeof s_affected_by_Supervisor_Install_Shift_Reply_1[0],
         .affected = s_affected_by_Supervisor_Install_Shift_Reply_1,
         .touched_count = sizeof s_touched_by_Supervisor_Install_Shift_Reply_1 / sizeof s_touched_by_Supervisor_Install_Shift_Reply_1[0],
@@ -7973,7 +5950,8 @@ static const pn_transition_t s_transitions[] = {
     {
         .name = "Cell.Supervisor.Install.Shift.Reply 2", .id = "ID1412310999", .owner = 0, .priority = 1000,
         .origin = "page `MoveBoth`, transition `Reply 2` (ID1412310999)",
-        .enumerate = Supervisor_Install_Shift_Reply_2_enumerate, .fire = Supervisor_Install_Shift_Reply_2_fire, .binding = &s_binding_Supervisor_Install_Shift_Reply_2,
+        .enumerate = MoveBoth_Reply_2_enumerate, .fire = MoveBoth_Reply_2_fire, .binding = &s_binding_MoveBoth_Reply_2,
+        .places = &s_in_Supervisor_Install_Shift,
         .affected_count = sizeof s_affected_by_Supervisor_Install_Shift_Reply_2 / sizeof s_affected_by_Supervisor_Install_Shift_Reply_2[0],
         .affected = s_affected_by_Supervisor_Install_Shift_Reply_2,
         .touched_count = sizeof s_touched_by_Supervisor_Install_Shift_Reply_2 / sizeof s_touched_by_Supervisor_Install_Shift_Reply_2[0],
@@ -8006,7 +5984,8 @@ static const pn_transition_t s_transitions[] = {
     {
         .name = "Cell.Supervisor.Install.Rivet.Advance.Command", .id = "ID1412310941", .owner = 0, .priority = 1000,
         .origin = "page `MoveBoth`, transition `Command` (ID1412310941)",
-        .enumerate = Supervisor_Install_Rivet_Advance_Command_enumerate, .fire = Supervisor_Install_Rivet_Advance_Command_fire, .binding = &s_binding_Supervisor_Install_Rivet_Advance_Command,
+        .enumerate = MoveBoth_Command_enumerate, .fire = MoveBoth_Command_fire, .binding = &s_binding_MoveBoth_Command,
+        .places = &s_in_Supervisor_Install_Rivet_Advance,
         .affected_count = sizeof s_affected_by_Supervisor_Install_Rivet_Advance_Command / sizeof s_affected_by_Supervisor_Install_Rivet_Advance_Command[0],
         .affected = s_affected_by_Supervisor_Install_Rivet_Advance_Command,
         .touched_count = sizeof s_touched_by_Supervisor_Install_Rivet_Advance_Command / sizeof s_touched_by_Supervisor_Install_Rivet_Advance_Command[0],
@@ -8017,7 +5996,8 @@ static const pn_transition_t s_transitions[] = {
     {
         .name = "Cell.Supervisor.Install.Rivet.Advance.Both", .id = "ID1412310948", .owner = 0, .priority = 1000,
         .origin = "page `MoveBoth`, transition `Both` (ID1412310948)",
-        .enumerate = Supervisor_Install_Rivet_Advance_Both_enumerate, .fire = Supervisor_Install_Rivet_Advance_Both_fire, .binding = &s_binding_Supervisor_Install_Rivet_Advance_Both,
+        .enumerate = MoveBoth_Both_enumerate, .fire = MoveBoth_Both_fire, .binding = &s_binding_MoveBoth_Both,
+        .places = &s_in_Supervisor_Install_Rivet_Advance,
         .affected_count = sizeof s_affected_by_Supervisor_Install_Rivet_Advance_Both / sizeof s_affected_by_Supervisor_Install_Rivet_Advance_Both[0],
         .affected = s_affected_by_Supervisor_Install_Rivet_Advance_Both,
         .touched_count = sizeof s_touched_by_Supervisor_Install_Rivet_Advance_Both / sizeof s_touched_by_Supervisor_Install_Rivet_Advance_Both[0],
@@ -8028,7 +6008,8 @@ static const pn_transition_t s_transitions[] = {
     {
         .name = "Cell.Supervisor.Install.Rivet.Advance.Reply 1", .id = "ID1412310962", .owner = 0, .priority = 1000,
         .origin = "page `MoveBoth`, transition `Reply 1` (ID1412310962)",
-        .enumerate = Supervisor_Install_Rivet_Advance_Reply_1_enumerate, .fire = Supervisor_Install_Rivet_Advance_Reply_1_fire, .binding = &s_binding_Supervisor_Install_Rivet_Advance_Reply_1,
+        .enumerate = MoveBoth_Reply_1_enumerate, .fire = MoveBoth_Reply_1_fire, .binding = &s_binding_MoveBoth_Reply_1,
+        .places = &s_in_Supervisor_Install_Rivet_Advance,
         .affected_count = sizeof s_affected_by_Supervisor_Install_Rivet_Advance_Reply_1 / sizeof s_affected_by_Supervisor_Install_Rivet_Advance_Reply_1[0],
         .affected = s_affected_by_Supervisor_Install_Rivet_Advance_Reply_1,
         .touched_count = sizeof s_touched_by_Supervisor_Install_Rivet_Advance_Reply_1 / sizeof s_touched_by_Supervisor_Install_Rivet_Advance_Reply_1[0],
@@ -8039,7 +6020,8 @@ static const pn_transition_t s_transitions[] = {
     {
         .name = "Cell.Supervisor.Install.Rivet.Advance.Reply 2", .id = "ID1412310999", .owner = 0, .priority = 1000,
         .origin = "page `MoveBoth`, transition `Reply 2` (ID1412310999)",
-        .enumerate = Supervisor_Install_Rivet_Advance_Reply_2_enumerate, .fire = Supervisor_Install_Rivet_Advance_Reply_2_fire, .binding = &s_binding_Supervisor_Install_Rivet_Advance_Reply_2,
+        .enumerate = MoveBoth_Reply_2_enumerate, .fire = MoveBoth_Reply_2_fire, .binding = &s_binding_MoveBoth_Reply_2,
+        .places = &s_in_Supervisor_Install_Rivet_Advance,
         .affected_count = sizeof s_affected_by_Supervisor_Install_Rivet_Advance_Reply_2 / sizeof s_affected_by_Supervisor_Install_Rivet_Advance_Reply_2[0],
         .affected = s_affected_by_Supervisor_Install_Rivet_Advance_Reply_2,
         .touched_count = sizeof s_touched_by_Supervisor_Install_Rivet_Advance_Reply_2 / sizeof s_touched_by_Supervisor_Install_Rivet_Advance_Reply_2[0],
@@ -8127,7 +6109,8 @@ static const pn_transition_t s_transitions[] = {
     {
         .name = "Cell.Supervisor.Install.Rivet.Retract.Command", .id = "ID1412310941", .owner = 0, .priority = 1000,
         .origin = "page `MoveBoth`, transition `Command` (ID1412310941)",
-        .enumerate = Supervisor_Install_Rivet_Retract_Command_enumerate, .fire = Supervisor_Install_Rivet_Retract_Command_fire, .binding = &s_binding_Supervisor_Install_Rivet_Retract_Command,
+        .enumerate = MoveBoth_Command_enumerate, .fire = MoveBoth_Command_fire, .binding = &s_binding_MoveBoth_Command,
+        .places = &s_in_Supervisor_Install_Rivet_Retract,
         .affected_count = sizeof s_affected_by_Supervisor_Install_Rivet_Retract_Command / sizeof s_affected_by_Supervisor_Install_Rivet_Retract_Command[0],
         .affected = s_affected_by_Supervisor_Install_Rivet_Retract_Command,
         .touched_count = sizeof s_touched_by_Supervisor_Install_Rivet_Retract_Command / sizeof s_touched_by_Supervisor_Install_Rivet_Retract_Command[0],
@@ -8138,7 +6121,8 @@ static const pn_transition_t s_transitions[] = {
     {
         .name = "Cell.Supervisor.Install.Rivet.Retract.Both", .id = "ID1412310948", .owner = 0, .priority = 1000,
         .origin = "page `MoveBoth`, transition `Both` (ID1412310948)",
-        .enumerate = Supervisor_Install_Rivet_Retract_Both_enumerate, .fire = Supervisor_Install_Rivet_Retract_Both_fire, .binding = &s_binding_Supervisor_Install_Rivet_Retract_Both,
+        .enumerate = MoveBoth_Both_enumerate, .fire = MoveBoth_Both_fire, .binding = &s_binding_MoveBoth_Both,
+        .places = &s_in_Supervisor_Install_Rivet_Retract,
         .affected_count = sizeof s_affected_by_Supervisor_Install_Rivet_Retract_Both / sizeof s_affected_by_Supervisor_Install_Rivet_Retract_Both[0],
         .affected = s_affected_by_Supervisor_Install_Rivet_Retract_Both,
         .touched_count = sizeof s_touched_by_Supervisor_Install_Rivet_Retract_Both / sizeof s_touched_by_Supervisor_Install_Rivet_Retract_Both[0],
@@ -8149,7 +6133,8 @@ static const pn_transition_t s_transitions[] = {
     {
         .name = "Cell.Supervisor.Install.Rivet.Retract.Reply 1", .id = "ID1412310962", .owner = 0, .priority = 1000,
         .origin = "page `MoveBoth`, transition `Reply 1` (ID1412310962)",
-        .enumerate = Supervisor_Install_Rivet_Retract_Reply_1_enumerate, .fire = Supervisor_Install_Rivet_Retract_Reply_1_fire, .binding = &s_binding_Supervisor_Install_Rivet_Retract_Reply_1,
+        .enumerate = MoveBoth_Reply_1_enumerate, .fire = MoveBoth_Reply_1_fire, .binding = &s_binding_MoveBoth_Reply_1,
+        .places = &s_in_Supervisor_Install_Rivet_Retract,
         .affected_count = sizeof s_affected_by_Supervisor_Install_Rivet_Retract_Reply_1 / sizeof s_affected_by_Supervisor_Install_Rivet_Retract_Reply_1[0],
         .affected = s_affected_by_Supervisor_Install_Rivet_Retract_Reply_1,
         .touched_count = sizeof s_touched_by_Supervisor_Install_Rivet_Retract_Reply_1 / sizeof s_touched_by_Supervisor_Install_Rivet_Retract_Reply_1[0],
@@ -8160,7 +6145,8 @@ static const pn_transition_t s_transitions[] = {
     {
         .name = "Cell.Supervisor.Install.Rivet.Retract.Reply 2", .id = "ID1412310999", .owner = 0, .priority = 1000,
         .origin = "page `MoveBoth`, transition `Reply 2` (ID1412310999)",
-        .enumerate = Supervisor_Install_Rivet_Retract_Reply_2_enumerate, .fire = Supervisor_Install_Rivet_Retract_Reply_2_fire, .binding = &s_binding_Supervisor_Install_Rivet_Retract_Reply_2,
+        .enumerate = MoveBoth_Reply_2_enumerate, .fire = MoveBoth_Reply_2_fire, .binding = &s_binding_MoveBoth_Reply_2,
+        .places = &s_in_Supervisor_Install_Rivet_Retract,
         .affected_count = sizeof s_affected_by_Supervisor_Install_Rivet_Retract_Reply_2 / sizeof s_affected_by_Supervisor_Install_Rivet_Retract_Reply_2[0],
         .affected = s_affected_by_Supervisor_Install_Rivet_Retract_Reply_2,
         .touched_count = sizeof s_touched_by_Supervisor_Install_Rivet_Retract_Reply_2 / sizeof s_touched_by_Supervisor_Install_Rivet_Retract_Reply_2[0],
@@ -8171,7 +6157,8 @@ static const pn_transition_t s_transitions[] = {
     {
         .name = "Cell.Supervisor.Install.Return.Command", .id = "ID1412310941", .owner = 0, .priority = 1000,
         .origin = "page `MoveBoth`, transition `Command` (ID1412310941)",
-        .enumerate = Supervisor_Install_Return_Command_enumerate, .fire = Supervisor_Install_Return_Command_fire, .binding = &s_binding_Supervisor_Install_Return_Command,
+        .enumerate = MoveBoth_Command_enumerate, .fire = MoveBoth_Command_fire, .binding = &s_binding_MoveBoth_Command,
+        .places = &s_in_Supervisor_Install_Return,
         .affected_count = sizeof s_affected_by_Supervisor_Install_Return_Command / sizeof s_affected_by_Supervisor_Install_Return_Command[0],
         .affected = s_affected_by_Supervisor_Install_Return_Command,
         .touched_count = sizeof s_touched_by_Supervisor_Install_Return_Command / sizeof s_touched_by_Supervisor_Install_Return_Command[0],
@@ -8182,7 +6169,8 @@ static const pn_transition_t s_transitions[] = {
     {
         .name = "Cell.Supervisor.Install.Return.Both", .id = "ID1412310948", .owner = 0, .priority = 1000,
         .origin = "page `MoveBoth`, transition `Both` (ID1412310948)",
-        .enumerate = Supervisor_Install_Return_Both_enumerate, .fire = Supervisor_Install_Return_Both_fire, .binding = &s_binding_Supervisor_Install_Return_Both,
+        .enumerate = MoveBoth_Both_enumerate, .fire = MoveBoth_Both_fire, .binding = &s_binding_MoveBoth_Both,
+        .places = &s_in_Supervisor_Install_Return,
         .affected_count = sizeof s_affected_by_Supervisor_Install_Return_Both / sizeof s_affected_by_Supervisor_Install_Return_Both[0],
         .affected = s_affected_by_Supervisor_Install_Return_Both,
         .touched_count = sizeof s_touched_by_Supervisor_Install_Return_Both / sizeof s_touched_by_Supervisor_Install_Return_Both[0],
@@ -8193,7 +6181,8 @@ static const pn_transition_t s_transitions[] = {
     {
         .name = "Cell.Supervisor.Install.Return.Reply 1", .id = "ID1412310962", .owner = 0, .priority = 1000,
         .origin = "page `MoveBoth`, transition `Reply 1` (ID1412310962)",
-        .enumerate = Supervisor_Install_Return_Reply_1_enumerate, .fire = Supervisor_Install_Return_Reply_1_fire, .binding = &s_binding_Supervisor_Install_Return_Reply_1,
+        .enumerate = MoveBoth_Reply_1_enumerate, .fire = MoveBoth_Reply_1_fire, .binding = &s_binding_MoveBoth_Reply_1,
+        .places = &s_in_Supervisor_Install_Return,
         .affected_count = sizeof s_affected_by_Supervisor_Install_Return_Reply_1 / sizeof s_affected_by_Supervisor_Install_Return_Reply_1[0],
         .affected = s_affected_by_Supervisor_Install_Return_Reply_1,
         .touched_count = sizeof s_touched_by_Supervisor_Install_Return_Reply_1 / sizeof s_touched_by_Supervisor_Install_Return_Reply_1[0],
@@ -8204,7 +6193,8 @@ static const pn_transition_t s_transitions[] = {
     {
         .name = "Cell.Supervisor.Install.Return.Reply 2", .id = "ID1412310999", .owner = 0, .priority = 1000,
         .origin = "page `MoveBoth`, transition `Reply 2` (ID1412310999)",
-        .enumerate = Supervisor_Install_Return_Reply_2_enumerate, .fire = Supervisor_Install_Return_Reply_2_fire, .binding = &s_binding_Supervisor_Install_Return_Reply_2,
+        .enumerate = MoveBoth_Reply_2_enumerate, .fire = MoveBoth_Reply_2_fire, .binding = &s_binding_MoveBoth_Reply_2,
+        .places = &s_in_Supervisor_Install_Return,
         .affected_count = sizeof s_affected_by_Supervisor_Install_Return_Reply_2 / sizeof s_affected_by_Supervisor_Install_Return_Reply_2[0],
         .affected = s_affected_by_Supervisor_Install_Return_Reply_2,
         .touched_count = sizeof s_touched_by_Supervisor_Install_Return_Reply_2 / sizeof s_touched_by_Supervisor_Install_Return_Reply_2[0],
@@ -8259,7 +6249,8 @@ static const pn_transition_t s_transitions[] = {
     {
         .name = "Cell.Robot1.Accept", .id = "ID1412311125", .owner = 1, .priority = 1000,
         .origin = "page `Robot`, transition `Accept` (ID1412311125)",
-        .enumerate = Robot1_Accept_enumerate, .fire = Robot1_Accept_fire, .binding = &s_binding_Robot1_Accept,
+        .enumerate = Robot_Accept_enumerate, .fire = Robot_Accept_fire, .binding = &s_binding_Robot_Accept,
+        .places = &s_in_Robot1,
         .affected_count = sizeof s_affected_by_Robot1_Accept / sizeof s_affected_by_Robot1_Accept[0],
         .affected = s_affected_by_Robot1_Accept,
         .touched_count = sizeof s_touched_by_Robot1_Accept / sizeof s_touched_by_Robot1_Accept[0],
@@ -8270,7 +6261,8 @@ static const pn_transition_t s_transitions[] = {
     {
         .name = "Cell.Robot1.Report", .id = "ID1412311145", .owner = 1, .priority = 1000,
         .origin = "page `Robot`, transition `Report` (ID1412311145)",
-        .enumerate = Robot1_Report_enumerate, .fire = Robot1_Report_fire, .binding = &s_binding_Robot1_Report,
+        .enumerate = Robot_Report_enumerate, .fire = Robot_Report_fire, .binding = &s_binding_Robot_Report,
+        .places = &s_in_Robot1,
         .affected_count = sizeof s_affected_by_Robot1_Report / sizeof s_affected_by_Robot1_Report[0],
         .affected = s_affected_by_Robot1_Report,
         .touched_count = sizeof s_touched_by_Robot1_Report / sizeof s_touched_by_Robot1_Report[0],
@@ -8281,7 +6273,8 @@ static const pn_transition_t s_transitions[] = {
     {
         .name = "Cell.Robot1.MoveJoint", .id = "ID1412311160", .owner = 1, .priority = 1000,
         .origin = "page `Robot`, transition `MoveJoint` (ID1412311160)",
-        .enumerate = Robot1_MoveJoint_enumerate, .fire = Robot1_MoveJoint_fire, .binding = &s_binding_Robot1_MoveJoint,
+        .enumerate = Robot_MoveJoint_enumerate, .fire = Robot_MoveJoint_fire, .binding = &s_binding_Robot_MoveJoint,
+        .places = &s_in_Robot1,
         .affected_count = sizeof s_affected_by_Robot1_MoveJoint / sizeof s_affected_by_Robot1_MoveJoint[0],
         .affected = s_affected_by_Robot1_MoveJoint,
         .touched_count = sizeof s_touched_by_Robot1_MoveJoint / sizeof s_touched_by_Robot1_MoveJoint[0],
@@ -8292,7 +6285,8 @@ static const pn_transition_t s_transitions[] = {
     {
         .name = "Cell.Robot1.MoveLinear", .id = "ID1412311169", .owner = 1, .priority = 1000,
         .origin = "page `Robot`, transition `MoveLinear` (ID1412311169)",
-        .enumerate = Robot1_MoveLinear_enumerate, .fire = Robot1_MoveLinear_fire, .binding = &s_binding_Robot1_MoveLinear,
+        .enumerate = Robot_MoveLinear_enumerate, .fire = Robot_MoveLinear_fire, .binding = &s_binding_Robot_MoveLinear,
+        .places = &s_in_Robot1,
         .affected_count = sizeof s_affected_by_Robot1_MoveLinear / sizeof s_affected_by_Robot1_MoveLinear[0],
         .affected = s_affected_by_Robot1_MoveLinear,
         .touched_count = sizeof s_touched_by_Robot1_MoveLinear / sizeof s_touched_by_Robot1_MoveLinear[0],
@@ -8303,7 +6297,8 @@ static const pn_transition_t s_transitions[] = {
     {
         .name = "Cell.Robot1.MoveHome", .id = "ID1412311178", .owner = 1, .priority = 1000,
         .origin = "page `Robot`, transition `MoveHome` (ID1412311178)",
-        .enumerate = Robot1_MoveHome_enumerate, .fire = Robot1_MoveHome_fire, .binding = &s_binding_Robot1_MoveHome,
+        .enumerate = Robot_MoveHome_enumerate, .fire = Robot_MoveHome_fire, .binding = &s_binding_Robot_MoveHome,
+        .places = &s_in_Robot1,
         .affected_count = sizeof s_affected_by_Robot1_MoveHome / sizeof s_affected_by_Robot1_MoveHome[0],
         .affected = s_affected_by_Robot1_MoveHome,
         .touched_count = sizeof s_touched_by_Robot1_MoveHome / sizeof s_touched_by_Robot1_MoveHome[0],
@@ -8314,7 +6309,8 @@ static const pn_transition_t s_transitions[] = {
     {
         .name = "Cell.Robot1.Measure", .id = "ID1412311187", .owner = 1, .priority = 1000,
         .origin = "page `Robot`, transition `Measure` (ID1412311187)",
-        .enumerate = Robot1_Measure_enumerate, .fire = Robot1_Measure_fire, .binding = &s_binding_Robot1_Measure,
+        .enumerate = Robot_Measure_enumerate, .fire = Robot_Measure_fire, .binding = &s_binding_Robot_Measure,
+        .places = &s_in_Robot1,
         .affected_count = sizeof s_affected_by_Robot1_Measure / sizeof s_affected_by_Robot1_Measure[0],
         .affected = s_affected_by_Robot1_Measure,
         .touched_count = sizeof s_touched_by_Robot1_Measure / sizeof s_touched_by_Robot1_Measure[0],
@@ -8325,7 +6321,8 @@ static const pn_transition_t s_transitions[] = {
     {
         .name = "Cell.Robot1.Drill", .id = "ID1412311196", .owner = 1, .priority = 1000,
         .origin = "page `Robot`, transition `Drill` (ID1412311196)",
-        .enumerate = Robot1_Drill_enumerate, .fire = Robot1_Drill_fire, .binding = &s_binding_Robot1_Drill,
+        .enumerate = Robot_Drill_enumerate, .fire = Robot_Drill_fire, .binding = &s_binding_Robot_Drill,
+        .places = &s_in_Robot1,
         .affected_count = sizeof s_affected_by_Robot1_Drill / sizeof s_affected_by_Robot1_Drill[0],
         .affected = s_affected_by_Robot1_Drill,
         .touched_count = sizeof s_touched_by_Robot1_Drill / sizeof s_touched_by_Robot1_Drill[0],
@@ -8336,7 +6333,8 @@ static const pn_transition_t s_transitions[] = {
     {
         .name = "Cell.Robot1.Insert", .id = "ID1412311205", .owner = 1, .priority = 1000,
         .origin = "page `Robot`, transition `Insert` (ID1412311205)",
-        .enumerate = Robot1_Insert_enumerate, .fire = Robot1_Insert_fire, .binding = &s_binding_Robot1_Insert,
+        .enumerate = Robot_Insert_enumerate, .fire = Robot_Insert_fire, .binding = &s_binding_Robot_Insert,
+        .places = &s_in_Robot1,
         .affected_count = sizeof s_affected_by_Robot1_Insert / sizeof s_affected_by_Robot1_Insert[0],
         .affected = s_affected_by_Robot1_Insert,
         .touched_count = sizeof s_touched_by_Robot1_Insert / sizeof s_touched_by_Robot1_Insert[0],
@@ -8347,7 +6345,8 @@ static const pn_transition_t s_transitions[] = {
     {
         .name = "Cell.Robot1.Press", .id = "ID1412311214", .owner = 1, .priority = 1000,
         .origin = "page `Robot`, transition `Press` (ID1412311214)",
-        .enumerate = Robot1_Press_enumerate, .fire = Robot1_Press_fire, .binding = &s_binding_Robot1_Press,
+        .enumerate = Robot_Press_enumerate, .fire = Robot_Press_fire, .binding = &s_binding_Robot_Press,
+        .places = &s_in_Robot1,
         .affected_count = sizeof s_affected_by_Robot1_Press / sizeof s_affected_by_Robot1_Press[0],
         .affected = s_affected_by_Robot1_Press,
         .touched_count = sizeof s_touched_by_Robot1_Press / sizeof s_touched_by_Robot1_Press[0],
@@ -8358,7 +6357,8 @@ static const pn_transition_t s_transitions[] = {
     {
         .name = "Cell.Robot1.Release", .id = "ID1412311223", .owner = 1, .priority = 1000,
         .origin = "page `Robot`, transition `Release` (ID1412311223)",
-        .enumerate = Robot1_Release_enumerate, .fire = Robot1_Release_fire, .binding = &s_binding_Robot1_Release,
+        .enumerate = Robot_Release_enumerate, .fire = Robot_Release_fire, .binding = &s_binding_Robot_Release,
+        .places = &s_in_Robot1,
         .affected_count = sizeof s_affected_by_Robot1_Release / sizeof s_affected_by_Robot1_Release[0],
         .affected = s_affected_by_Robot1_Release,
         .touched_count = sizeof s_touched_by_Robot1_Release / sizeof s_touched_by_Robot1_Release[0],
@@ -8369,7 +6369,8 @@ static const pn_transition_t s_transitions[] = {
     {
         .name = "Cell.Robot2.Accept", .id = "ID1412311125", .owner = 2, .priority = 1000,
         .origin = "page `Robot`, transition `Accept` (ID1412311125)",
-        .enumerate = Robot2_Accept_enumerate, .fire = Robot2_Accept_fire, .binding = &s_binding_Robot2_Accept,
+        .enumerate = Robot_Accept_enumerate, .fire = Robot_Accept_fire, .binding = &s_binding_Robot_Accept,
+        .places = &s_in_Robot2,
         .affected_count = sizeof s_affected_by_Robot2_Accept / sizeof s_affected_by_Robot2_Accept[0],
         .affected = s_affected_by_Robot2_Accept,
         .touched_count = sizeof s_touched_by_Robot2_Accept / sizeof s_touched_by_Robot2_Accept[0],
@@ -8380,7 +6381,8 @@ static const pn_transition_t s_transitions[] = {
     {
         .name = "Cell.Robot2.Report", .id = "ID1412311145", .owner = 2, .priority = 1000,
         .origin = "page `Robot`, transition `Report` (ID1412311145)",
-        .enumerate = Robot2_Report_enumerate, .fire = Robot2_Report_fire, .binding = &s_binding_Robot2_Report,
+        .enumerate = Robot_Report_enumerate, .fire = Robot_Report_fire, .binding = &s_binding_Robot_Report,
+        .places = &s_in_Robot2,
         .affected_count = sizeof s_affected_by_Robot2_Report / sizeof s_affected_by_Robot2_Report[0],
         .affected = s_affected_by_Robot2_Report,
         .touched_count = sizeof s_touched_by_Robot2_Report / sizeof s_touched_by_Robot2_Report[0],
@@ -8391,7 +6393,8 @@ static const pn_transition_t s_transitions[] = {
     {
         .name = "Cell.Robot2.MoveJoint", .id = "ID1412311160", .owner = 2, .priority = 1000,
         .origin = "page `Robot`, transition `MoveJoint` (ID1412311160)",
-        .enumerate = Robot2_MoveJoint_enumerate, .fire = Robot2_MoveJoint_fire, .binding = &s_binding_Robot2_MoveJoint,
+        .enumerate = Robot_MoveJoint_enumerate, .fire = Robot_MoveJoint_fire, .binding = &s_binding_Robot_MoveJoint,
+        .places = &s_in_Robot2,
         .affected_count = sizeof s_affected_by_Robot2_MoveJoint / sizeof s_affected_by_Robot2_MoveJoint[0],
         .affected = s_affected_by_Robot2_MoveJoint,
         .touched_count = sizeof s_touched_by_Robot2_MoveJoint / sizeof s_touched_by_Robot2_MoveJoint[0],
@@ -8402,7 +6405,8 @@ static const pn_transition_t s_transitions[] = {
     {
         .name = "Cell.Robot2.MoveLinear", .id = "ID1412311169", .owner = 2, .priority = 1000,
         .origin = "page `Robot`, transition `MoveLinear` (ID1412311169)",
-        .enumerate = Robot2_MoveLinear_enumerate, .fire = Robot2_MoveLinear_fire, .binding = &s_binding_Robot2_MoveLinear,
+        .enumerate = Robot_MoveLinear_enumerate, .fire = Robot_MoveLinear_fire, .binding = &s_binding_Robot_MoveLinear,
+        .places = &s_in_Robot2,
         .affected_count = sizeof s_affected_by_Robot2_MoveLinear / sizeof s_affected_by_Robot2_MoveLinear[0],
         .affected = s_affected_by_Robot2_MoveLinear,
         .touched_count = sizeof s_touched_by_Robot2_MoveLinear / sizeof s_touched_by_Robot2_MoveLinear[0],
@@ -8413,7 +6417,8 @@ static const pn_transition_t s_transitions[] = {
     {
         .name = "Cell.Robot2.MoveHome", .id = "ID1412311178", .owner = 2, .priority = 1000,
         .origin = "page `Robot`, transition `MoveHome` (ID1412311178)",
-        .enumerate = Robot2_MoveHome_enumerate, .fire = Robot2_MoveHome_fire, .binding = &s_binding_Robot2_MoveHome,
+        .enumerate = Robot_MoveHome_enumerate, .fire = Robot_MoveHome_fire, .binding = &s_binding_Robot_MoveHome,
+        .places = &s_in_Robot2,
         .affected_count = sizeof s_affected_by_Robot2_MoveHome / sizeof s_affected_by_Robot2_MoveHome[0],
         .affected = s_affected_by_Robot2_MoveHome,
         .touched_count = sizeof s_touched_by_Robot2_MoveHome / sizeof s_touched_by_Robot2_MoveHome[0],
@@ -8424,7 +6429,8 @@ static const pn_transition_t s_transitions[] = {
     {
         .name = "Cell.Robot2.Measure", .id = "ID1412311187", .owner = 2, .priority = 1000,
         .origin = "page `Robot`, transition `Measure` (ID1412311187)",
-        .enumerate = Robot2_Measure_enumerate, .fire = Robot2_Measure_fire, .binding = &s_binding_Robot2_Measure,
+        .enumerate = Robot_Measure_enumerate, .fire = Robot_Measure_fire, .binding = &s_binding_Robot_Measure,
+        .places = &s_in_Robot2,
         .affected_count = sizeof s_affected_by_Robot2_Measure / sizeof s_affected_by_Robot2_Measure[0],
         .affected = s_affected_by_Robot2_Measure,
         .touched_count = sizeof s_touched_by_Robot2_Measure / sizeof s_touched_by_Robot2_Measure[0],
@@ -8435,7 +6441,8 @@ static const pn_transition_t s_transitions[] = {
     {
         .name = "Cell.Robot2.Drill", .id = "ID1412311196", .owner = 2, .priority = 1000,
         .origin = "page `Robot`, transition `Drill` (ID1412311196)",
-        .enumerate = Robot2_Drill_enumerate, .fire = Robot2_Drill_fire, .binding = &s_binding_Robot2_Drill,
+        .enumerate = Robot_Drill_enumerate, .fire = Robot_Drill_fire, .binding = &s_binding_Robot_Drill,
+        .places = &s_in_Robot2,
         .affected_count = sizeof s_affected_by_Robot2_Drill / sizeof s_affected_by_Robot2_Drill[0],
         .affected = s_affected_by_Robot2_Drill,
         .touched_count = sizeof s_touched_by_Robot2_Drill / sizeof s_touched_by_Robot2_Drill[0],
@@ -8446,7 +6453,8 @@ static const pn_transition_t s_transitions[] = {
     {
         .name = "Cell.Robot2.Insert", .id = "ID1412311205", .owner = 2, .priority = 1000,
         .origin = "page `Robot`, transition `Insert` (ID1412311205)",
-        .enumerate = Robot2_Insert_enumerate, .fire = Robot2_Insert_fire, .binding = &s_binding_Robot2_Insert,
+        .enumerate = Robot_Insert_enumerate, .fire = Robot_Insert_fire, .binding = &s_binding_Robot_Insert,
+        .places = &s_in_Robot2,
         .affected_count = sizeof s_affected_by_Robot2_Insert / sizeof s_affected_by_Robot2_Insert[0],
         .affected = s_affected_by_Robot2_Insert,
         .touched_count = sizeof s_touched_by_Robot2_Insert / sizeof s_touched_by_Robot2_Insert[0],
@@ -8457,7 +6465,8 @@ static const pn_transition_t s_transitions[] = {
     {
         .name = "Cell.Robot2.Press", .id = "ID1412311214", .owner = 2, .priority = 1000,
         .origin = "page `Robot`, transition `Press` (ID1412311214)",
-        .enumerate = Robot2_Press_enumerate, .fire = Robot2_Press_fire, .binding = &s_binding_Robot2_Press,
+        .enumerate = Robot_Press_enumerate, .fire = Robot_Press_fire, .binding = &s_binding_Robot_Press,
+        .places = &s_in_Robot2,
         .affected_count = sizeof s_affected_by_Robot2_Press / sizeof s_affected_by_Robot2_Press[0],
         .affected = s_affected_by_Robot2_Press,
         .touched_count = sizeof s_touched_by_Robot2_Press / sizeof s_touched_by_Robot2_Press[0],
@@ -8468,7 +6477,8 @@ static const pn_transition_t s_transitions[] = {
     {
         .name = "Cell.Robot2.Release", .id = "ID1412311223", .owner = 2, .priority = 1000,
         .origin = "page `Robot`, transition `Release` (ID1412311223)",
-        .enumerate = Robot2_Release_enumerate, .fire = Robot2_Release_fire, .binding = &s_binding_Robot2_Release,
+        .enumerate = Robot_Release_enumerate, .fire = Robot_Release_fire, .binding = &s_binding_Robot_Release,
+        .places = &s_in_Robot2,
         .affected_count = sizeof s_affected_by_Robot2_Release / sizeof s_affected_by_Robot2_Release[0],
         .affected = s_affected_by_Robot2_Release,
         .touched_count = sizeof s_touched_by_Robot2_Release / sizeof s_touched_by_Robot2_Release[0],
@@ -8554,91 +6564,91 @@ static const uint32_t s_order[] = {
     72U, /* Cell.Robot2.Release */
 };
 
-/* For hosts that are compiled in one piece with the net: index and name of each transition, and whether each choice of tokens
- * gives a binding, so that counting them costs nothing. */
+/* For hosts that are compiled in one piece with the net: index and name of each transition, name of its code, and whether each
+ * choice of tokens gives a binding, so that counting them costs nothing. */
 #define NET_TRANSITIONS(EACH) \
-    EACH(0U, Supervisor_Load_Load, true) \
-    EACH(1U, Supervisor_Approach_Send, true) \
-    EACH(2U, Supervisor_Approach_Arrived, false) \
-    EACH(3U, Supervisor_Approach_Move_both_Command, true) \
-    EACH(4U, Supervisor_Approach_Move_both_Both, false) \
-    EACH(5U, Supervisor_Approach_Move_both_Reply_1, false) \
-    EACH(6U, Supervisor_Approach_Move_both_Reply_2, false) \
-    EACH(7U, Supervisor_Verify_Ask_first, true) \
-    EACH(8U, Supervisor_Verify_Ask_last, false) \
-    EACH(9U, Supervisor_Verify_Measured, false) \
-    EACH(10U, Supervisor_Verify_First_lost, false) \
-    EACH(11U, Supervisor_Verify_Last_lost, false) \
-    EACH(12U, Supervisor_Correct_Compare, true) \
-    EACH(13U, Supervisor_Correct_Move_over, false) \
-    EACH(14U, Supervisor_Correct_Moved, false) \
-    EACH(15U, Supervisor_Correct_As_planned, false) \
-    EACH(16U, Supervisor_Correct_Move_both_Command, true) \
-    EACH(17U, Supervisor_Correct_Move_both_Both, false) \
-    EACH(18U, Supervisor_Correct_Move_both_Reply_1, false) \
-    EACH(19U, Supervisor_Correct_Move_both_Reply_2, false) \
-    EACH(20U, Supervisor_Install_Go_back, false) \
-    EACH(21U, Supervisor_Install_Next_rivet, false) \
-    EACH(22U, Supervisor_Install_Start, true) \
-    EACH(23U, Supervisor_Install_Give_up, false) \
-    EACH(24U, Supervisor_Install_Shift_Command, true) \
-    EACH(25U, Supervisor_Install_Shift_Both, false) \
-    EACH(26U, Supervisor_Install_Shift_Reply_1, false) \
-    EACH(27U, Supervisor_Install_Shift_Reply_2, false) \
-    EACH(28U, Supervisor_Install_Rivet_Go_in, false) \
-    EACH(29U, Supervisor_Install_Rivet_Go_out, true) \
-    EACH(30U, Supervisor_Install_Rivet_Advance_Command, true) \
-    EACH(31U, Supervisor_Install_Rivet_Advance_Both, false) \
-    EACH(32U, Supervisor_Install_Rivet_Advance_Reply_1, false) \
-    EACH(33U, Supervisor_Install_Rivet_Advance_Reply_2, false) \
-    EACH(34U, Supervisor_Install_Rivet_Fasten_Press, false) \
-    EACH(35U, Supervisor_Install_Rivet_Fasten_Drill, false) \
-    EACH(36U, Supervisor_Install_Rivet_Fasten_Insert, false) \
-    EACH(37U, Supervisor_Install_Rivet_Fasten_Release, false) \
-    EACH(38U, Supervisor_Install_Rivet_Fasten_Finish, true) \
-    EACH(39U, Supervisor_Install_Rivet_Fasten_Press_failed, false) \
-    EACH(40U, Supervisor_Install_Rivet_Fasten_Drill_failed, false) \
-    EACH(41U, Supervisor_Install_Rivet_Retract_Command, true) \
-    EACH(42U, Supervisor_Install_Rivet_Retract_Both, false) \
-    EACH(43U, Supervisor_Install_Rivet_Retract_Reply_1, false) \
-    EACH(44U, Supervisor_Install_Rivet_Retract_Reply_2, false) \
-    EACH(45U, Supervisor_Install_Return_Command, true) \
-    EACH(46U, Supervisor_Install_Return_Both, false) \
-    EACH(47U, Supervisor_Install_Return_Reply_1, false) \
-    EACH(48U, Supervisor_Install_Return_Reply_2, false) \
-    EACH(49U, Supervisor_Home_Send_home, false) \
-    EACH(50U, Supervisor_Home_Both, false) \
-    EACH(51U, Supervisor_Home_Reply_1, false) \
-    EACH(52U, Supervisor_Home_Reply_2, false) \
-    EACH(53U, Robot1_Accept, false) \
-    EACH(54U, Robot1_Report, true) \
-    EACH(55U, Robot1_MoveJoint, false) \
-    EACH(56U, Robot1_MoveLinear, false) \
-    EACH(57U, Robot1_MoveHome, false) \
-    EACH(58U, Robot1_Measure, false) \
-    EACH(59U, Robot1_Drill, false) \
-    EACH(60U, Robot1_Insert, false) \
-    EACH(61U, Robot1_Press, false) \
-    EACH(62U, Robot1_Release, false) \
-    EACH(63U, Robot2_Accept, false) \
-    EACH(64U, Robot2_Report, true) \
-    EACH(65U, Robot2_MoveJoint, false) \
-    EACH(66U, Robot2_MoveLinear, false) \
-    EACH(67U, Robot2_MoveHome, false) \
-    EACH(68U, Robot2_Measure, false) \
-    EACH(69U, Robot2_Drill, false) \
-    EACH(70U, Robot2_Insert, false) \
-    EACH(71U, Robot2_Press, false) \
-    EACH(72U, Robot2_Release, false)
+    EACH(0U, Supervisor_Load_Load, Supervisor_Load_Load, true) \
+    EACH(1U, Supervisor_Approach_Send, Supervisor_Approach_Send, true) \
+    EACH(2U, Supervisor_Approach_Arrived, Supervisor_Approach_Arrived, false) \
+    EACH(3U, Supervisor_Approach_Move_both_Command, MoveBoth_Command, true) \
+    EACH(4U, Supervisor_Approach_Move_both_Both, MoveBoth_Both, false) \
+    EACH(5U, Supervisor_Approach_Move_both_Reply_1, MoveBoth_Reply_1, false) \
+    EACH(6U, Supervisor_Approach_Move_both_Reply_2, MoveBoth_Reply_2, false) \
+    EACH(7U, Supervisor_Verify_Ask_first, Supervisor_Verify_Ask_first, true) \
+    EACH(8U, Supervisor_Verify_Ask_last, Supervisor_Verify_Ask_last, false) \
+    EACH(9U, Supervisor_Verify_Measured, Supervisor_Verify_Measured, false) \
+    EACH(10U, Supervisor_Verify_First_lost, Supervisor_Verify_First_lost, false) \
+    EACH(11U, Supervisor_Verify_Last_lost, Supervisor_Verify_Last_lost, false) \
+    EACH(12U, Supervisor_Correct_Compare, Supervisor_Correct_Compare, true) \
+    EACH(13U, Supervisor_Correct_Move_over, Supervisor_Correct_Move_over, false) \
+    EACH(14U, Supervisor_Correct_Moved, Supervisor_Correct_Moved, false) \
+    EACH(15U, Supervisor_Correct_As_planned, Supervisor_Correct_As_planned, false) \
+    EACH(16U, Supervisor_Correct_Move_both_Command, MoveBoth_Command, true) \
+    EACH(17U, Supervisor_Correct_Move_both_Both, MoveBoth_Both, false) \
+    EACH(18U, Supervisor_Correct_Move_both_Reply_1, MoveBoth_Reply_1, false) \
+    EACH(19U, Supervisor_Correct_Move_both_Reply_2, MoveBoth_Reply_2, false) \
+    EACH(20U, Supervisor_Install_Go_back, Supervisor_Install_Go_back, false) \
+    EACH(21U, Supervisor_Install_Next_rivet, Supervisor_Install_Next_rivet, false) \
+    EACH(22U, Supervisor_Install_Start, Supervisor_Install_Start, true) \
+    EACH(23U, Supervisor_Install_Give_up, Supervisor_Install_Give_up, false) \
+    EACH(24U, Supervisor_Install_Shift_Command, MoveBoth_Command, true) \
+    EACH(25U, Supervisor_Install_Shift_Both, MoveBoth_Both, false) \
+    EACH(26U, Supervisor_Install_Shift_Reply_1, MoveBoth_Reply_1, false) \
+    EACH(27U, Supervisor_Install_Shift_Reply_2, MoveBoth_Reply_2, false) \
+    EACH(28U, Supervisor_Install_Rivet_Go_in, Supervisor_Install_Rivet_Go_in, false) \
+    EACH(29U, Supervisor_Install_Rivet_Go_out, Supervisor_Install_Rivet_Go_out, true) \
+    EACH(30U, Supervisor_Install_Rivet_Advance_Command, MoveBoth_Command, true) \
+    EACH(31U, Supervisor_Install_Rivet_Advance_Both, MoveBoth_Both, false) \
+    EACH(32U, Supervisor_Install_Rivet_Advance_Reply_1, MoveBoth_Reply_1, false) \
+    EACH(33U, Supervisor_Install_Rivet_Advance_Reply_2, MoveBoth_Reply_2, false) \
+    EACH(34U, Supervisor_Install_Rivet_Fasten_Press, Supervisor_Install_Rivet_Fasten_Press, false) \
+    EACH(35U, Supervisor_Install_Rivet_Fasten_Drill, Supervisor_Install_Rivet_Fasten_Drill, false) \
+    EACH(36U, Supervisor_Install_Rivet_Fasten_Insert, Supervisor_Install_Rivet_Fasten_Insert, false) \
+    EACH(37U, Supervisor_Install_Rivet_Fasten_Release, Supervisor_Install_Rivet_Fasten_Release, false) \
+    EACH(38U, Supervisor_Install_Rivet_Fasten_Finish, Supervisor_Install_Rivet_Fasten_Finish, true) \
+    EACH(39U, Supervisor_Install_Rivet_Fasten_Press_failed, Supervisor_Install_Rivet_Fasten_Press_failed, false) \
+    EACH(40U, Supervisor_Install_Rivet_Fasten_Drill_failed, Supervisor_Install_Rivet_Fasten_Drill_failed, false) \
+    EACH(41U, Supervisor_Install_Rivet_Retract_Command, MoveBoth_Command, true) \
+    EACH(42U, Supervisor_Install_Rivet_Retract_Both, MoveBoth_Both, false) \
+    EACH(43U, Supervisor_Install_Rivet_Retract_Reply_1, MoveBoth_Reply_1, false) \
+    EACH(44U, Supervisor_Install_Rivet_Retract_Reply_2, MoveBoth_Reply_2, false) \
+    EACH(45U, Supervisor_Install_Return_Command, MoveBoth_Command, true) \
+    EACH(46U, Supervisor_Install_Return_Both, MoveBoth_Both, false) \
+    EACH(47U, Supervisor_Install_Return_Reply_1, MoveBoth_Reply_1, false) \
+    EACH(48U, Supervisor_Install_Return_Reply_2, MoveBoth_Reply_2, false) \
+    EACH(49U, Supervisor_Home_Send_home, Supervisor_Home_Send_home, false) \
+    EACH(50U, Supervisor_Home_Both, Supervisor_Home_Both, false) \
+    EACH(51U, Supervisor_Home_Reply_1, Supervisor_Home_Reply_1, false) \
+    EACH(52U, Supervisor_Home_Reply_2, Supervisor_Home_Reply_2, false) \
+    EACH(53U, Robot1_Accept, Robot_Accept, false) \
+    EACH(54U, Robot1_Report, Robot_Report, true) \
+    EACH(55U, Robot1_MoveJoint, Robot_MoveJoint, false) \
+    EACH(56U, Robot1_MoveLinear, Robot_MoveLinear, false) \
+    EACH(57U, Robot1_MoveHome, Robot_MoveHome, false) \
+    EACH(58U, Robot1_Measure, Robot_Measure, false) \
+    EACH(59U, Robot1_Drill, Robot_Drill, false) \
+    EACH(60U, Robot1_Insert, Robot_Insert, false) \
+    EACH(61U, Robot1_Press, Robot_Press, false) \
+    EACH(62U, Robot1_Release, Robot_Release, false) \
+    EACH(63U, Robot2_Accept, Robot_Accept, false) \
+    EACH(64U, Robot2_Report, Robot_Report, true) \
+    EACH(65U, Robot2_MoveJoint, Robot_MoveJoint, false) \
+    EACH(66U, Robot2_MoveLinear, Robot_MoveLinear, false) \
+    EACH(67U, Robot2_MoveHome, Robot_MoveHome, false) \
+    EACH(68U, Robot2_Measure, Robot_Measure, false) \
+    EACH(69U, Robot2_Drill, Robot_Drill, false) \
+    EACH(70U, Robot2_Insert, Robot_Insert, false) \
+    EACH(71U, Robot2_Press, Robot_Press, false) \
+    EACH(72U, Robot2_Release, Robot_Release, false)
 
 typedef union any_binding {
     Supervisor_Load_Load_binding_t Supervisor_Load_Load;
     Supervisor_Approach_Send_binding_t Supervisor_Approach_Send;
     Supervisor_Approach_Arrived_binding_t Supervisor_Approach_Arrived;
-    Supervisor_Approach_Move_both_Command_binding_t Supervisor_Approach_Move_both_Command;
-    Supervisor_Approach_Move_both_Both_binding_t Supervisor_Approach_Move_both_Both;
-    Supervisor_Approach_Move_both_Reply_1_binding_t Supervisor_Approach_Move_both_Reply_1;
-    Supervisor_Approach_Move_both_Reply_2_binding_t Supervisor_Approach_Move_both_Reply_2;
+    MoveBoth_Command_binding_t MoveBoth_Command;
+    MoveBoth_Both_binding_t MoveBoth_Both;
+    MoveBoth_Reply_1_binding_t MoveBoth_Reply_1;
+    MoveBoth_Reply_2_binding_t MoveBoth_Reply_2;
     Supervisor_Verify_Ask_first_binding_t Supervisor_Verify_Ask_first;
     Supervisor_Verify_Ask_last_binding_t Supervisor_Verify_Ask_last;
     Supervisor_Verify_Measured_binding_t Supervisor_Verify_Measured;
@@ -8648,24 +6658,12 @@ typedef union any_binding {
     Supervisor_Correct_Move_over_binding_t Supervisor_Correct_Move_over;
     Supervisor_Correct_Moved_binding_t Supervisor_Correct_Moved;
     Supervisor_Correct_As_planned_binding_t Supervisor_Correct_As_planned;
-    Supervisor_Correct_Move_both_Command_binding_t Supervisor_Correct_Move_both_Command;
-    Supervisor_Correct_Move_both_Both_binding_t Supervisor_Correct_Move_both_Both;
-    Supervisor_Correct_Move_both_Reply_1_binding_t Supervisor_Correct_Move_both_Reply_1;
-    Supervisor_Correct_Move_both_Reply_2_binding_t Supervisor_Correct_Move_both_Reply_2;
     Supervisor_Install_Go_back_binding_t Supervisor_Install_Go_back;
     Supervisor_Install_Next_rivet_binding_t Supervisor_Install_Next_rivet;
     Supervisor_Install_Start_binding_t Supervisor_Install_Start;
     Supervisor_Install_Give_up_binding_t Supervisor_Install_Give_up;
-    Supervisor_Install_Shift_Command_binding_t Supervisor_Install_Shift_Command;
-    Supervisor_Install_Shift_Both_binding_t Supervisor_Install_Shift_Both;
-    Supervisor_Install_Shift_Reply_1_binding_t Supervisor_Install_Shift_Reply_1;
-    Supervisor_Install_Shift_Reply_2_binding_t Supervisor_Install_Shift_Reply_2;
     Supervisor_Install_Rivet_Go_in_binding_t Supervisor_Install_Rivet_Go_in;
     Supervisor_Install_Rivet_Go_out_binding_t Supervisor_Install_Rivet_Go_out;
-    Supervisor_Install_Rivet_Advance_Command_binding_t Supervisor_Install_Rivet_Advance_Command;
-    Supervisor_Install_Rivet_Advance_Both_binding_t Supervisor_Install_Rivet_Advance_Both;
-    Supervisor_Install_Rivet_Advance_Reply_1_binding_t Supervisor_Install_Rivet_Advance_Reply_1;
-    Supervisor_Install_Rivet_Advance_Reply_2_binding_t Supervisor_Install_Rivet_Advance_Reply_2;
     Supervisor_Install_Rivet_Fasten_Press_binding_t Supervisor_Install_Rivet_Fasten_Press;
     Supervisor_Install_Rivet_Fasten_Drill_binding_t Supervisor_Install_Rivet_Fasten_Drill;
     Supervisor_Install_Rivet_Fasten_Insert_binding_t Supervisor_Install_Rivet_Fasten_Insert;
@@ -8673,38 +6671,20 @@ typedef union any_binding {
     Supervisor_Install_Rivet_Fasten_Finish_binding_t Supervisor_Install_Rivet_Fasten_Finish;
     Supervisor_Install_Rivet_Fasten_Press_failed_binding_t Supervisor_Install_Rivet_Fasten_Press_failed;
     Supervisor_Install_Rivet_Fasten_Drill_failed_binding_t Supervisor_Install_Rivet_Fasten_Drill_failed;
-    Supervisor_Install_Rivet_Retract_Command_binding_t Supervisor_Install_Rivet_Retract_Command;
-    Supervisor_Install_Rivet_Retract_Both_binding_t Supervisor_Install_Rivet_Retract_Both;
-    Supervisor_Install_Rivet_Retract_Reply_1_binding_t Supervisor_Install_Rivet_Retract_Reply_1;
-    Supervisor_Install_Rivet_Retract_Reply_2_binding_t Supervisor_Install_Rivet_Retract_Reply_2;
-    Supervisor_Install_Return_Command_binding_t Supervisor_Install_Return_Command;
-    Supervisor_Install_Return_Both_binding_t Supervisor_Install_Return_Both;
-    Supervisor_Install_Return_Reply_1_binding_t Supervisor_Install_Return_Reply_1;
-    Supervisor_Install_Return_Reply_2_binding_t Supervisor_Install_Return_Reply_2;
     Supervisor_Home_Send_home_binding_t Supervisor_Home_Send_home;
     Supervisor_Home_Both_binding_t Supervisor_Home_Both;
     Supervisor_Home_Reply_1_binding_t Supervisor_Home_Reply_1;
     Supervisor_Home_Reply_2_binding_t Supervisor_Home_Reply_2;
-    Robot1_Accept_binding_t Robot1_Accept;
-    Robot1_Report_binding_t Robot1_Report;
-    Robot1_MoveJoint_binding_t Robot1_MoveJoint;
-    Robot1_MoveLinear_binding_t Robot1_MoveLinear;
-    Robot1_MoveHome_binding_t Robot1_MoveHome;
-    Robot1_Measure_binding_t Robot1_Measure;
-    Robot1_Drill_binding_t Robot1_Drill;
-    Robot1_Insert_binding_t Robot1_Insert;
-    Robot1_Press_binding_t Robot1_Press;
-    Robot1_Release_binding_t Robot1_Release;
-    Robot2_Accept_binding_t Robot2_Accept;
-    Robot2_Report_binding_t Robot2_Report;
-    Robot2_MoveJoint_binding_t Robot2_MoveJoint;
-    Robot2_MoveLinear_binding_t Robot2_MoveLinear;
-    Robot2_MoveHome_binding_t Robot2_MoveHome;
-    Robot2_Measure_binding_t Robot2_Measure;
-    Robot2_Drill_binding_t Robot2_Drill;
-    Robot2_Insert_binding_t Robot2_Insert;
-    Robot2_Press_binding_t Robot2_Press;
-    Robot2_Release_binding_t Robot2_Release;
+    Robot_Accept_binding_t Robot_Accept;
+    Robot_Report_binding_t Robot_Report;
+    Robot_MoveJoint_binding_t Robot_MoveJoint;
+    Robot_MoveLinear_binding_t Robot_MoveLinear;
+    Robot_MoveHome_binding_t Robot_MoveHome;
+    Robot_Measure_binding_t Robot_Measure;
+    Robot_Drill_binding_t Robot_Drill;
+    Robot_Insert_binding_t Robot_Insert;
+    Robot_Press_binding_t Robot_Press;
+    Robot_Release_binding_t Robot_Release;
 } any_binding_t;
 
 static const pn_owner_t s_owners[] = {

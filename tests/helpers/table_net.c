@@ -75,9 +75,10 @@ static bool enumerate(pn_ctx_t *cx, const void *marking, uint32_t self, pn_bindi
     return true;
 }
 
-static bool fire(pn_ctx_t *cx, void *marking, void *binding)
+static bool fire(pn_ctx_t *cx, void *marking, uint32_t self, void *binding)
 {
     const row_t *row = &s_row[*(const int64_t *)binding];
+    (void)self;
     for (uint32_t c = 0U; c < PLACES; c++) {
         const uint32_t n = row->resets[c] ? 0U : get(marking, c) - row->pre[c] + row->post[c];
         if (n > MOST) { cx->origin = "P"; pn_raise(cx, PN_ERR_CAPACITY, "full"); return false; }

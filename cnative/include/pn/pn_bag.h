@@ -24,6 +24,7 @@ typedef struct pn_bag {
     uint32_t capacity;       /* entries: so many distinct colours, with so many stamps, fit */
     bool is_timed;
     bool is_real_time;       /* stamps are reals */
+    size_t at;               /* offset in the marking of what holds its tokens */
     bool is_slot;            /* `used` is a bool, and there is one entry, of one token, which is a value and nothing else */
     size_t used;             /* offset of `used` in the marking */
     size_t first;            /* offset of token[0] in the marking */
@@ -54,16 +55,28 @@ typedef union pn_colour {
 
 /* The offsets of a place `member` of a marking, for the initialiser of a pn_bag_t; PN_BAG_STAMPS as well if it is timed. */
 #define PN_BAG_TOKENS(marking_type, member)                                                                        \
-    .used = offsetof(marking_type, member.used), .first = offsetof(marking_type, member.token),                    \
+    .at = offsetof(marking_type, member), .used = offsetof(marking_type, member.used),                             \
+    .first = offsetof(marking_type, member.token),                                                                 \
     .stride = sizeof(((const marking_type *)0)->member.token[0]),                                                  \
     .value = offsetof(marking_type, member.token[0].value) - offsetof(marking_type, member.token),                 \
     .count = offsetof(marking_type, member.token[0].count) - offsetof(marking_type, member.token)
 /* The same for a slot. */
 #define PN_BAG_SLOT(marking_type, member)                                                                          \
-    .is_slot = true, .used = offsetof(marking_type, member.full), .first = offsetof(marking_type, member.value),   \
+    .at = offsetof(marking_type, member), .is_slot = true, .used = offsetof(marking_type, member.full),            \
+    .first = offsetof(marking_type, member.value),                                                                 \
     .stride = sizeof(((const marking_type *)0)->member.value)
 #define PN_BAG_STAMPS(marking_type, member)                                                                        \
     .stamp = offsetof(marking_type, member.token[0].stamp) - offsetof(marking_type, member.token)
+
+/* What holds the tokens of a place that is not packed. */
+static inline const void *pn_bag_look(const pn_bag_t *bag, const void *marking)
+{
+    return (const unsigned char *)marking + bag->at;
+}
+static inline void *pn_bag_reach(const pn_bag_t *bag, void *marking)
+{
+    return (unsigned char *)marking + bag->at;
+}
 
 /* Number of tokens. */
 uint64_t pn_bag_total(const pn_bag_t *bag, const void *marking);

@@ -25,7 +25,7 @@
 extern "C" {
 #endif
 
-#define PN_NET_ABI 2U
+#define PN_NET_ABI 3U
 
 #if defined(__GNUC__)
 #define PN_NODISCARD __attribute__((warn_unused_result))
@@ -124,7 +124,9 @@ typedef struct pn_transition {
     bool (*enumerate)(pn_ctx_t *cx, const void *marking, uint32_t self, pn_binding_sink_t sink, void *user);
     /* Fires an enabled binding and stores the code segment's outputs in it. On error (context error set, false) the marking
      * is unchanged. `binding` is the host's copy (binding_size bytes) of what the sink was given. */
-    bool (*fire)(pn_ctx_t *cx, void *marking, void *binding);
+    bool (*fire)(pn_ctx_t *cx, void *marking, uint32_t self, void *binding);
+    /* Where the functions are those of all instances of a page, the places that are this instance's: a struct of the generated net. */
+    const void *places;
     /* The type of a binding: a record of the variables. Outputs of the code segment are there after `fire`. */
     const struct pn_type *binding;
     /* The transitions that may be enabled in another way after this one has occurred, model time being the same. NULL: all. */

@@ -6,7 +6,6 @@ net is a `Block` of the file, so that a compiler message or a reader finds the w
 
 from __future__ import annotations
 
-import re
 from collections.abc import Iterable
 
 from pn2code.diagnostics import Origin
@@ -21,9 +20,11 @@ from pn2code.emission.c_expressions import (
 )
 from pn2code.emission.c_firing import DirectFiring
 from pn2code.emission.c_leaves import Leaves
-from pn2code.emission.c_lines import wrap
+from pn2code.emission.c_lines import mentions, wrap
 from pn2code.emission.c_needs import used_locals, uses_context
+from pn2code.emission.c_own import OwnPlaces
 from pn2code.emission.c_proofs import proofs
+from pn2code.emission.c_shared import PlaceTable, Shared, path_of, share, tables
 from pn2code.emission.c_slots import slots
 from pn2code.emission.c_statements import Statements
 from pn2code.emission.c_sums import Sum
@@ -82,6 +83,21 @@ class _Emitter:
         )
         self._sums_found: dict[int, dict[tuple[int, ir.Ir], Sum]] = {}
         self._referring = tuple(p.index for p in net.places if self._refers(p.table))
+        # Explorers have a function for each instance, so that the compiler can put it where it is called.
+        self._shared = share(net.transitions, lambda a, b: not net.has_successors and self._agree(a, b))
+        self._place_tables = tables(self._shared)
+
+    def _agree(self, a: int, b: int) -> bool:
+        """Whether two places are kept in the same way, and hold the same colours."""
+        one, other = self._net.places[a], self._net.places[b]
+        kept = self._kept(one)
+        return a == b or (kept != "" and kept == self._kept(other) and one.table == other.table)
+
+    def _kept(self, p: ir.Place) -> str:
+        """The C type that holds the tokens of a place, where it has a name; "" otherwise."""
+        if p.index not in self._slots:
+            return ""
+        return self._names.kept(self._types.name(p.type), "slot")
 
     def _refers(self, table: str) -> bool:
         """Whether values of a type refer into the arena."""
@@ -112,7 +128,7 @@ class _Emitter:
     # --- pieces --------------------------------------------------------------------------------
 
     def _printer(
-        self, statements: tuple[ir.Stmt, ...], binding: str = ""
+        self, statements: tuple[ir.Stmt, ...], binding: str = "", own: OwnPlaces | None = None
     ) -> tuple[Statements, Expressions, Scope]:
         scope = Scope()
         x = Expressions(self._types, self._net.real_time, scope, binding)
@@ -134,6 +150,9 @@ class _Emitter:
             s.number_of = self._numbers.if_whole
         s.token_types = tuple(p.type for p in self._net.places)
         s.tables_of_places = self._tables
+        if own:
+            x.place_names, x.tokens, x.bags = own.texts(x.place_names, x.tokens, x.bags, scope)
+            s.bags = x.bags
         return s, x, scope
 
     def _function(self, f: ir.Function) -> dict[str, object]:
@@ -262,6 +281,7 @@ class _Emitter:
             # gcc warns of loops that would go through an array of one, though they never do.
             "room": 0 if p.timed or is_slot else max(self._rooms[p.index], 2 - p.capacity),
             "is_slot": is_slot,
+            "kept": self._kept(p),
             "order": "" if p.timed or p.packed or is_slot else self._orders.name(p.table),
             "packed": p.packed,
             "shares": p.packed.shares if p.packed else (),
@@ -276,11 +296,89 @@ class _Emitter:
             "line_leaves": self._leaves.lines(p.table) if leaves else [],
         }
 
-    def _transition(self, t: ir.Transition) -> dict[str, object]:
-        name = self._names.transition(t.index, t.name)
+    def _own_places(self, shared: Shared) -> OwnPlaces | None:
+        """How the code of a transition of several instances reaches the places that each has for its own."""
+        for table in self._place_tables:
+            if shared.varying and (table.page, table.paths) == (shared.page, shared.paths):
+                kept = {p: self._kept(self._net.places[p]) for p in shared.varying}
+                return OwnPlaces(
+                    self._names.page_places(table.page, table.paths),
+                    {p: self._member_of(table, shared, p) for p in shared.varying},
+                    kept,
+                )
+        return None
+
+    def _member_of(self, table: PlaceTable, shared: Shared, place: int) -> str:
+        own = tuple(row[shared.varying.index(place)] for row in shared.at)
+        return self._member_names(table)[list(zip(*table.rows, strict=True)).index(own)]
+
+    def _member_names(self, table: PlaceTable) -> tuple[str, ...]:
+        members = Members()
+        return tuple(members.name(i, name) for i, name in enumerate(table.names))
+
+    def _place_table(self, table: PlaceTable) -> dict[str, object]:
+        """The struct of a page, and what it is for each of its instances."""
+        members = self._member_names(table)
+        struct = self._names.page_places(table.page, table.paths)
+        return {
+            "page": table.page,
+            "struct": struct,
+            "members": members,
+            "instances": [
+                {
+                    "path": path,
+                    "name": self._names.instance(path, struct),
+                    "fields": [
+                        (m, self._bags[p]) for m, p in zip(members, row, strict=True)
+                    ],
+                }
+                for path, row in zip(table.paths, table.rows, strict=True)
+            ],
+        }
+
+    def _stem(self, shared: Shared) -> str:
+        """The stem of the names of what is printed for a transition."""
+        t = shared.model
+        if len(shared.instances) == 1:
+            return self._names.transition(t.index, t.name)
+        return self._names.page_transition(t.index, shared.page, t.name.rsplit(".", 1)[-1])
+
+    def _row(self, t: ir.Transition, shared: Shared, code: dict[str, object]) -> dict[str, object]:
+        """What the tables of hosts say of one instance."""
+        affected = self._effects.affected(t.index)
+        own = self._own_places(shared)
+        return {
+            "index": t.index,
+            "name": t.name,
+            "stem": self._names.transition(t.index, t.name),
+            "code": code,
+            "id": t.id,
+            "origin": t.origin.describe(),
+            "owner": t.owner,
+            "priority": t.priority,
+            "places": self._names.instance(path_of(t), own.struct) if own else "",
+            "touched": ", ".join(f"{i}U" for i in self._effects.touched(t.index)),
+            "read": ", ".join(f"{i}U" for i in self._effects.read(t.index)),
+            "affected": ""
+            if len(affected) == len(self._net.transitions)
+            else ", ".join(f"{i}U" for i in affected),
+        }
+
+    def _title(self, shared: Shared) -> list[str]:
+        """The element of the net, and all of its instances that the code is of."""
+        t = shared.model
+        where = f"{t.origin.describe()}, {_where(t.origin)}"
+        if len(shared.instances) == 1:
+            return [c_comment(f"transition {t.name}: {where}")]
+        instances = [f"    {c_comment(x.name)}" for x in shared.instances]
+        return [c_comment(f"transition: {where}, at all of these:"), *instances]
+
+    def _transition(self, shared: Shared) -> dict[str, object]:
+        t = shared.model
+        name, own = self._stem(shared), self._own_places(shared)
         members = Members()
         variables = tuple(members.name(i, v.name) for i, v in enumerate(t.variables))
-        search, x, _ = self._printer(t.enumerate, "b.")
+        search, x, _ = self._printer(t.enumerate, "b.", own)
         x.variables = variables
         search.variable_types = tuple(v.type for v in t.variables)
         search.keeps = uses_context(
@@ -294,28 +392,25 @@ class _Emitter:
         search.body(t.enumerate)
         search.finish_search()
         is_direct = self._is_direct(t)
-        fire = self._firing(t, is_direct, variables)
+        fire = self._firing(t, is_direct, variables, own, name)
         sums = self._sums(t)
         has_lists = is_direct and any(isinstance(s, ir.TakeAll | ir.PutAll) for s in t.fire)
-        lists = self._firing(t, False, variables) if has_lists else None
+        lists = self._firing(t, False, variables, own, name) if has_lists else None
+        thresholds = self._thresholds(t, variables, own)
         text = "\n".join(fire.lines)
-        affected = self._effects.affected(t.index)
         search_draws = self._effects.reaches(t.enumerate, is_draw)
         fire_draws = self._effects.reaches(t.fire, is_draw)
         return {
-            "mark": self._block(t.name, "transition", t.origin),
+            "marks": [self._block(x.name, "transition", x.origin) for x in shared.instances],
             "index": t.index,
             "search_draws": search_draws,
             "fire_draws": fire_draws,
             "draws_between": search_draws and fire_draws,
             "name": t.name,
             "stem": name,
-            "id": t.id,
-            "title": c_comment(f"transition {t.name}: {t.origin.describe()}, {_where(t.origin)}"),
+            "title": self._title(shared),
             "guard": c_comment(f"guard [{t.guard_text}]") if t.guard_text else "",
             "origin": t.origin.describe(),
-            "owner": t.owner,
-            "priority": t.priority,
             "variables": [
                 {
                     "type": self._types.name(v.type),
@@ -329,21 +424,23 @@ class _Emitter:
             "is_plain": c_places.is_plain(t.enumerate),
             "keeps": search.keeps and search.releases,
             "search": search.lines,
-            "thresholds": self._thresholds(t, variables),
+            "search_reach": own.reach(search.lines, is_const=True) if own else [],
+            "thresholds": thresholds,
+            "thresholds_reach": own.reach(thresholds, is_const=True) if own else [],
             "thresholds_draw": self._effects.reaches(t.thresholds, is_draw),
-            "searches_marking": _mentions("m", "\n".join(search.lines)),
+            "searches_marking": mentions("m", "\n".join(search.lines)),
             "fire": fire.lines,
+            "fire_reach": own.reach(fire.lines, is_const=False) if own else [],
             "is_direct": is_direct,
             "sums": [
-                self._sum_function(s, t, variables)
+                self._sum_function(s, t, name, variables)
                 for s in sums.values()
                 if any(f"{s.name}(" in line for line in search.lines + fire.lines)
             ],
             "lists": lists.lines if lists else [],
-            "lists_use_binding": lists is not None and _mentions("b", "\n".join(lists.lines)),
-            "uses_binding": _mentions("b", text),
-            "touched": ", ".join(f"{i}U" for i in self._effects.touched(t.index)),
-            "read": ", ".join(f"{i}U" for i in self._effects.read(t.index)),
+            "lists_reach": own.reach(lists.lines, is_const=False) if own and lists else [],
+            "lists_use_binding": lists is not None and mentions("b", "\n".join(lists.lines)),
+            "uses_binding": mentions("b", text),
             "touched_bags": [
                 self._place_names[i]
                 for i in self._effects.touched(t.index)
@@ -353,9 +450,6 @@ class _Emitter:
             "looks_outside": self._effects.looks_outside((t.enumerate, t.fire)),
             "assigns": self._effects.reaches(t.fire, is_assignment),
             "search_assigns": self._effects.reaches((t.enumerate, t.thresholds), is_assignment),
-            "affected": ""
-            if len(affected) == len(self._net.transitions)
-            else ", ".join(f"{i}U" for i in affected),
         }
 
     def _predicate(self, p: ir.Predicate, number: int) -> dict[str, object]:
@@ -371,11 +465,13 @@ class _Emitter:
             "lines": s.lines,
         }
 
-    def _thresholds(self, t: ir.Transition, variables: tuple[str, ...]) -> list[str]:
+    def _thresholds(
+        self, t: ir.Transition, variables: tuple[str, ...], own: OwnPlaces | None
+    ) -> list[str]:
         """The search for the times at which tokens become available, without its preamble."""
         if not t.thresholds:
             return []
-        search, x, _ = self._printer(t.thresholds, "b.")
+        search, x, _ = self._printer(t.thresholds, "b.", own)
         x.variables = variables
         search.variable_types = tuple(v.type for v in t.variables)
         search.is_void = True
@@ -395,12 +491,14 @@ class _Emitter:
             )
         return self._sums_found[t.index]
 
-    def _sum_function(self, s: Sum, t: ir.Transition, variables: tuple[str, ...]) -> list[str]:
+    def _sum_function(
+        self, s: Sum, t: ir.Transition, name: str, variables: tuple[str, ...]
+    ) -> list[str]:
         _, x, _ = self._printer((), "b->")
         x.variables = variables
         return c_sums.function(
             s,
-            f"{self._names.transition(t.index, t.name)}_binding_t",
+            f"{name}_binding_t",
             self._bags[s.place],
             self._names.table(s.table),
             self._numbers,
@@ -408,8 +506,15 @@ class _Emitter:
             lambda i: x.address(ir.Bound(i, t.variables[i].type)),
         )
 
-    def _firing(self, t: ir.Transition, is_direct: bool, variables: tuple[str, ...]) -> Statements:
-        printer, x, scope = self._printer(t.fire, "b->")
+    def _firing(
+        self,
+        t: ir.Transition,
+        is_direct: bool,
+        variables: tuple[str, ...],
+        own: OwnPlaces | None,
+        name: str,
+    ) -> Statements:
+        printer, x, scope = self._printer(t.fire, "b->", own)
         x.variables = variables
         if is_direct:
             scope.reserve("is_taken", "fits")
@@ -428,7 +533,7 @@ class _Emitter:
             direct.slots = self._slots
             direct.references = frozenset(g.name for g in self._net.globals if g.is_reference)
             direct.sums = self._sums(t)
-            direct.otherwise = f"{self._names.transition(t.index, t.name)}_fire_lists(cx, m, b)"
+            direct.otherwise = f"{name}_fire_lists(cx, m, self, b)"
             direct.variable_types = tuple(v.type for v in t.variables)
             direct.fire(t.fire, uses_context(t.fire, self._needs_context, self._definitions))
             return direct
@@ -495,7 +600,15 @@ class _Emitter:
         wrappers = _wrappers(functions)
         tables = c_tables.Tables(self._types, self._descriptors, wrappers)
         recursive = tables.to_declare(keys)
-        transitions = [self._transition(t) for t in net.transitions]  # what they call is known then
+        transitions = [self._transition(g) for g in self._shared]  # what they call is known then
+        rows = sorted(
+            (
+                (t.index, self._row(t, g, code))
+                for g, code in zip(self._shared, transitions, strict=True)
+                for t in g.instances
+            ),
+            key=lambda row: row[0],
+        )
         further = [f for f in self._used_functions(with_predicates=True) if f not in functions]
         wrappers |= _wrappers(further)
         further_keys = [
@@ -517,11 +630,16 @@ class _Emitter:
             "tables": [tables.print(k) for k in keys],
             "leaves": self._leaves.tables(net.places),
             "places": [self._place(p) for p in net.places],
+            "slots": {
+                self._kept(p): self._types.name(p.type) for p in net.places if self._kept(p)
+            },
             "proofs": list(proofs(net.places)),
             "orders": list(self._orders.functions.values()),
             "packed_words": (packed_bits(net.places) + 63) // 64,
             "packed_size": (packed_bits(net.places) + 31) // 32 * 4,
             "transitions": transitions,
+            "place_tables": [self._place_table(x) for x in self._place_tables],
+            "rows": [row for _, row in rows],
             "has_thresholds": any(t["thresholds"] for t in transitions),
             "has_words": self._has_words,
             "word_mask": self._word_mask(),
@@ -624,12 +742,3 @@ def _initial(zero: str, rep: Rep) -> str:
     if rep is Rep.BIG:
         return c_big_initialiser(0)
     return "{ 0 }" if rep in (Rep.STRUCT, Rep.UNION) else zero
-
-
-_APART = re.compile(r'"(?:[^"\\]|\\.)*"|/\*.*?\*/', re.S)
-"""Strings and comments of C."""
-
-
-def _mentions(variable: str, code: str) -> bool:
-    """Whether C code uses a variable: not a member of that name, nor a word in a string or comment."""
-    return re.search(rf"(?<![.>\w]){variable}\b", _APART.sub("", code)) is not None

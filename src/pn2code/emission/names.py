@@ -153,6 +153,23 @@ class Names:
         """`Robot1_Accept`: the instance path without the prime page."""
         return self._scope.name(("transition", index), _path(name))
 
+    def page_transition(self, index: int, page: str, short: str) -> str:
+        """`MoveBoth_Command`: what all instances of a page have in common."""
+        return self._scope.name(("page transition", index), f"{page}_{short}")
+
+    def page_places(self, page: str, paths: tuple[str, ...]) -> str:
+        """`MoveBoth_places`: the struct of the places of a page."""
+        return self._scope.name(("page places", page, paths), page, "{}_places")
+
+    def instance(self, path: str, struct: str) -> str:
+        """`s_in_Supervisor_Approach_Move_both`: the places of a page instance."""
+        return self._scope.name(("instance", path, struct), _path(path), "s_in_{}")
+
+    def kept(self, c_type: str, kind: str) -> str:
+        """`POSE_slot_t`: what holds the tokens of a place."""
+        stem_of_type = c_type.removeprefix("pn_").removesuffix("_t")
+        return self._scope.name(("kept", c_type, kind), f"{stem_of_type}_{kind}", "{}_t")
+
     def bag(self, index: int, name: str) -> str:
         """`s_at_Robot1_Waiting`."""
         return self._scope.name(("bag", index), _path(name), "s_at_{}")

@@ -27,7 +27,7 @@
 #define PN_NET_SEARCH
 #endif
 
-#if PN_NET_ABI != 2U
+#if PN_NET_ABI != 3U
 #error "Generate this file again: runtime and generator disagree (PN_NET_ABI)."
 #endif
 
@@ -215,9 +215,7 @@ PN_NET_SEARCH static bool Pick_enumerate(pn_ctx_t *cx, const void *marking,
 {
     const net_marking_t *const m = marking;
     Pick_binding_t b = { 0 };
-    cx->origin = "page `Top`, transition `Pick` (ID25)";
-    cx->now = m->now;
-    cx->rounds = 0U;
+    pn_begin(cx, "page `Top`, transition `Pick` (ID25)", m->now);
     /* Buffer: b (ID30) */
     for (uint32_t i = 0U; i < m->Buffer.used; i++) {
         b.b = m->Buffer.token[i].value;
@@ -236,13 +234,12 @@ PN_NET_SEARCH static bool Pick_enumerate(pn_ctx_t *cx, const void *marking,
     return true;
 }
 
-PN_NET_SEARCH static bool Pick_fire(pn_ctx_t *cx, void *marking, void *binding)
+PN_NET_SEARCH static bool Pick_fire(pn_ctx_t *cx, void *marking, uint32_t self, void *binding)
 {
     net_marking_t *const m = marking;
+    (void)self;
     Pick_binding_t *const b = binding;
-    cx->origin = "page `Top`, transition `Pick` (ID25)";
-    cx->now = m->now;
-    cx->rounds = 0U;
+    pn_begin(cx, "page `Top`, transition `Pick` (ID25)", m->now);
     const int64_t Count_token = pn_int_add(cx, b->n, ml_label(cx, b->b));
     if (!pn_ok(cx)) {
         return false;
@@ -318,10 +315,10 @@ static const uint32_t s_order[] = {
     0U, /* Top.Pick */
 };
 
-/* For hosts that are compiled in one piece with the net: index and name of each transition, and whether each choice of tokens
- * gives a binding, so that counting them costs nothing. */
+/* For hosts that are compiled in one piece with the net: index and name of each transition, name of its code, and whether each
+ * choice of tokens gives a binding, so that counting them costs nothing. */
 #define NET_TRANSITIONS(EACH) \
-    EACH(0U, Pick, false)
+    EACH(0U, Pick, Pick, false)
 
 typedef union any_binding {
     Pick_binding_t Pick;
