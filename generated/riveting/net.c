@@ -1911,7 +1911,7 @@ PN_NET_SEARCH static bool MoveBoth_Command_enumerate(pn_ctx_t *cx, const void *m
     MoveBoth_Command_binding_t b = { 0 };
     pn_begin(cx, "page `MoveBoth`, transition `Command` (ID1412310941)", m->now);
     const MoveBoth_places_t *const own = pn_net.transition[self].places;
-    const PLAN_slot_t *const at_order = pn_bag_look(own->order, m);
+    const ORDER_slot_t *const at_order = pn_bag_look(own->order, m);
     /* order: (c, p, q) (ID1412310946) */
     if (!at_order->full) {
         return true;
@@ -1931,9 +1931,9 @@ PN_NET_SEARCH static bool MoveBoth_Command_fire(pn_ctx_t *cx, void *marking, uin
     MoveBoth_Command_binding_t *const b = binding;
     pn_begin(cx, "page `MoveBoth`, transition `Command` (ID1412310941)", m->now);
     const MoveBoth_places_t *const own = pn_net.transition[self].places;
-    PLAN_slot_t *const at_order = pn_bag_reach(own->order, m);
-    unit_slot_t *const at_moving_1 = pn_bag_reach(own->moving_1, m);
-    unit_slot_t *const at_moving_2 = pn_bag_reach(own->moving_2, m);
+    ORDER_slot_t *const at_order = pn_bag_reach(own->order, m);
+    UNIT_slot_t *const at_moving_1 = pn_bag_reach(own->moving_1, m);
+    UNIT_slot_t *const at_moving_2 = pn_bag_reach(own->moving_2, m);
     if (!at_order->full) {
         pn_raise(cx, PN_ERR_SUBTRACT, NULL);
         return false;
@@ -2004,8 +2004,8 @@ PN_NET_SEARCH static bool MoveBoth_Both_enumerate(pn_ctx_t *cx, const void *mark
     MoveBoth_Both_binding_t b = { 0 };
     pn_begin(cx, "page `MoveBoth`, transition `Both` (ID1412310948)", m->now);
     const MoveBoth_places_t *const own = pn_net.transition[self].places;
-    const unit_slot_t *const at_there_1 = pn_bag_look(own->there_1, m);
-    const unit_slot_t *const at_there_2 = pn_bag_look(own->there_2, m);
+    const UNIT_slot_t *const at_there_1 = pn_bag_look(own->there_1, m);
+    const UNIT_slot_t *const at_there_2 = pn_bag_look(own->there_2, m);
     /* there 1: () (ID1412310976) */
     if (!at_there_1->full) {
         return true;
@@ -2026,9 +2026,9 @@ PN_NET_SEARCH static bool MoveBoth_Both_fire(pn_ctx_t *cx, void *marking, uint32
     (void)binding;
     pn_begin(cx, "page `MoveBoth`, transition `Both` (ID1412310948)", m->now);
     const MoveBoth_places_t *const own = pn_net.transition[self].places;
-    unit_slot_t *const at_done = pn_bag_reach(own->done, m);
-    unit_slot_t *const at_there_1 = pn_bag_reach(own->there_1, m);
-    unit_slot_t *const at_there_2 = pn_bag_reach(own->there_2, m);
+    UNIT_slot_t *const at_done = pn_bag_reach(own->done, m);
+    UNIT_slot_t *const at_there_1 = pn_bag_reach(own->there_1, m);
+    UNIT_slot_t *const at_there_2 = pn_bag_reach(own->there_2, m);
     if (!at_there_1->full || !at_there_2->full) {
         pn_raise(cx, PN_ERR_SUBTRACT, NULL);
         return false;
@@ -2072,7 +2072,7 @@ PN_NET_SEARCH static bool MoveBoth_Reply_1_enumerate(pn_ctx_t *cx, const void *m
     MoveBoth_Reply_1_binding_t b = { 0 };
     pn_begin(cx, "page `MoveBoth`, transition `Reply 1` (ID1412310962)", m->now);
     const MoveBoth_places_t *const own = pn_net.transition[self].places;
-    const unit_slot_t *const at_moving_1 = pn_bag_look(own->moving_1, m);
+    const UNIT_slot_t *const at_moving_1 = pn_bag_look(own->moving_1, m);
     /* moving 1: () (ID1412310972) */
     if (!at_moving_1->full) {
         return true;
@@ -2093,8 +2093,8 @@ PN_NET_SEARCH static bool MoveBoth_Reply_1_fire(pn_ctx_t *cx, void *marking, uin
     (void)binding;
     pn_begin(cx, "page `MoveBoth`, transition `Reply 1` (ID1412310962)", m->now);
     const MoveBoth_places_t *const own = pn_net.transition[self].places;
-    unit_slot_t *const at_moving_1 = pn_bag_reach(own->moving_1, m);
-    unit_slot_t *const at_there_1 = pn_bag_reach(own->there_1, m);
+    UNIT_slot_t *const at_moving_1 = pn_bag_reach(own->moving_1, m);
+    UNIT_slot_t *const at_there_1 = pn_bag_reach(own->there_1, m);
     if (!at_moving_1->full || !m->flag1_externo.full) {
         pn_raise(cx, PN_ERR_SUBTRACT, NULL);
         return false;
@@ -2138,7 +2138,7 @@ PN_NET_SEARCH static bool MoveBoth_Reply_2_enumerate(pn_ctx_t *cx, const void *m
     MoveBoth_Reply_2_binding_t b = { 0 };
     pn_begin(cx, "page `MoveBoth`, transition `Reply 2` (ID1412310999)", m->now);
     const MoveBoth_places_t *const own = pn_net.transition[self].places;
-    const unit_slot_t *const at_moving_2 = pn_bag_look(own->moving_2, m);
+    const UNIT_slot_t *const at_moving_2 = pn_bag_look(own->moving_2, m);
     /* moving 2: () (ID1412311009) */
     if (!at_moving_2->full) {
         return true;
@@ -2159,8 +2159,8 @@ PN_NET_SEARCH static bool MoveBoth_Reply_2_fire(pn_ctx_t *cx, void *marking, uin
     (void)binding;
     pn_begin(cx, "page `MoveBoth`, transition `Reply 2` (ID1412310999)", m->now);
     const MoveBoth_places_t *const own = pn_net.transition[self].places;
-    unit_slot_t *const at_moving_2 = pn_bag_reach(own->moving_2, m);
-    unit_slot_t *const at_there_2 = pn_bag_reach(own->there_2, m);
+    UNIT_slot_t *const at_moving_2 = pn_bag_reach(own->moving_2, m);
+    UNIT_slot_t *const at_there_2 = pn_bag_reach(own->there_2, m);
     if (!at_moving_2->full || !m->flag2_externo.full) {
         pn_raise(cx, PN_ERR_SUBTRACT, NULL);
         return false;
@@ -4148,8 +4148,8 @@ PN_NET_SEARCH static bool Robot_Accept_enumerate(pn_ctx_t *cx, const void *marki
     Robot_Accept_binding_t b = { 0 };
     pn_begin(cx, "page `Robot`, transition `Accept` (ID1412311125)", m->now);
     const Robot_places_t *const own = pn_net.transition[self].places;
-    const int64_slot_t *const at_flag_interno = pn_bag_look(own->flag_interno, m);
-    const unit_slot_t *const at_Waiting = pn_bag_look(own->Waiting, m);
+    const COMMAND_slot_t *const at_flag_interno = pn_bag_look(own->flag_interno, m);
+    const UNIT_slot_t *const at_Waiting = pn_bag_look(own->Waiting, m);
     /* Waiting: () (ID1412311138) */
     if (!at_Waiting->full) {
         return true;
@@ -4171,9 +4171,9 @@ PN_NET_SEARCH static bool Robot_Accept_fire(pn_ctx_t *cx, void *marking, uint32_
     Robot_Accept_binding_t *const b = binding;
     pn_begin(cx, "page `Robot`, transition `Accept` (ID1412311125)", m->now);
     const Robot_places_t *const own = pn_net.transition[self].places;
-    int64_slot_t *const at_flag_interno = pn_bag_reach(own->flag_interno, m);
-    unit_slot_t *const at_Waiting = pn_bag_reach(own->Waiting, m);
-    int64_slot_t *const at_Commanded = pn_bag_reach(own->Commanded, m);
+    COMMAND_slot_t *const at_flag_interno = pn_bag_reach(own->flag_interno, m);
+    UNIT_slot_t *const at_Waiting = pn_bag_reach(own->Waiting, m);
+    COMMAND_slot_t *const at_Commanded = pn_bag_reach(own->Commanded, m);
     if (!at_flag_interno->full || !at_Waiting->full) {
         pn_raise(cx, PN_ERR_SUBTRACT, NULL);
         return false;
@@ -4218,7 +4218,7 @@ PN_NET_SEARCH static bool Robot_Report_enumerate(pn_ctx_t *cx, const void *marki
     Robot_Report_binding_t b = { 0 };
     pn_begin(cx, "page `Robot`, transition `Report` (ID1412311145)", m->now);
     const Robot_places_t *const own = pn_net.transition[self].places;
-    const int64_slot_t *const at_Done = pn_bag_look(own->Done, m);
+    const REPLY_slot_t *const at_Done = pn_bag_look(own->Done, m);
     /* Done: e (ID1412311154) */
     if (!at_Done->full) {
         return true;
@@ -4236,9 +4236,9 @@ PN_NET_SEARCH static bool Robot_Report_fire(pn_ctx_t *cx, void *marking, uint32_
     Robot_Report_binding_t *const b = binding;
     pn_begin(cx, "page `Robot`, transition `Report` (ID1412311145)", m->now);
     const Robot_places_t *const own = pn_net.transition[self].places;
-    int64_slot_t *const at_flag_externo = pn_bag_reach(own->flag_externo, m);
-    unit_slot_t *const at_Waiting = pn_bag_reach(own->Waiting, m);
-    int64_slot_t *const at_Done = pn_bag_reach(own->Done, m);
+    REPLY_slot_t *const at_flag_externo = pn_bag_reach(own->flag_externo, m);
+    UNIT_slot_t *const at_Waiting = pn_bag_reach(own->Waiting, m);
+    REPLY_slot_t *const at_Done = pn_bag_reach(own->Done, m);
     if (!at_Done->full) {
         pn_raise(cx, PN_ERR_SUBTRACT, NULL);
         return false;
@@ -4290,7 +4290,7 @@ PN_NET_SEARCH static bool Robot_MoveJoint_enumerate(pn_ctx_t *cx, const void *ma
     pn_begin(cx, "page `Robot`, transition `MoveJoint` (ID1412311160)", m->now);
     const Robot_places_t *const own = pn_net.transition[self].places;
     const POSE_slot_t *const at_dadosrobo = pn_bag_look(own->dadosrobo, m);
-    const int64_slot_t *const at_Commanded = pn_bag_look(own->Commanded, m);
+    const COMMAND_slot_t *const at_Commanded = pn_bag_look(own->Commanded, m);
     /* Commanded: c (ID1412311165) */
     if (!at_Commanded->full) {
         return true;
@@ -4318,8 +4318,8 @@ PN_NET_SEARCH static bool Robot_MoveJoint_fire(pn_ctx_t *cx, void *marking, uint
     pn_begin(cx, "page `Robot`, transition `MoveJoint` (ID1412311160)", m->now);
     const Robot_places_t *const own = pn_net.transition[self].places;
     POSE_slot_t *const at_dadosrobo = pn_bag_reach(own->dadosrobo, m);
-    int64_slot_t *const at_Commanded = pn_bag_reach(own->Commanded, m);
-    int64_slot_t *const at_Done = pn_bag_reach(own->Done, m);
+    COMMAND_slot_t *const at_Commanded = pn_bag_reach(own->Commanded, m);
+    REPLY_slot_t *const at_Done = pn_bag_reach(own->Done, m);
     /* code segment: action moveJoint p */
     ml_moveJoint(b->p);
     int64_t Done_token = val_DONE;
@@ -4375,7 +4375,7 @@ PN_NET_SEARCH static bool Robot_MoveLinear_enumerate(pn_ctx_t *cx, const void *m
     pn_begin(cx, "page `Robot`, transition `MoveLinear` (ID1412311169)", m->now);
     const Robot_places_t *const own = pn_net.transition[self].places;
     const POSE_slot_t *const at_dadosrobo = pn_bag_look(own->dadosrobo, m);
-    const int64_slot_t *const at_Commanded = pn_bag_look(own->Commanded, m);
+    const COMMAND_slot_t *const at_Commanded = pn_bag_look(own->Commanded, m);
     /* Commanded: c (ID1412311174) */
     if (!at_Commanded->full) {
         return true;
@@ -4403,8 +4403,8 @@ PN_NET_SEARCH static bool Robot_MoveLinear_fire(pn_ctx_t *cx, void *marking, uin
     pn_begin(cx, "page `Robot`, transition `MoveLinear` (ID1412311169)", m->now);
     const Robot_places_t *const own = pn_net.transition[self].places;
     POSE_slot_t *const at_dadosrobo = pn_bag_reach(own->dadosrobo, m);
-    int64_slot_t *const at_Commanded = pn_bag_reach(own->Commanded, m);
-    int64_slot_t *const at_Done = pn_bag_reach(own->Done, m);
+    COMMAND_slot_t *const at_Commanded = pn_bag_reach(own->Commanded, m);
+    REPLY_slot_t *const at_Done = pn_bag_reach(own->Done, m);
     /* code segment: action moveLinear p */
     ml_moveLinear(b->p);
     int64_t Done_token = val_DONE;
@@ -4457,7 +4457,7 @@ PN_NET_SEARCH static bool Robot_MoveHome_enumerate(pn_ctx_t *cx, const void *mar
     Robot_MoveHome_binding_t b = { 0 };
     pn_begin(cx, "page `Robot`, transition `MoveHome` (ID1412311178)", m->now);
     const Robot_places_t *const own = pn_net.transition[self].places;
-    const int64_slot_t *const at_Commanded = pn_bag_look(own->Commanded, m);
+    const COMMAND_slot_t *const at_Commanded = pn_bag_look(own->Commanded, m);
     /* Commanded: c (ID1412311183) */
     if (!at_Commanded->full) {
         return true;
@@ -4479,8 +4479,8 @@ PN_NET_SEARCH static bool Robot_MoveHome_fire(pn_ctx_t *cx, void *marking, uint3
     (void)binding;
     pn_begin(cx, "page `Robot`, transition `MoveHome` (ID1412311178)", m->now);
     const Robot_places_t *const own = pn_net.transition[self].places;
-    int64_slot_t *const at_Commanded = pn_bag_reach(own->Commanded, m);
-    int64_slot_t *const at_Done = pn_bag_reach(own->Done, m);
+    COMMAND_slot_t *const at_Commanded = pn_bag_reach(own->Commanded, m);
+    REPLY_slot_t *const at_Done = pn_bag_reach(own->Done, m);
     /* code segment: action moveHome () */
     ml_moveHome();
     int64_t Done_token = val_DONE;
@@ -4538,7 +4538,7 @@ PN_NET_SEARCH static bool Robot_Measure_enumerate(pn_ctx_t *cx, const void *mark
     pn_begin(cx, "page `Robot`, transition `Measure` (ID1412311187)", m->now);
     const Robot_places_t *const own = pn_net.transition[self].places;
     const POSE_slot_t *const at_referencia = pn_bag_look(own->referencia, m);
-    const int64_slot_t *const at_Commanded = pn_bag_look(own->Commanded, m);
+    const COMMAND_slot_t *const at_Commanded = pn_bag_look(own->Commanded, m);
     /* Commanded: c (ID1412311192) */
     if (!at_Commanded->full) {
         return true;
@@ -4577,8 +4577,8 @@ PN_NET_SEARCH static bool Robot_Measure_fire(pn_ctx_t *cx, void *marking, uint32
     const Robot_places_t *const own = pn_net.transition[self].places;
     POSE_slot_t *const at_referencia = pn_bag_reach(own->referencia, m);
     POSE_slot_t *const at_medida = pn_bag_reach(own->medida, m);
-    int64_slot_t *const at_Commanded = pn_bag_reach(own->Commanded, m);
-    int64_slot_t *const at_Done = pn_bag_reach(own->Done, m);
+    COMMAND_slot_t *const at_Commanded = pn_bag_reach(own->Commanded, m);
+    REPLY_slot_t *const at_Done = pn_bag_reach(own->Done, m);
     /* code segment: action measure r */
     b->m = ml_measure(b->r);
     int64_t Done_token = ml_outcome(b->seen);
@@ -4639,7 +4639,7 @@ PN_NET_SEARCH static bool Robot_Drill_enumerate(pn_ctx_t *cx, const void *markin
     Robot_Drill_binding_t b = { 0 };
     pn_begin(cx, "page `Robot`, transition `Drill` (ID1412311196)", m->now);
     const Robot_places_t *const own = pn_net.transition[self].places;
-    const int64_slot_t *const at_Commanded = pn_bag_look(own->Commanded, m);
+    const COMMAND_slot_t *const at_Commanded = pn_bag_look(own->Commanded, m);
     /* Commanded: c (ID1412311201) */
     if (!at_Commanded->full) {
         return true;
@@ -4671,8 +4671,8 @@ PN_NET_SEARCH static bool Robot_Drill_fire(pn_ctx_t *cx, void *marking, uint32_t
     Robot_Drill_binding_t *const b = binding;
     pn_begin(cx, "page `Robot`, transition `Drill` (ID1412311196)", m->now);
     const Robot_places_t *const own = pn_net.transition[self].places;
-    int64_slot_t *const at_Commanded = pn_bag_reach(own->Commanded, m);
-    int64_slot_t *const at_Done = pn_bag_reach(own->Done, m);
+    COMMAND_slot_t *const at_Commanded = pn_bag_reach(own->Commanded, m);
+    REPLY_slot_t *const at_Done = pn_bag_reach(own->Done, m);
     /* code segment: action drill () */
     ml_drill();
     int64_t Done_token = ml_outcome(b->drilled);
@@ -4725,7 +4725,7 @@ PN_NET_SEARCH static bool Robot_Insert_enumerate(pn_ctx_t *cx, const void *marki
     Robot_Insert_binding_t b = { 0 };
     pn_begin(cx, "page `Robot`, transition `Insert` (ID1412311205)", m->now);
     const Robot_places_t *const own = pn_net.transition[self].places;
-    const int64_slot_t *const at_Commanded = pn_bag_look(own->Commanded, m);
+    const COMMAND_slot_t *const at_Commanded = pn_bag_look(own->Commanded, m);
     /* Commanded: c (ID1412311210) */
     if (!at_Commanded->full) {
         return true;
@@ -4757,8 +4757,8 @@ PN_NET_SEARCH static bool Robot_Insert_fire(pn_ctx_t *cx, void *marking, uint32_
     Robot_Insert_binding_t *const b = binding;
     pn_begin(cx, "page `Robot`, transition `Insert` (ID1412311205)", m->now);
     const Robot_places_t *const own = pn_net.transition[self].places;
-    int64_slot_t *const at_Commanded = pn_bag_reach(own->Commanded, m);
-    int64_slot_t *const at_Done = pn_bag_reach(own->Done, m);
+    COMMAND_slot_t *const at_Commanded = pn_bag_reach(own->Commanded, m);
+    REPLY_slot_t *const at_Done = pn_bag_reach(own->Done, m);
     /* code segment: action insert () */
     ml_insert();
     int64_t Done_token = ml_outcome(b->inserted);
@@ -4811,7 +4811,7 @@ PN_NET_SEARCH static bool Robot_Press_enumerate(pn_ctx_t *cx, const void *markin
     Robot_Press_binding_t b = { 0 };
     pn_begin(cx, "page `Robot`, transition `Press` (ID1412311214)", m->now);
     const Robot_places_t *const own = pn_net.transition[self].places;
-    const int64_slot_t *const at_Commanded = pn_bag_look(own->Commanded, m);
+    const COMMAND_slot_t *const at_Commanded = pn_bag_look(own->Commanded, m);
     /* Commanded: c (ID1412311219) */
     if (!at_Commanded->full) {
         return true;
@@ -4843,8 +4843,8 @@ PN_NET_SEARCH static bool Robot_Press_fire(pn_ctx_t *cx, void *marking, uint32_t
     Robot_Press_binding_t *const b = binding;
     pn_begin(cx, "page `Robot`, transition `Press` (ID1412311214)", m->now);
     const Robot_places_t *const own = pn_net.transition[self].places;
-    int64_slot_t *const at_Commanded = pn_bag_reach(own->Commanded, m);
-    int64_slot_t *const at_Done = pn_bag_reach(own->Done, m);
+    COMMAND_slot_t *const at_Commanded = pn_bag_reach(own->Commanded, m);
+    REPLY_slot_t *const at_Done = pn_bag_reach(own->Done, m);
     /* code segment: action press () */
     ml_press();
     int64_t Done_token = ml_outcome(b->pressed);
@@ -4897,7 +4897,7 @@ PN_NET_SEARCH static bool Robot_Release_enumerate(pn_ctx_t *cx, const void *mark
     Robot_Release_binding_t b = { 0 };
     pn_begin(cx, "page `Robot`, transition `Release` (ID1412311223)", m->now);
     const Robot_places_t *const own = pn_net.transition[self].places;
-    const int64_slot_t *const at_Commanded = pn_bag_look(own->Commanded, m);
+    const COMMAND_slot_t *const at_Commanded = pn_bag_look(own->Commanded, m);
     /* Commanded: c (ID1412311228) */
     if (!at_Commanded->full) {
         return true;
@@ -4929,8 +4929,8 @@ PN_NET_SEARCH static bool Robot_Release_fire(pn_ctx_t *cx, void *marking, uint32
     Robot_Release_binding_t *const b = binding;
     pn_begin(cx, "page `Robot`, transition `Release` (ID1412311223)", m->now);
     const Robot_places_t *const own = pn_net.transition[self].places;
-    int64_slot_t *const at_Commanded = pn_bag_reach(own->Commanded, m);
-    int64_slot_t *const at_Done = pn_bag_reach(own->Done, m);
+    COMMAND_slot_t *const at_Commanded = pn_bag_reach(own->Commanded, m);
+    REPLY_slot_t *const at_Done = pn_bag_reach(own->Done, m);
     /* code segment: action release () */
     ml_release();
     int64_t Done_token = ml_outcome(b->released);

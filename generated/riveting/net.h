@@ -86,17 +86,22 @@ struct tuple_VECTOR_VECTOR_VECTOR {
     VECTOR_t c3;
 };
 
-/* --- places that hold one token at most ------------------------------------------------------- */
+/* --- what holds the tokens of a place: a slot for one, an array for several ------------------- */
 
 typedef struct POSE_slot {
     POSE_t value;
     bool full;
 } POSE_slot_t;
 
-typedef struct int64_slot {
+typedef struct COMMAND_slot {
     int64_t value;
     bool full;
-} int64_slot_t;
+} COMMAND_slot_t;
+
+typedef struct REPLY_slot {
+    int64_t value;
+    bool full;
+} REPLY_slot_t;
 
 typedef struct PLAN_slot {
     PLAN_t value;
@@ -118,10 +123,15 @@ typedef struct RIVETING_slot {
     bool full;
 } RIVETING_slot_t;
 
-typedef struct unit_slot {
+typedef struct UNIT_slot {
     pn_unit_t value;
     bool full;
-} unit_slot_t;
+} UNIT_slot_t;
+
+typedef struct ORDER_slot {
+    PLAN_t value;
+    bool full;
+} ORDER_slot_t;
 
 typedef struct ASKED_slot {
     ASKED_t value;
@@ -145,9 +155,9 @@ typedef struct net_marking {
     /* Cell.dadosrobo1: page `Cell`, place `dadosrobo1` (ID1412310013) */
     POSE_slot_t dadosrobo1;
     /* Cell.flag1_interno: page `Cell`, place `flag1_interno` (ID1412310016) */
-    int64_slot_t flag1_interno;
+    COMMAND_slot_t flag1_interno;
     /* Cell.flag1_externo: page `Cell`, place `flag1_externo` (ID1412310019) */
-    int64_slot_t flag1_externo;
+    REPLY_slot_t flag1_externo;
     /* Cell.referencia1: page `Cell`, place `referencia1` (ID1412310022) */
     POSE_slot_t referencia1;
     /* Cell.medida1: page `Cell`, place `medida1` (ID1412310025) */
@@ -155,9 +165,9 @@ typedef struct net_marking {
     /* Cell.dadosrobo2: page `Cell`, place `dadosrobo2` (ID1412310028) */
     POSE_slot_t dadosrobo2;
     /* Cell.flag2_interno: page `Cell`, place `flag2_interno` (ID1412310031) */
-    int64_slot_t flag2_interno;
+    COMMAND_slot_t flag2_interno;
     /* Cell.flag2_externo: page `Cell`, place `flag2_externo` (ID1412310034) */
-    int64_slot_t flag2_externo;
+    REPLY_slot_t flag2_externo;
     /* Cell.referencia2: page `Cell`, place `referencia2` (ID1412330001) */
     POSE_slot_t referencia2;
     /* Cell.medida2: page `Cell`, place `medida2` (ID1412330004) */
@@ -173,27 +183,27 @@ typedef struct net_marking {
     /* Cell.Supervisor.corrected: page `Supervisor`, place `corrected` (ID1412310106) */
     RIVETING_slot_t Supervisor_corrected;
     /* Cell.Supervisor.ended: page `Supervisor`, place `ended` (ID1412310109) */
-    unit_slot_t Supervisor_ended;
+    UNIT_slot_t Supervisor_ended;
     /* Cell.Supervisor.Finished: page `Supervisor`, place `Finished` (ID1412310112) */
-    unit_slot_t Supervisor_Finished;
+    UNIT_slot_t Supervisor_Finished;
     /* Cell.Supervisor.result: page `Supervisor`, place `result` (ID1412320001) */
-    int64_slot_t Supervisor_result;
+    REPLY_slot_t Supervisor_result;
     /* Cell.Supervisor.Failed: page `Supervisor`, place `Failed` (ID1412320004) */
-    unit_slot_t Supervisor_Failed;
+    UNIT_slot_t Supervisor_Failed;
     /* Cell.Supervisor.Approach.order: page `Approach`, place `order` (ID1412310290) */
-    PLAN_slot_t Supervisor_Approach_order;
+    ORDER_slot_t Supervisor_Approach_order;
     /* Cell.Supervisor.Approach.done: page `Approach`, place `done` (ID1412310293) */
-    unit_slot_t Supervisor_Approach_done;
+    UNIT_slot_t Supervisor_Approach_done;
     /* Cell.Supervisor.Approach.seam: page `Approach`, place `seam` (ID1412310352) */
     SEAM_slot_t Supervisor_Approach_seam;
     /* Cell.Supervisor.Approach.Move both.moving 1: page `MoveBoth`, place `moving 1` (ID1412310959) */
-    unit_slot_t Supervisor_Approach_Move_both_moving_1;
+    UNIT_slot_t Supervisor_Approach_Move_both_moving_1;
     /* Cell.Supervisor.Approach.Move both.there 1: page `MoveBoth`, place `there 1` (ID1412310967) */
-    unit_slot_t Supervisor_Approach_Move_both_there_1;
+    UNIT_slot_t Supervisor_Approach_Move_both_there_1;
     /* Cell.Supervisor.Approach.Move both.moving 2: page `MoveBoth`, place `moving 2` (ID1412310996) */
-    unit_slot_t Supervisor_Approach_Move_both_moving_2;
+    UNIT_slot_t Supervisor_Approach_Move_both_moving_2;
     /* Cell.Supervisor.Approach.Move both.there 2: page `MoveBoth`, place `there 2` (ID1412311004) */
-    unit_slot_t Supervisor_Approach_Move_both_there_2;
+    UNIT_slot_t Supervisor_Approach_Move_both_there_2;
     /* Cell.Supervisor.Verify.first asked: page `Verify`, place `first asked` (ID1412310382) */
     SEAM_slot_t Supervisor_Verify_first_asked;
     /* Cell.Supervisor.Verify.last asked: page `Verify`, place `last asked` (ID1412310390) */
@@ -201,97 +211,97 @@ typedef struct net_marking {
     /* Cell.Supervisor.Correct.offset: page `Correct`, place `offset` (ID1412310458) */
     VECTOR_slot_t Supervisor_Correct_offset;
     /* Cell.Supervisor.Correct.order: page `Correct`, place `order` (ID1412310466) */
-    PLAN_slot_t Supervisor_Correct_order;
+    ORDER_slot_t Supervisor_Correct_order;
     /* Cell.Supervisor.Correct.done: page `Correct`, place `done` (ID1412310475) */
-    unit_slot_t Supervisor_Correct_done;
+    UNIT_slot_t Supervisor_Correct_done;
     /* Cell.Supervisor.Correct.seam: page `Correct`, place `seam` (ID1412310523) */
     RIVETING_slot_t Supervisor_Correct_seam;
     /* Cell.Supervisor.Correct.Move both.moving 1: page `MoveBoth`, place `moving 1` (ID1412310959) */
-    unit_slot_t Supervisor_Correct_Move_both_moving_1;
+    UNIT_slot_t Supervisor_Correct_Move_both_moving_1;
     /* Cell.Supervisor.Correct.Move both.there 1: page `MoveBoth`, place `there 1` (ID1412310967) */
-    unit_slot_t Supervisor_Correct_Move_both_there_1;
+    UNIT_slot_t Supervisor_Correct_Move_both_there_1;
     /* Cell.Supervisor.Correct.Move both.moving 2: page `MoveBoth`, place `moving 2` (ID1412310996) */
-    unit_slot_t Supervisor_Correct_Move_both_moving_2;
+    UNIT_slot_t Supervisor_Correct_Move_both_moving_2;
     /* Cell.Supervisor.Correct.Move both.there 2: page `MoveBoth`, place `there 2` (ID1412311004) */
-    unit_slot_t Supervisor_Correct_Move_both_there_2;
+    UNIT_slot_t Supervisor_Correct_Move_both_there_2;
     /* Cell.Supervisor.Install.shift: page `Install`, place `shift` (ID1412310585) */
-    PLAN_slot_t Supervisor_Install_shift;
+    ORDER_slot_t Supervisor_Install_shift;
     /* Cell.Supervisor.Install.ready: page `Install`, place `ready` (ID1412310588) */
-    unit_slot_t Supervisor_Install_ready;
+    UNIT_slot_t Supervisor_Install_ready;
     /* Cell.Supervisor.Install.riveted: page `Install`, place `riveted` (ID1412310591) */
-    unit_slot_t Supervisor_Install_riveted;
+    UNIT_slot_t Supervisor_Install_riveted;
     /* Cell.Supervisor.Install.return: page `Install`, place `return` (ID1412310599) */
-    PLAN_slot_t Supervisor_Install_return;
+    ORDER_slot_t Supervisor_Install_return;
     /* Cell.Supervisor.Install.work: page `Install`, place `work` (ID1412310629) */
     WORK_slot_t Supervisor_Install_work;
     /* Cell.Supervisor.Install.Shift.moving 1: page `MoveBoth`, place `moving 1` (ID1412310959) */
-    unit_slot_t Supervisor_Install_Shift_moving_1;
+    UNIT_slot_t Supervisor_Install_Shift_moving_1;
     /* Cell.Supervisor.Install.Shift.there 1: page `MoveBoth`, place `there 1` (ID1412310967) */
-    unit_slot_t Supervisor_Install_Shift_there_1;
+    UNIT_slot_t Supervisor_Install_Shift_there_1;
     /* Cell.Supervisor.Install.Shift.moving 2: page `MoveBoth`, place `moving 2` (ID1412310996) */
-    unit_slot_t Supervisor_Install_Shift_moving_2;
+    UNIT_slot_t Supervisor_Install_Shift_moving_2;
     /* Cell.Supervisor.Install.Shift.there 2: page `MoveBoth`, place `there 2` (ID1412311004) */
-    unit_slot_t Supervisor_Install_Shift_there_2;
+    UNIT_slot_t Supervisor_Install_Shift_there_2;
     /* Cell.Supervisor.Install.Rivet.advance: page `Rivet`, place `advance` (ID1412310721) */
-    PLAN_slot_t Supervisor_Install_Rivet_advance;
+    ORDER_slot_t Supervisor_Install_Rivet_advance;
     /* Cell.Supervisor.Install.Rivet.contact: page `Rivet`, place `contact` (ID1412310730) */
-    unit_slot_t Supervisor_Install_Rivet_contact;
+    UNIT_slot_t Supervisor_Install_Rivet_contact;
     /* Cell.Supervisor.Install.Rivet.fastened: page `Rivet`, place `fastened` (ID1412310739) */
-    int64_slot_t Supervisor_Install_Rivet_fastened;
+    REPLY_slot_t Supervisor_Install_Rivet_fastened;
     /* Cell.Supervisor.Install.Rivet.retract: page `Rivet`, place `retract` (ID1412310747) */
-    PLAN_slot_t Supervisor_Install_Rivet_retract;
+    ORDER_slot_t Supervisor_Install_Rivet_retract;
     /* Cell.Supervisor.Install.Rivet.Advance.moving 1: page `MoveBoth`, place `moving 1` (ID1412310959) */
-    unit_slot_t Supervisor_Install_Rivet_Advance_moving_1;
+    UNIT_slot_t Supervisor_Install_Rivet_Advance_moving_1;
     /* Cell.Supervisor.Install.Rivet.Advance.there 1: page `MoveBoth`, place `there 1` (ID1412310967) */
-    unit_slot_t Supervisor_Install_Rivet_Advance_there_1;
+    UNIT_slot_t Supervisor_Install_Rivet_Advance_there_1;
     /* Cell.Supervisor.Install.Rivet.Advance.moving 2: page `MoveBoth`, place `moving 2` (ID1412310996) */
-    unit_slot_t Supervisor_Install_Rivet_Advance_moving_2;
+    UNIT_slot_t Supervisor_Install_Rivet_Advance_moving_2;
     /* Cell.Supervisor.Install.Rivet.Advance.there 2: page `MoveBoth`, place `there 2` (ID1412311004) */
-    unit_slot_t Supervisor_Install_Rivet_Advance_there_2;
+    UNIT_slot_t Supervisor_Install_Rivet_Advance_there_2;
     /* Cell.Supervisor.Install.Rivet.Fasten.pressing: page `Fasten`, place `pressing` (ID1412310847) */
-    unit_slot_t Supervisor_Install_Rivet_Fasten_pressing;
+    UNIT_slot_t Supervisor_Install_Rivet_Fasten_pressing;
     /* Cell.Supervisor.Install.Rivet.Fasten.drilling: page `Fasten`, place `drilling` (ID1412310855) */
-    unit_slot_t Supervisor_Install_Rivet_Fasten_drilling;
+    UNIT_slot_t Supervisor_Install_Rivet_Fasten_drilling;
     /* Cell.Supervisor.Install.Rivet.Fasten.inserting: page `Fasten`, place `inserting` (ID1412310863) */
-    unit_slot_t Supervisor_Install_Rivet_Fasten_inserting;
+    UNIT_slot_t Supervisor_Install_Rivet_Fasten_inserting;
     /* Cell.Supervisor.Install.Rivet.Fasten.releasing: page `Fasten`, place `releasing` (ID1412310871) */
-    int64_slot_t Supervisor_Install_Rivet_Fasten_releasing;
+    REPLY_slot_t Supervisor_Install_Rivet_Fasten_releasing;
     /* Cell.Supervisor.Install.Rivet.Retract.moving 1: page `MoveBoth`, place `moving 1` (ID1412310959) */
-    unit_slot_t Supervisor_Install_Rivet_Retract_moving_1;
+    UNIT_slot_t Supervisor_Install_Rivet_Retract_moving_1;
     /* Cell.Supervisor.Install.Rivet.Retract.there 1: page `MoveBoth`, place `there 1` (ID1412310967) */
-    unit_slot_t Supervisor_Install_Rivet_Retract_there_1;
+    UNIT_slot_t Supervisor_Install_Rivet_Retract_there_1;
     /* Cell.Supervisor.Install.Rivet.Retract.moving 2: page `MoveBoth`, place `moving 2` (ID1412310996) */
-    unit_slot_t Supervisor_Install_Rivet_Retract_moving_2;
+    UNIT_slot_t Supervisor_Install_Rivet_Retract_moving_2;
     /* Cell.Supervisor.Install.Rivet.Retract.there 2: page `MoveBoth`, place `there 2` (ID1412311004) */
-    unit_slot_t Supervisor_Install_Rivet_Retract_there_2;
+    UNIT_slot_t Supervisor_Install_Rivet_Retract_there_2;
     /* Cell.Supervisor.Install.Return.moving 1: page `MoveBoth`, place `moving 1` (ID1412310959) */
-    unit_slot_t Supervisor_Install_Return_moving_1;
+    UNIT_slot_t Supervisor_Install_Return_moving_1;
     /* Cell.Supervisor.Install.Return.there 1: page `MoveBoth`, place `there 1` (ID1412310967) */
-    unit_slot_t Supervisor_Install_Return_there_1;
+    UNIT_slot_t Supervisor_Install_Return_there_1;
     /* Cell.Supervisor.Install.Return.moving 2: page `MoveBoth`, place `moving 2` (ID1412310996) */
-    unit_slot_t Supervisor_Install_Return_moving_2;
+    UNIT_slot_t Supervisor_Install_Return_moving_2;
     /* Cell.Supervisor.Install.Return.there 2: page `MoveBoth`, place `there 2` (ID1412311004) */
-    unit_slot_t Supervisor_Install_Return_there_2;
+    UNIT_slot_t Supervisor_Install_Return_there_2;
     /* Cell.Supervisor.Home.leaving 1: page `Home`, place `leaving 1` (ID1412311057) */
-    unit_slot_t Supervisor_Home_leaving_1;
+    UNIT_slot_t Supervisor_Home_leaving_1;
     /* Cell.Supervisor.Home.home 1: page `Home`, place `home 1` (ID1412311065) */
-    unit_slot_t Supervisor_Home_home_1;
+    UNIT_slot_t Supervisor_Home_home_1;
     /* Cell.Supervisor.Home.leaving 2: page `Home`, place `leaving 2` (ID1412311088) */
-    unit_slot_t Supervisor_Home_leaving_2;
+    UNIT_slot_t Supervisor_Home_leaving_2;
     /* Cell.Supervisor.Home.home 2: page `Home`, place `home 2` (ID1412311096) */
-    unit_slot_t Supervisor_Home_home_2;
+    UNIT_slot_t Supervisor_Home_home_2;
     /* Cell.Robot1.Waiting: page `Robot`, place `Waiting` (ID1412311130) */
-    unit_slot_t Robot1_Waiting;
+    UNIT_slot_t Robot1_Waiting;
     /* Cell.Robot1.Commanded: page `Robot`, place `Commanded` (ID1412311133) */
-    int64_slot_t Robot1_Commanded;
+    COMMAND_slot_t Robot1_Commanded;
     /* Cell.Robot1.Done: page `Robot`, place `Done` (ID1412311142) */
-    int64_slot_t Robot1_Done;
+    REPLY_slot_t Robot1_Done;
     /* Cell.Robot2.Waiting: page `Robot`, place `Waiting` (ID1412311130) */
-    unit_slot_t Robot2_Waiting;
+    UNIT_slot_t Robot2_Waiting;
     /* Cell.Robot2.Commanded: page `Robot`, place `Commanded` (ID1412311133) */
-    int64_slot_t Robot2_Commanded;
+    COMMAND_slot_t Robot2_Commanded;
     /* Cell.Robot2.Done: page `Robot`, place `Done` (ID1412311142) */
-    int64_slot_t Robot2_Done;
+    REPLY_slot_t Robot2_Done;
 } net_marking_t;
 
 #endif /* NET_H */

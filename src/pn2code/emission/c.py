@@ -63,13 +63,14 @@ class _Emitter:
         for definition in net.definitions:
             self._names.type(definition.name)
         self._bags = tuple(f"&{self._names.bag(p.index, p.name)}" for p in net.places)
+        self._tokens = tuple(f"m->{name}." for name in self._place_names)
+        self._holders = tuple(f"&m->{name}" for name in self._place_names)
         self._tables = tuple(self._names.table(p.table) for p in net.places)
         self._timed = tuple(p.timed for p in net.places)
         self._slots = slots(net)
         self._needs_context = self._context_users()
         self._effects = Effects(net, self._types.holds_reference)
         self._orders = c_places.Orders(self._types, self._names, self._descriptors)
-        self._rooms = c_places.rooms(net)
         self._numbers = c_packed.Numbers(self._types, self._names, self._descriptors)
         self._packed = self._numbers.of_places(
             net.places, lambda key: self._effects.is_pure(self._functions[key].body)
@@ -83,21 +84,49 @@ class _Emitter:
         )
         self._sums_found: dict[int, dict[tuple[int, ir.Ir], Sum]] = {}
         self._referring = tuple(p.index for p in net.places if self._refers(p.table))
+        self._kept = tuple(map(self._kept_in, net.places))
+        self._room = self._rooms_of_arrays()
         # Explorers have a function for each instance, so that the compiler can put it where it is called.
-        self._shared = share(net.transitions, lambda a, b: not net.has_successors and self._agree(a, b))
+        self._shared = share(
+            net.transitions, lambda a, b: not net.has_successors and self._agree(a, b)
+        )
         self._place_tables = tables(self._shared)
 
     def _agree(self, a: int, b: int) -> bool:
         """Whether two places are kept in the same way, and hold the same colours."""
-        one, other = self._net.places[a], self._net.places[b]
-        kept = self._kept(one)
-        return a == b or (kept != "" and kept == self._kept(other) and one.table == other.table)
+        return a == b or (self._kept[a] != "" and self._kept[a] == self._kept[b])
 
-    def _kept(self, p: ir.Place) -> str:
-        """The C type that holds the tokens of a place, where it has a name; "" otherwise."""
-        if p.index not in self._slots:
+    def _kept_in(self, p: ir.Place) -> str:
+        """The stem of the C type that holds the tokens of a place, and of its functions; "": it is packed."""
+        if p.packed:
             return ""
-        return self._names.kept(self._types.name(p.type), "slot")
+        if p.index in self._slots:
+            return self._names.kept(p.table, "slot")
+        kind = "timed_array" if p.timed else "array"
+        return self._names.kept(p.table, f"{kind}_{p.capacity}")
+
+    def _rooms_of_arrays(self) -> dict[str, int]:
+        """By what holds the tokens: the entries of untimed arrays behind their capacity, for what an occurrence adds."""
+        found: dict[str, int] = {}
+        for p, most in zip(self._net.places, c_places.rooms(self._net), strict=True):
+            if not p.timed:
+                # gcc warns of loops that would go through an array of one, though they never do.
+                kept = self._kept[p.index]
+                found[kept] = max(found.get(kept, 0), most, 2 - p.capacity)
+        return found
+
+    def _holder(self, p: ir.Place) -> dict[str, object]:
+        """The C type that holds the tokens of a place."""
+        is_slot = p.index in self._slots
+        return {
+            "name": self._kept[p.index],
+            "type": self._types.name(p.type),
+            "is_slot": is_slot,
+            "timed": p.timed,
+            "capacity": p.capacity,
+            "room": self._room.get(self._kept[p.index], 0),
+            "order": "" if p.timed or is_slot else self._orders.name(p.table),
+        }
 
     def _refers(self, table: str) -> bool:
         """Whether values of a type refer into the arena."""
@@ -136,7 +165,7 @@ class _Emitter:
         x.int_bits = self._net.int_bits
         x.needs_context = self._needs_context
         x.place_names = self._place_names
-        x.tokens = tuple(f"m->{name}." for name in self._place_names)
+        x.tokens, x.holders, x.kept = self._tokens, self._holders, self._kept
         x.bags = self._bags
         x.packed = self._packed
         x.slots = self._slots
@@ -151,8 +180,10 @@ class _Emitter:
         s.token_types = tuple(p.type for p in self._net.places)
         s.tables_of_places = self._tables
         if own:
-            x.place_names, x.tokens, x.bags = own.texts(x.place_names, x.tokens, x.bags, scope)
-            s.bags = x.bags
+            own.reserve(scope)
+            x.place_names = own.names(x.place_names)
+            x.tokens, x.holders = own.tokens(x.tokens), own.holders(x.holders)
+            s.bags = x.bags = own.bags(x.bags)
         return s, x, scope
 
     def _function(self, f: ir.Function) -> dict[str, object]:
@@ -278,11 +309,8 @@ class _Emitter:
             "capacity": p.capacity,
             "bound": p.bound,
             "proof": p.proof,
-            # gcc warns of loops that would go through an array of one, though they never do.
-            "room": 0 if p.timed or is_slot else max(self._rooms[p.index], 2 - p.capacity),
             "is_slot": is_slot,
-            "kept": self._kept(p),
-            "order": "" if p.timed or p.packed or is_slot else self._orders.name(p.table),
+            "kept": self._kept[p.index],
             "packed": p.packed,
             "shares": p.packed.shares if p.packed else (),
             "is_whole": not p.packed or not self._numbers.members(p.table),
@@ -300,7 +328,7 @@ class _Emitter:
         """How the code of a transition of several instances reaches the places that each has for its own."""
         for table in self._place_tables:
             if shared.varying and (table.page, table.paths) == (shared.page, shared.paths):
-                kept = {p: self._kept(self._net.places[p]) for p in shared.varying}
+                kept = {p: self._kept[p] for p in shared.varying}
                 return OwnPlaces(
                     self._names.page_places(table.page, table.paths),
                     {p: self._member_of(table, shared, p) for p in shared.varying},
@@ -328,9 +356,7 @@ class _Emitter:
                 {
                     "path": path,
                     "name": self._names.instance(path, struct),
-                    "fields": [
-                        (m, self._bags[p]) for m, p in zip(members, row, strict=True)
-                    ],
+                    "fields": [(m, self._bags[p]) for m, p in zip(members, row, strict=True)],
                 }
                 for path, row in zip(table.paths, table.rows, strict=True)
             ],
@@ -630,9 +656,9 @@ class _Emitter:
             "tables": [tables.print(k) for k in keys],
             "leaves": self._leaves.tables(net.places),
             "places": [self._place(p) for p in net.places],
-            "slots": {
-                self._kept(p): self._types.name(p.type) for p in net.places if self._kept(p)
-            },
+            "holders": list(
+                {self._kept[p.index]: self._holder(p) for p in net.places if not p.packed}.values()
+            ),
             "proofs": list(proofs(net.places)),
             "orders": list(self._orders.functions.values()),
             "packed_words": (packed_bits(net.places) + 63) // 64,

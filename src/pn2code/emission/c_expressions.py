@@ -171,6 +171,8 @@ class Expressions:
         self.variables: tuple[str, ...] = ()
         self.place_names: tuple[str, ...] = ()
         self.tokens: tuple[str, ...] = ()
+        self.holders: tuple[str, ...] = ()
+        self.kept: tuple[str, ...] = ()
         self.bags: tuple[str, ...] = ()
         self.slots: frozenset[int] = frozenset()
         self.packed: tuple[PackedPlace | None, ...] = ()
@@ -327,6 +329,18 @@ class Expressions:
                 return f"*(const {self._types.name(t)} *)cx->exception", _UNARY
             case ir.HasError(name=name):
                 return f"pn_is_raised(cx, {c_bytes(name)})", _POSTFIX
+
+    def call(self, place: int, verb: str, *operands: str) -> str:
+        """A call of a function of an untimed place that is an array or packed."""
+        if self.packed and self.packed[place]:
+            first = ("cx", "m") if verb.startswith("add") else ("m",)
+            return f"{self.place_names[place]}_{verb}({', '.join((*first, *operands))})"
+        first = (
+            ("cx", self.holders[place], self.bags[place])
+            if verb == "add"
+            else (self.holders[place],)
+        )
+        return f"{self.kept[place]}_{verb}({', '.join((*first, *operands))})"
 
     def token(self, place: int, index: ir.Local) -> str:
         """The variable that holds the token of a packed place that a loop looks at."""

@@ -26,7 +26,7 @@ class _Move:
 
     Args:
         verb: "take" or "add".
-        place: the member of the marking.
+        place: its number.
         value: a pointer to the value, as C.
         count: as C; "": the value is a sum of tokens.
         note: what it is in the net.
@@ -34,18 +34,11 @@ class _Move:
     """
 
     verb: str
-    place: str
+    place: int
     value: str
     count: str
     note: str
     is_packed: bool
-
-    def call(self, verb: str = "") -> str:
-        """The call that does it, or that undoes it."""
-        context = "cx, " if (verb or self.verb) == "add" else ""
-        if not self.count:
-            return f"{self.place}_{verb or self.verb}_sum({context}m, {self.value})"
-        return f"{self.place}_{verb or self.verb}({context}m, {self.value}, {self.count})"
 
 
 @dataclass(frozen=True, slots=True)
@@ -135,7 +128,7 @@ class DirectFiring(Statements):
         if done or takes:
             self.note("a place is full: everything is put back")
         for move, is_done in reversed(done):
-            undo = f"(void){move.call('take')};"
+            undo = f"(void){self._call(move, 'take')};"
             if is_done:
                 self.line(f"if ({is_done}) {{")
                 self.line(f"    {undo}")
@@ -143,10 +136,17 @@ class DirectFiring(Statements):
             else:
                 self.line(undo)
         for move in reversed(takes):
-            self.line(f"(void){move.call('add')};")
+            self.line(f"(void){self._call(move, 'add')};")
         self.line("return false;")
         self._depth -= 1
         self.line("}")
+
+    def _call(self, move: _Move, verb: str = "") -> str:
+        """The call that does it, or that undoes it."""
+        done = verb or move.verb
+        if not move.count:
+            return self._x.call(move.place, f"{done}_sum", move.value)
+        return self._x.call(move.place, done, move.value, move.count)
 
     def _look_at_slots(self) -> None:
         """Whether the tokens are there, and whether there is room."""
@@ -199,17 +199,17 @@ class DirectFiring(Statements):
             for i, move in enumerate(puts):
                 self.note(move.note)
                 start = "bool fits = " if i == 0 else "fits = "
-                self.line(f"{start}{move.call()}{' && fits' if i else ''};")
+                self.line(f"{start}{self._call(move)}{' && fits' if i else ''};")
             return [(move, "") for move in puts]
         if len(puts) == 1:
             self.note(puts[0].note)
-            self.line(f"const bool fits = {puts[0].call()};")
+            self.line(f"const bool fits = {self._call(puts[0])};")
             return []
         done = []
         for i, move in enumerate(puts):
-            name = self._scope.name(("fits", i), f"fits_{move.place}")
+            name = self._scope.name(("fits", i), f"fits_{self._x.place_names[move.place]}")
             self.note(move.note)
-            self.line(f"const bool {name} = {move.call()};")
+            self.line(f"const bool {name} = {self._call(move)};")
             done.append((move, name))
         self.line(f"const bool fits = {' && '.join(name for _, name in done)};")
         return [(move, name if move.is_packed else "") for move, name in done]
@@ -219,8 +219,7 @@ class DirectFiring(Statements):
         name = self._scope.name(("sum", known.name), "sum")
         self._sums_used[known.name] = name
         verb = "take" if isinstance(s, ir.TakeAll) else "add"
-        place = self._x.place_names[s.place]
-        self._moves_made.append(_Move(verb, place, name, "", s.note or known.note, True))
+        self._moves_made.append(_Move(verb, s.place, name, "", s.note or known.note, True))
 
     def _sum_lines(self) -> list[str]:
         """The sums, and the way to go when one is not known: list by list."""
@@ -240,7 +239,7 @@ class DirectFiring(Statements):
         for i, move in enumerate(takes):
             self.note(move.note)
             start = "bool is_taken = " if i == 0 else "is_taken = is_taken && "
-            self.line(f"{start}{move.call()};")
+            self.line(f"{start}{self._call(move)};")
         self.line("if (!is_taken) {")
         self.line("    pn_raise(cx, PN_ERR_SUBTRACT, NULL);")
         self.line("    return false;")
@@ -319,7 +318,7 @@ class DirectFiring(Statements):
             self.has_checks = True
             self._check(s, value, count)
         self._moves_made.append(
-            _Move(verb, place, value, count, s.note, self._packed(s.place) is not None)
+            _Move(verb, s.place, value, count, s.note, self._packed(s.place) is not None)
         )
 
     def _check(self, s: ir.Take | ir.Put, value: str, count: str) -> None:

@@ -1,7 +1,7 @@
 """How code that several instances of a page share reaches the places that each instance has for its own.
 
-    const MoveBoth_places_t *const own = pn_net.transition[self].places;
-    const ORDER_slot_t *const at_order = pn_bag_look(own->order, m);
+const MoveBoth_places_t *const own = pn_net.transition[self].places;
+const ORDER_slot_t *const at_order = pn_bag_look(own->order, m);
 """
 
 from __future__ import annotations
@@ -20,24 +20,38 @@ class OwnPlaces:
     Args:
         struct: stem of the C type of the table of places.
         members: by place its member in that struct.
-        kept: by place the C type of what holds its tokens.
+        kept: by place the stem of the C type of what holds its tokens.
     """
 
     struct: str
     members: Mapping[int, str]
     kept: Mapping[int, str]
 
-    def texts(
-        self, names: Sequence[str], tokens: Sequence[str], bags: Sequence[str], scope: Scope
-    ) -> tuple[tuple[str, ...], tuple[str, ...], tuple[str, ...]]:
-        """Names, ways to the tokens, and pointers to the tables of all places, where these are reached in this way."""
-        own = (list(names), list(tokens), list(bags))
+    def reserve(self, scope: Scope) -> None:
+        """The variables that `reach` declares."""
         scope.reserve("own", *(f"at_{member}" for member in self.members.values()))
+
+    def names(self, others: Sequence[str]) -> tuple[str, ...]:
+        """What local variables are named after, for all places of the net."""
+        return self._with(others, "{}")
+
+    def tokens(self, others: Sequence[str]) -> tuple[str, ...]:
+        """What leads to the members of what holds the tokens."""
+        return self._with(others, "at_{}->")
+
+    def holders(self, others: Sequence[str]) -> tuple[str, ...]:
+        """Pointers to what holds the tokens."""
+        return self._with(others, "at_{}")
+
+    def bags(self, others: Sequence[str]) -> tuple[str, ...]:
+        """Pointers to the tables of places."""
+        return self._with(others, "own->{}")
+
+    def _with(self, others: Sequence[str], pattern: str) -> tuple[str, ...]:
+        texts = list(others)
         for place, member in self.members.items():
-            own[0][place] = member
-            own[1][place] = f"at_{member}->"
-            own[2][place] = f"own->{member}"
-        return tuple(own[0]), tuple(own[1]), tuple(own[2])
+            texts[place] = pattern.format(member)
+        return tuple(texts)
 
     def reach(self, lines: Sequence[str], is_const: bool) -> list[str]:
         """What has to stand before these lines."""
@@ -49,7 +63,7 @@ class OwnPlaces:
         return [
             f"    const {self.struct}_t *const own = pn_net.transition[self].places;",
             *(
-                f"    {constant}{self.kept[p]} *const at_{self.members[p]} = {call}(own->{self.members[p]}, m);"
+                f"    {constant}{self.kept[p]}_t *const at_{self.members[p]} = {call}(own->{self.members[p]}, m);"
                 for p in reached
             ),
         ]

@@ -317,7 +317,7 @@ class Statements:
                     bag = self.bags[s.place]
                     held = f"pn_bag_count({bag}, m, {pointer}, {self._x.time(s.limit)})"
                 else:
-                    held = f"{self._x.place_names[s.place]}_held(m, {pointer})"
+                    held = self._x.call(s.place, "held", pointer)
                 self.line(f"if ({held} < {s.count}U) {{")
                 self._next()
             case ir.UnlessEmpty(place=place, note=note):
@@ -490,10 +490,10 @@ class Statements:
         for s in takes:
             if isinstance(s, ir.Take):
                 values.append(self._x.address(s.value))
-                place = self._x.place_names[s.place]
+                place = s.place
             else:
                 self.statement(s)
-        self.line(f"if (!{place}_holds(m, {', '.join(values)})) {{")
+        self.line(f"if (!{self._x.call(place, 'holds', *values)}) {{")
         self._next()
 
     def _yield(self) -> None:

@@ -165,10 +165,9 @@ class Names:
         """`s_in_Supervisor_Approach_Move_both`: the places of a page instance."""
         return self._scope.name(("instance", path, struct), _path(path), "s_in_{}")
 
-    def kept(self, c_type: str, kind: str) -> str:
-        """`POSE_slot_t`: what holds the tokens of a place."""
-        stem_of_type = c_type.removeprefix("pn_").removesuffix("_t")
-        return self._scope.name(("kept", c_type, kind), f"{stem_of_type}_{kind}", "{}_t")
+    def kept(self, key: str, kind: str) -> str:
+        """`POSE_slot`, `POSE_array_64`: what holds the tokens of a place of a colour set."""
+        return self._scope.name(("kept", key, kind), f"{key}_{kind}")
 
     def bag(self, index: int, name: str) -> str:
         """`s_at_Robot1_Waiting`."""

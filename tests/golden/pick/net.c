@@ -131,6 +131,9 @@ static inline bool is_before_BOX(const BOX_t *a, const BOX_t *b)
     return false;
 }
 
+PN_UNTIMED_ARRAY(BOX_array_64, BOX_t, is_before_BOX)
+PN_UNTIMED_ARRAY(INT_array_64, int64_t, PN_LESS)
+
 /* place Top.Buffer, colour set BOX: page `Top`, place `Buffer` (ID16) */
 static const pn_bag_t s_at_Buffer = {
     .origin = "page `Top`, place `Buffer` (ID16)",
@@ -138,8 +141,6 @@ static const pn_bag_t s_at_Buffer = {
     .capacity = 64U,
     PN_BAG_TOKENS(net_marking_t, Buffer),
 };
-
-PN_UNTIMED_PLACE(Buffer, net_marking_t, BOX_t, is_before_BOX, s_at_Buffer)
 
 /* initial marking:
  *     1`{part = screw, weight = 3.0} ++ 2`{part = nut, weight = 0.1}
@@ -163,8 +164,6 @@ static const pn_bag_t s_at_Count = {
     PN_BAG_TOKENS(net_marking_t, Count),
 };
 
-PN_UNTIMED_PLACE(Count, net_marking_t, int64_t, PN_LESS, s_at_Count)
-
 /* initial marking:
  *     0
  */
@@ -184,8 +183,6 @@ static const pn_bag_t s_at_Out = {
     .capacity = 64U,
     PN_BAG_TOKENS(net_marking_t, Out),
 };
-
-PN_UNTIMED_PLACE(Out, net_marking_t, BOX_t, is_before_BOX, s_at_Out)
 
 /* --- transitions ------------------------------------------------------------------------------- */
 
@@ -245,23 +242,23 @@ PN_NET_SEARCH static bool Pick_fire(pn_ctx_t *cx, void *marking, uint32_t self, 
         return false;
     }
     /* Buffer: b (ID30) */
-    bool is_taken = Buffer_take(m, &b->b, 1U);
+    bool is_taken = BOX_array_64_take(&m->Buffer, &b->b, 1U);
     /* Count: n (ID32) */
-    is_taken = is_taken && Count_take(m, &b->n, 1U);
+    is_taken = is_taken && INT_array_64_take(&m->Count, &b->n, 1U);
     if (!is_taken) {
         pn_raise(cx, PN_ERR_SUBTRACT, NULL);
         return false;
     }
     /* Count: n + label b (ID34) */
-    bool fits = Count_add(cx, m, &Count_token, 1U);
+    bool fits = INT_array_64_add(cx, &m->Count, &s_at_Count, &Count_token, 1U);
     /* Out: b (ID36) */
-    fits = Out_add(cx, m, &b->b, 1U) && fits;
+    fits = BOX_array_64_add(cx, &m->Out, &s_at_Out, &b->b, 1U) && fits;
     if (!fits) {
         /* a place is full: everything is put back */
-        (void)Out_take(m, &b->b, 1U);
-        (void)Count_take(m, &Count_token, 1U);
-        (void)Count_add(cx, m, &b->n, 1U);
-        (void)Buffer_add(cx, m, &b->b, 1U);
+        (void)BOX_array_64_take(&m->Out, &b->b, 1U);
+        (void)INT_array_64_take(&m->Count, &Count_token, 1U);
+        (void)INT_array_64_add(cx, &m->Count, &s_at_Count, &b->n, 1U);
+        (void)BOX_array_64_add(cx, &m->Buffer, &s_at_Buffer, &b->b, 1U);
         return false;
     }
     return true;
