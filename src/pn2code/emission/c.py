@@ -106,7 +106,7 @@ class _Emitter:
         return self._names.kept(p.table, f"{kind}_{p.capacity}")
 
     def _rooms_of_arrays(self) -> dict[str, int]:
-        """By what holds the tokens: the entries of untimed arrays behind their capacity, for what an occurrence adds."""
+        """By what holds the tokens: entries of untimed arrays behind their capacity, for what an occurrence adds."""
         found: dict[str, int] = {}
         for p, most in zip(self._net.places, c_places.rooms(self._net), strict=True):
             if not p.timed:
