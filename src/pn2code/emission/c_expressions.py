@@ -333,14 +333,12 @@ class Expressions:
     def call(self, place: int, verb: str, *operands: str) -> str:
         """A call of a function of an untimed place that is an array or packed."""
         if self.packed and self.packed[place]:
-            first = ("cx", "m") if verb.startswith("add") else ("m",)
-            return f"{self.place_names[place]}_{verb}({', '.join((*first, *operands))})"
-        first = (
-            ("cx", self.holders[place], self.bags[place])
-            if verb == "add"
-            else (self.holders[place],)
-        )
-        return f"{self.kept[place]}_{verb}({', '.join((*first, *operands))})"
+            name, first = self.place_names[place], ["m"]
+        else:
+            name, first = self.kept[place], [self.holders[place]]
+            first += [self.bags[place]] if verb == "add" else []
+        context = ["cx"] if verb.startswith("add") else []
+        return f"{name}_{verb}({', '.join([*context, *first, *operands])})"
 
     def token(self, place: int, index: ir.Local) -> str:
         """The variable that holds the token of a packed place that a loop looks at."""

@@ -170,7 +170,8 @@ class _Comparison:
 
     def _is_same_place(self, a: object, b: object) -> bool:
         """Whether what stands for one's place is always the same in the other."""
-        mine, its = getattr(a, "place", None), getattr(b, "place", None)
+        mine: int | None = getattr(a, "place", None)
+        its: int | None = getattr(b, "place", None)
         if mine is None or its is None:
             return mine is its
         return self._places.setdefault(mine, its) == its
