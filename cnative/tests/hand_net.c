@@ -83,14 +83,6 @@ static const pn_type_t BINDING = {
 
 /* --- places ----------------------------------------------------------------------------------------------------------- */
 
-static const pn_leaf_kind_t ORDER_LEAF[] = {PN_LEAF_INT, PN_LEAF_REAL, PN_LEAF_REAL};
-static const char *const ORDER_NAME[] = {"n", "x", "y"};
-static const uint32_t ORDER_LINE[] = {1U, 2U};
-static const pn_leaf_kind_t POSE_LEAF[] = {PN_LEAF_REAL, PN_LEAF_REAL};
-static const char *const POSE_NAME[] = {"x", "y"};
-static const pn_leaf_kind_t INT_LEAF[] = {PN_LEAF_INT};
-static const char *const INT_NAME[] = {"1"};
-
 #define BAG(field, place_name, value_type, timed)                                                                 \
     static const pn_bag_t field##_bag = {.origin = "page `Top`, place `" place_name "`", .type = &(value_type),   \
                                          .capacity = 1U, .is_timed = (timed), PN_BAG_TOKENS(marking_t, field),    \
@@ -131,14 +123,13 @@ static bool begin(pn_ctx_t *cx, void *marking)
     .name = place_name, .colset = "UNIT", .owner = (place_owner), .bag = &field##_bag
 
 static const pn_place_t PLACE[] = {
-    {PLAIN(orders, "Top.Orders", 0), .initial = begin, .leaf_count = 3U, .leaf_kind = ORDER_LEAF, .leaf_name = ORDER_NAME,
-     .line_count = 2U, .line_leaves = ORDER_LINE},
+    {PLAIN(orders, "Top.Orders", 0), .initial = begin},
     {PLAIN(idle, "Top.Idle", 0)},
     {PLAIN(waiting, "Top.Waiting", 0)},
     {PLAIN(done, "Top.Done", 0)},
-    {PLAIN(pose, "Top.pose1", -1), .leaf_count = 2U, .leaf_kind = POSE_LEAF, .leaf_name = POSE_NAME},
-    {PLAIN(command, "Top.command", -1), .leaf_count = 1U, .leaf_kind = INT_LEAF, .leaf_name = INT_NAME},
-    {PLAIN(answer, "Top.answer", -1), .leaf_count = 1U, .leaf_kind = INT_LEAF, .leaf_name = INT_NAME},
+    {PLAIN(pose, "Top.pose1", -1)},
+    {PLAIN(command, "Top.command", -1)},
+    {PLAIN(answer, "Top.answer", -1)},
     {PLAIN(spin, "Top.Spin", 0)},
 };
 

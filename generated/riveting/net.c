@@ -869,72 +869,6 @@ static int64_t ml_worse(int64_t e, int64_t f)
 
 /* --- places ------------------------------------------------------------------------------------ */
 
-/* The scalars of the colour sets of places: kinds, names, and how an input file is laid out in lines. */
-static const pn_leaf_kind_t s_POSE_kinds[] = { PN_LEAF_REAL, PN_LEAF_REAL, PN_LEAF_REAL,
-    PN_LEAF_REAL, PN_LEAF_REAL, PN_LEAF_REAL };
-static const char *const s_POSE_leaves[] = { "x", "y", "z", "rx", "ry", "rz" };
-static const uint32_t s_POSE_lines[] = { 6U };
-static const pn_leaf_kind_t s_COMMAND_kinds[] = { PN_LEAF_INT };
-static const char *const s_COMMAND_leaves[] = { "" };
-static const uint32_t s_COMMAND_lines[] = { 1U };
-static const pn_leaf_kind_t s_REPLY_kinds[] = { PN_LEAF_INT };
-static const char *const s_REPLY_leaves[] = { "" };
-static const uint32_t s_REPLY_lines[] = { 1U };
-static const pn_leaf_kind_t s_PLAN_kinds[] = { PN_LEAF_INT, PN_LEAF_REAL, PN_LEAF_REAL,
-    PN_LEAF_REAL, PN_LEAF_REAL, PN_LEAF_REAL, PN_LEAF_REAL, PN_LEAF_REAL, PN_LEAF_REAL,
-    PN_LEAF_REAL, PN_LEAF_REAL, PN_LEAF_REAL, PN_LEAF_REAL };
-static const char *const s_PLAN_leaves[] = { "1", "2.x", "2.y", "2.z", "2.rx", "2.ry", "2.rz",
-    "3.x", "3.y", "3.z", "3.rx", "3.ry", "3.rz" };
-static const uint32_t s_PLAN_lines[] = { 1U, 6U, 6U };
-static const pn_leaf_kind_t s_SEAM_kinds[] = { PN_LEAF_INT, PN_LEAF_REAL, PN_LEAF_REAL,
-    PN_LEAF_REAL, PN_LEAF_REAL, PN_LEAF_REAL, PN_LEAF_REAL, PN_LEAF_REAL, PN_LEAF_REAL,
-    PN_LEAF_REAL, PN_LEAF_REAL, PN_LEAF_REAL, PN_LEAF_REAL };
-static const char *const s_SEAM_leaves[] = { "points", "first.x", "first.y", "first.z", "first.rx",
-    "first.ry", "first.rz", "last.x", "last.y", "last.z", "last.rx", "last.ry", "last.rz" };
-static const uint32_t s_SEAM_lines[] = { 1U, 6U, 6U };
-static const pn_leaf_kind_t s_VERIFIED_kinds[] = { PN_LEAF_INT, PN_LEAF_REAL, PN_LEAF_REAL,
-    PN_LEAF_REAL, PN_LEAF_REAL, PN_LEAF_REAL, PN_LEAF_REAL, PN_LEAF_REAL, PN_LEAF_REAL,
-    PN_LEAF_REAL, PN_LEAF_REAL, PN_LEAF_REAL, PN_LEAF_REAL, PN_LEAF_REAL, PN_LEAF_REAL,
-    PN_LEAF_REAL, PN_LEAF_REAL, PN_LEAF_REAL, PN_LEAF_REAL, PN_LEAF_REAL, PN_LEAF_REAL,
-    PN_LEAF_REAL, PN_LEAF_REAL, PN_LEAF_REAL, PN_LEAF_REAL };
-static const char *const s_VERIFIED_leaves[] = { "1.points", "1.first.x", "1.first.y", "1.first.z",
-    "1.first.rx", "1.first.ry", "1.first.rz", "1.last.x", "1.last.y", "1.last.z", "1.last.rx",
-    "1.last.ry", "1.last.rz", "2.x", "2.y", "2.z", "2.rx", "2.ry", "2.rz", "3.x", "3.y", "3.z",
-    "3.rx", "3.ry", "3.rz" };
-static const uint32_t s_VERIFIED_lines[] = { 13U, 6U, 6U };
-static const pn_leaf_kind_t s_RIVETING_kinds[] = { PN_LEAF_INT, PN_LEAF_REAL, PN_LEAF_REAL,
-    PN_LEAF_REAL, PN_LEAF_REAL, PN_LEAF_REAL, PN_LEAF_REAL, PN_LEAF_REAL, PN_LEAF_REAL,
-    PN_LEAF_REAL };
-static const char *const s_RIVETING_leaves[] = { "1", "2.x", "2.y", "2.z", "2.rx", "2.ry", "2.rz",
-    "3.1", "3.2", "3.3" };
-static const uint32_t s_RIVETING_lines[] = { 1U, 6U, 3U };
-static const pn_leaf_kind_t s_UNIT_kinds[] = { PN_LEAF_ENUM };
-static const char *const s_UNIT_leaves[] = { "" };
-static const uint32_t s_UNIT_lines[] = { 1U };
-static const pn_leaf_kind_t s_ORDER_kinds[] = { PN_LEAF_INT, PN_LEAF_REAL, PN_LEAF_REAL,
-    PN_LEAF_REAL, PN_LEAF_REAL, PN_LEAF_REAL, PN_LEAF_REAL, PN_LEAF_REAL, PN_LEAF_REAL,
-    PN_LEAF_REAL, PN_LEAF_REAL, PN_LEAF_REAL, PN_LEAF_REAL };
-static const char *const s_ORDER_leaves[] = { "1", "2.x", "2.y", "2.z", "2.rx", "2.ry", "2.rz",
-    "3.x", "3.y", "3.z", "3.rx", "3.ry", "3.rz" };
-static const uint32_t s_ORDER_lines[] = { 1U, 6U, 6U };
-static const pn_leaf_kind_t s_ASKED_kinds[] = { PN_LEAF_INT, PN_LEAF_REAL, PN_LEAF_REAL,
-    PN_LEAF_REAL, PN_LEAF_REAL, PN_LEAF_REAL, PN_LEAF_REAL, PN_LEAF_REAL, PN_LEAF_REAL,
-    PN_LEAF_REAL, PN_LEAF_REAL, PN_LEAF_REAL, PN_LEAF_REAL, PN_LEAF_REAL, PN_LEAF_REAL,
-    PN_LEAF_REAL, PN_LEAF_REAL, PN_LEAF_REAL, PN_LEAF_REAL };
-static const char *const s_ASKED_leaves[] = { "1.points", "1.first.x", "1.first.y", "1.first.z",
-    "1.first.rx", "1.first.ry", "1.first.rz", "1.last.x", "1.last.y", "1.last.z", "1.last.rx",
-    "1.last.ry", "1.last.rz", "2.x", "2.y", "2.z", "2.rx", "2.ry", "2.rz" };
-static const uint32_t s_ASKED_lines[] = { 13U, 6U };
-static const pn_leaf_kind_t s_VECTOR_kinds[] = { PN_LEAF_REAL, PN_LEAF_REAL, PN_LEAF_REAL };
-static const char *const s_VECTOR_leaves[] = { "1", "2", "3" };
-static const uint32_t s_VECTOR_lines[] = { 3U };
-static const pn_leaf_kind_t s_WORK_kinds[] = { PN_LEAF_INT, PN_LEAF_INT, PN_LEAF_REAL, PN_LEAF_REAL,
-    PN_LEAF_REAL, PN_LEAF_REAL, PN_LEAF_REAL, PN_LEAF_REAL, PN_LEAF_REAL, PN_LEAF_REAL,
-    PN_LEAF_REAL };
-static const char *const s_WORK_leaves[] = { "1", "2", "3.x", "3.y", "3.z", "3.rx", "3.ry", "3.rz",
-    "4.1", "4.2", "4.3" };
-static const uint32_t s_WORK_lines[] = { 1U, 1U, 6U, 3U };
-
 /* place Cell.dadosrobo1, colour set POSE: page `Cell`, place `dadosrobo1` (ID1412310013) */
 static const pn_bag_t s_at_dadosrobo1 = {
     .origin = "page `Cell`, place `dadosrobo1` (ID1412310013)",
@@ -4959,455 +4893,305 @@ static const pn_place_t s_places[] = {
     {
         .name = "Cell.dadosrobo1", .colset = "POSE", .owner = -1, .bag = &s_at_dadosrobo1,
         .is_bounded = true, .bound = 1U,
-        .leaf_count = 6U, .leaf_kind = s_POSE_kinds, .leaf_name = s_POSE_leaves,
-        .line_count = 1U, .line_leaves = s_POSE_lines,
     },
     {
         .name = "Cell.flag1_interno", .colset = "COMMAND", .owner = -1, .bag = &s_at_flag1_interno,
         .is_bounded = true, .bound = 1U,
-        .leaf_count = 1U, .leaf_kind = s_COMMAND_kinds, .leaf_name = s_COMMAND_leaves,
-        .line_count = 1U, .line_leaves = s_COMMAND_lines,
     },
     {
         .name = "Cell.flag1_externo", .colset = "REPLY", .owner = -1, .bag = &s_at_flag1_externo,
         .is_bounded = true, .bound = 1U,
-        .leaf_count = 1U, .leaf_kind = s_REPLY_kinds, .leaf_name = s_REPLY_leaves,
-        .line_count = 1U, .line_leaves = s_REPLY_lines,
     },
     {
         .name = "Cell.referencia1", .colset = "POSE", .owner = -1, .bag = &s_at_referencia1,
         .is_bounded = true, .bound = 1U,
-        .leaf_count = 6U, .leaf_kind = s_POSE_kinds, .leaf_name = s_POSE_leaves,
-        .line_count = 1U, .line_leaves = s_POSE_lines,
     },
     {
         .name = "Cell.medida1", .colset = "POSE", .owner = -1, .bag = &s_at_medida1,
         .is_bounded = true, .bound = 1U,
-        .leaf_count = 6U, .leaf_kind = s_POSE_kinds, .leaf_name = s_POSE_leaves,
-        .line_count = 1U, .line_leaves = s_POSE_lines,
     },
     {
         .name = "Cell.dadosrobo2", .colset = "POSE", .owner = -1, .bag = &s_at_dadosrobo2,
         .is_bounded = true, .bound = 1U,
-        .leaf_count = 6U, .leaf_kind = s_POSE_kinds, .leaf_name = s_POSE_leaves,
-        .line_count = 1U, .line_leaves = s_POSE_lines,
     },
     {
         .name = "Cell.flag2_interno", .colset = "COMMAND", .owner = -1, .bag = &s_at_flag2_interno,
         .is_bounded = true, .bound = 1U,
-        .leaf_count = 1U, .leaf_kind = s_COMMAND_kinds, .leaf_name = s_COMMAND_leaves,
-        .line_count = 1U, .line_leaves = s_COMMAND_lines,
     },
     {
         .name = "Cell.flag2_externo", .colset = "REPLY", .owner = -1, .bag = &s_at_flag2_externo,
         .is_bounded = true, .bound = 1U,
-        .leaf_count = 1U, .leaf_kind = s_REPLY_kinds, .leaf_name = s_REPLY_leaves,
-        .line_count = 1U, .line_leaves = s_REPLY_lines,
     },
     {
         .name = "Cell.referencia2", .colset = "POSE", .owner = 2, .bag = &s_at_referencia2,
         .is_bounded = true, .bound = 0U,
-        .leaf_count = 6U, .leaf_kind = s_POSE_kinds, .leaf_name = s_POSE_leaves,
-        .line_count = 1U, .line_leaves = s_POSE_lines,
     },
     {
         .name = "Cell.medida2", .colset = "POSE", .owner = 2, .bag = &s_at_medida2,
         .is_bounded = true, .bound = 0U,
-        .leaf_count = 6U, .leaf_kind = s_POSE_kinds, .leaf_name = s_POSE_leaves,
-        .line_count = 1U, .line_leaves = s_POSE_lines,
     },
     {
         .name = "Cell.Supervisor.coordenadas", .colset = "PLAN", .owner = 0, .bag = &s_at_Supervisor_coordenadas,
         .is_bounded = true, .bound = 1U,
         .initial = Supervisor_coordenadas_init,
-        .leaf_count = 13U, .leaf_kind = s_PLAN_kinds, .leaf_name = s_PLAN_leaves,
-        .line_count = 3U, .line_leaves = s_PLAN_lines,
     },
     {
         .name = "Cell.Supervisor.planned", .colset = "SEAM", .owner = 0, .bag = &s_at_Supervisor_planned,
         .is_bounded = true, .bound = 1U,
-        .leaf_count = 13U, .leaf_kind = s_SEAM_kinds, .leaf_name = s_SEAM_leaves,
-        .line_count = 3U, .line_leaves = s_SEAM_lines,
     },
     {
         .name = "Cell.Supervisor.approached", .colset = "SEAM", .owner = 0, .bag = &s_at_Supervisor_approached,
         .is_bounded = true, .bound = 1U,
-        .leaf_count = 13U, .leaf_kind = s_SEAM_kinds, .leaf_name = s_SEAM_leaves,
-        .line_count = 3U, .line_leaves = s_SEAM_lines,
     },
     {
         .name = "Cell.Supervisor.verified", .colset = "VERIFIED", .owner = 0, .bag = &s_at_Supervisor_verified,
         .is_bounded = true, .bound = 1U,
-        .leaf_count = 25U, .leaf_kind = s_VERIFIED_kinds, .leaf_name = s_VERIFIED_leaves,
-        .line_count = 3U, .line_leaves = s_VERIFIED_lines,
     },
     {
         .name = "Cell.Supervisor.corrected", .colset = "RIVETING", .owner = 0, .bag = &s_at_Supervisor_corrected,
         .is_bounded = true, .bound = 1U,
-        .leaf_count = 10U, .leaf_kind = s_RIVETING_kinds, .leaf_name = s_RIVETING_leaves,
-        .line_count = 3U, .line_leaves = s_RIVETING_lines,
     },
     {
         .name = "Cell.Supervisor.ended", .colset = "UNIT", .owner = 0, .bag = &s_at_Supervisor_ended,
         .is_bounded = true, .bound = 1U,
-        .leaf_count = 1U, .leaf_kind = s_UNIT_kinds, .leaf_name = s_UNIT_leaves,
-        .line_count = 1U, .line_leaves = s_UNIT_lines,
     },
     {
         .name = "Cell.Supervisor.Finished", .colset = "UNIT", .owner = 0, .bag = &s_at_Supervisor_Finished,
         .is_bounded = true, .bound = 1U,
-        .leaf_count = 1U, .leaf_kind = s_UNIT_kinds, .leaf_name = s_UNIT_leaves,
-        .line_count = 1U, .line_leaves = s_UNIT_lines,
     },
     {
         .name = "Cell.Supervisor.result", .colset = "REPLY", .owner = 0, .bag = &s_at_Supervisor_result,
         .is_bounded = true, .bound = 1U,
-        .leaf_count = 1U, .leaf_kind = s_REPLY_kinds, .leaf_name = s_REPLY_leaves,
-        .line_count = 1U, .line_leaves = s_REPLY_lines,
     },
     {
         .name = "Cell.Supervisor.Failed", .colset = "UNIT", .owner = 0, .bag = &s_at_Supervisor_Failed,
         .is_bounded = true, .bound = 1U,
-        .leaf_count = 1U, .leaf_kind = s_UNIT_kinds, .leaf_name = s_UNIT_leaves,
-        .line_count = 1U, .line_leaves = s_UNIT_lines,
     },
     {
         .name = "Cell.Supervisor.Approach.order", .colset = "ORDER", .owner = 0, .bag = &s_at_Supervisor_Approach_order,
         .is_bounded = true, .bound = 1U,
-        .leaf_count = 13U, .leaf_kind = s_ORDER_kinds, .leaf_name = s_ORDER_leaves,
-        .line_count = 3U, .line_leaves = s_ORDER_lines,
     },
     {
         .name = "Cell.Supervisor.Approach.done", .colset = "UNIT", .owner = 0, .bag = &s_at_Supervisor_Approach_done,
         .is_bounded = true, .bound = 1U,
-        .leaf_count = 1U, .leaf_kind = s_UNIT_kinds, .leaf_name = s_UNIT_leaves,
-        .line_count = 1U, .line_leaves = s_UNIT_lines,
     },
     {
         .name = "Cell.Supervisor.Approach.seam", .colset = "SEAM", .owner = 0, .bag = &s_at_Supervisor_Approach_seam,
         .is_bounded = true, .bound = 1U,
-        .leaf_count = 13U, .leaf_kind = s_SEAM_kinds, .leaf_name = s_SEAM_leaves,
-        .line_count = 3U, .line_leaves = s_SEAM_lines,
     },
     {
         .name = "Cell.Supervisor.Approach.Move both.moving 1", .colset = "UNIT", .owner = 0, .bag = &s_at_Supervisor_Approach_Move_both_moving_1,
         .is_bounded = true, .bound = 1U,
-        .leaf_count = 1U, .leaf_kind = s_UNIT_kinds, .leaf_name = s_UNIT_leaves,
-        .line_count = 1U, .line_leaves = s_UNIT_lines,
     },
     {
         .name = "Cell.Supervisor.Approach.Move both.there 1", .colset = "UNIT", .owner = 0, .bag = &s_at_Supervisor_Approach_Move_both_there_1,
         .is_bounded = true, .bound = 1U,
-        .leaf_count = 1U, .leaf_kind = s_UNIT_kinds, .leaf_name = s_UNIT_leaves,
-        .line_count = 1U, .line_leaves = s_UNIT_lines,
     },
     {
         .name = "Cell.Supervisor.Approach.Move both.moving 2", .colset = "UNIT", .owner = 0, .bag = &s_at_Supervisor_Approach_Move_both_moving_2,
         .is_bounded = true, .bound = 1U,
-        .leaf_count = 1U, .leaf_kind = s_UNIT_kinds, .leaf_name = s_UNIT_leaves,
-        .line_count = 1U, .line_leaves = s_UNIT_lines,
     },
     {
         .name = "Cell.Supervisor.Approach.Move both.there 2", .colset = "UNIT", .owner = 0, .bag = &s_at_Supervisor_Approach_Move_both_there_2,
         .is_bounded = true, .bound = 1U,
-        .leaf_count = 1U, .leaf_kind = s_UNIT_kinds, .leaf_name = s_UNIT_leaves,
-        .line_count = 1U, .line_leaves = s_UNIT_lines,
     },
     {
         .name = "Cell.Supervisor.Verify.first asked", .colset = "SEAM", .owner = 0, .bag = &s_at_Supervisor_Verify_first_asked,
         .is_bounded = true, .bound = 1U,
-        .leaf_count = 13U, .leaf_kind = s_SEAM_kinds, .leaf_name = s_SEAM_leaves,
-        .line_count = 3U, .line_leaves = s_SEAM_lines,
     },
     {
         .name = "Cell.Supervisor.Verify.last asked", .colset = "ASKED", .owner = 0, .bag = &s_at_Supervisor_Verify_last_asked,
         .is_bounded = true, .bound = 1U,
-        .leaf_count = 19U, .leaf_kind = s_ASKED_kinds, .leaf_name = s_ASKED_leaves,
-        .line_count = 2U, .line_leaves = s_ASKED_lines,
     },
     {
         .name = "Cell.Supervisor.Correct.offset", .colset = "VECTOR", .owner = 0, .bag = &s_at_Supervisor_Correct_offset,
         .is_bounded = true, .bound = 1U,
-        .leaf_count = 3U, .leaf_kind = s_VECTOR_kinds, .leaf_name = s_VECTOR_leaves,
-        .line_count = 1U, .line_leaves = s_VECTOR_lines,
     },
     {
         .name = "Cell.Supervisor.Correct.order", .colset = "ORDER", .owner = 0, .bag = &s_at_Supervisor_Correct_order,
         .is_bounded = true, .bound = 1U,
-        .leaf_count = 13U, .leaf_kind = s_ORDER_kinds, .leaf_name = s_ORDER_leaves,
-        .line_count = 3U, .line_leaves = s_ORDER_lines,
     },
     {
         .name = "Cell.Supervisor.Correct.done", .colset = "UNIT", .owner = 0, .bag = &s_at_Supervisor_Correct_done,
         .is_bounded = true, .bound = 1U,
-        .leaf_count = 1U, .leaf_kind = s_UNIT_kinds, .leaf_name = s_UNIT_leaves,
-        .line_count = 1U, .line_leaves = s_UNIT_lines,
     },
     {
         .name = "Cell.Supervisor.Correct.seam", .colset = "RIVETING", .owner = 0, .bag = &s_at_Supervisor_Correct_seam,
         .is_bounded = true, .bound = 1U,
-        .leaf_count = 10U, .leaf_kind = s_RIVETING_kinds, .leaf_name = s_RIVETING_leaves,
-        .line_count = 3U, .line_leaves = s_RIVETING_lines,
     },
     {
         .name = "Cell.Supervisor.Correct.Move both.moving 1", .colset = "UNIT", .owner = 0, .bag = &s_at_Supervisor_Correct_Move_both_moving_1,
         .is_bounded = true, .bound = 1U,
-        .leaf_count = 1U, .leaf_kind = s_UNIT_kinds, .leaf_name = s_UNIT_leaves,
-        .line_count = 1U, .line_leaves = s_UNIT_lines,
     },
     {
         .name = "Cell.Supervisor.Correct.Move both.there 1", .colset = "UNIT", .owner = 0, .bag = &s_at_Supervisor_Correct_Move_both_there_1,
         .is_bounded = true, .bound = 1U,
-        .leaf_count = 1U, .leaf_kind = s_UNIT_kinds, .leaf_name = s_UNIT_leaves,
-        .line_count = 1U, .line_leaves = s_UNIT_lines,
     },
     {
         .name = "Cell.Supervisor.Correct.Move both.moving 2", .colset = "UNIT", .owner = 0, .bag = &s_at_Supervisor_Correct_Move_both_moving_2,
         .is_bounded = true, .bound = 1U,
-        .leaf_count = 1U, .leaf_kind = s_UNIT_kinds, .leaf_name = s_UNIT_leaves,
-        .line_count = 1U, .line_leaves = s_UNIT_lines,
     },
     {
         .name = "Cell.Supervisor.Correct.Move both.there 2", .colset = "UNIT", .owner = 0, .bag = &s_at_Supervisor_Correct_Move_both_there_2,
         .is_bounded = true, .bound = 1U,
-        .leaf_count = 1U, .leaf_kind = s_UNIT_kinds, .leaf_name = s_UNIT_leaves,
-        .line_count = 1U, .line_leaves = s_UNIT_lines,
     },
     {
         .name = "Cell.Supervisor.Install.shift", .colset = "ORDER", .owner = 0, .bag = &s_at_Supervisor_Install_shift,
         .is_bounded = true, .bound = 1U,
-        .leaf_count = 13U, .leaf_kind = s_ORDER_kinds, .leaf_name = s_ORDER_leaves,
-        .line_count = 3U, .line_leaves = s_ORDER_lines,
     },
     {
         .name = "Cell.Supervisor.Install.ready", .colset = "UNIT", .owner = 0, .bag = &s_at_Supervisor_Install_ready,
         .is_bounded = true, .bound = 1U,
-        .leaf_count = 1U, .leaf_kind = s_UNIT_kinds, .leaf_name = s_UNIT_leaves,
-        .line_count = 1U, .line_leaves = s_UNIT_lines,
     },
     {
         .name = "Cell.Supervisor.Install.riveted", .colset = "UNIT", .owner = 0, .bag = &s_at_Supervisor_Install_riveted,
         .is_bounded = true, .bound = 1U,
-        .leaf_count = 1U, .leaf_kind = s_UNIT_kinds, .leaf_name = s_UNIT_leaves,
-        .line_count = 1U, .line_leaves = s_UNIT_lines,
     },
     {
         .name = "Cell.Supervisor.Install.return", .colset = "ORDER", .owner = 0, .bag = &s_at_Supervisor_Install_return,
         .is_bounded = true, .bound = 1U,
-        .leaf_count = 13U, .leaf_kind = s_ORDER_kinds, .leaf_name = s_ORDER_leaves,
-        .line_count = 3U, .line_leaves = s_ORDER_lines,
     },
     {
         .name = "Cell.Supervisor.Install.work", .colset = "WORK", .owner = 0, .bag = &s_at_Supervisor_Install_work,
         .is_bounded = true, .bound = 1U,
-        .leaf_count = 11U, .leaf_kind = s_WORK_kinds, .leaf_name = s_WORK_leaves,
-        .line_count = 4U, .line_leaves = s_WORK_lines,
     },
     {
         .name = "Cell.Supervisor.Install.Shift.moving 1", .colset = "UNIT", .owner = 0, .bag = &s_at_Supervisor_Install_Shift_moving_1,
         .is_bounded = true, .bound = 1U,
-        .leaf_count = 1U, .leaf_kind = s_UNIT_kinds, .leaf_name = s_UNIT_leaves,
-        .line_count = 1U, .line_leaves = s_UNIT_lines,
     },
     {
         .name = "Cell.Supervisor.Install.Shift.there 1", .colset = "UNIT", .owner = 0, .bag = &s_at_Supervisor_Install_Shift_there_1,
         .is_bounded = true, .bound = 1U,
-        .leaf_count = 1U, .leaf_kind = s_UNIT_kinds, .leaf_name = s_UNIT_leaves,
-        .line_count = 1U, .line_leaves = s_UNIT_lines,
     },
     {
         .name = "Cell.Supervisor.Install.Shift.moving 2", .colset = "UNIT", .owner = 0, .bag = &s_at_Supervisor_Install_Shift_moving_2,
         .is_bounded = true, .bound = 1U,
-        .leaf_count = 1U, .leaf_kind = s_UNIT_kinds, .leaf_name = s_UNIT_leaves,
-        .line_count = 1U, .line_leaves = s_UNIT_lines,
     },
     {
         .name = "Cell.Supervisor.Install.Shift.there 2", .colset = "UNIT", .owner = 0, .bag = &s_at_Supervisor_Install_Shift_there_2,
         .is_bounded = true, .bound = 1U,
-        .leaf_count = 1U, .leaf_kind = s_UNIT_kinds, .leaf_name = s_UNIT_leaves,
-        .line_count = 1U, .line_leaves = s_UNIT_lines,
     },
     {
         .name = "Cell.Supervisor.Install.Rivet.advance", .colset = "ORDER", .owner = 0, .bag = &s_at_Supervisor_Install_Rivet_advance,
         .is_bounded = true, .bound = 1U,
-        .leaf_count = 13U, .leaf_kind = s_ORDER_kinds, .leaf_name = s_ORDER_leaves,
-        .line_count = 3U, .line_leaves = s_ORDER_lines,
     },
     {
         .name = "Cell.Supervisor.Install.Rivet.contact", .colset = "UNIT", .owner = 0, .bag = &s_at_Supervisor_Install_Rivet_contact,
         .is_bounded = true, .bound = 1U,
-        .leaf_count = 1U, .leaf_kind = s_UNIT_kinds, .leaf_name = s_UNIT_leaves,
-        .line_count = 1U, .line_leaves = s_UNIT_lines,
     },
     {
         .name = "Cell.Supervisor.Install.Rivet.fastened", .colset = "REPLY", .owner = 0, .bag = &s_at_Supervisor_Install_Rivet_fastened,
         .is_bounded = true, .bound = 1U,
-        .leaf_count = 1U, .leaf_kind = s_REPLY_kinds, .leaf_name = s_REPLY_leaves,
-        .line_count = 1U, .line_leaves = s_REPLY_lines,
     },
     {
         .name = "Cell.Supervisor.Install.Rivet.retract", .colset = "ORDER", .owner = 0, .bag = &s_at_Supervisor_Install_Rivet_retract,
         .is_bounded = true, .bound = 1U,
-        .leaf_count = 13U, .leaf_kind = s_ORDER_kinds, .leaf_name = s_ORDER_leaves,
-        .line_count = 3U, .line_leaves = s_ORDER_lines,
     },
     {
         .name = "Cell.Supervisor.Install.Rivet.Advance.moving 1", .colset = "UNIT", .owner = 0, .bag = &s_at_Supervisor_Install_Rivet_Advance_moving_1,
         .is_bounded = true, .bound = 1U,
-        .leaf_count = 1U, .leaf_kind = s_UNIT_kinds, .leaf_name = s_UNIT_leaves,
-        .line_count = 1U, .line_leaves = s_UNIT_lines,
     },
     {
         .name = "Cell.Supervisor.Install.Rivet.Advance.there 1", .colset = "UNIT", .owner = 0, .bag = &s_at_Supervisor_Install_Rivet_Advance_there_1,
         .is_bounded = true, .bound = 1U,
-        .leaf_count = 1U, .leaf_kind = s_UNIT_kinds, .leaf_name = s_UNIT_leaves,
-        .line_count = 1U, .line_leaves = s_UNIT_lines,
     },
     {
         .name = "Cell.Supervisor.Install.Rivet.Advance.moving 2", .colset = "UNIT", .owner = 0, .bag = &s_at_Supervisor_Install_Rivet_Advance_moving_2,
         .is_bounded = true, .bound = 1U,
-        .leaf_count = 1U, .leaf_kind = s_UNIT_kinds, .leaf_name = s_UNIT_leaves,
-        .line_count = 1U, .line_leaves = s_UNIT_lines,
     },
     {
         .name = "Cell.Supervisor.Install.Rivet.Advance.there 2", .colset = "UNIT", .owner = 0, .bag = &s_at_Supervisor_Install_Rivet_Advance_there_2,
         .is_bounded = true, .bound = 1U,
-        .leaf_count = 1U, .leaf_kind = s_UNIT_kinds, .leaf_name = s_UNIT_leaves,
-        .line_count = 1U, .line_leaves = s_UNIT_lines,
     },
     {
         .name = "Cell.Supervisor.Install.Rivet.Fasten.pressing", .colset = "UNIT", .owner = 0, .bag = &s_at_Supervisor_Install_Rivet_Fasten_pressing,
         .is_bounded = true, .bound = 1U,
-        .leaf_count = 1U, .leaf_kind = s_UNIT_kinds, .leaf_name = s_UNIT_leaves,
-        .line_count = 1U, .line_leaves = s_UNIT_lines,
     },
     {
         .name = "Cell.Supervisor.Install.Rivet.Fasten.drilling", .colset = "UNIT", .owner = 0, .bag = &s_at_Supervisor_Install_Rivet_Fasten_drilling,
         .is_bounded = true, .bound = 1U,
-        .leaf_count = 1U, .leaf_kind = s_UNIT_kinds, .leaf_name = s_UNIT_leaves,
-        .line_count = 1U, .line_leaves = s_UNIT_lines,
     },
     {
         .name = "Cell.Supervisor.Install.Rivet.Fasten.inserting", .colset = "UNIT", .owner = 0, .bag = &s_at_Supervisor_Install_Rivet_Fasten_inserting,
         .is_bounded = true, .bound = 1U,
-        .leaf_count = 1U, .leaf_kind = s_UNIT_kinds, .leaf_name = s_UNIT_leaves,
-        .line_count = 1U, .line_leaves = s_UNIT_lines,
     },
     {
         .name = "Cell.Supervisor.Install.Rivet.Fasten.releasing", .colset = "REPLY", .owner = 0, .bag = &s_at_Supervisor_Install_Rivet_Fasten_releasing,
         .is_bounded = true, .bound = 1U,
-        .leaf_count = 1U, .leaf_kind = s_REPLY_kinds, .leaf_name = s_REPLY_leaves,
-        .line_count = 1U, .line_leaves = s_REPLY_lines,
     },
     {
         .name = "Cell.Supervisor.Install.Rivet.Retract.moving 1", .colset = "UNIT", .owner = 0, .bag = &s_at_Supervisor_Install_Rivet_Retract_moving_1,
         .is_bounded = true, .bound = 1U,
-        .leaf_count = 1U, .leaf_kind = s_UNIT_kinds, .leaf_name = s_UNIT_leaves,
-        .line_count = 1U, .line_leaves = s_UNIT_lines,
     },
     {
         .name = "Cell.Supervisor.Install.Rivet.Retract.there 1", .colset = "UNIT", .owner = 0, .bag = &s_at_Supervisor_Install_Rivet_Retract_there_1,
         .is_bounded = true, .bound = 1U,
-        .leaf_count = 1U, .leaf_kind = s_UNIT_kinds, .leaf_name = s_UNIT_leaves,
-        .line_count = 1U, .line_leaves = s_UNIT_lines,
     },
     {
         .name = "Cell.Supervisor.Install.Rivet.Retract.moving 2", .colset = "UNIT", .owner = 0, .bag = &s_at_Supervisor_Install_Rivet_Retract_moving_2,
         .is_bounded = true, .bound = 1U,
-        .leaf_count = 1U, .leaf_kind = s_UNIT_kinds, .leaf_name = s_UNIT_leaves,
-        .line_count = 1U, .line_leaves = s_UNIT_lines,
     },
     {
         .name = "Cell.Supervisor.Install.Rivet.Retract.there 2", .colset = "UNIT", .owner = 0, .bag = &s_at_Supervisor_Install_Rivet_Retract_there_2,
         .is_bounded = true, .bound = 1U,
-        .leaf_count = 1U, .leaf_kind = s_UNIT_kinds, .leaf_name = s_UNIT_leaves,
-        .line_count = 1U, .line_leaves = s_UNIT_lines,
     },
     {
         .name = "Cell.Supervisor.Install.Return.moving 1", .colset = "UNIT", .owner = 0, .bag = &s_at_Supervisor_Install_Return_moving_1,
         .is_bounded = true, .bound = 1U,
-        .leaf_count = 1U, .leaf_kind = s_UNIT_kinds, .leaf_name = s_UNIT_leaves,
-        .line_count = 1U, .line_leaves = s_UNIT_lines,
     },
     {
         .name = "Cell.Supervisor.Install.Return.there 1", .colset = "UNIT", .owner = 0, .bag = &s_at_Supervisor_Install_Return_there_1,
         .is_bounded = true, .bound = 1U,
-        .leaf_count = 1U, .leaf_kind = s_UNIT_kinds, .leaf_name = s_UNIT_leaves,
-        .line_count = 1U, .line_leaves = s_UNIT_lines,
     },
     {
         .name = "Cell.Supervisor.Install.Return.moving 2", .colset = "UNIT", .owner = 0, .bag = &s_at_Supervisor_Install_Return_moving_2,
         .is_bounded = true, .bound = 1U,
-        .leaf_count = 1U, .leaf_kind = s_UNIT_kinds, .leaf_name = s_UNIT_leaves,
-        .line_count = 1U, .line_leaves = s_UNIT_lines,
     },
     {
         .name = "Cell.Supervisor.Install.Return.there 2", .colset = "UNIT", .owner = 0, .bag = &s_at_Supervisor_Install_Return_there_2,
         .is_bounded = true, .bound = 1U,
-        .leaf_count = 1U, .leaf_kind = s_UNIT_kinds, .leaf_name = s_UNIT_leaves,
-        .line_count = 1U, .line_leaves = s_UNIT_lines,
     },
     {
         .name = "Cell.Supervisor.Home.leaving 1", .colset = "UNIT", .owner = 0, .bag = &s_at_Supervisor_Home_leaving_1,
         .is_bounded = true, .bound = 1U,
-        .leaf_count = 1U, .leaf_kind = s_UNIT_kinds, .leaf_name = s_UNIT_leaves,
-        .line_count = 1U, .line_leaves = s_UNIT_lines,
     },
     {
         .name = "Cell.Supervisor.Home.home 1", .colset = "UNIT", .owner = 0, .bag = &s_at_Supervisor_Home_home_1,
         .is_bounded = true, .bound = 1U,
-        .leaf_count = 1U, .leaf_kind = s_UNIT_kinds, .leaf_name = s_UNIT_leaves,
-        .line_count = 1U, .line_leaves = s_UNIT_lines,
     },
     {
         .name = "Cell.Supervisor.Home.leaving 2", .colset = "UNIT", .owner = 0, .bag = &s_at_Supervisor_Home_leaving_2,
         .is_bounded = true, .bound = 1U,
-        .leaf_count = 1U, .leaf_kind = s_UNIT_kinds, .leaf_name = s_UNIT_leaves,
-        .line_count = 1U, .line_leaves = s_UNIT_lines,
     },
     {
         .name = "Cell.Supervisor.Home.home 2", .colset = "UNIT", .owner = 0, .bag = &s_at_Supervisor_Home_home_2,
         .is_bounded = true, .bound = 1U,
-        .leaf_count = 1U, .leaf_kind = s_UNIT_kinds, .leaf_name = s_UNIT_leaves,
-        .line_count = 1U, .line_leaves = s_UNIT_lines,
     },
     {
         .name = "Cell.Robot1.Waiting", .colset = "UNIT", .owner = 1, .bag = &s_at_Robot1_Waiting,
         .is_bounded = true, .bound = 1U,
         .initial = Robot1_Waiting_init,
-        .leaf_count = 1U, .leaf_kind = s_UNIT_kinds, .leaf_name = s_UNIT_leaves,
-        .line_count = 1U, .line_leaves = s_UNIT_lines,
     },
     {
         .name = "Cell.Robot1.Commanded", .colset = "COMMAND", .owner = 1, .bag = &s_at_Robot1_Commanded,
         .is_bounded = true, .bound = 1U,
-        .leaf_count = 1U, .leaf_kind = s_COMMAND_kinds, .leaf_name = s_COMMAND_leaves,
-        .line_count = 1U, .line_leaves = s_COMMAND_lines,
     },
     {
         .name = "Cell.Robot1.Done", .colset = "REPLY", .owner = 1, .bag = &s_at_Robot1_Done,
         .is_bounded = true, .bound = 1U,
-        .leaf_count = 1U, .leaf_kind = s_REPLY_kinds, .leaf_name = s_REPLY_leaves,
-        .line_count = 1U, .line_leaves = s_REPLY_lines,
     },
     {
         .name = "Cell.Robot2.Waiting", .colset = "UNIT", .owner = 2, .bag = &s_at_Robot2_Waiting,
         .is_bounded = true, .bound = 1U,
         .initial = Robot2_Waiting_init,
-        .leaf_count = 1U, .leaf_kind = s_UNIT_kinds, .leaf_name = s_UNIT_leaves,
-        .line_count = 1U, .line_leaves = s_UNIT_lines,
     },
     {
         .name = "Cell.Robot2.Commanded", .colset = "COMMAND", .owner = 2, .bag = &s_at_Robot2_Commanded,
         .is_bounded = true, .bound = 1U,
-        .leaf_count = 1U, .leaf_kind = s_COMMAND_kinds, .leaf_name = s_COMMAND_leaves,
-        .line_count = 1U, .line_leaves = s_COMMAND_lines,
     },
     {
         .name = "Cell.Robot2.Done", .colset = "REPLY", .owner = 2, .bag = &s_at_Robot2_Done,
         .is_bounded = true, .bound = 1U,
-        .leaf_count = 1U, .leaf_kind = s_REPLY_kinds, .leaf_name = s_REPLY_leaves,
-        .line_count = 1U, .line_leaves = s_REPLY_lines,
     },
 };
 

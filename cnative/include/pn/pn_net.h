@@ -99,11 +99,6 @@ typedef struct pn_place {
     int32_t owner;          /* index in pn_net_t.owner; -1: a channel */
     bool is_bounded;        /* more tokens than `bound` have been proven impossible, or declared to be */
     uint32_t bound;
-    uint32_t leaf_count;             /* 0: no fixed number of leaves (lists, unions) */
-    const pn_leaf_kind_t *leaf_kind; /* leaf_count of them */
-    const char *const *leaf_name;    /* "x", "y", ... or "1", "2" for components; for messages */
-    uint32_t line_count;             /* how an input file is laid out: leaves per line, by top-level component */
-    const uint32_t *line_leaves;
     /* Of a packed place that follows from others: its counters and those of these places, so often, are always the same in sum. All
      * of them have as many counters of as many bits, or one counter each; no sum is more than a counter of this place can hold. */
     uint32_t share_count;

@@ -19,7 +19,6 @@ from pn2code.emission.c_expressions import (
     op_needs_table,
 )
 from pn2code.emission.c_firing import DirectFiring
-from pn2code.emission.c_leaves import Leaves
 from pn2code.emission.c_lines import mentions, wrap
 from pn2code.emission.c_needs import used_locals, uses_context
 from pn2code.emission.c_own import OwnPlaces
@@ -55,7 +54,6 @@ class _Emitter:
         self._types = Types(self._names, self._definitions)
         self._descriptors = {d.name: d for d in net.descriptors}
         self._functions = {f.key: f for f in net.functions}
-        self._leaves = Leaves(self._names, self._descriptors)
         self._blocks: dict[str, tuple[str, str, Origin]] = {}
         self._place_names = tuple(self._names.place(p.index, p.name) for p in net.places)
         for t in net.transitions:
@@ -287,7 +285,6 @@ class _Emitter:
     def _place(self, p: ir.Place) -> dict[str, object]:
         s, _, _ = self._printer(p.initial)
         s.body(p.initial)
-        leaves = self._leaves.of(p.table)
         is_slot = p.index in self._slots
         return {
             "mark": self._block(p.name, "place", p.origin),
@@ -319,9 +316,6 @@ class _Emitter:
             "maker": self._numbers.maker(p.table) if p.packed else "",
             "initial": s.lines,
             "initial_text": _comment_lines(p.initial_text),
-            "leaf_kinds": [kind for _, kind in leaves] if leaves else [],
-            "leaf_names": [name for name, _ in leaves] if leaves else [],
-            "line_leaves": self._leaves.lines(p.table) if leaves else [],
         }
 
     def _own_places(self, shared: Shared) -> OwnPlaces | None:
@@ -654,7 +648,6 @@ class _Emitter:
             ],
             "recursive_tables": [self._names.table(k) for k in recursive],
             "tables": [tables.print(k) for k in keys],
-            "leaves": self._leaves.tables(net.places),
             "places": [self._place(p) for p in net.places],
             "holders": list(
                 {self._kept[p.index]: self._holder(p) for p in net.places if not p.packed}.values()
