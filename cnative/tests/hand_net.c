@@ -85,8 +85,7 @@ static const pn_type_t BINDING = {
 
 #define BAG(field, place_name, value_type, timed)                                                                 \
     static const pn_bag_t field##_bag = {.origin = "page `Top`, place `" place_name "`", .type = &(value_type),   \
-                                         .capacity = 1U, .is_timed = (timed), PN_BAG_TOKENS(marking_t, field),    \
-                                         PN_BAG_STAMPS(marking_t, field)};
+                                         .capacity = 1U, .is_timed = (timed), PN_BAG_STAMPS(marking_t, field)};
 
 BAG(orders, "Top.Orders", ORDER_TYPE, false)
 BAG(idle, "Top.Idle", UNIT, true)

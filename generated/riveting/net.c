@@ -270,11 +270,7 @@
 /* --- colour sets ------------------------------------------------------------------------------- */
 
 /* colset REAL */
-static const pn_type_t s_REAL = {
-    .kind = PN_KIND_REAL,
-    .name = "REAL",
-    .size = sizeof(double),
-};
+static const pn_type_t s_REAL = { .kind = PN_KIND_REAL, .name = "REAL", .size = sizeof(double) };
 
 /* colset POSE */
 static const pn_field_t s_POSE_fields[] = {
@@ -285,52 +281,24 @@ static const pn_field_t s_POSE_fields[] = {
     { "ry", &s_REAL, offsetof(POSE_t, ry), false },
     { "rz", &s_REAL, offsetof(POSE_t, rz), false },
 };
-static const pn_type_t s_POSE = {
-    .kind = PN_KIND_RECORD,
-    .name = "POSE",
-    .size = sizeof(POSE_t),
-    .count = 6U,
-    .field = s_POSE_fields,
-};
+static const pn_type_t s_POSE = { .kind = PN_KIND_RECORD, .name = "POSE", .size = sizeof(POSE_t),
+    .count = 6U, .field = s_POSE_fields };
 
 /* colset COMMAND */
-static const pn_type_t s_COMMAND = {
-    .kind = PN_KIND_INT,
-    .name = "COMMAND",
-    .size = sizeof(int64_t),
-    .has_range = true,
-    .low = 1,
-    .high = 8,
-};
+static const pn_type_t s_COMMAND = { .kind = PN_KIND_INT, .name = "COMMAND",
+    .size = sizeof(int64_t), .has_range = true, .low = 1, .high = 8 };
 
 /* colset REPLY */
-static const pn_type_t s_REPLY = {
-    .kind = PN_KIND_INT,
-    .name = "REPLY",
-    .size = sizeof(int64_t),
-    .has_range = true,
-    .low = 1,
-    .high = 2,
-};
+static const pn_type_t s_REPLY = { .kind = PN_KIND_INT, .name = "REPLY", .size = sizeof(int64_t),
+    .has_range = true, .low = 1, .high = 2 };
 
 /* colset COUNT */
-static const pn_type_t s_COUNT = {
-    .kind = PN_KIND_INT,
-    .name = "COUNT",
-    .size = sizeof(int64_t),
-    .has_range = true,
-    .low = 0,
-    .high = 500,
-};
+static const pn_type_t s_COUNT = { .kind = PN_KIND_INT, .name = "COUNT", .size = sizeof(int64_t),
+    .has_range = true, .low = 0, .high = 500 };
 
 /* colset FLOAT */
-static const pn_type_t s_FLOAT = {
-    .kind = PN_KIND_REAL,
-    .name = "FLOAT",
-    .size = sizeof(double),
-    .is_float32 = true,
-    .is_narrow = true,
-};
+static const pn_type_t s_FLOAT = { .kind = PN_KIND_REAL, .name = "FLOAT", .size = sizeof(double),
+    .is_float32 = true, .is_narrow = true };
 
 /* colset FPOSE */
 static const pn_field_t s_FPOSE_fields[] = {
@@ -341,14 +309,8 @@ static const pn_field_t s_FPOSE_fields[] = {
     { "ry", &s_FLOAT, offsetof(POSE_t, ry), false },
     { "rz", &s_FLOAT, offsetof(POSE_t, rz), false },
 };
-static const pn_type_t s_FPOSE = {
-    .kind = PN_KIND_RECORD,
-    .name = "FPOSE",
-    .size = sizeof(POSE_t),
-    .is_narrow = true,
-    .count = 6U,
-    .field = s_FPOSE_fields,
-};
+static const pn_type_t s_FPOSE = { .kind = PN_KIND_RECORD, .name = "FPOSE", .size = sizeof(POSE_t),
+    .is_narrow = true, .count = 6U, .field = s_FPOSE_fields };
 
 /* colset PLAN */
 static const pn_field_t s_PLAN_fields[] = {
@@ -356,15 +318,8 @@ static const pn_field_t s_PLAN_fields[] = {
     { "2", &s_FPOSE, offsetof(PLAN_t, c2), false },
     { "3", &s_FPOSE, offsetof(PLAN_t, c3), false },
 };
-static const pn_type_t s_PLAN = {
-    .kind = PN_KIND_RECORD,
-    .name = "PLAN",
-    .size = sizeof(PLAN_t),
-    .is_narrow = true,
-    .is_tuple = true,
-    .count = 3U,
-    .field = s_PLAN_fields,
-};
+static const pn_type_t s_PLAN = { .kind = PN_KIND_RECORD, .name = "PLAN", .size = sizeof(PLAN_t),
+    .is_narrow = true, .is_tuple = true, .count = 3U, .field = s_PLAN_fields };
 
 /* colset SEAM */
 static const pn_field_t s_SEAM_fields[] = {
@@ -372,14 +327,8 @@ static const pn_field_t s_SEAM_fields[] = {
     { "first", &s_FPOSE, offsetof(SEAM_t, first), false },
     { "last", &s_FPOSE, offsetof(SEAM_t, last), false },
 };
-static const pn_type_t s_SEAM = {
-    .kind = PN_KIND_RECORD,
-    .name = "SEAM",
-    .size = sizeof(SEAM_t),
-    .is_narrow = true,
-    .count = 3U,
-    .field = s_SEAM_fields,
-};
+static const pn_type_t s_SEAM = { .kind = PN_KIND_RECORD, .name = "SEAM", .size = sizeof(SEAM_t),
+    .is_narrow = true, .count = 3U, .field = s_SEAM_fields };
 
 /* colset VERIFIED */
 static const pn_field_t s_VERIFIED_fields[] = {
@@ -387,15 +336,9 @@ static const pn_field_t s_VERIFIED_fields[] = {
     { "2", &s_POSE, offsetof(VERIFIED_t, c2), false },
     { "3", &s_POSE, offsetof(VERIFIED_t, c3), false },
 };
-static const pn_type_t s_VERIFIED = {
-    .kind = PN_KIND_RECORD,
-    .name = "VERIFIED",
-    .size = sizeof(VERIFIED_t),
-    .is_narrow = true,
-    .is_tuple = true,
-    .count = 3U,
-    .field = s_VERIFIED_fields,
-};
+static const pn_type_t s_VERIFIED = { .kind = PN_KIND_RECORD, .name = "VERIFIED",
+    .size = sizeof(VERIFIED_t), .is_narrow = true, .is_tuple = true, .count = 3U,
+    .field = s_VERIFIED_fields };
 
 /* colset FVECTOR */
 static const pn_field_t s_FVECTOR_fields[] = {
@@ -403,15 +346,9 @@ static const pn_field_t s_FVECTOR_fields[] = {
     { "2", &s_FLOAT, offsetof(VECTOR_t, c2), false },
     { "3", &s_FLOAT, offsetof(VECTOR_t, c3), false },
 };
-static const pn_type_t s_FVECTOR = {
-    .kind = PN_KIND_RECORD,
-    .name = "FVECTOR",
-    .size = sizeof(VECTOR_t),
-    .is_narrow = true,
-    .is_tuple = true,
-    .count = 3U,
-    .field = s_FVECTOR_fields,
-};
+static const pn_type_t s_FVECTOR = { .kind = PN_KIND_RECORD, .name = "FVECTOR",
+    .size = sizeof(VECTOR_t), .is_narrow = true, .is_tuple = true, .count = 3U,
+    .field = s_FVECTOR_fields };
 
 /* colset RIVETING */
 static const pn_field_t s_RIVETING_fields[] = {
@@ -419,22 +356,12 @@ static const pn_field_t s_RIVETING_fields[] = {
     { "2", &s_FPOSE, offsetof(RIVETING_t, c2), false },
     { "3", &s_FVECTOR, offsetof(RIVETING_t, c3), false },
 };
-static const pn_type_t s_RIVETING = {
-    .kind = PN_KIND_RECORD,
-    .name = "RIVETING",
-    .size = sizeof(RIVETING_t),
-    .is_narrow = true,
-    .is_tuple = true,
-    .count = 3U,
-    .field = s_RIVETING_fields,
-};
+static const pn_type_t s_RIVETING = { .kind = PN_KIND_RECORD, .name = "RIVETING",
+    .size = sizeof(RIVETING_t), .is_narrow = true, .is_tuple = true, .count = 3U,
+    .field = s_RIVETING_fields };
 
 /* colset UNIT */
-static const pn_type_t s_UNIT = {
-    .kind = PN_KIND_UNIT,
-    .name = "UNIT",
-    .size = sizeof(pn_unit_t),
-};
+static const pn_type_t s_UNIT = { .kind = PN_KIND_UNIT, .name = "UNIT", .size = sizeof(pn_unit_t) };
 
 /* colset ORDER */
 static const pn_field_t s_ORDER_fields[] = {
@@ -442,29 +369,16 @@ static const pn_field_t s_ORDER_fields[] = {
     { "2", &s_POSE, offsetof(PLAN_t, c2), false },
     { "3", &s_POSE, offsetof(PLAN_t, c3), false },
 };
-static const pn_type_t s_ORDER = {
-    .kind = PN_KIND_RECORD,
-    .name = "ORDER",
-    .size = sizeof(PLAN_t),
-    .is_tuple = true,
-    .count = 3U,
-    .field = s_ORDER_fields,
-};
+static const pn_type_t s_ORDER = { .kind = PN_KIND_RECORD, .name = "ORDER", .size = sizeof(PLAN_t),
+    .is_tuple = true, .count = 3U, .field = s_ORDER_fields };
 
 /* colset ASKED */
 static const pn_field_t s_ASKED_fields[] = {
     { "1", &s_SEAM, offsetof(ASKED_t, c1), false },
     { "2", &s_POSE, offsetof(ASKED_t, c2), false },
 };
-static const pn_type_t s_ASKED = {
-    .kind = PN_KIND_RECORD,
-    .name = "ASKED",
-    .size = sizeof(ASKED_t),
-    .is_narrow = true,
-    .is_tuple = true,
-    .count = 2U,
-    .field = s_ASKED_fields,
-};
+static const pn_type_t s_ASKED = { .kind = PN_KIND_RECORD, .name = "ASKED", .size = sizeof(ASKED_t),
+    .is_narrow = true, .is_tuple = true, .count = 2U, .field = s_ASKED_fields };
 
 /* colset VECTOR */
 static const pn_field_t s_VECTOR_fields[] = {
@@ -472,24 +386,12 @@ static const pn_field_t s_VECTOR_fields[] = {
     { "2", &s_REAL, offsetof(VECTOR_t, c2), false },
     { "3", &s_REAL, offsetof(VECTOR_t, c3), false },
 };
-static const pn_type_t s_VECTOR = {
-    .kind = PN_KIND_RECORD,
-    .name = "VECTOR",
-    .size = sizeof(VECTOR_t),
-    .is_tuple = true,
-    .count = 3U,
-    .field = s_VECTOR_fields,
-};
+static const pn_type_t s_VECTOR = { .kind = PN_KIND_RECORD, .name = "VECTOR",
+    .size = sizeof(VECTOR_t), .is_tuple = true, .count = 3U, .field = s_VECTOR_fields };
 
 /* colset RIVETS */
-static const pn_type_t s_RIVETS = {
-    .kind = PN_KIND_INT,
-    .name = "RIVETS",
-    .size = sizeof(int64_t),
-    .has_range = true,
-    .low = 0,
-    .high = 502,
-};
+static const pn_type_t s_RIVETS = { .kind = PN_KIND_INT, .name = "RIVETS", .size = sizeof(int64_t),
+    .has_range = true, .low = 0, .high = 502 };
 
 /* colset WORK */
 static const pn_field_t s_WORK_fields[] = {
@@ -498,15 +400,8 @@ static const pn_field_t s_WORK_fields[] = {
     { "3", &s_FPOSE, offsetof(WORK_t, c3), false },
     { "4", &s_FVECTOR, offsetof(WORK_t, c4), false },
 };
-static const pn_type_t s_WORK = {
-    .kind = PN_KIND_RECORD,
-    .name = "WORK",
-    .size = sizeof(WORK_t),
-    .is_narrow = true,
-    .is_tuple = true,
-    .count = 4U,
-    .field = s_WORK_fields,
-};
+static const pn_type_t s_WORK = { .kind = PN_KIND_RECORD, .name = "WORK", .size = sizeof(WORK_t),
+    .is_narrow = true, .is_tuple = true, .count = 4U, .field = s_WORK_fields };
 
 /* --- values ------------------------------------------------------------------------------------ */
 
@@ -870,92 +765,57 @@ static int64_t ml_worse(int64_t e, int64_t f)
 /* --- places ------------------------------------------------------------------------------------ */
 
 /* place Cell.dadosrobo1, colour set POSE: page `Cell`, place `dadosrobo1` (ID1412310013) */
-static const pn_bag_t s_at_dadosrobo1 = {
-    .origin = "page `Cell`, place `dadosrobo1` (ID1412310013)",
-    .type = &s_POSE,
-    .capacity = 1U,
-    PN_BAG_SLOT(net_marking_t, dadosrobo1),
-};
+static const pn_bag_t s_at_dadosrobo1 =
+    { .origin = "page `Cell`, place `dadosrobo1` (ID1412310013)", .type = &s_POSE, .capacity = 1U,
+    PN_BAG_SLOT(net_marking_t, dadosrobo1) };
 
 /* place Cell.flag1_interno, colour set COMMAND: page `Cell`, place `flag1_interno` (ID1412310016) */
-static const pn_bag_t s_at_flag1_interno = {
-    .origin = "page `Cell`, place `flag1_interno` (ID1412310016)",
-    .type = &s_COMMAND,
-    .capacity = 1U,
-    PN_BAG_SLOT(net_marking_t, flag1_interno),
-};
+static const pn_bag_t s_at_flag1_interno =
+    { .origin = "page `Cell`, place `flag1_interno` (ID1412310016)", .type = &s_COMMAND,
+    .capacity = 1U, PN_BAG_SLOT(net_marking_t, flag1_interno) };
 
 /* place Cell.flag1_externo, colour set REPLY: page `Cell`, place `flag1_externo` (ID1412310019) */
-static const pn_bag_t s_at_flag1_externo = {
-    .origin = "page `Cell`, place `flag1_externo` (ID1412310019)",
-    .type = &s_REPLY,
-    .capacity = 1U,
-    PN_BAG_SLOT(net_marking_t, flag1_externo),
-};
+static const pn_bag_t s_at_flag1_externo =
+    { .origin = "page `Cell`, place `flag1_externo` (ID1412310019)", .type = &s_REPLY,
+    .capacity = 1U, PN_BAG_SLOT(net_marking_t, flag1_externo) };
 
 /* place Cell.referencia1, colour set POSE: page `Cell`, place `referencia1` (ID1412310022) */
-static const pn_bag_t s_at_referencia1 = {
-    .origin = "page `Cell`, place `referencia1` (ID1412310022)",
-    .type = &s_POSE,
-    .capacity = 1U,
-    PN_BAG_SLOT(net_marking_t, referencia1),
-};
+static const pn_bag_t s_at_referencia1 =
+    { .origin = "page `Cell`, place `referencia1` (ID1412310022)", .type = &s_POSE, .capacity = 1U,
+    PN_BAG_SLOT(net_marking_t, referencia1) };
 
 /* place Cell.medida1, colour set POSE: page `Cell`, place `medida1` (ID1412310025) */
-static const pn_bag_t s_at_medida1 = {
-    .origin = "page `Cell`, place `medida1` (ID1412310025)",
-    .type = &s_POSE,
-    .capacity = 1U,
-    PN_BAG_SLOT(net_marking_t, medida1),
-};
+static const pn_bag_t s_at_medida1 = { .origin = "page `Cell`, place `medida1` (ID1412310025)",
+    .type = &s_POSE, .capacity = 1U, PN_BAG_SLOT(net_marking_t, medida1) };
 
 /* place Cell.dadosrobo2, colour set POSE: page `Cell`, place `dadosrobo2` (ID1412310028) */
-static const pn_bag_t s_at_dadosrobo2 = {
-    .origin = "page `Cell`, place `dadosrobo2` (ID1412310028)",
-    .type = &s_POSE,
-    .capacity = 1U,
-    PN_BAG_SLOT(net_marking_t, dadosrobo2),
-};
+static const pn_bag_t s_at_dadosrobo2 =
+    { .origin = "page `Cell`, place `dadosrobo2` (ID1412310028)", .type = &s_POSE, .capacity = 1U,
+    PN_BAG_SLOT(net_marking_t, dadosrobo2) };
 
 /* place Cell.flag2_interno, colour set COMMAND: page `Cell`, place `flag2_interno` (ID1412310031) */
-static const pn_bag_t s_at_flag2_interno = {
-    .origin = "page `Cell`, place `flag2_interno` (ID1412310031)",
-    .type = &s_COMMAND,
-    .capacity = 1U,
-    PN_BAG_SLOT(net_marking_t, flag2_interno),
-};
+static const pn_bag_t s_at_flag2_interno =
+    { .origin = "page `Cell`, place `flag2_interno` (ID1412310031)", .type = &s_COMMAND,
+    .capacity = 1U, PN_BAG_SLOT(net_marking_t, flag2_interno) };
 
 /* place Cell.flag2_externo, colour set REPLY: page `Cell`, place `flag2_externo` (ID1412310034) */
-static const pn_bag_t s_at_flag2_externo = {
-    .origin = "page `Cell`, place `flag2_externo` (ID1412310034)",
-    .type = &s_REPLY,
-    .capacity = 1U,
-    PN_BAG_SLOT(net_marking_t, flag2_externo),
-};
+static const pn_bag_t s_at_flag2_externo =
+    { .origin = "page `Cell`, place `flag2_externo` (ID1412310034)", .type = &s_REPLY,
+    .capacity = 1U, PN_BAG_SLOT(net_marking_t, flag2_externo) };
 
 /* place Cell.referencia2, colour set POSE: page `Cell`, place `referencia2` (ID1412330001) */
-static const pn_bag_t s_at_referencia2 = {
-    .origin = "page `Cell`, place `referencia2` (ID1412330001)",
-    .type = &s_POSE,
-    .capacity = 1U,
-    PN_BAG_SLOT(net_marking_t, referencia2),
-};
+static const pn_bag_t s_at_referencia2 =
+    { .origin = "page `Cell`, place `referencia2` (ID1412330001)", .type = &s_POSE, .capacity = 1U,
+    PN_BAG_SLOT(net_marking_t, referencia2) };
 
 /* place Cell.medida2, colour set POSE: page `Cell`, place `medida2` (ID1412330004) */
-static const pn_bag_t s_at_medida2 = {
-    .origin = "page `Cell`, place `medida2` (ID1412330004)",
-    .type = &s_POSE,
-    .capacity = 1U,
-    PN_BAG_SLOT(net_marking_t, medida2),
-};
+static const pn_bag_t s_at_medida2 = { .origin = "page `Cell`, place `medida2` (ID1412330004)",
+    .type = &s_POSE, .capacity = 1U, PN_BAG_SLOT(net_marking_t, medida2) };
 
 /* place Cell.Supervisor.coordenadas, colour set PLAN: page `Supervisor`, place `coordenadas` (ID1412310094) */
-static const pn_bag_t s_at_Supervisor_coordenadas = {
-    .origin = "page `Supervisor`, place `coordenadas` (ID1412310094)",
-    .type = &s_PLAN,
-    .capacity = 1U,
-    PN_BAG_SLOT(net_marking_t, Supervisor_coordenadas),
-};
+static const pn_bag_t s_at_Supervisor_coordenadas =
+    { .origin = "page `Supervisor`, place `coordenadas` (ID1412310094)", .type = &s_PLAN,
+    .capacity = 1U, PN_BAG_SLOT(net_marking_t, Supervisor_coordenadas) };
 
 /* initial marking:
  *     (5,
@@ -979,476 +839,299 @@ static bool Supervisor_coordenadas_init(pn_ctx_t *cx, void *marking)
 }
 
 /* place Cell.Supervisor.planned, colour set SEAM: page `Supervisor`, place `planned` (ID1412310097) */
-static const pn_bag_t s_at_Supervisor_planned = {
-    .origin = "page `Supervisor`, place `planned` (ID1412310097)",
-    .type = &s_SEAM,
-    .capacity = 1U,
-    PN_BAG_SLOT(net_marking_t, Supervisor_planned),
-};
+static const pn_bag_t s_at_Supervisor_planned =
+    { .origin = "page `Supervisor`, place `planned` (ID1412310097)", .type = &s_SEAM,
+    .capacity = 1U, PN_BAG_SLOT(net_marking_t, Supervisor_planned) };
 
 /* place Cell.Supervisor.approached, colour set SEAM: page `Supervisor`, place `approached` (ID1412310100) */
-static const pn_bag_t s_at_Supervisor_approached = {
-    .origin = "page `Supervisor`, place `approached` (ID1412310100)",
-    .type = &s_SEAM,
-    .capacity = 1U,
-    PN_BAG_SLOT(net_marking_t, Supervisor_approached),
-};
+static const pn_bag_t s_at_Supervisor_approached =
+    { .origin = "page `Supervisor`, place `approached` (ID1412310100)", .type = &s_SEAM,
+    .capacity = 1U, PN_BAG_SLOT(net_marking_t, Supervisor_approached) };
 
 /* place Cell.Supervisor.verified, colour set VERIFIED: page `Supervisor`, place `verified` (ID1412310103) */
-static const pn_bag_t s_at_Supervisor_verified = {
-    .origin = "page `Supervisor`, place `verified` (ID1412310103)",
-    .type = &s_VERIFIED,
-    .capacity = 1U,
-    PN_BAG_SLOT(net_marking_t, Supervisor_verified),
-};
+static const pn_bag_t s_at_Supervisor_verified =
+    { .origin = "page `Supervisor`, place `verified` (ID1412310103)", .type = &s_VERIFIED,
+    .capacity = 1U, PN_BAG_SLOT(net_marking_t, Supervisor_verified) };
 
 /* place Cell.Supervisor.corrected, colour set RIVETING: page `Supervisor`, place `corrected` (ID1412310106) */
-static const pn_bag_t s_at_Supervisor_corrected = {
-    .origin = "page `Supervisor`, place `corrected` (ID1412310106)",
-    .type = &s_RIVETING,
-    .capacity = 1U,
-    PN_BAG_SLOT(net_marking_t, Supervisor_corrected),
-};
+static const pn_bag_t s_at_Supervisor_corrected =
+    { .origin = "page `Supervisor`, place `corrected` (ID1412310106)", .type = &s_RIVETING,
+    .capacity = 1U, PN_BAG_SLOT(net_marking_t, Supervisor_corrected) };
 
 /* place Cell.Supervisor.ended, colour set UNIT: page `Supervisor`, place `ended` (ID1412310109) */
-static const pn_bag_t s_at_Supervisor_ended = {
-    .origin = "page `Supervisor`, place `ended` (ID1412310109)",
-    .type = &s_UNIT,
-    .capacity = 1U,
-    PN_BAG_SLOT(net_marking_t, Supervisor_ended),
-};
+static const pn_bag_t s_at_Supervisor_ended =
+    { .origin = "page `Supervisor`, place `ended` (ID1412310109)", .type = &s_UNIT, .capacity = 1U,
+    PN_BAG_SLOT(net_marking_t, Supervisor_ended) };
 
 /* place Cell.Supervisor.Finished, colour set UNIT: page `Supervisor`, place `Finished` (ID1412310112) */
-static const pn_bag_t s_at_Supervisor_Finished = {
-    .origin = "page `Supervisor`, place `Finished` (ID1412310112)",
-    .type = &s_UNIT,
-    .capacity = 1U,
-    PN_BAG_SLOT(net_marking_t, Supervisor_Finished),
-};
+static const pn_bag_t s_at_Supervisor_Finished =
+    { .origin = "page `Supervisor`, place `Finished` (ID1412310112)", .type = &s_UNIT,
+    .capacity = 1U, PN_BAG_SLOT(net_marking_t, Supervisor_Finished) };
 
 /* place Cell.Supervisor.result, colour set REPLY: page `Supervisor`, place `result` (ID1412320001) */
-static const pn_bag_t s_at_Supervisor_result = {
-    .origin = "page `Supervisor`, place `result` (ID1412320001)",
-    .type = &s_REPLY,
-    .capacity = 1U,
-    PN_BAG_SLOT(net_marking_t, Supervisor_result),
-};
+static const pn_bag_t s_at_Supervisor_result =
+    { .origin = "page `Supervisor`, place `result` (ID1412320001)", .type = &s_REPLY,
+    .capacity = 1U, PN_BAG_SLOT(net_marking_t, Supervisor_result) };
 
 /* place Cell.Supervisor.Failed, colour set UNIT: page `Supervisor`, place `Failed` (ID1412320004) */
-static const pn_bag_t s_at_Supervisor_Failed = {
-    .origin = "page `Supervisor`, place `Failed` (ID1412320004)",
-    .type = &s_UNIT,
-    .capacity = 1U,
-    PN_BAG_SLOT(net_marking_t, Supervisor_Failed),
-};
+static const pn_bag_t s_at_Supervisor_Failed =
+    { .origin = "page `Supervisor`, place `Failed` (ID1412320004)", .type = &s_UNIT, .capacity = 1U,
+    PN_BAG_SLOT(net_marking_t, Supervisor_Failed) };
 
 /* place Cell.Supervisor.Approach.order, colour set ORDER: page `Approach`, place `order` (ID1412310290) */
-static const pn_bag_t s_at_Supervisor_Approach_order = {
-    .origin = "page `Approach`, place `order` (ID1412310290)",
-    .type = &s_ORDER,
-    .capacity = 1U,
-    PN_BAG_SLOT(net_marking_t, Supervisor_Approach_order),
-};
+static const pn_bag_t s_at_Supervisor_Approach_order =
+    { .origin = "page `Approach`, place `order` (ID1412310290)", .type = &s_ORDER, .capacity = 1U,
+    PN_BAG_SLOT(net_marking_t, Supervisor_Approach_order) };
 
 /* place Cell.Supervisor.Approach.done, colour set UNIT: page `Approach`, place `done` (ID1412310293) */
-static const pn_bag_t s_at_Supervisor_Approach_done = {
-    .origin = "page `Approach`, place `done` (ID1412310293)",
-    .type = &s_UNIT,
-    .capacity = 1U,
-    PN_BAG_SLOT(net_marking_t, Supervisor_Approach_done),
-};
+static const pn_bag_t s_at_Supervisor_Approach_done =
+    { .origin = "page `Approach`, place `done` (ID1412310293)", .type = &s_UNIT, .capacity = 1U,
+    PN_BAG_SLOT(net_marking_t, Supervisor_Approach_done) };
 
 /* place Cell.Supervisor.Approach.seam, colour set SEAM: page `Approach`, place `seam` (ID1412310352) */
-static const pn_bag_t s_at_Supervisor_Approach_seam = {
-    .origin = "page `Approach`, place `seam` (ID1412310352)",
-    .type = &s_SEAM,
-    .capacity = 1U,
-    PN_BAG_SLOT(net_marking_t, Supervisor_Approach_seam),
-};
+static const pn_bag_t s_at_Supervisor_Approach_seam =
+    { .origin = "page `Approach`, place `seam` (ID1412310352)", .type = &s_SEAM, .capacity = 1U,
+    PN_BAG_SLOT(net_marking_t, Supervisor_Approach_seam) };
 
 /* place Cell.Supervisor.Approach.Move both.moving 1, colour set UNIT: page `MoveBoth`, place `moving 1` (ID1412310959) */
-static const pn_bag_t s_at_Supervisor_Approach_Move_both_moving_1 = {
-    .origin = "page `MoveBoth`, place `moving 1` (ID1412310959)",
-    .type = &s_UNIT,
-    .capacity = 1U,
-    PN_BAG_SLOT(net_marking_t, Supervisor_Approach_Move_both_moving_1),
-};
+static const pn_bag_t s_at_Supervisor_Approach_Move_both_moving_1 =
+    { .origin = "page `MoveBoth`, place `moving 1` (ID1412310959)", .type = &s_UNIT, .capacity = 1U,
+    PN_BAG_SLOT(net_marking_t, Supervisor_Approach_Move_both_moving_1) };
 
 /* place Cell.Supervisor.Approach.Move both.there 1, colour set UNIT: page `MoveBoth`, place `there 1` (ID1412310967) */
-static const pn_bag_t s_at_Supervisor_Approach_Move_both_there_1 = {
-    .origin = "page `MoveBoth`, place `there 1` (ID1412310967)",
-    .type = &s_UNIT,
-    .capacity = 1U,
-    PN_BAG_SLOT(net_marking_t, Supervisor_Approach_Move_both_there_1),
-};
+static const pn_bag_t s_at_Supervisor_Approach_Move_both_there_1 =
+    { .origin = "page `MoveBoth`, place `there 1` (ID1412310967)", .type = &s_UNIT, .capacity = 1U,
+    PN_BAG_SLOT(net_marking_t, Supervisor_Approach_Move_both_there_1) };
 
 /* place Cell.Supervisor.Approach.Move both.moving 2, colour set UNIT: page `MoveBoth`, place `moving 2` (ID1412310996) */
-static const pn_bag_t s_at_Supervisor_Approach_Move_both_moving_2 = {
-    .origin = "page `MoveBoth`, place `moving 2` (ID1412310996)",
-    .type = &s_UNIT,
-    .capacity = 1U,
-    PN_BAG_SLOT(net_marking_t, Supervisor_Approach_Move_both_moving_2),
-};
+static const pn_bag_t s_at_Supervisor_Approach_Move_both_moving_2 =
+    { .origin = "page `MoveBoth`, place `moving 2` (ID1412310996)", .type = &s_UNIT, .capacity = 1U,
+    PN_BAG_SLOT(net_marking_t, Supervisor_Approach_Move_both_moving_2) };
 
 /* place Cell.Supervisor.Approach.Move both.there 2, colour set UNIT: page `MoveBoth`, place `there 2` (ID1412311004) */
-static const pn_bag_t s_at_Supervisor_Approach_Move_both_there_2 = {
-    .origin = "page `MoveBoth`, place `there 2` (ID1412311004)",
-    .type = &s_UNIT,
-    .capacity = 1U,
-    PN_BAG_SLOT(net_marking_t, Supervisor_Approach_Move_both_there_2),
-};
+static const pn_bag_t s_at_Supervisor_Approach_Move_both_there_2 =
+    { .origin = "page `MoveBoth`, place `there 2` (ID1412311004)", .type = &s_UNIT, .capacity = 1U,
+    PN_BAG_SLOT(net_marking_t, Supervisor_Approach_Move_both_there_2) };
 
 /* place Cell.Supervisor.Verify.first asked, colour set SEAM: page `Verify`, place `first asked` (ID1412310382) */
-static const pn_bag_t s_at_Supervisor_Verify_first_asked = {
-    .origin = "page `Verify`, place `first asked` (ID1412310382)",
-    .type = &s_SEAM,
-    .capacity = 1U,
-    PN_BAG_SLOT(net_marking_t, Supervisor_Verify_first_asked),
-};
+static const pn_bag_t s_at_Supervisor_Verify_first_asked =
+    { .origin = "page `Verify`, place `first asked` (ID1412310382)", .type = &s_SEAM,
+    .capacity = 1U, PN_BAG_SLOT(net_marking_t, Supervisor_Verify_first_asked) };
 
 /* place Cell.Supervisor.Verify.last asked, colour set ASKED: page `Verify`, place `last asked` (ID1412310390) */
-static const pn_bag_t s_at_Supervisor_Verify_last_asked = {
-    .origin = "page `Verify`, place `last asked` (ID1412310390)",
-    .type = &s_ASKED,
-    .capacity = 1U,
-    PN_BAG_SLOT(net_marking_t, Supervisor_Verify_last_asked),
-};
+static const pn_bag_t s_at_Supervisor_Verify_last_asked =
+    { .origin = "page `Verify`, place `last asked` (ID1412310390)", .type = &s_ASKED,
+    .capacity = 1U, PN_BAG_SLOT(net_marking_t, Supervisor_Verify_last_asked) };
 
 /* place Cell.Supervisor.Correct.offset, colour set VECTOR: page `Correct`, place `offset` (ID1412310458) */
-static const pn_bag_t s_at_Supervisor_Correct_offset = {
-    .origin = "page `Correct`, place `offset` (ID1412310458)",
-    .type = &s_VECTOR,
-    .capacity = 1U,
-    PN_BAG_SLOT(net_marking_t, Supervisor_Correct_offset),
-};
+static const pn_bag_t s_at_Supervisor_Correct_offset =
+    { .origin = "page `Correct`, place `offset` (ID1412310458)", .type = &s_VECTOR, .capacity = 1U,
+    PN_BAG_SLOT(net_marking_t, Supervisor_Correct_offset) };
 
 /* place Cell.Supervisor.Correct.order, colour set ORDER: page `Correct`, place `order` (ID1412310466) */
-static const pn_bag_t s_at_Supervisor_Correct_order = {
-    .origin = "page `Correct`, place `order` (ID1412310466)",
-    .type = &s_ORDER,
-    .capacity = 1U,
-    PN_BAG_SLOT(net_marking_t, Supervisor_Correct_order),
-};
+static const pn_bag_t s_at_Supervisor_Correct_order =
+    { .origin = "page `Correct`, place `order` (ID1412310466)", .type = &s_ORDER, .capacity = 1U,
+    PN_BAG_SLOT(net_marking_t, Supervisor_Correct_order) };
 
 /* place Cell.Supervisor.Correct.done, colour set UNIT: page `Correct`, place `done` (ID1412310475) */
-static const pn_bag_t s_at_Supervisor_Correct_done = {
-    .origin = "page `Correct`, place `done` (ID1412310475)",
-    .type = &s_UNIT,
-    .capacity = 1U,
-    PN_BAG_SLOT(net_marking_t, Supervisor_Correct_done),
-};
+static const pn_bag_t s_at_Supervisor_Correct_done =
+    { .origin = "page `Correct`, place `done` (ID1412310475)", .type = &s_UNIT, .capacity = 1U,
+    PN_BAG_SLOT(net_marking_t, Supervisor_Correct_done) };
 
 /* place Cell.Supervisor.Correct.seam, colour set RIVETING: page `Correct`, place `seam` (ID1412310523) */
-static const pn_bag_t s_at_Supervisor_Correct_seam = {
-    .origin = "page `Correct`, place `seam` (ID1412310523)",
-    .type = &s_RIVETING,
-    .capacity = 1U,
-    PN_BAG_SLOT(net_marking_t, Supervisor_Correct_seam),
-};
+static const pn_bag_t s_at_Supervisor_Correct_seam =
+    { .origin = "page `Correct`, place `seam` (ID1412310523)", .type = &s_RIVETING, .capacity = 1U,
+    PN_BAG_SLOT(net_marking_t, Supervisor_Correct_seam) };
 
 /* place Cell.Supervisor.Correct.Move both.moving 1, colour set UNIT: page `MoveBoth`, place `moving 1` (ID1412310959) */
-static const pn_bag_t s_at_Supervisor_Correct_Move_both_moving_1 = {
-    .origin = "page `MoveBoth`, place `moving 1` (ID1412310959)",
-    .type = &s_UNIT,
-    .capacity = 1U,
-    PN_BAG_SLOT(net_marking_t, Supervisor_Correct_Move_both_moving_1),
-};
+static const pn_bag_t s_at_Supervisor_Correct_Move_both_moving_1 =
+    { .origin = "page `MoveBoth`, place `moving 1` (ID1412310959)", .type = &s_UNIT, .capacity = 1U,
+    PN_BAG_SLOT(net_marking_t, Supervisor_Correct_Move_both_moving_1) };
 
 /* place Cell.Supervisor.Correct.Move both.there 1, colour set UNIT: page `MoveBoth`, place `there 1` (ID1412310967) */
-static const pn_bag_t s_at_Supervisor_Correct_Move_both_there_1 = {
-    .origin = "page `MoveBoth`, place `there 1` (ID1412310967)",
-    .type = &s_UNIT,
-    .capacity = 1U,
-    PN_BAG_SLOT(net_marking_t, Supervisor_Correct_Move_both_there_1),
-};
+static const pn_bag_t s_at_Supervisor_Correct_Move_both_there_1 =
+    { .origin = "page `MoveBoth`, place `there 1` (ID1412310967)", .type = &s_UNIT, .capacity = 1U,
+    PN_BAG_SLOT(net_marking_t, Supervisor_Correct_Move_both_there_1) };
 
 /* place Cell.Supervisor.Correct.Move both.moving 2, colour set UNIT: page `MoveBoth`, place `moving 2` (ID1412310996) */
-static const pn_bag_t s_at_Supervisor_Correct_Move_both_moving_2 = {
-    .origin = "page `MoveBoth`, place `moving 2` (ID1412310996)",
-    .type = &s_UNIT,
-    .capacity = 1U,
-    PN_BAG_SLOT(net_marking_t, Supervisor_Correct_Move_both_moving_2),
-};
+static const pn_bag_t s_at_Supervisor_Correct_Move_both_moving_2 =
+    { .origin = "page `MoveBoth`, place `moving 2` (ID1412310996)", .type = &s_UNIT, .capacity = 1U,
+    PN_BAG_SLOT(net_marking_t, Supervisor_Correct_Move_both_moving_2) };
 
 /* place Cell.Supervisor.Correct.Move both.there 2, colour set UNIT: page `MoveBoth`, place `there 2` (ID1412311004) */
-static const pn_bag_t s_at_Supervisor_Correct_Move_both_there_2 = {
-    .origin = "page `MoveBoth`, place `there 2` (ID1412311004)",
-    .type = &s_UNIT,
-    .capacity = 1U,
-    PN_BAG_SLOT(net_marking_t, Supervisor_Correct_Move_both_there_2),
-};
+static const pn_bag_t s_at_Supervisor_Correct_Move_both_there_2 =
+    { .origin = "page `MoveBoth`, place `there 2` (ID1412311004)", .type = &s_UNIT, .capacity = 1U,
+    PN_BAG_SLOT(net_marking_t, Supervisor_Correct_Move_both_there_2) };
 
 /* place Cell.Supervisor.Install.shift, colour set ORDER: page `Install`, place `shift` (ID1412310585) */
-static const pn_bag_t s_at_Supervisor_Install_shift = {
-    .origin = "page `Install`, place `shift` (ID1412310585)",
-    .type = &s_ORDER,
-    .capacity = 1U,
-    PN_BAG_SLOT(net_marking_t, Supervisor_Install_shift),
-};
+static const pn_bag_t s_at_Supervisor_Install_shift =
+    { .origin = "page `Install`, place `shift` (ID1412310585)", .type = &s_ORDER, .capacity = 1U,
+    PN_BAG_SLOT(net_marking_t, Supervisor_Install_shift) };
 
 /* place Cell.Supervisor.Install.ready, colour set UNIT: page `Install`, place `ready` (ID1412310588) */
-static const pn_bag_t s_at_Supervisor_Install_ready = {
-    .origin = "page `Install`, place `ready` (ID1412310588)",
-    .type = &s_UNIT,
-    .capacity = 1U,
-    PN_BAG_SLOT(net_marking_t, Supervisor_Install_ready),
-};
+static const pn_bag_t s_at_Supervisor_Install_ready =
+    { .origin = "page `Install`, place `ready` (ID1412310588)", .type = &s_UNIT, .capacity = 1U,
+    PN_BAG_SLOT(net_marking_t, Supervisor_Install_ready) };
 
 /* place Cell.Supervisor.Install.riveted, colour set UNIT: page `Install`, place `riveted` (ID1412310591) */
-static const pn_bag_t s_at_Supervisor_Install_riveted = {
-    .origin = "page `Install`, place `riveted` (ID1412310591)",
-    .type = &s_UNIT,
-    .capacity = 1U,
-    PN_BAG_SLOT(net_marking_t, Supervisor_Install_riveted),
-};
+static const pn_bag_t s_at_Supervisor_Install_riveted =
+    { .origin = "page `Install`, place `riveted` (ID1412310591)", .type = &s_UNIT, .capacity = 1U,
+    PN_BAG_SLOT(net_marking_t, Supervisor_Install_riveted) };
 
 /* place Cell.Supervisor.Install.return, colour set ORDER: page `Install`, place `return` (ID1412310599) */
-static const pn_bag_t s_at_Supervisor_Install_return = {
-    .origin = "page `Install`, place `return` (ID1412310599)",
-    .type = &s_ORDER,
-    .capacity = 1U,
-    PN_BAG_SLOT(net_marking_t, Supervisor_Install_return),
-};
+static const pn_bag_t s_at_Supervisor_Install_return =
+    { .origin = "page `Install`, place `return` (ID1412310599)", .type = &s_ORDER, .capacity = 1U,
+    PN_BAG_SLOT(net_marking_t, Supervisor_Install_return) };
 
 /* place Cell.Supervisor.Install.work, colour set WORK: page `Install`, place `work` (ID1412310629) */
-static const pn_bag_t s_at_Supervisor_Install_work = {
-    .origin = "page `Install`, place `work` (ID1412310629)",
-    .type = &s_WORK,
-    .capacity = 1U,
-    PN_BAG_SLOT(net_marking_t, Supervisor_Install_work),
-};
+static const pn_bag_t s_at_Supervisor_Install_work =
+    { .origin = "page `Install`, place `work` (ID1412310629)", .type = &s_WORK, .capacity = 1U,
+    PN_BAG_SLOT(net_marking_t, Supervisor_Install_work) };
 
 /* place Cell.Supervisor.Install.Shift.moving 1, colour set UNIT: page `MoveBoth`, place `moving 1` (ID1412310959) */
-static const pn_bag_t s_at_Supervisor_Install_Shift_moving_1 = {
-    .origin = "page `MoveBoth`, place `moving 1` (ID1412310959)",
-    .type = &s_UNIT,
-    .capacity = 1U,
-    PN_BAG_SLOT(net_marking_t, Supervisor_Install_Shift_moving_1),
-};
+static const pn_bag_t s_at_Supervisor_Install_Shift_moving_1 =
+    { .origin = "page `MoveBoth`, place `moving 1` (ID1412310959)", .type = &s_UNIT, .capacity = 1U,
+    PN_BAG_SLOT(net_marking_t, Supervisor_Install_Shift_moving_1) };
 
 /* place Cell.Supervisor.Install.Shift.there 1, colour set UNIT: page `MoveBoth`, place `there 1` (ID1412310967) */
-static const pn_bag_t s_at_Supervisor_Install_Shift_there_1 = {
-    .origin = "page `MoveBoth`, place `there 1` (ID1412310967)",
-    .type = &s_UNIT,
-    .capacity = 1U,
-    PN_BAG_SLOT(net_marking_t, Supervisor_Install_Shift_there_1),
-};
+static const pn_bag_t s_at_Supervisor_Install_Shift_there_1 =
+    { .origin = "page `MoveBoth`, place `there 1` (ID1412310967)", .type = &s_UNIT, .capacity = 1U,
+    PN_BAG_SLOT(net_marking_t, Supervisor_Install_Shift_there_1) };
 
 /* place Cell.Supervisor.Install.Shift.moving 2, colour set UNIT: page `MoveBoth`, place `moving 2` (ID1412310996) */
-static const pn_bag_t s_at_Supervisor_Install_Shift_moving_2 = {
-    .origin = "page `MoveBoth`, place `moving 2` (ID1412310996)",
-    .type = &s_UNIT,
-    .capacity = 1U,
-    PN_BAG_SLOT(net_marking_t, Supervisor_Install_Shift_moving_2),
-};
+static const pn_bag_t s_at_Supervisor_Install_Shift_moving_2 =
+    { .origin = "page `MoveBoth`, place `moving 2` (ID1412310996)", .type = &s_UNIT, .capacity = 1U,
+    PN_BAG_SLOT(net_marking_t, Supervisor_Install_Shift_moving_2) };
 
 /* place Cell.Supervisor.Install.Shift.there 2, colour set UNIT: page `MoveBoth`, place `there 2` (ID1412311004) */
-static const pn_bag_t s_at_Supervisor_Install_Shift_there_2 = {
-    .origin = "page `MoveBoth`, place `there 2` (ID1412311004)",
-    .type = &s_UNIT,
-    .capacity = 1U,
-    PN_BAG_SLOT(net_marking_t, Supervisor_Install_Shift_there_2),
-};
+static const pn_bag_t s_at_Supervisor_Install_Shift_there_2 =
+    { .origin = "page `MoveBoth`, place `there 2` (ID1412311004)", .type = &s_UNIT, .capacity = 1U,
+    PN_BAG_SLOT(net_marking_t, Supervisor_Install_Shift_there_2) };
 
 /* place Cell.Supervisor.Install.Rivet.advance, colour set ORDER: page `Rivet`, place `advance` (ID1412310721) */
-static const pn_bag_t s_at_Supervisor_Install_Rivet_advance = {
-    .origin = "page `Rivet`, place `advance` (ID1412310721)",
-    .type = &s_ORDER,
-    .capacity = 1U,
-    PN_BAG_SLOT(net_marking_t, Supervisor_Install_Rivet_advance),
-};
+static const pn_bag_t s_at_Supervisor_Install_Rivet_advance =
+    { .origin = "page `Rivet`, place `advance` (ID1412310721)", .type = &s_ORDER, .capacity = 1U,
+    PN_BAG_SLOT(net_marking_t, Supervisor_Install_Rivet_advance) };
 
 /* place Cell.Supervisor.Install.Rivet.contact, colour set UNIT: page `Rivet`, place `contact` (ID1412310730) */
-static const pn_bag_t s_at_Supervisor_Install_Rivet_contact = {
-    .origin = "page `Rivet`, place `contact` (ID1412310730)",
-    .type = &s_UNIT,
-    .capacity = 1U,
-    PN_BAG_SLOT(net_marking_t, Supervisor_Install_Rivet_contact),
-};
+static const pn_bag_t s_at_Supervisor_Install_Rivet_contact =
+    { .origin = "page `Rivet`, place `contact` (ID1412310730)", .type = &s_UNIT, .capacity = 1U,
+    PN_BAG_SLOT(net_marking_t, Supervisor_Install_Rivet_contact) };
 
 /* place Cell.Supervisor.Install.Rivet.fastened, colour set REPLY: page `Rivet`, place `fastened` (ID1412310739) */
-static const pn_bag_t s_at_Supervisor_Install_Rivet_fastened = {
-    .origin = "page `Rivet`, place `fastened` (ID1412310739)",
-    .type = &s_REPLY,
-    .capacity = 1U,
-    PN_BAG_SLOT(net_marking_t, Supervisor_Install_Rivet_fastened),
-};
+static const pn_bag_t s_at_Supervisor_Install_Rivet_fastened =
+    { .origin = "page `Rivet`, place `fastened` (ID1412310739)", .type = &s_REPLY, .capacity = 1U,
+    PN_BAG_SLOT(net_marking_t, Supervisor_Install_Rivet_fastened) };
 
 /* place Cell.Supervisor.Install.Rivet.retract, colour set ORDER: page `Rivet`, place `retract` (ID1412310747) */
-static const pn_bag_t s_at_Supervisor_Install_Rivet_retract = {
-    .origin = "page `Rivet`, place `retract` (ID1412310747)",
-    .type = &s_ORDER,
-    .capacity = 1U,
-    PN_BAG_SLOT(net_marking_t, Supervisor_Install_Rivet_retract),
-};
+static const pn_bag_t s_at_Supervisor_Install_Rivet_retract =
+    { .origin = "page `Rivet`, place `retract` (ID1412310747)", .type = &s_ORDER, .capacity = 1U,
+    PN_BAG_SLOT(net_marking_t, Supervisor_Install_Rivet_retract) };
 
 /* place Cell.Supervisor.Install.Rivet.Advance.moving 1, colour set UNIT: page `MoveBoth`, place `moving 1` (ID1412310959) */
-static const pn_bag_t s_at_Supervisor_Install_Rivet_Advance_moving_1 = {
-    .origin = "page `MoveBoth`, place `moving 1` (ID1412310959)",
-    .type = &s_UNIT,
-    .capacity = 1U,
-    PN_BAG_SLOT(net_marking_t, Supervisor_Install_Rivet_Advance_moving_1),
-};
+static const pn_bag_t s_at_Supervisor_Install_Rivet_Advance_moving_1 =
+    { .origin = "page `MoveBoth`, place `moving 1` (ID1412310959)", .type = &s_UNIT, .capacity = 1U,
+    PN_BAG_SLOT(net_marking_t, Supervisor_Install_Rivet_Advance_moving_1) };
 
 /* place Cell.Supervisor.Install.Rivet.Advance.there 1, colour set UNIT: page `MoveBoth`, place `there 1` (ID1412310967) */
-static const pn_bag_t s_at_Supervisor_Install_Rivet_Advance_there_1 = {
-    .origin = "page `MoveBoth`, place `there 1` (ID1412310967)",
-    .type = &s_UNIT,
-    .capacity = 1U,
-    PN_BAG_SLOT(net_marking_t, Supervisor_Install_Rivet_Advance_there_1),
-};
+static const pn_bag_t s_at_Supervisor_Install_Rivet_Advance_there_1 =
+    { .origin = "page `MoveBoth`, place `there 1` (ID1412310967)", .type = &s_UNIT, .capacity = 1U,
+    PN_BAG_SLOT(net_marking_t, Supervisor_Install_Rivet_Advance_there_1) };
 
 /* place Cell.Supervisor.Install.Rivet.Advance.moving 2, colour set UNIT: page `MoveBoth`, place `moving 2` (ID1412310996) */
-static const pn_bag_t s_at_Supervisor_Install_Rivet_Advance_moving_2 = {
-    .origin = "page `MoveBoth`, place `moving 2` (ID1412310996)",
-    .type = &s_UNIT,
-    .capacity = 1U,
-    PN_BAG_SLOT(net_marking_t, Supervisor_Install_Rivet_Advance_moving_2),
-};
+static const pn_bag_t s_at_Supervisor_Install_Rivet_Advance_moving_2 =
+    { .origin = "page `MoveBoth`, place `moving 2` (ID1412310996)", .type = &s_UNIT, .capacity = 1U,
+    PN_BAG_SLOT(net_marking_t, Supervisor_Install_Rivet_Advance_moving_2) };
 
 /* place Cell.Supervisor.Install.Rivet.Advance.there 2, colour set UNIT: page `MoveBoth`, place `there 2` (ID1412311004) */
-static const pn_bag_t s_at_Supervisor_Install_Rivet_Advance_there_2 = {
-    .origin = "page `MoveBoth`, place `there 2` (ID1412311004)",
-    .type = &s_UNIT,
-    .capacity = 1U,
-    PN_BAG_SLOT(net_marking_t, Supervisor_Install_Rivet_Advance_there_2),
-};
+static const pn_bag_t s_at_Supervisor_Install_Rivet_Advance_there_2 =
+    { .origin = "page `MoveBoth`, place `there 2` (ID1412311004)", .type = &s_UNIT, .capacity = 1U,
+    PN_BAG_SLOT(net_marking_t, Supervisor_Install_Rivet_Advance_there_2) };
 
 /* place Cell.Supervisor.Install.Rivet.Fasten.pressing, colour set UNIT: page `Fasten`, place `pressing` (ID1412310847) */
-static const pn_bag_t s_at_Supervisor_Install_Rivet_Fasten_pressing = {
-    .origin = "page `Fasten`, place `pressing` (ID1412310847)",
-    .type = &s_UNIT,
-    .capacity = 1U,
-    PN_BAG_SLOT(net_marking_t, Supervisor_Install_Rivet_Fasten_pressing),
-};
+static const pn_bag_t s_at_Supervisor_Install_Rivet_Fasten_pressing =
+    { .origin = "page `Fasten`, place `pressing` (ID1412310847)", .type = &s_UNIT, .capacity = 1U,
+    PN_BAG_SLOT(net_marking_t, Supervisor_Install_Rivet_Fasten_pressing) };
 
 /* place Cell.Supervisor.Install.Rivet.Fasten.drilling, colour set UNIT: page `Fasten`, place `drilling` (ID1412310855) */
-static const pn_bag_t s_at_Supervisor_Install_Rivet_Fasten_drilling = {
-    .origin = "page `Fasten`, place `drilling` (ID1412310855)",
-    .type = &s_UNIT,
-    .capacity = 1U,
-    PN_BAG_SLOT(net_marking_t, Supervisor_Install_Rivet_Fasten_drilling),
-};
+static const pn_bag_t s_at_Supervisor_Install_Rivet_Fasten_drilling =
+    { .origin = "page `Fasten`, place `drilling` (ID1412310855)", .type = &s_UNIT, .capacity = 1U,
+    PN_BAG_SLOT(net_marking_t, Supervisor_Install_Rivet_Fasten_drilling) };
 
 /* place Cell.Supervisor.Install.Rivet.Fasten.inserting, colour set UNIT: page `Fasten`, place `inserting` (ID1412310863) */
-static const pn_bag_t s_at_Supervisor_Install_Rivet_Fasten_inserting = {
-    .origin = "page `Fasten`, place `inserting` (ID1412310863)",
-    .type = &s_UNIT,
-    .capacity = 1U,
-    PN_BAG_SLOT(net_marking_t, Supervisor_Install_Rivet_Fasten_inserting),
-};
+static const pn_bag_t s_at_Supervisor_Install_Rivet_Fasten_inserting =
+    { .origin = "page `Fasten`, place `inserting` (ID1412310863)", .type = &s_UNIT, .capacity = 1U,
+    PN_BAG_SLOT(net_marking_t, Supervisor_Install_Rivet_Fasten_inserting) };
 
 /* place Cell.Supervisor.Install.Rivet.Fasten.releasing, colour set REPLY: page `Fasten`, place `releasing` (ID1412310871) */
-static const pn_bag_t s_at_Supervisor_Install_Rivet_Fasten_releasing = {
-    .origin = "page `Fasten`, place `releasing` (ID1412310871)",
-    .type = &s_REPLY,
-    .capacity = 1U,
-    PN_BAG_SLOT(net_marking_t, Supervisor_Install_Rivet_Fasten_releasing),
-};
+static const pn_bag_t s_at_Supervisor_Install_Rivet_Fasten_releasing =
+    { .origin = "page `Fasten`, place `releasing` (ID1412310871)", .type = &s_REPLY, .capacity = 1U,
+    PN_BAG_SLOT(net_marking_t, Supervisor_Install_Rivet_Fasten_releasing) };
 
 /* place Cell.Supervisor.Install.Rivet.Retract.moving 1, colour set UNIT: page `MoveBoth`, place `moving 1` (ID1412310959) */
-static const pn_bag_t s_at_Supervisor_Install_Rivet_Retract_moving_1 = {
-    .origin = "page `MoveBoth`, place `moving 1` (ID1412310959)",
-    .type = &s_UNIT,
-    .capacity = 1U,
-    PN_BAG_SLOT(net_marking_t, Supervisor_Install_Rivet_Retract_moving_1),
-};
+static const pn_bag_t s_at_Supervisor_Install_Rivet_Retract_moving_1 =
+    { .origin = "page `MoveBoth`, place `moving 1` (ID1412310959)", .type = &s_UNIT, .capacity = 1U,
+    PN_BAG_SLOT(net_marking_t, Supervisor_Install_Rivet_Retract_moving_1) };
 
 /* place Cell.Supervisor.Install.Rivet.Retract.there 1, colour set UNIT: page `MoveBoth`, place `there 1` (ID1412310967) */
-static const pn_bag_t s_at_Supervisor_Install_Rivet_Retract_there_1 = {
-    .origin = "page `MoveBoth`, place `there 1` (ID1412310967)",
-    .type = &s_UNIT,
-    .capacity = 1U,
-    PN_BAG_SLOT(net_marking_t, Supervisor_Install_Rivet_Retract_there_1),
-};
+static const pn_bag_t s_at_Supervisor_Install_Rivet_Retract_there_1 =
+    { .origin = "page `MoveBoth`, place `there 1` (ID1412310967)", .type = &s_UNIT, .capacity = 1U,
+    PN_BAG_SLOT(net_marking_t, Supervisor_Install_Rivet_Retract_there_1) };
 
 /* place Cell.Supervisor.Install.Rivet.Retract.moving 2, colour set UNIT: page `MoveBoth`, place `moving 2` (ID1412310996) */
-static const pn_bag_t s_at_Supervisor_Install_Rivet_Retract_moving_2 = {
-    .origin = "page `MoveBoth`, place `moving 2` (ID1412310996)",
-    .type = &s_UNIT,
-    .capacity = 1U,
-    PN_BAG_SLOT(net_marking_t, Supervisor_Install_Rivet_Retract_moving_2),
-};
+static const pn_bag_t s_at_Supervisor_Install_Rivet_Retract_moving_2 =
+    { .origin = "page `MoveBoth`, place `moving 2` (ID1412310996)", .type = &s_UNIT, .capacity = 1U,
+    PN_BAG_SLOT(net_marking_t, Supervisor_Install_Rivet_Retract_moving_2) };
 
 /* place Cell.Supervisor.Install.Rivet.Retract.there 2, colour set UNIT: page `MoveBoth`, place `there 2` (ID1412311004) */
-static const pn_bag_t s_at_Supervisor_Install_Rivet_Retract_there_2 = {
-    .origin = "page `MoveBoth`, place `there 2` (ID1412311004)",
-    .type = &s_UNIT,
-    .capacity = 1U,
-    PN_BAG_SLOT(net_marking_t, Supervisor_Install_Rivet_Retract_there_2),
-};
+static const pn_bag_t s_at_Supervisor_Install_Rivet_Retract_there_2 =
+    { .origin = "page `MoveBoth`, place `there 2` (ID1412311004)", .type = &s_UNIT, .capacity = 1U,
+    PN_BAG_SLOT(net_marking_t, Supervisor_Install_Rivet_Retract_there_2) };
 
 /* place Cell.Supervisor.Install.Return.moving 1, colour set UNIT: page `MoveBoth`, place `moving 1` (ID1412310959) */
-static const pn_bag_t s_at_Supervisor_Install_Return_moving_1 = {
-    .origin = "page `MoveBoth`, place `moving 1` (ID1412310959)",
-    .type = &s_UNIT,
-    .capacity = 1U,
-    PN_BAG_SLOT(net_marking_t, Supervisor_Install_Return_moving_1),
-};
+static const pn_bag_t s_at_Supervisor_Install_Return_moving_1 =
+    { .origin = "page `MoveBoth`, place `moving 1` (ID1412310959)", .type = &s_UNIT, .capacity = 1U,
+    PN_BAG_SLOT(net_marking_t, Supervisor_Install_Return_moving_1) };
 
 /* place Cell.Supervisor.Install.Return.there 1, colour set UNIT: page `MoveBoth`, place `there 1` (ID1412310967) */
-static const pn_bag_t s_at_Supervisor_Install_Return_there_1 = {
-    .origin = "page `MoveBoth`, place `there 1` (ID1412310967)",
-    .type = &s_UNIT,
-    .capacity = 1U,
-    PN_BAG_SLOT(net_marking_t, Supervisor_Install_Return_there_1),
-};
+static const pn_bag_t s_at_Supervisor_Install_Return_there_1 =
+    { .origin = "page `MoveBoth`, place `there 1` (ID1412310967)", .type = &s_UNIT, .capacity = 1U,
+    PN_BAG_SLOT(net_marking_t, Supervisor_Install_Return_there_1) };
 
 /* place Cell.Supervisor.Install.Return.moving 2, colour set UNIT: page `MoveBoth`, place `moving 2` (ID1412310996) */
-static const pn_bag_t s_at_Supervisor_Install_Return_moving_2 = {
-    .origin = "page `MoveBoth`, place `moving 2` (ID1412310996)",
-    .type = &s_UNIT,
-    .capacity = 1U,
-    PN_BAG_SLOT(net_marking_t, Supervisor_Install_Return_moving_2),
-};
+static const pn_bag_t s_at_Supervisor_Install_Return_moving_2 =
+    { .origin = "page `MoveBoth`, place `moving 2` (ID1412310996)", .type = &s_UNIT, .capacity = 1U,
+    PN_BAG_SLOT(net_marking_t, Supervisor_Install_Return_moving_2) };
 
 /* place Cell.Supervisor.Install.Return.there 2, colour set UNIT: page `MoveBoth`, place `there 2` (ID1412311004) */
-static const pn_bag_t s_at_Supervisor_Install_Return_there_2 = {
-    .origin = "page `MoveBoth`, place `there 2` (ID1412311004)",
-    .type = &s_UNIT,
-    .capacity = 1U,
-    PN_BAG_SLOT(net_marking_t, Supervisor_Install_Return_there_2),
-};
+static const pn_bag_t s_at_Supervisor_Install_Return_there_2 =
+    { .origin = "page `MoveBoth`, place `there 2` (ID1412311004)", .type = &s_UNIT, .capacity = 1U,
+    PN_BAG_SLOT(net_marking_t, Supervisor_Install_Return_there_2) };
 
 /* place Cell.Supervisor.Home.leaving 1, colour set UNIT: page `Home`, place `leaving 1` (ID1412311057) */
-static const pn_bag_t s_at_Supervisor_Home_leaving_1 = {
-    .origin = "page `Home`, place `leaving 1` (ID1412311057)",
-    .type = &s_UNIT,
-    .capacity = 1U,
-    PN_BAG_SLOT(net_marking_t, Supervisor_Home_leaving_1),
-};
+static const pn_bag_t s_at_Supervisor_Home_leaving_1 =
+    { .origin = "page `Home`, place `leaving 1` (ID1412311057)", .type = &s_UNIT, .capacity = 1U,
+    PN_BAG_SLOT(net_marking_t, Supervisor_Home_leaving_1) };
 
 /* place Cell.Supervisor.Home.home 1, colour set UNIT: page `Home`, place `home 1` (ID1412311065) */
-static const pn_bag_t s_at_Supervisor_Home_home_1 = {
-    .origin = "page `Home`, place `home 1` (ID1412311065)",
-    .type = &s_UNIT,
-    .capacity = 1U,
-    PN_BAG_SLOT(net_marking_t, Supervisor_Home_home_1),
-};
+static const pn_bag_t s_at_Supervisor_Home_home_1 =
+    { .origin = "page `Home`, place `home 1` (ID1412311065)", .type = &s_UNIT, .capacity = 1U,
+    PN_BAG_SLOT(net_marking_t, Supervisor_Home_home_1) };
 
 /* place Cell.Supervisor.Home.leaving 2, colour set UNIT: page `Home`, place `leaving 2` (ID1412311088) */
-static const pn_bag_t s_at_Supervisor_Home_leaving_2 = {
-    .origin = "page `Home`, place `leaving 2` (ID1412311088)",
-    .type = &s_UNIT,
-    .capacity = 1U,
-    PN_BAG_SLOT(net_marking_t, Supervisor_Home_leaving_2),
-};
+static const pn_bag_t s_at_Supervisor_Home_leaving_2 =
+    { .origin = "page `Home`, place `leaving 2` (ID1412311088)", .type = &s_UNIT, .capacity = 1U,
+    PN_BAG_SLOT(net_marking_t, Supervisor_Home_leaving_2) };
 
 /* place Cell.Supervisor.Home.home 2, colour set UNIT: page `Home`, place `home 2` (ID1412311096) */
-static const pn_bag_t s_at_Supervisor_Home_home_2 = {
-    .origin = "page `Home`, place `home 2` (ID1412311096)",
-    .type = &s_UNIT,
-    .capacity = 1U,
-    PN_BAG_SLOT(net_marking_t, Supervisor_Home_home_2),
-};
+static const pn_bag_t s_at_Supervisor_Home_home_2 =
+    { .origin = "page `Home`, place `home 2` (ID1412311096)", .type = &s_UNIT, .capacity = 1U,
+    PN_BAG_SLOT(net_marking_t, Supervisor_Home_home_2) };
 
 /* place Cell.Robot1.Waiting, colour set UNIT: page `Robot`, place `Waiting` (ID1412311130) */
-static const pn_bag_t s_at_Robot1_Waiting = {
-    .origin = "page `Robot`, place `Waiting` (ID1412311130)",
-    .type = &s_UNIT,
-    .capacity = 1U,
-    PN_BAG_SLOT(net_marking_t, Robot1_Waiting),
-};
+static const pn_bag_t s_at_Robot1_Waiting =
+    { .origin = "page `Robot`, place `Waiting` (ID1412311130)", .type = &s_UNIT, .capacity = 1U,
+    PN_BAG_SLOT(net_marking_t, Robot1_Waiting) };
 
 /* initial marking:
  *     1`()
@@ -1463,28 +1146,18 @@ static bool Robot1_Waiting_init(pn_ctx_t *cx, void *marking)
 }
 
 /* place Cell.Robot1.Commanded, colour set COMMAND: page `Robot`, place `Commanded` (ID1412311133) */
-static const pn_bag_t s_at_Robot1_Commanded = {
-    .origin = "page `Robot`, place `Commanded` (ID1412311133)",
-    .type = &s_COMMAND,
-    .capacity = 1U,
-    PN_BAG_SLOT(net_marking_t, Robot1_Commanded),
-};
+static const pn_bag_t s_at_Robot1_Commanded =
+    { .origin = "page `Robot`, place `Commanded` (ID1412311133)", .type = &s_COMMAND,
+    .capacity = 1U, PN_BAG_SLOT(net_marking_t, Robot1_Commanded) };
 
 /* place Cell.Robot1.Done, colour set REPLY: page `Robot`, place `Done` (ID1412311142) */
-static const pn_bag_t s_at_Robot1_Done = {
-    .origin = "page `Robot`, place `Done` (ID1412311142)",
-    .type = &s_REPLY,
-    .capacity = 1U,
-    PN_BAG_SLOT(net_marking_t, Robot1_Done),
-};
+static const pn_bag_t s_at_Robot1_Done = { .origin = "page `Robot`, place `Done` (ID1412311142)",
+    .type = &s_REPLY, .capacity = 1U, PN_BAG_SLOT(net_marking_t, Robot1_Done) };
 
 /* place Cell.Robot2.Waiting, colour set UNIT: page `Robot`, place `Waiting` (ID1412311130) */
-static const pn_bag_t s_at_Robot2_Waiting = {
-    .origin = "page `Robot`, place `Waiting` (ID1412311130)",
-    .type = &s_UNIT,
-    .capacity = 1U,
-    PN_BAG_SLOT(net_marking_t, Robot2_Waiting),
-};
+static const pn_bag_t s_at_Robot2_Waiting =
+    { .origin = "page `Robot`, place `Waiting` (ID1412311130)", .type = &s_UNIT, .capacity = 1U,
+    PN_BAG_SLOT(net_marking_t, Robot2_Waiting) };
 
 /* initial marking:
  *     1`()
@@ -1499,20 +1172,13 @@ static bool Robot2_Waiting_init(pn_ctx_t *cx, void *marking)
 }
 
 /* place Cell.Robot2.Commanded, colour set COMMAND: page `Robot`, place `Commanded` (ID1412311133) */
-static const pn_bag_t s_at_Robot2_Commanded = {
-    .origin = "page `Robot`, place `Commanded` (ID1412311133)",
-    .type = &s_COMMAND,
-    .capacity = 1U,
-    PN_BAG_SLOT(net_marking_t, Robot2_Commanded),
-};
+static const pn_bag_t s_at_Robot2_Commanded =
+    { .origin = "page `Robot`, place `Commanded` (ID1412311133)", .type = &s_COMMAND,
+    .capacity = 1U, PN_BAG_SLOT(net_marking_t, Robot2_Commanded) };
 
 /* place Cell.Robot2.Done, colour set REPLY: page `Robot`, place `Done` (ID1412311142) */
-static const pn_bag_t s_at_Robot2_Done = {
-    .origin = "page `Robot`, place `Done` (ID1412311142)",
-    .type = &s_REPLY,
-    .capacity = 1U,
-    PN_BAG_SLOT(net_marking_t, Robot2_Done),
-};
+static const pn_bag_t s_at_Robot2_Done = { .origin = "page `Robot`, place `Done` (ID1412311142)",
+    .type = &s_REPLY, .capacity = 1U, PN_BAG_SLOT(net_marking_t, Robot2_Done) };
 
 /* --- transitions ------------------------------------------------------------------------------- */
 
@@ -1629,13 +1295,9 @@ static const pn_field_t s_variables_Supervisor_Load_Load[] = {
     { "q", &s_POSE, offsetof(Supervisor_Load_Load_binding_t, q), false },
 };
 
-static const pn_type_t s_binding_Supervisor_Load_Load = {
-    .kind = PN_KIND_RECORD,
-    .name = "Cell.Supervisor.Load.Load",
-    .size = sizeof(Supervisor_Load_Load_binding_t),
-    .count = 3U,
-    .field = s_variables_Supervisor_Load_Load,
-};
+static const pn_type_t s_binding_Supervisor_Load_Load = { .kind = PN_KIND_RECORD,
+    .name = "Cell.Supervisor.Load.Load", .size = sizeof(Supervisor_Load_Load_binding_t),
+    .count = 3U, .field = s_variables_Supervisor_Load_Load };
 
 PN_NET_SEARCH static bool Supervisor_Load_Load_enumerate(pn_ctx_t *cx, const void *marking,
     uint32_t self, pn_binding_sink_t sink, void *user)
@@ -1650,10 +1312,7 @@ PN_NET_SEARCH static bool Supervisor_Load_Load_enumerate(pn_ctx_t *cx, const voi
     b.n = m->Supervisor_coordenadas.value.c1;
     b.p = m->Supervisor_coordenadas.value.c2;
     b.q = m->Supervisor_coordenadas.value.c3;
-    if (!sink(user, self, &b)) {
-        return false;
-    }
-    return true;
+    return sink(user, self, &b);
 }
 
 PN_NET_SEARCH static bool Supervisor_Load_Load_fire(pn_ctx_t *cx, void *marking, uint32_t self, void *binding)
@@ -1668,11 +1327,10 @@ PN_NET_SEARCH static bool Supervisor_Load_Load_fire(pn_ctx_t *cx, void *marking,
         return false;
     }
     if (!m->Supervisor_coordenadas.full) {
-        pn_raise(cx, PN_ERR_SUBTRACT, NULL);
-        return false;
+        return pn_fail_missing(cx);
     }
-    if (m->Supervisor_planned.full) {
-        return pn_bag_fail_full(cx, &s_at_Supervisor_planned);
+    if (!pn_has_room(cx, m->Supervisor_planned.full, &s_at_Supervisor_planned)) {
+        return false;
     }
     /* coordenadas: (n, p, q) (ID1412310280) */
     m->Supervisor_coordenadas.full = false;
@@ -1691,13 +1349,9 @@ static const pn_field_t s_variables_Supervisor_Approach_Send[] = {
     { "s", &s_SEAM, offsetof(Supervisor_Approach_Send_binding_t, s), false },
 };
 
-static const pn_type_t s_binding_Supervisor_Approach_Send = {
-    .kind = PN_KIND_RECORD,
-    .name = "Cell.Supervisor.Approach.Send",
-    .size = sizeof(Supervisor_Approach_Send_binding_t),
-    .count = 1U,
-    .field = s_variables_Supervisor_Approach_Send,
-};
+static const pn_type_t s_binding_Supervisor_Approach_Send = { .kind = PN_KIND_RECORD,
+    .name = "Cell.Supervisor.Approach.Send", .size = sizeof(Supervisor_Approach_Send_binding_t),
+    .count = 1U, .field = s_variables_Supervisor_Approach_Send };
 
 PN_NET_SEARCH static bool Supervisor_Approach_Send_enumerate(pn_ctx_t *cx, const void *marking,
     uint32_t self, pn_binding_sink_t sink, void *user)
@@ -1710,10 +1364,7 @@ PN_NET_SEARCH static bool Supervisor_Approach_Send_enumerate(pn_ctx_t *cx, const
         return true;
     }
     b.s = m->Supervisor_planned.value;
-    if (!sink(user, self, &b)) {
-        return false;
-    }
-    return true;
+    return sink(user, self, &b);
 }
 
 PN_NET_SEARCH static bool Supervisor_Approach_Send_fire(pn_ctx_t *cx, void *marking, uint32_t self, void *binding)
@@ -1729,14 +1380,11 @@ PN_NET_SEARCH static bool Supervisor_Approach_Send_fire(pn_ctx_t *cx, void *mark
         return false;
     }
     if (!m->Supervisor_planned.full) {
-        pn_raise(cx, PN_ERR_SUBTRACT, NULL);
+        return pn_fail_missing(cx);
+    }
+    if (!pn_has_room(cx, m->Supervisor_Approach_order.full, &s_at_Supervisor_Approach_order)
+        || !pn_has_room(cx, m->Supervisor_Approach_seam.full, &s_at_Supervisor_Approach_seam)) {
         return false;
-    }
-    if (m->Supervisor_Approach_order.full) {
-        return pn_bag_fail_full(cx, &s_at_Supervisor_Approach_order);
-    }
-    if (m->Supervisor_Approach_seam.full) {
-        return pn_bag_fail_full(cx, &s_at_Supervisor_Approach_seam);
     }
     /* planned: s (ID1412310355) */
     m->Supervisor_planned.full = false;
@@ -1758,13 +1406,10 @@ static const pn_field_t s_variables_Supervisor_Approach_Arrived[] = {
     { "s", &s_SEAM, offsetof(Supervisor_Approach_Arrived_binding_t, s), false },
 };
 
-static const pn_type_t s_binding_Supervisor_Approach_Arrived = {
-    .kind = PN_KIND_RECORD,
+static const pn_type_t s_binding_Supervisor_Approach_Arrived = { .kind = PN_KIND_RECORD,
     .name = "Cell.Supervisor.Approach.Arrived",
-    .size = sizeof(Supervisor_Approach_Arrived_binding_t),
-    .count = 1U,
-    .field = s_variables_Supervisor_Approach_Arrived,
-};
+    .size = sizeof(Supervisor_Approach_Arrived_binding_t), .count = 1U,
+    .field = s_variables_Supervisor_Approach_Arrived };
 
 PN_NET_SEARCH static bool Supervisor_Approach_Arrived_enumerate(pn_ctx_t *cx, const void *marking,
     uint32_t self, pn_binding_sink_t sink, void *user)
@@ -1781,10 +1426,7 @@ PN_NET_SEARCH static bool Supervisor_Approach_Arrived_enumerate(pn_ctx_t *cx, co
         return true;
     }
     b.s = m->Supervisor_Approach_seam.value;
-    if (!sink(user, self, &b)) {
-        return false;
-    }
-    return true;
+    return sink(user, self, &b);
 }
 
 PN_NET_SEARCH static bool Supervisor_Approach_Arrived_fire(pn_ctx_t *cx, void *marking, uint32_t self, void *binding)
@@ -1794,11 +1436,10 @@ PN_NET_SEARCH static bool Supervisor_Approach_Arrived_fire(pn_ctx_t *cx, void *m
     Supervisor_Approach_Arrived_binding_t *const b = binding;
     pn_begin(cx, "page `Approach`, transition `Arrived` (ID1412310311)", m->now);
     if (!m->Supervisor_Approach_done.full || !m->Supervisor_Approach_seam.full) {
-        pn_raise(cx, PN_ERR_SUBTRACT, NULL);
-        return false;
+        return pn_fail_missing(cx);
     }
-    if (m->Supervisor_approached.full) {
-        return pn_bag_fail_full(cx, &s_at_Supervisor_approached);
+    if (!pn_has_room(cx, m->Supervisor_approached.full, &s_at_Supervisor_approached)) {
+        return false;
     }
     /* done: () (ID1412310363) */
     m->Supervisor_Approach_done.full = false;
@@ -1830,13 +1471,9 @@ static const pn_field_t s_variables_MoveBoth_Command[] = {
     { "q", &s_POSE, offsetof(MoveBoth_Command_binding_t, q), false },
 };
 
-static const pn_type_t s_binding_MoveBoth_Command = {
-    .kind = PN_KIND_RECORD,
-    .name = "Cell.Supervisor.Approach.Move both.Command",
-    .size = sizeof(MoveBoth_Command_binding_t),
-    .count = 3U,
-    .field = s_variables_MoveBoth_Command,
-};
+static const pn_type_t s_binding_MoveBoth_Command = { .kind = PN_KIND_RECORD,
+    .name = "MoveBoth.Command", .size = sizeof(MoveBoth_Command_binding_t), .count = 3U,
+    .field = s_variables_MoveBoth_Command };
 
 PN_NET_SEARCH static bool MoveBoth_Command_enumerate(pn_ctx_t *cx, const void *marking,
     uint32_t self, pn_binding_sink_t sink, void *user)
@@ -1853,10 +1490,7 @@ PN_NET_SEARCH static bool MoveBoth_Command_enumerate(pn_ctx_t *cx, const void *m
     b.c = at_order->value.c1;
     b.p = at_order->value.c2;
     b.q = at_order->value.c3;
-    if (!sink(user, self, &b)) {
-        return false;
-    }
-    return true;
+    return sink(user, self, &b);
 }
 
 PN_NET_SEARCH static bool MoveBoth_Command_fire(pn_ctx_t *cx, void *marking, uint32_t self, void *binding)
@@ -1869,26 +1503,15 @@ PN_NET_SEARCH static bool MoveBoth_Command_fire(pn_ctx_t *cx, void *marking, uin
     UNIT_slot_t *const at_moving_1 = pn_bag_reach(own->moving_1, m);
     UNIT_slot_t *const at_moving_2 = pn_bag_reach(own->moving_2, m);
     if (!at_order->full) {
-        pn_raise(cx, PN_ERR_SUBTRACT, NULL);
+        return pn_fail_missing(cx);
+    }
+    if (!pn_has_room(cx, at_moving_1->full, own->moving_1)
+        || !pn_has_room(cx, m->dadosrobo1.full, &s_at_dadosrobo1)
+        || !pn_has_room(cx, m->flag1_interno.full, &s_at_flag1_interno)
+        || !pn_has_room(cx, at_moving_2->full, own->moving_2)
+        || !pn_has_room(cx, m->dadosrobo2.full, &s_at_dadosrobo2)
+        || !pn_has_room(cx, m->flag2_interno.full, &s_at_flag2_interno)) {
         return false;
-    }
-    if (at_moving_1->full) {
-        return pn_bag_fail_full(cx, own->moving_1);
-    }
-    if (m->dadosrobo1.full) {
-        return pn_bag_fail_full(cx, &s_at_dadosrobo1);
-    }
-    if (m->flag1_interno.full) {
-        return pn_bag_fail_full(cx, &s_at_flag1_interno);
-    }
-    if (at_moving_2->full) {
-        return pn_bag_fail_full(cx, own->moving_2);
-    }
-    if (m->dadosrobo2.full) {
-        return pn_bag_fail_full(cx, &s_at_dadosrobo2);
-    }
-    if (m->flag2_interno.full) {
-        return pn_bag_fail_full(cx, &s_at_flag2_interno);
     }
     /* order: (c, p, q) (ID1412310946) */
     at_order->full = false;
@@ -1923,13 +1546,8 @@ typedef struct MoveBoth_Both_binding {
     uint8_t none; /* no variables */
 } MoveBoth_Both_binding_t;
 
-static const pn_type_t s_binding_MoveBoth_Both = {
-    .kind = PN_KIND_RECORD,
-    .name = "Cell.Supervisor.Approach.Move both.Both",
-    .size = sizeof(MoveBoth_Both_binding_t),
-    .count = 0U,
-    .field = NULL,
-};
+static const pn_type_t s_binding_MoveBoth_Both = { .kind = PN_KIND_RECORD, .name = "MoveBoth.Both",
+    .size = sizeof(MoveBoth_Both_binding_t), .count = 0U, .field = NULL };
 
 PN_NET_SEARCH static bool MoveBoth_Both_enumerate(pn_ctx_t *cx, const void *marking,
     uint32_t self, pn_binding_sink_t sink, void *user)
@@ -1948,10 +1566,7 @@ PN_NET_SEARCH static bool MoveBoth_Both_enumerate(pn_ctx_t *cx, const void *mark
     if (!at_there_2->full) {
         return true;
     }
-    if (!sink(user, self, &b)) {
-        return false;
-    }
-    return true;
+    return sink(user, self, &b);
 }
 
 PN_NET_SEARCH static bool MoveBoth_Both_fire(pn_ctx_t *cx, void *marking, uint32_t self, void *binding)
@@ -1964,11 +1579,10 @@ PN_NET_SEARCH static bool MoveBoth_Both_fire(pn_ctx_t *cx, void *marking, uint32
     UNIT_slot_t *const at_there_1 = pn_bag_reach(own->there_1, m);
     UNIT_slot_t *const at_there_2 = pn_bag_reach(own->there_2, m);
     if (!at_there_1->full || !at_there_2->full) {
-        pn_raise(cx, PN_ERR_SUBTRACT, NULL);
-        return false;
+        return pn_fail_missing(cx);
     }
-    if (at_done->full) {
-        return pn_bag_fail_full(cx, own->done);
+    if (!pn_has_room(cx, at_done->full, own->done)) {
+        return false;
     }
     /* there 1: () (ID1412310976) */
     at_there_1->full = false;
@@ -1991,13 +1605,9 @@ typedef struct MoveBoth_Reply_1_binding {
     uint8_t none; /* no variables */
 } MoveBoth_Reply_1_binding_t;
 
-static const pn_type_t s_binding_MoveBoth_Reply_1 = {
-    .kind = PN_KIND_RECORD,
-    .name = "Cell.Supervisor.Approach.Move both.Reply 1",
-    .size = sizeof(MoveBoth_Reply_1_binding_t),
-    .count = 0U,
-    .field = NULL,
-};
+static const pn_type_t s_binding_MoveBoth_Reply_1 = { .kind = PN_KIND_RECORD,
+    .name = "MoveBoth.Reply 1", .size = sizeof(MoveBoth_Reply_1_binding_t), .count = 0U,
+    .field = NULL };
 
 PN_NET_SEARCH static bool MoveBoth_Reply_1_enumerate(pn_ctx_t *cx, const void *marking,
     uint32_t self, pn_binding_sink_t sink, void *user)
@@ -2015,10 +1625,7 @@ PN_NET_SEARCH static bool MoveBoth_Reply_1_enumerate(pn_ctx_t *cx, const void *m
     if (!m->flag1_externo.full || (m->flag1_externo.value != val_DONE)) {
         return true;
     }
-    if (!sink(user, self, &b)) {
-        return false;
-    }
-    return true;
+    return sink(user, self, &b);
 }
 
 PN_NET_SEARCH static bool MoveBoth_Reply_1_fire(pn_ctx_t *cx, void *marking, uint32_t self, void *binding)
@@ -2030,11 +1637,10 @@ PN_NET_SEARCH static bool MoveBoth_Reply_1_fire(pn_ctx_t *cx, void *marking, uin
     UNIT_slot_t *const at_moving_1 = pn_bag_reach(own->moving_1, m);
     UNIT_slot_t *const at_there_1 = pn_bag_reach(own->there_1, m);
     if (!at_moving_1->full || !m->flag1_externo.full) {
-        pn_raise(cx, PN_ERR_SUBTRACT, NULL);
-        return false;
+        return pn_fail_missing(cx);
     }
-    if (at_there_1->full) {
-        return pn_bag_fail_full(cx, own->there_1);
+    if (!pn_has_room(cx, at_there_1->full, own->there_1)) {
+        return false;
     }
     /* moving 1: () (ID1412310972) */
     at_moving_1->full = false;
@@ -2057,13 +1663,9 @@ typedef struct MoveBoth_Reply_2_binding {
     uint8_t none; /* no variables */
 } MoveBoth_Reply_2_binding_t;
 
-static const pn_type_t s_binding_MoveBoth_Reply_2 = {
-    .kind = PN_KIND_RECORD,
-    .name = "Cell.Supervisor.Approach.Move both.Reply 2",
-    .size = sizeof(MoveBoth_Reply_2_binding_t),
-    .count = 0U,
-    .field = NULL,
-};
+static const pn_type_t s_binding_MoveBoth_Reply_2 = { .kind = PN_KIND_RECORD,
+    .name = "MoveBoth.Reply 2", .size = sizeof(MoveBoth_Reply_2_binding_t), .count = 0U,
+    .field = NULL };
 
 PN_NET_SEARCH static bool MoveBoth_Reply_2_enumerate(pn_ctx_t *cx, const void *marking,
     uint32_t self, pn_binding_sink_t sink, void *user)
@@ -2081,10 +1683,7 @@ PN_NET_SEARCH static bool MoveBoth_Reply_2_enumerate(pn_ctx_t *cx, const void *m
     if (!m->flag2_externo.full || (m->flag2_externo.value != val_DONE)) {
         return true;
     }
-    if (!sink(user, self, &b)) {
-        return false;
-    }
-    return true;
+    return sink(user, self, &b);
 }
 
 PN_NET_SEARCH static bool MoveBoth_Reply_2_fire(pn_ctx_t *cx, void *marking, uint32_t self, void *binding)
@@ -2096,11 +1695,10 @@ PN_NET_SEARCH static bool MoveBoth_Reply_2_fire(pn_ctx_t *cx, void *marking, uin
     UNIT_slot_t *const at_moving_2 = pn_bag_reach(own->moving_2, m);
     UNIT_slot_t *const at_there_2 = pn_bag_reach(own->there_2, m);
     if (!at_moving_2->full || !m->flag2_externo.full) {
-        pn_raise(cx, PN_ERR_SUBTRACT, NULL);
-        return false;
+        return pn_fail_missing(cx);
     }
-    if (at_there_2->full) {
-        return pn_bag_fail_full(cx, own->there_2);
+    if (!pn_has_room(cx, at_there_2->full, own->there_2)) {
+        return false;
     }
     /* moving 2: () (ID1412311009) */
     at_moving_2->full = false;
@@ -2120,13 +1718,10 @@ static const pn_field_t s_variables_Supervisor_Verify_Ask_first[] = {
     { "s", &s_SEAM, offsetof(Supervisor_Verify_Ask_first_binding_t, s), false },
 };
 
-static const pn_type_t s_binding_Supervisor_Verify_Ask_first = {
-    .kind = PN_KIND_RECORD,
+static const pn_type_t s_binding_Supervisor_Verify_Ask_first = { .kind = PN_KIND_RECORD,
     .name = "Cell.Supervisor.Verify.Ask first",
-    .size = sizeof(Supervisor_Verify_Ask_first_binding_t),
-    .count = 1U,
-    .field = s_variables_Supervisor_Verify_Ask_first,
-};
+    .size = sizeof(Supervisor_Verify_Ask_first_binding_t), .count = 1U,
+    .field = s_variables_Supervisor_Verify_Ask_first };
 
 PN_NET_SEARCH static bool Supervisor_Verify_Ask_first_enumerate(pn_ctx_t *cx, const void *marking,
     uint32_t self, pn_binding_sink_t sink, void *user)
@@ -2139,10 +1734,7 @@ PN_NET_SEARCH static bool Supervisor_Verify_Ask_first_enumerate(pn_ctx_t *cx, co
         return true;
     }
     b.s = m->Supervisor_approached.value;
-    if (!sink(user, self, &b)) {
-        return false;
-    }
-    return true;
+    return sink(user, self, &b);
 }
 
 PN_NET_SEARCH static bool Supervisor_Verify_Ask_first_fire(pn_ctx_t *cx, void *marking, uint32_t self, void *binding)
@@ -2158,17 +1750,12 @@ PN_NET_SEARCH static bool Supervisor_Verify_Ask_first_fire(pn_ctx_t *cx, void *m
         return false;
     }
     if (!m->Supervisor_approached.full) {
-        pn_raise(cx, PN_ERR_SUBTRACT, NULL);
+        return pn_fail_missing(cx);
+    }
+    if (!pn_has_room(cx, m->Supervisor_Verify_first_asked.full, &s_at_Supervisor_Verify_first_asked)
+        || !pn_has_room(cx, m->referencia1.full, &s_at_referencia1)
+        || !pn_has_room(cx, m->flag1_interno.full, &s_at_flag1_interno)) {
         return false;
-    }
-    if (m->Supervisor_Verify_first_asked.full) {
-        return pn_bag_fail_full(cx, &s_at_Supervisor_Verify_first_asked);
-    }
-    if (m->referencia1.full) {
-        return pn_bag_fail_full(cx, &s_at_referencia1);
-    }
-    if (m->flag1_interno.full) {
-        return pn_bag_fail_full(cx, &s_at_flag1_interno);
     }
     /* approached: s (ID1412310418) */
     m->Supervisor_approached.full = false;
@@ -2199,13 +1786,9 @@ static const pn_field_t s_variables_Supervisor_Verify_Ask_last[] = {
     { "s", &s_SEAM, offsetof(Supervisor_Verify_Ask_last_binding_t, s), false },
 };
 
-static const pn_type_t s_binding_Supervisor_Verify_Ask_last = {
-    .kind = PN_KIND_RECORD,
-    .name = "Cell.Supervisor.Verify.Ask last",
-    .size = sizeof(Supervisor_Verify_Ask_last_binding_t),
-    .count = 3U,
-    .field = s_variables_Supervisor_Verify_Ask_last,
-};
+static const pn_type_t s_binding_Supervisor_Verify_Ask_last = { .kind = PN_KIND_RECORD,
+    .name = "Cell.Supervisor.Verify.Ask last", .size = sizeof(Supervisor_Verify_Ask_last_binding_t),
+    .count = 3U, .field = s_variables_Supervisor_Verify_Ask_last };
 
 PN_NET_SEARCH static bool Supervisor_Verify_Ask_last_enumerate(pn_ctx_t *cx, const void *marking,
     uint32_t self, pn_binding_sink_t sink, void *user)
@@ -2232,10 +1815,7 @@ PN_NET_SEARCH static bool Supervisor_Verify_Ask_last_enumerate(pn_ctx_t *cx, con
     if (!ml_usable(b.e, b.s.first, b.a)) {
         return true;
     }
-    if (!sink(user, self, &b)) {
-        return false;
-    }
-    return true;
+    return sink(user, self, &b);
 }
 
 PN_NET_SEARCH static bool Supervisor_Verify_Ask_last_fire(pn_ctx_t *cx, void *marking, uint32_t self, void *binding)
@@ -2252,17 +1832,12 @@ PN_NET_SEARCH static bool Supervisor_Verify_Ask_last_fire(pn_ctx_t *cx, void *ma
         return false;
     }
     if (!m->Supervisor_Verify_first_asked.full || !m->medida1.full || !m->flag1_externo.full) {
-        pn_raise(cx, PN_ERR_SUBTRACT, NULL);
+        return pn_fail_missing(cx);
+    }
+    if (!pn_has_room(cx, m->Supervisor_Verify_last_asked.full, &s_at_Supervisor_Verify_last_asked)
+        || !pn_has_room(cx, m->referencia1.full, &s_at_referencia1)
+        || !pn_has_room(cx, m->flag1_interno.full, &s_at_flag1_interno)) {
         return false;
-    }
-    if (m->Supervisor_Verify_last_asked.full) {
-        return pn_bag_fail_full(cx, &s_at_Supervisor_Verify_last_asked);
-    }
-    if (m->referencia1.full) {
-        return pn_bag_fail_full(cx, &s_at_referencia1);
-    }
-    if (m->flag1_interno.full) {
-        return pn_bag_fail_full(cx, &s_at_flag1_interno);
     }
     /* first asked: s (ID1412310422) */
     m->Supervisor_Verify_first_asked.full = false;
@@ -2299,13 +1874,9 @@ static const pn_field_t s_variables_Supervisor_Verify_Measured[] = {
     { "s", &s_SEAM, offsetof(Supervisor_Verify_Measured_binding_t, s), false },
 };
 
-static const pn_type_t s_binding_Supervisor_Verify_Measured = {
-    .kind = PN_KIND_RECORD,
-    .name = "Cell.Supervisor.Verify.Measured",
-    .size = sizeof(Supervisor_Verify_Measured_binding_t),
-    .count = 4U,
-    .field = s_variables_Supervisor_Verify_Measured,
-};
+static const pn_type_t s_binding_Supervisor_Verify_Measured = { .kind = PN_KIND_RECORD,
+    .name = "Cell.Supervisor.Verify.Measured", .size = sizeof(Supervisor_Verify_Measured_binding_t),
+    .count = 4U, .field = s_variables_Supervisor_Verify_Measured };
 
 PN_NET_SEARCH static bool Supervisor_Verify_Measured_enumerate(pn_ctx_t *cx, const void *marking,
     uint32_t self, pn_binding_sink_t sink, void *user)
@@ -2333,10 +1904,7 @@ PN_NET_SEARCH static bool Supervisor_Verify_Measured_enumerate(pn_ctx_t *cx, con
     if (!ml_usable(b.e, b.s.last, b.b)) {
         return true;
     }
-    if (!sink(user, self, &b)) {
-        return false;
-    }
-    return true;
+    return sink(user, self, &b);
 }
 
 PN_NET_SEARCH static bool Supervisor_Verify_Measured_fire(pn_ctx_t *cx, void *marking, uint32_t self, void *binding)
@@ -2347,11 +1915,10 @@ PN_NET_SEARCH static bool Supervisor_Verify_Measured_fire(pn_ctx_t *cx, void *ma
     pn_begin(cx, "page `Verify`, transition `Measured` (ID1412310393)", m->now);
     const VERIFIED_t Supervisor_verified_token = (VERIFIED_t){ .c1 = b->s, .c2 = b->a, .c3 = b->b };
     if (!m->Supervisor_Verify_last_asked.full || !m->medida1.full || !m->flag1_externo.full) {
-        pn_raise(cx, PN_ERR_SUBTRACT, NULL);
-        return false;
+        return pn_fail_missing(cx);
     }
-    if (m->Supervisor_verified.full) {
-        return pn_bag_fail_full(cx, &s_at_Supervisor_verified);
+    if (!pn_has_room(cx, m->Supervisor_verified.full, &s_at_Supervisor_verified)) {
+        return false;
     }
     /* last asked: (s, a) (ID1412310426) */
     m->Supervisor_Verify_last_asked.full = false;
@@ -2380,13 +1947,10 @@ static const pn_field_t s_variables_Supervisor_Verify_First_lost[] = {
     { "s", &s_SEAM, offsetof(Supervisor_Verify_First_lost_binding_t, s), false },
 };
 
-static const pn_type_t s_binding_Supervisor_Verify_First_lost = {
-    .kind = PN_KIND_RECORD,
+static const pn_type_t s_binding_Supervisor_Verify_First_lost = { .kind = PN_KIND_RECORD,
     .name = "Cell.Supervisor.Verify.First lost",
-    .size = sizeof(Supervisor_Verify_First_lost_binding_t),
-    .count = 3U,
-    .field = s_variables_Supervisor_Verify_First_lost,
-};
+    .size = sizeof(Supervisor_Verify_First_lost_binding_t), .count = 3U,
+    .field = s_variables_Supervisor_Verify_First_lost };
 
 PN_NET_SEARCH static bool Supervisor_Verify_First_lost_enumerate(pn_ctx_t *cx, const void *marking,
     uint32_t self, pn_binding_sink_t sink, void *user)
@@ -2413,10 +1977,7 @@ PN_NET_SEARCH static bool Supervisor_Verify_First_lost_enumerate(pn_ctx_t *cx, c
     if (ml_usable(b.e, b.s.first, b.a)) {
         return true;
     }
-    if (!sink(user, self, &b)) {
-        return false;
-    }
-    return true;
+    return sink(user, self, &b);
 }
 
 PN_NET_SEARCH static bool Supervisor_Verify_First_lost_fire(pn_ctx_t *cx, void *marking, uint32_t self, void *binding)
@@ -2431,14 +1992,11 @@ PN_NET_SEARCH static bool Supervisor_Verify_First_lost_fire(pn_ctx_t *cx, void *
         return false;
     }
     if (!m->Supervisor_Verify_first_asked.full || !m->flag1_externo.full || !m->medida1.full) {
-        pn_raise(cx, PN_ERR_SUBTRACT, NULL);
+        return pn_fail_missing(cx);
+    }
+    if (!pn_has_room(cx, m->Supervisor_result.full, &s_at_Supervisor_result)
+        || !pn_has_room(cx, m->Supervisor_ended.full, &s_at_Supervisor_ended)) {
         return false;
-    }
-    if (m->Supervisor_result.full) {
-        return pn_bag_fail_full(cx, &s_at_Supervisor_result);
-    }
-    if (m->Supervisor_ended.full) {
-        return pn_bag_fail_full(cx, &s_at_Supervisor_ended);
     }
     /* first asked: s (ID1412320036) */
     m->Supervisor_Verify_first_asked.full = false;
@@ -2471,13 +2029,10 @@ static const pn_field_t s_variables_Supervisor_Verify_Last_lost[] = {
     { "s", &s_SEAM, offsetof(Supervisor_Verify_Last_lost_binding_t, s), false },
 };
 
-static const pn_type_t s_binding_Supervisor_Verify_Last_lost = {
-    .kind = PN_KIND_RECORD,
+static const pn_type_t s_binding_Supervisor_Verify_Last_lost = { .kind = PN_KIND_RECORD,
     .name = "Cell.Supervisor.Verify.Last lost",
-    .size = sizeof(Supervisor_Verify_Last_lost_binding_t),
-    .count = 4U,
-    .field = s_variables_Supervisor_Verify_Last_lost,
-};
+    .size = sizeof(Supervisor_Verify_Last_lost_binding_t), .count = 4U,
+    .field = s_variables_Supervisor_Verify_Last_lost };
 
 PN_NET_SEARCH static bool Supervisor_Verify_Last_lost_enumerate(pn_ctx_t *cx, const void *marking,
     uint32_t self, pn_binding_sink_t sink, void *user)
@@ -2505,10 +2060,7 @@ PN_NET_SEARCH static bool Supervisor_Verify_Last_lost_enumerate(pn_ctx_t *cx, co
     if (ml_usable(b.e, b.s.last, b.b)) {
         return true;
     }
-    if (!sink(user, self, &b)) {
-        return false;
-    }
-    return true;
+    return sink(user, self, &b);
 }
 
 PN_NET_SEARCH static bool Supervisor_Verify_Last_lost_fire(pn_ctx_t *cx, void *marking, uint32_t self, void *binding)
@@ -2523,14 +2075,11 @@ PN_NET_SEARCH static bool Supervisor_Verify_Last_lost_fire(pn_ctx_t *cx, void *m
         return false;
     }
     if (!m->Supervisor_Verify_last_asked.full || !m->flag1_externo.full || !m->medida1.full) {
-        pn_raise(cx, PN_ERR_SUBTRACT, NULL);
+        return pn_fail_missing(cx);
+    }
+    if (!pn_has_room(cx, m->Supervisor_result.full, &s_at_Supervisor_result)
+        || !pn_has_room(cx, m->Supervisor_ended.full, &s_at_Supervisor_ended)) {
         return false;
-    }
-    if (m->Supervisor_result.full) {
-        return pn_bag_fail_full(cx, &s_at_Supervisor_result);
-    }
-    if (m->Supervisor_ended.full) {
-        return pn_bag_fail_full(cx, &s_at_Supervisor_ended);
     }
     /* last asked: (s, a) (ID1412320042) */
     m->Supervisor_Verify_last_asked.full = false;
@@ -2563,13 +2112,9 @@ static const pn_field_t s_variables_Supervisor_Correct_Compare[] = {
     { "q", &s_POSE, offsetof(Supervisor_Correct_Compare_binding_t, q), false },
 };
 
-static const pn_type_t s_binding_Supervisor_Correct_Compare = {
-    .kind = PN_KIND_RECORD,
-    .name = "Cell.Supervisor.Correct.Compare",
-    .size = sizeof(Supervisor_Correct_Compare_binding_t),
-    .count = 5U,
-    .field = s_variables_Supervisor_Correct_Compare,
-};
+static const pn_type_t s_binding_Supervisor_Correct_Compare = { .kind = PN_KIND_RECORD,
+    .name = "Cell.Supervisor.Correct.Compare", .size = sizeof(Supervisor_Correct_Compare_binding_t),
+    .count = 5U, .field = s_variables_Supervisor_Correct_Compare };
 
 PN_NET_SEARCH static bool Supervisor_Correct_Compare_enumerate(pn_ctx_t *cx, const void *marking,
     uint32_t self, pn_binding_sink_t sink, void *user)
@@ -2586,10 +2131,7 @@ PN_NET_SEARCH static bool Supervisor_Correct_Compare_enumerate(pn_ctx_t *cx, con
     b.n = m->Supervisor_verified.value.c1.points;
     b.a = m->Supervisor_verified.value.c2;
     b.b = m->Supervisor_verified.value.c3;
-    if (!sink(user, self, &b)) {
-        return false;
-    }
-    return true;
+    return sink(user, self, &b);
 }
 
 PN_NET_SEARCH static bool Supervisor_Correct_Compare_fire(pn_ctx_t *cx, void *marking, uint32_t self, void *binding)
@@ -2606,14 +2148,11 @@ PN_NET_SEARCH static bool Supervisor_Correct_Compare_fire(pn_ctx_t *cx, void *ma
         return false;
     }
     if (!m->Supervisor_verified.full) {
-        pn_raise(cx, PN_ERR_SUBTRACT, NULL);
+        return pn_fail_missing(cx);
+    }
+    if (!pn_has_room(cx, m->Supervisor_Correct_offset.full, &s_at_Supervisor_Correct_offset)
+        || !pn_has_room(cx, m->Supervisor_Correct_seam.full, &s_at_Supervisor_Correct_seam)) {
         return false;
-    }
-    if (m->Supervisor_Correct_offset.full) {
-        return pn_bag_fail_full(cx, &s_at_Supervisor_Correct_offset);
-    }
-    if (m->Supervisor_Correct_seam.full) {
-        return pn_bag_fail_full(cx, &s_at_Supervisor_Correct_seam);
     }
     /* verified: ({points = n, first = p, last = q}, a, b) (ID1412310531) */
     m->Supervisor_verified.full = false;
@@ -2643,13 +2182,10 @@ static const pn_field_t s_variables_Supervisor_Correct_Move_over[] = {
     { "v", &s_VECTOR, offsetof(Supervisor_Correct_Move_over_binding_t, v), false },
 };
 
-static const pn_type_t s_binding_Supervisor_Correct_Move_over = {
-    .kind = PN_KIND_RECORD,
+static const pn_type_t s_binding_Supervisor_Correct_Move_over = { .kind = PN_KIND_RECORD,
     .name = "Cell.Supervisor.Correct.Move over",
-    .size = sizeof(Supervisor_Correct_Move_over_binding_t),
-    .count = 4U,
-    .field = s_variables_Supervisor_Correct_Move_over,
-};
+    .size = sizeof(Supervisor_Correct_Move_over_binding_t), .count = 4U,
+    .field = s_variables_Supervisor_Correct_Move_over };
 
 PN_NET_SEARCH static bool Supervisor_Correct_Move_over_enumerate(pn_ctx_t *cx, const void *marking,
     uint32_t self, pn_binding_sink_t sink, void *user)
@@ -2673,10 +2209,7 @@ PN_NET_SEARCH static bool Supervisor_Correct_Move_over_enumerate(pn_ctx_t *cx, c
     b.n = m->Supervisor_Correct_seam.value.c1;
     b.p = m->Supervisor_Correct_seam.value.c2;
     b.d = m->Supervisor_Correct_seam.value.c3;
-    if (!sink(user, self, &b)) {
-        return false;
-    }
-    return true;
+    return sink(user, self, &b);
 }
 
 PN_NET_SEARCH static bool Supervisor_Correct_Move_over_fire(pn_ctx_t *cx, void *marking, uint32_t self, void *binding)
@@ -2693,11 +2226,10 @@ PN_NET_SEARCH static bool Supervisor_Correct_Move_over_fire(pn_ctx_t *cx, void *
     }
     /* seam: (n, p, d) (ID1412310539): stays where it is */
     if (!m->Supervisor_Correct_offset.full) {
-        pn_raise(cx, PN_ERR_SUBTRACT, NULL);
-        return false;
+        return pn_fail_missing(cx);
     }
-    if (m->Supervisor_Correct_order.full) {
-        return pn_bag_fail_full(cx, &s_at_Supervisor_Correct_order);
+    if (!pn_has_room(cx, m->Supervisor_Correct_order.full, &s_at_Supervisor_Correct_order)) {
+        return false;
     }
     /* offset: v (ID1412310537) */
     m->Supervisor_Correct_offset.full = false;
@@ -2720,13 +2252,9 @@ static const pn_field_t s_variables_Supervisor_Correct_Moved[] = {
     { "p", &s_POSE, offsetof(Supervisor_Correct_Moved_binding_t, p), false },
 };
 
-static const pn_type_t s_binding_Supervisor_Correct_Moved = {
-    .kind = PN_KIND_RECORD,
-    .name = "Cell.Supervisor.Correct.Moved",
-    .size = sizeof(Supervisor_Correct_Moved_binding_t),
-    .count = 3U,
-    .field = s_variables_Supervisor_Correct_Moved,
-};
+static const pn_type_t s_binding_Supervisor_Correct_Moved = { .kind = PN_KIND_RECORD,
+    .name = "Cell.Supervisor.Correct.Moved", .size = sizeof(Supervisor_Correct_Moved_binding_t),
+    .count = 3U, .field = s_variables_Supervisor_Correct_Moved };
 
 PN_NET_SEARCH static bool Supervisor_Correct_Moved_enumerate(pn_ctx_t *cx, const void *marking,
     uint32_t self, pn_binding_sink_t sink, void *user)
@@ -2745,10 +2273,7 @@ PN_NET_SEARCH static bool Supervisor_Correct_Moved_enumerate(pn_ctx_t *cx, const
     b.n = m->Supervisor_Correct_seam.value.c1;
     b.p = m->Supervisor_Correct_seam.value.c2;
     b.d = m->Supervisor_Correct_seam.value.c3;
-    if (!sink(user, self, &b)) {
-        return false;
-    }
-    return true;
+    return sink(user, self, &b);
 }
 
 PN_NET_SEARCH static bool Supervisor_Correct_Moved_fire(pn_ctx_t *cx, void *marking, uint32_t self, void *binding)
@@ -2760,11 +2285,10 @@ PN_NET_SEARCH static bool Supervisor_Correct_Moved_fire(pn_ctx_t *cx, void *mark
     const RIVETING_t Supervisor_corrected_token = (RIVETING_t){ .c1 = b->n, .c2 = b->p,
         .c3 = b->d };
     if (!m->Supervisor_Correct_done.full || !m->Supervisor_Correct_seam.full) {
-        pn_raise(cx, PN_ERR_SUBTRACT, NULL);
-        return false;
+        return pn_fail_missing(cx);
     }
-    if (m->Supervisor_corrected.full) {
-        return pn_bag_fail_full(cx, &s_at_Supervisor_corrected);
+    if (!pn_has_room(cx, m->Supervisor_corrected.full, &s_at_Supervisor_corrected)) {
+        return false;
     }
     /* done: () (ID1412310547) */
     m->Supervisor_Correct_done.full = false;
@@ -2793,13 +2317,10 @@ static const pn_field_t s_variables_Supervisor_Correct_As_planned[] = {
     { "v", &s_VECTOR, offsetof(Supervisor_Correct_As_planned_binding_t, v), false },
 };
 
-static const pn_type_t s_binding_Supervisor_Correct_As_planned = {
-    .kind = PN_KIND_RECORD,
+static const pn_type_t s_binding_Supervisor_Correct_As_planned = { .kind = PN_KIND_RECORD,
     .name = "Cell.Supervisor.Correct.As planned",
-    .size = sizeof(Supervisor_Correct_As_planned_binding_t),
-    .count = 4U,
-    .field = s_variables_Supervisor_Correct_As_planned,
-};
+    .size = sizeof(Supervisor_Correct_As_planned_binding_t), .count = 4U,
+    .field = s_variables_Supervisor_Correct_As_planned };
 
 PN_NET_SEARCH static bool Supervisor_Correct_As_planned_enumerate(pn_ctx_t *cx, const void *marking,
     uint32_t self, pn_binding_sink_t sink, void *user)
@@ -2823,10 +2344,7 @@ PN_NET_SEARCH static bool Supervisor_Correct_As_planned_enumerate(pn_ctx_t *cx, 
     b.n = m->Supervisor_Correct_seam.value.c1;
     b.p = m->Supervisor_Correct_seam.value.c2;
     b.d = m->Supervisor_Correct_seam.value.c3;
-    if (!sink(user, self, &b)) {
-        return false;
-    }
-    return true;
+    return sink(user, self, &b);
 }
 
 PN_NET_SEARCH static bool Supervisor_Correct_As_planned_fire(pn_ctx_t *cx, void *marking, uint32_t self, void *binding)
@@ -2838,11 +2356,10 @@ PN_NET_SEARCH static bool Supervisor_Correct_As_planned_fire(pn_ctx_t *cx, void 
     const RIVETING_t Supervisor_corrected_token = (RIVETING_t){ .c1 = b->n, .c2 = b->p,
         .c3 = b->d };
     if (!m->Supervisor_Correct_offset.full || !m->Supervisor_Correct_seam.full) {
-        pn_raise(cx, PN_ERR_SUBTRACT, NULL);
-        return false;
+        return pn_fail_missing(cx);
     }
-    if (m->Supervisor_corrected.full) {
-        return pn_bag_fail_full(cx, &s_at_Supervisor_corrected);
+    if (!pn_has_room(cx, m->Supervisor_corrected.full, &s_at_Supervisor_corrected)) {
+        return false;
     }
     /* offset: v (ID1412310553) */
     m->Supervisor_Correct_offset.full = false;
@@ -2871,13 +2388,9 @@ static const pn_field_t s_variables_Supervisor_Install_Go_back[] = {
     { "p", &s_POSE, offsetof(Supervisor_Install_Go_back_binding_t, p), false },
 };
 
-static const pn_type_t s_binding_Supervisor_Install_Go_back = {
-    .kind = PN_KIND_RECORD,
-    .name = "Cell.Supervisor.Install.Go back",
-    .size = sizeof(Supervisor_Install_Go_back_binding_t),
-    .count = 4U,
-    .field = s_variables_Supervisor_Install_Go_back,
-};
+static const pn_type_t s_binding_Supervisor_Install_Go_back = { .kind = PN_KIND_RECORD,
+    .name = "Cell.Supervisor.Install.Go back", .size = sizeof(Supervisor_Install_Go_back_binding_t),
+    .count = 4U, .field = s_variables_Supervisor_Install_Go_back };
 
 PN_NET_SEARCH static bool Supervisor_Install_Go_back_enumerate(pn_ctx_t *cx, const void *marking,
     uint32_t self, pn_binding_sink_t sink, void *user)
@@ -2905,10 +2418,7 @@ PN_NET_SEARCH static bool Supervisor_Install_Go_back_enumerate(pn_ctx_t *cx, con
     if (b.k != 1) {
         return true;
     }
-    if (!sink(user, self, &b)) {
-        return false;
-    }
-    return true;
+    return sink(user, self, &b);
 }
 
 PN_NET_SEARCH static bool Supervisor_Install_Go_back_fire(pn_ctx_t *cx, void *marking, uint32_t self, void *binding)
@@ -2926,11 +2436,10 @@ PN_NET_SEARCH static bool Supervisor_Install_Go_back_fire(pn_ctx_t *cx, void *ma
     }
     /* result: DONE (ID1412320065): stays where it is */
     if (!m->Supervisor_Install_riveted.full || !m->Supervisor_Install_work.full) {
-        pn_raise(cx, PN_ERR_SUBTRACT, NULL);
-        return false;
+        return pn_fail_missing(cx);
     }
-    if (m->Supervisor_Install_return.full) {
-        return pn_bag_fail_full(cx, &s_at_Supervisor_Install_return);
+    if (!pn_has_room(cx, m->Supervisor_Install_return.full, &s_at_Supervisor_Install_return)) {
+        return false;
     }
     /* riveted: () (ID1412310685) */
     m->Supervisor_Install_riveted.full = false;
@@ -2959,13 +2468,10 @@ static const pn_field_t s_variables_Supervisor_Install_Next_rivet[] = {
     { "p", &s_POSE, offsetof(Supervisor_Install_Next_rivet_binding_t, p), false },
 };
 
-static const pn_type_t s_binding_Supervisor_Install_Next_rivet = {
-    .kind = PN_KIND_RECORD,
+static const pn_type_t s_binding_Supervisor_Install_Next_rivet = { .kind = PN_KIND_RECORD,
     .name = "Cell.Supervisor.Install.Next rivet",
-    .size = sizeof(Supervisor_Install_Next_rivet_binding_t),
-    .count = 4U,
-    .field = s_variables_Supervisor_Install_Next_rivet,
-};
+    .size = sizeof(Supervisor_Install_Next_rivet_binding_t), .count = 4U,
+    .field = s_variables_Supervisor_Install_Next_rivet };
 
 PN_NET_SEARCH static bool Supervisor_Install_Next_rivet_enumerate(pn_ctx_t *cx, const void *marking,
     uint32_t self, pn_binding_sink_t sink, void *user)
@@ -2993,10 +2499,7 @@ PN_NET_SEARCH static bool Supervisor_Install_Next_rivet_enumerate(pn_ctx_t *cx, 
     if (!(b.k > 1)) {
         return true;
     }
-    if (!sink(user, self, &b)) {
-        return false;
-    }
-    return true;
+    return sink(user, self, &b);
 }
 
 PN_NET_SEARCH static bool Supervisor_Install_Next_rivet_fire(pn_ctx_t *cx, void *marking, uint32_t self, void *binding)
@@ -3016,11 +2519,10 @@ PN_NET_SEARCH static bool Supervisor_Install_Next_rivet_fire(pn_ctx_t *cx, void 
     }
     if (!m->Supervisor_Install_riveted.full || !m->Supervisor_result.full
         || !m->Supervisor_Install_work.full) {
-        pn_raise(cx, PN_ERR_SUBTRACT, NULL);
-        return false;
+        return pn_fail_missing(cx);
     }
-    if (m->Supervisor_Install_shift.full) {
-        return pn_bag_fail_full(cx, &s_at_Supervisor_Install_shift);
+    if (!pn_has_room(cx, m->Supervisor_Install_shift.full, &s_at_Supervisor_Install_shift)) {
+        return false;
     }
     /* riveted: () (ID1412310697) */
     m->Supervisor_Install_riveted.full = false;
@@ -3050,13 +2552,9 @@ static const pn_field_t s_variables_Supervisor_Install_Start[] = {
     { "p", &s_POSE, offsetof(Supervisor_Install_Start_binding_t, p), false },
 };
 
-static const pn_type_t s_binding_Supervisor_Install_Start = {
-    .kind = PN_KIND_RECORD,
-    .name = "Cell.Supervisor.Install.Start",
-    .size = sizeof(Supervisor_Install_Start_binding_t),
-    .count = 3U,
-    .field = s_variables_Supervisor_Install_Start,
-};
+static const pn_type_t s_binding_Supervisor_Install_Start = { .kind = PN_KIND_RECORD,
+    .name = "Cell.Supervisor.Install.Start", .size = sizeof(Supervisor_Install_Start_binding_t),
+    .count = 3U, .field = s_variables_Supervisor_Install_Start };
 
 PN_NET_SEARCH static bool Supervisor_Install_Start_enumerate(pn_ctx_t *cx, const void *marking,
     uint32_t self, pn_binding_sink_t sink, void *user)
@@ -3071,10 +2569,7 @@ PN_NET_SEARCH static bool Supervisor_Install_Start_enumerate(pn_ctx_t *cx, const
     b.n = m->Supervisor_corrected.value.c1;
     b.p = m->Supervisor_corrected.value.c2;
     b.d = m->Supervisor_corrected.value.c3;
-    if (!sink(user, self, &b)) {
-        return false;
-    }
-    return true;
+    return sink(user, self, &b);
 }
 
 PN_NET_SEARCH static bool Supervisor_Install_Start_fire(pn_ctx_t *cx, void *marking, uint32_t self, void *binding)
@@ -3090,14 +2585,11 @@ PN_NET_SEARCH static bool Supervisor_Install_Start_fire(pn_ctx_t *cx, void *mark
         return false;
     }
     if (!m->Supervisor_corrected.full) {
-        pn_raise(cx, PN_ERR_SUBTRACT, NULL);
+        return pn_fail_missing(cx);
+    }
+    if (!pn_has_room(cx, m->Supervisor_Install_ready.full, &s_at_Supervisor_Install_ready)
+        || !pn_has_room(cx, m->Supervisor_Install_work.full, &s_at_Supervisor_Install_work)) {
         return false;
-    }
-    if (m->Supervisor_Install_ready.full) {
-        return pn_bag_fail_full(cx, &s_at_Supervisor_Install_ready);
-    }
-    if (m->Supervisor_Install_work.full) {
-        return pn_bag_fail_full(cx, &s_at_Supervisor_Install_work);
     }
     /* corrected: (n, p, d) (ID1412310691) */
     m->Supervisor_corrected.full = false;
@@ -3124,13 +2616,9 @@ static const pn_field_t s_variables_Supervisor_Install_Give_up[] = {
     { "p", &s_POSE, offsetof(Supervisor_Install_Give_up_binding_t, p), false },
 };
 
-static const pn_type_t s_binding_Supervisor_Install_Give_up = {
-    .kind = PN_KIND_RECORD,
-    .name = "Cell.Supervisor.Install.Give up",
-    .size = sizeof(Supervisor_Install_Give_up_binding_t),
-    .count = 4U,
-    .field = s_variables_Supervisor_Install_Give_up,
-};
+static const pn_type_t s_binding_Supervisor_Install_Give_up = { .kind = PN_KIND_RECORD,
+    .name = "Cell.Supervisor.Install.Give up", .size = sizeof(Supervisor_Install_Give_up_binding_t),
+    .count = 4U, .field = s_variables_Supervisor_Install_Give_up };
 
 PN_NET_SEARCH static bool Supervisor_Install_Give_up_enumerate(pn_ctx_t *cx, const void *marking,
     uint32_t self, pn_binding_sink_t sink, void *user)
@@ -3154,10 +2642,7 @@ PN_NET_SEARCH static bool Supervisor_Install_Give_up_enumerate(pn_ctx_t *cx, con
     b.k = m->Supervisor_Install_work.value.c2;
     b.p = m->Supervisor_Install_work.value.c3;
     b.d = m->Supervisor_Install_work.value.c4;
-    if (!sink(user, self, &b)) {
-        return false;
-    }
-    return true;
+    return sink(user, self, &b);
 }
 
 PN_NET_SEARCH static bool Supervisor_Install_Give_up_fire(pn_ctx_t *cx, void *marking, uint32_t self, void *binding)
@@ -3168,11 +2653,10 @@ PN_NET_SEARCH static bool Supervisor_Install_Give_up_fire(pn_ctx_t *cx, void *ma
     pn_begin(cx, "page `Install`, transition `Give up` (ID1412320067)", m->now);
     /* result: FAILED (ID1412320074): stays where it is */
     if (!m->Supervisor_Install_riveted.full || !m->Supervisor_Install_work.full) {
-        pn_raise(cx, PN_ERR_SUBTRACT, NULL);
-        return false;
+        return pn_fail_missing(cx);
     }
-    if (m->Supervisor_ended.full) {
-        return pn_bag_fail_full(cx, &s_at_Supervisor_ended);
+    if (!pn_has_room(cx, m->Supervisor_ended.full, &s_at_Supervisor_ended)) {
+        return false;
     }
     /* riveted: () (ID1412320072) */
     m->Supervisor_Install_riveted.full = false;
@@ -3188,13 +2672,9 @@ typedef struct Supervisor_Install_Rivet_Go_in_binding {
     uint8_t none; /* no variables */
 } Supervisor_Install_Rivet_Go_in_binding_t;
 
-static const pn_type_t s_binding_Supervisor_Install_Rivet_Go_in = {
-    .kind = PN_KIND_RECORD,
+static const pn_type_t s_binding_Supervisor_Install_Rivet_Go_in = { .kind = PN_KIND_RECORD,
     .name = "Cell.Supervisor.Install.Rivet.Go in",
-    .size = sizeof(Supervisor_Install_Rivet_Go_in_binding_t),
-    .count = 0U,
-    .field = NULL,
-};
+    .size = sizeof(Supervisor_Install_Rivet_Go_in_binding_t), .count = 0U, .field = NULL };
 
 PN_NET_SEARCH static bool Supervisor_Install_Rivet_Go_in_enumerate(pn_ctx_t *cx, const void *marking,
     uint32_t self, pn_binding_sink_t sink, void *user)
@@ -3206,10 +2686,7 @@ PN_NET_SEARCH static bool Supervisor_Install_Rivet_Go_in_enumerate(pn_ctx_t *cx,
     if (!m->Supervisor_Install_ready.full) {
         return true;
     }
-    if (!sink(user, self, &b)) {
-        return false;
-    }
-    return true;
+    return sink(user, self, &b);
 }
 
 PN_NET_SEARCH static bool Supervisor_Install_Rivet_Go_in_fire(pn_ctx_t *cx, void *marking, uint32_t self, void *binding)
@@ -3226,11 +2703,11 @@ PN_NET_SEARCH static bool Supervisor_Install_Rivet_Go_in_fire(pn_ctx_t *cx, void
         return false;
     }
     if (!m->Supervisor_Install_ready.full) {
-        pn_raise(cx, PN_ERR_SUBTRACT, NULL);
-        return false;
+        return pn_fail_missing(cx);
     }
-    if (m->Supervisor_Install_Rivet_advance.full) {
-        return pn_bag_fail_full(cx, &s_at_Supervisor_Install_Rivet_advance);
+    if (!pn_has_room(cx, m->Supervisor_Install_Rivet_advance.full,
+        &s_at_Supervisor_Install_Rivet_advance)) {
+        return false;
     }
     /* ready: () (ID1412310816) */
     m->Supervisor_Install_ready.full = false;
@@ -3249,13 +2726,10 @@ static const pn_field_t s_variables_Supervisor_Install_Rivet_Go_out[] = {
     { "e", &s_REPLY, offsetof(Supervisor_Install_Rivet_Go_out_binding_t, e), false },
 };
 
-static const pn_type_t s_binding_Supervisor_Install_Rivet_Go_out = {
-    .kind = PN_KIND_RECORD,
+static const pn_type_t s_binding_Supervisor_Install_Rivet_Go_out = { .kind = PN_KIND_RECORD,
     .name = "Cell.Supervisor.Install.Rivet.Go out",
-    .size = sizeof(Supervisor_Install_Rivet_Go_out_binding_t),
-    .count = 1U,
-    .field = s_variables_Supervisor_Install_Rivet_Go_out,
-};
+    .size = sizeof(Supervisor_Install_Rivet_Go_out_binding_t), .count = 1U,
+    .field = s_variables_Supervisor_Install_Rivet_Go_out };
 
 PN_NET_SEARCH static bool Supervisor_Install_Rivet_Go_out_enumerate(pn_ctx_t *cx, const void *marking,
     uint32_t self, pn_binding_sink_t sink, void *user)
@@ -3268,10 +2742,7 @@ PN_NET_SEARCH static bool Supervisor_Install_Rivet_Go_out_enumerate(pn_ctx_t *cx
         return true;
     }
     b.e = m->Supervisor_Install_Rivet_fastened.value;
-    if (!sink(user, self, &b)) {
-        return false;
-    }
-    return true;
+    return sink(user, self, &b);
 }
 
 PN_NET_SEARCH static bool Supervisor_Install_Rivet_Go_out_fire(pn_ctx_t *cx, void *marking, uint32_t self, void *binding)
@@ -3288,14 +2759,12 @@ PN_NET_SEARCH static bool Supervisor_Install_Rivet_Go_out_fire(pn_ctx_t *cx, voi
         return false;
     }
     if (!m->Supervisor_Install_Rivet_fastened.full) {
-        pn_raise(cx, PN_ERR_SUBTRACT, NULL);
+        return pn_fail_missing(cx);
+    }
+    if (!pn_has_room(cx, m->Supervisor_Install_Rivet_retract.full,
+        &s_at_Supervisor_Install_Rivet_retract)
+        || !pn_has_room(cx, m->Supervisor_result.full, &s_at_Supervisor_result)) {
         return false;
-    }
-    if (m->Supervisor_Install_Rivet_retract.full) {
-        return pn_bag_fail_full(cx, &s_at_Supervisor_Install_Rivet_retract);
-    }
-    if (m->Supervisor_result.full) {
-        return pn_bag_fail_full(cx, &s_at_Supervisor_result);
     }
     /* fastened: e (ID1412310828) */
     m->Supervisor_Install_Rivet_fastened.full = false;
@@ -3313,13 +2782,9 @@ typedef struct Supervisor_Install_Rivet_Fasten_Press_binding {
     uint8_t none; /* no variables */
 } Supervisor_Install_Rivet_Fasten_Press_binding_t;
 
-static const pn_type_t s_binding_Supervisor_Install_Rivet_Fasten_Press = {
-    .kind = PN_KIND_RECORD,
+static const pn_type_t s_binding_Supervisor_Install_Rivet_Fasten_Press = { .kind = PN_KIND_RECORD,
     .name = "Cell.Supervisor.Install.Rivet.Fasten.Press",
-    .size = sizeof(Supervisor_Install_Rivet_Fasten_Press_binding_t),
-    .count = 0U,
-    .field = NULL,
-};
+    .size = sizeof(Supervisor_Install_Rivet_Fasten_Press_binding_t), .count = 0U, .field = NULL };
 
 PN_NET_SEARCH static bool Supervisor_Install_Rivet_Fasten_Press_enumerate(pn_ctx_t *cx, const void *marking,
     uint32_t self, pn_binding_sink_t sink, void *user)
@@ -3331,10 +2796,7 @@ PN_NET_SEARCH static bool Supervisor_Install_Rivet_Fasten_Press_enumerate(pn_ctx
     if (!m->Supervisor_Install_Rivet_contact.full) {
         return true;
     }
-    if (!sink(user, self, &b)) {
-        return false;
-    }
-    return true;
+    return sink(user, self, &b);
 }
 
 PN_NET_SEARCH static bool Supervisor_Install_Rivet_Fasten_Press_fire(pn_ctx_t *cx, void *marking, uint32_t self, void *binding)
@@ -3349,14 +2811,12 @@ PN_NET_SEARCH static bool Supervisor_Install_Rivet_Fasten_Press_fire(pn_ctx_t *c
         return false;
     }
     if (!m->Supervisor_Install_Rivet_contact.full) {
-        pn_raise(cx, PN_ERR_SUBTRACT, NULL);
+        return pn_fail_missing(cx);
+    }
+    if (!pn_has_room(cx, m->Supervisor_Install_Rivet_Fasten_pressing.full,
+        &s_at_Supervisor_Install_Rivet_Fasten_pressing)
+        || !pn_has_room(cx, m->flag2_interno.full, &s_at_flag2_interno)) {
         return false;
-    }
-    if (m->Supervisor_Install_Rivet_Fasten_pressing.full) {
-        return pn_bag_fail_full(cx, &s_at_Supervisor_Install_Rivet_Fasten_pressing);
-    }
-    if (m->flag2_interno.full) {
-        return pn_bag_fail_full(cx, &s_at_flag2_interno);
     }
     /* contact: () (ID1412310883) */
     m->Supervisor_Install_Rivet_contact.full = false;
@@ -3373,13 +2833,9 @@ typedef struct Supervisor_Install_Rivet_Fasten_Drill_binding {
     uint8_t none; /* no variables */
 } Supervisor_Install_Rivet_Fasten_Drill_binding_t;
 
-static const pn_type_t s_binding_Supervisor_Install_Rivet_Fasten_Drill = {
-    .kind = PN_KIND_RECORD,
+static const pn_type_t s_binding_Supervisor_Install_Rivet_Fasten_Drill = { .kind = PN_KIND_RECORD,
     .name = "Cell.Supervisor.Install.Rivet.Fasten.Drill",
-    .size = sizeof(Supervisor_Install_Rivet_Fasten_Drill_binding_t),
-    .count = 0U,
-    .field = NULL,
-};
+    .size = sizeof(Supervisor_Install_Rivet_Fasten_Drill_binding_t), .count = 0U, .field = NULL };
 
 PN_NET_SEARCH static bool Supervisor_Install_Rivet_Fasten_Drill_enumerate(pn_ctx_t *cx, const void *marking,
     uint32_t self, pn_binding_sink_t sink, void *user)
@@ -3395,10 +2851,7 @@ PN_NET_SEARCH static bool Supervisor_Install_Rivet_Fasten_Drill_enumerate(pn_ctx
     if (!m->flag2_externo.full || (m->flag2_externo.value != val_DONE)) {
         return true;
     }
-    if (!sink(user, self, &b)) {
-        return false;
-    }
-    return true;
+    return sink(user, self, &b);
 }
 
 PN_NET_SEARCH static bool Supervisor_Install_Rivet_Fasten_Drill_fire(pn_ctx_t *cx, void *marking, uint32_t self, void *binding)
@@ -3413,14 +2866,12 @@ PN_NET_SEARCH static bool Supervisor_Install_Rivet_Fasten_Drill_fire(pn_ctx_t *c
         return false;
     }
     if (!m->Supervisor_Install_Rivet_Fasten_pressing.full || !m->flag2_externo.full) {
-        pn_raise(cx, PN_ERR_SUBTRACT, NULL);
+        return pn_fail_missing(cx);
+    }
+    if (!pn_has_room(cx, m->Supervisor_Install_Rivet_Fasten_drilling.full,
+        &s_at_Supervisor_Install_Rivet_Fasten_drilling)
+        || !pn_has_room(cx, m->flag1_interno.full, &s_at_flag1_interno)) {
         return false;
-    }
-    if (m->Supervisor_Install_Rivet_Fasten_drilling.full) {
-        return pn_bag_fail_full(cx, &s_at_Supervisor_Install_Rivet_Fasten_drilling);
-    }
-    if (m->flag1_interno.full) {
-        return pn_bag_fail_full(cx, &s_at_flag1_interno);
     }
     /* pressing: () (ID1412310887) */
     m->Supervisor_Install_Rivet_Fasten_pressing.full = false;
@@ -3439,13 +2890,9 @@ typedef struct Supervisor_Install_Rivet_Fasten_Insert_binding {
     uint8_t none; /* no variables */
 } Supervisor_Install_Rivet_Fasten_Insert_binding_t;
 
-static const pn_type_t s_binding_Supervisor_Install_Rivet_Fasten_Insert = {
-    .kind = PN_KIND_RECORD,
+static const pn_type_t s_binding_Supervisor_Install_Rivet_Fasten_Insert = { .kind = PN_KIND_RECORD,
     .name = "Cell.Supervisor.Install.Rivet.Fasten.Insert",
-    .size = sizeof(Supervisor_Install_Rivet_Fasten_Insert_binding_t),
-    .count = 0U,
-    .field = NULL,
-};
+    .size = sizeof(Supervisor_Install_Rivet_Fasten_Insert_binding_t), .count = 0U, .field = NULL };
 
 PN_NET_SEARCH static bool Supervisor_Install_Rivet_Fasten_Insert_enumerate(pn_ctx_t *cx, const void *marking,
     uint32_t self, pn_binding_sink_t sink, void *user)
@@ -3461,10 +2908,7 @@ PN_NET_SEARCH static bool Supervisor_Install_Rivet_Fasten_Insert_enumerate(pn_ct
     if (!m->flag1_externo.full || (m->flag1_externo.value != val_DONE)) {
         return true;
     }
-    if (!sink(user, self, &b)) {
-        return false;
-    }
-    return true;
+    return sink(user, self, &b);
 }
 
 PN_NET_SEARCH static bool Supervisor_Install_Rivet_Fasten_Insert_fire(pn_ctx_t *cx, void *marking, uint32_t self, void *binding)
@@ -3479,14 +2923,12 @@ PN_NET_SEARCH static bool Supervisor_Install_Rivet_Fasten_Insert_fire(pn_ctx_t *
         return false;
     }
     if (!m->Supervisor_Install_Rivet_Fasten_drilling.full || !m->flag1_externo.full) {
-        pn_raise(cx, PN_ERR_SUBTRACT, NULL);
+        return pn_fail_missing(cx);
+    }
+    if (!pn_has_room(cx, m->Supervisor_Install_Rivet_Fasten_inserting.full,
+        &s_at_Supervisor_Install_Rivet_Fasten_inserting)
+        || !pn_has_room(cx, m->flag1_interno.full, &s_at_flag1_interno)) {
         return false;
-    }
-    if (m->Supervisor_Install_Rivet_Fasten_inserting.full) {
-        return pn_bag_fail_full(cx, &s_at_Supervisor_Install_Rivet_Fasten_inserting);
-    }
-    if (m->flag1_interno.full) {
-        return pn_bag_fail_full(cx, &s_at_flag1_interno);
     }
     /* drilling: () (ID1412310891) */
     m->Supervisor_Install_Rivet_Fasten_drilling.full = false;
@@ -3509,13 +2951,10 @@ static const pn_field_t s_variables_Supervisor_Install_Rivet_Fasten_Release[] = 
     { "e", &s_REPLY, offsetof(Supervisor_Install_Rivet_Fasten_Release_binding_t, e), false },
 };
 
-static const pn_type_t s_binding_Supervisor_Install_Rivet_Fasten_Release = {
-    .kind = PN_KIND_RECORD,
+static const pn_type_t s_binding_Supervisor_Install_Rivet_Fasten_Release = { .kind = PN_KIND_RECORD,
     .name = "Cell.Supervisor.Install.Rivet.Fasten.Release",
-    .size = sizeof(Supervisor_Install_Rivet_Fasten_Release_binding_t),
-    .count = 1U,
-    .field = s_variables_Supervisor_Install_Rivet_Fasten_Release,
-};
+    .size = sizeof(Supervisor_Install_Rivet_Fasten_Release_binding_t), .count = 1U,
+    .field = s_variables_Supervisor_Install_Rivet_Fasten_Release };
 
 PN_NET_SEARCH static bool Supervisor_Install_Rivet_Fasten_Release_enumerate(pn_ctx_t *cx, const void *marking,
     uint32_t self, pn_binding_sink_t sink, void *user)
@@ -3532,10 +2971,7 @@ PN_NET_SEARCH static bool Supervisor_Install_Rivet_Fasten_Release_enumerate(pn_c
         return true;
     }
     b.e = m->flag1_externo.value;
-    if (!sink(user, self, &b)) {
-        return false;
-    }
-    return true;
+    return sink(user, self, &b);
 }
 
 PN_NET_SEARCH static bool Supervisor_Install_Rivet_Fasten_Release_fire(pn_ctx_t *cx, void *marking, uint32_t self, void *binding)
@@ -3550,14 +2986,12 @@ PN_NET_SEARCH static bool Supervisor_Install_Rivet_Fasten_Release_fire(pn_ctx_t 
         return false;
     }
     if (!m->Supervisor_Install_Rivet_Fasten_inserting.full || !m->flag1_externo.full) {
-        pn_raise(cx, PN_ERR_SUBTRACT, NULL);
+        return pn_fail_missing(cx);
+    }
+    if (!pn_has_room(cx, m->Supervisor_Install_Rivet_Fasten_releasing.full,
+        &s_at_Supervisor_Install_Rivet_Fasten_releasing)
+        || !pn_has_room(cx, m->flag2_interno.full, &s_at_flag2_interno)) {
         return false;
-    }
-    if (m->Supervisor_Install_Rivet_Fasten_releasing.full) {
-        return pn_bag_fail_full(cx, &s_at_Supervisor_Install_Rivet_Fasten_releasing);
-    }
-    if (m->flag2_interno.full) {
-        return pn_bag_fail_full(cx, &s_at_flag2_interno);
     }
     /* inserting: () (ID1412310895) */
     m->Supervisor_Install_Rivet_Fasten_inserting.full = false;
@@ -3583,13 +3017,10 @@ static const pn_field_t s_variables_Supervisor_Install_Rivet_Fasten_Finish[] = {
     { "f", &s_REPLY, offsetof(Supervisor_Install_Rivet_Fasten_Finish_binding_t, f), false },
 };
 
-static const pn_type_t s_binding_Supervisor_Install_Rivet_Fasten_Finish = {
-    .kind = PN_KIND_RECORD,
+static const pn_type_t s_binding_Supervisor_Install_Rivet_Fasten_Finish = { .kind = PN_KIND_RECORD,
     .name = "Cell.Supervisor.Install.Rivet.Fasten.Finish",
-    .size = sizeof(Supervisor_Install_Rivet_Fasten_Finish_binding_t),
-    .count = 2U,
-    .field = s_variables_Supervisor_Install_Rivet_Fasten_Finish,
-};
+    .size = sizeof(Supervisor_Install_Rivet_Fasten_Finish_binding_t), .count = 2U,
+    .field = s_variables_Supervisor_Install_Rivet_Fasten_Finish };
 
 PN_NET_SEARCH static bool Supervisor_Install_Rivet_Fasten_Finish_enumerate(pn_ctx_t *cx, const void *marking,
     uint32_t self, pn_binding_sink_t sink, void *user)
@@ -3607,10 +3038,7 @@ PN_NET_SEARCH static bool Supervisor_Install_Rivet_Fasten_Finish_enumerate(pn_ct
         return true;
     }
     b.f = m->flag2_externo.value;
-    if (!sink(user, self, &b)) {
-        return false;
-    }
-    return true;
+    return sink(user, self, &b);
 }
 
 PN_NET_SEARCH static bool Supervisor_Install_Rivet_Fasten_Finish_fire(pn_ctx_t *cx, void *marking, uint32_t self, void *binding)
@@ -3626,11 +3054,11 @@ PN_NET_SEARCH static bool Supervisor_Install_Rivet_Fasten_Finish_fire(pn_ctx_t *
         return false;
     }
     if (!m->Supervisor_Install_Rivet_Fasten_releasing.full || !m->flag2_externo.full) {
-        pn_raise(cx, PN_ERR_SUBTRACT, NULL);
-        return false;
+        return pn_fail_missing(cx);
     }
-    if (m->Supervisor_Install_Rivet_fastened.full) {
-        return pn_bag_fail_full(cx, &s_at_Supervisor_Install_Rivet_fastened);
+    if (!pn_has_room(cx, m->Supervisor_Install_Rivet_fastened.full,
+        &s_at_Supervisor_Install_Rivet_fastened)) {
+        return false;
     }
     /* releasing: e (ID1412310899) */
     m->Supervisor_Install_Rivet_Fasten_releasing.full = false;
@@ -3647,13 +3075,10 @@ typedef struct Supervisor_Install_Rivet_Fasten_Press_failed_binding {
     uint8_t none; /* no variables */
 } Supervisor_Install_Rivet_Fasten_Press_failed_binding_t;
 
-static const pn_type_t s_binding_Supervisor_Install_Rivet_Fasten_Press_failed = {
-    .kind = PN_KIND_RECORD,
-    .name = "Cell.Supervisor.Install.Rivet.Fasten.Press failed",
-    .size = sizeof(Supervisor_Install_Rivet_Fasten_Press_failed_binding_t),
-    .count = 0U,
-    .field = NULL,
-};
+static const pn_type_t s_binding_Supervisor_Install_Rivet_Fasten_Press_failed =
+    { .kind = PN_KIND_RECORD, .name = "Cell.Supervisor.Install.Rivet.Fasten.Press failed",
+    .size = sizeof(Supervisor_Install_Rivet_Fasten_Press_failed_binding_t), .count = 0U,
+    .field = NULL };
 
 PN_NET_SEARCH static bool Supervisor_Install_Rivet_Fasten_Press_failed_enumerate(pn_ctx_t *cx, const void *marking,
     uint32_t self, pn_binding_sink_t sink, void *user)
@@ -3669,10 +3094,7 @@ PN_NET_SEARCH static bool Supervisor_Install_Rivet_Fasten_Press_failed_enumerate
     if (!m->flag2_externo.full || (m->flag2_externo.value != val_FAILED)) {
         return true;
     }
-    if (!sink(user, self, &b)) {
-        return false;
-    }
-    return true;
+    return sink(user, self, &b);
 }
 
 PN_NET_SEARCH static bool Supervisor_Install_Rivet_Fasten_Press_failed_fire(pn_ctx_t *cx, void *marking, uint32_t self, void *binding)
@@ -3688,14 +3110,12 @@ PN_NET_SEARCH static bool Supervisor_Install_Rivet_Fasten_Press_failed_fire(pn_c
         return false;
     }
     if (!m->Supervisor_Install_Rivet_Fasten_pressing.full || !m->flag2_externo.full) {
-        pn_raise(cx, PN_ERR_SUBTRACT, NULL);
+        return pn_fail_missing(cx);
+    }
+    if (!pn_has_room(cx, m->flag2_interno.full, &s_at_flag2_interno)
+        || !pn_has_room(cx, m->Supervisor_Install_Rivet_Fasten_releasing.full,
+        &s_at_Supervisor_Install_Rivet_Fasten_releasing)) {
         return false;
-    }
-    if (m->flag2_interno.full) {
-        return pn_bag_fail_full(cx, &s_at_flag2_interno);
-    }
-    if (m->Supervisor_Install_Rivet_Fasten_releasing.full) {
-        return pn_bag_fail_full(cx, &s_at_Supervisor_Install_Rivet_Fasten_releasing);
     }
     /* pressing: () (ID1412320097) */
     m->Supervisor_Install_Rivet_Fasten_pressing.full = false;
@@ -3716,13 +3136,10 @@ typedef struct Supervisor_Install_Rivet_Fasten_Drill_failed_binding {
     uint8_t none; /* no variables */
 } Supervisor_Install_Rivet_Fasten_Drill_failed_binding_t;
 
-static const pn_type_t s_binding_Supervisor_Install_Rivet_Fasten_Drill_failed = {
-    .kind = PN_KIND_RECORD,
-    .name = "Cell.Supervisor.Install.Rivet.Fasten.Drill failed",
-    .size = sizeof(Supervisor_Install_Rivet_Fasten_Drill_failed_binding_t),
-    .count = 0U,
-    .field = NULL,
-};
+static const pn_type_t s_binding_Supervisor_Install_Rivet_Fasten_Drill_failed =
+    { .kind = PN_KIND_RECORD, .name = "Cell.Supervisor.Install.Rivet.Fasten.Drill failed",
+    .size = sizeof(Supervisor_Install_Rivet_Fasten_Drill_failed_binding_t), .count = 0U,
+    .field = NULL };
 
 PN_NET_SEARCH static bool Supervisor_Install_Rivet_Fasten_Drill_failed_enumerate(pn_ctx_t *cx, const void *marking,
     uint32_t self, pn_binding_sink_t sink, void *user)
@@ -3738,10 +3155,7 @@ PN_NET_SEARCH static bool Supervisor_Install_Rivet_Fasten_Drill_failed_enumerate
     if (!m->flag1_externo.full || (m->flag1_externo.value != val_FAILED)) {
         return true;
     }
-    if (!sink(user, self, &b)) {
-        return false;
-    }
-    return true;
+    return sink(user, self, &b);
 }
 
 PN_NET_SEARCH static bool Supervisor_Install_Rivet_Fasten_Drill_failed_fire(pn_ctx_t *cx, void *marking, uint32_t self, void *binding)
@@ -3757,14 +3171,12 @@ PN_NET_SEARCH static bool Supervisor_Install_Rivet_Fasten_Drill_failed_fire(pn_c
         return false;
     }
     if (!m->Supervisor_Install_Rivet_Fasten_drilling.full || !m->flag1_externo.full) {
-        pn_raise(cx, PN_ERR_SUBTRACT, NULL);
+        return pn_fail_missing(cx);
+    }
+    if (!pn_has_room(cx, m->flag2_interno.full, &s_at_flag2_interno)
+        || !pn_has_room(cx, m->Supervisor_Install_Rivet_Fasten_releasing.full,
+        &s_at_Supervisor_Install_Rivet_Fasten_releasing)) {
         return false;
-    }
-    if (m->flag2_interno.full) {
-        return pn_bag_fail_full(cx, &s_at_flag2_interno);
-    }
-    if (m->Supervisor_Install_Rivet_Fasten_releasing.full) {
-        return pn_bag_fail_full(cx, &s_at_Supervisor_Install_Rivet_Fasten_releasing);
     }
     /* drilling: () (ID1412320099) */
     m->Supervisor_Install_Rivet_Fasten_drilling.full = false;
@@ -3785,13 +3197,9 @@ typedef struct Supervisor_Home_Send_home_binding {
     uint8_t none; /* no variables */
 } Supervisor_Home_Send_home_binding_t;
 
-static const pn_type_t s_binding_Supervisor_Home_Send_home = {
-    .kind = PN_KIND_RECORD,
-    .name = "Cell.Supervisor.Home.Send home",
-    .size = sizeof(Supervisor_Home_Send_home_binding_t),
-    .count = 0U,
-    .field = NULL,
-};
+static const pn_type_t s_binding_Supervisor_Home_Send_home = { .kind = PN_KIND_RECORD,
+    .name = "Cell.Supervisor.Home.Send home", .size = sizeof(Supervisor_Home_Send_home_binding_t),
+    .count = 0U, .field = NULL };
 
 PN_NET_SEARCH static bool Supervisor_Home_Send_home_enumerate(pn_ctx_t *cx, const void *marking,
     uint32_t self, pn_binding_sink_t sink, void *user)
@@ -3803,10 +3211,7 @@ PN_NET_SEARCH static bool Supervisor_Home_Send_home_enumerate(pn_ctx_t *cx, cons
     if (!m->Supervisor_ended.full) {
         return true;
     }
-    if (!sink(user, self, &b)) {
-        return false;
-    }
-    return true;
+    return sink(user, self, &b);
 }
 
 PN_NET_SEARCH static bool Supervisor_Home_Send_home_fire(pn_ctx_t *cx, void *marking, uint32_t self, void *binding)
@@ -3823,20 +3228,13 @@ PN_NET_SEARCH static bool Supervisor_Home_Send_home_fire(pn_ctx_t *cx, void *mar
         return false;
     }
     if (!m->Supervisor_ended.full) {
-        pn_raise(cx, PN_ERR_SUBTRACT, NULL);
+        return pn_fail_missing(cx);
+    }
+    if (!pn_has_room(cx, m->Supervisor_Home_leaving_1.full, &s_at_Supervisor_Home_leaving_1)
+        || !pn_has_room(cx, m->flag1_interno.full, &s_at_flag1_interno)
+        || !pn_has_room(cx, m->Supervisor_Home_leaving_2.full, &s_at_Supervisor_Home_leaving_2)
+        || !pn_has_room(cx, m->flag2_interno.full, &s_at_flag2_interno)) {
         return false;
-    }
-    if (m->Supervisor_Home_leaving_1.full) {
-        return pn_bag_fail_full(cx, &s_at_Supervisor_Home_leaving_1);
-    }
-    if (m->flag1_interno.full) {
-        return pn_bag_fail_full(cx, &s_at_flag1_interno);
-    }
-    if (m->Supervisor_Home_leaving_2.full) {
-        return pn_bag_fail_full(cx, &s_at_Supervisor_Home_leaving_2);
-    }
-    if (m->flag2_interno.full) {
-        return pn_bag_fail_full(cx, &s_at_flag2_interno);
     }
     /* ended: () (ID1412311044) */
     m->Supervisor_ended.full = false;
@@ -3862,13 +3260,9 @@ static const pn_field_t s_variables_Supervisor_Home_Both[] = {
     { "e", &s_REPLY, offsetof(Supervisor_Home_Both_binding_t, e), false },
 };
 
-static const pn_type_t s_binding_Supervisor_Home_Both = {
-    .kind = PN_KIND_RECORD,
-    .name = "Cell.Supervisor.Home.Both",
-    .size = sizeof(Supervisor_Home_Both_binding_t),
-    .count = 1U,
-    .field = s_variables_Supervisor_Home_Both,
-};
+static const pn_type_t s_binding_Supervisor_Home_Both = { .kind = PN_KIND_RECORD,
+    .name = "Cell.Supervisor.Home.Both", .size = sizeof(Supervisor_Home_Both_binding_t),
+    .count = 1U, .field = s_variables_Supervisor_Home_Both };
 
 PN_NET_SEARCH static bool Supervisor_Home_Both_enumerate(pn_ctx_t *cx, const void *marking,
     uint32_t self, pn_binding_sink_t sink, void *user)
@@ -3889,10 +3283,7 @@ PN_NET_SEARCH static bool Supervisor_Home_Both_enumerate(pn_ctx_t *cx, const voi
         return true;
     }
     b.e = m->Supervisor_result.value;
-    if (!sink(user, self, &b)) {
-        return false;
-    }
-    return true;
+    return sink(user, self, &b);
 }
 
 PN_NET_SEARCH static bool Supervisor_Home_Both_fire(pn_ctx_t *cx, void *marking, uint32_t self, void *binding)
@@ -3917,16 +3308,15 @@ PN_NET_SEARCH static bool Supervisor_Home_Both_fire(pn_ctx_t *cx, void *marking,
     }
     if (!m->Supervisor_result.full || !m->Supervisor_Home_home_1.full
         || !m->Supervisor_Home_home_2.full) {
-        pn_raise(cx, PN_ERR_SUBTRACT, NULL);
+        return pn_fail_missing(cx);
+    }
+    if (!pn_has_room(cx, (Supervisor_Finished_tokens > 1U)
+        || ((Supervisor_Finished_tokens == 1U) && m->Supervisor_Finished.full),
+        &s_at_Supervisor_Finished)
+        || !pn_has_room(cx, (Supervisor_Failed_tokens > 1U)
+        || ((Supervisor_Failed_tokens == 1U) && m->Supervisor_Failed.full),
+        &s_at_Supervisor_Failed)) {
         return false;
-    }
-    if ((Supervisor_Finished_tokens > 1U)
-        || ((Supervisor_Finished_tokens == 1U) && m->Supervisor_Finished.full)) {
-        return pn_bag_fail_full(cx, &s_at_Supervisor_Finished);
-    }
-    if ((Supervisor_Failed_tokens > 1U)
-        || ((Supervisor_Failed_tokens == 1U) && m->Supervisor_Failed.full)) {
-        return pn_bag_fail_full(cx, &s_at_Supervisor_Failed);
     }
     /* result: e (ID1412320124) */
     m->Supervisor_result.full = false;
@@ -3950,13 +3340,9 @@ typedef struct Supervisor_Home_Reply_1_binding {
     uint8_t none; /* no variables */
 } Supervisor_Home_Reply_1_binding_t;
 
-static const pn_type_t s_binding_Supervisor_Home_Reply_1 = {
-    .kind = PN_KIND_RECORD,
-    .name = "Cell.Supervisor.Home.Reply 1",
-    .size = sizeof(Supervisor_Home_Reply_1_binding_t),
-    .count = 0U,
-    .field = NULL,
-};
+static const pn_type_t s_binding_Supervisor_Home_Reply_1 = { .kind = PN_KIND_RECORD,
+    .name = "Cell.Supervisor.Home.Reply 1", .size = sizeof(Supervisor_Home_Reply_1_binding_t),
+    .count = 0U, .field = NULL };
 
 PN_NET_SEARCH static bool Supervisor_Home_Reply_1_enumerate(pn_ctx_t *cx, const void *marking,
     uint32_t self, pn_binding_sink_t sink, void *user)
@@ -3972,10 +3358,7 @@ PN_NET_SEARCH static bool Supervisor_Home_Reply_1_enumerate(pn_ctx_t *cx, const 
     if (!m->flag1_externo.full || (m->flag1_externo.value != val_DONE)) {
         return true;
     }
-    if (!sink(user, self, &b)) {
-        return false;
-    }
-    return true;
+    return sink(user, self, &b);
 }
 
 PN_NET_SEARCH static bool Supervisor_Home_Reply_1_fire(pn_ctx_t *cx, void *marking, uint32_t self, void *binding)
@@ -3985,11 +3368,10 @@ PN_NET_SEARCH static bool Supervisor_Home_Reply_1_fire(pn_ctx_t *cx, void *marki
     (void)binding;
     pn_begin(cx, "page `Home`, transition `Reply 1` (ID1412311060)", m->now);
     if (!m->Supervisor_Home_leaving_1.full || !m->flag1_externo.full) {
-        pn_raise(cx, PN_ERR_SUBTRACT, NULL);
-        return false;
+        return pn_fail_missing(cx);
     }
-    if (m->Supervisor_Home_home_1.full) {
-        return pn_bag_fail_full(cx, &s_at_Supervisor_Home_home_1);
+    if (!pn_has_room(cx, m->Supervisor_Home_home_1.full, &s_at_Supervisor_Home_home_1)) {
+        return false;
     }
     /* leaving 1: () (ID1412311070) */
     m->Supervisor_Home_leaving_1.full = false;
@@ -4005,13 +3387,9 @@ typedef struct Supervisor_Home_Reply_2_binding {
     uint8_t none; /* no variables */
 } Supervisor_Home_Reply_2_binding_t;
 
-static const pn_type_t s_binding_Supervisor_Home_Reply_2 = {
-    .kind = PN_KIND_RECORD,
-    .name = "Cell.Supervisor.Home.Reply 2",
-    .size = sizeof(Supervisor_Home_Reply_2_binding_t),
-    .count = 0U,
-    .field = NULL,
-};
+static const pn_type_t s_binding_Supervisor_Home_Reply_2 = { .kind = PN_KIND_RECORD,
+    .name = "Cell.Supervisor.Home.Reply 2", .size = sizeof(Supervisor_Home_Reply_2_binding_t),
+    .count = 0U, .field = NULL };
 
 PN_NET_SEARCH static bool Supervisor_Home_Reply_2_enumerate(pn_ctx_t *cx, const void *marking,
     uint32_t self, pn_binding_sink_t sink, void *user)
@@ -4027,10 +3405,7 @@ PN_NET_SEARCH static bool Supervisor_Home_Reply_2_enumerate(pn_ctx_t *cx, const 
     if (!m->flag2_externo.full || (m->flag2_externo.value != val_DONE)) {
         return true;
     }
-    if (!sink(user, self, &b)) {
-        return false;
-    }
-    return true;
+    return sink(user, self, &b);
 }
 
 PN_NET_SEARCH static bool Supervisor_Home_Reply_2_fire(pn_ctx_t *cx, void *marking, uint32_t self, void *binding)
@@ -4040,11 +3415,10 @@ PN_NET_SEARCH static bool Supervisor_Home_Reply_2_fire(pn_ctx_t *cx, void *marki
     (void)binding;
     pn_begin(cx, "page `Home`, transition `Reply 2` (ID1412311091)", m->now);
     if (!m->Supervisor_Home_leaving_2.full || !m->flag2_externo.full) {
-        pn_raise(cx, PN_ERR_SUBTRACT, NULL);
-        return false;
+        return pn_fail_missing(cx);
     }
-    if (m->Supervisor_Home_home_2.full) {
-        return pn_bag_fail_full(cx, &s_at_Supervisor_Home_home_2);
+    if (!pn_has_room(cx, m->Supervisor_Home_home_2.full, &s_at_Supervisor_Home_home_2)) {
+        return false;
     }
     /* leaving 2: () (ID1412311101) */
     m->Supervisor_Home_leaving_2.full = false;
@@ -4067,13 +3441,8 @@ static const pn_field_t s_variables_Robot_Accept[] = {
     { "c", &s_COMMAND, offsetof(Robot_Accept_binding_t, c), false },
 };
 
-static const pn_type_t s_binding_Robot_Accept = {
-    .kind = PN_KIND_RECORD,
-    .name = "Cell.Robot1.Accept",
-    .size = sizeof(Robot_Accept_binding_t),
-    .count = 1U,
-    .field = s_variables_Robot_Accept,
-};
+static const pn_type_t s_binding_Robot_Accept = { .kind = PN_KIND_RECORD, .name = "Robot.Accept",
+    .size = sizeof(Robot_Accept_binding_t), .count = 1U, .field = s_variables_Robot_Accept };
 
 PN_NET_SEARCH static bool Robot_Accept_enumerate(pn_ctx_t *cx, const void *marking,
     uint32_t self, pn_binding_sink_t sink, void *user)
@@ -4093,10 +3462,7 @@ PN_NET_SEARCH static bool Robot_Accept_enumerate(pn_ctx_t *cx, const void *marki
         return true;
     }
     b.c = at_flag_interno->value;
-    if (!sink(user, self, &b)) {
-        return false;
-    }
-    return true;
+    return sink(user, self, &b);
 }
 
 PN_NET_SEARCH static bool Robot_Accept_fire(pn_ctx_t *cx, void *marking, uint32_t self, void *binding)
@@ -4109,11 +3475,10 @@ PN_NET_SEARCH static bool Robot_Accept_fire(pn_ctx_t *cx, void *marking, uint32_
     UNIT_slot_t *const at_Waiting = pn_bag_reach(own->Waiting, m);
     COMMAND_slot_t *const at_Commanded = pn_bag_reach(own->Commanded, m);
     if (!at_flag_interno->full || !at_Waiting->full) {
-        pn_raise(cx, PN_ERR_SUBTRACT, NULL);
-        return false;
+        return pn_fail_missing(cx);
     }
-    if (at_Commanded->full) {
-        return pn_bag_fail_full(cx, own->Commanded);
+    if (!pn_has_room(cx, at_Commanded->full, own->Commanded)) {
+        return false;
     }
     /* flag_interno: c (ID1412311136) */
     at_flag_interno->full = false;
@@ -4137,13 +3502,8 @@ static const pn_field_t s_variables_Robot_Report[] = {
     { "e", &s_REPLY, offsetof(Robot_Report_binding_t, e), false },
 };
 
-static const pn_type_t s_binding_Robot_Report = {
-    .kind = PN_KIND_RECORD,
-    .name = "Cell.Robot1.Report",
-    .size = sizeof(Robot_Report_binding_t),
-    .count = 1U,
-    .field = s_variables_Robot_Report,
-};
+static const pn_type_t s_binding_Robot_Report = { .kind = PN_KIND_RECORD, .name = "Robot.Report",
+    .size = sizeof(Robot_Report_binding_t), .count = 1U, .field = s_variables_Robot_Report };
 
 PN_NET_SEARCH static bool Robot_Report_enumerate(pn_ctx_t *cx, const void *marking,
     uint32_t self, pn_binding_sink_t sink, void *user)
@@ -4158,10 +3518,7 @@ PN_NET_SEARCH static bool Robot_Report_enumerate(pn_ctx_t *cx, const void *marki
         return true;
     }
     b.e = at_Done->value;
-    if (!sink(user, self, &b)) {
-        return false;
-    }
-    return true;
+    return sink(user, self, &b);
 }
 
 PN_NET_SEARCH static bool Robot_Report_fire(pn_ctx_t *cx, void *marking, uint32_t self, void *binding)
@@ -4174,14 +3531,11 @@ PN_NET_SEARCH static bool Robot_Report_fire(pn_ctx_t *cx, void *marking, uint32_
     UNIT_slot_t *const at_Waiting = pn_bag_reach(own->Waiting, m);
     REPLY_slot_t *const at_Done = pn_bag_reach(own->Done, m);
     if (!at_Done->full) {
-        pn_raise(cx, PN_ERR_SUBTRACT, NULL);
+        return pn_fail_missing(cx);
+    }
+    if (!pn_has_room(cx, at_flag_externo->full, own->flag_externo)
+        || !pn_has_room(cx, at_Waiting->full, own->Waiting)) {
         return false;
-    }
-    if (at_flag_externo->full) {
-        return pn_bag_fail_full(cx, own->flag_externo);
-    }
-    if (at_Waiting->full) {
-        return pn_bag_fail_full(cx, own->Waiting);
     }
     /* Done: e (ID1412311154) */
     at_Done->full = false;
@@ -4208,13 +3562,9 @@ static const pn_field_t s_variables_Robot_MoveJoint[] = {
     { "p", &s_POSE, offsetof(Robot_MoveJoint_binding_t, p), false },
 };
 
-static const pn_type_t s_binding_Robot_MoveJoint = {
-    .kind = PN_KIND_RECORD,
-    .name = "Cell.Robot1.MoveJoint",
-    .size = sizeof(Robot_MoveJoint_binding_t),
-    .count = 2U,
-    .field = s_variables_Robot_MoveJoint,
-};
+static const pn_type_t s_binding_Robot_MoveJoint = { .kind = PN_KIND_RECORD,
+    .name = "Robot.MoveJoint", .size = sizeof(Robot_MoveJoint_binding_t), .count = 2U,
+    .field = s_variables_Robot_MoveJoint };
 
 PN_NET_SEARCH static bool Robot_MoveJoint_enumerate(pn_ctx_t *cx, const void *marking,
     uint32_t self, pn_binding_sink_t sink, void *user)
@@ -4239,10 +3589,7 @@ PN_NET_SEARCH static bool Robot_MoveJoint_enumerate(pn_ctx_t *cx, const void *ma
         return true;
     }
     b.p = at_dadosrobo->value;
-    if (!sink(user, self, &b)) {
-        return false;
-    }
-    return true;
+    return sink(user, self, &b);
 }
 
 PN_NET_SEARCH static bool Robot_MoveJoint_fire(pn_ctx_t *cx, void *marking, uint32_t self, void *binding)
@@ -4262,11 +3609,10 @@ PN_NET_SEARCH static bool Robot_MoveJoint_fire(pn_ctx_t *cx, void *marking, uint
         return false;
     }
     if (!at_Commanded->full || !at_dadosrobo->full) {
-        pn_raise(cx, PN_ERR_SUBTRACT, NULL);
-        return false;
+        return pn_fail_missing(cx);
     }
-    if (at_Done->full) {
-        return pn_bag_fail_full(cx, own->Done);
+    if (!pn_has_room(cx, at_Done->full, own->Done)) {
+        return false;
     }
     /* Commanded: c (ID1412311165) */
     at_Commanded->full = false;
@@ -4293,13 +3639,9 @@ static const pn_field_t s_variables_Robot_MoveLinear[] = {
     { "p", &s_POSE, offsetof(Robot_MoveLinear_binding_t, p), false },
 };
 
-static const pn_type_t s_binding_Robot_MoveLinear = {
-    .kind = PN_KIND_RECORD,
-    .name = "Cell.Robot1.MoveLinear",
-    .size = sizeof(Robot_MoveLinear_binding_t),
-    .count = 2U,
-    .field = s_variables_Robot_MoveLinear,
-};
+static const pn_type_t s_binding_Robot_MoveLinear = { .kind = PN_KIND_RECORD,
+    .name = "Robot.MoveLinear", .size = sizeof(Robot_MoveLinear_binding_t), .count = 2U,
+    .field = s_variables_Robot_MoveLinear };
 
 PN_NET_SEARCH static bool Robot_MoveLinear_enumerate(pn_ctx_t *cx, const void *marking,
     uint32_t self, pn_binding_sink_t sink, void *user)
@@ -4324,10 +3666,7 @@ PN_NET_SEARCH static bool Robot_MoveLinear_enumerate(pn_ctx_t *cx, const void *m
         return true;
     }
     b.p = at_dadosrobo->value;
-    if (!sink(user, self, &b)) {
-        return false;
-    }
-    return true;
+    return sink(user, self, &b);
 }
 
 PN_NET_SEARCH static bool Robot_MoveLinear_fire(pn_ctx_t *cx, void *marking, uint32_t self, void *binding)
@@ -4347,11 +3686,10 @@ PN_NET_SEARCH static bool Robot_MoveLinear_fire(pn_ctx_t *cx, void *marking, uin
         return false;
     }
     if (!at_Commanded->full || !at_dadosrobo->full) {
-        pn_raise(cx, PN_ERR_SUBTRACT, NULL);
-        return false;
+        return pn_fail_missing(cx);
     }
-    if (at_Done->full) {
-        return pn_bag_fail_full(cx, own->Done);
+    if (!pn_has_room(cx, at_Done->full, own->Done)) {
+        return false;
     }
     /* Commanded: c (ID1412311174) */
     at_Commanded->full = false;
@@ -4376,13 +3714,9 @@ static const pn_field_t s_variables_Robot_MoveHome[] = {
     { "c", &s_COMMAND, offsetof(Robot_MoveHome_binding_t, c), false },
 };
 
-static const pn_type_t s_binding_Robot_MoveHome = {
-    .kind = PN_KIND_RECORD,
-    .name = "Cell.Robot1.MoveHome",
-    .size = sizeof(Robot_MoveHome_binding_t),
-    .count = 1U,
-    .field = s_variables_Robot_MoveHome,
-};
+static const pn_type_t s_binding_Robot_MoveHome = { .kind = PN_KIND_RECORD,
+    .name = "Robot.MoveHome", .size = sizeof(Robot_MoveHome_binding_t), .count = 1U,
+    .field = s_variables_Robot_MoveHome };
 
 PN_NET_SEARCH static bool Robot_MoveHome_enumerate(pn_ctx_t *cx, const void *marking,
     uint32_t self, pn_binding_sink_t sink, void *user)
@@ -4401,10 +3735,7 @@ PN_NET_SEARCH static bool Robot_MoveHome_enumerate(pn_ctx_t *cx, const void *mar
     if (b.c != val_HOME) {
         return true;
     }
-    if (!sink(user, self, &b)) {
-        return false;
-    }
-    return true;
+    return sink(user, self, &b);
 }
 
 PN_NET_SEARCH static bool Robot_MoveHome_fire(pn_ctx_t *cx, void *marking, uint32_t self, void *binding)
@@ -4423,11 +3754,10 @@ PN_NET_SEARCH static bool Robot_MoveHome_fire(pn_ctx_t *cx, void *marking, uint3
         return false;
     }
     if (!at_Commanded->full) {
-        pn_raise(cx, PN_ERR_SUBTRACT, NULL);
-        return false;
+        return pn_fail_missing(cx);
     }
-    if (at_Done->full) {
-        return pn_bag_fail_full(cx, own->Done);
+    if (!pn_has_room(cx, at_Done->full, own->Done)) {
+        return false;
     }
     /* Commanded: c (ID1412311183) */
     at_Commanded->full = false;
@@ -4456,13 +3786,8 @@ static const pn_field_t s_variables_Robot_Measure[] = {
     { "m", &s_POSE, offsetof(Robot_Measure_binding_t, m), false },
 };
 
-static const pn_type_t s_binding_Robot_Measure = {
-    .kind = PN_KIND_RECORD,
-    .name = "Cell.Robot1.Measure",
-    .size = sizeof(Robot_Measure_binding_t),
-    .count = 4U,
-    .field = s_variables_Robot_Measure,
-};
+static const pn_type_t s_binding_Robot_Measure = { .kind = PN_KIND_RECORD, .name = "Robot.Measure",
+    .size = sizeof(Robot_Measure_binding_t), .count = 4U, .field = s_variables_Robot_Measure };
 
 PN_NET_SEARCH static bool Robot_Measure_enumerate(pn_ctx_t *cx, const void *marking,
     uint32_t self, pn_binding_sink_t sink, void *user)
@@ -4521,14 +3846,11 @@ PN_NET_SEARCH static bool Robot_Measure_fire(pn_ctx_t *cx, void *marking, uint32
         return false;
     }
     if (!at_Commanded->full || !at_referencia->full) {
-        pn_raise(cx, PN_ERR_SUBTRACT, NULL);
+        return pn_fail_missing(cx);
+    }
+    if (!pn_has_room(cx, at_Done->full, own->Done)
+        || !pn_has_room(cx, at_medida->full, own->medida)) {
         return false;
-    }
-    if (at_Done->full) {
-        return pn_bag_fail_full(cx, own->Done);
-    }
-    if (at_medida->full) {
-        return pn_bag_fail_full(cx, own->medida);
     }
     /* Commanded: c (ID1412311192) */
     at_Commanded->full = false;
@@ -4558,13 +3880,8 @@ static const pn_field_t s_variables_Robot_Drill[] = {
     { "drilled", &s_REPLY, offsetof(Robot_Drill_binding_t, drilled), false },
 };
 
-static const pn_type_t s_binding_Robot_Drill = {
-    .kind = PN_KIND_RECORD,
-    .name = "Cell.Robot1.Drill",
-    .size = sizeof(Robot_Drill_binding_t),
-    .count = 2U,
-    .field = s_variables_Robot_Drill,
-};
+static const pn_type_t s_binding_Robot_Drill = { .kind = PN_KIND_RECORD, .name = "Robot.Drill",
+    .size = sizeof(Robot_Drill_binding_t), .count = 2U, .field = s_variables_Robot_Drill };
 
 PN_NET_SEARCH static bool Robot_Drill_enumerate(pn_ctx_t *cx, const void *marking,
     uint32_t self, pn_binding_sink_t sink, void *user)
@@ -4615,11 +3932,10 @@ PN_NET_SEARCH static bool Robot_Drill_fire(pn_ctx_t *cx, void *marking, uint32_t
         return false;
     }
     if (!at_Commanded->full) {
-        pn_raise(cx, PN_ERR_SUBTRACT, NULL);
-        return false;
+        return pn_fail_missing(cx);
     }
-    if (at_Done->full) {
-        return pn_bag_fail_full(cx, own->Done);
+    if (!pn_has_room(cx, at_Done->full, own->Done)) {
+        return false;
     }
     /* Commanded: c (ID1412311201) */
     at_Commanded->full = false;
@@ -4644,13 +3960,8 @@ static const pn_field_t s_variables_Robot_Insert[] = {
     { "inserted", &s_REPLY, offsetof(Robot_Insert_binding_t, inserted), false },
 };
 
-static const pn_type_t s_binding_Robot_Insert = {
-    .kind = PN_KIND_RECORD,
-    .name = "Cell.Robot1.Insert",
-    .size = sizeof(Robot_Insert_binding_t),
-    .count = 2U,
-    .field = s_variables_Robot_Insert,
-};
+static const pn_type_t s_binding_Robot_Insert = { .kind = PN_KIND_RECORD, .name = "Robot.Insert",
+    .size = sizeof(Robot_Insert_binding_t), .count = 2U, .field = s_variables_Robot_Insert };
 
 PN_NET_SEARCH static bool Robot_Insert_enumerate(pn_ctx_t *cx, const void *marking,
     uint32_t self, pn_binding_sink_t sink, void *user)
@@ -4701,11 +4012,10 @@ PN_NET_SEARCH static bool Robot_Insert_fire(pn_ctx_t *cx, void *marking, uint32_
         return false;
     }
     if (!at_Commanded->full) {
-        pn_raise(cx, PN_ERR_SUBTRACT, NULL);
-        return false;
+        return pn_fail_missing(cx);
     }
-    if (at_Done->full) {
-        return pn_bag_fail_full(cx, own->Done);
+    if (!pn_has_room(cx, at_Done->full, own->Done)) {
+        return false;
     }
     /* Commanded: c (ID1412311210) */
     at_Commanded->full = false;
@@ -4730,13 +4040,8 @@ static const pn_field_t s_variables_Robot_Press[] = {
     { "pressed", &s_REPLY, offsetof(Robot_Press_binding_t, pressed), false },
 };
 
-static const pn_type_t s_binding_Robot_Press = {
-    .kind = PN_KIND_RECORD,
-    .name = "Cell.Robot1.Press",
-    .size = sizeof(Robot_Press_binding_t),
-    .count = 2U,
-    .field = s_variables_Robot_Press,
-};
+static const pn_type_t s_binding_Robot_Press = { .kind = PN_KIND_RECORD, .name = "Robot.Press",
+    .size = sizeof(Robot_Press_binding_t), .count = 2U, .field = s_variables_Robot_Press };
 
 PN_NET_SEARCH static bool Robot_Press_enumerate(pn_ctx_t *cx, const void *marking,
     uint32_t self, pn_binding_sink_t sink, void *user)
@@ -4787,11 +4092,10 @@ PN_NET_SEARCH static bool Robot_Press_fire(pn_ctx_t *cx, void *marking, uint32_t
         return false;
     }
     if (!at_Commanded->full) {
-        pn_raise(cx, PN_ERR_SUBTRACT, NULL);
-        return false;
+        return pn_fail_missing(cx);
     }
-    if (at_Done->full) {
-        return pn_bag_fail_full(cx, own->Done);
+    if (!pn_has_room(cx, at_Done->full, own->Done)) {
+        return false;
     }
     /* Commanded: c (ID1412311219) */
     at_Commanded->full = false;
@@ -4816,13 +4120,8 @@ static const pn_field_t s_variables_Robot_Release[] = {
     { "released", &s_REPLY, offsetof(Robot_Release_binding_t, released), false },
 };
 
-static const pn_type_t s_binding_Robot_Release = {
-    .kind = PN_KIND_RECORD,
-    .name = "Cell.Robot1.Release",
-    .size = sizeof(Robot_Release_binding_t),
-    .count = 2U,
-    .field = s_variables_Robot_Release,
-};
+static const pn_type_t s_binding_Robot_Release = { .kind = PN_KIND_RECORD, .name = "Robot.Release",
+    .size = sizeof(Robot_Release_binding_t), .count = 2U, .field = s_variables_Robot_Release };
 
 PN_NET_SEARCH static bool Robot_Release_enumerate(pn_ctx_t *cx, const void *marking,
     uint32_t self, pn_binding_sink_t sink, void *user)
@@ -4873,11 +4172,10 @@ PN_NET_SEARCH static bool Robot_Release_fire(pn_ctx_t *cx, void *marking, uint32
         return false;
     }
     if (!at_Commanded->full) {
-        pn_raise(cx, PN_ERR_SUBTRACT, NULL);
-        return false;
+        return pn_fail_missing(cx);
     }
-    if (at_Done->full) {
-        return pn_bag_fail_full(cx, own->Done);
+    if (!pn_has_room(cx, at_Done->full, own->Done)) {
+        return false;
     }
     /* Commanded: c (ID1412311228) */
     at_Commanded->full = false;
@@ -4890,1463 +4188,613 @@ PN_NET_SEARCH static bool Robot_Release_fire(pn_ctx_t *cx, void *marking, uint32
 /* --- the net as hosts see it ------------------------------------------------------------------- */
 
 static const pn_place_t s_places[] = {
-    {
-        .name = "Cell.dadosrobo1", .colset = "POSE", .owner = -1, .bag = &s_at_dadosrobo1,
-        .is_bounded = true, .bound = 1U,
-    },
-    {
-        .name = "Cell.flag1_interno", .colset = "COMMAND", .owner = -1, .bag = &s_at_flag1_interno,
-        .is_bounded = true, .bound = 1U,
-    },
-    {
-        .name = "Cell.flag1_externo", .colset = "REPLY", .owner = -1, .bag = &s_at_flag1_externo,
-        .is_bounded = true, .bound = 1U,
-    },
-    {
-        .name = "Cell.referencia1", .colset = "POSE", .owner = -1, .bag = &s_at_referencia1,
-        .is_bounded = true, .bound = 1U,
-    },
-    {
-        .name = "Cell.medida1", .colset = "POSE", .owner = -1, .bag = &s_at_medida1,
-        .is_bounded = true, .bound = 1U,
-    },
-    {
-        .name = "Cell.dadosrobo2", .colset = "POSE", .owner = -1, .bag = &s_at_dadosrobo2,
-        .is_bounded = true, .bound = 1U,
-    },
-    {
-        .name = "Cell.flag2_interno", .colset = "COMMAND", .owner = -1, .bag = &s_at_flag2_interno,
-        .is_bounded = true, .bound = 1U,
-    },
-    {
-        .name = "Cell.flag2_externo", .colset = "REPLY", .owner = -1, .bag = &s_at_flag2_externo,
-        .is_bounded = true, .bound = 1U,
-    },
-    {
-        .name = "Cell.referencia2", .colset = "POSE", .owner = 2, .bag = &s_at_referencia2,
-        .is_bounded = true, .bound = 0U,
-    },
-    {
-        .name = "Cell.medida2", .colset = "POSE", .owner = 2, .bag = &s_at_medida2,
-        .is_bounded = true, .bound = 0U,
-    },
-    {
-        .name = "Cell.Supervisor.coordenadas", .colset = "PLAN", .owner = 0, .bag = &s_at_Supervisor_coordenadas,
-        .is_bounded = true, .bound = 1U,
-        .initial = Supervisor_coordenadas_init,
-    },
-    {
-        .name = "Cell.Supervisor.planned", .colset = "SEAM", .owner = 0, .bag = &s_at_Supervisor_planned,
-        .is_bounded = true, .bound = 1U,
-    },
-    {
-        .name = "Cell.Supervisor.approached", .colset = "SEAM", .owner = 0, .bag = &s_at_Supervisor_approached,
-        .is_bounded = true, .bound = 1U,
-    },
-    {
-        .name = "Cell.Supervisor.verified", .colset = "VERIFIED", .owner = 0, .bag = &s_at_Supervisor_verified,
-        .is_bounded = true, .bound = 1U,
-    },
-    {
-        .name = "Cell.Supervisor.corrected", .colset = "RIVETING", .owner = 0, .bag = &s_at_Supervisor_corrected,
-        .is_bounded = true, .bound = 1U,
-    },
-    {
-        .name = "Cell.Supervisor.ended", .colset = "UNIT", .owner = 0, .bag = &s_at_Supervisor_ended,
-        .is_bounded = true, .bound = 1U,
-    },
-    {
-        .name = "Cell.Supervisor.Finished", .colset = "UNIT", .owner = 0, .bag = &s_at_Supervisor_Finished,
-        .is_bounded = true, .bound = 1U,
-    },
-    {
-        .name = "Cell.Supervisor.result", .colset = "REPLY", .owner = 0, .bag = &s_at_Supervisor_result,
-        .is_bounded = true, .bound = 1U,
-    },
-    {
-        .name = "Cell.Supervisor.Failed", .colset = "UNIT", .owner = 0, .bag = &s_at_Supervisor_Failed,
-        .is_bounded = true, .bound = 1U,
-    },
-    {
-        .name = "Cell.Supervisor.Approach.order", .colset = "ORDER", .owner = 0, .bag = &s_at_Supervisor_Approach_order,
-        .is_bounded = true, .bound = 1U,
-    },
-    {
-        .name = "Cell.Supervisor.Approach.done", .colset = "UNIT", .owner = 0, .bag = &s_at_Supervisor_Approach_done,
-        .is_bounded = true, .bound = 1U,
-    },
-    {
-        .name = "Cell.Supervisor.Approach.seam", .colset = "SEAM", .owner = 0, .bag = &s_at_Supervisor_Approach_seam,
-        .is_bounded = true, .bound = 1U,
-    },
-    {
-        .name = "Cell.Supervisor.Approach.Move both.moving 1", .colset = "UNIT", .owner = 0, .bag = &s_at_Supervisor_Approach_Move_both_moving_1,
-        .is_bounded = true, .bound = 1U,
-    },
-    {
-        .name = "Cell.Supervisor.Approach.Move both.there 1", .colset = "UNIT", .owner = 0, .bag = &s_at_Supervisor_Approach_Move_both_there_1,
-        .is_bounded = true, .bound = 1U,
-    },
-    {
-        .name = "Cell.Supervisor.Approach.Move both.moving 2", .colset = "UNIT", .owner = 0, .bag = &s_at_Supervisor_Approach_Move_both_moving_2,
-        .is_bounded = true, .bound = 1U,
-    },
-    {
-        .name = "Cell.Supervisor.Approach.Move both.there 2", .colset = "UNIT", .owner = 0, .bag = &s_at_Supervisor_Approach_Move_both_there_2,
-        .is_bounded = true, .bound = 1U,
-    },
-    {
-        .name = "Cell.Supervisor.Verify.first asked", .colset = "SEAM", .owner = 0, .bag = &s_at_Supervisor_Verify_first_asked,
-        .is_bounded = true, .bound = 1U,
-    },
-    {
-        .name = "Cell.Supervisor.Verify.last asked", .colset = "ASKED", .owner = 0, .bag = &s_at_Supervisor_Verify_last_asked,
-        .is_bounded = true, .bound = 1U,
-    },
-    {
-        .name = "Cell.Supervisor.Correct.offset", .colset = "VECTOR", .owner = 0, .bag = &s_at_Supervisor_Correct_offset,
-        .is_bounded = true, .bound = 1U,
-    },
-    {
-        .name = "Cell.Supervisor.Correct.order", .colset = "ORDER", .owner = 0, .bag = &s_at_Supervisor_Correct_order,
-        .is_bounded = true, .bound = 1U,
-    },
-    {
-        .name = "Cell.Supervisor.Correct.done", .colset = "UNIT", .owner = 0, .bag = &s_at_Supervisor_Correct_done,
-        .is_bounded = true, .bound = 1U,
-    },
-    {
-        .name = "Cell.Supervisor.Correct.seam", .colset = "RIVETING", .owner = 0, .bag = &s_at_Supervisor_Correct_seam,
-        .is_bounded = true, .bound = 1U,
-    },
-    {
-        .name = "Cell.Supervisor.Correct.Move both.moving 1", .colset = "UNIT", .owner = 0, .bag = &s_at_Supervisor_Correct_Move_both_moving_1,
-        .is_bounded = true, .bound = 1U,
-    },
-    {
-        .name = "Cell.Supervisor.Correct.Move both.there 1", .colset = "UNIT", .owner = 0, .bag = &s_at_Supervisor_Correct_Move_both_there_1,
-        .is_bounded = true, .bound = 1U,
-    },
-    {
-        .name = "Cell.Supervisor.Correct.Move both.moving 2", .colset = "UNIT", .owner = 0, .bag = &s_at_Supervisor_Correct_Move_both_moving_2,
-        .is_bounded = true, .bound = 1U,
-    },
-    {
-        .name = "Cell.Supervisor.Correct.Move both.there 2", .colset = "UNIT", .owner = 0, .bag = &s_at_Supervisor_Correct_Move_both_there_2,
-        .is_bounded = true, .bound = 1U,
-    },
-    {
-        .name = "Cell.Supervisor.Install.shift", .colset = "ORDER", .owner = 0, .bag = &s_at_Supervisor_Install_shift,
-        .is_bounded = true, .bound = 1U,
-    },
-    {
-        .name = "Cell.Supervisor.Install.ready", .colset = "UNIT", .owner = 0, .bag = &s_at_Supervisor_Install_ready,
-        .is_bounded = true, .bound = 1U,
-    },
-    {
-        .name = "Cell.Supervisor.Install.riveted", .colset = "UNIT", .owner = 0, .bag = &s_at_Supervisor_Install_riveted,
-        .is_bounded = true, .bound = 1U,
-    },
-    {
-        .name = "Cell.Supervisor.Install.return", .colset = "ORDER", .owner = 0, .bag = &s_at_Supervisor_Install_return,
-        .is_bounded = true, .bound = 1U,
-    },
-    {
-        .name = "Cell.Supervisor.Install.work", .colset = "WORK", .owner = 0, .bag = &s_at_Supervisor_Install_work,
-        .is_bounded = true, .bound = 1U,
-    },
-    {
-        .name = "Cell.Supervisor.Install.Shift.moving 1", .colset = "UNIT", .owner = 0, .bag = &s_at_Supervisor_Install_Shift_moving_1,
-        .is_bounded = true, .bound = 1U,
-    },
-    {
-        .name = "Cell.Supervisor.Install.Shift.there 1", .colset = "UNIT", .owner = 0, .bag = &s_at_Supervisor_Install_Shift_there_1,
-        .is_bounded = true, .bound = 1U,
-    },
-    {
-        .name = "Cell.Supervisor.Install.Shift.moving 2", .colset = "UNIT", .owner = 0, .bag = &s_at_Supervisor_Install_Shift_moving_2,
-        .is_bounded = true, .bound = 1U,
-    },
-    {
-        .name = "Cell.Supervisor.Install.Shift.there 2", .colset = "UNIT", .owner = 0, .bag = &s_at_Supervisor_Install_Shift_there_2,
-        .is_bounded = true, .bound = 1U,
-    },
-    {
-        .name = "Cell.Supervisor.Install.Rivet.advance", .colset = "ORDER", .owner = 0, .bag = &s_at_Supervisor_Install_Rivet_advance,
-        .is_bounded = true, .bound = 1U,
-    },
-    {
-        .name = "Cell.Supervisor.Install.Rivet.contact", .colset = "UNIT", .owner = 0, .bag = &s_at_Supervisor_Install_Rivet_contact,
-        .is_bounded = true, .bound = 1U,
-    },
-    {
-        .name = "Cell.Supervisor.Install.Rivet.fastened", .colset = "REPLY", .owner = 0, .bag = &s_at_Supervisor_Install_Rivet_fastened,
-        .is_bounded = true, .bound = 1U,
-    },
-    {
-        .name = "Cell.Supervisor.Install.Rivet.retract", .colset = "ORDER", .owner = 0, .bag = &s_at_Supervisor_Install_Rivet_retract,
-        .is_bounded = true, .bound = 1U,
-    },
-    {
-        .name = "Cell.Supervisor.Install.Rivet.Advance.moving 1", .colset = "UNIT", .owner = 0, .bag = &s_at_Supervisor_Install_Rivet_Advance_moving_1,
-        .is_bounded = true, .bound = 1U,
-    },
-    {
-        .name = "Cell.Supervisor.Install.Rivet.Advance.there 1", .colset = "UNIT", .owner = 0, .bag = &s_at_Supervisor_Install_Rivet_Advance_there_1,
-        .is_bounded = true, .bound = 1U,
-    },
-    {
-        .name = "Cell.Supervisor.Install.Rivet.Advance.moving 2", .colset = "UNIT", .owner = 0, .bag = &s_at_Supervisor_Install_Rivet_Advance_moving_2,
-        .is_bounded = true, .bound = 1U,
-    },
-    {
-        .name = "Cell.Supervisor.Install.Rivet.Advance.there 2", .colset = "UNIT", .owner = 0, .bag = &s_at_Supervisor_Install_Rivet_Advance_there_2,
-        .is_bounded = true, .bound = 1U,
-    },
-    {
-        .name = "Cell.Supervisor.Install.Rivet.Fasten.pressing", .colset = "UNIT", .owner = 0, .bag = &s_at_Supervisor_Install_Rivet_Fasten_pressing,
-        .is_bounded = true, .bound = 1U,
-    },
-    {
-        .name = "Cell.Supervisor.Install.Rivet.Fasten.drilling", .colset = "UNIT", .owner = 0, .bag = &s_at_Supervisor_Install_Rivet_Fasten_drilling,
-        .is_bounded = true, .bound = 1U,
-    },
-    {
-        .name = "Cell.Supervisor.Install.Rivet.Fasten.inserting", .colset = "UNIT", .owner = 0, .bag = &s_at_Supervisor_Install_Rivet_Fasten_inserting,
-        .is_bounded = true, .bound = 1U,
-    },
-    {
-        .name = "Cell.Supervisor.Install.Rivet.Fasten.releasing", .colset = "REPLY", .owner = 0, .bag = &s_at_Supervisor_Install_Rivet_Fasten_releasing,
-        .is_bounded = true, .bound = 1U,
-    },
-    {
-        .name = "Cell.Supervisor.Install.Rivet.Retract.moving 1", .colset = "UNIT", .owner = 0, .bag = &s_at_Supervisor_Install_Rivet_Retract_moving_1,
-        .is_bounded = true, .bound = 1U,
-    },
-    {
-        .name = "Cell.Supervisor.Install.Rivet.Retract.there 1", .colset = "UNIT", .owner = 0, .bag = &s_at_Supervisor_Install_Rivet_Retract_there_1,
-        .is_bounded = true, .bound = 1U,
-    },
-    {
-        .name = "Cell.Supervisor.Install.Rivet.Retract.moving 2", .colset = "UNIT", .owner = 0, .bag = &s_at_Supervisor_Install_Rivet_Retract_moving_2,
-        .is_bounded = true, .bound = 1U,
-    },
-    {
-        .name = "Cell.Supervisor.Install.Rivet.Retract.there 2", .colset = "UNIT", .owner = 0, .bag = &s_at_Supervisor_Install_Rivet_Retract_there_2,
-        .is_bounded = true, .bound = 1U,
-    },
-    {
-        .name = "Cell.Supervisor.Install.Return.moving 1", .colset = "UNIT", .owner = 0, .bag = &s_at_Supervisor_Install_Return_moving_1,
-        .is_bounded = true, .bound = 1U,
-    },
-    {
-        .name = "Cell.Supervisor.Install.Return.there 1", .colset = "UNIT", .owner = 0, .bag = &s_at_Supervisor_Install_Return_there_1,
-        .is_bounded = true, .bound = 1U,
-    },
-    {
-        .name = "Cell.Supervisor.Install.Return.moving 2", .colset = "UNIT", .owner = 0, .bag = &s_at_Supervisor_Install_Return_moving_2,
-        .is_bounded = true, .bound = 1U,
-    },
-    {
-        .name = "Cell.Supervisor.Install.Return.there 2", .colset = "UNIT", .owner = 0, .bag = &s_at_Supervisor_Install_Return_there_2,
-        .is_bounded = true, .bound = 1U,
-    },
-    {
-        .name = "Cell.Supervisor.Home.leaving 1", .colset = "UNIT", .owner = 0, .bag = &s_at_Supervisor_Home_leaving_1,
-        .is_bounded = true, .bound = 1U,
-    },
-    {
-        .name = "Cell.Supervisor.Home.home 1", .colset = "UNIT", .owner = 0, .bag = &s_at_Supervisor_Home_home_1,
-        .is_bounded = true, .bound = 1U,
-    },
-    {
-        .name = "Cell.Supervisor.Home.leaving 2", .colset = "UNIT", .owner = 0, .bag = &s_at_Supervisor_Home_leaving_2,
-        .is_bounded = true, .bound = 1U,
-    },
-    {
-        .name = "Cell.Supervisor.Home.home 2", .colset = "UNIT", .owner = 0, .bag = &s_at_Supervisor_Home_home_2,
-        .is_bounded = true, .bound = 1U,
-    },
-    {
-        .name = "Cell.Robot1.Waiting", .colset = "UNIT", .owner = 1, .bag = &s_at_Robot1_Waiting,
-        .is_bounded = true, .bound = 1U,
-        .initial = Robot1_Waiting_init,
-    },
-    {
-        .name = "Cell.Robot1.Commanded", .colset = "COMMAND", .owner = 1, .bag = &s_at_Robot1_Commanded,
-        .is_bounded = true, .bound = 1U,
-    },
-    {
-        .name = "Cell.Robot1.Done", .colset = "REPLY", .owner = 1, .bag = &s_at_Robot1_Done,
-        .is_bounded = true, .bound = 1U,
-    },
-    {
-        .name = "Cell.Robot2.Waiting", .colset = "UNIT", .owner = 2, .bag = &s_at_Robot2_Waiting,
-        .is_bounded = true, .bound = 1U,
-        .initial = Robot2_Waiting_init,
-    },
-    {
-        .name = "Cell.Robot2.Commanded", .colset = "COMMAND", .owner = 2, .bag = &s_at_Robot2_Commanded,
-        .is_bounded = true, .bound = 1U,
-    },
-    {
-        .name = "Cell.Robot2.Done", .colset = "REPLY", .owner = 2, .bag = &s_at_Robot2_Done,
-        .is_bounded = true, .bound = 1U,
-    },
+    { .name = "Cell.dadosrobo1", .colset = "POSE", .owner = -1, .bag = &s_at_dadosrobo1,
+        .is_bounded = true, .bound = 1U },
+    { .name = "Cell.flag1_interno", .colset = "COMMAND", .owner = -1, .bag = &s_at_flag1_interno,
+        .is_bounded = true, .bound = 1U },
+    { .name = "Cell.flag1_externo", .colset = "REPLY", .owner = -1, .bag = &s_at_flag1_externo,
+        .is_bounded = true, .bound = 1U },
+    { .name = "Cell.referencia1", .colset = "POSE", .owner = -1, .bag = &s_at_referencia1,
+        .is_bounded = true, .bound = 1U },
+    { .name = "Cell.medida1", .colset = "POSE", .owner = -1, .bag = &s_at_medida1,
+        .is_bounded = true, .bound = 1U },
+    { .name = "Cell.dadosrobo2", .colset = "POSE", .owner = -1, .bag = &s_at_dadosrobo2,
+        .is_bounded = true, .bound = 1U },
+    { .name = "Cell.flag2_interno", .colset = "COMMAND", .owner = -1, .bag = &s_at_flag2_interno,
+        .is_bounded = true, .bound = 1U },
+    { .name = "Cell.flag2_externo", .colset = "REPLY", .owner = -1, .bag = &s_at_flag2_externo,
+        .is_bounded = true, .bound = 1U },
+    { .name = "Cell.referencia2", .colset = "POSE", .owner = 2, .bag = &s_at_referencia2,
+        .is_bounded = true, .bound = 0U },
+    { .name = "Cell.medida2", .colset = "POSE", .owner = 2, .bag = &s_at_medida2,
+        .is_bounded = true, .bound = 0U },
+    { .name = "Cell.Supervisor.coordenadas", .colset = "PLAN", .owner = 0,
+        .bag = &s_at_Supervisor_coordenadas, .is_bounded = true, .bound = 1U,
+        .initial = Supervisor_coordenadas_init },
+    { .name = "Cell.Supervisor.planned", .colset = "SEAM", .owner = 0,
+        .bag = &s_at_Supervisor_planned, .is_bounded = true, .bound = 1U },
+    { .name = "Cell.Supervisor.approached", .colset = "SEAM", .owner = 0,
+        .bag = &s_at_Supervisor_approached, .is_bounded = true, .bound = 1U },
+    { .name = "Cell.Supervisor.verified", .colset = "VERIFIED", .owner = 0,
+        .bag = &s_at_Supervisor_verified, .is_bounded = true, .bound = 1U },
+    { .name = "Cell.Supervisor.corrected", .colset = "RIVETING", .owner = 0,
+        .bag = &s_at_Supervisor_corrected, .is_bounded = true, .bound = 1U },
+    { .name = "Cell.Supervisor.ended", .colset = "UNIT", .owner = 0, .bag = &s_at_Supervisor_ended,
+        .is_bounded = true, .bound = 1U },
+    { .name = "Cell.Supervisor.Finished", .colset = "UNIT", .owner = 0,
+        .bag = &s_at_Supervisor_Finished, .is_bounded = true, .bound = 1U },
+    { .name = "Cell.Supervisor.result", .colset = "REPLY", .owner = 0,
+        .bag = &s_at_Supervisor_result, .is_bounded = true, .bound = 1U },
+    { .name = "Cell.Supervisor.Failed", .colset = "UNIT", .owner = 0,
+        .bag = &s_at_Supervisor_Failed, .is_bounded = true, .bound = 1U },
+    { .name = "Cell.Supervisor.Approach.order", .colset = "ORDER", .owner = 0,
+        .bag = &s_at_Supervisor_Approach_order, .is_bounded = true, .bound = 1U },
+    { .name = "Cell.Supervisor.Approach.done", .colset = "UNIT", .owner = 0,
+        .bag = &s_at_Supervisor_Approach_done, .is_bounded = true, .bound = 1U },
+    { .name = "Cell.Supervisor.Approach.seam", .colset = "SEAM", .owner = 0,
+        .bag = &s_at_Supervisor_Approach_seam, .is_bounded = true, .bound = 1U },
+    { .name = "Cell.Supervisor.Approach.Move both.moving 1", .colset = "UNIT", .owner = 0,
+        .bag = &s_at_Supervisor_Approach_Move_both_moving_1, .is_bounded = true, .bound = 1U },
+    { .name = "Cell.Supervisor.Approach.Move both.there 1", .colset = "UNIT", .owner = 0,
+        .bag = &s_at_Supervisor_Approach_Move_both_there_1, .is_bounded = true, .bound = 1U },
+    { .name = "Cell.Supervisor.Approach.Move both.moving 2", .colset = "UNIT", .owner = 0,
+        .bag = &s_at_Supervisor_Approach_Move_both_moving_2, .is_bounded = true, .bound = 1U },
+    { .name = "Cell.Supervisor.Approach.Move both.there 2", .colset = "UNIT", .owner = 0,
+        .bag = &s_at_Supervisor_Approach_Move_both_there_2, .is_bounded = true, .bound = 1U },
+    { .name = "Cell.Supervisor.Verify.first asked", .colset = "SEAM", .owner = 0,
+        .bag = &s_at_Supervisor_Verify_first_asked, .is_bounded = true, .bound = 1U },
+    { .name = "Cell.Supervisor.Verify.last asked", .colset = "ASKED", .owner = 0,
+        .bag = &s_at_Supervisor_Verify_last_asked, .is_bounded = true, .bound = 1U },
+    { .name = "Cell.Supervisor.Correct.offset", .colset = "VECTOR", .owner = 0,
+        .bag = &s_at_Supervisor_Correct_offset, .is_bounded = true, .bound = 1U },
+    { .name = "Cell.Supervisor.Correct.order", .colset = "ORDER", .owner = 0,
+        .bag = &s_at_Supervisor_Correct_order, .is_bounded = true, .bound = 1U },
+    { .name = "Cell.Supervisor.Correct.done", .colset = "UNIT", .owner = 0,
+        .bag = &s_at_Supervisor_Correct_done, .is_bounded = true, .bound = 1U },
+    { .name = "Cell.Supervisor.Correct.seam", .colset = "RIVETING", .owner = 0,
+        .bag = &s_at_Supervisor_Correct_seam, .is_bounded = true, .bound = 1U },
+    { .name = "Cell.Supervisor.Correct.Move both.moving 1", .colset = "UNIT", .owner = 0,
+        .bag = &s_at_Supervisor_Correct_Move_both_moving_1, .is_bounded = true, .bound = 1U },
+    { .name = "Cell.Supervisor.Correct.Move both.there 1", .colset = "UNIT", .owner = 0,
+        .bag = &s_at_Supervisor_Correct_Move_both_there_1, .is_bounded = true, .bound = 1U },
+    { .name = "Cell.Supervisor.Correct.Move both.moving 2", .colset = "UNIT", .owner = 0,
+        .bag = &s_at_Supervisor_Correct_Move_both_moving_2, .is_bounded = true, .bound = 1U },
+    { .name = "Cell.Supervisor.Correct.Move both.there 2", .colset = "UNIT", .owner = 0,
+        .bag = &s_at_Supervisor_Correct_Move_both_there_2, .is_bounded = true, .bound = 1U },
+    { .name = "Cell.Supervisor.Install.shift", .colset = "ORDER", .owner = 0,
+        .bag = &s_at_Supervisor_Install_shift, .is_bounded = true, .bound = 1U },
+    { .name = "Cell.Supervisor.Install.ready", .colset = "UNIT", .owner = 0,
+        .bag = &s_at_Supervisor_Install_ready, .is_bounded = true, .bound = 1U },
+    { .name = "Cell.Supervisor.Install.riveted", .colset = "UNIT", .owner = 0,
+        .bag = &s_at_Supervisor_Install_riveted, .is_bounded = true, .bound = 1U },
+    { .name = "Cell.Supervisor.Install.return", .colset = "ORDER", .owner = 0,
+        .bag = &s_at_Supervisor_Install_return, .is_bounded = true, .bound = 1U },
+    { .name = "Cell.Supervisor.Install.work", .colset = "WORK", .owner = 0,
+        .bag = &s_at_Supervisor_Install_work, .is_bounded = true, .bound = 1U },
+    { .name = "Cell.Supervisor.Install.Shift.moving 1", .colset = "UNIT", .owner = 0,
+        .bag = &s_at_Supervisor_Install_Shift_moving_1, .is_bounded = true, .bound = 1U },
+    { .name = "Cell.Supervisor.Install.Shift.there 1", .colset = "UNIT", .owner = 0,
+        .bag = &s_at_Supervisor_Install_Shift_there_1, .is_bounded = true, .bound = 1U },
+    { .name = "Cell.Supervisor.Install.Shift.moving 2", .colset = "UNIT", .owner = 0,
+        .bag = &s_at_Supervisor_Install_Shift_moving_2, .is_bounded = true, .bound = 1U },
+    { .name = "Cell.Supervisor.Install.Shift.there 2", .colset = "UNIT", .owner = 0,
+        .bag = &s_at_Supervisor_Install_Shift_there_2, .is_bounded = true, .bound = 1U },
+    { .name = "Cell.Supervisor.Install.Rivet.advance", .colset = "ORDER", .owner = 0,
+        .bag = &s_at_Supervisor_Install_Rivet_advance, .is_bounded = true, .bound = 1U },
+    { .name = "Cell.Supervisor.Install.Rivet.contact", .colset = "UNIT", .owner = 0,
+        .bag = &s_at_Supervisor_Install_Rivet_contact, .is_bounded = true, .bound = 1U },
+    { .name = "Cell.Supervisor.Install.Rivet.fastened", .colset = "REPLY", .owner = 0,
+        .bag = &s_at_Supervisor_Install_Rivet_fastened, .is_bounded = true, .bound = 1U },
+    { .name = "Cell.Supervisor.Install.Rivet.retract", .colset = "ORDER", .owner = 0,
+        .bag = &s_at_Supervisor_Install_Rivet_retract, .is_bounded = true, .bound = 1U },
+    { .name = "Cell.Supervisor.Install.Rivet.Advance.moving 1", .colset = "UNIT", .owner = 0,
+        .bag = &s_at_Supervisor_Install_Rivet_Advance_moving_1, .is_bounded = true, .bound = 1U },
+    { .name = "Cell.Supervisor.Install.Rivet.Advance.there 1", .colset = "UNIT", .owner = 0,
+        .bag = &s_at_Supervisor_Install_Rivet_Advance_there_1, .is_bounded = true, .bound = 1U },
+    { .name = "Cell.Supervisor.Install.Rivet.Advance.moving 2", .colset = "UNIT", .owner = 0,
+        .bag = &s_at_Supervisor_Install_Rivet_Advance_moving_2, .is_bounded = true, .bound = 1U },
+    { .name = "Cell.Supervisor.Install.Rivet.Advance.there 2", .colset = "UNIT", .owner = 0,
+        .bag = &s_at_Supervisor_Install_Rivet_Advance_there_2, .is_bounded = true, .bound = 1U },
+    { .name = "Cell.Supervisor.Install.Rivet.Fasten.pressing", .colset = "UNIT", .owner = 0,
+        .bag = &s_at_Supervisor_Install_Rivet_Fasten_pressing, .is_bounded = true, .bound = 1U },
+    { .name = "Cell.Supervisor.Install.Rivet.Fasten.drilling", .colset = "UNIT", .owner = 0,
+        .bag = &s_at_Supervisor_Install_Rivet_Fasten_drilling, .is_bounded = true, .bound = 1U },
+    { .name = "Cell.Supervisor.Install.Rivet.Fasten.inserting", .colset = "UNIT", .owner = 0,
+        .bag = &s_at_Supervisor_Install_Rivet_Fasten_inserting, .is_bounded = true, .bound = 1U },
+    { .name = "Cell.Supervisor.Install.Rivet.Fasten.releasing", .colset = "REPLY", .owner = 0,
+        .bag = &s_at_Supervisor_Install_Rivet_Fasten_releasing, .is_bounded = true, .bound = 1U },
+    { .name = "Cell.Supervisor.Install.Rivet.Retract.moving 1", .colset = "UNIT", .owner = 0,
+        .bag = &s_at_Supervisor_Install_Rivet_Retract_moving_1, .is_bounded = true, .bound = 1U },
+    { .name = "Cell.Supervisor.Install.Rivet.Retract.there 1", .colset = "UNIT", .owner = 0,
+        .bag = &s_at_Supervisor_Install_Rivet_Retract_there_1, .is_bounded = true, .bound = 1U },
+    { .name = "Cell.Supervisor.Install.Rivet.Retract.moving 2", .colset = "UNIT", .owner = 0,
+        .bag = &s_at_Supervisor_Install_Rivet_Retract_moving_2, .is_bounded = true, .bound = 1U },
+    { .name = "Cell.Supervisor.Install.Rivet.Retract.there 2", .colset = "UNIT", .owner = 0,
+        .bag = &s_at_Supervisor_Install_Rivet_Retract_there_2, .is_bounded = true, .bound = 1U },
+    { .name = "Cell.Supervisor.Install.Return.moving 1", .colset = "UNIT", .owner = 0,
+        .bag = &s_at_Supervisor_Install_Return_moving_1, .is_bounded = true, .bound = 1U },
+    { .name = "Cell.Supervisor.Install.Return.there 1", .colset = "UNIT", .owner = 0,
+        .bag = &s_at_Supervisor_Install_Return_there_1, .is_bounded = true, .bound = 1U },
+    { .name = "Cell.Supervisor.Install.Return.moving 2", .colset = "UNIT", .owner = 0,
+        .bag = &s_at_Supervisor_Install_Return_moving_2, .is_bounded = true, .bound = 1U },
+    { .name = "Cell.Supervisor.Install.Return.there 2", .colset = "UNIT", .owner = 0,
+        .bag = &s_at_Supervisor_Install_Return_there_2, .is_bounded = true, .bound = 1U },
+    { .name = "Cell.Supervisor.Home.leaving 1", .colset = "UNIT", .owner = 0,
+        .bag = &s_at_Supervisor_Home_leaving_1, .is_bounded = true, .bound = 1U },
+    { .name = "Cell.Supervisor.Home.home 1", .colset = "UNIT", .owner = 0,
+        .bag = &s_at_Supervisor_Home_home_1, .is_bounded = true, .bound = 1U },
+    { .name = "Cell.Supervisor.Home.leaving 2", .colset = "UNIT", .owner = 0,
+        .bag = &s_at_Supervisor_Home_leaving_2, .is_bounded = true, .bound = 1U },
+    { .name = "Cell.Supervisor.Home.home 2", .colset = "UNIT", .owner = 0,
+        .bag = &s_at_Supervisor_Home_home_2, .is_bounded = true, .bound = 1U },
+    { .name = "Cell.Robot1.Waiting", .colset = "UNIT", .owner = 1, .bag = &s_at_Robot1_Waiting,
+        .is_bounded = true, .bound = 1U, .initial = Robot1_Waiting_init },
+    { .name = "Cell.Robot1.Commanded", .colset = "COMMAND", .owner = 1,
+        .bag = &s_at_Robot1_Commanded, .is_bounded = true, .bound = 1U },
+    { .name = "Cell.Robot1.Done", .colset = "REPLY", .owner = 1, .bag = &s_at_Robot1_Done,
+        .is_bounded = true, .bound = 1U },
+    { .name = "Cell.Robot2.Waiting", .colset = "UNIT", .owner = 2, .bag = &s_at_Robot2_Waiting,
+        .is_bounded = true, .bound = 1U, .initial = Robot2_Waiting_init },
+    { .name = "Cell.Robot2.Commanded", .colset = "COMMAND", .owner = 2,
+        .bag = &s_at_Robot2_Commanded, .is_bounded = true, .bound = 1U },
+    { .name = "Cell.Robot2.Done", .colset = "REPLY", .owner = 2, .bag = &s_at_Robot2_Done,
+        .is_bounded = true, .bound = 1U },
 };
 
-static const uint32_t s_bag_places[] = { 0U, 1U, 2U, 3U, 4U, 5U, 6U, 7U, 8U, 9U, 10U, 11U, 12U, 13U, 14U, 15U, 16U, 17U, 18U, 19U, 20U, 21U, 22U, 23U, 24U, 25U, 26U, 27U, 28U, 29U, 30U, 31U, 32U, 33U, 34U, 35U, 36U, 37U, 38U, 39U, 40U, 41U, 42U, 43U, 44U, 45U, 46U, 47U, 48U, 49U, 50U, 51U, 52U, 53U, 54U, 55U, 56U, 57U, 58U, 59U, 60U, 61U, 62U, 63U, 64U, 65U, 66U, 67U, 68U, 69U, 70U, 71U, 72U, 73U, 74U };
+static const uint32_t s_bag_places[] = { 0U, 1U, 2U, 3U, 4U, 5U, 6U, 7U, 8U, 9U, 10U, 11U, 12U, 13U,
+    14U, 15U, 16U, 17U, 18U, 19U, 20U, 21U, 22U, 23U, 24U, 25U, 26U, 27U, 28U, 29U, 30U, 31U, 32U,
+    33U, 34U, 35U, 36U, 37U, 38U, 39U, 40U, 41U, 42U, 43U, 44U, 45U, 46U, 47U, 48U, 49U, 50U, 51U,
+    52U, 53U, 54U, 55U, 56U, 57U, 58U, 59U, 60U, 61U, 62U, 63U, 64U, 65U, 66U, 67U, 68U, 69U, 70U,
+    71U, 72U, 73U, 74U };
 
-/* For each transition those that may be enabled in another way when it has occurred. */
-static const uint32_t s_affected_by_Supervisor_Load_Load[] = { 0U, 1U };
-static const uint32_t s_affected_by_Supervisor_Approach_Send[] = { 1U, 2U, 3U };
-static const uint32_t s_affected_by_Supervisor_Approach_Arrived[] = { 2U, 7U };
-static const uint32_t s_affected_by_Supervisor_Approach_Move_both_Command[] = { 3U, 5U, 6U, 53U, 55U, 56U, 63U, 65U, 66U };
-static const uint32_t s_affected_by_Supervisor_Approach_Move_both_Both[] = { 2U, 4U };
-static const uint32_t s_affected_by_Supervisor_Approach_Move_both_Reply_1[] = { 4U, 5U, 8U, 9U, 10U, 11U, 18U, 26U, 32U, 36U, 37U, 40U, 43U, 47U, 51U };
-static const uint32_t s_affected_by_Supervisor_Approach_Move_both_Reply_2[] = { 4U, 6U, 19U, 27U, 33U, 35U, 38U, 39U, 44U, 48U, 52U };
-static const uint32_t s_affected_by_Supervisor_Verify_Ask_first[] = { 7U, 8U, 10U, 53U, 58U };
-static const uint32_t s_affected_by_Supervisor_Verify_Ask_last[] = { 5U, 8U, 9U, 10U, 11U, 18U, 26U, 32U, 36U, 37U, 40U, 43U, 47U, 51U, 53U, 58U };
-static const uint32_t s_affected_by_Supervisor_Verify_Measured[] = { 5U, 8U, 9U, 10U, 11U, 12U, 18U, 26U, 32U, 36U, 37U, 40U, 43U, 47U, 51U };
-static const uint32_t s_affected_by_Supervisor_Verify_First_lost[] = { 5U, 8U, 9U, 10U, 11U, 18U, 20U, 21U, 23U, 26U, 32U, 36U, 37U, 40U, 43U, 47U, 49U, 50U, 51U };
-static const uint32_t s_affected_by_Supervisor_Verify_Last_lost[] = { 5U, 8U, 9U, 10U, 11U, 18U, 20U, 21U, 23U, 26U, 32U, 36U, 37U, 40U, 43U, 47U, 49U, 50U, 51U };
-static const uint32_t s_affected_by_Supervisor_Correct_Compare[] = { 12U, 13U, 14U, 15U };
-static const uint32_t s_affected_by_Supervisor_Correct_Move_over[] = { 13U, 15U, 16U };
-static const uint32_t s_affected_by_Supervisor_Correct_Moved[] = { 13U, 14U, 15U, 22U };
-static const uint32_t s_affected_by_Supervisor_Correct_As_planned[] = { 13U, 14U, 15U, 22U };
-static const uint32_t s_affected_by_Supervisor_Correct_Move_both_Command[] = { 16U, 18U, 19U, 53U, 55U, 56U, 63U, 65U, 66U };
-static const uint32_t s_affected_by_Supervisor_Correct_Move_both_Both[] = { 14U, 17U };
-static const uint32_t s_affected_by_Supervisor_Correct_Move_both_Reply_1[] = { 5U, 8U, 9U, 10U, 11U, 17U, 18U, 26U, 32U, 36U, 37U, 40U, 43U, 47U, 51U };
-static const uint32_t s_affected_by_Supervisor_Correct_Move_both_Reply_2[] = { 6U, 17U, 19U, 27U, 33U, 35U, 38U, 39U, 44U, 48U, 52U };
-static const uint32_t s_affected_by_Supervisor_Install_Go_back[] = { 20U, 21U, 23U, 45U };
-static const uint32_t s_affected_by_Supervisor_Install_Next_rivet[] = { 20U, 21U, 23U, 24U, 50U };
-static const uint32_t s_affected_by_Supervisor_Install_Start[] = { 20U, 21U, 22U, 23U, 28U };
-static const uint32_t s_affected_by_Supervisor_Install_Give_up[] = { 20U, 21U, 23U, 49U };
-static const uint32_t s_affected_by_Supervisor_Install_Shift_Command[] = { 24U, 26U, 27U, 53U, 55U, 56U, 63U, 65U, 66U };
-static const uint32_t s_affected_by_Supervisor_Install_Shift_Both[] = { 25U, 28U };
-static const uint32_t s_affected_by_Supervisor_Install_Shift_Reply_1[] = { 5U, 8U, 9U, 10U, 11U, 18U, 25U, 26U, 32U, 36U, 37U, 40U, 43U, 47U, 51U };
-static const uint32_t s_affected_by_Supervisor_Install_Shift_Reply_2[] = { 6U, 19U, 25U, 27U, 33U, 35U, 38U, 39U, 44U, 48U, 52U };
-static const uint32_t s_affected_by_Supervisor_Install_Rivet_Go_in[] = { 28U, 30U };
-static const uint32_t s_affected_by_Supervisor_Install_Rivet_Go_out[] = { 20U, 21U, 23U, 29U, 41U, 50U };
-static const uint32_t s_affected_by_Supervisor_Install_Rivet_Advance_Command[] = { 30U, 32U, 33U, 53U, 55U, 56U, 63U, 65U, 66U };
-static const uint32_t s_affected_by_Supervisor_Install_Rivet_Advance_Both[] = { 31U, 34U };
-static const uint32_t s_affected_by_Supervisor_Install_Rivet_Advance_Reply_1[] = { 5U, 8U, 9U, 10U, 11U, 18U, 26U, 31U, 32U, 36U, 37U, 40U, 43U, 47U, 51U };
-static const uint32_t s_affected_by_Supervisor_Install_Rivet_Advance_Reply_2[] = { 6U, 19U, 27U, 31U, 33U, 35U, 38U, 39U, 44U, 48U, 52U };
-static const uint32_t s_affected_by_Supervisor_Install_Rivet_Fasten_Press[] = { 34U, 35U, 39U, 63U };
-static const uint32_t s_affected_by_Supervisor_Install_Rivet_Fasten_Drill[] = { 6U, 19U, 27U, 33U, 35U, 36U, 38U, 39U, 40U, 44U, 48U, 52U, 53U };
-static const uint32_t s_affected_by_Supervisor_Install_Rivet_Fasten_Insert[] = { 5U, 8U, 9U, 10U, 11U, 18U, 26U, 32U, 36U, 37U, 40U, 43U, 47U, 51U, 53U };
-static const uint32_t s_affected_by_Supervisor_Install_Rivet_Fasten_Release[] = { 5U, 8U, 9U, 10U, 11U, 18U, 26U, 32U, 36U, 37U, 38U, 40U, 43U, 47U, 51U, 63U };
-static const uint32_t s_affected_by_Supervisor_Install_Rivet_Fasten_Finish[] = { 6U, 19U, 27U, 29U, 33U, 35U, 38U, 39U, 44U, 48U, 52U };
-static const uint32_t s_affected_by_Supervisor_Install_Rivet_Fasten_Press_failed[] = { 6U, 19U, 27U, 33U, 35U, 38U, 39U, 44U, 48U, 52U, 63U };
-static const uint32_t s_affected_by_Supervisor_Install_Rivet_Fasten_Drill_failed[] = { 5U, 8U, 9U, 10U, 11U, 18U, 26U, 32U, 36U, 37U, 38U, 40U, 43U, 47U, 51U, 63U };
-static const uint32_t s_affected_by_Supervisor_Install_Rivet_Retract_Command[] = { 41U, 43U, 44U, 53U, 55U, 56U, 63U, 65U, 66U };
-static const uint32_t s_affected_by_Supervisor_Install_Rivet_Retract_Both[] = { 20U, 21U, 23U, 42U };
-static const uint32_t s_affected_by_Supervisor_Install_Rivet_Retract_Reply_1[] = { 5U, 8U, 9U, 10U, 11U, 18U, 26U, 32U, 36U, 37U, 40U, 42U, 43U, 47U, 51U };
-static const uint32_t s_affected_by_Supervisor_Install_Rivet_Retract_Reply_2[] = { 6U, 19U, 27U, 33U, 35U, 38U, 39U, 42U, 44U, 48U, 52U };
-static const uint32_t s_affected_by_Supervisor_Install_Return_Command[] = { 45U, 47U, 48U, 53U, 55U, 56U, 63U, 65U, 66U };
-static const uint32_t s_affected_by_Supervisor_Install_Return_Both[] = { 46U, 49U };
-static const uint32_t s_affected_by_Supervisor_Install_Return_Reply_1[] = { 5U, 8U, 9U, 10U, 11U, 18U, 26U, 32U, 36U, 37U, 40U, 43U, 46U, 47U, 51U };
-static const uint32_t s_affected_by_Supervisor_Install_Return_Reply_2[] = { 6U, 19U, 27U, 33U, 35U, 38U, 39U, 44U, 46U, 48U, 52U };
-static const uint32_t s_affected_by_Supervisor_Home_Send_home[] = { 49U, 51U, 52U, 53U, 63U };
-static const uint32_t s_affected_by_Supervisor_Home_Both[] = { 20U, 21U, 23U, 50U };
-static const uint32_t s_affected_by_Supervisor_Home_Reply_1[] = { 5U, 8U, 9U, 10U, 11U, 18U, 26U, 32U, 36U, 37U, 40U, 43U, 47U, 50U, 51U };
-static const uint32_t s_affected_by_Supervisor_Home_Reply_2[] = { 6U, 19U, 27U, 33U, 35U, 38U, 39U, 44U, 48U, 50U, 52U };
-static const uint32_t s_affected_by_Robot1_Accept[] = { 53U, 55U, 56U, 57U, 58U, 59U, 60U, 61U, 62U };
-static const uint32_t s_affected_by_Robot1_Report[] = { 5U, 8U, 9U, 10U, 11U, 18U, 26U, 32U, 36U, 37U, 40U, 43U, 47U, 51U, 53U, 54U };
-static const uint32_t s_affected_by_Robot1_MoveJoint[] = { 54U, 55U, 56U, 57U, 58U, 59U, 60U, 61U, 62U };
-static const uint32_t s_affected_by_Robot1_MoveLinear[] = { 54U, 55U, 56U, 57U, 58U, 59U, 60U, 61U, 62U };
-static const uint32_t s_affected_by_Robot1_MoveHome[] = { 54U, 55U, 56U, 57U, 58U, 59U, 60U, 61U, 62U };
-static const uint32_t s_affected_by_Robot1_Measure[] = { 8U, 9U, 10U, 11U, 54U, 55U, 56U, 57U, 58U, 59U, 60U, 61U, 62U };
-static const uint32_t s_affected_by_Robot1_Drill[] = { 54U, 55U, 56U, 57U, 58U, 59U, 60U, 61U, 62U };
-static const uint32_t s_affected_by_Robot1_Insert[] = { 54U, 55U, 56U, 57U, 58U, 59U, 60U, 61U, 62U };
-static const uint32_t s_affected_by_Robot1_Press[] = { 54U, 55U, 56U, 57U, 58U, 59U, 60U, 61U, 62U };
-static const uint32_t s_affected_by_Robot1_Release[] = { 54U, 55U, 56U, 57U, 58U, 59U, 60U, 61U, 62U };
-static const uint32_t s_affected_by_Robot2_Accept[] = { 63U, 65U, 66U, 67U, 68U, 69U, 70U, 71U, 72U };
-static const uint32_t s_affected_by_Robot2_Report[] = { 6U, 19U, 27U, 33U, 35U, 38U, 39U, 44U, 48U, 52U, 63U, 64U };
-static const uint32_t s_affected_by_Robot2_MoveJoint[] = { 64U, 65U, 66U, 67U, 68U, 69U, 70U, 71U, 72U };
-static const uint32_t s_affected_by_Robot2_MoveLinear[] = { 64U, 65U, 66U, 67U, 68U, 69U, 70U, 71U, 72U };
-static const uint32_t s_affected_by_Robot2_MoveHome[] = { 64U, 65U, 66U, 67U, 68U, 69U, 70U, 71U, 72U };
-static const uint32_t s_affected_by_Robot2_Measure[] = { 64U, 65U, 66U, 67U, 68U, 69U, 70U, 71U, 72U };
-static const uint32_t s_affected_by_Robot2_Drill[] = { 64U, 65U, 66U, 67U, 68U, 69U, 70U, 71U, 72U };
-static const uint32_t s_affected_by_Robot2_Insert[] = { 64U, 65U, 66U, 67U, 68U, 69U, 70U, 71U, 72U };
-static const uint32_t s_affected_by_Robot2_Press[] = { 64U, 65U, 66U, 67U, 68U, 69U, 70U, 71U, 72U };
-static const uint32_t s_affected_by_Robot2_Release[] = { 64U, 65U, 66U, 67U, 68U, 69U, 70U, 71U, 72U };
-
-/* For each transition the places that its occurrence may change. */
-static const uint32_t s_touched_by_Supervisor_Load_Load[] = { 10U, 11U };
-static const uint32_t s_touched_by_Supervisor_Approach_Send[] = { 11U, 19U, 21U };
-static const uint32_t s_touched_by_Supervisor_Approach_Arrived[] = { 12U, 20U, 21U };
-static const uint32_t s_touched_by_Supervisor_Approach_Move_both_Command[] = { 0U, 1U, 5U, 6U, 19U, 22U, 24U };
-static const uint32_t s_touched_by_Supervisor_Approach_Move_both_Both[] = { 20U, 23U, 25U };
-static const uint32_t s_touched_by_Supervisor_Approach_Move_both_Reply_1[] = { 2U, 22U, 23U };
-static const uint32_t s_touched_by_Supervisor_Approach_Move_both_Reply_2[] = { 7U, 24U, 25U };
-static const uint32_t s_touched_by_Supervisor_Verify_Ask_first[] = { 1U, 3U, 12U, 26U };
-static const uint32_t s_touched_by_Supervisor_Verify_Ask_last[] = { 1U, 2U, 3U, 4U, 26U, 27U };
-static const uint32_t s_touched_by_Supervisor_Verify_Measured[] = { 2U, 4U, 13U, 27U };
-static const uint32_t s_touched_by_Supervisor_Verify_First_lost[] = { 2U, 4U, 15U, 17U, 26U };
-static const uint32_t s_touched_by_Supervisor_Verify_Last_lost[] = { 2U, 4U, 15U, 17U, 27U };
-static const uint32_t s_touched_by_Supervisor_Correct_Compare[] = { 13U, 28U, 31U };
-static const uint32_t s_touched_by_Supervisor_Correct_Move_over[] = { 28U, 29U };
-static const uint32_t s_touched_by_Supervisor_Correct_Moved[] = { 14U, 30U, 31U };
-static const uint32_t s_touched_by_Supervisor_Correct_As_planned[] = { 14U, 28U, 31U };
-static const uint32_t s_touched_by_Supervisor_Correct_Move_both_Command[] = { 0U, 1U, 5U, 6U, 29U, 32U, 34U };
-static const uint32_t s_touched_by_Supervisor_Correct_Move_both_Both[] = { 30U, 33U, 35U };
-static const uint32_t s_touched_by_Supervisor_Correct_Move_both_Reply_1[] = { 2U, 32U, 33U };
-static const uint32_t s_touched_by_Supervisor_Correct_Move_both_Reply_2[] = { 7U, 34U, 35U };
-static const uint32_t s_touched_by_Supervisor_Install_Go_back[] = { 38U, 39U, 40U };
-static const uint32_t s_touched_by_Supervisor_Install_Next_rivet[] = { 17U, 36U, 38U, 40U };
-static const uint32_t s_touched_by_Supervisor_Install_Start[] = { 14U, 37U, 40U };
-static const uint32_t s_touched_by_Supervisor_Install_Give_up[] = { 15U, 38U, 40U };
-static const uint32_t s_touched_by_Supervisor_Install_Shift_Command[] = { 0U, 1U, 5U, 6U, 36U, 41U, 43U };
-static const uint32_t s_touched_by_Supervisor_Install_Shift_Both[] = { 37U, 42U, 44U };
-static const uint32_t s_touched_by_Supervisor_Install_Shift_Reply_1[] = { 2U, 41U, 42U };
-static const uint32_t s_touched_by_Supervisor_Install_Shift_Reply_2[] = { 7U, 43U, 44U };
-static const uint32_t s_touched_by_Supervisor_Install_Rivet_Go_in[] = { 37U, 45U };
-static const uint32_t s_touched_by_Supervisor_Install_Rivet_Go_out[] = { 17U, 47U, 48U };
-static const uint32_t s_touched_by_Supervisor_Install_Rivet_Advance_Command[] = { 0U, 1U, 5U, 6U, 45U, 49U, 51U };
-static const uint32_t s_touched_by_Supervisor_Install_Rivet_Advance_Both[] = { 46U, 50U, 52U };
-static const uint32_t s_touched_by_Supervisor_Install_Rivet_Advance_Reply_1[] = { 2U, 49U, 50U };
-static const uint32_t s_touched_by_Supervisor_Install_Rivet_Advance_Reply_2[] = { 7U, 51U, 52U };
-static const uint32_t s_touched_by_Supervisor_Install_Rivet_Fasten_Press[] = { 6U, 46U, 53U };
-static const uint32_t s_touched_by_Supervisor_Install_Rivet_Fasten_Drill[] = { 1U, 7U, 53U, 54U };
-static const uint32_t s_touched_by_Supervisor_Install_Rivet_Fasten_Insert[] = { 1U, 2U, 54U, 55U };
-static const uint32_t s_touched_by_Supervisor_Install_Rivet_Fasten_Release[] = { 2U, 6U, 55U, 56U };
-static const uint32_t s_touched_by_Supervisor_Install_Rivet_Fasten_Finish[] = { 7U, 47U, 56U };
-static const uint32_t s_touched_by_Supervisor_Install_Rivet_Fasten_Press_failed[] = { 6U, 7U, 53U, 56U };
-static const uint32_t s_touched_by_Supervisor_Install_Rivet_Fasten_Drill_failed[] = { 2U, 6U, 54U, 56U };
-static const uint32_t s_touched_by_Supervisor_Install_Rivet_Retract_Command[] = { 0U, 1U, 5U, 6U, 48U, 57U, 59U };
-static const uint32_t s_touched_by_Supervisor_Install_Rivet_Retract_Both[] = { 38U, 58U, 60U };
-static const uint32_t s_touched_by_Supervisor_Install_Rivet_Retract_Reply_1[] = { 2U, 57U, 58U };
-static const uint32_t s_touched_by_Supervisor_Install_Rivet_Retract_Reply_2[] = { 7U, 59U, 60U };
-static const uint32_t s_touched_by_Supervisor_Install_Return_Command[] = { 0U, 1U, 5U, 6U, 39U, 61U, 63U };
-static const uint32_t s_touched_by_Supervisor_Install_Return_Both[] = { 15U, 62U, 64U };
-static const uint32_t s_touched_by_Supervisor_Install_Return_Reply_1[] = { 2U, 61U, 62U };
-static const uint32_t s_touched_by_Supervisor_Install_Return_Reply_2[] = { 7U, 63U, 64U };
-static const uint32_t s_touched_by_Supervisor_Home_Send_home[] = { 1U, 6U, 15U, 65U, 67U };
-static const uint32_t s_touched_by_Supervisor_Home_Both[] = { 16U, 17U, 18U, 66U, 68U };
-static const uint32_t s_touched_by_Supervisor_Home_Reply_1[] = { 2U, 65U, 66U };
-static const uint32_t s_touched_by_Supervisor_Home_Reply_2[] = { 7U, 67U, 68U };
-static const uint32_t s_touched_by_Robot1_Accept[] = { 1U, 69U, 70U };
-static const uint32_t s_touched_by_Robot1_Report[] = { 2U, 69U, 71U };
-static const uint32_t s_touched_by_Robot1_MoveJoint[] = { 0U, 70U, 71U };
-static const uint32_t s_touched_by_Robot1_MoveLinear[] = { 0U, 70U, 71U };
-static const uint32_t s_touched_by_Robot1_MoveHome[] = { 70U, 71U };
-static const uint32_t s_touched_by_Robot1_Measure[] = { 3U, 4U, 70U, 71U };
-static const uint32_t s_touched_by_Robot1_Drill[] = { 70U, 71U };
-static const uint32_t s_touched_by_Robot1_Insert[] = { 70U, 71U };
-static const uint32_t s_touched_by_Robot1_Press[] = { 70U, 71U };
-static const uint32_t s_touched_by_Robot1_Release[] = { 70U, 71U };
-static const uint32_t s_touched_by_Robot2_Accept[] = { 6U, 72U, 73U };
-static const uint32_t s_touched_by_Robot2_Report[] = { 7U, 72U, 74U };
-static const uint32_t s_touched_by_Robot2_MoveJoint[] = { 5U, 73U, 74U };
-static const uint32_t s_touched_by_Robot2_MoveLinear[] = { 5U, 73U, 74U };
-static const uint32_t s_touched_by_Robot2_MoveHome[] = { 73U, 74U };
-static const uint32_t s_touched_by_Robot2_Measure[] = { 8U, 9U, 73U, 74U };
-static const uint32_t s_touched_by_Robot2_Drill[] = { 73U, 74U };
-static const uint32_t s_touched_by_Robot2_Insert[] = { 73U, 74U };
-static const uint32_t s_touched_by_Robot2_Press[] = { 73U, 74U };
-static const uint32_t s_touched_by_Robot2_Release[] = { 73U, 74U };
-
-/* And those that decide about it. */
-static const uint32_t s_read_by_Supervisor_Load_Load[] = { 10U };
-static const uint32_t s_read_by_Supervisor_Approach_Send[] = { 11U };
-static const uint32_t s_read_by_Supervisor_Approach_Arrived[] = { 20U, 21U };
-static const uint32_t s_read_by_Supervisor_Approach_Move_both_Command[] = { 19U };
-static const uint32_t s_read_by_Supervisor_Approach_Move_both_Both[] = { 23U, 25U };
-static const uint32_t s_read_by_Supervisor_Approach_Move_both_Reply_1[] = { 2U, 22U };
-static const uint32_t s_read_by_Supervisor_Approach_Move_both_Reply_2[] = { 7U, 24U };
-static const uint32_t s_read_by_Supervisor_Verify_Ask_first[] = { 12U };
-static const uint32_t s_read_by_Supervisor_Verify_Ask_last[] = { 2U, 4U, 26U };
-static const uint32_t s_read_by_Supervisor_Verify_Measured[] = { 2U, 4U, 27U };
-static const uint32_t s_read_by_Supervisor_Verify_First_lost[] = { 2U, 4U, 26U };
-static const uint32_t s_read_by_Supervisor_Verify_Last_lost[] = { 2U, 4U, 27U };
-static const uint32_t s_read_by_Supervisor_Correct_Compare[] = { 13U };
-static const uint32_t s_read_by_Supervisor_Correct_Move_over[] = { 28U, 31U };
-static const uint32_t s_read_by_Supervisor_Correct_Moved[] = { 30U, 31U };
-static const uint32_t s_read_by_Supervisor_Correct_As_planned[] = { 28U, 31U };
-static const uint32_t s_read_by_Supervisor_Correct_Move_both_Command[] = { 29U };
-static const uint32_t s_read_by_Supervisor_Correct_Move_both_Both[] = { 33U, 35U };
-static const uint32_t s_read_by_Supervisor_Correct_Move_both_Reply_1[] = { 2U, 32U };
-static const uint32_t s_read_by_Supervisor_Correct_Move_both_Reply_2[] = { 7U, 34U };
-static const uint32_t s_read_by_Supervisor_Install_Go_back[] = { 17U, 38U, 40U };
-static const uint32_t s_read_by_Supervisor_Install_Next_rivet[] = { 17U, 38U, 40U };
-static const uint32_t s_read_by_Supervisor_Install_Start[] = { 14U };
-static const uint32_t s_read_by_Supervisor_Install_Give_up[] = { 17U, 38U, 40U };
-static const uint32_t s_read_by_Supervisor_Install_Shift_Command[] = { 36U };
-static const uint32_t s_read_by_Supervisor_Install_Shift_Both[] = { 42U, 44U };
-static const uint32_t s_read_by_Supervisor_Install_Shift_Reply_1[] = { 2U, 41U };
-static const uint32_t s_read_by_Supervisor_Install_Shift_Reply_2[] = { 7U, 43U };
-static const uint32_t s_read_by_Supervisor_Install_Rivet_Go_in[] = { 37U };
-static const uint32_t s_read_by_Supervisor_Install_Rivet_Go_out[] = { 47U };
-static const uint32_t s_read_by_Supervisor_Install_Rivet_Advance_Command[] = { 45U };
-static const uint32_t s_read_by_Supervisor_Install_Rivet_Advance_Both[] = { 50U, 52U };
-static const uint32_t s_read_by_Supervisor_Install_Rivet_Advance_Reply_1[] = { 2U, 49U };
-static const uint32_t s_read_by_Supervisor_Install_Rivet_Advance_Reply_2[] = { 7U, 51U };
-static const uint32_t s_read_by_Supervisor_Install_Rivet_Fasten_Press[] = { 46U };
-static const uint32_t s_read_by_Supervisor_Install_Rivet_Fasten_Drill[] = { 7U, 53U };
-static const uint32_t s_read_by_Supervisor_Install_Rivet_Fasten_Insert[] = { 2U, 54U };
-static const uint32_t s_read_by_Supervisor_Install_Rivet_Fasten_Release[] = { 2U, 55U };
-static const uint32_t s_read_by_Supervisor_Install_Rivet_Fasten_Finish[] = { 7U, 56U };
-static const uint32_t s_read_by_Supervisor_Install_Rivet_Fasten_Press_failed[] = { 7U, 53U };
-static const uint32_t s_read_by_Supervisor_Install_Rivet_Fasten_Drill_failed[] = { 2U, 54U };
-static const uint32_t s_read_by_Supervisor_Install_Rivet_Retract_Command[] = { 48U };
-static const uint32_t s_read_by_Supervisor_Install_Rivet_Retract_Both[] = { 58U, 60U };
-static const uint32_t s_read_by_Supervisor_Install_Rivet_Retract_Reply_1[] = { 2U, 57U };
-static const uint32_t s_read_by_Supervisor_Install_Rivet_Retract_Reply_2[] = { 7U, 59U };
-static const uint32_t s_read_by_Supervisor_Install_Return_Command[] = { 39U };
-static const uint32_t s_read_by_Supervisor_Install_Return_Both[] = { 62U, 64U };
-static const uint32_t s_read_by_Supervisor_Install_Return_Reply_1[] = { 2U, 61U };
-static const uint32_t s_read_by_Supervisor_Install_Return_Reply_2[] = { 7U, 63U };
-static const uint32_t s_read_by_Supervisor_Home_Send_home[] = { 15U };
-static const uint32_t s_read_by_Supervisor_Home_Both[] = { 17U, 66U, 68U };
-static const uint32_t s_read_by_Supervisor_Home_Reply_1[] = { 2U, 65U };
-static const uint32_t s_read_by_Supervisor_Home_Reply_2[] = { 7U, 67U };
-static const uint32_t s_read_by_Robot1_Accept[] = { 1U, 69U };
-static const uint32_t s_read_by_Robot1_Report[] = { 71U };
-static const uint32_t s_read_by_Robot1_MoveJoint[] = { 0U, 70U };
-static const uint32_t s_read_by_Robot1_MoveLinear[] = { 0U, 70U };
-static const uint32_t s_read_by_Robot1_MoveHome[] = { 70U };
-static const uint32_t s_read_by_Robot1_Measure[] = { 3U, 70U };
-static const uint32_t s_read_by_Robot1_Drill[] = { 70U };
-static const uint32_t s_read_by_Robot1_Insert[] = { 70U };
-static const uint32_t s_read_by_Robot1_Press[] = { 70U };
-static const uint32_t s_read_by_Robot1_Release[] = { 70U };
-static const uint32_t s_read_by_Robot2_Accept[] = { 6U, 72U };
-static const uint32_t s_read_by_Robot2_Report[] = { 74U };
-static const uint32_t s_read_by_Robot2_MoveJoint[] = { 5U, 73U };
-static const uint32_t s_read_by_Robot2_MoveLinear[] = { 5U, 73U };
-static const uint32_t s_read_by_Robot2_MoveHome[] = { 73U };
-static const uint32_t s_read_by_Robot2_Measure[] = { 8U, 73U };
-static const uint32_t s_read_by_Robot2_Drill[] = { 73U };
-static const uint32_t s_read_by_Robot2_Insert[] = { 73U };
-static const uint32_t s_read_by_Robot2_Press[] = { 73U };
-static const uint32_t s_read_by_Robot2_Release[] = { 73U };
-
+/* For each transition: those that may be enabled in another way when it has occurred, the places that it may change, and the
+ * places that decide about it. */
 static const pn_transition_t s_transitions[] = {
-    {
-        .name = "Cell.Supervisor.Load.Load", .id = "ID1412310271", .owner = 0, .priority = 1000,
-        .origin = "page `Load`, transition `Load` (ID1412310271)",
-        .enumerate = Supervisor_Load_Load_enumerate, .fire = Supervisor_Load_Load_fire, .binding = &s_binding_Supervisor_Load_Load,
-        .affected_count = sizeof s_affected_by_Supervisor_Load_Load / sizeof s_affected_by_Supervisor_Load_Load[0],
-        .affected = s_affected_by_Supervisor_Load_Load,
-        .touched_count = sizeof s_touched_by_Supervisor_Load_Load / sizeof s_touched_by_Supervisor_Load_Load[0],
-        .touched = s_touched_by_Supervisor_Load_Load,
-        .read_count = sizeof s_read_by_Supervisor_Load_Load / sizeof s_read_by_Supervisor_Load_Load[0],
-        .read = s_read_by_Supervisor_Load_Load,
-    },
-    {
-        .name = "Cell.Supervisor.Approach.Send", .id = "ID1412310300", .owner = 0, .priority = 1000,
-        .origin = "page `Approach`, transition `Send` (ID1412310300)",
-        .enumerate = Supervisor_Approach_Send_enumerate, .fire = Supervisor_Approach_Send_fire, .binding = &s_binding_Supervisor_Approach_Send,
-        .affected_count = sizeof s_affected_by_Supervisor_Approach_Send / sizeof s_affected_by_Supervisor_Approach_Send[0],
-        .affected = s_affected_by_Supervisor_Approach_Send,
-        .touched_count = sizeof s_touched_by_Supervisor_Approach_Send / sizeof s_touched_by_Supervisor_Approach_Send[0],
-        .touched = s_touched_by_Supervisor_Approach_Send,
-        .read_count = sizeof s_read_by_Supervisor_Approach_Send / sizeof s_read_by_Supervisor_Approach_Send[0],
-        .read = s_read_by_Supervisor_Approach_Send,
-    },
-    {
-        .name = "Cell.Supervisor.Approach.Arrived", .id = "ID1412310311", .owner = 0, .priority = 1000,
-        .origin = "page `Approach`, transition `Arrived` (ID1412310311)",
-        .enumerate = Supervisor_Approach_Arrived_enumerate, .fire = Supervisor_Approach_Arrived_fire, .binding = &s_binding_Supervisor_Approach_Arrived,
-        .affected_count = sizeof s_affected_by_Supervisor_Approach_Arrived / sizeof s_affected_by_Supervisor_Approach_Arrived[0],
-        .affected = s_affected_by_Supervisor_Approach_Arrived,
-        .touched_count = sizeof s_touched_by_Supervisor_Approach_Arrived / sizeof s_touched_by_Supervisor_Approach_Arrived[0],
-        .touched = s_touched_by_Supervisor_Approach_Arrived,
-        .read_count = sizeof s_read_by_Supervisor_Approach_Arrived / sizeof s_read_by_Supervisor_Approach_Arrived[0],
-        .read = s_read_by_Supervisor_Approach_Arrived,
-    },
-    {
-        .name = "Cell.Supervisor.Approach.Move both.Command", .id = "ID1412310941", .owner = 0, .priority = 1000,
-        .origin = "page `MoveBoth`, transition `Command` (ID1412310941)",
-        .enumerate = MoveBoth_Command_enumerate, .fire = MoveBoth_Command_fire, .binding = &s_binding_MoveBoth_Command,
-        .places = &s_in_Supervisor_Approach_Move_both,
-        .affected_count = sizeof s_affected_by_Supervisor_Approach_Move_both_Command / sizeof s_affected_by_Supervisor_Approach_Move_both_Command[0],
-        .affected = s_affected_by_Supervisor_Approach_Move_both_Command,
-        .touched_count = sizeof s_touched_by_Supervisor_Approach_Move_both_Command / sizeof s_touched_by_Supervisor_Approach_Move_both_Command[0],
-        .touched = s_touched_by_Supervisor_Approach_Move_both_Command,
-        .read_count = sizeof s_read_by_Supervisor_Approach_Move_both_Command / sizeof s_read_by_Supervisor_Approach_Move_both_Command[0],
-        .read = s_read_by_Supervisor_Approach_Move_both_Command,
-    },
-    {
-        .name = "Cell.Supervisor.Approach.Move both.Both", .id = "ID1412310948", .owner = 0, .priority = 1000,
-        .origin = "page `MoveBoth`, transition `Both` (ID1412310948)",
-        .enumerate = MoveBoth_Both_enumerate, .fire = MoveBoth_Both_fire, .binding = &s_binding_MoveBoth_Both,
-        .places = &s_in_Supervisor_Approach_Move_both,
-        .affected_count = sizeof s_affected_by_Supervisor_Approach_Move_both_Both / sizeof s_affected_by_Supervisor_Approach_Move_both_Both[0],
-        .affected = s_affected_by_Supervisor_Approach_Move_both_Both,
-        .touched_count = sizeof s_touched_by_Supervisor_Approach_Move_both_Both / sizeof s_touched_by_Supervisor_Approach_Move_both_Both[0],
-        .touched = s_touched_by_Supervisor_Approach_Move_both_Both,
-        .read_count = sizeof s_read_by_Supervisor_Approach_Move_both_Both / sizeof s_read_by_Supervisor_Approach_Move_both_Both[0],
-        .read = s_read_by_Supervisor_Approach_Move_both_Both,
-    },
-    {
-        .name = "Cell.Supervisor.Approach.Move both.Reply 1", .id = "ID1412310962", .owner = 0, .priority = 1000,
-        .origin = "page `MoveBoth`, transition `Reply 1` (ID1412310962)",
-        .enumerate = MoveBoth_Reply_1_enumerate, .fire = MoveBoth_Reply_1_fire, .binding = &s_binding_MoveBoth_Reply_1,
-        .places = &s_in_Supervisor_Approach_Move_both,
-        .affected_count = sizeof s_affected_by_Supervisor_Approach_Move_both_Reply_1 / sizeof s_affected_by_Supervisor_Approach_Move_both_Reply_1[0],
-        .affected = s_affected_by_Supervisor_Approach_Move_both_Reply_1,
-        .touched_count = sizeof s_touched_by_Supervisor_Approach_Move_both_Reply_1 / sizeof s_touched_by_Supervisor_Approach_Move_both_Reply_1[0],
-        .touched = s_touched_by_Supervisor_Approach_Move_both_Reply_1,
-        .read_count = sizeof s_read_by_Supervisor_Approach_Move_both_Reply_1 / sizeof s_read_by_Supervisor_Approach_Move_both_Reply_1[0],
-        .read = s_read_by_Supervisor_Approach_Move_both_Reply_1,
-    },
-    {
-        .name = "Cell.Supervisor.Approach.Move both.Reply 2", .id = "ID1412310999", .owner = 0, .priority = 1000,
-        .origin = "page `MoveBoth`, transition `Reply 2` (ID1412310999)",
-        .enumerate = MoveBoth_Reply_2_enumerate, .fire = MoveBoth_Reply_2_fire, .binding = &s_binding_MoveBoth_Reply_2,
-        .places = &s_in_Supervisor_Approach_Move_both,
-        .affected_count = sizeof s_affected_by_Supervisor_Approach_Move_both_Reply_2 / sizeof s_affected_by_Supervisor_Approach_Move_both_Reply_2[0],
-        .affected = s_affected_by_Supervisor_Approach_Move_both_Reply_2,
-        .touched_count = sizeof s_touched_by_Supervisor_Approach_Move_both_Reply_2 / sizeof s_touched_by_Supervisor_Approach_Move_both_Reply_2[0],
-        .touched = s_touched_by_Supervisor_Approach_Move_both_Reply_2,
-        .read_count = sizeof s_read_by_Supervisor_Approach_Move_both_Reply_2 / sizeof s_read_by_Supervisor_Approach_Move_both_Reply_2[0],
-        .read = s_read_by_Supervisor_Approach_Move_both_Reply_2,
-    },
-    {
-        .name = "Cell.Supervisor.Verify.Ask first", .id = "ID1412310377", .owner = 0, .priority = 1000,
-        .origin = "page `Verify`, transition `Ask first` (ID1412310377)",
-        .enumerate = Supervisor_Verify_Ask_first_enumerate, .fire = Supervisor_Verify_Ask_first_fire, .binding = &s_binding_Supervisor_Verify_Ask_first,
-        .affected_count = sizeof s_affected_by_Supervisor_Verify_Ask_first / sizeof s_affected_by_Supervisor_Verify_Ask_first[0],
-        .affected = s_affected_by_Supervisor_Verify_Ask_first,
-        .touched_count = sizeof s_touched_by_Supervisor_Verify_Ask_first / sizeof s_touched_by_Supervisor_Verify_Ask_first[0],
-        .touched = s_touched_by_Supervisor_Verify_Ask_first,
-        .read_count = sizeof s_read_by_Supervisor_Verify_Ask_first / sizeof s_read_by_Supervisor_Verify_Ask_first[0],
-        .read = s_read_by_Supervisor_Verify_Ask_first,
-    },
-    {
-        .name = "Cell.Supervisor.Verify.Ask last", .id = "ID1412310385", .owner = 0, .priority = 1000,
-        .origin = "page `Verify`, transition `Ask last` (ID1412310385)",
-        .enumerate = Supervisor_Verify_Ask_last_enumerate, .fire = Supervisor_Verify_Ask_last_fire, .binding = &s_binding_Supervisor_Verify_Ask_last,
-        .affected_count = sizeof s_affected_by_Supervisor_Verify_Ask_last / sizeof s_affected_by_Supervisor_Verify_Ask_last[0],
-        .affected = s_affected_by_Supervisor_Verify_Ask_last,
-        .touched_count = sizeof s_touched_by_Supervisor_Verify_Ask_last / sizeof s_touched_by_Supervisor_Verify_Ask_last[0],
-        .touched = s_touched_by_Supervisor_Verify_Ask_last,
-        .read_count = sizeof s_read_by_Supervisor_Verify_Ask_last / sizeof s_read_by_Supervisor_Verify_Ask_last[0],
-        .read = s_read_by_Supervisor_Verify_Ask_last,
-    },
-    {
-        .name = "Cell.Supervisor.Verify.Measured", .id = "ID1412310393", .owner = 0, .priority = 1000,
-        .origin = "page `Verify`, transition `Measured` (ID1412310393)",
-        .enumerate = Supervisor_Verify_Measured_enumerate, .fire = Supervisor_Verify_Measured_fire, .binding = &s_binding_Supervisor_Verify_Measured,
-        .affected_count = sizeof s_affected_by_Supervisor_Verify_Measured / sizeof s_affected_by_Supervisor_Verify_Measured[0],
-        .affected = s_affected_by_Supervisor_Verify_Measured,
-        .touched_count = sizeof s_touched_by_Supervisor_Verify_Measured / sizeof s_touched_by_Supervisor_Verify_Measured[0],
-        .touched = s_touched_by_Supervisor_Verify_Measured,
-        .read_count = sizeof s_read_by_Supervisor_Verify_Measured / sizeof s_read_by_Supervisor_Verify_Measured[0],
-        .read = s_read_by_Supervisor_Verify_Measured,
-    },
-    {
-        .name = "Cell.Supervisor.Verify.First lost", .id = "ID1412320018", .owner = 0, .priority = 1000,
-        .origin = "page `Verify`, transition `First lost` (ID1412320018)",
-        .enumerate = Supervisor_Verify_First_lost_enumerate, .fire = Supervisor_Verify_First_lost_fire, .binding = &s_binding_Supervisor_Verify_First_lost,
-        .affected_count = sizeof s_affected_by_Supervisor_Verify_First_lost / sizeof s_affected_by_Supervisor_Verify_First_lost[0],
-        .affected = s_affected_by_Supervisor_Verify_First_lost,
-        .touched_count = sizeof s_touched_by_Supervisor_Verify_First_lost / sizeof s_touched_by_Supervisor_Verify_First_lost[0],
-        .touched = s_touched_by_Supervisor_Verify_First_lost,
-        .read_count = sizeof s_read_by_Supervisor_Verify_First_lost / sizeof s_read_by_Supervisor_Verify_First_lost[0],
-        .read = s_read_by_Supervisor_Verify_First_lost,
-    },
-    {
-        .name = "Cell.Supervisor.Verify.Last lost", .id = "ID1412320023", .owner = 0, .priority = 1000,
-        .origin = "page `Verify`, transition `Last lost` (ID1412320023)",
-        .enumerate = Supervisor_Verify_Last_lost_enumerate, .fire = Supervisor_Verify_Last_lost_fire, .binding = &s_binding_Supervisor_Verify_Last_lost,
-        .affected_count = sizeof s_affected_by_Supervisor_Verify_Last_lost / sizeof s_affected_by_Supervisor_Verify_Last_lost[0],
-        .affected = s_affected_by_Supervisor_Verify_Last_lost,
-        .touched_count = sizeof s_touched_by_Supervisor_Verify_Last_lost / sizeof s_touched_by_Supervisor_Verify_Last_lost[0],
-        .touched = s_touched_by_Supervisor_Verify_Last_lost,
-        .read_count = sizeof s_read_by_Supervisor_Verify_Last_lost / sizeof s_read_by_Supervisor_Verify_Last_lost[0],
-        .read = s_read_by_Supervisor_Verify_Last_lost,
-    },
-    {
-        .name = "Cell.Supervisor.Correct.Compare", .id = "ID1412310453", .owner = 0, .priority = 1000,
-        .origin = "page `Correct`, transition `Compare` (ID1412310453)",
-        .enumerate = Supervisor_Correct_Compare_enumerate, .fire = Supervisor_Correct_Compare_fire, .binding = &s_binding_Supervisor_Correct_Compare,
-        .affected_count = sizeof s_affected_by_Supervisor_Correct_Compare / sizeof s_affected_by_Supervisor_Correct_Compare[0],
-        .affected = s_affected_by_Supervisor_Correct_Compare,
-        .touched_count = sizeof s_touched_by_Supervisor_Correct_Compare / sizeof s_touched_by_Supervisor_Correct_Compare[0],
-        .touched = s_touched_by_Supervisor_Correct_Compare,
-        .read_count = sizeof s_read_by_Supervisor_Correct_Compare / sizeof s_read_by_Supervisor_Correct_Compare[0],
-        .read = s_read_by_Supervisor_Correct_Compare,
-    },
-    {
-        .name = "Cell.Supervisor.Correct.Move over", .id = "ID1412310461", .owner = 0, .priority = 1000,
-        .origin = "page `Correct`, transition `Move over` (ID1412310461)",
-        .enumerate = Supervisor_Correct_Move_over_enumerate, .fire = Supervisor_Correct_Move_over_fire, .binding = &s_binding_Supervisor_Correct_Move_over,
-        .affected_count = sizeof s_affected_by_Supervisor_Correct_Move_over / sizeof s_affected_by_Supervisor_Correct_Move_over[0],
-        .affected = s_affected_by_Supervisor_Correct_Move_over,
-        .touched_count = sizeof s_touched_by_Supervisor_Correct_Move_over / sizeof s_touched_by_Supervisor_Correct_Move_over[0],
-        .touched = s_touched_by_Supervisor_Correct_Move_over,
-        .read_count = sizeof s_read_by_Supervisor_Correct_Move_over / sizeof s_read_by_Supervisor_Correct_Move_over[0],
-        .read = s_read_by_Supervisor_Correct_Move_over,
-    },
-    {
-        .name = "Cell.Supervisor.Correct.Moved", .id = "ID1412310478", .owner = 0, .priority = 1000,
-        .origin = "page `Correct`, transition `Moved` (ID1412310478)",
-        .enumerate = Supervisor_Correct_Moved_enumerate, .fire = Supervisor_Correct_Moved_fire, .binding = &s_binding_Supervisor_Correct_Moved,
-        .affected_count = sizeof s_affected_by_Supervisor_Correct_Moved / sizeof s_affected_by_Supervisor_Correct_Moved[0],
-        .affected = s_affected_by_Supervisor_Correct_Moved,
-        .touched_count = sizeof s_touched_by_Supervisor_Correct_Moved / sizeof s_touched_by_Supervisor_Correct_Moved[0],
-        .touched = s_touched_by_Supervisor_Correct_Moved,
-        .read_count = sizeof s_read_by_Supervisor_Correct_Moved / sizeof s_read_by_Supervisor_Correct_Moved[0],
-        .read = s_read_by_Supervisor_Correct_Moved,
-    },
-    {
-        .name = "Cell.Supervisor.Correct.As planned", .id = "ID1412310526", .owner = 0, .priority = 1000,
-        .origin = "page `Correct`, transition `As planned` (ID1412310526)",
-        .enumerate = Supervisor_Correct_As_planned_enumerate, .fire = Supervisor_Correct_As_planned_fire, .binding = &s_binding_Supervisor_Correct_As_planned,
-        .affected_count = sizeof s_affected_by_Supervisor_Correct_As_planned / sizeof s_affected_by_Supervisor_Correct_As_planned[0],
-        .affected = s_affected_by_Supervisor_Correct_As_planned,
-        .touched_count = sizeof s_touched_by_Supervisor_Correct_As_planned / sizeof s_touched_by_Supervisor_Correct_As_planned[0],
-        .touched = s_touched_by_Supervisor_Correct_As_planned,
-        .read_count = sizeof s_read_by_Supervisor_Correct_As_planned / sizeof s_read_by_Supervisor_Correct_As_planned[0],
-        .read = s_read_by_Supervisor_Correct_As_planned,
-    },
-    {
-        .name = "Cell.Supervisor.Correct.Move both.Command", .id = "ID1412310941", .owner = 0, .priority = 1000,
-        .origin = "page `MoveBoth`, transition `Command` (ID1412310941)",
-        .enumerate = MoveBoth_Command_enumerate, .fire = MoveBoth_Command_fire, .binding = &s_binding_MoveBoth_Command,
-        .places = &s_in_Supervisor_Correct_Move_both,
-        .affected_count = sizeof s_affected_by_Supervisor_Correct_Move_both_Command / sizeof s_affected_by_Supervisor_Correct_Move_both_Command[0],
-        .affected = s_affected_by_Supervisor_Correct_Move_both_Command,
-        .touched_count = sizeof s_touched_by_Supervisor_Correct_Move_both_Command / sizeof s_touched_by_Supervisor_Correct_Move_both_Command[0],
-        .touched = s_touched_by_Supervisor_Correct_Move_both_Command,
-        .read_count = sizeof s_read_by_Supervisor_Correct_Move_both_Command / sizeof s_read_by_Supervisor_Correct_Move_both_Command[0],
-        .read = s_read_by_Supervisor_Correct_Move_both_Command,
-    },
-    {
-        .name = "Cell.Supervisor.Correct.Move both.Both", .id = "ID1412310948", .owner = 0, .priority = 1000,
-        .origin = "page `MoveBoth`, transition `Both` (ID1412310948)",
-        .enumerate = MoveBoth_Both_enumerate, .fire = MoveBoth_Both_fire, .binding = &s_binding_MoveBoth_Both,
-        .places = &s_in_Supervisor_Correct_Move_both,
-        .affected_count = sizeof s_affected_by_Supervisor_Correct_Move_both_Both / sizeof s_affected_by_Supervisor_Correct_Move_both_Both[0],
-        .affected = s_affected_by_Supervisor_Correct_Move_both_Both,
-        .touched_count = sizeof s_touched_by_Supervisor_Correct_Move_both_Both / sizeof s_touched_by_Supervisor_Correct_Move_both_Both[0],
-        .touched = s_touched_by_Supervisor_Correct_Move_both_Both,
-        .read_count = sizeof s_read_by_Supervisor_Correct_Move_both_Both / sizeof s_read_by_Supervisor_Correct_Move_both_Both[0],
-        .read = s_read_by_Supervisor_Correct_Move_both_Both,
-    },
-    {
-        .name = "Cell.Supervisor.Correct.Move both.Reply 1", .id = "ID1412310962", .owner = 0, .priority = 1000,
-        .origin = "page `MoveBoth`, transition `Reply 1` (ID1412310962)",
-        .enumerate = MoveBoth_Reply_1_enumerate, .fire = MoveBoth_Reply_1_fire, .binding = &s_binding_MoveBoth_Reply_1,
-        .places = &s_in_Supervisor_Correct_Move_both,
-        .affected_count = sizeof s_affected_by_Supervisor_Correct_Move_both_Reply_1 / sizeof s_affected_by_Supervisor_Correct_Move_both_Reply_1[0],
-        .affected = s_affected_by_Supervisor_Correct_Move_both_Reply_1,
-        .touched_count = sizeof s_touched_by_Supervisor_Correct_Move_both_Reply_1 / sizeof s_touched_by_Supervisor_Correct_Move_both_Reply_1[0],
-        .touched = s_touched_by_Supervisor_Correct_Move_both_Reply_1,
-        .read_count = sizeof s_read_by_Supervisor_Correct_Move_both_Reply_1 / sizeof s_read_by_Supervisor_Correct_Move_both_Reply_1[0],
-        .read = s_read_by_Supervisor_Correct_Move_both_Reply_1,
-    },
-    {
-        .name = "Cell.Supervisor.Correct.Move both.Reply 2", .id = "ID1412310999", .owner = 0, .priority = 1000,
-        .origin = "page `MoveBoth`, transition `Reply 2` (ID1412310999)",
-        .enumerate = MoveBoth_Reply_2_enumerate, .fire = MoveBoth_Reply_2_fire, .binding = &s_binding_MoveBoth_Reply_2,
-        .places = &s_in_Supervisor_Correct_Move_both,
-        .affected_count = sizeof s_affected_by_Supervisor_Correct_Move_both_Reply_2 / sizeof s_affected_by_Supervisor_Correct_Move_both_Reply_2[0],
-        .affected = s_affected_by_Supervisor_Correct_Move_both_Reply_2,
-        .touched_count = sizeof s_touched_by_Supervisor_Correct_Move_both_Reply_2 / sizeof s_touched_by_Supervisor_Correct_Move_both_Reply_2[0],
-        .touched = s_touched_by_Supervisor_Correct_Move_both_Reply_2,
-        .read_count = sizeof s_read_by_Supervisor_Correct_Move_both_Reply_2 / sizeof s_read_by_Supervisor_Correct_Move_both_Reply_2[0],
-        .read = s_read_by_Supervisor_Correct_Move_both_Reply_2,
-    },
-    {
-        .name = "Cell.Supervisor.Install.Go back", .id = "ID1412310594", .owner = 0, .priority = 1000,
-        .origin = "page `Install`, transition `Go back` (ID1412310594)",
-        .enumerate = Supervisor_Install_Go_back_enumerate, .fire = Supervisor_Install_Go_back_fire, .binding = &s_binding_Supervisor_Install_Go_back,
-        .affected_count = sizeof s_affected_by_Supervisor_Install_Go_back / sizeof s_affected_by_Supervisor_Install_Go_back[0],
-        .affected = s_affected_by_Supervisor_Install_Go_back,
-        .touched_count = sizeof s_touched_by_Supervisor_Install_Go_back / sizeof s_touched_by_Supervisor_Install_Go_back[0],
-        .touched = s_touched_by_Supervisor_Install_Go_back,
-        .read_count = sizeof s_read_by_Supervisor_Install_Go_back / sizeof s_read_by_Supervisor_Install_Go_back[0],
-        .read = s_read_by_Supervisor_Install_Go_back,
-    },
-    {
-        .name = "Cell.Supervisor.Install.Next rivet", .id = "ID1412310624", .owner = 0, .priority = 1000,
-        .origin = "page `Install`, transition `Next rivet` (ID1412310624)",
-        .enumerate = Supervisor_Install_Next_rivet_enumerate, .fire = Supervisor_Install_Next_rivet_fire, .binding = &s_binding_Supervisor_Install_Next_rivet,
-        .affected_count = sizeof s_affected_by_Supervisor_Install_Next_rivet / sizeof s_affected_by_Supervisor_Install_Next_rivet[0],
-        .affected = s_affected_by_Supervisor_Install_Next_rivet,
-        .touched_count = sizeof s_touched_by_Supervisor_Install_Next_rivet / sizeof s_touched_by_Supervisor_Install_Next_rivet[0],
-        .touched = s_touched_by_Supervisor_Install_Next_rivet,
-        .read_count = sizeof s_read_by_Supervisor_Install_Next_rivet / sizeof s_read_by_Supervisor_Install_Next_rivet[0],
-        .read = s_read_by_Supervisor_Install_Next_rivet,
-    },
-    {
-        .name = "Cell.Supervisor.Install.Start", .id = "ID1412310632", .owner = 0, .priority = 1000,
-        .origin = "page `Install`, transition `Start` (ID1412310632)",
-        .enumerate = Supervisor_Install_Start_enumerate, .fire = Supervisor_Install_Start_fire, .binding = &s_binding_Supervisor_Install_Start,
-        .affected_count = sizeof s_affected_by_Supervisor_Install_Start / sizeof s_affected_by_Supervisor_Install_Start[0],
-        .affected = s_affected_by_Supervisor_Install_Start,
-        .touched_count = sizeof s_touched_by_Supervisor_Install_Start / sizeof s_touched_by_Supervisor_Install_Start[0],
-        .touched = s_touched_by_Supervisor_Install_Start,
-        .read_count = sizeof s_read_by_Supervisor_Install_Start / sizeof s_read_by_Supervisor_Install_Start[0],
-        .read = s_read_by_Supervisor_Install_Start,
-    },
-    {
-        .name = "Cell.Supervisor.Install.Give up", .id = "ID1412320067", .owner = 0, .priority = 1000,
-        .origin = "page `Install`, transition `Give up` (ID1412320067)",
-        .enumerate = Supervisor_Install_Give_up_enumerate, .fire = Supervisor_Install_Give_up_fire, .binding = &s_binding_Supervisor_Install_Give_up,
-        .affected_count = sizeof s_affected_by_Supervisor_Install_Give_up / sizeof s_affected_by_Supervisor_Install_Give_up[0],
-        .affected = s_affected_by_Supervisor_Install_Give_up,
-        .touched_count = sizeof s_touched_by_Supervisor_Install_Give_up / sizeof s_touched_by_Supervisor_Install_Give_up[0],
-        .touched = s_touched_by_Supervisor_Install_Give_up,
-        .read_count = sizeof s_read_by_Supervisor_Install_Give_up / sizeof s_read_by_Supervisor_Install_Give_up[0],
-        .read = s_read_by_Supervisor_Install_Give_up,
-    },
-    {
-        .name = "Cell.Supervisor.Install.Shift.Command", .id = "ID1412310941", .owner = 0, .priority = 1000,
-        .origin = "page `MoveBoth`, transition `Command` (ID1412310941)",
-        .enumerate = MoveBoth_Command_enumerate, .fire = MoveBoth_Command_fire, .binding = &s_binding_MoveBoth_Command,
-        .places = &s_in_Supervisor_Install_Shift,
-        .affected_count = sizeof s_affected_by_Supervisor_Install_Shift_Command / sizeof s_affected_by_Supervisor_Install_Shift_Command[0],
-        .affected = s_affected_by_Supervisor_Install_Shift_Command,
-        .touched_count = sizeof s_touched_by_Supervisor_Install_Shift_Command / sizeof s_touched_by_Supervisor_Install_Shift_Command[0],
-        .touched = s_touched_by_Supervisor_Install_Shift_Command,
-        .read_count = sizeof s_read_by_Supervisor_Install_Shift_Command / sizeof s_read_by_Supervisor_Install_Shift_Command[0],
-        .read = s_read_by_Supervisor_Install_Shift_Command,
-    },
-    {
-        .name = "Cell.Supervisor.Install.Shift.Both", .id = "ID1412310948", .owner = 0, .priority = 1000,
-        .origin = "page `MoveBoth`, transition `Both` (ID1412310948)",
-        .enumerate = MoveBoth_Both_enumerate, .fire = MoveBoth_Both_fire, .binding = &s_binding_MoveBoth_Both,
-        .places = &s_in_Supervisor_Install_Shift,
-        .affected_count = sizeof s_affected_by_Supervisor_Install_Shift_Both / sizeof s_affected_by_Supervisor_Install_Shift_Both[0],
-        .affected = s_affected_by_Supervisor_Install_Shift_Both,
-        .touched_count = sizeof s_touched_by_Supervisor_Install_Shift_Both / sizeof s_touched_by_Supervisor_Install_Shift_Both[0],
-        .touched = s_touched_by_Supervisor_Install_Shift_Both,
-        .read_count = sizeof s_read_by_Supervisor_Install_Shift_Both / sizeof s_read_by_Supervisor_Install_Shift_Both[0],
-        .read = s_read_by_Supervisor_Install_Shift_Both,
-    },
-    {
-        .name = "Cell.Supervisor.Install.Shift.Reply 1", .id = "ID1412310962", .owner = 0, .priority = 1000,
-        .origin = "page `MoveBoth`, transition `Reply 1` (ID1412310962)",
-        .enumerate = MoveBoth_Reply_1_enumerate, .fire = MoveBoth_Reply_1_fire, .binding = &s_binding_MoveBoth_Reply_1,
-        .places = &s_in_Supervisor_Install_Shift,
-        .affected_count = sizeof s_affected_by_Supervisor_Install_Shift_Reply_1 / sizeof s_affected_by_Supervisor_Install_Shift_Reply_1[0],
-        .affected = s_affected_by_Supervisor_Install_Shift_Reply_1,
-        .touched_count = sizeof s_touched_by_Supervisor_Install_Shift_Reply_1 / sizeof s_touched_by_Supervisor_Install_Shift_Reply_1[0],
-        .touched = s_touched_by_Supervisor_Install_Shift_Reply_1,
-        .read_count = sizeof s_read_by_Supervisor_Install_Shift_Reply_1 / sizeof s_read_by_Supervisor_Install_Shift_Reply_1[0],
-        .read = s_read_by_Supervisor_Install_Shift_Reply_1,
-    },
-    {
-        .name = "Cell.Supervisor.Install.Shift.Reply 2", .id = "ID1412310999", .owner = 0, .priority = 1000,
-        .origin = "page `MoveBoth`, transition `Reply 2` (ID1412310999)",
-        .enumerate = MoveBoth_Reply_2_enumerate, .fire = MoveBoth_Reply_2_fire, .binding = &s_binding_MoveBoth_Reply_2,
-        .places = &s_in_Supervisor_Install_Shift,
-        .affected_count = sizeof s_affected_by_Supervisor_Install_Shift_Reply_2 / sizeof s_affected_by_Supervisor_Install_Shift_Reply_2[0],
-        .affected = s_affected_by_Supervisor_Install_Shift_Reply_2,
-        .touched_count = sizeof s_touched_by_Supervisor_Install_Shift_Reply_2 / sizeof s_touched_by_Supervisor_Install_Shift_Reply_2[0],
-        .touched = s_touched_by_Supervisor_Install_Shift_Reply_2,
-        .read_count = sizeof s_read_by_Supervisor_Install_Shift_Reply_2 / sizeof s_read_by_Supervisor_Install_Shift_Reply_2[0],
-        .read = s_read_by_Supervisor_Install_Shift_Reply_2,
-    },
-    {
-        .name = "Cell.Supervisor.Install.Rivet.Go in", .id = "ID1412310716", .owner = 0, .priority = 1000,
-        .origin = "page `Rivet`, transition `Go in` (ID1412310716)",
-        .enumerate = Supervisor_Install_Rivet_Go_in_enumerate, .fire = Supervisor_Install_Rivet_Go_in_fire, .binding = &s_binding_Supervisor_Install_Rivet_Go_in,
-        .affected_count = sizeof s_affected_by_Supervisor_Install_Rivet_Go_in / sizeof s_affected_by_Supervisor_Install_Rivet_Go_in[0],
-        .affected = s_affected_by_Supervisor_Install_Rivet_Go_in,
-        .touched_count = sizeof s_touched_by_Supervisor_Install_Rivet_Go_in / sizeof s_touched_by_Supervisor_Install_Rivet_Go_in[0],
-        .touched = s_touched_by_Supervisor_Install_Rivet_Go_in,
-        .read_count = sizeof s_read_by_Supervisor_Install_Rivet_Go_in / sizeof s_read_by_Supervisor_Install_Rivet_Go_in[0],
-        .read = s_read_by_Supervisor_Install_Rivet_Go_in,
-    },
-    {
-        .name = "Cell.Supervisor.Install.Rivet.Go out", .id = "ID1412310742", .owner = 0, .priority = 1000,
-        .origin = "page `Rivet`, transition `Go out` (ID1412310742)",
-        .enumerate = Supervisor_Install_Rivet_Go_out_enumerate, .fire = Supervisor_Install_Rivet_Go_out_fire, .binding = &s_binding_Supervisor_Install_Rivet_Go_out,
-        .affected_count = sizeof s_affected_by_Supervisor_Install_Rivet_Go_out / sizeof s_affected_by_Supervisor_Install_Rivet_Go_out[0],
-        .affected = s_affected_by_Supervisor_Install_Rivet_Go_out,
-        .touched_count = sizeof s_touched_by_Supervisor_Install_Rivet_Go_out / sizeof s_touched_by_Supervisor_Install_Rivet_Go_out[0],
-        .touched = s_touched_by_Supervisor_Install_Rivet_Go_out,
-        .read_count = sizeof s_read_by_Supervisor_Install_Rivet_Go_out / sizeof s_read_by_Supervisor_Install_Rivet_Go_out[0],
-        .read = s_read_by_Supervisor_Install_Rivet_Go_out,
-    },
-    {
-        .name = "Cell.Supervisor.Install.Rivet.Advance.Command", .id = "ID1412310941", .owner = 0, .priority = 1000,
-        .origin = "page `MoveBoth`, transition `Command` (ID1412310941)",
-        .enumerate = MoveBoth_Command_enumerate, .fire = MoveBoth_Command_fire, .binding = &s_binding_MoveBoth_Command,
+    /* 0 */
+    { .name = "Cell.Supervisor.Load.Load", .id = "ID1412310271",
+        .origin = "page `Load`, transition `Load` (ID1412310271)", .owner = 0, .priority = 1000,
+        PN_CODE(Supervisor_Load_Load), PN_INDICES(affected, 0U, 1U), PN_INDICES(touched, 10U, 11U),
+        PN_INDICES(read, 10U) },
+    /* 1 */
+    { .name = "Cell.Supervisor.Approach.Send", .id = "ID1412310300",
+        .origin = "page `Approach`, transition `Send` (ID1412310300)", .owner = 0, .priority = 1000,
+        PN_CODE(Supervisor_Approach_Send), PN_INDICES(affected, 1U, 2U, 3U),
+        PN_INDICES(touched, 11U, 19U, 21U), PN_INDICES(read, 11U) },
+    /* 2 */
+    { .name = "Cell.Supervisor.Approach.Arrived", .id = "ID1412310311",
+        .origin = "page `Approach`, transition `Arrived` (ID1412310311)", .owner = 0,
+        .priority = 1000, PN_CODE(Supervisor_Approach_Arrived), PN_INDICES(affected, 2U, 7U),
+        PN_INDICES(touched, 12U, 20U, 21U), PN_INDICES(read, 20U, 21U) },
+    /* 3 */
+    { .name = "Cell.Supervisor.Approach.Move both.Command", .id = "ID1412310941",
+        .origin = "page `MoveBoth`, transition `Command` (ID1412310941)", .owner = 0,
+        .priority = 1000, PN_CODE(MoveBoth_Command), .places = &s_in_Supervisor_Approach_Move_both,
+        PN_INDICES(affected, 3U, 5U, 6U, 53U, 55U, 56U, 63U, 65U, 66U),
+        PN_INDICES(touched, 0U, 1U, 5U, 6U, 19U, 22U, 24U), PN_INDICES(read, 19U) },
+    /* 4 */
+    { .name = "Cell.Supervisor.Approach.Move both.Both", .id = "ID1412310948",
+        .origin = "page `MoveBoth`, transition `Both` (ID1412310948)", .owner = 0, .priority = 1000,
+        PN_CODE(MoveBoth_Both), .places = &s_in_Supervisor_Approach_Move_both,
+        PN_INDICES(affected, 2U, 4U), PN_INDICES(touched, 20U, 23U, 25U),
+        PN_INDICES(read, 23U, 25U) },
+    /* 5 */
+    { .name = "Cell.Supervisor.Approach.Move both.Reply 1", .id = "ID1412310962",
+        .origin = "page `MoveBoth`, transition `Reply 1` (ID1412310962)", .owner = 0,
+        .priority = 1000, PN_CODE(MoveBoth_Reply_1), .places = &s_in_Supervisor_Approach_Move_both,
+        PN_INDICES(affected, 4U, 5U, 8U, 9U, 10U, 11U, 18U, 26U, 32U, 36U, 37U, 40U, 43U, 47U, 51U),
+        PN_INDICES(touched, 2U, 22U, 23U), PN_INDICES(read, 2U, 22U) },
+    /* 6 */
+    { .name = "Cell.Supervisor.Approach.Move both.Reply 2", .id = "ID1412310999",
+        .origin = "page `MoveBoth`, transition `Reply 2` (ID1412310999)", .owner = 0,
+        .priority = 1000, PN_CODE(MoveBoth_Reply_2), .places = &s_in_Supervisor_Approach_Move_both,
+        PN_INDICES(affected, 4U, 6U, 19U, 27U, 33U, 35U, 38U, 39U, 44U, 48U, 52U),
+        PN_INDICES(touched, 7U, 24U, 25U), PN_INDICES(read, 7U, 24U) },
+    /* 7 */
+    { .name = "Cell.Supervisor.Verify.Ask first", .id = "ID1412310377",
+        .origin = "page `Verify`, transition `Ask first` (ID1412310377)", .owner = 0,
+        .priority = 1000, PN_CODE(Supervisor_Verify_Ask_first),
+        PN_INDICES(affected, 7U, 8U, 10U, 53U, 58U), PN_INDICES(touched, 1U, 3U, 12U, 26U),
+        PN_INDICES(read, 12U) },
+    /* 8 */
+    { .name = "Cell.Supervisor.Verify.Ask last", .id = "ID1412310385",
+        .origin = "page `Verify`, transition `Ask last` (ID1412310385)", .owner = 0,
+        .priority = 1000, PN_CODE(Supervisor_Verify_Ask_last),
+        PN_INDICES(affected, 5U, 8U, 9U, 10U, 11U, 18U, 26U, 32U, 36U, 37U, 40U, 43U, 47U, 51U, 53U,
+        58U), PN_INDICES(touched, 1U, 2U, 3U, 4U, 26U, 27U), PN_INDICES(read, 2U, 4U, 26U) },
+    /* 9 */
+    { .name = "Cell.Supervisor.Verify.Measured", .id = "ID1412310393",
+        .origin = "page `Verify`, transition `Measured` (ID1412310393)", .owner = 0,
+        .priority = 1000, PN_CODE(Supervisor_Verify_Measured),
+        PN_INDICES(affected, 5U, 8U, 9U, 10U, 11U, 12U, 18U, 26U, 32U, 36U, 37U, 40U, 43U, 47U,
+        51U), PN_INDICES(touched, 2U, 4U, 13U, 27U), PN_INDICES(read, 2U, 4U, 27U) },
+    /* 10 */
+    { .name = "Cell.Supervisor.Verify.First lost", .id = "ID1412320018",
+        .origin = "page `Verify`, transition `First lost` (ID1412320018)", .owner = 0,
+        .priority = 1000, PN_CODE(Supervisor_Verify_First_lost),
+        PN_INDICES(affected, 5U, 8U, 9U, 10U, 11U, 18U, 20U, 21U, 23U, 26U, 32U, 36U, 37U, 40U, 43U,
+        47U, 49U, 50U, 51U), PN_INDICES(touched, 2U, 4U, 15U, 17U, 26U),
+        PN_INDICES(read, 2U, 4U, 26U) },
+    /* 11 */
+    { .name = "Cell.Supervisor.Verify.Last lost", .id = "ID1412320023",
+        .origin = "page `Verify`, transition `Last lost` (ID1412320023)", .owner = 0,
+        .priority = 1000, PN_CODE(Supervisor_Verify_Last_lost),
+        PN_INDICES(affected, 5U, 8U, 9U, 10U, 11U, 18U, 20U, 21U, 23U, 26U, 32U, 36U, 37U, 40U, 43U,
+        47U, 49U, 50U, 51U), PN_INDICES(touched, 2U, 4U, 15U, 17U, 27U),
+        PN_INDICES(read, 2U, 4U, 27U) },
+    /* 12 */
+    { .name = "Cell.Supervisor.Correct.Compare", .id = "ID1412310453",
+        .origin = "page `Correct`, transition `Compare` (ID1412310453)", .owner = 0,
+        .priority = 1000, PN_CODE(Supervisor_Correct_Compare),
+        PN_INDICES(affected, 12U, 13U, 14U, 15U), PN_INDICES(touched, 13U, 28U, 31U),
+        PN_INDICES(read, 13U) },
+    /* 13 */
+    { .name = "Cell.Supervisor.Correct.Move over", .id = "ID1412310461",
+        .origin = "page `Correct`, transition `Move over` (ID1412310461)", .owner = 0,
+        .priority = 1000, PN_CODE(Supervisor_Correct_Move_over),
+        PN_INDICES(affected, 13U, 15U, 16U), PN_INDICES(touched, 28U, 29U),
+        PN_INDICES(read, 28U, 31U) },
+    /* 14 */
+    { .name = "Cell.Supervisor.Correct.Moved", .id = "ID1412310478",
+        .origin = "page `Correct`, transition `Moved` (ID1412310478)", .owner = 0, .priority = 1000,
+        PN_CODE(Supervisor_Correct_Moved), PN_INDICES(affected, 13U, 14U, 15U, 22U),
+        PN_INDICES(touched, 14U, 30U, 31U), PN_INDICES(read, 30U, 31U) },
+    /* 15 */
+    { .name = "Cell.Supervisor.Correct.As planned", .id = "ID1412310526",
+        .origin = "page `Correct`, transition `As planned` (ID1412310526)", .owner = 0,
+        .priority = 1000, PN_CODE(Supervisor_Correct_As_planned),
+        PN_INDICES(affected, 13U, 14U, 15U, 22U), PN_INDICES(touched, 14U, 28U, 31U),
+        PN_INDICES(read, 28U, 31U) },
+    /* 16 */
+    { .name = "Cell.Supervisor.Correct.Move both.Command", .id = "ID1412310941",
+        .origin = "page `MoveBoth`, transition `Command` (ID1412310941)", .owner = 0,
+        .priority = 1000, PN_CODE(MoveBoth_Command), .places = &s_in_Supervisor_Correct_Move_both,
+        PN_INDICES(affected, 16U, 18U, 19U, 53U, 55U, 56U, 63U, 65U, 66U),
+        PN_INDICES(touched, 0U, 1U, 5U, 6U, 29U, 32U, 34U), PN_INDICES(read, 29U) },
+    /* 17 */
+    { .name = "Cell.Supervisor.Correct.Move both.Both", .id = "ID1412310948",
+        .origin = "page `MoveBoth`, transition `Both` (ID1412310948)", .owner = 0, .priority = 1000,
+        PN_CODE(MoveBoth_Both), .places = &s_in_Supervisor_Correct_Move_both,
+        PN_INDICES(affected, 14U, 17U), PN_INDICES(touched, 30U, 33U, 35U),
+        PN_INDICES(read, 33U, 35U) },
+    /* 18 */
+    { .name = "Cell.Supervisor.Correct.Move both.Reply 1", .id = "ID1412310962",
+        .origin = "page `MoveBoth`, transition `Reply 1` (ID1412310962)", .owner = 0,
+        .priority = 1000, PN_CODE(MoveBoth_Reply_1), .places = &s_in_Supervisor_Correct_Move_both,
+        PN_INDICES(affected, 5U, 8U, 9U, 10U, 11U, 17U, 18U, 26U, 32U, 36U, 37U, 40U, 43U, 47U,
+        51U), PN_INDICES(touched, 2U, 32U, 33U), PN_INDICES(read, 2U, 32U) },
+    /* 19 */
+    { .name = "Cell.Supervisor.Correct.Move both.Reply 2", .id = "ID1412310999",
+        .origin = "page `MoveBoth`, transition `Reply 2` (ID1412310999)", .owner = 0,
+        .priority = 1000, PN_CODE(MoveBoth_Reply_2), .places = &s_in_Supervisor_Correct_Move_both,
+        PN_INDICES(affected, 6U, 17U, 19U, 27U, 33U, 35U, 38U, 39U, 44U, 48U, 52U),
+        PN_INDICES(touched, 7U, 34U, 35U), PN_INDICES(read, 7U, 34U) },
+    /* 20 */
+    { .name = "Cell.Supervisor.Install.Go back", .id = "ID1412310594",
+        .origin = "page `Install`, transition `Go back` (ID1412310594)", .owner = 0,
+        .priority = 1000, PN_CODE(Supervisor_Install_Go_back),
+        PN_INDICES(affected, 20U, 21U, 23U, 45U), PN_INDICES(touched, 38U, 39U, 40U),
+        PN_INDICES(read, 17U, 38U, 40U) },
+    /* 21 */
+    { .name = "Cell.Supervisor.Install.Next rivet", .id = "ID1412310624",
+        .origin = "page `Install`, transition `Next rivet` (ID1412310624)", .owner = 0,
+        .priority = 1000, PN_CODE(Supervisor_Install_Next_rivet),
+        PN_INDICES(affected, 20U, 21U, 23U, 24U, 50U), PN_INDICES(touched, 17U, 36U, 38U, 40U),
+        PN_INDICES(read, 17U, 38U, 40U) },
+    /* 22 */
+    { .name = "Cell.Supervisor.Install.Start", .id = "ID1412310632",
+        .origin = "page `Install`, transition `Start` (ID1412310632)", .owner = 0, .priority = 1000,
+        PN_CODE(Supervisor_Install_Start), PN_INDICES(affected, 20U, 21U, 22U, 23U, 28U),
+        PN_INDICES(touched, 14U, 37U, 40U), PN_INDICES(read, 14U) },
+    /* 23 */
+    { .name = "Cell.Supervisor.Install.Give up", .id = "ID1412320067",
+        .origin = "page `Install`, transition `Give up` (ID1412320067)", .owner = 0,
+        .priority = 1000, PN_CODE(Supervisor_Install_Give_up),
+        PN_INDICES(affected, 20U, 21U, 23U, 49U), PN_INDICES(touched, 15U, 38U, 40U),
+        PN_INDICES(read, 17U, 38U, 40U) },
+    /* 24 */
+    { .name = "Cell.Supervisor.Install.Shift.Command", .id = "ID1412310941",
+        .origin = "page `MoveBoth`, transition `Command` (ID1412310941)", .owner = 0,
+        .priority = 1000, PN_CODE(MoveBoth_Command), .places = &s_in_Supervisor_Install_Shift,
+        PN_INDICES(affected, 24U, 26U, 27U, 53U, 55U, 56U, 63U, 65U, 66U),
+        PN_INDICES(touched, 0U, 1U, 5U, 6U, 36U, 41U, 43U), PN_INDICES(read, 36U) },
+    /* 25 */
+    { .name = "Cell.Supervisor.Install.Shift.Both", .id = "ID1412310948",
+        .origin = "page `MoveBoth`, transition `Both` (ID1412310948)", .owner = 0, .priority = 1000,
+        PN_CODE(MoveBoth_Both), .places = &s_in_Supervisor_Install_Shift,
+        PN_INDICES(affected, 25U, 28U), PN_INDICES(touched, 37U, 42U, 44U),
+        PN_INDICES(read, 42U, 44U) },
+    /* 26 */
+    { .name = "Cell.Supervisor.Install.Shift.Reply 1", .id = "ID1412310962",
+        .origin = "page `MoveBoth`, transition `Reply 1` (ID1412310962)", .owner = 0,
+        .priority = 1000, PN_CODE(MoveBoth_Reply_1), .places = &s_in_Supervisor_Install_Shift,
+        PN_INDICES(affected, 5U, 8U, 9U, 10U, 11U, 18U, 25U, 26U, 32U, 36U, 37U, 40U, 43U, 47U,
+        51U), PN_INDICES(touched, 2U, 41U, 42U), PN_INDICES(read, 2U, 41U) },
+    /* 27 */
+    { .name = "Cell.Supervisor.Install.Shift.Reply 2", .id = "ID1412310999",
+        .origin = "page `MoveBoth`, transition `Reply 2` (ID1412310999)", .owner = 0,
+        .priority = 1000, PN_CODE(MoveBoth_Reply_2), .places = &s_in_Supervisor_Install_Shift,
+        PN_INDICES(affected, 6U, 19U, 25U, 27U, 33U, 35U, 38U, 39U, 44U, 48U, 52U),
+        PN_INDICES(touched, 7U, 43U, 44U), PN_INDICES(read, 7U, 43U) },
+    /* 28 */
+    { .name = "Cell.Supervisor.Install.Rivet.Go in", .id = "ID1412310716",
+        .origin = "page `Rivet`, transition `Go in` (ID1412310716)", .owner = 0, .priority = 1000,
+        PN_CODE(Supervisor_Install_Rivet_Go_in), PN_INDICES(affected, 28U, 30U),
+        PN_INDICES(touched, 37U, 45U), PN_INDICES(read, 37U) },
+    /* 29 */
+    { .name = "Cell.Supervisor.Install.Rivet.Go out", .id = "ID1412310742",
+        .origin = "page `Rivet`, transition `Go out` (ID1412310742)", .owner = 0, .priority = 1000,
+        PN_CODE(Supervisor_Install_Rivet_Go_out),
+        PN_INDICES(affected, 20U, 21U, 23U, 29U, 41U, 50U), PN_INDICES(touched, 17U, 47U, 48U),
+        PN_INDICES(read, 47U) },
+    /* 30 */
+    { .name = "Cell.Supervisor.Install.Rivet.Advance.Command", .id = "ID1412310941",
+        .origin = "page `MoveBoth`, transition `Command` (ID1412310941)", .owner = 0,
+        .priority = 1000, PN_CODE(MoveBoth_Command),
         .places = &s_in_Supervisor_Install_Rivet_Advance,
-        .affected_count = sizeof s_affected_by_Supervisor_Install_Rivet_Advance_Command / sizeof s_affected_by_Supervisor_Install_Rivet_Advance_Command[0],
-        .affected = s_affected_by_Supervisor_Install_Rivet_Advance_Command,
-        .touched_count = sizeof s_touched_by_Supervisor_Install_Rivet_Advance_Command / sizeof s_touched_by_Supervisor_Install_Rivet_Advance_Command[0],
-        .touched = s_touched_by_Supervisor_Install_Rivet_Advance_Command,
-        .read_count = sizeof s_read_by_Supervisor_Install_Rivet_Advance_Command / sizeof s_read_by_Supervisor_Install_Rivet_Advance_Command[0],
-        .read = s_read_by_Supervisor_Install_Rivet_Advance_Command,
-    },
-    {
-        .name = "Cell.Supervisor.Install.Rivet.Advance.Both", .id = "ID1412310948", .owner = 0, .priority = 1000,
-        .origin = "page `MoveBoth`, transition `Both` (ID1412310948)",
-        .enumerate = MoveBoth_Both_enumerate, .fire = MoveBoth_Both_fire, .binding = &s_binding_MoveBoth_Both,
+        PN_INDICES(affected, 30U, 32U, 33U, 53U, 55U, 56U, 63U, 65U, 66U),
+        PN_INDICES(touched, 0U, 1U, 5U, 6U, 45U, 49U, 51U), PN_INDICES(read, 45U) },
+    /* 31 */
+    { .name = "Cell.Supervisor.Install.Rivet.Advance.Both", .id = "ID1412310948",
+        .origin = "page `MoveBoth`, transition `Both` (ID1412310948)", .owner = 0, .priority = 1000,
+        PN_CODE(MoveBoth_Both), .places = &s_in_Supervisor_Install_Rivet_Advance,
+        PN_INDICES(affected, 31U, 34U), PN_INDICES(touched, 46U, 50U, 52U),
+        PN_INDICES(read, 50U, 52U) },
+    /* 32 */
+    { .name = "Cell.Supervisor.Install.Rivet.Advance.Reply 1", .id = "ID1412310962",
+        .origin = "page `MoveBoth`, transition `Reply 1` (ID1412310962)", .owner = 0,
+        .priority = 1000, PN_CODE(MoveBoth_Reply_1),
         .places = &s_in_Supervisor_Install_Rivet_Advance,
-        .affected_count = sizeof s_affected_by_Supervisor_Install_Rivet_Advance_Both / sizeof s_affected_by_Supervisor_Install_Rivet_Advance_Both[0],
-        .affected = s_affected_by_Supervisor_Install_Rivet_Advance_Both,
-        .touched_count = sizeof s_touched_by_Supervisor_Install_Rivet_Advance_Both / sizeof s_touched_by_Supervisor_Install_Rivet_Advance_Both[0],
-        .touched = s_touched_by_Supervisor_Install_Rivet_Advance_Both,
-        .read_count = sizeof s_read_by_Supervisor_Install_Rivet_Advance_Both / sizeof s_read_by_Supervisor_Install_Rivet_Advance_Both[0],
-        .read = s_read_by_Supervisor_Install_Rivet_Advance_Both,
-    },
-    {
-        .name = "Cell.Supervisor.Install.Rivet.Advance.Reply 1", .id = "ID1412310962", .owner = 0, .priority = 1000,
-        .origin = "page `MoveBoth`, transition `Reply 1` (ID1412310962)",
-        .enumerate = MoveBoth_Reply_1_enumerate, .fire = MoveBoth_Reply_1_fire, .binding = &s_binding_MoveBoth_Reply_1,
+        PN_INDICES(affected, 5U, 8U, 9U, 10U, 11U, 18U, 26U, 31U, 32U, 36U, 37U, 40U, 43U, 47U,
+        51U), PN_INDICES(touched, 2U, 49U, 50U), PN_INDICES(read, 2U, 49U) },
+    /* 33 */
+    { .name = "Cell.Supervisor.Install.Rivet.Advance.Reply 2", .id = "ID1412310999",
+        .origin = "page `MoveBoth`, transition `Reply 2` (ID1412310999)", .owner = 0,
+        .priority = 1000, PN_CODE(MoveBoth_Reply_2),
         .places = &s_in_Supervisor_Install_Rivet_Advance,
-        .affected_count = sizeof s_affected_by_Supervisor_Install_Rivet_Advance_Reply_1 / sizeof s_affected_by_Supervisor_Install_Rivet_Advance_Reply_1[0],
-        .affected = s_affected_by_Supervisor_Install_Rivet_Advance_Reply_1,
-        .touched_count = sizeof s_touched_by_Supervisor_Install_Rivet_Advance_Reply_1 / sizeof s_touched_by_Supervisor_Install_Rivet_Advance_Reply_1[0],
-        .touched = s_touched_by_Supervisor_Install_Rivet_Advance_Reply_1,
-        .read_count = sizeof s_read_by_Supervisor_Install_Rivet_Advance_Reply_1 / sizeof s_read_by_Supervisor_Install_Rivet_Advance_Reply_1[0],
-        .read = s_read_by_Supervisor_Install_Rivet_Advance_Reply_1,
-    },
-    {
-        .name = "Cell.Supervisor.Install.Rivet.Advance.Reply 2", .id = "ID1412310999", .owner = 0, .priority = 1000,
-        .origin = "page `MoveBoth`, transition `Reply 2` (ID1412310999)",
-        .enumerate = MoveBoth_Reply_2_enumerate, .fire = MoveBoth_Reply_2_fire, .binding = &s_binding_MoveBoth_Reply_2,
-        .places = &s_in_Supervisor_Install_Rivet_Advance,
-        .affected_count = sizeof s_affected_by_Supervisor_Install_Rivet_Advance_Reply_2 / sizeof s_affected_by_Supervisor_Install_Rivet_Advance_Reply_2[0],
-        .affected = s_affected_by_Supervisor_Install_Rivet_Advance_Reply_2,
-        .touched_count = sizeof s_touched_by_Supervisor_Install_Rivet_Advance_Reply_2 / sizeof s_touched_by_Supervisor_Install_Rivet_Advance_Reply_2[0],
-        .touched = s_touched_by_Supervisor_Install_Rivet_Advance_Reply_2,
-        .read_count = sizeof s_read_by_Supervisor_Install_Rivet_Advance_Reply_2 / sizeof s_read_by_Supervisor_Install_Rivet_Advance_Reply_2[0],
-        .read = s_read_by_Supervisor_Install_Rivet_Advance_Reply_2,
-    },
-    {
-        .name = "Cell.Supervisor.Install.Rivet.Fasten.Press", .id = "ID1412310842", .owner = 0, .priority = 1000,
-        .origin = "page `Fasten`, transition `Press` (ID1412310842)",
-        .enumerate = Supervisor_Install_Rivet_Fasten_Press_enumerate, .fire = Supervisor_Install_Rivet_Fasten_Press_fire, .binding = &s_binding_Supervisor_Install_Rivet_Fasten_Press,
-        .affected_count = sizeof s_affected_by_Supervisor_Install_Rivet_Fasten_Press / sizeof s_affected_by_Supervisor_Install_Rivet_Fasten_Press[0],
-        .affected = s_affected_by_Supervisor_Install_Rivet_Fasten_Press,
-        .touched_count = sizeof s_touched_by_Supervisor_Install_Rivet_Fasten_Press / sizeof s_touched_by_Supervisor_Install_Rivet_Fasten_Press[0],
-        .touched = s_touched_by_Supervisor_Install_Rivet_Fasten_Press,
-        .read_count = sizeof s_read_by_Supervisor_Install_Rivet_Fasten_Press / sizeof s_read_by_Supervisor_Install_Rivet_Fasten_Press[0],
-        .read = s_read_by_Supervisor_Install_Rivet_Fasten_Press,
-    },
-    {
-        .name = "Cell.Supervisor.Install.Rivet.Fasten.Drill", .id = "ID1412310850", .owner = 0, .priority = 1000,
-        .origin = "page `Fasten`, transition `Drill` (ID1412310850)",
-        .enumerate = Supervisor_Install_Rivet_Fasten_Drill_enumerate, .fire = Supervisor_Install_Rivet_Fasten_Drill_fire, .binding = &s_binding_Supervisor_Install_Rivet_Fasten_Drill,
-        .affected_count = sizeof s_affected_by_Supervisor_Install_Rivet_Fasten_Drill / sizeof s_affected_by_Supervisor_Install_Rivet_Fasten_Drill[0],
-        .affected = s_affected_by_Supervisor_Install_Rivet_Fasten_Drill,
-        .touched_count = sizeof s_touched_by_Supervisor_Install_Rivet_Fasten_Drill / sizeof s_touched_by_Supervisor_Install_Rivet_Fasten_Drill[0],
-        .touched = s_touched_by_Supervisor_Install_Rivet_Fasten_Drill,
-        .read_count = sizeof s_read_by_Supervisor_Install_Rivet_Fasten_Drill / sizeof s_read_by_Supervisor_Install_Rivet_Fasten_Drill[0],
-        .read = s_read_by_Supervisor_Install_Rivet_Fasten_Drill,
-    },
-    {
-        .name = "Cell.Supervisor.Install.Rivet.Fasten.Insert", .id = "ID1412310858", .owner = 0, .priority = 1000,
-        .origin = "page `Fasten`, transition `Insert` (ID1412310858)",
-        .enumerate = Supervisor_Install_Rivet_Fasten_Insert_enumerate, .fire = Supervisor_Install_Rivet_Fasten_Insert_fire, .binding = &s_binding_Supervisor_Install_Rivet_Fasten_Insert,
-        .affected_count = sizeof s_affected_by_Supervisor_Install_Rivet_Fasten_Insert / sizeof s_affected_by_Supervisor_Install_Rivet_Fasten_Insert[0],
-        .affected = s_affected_by_Supervisor_Install_Rivet_Fasten_Insert,
-        .touched_count = sizeof s_touched_by_Supervisor_Install_Rivet_Fasten_Insert / sizeof s_touched_by_Supervisor_Install_Rivet_Fasten_Insert[0],
-        .touched = s_touched_by_Supervisor_Install_Rivet_Fasten_Insert,
-        .read_count = sizeof s_read_by_Supervisor_Install_Rivet_Fasten_Insert / sizeof s_read_by_Supervisor_Install_Rivet_Fasten_Insert[0],
-        .read = s_read_by_Supervisor_Install_Rivet_Fasten_Insert,
-    },
-    {
-        .name = "Cell.Supervisor.Install.Rivet.Fasten.Release", .id = "ID1412310866", .owner = 0, .priority = 1000,
-        .origin = "page `Fasten`, transition `Release` (ID1412310866)",
-        .enumerate = Supervisor_Install_Rivet_Fasten_Release_enumerate, .fire = Supervisor_Install_Rivet_Fasten_Release_fire, .binding = &s_binding_Supervisor_Install_Rivet_Fasten_Release,
-        .affected_count = sizeof s_affected_by_Supervisor_Install_Rivet_Fasten_Release / sizeof s_affected_by_Supervisor_Install_Rivet_Fasten_Release[0],
-        .affected = s_affected_by_Supervisor_Install_Rivet_Fasten_Release,
-        .touched_count = sizeof s_touched_by_Supervisor_Install_Rivet_Fasten_Release / sizeof s_touched_by_Supervisor_Install_Rivet_Fasten_Release[0],
-        .touched = s_touched_by_Supervisor_Install_Rivet_Fasten_Release,
-        .read_count = sizeof s_read_by_Supervisor_Install_Rivet_Fasten_Release / sizeof s_read_by_Supervisor_Install_Rivet_Fasten_Release[0],
-        .read = s_read_by_Supervisor_Install_Rivet_Fasten_Release,
-    },
-    {
-        .name = "Cell.Supervisor.Install.Rivet.Fasten.Finish", .id = "ID1412310874", .owner = 0, .priority = 1000,
-        .origin = "page `Fasten`, transition `Finish` (ID1412310874)",
-        .enumerate = Supervisor_Install_Rivet_Fasten_Finish_enumerate, .fire = Supervisor_Install_Rivet_Fasten_Finish_fire, .binding = &s_binding_Supervisor_Install_Rivet_Fasten_Finish,
-        .affected_count = sizeof s_affected_by_Supervisor_Install_Rivet_Fasten_Finish / sizeof s_affected_by_Supervisor_Install_Rivet_Fasten_Finish[0],
-        .affected = s_affected_by_Supervisor_Install_Rivet_Fasten_Finish,
-        .touched_count = sizeof s_touched_by_Supervisor_Install_Rivet_Fasten_Finish / sizeof s_touched_by_Supervisor_Install_Rivet_Fasten_Finish[0],
-        .touched = s_touched_by_Supervisor_Install_Rivet_Fasten_Finish,
-        .read_count = sizeof s_read_by_Supervisor_Install_Rivet_Fasten_Finish / sizeof s_read_by_Supervisor_Install_Rivet_Fasten_Finish[0],
-        .read = s_read_by_Supervisor_Install_Rivet_Fasten_Finish,
-    },
-    {
-        .name = "Cell.Supervisor.Install.Rivet.Fasten.Press failed", .id = "ID1412320087", .owner = 0, .priority = 1000,
-        .origin = "page `Fasten`, transition `Press failed` (ID1412320087)",
-        .enumerate = Supervisor_Install_Rivet_Fasten_Press_failed_enumerate, .fire = Supervisor_Install_Rivet_Fasten_Press_failed_fire, .binding = &s_binding_Supervisor_Install_Rivet_Fasten_Press_failed,
-        .affected_count = sizeof s_affected_by_Supervisor_Install_Rivet_Fasten_Press_failed / sizeof s_affected_by_Supervisor_Install_Rivet_Fasten_Press_failed[0],
-        .affected = s_affected_by_Supervisor_Install_Rivet_Fasten_Press_failed,
-        .touched_count = sizeof s_touched_by_Supervisor_Install_Rivet_Fasten_Press_failed / sizeof s_touched_by_Supervisor_Install_Rivet_Fasten_Press_failed[0],
-        .touched = s_touched_by_Supervisor_Install_Rivet_Fasten_Press_failed,
-        .read_count = sizeof s_read_by_Supervisor_Install_Rivet_Fasten_Press_failed / sizeof s_read_by_Supervisor_Install_Rivet_Fasten_Press_failed[0],
-        .read = s_read_by_Supervisor_Install_Rivet_Fasten_Press_failed,
-    },
-    {
-        .name = "Cell.Supervisor.Install.Rivet.Fasten.Drill failed", .id = "ID1412320092", .owner = 0, .priority = 1000,
-        .origin = "page `Fasten`, transition `Drill failed` (ID1412320092)",
-        .enumerate = Supervisor_Install_Rivet_Fasten_Drill_failed_enumerate, .fire = Supervisor_Install_Rivet_Fasten_Drill_failed_fire, .binding = &s_binding_Supervisor_Install_Rivet_Fasten_Drill_failed,
-        .affected_count = sizeof s_affected_by_Supervisor_Install_Rivet_Fasten_Drill_failed / sizeof s_affected_by_Supervisor_Install_Rivet_Fasten_Drill_failed[0],
-        .affected = s_affected_by_Supervisor_Install_Rivet_Fasten_Drill_failed,
-        .touched_count = sizeof s_touched_by_Supervisor_Install_Rivet_Fasten_Drill_failed / sizeof s_touched_by_Supervisor_Install_Rivet_Fasten_Drill_failed[0],
-        .touched = s_touched_by_Supervisor_Install_Rivet_Fasten_Drill_failed,
-        .read_count = sizeof s_read_by_Supervisor_Install_Rivet_Fasten_Drill_failed / sizeof s_read_by_Supervisor_Install_Rivet_Fasten_Drill_failed[0],
-        .read = s_read_by_Supervisor_Install_Rivet_Fasten_Drill_failed,
-    },
-    {
-        .name = "Cell.Supervisor.Install.Rivet.Retract.Command", .id = "ID1412310941", .owner = 0, .priority = 1000,
-        .origin = "page `MoveBoth`, transition `Command` (ID1412310941)",
-        .enumerate = MoveBoth_Command_enumerate, .fire = MoveBoth_Command_fire, .binding = &s_binding_MoveBoth_Command,
+        PN_INDICES(affected, 6U, 19U, 27U, 31U, 33U, 35U, 38U, 39U, 44U, 48U, 52U),
+        PN_INDICES(touched, 7U, 51U, 52U), PN_INDICES(read, 7U, 51U) },
+    /* 34 */
+    { .name = "Cell.Supervisor.Install.Rivet.Fasten.Press", .id = "ID1412310842",
+        .origin = "page `Fasten`, transition `Press` (ID1412310842)", .owner = 0, .priority = 1000,
+        PN_CODE(Supervisor_Install_Rivet_Fasten_Press), PN_INDICES(affected, 34U, 35U, 39U, 63U),
+        PN_INDICES(touched, 6U, 46U, 53U), PN_INDICES(read, 46U) },
+    /* 35 */
+    { .name = "Cell.Supervisor.Install.Rivet.Fasten.Drill", .id = "ID1412310850",
+        .origin = "page `Fasten`, transition `Drill` (ID1412310850)", .owner = 0, .priority = 1000,
+        PN_CODE(Supervisor_Install_Rivet_Fasten_Drill),
+        PN_INDICES(affected, 6U, 19U, 27U, 33U, 35U, 36U, 38U, 39U, 40U, 44U, 48U, 52U, 53U),
+        PN_INDICES(touched, 1U, 7U, 53U, 54U), PN_INDICES(read, 7U, 53U) },
+    /* 36 */
+    { .name = "Cell.Supervisor.Install.Rivet.Fasten.Insert", .id = "ID1412310858",
+        .origin = "page `Fasten`, transition `Insert` (ID1412310858)", .owner = 0, .priority = 1000,
+        PN_CODE(Supervisor_Install_Rivet_Fasten_Insert),
+        PN_INDICES(affected, 5U, 8U, 9U, 10U, 11U, 18U, 26U, 32U, 36U, 37U, 40U, 43U, 47U, 51U,
+        53U), PN_INDICES(touched, 1U, 2U, 54U, 55U), PN_INDICES(read, 2U, 54U) },
+    /* 37 */
+    { .name = "Cell.Supervisor.Install.Rivet.Fasten.Release", .id = "ID1412310866",
+        .origin = "page `Fasten`, transition `Release` (ID1412310866)", .owner = 0,
+        .priority = 1000, PN_CODE(Supervisor_Install_Rivet_Fasten_Release),
+        PN_INDICES(affected, 5U, 8U, 9U, 10U, 11U, 18U, 26U, 32U, 36U, 37U, 38U, 40U, 43U, 47U, 51U,
+        63U), PN_INDICES(touched, 2U, 6U, 55U, 56U), PN_INDICES(read, 2U, 55U) },
+    /* 38 */
+    { .name = "Cell.Supervisor.Install.Rivet.Fasten.Finish", .id = "ID1412310874",
+        .origin = "page `Fasten`, transition `Finish` (ID1412310874)", .owner = 0, .priority = 1000,
+        PN_CODE(Supervisor_Install_Rivet_Fasten_Finish),
+        PN_INDICES(affected, 6U, 19U, 27U, 29U, 33U, 35U, 38U, 39U, 44U, 48U, 52U),
+        PN_INDICES(touched, 7U, 47U, 56U), PN_INDICES(read, 7U, 56U) },
+    /* 39 */
+    { .name = "Cell.Supervisor.Install.Rivet.Fasten.Press failed", .id = "ID1412320087",
+        .origin = "page `Fasten`, transition `Press failed` (ID1412320087)", .owner = 0,
+        .priority = 1000, PN_CODE(Supervisor_Install_Rivet_Fasten_Press_failed),
+        PN_INDICES(affected, 6U, 19U, 27U, 33U, 35U, 38U, 39U, 44U, 48U, 52U, 63U),
+        PN_INDICES(touched, 6U, 7U, 53U, 56U), PN_INDICES(read, 7U, 53U) },
+    /* 40 */
+    { .name = "Cell.Supervisor.Install.Rivet.Fasten.Drill failed", .id = "ID1412320092",
+        .origin = "page `Fasten`, transition `Drill failed` (ID1412320092)", .owner = 0,
+        .priority = 1000, PN_CODE(Supervisor_Install_Rivet_Fasten_Drill_failed),
+        PN_INDICES(affected, 5U, 8U, 9U, 10U, 11U, 18U, 26U, 32U, 36U, 37U, 38U, 40U, 43U, 47U, 51U,
+        63U), PN_INDICES(touched, 2U, 6U, 54U, 56U), PN_INDICES(read, 2U, 54U) },
+    /* 41 */
+    { .name = "Cell.Supervisor.Install.Rivet.Retract.Command", .id = "ID1412310941",
+        .origin = "page `MoveBoth`, transition `Command` (ID1412310941)", .owner = 0,
+        .priority = 1000, PN_CODE(MoveBoth_Command),
         .places = &s_in_Supervisor_Install_Rivet_Retract,
-        .affected_count = sizeof s_affected_by_Supervisor_Install_Rivet_Retract_Command / sizeof s_affected_by_Supervisor_Install_Rivet_Retract_Command[0],
-        .affected = s_affected_by_Supervisor_Install_Rivet_Retract_Command,
-        .touched_count = sizeof s_touched_by_Supervisor_Install_Rivet_Retract_Command / sizeof s_touched_by_Supervisor_Install_Rivet_Retract_Command[0],
-        .touched = s_touched_by_Supervisor_Install_Rivet_Retract_Command,
-        .read_count = sizeof s_read_by_Supervisor_Install_Rivet_Retract_Command / sizeof s_read_by_Supervisor_Install_Rivet_Retract_Command[0],
-        .read = s_read_by_Supervisor_Install_Rivet_Retract_Command,
-    },
-    {
-        .name = "Cell.Supervisor.Install.Rivet.Retract.Both", .id = "ID1412310948", .owner = 0, .priority = 1000,
-        .origin = "page `MoveBoth`, transition `Both` (ID1412310948)",
-        .enumerate = MoveBoth_Both_enumerate, .fire = MoveBoth_Both_fire, .binding = &s_binding_MoveBoth_Both,
+        PN_INDICES(affected, 41U, 43U, 44U, 53U, 55U, 56U, 63U, 65U, 66U),
+        PN_INDICES(touched, 0U, 1U, 5U, 6U, 48U, 57U, 59U), PN_INDICES(read, 48U) },
+    /* 42 */
+    { .name = "Cell.Supervisor.Install.Rivet.Retract.Both", .id = "ID1412310948",
+        .origin = "page `MoveBoth`, transition `Both` (ID1412310948)", .owner = 0, .priority = 1000,
+        PN_CODE(MoveBoth_Both), .places = &s_in_Supervisor_Install_Rivet_Retract,
+        PN_INDICES(affected, 20U, 21U, 23U, 42U), PN_INDICES(touched, 38U, 58U, 60U),
+        PN_INDICES(read, 58U, 60U) },
+    /* 43 */
+    { .name = "Cell.Supervisor.Install.Rivet.Retract.Reply 1", .id = "ID1412310962",
+        .origin = "page `MoveBoth`, transition `Reply 1` (ID1412310962)", .owner = 0,
+        .priority = 1000, PN_CODE(MoveBoth_Reply_1),
         .places = &s_in_Supervisor_Install_Rivet_Retract,
-        .affected_count = sizeof s_affected_by_Supervisor_Install_Rivet_Retract_Both / sizeof s_affected_by_Supervisor_Install_Rivet_Retract_Both[0],
-        .affected = s_affected_by_Supervisor_Install_Rivet_Retract_Both,
-        .touched_count = sizeof s_touched_by_Supervisor_Install_Rivet_Retract_Both / sizeof s_touched_by_Supervisor_Install_Rivet_Retract_Both[0],
-        .touched = s_touched_by_Supervisor_Install_Rivet_Retract_Both,
-        .read_count = sizeof s_read_by_Supervisor_Install_Rivet_Retract_Both / sizeof s_read_by_Supervisor_Install_Rivet_Retract_Both[0],
-        .read = s_read_by_Supervisor_Install_Rivet_Retract_Both,
-    },
-    {
-        .name = "Cell.Supervisor.Install.Rivet.Retract.Reply 1", .id = "ID1412310962", .owner = 0, .priority = 1000,
-        .origin = "page `MoveBoth`, transition `Reply 1` (ID1412310962)",
-        .enumerate = MoveBoth_Reply_1_enumerate, .fire = MoveBoth_Reply_1_fire, .binding = &s_binding_MoveBoth_Reply_1,
+        PN_INDICES(affected, 5U, 8U, 9U, 10U, 11U, 18U, 26U, 32U, 36U, 37U, 40U, 42U, 43U, 47U,
+        51U), PN_INDICES(touched, 2U, 57U, 58U), PN_INDICES(read, 2U, 57U) },
+    /* 44 */
+    { .name = "Cell.Supervisor.Install.Rivet.Retract.Reply 2", .id = "ID1412310999",
+        .origin = "page `MoveBoth`, transition `Reply 2` (ID1412310999)", .owner = 0,
+        .priority = 1000, PN_CODE(MoveBoth_Reply_2),
         .places = &s_in_Supervisor_Install_Rivet_Retract,
-        .affected_count = sizeof s_affected_by_Supervisor_Install_Rivet_Retract_Reply_1 / sizeof s_affected_by_Supervisor_Install_Rivet_Retract_Reply_1[0],
-        .affected = s_affected_by_Supervisor_Install_Rivet_Retract_Reply_1,
-        .touched_count = sizeof s_touched_by_Supervisor_Install_Rivet_Retract_Reply_1 / sizeof s_touched_by_Supervisor_Install_Rivet_Retract_Reply_1[0],
-        .touched = s_touched_by_Supervisor_Install_Rivet_Retract_Reply_1,
-        .read_count = sizeof s_read_by_Supervisor_Install_Rivet_Retract_Reply_1 / sizeof s_read_by_Supervisor_Install_Rivet_Retract_Reply_1[0],
-        .read = s_read_by_Supervisor_Install_Rivet_Retract_Reply_1,
-    },
-    {
-        .name = "Cell.Supervisor.Install.Rivet.Retract.Reply 2", .id = "ID1412310999", .owner = 0, .priority = 1000,
-        .origin = "page `MoveBoth`, transition `Reply 2` (ID1412310999)",
-        .enumerate = MoveBoth_Reply_2_enumerate, .fire = MoveBoth_Reply_2_fire, .binding = &s_binding_MoveBoth_Reply_2,
-        .places = &s_in_Supervisor_Install_Rivet_Retract,
-        .affected_count = sizeof s_affected_by_Supervisor_Install_Rivet_Retract_Reply_2 / sizeof s_affected_by_Supervisor_Install_Rivet_Retract_Reply_2[0],
-        .affected = s_affected_by_Supervisor_Install_Rivet_Retract_Reply_2,
-        .touched_count = sizeof s_touched_by_Supervisor_Install_Rivet_Retract_Reply_2 / sizeof s_touched_by_Supervisor_Install_Rivet_Retract_Reply_2[0],
-        .touched = s_touched_by_Supervisor_Install_Rivet_Retract_Reply_2,
-        .read_count = sizeof s_read_by_Supervisor_Install_Rivet_Retract_Reply_2 / sizeof s_read_by_Supervisor_Install_Rivet_Retract_Reply_2[0],
-        .read = s_read_by_Supervisor_Install_Rivet_Retract_Reply_2,
-    },
-    {
-        .name = "Cell.Supervisor.Install.Return.Command", .id = "ID1412310941", .owner = 0, .priority = 1000,
-        .origin = "page `MoveBoth`, transition `Command` (ID1412310941)",
-        .enumerate = MoveBoth_Command_enumerate, .fire = MoveBoth_Command_fire, .binding = &s_binding_MoveBoth_Command,
-        .places = &s_in_Supervisor_Install_Return,
-        .affected_count = sizeof s_affected_by_Supervisor_Install_Return_Command / sizeof s_affected_by_Supervisor_Install_Return_Command[0],
-        .affected = s_affected_by_Supervisor_Install_Return_Command,
-        .touched_count = sizeof s_touched_by_Supervisor_Install_Return_Command / sizeof s_touched_by_Supervisor_Install_Return_Command[0],
-        .touched = s_touched_by_Supervisor_Install_Return_Command,
-        .read_count = sizeof s_read_by_Supervisor_Install_Return_Command / sizeof s_read_by_Supervisor_Install_Return_Command[0],
-        .read = s_read_by_Supervisor_Install_Return_Command,
-    },
-    {
-        .name = "Cell.Supervisor.Install.Return.Both", .id = "ID1412310948", .owner = 0, .priority = 1000,
-        .origin = "page `MoveBoth`, transition `Both` (ID1412310948)",
-        .enumerate = MoveBoth_Both_enumerate, .fire = MoveBoth_Both_fire, .binding = &s_binding_MoveBoth_Both,
-        .places = &s_in_Supervisor_Install_Return,
-        .affected_count = sizeof s_affected_by_Supervisor_Install_Return_Both / sizeof s_affected_by_Supervisor_Install_Return_Both[0],
-        .affected = s_affected_by_Supervisor_Install_Return_Both,
-        .touched_count = sizeof s_touched_by_Supervisor_Install_Return_Both / sizeof s_touched_by_Supervisor_Install_Return_Both[0],
-        .touched = s_touched_by_Supervisor_Install_Return_Both,
-        .read_count = sizeof s_read_by_Supervisor_Install_Return_Both / sizeof s_read_by_Supervisor_Install_Return_Both[0],
-        .read = s_read_by_Supervisor_Install_Return_Both,
-    },
-    {
-        .name = "Cell.Supervisor.Install.Return.Reply 1", .id = "ID1412310962", .owner = 0, .priority = 1000,
-        .origin = "page `MoveBoth`, transition `Reply 1` (ID1412310962)",
-        .enumerate = MoveBoth_Reply_1_enumerate, .fire = MoveBoth_Reply_1_fire, .binding = &s_binding_MoveBoth_Reply_1,
-        .places = &s_in_Supervisor_Install_Return,
-        .affected_count = sizeof s_affected_by_Supervisor_Install_Return_Reply_1 / sizeof s_affected_by_Supervisor_Install_Return_Reply_1[0],
-        .affected = s_affected_by_Supervisor_Install_Return_Reply_1,
-        .touched_count = sizeof s_touched_by_Supervisor_Install_Return_Reply_1 / sizeof s_touched_by_Supervisor_Install_Return_Reply_1[0],
-        .touched = s_touched_by_Supervisor_Install_Return_Reply_1,
-        .read_count = sizeof s_read_by_Supervisor_Install_Return_Reply_1 / sizeof s_read_by_Supervisor_Install_Return_Reply_1[0],
-        .read = s_read_by_Supervisor_Install_Return_Reply_1,
-    },
-    {
-        .name = "Cell.Supervisor.Install.Return.Reply 2", .id = "ID1412310999", .owner = 0, .priority = 1000,
-        .origin = "page `MoveBoth`, transition `Reply 2` (ID1412310999)",
-        .enumerate = MoveBoth_Reply_2_enumerate, .fire = MoveBoth_Reply_2_fire, .binding = &s_binding_MoveBoth_Reply_2,
-        .places = &s_in_Supervisor_Install_Return,
-        .affected_count = sizeof s_affected_by_Supervisor_Install_Return_Reply_2 / sizeof s_affected_by_Supervisor_Install_Return_Reply_2[0],
-        .affected = s_affected_by_Supervisor_Install_Return_Reply_2,
-        .touched_count = sizeof s_touched_by_Supervisor_Install_Return_Reply_2 / sizeof s_touched_by_Supervisor_Install_Return_Reply_2[0],
-        .touched = s_touched_by_Supervisor_Install_Return_Reply_2,
-        .read_count = sizeof s_read_by_Supervisor_Install_Return_Reply_2 / sizeof s_read_by_Supervisor_Install_Return_Reply_2[0],
-        .read = s_read_by_Supervisor_Install_Return_Reply_2,
-    },
-    {
-        .name = "Cell.Supervisor.Home.Send home", .id = "ID1412311039", .owner = 0, .priority = 1000,
-        .origin = "page `Home`, transition `Send home` (ID1412311039)",
-        .enumerate = Supervisor_Home_Send_home_enumerate, .fire = Supervisor_Home_Send_home_fire, .binding = &s_binding_Supervisor_Home_Send_home,
-        .affected_count = sizeof s_affected_by_Supervisor_Home_Send_home / sizeof s_affected_by_Supervisor_Home_Send_home[0],
-        .affected = s_affected_by_Supervisor_Home_Send_home,
-        .touched_count = sizeof s_touched_by_Supervisor_Home_Send_home / sizeof s_touched_by_Supervisor_Home_Send_home[0],
-        .touched = s_touched_by_Supervisor_Home_Send_home,
-        .read_count = sizeof s_read_by_Supervisor_Home_Send_home / sizeof s_read_by_Supervisor_Home_Send_home[0],
-        .read = s_read_by_Supervisor_Home_Send_home,
-    },
-    {
-        .name = "Cell.Supervisor.Home.Both", .id = "ID1412311046", .owner = 0, .priority = 1000,
-        .origin = "page `Home`, transition `Both` (ID1412311046)",
-        .enumerate = Supervisor_Home_Both_enumerate, .fire = Supervisor_Home_Both_fire, .binding = &s_binding_Supervisor_Home_Both,
-        .affected_count = sizeof s_affected_by_Supervisor_Home_Both / sizeof s_affected_by_Supervisor_Home_Both[0],
-        .affected = s_affected_by_Supervisor_Home_Both,
-        .touched_count = sizeof s_touched_by_Supervisor_Home_Both / sizeof s_touched_by_Supervisor_Home_Both[0],
-        .touched = s_touched_by_Supervisor_Home_Both,
-        .read_count = sizeof s_read_by_Supervisor_Home_Both / sizeof s_read_by_Supervisor_Home_Both[0],
-        .read = s_read_by_Supervisor_Home_Both,
-    },
-    {
-        .name = "Cell.Supervisor.Home.Reply 1", .id = "ID1412311060", .owner = 0, .priority = 1000,
-        .origin = "page `Home`, transition `Reply 1` (ID1412311060)",
-        .enumerate = Supervisor_Home_Reply_1_enumerate, .fire = Supervisor_Home_Reply_1_fire, .binding = &s_binding_Supervisor_Home_Reply_1,
-        .affected_count = sizeof s_affected_by_Supervisor_Home_Reply_1 / sizeof s_affected_by_Supervisor_Home_Reply_1[0],
-        .affected = s_affected_by_Supervisor_Home_Reply_1,
-        .touched_count = sizeof s_touched_by_Supervisor_Home_Reply_1 / sizeof s_touched_by_Supervisor_Home_Reply_1[0],
-        .touched = s_touched_by_Supervisor_Home_Reply_1,
-        .read_count = sizeof s_read_by_Supervisor_Home_Reply_1 / sizeof s_read_by_Supervisor_Home_Reply_1[0],
-        .read = s_read_by_Supervisor_Home_Reply_1,
-    },
-    {
-        .name = "Cell.Supervisor.Home.Reply 2", .id = "ID1412311091", .owner = 0, .priority = 1000,
-        .origin = "page `Home`, transition `Reply 2` (ID1412311091)",
-        .enumerate = Supervisor_Home_Reply_2_enumerate, .fire = Supervisor_Home_Reply_2_fire, .binding = &s_binding_Supervisor_Home_Reply_2,
-        .affected_count = sizeof s_affected_by_Supervisor_Home_Reply_2 / sizeof s_affected_by_Supervisor_Home_Reply_2[0],
-        .affected = s_affected_by_Supervisor_Home_Reply_2,
-        .touched_count = sizeof s_touched_by_Supervisor_Home_Reply_2 / sizeof s_touched_by_Supervisor_Home_Reply_2[0],
-        .touched = s_touched_by_Supervisor_Home_Reply_2,
-        .read_count = sizeof s_read_by_Supervisor_Home_Reply_2 / sizeof s_read_by_Supervisor_Home_Reply_2[0],
-        .read = s_read_by_Supervisor_Home_Reply_2,
-    },
-    {
-        .name = "Cell.Robot1.Accept", .id = "ID1412311125", .owner = 1, .priority = 1000,
-        .origin = "page `Robot`, transition `Accept` (ID1412311125)",
-        .enumerate = Robot_Accept_enumerate, .fire = Robot_Accept_fire, .binding = &s_binding_Robot_Accept,
-        .places = &s_in_Robot1,
-        .affected_count = sizeof s_affected_by_Robot1_Accept / sizeof s_affected_by_Robot1_Accept[0],
-        .affected = s_affected_by_Robot1_Accept,
-        .touched_count = sizeof s_touched_by_Robot1_Accept / sizeof s_touched_by_Robot1_Accept[0],
-        .touched = s_touched_by_Robot1_Accept,
-        .read_count = sizeof s_read_by_Robot1_Accept / sizeof s_read_by_Robot1_Accept[0],
-        .read = s_read_by_Robot1_Accept,
-    },
-    {
-        .name = "Cell.Robot1.Report", .id = "ID1412311145", .owner = 1, .priority = 1000,
-        .origin = "page `Robot`, transition `Report` (ID1412311145)",
-        .enumerate = Robot_Report_enumerate, .fire = Robot_Report_fire, .binding = &s_binding_Robot_Report,
-        .places = &s_in_Robot1,
-        .affected_count = sizeof s_affected_by_Robot1_Report / sizeof s_affected_by_Robot1_Report[0],
-        .affected = s_affected_by_Robot1_Report,
-        .touched_count = sizeof s_touched_by_Robot1_Report / sizeof s_touched_by_Robot1_Report[0],
-        .touched = s_touched_by_Robot1_Report,
-        .read_count = sizeof s_read_by_Robot1_Report / sizeof s_read_by_Robot1_Report[0],
-        .read = s_read_by_Robot1_Report,
-    },
-    {
-        .name = "Cell.Robot1.MoveJoint", .id = "ID1412311160", .owner = 1, .priority = 1000,
-        .origin = "page `Robot`, transition `MoveJoint` (ID1412311160)",
-        .enumerate = Robot_MoveJoint_enumerate, .fire = Robot_MoveJoint_fire, .binding = &s_binding_Robot_MoveJoint,
-        .places = &s_in_Robot1,
-        .affected_count = sizeof s_affected_by_Robot1_MoveJoint / sizeof s_affected_by_Robot1_MoveJoint[0],
-        .affected = s_affected_by_Robot1_MoveJoint,
-        .touched_count = sizeof s_touched_by_Robot1_MoveJoint / sizeof s_touched_by_Robot1_MoveJoint[0],
-        .touched = s_touched_by_Robot1_MoveJoint,
-        .read_count = sizeof s_read_by_Robot1_MoveJoint / sizeof s_read_by_Robot1_MoveJoint[0],
-        .read = s_read_by_Robot1_MoveJoint,
-    },
-    {
-        .name = "Cell.Robot1.MoveLinear", .id = "ID1412311169", .owner = 1, .priority = 1000,
-        .origin = "page `Robot`, transition `MoveLinear` (ID1412311169)",
-        .enumerate = Robot_MoveLinear_enumerate, .fire = Robot_MoveLinear_fire, .binding = &s_binding_Robot_MoveLinear,
-        .places = &s_in_Robot1,
-        .affected_count = sizeof s_affected_by_Robot1_MoveLinear / sizeof s_affected_by_Robot1_MoveLinear[0],
-        .affected = s_affected_by_Robot1_MoveLinear,
-        .touched_count = sizeof s_touched_by_Robot1_MoveLinear / sizeof s_touched_by_Robot1_MoveLinear[0],
-        .touched = s_touched_by_Robot1_MoveLinear,
-        .read_count = sizeof s_read_by_Robot1_MoveLinear / sizeof s_read_by_Robot1_MoveLinear[0],
-        .read = s_read_by_Robot1_MoveLinear,
-    },
-    {
-        .name = "Cell.Robot1.MoveHome", .id = "ID1412311178", .owner = 1, .priority = 1000,
-        .origin = "page `Robot`, transition `MoveHome` (ID1412311178)",
-        .enumerate = Robot_MoveHome_enumerate, .fire = Robot_MoveHome_fire, .binding = &s_binding_Robot_MoveHome,
-        .places = &s_in_Robot1,
-        .affected_count = sizeof s_affected_by_Robot1_MoveHome / sizeof s_affected_by_Robot1_MoveHome[0],
-        .affected = s_affected_by_Robot1_MoveHome,
-        .touched_count = sizeof s_touched_by_Robot1_MoveHome / sizeof s_touched_by_Robot1_MoveHome[0],
-        .touched = s_touched_by_Robot1_MoveHome,
-        .read_count = sizeof s_read_by_Robot1_MoveHome / sizeof s_read_by_Robot1_MoveHome[0],
-        .read = s_read_by_Robot1_MoveHome,
-    },
-    {
-        .name = "Cell.Robot1.Measure", .id = "ID1412311187", .owner = 1, .priority = 1000,
-        .origin = "page `Robot`, transition `Measure` (ID1412311187)",
-        .enumerate = Robot_Measure_enumerate, .fire = Robot_Measure_fire, .binding = &s_binding_Robot_Measure,
-        .places = &s_in_Robot1,
-        .affected_count = sizeof s_affected_by_Robot1_Measure / sizeof s_affected_by_Robot1_Measure[0],
-        .affected = s_affected_by_Robot1_Measure,
-        .touched_count = sizeof s_touched_by_Robot1_Measure / sizeof s_touched_by_Robot1_Measure[0],
-        .touched = s_touched_by_Robot1_Measure,
-        .read_count = sizeof s_read_by_Robot1_Measure / sizeof s_read_by_Robot1_Measure[0],
-        .read = s_read_by_Robot1_Measure,
-    },
-    {
-        .name = "Cell.Robot1.Drill", .id = "ID1412311196", .owner = 1, .priority = 1000,
-        .origin = "page `Robot`, transition `Drill` (ID1412311196)",
-        .enumerate = Robot_Drill_enumerate, .fire = Robot_Drill_fire, .binding = &s_binding_Robot_Drill,
-        .places = &s_in_Robot1,
-        .affected_count = sizeof s_affected_by_Robot1_Drill / sizeof s_affected_by_Robot1_Drill[0],
-        .affected = s_affected_by_Robot1_Drill,
-        .touched_count = sizeof s_touched_by_Robot1_Drill / sizeof s_touched_by_Robot1_Drill[0],
-        .touched = s_touched_by_Robot1_Drill,
-        .read_count = sizeof s_read_by_Robot1_Drill / sizeof s_read_by_Robot1_Drill[0],
-        .read = s_read_by_Robot1_Drill,
-    },
-    {
-        .name = "Cell.Robot1.Insert", .id = "ID1412311205", .owner = 1, .priority = 1000,
-        .origin = "page `Robot`, transition `Insert` (ID1412311205)",
-        .enumerate = Robot_Insert_enumerate, .fire = Robot_Insert_fire, .binding = &s_binding_Robot_Insert,
-        .places = &s_in_Robot1,
-        .affected_count = sizeof s_affected_by_Robot1_Insert / sizeof s_affected_by_Robot1_Insert[0],
-        .affected = s_affected_by_Robot1_Insert,
-        .touched_count = sizeof s_touched_by_Robot1_Insert / sizeof s_touched_by_Robot1_Insert[0],
-        .touched = s_touched_by_Robot1_Insert,
-        .read_count = sizeof s_read_by_Robot1_Insert / sizeof s_read_by_Robot1_Insert[0],
-        .read = s_read_by_Robot1_Insert,
-    },
-    {
-        .name = "Cell.Robot1.Press", .id = "ID1412311214", .owner = 1, .priority = 1000,
-        .origin = "page `Robot`, transition `Press` (ID1412311214)",
-        .enumerate = Robot_Press_enumerate, .fire = Robot_Press_fire, .binding = &s_binding_Robot_Press,
-        .places = &s_in_Robot1,
-        .affected_count = sizeof s_affected_by_Robot1_Press / sizeof s_affected_by_Robot1_Press[0],
-        .affected = s_affected_by_Robot1_Press,
-        .touched_count = sizeof s_touched_by_Robot1_Press / sizeof s_touched_by_Robot1_Press[0],
-        .touched = s_touched_by_Robot1_Press,
-        .read_count = sizeof s_read_by_Robot1_Press / sizeof s_read_by_Robot1_Press[0],
-        .read = s_read_by_Robot1_Press,
-    },
-    {
-        .name = "Cell.Robot1.Release", .id = "ID1412311223", .owner = 1, .priority = 1000,
-        .origin = "page `Robot`, transition `Release` (ID1412311223)",
-        .enumerate = Robot_Release_enumerate, .fire = Robot_Release_fire, .binding = &s_binding_Robot_Release,
-        .places = &s_in_Robot1,
-        .affected_count = sizeof s_affected_by_Robot1_Release / sizeof s_affected_by_Robot1_Release[0],
-        .affected = s_affected_by_Robot1_Release,
-        .touched_count = sizeof s_touched_by_Robot1_Release / sizeof s_touched_by_Robot1_Release[0],
-        .touched = s_touched_by_Robot1_Release,
-        .read_count = sizeof s_read_by_Robot1_Release / sizeof s_read_by_Robot1_Release[0],
-        .read = s_read_by_Robot1_Release,
-    },
-    {
-        .name = "Cell.Robot2.Accept", .id = "ID1412311125", .owner = 2, .priority = 1000,
-        .origin = "page `Robot`, transition `Accept` (ID1412311125)",
-        .enumerate = Robot_Accept_enumerate, .fire = Robot_Accept_fire, .binding = &s_binding_Robot_Accept,
-        .places = &s_in_Robot2,
-        .affected_count = sizeof s_affected_by_Robot2_Accept / sizeof s_affected_by_Robot2_Accept[0],
-        .affected = s_affected_by_Robot2_Accept,
-        .touched_count = sizeof s_touched_by_Robot2_Accept / sizeof s_touched_by_Robot2_Accept[0],
-        .touched = s_touched_by_Robot2_Accept,
-        .read_count = sizeof s_read_by_Robot2_Accept / sizeof s_read_by_Robot2_Accept[0],
-        .read = s_read_by_Robot2_Accept,
-    },
-    {
-        .name = "Cell.Robot2.Report", .id = "ID1412311145", .owner = 2, .priority = 1000,
-        .origin = "page `Robot`, transition `Report` (ID1412311145)",
-        .enumerate = Robot_Report_enumerate, .fire = Robot_Report_fire, .binding = &s_binding_Robot_Report,
-        .places = &s_in_Robot2,
-        .affected_count = sizeof s_affected_by_Robot2_Report / sizeof s_affected_by_Robot2_Report[0],
-        .affected = s_affected_by_Robot2_Report,
-        .touched_count = sizeof s_touched_by_Robot2_Report / sizeof s_touched_by_Robot2_Report[0],
-        .touched = s_touched_by_Robot2_Report,
-        .read_count = sizeof s_read_by_Robot2_Report / sizeof s_read_by_Robot2_Report[0],
-        .read = s_read_by_Robot2_Report,
-    },
-    {
-        .name = "Cell.Robot2.MoveJoint", .id = "ID1412311160", .owner = 2, .priority = 1000,
-        .origin = "page `Robot`, transition `MoveJoint` (ID1412311160)",
-        .enumerate = Robot_MoveJoint_enumerate, .fire = Robot_MoveJoint_fire, .binding = &s_binding_Robot_MoveJoint,
-        .places = &s_in_Robot2,
-        .affected_count = sizeof s_affected_by_Robot2_MoveJoint / sizeof s_affected_by_Robot2_MoveJoint[0],
-        .affected = s_affected_by_Robot2_MoveJoint,
-        .touched_count = sizeof s_touched_by_Robot2_MoveJoint / sizeof s_touched_by_Robot2_MoveJoint[0],
-        .touched = s_touched_by_Robot2_MoveJoint,
-        .read_count = sizeof s_read_by_Robot2_MoveJoint / sizeof s_read_by_Robot2_MoveJoint[0],
-        .read = s_read_by_Robot2_MoveJoint,
-    },
-    {
-        .name = "Cell.Robot2.MoveLinear", .id = "ID1412311169", .owner = 2, .priority = 1000,
-        .origin = "page `Robot`, transition `MoveLinear` (ID1412311169)",
-        .enumerate = Robot_MoveLinear_enumerate, .fire = Robot_MoveLinear_fire, .binding = &s_binding_Robot_MoveLinear,
-        .places = &s_in_Robot2,
-        .affected_count = sizeof s_affected_by_Robot2_MoveLinear / sizeof s_affected_by_Robot2_MoveLinear[0],
-        .affected = s_affected_by_Robot2_MoveLinear,
-        .touched_count = sizeof s_touched_by_Robot2_MoveLinear / sizeof s_touched_by_Robot2_MoveLinear[0],
-        .touched = s_touched_by_Robot2_MoveLinear,
-        .read_count = sizeof s_read_by_Robot2_MoveLinear / sizeof s_read_by_Robot2_MoveLinear[0],
-        .read = s_read_by_Robot2_MoveLinear,
-    },
-    {
-        .name = "Cell.Robot2.MoveHome", .id = "ID1412311178", .owner = 2, .priority = 1000,
-        .origin = "page `Robot`, transition `MoveHome` (ID1412311178)",
-        .enumerate = Robot_MoveHome_enumerate, .fire = Robot_MoveHome_fire, .binding = &s_binding_Robot_MoveHome,
-        .places = &s_in_Robot2,
-        .affected_count = sizeof s_affected_by_Robot2_MoveHome / sizeof s_affected_by_Robot2_MoveHome[0],
-        .affected = s_affected_by_Robot2_MoveHome,
-        .touched_count = sizeof s_touched_by_Robot2_MoveHome / sizeof s_touched_by_Robot2_MoveHome[0],
-        .touched = s_touched_by_Robot2_MoveHome,
-        .read_count = sizeof s_read_by_Robot2_MoveHome / sizeof s_read_by_Robot2_MoveHome[0],
-        .read = s_read_by_Robot2_MoveHome,
-    },
-    {
-        .name = "Cell.Robot2.Measure", .id = "ID1412311187", .owner = 2, .priority = 1000,
-        .origin = "page `Robot`, transition `Measure` (ID1412311187)",
-        .enumerate = Robot_Measure_enumerate, .fire = Robot_Measure_fire, .binding = &s_binding_Robot_Measure,
-        .places = &s_in_Robot2,
-        .affected_count = sizeof s_affected_by_Robot2_Measure / sizeof s_affected_by_Robot2_Measure[0],
-        .affected = s_affected_by_Robot2_Measure,
-        .touched_count = sizeof s_touched_by_Robot2_Measure / sizeof s_touched_by_Robot2_Measure[0],
-        .touched = s_touched_by_Robot2_Measure,
-        .read_count = sizeof s_read_by_Robot2_Measure / sizeof s_read_by_Robot2_Measure[0],
-        .read = s_read_by_Robot2_Measure,
-    },
-    {
-        .name = "Cell.Robot2.Drill", .id = "ID1412311196", .owner = 2, .priority = 1000,
-        .origin = "page `Robot`, transition `Drill` (ID1412311196)",
-        .enumerate = Robot_Drill_enumerate, .fire = Robot_Drill_fire, .binding = &s_binding_Robot_Drill,
-        .places = &s_in_Robot2,
-        .affected_count = sizeof s_affected_by_Robot2_Drill / sizeof s_affected_by_Robot2_Drill[0],
-        .affected = s_affected_by_Robot2_Drill,
-        .touched_count = sizeof s_touched_by_Robot2_Drill / sizeof s_touched_by_Robot2_Drill[0],
-        .touched = s_touched_by_Robot2_Drill,
-        .read_count = sizeof s_read_by_Robot2_Drill / sizeof s_read_by_Robot2_Drill[0],
-        .read = s_read_by_Robot2_Drill,
-    },
-    {
-        .name = "Cell.Robot2.Insert", .id = "ID1412311205", .owner = 2, .priority = 1000,
-        .origin = "page `Robot`, transition `Insert` (ID1412311205)",
-        .enumerate = Robot_Insert_enumerate, .fire = Robot_Insert_fire, .binding = &s_binding_Robot_Insert,
-        .places = &s_in_Robot2,
-        .affected_count = sizeof s_affected_by_Robot2_Insert / sizeof s_affected_by_Robot2_Insert[0],
-        .affected = s_affected_by_Robot2_Insert,
-        .touched_count = sizeof s_touched_by_Robot2_Insert / sizeof s_touched_by_Robot2_Insert[0],
-        .touched = s_touched_by_Robot2_Insert,
-        .read_count = sizeof s_read_by_Robot2_Insert / sizeof s_read_by_Robot2_Insert[0],
-        .read = s_read_by_Robot2_Insert,
-    },
-    {
-        .name = "Cell.Robot2.Press", .id = "ID1412311214", .owner = 2, .priority = 1000,
-        .origin = "page `Robot`, transition `Press` (ID1412311214)",
-        .enumerate = Robot_Press_enumerate, .fire = Robot_Press_fire, .binding = &s_binding_Robot_Press,
-        .places = &s_in_Robot2,
-        .affected_count = sizeof s_affected_by_Robot2_Press / sizeof s_affected_by_Robot2_Press[0],
-        .affected = s_affected_by_Robot2_Press,
-        .touched_count = sizeof s_touched_by_Robot2_Press / sizeof s_touched_by_Robot2_Press[0],
-        .touched = s_touched_by_Robot2_Press,
-        .read_count = sizeof s_read_by_Robot2_Press / sizeof s_read_by_Robot2_Press[0],
-        .read = s_read_by_Robot2_Press,
-    },
-    {
-        .name = "Cell.Robot2.Release", .id = "ID1412311223", .owner = 2, .priority = 1000,
-        .origin = "page `Robot`, transition `Release` (ID1412311223)",
-        .enumerate = Robot_Release_enumerate, .fire = Robot_Release_fire, .binding = &s_binding_Robot_Release,
-        .places = &s_in_Robot2,
-        .affected_count = sizeof s_affected_by_Robot2_Release / sizeof s_affected_by_Robot2_Release[0],
-        .affected = s_affected_by_Robot2_Release,
-        .touched_count = sizeof s_touched_by_Robot2_Release / sizeof s_touched_by_Robot2_Release[0],
-        .touched = s_touched_by_Robot2_Release,
-        .read_count = sizeof s_read_by_Robot2_Release / sizeof s_read_by_Robot2_Release[0],
-        .read = s_read_by_Robot2_Release,
-    },
+        PN_INDICES(affected, 6U, 19U, 27U, 33U, 35U, 38U, 39U, 42U, 44U, 48U, 52U),
+        PN_INDICES(touched, 7U, 59U, 60U), PN_INDICES(read, 7U, 59U) },
+    /* 45 */
+    { .name = "Cell.Supervisor.Install.Return.Command", .id = "ID1412310941",
+        .origin = "page `MoveBoth`, transition `Command` (ID1412310941)", .owner = 0,
+        .priority = 1000, PN_CODE(MoveBoth_Command), .places = &s_in_Supervisor_Install_Return,
+        PN_INDICES(affected, 45U, 47U, 48U, 53U, 55U, 56U, 63U, 65U, 66U),
+        PN_INDICES(touched, 0U, 1U, 5U, 6U, 39U, 61U, 63U), PN_INDICES(read, 39U) },
+    /* 46 */
+    { .name = "Cell.Supervisor.Install.Return.Both", .id = "ID1412310948",
+        .origin = "page `MoveBoth`, transition `Both` (ID1412310948)", .owner = 0, .priority = 1000,
+        PN_CODE(MoveBoth_Both), .places = &s_in_Supervisor_Install_Return,
+        PN_INDICES(affected, 46U, 49U), PN_INDICES(touched, 15U, 62U, 64U),
+        PN_INDICES(read, 62U, 64U) },
+    /* 47 */
+    { .name = "Cell.Supervisor.Install.Return.Reply 1", .id = "ID1412310962",
+        .origin = "page `MoveBoth`, transition `Reply 1` (ID1412310962)", .owner = 0,
+        .priority = 1000, PN_CODE(MoveBoth_Reply_1), .places = &s_in_Supervisor_Install_Return,
+        PN_INDICES(affected, 5U, 8U, 9U, 10U, 11U, 18U, 26U, 32U, 36U, 37U, 40U, 43U, 46U, 47U,
+        51U), PN_INDICES(touched, 2U, 61U, 62U), PN_INDICES(read, 2U, 61U) },
+    /* 48 */
+    { .name = "Cell.Supervisor.Install.Return.Reply 2", .id = "ID1412310999",
+        .origin = "page `MoveBoth`, transition `Reply 2` (ID1412310999)", .owner = 0,
+        .priority = 1000, PN_CODE(MoveBoth_Reply_2), .places = &s_in_Supervisor_Install_Return,
+        PN_INDICES(affected, 6U, 19U, 27U, 33U, 35U, 38U, 39U, 44U, 46U, 48U, 52U),
+        PN_INDICES(touched, 7U, 63U, 64U), PN_INDICES(read, 7U, 63U) },
+    /* 49 */
+    { .name = "Cell.Supervisor.Home.Send home", .id = "ID1412311039",
+        .origin = "page `Home`, transition `Send home` (ID1412311039)", .owner = 0,
+        .priority = 1000, PN_CODE(Supervisor_Home_Send_home),
+        PN_INDICES(affected, 49U, 51U, 52U, 53U, 63U), PN_INDICES(touched, 1U, 6U, 15U, 65U, 67U),
+        PN_INDICES(read, 15U) },
+    /* 50 */
+    { .name = "Cell.Supervisor.Home.Both", .id = "ID1412311046",
+        .origin = "page `Home`, transition `Both` (ID1412311046)", .owner = 0, .priority = 1000,
+        PN_CODE(Supervisor_Home_Both), PN_INDICES(affected, 20U, 21U, 23U, 50U),
+        PN_INDICES(touched, 16U, 17U, 18U, 66U, 68U), PN_INDICES(read, 17U, 66U, 68U) },
+    /* 51 */
+    { .name = "Cell.Supervisor.Home.Reply 1", .id = "ID1412311060",
+        .origin = "page `Home`, transition `Reply 1` (ID1412311060)", .owner = 0, .priority = 1000,
+        PN_CODE(Supervisor_Home_Reply_1),
+        PN_INDICES(affected, 5U, 8U, 9U, 10U, 11U, 18U, 26U, 32U, 36U, 37U, 40U, 43U, 47U, 50U,
+        51U), PN_INDICES(touched, 2U, 65U, 66U), PN_INDICES(read, 2U, 65U) },
+    /* 52 */
+    { .name = "Cell.Supervisor.Home.Reply 2", .id = "ID1412311091",
+        .origin = "page `Home`, transition `Reply 2` (ID1412311091)", .owner = 0, .priority = 1000,
+        PN_CODE(Supervisor_Home_Reply_2),
+        PN_INDICES(affected, 6U, 19U, 27U, 33U, 35U, 38U, 39U, 44U, 48U, 50U, 52U),
+        PN_INDICES(touched, 7U, 67U, 68U), PN_INDICES(read, 7U, 67U) },
+    /* 53 */
+    { .name = "Cell.Robot1.Accept", .id = "ID1412311125",
+        .origin = "page `Robot`, transition `Accept` (ID1412311125)", .owner = 1, .priority = 1000,
+        PN_CODE(Robot_Accept), .places = &s_in_Robot1,
+        PN_INDICES(affected, 53U, 55U, 56U, 57U, 58U, 59U, 60U, 61U, 62U),
+        PN_INDICES(touched, 1U, 69U, 70U), PN_INDICES(read, 1U, 69U) },
+    /* 54 */
+    { .name = "Cell.Robot1.Report", .id = "ID1412311145",
+        .origin = "page `Robot`, transition `Report` (ID1412311145)", .owner = 1, .priority = 1000,
+        PN_CODE(Robot_Report), .places = &s_in_Robot1,
+        PN_INDICES(affected, 5U, 8U, 9U, 10U, 11U, 18U, 26U, 32U, 36U, 37U, 40U, 43U, 47U, 51U, 53U,
+        54U), PN_INDICES(touched, 2U, 69U, 71U), PN_INDICES(read, 71U) },
+    /* 55 */
+    { .name = "Cell.Robot1.MoveJoint", .id = "ID1412311160",
+        .origin = "page `Robot`, transition `MoveJoint` (ID1412311160)", .owner = 1,
+        .priority = 1000, PN_CODE(Robot_MoveJoint), .places = &s_in_Robot1,
+        PN_INDICES(affected, 54U, 55U, 56U, 57U, 58U, 59U, 60U, 61U, 62U),
+        PN_INDICES(touched, 0U, 70U, 71U), PN_INDICES(read, 0U, 70U) },
+    /* 56 */
+    { .name = "Cell.Robot1.MoveLinear", .id = "ID1412311169",
+        .origin = "page `Robot`, transition `MoveLinear` (ID1412311169)", .owner = 1,
+        .priority = 1000, PN_CODE(Robot_MoveLinear), .places = &s_in_Robot1,
+        PN_INDICES(affected, 54U, 55U, 56U, 57U, 58U, 59U, 60U, 61U, 62U),
+        PN_INDICES(touched, 0U, 70U, 71U), PN_INDICES(read, 0U, 70U) },
+    /* 57 */
+    { .name = "Cell.Robot1.MoveHome", .id = "ID1412311178",
+        .origin = "page `Robot`, transition `MoveHome` (ID1412311178)", .owner = 1,
+        .priority = 1000, PN_CODE(Robot_MoveHome), .places = &s_in_Robot1,
+        PN_INDICES(affected, 54U, 55U, 56U, 57U, 58U, 59U, 60U, 61U, 62U),
+        PN_INDICES(touched, 70U, 71U), PN_INDICES(read, 70U) },
+    /* 58 */
+    { .name = "Cell.Robot1.Measure", .id = "ID1412311187",
+        .origin = "page `Robot`, transition `Measure` (ID1412311187)", .owner = 1, .priority = 1000,
+        PN_CODE(Robot_Measure), .places = &s_in_Robot1,
+        PN_INDICES(affected, 8U, 9U, 10U, 11U, 54U, 55U, 56U, 57U, 58U, 59U, 60U, 61U, 62U),
+        PN_INDICES(touched, 3U, 4U, 70U, 71U), PN_INDICES(read, 3U, 70U) },
+    /* 59 */
+    { .name = "Cell.Robot1.Drill", .id = "ID1412311196",
+        .origin = "page `Robot`, transition `Drill` (ID1412311196)", .owner = 1, .priority = 1000,
+        PN_CODE(Robot_Drill), .places = &s_in_Robot1,
+        PN_INDICES(affected, 54U, 55U, 56U, 57U, 58U, 59U, 60U, 61U, 62U),
+        PN_INDICES(touched, 70U, 71U), PN_INDICES(read, 70U) },
+    /* 60 */
+    { .name = "Cell.Robot1.Insert", .id = "ID1412311205",
+        .origin = "page `Robot`, transition `Insert` (ID1412311205)", .owner = 1, .priority = 1000,
+        PN_CODE(Robot_Insert), .places = &s_in_Robot1,
+        PN_INDICES(affected, 54U, 55U, 56U, 57U, 58U, 59U, 60U, 61U, 62U),
+        PN_INDICES(touched, 70U, 71U), PN_INDICES(read, 70U) },
+    /* 61 */
+    { .name = "Cell.Robot1.Press", .id = "ID1412311214",
+        .origin = "page `Robot`, transition `Press` (ID1412311214)", .owner = 1, .priority = 1000,
+        PN_CODE(Robot_Press), .places = &s_in_Robot1,
+        PN_INDICES(affected, 54U, 55U, 56U, 57U, 58U, 59U, 60U, 61U, 62U),
+        PN_INDICES(touched, 70U, 71U), PN_INDICES(read, 70U) },
+    /* 62 */
+    { .name = "Cell.Robot1.Release", .id = "ID1412311223",
+        .origin = "page `Robot`, transition `Release` (ID1412311223)", .owner = 1, .priority = 1000,
+        PN_CODE(Robot_Release), .places = &s_in_Robot1,
+        PN_INDICES(affected, 54U, 55U, 56U, 57U, 58U, 59U, 60U, 61U, 62U),
+        PN_INDICES(touched, 70U, 71U), PN_INDICES(read, 70U) },
+    /* 63 */
+    { .name = "Cell.Robot2.Accept", .id = "ID1412311125",
+        .origin = "page `Robot`, transition `Accept` (ID1412311125)", .owner = 2, .priority = 1000,
+        PN_CODE(Robot_Accept), .places = &s_in_Robot2,
+        PN_INDICES(affected, 63U, 65U, 66U, 67U, 68U, 69U, 70U, 71U, 72U),
+        PN_INDICES(touched, 6U, 72U, 73U), PN_INDICES(read, 6U, 72U) },
+    /* 64 */
+    { .name = "Cell.Robot2.Report", .id = "ID1412311145",
+        .origin = "page `Robot`, transition `Report` (ID1412311145)", .owner = 2, .priority = 1000,
+        PN_CODE(Robot_Report), .places = &s_in_Robot2,
+        PN_INDICES(affected, 6U, 19U, 27U, 33U, 35U, 38U, 39U, 44U, 48U, 52U, 63U, 64U),
+        PN_INDICES(touched, 7U, 72U, 74U), PN_INDICES(read, 74U) },
+    /* 65 */
+    { .name = "Cell.Robot2.MoveJoint", .id = "ID1412311160",
+        .origin = "page `Robot`, transition `MoveJoint` (ID1412311160)", .owner = 2,
+        .priority = 1000, PN_CODE(Robot_MoveJoint), .places = &s_in_Robot2,
+        PN_INDICES(affected, 64U, 65U, 66U, 67U, 68U, 69U, 70U, 71U, 72U),
+        PN_INDICES(touched, 5U, 73U, 74U), PN_INDICES(read, 5U, 73U) },
+    /* 66 */
+    { .name = "Cell.Robot2.MoveLinear", .id = "ID1412311169",
+        .origin = "page `Robot`, transition `MoveLinear` (ID1412311169)", .owner = 2,
+        .priority = 1000, PN_CODE(Robot_MoveLinear), .places = &s_in_Robot2,
+        PN_INDICES(affected, 64U, 65U, 66U, 67U, 68U, 69U, 70U, 71U, 72U),
+        PN_INDICES(touched, 5U, 73U, 74U), PN_INDICES(read, 5U, 73U) },
+    /* 67 */
+    { .name = "Cell.Robot2.MoveHome", .id = "ID1412311178",
+        .origin = "page `Robot`, transition `MoveHome` (ID1412311178)", .owner = 2,
+        .priority = 1000, PN_CODE(Robot_MoveHome), .places = &s_in_Robot2,
+        PN_INDICES(affected, 64U, 65U, 66U, 67U, 68U, 69U, 70U, 71U, 72U),
+        PN_INDICES(touched, 73U, 74U), PN_INDICES(read, 73U) },
+    /* 68 */
+    { .name = "Cell.Robot2.Measure", .id = "ID1412311187",
+        .origin = "page `Robot`, transition `Measure` (ID1412311187)", .owner = 2, .priority = 1000,
+        PN_CODE(Robot_Measure), .places = &s_in_Robot2,
+        PN_INDICES(affected, 64U, 65U, 66U, 67U, 68U, 69U, 70U, 71U, 72U),
+        PN_INDICES(touched, 8U, 9U, 73U, 74U), PN_INDICES(read, 8U, 73U) },
+    /* 69 */
+    { .name = "Cell.Robot2.Drill", .id = "ID1412311196",
+        .origin = "page `Robot`, transition `Drill` (ID1412311196)", .owner = 2, .priority = 1000,
+        PN_CODE(Robot_Drill), .places = &s_in_Robot2,
+        PN_INDICES(affected, 64U, 65U, 66U, 67U, 68U, 69U, 70U, 71U, 72U),
+        PN_INDICES(touched, 73U, 74U), PN_INDICES(read, 73U) },
+    /* 70 */
+    { .name = "Cell.Robot2.Insert", .id = "ID1412311205",
+        .origin = "page `Robot`, transition `Insert` (ID1412311205)", .owner = 2, .priority = 1000,
+        PN_CODE(Robot_Insert), .places = &s_in_Robot2,
+        PN_INDICES(affected, 64U, 65U, 66U, 67U, 68U, 69U, 70U, 71U, 72U),
+        PN_INDICES(touched, 73U, 74U), PN_INDICES(read, 73U) },
+    /* 71 */
+    { .name = "Cell.Robot2.Press", .id = "ID1412311214",
+        .origin = "page `Robot`, transition `Press` (ID1412311214)", .owner = 2, .priority = 1000,
+        PN_CODE(Robot_Press), .places = &s_in_Robot2,
+        PN_INDICES(affected, 64U, 65U, 66U, 67U, 68U, 69U, 70U, 71U, 72U),
+        PN_INDICES(touched, 73U, 74U), PN_INDICES(read, 73U) },
+    /* 72 */
+    { .name = "Cell.Robot2.Release", .id = "ID1412311223",
+        .origin = "page `Robot`, transition `Release` (ID1412311223)", .owner = 2, .priority = 1000,
+        PN_CODE(Robot_Release), .places = &s_in_Robot2,
+        PN_INDICES(affected, 64U, 65U, 66U, 67U, 68U, 69U, 70U, 71U, 72U),
+        PN_INDICES(touched, 73U, 74U), PN_INDICES(read, 73U) },
 };
 
-static const uint32_t s_order[] = {
-    0U, /* Cell.Supervisor.Load.Load */
-    1U, /* Cell.Supervisor.Approach.Send */
-    2U, /* Cell.Supervisor.Approach.Arrived */
-    3U, /* Cell.Supervisor.Approach.Move both.Command */
-    4U, /* Cell.Supervisor.Approach.Move both.Both */
-    5U, /* Cell.Supervisor.Approach.Move both.Reply 1 */
-    6U, /* Cell.Supervisor.Approach.Move both.Reply 2 */
-    7U, /* Cell.Supervisor.Verify.Ask first */
-    8U, /* Cell.Supervisor.Verify.Ask last */
-    9U, /* Cell.Supervisor.Verify.Measured */
-    10U, /* Cell.Supervisor.Verify.First lost */
-    11U, /* Cell.Supervisor.Verify.Last lost */
-    12U, /* Cell.Supervisor.Correct.Compare */
-    13U, /* Cell.Supervisor.Correct.Move over */
-    14U, /* Cell.Supervisor.Correct.Moved */
-    15U, /* Cell.Supervisor.Correct.As planned */
-    16U, /* Cell.Supervisor.Correct.Move both.Command */
-    17U, /* Cell.Supervisor.Correct.Move both.Both */
-    18U, /* Cell.Supervisor.Correct.Move both.Reply 1 */
-    19U, /* Cell.Supervisor.Correct.Move both.Reply 2 */
-    20U, /* Cell.Supervisor.Install.Go back */
-    21U, /* Cell.Supervisor.Install.Next rivet */
-    22U, /* Cell.Supervisor.Install.Start */
-    23U, /* Cell.Supervisor.Install.Give up */
-    24U, /* Cell.Supervisor.Install.Shift.Command */
-    25U, /* Cell.Supervisor.Install.Shift.Both */
-    26U, /* Cell.Supervisor.Install.Shift.Reply 1 */
-    27U, /* Cell.Supervisor.Install.Shift.Reply 2 */
-    28U, /* Cell.Supervisor.Install.Rivet.Go in */
-    29U, /* Cell.Supervisor.Install.Rivet.Go out */
-    30U, /* Cell.Supervisor.Install.Rivet.Advance.Command */
-    31U, /* Cell.Supervisor.Install.Rivet.Advance.Both */
-    32U, /* Cell.Supervisor.Install.Rivet.Advance.Reply 1 */
-    33U, /* Cell.Supervisor.Install.Rivet.Advance.Reply 2 */
-    34U, /* Cell.Supervisor.Install.Rivet.Fasten.Press */
-    35U, /* Cell.Supervisor.Install.Rivet.Fasten.Drill */
-    36U, /* Cell.Supervisor.Install.Rivet.Fasten.Insert */
-    37U, /* Cell.Supervisor.Install.Rivet.Fasten.Release */
-    38U, /* Cell.Supervisor.Install.Rivet.Fasten.Finish */
-    39U, /* Cell.Supervisor.Install.Rivet.Fasten.Press failed */
-    40U, /* Cell.Supervisor.Install.Rivet.Fasten.Drill failed */
-    41U, /* Cell.Supervisor.Install.Rivet.Retract.Command */
-    42U, /* Cell.Supervisor.Install.Rivet.Retract.Both */
-    43U, /* Cell.Supervisor.Install.Rivet.Retract.Reply 1 */
-    44U, /* Cell.Supervisor.Install.Rivet.Retract.Reply 2 */
-    45U, /* Cell.Supervisor.Install.Return.Command */
-    46U, /* Cell.Supervisor.Install.Return.Both */
-    47U, /* Cell.Supervisor.Install.Return.Reply 1 */
-    48U, /* Cell.Supervisor.Install.Return.Reply 2 */
-    49U, /* Cell.Supervisor.Home.Send home */
-    50U, /* Cell.Supervisor.Home.Both */
-    51U, /* Cell.Supervisor.Home.Reply 1 */
-    52U, /* Cell.Supervisor.Home.Reply 2 */
-    53U, /* Cell.Robot1.Accept */
-    54U, /* Cell.Robot1.Report */
-    55U, /* Cell.Robot1.MoveJoint */
-    56U, /* Cell.Robot1.MoveLinear */
-    57U, /* Cell.Robot1.MoveHome */
-    58U, /* Cell.Robot1.Measure */
-    59U, /* Cell.Robot1.Drill */
-    60U, /* Cell.Robot1.Insert */
-    61U, /* Cell.Robot1.Press */
-    62U, /* Cell.Robot1.Release */
-    63U, /* Cell.Robot2.Accept */
-    64U, /* Cell.Robot2.Report */
-    65U, /* Cell.Robot2.MoveJoint */
-    66U, /* Cell.Robot2.MoveLinear */
-    67U, /* Cell.Robot2.MoveHome */
-    68U, /* Cell.Robot2.Measure */
-    69U, /* Cell.Robot2.Drill */
-    70U, /* Cell.Robot2.Insert */
-    71U, /* Cell.Robot2.Press */
-    72U, /* Cell.Robot2.Release */
-};
+static const uint32_t s_order[] = { 0U, 1U, 2U, 3U, 4U, 5U, 6U, 7U, 8U, 9U, 10U, 11U, 12U, 13U, 14U,
+    15U, 16U, 17U, 18U, 19U, 20U, 21U, 22U, 23U, 24U, 25U, 26U, 27U, 28U, 29U, 30U, 31U, 32U, 33U,
+    34U, 35U, 36U, 37U, 38U, 39U, 40U, 41U, 42U, 43U, 44U, 45U, 46U, 47U, 48U, 49U, 50U, 51U, 52U,
+    53U, 54U, 55U, 56U, 57U, 58U, 59U, 60U, 61U, 62U, 63U, 64U, 65U, 66U, 67U, 68U, 69U, 70U, 71U,
+    72U };
 
 /* For hosts that are compiled in one piece with the net: index and name of each transition, name of its code, and whether each
  * choice of tokens gives a binding, so that counting them costs nothing. */

@@ -53,19 +53,20 @@ typedef union pn_colour {
     unsigned char bytes[256];
 } pn_colour_t;
 
-/* The offsets of a place `member` of a marking, for the initialiser of a pn_bag_t; PN_BAG_STAMPS as well if it is timed. */
+/* The offsets of a place `member` of a marking, for the initialiser of a pn_bag_t. */
 #define PN_BAG_TOKENS(marking_type, member)                                                                        \
     .at = offsetof(marking_type, member), .used = offsetof(marking_type, member.used),                             \
     .first = offsetof(marking_type, member.token),                                                                 \
     .stride = sizeof(((const marking_type *)0)->member.token[0]),                                                  \
     .value = offsetof(marking_type, member.token[0].value) - offsetof(marking_type, member.token),                 \
     .count = offsetof(marking_type, member.token[0].count) - offsetof(marking_type, member.token)
-/* The same for a slot. */
+/* The same for a slot, and for a timed array. */
 #define PN_BAG_SLOT(marking_type, member)                                                                          \
     .at = offsetof(marking_type, member), .is_slot = true, .used = offsetof(marking_type, member.full),            \
     .first = offsetof(marking_type, member.value),                                                                 \
     .stride = sizeof(((const marking_type *)0)->member.value)
 #define PN_BAG_STAMPS(marking_type, member)                                                                        \
+    PN_BAG_TOKENS(marking_type, member),                                                                           \
     .stamp = offsetof(marking_type, member.token[0].stamp) - offsetof(marking_type, member.token)
 
 /* What holds the tokens of a place that is not packed. */
@@ -88,6 +89,13 @@ uint64_t pn_bag_count(const pn_bag_t *bag, const void *marking, const void *valu
 bool pn_bag_add(pn_ctx_t *cx, const pn_bag_t *bag, void *marking, const void *value, uint32_t count, pn_time_t stamp);
 /* Raises PN_ERR_CAPACITY at the place; false. */
 bool pn_bag_fail_full(pn_ctx_t *cx, const pn_bag_t *bag);
+/* Raises that if a slot is full: whether a token can be put there. */
+static inline bool pn_has_room(pn_ctx_t *cx, bool is_full, const pn_bag_t *bag)
+{
+    return !is_full || pn_bag_fail_full(cx, bag);
+}
+/* Raises PN_ERR_SUBTRACT: a token that an occurrence takes is not there; false. */
+bool pn_fail_missing(pn_ctx_t *cx);
 /* Narrows a value and raises PN_ERR_COLOUR at the place if it is not in the colour set. */
 void pn_bag_check(pn_ctx_t *cx, const pn_bag_t *bag, void *value);
 void pn_bag_clear(const pn_bag_t *bag, void *marking);

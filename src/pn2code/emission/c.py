@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 
 from pn2code.diagnostics import Origin
-from pn2code.emission import c_packed, c_places, c_sums, c_tables
+from pn2code.emission import c_packed, c_places, c_rows, c_sums, c_tables
 from pn2code.emission.c_effects import Effects, is_assignment, is_draw
 from pn2code.emission.c_expressions import (
     Expressions,
@@ -27,7 +27,7 @@ from pn2code.emission.c_shared import PlaceTable, Shared, path_of, share, tables
 from pn2code.emission.c_slots import slots
 from pn2code.emission.c_statements import Statements
 from pn2code.emission.c_sums import Sum
-from pn2code.emission.environment import c_comment, c_float, render
+from pn2code.emission.environment import c_comment, c_string, render
 from pn2code.emission.names import Members, Names, Scope, stem
 from pn2code.emission.output import Block, OutputFile
 from pn2code.lowering import ir
@@ -285,38 +285,50 @@ class _Emitter:
     def _place(self, p: ir.Place) -> dict[str, object]:
         s, _, _ = self._printer(p.initial)
         s.body(p.initial)
-        is_slot = p.index in self._slots
+        member, bag = self._place_names[p.index], self._names.bag(p.index, p.name)
+        early = f"s_early_{member}"
         return {
             "mark": self._block(p.name, "place", p.origin),
             "name": p.name,
-            "member": self._names.place(p.index, p.name),
-            "bag": self._names.bag(p.index, p.name),
+            "member": member,
+            "bag": bag,
             "colset": p.colset,
             "origin": p.origin.describe(),
-            "owner": p.owner,
             "type": self._types.name(p.type),
-            "table": self._names.table(p.table),
-            "timed": p.timed,
-            "early": [
-                f".real = {c_float(float(e))}"
-                if self._net.real_time
-                else f".integer = {c_integer(int(e))}"
-                for e in p.early
-            ],
-            "capacity": p.capacity,
-            "bound": p.bound,
-            "proof": p.proof,
-            "is_slot": is_slot,
-            "kept": self._kept[p.index],
             "packed": p.packed,
-            "shares": p.packed.shares if p.packed else (),
             "is_whole": not p.packed or not self._numbers.members(p.table),
             "number_of": self._numbers.number_of(p.table) if p.packed else "",
-            "finder": self._numbers.finder(p.table) if p.packed else "",
-            "maker": self._numbers.maker(p.table) if p.packed else "",
+            "early": c_rows.early(early, p, self._net.real_time) if p.early else [],
+            "bag_lines": c_rows.bag(
+                bag,
+                p,
+                table=self._names.table(p.table),
+                where=self._where_kept(p, member),
+                real_time=self._net.real_time,
+                early_name=early,
+                numbering=(self._numbers.finder(p.table), self._numbers.maker(p.table))
+                if p.packed
+                else ("", ""),
+            ),
+            "row": c_rows.place(
+                p,
+                bag,
+                f"{member}_init" if p.initial else "",
+                f"s_shares_of_{member}" if p.packed and p.packed.shares else "",
+            ),
+            "shares": p.packed.shares if p.packed else (),
+            "is_slot": p.index in self._slots,
+            "kept": self._kept[p.index],
             "initial": s.lines,
             "initial_text": _comment_lines(p.initial_text),
         }
+
+    def _where_kept(self, p: ir.Place, member: str) -> str:
+        """The macro for the offsets of what holds the tokens of a place; "": it is packed."""
+        if p.packed:
+            return ""
+        kind = "SLOT" if p.index in self._slots else "STAMPS" if p.timed else "TOKENS"
+        return f"PN_BAG_{kind}(net_marking_t, {member})"
 
     def _own_places(self, shared: Shared) -> OwnPlaces | None:
         """How the code of a transition of several instances reaches the places that each has for its own."""
@@ -365,24 +377,30 @@ class _Emitter:
 
     def _row(self, t: ir.Transition, shared: Shared, code: dict[str, object]) -> dict[str, object]:
         """What the tables of hosts say of one instance."""
-        affected = self._effects.affected(t.index)
         own = self._own_places(shared)
+        stem, flags = self._stem(shared), ("looks", "looks_outside", "assigns", "search_assigns")
+        affected = self._effects.affected(t.index)
+        further = [f".places = &{self._names.instance(path_of(t), own.struct)}"] if own else []
+        further += [f".successors = {stem}_successors"] if self._net.has_successors else []
+        further += [f".words = {stem}_words"] if self._has_words else []
+        if len(affected) < len(self._net.transitions):
+            further += c_rows.indices("affected", affected)
+        further += c_rows.indices("touched", self._effects.touched(t.index))
+        further += c_rows.indices("read", self._effects.read(t.index))
+        further += [f".{flag} = true" for flag in flags if code[flag]]
         return {
             "index": t.index,
             "name": t.name,
             "stem": self._names.transition(t.index, t.name),
             "code": code,
-            "id": t.id,
-            "origin": t.origin.describe(),
-            "owner": t.owner,
-            "priority": t.priority,
-            "places": self._names.instance(path_of(t), own.struct) if own else "",
-            "touched": ", ".join(f"{i}U" for i in self._effects.touched(t.index)),
-            "read": ", ".join(f"{i}U" for i in self._effects.read(t.index)),
-            "affected": ""
-            if len(affected) == len(self._net.transitions)
-            else ", ".join(f"{i}U" for i in affected),
+            "lines": c_rows.transition(t, stem, further),
         }
+
+    def _binding_name(self, shared: Shared) -> str:
+        """The name of the instance, or of the page's transition where there are several."""
+        t = shared.model
+        is_one = len(shared.instances) == 1
+        return t.name if is_one else f"{shared.page}.{t.name.rsplit('.', 1)[-1]}"
 
     def _title(self, shared: Shared) -> list[str]:
         """The element of the net, and all of its instances that the code is of."""
@@ -404,13 +422,14 @@ class _Emitter:
         search.keeps = uses_context(
             _without_wanted(t.enumerate), self._needs_context, self._definitions
         )
+        search.is_flat = c_places.is_flat(t.enumerate, self._slots)
         search.releases = not self._effects.reaches(t.enumerate, is_assignment)
         search.may_fail = search.keeps or any(
             isinstance(n, ir.Wanted | ir.UnlessLegal) for n in ir_nodes(t.enumerate)
         )
         search.sums = self._sums(t)
         search.body(t.enumerate)
-        search.finish_search()
+        search.end_search()
         is_direct = self._is_direct(t)
         fire = self._firing(t, is_direct, variables, own, name)
         sums = self._sums(t)
@@ -418,6 +437,7 @@ class _Emitter:
         lists = self._firing(t, False, variables, own, name) if has_lists else None
         thresholds = self._thresholds(t, variables, own)
         text = "\n".join(fire.lines)
+        roots = self._effects.roots()
         search_draws = self._effects.reaches(t.enumerate, is_draw)
         fire_draws = self._effects.reaches(t.fire, is_draw)
         return {
@@ -429,6 +449,16 @@ class _Emitter:
             "name": t.name,
             "stem": name,
             "title": self._title(shared),
+            "binding": c_rows.braces(
+                f"static const pn_type_t s_binding_{name} = ",
+                [
+                    ".kind = PN_KIND_RECORD",
+                    f".name = {c_string(self._binding_name(shared))}",
+                    f".size = sizeof({name}_binding_t)",
+                    f".count = {len(t.variables)}U",
+                    f".field = s_variables_{name}" if t.variables else ".field = NULL",
+                ],
+            ),
             "guard": c_comment(f"guard [{t.guard_text}]") if t.guard_text else "",
             "origin": t.origin.describe(),
             "variables": [
@@ -443,6 +473,7 @@ class _Emitter:
             ],
             "is_plain": c_places.is_plain(t.enumerate),
             "keeps": search.keeps and search.releases,
+            "is_flat": search.is_flat,
             "search": search.lines,
             "search_reach": own.reach(search.lines, is_const=True) if own else [],
             "thresholds": thresholds,
@@ -468,8 +499,9 @@ class _Emitter:
             ],
             "looks": self._effects.looks((t.enumerate, t.fire)),
             "looks_outside": self._effects.looks_outside((t.enumerate, t.fire)),
-            "assigns": self._effects.reaches(t.fire, is_assignment),
-            "search_assigns": self._effects.reaches((t.enumerate, t.thresholds), is_assignment),
+            "assigns": bool(roots) and self._effects.reaches(t.fire, is_assignment),
+            "search_assigns": bool(roots)
+            and self._effects.reaches((t.enumerate, t.thresholds), is_assignment),
         }
 
     def _predicate(self, p: ir.Predicate, number: int) -> dict[str, object]:
@@ -663,7 +695,15 @@ class _Emitter:
             "has_words": self._has_words,
             "word_mask": self._word_mask(),
             "inlined": "PN_INLINE" if self._has_inlined else "PN_NET_SEARCH static",
-            "bag_places": ", ".join(f"{p.index}U" for p in net.places if not p.packed),
+            "bag_places": c_rows.braces(
+                "static const uint32_t s_bag_places[] = ",
+                [f"{p.index}U" for p in net.places if not p.packed],
+            )
+            if not all(p.packed for p in net.places)
+            else [],
+            "order": c_rows.braces(
+                "static const uint32_t s_order[] = ", [f"{i}U" for i in net.order]
+            ),
             "roots": [
                 (self._names.table(g.table), self._names.value(g.name, g.hint))
                 for g in self._effects.roots()

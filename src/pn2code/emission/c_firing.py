@@ -154,9 +154,9 @@ class DirectFiring(Statements):
         if taken:
             tests = list(dict.fromkeys(m.differs for m in taken))
             self.line(f"if ({' || '.join(tests)}) {{")
-            self.line("    pn_raise(cx, PN_ERR_SUBTRACT, NULL);")
-            self.line("    return false;")
+            self.line("    return pn_fail_missing(cx);")
             self.line("}")
+        rooms = []
         emptied = {m.tokens for m in taken}
         for move in self._slot_moves:
             if move.is_take or (move.tokens in emptied and not move.count):
@@ -168,8 +168,10 @@ class DirectFiring(Statements):
                 test = f"({move.count} > 1U) || (({move.count} == 1U) && {full})"
             else:
                 test = full
-            self.line(f"if ({test}) {{")
-            self.line(f"    return pn_bag_fail_full(cx, {move.bag});")
+            rooms.append(f"!pn_has_room(cx, {test}, {move.bag})")
+        if rooms:
+            self.line(f"if ({' || '.join(rooms)}) {{")
+            self.line("    return false;")
             self.line("}")
 
     def _change_slots(self) -> None:
@@ -241,8 +243,7 @@ class DirectFiring(Statements):
             start = "bool is_taken = " if i == 0 else "is_taken = is_taken && "
             self.line(f"{start}{self._call(move)};")
         self.line("if (!is_taken) {")
-        self.line("    pn_raise(cx, PN_ERR_SUBTRACT, NULL);")
-        self.line("    return false;")
+        self.line("    return pn_fail_missing(cx);")
         self.line("}")
 
     def _slot_move(self, s: ir.Take | ir.Put) -> None:

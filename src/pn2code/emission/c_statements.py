@@ -53,6 +53,7 @@ class Statements:
         self.moves = "moves"
         self.variable_types: tuple[ir.IrType, ...] = ()
         self.keeps = False
+        self.is_flat = False
         self.may_fail = False
         self.releases = True
         self._loops = 0
@@ -92,11 +93,18 @@ class Statements:
 
     def finish_search(self) -> None:
         """The end of an enumeration that was not stopped."""
-        if self.keeps and self.releases:
+        if self.keeps and self.releases and self.is_flat:
+            self.line("pn_arena_release(cx->arena, mark);")
+        elif self.keeps and self.releases:
             self.line("if (!is_kept) {")
             self.line(_INDENT + "pn_arena_release(cx->arena, mark);")
             self.line("}")
         self.line("return;" if self.is_void else "return true;")
+
+    def end_search(self) -> None:
+        """What stands last in the function; without loops that is the only call of the sink."""
+        if not self.is_flat:
+            self.finish_search()
 
     def _declaration(self, local: ir.Local) -> str:
         return f"{self._types.name(local.type)} {self._x.local(local)}"
@@ -501,6 +509,9 @@ class Statements:
             self.line("if (!pn_ok(cx)) {")
             self.line(f"{_INDENT}return true;")
             self.line("}")
+        if self.is_flat:
+            self.line("return sink(user, self, &b);")
+            return
         if self.keeps and self.releases:
             self.line("is_kept = true;")
         self.line("if (!sink(user, self, &b)) {")

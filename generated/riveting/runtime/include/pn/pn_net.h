@@ -151,6 +151,12 @@ typedef struct pn_transition {
     bool (*words)(pn_words_t *words, uint32_t self);
 } pn_transition_t;
 
+/* For rows of the table of transitions: their functions and binding by the stem of the names; a list of indices with its length. */
+#define PN_CODE(code) .enumerate = code##_enumerate, .fire = code##_fire, .binding = &s_binding_##code
+#define PN_INDICES(member, ...)                                                                                 \
+    .member##_count = (uint32_t)(sizeof((const uint32_t[]){ __VA_ARGS__ }) / sizeof(uint32_t)),                 \
+    .member = (const uint32_t[]){ __VA_ARGS__ }
+
 /* A condition on markings, asked by those who explore the net. */
 typedef struct pn_predicate {
     const char *name;
