@@ -294,8 +294,8 @@ bool sim_fire(sim_t *sim, uint32_t transition)
 #ifdef PN_NET_SOURCE
 
 /* A binding is kept by assignment: the compiler then leaves out what it need not put together first. */
-#define SIM_TRANSITION(index, name, code, is_plain)                                                             \
-    static SIM_INLINE bool sim_keep_##name(void *user, uint32_t transition, const void *binding)               \
+#define SIM_TRANSITION(index, code, is_plain)                                                                   \
+    static SIM_INLINE bool sim_keep_##index(void *user, uint32_t transition, const void *binding)               \
     {                                                                                                          \
         code##_binding_t *const at = sim_next_kept(user, sizeof *at);                                          \
         (void)transition;                                                                                      \
@@ -304,19 +304,19 @@ bool sim_fire(sim_t *sim, uint32_t transition)
         }                                                                                                      \
         return true;                                                                                           \
     }                                                                                                          \
-    static bool sim_look_##name(sim_t *sim)                                                                    \
+    static bool sim_look_##index(sim_t *sim)                                                                    \
     {                                                                                                          \
         return sim_look(sim, index, code##_enumerate);                                                         \
     }                                                                                                          \
-    static bool sim_occur_##name(sim_t *sim, uint64_t state)                                                   \
+    static bool sim_occur_##index(sim_t *sim, uint64_t state)                                                   \
     {                                                                                                          \
         if (is_plain) {                                                                                        \
             return sim_occur_plain(sim, index, state, code##_enumerate, code##_fire, sizeof(code##_binding_t)); \
         }                                                                                                      \
-        return sim_occur(sim, index, state, code##_enumerate, sim_keep_##name, code##_fire,                    \
+        return sim_occur(sim, index, state, code##_enumerate, sim_keep_##index, code##_fire,                    \
                          sizeof(code##_binding_t));                                                            \
     }
-#define SIM_ROW(index, name, code, is_plain) { sim_look_##name, sim_occur_##name },
+#define SIM_ROW(index, code, is_plain) { sim_look_##index, sim_occur_##index },
 #ifndef NET_TRANSITIONS /* there is none */
 #define NET_TRANSITIONS(EACH)
 #endif

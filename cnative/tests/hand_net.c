@@ -258,7 +258,6 @@ const pn_net_t pn_net = {
     .digest = "0000",
     .timed = true,
     .marking_size = sizeof(marking_t),
-    .binding_size = sizeof(binding_t),
     .place_count = sizeof PLACE / sizeof PLACE[0],
     .place = PLACE,
     .transition_count = sizeof TRANSITION_TABLE / sizeof TRANSITION_TABLE[0],

@@ -250,7 +250,7 @@ int main(int argc, char **argv)
     const uint64_t steps = strtoull(argv[2], NULL, 10);
     void *marking = calloc(1U, pn_net.marking_size);
     void *copy = calloc(1U, pn_net.marking_size);
-    void *binding = calloc(1U, pn_net.binding_size);
+    void *binding = calloc(1U, pn_binding_size(&pn_net));
     if ((marking == NULL) || (copy == NULL) || (binding == NULL)) {
         return 2;
     }

@@ -8,35 +8,30 @@
  *
  *   the state space, all 3,343 states of the cell as it runs
  *     Cell.dadosrobo1: 1, Cell.dadosrobo2: 1
- *   sub-invariant flag1_interno + flag1_externo + coordenadas + planned + approached + verified +
- *   corrected + ended + Cell.Supervisor.Approach.order + Cell.Supervisor.Approach.done +
- *   Cell.Supervisor.Approach.Move both.there 1 + offset + Cell.Supervisor.Correct.order +
- *   Cell.Supervisor.Correct.done + Cell.Supervisor.Correct.Move both.there 1 + shift + ready + riveted +
- *   return + Cell.Supervisor.Install.Shift.there 1 + advance + contact + fastened + retract +
- *   Cell.Supervisor.Install.Rivet.Advance.there 1 + pressing + releasing +
- *   Cell.Supervisor.Install.Rivet.Retract.there 1 + Cell.Supervisor.Install.Return.there 1 +
- *   Cell.Robot1.Commanded + Cell.Robot1.Done <= 1
+ *   sub-invariant flag1_interno + flag1_externo + coordenadas + planned + approached + verified + corrected + ended +
+ *   Cell.Supervisor.Approach.order + Cell.Supervisor.Approach.done + Cell.Supervisor.Approach.Move both.there 1 + offset +
+ *   Cell.Supervisor.Correct.order + Cell.Supervisor.Correct.done + Cell.Supervisor.Correct.Move both.there 1 + shift +
+ *   ready + riveted + return + Cell.Supervisor.Install.Shift.there 1 + advance + contact + fastened + retract +
+ *   Cell.Supervisor.Install.Rivet.Advance.there 1 + pressing + releasing + Cell.Supervisor.Install.Rivet.Retract.there 1 +
+ *   Cell.Supervisor.Install.Return.there 1 + Cell.Robot1.Commanded + Cell.Robot1.Done <= 1
  *     Cell.flag1_interno: 1, Cell.flag1_externo: 1
- *   sub-invariant referencia1 + medida1 + coordenadas + planned + approached +
- *   Cell.Supervisor.Approach.seam <= 1
+ *   sub-invariant referencia1 + medida1 + coordenadas + planned + approached + Cell.Supervisor.Approach.seam <= 1
  *     Cell.referencia1: 1, Cell.medida1: 1
- *   sub-invariant flag2_interno + flag2_externo + coordenadas + planned + approached + verified +
- *   corrected + ended + Cell.Supervisor.Approach.order + Cell.Supervisor.Approach.done +
- *   Cell.Supervisor.Approach.Move both.there 2 + first asked + last asked + offset +
- *   Cell.Supervisor.Correct.order + Cell.Supervisor.Correct.done + Cell.Supervisor.Correct.Move
- *   both.there 2 + shift + ready + riveted + return + Cell.Supervisor.Install.Shift.there 2 + advance +
- *   contact + fastened + retract + Cell.Supervisor.Install.Rivet.Advance.there 2 + drilling + inserting
- *   + Cell.Supervisor.Install.Rivet.Retract.there 2 + Cell.Supervisor.Install.Return.there 2 +
- *   Cell.Robot2.Commanded + Cell.Robot2.Done <= 1
+ *   sub-invariant flag2_interno + flag2_externo + coordenadas + planned + approached + verified + corrected + ended +
+ *   Cell.Supervisor.Approach.order + Cell.Supervisor.Approach.done + Cell.Supervisor.Approach.Move both.there 2 + first
+ *   asked + last asked + offset + Cell.Supervisor.Correct.order + Cell.Supervisor.Correct.done +
+ *   Cell.Supervisor.Correct.Move both.there 2 + shift + ready + riveted + return + Cell.Supervisor.Install.Shift.there 2 +
+ *   advance + contact + fastened + retract + Cell.Supervisor.Install.Rivet.Advance.there 2 + drilling + inserting +
+ *   Cell.Supervisor.Install.Rivet.Retract.there 2 + Cell.Supervisor.Install.Return.there 2 + Cell.Robot2.Commanded +
+ *   Cell.Robot2.Done <= 1
  *     Cell.flag2_interno: 1
- *   sub-invariant referencia1 + medida1 + flag2_interno + flag2_externo + coordenadas + planned +
- *   approached + verified + corrected + ended + Cell.Supervisor.Approach.order +
- *   Cell.Supervisor.Approach.done + Cell.Supervisor.Approach.Move both.there 2 + offset +
- *   Cell.Supervisor.Correct.order + Cell.Supervisor.Correct.done + Cell.Supervisor.Correct.Move
- *   both.there 2 + shift + ready + riveted + return + Cell.Supervisor.Install.Shift.there 2 + advance +
- *   contact + fastened + retract + Cell.Supervisor.Install.Rivet.Advance.there 2 + drilling + inserting
- *   + Cell.Supervisor.Install.Rivet.Retract.there 2 + Cell.Supervisor.Install.Return.there 2 +
- *   Cell.Robot2.Commanded + Cell.Robot2.Done <= 1
+ *   sub-invariant referencia1 + medida1 + flag2_interno + flag2_externo + coordenadas + planned + approached + verified +
+ *   corrected + ended + Cell.Supervisor.Approach.order + Cell.Supervisor.Approach.done + Cell.Supervisor.Approach.Move
+ *   both.there 2 + offset + Cell.Supervisor.Correct.order + Cell.Supervisor.Correct.done + Cell.Supervisor.Correct.Move
+ *   both.there 2 + shift + ready + riveted + return + Cell.Supervisor.Install.Shift.there 2 + advance + contact + fastened
+ *   + retract + Cell.Supervisor.Install.Rivet.Advance.there 2 + drilling + inserting +
+ *   Cell.Supervisor.Install.Rivet.Retract.there 2 + Cell.Supervisor.Install.Return.there 2 + Cell.Robot2.Commanded +
+ *   Cell.Robot2.Done <= 1
  *     Cell.flag2_externo: 1
  *   never marked
  *     Cell.referencia2: 0, Cell.medida2: 0
@@ -46,194 +41,177 @@
  *     Cell.Supervisor.planned: 1
  *   sub-invariant coordenadas + planned + approached + Cell.Supervisor.Approach.seam <= 1
  *     Cell.Supervisor.approached: 1
- *   sub-invariant referencia1 + medida1 + coordenadas + planned + approached + verified +
- *   Cell.Supervisor.Approach.seam <= 1
+ *   sub-invariant referencia1 + medida1 + coordenadas + planned + approached + verified + Cell.Supervisor.Approach.seam <=
+ *   1
  *     Cell.Supervisor.verified: 1
  *   sub-invariant referencia1 + medida1 + coordenadas + planned + approached + verified + corrected +
  *   Cell.Supervisor.Approach.seam + Cell.Supervisor.Correct.seam <= 1
  *     Cell.Supervisor.corrected: 1
- *   sub-invariant referencia1 + medida1 + coordenadas + planned + approached + verified + corrected +
- *   ended + Cell.Supervisor.Approach.seam + Cell.Supervisor.Correct.seam + return + work +
- *   Cell.Supervisor.Install.Return.moving 1 + Cell.Supervisor.Install.Return.there 1 <= 1
+ *   sub-invariant referencia1 + medida1 + coordenadas + planned + approached + verified + corrected + ended +
+ *   Cell.Supervisor.Approach.seam + Cell.Supervisor.Correct.seam + return + work + Cell.Supervisor.Install.Return.moving 1
+ *   + Cell.Supervisor.Install.Return.there 1 <= 1
  *     Cell.Supervisor.ended: 1
  *   sub-invariant coordenadas + planned + approached + verified + corrected + ended + Finished +
- *   Cell.Supervisor.Approach.seam + first asked + last asked + Cell.Supervisor.Correct.seam + return +
- *   work + Cell.Supervisor.Install.Return.moving 1 + Cell.Supervisor.Install.Return.there 1 + leaving 1
- *   + home 1 <= 1
+ *   Cell.Supervisor.Approach.seam + first asked + last asked + Cell.Supervisor.Correct.seam + return + work +
+ *   Cell.Supervisor.Install.Return.moving 1 + Cell.Supervisor.Install.Return.there 1 + leaving 1 + home 1 <= 1
  *     Cell.Supervisor.Finished: 1
- *   sub-invariant referencia1 + medida1 + coordenadas + planned + approached + verified + corrected +
- *   result + Cell.Supervisor.Approach.seam + Cell.Supervisor.Correct.seam + shift + ready +
- *   Cell.Supervisor.Install.Shift.moving 2 + Cell.Supervisor.Install.Shift.there 2 + advance + contact +
- *   fastened + Cell.Supervisor.Install.Rivet.Advance.moving 1 +
- *   Cell.Supervisor.Install.Rivet.Advance.there 1 + pressing + drilling + inserting + releasing <= 1
- *     Cell.Supervisor.result: 1, Cell.Supervisor.Install.shift: 1, Cell.Supervisor.Install.Shift.there 2:
- *     1
+ *   sub-invariant referencia1 + medida1 + coordenadas + planned + approached + verified + corrected + result +
+ *   Cell.Supervisor.Approach.seam + Cell.Supervisor.Correct.seam + shift + ready + Cell.Supervisor.Install.Shift.moving 2
+ *   + Cell.Supervisor.Install.Shift.there 2 + advance + contact + fastened + Cell.Supervisor.Install.Rivet.Advance.moving
+ *   1 + Cell.Supervisor.Install.Rivet.Advance.there 1 + pressing + drilling + inserting + releasing <= 1
+ *     Cell.Supervisor.result: 1, Cell.Supervisor.Install.shift: 1, Cell.Supervisor.Install.Shift.there 2: 1
  *   sub-invariant coordenadas + planned + approached + verified + corrected + ended + Failed +
- *   Cell.Supervisor.Approach.seam + first asked + last asked + Cell.Supervisor.Correct.seam + return +
- *   work + Cell.Supervisor.Install.Return.moving 1 + Cell.Supervisor.Install.Return.there 1 + leaving 1
- *   + home 1 <= 1
+ *   Cell.Supervisor.Approach.seam + first asked + last asked + Cell.Supervisor.Correct.seam + return + work +
+ *   Cell.Supervisor.Install.Return.moving 1 + Cell.Supervisor.Install.Return.there 1 + leaving 1 + home 1 <= 1
  *     Cell.Supervisor.Failed: 1
  *   sub-invariant coordenadas + planned + Cell.Supervisor.Approach.order <= 1
  *     Cell.Supervisor.Approach.order: 1
- *   sub-invariant coordenadas + planned + Cell.Supervisor.Approach.order + Cell.Supervisor.Approach.done
- *   + Cell.Supervisor.Approach.Move both.moving 1 + Cell.Supervisor.Approach.Move both.there 1 <= 1
+ *   sub-invariant coordenadas + planned + Cell.Supervisor.Approach.order + Cell.Supervisor.Approach.done +
+ *   Cell.Supervisor.Approach.Move both.moving 1 + Cell.Supervisor.Approach.Move both.there 1 <= 1
  *     Cell.Supervisor.Approach.done: 1
  *   sub-invariant coordenadas + planned + Cell.Supervisor.Approach.seam <= 1
  *     Cell.Supervisor.Approach.seam: 1
- *   sub-invariant coordenadas + planned + Cell.Supervisor.Approach.order + Cell.Supervisor.Approach.Move
- *   both.moving 1 <= 1
+ *   sub-invariant coordenadas + planned + Cell.Supervisor.Approach.order + Cell.Supervisor.Approach.Move both.moving 1 <=
+ *   1
  *     Cell.Supervisor.Approach.Move both.moving 1: 1
- *   sub-invariant coordenadas + planned + Cell.Supervisor.Approach.order + Cell.Supervisor.Approach.Move
- *   both.moving 1 + Cell.Supervisor.Approach.Move both.there 1 <= 1
+ *   sub-invariant coordenadas + planned + Cell.Supervisor.Approach.order + Cell.Supervisor.Approach.Move both.moving 1 +
+ *   Cell.Supervisor.Approach.Move both.there 1 <= 1
  *     Cell.Supervisor.Approach.Move both.there 1: 1
- *   sub-invariant coordenadas + planned + Cell.Supervisor.Approach.order + Cell.Supervisor.Approach.Move
- *   both.moving 2 <= 1
+ *   sub-invariant coordenadas + planned + Cell.Supervisor.Approach.order + Cell.Supervisor.Approach.Move both.moving 2 <=
+ *   1
  *     Cell.Supervisor.Approach.Move both.moving 2: 1
- *   sub-invariant coordenadas + planned + Cell.Supervisor.Approach.order + Cell.Supervisor.Approach.Move
- *   both.moving 2 + Cell.Supervisor.Approach.Move both.there 2 <= 1
+ *   sub-invariant coordenadas + planned + Cell.Supervisor.Approach.order + Cell.Supervisor.Approach.Move both.moving 2 +
+ *   Cell.Supervisor.Approach.Move both.there 2 <= 1
  *     Cell.Supervisor.Approach.Move both.there 2: 1
  *   sub-invariant coordenadas + planned + approached + Cell.Supervisor.Approach.seam + first asked <= 1
  *     Cell.Supervisor.Verify.first asked: 1
- *   sub-invariant coordenadas + planned + approached + Cell.Supervisor.Approach.seam + first asked +
- *   last asked <= 1
+ *   sub-invariant coordenadas + planned + approached + Cell.Supervisor.Approach.seam + first asked + last asked <= 1
  *     Cell.Supervisor.Verify.last asked: 1
- *   sub-invariant coordenadas + planned + approached + verified + Cell.Supervisor.Approach.seam + first
- *   asked + last asked + offset <= 1
+ *   sub-invariant coordenadas + planned + approached + verified + Cell.Supervisor.Approach.seam + first asked + last asked
+ *   + offset <= 1
  *     Cell.Supervisor.Correct.offset: 1
- *   sub-invariant referencia1 + medida1 + coordenadas + planned + approached + verified +
- *   Cell.Supervisor.Approach.seam + offset + Cell.Supervisor.Correct.order <= 1
+ *   sub-invariant referencia1 + medida1 + coordenadas + planned + approached + verified + Cell.Supervisor.Approach.seam +
+ *   offset + Cell.Supervisor.Correct.order <= 1
  *     Cell.Supervisor.Correct.order: 1
- *   sub-invariant referencia1 + medida1 + coordenadas + planned + approached + verified +
- *   Cell.Supervisor.Approach.seam + offset + Cell.Supervisor.Correct.order +
- *   Cell.Supervisor.Correct.done + Cell.Supervisor.Correct.Move both.moving 1 +
+ *   sub-invariant referencia1 + medida1 + coordenadas + planned + approached + verified + Cell.Supervisor.Approach.seam +
+ *   offset + Cell.Supervisor.Correct.order + Cell.Supervisor.Correct.done + Cell.Supervisor.Correct.Move both.moving 1 +
  *   Cell.Supervisor.Correct.Move both.there 1 <= 1
  *     Cell.Supervisor.Correct.done: 1
- *   sub-invariant coordenadas + planned + approached + verified + Cell.Supervisor.Approach.seam + first
- *   asked + last asked + Cell.Supervisor.Correct.seam <= 1
+ *   sub-invariant coordenadas + planned + approached + verified + Cell.Supervisor.Approach.seam + first asked + last asked
+ *   + Cell.Supervisor.Correct.seam <= 1
  *     Cell.Supervisor.Correct.seam: 1
- *   sub-invariant coordenadas + planned + approached + verified + Cell.Supervisor.Approach.seam + first
- *   asked + last asked + offset + Cell.Supervisor.Correct.order + Cell.Supervisor.Correct.Move
- *   both.moving 1 <= 1
+ *   sub-invariant coordenadas + planned + approached + verified + Cell.Supervisor.Approach.seam + first asked + last asked
+ *   + offset + Cell.Supervisor.Correct.order + Cell.Supervisor.Correct.Move both.moving 1 <= 1
  *     Cell.Supervisor.Correct.Move both.moving 1: 1
- *   sub-invariant referencia1 + medida1 + coordenadas + planned + approached + verified +
- *   Cell.Supervisor.Approach.seam + offset + Cell.Supervisor.Correct.order +
- *   Cell.Supervisor.Correct.Move both.moving 1 + Cell.Supervisor.Correct.Move both.there 1 <= 1
+ *   sub-invariant referencia1 + medida1 + coordenadas + planned + approached + verified + Cell.Supervisor.Approach.seam +
+ *   offset + Cell.Supervisor.Correct.order + Cell.Supervisor.Correct.Move both.moving 1 + Cell.Supervisor.Correct.Move
+ *   both.there 1 <= 1
  *     Cell.Supervisor.Correct.Move both.there 1: 1
- *   sub-invariant coordenadas + planned + approached + verified + Cell.Supervisor.Approach.seam + first
- *   asked + last asked + offset + Cell.Supervisor.Correct.order + Cell.Supervisor.Correct.Move
- *   both.moving 2 <= 1
+ *   sub-invariant coordenadas + planned + approached + verified + Cell.Supervisor.Approach.seam + first asked + last asked
+ *   + offset + Cell.Supervisor.Correct.order + Cell.Supervisor.Correct.Move both.moving 2 <= 1
  *     Cell.Supervisor.Correct.Move both.moving 2: 1
- *   sub-invariant referencia1 + medida1 + coordenadas + planned + approached + verified +
- *   Cell.Supervisor.Approach.seam + offset + Cell.Supervisor.Correct.order +
- *   Cell.Supervisor.Correct.Move both.moving 2 + Cell.Supervisor.Correct.Move both.there 2 <= 1
+ *   sub-invariant referencia1 + medida1 + coordenadas + planned + approached + verified + Cell.Supervisor.Approach.seam +
+ *   offset + Cell.Supervisor.Correct.order + Cell.Supervisor.Correct.Move both.moving 2 + Cell.Supervisor.Correct.Move
+ *   both.there 2 <= 1
  *     Cell.Supervisor.Correct.Move both.there 2: 1
- *   sub-invariant coordenadas + planned + approached + verified + corrected + result +
- *   Cell.Supervisor.Approach.seam + first asked + last asked + Cell.Supervisor.Correct.seam + shift +
- *   ready + Cell.Supervisor.Install.Shift.moving 1 + Cell.Supervisor.Install.Shift.there 1 + advance +
- *   contact + fastened + Cell.Supervisor.Install.Rivet.Advance.moving 1 +
- *   Cell.Supervisor.Install.Rivet.Advance.there 1 + pressing + drilling + inserting + releasing <= 1
+ *   sub-invariant coordenadas + planned + approached + verified + corrected + result + Cell.Supervisor.Approach.seam +
+ *   first asked + last asked + Cell.Supervisor.Correct.seam + shift + ready + Cell.Supervisor.Install.Shift.moving 1 +
+ *   Cell.Supervisor.Install.Shift.there 1 + advance + contact + fastened + Cell.Supervisor.Install.Rivet.Advance.moving 1
+ *   + Cell.Supervisor.Install.Rivet.Advance.there 1 + pressing + drilling + inserting + releasing <= 1
  *     Cell.Supervisor.Install.ready: 1, Cell.Supervisor.Install.Rivet.Advance.moving 1: 1
  *   sub-invariant referencia1 + medida1 + coordenadas + planned + approached + verified + corrected +
  *   Cell.Supervisor.Approach.seam + Cell.Supervisor.Correct.seam + shift + ready + riveted +
- *   Cell.Supervisor.Install.Shift.moving 2 + Cell.Supervisor.Install.Shift.there 2 + advance + contact +
- *   fastened + retract + Cell.Supervisor.Install.Rivet.Advance.moving 1 +
- *   Cell.Supervisor.Install.Rivet.Advance.there 1 + pressing + drilling + inserting + releasing +
- *   Cell.Supervisor.Install.Rivet.Retract.moving 1 + Cell.Supervisor.Install.Rivet.Retract.there 1 <= 1
+ *   Cell.Supervisor.Install.Shift.moving 2 + Cell.Supervisor.Install.Shift.there 2 + advance + contact + fastened +
+ *   retract + Cell.Supervisor.Install.Rivet.Advance.moving 1 + Cell.Supervisor.Install.Rivet.Advance.there 1 + pressing +
+ *   drilling + inserting + releasing + Cell.Supervisor.Install.Rivet.Retract.moving 1 +
+ *   Cell.Supervisor.Install.Rivet.Retract.there 1 <= 1
  *     Cell.Supervisor.Install.riveted: 1
  *   sub-invariant referencia1 + medida1 + coordenadas + planned + approached + verified + corrected +
  *   Cell.Supervisor.Approach.seam + Cell.Supervisor.Correct.seam + return + work <= 1
  *     Cell.Supervisor.Install.return: 1
- *   sub-invariant coordenadas + planned + approached + verified + corrected +
- *   Cell.Supervisor.Approach.seam + first asked + last asked + Cell.Supervisor.Correct.seam + work <= 1
+ *   sub-invariant coordenadas + planned + approached + verified + corrected + Cell.Supervisor.Approach.seam + first asked
+ *   + last asked + Cell.Supervisor.Correct.seam + work <= 1
  *     Cell.Supervisor.Install.work: 1
- *   sub-invariant coordenadas + planned + approached + verified + corrected + result +
- *   Cell.Supervisor.Approach.seam + first asked + last asked + Cell.Supervisor.Correct.seam + shift +
- *   ready + Cell.Supervisor.Install.Shift.moving 1 + Cell.Supervisor.Install.Shift.there 1 + advance +
- *   contact + fastened + Cell.Supervisor.Install.Rivet.Advance.moving 2 +
- *   Cell.Supervisor.Install.Rivet.Advance.there 2 + pressing + drilling + inserting + releasing <= 1
+ *   sub-invariant coordenadas + planned + approached + verified + corrected + result + Cell.Supervisor.Approach.seam +
+ *   first asked + last asked + Cell.Supervisor.Correct.seam + shift + ready + Cell.Supervisor.Install.Shift.moving 1 +
+ *   Cell.Supervisor.Install.Shift.there 1 + advance + contact + fastened + Cell.Supervisor.Install.Rivet.Advance.moving 2
+ *   + Cell.Supervisor.Install.Rivet.Advance.there 2 + pressing + drilling + inserting + releasing <= 1
  *     Cell.Supervisor.Install.Shift.moving 1: 1, Cell.Supervisor.Install.Rivet.advance: 1,
  *     Cell.Supervisor.Install.Rivet.Advance.moving 2: 1, Cell.Supervisor.Install.Rivet.Fasten.pressing: 1
- *   sub-invariant referencia1 + medida1 + coordenadas + planned + approached + verified + corrected +
- *   result + Cell.Supervisor.Approach.seam + Cell.Supervisor.Correct.seam + shift + ready +
- *   Cell.Supervisor.Install.Shift.moving 1 + Cell.Supervisor.Install.Shift.there 1 + advance + contact +
- *   fastened + Cell.Supervisor.Install.Rivet.Advance.moving 1 +
- *   Cell.Supervisor.Install.Rivet.Advance.there 1 + pressing + drilling + inserting + releasing <= 1
+ *   sub-invariant referencia1 + medida1 + coordenadas + planned + approached + verified + corrected + result +
+ *   Cell.Supervisor.Approach.seam + Cell.Supervisor.Correct.seam + shift + ready + Cell.Supervisor.Install.Shift.moving 1
+ *   + Cell.Supervisor.Install.Shift.there 1 + advance + contact + fastened + Cell.Supervisor.Install.Rivet.Advance.moving
+ *   1 + Cell.Supervisor.Install.Rivet.Advance.there 1 + pressing + drilling + inserting + releasing <= 1
  *     Cell.Supervisor.Install.Shift.there 1: 1, Cell.Supervisor.Install.Rivet.contact: 1,
  *     Cell.Supervisor.Install.Rivet.fastened: 1, Cell.Supervisor.Install.Rivet.Advance.there 1: 1
- *   sub-invariant coordenadas + planned + approached + verified + corrected + result +
- *   Cell.Supervisor.Approach.seam + first asked + last asked + Cell.Supervisor.Correct.seam + shift +
- *   ready + Cell.Supervisor.Install.Shift.moving 2 + Cell.Supervisor.Install.Shift.there 2 + advance +
- *   contact + fastened + Cell.Supervisor.Install.Rivet.Advance.moving 2 +
- *   Cell.Supervisor.Install.Rivet.Advance.there 2 + pressing + drilling + inserting + releasing <= 1
+ *   sub-invariant coordenadas + planned + approached + verified + corrected + result + Cell.Supervisor.Approach.seam +
+ *   first asked + last asked + Cell.Supervisor.Correct.seam + shift + ready + Cell.Supervisor.Install.Shift.moving 2 +
+ *   Cell.Supervisor.Install.Shift.there 2 + advance + contact + fastened + Cell.Supervisor.Install.Rivet.Advance.moving 2
+ *   + Cell.Supervisor.Install.Rivet.Advance.there 2 + pressing + drilling + inserting + releasing <= 1
  *     Cell.Supervisor.Install.Shift.moving 2: 1
- *   sub-invariant coordenadas + planned + approached + verified + corrected +
- *   Cell.Supervisor.Approach.seam + first asked + last asked + Cell.Supervisor.Correct.seam + shift +
- *   ready + riveted + Cell.Supervisor.Install.Shift.moving 1 + Cell.Supervisor.Install.Shift.there 1 +
- *   advance + contact + fastened + retract + Cell.Supervisor.Install.Rivet.Advance.moving 2 +
- *   Cell.Supervisor.Install.Rivet.Advance.there 2 + pressing + drilling + inserting + releasing +
- *   Cell.Supervisor.Install.Rivet.Retract.moving 1 + Cell.Supervisor.Install.Rivet.Retract.there 1 <= 1
+ *   sub-invariant coordenadas + planned + approached + verified + corrected + Cell.Supervisor.Approach.seam + first asked
+ *   + last asked + Cell.Supervisor.Correct.seam + shift + ready + riveted + Cell.Supervisor.Install.Shift.moving 1 +
+ *   Cell.Supervisor.Install.Shift.there 1 + advance + contact + fastened + retract +
+ *   Cell.Supervisor.Install.Rivet.Advance.moving 2 + Cell.Supervisor.Install.Rivet.Advance.there 2 + pressing + drilling +
+ *   inserting + releasing + Cell.Supervisor.Install.Rivet.Retract.moving 1 + Cell.Supervisor.Install.Rivet.Retract.there 1
+ *   <= 1
  *     Cell.Supervisor.Install.Rivet.retract: 1, Cell.Supervisor.Install.Rivet.Retract.moving 1: 1
- *   sub-invariant referencia1 + medida1 + coordenadas + planned + approached + verified + corrected +
- *   result + Cell.Supervisor.Approach.seam + Cell.Supervisor.Correct.seam + shift + ready +
- *   Cell.Supervisor.Install.Shift.moving 1 + Cell.Supervisor.Install.Shift.there 1 + advance + contact +
- *   fastened + Cell.Supervisor.Install.Rivet.Advance.moving 2 +
- *   Cell.Supervisor.Install.Rivet.Advance.there 2 + pressing + drilling + inserting + releasing <= 1
+ *   sub-invariant referencia1 + medida1 + coordenadas + planned + approached + verified + corrected + result +
+ *   Cell.Supervisor.Approach.seam + Cell.Supervisor.Correct.seam + shift + ready + Cell.Supervisor.Install.Shift.moving 1
+ *   + Cell.Supervisor.Install.Shift.there 1 + advance + contact + fastened + Cell.Supervisor.Install.Rivet.Advance.moving
+ *   2 + Cell.Supervisor.Install.Rivet.Advance.there 2 + pressing + drilling + inserting + releasing <= 1
  *     Cell.Supervisor.Install.Rivet.Advance.there 2: 1, Cell.Supervisor.Install.Rivet.Fasten.drilling: 1,
  *     Cell.Supervisor.Install.Rivet.Fasten.inserting: 1, Cell.Supervisor.Install.Rivet.Fasten.releasing: 1
  *   sub-invariant referencia1 + medida1 + coordenadas + planned + approached + verified + corrected +
  *   Cell.Supervisor.Approach.seam + Cell.Supervisor.Correct.seam + shift + ready + riveted +
- *   Cell.Supervisor.Install.Shift.moving 1 + Cell.Supervisor.Install.Shift.there 1 + advance + contact +
- *   fastened + retract + Cell.Supervisor.Install.Rivet.Advance.moving 2 +
- *   Cell.Supervisor.Install.Rivet.Advance.there 2 + pressing + drilling + inserting + releasing +
- *   Cell.Supervisor.Install.Rivet.Retract.moving 1 + Cell.Supervisor.Install.Rivet.Retract.there 1 <= 1
+ *   Cell.Supervisor.Install.Shift.moving 1 + Cell.Supervisor.Install.Shift.there 1 + advance + contact + fastened +
+ *   retract + Cell.Supervisor.Install.Rivet.Advance.moving 2 + Cell.Supervisor.Install.Rivet.Advance.there 2 + pressing +
+ *   drilling + inserting + releasing + Cell.Supervisor.Install.Rivet.Retract.moving 1 +
+ *   Cell.Supervisor.Install.Rivet.Retract.there 1 <= 1
  *     Cell.Supervisor.Install.Rivet.Retract.there 1: 1
- *   sub-invariant coordenadas + planned + approached + verified + corrected +
- *   Cell.Supervisor.Approach.seam + first asked + last asked + Cell.Supervisor.Correct.seam + shift +
- *   ready + riveted + Cell.Supervisor.Install.Shift.moving 1 + Cell.Supervisor.Install.Shift.there 1 +
- *   advance + contact + fastened + retract + Cell.Supervisor.Install.Rivet.Advance.moving 2 +
- *   Cell.Supervisor.Install.Rivet.Advance.there 2 + pressing + drilling + inserting + releasing +
- *   Cell.Supervisor.Install.Rivet.Retract.moving 2 + Cell.Supervisor.Install.Rivet.Retract.there 2 <= 1
+ *   sub-invariant coordenadas + planned + approached + verified + corrected + Cell.Supervisor.Approach.seam + first asked
+ *   + last asked + Cell.Supervisor.Correct.seam + shift + ready + riveted + Cell.Supervisor.Install.Shift.moving 1 +
+ *   Cell.Supervisor.Install.Shift.there 1 + advance + contact + fastened + retract +
+ *   Cell.Supervisor.Install.Rivet.Advance.moving 2 + Cell.Supervisor.Install.Rivet.Advance.there 2 + pressing + drilling +
+ *   inserting + releasing + Cell.Supervisor.Install.Rivet.Retract.moving 2 + Cell.Supervisor.Install.Rivet.Retract.there 2
+ *   <= 1
  *     Cell.Supervisor.Install.Rivet.Retract.moving 2: 1
  *   sub-invariant referencia1 + medida1 + coordenadas + planned + approached + verified + corrected +
  *   Cell.Supervisor.Approach.seam + Cell.Supervisor.Correct.seam + shift + ready + riveted +
- *   Cell.Supervisor.Install.Shift.moving 1 + Cell.Supervisor.Install.Shift.there 1 + advance + contact +
- *   fastened + retract + Cell.Supervisor.Install.Rivet.Advance.moving 2 +
- *   Cell.Supervisor.Install.Rivet.Advance.there 2 + pressing + drilling + inserting + releasing +
- *   Cell.Supervisor.Install.Rivet.Retract.moving 2 + Cell.Supervisor.Install.Rivet.Retract.there 2 <= 1
+ *   Cell.Supervisor.Install.Shift.moving 1 + Cell.Supervisor.Install.Shift.there 1 + advance + contact + fastened +
+ *   retract + Cell.Supervisor.Install.Rivet.Advance.moving 2 + Cell.Supervisor.Install.Rivet.Advance.there 2 + pressing +
+ *   drilling + inserting + releasing + Cell.Supervisor.Install.Rivet.Retract.moving 2 +
+ *   Cell.Supervisor.Install.Rivet.Retract.there 2 <= 1
  *     Cell.Supervisor.Install.Rivet.Retract.there 2: 1
- *   sub-invariant coordenadas + planned + approached + verified + corrected +
- *   Cell.Supervisor.Approach.seam + first asked + last asked + Cell.Supervisor.Correct.seam + return +
- *   work + Cell.Supervisor.Install.Return.moving 1 <= 1
+ *   sub-invariant coordenadas + planned + approached + verified + corrected + Cell.Supervisor.Approach.seam + first asked
+ *   + last asked + Cell.Supervisor.Correct.seam + return + work + Cell.Supervisor.Install.Return.moving 1 <= 1
  *     Cell.Supervisor.Install.Return.moving 1: 1
  *   sub-invariant referencia1 + medida1 + coordenadas + planned + approached + verified + corrected +
- *   Cell.Supervisor.Approach.seam + Cell.Supervisor.Correct.seam + return + work +
- *   Cell.Supervisor.Install.Return.moving 1 + Cell.Supervisor.Install.Return.there 1 <= 1
+ *   Cell.Supervisor.Approach.seam + Cell.Supervisor.Correct.seam + return + work + Cell.Supervisor.Install.Return.moving 1
+ *   + Cell.Supervisor.Install.Return.there 1 <= 1
  *     Cell.Supervisor.Install.Return.there 1: 1
- *   sub-invariant coordenadas + planned + approached + verified + corrected +
- *   Cell.Supervisor.Approach.seam + first asked + last asked + Cell.Supervisor.Correct.seam + return +
- *   work + Cell.Supervisor.Install.Return.moving 2 <= 1
+ *   sub-invariant coordenadas + planned + approached + verified + corrected + Cell.Supervisor.Approach.seam + first asked
+ *   + last asked + Cell.Supervisor.Correct.seam + return + work + Cell.Supervisor.Install.Return.moving 2 <= 1
  *     Cell.Supervisor.Install.Return.moving 2: 1
  *   sub-invariant referencia1 + medida1 + coordenadas + planned + approached + verified + corrected +
- *   Cell.Supervisor.Approach.seam + Cell.Supervisor.Correct.seam + return + work +
- *   Cell.Supervisor.Install.Return.moving 2 + Cell.Supervisor.Install.Return.there 2 <= 1
+ *   Cell.Supervisor.Approach.seam + Cell.Supervisor.Correct.seam + return + work + Cell.Supervisor.Install.Return.moving 2
+ *   + Cell.Supervisor.Install.Return.there 2 <= 1
  *     Cell.Supervisor.Install.Return.there 2: 1
- *   sub-invariant referencia1 + medida1 + coordenadas + planned + approached + verified + corrected +
- *   ended + Cell.Supervisor.Approach.seam + Cell.Supervisor.Correct.seam + return + work +
- *   Cell.Supervisor.Install.Return.moving 1 + Cell.Supervisor.Install.Return.there 1 + leaving 1 <= 1
+ *   sub-invariant referencia1 + medida1 + coordenadas + planned + approached + verified + corrected + ended +
+ *   Cell.Supervisor.Approach.seam + Cell.Supervisor.Correct.seam + return + work + Cell.Supervisor.Install.Return.moving 1
+ *   + Cell.Supervisor.Install.Return.there 1 + leaving 1 <= 1
  *     Cell.Supervisor.Home.leaving 1: 1
- *   sub-invariant coordenadas + planned + approached + verified + corrected + ended +
- *   Cell.Supervisor.Approach.seam + first asked + last asked + Cell.Supervisor.Correct.seam + return +
- *   work + Cell.Supervisor.Install.Return.moving 2 + Cell.Supervisor.Install.Return.there 2 + leaving 1
- *   + home 1 <= 1
+ *   sub-invariant coordenadas + planned + approached + verified + corrected + ended + Cell.Supervisor.Approach.seam +
+ *   first asked + last asked + Cell.Supervisor.Correct.seam + return + work + Cell.Supervisor.Install.Return.moving 2 +
+ *   Cell.Supervisor.Install.Return.there 2 + leaving 1 + home 1 <= 1
  *     Cell.Supervisor.Home.home 1: 1
- *   sub-invariant referencia1 + medida1 + coordenadas + planned + approached + verified + corrected +
- *   ended + Cell.Supervisor.Approach.seam + Cell.Supervisor.Correct.seam + return + work +
- *   Cell.Supervisor.Install.Return.moving 1 + Cell.Supervisor.Install.Return.there 1 + leaving 2 <= 1
+ *   sub-invariant referencia1 + medida1 + coordenadas + planned + approached + verified + corrected + ended +
+ *   Cell.Supervisor.Approach.seam + Cell.Supervisor.Correct.seam + return + work + Cell.Supervisor.Install.Return.moving 1
+ *   + Cell.Supervisor.Install.Return.there 1 + leaving 2 <= 1
  *     Cell.Supervisor.Home.leaving 2: 1
- *   sub-invariant coordenadas + planned + approached + verified + corrected + ended +
- *   Cell.Supervisor.Approach.seam + first asked + last asked + Cell.Supervisor.Correct.seam + return +
- *   work + Cell.Supervisor.Install.Return.moving 2 + Cell.Supervisor.Install.Return.there 2 + leaving 2
- *   + home 2 <= 1
+ *   sub-invariant coordenadas + planned + approached + verified + corrected + ended + Cell.Supervisor.Approach.seam +
+ *   first asked + last asked + Cell.Supervisor.Correct.seam + return + work + Cell.Supervisor.Install.Return.moving 2 +
+ *   Cell.Supervisor.Install.Return.there 2 + leaving 2 + home 2 <= 1
  *     Cell.Supervisor.Home.home 2: 1
  *   invariant Cell.Robot1.Waiting + Cell.Robot1.Commanded + Cell.Robot1.Done = 1
  *     Cell.Robot1.Waiting: 1, Cell.Robot1.Commanded: 1, Cell.Robot1.Done: 1
@@ -1288,13 +1266,11 @@ typedef struct Supervisor_Load_Load_binding {
     POSE_t p;
     POSE_t q;
 } Supervisor_Load_Load_binding_t;
-
 static const pn_field_t s_variables_Supervisor_Load_Load[] = {
     { "n", &s_COUNT, offsetof(Supervisor_Load_Load_binding_t, n), false },
     { "p", &s_POSE, offsetof(Supervisor_Load_Load_binding_t, p), false },
     { "q", &s_POSE, offsetof(Supervisor_Load_Load_binding_t, q), false },
 };
-
 static const pn_type_t s_binding_Supervisor_Load_Load = { .kind = PN_KIND_RECORD,
     .name = "Cell.Supervisor.Load.Load", .size = sizeof(Supervisor_Load_Load_binding_t),
     .count = 3U, .field = s_variables_Supervisor_Load_Load };
@@ -1305,8 +1281,7 @@ PN_NET_SEARCH static bool Supervisor_Load_Load_enumerate(pn_ctx_t *cx, const voi
     const net_marking_t *const m = marking;
     Supervisor_Load_Load_binding_t b = { 0 };
     pn_begin(cx, "page `Load`, transition `Load` (ID1412310271)", m->now);
-    /* coordenadas: (n, p, q) (ID1412310280) */
-    if (!m->Supervisor_coordenadas.full) {
+    if (!m->Supervisor_coordenadas.full) { /* coordenadas: (n, p, q) (ID1412310280) */
         return true;
     }
     b.n = m->Supervisor_coordenadas.value.c1;
@@ -1332,8 +1307,7 @@ PN_NET_SEARCH static bool Supervisor_Load_Load_fire(pn_ctx_t *cx, void *marking,
     if (!pn_has_room(cx, m->Supervisor_planned.full, &s_at_Supervisor_planned)) {
         return false;
     }
-    /* coordenadas: (n, p, q) (ID1412310280) */
-    m->Supervisor_coordenadas.full = false;
+    m->Supervisor_coordenadas.full = false; /* coordenadas: (n, p, q) (ID1412310280) */
     /* planned: {points = n, first = p, last = q} (ID1412310282) */
     m->Supervisor_planned.value = Supervisor_planned_token;
     m->Supervisor_planned.full = true;
@@ -1344,11 +1318,9 @@ PN_NET_SEARCH static bool Supervisor_Load_Load_fire(pn_ctx_t *cx, void *marking,
 typedef struct Supervisor_Approach_Send_binding {
     SEAM_t s;
 } Supervisor_Approach_Send_binding_t;
-
 static const pn_field_t s_variables_Supervisor_Approach_Send[] = {
     { "s", &s_SEAM, offsetof(Supervisor_Approach_Send_binding_t, s), false },
 };
-
 static const pn_type_t s_binding_Supervisor_Approach_Send = { .kind = PN_KIND_RECORD,
     .name = "Cell.Supervisor.Approach.Send", .size = sizeof(Supervisor_Approach_Send_binding_t),
     .count = 1U, .field = s_variables_Supervisor_Approach_Send };
@@ -1359,8 +1331,7 @@ PN_NET_SEARCH static bool Supervisor_Approach_Send_enumerate(pn_ctx_t *cx, const
     const net_marking_t *const m = marking;
     Supervisor_Approach_Send_binding_t b = { 0 };
     pn_begin(cx, "page `Approach`, transition `Send` (ID1412310300)", m->now);
-    /* planned: s (ID1412310355) */
-    if (!m->Supervisor_planned.full) {
+    if (!m->Supervisor_planned.full) { /* planned: s (ID1412310355) */
         return true;
     }
     b.s = m->Supervisor_planned.value;
@@ -1386,13 +1357,11 @@ PN_NET_SEARCH static bool Supervisor_Approach_Send_fire(pn_ctx_t *cx, void *mark
         || !pn_has_room(cx, m->Supervisor_Approach_seam.full, &s_at_Supervisor_Approach_seam)) {
         return false;
     }
-    /* planned: s (ID1412310355) */
-    m->Supervisor_planned.full = false;
+    m->Supervisor_planned.full = false; /* planned: s (ID1412310355) */
     /* order: (JOINT, standoff (#first s), standoff (facing (#first s))) (ID1412310357) */
     m->Supervisor_Approach_order.value = Supervisor_Approach_order_token;
     m->Supervisor_Approach_order.full = true;
-    /* seam: s (ID1412310367) */
-    m->Supervisor_Approach_seam.value = b->s;
+    m->Supervisor_Approach_seam.value = b->s; /* seam: s (ID1412310367) */
     m->Supervisor_Approach_seam.full = true;
     return true;
 }
@@ -1401,11 +1370,9 @@ PN_NET_SEARCH static bool Supervisor_Approach_Send_fire(pn_ctx_t *cx, void *mark
 typedef struct Supervisor_Approach_Arrived_binding {
     SEAM_t s;
 } Supervisor_Approach_Arrived_binding_t;
-
 static const pn_field_t s_variables_Supervisor_Approach_Arrived[] = {
     { "s", &s_SEAM, offsetof(Supervisor_Approach_Arrived_binding_t, s), false },
 };
-
 static const pn_type_t s_binding_Supervisor_Approach_Arrived = { .kind = PN_KIND_RECORD,
     .name = "Cell.Supervisor.Approach.Arrived",
     .size = sizeof(Supervisor_Approach_Arrived_binding_t), .count = 1U,
@@ -1417,12 +1384,10 @@ PN_NET_SEARCH static bool Supervisor_Approach_Arrived_enumerate(pn_ctx_t *cx, co
     const net_marking_t *const m = marking;
     Supervisor_Approach_Arrived_binding_t b = { 0 };
     pn_begin(cx, "page `Approach`, transition `Arrived` (ID1412310311)", m->now);
-    /* done: () (ID1412310363) */
-    if (!m->Supervisor_Approach_done.full) {
+    if (!m->Supervisor_Approach_done.full) { /* done: () (ID1412310363) */
         return true;
     }
-    /* seam: s (ID1412310369) */
-    if (!m->Supervisor_Approach_seam.full) {
+    if (!m->Supervisor_Approach_seam.full) { /* seam: s (ID1412310369) */
         return true;
     }
     b.s = m->Supervisor_Approach_seam.value;
@@ -1441,12 +1406,9 @@ PN_NET_SEARCH static bool Supervisor_Approach_Arrived_fire(pn_ctx_t *cx, void *m
     if (!pn_has_room(cx, m->Supervisor_approached.full, &s_at_Supervisor_approached)) {
         return false;
     }
-    /* done: () (ID1412310363) */
-    m->Supervisor_Approach_done.full = false;
-    /* seam: s (ID1412310369) */
-    m->Supervisor_Approach_seam.full = false;
-    /* approached: s (ID1412310365) */
-    m->Supervisor_approached.value = b->s;
+    m->Supervisor_Approach_done.full = false; /* done: () (ID1412310363) */
+    m->Supervisor_Approach_seam.full = false; /* seam: s (ID1412310369) */
+    m->Supervisor_approached.value = b->s; /* approached: s (ID1412310365) */
     m->Supervisor_approached.full = true;
     return true;
 }
@@ -1464,13 +1426,11 @@ typedef struct MoveBoth_Command_binding {
     POSE_t p;
     POSE_t q;
 } MoveBoth_Command_binding_t;
-
 static const pn_field_t s_variables_MoveBoth_Command[] = {
     { "c", &s_COMMAND, offsetof(MoveBoth_Command_binding_t, c), false },
     { "p", &s_POSE, offsetof(MoveBoth_Command_binding_t, p), false },
     { "q", &s_POSE, offsetof(MoveBoth_Command_binding_t, q), false },
 };
-
 static const pn_type_t s_binding_MoveBoth_Command = { .kind = PN_KIND_RECORD,
     .name = "MoveBoth.Command", .size = sizeof(MoveBoth_Command_binding_t), .count = 3U,
     .field = s_variables_MoveBoth_Command };
@@ -1483,8 +1443,7 @@ PN_NET_SEARCH static bool MoveBoth_Command_enumerate(pn_ctx_t *cx, const void *m
     pn_begin(cx, "page `MoveBoth`, transition `Command` (ID1412310941)", m->now);
     const MoveBoth_places_t *const own = pn_net.transition[self].places;
     const ORDER_slot_t *const at_order = pn_bag_look(own->order, m);
-    /* order: (c, p, q) (ID1412310946) */
-    if (!at_order->full) {
+    if (!at_order->full) { /* order: (c, p, q) (ID1412310946) */
         return true;
     }
     b.c = at_order->value.c1;
@@ -1513,23 +1472,16 @@ PN_NET_SEARCH static bool MoveBoth_Command_fire(pn_ctx_t *cx, void *marking, uin
         || !pn_has_room(cx, m->flag2_interno.full, &s_at_flag2_interno)) {
         return false;
     }
-    /* order: (c, p, q) (ID1412310946) */
-    at_order->full = false;
-    /* moving 1: () (ID1412310970) */
-    at_moving_1->full = true;
-    /* dadosrobo1: p (ID1412310982) */
-    m->dadosrobo1.value = b->p;
+    at_order->full = false; /* order: (c, p, q) (ID1412310946) */
+    at_moving_1->full = true; /* moving 1: () (ID1412310970) */
+    m->dadosrobo1.value = b->p; /* dadosrobo1: p (ID1412310982) */
     m->dadosrobo1.full = true;
-    /* flag1_interno: c (ID1412310988) */
-    m->flag1_interno.value = b->c;
+    m->flag1_interno.value = b->c; /* flag1_interno: c (ID1412310988) */
     m->flag1_interno.full = true;
-    /* moving 2: () (ID1412311007) */
-    at_moving_2->full = true;
-    /* dadosrobo2: q (ID1412311019) */
-    m->dadosrobo2.value = b->q;
+    at_moving_2->full = true; /* moving 2: () (ID1412311007) */
+    m->dadosrobo2.value = b->q; /* dadosrobo2: q (ID1412311019) */
     m->dadosrobo2.full = true;
-    /* flag2_interno: c (ID1412311025) */
-    m->flag2_interno.value = b->c;
+    m->flag2_interno.value = b->c; /* flag2_interno: c (ID1412311025) */
     m->flag2_interno.full = true;
     return true;
 }
@@ -1545,7 +1497,6 @@ PN_NET_SEARCH static bool MoveBoth_Command_fire(pn_ctx_t *cx, void *marking, uin
 typedef struct MoveBoth_Both_binding {
     uint8_t none; /* no variables */
 } MoveBoth_Both_binding_t;
-
 static const pn_type_t s_binding_MoveBoth_Both = { .kind = PN_KIND_RECORD, .name = "MoveBoth.Both",
     .size = sizeof(MoveBoth_Both_binding_t), .count = 0U, .field = NULL };
 
@@ -1558,12 +1509,10 @@ PN_NET_SEARCH static bool MoveBoth_Both_enumerate(pn_ctx_t *cx, const void *mark
     const MoveBoth_places_t *const own = pn_net.transition[self].places;
     const UNIT_slot_t *const at_there_1 = pn_bag_look(own->there_1, m);
     const UNIT_slot_t *const at_there_2 = pn_bag_look(own->there_2, m);
-    /* there 1: () (ID1412310976) */
-    if (!at_there_1->full) {
+    if (!at_there_1->full) { /* there 1: () (ID1412310976) */
         return true;
     }
-    /* there 2: () (ID1412311013) */
-    if (!at_there_2->full) {
+    if (!at_there_2->full) { /* there 2: () (ID1412311013) */
         return true;
     }
     return sink(user, self, &b);
@@ -1584,12 +1533,9 @@ PN_NET_SEARCH static bool MoveBoth_Both_fire(pn_ctx_t *cx, void *marking, uint32
     if (!pn_has_room(cx, at_done->full, own->done)) {
         return false;
     }
-    /* there 1: () (ID1412310976) */
-    at_there_1->full = false;
-    /* there 2: () (ID1412311013) */
-    at_there_2->full = false;
-    /* done: () (ID1412310957) */
-    at_done->full = true;
+    at_there_1->full = false; /* there 1: () (ID1412310976) */
+    at_there_2->full = false; /* there 2: () (ID1412311013) */
+    at_done->full = true; /* done: () (ID1412310957) */
     return true;
 }
 
@@ -1604,7 +1550,6 @@ PN_NET_SEARCH static bool MoveBoth_Both_fire(pn_ctx_t *cx, void *marking, uint32
 typedef struct MoveBoth_Reply_1_binding {
     uint8_t none; /* no variables */
 } MoveBoth_Reply_1_binding_t;
-
 static const pn_type_t s_binding_MoveBoth_Reply_1 = { .kind = PN_KIND_RECORD,
     .name = "MoveBoth.Reply 1", .size = sizeof(MoveBoth_Reply_1_binding_t), .count = 0U,
     .field = NULL };
@@ -1617,8 +1562,7 @@ PN_NET_SEARCH static bool MoveBoth_Reply_1_enumerate(pn_ctx_t *cx, const void *m
     pn_begin(cx, "page `MoveBoth`, transition `Reply 1` (ID1412310962)", m->now);
     const MoveBoth_places_t *const own = pn_net.transition[self].places;
     const UNIT_slot_t *const at_moving_1 = pn_bag_look(own->moving_1, m);
-    /* moving 1: () (ID1412310972) */
-    if (!at_moving_1->full) {
+    if (!at_moving_1->full) { /* moving 1: () (ID1412310972) */
         return true;
     }
     /* flag1_externo: DONE (ID1412310994) */
@@ -1642,12 +1586,9 @@ PN_NET_SEARCH static bool MoveBoth_Reply_1_fire(pn_ctx_t *cx, void *marking, uin
     if (!pn_has_room(cx, at_there_1->full, own->there_1)) {
         return false;
     }
-    /* moving 1: () (ID1412310972) */
-    at_moving_1->full = false;
-    /* flag1_externo: DONE (ID1412310994) */
-    m->flag1_externo.full = false;
-    /* there 1: () (ID1412310974) */
-    at_there_1->full = true;
+    at_moving_1->full = false; /* moving 1: () (ID1412310972) */
+    m->flag1_externo.full = false; /* flag1_externo: DONE (ID1412310994) */
+    at_there_1->full = true; /* there 1: () (ID1412310974) */
     return true;
 }
 
@@ -1662,7 +1603,6 @@ PN_NET_SEARCH static bool MoveBoth_Reply_1_fire(pn_ctx_t *cx, void *marking, uin
 typedef struct MoveBoth_Reply_2_binding {
     uint8_t none; /* no variables */
 } MoveBoth_Reply_2_binding_t;
-
 static const pn_type_t s_binding_MoveBoth_Reply_2 = { .kind = PN_KIND_RECORD,
     .name = "MoveBoth.Reply 2", .size = sizeof(MoveBoth_Reply_2_binding_t), .count = 0U,
     .field = NULL };
@@ -1675,8 +1615,7 @@ PN_NET_SEARCH static bool MoveBoth_Reply_2_enumerate(pn_ctx_t *cx, const void *m
     pn_begin(cx, "page `MoveBoth`, transition `Reply 2` (ID1412310999)", m->now);
     const MoveBoth_places_t *const own = pn_net.transition[self].places;
     const UNIT_slot_t *const at_moving_2 = pn_bag_look(own->moving_2, m);
-    /* moving 2: () (ID1412311009) */
-    if (!at_moving_2->full) {
+    if (!at_moving_2->full) { /* moving 2: () (ID1412311009) */
         return true;
     }
     /* flag2_externo: DONE (ID1412311031) */
@@ -1700,12 +1639,9 @@ PN_NET_SEARCH static bool MoveBoth_Reply_2_fire(pn_ctx_t *cx, void *marking, uin
     if (!pn_has_room(cx, at_there_2->full, own->there_2)) {
         return false;
     }
-    /* moving 2: () (ID1412311009) */
-    at_moving_2->full = false;
-    /* flag2_externo: DONE (ID1412311031) */
-    m->flag2_externo.full = false;
-    /* there 2: () (ID1412311011) */
-    at_there_2->full = true;
+    at_moving_2->full = false; /* moving 2: () (ID1412311009) */
+    m->flag2_externo.full = false; /* flag2_externo: DONE (ID1412311031) */
+    at_there_2->full = true; /* there 2: () (ID1412311011) */
     return true;
 }
 
@@ -1713,11 +1649,9 @@ PN_NET_SEARCH static bool MoveBoth_Reply_2_fire(pn_ctx_t *cx, void *marking, uin
 typedef struct Supervisor_Verify_Ask_first_binding {
     SEAM_t s;
 } Supervisor_Verify_Ask_first_binding_t;
-
 static const pn_field_t s_variables_Supervisor_Verify_Ask_first[] = {
     { "s", &s_SEAM, offsetof(Supervisor_Verify_Ask_first_binding_t, s), false },
 };
-
 static const pn_type_t s_binding_Supervisor_Verify_Ask_first = { .kind = PN_KIND_RECORD,
     .name = "Cell.Supervisor.Verify.Ask first",
     .size = sizeof(Supervisor_Verify_Ask_first_binding_t), .count = 1U,
@@ -1729,8 +1663,7 @@ PN_NET_SEARCH static bool Supervisor_Verify_Ask_first_enumerate(pn_ctx_t *cx, co
     const net_marking_t *const m = marking;
     Supervisor_Verify_Ask_first_binding_t b = { 0 };
     pn_begin(cx, "page `Verify`, transition `Ask first` (ID1412310377)", m->now);
-    /* approached: s (ID1412310418) */
-    if (!m->Supervisor_approached.full) {
+    if (!m->Supervisor_approached.full) { /* approached: s (ID1412310418) */
         return true;
     }
     b.s = m->Supervisor_approached.value;
@@ -1757,16 +1690,12 @@ PN_NET_SEARCH static bool Supervisor_Verify_Ask_first_fire(pn_ctx_t *cx, void *m
         || !pn_has_room(cx, m->flag1_interno.full, &s_at_flag1_interno)) {
         return false;
     }
-    /* approached: s (ID1412310418) */
-    m->Supervisor_approached.full = false;
-    /* first asked: s (ID1412310420) */
-    m->Supervisor_Verify_first_asked.value = b->s;
+    m->Supervisor_approached.full = false; /* approached: s (ID1412310418) */
+    m->Supervisor_Verify_first_asked.value = b->s; /* first asked: s (ID1412310420) */
     m->Supervisor_Verify_first_asked.full = true;
-    /* referencia1: #first s (ID1412310430) */
-    m->referencia1.value = referencia1_token;
+    m->referencia1.value = referencia1_token; /* referencia1: #first s (ID1412310430) */
     m->referencia1.full = true;
-    /* flag1_interno: MEASURE (ID1412310432) */
-    m->flag1_interno.value = flag1_interno_token;
+    m->flag1_interno.value = flag1_interno_token; /* flag1_interno: MEASURE (ID1412310432) */
     m->flag1_interno.full = true;
     return true;
 }
@@ -1779,13 +1708,11 @@ typedef struct Supervisor_Verify_Ask_last_binding {
     int64_t e;
     SEAM_t s;
 } Supervisor_Verify_Ask_last_binding_t;
-
 static const pn_field_t s_variables_Supervisor_Verify_Ask_last[] = {
     { "a", &s_POSE, offsetof(Supervisor_Verify_Ask_last_binding_t, a), false },
     { "e", &s_REPLY, offsetof(Supervisor_Verify_Ask_last_binding_t, e), false },
     { "s", &s_SEAM, offsetof(Supervisor_Verify_Ask_last_binding_t, s), false },
 };
-
 static const pn_type_t s_binding_Supervisor_Verify_Ask_last = { .kind = PN_KIND_RECORD,
     .name = "Cell.Supervisor.Verify.Ask last", .size = sizeof(Supervisor_Verify_Ask_last_binding_t),
     .count = 3U, .field = s_variables_Supervisor_Verify_Ask_last };
@@ -1796,23 +1723,19 @@ PN_NET_SEARCH static bool Supervisor_Verify_Ask_last_enumerate(pn_ctx_t *cx, con
     const net_marking_t *const m = marking;
     Supervisor_Verify_Ask_last_binding_t b = { 0 };
     pn_begin(cx, "page `Verify`, transition `Ask last` (ID1412310385)", m->now);
-    /* first asked: s (ID1412310422) */
-    if (!m->Supervisor_Verify_first_asked.full) {
+    if (!m->Supervisor_Verify_first_asked.full) { /* first asked: s (ID1412310422) */
         return true;
     }
     b.s = m->Supervisor_Verify_first_asked.value;
-    /* medida1: a (ID1412310438) */
-    if (!m->medida1.full) {
+    if (!m->medida1.full) { /* medida1: a (ID1412310438) */
         return true;
     }
     b.a = m->medida1.value;
-    /* flag1_externo: e (ID1412310440) */
-    if (!m->flag1_externo.full) {
+    if (!m->flag1_externo.full) { /* flag1_externo: e (ID1412310440) */
         return true;
     }
     b.e = m->flag1_externo.value;
-    /* guard [usable (e, #first s, a)] */
-    if (!ml_usable(b.e, b.s.first, b.a)) {
+    if (!ml_usable(b.e, b.s.first, b.a)) { /* guard [usable (e, #first s, a)] */
         return true;
     }
     return sink(user, self, &b);
@@ -1839,20 +1762,15 @@ PN_NET_SEARCH static bool Supervisor_Verify_Ask_last_fire(pn_ctx_t *cx, void *ma
         || !pn_has_room(cx, m->flag1_interno.full, &s_at_flag1_interno)) {
         return false;
     }
-    /* first asked: s (ID1412310422) */
-    m->Supervisor_Verify_first_asked.full = false;
-    /* medida1: a (ID1412310438) */
-    m->medida1.full = false;
-    /* flag1_externo: e (ID1412310440) */
-    m->flag1_externo.full = false;
+    m->Supervisor_Verify_first_asked.full = false; /* first asked: s (ID1412310422) */
+    m->medida1.full = false; /* medida1: a (ID1412310438) */
+    m->flag1_externo.full = false; /* flag1_externo: e (ID1412310440) */
     /* last asked: (s, a) (ID1412310424) */
     m->Supervisor_Verify_last_asked.value = Supervisor_Verify_last_asked_token;
     m->Supervisor_Verify_last_asked.full = true;
-    /* referencia1: #last s (ID1412310434) */
-    m->referencia1.value = referencia1_token;
+    m->referencia1.value = referencia1_token; /* referencia1: #last s (ID1412310434) */
     m->referencia1.full = true;
-    /* flag1_interno: MEASURE (ID1412310436) */
-    m->flag1_interno.value = flag1_interno_token;
+    m->flag1_interno.value = flag1_interno_token; /* flag1_interno: MEASURE (ID1412310436) */
     m->flag1_interno.full = true;
     return true;
 }
@@ -1866,14 +1784,12 @@ typedef struct Supervisor_Verify_Measured_binding {
     int64_t e;
     SEAM_t s;
 } Supervisor_Verify_Measured_binding_t;
-
 static const pn_field_t s_variables_Supervisor_Verify_Measured[] = {
     { "a", &s_POSE, offsetof(Supervisor_Verify_Measured_binding_t, a), false },
     { "b", &s_POSE, offsetof(Supervisor_Verify_Measured_binding_t, b), false },
     { "e", &s_REPLY, offsetof(Supervisor_Verify_Measured_binding_t, e), false },
     { "s", &s_SEAM, offsetof(Supervisor_Verify_Measured_binding_t, s), false },
 };
-
 static const pn_type_t s_binding_Supervisor_Verify_Measured = { .kind = PN_KIND_RECORD,
     .name = "Cell.Supervisor.Verify.Measured", .size = sizeof(Supervisor_Verify_Measured_binding_t),
     .count = 4U, .field = s_variables_Supervisor_Verify_Measured };
@@ -1884,24 +1800,20 @@ PN_NET_SEARCH static bool Supervisor_Verify_Measured_enumerate(pn_ctx_t *cx, con
     const net_marking_t *const m = marking;
     Supervisor_Verify_Measured_binding_t b = { 0 };
     pn_begin(cx, "page `Verify`, transition `Measured` (ID1412310393)", m->now);
-    /* last asked: (s, a) (ID1412310426) */
-    if (!m->Supervisor_Verify_last_asked.full) {
+    if (!m->Supervisor_Verify_last_asked.full) { /* last asked: (s, a) (ID1412310426) */
         return true;
     }
     b.s = m->Supervisor_Verify_last_asked.value.c1;
     b.a = m->Supervisor_Verify_last_asked.value.c2;
-    /* medida1: b (ID1412310442) */
-    if (!m->medida1.full) {
+    if (!m->medida1.full) { /* medida1: b (ID1412310442) */
         return true;
     }
     b.b = m->medida1.value;
-    /* flag1_externo: e (ID1412310444) */
-    if (!m->flag1_externo.full) {
+    if (!m->flag1_externo.full) { /* flag1_externo: e (ID1412310444) */
         return true;
     }
     b.e = m->flag1_externo.value;
-    /* guard [usable (e, #last s, b)] */
-    if (!ml_usable(b.e, b.s.last, b.b)) {
+    if (!ml_usable(b.e, b.s.last, b.b)) { /* guard [usable (e, #last s, b)] */
         return true;
     }
     return sink(user, self, &b);
@@ -1920,12 +1832,9 @@ PN_NET_SEARCH static bool Supervisor_Verify_Measured_fire(pn_ctx_t *cx, void *ma
     if (!pn_has_room(cx, m->Supervisor_verified.full, &s_at_Supervisor_verified)) {
         return false;
     }
-    /* last asked: (s, a) (ID1412310426) */
-    m->Supervisor_Verify_last_asked.full = false;
-    /* medida1: b (ID1412310442) */
-    m->medida1.full = false;
-    /* flag1_externo: e (ID1412310444) */
-    m->flag1_externo.full = false;
+    m->Supervisor_Verify_last_asked.full = false; /* last asked: (s, a) (ID1412310426) */
+    m->medida1.full = false; /* medida1: b (ID1412310442) */
+    m->flag1_externo.full = false; /* flag1_externo: e (ID1412310444) */
     /* verified: (s, a, b) (ID1412310428) */
     m->Supervisor_verified.value = Supervisor_verified_token;
     m->Supervisor_verified.full = true;
@@ -1940,13 +1849,11 @@ typedef struct Supervisor_Verify_First_lost_binding {
     int64_t e;
     SEAM_t s;
 } Supervisor_Verify_First_lost_binding_t;
-
 static const pn_field_t s_variables_Supervisor_Verify_First_lost[] = {
     { "a", &s_POSE, offsetof(Supervisor_Verify_First_lost_binding_t, a), false },
     { "e", &s_REPLY, offsetof(Supervisor_Verify_First_lost_binding_t, e), false },
     { "s", &s_SEAM, offsetof(Supervisor_Verify_First_lost_binding_t, s), false },
 };
-
 static const pn_type_t s_binding_Supervisor_Verify_First_lost = { .kind = PN_KIND_RECORD,
     .name = "Cell.Supervisor.Verify.First lost",
     .size = sizeof(Supervisor_Verify_First_lost_binding_t), .count = 3U,
@@ -1958,23 +1865,19 @@ PN_NET_SEARCH static bool Supervisor_Verify_First_lost_enumerate(pn_ctx_t *cx, c
     const net_marking_t *const m = marking;
     Supervisor_Verify_First_lost_binding_t b = { 0 };
     pn_begin(cx, "page `Verify`, transition `First lost` (ID1412320018)", m->now);
-    /* first asked: s (ID1412320036) */
-    if (!m->Supervisor_Verify_first_asked.full) {
+    if (!m->Supervisor_Verify_first_asked.full) { /* first asked: s (ID1412320036) */
         return true;
     }
     b.s = m->Supervisor_Verify_first_asked.value;
-    /* flag1_externo: e (ID1412320038) */
-    if (!m->flag1_externo.full) {
+    if (!m->flag1_externo.full) { /* flag1_externo: e (ID1412320038) */
         return true;
     }
     b.e = m->flag1_externo.value;
-    /* medida1: a (ID1412320040) */
-    if (!m->medida1.full) {
+    if (!m->medida1.full) { /* medida1: a (ID1412320040) */
         return true;
     }
     b.a = m->medida1.value;
-    /* guard [not (usable (e, #first s, a))] */
-    if (ml_usable(b.e, b.s.first, b.a)) {
+    if (ml_usable(b.e, b.s.first, b.a)) { /* guard [not (usable (e, #first s, a))] */
         return true;
     }
     return sink(user, self, &b);
@@ -1998,17 +1901,12 @@ PN_NET_SEARCH static bool Supervisor_Verify_First_lost_fire(pn_ctx_t *cx, void *
         || !pn_has_room(cx, m->Supervisor_ended.full, &s_at_Supervisor_ended)) {
         return false;
     }
-    /* first asked: s (ID1412320036) */
-    m->Supervisor_Verify_first_asked.full = false;
-    /* flag1_externo: e (ID1412320038) */
-    m->flag1_externo.full = false;
-    /* medida1: a (ID1412320040) */
-    m->medida1.full = false;
-    /* result: FAILED (ID1412320052) */
-    m->Supervisor_result.value = Supervisor_result_token;
+    m->Supervisor_Verify_first_asked.full = false; /* first asked: s (ID1412320036) */
+    m->flag1_externo.full = false; /* flag1_externo: e (ID1412320038) */
+    m->medida1.full = false; /* medida1: a (ID1412320040) */
+    m->Supervisor_result.value = Supervisor_result_token; /* result: FAILED (ID1412320052) */
     m->Supervisor_result.full = true;
-    /* ended: () (ID1412320054) */
-    m->Supervisor_ended.full = true;
+    m->Supervisor_ended.full = true; /* ended: () (ID1412320054) */
     return true;
 }
 
@@ -2021,14 +1919,12 @@ typedef struct Supervisor_Verify_Last_lost_binding {
     int64_t e;
     SEAM_t s;
 } Supervisor_Verify_Last_lost_binding_t;
-
 static const pn_field_t s_variables_Supervisor_Verify_Last_lost[] = {
     { "a", &s_POSE, offsetof(Supervisor_Verify_Last_lost_binding_t, a), false },
     { "b", &s_POSE, offsetof(Supervisor_Verify_Last_lost_binding_t, b), false },
     { "e", &s_REPLY, offsetof(Supervisor_Verify_Last_lost_binding_t, e), false },
     { "s", &s_SEAM, offsetof(Supervisor_Verify_Last_lost_binding_t, s), false },
 };
-
 static const pn_type_t s_binding_Supervisor_Verify_Last_lost = { .kind = PN_KIND_RECORD,
     .name = "Cell.Supervisor.Verify.Last lost",
     .size = sizeof(Supervisor_Verify_Last_lost_binding_t), .count = 4U,
@@ -2040,24 +1936,20 @@ PN_NET_SEARCH static bool Supervisor_Verify_Last_lost_enumerate(pn_ctx_t *cx, co
     const net_marking_t *const m = marking;
     Supervisor_Verify_Last_lost_binding_t b = { 0 };
     pn_begin(cx, "page `Verify`, transition `Last lost` (ID1412320023)", m->now);
-    /* last asked: (s, a) (ID1412320042) */
-    if (!m->Supervisor_Verify_last_asked.full) {
+    if (!m->Supervisor_Verify_last_asked.full) { /* last asked: (s, a) (ID1412320042) */
         return true;
     }
     b.s = m->Supervisor_Verify_last_asked.value.c1;
     b.a = m->Supervisor_Verify_last_asked.value.c2;
-    /* flag1_externo: e (ID1412320044) */
-    if (!m->flag1_externo.full) {
+    if (!m->flag1_externo.full) { /* flag1_externo: e (ID1412320044) */
         return true;
     }
     b.e = m->flag1_externo.value;
-    /* medida1: b (ID1412320046) */
-    if (!m->medida1.full) {
+    if (!m->medida1.full) { /* medida1: b (ID1412320046) */
         return true;
     }
     b.b = m->medida1.value;
-    /* guard [not (usable (e, #last s, b))] */
-    if (ml_usable(b.e, b.s.last, b.b)) {
+    if (ml_usable(b.e, b.s.last, b.b)) { /* guard [not (usable (e, #last s, b))] */
         return true;
     }
     return sink(user, self, &b);
@@ -2081,17 +1973,12 @@ PN_NET_SEARCH static bool Supervisor_Verify_Last_lost_fire(pn_ctx_t *cx, void *m
         || !pn_has_room(cx, m->Supervisor_ended.full, &s_at_Supervisor_ended)) {
         return false;
     }
-    /* last asked: (s, a) (ID1412320042) */
-    m->Supervisor_Verify_last_asked.full = false;
-    /* flag1_externo: e (ID1412320044) */
-    m->flag1_externo.full = false;
-    /* medida1: b (ID1412320046) */
-    m->medida1.full = false;
-    /* result: FAILED (ID1412320048) */
-    m->Supervisor_result.value = Supervisor_result_token;
+    m->Supervisor_Verify_last_asked.full = false; /* last asked: (s, a) (ID1412320042) */
+    m->flag1_externo.full = false; /* flag1_externo: e (ID1412320044) */
+    m->medida1.full = false; /* medida1: b (ID1412320046) */
+    m->Supervisor_result.value = Supervisor_result_token; /* result: FAILED (ID1412320048) */
     m->Supervisor_result.full = true;
-    /* ended: () (ID1412320050) */
-    m->Supervisor_ended.full = true;
+    m->Supervisor_ended.full = true; /* ended: () (ID1412320050) */
     return true;
 }
 
@@ -2103,7 +1990,6 @@ typedef struct Supervisor_Correct_Compare_binding {
     POSE_t p;
     POSE_t q;
 } Supervisor_Correct_Compare_binding_t;
-
 static const pn_field_t s_variables_Supervisor_Correct_Compare[] = {
     { "a", &s_POSE, offsetof(Supervisor_Correct_Compare_binding_t, a), false },
     { "b", &s_POSE, offsetof(Supervisor_Correct_Compare_binding_t, b), false },
@@ -2111,7 +1997,6 @@ static const pn_field_t s_variables_Supervisor_Correct_Compare[] = {
     { "p", &s_POSE, offsetof(Supervisor_Correct_Compare_binding_t, p), false },
     { "q", &s_POSE, offsetof(Supervisor_Correct_Compare_binding_t, q), false },
 };
-
 static const pn_type_t s_binding_Supervisor_Correct_Compare = { .kind = PN_KIND_RECORD,
     .name = "Cell.Supervisor.Correct.Compare", .size = sizeof(Supervisor_Correct_Compare_binding_t),
     .count = 5U, .field = s_variables_Supervisor_Correct_Compare };
@@ -2156,8 +2041,7 @@ PN_NET_SEARCH static bool Supervisor_Correct_Compare_fire(pn_ctx_t *cx, void *ma
     }
     /* verified: ({points = n, first = p, last = q}, a, b) (ID1412310531) */
     m->Supervisor_verified.full = false;
-    /* offset: difference (p, a) (ID1412310533) */
-    m->Supervisor_Correct_offset.value = token;
+    m->Supervisor_Correct_offset.value = token; /* offset: difference (p, a) (ID1412310533) */
     m->Supervisor_Correct_offset.full = true;
     /* seam: (n, p, pitch (n, corrected (p, a), corrected (q, b))) (ID1412310535) */
     m->Supervisor_Correct_seam.value = Supervisor_Correct_seam_token;
@@ -2174,14 +2058,12 @@ typedef struct Supervisor_Correct_Move_over_binding {
     POSE_t p;
     VECTOR_t v;
 } Supervisor_Correct_Move_over_binding_t;
-
 static const pn_field_t s_variables_Supervisor_Correct_Move_over[] = {
     { "d", &s_FVECTOR, offsetof(Supervisor_Correct_Move_over_binding_t, d), false },
     { "n", &s_COUNT, offsetof(Supervisor_Correct_Move_over_binding_t, n), false },
     { "p", &s_POSE, offsetof(Supervisor_Correct_Move_over_binding_t, p), false },
     { "v", &s_VECTOR, offsetof(Supervisor_Correct_Move_over_binding_t, v), false },
 };
-
 static const pn_type_t s_binding_Supervisor_Correct_Move_over = { .kind = PN_KIND_RECORD,
     .name = "Cell.Supervisor.Correct.Move over",
     .size = sizeof(Supervisor_Correct_Move_over_binding_t), .count = 4U,
@@ -2193,17 +2075,14 @@ PN_NET_SEARCH static bool Supervisor_Correct_Move_over_enumerate(pn_ctx_t *cx, c
     const net_marking_t *const m = marking;
     Supervisor_Correct_Move_over_binding_t b = { 0 };
     pn_begin(cx, "page `Correct`, transition `Move over` (ID1412310461)", m->now);
-    /* offset: v (ID1412310537) */
-    if (!m->Supervisor_Correct_offset.full) {
+    if (!m->Supervisor_Correct_offset.full) { /* offset: v (ID1412310537) */
         return true;
     }
     b.v = m->Supervisor_Correct_offset.value;
-    /* guard [moved v] */
-    if (!ml_moved(b.v.c1, b.v.c2, b.v.c3)) {
+    if (!ml_moved(b.v.c1, b.v.c2, b.v.c3)) { /* guard [moved v] */
         return true;
     }
-    /* seam: (n, p, d) (ID1412310539) */
-    if (!m->Supervisor_Correct_seam.full) {
+    if (!m->Supervisor_Correct_seam.full) { /* seam: (n, p, d) (ID1412310539) */
         return true;
     }
     b.n = m->Supervisor_Correct_seam.value.c1;
@@ -2231,8 +2110,7 @@ PN_NET_SEARCH static bool Supervisor_Correct_Move_over_fire(pn_ctx_t *cx, void *
     if (!pn_has_room(cx, m->Supervisor_Correct_order.full, &s_at_Supervisor_Correct_order)) {
         return false;
     }
-    /* offset: v (ID1412310537) */
-    m->Supervisor_Correct_offset.full = false;
+    m->Supervisor_Correct_offset.full = false; /* offset: v (ID1412310537) */
     /* order: (LINEAR, inTool (p, v), inTool (facing p, v)) (ID1412310541) */
     m->Supervisor_Correct_order.value = Supervisor_Correct_order_token;
     m->Supervisor_Correct_order.full = true;
@@ -2245,13 +2123,11 @@ typedef struct Supervisor_Correct_Moved_binding {
     int64_t n;
     POSE_t p;
 } Supervisor_Correct_Moved_binding_t;
-
 static const pn_field_t s_variables_Supervisor_Correct_Moved[] = {
     { "d", &s_FVECTOR, offsetof(Supervisor_Correct_Moved_binding_t, d), false },
     { "n", &s_COUNT, offsetof(Supervisor_Correct_Moved_binding_t, n), false },
     { "p", &s_POSE, offsetof(Supervisor_Correct_Moved_binding_t, p), false },
 };
-
 static const pn_type_t s_binding_Supervisor_Correct_Moved = { .kind = PN_KIND_RECORD,
     .name = "Cell.Supervisor.Correct.Moved", .size = sizeof(Supervisor_Correct_Moved_binding_t),
     .count = 3U, .field = s_variables_Supervisor_Correct_Moved };
@@ -2262,12 +2138,10 @@ PN_NET_SEARCH static bool Supervisor_Correct_Moved_enumerate(pn_ctx_t *cx, const
     const net_marking_t *const m = marking;
     Supervisor_Correct_Moved_binding_t b = { 0 };
     pn_begin(cx, "page `Correct`, transition `Moved` (ID1412310478)", m->now);
-    /* done: () (ID1412310547) */
-    if (!m->Supervisor_Correct_done.full) {
+    if (!m->Supervisor_Correct_done.full) { /* done: () (ID1412310547) */
         return true;
     }
-    /* seam: (n, p, d) (ID1412310549) */
-    if (!m->Supervisor_Correct_seam.full) {
+    if (!m->Supervisor_Correct_seam.full) { /* seam: (n, p, d) (ID1412310549) */
         return true;
     }
     b.n = m->Supervisor_Correct_seam.value.c1;
@@ -2290,10 +2164,8 @@ PN_NET_SEARCH static bool Supervisor_Correct_Moved_fire(pn_ctx_t *cx, void *mark
     if (!pn_has_room(cx, m->Supervisor_corrected.full, &s_at_Supervisor_corrected)) {
         return false;
     }
-    /* done: () (ID1412310547) */
-    m->Supervisor_Correct_done.full = false;
-    /* seam: (n, p, d) (ID1412310549) */
-    m->Supervisor_Correct_seam.full = false;
+    m->Supervisor_Correct_done.full = false; /* done: () (ID1412310547) */
+    m->Supervisor_Correct_seam.full = false; /* seam: (n, p, d) (ID1412310549) */
     /* corrected: (n, p, d) (ID1412310551) */
     m->Supervisor_corrected.value = Supervisor_corrected_token;
     m->Supervisor_corrected.full = true;
@@ -2309,14 +2181,12 @@ typedef struct Supervisor_Correct_As_planned_binding {
     POSE_t p;
     VECTOR_t v;
 } Supervisor_Correct_As_planned_binding_t;
-
 static const pn_field_t s_variables_Supervisor_Correct_As_planned[] = {
     { "d", &s_FVECTOR, offsetof(Supervisor_Correct_As_planned_binding_t, d), false },
     { "n", &s_COUNT, offsetof(Supervisor_Correct_As_planned_binding_t, n), false },
     { "p", &s_POSE, offsetof(Supervisor_Correct_As_planned_binding_t, p), false },
     { "v", &s_VECTOR, offsetof(Supervisor_Correct_As_planned_binding_t, v), false },
 };
-
 static const pn_type_t s_binding_Supervisor_Correct_As_planned = { .kind = PN_KIND_RECORD,
     .name = "Cell.Supervisor.Correct.As planned",
     .size = sizeof(Supervisor_Correct_As_planned_binding_t), .count = 4U,
@@ -2328,17 +2198,14 @@ PN_NET_SEARCH static bool Supervisor_Correct_As_planned_enumerate(pn_ctx_t *cx, 
     const net_marking_t *const m = marking;
     Supervisor_Correct_As_planned_binding_t b = { 0 };
     pn_begin(cx, "page `Correct`, transition `As planned` (ID1412310526)", m->now);
-    /* offset: v (ID1412310553) */
-    if (!m->Supervisor_Correct_offset.full) {
+    if (!m->Supervisor_Correct_offset.full) { /* offset: v (ID1412310553) */
         return true;
     }
     b.v = m->Supervisor_Correct_offset.value;
-    /* guard [not (moved v)] */
-    if (ml_moved(b.v.c1, b.v.c2, b.v.c3)) {
+    if (ml_moved(b.v.c1, b.v.c2, b.v.c3)) { /* guard [not (moved v)] */
         return true;
     }
-    /* seam: (n, p, d) (ID1412310555) */
-    if (!m->Supervisor_Correct_seam.full) {
+    if (!m->Supervisor_Correct_seam.full) { /* seam: (n, p, d) (ID1412310555) */
         return true;
     }
     b.n = m->Supervisor_Correct_seam.value.c1;
@@ -2361,10 +2228,8 @@ PN_NET_SEARCH static bool Supervisor_Correct_As_planned_fire(pn_ctx_t *cx, void 
     if (!pn_has_room(cx, m->Supervisor_corrected.full, &s_at_Supervisor_corrected)) {
         return false;
     }
-    /* offset: v (ID1412310553) */
-    m->Supervisor_Correct_offset.full = false;
-    /* seam: (n, p, d) (ID1412310555) */
-    m->Supervisor_Correct_seam.full = false;
+    m->Supervisor_Correct_offset.full = false; /* offset: v (ID1412310553) */
+    m->Supervisor_Correct_seam.full = false; /* seam: (n, p, d) (ID1412310555) */
     /* corrected: (n, p, d) (ID1412310557) */
     m->Supervisor_corrected.value = Supervisor_corrected_token;
     m->Supervisor_corrected.full = true;
@@ -2380,14 +2245,12 @@ typedef struct Supervisor_Install_Go_back_binding {
     int64_t n;
     POSE_t p;
 } Supervisor_Install_Go_back_binding_t;
-
 static const pn_field_t s_variables_Supervisor_Install_Go_back[] = {
     { "d", &s_FVECTOR, offsetof(Supervisor_Install_Go_back_binding_t, d), false },
     { "k", &s_RIVETS, offsetof(Supervisor_Install_Go_back_binding_t, k), false },
     { "n", &s_COUNT, offsetof(Supervisor_Install_Go_back_binding_t, n), false },
     { "p", &s_POSE, offsetof(Supervisor_Install_Go_back_binding_t, p), false },
 };
-
 static const pn_type_t s_binding_Supervisor_Install_Go_back = { .kind = PN_KIND_RECORD,
     .name = "Cell.Supervisor.Install.Go back", .size = sizeof(Supervisor_Install_Go_back_binding_t),
     .count = 4U, .field = s_variables_Supervisor_Install_Go_back };
@@ -2398,24 +2261,21 @@ PN_NET_SEARCH static bool Supervisor_Install_Go_back_enumerate(pn_ctx_t *cx, con
     const net_marking_t *const m = marking;
     Supervisor_Install_Go_back_binding_t b = { 0 };
     pn_begin(cx, "page `Install`, transition `Go back` (ID1412310594)", m->now);
-    /* riveted: () (ID1412310685) */
-    if (!m->Supervisor_Install_riveted.full) {
+    if (!m->Supervisor_Install_riveted.full) { /* riveted: () (ID1412310685) */
         return true;
     }
     /* result: DONE (ID1412320065) */
     if (!m->Supervisor_result.full || (m->Supervisor_result.value != val_DONE)) {
         return true;
     }
-    /* work: (n, k, p, d) (ID1412310705) */
-    if (!m->Supervisor_Install_work.full) {
+    if (!m->Supervisor_Install_work.full) { /* work: (n, k, p, d) (ID1412310705) */
         return true;
     }
     b.n = m->Supervisor_Install_work.value.c1;
     b.k = m->Supervisor_Install_work.value.c2;
     b.p = m->Supervisor_Install_work.value.c3;
     b.d = m->Supervisor_Install_work.value.c4;
-    /* guard [k = 1] */
-    if (b.k != 1) {
+    if (b.k != 1) { /* guard [k = 1] */
         return true;
     }
     return sink(user, self, &b);
@@ -2441,10 +2301,8 @@ PN_NET_SEARCH static bool Supervisor_Install_Go_back_fire(pn_ctx_t *cx, void *ma
     if (!pn_has_room(cx, m->Supervisor_Install_return.full, &s_at_Supervisor_Install_return)) {
         return false;
     }
-    /* riveted: () (ID1412310685) */
-    m->Supervisor_Install_riveted.full = false;
-    /* work: (n, k, p, d) (ID1412310705) */
-    m->Supervisor_Install_work.full = false;
+    m->Supervisor_Install_riveted.full = false; /* riveted: () (ID1412310685) */
+    m->Supervisor_Install_work.full = false; /* work: (n, k, p, d) (ID1412310705) */
     /* return: (LINEAR, inTool (p, wayBack (n, d)), inTool (facing p, wayBack (n, d))) (ID141 ... */
     m->Supervisor_Install_return.value = Supervisor_Install_return_token;
     m->Supervisor_Install_return.full = true;
@@ -2460,14 +2318,12 @@ typedef struct Supervisor_Install_Next_rivet_binding {
     int64_t n;
     POSE_t p;
 } Supervisor_Install_Next_rivet_binding_t;
-
 static const pn_field_t s_variables_Supervisor_Install_Next_rivet[] = {
     { "d", &s_FVECTOR, offsetof(Supervisor_Install_Next_rivet_binding_t, d), false },
     { "k", &s_RIVETS, offsetof(Supervisor_Install_Next_rivet_binding_t, k), false },
     { "n", &s_COUNT, offsetof(Supervisor_Install_Next_rivet_binding_t, n), false },
     { "p", &s_POSE, offsetof(Supervisor_Install_Next_rivet_binding_t, p), false },
 };
-
 static const pn_type_t s_binding_Supervisor_Install_Next_rivet = { .kind = PN_KIND_RECORD,
     .name = "Cell.Supervisor.Install.Next rivet",
     .size = sizeof(Supervisor_Install_Next_rivet_binding_t), .count = 4U,
@@ -2479,24 +2335,21 @@ PN_NET_SEARCH static bool Supervisor_Install_Next_rivet_enumerate(pn_ctx_t *cx, 
     const net_marking_t *const m = marking;
     Supervisor_Install_Next_rivet_binding_t b = { 0 };
     pn_begin(cx, "page `Install`, transition `Next rivet` (ID1412310624)", m->now);
-    /* riveted: () (ID1412310697) */
-    if (!m->Supervisor_Install_riveted.full) {
+    if (!m->Supervisor_Install_riveted.full) { /* riveted: () (ID1412310697) */
         return true;
     }
     /* result: DONE (ID1412320063) */
     if (!m->Supervisor_result.full || (m->Supervisor_result.value != val_DONE)) {
         return true;
     }
-    /* work: (n, k, p, d) (ID1412310701) */
-    if (!m->Supervisor_Install_work.full) {
+    if (!m->Supervisor_Install_work.full) { /* work: (n, k, p, d) (ID1412310701) */
         return true;
     }
     b.n = m->Supervisor_Install_work.value.c1;
     b.k = m->Supervisor_Install_work.value.c2;
     b.p = m->Supervisor_Install_work.value.c3;
     b.d = m->Supervisor_Install_work.value.c4;
-    /* guard [k > 1] */
-    if (!(b.k > 1)) {
+    if (!(b.k > 1)) { /* guard [k > 1] */
         return true;
     }
     return sink(user, self, &b);
@@ -2524,12 +2377,9 @@ PN_NET_SEARCH static bool Supervisor_Install_Next_rivet_fire(pn_ctx_t *cx, void 
     if (!pn_has_room(cx, m->Supervisor_Install_shift.full, &s_at_Supervisor_Install_shift)) {
         return false;
     }
-    /* riveted: () (ID1412310697) */
-    m->Supervisor_Install_riveted.full = false;
-    /* result: DONE (ID1412320063) */
-    m->Supervisor_result.full = false;
-    /* work: (n, k, p, d) (ID1412310701) */
-    m->Supervisor_Install_work.full = false;
+    m->Supervisor_Install_riveted.full = false; /* riveted: () (ID1412310697) */
+    m->Supervisor_result.full = false; /* result: DONE (ID1412320063) */
+    m->Supervisor_Install_work.full = false; /* work: (n, k, p, d) (ID1412310701) */
     /* shift: (LINEAR, inTool (p, d), inTool (facing p, d)) (ID1412310699) */
     m->Supervisor_Install_shift.value = Supervisor_Install_shift_token;
     m->Supervisor_Install_shift.full = true;
@@ -2545,13 +2395,11 @@ typedef struct Supervisor_Install_Start_binding {
     int64_t n;
     POSE_t p;
 } Supervisor_Install_Start_binding_t;
-
 static const pn_field_t s_variables_Supervisor_Install_Start[] = {
     { "d", &s_FVECTOR, offsetof(Supervisor_Install_Start_binding_t, d), false },
     { "n", &s_COUNT, offsetof(Supervisor_Install_Start_binding_t, n), false },
     { "p", &s_POSE, offsetof(Supervisor_Install_Start_binding_t, p), false },
 };
-
 static const pn_type_t s_binding_Supervisor_Install_Start = { .kind = PN_KIND_RECORD,
     .name = "Cell.Supervisor.Install.Start", .size = sizeof(Supervisor_Install_Start_binding_t),
     .count = 3U, .field = s_variables_Supervisor_Install_Start };
@@ -2562,8 +2410,7 @@ PN_NET_SEARCH static bool Supervisor_Install_Start_enumerate(pn_ctx_t *cx, const
     const net_marking_t *const m = marking;
     Supervisor_Install_Start_binding_t b = { 0 };
     pn_begin(cx, "page `Install`, transition `Start` (ID1412310632)", m->now);
-    /* corrected: (n, p, d) (ID1412310691) */
-    if (!m->Supervisor_corrected.full) {
+    if (!m->Supervisor_corrected.full) { /* corrected: (n, p, d) (ID1412310691) */
         return true;
     }
     b.n = m->Supervisor_corrected.value.c1;
@@ -2591,10 +2438,8 @@ PN_NET_SEARCH static bool Supervisor_Install_Start_fire(pn_ctx_t *cx, void *mark
         || !pn_has_room(cx, m->Supervisor_Install_work.full, &s_at_Supervisor_Install_work)) {
         return false;
     }
-    /* corrected: (n, p, d) (ID1412310691) */
-    m->Supervisor_corrected.full = false;
-    /* ready: () (ID1412310693) */
-    m->Supervisor_Install_ready.full = true;
+    m->Supervisor_corrected.full = false; /* corrected: (n, p, d) (ID1412310691) */
+    m->Supervisor_Install_ready.full = true; /* ready: () (ID1412310693) */
     /* work: (n, n + 2, p, d) (ID1412310695) */
     m->Supervisor_Install_work.value = Supervisor_Install_work_token;
     m->Supervisor_Install_work.full = true;
@@ -2608,14 +2453,12 @@ typedef struct Supervisor_Install_Give_up_binding {
     int64_t n;
     POSE_t p;
 } Supervisor_Install_Give_up_binding_t;
-
 static const pn_field_t s_variables_Supervisor_Install_Give_up[] = {
     { "d", &s_FVECTOR, offsetof(Supervisor_Install_Give_up_binding_t, d), false },
     { "k", &s_RIVETS, offsetof(Supervisor_Install_Give_up_binding_t, k), false },
     { "n", &s_COUNT, offsetof(Supervisor_Install_Give_up_binding_t, n), false },
     { "p", &s_POSE, offsetof(Supervisor_Install_Give_up_binding_t, p), false },
 };
-
 static const pn_type_t s_binding_Supervisor_Install_Give_up = { .kind = PN_KIND_RECORD,
     .name = "Cell.Supervisor.Install.Give up", .size = sizeof(Supervisor_Install_Give_up_binding_t),
     .count = 4U, .field = s_variables_Supervisor_Install_Give_up };
@@ -2626,16 +2469,14 @@ PN_NET_SEARCH static bool Supervisor_Install_Give_up_enumerate(pn_ctx_t *cx, con
     const net_marking_t *const m = marking;
     Supervisor_Install_Give_up_binding_t b = { 0 };
     pn_begin(cx, "page `Install`, transition `Give up` (ID1412320067)", m->now);
-    /* riveted: () (ID1412320072) */
-    if (!m->Supervisor_Install_riveted.full) {
+    if (!m->Supervisor_Install_riveted.full) { /* riveted: () (ID1412320072) */
         return true;
     }
     /* result: FAILED (ID1412320074) */
     if (!m->Supervisor_result.full || (m->Supervisor_result.value != val_FAILED)) {
         return true;
     }
-    /* work: (n, k, p, d) (ID1412320076) */
-    if (!m->Supervisor_Install_work.full) {
+    if (!m->Supervisor_Install_work.full) { /* work: (n, k, p, d) (ID1412320076) */
         return true;
     }
     b.n = m->Supervisor_Install_work.value.c1;
@@ -2658,12 +2499,9 @@ PN_NET_SEARCH static bool Supervisor_Install_Give_up_fire(pn_ctx_t *cx, void *ma
     if (!pn_has_room(cx, m->Supervisor_ended.full, &s_at_Supervisor_ended)) {
         return false;
     }
-    /* riveted: () (ID1412320072) */
-    m->Supervisor_Install_riveted.full = false;
-    /* work: (n, k, p, d) (ID1412320076) */
-    m->Supervisor_Install_work.full = false;
-    /* ended: () (ID1412320078) */
-    m->Supervisor_ended.full = true;
+    m->Supervisor_Install_riveted.full = false; /* riveted: () (ID1412320072) */
+    m->Supervisor_Install_work.full = false; /* work: (n, k, p, d) (ID1412320076) */
+    m->Supervisor_ended.full = true; /* ended: () (ID1412320078) */
     return true;
 }
 
@@ -2671,7 +2509,6 @@ PN_NET_SEARCH static bool Supervisor_Install_Give_up_fire(pn_ctx_t *cx, void *ma
 typedef struct Supervisor_Install_Rivet_Go_in_binding {
     uint8_t none; /* no variables */
 } Supervisor_Install_Rivet_Go_in_binding_t;
-
 static const pn_type_t s_binding_Supervisor_Install_Rivet_Go_in = { .kind = PN_KIND_RECORD,
     .name = "Cell.Supervisor.Install.Rivet.Go in",
     .size = sizeof(Supervisor_Install_Rivet_Go_in_binding_t), .count = 0U, .field = NULL };
@@ -2682,8 +2519,7 @@ PN_NET_SEARCH static bool Supervisor_Install_Rivet_Go_in_enumerate(pn_ctx_t *cx,
     const net_marking_t *const m = marking;
     Supervisor_Install_Rivet_Go_in_binding_t b = { 0 };
     pn_begin(cx, "page `Rivet`, transition `Go in` (ID1412310716)", m->now);
-    /* ready: () (ID1412310816) */
-    if (!m->Supervisor_Install_ready.full) {
+    if (!m->Supervisor_Install_ready.full) { /* ready: () (ID1412310816) */
         return true;
     }
     return sink(user, self, &b);
@@ -2709,8 +2545,7 @@ PN_NET_SEARCH static bool Supervisor_Install_Rivet_Go_in_fire(pn_ctx_t *cx, void
         &s_at_Supervisor_Install_Rivet_advance)) {
         return false;
     }
-    /* ready: () (ID1412310816) */
-    m->Supervisor_Install_ready.full = false;
+    m->Supervisor_Install_ready.full = false; /* ready: () (ID1412310816) */
     /* advance: (LINEAR, alongTool approachDistance, alongTool approachDistance) (ID1412310818) */
     m->Supervisor_Install_Rivet_advance.value = Supervisor_Install_Rivet_advance_token;
     m->Supervisor_Install_Rivet_advance.full = true;
@@ -2721,11 +2556,9 @@ PN_NET_SEARCH static bool Supervisor_Install_Rivet_Go_in_fire(pn_ctx_t *cx, void
 typedef struct Supervisor_Install_Rivet_Go_out_binding {
     int64_t e;
 } Supervisor_Install_Rivet_Go_out_binding_t;
-
 static const pn_field_t s_variables_Supervisor_Install_Rivet_Go_out[] = {
     { "e", &s_REPLY, offsetof(Supervisor_Install_Rivet_Go_out_binding_t, e), false },
 };
-
 static const pn_type_t s_binding_Supervisor_Install_Rivet_Go_out = { .kind = PN_KIND_RECORD,
     .name = "Cell.Supervisor.Install.Rivet.Go out",
     .size = sizeof(Supervisor_Install_Rivet_Go_out_binding_t), .count = 1U,
@@ -2737,8 +2570,7 @@ PN_NET_SEARCH static bool Supervisor_Install_Rivet_Go_out_enumerate(pn_ctx_t *cx
     const net_marking_t *const m = marking;
     Supervisor_Install_Rivet_Go_out_binding_t b = { 0 };
     pn_begin(cx, "page `Rivet`, transition `Go out` (ID1412310742)", m->now);
-    /* fastened: e (ID1412310828) */
-    if (!m->Supervisor_Install_Rivet_fastened.full) {
+    if (!m->Supervisor_Install_Rivet_fastened.full) { /* fastened: e (ID1412310828) */
         return true;
     }
     b.e = m->Supervisor_Install_Rivet_fastened.value;
@@ -2766,13 +2598,11 @@ PN_NET_SEARCH static bool Supervisor_Install_Rivet_Go_out_fire(pn_ctx_t *cx, voi
         || !pn_has_room(cx, m->Supervisor_result.full, &s_at_Supervisor_result)) {
         return false;
     }
-    /* fastened: e (ID1412310828) */
-    m->Supervisor_Install_Rivet_fastened.full = false;
+    m->Supervisor_Install_Rivet_fastened.full = false; /* fastened: e (ID1412310828) */
     /* retract: (LINEAR, alongTool (~approachDistance), alongTool (~approachDistance)) (ID141 ... */
     m->Supervisor_Install_Rivet_retract.value = Supervisor_Install_Rivet_retract_token;
     m->Supervisor_Install_Rivet_retract.full = true;
-    /* result: e (ID1412320085) */
-    m->Supervisor_result.value = b->e;
+    m->Supervisor_result.value = b->e; /* result: e (ID1412320085) */
     m->Supervisor_result.full = true;
     return true;
 }
@@ -2781,7 +2611,6 @@ PN_NET_SEARCH static bool Supervisor_Install_Rivet_Go_out_fire(pn_ctx_t *cx, voi
 typedef struct Supervisor_Install_Rivet_Fasten_Press_binding {
     uint8_t none; /* no variables */
 } Supervisor_Install_Rivet_Fasten_Press_binding_t;
-
 static const pn_type_t s_binding_Supervisor_Install_Rivet_Fasten_Press = { .kind = PN_KIND_RECORD,
     .name = "Cell.Supervisor.Install.Rivet.Fasten.Press",
     .size = sizeof(Supervisor_Install_Rivet_Fasten_Press_binding_t), .count = 0U, .field = NULL };
@@ -2792,8 +2621,7 @@ PN_NET_SEARCH static bool Supervisor_Install_Rivet_Fasten_Press_enumerate(pn_ctx
     const net_marking_t *const m = marking;
     Supervisor_Install_Rivet_Fasten_Press_binding_t b = { 0 };
     pn_begin(cx, "page `Fasten`, transition `Press` (ID1412310842)", m->now);
-    /* contact: () (ID1412310883) */
-    if (!m->Supervisor_Install_Rivet_contact.full) {
+    if (!m->Supervisor_Install_Rivet_contact.full) { /* contact: () (ID1412310883) */
         return true;
     }
     return sink(user, self, &b);
@@ -2818,12 +2646,9 @@ PN_NET_SEARCH static bool Supervisor_Install_Rivet_Fasten_Press_fire(pn_ctx_t *c
         || !pn_has_room(cx, m->flag2_interno.full, &s_at_flag2_interno)) {
         return false;
     }
-    /* contact: () (ID1412310883) */
-    m->Supervisor_Install_Rivet_contact.full = false;
-    /* pressing: () (ID1412310885) */
-    m->Supervisor_Install_Rivet_Fasten_pressing.full = true;
-    /* flag2_interno: PRESS (ID1412310927) */
-    m->flag2_interno.value = flag2_interno_token;
+    m->Supervisor_Install_Rivet_contact.full = false; /* contact: () (ID1412310883) */
+    m->Supervisor_Install_Rivet_Fasten_pressing.full = true; /* pressing: () (ID1412310885) */
+    m->flag2_interno.value = flag2_interno_token; /* flag2_interno: PRESS (ID1412310927) */
     m->flag2_interno.full = true;
     return true;
 }
@@ -2832,7 +2657,6 @@ PN_NET_SEARCH static bool Supervisor_Install_Rivet_Fasten_Press_fire(pn_ctx_t *c
 typedef struct Supervisor_Install_Rivet_Fasten_Drill_binding {
     uint8_t none; /* no variables */
 } Supervisor_Install_Rivet_Fasten_Drill_binding_t;
-
 static const pn_type_t s_binding_Supervisor_Install_Rivet_Fasten_Drill = { .kind = PN_KIND_RECORD,
     .name = "Cell.Supervisor.Install.Rivet.Fasten.Drill",
     .size = sizeof(Supervisor_Install_Rivet_Fasten_Drill_binding_t), .count = 0U, .field = NULL };
@@ -2843,8 +2667,7 @@ PN_NET_SEARCH static bool Supervisor_Install_Rivet_Fasten_Drill_enumerate(pn_ctx
     const net_marking_t *const m = marking;
     Supervisor_Install_Rivet_Fasten_Drill_binding_t b = { 0 };
     pn_begin(cx, "page `Fasten`, transition `Drill` (ID1412310850)", m->now);
-    /* pressing: () (ID1412310887) */
-    if (!m->Supervisor_Install_Rivet_Fasten_pressing.full) {
+    if (!m->Supervisor_Install_Rivet_Fasten_pressing.full) { /* pressing: () (ID1412310887) */
         return true;
     }
     /* flag2_externo: DONE (ID1412310931) */
@@ -2873,14 +2696,10 @@ PN_NET_SEARCH static bool Supervisor_Install_Rivet_Fasten_Drill_fire(pn_ctx_t *c
         || !pn_has_room(cx, m->flag1_interno.full, &s_at_flag1_interno)) {
         return false;
     }
-    /* pressing: () (ID1412310887) */
-    m->Supervisor_Install_Rivet_Fasten_pressing.full = false;
-    /* flag2_externo: DONE (ID1412310931) */
-    m->flag2_externo.full = false;
-    /* drilling: () (ID1412310889) */
-    m->Supervisor_Install_Rivet_Fasten_drilling.full = true;
-    /* flag1_interno: DRILL (ID1412310919) */
-    m->flag1_interno.value = flag1_interno_token;
+    m->Supervisor_Install_Rivet_Fasten_pressing.full = false; /* pressing: () (ID1412310887) */
+    m->flag2_externo.full = false; /* flag2_externo: DONE (ID1412310931) */
+    m->Supervisor_Install_Rivet_Fasten_drilling.full = true; /* drilling: () (ID1412310889) */
+    m->flag1_interno.value = flag1_interno_token; /* flag1_interno: DRILL (ID1412310919) */
     m->flag1_interno.full = true;
     return true;
 }
@@ -2889,7 +2708,6 @@ PN_NET_SEARCH static bool Supervisor_Install_Rivet_Fasten_Drill_fire(pn_ctx_t *c
 typedef struct Supervisor_Install_Rivet_Fasten_Insert_binding {
     uint8_t none; /* no variables */
 } Supervisor_Install_Rivet_Fasten_Insert_binding_t;
-
 static const pn_type_t s_binding_Supervisor_Install_Rivet_Fasten_Insert = { .kind = PN_KIND_RECORD,
     .name = "Cell.Supervisor.Install.Rivet.Fasten.Insert",
     .size = sizeof(Supervisor_Install_Rivet_Fasten_Insert_binding_t), .count = 0U, .field = NULL };
@@ -2900,8 +2718,7 @@ PN_NET_SEARCH static bool Supervisor_Install_Rivet_Fasten_Insert_enumerate(pn_ct
     const net_marking_t *const m = marking;
     Supervisor_Install_Rivet_Fasten_Insert_binding_t b = { 0 };
     pn_begin(cx, "page `Fasten`, transition `Insert` (ID1412310858)", m->now);
-    /* drilling: () (ID1412310891) */
-    if (!m->Supervisor_Install_Rivet_Fasten_drilling.full) {
+    if (!m->Supervisor_Install_Rivet_Fasten_drilling.full) { /* drilling: () (ID1412310891) */
         return true;
     }
     /* flag1_externo: DONE (ID1412310923) */
@@ -2930,14 +2747,10 @@ PN_NET_SEARCH static bool Supervisor_Install_Rivet_Fasten_Insert_fire(pn_ctx_t *
         || !pn_has_room(cx, m->flag1_interno.full, &s_at_flag1_interno)) {
         return false;
     }
-    /* drilling: () (ID1412310891) */
-    m->Supervisor_Install_Rivet_Fasten_drilling.full = false;
-    /* flag1_externo: DONE (ID1412310923) */
-    m->flag1_externo.full = false;
-    /* inserting: () (ID1412310893) */
-    m->Supervisor_Install_Rivet_Fasten_inserting.full = true;
-    /* flag1_interno: INSERT (ID1412310921) */
-    m->flag1_interno.value = flag1_interno_token;
+    m->Supervisor_Install_Rivet_Fasten_drilling.full = false; /* drilling: () (ID1412310891) */
+    m->flag1_externo.full = false; /* flag1_externo: DONE (ID1412310923) */
+    m->Supervisor_Install_Rivet_Fasten_inserting.full = true; /* inserting: () (ID1412310893) */
+    m->flag1_interno.value = flag1_interno_token; /* flag1_interno: INSERT (ID1412310921) */
     m->flag1_interno.full = true;
     return true;
 }
@@ -2946,11 +2759,9 @@ PN_NET_SEARCH static bool Supervisor_Install_Rivet_Fasten_Insert_fire(pn_ctx_t *
 typedef struct Supervisor_Install_Rivet_Fasten_Release_binding {
     int64_t e;
 } Supervisor_Install_Rivet_Fasten_Release_binding_t;
-
 static const pn_field_t s_variables_Supervisor_Install_Rivet_Fasten_Release[] = {
     { "e", &s_REPLY, offsetof(Supervisor_Install_Rivet_Fasten_Release_binding_t, e), false },
 };
-
 static const pn_type_t s_binding_Supervisor_Install_Rivet_Fasten_Release = { .kind = PN_KIND_RECORD,
     .name = "Cell.Supervisor.Install.Rivet.Fasten.Release",
     .size = sizeof(Supervisor_Install_Rivet_Fasten_Release_binding_t), .count = 1U,
@@ -2962,12 +2773,10 @@ PN_NET_SEARCH static bool Supervisor_Install_Rivet_Fasten_Release_enumerate(pn_c
     const net_marking_t *const m = marking;
     Supervisor_Install_Rivet_Fasten_Release_binding_t b = { 0 };
     pn_begin(cx, "page `Fasten`, transition `Release` (ID1412310866)", m->now);
-    /* inserting: () (ID1412310895) */
-    if (!m->Supervisor_Install_Rivet_Fasten_inserting.full) {
+    if (!m->Supervisor_Install_Rivet_Fasten_inserting.full) { /* inserting: () (ID1412310895) */
         return true;
     }
-    /* flag1_externo: e (ID1412310925) */
-    if (!m->flag1_externo.full) {
+    if (!m->flag1_externo.full) { /* flag1_externo: e (ID1412310925) */
         return true;
     }
     b.e = m->flag1_externo.value;
@@ -2993,15 +2802,11 @@ PN_NET_SEARCH static bool Supervisor_Install_Rivet_Fasten_Release_fire(pn_ctx_t 
         || !pn_has_room(cx, m->flag2_interno.full, &s_at_flag2_interno)) {
         return false;
     }
-    /* inserting: () (ID1412310895) */
-    m->Supervisor_Install_Rivet_Fasten_inserting.full = false;
-    /* flag1_externo: e (ID1412310925) */
-    m->flag1_externo.full = false;
-    /* releasing: e (ID1412310897) */
-    m->Supervisor_Install_Rivet_Fasten_releasing.value = b->e;
+    m->Supervisor_Install_Rivet_Fasten_inserting.full = false; /* inserting: () (ID1412310895) */
+    m->flag1_externo.full = false; /* flag1_externo: e (ID1412310925) */
+    m->Supervisor_Install_Rivet_Fasten_releasing.value = b->e; /* releasing: e (ID1412310897) */
     m->Supervisor_Install_Rivet_Fasten_releasing.full = true;
-    /* flag2_interno: RELEASE (ID1412310929) */
-    m->flag2_interno.value = flag2_interno_token;
+    m->flag2_interno.value = flag2_interno_token; /* flag2_interno: RELEASE (ID1412310929) */
     m->flag2_interno.full = true;
     return true;
 }
@@ -3011,12 +2816,10 @@ typedef struct Supervisor_Install_Rivet_Fasten_Finish_binding {
     int64_t e;
     int64_t f;
 } Supervisor_Install_Rivet_Fasten_Finish_binding_t;
-
 static const pn_field_t s_variables_Supervisor_Install_Rivet_Fasten_Finish[] = {
     { "e", &s_REPLY, offsetof(Supervisor_Install_Rivet_Fasten_Finish_binding_t, e), false },
     { "f", &s_REPLY, offsetof(Supervisor_Install_Rivet_Fasten_Finish_binding_t, f), false },
 };
-
 static const pn_type_t s_binding_Supervisor_Install_Rivet_Fasten_Finish = { .kind = PN_KIND_RECORD,
     .name = "Cell.Supervisor.Install.Rivet.Fasten.Finish",
     .size = sizeof(Supervisor_Install_Rivet_Fasten_Finish_binding_t), .count = 2U,
@@ -3028,13 +2831,11 @@ PN_NET_SEARCH static bool Supervisor_Install_Rivet_Fasten_Finish_enumerate(pn_ct
     const net_marking_t *const m = marking;
     Supervisor_Install_Rivet_Fasten_Finish_binding_t b = { 0 };
     pn_begin(cx, "page `Fasten`, transition `Finish` (ID1412310874)", m->now);
-    /* releasing: e (ID1412310899) */
-    if (!m->Supervisor_Install_Rivet_Fasten_releasing.full) {
+    if (!m->Supervisor_Install_Rivet_Fasten_releasing.full) { /* releasing: e (ID1412310899) */
         return true;
     }
     b.e = m->Supervisor_Install_Rivet_Fasten_releasing.value;
-    /* flag2_externo: f (ID1412310933) */
-    if (!m->flag2_externo.full) {
+    if (!m->flag2_externo.full) { /* flag2_externo: f (ID1412310933) */
         return true;
     }
     b.f = m->flag2_externo.value;
@@ -3060,10 +2861,8 @@ PN_NET_SEARCH static bool Supervisor_Install_Rivet_Fasten_Finish_fire(pn_ctx_t *
         &s_at_Supervisor_Install_Rivet_fastened)) {
         return false;
     }
-    /* releasing: e (ID1412310899) */
-    m->Supervisor_Install_Rivet_Fasten_releasing.full = false;
-    /* flag2_externo: f (ID1412310933) */
-    m->flag2_externo.full = false;
+    m->Supervisor_Install_Rivet_Fasten_releasing.full = false; /* releasing: e (ID1412310899) */
+    m->flag2_externo.full = false; /* flag2_externo: f (ID1412310933) */
     /* fastened: worse (e, f) (ID1412310901) */
     m->Supervisor_Install_Rivet_fastened.value = Supervisor_Install_Rivet_fastened_token;
     m->Supervisor_Install_Rivet_fastened.full = true;
@@ -3074,7 +2873,6 @@ PN_NET_SEARCH static bool Supervisor_Install_Rivet_Fasten_Finish_fire(pn_ctx_t *
 typedef struct Supervisor_Install_Rivet_Fasten_Press_failed_binding {
     uint8_t none; /* no variables */
 } Supervisor_Install_Rivet_Fasten_Press_failed_binding_t;
-
 static const pn_type_t s_binding_Supervisor_Install_Rivet_Fasten_Press_failed =
     { .kind = PN_KIND_RECORD, .name = "Cell.Supervisor.Install.Rivet.Fasten.Press failed",
     .size = sizeof(Supervisor_Install_Rivet_Fasten_Press_failed_binding_t), .count = 0U,
@@ -3086,8 +2884,7 @@ PN_NET_SEARCH static bool Supervisor_Install_Rivet_Fasten_Press_failed_enumerate
     const net_marking_t *const m = marking;
     Supervisor_Install_Rivet_Fasten_Press_failed_binding_t b = { 0 };
     pn_begin(cx, "page `Fasten`, transition `Press failed` (ID1412320087)", m->now);
-    /* pressing: () (ID1412320097) */
-    if (!m->Supervisor_Install_Rivet_Fasten_pressing.full) {
+    if (!m->Supervisor_Install_Rivet_Fasten_pressing.full) { /* pressing: () (ID1412320097) */
         return true;
     }
     /* flag2_externo: FAILED (ID1412320101) */
@@ -3117,12 +2914,9 @@ PN_NET_SEARCH static bool Supervisor_Install_Rivet_Fasten_Press_failed_fire(pn_c
         &s_at_Supervisor_Install_Rivet_Fasten_releasing)) {
         return false;
     }
-    /* pressing: () (ID1412320097) */
-    m->Supervisor_Install_Rivet_Fasten_pressing.full = false;
-    /* flag2_externo: FAILED (ID1412320101) */
-    m->flag2_externo.full = false;
-    /* flag2_interno: RELEASE (ID1412320103) */
-    m->flag2_interno.value = flag2_interno_token;
+    m->Supervisor_Install_Rivet_Fasten_pressing.full = false; /* pressing: () (ID1412320097) */
+    m->flag2_externo.full = false; /* flag2_externo: FAILED (ID1412320101) */
+    m->flag2_interno.value = flag2_interno_token; /* flag2_interno: RELEASE (ID1412320103) */
     m->flag2_interno.full = true;
     /* releasing: FAILED (ID1412320105) */
     m->Supervisor_Install_Rivet_Fasten_releasing.value =
@@ -3135,7 +2929,6 @@ PN_NET_SEARCH static bool Supervisor_Install_Rivet_Fasten_Press_failed_fire(pn_c
 typedef struct Supervisor_Install_Rivet_Fasten_Drill_failed_binding {
     uint8_t none; /* no variables */
 } Supervisor_Install_Rivet_Fasten_Drill_failed_binding_t;
-
 static const pn_type_t s_binding_Supervisor_Install_Rivet_Fasten_Drill_failed =
     { .kind = PN_KIND_RECORD, .name = "Cell.Supervisor.Install.Rivet.Fasten.Drill failed",
     .size = sizeof(Supervisor_Install_Rivet_Fasten_Drill_failed_binding_t), .count = 0U,
@@ -3147,8 +2940,7 @@ PN_NET_SEARCH static bool Supervisor_Install_Rivet_Fasten_Drill_failed_enumerate
     const net_marking_t *const m = marking;
     Supervisor_Install_Rivet_Fasten_Drill_failed_binding_t b = { 0 };
     pn_begin(cx, "page `Fasten`, transition `Drill failed` (ID1412320092)", m->now);
-    /* drilling: () (ID1412320099) */
-    if (!m->Supervisor_Install_Rivet_Fasten_drilling.full) {
+    if (!m->Supervisor_Install_Rivet_Fasten_drilling.full) { /* drilling: () (ID1412320099) */
         return true;
     }
     /* flag1_externo: FAILED (ID1412320107) */
@@ -3178,12 +2970,9 @@ PN_NET_SEARCH static bool Supervisor_Install_Rivet_Fasten_Drill_failed_fire(pn_c
         &s_at_Supervisor_Install_Rivet_Fasten_releasing)) {
         return false;
     }
-    /* drilling: () (ID1412320099) */
-    m->Supervisor_Install_Rivet_Fasten_drilling.full = false;
-    /* flag1_externo: FAILED (ID1412320107) */
-    m->flag1_externo.full = false;
-    /* flag2_interno: RELEASE (ID1412320109) */
-    m->flag2_interno.value = flag2_interno_token;
+    m->Supervisor_Install_Rivet_Fasten_drilling.full = false; /* drilling: () (ID1412320099) */
+    m->flag1_externo.full = false; /* flag1_externo: FAILED (ID1412320107) */
+    m->flag2_interno.value = flag2_interno_token; /* flag2_interno: RELEASE (ID1412320109) */
     m->flag2_interno.full = true;
     /* releasing: FAILED (ID1412320111) */
     m->Supervisor_Install_Rivet_Fasten_releasing.value =
@@ -3196,7 +2985,6 @@ PN_NET_SEARCH static bool Supervisor_Install_Rivet_Fasten_Drill_failed_fire(pn_c
 typedef struct Supervisor_Home_Send_home_binding {
     uint8_t none; /* no variables */
 } Supervisor_Home_Send_home_binding_t;
-
 static const pn_type_t s_binding_Supervisor_Home_Send_home = { .kind = PN_KIND_RECORD,
     .name = "Cell.Supervisor.Home.Send home", .size = sizeof(Supervisor_Home_Send_home_binding_t),
     .count = 0U, .field = NULL };
@@ -3207,8 +2995,7 @@ PN_NET_SEARCH static bool Supervisor_Home_Send_home_enumerate(pn_ctx_t *cx, cons
     const net_marking_t *const m = marking;
     Supervisor_Home_Send_home_binding_t b = { 0 };
     pn_begin(cx, "page `Home`, transition `Send home` (ID1412311039)", m->now);
-    /* ended: () (ID1412311044) */
-    if (!m->Supervisor_ended.full) {
+    if (!m->Supervisor_ended.full) { /* ended: () (ID1412311044) */
         return true;
     }
     return sink(user, self, &b);
@@ -3236,17 +3023,12 @@ PN_NET_SEARCH static bool Supervisor_Home_Send_home_fire(pn_ctx_t *cx, void *mar
         || !pn_has_room(cx, m->flag2_interno.full, &s_at_flag2_interno)) {
         return false;
     }
-    /* ended: () (ID1412311044) */
-    m->Supervisor_ended.full = false;
-    /* leaving 1: () (ID1412311068) */
-    m->Supervisor_Home_leaving_1.full = true;
-    /* flag1_interno: HOME (ID1412311080) */
-    m->flag1_interno.value = flag1_interno_token;
+    m->Supervisor_ended.full = false; /* ended: () (ID1412311044) */
+    m->Supervisor_Home_leaving_1.full = true; /* leaving 1: () (ID1412311068) */
+    m->flag1_interno.value = flag1_interno_token; /* flag1_interno: HOME (ID1412311080) */
     m->flag1_interno.full = true;
-    /* leaving 2: () (ID1412311099) */
-    m->Supervisor_Home_leaving_2.full = true;
-    /* flag2_interno: HOME (ID1412311111) */
-    m->flag2_interno.value = flag2_interno_token;
+    m->Supervisor_Home_leaving_2.full = true; /* leaving 2: () (ID1412311099) */
+    m->flag2_interno.value = flag2_interno_token; /* flag2_interno: HOME (ID1412311111) */
     m->flag2_interno.full = true;
     return true;
 }
@@ -3255,11 +3037,9 @@ PN_NET_SEARCH static bool Supervisor_Home_Send_home_fire(pn_ctx_t *cx, void *mar
 typedef struct Supervisor_Home_Both_binding {
     int64_t e;
 } Supervisor_Home_Both_binding_t;
-
 static const pn_field_t s_variables_Supervisor_Home_Both[] = {
     { "e", &s_REPLY, offsetof(Supervisor_Home_Both_binding_t, e), false },
 };
-
 static const pn_type_t s_binding_Supervisor_Home_Both = { .kind = PN_KIND_RECORD,
     .name = "Cell.Supervisor.Home.Both", .size = sizeof(Supervisor_Home_Both_binding_t),
     .count = 1U, .field = s_variables_Supervisor_Home_Both };
@@ -3270,16 +3050,13 @@ PN_NET_SEARCH static bool Supervisor_Home_Both_enumerate(pn_ctx_t *cx, const voi
     const net_marking_t *const m = marking;
     Supervisor_Home_Both_binding_t b = { 0 };
     pn_begin(cx, "page `Home`, transition `Both` (ID1412311046)", m->now);
-    /* home 1: () (ID1412311074) */
-    if (!m->Supervisor_Home_home_1.full) {
+    if (!m->Supervisor_Home_home_1.full) { /* home 1: () (ID1412311074) */
         return true;
     }
-    /* home 2: () (ID1412311105) */
-    if (!m->Supervisor_Home_home_2.full) {
+    if (!m->Supervisor_Home_home_2.full) { /* home 2: () (ID1412311105) */
         return true;
     }
-    /* result: e (ID1412320124) */
-    if (!m->Supervisor_result.full) {
+    if (!m->Supervisor_result.full) { /* result: e (ID1412320124) */
         return true;
     }
     b.e = m->Supervisor_result.value;
@@ -3318,12 +3095,9 @@ PN_NET_SEARCH static bool Supervisor_Home_Both_fire(pn_ctx_t *cx, void *marking,
         &s_at_Supervisor_Failed)) {
         return false;
     }
-    /* result: e (ID1412320124) */
-    m->Supervisor_result.full = false;
-    /* home 1: () (ID1412311074) */
-    m->Supervisor_Home_home_1.full = false;
-    /* home 2: () (ID1412311105) */
-    m->Supervisor_Home_home_2.full = false;
+    m->Supervisor_result.full = false; /* result: e (ID1412320124) */
+    m->Supervisor_Home_home_1.full = false; /* home 1: () (ID1412311074) */
+    m->Supervisor_Home_home_2.full = false; /* home 2: () (ID1412311105) */
     if (Supervisor_Finished_tokens > 0U) {
         m->Supervisor_Finished.value = Supervisor_Finished_token;
         m->Supervisor_Finished.full = true;
@@ -3339,7 +3113,6 @@ PN_NET_SEARCH static bool Supervisor_Home_Both_fire(pn_ctx_t *cx, void *marking,
 typedef struct Supervisor_Home_Reply_1_binding {
     uint8_t none; /* no variables */
 } Supervisor_Home_Reply_1_binding_t;
-
 static const pn_type_t s_binding_Supervisor_Home_Reply_1 = { .kind = PN_KIND_RECORD,
     .name = "Cell.Supervisor.Home.Reply 1", .size = sizeof(Supervisor_Home_Reply_1_binding_t),
     .count = 0U, .field = NULL };
@@ -3350,8 +3123,7 @@ PN_NET_SEARCH static bool Supervisor_Home_Reply_1_enumerate(pn_ctx_t *cx, const 
     const net_marking_t *const m = marking;
     Supervisor_Home_Reply_1_binding_t b = { 0 };
     pn_begin(cx, "page `Home`, transition `Reply 1` (ID1412311060)", m->now);
-    /* leaving 1: () (ID1412311070) */
-    if (!m->Supervisor_Home_leaving_1.full) {
+    if (!m->Supervisor_Home_leaving_1.full) { /* leaving 1: () (ID1412311070) */
         return true;
     }
     /* flag1_externo: DONE (ID1412311086) */
@@ -3373,12 +3145,9 @@ PN_NET_SEARCH static bool Supervisor_Home_Reply_1_fire(pn_ctx_t *cx, void *marki
     if (!pn_has_room(cx, m->Supervisor_Home_home_1.full, &s_at_Supervisor_Home_home_1)) {
         return false;
     }
-    /* leaving 1: () (ID1412311070) */
-    m->Supervisor_Home_leaving_1.full = false;
-    /* flag1_externo: DONE (ID1412311086) */
-    m->flag1_externo.full = false;
-    /* home 1: () (ID1412311072) */
-    m->Supervisor_Home_home_1.full = true;
+    m->Supervisor_Home_leaving_1.full = false; /* leaving 1: () (ID1412311070) */
+    m->flag1_externo.full = false; /* flag1_externo: DONE (ID1412311086) */
+    m->Supervisor_Home_home_1.full = true; /* home 1: () (ID1412311072) */
     return true;
 }
 
@@ -3386,7 +3155,6 @@ PN_NET_SEARCH static bool Supervisor_Home_Reply_1_fire(pn_ctx_t *cx, void *marki
 typedef struct Supervisor_Home_Reply_2_binding {
     uint8_t none; /* no variables */
 } Supervisor_Home_Reply_2_binding_t;
-
 static const pn_type_t s_binding_Supervisor_Home_Reply_2 = { .kind = PN_KIND_RECORD,
     .name = "Cell.Supervisor.Home.Reply 2", .size = sizeof(Supervisor_Home_Reply_2_binding_t),
     .count = 0U, .field = NULL };
@@ -3397,8 +3165,7 @@ PN_NET_SEARCH static bool Supervisor_Home_Reply_2_enumerate(pn_ctx_t *cx, const 
     const net_marking_t *const m = marking;
     Supervisor_Home_Reply_2_binding_t b = { 0 };
     pn_begin(cx, "page `Home`, transition `Reply 2` (ID1412311091)", m->now);
-    /* leaving 2: () (ID1412311101) */
-    if (!m->Supervisor_Home_leaving_2.full) {
+    if (!m->Supervisor_Home_leaving_2.full) { /* leaving 2: () (ID1412311101) */
         return true;
     }
     /* flag2_externo: DONE (ID1412311117) */
@@ -3420,12 +3187,9 @@ PN_NET_SEARCH static bool Supervisor_Home_Reply_2_fire(pn_ctx_t *cx, void *marki
     if (!pn_has_room(cx, m->Supervisor_Home_home_2.full, &s_at_Supervisor_Home_home_2)) {
         return false;
     }
-    /* leaving 2: () (ID1412311101) */
-    m->Supervisor_Home_leaving_2.full = false;
-    /* flag2_externo: DONE (ID1412311117) */
-    m->flag2_externo.full = false;
-    /* home 2: () (ID1412311103) */
-    m->Supervisor_Home_home_2.full = true;
+    m->Supervisor_Home_leaving_2.full = false; /* leaving 2: () (ID1412311101) */
+    m->flag2_externo.full = false; /* flag2_externo: DONE (ID1412311117) */
+    m->Supervisor_Home_home_2.full = true; /* home 2: () (ID1412311103) */
     return true;
 }
 
@@ -3436,11 +3200,9 @@ PN_NET_SEARCH static bool Supervisor_Home_Reply_2_fire(pn_ctx_t *cx, void *marki
 typedef struct Robot_Accept_binding {
     int64_t c;
 } Robot_Accept_binding_t;
-
 static const pn_field_t s_variables_Robot_Accept[] = {
     { "c", &s_COMMAND, offsetof(Robot_Accept_binding_t, c), false },
 };
-
 static const pn_type_t s_binding_Robot_Accept = { .kind = PN_KIND_RECORD, .name = "Robot.Accept",
     .size = sizeof(Robot_Accept_binding_t), .count = 1U, .field = s_variables_Robot_Accept };
 
@@ -3453,12 +3215,10 @@ PN_NET_SEARCH static bool Robot_Accept_enumerate(pn_ctx_t *cx, const void *marki
     const Robot_places_t *const own = pn_net.transition[self].places;
     const COMMAND_slot_t *const at_flag_interno = pn_bag_look(own->flag_interno, m);
     const UNIT_slot_t *const at_Waiting = pn_bag_look(own->Waiting, m);
-    /* Waiting: () (ID1412311138) */
-    if (!at_Waiting->full) {
+    if (!at_Waiting->full) { /* Waiting: () (ID1412311138) */
         return true;
     }
-    /* flag_interno: c (ID1412311136) */
-    if (!at_flag_interno->full) {
+    if (!at_flag_interno->full) { /* flag_interno: c (ID1412311136) */
         return true;
     }
     b.c = at_flag_interno->value;
@@ -3480,12 +3240,9 @@ PN_NET_SEARCH static bool Robot_Accept_fire(pn_ctx_t *cx, void *marking, uint32_
     if (!pn_has_room(cx, at_Commanded->full, own->Commanded)) {
         return false;
     }
-    /* flag_interno: c (ID1412311136) */
-    at_flag_interno->full = false;
-    /* Waiting: () (ID1412311138) */
-    at_Waiting->full = false;
-    /* Commanded: c (ID1412311140) */
-    at_Commanded->value = b->c;
+    at_flag_interno->full = false; /* flag_interno: c (ID1412311136) */
+    at_Waiting->full = false; /* Waiting: () (ID1412311138) */
+    at_Commanded->value = b->c; /* Commanded: c (ID1412311140) */
     at_Commanded->full = true;
     return true;
 }
@@ -3497,11 +3254,9 @@ PN_NET_SEARCH static bool Robot_Accept_fire(pn_ctx_t *cx, void *marking, uint32_
 typedef struct Robot_Report_binding {
     int64_t e;
 } Robot_Report_binding_t;
-
 static const pn_field_t s_variables_Robot_Report[] = {
     { "e", &s_REPLY, offsetof(Robot_Report_binding_t, e), false },
 };
-
 static const pn_type_t s_binding_Robot_Report = { .kind = PN_KIND_RECORD, .name = "Robot.Report",
     .size = sizeof(Robot_Report_binding_t), .count = 1U, .field = s_variables_Robot_Report };
 
@@ -3513,8 +3268,7 @@ PN_NET_SEARCH static bool Robot_Report_enumerate(pn_ctx_t *cx, const void *marki
     pn_begin(cx, "page `Robot`, transition `Report` (ID1412311145)", m->now);
     const Robot_places_t *const own = pn_net.transition[self].places;
     const REPLY_slot_t *const at_Done = pn_bag_look(own->Done, m);
-    /* Done: e (ID1412311154) */
-    if (!at_Done->full) {
+    if (!at_Done->full) { /* Done: e (ID1412311154) */
         return true;
     }
     b.e = at_Done->value;
@@ -3537,13 +3291,10 @@ PN_NET_SEARCH static bool Robot_Report_fire(pn_ctx_t *cx, void *marking, uint32_
         || !pn_has_room(cx, at_Waiting->full, own->Waiting)) {
         return false;
     }
-    /* Done: e (ID1412311154) */
-    at_Done->full = false;
-    /* flag_externo: e (ID1412311156) */
-    at_flag_externo->value = b->e;
+    at_Done->full = false; /* Done: e (ID1412311154) */
+    at_flag_externo->value = b->e; /* flag_externo: e (ID1412311156) */
     at_flag_externo->full = true;
-    /* Waiting: () (ID1412311158) */
-    at_Waiting->full = true;
+    at_Waiting->full = true; /* Waiting: () (ID1412311158) */
     return true;
 }
 
@@ -3556,12 +3307,10 @@ typedef struct Robot_MoveJoint_binding {
     int64_t c;
     POSE_t p;
 } Robot_MoveJoint_binding_t;
-
 static const pn_field_t s_variables_Robot_MoveJoint[] = {
     { "c", &s_COMMAND, offsetof(Robot_MoveJoint_binding_t, c), false },
     { "p", &s_POSE, offsetof(Robot_MoveJoint_binding_t, p), false },
 };
-
 static const pn_type_t s_binding_Robot_MoveJoint = { .kind = PN_KIND_RECORD,
     .name = "Robot.MoveJoint", .size = sizeof(Robot_MoveJoint_binding_t), .count = 2U,
     .field = s_variables_Robot_MoveJoint };
@@ -3575,17 +3324,14 @@ PN_NET_SEARCH static bool Robot_MoveJoint_enumerate(pn_ctx_t *cx, const void *ma
     const Robot_places_t *const own = pn_net.transition[self].places;
     const POSE_slot_t *const at_dadosrobo = pn_bag_look(own->dadosrobo, m);
     const COMMAND_slot_t *const at_Commanded = pn_bag_look(own->Commanded, m);
-    /* Commanded: c (ID1412311165) */
-    if (!at_Commanded->full) {
+    if (!at_Commanded->full) { /* Commanded: c (ID1412311165) */
         return true;
     }
     b.c = at_Commanded->value;
-    /* guard [c = JOINT] */
-    if (b.c != val_JOINT) {
+    if (b.c != val_JOINT) { /* guard [c = JOINT] */
         return true;
     }
-    /* dadosrobo: p (ID1412311244) */
-    if (!at_dadosrobo->full) {
+    if (!at_dadosrobo->full) { /* dadosrobo: p (ID1412311244) */
         return true;
     }
     b.p = at_dadosrobo->value;
@@ -3614,12 +3360,9 @@ PN_NET_SEARCH static bool Robot_MoveJoint_fire(pn_ctx_t *cx, void *marking, uint
     if (!pn_has_room(cx, at_Done->full, own->Done)) {
         return false;
     }
-    /* Commanded: c (ID1412311165) */
-    at_Commanded->full = false;
-    /* dadosrobo: p (ID1412311244) */
-    at_dadosrobo->full = false;
-    /* Done: DONE (ID1412311167) */
-    at_Done->value = Done_token;
+    at_Commanded->full = false; /* Commanded: c (ID1412311165) */
+    at_dadosrobo->full = false; /* dadosrobo: p (ID1412311244) */
+    at_Done->value = Done_token; /* Done: DONE (ID1412311167) */
     at_Done->full = true;
     return true;
 }
@@ -3633,12 +3376,10 @@ typedef struct Robot_MoveLinear_binding {
     int64_t c;
     POSE_t p;
 } Robot_MoveLinear_binding_t;
-
 static const pn_field_t s_variables_Robot_MoveLinear[] = {
     { "c", &s_COMMAND, offsetof(Robot_MoveLinear_binding_t, c), false },
     { "p", &s_POSE, offsetof(Robot_MoveLinear_binding_t, p), false },
 };
-
 static const pn_type_t s_binding_Robot_MoveLinear = { .kind = PN_KIND_RECORD,
     .name = "Robot.MoveLinear", .size = sizeof(Robot_MoveLinear_binding_t), .count = 2U,
     .field = s_variables_Robot_MoveLinear };
@@ -3652,17 +3393,14 @@ PN_NET_SEARCH static bool Robot_MoveLinear_enumerate(pn_ctx_t *cx, const void *m
     const Robot_places_t *const own = pn_net.transition[self].places;
     const POSE_slot_t *const at_dadosrobo = pn_bag_look(own->dadosrobo, m);
     const COMMAND_slot_t *const at_Commanded = pn_bag_look(own->Commanded, m);
-    /* Commanded: c (ID1412311174) */
-    if (!at_Commanded->full) {
+    if (!at_Commanded->full) { /* Commanded: c (ID1412311174) */
         return true;
     }
     b.c = at_Commanded->value;
-    /* guard [c = LINEAR] */
-    if (b.c != val_LINEAR) {
+    if (b.c != val_LINEAR) { /* guard [c = LINEAR] */
         return true;
     }
-    /* dadosrobo: p (ID1412311246) */
-    if (!at_dadosrobo->full) {
+    if (!at_dadosrobo->full) { /* dadosrobo: p (ID1412311246) */
         return true;
     }
     b.p = at_dadosrobo->value;
@@ -3691,12 +3429,9 @@ PN_NET_SEARCH static bool Robot_MoveLinear_fire(pn_ctx_t *cx, void *marking, uin
     if (!pn_has_room(cx, at_Done->full, own->Done)) {
         return false;
     }
-    /* Commanded: c (ID1412311174) */
-    at_Commanded->full = false;
-    /* dadosrobo: p (ID1412311246) */
-    at_dadosrobo->full = false;
-    /* Done: DONE (ID1412311176) */
-    at_Done->value = Done_token;
+    at_Commanded->full = false; /* Commanded: c (ID1412311174) */
+    at_dadosrobo->full = false; /* dadosrobo: p (ID1412311246) */
+    at_Done->value = Done_token; /* Done: DONE (ID1412311176) */
     at_Done->full = true;
     return true;
 }
@@ -3709,11 +3444,9 @@ PN_NET_SEARCH static bool Robot_MoveLinear_fire(pn_ctx_t *cx, void *marking, uin
 typedef struct Robot_MoveHome_binding {
     int64_t c;
 } Robot_MoveHome_binding_t;
-
 static const pn_field_t s_variables_Robot_MoveHome[] = {
     { "c", &s_COMMAND, offsetof(Robot_MoveHome_binding_t, c), false },
 };
-
 static const pn_type_t s_binding_Robot_MoveHome = { .kind = PN_KIND_RECORD,
     .name = "Robot.MoveHome", .size = sizeof(Robot_MoveHome_binding_t), .count = 1U,
     .field = s_variables_Robot_MoveHome };
@@ -3726,13 +3459,11 @@ PN_NET_SEARCH static bool Robot_MoveHome_enumerate(pn_ctx_t *cx, const void *mar
     pn_begin(cx, "page `Robot`, transition `MoveHome` (ID1412311178)", m->now);
     const Robot_places_t *const own = pn_net.transition[self].places;
     const COMMAND_slot_t *const at_Commanded = pn_bag_look(own->Commanded, m);
-    /* Commanded: c (ID1412311183) */
-    if (!at_Commanded->full) {
+    if (!at_Commanded->full) { /* Commanded: c (ID1412311183) */
         return true;
     }
     b.c = at_Commanded->value;
-    /* guard [c = HOME] */
-    if (b.c != val_HOME) {
+    if (b.c != val_HOME) { /* guard [c = HOME] */
         return true;
     }
     return sink(user, self, &b);
@@ -3759,10 +3490,8 @@ PN_NET_SEARCH static bool Robot_MoveHome_fire(pn_ctx_t *cx, void *marking, uint3
     if (!pn_has_room(cx, at_Done->full, own->Done)) {
         return false;
     }
-    /* Commanded: c (ID1412311183) */
-    at_Commanded->full = false;
-    /* Done: DONE (ID1412311185) */
-    at_Done->value = Done_token;
+    at_Commanded->full = false; /* Commanded: c (ID1412311183) */
+    at_Done->value = Done_token; /* Done: DONE (ID1412311185) */
     at_Done->full = true;
     return true;
 }
@@ -3778,14 +3507,12 @@ typedef struct Robot_Measure_binding {
     int64_t seen;
     POSE_t m; /* output of the code segment */
 } Robot_Measure_binding_t;
-
 static const pn_field_t s_variables_Robot_Measure[] = {
     { "c", &s_COMMAND, offsetof(Robot_Measure_binding_t, c), false },
     { "r", &s_POSE, offsetof(Robot_Measure_binding_t, r), false },
     { "seen", &s_REPLY, offsetof(Robot_Measure_binding_t, seen), false },
     { "m", &s_POSE, offsetof(Robot_Measure_binding_t, m), false },
 };
-
 static const pn_type_t s_binding_Robot_Measure = { .kind = PN_KIND_RECORD, .name = "Robot.Measure",
     .size = sizeof(Robot_Measure_binding_t), .count = 4U, .field = s_variables_Robot_Measure };
 
@@ -3798,17 +3525,14 @@ PN_NET_SEARCH static bool Robot_Measure_enumerate(pn_ctx_t *cx, const void *mark
     const Robot_places_t *const own = pn_net.transition[self].places;
     const POSE_slot_t *const at_referencia = pn_bag_look(own->referencia, m);
     const COMMAND_slot_t *const at_Commanded = pn_bag_look(own->Commanded, m);
-    /* Commanded: c (ID1412311192) */
-    if (!at_Commanded->full) {
+    if (!at_Commanded->full) { /* Commanded: c (ID1412311192) */
         return true;
     }
     b.c = at_Commanded->value;
-    /* guard [c = MEASURE] */
-    if (b.c != val_MEASURE) {
+    if (b.c != val_MEASURE) { /* guard [c = MEASURE] */
         return true;
     }
-    /* referencia: r (ID1412311248) */
-    if (!at_referencia->full) {
+    if (!at_referencia->full) { /* referencia: r (ID1412311248) */
         return true;
     }
     b.r = at_referencia->value;
@@ -3852,15 +3576,11 @@ PN_NET_SEARCH static bool Robot_Measure_fire(pn_ctx_t *cx, void *marking, uint32
         || !pn_has_room(cx, at_medida->full, own->medida)) {
         return false;
     }
-    /* Commanded: c (ID1412311192) */
-    at_Commanded->full = false;
-    /* referencia: r (ID1412311248) */
-    at_referencia->full = false;
-    /* Done: outcome seen (ID1412311194) */
-    at_Done->value = Done_token;
+    at_Commanded->full = false; /* Commanded: c (ID1412311192) */
+    at_referencia->full = false; /* referencia: r (ID1412311248) */
+    at_Done->value = Done_token; /* Done: outcome seen (ID1412311194) */
     at_Done->full = true;
-    /* medida: m (ID1412311250) */
-    at_medida->value = b->m;
+    at_medida->value = b->m; /* medida: m (ID1412311250) */
     at_medida->full = true;
     return true;
 }
@@ -3874,12 +3594,10 @@ typedef struct Robot_Drill_binding {
     int64_t c;
     int64_t drilled;
 } Robot_Drill_binding_t;
-
 static const pn_field_t s_variables_Robot_Drill[] = {
     { "c", &s_COMMAND, offsetof(Robot_Drill_binding_t, c), false },
     { "drilled", &s_REPLY, offsetof(Robot_Drill_binding_t, drilled), false },
 };
-
 static const pn_type_t s_binding_Robot_Drill = { .kind = PN_KIND_RECORD, .name = "Robot.Drill",
     .size = sizeof(Robot_Drill_binding_t), .count = 2U, .field = s_variables_Robot_Drill };
 
@@ -3891,13 +3609,11 @@ PN_NET_SEARCH static bool Robot_Drill_enumerate(pn_ctx_t *cx, const void *markin
     pn_begin(cx, "page `Robot`, transition `Drill` (ID1412311196)", m->now);
     const Robot_places_t *const own = pn_net.transition[self].places;
     const COMMAND_slot_t *const at_Commanded = pn_bag_look(own->Commanded, m);
-    /* Commanded: c (ID1412311201) */
-    if (!at_Commanded->full) {
+    if (!at_Commanded->full) { /* Commanded: c (ID1412311201) */
         return true;
     }
     b.c = at_Commanded->value;
-    /* guard [c = DRILL] */
-    if (b.c != val_DRILL) {
+    if (b.c != val_DRILL) { /* guard [c = DRILL] */
         return true;
     }
     /* drilled over all of REPLY */
@@ -3937,10 +3653,8 @@ PN_NET_SEARCH static bool Robot_Drill_fire(pn_ctx_t *cx, void *marking, uint32_t
     if (!pn_has_room(cx, at_Done->full, own->Done)) {
         return false;
     }
-    /* Commanded: c (ID1412311201) */
-    at_Commanded->full = false;
-    /* Done: outcome drilled (ID1412311203) */
-    at_Done->value = Done_token;
+    at_Commanded->full = false; /* Commanded: c (ID1412311201) */
+    at_Done->value = Done_token; /* Done: outcome drilled (ID1412311203) */
     at_Done->full = true;
     return true;
 }
@@ -3954,12 +3668,10 @@ typedef struct Robot_Insert_binding {
     int64_t c;
     int64_t inserted;
 } Robot_Insert_binding_t;
-
 static const pn_field_t s_variables_Robot_Insert[] = {
     { "c", &s_COMMAND, offsetof(Robot_Insert_binding_t, c), false },
     { "inserted", &s_REPLY, offsetof(Robot_Insert_binding_t, inserted), false },
 };
-
 static const pn_type_t s_binding_Robot_Insert = { .kind = PN_KIND_RECORD, .name = "Robot.Insert",
     .size = sizeof(Robot_Insert_binding_t), .count = 2U, .field = s_variables_Robot_Insert };
 
@@ -3971,13 +3683,11 @@ PN_NET_SEARCH static bool Robot_Insert_enumerate(pn_ctx_t *cx, const void *marki
     pn_begin(cx, "page `Robot`, transition `Insert` (ID1412311205)", m->now);
     const Robot_places_t *const own = pn_net.transition[self].places;
     const COMMAND_slot_t *const at_Commanded = pn_bag_look(own->Commanded, m);
-    /* Commanded: c (ID1412311210) */
-    if (!at_Commanded->full) {
+    if (!at_Commanded->full) { /* Commanded: c (ID1412311210) */
         return true;
     }
     b.c = at_Commanded->value;
-    /* guard [c = INSERT] */
-    if (b.c != val_INSERT) {
+    if (b.c != val_INSERT) { /* guard [c = INSERT] */
         return true;
     }
     /* inserted over all of REPLY */
@@ -4017,10 +3727,8 @@ PN_NET_SEARCH static bool Robot_Insert_fire(pn_ctx_t *cx, void *marking, uint32_
     if (!pn_has_room(cx, at_Done->full, own->Done)) {
         return false;
     }
-    /* Commanded: c (ID1412311210) */
-    at_Commanded->full = false;
-    /* Done: outcome inserted (ID1412311212) */
-    at_Done->value = Done_token;
+    at_Commanded->full = false; /* Commanded: c (ID1412311210) */
+    at_Done->value = Done_token; /* Done: outcome inserted (ID1412311212) */
     at_Done->full = true;
     return true;
 }
@@ -4034,12 +3742,10 @@ typedef struct Robot_Press_binding {
     int64_t c;
     int64_t pressed;
 } Robot_Press_binding_t;
-
 static const pn_field_t s_variables_Robot_Press[] = {
     { "c", &s_COMMAND, offsetof(Robot_Press_binding_t, c), false },
     { "pressed", &s_REPLY, offsetof(Robot_Press_binding_t, pressed), false },
 };
-
 static const pn_type_t s_binding_Robot_Press = { .kind = PN_KIND_RECORD, .name = "Robot.Press",
     .size = sizeof(Robot_Press_binding_t), .count = 2U, .field = s_variables_Robot_Press };
 
@@ -4051,13 +3757,11 @@ PN_NET_SEARCH static bool Robot_Press_enumerate(pn_ctx_t *cx, const void *markin
     pn_begin(cx, "page `Robot`, transition `Press` (ID1412311214)", m->now);
     const Robot_places_t *const own = pn_net.transition[self].places;
     const COMMAND_slot_t *const at_Commanded = pn_bag_look(own->Commanded, m);
-    /* Commanded: c (ID1412311219) */
-    if (!at_Commanded->full) {
+    if (!at_Commanded->full) { /* Commanded: c (ID1412311219) */
         return true;
     }
     b.c = at_Commanded->value;
-    /* guard [c = PRESS] */
-    if (b.c != val_PRESS) {
+    if (b.c != val_PRESS) { /* guard [c = PRESS] */
         return true;
     }
     /* pressed over all of REPLY */
@@ -4097,10 +3801,8 @@ PN_NET_SEARCH static bool Robot_Press_fire(pn_ctx_t *cx, void *marking, uint32_t
     if (!pn_has_room(cx, at_Done->full, own->Done)) {
         return false;
     }
-    /* Commanded: c (ID1412311219) */
-    at_Commanded->full = false;
-    /* Done: outcome pressed (ID1412311221) */
-    at_Done->value = Done_token;
+    at_Commanded->full = false; /* Commanded: c (ID1412311219) */
+    at_Done->value = Done_token; /* Done: outcome pressed (ID1412311221) */
     at_Done->full = true;
     return true;
 }
@@ -4114,12 +3816,10 @@ typedef struct Robot_Release_binding {
     int64_t c;
     int64_t released;
 } Robot_Release_binding_t;
-
 static const pn_field_t s_variables_Robot_Release[] = {
     { "c", &s_COMMAND, offsetof(Robot_Release_binding_t, c), false },
     { "released", &s_REPLY, offsetof(Robot_Release_binding_t, released), false },
 };
-
 static const pn_type_t s_binding_Robot_Release = { .kind = PN_KIND_RECORD, .name = "Robot.Release",
     .size = sizeof(Robot_Release_binding_t), .count = 2U, .field = s_variables_Robot_Release };
 
@@ -4131,13 +3831,11 @@ PN_NET_SEARCH static bool Robot_Release_enumerate(pn_ctx_t *cx, const void *mark
     pn_begin(cx, "page `Robot`, transition `Release` (ID1412311223)", m->now);
     const Robot_places_t *const own = pn_net.transition[self].places;
     const COMMAND_slot_t *const at_Commanded = pn_bag_look(own->Commanded, m);
-    /* Commanded: c (ID1412311228) */
-    if (!at_Commanded->full) {
+    if (!at_Commanded->full) { /* Commanded: c (ID1412311228) */
         return true;
     }
     b.c = at_Commanded->value;
-    /* guard [c = RELEASE] */
-    if (b.c != val_RELEASE) {
+    if (b.c != val_RELEASE) { /* guard [c = RELEASE] */
         return true;
     }
     /* released over all of REPLY */
@@ -4177,10 +3875,8 @@ PN_NET_SEARCH static bool Robot_Release_fire(pn_ctx_t *cx, void *marking, uint32
     if (!pn_has_room(cx, at_Done->full, own->Done)) {
         return false;
     }
-    /* Commanded: c (ID1412311228) */
-    at_Commanded->full = false;
-    /* Done: outcome released (ID1412311230) */
-    at_Done->value = Done_token;
+    at_Commanded->full = false; /* Commanded: c (ID1412311228) */
+    at_Done->value = Done_token; /* Done: outcome released (ID1412311230) */
     at_Done->full = true;
     return true;
 }
@@ -4350,440 +4046,367 @@ static const uint32_t s_bag_places[] = { 0U, 1U, 2U, 3U, 4U, 5U, 6U, 7U, 8U, 9U,
 /* For each transition: those that may be enabled in another way when it has occurred, the places that it may change, and the
  * places that decide about it. */
 static const pn_transition_t s_transitions[] = {
-    /* 0 */
-    { .name = "Cell.Supervisor.Load.Load", .id = "ID1412310271",
+    { /* 0 */ .name = "Cell.Supervisor.Load.Load", .id = "ID1412310271",
         .origin = "page `Load`, transition `Load` (ID1412310271)", .owner = 0, .priority = 1000,
         PN_CODE(Supervisor_Load_Load), PN_INDICES(affected, 0U, 1U), PN_INDICES(touched, 10U, 11U),
         PN_INDICES(read, 10U) },
-    /* 1 */
-    { .name = "Cell.Supervisor.Approach.Send", .id = "ID1412310300",
+    { /* 1 */ .name = "Cell.Supervisor.Approach.Send", .id = "ID1412310300",
         .origin = "page `Approach`, transition `Send` (ID1412310300)", .owner = 0, .priority = 1000,
         PN_CODE(Supervisor_Approach_Send), PN_INDICES(affected, 1U, 2U, 3U),
         PN_INDICES(touched, 11U, 19U, 21U), PN_INDICES(read, 11U) },
-    /* 2 */
-    { .name = "Cell.Supervisor.Approach.Arrived", .id = "ID1412310311",
+    { /* 2 */ .name = "Cell.Supervisor.Approach.Arrived", .id = "ID1412310311",
         .origin = "page `Approach`, transition `Arrived` (ID1412310311)", .owner = 0,
         .priority = 1000, PN_CODE(Supervisor_Approach_Arrived), PN_INDICES(affected, 2U, 7U),
         PN_INDICES(touched, 12U, 20U, 21U), PN_INDICES(read, 20U, 21U) },
-    /* 3 */
-    { .name = "Cell.Supervisor.Approach.Move both.Command", .id = "ID1412310941",
+    { /* 3 */ .name = "Cell.Supervisor.Approach.Move both.Command", .id = "ID1412310941",
         .origin = "page `MoveBoth`, transition `Command` (ID1412310941)", .owner = 0,
         .priority = 1000, PN_CODE(MoveBoth_Command), .places = &s_in_Supervisor_Approach_Move_both,
         PN_INDICES(affected, 3U, 5U, 6U, 53U, 55U, 56U, 63U, 65U, 66U),
         PN_INDICES(touched, 0U, 1U, 5U, 6U, 19U, 22U, 24U), PN_INDICES(read, 19U) },
-    /* 4 */
-    { .name = "Cell.Supervisor.Approach.Move both.Both", .id = "ID1412310948",
+    { /* 4 */ .name = "Cell.Supervisor.Approach.Move both.Both", .id = "ID1412310948",
         .origin = "page `MoveBoth`, transition `Both` (ID1412310948)", .owner = 0, .priority = 1000,
         PN_CODE(MoveBoth_Both), .places = &s_in_Supervisor_Approach_Move_both,
         PN_INDICES(affected, 2U, 4U), PN_INDICES(touched, 20U, 23U, 25U),
         PN_INDICES(read, 23U, 25U) },
-    /* 5 */
-    { .name = "Cell.Supervisor.Approach.Move both.Reply 1", .id = "ID1412310962",
+    { /* 5 */ .name = "Cell.Supervisor.Approach.Move both.Reply 1", .id = "ID1412310962",
         .origin = "page `MoveBoth`, transition `Reply 1` (ID1412310962)", .owner = 0,
         .priority = 1000, PN_CODE(MoveBoth_Reply_1), .places = &s_in_Supervisor_Approach_Move_both,
         PN_INDICES(affected, 4U, 5U, 8U, 9U, 10U, 11U, 18U, 26U, 32U, 36U, 37U, 40U, 43U, 47U, 51U),
         PN_INDICES(touched, 2U, 22U, 23U), PN_INDICES(read, 2U, 22U) },
-    /* 6 */
-    { .name = "Cell.Supervisor.Approach.Move both.Reply 2", .id = "ID1412310999",
+    { /* 6 */ .name = "Cell.Supervisor.Approach.Move both.Reply 2", .id = "ID1412310999",
         .origin = "page `MoveBoth`, transition `Reply 2` (ID1412310999)", .owner = 0,
         .priority = 1000, PN_CODE(MoveBoth_Reply_2), .places = &s_in_Supervisor_Approach_Move_both,
         PN_INDICES(affected, 4U, 6U, 19U, 27U, 33U, 35U, 38U, 39U, 44U, 48U, 52U),
         PN_INDICES(touched, 7U, 24U, 25U), PN_INDICES(read, 7U, 24U) },
-    /* 7 */
-    { .name = "Cell.Supervisor.Verify.Ask first", .id = "ID1412310377",
+    { /* 7 */ .name = "Cell.Supervisor.Verify.Ask first", .id = "ID1412310377",
         .origin = "page `Verify`, transition `Ask first` (ID1412310377)", .owner = 0,
         .priority = 1000, PN_CODE(Supervisor_Verify_Ask_first),
         PN_INDICES(affected, 7U, 8U, 10U, 53U, 58U), PN_INDICES(touched, 1U, 3U, 12U, 26U),
         PN_INDICES(read, 12U) },
-    /* 8 */
-    { .name = "Cell.Supervisor.Verify.Ask last", .id = "ID1412310385",
+    { /* 8 */ .name = "Cell.Supervisor.Verify.Ask last", .id = "ID1412310385",
         .origin = "page `Verify`, transition `Ask last` (ID1412310385)", .owner = 0,
         .priority = 1000, PN_CODE(Supervisor_Verify_Ask_last),
         PN_INDICES(affected, 5U, 8U, 9U, 10U, 11U, 18U, 26U, 32U, 36U, 37U, 40U, 43U, 47U, 51U, 53U,
         58U), PN_INDICES(touched, 1U, 2U, 3U, 4U, 26U, 27U), PN_INDICES(read, 2U, 4U, 26U) },
-    /* 9 */
-    { .name = "Cell.Supervisor.Verify.Measured", .id = "ID1412310393",
+    { /* 9 */ .name = "Cell.Supervisor.Verify.Measured", .id = "ID1412310393",
         .origin = "page `Verify`, transition `Measured` (ID1412310393)", .owner = 0,
         .priority = 1000, PN_CODE(Supervisor_Verify_Measured),
         PN_INDICES(affected, 5U, 8U, 9U, 10U, 11U, 12U, 18U, 26U, 32U, 36U, 37U, 40U, 43U, 47U,
         51U), PN_INDICES(touched, 2U, 4U, 13U, 27U), PN_INDICES(read, 2U, 4U, 27U) },
-    /* 10 */
-    { .name = "Cell.Supervisor.Verify.First lost", .id = "ID1412320018",
+    { /* 10 */ .name = "Cell.Supervisor.Verify.First lost", .id = "ID1412320018",
         .origin = "page `Verify`, transition `First lost` (ID1412320018)", .owner = 0,
         .priority = 1000, PN_CODE(Supervisor_Verify_First_lost),
         PN_INDICES(affected, 5U, 8U, 9U, 10U, 11U, 18U, 20U, 21U, 23U, 26U, 32U, 36U, 37U, 40U, 43U,
         47U, 49U, 50U, 51U), PN_INDICES(touched, 2U, 4U, 15U, 17U, 26U),
         PN_INDICES(read, 2U, 4U, 26U) },
-    /* 11 */
-    { .name = "Cell.Supervisor.Verify.Last lost", .id = "ID1412320023",
+    { /* 11 */ .name = "Cell.Supervisor.Verify.Last lost", .id = "ID1412320023",
         .origin = "page `Verify`, transition `Last lost` (ID1412320023)", .owner = 0,
         .priority = 1000, PN_CODE(Supervisor_Verify_Last_lost),
         PN_INDICES(affected, 5U, 8U, 9U, 10U, 11U, 18U, 20U, 21U, 23U, 26U, 32U, 36U, 37U, 40U, 43U,
         47U, 49U, 50U, 51U), PN_INDICES(touched, 2U, 4U, 15U, 17U, 27U),
         PN_INDICES(read, 2U, 4U, 27U) },
-    /* 12 */
-    { .name = "Cell.Supervisor.Correct.Compare", .id = "ID1412310453",
+    { /* 12 */ .name = "Cell.Supervisor.Correct.Compare", .id = "ID1412310453",
         .origin = "page `Correct`, transition `Compare` (ID1412310453)", .owner = 0,
         .priority = 1000, PN_CODE(Supervisor_Correct_Compare),
         PN_INDICES(affected, 12U, 13U, 14U, 15U), PN_INDICES(touched, 13U, 28U, 31U),
         PN_INDICES(read, 13U) },
-    /* 13 */
-    { .name = "Cell.Supervisor.Correct.Move over", .id = "ID1412310461",
+    { /* 13 */ .name = "Cell.Supervisor.Correct.Move over", .id = "ID1412310461",
         .origin = "page `Correct`, transition `Move over` (ID1412310461)", .owner = 0,
         .priority = 1000, PN_CODE(Supervisor_Correct_Move_over),
         PN_INDICES(affected, 13U, 15U, 16U), PN_INDICES(touched, 28U, 29U),
         PN_INDICES(read, 28U, 31U) },
-    /* 14 */
-    { .name = "Cell.Supervisor.Correct.Moved", .id = "ID1412310478",
+    { /* 14 */ .name = "Cell.Supervisor.Correct.Moved", .id = "ID1412310478",
         .origin = "page `Correct`, transition `Moved` (ID1412310478)", .owner = 0, .priority = 1000,
         PN_CODE(Supervisor_Correct_Moved), PN_INDICES(affected, 13U, 14U, 15U, 22U),
         PN_INDICES(touched, 14U, 30U, 31U), PN_INDICES(read, 30U, 31U) },
-    /* 15 */
-    { .name = "Cell.Supervisor.Correct.As planned", .id = "ID1412310526",
+    { /* 15 */ .name = "Cell.Supervisor.Correct.As planned", .id = "ID1412310526",
         .origin = "page `Correct`, transition `As planned` (ID1412310526)", .owner = 0,
         .priority = 1000, PN_CODE(Supervisor_Correct_As_planned),
         PN_INDICES(affected, 13U, 14U, 15U, 22U), PN_INDICES(touched, 14U, 28U, 31U),
         PN_INDICES(read, 28U, 31U) },
-    /* 16 */
-    { .name = "Cell.Supervisor.Correct.Move both.Command", .id = "ID1412310941",
+    { /* 16 */ .name = "Cell.Supervisor.Correct.Move both.Command", .id = "ID1412310941",
         .origin = "page `MoveBoth`, transition `Command` (ID1412310941)", .owner = 0,
         .priority = 1000, PN_CODE(MoveBoth_Command), .places = &s_in_Supervisor_Correct_Move_both,
         PN_INDICES(affected, 16U, 18U, 19U, 53U, 55U, 56U, 63U, 65U, 66U),
         PN_INDICES(touched, 0U, 1U, 5U, 6U, 29U, 32U, 34U), PN_INDICES(read, 29U) },
-    /* 17 */
-    { .name = "Cell.Supervisor.Correct.Move both.Both", .id = "ID1412310948",
+    { /* 17 */ .name = "Cell.Supervisor.Correct.Move both.Both", .id = "ID1412310948",
         .origin = "page `MoveBoth`, transition `Both` (ID1412310948)", .owner = 0, .priority = 1000,
         PN_CODE(MoveBoth_Both), .places = &s_in_Supervisor_Correct_Move_both,
         PN_INDICES(affected, 14U, 17U), PN_INDICES(touched, 30U, 33U, 35U),
         PN_INDICES(read, 33U, 35U) },
-    /* 18 */
-    { .name = "Cell.Supervisor.Correct.Move both.Reply 1", .id = "ID1412310962",
+    { /* 18 */ .name = "Cell.Supervisor.Correct.Move both.Reply 1", .id = "ID1412310962",
         .origin = "page `MoveBoth`, transition `Reply 1` (ID1412310962)", .owner = 0,
         .priority = 1000, PN_CODE(MoveBoth_Reply_1), .places = &s_in_Supervisor_Correct_Move_both,
         PN_INDICES(affected, 5U, 8U, 9U, 10U, 11U, 17U, 18U, 26U, 32U, 36U, 37U, 40U, 43U, 47U,
         51U), PN_INDICES(touched, 2U, 32U, 33U), PN_INDICES(read, 2U, 32U) },
-    /* 19 */
-    { .name = "Cell.Supervisor.Correct.Move both.Reply 2", .id = "ID1412310999",
+    { /* 19 */ .name = "Cell.Supervisor.Correct.Move both.Reply 2", .id = "ID1412310999",
         .origin = "page `MoveBoth`, transition `Reply 2` (ID1412310999)", .owner = 0,
         .priority = 1000, PN_CODE(MoveBoth_Reply_2), .places = &s_in_Supervisor_Correct_Move_both,
         PN_INDICES(affected, 6U, 17U, 19U, 27U, 33U, 35U, 38U, 39U, 44U, 48U, 52U),
         PN_INDICES(touched, 7U, 34U, 35U), PN_INDICES(read, 7U, 34U) },
-    /* 20 */
-    { .name = "Cell.Supervisor.Install.Go back", .id = "ID1412310594",
+    { /* 20 */ .name = "Cell.Supervisor.Install.Go back", .id = "ID1412310594",
         .origin = "page `Install`, transition `Go back` (ID1412310594)", .owner = 0,
         .priority = 1000, PN_CODE(Supervisor_Install_Go_back),
         PN_INDICES(affected, 20U, 21U, 23U, 45U), PN_INDICES(touched, 38U, 39U, 40U),
         PN_INDICES(read, 17U, 38U, 40U) },
-    /* 21 */
-    { .name = "Cell.Supervisor.Install.Next rivet", .id = "ID1412310624",
+    { /* 21 */ .name = "Cell.Supervisor.Install.Next rivet", .id = "ID1412310624",
         .origin = "page `Install`, transition `Next rivet` (ID1412310624)", .owner = 0,
         .priority = 1000, PN_CODE(Supervisor_Install_Next_rivet),
         PN_INDICES(affected, 20U, 21U, 23U, 24U, 50U), PN_INDICES(touched, 17U, 36U, 38U, 40U),
         PN_INDICES(read, 17U, 38U, 40U) },
-    /* 22 */
-    { .name = "Cell.Supervisor.Install.Start", .id = "ID1412310632",
+    { /* 22 */ .name = "Cell.Supervisor.Install.Start", .id = "ID1412310632",
         .origin = "page `Install`, transition `Start` (ID1412310632)", .owner = 0, .priority = 1000,
         PN_CODE(Supervisor_Install_Start), PN_INDICES(affected, 20U, 21U, 22U, 23U, 28U),
         PN_INDICES(touched, 14U, 37U, 40U), PN_INDICES(read, 14U) },
-    /* 23 */
-    { .name = "Cell.Supervisor.Install.Give up", .id = "ID1412320067",
+    { /* 23 */ .name = "Cell.Supervisor.Install.Give up", .id = "ID1412320067",
         .origin = "page `Install`, transition `Give up` (ID1412320067)", .owner = 0,
         .priority = 1000, PN_CODE(Supervisor_Install_Give_up),
         PN_INDICES(affected, 20U, 21U, 23U, 49U), PN_INDICES(touched, 15U, 38U, 40U),
         PN_INDICES(read, 17U, 38U, 40U) },
-    /* 24 */
-    { .name = "Cell.Supervisor.Install.Shift.Command", .id = "ID1412310941",
+    { /* 24 */ .name = "Cell.Supervisor.Install.Shift.Command", .id = "ID1412310941",
         .origin = "page `MoveBoth`, transition `Command` (ID1412310941)", .owner = 0,
         .priority = 1000, PN_CODE(MoveBoth_Command), .places = &s_in_Supervisor_Install_Shift,
         PN_INDICES(affected, 24U, 26U, 27U, 53U, 55U, 56U, 63U, 65U, 66U),
         PN_INDICES(touched, 0U, 1U, 5U, 6U, 36U, 41U, 43U), PN_INDICES(read, 36U) },
-    /* 25 */
-    { .name = "Cell.Supervisor.Install.Shift.Both", .id = "ID1412310948",
+    { /* 25 */ .name = "Cell.Supervisor.Install.Shift.Both", .id = "ID1412310948",
         .origin = "page `MoveBoth`, transition `Both` (ID1412310948)", .owner = 0, .priority = 1000,
         PN_CODE(MoveBoth_Both), .places = &s_in_Supervisor_Install_Shift,
         PN_INDICES(affected, 25U, 28U), PN_INDICES(touched, 37U, 42U, 44U),
         PN_INDICES(read, 42U, 44U) },
-    /* 26 */
-    { .name = "Cell.Supervisor.Install.Shift.Reply 1", .id = "ID1412310962",
+    { /* 26 */ .name = "Cell.Supervisor.Install.Shift.Reply 1", .id = "ID1412310962",
         .origin = "page `MoveBoth`, transition `Reply 1` (ID1412310962)", .owner = 0,
         .priority = 1000, PN_CODE(MoveBoth_Reply_1), .places = &s_in_Supervisor_Install_Shift,
         PN_INDICES(affected, 5U, 8U, 9U, 10U, 11U, 18U, 25U, 26U, 32U, 36U, 37U, 40U, 43U, 47U,
         51U), PN_INDICES(touched, 2U, 41U, 42U), PN_INDICES(read, 2U, 41U) },
-    /* 27 */
-    { .name = "Cell.Supervisor.Install.Shift.Reply 2", .id = "ID1412310999",
+    { /* 27 */ .name = "Cell.Supervisor.Install.Shift.Reply 2", .id = "ID1412310999",
         .origin = "page `MoveBoth`, transition `Reply 2` (ID1412310999)", .owner = 0,
         .priority = 1000, PN_CODE(MoveBoth_Reply_2), .places = &s_in_Supervisor_Install_Shift,
         PN_INDICES(affected, 6U, 19U, 25U, 27U, 33U, 35U, 38U, 39U, 44U, 48U, 52U),
         PN_INDICES(touched, 7U, 43U, 44U), PN_INDICES(read, 7U, 43U) },
-    /* 28 */
-    { .name = "Cell.Supervisor.Install.Rivet.Go in", .id = "ID1412310716",
+    { /* 28 */ .name = "Cell.Supervisor.Install.Rivet.Go in", .id = "ID1412310716",
         .origin = "page `Rivet`, transition `Go in` (ID1412310716)", .owner = 0, .priority = 1000,
         PN_CODE(Supervisor_Install_Rivet_Go_in), PN_INDICES(affected, 28U, 30U),
         PN_INDICES(touched, 37U, 45U), PN_INDICES(read, 37U) },
-    /* 29 */
-    { .name = "Cell.Supervisor.Install.Rivet.Go out", .id = "ID1412310742",
+    { /* 29 */ .name = "Cell.Supervisor.Install.Rivet.Go out", .id = "ID1412310742",
         .origin = "page `Rivet`, transition `Go out` (ID1412310742)", .owner = 0, .priority = 1000,
         PN_CODE(Supervisor_Install_Rivet_Go_out),
         PN_INDICES(affected, 20U, 21U, 23U, 29U, 41U, 50U), PN_INDICES(touched, 17U, 47U, 48U),
         PN_INDICES(read, 47U) },
-    /* 30 */
-    { .name = "Cell.Supervisor.Install.Rivet.Advance.Command", .id = "ID1412310941",
+    { /* 30 */ .name = "Cell.Supervisor.Install.Rivet.Advance.Command", .id = "ID1412310941",
         .origin = "page `MoveBoth`, transition `Command` (ID1412310941)", .owner = 0,
         .priority = 1000, PN_CODE(MoveBoth_Command),
         .places = &s_in_Supervisor_Install_Rivet_Advance,
         PN_INDICES(affected, 30U, 32U, 33U, 53U, 55U, 56U, 63U, 65U, 66U),
         PN_INDICES(touched, 0U, 1U, 5U, 6U, 45U, 49U, 51U), PN_INDICES(read, 45U) },
-    /* 31 */
-    { .name = "Cell.Supervisor.Install.Rivet.Advance.Both", .id = "ID1412310948",
+    { /* 31 */ .name = "Cell.Supervisor.Install.Rivet.Advance.Both", .id = "ID1412310948",
         .origin = "page `MoveBoth`, transition `Both` (ID1412310948)", .owner = 0, .priority = 1000,
         PN_CODE(MoveBoth_Both), .places = &s_in_Supervisor_Install_Rivet_Advance,
         PN_INDICES(affected, 31U, 34U), PN_INDICES(touched, 46U, 50U, 52U),
         PN_INDICES(read, 50U, 52U) },
-    /* 32 */
-    { .name = "Cell.Supervisor.Install.Rivet.Advance.Reply 1", .id = "ID1412310962",
+    { /* 32 */ .name = "Cell.Supervisor.Install.Rivet.Advance.Reply 1", .id = "ID1412310962",
         .origin = "page `MoveBoth`, transition `Reply 1` (ID1412310962)", .owner = 0,
         .priority = 1000, PN_CODE(MoveBoth_Reply_1),
         .places = &s_in_Supervisor_Install_Rivet_Advance,
         PN_INDICES(affected, 5U, 8U, 9U, 10U, 11U, 18U, 26U, 31U, 32U, 36U, 37U, 40U, 43U, 47U,
         51U), PN_INDICES(touched, 2U, 49U, 50U), PN_INDICES(read, 2U, 49U) },
-    /* 33 */
-    { .name = "Cell.Supervisor.Install.Rivet.Advance.Reply 2", .id = "ID1412310999",
+    { /* 33 */ .name = "Cell.Supervisor.Install.Rivet.Advance.Reply 2", .id = "ID1412310999",
         .origin = "page `MoveBoth`, transition `Reply 2` (ID1412310999)", .owner = 0,
         .priority = 1000, PN_CODE(MoveBoth_Reply_2),
         .places = &s_in_Supervisor_Install_Rivet_Advance,
         PN_INDICES(affected, 6U, 19U, 27U, 31U, 33U, 35U, 38U, 39U, 44U, 48U, 52U),
         PN_INDICES(touched, 7U, 51U, 52U), PN_INDICES(read, 7U, 51U) },
-    /* 34 */
-    { .name = "Cell.Supervisor.Install.Rivet.Fasten.Press", .id = "ID1412310842",
+    { /* 34 */ .name = "Cell.Supervisor.Install.Rivet.Fasten.Press", .id = "ID1412310842",
         .origin = "page `Fasten`, transition `Press` (ID1412310842)", .owner = 0, .priority = 1000,
         PN_CODE(Supervisor_Install_Rivet_Fasten_Press), PN_INDICES(affected, 34U, 35U, 39U, 63U),
         PN_INDICES(touched, 6U, 46U, 53U), PN_INDICES(read, 46U) },
-    /* 35 */
-    { .name = "Cell.Supervisor.Install.Rivet.Fasten.Drill", .id = "ID1412310850",
+    { /* 35 */ .name = "Cell.Supervisor.Install.Rivet.Fasten.Drill", .id = "ID1412310850",
         .origin = "page `Fasten`, transition `Drill` (ID1412310850)", .owner = 0, .priority = 1000,
         PN_CODE(Supervisor_Install_Rivet_Fasten_Drill),
         PN_INDICES(affected, 6U, 19U, 27U, 33U, 35U, 36U, 38U, 39U, 40U, 44U, 48U, 52U, 53U),
         PN_INDICES(touched, 1U, 7U, 53U, 54U), PN_INDICES(read, 7U, 53U) },
-    /* 36 */
-    { .name = "Cell.Supervisor.Install.Rivet.Fasten.Insert", .id = "ID1412310858",
+    { /* 36 */ .name = "Cell.Supervisor.Install.Rivet.Fasten.Insert", .id = "ID1412310858",
         .origin = "page `Fasten`, transition `Insert` (ID1412310858)", .owner = 0, .priority = 1000,
         PN_CODE(Supervisor_Install_Rivet_Fasten_Insert),
         PN_INDICES(affected, 5U, 8U, 9U, 10U, 11U, 18U, 26U, 32U, 36U, 37U, 40U, 43U, 47U, 51U,
         53U), PN_INDICES(touched, 1U, 2U, 54U, 55U), PN_INDICES(read, 2U, 54U) },
-    /* 37 */
-    { .name = "Cell.Supervisor.Install.Rivet.Fasten.Release", .id = "ID1412310866",
+    { /* 37 */ .name = "Cell.Supervisor.Install.Rivet.Fasten.Release", .id = "ID1412310866",
         .origin = "page `Fasten`, transition `Release` (ID1412310866)", .owner = 0,
         .priority = 1000, PN_CODE(Supervisor_Install_Rivet_Fasten_Release),
         PN_INDICES(affected, 5U, 8U, 9U, 10U, 11U, 18U, 26U, 32U, 36U, 37U, 38U, 40U, 43U, 47U, 51U,
         63U), PN_INDICES(touched, 2U, 6U, 55U, 56U), PN_INDICES(read, 2U, 55U) },
-    /* 38 */
-    { .name = "Cell.Supervisor.Install.Rivet.Fasten.Finish", .id = "ID1412310874",
+    { /* 38 */ .name = "Cell.Supervisor.Install.Rivet.Fasten.Finish", .id = "ID1412310874",
         .origin = "page `Fasten`, transition `Finish` (ID1412310874)", .owner = 0, .priority = 1000,
         PN_CODE(Supervisor_Install_Rivet_Fasten_Finish),
         PN_INDICES(affected, 6U, 19U, 27U, 29U, 33U, 35U, 38U, 39U, 44U, 48U, 52U),
         PN_INDICES(touched, 7U, 47U, 56U), PN_INDICES(read, 7U, 56U) },
-    /* 39 */
-    { .name = "Cell.Supervisor.Install.Rivet.Fasten.Press failed", .id = "ID1412320087",
+    { /* 39 */ .name = "Cell.Supervisor.Install.Rivet.Fasten.Press failed", .id = "ID1412320087",
         .origin = "page `Fasten`, transition `Press failed` (ID1412320087)", .owner = 0,
         .priority = 1000, PN_CODE(Supervisor_Install_Rivet_Fasten_Press_failed),
         PN_INDICES(affected, 6U, 19U, 27U, 33U, 35U, 38U, 39U, 44U, 48U, 52U, 63U),
         PN_INDICES(touched, 6U, 7U, 53U, 56U), PN_INDICES(read, 7U, 53U) },
-    /* 40 */
-    { .name = "Cell.Supervisor.Install.Rivet.Fasten.Drill failed", .id = "ID1412320092",
+    { /* 40 */ .name = "Cell.Supervisor.Install.Rivet.Fasten.Drill failed", .id = "ID1412320092",
         .origin = "page `Fasten`, transition `Drill failed` (ID1412320092)", .owner = 0,
         .priority = 1000, PN_CODE(Supervisor_Install_Rivet_Fasten_Drill_failed),
         PN_INDICES(affected, 5U, 8U, 9U, 10U, 11U, 18U, 26U, 32U, 36U, 37U, 38U, 40U, 43U, 47U, 51U,
         63U), PN_INDICES(touched, 2U, 6U, 54U, 56U), PN_INDICES(read, 2U, 54U) },
-    /* 41 */
-    { .name = "Cell.Supervisor.Install.Rivet.Retract.Command", .id = "ID1412310941",
+    { /* 41 */ .name = "Cell.Supervisor.Install.Rivet.Retract.Command", .id = "ID1412310941",
         .origin = "page `MoveBoth`, transition `Command` (ID1412310941)", .owner = 0,
         .priority = 1000, PN_CODE(MoveBoth_Command),
         .places = &s_in_Supervisor_Install_Rivet_Retract,
         PN_INDICES(affected, 41U, 43U, 44U, 53U, 55U, 56U, 63U, 65U, 66U),
         PN_INDICES(touched, 0U, 1U, 5U, 6U, 48U, 57U, 59U), PN_INDICES(read, 48U) },
-    /* 42 */
-    { .name = "Cell.Supervisor.Install.Rivet.Retract.Both", .id = "ID1412310948",
+    { /* 42 */ .name = "Cell.Supervisor.Install.Rivet.Retract.Both", .id = "ID1412310948",
         .origin = "page `MoveBoth`, transition `Both` (ID1412310948)", .owner = 0, .priority = 1000,
         PN_CODE(MoveBoth_Both), .places = &s_in_Supervisor_Install_Rivet_Retract,
         PN_INDICES(affected, 20U, 21U, 23U, 42U), PN_INDICES(touched, 38U, 58U, 60U),
         PN_INDICES(read, 58U, 60U) },
-    /* 43 */
-    { .name = "Cell.Supervisor.Install.Rivet.Retract.Reply 1", .id = "ID1412310962",
+    { /* 43 */ .name = "Cell.Supervisor.Install.Rivet.Retract.Reply 1", .id = "ID1412310962",
         .origin = "page `MoveBoth`, transition `Reply 1` (ID1412310962)", .owner = 0,
         .priority = 1000, PN_CODE(MoveBoth_Reply_1),
         .places = &s_in_Supervisor_Install_Rivet_Retract,
         PN_INDICES(affected, 5U, 8U, 9U, 10U, 11U, 18U, 26U, 32U, 36U, 37U, 40U, 42U, 43U, 47U,
         51U), PN_INDICES(touched, 2U, 57U, 58U), PN_INDICES(read, 2U, 57U) },
-    /* 44 */
-    { .name = "Cell.Supervisor.Install.Rivet.Retract.Reply 2", .id = "ID1412310999",
+    { /* 44 */ .name = "Cell.Supervisor.Install.Rivet.Retract.Reply 2", .id = "ID1412310999",
         .origin = "page `MoveBoth`, transition `Reply 2` (ID1412310999)", .owner = 0,
         .priority = 1000, PN_CODE(MoveBoth_Reply_2),
         .places = &s_in_Supervisor_Install_Rivet_Retract,
         PN_INDICES(affected, 6U, 19U, 27U, 33U, 35U, 38U, 39U, 42U, 44U, 48U, 52U),
         PN_INDICES(touched, 7U, 59U, 60U), PN_INDICES(read, 7U, 59U) },
-    /* 45 */
-    { .name = "Cell.Supervisor.Install.Return.Command", .id = "ID1412310941",
+    { /* 45 */ .name = "Cell.Supervisor.Install.Return.Command", .id = "ID1412310941",
         .origin = "page `MoveBoth`, transition `Command` (ID1412310941)", .owner = 0,
         .priority = 1000, PN_CODE(MoveBoth_Command), .places = &s_in_Supervisor_Install_Return,
         PN_INDICES(affected, 45U, 47U, 48U, 53U, 55U, 56U, 63U, 65U, 66U),
         PN_INDICES(touched, 0U, 1U, 5U, 6U, 39U, 61U, 63U), PN_INDICES(read, 39U) },
-    /* 46 */
-    { .name = "Cell.Supervisor.Install.Return.Both", .id = "ID1412310948",
+    { /* 46 */ .name = "Cell.Supervisor.Install.Return.Both", .id = "ID1412310948",
         .origin = "page `MoveBoth`, transition `Both` (ID1412310948)", .owner = 0, .priority = 1000,
         PN_CODE(MoveBoth_Both), .places = &s_in_Supervisor_Install_Return,
         PN_INDICES(affected, 46U, 49U), PN_INDICES(touched, 15U, 62U, 64U),
         PN_INDICES(read, 62U, 64U) },
-    /* 47 */
-    { .name = "Cell.Supervisor.Install.Return.Reply 1", .id = "ID1412310962",
+    { /* 47 */ .name = "Cell.Supervisor.Install.Return.Reply 1", .id = "ID1412310962",
         .origin = "page `MoveBoth`, transition `Reply 1` (ID1412310962)", .owner = 0,
         .priority = 1000, PN_CODE(MoveBoth_Reply_1), .places = &s_in_Supervisor_Install_Return,
         PN_INDICES(affected, 5U, 8U, 9U, 10U, 11U, 18U, 26U, 32U, 36U, 37U, 40U, 43U, 46U, 47U,
         51U), PN_INDICES(touched, 2U, 61U, 62U), PN_INDICES(read, 2U, 61U) },
-    /* 48 */
-    { .name = "Cell.Supervisor.Install.Return.Reply 2", .id = "ID1412310999",
+    { /* 48 */ .name = "Cell.Supervisor.Install.Return.Reply 2", .id = "ID1412310999",
         .origin = "page `MoveBoth`, transition `Reply 2` (ID1412310999)", .owner = 0,
         .priority = 1000, PN_CODE(MoveBoth_Reply_2), .places = &s_in_Supervisor_Install_Return,
         PN_INDICES(affected, 6U, 19U, 27U, 33U, 35U, 38U, 39U, 44U, 46U, 48U, 52U),
         PN_INDICES(touched, 7U, 63U, 64U), PN_INDICES(read, 7U, 63U) },
-    /* 49 */
-    { .name = "Cell.Supervisor.Home.Send home", .id = "ID1412311039",
+    { /* 49 */ .name = "Cell.Supervisor.Home.Send home", .id = "ID1412311039",
         .origin = "page `Home`, transition `Send home` (ID1412311039)", .owner = 0,
         .priority = 1000, PN_CODE(Supervisor_Home_Send_home),
         PN_INDICES(affected, 49U, 51U, 52U, 53U, 63U), PN_INDICES(touched, 1U, 6U, 15U, 65U, 67U),
         PN_INDICES(read, 15U) },
-    /* 50 */
-    { .name = "Cell.Supervisor.Home.Both", .id = "ID1412311046",
+    { /* 50 */ .name = "Cell.Supervisor.Home.Both", .id = "ID1412311046",
         .origin = "page `Home`, transition `Both` (ID1412311046)", .owner = 0, .priority = 1000,
         PN_CODE(Supervisor_Home_Both), PN_INDICES(affected, 20U, 21U, 23U, 50U),
         PN_INDICES(touched, 16U, 17U, 18U, 66U, 68U), PN_INDICES(read, 17U, 66U, 68U) },
-    /* 51 */
-    { .name = "Cell.Supervisor.Home.Reply 1", .id = "ID1412311060",
+    { /* 51 */ .name = "Cell.Supervisor.Home.Reply 1", .id = "ID1412311060",
         .origin = "page `Home`, transition `Reply 1` (ID1412311060)", .owner = 0, .priority = 1000,
         PN_CODE(Supervisor_Home_Reply_1),
         PN_INDICES(affected, 5U, 8U, 9U, 10U, 11U, 18U, 26U, 32U, 36U, 37U, 40U, 43U, 47U, 50U,
         51U), PN_INDICES(touched, 2U, 65U, 66U), PN_INDICES(read, 2U, 65U) },
-    /* 52 */
-    { .name = "Cell.Supervisor.Home.Reply 2", .id = "ID1412311091",
+    { /* 52 */ .name = "Cell.Supervisor.Home.Reply 2", .id = "ID1412311091",
         .origin = "page `Home`, transition `Reply 2` (ID1412311091)", .owner = 0, .priority = 1000,
         PN_CODE(Supervisor_Home_Reply_2),
         PN_INDICES(affected, 6U, 19U, 27U, 33U, 35U, 38U, 39U, 44U, 48U, 50U, 52U),
         PN_INDICES(touched, 7U, 67U, 68U), PN_INDICES(read, 7U, 67U) },
-    /* 53 */
-    { .name = "Cell.Robot1.Accept", .id = "ID1412311125",
+    { /* 53 */ .name = "Cell.Robot1.Accept", .id = "ID1412311125",
         .origin = "page `Robot`, transition `Accept` (ID1412311125)", .owner = 1, .priority = 1000,
         PN_CODE(Robot_Accept), .places = &s_in_Robot1,
         PN_INDICES(affected, 53U, 55U, 56U, 57U, 58U, 59U, 60U, 61U, 62U),
         PN_INDICES(touched, 1U, 69U, 70U), PN_INDICES(read, 1U, 69U) },
-    /* 54 */
-    { .name = "Cell.Robot1.Report", .id = "ID1412311145",
+    { /* 54 */ .name = "Cell.Robot1.Report", .id = "ID1412311145",
         .origin = "page `Robot`, transition `Report` (ID1412311145)", .owner = 1, .priority = 1000,
         PN_CODE(Robot_Report), .places = &s_in_Robot1,
         PN_INDICES(affected, 5U, 8U, 9U, 10U, 11U, 18U, 26U, 32U, 36U, 37U, 40U, 43U, 47U, 51U, 53U,
         54U), PN_INDICES(touched, 2U, 69U, 71U), PN_INDICES(read, 71U) },
-    /* 55 */
-    { .name = "Cell.Robot1.MoveJoint", .id = "ID1412311160",
+    { /* 55 */ .name = "Cell.Robot1.MoveJoint", .id = "ID1412311160",
         .origin = "page `Robot`, transition `MoveJoint` (ID1412311160)", .owner = 1,
         .priority = 1000, PN_CODE(Robot_MoveJoint), .places = &s_in_Robot1,
         PN_INDICES(affected, 54U, 55U, 56U, 57U, 58U, 59U, 60U, 61U, 62U),
         PN_INDICES(touched, 0U, 70U, 71U), PN_INDICES(read, 0U, 70U) },
-    /* 56 */
-    { .name = "Cell.Robot1.MoveLinear", .id = "ID1412311169",
+    { /* 56 */ .name = "Cell.Robot1.MoveLinear", .id = "ID1412311169",
         .origin = "page `Robot`, transition `MoveLinear` (ID1412311169)", .owner = 1,
         .priority = 1000, PN_CODE(Robot_MoveLinear), .places = &s_in_Robot1,
         PN_INDICES(affected, 54U, 55U, 56U, 57U, 58U, 59U, 60U, 61U, 62U),
         PN_INDICES(touched, 0U, 70U, 71U), PN_INDICES(read, 0U, 70U) },
-    /* 57 */
-    { .name = "Cell.Robot1.MoveHome", .id = "ID1412311178",
+    { /* 57 */ .name = "Cell.Robot1.MoveHome", .id = "ID1412311178",
         .origin = "page `Robot`, transition `MoveHome` (ID1412311178)", .owner = 1,
         .priority = 1000, PN_CODE(Robot_MoveHome), .places = &s_in_Robot1,
         PN_INDICES(affected, 54U, 55U, 56U, 57U, 58U, 59U, 60U, 61U, 62U),
         PN_INDICES(touched, 70U, 71U), PN_INDICES(read, 70U) },
-    /* 58 */
-    { .name = "Cell.Robot1.Measure", .id = "ID1412311187",
+    { /* 58 */ .name = "Cell.Robot1.Measure", .id = "ID1412311187",
         .origin = "page `Robot`, transition `Measure` (ID1412311187)", .owner = 1, .priority = 1000,
         PN_CODE(Robot_Measure), .places = &s_in_Robot1,
         PN_INDICES(affected, 8U, 9U, 10U, 11U, 54U, 55U, 56U, 57U, 58U, 59U, 60U, 61U, 62U),
         PN_INDICES(touched, 3U, 4U, 70U, 71U), PN_INDICES(read, 3U, 70U) },
-    /* 59 */
-    { .name = "Cell.Robot1.Drill", .id = "ID1412311196",
+    { /* 59 */ .name = "Cell.Robot1.Drill", .id = "ID1412311196",
         .origin = "page `Robot`, transition `Drill` (ID1412311196)", .owner = 1, .priority = 1000,
         PN_CODE(Robot_Drill), .places = &s_in_Robot1,
         PN_INDICES(affected, 54U, 55U, 56U, 57U, 58U, 59U, 60U, 61U, 62U),
         PN_INDICES(touched, 70U, 71U), PN_INDICES(read, 70U) },
-    /* 60 */
-    { .name = "Cell.Robot1.Insert", .id = "ID1412311205",
+    { /* 60 */ .name = "Cell.Robot1.Insert", .id = "ID1412311205",
         .origin = "page `Robot`, transition `Insert` (ID1412311205)", .owner = 1, .priority = 1000,
         PN_CODE(Robot_Insert), .places = &s_in_Robot1,
         PN_INDICES(affected, 54U, 55U, 56U, 57U, 58U, 59U, 60U, 61U, 62U),
         PN_INDICES(touched, 70U, 71U), PN_INDICES(read, 70U) },
-    /* 61 */
-    { .name = "Cell.Robot1.Press", .id = "ID1412311214",
+    { /* 61 */ .name = "Cell.Robot1.Press", .id = "ID1412311214",
         .origin = "page `Robot`, transition `Press` (ID1412311214)", .owner = 1, .priority = 1000,
         PN_CODE(Robot_Press), .places = &s_in_Robot1,
         PN_INDICES(affected, 54U, 55U, 56U, 57U, 58U, 59U, 60U, 61U, 62U),
         PN_INDICES(touched, 70U, 71U), PN_INDICES(read, 70U) },
-    /* 62 */
-    { .name = "Cell.Robot1.Release", .id = "ID1412311223",
+    { /* 62 */ .name = "Cell.Robot1.Release", .id = "ID1412311223",
         .origin = "page `Robot`, transition `Release` (ID1412311223)", .owner = 1, .priority = 1000,
         PN_CODE(Robot_Release), .places = &s_in_Robot1,
         PN_INDICES(affected, 54U, 55U, 56U, 57U, 58U, 59U, 60U, 61U, 62U),
         PN_INDICES(touched, 70U, 71U), PN_INDICES(read, 70U) },
-    /* 63 */
-    { .name = "Cell.Robot2.Accept", .id = "ID1412311125",
+    { /* 63 */ .name = "Cell.Robot2.Accept", .id = "ID1412311125",
         .origin = "page `Robot`, transition `Accept` (ID1412311125)", .owner = 2, .priority = 1000,
         PN_CODE(Robot_Accept), .places = &s_in_Robot2,
         PN_INDICES(affected, 63U, 65U, 66U, 67U, 68U, 69U, 70U, 71U, 72U),
         PN_INDICES(touched, 6U, 72U, 73U), PN_INDICES(read, 6U, 72U) },
-    /* 64 */
-    { .name = "Cell.Robot2.Report", .id = "ID1412311145",
+    { /* 64 */ .name = "Cell.Robot2.Report", .id = "ID1412311145",
         .origin = "page `Robot`, transition `Report` (ID1412311145)", .owner = 2, .priority = 1000,
         PN_CODE(Robot_Report), .places = &s_in_Robot2,
         PN_INDICES(affected, 6U, 19U, 27U, 33U, 35U, 38U, 39U, 44U, 48U, 52U, 63U, 64U),
         PN_INDICES(touched, 7U, 72U, 74U), PN_INDICES(read, 74U) },
-    /* 65 */
-    { .name = "Cell.Robot2.MoveJoint", .id = "ID1412311160",
+    { /* 65 */ .name = "Cell.Robot2.MoveJoint", .id = "ID1412311160",
         .origin = "page `Robot`, transition `MoveJoint` (ID1412311160)", .owner = 2,
         .priority = 1000, PN_CODE(Robot_MoveJoint), .places = &s_in_Robot2,
         PN_INDICES(affected, 64U, 65U, 66U, 67U, 68U, 69U, 70U, 71U, 72U),
         PN_INDICES(touched, 5U, 73U, 74U), PN_INDICES(read, 5U, 73U) },
-    /* 66 */
-    { .name = "Cell.Robot2.MoveLinear", .id = "ID1412311169",
+    { /* 66 */ .name = "Cell.Robot2.MoveLinear", .id = "ID1412311169",
         .origin = "page `Robot`, transition `MoveLinear` (ID1412311169)", .owner = 2,
         .priority = 1000, PN_CODE(Robot_MoveLinear), .places = &s_in_Robot2,
         PN_INDICES(affected, 64U, 65U, 66U, 67U, 68U, 69U, 70U, 71U, 72U),
         PN_INDICES(touched, 5U, 73U, 74U), PN_INDICES(read, 5U, 73U) },
-    /* 67 */
-    { .name = "Cell.Robot2.MoveHome", .id = "ID1412311178",
+    { /* 67 */ .name = "Cell.Robot2.MoveHome", .id = "ID1412311178",
         .origin = "page `Robot`, transition `MoveHome` (ID1412311178)", .owner = 2,
         .priority = 1000, PN_CODE(Robot_MoveHome), .places = &s_in_Robot2,
         PN_INDICES(affected, 64U, 65U, 66U, 67U, 68U, 69U, 70U, 71U, 72U),
         PN_INDICES(touched, 73U, 74U), PN_INDICES(read, 73U) },
-    /* 68 */
-    { .name = "Cell.Robot2.Measure", .id = "ID1412311187",
+    { /* 68 */ .name = "Cell.Robot2.Measure", .id = "ID1412311187",
         .origin = "page `Robot`, transition `Measure` (ID1412311187)", .owner = 2, .priority = 1000,
         PN_CODE(Robot_Measure), .places = &s_in_Robot2,
         PN_INDICES(affected, 64U, 65U, 66U, 67U, 68U, 69U, 70U, 71U, 72U),
         PN_INDICES(touched, 8U, 9U, 73U, 74U), PN_INDICES(read, 8U, 73U) },
-    /* 69 */
-    { .name = "Cell.Robot2.Drill", .id = "ID1412311196",
+    { /* 69 */ .name = "Cell.Robot2.Drill", .id = "ID1412311196",
         .origin = "page `Robot`, transition `Drill` (ID1412311196)", .owner = 2, .priority = 1000,
         PN_CODE(Robot_Drill), .places = &s_in_Robot2,
         PN_INDICES(affected, 64U, 65U, 66U, 67U, 68U, 69U, 70U, 71U, 72U),
         PN_INDICES(touched, 73U, 74U), PN_INDICES(read, 73U) },
-    /* 70 */
-    { .name = "Cell.Robot2.Insert", .id = "ID1412311205",
+    { /* 70 */ .name = "Cell.Robot2.Insert", .id = "ID1412311205",
         .origin = "page `Robot`, transition `Insert` (ID1412311205)", .owner = 2, .priority = 1000,
         PN_CODE(Robot_Insert), .places = &s_in_Robot2,
         PN_INDICES(affected, 64U, 65U, 66U, 67U, 68U, 69U, 70U, 71U, 72U),
         PN_INDICES(touched, 73U, 74U), PN_INDICES(read, 73U) },
-    /* 71 */
-    { .name = "Cell.Robot2.Press", .id = "ID1412311214",
+    { /* 71 */ .name = "Cell.Robot2.Press", .id = "ID1412311214",
         .origin = "page `Robot`, transition `Press` (ID1412311214)", .owner = 2, .priority = 1000,
         PN_CODE(Robot_Press), .places = &s_in_Robot2,
         PN_INDICES(affected, 64U, 65U, 66U, 67U, 68U, 69U, 70U, 71U, 72U),
         PN_INDICES(touched, 73U, 74U), PN_INDICES(read, 73U) },
-    /* 72 */
-    { .name = "Cell.Robot2.Release", .id = "ID1412311223",
+    { /* 72 */ .name = "Cell.Robot2.Release", .id = "ID1412311223",
         .origin = "page `Robot`, transition `Release` (ID1412311223)", .owner = 2, .priority = 1000,
         PN_CODE(Robot_Release), .places = &s_in_Robot2,
         PN_INDICES(affected, 64U, 65U, 66U, 67U, 68U, 69U, 70U, 71U, 72U),
@@ -4796,128 +4419,47 @@ static const uint32_t s_order[] = { 0U, 1U, 2U, 3U, 4U, 5U, 6U, 7U, 8U, 9U, 10U,
     53U, 54U, 55U, 56U, 57U, 58U, 59U, 60U, 61U, 62U, 63U, 64U, 65U, 66U, 67U, 68U, 69U, 70U, 71U,
     72U };
 
-/* For hosts that are compiled in one piece with the net: index and name of each transition, name of its code, and whether each
- * choice of tokens gives a binding, so that counting them costs nothing. */
+/* For hosts that are compiled in one piece with the net: index of each transition, name of its code, and whether each choice of
+ * tokens gives a binding, so that counting them costs nothing. */
 #define NET_TRANSITIONS(EACH) \
-    EACH(0U, Supervisor_Load_Load, Supervisor_Load_Load, true) \
-    EACH(1U, Supervisor_Approach_Send, Supervisor_Approach_Send, true) \
-    EACH(2U, Supervisor_Approach_Arrived, Supervisor_Approach_Arrived, false) \
-    EACH(3U, Supervisor_Approach_Move_both_Command, MoveBoth_Command, true) \
-    EACH(4U, Supervisor_Approach_Move_both_Both, MoveBoth_Both, false) \
-    EACH(5U, Supervisor_Approach_Move_both_Reply_1, MoveBoth_Reply_1, false) \
-    EACH(6U, Supervisor_Approach_Move_both_Reply_2, MoveBoth_Reply_2, false) \
-    EACH(7U, Supervisor_Verify_Ask_first, Supervisor_Verify_Ask_first, true) \
-    EACH(8U, Supervisor_Verify_Ask_last, Supervisor_Verify_Ask_last, false) \
-    EACH(9U, Supervisor_Verify_Measured, Supervisor_Verify_Measured, false) \
-    EACH(10U, Supervisor_Verify_First_lost, Supervisor_Verify_First_lost, false) \
-    EACH(11U, Supervisor_Verify_Last_lost, Supervisor_Verify_Last_lost, false) \
-    EACH(12U, Supervisor_Correct_Compare, Supervisor_Correct_Compare, true) \
-    EACH(13U, Supervisor_Correct_Move_over, Supervisor_Correct_Move_over, false) \
-    EACH(14U, Supervisor_Correct_Moved, Supervisor_Correct_Moved, false) \
-    EACH(15U, Supervisor_Correct_As_planned, Supervisor_Correct_As_planned, false) \
-    EACH(16U, Supervisor_Correct_Move_both_Command, MoveBoth_Command, true) \
-    EACH(17U, Supervisor_Correct_Move_both_Both, MoveBoth_Both, false) \
-    EACH(18U, Supervisor_Correct_Move_both_Reply_1, MoveBoth_Reply_1, false) \
-    EACH(19U, Supervisor_Correct_Move_both_Reply_2, MoveBoth_Reply_2, false) \
-    EACH(20U, Supervisor_Install_Go_back, Supervisor_Install_Go_back, false) \
-    EACH(21U, Supervisor_Install_Next_rivet, Supervisor_Install_Next_rivet, false) \
-    EACH(22U, Supervisor_Install_Start, Supervisor_Install_Start, true) \
-    EACH(23U, Supervisor_Install_Give_up, Supervisor_Install_Give_up, false) \
-    EACH(24U, Supervisor_Install_Shift_Command, MoveBoth_Command, true) \
-    EACH(25U, Supervisor_Install_Shift_Both, MoveBoth_Both, false) \
-    EACH(26U, Supervisor_Install_Shift_Reply_1, MoveBoth_Reply_1, false) \
-    EACH(27U, Supervisor_Install_Shift_Reply_2, MoveBoth_Reply_2, false) \
-    EACH(28U, Supervisor_Install_Rivet_Go_in, Supervisor_Install_Rivet_Go_in, false) \
-    EACH(29U, Supervisor_Install_Rivet_Go_out, Supervisor_Install_Rivet_Go_out, true) \
-    EACH(30U, Supervisor_Install_Rivet_Advance_Command, MoveBoth_Command, true) \
-    EACH(31U, Supervisor_Install_Rivet_Advance_Both, MoveBoth_Both, false) \
-    EACH(32U, Supervisor_Install_Rivet_Advance_Reply_1, MoveBoth_Reply_1, false) \
-    EACH(33U, Supervisor_Install_Rivet_Advance_Reply_2, MoveBoth_Reply_2, false) \
-    EACH(34U, Supervisor_Install_Rivet_Fasten_Press, Supervisor_Install_Rivet_Fasten_Press, false) \
-    EACH(35U, Supervisor_Install_Rivet_Fasten_Drill, Supervisor_Install_Rivet_Fasten_Drill, false) \
-    EACH(36U, Supervisor_Install_Rivet_Fasten_Insert, Supervisor_Install_Rivet_Fasten_Insert, false) \
-    EACH(37U, Supervisor_Install_Rivet_Fasten_Release, Supervisor_Install_Rivet_Fasten_Release, false) \
-    EACH(38U, Supervisor_Install_Rivet_Fasten_Finish, Supervisor_Install_Rivet_Fasten_Finish, true) \
-    EACH(39U, Supervisor_Install_Rivet_Fasten_Press_failed, Supervisor_Install_Rivet_Fasten_Press_failed, false) \
-    EACH(40U, Supervisor_Install_Rivet_Fasten_Drill_failed, Supervisor_Install_Rivet_Fasten_Drill_failed, false) \
-    EACH(41U, Supervisor_Install_Rivet_Retract_Command, MoveBoth_Command, true) \
-    EACH(42U, Supervisor_Install_Rivet_Retract_Both, MoveBoth_Both, false) \
-    EACH(43U, Supervisor_Install_Rivet_Retract_Reply_1, MoveBoth_Reply_1, false) \
-    EACH(44U, Supervisor_Install_Rivet_Retract_Reply_2, MoveBoth_Reply_2, false) \
-    EACH(45U, Supervisor_Install_Return_Command, MoveBoth_Command, true) \
-    EACH(46U, Supervisor_Install_Return_Both, MoveBoth_Both, false) \
-    EACH(47U, Supervisor_Install_Return_Reply_1, MoveBoth_Reply_1, false) \
-    EACH(48U, Supervisor_Install_Return_Reply_2, MoveBoth_Reply_2, false) \
-    EACH(49U, Supervisor_Home_Send_home, Supervisor_Home_Send_home, false) \
-    EACH(50U, Supervisor_Home_Both, Supervisor_Home_Both, false) \
-    EACH(51U, Supervisor_Home_Reply_1, Supervisor_Home_Reply_1, false) \
-    EACH(52U, Supervisor_Home_Reply_2, Supervisor_Home_Reply_2, false) \
-    EACH(53U, Robot1_Accept, Robot_Accept, false) \
-    EACH(54U, Robot1_Report, Robot_Report, true) \
-    EACH(55U, Robot1_MoveJoint, Robot_MoveJoint, false) \
-    EACH(56U, Robot1_MoveLinear, Robot_MoveLinear, false) \
-    EACH(57U, Robot1_MoveHome, Robot_MoveHome, false) \
-    EACH(58U, Robot1_Measure, Robot_Measure, false) \
-    EACH(59U, Robot1_Drill, Robot_Drill, false) \
-    EACH(60U, Robot1_Insert, Robot_Insert, false) \
-    EACH(61U, Robot1_Press, Robot_Press, false) \
-    EACH(62U, Robot1_Release, Robot_Release, false) \
-    EACH(63U, Robot2_Accept, Robot_Accept, false) \
-    EACH(64U, Robot2_Report, Robot_Report, true) \
-    EACH(65U, Robot2_MoveJoint, Robot_MoveJoint, false) \
-    EACH(66U, Robot2_MoveLinear, Robot_MoveLinear, false) \
-    EACH(67U, Robot2_MoveHome, Robot_MoveHome, false) \
-    EACH(68U, Robot2_Measure, Robot_Measure, false) \
-    EACH(69U, Robot2_Drill, Robot_Drill, false) \
-    EACH(70U, Robot2_Insert, Robot_Insert, false) \
-    EACH(71U, Robot2_Press, Robot_Press, false) \
-    EACH(72U, Robot2_Release, Robot_Release, false)
-
-typedef union any_binding {
-    Supervisor_Load_Load_binding_t Supervisor_Load_Load;
-    Supervisor_Approach_Send_binding_t Supervisor_Approach_Send;
-    Supervisor_Approach_Arrived_binding_t Supervisor_Approach_Arrived;
-    MoveBoth_Command_binding_t MoveBoth_Command;
-    MoveBoth_Both_binding_t MoveBoth_Both;
-    MoveBoth_Reply_1_binding_t MoveBoth_Reply_1;
-    MoveBoth_Reply_2_binding_t MoveBoth_Reply_2;
-    Supervisor_Verify_Ask_first_binding_t Supervisor_Verify_Ask_first;
-    Supervisor_Verify_Ask_last_binding_t Supervisor_Verify_Ask_last;
-    Supervisor_Verify_Measured_binding_t Supervisor_Verify_Measured;
-    Supervisor_Verify_First_lost_binding_t Supervisor_Verify_First_lost;
-    Supervisor_Verify_Last_lost_binding_t Supervisor_Verify_Last_lost;
-    Supervisor_Correct_Compare_binding_t Supervisor_Correct_Compare;
-    Supervisor_Correct_Move_over_binding_t Supervisor_Correct_Move_over;
-    Supervisor_Correct_Moved_binding_t Supervisor_Correct_Moved;
-    Supervisor_Correct_As_planned_binding_t Supervisor_Correct_As_planned;
-    Supervisor_Install_Go_back_binding_t Supervisor_Install_Go_back;
-    Supervisor_Install_Next_rivet_binding_t Supervisor_Install_Next_rivet;
-    Supervisor_Install_Start_binding_t Supervisor_Install_Start;
-    Supervisor_Install_Give_up_binding_t Supervisor_Install_Give_up;
-    Supervisor_Install_Rivet_Go_in_binding_t Supervisor_Install_Rivet_Go_in;
-    Supervisor_Install_Rivet_Go_out_binding_t Supervisor_Install_Rivet_Go_out;
-    Supervisor_Install_Rivet_Fasten_Press_binding_t Supervisor_Install_Rivet_Fasten_Press;
-    Supervisor_Install_Rivet_Fasten_Drill_binding_t Supervisor_Install_Rivet_Fasten_Drill;
-    Supervisor_Install_Rivet_Fasten_Insert_binding_t Supervisor_Install_Rivet_Fasten_Insert;
-    Supervisor_Install_Rivet_Fasten_Release_binding_t Supervisor_Install_Rivet_Fasten_Release;
-    Supervisor_Install_Rivet_Fasten_Finish_binding_t Supervisor_Install_Rivet_Fasten_Finish;
-    Supervisor_Install_Rivet_Fasten_Press_failed_binding_t Supervisor_Install_Rivet_Fasten_Press_failed;
-    Supervisor_Install_Rivet_Fasten_Drill_failed_binding_t Supervisor_Install_Rivet_Fasten_Drill_failed;
-    Supervisor_Home_Send_home_binding_t Supervisor_Home_Send_home;
-    Supervisor_Home_Both_binding_t Supervisor_Home_Both;
-    Supervisor_Home_Reply_1_binding_t Supervisor_Home_Reply_1;
-    Supervisor_Home_Reply_2_binding_t Supervisor_Home_Reply_2;
-    Robot_Accept_binding_t Robot_Accept;
-    Robot_Report_binding_t Robot_Report;
-    Robot_MoveJoint_binding_t Robot_MoveJoint;
-    Robot_MoveLinear_binding_t Robot_MoveLinear;
-    Robot_MoveHome_binding_t Robot_MoveHome;
-    Robot_Measure_binding_t Robot_Measure;
-    Robot_Drill_binding_t Robot_Drill;
-    Robot_Insert_binding_t Robot_Insert;
-    Robot_Press_binding_t Robot_Press;
-    Robot_Release_binding_t Robot_Release;
-} any_binding_t;
+    EACH(0U, Supervisor_Load_Load, true) EACH(1U, Supervisor_Approach_Send, true) \
+    EACH(2U, Supervisor_Approach_Arrived, false) EACH(3U, MoveBoth_Command, true) \
+    EACH(4U, MoveBoth_Both, false) EACH(5U, MoveBoth_Reply_1, false) \
+    EACH(6U, MoveBoth_Reply_2, false) EACH(7U, Supervisor_Verify_Ask_first, true) \
+    EACH(8U, Supervisor_Verify_Ask_last, false) EACH(9U, Supervisor_Verify_Measured, false) \
+    EACH(10U, Supervisor_Verify_First_lost, false) EACH(11U, Supervisor_Verify_Last_lost, false) \
+    EACH(12U, Supervisor_Correct_Compare, true) EACH(13U, Supervisor_Correct_Move_over, false) \
+    EACH(14U, Supervisor_Correct_Moved, false) EACH(15U, Supervisor_Correct_As_planned, false) \
+    EACH(16U, MoveBoth_Command, true) EACH(17U, MoveBoth_Both, false) \
+    EACH(18U, MoveBoth_Reply_1, false) EACH(19U, MoveBoth_Reply_2, false) \
+    EACH(20U, Supervisor_Install_Go_back, false) EACH(21U, Supervisor_Install_Next_rivet, false) \
+    EACH(22U, Supervisor_Install_Start, true) EACH(23U, Supervisor_Install_Give_up, false) \
+    EACH(24U, MoveBoth_Command, true) EACH(25U, MoveBoth_Both, false) \
+    EACH(26U, MoveBoth_Reply_1, false) EACH(27U, MoveBoth_Reply_2, false) \
+    EACH(28U, Supervisor_Install_Rivet_Go_in, false) \
+    EACH(29U, Supervisor_Install_Rivet_Go_out, true) EACH(30U, MoveBoth_Command, true) \
+    EACH(31U, MoveBoth_Both, false) EACH(32U, MoveBoth_Reply_1, false) \
+    EACH(33U, MoveBoth_Reply_2, false) EACH(34U, Supervisor_Install_Rivet_Fasten_Press, false) \
+    EACH(35U, Supervisor_Install_Rivet_Fasten_Drill, false) \
+    EACH(36U, Supervisor_Install_Rivet_Fasten_Insert, false) \
+    EACH(37U, Supervisor_Install_Rivet_Fasten_Release, false) \
+    EACH(38U, Supervisor_Install_Rivet_Fasten_Finish, true) \
+    EACH(39U, Supervisor_Install_Rivet_Fasten_Press_failed, false) \
+    EACH(40U, Supervisor_Install_Rivet_Fasten_Drill_failed, false) EACH(41U, MoveBoth_Command, true) \
+    EACH(42U, MoveBoth_Both, false) EACH(43U, MoveBoth_Reply_1, false) \
+    EACH(44U, MoveBoth_Reply_2, false) EACH(45U, MoveBoth_Command, true) \
+    EACH(46U, MoveBoth_Both, false) EACH(47U, MoveBoth_Reply_1, false) \
+    EACH(48U, MoveBoth_Reply_2, false) EACH(49U, Supervisor_Home_Send_home, false) \
+    EACH(50U, Supervisor_Home_Both, false) EACH(51U, Supervisor_Home_Reply_1, false) \
+    EACH(52U, Supervisor_Home_Reply_2, false) EACH(53U, Robot_Accept, false) \
+    EACH(54U, Robot_Report, true) EACH(55U, Robot_MoveJoint, false) \
+    EACH(56U, Robot_MoveLinear, false) EACH(57U, Robot_MoveHome, false) \
+    EACH(58U, Robot_Measure, false) EACH(59U, Robot_Drill, false) EACH(60U, Robot_Insert, false) \
+    EACH(61U, Robot_Press, false) EACH(62U, Robot_Release, false) EACH(63U, Robot_Accept, false) \
+    EACH(64U, Robot_Report, true) EACH(65U, Robot_MoveJoint, false) \
+    EACH(66U, Robot_MoveLinear, false) EACH(67U, Robot_MoveHome, false) \
+    EACH(68U, Robot_Measure, false) EACH(69U, Robot_Drill, false) EACH(70U, Robot_Insert, false) \
+    EACH(71U, Robot_Press, false) EACH(72U, Robot_Release, false)
 
 static const pn_owner_t s_owners[] = {
     { "supervisor" },
@@ -4933,7 +4475,6 @@ const pn_net_t pn_net = {
     .timed = false,
     .real_time = false,
     .marking_size = sizeof(net_marking_t),
-    .binding_size = sizeof(any_binding_t),
     .place_count = 75U,
     .place = s_places,
     .transition_count = 73U,

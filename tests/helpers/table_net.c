@@ -100,5 +100,5 @@ static const pn_transition_t s_transition[] = { { .name = "T", .id = "T", .origi
     .touched_count = 1U, .touched = s_touched } };
 static const uint32_t s_order[] = { 0U };
 const pn_net_t pn_net = { .abi = PN_NET_ABI, .name = "table", .source = "table", .digest = "0", .marking_size = sizeof(marking_t),
-    .binding_size = sizeof(int64_t), .place_count = 1U, .place = s_place, .transition_count = 1U, .transition = s_transition,
+    .place_count = 1U, .place = s_place, .transition_count = 1U, .transition = s_transition,
     .order_count = 1U, .order = s_order, .now_at = offsetof(marking_t, now), .packed_size = sizeof(((marking_t *)0)->packed) };

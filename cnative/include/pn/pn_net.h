@@ -118,7 +118,7 @@ typedef struct pn_transition {
      * Returns false when the sink stopped it. */
     bool (*enumerate)(pn_ctx_t *cx, const void *marking, uint32_t self, pn_binding_sink_t sink, void *user);
     /* Fires an enabled binding and stores the code segment's outputs in it. On error (context error set, false) the marking
-     * is unchanged. `binding` is the host's copy (binding_size bytes) of what the sink was given. */
+     * is unchanged. `binding` is the host's copy (pn_binding_size) of what the sink was given. */
     bool (*fire)(pn_ctx_t *cx, void *marking, uint32_t self, void *binding);
     /* Where the functions are those of all instances of a page, the places that are this instance's: a struct of the generated net. */
     const void *places;
@@ -183,7 +183,6 @@ typedef struct pn_net {
     bool timed;
     bool real_time;           /* the clock is real: times are double; else int64_t */
     size_t marking_size;      /* bytes of a marking; may hold pointers into the context's arena */
-    size_t binding_size;      /* bytes of the largest binding */
     uint32_t place_count;
     const pn_place_t *place;
     uint32_t transition_count;

@@ -390,8 +390,6 @@ class _Emitter:
         further += [f".{flag} = true" for flag in flags if code[flag]]
         return {
             "index": t.index,
-            "name": t.name,
-            "stem": self._names.transition(t.index, t.name),
             "code": code,
             "lines": c_rows.transition(t, stem, further),
         }
@@ -449,28 +447,16 @@ class _Emitter:
             "name": t.name,
             "stem": name,
             "title": self._title(shared),
-            "binding": c_rows.braces(
-                f"static const pn_type_t s_binding_{name} = ",
+            "binding": c_rows.binding(
+                name,
+                self._binding_name(shared),
                 [
-                    ".kind = PN_KIND_RECORD",
-                    f".name = {c_string(self._binding_name(shared))}",
-                    f".size = sizeof({name}_binding_t)",
-                    f".count = {len(t.variables)}U",
-                    f".field = s_variables_{name}" if t.variables else ".field = NULL",
+                    (self._types.name(v.type), member, v, self._names.table(v.table))
+                    for v, member in zip(t.variables, variables, strict=True)
                 ],
             ),
             "guard": c_comment(f"guard [{t.guard_text}]") if t.guard_text else "",
             "origin": t.origin.describe(),
-            "variables": [
-                {
-                    "type": self._types.name(v.type),
-                    "member": m,
-                    "name": v.name,
-                    "table": self._names.table(v.table),
-                    "note": "output of the code segment" if v.is_output else "",
-                }
-                for v, m in zip(t.variables, variables, strict=True)
-            ],
             "is_plain": c_places.is_plain(t.enumerate),
             "keeps": search.keeps and search.releases,
             "is_flat": search.is_flat,
@@ -691,6 +677,9 @@ class _Emitter:
             "transitions": transitions,
             "place_tables": [self._place_table(x) for x in self._place_tables],
             "rows": [row for _, row in rows],
+            "each": c_rows.each(
+                (i, str(row["code"]["stem"]), bool(row["code"]["is_plain"])) for i, row in rows
+            ),
             "has_thresholds": any(t["thresholds"] for t in transitions),
             "has_words": self._has_words,
             "word_mask": self._word_mask(),

@@ -176,20 +176,16 @@ class DirectFiring(Statements):
 
     def _change_slots(self) -> None:
         for move in (m for m in self._slot_moves if m.is_take):
-            self.note(move.note)
-            self.line(f"{move.tokens}full = false;")
+            self.line_with_note(f"{move.tokens}full = false;", move.note)
         for move in (m for m in self._slot_moves if not m.is_take):
-            self.note(move.note)
             lines = [f"{move.tokens}full = true;"]
             if move.value:
                 lines.insert(0, f"{move.tokens}value = {move.value};")
             if move.count:
-                self.line(f"if ({move.count} > 0U) {{")
-                lines = [f"    {line}" for line in lines]
-            for line in lines:
+                lines = [f"if ({move.count} > 0U) {{", *(f"    {line}" for line in lines), "}"]
+            self.line_with_note(lines[0], move.note)
+            for line in lines[1:]:
                 self.line(line)
-            if move.count:
-                self.line("}")
 
     def _put(self, puts: list[_Move]) -> list[tuple[_Move, str]]:
         """Puts, and says in `fits` whether all had room.

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 
 from pn2code.emission.c_expressions import c_integer
-from pn2code.emission.c_lines import wrap
+from pn2code.emission.c_lines import WIDTH, wrap
 from pn2code.emission.environment import c_bool, c_float, c_string
 from pn2code.lowering import ir
 
@@ -104,7 +104,7 @@ def transition(t: ir.Transition, code: str, further: Sequence[str]) -> list[str]
         further: members that not all have.
     """
     members = [
-        f".name = {c_string(t.name)}",
+        f"/* {t.index} */ .name = {c_string(t.name)}",
         f".id = {c_string(t.id)}",
         f".origin = {c_string(t.origin.describe())}",
         f".owner = {t.owner}",
@@ -113,3 +113,47 @@ def transition(t: ir.Transition, code: str, further: Sequence[str]) -> list[str]
         *further,
     ]
     return braces("", members, ",", "    ")
+
+
+def binding(
+    code: str, name: str, variables: Sequence[tuple[str, str, ir.Variable, str]]
+) -> list[str]:
+    """The struct of a transition's bindings, and the tables that describe it.
+
+    Args:
+        code: the stem of the names.
+        name: for messages.
+        variables: C type, member, variable, table of the colour set.
+    """
+    members = [
+        f"{c_type} {member};" + (" /* output of the code segment */" if v.is_output else "")
+        for c_type, member, v, _ in variables
+    ] or ["uint8_t none; /* no variables */"]
+    rows = [
+        f"{{ {c_string(v.name)}, &{table}, offsetof({code}_binding_t, {member}), false }}"
+        for _, member, v, table in variables
+    ]
+    fields = f"s_variables_{code}" if variables else "NULL"
+    record = [
+        ".kind = PN_KIND_RECORD",
+        f".name = {c_string(name)}",
+        f".size = sizeof({code}_binding_t)",
+        f".count = {len(variables)}U",
+        f".field = {fields}",
+    ]
+    lines = [f"typedef struct {code}_binding {{", *(f"    {m}" for m in members)]
+    lines.append(f"}} {code}_binding_t;")
+    if rows:
+        lines += [f"static const pn_field_t {fields}[] = {{", *(f"    {row}," for row in rows), "};"]
+    return [*lines, *braces(f"static const pn_type_t s_binding_{code} = ", record)]
+
+
+def each(rows: Iterable[tuple[int, str, bool]]) -> list[str]:
+    """`EACH` of index, code, and whether each choice of tokens gives a binding."""
+    lines = ["   "]
+    for i, code, plain in rows:
+        text = f" EACH({i}U, {code}, {c_bool(plain)})"
+        if len(lines[-1]) + len(text) > WIDTH:
+            lines.append("   ")
+        lines[-1] += text
+    return lines

@@ -69,6 +69,16 @@ class Statements:
             room = WIDTH - 4 * self._depth - 6
             self.line(f"/* {clean if len(clean) <= room else clean[: room - 4] + ' ...'} */")
 
+    def line_with_note(self, text: str, note: str) -> None:
+        """One line with its comment behind it, or before it where that is too long."""
+        clean = c_comment(note)
+        whole = f"{text} /* {clean} */" if clean else text
+        if len(_INDENT * self._depth + whole) <= WIDTH:
+            self.line(whole)
+        else:
+            self.note(note)
+            self.line(text)
+
     def block(self, statements: tuple[Stmt, ...]) -> None:
         """Statements one level deeper."""
         self._depth += 1
@@ -293,9 +303,8 @@ class Statements:
                 target = self._x.text(ir.Bound(variable, self.variable_types[variable]))
                 self.line(f"{target} = {self._x.text(value)};")
             case ir.Unless(condition=condition, note=note):
-                if note:
-                    self.note(note)
-                self.line(f"if ({self._x.text(ir.Op('Bool.not', (condition,), ir.BOOL))}) {{")
+                test = self._x.text(ir.Op("Bool.not", (condition,), ir.BOOL))
+                self.line_with_note(f"if ({test}) {{", note)
                 self._next()
             case ir.UnlessLegal(variable=variable, table=table):
                 pointer = self._x.address(ir.Bound(variable, self.variable_types[variable]))
@@ -312,14 +321,14 @@ class Statements:
                 self.line(f"{_INDENT}pn_clear_error(cx);")
                 self._next()
             case ir.UnlessHeld():
-                if s.note:
-                    self.note(s.note)
                 if s.place in self.slots:
-                    self.line(
-                        f"if ({self._differs(s.place, self._x.inside(s.value, 10), self._x.address(s.value))}) {{"
-                    )
+                    value, pointer = self._x.inside(s.value, 10), self._x.address(s.value)
+                    differs = self._differs(s.place, value, pointer)
+                    self.line_with_note(f"if ({differs}) {{", s.note)
                     self._next()
                     return
+                if s.note:
+                    self.note(s.note)
                 pointer = self._x.address(s.value)
                 if self.timed[s.place]:
                     bag = self.bags[s.place]
@@ -380,8 +389,7 @@ class Statements:
             self._for_colours(s, packed)
             return
         if s.place in self.slots:
-            self.note(s.note)
-            self.line(f"if (!{self._x.tokens[s.place]}full) {{")
+            self.line_with_note(f"if (!{self._x.tokens[s.place]}full) {{", s.note)
             self._next()
             self.body(s.body)
             return

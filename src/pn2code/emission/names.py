@@ -34,7 +34,7 @@ _PREFIXES = ("pn_", "PN_", "sim_", "SIM_", "NET_")
 _TYPES = """
     size_t ptrdiff_t wchar_t max_align_t off_t ssize_t fpos_t float_t double_t locale_t time_t clock_t sig_atomic_t
     int8_t int16_t int32_t int64_t uint8_t uint16_t uint32_t uint64_t intptr_t uintptr_t intmax_t uintmax_t
-    net_marking_t any_binding_t net_successor_t begin_net_successor
+    net_marking_t net_successor_t begin_net_successor
 """
 """Of the headers, and of every net."""
 

@@ -155,12 +155,10 @@ typedef struct Pick_binding {
     BOX_t b;
     int64_t n;
 } Pick_binding_t;
-
 static const pn_field_t s_variables_Pick[] = {
     { "b", &s_BOX, offsetof(Pick_binding_t, b), false },
     { "n", &s_INT, offsetof(Pick_binding_t, n), false },
 };
-
 static const pn_type_t s_binding_Pick = { .kind = PN_KIND_RECORD, .name = "Top.Pick",
     .size = sizeof(Pick_binding_t), .count = 2U, .field = s_variables_Pick };
 
@@ -173,8 +171,7 @@ PN_NET_SEARCH static bool Pick_enumerate(pn_ctx_t *cx, const void *marking,
     /* Buffer: b (ID30) */
     for (uint32_t i = 0U; i < m->Buffer.used; i++) {
         b.b = m->Buffer.token[i].value;
-        /* guard [#weight b < 10.0] */
-        if (!(b.b.weight < 10.0)) {
+        if (!(b.b.weight < 10.0)) { /* guard [#weight b < 10.0] */
             continue;
         }
         /* Count: n (ID32) */
@@ -234,22 +231,17 @@ static const uint32_t s_bag_places[] = { 0U, 1U, 2U };
 /* For each transition: those that may be enabled in another way when it has occurred, the places that it may change, and the
  * places that decide about it. */
 static const pn_transition_t s_transitions[] = {
-    /* 0 */
-    { .name = "Top.Pick", .id = "ID25", .origin = "page `Top`, transition `Pick` (ID25)",
+    { /* 0 */ .name = "Top.Pick", .id = "ID25", .origin = "page `Top`, transition `Pick` (ID25)",
         .owner = 0, .priority = 1000, PN_CODE(Pick), PN_INDICES(touched, 0U, 1U, 2U),
         PN_INDICES(read, 0U, 1U) },
 };
 
 static const uint32_t s_order[] = { 0U };
 
-/* For hosts that are compiled in one piece with the net: index and name of each transition, name of its code, and whether each
- * choice of tokens gives a binding, so that counting them costs nothing. */
+/* For hosts that are compiled in one piece with the net: index of each transition, name of its code, and whether each choice of
+ * tokens gives a binding, so that counting them costs nothing. */
 #define NET_TRANSITIONS(EACH) \
-    EACH(0U, Pick, Pick, false)
-
-typedef union any_binding {
-    Pick_binding_t Pick;
-} any_binding_t;
+    EACH(0U, Pick, false)
 
 static const pn_owner_t s_owners[] = {
     { "supervisor" },
@@ -263,7 +255,6 @@ const pn_net_t pn_net = {
     .timed = false,
     .real_time = false,
     .marking_size = sizeof(net_marking_t),
-    .binding_size = sizeof(any_binding_t),
     .place_count = 3U,
     .place = s_places,
     .transition_count = 1U,

@@ -259,7 +259,7 @@ static bool check_generated(sup_t *sup)
 static bool get_memory(sup_t *sup)
 {
     sup->marking = calloc(1U, (pn_net.marking_size > 0U) ? pn_net.marking_size : 1U);
-    sup->binding = calloc(1U, (pn_net.binding_size > 0U) ? pn_net.binding_size : 1U);
+    sup->binding = calloc(1U, pn_binding_size(&pn_net));
     sup->fired_of = calloc((size_t)pn_net.transition_count + 1U, sizeof *sup->fired_of);
     if ((sup->marking == NULL) || (sup->binding == NULL) || (sup->fired_of == NULL)) {
         return sup_stop(sup, SUP_EXIT_IO, "not enough memory");
