@@ -23,7 +23,9 @@ def indices(member: str, numbers: Sequence[int]) -> list[str]:
 def early(name: str, p: ir.Place, real_time: bool) -> list[str]:
     """The constant delays of input arcs."""
     times = [
-        f"{{ .real = {c_float(float(e))} }}" if real_time else f"{{ .integer = {c_integer(int(e))} }}"
+        f"{{ .real = {c_float(float(e))} }}"
+        if real_time
+        else f"{{ .integer = {c_integer(int(e))} }}"
         for e in p.early
     ]
     return braces(f"static const pn_time_t {name}[] = ", times)
@@ -144,7 +146,11 @@ def binding(
     lines = [f"typedef struct {code}_binding {{", *(f"    {m}" for m in members)]
     lines.append(f"}} {code}_binding_t;")
     if rows:
-        lines += [f"static const pn_field_t {fields}[] = {{", *(f"    {row}," for row in rows), "};"]
+        lines += [
+            f"static const pn_field_t {fields}[] = {{",
+            *(f"    {row}," for row in rows),
+            "};",
+        ]
     return [*lines, *braces(f"static const pn_type_t s_binding_{code} = ", record)]
 
 

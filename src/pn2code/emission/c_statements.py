@@ -322,8 +322,8 @@ class Statements:
                 self._next()
             case ir.UnlessHeld():
                 if s.place in self.slots:
-                    value, pointer = self._x.inside(s.value, 10), self._x.address(s.value)
-                    differs = self._differs(s.place, value, pointer)
+                    text, pointer = self._x.inside(s.value, 10), self._x.address(s.value)
+                    differs = self._differs(s.place, text, pointer)
                     self.line_with_note(f"if ({differs}) {{", s.note)
                     self._next()
                     return
