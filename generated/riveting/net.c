@@ -743,23 +743,23 @@ static int64_t ml_worse(int64_t e, int64_t f)
 /* --- places ------------------------------------------------------------------------------------ */
 
 /* place Cell.dadosrobo1, colour set POSE: page `Cell`, place `dadosrobo1` (ID1412310013) */
-static const pn_bag_t s_at_dadosrobo1 =
-    { .origin = "page `Cell`, place `dadosrobo1` (ID1412310013)", .type = &s_POSE, .capacity = 1U,
+static const pn_bag_t s_at_dadosrobo1 = {
+    .origin = "page `Cell`, place `dadosrobo1` (ID1412310013)", .type = &s_POSE, .capacity = 1U,
     PN_BAG_SLOT(net_marking_t, dadosrobo1) };
 
 /* place Cell.flag1_interno, colour set COMMAND: page `Cell`, place `flag1_interno` (ID1412310016) */
-static const pn_bag_t s_at_flag1_interno =
-    { .origin = "page `Cell`, place `flag1_interno` (ID1412310016)", .type = &s_COMMAND,
+static const pn_bag_t s_at_flag1_interno = {
+    .origin = "page `Cell`, place `flag1_interno` (ID1412310016)", .type = &s_COMMAND,
     .capacity = 1U, PN_BAG_SLOT(net_marking_t, flag1_interno) };
 
 /* place Cell.flag1_externo, colour set REPLY: page `Cell`, place `flag1_externo` (ID1412310019) */
-static const pn_bag_t s_at_flag1_externo =
-    { .origin = "page `Cell`, place `flag1_externo` (ID1412310019)", .type = &s_REPLY,
-    .capacity = 1U, PN_BAG_SLOT(net_marking_t, flag1_externo) };
+static const pn_bag_t s_at_flag1_externo = {
+    .origin = "page `Cell`, place `flag1_externo` (ID1412310019)", .type = &s_REPLY, .capacity = 1U,
+    PN_BAG_SLOT(net_marking_t, flag1_externo) };
 
 /* place Cell.referencia1, colour set POSE: page `Cell`, place `referencia1` (ID1412310022) */
-static const pn_bag_t s_at_referencia1 =
-    { .origin = "page `Cell`, place `referencia1` (ID1412310022)", .type = &s_POSE, .capacity = 1U,
+static const pn_bag_t s_at_referencia1 = {
+    .origin = "page `Cell`, place `referencia1` (ID1412310022)", .type = &s_POSE, .capacity = 1U,
     PN_BAG_SLOT(net_marking_t, referencia1) };
 
 /* place Cell.medida1, colour set POSE: page `Cell`, place `medida1` (ID1412310025) */
@@ -767,23 +767,23 @@ static const pn_bag_t s_at_medida1 = { .origin = "page `Cell`, place `medida1` (
     .type = &s_POSE, .capacity = 1U, PN_BAG_SLOT(net_marking_t, medida1) };
 
 /* place Cell.dadosrobo2, colour set POSE: page `Cell`, place `dadosrobo2` (ID1412310028) */
-static const pn_bag_t s_at_dadosrobo2 =
-    { .origin = "page `Cell`, place `dadosrobo2` (ID1412310028)", .type = &s_POSE, .capacity = 1U,
+static const pn_bag_t s_at_dadosrobo2 = {
+    .origin = "page `Cell`, place `dadosrobo2` (ID1412310028)", .type = &s_POSE, .capacity = 1U,
     PN_BAG_SLOT(net_marking_t, dadosrobo2) };
 
 /* place Cell.flag2_interno, colour set COMMAND: page `Cell`, place `flag2_interno` (ID1412310031) */
-static const pn_bag_t s_at_flag2_interno =
-    { .origin = "page `Cell`, place `flag2_interno` (ID1412310031)", .type = &s_COMMAND,
+static const pn_bag_t s_at_flag2_interno = {
+    .origin = "page `Cell`, place `flag2_interno` (ID1412310031)", .type = &s_COMMAND,
     .capacity = 1U, PN_BAG_SLOT(net_marking_t, flag2_interno) };
 
 /* place Cell.flag2_externo, colour set REPLY: page `Cell`, place `flag2_externo` (ID1412310034) */
-static const pn_bag_t s_at_flag2_externo =
-    { .origin = "page `Cell`, place `flag2_externo` (ID1412310034)", .type = &s_REPLY,
-    .capacity = 1U, PN_BAG_SLOT(net_marking_t, flag2_externo) };
+static const pn_bag_t s_at_flag2_externo = {
+    .origin = "page `Cell`, place `flag2_externo` (ID1412310034)", .type = &s_REPLY, .capacity = 1U,
+    PN_BAG_SLOT(net_marking_t, flag2_externo) };
 
 /* place Cell.referencia2, colour set POSE: page `Cell`, place `referencia2` (ID1412330001) */
-static const pn_bag_t s_at_referencia2 =
-    { .origin = "page `Cell`, place `referencia2` (ID1412330001)", .type = &s_POSE, .capacity = 1U,
+static const pn_bag_t s_at_referencia2 = {
+    .origin = "page `Cell`, place `referencia2` (ID1412330001)", .type = &s_POSE, .capacity = 1U,
     PN_BAG_SLOT(net_marking_t, referencia2) };
 
 /* place Cell.medida2, colour set POSE: page `Cell`, place `medida2` (ID1412330004) */
@@ -791,8 +791,8 @@ static const pn_bag_t s_at_medida2 = { .origin = "page `Cell`, place `medida2` (
     .type = &s_POSE, .capacity = 1U, PN_BAG_SLOT(net_marking_t, medida2) };
 
 /* place Cell.Supervisor.coordenadas, colour set PLAN: page `Supervisor`, place `coordenadas` (ID1412310094) */
-static const pn_bag_t s_at_Supervisor_coordenadas =
-    { .origin = "page `Supervisor`, place `coordenadas` (ID1412310094)", .type = &s_PLAN,
+static const pn_bag_t s_at_Supervisor_coordenadas = {
+    .origin = "page `Supervisor`, place `coordenadas` (ID1412310094)", .type = &s_PLAN,
     .capacity = 1U, PN_BAG_SLOT(net_marking_t, Supervisor_coordenadas) };
 
 /* initial marking:
@@ -817,298 +817,298 @@ static bool Supervisor_coordenadas_init(pn_ctx_t *cx, void *marking)
 }
 
 /* place Cell.Supervisor.planned, colour set SEAM: page `Supervisor`, place `planned` (ID1412310097) */
-static const pn_bag_t s_at_Supervisor_planned =
-    { .origin = "page `Supervisor`, place `planned` (ID1412310097)", .type = &s_SEAM,
-    .capacity = 1U, PN_BAG_SLOT(net_marking_t, Supervisor_planned) };
+static const pn_bag_t s_at_Supervisor_planned = {
+    .origin = "page `Supervisor`, place `planned` (ID1412310097)", .type = &s_SEAM, .capacity = 1U,
+    PN_BAG_SLOT(net_marking_t, Supervisor_planned) };
 
 /* place Cell.Supervisor.approached, colour set SEAM: page `Supervisor`, place `approached` (ID1412310100) */
-static const pn_bag_t s_at_Supervisor_approached =
-    { .origin = "page `Supervisor`, place `approached` (ID1412310100)", .type = &s_SEAM,
+static const pn_bag_t s_at_Supervisor_approached = {
+    .origin = "page `Supervisor`, place `approached` (ID1412310100)", .type = &s_SEAM,
     .capacity = 1U, PN_BAG_SLOT(net_marking_t, Supervisor_approached) };
 
 /* place Cell.Supervisor.verified, colour set VERIFIED: page `Supervisor`, place `verified` (ID1412310103) */
-static const pn_bag_t s_at_Supervisor_verified =
-    { .origin = "page `Supervisor`, place `verified` (ID1412310103)", .type = &s_VERIFIED,
+static const pn_bag_t s_at_Supervisor_verified = {
+    .origin = "page `Supervisor`, place `verified` (ID1412310103)", .type = &s_VERIFIED,
     .capacity = 1U, PN_BAG_SLOT(net_marking_t, Supervisor_verified) };
 
 /* place Cell.Supervisor.corrected, colour set RIVETING: page `Supervisor`, place `corrected` (ID1412310106) */
-static const pn_bag_t s_at_Supervisor_corrected =
-    { .origin = "page `Supervisor`, place `corrected` (ID1412310106)", .type = &s_RIVETING,
+static const pn_bag_t s_at_Supervisor_corrected = {
+    .origin = "page `Supervisor`, place `corrected` (ID1412310106)", .type = &s_RIVETING,
     .capacity = 1U, PN_BAG_SLOT(net_marking_t, Supervisor_corrected) };
 
 /* place Cell.Supervisor.ended, colour set UNIT: page `Supervisor`, place `ended` (ID1412310109) */
-static const pn_bag_t s_at_Supervisor_ended =
-    { .origin = "page `Supervisor`, place `ended` (ID1412310109)", .type = &s_UNIT, .capacity = 1U,
+static const pn_bag_t s_at_Supervisor_ended = {
+    .origin = "page `Supervisor`, place `ended` (ID1412310109)", .type = &s_UNIT, .capacity = 1U,
     PN_BAG_SLOT(net_marking_t, Supervisor_ended) };
 
 /* place Cell.Supervisor.Finished, colour set UNIT: page `Supervisor`, place `Finished` (ID1412310112) */
-static const pn_bag_t s_at_Supervisor_Finished =
-    { .origin = "page `Supervisor`, place `Finished` (ID1412310112)", .type = &s_UNIT,
-    .capacity = 1U, PN_BAG_SLOT(net_marking_t, Supervisor_Finished) };
+static const pn_bag_t s_at_Supervisor_Finished = {
+    .origin = "page `Supervisor`, place `Finished` (ID1412310112)", .type = &s_UNIT, .capacity = 1U,
+    PN_BAG_SLOT(net_marking_t, Supervisor_Finished) };
 
 /* place Cell.Supervisor.result, colour set REPLY: page `Supervisor`, place `result` (ID1412320001) */
-static const pn_bag_t s_at_Supervisor_result =
-    { .origin = "page `Supervisor`, place `result` (ID1412320001)", .type = &s_REPLY,
-    .capacity = 1U, PN_BAG_SLOT(net_marking_t, Supervisor_result) };
+static const pn_bag_t s_at_Supervisor_result = {
+    .origin = "page `Supervisor`, place `result` (ID1412320001)", .type = &s_REPLY, .capacity = 1U,
+    PN_BAG_SLOT(net_marking_t, Supervisor_result) };
 
 /* place Cell.Supervisor.Failed, colour set UNIT: page `Supervisor`, place `Failed` (ID1412320004) */
-static const pn_bag_t s_at_Supervisor_Failed =
-    { .origin = "page `Supervisor`, place `Failed` (ID1412320004)", .type = &s_UNIT, .capacity = 1U,
+static const pn_bag_t s_at_Supervisor_Failed = {
+    .origin = "page `Supervisor`, place `Failed` (ID1412320004)", .type = &s_UNIT, .capacity = 1U,
     PN_BAG_SLOT(net_marking_t, Supervisor_Failed) };
 
 /* place Cell.Supervisor.Approach.order, colour set ORDER: page `Approach`, place `order` (ID1412310290) */
-static const pn_bag_t s_at_Supervisor_Approach_order =
-    { .origin = "page `Approach`, place `order` (ID1412310290)", .type = &s_ORDER, .capacity = 1U,
+static const pn_bag_t s_at_Supervisor_Approach_order = {
+    .origin = "page `Approach`, place `order` (ID1412310290)", .type = &s_ORDER, .capacity = 1U,
     PN_BAG_SLOT(net_marking_t, Supervisor_Approach_order) };
 
 /* place Cell.Supervisor.Approach.done, colour set UNIT: page `Approach`, place `done` (ID1412310293) */
-static const pn_bag_t s_at_Supervisor_Approach_done =
-    { .origin = "page `Approach`, place `done` (ID1412310293)", .type = &s_UNIT, .capacity = 1U,
+static const pn_bag_t s_at_Supervisor_Approach_done = {
+    .origin = "page `Approach`, place `done` (ID1412310293)", .type = &s_UNIT, .capacity = 1U,
     PN_BAG_SLOT(net_marking_t, Supervisor_Approach_done) };
 
 /* place Cell.Supervisor.Approach.seam, colour set SEAM: page `Approach`, place `seam` (ID1412310352) */
-static const pn_bag_t s_at_Supervisor_Approach_seam =
-    { .origin = "page `Approach`, place `seam` (ID1412310352)", .type = &s_SEAM, .capacity = 1U,
+static const pn_bag_t s_at_Supervisor_Approach_seam = {
+    .origin = "page `Approach`, place `seam` (ID1412310352)", .type = &s_SEAM, .capacity = 1U,
     PN_BAG_SLOT(net_marking_t, Supervisor_Approach_seam) };
 
 /* place Cell.Supervisor.Approach.Move both.moving 1, colour set UNIT: page `MoveBoth`, place `moving 1` (ID1412310959) */
-static const pn_bag_t s_at_Supervisor_Approach_Move_both_moving_1 =
-    { .origin = "page `MoveBoth`, place `moving 1` (ID1412310959)", .type = &s_UNIT, .capacity = 1U,
+static const pn_bag_t s_at_Supervisor_Approach_Move_both_moving_1 = {
+    .origin = "page `MoveBoth`, place `moving 1` (ID1412310959)", .type = &s_UNIT, .capacity = 1U,
     PN_BAG_SLOT(net_marking_t, Supervisor_Approach_Move_both_moving_1) };
 
 /* place Cell.Supervisor.Approach.Move both.there 1, colour set UNIT: page `MoveBoth`, place `there 1` (ID1412310967) */
-static const pn_bag_t s_at_Supervisor_Approach_Move_both_there_1 =
-    { .origin = "page `MoveBoth`, place `there 1` (ID1412310967)", .type = &s_UNIT, .capacity = 1U,
+static const pn_bag_t s_at_Supervisor_Approach_Move_both_there_1 = {
+    .origin = "page `MoveBoth`, place `there 1` (ID1412310967)", .type = &s_UNIT, .capacity = 1U,
     PN_BAG_SLOT(net_marking_t, Supervisor_Approach_Move_both_there_1) };
 
 /* place Cell.Supervisor.Approach.Move both.moving 2, colour set UNIT: page `MoveBoth`, place `moving 2` (ID1412310996) */
-static const pn_bag_t s_at_Supervisor_Approach_Move_both_moving_2 =
-    { .origin = "page `MoveBoth`, place `moving 2` (ID1412310996)", .type = &s_UNIT, .capacity = 1U,
+static const pn_bag_t s_at_Supervisor_Approach_Move_both_moving_2 = {
+    .origin = "page `MoveBoth`, place `moving 2` (ID1412310996)", .type = &s_UNIT, .capacity = 1U,
     PN_BAG_SLOT(net_marking_t, Supervisor_Approach_Move_both_moving_2) };
 
 /* place Cell.Supervisor.Approach.Move both.there 2, colour set UNIT: page `MoveBoth`, place `there 2` (ID1412311004) */
-static const pn_bag_t s_at_Supervisor_Approach_Move_both_there_2 =
-    { .origin = "page `MoveBoth`, place `there 2` (ID1412311004)", .type = &s_UNIT, .capacity = 1U,
+static const pn_bag_t s_at_Supervisor_Approach_Move_both_there_2 = {
+    .origin = "page `MoveBoth`, place `there 2` (ID1412311004)", .type = &s_UNIT, .capacity = 1U,
     PN_BAG_SLOT(net_marking_t, Supervisor_Approach_Move_both_there_2) };
 
 /* place Cell.Supervisor.Verify.first asked, colour set SEAM: page `Verify`, place `first asked` (ID1412310382) */
-static const pn_bag_t s_at_Supervisor_Verify_first_asked =
-    { .origin = "page `Verify`, place `first asked` (ID1412310382)", .type = &s_SEAM,
-    .capacity = 1U, PN_BAG_SLOT(net_marking_t, Supervisor_Verify_first_asked) };
+static const pn_bag_t s_at_Supervisor_Verify_first_asked = {
+    .origin = "page `Verify`, place `first asked` (ID1412310382)", .type = &s_SEAM, .capacity = 1U,
+    PN_BAG_SLOT(net_marking_t, Supervisor_Verify_first_asked) };
 
 /* place Cell.Supervisor.Verify.last asked, colour set ASKED: page `Verify`, place `last asked` (ID1412310390) */
-static const pn_bag_t s_at_Supervisor_Verify_last_asked =
-    { .origin = "page `Verify`, place `last asked` (ID1412310390)", .type = &s_ASKED,
-    .capacity = 1U, PN_BAG_SLOT(net_marking_t, Supervisor_Verify_last_asked) };
+static const pn_bag_t s_at_Supervisor_Verify_last_asked = {
+    .origin = "page `Verify`, place `last asked` (ID1412310390)", .type = &s_ASKED, .capacity = 1U,
+    PN_BAG_SLOT(net_marking_t, Supervisor_Verify_last_asked) };
 
 /* place Cell.Supervisor.Correct.offset, colour set VECTOR: page `Correct`, place `offset` (ID1412310458) */
-static const pn_bag_t s_at_Supervisor_Correct_offset =
-    { .origin = "page `Correct`, place `offset` (ID1412310458)", .type = &s_VECTOR, .capacity = 1U,
+static const pn_bag_t s_at_Supervisor_Correct_offset = {
+    .origin = "page `Correct`, place `offset` (ID1412310458)", .type = &s_VECTOR, .capacity = 1U,
     PN_BAG_SLOT(net_marking_t, Supervisor_Correct_offset) };
 
 /* place Cell.Supervisor.Correct.order, colour set ORDER: page `Correct`, place `order` (ID1412310466) */
-static const pn_bag_t s_at_Supervisor_Correct_order =
-    { .origin = "page `Correct`, place `order` (ID1412310466)", .type = &s_ORDER, .capacity = 1U,
+static const pn_bag_t s_at_Supervisor_Correct_order = {
+    .origin = "page `Correct`, place `order` (ID1412310466)", .type = &s_ORDER, .capacity = 1U,
     PN_BAG_SLOT(net_marking_t, Supervisor_Correct_order) };
 
 /* place Cell.Supervisor.Correct.done, colour set UNIT: page `Correct`, place `done` (ID1412310475) */
-static const pn_bag_t s_at_Supervisor_Correct_done =
-    { .origin = "page `Correct`, place `done` (ID1412310475)", .type = &s_UNIT, .capacity = 1U,
+static const pn_bag_t s_at_Supervisor_Correct_done = {
+    .origin = "page `Correct`, place `done` (ID1412310475)", .type = &s_UNIT, .capacity = 1U,
     PN_BAG_SLOT(net_marking_t, Supervisor_Correct_done) };
 
 /* place Cell.Supervisor.Correct.seam, colour set RIVETING: page `Correct`, place `seam` (ID1412310523) */
-static const pn_bag_t s_at_Supervisor_Correct_seam =
-    { .origin = "page `Correct`, place `seam` (ID1412310523)", .type = &s_RIVETING, .capacity = 1U,
+static const pn_bag_t s_at_Supervisor_Correct_seam = {
+    .origin = "page `Correct`, place `seam` (ID1412310523)", .type = &s_RIVETING, .capacity = 1U,
     PN_BAG_SLOT(net_marking_t, Supervisor_Correct_seam) };
 
 /* place Cell.Supervisor.Correct.Move both.moving 1, colour set UNIT: page `MoveBoth`, place `moving 1` (ID1412310959) */
-static const pn_bag_t s_at_Supervisor_Correct_Move_both_moving_1 =
-    { .origin = "page `MoveBoth`, place `moving 1` (ID1412310959)", .type = &s_UNIT, .capacity = 1U,
+static const pn_bag_t s_at_Supervisor_Correct_Move_both_moving_1 = {
+    .origin = "page `MoveBoth`, place `moving 1` (ID1412310959)", .type = &s_UNIT, .capacity = 1U,
     PN_BAG_SLOT(net_marking_t, Supervisor_Correct_Move_both_moving_1) };
 
 /* place Cell.Supervisor.Correct.Move both.there 1, colour set UNIT: page `MoveBoth`, place `there 1` (ID1412310967) */
-static const pn_bag_t s_at_Supervisor_Correct_Move_both_there_1 =
-    { .origin = "page `MoveBoth`, place `there 1` (ID1412310967)", .type = &s_UNIT, .capacity = 1U,
+static const pn_bag_t s_at_Supervisor_Correct_Move_both_there_1 = {
+    .origin = "page `MoveBoth`, place `there 1` (ID1412310967)", .type = &s_UNIT, .capacity = 1U,
     PN_BAG_SLOT(net_marking_t, Supervisor_Correct_Move_both_there_1) };
 
 /* place Cell.Supervisor.Correct.Move both.moving 2, colour set UNIT: page `MoveBoth`, place `moving 2` (ID1412310996) */
-static const pn_bag_t s_at_Supervisor_Correct_Move_both_moving_2 =
-    { .origin = "page `MoveBoth`, place `moving 2` (ID1412310996)", .type = &s_UNIT, .capacity = 1U,
+static const pn_bag_t s_at_Supervisor_Correct_Move_both_moving_2 = {
+    .origin = "page `MoveBoth`, place `moving 2` (ID1412310996)", .type = &s_UNIT, .capacity = 1U,
     PN_BAG_SLOT(net_marking_t, Supervisor_Correct_Move_both_moving_2) };
 
 /* place Cell.Supervisor.Correct.Move both.there 2, colour set UNIT: page `MoveBoth`, place `there 2` (ID1412311004) */
-static const pn_bag_t s_at_Supervisor_Correct_Move_both_there_2 =
-    { .origin = "page `MoveBoth`, place `there 2` (ID1412311004)", .type = &s_UNIT, .capacity = 1U,
+static const pn_bag_t s_at_Supervisor_Correct_Move_both_there_2 = {
+    .origin = "page `MoveBoth`, place `there 2` (ID1412311004)", .type = &s_UNIT, .capacity = 1U,
     PN_BAG_SLOT(net_marking_t, Supervisor_Correct_Move_both_there_2) };
 
 /* place Cell.Supervisor.Install.shift, colour set ORDER: page `Install`, place `shift` (ID1412310585) */
-static const pn_bag_t s_at_Supervisor_Install_shift =
-    { .origin = "page `Install`, place `shift` (ID1412310585)", .type = &s_ORDER, .capacity = 1U,
+static const pn_bag_t s_at_Supervisor_Install_shift = {
+    .origin = "page `Install`, place `shift` (ID1412310585)", .type = &s_ORDER, .capacity = 1U,
     PN_BAG_SLOT(net_marking_t, Supervisor_Install_shift) };
 
 /* place Cell.Supervisor.Install.ready, colour set UNIT: page `Install`, place `ready` (ID1412310588) */
-static const pn_bag_t s_at_Supervisor_Install_ready =
-    { .origin = "page `Install`, place `ready` (ID1412310588)", .type = &s_UNIT, .capacity = 1U,
+static const pn_bag_t s_at_Supervisor_Install_ready = {
+    .origin = "page `Install`, place `ready` (ID1412310588)", .type = &s_UNIT, .capacity = 1U,
     PN_BAG_SLOT(net_marking_t, Supervisor_Install_ready) };
 
 /* place Cell.Supervisor.Install.riveted, colour set UNIT: page `Install`, place `riveted` (ID1412310591) */
-static const pn_bag_t s_at_Supervisor_Install_riveted =
-    { .origin = "page `Install`, place `riveted` (ID1412310591)", .type = &s_UNIT, .capacity = 1U,
+static const pn_bag_t s_at_Supervisor_Install_riveted = {
+    .origin = "page `Install`, place `riveted` (ID1412310591)", .type = &s_UNIT, .capacity = 1U,
     PN_BAG_SLOT(net_marking_t, Supervisor_Install_riveted) };
 
 /* place Cell.Supervisor.Install.return, colour set ORDER: page `Install`, place `return` (ID1412310599) */
-static const pn_bag_t s_at_Supervisor_Install_return =
-    { .origin = "page `Install`, place `return` (ID1412310599)", .type = &s_ORDER, .capacity = 1U,
+static const pn_bag_t s_at_Supervisor_Install_return = {
+    .origin = "page `Install`, place `return` (ID1412310599)", .type = &s_ORDER, .capacity = 1U,
     PN_BAG_SLOT(net_marking_t, Supervisor_Install_return) };
 
 /* place Cell.Supervisor.Install.work, colour set WORK: page `Install`, place `work` (ID1412310629) */
-static const pn_bag_t s_at_Supervisor_Install_work =
-    { .origin = "page `Install`, place `work` (ID1412310629)", .type = &s_WORK, .capacity = 1U,
+static const pn_bag_t s_at_Supervisor_Install_work = {
+    .origin = "page `Install`, place `work` (ID1412310629)", .type = &s_WORK, .capacity = 1U,
     PN_BAG_SLOT(net_marking_t, Supervisor_Install_work) };
 
 /* place Cell.Supervisor.Install.Shift.moving 1, colour set UNIT: page `MoveBoth`, place `moving 1` (ID1412310959) */
-static const pn_bag_t s_at_Supervisor_Install_Shift_moving_1 =
-    { .origin = "page `MoveBoth`, place `moving 1` (ID1412310959)", .type = &s_UNIT, .capacity = 1U,
+static const pn_bag_t s_at_Supervisor_Install_Shift_moving_1 = {
+    .origin = "page `MoveBoth`, place `moving 1` (ID1412310959)", .type = &s_UNIT, .capacity = 1U,
     PN_BAG_SLOT(net_marking_t, Supervisor_Install_Shift_moving_1) };
 
 /* place Cell.Supervisor.Install.Shift.there 1, colour set UNIT: page `MoveBoth`, place `there 1` (ID1412310967) */
-static const pn_bag_t s_at_Supervisor_Install_Shift_there_1 =
-    { .origin = "page `MoveBoth`, place `there 1` (ID1412310967)", .type = &s_UNIT, .capacity = 1U,
+static const pn_bag_t s_at_Supervisor_Install_Shift_there_1 = {
+    .origin = "page `MoveBoth`, place `there 1` (ID1412310967)", .type = &s_UNIT, .capacity = 1U,
     PN_BAG_SLOT(net_marking_t, Supervisor_Install_Shift_there_1) };
 
 /* place Cell.Supervisor.Install.Shift.moving 2, colour set UNIT: page `MoveBoth`, place `moving 2` (ID1412310996) */
-static const pn_bag_t s_at_Supervisor_Install_Shift_moving_2 =
-    { .origin = "page `MoveBoth`, place `moving 2` (ID1412310996)", .type = &s_UNIT, .capacity = 1U,
+static const pn_bag_t s_at_Supervisor_Install_Shift_moving_2 = {
+    .origin = "page `MoveBoth`, place `moving 2` (ID1412310996)", .type = &s_UNIT, .capacity = 1U,
     PN_BAG_SLOT(net_marking_t, Supervisor_Install_Shift_moving_2) };
 
 /* place Cell.Supervisor.Install.Shift.there 2, colour set UNIT: page `MoveBoth`, place `there 2` (ID1412311004) */
-static const pn_bag_t s_at_Supervisor_Install_Shift_there_2 =
-    { .origin = "page `MoveBoth`, place `there 2` (ID1412311004)", .type = &s_UNIT, .capacity = 1U,
+static const pn_bag_t s_at_Supervisor_Install_Shift_there_2 = {
+    .origin = "page `MoveBoth`, place `there 2` (ID1412311004)", .type = &s_UNIT, .capacity = 1U,
     PN_BAG_SLOT(net_marking_t, Supervisor_Install_Shift_there_2) };
 
 /* place Cell.Supervisor.Install.Rivet.advance, colour set ORDER: page `Rivet`, place `advance` (ID1412310721) */
-static const pn_bag_t s_at_Supervisor_Install_Rivet_advance =
-    { .origin = "page `Rivet`, place `advance` (ID1412310721)", .type = &s_ORDER, .capacity = 1U,
+static const pn_bag_t s_at_Supervisor_Install_Rivet_advance = {
+    .origin = "page `Rivet`, place `advance` (ID1412310721)", .type = &s_ORDER, .capacity = 1U,
     PN_BAG_SLOT(net_marking_t, Supervisor_Install_Rivet_advance) };
 
 /* place Cell.Supervisor.Install.Rivet.contact, colour set UNIT: page `Rivet`, place `contact` (ID1412310730) */
-static const pn_bag_t s_at_Supervisor_Install_Rivet_contact =
-    { .origin = "page `Rivet`, place `contact` (ID1412310730)", .type = &s_UNIT, .capacity = 1U,
+static const pn_bag_t s_at_Supervisor_Install_Rivet_contact = {
+    .origin = "page `Rivet`, place `contact` (ID1412310730)", .type = &s_UNIT, .capacity = 1U,
     PN_BAG_SLOT(net_marking_t, Supervisor_Install_Rivet_contact) };
 
 /* place Cell.Supervisor.Install.Rivet.fastened, colour set REPLY: page `Rivet`, place `fastened` (ID1412310739) */
-static const pn_bag_t s_at_Supervisor_Install_Rivet_fastened =
-    { .origin = "page `Rivet`, place `fastened` (ID1412310739)", .type = &s_REPLY, .capacity = 1U,
+static const pn_bag_t s_at_Supervisor_Install_Rivet_fastened = {
+    .origin = "page `Rivet`, place `fastened` (ID1412310739)", .type = &s_REPLY, .capacity = 1U,
     PN_BAG_SLOT(net_marking_t, Supervisor_Install_Rivet_fastened) };
 
 /* place Cell.Supervisor.Install.Rivet.retract, colour set ORDER: page `Rivet`, place `retract` (ID1412310747) */
-static const pn_bag_t s_at_Supervisor_Install_Rivet_retract =
-    { .origin = "page `Rivet`, place `retract` (ID1412310747)", .type = &s_ORDER, .capacity = 1U,
+static const pn_bag_t s_at_Supervisor_Install_Rivet_retract = {
+    .origin = "page `Rivet`, place `retract` (ID1412310747)", .type = &s_ORDER, .capacity = 1U,
     PN_BAG_SLOT(net_marking_t, Supervisor_Install_Rivet_retract) };
 
 /* place Cell.Supervisor.Install.Rivet.Advance.moving 1, colour set UNIT: page `MoveBoth`, place `moving 1` (ID1412310959) */
-static const pn_bag_t s_at_Supervisor_Install_Rivet_Advance_moving_1 =
-    { .origin = "page `MoveBoth`, place `moving 1` (ID1412310959)", .type = &s_UNIT, .capacity = 1U,
+static const pn_bag_t s_at_Supervisor_Install_Rivet_Advance_moving_1 = {
+    .origin = "page `MoveBoth`, place `moving 1` (ID1412310959)", .type = &s_UNIT, .capacity = 1U,
     PN_BAG_SLOT(net_marking_t, Supervisor_Install_Rivet_Advance_moving_1) };
 
 /* place Cell.Supervisor.Install.Rivet.Advance.there 1, colour set UNIT: page `MoveBoth`, place `there 1` (ID1412310967) */
-static const pn_bag_t s_at_Supervisor_Install_Rivet_Advance_there_1 =
-    { .origin = "page `MoveBoth`, place `there 1` (ID1412310967)", .type = &s_UNIT, .capacity = 1U,
+static const pn_bag_t s_at_Supervisor_Install_Rivet_Advance_there_1 = {
+    .origin = "page `MoveBoth`, place `there 1` (ID1412310967)", .type = &s_UNIT, .capacity = 1U,
     PN_BAG_SLOT(net_marking_t, Supervisor_Install_Rivet_Advance_there_1) };
 
 /* place Cell.Supervisor.Install.Rivet.Advance.moving 2, colour set UNIT: page `MoveBoth`, place `moving 2` (ID1412310996) */
-static const pn_bag_t s_at_Supervisor_Install_Rivet_Advance_moving_2 =
-    { .origin = "page `MoveBoth`, place `moving 2` (ID1412310996)", .type = &s_UNIT, .capacity = 1U,
+static const pn_bag_t s_at_Supervisor_Install_Rivet_Advance_moving_2 = {
+    .origin = "page `MoveBoth`, place `moving 2` (ID1412310996)", .type = &s_UNIT, .capacity = 1U,
     PN_BAG_SLOT(net_marking_t, Supervisor_Install_Rivet_Advance_moving_2) };
 
 /* place Cell.Supervisor.Install.Rivet.Advance.there 2, colour set UNIT: page `MoveBoth`, place `there 2` (ID1412311004) */
-static const pn_bag_t s_at_Supervisor_Install_Rivet_Advance_there_2 =
-    { .origin = "page `MoveBoth`, place `there 2` (ID1412311004)", .type = &s_UNIT, .capacity = 1U,
+static const pn_bag_t s_at_Supervisor_Install_Rivet_Advance_there_2 = {
+    .origin = "page `MoveBoth`, place `there 2` (ID1412311004)", .type = &s_UNIT, .capacity = 1U,
     PN_BAG_SLOT(net_marking_t, Supervisor_Install_Rivet_Advance_there_2) };
 
 /* place Cell.Supervisor.Install.Rivet.Fasten.pressing, colour set UNIT: page `Fasten`, place `pressing` (ID1412310847) */
-static const pn_bag_t s_at_Supervisor_Install_Rivet_Fasten_pressing =
-    { .origin = "page `Fasten`, place `pressing` (ID1412310847)", .type = &s_UNIT, .capacity = 1U,
+static const pn_bag_t s_at_Supervisor_Install_Rivet_Fasten_pressing = {
+    .origin = "page `Fasten`, place `pressing` (ID1412310847)", .type = &s_UNIT, .capacity = 1U,
     PN_BAG_SLOT(net_marking_t, Supervisor_Install_Rivet_Fasten_pressing) };
 
 /* place Cell.Supervisor.Install.Rivet.Fasten.drilling, colour set UNIT: page `Fasten`, place `drilling` (ID1412310855) */
-static const pn_bag_t s_at_Supervisor_Install_Rivet_Fasten_drilling =
-    { .origin = "page `Fasten`, place `drilling` (ID1412310855)", .type = &s_UNIT, .capacity = 1U,
+static const pn_bag_t s_at_Supervisor_Install_Rivet_Fasten_drilling = {
+    .origin = "page `Fasten`, place `drilling` (ID1412310855)", .type = &s_UNIT, .capacity = 1U,
     PN_BAG_SLOT(net_marking_t, Supervisor_Install_Rivet_Fasten_drilling) };
 
 /* place Cell.Supervisor.Install.Rivet.Fasten.inserting, colour set UNIT: page `Fasten`, place `inserting` (ID1412310863) */
-static const pn_bag_t s_at_Supervisor_Install_Rivet_Fasten_inserting =
-    { .origin = "page `Fasten`, place `inserting` (ID1412310863)", .type = &s_UNIT, .capacity = 1U,
+static const pn_bag_t s_at_Supervisor_Install_Rivet_Fasten_inserting = {
+    .origin = "page `Fasten`, place `inserting` (ID1412310863)", .type = &s_UNIT, .capacity = 1U,
     PN_BAG_SLOT(net_marking_t, Supervisor_Install_Rivet_Fasten_inserting) };
 
 /* place Cell.Supervisor.Install.Rivet.Fasten.releasing, colour set REPLY: page `Fasten`, place `releasing` (ID1412310871) */
-static const pn_bag_t s_at_Supervisor_Install_Rivet_Fasten_releasing =
-    { .origin = "page `Fasten`, place `releasing` (ID1412310871)", .type = &s_REPLY, .capacity = 1U,
+static const pn_bag_t s_at_Supervisor_Install_Rivet_Fasten_releasing = {
+    .origin = "page `Fasten`, place `releasing` (ID1412310871)", .type = &s_REPLY, .capacity = 1U,
     PN_BAG_SLOT(net_marking_t, Supervisor_Install_Rivet_Fasten_releasing) };
 
 /* place Cell.Supervisor.Install.Rivet.Retract.moving 1, colour set UNIT: page `MoveBoth`, place `moving 1` (ID1412310959) */
-static const pn_bag_t s_at_Supervisor_Install_Rivet_Retract_moving_1 =
-    { .origin = "page `MoveBoth`, place `moving 1` (ID1412310959)", .type = &s_UNIT, .capacity = 1U,
+static const pn_bag_t s_at_Supervisor_Install_Rivet_Retract_moving_1 = {
+    .origin = "page `MoveBoth`, place `moving 1` (ID1412310959)", .type = &s_UNIT, .capacity = 1U,
     PN_BAG_SLOT(net_marking_t, Supervisor_Install_Rivet_Retract_moving_1) };
 
 /* place Cell.Supervisor.Install.Rivet.Retract.there 1, colour set UNIT: page `MoveBoth`, place `there 1` (ID1412310967) */
-static const pn_bag_t s_at_Supervisor_Install_Rivet_Retract_there_1 =
-    { .origin = "page `MoveBoth`, place `there 1` (ID1412310967)", .type = &s_UNIT, .capacity = 1U,
+static const pn_bag_t s_at_Supervisor_Install_Rivet_Retract_there_1 = {
+    .origin = "page `MoveBoth`, place `there 1` (ID1412310967)", .type = &s_UNIT, .capacity = 1U,
     PN_BAG_SLOT(net_marking_t, Supervisor_Install_Rivet_Retract_there_1) };
 
 /* place Cell.Supervisor.Install.Rivet.Retract.moving 2, colour set UNIT: page `MoveBoth`, place `moving 2` (ID1412310996) */
-static const pn_bag_t s_at_Supervisor_Install_Rivet_Retract_moving_2 =
-    { .origin = "page `MoveBoth`, place `moving 2` (ID1412310996)", .type = &s_UNIT, .capacity = 1U,
+static const pn_bag_t s_at_Supervisor_Install_Rivet_Retract_moving_2 = {
+    .origin = "page `MoveBoth`, place `moving 2` (ID1412310996)", .type = &s_UNIT, .capacity = 1U,
     PN_BAG_SLOT(net_marking_t, Supervisor_Install_Rivet_Retract_moving_2) };
 
 /* place Cell.Supervisor.Install.Rivet.Retract.there 2, colour set UNIT: page `MoveBoth`, place `there 2` (ID1412311004) */
-static const pn_bag_t s_at_Supervisor_Install_Rivet_Retract_there_2 =
-    { .origin = "page `MoveBoth`, place `there 2` (ID1412311004)", .type = &s_UNIT, .capacity = 1U,
+static const pn_bag_t s_at_Supervisor_Install_Rivet_Retract_there_2 = {
+    .origin = "page `MoveBoth`, place `there 2` (ID1412311004)", .type = &s_UNIT, .capacity = 1U,
     PN_BAG_SLOT(net_marking_t, Supervisor_Install_Rivet_Retract_there_2) };
 
 /* place Cell.Supervisor.Install.Return.moving 1, colour set UNIT: page `MoveBoth`, place `moving 1` (ID1412310959) */
-static const pn_bag_t s_at_Supervisor_Install_Return_moving_1 =
-    { .origin = "page `MoveBoth`, place `moving 1` (ID1412310959)", .type = &s_UNIT, .capacity = 1U,
+static const pn_bag_t s_at_Supervisor_Install_Return_moving_1 = {
+    .origin = "page `MoveBoth`, place `moving 1` (ID1412310959)", .type = &s_UNIT, .capacity = 1U,
     PN_BAG_SLOT(net_marking_t, Supervisor_Install_Return_moving_1) };
 
 /* place Cell.Supervisor.Install.Return.there 1, colour set UNIT: page `MoveBoth`, place `there 1` (ID1412310967) */
-static const pn_bag_t s_at_Supervisor_Install_Return_there_1 =
-    { .origin = "page `MoveBoth`, place `there 1` (ID1412310967)", .type = &s_UNIT, .capacity = 1U,
+static const pn_bag_t s_at_Supervisor_Install_Return_there_1 = {
+    .origin = "page `MoveBoth`, place `there 1` (ID1412310967)", .type = &s_UNIT, .capacity = 1U,
     PN_BAG_SLOT(net_marking_t, Supervisor_Install_Return_there_1) };
 
 /* place Cell.Supervisor.Install.Return.moving 2, colour set UNIT: page `MoveBoth`, place `moving 2` (ID1412310996) */
-static const pn_bag_t s_at_Supervisor_Install_Return_moving_2 =
-    { .origin = "page `MoveBoth`, place `moving 2` (ID1412310996)", .type = &s_UNIT, .capacity = 1U,
+static const pn_bag_t s_at_Supervisor_Install_Return_moving_2 = {
+    .origin = "page `MoveBoth`, place `moving 2` (ID1412310996)", .type = &s_UNIT, .capacity = 1U,
     PN_BAG_SLOT(net_marking_t, Supervisor_Install_Return_moving_2) };
 
 /* place Cell.Supervisor.Install.Return.there 2, colour set UNIT: page `MoveBoth`, place `there 2` (ID1412311004) */
-static const pn_bag_t s_at_Supervisor_Install_Return_there_2 =
-    { .origin = "page `MoveBoth`, place `there 2` (ID1412311004)", .type = &s_UNIT, .capacity = 1U,
+static const pn_bag_t s_at_Supervisor_Install_Return_there_2 = {
+    .origin = "page `MoveBoth`, place `there 2` (ID1412311004)", .type = &s_UNIT, .capacity = 1U,
     PN_BAG_SLOT(net_marking_t, Supervisor_Install_Return_there_2) };
 
 /* place Cell.Supervisor.Home.leaving 1, colour set UNIT: page `Home`, place `leaving 1` (ID1412311057) */
-static const pn_bag_t s_at_Supervisor_Home_leaving_1 =
-    { .origin = "page `Home`, place `leaving 1` (ID1412311057)", .type = &s_UNIT, .capacity = 1U,
+static const pn_bag_t s_at_Supervisor_Home_leaving_1 = {
+    .origin = "page `Home`, place `leaving 1` (ID1412311057)", .type = &s_UNIT, .capacity = 1U,
     PN_BAG_SLOT(net_marking_t, Supervisor_Home_leaving_1) };
 
 /* place Cell.Supervisor.Home.home 1, colour set UNIT: page `Home`, place `home 1` (ID1412311065) */
-static const pn_bag_t s_at_Supervisor_Home_home_1 =
-    { .origin = "page `Home`, place `home 1` (ID1412311065)", .type = &s_UNIT, .capacity = 1U,
+static const pn_bag_t s_at_Supervisor_Home_home_1 = {
+    .origin = "page `Home`, place `home 1` (ID1412311065)", .type = &s_UNIT, .capacity = 1U,
     PN_BAG_SLOT(net_marking_t, Supervisor_Home_home_1) };
 
 /* place Cell.Supervisor.Home.leaving 2, colour set UNIT: page `Home`, place `leaving 2` (ID1412311088) */
-static const pn_bag_t s_at_Supervisor_Home_leaving_2 =
-    { .origin = "page `Home`, place `leaving 2` (ID1412311088)", .type = &s_UNIT, .capacity = 1U,
+static const pn_bag_t s_at_Supervisor_Home_leaving_2 = {
+    .origin = "page `Home`, place `leaving 2` (ID1412311088)", .type = &s_UNIT, .capacity = 1U,
     PN_BAG_SLOT(net_marking_t, Supervisor_Home_leaving_2) };
 
 /* place Cell.Supervisor.Home.home 2, colour set UNIT: page `Home`, place `home 2` (ID1412311096) */
-static const pn_bag_t s_at_Supervisor_Home_home_2 =
-    { .origin = "page `Home`, place `home 2` (ID1412311096)", .type = &s_UNIT, .capacity = 1U,
+static const pn_bag_t s_at_Supervisor_Home_home_2 = {
+    .origin = "page `Home`, place `home 2` (ID1412311096)", .type = &s_UNIT, .capacity = 1U,
     PN_BAG_SLOT(net_marking_t, Supervisor_Home_home_2) };
 
 /* place Cell.Robot1.Waiting, colour set UNIT: page `Robot`, place `Waiting` (ID1412311130) */
-static const pn_bag_t s_at_Robot1_Waiting =
-    { .origin = "page `Robot`, place `Waiting` (ID1412311130)", .type = &s_UNIT, .capacity = 1U,
+static const pn_bag_t s_at_Robot1_Waiting = {
+    .origin = "page `Robot`, place `Waiting` (ID1412311130)", .type = &s_UNIT, .capacity = 1U,
     PN_BAG_SLOT(net_marking_t, Robot1_Waiting) };
 
 /* initial marking:
@@ -1124,17 +1124,17 @@ static bool Robot1_Waiting_init(pn_ctx_t *cx, void *marking)
 }
 
 /* place Cell.Robot1.Commanded, colour set COMMAND: page `Robot`, place `Commanded` (ID1412311133) */
-static const pn_bag_t s_at_Robot1_Commanded =
-    { .origin = "page `Robot`, place `Commanded` (ID1412311133)", .type = &s_COMMAND,
-    .capacity = 1U, PN_BAG_SLOT(net_marking_t, Robot1_Commanded) };
+static const pn_bag_t s_at_Robot1_Commanded = {
+    .origin = "page `Robot`, place `Commanded` (ID1412311133)", .type = &s_COMMAND, .capacity = 1U,
+    PN_BAG_SLOT(net_marking_t, Robot1_Commanded) };
 
 /* place Cell.Robot1.Done, colour set REPLY: page `Robot`, place `Done` (ID1412311142) */
 static const pn_bag_t s_at_Robot1_Done = { .origin = "page `Robot`, place `Done` (ID1412311142)",
     .type = &s_REPLY, .capacity = 1U, PN_BAG_SLOT(net_marking_t, Robot1_Done) };
 
 /* place Cell.Robot2.Waiting, colour set UNIT: page `Robot`, place `Waiting` (ID1412311130) */
-static const pn_bag_t s_at_Robot2_Waiting =
-    { .origin = "page `Robot`, place `Waiting` (ID1412311130)", .type = &s_UNIT, .capacity = 1U,
+static const pn_bag_t s_at_Robot2_Waiting = {
+    .origin = "page `Robot`, place `Waiting` (ID1412311130)", .type = &s_UNIT, .capacity = 1U,
     PN_BAG_SLOT(net_marking_t, Robot2_Waiting) };
 
 /* initial marking:
@@ -1150,9 +1150,9 @@ static bool Robot2_Waiting_init(pn_ctx_t *cx, void *marking)
 }
 
 /* place Cell.Robot2.Commanded, colour set COMMAND: page `Robot`, place `Commanded` (ID1412311133) */
-static const pn_bag_t s_at_Robot2_Commanded =
-    { .origin = "page `Robot`, place `Commanded` (ID1412311133)", .type = &s_COMMAND,
-    .capacity = 1U, PN_BAG_SLOT(net_marking_t, Robot2_Commanded) };
+static const pn_bag_t s_at_Robot2_Commanded = {
+    .origin = "page `Robot`, place `Commanded` (ID1412311133)", .type = &s_COMMAND, .capacity = 1U,
+    PN_BAG_SLOT(net_marking_t, Robot2_Commanded) };
 
 /* place Cell.Robot2.Done, colour set REPLY: page `Robot`, place `Done` (ID1412311142) */
 static const pn_bag_t s_at_Robot2_Done = { .origin = "page `Robot`, place `Done` (ID1412311142)",
@@ -2873,8 +2873,8 @@ PN_NET_SEARCH static bool Supervisor_Install_Rivet_Fasten_Finish_fire(pn_ctx_t *
 typedef struct Supervisor_Install_Rivet_Fasten_Press_failed_binding {
     uint8_t none; /* no variables */
 } Supervisor_Install_Rivet_Fasten_Press_failed_binding_t;
-static const pn_type_t s_binding_Supervisor_Install_Rivet_Fasten_Press_failed =
-    { .kind = PN_KIND_RECORD, .name = "Cell.Supervisor.Install.Rivet.Fasten.Press failed",
+static const pn_type_t s_binding_Supervisor_Install_Rivet_Fasten_Press_failed = {
+    .kind = PN_KIND_RECORD, .name = "Cell.Supervisor.Install.Rivet.Fasten.Press failed",
     .size = sizeof(Supervisor_Install_Rivet_Fasten_Press_failed_binding_t), .count = 0U,
     .field = NULL };
 
@@ -2929,8 +2929,8 @@ PN_NET_SEARCH static bool Supervisor_Install_Rivet_Fasten_Press_failed_fire(pn_c
 typedef struct Supervisor_Install_Rivet_Fasten_Drill_failed_binding {
     uint8_t none; /* no variables */
 } Supervisor_Install_Rivet_Fasten_Drill_failed_binding_t;
-static const pn_type_t s_binding_Supervisor_Install_Rivet_Fasten_Drill_failed =
-    { .kind = PN_KIND_RECORD, .name = "Cell.Supervisor.Install.Rivet.Fasten.Drill failed",
+static const pn_type_t s_binding_Supervisor_Install_Rivet_Fasten_Drill_failed = {
+    .kind = PN_KIND_RECORD, .name = "Cell.Supervisor.Install.Rivet.Fasten.Drill failed",
     .size = sizeof(Supervisor_Install_Rivet_Fasten_Drill_failed_binding_t), .count = 0U,
     .field = NULL };
 
@@ -4087,23 +4087,23 @@ static const pn_transition_t s_transitions[] = {
         .origin = "page `Verify`, transition `Ask last` (ID1412310385)", .owner = 0,
         .priority = 1000, PN_CODE(Supervisor_Verify_Ask_last),
         PN_INDICES(affected, 5U, 8U, 9U, 10U, 11U, 18U, 26U, 32U, 36U, 37U, 40U, 43U, 47U, 51U, 53U,
-        58U), PN_INDICES(touched, 1U, 2U, 3U, 4U, 26U, 27U), PN_INDICES(read, 2U, 4U, 26U) },
+            58U), PN_INDICES(touched, 1U, 2U, 3U, 4U, 26U, 27U), PN_INDICES(read, 2U, 4U, 26U) },
     { /* 9 */ .name = "Cell.Supervisor.Verify.Measured", .id = "ID1412310393",
         .origin = "page `Verify`, transition `Measured` (ID1412310393)", .owner = 0,
         .priority = 1000, PN_CODE(Supervisor_Verify_Measured),
         PN_INDICES(affected, 5U, 8U, 9U, 10U, 11U, 12U, 18U, 26U, 32U, 36U, 37U, 40U, 43U, 47U,
-        51U), PN_INDICES(touched, 2U, 4U, 13U, 27U), PN_INDICES(read, 2U, 4U, 27U) },
+            51U), PN_INDICES(touched, 2U, 4U, 13U, 27U), PN_INDICES(read, 2U, 4U, 27U) },
     { /* 10 */ .name = "Cell.Supervisor.Verify.First lost", .id = "ID1412320018",
         .origin = "page `Verify`, transition `First lost` (ID1412320018)", .owner = 0,
         .priority = 1000, PN_CODE(Supervisor_Verify_First_lost),
         PN_INDICES(affected, 5U, 8U, 9U, 10U, 11U, 18U, 20U, 21U, 23U, 26U, 32U, 36U, 37U, 40U, 43U,
-        47U, 49U, 50U, 51U), PN_INDICES(touched, 2U, 4U, 15U, 17U, 26U),
+            47U, 49U, 50U, 51U), PN_INDICES(touched, 2U, 4U, 15U, 17U, 26U),
         PN_INDICES(read, 2U, 4U, 26U) },
     { /* 11 */ .name = "Cell.Supervisor.Verify.Last lost", .id = "ID1412320023",
         .origin = "page `Verify`, transition `Last lost` (ID1412320023)", .owner = 0,
         .priority = 1000, PN_CODE(Supervisor_Verify_Last_lost),
         PN_INDICES(affected, 5U, 8U, 9U, 10U, 11U, 18U, 20U, 21U, 23U, 26U, 32U, 36U, 37U, 40U, 43U,
-        47U, 49U, 50U, 51U), PN_INDICES(touched, 2U, 4U, 15U, 17U, 27U),
+            47U, 49U, 50U, 51U), PN_INDICES(touched, 2U, 4U, 15U, 17U, 27U),
         PN_INDICES(read, 2U, 4U, 27U) },
     { /* 12 */ .name = "Cell.Supervisor.Correct.Compare", .id = "ID1412310453",
         .origin = "page `Correct`, transition `Compare` (ID1412310453)", .owner = 0,
@@ -4138,7 +4138,7 @@ static const pn_transition_t s_transitions[] = {
         .origin = "page `MoveBoth`, transition `Reply 1` (ID1412310962)", .owner = 0,
         .priority = 1000, PN_CODE(MoveBoth_Reply_1), .places = &s_in_Supervisor_Correct_Move_both,
         PN_INDICES(affected, 5U, 8U, 9U, 10U, 11U, 17U, 18U, 26U, 32U, 36U, 37U, 40U, 43U, 47U,
-        51U), PN_INDICES(touched, 2U, 32U, 33U), PN_INDICES(read, 2U, 32U) },
+            51U), PN_INDICES(touched, 2U, 32U, 33U), PN_INDICES(read, 2U, 32U) },
     { /* 19 */ .name = "Cell.Supervisor.Correct.Move both.Reply 2", .id = "ID1412310999",
         .origin = "page `MoveBoth`, transition `Reply 2` (ID1412310999)", .owner = 0,
         .priority = 1000, PN_CODE(MoveBoth_Reply_2), .places = &s_in_Supervisor_Correct_Move_both,
@@ -4177,7 +4177,7 @@ static const pn_transition_t s_transitions[] = {
         .origin = "page `MoveBoth`, transition `Reply 1` (ID1412310962)", .owner = 0,
         .priority = 1000, PN_CODE(MoveBoth_Reply_1), .places = &s_in_Supervisor_Install_Shift,
         PN_INDICES(affected, 5U, 8U, 9U, 10U, 11U, 18U, 25U, 26U, 32U, 36U, 37U, 40U, 43U, 47U,
-        51U), PN_INDICES(touched, 2U, 41U, 42U), PN_INDICES(read, 2U, 41U) },
+            51U), PN_INDICES(touched, 2U, 41U, 42U), PN_INDICES(read, 2U, 41U) },
     { /* 27 */ .name = "Cell.Supervisor.Install.Shift.Reply 2", .id = "ID1412310999",
         .origin = "page `MoveBoth`, transition `Reply 2` (ID1412310999)", .owner = 0,
         .priority = 1000, PN_CODE(MoveBoth_Reply_2), .places = &s_in_Supervisor_Install_Shift,
@@ -4208,7 +4208,7 @@ static const pn_transition_t s_transitions[] = {
         .priority = 1000, PN_CODE(MoveBoth_Reply_1),
         .places = &s_in_Supervisor_Install_Rivet_Advance,
         PN_INDICES(affected, 5U, 8U, 9U, 10U, 11U, 18U, 26U, 31U, 32U, 36U, 37U, 40U, 43U, 47U,
-        51U), PN_INDICES(touched, 2U, 49U, 50U), PN_INDICES(read, 2U, 49U) },
+            51U), PN_INDICES(touched, 2U, 49U, 50U), PN_INDICES(read, 2U, 49U) },
     { /* 33 */ .name = "Cell.Supervisor.Install.Rivet.Advance.Reply 2", .id = "ID1412310999",
         .origin = "page `MoveBoth`, transition `Reply 2` (ID1412310999)", .owner = 0,
         .priority = 1000, PN_CODE(MoveBoth_Reply_2),
@@ -4228,12 +4228,12 @@ static const pn_transition_t s_transitions[] = {
         .origin = "page `Fasten`, transition `Insert` (ID1412310858)", .owner = 0, .priority = 1000,
         PN_CODE(Supervisor_Install_Rivet_Fasten_Insert),
         PN_INDICES(affected, 5U, 8U, 9U, 10U, 11U, 18U, 26U, 32U, 36U, 37U, 40U, 43U, 47U, 51U,
-        53U), PN_INDICES(touched, 1U, 2U, 54U, 55U), PN_INDICES(read, 2U, 54U) },
+            53U), PN_INDICES(touched, 1U, 2U, 54U, 55U), PN_INDICES(read, 2U, 54U) },
     { /* 37 */ .name = "Cell.Supervisor.Install.Rivet.Fasten.Release", .id = "ID1412310866",
         .origin = "page `Fasten`, transition `Release` (ID1412310866)", .owner = 0,
         .priority = 1000, PN_CODE(Supervisor_Install_Rivet_Fasten_Release),
         PN_INDICES(affected, 5U, 8U, 9U, 10U, 11U, 18U, 26U, 32U, 36U, 37U, 38U, 40U, 43U, 47U, 51U,
-        63U), PN_INDICES(touched, 2U, 6U, 55U, 56U), PN_INDICES(read, 2U, 55U) },
+            63U), PN_INDICES(touched, 2U, 6U, 55U, 56U), PN_INDICES(read, 2U, 55U) },
     { /* 38 */ .name = "Cell.Supervisor.Install.Rivet.Fasten.Finish", .id = "ID1412310874",
         .origin = "page `Fasten`, transition `Finish` (ID1412310874)", .owner = 0, .priority = 1000,
         PN_CODE(Supervisor_Install_Rivet_Fasten_Finish),
@@ -4248,7 +4248,7 @@ static const pn_transition_t s_transitions[] = {
         .origin = "page `Fasten`, transition `Drill failed` (ID1412320092)", .owner = 0,
         .priority = 1000, PN_CODE(Supervisor_Install_Rivet_Fasten_Drill_failed),
         PN_INDICES(affected, 5U, 8U, 9U, 10U, 11U, 18U, 26U, 32U, 36U, 37U, 38U, 40U, 43U, 47U, 51U,
-        63U), PN_INDICES(touched, 2U, 6U, 54U, 56U), PN_INDICES(read, 2U, 54U) },
+            63U), PN_INDICES(touched, 2U, 6U, 54U, 56U), PN_INDICES(read, 2U, 54U) },
     { /* 41 */ .name = "Cell.Supervisor.Install.Rivet.Retract.Command", .id = "ID1412310941",
         .origin = "page `MoveBoth`, transition `Command` (ID1412310941)", .owner = 0,
         .priority = 1000, PN_CODE(MoveBoth_Command),
@@ -4265,7 +4265,7 @@ static const pn_transition_t s_transitions[] = {
         .priority = 1000, PN_CODE(MoveBoth_Reply_1),
         .places = &s_in_Supervisor_Install_Rivet_Retract,
         PN_INDICES(affected, 5U, 8U, 9U, 10U, 11U, 18U, 26U, 32U, 36U, 37U, 40U, 42U, 43U, 47U,
-        51U), PN_INDICES(touched, 2U, 57U, 58U), PN_INDICES(read, 2U, 57U) },
+            51U), PN_INDICES(touched, 2U, 57U, 58U), PN_INDICES(read, 2U, 57U) },
     { /* 44 */ .name = "Cell.Supervisor.Install.Rivet.Retract.Reply 2", .id = "ID1412310999",
         .origin = "page `MoveBoth`, transition `Reply 2` (ID1412310999)", .owner = 0,
         .priority = 1000, PN_CODE(MoveBoth_Reply_2),
@@ -4286,7 +4286,7 @@ static const pn_transition_t s_transitions[] = {
         .origin = "page `MoveBoth`, transition `Reply 1` (ID1412310962)", .owner = 0,
         .priority = 1000, PN_CODE(MoveBoth_Reply_1), .places = &s_in_Supervisor_Install_Return,
         PN_INDICES(affected, 5U, 8U, 9U, 10U, 11U, 18U, 26U, 32U, 36U, 37U, 40U, 43U, 46U, 47U,
-        51U), PN_INDICES(touched, 2U, 61U, 62U), PN_INDICES(read, 2U, 61U) },
+            51U), PN_INDICES(touched, 2U, 61U, 62U), PN_INDICES(read, 2U, 61U) },
     { /* 48 */ .name = "Cell.Supervisor.Install.Return.Reply 2", .id = "ID1412310999",
         .origin = "page `MoveBoth`, transition `Reply 2` (ID1412310999)", .owner = 0,
         .priority = 1000, PN_CODE(MoveBoth_Reply_2), .places = &s_in_Supervisor_Install_Return,
@@ -4305,7 +4305,7 @@ static const pn_transition_t s_transitions[] = {
         .origin = "page `Home`, transition `Reply 1` (ID1412311060)", .owner = 0, .priority = 1000,
         PN_CODE(Supervisor_Home_Reply_1),
         PN_INDICES(affected, 5U, 8U, 9U, 10U, 11U, 18U, 26U, 32U, 36U, 37U, 40U, 43U, 47U, 50U,
-        51U), PN_INDICES(touched, 2U, 65U, 66U), PN_INDICES(read, 2U, 65U) },
+            51U), PN_INDICES(touched, 2U, 65U, 66U), PN_INDICES(read, 2U, 65U) },
     { /* 52 */ .name = "Cell.Supervisor.Home.Reply 2", .id = "ID1412311091",
         .origin = "page `Home`, transition `Reply 2` (ID1412311091)", .owner = 0, .priority = 1000,
         PN_CODE(Supervisor_Home_Reply_2),
@@ -4320,7 +4320,7 @@ static const pn_transition_t s_transitions[] = {
         .origin = "page `Robot`, transition `Report` (ID1412311145)", .owner = 1, .priority = 1000,
         PN_CODE(Robot_Report), .places = &s_in_Robot1,
         PN_INDICES(affected, 5U, 8U, 9U, 10U, 11U, 18U, 26U, 32U, 36U, 37U, 40U, 43U, 47U, 51U, 53U,
-        54U), PN_INDICES(touched, 2U, 69U, 71U), PN_INDICES(read, 71U) },
+            54U), PN_INDICES(touched, 2U, 69U, 71U), PN_INDICES(read, 71U) },
     { /* 55 */ .name = "Cell.Robot1.MoveJoint", .id = "ID1412311160",
         .origin = "page `Robot`, transition `MoveJoint` (ID1412311160)", .owner = 1,
         .priority = 1000, PN_CODE(Robot_MoveJoint), .places = &s_in_Robot1,

@@ -158,7 +158,8 @@ DEFENSIVE = re.compile(
 """Lines, with the blocks that they begin, that nothing reaches in a cell that works: errors, reports, statistics. What
 they do has tests of its own (`tests/e2e/test_supervisor_host.py`, `test_compiled_core.py`)."""
 _KEPT = re.compile(r"^\s*(?:return (?:true|false);|(?:is_taken|fits) = .*(?:&&|\|\|).*)$")
-"""Answers of a search that nobody asks for, and the `&&` between moves that never fail."""
+"""Answers of a search that nobody asks for, and the `&&` between moves that never fail; so with the `||` between tests
+for tokens that the search has found."""
 
 
 def of_c(text: str, file: str, is_wanted: Callable[[Function], bool]) -> Iterator[Mutant]:
@@ -182,7 +183,9 @@ def of_c(text: str, file: str, is_wanted: Callable[[Function], bool]) -> Iterato
                 block = indent if lines[i].rstrip().endswith("{") else ""
         for i in wanted:
             for mutant in _changed(lines, i, file, C_RULES):
-                is_kept = _KEPT.match(lines[i]) and mutant.kind in ("logic", "constant")
+                is_taking = any("pn_fail_missing" in line for line in lines[i + 1 : i + 4])
+                is_answer = _KEPT.match(lines[i]) and mutant.kind in ("logic", "constant")
+                is_kept = is_answer or (is_taking and mutant.kind == "logic")
                 if not (is_kept and (mutant.kind == "logic" or "return" in lines[i])):
                     yield mutant
         yield from _swapped(lines, wanted, file)

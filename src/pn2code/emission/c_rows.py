@@ -11,8 +11,16 @@ from pn2code.lowering import ir
 
 
 def braces(head: str, members: Iterable[str], end: str = ";", indent: str = "") -> list[str]:
-    """`head { member, member, ... };`, broken where it is long."""
-    return wrap(f"{indent}{head}{{ {', '.join(members)} }}{end}")
+    """`head { member, member, ... };`, as many members in a line as fit."""
+    whole = list(members)
+    texts = [*(f"{m}," for m in whole[:-1]), f"{whole[-1]} }}{end}"]
+    lines = [f"{indent}{head}{{"]
+    for text in texts:
+        if len(lines[-1]) + 1 + len(text) <= WIDTH:
+            lines[-1] += f" {text}"
+        else:
+            lines += wrap(f"{indent}    {text}")
+    return lines
 
 
 def indices(member: str, numbers: Sequence[int]) -> list[str]:
