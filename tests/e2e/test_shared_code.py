@@ -211,3 +211,52 @@ def test_explorers_have_a_function_for_each_instance() -> None:
     code = next(f.text for f in emit(ir, "test") if f.path == "net.c")
     names = [x for x in re.findall(r"bool (\w+)_fire\(", code) if "Take" in x]
     assert names == [f"{x}_Take" for x in ("First", "Second", "Third", "Fourth", "Fifth")]
+
+
+@pytest.mark.cc
+def test_names_of_the_net_do_not_meet_those_of_the_common_code(
+    workshop: Workshop, tmp_path: Path
+) -> None:
+    """Colour sets, places and pages that are called like what is made for them."""
+    text = """
+    net Cell
+      standard
+      colset INT_slot = product INT * INT;
+      colset INT_array_64 = record own: INT * at_own: INT;
+      colset Move_places = int with 0..9;
+      var own, at_own: INT;
+      var x: INT_slot;
+      var y: INT_array_64;
+      var z: Move_places;
+      page Top
+        place A : INT = 1`1
+        place B : INT
+        place C : INT = 2`2
+        place D : INT
+        place INT_array_64 : INT_slot = 1`(1, 2)
+        place P : INT_array_64 = 1`{own = 1, at_own = 2}
+        place Q : Move_places = 1`3
+        subst First = Move (own -> A, at_own -> B)
+        subst Second = Move (own -> C, at_own -> D)
+        subst Third = Move (own -> B, at_own -> A)
+        trans Rest
+          in INT_array_64 : x
+          in P : y
+          in Q : z
+          out P : {own = #1 x, at_own = z}
+          out Q : (z + #own y) mod 10
+          out INT_array_64 : (#2 x, #at_own y)
+      page Move
+        place own port in : INT
+        place at_own port out : INT
+        trans floor
+          in own : own
+          out at_own : own + 1
+        trans places guard [own > 2]
+          in at_own : own
+          out own : 1
+    """
+    net, ir, files = made(text, {"Top.A", "Top.B"})
+    assert "Move_floor" in functions(files["net.c"].text, "fire")
+    program = workshop.build(ir, tmp_path)
+    assert sum(agrees(net, program, seed=s, steps=20) for s in range(3)) > 20

@@ -83,6 +83,16 @@ class Scope:
         self._used.add(candidate)
         return candidate
 
+    def name_of_type(self, key: Hashable, text: str) -> str:
+        """A name of which nobody else has the type, either: neither `POSE_slot` nor `POSE_slot_t`."""
+        if key not in self._names:
+            name, n = stem(text), 2
+            while self._is_used(name) or self._is_used(f"{name}_t"):
+                name, n = stem(f"{stem(text)}_{n}"), n + 1
+            self._names[key] = name
+            self.reserve(name, f"{name}_t")
+        return self._names[key]
+
     def reserve(self, *names: str) -> None:
         """Names that are not to be given."""
         self._used.update(names)
@@ -159,7 +169,7 @@ class Names:
 
     def page_places(self, page: str, paths: tuple[str, ...]) -> str:
         """`MoveBoth_places`: the struct of the places of a page."""
-        return self._scope.name(("page places", page, paths), page, "{}_places")
+        return self._scope.name_of_type(("page places", page, paths), f"{page}_places")
 
     def instance(self, path: str, struct: str) -> str:
         """`s_in_Supervisor_Approach_Move_both`: the places of a page instance."""
@@ -167,7 +177,7 @@ class Names:
 
     def kept(self, key: str, kind: str) -> str:
         """`POSE_slot`, `POSE_array_64`: what holds the tokens of a place of a colour set."""
-        return self._scope.name(("kept", key, kind), f"{key}_{kind}")
+        return self._scope.name_of_type(("kept", key, kind), f"{key}_{kind}")
 
     def bag(self, index: int, name: str) -> str:
         """`s_at_Robot1_Waiting`."""
