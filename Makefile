@@ -33,6 +33,6 @@ expressions:
 	./dev fuzz --expressions 20000
 	./dev fuzz --inscriptions 2000
 
-# A thousand random cells: what `verify` proves of them must hold in runs of their programs.
+# A thousand random cells: what `verify` proves of them must be true in runs of their programs.
 adversary:
 	./dev adversary --cells 1000

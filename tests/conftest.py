@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import importlib.util
 import os
+import sys
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -31,6 +33,15 @@ def shared() -> Path:
     if not (path / "corpus").is_dir():
         pytest.skip(f"no collection of real nets at {path} (set PN2CODE_SHARED)")
     return path
+
+
+def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
+    """Without PyBullet its tests are left out where there are no packages of it; elsewhere they fail."""
+    if sys.version_info < (3, 12) or importlib.util.find_spec("pybullet") is not None:
+        return
+    for item in items:
+        if item.get_closest_marker("bullet") is not None:
+            item.add_marker(pytest.mark.skip(reason="there is no PyBullet for this Python"))
 
 
 settings.register_profile(

@@ -143,7 +143,7 @@ static bool make_empty(const char *file)
     char temporary[NAME_SIZE];
     const int length = snprintf(temporary, sizeof temporary, ".%s.%s.tmp", file, s_files.cell->side);
     if ((length < 0) || ((size_t)length >= sizeof temporary) || (strchr(file, '/') != NULL)) {
-        return fail(true, "`%s` is no name for a channel's file", file);
+        return fail(true, "`%s` cannot be the name of a channel's file", file);
     }
     const int error = pn_port_publish(s_files.directory, file, temporary, EMPTY, sizeof EMPTY - 1U);
     return (error == 0) || fail_errno("write", file, error);
@@ -561,7 +561,7 @@ static bool open_all(void)
     if (s_files.options.watch) {
         error = pn_port_watch(s_files.options.directory, &s_files.watch);
         if (error != 0) {
-            (void)snprintf(s_files.buffer, sizeof s_files.buffer, "no notices of changes in %s (%s): polling every %" PRIu64 " ms",
+            (void)snprintf(s_files.buffer, sizeof s_files.buffer, "no notifications of changes in %s (%s): polling every %" PRIu64 " ms",
                            s_files.options.directory, strerror(error), s_files.options.poll_ns / NS_PER_MS);
             notice(s_files.buffer);
         }
@@ -593,7 +593,7 @@ bool pn_files_open(const pn_cell_t *cell, const pn_files_options_t *options, pn_
     for (uint32_t i = 0U; i < cell->channel_count; i++) {
         const int length = snprintf(s_files.channel[i].temporary, NAME_SIZE, ".%s.%s.tmp", cell->channel[i].file, cell->side);
         if ((length < 0) || ((size_t)length >= NAME_SIZE) || (strchr(cell->channel[i].file, '/') != NULL)) {
-            return fail(true, "`%s` is no name for a channel's file", cell->channel[i].file);
+            return fail(true, "`%s` cannot be the name of a channel's file", cell->channel[i].file);
         }
         s_files.channel[i].dirty = true;
         s_files.channel[i].prepared = -1;

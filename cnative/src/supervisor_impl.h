@@ -5,7 +5,7 @@
  *   supervisor_play.c   firing: the documented order, errors, the bound
  *   supervisor_input.c  markings read from files
  *   supervisor_cell.c   the cell: channels, peers, real time and lock-step
- *   supervisor_monitor.c  with -DPN_MONITOR: each step held against the rules of the net
+ *   supervisor_monitor.c  with -DPN_MONITOR: each step checked against the rules of the net
  *   supervisor_alone.c  the whole net in memory: --dry-run, and nets without a cell
  */
 #ifndef SUPERVISOR_IMPL_H

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT
- * supervisor_monitor.c - with -DPN_MONITOR: every step is held against the rules of the net while the cell runs; the first that breaks
+ * supervisor_monitor.c - with -DPN_MONITOR: every step is checked against the rules of the net while the cell runs; the first that breaks
  * one stops it safely. Without it, nothing of this is compiled.
  *
  * Rules that are checked:
@@ -52,7 +52,7 @@ static bool look(sup_t *sup, uint32_t index, bool *changed)
     const pn_place_t *const place = &sup->net->place[index];
     const size_t length = pn_bag_encode(place->bag, sup->marking, s_monitor.bytes, PLACE_SIZE);
     if (length > PLACE_SIZE) {
-        return sup_stop(sup, SUP_EXIT_MODEL, "monitor: what place `%s` holds is too large to be looked at", place->name);
+        return sup_stop(sup, SUP_EXIT_MODEL, "monitor: the content of place `%s` is too large to be checked", place->name);
     }
     const uint64_t sum = checksum_of(s_monitor.bytes, length);
     *changed = (sum != s_monitor.checksum[index]);
@@ -69,7 +69,7 @@ static bool look_at_references(sup_t *sup, bool *changed)
     }
     const size_t length = pn_roots_encode(sup->net->root, sup->net->root_count, s_monitor.bytes, PLACE_SIZE);
     if (length > PLACE_SIZE) {
-        return sup_stop(sup, SUP_EXIT_MODEL, "monitor: what the references hold is too large to be looked at");
+        return sup_stop(sup, SUP_EXIT_MODEL, "monitor: the values of the references are too large to be checked");
     }
     const uint64_t sum = checksum_of(s_monitor.bytes, length);
     *changed = (sum != s_monitor.references);
@@ -82,7 +82,7 @@ static bool keeps_references(sup_t *sup, const char *what, const char *name)
 {
     bool changed = false;
     return look_at_references(sup, &changed)
-           && (!changed || sup_stop(sup, SUP_EXIT_INTERNAL, "monitor: what references hold has changed %s%s", what, name));
+           && (!changed || sup_stop(sup, SUP_EXIT_INTERNAL, "monitor: the values of references have changed %s%s", what, name));
 }
 
 bool sup_monitor_start(sup_t *sup)
@@ -103,7 +103,7 @@ bool sup_monitor_start(sup_t *sup)
     }
     bool changed = false;
     is_fine = is_fine && look_at_references(sup, &changed);
-    sup_say(sup, 1, "monitor: every step is held against the rules of the net");
+    sup_say(sup, 1, "monitor: every step is checked against the rules of the net");
     return is_fine;
 }
 

@@ -111,6 +111,7 @@ int sup_fire_one(sup_t *sup, int32_t owner, uint32_t *transition)
     if (!sup_monitor_choice(sup, owner, index)) {
         return -1;
     }
+    sup->cx.step = sup->fired + 1U; /* an occurrence counts itself, as in CPN Tools; a search does not */
     if (!chosen->fire(&sup->cx, sup->marking, index, sup->binding)) {
         (void)snprintf(doing, sizeof doing, "firing `%s`", chosen->name);
         (void)sup_stop_error(sup, doing);
@@ -163,7 +164,7 @@ bool sup_play(sup_t *sup, int32_t owner, sup_fired_t fired, void *user, uint64_t
                 if (result > 0) {
                     (void)sup_stop(sup, SUP_EXIT_MODEL,
                                    "no end of firing: after %" PRIu64 " firings in one cycle `%s` is still enabled; "
-                                   "a supervisor has to come to rest (--max-firings N allows more)",
+                                   "a supervisor must come to rest (--max-firings N allows more)",
                                    *count, sup->net->transition[transition].name);
                     result = -1;
                 }

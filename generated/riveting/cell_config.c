@@ -14,11 +14,11 @@
  * memory: yes; there are no lists and strings
  * ownership: yes; all 255 arcs keep to places of their owner and channels in their direction
  * Assumed:
- * what is measured is what `measure` of the net gives
+ * a measurement gives the result of `measure` in the net
  * `coordenadas` begins with the tokens of the net, not with those of its file
  * nobody owes an answer for longer than `reply_timeout_s`, 120 s (tools, waits and delays take at most 3 s; how long moves and
  * measurements take is not known)
- * each value that a sensor can have occurs from time to time
+ * each possible value of a sensor occurs from time to time
  */
 #include "pn/pn_arena.h"
 #include "pn/pn_cell.h"

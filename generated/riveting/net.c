@@ -1301,9 +1301,6 @@ PN_NET_SEARCH static bool Supervisor_Load_Load_fire(pn_ctx_t *cx, void *marking,
     if (!pn_ok(cx)) {
         return false;
     }
-    if (!m->Supervisor_coordenadas.full) {
-        return pn_fail_missing(cx);
-    }
     if (!pn_has_room(cx, m->Supervisor_planned.full, &s_at_Supervisor_planned)) {
         return false;
     }
@@ -1349,9 +1346,6 @@ PN_NET_SEARCH static bool Supervisor_Approach_Send_fire(pn_ctx_t *cx, void *mark
     pn_bag_check(cx, &s_at_Supervisor_Approach_order, &Supervisor_Approach_order_token);
     if (!pn_ok(cx)) {
         return false;
-    }
-    if (!m->Supervisor_planned.full) {
-        return pn_fail_missing(cx);
     }
     if (!pn_has_room(cx, m->Supervisor_Approach_order.full, &s_at_Supervisor_Approach_order)
         || !pn_has_room(cx, m->Supervisor_Approach_seam.full, &s_at_Supervisor_Approach_seam)) {
@@ -1400,9 +1394,6 @@ PN_NET_SEARCH static bool Supervisor_Approach_Arrived_fire(pn_ctx_t *cx, void *m
     (void)self;
     Supervisor_Approach_Arrived_binding_t *const b = binding;
     pn_begin(cx, "page `Approach`, transition `Arrived` (ID1412310311)", m->now);
-    if (!m->Supervisor_Approach_done.full || !m->Supervisor_Approach_seam.full) {
-        return pn_fail_missing(cx);
-    }
     if (!pn_has_room(cx, m->Supervisor_approached.full, &s_at_Supervisor_approached)) {
         return false;
     }
@@ -1461,9 +1452,6 @@ PN_NET_SEARCH static bool MoveBoth_Command_fire(pn_ctx_t *cx, void *marking, uin
     ORDER_slot_t *const at_order = pn_bag_reach(own->order, m);
     UNIT_slot_t *const at_moving_1 = pn_bag_reach(own->moving_1, m);
     UNIT_slot_t *const at_moving_2 = pn_bag_reach(own->moving_2, m);
-    if (!at_order->full) {
-        return pn_fail_missing(cx);
-    }
     if (!pn_has_room(cx, at_moving_1->full, own->moving_1)
         || !pn_has_room(cx, m->dadosrobo1.full, &s_at_dadosrobo1)
         || !pn_has_room(cx, m->flag1_interno.full, &s_at_flag1_interno)
@@ -1527,9 +1515,6 @@ PN_NET_SEARCH static bool MoveBoth_Both_fire(pn_ctx_t *cx, void *marking, uint32
     UNIT_slot_t *const at_done = pn_bag_reach(own->done, m);
     UNIT_slot_t *const at_there_1 = pn_bag_reach(own->there_1, m);
     UNIT_slot_t *const at_there_2 = pn_bag_reach(own->there_2, m);
-    if (!at_there_1->full || !at_there_2->full) {
-        return pn_fail_missing(cx);
-    }
     if (!pn_has_room(cx, at_done->full, own->done)) {
         return false;
     }
@@ -1580,9 +1565,6 @@ PN_NET_SEARCH static bool MoveBoth_Reply_1_fire(pn_ctx_t *cx, void *marking, uin
     const MoveBoth_places_t *const own = pn_net.transition[self].places;
     UNIT_slot_t *const at_moving_1 = pn_bag_reach(own->moving_1, m);
     UNIT_slot_t *const at_there_1 = pn_bag_reach(own->there_1, m);
-    if (!at_moving_1->full || !m->flag1_externo.full) {
-        return pn_fail_missing(cx);
-    }
     if (!pn_has_room(cx, at_there_1->full, own->there_1)) {
         return false;
     }
@@ -1633,9 +1615,6 @@ PN_NET_SEARCH static bool MoveBoth_Reply_2_fire(pn_ctx_t *cx, void *marking, uin
     const MoveBoth_places_t *const own = pn_net.transition[self].places;
     UNIT_slot_t *const at_moving_2 = pn_bag_reach(own->moving_2, m);
     UNIT_slot_t *const at_there_2 = pn_bag_reach(own->there_2, m);
-    if (!at_moving_2->full || !m->flag2_externo.full) {
-        return pn_fail_missing(cx);
-    }
     if (!pn_has_room(cx, at_there_2->full, own->there_2)) {
         return false;
     }
@@ -1681,9 +1660,6 @@ PN_NET_SEARCH static bool Supervisor_Verify_Ask_first_fire(pn_ctx_t *cx, void *m
     pn_bag_check(cx, &s_at_flag1_interno, &flag1_interno_token);
     if (!pn_ok(cx)) {
         return false;
-    }
-    if (!m->Supervisor_approached.full) {
-        return pn_fail_missing(cx);
     }
     if (!pn_has_room(cx, m->Supervisor_Verify_first_asked.full, &s_at_Supervisor_Verify_first_asked)
         || !pn_has_room(cx, m->referencia1.full, &s_at_referencia1)
@@ -1754,9 +1730,6 @@ PN_NET_SEARCH static bool Supervisor_Verify_Ask_last_fire(pn_ctx_t *cx, void *ma
     if (!pn_ok(cx)) {
         return false;
     }
-    if (!m->Supervisor_Verify_first_asked.full || !m->medida1.full || !m->flag1_externo.full) {
-        return pn_fail_missing(cx);
-    }
     if (!pn_has_room(cx, m->Supervisor_Verify_last_asked.full, &s_at_Supervisor_Verify_last_asked)
         || !pn_has_room(cx, m->referencia1.full, &s_at_referencia1)
         || !pn_has_room(cx, m->flag1_interno.full, &s_at_flag1_interno)) {
@@ -1826,9 +1799,6 @@ PN_NET_SEARCH static bool Supervisor_Verify_Measured_fire(pn_ctx_t *cx, void *ma
     Supervisor_Verify_Measured_binding_t *const b = binding;
     pn_begin(cx, "page `Verify`, transition `Measured` (ID1412310393)", m->now);
     const VERIFIED_t Supervisor_verified_token = (VERIFIED_t){ .c1 = b->s, .c2 = b->a, .c3 = b->b };
-    if (!m->Supervisor_Verify_last_asked.full || !m->medida1.full || !m->flag1_externo.full) {
-        return pn_fail_missing(cx);
-    }
     if (!pn_has_room(cx, m->Supervisor_verified.full, &s_at_Supervisor_verified)) {
         return false;
     }
@@ -1893,9 +1863,6 @@ PN_NET_SEARCH static bool Supervisor_Verify_First_lost_fire(pn_ctx_t *cx, void *
     pn_bag_check(cx, &s_at_Supervisor_result, &Supervisor_result_token);
     if (!pn_ok(cx)) {
         return false;
-    }
-    if (!m->Supervisor_Verify_first_asked.full || !m->flag1_externo.full || !m->medida1.full) {
-        return pn_fail_missing(cx);
     }
     if (!pn_has_room(cx, m->Supervisor_result.full, &s_at_Supervisor_result)
         || !pn_has_room(cx, m->Supervisor_ended.full, &s_at_Supervisor_ended)) {
@@ -1966,9 +1933,6 @@ PN_NET_SEARCH static bool Supervisor_Verify_Last_lost_fire(pn_ctx_t *cx, void *m
     if (!pn_ok(cx)) {
         return false;
     }
-    if (!m->Supervisor_Verify_last_asked.full || !m->flag1_externo.full || !m->medida1.full) {
-        return pn_fail_missing(cx);
-    }
     if (!pn_has_room(cx, m->Supervisor_result.full, &s_at_Supervisor_result)
         || !pn_has_room(cx, m->Supervisor_ended.full, &s_at_Supervisor_ended)) {
         return false;
@@ -2031,9 +1995,6 @@ PN_NET_SEARCH static bool Supervisor_Correct_Compare_fire(pn_ctx_t *cx, void *ma
     pn_bag_check(cx, &s_at_Supervisor_Correct_seam, &Supervisor_Correct_seam_token);
     if (!pn_ok(cx)) {
         return false;
-    }
-    if (!m->Supervisor_verified.full) {
-        return pn_fail_missing(cx);
     }
     if (!pn_has_room(cx, m->Supervisor_Correct_offset.full, &s_at_Supervisor_Correct_offset)
         || !pn_has_room(cx, m->Supervisor_Correct_seam.full, &s_at_Supervisor_Correct_seam)) {
@@ -2104,9 +2065,6 @@ PN_NET_SEARCH static bool Supervisor_Correct_Move_over_fire(pn_ctx_t *cx, void *
         return false;
     }
     /* seam: (n, p, d) (ID1412310539): stays where it is */
-    if (!m->Supervisor_Correct_offset.full) {
-        return pn_fail_missing(cx);
-    }
     if (!pn_has_room(cx, m->Supervisor_Correct_order.full, &s_at_Supervisor_Correct_order)) {
         return false;
     }
@@ -2158,9 +2116,6 @@ PN_NET_SEARCH static bool Supervisor_Correct_Moved_fire(pn_ctx_t *cx, void *mark
     pn_begin(cx, "page `Correct`, transition `Moved` (ID1412310478)", m->now);
     const RIVETING_t Supervisor_corrected_token = (RIVETING_t){ .c1 = b->n, .c2 = b->p,
         .c3 = b->d };
-    if (!m->Supervisor_Correct_done.full || !m->Supervisor_Correct_seam.full) {
-        return pn_fail_missing(cx);
-    }
     if (!pn_has_room(cx, m->Supervisor_corrected.full, &s_at_Supervisor_corrected)) {
         return false;
     }
@@ -2222,9 +2177,6 @@ PN_NET_SEARCH static bool Supervisor_Correct_As_planned_fire(pn_ctx_t *cx, void 
     pn_begin(cx, "page `Correct`, transition `As planned` (ID1412310526)", m->now);
     const RIVETING_t Supervisor_corrected_token = (RIVETING_t){ .c1 = b->n, .c2 = b->p,
         .c3 = b->d };
-    if (!m->Supervisor_Correct_offset.full || !m->Supervisor_Correct_seam.full) {
-        return pn_fail_missing(cx);
-    }
     if (!pn_has_room(cx, m->Supervisor_corrected.full, &s_at_Supervisor_corrected)) {
         return false;
     }
@@ -2295,9 +2247,6 @@ PN_NET_SEARCH static bool Supervisor_Install_Go_back_fire(pn_ctx_t *cx, void *ma
         return false;
     }
     /* result: DONE (ID1412320065): stays where it is */
-    if (!m->Supervisor_Install_riveted.full || !m->Supervisor_Install_work.full) {
-        return pn_fail_missing(cx);
-    }
     if (!pn_has_room(cx, m->Supervisor_Install_return.full, &s_at_Supervisor_Install_return)) {
         return false;
     }
@@ -2370,22 +2319,17 @@ PN_NET_SEARCH static bool Supervisor_Install_Next_rivet_fire(pn_ctx_t *cx, void 
     if (!pn_ok(cx)) {
         return false;
     }
-    if (!m->Supervisor_Install_riveted.full || !m->Supervisor_result.full
-        || !m->Supervisor_Install_work.full) {
-        return pn_fail_missing(cx);
-    }
     if (!pn_has_room(cx, m->Supervisor_Install_shift.full, &s_at_Supervisor_Install_shift)) {
         return false;
     }
     m->Supervisor_Install_riveted.full = false; /* riveted: () (ID1412310697) */
     m->Supervisor_result.full = false; /* result: DONE (ID1412320063) */
-    m->Supervisor_Install_work.full = false; /* work: (n, k, p, d) (ID1412310701) */
+    /* work: (n, k, p, d) (ID1412310701): replaced below */
     /* shift: (LINEAR, inTool (p, d), inTool (facing p, d)) (ID1412310699) */
     m->Supervisor_Install_shift.value = Supervisor_Install_shift_token;
     m->Supervisor_Install_shift.full = true;
     /* work: (n, k - 1, p, d) (ID1412310703) */
     m->Supervisor_Install_work.value = Supervisor_Install_work_token;
-    m->Supervisor_Install_work.full = true;
     return true;
 }
 
@@ -2430,9 +2374,6 @@ PN_NET_SEARCH static bool Supervisor_Install_Start_fire(pn_ctx_t *cx, void *mark
     pn_bag_check(cx, &s_at_Supervisor_Install_work, &Supervisor_Install_work_token);
     if (!pn_ok(cx)) {
         return false;
-    }
-    if (!m->Supervisor_corrected.full) {
-        return pn_fail_missing(cx);
     }
     if (!pn_has_room(cx, m->Supervisor_Install_ready.full, &s_at_Supervisor_Install_ready)
         || !pn_has_room(cx, m->Supervisor_Install_work.full, &s_at_Supervisor_Install_work)) {
@@ -2493,9 +2434,6 @@ PN_NET_SEARCH static bool Supervisor_Install_Give_up_fire(pn_ctx_t *cx, void *ma
     (void)binding;
     pn_begin(cx, "page `Install`, transition `Give up` (ID1412320067)", m->now);
     /* result: FAILED (ID1412320074): stays where it is */
-    if (!m->Supervisor_Install_riveted.full || !m->Supervisor_Install_work.full) {
-        return pn_fail_missing(cx);
-    }
     if (!pn_has_room(cx, m->Supervisor_ended.full, &s_at_Supervisor_ended)) {
         return false;
     }
@@ -2537,9 +2475,6 @@ PN_NET_SEARCH static bool Supervisor_Install_Rivet_Go_in_fire(pn_ctx_t *cx, void
         &Supervisor_Install_Rivet_advance_token);
     if (!pn_ok(cx)) {
         return false;
-    }
-    if (!m->Supervisor_Install_ready.full) {
-        return pn_fail_missing(cx);
     }
     if (!pn_has_room(cx, m->Supervisor_Install_Rivet_advance.full,
         &s_at_Supervisor_Install_Rivet_advance)) {
@@ -2590,9 +2525,6 @@ PN_NET_SEARCH static bool Supervisor_Install_Rivet_Go_out_fire(pn_ctx_t *cx, voi
     if (!pn_ok(cx)) {
         return false;
     }
-    if (!m->Supervisor_Install_Rivet_fastened.full) {
-        return pn_fail_missing(cx);
-    }
     if (!pn_has_room(cx, m->Supervisor_Install_Rivet_retract.full,
         &s_at_Supervisor_Install_Rivet_retract)
         || !pn_has_room(cx, m->Supervisor_result.full, &s_at_Supervisor_result)) {
@@ -2637,9 +2569,6 @@ PN_NET_SEARCH static bool Supervisor_Install_Rivet_Fasten_Press_fire(pn_ctx_t *c
     pn_bag_check(cx, &s_at_flag2_interno, &flag2_interno_token);
     if (!pn_ok(cx)) {
         return false;
-    }
-    if (!m->Supervisor_Install_Rivet_contact.full) {
-        return pn_fail_missing(cx);
     }
     if (!pn_has_room(cx, m->Supervisor_Install_Rivet_Fasten_pressing.full,
         &s_at_Supervisor_Install_Rivet_Fasten_pressing)
@@ -2688,9 +2617,6 @@ PN_NET_SEARCH static bool Supervisor_Install_Rivet_Fasten_Drill_fire(pn_ctx_t *c
     if (!pn_ok(cx)) {
         return false;
     }
-    if (!m->Supervisor_Install_Rivet_Fasten_pressing.full || !m->flag2_externo.full) {
-        return pn_fail_missing(cx);
-    }
     if (!pn_has_room(cx, m->Supervisor_Install_Rivet_Fasten_drilling.full,
         &s_at_Supervisor_Install_Rivet_Fasten_drilling)
         || !pn_has_room(cx, m->flag1_interno.full, &s_at_flag1_interno)) {
@@ -2738,9 +2664,6 @@ PN_NET_SEARCH static bool Supervisor_Install_Rivet_Fasten_Insert_fire(pn_ctx_t *
     pn_bag_check(cx, &s_at_flag1_interno, &flag1_interno_token);
     if (!pn_ok(cx)) {
         return false;
-    }
-    if (!m->Supervisor_Install_Rivet_Fasten_drilling.full || !m->flag1_externo.full) {
-        return pn_fail_missing(cx);
     }
     if (!pn_has_room(cx, m->Supervisor_Install_Rivet_Fasten_inserting.full,
         &s_at_Supervisor_Install_Rivet_Fasten_inserting)
@@ -2793,9 +2716,6 @@ PN_NET_SEARCH static bool Supervisor_Install_Rivet_Fasten_Release_fire(pn_ctx_t 
     pn_bag_check(cx, &s_at_flag2_interno, &flag2_interno_token);
     if (!pn_ok(cx)) {
         return false;
-    }
-    if (!m->Supervisor_Install_Rivet_Fasten_inserting.full || !m->flag1_externo.full) {
-        return pn_fail_missing(cx);
     }
     if (!pn_has_room(cx, m->Supervisor_Install_Rivet_Fasten_releasing.full,
         &s_at_Supervisor_Install_Rivet_Fasten_releasing)
@@ -2854,9 +2774,6 @@ PN_NET_SEARCH static bool Supervisor_Install_Rivet_Fasten_Finish_fire(pn_ctx_t *
     if (!pn_ok(cx)) {
         return false;
     }
-    if (!m->Supervisor_Install_Rivet_Fasten_releasing.full || !m->flag2_externo.full) {
-        return pn_fail_missing(cx);
-    }
     if (!pn_has_room(cx, m->Supervisor_Install_Rivet_fastened.full,
         &s_at_Supervisor_Install_Rivet_fastened)) {
         return false;
@@ -2905,9 +2822,6 @@ PN_NET_SEARCH static bool Supervisor_Install_Rivet_Fasten_Press_failed_fire(pn_c
     const int64_t Supervisor_Install_Rivet_Fasten_releasing_token = val_FAILED;
     if (!pn_ok(cx)) {
         return false;
-    }
-    if (!m->Supervisor_Install_Rivet_Fasten_pressing.full || !m->flag2_externo.full) {
-        return pn_fail_missing(cx);
     }
     if (!pn_has_room(cx, m->flag2_interno.full, &s_at_flag2_interno)
         || !pn_has_room(cx, m->Supervisor_Install_Rivet_Fasten_releasing.full,
@@ -2962,9 +2876,6 @@ PN_NET_SEARCH static bool Supervisor_Install_Rivet_Fasten_Drill_failed_fire(pn_c
     if (!pn_ok(cx)) {
         return false;
     }
-    if (!m->Supervisor_Install_Rivet_Fasten_drilling.full || !m->flag1_externo.full) {
-        return pn_fail_missing(cx);
-    }
     if (!pn_has_room(cx, m->flag2_interno.full, &s_at_flag2_interno)
         || !pn_has_room(cx, m->Supervisor_Install_Rivet_Fasten_releasing.full,
         &s_at_Supervisor_Install_Rivet_Fasten_releasing)) {
@@ -3013,9 +2924,6 @@ PN_NET_SEARCH static bool Supervisor_Home_Send_home_fire(pn_ctx_t *cx, void *mar
     pn_bag_check(cx, &s_at_flag2_interno, &flag2_interno_token);
     if (!pn_ok(cx)) {
         return false;
-    }
-    if (!m->Supervisor_ended.full) {
-        return pn_fail_missing(cx);
     }
     if (!pn_has_room(cx, m->Supervisor_Home_leaving_1.full, &s_at_Supervisor_Home_leaving_1)
         || !pn_has_room(cx, m->flag1_interno.full, &s_at_flag1_interno)
@@ -3083,10 +2991,6 @@ PN_NET_SEARCH static bool Supervisor_Home_Both_fire(pn_ctx_t *cx, void *marking,
         Supervisor_Failed_token = PN_UNIT;
         Supervisor_Failed_tokens = 1U;
     }
-    if (!m->Supervisor_result.full || !m->Supervisor_Home_home_1.full
-        || !m->Supervisor_Home_home_2.full) {
-        return pn_fail_missing(cx);
-    }
     if (!pn_has_room(cx, (Supervisor_Finished_tokens > 1U)
         || ((Supervisor_Finished_tokens == 1U) && m->Supervisor_Finished.full),
         &s_at_Supervisor_Finished)
@@ -3139,9 +3043,6 @@ PN_NET_SEARCH static bool Supervisor_Home_Reply_1_fire(pn_ctx_t *cx, void *marki
     (void)self;
     (void)binding;
     pn_begin(cx, "page `Home`, transition `Reply 1` (ID1412311060)", m->now);
-    if (!m->Supervisor_Home_leaving_1.full || !m->flag1_externo.full) {
-        return pn_fail_missing(cx);
-    }
     if (!pn_has_room(cx, m->Supervisor_Home_home_1.full, &s_at_Supervisor_Home_home_1)) {
         return false;
     }
@@ -3181,9 +3082,6 @@ PN_NET_SEARCH static bool Supervisor_Home_Reply_2_fire(pn_ctx_t *cx, void *marki
     (void)self;
     (void)binding;
     pn_begin(cx, "page `Home`, transition `Reply 2` (ID1412311091)", m->now);
-    if (!m->Supervisor_Home_leaving_2.full || !m->flag2_externo.full) {
-        return pn_fail_missing(cx);
-    }
     if (!pn_has_room(cx, m->Supervisor_Home_home_2.full, &s_at_Supervisor_Home_home_2)) {
         return false;
     }
@@ -3234,9 +3132,6 @@ PN_NET_SEARCH static bool Robot_Accept_fire(pn_ctx_t *cx, void *marking, uint32_
     COMMAND_slot_t *const at_flag_interno = pn_bag_reach(own->flag_interno, m);
     UNIT_slot_t *const at_Waiting = pn_bag_reach(own->Waiting, m);
     COMMAND_slot_t *const at_Commanded = pn_bag_reach(own->Commanded, m);
-    if (!at_flag_interno->full || !at_Waiting->full) {
-        return pn_fail_missing(cx);
-    }
     if (!pn_has_room(cx, at_Commanded->full, own->Commanded)) {
         return false;
     }
@@ -3284,9 +3179,6 @@ PN_NET_SEARCH static bool Robot_Report_fire(pn_ctx_t *cx, void *marking, uint32_
     REPLY_slot_t *const at_flag_externo = pn_bag_reach(own->flag_externo, m);
     UNIT_slot_t *const at_Waiting = pn_bag_reach(own->Waiting, m);
     REPLY_slot_t *const at_Done = pn_bag_reach(own->Done, m);
-    if (!at_Done->full) {
-        return pn_fail_missing(cx);
-    }
     if (!pn_has_room(cx, at_flag_externo->full, own->flag_externo)
         || !pn_has_room(cx, at_Waiting->full, own->Waiting)) {
         return false;
@@ -3354,9 +3246,6 @@ PN_NET_SEARCH static bool Robot_MoveJoint_fire(pn_ctx_t *cx, void *marking, uint
     if (!pn_ok(cx)) {
         return false;
     }
-    if (!at_Commanded->full || !at_dadosrobo->full) {
-        return pn_fail_missing(cx);
-    }
     if (!pn_has_room(cx, at_Done->full, own->Done)) {
         return false;
     }
@@ -3423,9 +3312,6 @@ PN_NET_SEARCH static bool Robot_MoveLinear_fire(pn_ctx_t *cx, void *marking, uin
     if (!pn_ok(cx)) {
         return false;
     }
-    if (!at_Commanded->full || !at_dadosrobo->full) {
-        return pn_fail_missing(cx);
-    }
     if (!pn_has_room(cx, at_Done->full, own->Done)) {
         return false;
     }
@@ -3483,9 +3369,6 @@ PN_NET_SEARCH static bool Robot_MoveHome_fire(pn_ctx_t *cx, void *marking, uint3
     pn_bag_check(cx, own->Done, &Done_token);
     if (!pn_ok(cx)) {
         return false;
-    }
-    if (!at_Commanded->full) {
-        return pn_fail_missing(cx);
     }
     if (!pn_has_room(cx, at_Done->full, own->Done)) {
         return false;
@@ -3569,9 +3452,6 @@ PN_NET_SEARCH static bool Robot_Measure_fire(pn_ctx_t *cx, void *marking, uint32
     if (!pn_ok(cx)) {
         return false;
     }
-    if (!at_Commanded->full || !at_referencia->full) {
-        return pn_fail_missing(cx);
-    }
     if (!pn_has_room(cx, at_Done->full, own->Done)
         || !pn_has_room(cx, at_medida->full, own->medida)) {
         return false;
@@ -3647,9 +3527,6 @@ PN_NET_SEARCH static bool Robot_Drill_fire(pn_ctx_t *cx, void *marking, uint32_t
     if (!pn_ok(cx)) {
         return false;
     }
-    if (!at_Commanded->full) {
-        return pn_fail_missing(cx);
-    }
     if (!pn_has_room(cx, at_Done->full, own->Done)) {
         return false;
     }
@@ -3720,9 +3597,6 @@ PN_NET_SEARCH static bool Robot_Insert_fire(pn_ctx_t *cx, void *marking, uint32_
     pn_bag_check(cx, own->Done, &Done_token);
     if (!pn_ok(cx)) {
         return false;
-    }
-    if (!at_Commanded->full) {
-        return pn_fail_missing(cx);
     }
     if (!pn_has_room(cx, at_Done->full, own->Done)) {
         return false;
@@ -3795,9 +3669,6 @@ PN_NET_SEARCH static bool Robot_Press_fire(pn_ctx_t *cx, void *marking, uint32_t
     if (!pn_ok(cx)) {
         return false;
     }
-    if (!at_Commanded->full) {
-        return pn_fail_missing(cx);
-    }
     if (!pn_has_room(cx, at_Done->full, own->Done)) {
         return false;
     }
@@ -3868,9 +3739,6 @@ PN_NET_SEARCH static bool Robot_Release_fire(pn_ctx_t *cx, void *marking, uint32
     pn_bag_check(cx, own->Done, &Done_token);
     if (!pn_ok(cx)) {
         return false;
-    }
-    if (!at_Commanded->full) {
-        return pn_fail_missing(cx);
     }
     if (!pn_has_room(cx, at_Done->full, own->Done)) {
         return false;

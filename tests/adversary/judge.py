@@ -131,7 +131,7 @@ def _of_run(cell: Cell, said: Said, run: Run, net: FlatNet) -> Iterator[str]:
     whole = [m["answer"] for m in said.medium[:1]]
     # A script may stop by itself before anybody notices; only where non-blocking is yes that may not be.
     is_own = _SCRIPT.search(run.why) and _answer(said, "non-blocking") != "yes"
-    is_said = any(w in run.why for w in ("died", "dead", "ended", "gone"))
+    is_said = any(w in run.why for w in ("died", "dead", "ended", "gone", "has not answered"))
     if run.end == "crashed" and not (is_own or is_said):
         yield "a side died, but nobody says so"
     if run.end == "stuck":

@@ -146,7 +146,7 @@ def main() -> int:
             return monitor.measure(bench)
         table = firing_rows(bench) if options.firings else rows(bench)
     print(f"{cores} cores; load at the start {load:.1f}" + is_busy * ": busy")
-    print("\n| what | median | spread | work | unit | at most | beside it, in the same run |")
+    print("\n| what | median | spread | work | unit | limit | compared with, in the same run |")
     print("|---|---|---|---|---|---|---|")
     for row in table:
         print("| " + " | ".join(row.cells()) + " |")

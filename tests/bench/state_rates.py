@@ -75,7 +75,7 @@ def threads(net: Path, repeat: int) -> tuple[float, float, float]:
 def tell(shared: Path, repeat: int) -> None:
     """Prints both."""
     print(
-        "\n| net with strings or lists | states | arcs a state | states/s | bytes a state | aim |"
+        "\n| net with strings or lists | states | arcs a state | states/s | bytes a state | target |"
     )
     print("|---|---|---|---|---|---|")
     for row in protocols(shared, repeat):
@@ -85,5 +85,6 @@ def tell(shared: Path, repeat: int) -> None:
         one, two, both = threads(net, repeat)
         print(
             f"\nPhilosophers 14: one thread {one:.2f} s, two threads {two:.2f} s, {one / two:.2f} times as fast "
-            f"(aim 1.7); two explorations at once {both:.2f} s each, {2 * one / both:.2f} times what one does."
+            f"(target 1.7); two explorations at once {both:.2f} s each, {2 * one / both:.2f} times the throughput "
+            "of one."
         )

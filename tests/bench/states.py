@@ -203,7 +203,7 @@ def measure(repeat: int, threads: int) -> int:
     load = os.getloadavg()[0]
     print(f"{os.cpu_count()} cores; load at the start {load:.1f}\n")
     heads = ("model", "states / arcs", "s", "M states/s", "M arcs/s", "bytes a state", "MiB")
-    heads += ("SPIN, s", "times", "aim", "s there", "aim")
+    heads += ("SPIN, s", "times", "target", "s there", "target")
     print("| " + " | ".join(heads) + " |")
     print("|" + "---|" * len(heads))
     table = rows(repeat, threads)

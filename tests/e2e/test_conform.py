@@ -164,14 +164,14 @@ ROBOT = {
         "      clear data\n      mark Top.Robot.Move with k = k, p = p\n",
         "data is emptied before",
     ),
-    "a wait too few": ("      wait until filled(data)\n", "", "nobody has waited"),
+    "a wait too few": ("      wait until filled(data)\n", "", "the script has not waited"),
     "the end too early": ("  end loop", "  exit\n  end loop", "the script has ended, but"),
 }
 
 
 FILES = {
     "data waited for": ([("look", "data"), ("read", "data")], ""),
-    "data not waited for": ([("read", "data")], "data is read, but nobody has waited"),
+    "data not waited for": ([("read", "data")], "data is read, but the script has not waited"),
     "an answer after the command": ([("clear", "call"), ("write", "place"), ("write", "done")], ""),
     "an answer before the command": ([("write", "done"), ("clear", "call")], "before call is emptied"),
     "a flag before its data": ([("clear", "call"), ("write", "done")], "before the data place"),
@@ -331,7 +331,10 @@ def test_a_script_that_asks_another_sensor_is_found_out(root: Path) -> None:
     report = ProgramComparison(made).script(belt, other, d)
     assert report is not None, [str(i) for i in d]
     assert report.deviation is not None
-    assert "asks sensor `gripper`, to which the net leaves nothing open there" in report.deviation
+    assert (
+        "asks sensor `gripper`, although the net leaves nothing open to it there"
+        in report.deviation
+    )
 
 
 SCHEDULER = {
@@ -416,10 +419,10 @@ def edited(cell: Path, folder: Path, **texts: str) -> Path:
 @pytest.mark.parametrize(
     ("name", "said"),
     [
-        ("runtime/src/supervisor_cell.c", "is another one"),
-        ("runtime/include/pn/pn_port.h", "is another one"),
-        ("Makefile", "is another one"),
-        ("manifest.json", "is another one"),
+        ("runtime/src/supervisor_cell.c", "differs"),
+        ("runtime/include/pn/pn_port.h", "differs"),
+        ("Makefile", "differs"),
+        ("manifest.json", "differs"),
         ("runtime/src/more.c", "is not generated"),
         ("math.h", "is not generated"),
         ("GNUmakefile", "is not generated"),

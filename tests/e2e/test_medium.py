@@ -9,9 +9,7 @@ import pytest
 
 from pn2code.cell.divide import divide
 from pn2code.cell.partition import Partition
-from pn2code.cli.medium import code, rows, told
 from pn2code.cli.nets import open_net
-from pn2code.cli.options import Exit
 from pn2code.diagnostics import Diagnostics
 from pn2code.medium.check import CRASHES, Answer, Evidence, Run, exchange, too_large
 from pn2code.medium.compose import compose
@@ -20,6 +18,7 @@ from pn2code.medium.places import Crashes
 from pn2code.medium.rules import Emptying, Rules
 from pn2code.medium.skeleton import Skeleton, Topology, topology
 from pn2code.semantics.game import Game
+from pn2code.verdict.medium import rows, told, verdict
 from pn2code.verify.limits import Limits
 
 CALM = Crashes(lives=False)
@@ -136,9 +135,9 @@ def test_one_exchange_for_each_topology(cell: Partition) -> None:
 def test_answers_for_people_and_reports() -> None:
     unknown = too_large()
     yes = replace(unknown, check="the exchange", answer="yes", why="", nodes=12)
-    assert code(()) == Exit.OK == code((yes,))
-    assert code((yes, unknown)) == Exit.INCONCLUSIVE
-    assert code((yes, unknown, replace(yes, answer="no"))) == Exit.MODEL
+    assert verdict(()) == "yes" == verdict((yes,))
+    assert verdict((yes, unknown)) == "inconclusive"
+    assert verdict((yes, unknown, replace(yes, answer="no"))) == "no"
     assert "the exchange: yes" in told((yes,))
     assert "12 markings" in told((yes,))
     torn = Evidence(Fault.TORN, 1, ("a", "so it is"))

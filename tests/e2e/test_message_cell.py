@@ -114,7 +114,7 @@ instance = "Device"
 
 CASES = [
     ("STRING", 'rep (4053, "x")', ""),
-    ("STRING", 'rep (4054, "x")', "it has 4,056 bytes, and 4,055 are the most"),
+    ("STRING", 'rep (4054, "x")', "it has 4,056 bytes, but at most 4,055 are possible"),
     ("STRING", 'rep (1014, "\\001")', "it has 4,058 bytes"),
     ("REAL", "1.0 / 0.0", "is not a finite number"),
 ]
@@ -228,4 +228,7 @@ def test_a_message_of_too_many_values(tmp_path: Path) -> None:
     d = Diagnostics()
     assert generate(small_cell.write(tmp_path / "cell", net, TOML), d) is None
     (error,) = d.errors
-    assert error.code == "channel-limit" and "has 65 values, and 64 are the most" in error.message
+    assert (
+        error.code == "channel-limit"
+        and "has 65 values, but at most 64 are possible" in error.message
+    )

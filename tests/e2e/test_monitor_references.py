@@ -59,5 +59,6 @@ def test_what_references_hold_is_looked_at(tmp_path: Path) -> None:
     done = monitored()
     assert done.returncode == 70
     assert (
-        "what references hold has changed although nothing assigns any in Top.Next" in done.stderr
+        "the values of references have changed although nothing assigns any in Top.Next"
+        in done.stderr
     )

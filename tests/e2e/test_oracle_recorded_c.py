@@ -123,6 +123,6 @@ def test_what_is_not_there_is_named() -> None:
     assert [(w.code, w.message) for w in d] == [
         (
             "unsupported-function",
-            "`HashTable.mkTable` is not available here: pn2code has not got this part of the library",
+            "`HashTable.mkTable` is not available here: pn2code does not have this part of the library",
         )
     ]

@@ -17,13 +17,14 @@ from helpers.random_cells import random_cell
 from helpers.thorough import amount
 from pn2code.cell.divide import divide
 from pn2code.cell.partition import Partition
-from pn2code.cli.controller import look
 from pn2code.cli.main import app
-from pn2code.cli.nets import OpenNet, open_net
-from pn2code.cli.properties import answered, asked
+from pn2code.cli.nets import open_net
 from pn2code.deadline import Deadline
 from pn2code.diagnostics import Diagnostics, render
 from pn2code.run.cell import RunOptions, run_cell
+from pn2code.verdict.controller import look
+from pn2code.verdict.opened import OpenNet
+from pn2code.verdict.properties import answered, asked
 from pn2code.verify import control
 from pn2code.verify.control_types import Check, Control, Plan
 from pn2code.verify.explore import Wishes, explore
@@ -637,10 +638,10 @@ TIMER = (
     "    place Timer : T = 1`()\n    trans Strike\n      in Timer : ()\n      out Timer : ()@+1\n"
 )
 UNMODELLED = {
-    "two at once": (TOLD, TOLD.replace(": k", ": 2`k"), "takes just one message of `fromB`"),
+    "two at once": (TOLD, TOLD.replace(": k", ": 2`k"), "takes only one message of `fromB`"),
     "a condition": (
         TOLD, TOLD.replace(": k", ": (if 1 < 2 then 1`1 else empty)"),
-        "takes just one message of `fromB`"),
+        "takes only one message of `fromB`"),
     "two of one kind": (
         "      in Told : ()\n      out Waiting : ()\n      out say : 1\n",
         "      in Told : ()\n      out Waiting : ()\n      out say : 1\n      out more : 1\n",
@@ -803,7 +804,7 @@ def test_what_no_state_shows_is_assumed(root: Path) -> None:
     assert partition is not None and opened.config is not None
     premises = Premises.of(partition, opened.config)
     measured, given = premises.states
-    assert measured == "what is measured is what `measure` of the net gives"
+    assert measured == "a measurement gives the result of `measure` in the net"
     assert given == "`coordenadas` begins with the tokens of the net, not with those of its file"
     assert premises.of_check("messages", "yes") == premises.states
     assert premises.of_check("ownership", "yes") == premises.of_check("messages", "no") == ()

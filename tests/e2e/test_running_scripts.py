@@ -70,6 +70,29 @@ DELAY = """    place Waiting : T = 1`()
       out say : 1
 """
 EARLY = net(ONE, {"A": DELAY}, "  colset T = unit timed;\n")
+
+
+def pausing(turn: str, delay: str) -> str:
+    """A device that answers, and then goes round, with a wait after each turn."""
+    text = f"""    place Waiting : T = 1`()
+    place Told : T
+    trans Accept
+      in Waiting : ()
+      in ask : k
+      out Told : ()
+      out say : 1
+    trans Turn{turn}
+      in Told : ()
+      out Told : ()@+{delay}
+"""
+    return net(
+        ONE,
+        {"A": text},
+        "  colset T = unit timed;\n  val zero = 0;\n  fun pause (s : real) = ();\n",
+    )
+
+
+AT_ONCE = "may loop without a command or a wait that takes time"
 TIMELESS = TOOL.replace("2.0", "0.0")
 PAUSE = '[primitives]\npause = { command = "wait" }\n'
 NEVER = net(
@@ -82,23 +105,32 @@ NEVER = net(
 @pytest.mark.parametrize(
     ("text", "cell", "answer", "says"),
     [
-        (PURE, toml(["A", "B"], TOOL), "no", "goes round for ever without a command"),
+        (PURE, toml(["A", "B"], TOOL), "no", "loops for ever without a command"),
         (
             BRANCH,
             toml(["A", "B"], TOOL),
             "unknown",
-            "never take the branches with commands that take time",
+            AT_ONCE,
         ),
         (
             BOTH,
             toml(["A", "B"], TIMELESS),
             "unknown",
-            "never take the branches with commands that take time",
+            AT_ONCE,
         ),
         (EARLY, toml(["A"]), "no", "the script of device `A` stops in `Top.A.Accept`, 1 step"),
         (NEVER, toml(["A"], PAUSE), "no", "stops in `Top.A.Answer`, 2 steps after the start"),
+        (pausing("", "0"), toml(["A"]), "no", "loops for ever without a command or a wait"),
+        (pausing("", "zero"), toml(["A"]), "unknown", AT_ONCE),
+        (pausing(" code action pause 0.0", "0"), toml(["A"], PAUSE), "unknown", AT_ONCE),
+        (
+            pausing(" code action pause 1.0", "0"),
+            toml(["A"], PAUSE),
+            "unknown",
+            "may need any time for an answer",
+        ),
     ],
-    ids=["pure", "branch", "timeless", "early", "never"],
+    ids=["pure", "branch", "timeless", "early", "never", "written", "named", "command", "slow"],
 )
 def test_where_a_script_stops(text: str, cell: str, answer: str, says: str, tmp_path: Path) -> None:
     found = examined(write(tmp_path / "cell", text, cell)).checks["non-blocking"]
@@ -126,7 +158,7 @@ def test_a_script_that_goes_round_for_long(tmp_path: Path, monkeypatch: pytest.M
         monkeypatch.setattr(control, "MOST_OCCURRENCES", most)
         found = examined(folder).checks["non-blocking"]
         assert found.answer == answer, found.says
-    assert "goes round for 40 transitions" in found.says
+    assert "loops for 40 transitions" in found.says
 
 
 # A tells the supervisor and B, who tells the supervisor; it looks at B's file first.
@@ -278,3 +310,11 @@ def test_a_script_that_repeats_commands_of_no_time_ends_a_run(tmp_path: Path) ->
     assert end["why"] == "failed"
     assert "B carried out 10,000 commands at" in end["reason"]
     assert "without time passing" in end["reason"]
+
+
+def test_a_script_that_waits_for_no_time_does_not_stop_the_cell(tmp_path: Path) -> None:
+    """So that it does is no answer."""
+    end = ran(write(tmp_path / "cell", pausing("", "zero"), toml(["A"])))[-1]
+    assert (end["why"], end["final"]) == ("finished", ["Top.Supervisor.Finished"])
+    end = ran(write(tmp_path / "other", pausing("", "0"), toml(["A"])))[-1]
+    assert "endless loop: more than 100000 transitions" in end["reason"]

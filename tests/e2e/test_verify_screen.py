@@ -48,7 +48,7 @@ def test_a_cell_with_a_fault(tmp_path: Path, here: Path) -> None:
     assert code == 1
     assert len(lines) <= MOST_LINES
     assert "NO Non-blocking under control: there is a deadlock" in text
-    assert "The way to `Non-blocking under control`" in text
+    assert "The run for `Non-blocking under control`" in text
     assert (
         "`Skipped` cannot occur: its guard `n = 3` is false for the tokens that are there." in text
     )

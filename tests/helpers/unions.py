@@ -23,12 +23,14 @@ from helpers.quotient import aged
 from helpers.random_unions import Union, page_of
 from helpers.table_nets import orbits
 from helpers.thorough import amount
+from pn2code.diagnostics import NOWHERE
 from pn2code.lowering.packing import choose
 from pn2code.net.flat import FlatNet
 from pn2code.semantics.files import Files
 from pn2code.semantics.game import Game, GameError
 from pn2code.semantics.graph import StateSpace, state_space
 from pn2code.semantics.marking import Marking, PlaceMarking, binding_to_json, place_to_json
+from pn2code.semantics.references import searching
 from pn2code.verify.elements import Elements, NotPossibleError, elements
 from pn2code.verify.programs import Sizes
 from pn2code.verify.time_reduction import obstacle
@@ -49,7 +51,7 @@ class Part:
 
     Attributes:
         number: of the net.
-        space: the graph; None if an inscription raises an exception.
+        space: the graph; None if an inscription raises an exception, or a guard may assign a reference.
     """
 
     def __init__(self, flat: FlatNet, number: int, size: int = 1) -> None:
@@ -65,6 +67,8 @@ class Part:
         self.space: StateSpace | None
         try:
             self.game.marking, _ = self.game.occur(self.root, start)
+            if searching(self.net):  # no state space: `verify` refuses it
+                raise GameError("a guard may assign a reference", NOWHERE)
             self.space = state_space(self.game, max_nodes=size * NODES, max_arcs=size * ARCS)
         except GameError:
             self.space = None

@@ -167,17 +167,17 @@ class Tally:
 
     def report(self) -> int:
         """The table; the exit code."""
-        print("\n| cell | what is mutated | mutants | killed |\n|---|---|---|---|")
+        print("\n| cell | what is mutated | mutants | detected |\n|---|---|---|---|")
         for cell, part in sorted({(c, p) for c, p, _ in self.count}):
             killed, alive = self.count[cell, part, "killed"], self.count[cell, part, SURVIVED]
             print(f"| {cell} | {part} | {killed + alive} | {killed} |")
         killed = sum(n for (_, _, r), n in self.count.items() if r == "killed")
         mutants = killed + len(self.survivors)
         share = killed / mutants if mutants else 0.0
-        print(f"\n{killed} of {mutants} killed, {share:.1%} (at least {GOAL:.0%} are wanted)")
+        print(f"\n{killed} of {mutants} detected, {share:.1%} (at least {GOAL:.0%} are required)")
         lost = sum(n for (_, p, r), n in self.count.items() if p == "commands" and r == SURVIVED)
         if lost:
-            print(f"{lost} dropped or repeated commands were not found out: none may be")
+            print(f"{lost} dropped or repeated commands were not detected: all must be")
         return 0 if share >= GOAL and not lost else 1
 
 

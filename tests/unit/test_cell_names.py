@@ -161,3 +161,39 @@ def test_a_place_that_nobody_uses_is_no_channel(tmp_path: Path) -> None:
     )
     (found,) = said(tmp_path, net, toml)
     assert "`Top.idle` is used by no owner" in found.message
+
+
+def test_a_name_of_two_places_is_refused(tmp_path: Path) -> None:
+    """Also where one of them is on a higher page; the path says which."""
+    net = changed(NET, "    place Waiting = 1\n", "    place Waiting = 1\n    place Finished\n")
+    net = changed(net, "      out Told : k\n", "      out Told : k\n      out Finished : ()\n")
+    (found,) = said(tmp_path / "a", net)
+    assert (found.code, found.message) == (
+        "cell-unknown-place",
+        "final: `Finished` is the name of 2 places",
+    )
+    assert found.hint == "write the path: `Top.Supervisor.Finished` or `Top.Robot.Finished`"
+    toml = changed(TOML, FINAL, 'final = ["Supervisor.Finished"]')
+    assert not [x for x in said(tmp_path / "b", net, toml) if x.code == "cell-unknown-place"]
+
+
+def test_a_count_of_two_transitions_is_refused(tmp_path: Path) -> None:
+    net = changed(NET, "trans Report", "trans Next")
+    counts = '[report]\noccurrences = { x = "NAME" }\n[primitives]'
+    toml = changed(TOML, "[primitives]", counts.replace("NAME", "Next"))
+    (found,) = (x for x in said(tmp_path / "a", net, toml) if x.code == "cell-value")
+    assert found.message == "`occurrences.x`: `Next` is the name of 2 transitions"
+    assert found.hint == "write more of the path: `Top.Supervisor.Next` or `Top.Robot.Next`"
+    toml = changed(toml, '"Next"', '"Robot.Next"')
+    assert not [x for x in said(tmp_path / "b", net, toml) if x.code == "cell-value"]
+
+
+def test_a_misspelt_channel_is_one_mistake(tmp_path: Path) -> None:
+    """The place that it should name is not reported as well; others without an entry are."""
+    toml = changed(TOML, 'place = "flag"', 'place = "falg"')
+    (found,) = (x for x in said(tmp_path / "a", NET, toml) if x.severity is Severity.ERROR)
+    assert (found.code, found.hint) == ("cell-unknown-place", "did you mean `flag`?")
+    toml = changed(toml, '[[channel]]\nplace = "done"\nfile = "done.robcad"\nkind = "flag"\n', "")
+    errors = [x for x in said(tmp_path / "b", NET, toml) if x.severity is Severity.ERROR]
+    assert sorted(x.code for x in errors) == ["cell-unknown-place", "channel-undeclared"]
+    assert any("`Top.done` is shared" in x.message for x in errors)

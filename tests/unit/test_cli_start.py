@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import ast
+import os
+import pty
 import signal
 import subprocess
 import sys
@@ -49,6 +51,35 @@ def test_every_verb_has_help(verb: str, capsys: pytest.CaptureFixture[str]) -> N
         main.app([verb, "-h"])
     assert left.value.code == 0
     assert verb in capsys.readouterr().out
+
+
+@pytest.mark.parametrize(
+    ("words", "wanted"),
+    [("pn2code ver", {"verify"}), ("pn2code verify --max", {"--max-states", "--max-seconds"})],
+)
+def test_shells_complete_verbs_and_options(words: str, wanted: set[str]) -> None:
+    asked = {"COMP_WORDS": words, "COMP_CWORD": str(words.count(" "))}
+    done = subprocess.run(
+        [sys.executable, "-c", "from pn2code.cli.main import app; app(prog_name='pn2code')"],
+        env={**os.environ, **asked, "_PN2CODE_COMPLETE": "complete_bash"},
+        capture_output=True, text=True, check=True,
+    )  # fmt: skip
+    assert set(done.stdout.split()) == wanted
+
+
+@pytest.mark.parametrize(("variable", "coloured"), [({}, True), ({"NO_COLOR": "1"}, False)])
+def test_colours_on_a_terminal(variable: dict[str, str], coloured: bool, tmp_path: Path) -> None:
+    ours, theirs = pty.openpty()
+    environment = {k: v for k, v in os.environ.items() if k != "NO_COLOR"} | variable
+    with os.fdopen(ours, "rb", buffering=0) as terminal:
+        subprocess.run(
+            [sys.executable, "-m", "pn2code", "check", str(tmp_path / "no.cpn")],
+            stderr=theirs, stdout=subprocess.DEVNULL, env=environment, check=False,
+        )  # fmt: skip
+        os.close(theirs)
+        said = terminal.read(4096)
+    assert b"there is no file" in said
+    assert (b"\x1b[" in said) == coloured
 
 
 @pytest.mark.parametrize("closed", [">&-", "2>&-", "<&- >&- 2>&-"])

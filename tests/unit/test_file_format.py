@@ -518,4 +518,4 @@ def test_thousands_of_errors_come_to_an_end(
         assert found.flat is None
         assert len(found.d) == 21
         assert found.d.items[-1].code == "too-many-messages"
-        assert found.d.items[-1].message == "more than 20 messages: the rest is not looked at"
+        assert found.d.items[-1].message == "more than 20 messages: the rest is not examined"

@@ -271,4 +271,4 @@ def test_a_deep_hierarchy_is_refused(monkeypatch: pytest.MonkeyPatch) -> None:
     d = diagnose(f"net N\n  standard\n{pages}  page P4\n    place A : INT\n")
     (error,) = d.errors
     assert error.code == "net-too-large"
-    assert error.message == "5 pages stand one below the other, more than the 3 allowed"
+    assert error.message == "pages are nested 5 levels deep, more than the 3 allowed"

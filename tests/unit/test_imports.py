@@ -49,11 +49,16 @@ ALLOWED: dict[str, set[str]] = {
     "conform": {"diagnostics", "cell", "channels", "emission", "ml", "net", "pipeline", "robot", "semantics",
                 "simulate", "tdl", "toolchain", "verify"},
     "medium": {"diagnostics", "ml", "net", "cell", "lowering", "semantics", "verify"},
+    "verdict": {"diagnostics", "cell", "lowering", "medium", "net", "pipeline", "properties", "semantics", "simulate",
+                "verify"},
+    "api": {"diagnostics", "drawing", "emission", "net", "pipeline", "reading", "semantics", "simulate", "verdict",
+            "verify"},
+    "__init__": {"api"},
     "__main__": {"start"},
     "start": {"cli"},
     "cli": {"diagnostics", "cell", "channels", "emission", "net", "pipeline", "run", "report", "semantics", "toolchain",
             "robot", "tdl", "ml", "lowering", "bytecode", "reading", "drawing", "simulate", "monitors", "structure",
-            "convert", "unfold", "verify", "properties", "conform", "medium"},
+            "convert", "unfold", "verify", "properties", "conform", "medium", "verdict"},
 }  # fmt: skip
 EVERYWHERE = {"deadline", "frozen", "os_reason", "private_folder", "real_json", "whole_file"}
 

@@ -68,9 +68,9 @@ def test_binds_the_token_and_its_parts(tmp_path: Path, arc: str, variables: list
             "in A : n as (m, _)",
             "type-mismatch | inscription is `int`, but `int * string` is expected",
         ),
-        ("out A : x as (n, _)", "syntax-error | `as` cannot stand here"),
-        ("in Z : q as (n, _)", "syntax-error | `as` cannot stand here"),
-        ("in A : 1`(x as (n, _))", "syntax-error | `as` cannot stand here"),
+        ("out A : x as (n, _)", "syntax-error | `as` cannot be used here"),
+        ("in Z : q as (n, _)", "syntax-error | `as` cannot be used here"),
+        ("in A : 1`(x as (n, _))", "syntax-error | `as` cannot be used here"),
     ],
 )
 def test_errors(tmp_path: Path, arc: str, expected: str) -> None:

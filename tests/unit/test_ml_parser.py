@@ -213,7 +213,7 @@ def test_function_heads() -> None:
         ("a andalso", "fixity-error | an expression is missing beside `andalso` | andalso"),
         (
             "1 + if a then 2 else 3",
-            "fixity-error | `if` must stand in parentheses here | if a then 2 else 3",
+            "fixity-error | `if` must be in parentheses here | if a then 2 else 3",
         ),
         ("(1, 2", "syntax-error | text ends too early, `)` or `,` expected | "),
         ("if a then b", "syntax-error | text ends too early, `else` expected | "),
@@ -222,7 +222,7 @@ def test_function_heads() -> None:
         ("fn x y", "syntax-error | text ends too early, `=>` expected | "),
         ("", "syntax-error | text is empty, an expression expected | "),
         ("(* only this *)", "syntax-error | text is empty, an expression expected | "),
-        ("x as y", "syntax-error | `as` cannot stand here | as"),
+        ("x as y", "syntax-error | `as` cannot be used here | as"),
         ("val x = 1", "syntax-error | unexpected `val`, an expression expected | val"),
     ],
 )

@@ -240,7 +240,7 @@ def test_value_restriction() -> None:
         ("fun f r = #c r", "unresolved-record | the record type of `#c` is not known here | #c"),
         ("fun f {c, ...} = c", "unresolved-record | the record type of `{c, ...}` is not known here | {c, ...}"),
         ("val x = {a = 1, a = 2}", "duplicate-name | field `a` is given twice | 2"),
-        ("fun f (x, x) = x", "duplicate-name | `x` stands twice in one pattern | x"),
+        ("fun f (x, x) = x", "duplicate-name | `x` occurs twice in one pattern | x"),
         ("fun f (Ackk n) = n", "unknown-constructor | `Ackk` is not a constructor | Ackk"),
         ("fun f Ack = 1", "constructor-argument | constructor `Ack` needs an argument | Ack"),
         ("fun f (Nil n) = 1", "constructor-argument | constructor `Nil` takes no argument | Nil"),
@@ -256,7 +256,7 @@ def test_value_restriction() -> None:
          "read or written; those of text are, see `--files` | BinIO.openIn"),
         ("val x = BinIO.openOn \"f\"", "unbound-identifier | `BinIO.openOn` is not declared | BinIO.openOn"),
         ("fun f x = SMLofNJ.Cont.callcc x + 1", "unsupported-function | `SMLofNJ.Cont.callcc` is not available here: "
-         "pn2code has not got this part of the library | SMLofNJ.Cont.callcc"),
+         "pn2code does not have this part of the library | SMLofNJ.Cont.callcc"),
         ("fun f () = CPN'Sim.something 1", "unsupported-function | `CPN'Sim.something` is not available here: "
          "it belongs to the inner parts of CPN Tools | CPN'Sim.something"),
         ("val x = INetSock.inetAF", "unsupported-function | function `INetSock.inetAF` is not supported | INetSock.inetAF"),

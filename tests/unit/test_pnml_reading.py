@@ -452,7 +452,7 @@ WRONG = [
     ),
     (
         net(place("P"), declarations=named("A", sort("A"))),
-        "2: pnml-element: the sort `A` is made of itself",
+        "2: pnml-element: the sort `A` contains itself",
     ),
     (
         net(place("P", "E"), declarations=named("E", "<cyclicenumeration/>")),

@@ -178,23 +178,23 @@ WRONG = [
     ("always", "ends here, but a condition is expected", 7),
     ("always {", "this brace is not closed", 8),
     ("always { \"}\" ", "this brace is not closed", 8),
-    ("always Stock", "`Stock` cannot stand here", 8, "tokens(Stock) >= 1"),
+    ("always Stock", "`Stock` cannot be used here", 8, "tokens(Stock) >= 1"),
     ("always dead && ", "ends here", 15),
     ("always (dead", "ends here", 13),
-    ("ltl GF dead", "`GF` cannot stand here", 5, "write `G F`"),
-    ("ltl {true} andalso dead", "`andalso` cannot stand here", 12, "write `&&` or `and`"),
-    ("always {true} & dead", "`&` cannot stand here", 15, "write `&&`"),
+    ("ltl GF dead", "`GF` cannot be used here", 5, "write `G F`"),
+    ("ltl {true} andalso dead", "`andalso` cannot be used here", 12, "write `&&` or `and`"),
+    ("always {true} & dead", "`&` cannot be used here", 15, "write `&&`"),
     ("ctl A[dead]", "`U` (or `W`, `R`) is expected", 5),
     ("ctl G dead", "`G` has no quantifier", 5, "`AG` or `EG`"),
     ("ctl dead U initial", "`U` has no quantifier", 5, "A[p U q]"),
     ("ltl AG dead", "`AG` quantifies paths", 5, "write `G`"),
-    ("always F dead", "`F` speaks of other markings", 8),
-    ("always fires(Wait)", "`fires` says something of a step", 8, "enabled(T)"),
-    ("ctl AG fires(Wait)", "`fires` says something of a step", 8, "EX<T> p"),
+    ("always F dead", "`F` is about other markings", 8),
+    ("always fires(Wait)", "`fires` says something about a step", 8, "enabled(T)"),
+    ("ctl AG fires(Wait)", "`fires` says something about a step", 8, "EX<T> p"),
     ("ltl F fires(Wait, { })", "this condition is empty", 20, "fires(Page'Transition 1"),
     ("ltl F fires(Wait, { zz > 3 })", "`zz` is not declared", 21),
-    ("ltl F fires(Wait, dead)", "`dead` cannot stand here", 19),
-    ("always fires(Wait, { true })", "`fires` says something of a step", 8),
+    ("ltl F fires(Wait, dead)", "`dead` cannot be used here", 19),
+    ("always fires(Wait, { true })", "`fires` says something about a step", 8),
     ("bound Top'Stok <= 3", "the net has no place `Top'Stok`", 7, "did you mean `Top'Stock`?"),
     ("bound Shop'Stock <= 3", "the net has no place", 7, "did you mean `Top'Stock`?"),
     ("bound Wait <= 3", "the net has no place `Wait`", 7, "`Wait` is a transition"),
@@ -222,10 +222,10 @@ WRONG = [
     ("always { Mark.Top'Stock 1 = [\"a\"] }", "`string`", 30),
     ("always { Mark.Top'Go_on 1 = [1] }", "`int timed`", 30),
     ("always { }", "this condition is empty", 9),
-    ("every dead is followd by initial", "`followd` cannot stand here", 15, "did you mean `followed`?"),
+    ("every dead is followd by initial", "`followd` cannot be used here", 15, "did you mean `followed`?"),
     ("every dead && fires(Wait) is followed by dead within 3 firings", "an event with `within`", 7),
     ("every dead is followed by initial within 2.5 time", "counts integers", 1),
-    ("every dead is followed by initial within 2.5 firings", "cannot stand here", 46),
+    ("every dead is followed by initial within 2.5 firings", "cannot be used here", 46),
     ("ltl G dead assuming strong Sel", "the net has no transition `Sel`", 28, "`Top'Sell`"),
     ("mutex Stock", "ends here", 12),
     ("ctl EX<Sel> dead", "no transition `Sel`", 8),
@@ -333,7 +333,7 @@ def test_stamps_are_explained(examined: front.Examined) -> None:
     found, said = bound(examined, option("always { List.all (fn v => v > 1) (Mark.Top'Go_on 1) }"))
     assert not found.properties
     assert (
-        "= note: the marking of a timed place has stamps: `ms (Mark.Page'Place 1)` leaves" in said
+        "= note: the marking of a timed place has stamps: `ms (Mark.Page'Place 1)` removes" in said
     )
     found, said = bound(
         examined, option("always { List.all (fn v => v = true) (Mark.Top'Stock 1) }")

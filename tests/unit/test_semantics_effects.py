@@ -18,6 +18,7 @@ NET = """
       fun even 0 = true | even n = odd (n - 1)
         and odd 0 = false | odd n = (count := n; even (n - 1))
       fun unused () = exponential 1.0
+      val (get, set) = let val c = ref 0 in (fn () => !c, fn x => c := x) end
       var n: INT;
       page Top
         place A : INT = 1`1
@@ -38,6 +39,8 @@ NET = """
         ("if n > 0 then n else discrete (0, n)", {Effect.DRAW}),
         ("luck", {Effect.DRAW}),
         ("!count", {Effect.READ}),
+        ("get ()", {Effect.READ}),
+        ("(set 3; 1)", {Effect.READ, Effect.WRITE}),
         ("if even n then 1 else 2", {Effect.READ, Effect.WRITE}),
         ("valOf (TextIO.inputLine (TextIO.openIn \"f\")) = \"\"", {Effect.LOOK}),
     ],

@@ -161,19 +161,19 @@ def test_the_examples_of_the_documentation_are_right(root: object) -> None:
         ("program p begin", ["1:16 error[tdl-syntax] the script ends here, but a statement or `end` is expected"]),
         (
             "program p begin x = 3 end program",
-            ["1:19 error[tdl-syntax] `=` cannot stand here: `:` or `:=` is expected"],
+            ["1:19 error[tdl-syntax] `=` cannot be used here: `:` or `:=` is expected"],
         ),
         (
             "program p begin if a loop end if end program",
-            ["1:22 error[tdl-syntax] `loop` cannot stand here: `then` is expected"],
+            ["1:22 error[tdl-syntax] `loop` cannot be used here: `then` is expected"],
         ),
         (
             "program p begin x := § end program",
-            ["1:22 error[tdl-syntax] `§` cannot stand here: a value is expected"],
+            ["1:22 error[tdl-syntax] `§` cannot be used here: a value is expected"],
         ),
         (
             "program if begin end program",
-            ["1:9 error[tdl-syntax] `if` cannot stand here: a name is expected"],
+            ["1:9 error[tdl-syntax] `if` cannot be used here: a name is expected"],
         ),
         (
             "program p begin wait 3 furlong end program",

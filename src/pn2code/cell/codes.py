@@ -42,11 +42,11 @@ CELL_OWNER = register(
 )
 CELL_FINAL = register(
     "cell-final",
-    "a final place cannot tell that the supervisor has finished",
-    "`final` of [supervisor] lists places of the supervisor: the cell has finished when one of them holds a token. The "
-    "supervisor sees neither the places of a robot nor what lies in a channel, so a place of a robot or a channel "
-    "cannot be one. A place that no transition of the supervisor puts a token into is warned of: the cell never ends "
-    "there.",
+    "a final place cannot show that the supervisor has finished",
+    "`final` of [supervisor] lists places of the supervisor: the cell has finished when one of them holds a token. "
+    "The supervisor sees neither the places of a robot nor the contents of a channel, so a place of a robot or a "
+    "channel cannot be final. If no transition of the supervisor puts a token into the place, there is a warning: the "
+    "cell never ends there.",
 )
 PRIMITIVE_ENTRY = register(
     "primitive-entry",
@@ -59,9 +59,9 @@ PRIMITIVE_UNNAMED = register(
     "primitive-unnamed",
     "a call in a robot's code segment is no command and has no effect",
     "A script carries out the primitives that the code segments of its page call, and computes values with pure "
-    "functions. A call of a function that no entry of [primitives] names, and whose value nobody uses, would vanish "
-    "from the script without a word. So would that of a function that is declared among the primitives: in a block "
-    "of declarations with `primitive` in its name. Such a function that nobody calls is a warning only, because "
+    "functions. A call of a function that no entry of [primitives] names, and whose value nobody uses, would silently "
+    "be missing from the script. So would a call of a function that is declared among the primitives, that is, in a "
+    "block of declarations with `primitive` in its name. Such a function that nobody calls is only a warning, because "
     "nothing is missing from any script.",
 )
 PRIMITIVE_MISPLACED = register(
@@ -96,14 +96,14 @@ CHANNEL_INITIAL = register(
 CHANNEL_TIMED = register(
     "channel-timed",
     "the colour set of a channel is timed",
-    "A message is seen as soon as it is written, so it cannot carry a time stamp that lies ahead. Use an untimed "
-    "colour set for the channel, and put delays on the writer's or the reader's own places.",
+    "A message is seen as soon as it is written, so it cannot carry a time stamp in the future. Use an untimed colour "
+    "set for the channel, and put delays on the writer's or the reader's own places.",
 )
 CHANNEL_LIMIT = register(
     "channel-limit",
     "a cell has more channels, robots or values in a message than a supervisor can carry",
-    "A supervisor has room for 128 channels and 64 robots and devices, a message for 64 scalars. Divide a large "
-    "message among two channels, or a large cell between two supervisors.",
+    "A supervisor has room for 128 channels and 64 robots and devices, a message for 64 scalars. Split a large "
+    "message into two channels, or a large cell into two with a supervisor each.",
 )
 UNSUPPORTED_CHANNEL_COLSET = register(
     "unsupported-channel-colset",

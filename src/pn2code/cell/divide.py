@@ -8,7 +8,8 @@ In: a `FlatNet` and a `CellConfig` (or None: the supervisor owns the whole net).
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
+from collections.abc import Iterable
+from difflib import SequenceMatcher
 from pathlib import PurePath
 
 from pn2code.cell import codes
@@ -18,6 +19,7 @@ from pn2code.cell.scalars import scalars_of
 from pn2code.diagnostics import Diagnostics, Note, Origin
 from pn2code.diagnostics.near import did_you_mean
 from pn2code.ml.colsets import Colset, Kind
+from pn2code.net.finding import Finder
 from pn2code.net.flat import ArcKind, FlatNet, FlatPlace
 
 
@@ -38,7 +40,7 @@ def divide(net: FlatNet, config: CellConfig | None, d: Diagnostics) -> Partition
     writers, readers = _touching(net, transition_owner)
     find = PlaceFinder(net, d)
     channels = tuple(_channels(net, config, owners, writers, readers, find, d))
-    _undeclared(net, channels, owners, writers, readers, config, d)
+    _undeclared(net, owners, writers, readers, config, find, d)
     inputs = tuple(_inputs(config, writers, readers, find, d))
     final = _final(net, config, owners, transition_owner, find, d)
     if len(d.errors) != before:
@@ -161,13 +163,12 @@ class PlaceFinder:
     def __init__(self, net: FlatNet, d: Diagnostics) -> None:
         self._net = net
         self._d = d
+        self._finder = Finder.of_places(net)
+        self._lost = {p.place for p in net.place_instances if p.is_port and not p.is_assigned}
 
     def __call__(self, name: str, at: Origin, what: str) -> FlatPlace | None:
         """The place; None after an error at `at`, which begins with `what`."""
-        found = [p for p in self._net.places if p.name == name or p.name.endswith("." + name)]
-        if len(found) > 1:
-            depth = min(p.name.count(".") for p in found)
-            found = [p for p in found if p.name.count(".") == depth]
+        found = [self._net.places[i] for i in self.meant(name)]
         if len(found) == 1:
             return found[0]
         if found:
@@ -187,13 +188,18 @@ class PlaceFinder:
             )
         return None
 
+    def meant(self, name: str) -> list[int]:
+        """The indices of what it may mean. A port that has lost its socket is not meant where something else is."""
+        found = self._finder.ending(name)
+        return [i for i in found if i not in self._lost] or found
+
 
 def _final(
     net: FlatNet,
     config: CellConfig,
     owners: tuple[Owner, ...],
     transition_owner: tuple[int, ...],
-    find: Callable[[str, Origin, str], FlatPlace | None],
+    find: PlaceFinder,
     d: Diagnostics,
 ) -> tuple[int, ...]:
     """The places whose tokens say that the supervisor has finished: its own, and it puts tokens there."""
@@ -244,7 +250,7 @@ def _channels(
     owners: tuple[Owner, ...],
     writers: list[set[int]],
     readers: list[set[int]],
-    find: Callable[[str, Origin, str], FlatPlace | None],
+    find: PlaceFinder,
     d: Diagnostics,
 ) -> Iterable[Channel]:
     found = [(c, find(c.place, c.origin, "channel")) for c in config.channels]
@@ -411,38 +417,49 @@ def _directed(
 
 def _undeclared(
     net: FlatNet,
-    channels: tuple[Channel, ...],
     owners: tuple[Owner, ...],
     writers: list[set[int]],
     readers: list[set[int]],
     config: CellConfig,
+    find: PlaceFinder,
     d: Diagnostics,
 ) -> None:
-    declared = {c.place for c in channels} | {
-        p.index
-        for p in net.places
-        for c in config.channels
-        if p.name == c.place or p.name.endswith("." + c.place)
+    """Shared places without an entry; not those whose entry is there, but names another place or none."""
+    declared: set[int] = set()
+    misspelt: list[str] = []
+    for c in config.channels:
+        meant = find.meant(c.place)
+        declared |= set(meant)
+        misspelt += [] if meant else [c.place]
+    lacking = {
+        place.index: place
+        for place in net.places
+        if len(writers[place.index] | readers[place.index]) > 1 and place.index not in declared
     }
-    for place in net.places:
-        both = writers[place.index] | readers[place.index]
-        if len(both) > 1 and place.index not in declared:
-            who = ", ".join(f"`{owners[i].name}`" for i in sorted(both))
-            kind = "flag" if len(scalars_of(place.colset) or ()) == 1 else "data"
-            d.error(
-                codes.CHANNEL_UNDECLARED,
-                f"place `{place.name}` is shared by {who}, but is not a channel",
-                place.origins[0],
-                hint=f'add to {config.path.name}: [[channel]] place = "{place.short}", '
-                f'file = "{place.short}.robcad", kind = "{kind}"',
-            )
+    for name in misspelt[: len(lacking)]:
+        likeness = {
+            i: SequenceMatcher(None, name, place.short).ratio() for i, place in lacking.items()
+        }
+        del lacking[max(likeness, key=lambda i: likeness[i])]
+    for place in lacking.values():
+        who = ", ".join(
+            f"`{owners[i].name}`" for i in sorted(writers[place.index] | readers[place.index])
+        )
+        kind = "flag" if len(scalars_of(place.colset) or ()) == 1 else "data"
+        d.error(
+            codes.CHANNEL_UNDECLARED,
+            f"place `{place.name}` is shared by {who}, but is not a channel",
+            place.origins[0],
+            hint=f'add to {config.path.name}: [[channel]] place = "{place.short}", '
+            f'file = "{place.short}.robcad", kind = "{kind}"',
+        )
 
 
 def _inputs(
     config: CellConfig,
     writers: list[set[int]],
     readers: list[set[int]],
-    find: Callable[[str, Origin, str], FlatPlace | None],
+    find: PlaceFinder,
     d: Diagnostics,
 ) -> Iterable[Input]:
     seen: set[int] = set()
@@ -501,7 +518,9 @@ def _limits(
     if len(config.programs) > MOST_PEERS:
         many = len(config.programs)
         text = f"the cell has {many} robots and devices, and a supervisor has room for {MOST_PEERS}"
-        d.error(codes.CHANNEL_LIMIT, text, at, hint="let one program be several small devices")
+        d.error(
+            codes.CHANNEL_LIMIT, text, at, hint="combine several small devices into one program"
+        )
     for name, place in (
         *((c.name, c.place) for c in channels),
         *((i.name, i.place) for i in inputs),
@@ -511,7 +530,7 @@ def _limits(
         if count > MOST_SCALARS:
             d.error(
                 codes.CHANNEL_LIMIT,
-                f"a message of `{name}` has {count} values, and {MOST_SCALARS} are the most",
+                f"a message of `{name}` has {count} values, but at most {MOST_SCALARS} are possible",
                 flat.origins[0],
                 hint=f"divide colour set `{flat.colset.name}` among several places",
             )

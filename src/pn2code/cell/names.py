@@ -11,6 +11,7 @@ from pn2code.cell.divide import PlaceFinder
 from pn2code.diagnostics import Diagnostics
 from pn2code.diagnostics.near import did_you_mean
 from pn2code.ml.colsets import Colset, Kind
+from pn2code.net.finding import Finder
 from pn2code.net.flat import FlatNet
 
 
@@ -31,15 +32,30 @@ def check_names(net: FlatNet, config: CellConfig, d: Diagnostics) -> None:
             )
         elif place is not None:
             bounds[place.index] = name
-    names = [x.name for x in net.transitions]
+    _occurrences(net, config, d)
+
+
+def _occurrences(net: FlatNet, config: CellConfig, d: Diagnostics) -> None:
+    """All instances of a transition are counted together, but not those of several transitions."""
+    finder = Finder.of_transitions(net)
     for label, name in config.report.occurrences:
-        if not any(f".{x}".endswith(f".{name}") for x in names):
-            short = [x.rpartition(".")[2] for x in names]
+        at = config.locator.origin("report", "occurrences", label)
+        found = [net.transitions[i] for i in finder.ending(name)]
+        if not found:
+            short = [x.short for x in net.transitions]
             d.error(
                 codes.CELL_VALUE,
                 f"`occurrences.{label}` names `{name}`, which is not a transition of the net",
-                config.locator.origin("report", "occurrences", label),
-                hint=did_you_mean(name, [*short, *names]),
+                at,
+                hint=did_you_mean(name, [*short, *finder.paths]),
+            )
+        elif len({t.id for t in found}) > 1:
+            paths = {t.id: f"`{t.name}`" for t in reversed(found)}
+            d.error(
+                codes.CELL_VALUE,
+                f"`occurrences.{label}`: `{name}` is the name of {len(paths)} transitions",
+                at,
+                hint=f"write more of the path: {' or '.join(reversed(paths.values()))}",
             )
 
 

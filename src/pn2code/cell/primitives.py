@@ -243,7 +243,7 @@ class _Checker:
             if symbol.uid in self.unnamed:
                 problem = "is declared among the primitives, but [primitives] does not name it"
             elif symbol.uid in self.idle:
-                problem = "stands among the primitives and gives back what it gets, but [primitives] does not name it"
+                problem = "stands among the primitives and returns its argument, but [primitives] does not name it"
             elif self._acts(symbol):
                 continue
             elif isinstance(symbol.type, TFun) and _carries_nothing(_result(symbol.type)):

@@ -175,7 +175,7 @@ def _parse_scalar(scalar: Scalar, word: str) -> ScalarValue | str:
             if not math.isfinite(value):
                 return _Wrong(f"{quote(word)} is too large for a real number ({where})")
     if not _in_range(scalar, value):
-        text = f"{quote(word)} is out of {where}, which goes from {scalar.low} to {scalar.high}"
+        text = f"{quote(word)} is outside {where}, which goes from {scalar.low} to {scalar.high}"
         return _Wrong(text)
     return value
 

@@ -71,8 +71,8 @@ def _properties(net: Path, config: CellConfig | None, result: Examined, d: Diagn
     beside = net.with_suffix(".properties.toml").is_file()
     if result.flat is None or not (beside or (config is not None and "property" in config.raw)):
         return
-    from pn2code.cli import properties  # loads what verifies nets
-    from pn2code.cli.nets import OpenNet
+    from pn2code.verdict import properties  # loads what verifies nets
+    from pn2code.verdict.opened import OpenNet
 
     properties.asked(OpenNet(result.flat, config, result), (), None, d, found=True)
 

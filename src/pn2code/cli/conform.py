@@ -113,7 +113,7 @@ def _files(folder: Folder) -> Iterator[str]:
     if folder.deviates:
         yield "files         DIFFER from those that are generated now:"
         for name in folder.differing:
-            yield f"              `{name}` is another one: generate it again"
+            yield f"              `{name}` differs: generate it again"
         for name in folder.intruding:
             yield f"              `{name}` is not generated, but would become a part of the programs: remove it"
     else:

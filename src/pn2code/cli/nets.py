@@ -4,39 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
-from dataclasses import dataclass
 from pathlib import Path
 
-from pn2code.cell.config import CellConfig
-from pn2code.cell.locate import locate
 from pn2code.cli.options import Format, print_diagnostics, stop
 from pn2code.diagnostics import Diagnostics, Severity
-from pn2code.net import front
-from pn2code.net.flat import FlatNet
-from pn2code.semantics.files import Files
-from pn2code.semantics.game import Game, GameError
-
-
-@dataclass(frozen=True, slots=True)
-class OpenNet:
-    """A net, the cell beside it, if there is one, and what the front end knows of it."""
-
-    flat: FlatNet
-    config: CellConfig | None
-    examined: front.Examined
-
-    @property
-    def storage(self) -> Mapping[str, str]:
-        """How colour sets of reals are stored: name -> "float32"."""
-        return self.config.storage if self.config else {}
-
-    def game(self, *, seed: int, files: Path | None) -> Game:
-        """The net at its start.
-
-        Raises:
-            GameError: a declaration or an initial marking raises an exception.
-        """
-        return Game(self.flat, self.storage, seed=seed, files=Files(files))
+from pn2code.semantics.game import GameError
+from pn2code.verdict.opened import OpenNet, read
 
 
 def open_net(
@@ -47,18 +20,12 @@ def open_net(
     What is `unsupported-...` is said before the net is played: applying it will stop the run.
     """
     d = Diagnostics()
-    found = locate(path, d)
-    if found is None:
-        stop(d, form)
-    net_path, config = found
-    replaced = {**(config.values if config else {}), **values}
-    examined = front.examine(net_path, d, replaced, int_bits=int_bits)
-    flat = examined.flat
-    if flat is None or d.has_errors:
+    opened = read(path, values, d, int_bits=int_bits)
+    if opened is None:
         stop(d, form)
     unsupported = [i for i in d.sorted() if i.code.startswith("unsupported-")]
     print_diagnostics((i for i in unsupported if i.severity is Severity.WARNING), form)
-    return OpenNet(flat, config, examined)
+    return opened
 
 
 @contextmanager

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import os
 import re
 import sys
 from collections.abc import Iterable
@@ -135,6 +136,11 @@ MOST_SHOWN = 60
 """More diagnostics than that are not for people."""
 
 
+def _has_colours() -> bool:
+    """Whether messages are coloured: on a terminal, unless NO_COLOR is set (https://no-color.org)."""
+    return sys.stderr.isatty() and not os.environ.get("NO_COLOR")
+
+
 def print_diagnostics(items: Iterable[Diagnostic], form: Format = Format.FULL) -> None:
     """Print them to stderr, in colour on a terminal.
 
@@ -147,9 +153,7 @@ def print_diagnostics(items: Iterable[Diagnostic], form: Format = Format.FULL) -
         wrong = {p for i in items if i.severity is Severity.ERROR for p in _pages(i)}
         items = [i for i in items if i.severity is not Severity.NOTE or wrong & _pages(i)]
         items, omitted = _first(items)
-    text = render.report(
-        items, form.value, render.coloured if sys.stderr.isatty() else render.plain
-    )
+    text = render.report(items, form.value, render.coloured if _has_colours() else render.plain)
     if text:
         print(text + omitted, file=sys.stderr)
 

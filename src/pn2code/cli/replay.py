@@ -10,7 +10,7 @@ from typing import Annotated, Any, NoReturn
 
 import typer
 
-from pn2code.cli.nets import OpenNet, open_net, playing
+from pn2code.cli.nets import open_net, playing
 from pn2code.cli.options import (
     DEFAULT_INT_BITS,
     DEFAULT_SEED,
@@ -34,6 +34,7 @@ from pn2code.semantics.parties import Parties
 from pn2code.semantics.recording import NotARecording, Recording, recording
 from pn2code.semantics.replay_recording import follow
 from pn2code.semantics.report import places, time_text
+from pn2code.verdict.opened import OpenNet
 
 EPILOG = """Examples:
 
@@ -259,5 +260,5 @@ def _sentence(trace: Path, result: dict[str, Any]) -> str:
     if result["time"]:
         text += f", until time {time_text(result['time'])}"
     if "ended" in result and not result["ended"]:
-        text += "; its last line is missing, the run may have gone on"
+        text += "; its last line is missing, the run may have continued"
     return text + (f"\n{result['why']}" if result["why"] else "")

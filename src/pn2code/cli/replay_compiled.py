@@ -6,7 +6,6 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
-from pn2code.cli.nets import OpenNet
 from pn2code.cli.options import DEFAULT_SEED, Engine, Format, stop
 from pn2code.cli.replay import Claims, refuse
 from pn2code.diagnostics import Diagnostics
@@ -19,6 +18,7 @@ from pn2code.semantics.trace_lines import digest_problem, form_problem
 from pn2code.simulate.recorded import repeat, repeat_occurrences
 from pn2code.simulate.run import Outcome
 from pn2code.simulate.script import TraceRefusedError
+from pn2code.verdict.opened import OpenNet
 
 
 def repeat_own(

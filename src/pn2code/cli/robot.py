@@ -77,7 +77,7 @@ def robot(
             min=0.01,
             max=1000.0,
             callback=finite,
-            help="With --cell, move so many times faster than a real robot.",
+            help="With --cell, move this many times as fast as a real robot.",
         ),
     ] = 1.0,
     wait: Annotated[

@@ -75,11 +75,12 @@ def run(
             min=0.01,
             max=1000.0,
             callback=finite,
-            help="With --realtime, run so many times faster than real time.",
+            help="With --realtime, run this many times as fast as real time.",
         ),
     ] = 1.0,
     seed: Annotated[
-        int | None, typer.Option(metavar="K", help="The seed of what sensors draw at random.")
+        int | None,
+        typer.Option(metavar="K", help="The seed of the values that sensors draw at random."),
     ] = None,
     unchecked: Annotated[
         bool,

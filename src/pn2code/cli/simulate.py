@@ -10,7 +10,7 @@ from typing import Annotated, Any
 import typer
 
 from pn2code.cli.interrupts import Interrupts
-from pn2code.cli.nets import OpenNet, open_net
+from pn2code.cli.nets import open_net
 from pn2code.cli.options import (
     DEFAULT_INT_BITS,
     Engine,
@@ -37,6 +37,7 @@ from pn2code.simulate.report import text
 from pn2code.simulate.run import Outcome, Request
 from pn2code.simulate.script import TraceRefusedError
 from pn2code.simulate.trace import TraceUnwritableError
+from pn2code.verdict.opened import OpenNet
 
 EPILOG = """Examples:
 
@@ -82,7 +83,7 @@ def simulate(
         Path | None,
         typer.Option(
             metavar="TRACE",
-            help="Repeat this trace first, then go on. Its steps do not count for --steps.",
+            help="Repeat this trace first, then continue. Its steps do not count towards --steps.",
         ),
     ] = None,
     engine: Annotated[

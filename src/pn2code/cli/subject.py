@@ -12,10 +12,10 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from pn2code import pipeline
-from pn2code.cli.nets import OpenNet
 from pn2code.deadline import NEVER, Deadline, TimeIsOverError
 from pn2code.diagnostics import Diagnostics
 from pn2code.emission.output import OutputFile
+from pn2code.verdict.opened import OpenNet
 
 RUNTIME = "runtime/"
 """Generated files below it are the same for all nets."""
@@ -70,7 +70,7 @@ class Subject:
             with deadline.enforced():
                 made = pipeline.generate(path, d, values=values, int_bits=int_bits)
         except TimeIsOverError:
-            return Subject(tuple(rows), "No programs were generated: the time was over.")
+            return Subject(tuple(rows), "No programs were generated: the time was up.")
         if made is None:
             why = d.errors[0].message if d.errors else "it cannot be generated"
             return Subject(tuple(rows), f"`generate` refuses the cell: {why}.")

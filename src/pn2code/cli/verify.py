@@ -3,20 +3,17 @@
 from __future__ import annotations
 
 import json
-import re
-from collections.abc import Iterator, Sequence
-from contextlib import contextmanager, nullcontext, suppress
-from dataclasses import asdict, replace
+from collections.abc import Iterator
+from contextlib import ExitStack, contextmanager, nullcontext
+from dataclasses import asdict
 from datetime import datetime
 from pathlib import Path
-from typing import Annotated, Any
+from typing import Annotated, NoReturn
 
 import typer
 
-from pn2code import pipeline
-from pn2code.cli import controller, medium, properties
 from pn2code.cli.interrupts import Interrupts
-from pn2code.cli.nets import OpenNet, open_net, playing
+from pn2code.cli.nets import open_net, playing
 from pn2code.cli.options import (
     DEFAULT_INT_BITS,
     Exit,
@@ -31,23 +28,29 @@ from pn2code.cli.options import (
     stop,
 )
 from pn2code.cli.subject import Subject
-from pn2code.cli.verify_screen import Said, closing, full, screen
+from pn2code.cli.verify_screen import closing, full, screen
 from pn2code.deadline import Deadline, TimeIsOverError
 from pn2code.diagnostics import Diagnostics, Origin
-from pn2code.lowering.robot import lower_robots
 from pn2code.os_reason import os_reason
-from pn2code.verify import chance
-from pn2code.verify.answers import Answer, verdict
-from pn2code.verify.codes import REPORT_UNWRITABLE, STATE_ERROR, TIME_OVER, TRACE_UNWRITABLE
-from pn2code.verify.control_types import Control
-from pn2code.verify.explore import Wishes, explore
+from pn2code.verdict import medium, properties
+from pn2code.verdict.opened import OpenNet
+from pn2code.verdict.whole import (
+    MOST_COLOURS,
+    Checks,
+    Said,
+    conclude,
+    look,
+    question,
+    stem,
+    trace_folder,
+)
+from pn2code.verify.codes import REPORT_UNWRITABLE, TIME_OVER
+from pn2code.verify.explore import Wishes
 from pn2code.verify.limits import Approximation, Limits, Order, Reduction, cores
 from pn2code.verify.pictures import GRAPH_KINDS, PLOT_KINDS, Pictures
-from pn2code.verify.programs import Sizes
 from pn2code.verify.progress import ProgressLine
 from pn2code.verify.report import report
 from pn2code.verify.result import Exploration, Seen
-from pn2code.verify.result import row as exploration_row
 from pn2code.verify.webpage import webpage
 from pn2code.whole_file import whole_file
 
@@ -64,8 +67,7 @@ EPILOG = """Examples:
   pn2code verify net.cpn --property "deadlock free" --property "always { size (Mark.Top'Buffer 1) <= 4 }"
 """
 
-MOST_COLOURS = 200
-"""Of a multi-set bound, unless all is wanted: a place with a colour for each marking has millions."""
+_CODES = {"no": Exit.MODEL, "inconclusive": Exit.INCONCLUSIVE}
 
 
 def verify(
@@ -248,27 +250,11 @@ def verify(
     try:
         with deadline.enforced():
             opened = open_net(net, parse_values(settings), form, int_bits=int_bits)
-            partition = pipeline.divided(opened.flat, opened.config, d)
-            if partition is not None and opened.config is not None:
-                # What is said of a cell is said of its programs: without them there is nothing to say.
-                lower_robots(partition, opened.config, d)
-            asked = properties.asked(opened, texts, file, d, found=found_properties)
-            chance.warn(opened.flat, d)
+            asked = question(opened, texts, file, d, found=found_properties)
     except TimeIsOverError:
-        d.warning(
-            TIME_OVER,
-            "the time was over before the net was read and checked",
-            Origin(str(net)),
-            hint="give it more time with `--max-seconds`",
-        )
-        print_diagnostics(d.sorted(), form)
-        if as_json:
-            none = {"complete": False, "why": "seconds", "seen": asdict(Seen()), "nodes": 0}
-            typer.echo(json.dumps(none, indent=1))
-        raise typer.Exit(Exit.INCONCLUSIVE) from None
+        _stop_unread(net, d, as_json, form)
     if d.has_errors:
         stop(d, form)
-    wanted = () if no_reduction else tuple(dict.fromkeys(reduce))
     limits = Limits(
         max_states=max_states,
         deadline=deadline,
@@ -279,18 +265,19 @@ def verify(
         spill=spill,
         graph=graph or bool(asked),
         traces=most_traces,
-        reductions=wanted,
+        reductions=() if no_reduction else tuple(dict.fromkeys(reduce)),
     )
+    checks = Checks(controller=check_controller, medium=check_medium)
     is_cell = opened.config is not None and check_controller
     with (
-        _folder(traces, _stem(opened), wanted=bool(most_traces or asked or is_cell)) as folder,
+        _folder(traces, stem(opened), wanted=bool(most_traces or asked or is_cell)) as folder,
         Pictures(draw_to, plot_to) as pictures,
         properties.unnamed_runs(asked, folder) as unnamed,
     ):
         with Interrupts() as interrupts, ProgressLine(shown=not (as_json or quiet)) as progress:
             wishes = Wishes(
                 traces=folder if most_traces else None,
-                stem=_stem(opened),
+                stem=stem(opened),
                 colours=None if in_full else MOST_COLOURS,
                 questions=asked.questions,
                 predicates=asked.properties.predicates,
@@ -298,47 +285,14 @@ def verify(
                 progress=progress.update,
                 interrupted=interrupts.is_wanted,
             )
-            control: Control | None = None
             with playing(form):
-                # What the places hold is worked out once for all explorations of the net.
-                with suppress(TimeIsOverError), deadline.enforced():
-                    wishes = replace(wishes, sizes=Sizes.start(opened.flat, opened.storage))
-                found = explore(opened.flat, opened.storage, limits, d, pictures.wishes(wishes))
-                if found is not None and (check_controller or asked):
-                    control = controller.look(opened, found, limits, wishes, folder, d, asked.plain)
-                more: Sequence[Answer] = ()
-                if found is not None:
-                    more = properties.of_bindings(asked, opened, found, limits, wishes, d, control)
-                seen: medium.Answers = ()
-                if found is not None and check_medium:
-                    looked = control if check_controller else None
-                    seen = medium.look(opened, found, limits, wishes, d, looked)
-        if found is None:
+                looked = look(
+                    opened, asked, limits, wishes, folder, d, checks, pictures.wishes(wishes)
+                )
+        if looked is None:
             stop(d, form)
-        try:
-            with deadline.enforced() if draw_to or plot_to else nullcontext():
-                pictures.write(opened.flat, found, d)
-        except TimeIsOverError:
-            d.warning(
-                TIME_OVER,
-                "the time was over before all pictures were drawn",
-                Origin(opened.flat.file),
-                hint="give it more time with `--max-seconds`",
-            )
-        answers = properties.answered(
-            asked, opened, found, more, folder, _stem(opened), deadline, d, control
-        )
-        if not check_controller:  # it was looked at for properties only
-            control = None
-        if found.error is not None and found.why == "error":
-            _tell_error(opened, found, d)
-        if found.graph is not None and len(found.traces) < min(most_traces, found.dead_count):
-            _unwritable("a dead marking", folder, d)
-        if found.error and found.error.get("node") and most_traces and found.error_trace is None:
-            _unwritable("the marking in which an exception is raised", folder, d)
-        said = Said(
-            opened.flat, opened.storage, found, answers, control, seen, len(d.errors), deadline
-        )
+        _draw(pictures, opened, looked.found, deadline, d, wanted=bool(draw_to or plot_to))
+        said = conclude(looked, opened, asked, limits, folder, d, checks)
         if report_to is not None:
             subject = None
             if report_to.suffix.lower() in (".html", ".htm"):
@@ -348,7 +302,7 @@ def verify(
                     parse_values(settings),
                     properties.files(opened, file, found=found_properties),
                     int_bits=int_bits,
-                    complete=found.seen.markings or found.why == "decided",
+                    complete=said.found.seen.markings or said.found.why == "decided",
                     deadline=deadline,
                 )
             _write_report(said, subject, report_to, d)
@@ -356,51 +310,63 @@ def verify(
             typer.echo(full(said) if in_full else screen(said))
         print_diagnostics(d.sorted(), form)
         if as_json:
-            typer.echo(json.dumps(_json(said), indent=1))
-    codes = (_code(found, answers, d), controller.code(control), medium.code(seen))
-    code = Exit.MODEL if Exit.MODEL in codes else max(codes)
-    if code:
-        raise typer.Exit(code)
+            typer.echo(json.dumps(said.row(), indent=1))
+    if d.has_errors:
+        raise typer.Exit(Exit.MODEL)
+    if said.verdict != "yes":
+        raise typer.Exit(_CODES[said.verdict])
 
 
-def _json(said: Said) -> dict[str, Any]:
-    row = exploration_row(said.net, said.found)
-    if said.answers:
-        row["properties"] = [a.row() for a in said.answers]
-    if said.control is not None:
-        row["controller"] = [c.row() for c in said.control.checks]
-        row["cell"] = said.control.row()
-    if said.medium:
-        row["medium"] = [a.row() for a in said.medium]
-    return row
+def _stop_unread(net: Path, d: Diagnostics, as_json: bool, form: Format) -> NoReturn:
+    """Leaves, because the time was over before anything was known."""
+    d.warning(
+        TIME_OVER,
+        "the time was up before the net was read and checked",
+        Origin(str(net)),
+        hint="give it more time with `--max-seconds`",
+    )
+    print_diagnostics(d.sorted(), form)
+    if as_json:
+        none = {"complete": False, "why": "seconds", "seen": asdict(Seen()), "nodes": 0}
+        typer.echo(json.dumps(none, indent=1))
+    raise typer.Exit(Exit.INCONCLUSIVE)
+
+
+def _draw(
+    pictures: Pictures,
+    opened: OpenNet,
+    found: Exploration,
+    deadline: Deadline,
+    d: Diagnostics,
+    *,
+    wanted: bool,
+) -> None:
+    """Writes the pictures that are wanted, as long as there is time."""
+    try:
+        with deadline.enforced() if wanted else nullcontext():
+            pictures.write(opened.flat, found, d)
+    except TimeIsOverError:
+        d.warning(
+            TIME_OVER,
+            "the time was up before all pictures were drawn",
+            Origin(opened.flat.file),
+            hint="give it more time with `--max-seconds`",
+        )
 
 
 @contextmanager
-def _folder(traces: Path | None, stem: str, *, wanted: bool) -> Iterator[Path]:
-    """Where traces go: the folder that was named, or one that is named after the net; an empty one is not left.
-
-    Args:
-        traces: the folder that was named.
-        stem: the name of the net, as in the names of its files.
-        wanted: whether there may be any; if not, no folder is made.
-    """
-    folder = traces or Path(f"{stem}.traces")
-    is_new = wanted and not folder.exists()
-    if wanted:
+def _folder(traces: Path | None, name: str, *, wanted: bool) -> Iterator[Path]:
+    """Where traces go: the folder that was named, or one that is named after the net."""
+    folder = traces or Path(f"{name}.traces")
+    with ExitStack() as stack:
         try:
-            folder.mkdir(parents=True, exist_ok=True)
+            made = trace_folder(folder, wanted=wanted, needed=traces is not None)
+            stack.enter_context(made)
         except OSError as problem:
-            if traces is not None:
-                raise typer.BadParameter(
-                    f"`{folder}`: {os_reason(problem)}", param_hint="--traces"
-                ) from None
-            is_new = False  # nobody has asked for it: what cannot be written into it will be said
-    try:
+            raise typer.BadParameter(
+                f"`{folder}`: {os_reason(problem)}", param_hint="--traces"
+            ) from None
         yield folder
-    finally:
-        if is_new:
-            with suppress(OSError):  # there are traces in it
-                folder.rmdir()
 
 
 def _check_kind(path: Path | None, kinds: tuple[str, ...], option: str) -> None:
@@ -409,54 +375,6 @@ def _check_kind(path: Path | None, kinds: tuple[str, ...], option: str) -> None:
         raise typer.BadParameter(
             f"`{path}` does not end in {' or '.join(kinds)}", param_hint=option
         )
-
-
-def _stem(opened: OpenNet) -> str:
-    """What the names of trace files begin with."""
-    return re.sub(r"[^A-Za-z0-9_.-]+", "_", opened.flat.name) or "net"
-
-
-def _code(found: Exploration, answers: Sequence[Answer], d: Diagnostics) -> int:
-    """Where properties are asked, their answers count, not whether all markings were seen."""
-    if d.has_errors:
-        return Exit.MODEL
-    if answers:
-        return {"yes": Exit.OK, "no": Exit.MODEL, "inconclusive": Exit.INCONCLUSIVE}[
-            verdict(answers)
-        ]
-    return Exit.OK if found.complete else Exit.INCONCLUSIVE
-
-
-def _tell_error(opened: OpenNet, found: Exploration, d: Diagnostics) -> None:
-    error, trace = found.error, found.error_trace
-    assert error is not None
-    index = error.get("transition")
-    t = None if index is None else opened.flat.transitions[index]
-    where = f"transition `{t.name}`" if t is not None else error["where"]
-    notes = [error["where"]] if error["where"] else []
-    if error.get("binding"):
-        values = ", ".join(f"{name} = {value}" for name, value in error["binding"].items())
-        notes.append(f"the occurrence with {values}")
-    if error.get("node") is None:
-        notes.append("the way there is not known: it takes memory, and markings that are stored")
-    if trace is not None:
-        notes.append(f"{trace.steps} steps lead to that marking: {trace.file}")
-    d.error(
-        STATE_ERROR,
-        f"{where} raises `{error['message']}` in a reachable marking",
-        t.origin if t is not None else Origin(opened.flat.file),
-        notes=notes,
-        hint="`pn2code simulate` comes there too; guard the inscription, or handle the exception",
-    )
-
-
-def _unwritable(goal: str, folder: Path, d: Diagnostics) -> None:
-    d.warning(
-        TRACE_UNWRITABLE,
-        f"a trace to {goal} cannot be written into `{folder}`",
-        Origin(str(folder)),
-        hint="give another folder with `--traces DIR`, or none are wanted with `--most-traces 0`",
-    )
 
 
 def _write_report(said: Said, subject: Subject | None, path: Path, d: Diagnostics) -> None:

@@ -7,21 +7,21 @@ print(full(said))        # the report of CPN Tools, all answers, all runs step b
 from __future__ import annotations
 
 import textwrap
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Sequence
 from contextlib import suppress
 from dataclasses import dataclass
 from itertools import islice
 from pathlib import Path
 
-from pn2code.cli import medium
-from pn2code.deadline import NEVER, Deadline, TimeIsOverError
+from pn2code.deadline import TimeIsOverError
 from pn2code.net.engine_names import EngineNames
 from pn2code.net.flat import FlatNet
 from pn2code.semantics.game import GameError
 from pn2code.simulate.script import TraceRefusedError
+from pn2code.verdict import medium
+from pn2code.verdict.whole import Said
 from pn2code.verify import basis, control_text, standstill
-from pn2code.verify.answers import Answer
-from pn2code.verify.control_types import TITLES, Control
+from pn2code.verify.control_types import TITLES
 from pn2code.verify.path import play, steps, text
 from pn2code.verify.properties_text import said as said_of
 from pn2code.verify.properties_text import told
@@ -42,30 +42,6 @@ MOST_ITEMS = 8
 MOST_NAMES = 6
 _WIDTH = 110
 _NAME = 21
-
-
-@dataclass(frozen=True, slots=True)
-class Said:
-    """All that is known, to be printed.
-
-    Args:
-        net, storage: as for `Game`, which plays the runs again.
-        found: the state space.
-        answers: to properties.
-        control: the checks of a supervisor.
-        medium: those of the shared files.
-        errors: how many errors are said besides.
-        deadline: when it is over no run is played any more.
-    """
-
-    net: FlatNet
-    storage: Mapping[str, str]
-    found: Exploration
-    answers: Sequence[Answer]
-    control: Control | None
-    medium: medium.Answers
-    errors: int = 0
-    deadline: Deadline = NEVER
 
 
 @dataclass(frozen=True, slots=True)
@@ -324,18 +300,18 @@ def _way(said: Said, wrong: Sequence[_Item], room: int) -> list[str]:
         return []
     most = min(LAST_STEPS, room - 2)
     if found.error_trace is not None:
-        lines = _last(said, found.error_trace.file, "the exception", most - 1)
+        lines = _last(said, found.error_trace.file, "to the exception", most - 1)
         return [*lines, f"  then {error_text(said.net, found)}"]
     for item in wrong:
         if item.file is not None:
-            return _last(said, item.file, f"`{item.name}`", most, item.loop)
+            return _last(said, item.file, f"for `{item.name}`", most, item.loop)
         if item.lines:
             before = len(item.lines) - most
             cut = _earlier(before)
-            return [f"The way to `{item.name}`:", *cut, *(f"  {x}" for x in item.lines[-most:])]
+            return [f"The run for `{item.name}`:", *cut, *(f"  {x}" for x in item.lines[-most:])]
     if found.traces and not wrong and not said.answers and said.control is None:
         trace = found.traces[0]
-        return _last(said, trace.file, f"the dead marking {trace.node}", most)
+        return _last(said, trace.file, f"to the dead marking {trace.node}", most)
     return []
 
 
@@ -353,12 +329,12 @@ def _last(said: Said, file: Path, goal: str, most: int, loop: int | None = None)
                 with suppress(GameError):  # an inscription raises an exception there
                     why = standstill.reasons(game)
     except TimeIsOverError:
-        return [f"The way to {goal} is in {file}; there was no time to show it."]
+        return [f"The run {goal} is in {file}; there was no time to show it."]
     except (TraceRefusedError, GameError, OSError) as problem:
-        return [f"The way to {goal} is in {file}; it cannot be shown: {problem}"]
+        return [f"The run {goal} is in {file}; it cannot be shown: {problem}"]
     if len(shown) == MOST_STEPS:
-        return [f"The way to {goal} is in {file}; it is too long to be shown."]
-    head = f"The way to {goal}, {len(shown)} step{'s' * (len(shown) != 1)}, {file}:"
+        return [f"The run {goal} is in {file}; it is too long to be shown."]
+    head = f"The run {goal}, {len(shown)} step{'s' * (len(shown) != 1)}, {file}:"
     why = why[: max(most - 1, 0)]
     rest = ["  After that nothing can occur:", *(f"    {_cut(x, 4)}" for x in why)] if why else []
     most -= len(rest)

@@ -163,7 +163,7 @@ class _Whole:
             raise _Differs(f"only the compiled net has, at {_short(places)}: {text}")
         for text, held in expected.items():
             if self._references.setdefault(arcs[text], held) != held:
-                raise _Differs(f"references hold something else, at {_short(places)} after: {text}")
+                raise _Differs(f"references have other values, at {_short(places)} after: {text}")
 
     def _element_key(self, time: float, transition: str, binding: Mapping[str, Any]) -> str:
         shown = 0.0 if self._clock.is_relative else float(time)

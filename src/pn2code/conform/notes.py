@@ -61,7 +61,7 @@ class RunNotes:
         if variable is None:
             return f"there is no sensor `{line.get('sensor')}`"
         if variable in self._said[robot]:
-            return f"sensor `{line['sensor']}` has spoken twice for one step of `{robot}`"
+            return f"sensor `{line['sensor']}` gave two values for one step of `{robot}`"
         self._said[robot][variable] = line.get("value")
         return None
 
@@ -90,9 +90,11 @@ class RunNotes:
         chosen = {s.symbol.name for s in t.plan if isinstance(s, BindAll | BindRandom)}
         for variable in sorted(chosen & {*self._variables.values()} | said.keys()):
             if variable not in said:
-                return f"`{variable}` is left to a sensor, but none has said anything"
+                return f"`{variable}` is left to a sensor, but none gave a value"
             if variable not in binding:
-                return f"a sensor has spoken of `{variable}`, which is no variable of it"
+                return (
+                    f"a sensor gave a value for `{variable}`, which is not a variable of the step"
+                )
             if not _equal(said[variable], binding[variable]):
                 return f"a sensor has said {said[variable]!r}, but `{variable}` is {binding[variable]!r}"
         return None

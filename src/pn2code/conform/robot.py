@@ -131,15 +131,15 @@ class PlacesAsFiles:
     def read(self, name: str) -> tuple[Scalar, ...] | None:
         """The message, which stays."""
         if name in self.view and name not in self.looked:
-            raise DeviationError(f"{name} is read, but nobody has waited until it is filled")
+            raise DeviationError(
+                f"{name} is read, but the script has not waited until it is filled"
+            )
         return self.view.get(name)
 
     def clear(self, name: str) -> None:
         """Takes it."""
         if name in self.view and name in self.announced:
-            raise DeviationError(
-                f"{name} is emptied before a transition is announced that takes it"
-            )
+            raise DeviationError(f"{name} is emptied before a transition that takes it is marked")
         self.looked.discard(name)
         self.view.pop(name, None)
 
@@ -148,7 +148,7 @@ class PlacesAsFiles:
         if name in self.view:
             raise DeviationError(f"a message is written to {name}, which holds one")
         if name not in self.announced:
-            raise DeviationError(f"{name} is written before a transition is announced that puts it")
+            raise DeviationError(f"{name} is written before a transition that puts it is marked")
         for other in self.view:
             if other not in self.announced:
                 raise DeviationError(f"{name} is written before {other} is emptied, which is taken")
@@ -309,7 +309,7 @@ class _Product:
                 said = self._said(state, sensor)
                 if not said:
                     raise DeviationError(
-                        f"line {line} asks sensor `{sensor}`, to which the net leaves nothing open there"
+                        f"line {line} asks sensor `{sensor}`, although the net leaves nothing open to it there"
                     )
                 for value in said:
                     yield self._go(state, value)

@@ -80,15 +80,15 @@ def _about(file: Path | None) -> str:
     data = json.loads(file.read_text(encoding="utf-8"))
     ends = data["ends"]
     said = (
-        ("steps", "made all steps"),
-        ("dead", "have only short runs to a dead marking and made those"),
-        ("error", "have only short runs to an error, the same in both"),
-        ("time", "were cut after some seconds"),
+        ("steps", "all steps were made: {}"),
+        ("dead", "only short runs to a dead marking exist: {}"),
+        ("error", "only short runs to an error exist, which is the same in both: {}"),
+        ("time", "stopped after some seconds: {}"),
     )
     return (
-        f"Compiled walks, the semantics suite included: {data['steps']:,} steps of each net, from the start again "
-        "after a dead marking or an error, everything compared before each step; of those that agree "
-        f"{', '.join(f'{ends[k]} {words}' for k, words in said if ends.get(k))}."
+        f"Compiled walks, including the semantics suite, make {data['steps']:,} steps of each net, restart "
+        "after a dead marking or an error, and compare everything before each step. Nets that agree, by how their "
+        f"walks ended: {'; '.join(words.format(ends[k]) for k, words in said if ends.get(k))}."
     )
 
 

@@ -11,22 +11,22 @@ from pn2code.conformance.finding import NOTHING, Finding, State
 
 HEAD = """# Conformance
 
-What pn2code says of nets that people published, beside what the engine of CPN Tools said of them, net by net. Made by
-`./dev conformance`; the nets themselves are not part of this project.
+This page compares, net by net, what pn2code does with published nets and what the engine of CPN Tools does with them.
+It is made by `./dev conformance`; the nets themselves are not part of this project.
 
 | column | question |
 |---|---|
-| verdict | is the net accepted or not, by both? |
-| elements | where it is not: are the same declarations and inscriptions wrong? |
-| initial marking | of every place instance, character for character |
+| verdict | do both accept the net, or both reject it? |
+| elements | if it is rejected, are the same declarations and inscriptions wrong? |
+| initial marking | is it the same for every place instance, character for character? |
 | run | is a recorded random run of the engine (up to 40 steps) possible here, with the same final marking? |
-| state space | the same numbers of nodes, arcs and dead markings, where the engine computed them all |
+| state space | are the numbers of nodes, arcs and dead markings the same, if the engine computed the whole space? |
 | explorer | is the report of `pn2code verify` the engine's, line by line, from sizes and bounds to fairness? |
 | compiled | does the compiled net agree with the reference token game on random walks? |
 
-`yes`: agrees. `random`: the net draws random numbers there (or reads files), which a recording does not tell; what is
-determined agrees. `intended`: the engine has a known bug there, or leaves it to chance. `unsupported`: pn2code says so.
-`NO`: differs. `–`: nothing to compare.
+`yes`: agrees. `random`: the net draws random numbers (or reads files), which are not in a recording; everything that
+does not depend on them agrees. `intended`: the engine has a known bug, or leaves the choice to chance. `unsupported`:
+pn2code reports that it does not support the net. `NO`: differs. `–`: nothing to compare.
 """
 
 
@@ -59,7 +59,7 @@ def document(
         or _worse(_walk(n, walks))
         or _worse(spaces.get(n.path, NOTHING))
     ]
-    parts += ["## What does not simply agree\n", *_notes(notes, walks, spaces), ""]
+    parts += ["## Nets that need an explanation\n", *_notes(notes, walks, spaces), ""]
     parts += [ENGINE, intended.TEXT]
     parts += ["## Net by net\n", *_table(nets, walks, spaces), ""]
     parts += ["## The semantics suite\n", *_suite(suite, walks), ""]
@@ -90,7 +90,7 @@ def _totals(
     yield f"* Of these {len(runs)} are accepted and run here: {_percent(len(runs), len(accepted))}."
     absent = [n for n in accepted if n.surroundings]
     if absent:
-        reason = "need a file (`use`) that is not beside them; the engine had it"
+        reason = "need a file (`use`) that is missing here; the engine had it"
         yield f"* {len(absent)} that the engine accepts {reason}."
     wrong = [
         n
@@ -148,7 +148,7 @@ def _notes(
 
 
 def _suite(suite: Mapping[str, Finding], walks: Mapping[str, Finding]) -> Iterable[str]:
-    yield "Each net asks one question; compared are all markings and all binding elements of its state space.\n"
+    yield "Each net asks one question; all markings and all binding elements of its state space are compared.\n"
     yield "| net | agrees | compiled | |\n|---|---|---|---|"
     for name, finding in sorted(suite.items()):
         walk = walks.get(f"semantics-suite/{name}.cpn", NOTHING)

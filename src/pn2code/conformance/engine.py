@@ -3,9 +3,9 @@
 
 ENGINE = """## Where the engine is wrong
 
-`make oracle` puts random CPN ML (`--expressions`), random declarations (`--programs`), what the engine has in scope (`--library`), random nets (`--nets`) and published nets with one text changed (`--mutants`) before the engine of CPN Tools and
-before pn2code; `--compiled` puts random CPN ML into compiled nets. The last time 26,000 expressions, 6,600 programs and all 7,211 values in scope were asked, and 1,030 of
-1,032 compiled expressions were the evaluator's (the other two are mended or an `Overflow` in an argument that is not needed). What follows is found again and again; pn2code does what is written on the right.
+`make oracle` gives random CPN ML (`--expressions`), random declarations (`--programs`), everything that the engine has in scope (`--library`), random nets (`--nets`) and published nets with one text changed (`--mutants`) to both the engine of CPN Tools and
+pn2code; `--compiled` puts random CPN ML into compiled nets. The last run took 26,000 expressions, 6,600 programs and all 7,211 values in scope. Of 1,032 compiled
+expressions 1,030 agreed with the evaluator (each of the other two is either fixed since or an `Overflow` in an argument that is not needed). The following faults of the engine are found again and again; the right column says what pn2code does.
 
 | net | engine | pn2code |
 |---|---|---|
@@ -13,22 +13,22 @@ before pn2code; `--compiled` puts random CPN ML into compiled nets. The last tim
 | several arcs from one place, one of which shares a variable with an arc that comes later in the file | `No complete binding sequence`, `Cannot bind`, `IllegalBit`; accepted when the arcs come in another order | accepts it |
 | arcs from two places of one fusion set to one transition: ``2`()`` and `()` | looks at each for itself: enabled with 2 tokens, then `Subtract` | needs 3 tokens |
 | a reset arc at an assigned port or a member of a fusion set | the simulator empties the place, the state space tool does not | empties it in both |
-| a variable twice in one pattern: `(x, x)` | takes a false binding, then `Internal Error: rm ...` | both parts are equal |
-| a variable in a delay that nothing binds: `@+m` | accepts it, then cannot compile the code that it made | `unbound-variable` |
-| several times a list that is taken apart, from a place with a clock: ``2`(h :: t)`` | writes it without the parentheses, then cannot compile the code that it made | takes the list as many times |
-| an expression without variables in the key of a tuple: `(x, 1 + 1)`; `(a + 1, b)` | accepts it, then cannot compile the code that it made | computes it; `unbound-variable` where something has no value |
-| an integer literal of more than 31 bits | accepts it, then cannot compile the code that it made | `literal-too-large` |
-| a port that has a socket at one substitution transition of the page and none at another | gives the wrong socket, or `Exception Subscript` | a place of its own, with a warning |
-| equal tokens with different time stamps | takes one at random, in state spaces, too | all of them |
-| a timed net in which nothing can occur any more | its clock may go on to a time that it has noted for tokens that are gone | the time of the last step |
-| state spaces of timed nets, 4.0.0 | restores time stamps relative to the time of the node (those of 3.0.3 are right) | restores them |
-| top-level names that its state-space sources use | the tool cannot be entered | a warning (`state-space-name`) |
+| a variable twice in one pattern: `(x, x)` | takes a wrong binding, then `Internal Error: rm ...` | requires both parts to be equal |
+| a variable in a delay that nothing binds: `@+m` | accepts it, then cannot compile the code that it generated | `unbound-variable` |
+| several copies of a list pattern, from a place with a clock: ``2`(h :: t)`` | writes it without the parentheses, then cannot compile the code that it generated | takes the list as many times |
+| an expression without variables in the key of a tuple: `(x, 1 + 1)`; `(a + 1, b)` | accepts it, then cannot compile the code that it generated | computes it; `unbound-variable` if a variable has no value |
+| an integer literal of more than 31 bits | accepts it, then cannot compile the code that it generated | `literal-too-large` |
+| a port that has a socket at one substitution transition of the page and none at another | uses the wrong socket, or `Exception Subscript` | a separate place, with a warning |
+| equal tokens with different time stamps | takes one at random, in state spaces, too | takes the latest that is available; `replay` accepts any |
+| a timed net in which nothing can occur any more | its clock may advance to a time that it has noted for tokens that are gone | keeps the time of the last step |
+| state spaces of timed nets, 4.0.0 | restores time stamps relative to the time of the node (those of 3.0.3 are right) | restores them correctly |
+| top-level names that its state-space sources use | the state space tool cannot be entered | a warning (`state-space-name`) |
 
-Of 1,000 published nets with one text changed, 157 were accepted by both, with the same initial markings; the verdicts differed for four, all mended since (reserved words,
-an empty declaration); 34 were put down to the engine. Of 440 random nets in packs (220 for their state spaces, 220 for runs) the verdicts of 438 were the same, 208 whole state
-spaces and 211 runs. For most of the others the engine cannot compile the code that it made; in single ones it takes too many tokens, does not carry out a reset arc, finds no order in which it could
+Of 1,000 published nets with one text changed, 157 were accepted by both, with the same initial markings. The verdicts differed for four, all fixed since (reserved words,
+an empty declaration); 34 differences were faults of the engine. Of 440 random nets in packs (220 for their state spaces, 220 for runs), 438 verdicts, 208 whole state
+spaces and 211 runs were the same. For most of the others the engine cannot compile the code that it generated. In a few it takes too many tokens, does not carry out a reset arc, finds no order in which it could
 bind the arcs of a transition, or its state space tool ends in an exception.
 
-What its editor refuses before the engine is asked (two nodes of one name on a page, a place beside a substitution transition that is no socket, a socket whose arcs do
-not suit the type of the port) is accepted with a warning. An arc without inscription at a place that is not `UNIT` is refused, since the editor never lets the transition be checked.
+Nets that its editor refuses before the engine sees them (two nodes of one name on a page, a place beside a substitution transition that is no socket, a socket whose arcs do
+not match the type of the port) are accepted with a warning. An arc without an inscription at a place that is not `UNIT` is refused, since the editor never lets the transition be checked.
 """

@@ -24,8 +24,8 @@ def names(suite: Path) -> list[str]:
 
 
 INTENDED = {
-    "E20_same_colour": "of equal tokens with different stamps that may be taken the engine takes one at random, and "
-    "its state space keeps the other successor by chance; here the latest is taken",
+    "E20_same_colour": "of equal available tokens with different stamps the engine takes one at random, and its state "
+    "space has the other successor only by chance; here the latest is taken",
     "E34_nonlinear": "a variable twice in one pattern: the engine takes tokens whose components differ and then raises "
     "an exception; here the components must be equal",
 }

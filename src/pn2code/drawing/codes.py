@@ -6,14 +6,15 @@ DRAW_PAGE = register(
     "draw-page",
     "there is no such page to draw",
     "`--page` takes the name of a page as CPN Tools shows it, or its id in the file. `--instance` takes the number of "
-    "an instance of that page, from 1; a page that is nobody's subpage has one instance.",
+    "an instance of that page, from 1; a page that is not a subpage has one instance.",
 )
 DRAW_OUTPUT = register(
     "draw-output",
     "the drawing cannot be written",
-    "`-o` names what to write: a file that ends in `.svg` (with `--page` one page, else all pages below each other), "
-    "a file that ends in `.html` (all pages, linked), a folder (one SVG for each page), or `-` for an SVG on standard "
-    "output. Other formats are made from an SVG by other programs, for example `rsvg-convert page.svg -o page.png`.",
+    "`-o` names what to write: a file that ends in `.svg` (with `--page` one page, otherwise all pages, one below the "
+    "other), a file that ends in `.html` (all pages, linked), a folder (one SVG for each page), or `-` for an SVG on "
+    "standard output. Other formats are made from an SVG by other programs, for example `rsvg-convert page.svg -o "
+    "page.png`.",
 )
 DRAW_TRACE = register(
     "draw-trace",
@@ -24,6 +25,7 @@ DRAW_TRACE = register(
 DRAW_ARRANGED = register(
     "draw-arranged",
     "a page was arranged automatically",
-    "The file has no usable positions for the nodes of the page: they are missing, or many nodes stand on one another, "
-    "as in files of converters. The page is drawn in layers instead. CPN Tools would show the nodes as the file says.",
+    "The file has no usable positions for the nodes of the page: they are missing, or many nodes are on top of each "
+    "other, as in files written by converters. The page is drawn in layers instead. CPN Tools would show the nodes at "
+    "the positions in the file.",
 )

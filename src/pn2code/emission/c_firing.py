@@ -1,8 +1,8 @@
 """An occurrence printed with the inline functions of its places (pn_place.h), and with slots (c_slots.py).
 
-First everything is worked out, so that whatever raises leaves the marking alone. Then all slots are looked at, then
-tokens are taken from the other places and put there; if one of those turns out to be full, all is put back. The slots
-change last.
+First everything is worked out, so that whatever raises leaves the marking alone. Then it is looked whether the slots
+have room, then tokens are taken from the other places and put there; if one of those turns out to be full, all is put
+back. The slots change last. What the search has found in a slot is not looked at again: only enabled bindings occur.
 """
 
 from __future__ import annotations
@@ -50,7 +50,7 @@ class _SlotMove:
         tokens: the place, with what leads to its members.
         bag: a pointer to its table.
         value: a put: the token as C, "" where values say nothing (`()`).
-        differs: a take: whether the token is not there, as C.
+        differs: a take: whether the token is not there, as C; "": the search has found it.
         count: "" for one; otherwise the C variable that says how many tokens.
         note: what it is in the net.
     """
@@ -151,8 +151,8 @@ class DirectFiring(Statements):
     def _look_at_slots(self) -> None:
         """Whether the tokens are there, and whether there is room."""
         taken = [m for m in self._slot_moves if m.is_take]
-        if taken:
-            tests = list(dict.fromkeys(m.differs for m in taken))
+        tests = list(dict.fromkeys(m.differs for m in taken if m.differs))
+        if tests:
             self.line(f"if ({' || '.join(tests)}) {{")
             self.line("    return pn_fail_missing(cx);")
             self.line("}")
@@ -175,14 +175,24 @@ class DirectFiring(Statements):
             self.line("}")
 
     def _change_slots(self) -> None:
+        """Takes, then puts; a slot from which a token is taken and into which one is put stays full."""
+        taken = {m.tokens for m in self._slot_moves if m.is_take}
+        filled = {m.tokens for m in self._slot_moves if not (m.is_take or m.count)}
         for move in (m for m in self._slot_moves if m.is_take):
-            self.line_with_note(f"{move.tokens}full = false;", move.note)
+            if move.tokens in filled:
+                self.note(f"{move.note}: replaced below")
+            else:
+                self.line_with_note(f"{move.tokens}full = false;", move.note)
         for move in (m for m in self._slot_moves if not m.is_take):
-            lines = [f"{move.tokens}full = true;"]
+            is_full = move.tokens in taken and not move.count
+            lines = [] if is_full else [f"{move.tokens}full = true;"]
             if move.value:
                 lines.insert(0, f"{move.tokens}value = {move.value};")
             if move.count:
                 lines = [f"if ({move.count} > 0U) {{", *(f"    {line}" for line in lines), "}"]
+            if not lines:
+                self.note(move.note)
+                continue
             self.line_with_note(lines[0], move.note)
             for line in lines[1:]:
                 self.line(line)
@@ -286,11 +296,11 @@ class DirectFiring(Statements):
     def _is_missing(self, s: ir.Take) -> str:
         """Whether the token is not there, as C.
 
-        What the search has bound or compared is there if anything is; what is worked out anew may be something else
-        (random numbers, files, references).
+        What the search has bound or compared is there; what is worked out anew may be something else (random numbers,
+        files, references).
         """
         if is_structural(s.value, self.references) or s.value.type.rep is Rep.UNIT:
-            return f"!{self._x.tokens[s.place]}full"
+            return ""
         fresh = self._worked_out(s, is_nested=False, must_check=False)
         return self._differs(s.place, fresh, f"&{fresh}")
 

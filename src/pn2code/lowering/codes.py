@@ -8,8 +8,8 @@ from pn2code.diagnostics.codes import register
 UNSUPPORTED_TYPE = register(
     "unsupported-type",
     "a value of a type that the compiler has no representation for",
-    "All types of CPN ML have a C representation, functions, references and exceptions included; of types that only "
-    "the library of CPN Tools knows, some have none.",
+    "All types of CPN ML have a C representation, including functions, references and exceptions; some types that "
+    "only the library of CPN Tools has do not.",
 )
 UNSUPPORTED_BUILTIN = register(
     "unsupported-builtin",
@@ -24,13 +24,13 @@ UNSUPPORTED_EXPRESSION = register(
 UNSUPPORTED_COLSET = register(
     "unsupported-colour-set-role",
     "a colour set that the compiler cannot handle in this role",
-    "For example the number of the values of a subset, which is not known at compile time.",
+    "An example is the number of values of a subset, which is not known at compile time.",
 )
 OUTSIDE_MARKING = register(
     "unsupported-outside-marking",
     "a property looks at more than the marking",
-    "A property is asked of every marking that can be reached. Random numbers, files and the number of steps are in "
-    "no marking: the answer would depend on the way to it.",
+    "A property is evaluated in every reachable marking. Random numbers, files and the number of steps are not part "
+    "of a marking: the answer would depend on the run to it.",
 )
 STORAGE_COLSET = register(
     "storage-colour-set",

@@ -5,33 +5,32 @@ from pn2code.diagnostics.codes import register
 NOT_SEQUENTIAL = register(
     "robot-not-sequential",
     "a robot's part of the net is not a sequential program",
-    "A robot script is one thread of control. The places of a robot must be: places that "
-    "together always hold exactly one token, which every transition of the robot moves (where"
-    " the program is); places that always hold exactly one token, which is only exchanged "
-    "(variables); and channels (files). The message names the element that does not fit, e.g."
-    " a transition that puts two tokens, or a place whose tokens pile up.",
+    "A robot script is one thread of control. The places of a robot must be: places that together always hold exactly "
+    "one token, which every transition of the robot moves (the position in the program); places that always hold "
+    "exactly one token, which is only replaced (variables); and channels (files). The message names the element that "
+    "does not fit, e.g. a transition that puts two tokens, or a place whose tokens accumulate.",
 )
 UNSUPPORTED_PROGRAM = register(
     "unsupported-robot-program",
     "a robot page uses something that scripts cannot do",
-    "For example an inhibitor or reset arc, a multi-set inscription with a coefficient other "
-    "than 1, a variable that is bound by nothing (a free choice; `[sensors]` in cell.toml says "
-    "who decides it), or guards on several messages of which only some have come.",
+    "For example an inhibitor or reset arc, a multi-set inscription with a coefficient other than 1, a variable that "
+    "nothing binds (a free choice; `[sensors]` in cell.toml says who decides it), or guards on several messages of "
+    "which only some have come.",
 )
 UNSUPPORTED_TIME = register(
     "unsupported-robot-time",
     "a robot page uses model time in a way that scripts cannot",
-    "A delay on the token that tells where the program is becomes a `wait`. Other tokens of a "
-    "robot cannot wait: data have no time stamps, nothing is taken before its time (`@+` on an "
-    "input arc), and a transition with commands has no delay as well, because the commands "
-    "take their own time: let one transition carry them out and another one wait.",
+    "A delay on the control token, which represents the position in the program, becomes a `wait`. Other tokens of a "
+    "robot cannot wait: data have no time stamps, nothing is taken before its time (`@+` on an input arc), and a "
+    "transition with commands has no delay as well, because the commands take their own time: let one transition "
+    "carry them out and another one wait.",
 )
 UNSUPPORTED_EXPRESSION = register(
     "unsupported-robot-expression",
     "an expression cannot be translated to the script language",
-    "Scripts have integers, reals, booleans, texts, poses, arithmetic, comparisons, "
-    "conditionals and field selection. Functions of the net are inlined. Lists, references, "
-    "exceptions, recursion, trigonometry and random numbers belong on the supervisor's pages.",
+    "Scripts have integers, reals, Booleans, strings, poses, arithmetic, comparisons, conditionals and field "
+    "selection. Functions of the net are inlined. Lists, references, exceptions, recursion, trigonometry and random "
+    "numbers belong on the supervisor's pages.",
 )
 UNSUPPORTED_COLSET = register(
     "unsupported-robot-colset",
@@ -42,9 +41,8 @@ UNSUPPORTED_COLSET = register(
 CHOICE = register(
     "robot-choice",
     "two transitions of a robot may be enabled together",
-    "A net chooses freely, a script follows the documented order: priority first, then the "
-    "order in the file. If that is not what is meant, add guards that exclude each other, "
-    "e.g. `k = 1` and `k = 2`.",
+    "A net chooses freely, but a script follows the documented order: priority first, then the order in the file. If "
+    "this is not intended, add guards that exclude each other, e.g. `k = 1` and `k = 2`.",
 )
 PRIMITIVE = register(
     "robot-primitive",

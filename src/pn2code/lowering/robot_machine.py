@@ -250,7 +250,7 @@ class _Analyser:
                     f"{arc.kind.value} arc in a robot's part of the net",
                     arc.origin,
                     notes=[Note(f"transition `{t.short}`", t.origin)],
-                    hint="give the place a value that says what is the case, and test it in a guard",
+                    hint="put a value into the place that says whether it is empty, and test it in a guard",
                 )
                 continue
             if arc.kind is not ArcKind.OUTPUT:
@@ -424,13 +424,14 @@ class _Analyser:
             t = s.transition
             if not any(_taken(s, p) for p in fixed):
                 self.error(
-                    t, f"transition `{t.short}` takes no token that tells where the program is"
+                    t,
+                    f"transition `{t.short}` does not take the token that tells where the program is",
                 )
                 return
             if any(not any(_put(o, p) for p in fixed) for o in s.outcomes):
                 self.error(
                     t,
-                    f"transition `{t.short}` does not put the token on that tells where the program is",
+                    f"transition `{t.short}` does not pass on the token that tells where the program is",
                 )
                 return
         t = steps[0].transition

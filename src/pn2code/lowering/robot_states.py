@@ -97,7 +97,7 @@ class States:
                                 first.origin,
                             )
                         ],
-                        hint="add guards that exclude each other if that is not what is meant",
+                        hint="add guards that exclude each other if this is not intended",
                     )
 
     def _exclude(self, a: t.Expression, b: t.Expression) -> bool:

@@ -353,5 +353,6 @@ def capture(value: Binding) -> Captured:
             return _all(parts, ("poly", id(exp), type_key(types), tuple(uids)), make_polymorphic)
         case _:
             if value.type == ir.UNIT:
-                return Captured("unit", (), lambda _: value)
+                # The code is the caller's, with names of his; what may raise in it has been computed there.
+                return Captured("unit", (), lambda _: ir.Const(None, ir.UNIT))
             return Captured(("code", str(value.type)), (value,), lambda code: code[0])

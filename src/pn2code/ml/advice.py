@@ -37,7 +37,7 @@ _WORDS: dict[str, str] = {
     "elif": "write `else if`",
     "begin": "CPN ML groups with `(..; ..)` or `let .. in .. end`",
     "xor": "`a <> b` is the exclusive or of two conditions",
-    "toString": "say of which type: `Int.toString`, `Real.toString`, or `C.mkstr` of a colour set C",
+    "toString": "name the type: `Int.toString`, `Real.toString`, or `C.mkstr` of a colour set C",
     "strlen": "the length of a string is `String.size`",
     "len": "the length of a list is `length`, of a string `String.size`",
     "append": "lists are joined with `^^`",
@@ -46,8 +46,8 @@ _WORDS: dict[str, str] = {
     "def": "functions are declared with `fun`: `fun f x = ..`",
     "function": "functions are declared with `fun`: `fun f x = ..`",
     "define": "functions are declared with `fun`: `fun f x = ..`",
-    "colset": "colour sets are declarations of their own in CPN Tools, not part of an expression",
-    "var": "variables are declarations of their own in CPN Tools, not part of an expression",
+    "colset": "colour sets are separate declarations in CPN Tools, not part of an expression",
+    "var": "variables are separate declarations in CPN Tools, not part of an expression",
     "println": '`print` takes one string; a line ends with "\\n"',
     "printf": "`print` takes one string; numbers are converted with `Int.toString`",
 }
@@ -84,7 +84,7 @@ BY_CODE: dict[str, str] = {
     "duplicate-name": "remove or rename one of them",
     "circular-type": "a function cannot be given itself as an argument",
     "not-an-exception": 'declare one, `exception Bad of string`, and write `raise Bad ".."`; or `raise Fail ".."`',
-    "constructor-argument": "a constructor without argument stands alone",
+    "constructor-argument": "a constructor without an argument is written alone",
     "function-clauses": "all clauses of a function have the same number of arguments",
     "unknown-colour-set": "declare it above what uses it, e.g. `colset NAME = int;`",
     "unbound-identifier": "declare it before this place, or look whether it is misspelled",
@@ -125,7 +125,7 @@ def unbound_word(name: str, colsets: Iterable[str]) -> str:
     if name in _WORDS:
         return _WORDS[name]
     if name in _STATE_SPACE:
-        return "it belongs to the state-space tool, and is not there before a state space has been made"
+        return "it belongs to the state-space tool, and does not exist before a state space has been computed"
     member, apostrophe, colset = name.partition("'")
     if apostrophe and member in _OLD_MEMBERS and colset in set(colsets):
         return f"this is the spelling of Design/CPN: write `{colset}.{_OLD_MEMBERS[member]}`"
@@ -180,7 +180,7 @@ def unknown_character(char: str, before: str) -> tuple[str, str]:
         )
     hint = ""
     if char in "´‘’" and before.rstrip()[-1:].isdigit():
-        hint = "between coefficient and token stands a backquote: 1`v"
+        hint = "a backquote belongs between coefficient and token: 1`v"
     elif char in "‘’“”„«»":
         hint = 'strings are written with straight quotes: "text"'
     elif char == "´":
@@ -205,7 +205,7 @@ def missing_operand(operator: str, side: str) -> str:
         return "negative numbers are written with a tilde: `~5`"
     if operator == "`":
         return (
-            "how many stands before the backquote: 1`v"
+            "the coefficient is missing before the backquote: 1`v"
             if side == "left"
             else "the token is missing: 1`v"
         )
@@ -213,7 +213,7 @@ def missing_operand(operator: str, side: str) -> str:
         return (
             f"write `{operator} delay`, e.g. `{operator} 5`"
             if side == "right"
-            else "what is delayed is missing"
+            else "the delayed token is missing"
         )
     return f"write what is missing on the {side} of `{operator}`"
 
@@ -272,10 +272,10 @@ def syntax(
         case "RPAREN" if previous is not None and previous.text == "*" and not _open(before):
             return "this `*)` closes no comment"
         case "WILD":
-            return "`_` stands only in patterns of functions, `case` and `val`; here use a variable"
+            return "`_` is allowed only in patterns of functions, `case` and `val`; use a variable here"
         case "TYVAR":
             if last == "INT":
-                return "between coefficient and token stands a backquote: 1`v"
+                return "a backquote belongs between coefficient and token: 1`v"
             if text.endswith("'") and len(text) > 1:
                 return f'strings are written with double quotes: "{text.strip(chr(39))}"'
         case "EQ":
@@ -302,7 +302,7 @@ def syntax(
         case "AND" if start != "program":
             return "conditions are joined with `andalso`"
         case "IN" if start.startswith("expression") and "let" not in texts:
-            return "whether a value is in a list tells `mem list value`"
+            return "`mem list value` tells whether a value is in a list"
         case "INPUT" | "OUTPUT" | "ACTION":
             return "the parts of a code segment come in the order `input (..); output (..); action ..;`"
         case "OF" | "THEN" | "ELSE" | "IN" | "END" if kind not in expected:

@@ -43,7 +43,7 @@ OS.IO : compare hash infoToPollDesc isIn isOut isPri kind poll pollDesc pollIn p
 OS.FileSys : compare fileId hash readLink setTime tmpName
 == the clock of the computer is not read, so that runs can be repeated
 Timer : checkCPUTimes checkGCTime
-== pn2code has not got this part of the library
+== pn2code does not have this part of the library
 IEEEReal : fromString getRoundingMode scan setRoundingMode toString
 CharVector : all app appi collate concat exists find findi foldl foldli foldr foldri fromList length map mapi
 CharVector : sub tabulate update

@@ -199,7 +199,7 @@ def internal_function(name: str) -> str | None:
     if structure in _INTERNAL:
         reason = "it belongs to the inner parts of CPN Tools"
     elif structure in _UTILITIES:
-        reason = "pn2code has not got this part of the library"
+        reason = "pn2code does not have this part of the library"
     else:
         return None
     return BUILTINS.setdefault(name, BuiltinInfo(name, "'a -> 'b", "is not there", reason)).name

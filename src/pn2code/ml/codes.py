@@ -27,15 +27,15 @@ FIXITY_ERROR = register(
 )
 MIXED_OPERATORS = register(
     "mixed-operators",
-    "two operators bind equally tightly, but to different sides",
-    "`x :: y ^^ z`: both have precedence 5, `::` binds to the right and `^^` to the left. CPN Tools takes the left "
-    "one first, as `(x :: y) ^^ z`. Write parentheses.",
+    "two operators have the same precedence but different associativity",
+    "`x :: y ^^ z`: both have precedence 5, `::` associates to the right and `^^` to the left. CPN Tools takes the "
+    "left one first, as `(x :: y) ^^ z`. Write parentheses.",
 )
 TYPE_MISMATCH = register(
     "type-mismatch",
-    "an expression has another type than its place needs",
-    "The message says what was expected and what was found, the caret where. For an inscription: the "
-    "place holds a colour set, and the expression gives neither one token of it nor a multi-set of it.",
+    "an expression has a different type from the one that is needed",
+    "The message says what was expected and what was found; the caret shows where. For an inscription: the place "
+    "holds a colour set, and the expression gives neither one token of it nor a multi-set of it.",
 )
 NOT_TIMED = register(
     "colour-set-not-timed",
@@ -58,8 +58,8 @@ CIRCULAR_TYPE = register(
 NOT_A_FUNCTION = register(
     "not-a-function",
     "something that is not a function is applied",
-    "In CPN ML `f x` applies `f` to `x`. Two values side by side, such as `1 x`, often are a missing "
-    "backquote or operator: `1`x`, `1 * x`.",
+    "In CPN ML `f x` applies `f` to `x`. Two values side by side, such as `1 x`, often indicate a missing backquote "
+    "or operator: `1`x`, `1 * x`.",
 )
 NOT_EQUALITY = register(
     "not-an-equality-type",
@@ -69,14 +69,14 @@ NOT_EQUALITY = register(
 OVERLOAD = register(
     "no-such-operator",
     "an operator is not defined for the type of its operands",
-    "`+`, `-`, `*` and the comparisons work on numbers of one type (comparisons also on strings); `div` "
-    "and `mod` on integers, `/` on reals. Convert with `real`, `floor`, `round`.",
+    "`+`, `-`, `*` and the comparisons work on numbers of the same type (comparisons also on strings); `div` and "
+    "`mod` work on integers, `/` on reals. Convert with `real`, `floor`, `round`.",
 )
 UNBOUND = register(
     "unbound-identifier",
     "a name is not declared",
-    "The name is neither a variable, value or function declared before this point nor built in. "
-    "Declarations count from top to bottom.",
+    "The name is not built in, and is not a variable, value or function declared before this point. Declarations are "
+    "read from top to bottom.",
 )
 UNKNOWN_COLOUR_SET = register(
     "unknown-colour-set",
@@ -101,7 +101,8 @@ UNKNOWN_FIELD = register(
 UNRESOLVED_RECORD = register(
     "unresolved-record",
     "the record type of a selector or open pattern is not known",
-    "`#label` and `{.., ...}` need to know the whole record type. Give the argument a type: `(r : PART)`.",
+    "`#label` and `{.., ...}` can only be used where the whole record type is known. Give the argument a type: `(r : "
+    "PART)`.",
 )
 DUPLICATE_NAME = register(
     "duplicate-name",
@@ -126,26 +127,26 @@ EXCEPTION_TYPE = register(
 COLSET_RANGE = register(
     "colour-set-range",
     "the bounds of a colour set are wrong",
-    "Bounds are constants of the base type, the lower one not above the upper one.",
+    "Bounds are constants of the base type, and the lower one is not above the upper one.",
 )
 INTINF_BOUND = register(
     "intinf-bound",
     "a bound of an `intinf` colour set is a plain number",
-    "CPN Tools takes a plain number for an `int` and then refuses the colour set `intinf with 1..3`. With the type, "
-    "`intinf with (1 : IntInf.int)..(3 : IntInf.int)`, it accepts it. pn2code accepts both.",
+    "CPN Tools takes a plain number for an `int` and then refuses the colour set `intinf with 1..3`. It accepts the "
+    "bounds with their type: `intinf with (1 : IntInf.int)..(3 : IntInf.int)`. pn2code accepts both.",
 )
 COLSET_DEFINITION = register(
     "colour-set-definition",
     "a colour set is not defined completely",
-    "A definition lacks a part that its kind needs, or has one too many: an enumeration needs values, a "
-    "product components.",
+    "A definition lacks a part that its kind needs, or has one too many: an enumeration needs values, and a product "
+    "needs components.",
 )
 SUBSET_BARE_FN = register(
     "subset-bare-fn",
     "the predicate of a subset is a `fn` without parentheses",
-    "CPN Tools puts a type constraint behind the predicate (`PREDICATE : INT -> bool`). Behind a bare "
-    "`fn n => n > 0` it belongs to the body `n > 0`, which is no function: the colour set is rejected. Write "
-    "`colset C = subset INT by (fn n => n > 0);`, or give the function a name with `fun`.",
+    "CPN Tools puts a type constraint after the predicate (`PREDICATE : INT -> bool`). After a bare `fn n => n > 0` "
+    "it belongs to the body `n > 0`, which is not a function, so the colour set is rejected. Write `colset C = subset "
+    "INT by (fn n => n > 0);`, or give the function a name with `fun`.",
 )
 VARIABLE_CLASH = register(
     "variable-of-other-colour-set",
@@ -156,9 +157,9 @@ VARIABLE_CLASH = register(
 VALUE_CLASH = register(
     "variable-named-as-value",
     "a net variable has the name of a value or function",
-    "Where a net variable and a `val`, `fun` or constructor have one name, CPN Tools takes in arcs, guards and code "
-    "segments what was declared first, and in initial markings and declarations the value. A variable whose name "
-    "becomes that of a constructor cannot be used any more. Rename one of them.",
+    "If a net variable and a `val`, `fun` or constructor have the same name, CPN Tools uses the one that was declared "
+    "first in arcs, guards and code segments, and the value in initial markings and declarations. A variable whose "
+    "name becomes that of a constructor can no longer be used. Rename one of them.",
 )
 GUARD_TYPE = register(
     "guard-not-boolean",
@@ -179,8 +180,8 @@ PRIORITY = register(
 PRIORITY_BELOW_ZERO = register(
     "priority-below-zero",
     "a priority is below zero",
-    "The smaller number goes first, also below zero. CPN Tools accepts the inscription, but its simulator ends with "
-    "`subscript out of bounds` when it starts: add the same number to all priorities.",
+    "Smaller numbers go first, even below zero. CPN Tools accepts the inscription, but its simulator ends with "
+    "`subscript out of bounds` when it starts. Add the same number to all priorities.",
 )
 DELAY = register(
     "delay-form",
@@ -200,11 +201,11 @@ UNSUPPORTED_ML = register(
 UNSUPPORTED_BUILTIN = register(
     "unsupported-function",
     "a function of the standard library is not supported",
-    "As an error: the name belongs to a structure of the SML library that pn2code knows only in part. As a warning: "
-    "the function exists in CPN Tools, but needs something that is not there in a simulation or supervisor made by "
-    "pn2code (sockets, other programs, the computer's clock). The rest of the net is checked as usual; a run stops "
-    "where the function is applied, and `generate` refuses the net. Declare a function of the same name after it to "
-    "replace it.",
+    "As an error: the name belongs to a structure of the SML library that pn2code supports only in part. As a "
+    "warning: the function exists in CPN Tools, but needs something that is not available in a simulation or "
+    "supervisor made by pn2code (sockets, other programs, the computer's clock). The rest of the net is checked as "
+    "usual; a run stops where the function is applied, and `generate` refuses the net. To replace it, declare a "
+    "function of the same name.",
 )
 UNSUPPORTED_COLSET = register(
     "unsupported-colour-set",
@@ -214,14 +215,14 @@ UNSUPPORTED_COLSET = register(
 MATCH_NOT_EXHAUSTIVE = register(
     "match-not-exhaustive",
     "a function, `case` or `val` does not cover all values",
-    "Where the case that the message names occurs, the exception `Match` (in a `val`: `Bind`) is raised, and a "
-    "simulation stops. Often that is meant; else add a rule, e.g. `| f _ = ..`.",
+    "If the case that the message names occurs, the exception `Match` (in a `val`: `Bind`) is raised, and a "
+    "simulation stops. Often this is intended; otherwise add a rule, e.g. `| f _ = ..`.",
 )
 MATCH_REDUNDANT = register(
     "redundant-rule",
     "a rule is never reached",
-    "The rules before it cover all its cases. Often a constructor is misspelt, so that it reads as a variable, "
-    "which matches everything; or the rules stand in the wrong order.",
+    "The rules before it cover all its cases. Often a constructor is misspelt, so that it is read as a variable, "
+    "which matches everything; or the rules are in the wrong order.",
 )
 TYPE_TOO_LARGE = register(
     "ml-type-too-large",
@@ -237,14 +238,14 @@ SIGNATURE = register(
 USED_FILE = register(
     "used-file",
     "a file of declarations cannot be used",
-    '`use "file.sml"` reads CPN ML declarations from a file in the net\'s folder. CPN Tools refuses the declaration '
-    "when the file is not there, and everything that needs the names declared in it.",
+    '`use "file.sml"` reads CPN ML declarations from a file in the net\'s folder. If the file is missing, CPN Tools '
+    "refuses the declaration and everything that needs the names declared in the file.",
 )
 TYPE_VARIABLE = register(
     "type-variable",
-    "a type variable stands for one certain type only",
+    "a type variable stands for one particular type only",
     "In `fun f (x : 'a) = x + 1` the variable `'a` would have to be int, but it promises that the function works for "
-    "any type. Leave it out, or write the type that is meant.",
+    "any type. Leave it out, or write the intended type.",
 )
 TEXT_TOO_LONG = register(
     "text-too-long",

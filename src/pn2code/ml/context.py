@@ -422,7 +422,7 @@ def label_notes(found: Ty, expected: Ty) -> list[str]:
     if any(n.isdigit() for n in (*here, *wanted)):
         return []
     notes = [f"field `{n}` is missing" for n in wanted if n not in here]
-    return notes + [f"field `{n}` is too many" for n in here if n not in wanted]
+    return notes + [f"field `{n}` does not belong here" for n in here if n not in wanted]
 
 
 def quoted(name: str) -> str:

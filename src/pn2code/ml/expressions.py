@@ -242,7 +242,7 @@ class Expressions:
                     "it is one expression: a number without a unit, or an operator between the two"
                 )
             if span.source.origin.part == "declaration":
-                return "is an operator missing between the two, or `|` before a further clause?"
+                return "is an operator missing between the two, or `|` before another clause?"
             return "is an operator missing between the two, such as a backquote: 1`x ?"
         arguments = [span.source.text[written.span.end : span.end].strip()]
         head: s.Exp = written

@@ -190,13 +190,13 @@ class _Resolver:
             case [s.NamePat() as name, s.Constraint() as constraint]:
                 annotation = constraint.type
             case _:
-                raise self._error("a variable must stand before `as`", keyword.span)
+                raise self._error("a variable is needed before `as`", keyword.span)
         if is_long(name.name):
             raise self._error(
                 f"`{name.name}` cannot be declared here", name.span, "a name has no points"
             )
         if not after:
-            raise self._error("a pattern must stand after `as`", keyword.span)
+            raise self._error("a pattern is needed after `as`", keyword.span)
         self._enter(span)
         inner = self._flat_pat(after, after[0].span.to(after[-1].span))
         self._depth -= 1
@@ -274,7 +274,7 @@ class _Resolver:
                     ):  # the left one goes first, as in SML/NJ, which warns, too
                         self._d.warning(
                             codes.MIXED_OPERATORS,
-                            f"`{other}` and `{name}` bind equally tightly, to different sides",
+                            f"`{other}` and `{name}` have the same precedence, but different associativity",
                             _span(item),
                             hint=f"`{other}` is taken first; write parentheses",
                         )
@@ -511,7 +511,7 @@ class _Sequence:
         if len(atoms) > 1 and isinstance(atoms[-1], _OPEN_ENDED):
             word = _OPEN_WORD[type(atoms[-1]).__name__]
             raise self._r._error(
-                f"`{word}` must stand in parentheses here", atoms[-1].span, f"write `({word} ..)`"
+                f"`{word}` must be in parentheses here", atoms[-1].span, f"write `({word} ..)`"
             )
         exp = self._r.infix(atoms, self._operator, self._operand, self._join)
         return self._shortened(exp) if len(atoms) > LONG_CHAIN else exp

@@ -152,7 +152,7 @@ class Inscriptions:
                 if not isinstance(whole, core.Var) or whole.symbol.colset is None:
                     self._ctx.error(
                         codes.SYNTAX_ERROR,
-                        "a variable of the net must stand before `as`",
+                        "a variable of the net is needed before `as`",
                         name.span,
                     )
                     return None
@@ -453,9 +453,9 @@ class Inscriptions:
         if value < 0:
             self._ctx.d.warning(
                 codes.PRIORITY_BELOW_ZERO,
-                f"the priority is {value}: pn2code takes it as it is, CPN Tools cannot start such a net",
+                f"the priority is {value}: pn2code accepts it, but CPN Tools cannot start such a net",
                 exp.span,
-                hint="use numbers from 0 on; smaller numbers go first",
+                hint="use numbers from 0 upwards; smaller numbers go first",
             )
         return value
 
@@ -511,7 +511,7 @@ class Inscriptions:
                     codes.CODE_SEGMENT,
                     f"`{word}` lists something that is not a variable",
                     part.span,
-                    hint=f"only variables may stand there: `{word} (x, y)`",
+                    hint=f"only variables are allowed there: `{word} (x, y)`",
                 )
                 return None
             entry = self._variables.values.get(part.name)

@@ -201,7 +201,7 @@ def _report(
         if kind == "AS" and start != "program":
             d.error(
                 codes.SYNTAX_ERROR,
-                "`as` cannot stand here",
+                "`as` cannot be used here",
                 span,
                 hint="`x as pattern` is the whole inscription of an input arc of an untimed colour set",
             )

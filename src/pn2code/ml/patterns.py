@@ -122,7 +122,7 @@ class Patterns:
         if name in bindings:
             self._ctx.error(
                 codes.DUPLICATE_NAME,
-                f"`{name}` stands twice in one pattern",
+                f"`{name}` occurs twice in one pattern",
                 span,
                 hint="use two names and compare them",
             )
@@ -140,7 +140,7 @@ class Patterns:
         if p.kind is s.LitKind.REAL and not self._on_arc:
             self._ctx.error(
                 codes.SYNTAX_ERROR,
-                "a real number cannot stand in a pattern",
+                "a real number is not allowed in a pattern",
                 p.span,
                 hint="compare: `if x = 1.5 then .. else ..`",
             )
@@ -194,7 +194,9 @@ class Patterns:
 
     def _no_constructor(self, name: str) -> str:
         if not name[0].isalpha():
-            return "a pattern cannot compute: use a variable there; names have no `-`, but `_`"
+            return (
+                "a pattern cannot compute: use a variable there; names may contain `_`, but not `-`"
+            )
         if name in self._ctx.colsets or name in ("int", "real", "string", "bool", "char", "unit"):
             return f"a type follows its variable: `(x : {name})`"
         return "only constructors of unions and data types can be applied in a pattern"

@@ -61,7 +61,7 @@ def wrong_operand(what: str, found: Ty, text: str) -> str:
         case "<" | ">" | "<=" | ">=" if kind == "bool":
             if text.startswith("not "):
                 return f"functions are applied before operators: `not ({text[4:]} {name} ..)`"
-            return f"each comparison stands for itself: `{text} andalso ..`"
+            return f"write each comparison separately: `{text} andalso ..`"
         case "<" | ">" | "<=" | ">=" if found_is_named(found):
             return f"the order of the colours of a colour set is `{kind or 'C'}.lt (a, b)`"
         case "==" if kind != "list":

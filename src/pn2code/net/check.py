@@ -145,7 +145,7 @@ class _Checker:
                 if reserved_words.says_nothing(declaration.text):
                     self.d.warning(
                         DECLARATION_EMPTY,
-                        "a declaration says nothing: CPN Tools refuses it (Not a declaration)",
+                        "a declaration is empty: CPN Tools refuses it (Not a declaration)",
                         declaration.origin,
                         hint="remove it, or put the comment before another declaration",
                     )
@@ -166,7 +166,7 @@ class _Checker:
                     DECLARATION_UNREAD,
                     f"CPN Tools could not read this declaration and kept its text: `{shown}`",
                     declaration.origin,
-                    hint="enter it again in the words of today's CPN Tools, or remove it",
+                    hint="enter it again in the syntax of the present CPN Tools, or remove it",
                 )
             case RawOther() if declaration.tag == "channel":
                 self.d.warning(

@@ -10,17 +10,17 @@ SUBPAGE_UNKNOWN = register(
 PAGE_RECURSION = register(
     "page-recursion",
     "a page contains itself",
-    "A page's substitution transitions may not lead, directly or over other pages, back to the "
-    "page: the net would be infinite.",
+    "A page's substitution transitions may not lead back to the page, directly or through other pages: the net would "
+    "be infinite.",
 )
 PORT_UNASSIGNED = register(
     "port-unassigned",
     "a port has no socket",
-    "A port place of a page is not assigned to a place next to the substitution transition. As in "
-    "CPN Tools it is then an ordinary place of its own, which is rarely what was meant. Where the port has a socket "
-    "at another substitution transition of the page, this is a warning: the engine of CPN Tools cannot give the "
-    "marking of such a net (`Exception Subscript raised when checking marking`), stops its simulation after a few "
-    "steps, and does not enter the state-space tool.",
+    "A port place of a page is not assigned to a place next to the substitution transition. As in CPN Tools it is "
+    "then a separate ordinary place, which is rarely intended. If the port has a socket at another substitution "
+    "transition of the page, this is a warning: the engine of CPN Tools cannot give the marking of such a net "
+    "(`Exception Subscript raised when checking marking`), stops its simulation after a few steps, and does not enter "
+    "the state-space tool.",
 )
 SOCKET_UNASSIGNED = register(
     "socket-unassigned",
@@ -30,24 +30,23 @@ SOCKET_UNASSIGNED = register(
 )
 SOCKET_ARCS = register(
     "socket-arcs",
-    "the arcs of a socket do not suit the type of its port",
+    "the arcs of a socket do not match the type of its port",
     "A socket of an input port has an arc to the substitution transition, that of an output port an arc from it, that "
-    "of an I/O port both (or one with two heads). The editor of CPN Tools refuses the net otherwise; in pn2code only "
+    "of an I/O port both (or one with two heads). Otherwise the editor of CPN Tools refuses the net; in pn2code only "
     "the assignment of the port counts.",
 )
 NAME_NOT_UNIQUE = register(
     "name-not-unique",
-    "two nodes of a page, or two pages, have one name",
-    "The editor of CPN Tools refuses a net in which two places or two transitions of a page, or two pages, have "
-    "one name (`name not unique`). It compares the names as it sends them to its engine: cut at the first sign that "
-    "is no letter, digit, blank, `_` or `'`. pn2code tells such nodes apart by a number behind the name.",
+    "two nodes of a page, or two pages, have the same name",
+    "The editor of CPN Tools refuses a net in which two places or two transitions of a page, or two pages, have the "
+    "same name (`name not unique`). It compares the names as it sends them to its engine: cut at the first character "
+    "that is not a letter, digit, blank, `_` or `'`. pn2code distinguishes such nodes by a number after the name.",
 )
 PORT_ASSIGNMENT = register(
     "port-assignment",
     "a port assignment cannot be used",
-    "An assignment pairs a port place of the subpage with a place beside the substitution "
-    "transition. One that names something else is ignored; where a port is assigned twice, the "
-    "last assignment counts, as in CPN Tools.",
+    "An assignment pairs a port place of the subpage with a place beside the substitution transition. One that names "
+    "something else is ignored; if a port is assigned twice, the last assignment counts, as in CPN Tools.",
 )
 PORT_COLSET = register(
     "port-colset",
@@ -81,33 +80,31 @@ SUBSTITUTION_INSCRIPTION = register(
 UNSUPPORTED_CHANNEL = register(
     "unsupported-channel",
     "synchronous channels of CPN Tools are not supported",
-    "CPN Tools 4 can synchronise transitions over channels (`ch.!x`, `ch.?y`), an experimental "
-    "feature. pn2code reads the net, but lets such transitions fire alone. Merge the transitions, or use a place "
-    "between them.",
+    "CPN Tools 4 can synchronise transitions over channels (`ch.!x`, `ch.?y`), an experimental feature. pn2code reads "
+    "the net, but such transitions fire alone. Merge the transitions, or use a place between them.",
 )
 DECLARATION_EMPTY = register(
     "declaration-empty",
     "a declaration declares nothing",
-    "`globref` declares a reference with a first value. One without value declares nothing, and "
-    "CPN Tools passes over it, too. A declaration in CPN ML that is empty, or only a comment, it refuses.",
+    "`globref` declares a reference with an initial value. One without a value declares nothing, and CPN Tools skips "
+    "it, too. A declaration in CPN ML that is empty, or only a comment, is refused by CPN Tools.",
 )
 DECLARATION_UNREAD = register(
     "declaration-not-read",
     "CPN Tools could not read a declaration",
-    "The file holds the text of a declaration that CPN Tools itself did not understand (`errordecl`), "
-    "mostly one in the old syntax of Design/CPN. It declares nothing until it is entered again.",
+    "The file contains the text of a declaration that CPN Tools itself did not understand (`errordecl`), usually one "
+    "in the old syntax of Design/CPN. It declares nothing until it is entered again.",
 )
 PORT_DIRECTION = register(
     "port-direction",
     "a port is used against its direction",
-    "From an input port the transitions of its page only take tokens, and they only put tokens into an "
-    "output port; a place that gets both is an I/O port. CPN Tools runs such a net all the same.",
+    "The transitions of a page only take tokens from an input port, and only put tokens into an output port; a port "
+    "that is used in both ways must be an I/O port. CPN Tools runs such a net all the same.",
 )
 MONITOR_NODE = register(
     "monitor-node",
     "a monitor watches something that does not exist",
-    "A monitor names the places and transitions that it watches by id. One that is not there (any more) "
-    "is passed over.",
+    "A monitor names the places and transitions that it watches by id. One that does not exist (any more) is skipped.",
 )
 UNSUPPORTED_DECLARATION = register(
     "unsupported-declaration",
@@ -131,28 +128,27 @@ PLACE_COLSET = register(
 NEIGHBOUR_WRONG = register(
     "neighbour-wrong",
     "a transition is connected to a place with an error",
-    "What the arcs between a transition and a place may say depends on the place. CPN Tools does not check "
-    "a transition before the places beside it are right; pn2code checks what it can.",
+    "What the inscriptions between a transition and a place may be depends on the place. CPN Tools does not check a "
+    "transition before the places beside it are right; pn2code checks what it can.",
 )
 ARC_EMPTY = register(
     "arc-empty",
     "an arc has no inscription",
-    "Arcs need an inscription that says which tokens they move; only at places of colour set UNIT "
-    "does an empty one mean 1`(). The editor of CPN Tools never has a transition with such an arc checked, so the "
-    "net cannot run there, and it says nothing.",
+    "Arcs need an inscription that says which tokens they move; only at places of colour set UNIT does an empty one "
+    "mean 1`(). The editor of CPN Tools never lets a transition with such an arc be checked, so the net cannot run "
+    "there, and there is no message.",
 )
 ARC_IGNORED = register(
     "arc-inscription-ignored",
     "the inscription of an inhibitor or reset arc has no effect",
-    "Inhibitor arcs test that a place has no tokens and reset arcs empty it; an inscription means "
-    "nothing there.",
+    "Inhibitor arcs test that a place has no tokens, and reset arcs empty it. An inscription means nothing there.",
 )
 ARC_AS = register(
     "arc-as-pattern",
     "an arc inscription has a pattern with `as`",
-    "pn2code understands `x as pattern` on an input arc of an untimed place, where x is bound to the whole token. "
-    "CPN Tools 4.0.0 says `syntax error` and refuses the net. Write the pattern without `x as` and `_`, with a "
-    "variable for each part, and on output arcs the pattern again; or write `x` and take it apart in the guard.",
+    "pn2code understands `x as pattern` on an input arc of an untimed place, where x is bound to the whole token. CPN "
+    "Tools 4.0.0 reports `syntax error` and refuses the net. Write the pattern without `x as` and `_`, with a "
+    "variable for each part, and repeat the pattern on output arcs; or write `x` and take it apart in the guard.",
 )
 UNBOUND_VARIABLE = register(
     "unbound-variable",
@@ -179,25 +175,25 @@ NET_TOO_LARGE = register(
 SUMMANDS_SHARE = register(
     "summands-share-variables",
     "summands of one arc share variables, and each has others of its own",
-    "CPN Tools binds the variables of an arc at one moment, and of summands that share a variable that has no value "
-    "yet it uses one only; the others test. For 1`(a, b) ++ 1`(a, c) it says `No complete binding sequence found`. If "
-    "the shared variable has its value from another arc or a guard, the arc is accepted, and so is "
-    "1`(a, b) ++ 1`(b, a), whose second summand has nothing of its own.",
+    "CPN Tools binds all variables of an arc at the same time. Of several summands that share a variable without a "
+    "value it uses only one to bind; the others are only tested. For 1`(a, b) ++ 1`(a, c) it reports `No complete "
+    "binding sequence found`. If the shared variable gets its value from another arc or a guard, the arc is accepted, "
+    "and so is 1`(a, b) ++ 1`(b, a), whose second summand has no variable of its own.",
 )
 SPACE_NAME = register(
     "state-space-name",
     "a name of the net hides one that the state-space tool of CPN Tools uses",
     "CPN Tools compiles the sources of its state-space tool after the declarations of the net. A constant, function, "
-    "value or colour set of a name that these sources use keeps them from compiling: `Exception raised entering state "
+    "value or colour set whose name these sources use keeps them from compiling: `Exception raised entering state "
     "space tool`. The simulator is not affected, and neither is pn2code.",
 )
 RESERVED_WORD = register(
     "reserved-word",
     "a reserved word of CPN Tools is declared",
-    "CPN Tools keeps some names for itself besides the keywords of Standard ML: `size`, `time`, `ms`, `list`, `color`, "
-    "`input`, `Node`, ... A colour set, variable, value, function, type, constructor, label or exception of such a "
-    "name is refused: `Reserved word cannot be used as identifier`. Inside expressions and structures the names may be "
-    "used.",
+    "CPN Tools reserves some names besides the keywords of Standard ML: `size`, `time`, `ms`, `list`, `color`, "
+    "`input`, `Node`, ... It refuses a colour set, variable, value, function, type, constructor, label or exception "
+    "with such a name: `Reserved word cannot be used as identifier`. Inside expressions and structures the names may "
+    "be used.",
 )
 NOT_IN_CPN_ML = register(
     "not-in-cpn-ml",

@@ -67,7 +67,7 @@ def _pages(document: Document, d: Diagnostics) -> None:
         if sent and other is not page:
             d.warning(
                 NAME_NOT_UNIQUE,
-                f"two pages have one name, `{sent}`: CPN Tools refuses the net (name not unique)",
+                f"two pages have the same name, `{sent}`: CPN Tools refuses the net (name not unique)",
                 page.origin,
                 notes=[Note("the first one is here", other.origin)],
                 hint="give one of the pages another name",
@@ -148,7 +148,7 @@ def _ports(document: Document, linked: dict[str, Page], d: Diagnostics) -> None:
                         "CPN Tools cannot run such a net (its engine stops with the exception Subscript)",
                         origins[s.id],
                         notes=notes,
-                        hint=f"{hint}; pn2code takes it for a place of its own there",
+                        hint=f"{hint}; pn2code treats it as a separate place there",
                     )
                 else:
                     d.note(

@@ -18,34 +18,39 @@ class EngineNames:
 
     def __init__(self, net: FlatNet) -> None:
         self._net = net
-        used: dict[tuple[str, str], int] = {}
+        used: set[tuple[str, str]] = set()
         self._names: dict[str, str] = {}
         for place in net.place_instances:
             self._name(used, place.page, place.id, place.caption or place.name)
         for t in net.transitions:
             self._name(used, t.page, t.id, t.caption or t.short)
 
-    def _name(self, used: dict[tuple[str, str], int], page: str, element: str, text: str) -> None:
+    def _name(self, used: set[tuple[str, str]], page: str, element: str, text: str) -> None:
         if element in self._names:
             return  # another instance of its page
-        name = _legal(text)
-        number = used.get((page, name), 0)
-        used[page, name] = number + 1
-        self._names[element] = f"{name}_u{number}" if number else name
+        chosen = name = legal_name(text)
+        number = 0
+        while (page, chosen) in used:
+            number += 1
+            chosen = f"{name}_u{number}"
+        used.add((page, chosen))
+        self._names[element] = chosen
 
     def transition(self, index: int) -> str:
         """Of `FlatNet.transitions[index]`."""
         t = self._net.transitions[index]
-        return f"{_legal(t.page)}'{self._names[t.id]} {t.instance_number}"
+        return f"{legal_name(t.page)}'{self._names[t.id]} {t.instance_number}"
 
     def place_instance(self, place: PlaceInstance) -> str:
         """Of a place as it stands on a page."""
-        return f"{_legal(place.page)}'{self._names[place.id]} {place.number}"
+        return f"{legal_name(place.page)}'{self._names[place.id]} {place.number}"
 
     def place(self, index: int) -> str:
         """Of `FlatNet.places[index]`: that of the topmost of the places that share the marking."""
         p = self._net.places[index]
-        return f"{_legal(p.page)}'{self._names.get(p.id, _legal(p.short))} {p.instance_number}"
+        return (
+            f"{legal_name(p.page)}'{self._names.get(p.id, legal_name(p.short))} {p.instance_number}"
+        )
 
 
 def engine_name(name: str) -> str:
@@ -60,6 +65,7 @@ def sent_name(name: str) -> str:
     return re.sub(r"\s+", "_", found.group().strip()) if found else ""
 
 
-def _legal(text: str) -> str:
+def legal_name(text: str) -> str:
+    """What the engine makes of a name that no other element has."""
     name = engine_name(text)
     return f"N{name}" if name[:1].isdigit() else name

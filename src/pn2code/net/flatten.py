@@ -42,9 +42,9 @@ def flatten(net: TypedNet, d: Diagnostics) -> FlatNet | None:
     if depth > MAX_DEPTH:
         d.error(
             NET_TOO_LARGE,
-            f"{depth:,} pages stand one below the other, more than the {MAX_DEPTH:,} allowed",
+            f"pages are nested {depth:,} levels deep, more than the {MAX_DEPTH:,} allowed",
             Origin(net.net.document.file),
-            hint="real nets have less than ten levels: was the file made by a program?",
+            hint="real nets have fewer than ten levels: was the file made by a program?",
         )
         return None
     if total > MAX_ELEMENTS:

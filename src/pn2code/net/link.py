@@ -297,14 +297,14 @@ class _Linker:
                         FUSION_MEMBER,
                         f"place `{place.name}` names fusion set `{place.fusion}`, which does not list it",
                         place.origin,
-                        hint="it is taken as a member, as in CPN Tools",
+                        hint="it is treated as a member, as in CPN Tools",
                     )
             elif place.fusion:
                 self.d.warning(
                     FUSION_MEMBER,
                     f"place `{place.name}` names fusion set `{place.fusion}`, which does not exist",
                     place.origin,
-                    hint="it is taken as a place of its own, as in CPN Tools",
+                    hint="it is treated as a separate place, as in CPN Tools",
                 )
         fusion_of = {i: name for name, ids in members.items() for i in ids}
         raw = {f.name: f for f in reversed(self.document.fusions)}
@@ -319,7 +319,7 @@ class _Linker:
                 FUSION_MEMBER,
                 f"fusion set `{fusion.name}` lists place `{member}`, which does not exist",
                 fusion.origin,
-                hint="it is passed over; remove it from the set",
+                hint="it is ignored; remove it from the set",
             )
         elif place.fusion != fusion.name:
             names = f"names fusion set `{place.fusion}`" if place.fusion else "names no fusion set"
@@ -328,7 +328,7 @@ class _Linker:
                 f"fusion set `{fusion.name}` lists place `{place.name}`, which {names}",
                 place.origin,
                 notes=[Note("the set is here", fusion.origin)],
-                hint="it is not taken as a member, as in CPN Tools; if it should be one, put it into the set again",
+                hint="it is not treated as a member, as in CPN Tools; if it should be one, put it into the set again",
             )
 
     def check_recursion(self, pages: tuple[Page, ...]) -> None:

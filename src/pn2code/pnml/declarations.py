@@ -193,7 +193,7 @@ class Declarations:
         if identity in self._open or len(self._open) > _MOST_DEEP:
             self.error(
                 PNML_ELEMENT,
-                f"the sort `{identity}` is made of itself",
+                f"the sort `{identity}` contains itself",
                 node,
                 "name other components",
             )

@@ -56,5 +56,5 @@ class Strangers:
                 PNML_UNKNOWN_ELEMENT,
                 f"element `{child.tag}` inside `{node.tag}` is not known and is ignored",
                 child.at(self._base),
-                hint="is it misspelled? What belongs to one tool stands inside `toolspecific`",
+                hint="is it misspelled? Elements of one tool belong inside `toolspecific`",
             )

@@ -279,7 +279,7 @@ class Terms:
                 )
         if any(t.many for t in terms):
             if sort is None:
-                raise self.fail(PNML_SORT, "a multi-set cannot stand here", node, "use one value")
+                raise self.fail(PNML_SORT, "a multi-set is not allowed here", node, "use one value")
             # The product of the components' multi-sets.
             many = [self._many(t, a, None).code for t, a in zip(terms, arguments, strict=True)]
             code = ((f"{sort.name}.mult (", node), *_joined(", ", many, node), (")", node))

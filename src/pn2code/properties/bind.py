@@ -184,7 +184,7 @@ class Binder:
         if written.fair:
             self._d.error(
                 codes.FORM,
-                "a bounded response holds on all paths: there is nothing to assume",
+                "a bounded response is about all paths: there is nothing to assume",
                 written.fair[0].span(),
                 hint="leave out `fair`, or `within ..`",
             )
@@ -276,7 +276,7 @@ class Binder:
             "ctl": "`enabled(T)` says that it can occur; `EX<T> p`, that it does and p holds then",
         }[mode]
         self._d.error(
-            codes.FORM, "`fires` says something of a step, not of a marking", span, hint=hint
+            codes.FORM, "`fires` says something about a step, not about a marking", span, hint=hint
         )
         return False
 
@@ -317,7 +317,7 @@ class Binder:
             hint = f"write `{own}`, or a property `ctl ..`" if own else "write a property `ctl ..`"
         else:
             text = (
-                f"`{operator}` speaks of other markings, but a condition on one marking is expected"
+                f"`{operator}` is about other markings, but a condition on one marking is expected"
             )
             hint = "write a property `ctl ..` or `ltl ..`"
         self._d.error(codes.FORM, text, f.span, hint=hint)
@@ -342,7 +342,9 @@ class Binder:
         """Markings of timed places have stamps in them: that is easily forgotten."""
         for i, item in enumerate(self._d.items[before:], before):
             if item.code == TYPE_MISMATCH and " timed" in item.message:
-                note = "the marking of a timed place has stamps: `ms (Mark.Page'Place 1)` leaves them away"
+                note = (
+                    "the marking of a timed place has stamps: `ms (Mark.Page'Place 1)` removes them"
+                )
                 self._d.items[i] = replace(item, notes=(*item.notes, Note(note)))
 
     def _predicate(

@@ -91,7 +91,7 @@ class Marks:
                     codes.FORM,
                     f"`{part.symbol.name}` gets its value from the code segment, when `{t.short}` has been chosen",
                     part.span,
-                    hint="say it of the place into which the value is put",
+                    hint="write the condition about the place into which the value is put",
                 )
                 return None
         return exp

@@ -7,25 +7,19 @@ names.place(Name("Top'Buffer", 1, ...))      # index in `FlatNet.places`, None a
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
 from typing import Literal
 
 from pn2code.diagnostics import Diagnostics, Span
 from pn2code.diagnostics.near import did_you_mean, nearest
 from pn2code.net.engine_names import EngineNames
+from pn2code.net.finding import Finder, Instance
 from pn2code.net.flat import FlatNet
 from pn2code.properties import codes
 from pn2code.properties.tree import Name
 
 What = Literal["place", "transition"]
-
-
-@dataclass(frozen=True, slots=True)
-class _Instance:
-    """One of an element: its number and its index in the flat net."""
-
-    number: int
-    index: int
+_SHOWN = 4
+"""Of several elements that may be meant."""
 
 
 class Names:
@@ -34,26 +28,9 @@ class Names:
     def __init__(self, net: FlatNet, d: Diagnostics) -> None:
         self._d = d
         self._engine = EngineNames(net)
-        places = [
-            (self._engine.place_instance(p), p.name, p.number, p.place) for p in net.place_instances
-        ]
-        transitions = [
-            (self._engine.transition(t.index), t.short, t.instance_number, t.index)
-            for t in net.transitions
-        ]
-        self._full: Mapping[What, dict[str, list[_Instance]]] = {
-            "place": _grouped((name.rpartition(" ")[0], n, i) for name, _, n, i in places),
-            "transition": _grouped(
-                (name.rpartition(" ")[0], n, i) for name, _, n, i in transitions
-            ),
-        }
-        self._bare: Mapping[What, dict[str, list[str]]] = {
-            "place": _bare(places),
-            "transition": _bare(transitions),
-        }
-        self._paths: Mapping[What, dict[str, int]] = {
-            "place": {p.name: p.index for p in net.places},
-            "transition": {t.name: t.index for t in net.transitions},
+        self._finders: Mapping[What, Finder] = {
+            "place": Finder.of_places(net),
+            "transition": Finder.of_transitions(net),
         }
 
     def place_text(self, index: int) -> str:
@@ -77,57 +54,50 @@ class Names:
         return self._find("place", Name(name, number, False, at))
 
     def _find(self, what: What, name: Name) -> int | None:
-        if name.quoted and name.text in self._paths[what]:
-            return self._paths[what][name.text]
-        full = name.text
-        if full not in self._full[what]:
-            own = self._bare[what].get(name.text, [])
-            meant = {x.index for text in own for x in self._full[what][text]}
-            if len(meant) == 1 and name.number is None:
-                return meant.pop()  # members of one fusion set, or a port and its socket
-            if len(own) > 1:
-                self._d.error(
-                    codes.UNKNOWN_NAME,
-                    f"there are several {what}s `{name.text}`",
-                    name.span,
-                    hint=f"write one of {', '.join(f'`{x}`' for x in own[:4])}",
-                )
-                return None
-            if not own:
-                self._unknown(what, name)
-                return None
-            full = own[0]
-        return self._instance(what, full, name)
-
-    def _instance(self, what: What, full: str, name: Name) -> int | None:
-        instances = self._full[what][full]
-        numbers = [str(x.number) for x in instances]
-        if name.number is None:
-            if len({x.index for x in instances}) == 1:
-                return instances[0].index
-            self._d.error(
-                codes.UNKNOWN_NAME,
-                f"{what} `{full}` has {len(instances)} instances",
-                name.span,
-                hint=f"write which, e.g. `{full} {numbers[0]}`; there are {_listed(numbers)}",
-            )
+        finder = self._finders[what]
+        if name.quoted and name.text in finder.paths:
+            return finder.paths[name.text]
+        meant = finder.named(name.text)
+        if not meant:
+            self._unknown(what, name)
             return None
-        found = next((x.index for x in instances if x.number == name.number), None)
-        if found is None:
-            self._d.error(
-                codes.UNKNOWN_NAME,
-                f"{what} `{full}` has no instance {name.number}",
-                name.span,
-                hint=f"its page has the instance{'s' * (len(numbers) > 1)} {_listed(numbers)}",
-            )
-        return found
+        there = [x for x in meant if name.number in (None, x.number)]
+        if len({x.index for x in there}) == 1:
+            return there[0].index  # one, or members of one fusion set, or a port and its socket
+        elements = {x.element: x for x in there}
+        if len(elements) > 1:
+            self._several(what, name, list(elements.values()))
+        else:
+            self._instances(what, name, [x.number for x in meant], meant[0].full)
+        return None
+
+    def _several(self, what: What, name: Name, found: Sequence[Instance]) -> None:
+        finder = self._finders[what]
+        paths = [f"`{x.path}`" for x in found[:_SHOWN]]
+        more = ["others"] if len(found) > _SHOWN else []
+        self._d.error(
+            codes.UNKNOWN_NAME,
+            f"there are several {what}s `{name.text}`: {' and '.join([*paths, *more])}",
+            name.span,
+            hint=f"write one of {', '.join(f'`{finder.surely(x)}`' for x in found[:_SHOWN])}",
+        )
+
+    def _instances(self, what: What, name: Name, numbers: Sequence[int], full: str) -> None:
+        listed = [str(n) for n in dict.fromkeys(numbers)]
+        if name.number is None:
+            message = f"{what} `{full}` has {len(listed)} instances"
+            hint = f"write which, e.g. `{full} {listed[0]}`; there are {_listed(listed)}"
+        else:
+            message = f"{what} `{full}` has no instance {name.number}"
+            hint = f"its page has the instance{'s' * (len(listed) > 1)} {_listed(listed)}"
+        self._d.error(codes.UNKNOWN_NAME, message, name.span, hint=hint)
 
     def _unknown(self, what: What, name: Name) -> None:
         other: What = "transition" if what == "place" else "place"
-        if name.text in self._full[other] or name.text in self._bare[other]:
+        if self._finders[other].named(name.text):
             hint = f"`{name.text}` is a {other}"
         elif name.quoted:
-            hint = did_you_mean(name.text, self._paths[what])
+            hint = did_you_mean(name.text, self._finders[what].paths)
         else:
             hint = self._near(what, name.text)
         self._d.error(
@@ -140,36 +110,19 @@ class Names:
 
     def _near(self, what: What, text: str) -> str:
         """The name that may be meant; of a wrong page, that of the right one."""
+        finder = self._finders[what]
         own = text.rpartition("'")[2]
-        there = self._bare[what].get(own)
+        there = finder.bare.get(own)
         if there:
             return f"did you mean {' or '.join(f'`{x}`' for x in there[:3])}?"
-        found = nearest(text, self._full[what])
+        found = nearest(text, finder.full)
         if not found:
-            near = nearest(own, self._bare[what])
-            found = self._bare[what][near][0] if near else ""
+            near = nearest(own, finder.bare)
+            found = finder.bare[near][0] if near else ""
         return f"did you mean `{found}`?" if found else ""
 
     def _example(self, what: What) -> str:
-        return next(iter(self._full[what]), "Page'Name")
-
-
-def _grouped(rows: object) -> dict[str, list[_Instance]]:
-    found: dict[str, list[_Instance]] = {}
-    for name, number, index in rows:  # type: ignore[attr-defined]
-        found.setdefault(name, []).append(_Instance(number, index))
-    return found
-
-
-def _bare(rows: Sequence[tuple[str, str, int, int]]) -> dict[str, list[str]]:
-    """By own name, as on the page and as the engine writes it: the full names that it may mean."""
-    found: dict[str, list[str]] = {}
-    for engine, short, _, _ in rows:
-        full = engine.rpartition(" ")[0]
-        for own in {full.partition("'")[2], short}:
-            if full not in found.setdefault(own, []):
-                found[own].append(full)
-    return found
+        return next(iter(self._finders[what].full), "Page'Name")
 
 
 def _listed(numbers: Sequence[str]) -> str:

@@ -165,7 +165,7 @@ def _unexpected_token(problem: UnexpectedToken, source: SourceText, d: Diagnosti
         hint = f"say what of it: `tokens({word}) >= 1`, `enabled({word})`, or CPN ML in braces"
     d.error(
         codes.SYNTAX,
-        f"`{_short(word)}` cannot stand here: {_expected(expected)} is expected",
+        f"`{_short(word)}` cannot be used here: {_expected(expected)} is expected",
         source.span(start, start + len(token)),
         hint=hint or "docs/properties.md has an example of each kind",
     )
@@ -186,7 +186,7 @@ def _unexpected_character(text: str, at: int, source: SourceText, d: Diagnostics
         "~": "numbers here are not negative",
     }.get(sign, "CPN ML stands in braces: `{ .. }`")
     shown = sign if sign.isprintable() else f"character {ord(sign)}"
-    d.error(codes.SYNTAX, f"`{shown}` cannot stand here", source.span(at, at + 1), hint=hint)
+    d.error(codes.SYNTAX, f"`{shown}` cannot be used here", source.span(at, at + 1), hint=hint)
 
 
 def _too_deep(tree: Any, source: SourceText, d: Diagnostics) -> bool:

@@ -126,7 +126,7 @@ def _table(
             codes.FILE,
             f"`about` is `{table['about']}`, but `cell` or `net` is expected",
             at,
-            hint='`about = "net"`: asked of the closed net alone, not of the programs of the cell',
+            hint='`about = "net"`: about the closed net alone, not about the programs of the cell',
         )
     fair = table.get("fair", [])
     if not isinstance(fair, list) or not all(isinstance(x, str) for x in fair):

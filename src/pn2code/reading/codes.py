@@ -23,13 +23,13 @@ FILE_TOO_LARGE = register(
 TOO_MANY = register(
     "too-many-messages",
     "there are too many messages",
-    "After ten thousand messages about one file pn2code gives up: it is not what it should be, or one mistake "
-    "in a declaration has to be corrected first.",
+    "After ten thousand messages about one file pn2code gives up: it is not the right kind of file, or one mistake in "
+    "a declaration must be corrected first.",
 )
 XML_SYNTAX = register(
     "xml-syntax",
     "the file is not well-formed XML",
-    "A .cpn file is XML. The message gives the place of the first mistake as the XML parser sees it.",
+    "A .cpn file is XML. The message gives the position of the first mistake as the XML parser reports it.",
 )
 XML_TRUNCATED = register(
     "xml-truncated",

@@ -74,7 +74,7 @@ def give_up(file: str, d: Diagnostics) -> None:
     """Say that there are more messages than anybody reads."""
     d.give_up(
         TOO_MANY,
-        f"more than {len(d.items):,} messages: the rest is not looked at",
+        f"more than {len(d.items):,} messages: the rest is not examined",
         Origin(file),
         "correct the first errors, then check again",
     )
@@ -176,7 +176,7 @@ class _Reader:
                 CPN_FORMAT,
                 f"format `{number}` is not known and is read like format 6",
                 generator.at(self.base),
-                hint="look whether everything of the net is there: `pn2code check` counts what was read",
+                hint="check whether the net is complete: `pn2code check` counts what was read",
             )
         return number
 
@@ -224,7 +224,7 @@ class _Reader:
 
 
 _DEEPEST = 200
-"""Page instances below one another; hierarchies of real nets have less than ten levels."""
+"""Page instances below one another; hierarchies of real nets have fewer than ten levels."""
 
 
 def _instances(node: Node, depth: int) -> tuple[RawInstance, ...]:

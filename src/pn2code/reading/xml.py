@@ -28,7 +28,7 @@ from pn2code.reading.codes import (
 
 MAX_BYTES = 100 * 1024 * 1024
 MAX_DEPTH = 200
-"""Elements inside one another; those of real nets have less than ten levels."""
+"""Elements inside one another; those of real nets have fewer than ten levels."""
 MAX_ELEMENTS = 800_000
 """The largest real net seen has 50,000; one of 10,000 places some 500,000."""
 MAX_SPACE = 5_000_000
@@ -289,7 +289,7 @@ class _Builder:
         byte = data[at : at + 1]
         before = data[max(0, at - 1) : at]
         if before == b"&" or byte == b"&":
-            return "`&` stands for itself nowhere", "in XML it is written `&amp;`"
+            return "`&` cannot be used by itself", "in XML it is written `&amp;`"
         if before == b"<" or byte == b"<":
             return "`<` does not begin a tag here", "in texts it is written `&lt;`"
         if byte and byte < b" ":

@@ -114,7 +114,7 @@ def open_backend(
         )
     if importlib.util.find_spec("pybullet") is None:
         raise BackendUnavailableError(
-            "PyBullet is not installed; there are packages of it for Python 3.9 to 3.11 (`pip install pybullet`). "
+            "PyBullet is not installed: `pip install 'pn2code[cell]'` brings it, with Python 3.11 at the latest. "
             "`--backend fake` needs none: it moves the arms exactly, without measuring clearances"
         )
     from pn2code.robot.bullet import BulletBackend

@@ -6,7 +6,7 @@ ROBOT_MODEL = register(
     "robot-model",
     "there is no such robot model",
     "`model` names a robot that comes with pn2code, or a URDF file by its path relative to the folder of cell.toml: "
-    '`model = "arms/my_arm.urdf"`. The message lists the names that are known.',
+    '`model = "arms/my_arm.urdf"`. The message lists the known names.',
 )
 ROBOT_TOOL = register(
     "robot-tool",
@@ -40,8 +40,8 @@ ROBOT_VALUE = register(
 ROBOT_HOME = register(
     "robot-home",
     "an arm touches something at HOME",
-    "Each run begins with all robots at HOME. An arm that is in another one, in the scene or in itself there would "
-    "stop the run at once. Distances are measured with PyBullet; without it a note says that they are not checked.",
+    "Each run begins with all robots at HOME. An arm that touches another one, the scene or itself there would stop "
+    "the run at once. Distances are measured with PyBullet; without it a note says that they are not checked.",
 )
 ROBOT_REACH = register(
     "robot-reach",

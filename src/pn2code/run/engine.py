@@ -50,6 +50,7 @@ from pn2code.run.supervisor import SupervisorProcess
 from pn2code.run.trace import GrowingTrace
 from pn2code.tdl.check import CheckedProgram
 from pn2code.tdl.interpret import (
+    MOST_AT_ONCE,
     AwaitFile,
     Event,
     Execute,
@@ -62,9 +63,6 @@ from pn2code.tdl.interpret import (
     Scalar,
     Sense,
 )
-
-MAX_ROUNDS = 10_000
-"""Exchanges between supervisor and robots at one instant, or commands; more means that they go on without end."""
 
 
 class Observer(Protocol):
@@ -210,7 +208,7 @@ class Engine:
                 before = self.now
                 self._advance(self._next_event())
                 without_time = without_time + 1 if self.now <= before else 0
-                if without_time > MAX_ROUNDS:
+                if without_time > MOST_AT_ONCE:
                     self._repeats_without_time()
         except CellStoppedError as why:
             self._stop(str(why))
@@ -220,7 +218,7 @@ class Engine:
         busy = [r for r in self.robots if r.waiting is None and not r.finished]
         names = " and ".join(r.name for r in busy) or "a program"
         raise CellStoppedError(
-            f"{names} carried out {MAX_ROUNDS:,} commands at {self.now:.3f} s without time passing: a script repeats "
+            f"{names} carried out {MOST_AT_ONCE:,} commands at {self.now:.3f} s without time passing: a script repeats "
             "commands that take no time"
         )
 
@@ -262,14 +260,14 @@ class Engine:
 
     def _settle(self) -> None:
         """Supervisor and robots exchange messages at this instant until nobody can go on."""
-        for _ in range(MAX_ROUNDS):
+        for _ in range(MOST_AT_ONCE):
             moved = self._supervisor_cycle()
             for robot in self.robots:
                 moved |= self._robot_turn(robot)
             if not moved:
                 return
         raise CellStoppedError(
-            f"supervisor and robots exchanged {MAX_ROUNDS} messages at {self.now:.3f} s without time "
+            f"supervisor and robots exchanged {MOST_AT_ONCE} messages at {self.now:.3f} s without time "
             "passing; one of them answers itself"
         )
 

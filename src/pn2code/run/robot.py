@@ -309,7 +309,7 @@ class RobotPlayer:
                 )
             case PeerState.REPLACED:
                 self._gone(
-                    f"another supervisor{pid} has begun a new session: the one of this robot has gone"
+                    f"another supervisor{pid} has begun a new session: the one of this robot has ended"
                 )
             case _:
                 pass

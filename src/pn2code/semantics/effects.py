@@ -73,15 +73,34 @@ class Effects:
     def __init__(self, program: core.Program) -> None:
         self._of_symbol: dict[int, Found] = {}
         for declaration in program.declarations:
-            found = self.of(declaration)
             match declaration:
-                case core.ValBind(pattern):
-                    for symbol in _symbols(pattern):
-                        self._of_symbol[symbol.uid] = found
+                case core.ValBind(pattern, value):
+                    self._bind(pattern, value)
                 case core.RecBind(bindings):
                     # The functions of a group may call each other: what one does, all may do.
+                    found = self.of(declaration)
                     for symbol, _ in bindings:
                         self._of_symbol[symbol.uid] = found
+
+    def _bind(self, pattern: core.Pat, value: core.Exp, around: Found = NONE) -> None:
+        """Notes what each variable of a pattern may do: of a tuple of functions, each has effects of its own.
+
+        Args:
+            pattern: a pattern.
+            value: what it is matched with.
+            around: the effects of what stands before it in a `let`, which all its variables may have.
+        """
+        match pattern, value:
+            case _, core.Let(declarations, body):
+                self._bind(pattern, body, around | self.of(declarations))
+            case core.PRecord(parts), core.RecordExp(fields):
+                values = dict(fields)
+                for label, part in parts:
+                    self._bind(part, values[label], around)
+            case _:
+                found = around | self.of(value)
+                for symbol in _symbols(pattern):
+                    self._of_symbol[symbol.uid] = found
 
     def of(self, *nodes: Any) -> Found:
         """The effects of pieces of the core language; None counts as nothing."""

@@ -5,6 +5,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from typing import Any
@@ -24,6 +25,20 @@ RUN_ENDS = (FINISHED, "stopped", "failed")
 """What may become of a whole cell (`run.record`)."""
 BROKEN_OFF = ("interrupted", "breakpoint", "trace", "replay")
 """Words of a simulator that claim nothing about the net."""
+
+_RAISED = re.compile(r", while (?:looking for bindings of `|firing `|making room between firings)")
+"""The end of what a supervisor says of an error that an evaluation has led to (`cnative/src/supervisor_play.c`)."""
+_LIMITS = (
+    "the place is full",
+    "the memory for lists and strings is used up",
+    "the recursion is too deep",
+    "an evaluation does not come to an end",
+    "a model time is beyond 64 bits",
+    "a function is not available here",
+)
+"""Errors that a program can come to where the net has none."""
+_NOT_OF_THE_NET = ("interrupted by ", "no end ", "monitor: ", "place `", "cannot write the trace")
+"""How other reasons of a supervisor to stop begin: they claim nothing about what the net can do."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -89,7 +104,7 @@ def _run(game: Game, why: str, ending: Ending) -> str | None:
     if why in (*GOES_ON, ERROR):
         return f'it says "{why}", which only simulators say'
     if ending.by == RUN and why not in RUN_ENDS:
-        return f'it says "{why}", which is no reason for a run to end'
+        return _alone(game, why, ending)
     if why != FINISHED or not ending.parties.is_known:
         return None
     if not ending.parties.final:
@@ -98,6 +113,22 @@ def _run(game: Game, why: str, ending: Ending) -> str | None:
         return None
     names = ", ".join(f"`{game.net.places[p].name}`" for p in ending.parties.final)
     return f"it says that the cell has finished, but there is no token in {names}"
+
+
+def _alone(game: Game, why: str, ending: Ending) -> str | None:
+    """A supervisor that plays its net alone (`--dry-run`) ends with a sentence that says what has happened."""
+    if why.startswith("deadlock: "):
+        found = _marked(game, ending)
+        if found:
+            return f"it says that there was a deadlock, but {found} hold a token"
+        return _not_dead(game)
+    if _RAISED.search(why):
+        if any(limit in why for limit in _LIMITS) or _raises(game):
+            return None
+        return "it says that an inscription raises an exception, but none does"
+    if why.startswith(_NOT_OF_THE_NET):
+        return None
+    return f'it says "{why}", which is no reason for a run to end'
 
 
 def _final_problem(game: Game, line: Mapping[str, Any], ending: Ending) -> str | None:
@@ -159,7 +190,7 @@ def _loop_problem(line: Mapping[str, Any], ending: Ending) -> str | None:
         return f"its `loop` is {loop}, but the run has {last} steps"
     if _relative(ending.markings[loop]) != _relative(ending.markings[last]):
         return (
-            f"it says that the run goes round from step {loop} on, but the marking there is another"
+            f"it says that the run repeats from step {loop} on, but the marking there is different"
         )
     return None
 

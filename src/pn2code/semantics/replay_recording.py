@@ -283,9 +283,12 @@ class _Follower:
         drawn = self.drawn(state)
         why = ""
         if self.lenient:
-            why = f"the net {self.nature()}, which a recording does not tell: what depends on it was taken as recorded"
+            why = (
+                f"the net {self.nature()}, whose results are not in a recording: what depends on them was taken as "
+                "recorded"
+            )
             if drawn:
-                why += f"; in the end that is what {_list(drawn)} hold{'s' * (len(drawn) == 1)}"
+                why += f"; in the final marking these are tokens of {_list(drawn)}"
         return Followed(
             ok=True,
             steps=len(run.steps),

@@ -8,16 +8,16 @@ TRACE_UNWRITABLE = register(
     "trace-unwritable",
     "a trace cannot be written",
     "The file that `--trace` names cannot be opened or written: the folder is missing, there is no permission, or the "
-    "disk is full. The run stops there. What was written ends with a whole line, and without the `end` event that a "
-    "complete trace has.",
+    "disk is full. The run stops there. The part that was written ends with a whole line, without the `end` event of "
+    "a complete trace.",
 )
 SIMULATOR_FAILED = register(
     "simulator-failed",
     "the compiled simulator failed",
-    "The compiled net was killed, or did not say how its run ended. When the system ended it (not enough memory), try "
-    "a shorter run; when a function of the net never returns, it is ended after two minutes without a step, or some "
-    "seconds after Ctrl-C; else this is a bug in pn2code. `--engine reference` simulates the same run without C, and "
-    "names the expression that has no end.",
+    "The compiled net was killed, or did not say how its run ended. If the system ended it (not enough memory), try a "
+    "shorter run. If a function of the net never returns, it is ended after two minutes without a step, or some "
+    "seconds after Ctrl-C. Otherwise this is a bug in pn2code. `--engine reference` simulates the same run without C, "
+    "and names the expression that does not terminate.",
 )
 ENGINE_CHANGED = register(
     "engine-reference",

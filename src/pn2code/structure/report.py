@@ -350,7 +350,7 @@ def _elements(a: Analysis, names: Names, most: int) -> Iterator[str]:
         (e.source_places, "places that nothing fills"),
         (e.sink_places, "places that nothing empties"),
         (tuple(skeleton.resets), "places with a reset arc: in no invariant"),
-        (tuple(skeleton.inhibitors), "places with an inhibitor arc: it is passed over here"),
+        (tuple(skeleton.inhibitors), "places with an inhibitor arc: it is ignored here"),
     )
     for found, words in places:
         if found:
@@ -414,7 +414,7 @@ def _coloured_section(a: Analysis, names: Names, most: int) -> Iterator[str]:
 
 def _t_section(a: Analysis, names: Names, most: int) -> Iterator[str]:
     yield _title(
-        "T-invariants, what gives all places as many tokens as before (minimal)",
+        "T-invariants, occurrences after which all places have as many tokens as before (minimal)",
         len(a.t_invariants),
         a.t_complete,
     )

@@ -18,14 +18,13 @@ NESTING = register(
 DUPLICATE = register(
     "tdl-duplicate",
     "a name is declared twice",
-    "Files, constants, variables and procedures share one set of names; labels have a set of "
-    "their own in each body.",
+    "Files, constants, variables and procedures share one set of names; labels have a separate set in each body.",
 )
 RESERVED = register(
     "tdl-reserved",
-    "a name of the language is declared anew",
-    "The names of the built-in functions and of the types cannot be used for other things: "
-    "`var abs : int` is an error.",
+    "a name of the language is declared again",
+    "The names of the built-in functions and of the types cannot be used for other things: `var abs : int` is an "
+    "error.",
 )
 UNKNOWN_NAME = register(
     "tdl-unknown-name",
@@ -46,9 +45,8 @@ FILE_DIRECTION = register(
 )
 FILE_VALUES = register(
     "tdl-file-values",
-    "a message has another number of values",
-    "`read F into a, b` and `write F a, b` name one variable or value for each type in the "
-    "declaration of `F`.",
+    "a message has the wrong number of values",
+    "`read F into a, b` and `write F a, b` name one variable or value for each type in the declaration of `F`.",
 )
 NOT_A_VARIABLE = register(
     "tdl-not-a-variable",
@@ -87,9 +85,8 @@ UNKNOWN_FUNCTION = register(
 )
 ARGUMENTS = register(
     "tdl-arguments",
-    "a function has another number of arguments",
-    "`pose` takes six: x, y, z (lengths), rx, ry, rz (angles). The others are listed in "
-    "docs/tdl.md.",
+    "a function has the wrong number of arguments",
+    "`pose` takes six: x, y, z (lengths), rx, ry, rz (angles). The others are listed in docs/tdl.md.",
 )
 UNKNOWN_FIELD = register(
     "tdl-unknown-field",
@@ -99,8 +96,7 @@ UNKNOWN_FIELD = register(
 UNKNOWN_FRAME = register(
     "tdl-unknown-frame",
     "there is no such frame",
-    "Frames are `world` (absolute) and `tool` (an increment in the tool frame as it stands "
-    "when the move begins).",
+    "Frames are `world` (absolute) and `tool` (an increment in the tool frame as it is when the move begins).",
 )
 FRAME = register(
     "tdl-frame",
@@ -116,8 +112,8 @@ UNKNOWN_MOTION = register(
 SPEED = register(
     "tdl-speed",
     "a speed is out of range",
-    "Joint speed is a fraction of the configured speed, above 0 % and at most 100 %; linear "
-    "speed and durations are above zero (a duration may be zero).",
+    "A joint speed is a fraction of the configured speed, above 0 % and at most 100 %. A linear speed is above zero, "
+    "and a duration is not negative.",
 )
 UNKNOWN_LABEL = register(
     "tdl-unknown-label",
@@ -132,8 +128,8 @@ UNUSED_LABEL = register(
 UNREACHABLE = register(
     "tdl-unreachable",
     "a statement can never be reached",
-    "It stands behind an `exit`, `goto`, `stop` or `return`, or behind a `loop` without "
-    "`exit`, and no label leads to it.",
+    "It comes after an `exit`, `goto`, `stop` or `return`, or after a `loop` without `exit`, and no label leads to "
+    "it.",
 )
 EXIT = register(
     "tdl-exit",
@@ -149,8 +145,8 @@ RECURSION = register(
 WAIT_NOTHING = register(
     "tdl-wait-nothing",
     "a wait can never end",
-    "While a script waits only files change, so the condition of `wait until` must ask for "
-    "one: `wait until filled(F)`.",
+    "While a script waits, only files change, so the condition of `wait until` must ask for one: `wait until "
+    "filled(F)`.",
 )
 UNASSIGNED = register(
     "tdl-unassigned",

@@ -36,6 +36,8 @@ from pn2code.tdl.types import POSE_FIELDS, Type
 DEFAULT_STEP_LIMIT: Final = 100_000
 MOST_OCCURRENCES: Final = 100_000
 """Transitions in a row for which a script neither waits, nor acts, nor takes a message."""
+MOST_AT_ONCE: Final = 10_000
+"""Commands of a cell in lock-step without time passing, or messages; more means that it goes on so without end."""
 
 Scalar = int | float | bool | str
 

@@ -147,7 +147,7 @@ def _unexpected_token(problem: UnexpectedToken, source: SourceText, d: Diagnosti
         hint = f"`{token}` is a word of the language and cannot be a name"
     d.error(
         codes.SYNTAX,
-        f"`{token}` cannot stand here: {_expected({_plain(e) for e in expected})} is expected",
+        f"`{token}` cannot be used here: {_expected({_plain(e) for e in expected})} is expected",
         source.span(start, start + len(token)),
         hint=hint,
     )
@@ -182,9 +182,9 @@ def _unexpected_characters(
     shown = word if word.isprintable() else f"character {ord(word[0])}"
     d.error(
         codes.SYNTAX,
-        f"`{shown}` cannot stand here: {_expected(allowed)} is expected"
+        f"`{shown}` cannot be used here: {_expected(allowed)} is expected"
         if allowed
-        else f"`{shown}` cannot stand here",
+        else f"`{shown}` cannot be used here",
         source.span(at, at + len(word)),
         hint=hint,
     )

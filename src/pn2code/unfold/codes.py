@@ -5,19 +5,19 @@ from pn2code.diagnostics.codes import register
 UNSUPPORTED_UNFOLDING = register(
     "unsupported-unfolding",
     "the net has something that a place/transition net cannot express",
-    "A place/transition net has neither time nor code segments, and what an inscription gives must depend on its "
-    "variables alone: nothing random, no references, no files.",
+    "A place/transition net has neither time nor code segments, and the result of an inscription must depend only on "
+    "its variables, not on random numbers, references or files.",
 )
 UNFOLDING_TOO_LARGE = register(
     "unfolding-too-large",
     "the unfolded net has too many places or transitions",
-    "Unfolding makes a place of each colour that can come into a place, and a transition of each binding. With large "
-    "or unbounded colour sets these are too many: a counter without limit never ends.",
+    "Unfolding makes a place for each colour that may come into a place, and a transition for each binding. With "
+    "large or unbounded colour sets there are too many: a counter without a limit never ends.",
 )
 UNFOLDING_FAULT = register(
     "unfolding-fault",
     "an inscription raises an exception for a binding",
-    "Unfolding looks at all bindings for which the colours can be there, whether or not enough tokens are there at "
-    "the same time. For one of them an inscription raises an exception or gives an illegal colour. If that binding can "
-    "become enabled, the net has a mistake; the unfolded net lacks the transition.",
+    "Unfolding looks at all bindings for which the colours may be there, even if there are not enough tokens at the "
+    "same time. For one of them an inscription raises an exception or gives an illegal colour. If that binding can "
+    "become enabled, the net has a mistake; the unfolded net does not have the transition.",
 )

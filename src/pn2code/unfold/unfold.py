@@ -70,7 +70,7 @@ def unfold(
             UNFOLDING_FAULT,
             f"`{fault.name}`: {fault.message}; the unfolded net lacks it",
             fault.origin,
-            hint="if this binding can become enabled, the net is wrong; else ignore this",
+            hint="if this binding can become enabled, the net is wrong; otherwise ignore this",
         )
     return closure.result()
 

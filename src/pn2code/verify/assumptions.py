@@ -19,14 +19,15 @@ CONTROL: Final = (
     "Controller checks and properties are about the cell as it runs. Each program knows its own priorities and the "
     "messages that it has seen. The supervisor works in cycles. Of the transitions that are enabled, each program "
     "takes the first one in the documented order.",
-    "Programs may be slow or quick, and sensors may say anything. Crashes are looked at only with the medium.",
+    "Programs may be slow or fast, and sensors may give any value. Crashes are considered only with the medium.",
 )
 MEDIUM: Final = (
     "A rename is atomic: a name leads to the old or to the new file, never to none or to half of one",
-    "A process that has opened a file reads all of it, even if another file is renamed over it meanwhile",
-    "What was renamed first is seen first by whoever looks at the *later* one first: a reader that sees the flag finds "
-    "the data. Nothing is assumed of a reader that looks at the data first, so none does",
-    "What was renamed is seen by the next look: looks may come late, but none shows what was replaced before it",
+    "A process that has opened a file reads all of it, even if another file is renamed over it in the "
+    "meantime",
+    "A reader that sees the later of two renamed files also finds the earlier one: if it sees the flag, it finds the "
+    "data. Nothing is assumed about a reader that looks at the data first, so none does",
+    "A renamed file is seen by the next look: looks may come late, but none shows what was replaced before it",
     "Files stay, with all of their contents, when the process that wrote them ends",
     "The lock of a process that has died is free, and its status file says what it said",
     "A file cannot have a shared and an exclusive lock at the same time",

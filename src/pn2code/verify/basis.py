@@ -75,7 +75,7 @@ def complete(found: Exploration) -> Iterator[tuple[str, str]]:
     )
     missing = "not asked for" if found.complete else "not complete"
     yield "Arcs", f"complete: {found.arcs:,}{of}" if seen.arcs else missing
-    missing = "not kept by the reduction" if seen.arcs and found.is_reduced else missing
+    missing = "not preserved by the reduction" if seen.arcs and found.is_reduced else missing
     yield "Components", "complete" if seen.components else missing
 
 

@@ -7,6 +7,7 @@ commands.may_come(action)       # one is called somewhere, perhaps on a branch
 
 from __future__ import annotations
 
+from pn2code.cell.config import Primitive
 from pn2code.cell.partition import Partition
 from pn2code.cell.reach import Reach
 from pn2code.ml import core
@@ -28,7 +29,7 @@ class Commands:
     def must_come(self, e: core.Exp) -> bool:
         """Whether a primitive is called whatever the values are; what is not understood may do without.
 
-        A tool that works for no time at all does not count: a script that repeats it stands still in time.
+        What may take no time at all does not count, a tool or a wait: a script that repeats it stands still in time.
         """
         match e:
             case core.If(condition, then, otherwise):
@@ -38,7 +39,7 @@ class Commands:
             case core.Case(scrutinee, rules):
                 return self.must_come(scrutinee) or all(self.must_come(r.body) for r in rules)
             case core.Apply(function, argument):
-                return self._applies(function) or self.must_come(argument)
+                return self._applies(function, argument) or self.must_come(argument)
             case core.RecordExp(fields):
                 return any(self.must_come(x) for _, x in fields)
             case core.Sequence(items):
@@ -49,7 +50,7 @@ class Commands:
             case _:
                 return False
 
-    def _applies(self, function: core.Exp) -> bool:
+    def _applies(self, function: core.Exp, argument: core.Exp | None = None) -> bool:
         """Whether applying a function calls a primitive in each of its rules."""
         match function:
             case core.Lambda(rules):
@@ -57,7 +58,7 @@ class Commands:
             case core.Var(symbol):
                 primitive = self._primitives.get(symbol.uid)
                 if primitive is not None:
-                    return primitive.command != "tool" or primitive.duration_s > 0.0
+                    return _takes_time(primitive, argument)
                 body = self._reach.body(symbol)
                 if symbol.uid not in self._looked:
                     self._looked[symbol.uid] = (
@@ -67,3 +68,34 @@ class Commands:
                 return self._looked[symbol.uid]
             case _:
                 return False
+
+
+def lasts(primitive: Primitive, argument: core.Exp | None) -> float | None:
+    """The seconds that a tool or a wait takes; None: the net does not show it, as of all moves.
+
+    Args:
+        primitive: the command.
+        argument: what it is applied to; None: that is not known.
+    """
+    match primitive.command:
+        case "tool":
+            return primitive.duration_s
+        case "wait" if isinstance(argument, core.RecordExp):
+            return primitive.duration_s
+        case "wait" if argument is not None:
+            return seconds(argument)
+        case _:
+            return None
+
+
+def seconds(e: core.Exp) -> float | None:
+    """The number of an expression that is one."""
+    if isinstance(e, core.Lit) and isinstance(e.value, int | float):
+        return float(e.value)
+    return None
+
+
+def _takes_time(primitive: Primitive, argument: core.Exp | None) -> bool:
+    """Whether it surely does; moves count as if they led somewhere else."""
+    known = lasts(primitive, argument)
+    return primitive.command not in ("tool", "wait") if known is None else known > 0.0

@@ -22,7 +22,7 @@ from pn2code.cell.partition import OwnerKind, Partition
 from pn2code.diagnostics import Diagnostics
 from pn2code.net.flat import ArcKind
 from pn2code.properties.questions import Questions
-from pn2code.tdl.interpret import MOST_OCCURRENCES
+from pn2code.tdl.interpret import MOST_AT_ONCE, MOST_OCCURRENCES
 from pn2code.verify import chance
 from pn2code.verify.control_answers import (
     Keeper,
@@ -112,7 +112,7 @@ def of_orders(running: Running, firings: int = MAX_FIRINGS) -> str:
         f"? bounded-response {firings}",
         "? confluence 0",
         "? confluence 1",
-        f"? restless {MOST_OCCURRENCES - 1}",
+        f"? restless {MOST_AT_ONCE - 1}",
     ]
     return "".join(f"{line}\n" for line in lines)
 

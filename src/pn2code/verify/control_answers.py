@@ -271,7 +271,7 @@ def _confluent(
         what = "the order of firing matters"
     says = f"{what} {at} step{'s' * (at != 1)} after the start"
     if plan.order_decides:
-        says += ', but the documented order is meant, since cell.toml has `order = "documented"`'
+        says += ', but the documented order is intended, since cell.toml has `order = "documented"`'
         return Check(CONFLUENT, "no", says, at, is_accepted=True, transitions=pair)
     return Check(
         CONFLUENT,
@@ -305,7 +305,7 @@ def _restless(row: Mapping[str, Any], keep: Keeper) -> Check | None:
     round_ = evidence[0].transitions[loop:] if loop is not None else ()
     ways = f" ({_named(round_)})" if round_ else ""
     how = "for ever" if row["value"] is None else f"for {int(row['value']):,} transitions"
-    says = f"a script goes round {how} without a command or a wait{ways}; this stops the whole cell"
+    says = f"a script loops {how} without a command or a wait{ways}; this stops the whole cell"
     return Check(BLOCKING, "no", says, why="stopped", evidence=evidence)
 
 

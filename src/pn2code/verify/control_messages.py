@@ -55,7 +55,7 @@ def memory(found: Exploration | None, why: str = "") -> Check:
     firing, marking = found.arena["firing"], found.arena["marking"]
     held = f"lists and strings take at most {marking:,} bytes in a marking"
     if marking == 0:
-        held = "no marking has lists or strings that take any"
+        held = "no marking has lists or strings that need any"
     needs = f"{held}, and what is worked out on the way {firing:,} in one firing"
     if size > arena.MOST:
         return Check(MEMORY, "no", f"{needs}, which is too much", firing)

@@ -208,7 +208,7 @@ def _too_late(net: FlatNet, limits: Limits, compiling: float, d: Diagnostics) ->
     if all(i.code != TIME_OVER for i in d):
         d.warning(
             TIME_OVER,
-            "the time was over before the net was compiled, so no marking has been explored",
+            "the time was up before the net was compiled, so no marking has been explored",
             Origin(net.file),
             hint="give it more time with `--max-seconds`; a net that has been compiled once is kept",
         )
@@ -364,7 +364,7 @@ def _run(
         if is_late:
             d.warning(
                 TIME_OVER,
-                "the explorer did not end when its time was over, and was stopped; what it had found is lost",
+                "the explorer did not end when its time was up, and was stopped; what it had found is lost",
                 Origin(net.file),
                 hint="an inscription may compute for very long, or for ever; `--max-states` ends it earlier",
             )

@@ -156,4 +156,4 @@ def _reason(scalars: Sequence[Scalar], values: Sequence[ScalarValue]) -> str:
             return f"{where} is {quote(str(value))}, which a reader refuses"
     text = format_scalars(scalars, values)
     size = len(text) if text is not None else 0
-    return f"it has {size:,} bytes, and {MAX_PAYLOAD:,} are the most"
+    return f"it has {size:,} bytes, but at most {MAX_PAYLOAD:,} are possible"

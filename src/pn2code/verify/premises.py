@@ -14,10 +14,10 @@ from pn2code.properties import meaning as m
 from pn2code.verify.replies import Replies
 
 _DURATIONS = (
-    "it can happen for some durations of what programs do: known ones are not compared with timers"
+    "it can happen for some durations of commands; known durations are not compared with timers"
 )
 
-_SENSORS = "each value that a sensor can have occurs from time to time"
+_SENSORS = "each possible value of a sensor occurs from time to time"
 
 
 @frozen
@@ -43,7 +43,7 @@ class Premises:
         measured = _measured(partition, config)
         if measured:
             names = ", ".join(f"`{name}`" for name in measured)
-            states.append(f"what is measured is what {names} of the net gives")
+            states.append(f"a measurement gives the result of {names} in the net")
         if partition.inputs:
             names = ", ".join(f"`{i.name}`" for i in partition.inputs)
             states.append(f"{names} begins with the tokens of the net, not with those of its file")

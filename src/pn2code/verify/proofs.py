@@ -187,7 +187,7 @@ _HINT = (
 )
 _HINTS = {
     control_types.CONFLUENT: "give the transitions different priorities, or say in cell.toml that the documented "
-    'order is meant: `order = "documented"` in [supervisor]; `--unchecked` generates it anyway',
+    'order is intended: `order = "documented"` in [supervisor]; `--unchecked` generates it anyway',
 }
 _SHOWN = 4
 

@@ -17,8 +17,9 @@ _CLAUSES = {
     "speeds": "it depends on the order of events, and so on their durations",
     "late": "an answer may be owed for longer than `reply_timeout_s`, and that stops the cell",
     "stops": "another check says that the supervisor stops",
-    "commands": "a script may never take the branches with commands that take time, and go round without a wait",
-    "chance": "it depends on random numbers or files, and others than those that were drawn may lead to another answer",
+    "commands": "a script may loop without a command or a wait that takes time: its commands and waits may be on "
+    "branches that it never takes, or may take no time",
+    "chance": "it depends on random numbers or files, and other values than those drawn may lead to another answer",
     "compiler": "there is no C compiler",
 }
 

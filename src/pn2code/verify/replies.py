@@ -21,6 +21,7 @@ from pn2code.frozen import frozen
 from pn2code.lowering.robot_machine import Machine
 from pn2code.lowering.values import children
 from pn2code.ml import core
+from pn2code.verify.commands import lasts, seconds
 from pn2code.verify.stops import NoProgramError, machine
 
 _ENDLESS = math.inf
@@ -111,7 +112,7 @@ class _Silence:
                 there = self.program.target(outcome)
                 delays = [e for p, e in outcome.delays if p == there]
                 delays += [] if t.delay is None else [t.delay]
-                after = sum((_seconds(e) for e in delays), Time())
+                after = sum((_time(seconds(e)) for e in delays), Time())
                 if any(p in channels and channels[p].reader == 0 for p, _ in outcome.puts):
                     last.append((here, acts))  # commands, then the message, then the delay
                     begins[there] = Time.longest((begins.get(there, Time()), after))
@@ -173,15 +174,7 @@ class _Commands:
         return sum((self._of(part, inside) for part in parts), Time())
 
     def _command(self, uid: int, argument: core.Exp | None) -> Time:
-        primitive = self._primitives[uid]
-        match primitive.command:
-            case "tool":
-                return Time(primitive.duration_s)
-            case "wait":
-                is_given = argument is not None and not isinstance(argument, core.RecordExp)
-                return _seconds(argument) if argument and is_given else Time(primitive.duration_s)
-            case _:
-                return OPEN
+        return _time(lasts(self._primitives[uid], argument))
 
 
 def _values(declarations: Iterable[core.Dec]) -> Iterator[core.Exp]:
@@ -191,7 +184,5 @@ def _values(declarations: Iterable[core.Dec]) -> Iterator[core.Exp]:
             yield declaration.value
 
 
-def _seconds(e: core.Exp) -> Time:
-    """The number of an expression that is one."""
-    is_number = isinstance(e, core.Lit) and isinstance(e.value, int | float)
-    return Time(float(e.value)) if isinstance(e, core.Lit) and is_number else OPEN
+def _time(seconds: float | None) -> Time:
+    return OPEN if seconds is None else Time(seconds)

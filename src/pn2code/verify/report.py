@@ -84,7 +84,7 @@ def _head(net: FlatNet, found: Exploration, written: datetime | None) -> str:
         "",
         f"Made by pn2code {pn2code.__version__} from the net with SHA-256",
         f"{net.sha256}.",
-        "Explored was the net as it is compiled for the explorer; `pn2code conform` compares that, and the generated",
+        "The net was explored as it is compiled for the explorer; `pn2code conform` compares this, and the generated",
         "programs, with the net.",
     ]
     if not found.complete:
@@ -100,7 +100,7 @@ def _head(net: FlatNet, found: Exploration, written: datetime | None) -> str:
         lines.append(f"REDUCED by {', '.join(found.reductions)}.")
     if found.is_reduced:
         lines.append(
-            "Dead markings are kept; what is not said here is not known of the whole space."
+            "Dead markings are preserved; anything that is not stated here is not known for the whole space."
         )
     if found.symmetries:
         lines.append(

@@ -36,13 +36,14 @@ from typing import Any
 
 from pn2code.cell.partition import Channel, ChannelKind, Partition
 from pn2code.frozen import frozen
+from pn2code.lowering.robot_machine import Machine, Step
 from pn2code.ml import core
 from pn2code.net.builder import Arc, Builder
 from pn2code.net.flat import ArcKind, FlatArc, FlatNet, FlatTransition
 from pn2code.net.predicate import Predicate
 from pn2code.semantics.parties import VERIFY
 from pn2code.verify import time_reduction
-from pn2code.verify.commands import Commands
+from pn2code.verify.commands import Commands, seconds
 from pn2code.verify.refusals import refusing
 from pn2code.verify.stops import MOST_MESSAGES, NoProgramError, machine, waits
 from pn2code.whole_file import whole_file
@@ -87,7 +88,8 @@ class Running:
         stopped: that of robots whose scripts have stopped; the cell stops then.
         steps: by added transition, in order: whose step it is (the clock has the number after the last owner's).
         clock: which of them are steps of the clock; `probes`: which never occur, and only hold others back.
-        instant: transitions for which a script neither waits nor takes time; `idle`: for which it may not.
+        instant: transitions for which a script neither waits nor does anything; `idle`: for which it may not, or may do
+            so for no time.
         meek: transitions that hold no other one of their robot back: their messages may not have come yet.
     """
 
@@ -121,7 +123,7 @@ class Running:
             raise NotModelledError(str(problem)) from None
         except ValueError as problem:
             raise NotModelledError(
-                f"when a script waits is not seen in the net: {problem}"
+                f"the net does not show when a script waits: {problem}"
             ) from None
 
     def lines(self, *, first: bool, names: Sequence[str] | None = None) -> list[str]:
@@ -210,7 +212,8 @@ def _check(partition: Partition, predicates: Sequence[Predicate]) -> None:
         obstacle = time_reduction.obstacle(net, predicates)
         if obstacle is not None:
             raise NotModelledError(
-                f"steps may come later than in the net, and {obstacle.message}, so that there would be no end of states"
+                f"steps may come later than in the net, and {obstacle.message}, so that there would be infinitely many "
+                "states"
             )
     for place in partition.final_places:
         if net.places[place].colset.timed:
@@ -237,7 +240,7 @@ def _check_transition(
         elif arc.kind is ArcKind.INPUT and channel.reader == owner:
             if arc.place in taken or not _takes_one(arc):
                 raise NotModelledError(
-                    f"it is not seen in the net that `{t.name}` takes just one message of `{name}`"
+                    f"the net does not show that `{t.name}` takes only one message of `{name}`"
                 )
             taken.add(arc.place)
         else:
@@ -311,8 +314,8 @@ class _Composer:
             clock=tuple(self.clock),
             probes=tuple(self.probes),
             meek=tuple(_meek(self.partition)),
-            instant=tuple(_instant(self.partition, surely=True)),
-            idle=tuple(_instant(self.partition, surely=False)),
+            instant=tuple(_instant(self.partition, self.machines.values(), surely=True)),
+            idle=tuple(_instant(self.partition, self.machines.values(), surely=False)),
             names=frozenset(t.name for t in self.partition.net.transitions),
             resting=self.idle,
             silences=tuple(self._silences()),
@@ -491,25 +494,36 @@ def _staged(partition: Partition) -> Iterator[Channel]:
     return (c for c in partition.channels if c.place in found)
 
 
-def _instant(partition: Partition, *, surely: bool) -> Iterator[int]:
+def _instant(partition: Partition, machines: Iterable[Machine], *, surely: bool) -> Iterator[int]:
     """Transitions of robots for which their scripts neither wait for a message nor carry out a command.
 
-    Those with a delay count: where it is not zero, a step of the clock comes before what follows.
+    A delay that is not zero lets a step of the clock come before what follows. One that is zero is a wait for no time,
+    unless nothing but a zero is written there: a script that repeats it stands still in time, but does not stop.
 
     Args:
         partition: the cell.
-        surely: whether only those count of which that is certain: a command may stand on a branch.
+        machines: its programs.
+        surely: whether only those count of which that is certain: a command may stand on a branch, a delay may be zero.
     """
     channels = {c.place for c in partition.channels}
     commands = Commands(partition)
-    for t, owner in zip(partition.net.transitions, partition.transition_owner, strict=True):
-        waits_for = any(a.place in channels and a.kind is not ArcKind.OUTPUT for a in t.arcs)
-        action = None if t.code is None else t.code.action
-        acts = action is not None and (
-            commands.may_come(action) if surely else commands.must_come(action)
-        )
-        if owner != SUPERVISOR and not (waits_for or acts):
-            yield t.index
+    for program in machines:
+        for step in program.steps:
+            t = step.transition
+            waits_for = any(a.place in channels and a.kind is not ArcKind.OUTPUT for a in t.arcs)
+            action = None if t.code is None else t.code.action
+            acts = action is not None and (
+                commands.may_come(action) if surely else commands.must_come(action)
+            )
+            if not (waits_for or acts or (surely and _may_pause(step))):
+                yield t.index
+
+
+def _may_pause(step: Step) -> bool:
+    """Whether a delay of a robot's transition becomes a wait, for however long."""
+    delays = [e for outcome in step.outcomes for _, e in outcome.delays]
+    delays += [] if step.transition.delay is None else [step.transition.delay]
+    return any(seconds(e) != 0.0 for e in delays)
 
 
 def _meek(partition: Partition) -> Iterator[int]:

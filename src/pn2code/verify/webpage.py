@@ -46,7 +46,7 @@ class _Player:
             with self.deadline.enforced():
                 shown = steps(self.net, self.storage, trace.file, most=MOST_STEPS)
         except TimeIsOverError:
-            problem = "The trace is not shown here: the time was over."
+            problem = "The trace is not shown here: the time was up."
         except (TraceRefusedError, GameError, OSError) as error:
             problem = f"The trace cannot be shown: {error}"
         return {
@@ -196,7 +196,7 @@ def _verdicts(net: FlatNet, found: Exploration) -> list[dict[str, str]]:
     if found.reductions:
         said.append({"kind": "open", "text": f"Reduced by {', '.join(found.reductions)}."})
     if found.is_reduced:
-        text = "Dead markings are kept; what is not said here is not known of the whole space."
+        text = "Dead markings are preserved; anything that is not stated here is not known for the whole space."
         said.append({"kind": "open", "text": text})
     if found.symmetries:
         text = f"A node stands for all markings that are symmetric to it ({', '.join(found.symmetries)})."

@@ -123,7 +123,7 @@ static bool repeat(sim_t *sim, const given_t *given)
     }
     const uint32_t best = sim->enabled[0];
     if (t->priority > pn_net.transition[best].priority) {
-        return refuse(sim, "not enabled: of higher priority and enabled is ", pn_net.transition[best].name);
+        return refuse(sim, "not enabled, because of the higher priority of ", pn_net.transition[best].name);
     }
     match_t match = { sim, given->prefix, false };
     (void)t->enumerate(&sim->cx, sim->marking, given->transition, compare, &match);

@@ -1,4 +1,4 @@
-"""The checks of a cell's medium in `pn2code verify`: docs/protocol.md, "The medium in the model"."""
+"""The checks of a cell's medium: docs/protocol.md, "The medium in the model"."""
 
 from __future__ import annotations
 
@@ -6,12 +6,12 @@ from collections.abc import Iterator
 from dataclasses import replace
 
 from pn2code.cell.divide import divide
-from pn2code.cli.nets import OpenNet
-from pn2code.cli.options import Exit
 from pn2code.diagnostics import Diagnostics
 from pn2code.medium.check import WHOLE, Answer, Evidence, medium
 from pn2code.medium.faults import SAYS
+from pn2code.verdict.opened import OpenNet
 from pn2code.verify import basis
+from pn2code.verify.answers import Verdict
 from pn2code.verify.control_types import BLOCKING, Control
 from pn2code.verify.explore import Wishes
 from pn2code.verify.limits import Limits
@@ -75,12 +75,10 @@ def _ending(a: Answer, control: Control | None, premise: str) -> Answer:
     return a
 
 
-def code(answers: Answers) -> int:
-    """As of properties: one "no" counts, then one that is not known."""
+def verdict(answers: Answers) -> Verdict:
+    """As of properties: one "no" counts, then one that is not known; "yes" where there are none."""
     said = {a.answer for a in answers}
-    if "no" in said:
-        return Exit.MODEL
-    return Exit.INCONCLUSIVE if "inconclusive" in said else Exit.OK
+    return "no" if "no" in said else "inconclusive" if "inconclusive" in said else "yes"
 
 
 def told(answers: Answers) -> str:

@@ -1,4 +1,4 @@
-"""Properties in `pn2code verify`: gathered from where they are written, asked, and their answers shown."""
+"""Properties of a net or cell: gathered from where they are written, asked, and their answers shown."""
 
 from __future__ import annotations
 
@@ -12,7 +12,6 @@ from typing import Any
 
 from pn2code.cell.divide import divide
 from pn2code.cell.partition import Partition
-from pn2code.cli.nets import OpenNet
 from pn2code.deadline import Deadline, TimeIsOverError
 from pn2code.diagnostics import Diagnostics
 from pn2code.net.flat import FlatNet
@@ -25,6 +24,7 @@ from pn2code.semantics.effects import Effect, Effects
 from pn2code.semantics.game import GameError
 from pn2code.semantics.values import MlException, MlLimit
 from pn2code.simulate.script import TraceRefusedError
+from pn2code.verdict.opened import OpenNet
 from pn2code.verify import chance, confirm
 from pn2code.verify.answers import Answer, answers, drawn
 from pn2code.verify.cell_answers import of_cell
@@ -245,7 +245,7 @@ def _check_effects(opened: OpenNet, properties: m.Properties, d: Diagnostics) ->
                 codes.OUTSIDE,
                 f"this condition {wrong[0].value}",
                 exp.span,
-                hint="say it of what places and references hold: nothing else is the same in each state",
+                hint="write it about the contents of places and references: nothing else is determined by the state",
             )
 
 

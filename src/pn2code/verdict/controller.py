@@ -1,4 +1,4 @@
-"""The checks of a cell's supervisor in `pn2code verify`."""
+"""The checks of a cell's supervisor."""
 
 from __future__ import annotations
 
@@ -6,11 +6,11 @@ from dataclasses import replace
 from pathlib import Path
 
 from pn2code.cell.divide import divide
-from pn2code.cli.nets import OpenNet
-from pn2code.cli.options import Exit
 from pn2code.diagnostics import Diagnostics, Origin
 from pn2code.properties import meaning as m
+from pn2code.verdict.opened import OpenNet
 from pn2code.verify import control
+from pn2code.verify.answers import Verdict
 from pn2code.verify.codes import TRACE_UNWRITABLE
 from pn2code.verify.control_types import Control, Plan
 from pn2code.verify.explore import Wishes
@@ -82,8 +82,8 @@ def _check_written(looked: Control, folder: Path, d: Diagnostics) -> None:
         )
 
 
-def code(looked: Control | None) -> int:
-    """What the checks add to the exit code."""
+def verdict(looked: Control | None) -> Verdict:
+    """Of all checks together; "yes" where there are none."""
     if looked is None:
-        return Exit.OK
-    return Exit.MODEL if looked.failed else Exit.INCONCLUSIVE if looked.open else Exit.OK
+        return "yes"
+    return "no" if looked.failed else "inconclusive" if looked.open else "yes"

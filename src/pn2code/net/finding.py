@@ -1,0 +1,156 @@
+"""What may be meant by the name of a place or transition that a user writes.
+
+    places = Finder.of_places(net)
+    places.named("Top'Buffer")              # as in the queries of CPN Tools: all instances that this may be
+    places.ending("Supervisor.Finished")    # indices of those whose path this is, or ends in this
+
+Two elements may have one name: `A B` and `A_B` are both `A_B` for the engine, and nobody keeps an author from writing
+the same name twice. So all that may be meant is given, and whoever asks refuses what is more than one. The id of an
+element in the place of its name, `Top'ID12`, is always of one.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+
+from pn2code.frozen import frozen
+from pn2code.net.engine_names import EngineNames, legal_name
+from pn2code.net.flat import FlatNet, PlaceInstance
+
+
+@frozen
+class Instance:
+    """A place or transition on an instance of its page.
+
+    Args:
+        element: its XML id.
+        number: that of the page instance.
+        index: in `FlatNet.places` or `FlatNet.transitions`.
+        path: as in traces; of a member of a merged place, where that member stands.
+        full: `Page'Name` as the engine writes it, another one for each element of a page.
+    """
+
+    element: str
+    number: int
+    index: int
+    path: str
+    full: str
+
+
+@frozen
+class _Element:
+    """What is needed of a place or transition."""
+
+    instance: Instance
+    page: str
+    names: tuple[str, ...]
+    """each way to write its own name, without the page"""
+
+
+class Finder:
+    """The places, or the transitions, of a net by what users call them."""
+
+    def __init__(self, elements: Iterable[_Element], paths: Sequence[tuple[str, str]]) -> None:
+        self.paths = {path: index for index, (path, _) in enumerate(paths)}
+        self._own = paths
+        self._all: list[Instance] = []
+        self._by_name: dict[str, list[Instance]] = {}
+        self.bare: dict[str, list[str]] = {}
+        for e in elements:
+            self._all.append(e.instance)
+            for name in dict.fromkeys(e.names):
+                for text in (f"{e.page}'{name}", name):
+                    self._by_name.setdefault(text, []).append(e.instance)
+                if e.instance.full not in self.bare.setdefault(name, []):
+                    self.bare[name].append(e.instance.full)
+
+    @staticmethod
+    def of_places(net: FlatNet) -> Finder:
+        """The places; each member of a merged place has its own name."""
+        engine = EngineNames(net)
+        return Finder(
+            (
+                _element(
+                    Instance(
+                        p.id,
+                        p.number,
+                        p.place,
+                        _path(net, p),
+                        engine.place_instance(p).rpartition(" ")[0],
+                    ),
+                    p.page,
+                    p.name,
+                    p.caption,
+                )
+                for p in net.place_instances
+            ),
+            [(p.name, p.short) for p in net.places],
+        )
+
+    @staticmethod
+    def of_transitions(net: FlatNet) -> Finder:
+        """The transitions."""
+        engine = EngineNames(net)
+        return Finder(
+            (
+                _element(
+                    Instance(
+                        t.id,
+                        t.instance_number,
+                        t.index,
+                        t.name,
+                        engine.transition(t.index).rpartition(" ")[0],
+                    ),
+                    t.page,
+                    t.short,
+                    t.caption,
+                )
+                for t in net.transitions
+            ),
+            [(t.name, t.short) for t in net.transitions],
+        )
+
+    @property
+    def full(self) -> list[str]:
+        """`Page'Name` of all elements."""
+        return list(dict.fromkeys(x.full for x in self._all))
+
+    def named(self, text: str) -> Sequence[Instance]:
+        """All that may be meant by `Page'Name`, or by a name alone."""
+        return self._by_name.get(text, ())
+
+    def surely(self, instance: Instance) -> str:
+        """A name that only this element has; its path in quotes where there is no better one."""
+        page = instance.full.partition("'")[0]
+        for text in (instance.full, f"{page}'{instance.element}"):
+            if {x.element for x in self.named(text)} == {instance.element}:
+                return text
+        return f'"{instance.path}"'
+
+    def ending(self, text: str) -> list[int]:
+        """The indices of what has this path; or else of all whose name this is, or whose path ends in it.
+
+        Names of ports, and of members of fusion sets, count where nothing else has the name.
+        """
+        if text in self.paths:
+            return [self.paths[text]]
+        own = [i for i, (path, short) in enumerate(self._own) if text == short or _ends(path, text)]
+        return own or sorted({x.index for x in self._all if _ends(x.path, text)})
+
+
+def _ends(path: str, text: str) -> bool:
+    return path.endswith(f".{text}")
+
+
+def _path(net: FlatNet, p: PlaceInstance) -> str:
+    """That of traces, if the place has one of its own there."""
+    page = p.instance.replace("/", ".")
+    whole = net.places[p.place]
+    own = (whole.id, whole.instance) == (p.id, p.instance) and whole.name.startswith(f"{page}.")
+    return whole.name if own else f"{page}.{p.name}"
+
+
+def _element(instance: Instance, page: str, short: str, caption: str) -> _Element:
+    own = instance.full.partition("'")[2]
+    names = (own, legal_name(caption or short), short, instance.element)
+    return _Element(instance, legal_name(page), names)

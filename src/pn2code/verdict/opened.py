@@ -1,0 +1,59 @@
+"""The net that a path means, and the cell beside it: what everything about behaviour begins with."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+
+from pn2code.cell.config import CellConfig
+from pn2code.cell.locate import locate
+from pn2code.diagnostics import Diagnostics
+from pn2code.net import front
+from pn2code.net.flat import FlatNet
+from pn2code.semantics.files import Files
+from pn2code.semantics.game import Game
+
+
+@dataclass(frozen=True, slots=True)
+class OpenNet:
+    """A net, the cell beside it, if there is one, and what the front end knows of it."""
+
+    flat: FlatNet
+    config: CellConfig | None
+    examined: front.Examined
+
+    @property
+    def storage(self) -> Mapping[str, str]:
+        """How colour sets of reals are stored: name -> "float32"."""
+        return self.config.storage if self.config else {}
+
+    def game(self, *, seed: int, files: Path | None) -> Game:
+        """The net at its start.
+
+        Raises:
+            GameError: a declaration or an initial marking raises an exception.
+        """
+        return Game(self.flat, self.storage, seed=seed, files=Files(files))
+
+
+def read(
+    path: Path, values: Mapping[str, str], d: Diagnostics, *, int_bits: int = 31
+) -> OpenNet | None:
+    """The net that a path means; None after an error that was reported.
+
+    Args:
+        path: a .cpn or .pnml file, a cell.toml, or a folder with a cell.toml.
+        values: replace `val`s of the net, over those of cell.toml.
+        d: gets the errors and warnings.
+        int_bits: width of `int`.
+    """
+    found = locate(path, d)
+    if found is None:
+        return None
+    net_path, config = found
+    replaced = {**(config.values if config else {}), **values}
+    examined = front.examine(net_path, d, replaced, int_bits=int_bits)
+    if examined.flat is None or d.has_errors:
+        return None
+    return OpenNet(examined.flat, config, examined)

@@ -1,0 +1,272 @@
+"""From a question to all answers: the steps of `pn2code verify` between reading a net and printing what is known."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import contextmanager, suppress
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import Any
+
+from pn2code import pipeline
+from pn2code.deadline import NEVER, Deadline, TimeIsOverError
+from pn2code.diagnostics import Diagnostics, Origin
+from pn2code.lowering.robot import lower_robots
+from pn2code.net.flat import FlatNet
+from pn2code.verdict import controller, medium, properties
+from pn2code.verdict.opened import OpenNet
+from pn2code.verdict.properties import Asked
+from pn2code.verify import chance
+from pn2code.verify.answers import Answer, Verdict, verdict
+from pn2code.verify.codes import STATE_ERROR, TRACE_UNWRITABLE
+from pn2code.verify.control_types import Control
+from pn2code.verify.explore import Wishes, explore
+from pn2code.verify.limits import Limits
+from pn2code.verify.programs import Sizes
+from pn2code.verify.result import Exploration
+from pn2code.verify.result import row as exploration_row
+
+MOST_COLOURS = 200
+"""Of a multi-set bound, unless all is wanted: a place with a colour for each marking has millions."""
+
+
+@dataclass(frozen=True, slots=True)
+class Checks:
+    """What is looked at besides the state space of the net, where it is the net of a cell.
+
+    Args:
+        controller: the supervisor against its execution scheme (docs/execution.md).
+        medium: the cell together with its shared files (docs/protocol.md).
+    """
+
+    controller: bool = True
+    medium: bool = True
+
+
+@dataclass(frozen=True, slots=True)
+class Looked:
+    """What was explored; the runs that properties have led to have no names yet.
+
+    Args:
+        found: the state space.
+        control: the cell as it runs; None: the net is no cell.
+        more: answers to properties about bindings.
+        medium: the checks of the shared files.
+    """
+
+    found: Exploration
+    control: Control | None
+    more: Sequence[Answer]
+    medium: medium.Answers
+
+
+@dataclass(frozen=True, slots=True)
+class Said:
+    """All that is known.
+
+    Args:
+        net, storage: as for `Game`, which plays the runs again.
+        found: the state space.
+        answers: to properties.
+        control: the checks of a supervisor.
+        medium: those of the shared files.
+        errors: how many errors are said besides.
+        deadline: when it is over no run is played any more.
+    """
+
+    net: FlatNet
+    storage: Mapping[str, str]
+    found: Exploration
+    answers: Sequence[Answer]
+    control: Control | None
+    medium: medium.Answers
+    errors: int = 0
+    deadline: Deadline = NEVER
+
+    @property
+    def verdict(self) -> Verdict:
+        """The worst answer: where nothing is asked, whether all markings were seen."""
+        if self.errors:
+            return "no"
+        own: Verdict = "yes" if self.found.complete else "inconclusive"
+        found = {
+            verdict(self.answers) if self.answers else own,
+            controller.verdict(self.control),
+            medium.verdict(self.medium),
+        }
+        return "no" if "no" in found else "inconclusive" if "inconclusive" in found else "yes"
+
+    def row(self) -> dict[str, Any]:
+        """As plain data: what `pn2code verify --json` prints (docs/verify.md)."""
+        row = exploration_row(self.net, self.found)
+        if self.answers:
+            row["properties"] = [a.row() for a in self.answers]
+        if self.control is not None:
+            row["controller"] = [c.row() for c in self.control.checks]
+            row["cell"] = self.control.row()
+        if self.medium:
+            row["medium"] = [a.row() for a in self.medium]
+        return row
+
+
+def question(
+    opened: OpenNet, texts: Sequence[str], file: Path | None, d: Diagnostics, *, found: bool
+) -> Asked:
+    """What is asked about a net or cell; what is wrong with it, or with the cell, is reported.
+
+    Args:
+        opened: the net.
+        texts: properties as text.
+        file: a file of properties; None: the one beside the net, if there is one.
+        d: gets the errors and warnings.
+        found: whether those of the file beside the net and of the cell count.
+    """
+    partition = pipeline.divided(opened.flat, opened.config, d)
+    if partition is not None and opened.config is not None:
+        # What is said of a cell is said of its programs: without them there is nothing to say.
+        lower_robots(partition, opened.config, d)
+    asked = properties.asked(opened, texts, file, d, found=found)
+    chance.warn(opened.flat, d)
+    return asked
+
+
+def look(
+    opened: OpenNet,
+    asked: Asked,
+    limits: Limits,
+    wishes: Wishes,
+    folder: Path,
+    d: Diagnostics,
+    checks: Checks = Checks(),
+    own_wishes: Wishes | None = None,
+) -> Looked | None:
+    """Explores everything that the answers need; None after an error that was reported.
+
+    Args:
+        opened: the net.
+        asked: what is asked of it.
+        limits: of each exploration.
+        wishes: of all explorations.
+        folder: where traces go.
+        d: gets the errors.
+        checks: what is looked at in a cell.
+        own_wishes: those of the exploration of the net itself, where it has more.
+
+    Raises:
+        GameError: a declaration or an initial marking raises an exception.
+    """
+    # What the places hold is worked out once for all explorations of the net.
+    with suppress(TimeIsOverError), limits.deadline.enforced():
+        sizes = Sizes.start(opened.flat, opened.storage)
+        wishes = replace(wishes, sizes=sizes)
+        own_wishes = replace(own_wishes, sizes=sizes) if own_wishes is not None else None
+    found = explore(opened.flat, opened.storage, limits, d, own_wishes or wishes)
+    if found is None:
+        return None
+    control: Control | None = None
+    if checks.controller or asked:
+        control = controller.look(opened, found, limits, wishes, folder, d, asked.plain)
+    more = properties.of_bindings(asked, opened, found, limits, wishes, d, control)
+    seen: medium.Answers = ()
+    if checks.medium:
+        looked = control if checks.controller else None
+        seen = medium.look(opened, found, limits, wishes, d, looked)
+    return Looked(found, control, more, seen)
+
+
+def conclude(
+    looked: Looked,
+    opened: OpenNet,
+    asked: Asked,
+    limits: Limits,
+    folder: Path,
+    d: Diagnostics,
+    checks: Checks = Checks(),
+) -> Said:
+    """All answers; runs have got readable names in `folder`, and have been looked at again."""
+    found, control = looked.found, looked.control
+    answers = properties.answered(
+        asked, opened, found, looked.more, folder, stem(opened), limits.deadline, d, control
+    )
+    if found.error is not None and found.why == "error":
+        _tell_error(opened, found, d)
+    if found.graph is not None and len(found.traces) < min(limits.traces, found.dead_count):
+        _unwritable("a dead marking", folder, d)
+    if found.error and found.error.get("node") and limits.traces and found.error_trace is None:
+        _unwritable("the marking in which an exception is raised", folder, d)
+    return Said(
+        opened.flat,
+        opened.storage,
+        found,
+        answers,
+        control if checks.controller else None,  # else it was looked at for properties only
+        looked.medium,
+        len(d.errors),
+        limits.deadline,
+    )
+
+
+@contextmanager
+def trace_folder(folder: Path, *, wanted: bool, needed: bool) -> Iterator[Path]:
+    """Makes the folder of the traces; an empty one that was made here is not left.
+
+    Args:
+        folder: where traces go.
+        wanted: whether there may be any; if not, no folder is made.
+        needed: whether it is an error that it cannot be made. Else what cannot be written into it will be said.
+
+    Raises:
+        OSError: it cannot be made, and is needed.
+    """
+    is_new = wanted and not folder.exists()
+    if wanted:
+        try:
+            folder.mkdir(parents=True, exist_ok=True)
+        except OSError:
+            if needed:
+                raise
+            is_new = False
+    try:
+        yield folder
+    finally:
+        if is_new:
+            with suppress(OSError):  # there are traces in it
+                folder.rmdir()
+
+
+def stem(opened: OpenNet) -> str:
+    """What the names of trace files begin with."""
+    return re.sub(r"[^A-Za-z0-9_.-]+", "_", opened.flat.name) or "net"
+
+
+def _tell_error(opened: OpenNet, found: Exploration, d: Diagnostics) -> None:
+    error, trace = found.error, found.error_trace
+    assert error is not None
+    index = error.get("transition")
+    t = None if index is None else opened.flat.transitions[index]
+    where = f"transition `{t.name}`" if t is not None else error["where"]
+    notes = [error["where"]] if error["where"] else []
+    if error.get("binding"):
+        values = ", ".join(f"{name} = {value}" for name, value in error["binding"].items())
+        notes.append(f"the occurrence with {values}")
+    if error.get("node") is None:
+        notes.append("the run to it is not known: that needs memory, and stored markings")
+    if trace is not None:
+        notes.append(f"{trace.steps} steps lead to that marking: {trace.file}")
+    d.error(
+        STATE_ERROR,
+        f"{where} raises `{error['message']}` in a reachable marking",
+        t.origin if t is not None else Origin(opened.flat.file),
+        notes=notes,
+        hint="`pn2code simulate` can reach it, too; guard the inscription, or handle the exception",
+    )
+
+
+def _unwritable(goal: str, folder: Path, d: Diagnostics) -> None:
+    d.warning(
+        TRACE_UNWRITABLE,
+        f"a trace to {goal} cannot be written into `{folder}`",
+        Origin(str(folder)),
+        hint="give another folder with `--traces DIR`, or write none with `--most-traces 0`",
+    )
